@@ -1,0 +1,205 @@
+//! What a thing in a scene file is made of, said once.
+//!
+//! Every shape, camera, material and light states its keyword and its fields in one [`described!`] block. The
+//! reader, the writer, the manual and the generator of random test scenes walk that statement.
+
+use crate::dialect::{Dialect, DialectSet};
+use crate::math::Vec3;
+use serde::{Deserialize, Serialize};
+
+/// The type of a field, as the reader sees it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// One number.
+    Float,
+    /// One whole number, zero or more.
+    Int,
+    /// Three numbers: a point, a direction or a colour.
+    Vec3,
+    /// A file's path.
+    Path,
+}
+
+/// A value of a field.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum Value {
+    /// One number.
+    Float(f32),
+    /// One whole number.
+    Int(u32),
+    /// Three numbers.
+    Vec3(Vec3),
+    /// A file's path, as written.
+    Path(String),
+}
+
+/// What a value must be beyond finite.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Rule {
+    /// Anything.
+    Any,
+    /// More than zero.
+    Positive,
+    /// Zero or more.
+    NonNegative,
+    /// A vector that is not zero.
+    NonZero,
+    /// Between these, both excluded.
+    Between(f32, f32),
+    /// At most this whole number.
+    AtMost(u32),
+}
+
+impl Rule {
+    /// What is wrong with a value, if anything.
+    pub fn violation(self, value: &Value) -> Option<String> {
+        match (self, value) {
+            (Rule::Positive, Value::Float(x)) if *x <= 0.0 => Some("must be more than 0".into()),
+            (Rule::NonNegative, Value::Float(x)) if *x < 0.0 => Some("must not be less than 0".into()),
+            (Rule::NonZero, Value::Vec3(v)) if v.length_squared() == 0.0 => Some("must not be 0 0 0".into()),
+            (Rule::Between(low, high), Value::Float(x)) if *x <= low || *x >= high => {
+                Some(format!("must be more than {low} and less than {high}"))
+            }
+            (Rule::AtMost(most), Value::Int(i)) if *i > most => Some(format!("must be at most {most}")),
+            _ => None,
+        }
+    }
+}
+
+/// One field of a thing.
+#[derive(Debug)]
+pub struct Field {
+    /// Name in code and JSON.
+    pub name: &'static str,
+    /// Type.
+    pub kind: Kind,
+    /// Whether a scene must give it.
+    pub required: bool,
+    /// What its value must be.
+    pub rule: Rule,
+    /// How each dialect spells it.
+    pub spellings: &'static [(&'static str, DialectSet)],
+    /// Meaning and unit.
+    pub doc: &'static str,
+}
+
+impl Field {
+    /// The keyword of this field in a dialect, if it has one there.
+    pub fn spelling(&self, dialect: Dialect) -> Option<&'static str> {
+        self.spellings.iter().find(|(_, set)| dialect.is_in(*set)).map(|(word, _)| *word)
+    }
+}
+
+/// A thing whose parameters are stated once.
+pub trait Describe: Default {
+    /// The keywords that begin it; the first is written.
+    const KEYWORDS: &'static [(&'static str, DialectSet)];
+    /// What it is.
+    const DOC: &'static str;
+    /// Its fields, in the order in which they are written.
+    const FIELDS: &'static [Field];
+
+    /// The value of the i-th field; `None` where it is not given.
+    fn get(&self, field: usize) -> Option<Value>;
+
+    /// Sets the i-th field. A value of another kind changes nothing.
+    fn set(&mut self, field: usize, value: Value);
+}
+
+/// A Rust type that a field can have.
+pub trait FieldType: Sized {
+    /// Its kind in scene files.
+    const KIND: Kind;
+    /// Its value, unless absent.
+    fn value(&self) -> Option<Value>;
+    /// From a value of its kind.
+    fn from_value(value: Value) -> Option<Self>;
+}
+
+macro_rules! field_type {
+    ($type:ty, $kind:ident) => {
+        impl FieldType for $type {
+            const KIND: Kind = Kind::$kind;
+            fn value(&self) -> Option<Value> {
+                Some(Value::$kind(self.clone()))
+            }
+            fn from_value(value: Value) -> Option<Self> {
+                match value {
+                    Value::$kind(x) => Some(x),
+                    _ => None,
+                }
+            }
+        }
+    };
+}
+
+field_type!(f32, Float);
+field_type!(u32, Int);
+field_type!(Vec3, Vec3);
+field_type!(String, Path);
+
+impl<T: FieldType> FieldType for Option<T> {
+    const KIND: Kind = T::KIND;
+    fn value(&self) -> Option<Value> {
+        self.as_ref().and_then(T::value)
+    }
+    fn from_value(value: Value) -> Option<Self> {
+        T::from_value(value).map(Some)
+    }
+}
+
+/// Declares a struct together with its description.
+///
+/// Each field: its doc comment, name, type, default, `required` or `optional`, its rule, and its spellings by dialect.
+#[macro_export]
+macro_rules! described {
+    (
+        $(#[doc = $doc:literal])+
+        $name:ident [$($keyword:literal in $kset:expr),+] {
+            $( $(#[doc = $fdoc:literal])+
+               $field:ident : $type:ty = $default:expr, $presence:ident, $rule:expr, [$($word:literal in $fset:expr),+]; )*
+        }
+    ) => {
+        $(#[doc = $doc])+
+        #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+        pub struct $name { $( $(#[doc = $fdoc])+ pub $field: $type, )* }
+
+        impl Default for $name {
+            fn default() -> Self { $name { $($field: $default,)* } }
+        }
+
+        impl $crate::describe::Describe for $name {
+            const KEYWORDS: &'static [(&'static str, $crate::dialect::DialectSet)] = &[$(($keyword, $kset)),+];
+            const DOC: &'static str = concat!($($doc, "\n"),+);
+            const FIELDS: &'static [$crate::describe::Field] = &[$(
+                $crate::describe::Field {
+                    name: stringify!($field),
+                    kind: <$type as $crate::describe::FieldType>::KIND,
+                    required: $crate::described!(@$presence),
+                    rule: $rule,
+                    spellings: &[$(($word, $fset)),+],
+                    doc: concat!($($fdoc, "\n"),+),
+                },
+            )*];
+
+            #[allow(unused_assignments, unused_mut, unused_variables)]
+            fn get(&self, field: usize) -> Option<$crate::describe::Value> {
+                let mut i = 0;
+                $( if field == i { return $crate::describe::FieldType::value(&self.$field); } i += 1; )*
+                None
+            }
+
+            #[allow(unused_assignments, unused_mut, unused_variables)]
+            fn set(&mut self, field: usize, value: $crate::describe::Value) {
+                let mut i = 0;
+                $( if field == i {
+                    if let Some(x) = $crate::describe::FieldType::from_value(value) { self.$field = x; }
+                    return;
+                } i += 1; )*
+            }
+        }
+    };
+    (@required) => { true };
+    (@optional) => { false };
+}

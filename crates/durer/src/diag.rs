@@ -1,0 +1,200 @@
+//! Diagnostics: what is wrong with an input, and where.
+//!
+//! The library makes them, the shells print them.
+
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+/// At most this many errors of one input are collected.
+pub const ERROR_LIMIT: usize = 20;
+
+/// A range of bytes in a file.
+///
+/// Spans compare equal to each other: where a thing was written is not part of what it is.
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
+pub struct Span {
+    /// Number of the file in its [`Files`].
+    pub file: u32,
+    /// First byte.
+    pub start: u32,
+    /// One past the last byte.
+    pub end: u32,
+}
+
+impl PartialEq for Span {
+    fn eq(&self, _: &Span) -> bool {
+        true
+    }
+}
+
+impl Span {
+    /// From the start of this span to the end of another in the same file.
+    pub fn to(self, end: Span) -> Span {
+        Span { end: end.end.max(self.start), ..self }
+    }
+}
+
+/// How bad a finding is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Severity {
+    /// Worth knowing.
+    Note,
+    /// The picture may not be what was meant.
+    Warning,
+    /// No picture can be made.
+    Error,
+}
+
+/// One finding about an input.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Diagnostic {
+    /// How bad it is.
+    pub severity: Severity,
+    /// What is wrong, in one sentence without a full stop.
+    pub message: String,
+    /// Where; `None` where it concerns no place in a file.
+    pub span: Option<Span>,
+    /// Said at the underlined place.
+    pub label: String,
+    /// What may have been meant, or what to do.
+    pub help: Option<String>,
+    /// Another place that has to do with it, with what it is.
+    pub related: Option<(Span, String)>,
+}
+
+impl Diagnostic {
+    fn new(severity: Severity, message: impl Into<String>) -> Self {
+        Diagnostic { severity, message: message.into(), span: None, label: String::new(), help: None, related: None }
+    }
+
+    /// A finding because of which no picture can be made.
+    pub fn error(message: impl Into<String>) -> Self {
+        Diagnostic::new(Severity::Error, message)
+    }
+
+    /// A finding because of which the picture may not be what was meant.
+    pub fn warning(message: impl Into<String>) -> Self {
+        Diagnostic::new(Severity::Warning, message)
+    }
+
+    /// Something worth knowing.
+    pub fn note(message: impl Into<String>) -> Self {
+        Diagnostic::new(Severity::Note, message)
+    }
+
+    /// Sets the place.
+    pub fn at(mut self, span: Span) -> Self {
+        self.span = Some(span);
+        self
+    }
+
+    /// Sets what is said at the underlined place.
+    pub fn label(mut self, label: impl Into<String>) -> Self {
+        self.label = label.into();
+        self
+    }
+
+    /// Sets the advice.
+    pub fn help(mut self, help: impl Into<String>) -> Self {
+        self.help = Some(help.into());
+        self
+    }
+
+    /// Names a second place.
+    pub fn related(mut self, span: Span, what: impl Into<String>) -> Self {
+        self.related = Some((span, what.into()));
+        self
+    }
+}
+
+/// Collects diagnostics, up to [`ERROR_LIMIT`] errors and as many warnings.
+#[derive(Clone, Debug, Default)]
+pub struct Diagnostics {
+    list: Vec<Diagnostic>,
+    errors: usize,
+    warnings: usize,
+}
+
+impl Diagnostics {
+    /// Adds a finding. Beyond the limit of its severity it is counted only.
+    pub fn push(&mut self, diagnostic: Diagnostic) {
+        let count = match diagnostic.severity {
+            Severity::Error => &mut self.errors,
+            Severity::Warning | Severity::Note => &mut self.warnings,
+        };
+        *count += 1;
+        if *count <= ERROR_LIMIT {
+            self.list.push(diagnostic);
+        }
+    }
+
+    /// Adds all findings of another collection.
+    pub fn extend(&mut self, other: Diagnostics) {
+        for diagnostic in other.list {
+            self.push(diagnostic);
+        }
+    }
+
+    /// Whether there is an error.
+    pub fn has_errors(&self) -> bool {
+        self.errors > 0
+    }
+
+    /// Whether as many errors were found as are collected.
+    pub fn is_full(&self) -> bool {
+        self.errors >= ERROR_LIMIT
+    }
+
+    /// The findings, in the order in which they were found.
+    pub fn iter(&self) -> impl Iterator<Item = &Diagnostic> {
+        self.list.iter()
+    }
+
+    /// How many errors were found, collected or not.
+    pub fn error_count(&self) -> usize {
+        self.errors
+    }
+}
+
+/// The text files that were read, by number, for turning spans into lines and columns.
+#[derive(Clone, Debug, Default)]
+pub struct Files {
+    files: Vec<(String, Arc<[u8]>)>,
+}
+
+impl Files {
+    /// Adds a file and returns its number.
+    pub fn add(&mut self, name: impl Into<String>, bytes: Arc<[u8]>) -> u32 {
+        self.files.push((name.into(), bytes));
+        (self.files.len() - 1) as u32
+    }
+
+    /// The name under which a file was read.
+    pub fn name(&self, file: u32) -> Option<&str> {
+        self.files.get(file as usize).map(|(name, _)| name.as_str())
+    }
+
+    /// The bytes of a file.
+    pub fn bytes(&self, file: u32) -> Option<&[u8]> {
+        self.files.get(file as usize).map(|(_, bytes)| &**bytes)
+    }
+
+    /// Line and column of the start of a span, both counted from 1; the column in bytes.
+    pub fn position(&self, span: Span) -> Option<(usize, usize)> {
+        let before = self.bytes(span.file)?.get(..span.start as usize)?;
+        let line = before.iter().filter(|&&b| b == b'\n').count() + 1;
+        let column = before.iter().rev().take_while(|&&b| b != b'\n').count() + 1;
+        Some((line, column))
+    }
+}
+
+/// The candidate most like `word`, if one is near enough to be meant.
+pub fn did_you_mean<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    let lower = word.to_lowercase();
+    candidates
+        .into_iter()
+        .map(|candidate| (strsim::damerau_levenshtein(&lower, &candidate.to_lowercase()), candidate))
+        .min_by_key(|&(distance, _)| distance)
+        .filter(|&(distance, candidate)| distance <= (candidate.len().max(word.len()) / 3).max(1))
+        .map(|(_, candidate)| candidate)
+}

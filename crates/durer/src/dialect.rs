@@ -1,0 +1,399 @@
+//! The dialects of the scene language, as one table of differences.
+//!
+//! A [`Dialect`] names a year's language; its [`Rules`] say what its words mean; its [`Compat`]s are the
+//! known bugs of that year's official program, which hold only where the dialect was asked for.
+
+use serde::{Deserialize, Serialize};
+
+/// A year's scene language. The discriminants are bits of a [`DialectSet`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Dialect {
+    /// 2003: materials inside groups, `Translate { 0 2 0 }`.
+    F03 = 1,
+    /// Fall 2004, assignments 1 to 8.
+    F04 = 2,
+    /// Fall 2012, assignment 4; TIEA311's.
+    F12a4 = 4,
+    /// Fall 2012, assignment 5.
+    F12a5 = 8,
+    /// 2016 to 2019.
+    F16 = 16,
+    /// 2020 to 2023: nodes and components.
+    F23 = 32,
+    /// Ours: every word of the years before, with sane rules.
+    Durer = 64,
+}
+
+/// Some dialects, as bits.
+pub type DialectSet = u8;
+
+/// The bits of the dialects, for tables.
+pub mod set {
+    use super::{Dialect, DialectSet};
+    /// 2003.
+    pub const F03: DialectSet = Dialect::F03 as u8;
+    /// Fall 2004.
+    pub const F04: DialectSet = Dialect::F04 as u8;
+    /// Fall 2012, assignment 4.
+    pub const F12A4: DialectSet = Dialect::F12a4 as u8;
+    /// Fall 2012, assignment 5.
+    pub const F12A5: DialectSet = Dialect::F12a5 as u8;
+    /// 2016 to 2019.
+    pub const F16: DialectSet = Dialect::F16 as u8;
+    /// 2020 to 2023.
+    pub const F23: DialectSet = Dialect::F23 as u8;
+    /// Our own.
+    pub const DURER: DialectSet = Dialect::Durer as u8;
+    /// 2003 and 2004.
+    pub const OLD: DialectSet = F03 | F04;
+    /// 2012 and later, before nodes.
+    pub const NEW: DialectSet = F12A4 | F12A5 | F16;
+    /// Everything with the grammar of 2004.
+    pub const CLASSIC: DialectSet = OLD | NEW | DURER;
+    /// Everything.
+    pub const ALL: DialectSet = CLASSIC | F23;
+}
+
+impl Dialect {
+    /// All dialects, oldest first, ours last.
+    pub const ALL: [Dialect; 7] =
+        [Dialect::F03, Dialect::F04, Dialect::F12a4, Dialect::F12a5, Dialect::F16, Dialect::F23, Dialect::Durer];
+
+    /// Its name on the command line.
+    pub fn name(self) -> &'static str {
+        self.rules().name
+    }
+
+    /// The dialect of a name.
+    pub fn from_name(name: &str) -> Option<Dialect> {
+        Dialect::ALL.into_iter().find(|d| d.name() == name)
+    }
+
+    /// Whether a set contains it.
+    pub fn is_in(self, set: DialectSet) -> bool {
+        set & self as u8 != 0
+    }
+
+    /// Its row of the table, with the old programs' bugs.
+    pub fn rules(self) -> &'static Rules {
+        &TABLE[(self as u8).trailing_zeros() as usize]
+    }
+}
+
+/// How normals of a mesh that brings none are made.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum MeshNormals {
+    /// One normal a triangle.
+    Flat,
+    /// Mean of the faces around a vertex, weighted by their areas.
+    SmoothByArea,
+    /// Mean of the faces around a vertex, each counting alike.
+    SmoothByFace,
+    /// As `SmoothByArea` for meshes of more vertices than this, else flat.
+    SmoothAbove(usize),
+    /// Mean by angle over those faces around a vertex that meet at less than this many degrees.
+    Crease(f32),
+}
+
+/// The specular highlight of a light.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Highlight {
+    /// max(0, N·H)^exponent, only where N·L > 0.
+    Blinn,
+    /// max(0, R·L)^shininess, R the mirrored view ray.
+    Phong,
+    /// No highlight.
+    None,
+    /// `exponent` means Blinn, `shininess` means Phong where N·L > 0.
+    ByKeyword,
+}
+
+/// How light fades with distance d, from `attenuation a0 a1 a2` or `falloff f`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Falloff {
+    /// Light does not fade.
+    None,
+    /// 1 / (a0 + a1 d + a2 d^2), or 1 / (1 + f d^2).
+    OnePlus,
+    /// 1 / (f d^2), with this f where none is written; `None` means that light does not fade then.
+    Bare(Option<f32>),
+}
+
+/// What a surface reflects and transmits.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Secondary {
+    /// Local light only.
+    None,
+    /// `reflectiveColor` and `transparentColor` weigh the secondary rays; both are added.
+    Colors,
+    /// `specularColor` weighs the mirrored ray.
+    Specular,
+    /// `specularColor` weighs both, divided by Fresnel where `refractionIndex` is given.
+    SpecularFresnel,
+    /// By the words that are there: `reflectiveColor`, `transparentColor`, `refractionIndex`.
+    ByKeyword,
+}
+
+/// How a normal becomes a colour.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum NormalsPicture {
+    /// |n|, background black.
+    Abs,
+    /// (n + 1) / 2, background mid-grey.
+    Half,
+}
+
+/// How a depth becomes a grey.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum DepthPicture {
+    /// (max - t) / (max - min): near is white, background black.
+    NearWhite,
+    /// (t - min) / (max - min): near is black, background black.
+    NearBlack,
+}
+
+/// Where a file that a scene names is looked for first.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum PathBase {
+    /// The current directory.
+    Current,
+    /// The directory of the scene file.
+    SceneFile,
+    /// This folder below the current directory.
+    Assets(&'static str),
+}
+
+/// What the words of a dialect mean.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Rules {
+    /// Name on the command line.
+    pub name: &'static str,
+    /// One line for people.
+    pub title: &'static str,
+    /// Picture size where none is asked for.
+    pub size: (u32, u32),
+    /// Levels of secondary rays where none are asked for.
+    pub bounces: u32,
+    /// Whether lights cast shadows where nothing is said of it.
+    pub shadows: bool,
+    /// Whether a surface seen from behind is shaded with its normal turned, where nothing is said of it.
+    pub shade_back: bool,
+    /// Normals of meshes without normals.
+    pub mesh_normals: MeshNormals,
+    /// Whether normals in mesh files (`vn`) count.
+    pub file_normals: bool,
+    /// Highlights.
+    pub highlight: Highlight,
+    /// Fading of point lights.
+    pub falloff: Falloff,
+    /// Reflection and refraction.
+    pub secondary: Secondary,
+    /// Least `t` of secondary rays; `None`: none is needed, rays start at an error-bounded offset.
+    pub epsilon: Option<f32>,
+    /// Normals as colours.
+    pub normals_picture: NormalsPicture,
+    /// Depth as grey.
+    pub depth_picture: DepthPicture,
+    /// Where files are looked for.
+    pub paths: PathBase,
+    /// Whether the ambient light is multiplied with a texture or noise, not just `diffuseColor`.
+    pub ambient_textured: bool,
+    /// Whether coloured, transparent things cast coloured shadows.
+    pub transparent_shadows: bool,
+    /// Bugs of the official program.
+    pub compat: CompatSet,
+}
+
+/// Some compatibilities, as bits.
+pub type CompatSet = u32;
+
+macro_rules! compats {
+    ($($(#[doc = $doc:literal])+ $variant:ident = $name:literal,)+) => {
+        /// A named bug or odd habit of an official program. Off unless its dialect, or it by name, is asked for.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        #[repr(u8)]
+        pub enum Compat { $($(#[doc = $doc])+ $variant,)+ }
+
+        impl Compat {
+            /// All of them, with name and meaning.
+            pub const ALL: &'static [(Compat, &'static str, &'static str)] =
+                &[$((Compat::$variant, $name, concat!($($doc, "\n"),+)),)+];
+        }
+    };
+}
+
+compats! {
+    /// Pixel centres of the first and last column and row lie on the picture's border.
+    BorderPixels = "border-pixels",
+    /// The picture of a camera is stretched over a picture that is not square.
+    Stretch = "stretch",
+    /// The camera's `up` is used as written: not made perpendicular, not normalised.
+    RawUp = "raw-up",
+    /// The camera's `up` is normalised, but not made perpendicular.
+    SkewUp = "skew-up",
+    /// The highlight of a light appears also where the surface faces away from it.
+    HighlightBehind = "highlight-behind",
+    /// Shininess 0 makes the highlight 1 everywhere: 0 to the power of 0 is 1.
+    PowZero = "pow-zero",
+    /// A point light without falloff divides by zero, and its light is black.
+    MissingFalloff = "missing-falloff",
+    /// A surface seen from behind is black, without ambient light, unless it is shaded both ways.
+    BlackBacks = "black-backs",
+    /// A ray that leaves glass reflects as if R0 were 0.
+    ExitR0 = "exit-r0",
+    /// A `Matrix` is multiplied on the left of everything before it.
+    MatrixOnLeft = "matrix-on-left",
+    /// The background is black in depth pictures and lies beyond the farthest, not at it.
+    FiniteOnly = "finite-only",
+}
+
+impl Compat {
+    /// Its bit.
+    pub const fn bit(self) -> CompatSet {
+        1 << self as u8
+    }
+
+    /// The one of a name.
+    pub fn from_name(name: &str) -> Option<Compat> {
+        Compat::ALL.iter().find(|row| row.1 == name).map(|row| row.0)
+    }
+}
+
+const fn bits(list: &[Compat]) -> CompatSet {
+    let mut set = 0;
+    let mut i = 0;
+    while i < list.len() {
+        set |= list[i].bit();
+        i += 1;
+    }
+    set
+}
+
+impl Rules {
+    /// Whether a compatibility is on.
+    pub fn has(&self, compat: Compat) -> bool {
+        self.compat & compat.bit() != 0
+    }
+
+    /// The meaning of the same words without the old program's bugs, and with good defaults.
+    ///
+    /// This is what a file gets whose dialect nobody asked for.
+    pub fn sane(&self) -> Rules {
+        let ours = Dialect::Durer.rules();
+        Rules {
+            size: ours.size,
+            shadows: ours.shadows,
+            shade_back: ours.shade_back,
+            bounces: if self.bounces > 0 || self.secondary == Secondary::Colors { ours.bounces } else { 0 },
+            file_normals: true,
+            epsilon: None,
+            paths: PathBase::SceneFile,
+            ambient_textured: true,
+            falloff: match self.falloff {
+                Falloff::Bare(None) => Falloff::Bare(None),
+                other => other,
+            },
+            compat: 0,
+            ..self.clone()
+        }
+    }
+}
+
+use Compat::*;
+
+const F03: Rules = Rules { name: "f03", title: "6.837 of 2003", ..F04 };
+
+const F04: Rules = Rules {
+    name: "f04",
+    title: "6.837 of Fall 2004",
+    size: (100, 100),
+    bounces: 0,
+    shadows: false,
+    shade_back: false,
+    mesh_normals: MeshNormals::Flat,
+    file_normals: false,
+    highlight: Highlight::Blinn,
+    falloff: Falloff::OnePlus,
+    secondary: Secondary::Colors,
+    epsilon: Some(1e-4),
+    normals_picture: NormalsPicture::Abs,
+    depth_picture: DepthPicture::NearWhite,
+    paths: PathBase::Current,
+    ambient_textured: true,
+    transparent_shadows: false,
+    compat: bits(&[BlackBacks, MatrixOnLeft]),
+};
+
+const F12A4: Rules = Rules {
+    name: "f12a4",
+    title: "6.837 of Fall 2012, assignment 4, and TIEA311",
+    mesh_normals: MeshNormals::SmoothByArea,
+    highlight: Highlight::Phong,
+    falloff: Falloff::None,
+    secondary: Secondary::None,
+    compat: bits(&[BorderPixels, Stretch, HighlightBehind, PowZero, MatrixOnLeft]),
+    ..F04
+};
+
+const F12A5: Rules = Rules {
+    name: "f12a5",
+    title: "6.837 of Fall 2012, assignment 5",
+    bounces: 4,
+    mesh_normals: MeshNormals::SmoothAbove(120),
+    highlight: Highlight::None,
+    falloff: Falloff::OnePlus,
+    secondary: Secondary::SpecularFresnel,
+    epsilon: Some(1e-3),
+    ambient_textured: false,
+    ..F12A4
+};
+
+const F16: Rules = Rules {
+    name: "f16",
+    title: "6.837 of 2016 to 2019",
+    mesh_normals: MeshNormals::SmoothByFace,
+    falloff: Falloff::Bare(None),
+    secondary: Secondary::Specular,
+    epsilon: Some(1e-2),
+    normals_picture: NormalsPicture::Half,
+    depth_picture: DepthPicture::NearBlack,
+    paths: PathBase::SceneFile,
+    compat: bits(&[BorderPixels, Stretch, RawUp, HighlightBehind, PowZero, MissingFalloff, MatrixOnLeft, FiniteOnly]),
+    ..F12A4
+};
+
+const F23: Rules = Rules {
+    name: "f23",
+    title: "6.837 of 2020 to 2023",
+    size: (200, 200),
+    mesh_normals: MeshNormals::SmoothByArea,
+    falloff: Falloff::Bare(Some(20.0)),
+    paths: PathBase::Assets("assets/assignment4"),
+    compat: bits(&[BorderPixels, Stretch, SkewUp, HighlightBehind, PowZero, MatrixOnLeft, FiniteOnly]),
+    ..F16
+};
+
+const DURER: Rules = Rules {
+    name: "durer",
+    title: "Dürer's own: every word of every year, sane rules",
+    size: (512, 512),
+    bounces: 8,
+    shadows: true,
+    shade_back: true,
+    mesh_normals: MeshNormals::Crease(40.0),
+    file_normals: true,
+    highlight: Highlight::ByKeyword,
+    falloff: Falloff::OnePlus,
+    secondary: Secondary::ByKeyword,
+    epsilon: None,
+    normals_picture: NormalsPicture::Half,
+    depth_picture: DepthPicture::NearWhite,
+    paths: PathBase::SceneFile,
+    ambient_textured: true,
+    transparent_shadows: false,
+    compat: 0,
+};
+
+/// The table, in the order of the discriminants.
+static TABLE: [Rules; 7] = [F03, F04, F12A4, F12A5, F16, F23, DURER];

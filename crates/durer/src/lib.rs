@@ -1,0 +1,8 @@
+//! Dürer: a ray tracer that is exact, explainable and deterministic.
+
+pub mod describe;
+pub mod diag;
+pub mod dialect;
+pub mod math;
+pub mod shape;
+pub mod source;

@@ -1,0 +1,78 @@
+use super::Vec3;
+
+/// An axis-aligned box. Empty when `min` exceeds `max` in any axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Aabb {
+    /// Least corner.
+    pub min: Vec3,
+    /// Greatest corner.
+    pub max: Vec3,
+}
+
+impl Aabb {
+    /// The box that contains nothing.
+    pub const EMPTY: Aabb = Aabb { min: Vec3::INFINITY, max: Vec3::NEG_INFINITY };
+
+    /// The least box around some points.
+    pub fn around(points: impl IntoIterator<Item = Vec3>) -> Self {
+        points.into_iter().fold(Aabb::EMPTY, Aabb::with)
+    }
+
+    /// The least box around this one and a point.
+    pub fn with(self, point: Vec3) -> Self {
+        Aabb { min: self.min.min(point), max: self.max.max(point) }
+    }
+
+    /// The least box around both.
+    pub fn union(self, other: Aabb) -> Self {
+        Aabb { min: self.min.min(other.min), max: self.max.max(other.max) }
+    }
+
+    /// Whether the box contains no point.
+    pub fn is_empty(&self) -> bool {
+        !self.min.cmple(self.max).all()
+    }
+
+    /// Edge lengths; zero for an empty box.
+    pub fn size(&self) -> Vec3 {
+        (self.max - self.min).max(Vec3::ZERO)
+    }
+
+    /// The middle.
+    pub fn center(&self) -> Vec3 {
+        0.5 * self.min + 0.5 * self.max
+    }
+
+    /// Half the surface area: what the surface area heuristic compares.
+    pub fn half_area(&self) -> f32 {
+        let d = self.size();
+        d.x * d.y + d.y * d.z + d.z * d.x
+    }
+
+    /// The eight corners.
+    pub fn corners(&self) -> [Vec3; 8] {
+        std::array::from_fn(|i| {
+            let pick = |axis: usize| if i >> axis & 1 == 1 { self.max[axis] } else { self.min[axis] };
+            Vec3::new(pick(0), pick(1), pick(2))
+        })
+    }
+
+    /// The interval of `t` for which `origin + t * dir` lies in the closed box, if any.
+    ///
+    /// Slabs are chosen by the sign of the direction; a ray that lies in a face of the box is inside.
+    pub fn clip(&self, origin: Vec3, dir: Vec3) -> Option<(f32, f32)> {
+        let (mut enter, mut leave) = (f32::NEG_INFINITY, f32::INFINITY);
+        for axis in 0..3 {
+            if dir[axis] == 0.0 {
+                if origin[axis] < self.min[axis] || origin[axis] > self.max[axis] {
+                    return None;
+                }
+                continue;
+            }
+            let (near, far) = if dir[axis] > 0.0 { (self.min, self.max) } else { (self.max, self.min) };
+            enter = enter.max((near[axis] - origin[axis]) / dir[axis]);
+            leave = leave.min((far[axis] - origin[axis]) / dir[axis]);
+        }
+        (enter <= leave).then_some((enter, leave))
+    }
+}

@@ -1,0 +1,34 @@
+use super::Vec3;
+
+/// A ray: the points `origin + t * dir` for `t` in the open interval (`t_min`, `t_max`).
+///
+/// `dir` is not normalised, so that `t` means the same in world and in object space: a transform
+/// moves origin and direction and leaves `t` alone. `t_min` may be minus infinity.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ray {
+    /// Where `t` is 0.
+    pub origin: Vec3,
+    /// Direction; its length is one unit of `t`.
+    pub dir: Vec3,
+    /// Hits must lie beyond this.
+    pub t_min: f32,
+    /// Hits must lie before this.
+    pub t_max: f32,
+}
+
+impl Ray {
+    /// The half-line from `origin` along `dir`.
+    pub fn new(origin: Vec3, dir: Vec3) -> Self {
+        Ray { origin, dir, t_min: 0.0, t_max: f32::INFINITY }
+    }
+
+    /// The point at `t`.
+    pub fn at(&self, t: f32) -> Vec3 {
+        self.origin + t * self.dir
+    }
+
+    /// Whether `t` lies in the open interval of this ray. False for NaN.
+    pub fn contains(&self, t: f32) -> bool {
+        t > self.t_min && t < self.t_max
+    }
+}

@@ -1,0 +1,2 @@
+//! Shapes: what a ray can hit.
+pub mod mesh;

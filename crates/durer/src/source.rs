@@ -1,0 +1,155 @@
+//! Bytes by name: the only place that opens a file for reading.
+//!
+//! Files are read from a few allowed folders, never beyond them, and within a budget of bytes.
+
+use std::cell::Cell;
+use std::fs;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// Why a file could not be had.
+#[derive(Debug, thiserror::Error)]
+pub enum SourceError {
+    /// It is in none of the places where it was looked for.
+    #[error("there is no file `{name}`")]
+    Missing {
+        /// As it was asked for.
+        name: String,
+        /// Where it was looked for.
+        tried: Vec<PathBuf>,
+    },
+    /// It lies outside the allowed folders.
+    #[error("`{name}` lies outside the scene's folder")]
+    Outside {
+        /// As it was asked for.
+        name: String,
+    },
+    /// It is a folder, a device or a pipe.
+    #[error("`{name}` is not a regular file")]
+    NotAFile {
+        /// As it was asked for.
+        name: String,
+    },
+    /// It is larger than what may still be read.
+    #[error("`{name}` is too large: {size} bytes, and at most {left} may still be read")]
+    TooLarge {
+        /// As it was asked for.
+        name: String,
+        /// Its size in bytes.
+        size: u64,
+        /// What is left of the budget.
+        left: u64,
+    },
+    /// The system's reason.
+    #[error("cannot read `{name}`: {error}")]
+    Io {
+        /// As it was asked for.
+        name: String,
+        /// The system's reason.
+        error: std::io::Error,
+    },
+}
+
+/// Where the files of a scene are, and how much may be read of them.
+#[derive(Clone, Debug)]
+pub struct Source {
+    /// Folders in which a relative name is looked for, in this order.
+    search: Vec<PathBuf>,
+    /// Folders below which a file must lie; empty: anywhere.
+    allowed: Vec<PathBuf>,
+    /// Folders in which a file is also looked for by its last name alone.
+    assets: Vec<PathBuf>,
+    left: Cell<u64>,
+}
+
+impl Source {
+    /// The most that is read for one scene, unless [`Source::budget`] says otherwise: 4 GiB.
+    pub const DEFAULT_BUDGET: u64 = 4 << 30;
+
+    /// Files in and below one folder.
+    pub fn folder(folder: impl Into<PathBuf>) -> Self {
+        let folder = folder.into();
+        Source {
+            search: vec![folder.clone()],
+            allowed: vec![folder],
+            assets: Vec::new(),
+            left: Cell::new(Source::DEFAULT_BUDGET),
+        }
+    }
+
+    /// Looks in another folder too, and allows files below it: before the others if `first`.
+    pub fn also(mut self, folder: impl Into<PathBuf>, first: bool) -> Self {
+        let folder = folder.into();
+        let at = if first { 0 } else { self.search.len() };
+        self.search.insert(at, folder.clone());
+        self.allowed.push(folder);
+        self
+    }
+
+    /// Looks in a folder by path and, failing that, by bare file name.
+    pub fn assets(mut self, folder: impl Into<PathBuf>) -> Self {
+        let folder = folder.into();
+        self = self.also(folder.clone(), false);
+        self.assets.push(folder);
+        self
+    }
+
+    /// Allows files anywhere.
+    pub fn allow_outside(mut self) -> Self {
+        self.allowed.clear();
+        self
+    }
+
+    /// Sets how many bytes may be read.
+    pub fn budget(self, bytes: u64) -> Self {
+        self.left.set(bytes);
+        self
+    }
+
+    /// Reads a file by the name that a scene gives it.
+    pub fn read(&self, name: &str) -> Result<Arc<[u8]>, SourceError> {
+        // Scenes from Windows may write backslashes.
+        let portable = name.replace('\\', "/");
+        let path = Path::new(&portable);
+        let bare = path.file_name().map(Path::new);
+        let mut candidates: Vec<PathBuf> = self.search.iter().map(|folder| folder.join(path)).collect();
+        candidates.extend(bare.iter().flat_map(|bare| self.assets.iter().map(move |folder| folder.join(bare))));
+        let mut outside = false;
+        for candidate in &candidates {
+            let Ok(real) = candidate.canonicalize() else { continue };
+            if self.allows(&real) {
+                return self.read_path(&real, name);
+            }
+            outside = true;
+        }
+        Err(match outside {
+            true => SourceError::Outside { name: name.into() },
+            false => SourceError::Missing { name: name.into(), tried: candidates },
+        })
+    }
+
+    fn allows(&self, real: &Path) -> bool {
+        let below = |folder: &PathBuf| folder.canonicalize().is_ok_and(|folder| real.starts_with(folder));
+        self.allowed.is_empty() || self.allowed.iter().any(below)
+    }
+
+    /// Reads a file that the user named, wherever it is.
+    pub fn read_path(&self, path: &Path, name: &str) -> Result<Arc<[u8]>, SourceError> {
+        let io = |error| SourceError::Io { name: name.into(), error };
+        let metadata = fs::metadata(path).map_err(io)?;
+        if !metadata.is_file() {
+            return Err(SourceError::NotAFile { name: name.into() });
+        }
+        let left = self.left.get();
+        let mut bytes = Vec::new();
+        // A file that grows while it is read is still bounded.
+        fs::File::open(path).map_err(io)?.take(left + 1).read_to_end(&mut bytes).map_err(io)?;
+        let size = (bytes.len() as u64).max(metadata.len());
+        if size > left {
+            return Err(SourceError::TooLarge { name: name.into(), size, left });
+        }
+        self.left.set(left - bytes.len() as u64);
+        Ok(bytes.into())
+    }
+}
