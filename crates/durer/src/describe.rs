@@ -3,6 +3,7 @@
 //! Every shape, camera, material and light states its keyword and its fields in one [`described!`] block. The
 //! reader, the writer, the manual and the generator of random test scenes walk that statement.
 
+use crate::diag::Span;
 use crate::dialect::{Dialect, DialectSet};
 use crate::math::Vec3;
 use serde::{Deserialize, Serialize};
@@ -20,6 +21,16 @@ pub enum Kind {
     Path,
 }
 
+/// The path of a file that a scene names, and where it names it.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct FileName {
+    /// As written.
+    pub path: String,
+    /// Where.
+    #[serde(skip)]
+    pub span: Span,
+}
+
 /// A value of a field.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
@@ -31,7 +42,7 @@ pub enum Value {
     /// Three numbers.
     Vec3(Vec3),
     /// A file's path, as written.
-    Path(String),
+    Path(FileName),
 }
 
 /// What a value must be beyond finite.
@@ -137,7 +148,7 @@ macro_rules! field_type {
 field_type!(f32, Float);
 field_type!(u32, Int);
 field_type!(Vec3, Vec3);
-field_type!(String, Path);
+field_type!(FileName, Path);
 
 impl<T: FieldType> FieldType for Option<T> {
     const KIND: Kind = T::KIND;
@@ -202,4 +213,88 @@ macro_rules! described {
     };
     (@required) => { true };
     (@optional) => { false };
+}
+
+/// A closed list of described things: an `enum` with one variant each, which delegates to it.
+#[macro_export]
+macro_rules! described_list {
+    ($(#[doc = $doc:literal])+ $name:ident { $($variant:ident($type:ty),)+ }) => {
+        $(#[doc = $doc])+
+        #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+        pub enum $name { $(#[doc = concat!("A `", stringify!($variant), "`.")] $variant($type),)+ }
+
+        $(impl From<$type> for $name {
+            fn from(x: $type) -> Self { $name::$variant(x) }
+        })+
+
+        impl $crate::describe::DescribedList for $name {
+            fn kinds() -> Vec<Self> {
+                vec![$($name::$variant(<$type>::default()),)+]
+            }
+            fn keywords(&self) -> &'static [(&'static str, $crate::dialect::DialectSet)] {
+                match self { $($name::$variant(_) => <$type as $crate::describe::Describe>::KEYWORDS,)+ }
+            }
+            fn doc(&self) -> &'static str {
+                match self { $($name::$variant(_) => <$type as $crate::describe::Describe>::DOC,)+ }
+            }
+            fn fields(&self) -> &'static [$crate::describe::Field] {
+                match self { $($name::$variant(_) => <$type as $crate::describe::Describe>::FIELDS,)+ }
+            }
+            fn get(&self, field: usize) -> Option<$crate::describe::Value> {
+                match self { $($name::$variant(x) => $crate::describe::Describe::get(x, field),)+ }
+            }
+            fn set(&mut self, field: usize, value: $crate::describe::Value) {
+                match self { $($name::$variant(x) => $crate::describe::Describe::set(x, field, value),)+ }
+            }
+        }
+    };
+}
+
+/// A list of described things, seen from the reader: what [`described_list!`] makes.
+pub trait DescribedList: Sized {
+    /// One of each, with default values.
+    fn kinds() -> Vec<Self>;
+    /// Keywords that begin it.
+    fn keywords(&self) -> &'static [(&'static str, DialectSet)];
+    /// What it is.
+    fn doc(&self) -> &'static str;
+    /// Its fields.
+    fn fields(&self) -> &'static [Field];
+    /// The value of the i-th field.
+    fn get(&self, field: usize) -> Option<Value>;
+    /// Sets the i-th field.
+    fn set(&mut self, field: usize, value: Value);
+
+    /// A thing with default values, by a keyword of any dialect.
+    fn from_keyword(word: &str) -> Option<Self> {
+        Self::kinds().into_iter().find(|kind| kind.keywords().iter().any(|(keyword, _)| *keyword == word))
+    }
+
+    /// The keyword with which a dialect writes it, or its first where the dialect has none.
+    fn keyword(&self, dialect: Dialect) -> &'static str {
+        let words = self.keywords();
+        words.iter().find(|(_, set)| dialect.is_in(*set)).unwrap_or(&words[0]).0
+    }
+}
+
+/// Every single described thing is a list of one: the reader needs only one way.
+impl<T: Describe> DescribedList for T {
+    fn kinds() -> Vec<Self> {
+        vec![T::default()]
+    }
+    fn keywords(&self) -> &'static [(&'static str, DialectSet)] {
+        T::KEYWORDS
+    }
+    fn doc(&self) -> &'static str {
+        T::DOC
+    }
+    fn fields(&self) -> &'static [Field] {
+        T::FIELDS
+    }
+    fn get(&self, field: usize) -> Option<Value> {
+        Describe::get(self, field)
+    }
+    fn set(&mut self, field: usize, value: Value) {
+        Describe::set(self, field, value)
+    }
 }

@@ -107,8 +107,18 @@ impl Source {
         self
     }
 
+    /// Whether there is a file of that name, which may be read.
+    pub fn contains(&self, name: &str) -> bool {
+        self.find(name).is_ok()
+    }
+
     /// Reads a file by the name that a scene gives it.
     pub fn read(&self, name: &str) -> Result<Arc<[u8]>, SourceError> {
+        self.read_path(&self.find(name)?, name)
+    }
+
+    /// The first place where a file of that name is, and may be read.
+    fn find(&self, name: &str) -> Result<PathBuf, SourceError> {
         // Scenes from Windows may write backslashes.
         let portable = name.replace('\\', "/");
         let path = Path::new(&portable);
@@ -119,7 +129,7 @@ impl Source {
         for candidate in &candidates {
             let Ok(real) = candidate.canonicalize() else { continue };
             if self.allows(&real) {
-                return self.read_path(&real, name);
+                return Ok(real);
             }
             outside = true;
         }

@@ -1,2 +1,80 @@
-//! Shapes: what a ray can hit.
+//! Shapes: what a ray can hit. One file each; the list is [`Primitive`].
+
 pub mod mesh;
+pub mod normals;
+pub mod plane;
+pub mod sphere;
+pub mod triangle;
+pub mod watertight;
+
+use crate::described_list;
+use crate::math::{Aabb, Ray, Vec2, Vec3};
+pub use mesh::{Mesh, MeshData, TriangleMesh};
+pub use plane::Plane;
+pub use sphere::Sphere;
+pub use triangle::Triangle;
+
+described_list! {
+    /// A shape that is given in the scene file itself.
+    Primitive {
+        Sphere(sphere::Sphere),
+        Plane(plane::Plane),
+        Triangle(triangle::Triangle),
+    }
+}
+
+/// Where a ray meets a shape.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Crossing {
+    /// Position along the ray.
+    pub t: f32,
+    /// Coordinates on the shape, from which [`Shape::surface`] knows the place: the second and third
+    /// barycentric coordinate on triangles, unused elsewhere.
+    pub uv: Vec2,
+}
+
+/// What a shape is like at a crossing, in object space.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Surface {
+    /// The point.
+    pub position: Vec3,
+    /// Bound on the absolute error of the point, by axis.
+    pub error: Vec3,
+    /// Unit normal of the true surface.
+    pub n_geo: Vec3,
+    /// Unit normal for shading: interpolated on smooth meshes.
+    pub n_shade: Vec3,
+    /// Texture coordinates; `None` where the shape has none.
+    pub uv: Option<Vec2>,
+    /// Barycentric coordinates; of use on triangles.
+    pub barycentric: Vec3,
+}
+
+/// What every shape can do.
+pub trait Shape {
+    /// Bounds in object space; `None` for a shape without end.
+    fn bounds(&self) -> Option<Aabb>;
+
+    /// The crossing of least `t` inside the ray's open interval.
+    fn intersect(&self, ray: &Ray) -> Option<Crossing>;
+
+    /// The surface at a crossing that `intersect` found on this ray.
+    fn surface(&self, ray: &Ray, crossing: &Crossing) -> Surface;
+}
+
+macro_rules! delegate {
+    ($($variant:ident),+) => {
+        impl Shape for Primitive {
+            fn bounds(&self) -> Option<Aabb> {
+                match self { $(Primitive::$variant(s) => s.bounds(),)+ }
+            }
+            fn intersect(&self, ray: &Ray) -> Option<Crossing> {
+                match self { $(Primitive::$variant(s) => s.intersect(ray),)+ }
+            }
+            fn surface(&self, ray: &Ray, crossing: &Crossing) -> Surface {
+                match self { $(Primitive::$variant(s) => s.surface(ray, crossing),)+ }
+            }
+        }
+    };
+}
+delegate!(Sphere, Plane, Triangle);

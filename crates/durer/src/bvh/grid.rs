@@ -1,0 +1,172 @@
+//! A uniform grid: space cut into equal cells, each with a list of what overlaps it.
+//!
+//! Source: Amanatides and Woo, *A Fast Voxel Traversal Algorithm for Ray Tracing*, Eurographics 1987.
+
+use super::Tally;
+use super::traverse::is_sound;
+use crate::math::{Aabb, Ray, Vec3};
+
+/// A uniform grid over numbered things.
+#[derive(Clone, Debug)]
+pub struct Grid {
+    bounds: Aabb,
+    counts: [u32; 3],
+    /// Where each cell's list starts in `items`, and one past the last.
+    starts: Vec<u32>,
+    items: Vec<u32>,
+}
+
+impl Grid {
+    /// At most this many cells.
+    pub const MOST_CELLS: u64 = 1 << 26;
+
+    /// Numbers of cells that suit so many things in such a box: about two cells a thing, nearly cubes.
+    pub fn suitable(bounds: Aabb, things: usize) -> [u32; 3] {
+        let size = bounds.size();
+        let longest = size.max_element().max(f32::MIN_POSITIVE);
+        // Flat boxes count as a little thick, so that the cells' number stays bounded.
+        let size = (size / longest).max(Vec3::splat(1e-3)).as_dvec3();
+        let cells_per_length = libm::cbrt(2.0 * things.max(1) as f64 / size.element_product());
+        (size * cells_per_length).to_array().map(|n| (n as u32).clamp(1, 256))
+    }
+
+    /// Sorts the boxes of things 0, 1, 2, ... into the cells of a box. Things overlap a cell if their boxes do.
+    ///
+    /// `None` if there are no cells, or more than [`Grid::MOST_CELLS`].
+    pub fn build(bounds: Aabb, counts: [u32; 3], boxes: &[Aabb]) -> Option<Self> {
+        let cells = counts.iter().try_fold(1u64, |n, &c| n.checked_mul(u64::from(c)))?;
+        if cells == 0 || cells > Grid::MOST_CELLS {
+            return None;
+        }
+        // A flat box is thickened, so that every cell has a volume; and all are padded against rounding.
+        let pad = (1e-5 * bounds.size().max_element()).max(1e-5 * bounds.center().abs().max_element()).max(1e-30);
+        let bounds = Aabb { min: bounds.min - pad, max: bounds.max + pad };
+        let mut grid = Grid { bounds, counts, starts: vec![0; cells as usize + 1], items: Vec::new() };
+        // First count what falls into each cell, then fill the lists.
+        for b in boxes {
+            grid.for_cells(b, |grid, cell| grid.starts[cell + 1] += 1);
+        }
+        for i in 1..grid.starts.len() {
+            grid.starts[i] = grid.starts[i].checked_add(grid.starts[i - 1])?;
+        }
+        grid.items = vec![0; grid.starts[cells as usize] as usize];
+        let mut next = grid.starts.clone();
+        for (i, b) in boxes.iter().enumerate() {
+            grid.for_cells(b, |grid, cell| {
+                grid.items[next[cell] as usize] = i as u32;
+                next[cell] += 1;
+            });
+        }
+        Some(grid)
+    }
+
+    /// Size of a cell.
+    pub fn cell_size(&self) -> Vec3 {
+        self.bounds.size() / Vec3::from(self.counts.map(|n| n as f32))
+    }
+
+    /// Numbers of cells along x, y, z.
+    pub fn counts(&self) -> [u32; 3] {
+        self.counts
+    }
+
+    /// The box of a cell.
+    pub fn cell_bounds(&self, cell: [u32; 3]) -> Aabb {
+        let min = self.bounds.min + self.cell_size() * Vec3::from(cell.map(|i| i as f32));
+        Aabb { min, max: min + self.cell_size() }
+    }
+
+    /// How many things overlap a cell.
+    pub fn occupancy(&self, cell: [u32; 3]) -> usize {
+        let i = self.number(cell);
+        (self.starts[i + 1] - self.starts[i]) as usize
+    }
+
+    /// Bytes in memory.
+    pub fn bytes(&self) -> usize {
+        size_of_val(&*self.starts) + size_of_val(&*self.items)
+    }
+
+    fn number(&self, [x, y, z]: [u32; 3]) -> usize {
+        let [nx, ny, _] = self.counts;
+        (z as usize * ny as usize + y as usize) * nx as usize + x as usize
+    }
+
+    fn cell_of(&self, p: Vec3) -> [u32; 3] {
+        let at = (p - self.bounds.min) / self.cell_size();
+        // The cast saturates below at 0.
+        std::array::from_fn(|axis| (at[axis] as u32).min(self.counts[axis] - 1))
+    }
+
+    fn for_cells(&mut self, b: &Aabb, mut f: impl FnMut(&mut Self, usize)) {
+        if b.is_empty() {
+            return;
+        }
+        let pad = 1e-4 * self.cell_size();
+        let (low, high) = (self.cell_of(b.min - pad), self.cell_of(b.max + pad));
+        for z in low[2]..=high[2] {
+            for y in low[1]..=high[1] {
+                for x in low[0]..=high[0] {
+                    let cell = self.number([x, y, z]);
+                    f(self, cell);
+                }
+            }
+        }
+    }
+
+    /// Offers the things of every cell that the ray crosses before `t_max` to `test`, cell by cell; see
+    /// [`super::Bvh::walk`]. A thing in several cells is offered several times.
+    pub fn walk<T: Tally>(&self, ray: &Ray, tally: &mut T, mut test: impl FnMut(usize, f32, &mut T) -> f32) {
+        self.walk_cells(ray, |grid, cell, mut t_max| {
+            tally.node();
+            let i = grid.number(cell);
+            for item in &grid.items[grid.starts[i] as usize..grid.starts[i + 1] as usize] {
+                t_max = test(*item as usize, t_max, tally);
+            }
+            t_max
+        });
+    }
+
+    /// Visits the cells along a ray in order. `visit` gets a cell and the present `t_max`, and gives the new one.
+    pub fn walk_cells(&self, ray: &Ray, mut visit: impl FnMut(&Self, [u32; 3], f32) -> f32) {
+        let Some((enter, leave)) = self.bounds.clip(ray.origin, ray.dir).filter(|_| is_sound(ray)) else { return };
+        let (enter, leave) = (enter.max(ray.t_min), leave.min(ray.t_max));
+        if enter > leave {
+            return;
+        }
+        let mut cell = self.cell_of(ray.at(enter));
+        let size = self.cell_size();
+        // For each axis: t of the next cell wall. Computed anew from the wall's number, so that errors do not add up.
+        let wall_t = |cell: [u32; 3], axis: usize| {
+            if ray.dir[axis] == 0.0 {
+                return f32::INFINITY;
+            }
+            let wall = cell[axis] as f32 + if ray.dir[axis] > 0.0 { 1.0 } else { 0.0 };
+            (self.bounds.min[axis] + wall * size[axis] - ray.origin[axis]) / ray.dir[axis]
+        };
+        let mut next: [f32; 3] = std::array::from_fn(|axis| wall_t(cell, axis));
+        let mut t_max = leave;
+        let mut limit = ray.t_max;
+        loop {
+            limit = visit(self, cell, limit);
+            t_max = t_max.min(limit);
+            let axis = if next[0] <= next[1] && next[0] <= next[2] {
+                0
+            } else if next[1] <= next[2] {
+                1
+            } else {
+                2
+            };
+            // What lies in the padding of a cell's wall is in both cells: a hit before the wall ends the walk.
+            if next[axis] > t_max {
+                return;
+            }
+            let up = ray.dir[axis] > 0.0;
+            if if up { cell[axis] + 1 == self.counts[axis] } else { cell[axis] == 0 } {
+                return;
+            }
+            cell[axis] = if up { cell[axis] + 1 } else { cell[axis] - 1 };
+            next[axis] = wall_t(cell, axis);
+        }
+    }
+}

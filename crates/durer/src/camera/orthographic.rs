@@ -1,0 +1,36 @@
+//! The orthographic camera: all rays are parallel.
+//!
+//! origin = center + x size/2 right + y size/2 up.
+
+use super::{Frame, Lens, Pose};
+use crate::describe::Rule;
+use crate::described;
+use crate::dialect::set;
+use crate::math::{Ray, Vec2, Vec3};
+
+described! {
+    /// A camera that sees without perspective.
+    OrthographicCamera ["OrthographicCamera" in set::OLD | set::DURER] {
+        /// The middle of the picture.
+        center: Vec3 = Vec3::ZERO, required, Rule::Any, ["center" in set::ALL];
+        /// Where it looks; of any length.
+        direction: Vec3 = Vec3::NEG_Z, required, Rule::NonZero, ["direction" in set::ALL];
+        /// What is up in the picture; need not be perpendicular.
+        up: Vec3 = Vec3::Y, required, Rule::NonZero, ["up" in set::ALL];
+        /// Length of the picture's larger side.
+        size: f32 = 2.0, required, Rule::Positive, ["size" in set::ALL];
+    }
+}
+
+impl Lens for OrthographicCamera {
+    fn pose(&self) -> Pose {
+        Pose { center: self.center, direction: self.direction, up: self.up }
+    }
+
+    /// The ray runs both ways: things behind `center` are seen as well, at negative `t`.
+    fn ray(&self, frame: &Frame, point: Vec2) -> Ray {
+        let half = 0.5 * self.size;
+        let origin = frame.eye + point.x * half * frame.right + point.y * half * frame.up;
+        Ray { t_min: f32::NEG_INFINITY, ..Ray::new(origin, frame.forward) }
+    }
+}

@@ -1,0 +1,34 @@
+//! From pixels to the square that a camera covers.
+
+use crate::dialect::{Compat, Rules};
+use crate::math::Vec2;
+
+/// A picture's pixels, and how they lie in the square from (-1, -1) to (1, 1).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Raster {
+    /// Pixels across.
+    pub width: u32,
+    /// Pixels down.
+    pub height: u32,
+    border_pixels: bool,
+    stretch: bool,
+}
+
+impl Raster {
+    /// A picture of a size. Its larger side spans the square, unless a compatibility says otherwise.
+    pub fn new(width: u32, height: u32, rules: &Rules) -> Self {
+        Raster { width, height, border_pixels: rules.has(Compat::BorderPixels), stretch: rules.has(Compat::Stretch) }
+    }
+
+    /// The point of the square for a place in the picture, in pixels from its upper left corner.
+    ///
+    /// Pixel (i, j) has its centre at (i + 0.5, j + 0.5), j counted downwards.
+    pub fn point(&self, place: Vec2) -> Vec2 {
+        // Where pixel centres lie on the border, the first and last centre span the side, not the edges.
+        let inset = if self.border_pixels { 1.0 } else { 0.0 };
+        let size = (Vec2::new(self.width as f32, self.height as f32) - inset).max(Vec2::ONE);
+        let span = if self.stretch { size } else { Vec2::splat(size.max_element()) };
+        let from_center = 2.0 * (place - 0.5 * inset) - size;
+        Vec2::new(from_center.x, -from_center.y) / span
+    }
+}

@@ -1,0 +1,134 @@
+//! The files that a scene names: each is read and decoded once.
+
+use super::Resources;
+use crate::describe::FileName;
+use crate::diag::{Diagnostic, Diagnostics, did_you_mean};
+use crate::dialect::Rules;
+use crate::format;
+use crate::image;
+use crate::shape::Mesh;
+use crate::source::SourceError;
+use crate::texture::{CubeMap, Texture};
+use crate::world::MeshTree;
+use std::collections::HashMap;
+use std::path::Path;
+use std::sync::Arc;
+
+pub(super) struct Loader<'r> {
+    resources: Resources<'r>,
+    rules: Rules,
+    /// By path; `None` for files that could not be read, which are complained of once.
+    meshes: HashMap<String, Option<Arc<MeshTree>>>,
+    texture_numbers: HashMap<String, Option<u32>>,
+    pub(super) textures: Vec<Texture>,
+}
+
+impl<'r> Loader<'r> {
+    pub(super) fn new(resources: Resources<'r>, rules: &Rules) -> Self {
+        Loader {
+            resources,
+            rules: rules.clone(),
+            meshes: HashMap::new(),
+            texture_numbers: HashMap::new(),
+            textures: Vec::new(),
+        }
+    }
+
+    /// The mesh of a file.
+    pub(super) fn mesh(&mut self, name: &FileName, diagnostics: &mut Diagnostics) -> Option<Arc<MeshTree>> {
+        if let Some(known) = self.meshes.get(&name.path) {
+            return known.clone();
+        }
+        let mesh = self.read(name, "mesh", diagnostics).and_then(|bytes| {
+            let file = self.resources.files.add(name.path.clone(), bytes.clone());
+            let mut own = Diagnostics::default();
+            let data = format::read_mesh(&bytes, file, &name.path, &mut own);
+            if own.has_errors() {
+                let message = format!("the mesh `{}` cannot be used", name.path);
+                diagnostics.push(Diagnostic::error(message).at(name.span).label("asked for here"));
+            }
+            diagnostics.extend(own);
+            data
+        });
+        let tree = mesh.map(|data| {
+            let mesh = Mesh::new(data, self.rules.mesh_normals, self.rules.file_normals);
+            Arc::new(MeshTree::new(mesh))
+        });
+        self.meshes.insert(name.path.clone(), tree.clone());
+        tree
+    }
+
+    /// The number of a picture's texture.
+    pub(super) fn texture(&mut self, name: &FileName, diagnostics: &mut Diagnostics) -> Option<u32> {
+        if let Some(known) = self.texture_numbers.get(&name.path) {
+            return *known;
+        }
+        let bytes = self.read(name, "texture", diagnostics);
+        let texture = bytes.and_then(|bytes| decode(name, &name.path, &bytes, diagnostics));
+        let number = texture.map(|texture| {
+            self.textures.push(texture);
+            (self.textures.len() - 1) as u32
+        });
+        self.texture_numbers.insert(name.path.clone(), number);
+        number
+    }
+
+    /// The cube map of a folder.
+    pub(super) fn cube_map(&mut self, name: &FileName, diagnostics: &mut Diagnostics) -> Option<CubeMap> {
+        let folder = name.path.trim_end_matches(['/', '\\']);
+        let mut faces = Vec::with_capacity(6);
+        for face in CubeMap::FACES {
+            let candidates = ["bmp", "png", "tga", "ppm"].map(|extension| format!("{folder}/{face}.{extension}"));
+            let there = candidates.iter().find(|c| self.resources.source.contains(c)).unwrap_or(&candidates[0]);
+            let file = FileName { path: there.clone(), span: name.span };
+            let bytes = self.read(&file, "face of the cube map", diagnostics)?;
+            faces.push(decode(name, there, &bytes, diagnostics)?);
+        }
+        Some(CubeMap { faces: faces.try_into().ok()? })
+    }
+
+    /// Reads a file; what goes wrong is said at the place that names it.
+    fn read(&self, name: &FileName, what: &str, diagnostics: &mut Diagnostics) -> Option<Arc<[u8]>> {
+        let error = match self.resources.source.read(&name.path) {
+            Ok(bytes) => return Some(bytes),
+            Err(error) => error,
+        };
+        let diagnostic = Diagnostic::error(format!("the {what} cannot be had: {error}")).at(name.span);
+        diagnostics.push(match error {
+            SourceError::Missing { tried, .. } => diagnostic.help(missing_help(&tried)),
+            SourceError::Outside { .. } => diagnostic
+                .help("a scene may only name files in and below its own folder, unless `--allow-outside` is given"),
+            _ => diagnostic,
+        });
+        None
+    }
+}
+
+/// Where a file was looked for, and a file there that has nearly its name.
+fn missing_help(tried: &[std::path::PathBuf]) -> String {
+    let shown: Vec<String> = tried.iter().map(|path| path.display().to_string()).collect();
+    let near = tried.iter().find_map(|path| {
+        let names: Vec<String> = std::fs::read_dir(path.parent()?)
+            .ok()?
+            .filter_map(|entry| entry.ok()?.file_name().into_string().ok())
+            .take(10_000)
+            .collect();
+        did_you_mean(path.file_name()?.to_str()?, names.iter().map(String::as_str)).map(str::to_string)
+    });
+    match near {
+        Some(near) => format!("did you mean `{near}`? Looked for {}", shown.join(", ")),
+        None => format!("looked for {}", shown.join(", ")),
+    }
+}
+
+fn decode(name: &FileName, path: &str, bytes: &[u8], diagnostics: &mut Diagnostics) -> Option<Texture> {
+    let extension = Path::new(path).extension().and_then(|e| e.to_str()).unwrap_or_default();
+    let decoded = image::read8(bytes, extension);
+    match decoded {
+        Ok(picture) => Texture::new(picture.width, picture.height, picture.pixels),
+        Err(error) => {
+            diagnostics.push(Diagnostic::error(format!("the picture `{path}` cannot be used: {error}")).at(name.span));
+            None
+        }
+    }
+}

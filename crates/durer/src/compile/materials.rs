@@ -1,0 +1,86 @@
+//! Materials: the dialect's meaning of their words is worked in here.
+
+use super::files::Loader;
+use crate::diag::Diagnostics;
+use crate::dialect::{Compat, Highlight, Rules, Secondary};
+use crate::material::{ColorNoise, PhongMaterial};
+use crate::math::Color;
+use crate::scene::{self, MatrixOp, Scene};
+use crate::world::{HighlightModel, Material, Phong};
+
+pub(super) fn compile(
+    scene: &Scene,
+    rules: &Rules,
+    loader: &mut Loader,
+    diagnostics: &mut Diagnostics,
+) -> Vec<Material> {
+    let one = |material: &scene::Spanned<scene::Material>| match &material.value {
+        scene::Material::Solid(solid, ops) => {
+            let to_pattern = MatrixOp::product(ops, rules.has(Compat::MatrixOnLeft));
+            Material::Solid(solid.clone(), to_pattern)
+        }
+        scene::Material::Phong(phong, noise) => {
+            let texture = phong.texture.as_ref().and_then(|name| loader.texture(name, diagnostics));
+            Material::Phong(phong_of(phong, noise.clone(), texture, rules))
+        }
+    };
+    scene.materials.iter().map(one).collect()
+}
+
+fn phong_of(m: &PhongMaterial, noise: Option<ColorNoise>, texture: Option<u32>, rules: &Rules) -> Phong {
+    let (reflective, transparent, ior) = secondary(m, rules);
+    Phong {
+        diffuse: m.diffuse_color,
+        texture,
+        noise,
+        ambient_textured: rules.ambient_textured,
+        highlight: highlight(m, rules).filter(|(color, ..)| *color != Color::ZERO),
+        reflective,
+        transparent,
+        ior: ior.unwrap_or(1.0),
+        fresnel: ior.is_some() && glass(m, rules).is_some(),
+    }
+}
+
+fn highlight(m: &PhongMaterial, rules: &Rules) -> Option<(Color, f32, HighlightModel)> {
+    let blinn = |exponent: f32| Some((m.specular_color, exponent, HighlightModel::Blinn));
+    let phong = |shininess: f32| {
+        let behind = rules.has(Compat::HighlightBehind);
+        Some((m.specular_color, shininess, HighlightModel::Phong { behind }))
+    };
+    match (rules.highlight, m.exponent, m.shininess) {
+        (Highlight::None, ..) => None,
+        (Highlight::Blinn, exponent, shininess) => blinn(exponent.or(shininess).unwrap_or(1.0)),
+        (Highlight::Phong, exponent, shininess) => {
+            let shininess = shininess.or(exponent).unwrap_or(0.0);
+            // Without sharpness there is nothing to see, but for the programs that take 0 to the power of 0.
+            if shininess > 0.0 || rules.has(Compat::PowZero) { phong(shininess) } else { None }
+        }
+        (Highlight::ByKeyword, Some(exponent), _) => blinn(exponent),
+        (Highlight::ByKeyword, None, Some(shininess)) => phong(shininess).filter(|_| shininess > 0.0),
+        (Highlight::ByKeyword, None, None) => blinn(1.0),
+    }
+}
+
+/// The index of glass that divides light by Fresnel's law, if it is such.
+fn glass(m: &PhongMaterial, rules: &Rules) -> Option<f32> {
+    let divides = matches!(rules.secondary, Secondary::SpecularFresnel | Secondary::ByKeyword);
+    m.refraction_index.filter(|index| divides && *index > 0.0)
+}
+
+/// Weights of the mirrored and the transmitted ray, and the index of refraction.
+fn secondary(m: &PhongMaterial, rules: &Rules) -> (Color, Color, Option<f32>) {
+    let specular = m.specular_color;
+    match (rules.secondary, glass(m, rules)) {
+        (Secondary::None, _) => (Color::ZERO, Color::ZERO, None),
+        (Secondary::Specular, _) | (Secondary::SpecularFresnel, None) => (specular, Color::ZERO, None),
+        (Secondary::SpecularFresnel, index) => (specular, specular, index),
+        (Secondary::ByKeyword, Some(index)) => {
+            let tint = if m.transparent_color == Color::ZERO { specular } else { m.transparent_color };
+            (specular, tint, Some(index))
+        }
+        (Secondary::Colors | Secondary::ByKeyword, _) => {
+            (m.reflective_color, m.transparent_color, m.index_of_refraction)
+        }
+    }
+}

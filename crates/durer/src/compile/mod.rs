@@ -1,0 +1,228 @@
+//! From the description to the world. The description ends here.
+
+mod files;
+mod materials;
+
+use crate::bvh::{Bvh, Grid};
+use crate::camera::{Frame, Lens};
+use crate::diag::{Diagnostic, Diagnostics, Files};
+use crate::dialect::{Compat, Rules};
+use crate::light::{Emitter, Light};
+use crate::math::{Aabb, Affine, Color};
+use crate::scene::{self, Group, MatrixOp, Node, Scene};
+use crate::source::Source;
+use crate::world::{Accel, Geometry, Object, Phong, World};
+use glam::DAffine3;
+
+/// Which structure finds the objects that a ray may meet.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum AccelKind {
+    /// A tree of boxes.
+    #[default]
+    Bvh,
+    /// A uniform grid, with these numbers of cells or suitable ones.
+    Grid(Option<[u32; 3]>),
+    /// None: everything is tested.
+    None,
+}
+
+/// Where files come from while a scene is compiled.
+pub struct Resources<'a> {
+    /// Reads files that the scene names.
+    pub source: &'a Source,
+    /// Remembers what was read, for diagnostics.
+    pub files: &'a mut Files,
+}
+
+/// Turns a scene into a world. Errors and warnings are collected; with an error, there is no world.
+pub fn compile(
+    scene: &Scene,
+    rules: &Rules,
+    accel: AccelKind,
+    resources: Resources,
+    diagnostics: &mut Diagnostics,
+) -> Option<World> {
+    let mut own = Diagnostics::default();
+    let mut loader = files::Loader::new(resources, rules);
+    let Some(camera) = scene.camera.clone() else {
+        diagnostics.push(Diagnostic::error("the scene has no camera").help("add a `PerspectiveCamera { ... }`"));
+        return None;
+    };
+    check_camera(scene, camera.pose(), &mut own);
+    let materials = materials::compile(scene, rules, &mut loader, &mut own);
+    let mut flattening = Flattening {
+        objects: Vec::new(),
+        loader: &mut loader,
+        rules,
+        diagnostics: &mut own,
+        material_count: materials.len() as u32,
+        plain_needed: false,
+    };
+    match &scene.root {
+        Some(root) => flattening.group(root, DAffine3::IDENTITY),
+        None => flattening.diagnostics.push(Diagnostic::warning("the scene has no objects: it has no `Group`")),
+    }
+    let Flattening { objects, plain_needed, .. } = flattening;
+    let mut compiled = materials;
+    if plain_needed {
+        compiled.push(crate::world::Material::Phong(Phong::default()));
+    }
+    let cube_map = scene.background.cube_map.as_ref().and_then(|name| loader.cube_map(name, &mut own));
+    let (lights, ambient) = lights(scene, rules, &mut own);
+    let textures = loader.textures;
+    let failed = own.has_errors();
+    diagnostics.extend(own);
+    if failed {
+        return None;
+    }
+    let mut world = World {
+        frame: Frame::new(camera.pose(), rules),
+        camera,
+        background: scene.background.color,
+        cube_map,
+        ambient,
+        lights,
+        materials: compiled,
+        textures,
+        objects,
+        rules: rules.clone(),
+        unbounded: Vec::new(),
+        accel: Accel::None,
+    };
+    world.unbounded =
+        (0..world.objects.len() as u32).filter(|&i| world.objects[i as usize].bounds().is_none()).collect();
+    match build_accel(&world, accel) {
+        Ok(accel) => world.accel = accel,
+        Err(error) => {
+            diagnostics.push(error);
+            return None;
+        }
+    }
+    Some(world)
+}
+
+fn build_accel(world: &World, kind: AccelKind) -> Result<Accel, Diagnostic> {
+    let cells = match kind {
+        AccelKind::None => return Ok(Accel::None),
+        AccelKind::Bvh => {
+            // An unbounded object has an empty box here, and is left out.
+            let boxes: Vec<Aabb> = world.objects.iter().map(|o| o.bounds().unwrap_or(Aabb::EMPTY)).collect();
+            return Ok(Accel::Bvh(Bvh::build(&boxes)));
+        }
+        AccelKind::Grid(cells) => cells,
+    };
+    let mut parts = Vec::new();
+    let mut boxes = Vec::new();
+    for (i, object) in world.objects.iter().enumerate() {
+        for part in 0..object.parts() {
+            if let Some(bounds) = object.part_bounds(part) {
+                parts.push((i as u32, part));
+                boxes.push(bounds);
+            }
+        }
+    }
+    let bounds = boxes.iter().copied().fold(Aabb::EMPTY, Aabb::union);
+    if bounds.is_empty() {
+        return Ok(Accel::None);
+    }
+    let counts = cells.unwrap_or_else(|| Grid::suitable(bounds, boxes.len()));
+    let grid = Grid::build(bounds, counts, &boxes).ok_or_else(|| {
+        let [x, y, z] = counts;
+        let most = Grid::MOST_CELLS;
+        Diagnostic::error(format!("a grid of {x} x {y} x {z} cells cannot be made: it must have 1 to {most} cells"))
+    })?;
+    Ok(Accel::Grid { grid, parts })
+}
+
+fn check_camera(scene: &Scene, pose: crate::camera::Pose, diagnostics: &mut Diagnostics) {
+    let parallel = pose.direction.as_dvec3().normalize_or_zero().cross(pose.up.as_dvec3().normalize_or_zero()).length();
+    if parallel < 1e-6 {
+        let message = "the camera's `up` is parallel to its `direction`, so which way is up is arbitrary";
+        diagnostics.push(Diagnostic::warning(message).at(scene.camera_span).help("choose another `up`"));
+    }
+}
+
+/// The lights, and the ambient light that goes with them.
+fn lights(scene: &Scene, rules: &Rules, diagnostics: &mut Diagnostics) -> (Vec<Light>, Color) {
+    let written = scene.lights.as_deref().unwrap_or_default();
+    if written.is_empty() {
+        let message = "the scene has no lights: its ambient light is set to 1 1 1, so colours are flat";
+        diagnostics.push(Diagnostic::warning(message));
+        return (Vec::new(), Color::ONE);
+    }
+    for light in written {
+        let (color, falloff) = match &light.value {
+            Light::Directional(light) => (light.color, None),
+            Light::Point(light) => (light.color, light.falloff),
+        };
+        if color == Color::ZERO {
+            let message = "this light reaches nothing: its color is 0 0 0";
+            diagnostics.push(Diagnostic::warning(message).at(light.span));
+        }
+        let missing = matches!(&light.value, Light::Point(_)) && falloff.is_none();
+        if missing && rules.has(Compat::MissingFalloff) {
+            let message = "this light has no `falloff`, and divides by zero as the official program does";
+            diagnostics.push(
+                Diagnostic::warning(message).at(light.span).help("the picture will be black; write `falloff 1`, say"),
+            );
+        }
+    }
+    (written.iter().map(|light| light.value.resolved(rules)).collect(), scene.background.ambient_light)
+}
+
+/// Nested groups and transforms on their way to a flat list.
+struct Flattening<'a, 'r> {
+    objects: Vec<Object>,
+    loader: &'a mut files::Loader<'r>,
+    rules: &'a Rules,
+    diagnostics: &'a mut Diagnostics,
+    material_count: u32,
+    /// Whether some object needs the plain material behind the last.
+    plain_needed: bool,
+}
+
+impl Flattening<'_, '_> {
+    fn group(&mut self, group: &Group, to_world: DAffine3) {
+        for object in &group.objects {
+            self.object(object, to_world);
+        }
+    }
+
+    fn object(&mut self, object: &scene::Object, to_world: DAffine3) {
+        let geometry = match &object.node {
+            Node::Group(group) => return self.group(group, to_world),
+            Node::Transform(ops, inner) => {
+                return self.object(inner, to_world * MatrixOp::product(ops, self.rules.has(Compat::MatrixOnLeft)));
+            }
+            Node::Primitive(shape) => Geometry::Primitive(shape.clone()),
+            Node::Mesh(mesh) => match self.loader.mesh(&mesh.obj_file, self.diagnostics) {
+                Some(tree) => Geometry::Mesh(tree),
+                None => return,
+            },
+        };
+        let to_world = match to_world == DAffine3::IDENTITY {
+            true => None,
+            false => match Affine::new(to_world) {
+                Some(affine) if affine.is_identity() => None,
+                Some(affine) => Some(affine),
+                None => {
+                    let message = "the transforms around this object flatten space, or leave the range of numbers";
+                    self.diagnostics.push(Diagnostic::error(message).at(object.span));
+                    return;
+                }
+            },
+        };
+        let material = match object.material {
+            Some(index) if index < self.material_count => index,
+            index => {
+                if index.is_none() {
+                    let warning = Diagnostic::warning("this object has no material, and is drawn in plain grey");
+                    self.diagnostics.push(warning.at(object.span).help("write `MaterialIndex 0` before it"));
+                }
+                self.plain_needed = true;
+                self.material_count
+            }
+        };
+        self.objects.push(Object { geometry, to_world, material, span: object.span });
+    }
+}

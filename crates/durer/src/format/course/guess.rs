@@ -1,0 +1,142 @@
+//! Which dialect a scene is written in, and why.
+
+use super::lexer::{TokenKind, tokens};
+use crate::camera::Camera;
+use crate::describe::DescribedList;
+use crate::diag::{Diagnostic, Span};
+use crate::dialect::{Dialect, DialectSet, set};
+use crate::light::Light;
+use crate::material::{ColorNoise, PhongMaterial, Solid};
+use crate::scene::Background;
+use crate::shape::{Primitive, TriangleMesh};
+use std::collections::HashMap;
+
+/// What something else than the file says of its dialect.
+#[derive(Clone, Debug)]
+pub struct Hint {
+    /// The dialects that it leaves.
+    pub set: DialectSet,
+    /// Why, as the end of a sentence.
+    pub why: String,
+}
+
+/// A guess and its reasons.
+#[derive(Clone, Debug)]
+pub struct Guess {
+    /// What was guessed.
+    pub dialect: Dialect,
+    /// What narrowed it down, as ends of sentences, and where.
+    pub reasons: Vec<(String, Option<Span>)>,
+    /// Other dialects that would have done as well.
+    pub others: Vec<Dialect>,
+}
+
+impl Guess {
+    /// The guess as a note for people.
+    pub fn note(&self) -> Diagnostic {
+        let reasons: Vec<&str> = self.reasons.iter().map(|r| r.0.as_str()).collect();
+        let mut message = format!("read as {}", self.dialect.name());
+        if !reasons.is_empty() {
+            message += &format!(": {}", reasons.join("; "));
+        }
+        if !self.others.is_empty() {
+            let names: Vec<&str> = self.others.iter().map(|d| d.name()).collect();
+            message += &format!(" (nothing in it rules out {})", names.join(", "));
+        }
+        Diagnostic::note(message)
+    }
+}
+
+/// Where several dialects are left, the first of these is taken.
+const PREFERENCE: [Dialect; 6] =
+    [Dialect::F12a4, Dialect::F04, Dialect::F12a5, Dialect::F16, Dialect::F23, Dialect::F03];
+
+/// Guesses the dialect of a scene from its words. `exists` tells whether a file that it names is there.
+pub fn guess(bytes: &[u8], file: u32, hints: &[Hint], exists: &dyn Fn(&str) -> bool) -> Guess {
+    let vocabulary = vocabulary();
+    let mut left = set::ALL & !set::DURER;
+    let mut reasons = Vec::new();
+    let tokens = tokens(bytes, file);
+    let text = |i: usize| {
+        let span = tokens.get(i).map_or(Span::default(), |t| t.span);
+        String::from_utf8_lossy(&bytes[span.start as usize..span.end as usize])
+    };
+    let mut narrow = |keep: DialectSet, why: String, span: Option<Span>| {
+        if left & keep != left {
+            left &= keep;
+            reasons.push((why, span));
+        }
+    };
+    let has_section = (0..tokens.len()).any(|i| text(i) == "Materials");
+    for (i, token) in tokens.iter().enumerate() {
+        let word = text(i);
+        let braced = tokens.get(i + 1).is_some_and(|t| t.kind == TokenKind::Open);
+        let (keep, why) = if token.kind == TokenKind::Comment {
+            (0, "it has comments, which the course's language lacks".into())
+        } else if braced && matches!(&*word, "Translate" | "Scale" | "XRotate" | "YRotate" | "ZRotate") {
+            (set::F03, format!("`{word} {{` with a brace is 2003's"))
+        } else if braced && !has_section && matches!(&*word, "Material" | "PhongMaterial") {
+            (set::F03, format!("`{word}` inside a group is 2003's"))
+        } else if word == "cubeMap" && exists(&format!("{}/left.png", text(i + 1))) {
+            (set::F16, "its cube map is of PNG files".into())
+        } else if word == "cubeMap" && exists(&format!("{}/left.bmp", text(i + 1))) {
+            (set::F12A5, "its cube map is of BMP files".into())
+        } else if let Some(&set) = vocabulary.get(&*word) {
+            (set, format!("`{word}` is a word of {}", names(set)))
+        } else {
+            continue;
+        };
+        narrow(keep, why, Some(token.span));
+    }
+    for hint in hints {
+        narrow(hint.set, hint.why.clone(), None);
+    }
+    let mut candidates = PREFERENCE.into_iter().filter(|d| d.is_in(left));
+    let dialect = candidates.next().unwrap_or(Dialect::Durer);
+    Guess { dialect, reasons, others: candidates.collect() }
+}
+
+fn names(set: DialectSet) -> String {
+    let names: Vec<&str> =
+        Dialect::ALL.iter().filter(|d| d.is_in(set) && **d != Dialect::Durer).map(|d| d.name()).collect();
+    if names.is_empty() { Dialect::Durer.name().into() } else { names.join(", ") }
+}
+
+/// Every keyword of the language, and the dialects that have it in some place.
+fn vocabulary() -> HashMap<&'static str, DialectSet> {
+    let mut words = HashMap::new();
+    list::<Camera>(&mut words);
+    list::<Light>(&mut words);
+    list::<Primitive>(&mut words);
+    list::<Solid>(&mut words);
+    list::<PhongMaterial>(&mut words);
+    list::<ColorNoise>(&mut words);
+    list::<TriangleMesh>(&mut words);
+    list::<Background>(&mut words);
+    let grammar = [
+        ("num_objects", set::F03),
+        ("Lights", set::CLASSIC),
+        ("Group", set::CLASSIC),
+        ("MaterialIndex", set::CLASSIC),
+        ("Matrix", set::OLD | set::DURER),
+        ("Matrix4f", set::NEW | set::DURER),
+        ("Scene", set::F23),
+        ("Node", set::F23),
+        ("Component<Object>", set::F23),
+    ];
+    for (word, set) in grammar {
+        *words.entry(word).or_insert(0) |= set;
+    }
+    // 2020's `sphere` or `point` may be anybody's file name.
+    words.retain(|word, bits| *bits != set::F23 || word.contains(['<', '_']) || word.starts_with(char::is_uppercase));
+    words
+}
+
+fn list<T: DescribedList>(words: &mut HashMap<&'static str, DialectSet>) {
+    for kind in T::kinds() {
+        let spellings = kind.fields().iter().flat_map(|field| field.spellings);
+        for (word, set) in kind.keywords().iter().chain(spellings) {
+            *words.entry(word).or_insert(0) |= set;
+        }
+    }
+}

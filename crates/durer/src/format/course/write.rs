@@ -1,0 +1,229 @@
+//! Scenes as text.
+
+use crate::camera::Camera;
+use crate::describe::{DescribedList, Value};
+use crate::dialect::Dialect;
+use crate::light::Light;
+use crate::math::Vec3;
+use crate::scene::{Group, Material, MatrixOp, Node, Object, Scene};
+use std::fmt::Write;
+
+/// Writes a scene in a dialect. What the dialect has no word for is written in the words of another year.
+pub fn write(scene: &Scene, dialect: Dialect) -> String {
+    let mut writer = Writer { out: String::new(), depth: 0, dialect, material: None };
+    match dialect {
+        Dialect::F23 => writer.node_scene(scene),
+        _ => writer.scene(scene),
+    }
+    writer.out
+}
+
+struct Writer {
+    out: String,
+    depth: usize,
+    dialect: Dialect,
+    /// The material that is current for what follows.
+    material: Option<u32>,
+}
+
+impl Writer {
+    fn line(&mut self, text: impl AsRef<str>) {
+        let indent = "    ".repeat(self.depth);
+        // Writing to a String cannot fail.
+        let _ = writeln!(self.out, "{indent}{}", text.as_ref());
+    }
+
+    fn block(&mut self, head: &str, inside: impl FnOnce(&mut Self)) {
+        self.line(format!("{head} {{"));
+        self.depth += 1;
+        inside(self);
+        self.depth -= 1;
+        self.line("}");
+    }
+
+    fn fields<T: DescribedList>(&mut self, thing: &T) {
+        for (i, field) in thing.fields().iter().enumerate() {
+            let Some(value) = thing.get(i) else { continue };
+            // In nodes, a field without a word has a fixed value.
+            let word = field.spelling(self.dialect);
+            if word.is_none() && self.dialect == Dialect::F23 {
+                continue;
+            }
+            self.line(format!("{} {}", word.unwrap_or(field.spellings[0].0), value_text(&value)));
+        }
+    }
+
+    fn thing<T: DescribedList>(&mut self, thing: &T) {
+        self.block(thing.keyword(self.dialect), |w| w.fields(thing));
+    }
+
+    fn scene(&mut self, scene: &Scene) {
+        if let Some(camera) = &scene.camera {
+            self.thing(camera);
+        }
+        self.thing(&scene.background);
+        if let Some(lights) = &scene.lights {
+            self.block("Lights", |w| {
+                w.line(format!("numLights {}", lights.len()));
+                lights.iter().for_each(|light| w.thing(&light.value));
+            });
+        }
+        if !scene.materials.is_empty() {
+            self.block("Materials", |w| {
+                w.line(format!("numMaterials {}", scene.materials.len()));
+                scene.materials.iter().for_each(|material| w.material(&material.value));
+            });
+        }
+        if let Some(root) = &scene.root {
+            self.group(root);
+        }
+    }
+
+    fn material(&mut self, material: &Material) {
+        match material {
+            Material::Phong(phong, noise) => {
+                let word = if self.dialect == Dialect::F23 { "Material" } else { "PhongMaterial" };
+                self.block(word, |w| {
+                    w.fields(&**phong);
+                    if let Some(noise) = noise {
+                        w.block("Noise", |w| w.fields(noise));
+                    }
+                });
+            }
+            Material::Solid(solid, transform) => self.block(solid.keyword(self.dialect), |w| {
+                if !transform.is_empty() {
+                    w.block("Transform", |w| transform.iter().for_each(|op| w.matrix(op)));
+                }
+                w.fields(solid);
+            }),
+        }
+    }
+
+    fn group(&mut self, group: &Group) {
+        self.block("Group", |w| {
+            w.line(format!("numObjects {}", group.objects.len()));
+            for object in &group.objects {
+                if let Some(index) = object.material.filter(|_| object.material != w.material) {
+                    w.line(format!("MaterialIndex {index}"));
+                    w.material = Some(index);
+                }
+                w.object(object);
+            }
+        });
+    }
+
+    fn object(&mut self, object: &Object) {
+        match &object.node {
+            Node::Group(group) => self.group(group),
+            Node::Transform(ops, inner) => self.block("Transform", |w| {
+                ops.iter().for_each(|op| w.matrix(op));
+                w.object(inner);
+            }),
+            Node::Primitive(shape) => self.thing(shape),
+            Node::Mesh(mesh) => self.thing(mesh),
+        }
+    }
+
+    fn matrix(&mut self, op: &MatrixOp) {
+        let old = self.dialect == Dialect::F03;
+        let braced = |word: &str, values: String| match old {
+            true => format!("{word} {{ {values} }}"),
+            false => format!("{word} {values}"),
+        };
+        let text = match *op {
+            MatrixOp::Translate(v) => braced("Translate", vec3_text(v)),
+            MatrixOp::Scale(v) => braced("Scale", vec3_text(v)),
+            MatrixOp::UniformScale(s) => braced("UniformScale", s.to_string()),
+            MatrixOp::XRotate(a) => braced("XRotate", a.to_string()),
+            MatrixOp::YRotate(a) => braced("YRotate", a.to_string()),
+            MatrixOp::ZRotate(a) => braced("ZRotate", a.to_string()),
+            MatrixOp::Rotate(axis, a) => format!("Rotate {{ {} {a} }}", vec3_text(axis)),
+            MatrixOp::Matrix(rows) => {
+                let by_rows = matches!(self.dialect, Dialect::F03 | Dialect::F04 | Dialect::Durer);
+                let listed: [f32; 16] = if by_rows { rows } else { std::array::from_fn(|i| rows[i % 4 * 4 + i / 4]) };
+                let word = if by_rows { "Matrix" } else { "Matrix4f" };
+                format!("{word} {{ {} }}", listed.map(|x| x.to_string()).join(" "))
+            }
+        };
+        self.line(text);
+    }
+
+    fn node_scene(&mut self, scene: &Scene) {
+        if let Some(Camera::Perspective(camera)) = &scene.camera {
+            self.thing(camera);
+        }
+        self.thing(&scene.background);
+        self.block("Materials", |w| scene.materials.iter().for_each(|m| w.material(&m.value)));
+        self.block("Scene", |w| {
+            for object in scene.root.iter().flat_map(|root| &root.objects) {
+                w.node(object, &[]);
+            }
+            for light in scene.lights.iter().flatten() {
+                w.light_node(&light.value);
+            }
+        });
+    }
+
+    fn node(&mut self, object: &Object, ops: &[MatrixOp]) {
+        if let Node::Transform(ops, inner) = &object.node {
+            return self.node(inner, ops);
+        }
+        self.block("Node", |w| {
+            if !ops.is_empty() {
+                w.block("Transform", |w| ops.iter().for_each(|op| w.node_matrix(op)));
+            }
+            if let Some(index) = object.material {
+                w.line(format!("Component<Material> {{ index {index} }}"));
+            }
+            match &object.node {
+                Node::Group(group) => group.objects.iter().for_each(|inner| w.node(inner, &[])),
+                Node::Primitive(shape) => w.component("Object", shape),
+                Node::Mesh(mesh) => w.component("Object", mesh),
+                Node::Transform(..) => {}
+            }
+        });
+    }
+
+    fn light_node(&mut self, light: &Light) {
+        self.block("Node", |w| {
+            if let Light::Point(point) = light {
+                w.block("Transform", |w| w.node_matrix(&MatrixOp::Translate(point.position)));
+            }
+            w.component("Light", light);
+        });
+    }
+
+    fn component<T: DescribedList>(&mut self, name: &str, thing: &T) {
+        self.block(&format!("Component<{name}>"), |w| {
+            w.line(format!("type {}", thing.keyword(w.dialect)));
+            w.fields(thing);
+        });
+    }
+
+    fn node_matrix(&mut self, op: &MatrixOp) {
+        let text = match *op {
+            MatrixOp::Translate(v) => format!("translate {}", vec3_text(v)),
+            MatrixOp::Scale(v) => format!("scale {}", vec3_text(v)),
+            MatrixOp::UniformScale(s) => format!("uniform_scale {s}"),
+            MatrixOp::XRotate(a) => format!("x_rotate {a}"),
+            MatrixOp::YRotate(a) => format!("y_rotate {a}"),
+            MatrixOp::ZRotate(a) => format!("z_rotate {a}"),
+            MatrixOp::Rotate(axis, a) => format!("rotate {} {a}", vec3_text(axis)),
+            MatrixOp::Matrix(_) => return self.matrix(op),
+        };
+        self.line(text);
+    }
+}
+
+fn value_text(value: &Value) -> String {
+    match value {
+        Value::Float(x) => x.to_string(),
+        Value::Int(i) => i.to_string(),
+        Value::Vec3(v) => vec3_text(*v),
+        Value::Path(name) => name.path.clone(),
+    }
+}
+
+fn vec3_text(v: Vec3) -> String {
+    format!("{} {} {}", v.x, v.y, v.z)
+}

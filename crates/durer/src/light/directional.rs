@@ -1,0 +1,28 @@
+//! A light at infinity.
+
+use super::{Emitter, Illumination};
+use crate::describe::Rule;
+use crate::described;
+use crate::dialect::{Rules, set};
+use crate::math::Vec3;
+
+described! {
+    /// Light that comes from one direction everywhere.
+    DirectionalLight ["DirectionalLight" in set::CLASSIC, "directional" in set::F23] {
+        /// Where the light goes; of any length.
+        direction: Vec3 = Vec3::NEG_Y, required, Rule::NonZero, ["direction" in set::ALL];
+        /// Its colour and strength.
+        color: Vec3 = Vec3::ONE, required, Rule::Any, ["color" in set::ALL];
+    }
+}
+
+impl Emitter for DirectionalLight {
+    fn illuminate(&self, _point: Vec3) -> Illumination {
+        let to_light = (-self.direction).normalize_or(Vec3::Y);
+        Illumination { to_light, distance: f32::INFINITY, color: self.color }
+    }
+
+    fn resolved(&self, _rules: &Rules) -> Self {
+        self.clone()
+    }
+}

@@ -1,0 +1,48 @@
+//! A light at a point. What arrives at distance d is color / (a0 + a1 d + a2 d^2).
+
+use super::{Emitter, Illumination};
+use crate::describe::Rule;
+use crate::described;
+use crate::dialect::{Compat, Falloff, Rules, set};
+use crate::math::Vec3;
+
+described! {
+    /// Light that comes from one point.
+    PointLight ["PointLight" in set::CLASSIC, "point" in set::F23] {
+        /// Where it is.
+        position: Vec3 = Vec3::ZERO, required, Rule::Any, ["position" in set::CLASSIC];
+        /// Its colour and strength.
+        color: Vec3 = Vec3::ONE, required, Rule::Any, ["color" in set::ALL];
+        /// How it fades: the divisor's constant, its factor of distance and its factor of distance squared.
+        attenuation: Option<Vec3> = None, optional, Rule::Any, ["attenuation" in set::OLD | set::DURER];
+        /// How it fades: the divisor's factor of distance squared; what is added to it depends on the dialect.
+        falloff: Option<f32> = None, optional, Rule::NonNegative,
+            ["falloff" in set::F12A5 | set::F16 | set::DURER, "attenuation" in set::F23];
+    }
+}
+
+impl Emitter for PointLight {
+    fn illuminate(&self, point: Vec3) -> Illumination {
+        let offset = self.position - point;
+        let distance = offset.length();
+        let divisor = match self.attenuation {
+            Some(a) => a.x + a.y * distance + a.z * distance * distance,
+            None => 1.0,
+        };
+        let to_light = offset.normalize_or(Vec3::Y);
+        Illumination { to_light, distance, color: self.color / divisor }
+    }
+
+    fn resolved(&self, rules: &Rules) -> Self {
+        let attenuation = match (rules.falloff, self.falloff) {
+            (Falloff::None, _) => None,
+            (Falloff::OnePlus, Some(f)) => Some(Vec3::new(1.0, 0.0, f)),
+            (Falloff::OnePlus, None) => self.attenuation,
+            (Falloff::Bare(_), Some(f)) if f > 0.0 || rules.has(Compat::MissingFalloff) => Some(Vec3::new(0.0, 0.0, f)),
+            (Falloff::Bare(Some(default)), None) => Some(Vec3::new(0.0, 0.0, default)),
+            (Falloff::Bare(None), None) if rules.has(Compat::MissingFalloff) => Some(Vec3::ZERO),
+            (Falloff::Bare(_), _) => None,
+        };
+        PointLight { attenuation, falloff: None, ..self.clone() }
+    }
+}

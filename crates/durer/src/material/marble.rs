@@ -1,0 +1,34 @@
+//! Veins: the first material weighs (sin(frequency x + amplitude N) + 1) / 2.
+
+use super::{MOST_OCTAVES, Pattern};
+use crate::describe::Rule;
+use crate::described;
+use crate::dialect::set;
+use crate::math::{Vec3, fp, noise};
+
+described! {
+    /// Two materials in veins across the x axis.
+    Marble ["Marble" in set::OLD | set::DURER] {
+        /// The material where the sine is 1.
+        material1: u32 = 0, required, Rule::Any, ["materialIndex" in set::ALL];
+        /// The material where the sine is -1.
+        material2: u32 = 0, required, Rule::Any, ["materialIndex" in set::ALL];
+        /// How many frequencies of noise are summed, each twice the one before.
+        octaves: u32 = 0, required, Rule::AtMost(MOST_OCTAVES), ["octaves" in set::ALL];
+        /// Veins per 2 pi along x.
+        frequency: f32 = 1.0, required, Rule::Any, ["frequency" in set::ALL];
+        /// How much noise bends the veins.
+        amplitude: f32 = 1.0, required, Rule::Any, ["amplitude" in set::ALL];
+    }
+}
+
+impl Pattern for Marble {
+    fn weight(&self, q: Vec3) -> f32 {
+        let phase = self.frequency * q.x + self.amplitude * noise::turbulence(q, self.octaves);
+        0.5 * (fp::sin(phase) + 1.0)
+    }
+
+    fn materials(&self) -> [u32; 2] {
+        [self.material1, self.material2]
+    }
+}

@@ -1,0 +1,53 @@
+//! Materials: what a surface does with light. One file each; the list is [`Solid`] beside [`PhongMaterial`].
+
+pub mod checkerboard;
+pub mod marble;
+pub mod phong;
+pub mod solid_noise;
+pub mod wood;
+
+use crate::describe::Field;
+use crate::described_list;
+use crate::math::Vec3;
+pub use phong::{ColorNoise, PhongMaterial};
+
+described_list! {
+    /// A material made of two earlier ones, mixed by a pattern in space.
+    Solid {
+        Checkerboard(checkerboard::Checkerboard),
+        Noise(solid_noise::SolidNoise),
+        Marble(marble::Marble),
+        Wood(wood::Wood),
+    }
+}
+
+/// What every pattern in space can do.
+pub trait Pattern {
+    /// The share of the first material at a point of pattern space, from 0 to 1.
+    fn weight(&self, q: Vec3) -> f32;
+
+    /// Numbers of the two materials.
+    fn materials(&self) -> [u32; 2];
+}
+
+macro_rules! delegate {
+    ($($variant:ident),+) => {
+        impl Pattern for Solid {
+            fn weight(&self, q: Vec3) -> f32 {
+                match self { $(Solid::$variant(s) => s.weight(q),)+ }
+            }
+            fn materials(&self) -> [u32; 2] {
+                match self { $(Solid::$variant(s) => s.materials(),)+ }
+            }
+        }
+    };
+}
+delegate!(Checkerboard, Noise, Marble, Wood);
+
+/// The most octaves that noise may have: beyond, they are finer than numbers can tell.
+pub const MOST_OCTAVES: u32 = 32;
+
+/// Whether a field holds the number of another material.
+pub fn is_material_index(field: &Field) -> bool {
+    field.name.starts_with("material")
+}

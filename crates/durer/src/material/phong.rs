@@ -1,0 +1,60 @@
+//! The course's material: diffuse colour, a highlight, and weights for mirrored and transmitted rays.
+
+use super::MOST_OCTAVES;
+use crate::describe::{FileName, Rule};
+use crate::described;
+use crate::dialect::set;
+use crate::math::{Color, Vec3, fp, noise};
+
+described! {
+    /// A material with diffuse colour and highlight, which may reflect and let through light.
+    PhongMaterial ["PhongMaterial" in set::CLASSIC, "Material" in set::ALL] {
+        /// Share of light scattered evenly.
+        diffuse_color: Vec3 = Vec3::ONE, optional, Rule::Any, ["diffuseColor" in set::CLASSIC, "diffuse" in set::F23];
+        /// Strength of the highlight; in some dialects also of the mirror.
+        specular_color: Vec3 = Vec3::ZERO, optional, Rule::Any,
+            ["specularColor" in set::CLASSIC, "specular" in set::F23];
+        /// Sharpness of Blinn's highlight.
+        exponent: Option<f32> = None, optional, Rule::NonNegative, ["exponent" in set::OLD | set::DURER];
+        /// Sharpness of Phong's highlight.
+        shininess: Option<f32> = None, optional, Rule::NonNegative, ["shininess" in set::NEW | set::F23 | set::DURER];
+        /// Weight of the mirrored ray.
+        reflective_color: Vec3 = Vec3::ZERO, optional, Rule::Any, ["reflectiveColor" in set::OLD | set::DURER];
+        /// Weight of the transmitted ray.
+        transparent_color: Vec3 = Vec3::ZERO, optional, Rule::Any, ["transparentColor" in set::OLD | set::DURER];
+        /// Index of refraction of transmitted rays that are weighed by `transparentColor` alone.
+        index_of_refraction: Option<f32> = None, optional, Rule::Positive, ["indexOfRefraction" in set::OLD | set::DURER];
+        /// Index of refraction of glass that divides light by Fresnel; 0 means none.
+        refraction_index: Option<f32> = None, optional, Rule::NonNegative,
+            ["refractionIndex" in set::F12A5 | set::DURER];
+        /// A picture that replaces the diffuse colour on meshes with texture coordinates.
+        texture: Option<FileName> = None, optional, Rule::Any, ["texture" in set::F12A4 | set::F12A5 | set::DURER];
+        /// A bump map: read over, as in every year.
+        bump: Option<FileName> = None, optional, Rule::Any, ["bump" in set::NEW | set::DURER];
+    }
+}
+
+described! {
+    /// Two colours in veins bent by noise, instead of the diffuse colour.
+    ColorNoise ["Noise" in set::F12A5 | set::DURER] {
+        /// The colour where the sine is 1.
+        color1: Vec3 = Vec3::ONE, required, Rule::Any, ["color" in set::ALL];
+        /// The colour where the sine is -1.
+        color2: Vec3 = Vec3::ZERO, required, Rule::Any, ["color" in set::ALL];
+        /// How many frequencies of noise are summed, each twice the one before.
+        octaves: u32 = 0, optional, Rule::AtMost(MOST_OCTAVES), ["octaves" in set::ALL];
+        /// Veins per 2 pi along x.
+        frequency: f32 = 1.0, optional, Rule::Any, ["frequency" in set::ALL];
+        /// How much noise bends the veins.
+        amplitude: f32 = 1.0, optional, Rule::Any, ["amplitude" in set::ALL];
+    }
+}
+
+impl ColorNoise {
+    /// The colour at a point: w color1 + (1 - w) color2, w = (sin(frequency x + amplitude N) + 1) / 2.
+    pub fn color(&self, p: Vec3) -> Color {
+        let phase = self.frequency * p.x + self.amplitude * noise::turbulence(p, self.octaves);
+        let w = 0.5 * (fp::sin(phase) + 1.0);
+        w * self.color1 + (1.0 - w) * self.color2
+    }
+}

@@ -1,0 +1,100 @@
+//! The scene as its author wrote it: plain data with names, degrees, nested groups and file paths.
+//!
+//! Nothing here is computed, cached or looked up; `compile` turns it into a world.
+
+pub mod matrix;
+
+use crate::camera::Camera;
+use crate::describe::{FileName, Rule};
+use crate::described;
+use crate::diag::Span;
+use crate::dialect::set;
+use crate::light::Light;
+use crate::material::{ColorNoise, PhongMaterial, Solid};
+use crate::math::Vec3;
+use crate::shape::{Primitive, TriangleMesh};
+pub use matrix::MatrixOp;
+use serde::{Deserialize, Serialize};
+
+described! {
+    /// What a ray sees that hits nothing, and the light that is everywhere.
+    Background ["Background" in set::ALL] {
+        /// Colour of rays that hit nothing.
+        color: Vec3 = Vec3::splat(0.5), optional, Rule::Any, ["color" in set::ALL];
+        /// Light that reaches every surface.
+        ambient_light: Vec3 = Vec3::ZERO, optional, Rule::Any,
+            ["ambientLight" in set::CLASSIC, "ambient_light" in set::F23];
+        /// Folder with six pictures (left, right, up, down, front, back) that replace the colour.
+        cube_map: Option<FileName> = None, optional, Rule::Any,
+            ["cubeMap" in set::F12A5 | set::F16 | set::DURER, "cube_map" in set::F23];
+    }
+}
+
+/// A whole scene.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Scene {
+    /// Whence it is seen.
+    pub camera: Option<Camera>,
+    /// What is behind everything.
+    pub background: Background,
+    /// Lights; `None` where the file has no section for them.
+    pub lights: Option<Vec<Spanned<Light>>>,
+    /// Materials, by number.
+    pub materials: Vec<Spanned<Material>>,
+    /// All objects.
+    pub root: Option<Group>,
+    /// Where the camera is written.
+    #[serde(skip)]
+    pub camera_span: Span,
+}
+
+/// A thing and where it is written.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Spanned<T> {
+    /// The thing.
+    pub value: T,
+    /// Where.
+    #[serde(skip)]
+    pub span: Span,
+}
+
+/// A material.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Material {
+    /// Diffuse colour, highlight, mirror, glass; noise may replace the diffuse colour.
+    Phong(Box<PhongMaterial>, Option<ColorNoise>),
+    /// Two earlier materials mixed by a pattern, and the transform from world to pattern space.
+    Solid(Solid, Vec<MatrixOp>),
+}
+
+/// Some objects.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Group {
+    /// In reading order.
+    pub objects: Vec<Object>,
+}
+
+/// An object and the material that was current where it is written.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Object {
+    /// What it is.
+    pub node: Node,
+    /// Number of the current material; `None` before any.
+    pub material: Option<u32>,
+    /// Its keyword in the file.
+    #[serde(skip)]
+    pub span: Span,
+}
+
+/// What an object is.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Node {
+    /// Several objects.
+    Group(Group),
+    /// An object moved by M = M1 M2 ...
+    Transform(Vec<MatrixOp>, Box<Object>),
+    /// A shape.
+    Primitive(Primitive),
+    /// A mesh in a file.
+    Mesh(TriangleMesh),
+}

@@ -1,0 +1,62 @@
+//! The sphere |p - center|^2 = radius^2.
+
+use super::{Crossing, Shape, Surface};
+use crate::describe::Rule;
+use crate::described;
+use crate::dialect::set;
+use crate::math::{Aabb, Ray, Vec2, Vec3, fp, gamma};
+
+described! {
+    /// A ball.
+    Sphere ["Sphere" in set::CLASSIC, "sphere" in set::F23] {
+        /// Its middle.
+        center: Vec3 = Vec3::ZERO, required, Rule::Any, ["center" in set::CLASSIC];
+        /// Its radius.
+        radius: f32 = 1.0, required, Rule::Positive, ["radius" in set::ALL];
+    }
+}
+
+impl Shape for Sphere {
+    fn bounds(&self) -> Option<Aabb> {
+        let pad = gamma(2) * (self.center.abs() + self.radius);
+        Some(Aabb { min: self.center - self.radius - pad, max: self.center + self.radius + pad })
+    }
+
+    /// Solves |origin + t dir - center|^2 = radius^2 in double precision.
+    ///
+    /// The discriminant is taken from the point of the ray nearest to the centre, which keeps small, far
+    /// spheres exact. Source: Haines, Günther, Akenine-Möller, *Ray Tracing Gems* (2019), chapter 7.
+    fn intersect(&self, ray: &Ray) -> Option<Crossing> {
+        let o = ray.origin.as_dvec3() - self.center.as_dvec3();
+        let d = ray.dir.as_dvec3();
+        let r = f64::from(self.radius);
+        let dd = d.dot(d);
+        let b = -o.dot(d);
+        let nearest = o + (b / dd) * d;
+        let discriminant = r * r - nearest.dot(nearest);
+        // Also refuses NaN, which a zero direction gives.
+        if !(discriminant >= 0.0) {
+            return None;
+        }
+        // q has the sign of b, so that neither root loses digits to cancellation.
+        let c = o.dot(o) - r * r;
+        let q = b + (dd * discriminant).sqrt().copysign(b);
+        let (t0, t1) = if q == 0.0 { (0.0, 0.0) } else { (c / q, q / dd) };
+        let (near, far) = if t0 < t1 { (t0 as f32, t1 as f32) } else { (t1 as f32, t0 as f32) };
+        let t = if ray.contains(near) { near } else { far };
+        ray.contains(t).then_some(Crossing { t, uv: Vec2::ZERO })
+    }
+
+    fn surface(&self, ray: &Ray, crossing: &Crossing) -> Surface {
+        let offset = ray.origin.as_dvec3() + f64::from(crossing.t) * ray.dir.as_dvec3() - self.center.as_dvec3();
+        let normal = offset.normalize_or(glam::DVec3::Z).as_vec3();
+        // Placed back onto the sphere, the point is as exact as its coordinates can be.
+        let position = self.center + self.radius * normal;
+        let error = gamma(3) * (self.center.abs() + self.radius * normal.abs());
+        // Longitude from -z over +x, latitude from the south pole up.
+        let u = fp::atan2(normal.x, -normal.z) / std::f32::consts::TAU + 0.5;
+        let v = fp::asin(normal.y.clamp(-1.0, 1.0)) / std::f32::consts::PI + 0.5;
+        let uv = Some(Vec2::new(u, v));
+        Surface { position, error, n_geo: normal, n_shade: normal, uv, barycentric: Vec3::ZERO }
+    }
+}

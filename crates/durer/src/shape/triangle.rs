@@ -1,0 +1,57 @@
+//! A single triangle.
+
+use super::watertight::Sheared;
+use super::{Crossing, Shape, Surface};
+use crate::describe::Rule;
+use crate::described;
+use crate::dialect::set;
+use crate::math::{Aabb, Ray, Vec2, Vec3, gamma};
+
+described! {
+    /// A triangle; its front is where its corners go round counter-clockwise.
+    Triangle ["Triangle" in set::CLASSIC, "triangle" in set::F23] {
+        /// First corner.
+        vertex0: Vec3 = Vec3::ZERO, required, Rule::Any, ["vertex0" in set::ALL];
+        /// Second corner.
+        vertex1: Vec3 = Vec3::X, required, Rule::Any, ["vertex1" in set::ALL];
+        /// Third corner.
+        vertex2: Vec3 = Vec3::Y, required, Rule::Any, ["vertex2" in set::ALL];
+    }
+}
+
+impl Triangle {
+    fn corners(&self) -> [Vec3; 3] {
+        [self.vertex0, self.vertex1, self.vertex2]
+    }
+}
+
+impl Shape for Triangle {
+    fn bounds(&self) -> Option<Aabb> {
+        Some(Aabb::around(self.corners()))
+    }
+
+    fn intersect(&self, ray: &Ray) -> Option<Crossing> {
+        Sheared::new(ray).intersect(self.corners(), ray.t_min, ray.t_max)
+    }
+
+    fn surface(&self, _ray: &Ray, crossing: &Crossing) -> Surface {
+        let (position, error, barycentric) = interpolate(self.corners(), crossing.uv);
+        let n_geo = face_normal(self.corners());
+        Surface { position, error, n_geo, n_shade: n_geo, uv: Some(crossing.uv), barycentric }
+    }
+}
+
+/// The point with barycentric coordinates (1 - u - v, u, v), a bound on its error, and all three of them.
+///
+/// Source of the bound: *Physically Based Rendering*, 4th edition, section 6.8.3.
+pub(super) fn interpolate([a, b, c]: [Vec3; 3], uv: Vec2) -> (Vec3, Vec3, Vec3) {
+    let w = 1.0 - uv.x - uv.y;
+    let (wa, ub, vc) = (w * a, uv.x * b, uv.y * c);
+    (wa + ub + vc, gamma(7) * (wa.abs() + ub.abs() + vc.abs()), Vec3::new(w, uv.x, uv.y))
+}
+
+/// The unit normal (b - a) x (c - a); that of a triangle without area points up.
+pub(super) fn face_normal([a, b, c]: [Vec3; 3]) -> Vec3 {
+    let (a, b, c) = (a.as_dvec3(), b.as_dvec3(), c.as_dvec3());
+    (b - a).cross(c - a).normalize_or(glam::DVec3::Y).as_vec3()
+}

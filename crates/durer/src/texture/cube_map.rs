@@ -1,0 +1,33 @@
+//! Six pictures around the scene.
+
+use super::Texture;
+use crate::math::{Color, Vec2, Vec3};
+
+/// Surroundings at infinity, as the six faces of a cube.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CubeMap {
+    /// In the order of [`CubeMap::FACES`].
+    pub faces: [Texture; 6],
+}
+
+impl CubeMap {
+    /// Names of the faces' files, without extension: -x, +x, +y, -y, +z, -z.
+    pub const FACES: [&'static str; 6] = ["left", "right", "up", "down", "front", "back"];
+
+    /// The colour that a direction sees. The largest component picks the face; ties go to x, then y.
+    pub fn at(&self, direction: Vec3) -> Color {
+        let Vec3 { x, y, z } = direction;
+        let d = direction.abs();
+        let h = |q: f32| 0.5 * (q + 1.0);
+        let (face, u, v) = if d.x >= d.y && d.x >= d.z {
+            if x > 0.0 { (1, h(z / x), h(y / x)) } else { (0, h(z / x), 1.0 - h(y / x)) }
+        } else if d.y >= d.z {
+            if y > 0.0 { (2, h(x / y), h(z / y)) } else { (3, 1.0 - h(x / y), 1.0 - h(z / y)) }
+        } else if z > 0.0 {
+            (4, 1.0 - h(x / z), h(y / z))
+        } else {
+            (5, h(x / z), 1.0 - h(y / z))
+        };
+        self.faces[face].at(Vec2::new(u, v))
+    }
+}
