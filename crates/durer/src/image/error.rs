@@ -1,0 +1,92 @@
+//! What can be wrong with a picture.
+
+use super::formats::known_extensions;
+
+/// Why a picture cannot be read or written.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum ImageError {
+    /// No format has this file name's extension.
+    #[error("`{path}` does not end like a picture file; known are {}{}", known_extensions(), suggestion(.meant))]
+    UnknownExtension {
+        /// The file name.
+        path: String,
+        /// The extension that may have been meant, without its dot.
+        meant: Option<&'static str>,
+    },
+    /// Neither the content nor the name tells the format.
+    #[error("`{name}` is not a picture of a known format")]
+    Unrecognised {
+        /// The name it was read under.
+        name: String,
+    },
+    /// The bytes break the format's rules, or end too early.
+    #[error("not a valid {format} picture: {reason}")]
+    Malformed {
+        /// Name of the format.
+        format: &'static str,
+        /// What is wrong.
+        reason: String,
+    },
+    /// The format is right, but this kind of it cannot be read or written.
+    #[error("{format}: {reason}")]
+    Unsupported {
+        /// Name of the format.
+        format: &'static str,
+        /// What is not supported.
+        reason: String,
+    },
+    /// The declared size is beyond what is read for a file of that many bytes.
+    #[error("a picture of {width} x {height} pixels is too large for a file of {bytes} bytes")]
+    TooLarge {
+        /// Declared pixels in a row.
+        width: u64,
+        /// Declared rows.
+        height: u64,
+        /// Length of the file.
+        bytes: usize,
+    },
+    /// Eight-bit values were asked for, and the picture has others.
+    #[error("the picture has not eight bits a channel")]
+    NotEightBit,
+    /// A side is 0, there are too many pixels, or their number does not fit the sides.
+    #[error("not a possible picture: {width} x {height} pixels")]
+    Size {
+        /// Pixels in a row.
+        width: u32,
+        /// Rows.
+        height: u32,
+    },
+    /// There is nothing to write.
+    #[error("there is no layer to write")]
+    NoLayer,
+    /// Several layers for a format that holds one: they need a file each.
+    #[error("{format} holds one layer, not {count}")]
+    SeveralLayers {
+        /// Name of the format.
+        format: &'static str,
+        /// How many were given.
+        count: usize,
+    },
+    /// Layers of one file must have one size.
+    #[error("the layer `{name}` has another size than the first")]
+    LayerSizes {
+        /// The first layer that differs.
+        name: String,
+    },
+}
+
+fn suggestion(meant: &Option<&'static str>) -> String {
+    meant.map(|meant| format!("; did you mean `.{meant}`?")).unwrap_or_default()
+}
+
+impl ImageError {
+    /// The bytes break the format's rules.
+    pub(super) fn malformed(format: &'static str, reason: impl ToString) -> ImageError {
+        ImageError::Malformed { format, reason: reason.to_string() }
+    }
+
+    /// This kind of the format cannot be read or written.
+    pub(super) fn unsupported(format: &'static str, reason: impl ToString) -> ImageError {
+        ImageError::Unsupported { format, reason: reason.to_string() }
+    }
+}

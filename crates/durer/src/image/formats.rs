@@ -1,0 +1,160 @@
+//! The file formats of pictures, as one table.
+//!
+//! To add a format: one file beside the others and one row in [`FORMATS`].
+
+mod bmp;
+mod codec;
+mod exr;
+mod hdr;
+mod pfm;
+mod png;
+mod ppm;
+mod tga;
+
+use super::limits;
+use super::{Image, Image8, ImageError, Layer, LayerKind, Transfer};
+use crate::diag;
+use std::path::Path;
+
+/// Every format that is known, in the order in which content is tried.
+pub static FORMATS: [Format; 7] =
+    [png::FORMAT, tga::FORMAT, bmp::FORMAT, ppm::FORMAT, pfm::FORMAT, exr::FORMAT, hdr::FORMAT];
+
+/// What a file holds for each channel of a pixel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Depth {
+    /// 0 to 255, after the [`Transfer`].
+    EightBit,
+    /// Floating point: light beyond white is kept.
+    Float,
+}
+
+/// How pictures are written.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct WriteOptions {
+    /// What makes eight bits of a colour. Formats of floating point have no use for it.
+    pub transfer: Transfer,
+}
+
+/// What a reader found in a file.
+pub(super) enum Raster {
+    /// Eight bits a channel.
+    Eight(Image8),
+    /// Anything else.
+    Float(Image),
+}
+
+/// Appends layers that were checked to fit the format.
+type Encode = fn(&[Layer], &WriteOptions, &mut Vec<u8>) -> Result<(), ImageError>;
+
+/// One format.
+#[derive(Debug)]
+pub struct Format {
+    /// Its name for people.
+    pub name: &'static str,
+    /// Extensions of its files, lower case, without the dot; the usual one first.
+    pub extensions: &'static [&'static str],
+    /// What a channel is.
+    pub depth: Depth,
+    /// Whether several layers fit into one file.
+    pub layers: bool,
+    /// Whether bytes begin as files of this format do.
+    begins: fn(&[u8]) -> bool,
+    decode: fn(&[u8]) -> Result<Raster, ImageError>,
+    encode: Encode,
+}
+
+impl Format {
+    /// Appends a file with these layers to `out`.
+    ///
+    /// # Errors
+    /// [`ImageError::NoLayer`], [`ImageError::SeveralLayers`] where only one fits, [`ImageError::LayerSizes`],
+    /// [`ImageError::Size`], and [`ImageError::Unsupported`] for a size or name that the format cannot hold.
+    pub fn write(&self, layers: &[Layer], options: &WriteOptions, out: &mut Vec<u8>) -> Result<(), ImageError> {
+        let first = layers.first().ok_or(ImageError::NoLayer)?;
+        if layers.len() > 1 && !self.layers {
+            return Err(ImageError::SeveralLayers { format: self.name, count: layers.len() });
+        }
+        for layer in layers {
+            layer.image.check()?;
+            if (layer.image.width, layer.image.height) != (first.image.width, first.image.height) {
+                return Err(ImageError::LayerSizes { name: layer.name.clone() });
+            }
+        }
+        (self.encode)(layers, options, out)
+    }
+
+    pub(super) fn read(&self, bytes: &[u8]) -> Result<Raster, ImageError> {
+        // Most decoders are other people's code. Should one of them panic, this is one more malformed file.
+        std::panic::catch_unwind(|| (self.decode)(bytes))
+            .unwrap_or_else(|_| Err(ImageError::malformed(self.name, "its decoder failed")))
+    }
+
+    fn has_extension(&self, path: &str) -> bool {
+        extension(path).is_some_and(|ending| self.extensions.contains(&ending.as_str()))
+    }
+}
+
+/// The format that a file name's extension tells.
+///
+/// # Errors
+/// [`ImageError::UnknownExtension`].
+pub fn format_for(path: impl AsRef<Path>) -> Result<&'static Format, ImageError> {
+    let path = path.as_ref().to_string_lossy();
+    FORMATS.iter().find(|format| format.has_extension(&path)).ok_or_else(|| {
+        let all = FORMATS.iter().flat_map(|format| format.extensions.iter().copied());
+        let meant = extension(&path).and_then(|ending| diag::did_you_mean(&ending, all));
+        ImageError::UnknownExtension { path: path.into(), meant }
+    })
+}
+
+/// The format of a file's content, or failing that, of its name.
+pub(super) fn recognise(bytes: &[u8], name: &str) -> Result<&'static Format, ImageError> {
+    let by_content = FORMATS.iter().find(|format| (format.begins)(bytes));
+    let by_name = || FORMATS.iter().find(|format| format.has_extension(name));
+    by_content.or_else(by_name).ok_or_else(|| ImageError::Unrecognised { name: name.into() })
+}
+
+/// The usual extension of each format, for a message.
+pub(super) fn known_extensions() -> String {
+    let endings: Vec<String> = FORMATS.iter().map(|format| format!(".{}", format.extensions[0])).collect();
+    endings.join(", ")
+}
+
+fn extension(path: &str) -> Option<String> {
+    Some(Path::new(path).extension()?.to_str()?.to_lowercase())
+}
+
+/// The bytes of an eight-bit picture: red, green and blue, the top row first.
+fn eight_bit(layer: &Layer, options: &WriteOptions) -> Vec<u8> {
+    let transfer = match (layer.kind, options.transfer) {
+        // A curve would falsify data; cutting off instead of rounding is what the course did to everything.
+        (LayerKind::Data, Transfer::Srgb) => Transfer::Linear,
+        (_, transfer) => transfer,
+    };
+    layer.image.pixels.iter().flat_map(|&pixel| transfer.encode_pixel(pixel)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn extensions_tell_the_format() {
+        assert_eq!(format_for("a/b.PNG").unwrap().name, "PNG");
+        assert_eq!(format_for("x.tar.exr").unwrap().name, "OpenEXR");
+        let message = format_for("out.pgn").unwrap_err().to_string();
+        assert!(message.contains(".tga") && message.contains("did you mean `.png`?"), "{message}");
+        assert!(format_for("png").is_err());
+        assert!(format_for("").is_err());
+    }
+
+    #[test]
+    fn no_two_formats_share_an_extension() {
+        let mut all: Vec<_> = FORMATS.iter().flat_map(|format| format.extensions).collect();
+        let count = all.len();
+        all.sort();
+        all.dedup();
+        assert_eq!(all.len(), count);
+    }
+}

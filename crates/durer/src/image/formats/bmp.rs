@@ -1,0 +1,24 @@
+//! Windows bitmap: 24 bits a pixel, bottom row first.
+
+use super::{Depth, Format, ImageError, Layer, WriteOptions, codec, eight_bit};
+use ::image::{ImageFormat, codecs::bmp::BmpEncoder};
+
+const NAME: &str = "BMP";
+
+pub const FORMAT: Format = Format {
+    name: NAME,
+    extensions: &["bmp"],
+    depth: Depth::EightBit,
+    layers: false,
+    begins: |bytes| bytes.starts_with(b"BM"),
+    decode: |bytes| codec::decode(NAME, ImageFormat::Bmp, bytes),
+    encode,
+};
+
+fn encode(layers: &[Layer], options: &WriteOptions, out: &mut Vec<u8>) -> Result<(), ImageError> {
+    layers.iter().try_for_each(|layer| {
+        let size = (layer.image.width, layer.image.height);
+        // A row of 2^31 / 3 pixels cannot be padded; the encoder says so.
+        codec::encode(NAME, BmpEncoder::new(&mut *out), &eight_bit(layer, options), size)
+    })
+}

@@ -1,0 +1,176 @@
+//! OpenEXR: 32-bit floats, packed without loss, any number of layers.
+//!
+//! Layers share one part. The first colour layer has the plain channels R, G and B, which every viewer shows;
+//! those of the others bear the layer's name: `normals.R`.
+
+use super::limits::{declared_count, pixel_limit};
+use super::{Depth, Format, Image, ImageError, Layer, LayerKind, Raster, WriteOptions};
+use crate::math::Vec3;
+use ::exr::meta::header::Header;
+use ::exr::prelude::{
+    AnyChannel, AnyChannels, Blocks, Compression, Encoding, FlatSamples, Image as ExrImage, LineOrder, MetaData,
+    ReadChannels, ReadLayers, ReadSpecificChannel, SmallVec, Text, Vec2, WritableImage, read,
+};
+use std::collections::HashSet;
+use std::io::Cursor;
+
+const NAME: &str = "OpenEXR";
+
+pub const FORMAT: Format = Format {
+    name: NAME,
+    extensions: &["exr"],
+    depth: Depth::Float,
+    layers: true,
+    begins: |bytes| bytes.starts_with(&[0x76, 0x2f, 0x31, 0x01]),
+    decode,
+    encode,
+};
+
+/// Blocks of 16 rows, deflated: without loss, and read by everything.
+const ENCODING: Encoding =
+    Encoding { compression: Compression::ZIP16, blocks: Blocks::ScanLines, line_order: LineOrder::Increasing };
+
+fn encode(layers: &[Layer], _: &WriteOptions, out: &mut Vec<u8>) -> Result<(), ImageError> {
+    let plain = layers.iter().position(|layer| layer.kind == LayerKind::Color).unwrap_or(0);
+    let mut names = HashSet::new();
+    let mut list = SmallVec::new();
+    for (index, layer) in layers.iter().enumerate() {
+        for (axis, letter) in ["R", "G", "B"].into_iter().enumerate() {
+            let name = if index == plain { letter.to_string() } else { format!("{}.{letter}", layer.name) };
+            let bad = || ImageError::unsupported(NAME, format!("`{}` cannot be the name of a layer", layer.name));
+            let text = Text::new_or_none(&name).filter(|_| !name.starts_with('.')).ok_or_else(bad)?;
+            if !names.insert(name) {
+                return Err(ImageError::unsupported(NAME, format!("two layers are named `{}`", layer.name)));
+            }
+            let samples = layer.image.pixels.iter().map(|pixel| pixel[axis]).collect();
+            list.push(AnyChannel::new(text, FlatSamples::F32(samples)));
+        }
+    }
+    let size = layers.first().map(|layer| (layer.image.width as usize, layer.image.height as usize));
+    let picture = ExrImage::from_encoded_channels(size.unwrap_or_default(), ENCODING, AnyChannels::sort(list));
+    let mut file = Cursor::new(Vec::new());
+    picture.write().to_buffered(&mut file).map_err(|error| ImageError::unsupported(NAME, error))?;
+    out.append(file.get_mut());
+    Ok(())
+}
+
+/// Reads the first part with R, G and B; failing that, with Y; failing that, with a single channel, as grey.
+fn decode(bytes: &[u8]) -> Result<Raster, ImageError> {
+    let meta = MetaData::read_from_buffered(bytes, false).map_err(malformed)?;
+    let flat = || meta.headers.iter().filter(|header| !header.deep);
+    let has = |header: &Header, name: &str| header.channels.list.iter().any(|channel| channel.name.eq(name));
+    if let Some(header) = flat().find(|header| ["R", "G", "B"].iter().all(|name| has(header, name))) {
+        return decode_rgb(bytes, header);
+    }
+    if let Some(header) = flat().find(|header| has(header, "Y")) {
+        return decode_grey(bytes, header, Text::from("Y"));
+    }
+    match flat()
+        .find_map(|header| Some((header, header.channels.list.first()?)).filter(|_| header.channels.list.len() == 1))
+    {
+        Some((header, channel)) => decode_grey(bytes, header, channel.name.clone()),
+        None => Err(ImageError::unsupported(NAME, "there are no channels R, G and B, nor Y")),
+    }
+}
+
+fn decode_rgb(bytes: &[u8], header: &Header) -> Result<Raster, ImageError> {
+    let (width, height) = check(header, bytes.len())?;
+    let place =
+        move |pixels: &mut Vec<Vec3>, at, (r, g, b): (f32, f32, f32)| put(pixels, width, at, Vec3::new(r, g, b));
+    let channels = read().no_deep_data().largest_resolution_level().specific_channels();
+    let reader = channels
+        .required("R")
+        .required("G")
+        .required("B")
+        .collect_pixels(move |_, _| vec![Vec3::ZERO; width * height], place)
+        .first_valid_layer()
+        .all_attributes()
+        .non_parallel();
+    let picture = reader.from_buffered(Cursor::new(bytes)).map_err(malformed)?;
+    let pixels = picture.layer_data.channel_data.pixels;
+    Ok(Raster::Float(Image { width: width as u32, height: height as u32, pixels }))
+}
+
+fn decode_grey(bytes: &[u8], header: &Header, name: Text) -> Result<Raster, ImageError> {
+    let (width, height) = check(header, bytes.len())?;
+    let place = move |pixels: &mut Vec<Vec3>, at, (grey,): (f32,)| put(pixels, width, at, Vec3::splat(grey));
+    let channels = read().no_deep_data().largest_resolution_level().specific_channels();
+    let reader = channels
+        .required(name)
+        .collect_pixels(move |_, _| vec![Vec3::ZERO; width * height], place)
+        .first_valid_layer()
+        .all_attributes()
+        .non_parallel();
+    let picture = reader.from_buffered(Cursor::new(bytes)).map_err(malformed)?;
+    let pixels = picture.layer_data.channel_data.pixels;
+    Ok(Raster::Float(Image { width: width as u32, height: height as u32, pixels }))
+}
+
+fn put(pixels: &mut [Vec3], width: usize, Vec2(x, y): Vec2<usize>, color: Vec3) {
+    if let Some(pixel) = pixels.get_mut(y * width + x) {
+        *pixel = color;
+    }
+}
+
+fn malformed(error: ::exr::error::Error) -> ImageError {
+    ImageError::malformed(NAME, error)
+}
+
+/// The size of a part, if it may be decoded.
+fn check(header: &Header, bytes: usize) -> Result<(usize, usize), ImageError> {
+    let Vec2(width, height) = header.layer_size;
+    let count = declared_count(width as u64, height as u64, bytes)?;
+    // Blocks are decoded with all their channels, wanted or not: those count too.
+    let per_pixel: u64 = header.channels.list.iter().map(|c| c.sample_type.bytes_per_sample() as u64).sum();
+    if (count as u64).saturating_mul(per_pixel) > pixel_limit(bytes).saturating_mul(16) {
+        return Err(ImageError::TooLarge { width: width as u64, height: height as u64, bytes });
+    }
+    if header.channels.list.iter().any(|channel| channel.sampling != Vec2(1, 1)) {
+        return Err(ImageError::unsupported(NAME, "channels of lower resolution"));
+    }
+    Ok((width, height))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ::exr::prelude::read_all_flat_layers_from_file;
+
+    fn layer(name: &str, kind: LayerKind, value: f32) -> Layer {
+        let pixels = (0..6).map(|i| Vec3::new(value, i as f32, -value)).collect();
+        Layer { name: name.into(), image: Image { width: 3, height: 2, pixels }, kind }
+    }
+
+    #[test]
+    fn several_layers_are_read_by_others() {
+        let layers = [
+            layer("normals", LayerKind::Data, 1.0),
+            layer("beauty", LayerKind::Color, 2.0),
+            layer("a name that is longer than thirty-one bytes", LayerKind::Data, 3.0),
+        ];
+        let mut out = Vec::new();
+        FORMAT.write(&layers, &WriteOptions::default(), &mut out).unwrap();
+        assert_eq!(crate::image::read(&out, "").unwrap(), layers[1].image);
+
+        let file = tempfile::NamedTempFile::new().unwrap();
+        std::fs::write(file.path(), &out).unwrap();
+        let back = read_all_flat_layers_from_file(file.path()).unwrap();
+        let channels = &back.layer_data[0].channel_data.list;
+        assert_eq!(channels.len(), 9);
+        let normals = channels.iter().find(|channel| channel.name.eq("normals.G")).unwrap();
+        assert_eq!(normals.sample_data, FlatSamples::F32((0..6).map(|i| i as f32).collect()));
+    }
+
+    #[test]
+    fn names_must_differ() {
+        let write = |a, b| {
+            let layers =
+                [layer("", LayerKind::Color, 0.0), layer(a, LayerKind::Data, 0.0), layer(b, LayerKind::Data, 0.0)];
+            FORMAT.write(&layers, &WriteOptions::default(), &mut Vec::new())
+        };
+        assert!(write("a", "b").is_ok());
+        assert!(write("a", "a").is_err());
+        assert!(write("a", "").is_err());
+        assert!(write("a", "日本").is_err());
+    }
+}

@@ -1,0 +1,42 @@
+//! Netpbm: written as binary P6, read as any of P1 to P7.
+
+use super::{Depth, Format, ImageError, Layer, WriteOptions, codec, eight_bit};
+use ::image::ImageFormat;
+
+const NAME: &str = "PPM";
+
+pub const FORMAT: Format = Format {
+    name: NAME,
+    extensions: &["ppm", "pnm"],
+    depth: Depth::EightBit,
+    layers: false,
+    begins: |bytes| matches!(bytes, [b'P', b'1'..=b'7', b' ' | b'\t'..=b'\r' | b'#', ..]),
+    // Samples are scaled from the file's value of white to 255, or to 65535 if that is greater than 255.
+    decode: |bytes| codec::decode(NAME, ImageFormat::Pnm, bytes),
+    encode,
+};
+
+fn encode(layers: &[Layer], options: &WriteOptions, out: &mut Vec<u8>) -> Result<(), ImageError> {
+    for layer in layers {
+        out.extend(format!("P6\n{} {}\n255\n", layer.image.width, layer.image.height).as_bytes());
+        out.extend(eight_bit(layer, options));
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::image::{read, read8};
+    use crate::math::Vec3;
+
+    #[test]
+    fn white_may_have_any_value() {
+        let grey = |bytes: &[u8]| read(bytes, "").unwrap().pixels[0];
+        assert_eq!(grey(b"P2 1 1 15 15\n"), Vec3::ONE);
+        assert_eq!(grey(b"P5 1 1 255\n\x33"), Vec3::splat(0.2));
+        assert_eq!(grey(b"P5 1 1 1000\n\x03\xe8"), Vec3::ONE);
+        assert_eq!(grey(b"P1 1 1 0\n"), Vec3::ONE);
+        assert_eq!(read8(b"P2 1 1 15 3\n", "").unwrap().pixels, [[51; 3]]);
+        assert!(read8(b"P5 1 1 1000\n\x03\xe8", "").is_err());
+    }
+}

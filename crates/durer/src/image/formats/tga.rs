@@ -1,0 +1,56 @@
+//! Truevision Targa: uncompressed true colour of 24 bits, bottom row first, as the course's programs wrote it.
+
+use super::{Depth, Format, ImageError, Layer, WriteOptions, codec, eight_bit};
+use ::image::ImageFormat;
+
+const NAME: &str = "TGA";
+
+pub const FORMAT: Format = Format {
+    name: NAME,
+    extensions: &["tga"],
+    depth: Depth::EightBit,
+    layers: false,
+    // The format has no mark of its own: it is known by its name only.
+    begins: |_| false,
+    decode: |bytes| codec::decode(NAME, ImageFormat::Tga, bytes),
+    encode,
+};
+
+/// Image type: true colour, not compressed.
+const TRUE_COLOR: u8 = 2;
+
+fn encode(layers: &[Layer], options: &WriteOptions, out: &mut Vec<u8>) -> Result<(), ImageError> {
+    for layer in layers {
+        let side = |side: u32| u16::try_from(side).map_err(|_| ImageError::unsupported(NAME, "a side above 65535"));
+        let [w0, w1] = side(layer.image.width)?.to_le_bytes();
+        let [h0, h1] = side(layer.image.height)?.to_le_bytes();
+        // No identification, no palette, origin at the lower left.
+        out.extend([0, 0, TRUE_COLOR, 0, 0, 0, 0, 0, 0, 0, 0, 0, w0, w1, h0, h1, 24, 0]);
+        let rgb = eight_bit(layer, options);
+        for row in rgb.chunks_exact(layer.image.width as usize * 3).rev() {
+            out.extend(row.as_chunks::<3>().0.iter().flat_map(|&[r, g, b]| [b, g, r]));
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::image::Image;
+    use crate::math::Vec3;
+
+    #[test]
+    fn bytes_of_a_file() {
+        let image = Image::from_pixels(1, 2, vec![Vec3::X, Vec3::Z]).unwrap();
+        let mut out = Vec::new();
+        FORMAT.write(&[Layer::color("", image)], &WriteOptions::default(), &mut out).unwrap();
+        assert_eq!(out, [0, 0, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 2, 0, 24, 0, 255, 0, 0, 0, 0, 255]);
+    }
+
+    #[test]
+    fn a_side_is_at_most_65535() {
+        let image = Image::new(65536, 1, Vec3::ZERO).unwrap();
+        assert!(FORMAT.write(&[Layer::color("", image)], &WriteOptions::default(), &mut Vec::new()).is_err());
+    }
+}

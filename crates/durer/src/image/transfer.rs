@@ -1,0 +1,127 @@
+//! From linear floating point to eight bits, and back.
+
+use crate::math::{Vec3, fp};
+
+/// How a linear value becomes eight bits.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Transfer {
+    /// The curve of IEC 61966-2-1, rounded to nearest: what screens expect.
+    #[default]
+    Srgb,
+    /// No curve, rounded to nearest.
+    Linear,
+    /// No curve, cut off instead of rounded, as the programs of the course did it.
+    Course,
+}
+
+impl Transfer {
+    /// All of them.
+    pub const ALL: [Transfer; 3] = [Transfer::Srgb, Transfer::Linear, Transfer::Course];
+
+    /// Its name on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Transfer::Srgb => "srgb",
+            Transfer::Linear => "linear",
+            Transfer::Course => "course",
+        }
+    }
+
+    /// The one of a name.
+    pub fn from_name(name: &str) -> Option<Transfer> {
+        Transfer::ALL.into_iter().find(|transfer| transfer.name() == name)
+    }
+
+    /// Eight bits for a linear value, clamped to 0..=255. NaN becomes 0.
+    pub fn encode(self, value: f32) -> u8 {
+        match self {
+            Transfer::Srgb => round(srgb_from_linear(value)),
+            Transfer::Linear => round(value),
+            Transfer::Course => truncate(value),
+        }
+    }
+
+    /// Eight bits for each channel.
+    pub fn encode_pixel(self, pixel: Vec3) -> [u8; 3] {
+        pixel.to_array().map(|value| self.encode(value))
+    }
+}
+
+/// 255 times a value, rounded to nearest. The conversion saturates, and makes 0 of NaN.
+fn round(value: f32) -> u8 {
+    (value * 255.0).round() as u8
+}
+
+/// `(int)(value * 255)`, then clamped.
+///
+/// What does not fit an `int` (infinities, NaN and very large values) became the least `int` on the machines of
+/// the course, and so 0.
+fn truncate(value: f32) -> u8 {
+    let scaled = value * 255.0;
+    if scaled < i32::MAX as f32 { (scaled as i32).clamp(0, 255) as u8 } else { 0 }
+}
+
+/// The sRGB curve, for values from 0 to 1.
+fn srgb_from_linear(value: f32) -> f32 {
+    if value <= 0.0031308 { 12.92 * value } else { 1.055 * fp::pow(value, 1.0 / 2.4) - 0.055 }
+}
+
+/// An eight-bit value as it is: a 255th of it.
+pub fn decode_linear(value: u8) -> f32 {
+    f32::from(value) / 255.0
+}
+
+/// The linear value of an eight-bit sRGB value: the inverse curve of IEC 61966-2-1.
+pub fn decode_srgb(value: u8) -> f32 {
+    let value = decode_linear(value);
+    if value <= 0.04045 { value / 12.92 } else { fp::pow((value + 0.055) / 1.055, 2.4) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_found_again() {
+        for transfer in Transfer::ALL {
+            assert_eq!(Transfer::from_name(transfer.name()), Some(transfer));
+        }
+        assert_eq!(Transfer::from_name("gamma"), None);
+    }
+
+    #[test]
+    fn edges() {
+        let row = |value| Transfer::ALL.map(|transfer| transfer.encode(value));
+        assert_eq!(row(0.0), [0, 0, 0]);
+        assert_eq!(row(1.0), [255, 255, 255]);
+        assert_eq!(row(0.5), [188, 128, 127]);
+        assert_eq!(row(0.999), [255, 255, 254]);
+        assert_eq!(row(0.0031308), [10, 1, 0]);
+        assert_eq!(row(-1.0), [0, 0, 0]);
+        assert_eq!(row(7.0), [255, 255, 255]);
+        assert_eq!(row(f32::NAN), [0, 0, 0]);
+        assert_eq!(row(f32::INFINITY), [255, 255, 0]);
+        assert_eq!(row(f32::NEG_INFINITY), [0, 0, 0]);
+        // The greatest values that an `int` holds, and those beyond it.
+        assert_eq!(row(8.0e6), [255, 255, 255]);
+        assert_eq!(row(9.0e6), [255, 255, 0]);
+        assert_eq!(row(f32::MAX), [255, 255, 0]);
+    }
+
+    #[test]
+    fn eight_bits_come_back() {
+        for value in 0..=255 {
+            assert_eq!(Transfer::Srgb.encode(decode_srgb(value)), value);
+            assert_eq!(Transfer::Linear.encode(decode_linear(value)), value);
+        }
+    }
+
+    #[test]
+    fn no_transfer_ever_falls() {
+        for transfer in Transfer::ALL {
+            let values: Vec<u8> = (0..=100_000).map(|i| transfer.encode(i as f32 / 1e5)).collect();
+            assert!(values.is_sorted());
+            assert!((0..=255).all(|value| values.contains(&value)));
+        }
+    }
+}
