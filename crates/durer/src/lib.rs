@@ -3,6 +3,7 @@
 pub mod describe;
 pub mod diag;
 pub mod dialect;
+pub mod format;
 pub mod math;
 pub mod shape;
 pub mod source;
