@@ -1,0 +1,157 @@
+//! Wavefront `.obj`: the polygons of it, without materials, curves and surfaces.
+//!
+//! The file is read twice: positions, texture coordinates and normals first, then the faces, which may refer to
+//! vertices further down. So nothing but the mesh itself is kept.
+
+mod faces;
+mod words;
+
+use super::number::{NumberError, parse_f32, report_number};
+use super::report::{Report, counted, shown};
+use crate::diag::{Diagnostics, did_you_mean};
+use crate::math::{Vec2, Vec3};
+use crate::shape::mesh::MeshData;
+use std::ops::Range;
+use words::Words;
+
+/// What a statement is to us, by its first word.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Statement {
+    Position,
+    Uv,
+    Normal,
+    Face,
+    /// Known, and without effect on the mesh.
+    Ignored,
+}
+
+/// The statements that are understood, by their first word.
+const STATEMENTS: &[(&str, Statement)] = &[
+    ("v", Statement::Position),
+    ("vt", Statement::Uv),
+    ("vn", Statement::Normal),
+    ("f", Statement::Face),
+    // The name of `f` before version 2.11.
+    ("fo", Statement::Face),
+    ("o", Statement::Ignored),
+    ("g", Statement::Ignored),
+    ("s", Statement::Ignored),
+    ("mg", Statement::Ignored),
+    ("usemtl", Statement::Ignored),
+    ("mtllib", Statement::Ignored),
+    ("usemap", Statement::Ignored),
+    ("maplib", Statement::Ignored),
+    ("l", Statement::Ignored),
+    ("p", Statement::Ignored),
+    ("vp", Statement::Ignored),
+    ("lod", Statement::Ignored),
+    ("bevel", Statement::Ignored),
+    ("c_interp", Statement::Ignored),
+    ("d_interp", Statement::Ignored),
+    ("shadow_obj", Statement::Ignored),
+    ("trace_obj", Statement::Ignored),
+];
+
+fn statement(word: &[u8]) -> Option<Statement> {
+    // The two that make up nearly all of a file need no search.
+    match word {
+        b"v" => Some(Statement::Position),
+        b"f" => Some(Statement::Face),
+        _ => STATEMENTS.iter().find(|(name, _)| name.as_bytes() == word).map(|&(_, statement)| statement),
+    }
+}
+
+/// Whether the first statement is one of this format, and not merely a word that could be anything.
+pub(super) fn recognise(bytes: &[u8]) -> bool {
+    let head = &bytes[..bytes.len().min(1 << 16)];
+    Words::new(head).next_statement().is_some_and(|word| statement(&head[word]).is_some())
+}
+
+/// Reads a file; see [`read_mesh`](super::read_mesh).
+pub(super) fn read(bytes: &[u8], file: u32, diagnostics: &mut Diagnostics) -> Option<MeshData> {
+    let mut report = Report::new(file, diagnostics);
+    let mut mesh = MeshData::default();
+    read_vertices(bytes, &mut mesh, &mut report);
+    if !report.is_full() {
+        faces::read_faces(bytes, &mut mesh, &mut report);
+    }
+    if mesh.triangles.is_empty() && !report.has_errors() {
+        report.warning(bytes.len()..bytes.len(), "the mesh has no triangles");
+    }
+    report.finish(diagnostics, mesh)
+}
+
+/// Reads positions, texture coordinates and normals, and looks at the first word of everything else.
+fn read_vertices(bytes: &[u8], mesh: &mut MeshData, report: &mut Report) {
+    let mut words = Words::new(bytes);
+    let mut unknown: Option<(Range<usize>, usize)> = None;
+    while let Some(keyword) = words.next_statement() {
+        match statement(&bytes[keyword.clone()]) {
+            Some(Statement::Position) => {
+                let [x, y, z] = numbers(bytes, keyword, 3, &mut words, report);
+                mesh.positions.push(Vec3::new(x, y, z));
+            }
+            Some(Statement::Uv) => {
+                let [u, v] = numbers(bytes, keyword, 1, &mut words, report);
+                mesh.uvs.push(Vec2::new(u, v));
+            }
+            Some(Statement::Normal) => {
+                let [x, y, z] = numbers(bytes, keyword, 3, &mut words, report);
+                mesh.normals.push(Vec3::new(x, y, z));
+            }
+            Some(Statement::Face | Statement::Ignored) => _ = words.skip_rest(),
+            None => {
+                unknown.get_or_insert((keyword, 0)).1 += 1;
+                words.skip_rest();
+            }
+        }
+        if report.is_full() {
+            return;
+        }
+    }
+    if let Some((first, count)) = unknown {
+        let word = &bytes[first.clone()];
+        let meant = did_you_mean(&shown(word).replace('`', ""), STATEMENTS.iter().map(|&(name, _)| name));
+        let statements = counted(count, "statement", "statements");
+        let message = format!("{statements} not understood and left out; the first is {}", shown(word));
+        report.warning(first, message).help = meant.map(|name| format!("did you mean `{name}`?"));
+    }
+}
+
+/// Reads the numbers of a statement, of which the first `needed` must be there. What is not there or wrong is 0.
+///
+/// More numbers may follow, such as weights and colours. They must be numbers, or two lines have run together.
+fn numbers<const N: usize>(
+    bytes: &[u8],
+    keyword: Range<usize>,
+    needed: usize,
+    words: &mut Words,
+    report: &mut Report,
+) -> [f32; N] {
+    let mut values = [0.0; N];
+    let mut count = 0;
+    let mut end = keyword.end;
+    while let Some(word) = words.next_word() {
+        end = word.end;
+        match parse_f32(&bytes[word.clone()]) {
+            Ok(value) if count < N => values[count] = value,
+            Ok(_) => {}
+            // Nobody looks at the rest, so it may be infinite.
+            Err(NumberError::NotFinite) if count >= N => {}
+            Err(error) => report_number(report, error, word.clone(), &bytes[word]),
+        }
+        count += 1;
+        if report.is_full() {
+            break;
+        }
+    }
+    if count < needed && !report.is_full() {
+        let name = shown(&bytes[keyword.clone()]);
+        let message = format!("{name} needs {}, found {count}", counted(needed, "number", "numbers"));
+        report.error(keyword.start..end, message);
+    }
+    values
+}
+
+#[cfg(test)]
+mod tests;

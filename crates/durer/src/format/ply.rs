@@ -1,0 +1,41 @@
+//! Stanford `.ply`: text and binary, in either byte order, with whatever elements and properties.
+
+mod body;
+mod header;
+mod rows;
+mod values;
+
+use super::report::Report;
+use crate::diag::Diagnostics;
+use crate::shape::mesh::MeshData;
+use body::Body;
+use header::{Encoding, read_header};
+use values::{AsciiValues, BinaryValues};
+
+/// Whether a file begins as files of this format do.
+pub(super) fn recognise(bytes: &[u8]) -> bool {
+    matches!(bytes, [b'p', b'l', b'y', b'\n' | b'\r', ..])
+}
+
+/// Reads a file; see [`read_mesh`](super::read_mesh).
+pub(super) fn read(bytes: &[u8], file: u32, diagnostics: &mut Diagnostics) -> Option<MeshData> {
+    let mut report = Report::new(file, diagnostics);
+    let mesh = read_reporting(bytes, &mut report).unwrap_or_default();
+    if mesh.triangles.is_empty() && !report.has_errors() {
+        report.warning(0..0, "the mesh has no triangles");
+    }
+    report.finish(diagnostics, mesh)
+}
+
+fn read_reporting(bytes: &[u8], report: &mut Report) -> Option<MeshData> {
+    let header = read_header(bytes, report)?;
+    let (start, elements) = (header.body, header.elements);
+    match header.encoding {
+        Encoding::Ascii => Body::new(bytes, AsciiValues::new(bytes, start), report).read(&elements),
+        Encoding::LittleEndian => Body::new(bytes, BinaryValues::<false>::new(bytes, start), report).read(&elements),
+        Encoding::BigEndian => Body::new(bytes, BinaryValues::<true>::new(bytes, start), report).read(&elements),
+    }
+}
+
+#[cfg(test)]
+mod tests;
