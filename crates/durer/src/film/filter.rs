@@ -1,0 +1,289 @@
+//! Reconstruction filters: how much a sample at some offset from a pixel's centre counts for the pixel.
+//!
+//! All are products of one function of `dx` and the same of `dy`, zero beyond the radius. They are importance-sampled:
+//! a uniform position is warped to an offset whose density is the filter's absolute value, so every sample
+//! of a pixel counts the same (but for a sign) and none touches another pixel.
+//! Source: Pharr, Jakob, Humphreys, *Physically Based Rendering*, 4th edition, section 8.8.
+
+use crate::math::{Vec2, fp};
+use std::f32::consts::PI;
+
+/// A reconstruction filter. Lengths are in pixels and must be positive and finite.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Filter {
+    /// The same weight everywhere: sharp, aliases.
+    Box {
+        /// Half the width.
+        radius: f32,
+    },
+    /// Falls linearly to zero at the radius.
+    Tent {
+        /// Half the width.
+        radius: f32,
+    },
+    /// exp(-d^2 / (2 sigma^2)), lowered so that it meets zero at the radius.
+    Gaussian {
+        /// Standard deviation.
+        sigma: f32,
+        /// Half the width.
+        radius: f32,
+    },
+    /// A sum of four cosines, close to a Gaussian without its tail: smooth, no ringing.
+    ///
+    /// Source: Harris, *On the Use of Windows for Harmonic Analysis*, Proc. IEEE 66(1), 1978.
+    BlackmanHarris {
+        /// Half the width.
+        radius: f32,
+    },
+    /// A cubic with negative lobes, B = C = 1/3: the sharpest, may ring.
+    ///
+    /// Source: Mitchell, Netravali, *Reconstruction Filters in Computer Graphics*, SIGGRAPH 1988.
+    Mitchell {
+        /// Half the width.
+        radius: f32,
+    },
+}
+
+impl Default for Filter {
+    fn default() -> Self {
+        Filter::BlackmanHarris { radius: 1.5 }
+    }
+}
+
+impl Filter {
+    /// Every filter at its usual size, with its name on the command line.
+    pub const NAMES: [(&'static str, Filter); 5] = [
+        ("box", Filter::Box { radius: 0.5 }),
+        ("tent", Filter::Tent { radius: 1.0 }),
+        ("gaussian", Filter::Gaussian { sigma: 0.5, radius: 1.5 }),
+        ("blackman-harris", Filter::BlackmanHarris { radius: 1.5 }),
+        ("mitchell", Filter::Mitchell { radius: 2.0 }),
+    ];
+
+    /// The filter of a name at its usual size, if there is one.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::NAMES.iter().find(|(n, _)| *n == name).map(|&(_, filter)| filter)
+    }
+
+    /// The same filter with another radius; a Gaussian's sigma grows with it.
+    pub fn with_radius(self, radius: f32) -> Self {
+        match self {
+            Filter::Box { .. } => Filter::Box { radius },
+            Filter::Tent { .. } => Filter::Tent { radius },
+            Filter::Gaussian { sigma, radius: old } => Filter::Gaussian { sigma: sigma * (radius / old), radius },
+            Filter::BlackmanHarris { .. } => Filter::BlackmanHarris { radius },
+            Filter::Mitchell { .. } => Filter::Mitchell { radius },
+        }
+    }
+
+    /// Half the width in pixels: the weight is zero farther out.
+    pub fn radius(self) -> f32 {
+        match self {
+            Filter::Box { radius }
+            | Filter::Tent { radius }
+            | Filter::Gaussian { radius, .. }
+            | Filter::BlackmanHarris { radius }
+            | Filter::Mitchell { radius } => radius,
+        }
+    }
+
+    /// The weight at an offset from the pixel's centre, in pixels. Not normalised; negative in Mitchell's lobes.
+    pub fn weight(self, dx: f32, dy: f32) -> f32 {
+        self.profile(dx.abs()) * self.profile(dy.abs())
+    }
+
+    /// The filter along one axis, at a distance of 0 or more.
+    fn profile(self, d: f32) -> f32 {
+        if d > self.radius() {
+            return 0.0;
+        }
+        match self {
+            Filter::Box { .. } => 1.0,
+            Filter::Tent { radius } => 1.0 - d / radius,
+            Filter::Gaussian { sigma, radius } => {
+                let bell = |x: f32| fp::exp(-x * x / (2.0 * sigma * sigma));
+                bell(d) - bell(radius)
+            }
+            Filter::BlackmanHarris { radius } => {
+                let a = PI * (d / radius);
+                0.35875 + 0.48829 * fp::cos(a) + 0.14128 * fp::cos(2.0 * a) + 0.01168 * fp::cos(3.0 * a)
+            }
+            Filter::Mitchell { radius } => {
+                let x = 2.0 * d / radius;
+                if x < 1.0 {
+                    (7.0 * x - 12.0) * x * x * (1.0 / 6.0) + 16.0 / 18.0
+                } else {
+                    ((-7.0 / 3.0 * x + 12.0) * x - 20.0) * x * (1.0 / 6.0) + 32.0 / 18.0
+                }
+            }
+        }
+    }
+
+    /// Prepares importance sampling: a table of 16 KiB, made once a render.
+    pub fn sampler(self) -> FilterSampler {
+        FilterSampler::new(self)
+    }
+}
+
+/// Draws offsets in proportion to a filter's absolute value.
+///
+/// Along an axis the filter is tabulated at `BINS + 1` knots from the centre to the radius and taken as linear between them.
+#[derive(Clone, Debug)]
+pub struct FilterSampler {
+    filter: Filter,
+    /// Absolute weight at each knot, and its integral (trapezoids, in bins) from the centre up to there.
+    knots: Vec<(f64, f64)>,
+    /// Integral of the absolute filter over that of the filter: how much a sample must count.
+    gain: f32,
+}
+
+const BINS: usize = 1024;
+
+impl FilterSampler {
+    fn new(filter: Filter) -> Self {
+        let value = |i: usize| f64::from(filter.profile(filter.radius() * (i as f32 / BINS as f32)));
+        let (mut absolute, mut signed) = (0.0, 0.0);
+        let mut knots = vec![(value(0).abs(), 0.0)];
+        for i in 1..=BINS {
+            absolute += 0.5 * (value(i - 1).abs() + value(i).abs());
+            signed += 0.5 * (value(i - 1) + value(i));
+            knots.push((value(i).abs(), absolute));
+        }
+        // A filter that is nowhere positive is no filter: it is sampled as a box would be, at no gain.
+        let gain = if signed > 0.0 { (absolute / signed) * (absolute / signed) } else { 1.0 };
+        FilterSampler { filter, knots, gain: gain as f32 }
+    }
+
+    /// Warps a uniform position in [0,1)^2 to an offset from the pixel's centre, with the weight of the sample there.
+    ///
+    /// The weight is 1 for filters without negative lobes; otherwise its size is the same everywhere, its sign the
+    /// filter's, its mean 1. Offsets grow with positions, so an even pattern stays even.
+    pub fn sample(&self, position: Vec2) -> (Vec2, f32) {
+        let offset = Vec2::new(self.warp(position.x), self.warp(position.y));
+        let weight = match self.filter {
+            Filter::Mitchell { .. } => self.gain.copysign(self.filter.weight(offset.x, offset.y)),
+            _ => 1.0,
+        };
+        (offset, weight)
+    }
+
+    /// Inverts the integral of the absolute filter from the centre outwards, on the side that `u` lies on.
+    fn warp(&self, u: f32) -> f32 {
+        let v = 2.0 * f64::from(u) - 1.0;
+        let target = v.abs() * self.knots[BINS].1;
+        // The bin in which the integral reaches the target.
+        let above = self.knots.partition_point(|&(_, integral)| integral <= target).clamp(1, BINS);
+        let ((start, before), (end, _)) = (self.knots[above - 1], self.knots[above]);
+        // In the bin: start * t + (end - start) * t^2 / 2 = rest, solved without cancellation.
+        let rest = target - before;
+        let root = (start * start + 2.0 * (end - start) * rest).max(0.0).sqrt();
+        let t = if rest > 0.0 { (2.0 * rest / (start + root)).min(1.0) } else { 0.0 };
+        let distance = ((above - 1) as f64 + t) / BINS as f64 * f64::from(self.filter.radius());
+        (if v < 0.0 { -distance } else { distance }) as f32
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sampler::random_2d;
+    use crate::sampler::tests::{chi_squared, chi_squared_quantile};
+
+    fn sizes() -> impl Iterator<Item = Filter> {
+        Filter::NAMES.into_iter().flat_map(|(_, f)| [f, f.with_radius(0.7), f.with_radius(3.3)])
+    }
+
+    /// Integral of the absolute filter over cell (i, j) of a grid over its support, by the midpoint rule.
+    fn mass(filter: Filter, cells: usize, i: usize, j: usize) -> f64 {
+        let at = |cell: usize, k: usize| {
+            let u = (cell as f32 + (k as f32 + 0.5) / 16.0) / cells as f32;
+            (2.0 * u - 1.0) * filter.radius()
+        };
+        let points = (0..256).map(|k| filter.weight(at(i, k % 16), at(j, k / 16)));
+        points.map(|w| f64::from(w.abs())).sum()
+    }
+
+    #[test]
+    fn offsets_follow_the_filter() {
+        const CELLS: usize = 20;
+        for filter in sizes() {
+            let sampler = filter.sampler();
+            let mut observed = vec![0_u32; CELLS * CELLS];
+            let n = 200_000;
+            for s in 0..n {
+                let (offset, _) = sampler.sample(random_2d(1, 0, 0, s, 0));
+                let cell = |d: f32| (((d / filter.radius() + 1.0) * 0.5 * CELLS as f32) as usize).min(CELLS - 1);
+                assert!(offset.abs().max_element() <= filter.radius());
+                observed[cell(offset.y) * CELLS + cell(offset.x)] += 1;
+            }
+            let expected: Vec<f64> = (0..CELLS * CELLS).map(|c| mass(filter, CELLS, c % CELLS, c / CELLS)).collect();
+            let scale = f64::from(n) / expected.iter().sum::<f64>();
+            // Cells that expect fewer than five samples are pooled into one.
+            let (mut o, mut e) = (vec![0], vec![0.0]);
+            for (&count, mass) in observed.iter().zip(expected) {
+                if mass * scale < 5.0 {
+                    o[0] += count;
+                    e[0] += mass * scale;
+                } else {
+                    o.push(count);
+                    e.push(mass * scale);
+                }
+            }
+            if e[0] < 5.0 {
+                assert!(o[0] < 20, "{filter:?}: {} where {} are expected", o[0], e[0]);
+                (o, e) = (o[1..].to_vec(), e[1..].to_vec());
+            }
+            // Significance 1e-4.
+            let (statistic, limit) = (chi_squared(&o, &e), chi_squared_quantile(o.len() - 1, 3.719));
+            assert!(statistic < limit, "{filter:?}: {statistic} exceeds {limit}");
+        }
+    }
+
+    #[test]
+    fn weights_have_mean_one_and_the_sign_of_the_filter() {
+        for filter in sizes() {
+            let sampler = filter.sampler();
+            let n = 256;
+            let mut sum = 0.0;
+            for i in 0..n * n {
+                let u = (Vec2::new((i % n) as f32, (i / n) as f32) + 0.5) / n as f32;
+                let (offset, weight) = sampler.sample(u);
+                assert!(weight * filter.weight(offset.x, offset.y) >= 0.0, "{filter:?} {offset}");
+                sum += f64::from(weight);
+            }
+            assert!((sum / f64::from(n * n) - 1.0).abs() < 0.02, "{filter:?}: {sum}");
+        }
+    }
+
+    #[test]
+    fn profiles_are_right() {
+        for filter in sizes() {
+            let r = filter.radius();
+            assert!(filter.weight(0.0, 0.0) > 0.7 && filter.weight(1.001 * r, 0.0) == 0.0);
+            assert_eq!(filter.weight(0.3 * r, -0.2 * r), filter.weight(-0.2 * r, 0.3 * r));
+            if !matches!(filter, Filter::Box { .. }) {
+                assert!(filter.weight(0.999 * r, 0.0).abs() < 2e-3, "{filter:?}");
+            }
+        }
+        // Mitchell's cubic: 8/9 at the centre, 1/18 at half the radius, zero at 8/7 of that, negative beyond.
+        let m = |d| Filter::Mitchell { radius: 2.0 }.profile(d);
+        for (d, value) in [(0.0, 8.0 / 9.0), (1.0, 1.0 / 18.0), (8.0 / 7.0, 0.0), (2.0, 0.0), (0.99999, 1.0 / 18.0)] {
+            assert!((m(d) - value).abs() < 1e-4, "{d}: {}", m(d));
+        }
+        assert!(m(1.5) < -0.02);
+        assert!((Filter::BlackmanHarris { radius: 1.5 }.profile(0.0) - 1.0).abs() < 1e-6);
+    }
+
+    #[test]
+    fn warps_are_exact_where_they_can_be() {
+        let boxed = Filter::Box { radius: 0.5 }.sampler();
+        let tent = Filter::Tent { radius: 1.0 }.sampler();
+        for i in 0..1000 {
+            let u = i as f32 / 1000.0;
+            assert!((boxed.warp(u) - (u - 0.5)).abs() < 1e-7);
+            let exact = if u < 0.5 { (2.0 * u).sqrt() - 1.0 } else { 1.0 - (2.0 - 2.0 * u).sqrt() };
+            assert!((tent.warp(u) - exact).abs() < 2e-6, "{u}");
+            assert!(tent.warp(u) <= tent.warp(u + 1e-3));
+        }
+    }
+}

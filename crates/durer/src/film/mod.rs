@@ -1,0 +1,12 @@
+//! From samples to pixels: reconstruction filters, exact sums, and the course's own films and diagrams.
+//!
+//! Pixels are counted from the top left corner; a position in a pixel runs right and down.
+
+pub mod course;
+pub mod diagram;
+#[expect(clippy::module_inception, reason = "the film is what this room is about")]
+mod film;
+mod filter;
+
+pub use film::{Film, Rejected, WrongWindow};
+pub use filter::{Filter, FilterSampler};

@@ -1,0 +1,148 @@
+//! Numbers for sampling: each a pure function of (seed, pixel, sample number, dimension).
+//!
+//! There is no generator with a state, so no order of work can change a number.
+//!
+//! Sources: the mixing function is the finaliser of SplitMix64 (Steele, Lea, Flood, *Fast Splittable
+//! Pseudorandom Number Generators*, OOPSLA 2014; constants: Stafford's variant 13). The sequence is Sobol's
+//! in two dimensions with hash-based nested uniform scrambling (Laine, Karras, *Stratified Sampling for
+//! Stochastic Transparency*, EGSR 2011), padded and shuffled as in Burley, *Practical Hash-based Owen
+//! Scrambling*, JCGT 9(4), 2020. The scrambling hash is the one of Vegdahl, *Building a Better LK Hash*,
+//! 2021, which is less biased than the published constants.
+
+use crate::math::Vec2;
+
+#[cfg(test)]
+pub(crate) mod tests;
+
+/// Where in a pixel its samples lie.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Sampler {
+    /// Owen-scrambled Sobol (0,2)-sequence, scrambled anew in each pixel: the least noise.
+    #[default]
+    Sobol,
+    /// Independent and uniform.
+    Random,
+    /// The centres of a regular grid of cells.
+    Uniform,
+    /// One uniform position in each cell of a regular grid.
+    Jittered,
+}
+
+/// The greatest `f32` below 1.
+const BELOW_ONE: f32 = 1.0 - f32::EPSILON * 0.5;
+
+impl Sampler {
+    /// Every sampler, with its name on the command line.
+    pub const NAMES: [(&'static str, Sampler); 4] = [
+        ("sobol", Sampler::Sobol),
+        ("random", Sampler::Random),
+        ("uniform", Sampler::Uniform),
+        ("jittered", Sampler::Jittered),
+    ];
+
+    /// The sampler of a name, if there is one.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::NAMES.iter().find(|(n, _)| *n == name).map(|&(_, sampler)| sampler)
+    }
+
+    /// How many samples a pixel really gets where `samples` are asked for: at least one, and for the
+    /// samplers on a grid the next square (65535^2 at most).
+    pub fn round_up(self, samples: u32) -> u32 {
+        match self {
+            Sampler::Sobol | Sampler::Random => samples.max(1),
+            Sampler::Uniform | Sampler::Jittered => grid_side(samples).pow(2),
+        }
+    }
+
+    /// Position of a sample in its pixel, in [0,1)^2 from the pixel's top left corner.
+    ///
+    /// `sample` counts from 0 to `round_up(samples) - 1`. On a grid it runs along rows, the top row first.
+    pub fn pixel_position(self, seed: u64, x: u32, y: u32, sample: u32, samples: u32) -> Vec2 {
+        let in_cell = match self {
+            Sampler::Sobol => return sample_2d(seed, x, y, sample, PIXEL_DIMENSION),
+            Sampler::Random => return random_2d(seed, x, y, sample, PIXEL_DIMENSION),
+            Sampler::Uniform => Vec2::splat(0.5),
+            Sampler::Jittered => random_2d(seed, x, y, sample, PIXEL_DIMENSION),
+        };
+        let side = grid_side(samples);
+        let cell = Vec2::new((sample % side) as f32, (sample / side % side) as f32);
+        // A position close to the far edge of the last cell may round to 1.
+        ((cell + in_cell) / side as f32).min(Vec2::splat(BELOW_ONE))
+    }
+}
+
+/// The dimension that positions in the pixel use; integrators take those from 1 upwards.
+pub const PIXEL_DIMENSION: u32 = 0;
+
+/// The least number whose square is `samples` or more, from 1 to 65535.
+fn grid_side(samples: u32) -> u32 {
+    let root = samples.isqrt();
+    let up = if root * root < samples { root + 1 } else { root };
+    up.clamp(1, 65535)
+}
+
+/// A point in [0,1)^2 that fills the square evenly as `sample` counts up from 0.
+///
+/// Each first 2^k samples of a dimension, and each aligned block of as many, have one point in every elementary
+/// interval of area 2^-k. Points of different pixels or different dimensions are independent.
+pub fn sample_2d(seed: u64, x: u32, y: u32, sample: u32, dimension: u32) -> Vec2 {
+    // One hash gives the shuffle its key and another the two scrambles.
+    let shuffle = hash(seed, x, y, 0, dimension) as u32;
+    let scramble = hash(seed, x, y, 1, dimension);
+    let index = nested_uniform_scramble(sample, shuffle);
+    Vec2::new(
+        unit(nested_uniform_scramble(index.reverse_bits(), scramble as u32)),
+        unit(nested_uniform_scramble(sobol_second(index), (scramble >> 32) as u32)),
+    )
+}
+
+/// A uniform point in [0,1)^2, independent of every other.
+pub fn random_2d(seed: u64, x: u32, y: u32, sample: u32, dimension: u32) -> Vec2 {
+    // One step more than the keys of `sample_2d`, so that no number is used twice.
+    let bits = mix(hash(seed, x, y, sample, dimension));
+    Vec2::new(unit(bits as u32), unit((bits >> 32) as u32))
+}
+
+/// 64 evenly mixed bits of a seed, a pixel, a sample number and a dimension.
+pub fn hash(seed: u64, x: u32, y: u32, sample: u32, dimension: u32) -> u64 {
+    let pixel = u64::from(x) | u64::from(y) << 32;
+    let number = u64::from(sample) | u64::from(dimension) << 32;
+    mix(mix(mix(seed) ^ pixel) ^ number)
+}
+
+/// One step of SplitMix64: a permutation of the 64-bit numbers.
+fn mix(state: u64) -> u64 {
+    let mut z = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    z = (z ^ z >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    z = (z ^ z >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
+    z ^ z >> 31
+}
+
+/// The upper 24 bits as a number in [0,1): exact, and never 1.
+fn unit(bits: u32) -> f32 {
+    (bits >> 8) as f32 * (f32::EPSILON * 0.5)
+}
+
+/// Owen's scrambling: each bit is flipped or not according to the bits above it and the key.
+fn nested_uniform_scramble(bits: u32, key: u32) -> u32 {
+    let mut v = bits.reverse_bits();
+    v ^= v.wrapping_mul(0x3d20_adea);
+    v = v.wrapping_add(key);
+    v = v.wrapping_mul(key >> 16 | 1);
+    v ^= v.wrapping_mul(0x0552_6c56);
+    v ^= v.wrapping_mul(0x53a2_2864);
+    v.reverse_bits()
+}
+
+/// The second coordinate of Sobol's sequence, in units of 2^-32; the first is the index with its bits reversed.
+///
+/// The generator matrix is Pascal's triangle modulo 2: a Kronecker power, hence five steps instead of 32.
+fn sobol_second(index: u32) -> u32 {
+    let mut v = index;
+    v ^= v >> 16;
+    v ^= (v & 0xff00_ff00) >> 8;
+    v ^= (v & 0xf0f0_f0f0) >> 4;
+    v ^= (v & 0xcccc_cccc) >> 2;
+    v ^= (v & 0xaaaa_aaaa) >> 1;
+    v.reverse_bits()
+}
