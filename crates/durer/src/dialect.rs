@@ -244,8 +244,8 @@ compats! {
     ExitR0 = "exit-r0",
     /// A `Matrix` is multiplied on the left of everything before it.
     MatrixOnLeft = "matrix-on-left",
-    /// The background is black in depth pictures and lies beyond the farthest, not at it.
-    FiniteOnly = "finite-only",
+    /// The background is black in depth pictures even where far is white.
+    BlackSky = "black-sky",
 }
 
 impl Compat {
@@ -359,7 +359,7 @@ const F16: Rules = Rules {
     normals_picture: NormalsPicture::Half,
     depth_picture: DepthPicture::NearBlack,
     paths: PathBase::SceneFile,
-    compat: bits(&[BorderPixels, Stretch, RawUp, HighlightBehind, PowZero, MissingFalloff, MatrixOnLeft, FiniteOnly]),
+    compat: bits(&[BorderPixels, Stretch, RawUp, HighlightBehind, PowZero, MissingFalloff, MatrixOnLeft, BlackSky]),
     ..F12A4
 };
 
@@ -370,7 +370,7 @@ const F23: Rules = Rules {
     mesh_normals: MeshNormals::SmoothByArea,
     falloff: Falloff::Bare(Some(20.0)),
     paths: PathBase::Assets("assets/assignment4"),
-    compat: bits(&[BorderPixels, Stretch, SkewUp, HighlightBehind, PowZero, MatrixOnLeft, FiniteOnly]),
+    compat: bits(&[BorderPixels, Stretch, SkewUp, HighlightBehind, PowZero, MatrixOnLeft, BlackSky]),
     ..F16
 };
 

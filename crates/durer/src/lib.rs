@@ -1,4 +1,7 @@
 //! Dürer: a ray tracer that is exact, explainable and deterministic.
+//!
+//! A scene file is read into a [`scene::Scene`] (plain data), compiled into a [`world::World`] (immutable, numbers
+//! only), and rendered by a [`render::Job`] into pictures.
 
 pub mod bvh;
 pub mod camera;
@@ -11,11 +14,15 @@ pub mod format;
 pub mod image;
 pub mod integrator;
 pub mod light;
+pub mod load;
 pub mod material;
 pub mod math;
+pub mod render;
 pub mod sampler;
 pub mod scene;
 pub mod shape;
 pub mod source;
 pub mod texture;
 pub mod world;
+
+pub use load::{LoadOptions, Loaded, load};

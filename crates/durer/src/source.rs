@@ -78,21 +78,27 @@ impl Source {
         }
     }
 
-    /// Looks in another folder too, and allows files below it: before the others if `first`.
-    pub fn also(mut self, folder: impl Into<PathBuf>, first: bool) -> Self {
-        let folder = folder.into();
+    /// Looks in another folder too: before the others if `first`. That allows nothing.
+    pub fn look_in(mut self, folder: impl Into<PathBuf>, first: bool) -> Self {
         let at = if first { 0 } else { self.search.len() };
-        self.search.insert(at, folder.clone());
-        self.allowed.push(folder);
+        self.search.insert(at, folder.into());
+        self
+    }
+
+    /// Allows files in and below another folder.
+    pub fn allow(mut self, folder: impl Into<PathBuf>) -> Self {
+        // Where everything is allowed, so is this.
+        if !self.allowed.is_empty() {
+            self.allowed.push(folder.into());
+        }
         self
     }
 
     /// Looks in a folder by path and, failing that, by bare file name.
     pub fn assets(mut self, folder: impl Into<PathBuf>) -> Self {
         let folder = folder.into();
-        self = self.also(folder.clone(), false);
-        self.assets.push(folder);
-        self
+        self.assets.push(folder.clone());
+        self.look_in(folder.clone(), false).allow(folder)
     }
 
     /// Allows files anywhere.

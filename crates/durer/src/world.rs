@@ -272,6 +272,7 @@ impl Object {
 impl World {
     /// The first hit in the ray's interval.
     pub fn closest<T: Tally>(&self, ray: &Ray, tally: &mut T) -> Option<Hit> {
+        tally.ray();
         let mut best: Option<Hit> = None;
         let mut ray = *ray;
         // A tie is decided by the order of hits, so a later ray may reach just to the present t.
@@ -321,6 +322,7 @@ impl World {
 
     /// Whether anything is hit in the ray's interval; the first thing found will do.
     pub fn occluded<T: Tally>(&self, ray: &Ray, tally: &mut T) -> bool {
+        tally.ray();
         if self.unbounded.iter().any(|&i| self.objects[i as usize].closest(ray, true, tally).is_some()) {
             return true;
         }

@@ -13,8 +13,10 @@ pub(crate) use traverse::is_sound;
 use crate::math::Aabb;
 use glam::Vec4;
 
-/// Counts the work of a ray. `()` counts nothing, at no cost.
+/// Counts the work of rays. `()` counts nothing, at no cost.
 pub trait Tally {
+    /// A ray was traced.
+    fn ray(&mut self);
     /// A node or cell was looked into.
     fn node(&mut self);
     /// A thing was tested against the ray.
@@ -22,13 +24,28 @@ pub trait Tally {
 }
 
 impl Tally for () {
+    fn ray(&mut self) {}
     fn node(&mut self) {}
     fn test(&mut self) {}
 }
 
-/// Numbers of nodes visited and things tested.
+/// Counts rays alone.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Rays(pub u64);
+
+impl Tally for Rays {
+    fn ray(&mut self) {
+        self.0 += 1;
+    }
+    fn node(&mut self) {}
+    fn test(&mut self) {}
+}
+
+/// Numbers of rays traced, nodes visited and things tested.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
+    /// Rays traced.
+    pub rays: u64,
     /// Nodes or cells looked into.
     pub nodes: u64,
     /// Things tested against the ray.
@@ -36,6 +53,9 @@ pub struct Counts {
 }
 
 impl Tally for Counts {
+    fn ray(&mut self) {
+        self.rays += 1;
+    }
     fn node(&mut self) {
         self.nodes += 1;
     }

@@ -2,7 +2,7 @@
 
 use super::Resources;
 use crate::describe::FileName;
-use crate::diag::{Diagnostic, Diagnostics, did_you_mean};
+use crate::diag::{Diagnostic, Diagnostics, Severity, did_you_mean};
 use crate::dialect::Rules;
 use crate::format;
 use crate::image;
@@ -73,8 +73,21 @@ impl<'r> Loader<'r> {
         number
     }
 
-    /// The cube map of a folder.
+    /// The cube map of a folder; where it may be missing, that is a warning.
     pub(super) fn cube_map(&mut self, name: &FileName, diagnostics: &mut Diagnostics) -> Option<CubeMap> {
+        let mut own = Diagnostics::default();
+        let map = self.faces(name, &mut own);
+        for mut finding in own.iter().cloned() {
+            if self.resources.sky_optional {
+                finding.severity = Severity::Warning;
+                finding.label = "the background's colour is shown instead".into();
+            }
+            diagnostics.push(finding);
+        }
+        map
+    }
+
+    fn faces(&mut self, name: &FileName, diagnostics: &mut Diagnostics) -> Option<CubeMap> {
         let folder = name.path.trim_end_matches(['/', '\\']);
         let mut faces = Vec::with_capacity(6);
         for face in CubeMap::FACES {

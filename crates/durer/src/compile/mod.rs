@@ -32,6 +32,8 @@ pub struct Resources<'a> {
     pub source: &'a Source,
     /// Remembers what was read, for diagnostics.
     pub files: &'a mut Files,
+    /// Whether a scene whose cube map is missing is still compiled, with a warning and the background's colour.
+    pub sky_optional: bool,
 }
 
 /// Turns a scene into a world. Errors and warnings are collected; with an error, there is no world.

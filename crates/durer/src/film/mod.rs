@@ -2,6 +2,7 @@
 //!
 //! Pixels are counted from the top left corner; a position in a pixel runs right and down.
 
+pub mod aov;
 pub mod course;
 pub mod diagram;
 #[expect(clippy::module_inception, reason = "the film is what this room is about")]

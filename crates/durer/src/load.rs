@@ -1,0 +1,105 @@
+//! From a scene file's path to a world: dialect, rules, files.
+
+use crate::compile::{AccelKind, Resources, compile};
+use crate::diag::{Diagnostics, Files};
+use crate::dialect::{Compat, Dialect, PathBase, Rules};
+use crate::format::course::{self, Guess, Hint, ReadOptions};
+use crate::scene::Scene;
+use crate::source::{Source, SourceError};
+use crate::world::World;
+use std::path::{Path, PathBuf};
+
+/// How a scene file is to be understood.
+#[derive(Clone, Debug, Default)]
+pub struct LoadOptions {
+    /// Its dialect, with the bugs of that year's program. `None`: it is guessed, and sane rules hold.
+    pub dialect: Option<Dialect>,
+    /// Whether a guessed dialect is taken with its bugs, and files are also read below the current directory:
+    /// what the course's command line does.
+    pub course: bool,
+    /// What else is known of the dialect.
+    pub hints: Vec<Hint>,
+    /// Compatibilities to turn on or off.
+    pub compat: Vec<(Compat, bool)>,
+    /// Whether only the words of the dialect are allowed.
+    pub strict: bool,
+    /// Whether files may lie anywhere.
+    pub allow_outside: bool,
+    /// Folders in which missing files are looked for.
+    pub assets: Vec<PathBuf>,
+    /// The structure that finds objects.
+    pub accel: AccelKind,
+}
+
+/// A scene that was read.
+#[derive(Debug)]
+pub struct Loaded {
+    /// The description.
+    pub scene: Scene,
+    /// What its words mean.
+    pub rules: Rules,
+    /// Its dialect.
+    pub dialect: Dialect,
+    /// How the dialect was found, where it was not asked for.
+    pub guess: Option<Guess>,
+    /// Where its files are.
+    source: Source,
+}
+
+/// Reads a scene file. What is wrong with it goes into `diagnostics`, and the text into `files`.
+///
+/// # Errors
+///
+/// The file itself cannot be read. `Ok(None)` means that it was read and has errors.
+pub fn load(
+    path: &Path,
+    options: &LoadOptions,
+    files: &mut Files,
+    diagnostics: &mut Diagnostics,
+) -> Result<Option<Loaded>, SourceError> {
+    let name = path.display().to_string();
+    let folder = match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder.to_path_buf(),
+        _ => PathBuf::from("."),
+    };
+    let mut source = Source::folder(&folder);
+    if options.allow_outside {
+        source = source.allow_outside();
+    }
+    for assets in &options.assets {
+        source = source.assets(assets);
+    }
+    let bytes = source.read_path(path, &name)?;
+    let file = files.add(name, bytes.clone());
+    let mut guess = None;
+    let dialect = options.dialect.unwrap_or_else(|| {
+        let found = course::guess(&bytes, file, &options.hints, &|name| source.contains(name));
+        guess.insert(found).dialect
+    });
+    let mut rules = dialect.rules().clone();
+    if options.dialect.is_none() && !options.course {
+        rules = rules.sane();
+    }
+    for (compat, on) in &options.compat {
+        rules.compat = if *on { rules.compat | compat.bit() } else { rules.compat & !compat.bit() };
+    }
+    source = match rules.paths {
+        PathBase::SceneFile => source,
+        PathBase::Current => source.look_in(".", true),
+        PathBase::Assets(assets) => source.look_in(assets, true),
+    };
+    if options.course {
+        source = source.allow(".");
+    }
+    let read = ReadOptions { dialect, strict: options.strict };
+    let scene = course::read(&bytes, file, read, diagnostics);
+    Ok(scene.map(|scene| Loaded { scene, rules, dialect, guess, source }))
+}
+
+impl Loaded {
+    /// Compiles the scene. `None` after errors, which are in `diagnostics`.
+    pub fn compile(&self, options: &LoadOptions, files: &mut Files, diagnostics: &mut Diagnostics) -> Option<World> {
+        let resources = Resources { source: &self.source, files, sky_optional: options.course };
+        compile(&self.scene, &self.rules, options.accel, resources, diagnostics)
+    }
+}
