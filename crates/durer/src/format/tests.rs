@@ -86,8 +86,8 @@ fn formats_are_found_by_name_and_else_by_content() {
     let known = "known are PLY (.ply), Wavefront OBJ (.obj)";
     assert_eq!(read(b"?", "m").1, [format!("- Error: `m` is no mesh file of a known format ({known})")]);
     assert!(read(b"?", "m.objj").1[0].contains("did you mean `.obj`? Known are"));
-    assert!(check_size(u32::MAX as u64, "big.obj").unwrap_err().message.contains("4294967295 bytes"));
-    assert!(check_size(1 << 20, "small.obj").is_ok());
+    assert!(too_large(u32::MAX as u64, "big.obj").unwrap().message.contains("4294967295 bytes"));
+    assert!(too_large(1 << 20, "small.obj").is_none());
     for format in MESH_FORMATS {
         assert!(!(format.recognise)(b"") && format.extensions.iter().all(|e| *e == e.to_lowercase()));
     }

@@ -161,7 +161,11 @@ impl<'a> HeaderReader<'a, '_> {
     }
 
     fn element(&mut self, words: &[Range<usize>]) {
-        let [_, name, rows] = words else { return self.incomplete(words, "element <name> <number of rows>") };
+        let [_, name, rows] = words else {
+            self.incomplete(words, "element <name> <number of rows>");
+            // The properties that follow are still looked at.
+            return self.elements.push(Element { name: words[0].clone(), rows: 0, properties: Vec::new() });
+        };
         let found = parse_integer(&self.bytes[rows.clone()]).filter(|&rows| rows >= 0);
         if found.is_none() {
             let message = format!("expected a number of rows, found {}", shown(&self.bytes[rows.clone()]));
@@ -203,7 +207,7 @@ impl<'a> HeaderReader<'a, '_> {
             self.report.error(end, "the header has no `format` line").help =
                 Some("the second line is `format ascii 1.0` or the like".into());
         }
-        let Some(encoding) = self.encoding.filter(|_| !self.report.has_errors()) else { return None };
+        let encoding = self.encoding.filter(|_| !self.report.has_errors())?;
         Some(Header { encoding, elements: self.elements, body })
     }
 }
