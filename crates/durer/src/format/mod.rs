@@ -40,43 +40,48 @@ pub const MESH_FORMATS: &[MeshFormat] = &[
 /// All errors are added to `diagnostics`, with the place of the offending bytes, and then the result is `None`. It is
 /// `None` too where `diagnostics` was full already. Warnings and notes are added likewise and leave the mesh usable.
 pub fn read_mesh(bytes: &[u8], file: u32, name: &str, diagnostics: &mut Diagnostics) -> Option<MeshData> {
-    if let Err(error) = check_size(bytes.len() as u64, name) {
+    if let Some(error) = too_large(bytes.len() as u64, name) {
         diagnostics.push(error);
         return None;
     }
     match find_format(bytes, name) {
-        Ok(format) => (format.read)(bytes, file, diagnostics),
-        Err(error) => {
-            diagnostics.push(error);
+        Some(format) => (format.read)(bytes, file, diagnostics),
+        None => {
+            diagnostics.push(unknown_format(name));
             None
         }
     }
 }
 
-/// Spans count bytes in 32 bits.
-fn check_size(size: u64, name: &str) -> Result<(), Diagnostic> {
-    if size < u32::MAX as u64 {
-        return Ok(());
-    }
-    Err(Diagnostic::error(format!("`{name}` is too large for a mesh file: {size} bytes, at most {}", u32::MAX - 1))
-        .help("cut the mesh into several files"))
+/// Spans count bytes in 32 bits: the error about a file of this size, if it is one.
+fn too_large(size: u64, name: &str) -> Option<Diagnostic> {
+    const MOST: u64 = u32::MAX as u64 - 1;
+    let message = || format!("`{name}` is too large for a mesh file: {size} bytes, at most {MOST}");
+    (size > MOST).then(|| Diagnostic::error(message()).help("cut the mesh into several files"))
 }
 
-fn find_format(bytes: &[u8], name: &str) -> Result<&'static MeshFormat, Diagnostic> {
+/// The ending of a file's name, in lower case, without the dot; empty where there is none.
+fn extension(name: &str) -> String {
     let base = name.rsplit(['/', '\\']).next().unwrap_or(name);
-    let extension = base.rsplit_once('.').map_or(String::new(), |(_, extension)| extension.to_lowercase());
+    base.rsplit_once('.').map_or(String::new(), |(_, extension)| extension.to_lowercase())
+}
+
+fn find_format(bytes: &[u8], name: &str) -> Option<&'static MeshFormat> {
+    let extension = extension(name);
     let by_name = MESH_FORMATS.iter().find(|format| format.extensions.contains(&extension.as_str()));
-    if let Some(format) = by_name.or_else(|| MESH_FORMATS.iter().find(|format| (format.recognise)(bytes))) {
-        return Ok(format);
-    }
-    let all = || MESH_FORMATS.iter().flat_map(|format| format.extensions.iter().copied());
-    let list: Vec<String> =
-        MESH_FORMATS.iter().map(|f| format!("{} (.{})", f.name, f.extensions.join(", ."))).collect();
-    let meant = did_you_mean(&extension, all()).filter(|_| !extension.is_empty());
-    Err(Diagnostic::error(format!("`{name}` is no mesh file of a known format")).help(match meant {
-        Some(meant) => format!("did you mean `.{meant}`? Known are {}", list.join(", ")),
-        None => format!("known are {}", list.join(", ")),
-    }))
+    by_name.or_else(|| MESH_FORMATS.iter().find(|format| (format.recognise)(bytes)))
+}
+
+fn unknown_format(name: &str) -> Diagnostic {
+    let extension = extension(name);
+    let all = MESH_FORMATS.iter().flat_map(|format| format.extensions.iter().copied());
+    let meant = did_you_mean(&extension, all).filter(|_| !extension.is_empty());
+    let known = MESH_FORMATS.iter().map(|f| format!("{} (.{})", f.name, f.extensions.join(", .")));
+    let known = known.collect::<Vec<_>>().join(", ");
+    Diagnostic::error(format!("`{name}` is no mesh file of a known format")).help(match meant {
+        Some(meant) => format!("did you mean `.{meant}`? Known are {known}"),
+        None => format!("known are {known}"),
+    })
 }
 
 #[cfg(test)]

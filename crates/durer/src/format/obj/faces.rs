@@ -90,25 +90,22 @@ impl FaceReader<'_> {
     fn corner(&self, word: Range<usize>, report: &mut Report) -> Option<Corner> {
         let mut corner = [NO_INDEX; 3];
         let mut start = word.start;
-        for part in 0.. {
+        for (part, slot) in corner.iter_mut().enumerate() {
             let rest = &self.bytes[start..word.end];
             let end = start + rest.iter().position(|&byte| byte == b'/').unwrap_or(rest.len());
-            if part == 3 {
-                let message = format!("a corner has at most 3 indices, found {}", shown(&self.bytes[word.clone()]));
-                report.error(word, message).help =
-                    Some("a corner is `vertex`, `vertex/texture`, `vertex//normal` or `vertex/texture/normal`".into());
-                return None;
-            }
             // All but the position may be left empty.
             if end > start || part == 0 {
-                corner[part] = self.index(start..end, part, report)?;
+                *slot = self.index(start..end, part, report)?;
             }
             if end == word.end {
-                break;
+                return Some(corner);
             }
             start = end + 1;
         }
-        Some(corner)
+        let message = format!("a corner has at most 3 indices, found {}", shown(&self.bytes[word.clone()]));
+        report.error(word, message).help =
+            Some("a corner is `vertex`, `vertex/texture`, `vertex//normal` or `vertex/texture/normal`".into());
+        None
     }
 
     /// Reads an index, counted from 1 or, negative, back from the last statement of its kind.

@@ -33,23 +33,15 @@ pub(super) enum Scalar {
 }
 
 /// The names of the types, old and new.
-const SCALARS: [(&str, Scalar); 16] = [
-    ("char", Scalar::I8),
-    ("int8", Scalar::I8),
-    ("uchar", Scalar::U8),
-    ("uint8", Scalar::U8),
-    ("short", Scalar::I16),
-    ("int16", Scalar::I16),
-    ("ushort", Scalar::U16),
-    ("uint16", Scalar::U16),
-    ("int", Scalar::I32),
-    ("int32", Scalar::I32),
-    ("uint", Scalar::U32),
-    ("uint32", Scalar::U32),
-    ("float", Scalar::F32),
-    ("float32", Scalar::F32),
-    ("double", Scalar::F64),
-    ("float64", Scalar::F64),
+const SCALARS: [(&str, &str, Scalar); 8] = [
+    ("char", "int8", Scalar::I8),
+    ("uchar", "uint8", Scalar::U8),
+    ("short", "int16", Scalar::I16),
+    ("ushort", "uint16", Scalar::U16),
+    ("int", "int32", Scalar::I32),
+    ("uint", "uint32", Scalar::U32),
+    ("float", "float32", Scalar::F32),
+    ("double", "float64", Scalar::F64),
 ];
 
 impl Scalar {
@@ -169,7 +161,11 @@ impl<'a> HeaderReader<'a, '_> {
     }
 
     fn element(&mut self, words: &[Range<usize>]) {
-        let [_, name, rows] = words else { return self.incomplete(words, "element <name> <number of rows>") };
+        let [_, name, rows] = words else {
+            self.incomplete(words, "element <name> <number of rows>");
+            // The properties that follow are still looked at.
+            return self.elements.push(Element { name: words[0].clone(), rows: 0, properties: Vec::new() });
+        };
         let found = parse_integer(&self.bytes[rows.clone()]).filter(|&rows| rows >= 0);
         if found.is_none() {
             let message = format!("expected a number of rows, found {}", shown(&self.bytes[rows.clone()]));
@@ -197,19 +193,21 @@ impl<'a> HeaderReader<'a, '_> {
     }
 
     fn scalar(&mut self, at: &Range<usize>) -> Option<Scalar> {
-        let found = SCALARS.iter().find(|(name, _)| *name == self.text(at)).map(|&(_, scalar)| scalar);
+        let text = self.text(at);
+        let found = SCALARS.iter().find(|(old, new, _)| *old == text || *new == text).map(|&(_, _, scalar)| scalar);
         if found.is_none() {
-            self.unknown("a type such as `float` or `int`", at.clone(), SCALARS.map(|(name, _)| name));
+            let names = SCALARS.iter().flat_map(|&(old, new, _)| [old, new]);
+            self.unknown("a type such as `float` or `int`", at.clone(), names);
         }
         found
     }
 
     fn finish(self, end: Range<usize>, body: usize) -> Option<Header> {
-        if self.encoding.is_none() {
+        if self.encoding.is_none() && !self.report.has_errors() {
             self.report.error(end, "the header has no `format` line").help =
                 Some("the second line is `format ascii 1.0` or the like".into());
         }
-        let Some(encoding) = self.encoding.filter(|_| !self.report.has_errors()) else { return None };
+        let encoding = self.encoding.filter(|_| !self.report.has_errors())?;
         Some(Header { encoding, elements: self.elements, body })
     }
 }
