@@ -8,8 +8,8 @@ mod tests;
 /// A window of a picture that adds up weighted samples, each pixel for itself.
 ///
 /// A weight is rounded once to a multiple of 2^-24, the product of colour and weight once to a multiple of 2^-48 (ties to even).
-/// From then on everything is integer addition. Finite samples up to 2^44 are kept: a pixel overflows after 2^29 of the
-/// largest weight at the earliest.
+/// From then on everything is integer addition. Colours up to 2^44 and weights up to 2^10 are kept: there is room in a pixel
+/// for 2^25 samples of the greatest colour and weight, and for 2^35 of the greatest colour at weight 1.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Film {
     left: u32,
