@@ -1,13 +1,18 @@
-//! The films of the course's assignments: their sample positions, filters and quirks, kept as they are.
+//! The films of the course's assignments, kept as they are.
 //!
-//! Fall 2004, assignment 7: stored samples, weighted by their offset from the centre of the pixel they are for, also from
-//! neighbouring pixels. Fall 2012, assignment 5: three by three jittered sub-pixels, blurred, averaged.
+//! Here is Fall 2004, assignment 7: stored samples, weighted by their offset from the centre of the pixel they are for,
+//! also from neighbouring pixels. `jitter.rs` is Fall 2012, assignment 5.
 //! Rows are made in parallel; each pixel is summed in one fixed order, so threads change no bit.
 
 use crate::math::{Color, Vec2, Vec3, fp};
-use crate::sampler::random_2d;
 use glam::DVec3;
 use rayon::prelude::*;
+
+mod jitter;
+#[cfg(test)]
+mod tests;
+
+pub use jitter::{average_3x3, blur, blur_and_average, jittered_position};
 
 /// One sample of the 2004 film.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -140,133 +145,5 @@ impl CourseFilter {
         };
         // Negative numbers give 0.
         (reach - 0.5).ceil() as u32
-    }
-}
-
-/// Position of a sub-pixel's sample in the picture three times as wide and high that `-jitter` renders, in its sub-pixels:
-/// a uniform number between -1/2 and 1/2 is added to each integer coordinate.
-pub fn jittered_position(seed: u64, x: u32, y: u32) -> Vec2 {
-    Vec2::new(x as f32, y as f32) + (random_2d(seed, x, y, 0, 0) - 0.5)
-}
-
-/// The five weights of `-filter`, from two left to two right. They sum to 1.0001, and so the official picture does.
-const BLUR: [f32; 5] = [0.1201, 0.2339, 0.2931, 0.2339, 0.1201];
-
-/// Blurs a picture with five taps along rows, then along columns. Beyond an edge its last pixel is repeated.
-///
-/// Panics where there are not `width * height` pixels.
-pub fn blur(pixels: &[Color], width: u32, height: u32) -> Vec<Color> {
-    let (w, h) = (width as usize, height as usize);
-    assert_eq!(pixels.len(), w * h, "a picture has as many pixels as its size says");
-    // `at` is the place of a tap before clamping, two pixels to the right of where it lies.
-    let tap = |at: usize, length: usize| at.saturating_sub(2).min(length - 1);
-    let along_rows = by_pixels(w, h, |x, y| (0..5).map(|k| BLUR[k] * pixels[y * w + tap(x + k, w)]).sum());
-    by_pixels(w, h, |x, y| (0..5).map(|k| BLUR[k] * along_rows[tap(y + k, h) * w + x]).sum())
-}
-
-/// Averages three by three pixels into one. Size of the result: a third of `width` and `height`, rounded down.
-pub fn average_3x3(pixels: &[Color], width: u32, height: u32) -> Vec<Color> {
-    let w = width as usize;
-    assert_eq!(pixels.len(), w * height as usize, "a picture has as many pixels as its size says");
-    by_pixels(w / 3, height as usize / 3, |x, y| {
-        (0..9).map(|i| pixels[(3 * y + i / 3) * w + 3 * x + i % 3]).sum::<Vec3>() / 9.0
-    })
-}
-
-/// What `-jitter -filter` makes of the picture three times as wide and high.
-pub fn blur_and_average(pixels: &[Color], width: u32, height: u32) -> Vec<Color> {
-    average_3x3(&blur(pixels, width, height), width, height)
-}
-
-/// A picture from a function of column and row, rows in parallel.
-fn by_pixels(width: usize, height: usize, color: impl Fn(usize, usize) -> Color + Sync) -> Vec<Color> {
-    let at = |i: usize| color(i % width, i / width);
-    (0..width * height).into_par_iter().with_min_len(width.max(1)).map(at).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::sampler::Sampler;
-
-    const FILTERS: [Option<CourseFilter>; 5] = [
-        None,
-        Some(CourseFilter::Box { radius: 0.5 }),
-        Some(CourseFilter::Box { radius: 1e-3 }),
-        Some(CourseFilter::Tent { radius: 1.5 }),
-        Some(CourseFilter::Gaussian { sigma: 0.6 }),
-    ];
-
-    fn random_samples(n: u32, color: impl Fn(u32, u32, u32) -> Color + Sync) -> StoredSamples {
-        StoredSamples::take(23, 17, n, |x, y, s| {
-            let position = Sampler::Random.pixel_position(1, x, y, s, n);
-            StoredSample { position, color: color(x, y, s) }
-        })
-    }
-
-    #[test]
-    fn threads_change_no_bit() {
-        let make = || {
-            let samples = random_samples(4, |x, y, s| random_2d(2, x, y, s, 1).extend(0.5) * 1e3);
-            FILTERS.map(|filter| {
-                samples.reconstruct(filter).iter().map(|c| c.to_array().map(f32::to_bits)).collect::<Vec<_>>()
-            })
-        };
-        let with_threads = |n| rayon::ThreadPoolBuilder::new().num_threads(n).build().unwrap().install(make);
-        assert_eq!(with_threads(1), with_threads(5));
-    }
-
-    #[test]
-    fn one_colour_stays_that_colour() {
-        let color = Vec3::new(0.1, 0.7, 12.3);
-        let samples = random_samples(7, |_, _, _| color);
-        for filter in FILTERS {
-            assert!(samples.reconstruct(filter).iter().all(|&c| c == color), "{filter:?}");
-        }
-    }
-
-    #[test]
-    fn supports_are_the_courses() {
-        let boxed = |radius| CourseFilter::Box { radius }.support();
-        assert_eq!([0.5, 0.6, 1.5, 1.7, 2.3, -3.0, f32::NAN].map(boxed), [0, 1, 1, 2, 2, 0, 0]);
-        let gaussian = |sigma| CourseFilter::Gaussian { sigma }.support();
-        assert_eq!([0.25, 0.6, 1.0, 1.7, 2.3].map(gaussian), [0, 1, 2, 3, 5]);
-        // Further than the picture is wide.
-        let samples = random_samples(1, |x, _, _| Vec3::splat(x as f32));
-        let picture = samples.reconstruct(Some(CourseFilter::Box { radius: f32::INFINITY }));
-        assert!(picture.iter().all(|c| (c.x - 11.0).abs() < 1e-5));
-    }
-
-    #[test]
-    fn the_blur_spreads_a_point_by_its_taps() {
-        let (w, h) = (9, 12);
-        let mut point = vec![Vec3::ZERO; (w * h) as usize];
-        point[(4 * w + 4) as usize] = Vec3::ONE;
-        let blurred = blur(&point, w, h);
-        for (x, y) in (0..w * h).map(|i| (i % w, i / w)) {
-            let tap = |at: u32| if (2..=6).contains(&at) { BLUR[at as usize - 2] } else { 0.0 };
-            assert!((blurred[(y * w + x) as usize].x - tap(x) * tap(y)).abs() < 1e-7);
-        }
-        // In a corner the taps that fall outside count for the corner.
-        point.fill(Vec3::ZERO);
-        point[0] = Vec3::ONE;
-        let edge = BLUR[0] + BLUR[1] + BLUR[2];
-        assert!((blur(&point, w, h)[0].x - edge * edge).abs() < 1e-6);
-        assert_eq!(blur(&[Vec3::ONE], 1, 1).len(), 1);
-        assert!(blur_and_average(&[], 0, 0).is_empty());
-    }
-
-    #[test]
-    fn nine_pixels_become_their_mean() {
-        let pixels: Vec<Vec3> = (0..54).map(|i| Vec3::splat((i % 9) as f32)).collect();
-        let small = average_3x3(&pixels, 9, 6);
-        assert_eq!(small, [1.0, 4.0, 7.0, 1.0, 4.0, 7.0].map(Vec3::splat));
-    }
-
-    #[test]
-    fn jitter_stays_within_half_a_sub_pixel() {
-        let offsets = (0..1000).map(|x| jittered_position(1, x, 2 * x) - Vec2::new(x as f32, 2.0 * x as f32));
-        assert!(offsets.clone().all(|d| d.abs().max_element() <= 0.5));
-        assert!((offsets.sum::<Vec2>() / 1000.0).length() < 0.05);
     }
 }

@@ -5,6 +5,9 @@
 use super::course::{CourseFilter, StoredSamples};
 use crate::math::{Color, Vec2, Vec3};
 
+#[cfg(test)]
+mod tests;
+
 /// A picture made by this file, row 0 at the top.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Diagram {
@@ -76,6 +79,3 @@ pub fn weights(width: u32, height: u32, zoom: u32, support: u32, weight: impl Fn
         Vec3::splat(weight(offset).clamp(0.0, 1.0))
     })
 }
-
-#[cfg(test)]
-mod tests;

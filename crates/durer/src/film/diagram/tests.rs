@@ -2,7 +2,9 @@
 
 use super::super::course::StoredSample;
 use super::*;
+use crate::math::fp;
 use crate::sampler::Sampler;
+use glam::{DVec2, DVec3};
 use std::path::PathBuf;
 
 /// Size and 8-bit pixels of an official picture, or nothing where there is none.
@@ -22,13 +24,17 @@ fn official(name: &str) -> Option<(u32, u32, Vec<[u8; 3]>)> {
 fn assert_agrees(name: &str, width: u32, height: u32, pixels: &[Color]) {
     let Some((w, h, expected)) = official(name) else { return };
     assert_eq!((width, height), (w, h), "{name}");
+    assert_few_differ(name, pixels, &expected);
+}
+
+fn assert_few_differ(name: &str, pixels: &[Color], expected: &[[u8; 3]]) {
     let byte = |c: f32| (c.clamp(0.0, 1.0) * 255.0) as u8;
     let differs = |(ours, theirs): (&Color, &[u8; 3])| {
         let worst = ours.to_array().iter().zip(theirs).map(|(&c, &t)| byte(c).abs_diff(t)).max();
         worst > Some(2)
     };
-    let wrong = pixels.iter().zip(&expected).filter(|&pair| differs(pair)).count();
-    let inexact = pixels.iter().zip(&expected).filter(|(c, t)| c.to_array().map(byte) != **t).count();
+    let wrong = pixels.iter().zip(expected).filter(|&pair| differs(pair)).count();
+    let inexact = pixels.iter().zip(expected).filter(|(c, t)| c.to_array().map(byte) != **t).count();
     println!("{name}: {wrong} of {} differ by more than 2/255, {inexact} at all", pixels.len());
     assert!(wrong * 1000 <= pixels.len(), "{name}: {wrong} of {}", pixels.len());
 }
@@ -96,6 +102,39 @@ fn filtered_pictures_are_the_official_ones() {
     ] {
         assert_agrees(name, 12, 12, &samples.reconstruct(Some(filter)));
     }
+}
+
+/// The course's scene of a chessboard at height 0.01, with fields of a tenth; the point is in the picture, -1 to 1.
+///
+/// In double precision: towards the horizon single precision picks other fields.
+fn chessboard(p: DVec2) -> Color {
+    let forward = DVec3::new(0.338670, -0.392536, -0.855113).normalize();
+    let right = forward.cross(DVec3::Y).normalize();
+    let dir = forward + fp::tan_f64(25_f64.to_radians()) * (p.x * right + p.y * right.cross(forward));
+    let center = DVec3::new(-0.841950, 0.943160, 2.014966);
+    let hit = center + (0.01 - center.y) / dir.y * dir;
+    // The official triangles reach 1e-5 of their legs, which are 501 long, beyond their edges.
+    let beyond = 0.00501;
+    if dir.y >= 0.0 || hit.x < -0.99 - beyond || hit.z > 0.99 + beyond || hit.z < -500.0 || hit.x > 500.0 {
+        return Vec3::Y;
+    }
+    let field = (10.0 * hit.x).floor() + (10.0 * hit.z).floor();
+    (0.2 + 0.9) * if field.rem_euclid(2.0) == 0.0 { Vec3::X } else { Vec3::Z }
+}
+
+#[test]
+fn a_filtered_chessboard_is_the_official_one() {
+    let samples = StoredSamples::take(180, 180, 16, |x, y, s| {
+        let position = Sampler::Uniform.pixel_position(0, x, y, s, 16);
+        let in_picture = (DVec2::new(x.into(), y.into()) + position.as_dvec2()) / 90.0 - 1.0;
+        // Colours above 1 are filtered as they are and clamped when the picture is written.
+        StoredSample { position, color: chessboard(in_picture * DVec2::new(1.0, -1.0)) }
+    });
+    let picture = samples.reconstruct(Some(CourseFilter::Tent { radius: 1.5 }));
+    // Farther up a field is smaller than a pixel, and the last bit of a hit decides its colour.
+    const NEAR: usize = 45;
+    let Some((180, 180, expected)) = official("output7_02e") else { return };
+    assert_few_differ("output7_02e", &picture[NEAR * 180..], &expected[NEAR * 180..]);
 }
 
 #[test]

@@ -1,0 +1,84 @@
+use super::*;
+use proptest::prelude::*;
+
+#[derive(Clone, Copy, Debug)]
+struct Sample(u32, u32, u32, Vec3, f32);
+
+fn film(samples: &[Sample]) -> Film {
+    let mut film = Film::new(3, 2);
+    samples.iter().for_each(|&Sample(x, y, s, color, weight)| film.add(x, y, s, color, weight));
+    film
+}
+
+fn value() -> impl Strategy<Value = f32> {
+    prop_oneof![
+        4 => -10.0_f32..1000.0,
+        2 => any::<f32>(),
+        1 => prop::sample::select(vec![f32::NAN, f32::INFINITY, -0.0, 1e-12, 1e12]),
+    ]
+}
+
+fn samples() -> impl Strategy<Value = Vec<Sample>> {
+    let sample = (0..3_u32, 0..2_u32, 0..50_u32, [value(), value(), value()], -2.0_f32..2.0)
+        .prop_map(|(x, y, s, c, w)| Sample(x, y, s, Vec3::from(c), w));
+    prop::collection::vec(sample, 0..120)
+}
+
+proptest! {
+    #[test]
+    fn order_and_grouping_change_nothing(
+        (given, shuffled) in samples().prop_flat_map(|s| (Just(s.clone()), Just(s).prop_shuffle())),
+        cuts in prop::collection::vec(0.0..1.0_f64, 0..5),
+    ) {
+        let whole = film(&given);
+        prop_assert_eq!(&whole, &film(&shuffled));
+        // Parts of the shuffled samples, merged last first.
+        let mut ends: Vec<usize> = cuts.iter().map(|c| (c * shuffled.len() as f64) as usize).collect();
+        ends.extend([0, shuffled.len()]);
+        ends.sort_unstable();
+        let mut merged = Film::new(3, 2);
+        for part in ends.windows(2).rev() {
+            merged.merge(&film(&shuffled[part[0]..part[1]])).unwrap();
+        }
+        prop_assert_eq!(&whole, &merged);
+        for (x, y) in (0..6).map(|i| (i % 3, i / 3)) {
+            prop_assert_eq!(whole.resolve(x, y).to_array().map(f32::to_bits), merged.resolve(x, y).to_array().map(f32::to_bits));
+            prop_assert!(whole.resolve(x, y).is_finite());
+        }
+    }
+
+    #[test]
+    fn one_colour_stays_that_colour(c in [1e-3_f32..1e6, 1e-3_f32..1e6, 1e-3_f32..1e6], weights in prop::collection::vec(0.1_f32..4.0, 1..50)) {
+        let mut film = Film::new(1, 1);
+        weights.iter().zip(0..).for_each(|(&w, s)| film.add(0, 0, s, Vec3::from(c), w));
+        prop_assert_eq!(film.resolve(0, 0), Vec3::from(c));
+    }
+}
+
+#[test]
+fn windows_merge_into_their_places_only() {
+    let mut whole = Film::new(5, 4);
+    let mut part = Film::window(2, 1, 3, 2);
+    part.add(4, 2, 0, Vec3::ONE, 1.0);
+    whole.merge(&part).unwrap();
+    assert_eq!((whole.resolve(4, 2), whole.samples(4, 2), whole.resolve(0, 0)), (Vec3::ONE, 1, Vec3::ZERO));
+    for (left, top, w, h) in [(3, 1, 3, 2), (2, 3, 3, 2), (u32::MAX, 0, 2, 1), (0, 0, 5, 5)] {
+        assert_eq!(whole.clone().merge(&Film::window(left, top, w, h)), Err(WrongWindow));
+    }
+    assert_eq!(part.merge(&whole), Err(WrongWindow));
+    assert_eq!(whole.merge(&Film::window(9, 9, 0, 0)), Ok(()));
+}
+
+#[test]
+fn rejected_samples_are_counted_and_the_first_ones_named() {
+    let mut film = Film::new(2, 2);
+    for s in (0..40).rev() {
+        film.add(1, 0, s, Vec3::new(0.0, f32::NAN, 0.0), 1.0);
+    }
+    film.add(0, 0, 9, Vec3::ONE, f32::INFINITY);
+    film.add(0, 1, 0, Vec3::splat(1e30), 1.0);
+    film.add(1, 0, 77, Vec3::splat(0.25), 1.0);
+    assert_eq!((film.rejected(), film.first_rejected().len()), (42, REMEMBERED));
+    assert_eq!(film.first_rejected()[..2], [Rejected { y: 0, x: 0, sample: 9 }, Rejected { y: 0, x: 1, sample: 0 }]);
+    assert_eq!((film.resolve(1, 0), film.samples(1, 0)), (Vec3::splat(0.25), 1));
+}
