@@ -242,10 +242,18 @@ compats! {
     BlackBacks = "black-backs",
     /// A ray that leaves glass reflects as if R0 were 0.
     ExitR0 = "exit-r0",
+    /// A triangle reaches a little beyond its edges: to barycentric coordinates of -0.00001.
+    LooseTriangles = "loose-triangles",
+    /// On a texture, ambient light is that of the pixel shaded before, in rows from the bottom.
+    StaleTexels = "stale-texels",
     /// A `Matrix` is multiplied on the left of everything before it.
     MatrixOnLeft = "matrix-on-left",
     /// The background is black in depth pictures even where far is white.
     BlackSky = "black-sky",
+    /// Where nothing is hit, a picture of normals shows the normal hit last, in rows from the bottom.
+    StaleNormals = "stale-normals",
+    /// The range of a depth picture is cut to whole numbers.
+    WholeDepths = "whole-depths",
 }
 
 impl Compat {
@@ -322,7 +330,7 @@ const F04: Rules = Rules {
     paths: PathBase::Current,
     ambient_textured: true,
     transparent_shadows: false,
-    compat: bits(&[BlackBacks, MatrixOnLeft]),
+    compat: bits(&[BlackBacks, LooseTriangles, MatrixOnLeft]),
 };
 
 const F12A4: Rules = Rules {
@@ -332,7 +340,7 @@ const F12A4: Rules = Rules {
     highlight: Highlight::Phong,
     falloff: Falloff::None,
     secondary: Secondary::None,
-    compat: bits(&[BorderPixels, Stretch, HighlightBehind, PowZero, MatrixOnLeft]),
+    compat: bits(&[BorderPixels, Stretch, HighlightBehind, PowZero, MatrixOnLeft, StaleTexels]),
     ..F04
 };
 
@@ -346,6 +354,7 @@ const F12A5: Rules = Rules {
     secondary: Secondary::SpecularFresnel,
     epsilon: Some(1e-3),
     ambient_textured: false,
+    compat: bits(&[BorderPixels, Stretch, HighlightBehind, PowZero, MatrixOnLeft]),
     ..F12A4
 };
 
@@ -370,7 +379,17 @@ const F23: Rules = Rules {
     mesh_normals: MeshNormals::SmoothByArea,
     falloff: Falloff::Bare(Some(20.0)),
     paths: PathBase::Assets("assets/assignment4"),
-    compat: bits(&[BorderPixels, Stretch, SkewUp, HighlightBehind, PowZero, MatrixOnLeft, BlackSky]),
+    compat: bits(&[
+        BorderPixels,
+        Stretch,
+        SkewUp,
+        HighlightBehind,
+        PowZero,
+        MatrixOnLeft,
+        BlackSky,
+        StaleNormals,
+        WholeDepths,
+    ]),
     ..F16
 };
 

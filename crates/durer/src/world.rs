@@ -261,6 +261,14 @@ impl Object {
         }
     }
 
+    /// Whether some of it may lie in a box of world space that overlaps its bounds.
+    pub fn overlaps(&self, cell: &Aabb) -> bool {
+        match (&self.geometry, &self.to_world) {
+            (Geometry::Primitive(shape), None) => shape.overlaps(cell),
+            _ => true,
+        }
+    }
+
     fn moved(&self, bounds: Aabb) -> Aabb {
         match &self.to_world {
             Some(to_world) if !bounds.is_empty() => to_world.bounds(bounds),

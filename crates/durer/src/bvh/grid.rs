@@ -30,10 +30,16 @@ impl Grid {
         (size * cells_per_length).to_array().map(|n| (n as u32).clamp(1, 256))
     }
 
-    /// Sorts the boxes of things 0, 1, 2, ... into the cells of a box. Things overlap a cell if their boxes do.
+    /// Sorts the boxes of things 0, 1, 2, ... into the cells of a box. A thing is in a cell if their boxes overlap,
+    /// and `overlaps` says so of the thing and the (slightly enlarged) cell.
     ///
     /// `None` if there are no cells, or more than [`Grid::MOST_CELLS`].
-    pub fn build(bounds: Aabb, counts: [u32; 3], boxes: &[Aabb]) -> Option<Self> {
+    pub fn build(
+        bounds: Aabb,
+        counts: [u32; 3],
+        boxes: &[Aabb],
+        overlaps: impl Fn(usize, Aabb) -> bool,
+    ) -> Option<Self> {
         let cells = counts.iter().try_fold(1u64, |n, &c| n.checked_mul(u64::from(c)))?;
         if cells == 0 || cells > Grid::MOST_CELLS {
             return None;
@@ -43,8 +49,8 @@ impl Grid {
         let bounds = Aabb { min: bounds.min - pad, max: bounds.max + pad };
         let mut grid = Grid { bounds, counts, starts: vec![0; cells as usize + 1], items: Vec::new() };
         // First count what falls into each cell, then fill the lists.
-        for b in boxes {
-            grid.for_cells(b, |grid, cell| grid.starts[cell + 1] += 1);
+        for (i, b) in boxes.iter().enumerate() {
+            grid.for_cells(b, |cell| overlaps(i, cell), |grid, cell| grid.starts[cell + 1] += 1);
         }
         for i in 1..grid.starts.len() {
             grid.starts[i] = grid.starts[i].checked_add(grid.starts[i - 1])?;
@@ -52,7 +58,8 @@ impl Grid {
         grid.items = vec![0; grid.starts[cells as usize] as usize];
         let mut next = grid.starts.clone();
         for (i, b) in boxes.iter().enumerate() {
-            grid.for_cells(b, |grid, cell| {
+            let inside = |cell| overlaps(i, cell);
+            grid.for_cells(b, inside, |grid, cell| {
                 grid.items[next[cell] as usize] = i as u32;
                 next[cell] += 1;
             });
@@ -98,7 +105,7 @@ impl Grid {
         std::array::from_fn(|axis| (at[axis] as u32).min(self.counts[axis] - 1))
     }
 
-    fn for_cells(&mut self, b: &Aabb, mut f: impl FnMut(&mut Self, usize)) {
+    fn for_cells(&mut self, b: &Aabb, overlaps: impl Fn(Aabb) -> bool, mut f: impl FnMut(&mut Self, usize)) {
         if b.is_empty() {
             return;
         }
@@ -107,8 +114,11 @@ impl Grid {
         for z in low[2]..=high[2] {
             for y in low[1]..=high[1] {
                 for x in low[0]..=high[0] {
-                    let cell = self.number([x, y, z]);
-                    f(self, cell);
+                    let cell = self.cell_bounds([x, y, z]);
+                    if overlaps(Aabb { min: cell.min - pad, max: cell.max + pad }) {
+                        let number = self.number([x, y, z]);
+                        f(self, number);
+                    }
                 }
             }
         }

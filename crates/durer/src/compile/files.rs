@@ -3,7 +3,7 @@
 use super::Resources;
 use crate::describe::FileName;
 use crate::diag::{Diagnostic, Diagnostics, Severity, did_you_mean};
-use crate::dialect::Rules;
+use crate::dialect::{Compat, Rules};
 use crate::format;
 use crate::image;
 use crate::shape::Mesh;
@@ -49,7 +49,10 @@ impl<'r> Loader<'r> {
             diagnostics.extend(own);
             data
         });
-        let tree = mesh.map(|data| {
+        let tree = mesh.map(|mut data| {
+            if self.rules.has(Compat::LooseTriangles) {
+                data.loosen();
+            }
             let mesh = Mesh::new(data, self.rules.mesh_normals, self.rules.file_normals);
             Arc::new(MeshTree::new(mesh))
         });

@@ -10,6 +10,8 @@ use crate::dialect::{Compat, Rules};
 use crate::light::{Emitter, Light};
 use crate::math::{Aabb, Affine, Color};
 use crate::scene::{self, Group, MatrixOp, Node, Scene};
+use crate::shape::mesh::loosened;
+use crate::shape::{Primitive, Triangle};
 use crate::source::Source;
 use crate::world::{Accel, Geometry, Object, Phong, World};
 use glam::DAffine3;
@@ -113,7 +115,7 @@ fn build_accel(world: &World, kind: AccelKind) -> Result<Accel, Diagnostic> {
         }
         AccelKind::Grid(cells) => cells,
     };
-    let mut parts = Vec::new();
+    let mut parts: Vec<(u32, u32)> = Vec::new();
     let mut boxes = Vec::new();
     for (i, object) in world.objects.iter().enumerate() {
         for part in 0..object.parts() {
@@ -128,7 +130,8 @@ fn build_accel(world: &World, kind: AccelKind) -> Result<Accel, Diagnostic> {
         return Ok(Accel::None);
     }
     let counts = cells.unwrap_or_else(|| Grid::suitable(bounds, boxes.len()));
-    let grid = Grid::build(bounds, counts, &boxes).ok_or_else(|| {
+    let overlaps = |i: usize, cell: Aabb| world.objects[parts[i].0 as usize].overlaps(&cell);
+    let grid = Grid::build(bounds, counts, &boxes, overlaps).ok_or_else(|| {
         let [x, y, z] = counts;
         let most = Grid::MOST_CELLS;
         Diagnostic::error(format!("a grid of {x} x {y} x {z} cells cannot be made: it must have 1 to {most} cells"))
@@ -195,6 +198,10 @@ impl Flattening<'_, '_> {
             Node::Group(group) => return self.group(group, to_world),
             Node::Transform(ops, inner) => {
                 return self.object(inner, to_world * MatrixOp::product(ops, self.rules.has(Compat::MatrixOnLeft)));
+            }
+            Node::Primitive(Primitive::Triangle(t)) if self.rules.has(Compat::LooseTriangles) => {
+                let [vertex0, vertex1, vertex2] = loosened(t.corners());
+                Geometry::Primitive(Triangle { vertex0, vertex1, vertex2 }.into())
             }
             Node::Primitive(shape) => Geometry::Primitive(shape.clone()),
             Node::Mesh(mesh) => match self.loader.mesh(&mesh.obj_file, self.diagnostics) {

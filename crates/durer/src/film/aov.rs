@@ -54,6 +54,21 @@ impl Aov {
     }
 }
 
+/// Gives pixels without a hit the colour of the hit before them: rows from the bottom, each from the left.
+pub fn fill_from_last_hit(pixels: &mut [Color], hits: &[bool], width: usize) {
+    let rows = pixels.len() / width.max(1);
+    let mut last = None;
+    for y in (0..rows).rev() {
+        for i in y * width..(y + 1) * width {
+            match (hits[i], last) {
+                (true, _) => last = Some(pixels[i]),
+                (false, Some(color)) => pixels[i] = color,
+                (false, None) => {}
+            }
+        }
+    }
+}
+
 /// All kinds of picture beside colour.
 pub static AOVS: [Aov; 8] = [
     Aov {

@@ -101,7 +101,7 @@ impl Whitted<'_> {
     }
 
     /// Noise, else texture, else the diffuse colour.
-    fn diffuse_color(&self, phong: &Phong, surface: &Surface) -> Color {
+    pub(crate) fn diffuse_color(&self, phong: &Phong, surface: &Surface) -> Color {
         let texture = phong.texture.zip(surface.uv).map(|(i, uv)| self.world.textures[i as usize].at(uv));
         let noise = phong.noise.as_ref().map(|noise| noise.color(surface.position));
         noise.or(texture).unwrap_or(phong.diffuse)
@@ -178,7 +178,8 @@ impl Whitted<'_> {
         // A mirror without `shade_back` reflects about the normal as it is; the direction is the same.
         let mirrored = reflect(ray.dir, n);
         let transmitted = if transparent == Color::ZERO { None } else { refract(ray.dir, n, here / there) };
-        if fresnel {
+        // With one of the two left out, the other has all the light.
+        if fresnel && self.settings.reflection && self.settings.refraction {
             // Total reflection weighs 1.
             let r = transmitted.map_or(1.0, |t| self.fresnel(ray.dir, n, t, here, there));
             reflective *= r;

@@ -3,14 +3,15 @@
 use super::job::{Control, Crop, Job, Sampling};
 use crate::bvh::{Counts, Rays};
 use crate::camera::{Lens, Raster};
-use crate::film::aov::{Display, Seen};
+use crate::dialect::Compat;
+use crate::film::aov::{Display, Seen, fill_from_last_hit};
 use crate::film::course::{StoredSample, StoredSamples, average_3x3, blur, jittered_position};
 use crate::film::{Film, Rejected};
 use crate::image::{Image, ImageError, Layer};
 use crate::integrator::Whitted;
 use crate::math::{Aabb, Color, Ray, Vec2, Vec3};
 use crate::sampler::Sampler;
-use crate::world::World;
+use crate::world::{Material, World};
 use rayon::prelude::*;
 use std::sync::atomic::Ordering::Relaxed;
 
@@ -110,7 +111,10 @@ impl Renderer<'_> {
         let raster = Raster::new(job.width, job.height, &self.world.rules);
         match job.sampling {
             Sampling::Center => {
-                let pixels = self.pixels(|x, y, rays| self.radiance(&raster, center(x, y), rays))?;
+                let mut pixels = self.pixels(|x, y, rays| self.radiance(&raster, center(x, y), rays))?;
+                if self.world.rules.has(Compat::StaleTexels) {
+                    self.stale_texels(&raster, &mut pixels);
+                }
                 Ok(Image::from_pixels(window.width, window.height, pixels)?)
             }
             Sampling::Filtered { samples, filter } => {
@@ -142,6 +146,24 @@ impl Renderer<'_> {
                 self.cropped(job.width, job.height, pixels)
             }
             Sampling::Course2012 { jitter, blur } => self.course_2012(jitter, blur),
+        }
+    }
+
+    /// Replaces the ambient light on textures by that of the pixel shaded before with the same material.
+    fn stale_texels(&self, raster: &Raster, pixels: &mut [Color]) {
+        let (world, window) = (self.world, self.job.window());
+        let mut last: Vec<Option<Color>> = vec![None; world.materials.len()];
+        for y in (window.top..window.top + window.height).rev() {
+            for x in window.left..window.left + window.width {
+                let ray = camera_ray(world, raster, center(x, y));
+                let Some(hit) = world.closest(&ray, &mut ()) else { continue };
+                let material = world.objects[hit.object as usize].material;
+                let Material::Phong(phong) = &world.materials[material as usize] else { continue };
+                let texel = self.whitted.diffuse_color(phong, &world.surface(&ray, &hit));
+                let before = last[material as usize].replace(texel).unwrap_or(phong.diffuse);
+                let pixel = (y - window.top) * window.width + (x - window.left);
+                pixels[pixel as usize] += world.ambient * (before - texel);
+            }
         }
     }
 
@@ -267,16 +289,29 @@ impl Renderer<'_> {
         let hits = || seen.iter().filter_map(|seen| seen.hit.as_ref());
         let least = hits().map(|(hit, _)| hit.t).fold(f32::INFINITY, f32::min);
         let greatest = hits().map(|(hit, _)| hit.t).fold(f32::NEG_INFINITY, f32::max);
+        // A range that whole numbers cannot tell apart is left as it is.
+        let whole = |(min, max): (f32, f32)| match world.rules.has(Compat::WholeDepths) && min.trunc() != max.trunc() {
+            true => (min.trunc(), max.trunc()),
+            false => (min, max),
+        };
         let display = Display {
             rules: &world.rules,
-            depth_range: job.depth_range.unwrap_or((least, if greatest > least { greatest } else { least + 1.0 })),
+            depth_range: job
+                .depth_range
+                .map(whole)
+                .unwrap_or((least, if greatest > least { greatest } else { least + 1.0 })),
             positions: Aabb::around(hits().map(|(_, surface)| surface.position)),
             greatest_cost: seen.iter().map(|s| (s.counts.nodes + s.counts.tests) as f32).fold(0.0, f32::max),
         };
         for aov in &job.aovs {
             let values: Vec<Vec3> = seen.iter().map(aov.value).collect();
             let picture = values.iter().zip(&seen).map(|(v, seen)| (aov.picture)(*v, seen.hit.is_some(), &display));
-            let picture = Image::from_pixels(window.width, window.height, picture.collect())?;
+            let mut picture: Vec<Color> = picture.collect();
+            if aov.name == "normals" && world.rules.has(Compat::StaleNormals) {
+                let hits: Vec<bool> = seen.iter().map(|seen| seen.hit.is_some()).collect();
+                fill_from_last_hit(&mut picture, &hits, window.width as usize);
+            }
+            let picture = Image::from_pixels(window.width, window.height, picture)?;
             let values = Image::from_pixels(window.width, window.height, values)?;
             rendered.layers.push(Layer::data(aov.name, values));
             rendered.pictures.push(Layer::data(aov.name, picture));

@@ -27,6 +27,24 @@ pub struct MeshData {
     pub triangle_normals: Vec<[u32; 3]>,
 }
 
+impl MeshData {
+    /// Gives every triangle corners of its own, moved out a little; see [`loosened`].
+    pub fn loosen(&mut self) {
+        let corners = |t: &[u32; 3]| loosened(t.map(|i| self.positions[i as usize]));
+        self.positions = self.triangles.iter().flat_map(corners).collect();
+        self.triangles = (0..self.triangles.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+    }
+}
+
+/// The triangle of all points whose barycentric coordinates in a triangle are at least -0.00001: the same, enlarged
+/// about its centroid by thrice that.
+pub fn loosened([a, b, c]: [Vec3; 3]) -> [Vec3; 3] {
+    const SLACK: f64 = 1e-5;
+    let corners = [a.as_dvec3(), b.as_dvec3(), c.as_dvec3()];
+    let centroid = (corners[0] + corners[1] + corners[2]) / 3.0;
+    corners.map(|p| (p + 3.0 * SLACK * (p - centroid)).as_vec3())
+}
+
 described! {
     /// A triangle mesh in a file of its own.
     TriangleMesh ["TriangleMesh" in set::CLASSIC, "mesh" in set::F23] {

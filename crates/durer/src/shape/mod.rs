@@ -55,6 +55,11 @@ pub trait Shape {
     /// Bounds in object space; `None` for a shape without end.
     fn bounds(&self) -> Option<Aabb>;
 
+    /// Whether some of it may lie in a box that overlaps its bounds.
+    fn overlaps(&self, _cell: &Aabb) -> bool {
+        true
+    }
+
     /// The crossing of least `t` inside the ray's open interval.
     fn intersect(&self, ray: &Ray) -> Option<Crossing>;
 
@@ -67,6 +72,9 @@ macro_rules! delegate {
         impl Shape for Primitive {
             fn bounds(&self) -> Option<Aabb> {
                 match self { $(Primitive::$variant(s) => s.bounds(),)+ }
+            }
+            fn overlaps(&self, cell: &Aabb) -> bool {
+                match self { $(Primitive::$variant(s) => s.overlaps(cell),)+ }
             }
             fn intersect(&self, ray: &Ray) -> Option<Crossing> {
                 match self { $(Primitive::$variant(s) => s.intersect(ray),)+ }

@@ -22,6 +22,12 @@ impl Shape for Sphere {
         Some(Aabb { min: self.center - self.radius - pad, max: self.center + self.radius + pad })
     }
 
+    /// Whether the point of the box that is nearest to the centre is no farther than the radius.
+    fn overlaps(&self, cell: &Aabb) -> bool {
+        let nearest = self.center.clamp(cell.min, cell.max);
+        (nearest - self.center).length() <= self.radius * (1.0 + gamma(8))
+    }
+
     /// Solves |origin + t dir - center|^2 = radius^2 in double precision.
     ///
     /// The discriminant is taken from the point of the ray nearest to the centre, which keeps small, far

@@ -20,7 +20,8 @@ described! {
 }
 
 impl Triangle {
-    fn corners(&self) -> [Vec3; 3] {
+    /// Its corners in order.
+    pub fn corners(&self) -> [Vec3; 3] {
         [self.vertex0, self.vertex1, self.vertex2]
     }
 }

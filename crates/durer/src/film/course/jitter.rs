@@ -13,8 +13,10 @@ pub fn jittered_position(seed: u64, x: u32, y: u32) -> Vec2 {
     Vec2::new(x as f32, y as f32) + (random_2d(seed, x, y, 0, 0) - 0.5)
 }
 
-/// The five weights of `-filter`, from two left to two right. They sum to 1.0011, not to 1: kept as they are.
-const BLUR: [f32; 5] = [0.1201, 0.2339, 0.2931, 0.2339, 0.1201];
+/// The five weights of `-filter`, from two left to two right. As published they sum to 1.0011; official pictures have
+/// the brightness of weights that sum to 1.
+const BLUR: [f32; 5] = [0.1201 / SUM, 0.2339 / SUM, 0.2931 / SUM, 0.2339 / SUM, 0.1201 / SUM];
+const SUM: f32 = 1.0011;
 
 /// Blurs a picture with five taps along rows, then along columns. Beyond an edge its last pixel is repeated.
 ///

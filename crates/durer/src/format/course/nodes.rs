@@ -81,9 +81,9 @@ impl Reader<'_, '_> {
             }
         }
         self.depth -= 1;
-        // A material may be written after the object that it belongs to.
+        // A material may be written after the object that it belongs to; nodes inside have their own already.
         for object in &mut inner {
-            if !matches!(object.node, Node::Group(_) | Node::Transform(..)) {
+            if object.material.is_none() {
                 object.material = material;
             }
         }
