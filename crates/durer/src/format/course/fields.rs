@@ -41,7 +41,8 @@ impl Reader<'_, '_> {
                     }
                     continue;
                 }
-                if begins_block(&word) && self.at_open() && !self.goes_on_after_block(fields) {
+                let block = begins_block(&word) && (self.at_open() || word == "MaterialIndex");
+                if block && !self.goes_on_after(fields) {
                     self.step_back();
                     self.unclosed();
                     return;
@@ -89,6 +90,17 @@ impl Reader<'_, '_> {
         let all =
             |test: &dyn Fn(&Field) -> bool| -> Vec<usize> { (0..fields.len()).filter(|&i| test(&fields[i])).collect() };
         let mut candidates = all(&native);
+        // 2020's `attenuation` is one number, 2004's is three: their count tells which is meant.
+        let numbers = (0..3).take_while(|&i| self.number_ahead(i)).count();
+        let fits = |f: &Field| match f.kind {
+            Kind::Float => numbers < 3,
+            Kind::Vec3 => numbers == 3,
+            _ => true,
+        };
+        if !candidates.iter().any(|&i| fits(&fields[i])) {
+            let other = all(&|f| named(f) && fits(f));
+            candidates = if other.is_empty() { candidates } else { other };
+        }
         if candidates.is_empty() {
             candidates = all(&named);
         }
@@ -98,19 +110,27 @@ impl Reader<'_, '_> {
         candidates.iter().copied().find(free).or(candidates.last().copied())
     }
 
-    /// Whether fields of the same thing follow after the block that opens here.
-    fn goes_on_after_block(&self, fields: &[Field]) -> bool {
+    /// Whether the token so many further on is a number.
+    fn number_ahead(&self, count: usize) -> bool {
+        let token = self.ahead(count).filter(|t| t.kind == TokenKind::Word);
+        token.is_some_and(|t| self.text(t.span).parse::<f32>().is_ok())
+    }
+
+    /// Whether the same thing goes on after the block or the number that comes next.
+    fn goes_on_after(&self, fields: &[Field]) -> bool {
         let mut depth = 0usize;
         for i in 0.. {
             match self.ahead(i).map(|t| t.kind) {
                 Some(TokenKind::Open) => depth += 1,
-                Some(TokenKind::Close) => depth -= 1,
+                Some(TokenKind::Close) => depth = depth.saturating_sub(1),
                 None => return false,
                 _ => {}
             }
             if depth == 0 {
-                let next = self.ahead(i + 1).map(|t| self.text(t.span)).unwrap_or_default();
-                return fields.iter().any(|f| f.spellings.iter().any(|(w, _)| *w == next));
+                let Some(next) = self.ahead(i + 1) else { return false };
+                let word = self.text(next.span);
+                let field = fields.iter().any(|f| f.spellings.iter().any(|(w, _)| *w == word));
+                return field || !self.at_open() && next.kind == TokenKind::Close;
             }
         }
         false
@@ -188,7 +208,7 @@ impl Reader<'_, '_> {
                 let span = self.advance();
                 let error = Diagnostic::error(format!("{} is too large a number", shown(text.as_bytes()))).at(span);
                 self.error(error.help("numbers must be within about ±3.4e38"));
-                Some(0.0)
+                None
             }
             _ => {
                 let what = if count == 1 { "a number".into() } else { format!("number {i} of {count}") };
@@ -240,7 +260,7 @@ fn number_help(text: &str) -> Option<String> {
         Some("decimals are written with a point, and nothing stands between numbers but blanks".into())
     } else if bare.contains(',') || bare != text && is_number(bare) {
         Some("numbers stand alone, with blanks between them: `1 0.5 0`".into())
-    } else if text.len() > 2 && text[..2].eq_ignore_ascii_case("0x") {
+    } else if text.starts_with("0x") || text.starts_with("0X") {
         Some("numbers are written in decimal".into())
     } else {
         None

@@ -186,13 +186,14 @@ impl<'a, 'd> Reader<'a, 'd> {
     /// Expects the `{` of a block. Where it is missing but the block's inside follows, it is read as if it were there.
     pub(super) fn open(&mut self, keyword: Span) -> bool {
         let opens = self.at_open();
+        let name = self.text(keyword);
         if opens {
             self.advance();
         } else {
-            let name = self.text(keyword);
             self.expected("`{`", &name);
         }
-        let inside = self.peek_word().is_some_and(|word| dialects_of(&word).is_some() && !begins_block(&word));
+        let is_inside = |word: &str| !begins_block(word) || home_of(word) == Some(&name);
+        let inside = self.peek_word().is_some_and(|word| dialects_of(&word).is_some() && is_inside(&word));
         if opens || inside {
             self.blocks.push(keyword);
         }

@@ -142,8 +142,8 @@ fn rules_of_values() {
     let camera = |direction: &str, angle: &str| {
         format!("PerspectiveCamera {{ center 0 0 0 direction {direction} up 0 1 0 angle {angle} }}")
     };
-    one(&camera("0 0 1", "180"), "1:64 error: `angle` must be more than 0 and less than 180 [180]");
-    one(&camera("0 0 1", "0"), "1:64 error: `angle` must be more than 0 and less than 180 [0]");
+    one(&camera("0 0 1", "180"), "1:65 error: `angle` must be more than 0 and less than 180 [180]");
+    one(&camera("0 0 1", "0"), "1:65 error: `angle` must be more than 0 and less than 180 [0]");
     one(&camera("0 0 1e30", "20"), "1:44 error: `direction` is too long or too short for a direction [0 0 1e30]");
     one(&camera("0 0 1e-30", "20"), "1:44 error: `direction` is too long or too short for a direction [0 0 1e-30]");
     one(

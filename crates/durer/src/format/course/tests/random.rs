@@ -133,9 +133,15 @@ impl Random {
                 Material::Phong(Box::new(self.thing::<PhongMaterial>(i)), noise)
             }));
         }
-        let lights = (nodes || self.below(4) > 0).then(|| {
-            (0..self.below(4)).map(|_| Spanned { value: self.thing::<Light>(0), span: Default::default() }).collect()
-        });
+        let light = |random: &mut Self| {
+            let mut value = random.thing::<Light>(0);
+            if let (Light::Point(point), true) = (&mut value, nodes) {
+                // A node adds its place to 0, which makes 0 of -0.
+                point.position += Vec3::ZERO;
+            }
+            Spanned { value, span: Default::default() }
+        };
+        let lights = (nodes || self.below(4) > 0).then(|| (0..self.below(4)).map(|_| light(self)).collect());
         let mut current = None;
         let objects = (0..self.below(5)).map(|_| self.object(0, materials.len(), &mut current, true)).collect();
         Scene {
