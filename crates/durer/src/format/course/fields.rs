@@ -36,7 +36,7 @@ impl Reader<'_, '_> {
         while let Some((word, span)) = self.word_before_close() {
             let Some(index) = self.field_of(fields, &given, &word) else {
                 if extra(self, &word, span) {
-                    if order == Order::Listed && last > 0 && self.options.strict {
+                    if order == Order::Listed && given.iter().any(Option::is_some) && self.options.strict {
                         self.error(Diagnostic::error(format!("`{word}` must come first in `{name}`")).at(span));
                     }
                     continue;
@@ -93,7 +93,7 @@ impl Reader<'_, '_> {
         // 2020's `attenuation` is one number, 2004's is three: their count tells which is meant.
         let numbers = (0..3).take_while(|&i| self.number_ahead(i)).count();
         let fits = |f: &Field| match f.kind {
-            Kind::Float => numbers < 3,
+            Kind::Float => numbers == 1,
             Kind::Vec3 => numbers == 3,
             _ => true,
         };

@@ -48,7 +48,7 @@ const PREFERENCE: [Dialect; 6] =
 /// Guesses the dialect of a scene from its words. `exists` tells whether a file that it names is there.
 pub fn guess(bytes: &[u8], file: u32, hints: &[Hint], exists: &dyn Fn(&str) -> bool) -> Guess {
     let mut left = set::ALL & !set::DURER;
-    let mut reasons = Vec::new();
+    let mut reasons: Vec<(DialectSet, String, Option<Span>)> = Vec::new();
     let tokens = tokens(bytes, file);
     let text = |i: usize| {
         let span = tokens.get(i).map_or(Span::default(), |t| t.span);
@@ -57,7 +57,7 @@ pub fn guess(bytes: &[u8], file: u32, hints: &[Hint], exists: &dyn Fn(&str) -> b
     let mut narrow = |keep: DialectSet, why: String, span: Option<Span>| {
         if left & keep != left {
             left &= keep;
-            reasons.push((why, span));
+            reasons.push((keep, why, span));
         }
     };
     let has_section = (0..tokens.len()).any(|i| text(i) == "Materials");
@@ -90,6 +90,14 @@ pub fn guess(bytes: &[u8], file: u32, hints: &[Hint], exists: &dyn Fn(&str) -> b
     for hint in hints {
         narrow(hint.set, hint.why.clone(), None);
     }
+    // Reasons that later ones make needless are not told.
+    for i in (0..reasons.len()).rev() {
+        let others = reasons.iter().enumerate().filter(|(j, _)| *j != i);
+        if others.fold(set::ALL & !set::DURER, |left, (_, reason)| left & reason.0) == left {
+            reasons.remove(i);
+        }
+    }
+    let reasons = reasons.into_iter().map(|(_, why, span)| (why, span)).collect();
     let mut candidates = PREFERENCE.into_iter().filter(|d| d.is_in(left));
     let dialect = candidates.next().unwrap_or(Dialect::Durer);
     Guess { dialect, reasons, others: candidates.collect() }

@@ -5,6 +5,7 @@ pub mod guess;
 mod lexer;
 mod nodes;
 mod reader;
+mod recover;
 mod sections;
 mod transform;
 mod words;

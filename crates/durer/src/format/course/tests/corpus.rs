@@ -89,6 +89,15 @@ fn telling_words_decide_the_guess() {
     ] {
         assert_eq!(of(text), dialect, "{text}");
     }
+    // Only what is needed for the guess is told.
+    let note = guess(
+        b"PerspectiveCamera { } PointLight { falloff 1 } Materials { Material { refractionIndex 2 } }",
+        0,
+        &[],
+        &|_| false,
+    )
+    .note();
+    assert_eq!(note.message, "read as f12a5: `refractionIndex` is a word of f12a5");
     let hint = Hint { set: Dialect::F16 as u8, why: "the output is a PNG file".into() };
     let guess = guess(b"PerspectiveCamera { }", 0, &[hint], &|_| false);
     assert_eq!((guess.dialect, guess.others.len()), (Dialect::F16, 0));

@@ -122,6 +122,27 @@ fn numbers_are_as_scanf_reads_them() {
 }
 
 #[test]
+fn an_attenuation_of_three_numbers_and_one_of_one_are_told_apart() {
+    let light =
+        |dialect, text: &str| match read_as(text.as_bytes(), dialect, false).0.unwrap().lights.unwrap().remove(0).value
+        {
+            Light::Point(light) => (light.attenuation, light.falloff),
+            other => panic!("{other:?}"),
+        };
+    let classic = |value: &str| format!("Lights {{ PointLight {{ position 0 0 0 color 1 1 1 attenuation {value} }} }}");
+    let nodes = |value: &str| format!("Scene {{ Component<Light> {{ type point color 1 1 1 attenuation {value} }} }}");
+    let (three, one) = ((Some(Vec3::X), None), (None, Some(2.0)));
+    for dialect in [Dialect::F04, Dialect::F12a4, Dialect::F12a5, Dialect::Durer] {
+        assert_eq!(light(dialect, &classic("1 0 0")), three);
+    }
+    assert_eq!(light(Dialect::Durer, &classic("2")), one);
+    assert_eq!(light(Dialect::F23, &nodes("2")), one);
+    assert_eq!(light(Dialect::F23, &nodes("1 0 0")), three);
+    let found = read_as(classic("1 0").as_bytes(), Dialect::Durer, false).1;
+    assert_eq!(found, ["1:66 error: `attenuation` needs number 3 of 3, but found `}` [}]"]);
+}
+
+#[test]
 fn matrices_of_2004_list_rows_and_later_ones_columns() {
     let read = |word: &str, dialect| {
         let numbers = "1 2 3 4 5 6 7 8 9 10 11 12 0 0 0 1";

@@ -3,6 +3,7 @@
 mod corpus;
 mod errors;
 mod forms;
+mod limits;
 mod malformed;
 mod mistakes;
 mod random;
