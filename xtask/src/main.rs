@@ -1,1 +1,23 @@
-fn main() {}
+//! Commands for those who build Dürer.
+
+mod course;
+
+use std::process::ExitCode;
+
+const USAGE: &str = "Commands:
+  cargo xtask course [--guess] [--only TEXT] [--keep FOLDER]
+      Render every row of the course's reference pictures through `durer course`, and compare.
+      --guess: do not name the program, so that the dialect is guessed. --only: rows that contain TEXT.
+      --keep: leave our pictures there, with pictures of the differences.
+The course is found in ../shared, or where DURER_CORPUS says.";
+
+fn main() -> anyhow::Result<ExitCode> {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    match arguments.first().map(String::as_str) {
+        Some("course") => course::run(&arguments[1..]),
+        _ => {
+            println!("{USAGE}");
+            Ok(ExitCode::from(2))
+        }
+    }
+}

@@ -11,7 +11,7 @@ use crate::source::SourceError;
 use crate::texture::{CubeMap, Texture};
 use crate::world::MeshTree;
 use std::collections::HashMap;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 
 pub(super) struct Loader<'r> {
@@ -131,9 +131,7 @@ fn missing_help(tried: &[PathBuf], near: Option<String>) -> String {
 }
 
 fn decode(name: &FileName, path: &str, bytes: &[u8], diagnostics: &mut Diagnostics) -> Option<Texture> {
-    let extension = Path::new(path).extension().and_then(|e| e.to_str()).unwrap_or_default();
-    let decoded = image::read8(bytes, extension);
-    match decoded {
+    match image::read8(bytes, path) {
         Ok(picture) => Texture::new(picture.width, picture.height, picture.pixels),
         Err(error) => {
             diagnostics.push(Diagnostic::error(format!("the picture `{path}` cannot be used: {error}")).at(name.span));

@@ -1,7 +1,9 @@
 //! From a world and a job to pictures.
 
+mod grid;
 mod job;
 mod run;
 
+pub use grid::grid_picture;
 pub use job::{Control, Crop, Job, Sampling};
 pub use run::{RenderError, Rendered, camera_ray, render, sample_diagram};

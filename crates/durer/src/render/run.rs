@@ -29,6 +29,9 @@ pub enum RenderError {
     /// The part to be made does not lie in the picture.
     #[error("the crop does not lie in the picture of {0} x {1} pixels")]
     CropOutside(u32, u32),
+    /// A diagram cannot be made as asked for.
+    #[error("{0}")]
+    Diagram(String),
     /// The threads could not be had.
     #[error("cannot start threads: {0}")]
     Threads(#[from] rayon::ThreadPoolBuildError),
@@ -74,7 +77,8 @@ pub fn sample_diagram(world: &World, job: &Job, control: &Control) -> Result<Sto
     let renderer = Renderer { world, job, control, whitted: Whitted { world, settings: job.settings } };
     let (sampler, samples) = match job.sampling {
         Sampling::Course2004 { sampler, samples, .. } => (sampler, samples),
-        _ => (Sampler::Uniform, 1),
+        Sampling::Filtered { samples, .. } => (Sampler::Sobol, samples),
+        Sampling::Center | Sampling::Course2012 { .. } => (Sampler::Uniform, 1),
     };
     renderer.stored(sampler, samples)
 }

@@ -1,0 +1,240 @@
+//! The command line.
+
+use clap::builder::PossibleValuesParser;
+use clap::{Args, Parser, Subcommand};
+use durer::dialect::{Compat, Dialect};
+use durer::film::Filter;
+use durer::film::aov::AOVS;
+use durer::image::Transfer;
+use durer::sampler::Sampler;
+use std::path::PathBuf;
+
+/// A ray tracer: exact, explainable, deterministic.
+#[derive(Parser)]
+#[command(name = "durer", version, arg_required_else_help = true)]
+pub struct Cli {
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+#[derive(Subcommand)]
+pub enum Command {
+    Render(Box<RenderArgs>),
+    Course(CourseArgs),
+    Info(InfoArgs),
+    Convert(ConvertArgs),
+    /// List the dialects of the scene language, and the old programs' habits that can be had by name
+    Dialects,
+    /// Print shell completions to standard output
+    #[command(after_help = "Example:\n  durer completions bash > ~/.local/share/bash-completion/completions/durer")]
+    Completions {
+        /// The shell
+        shell: clap_complete::Shell,
+    },
+    /// Print the manual page to standard output
+    #[command(after_help = "Example:\n  durer man > durer.1 && man ./durer.1")]
+    Man,
+}
+
+/// How a scene is read
+#[derive(Args, Default)]
+pub struct SceneArgs {
+    /// The scene's dialect, with all habits of that year's program; guessed where not given
+    #[arg(long, value_parser = PossibleValuesParser::new(Dialect::ALL.map(Dialect::name)))]
+    pub dialect: Option<String>,
+    /// Turn an old program's habit on, or off with `no-` before it (see `durer dialects`)
+    #[arg(long, value_name = "NAME", value_delimiter = ',', value_parser = compat)]
+    pub compat: Vec<(Compat, bool)>,
+    /// Allow only the words of the dialect: no comments, nothing of our own
+    #[arg(long)]
+    pub strict: bool,
+    /// Let the scene name files outside its own folder
+    #[arg(long)]
+    pub allow_outside: bool,
+    /// Look for missing meshes and pictures in this folder too
+    #[arg(long, value_name = "FOLDER")]
+    pub assets: Vec<PathBuf>,
+}
+
+/// Render a scene to a picture
+#[derive(Args)]
+#[command(after_help = "Examples:
+  durer render scene.txt -o picture.png
+  durer render scene.txt -o picture.exr --size 1920x1080 --samples 64
+  durer render scene.txt -o picture.png --show color,depth,normals --depth-range 9 10
+  durer render scene.txt -o picture.png --dialect f04 --shadows --bounces 4 --transfer course
+  durer render scene.txt -o dots.png --show samples --size 9x9 --sampler jittered --samples 9
+
+The extension of PICTURE says the format: png, tga, bmp, ppm, pfm, exr, hdr. Several pictures go into one EXR file
+as layers, or into files of their own: picture.depth.png and so on.")]
+pub struct RenderArgs {
+    /// The scene file
+    pub scene: PathBuf,
+    /// The picture to write [default: the scene's name with .png, here]
+    #[arg(short, long, value_name = "PICTURE")]
+    pub output: Option<PathBuf>,
+    #[command(flatten)]
+    pub reading: SceneArgs,
+
+    /// Size in pixels [default: 512x512; with --dialect, that year's]
+    #[arg(long, value_name = "WIDTHxHEIGHT", value_parser = size)]
+    pub size: Option<(u32, u32)>,
+    /// Make only a part of the picture
+    #[arg(long, value_name = "LEFT,TOP,WIDTHxHEIGHT", value_parser = crop)]
+    pub crop: Option<(u32, u32, u32, u32)>,
+    /// What to show: color, depth, normals, position, uv, barycentric, object, material, cost, samples, filter
+    #[arg(long, value_delimiter = ',', default_value = "color", value_parser = PossibleValuesParser::new(shows()))]
+    pub show: Vec<String>,
+    /// Depths shown as the two ends of grey [default: those in the picture]
+    #[arg(long, num_args = 2, value_names = ["MIN", "MAX"], allow_negative_numbers = true)]
+    pub depth_range: Option<Vec<f32>>,
+    /// How colours become eight bits: sRGB's curve, none, or none and truncated as the course has it
+    #[arg(long, default_value = "srgb", value_parser = PossibleValuesParser::new(Transfer::ALL.map(Transfer::name)))]
+    pub transfer: String,
+
+    /// Levels of mirrored and transmitted rays [default: 8; with --dialect, that year's]
+    #[arg(long, value_parser = clap::value_parser!(u32).range(0..=256))]
+    pub bounces: Option<u32>,
+    /// Whether things cast shadows [default: on; with --dialect, off]
+    #[arg(long, value_name = "on|off", num_args = 0..=1, require_equals = true, default_missing_value = "on", value_parser = on_off)]
+    pub shadows: Option<bool>,
+    /// Whether surfaces are shaded from behind too [default: on; with --dialect, off]
+    #[arg(long, value_name = "on|off", num_args = 0..=1, require_equals = true, default_missing_value = "on", value_parser = on_off)]
+    pub shade_back: Option<bool>,
+    /// Let transparent things cast coloured shadows
+    #[arg(long)]
+    pub transparent_shadows: bool,
+    /// Leave mirrored rays out
+    #[arg(long)]
+    pub no_reflection: bool,
+    /// Leave transmitted rays out
+    #[arg(long)]
+    pub no_refraction: bool,
+    /// Leave out rays that count for less than this [default: 0.001; with --dialect, 0]
+    #[arg(long)]
+    pub weight: Option<f32>,
+
+    /// Samples a pixel; 1 is the pixel's centre [default: 16; with --dialect, 1]
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=1 << 20))]
+    pub samples: Option<u32>,
+    /// Where samples lie; all but sobol are the course's, with its filters
+    #[arg(long, default_value = "sobol", value_parser = PossibleValuesParser::new(Sampler::NAMES.map(|n| n.0)))]
+    pub sampler: String,
+    /// Reconstruction filter [default: blackman-harris; none for the course's samplers]
+    #[arg(long, value_parser = PossibleValuesParser::new(Filter::NAMES.map(|n| n.0)))]
+    pub filter: Option<String>,
+    /// Radius of the filter in pixels; for the course's Gaussian, its standard deviation
+    #[arg(long, value_name = "PIXELS", requires = "filter")]
+    pub filter_radius: Option<f32>,
+    /// Three by three jittered sub-pixels, as in 2012
+    #[arg(long, conflicts_with_all = ["samples", "filter"])]
+    pub jitter: bool,
+    /// Blur by five taps, as in 2012
+    #[arg(long, conflicts_with_all = ["samples", "filter"])]
+    pub blur: bool,
+    /// Seed of the random numbers
+    #[arg(long, default_value_t = 0)]
+    pub seed: u64,
+    /// Pixels for a pixel in the pictures `samples` and `filter`
+    #[arg(long, default_value_t = 20, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub zoom: u32,
+
+    /// What finds the objects that a ray may hit
+    #[arg(long, default_value = "bvh", value_parser = ["bvh", "grid", "none"])]
+    pub accel: String,
+    /// Cells of the grid [default: suitable ones]
+    #[arg(long, value_name = "XxYxZ", value_parser = cells)]
+    pub grid: Option<[u32; 3]>,
+    /// Threads [default: as many as the machine has]
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+    /// Say nothing but errors
+    #[arg(short, long)]
+    pub quiet: bool,
+}
+
+/// Take the arguments of the course's own programs, of any year
+#[derive(Args)]
+#[command(disable_help_flag = true, after_help = "Run `durer course` for the list of options.")]
+pub struct CourseArgs {
+    /// Arguments as the course's programs take them
+    #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+    pub arguments: Vec<String>,
+}
+
+/// Say what is in a scene
+#[derive(Args)]
+#[command(after_help = "Examples:\n  durer info scene.txt\n  durer info scene.txt --json")]
+pub struct InfoArgs {
+    /// The scene file
+    pub scene: PathBuf,
+    #[command(flatten)]
+    pub reading: SceneArgs,
+    /// As JSON, with the whole scene description
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Write a scene anew, in its own or another dialect
+#[derive(Args)]
+#[command(after_help = "Example:\n  durer convert scene.txt -o scene_durer.txt --to durer")]
+pub struct ConvertArgs {
+    /// The scene file
+    pub scene: PathBuf,
+    /// The file to write
+    #[arg(short, long)]
+    pub output: PathBuf,
+    #[command(flatten)]
+    pub reading: SceneArgs,
+    /// The dialect to write [default: the scene's]
+    #[arg(long, value_parser = PossibleValuesParser::new(Dialect::ALL.map(Dialect::name)))]
+    pub to: Option<String>,
+}
+
+fn shows() -> Vec<&'static str> {
+    let diagrams = ["samples", "filter"];
+    std::iter::once("color").chain(AOVS.iter().map(|aov| aov.name)).chain(diagrams).collect()
+}
+
+fn compat(text: &str) -> Result<(Compat, bool), String> {
+    let (name, on) = text.strip_prefix("no-").map_or((text, true), |name| (name, false));
+    Compat::from_name(name).map(|compat| (compat, on)).ok_or_else(|| {
+        let names = Compat::ALL.iter().map(|row| row.1);
+        match durer::diag::did_you_mean(name, names) {
+            Some(near) => format!("there is no such habit; did you mean `{near}`?"),
+            None => "there is no such habit; see `durer dialects`".into(),
+        }
+    })
+}
+
+fn on_off(text: &str) -> Result<bool, String> {
+    match text {
+        "on" => Ok(true),
+        "off" => Ok(false),
+        _ => Err("say `on` or `off`".into()),
+    }
+}
+
+fn size(text: &str) -> Result<(u32, u32), String> {
+    let parse = || {
+        let (width, height) = text.split_once(['x', 'X'])?;
+        Some((width.parse().ok()?, height.parse().ok()?))
+    };
+    let size: (u32, u32) = parse().ok_or("say it as 640x480")?;
+    if size.0 == 0 || size.1 == 0 { Err("a picture has at least one pixel".into()) } else { Ok(size) }
+}
+
+fn crop(text: &str) -> Result<(u32, u32, u32, u32), String> {
+    let mut parts = text.splitn(3, ',');
+    let mut number = || parts.next()?.trim().parse().ok();
+    let corner: Option<(u32, u32)> = number().zip(number());
+    let ((left, top), (width, height)) =
+        corner.zip(parts.next().and_then(|s| size(s).ok())).ok_or("say it as 10,20,64x48")?;
+    Ok((left, top, width, height))
+}
+
+fn cells(text: &str) -> Result<[u32; 3], String> {
+    let numbers: Option<Vec<u32>> = text.split(['x', 'X']).map(|n| n.parse().ok()).collect();
+    let cells: Option<[u32; 3]> = numbers.and_then(|n| n.try_into().ok());
+    cells.filter(|c| !c.contains(&0)).ok_or("say it as 10x10x10".into())
+}

@@ -1,0 +1,20 @@
+//! `durer convert`.
+
+use crate::args::ConvertArgs;
+use crate::render::load_options;
+use crate::{Failure, output, report};
+use durer::diag::{Diagnostics, Files};
+use durer::dialect::Dialect;
+use durer::format::course::write;
+use durer::load;
+
+pub fn run(args: &ConvertArgs) -> Result<(), Failure> {
+    let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
+    let options = load_options(&args.reading);
+    let loaded =
+        load(&args.scene, &options, &mut files, &mut diagnostics).map_err(|e| report::unreadable(&args.scene, e))?;
+    report::print(&files, &diagnostics, false);
+    let loaded = loaded.ok_or(Failure::Input(None))?;
+    let dialect = args.to.as_deref().and_then(Dialect::from_name).unwrap_or(loaded.dialect);
+    output::save(&[(args.output.clone(), write(&loaded.scene, dialect).into_bytes())], false)
+}

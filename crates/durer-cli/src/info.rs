@@ -1,0 +1,123 @@
+//! `durer info`.
+
+use crate::Failure;
+use crate::args::InfoArgs;
+use crate::output::say;
+use crate::render::{load_options, open};
+use durer::camera::Lens;
+use durer::describe::DescribedList;
+use durer::world::{Accel, Geometry, World};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+pub fn run(args: &InfoArgs) -> Result<(), Failure> {
+    let opened = open(&args.scene, &load_options(&args.reading), args.json)?;
+    let (loaded, world) = (&opened.loaded, &opened.world);
+    let dialect = loaded.dialect;
+    let count = Counted::of(world);
+    if args.json {
+        let value = serde_json::json!({
+            "dialect": dialect.name(),
+            "objects": world.objects.len(),
+            "triangles": count.triangles,
+            "distinct_triangles": count.distinct_triangles,
+            "materials": world.materials.len(),
+            "lights": world.lights.len(),
+            "bytes": count.bytes,
+            "scene": loaded.scene,
+        });
+        say(&serde_json::to_string_pretty(&value)?);
+        return Ok(());
+    }
+    let bounds = world.bounds();
+    let pose = world.camera.pose();
+    say(&format!("scene      {}", args.scene.display()));
+    say(&format!("dialect    {} ({})", dialect.name(), dialect.rules().title));
+    say(&format!("camera     {} at {}, looking along {}", world.camera.keyword(dialect), pose.center, pose.direction));
+    for light in &world.lights {
+        let fields: Vec<String> = light
+            .fields()
+            .iter()
+            .enumerate()
+            .filter_map(|(i, field)| Some(format!("{} {}", field.name, value(&light.get(i)?))))
+            .collect();
+        say(&format!("light      {}: {}", light.keyword(dialect), fields.join(", ")));
+    }
+    let shapes: Vec<String> = count.shapes.iter().map(|(name, n)| format!("{n} {name}")).collect();
+    say(&format!(
+        "objects    {}{}{}",
+        world.objects.len(),
+        if shapes.is_empty() { "" } else { ": " },
+        shapes.join(", ")
+    ));
+    if count.triangles > 0 {
+        say(&format!("triangles  {} in meshes, {} of them distinct", count.triangles, count.distinct_triangles));
+    }
+    say(&format!("materials  {}", world.materials.len()));
+    if !bounds.is_empty() {
+        say(&format!("bounds     {} to {}", bounds.min, bounds.max));
+    }
+    say(&format!(
+        "memory     {:.1} MiB: geometry and trees {:.1}, pictures {:.1}",
+        mib(count.bytes),
+        mib(count.bytes - count.picture_bytes),
+        mib(count.picture_bytes)
+    ));
+    Ok(())
+}
+
+fn mib(bytes: usize) -> f64 {
+    bytes as f64 / f64::from(1 << 20)
+}
+
+fn value(value: &durer::describe::Value) -> String {
+    use durer::describe::Value::*;
+    match value {
+        Float(x) => x.to_string(),
+        Int(i) => i.to_string(),
+        Vec3(v) => v.to_string(),
+        Path(name) => name.path.clone(),
+    }
+}
+
+/// What a world holds.
+#[derive(Default)]
+struct Counted {
+    shapes: BTreeMap<&'static str, usize>,
+    triangles: usize,
+    distinct_triangles: usize,
+    bytes: usize,
+    picture_bytes: usize,
+}
+
+impl Counted {
+    fn of(world: &World) -> Self {
+        let mut count = Counted::default();
+        let mut seen = Vec::new();
+        for object in &world.objects {
+            let name = match &object.geometry {
+                Geometry::Primitive(shape) => shape.keywords()[0].0,
+                Geometry::Mesh(tree) => {
+                    count.triangles += tree.mesh.len();
+                    // A mesh that several objects share counts once.
+                    if !seen.contains(&Arc::as_ptr(tree)) {
+                        seen.push(Arc::as_ptr(tree));
+                        count.distinct_triangles += tree.mesh.len();
+                        count.bytes += tree.bytes();
+                    }
+                    "TriangleMesh"
+                }
+            };
+            *count.shapes.entry(name).or_default() += 1;
+        }
+        let faces = world.cube_map.iter().flat_map(|map| &map.faces);
+        count.picture_bytes = world.textures.iter().chain(faces).map(|texture| texture.bytes()).sum();
+        count.bytes += count.picture_bytes + size_of_val(&*world.objects);
+        count.bytes += match world.accel() {
+            Accel::Bvh(bvh) => bvh.bytes(),
+            Accel::Grid { grid, parts } => grid.bytes() + size_of_val(&**parts),
+            Accel::None => 0,
+        };
+        count
+    }
+}

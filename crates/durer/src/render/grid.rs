@@ -1,0 +1,60 @@
+//! The course's picture of its uniform grid: the occupied cells as boxes.
+
+use super::{Job, RenderError, camera_ray};
+use crate::bvh::Grid;
+use crate::camera::Raster;
+use crate::image::Image;
+use crate::light::Emitter;
+use crate::math::{Color, Ray, Vec2, Vec3};
+use crate::world::{Accel, World};
+
+/// Colours of cells by the number of things in them: white for one, then brighter to hotter; the course leaves them free.
+const COLORS: [Vec3; 8] = [
+    Vec3::ONE,
+    Vec3::new(1.0, 0.0, 1.0),
+    Vec3::new(0.0, 0.0, 1.0),
+    Vec3::new(0.0, 1.0, 1.0),
+    Vec3::new(0.0, 1.0, 0.0),
+    Vec3::new(1.0, 1.0, 0.0),
+    Vec3::new(1.0, 0.5, 0.0),
+    Vec3::new(1.0, 0.0, 0.0),
+];
+
+/// Draws the occupied cells of a world's grid, lit like its objects. Without a grid there is only the background.
+pub fn grid_picture(world: &World, job: &Job) -> Result<Image, RenderError> {
+    let raster = Raster::new(job.width, job.height, &world.rules);
+    let place = |i: u32| Vec2::new((i % job.width) as f32 + 0.5, (i / job.width) as f32 + 0.5);
+    let rays = (0..job.width * job.height).map(|i| camera_ray(world, &raster, place(i)));
+    let colors = rays.map(|ray| match world.accel() {
+        Accel::Grid { grid, .. } => cell_color(world, grid, &ray),
+        _ => world.sky(ray.dir),
+    });
+    Ok(Image::from_pixels(job.width, job.height, colors.collect())?)
+}
+
+/// The colour of the first occupied cell along a ray.
+fn cell_color(world: &World, grid: &Grid, ray: &Ray) -> Color {
+    let mut found = None;
+    grid.walk_cells(ray, |grid, cell, t_max| {
+        let count = grid.occupancy(cell);
+        if count == 0 {
+            return t_max;
+        }
+        found = Some((cell, count));
+        f32::NEG_INFINITY
+    });
+    let Some((cell, count)) = found else { return world.sky(ray.dir) };
+    let bounds = grid.cell_bounds(cell);
+    let Some((enter, _)) = bounds.clip(ray.origin, ray.dir) else { return world.sky(ray.dir) };
+    let point = ray.at(enter);
+    // The face is the one whose plane the point is nearest to, measured in cells.
+    let from_center = (point - bounds.center()) / bounds.size();
+    let axis = (0..3).fold(0, |best, i| if from_center[i].abs() > from_center[best].abs() { i } else { best });
+    let normal = Vec3::AXES[axis] * from_center[axis].signum();
+    let color = COLORS[(count - 1).min(COLORS.len() - 1)];
+    let lit = world.lights.iter().map(|light| {
+        let seen = light.illuminate(point);
+        normal.dot(seen.to_light).max(0.0) * seen.color
+    });
+    color * (world.ambient + lit.sum::<Color>())
+}

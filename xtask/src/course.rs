@@ -1,0 +1,326 @@
+//! Our pictures beside the official ones.
+
+use anyhow::{Context, Result, bail};
+use durer::image::{Image8, read8};
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+use std::process::{Command, ExitCode, Stdio};
+
+/// Differences of up to this much in a channel are rounding.
+const ROUNDING: u8 = 2;
+/// Pictures of random samples are made this often, to know how much they differ among themselves.
+const SEEDS: u64 = 12;
+
+/// One row of the list.
+#[derive(Clone, Debug)]
+struct Row {
+    picture: String,
+    dialect: String,
+    shows: String,
+    compare: String,
+    program: String,
+    arguments: String,
+}
+
+/// What a comparison found.
+struct Finding {
+    /// Share of pixels that differ by more than rounding, in percent, or another measure.
+    share: f64,
+    largest: u8,
+    verdict: Verdict,
+    remark: String,
+}
+
+#[derive(PartialEq)]
+enum Verdict {
+    Pass,
+    Fail,
+    Look,
+}
+
+/// Known odd references and why: the reason stands beside the row.
+const REASONS: &[(&str, &str)] = &[];
+
+pub fn run(arguments: &[String]) -> Result<ExitCode> {
+    let value = |name: &str| arguments.iter().position(|a| a == name).and_then(|i| arguments.get(i + 1));
+    let guess = arguments.iter().any(|a| a == "--guess");
+    let (only, keep) = (value("--only"), value("--keep").map(PathBuf::from));
+    let corpus = std::env::var_os("DURER_CORPUS").map_or_else(|| PathBuf::from("../shared"), PathBuf::from);
+    let course = corpus.join("course").canonicalize().context("the course is not there; set DURER_CORPUS")?;
+    let durer = build()?;
+    let out = keep.clone().unwrap_or_else(|| std::env::temp_dir().join(format!("durer-course-{}", std::process::id())));
+    std::fs::create_dir_all(&out)?;
+    let out = out.canonicalize()?;
+    let rows = rows(&course)?;
+    let (mut passed, mut failed, mut looked, mut explained) = (0, 0, 0, 0);
+    let mut bench = Bench { durer, course, out: out.clone(), guess, made: HashMap::new() };
+    for row in rows.iter().filter(|row| only.is_none_or(|text| format!("{row:?}").contains(text.as_str()))) {
+        if row.arguments.is_empty() {
+            looked += 1;
+            continue;
+        }
+        let finding = match bench.compare(row) {
+            Ok(finding) => finding,
+            Err(error) => Finding { share: 100.0, largest: 255, verdict: Verdict::Fail, remark: format!("{error:#}") },
+        };
+        let reason = REASONS.iter().find(|(name, _)| row.picture.ends_with(name)).map(|r| r.1);
+        let verdict = match (&finding.verdict, reason) {
+            (Verdict::Pass, _) => "pass",
+            (Verdict::Look, _) => "look",
+            (Verdict::Fail, Some(_)) => "ODD",
+            (Verdict::Fail, None) => "FAIL",
+        };
+        match verdict {
+            "pass" => passed += 1,
+            "look" => looked += 1,
+            "ODD" => explained += 1,
+            _ => failed += 1,
+        }
+        let name = row.picture.trim_start_matches("reference/");
+        let remark = [finding.remark.as_str(), reason.filter(|_| verdict == "ODD").unwrap_or("")].join(" ");
+        println!(
+            "{verdict:<5}{:>8.3} %  {:>3}  {:<11}{name:<42} {}",
+            finding.share,
+            finding.largest,
+            row.compare,
+            remark.trim()
+        );
+    }
+    if keep.is_none() {
+        std::fs::remove_dir_all(&out)?;
+    }
+    println!("\n{passed} passed, {failed} failed, {explained} odd with a known reason, {looked} to look at only");
+    Ok(if failed == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+}
+
+fn build() -> Result<PathBuf> {
+    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    let status = Command::new(cargo).args(["build", "--release", "--quiet", "--package", "durer-cli"]).status()?;
+    if !status.success() {
+        bail!("the program does not build");
+    }
+    let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| PathBuf::from("target"), PathBuf::from);
+    Ok(target.join("release/durer").canonicalize()?)
+}
+
+fn rows(course: &Path) -> Result<Vec<Row>> {
+    let mut reader = csv::Reader::from_path(course.join("reference.csv"))?;
+    let mut rows = Vec::new();
+    for record in reader.records() {
+        let record = record?;
+        let field = |i: usize| record.get(i).unwrap_or_default().to_string();
+        rows.push(Row {
+            picture: field(0),
+            dialect: field(1),
+            shows: field(2),
+            compare: field(3),
+            program: field(4),
+            arguments: field(5),
+        });
+    }
+    Ok(rows)
+}
+
+/// Where things are, and what was already made.
+struct Bench {
+    durer: PathBuf,
+    course: PathBuf,
+    out: PathBuf,
+    guess: bool,
+    /// Folder of the outputs, by program, arguments and seed.
+    made: HashMap<String, PathBuf>,
+}
+
+impl Bench {
+    fn compare(&mut self, row: &Row) -> Result<Finding> {
+        let reference = read(&self.course.join(&row.picture))?;
+        let ours = self.picture(row, 0)?;
+        if (ours.width, ours.height) != (reference.width, reference.height) {
+            bail!("{} x {} instead of {} x {}", ours.width, ours.height, reference.width, reference.height);
+        }
+        let (share, largest) = difference(&ours, &reference);
+        self.keep_difference(row, &ours, &reference)?;
+        let limit = match row.compare.as_str() {
+            "exact" => {
+                if self.refracts(row) {
+                    0.5
+                } else {
+                    0.1
+                }
+            }
+            "exit-r0" => 0.5,
+            "procedural" => 1.0,
+            "random" => return self.compare_random(row, &reference, share, largest),
+            "grid" => return Ok(compare_silhouettes(&ours, &reference, largest)),
+            _ => return Ok(Finding { share, largest, verdict: Verdict::Look, remark: String::new() }),
+        };
+        let verdict = if share <= limit { Verdict::Pass } else { Verdict::Fail };
+        Ok(Finding { share, largest, verdict, remark: String::new() })
+    }
+
+    /// Our picture for a row, made once for each set of arguments and seed.
+    fn picture(&mut self, row: &Row, seed: u64) -> Result<Image8> {
+        let key = format!("{} {} {} {seed}", row.dialect, row.program, row.arguments);
+        let folder = match self.made.get(&key) {
+            Some(folder) => folder.clone(),
+            None => {
+                let folder = self.make(row, seed)?;
+                self.made.insert(key, folder.clone());
+                folder
+            }
+        };
+        read(&folder.join(output_name(row)?))
+    }
+
+    fn make(&self, row: &Row, seed: u64) -> Result<PathBuf> {
+        let folder = self.out.join(self.made.len().to_string());
+        std::fs::create_dir_all(&folder)?;
+        let mut command = Command::new(&self.durer);
+        command.current_dir(self.course.join("scenes").join(&row.dialect));
+        command.args(["course", "--quiet", "--seed", &seed.to_string()]);
+        if !self.guess {
+            command.args(["--program", &row.program]);
+        } else if row.compare == "exit-r0" {
+            command.args(["--compat", "exit-r0"]);
+        }
+        // The pictures of the sky of 2023 are those of 2016; the corpus has them once.
+        command.args(["--assets", "../f16"]);
+        let words: Vec<&str> = row.arguments.split_whitespace().collect();
+        for (i, word) in words.iter().enumerate() {
+            let is_output = files(&words).any(|(_, at)| at == i);
+            if is_output {
+                command.arg(folder.join(word))
+            } else {
+                command.arg(word)
+            };
+        }
+        let output = command.stdin(Stdio::null()).output()?;
+        if !output.status.success() {
+            bail!("{}", String::from_utf8_lossy(&output.stderr).lines().next().unwrap_or("failed"));
+        }
+        Ok(folder)
+    }
+
+    fn refracts(&self, row: &Row) -> bool {
+        let words: Vec<&str> = row.arguments.split_whitespace().collect();
+        let scene = words.iter().position(|w| *w == "-input").and_then(|i| words.get(i + 1));
+        let path = scene.map(|scene| self.course.join("scenes").join(&row.dialect).join(scene));
+        let text = path.and_then(|path| std::fs::read_to_string(path).ok()).unwrap_or_default();
+        text.contains("transparentColor") || text.contains("refractionIndex")
+    }
+
+    /// Equal in mean and spread: the reference is one more picture of the kind that our seeds make.
+    fn compare_random(&mut self, row: &Row, reference: &Image8, share: f64, largest: u8) -> Result<Finding> {
+        let ours: Vec<Image8> = (0..SEEDS).map(|seed| self.picture(row, seed)).collect::<Result<_>>()?;
+        let n = SEEDS as f64;
+        let channels = |image: &Image8| -> Vec<f64> { image.pixels.iter().flatten().map(|&c| f64::from(c)).collect() };
+        let values: Vec<Vec<f64>> = ours.iter().map(channels).collect();
+        let theirs = channels(reference);
+        let mean_of = |v: &[f64]| v.iter().sum::<f64>() / v.len() as f64;
+        // Each picture's distance from the mean of the others, for ours and for the reference alike.
+        let sums: Vec<f64> = (0..theirs.len()).map(|i| values.iter().map(|v| v[i]).sum()).collect();
+        let spread = |picture: &[f64], others: &dyn Fn(usize) -> f64| {
+            (picture.iter().enumerate().map(|(i, v)| (v - others(i)).powi(2)).sum::<f64>() / picture.len() as f64)
+                .sqrt()
+        };
+        let own: Vec<f64> = values.iter().map(|v| spread(v, &|i| (sums[i] - v[i]) / (n - 1.0))).collect();
+        let reference_spread = spread(&theirs, &|i| sums[i] / n);
+        let means: Vec<f64> = values.iter().map(|v| mean_of(v)).collect();
+        let mean = mean_of(&means);
+        let deviation = (means.iter().map(|m| (m - mean).powi(2)).sum::<f64>() / (n - 1.0)).sqrt();
+        let mean_difference = mean_of(&theirs) - mean;
+        let ratio = reference_spread / mean_of(&own).max(0.25);
+        // Half a grey level is lost in truncation, four deviations in chance.
+        let mean_equal = mean_difference.abs() <= 4.0 * deviation * (1.0 + 1.0 / n).sqrt() + 0.25;
+        let spread_equal = (0.85..=1.15).contains(&ratio);
+        let verdict = if mean_equal && spread_equal { Verdict::Pass } else { Verdict::Fail };
+        let remark = format!("mean {mean_difference:+.3} (deviation {deviation:.3}), spread x {ratio:.3}");
+        Ok(Finding { share, largest, verdict, remark })
+    }
+
+    fn keep_difference(&self, row: &Row, ours: &Image8, reference: &Image8) -> Result<()> {
+        use durer::image::{Image, Layer, Transfer, WriteOptions, format_for};
+        let name = row.picture.trim_start_matches("reference/").replace('/', "_");
+        let shown = [ours, reference].map(|image| image.pixels.iter().map(|p| p.map(f32::from)).collect::<Vec<_>>());
+        let mut pixels = Vec::new();
+        // Ours, the official one, and the difference eightfold, side by side.
+        let width = ours.width as usize;
+        for y in 0..ours.height as usize {
+            for part in 0..3 {
+                for i in y * width..(y + 1) * width {
+                    let (a, b) = (shown[0][i], shown[1][i]);
+                    let color = match part {
+                        0 => a,
+                        1 => b,
+                        _ => std::array::from_fn(|c| ((a[c] - b[c]).abs() * 8.0).min(255.0)),
+                    };
+                    pixels.push(durer::math::Vec3::from(color) / 255.0);
+                }
+            }
+        }
+        let image = Image::from_pixels(ours.width * 3, ours.height, pixels)?;
+        let path = self.out.join(name);
+        let mut bytes = Vec::new();
+        let options = WriteOptions { transfer: Transfer::Linear };
+        format_for(&path)?.write(&[Layer::color("color", image)], &options, &mut bytes)?;
+        durer::image::save(&path, &bytes)?;
+        Ok(())
+    }
+}
+
+/// The output files among some arguments: the option and the place of its file.
+fn files<'a>(words: &'a [&'a str]) -> impl Iterator<Item = (&'a str, usize)> {
+    const OUTPUTS: [(&str, usize); 5] =
+        [("-output", 1), ("-depth", 3), ("-normals", 1), ("-render_samples", 1), ("-render_filter", 1)];
+    words
+        .iter()
+        .enumerate()
+        .filter_map(|(i, word)| OUTPUTS.iter().find(|(name, _)| name == word).map(|(name, offset)| (*name, i + offset)))
+}
+
+/// The name of the file that a row's picture is compared with.
+fn output_name(row: &Row) -> Result<String> {
+    let option = match row.shows.as_str() {
+        "color" => "-output",
+        "depth" => "-depth",
+        "normals" => "-normals",
+        "samples" => "-render_samples",
+        "filter" => "-render_filter",
+        other => bail!("nothing is known of pictures of {other}"),
+    };
+    let words: Vec<&str> = row.arguments.split_whitespace().collect();
+    let place = files(&words).find(|(name, _)| *name == option).map(|(_, place)| place);
+    place.and_then(|place| words.get(place)).map(|name| name.to_string()).context("the row writes no such picture")
+}
+
+fn read(path: &Path) -> Result<Image8> {
+    let bytes = std::fs::read(path).with_context(|| path.display().to_string())?;
+    Ok(read8(&bytes, &path.to_string_lossy())?)
+}
+
+/// Percentage of pixels beyond rounding, and the largest difference.
+fn difference(a: &Image8, b: &Image8) -> (f64, u8) {
+    let of_pixel = |(p, q): (&[u8; 3], &[u8; 3])| (0..3).map(|c| p[c].abs_diff(q[c])).max().unwrap_or(0);
+    let differences: Vec<u8> = a.pixels.iter().zip(&b.pixels).map(of_pixel).collect();
+    let beyond = differences.iter().filter(|&&d| d > ROUNDING).count();
+    (100.0 * beyond as f64 / differences.len().max(1) as f64, differences.into_iter().max().unwrap_or(0))
+}
+
+/// Whether the same pixels show something other than the background, which is the commonest colour on the border.
+fn compare_silhouettes(ours: &Image8, reference: &Image8, largest: u8) -> Finding {
+    let background = |image: &Image8| {
+        let (w, h) = (image.width as usize, image.height as usize);
+        let mut counts: HashMap<[u8; 3], usize> = HashMap::new();
+        for i in 0..w * h {
+            if i < w || i >= w * (h - 1) || i % w == 0 || i % w == w - 1 {
+                *counts.entry(image.pixels[i]).or_default() += 1;
+            }
+        }
+        counts.into_iter().max_by_key(|(color, count)| (*count, *color)).map_or([0; 3], |c| c.0)
+    };
+    let (a, b) = (background(ours), background(reference));
+    let differ = ours.pixels.iter().zip(&reference.pixels).filter(|(p, q)| (**p == a) != (**q == b)).count();
+    let share = 100.0 * differ as f64 / ours.pixels.len() as f64;
+    let verdict = if share <= 0.1 { Verdict::Pass } else { Verdict::Fail };
+    Finding { share, largest, verdict, remark: "silhouette".into() }
+}
