@@ -75,6 +75,27 @@ fn unknown_words() {
 }
 
 #[test]
+fn a_byte_order_mark_is_no_column_and_other_bytes_are_shown_safely() {
+    let help = "(known here: PerspectiveCamera, OrthographicCamera, Background, Lights, Materials, Group)";
+    let found = |text: &str| findings(text, Dialect::F04);
+    assert_eq!(
+        found("\u{feff}Foo { }\n Foo { }"),
+        [
+            format!("1:1 error: `Foo` means nothing at the top of a scene [Foo] {help}"),
+            format!("2:2 error: `Foo` means nothing at the top of a scene [Foo] {help}"),
+        ]
+    );
+    assert!(
+        found("\u{1b}[31m { }")[0].starts_with("1:1 error: `\\u{1b}[31m` means nothing"),
+        "{:?}",
+        found("\u{1b}[31m")
+    );
+    let png = b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\x01{\0\0}\xff\xfe";
+    let (scene, found) = read_as(png, Dialect::F04, false);
+    assert!(scene.is_none() && found.len() <= 20, "{found:?}");
+}
+
+#[test]
 fn words_in_the_wrong_place() {
     one(
         "Sphere { center 0 0 0 radius 1 }",

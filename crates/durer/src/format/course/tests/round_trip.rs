@@ -60,3 +60,15 @@ fn random_scenes_survive_as_json() {
         same(&scene, &again, &json);
     }
 }
+
+#[test]
+fn a_scene_of_one_year_is_written_in_the_words_of_another_without_needless_ones() {
+    let scene = clean(SMALL[3].1, Dialect::F23);
+    let text = write(&scene, Dialect::F12a5);
+    // What 2012 has no word for was not given, so it is not written either.
+    assert!(!text.contains("reflectiveColor") && !text.contains("bump"), "{text}");
+    assert_eq!(read_as(text.as_bytes(), Dialect::F12a5, true).1, [""; 0], "{text}");
+    let text = write(&clean(SMALL[0].1, Dialect::F04), Dialect::F23);
+    // A node has no word for Blinn's exponent: it stays all the same.
+    assert!(text.contains("exponent 20"), "{text}");
+}
