@@ -47,7 +47,8 @@ impl Reader<'_, '_> {
                     self.unclosed();
                     return;
                 }
-                self.unknown_field(fields, &name, &word, span);
+                let after_path = fields.get(last).is_some_and(|f| f.kind == Kind::Path) && given[last].is_some();
+                self.unknown_field(fields, &name, &word, span, after_path);
                 continue;
             };
             let field = &fields[index];
@@ -136,14 +137,20 @@ impl Reader<'_, '_> {
         false
     }
 
-    fn unknown_field(&mut self, fields: &[Field], name: &str, word: &str, span: Span) {
+    fn unknown_field(&mut self, fields: &[Field], name: &str, word: &str, span: Span, after_path: bool) {
         let known = fields.iter().flat_map(|f| f.spellings.iter().map(|s| s.0));
         let help = self.advice(word, known).unwrap_or_else(|| {
             let mut words: Vec<&str> = fields.iter().filter_map(|f| f.spelling(self.options.dialect)).collect();
             words.dedup();
-            format!("its fields are {}", words.join(", "))
+            match after_path {
+                true => "a path ends at the first blank".into(),
+                false => format!("its fields are {}", words.join(", ")),
+            }
         });
-        let message = format!("`{name}` has no field {}", shown(word.as_bytes()));
+        let message = match word.parse::<f32>() {
+            Ok(_) => format!("{} is a number too many in `{name}`", shown(word.as_bytes())),
+            Err(_) => format!("`{name}` has no field {}", shown(word.as_bytes())),
+        };
         self.error(Diagnostic::error(message).at(span).label("not known here").help(help));
         self.skip_value();
     }

@@ -72,7 +72,10 @@ impl Reader<'_, '_> {
 
     /// Reports a word that means nothing here, and passes over it, its values and its block.
     pub(super) fn unknown(&mut self, word: &str, span: Span, place: &str, known: &[&str]) {
-        let message = format!("{} means nothing {place}", shown(word.as_bytes()));
+        let message = match word.parse::<f32>() {
+            Ok(_) => format!("{} is a number too many {place}", shown(word.as_bytes())),
+            Err(_) => format!("{} means nothing {place}", shown(word.as_bytes())),
+        };
         let list = || format!("known here: {}", known.join(", "));
         let help = self.advice(word, known.iter().copied()).unwrap_or_else(list);
         self.error(Diagnostic::error(message).at(span).label("not known here").help(help));

@@ -156,6 +156,22 @@ fn fields_and_values() {
 }
 
 #[test]
+fn values_too_many() {
+    in_group(
+        "Sphere { center 0 0 0 4 radius 1 }",
+        "2:23 error: `4` is a number too many in `Sphere` [4] (its fields are center, radius)",
+    );
+    in_group(
+        "TriangleMesh { obj_file my cube.obj }",
+        "2:28 error: `TriangleMesh` has no field `cube.obj` [cube.obj] (a path ends at the first blank)",
+    );
+    one(
+        "Lights { numLights 0 0 }",
+        "1:22 error: `0` is a number too many among lights [0] (known here: DirectionalLight, PointLight, numLights)",
+    );
+}
+
+#[test]
 fn rules_of_values() {
     in_group("Sphere { center 0 0 0 radius 0 }", "2:30 error: `radius` must be more than 0 [0]");
     in_group("Sphere { center 0 0 0 radius -0 }", "2:30 error: `radius` must be more than 0 [-0]");
