@@ -68,7 +68,10 @@ impl Rule {
         match (self, value) {
             (Rule::Positive, Value::Float(x)) if *x <= 0.0 => Some("must be more than 0".into()),
             (Rule::NonNegative, Value::Float(x)) if *x < 0.0 => Some("must not be less than 0".into()),
-            (Rule::NonZero, Value::Vec3(v)) if v.length_squared() == 0.0 => Some("must not be 0 0 0".into()),
+            (Rule::NonZero, Value::Vec3(v)) if *v == Vec3::ZERO => Some("must not be 0 0 0".into()),
+            (Rule::NonZero, Value::Vec3(v)) if !v.length_squared().is_normal() => {
+                Some("is too long or too short for a direction".into())
+            }
             (Rule::Between(low, high), Value::Float(x)) if *x <= low || *x >= high => {
                 Some(format!("must be more than {low} and less than {high}"))
             }

@@ -183,13 +183,19 @@ impl Files {
     pub fn position(&self, span: Span) -> Option<(usize, usize)> {
         let before = self.bytes(span.file)?.get(..span.start as usize)?;
         let line = before.iter().filter(|&&b| b == b'\n').count() + 1;
-        let column = before.iter().rev().take_while(|&&b| b != b'\n').count() + 1;
+        // A byte order mark is no column of the first line.
+        let shown = if line == 1 { before.strip_prefix(b"\xef\xbb\xbf").unwrap_or(before) } else { before };
+        let column = shown.iter().rev().take_while(|&&b| b != b'\n').count() + 1;
         Some((line, column))
     }
 }
 
 /// The candidate most like `word`, if one is near enough to be meant.
 pub fn did_you_mean<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    // The distance takes time and memory in proportion to the word's length: nobody means a word by a file's contents.
+    if word.len() > 64 {
+        return None;
+    }
     let lower = word.to_lowercase();
     candidates
         .into_iter()

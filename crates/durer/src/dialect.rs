@@ -416,3 +416,6 @@ const DURER: Rules = Rules {
 
 /// The table, in the order of the discriminants.
 static TABLE: [Rules; 7] = [F03, F04, F12A4, F12A5, F16, F23, DURER];
+
+#[cfg(test)]
+mod tests;

@@ -103,3 +103,6 @@ impl Loaded {
         compile(&self.scene, &self.rules, options.accel, resources, diagnostics)
     }
 }
+
+#[cfg(test)]
+mod tests;

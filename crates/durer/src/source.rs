@@ -2,6 +2,7 @@
 //!
 //! Files are read from a few allowed folders, never beyond them, and within a budget of bytes.
 
+use crate::diag::did_you_mean;
 use std::cell::Cell;
 use std::fs;
 use std::io::Read;
@@ -18,6 +19,8 @@ pub enum SourceError {
         name: String,
         /// Where it was looked for.
         tried: Vec<PathBuf>,
+        /// A file there that has nearly its name.
+        near: Option<String>,
     },
     /// It lies outside the allowed folders.
     #[error("`{name}` lies outside the scene's folder")]
@@ -120,7 +123,13 @@ impl Source {
 
     /// Reads a file by the name that a scene gives it.
     pub fn read(&self, name: &str) -> Result<Arc<[u8]>, SourceError> {
-        self.read_path(&self.find(name)?, name)
+        match self.find(name) {
+            Ok(path) => self.read_path(&path, name),
+            Err(SourceError::Missing { name, tried, .. }) => {
+                Err(SourceError::Missing { near: self.near(&tried), name, tried })
+            }
+            Err(error) => Err(error),
+        }
     }
 
     /// The first place where a file of that name is, and may be read.
@@ -141,7 +150,20 @@ impl Source {
         }
         Err(match outside {
             true => SourceError::Outside { name: name.into() },
-            false => SourceError::Missing { name: name.into(), tried: candidates },
+            false => SourceError::Missing { name: name.into(), near: None, tried: candidates },
+        })
+    }
+
+    /// A file beside the candidates that has nearly the name of one. What may not be read is not listed either.
+    fn near(&self, candidates: &[PathBuf]) -> Option<String> {
+        candidates.iter().find_map(|path| {
+            let folder = path.parent()?.canonicalize().ok().filter(|folder| self.allows(folder))?;
+            let names: Vec<String> = fs::read_dir(folder)
+                .ok()?
+                .filter_map(|entry| entry.ok()?.file_name().into_string().ok())
+                .take(10_000)
+                .collect();
+            did_you_mean(path.file_name()?.to_str()?, names.iter().map(String::as_str)).map(str::to_string)
         })
     }
 
@@ -158,14 +180,20 @@ impl Source {
             return Err(SourceError::NotAFile { name: name.into() });
         }
         let left = self.left.get();
+        let too_large = |size| SourceError::TooLarge { name: name.into(), size, left };
+        if metadata.len() > left {
+            return Err(too_large(metadata.len()));
+        }
         let mut bytes = Vec::new();
         // A file that grows while it is read is still bounded.
-        fs::File::open(path).map_err(io)?.take(left + 1).read_to_end(&mut bytes).map_err(io)?;
-        let size = (bytes.len() as u64).max(metadata.len());
-        if size > left {
-            return Err(SourceError::TooLarge { name: name.into(), size, left });
+        fs::File::open(path).map_err(io)?.take(left.saturating_add(1)).read_to_end(&mut bytes).map_err(io)?;
+        if bytes.len() as u64 > left {
+            return Err(too_large(bytes.len() as u64));
         }
         self.left.set(left - bytes.len() as u64);
         Ok(bytes.into())
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -2,7 +2,7 @@
 
 use super::Resources;
 use crate::describe::FileName;
-use crate::diag::{Diagnostic, Diagnostics, Severity, did_you_mean};
+use crate::diag::{Diagnostic, Diagnostics, Severity};
 use crate::dialect::{Compat, Rules};
 use crate::format;
 use crate::image;
@@ -11,6 +11,7 @@ use crate::source::SourceError;
 use crate::texture::{CubeMap, Texture};
 use crate::world::MeshTree;
 use std::collections::HashMap;
+use std::path::PathBuf;
 use std::sync::Arc;
 
 pub(super) struct Loader<'r> {
@@ -104,13 +105,17 @@ impl<'r> Loader<'r> {
 
     /// Reads a file; what goes wrong is said at the place that names it.
     fn read(&self, name: &FileName, what: &str, diagnostics: &mut Diagnostics) -> Option<Arc<[u8]>> {
+        // Nobody would read of a file that is missing too.
+        if diagnostics.is_full() {
+            return None;
+        }
         let error = match self.resources.source.read(&name.path) {
             Ok(bytes) => return Some(bytes),
             Err(error) => error,
         };
         let diagnostic = Diagnostic::error(format!("the {what} cannot be had: {error}")).at(name.span);
         diagnostics.push(match error {
-            SourceError::Missing { tried, .. } => diagnostic.help(missing_help(&tried)),
+            SourceError::Missing { tried, near, .. } => diagnostic.help(missing_help(&tried, near)),
             SourceError::Outside { .. } => diagnostic
                 .help("a scene may only name files in and below its own folder, unless `--allow-outside` is given"),
             _ => diagnostic,
@@ -120,16 +125,8 @@ impl<'r> Loader<'r> {
 }
 
 /// Where a file was looked for, and a file there that has nearly its name.
-fn missing_help(tried: &[std::path::PathBuf]) -> String {
+fn missing_help(tried: &[PathBuf], near: Option<String>) -> String {
     let shown: Vec<String> = tried.iter().map(|path| path.display().to_string()).collect();
-    let near = tried.iter().find_map(|path| {
-        let names: Vec<String> = std::fs::read_dir(path.parent()?)
-            .ok()?
-            .filter_map(|entry| entry.ok()?.file_name().into_string().ok())
-            .take(10_000)
-            .collect();
-        did_you_mean(path.file_name()?.to_str()?, names.iter().map(String::as_str)).map(str::to_string)
-    });
     match near {
         Some(near) => format!("did you mean `{near}`? Looked for {}", shown.join(", ")),
         None => format!("looked for {}", shown.join(", ")),

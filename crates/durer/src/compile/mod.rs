@@ -5,7 +5,7 @@ mod materials;
 
 use crate::bvh::{Bvh, Grid};
 use crate::camera::{Frame, Lens};
-use crate::diag::{Diagnostic, Diagnostics, Files};
+use crate::diag::{Diagnostic, Diagnostics, Files, Span};
 use crate::dialect::{Compat, Rules};
 use crate::light::{Emitter, Light};
 use crate::math::{Aabb, Affine, Color};
@@ -61,11 +61,13 @@ pub fn compile(
         diagnostics: &mut own,
         material_count: materials.len() as u32,
         plain_needed: false,
+        bare: None,
     };
     match &scene.root {
         Some(root) => flattening.group(root, DAffine3::IDENTITY),
         None => flattening.diagnostics.push(Diagnostic::warning("the scene has no objects: it has no `Group`")),
     }
+    flattening.warn_of_bare();
     let Flattening { objects, plain_needed, .. } = flattening;
     let mut compiled = materials;
     if plain_needed {
@@ -98,14 +100,14 @@ pub fn compile(
     match build_accel(&world, accel) {
         Ok(accel) => world.accel = accel,
         Err(error) => {
-            diagnostics.push(error);
+            diagnostics.push(*error);
             return None;
         }
     }
     Some(world)
 }
 
-fn build_accel(world: &World, kind: AccelKind) -> Result<Accel, Diagnostic> {
+fn build_accel(world: &World, kind: AccelKind) -> Result<Accel, Box<Diagnostic>> {
     let cells = match kind {
         AccelKind::None => return Ok(Accel::None),
         AccelKind::Bvh => {
@@ -134,7 +136,8 @@ fn build_accel(world: &World, kind: AccelKind) -> Result<Accel, Diagnostic> {
     let grid = Grid::build(bounds, counts, &boxes, overlaps).ok_or_else(|| {
         let [x, y, z] = counts;
         let most = Grid::MOST_CELLS;
-        Diagnostic::error(format!("a grid of {x} x {y} x {z} cells cannot be made: it must have 1 to {most} cells"))
+        let message = format!("a grid of {x} x {y} x {z} cells cannot be made: it must have 1 to {most} cells");
+        Box::new(Diagnostic::error(message))
     })?;
     Ok(Accel::Grid { grid, parts })
 }
@@ -184,9 +187,23 @@ struct Flattening<'a, 'r> {
     material_count: u32,
     /// Whether some object needs the plain material behind the last.
     plain_needed: bool,
+    /// The first object without a material, and how many there are.
+    bare: Option<(Span, usize)>,
 }
 
 impl Flattening<'_, '_> {
+    /// Says once that objects have no material.
+    fn warn_of_bare(&mut self) {
+        let Some((span, count)) = self.bare else { return };
+        let mut message = "this object has no material, and is drawn in plain grey".to_string();
+        match count {
+            1 => {}
+            2 => message += "; so is another",
+            n => message += &format!("; so are {} others", n - 1),
+        }
+        self.diagnostics.push(Diagnostic::warning(message).at(span).help("write `MaterialIndex 0` before it"));
+    }
+
     fn group(&mut self, group: &Group, to_world: DAffine3) {
         for object in &group.objects {
             self.object(object, to_world);
@@ -225,8 +242,7 @@ impl Flattening<'_, '_> {
             Some(index) if index < self.material_count => index,
             index => {
                 if index.is_none() {
-                    let warning = Diagnostic::warning("this object has no material, and is drawn in plain grey");
-                    self.diagnostics.push(warning.at(object.span).help("write `MaterialIndex 0` before it"));
+                    self.bare.get_or_insert((object.span, 0)).1 += 1;
                 }
                 self.plain_needed = true;
                 self.material_count

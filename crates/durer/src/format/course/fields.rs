@@ -1,10 +1,12 @@
 //! Reading the fields of any described thing.
 
 use super::lexer::TokenKind;
-use super::reader::Reader;
+use super::reader::{Reader, names};
+use super::words::begins_block;
 use crate::describe::{DescribedList, Field, FileName, Kind, Rule, Value};
-use crate::diag::{Diagnostic, Span, did_you_mean};
-use crate::dialect::DialectSet;
+use crate::diag::{Diagnostic, Span};
+use crate::dialect::{Dialect, DialectSet};
+use crate::format::report::shown;
 use crate::math::Vec3;
 
 /// Whether the old parsers wanted the fields in the order in which they are listed.
@@ -23,18 +25,30 @@ impl Reader<'_, '_> {
         order: Order,
         mut extra: impl FnMut(&mut Self, &str, Span) -> bool,
     ) {
+        let errors = self.errors();
         let name = self.text(keyword);
-        if !self.open(&name) {
+        if !self.open(keyword) {
             return;
         }
         let fields = thing.fields();
         let mut given = vec![None; fields.len()];
         let mut last = 0;
-        while let Some((word, span)) = self.word_before_close(&name) {
+        while let Some((word, span)) = self.word_before_close() {
             let Some(index) = self.field_of(fields, &given, &word) else {
-                if !extra(self, &word, span) {
-                    self.unknown_field(fields, &name, &word, span);
+                if extra(self, &word, span) {
+                    if order == Order::Listed && given.iter().any(Option::is_some) && self.options.strict {
+                        self.error(Diagnostic::error(format!("`{word}` must come first in `{name}`")).at(span));
+                    }
+                    continue;
                 }
+                let block = begins_block(&word) && (self.at_open() || word == "MaterialIndex");
+                if block && !self.goes_on_after(fields) {
+                    self.step_back();
+                    self.unclosed();
+                    return;
+                }
+                let after_path = fields.get(last).is_some_and(|f| f.kind == Kind::Path) && given[last].is_some();
+                self.unknown_field(fields, &name, &word, span, after_path);
                 continue;
             };
             let field = &fields[index];
@@ -54,8 +68,12 @@ impl Reader<'_, '_> {
             if let Some(value) = self.value(field, &word, span) {
                 thing.set(index, value);
             } else {
-                self.skip_values(fields);
+                self.skip_values();
             }
+        }
+        // A wrong word may have been meant for a field that seems to be missing.
+        if self.errors() > errors {
+            return;
         }
         let dialect = self.options.dialect;
         for (field, _) in fields.iter().zip(&given).filter(|(f, g)| f.required && g.is_none()) {
@@ -73,55 +91,73 @@ impl Reader<'_, '_> {
         let all =
             |test: &dyn Fn(&Field) -> bool| -> Vec<usize> { (0..fields.len()).filter(|&i| test(&fields[i])).collect() };
         let mut candidates = all(&native);
+        // 2020's `attenuation` is one number, 2004's is three: their count tells which is meant.
+        let numbers = (0..3).take_while(|&i| self.number_ahead(i)).count();
+        let fits = |f: &Field| match f.kind {
+            Kind::Float => numbers == 1,
+            Kind::Vec3 => numbers == 3,
+            _ => true,
+        };
+        if !candidates.iter().any(|&i| fits(&fields[i])) {
+            let other = all(&|f| named(f) && fits(f));
+            candidates = if other.is_empty() { candidates } else { other };
+        }
         if candidates.is_empty() {
             candidates = all(&named);
         }
+        // Only fields that are spelled alike everywhere share a word: the two `materialIndex`, say.
+        let first = *candidates.first()?;
+        candidates.retain(|&i| fields[i].spellings == fields[first].spellings);
         candidates.iter().copied().find(free).or(candidates.last().copied())
     }
 
-    fn unknown_field(&mut self, fields: &[Field], name: &str, word: &str, span: Span) {
-        let known: Vec<&str> = fields.iter().flat_map(|f| f.spellings.iter().map(|s| s.0)).collect();
-        let mut error = Diagnostic::error(format!("`{name}` has no field `{word}`")).at(span).label("not known here");
-        error = match did_you_mean(word, known.iter().copied()) {
-            Some(near) => error.help(format!("did you mean `{near}`?")),
-            None => {
-                let mut words: Vec<&str> = Vec::new();
-                for field in fields {
-                    if let Some(word) = field.spelling(self.options.dialect)
-                        && !words.contains(&word)
-                    {
-                        words.push(word);
-                    }
-                }
-                error.help(format!("its fields are {}", words.join(", ")))
-            }
-        };
-        self.error(error);
-        self.skip_values(fields);
+    /// Whether the token so many further on is a number.
+    fn number_ahead(&self, count: usize) -> bool {
+        let token = self.ahead(count).filter(|t| t.kind == TokenKind::Word);
+        token.is_some_and(|t| self.text(t.span).parse::<f32>().is_ok())
     }
 
-    /// After an error: passes over what cannot be a field, and over a whole block.
-    fn skip_values(&mut self, fields: &[Field]) {
-        while let Some(token) = self.peek() {
-            match token.kind {
-                TokenKind::Close => return,
-                TokenKind::Open => self.skip_block(),
-                _ => {
-                    let word = self.text(token.span);
-                    let field = fields.iter().any(|f| f.spellings.iter().any(|s| s.0 == word));
-                    let number = word.bytes().next().is_some_and(|b| !b.is_ascii_alphabetic());
-                    if field || !number {
-                        return;
-                    }
-                    self.advance();
-                }
+    /// Whether the same thing goes on after the block or the number that comes next.
+    fn goes_on_after(&self, fields: &[Field]) -> bool {
+        let mut depth = 0usize;
+        for i in 0.. {
+            match self.ahead(i).map(|t| t.kind) {
+                Some(TokenKind::Open) => depth += 1,
+                Some(TokenKind::Close) => depth = depth.saturating_sub(1),
+                None => return false,
+                _ => {}
+            }
+            if depth == 0 {
+                let Some(next) = self.ahead(i + 1) else { return false };
+                let word = self.text(next.span);
+                let field = fields.iter().any(|f| f.spellings.iter().any(|(w, _)| *w == word));
+                return field || !self.at_open() && next.kind == TokenKind::Close;
             }
         }
+        false
+    }
+
+    fn unknown_field(&mut self, fields: &[Field], name: &str, word: &str, span: Span, after_path: bool) {
+        let known = fields.iter().flat_map(|f| f.spellings.iter().map(|s| s.0));
+        let help = self.advice(word, known).unwrap_or_else(|| {
+            let mut words: Vec<&str> = fields.iter().filter_map(|f| f.spelling(self.options.dialect)).collect();
+            words.dedup();
+            match after_path {
+                true => "a path ends at the first blank".into(),
+                false => format!("its fields are {}", words.join(", ")),
+            }
+        });
+        let message = match word.parse::<f32>() {
+            Ok(_) => format!("{} is a number too many in `{name}`", shown(word.as_bytes())),
+            Err(_) => format!("`{name}` has no field {}", shown(word.as_bytes())),
+        };
+        self.error(Diagnostic::error(message).at(span).label("not known here").help(help));
+        self.skip_value();
     }
 
     /// Reads a value of a field's kind and checks its rule.
     fn value(&mut self, field: &Field, word: &str, keyword: Span) -> Option<Value> {
-        let start = self.peek().map(|t| t.span);
+        let start = self.peek().map_or(keyword, |t| t.span);
         let value = match field.kind {
             Kind::Float => Value::Float(self.number(word, 1, 1)?),
             Kind::Int => Value::Int(self.whole(word)?),
@@ -139,7 +175,7 @@ impl Reader<'_, '_> {
         if field.rule != Rule::Any
             && let Some(violation) = field.rule.violation(&value)
         {
-            let span = start.unwrap_or(keyword).to(self.last_span());
+            let span = start.to(self.last_span());
             self.error(Diagnostic::error(format!("`{word}` {violation}")).at(span));
         }
         Some(value)
@@ -155,24 +191,19 @@ impl Reader<'_, '_> {
 
     /// A whole number, zero or more.
     pub(super) fn whole(&mut self, word: &str) -> Option<u32> {
-        let token = self.peek().filter(|t| t.kind == TokenKind::Word);
-        let text = token.map(|t| self.text(t.span)).unwrap_or_default();
-        match text.parse::<u32>() {
-            Ok(value) => {
+        let value = self.peek_word().and_then(|text| text.parse().ok());
+        match value {
+            Some(_) => {
                 self.advance();
-                Some(value)
             }
-            Err(_) => {
-                self.expected("a whole number", word);
-                None
-            }
+            None => self.expected("a whole number", word),
         }
+        value
     }
 
     /// The i-th of `count` finite numbers.
     pub(super) fn number(&mut self, word: &str, i: usize, count: usize) -> Option<f32> {
-        let token = self.peek().filter(|t| t.kind == TokenKind::Word);
-        let text = token.map(|t| self.text(t.span)).unwrap_or_default();
+        let text = self.peek_word().unwrap_or_default();
         // Rust also parses words such as `inf` and `nan`: a number has a digit first.
         let numeric = text.trim_start_matches(['+', '-', '.']).starts_with(|c: char| c.is_ascii_digit());
         match text.parse::<f32>() {
@@ -182,8 +213,9 @@ impl Reader<'_, '_> {
             }
             Ok(_) if numeric => {
                 let span = self.advance();
-                self.error(Diagnostic::error(format!("`{text}` is too large a number")).at(span));
-                Some(0.0)
+                let error = Diagnostic::error(format!("{} is too large a number", shown(text.as_bytes()))).at(span);
+                self.error(error.help("numbers must be within about ±3.4e38"));
+                None
             }
             _ => {
                 let what = if count == 1 { "a number".into() } else { format!("number {i} of {count}") };
@@ -195,27 +227,49 @@ impl Reader<'_, '_> {
 
     /// Reports that something else stands where a value should.
     pub(super) fn expected(&mut self, what: &str, after: &str) {
-        let (found, span) = match self.peek() {
-            Some(token) => (format!("found `{}`", self.text(token.span)), token.span),
-            None => ("the file ends".into(), self.end_span()),
+        let Some(token) = self.peek() else {
+            let message = format!("`{after}` needs {what}, but the file ends");
+            self.error(Diagnostic::error(message).at(self.end_span()).label(format!("{what} expected")));
+            return self.stop();
         };
-        let message = format!("`{after}` needs {what}, but {found}");
-        self.error(Diagnostic::error(message).at(span).label(format!("{what} expected")));
+        let text = self.text(token.span);
+        let message = format!("`{after}` needs {what}, but found {}", shown(text.as_bytes()));
+        let error = Diagnostic::error(message).at(token.span).label(format!("{what} expected"));
+        self.error(match number_help(&text) {
+            Some(help) if what.contains("number") => error.help(help),
+            _ => error,
+        });
     }
 
     /// A word that this dialect does not have: refused if strict, else taken with a warning, once.
     pub(super) fn foreign(&mut self, word: &str, span: Span, set: DialectSet) {
         let dialect = self.options.dialect;
-        if dialect.is_in(set) || dialect == crate::dialect::Dialect::Durer && !self.options.strict {
+        if dialect.is_in(set) || dialect == Dialect::Durer && !self.options.strict {
             return;
         }
-        let years: Vec<&str> = crate::dialect::Dialect::ALL.iter().filter(|d| d.is_in(set)).map(|d| d.name()).collect();
-        let years = if years.is_empty() { "no dialect".to_string() } else { years.join(", ") };
-        let message = format!("`{word}` is not a word of {}, but of {years}", dialect.name());
+        if !self.options.strict && !self.foreign_seen.insert(word.to_string()) {
+            return;
+        }
+        let message = format!("`{word}` is not a word of {}, but of {}", dialect.name(), names(set));
         if self.options.strict {
             self.error(Diagnostic::error(message).at(span));
-        } else if self.foreign_seen.insert(word.to_string()) {
+        } else {
             self.diagnostics.push(Diagnostic::warning(message).at(span));
         }
+    }
+}
+
+/// What may be meant by a word that should have been a number.
+fn number_help(text: &str) -> Option<String> {
+    let is_number = |text: &str| !text.is_empty() && text.parse::<f32>().is_ok();
+    let bare = text.trim_matches(['(', ')', ',', ';', '<', '>', '[', ']', 'f', 'F']);
+    if is_number(&bare.replace(',', ".")) && bare.contains(',') && !bare.contains('.') {
+        Some("decimals are written with a point, and nothing stands between numbers but blanks".into())
+    } else if bare.contains(',') || bare != text && is_number(bare) {
+        Some("numbers stand alone, with blanks between them: `1 0.5 0`".into())
+    } else if text.starts_with("0x") || text.starts_with("0X") {
+        Some("numbers are written in decimal".into())
+    } else {
+        None
     }
 }

@@ -1,15 +1,9 @@
 //! Which dialect a scene is written in, and why.
 
 use super::lexer::{TokenKind, tokens};
-use crate::camera::Camera;
-use crate::describe::DescribedList;
+use super::words::dialects_of;
 use crate::diag::{Diagnostic, Span};
 use crate::dialect::{Dialect, DialectSet, set};
-use crate::light::Light;
-use crate::material::{ColorNoise, PhongMaterial, Solid};
-use crate::scene::Background;
-use crate::shape::{Primitive, TriangleMesh};
-use std::collections::HashMap;
 
 /// What something else than the file says of its dialect.
 #[derive(Clone, Debug)]
@@ -53,9 +47,8 @@ const PREFERENCE: [Dialect; 6] =
 
 /// Guesses the dialect of a scene from its words. `exists` tells whether a file that it names is there.
 pub fn guess(bytes: &[u8], file: u32, hints: &[Hint], exists: &dyn Fn(&str) -> bool) -> Guess {
-    let vocabulary = vocabulary();
     let mut left = set::ALL & !set::DURER;
-    let mut reasons = Vec::new();
+    let mut reasons: Vec<(DialectSet, String, Option<Span>)> = Vec::new();
     let tokens = tokens(bytes, file);
     let text = |i: usize| {
         let span = tokens.get(i).map_or(Span::default(), |t| t.span);
@@ -64,15 +57,15 @@ pub fn guess(bytes: &[u8], file: u32, hints: &[Hint], exists: &dyn Fn(&str) -> b
     let mut narrow = |keep: DialectSet, why: String, span: Option<Span>| {
         if left & keep != left {
             left &= keep;
-            reasons.push((why, span));
+            reasons.push((keep, why, span));
         }
     };
     let has_section = (0..tokens.len()).any(|i| text(i) == "Materials");
     for (i, token) in tokens.iter().enumerate() {
         let word = text(i);
         let braced = tokens.get(i + 1).is_some_and(|t| t.kind == TokenKind::Open);
-        let (keep, why) = if token.kind == TokenKind::Comment {
-            (0, "it has comments, which the course's language lacks".into())
+        let (keep, why) = if token.kind != TokenKind::Word {
+            continue;
         } else if braced && matches!(&*word, "Translate" | "Scale" | "XRotate" | "YRotate" | "ZRotate") {
             (set::F03, format!("`{word} {{` with a brace is 2003's"))
         } else if braced && !has_section && matches!(&*word, "Material" | "PhongMaterial") {
@@ -81,16 +74,30 @@ pub fn guess(bytes: &[u8], file: u32, hints: &[Hint], exists: &dyn Fn(&str) -> b
             (set::F16, "its cube map is of PNG files".into())
         } else if word == "cubeMap" && exists(&format!("{}/left.bmp", text(i + 1))) {
             (set::F12A5, "its cube map is of BMP files".into())
-        } else if let Some(&set) = vocabulary.get(&*word) {
+        } else if let Some(set) = dialects_of(&word).filter(|set| *set != set::F23 || is_telling(&word)) {
             (set, format!("`{word}` is a word of {}", names(set)))
         } else {
             continue;
         };
         narrow(keep, why, Some(token.span));
     }
+    if let Some(comment) = tokens.iter().find(|token| token.kind == TokenKind::Comment) {
+        // Ours has no nodes: a file of nodes stays one.
+        let nodes = (0..tokens.len()).any(|i| text(i) == "Scene" || text(i).starts_with("Component<"));
+        let keep = if nodes { set::F23 } else { 0 };
+        narrow(keep, "it has comments, which the course's language lacks".into(), Some(comment.span));
+    }
     for hint in hints {
         narrow(hint.set, hint.why.clone(), None);
     }
+    // Reasons that later ones make needless are not told.
+    for i in (0..reasons.len()).rev() {
+        let others = reasons.iter().enumerate().filter(|(j, _)| *j != i);
+        if others.fold(set::ALL & !set::DURER, |left, (_, reason)| left & reason.0) == left {
+            reasons.remove(i);
+        }
+    }
+    let reasons = reasons.into_iter().map(|(_, why, span)| (why, span)).collect();
     let mut candidates = PREFERENCE.into_iter().filter(|d| d.is_in(left));
     let dialect = candidates.next().unwrap_or(Dialect::Durer);
     Guess { dialect, reasons, others: candidates.collect() }
@@ -102,41 +109,7 @@ fn names(set: DialectSet) -> String {
     if names.is_empty() { Dialect::Durer.name().into() } else { names.join(", ") }
 }
 
-/// Every keyword of the language, and the dialects that have it in some place.
-fn vocabulary() -> HashMap<&'static str, DialectSet> {
-    let mut words = HashMap::new();
-    list::<Camera>(&mut words);
-    list::<Light>(&mut words);
-    list::<Primitive>(&mut words);
-    list::<Solid>(&mut words);
-    list::<PhongMaterial>(&mut words);
-    list::<ColorNoise>(&mut words);
-    list::<TriangleMesh>(&mut words);
-    list::<Background>(&mut words);
-    let grammar = [
-        ("num_objects", set::F03),
-        ("Lights", set::CLASSIC),
-        ("Group", set::CLASSIC),
-        ("MaterialIndex", set::CLASSIC),
-        ("Matrix", set::OLD | set::DURER),
-        ("Matrix4f", set::NEW | set::DURER),
-        ("Scene", set::F23),
-        ("Node", set::F23),
-        ("Component<Object>", set::F23),
-    ];
-    for (word, set) in grammar {
-        *words.entry(word).or_insert(0) |= set;
-    }
-    // 2020's `sphere` or `point` may be anybody's file name.
-    words.retain(|word, bits| *bits != set::F23 || word.contains(['<', '_']) || word.starts_with(char::is_uppercase));
-    words
-}
-
-fn list<T: DescribedList>(words: &mut HashMap<&'static str, DialectSet>) {
-    for kind in T::kinds() {
-        let spellings = kind.fields().iter().flat_map(|field| field.spellings);
-        for (word, set) in kind.keywords().iter().chain(spellings) {
-            *words.entry(word).or_insert(0) |= set;
-        }
-    }
+/// Whether a word of 2020's alone shows that year: `sphere` or `point` may be anybody's file name.
+fn is_telling(word: &str) -> bool {
+    word.contains(['<', '_']) || word.starts_with(char::is_uppercase)
 }

@@ -24,7 +24,7 @@ pub(super) struct Token {
     pub touches: bool,
 }
 
-/// Cuts a file into tokens. `#` at the start of a word begins a comment.
+/// Cuts a file into tokens. `#` or `//` at the start of a word begins a comment.
 pub(super) fn tokens(bytes: &[u8], file: u32) -> Vec<Token> {
     let mut tokens = Vec::new();
     let mut at = 0;
@@ -43,6 +43,7 @@ pub(super) fn tokens(bytes: &[u8], file: u32) -> Vec<Token> {
             b'{' => TokenKind::Open,
             b'}' => TokenKind::Close,
             b'#' => TokenKind::Comment,
+            b'/' if bytes.get(at + 1) == Some(&b'/') => TokenKind::Comment,
             _ => TokenKind::Word,
         };
         at += match kind {

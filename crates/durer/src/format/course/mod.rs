@@ -5,7 +5,10 @@ pub mod guess;
 mod lexer;
 mod nodes;
 mod reader;
+mod recover;
+mod sections;
 mod transform;
+mod words;
 pub mod write;
 
 use crate::diag::{Diagnostic, Diagnostics};
@@ -41,3 +44,6 @@ pub fn read(bytes: &[u8], file: u32, options: ReadOptions, diagnostics: &mut Dia
     diagnostics.extend(own);
     (!failed).then_some(scene)
 }
+
+#[cfg(test)]
+mod tests;

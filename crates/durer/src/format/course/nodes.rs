@@ -1,41 +1,40 @@
 //! The grammar of 2020 to 2023: a tree of nodes with components.
 
 use super::fields::Order;
-use super::lexer::TokenKind;
 use super::reader::Reader;
 use crate::camera::Camera;
 use crate::describe::DescribedList;
-use crate::diag::{Diagnostic, Span};
+use crate::diag::{Diagnostic, Span, did_you_mean};
+use crate::format::report::shown;
 use crate::light::Light;
 use crate::math::Vec3;
 use crate::scene::{Group, MatrixOp, Node, Object, Spanned};
 use crate::shape::{Primitive, TriangleMesh};
-use glam::DAffine3;
+use glam::DVec3;
 
 impl Reader<'_, '_> {
     /// The whole file.
     pub(super) fn nodes_file(&mut self) {
-        const SECTIONS: [&str; 4] = ["Camera", "Background", "Materials", "Scene"];
         self.scene.lights = Some(Vec::new());
-        while let Some(token) = self.peek() {
-            self.advance();
-            let (word, span) = (self.text(token.span), token.span);
-            match word.as_str() {
-                "Camera" => self.camera(Camera::Perspective(Default::default()), span),
-                "Background" => self.background(span),
-                "Materials" => self.node_materials(span),
-                "Scene" => self.root_node(span),
-                _ => self.unknown(&word, span, "at the top of a scene", &SECTIONS),
+        self.top(&["Camera", "Background", "Materials", "Scene"], |reader, word, span| {
+            match word {
+                "Camera" => reader.camera(Camera::Perspective(Default::default()), span),
+                "OrthographicCamera" => reader.camera(Camera::Orthographic(Default::default()), span),
+                "Background" => reader.background(span),
+                "Materials" => reader.node_materials(span),
+                "Scene" => reader.root_node(span),
+                _ => return false,
             }
-        }
+            true
+        });
     }
 
     fn node_materials(&mut self, keyword: Span) {
-        let name = self.text(keyword);
-        if !self.open(&name) {
+        self.scene.materials.clear();
+        if !self.open(keyword) {
             return;
         }
-        while let Some((word, span)) = self.word_before_close(&name) {
+        while let Some((word, span)) = self.word_before_close() {
             if let Some(value) = self.material(&word, span) {
                 self.scene.materials.push(Spanned { value, span });
             }
@@ -43,69 +42,72 @@ impl Reader<'_, '_> {
     }
 
     fn root_node(&mut self, keyword: Span) {
-        let mut objects = Vec::new();
-        self.node(keyword, DAffine3::IDENTITY, None, &mut objects);
-        self.scene.root = Some(Group { objects });
+        let mut inside = self.node(keyword);
+        let to_world = MatrixOp::product(inside.ops.as_deref().unwrap_or_default(), false);
+        let lights = std::mem::take(&mut inside.lights).into_iter().map(|(mut light, position)| {
+            if let Light::Point(point) = &mut light.value {
+                point.position = to_world.transform_point3(position).as_vec3();
+            }
+            light
+        });
+        self.scene.lights = Some(lights.collect());
+        self.scene.root = match inside.ops {
+            None => Some(Group { objects: inside.objects }),
+            Some(_) => Some(Group { objects: inside.object(keyword).into_iter().collect() }),
+        };
     }
 
-    /// One node: its transform, its components and its nodes, added to `objects` as one transformed group.
-    fn node(&mut self, keyword: Span, outer: DAffine3, material: Option<u32>, objects: &mut Vec<Object>) {
+    /// Reads one node: its transform, its components and its nodes, in any order.
+    fn node(&mut self, keyword: Span) -> Inside {
         const KNOWN: [&str; 5] = ["Node", "Transform", "Component<Material>", "Component<Light>", "Component<Object>"];
-        let name = self.text(keyword);
-        if self.depth >= 200 {
-            self.error(Diagnostic::error("nodes are nested deeper than 200").at(keyword));
-            return self.skip_block();
+        let mut inside = Inside::default();
+        if !self.descend("nodes", keyword) || !self.open(keyword) {
+            return inside;
         }
-        if !self.open(&name) {
-            return;
-        }
-        self.depth += 1;
-        let mut ops: Vec<MatrixOp> = Vec::new();
-        let mut material = material;
-        let mut inner = Vec::new();
-        // Children are read with the transform known so far; the official files write it first.
-        while let Some((word, span)) = self.word_before_close(&name) {
+        let mut material_span = None;
+        while let Some((word, span)) = self.word_before_close() {
             match word.as_str() {
-                "Transform" => ops = self.node_matrices(),
-                "Node" => self.node(span, outer * MatrixOp::product(&ops, false), material, &mut inner),
-                "Component<Material>" => {
-                    material = self.component_index(&word, span).or(material);
+                "Transform" => {
+                    let ops = self.node_matrices(span);
+                    inside.ops.get_or_insert_default().extend(ops);
                 }
-                "Component<Light>" => self.component_light(&word, span, outer * MatrixOp::product(&ops, false)),
-                "Component<Object>" => {
-                    if let Some(node) = self.component_object(&word, span) {
-                        inner.push(Object { node, material: None, span });
+                "Node" => {
+                    let child = self.node(span);
+                    inside.has_nodes = true;
+                    let to_outer = MatrixOp::product(child.ops.as_deref().unwrap_or_default(), false);
+                    let lights = child.lights.iter().map(|(light, p)| (light.clone(), to_outer.transform_point3(*p)));
+                    inside.lights.extend(lights);
+                    inside.objects.extend(child.object(span));
+                }
+                "Component<Material>" => {
+                    if let Some(first) = material_span.replace(span) {
+                        let warning = Diagnostic::warning("a node has one material; the last counts").at(span);
+                        self.diagnostics.push(warning.related(first, "the first is here"));
                     }
+                    inside.material = self.component_index(span).or(inside.material);
+                }
+                "Component<Light>" => inside.lights.extend(self.component_light(span)),
+                "Component<Object>" => {
+                    let node = self.component_object(span);
+                    inside.objects.extend(node.map(|node| Object { node, material: None, span }));
                 }
                 _ => self.unknown(&word, span, "in a node", &KNOWN),
             }
         }
         self.depth -= 1;
-        // A material may be written after the object that it belongs to; nodes inside have their own already.
-        for object in &mut inner {
-            if object.material.is_none() {
-                object.material = material;
-            }
+        if let Some(material) = inside.material {
+            inside.objects.iter_mut().for_each(|object| paint(object, material));
         }
-        let node = match (inner.len(), ops.is_empty()) {
-            (0, _) => return,
-            (_, true) => return objects.append(&mut inner),
-            (1, false) => Node::Transform(ops, Box::new(inner.remove(0))),
-            (_, false) => {
-                let group = Object { node: Node::Group(Group { objects: inner }), material, span: keyword };
-                Node::Transform(ops, Box::new(group))
-            }
-        };
-        objects.push(Object { node, material, span: keyword });
+        inside
     }
 
-    fn node_matrices(&mut self) -> Vec<MatrixOp> {
+    fn node_matrices(&mut self, keyword: Span) -> Vec<MatrixOp> {
         const KNOWN: [&str; 7] = ["translate", "scale", "x_rotate", "y_rotate", "z_rotate", "uniform_scale", "rotate"];
         let mut ops = Vec::new();
-        if !self.open("Transform") {
+        if !self.open(keyword) {
             return ops;
         }
-        while let Some((word, span)) = self.word_before_close("Transform") {
+        while let Some((word, span)) = self.word_before_close() {
             let op = match word.as_str() {
                 "translate" => self.vec3(&word).map(MatrixOp::Translate),
                 "scale" => self.vec3(&word).map(MatrixOp::Scale),
@@ -114,90 +116,92 @@ impl Reader<'_, '_> {
                 "y_rotate" => self.number(&word, 1, 1).map(MatrixOp::YRotate),
                 "z_rotate" => self.number(&word, 1, 1).map(MatrixOp::ZRotate),
                 "rotate" => self.vec3(&word).and_then(|axis| Some(MatrixOp::Rotate(axis, self.number(&word, 1, 1)?))),
+                // What nodes have no word for is written as in the years before.
+                "Matrix4f" => self.matrix(&word, span).flatten(),
                 _ => {
                     self.unknown(&word, span, "in a transform", &KNOWN);
-                    None
+                    continue;
                 }
             };
+            if op.is_none() {
+                self.skip_values();
+            }
+            self.check_flat(op, span);
             ops.extend(op);
         }
         ops
     }
 
-    fn component_index(&mut self, name: &str, keyword: Span) -> Option<u32> {
-        if !self.open(name) {
+    fn component_index(&mut self, keyword: Span) -> Option<u32> {
+        let errors = self.errors();
+        if !self.open(keyword) {
             return None;
         }
         let mut index = None;
-        while let Some((word, span)) = self.word_before_close(name) {
+        while let Some((word, span)) = self.word_before_close() {
             if word != "index" {
                 self.unknown(&word, span, "in a material component", &["index"]);
                 continue;
             }
             index = self.whole(&word);
-            if let Some(index) = index {
-                self.material_uses.push((index, span.to(self.last_span())));
+            match index {
+                Some(index) => self.material_uses.push((index, span.to(self.last_span()))),
+                None => self.skip_values(),
             }
         }
-        if index.is_none() && !self.diagnostics.has_errors() {
-            self.error(Diagnostic::error(format!("`{name}` has no `index`")).at(keyword));
+        if index.is_none() && self.errors() == errors {
+            let message = format!("`{}` has no `index`", self.text(keyword));
+            self.error(Diagnostic::error(message).at(keyword));
         }
         index
     }
 
     /// The `type` of a component, whose `{` is left to be read by its fields.
-    fn component_type(&mut self, name: &str, known: &[&str]) -> Option<String> {
+    fn component_type(&mut self, keyword: Span, known: &[&str]) -> Option<String> {
         // The word after `{ type` is known before any field is read: type comes first in every file.
-        let at = |reader: &Self, i: usize| reader.ahead(i).map(|t| reader.text(t.span));
-        let is_type = at(self, 1).as_deref() == Some("type");
-        let found = at(self, 2).filter(|_| is_type);
-        match found {
-            Some(kind) if known.contains(&kind.as_str()) => Some(kind),
-            Some(kind) => {
-                self.advance();
-                self.advance();
-                let span = self.advance();
-                self.unknown(&kind, span, &format!("as a type of `{name}`"), known);
-                self.rewind_to_block();
-                None
-            }
-            None => {
-                let span = self.peek().map_or(self.end_span(), |t| t.span);
-                self.error(Diagnostic::error(format!("`{name}` must begin with its `type`")).at(span));
+        let name = self.text(keyword);
+        let at = |reader: &Self, i: usize| reader.ahead(i).map(|t| (reader.text(t.span), t.span));
+        let first = at(self, usize::from(self.at_open()));
+        let Some((_, first_span)) = first.filter(|(word, _)| word == "type") else {
+            let span = at(self, 1).map_or(keyword, |(_, span)| span);
+            let error = Diagnostic::error(format!("`{name}` must begin with its `type`")).at(span);
+            self.error(error.help(format!("types are {}", known.join(", "))));
+            if self.at_open() {
                 self.skip_block();
-                None
             }
+            return None;
+        };
+        let (kind, span) = at(self, 1 + usize::from(self.at_open())).unwrap_or((String::new(), first_span));
+        if known.contains(&kind.as_str()) {
+            return Some(kind);
         }
+        let error = Diagnostic::error(format!("`{name}` has no type {}", shown(kind.as_bytes()))).at(span);
+        let list = format!("types are {}", known.join(", "));
+        self.error(
+            error.help(
+                did_you_mean(&kind, known.iter().copied()).map_or(list, |near| format!("did you mean `{near}`?")),
+            ),
+        );
+        if self.at_open() {
+            self.skip_block();
+        }
+        None
     }
 
-    /// After an unknown type: passes over the rest of the component.
-    fn rewind_to_block(&mut self) {
-        while let Some(token) = self.peek() {
-            match token.kind {
-                TokenKind::Open => self.skip_block(),
-                TokenKind::Close => {
-                    self.advance();
-                    return;
-                }
-                _ => {
-                    self.advance();
-                }
-            }
-        }
-    }
-
-    fn component_light(&mut self, name: &str, keyword: Span, to_world: DAffine3) {
-        let Some(kind) = self.component_type(name, &["point", "directional"]) else { return };
-        let Some(mut light) = Light::from_keyword(&kind) else { return };
+    /// A light, placed as if its node were the whole scene, and its place there in full precision.
+    fn component_light(&mut self, keyword: Span) -> Option<(Spanned<Light>, DVec3)> {
+        let kind = self.component_type(keyword, &["point", "directional"])?;
+        let mut light = Light::from_keyword(&kind)?;
         if let Light::Point(point) = &mut light {
-            point.position = to_world.translation.as_vec3();
+            point.position = Vec3::ZERO;
         }
         self.component_fields(&mut light, keyword);
-        self.scene.lights.get_or_insert_default().push(Spanned { value: light, span: keyword });
+        let position = if let Light::Point(point) = &light { point.position.as_dvec3() } else { DVec3::ZERO };
+        Some((Spanned { value: light, span: keyword }, position))
     }
 
-    fn component_object(&mut self, name: &str, keyword: Span) -> Option<Node> {
-        let kind = self.component_type(name, &["sphere", "plane", "triangle", "mesh"])?;
+    fn component_object(&mut self, keyword: Span) -> Option<Node> {
+        let kind = self.component_type(keyword, &["sphere", "plane", "triangle", "mesh"])?;
         if kind == "mesh" {
             let mut mesh = TriangleMesh::default();
             self.component_fields(&mut mesh, keyword);
@@ -220,5 +224,46 @@ impl Reader<'_, '_> {
             }
             is_type
         });
+    }
+}
+
+/// What a node holds.
+#[derive(Default)]
+struct Inside {
+    /// Its own matrices; `None` without a `Transform`.
+    ops: Option<Vec<MatrixOp>>,
+    material: Option<u32>,
+    objects: Vec<Object>,
+    /// Its lights and those of its nodes, and where they are in its own space.
+    lights: Vec<(Spanned<Light>, DVec3)>,
+    has_nodes: bool,
+}
+
+impl Inside {
+    /// The node as one object; `None` if it is there for its lights alone.
+    fn object(self, span: Span) -> Option<Object> {
+        let Inside { ops, material, mut objects, lights, has_nodes } = self;
+        if objects.is_empty() && !lights.is_empty() {
+            return None;
+        }
+        let alone = objects.len() == 1 && (ops.is_some() || !has_nodes);
+        let inner = match alone.then(|| objects.pop()).flatten() {
+            Some(object) => object,
+            None => Object { node: Node::Group(Group { objects }), material, span },
+        };
+        Some(match ops {
+            Some(ops) => Object { node: Node::Transform(ops, Box::new(inner)), material, span },
+            None => inner,
+        })
+    }
+}
+
+/// Gives a node's material to what has none of its own: it may be written after the objects.
+fn paint(object: &mut Object, material: u32) {
+    object.material.get_or_insert(material);
+    match &mut object.node {
+        Node::Group(group) => group.objects.iter_mut().for_each(|object| paint(object, material)),
+        Node::Transform(_, inner) => paint(inner, material),
+        Node::Primitive(_) | Node::Mesh(_) => {}
     }
 }

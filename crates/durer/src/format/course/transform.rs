@@ -2,6 +2,8 @@
 
 use super::lexer::TokenKind;
 use super::reader::Reader;
+use super::sections::IN_GROUP;
+use super::words::home_of;
 use crate::diag::{Diagnostic, Span};
 use crate::dialect::{Dialect, set};
 use crate::math::Vec3;
@@ -12,40 +14,48 @@ const MATRICES: [&str; 8] = ["Translate", "Scale", "UniformScale", "XRotate", "Y
 impl Reader<'_, '_> {
     /// `Transform { matrix ... object }`.
     pub(super) fn transform(&mut self, keyword: Span) -> Option<Node> {
-        if !self.open("Transform") {
+        let errors = self.errors();
+        if !self.open(keyword) {
             return None;
         }
-        let mut ops = Vec::new();
-        let mut object = None;
-        while let Some((word, span)) = self.word_before_close("Transform") {
+        let (mut ops, mut object, mut objects) = (Vec::new(), None, 0);
+        let mut late = false;
+        while let Some((word, span)) = self.word_before_close() {
             if let Some(op) = self.matrix(&word, span) {
-                if object.is_some() {
+                if objects > 0 && !late {
+                    late = true;
                     let message = "a transform's matrices come before its object";
                     self.error(Diagnostic::error(message).at(span));
                 }
+                self.check_flat(op, span);
                 ops.extend(op);
             } else if word == "MaterialIndex" {
                 let error = Diagnostic::error("`MaterialIndex` cannot stand in a `Transform`").at(span);
                 self.error(error.help("write it before the `Transform`"));
-                self.whole(&word);
-            } else if object.is_none() {
-                object = self.object(&word, span);
+                self.skip_value();
+            } else if home_of(&word) != Some("Group") {
+                let known: Vec<&str> = MATRICES.into_iter().chain(IN_GROUP.into_iter().take(6)).collect();
+                self.unknown(&word, span, "in a transform", &known);
             } else {
-                let error = Diagnostic::error("a `Transform` has exactly one object").at(span);
-                self.error(error.help("put several objects into a `Group`"));
-                self.object(&word, span);
+                objects += 1;
+                if objects == 2 {
+                    let error = Diagnostic::error("a `Transform` has exactly one object").at(span);
+                    self.error(error.help("put several objects into a `Group`"));
+                }
+                let read = self.object(&word, span);
+                object = object.or(read);
             }
         }
-        if object.is_none() && !self.diagnostics.has_errors() {
+        if object.is_none() && self.errors() == errors {
             self.error(Diagnostic::error("this `Transform` has no object").at(keyword));
         }
         Some(Node::Transform(ops, Box::new(object?)))
     }
 
     /// The matrices of a block whose `{` is read.
-    pub(super) fn matrices(&mut self, block: &str) -> Vec<MatrixOp> {
+    pub(super) fn matrices(&mut self) -> Vec<MatrixOp> {
         let mut ops = Vec::new();
-        while let Some((word, span)) = self.word_before_close(block) {
+        while let Some((word, span)) = self.word_before_close() {
             match self.matrix(&word, span) {
                 Some(op) => ops.extend(op),
                 None => self.unknown(&word, span, "among matrices", &MATRICES),
@@ -54,29 +64,48 @@ impl Reader<'_, '_> {
         ops
     }
 
+    /// Complains of a matrix that flattens space, by its own.
+    pub(super) fn check_flat(&mut self, op: Option<MatrixOp>, span: Span) {
+        let flat = match op {
+            Some(MatrixOp::Scale(v)) => v.to_array().contains(&0.0),
+            Some(MatrixOp::UniformScale(s)) => s == 0.0,
+            _ => false,
+        };
+        if flat {
+            let message = "a scale by 0 flattens space, which cannot be undone";
+            self.error(Diagnostic::error(message).at(span.to(self.last_span())));
+        }
+    }
+
     /// A matrix, if the word begins one; the inner `None` after an error.
     pub(super) fn matrix(&mut self, word: &str, span: Span) -> Option<Option<MatrixOp>> {
         let braces_needed = matches!(word, "Rotate" | "Matrix" | "Matrix4f");
         if !braces_needed && !MATRICES.contains(&word) {
             return None;
         }
-        let opens = self.peek().is_some_and(|t| t.kind == TokenKind::Open);
-        if braces_needed && !self.open(word) {
-            return Some(None);
-        }
-        if opens && !braces_needed {
-            let open = self.advance();
-            self.foreign(&format!("{word} {{"), open, set::F03);
-        }
-        let op = self.matrix_values(word);
+        let errors = self.errors();
+        let opens = self.at_open();
         if opens {
-            self.close(word);
+            let open = self.advance();
+            if !braces_needed {
+                self.foreign(&format!("{word} {{"), open, set::F03);
+            }
+        } else if braces_needed {
+            self.expected("`{`", word);
         }
-        if let Some(MatrixOp::Scale(v)) = op
-            && v.min_element() * v.max_element() == 0.0
+        let known = self.errors();
+        let op = self.matrix_values(word);
+        if op.is_none() {
+            self.skip_values();
+        }
+        if opens {
+            // What is wrong inside the braces was said already.
+            self.close(word, self.errors() == known);
+        }
+        if self.errors() == errors
+            && let Some(error) = op.and_then(senseless)
         {
-            let message = "a scale by 0 flattens space, which cannot be undone";
-            self.error(Diagnostic::error(message).at(span.to(self.last_span())));
+            self.error(error.at(span.to(self.last_span())));
         }
         Some(op)
     }
@@ -106,18 +135,28 @@ impl Reader<'_, '_> {
         })
     }
 
-    /// Expects `}`, and passes over what is before it.
-    fn close(&mut self, block: &str) {
+    /// Expects `}`, and passes over what is before it. Where a word of the language comes first, `}` is missing.
+    fn close(&mut self, block: &str, complain: bool) {
+        if complain && self.peek().is_none_or(|t| t.kind != TokenKind::Close) {
+            self.expected("`}`", block);
+        }
+        self.skip_values();
         if self.peek().is_some_and(|t| t.kind == TokenKind::Close) {
             self.advance();
-            return;
         }
-        self.expected("`}`", block);
-        while let Some(token) = self.peek() {
-            self.advance();
-            if token.kind == TokenKind::Close {
-                return;
-            }
+    }
+}
+
+/// What is wrong with a matrix that has all its numbers.
+fn senseless(op: MatrixOp) -> Option<Diagnostic> {
+    match op {
+        MatrixOp::Rotate(axis, _) if axis == Vec3::ZERO => {
+            Some(Diagnostic::error("an axis of 0 0 0 points nowhere").help("write the axis first, then the angle"))
         }
+        MatrixOp::Matrix(rows) if rows[12..] != [0.0, 0.0, 0.0, 1.0] => {
+            let error = Diagnostic::error("the last row of a matrix must be 0 0 0 1");
+            Some(error.help("`Matrix` of 2003 and 2004 lists rows, `Matrix4f` lists columns"))
+        }
+        _ => None,
     }
 }

@@ -1,9 +1,8 @@
 //! Scenes as text.
 
-use crate::camera::Camera;
 use crate::describe::{DescribedList, Value};
 use crate::dialect::Dialect;
-use crate::light::Light;
+use crate::light::{Light, PointLight};
 use crate::math::Vec3;
 use crate::scene::{Group, Material, MatrixOp, Node, Object, Scene};
 use std::fmt::Write;
@@ -42,11 +41,12 @@ impl Writer {
     }
 
     fn fields<T: DescribedList>(&mut self, thing: &T) {
+        let plain = T::from_keyword(thing.keywords()[0].0);
         for (i, field) in thing.fields().iter().enumerate() {
             let Some(value) = thing.get(i) else { continue };
-            // In nodes, a field without a word has a fixed value.
             let word = field.spelling(self.dialect);
-            if word.is_none() && self.dialect == Dialect::F23 {
+            // What the dialect cannot say is left out where it says nothing.
+            if word.is_none() && plain.as_ref().is_some_and(|plain| plain.get(i).as_ref() == Some(&value)) {
                 continue;
             }
             self.line(format!("{} {}", word.unwrap_or(field.spellings[0].0), value_text(&value)));
@@ -149,47 +149,49 @@ impl Writer {
     }
 
     fn node_scene(&mut self, scene: &Scene) {
-        if let Some(Camera::Perspective(camera)) = &scene.camera {
+        if let Some(camera) = &scene.camera {
             self.thing(camera);
         }
         self.thing(&scene.background);
         self.block("Materials", |w| scene.materials.iter().for_each(|m| w.material(&m.value)));
-        self.block("Scene", |w| {
-            for object in scene.root.iter().flat_map(|root| &root.objects) {
-                w.node(object, &[]);
-            }
-            for light in scene.lights.iter().flatten() {
-                w.light_node(&light.value);
-            }
-        });
+        let lights = scene.lights.as_deref().unwrap_or_default();
+        if scene.root.is_some() || !lights.is_empty() {
+            self.block("Scene", |w| {
+                scene.root.iter().flat_map(|root| &root.objects).for_each(|object| w.node(object));
+                lights.iter().for_each(|light| w.light_node(&light.value));
+            });
+        }
     }
 
-    fn node(&mut self, object: &Object, ops: &[MatrixOp]) {
-        if let Node::Transform(ops, inner) = &object.node {
-            return self.node(inner, ops);
-        }
+    fn node(&mut self, object: &Object) {
         self.block("Node", |w| {
-            if !ops.is_empty() {
+            if let Node::Transform(ops, _) = &object.node {
                 w.block("Transform", |w| ops.iter().for_each(|op| w.node_matrix(op)));
             }
             if let Some(index) = object.material {
                 w.line(format!("Component<Material> {{ index {index} }}"));
             }
             match &object.node {
-                Node::Group(group) => group.objects.iter().for_each(|inner| w.node(inner, &[])),
+                Node::Group(group) => group.objects.iter().for_each(|inner| w.node(inner)),
                 Node::Primitive(shape) => w.component("Object", shape),
                 Node::Mesh(mesh) => w.component("Object", mesh),
-                Node::Transform(..) => {}
+                Node::Transform(_, inner) => match &inner.node {
+                    Node::Primitive(shape) if inner.material == object.material => w.component("Object", shape),
+                    Node::Mesh(mesh) if inner.material == object.material => w.component("Object", mesh),
+                    _ => w.node(inner),
+                },
             }
         });
     }
 
     fn light_node(&mut self, light: &Light) {
-        self.block("Node", |w| {
-            if let Light::Point(point) = light {
+        self.block("Node", |w| match light {
+            Light::Point(point) => {
                 w.block("Transform", |w| w.node_matrix(&MatrixOp::Translate(point.position)));
+                // The node has placed it.
+                w.component("Light", &Light::Point(PointLight { position: Vec3::ZERO, ..point.clone() }));
             }
-            w.component("Light", light);
+            _ => w.component("Light", light),
         });
     }
 

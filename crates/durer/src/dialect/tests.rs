@@ -1,0 +1,38 @@
+use super::*;
+
+#[test]
+fn every_row_of_the_table_is_the_one_of_its_dialect() {
+    let names = ["f03", "f04", "f12a4", "f12a5", "f16", "f23", "durer"];
+    for (i, (dialect, name)) in Dialect::ALL.into_iter().zip(names).enumerate() {
+        assert_eq!(dialect as u8, 1 << i);
+        assert_eq!(dialect.name(), name);
+        assert_eq!(Dialect::from_name(name), Some(dialect));
+        assert_eq!(serde_json::to_string(&dialect).unwrap(), format!("\"{name}\""));
+        assert!(dialect.is_in(set::ALL));
+    }
+    assert_eq!(Dialect::from_name("F04"), None);
+    assert_eq!(set::ALL, 127);
+}
+
+#[test]
+fn every_compatibility_has_its_own_name_and_bit() {
+    for (i, (compat, name, doc)) in Compat::ALL.iter().enumerate() {
+        assert_eq!(Compat::from_name(name), Some(*compat));
+        assert_eq!(compat.bit(), 1 << i);
+        assert!(doc.trim().ends_with('.'), "{name}");
+        assert_eq!(Compat::ALL.iter().filter(|row| row.1 == *name).count(), 1, "{name}");
+    }
+    assert_eq!(Compat::from_name("no-such-bug"), None);
+}
+
+#[test]
+fn sane_rules_have_no_old_bugs() {
+    for dialect in Dialect::ALL {
+        let sane = dialect.rules().sane();
+        assert_eq!(sane.compat, 0);
+        assert_eq!((sane.epsilon, sane.paths), (None, PathBase::SceneFile));
+        assert_eq!(sane.sane(), sane, "{}", sane.name);
+        assert_eq!(sane.name, dialect.name());
+    }
+    assert_eq!(Dialect::Durer.rules().sane(), *Dialect::Durer.rules());
+}

@@ -1,0 +1,278 @@
+//! The grammar of 2003 to 2019: sections, groups, objects.
+
+use super::fields::Order;
+use super::lexer::TokenKind;
+use super::reader::Reader;
+use super::words::home_of;
+use crate::camera::Camera;
+use crate::describe::DescribedList;
+use crate::diag::{Diagnostic, Span};
+use crate::dialect::{Dialect, DialectSet, set};
+use crate::light::Light;
+use crate::material::{ColorNoise, PhongMaterial, Solid};
+use crate::scene::{Background, Group, Material, Node, Object, Spanned};
+use crate::shape::{Primitive, TriangleMesh};
+
+/// What stands at the top of a file.
+pub(super) const SECTIONS: [&str; 6] =
+    ["PerspectiveCamera", "OrthographicCamera", "Background", "Lights", "Materials", "Group"];
+
+/// What stands in a group. Words beyond the first six are no objects.
+pub(super) const IN_GROUP: [&str; 8] =
+    ["Group", "Transform", "Sphere", "Plane", "Triangle", "TriangleMesh", "MaterialIndex", "numObjects"];
+
+impl Reader<'_, '_> {
+    /// The whole file.
+    pub(super) fn scene_file(&mut self) {
+        self.top(&SECTIONS, |reader, word, span| {
+            match word {
+                "Background" => reader.background(span),
+                "Lights" => reader.lights(span),
+                "Materials" => reader.materials(span),
+                "Group" => reader.scene.root = Some(reader.group(span)),
+                _ => match Camera::from_keyword(word).filter(|_| word != "Camera") {
+                    Some(camera) => reader.camera(camera, span),
+                    None => return false,
+                },
+            }
+            true
+        });
+    }
+
+    /// Reads sections up to the end of the file; `section` says whether it knew the word.
+    pub(super) fn top(&mut self, known: &[&str], mut section: impl FnMut(&mut Self, &str, Span) -> bool) {
+        let mut seen: Vec<(String, Span)> = Vec::new();
+        while let Some(token) = self.peek() {
+            let span = self.advance();
+            let word = self.text(span);
+            if token.kind == TokenKind::Open {
+                self.step_back();
+                self.skip_block();
+                self.error(Diagnostic::error("`{` without a keyword").at(span));
+            } else if token.kind == TokenKind::Close {
+                let message = "this `}` closes nothing";
+                self.error(Diagnostic::error(message).at(span).help("is there a `}` too many before it?"));
+            } else if !section(self, &word, span) {
+                self.unknown(&word, span, "at the top of a scene", known);
+            } else {
+                // A scene has one camera, whatever its kind.
+                let kind = if word.ends_with("Camera") { "Camera".to_string() } else { word.clone() };
+                if let Some((_, first)) = seen.iter().find(|(earlier, _)| *earlier == kind) {
+                    let message = format!("this is another `{kind}`: the last counts, the others are dropped");
+                    let warning = Diagnostic::warning(message).at(span).related(*first, "the first is here");
+                    self.diagnostics.push(warning);
+                } else {
+                    seen.push((kind, span));
+                }
+            }
+        }
+    }
+
+    pub(super) fn camera(&mut self, mut camera: Camera, keyword: Span) {
+        self.check_keyword(&camera, keyword);
+        self.fields(&mut camera, keyword, Order::Listed, |_, _, _| false);
+        self.scene.camera = Some(camera);
+        self.scene.camera_span = keyword;
+    }
+
+    pub(super) fn background(&mut self, keyword: Span) {
+        let mut background = Background::default();
+        self.fields(&mut background, keyword, Order::Any, |_, _, _| false);
+        self.scene.background = background;
+    }
+
+    /// Warns of a keyword that this dialect does not have.
+    pub(super) fn check_keyword<T: DescribedList>(&mut self, thing: &T, keyword: Span) {
+        let word = self.text(keyword);
+        let set = thing.keywords().iter().find(|(w, _)| *w == word).map_or(0, |k| k.1);
+        self.foreign(&word, keyword, set);
+    }
+
+    /// Reads `{ count n element ... }`: the elements and their number, which must agree.
+    fn counted(&mut self, keyword: Span, count_word: &str, mut element: impl FnMut(&mut Self, &str, Span) -> bool) {
+        let errors = self.errors();
+        let name = self.text(keyword);
+        if !self.open(keyword) {
+            return;
+        }
+        let (mut count, mut found) = (None, 0u32);
+        loop {
+            let Some((word, span)) = self.word_before_close() else {
+                let short = count.is_none_or(|(n, _)| n > found);
+                if !short || !self.closed_early(&name) {
+                    break;
+                }
+                self.reopen_block(keyword, found);
+                continue;
+            };
+            if word == count_word || word == "num_objects" && count_word == "numObjects" {
+                if word == "num_objects" {
+                    self.foreign(&word, span, set::F03);
+                }
+                if found > 0 && self.options.strict {
+                    self.error(Diagnostic::error(format!("`{word}` must come first in `{name}`")).at(span));
+                }
+                match self.whole(&word) {
+                    Some(n) => count = Some((n, span.to(self.last_span()))),
+                    None => self.skip_values(),
+                }
+            } else if element(self, &word, span) {
+                found += 1;
+            }
+        }
+        if self.errors() > errors {
+            return;
+        }
+        match count {
+            Some((n, span)) if n != found => {
+                let message =
+                    format!("`{count_word}` says {n}, but {found} {}", if found == 1 { "follows" } else { "follow" });
+                self.error(Diagnostic::error(message).at(span).help(format!("write `{count_word} {found}`")));
+            }
+            None if self.options.strict => {
+                self.error(Diagnostic::error(format!("`{name}` has no `{count_word}`")).at(keyword));
+            }
+            _ => {}
+        }
+    }
+
+    /// Whether a section of the top ended by a `}` too many: what follows can only stand in it.
+    fn closed_early(&self, name: &str) -> bool {
+        let word = self.peek_word().unwrap_or_default();
+        self.depth == 0 && !SECTIONS.contains(&word.as_str()) && home_of(&word) == Some(name)
+    }
+
+    fn lights(&mut self, keyword: Span) {
+        let mut lights = Vec::new();
+        self.counted(keyword, "numLights", |reader, word, span| {
+            let light = Light::from_keyword(word).filter(|_| word.ends_with("Light"));
+            let Some(mut light) = light else {
+                reader.unknown(word, span, "among lights", &["DirectionalLight", "PointLight", "numLights"]);
+                return false;
+            };
+            reader.check_keyword(&light, span);
+            // From 2012's last assignment on, point lights may have their fields in any order.
+            let free = matches!(reader.options.dialect, Dialect::F12a5 | Dialect::F16 | Dialect::Durer);
+            let order = if free && matches!(light, Light::Point(_)) { Order::Any } else { Order::Listed };
+            reader.fields(&mut light, span, order, |_, _, _| false);
+            lights.push(Spanned { value: light, span });
+            true
+        });
+        self.scene.lights = Some(lights);
+    }
+
+    fn materials(&mut self, keyword: Span) {
+        if let (Some(_), true) = (&self.scene.root, self.options.strict) {
+            self.error(Diagnostic::error("`Materials` must come before `Group`").at(keyword));
+        }
+        self.scene.materials.clear();
+        self.counted(keyword, "numMaterials", |reader, word, span| {
+            let Some(value) = reader.material(word, span) else { return false };
+            reader.scene.materials.push(Spanned { value, span });
+            true
+        });
+    }
+
+    /// One material, if the word begins one.
+    pub(super) fn material(&mut self, word: &str, span: Span) -> Option<Material> {
+        let errors = self.errors();
+        if let Some(mut solid) = Solid::from_keyword(word) {
+            self.check_keyword(&solid, span);
+            let mut transform = Vec::new();
+            self.fields(&mut solid, span, Order::Listed, |reader, word, span| {
+                let known = word == "Transform";
+                if known && reader.open(span) {
+                    transform = reader.matrices();
+                }
+                known
+            });
+            if self.errors() == errors {
+                self.check_solid(&solid, span);
+            }
+            return Some(Material::Solid(solid, transform));
+        }
+        let Some(mut phong) = PhongMaterial::from_keyword(word) else {
+            let known = ["PhongMaterial", "Material", "Checkerboard", "Noise", "Marble", "Wood", "numMaterials"];
+            self.unknown(word, span, "among materials", &known);
+            return None;
+        };
+        self.check_keyword(&phong, span);
+        let mut noise = None;
+        self.fields(&mut phong, span, Order::Any, |reader, word, span| {
+            let known = word == "Noise";
+            if known {
+                let mut colors = ColorNoise::default();
+                reader.check_keyword(&colors, span);
+                reader.fields(&mut colors, span, Order::Any, |_, _, _| false);
+                noise = Some(colors);
+            }
+            known
+        });
+        Some(Material::Phong(Box::new(phong), noise))
+    }
+
+    /// A solid may only be made of earlier materials, so that there is no circle.
+    fn check_solid(&mut self, solid: &Solid, span: Span) {
+        let own = self.scene.materials.len() as u32;
+        if let Some(index) = crate::material::Pattern::materials(solid).into_iter().find(|index| *index >= own) {
+            let message = format!("material {own} is mixed of earlier ones, but {index} is not before {own}");
+            self.error(Diagnostic::error(message).at(span).help("materials are numbered from 0, as they are written"));
+        }
+    }
+
+    pub(super) fn group(&mut self, keyword: Span) -> Group {
+        let mut objects = Vec::new();
+        self.counted(keyword, "numObjects", |reader, word, span| {
+            match word {
+                "MaterialIndex" => {
+                    match reader.whole(word) {
+                        Some(index) => {
+                            reader.material = Some(index);
+                            reader.material_uses.push((index, span.to(reader.last_span())));
+                        }
+                        None => reader.skip_values(),
+                    }
+                    false
+                }
+                // 2003 writes materials where they are used.
+                "Material" | "PhongMaterial" => {
+                    reader.foreign("Material in Group", span, set::F03);
+                    if let Some(value) = reader.material(word, span) {
+                        reader.material = Some(reader.scene.materials.len() as u32);
+                        reader.scene.materials.push(Spanned { value, span });
+                    }
+                    false
+                }
+                _ => reader.object(word, span).map(|object| objects.push(object)).is_some(),
+            }
+        });
+        Group { objects }
+    }
+
+    /// One object, if the word begins one.
+    pub(super) fn object(&mut self, word: &str, span: Span) -> Option<Object> {
+        if !self.descend("objects", span) {
+            return None;
+        }
+        // What is current now belongs to the object; inside a group it may change.
+        let material = self.material;
+        let classic = |words: &[(&str, DialectSet)]| words.iter().any(|(w, s)| *w == word && s & set::CLASSIC != 0);
+        let node = if word == "Group" {
+            Some(Node::Group(self.group(span)))
+        } else if word == "Transform" {
+            self.transform(span)
+        } else if let Some(mut shape) = Primitive::from_keyword(word).filter(|s| classic(s.keywords())) {
+            self.fields(&mut shape, span, Order::Listed, |_, _, _| false);
+            Some(Node::Primitive(shape))
+        } else if word == "TriangleMesh" {
+            let mut mesh = TriangleMesh::default();
+            self.fields(&mut mesh, span, Order::Listed, |_, _, _| false);
+            Some(Node::Mesh(mesh))
+        } else {
+            self.unknown(word, span, "among objects", &IN_GROUP);
+            None
+        };
+        self.depth -= 1;
+        node.map(|node| Object { node, material, span })
+    }
+}

@@ -1,0 +1,105 @@
+//! The course's scenes, where they are: `DURER_CORPUS` names their folder.
+
+use super::*;
+use std::path::{Path, PathBuf};
+
+/// Every scene of the course with its dialect; none where the corpus is absent.
+pub(super) fn scenes() -> Vec<(PathBuf, Dialect)> {
+    let default = || PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared"));
+    let root = std::env::var_os("DURER_CORPUS").map_or_else(default, PathBuf::from).join("course/scenes");
+    let mut found = Vec::new();
+    for dialect in Dialect::ALL {
+        collect(&root.join(dialect.name()), dialect, &mut found);
+    }
+    if found.is_empty() {
+        println!("skipped: there are no scenes in {}", root.display());
+    }
+    found.sort();
+    found.into_iter().map(|(path, bit)| (path, Dialect::ALL.into_iter().find(|d| *d as u8 == bit).unwrap())).collect()
+}
+
+fn collect(folder: &Path, dialect: Dialect, found: &mut Vec<(PathBuf, u8)>) {
+    for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
+        let (path, name) = (entry.path(), entry.file_name().into_string().unwrap());
+        // Splines are curves for another program; the grid of 2003 is in no language of ours.
+        let other = name.starts_with("spline8_")
+            || name == "readme.txt"
+            || path.ends_with("f03/a4/scene0_rasterize_sphere_3x3x3.txt");
+        if path.is_dir() {
+            collect(&path, dialect, found);
+        } else if name.ends_with(".txt") && !other {
+            found.push((path, dialect as u8));
+        }
+    }
+}
+
+#[test]
+fn the_corpus_reads_without_a_finding() {
+    let mut wrong = Vec::new();
+    for (path, dialect) in scenes() {
+        let text = std::fs::read(&path).unwrap();
+        for strict in [false, true] {
+            let (_, findings) = read_as(&text, dialect, strict);
+            wrong.extend(findings.iter().map(|finding| format!("{} (strict: {strict}): {finding}", path.display())));
+        }
+    }
+    assert_eq!(wrong, [""; 0]);
+}
+
+#[test]
+fn the_grid_of_2003_is_refused_clearly() {
+    let text = b"Group {\n numObjects 1\n Grid {\n  min -1 -1 -1\n  rasterizeSphere { center 0 0 0 radius 1 }\n }\n}\n";
+    let (_, findings) = read_as(text, Dialect::F03, false);
+    assert_eq!(findings.len(), 1, "{findings:?}");
+    assert!(findings[0].starts_with("3:2 error: `Grid` means nothing among objects [Grid]"), "{findings:?}");
+}
+
+#[test]
+fn the_guess_of_every_scene_is_its_year_or_leaves_it_open() {
+    for (path, dialect) in scenes() {
+        let text = std::fs::read(&path).unwrap();
+        let folder = path.parent().unwrap();
+        let guess = guess(&text, 0, &[], &|name| folder.join(name).exists());
+        println!("{} {}", path.display(), guess.note().message);
+        // The two years' files with `falloff` differ in nothing: one is tried, the other left open.
+        assert!(guess.dialect == dialect || guess.others.contains(&dialect), "{}: {guess:?}", path.display());
+        // What is guessed reads it without complaint.
+        let (_, findings) = read_as(&text, guess.dialect, false);
+        assert_eq!(findings, [""; 0], "{}", path.display());
+    }
+}
+
+#[test]
+fn telling_words_decide_the_guess() {
+    let of = |text: &str| guess(text.as_bytes(), 0, &[], &|name| name == "sky/left.png").dialect;
+    for (text, dialect) in [
+        ("PerspectiveCamera { }", Dialect::F12a4),
+        ("OrthographicCamera { }", Dialect::F04),
+        ("Materials { Material { exponent 3 } }", Dialect::F04),
+        ("Group { Material { } }", Dialect::F03),
+        ("Transform { Translate { 1 2 3 } }", Dialect::F03),
+        ("PointLight { falloff 1 }", Dialect::F12a5),
+        ("Background { cubeMap sky }", Dialect::F16),
+        ("Background { cubeMap other }", Dialect::F12a5),
+        ("Scene { Node { } }", Dialect::F23),
+        ("Scene { Node { } } # by me", Dialect::F23),
+        ("Group { } # by me", Dialect::Durer),
+        ("OrthographicCamera { } Material { shininess 3 }", Dialect::Durer),
+        ("", Dialect::F12a4),
+    ] {
+        assert_eq!(of(text), dialect, "{text}");
+    }
+    // Only what is needed for the guess is told.
+    let note = guess(
+        b"PerspectiveCamera { } PointLight { falloff 1 } Materials { Material { refractionIndex 2 } }",
+        0,
+        &[],
+        &|_| false,
+    )
+    .note();
+    assert_eq!(note.message, "read as f12a5: `refractionIndex` is a word of f12a5");
+    let hint = Hint { set: Dialect::F16 as u8, why: "the output is a PNG file".into() };
+    let guess = guess(b"PerspectiveCamera { }", 0, &[hint], &|_| false);
+    assert_eq!((guess.dialect, guess.others.len()), (Dialect::F16, 0));
+    assert!(guess.note().message.ends_with("the output is a PNG file"));
+}

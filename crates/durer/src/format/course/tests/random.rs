@@ -1,0 +1,156 @@
+//! Random scenes, made by walking what every thing says of its fields.
+
+use crate::camera::Camera;
+use crate::describe::{DescribedList, Field, FileName, Kind, Rule, Value};
+use crate::dialect::Dialect;
+use crate::light::Light;
+use crate::material::{ColorNoise, PhongMaterial, Solid, is_material_index};
+use crate::math::Vec3;
+use crate::scene::{Background, Group, Material, MatrixOp, Node, Object, Scene, Spanned};
+use crate::shape::{Primitive, TriangleMesh};
+
+/// A generator of random numbers (Knuth's multiplier, the upper half of the state).
+pub(super) struct Random(pub u64);
+
+impl Random {
+    pub fn below(&mut self, n: usize) -> usize {
+        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (self.0 >> 33) as usize % n
+    }
+
+    /// Any finite number, odd ones among them.
+    pub fn float(&mut self) -> f32 {
+        match self.below(6) {
+            0 => [0.0, -0.0, 1.0, f32::MAX, f32::MIN_POSITIVE, 1e-45, 16777216.0, 0.1][self.below(8)],
+            1 => self.below(100) as f32 / 8.0 - 5.0,
+            _ => loop {
+                let value = f32::from_bits((self.below(1 << 16) << 16 | self.below(1 << 16)) as u32);
+                if value.is_finite() {
+                    break value;
+                }
+            },
+        }
+    }
+
+    fn vec3(&mut self) -> Vec3 {
+        Vec3::new(self.float(), self.float(), self.float())
+    }
+
+    /// A value that a field may have; materials are below `materials`.
+    fn value(&mut self, field: &Field, materials: usize) -> Value {
+        loop {
+            let value = match field.kind {
+                Kind::Float => Value::Float(self.float()),
+                Kind::Int if is_material_index(field) => Value::Int(self.below(materials) as u32),
+                Kind::Int => Value::Int(self.below(40) as u32),
+                Kind::Vec3 => Value::Vec3(self.vec3()),
+                Kind::Path => {
+                    let path = ["a.obj", "meshes/B-2.OBJ", "../x", "Sphere", "\\w\\é.bmp"][self.below(5)].into();
+                    Value::Path(FileName { path, ..Default::default() })
+                }
+            };
+            // Angles are rare among all numbers.
+            let value = match (field.rule, value) {
+                (Rule::Between(low, high), _) => {
+                    Value::Float(low + (high - low) * (1 + self.below(998)) as f32 / 1000.0)
+                }
+                (_, value) => value,
+            };
+            if field.rule.violation(&value).is_none() {
+                return value;
+            }
+        }
+    }
+
+    fn thing<T: DescribedList>(&mut self, materials: usize) -> T {
+        let mut kinds = T::kinds();
+        let mut thing = kinds.remove(self.below(kinds.len()));
+        for (i, field) in thing.fields().iter().enumerate() {
+            if field.required || self.below(2) == 0 {
+                let value = self.value(field, materials);
+                thing.set(i, value);
+            }
+        }
+        thing
+    }
+
+    fn matrix(&mut self) -> MatrixOp {
+        let nonzero = |random: &mut Self| loop {
+            let v = random.vec3();
+            if !v.to_array().contains(&0.0) {
+                break v;
+            }
+        };
+        match self.below(8) {
+            0 => MatrixOp::Translate(self.vec3()),
+            1 => MatrixOp::Scale(nonzero(self)),
+            2 => MatrixOp::UniformScale(nonzero(self).x),
+            3 => MatrixOp::XRotate(self.float()),
+            4 => MatrixOp::YRotate(self.float()),
+            5 => MatrixOp::ZRotate(self.float()),
+            6 => MatrixOp::Rotate(nonzero(self), self.float()),
+            _ => {
+                let mut rows = std::array::from_fn(|_| self.float());
+                rows[12..].copy_from_slice(&[0.0, 0.0, 0.0, 1.0]);
+                MatrixOp::Matrix(rows)
+            }
+        }
+    }
+
+    fn matrices(&mut self) -> Vec<MatrixOp> {
+        (0..self.below(4)).map(|_| self.matrix()).collect()
+    }
+
+    fn object(&mut self, depth: usize, materials: usize, current: &mut Option<u32>, may_change: bool) -> Object {
+        if may_change && materials > 0 && self.below(2) == 0 {
+            *current = Some(self.below(materials + 1) as u32);
+        }
+        let material = *current;
+        let node = match self.below(if depth > 4 { 3 } else { 5 }) {
+            0 | 1 => Node::Primitive(self.thing::<Primitive>(materials)),
+            2 => Node::Mesh(self.thing::<TriangleMesh>(materials)),
+            3 => Node::Group(Group {
+                objects: (0..self.below(4)).map(|_| self.object(depth + 1, materials, current, true)).collect(),
+            }),
+            _ => {
+                let ops = self.matrices();
+                Node::Transform(ops, Box::new(self.object(depth + 1, materials, current, false)))
+            }
+        };
+        Object { node, material, span: Default::default() }
+    }
+
+    /// A scene that the dialect's text can hold, as reading it would make it.
+    pub fn scene(&mut self, dialect: Dialect) -> Scene {
+        let nodes = dialect == Dialect::F23;
+        let spanned = |value| Spanned { value, span: Default::default() };
+        let mut materials = Vec::new();
+        for i in 0..self.below(6) {
+            materials.push(spanned(if i > 0 && self.below(3) == 0 {
+                Material::Solid(self.thing::<Solid>(i), self.matrices())
+            } else {
+                let noise = (self.below(3) == 0).then(|| self.thing::<ColorNoise>(i));
+                Material::Phong(Box::new(self.thing::<PhongMaterial>(i)), noise)
+            }));
+        }
+        let light = |random: &mut Self| {
+            let mut value = random.thing::<Light>(0);
+            if let (Light::Point(point), true) = (&mut value, nodes) {
+                // A node adds its place to 0, which makes 0 of -0.
+                point.position += Vec3::ZERO;
+            }
+            Spanned { value, span: Default::default() }
+        };
+        let lights = (nodes || self.below(4) > 0).then(|| (0..self.below(4)).map(|_| light(self)).collect());
+        let mut current = None;
+        let objects = (0..self.below(5)).map(|_| self.object(0, materials.len(), &mut current, true)).collect();
+        Scene {
+            camera: (self.below(4) > 0).then(|| self.thing::<Camera>(0)),
+            background: self.thing::<Background>(0),
+            lights,
+            materials,
+            root: (nodes || self.below(8) > 0).then_some(Group { objects }),
+            camera_span: Default::default(),
+        }
+    }
+}

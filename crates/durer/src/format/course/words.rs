@@ -1,0 +1,94 @@
+//! Every word of the language.
+
+use crate::camera::Camera;
+use crate::describe::DescribedList;
+use crate::dialect::{DialectSet, set};
+use crate::light::Light;
+use crate::material::{ColorNoise, PhongMaterial, Solid};
+use crate::scene::Background;
+use crate::shape::{Primitive, TriangleMesh};
+use std::collections::HashMap;
+use std::sync::LazyLock;
+
+/// Words of the grammar itself, which belong to no described thing.
+const GRAMMAR: [(&str, DialectSet); 32] = [
+    ("Lights", set::CLASSIC),
+    ("Materials", set::ALL),
+    ("Group", set::CLASSIC),
+    ("Transform", set::ALL),
+    ("MaterialIndex", set::CLASSIC),
+    ("num_objects", set::F03),
+    ("numObjects", set::CLASSIC),
+    ("numLights", set::CLASSIC),
+    ("numMaterials", set::CLASSIC),
+    ("Translate", set::CLASSIC),
+    ("Scale", set::CLASSIC),
+    ("UniformScale", set::CLASSIC),
+    ("XRotate", set::CLASSIC),
+    ("YRotate", set::CLASSIC),
+    ("ZRotate", set::CLASSIC),
+    ("Rotate", set::CLASSIC),
+    ("Matrix", set::OLD | set::DURER),
+    ("Matrix4f", set::NEW | set::DURER),
+    ("Scene", set::F23),
+    ("Node", set::F23),
+    ("Component<Object>", set::F23),
+    ("Component<Light>", set::F23),
+    ("Component<Material>", set::F23),
+    ("type", set::F23),
+    ("index", set::F23),
+    ("translate", set::F23),
+    ("scale", set::F23),
+    ("uniform_scale", set::F23),
+    ("x_rotate", set::F23),
+    ("y_rotate", set::F23),
+    ("z_rotate", set::F23),
+    ("rotate", set::F23),
+];
+
+static WORDS: LazyLock<HashMap<&'static str, DialectSet>> = LazyLock::new(|| {
+    let mut words = HashMap::new();
+    list::<Camera>(&mut words);
+    list::<Light>(&mut words);
+    list::<Primitive>(&mut words);
+    list::<Solid>(&mut words);
+    list::<PhongMaterial>(&mut words);
+    list::<ColorNoise>(&mut words);
+    list::<TriangleMesh>(&mut words);
+    list::<Background>(&mut words);
+    for (word, set) in GRAMMAR {
+        *words.entry(word).or_insert(0) |= set;
+    }
+    words
+});
+
+fn list<T: DescribedList>(words: &mut HashMap<&'static str, DialectSet>) {
+    for kind in T::kinds() {
+        let spellings = kind.fields().iter().flat_map(|field| field.spellings);
+        for (word, set) in kind.keywords().iter().chain(spellings) {
+            *words.entry(word).or_insert(0) |= set;
+        }
+    }
+}
+
+/// The dialects that have a word in some place; `None` where it is no word of the language.
+pub(super) fn dialects_of(word: &str) -> Option<DialectSet> {
+    WORDS.get(word).copied()
+}
+
+/// Whether a word begins a block with braces.
+pub(super) fn begins_block(word: &str) -> bool {
+    word.starts_with(|c: char| c.is_ascii_uppercase()) && WORDS.contains_key(word)
+}
+
+/// The block in which something belongs that stands in a wrong place.
+pub(super) fn home_of(word: &str) -> Option<&'static str> {
+    Some(match word {
+        "Sphere" | "Plane" | "Triangle" | "TriangleMesh" | "Transform" | "MaterialIndex" | "Group" => "Group",
+        "PhongMaterial" | "Material" | "Checkerboard" | "Marble" | "Wood" => "Materials",
+        "PointLight" | "DirectionalLight" => "Lights",
+        "Translate" | "Scale" | "UniformScale" | "XRotate" | "YRotate" | "ZRotate" | "Rotate" | "Matrix"
+        | "Matrix4f" | "translate" | "scale" | "x_rotate" | "y_rotate" | "z_rotate" => "Transform",
+        _ => return None,
+    })
+}

@@ -1,0 +1,157 @@
+use super::*;
+use crate::diag::{Diagnostic, Severity};
+use std::fs;
+
+const CAMERA: &str = "PerspectiveCamera { center 0 0 10 direction 0 0 -1 up 0 1 0 angle 30 }\n";
+const LIGHT: &str = "Lights { numLights 1 DirectionalLight { direction 0 0 -1 color 1 1 1 } }\n";
+const MATERIAL: &str = "Materials { numMaterials 1 PhongMaterial { diffuseColor 1 1 1 } }\n";
+const TRIANGLE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+
+/// A scene of these objects in a folder `scene` of its own, with a mesh `tri.obj`.
+fn house(objects: &str) -> tempfile::TempDir {
+    let root = tempfile::tempdir().unwrap();
+    fs::create_dir(root.path().join("scene")).unwrap();
+    fs::write(root.path().join("scene/tri.obj"), TRIANGLE).unwrap();
+    fs::write(root.path().join("outside.obj"), TRIANGLE).unwrap();
+    let text = format!("{CAMERA}{LIGHT}{MATERIAL}Group {{ MaterialIndex 0\n{objects}\n}}\n");
+    fs::write(root.path().join("scene/scene.txt"), text).unwrap();
+    root
+}
+
+/// Loads and compiles; findings as `file:line:column severity: message (help)`, without the folder's name.
+fn made(root: &tempfile::TempDir, options: &LoadOptions) -> (Option<World>, Vec<String>) {
+    let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
+    let path = root.path().join("scene/scene.txt");
+    let loaded = load(&path, options, &mut files, &mut diagnostics).unwrap();
+    let world = loaded.and_then(|loaded| loaded.compile(options, &mut files, &mut diagnostics));
+    assert_eq!(world.is_none(), diagnostics.has_errors());
+    let line = |d: &Diagnostic| {
+        let place = d.span.map_or("-".into(), |span| {
+            let (line, column) = files.position(span).unwrap();
+            format!("{}:{line}:{column}", files.name(span.file).unwrap())
+        });
+        let severity = if d.severity == Severity::Error { "error" } else { "warning" };
+        let help = d.help.as_ref().map_or(String::new(), |help| format!(" ({help})"));
+        format!("{place} {severity}: {}{help}", d.message).replace(&format!("{}/", root.path().display()), "")
+    };
+    (world, diagnostics.iter().map(line).collect())
+}
+
+fn findings(objects: &str) -> Vec<String> {
+    made(&house(objects), &LoadOptions::default()).1
+}
+
+fn mesh(path: &str) -> String {
+    format!("TriangleMesh {{ obj_file {path} }}")
+}
+
+#[test]
+fn a_mesh_is_found_beside_its_scene() {
+    for path in ["tri.obj", ".\\tri.obj", "../scene/tri.obj"] {
+        let (world, findings) = made(&house(&mesh(path)), &LoadOptions::default());
+        assert_eq!(findings, [""; 0]);
+        assert_eq!(world.unwrap().objects.len(), 1);
+    }
+}
+
+#[test]
+fn a_file_outside_is_refused_at_the_line_that_names_it() {
+    let root = house(&mesh("../outside.obj"));
+    let (_, found) = made(&root, &LoadOptions::default());
+    assert_eq!(
+        found,
+        [
+            "scene/scene.txt:5:25 error: the mesh cannot be had: `../outside.obj` lies outside the scene's folder (a scene \
+          may only name files in and below its own folder, unless `--allow-outside` is given)"
+        ]
+    );
+    let (world, found) = made(&root, &LoadOptions { allow_outside: true, ..Default::default() });
+    assert!(world.is_some() && found.is_empty(), "{found:?}");
+    let (world, found) =
+        made(&house(&mesh("outside.obj")), &LoadOptions { assets: vec![root.path().into()], ..Default::default() });
+    assert!(world.is_some() && found.is_empty(), "{found:?}");
+}
+
+#[test]
+fn a_missing_mesh_is_told_once_with_a_near_name() {
+    let found = findings(&(mesh("tir.obj") + "\n").repeat(100));
+    assert_eq!(
+        found,
+        [
+            "scene/scene.txt:5:25 error: the mesh cannot be had: there is no file `tir.obj` (did you mean `tri.obj`? Looked \
+          for scene/tir.obj)"
+        ]
+    );
+    // Thousands of them do not take long.
+    let many: String = (0..20_000).map(|i| mesh(&format!("{i}.obj"))).collect();
+    assert_eq!(findings(&many).len(), 20);
+}
+
+#[test]
+fn what_is_wrong_in_a_mesh_is_told_there_and_in_the_scene() {
+    let root = house(&mesh("bad.obj"));
+    fs::write(root.path().join("scene/bad.obj"), "v 0 0 0\nv 1 0 zero\nf 1 2 9\n").unwrap();
+    let (_, found) = made(&root, &LoadOptions::default());
+    assert!(found[0].starts_with("scene/scene.txt:5:25 error: the mesh `bad.obj` cannot be used"), "{found:?}");
+    assert!(found[1].starts_with("bad.obj:2:7 error: "), "{found:?}");
+}
+
+#[test]
+fn folders_are_no_meshes() {
+    let found = findings(&mesh("."));
+    assert_eq!(found, ["scene/scene.txt:5:25 error: the mesh cannot be had: `.` is not a regular file"]);
+}
+
+#[test]
+fn a_scene_that_cannot_be_read_is_an_error_of_its_own() {
+    let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
+    let root = tempfile::tempdir().unwrap();
+    for path in [root.path().join("no.txt"), root.path().to_path_buf()] {
+        assert!(load(&path, &LoadOptions::default(), &mut files, &mut diagnostics).is_err());
+    }
+}
+
+#[test]
+fn what_the_picture_may_lack_is_warned_of() {
+    let ball = "Sphere { center 0 0 0 radius 1 }\n";
+    let text = |lights: &str, group: &str| format!("{CAMERA}{lights}{MATERIAL}{group}");
+    let root = house("");
+    for (text, expected) in [
+        (
+            text("", &format!("Group {{ MaterialIndex 0 {ball} }}")),
+            vec!["- warning: the scene has no lights: its ambient light is set to 1 1 1, so colours are flat"],
+        ),
+        (
+            text(LIGHT, &format!("Group {{\n{} }}", ball.repeat(100))),
+            vec![
+                "scene/scene.txt:5:1 warning: this object has no material, and is drawn in plain grey; so are 99 others (write `MaterialIndex 0` before it)",
+            ],
+        ),
+        (
+            text(LIGHT, &format!("Group {{\nMaterialIndex 3 {ball} }}")),
+            vec![
+                "scene/scene.txt:5:1 warning: material 3 does not exist: there is only material 0 (objects that use it are drawn in plain grey)",
+            ],
+        ),
+        (text(LIGHT, ""), vec!["- warning: the scene has no objects: it has no `Group`"]),
+    ] {
+        fs::write(root.path().join("scene/scene.txt"), text).unwrap();
+        let (world, found) = made(&root, &LoadOptions::default());
+        assert!(world.is_some());
+        assert_eq!(found, expected);
+    }
+    fs::write(root.path().join("scene/scene.txt"), "Group { }").unwrap();
+    assert_eq!(
+        made(&root, &LoadOptions::default()).1,
+        ["- error: the scene has no camera (add a `PerspectiveCamera { ... }`)"]
+    );
+}
+
+#[test]
+fn a_flattening_transform_is_told_at_its_object() {
+    let found =
+        findings("Transform { Matrix4f { 1 1 0 0 1 1 0 0 0 0 1 0 0 0 0 1 }\n Sphere { center 0 0 0 radius 1 } }");
+    let expected =
+        "scene/scene.txt:6:2 error: the transforms around this object flatten space, or leave the range of numbers";
+    assert_eq!(found, [expected]);
+}

@@ -1,0 +1,99 @@
+use super::*;
+use std::os::unix::fs::symlink;
+
+/// `outside/secret.obj` and `scene/{near.obj, models/cube.obj}`; the source is of `scene`.
+fn house() -> (tempfile::TempDir, Source) {
+    let root = tempfile::tempdir().unwrap();
+    fs::create_dir_all(root.path().join("scene/models")).unwrap();
+    fs::create_dir(root.path().join("outside")).unwrap();
+    for (name, text) in
+        [("outside/secret.obj", "secret"), ("scene/near.obj", "near"), ("scene/models/cube.obj", "cube")]
+    {
+        fs::write(root.path().join(name), text).unwrap();
+    }
+    let source = Source::folder(root.path().join("scene"));
+    (root, source)
+}
+
+#[test]
+fn files_below_the_folder_are_read_by_any_spelling() {
+    let (_root, source) = house();
+    for name in ["models/cube.obj", "models\\cube.obj", "./models/../models/cube.obj", ".\\models//cube.obj"] {
+        assert_eq!(&*source.read(name).unwrap(), b"cube", "{name}");
+        assert!(source.contains(name));
+    }
+}
+
+#[test]
+fn nothing_outside_the_folder_is_read_unless_allowed() {
+    let (root, source) = house();
+    symlink(root.path().join("outside/secret.obj"), root.path().join("scene/link.obj")).unwrap();
+    symlink(root.path().join("outside"), root.path().join("scene/folder")).unwrap();
+    let absolute = root.path().join("outside/secret.obj").display().to_string();
+    let names = ["../outside/secret.obj", "..\\outside\\secret.obj", "link.obj", "folder/secret.obj", &absolute];
+    for name in names {
+        assert!(matches!(source.read(name), Err(SourceError::Outside { .. })), "{name}");
+        assert!(!source.contains(name));
+    }
+    let free = source.clone().allow_outside();
+    for name in names {
+        assert_eq!(&*free.read(name).unwrap(), b"secret", "{name}");
+    }
+    // A link that stays inside is as good as the file.
+    symlink("models/cube.obj", root.path().join("scene/inner.obj")).unwrap();
+    assert_eq!(&*source.read("inner.obj").unwrap(), b"cube");
+}
+
+#[test]
+fn a_missing_file_has_a_near_name_but_none_from_outside() {
+    let (_root, source) = house();
+    let near = |name: &str| match source.read(name) {
+        Err(SourceError::Missing { near, tried, .. }) => {
+            assert!(!tried.is_empty());
+            near
+        }
+        other => panic!("{other:?}"),
+    };
+    assert_eq!(near("neat.obj").as_deref(), Some("near.obj"));
+    assert_eq!(near("models/Cube.OBJ").as_deref(), Some("cube.obj"));
+    assert_eq!(near("nothing/like/it.txt"), None);
+    assert_eq!(near("../outside/secrets.obj"), None);
+}
+
+#[test]
+fn folders_pipes_and_devices_are_no_files() {
+    let (root, source) = house();
+    let pipe = root.path().join("scene/pipe");
+    assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+    for name in ["models", ".", "pipe"] {
+        assert!(matches!(source.read(name), Err(SourceError::NotAFile { .. })), "{name}");
+    }
+    assert!(matches!(source.read("/dev/zero"), Err(SourceError::Outside { .. })));
+    assert!(matches!(source.allow_outside().read("/dev/zero"), Err(SourceError::NotAFile { .. })));
+}
+
+#[test]
+fn the_budget_is_for_all_files_together() {
+    let (_root, source) = house();
+    let source = source.budget(7);
+    assert_eq!(&*source.read("near.obj").unwrap(), b"near");
+    match source.read("models/cube.obj") {
+        Err(SourceError::TooLarge { size: 4, left: 3, .. }) => {}
+        other => panic!("{other:?}"),
+    }
+    assert_eq!(&*source.clone().budget(u64::MAX).read("near.obj").unwrap(), b"near");
+    assert_eq!(&*source.budget(4).read("near.obj").unwrap(), b"near");
+}
+
+#[test]
+fn folders_of_assets_are_searched_by_path_and_by_bare_name() {
+    let (root, source) = house();
+    let source = source.assets(root.path().join("outside"));
+    for name in ["secret.obj", "models/secret.obj", "C:\\somebody\\secret.obj"] {
+        assert_eq!(&*source.read(name).unwrap(), b"secret", "{name}");
+    }
+    // The scene's own folder comes first.
+    fs::write(root.path().join("outside/near.obj"), "far").unwrap();
+    assert_eq!(&*source.read("near.obj").unwrap(), b"near");
+    assert!(matches!(source.read("../../etc/passwd.obj"), Err(SourceError::Missing { .. })));
+}
