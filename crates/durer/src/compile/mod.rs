@@ -2,6 +2,8 @@
 
 mod files;
 mod materials;
+#[cfg(test)]
+pub(crate) mod testing;
 
 use crate::bvh::{Bvh, Grid};
 use crate::camera::{Frame, Lens};

@@ -57,6 +57,14 @@ impl Shape for Sphere {
         let u = fp::atan2(normal.x, -normal.z) / std::f32::consts::TAU + 0.5;
         let v = fp::asin(normal.y.clamp(-1.0, 1.0)) / std::f32::consts::PI + 0.5;
         let uv = Some(Vec2::new(u, v));
-        Surface { position, error, n_geo: normal, n_shade: normal, uv, barycentric: Vec3::ZERO }
+        Surface {
+            position,
+            error,
+            curvature: 1.0 / self.radius,
+            n_geo: normal,
+            n_shade: normal,
+            uv,
+            barycentric: Vec3::ZERO,
+        }
     }
 }
