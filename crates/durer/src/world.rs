@@ -409,3 +409,6 @@ impl World {
         &self.accel
     }
 }
+
+#[cfg(test)]
+mod tests;
