@@ -230,3 +230,6 @@ impl Flattening<'_, '_> {
         self.objects.push(Object { geometry, to_world, material, span: object.span });
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -26,7 +26,7 @@ pub struct Settings {
     pub reflection: bool,
     /// Whether transmitted rays are traced.
     pub refraction: bool,
-    /// A ray that counts for less than this is not traced.
+    /// A ray that counts for less than this is not traced; as in the course, a colour counts by its magnitude.
     pub least_weight: f32,
 }
 
@@ -227,3 +227,6 @@ pub fn refract(d: Vec3, n: Vec3, eta: f32) -> Option<Vec3> {
     let radicand = 1.0 - eta * eta * (1.0 - cosine * cosine);
     (radicand >= 0.0).then(|| eta * (d - cosine * n) - radicand.sqrt() * n)
 }
+
+#[cfg(test)]
+mod tests;

@@ -43,3 +43,6 @@ impl Texture {
             + b * ((1.0 - a) * texel(0.0, 1.0) + a * texel(1.0, 1.0))
     }
 }
+
+#[cfg(test)]
+mod tests;
