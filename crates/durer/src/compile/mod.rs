@@ -98,14 +98,14 @@ pub fn compile(
     match build_accel(&world, accel) {
         Ok(accel) => world.accel = accel,
         Err(error) => {
-            diagnostics.push(error);
+            diagnostics.push(*error);
             return None;
         }
     }
     Some(world)
 }
 
-fn build_accel(world: &World, kind: AccelKind) -> Result<Accel, Diagnostic> {
+fn build_accel(world: &World, kind: AccelKind) -> Result<Accel, Box<Diagnostic>> {
     let cells = match kind {
         AccelKind::None => return Ok(Accel::None),
         AccelKind::Bvh => {
@@ -133,7 +133,9 @@ fn build_accel(world: &World, kind: AccelKind) -> Result<Accel, Diagnostic> {
     let grid = Grid::build(bounds, counts, &boxes).ok_or_else(|| {
         let [x, y, z] = counts;
         let most = Grid::MOST_CELLS;
-        Diagnostic::error(format!("a grid of {x} x {y} x {z} cells cannot be made: it must have 1 to {most} cells"))
+        let message = format!("a grid of {x} x {y} x {z} cells cannot be made");
+        let help = format!("it must have 1 to {most} cells, and large objects must not lie in too many of them");
+        Box::new(Diagnostic::error(message).help(help))
     })?;
     Ok(Accel::Grid { grid, parts })
 }

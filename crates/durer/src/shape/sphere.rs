@@ -34,8 +34,8 @@ impl Shape for Sphere {
         let b = -o.dot(d);
         let nearest = o + (b / dd) * d;
         let discriminant = r * r - nearest.dot(nearest);
-        // Also refuses NaN, which a zero direction gives.
-        if !(discriminant >= 0.0) {
+        // A zero direction gives NaN.
+        if discriminant.is_nan() || discriminant < 0.0 {
             return None;
         }
         // q has the sign of b, so that neither root loses digits to cancellation.
