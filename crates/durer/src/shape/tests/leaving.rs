@@ -132,3 +132,19 @@ fn what_is_no_transform_is_refused() {
         assert!((affine.normal(n).length() - 1.0).abs() < 1e-6);
     }
 }
+
+#[test]
+fn a_floor_in_a_coordinate_plane_is_left() {
+    let mut random = Random(9);
+    for round in 0..20_000 {
+        let size = [1.0, 1000.0][round % 2];
+        let mut corner = |x, z| size * Vec3::new(x, 0.0, z) * random.between(0.5, 1.0);
+        let floor = Triangle { vertex0: corner(-1.0, -1.0), vertex1: corner(1.0, -1.0), vertex2: corner(0.0, 1.0) };
+        let ray = Ray::new(Vec3::Y, 0.1 * random.point() - Vec3::Y);
+        let surface = floor.surface(&ray, &floor.intersect(&ray).unwrap());
+        // No coordinate of the point is off the floor, and no offset is needed; also for low rays.
+        let dir = random.direction() * Vec3::new(1.0, [1.0, 0.1, 1e-3][round % 3], 1.0);
+        let away = from_surface(&surface, dir, f32::INFINITY, None);
+        assert_eq!(floor.intersect(&away), None, "{floor:?} {away:?}");
+    }
+}
