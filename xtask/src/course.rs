@@ -220,17 +220,16 @@ impl Bench {
         // Each picture's distance from the mean of the others, for ours and for the reference alike.
         let sums: Vec<f64> = (0..theirs.len()).map(|i| values.iter().map(|v| v[i]).sum()).collect();
         let spread = |picture: &[f64], others: &dyn Fn(usize) -> f64| {
-            (picture.iter().enumerate().map(|(i, v)| (v - others(i)).powi(2)).sum::<f64>() / picture.len() as f64)
-                .sqrt()
+            (picture.iter().enumerate().map(|(i, v)| square(v - others(i))).sum::<f64>() / picture.len() as f64).sqrt()
         };
         let own: Vec<f64> = values.iter().map(|v| spread(v, &|i| (sums[i] - v[i]) / (n - 1.0))).collect();
         let reference_spread = spread(&theirs, &|i| sums[i] / n);
         let means: Vec<f64> = values.iter().map(|v| mean_of(v)).collect();
         let mean = mean_of(&means);
-        let deviation = (means.iter().map(|m| (m - mean).powi(2)).sum::<f64>() / (n - 1.0)).sqrt();
+        let deviation = (means.iter().map(|m| square(m - mean)).sum::<f64>() / (n - 1.0)).sqrt();
         let mean_difference = mean_of(&theirs) - mean;
         let own_spread = mean_of(&own);
-        let spread_deviation = (own.iter().map(|s| (s - own_spread).powi(2)).sum::<f64>() / (n - 1.0)).sqrt();
+        let spread_deviation = (own.iter().map(|s| square(s - own_spread)).sum::<f64>() / (n - 1.0)).sqrt();
         let spread_difference = reference_spread - own_spread;
         // Four deviations of chance, and what truncation to whole grey levels may add: none of it on most pixels.
         let chance = 4.0 * (1.0 + 1.0 / n).sqrt();
@@ -253,11 +252,11 @@ impl Bench {
         let width = ours.width as usize;
         for y in 0..ours.height as usize {
             for part in 0..3 {
-                for i in y * width..(y + 1) * width {
-                    let (a, b) = (shown[0][i], shown[1][i]);
+                let row = y * width..(y + 1) * width;
+                for (a, b) in shown[0][row.clone()].iter().zip(&shown[1][row]) {
                     let color = match part {
-                        0 => a,
-                        1 => b,
+                        0 => *a,
+                        1 => *b,
                         _ => std::array::from_fn(|c| ((a[c] - b[c]).abs() * 8.0).min(255.0)),
                     };
                     pixels.push(durer::math::Vec3::from(color) / 255.0);
@@ -272,6 +271,10 @@ impl Bench {
         durer::image::save(&path, &bytes)?;
         Ok(())
     }
+}
+
+fn square(x: f64) -> f64 {
+    x * x
 }
 
 /// The output files among some arguments: the option and the place of its file.

@@ -347,7 +347,7 @@ fn sampling(given: &Given, dialect: Dialect) -> Result<Sampling, Failure> {
     let sampler = samplers.into_iter().find(|(name, _)| given.has(name));
     let radius = |name: &str| -> Result<Option<f32>, Failure> {
         let radius = given.number::<f32>(name)?;
-        if radius.is_some_and(|r| !(r >= 0.0 && r <= 64.0)) {
+        if radius.is_some_and(|r| !(0.0..=64.0).contains(&r)) {
             return Err(bad(format!("{name}: must be from 0 to 64")));
         }
         Ok(radius)

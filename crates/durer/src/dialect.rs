@@ -246,6 +246,9 @@ compats! {
     LooseTriangles = "loose-triangles",
     /// On a texture, ambient light is that of the pixel shaded before, in rows from the bottom.
     StaleTexels = "stale-texels",
+    /// A light is blocked only where the nearest thing towards it is seen from its front. Off where `exit-r0` is asked
+    /// for, the habit of an earlier version of the same program.
+    ShadowFronts = "shadow-fronts",
     /// A `Matrix` is multiplied on the left of everything before it.
     MatrixOnLeft = "matrix-on-left",
     /// The background is black in depth pictures even where far is white.
@@ -354,7 +357,7 @@ const F12A5: Rules = Rules {
     secondary: Secondary::SpecularFresnel,
     epsilon: Some(1e-3),
     ambient_textured: false,
-    compat: bits(&[BorderPixels, Stretch, HighlightBehind, PowZero, MatrixOnLeft]),
+    compat: bits(&[BorderPixels, Stretch, HighlightBehind, PowZero, ShadowFronts, MatrixOnLeft]),
     ..F12A4
 };
 

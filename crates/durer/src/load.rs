@@ -80,6 +80,10 @@ pub fn load(
     if options.dialect.is_none() && !options.course {
         rules = rules.sane();
     }
+    // The two versions of one program: neither had both habits.
+    if options.compat.contains(&(Compat::ExitR0, true)) {
+        rules.compat &= !Compat::ShadowFronts.bit();
+    }
     for (compat, on) in &options.compat {
         rules.compat = if *on { rules.compat | compat.bit() } else { rules.compat & !compat.bit() };
     }

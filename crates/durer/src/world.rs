@@ -281,6 +281,9 @@ impl World {
     /// The first hit in the ray's interval.
     pub fn closest<T: Tally>(&self, ray: &Ray, tally: &mut T) -> Option<Hit> {
         tally.ray();
+        if !crate::bvh::is_sound(ray) {
+            return None;
+        }
         let mut best: Option<Hit> = None;
         let mut ray = *ray;
         // A tie is decided by the order of hits, so a later ray may reach just to the present t.
@@ -331,6 +334,9 @@ impl World {
     /// Whether anything is hit in the ray's interval; the first thing found will do.
     pub fn occluded<T: Tally>(&self, ray: &Ray, tally: &mut T) -> bool {
         tally.ray();
+        if !crate::bvh::is_sound(ray) {
+            return false;
+        }
         if self.unbounded.iter().any(|&i| self.objects[i as usize].closest(ray, true, tally).is_some()) {
             return true;
         }
@@ -365,12 +371,16 @@ impl World {
             Geometry::Primitive(shape) => shape.surface(&local, &crossing),
             Geometry::Mesh(tree) => tree.mesh.surface(hit.part, &crossing),
         };
-        let Some(to_world) = &object.to_world else { return surface };
+        // Beside the rounding itself, a bent surface leaves the tangent plane by its square.
+        let Some(to_world) = &object.to_world else {
+            return Surface { error: surface.error + surface.bulge(surface.error), ..surface };
+        };
+        let error = to_world.point_error(surface.position, surface.error);
         Surface {
             position: to_world.point(surface.position),
-            error: to_world.point_error(surface.position, surface.error),
-            n_geo: to_world.normal(surface.n_geo).normalize_or(surface.n_geo),
-            n_shade: to_world.normal(surface.n_shade).normalize_or(surface.n_shade),
+            error: error + to_world.spread(surface.bulge(to_world.inverse_spread(error))),
+            n_geo: to_world.normal(surface.n_geo),
+            n_shade: to_world.normal(surface.n_shade),
             ..surface
         }
     }
@@ -407,3 +417,6 @@ impl World {
         &self.accel
     }
 }
+
+#[cfg(test)]
+mod tests;

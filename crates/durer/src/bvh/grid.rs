@@ -6,6 +6,9 @@ use super::Tally;
 use super::traverse::is_sound;
 use crate::math::{Aabb, Ray, Vec3};
 
+/// Boxes count as this much larger, in cells, as what a ray's rounding may move it.
+const PAD: f32 = 1e-2;
+
 /// A uniform grid over numbered things.
 #[derive(Clone, Debug)]
 pub struct Grid {
@@ -19,6 +22,8 @@ pub struct Grid {
 impl Grid {
     /// At most this many cells.
     pub const MOST_CELLS: u64 = 1 << 26;
+    /// At most this many entries in all cells' lists.
+    const MOST_ENTRIES: u64 = 1 << 28;
 
     /// Numbers of cells that suit so many things in such a box: about two cells a thing, nearly cubes.
     pub fn suitable(bounds: Aabb, things: usize) -> [u32; 3] {
@@ -33,7 +38,7 @@ impl Grid {
     /// Sorts the boxes of things 0, 1, 2, ... into the cells of a box. A thing is in a cell if their boxes overlap,
     /// and `overlaps` says so of the thing and the (slightly enlarged) cell.
     ///
-    /// `None` if there are no cells, or more than [`Grid::MOST_CELLS`].
+    /// `None` if there are no cells, or more than [`Grid::MOST_CELLS`], or too many things in too many of them.
     pub fn build(
         bounds: Aabb,
         counts: [u32; 3],
@@ -48,12 +53,16 @@ impl Grid {
         let pad = (1e-5 * bounds.size().max_element()).max(1e-5 * bounds.center().abs().max_element()).max(1e-30);
         let bounds = Aabb { min: bounds.min - pad, max: bounds.max + pad };
         let mut grid = Grid { bounds, counts, starts: vec![0; cells as usize + 1], items: Vec::new() };
+        let entries = boxes.iter().try_fold(0u64, |sum, b| sum.checked_add(grid.cells_of(b)))?;
+        if entries > Grid::MOST_ENTRIES {
+            return None;
+        }
         // First count what falls into each cell, then fill the lists.
         for (i, b) in boxes.iter().enumerate() {
             grid.for_cells(b, |cell| overlaps(i, cell), |grid, cell| grid.starts[cell + 1] += 1);
         }
         for i in 1..grid.starts.len() {
-            grid.starts[i] = grid.starts[i].checked_add(grid.starts[i - 1])?;
+            grid.starts[i] += grid.starts[i - 1];
         }
         grid.items = vec![0; grid.starts[cells as usize] as usize];
         let mut next = grid.starts.clone();
@@ -105,12 +114,24 @@ impl Grid {
         std::array::from_fn(|axis| (at[axis] as u32).min(self.counts[axis] - 1))
     }
 
+    /// The least and the greatest cell that a box overlaps.
+    fn range(&self, b: &Aabb) -> ([u32; 3], [u32; 3]) {
+        let pad = PAD * self.cell_size();
+        (self.cell_of(b.min - pad), self.cell_of(b.max + pad))
+    }
+
+    /// How many cells a box overlaps.
+    fn cells_of(&self, b: &Aabb) -> u64 {
+        let (low, high) = self.range(b);
+        if b.is_empty() { 0 } else { (0..3).map(|axis| u64::from(high[axis] - low[axis] + 1)).product() }
+    }
+
     fn for_cells(&mut self, b: &Aabb, overlaps: impl Fn(Aabb) -> bool, mut f: impl FnMut(&mut Self, usize)) {
         if b.is_empty() {
             return;
         }
-        let pad = 1e-4 * self.cell_size();
-        let (low, high) = (self.cell_of(b.min - pad), self.cell_of(b.max + pad));
+        let (low, high) = self.range(b);
+        let pad = PAD * self.cell_size();
         for z in low[2]..=high[2] {
             for y in low[1]..=high[1] {
                 for x in low[0]..=high[0] {
@@ -127,13 +148,21 @@ impl Grid {
     /// Offers the things of every cell that the ray crosses before `t_max` to `test`, cell by cell; see
     /// [`super::Bvh::walk`]. A thing in several cells is offered several times.
     pub fn walk<T: Tally>(&self, ray: &Ray, tally: &mut T, mut test: impl FnMut(usize, f32, &mut T) -> f32) {
-        self.walk_cells(ray, |grid, cell, mut t_max| {
+        let mut offer = |items: &[u32], t_max: f32| {
             tally.node();
+            items.iter().fold(t_max, |t_max, item| test(*item as usize, t_max, tally))
+        };
+        // Where rounding moves rays by more than the padding of cells, as from very far away, all things are offered.
+        let reach = [self.bounds.min, self.bounds.max].map(|c| (ray.origin - c).abs().max(c.abs()).max_element());
+        let cut = |axis: &usize| self.counts[*axis] > 1;
+        let finest = (0..3).filter(cut).map(|axis| self.cell_size()[axis]).fold(f32::INFINITY, f32::min);
+        if 16.0 * f32::EPSILON * reach[0].max(reach[1]) > PAD * finest && is_sound(ray) {
+            offer(&self.items, ray.t_max);
+            return;
+        }
+        self.walk_cells(ray, |grid, cell, t_max| {
             let i = grid.number(cell);
-            for item in &grid.items[grid.starts[i] as usize..grid.starts[i + 1] as usize] {
-                t_max = test(*item as usize, t_max, tally);
-            }
-            t_max
+            offer(&grid.items[grid.starts[i] as usize..grid.starts[i + 1] as usize], t_max)
         });
     }
 

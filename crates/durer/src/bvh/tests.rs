@@ -1,1 +1,189 @@
+//! Trees and grids over boxes that are hard on them.
 
+use super::traverse::is_sound;
+use super::*;
+use crate::math::random::Random;
+use crate::math::{Ray, Vec3};
+
+fn cube(center: Vec3, half: f32) -> Aabb {
+    Aabb { min: center - half, max: center + half }
+}
+
+/// Collections of boxes, each with a name for messages.
+fn collections() -> Vec<(&'static str, Vec<Aabb>)> {
+    let mut random = Random(1);
+    let mut some = |count: usize, half: &dyn Fn(usize) -> f32, place: f32| -> Vec<Aabb> {
+        (0..count).map(|i| cube(place * random.point(), half(i))).collect()
+    };
+    let corner = |i: usize| Vec3::splat(libm::powf(1.9, i as f32 % 180.0 - 90.0));
+    vec![
+        ("none", Vec::new()),
+        ("one", some(1, &|_| 1.0, 1.0)),
+        ("five", some(5, &|_| 0.1, 1.0)),
+        ("random", some(5_000, &|_| 0.02, 1.0)),
+        ("points", some(2_000, &|_| 0.0, 1.0)),
+        ("identical", vec![cube(Vec3::ONE, 1.0); 100_000]),
+        ("identical points", vec![cube(Vec3::ONE, 0.0); 10_000]),
+        ("series around one point", (0..2_000).map(|i| cube(Vec3::ZERO, corner(i).x)).collect()),
+        ("series of corners", (0..2_000).map(|i| Aabb { min: Vec3::ZERO, max: corner(i) }).collect()),
+        ("series of places", (0..2_000).map(|i| cube(corner(i), 0.0)).collect()),
+        (
+            "flat",
+            (0..1_000).map(|i| Aabb { min: Vec3::X * i as f32, max: Vec3::new(i as f32 + 1.0, 0.0, 1.0) }).collect(),
+        ),
+        ("huge", some(500, &|_| 1e38, 1e38)),
+        ("larger than numbers", vec![Aabb { min: Vec3::MIN, max: Vec3::MAX }; 100]),
+        ("denormal", some(500, &|_| 1e-42, 1e-40)),
+        (
+            "empty ones between",
+            (0..100).map(|i| if i % 3 == 0 { Aabb::EMPTY } else { cube(Vec3::X * i as f32, 0.4) }).collect(),
+        ),
+    ]
+}
+
+/// The longest way from the root to a leaf, in nodes.
+fn depth(bvh: &Bvh, node: u32) -> usize {
+    let children = bvh.nodes[node as usize].children;
+    let inner = children.into_iter().filter(|child| child & LEAF_BIT == 0);
+    1 + inner.map(|child| depth(bvh, child)).max().unwrap_or(0)
+}
+
+#[test]
+fn every_thing_is_offered_to_a_ray_through_its_box_whatever_the_boxes() {
+    let mut random = Random(2);
+    for (name, boxes) in collections() {
+        let bvh = Bvh::build(&boxes);
+        let mut order = bvh.order().to_vec();
+        order.sort_unstable();
+        let full: Vec<u32> = (0..boxes.len() as u32).filter(|&i| !boxes[i as usize].is_empty()).collect();
+        assert_eq!(order, full, "{name}");
+        if full.is_empty() {
+            bvh.walk(&Ray::new(Vec3::ZERO, Vec3::X), &mut (), |_, _, _| panic!("nothing is there"));
+            continue;
+        }
+        // 40 levels of any kind, then halving.
+        assert!(depth(&bvh, 0) <= 40 + 17, "{name}: {}", depth(&bvh, 0));
+        for round in 0..200 {
+            let i = full[random.below(full.len())];
+            let b = boxes[i as usize];
+            // A point of the box, on its border in two of three rounds; a ray there from somewhere near or far.
+            let mix = |random: &mut Random| [random.unit(), 0.0, 1.0][random.below(3)];
+            let w = Vec3::new(mix(&mut random), mix(&mut random), mix(&mut random));
+            let target = b.min * (Vec3::ONE - w) + b.max * w;
+            let reach = (0.5 * b.size()).max_element().max(1e-37);
+            let axis = Vec3::AXES[random.below(3)];
+            let step = if round % 2 == 0 { reach * random.point() } else { reach * axis };
+            let ray = Ray { t_min: f32::NEG_INFINITY, ..Ray::new(target - step, step) };
+            if !is_sound(&ray) {
+                continue;
+            }
+            let mut offered = false;
+            bvh.walk(&ray, &mut (), |item, t_max, _| {
+                offered |= bvh.order()[item] == i;
+                t_max
+            });
+            assert!(offered, "{name}: {b:?} {ray:?}");
+        }
+    }
+}
+
+#[test]
+fn a_tree_does_not_depend_on_the_number_of_threads() {
+    let mut random = Random(3);
+    let boxes: Vec<Aabb> = (0..30_000).map(|_| cube(random.point(), 0.01 * random.unit())).collect();
+    let build = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        format!("{:?}", pool.install(|| Bvh::build(&boxes)))
+    };
+    assert!(build(1) == build(2));
+}
+
+#[test]
+fn boxes_that_begin_where_the_ray_ends_are_offered_and_an_ended_walk_stops() {
+    let boxes: Vec<Aabb> = (0..100).map(|i| cube(Vec3::X * i as f32, 0.5)).collect();
+    let bvh = Bvh::build(&boxes);
+    let ray = Ray::new(Vec3::X * -1.5, Vec3::X);
+    let mut last = 0;
+    bvh.walk(&ray, &mut (), |item, t_max, _| {
+        last = last.max(bvh.order()[item]);
+        t_max.min(11.0)
+    });
+    // t = 11 is x = 9.5, the last face of box 9 and the first of box 10.
+    assert!(last >= 10, "{last}");
+    let mut offered = 0;
+    bvh.walk(&ray, &mut (), |_, _, _| {
+        offered += 1;
+        f32::NEG_INFINITY
+    });
+    assert!(offered <= LEAF_SIZE, "{offered}");
+}
+
+#[test]
+fn a_slab_is_clipped_by_the_sign_of_the_direction() {
+    let b = cube(Vec3::ZERO, 1.0);
+    assert_eq!(b.clip(Vec3::new(-3.0, 0.0, 0.0), Vec3::X), Some((2.0, 4.0)));
+    assert_eq!(b.clip(Vec3::new(3.0, 0.0, 0.0), Vec3::X * -2.0), Some((1.0, 2.0)));
+    // In a face, in an edge; beside them.
+    assert_eq!(b.clip(Vec3::new(-3.0, 1.0, 0.0), Vec3::X), Some((2.0, 4.0)));
+    assert_eq!(b.clip(Vec3::new(-3.0, 1.0, -1.0), Vec3::X), Some((2.0, 4.0)));
+    assert_eq!(b.clip(Vec3::new(-3.0, 1.0f32.next_up(), 0.0), Vec3::X), None);
+    assert_eq!(b.clip(Vec3::ZERO, Vec3::ZERO), Some((f32::NEG_INFINITY, f32::INFINITY)));
+}
+
+#[test]
+fn grids_hold_everything_or_are_refused() {
+    let unit = cube(Vec3::ZERO, 1.0);
+    for counts in [[0, 1, 1], [1, 0, 5], [u32::MAX, u32::MAX, u32::MAX], [1 << 13, 1 << 13, 2]] {
+        assert!(Grid::build(unit, counts, &[unit], |_, _| true).is_none(), "{counts:?}");
+    }
+    // Large things in many cells: refused before memory is taken.
+    assert!(Grid::build(unit, [256, 256, 256], &vec![unit; 1000], |_, _| true).is_none());
+    let one = Grid::build(unit, [1, 1, 1], &[unit], |_, _| true).unwrap();
+    assert_eq!(one.occupancy([0, 0, 0]), 1);
+    for (name, boxes) in collections() {
+        let bounds = boxes.iter().copied().fold(Aabb::EMPTY, Aabb::union);
+        if bounds.is_empty() || name == "identical" || name == "larger than numbers" || name == "huge" {
+            continue;
+        }
+        let counts = Grid::suitable(bounds, boxes.len());
+        assert!(counts.iter().all(|n| (1..=256).contains(n)), "{name}: {counts:?}");
+        let grid = Grid::build(bounds, counts, &boxes, |_, _| true).unwrap_or_else(|| panic!("{name}"));
+        let mut random = Random(4);
+        for _ in 0..100 {
+            let i = random.below(boxes.len());
+            let (target, from) = (boxes[i].center(), bounds.center() + bounds.size() * random.point());
+            let ray = Ray { t_min: f32::NEG_INFINITY, ..Ray::new(from, target - from) };
+            if boxes[i].is_empty() || !is_sound(&ray) {
+                continue;
+            }
+            let mut offered = false;
+            grid.walk(&ray, &mut (), |item, t_max, _| {
+                offered |= item == i;
+                t_max
+            });
+            assert!(offered, "{name}: {:?} {ray:?}", boxes[i]);
+        }
+    }
+}
+
+#[test]
+fn grid_cells_are_visited_in_order_and_only_up_to_the_hit() {
+    let unit = cube(Vec3::ZERO, 1.0);
+    let grid = Grid::build(unit, [4, 4, 4], &[], |_, _| true).unwrap();
+    let visited = |ray: Ray, limit: f32| {
+        let mut cells = Vec::new();
+        grid.walk_cells(&ray, |_, cell, t_max| {
+            cells.push(cell);
+            t_max.min(limit)
+        });
+        cells
+    };
+    let along = Ray::new(Vec3::new(-5.0, 0.1, 0.1), Vec3::X);
+    assert_eq!(visited(along, f32::INFINITY), [[0, 2, 2], [1, 2, 2], [2, 2, 2], [3, 2, 2]]);
+    assert_eq!(visited(along, 4.7), [[0, 2, 2], [1, 2, 2]]);
+    let back = Ray::new(Vec3::new(5.0, 0.1, 0.1), Vec3::NEG_X);
+    assert_eq!(visited(back, f32::INFINITY), [[3, 2, 2], [2, 2, 2], [1, 2, 2], [0, 2, 2]]);
+    let steep = Ray::new(Vec3::new(-0.1, -0.1, 0.1), Vec3::new(1.0, 0.5, 0.0));
+    assert_eq!(visited(steep, f32::INFINITY), [[1, 1, 2], [2, 1, 2], [2, 2, 2], [3, 2, 2]]);
+    assert_eq!(visited(Ray::new(Vec3::splat(3.0), Vec3::X), f32::INFINITY), [[0; 3]; 0]);
+}

@@ -85,3 +85,6 @@ impl Lens for Camera {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -26,8 +26,9 @@ impl Raster {
     pub fn point(&self, place: Vec2) -> Vec2 {
         // Where pixel centres lie on the border, the first and last centre span the side, not the edges.
         let inset = if self.border_pixels { 1.0 } else { 0.0 };
-        let size = (Vec2::new(self.width as f32, self.height as f32) - inset).max(Vec2::ONE);
-        let span = if self.stretch { size } else { Vec2::splat(size.max_element()) };
+        let size = Vec2::new(self.width as f32, self.height as f32) - inset;
+        // A single pixel lies in the middle.
+        let span = if self.stretch { size } else { Vec2::splat(size.max_element()) }.max(Vec2::ONE);
         let from_center = 2.0 * (place - 0.5 * inset) - size;
         Vec2::new(from_center.x, -from_center.y) / span
     }

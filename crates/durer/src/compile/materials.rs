@@ -1,9 +1,9 @@
 //! Materials: the dialect's meaning of their words is worked in here.
 
 use super::files::Loader;
-use crate::diag::Diagnostics;
+use crate::diag::{Diagnostic, Diagnostics};
 use crate::dialect::{Compat, Highlight, Rules, Secondary};
-use crate::material::{ColorNoise, PhongMaterial};
+use crate::material::{ColorNoise, Pattern, PhongMaterial};
 use crate::math::Color;
 use crate::scene::{self, MatrixOp, Scene};
 use crate::world::{HighlightModel, Material, Phong};
@@ -14,6 +14,7 @@ pub(super) fn compile(
     loader: &mut Loader,
     diagnostics: &mut Diagnostics,
 ) -> Vec<Material> {
+    check_solids(scene, diagnostics);
     let one = |material: &scene::Spanned<scene::Material>| match &material.value {
         scene::Material::Solid(solid, ops) => {
             let to_pattern = MatrixOp::product(ops, rules.has(Compat::MatrixOnLeft));
@@ -25,6 +26,34 @@ pub(super) fn compile(
         }
     };
     scene.materials.iter().map(one).collect()
+}
+
+/// Refuses solids that lead to themselves, are nested too deeply, or double at each level.
+fn check_solids(scene: &Scene, diagnostics: &mut Diagnostics) {
+    const DEEPEST: u32 = 64;
+    const MOST: u64 = 4096;
+    // How deep each material is nested, and of how many parts it is made at most.
+    let mut sizes: Vec<(u32, u64)> = Vec::with_capacity(scene.materials.len());
+    for material in &scene.materials {
+        let scene::Material::Solid(solid, _) = &material.value else {
+            sizes.push((0, 1));
+            continue;
+        };
+        let parts = solid.materials().map(|i| sizes.get(i as usize).copied());
+        let [Some(first), Some(second)] = parts else {
+            let message = "a solid material is made of earlier ones";
+            diagnostics.push(Diagnostic::error(message).at(material.span));
+            return;
+        };
+        let size = (1 + first.0.max(second.0), first.1 + second.1);
+        if size.0 > DEEPEST || size.1 > MOST {
+            let message = format!("this material is made of others {} deep and {} in all", size.0, size.1);
+            let help = format!("at most {DEEPEST} deep and {MOST} in all are allowed");
+            diagnostics.push(Diagnostic::error(message).at(material.span).help(help));
+            return;
+        }
+        sizes.push(size);
+    }
 }
 
 fn phong_of(m: &PhongMaterial, noise: Option<ColorNoise>, texture: Option<u32>, rules: &Rules) -> Phong {

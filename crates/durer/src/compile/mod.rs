@@ -2,6 +2,8 @@
 
 mod files;
 mod materials;
+#[cfg(test)]
+pub(crate) mod testing;
 
 use crate::bvh::{Bvh, Grid};
 use crate::camera::{Frame, Lens};
@@ -136,8 +138,9 @@ fn build_accel(world: &World, kind: AccelKind) -> Result<Accel, Box<Diagnostic>>
     let grid = Grid::build(bounds, counts, &boxes, overlaps).ok_or_else(|| {
         let [x, y, z] = counts;
         let most = Grid::MOST_CELLS;
-        let message = format!("a grid of {x} x {y} x {z} cells cannot be made: it must have 1 to {most} cells");
-        Box::new(Diagnostic::error(message))
+        let message = format!("a grid of {x} x {y} x {z} cells cannot be made");
+        let help = format!("it must have 1 to {most} cells, and large objects must not lie in too many of them");
+        Box::new(Diagnostic::error(message).help(help))
     })?;
     Ok(Accel::Grid { grid, parts })
 }
@@ -251,3 +254,6 @@ impl Flattening<'_, '_> {
         self.objects.push(Object { geometry, to_world, material, span: object.span });
     }
 }
+
+#[cfg(test)]
+mod tests;

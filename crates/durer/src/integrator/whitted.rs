@@ -26,7 +26,7 @@ pub struct Settings {
     pub reflection: bool,
     /// Whether transmitted rays are traced.
     pub refraction: bool,
-    /// A ray that counts for less than this is not traced.
+    /// A ray that counts for less than this is not traced; as in the course, a colour counts by its magnitude.
     pub least_weight: f32,
 }
 
@@ -116,6 +116,11 @@ impl Whitted<'_> {
         // What stands exactly at the light does not block it.
         let reach = if epsilon.is_some() { seen.distance } else { seen.distance * (1.0 - gamma(16)) };
         let mut ray = from_surface(surface, seen.to_light, reach, epsilon);
+        if self.world.rules.has(Compat::ShadowFronts) {
+            let nearest = self.world.closest(&ray, tally).map(|hit| self.world.surface(&ray, &hit));
+            let blocked = nearest.is_some_and(|blocker| blocker.n_shade.dot(ray.dir) <= 0.0);
+            return if blocked { Color::ZERO } else { Color::ONE };
+        }
         if !self.settings.transparent_shadows {
             return if self.world.occluded(&ray, tally) { Color::ZERO } else { Color::ONE };
         }
@@ -228,3 +233,6 @@ pub fn refract(d: Vec3, n: Vec3, eta: f32) -> Option<Vec3> {
     let radicand = 1.0 - eta * eta * (1.0 - cosine * cosine);
     (radicand >= 0.0).then(|| eta * (d - cosine * n) - radicand.sqrt() * n)
 }
+
+#[cfg(test)]
+mod tests;

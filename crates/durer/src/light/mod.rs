@@ -52,3 +52,6 @@ impl Emitter for Light {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -51,3 +51,6 @@ pub const MOST_OCTAVES: u32 = 32;
 pub fn is_material_index(field: &Field) -> bool {
     field.name.starts_with("material")
 }
+
+#[cfg(test)]
+mod tests;

@@ -4,6 +4,8 @@ mod aabb;
 mod affine;
 pub mod fp;
 pub mod noise;
+#[cfg(test)]
+pub mod random;
 mod ray;
 
 pub use aabb::Aabb;

@@ -55,3 +55,6 @@ fn rotation(axis: DVec3, degrees: f32) -> DAffine3 {
     let column = |v: DVec3| v * cos + axis.cross(v) * sin + axis * (axis.dot(v) * (1.0 - cos));
     DAffine3::from_mat3(DMat3::from_cols(column(DVec3::X), column(DVec3::Y), column(DVec3::Z)))
 }
+
+#[cfg(test)]
+mod tests;

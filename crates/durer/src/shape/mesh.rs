@@ -112,7 +112,7 @@ impl Mesh {
             .map_or(n_geo, |normals| mix(normals).normalize_or(n_geo));
         let uv = attribute(&self.data.triangle_uvs, &self.data.uvs, part)
             .map(|[a, b, c]| barycentric.x * a + barycentric.y * b + barycentric.z * c);
-        Surface { position, error, n_geo, n_shade, uv, barycentric }
+        Surface { position, error, curvature: 0.0, n_geo, n_shade, uv, barycentric }
     }
 }
 

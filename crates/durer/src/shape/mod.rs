@@ -4,6 +4,8 @@ pub mod mesh;
 pub mod normals;
 pub mod plane;
 pub mod sphere;
+#[cfg(test)]
+mod tests;
 pub mod triangle;
 pub mod watertight;
 
@@ -40,6 +42,8 @@ pub struct Surface {
     pub position: Vec3,
     /// Bound on the absolute error of the point, by axis.
     pub error: Vec3,
+    /// Bound on the curvature, in object space: one over the least radius. Zero on what is flat.
+    pub curvature: f32,
     /// Unit normal of the true surface.
     pub n_geo: Vec3,
     /// Unit normal for shading: interpolated on smooth meshes.
@@ -48,6 +52,13 @@ pub struct Surface {
     pub uv: Option<Vec2>,
     /// Barycentric coordinates; of use on triangles.
     pub barycentric: Vec3,
+}
+
+impl Surface {
+    /// How far the surface may fall away from its tangent plane within an error of the point.
+    pub fn bulge(&self, error: Vec3) -> Vec3 {
+        0.5 * self.curvature * error.length_squared() * self.n_geo.abs()
+    }
 }
 
 /// What every shape can do.

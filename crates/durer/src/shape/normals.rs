@@ -3,6 +3,7 @@
 use super::mesh::{MeshData, NO_INDEX};
 use crate::dialect::MeshNormals;
 use crate::math::{Vec3, fp};
+use glam::DVec3;
 
 /// Gives every triangle without normals the ones that the rule makes.
 pub(super) fn complete(data: &mut MeshData, rule: MeshNormals) {
@@ -17,7 +18,7 @@ pub(super) fn complete(data: &mut MeshData, rule: MeshNormals) {
     };
     let made = match rule {
         MeshNormals::SmoothByArea => smooth(data, |cross| cross),
-        MeshNormals::SmoothByFace => smooth(data, |cross| cross.normalize_or_zero()),
+        MeshNormals::SmoothByFace => smooth(data, DVec3::normalize_or_zero),
         MeshNormals::Crease(degrees) => creased(data, degrees),
         MeshNormals::Flat | MeshNormals::SmoothAbove(_) => return,
     };
@@ -32,24 +33,24 @@ pub(super) fn complete(data: &mut MeshData, rule: MeshNormals) {
     data.triangle_normals = complete;
 }
 
-/// Twice the area of a triangle times its normal.
-fn cross(data: &MeshData, triangle: [u32; 3]) -> Vec3 {
-    let [a, b, c] = triangle.map(|i| data.positions[i as usize]);
+/// Twice the area of a triangle times its normal. Tiny areas are beyond single precision.
+fn cross(data: &MeshData, triangle: [u32; 3]) -> DVec3 {
+    let [a, b, c] = triangle.map(|i| data.positions[i as usize].as_dvec3());
     (b - a).cross(c - a)
 }
 
 type Normals = (Vec<Vec3>, Vec<[u32; 3]>);
 
 /// One normal a vertex: the sum over its faces, each weighted by a function of its cross product.
-fn smooth(data: &MeshData, weigh: impl Fn(Vec3) -> Vec3) -> Normals {
-    let mut sums = vec![Vec3::ZERO; data.positions.len()];
+fn smooth(data: &MeshData, weigh: impl Fn(DVec3) -> DVec3) -> Normals {
+    let mut sums = vec![DVec3::ZERO; data.positions.len()];
     for &triangle in &data.triangles {
         let normal = weigh(cross(data, triangle));
         for i in triangle {
             sums[i as usize] += normal;
         }
     }
-    (sums.into_iter().map(Vec3::normalize_or_zero).collect(), data.triangles.clone())
+    (sums.into_iter().map(|sum| sum.normalize_or_zero().as_vec3()).collect(), data.triangles.clone())
 }
 
 /// One normal a corner: the sum, by angle, over the faces around its vertex that are not beyond a crease.
@@ -57,7 +58,7 @@ fn smooth(data: &MeshData, weigh: impl Fn(Vec3) -> Vec3) -> Normals {
 /// Source of the weights: Thürmer and Wüthrich, *Computing Vertex Normals from Polygonal Facets*, JGT 3(1), 1998.
 fn creased(data: &MeshData, degrees: f32) -> Normals {
     let least_cosine = fp::sin_cos_degrees(f64::from(degrees)).1 as f32;
-    let faces: Vec<Vec3> = data.triangles.iter().map(|&t| cross(data, t).normalize_or_zero()).collect();
+    let faces: Vec<Vec3> = data.triangles.iter().map(|&t| cross(data, t).normalize_or_zero().as_vec3()).collect();
     // For each vertex the corners that meet there, as one flat list: corner 3i + k is corner k of triangle i.
     let mut starts = vec![0u32; data.positions.len() + 1];
     for i in data.triangles.iter().flatten() {
@@ -76,8 +77,9 @@ fn creased(data: &MeshData, degrees: f32) -> Normals {
     const MANY: usize = 64;
     let angle = |corner: u32| {
         let [triangle, k] = [corner as usize / 3, corner as usize % 3];
-        let at = |k: usize| data.positions[data.triangles[triangle][k % 3] as usize];
-        let (e, f) = ((at(k + 1) - at(k)).normalize_or_zero(), (at(k + 2) - at(k)).normalize_or_zero());
+        let at = |k: usize| data.positions[data.triangles[triangle][k % 3] as usize].as_dvec3();
+        let edge = |to: usize| (at(to) - at(k)).normalize_or_zero().as_vec3();
+        let (e, f) = (edge(k + 1), edge(k + 2));
         fp::atan2(e.cross(f).length(), e.dot(f))
     };
     let mut normals = Vec::with_capacity(corners.len());

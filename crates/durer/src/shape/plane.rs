@@ -24,9 +24,9 @@ impl Shape for Plane {
     fn intersect(&self, ray: &Ray) -> Option<Crossing> {
         let n = self.normal.as_dvec3();
         let slope = n.dot(ray.dir.as_dvec3());
-        // A parallel ray divides by zero; infinite and NaN are in no interval.
+        // A parallel ray divides by zero, and an infinite one by infinity: neither hits.
         let t = ((f64::from(self.offset) - n.dot(ray.origin.as_dvec3())) / slope) as f32;
-        (t.is_finite() && ray.contains(t)).then_some(Crossing { t, uv: Vec2::ZERO })
+        (slope.is_finite() && t.is_finite() && ray.contains(t)).then_some(Crossing { t, uv: Vec2::ZERO })
     }
 
     fn surface(&self, ray: &Ray, crossing: &Crossing) -> Surface {
@@ -40,6 +40,7 @@ impl Shape for Plane {
         Surface {
             position,
             error: gamma(2) * position.abs(),
+            curvature: 0.0,
             n_geo: normal,
             n_shade: normal,
             uv: Some(Vec2::new(tangent.dot(position), bitangent.dot(position))),

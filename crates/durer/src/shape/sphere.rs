@@ -22,10 +22,10 @@ impl Shape for Sphere {
         Some(Aabb { min: self.center - self.radius - pad, max: self.center + self.radius + pad })
     }
 
-    /// Whether the point of the box that is nearest to the centre is no farther than the radius.
+    /// Whether the sphere around the box meets this one: the course's test, which also takes some boxes that it misses.
     fn overlaps(&self, cell: &Aabb) -> bool {
-        let nearest = self.center.clamp(cell.min, cell.max);
-        (nearest - self.center).length() <= self.radius * (1.0 + gamma(8))
+        let reach = self.radius + 0.5 * cell.size().length();
+        (cell.center() - self.center).length() <= reach * (1.0 + gamma(8))
     }
 
     /// Solves |origin + t dir - center|^2 = radius^2 in double precision.
@@ -40,8 +40,8 @@ impl Shape for Sphere {
         let b = -o.dot(d);
         let nearest = o + (b / dd) * d;
         let discriminant = r * r - nearest.dot(nearest);
-        // Also refuses NaN, which a zero direction gives.
-        if !(discriminant >= 0.0) {
+        // A zero direction gives NaN.
+        if discriminant.is_nan() || discriminant < 0.0 {
             return None;
         }
         // q has the sign of b, so that neither root loses digits to cancellation.
@@ -63,6 +63,14 @@ impl Shape for Sphere {
         let u = fp::atan2(normal.x, -normal.z) / std::f32::consts::TAU + 0.5;
         let v = fp::asin(normal.y.clamp(-1.0, 1.0)) / std::f32::consts::PI + 0.5;
         let uv = Some(Vec2::new(u, v));
-        Surface { position, error, n_geo: normal, n_shade: normal, uv, barycentric: Vec3::ZERO }
+        Surface {
+            position,
+            error,
+            curvature: 1.0 / self.radius,
+            n_geo: normal,
+            n_shade: normal,
+            uv,
+            barycentric: Vec3::ZERO,
+        }
     }
 }

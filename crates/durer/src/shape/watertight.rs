@@ -6,6 +6,9 @@
 //! function is exact, so two neighbours never disagree. Where an edge passes through the ray, the ray counts
 //! as moved by an infinitesimal (e, e^2) in the plane across it.
 //!
+//! Single precision says whether a triangle is crossed; where, double precision says. A ray that starts beside a
+//! triangle, off by no more than the rounding of its origin, is therefore on the right side of it.
+//!
 //! Sources: Woop, Benthin, Wald, *Watertight Ray/Triangle Intersection*, JCGT 2(1), 2013; the infinitesimal is
 //! Edelsbrunner and Mücke's *Simulation of Simplicity*, ACM TOG 9(1), 1990.
 
@@ -16,12 +19,13 @@ use crate::math::{Ray, Vec2, Vec3};
 #[derive(Clone, Copy, Debug)]
 pub struct Sheared {
     origin: Vec3,
+    dir: Vec3,
     axes: [usize; 3],
-    shear: Vec3,
+    shear: Vec2,
 }
 
 impl Sheared {
-    /// Prepares a ray. One without direction hits nothing.
+    /// Prepares a ray. One without direction, or with an infinite one, hits nothing.
     pub fn new(ray: &Ray) -> Self {
         let d = ray.dir.abs();
         // The longest component of the direction becomes the third axis.
@@ -36,53 +40,68 @@ impl Sheared {
         if ray.dir[kz] < 0.0 {
             std::mem::swap(&mut kx, &mut ky);
         }
-        let z = ray.dir[kz];
-        let shear = Vec3::new(ray.dir[kx] / z, ray.dir[ky] / z, 1.0 / z);
-        Sheared { origin: ray.origin, axes: [kx, ky, kz], shear }
+        let z = if ray.dir.is_finite() { ray.dir[kz] } else { f32::NAN };
+        let shear = Vec2::new(ray.dir[kx] / z, ray.dir[ky] / z);
+        Sheared { origin: ray.origin, dir: ray.dir, axes: [kx, ky, kz], shear }
     }
 
     /// The crossing with a triangle in the open interval (`t_min`, `t_max`), from either side.
     #[inline]
     pub fn intersect(&self, corners: [Vec3; 3], t_min: f32, t_max: f32) -> Option<Crossing> {
         let [kx, ky, kz] = self.axes;
-        let [a, b, c] = corners.map(|corner| {
+        let flat @ [a, b, c] = corners.map(|corner| {
             let p = corner - self.origin;
-            Vec3::new(p[kx] - self.shear.x * p[kz], p[ky] - self.shear.y * p[kz], self.shear.z * p[kz])
+            Vec2::new(p[kx] - self.shear.x * p[kz], p[ky] - self.shear.y * p[kz])
         });
-        let (u, u_front) = edge(b, c);
-        let (v, v_front) = edge(c, a);
-        let (w, w_front) = edge(a, b);
-        if u_front != v_front || v_front != w_front {
+        let front = is_front(b, c);
+        if is_front(c, a) != front || is_front(a, b) != front {
             return None;
         }
-        // Zero for a triangle that the ray sees from its side; such a one is crossed by no ray.
-        let det = u + v + w;
-        let t = (u * a.z + v * b.z + w * c.z) / det;
+        let crossing = self.crossing(corners, flat);
+        let t = crossing.t;
         // Refuses also NaN.
-        (t > t_min && t < t_max && t.is_finite()).then(|| Crossing { t, uv: Vec2::new(v / det, w / det) })
+        (t > t_min && t < t_max && t.is_finite()).then_some(crossing)
+    }
+
+    /// Where a triangle is crossed; `t` is NaN for one that the ray sees from its side, which is crossed by no ray.
+    fn crossing(&self, corners: [Vec3; 3], [a, b, c]: [Vec2; 3]) -> Crossing {
+        // None of the three is of another sign than the others, so their sum is as exact as they are.
+        let (u, v, w) = (edge(b, c), edge(c, a), edge(a, b));
+        let det = u + v + w;
+        if det == 0.0 || det.is_nan() {
+            return Crossing { t: f32::NAN, uv: Vec2::ZERO };
+        }
+        let p = corners.map(|corner| corner.as_dvec3() - self.origin.as_dvec3());
+        let n = (p[1] - p[0]).cross(p[2] - p[0]);
+        // The plane's t; seen from nearly its side, the triangle still bounds it (and `max` replaces NaN).
+        let kz = self.axes[2];
+        let [x, y, z] = p.map(|p| p[kz] / f64::from(self.dir[kz]));
+        let t = n.dot(p[0]) / n.dot(self.dir.as_dvec3());
+        let t = t.max(x.min(y).min(z)).min(x.max(y).max(z));
+        Crossing { t: t as f32, uv: Vec2::new((v / det) as f32, (w / det) as f32) }
     }
 }
 
-/// The edge function of the edge from `p` to `q` about the origin, and its sign, which is never zero.
+/// Whether the edge from `p` to `q` goes round the origin clockwise: the sign of the edge function, never zero.
 #[inline]
-fn edge(p: Vec3, q: Vec3) -> (f32, bool) {
+fn is_front(p: Vec2, q: Vec2) -> bool {
     let value = q.x * p.y - q.y * p.x;
-    if value != 0.0 {
-        // Rounding is monotonic: the difference of two rounded products has the sign of the true one.
-        return (value, value > 0.0);
-    }
-    edge_exact(p, q)
+    // Rounding is monotonic: the difference of two rounded products has the sign of the true one.
+    if value.abs() > 0.0 && value.abs() < f32::INFINITY { value > 0.0 } else { is_front_exact(p, q) }
 }
 
-/// As [`edge`], where single precision sees zero.
+/// As [`is_front`], where single precision sees zero or overflows.
 #[cold]
-fn edge_exact(p: Vec3, q: Vec3) -> (f32, bool) {
-    // A product of two f32 is exact in f64.
-    let value = f64::from(q.x) * f64::from(p.y) - f64::from(q.y) * f64::from(p.x);
-    // Terms of the edge function about (e, e^2), in falling order: 1, e, e^2.
-    let sign = [value, f64::from(q.y) - f64::from(p.y), f64::from(p.x) - f64::from(q.x)]
+fn is_front_exact(p: Vec2, q: Vec2) -> bool {
+    // Terms of the edge function about (e, e^2), in falling order: 1, e, e^2. Differences in double precision, for
+    // those of single precision may underflow.
+    [edge(p, q), f64::from(q.y) - f64::from(p.y), f64::from(p.x) - f64::from(q.x)]
         .into_iter()
         .find(|term| *term != 0.0)
-        .unwrap_or(0.0);
-    (value as f32, sign > 0.0)
+        .is_some_and(|term| term > 0.0)
+}
+
+/// The edge function of the edge from `p` to `q` about the origin: a product of two f32 is exact in f64.
+fn edge(p: Vec2, q: Vec2) -> f64 {
+    f64::from(q.x) * f64::from(p.y) - f64::from(q.y) * f64::from(p.x)
 }

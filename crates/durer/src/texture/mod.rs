@@ -28,17 +28,21 @@ impl Texture {
 
     /// The colour at (u, v), with v upwards: bilinear, with no half-texel shift, clamped at the border.
     pub fn at(&self, uv: Vec2) -> Color {
-        let x = uv.x * self.width as f32;
-        let y = (1.0 - uv.y) * self.height as f32;
+        let (width, height) = (self.width as f32, self.height as f32);
+        // `max` before `min`: NaN becomes 0.
+        let x = (uv.x * width).max(0.0).min(width);
+        let y = ((1.0 - uv.y) * height).max(0.0).min(height);
         let (left, top) = (x.trunc(), y.trunc());
-        let (a, b) = ((x - left).clamp(0.0, 1.0), (y - top).clamp(0.0, 1.0));
+        let (a, b) = (x - left, y - top);
         let texel = |dx: f32, dy: f32| {
-            // A cast from float saturates, and NaN becomes 0.
-            let i = ((left + dx).max(0.0) as u32).min(self.width - 1);
-            let j = ((top + dy).max(0.0) as u32).min(self.height - 1);
+            let i = ((left + dx) as u32).min(self.width - 1);
+            let j = ((top + dy) as u32).min(self.height - 1);
             Color::from(self.texels[j as usize * self.width as usize + i as usize].map(|c| f32::from(c) / 255.0))
         };
         (1.0 - b) * ((1.0 - a) * texel(0.0, 0.0) + a * texel(1.0, 0.0))
             + b * ((1.0 - a) * texel(0.0, 1.0) + a * texel(1.0, 1.0))
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,91 @@
+//! Rays of cameras through known places of pictures.
+
+use super::*;
+use crate::dialect::Dialect;
+
+fn rules(compat: &[Compat]) -> Rules {
+    Rules { compat: compat.iter().map(|c| c.bit()).sum(), ..Dialect::Durer.rules().clone() }
+}
+
+fn close(a: Vec3, b: Vec3) {
+    assert!((a - b).length() < 1e-6, "{a} {b}");
+}
+
+#[test]
+fn pixel_centres_lie_inside_the_square_and_edges_on_its_border() {
+    let raster = Raster::new(4, 4, &rules(&[]));
+    assert_eq!(raster.point(Vec2::ZERO), Vec2::new(-1.0, 1.0));
+    assert_eq!(raster.point(Vec2::splat(4.0)), Vec2::new(1.0, -1.0));
+    assert_eq!(raster.point(Vec2::splat(2.0)), Vec2::ZERO);
+    assert_eq!(raster.point(Vec2::splat(0.5)), Vec2::new(-0.75, 0.75));
+}
+
+#[test]
+fn the_larger_side_spans_the_square_unless_the_picture_is_stretched() {
+    for (width, height, corner) in [(8, 4, Vec2::new(1.0, 0.5)), (4, 8, Vec2::new(0.5, 1.0)), (5, 5, Vec2::ONE)] {
+        let end = Vec2::new(width as f32, height as f32);
+        assert_eq!(Raster::new(width, height, &rules(&[])).point(end), corner * Vec2::new(1.0, -1.0));
+        assert_eq!(Raster::new(width, height, &rules(&[Compat::Stretch])).point(end), Vec2::new(1.0, -1.0));
+    }
+}
+
+#[test]
+fn border_pixels_have_their_centres_on_the_border() {
+    let last = Vec2::new(6.5, 4.5);
+    let square = Raster::new(7, 5, &rules(&[Compat::BorderPixels]));
+    assert_eq!(square.point(Vec2::splat(0.5)), Vec2::new(-1.0, 4.0 / 6.0));
+    assert_eq!(square.point(last), Vec2::new(1.0, -4.0 / 6.0));
+    let stretched = Raster::new(7, 5, &rules(&[Compat::BorderPixels, Compat::Stretch]));
+    assert_eq!(stretched.point(Vec2::splat(0.5)), Vec2::new(-1.0, 1.0));
+    assert_eq!(stretched.point(last), Vec2::new(1.0, -1.0));
+    // A picture of one pixel, or one row, has its centre in the middle.
+    assert_eq!(Raster::new(1, 1, &rules(&[Compat::BorderPixels])).point(Vec2::splat(0.5)), Vec2::ZERO);
+    assert_eq!(Raster::new(3, 1, &rules(&[Compat::BorderPixels])).point(Vec2::splat(0.5)), Vec2::new(-1.0, 0.0));
+}
+
+#[test]
+fn a_frame_is_right_handed_unless_up_is_used_as_written() {
+    let pose = Pose { center: Vec3::X, direction: Vec3::NEG_Z * 3.0, up: Vec3::new(0.0, 2.0, -2.0) };
+    let frame = Frame::new(pose, &rules(&[]));
+    assert_eq!((frame.eye, frame.forward), (Vec3::X, Vec3::NEG_Z));
+    close(frame.right, Vec3::X);
+    close(frame.up, Vec3::Y);
+    assert_eq!(Frame::new(pose, &rules(&[Compat::RawUp])).up, pose.up);
+    close(Frame::new(pose, &rules(&[Compat::SkewUp])).up, pose.up.normalize());
+    // Looking along `up`, the axes are arbitrary but perpendicular.
+    let frame = Frame::new(Pose { up: Vec3::Z, ..pose }, &rules(&[]));
+    assert!(frame.right.is_normalized() && frame.up.is_normalized());
+    assert!(frame.right.dot(frame.up).abs() + frame.right.dot(frame.forward).abs() < 1e-6);
+}
+
+#[test]
+fn the_pinhole_sees_its_angle_across_the_square() {
+    let camera = PerspectiveCamera { center: Vec3::Y, angle: 90.0, ..PerspectiveCamera::default() };
+    let frame = Frame::new(camera.pose(), &rules(&[]));
+    let ray = |x, y| camera.ray(&frame, Vec2::new(x, y));
+    close(ray(0.0, 0.0).dir, Vec3::NEG_Z);
+    close(ray(1.0, 0.0).dir, Vec3::new(1.0, 0.0, -1.0).normalize());
+    close(ray(-1.0, -1.0).dir, Vec3::new(-1.0, -1.0, -1.0).normalize());
+    assert_eq!((ray(0.3, 0.4).origin, ray(0.3, 0.4).t_min), (Vec3::Y, 0.0));
+    for angle in [1.0f32, 30.0, 120.0, 179.0] {
+        let camera = PerspectiveCamera { angle, ..camera.clone() };
+        let cosine = camera.ray(&frame, Vec2::X).dir.dot(camera.ray(&frame, Vec2::NEG_X).dir);
+        assert!((f64::from(cosine) - libm::cos(f64::from(angle).to_radians())).abs() < 1e-6, "{angle}");
+    }
+}
+
+#[test]
+fn parallel_rays_start_on_the_picture_and_run_both_ways() {
+    let camera = OrthographicCamera {
+        center: Vec3::new(1.0, 2.0, 3.0),
+        direction: Vec3::X * 2.0,
+        up: Vec3::new(1.0, 1.0, 0.0),
+        size: 5.0,
+    };
+    let frame = Frame::new(camera.pose(), &rules(&[]));
+    // right = x cross y = z; up = y.
+    let ray = camera.ray(&frame, Vec2::new(1.0, -0.5));
+    close(ray.origin, Vec3::new(1.0, 2.0 - 1.25, 3.0 + 2.5));
+    close(ray.dir, Vec3::X);
+    assert_eq!((ray.t_min, ray.t_max), (f32::NEG_INFINITY, f32::INFINITY));
+}

@@ -1,0 +1,52 @@
+//! Worlds for tests of other rooms.
+
+use super::*;
+use crate::dialect::Dialect;
+use crate::format::course::{self, ReadOptions};
+use crate::shape::Primitive;
+use crate::world::World;
+use glam::DAffine3;
+use std::path::Path;
+
+/// The world of a scene file's text, and the findings about it.
+pub fn try_read(text: &str, rules: &Rules, accel: AccelKind, folder: &Path) -> (Option<World>, Diagnostics) {
+    let mut files = Files::default();
+    let file = files.add("scene.txt", text.as_bytes().into());
+    let mut diagnostics = Diagnostics::default();
+    let options = ReadOptions { dialect: Dialect::Durer, strict: false };
+    let scene = course::read(text.as_bytes(), file, options, &mut diagnostics);
+    let source = Source::folder(folder);
+    let resources = Resources { source: &source, files: &mut files, sky_optional: false };
+    let world = scene.and_then(|scene| compile(&scene, rules, accel, resources, &mut diagnostics));
+    (world, diagnostics)
+}
+
+/// The world of a scene file's text, by our own dialect's rules.
+pub fn read(text: &str) -> World {
+    let (world, diagnostics) = try_read(text, Dialect::Durer.rules(), AccelKind::Bvh, Path::new("."));
+    world.unwrap_or_else(|| panic!("{diagnostics:?}"))
+}
+
+/// The words of a transform.
+pub fn matrix_words(affine: &DAffine3) -> String {
+    let rows = glam::DMat4::from(*affine).transpose().to_cols_array();
+    let words: Vec<String> = rows.iter().map(|x| format!("{:?}", *x as f32)).collect();
+    format!("Matrix {{ {} }}", words.join(" "))
+}
+
+/// Some shapes, each moved, and nothing else.
+pub fn shapes(shapes: &[(Primitive, DAffine3)], accel: AccelKind) -> World {
+    let object = |node| scene::Object { node, material: None, span: Default::default() };
+    let moved = |(shape, affine): &(Primitive, DAffine3)| {
+        let shape = object(Node::Primitive(shape.clone()));
+        let rows = glam::DMat4::from(*affine).transpose().to_cols_array().map(|x| x as f32);
+        object(Node::Transform(vec![MatrixOp::Matrix(rows)], Box::new(shape)))
+    };
+    let root = Group { objects: shapes.iter().map(moved).collect() };
+    let camera = Some(crate::camera::PerspectiveCamera::default().into());
+    let scene = Scene { camera, root: Some(root), ..Scene::default() };
+    let (mut files, source, mut diagnostics) = (Files::default(), Source::folder("."), Diagnostics::default());
+    let resources = Resources { source: &source, files: &mut files, sky_optional: false };
+    let world = compile(&scene, Dialect::Durer.rules(), accel, resources, &mut diagnostics);
+    world.unwrap_or_else(|| panic!("{diagnostics:?}"))
+}

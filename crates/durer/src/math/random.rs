@@ -1,0 +1,65 @@
+//! Random numbers for tests: the same in every run.
+
+use super::Vec3;
+use glam::{DAffine3, DMat3, DQuat};
+
+/// A generator. Source: Steele, Lea, Flood, *Fast Splittable Pseudorandom Number Generators*, OOPSLA 2014.
+pub struct Random(pub u64);
+
+impl Random {
+    /// 64 random bits.
+    pub fn bits(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let z = (self.0 ^ self.0 >> 30).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        let z = (z ^ z >> 27).wrapping_mul(0x94D0_49BB_1331_11EB);
+        z ^ z >> 31
+    }
+
+    /// Between 0 and 1.
+    pub fn unit(&mut self) -> f32 {
+        (self.bits() >> 40) as f32 / (1u64 << 24) as f32
+    }
+
+    /// Between two numbers.
+    pub fn between(&mut self, low: f32, high: f32) -> f32 {
+        low + (high - low) * self.unit()
+    }
+
+    /// A whole number below another.
+    pub fn below(&mut self, count: usize) -> usize {
+        (self.bits() % count as u64) as usize
+    }
+
+    /// A point of the cube from -1 to 1.
+    pub fn point(&mut self) -> Vec3 {
+        Vec3::new(self.between(-1.0, 1.0), self.between(-1.0, 1.0), self.between(-1.0, 1.0))
+    }
+
+    /// A direction, evenly over the sphere.
+    pub fn direction(&mut self) -> Vec3 {
+        loop {
+            let p = self.point();
+            if (0.01..=1.0).contains(&p.length_squared()) {
+                return p.normalize();
+            }
+        }
+    }
+
+    /// A rotation.
+    pub fn rotation(&mut self) -> DMat3 {
+        let axis = self.direction().as_dvec3().normalize();
+        DMat3::from_quat(DQuat::from_axis_angle(axis, f64::from(self.between(-3.1, 3.1))))
+    }
+
+    /// A stretch along turned axes, by factors from 1/`stretch` to `stretch`, sometimes mirrored; then a move within
+    /// a cube of this half size.
+    pub fn affine(&mut self, stretch: f32, distance: f32) -> DAffine3 {
+        let mut factor = || {
+            let sign = if self.bits() & 1 == 0 { 1.0 } else { -1.0 };
+            sign * libm::pow(f64::from(stretch), f64::from(self.between(-1.0, 1.0)))
+        };
+        let scale = DMat3::from_diagonal(glam::DVec3::new(factor(), factor(), factor()));
+        let linear = self.rotation() * scale * self.rotation();
+        DAffine3::from_mat3_translation(linear, (distance * self.point()).as_dvec3())
+    }
+}

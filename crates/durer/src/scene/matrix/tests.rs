@@ -1,0 +1,57 @@
+//! Matrices against hand-made images of points.
+
+use super::*;
+
+fn image(ops: &[MatrixOp], p: [f64; 3]) -> [f64; 3] {
+    let image = MatrixOp::product(ops, false).transform_point3(p.into());
+    // Zeroes of either sign are alike.
+    image.to_array().map(|x| x + 0.0)
+}
+
+#[test]
+fn rotations_are_right_handed_and_exact_by_quarters() {
+    assert_eq!(image(&[MatrixOp::XRotate(90.0)], [0.0, 1.0, 0.0]), [0.0, 0.0, 1.0]);
+    assert_eq!(image(&[MatrixOp::YRotate(90.0)], [0.0, 0.0, 1.0]), [1.0, 0.0, 0.0]);
+    assert_eq!(image(&[MatrixOp::ZRotate(90.0)], [1.0, 0.0, 0.0]), [0.0, 1.0, 0.0]);
+    assert_eq!(image(&[MatrixOp::ZRotate(-450.0)], [1.0, 0.0, 0.0]), [0.0, -1.0, 0.0]);
+    assert_eq!(image(&[MatrixOp::XRotate(180.0)], [0.0, 1.0, 0.0]), [0.0, -1.0, 0.0]);
+    let close = |a: [f64; 3], b: [f64; 3]| a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-12);
+    let (sin, cos) = (libm::sin(0.5), libm::cos(0.5));
+    let degrees = 0.5f64.to_degrees();
+    let turned = image(&[MatrixOp::Rotate(Vec3::Z * 7.0, degrees as f32)], [1.0, 0.0, 5.0]);
+    // The angle is rounded to single precision.
+    assert!((turned[0] - cos).abs() < 1e-7 && (turned[1] - sin).abs() < 1e-7 && turned[2] == 5.0);
+    // A third of a turn about the diagonal moves x to y to z.
+    assert!(close(image(&[MatrixOp::Rotate(Vec3::ONE, 120.0)], [1.0, 2.0, 3.0]), [3.0, 1.0, 2.0]));
+}
+
+#[test]
+fn the_last_written_matrix_applies_first() {
+    let (up, turn) = (MatrixOp::Translate(Vec3::Y), MatrixOp::ZRotate(90.0));
+    assert_eq!(image(&[up, turn], [1.0, 0.0, 0.0]), [0.0, 2.0, 0.0]);
+    assert_eq!(image(&[turn, up], [1.0, 0.0, 0.0]), [-1.0, 1.0, 0.0]);
+    assert_eq!(
+        image(&[MatrixOp::Scale(Vec3::new(1.0, 2.0, 3.0)), MatrixOp::UniformScale(2.0)], [1.0; 3]),
+        [2.0, 4.0, 6.0]
+    );
+    assert_eq!(image(&[], [1.0, 2.0, 3.0]), [1.0, 2.0, 3.0]);
+}
+
+#[test]
+fn a_matrix_is_given_by_rows_and_stands_on_the_left_where_that_is_asked_for() {
+    #[rustfmt::skip]
+    let shear = MatrixOp::Matrix([
+        1.0, 2.0, 0.0, 5.0,
+        0.0, 1.0, 0.0, 6.0,
+        0.0, 0.0, 1.0, 7.0,
+        0.0, 0.0, 0.0, 1.0,
+    ]);
+    assert_eq!(image(&[shear], [1.0, 1.0, 1.0]), [8.0, 7.0, 8.0]);
+    let ops = [MatrixOp::Scale(Vec3::splat(10.0)), shear];
+    let point = glam::DVec3::ONE;
+    assert_eq!(MatrixOp::product(&ops, false).transform_point3(point).to_array(), [80.0, 70.0, 80.0]);
+    assert_eq!(MatrixOp::product(&ops, true).transform_point3(point).to_array(), [35.0, 16.0, 17.0]);
+    // Only a `Matrix` is.
+    let ops = [MatrixOp::Scale(Vec3::splat(10.0)), MatrixOp::Translate(Vec3::X)];
+    assert_eq!(MatrixOp::product(&ops, true), MatrixOp::product(&ops, false));
+}
