@@ -242,6 +242,9 @@ compats! {
     BlackBacks = "black-backs",
     /// A ray that leaves glass reflects as if R0 were 0.
     ExitR0 = "exit-r0",
+    /// A perspective ray is aimed at a point in the world, reckoned from the lower left corner of a screen at distance 1
+    /// and rounded there: far from the origin, rays are off by that rounding.
+    ScreenPoint = "screen-point",
     /// A triangle reaches a little beyond its edges: to barycentric coordinates of -0.00001.
     LooseTriangles = "loose-triangles",
     /// On a texture, ambient light is that of the pixel shaded before, in rows from the bottom.
@@ -333,7 +336,7 @@ const F04: Rules = Rules {
     paths: PathBase::Current,
     ambient_textured: true,
     transparent_shadows: false,
-    compat: bits(&[BlackBacks, LooseTriangles, MatrixOnLeft]),
+    compat: bits(&[BlackBacks, ScreenPoint, LooseTriangles, MatrixOnLeft]),
 };
 
 const F12A4: Rules = Rules {

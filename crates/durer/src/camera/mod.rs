@@ -42,13 +42,21 @@ pub struct Frame {
     pub right: Vec3,
     /// Upwards in the picture.
     pub up: Vec3,
+    /// Whether rays are aimed at rounded points of the world, as [`Compat::ScreenPoint`] says.
+    pub screen_point: bool,
+}
+
+/// A vector's direction, each component divided by the length (glam multiplies by its reciprocal, which rounds once more).
+fn unit_or(v: Vec3, fallback: Vec3) -> Vec3 {
+    let unit = v / v.length();
+    if unit.is_finite() && unit != Vec3::ZERO { unit } else { v.normalize_or(fallback) }
 }
 
 impl Frame {
     /// The axes of a pose: right = norm(direction x up), up = right x direction.
     pub fn new(pose: Pose, rules: &Rules) -> Self {
-        let forward = pose.direction.normalize_or(Vec3::NEG_Z);
-        let right = forward.cross(pose.up).normalize_or(forward.any_orthonormal_vector());
+        let forward = unit_or(pose.direction, Vec3::NEG_Z);
+        let right = unit_or(forward.cross(pose.up), forward.any_orthonormal_vector());
         let up = if rules.has(Compat::RawUp) {
             pose.up
         } else if rules.has(Compat::SkewUp) {
@@ -56,7 +64,7 @@ impl Frame {
         } else {
             right.cross(forward)
         };
-        Frame { eye: pose.center, forward, right, up }
+        Frame { eye: pose.center, forward, right, up, screen_point: rules.has(Compat::ScreenPoint) }
     }
 }
 

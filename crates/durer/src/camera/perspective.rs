@@ -2,7 +2,7 @@
 //!
 //! direction = D forward + x right + y up, with D = 1 / tan(angle / 2).
 
-use super::{Frame, Lens, Pose};
+use super::{Frame, Lens, Pose, unit_or};
 use crate::describe::Rule;
 use crate::described;
 use crate::dialect::set;
@@ -28,8 +28,16 @@ impl Lens for PerspectiveCamera {
     }
 
     fn ray(&self, frame: &Frame, point: Vec2) -> Ray {
-        let distance = (1.0 / fp::tan_f64(f64::from(self.angle).to_radians() / 2.0)) as f32;
-        let dir = distance * frame.forward + point.x * frame.right + point.y * frame.up;
-        Ray::new(frame.eye, dir.normalize_or(frame.forward))
+        let half = fp::tan_f64(f64::from(self.angle).to_radians() / 2.0) as f32;
+        let dir = match frame.screen_point {
+            false => frame.forward / half + point.x * frame.right + point.y * frame.up,
+            true => {
+                let corner = frame.eye + frame.forward - half * frame.right - half * frame.up;
+                let along = 0.5 * (point + 1.0);
+                let (across, upwards) = (2.0 * half * frame.right, 2.0 * half * frame.up);
+                (corner + along.x * across + along.y * upwards) - frame.eye
+            }
+        };
+        Ray::new(frame.eye, unit_or(dir, frame.forward))
     }
 }

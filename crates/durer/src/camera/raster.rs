@@ -29,7 +29,8 @@ impl Raster {
         let size = Vec2::new(self.width as f32, self.height as f32) - inset;
         // A single pixel lies in the middle.
         let span = if self.stretch { size } else { Vec2::splat(size.max_element()) }.max(Vec2::ONE);
-        let from_center = 2.0 * (place - 0.5 * inset) - size;
-        Vec2::new(from_center.x, -from_center.y) / span
+        // From the lower left corner of the square, in parts of its side.
+        let from_corner = Vec2::new(place.x, self.height as f32 - place.y) - 0.5 * inset + 0.5 * (span - size);
+        2.0 * (from_corner / span) - 1.0
     }
 }
