@@ -1,0 +1,115 @@
+//! Every scene of the repository: read without a finding, rendered the same in every way, shown and told of.
+
+use durer::compile::AccelKind;
+use durer::diag::{Diagnostics, Files};
+use durer::dialect::Dialect;
+use durer::integrator::Settings;
+use durer::math::Vec3;
+use durer::render::{Control, Job, Sampling, render};
+use durer::world::World;
+use durer::{LoadOptions, Loaded, load};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// The repository.
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+/// Names of the files in a folder that end so, without the ending, in order.
+fn names(folder: &str, ending: &str) -> Vec<String> {
+    let files = fs::read_dir(root().join(folder)).unwrap().map(|file| file.unwrap().file_name().into_string().unwrap());
+    let mut names: Vec<String> = files.filter_map(|name| Some(name.strip_suffix(ending)?.to_string())).collect();
+    names.sort();
+    names
+}
+
+fn scenes() -> Vec<String> {
+    let scenes = names("scenes", ".txt");
+    assert!(scenes.len() >= 14, "{scenes:?}");
+    scenes
+}
+
+/// Reads and compiles a scene; every finding is a failure.
+fn opened(name: &str, accel: AccelKind) -> (Loaded, World) {
+    let options = LoadOptions { accel, ..LoadOptions::default() };
+    let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
+    let path = root().join(format!("scenes/{name}.txt"));
+    let loaded = load(&path, &options, &mut files, &mut diagnostics).unwrap();
+    let world = loaded.as_ref().and_then(|loaded| loaded.compile(&options, &mut files, &mut diagnostics));
+    let findings: Vec<&str> = diagnostics.iter().map(|finding| finding.message.as_str()).collect();
+    assert!(findings.is_empty(), "{name}: {findings:?}");
+    (loaded.unwrap(), world.unwrap())
+}
+
+/// The colours of a small picture, with one ray through each pixel's centre.
+fn pixels(name: &str, accel: AccelKind, threads: usize) -> Vec<Vec3> {
+    let (loaded, world) = opened(name, accel);
+    let job = Job {
+        width: 64,
+        height: 64,
+        crop: None,
+        seed: 0,
+        sampling: Sampling::Center,
+        settings: Settings {
+            bounces: loaded.rules.bounces,
+            shadows: loaded.rules.shadows,
+            shade_back: loaded.rules.shade_back,
+            transparent_shadows: loaded.rules.transparent_shadows,
+            reflection: true,
+            refraction: true,
+            least_weight: 0.001,
+        },
+        color: true,
+        aovs: Vec::new(),
+        depth_range: None,
+    };
+    let control = Control { threads: Some(threads), ..Control::default() };
+    let rendered = render(&world, &job, &control).unwrap();
+    assert_eq!(rendered.rejected, 0, "{name}");
+    let image = &rendered.layers[0].image;
+    (0..64).flat_map(|y| (0..64).map(move |x| image.get(x, y).unwrap())).collect()
+}
+
+#[test]
+fn scenes_are_read_as_our_own_without_a_finding() {
+    for name in scenes() {
+        let (loaded, _) = opened(&name, AccelKind::Bvh);
+        let guess = loaded.guess.unwrap();
+        assert_eq!((guess.dialect, loaded.dialect), (Dialect::Durer, Dialect::Durer), "{name}");
+        let text = fs::read_to_string(root().join(format!("scenes/{name}.txt"))).unwrap();
+        assert!(text.starts_with("# "), "{name} does not begin by saying what it shows");
+    }
+}
+
+#[test]
+fn scenes_have_the_same_bits_for_all_numbers_of_threads_and_structures() {
+    let bits = |pixels: &[Vec3]| -> Vec<[u32; 3]> { pixels.iter().map(|p| p.to_array().map(f32::to_bits)).collect() };
+    for name in scenes() {
+        let picture = pixels(&name, AccelKind::Bvh, 1);
+        assert!(picture.iter().all(|p| p.is_finite()), "{name}");
+        assert!(picture.iter().any(|p| *p != picture[0]), "{name} is of one colour");
+        for (accel, threads) in [(AccelKind::Bvh, 2), (AccelKind::Grid(None), 1), (AccelKind::Grid(None), 2)] {
+            let other = pixels(&name, accel, threads);
+            // No whole pictures in the message.
+            assert!(bits(&other) == bits(&picture), "{name}: {accel:?} on {threads} threads differs");
+        }
+    }
+}
+
+#[test]
+fn scenes_are_told_of_and_shown() {
+    let table = fs::read_to_string(root().join("scenes/README.md")).unwrap();
+    let gallery = fs::read_to_string(root().join("README.md")).unwrap();
+    let pictures = names("docs/gallery", ".png");
+    for name in scenes() {
+        let row = format!("| [{name}]({name}.txt) | ");
+        assert_eq!(table.lines().filter(|line| line.starts_with(&row)).count(), 1, "{name} in scenes/README.md");
+        assert!(gallery.contains(&format!("](scenes/{name}.txt)")), "{name} is not linked in README.md");
+        assert!(pictures.contains(&name), "{name} has no picture in docs/gallery");
+    }
+    for picture in pictures {
+        let shown = gallery.contains(&format!("docs/gallery/{picture}.png"));
+        assert!(shown, "{picture}.png is not shown in README.md");
+    }
+}
