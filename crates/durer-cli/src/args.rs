@@ -91,7 +91,7 @@ pub struct RenderArgs {
     /// Make only a part of the picture
     #[arg(long, value_name = "LEFT,TOP,WIDTHxHEIGHT", value_parser = crop)]
     pub crop: Option<(u32, u32, u32, u32)>,
-    /// What to show: color, depth, normals, position, uv, barycentric, object, material, cost, samples, filter
+    /// What to show; several are joined by commas
     #[arg(long, value_delimiter = ',', default_value = "color", value_parser = PossibleValuesParser::new(shows()))]
     pub show: Vec<String>,
     /// Depths shown as the two ends of grey [default: those in the picture]

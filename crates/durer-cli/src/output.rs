@@ -64,10 +64,9 @@ pub fn encode(format: &Format, layers: &[Layer], transfer: Transfer) -> Result<V
 pub fn save(files: &[(PathBuf, Vec<u8>)], quiet: bool) -> Result<(), Failure> {
     progress::saving();
     save_all(files)?;
-    if !quiet {
-        for (path, _) in files {
-            say(&format!("wrote {}", path.display()));
-        }
+    // Nothing is said of devices: standard output may be one, and the picture in it.
+    for (path, _) in files.iter().filter(|(path, _)| !quiet && !path.starts_with("/dev")) {
+        say(&format!("wrote {}", path.display()));
     }
     Ok(())
 }

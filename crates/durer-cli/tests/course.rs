@@ -222,3 +222,12 @@ fn options_of_another_year_do_not_undo_the_guess() {
     let ran = place.gives(0, "course -input scene.txt -size 4 4 -output o.png -jitter");
     assert!(ran.err.starts_with("note: read as f04"), "{}", ran.err);
 }
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_picture_on_standard_output_is_alone_there() {
+    let place = Place::new();
+    let output = place.command("course -input scene.txt -size 8 4 -output /dev/stdout").output().unwrap();
+    let image = durer::image::read8(&output.stdout, "o.tga").unwrap();
+    assert_eq!((output.status.code(), image.width, image.height, output.stdout.len()), (Some(0), 8, 4, 18 + 96));
+}
