@@ -1,6 +1,6 @@
 //! The command line.
 
-use clap::builder::PossibleValuesParser;
+use clap::builder::{ArgPredicate, PossibleValuesParser};
 use clap::{Args, Parser, Subcommand};
 use durer::dialect::{Compat, Dialect};
 use durer::film::Filter;
@@ -11,7 +11,15 @@ use std::path::PathBuf;
 
 /// A ray tracer: exact, explainable, deterministic.
 #[derive(Parser)]
-#[command(name = "durer", version, arg_required_else_help = true)]
+#[command(
+    name = "durer",
+    version,
+    arg_required_else_help = true,
+    after_help = "Examples:
+  durer render scene.txt -o picture.png
+  durer info scene.txt
+  durer help render"
+)]
 pub struct Cli {
     #[command(subcommand)]
     pub command: Command,
@@ -24,6 +32,7 @@ pub enum Command {
     Info(InfoArgs),
     Convert(ConvertArgs),
     /// List the dialects of the scene language, and the old programs' habits that can be had by name
+    #[command(after_help = "Example:\n  durer dialects")]
     Dialects,
     /// Print shell completions to standard output
     #[command(after_help = "Example:\n  durer completions bash > ~/.local/share/bash-completion/completions/durer")]
@@ -82,7 +91,7 @@ pub struct RenderArgs {
     /// Make only a part of the picture
     #[arg(long, value_name = "LEFT,TOP,WIDTHxHEIGHT", value_parser = crop)]
     pub crop: Option<(u32, u32, u32, u32)>,
-    /// What to show: color, depth, normals, position, uv, barycentric, object, material, cost, samples, filter
+    /// What to show; several are joined by commas
     #[arg(long, value_delimiter = ',', default_value = "color", value_parser = PossibleValuesParser::new(shows()))]
     pub show: Vec<String>,
     /// Depths shown as the two ends of grey [default: those in the picture]
@@ -111,7 +120,7 @@ pub struct RenderArgs {
     #[arg(long)]
     pub no_refraction: bool,
     /// Leave out rays that count for less than this [default: 0.001; with --dialect, 0]
-    #[arg(long)]
+    #[arg(long, allow_negative_numbers = true, value_parser = weight)]
     pub weight: Option<f32>,
 
     /// Samples a pixel; 1 is the pixel's centre [default: 16; with --dialect, 1]
@@ -127,10 +136,10 @@ pub struct RenderArgs {
     #[arg(long, value_name = "PIXELS", requires = "filter")]
     pub filter_radius: Option<f32>,
     /// Three by three jittered sub-pixels, as in 2012
-    #[arg(long, conflicts_with_all = ["samples", "filter"])]
+    #[arg(long, conflicts_with_all = ["samples", "sampler", "filter"])]
     pub jitter: bool,
     /// Blur by five taps, as in 2012
-    #[arg(long, conflicts_with_all = ["samples", "filter"])]
+    #[arg(long, conflicts_with_all = ["samples", "sampler", "filter"])]
     pub blur: bool,
     /// Seed of the random numbers
     #[arg(long, default_value_t = 0)]
@@ -140,9 +149,9 @@ pub struct RenderArgs {
     pub zoom: u32,
 
     /// What finds the objects that a ray may hit
-    #[arg(long, default_value = "bvh", value_parser = ["bvh", "grid", "none"])]
+    #[arg(long, default_value = "bvh", default_value_if("grid", ArgPredicate::IsPresent, "grid"), value_parser = ["bvh", "grid", "none"])]
     pub accel: String,
-    /// Cells of the grid [default: suitable ones]
+    /// Cells of the grid, which is used then [default: suitable ones]
     #[arg(long, value_name = "XxYxZ", value_parser = cells)]
     pub grid: Option<[u32; 3]>,
     /// Threads [default: as many as the machine has]
@@ -155,7 +164,13 @@ pub struct RenderArgs {
 
 /// Take the arguments of the course's own programs, of any year
 #[derive(Args)]
-#[command(disable_help_flag = true, after_help = "Run `durer course` for the list of options.")]
+#[command(
+    disable_help_flag = true,
+    after_help = "Example:
+  durer course -input scene.txt -size 200 200 -output picture.tga -depth 9 10 depth.tga
+
+`durer course --help` lists the options."
+)]
 pub struct CourseArgs {
     /// Arguments as the course's programs take them
     #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
@@ -191,9 +206,11 @@ pub struct ConvertArgs {
     pub to: Option<String>,
 }
 
+/// Pictures that show not the scene but how it is sampled.
+pub const DIAGRAMS: [&str; 2] = ["samples", "filter"];
+
 fn shows() -> Vec<&'static str> {
-    let diagrams = ["samples", "filter"];
-    std::iter::once("color").chain(AOVS.iter().map(|aov| aov.name)).chain(diagrams).collect()
+    std::iter::once("color").chain(AOVS.iter().map(|aov| aov.name)).chain(DIAGRAMS).collect()
 }
 
 fn compat(text: &str) -> Result<(Compat, bool), String> {
@@ -213,6 +230,11 @@ fn on_off(text: &str) -> Result<bool, String> {
         "off" => Ok(false),
         _ => Err("say `on` or `off`".into()),
     }
+}
+
+/// A weight below which rays are left out.
+pub fn weight(text: &str) -> Result<f32, String> {
+    text.parse().ok().filter(|w: &f32| w.is_finite() && *w >= 0.0).ok_or_else(|| "say a number, 0 or more".into())
 }
 
 fn size(text: &str) -> Result<(u32, u32), String> {

@@ -11,10 +11,12 @@ use durer::load;
 pub fn run(args: &ConvertArgs) -> Result<(), Failure> {
     let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
     let options = load_options(&args.reading);
-    let loaded =
-        load(&args.scene, &options, &mut files, &mut diagnostics).map_err(|e| report::unreadable(&args.scene, e))?;
+    let loaded = load(&args.scene, &options, &mut files, &mut diagnostics).map_err(report::unreadable)?;
     report::print(&files, &diagnostics, false);
     let loaded = loaded.ok_or(Failure::Input(None))?;
+    if let Some(guess) = &loaded.guess {
+        report::note(&guess.note());
+    }
     let dialect = args.to.as_deref().and_then(Dialect::from_name).unwrap_or(loaded.dialect);
     output::save(&[(args.output.clone(), write(&loaded.scene, dialect).into_bytes())], false)
 }

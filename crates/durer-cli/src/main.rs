@@ -12,19 +12,27 @@ mod report;
 
 use args::{Cli, Command};
 use clap::Parser;
+use std::path::Path;
 use std::process::ExitCode;
 
 /// Exit code after a scene, an option or another input that is wrong.
 const BAD_INPUT: u8 = 2;
+/// Exit code after anything else that failed.
+const OTHER_FAILURE: u8 = 1;
 /// Exit code after Ctrl-C.
 const INTERRUPTED: u8 = 130;
 
 fn main() -> ExitCode {
+    progress::hear_interrupts();
     // Under the name of an official program, `durer` is that program.
-    let name = std::env::args().next().unwrap_or_default();
-    let name = std::path::Path::new(&name).file_stem().and_then(|stem| stem.to_str()).unwrap_or_default().to_string();
+    let mut words = std::env::args_os();
+    let name = words.next().unwrap_or_default();
+    let name = Path::new(&name).file_stem().unwrap_or_default().to_string_lossy();
     let result = match course::program(&name) {
-        Some(program) => course::run(std::env::args().skip(1).collect(), Some(program)),
+        Some(program) => words
+            .map(|word| word.into_string().map_err(|word| bad(format!("{word:?} is not UTF-8"))))
+            .collect::<Result<_, _>>()
+            .and_then(|arguments| course::run(arguments, Some(program))),
         None => match Cli::parse().command {
             Command::Render(args) => render::run(&args),
             Command::Course(args) => course::run(args.arguments, None),
@@ -37,7 +45,7 @@ fn main() -> ExitCode {
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,
-        Err(failure) => failure.exit(),
+        Err(failure) => ExitCode::from(failure.report()),
     }
 }
 
@@ -52,21 +60,22 @@ enum Failure {
 }
 
 impl Failure {
-    fn exit(self) -> ExitCode {
+    /// Says it, and gives the exit code.
+    fn report(self) -> u8 {
         match self {
             Failure::Input(message) => {
                 if let Some(message) = message {
-                    eprintln!("error: {message}");
+                    report::complain(&format!("error: {message}"));
                 }
-                ExitCode::from(BAD_INPUT)
+                BAD_INPUT
             }
             Failure::Other(error) => {
-                eprintln!("error: {error:#}");
-                ExitCode::FAILURE
+                report::complain(&format!("error: {error}"));
+                OTHER_FAILURE
             }
             Failure::Interrupted => {
-                eprintln!("interrupted; nothing was written");
-                ExitCode::from(INTERRUPTED)
+                report::complain("interrupted; nothing was written");
+                INTERRUPTED
             }
         }
     }

@@ -1,9 +1,10 @@
 //! Pictures into files.
 
-use crate::{Failure, bad};
-use durer::image::{Depth, Format, Layer, Transfer, WriteOptions, format_for, save_all};
+use crate::args::DIAGRAMS;
+use crate::{Failure, bad, progress};
+use durer::image::{Depth, Format, Layer, Transfer, WriteOptions, check_target, format_for, save_all};
 use durer::render::Rendered;
-use std::io::Write;
+use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 /// The format of a picture's name, or what is wrong with the name.
@@ -12,47 +13,71 @@ pub fn format(path: &Path) -> Result<&'static Format, Failure> {
 }
 
 /// The layers as a format holds them: values in floating point, pictures in eight bits.
-pub fn layers<'r>(rendered: &'r Rendered, format: &Format) -> &'r [Layer] {
+fn layers<'r>(rendered: &'r Rendered, format: &Format) -> &'r [Layer] {
     match format.depth {
         Depth::Float => &rendered.layers,
         Depth::EightBit => &rendered.pictures,
     }
 }
 
-/// The files for some layers: one if they fit into it, else one for each, named picture.depth.png.
-pub fn files(
-    path: &Path,
-    format: &Format,
-    layers: &[Layer],
-    transfer: Transfer,
-) -> Result<Vec<(PathBuf, Vec<u8>)>, Failure> {
-    if layers.len() == 1 || format.layers {
-        return Ok(vec![(path.to_path_buf(), encode(format, layers, transfer)?)]);
+/// Where the pictures of a render go.
+pub struct Target {
+    path: PathBuf,
+    format: &'static Format,
+    /// Whether all go into one file. Diagrams do not: their sizes differ.
+    together: bool,
+}
+
+impl Target {
+    /// For the named pictures; says now what is known to prevent writing them, which is better than after the work.
+    pub fn new(path: PathBuf, names: &[&str]) -> Result<Self, Failure> {
+        let format = format(&path)?;
+        let diagram = names.iter().any(|name| DIAGRAMS.contains(name));
+        let target = Target { together: names.len() == 1 || format.layers && !diagram, path, format };
+        names.iter().try_for_each(|name| check_target(target.file(name)))?;
+        Ok(target)
     }
-    let extension = path.extension().and_then(|e| e.to_str()).unwrap_or_default();
-    let named = |layer: &Layer| path.with_extension(format!("{}.{extension}", layer.name));
-    layers.iter().map(|layer| Ok((named(layer), encode(format, std::slice::from_ref(layer), transfer)?))).collect()
+
+    /// The file for a picture: named picture.depth.png where each has its own.
+    fn file(&self, name: &str) -> PathBuf {
+        let extension = self.path.extension().unwrap_or_default().to_string_lossy();
+        if self.together { self.path.clone() } else { self.path.with_extension(format!("{name}.{extension}")) }
+    }
+
+    /// The files for some pictures.
+    pub fn files(&self, rendered: &Rendered, transfer: Transfer) -> Result<Vec<(PathBuf, Vec<u8>)>, Failure> {
+        let layers = layers(rendered, self.format);
+        let parts = if self.together { layers.chunks(layers.len()) } else { layers.chunks(1) };
+        parts.map(|part| Ok((self.file(&part[0].name), encode(self.format, part, transfer)?))).collect()
+    }
 }
 
 /// The bytes of one file.
 pub fn encode(format: &Format, layers: &[Layer], transfer: Transfer) -> Result<Vec<u8>, Failure> {
     let mut bytes = Vec::new();
-    format.write(layers, &WriteOptions { transfer }, &mut bytes)?;
+    // What a format cannot hold, a size above all, was asked for.
+    format.write(layers, &WriteOptions { transfer }, &mut bytes).map_err(|error| bad(error.to_string()))?;
     Ok(bytes)
 }
 
 /// Saves all files or none, and says so.
 pub fn save(files: &[(PathBuf, Vec<u8>)], quiet: bool) -> Result<(), Failure> {
+    progress::saving();
     save_all(files)?;
-    if !quiet {
-        for (path, _) in files {
-            say(&format!("wrote {}", path.display()));
-        }
+    // Nothing is said of devices: standard output may be one, and the picture in it.
+    for (path, _) in files.iter().filter(|(path, _)| !quiet && !path.starts_with("/dev")) {
+        say(&format!("wrote {}", path.display()));
     }
     Ok(())
 }
 
-/// A line on standard output; a closed pipe is nobody's fault.
+/// A line on standard output. A closed pipe is nobody's fault: who closed it has read enough.
 pub fn say(line: &str) {
-    let _ = writeln!(std::io::stdout(), "{line}");
+    match writeln!(std::io::stdout(), "{line}") {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
+            let failure = Failure::Other(anyhow::anyhow!("cannot write to standard output: {error}"));
+            std::process::exit(i32::from(failure.report()));
+        }
+        _ => {}
+    }
 }

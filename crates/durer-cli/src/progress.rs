@@ -1,16 +1,45 @@
 //! A progress bar, and what Ctrl-C does.
 
+use crate::Failure;
 use durer::render::{Control, Job, RenderError};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::IsTerminal;
-use std::sync::atomic::{AtomicU8, Ordering::Relaxed};
-use std::sync::{Arc, mpsc};
+use std::sync::atomic::Ordering::Relaxed;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError, mpsc};
 use std::time::{Duration, Instant};
 
-/// What Ctrl-C meets: before rendering it ends the program, while rendering it cancels, while saving it waits.
-static PHASE: AtomicU8 = AtomicU8::new(0);
-const RENDERING: u8 = 1;
-const SAVING: u8 = 2;
+/// What Ctrl-C meets.
+enum Phase {
+    /// Nothing is written yet: it ends the program.
+    Harmless,
+    /// It cancels; a second one ends the program.
+    Rendering(Arc<Control>),
+    /// It waits until the files are whole; a second one ends the program. Says whether there was a first.
+    Saving(bool),
+}
+
+/// Whoever changes it holds it, so that nothing begins to be saved while the program ends.
+static PHASE: Mutex<Phase> = Mutex::new(Phase::Harmless);
+
+fn phase() -> MutexGuard<'static, Phase> {
+    PHASE.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Sets what Ctrl-C does from now on.
+pub fn hear_interrupts() {
+    let handler = || match &mut *phase() {
+        Phase::Rendering(control) if !control.cancel.swap(true, Relaxed) => {}
+        Phase::Saving(asked @ false) => *asked = true,
+        _ => std::process::exit(i32::from(Failure::Interrupted.report())),
+    };
+    // Where there can be no handler, Ctrl-C ends the program as it ends others.
+    let _ = ctrlc::set_handler(handler);
+}
+
+/// Files are about to be saved.
+pub fn saving() {
+    *phase() = Phase::Saving(false);
+}
 
 /// Runs a render with a progress bar (on a terminal) and Ctrl-C.
 pub fn watch<T>(
@@ -19,18 +48,12 @@ pub fn watch<T>(
     quiet: bool,
     render: impl FnOnce() -> Result<T, RenderError>,
 ) -> Result<T, RenderError> {
-    let cancelled = Arc::clone(control);
-    // A second handler, of another render in this process, would be refused; the first one serves.
-    let _ = ctrlc::set_handler(move || match PHASE.load(Relaxed) {
-        RENDERING if !cancelled.cancel.swap(true, Relaxed) => {}
-        SAVING => {}
-        _ => std::process::exit(i32::from(crate::INTERRUPTED)),
-    });
-    PHASE.store(RENDERING, Relaxed);
+    *phase() = Phase::Rendering(Arc::clone(control));
     let visible = !quiet && std::io::stderr().is_terminal();
     let result = if visible { with_bar(job, control, render) } else { render() };
-    PHASE.store(SAVING, Relaxed);
-    result
+    *phase() = Phase::Harmless;
+    // It may have come when all was done already: it was asked for all the same.
+    if control.cancel.load(Relaxed) { Err(RenderError::Cancelled) } else { result }
 }
 
 fn with_bar<T>(

@@ -1,6 +1,7 @@
 //! `durer render`.
 
-use crate::args::{RenderArgs, SceneArgs};
+use crate::args::{DIAGRAMS, RenderArgs, SceneArgs};
+use crate::output::Target;
 use crate::{Failure, bad, output, progress, report};
 use durer::LoadOptions;
 use durer::compile::AccelKind;
@@ -28,7 +29,7 @@ pub struct Opened {
 /// Reads and compiles a scene; prints what is found.
 pub fn open(path: &Path, options: &LoadOptions, quiet: bool) -> Result<Opened, Failure> {
     let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
-    let loaded = load(path, options, &mut files, &mut diagnostics).map_err(|e| report::unreadable(path, e))?;
+    let loaded = load(path, options, &mut files, &mut diagnostics).map_err(report::unreadable)?;
     let opened = loaded.and_then(|loaded| {
         let world = loaded.compile(options, &mut files, &mut diagnostics)?;
         Some(Opened { loaded, world })
@@ -53,12 +54,21 @@ pub fn load_options(args: &SceneArgs) -> LoadOptions {
 }
 
 pub fn run(args: &RenderArgs) -> Result<(), Failure> {
-    let default_name = || PathBuf::from(args.scene.file_stem().unwrap_or_default()).with_extension("png");
-    let path = args.output.clone().unwrap_or_else(default_name);
-    // A wrong name is better known before than after the work.
-    let format = output::format(&path)?;
+    let default_name = || {
+        let mut name = args.scene.file_stem().unwrap_or_default().to_os_string();
+        name.push(".png");
+        PathBuf::from(name)
+    };
+    let names: Vec<&str> = args.show.iter().map(String::as_str).collect();
+    if let Some(twice) = (1..names.len()).find(|&i| names[..i].contains(&names[i])) {
+        return Err(bad(format!("--show: `{}` is asked for twice", names[twice])));
+    }
+    let target = Target::new(args.output.clone().unwrap_or_else(default_name), &names)?;
     let transfer = Transfer::from_name(&args.transfer).unwrap_or_default();
     let mut options = load_options(&args.reading);
+    if args.grid.is_some() && args.accel != "grid" {
+        return Err(bad(format!("--grid makes no sense with --accel {}", args.accel)));
+    }
     options.accel = match args.accel.as_str() {
         "grid" => AccelKind::Grid(args.grid),
         "none" => AccelKind::None,
@@ -66,17 +76,19 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
     };
     let opened = open(&args.scene, &options, args.quiet)?;
     let job = job(args, &opened)?;
+    if args.show.iter().any(|show| DIAGRAMS.contains(&show.as_str())) {
+        check_diagram(&job, args.zoom).map_err(failure)?;
+    }
     let control = Arc::new(Control { threads: args.threads.map(usize::from), ..Control::default() });
-    let mut rendered = progress::watch(&job, &control, args.quiet, || {
+    let rendered = progress::watch(&job, &control, args.quiet, || {
         let mut rendered = durer::render::render(&opened.world, &job, &control)?;
         diagrams(args, &opened.world, &job, &control, &mut rendered)?;
         Ok(rendered)
     })
     .map_err(failure)?;
-    rejected(&rendered);
-    let layers = output::layers(&rendered, format);
-    let files = output::files(&path, format, layers, transfer)?;
-    rendered.layers.clear();
+    rejected(&rendered, args.quiet);
+    let files = target.files(&rendered, transfer)?;
+    drop(rendered);
     output::save(&files, args.quiet)
 }
 
@@ -90,8 +102,8 @@ pub fn failure(error: RenderError) -> Failure {
 }
 
 /// Says which samples were left out.
-pub fn rejected(rendered: &Rendered) {
-    if let Some(first) = rendered.first_rejected.first() {
+pub fn rejected(rendered: &Rendered, quiet: bool) {
+    if let (Some(first), false) = (rendered.first_rejected.first(), quiet) {
         let count = rendered.rejected;
         report::note(&Diagnostic::warning(format!(
             "{count} samples were not finite numbers and were left out, the first in pixel {},{} (sample {})",
@@ -177,14 +189,12 @@ fn diagrams(
 
 /// Where samples lie, as a layer.
 pub fn samples_layer(world: &World, job: &Job, control: &Control, zoom: u32) -> Result<Layer, RenderError> {
-    check_diagram(job, zoom)?;
     let stored = durer::render::sample_diagram(world, job, control)?;
     layer("samples", diagram::samples(&stored, zoom))
 }
 
 /// A filter's weights, as a layer.
 pub fn filter_layer(job: &Job, zoom: u32) -> Result<Layer, RenderError> {
-    check_diagram(job, zoom)?;
     let made = match job.sampling {
         Sampling::Course2004 { filter, .. } => {
             diagram::filter(job.width, job.height, zoom, filter.unwrap_or(CourseFilter::Box { radius: 0.5 }))
@@ -201,10 +211,10 @@ pub fn filter_layer(job: &Job, zoom: u32) -> Result<Layer, RenderError> {
 }
 
 /// Refuses a diagram too large before it is made.
-fn check_diagram(job: &Job, zoom: u32) -> Result<(), RenderError> {
+pub fn check_diagram(job: &Job, zoom: u32) -> Result<(), RenderError> {
     let side = |pixels: u32| pixels.saturating_mul(zoom).saturating_add(1);
     let (width, height) = (side(job.width), side(job.height));
-    if u64::from(width) * u64::from(height) > 1 << 26 {
+    if u64::from(width) * u64::from(height) > 1 << 24 {
         let message = "a diagram of so many pixels is too large; ask for a smaller --size or --zoom";
         return Err(RenderError::Diagram(message.into()));
     }

@@ -2,12 +2,13 @@
 
 use crate::Failure;
 use codespan_reporting::diagnostic::{Diagnostic as Shown, Label, Severity as Level};
-use codespan_reporting::files::SimpleFiles;
+use codespan_reporting::files::{self, SimpleFiles};
 use codespan_reporting::term::termcolor::{ColorChoice, StandardStream};
 use codespan_reporting::term::{Config, emit_to_write_style};
 use durer::diag::{Diagnostic, Diagnostics, ERROR_LIMIT, Files, Severity, Span};
-use std::io::IsTerminal;
-use std::path::Path;
+use durer::source::SourceError;
+use std::io::{IsTerminal, Write};
+use std::ops::Range;
 
 /// Prints findings to standard error: all, or the errors alone.
 pub fn print(files: &Files, diagnostics: &Diagnostics, errors_only: bool) {
@@ -27,32 +28,87 @@ pub fn print(files: &Files, diagnostics: &Diagnostics, errors_only: bool) {
     let stream = StandardStream::stderr(color);
     for diagnostic in wanted {
         // Nothing can be said where standard error is closed.
-        let _ = emit_to_write_style(&mut stream.lock(), &Config::default(), &shown, &show(diagnostic));
+        let excerpt = Excerpt { files: &shown, around: diagnostic.span };
+        let _ = emit_to_write_style(&mut stream.lock(), &Config::default(), &excerpt, &show(diagnostic));
     }
     if diagnostics.error_count() > ERROR_LIMIT {
-        eprintln!("and {} errors more", diagnostics.error_count() - ERROR_LIMIT);
+        complain(&format!("and {} errors more", diagnostics.error_count() - ERROR_LIMIT));
     }
 }
 
 /// One note, in one line.
 pub fn note(diagnostic: &Diagnostic) {
-    eprintln!("note: {}", diagnostic.message);
+    complain(&format!("note: {}", diagnostic.message));
+}
+
+/// A line on standard error; where that is closed, there is nobody to tell.
+pub fn complain(line: &str) {
+    let _ = writeln!(std::io::stderr(), "{line}");
 }
 
 /// A scene file that cannot be read.
-pub fn unreadable(path: &Path, error: durer::source::SourceError) -> Failure {
-    Failure::Input(Some(format!("{}: {error}", path.display())))
+pub fn unreadable(error: SourceError) -> Failure {
+    Failure::Input(Some(error.to_string()))
 }
 
 fn spans(diagnostic: &Diagnostic) -> impl Iterator<Item = Span> {
     diagnostic.span.into_iter().chain(diagnostic.related.iter().map(|r| r.0))
 }
 
-/// A file's bytes as text of the same length: places stay where they are, whatever the bytes.
+/// A file's bytes as text of the same length: places stay where they are, whatever the bytes. Nothing in it can steer
+/// a terminal.
 fn text(bytes: &[u8]) -> String {
+    let harmless = |c: char| match c {
+        '\n' | '\t' => c.to_string(),
+        '\r' => " ".into(),
+        _ if c.is_control() => "?".repeat(c.len_utf8()),
+        _ => c.to_string(),
+    };
     match std::str::from_utf8(bytes) {
-        Ok(text) => text.to_string(),
-        Err(_) => bytes.iter().map(|&b| if b.is_ascii() { char::from(b) } else { '?' }).collect(),
+        Ok(text) => text.chars().map(harmless).collect(),
+        Err(_) => bytes.iter().map(|&b| harmless(if b.is_ascii() { char::from(b) } else { '?' })).collect(),
+    }
+}
+
+/// Files of which only what is around a place is shown: everything may stand in one line of many megabytes.
+struct Excerpt<'f> {
+    files: &'f SimpleFiles<String, String>,
+    around: Option<Span>,
+}
+
+impl Excerpt<'_> {
+    /// Bytes of a line shown before a place, and after.
+    const BEFORE: usize = 80;
+    const AFTER: usize = 120;
+}
+
+impl<'f> files::Files<'f> for Excerpt<'_> {
+    type FileId = usize;
+    type Name = String;
+    type Source = &'f str;
+
+    fn name(&'f self, id: usize) -> Result<String, files::Error> {
+        self.files.name(id)
+    }
+
+    fn source(&'f self, id: usize) -> Result<&'f str, files::Error> {
+        self.files.source(id)
+    }
+
+    fn line_index(&'f self, id: usize, byte: usize) -> Result<usize, files::Error> {
+        self.files.line_index(id, byte)
+    }
+
+    fn column_number(&'f self, id: usize, line: usize, byte: usize) -> Result<usize, files::Error> {
+        self.files.column_number(id, line, byte)
+    }
+
+    fn line_range(&'f self, id: usize, line: usize) -> Result<Range<usize>, files::Error> {
+        let (whole, source) = (self.files.line_range(id, line)?, self.files.source(id)?);
+        let place = self.around.filter(|span| span.file as usize == id).map_or(0, |span| span.start as usize);
+        let place = place.clamp(whole.start, whole.end);
+        let boundary = |from: usize| (from..whole.end).find(|&at| source.is_char_boundary(at)).unwrap_or(whole.end);
+        Ok(boundary(place.saturating_sub(Self::BEFORE).max(whole.start))..boundary(place.saturating_add(Self::AFTER)))
     }
 }
 

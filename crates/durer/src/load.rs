@@ -97,6 +97,10 @@ pub fn load(
     }
     let read = ReadOptions { dialect, strict: options.strict };
     let scene = course::read(&bytes, file, read, diagnostics);
+    if let (None, Some(guess)) = (&scene, &guess) {
+        // What is wrong in one dialect may be right in another.
+        diagnostics.push(guess.note());
+    }
     Ok(scene.map(|scene| Loaded { scene, rules, dialect, guess, source }))
 }
 

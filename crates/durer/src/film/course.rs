@@ -7,6 +7,7 @@
 use crate::math::{Color, Vec2, Vec3, fp};
 use glam::DVec3;
 use rayon::prelude::*;
+use std::convert::Infallible;
 
 mod jitter;
 #[cfg(test)]
@@ -29,7 +30,8 @@ pub struct StoredSamples {
     width: u32,
     height: u32,
     per_pixel: u32,
-    samples: Vec<StoredSample>,
+    /// The samples of each row's pixels, one after the other.
+    rows: Vec<Vec<StoredSample>>,
 }
 
 impl StoredSamples {
@@ -40,15 +42,23 @@ impl StoredSamples {
         per_pixel: u32,
         sample: impl Fn(u32, u32, u32) -> StoredSample + Sync,
     ) -> Self {
+        let sample = |x, y, number| Ok::<_, Infallible>(sample(x, y, number));
+        let Ok(all) = StoredSamples::try_take(width, height, per_pixel, sample);
+        all
+    }
+
+    /// The same where a sample may be refused, which ends the taking.
+    pub fn try_take<E: Send>(
+        width: u32,
+        height: u32,
+        per_pixel: u32,
+        sample: impl Fn(u32, u32, u32) -> Result<StoredSample, E> + Sync,
+    ) -> Result<Self, E> {
         let per_pixel = per_pixel.max(1);
-        let row_length = width as usize * per_pixel as usize;
-        let numbers = 0..row_length * height as usize;
-        let make = |i: usize| {
-            let (pixel, number) = (i / per_pixel as usize, i % per_pixel as usize);
-            sample((pixel % width as usize) as u32, (pixel / width as usize) as u32, number as u32)
-        };
-        let samples = numbers.into_par_iter().with_min_len(row_length.max(1)).map(make).collect();
-        StoredSamples { width, height, per_pixel, samples }
+        let row = |y| (0..width).flat_map(move |x| (0..per_pixel).map(move |number| (x, y, number)));
+        let take_row = |y| row(y).map(|(x, y, number)| sample(x, y, number)).collect();
+        let rows: Result<Vec<Vec<StoredSample>>, E> = (0..height).into_par_iter().map(take_row).collect();
+        Ok(StoredSamples { width, height, per_pixel, rows: rows? })
     }
 
     /// Columns and rows.
@@ -60,8 +70,7 @@ impl StoredSamples {
     pub fn pixel(&self, x: u32, y: u32) -> &[StoredSample] {
         assert!(x < self.width && y < self.height, "the pixel lies in the picture");
         let n = self.per_pixel as usize;
-        let start = (y as usize * self.width as usize + x as usize) * n;
-        &self.samples[start..start + n]
+        &self.rows[y as usize][x as usize * n..][..n]
     }
 
     /// The picture, row 0 at the top. Without a filter a pixel is the mean of its own samples.
@@ -69,15 +78,27 @@ impl StoredSamples {
     /// With one it is the weighted mean of the samples of all pixels within the filter's support, inside the picture.
     /// Where all weights are zero (a filter narrower than the gaps between samples) it is the mean of its own samples too.
     pub fn reconstruct(&self, filter: Option<CourseFilter>) -> Vec<Color> {
+        let Ok(pixels) = self.try_reconstruct(filter, || Ok::<_, Infallible>(()));
+        pixels
+    }
+
+    /// The same, asking every now and then whether to go on.
+    pub fn try_reconstruct<E: Send>(
+        &self,
+        filter: Option<CourseFilter>,
+        go_on: impl Fn() -> Result<(), E> + Sync,
+    ) -> Result<Vec<Color>, E> {
         let width = self.width as usize;
         let mut pixels = vec![Vec3::ZERO; width * self.height as usize];
-        pixels.par_chunks_mut(width.max(1)).zip(0..self.height).for_each(|(row, y)| {
+        pixels.par_chunks_mut(width.max(1)).zip(0..self.height).try_for_each(|(row, y)| {
             for (pixel, x) in row.iter_mut().zip(0..self.width) {
-                let filtered = filter.and_then(|filter| self.filtered(filter, x, y));
+                go_on()?;
+                let filtered = filter.map(|filter| self.filtered(filter, x, y, &go_on)).transpose()?.flatten();
                 *pixel = filtered.unwrap_or_else(|| self.mean(x, y));
             }
-        });
-        pixels
+            Ok(())
+        })?;
+        Ok(pixels)
     }
 
     fn mean(&self, x: u32, y: u32) -> Color {
@@ -86,10 +107,17 @@ impl StoredSamples {
     }
 
     /// Weighted mean around a pixel, or nothing where no sample counts.
-    fn filtered(&self, filter: CourseFilter, x: u32, y: u32) -> Option<Color> {
+    fn filtered<E>(
+        &self,
+        filter: CourseFilter,
+        x: u32,
+        y: u32,
+        go_on: impl Fn() -> Result<(), E>,
+    ) -> Result<Option<Color>, E> {
         let support = filter.support();
         let (mut sum, mut total) = (DVec3::ZERO, 0.0);
         for row in y.saturating_sub(support)..=y.saturating_add(support).min(self.height - 1) {
+            go_on()?;
             for column in x.saturating_sub(support)..=x.saturating_add(support).min(self.width - 1) {
                 // From the centre of the pixel to the corner of the neighbour.
                 let corner = Vec2::new(column as f32 - x as f32, row as f32 - y as f32) - 0.5;
@@ -100,7 +128,7 @@ impl StoredSamples {
                 }
             }
         }
-        (total > 0.0).then(|| (sum / total).as_vec3())
+        Ok((total > 0.0).then(|| (sum / total).as_vec3()))
     }
 }
 

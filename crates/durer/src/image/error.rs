@@ -49,7 +49,7 @@ pub enum ImageError {
     #[error("the picture has not eight bits a channel")]
     NotEightBit,
     /// A side is 0, there are too many pixels, or their number does not fit the sides.
-    #[error("not a possible picture: {width} x {height} pixels")]
+    #[error("{width} x {height} pixels are no possible picture: it has from 1 to {} of them", super::MAX_PIXELS)]
     Size {
         /// Pixels in a row.
         width: u32,

@@ -30,7 +30,10 @@ pub(super) fn declared_count(width: u64, height: u64, bytes: usize) -> Result<us
 }
 
 /// Number of pixels of a picture, if it is a possible one.
-pub(super) fn checked_count(width: u32, height: u32) -> Result<usize, ImageError> {
+///
+/// # Errors
+/// [`ImageError::Size`].
+pub fn checked_count(width: u32, height: u32) -> Result<usize, ImageError> {
     match u64::from(width) * u64::from(height) {
         count @ 1..=MAX_PIXELS => Ok(count as usize),
         _ => Err(ImageError::Size { width, height }),

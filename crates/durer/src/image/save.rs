@@ -70,8 +70,16 @@ pub fn save_all<P: AsRef<Path>, B: AsRef<[u8]>>(files: &[(P, B)]) -> Result<(), 
     Ok(())
 }
 
-/// Writes the temporary file for a target; `None` if the target is to be written to directly.
-fn stage(path: &Path, bytes: &[u8]) -> Result<Option<(NamedTempFile, PathBuf)>, SaveError> {
+/// Says beforehand what is known to prevent saving: better than after a long work.
+///
+/// # Errors
+/// [`SaveError`]. Without one, saving may still fail.
+pub fn check_target(path: impl AsRef<Path>) -> Result<(), SaveError> {
+    resolve(path.as_ref()).map(drop)
+}
+
+/// The file to be replaced and, if it is there, what is known of it; `None` if it is to be written to directly.
+fn resolve(path: &Path) -> Result<Option<(PathBuf, Option<fs::Metadata>)>, SaveError> {
     let io = |error| SaveError::Io { path: path.into(), error };
     let old = match fs::metadata(path) {
         Ok(old) if old.is_dir() => return Err(SaveError::IsFolder { path: path.into() }),
@@ -86,13 +94,19 @@ fn stage(path: &Path, bytes: &[u8]) -> Result<Option<(NamedTempFile, PathBuf)>, 
     if !folder.is_dir() {
         return Err(SaveError::NoFolder { path: path.into(), folder: folder.into() });
     }
+    Ok(Some((target, old)))
+}
 
+/// Writes the temporary file for a target; `None` if the target is to be written to directly.
+fn stage(path: &Path, bytes: &[u8]) -> Result<Option<(NamedTempFile, PathBuf)>, SaveError> {
+    let io = |error| SaveError::Io { path: path.into(), error };
+    let Some((target, old)) = resolve(path)? else { return Ok(None) };
     let mut builder = tempfile::Builder::new();
     builder.prefix(".durer-").suffix(".tmp");
     // As for any new file, the user's mask is taken off.
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    let mut temporary = builder.tempfile_in(folder).map_err(|error| io(without_path(error)))?;
+    let mut temporary = builder.tempfile_in(folder_of(&target)).map_err(|error| io(without_path(error)))?;
     if let Some(old) = old {
         temporary.as_file().set_permissions(old.permissions()).map_err(io)?;
     }

@@ -10,6 +10,7 @@ use crate::light::{Emitter, Illumination};
 use crate::math::{Color, Ray, Vec3, fp, gamma, reflect};
 use crate::shape::Surface;
 use crate::world::{HighlightModel, Hit, Phong, World};
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 /// What a picture takes into account.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,6 +43,8 @@ pub struct Whitted<'w> {
     pub world: &'w World,
     /// What is taken into account.
     pub settings: Settings,
+    /// Once set, no more rays are traced, and what comes out means nothing: a pixel of many mirrors may take long.
+    pub cancel: Option<&'w AtomicBool>,
 }
 
 /// What a ray carries from bounce to bounce.
@@ -89,7 +92,8 @@ impl Whitted<'_> {
                 }
             }
         }
-        if path.bounces > 0 {
+        let cancelled = self.cancel.is_some_and(|cancel| cancel.load(Relaxed));
+        if path.bounces > 0 && !cancelled {
             color += self.secondary(ray, &surface, material, path, tally);
         }
         color

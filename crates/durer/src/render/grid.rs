@@ -1,12 +1,15 @@
 //! The course's picture of its uniform grid: the occupied cells as boxes.
 
-use super::{Job, RenderError, camera_ray};
+use super::run::in_threads;
+use super::{Control, Job, RenderError, camera_ray};
 use crate::bvh::Grid;
 use crate::camera::Raster;
-use crate::image::Image;
+use crate::image::{Image, checked_count};
 use crate::light::Emitter;
 use crate::math::{Color, Ray, Vec2, Vec3};
 use crate::world::{Accel, World};
+use rayon::prelude::*;
+use std::sync::atomic::Ordering::Relaxed;
 
 /// Colours of cells by the number of things in them: white for one, then brighter to hotter; the course leaves them free.
 const COLORS: [Vec3; 8] = [
@@ -21,15 +24,22 @@ const COLORS: [Vec3; 8] = [
 ];
 
 /// Draws the occupied cells of a world's grid, lit like its objects. Without a grid there is only the background.
-pub fn grid_picture(world: &World, job: &Job) -> Result<Image, RenderError> {
+pub fn grid_picture(world: &World, job: &Job, control: &Control) -> Result<Image, RenderError> {
+    let count = checked_count(job.width, job.height)?;
     let raster = Raster::new(job.width, job.height, &world.rules);
     let place = |i: u32| Vec2::new((i % job.width) as f32 + 0.5, (i / job.width) as f32 + 0.5);
-    let rays = (0..job.width * job.height).map(|i| camera_ray(world, &raster, place(i)));
-    let colors = rays.map(|ray| match world.accel() {
-        Accel::Grid { grid, .. } => cell_color(world, grid, &ray),
-        _ => world.sky(ray.dir),
-    });
-    Ok(Image::from_pixels(job.width, job.height, colors.collect())?)
+    let color = |i| {
+        if control.cancel.load(Relaxed) {
+            return Err(RenderError::Cancelled);
+        }
+        let ray = camera_ray(world, &raster, place(i));
+        Ok(match world.accel() {
+            Accel::Grid { grid, .. } => cell_color(world, grid, &ray),
+            _ => world.sky(ray.dir),
+        })
+    };
+    let colors = in_threads(control, || (0..count as u32).into_par_iter().map(color).collect::<Result<_, _>>())??;
+    Ok(Image::from_pixels(job.width, job.height, colors)?)
 }
 
 /// The colour of the first occupied cell along a ray.

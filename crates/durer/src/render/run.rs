@@ -7,7 +7,7 @@ use crate::dialect::Compat;
 use crate::film::aov::{Display, Seen, fill_from_last_hit};
 use crate::film::course::{StoredSample, StoredSamples, average_3x3, blur, jittered_position};
 use crate::film::{Film, Rejected};
-use crate::image::{Image, ImageError, Layer};
+use crate::image::{Image, ImageError, Layer, checked_count};
 use crate::integrator::Whitted;
 use crate::math::{Aabb, Color, Ray, Vec2, Vec3};
 use crate::sampler::Sampler;
@@ -17,6 +17,10 @@ use std::sync::atomic::Ordering::Relaxed;
 
 /// Pixels across and down a tile.
 const TILE: u32 = 16;
+
+/// The most samples that are kept at once, in at most about 7 GiB with what is made of them: enough for 1920 x 1080 pixels
+/// of 64.
+const MOST_KEPT: u64 = 1 << 27;
 
 /// Why there is no picture.
 #[derive(Debug, thiserror::Error)]
@@ -30,6 +34,9 @@ pub enum RenderError {
     /// The part to be made does not lie in the picture.
     #[error("the crop does not lie in the picture of {0} x {1} pixels")]
     CropOutside(u32, u32),
+    /// Samplings that keep their samples have not the memory for so many.
+    #[error("this way of sampling keeps all samples, and {0} are too many: at most {MOST_KEPT}")]
+    TooManySamples(u64),
     /// A diagram cannot be made as asked for.
     #[error("{0}")]
     Diagram(String),
@@ -62,10 +69,14 @@ pub fn render(world: &World, job: &Job, control: &Control) -> Result<Rendered, R
         return Err(RenderError::CropOutside(job.width, job.height));
     }
     // Refuses pictures too large before anything is computed.
-    drop(Image::new(job.width, job.height, Vec3::ZERO)?);
-    let pool =
-        rayon::ThreadPoolBuilder::new().num_threads(control.threads.unwrap_or(0)).stack_size(16 << 20).build()?;
-    pool.install(|| Renderer { world, job, control, whitted: Whitted { world, settings: job.settings } }.render())
+    checked_count(job.width, job.height)?;
+    in_threads(control, || Renderer::new(world, job, control).render())?
+}
+
+/// Runs work in as many threads as wanted, whose stacks hold the most bounces.
+pub(super) fn in_threads<T: Send>(control: &Control, work: impl FnOnce() -> T + Send) -> Result<T, RenderError> {
+    let threads = rayon::ThreadPoolBuilder::new().num_threads(control.threads.unwrap_or(0)).stack_size(16 << 20);
+    Ok(threads.build()?.install(work))
 }
 
 /// The ray of a camera through a place in the picture, in pixels from the upper left corner.
@@ -75,13 +86,12 @@ pub fn camera_ray(world: &World, raster: &Raster, place: Vec2) -> Ray {
 
 /// Where the samples of a 2004 job lie, with their colours: for its diagram.
 pub fn sample_diagram(world: &World, job: &Job, control: &Control) -> Result<StoredSamples, RenderError> {
-    let renderer = Renderer { world, job, control, whitted: Whitted { world, settings: job.settings } };
     let (sampler, samples) = match job.sampling {
         Sampling::Course2004 { sampler, samples, .. } => (sampler, samples),
         Sampling::Filtered { samples, .. } => (Sampler::Sobol, samples),
         Sampling::Center | Sampling::Course2012 { .. } => (Sampler::Uniform, 1),
     };
-    renderer.stored(sampler, samples)
+    in_threads(control, || Renderer::new(world, job, control).stored(sampler, samples))?
 }
 
 struct Renderer<'a> {
@@ -91,7 +101,12 @@ struct Renderer<'a> {
     whitted: Whitted<'a>,
 }
 
-impl Renderer<'_> {
+impl<'a> Renderer<'a> {
+    fn new(world: &'a World, job: &'a Job, control: &'a Control) -> Self {
+        let whitted = Whitted { world, settings: job.settings, cancel: Some(&control.cancel) };
+        Renderer { world, job, control, whitted }
+    }
+
     fn render(&self) -> Result<Rendered, RenderError> {
         let mut rendered =
             Rendered { layers: Vec::new(), pictures: Vec::new(), rejected: 0, first_rejected: Vec::new() };
@@ -113,7 +128,7 @@ impl Renderer<'_> {
             Sampling::Center => {
                 let mut pixels = self.pixels(|x, y, rays| self.radiance(&raster, center(x, y), rays))?;
                 if self.world.rules.has(Compat::StaleTexels) {
-                    self.stale_texels(&raster, &mut pixels);
+                    self.stale_texels(&raster, &mut pixels)?;
                 }
                 Ok(Image::from_pixels(window.width, window.height, pixels)?)
             }
@@ -123,26 +138,26 @@ impl Renderer<'_> {
                     let mut film = Film::window(tile.left, tile.top, tile.width, tile.height);
                     for (x, y) in places(tile) {
                         for sample in 0..samples {
+                            self.check()?;
                             let position = Sampler::Sobol.pixel_position(job.seed, x, y, sample, samples);
                             let (offset, weight) = warp.sample(position);
                             let color = self.radiance(&raster, center(x, y) + offset, rays);
                             film.add(x, y, sample, color, weight);
                         }
                     }
-                    film
+                    // No sample counts for another tile, so the tile is finished, and its sums need no memory any more.
+                    let pixels = places(tile).map(|(x, y)| film.resolve(x, y)).collect();
+                    Ok(Tile { pixels, rejected: film.rejected(), first_rejected: film.first_rejected().to_vec() })
                 })?;
-                let mut film = Film::window(window.left, window.top, window.width, window.height);
-                for (_, tile) in &tiles {
-                    // Every tile lies in the window that was cut into tiles.
-                    let _ = film.merge(tile);
-                }
-                rendered.rejected = film.rejected();
-                rendered.first_rejected = film.first_rejected().to_vec();
-                let pixels = places(window).map(|(x, y)| film.resolve(x, y)).collect();
+                rendered.rejected = tiles.iter().map(|(_, tile)| tile.rejected).sum();
+                rendered.first_rejected = tiles.iter().flat_map(|(_, tile)| &tile.first_rejected).copied().collect();
+                rendered.first_rejected.sort();
+                rendered.first_rejected.truncate(16);
+                let pixels = self.assemble(tiles.into_iter().map(|(part, tile)| (part, tile.pixels)));
                 Ok(Image::from_pixels(window.width, window.height, pixels)?)
             }
             Sampling::Course2004 { sampler, samples, filter } => {
-                let pixels = self.stored(sampler, samples)?.reconstruct(filter);
+                let pixels = self.stored(sampler, samples)?.try_reconstruct(filter, || self.check())?;
                 self.cropped(job.width, job.height, pixels)
             }
             Sampling::Course2012 { jitter, blur } => self.course_2012(jitter, blur),
@@ -150,10 +165,11 @@ impl Renderer<'_> {
     }
 
     /// Replaces the ambient light on textures by that of the pixel shaded before with the same material.
-    fn stale_texels(&self, raster: &Raster, pixels: &mut [Color]) {
+    fn stale_texels(&self, raster: &Raster, pixels: &mut [Color]) -> Result<(), RenderError> {
         let (world, window) = (self.world, self.job.window());
         let mut last: Vec<Option<Color>> = vec![None; world.materials.len()];
         for y in (window.top..window.top + window.height).rev() {
+            self.check()?;
             for x in window.left..window.left + window.width {
                 let ray = camera_ray(world, raster, center(x, y));
                 let Some(hit) = world.closest(&ray, &mut ()) else { continue };
@@ -165,24 +181,23 @@ impl Renderer<'_> {
                 pixels[pixel as usize] += world.ambient * (before - texel);
             }
         }
+        Ok(())
     }
 
     /// `-jitter` and `-filter` of 2012. Blur without jitter works on the picture as it is.
     fn course_2012(&self, jitter: bool, blurred: bool) -> Result<Image, RenderError> {
         let (job, scale) = (self.job, if jitter { 3 } else { 1 });
         let (width, height) = (job.width * scale, job.height * scale);
-        drop(Image::new(width, height, Vec3::ZERO)?);
         let raster = Raster::new(width, height, &self.world.rules);
         let sample = |x: u32, y: u32, _: u32| {
             let place = if jitter { jittered_position(job.seed, x, y) } else { Vec2::new(x as f32, y as f32) };
-            StoredSample { position: place, color: self.counted(&raster, place + 0.5) }
+            Ok(StoredSample { position: place, color: self.kept(&raster, place + 0.5, true)? })
         };
-        let all = StoredSamples::take(width, height, 1, sample);
-        self.check()?;
-        let mut pixels = all.reconstruct(None);
+        let mut pixels = self.keep(width, height, 1, sample)?.try_reconstruct(None, || self.check())?;
         if blurred {
             pixels = blur(&pixels, width, height);
         }
+        self.check()?;
         if jitter {
             pixels = average_3x3(&pixels, width, height);
         }
@@ -192,29 +207,36 @@ impl Renderer<'_> {
     fn stored(&self, sampler: Sampler, samples: u32) -> Result<StoredSamples, RenderError> {
         let (job, samples) = (self.job, sampler.round_up(samples));
         let raster = Raster::new(job.width, job.height, &self.world.rules);
-        let all = StoredSamples::take(job.width, job.height, samples, |x, y, sample| {
+        self.keep(job.width, job.height, samples, |x, y, sample| {
             let position = sampler.pixel_position(job.seed, x, y, sample, samples);
-            let color = self.counted(&raster, Vec2::new(x as f32, y as f32) + position);
-            if sample > 0 {
-                // Progress counts pixels.
-                self.control.done.fetch_sub(1, Relaxed);
-            }
-            StoredSample { position, color }
-        });
-        self.check()?;
-        Ok(all)
+            let color = self.kept(&raster, Vec2::new(x as f32, y as f32) + position, sample + 1 == samples)?;
+            Ok(StoredSample { position, color })
+        })
     }
 
-    /// One sample that counts as a pixel done; black after a cancel.
-    fn counted(&self, raster: &Raster, place: Vec2) -> Color {
-        if self.control.cancel.load(Relaxed) {
-            return Color::ZERO;
+    /// Takes samples that are kept, if there are not too many.
+    fn keep(
+        &self,
+        width: u32,
+        height: u32,
+        samples: u32,
+        sample: impl Fn(u32, u32, u32) -> Result<StoredSample, RenderError> + Sync,
+    ) -> Result<StoredSamples, RenderError> {
+        let count = u64::from(width).saturating_mul(u64::from(height)).saturating_mul(u64::from(samples));
+        if count > MOST_KEPT {
+            return Err(RenderError::TooManySamples(count));
         }
+        StoredSamples::try_take(width, height, samples, sample)
+    }
+
+    /// The colour of a sample that is kept; the last one of a pixel counts it as done.
+    fn kept(&self, raster: &Raster, place: Vec2, last: bool) -> Result<Color, RenderError> {
+        self.check()?;
         let mut rays = Rays::default();
         let color = self.radiance(raster, place, &mut rays);
-        self.control.done.fetch_add(1, Relaxed);
+        self.control.done.fetch_add(u64::from(last), Relaxed);
         self.control.rays.fetch_add(rays.0, Relaxed);
-        color
+        Ok(color)
     }
 
     fn radiance(&self, raster: &Raster, place: Vec2, rays: &mut Rays) -> Color {
@@ -238,31 +260,43 @@ impl Renderer<'_> {
         &self,
         value: impl Fn(u32, u32, &mut Rays) -> T + Sync,
     ) -> Result<Vec<T>, RenderError> {
+        let tiles = self.tiles(|tile, rays| {
+            let value = |(x, y)| self.check().map(|()| value(x, y, rays));
+            places(tile).map(value).collect::<Result<Vec<T>, _>>()
+        })?;
+        Ok(self.assemble(tiles))
+    }
+
+    /// Puts the pixels of tiles into those of the window.
+    fn assemble<T: Copy + Default>(&self, tiles: impl IntoIterator<Item = (Crop, Vec<T>)>) -> Vec<T> {
         let window = self.job.window();
-        let tiles = self.tiles(|tile, rays| places(tile).map(|(x, y)| value(x, y, rays)).collect::<Vec<T>>())?;
         let mut pixels = vec![T::default(); window.width as usize * window.height as usize];
         for (tile, values) in tiles {
             for ((x, y), value) in places(tile).zip(values) {
                 pixels[((y - window.top) * window.width + (x - window.left)) as usize] = value;
             }
         }
-        Ok(pixels)
+        pixels
     }
 
-    /// Cuts the window into tiles and makes them in parallel. Between tiles a cancel is heard.
-    fn tiles<T: Send>(&self, make: impl Fn(Crop, &mut Rays) -> T + Sync) -> Result<Vec<(Crop, T)>, RenderError> {
+    /// Cuts the window into tiles and makes them in parallel.
+    fn tiles<T: Send>(
+        &self,
+        make: impl Fn(Crop, &mut Rays) -> Result<T, RenderError> + Sync,
+    ) -> Result<Vec<(Crop, T)>, RenderError> {
         let window = self.job.window();
         let columns = window.width.div_ceil(TILE);
         let count = columns * window.height.div_ceil(TILE);
         (0..count)
             .into_par_iter()
             .map(|i| {
-                self.check()?;
                 let (x, y) = (i % columns * TILE, i / columns * TILE);
                 let (width, height) = (TILE.min(window.width - x), TILE.min(window.height - y));
                 let tile = Crop { left: window.left + x, top: window.top + y, width, height };
                 let mut rays = Rays::default();
-                let made = make(tile, &mut rays);
+                let made = make(tile, &mut rays)?;
+                // What was made after a cancel means nothing.
+                self.check()?;
                 self.control.done.fetch_add(u64::from(width * height), Relaxed);
                 self.control.rays.fetch_add(rays.0, Relaxed);
                 Ok((tile, made))
@@ -318,6 +352,13 @@ impl Renderer<'_> {
         }
         Ok(())
     }
+}
+
+/// A finished part of a picture.
+struct Tile {
+    pixels: Vec<Color>,
+    rejected: u64,
+    first_rejected: Vec<Rejected>,
 }
 
 fn center(x: u32, y: u32) -> Vec2 {

@@ -5,7 +5,7 @@ use super::words::dialects_of;
 use crate::diag::{Diagnostic, Span};
 use crate::dialect::{Dialect, DialectSet, set};
 
-/// What something else than the file says of its dialect.
+/// What something else than the file says of its dialect. It is not heard where it contradicts what is known already.
 #[derive(Clone, Debug)]
 pub struct Hint {
     /// The dialects that it leaves.
@@ -88,7 +88,12 @@ pub fn guess(bytes: &[u8], file: u32, hints: &[Hint], exists: &dyn Fn(&str) -> b
         narrow(keep, "it has comments, which the course's language lacks".into(), Some(comment.span));
     }
     for hint in hints {
-        narrow(hint.set, hint.why.clone(), None);
+        // What contradicts the file and the hints before it tells nothing: options may be another year's.
+        let keep = left & hint.set;
+        if keep != 0 && keep != left {
+            left = keep;
+            reasons.push((hint.set, hint.why.clone(), None));
+        }
     }
     // Reasons that later ones make needless are not told.
     for i in (0..reasons.len()).rev() {

@@ -93,7 +93,7 @@ impl Reader<'_, '_> {
 
     /// What may be meant by a word that stands in a wrong place.
     pub(super) fn advice<'w>(&self, word: &str, known: impl IntoIterator<Item = &'w str>) -> Option<String> {
-        let near = did_you_mean(word, known);
+        let near = did_you_mean(word, known).filter(|near| *near != word);
         let did_you_mean = |near: &str| format!("did you mean `{near}`?");
         let Some(set) = dialects_of(word) else { return near.map(did_you_mean) };
         // A word of the language is hardly a slip of another, unless of its capitals.

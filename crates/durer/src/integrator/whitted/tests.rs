@@ -21,7 +21,7 @@ const CAMERA: &str = "PerspectiveCamera { center 0 0 9 direction 0 0 -1 up 0 1 0
 fn seen(text: &str, settings: Settings, origin: [f32; 3], dir: [f32; 3]) -> Vec3 {
     let world = testing::read(&format!("{CAMERA}{text}"));
     let dir = Vec3::from(dir).normalize();
-    Whitted { world: &world, settings }.radiance(&Ray::new(origin.into(), dir), &mut ())
+    Whitted { world: &world, settings, cancel: None }.radiance(&Ray::new(origin.into(), dir), &mut ())
 }
 
 #[test]
@@ -64,7 +64,7 @@ fn mirrored_directions_keep_the_angle() {
 fn schlicks_share_is_r0_straight_on_and_one_at_grazing() {
     let world = testing::read(&format!("{CAMERA}Group {{ Sphere {{ center 0 0 0 radius 1 }} }}"));
     let share = |world: &World, cosine: f32, here: f32, there: f32| {
-        let whitted = Whitted { world, settings: ALL };
+        let whitted = Whitted { world, settings: ALL, cancel: None };
         let d = Vec3::new((1.0 - cosine * cosine).sqrt(), -cosine, 0.0);
         refract(d, Vec3::Y, here / there).map(|t| whitted.fresnel(d, Vec3::Y, t, here, there))
     };
@@ -207,7 +207,7 @@ fn black_backs_are_black_only_where_that_is_asked_for() {
         let (world, _) = testing::try_read(&text, dialect.rules(), AccelKind::Bvh, Path::new("."));
         let world = world.unwrap();
         let settings = Settings { shade_back, ..ALL };
-        Whitted { world: &world, settings }.radiance(&Ray::new(Vec3::NEG_Y, Vec3::Y), &mut ()).x
+        Whitted { world: &world, settings, cancel: None }.radiance(&Ray::new(Vec3::NEG_Y, Vec3::Y), &mut ()).x
     };
     assert_eq!(below(Dialect::F04, false), 0.0);
     assert_eq!(below(Dialect::F04, true), 1.5);

@@ -1,0 +1,145 @@
+//! What the tests of the command share: a folder of their own with a scene in it, and the program run there.
+
+#![allow(dead_code, reason = "each test file is a program of its own and uses a part")]
+
+use durer::image::{Image, Image8, read, read8};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+use std::time::{Duration, Instant};
+use tempfile::TempDir;
+
+/// A sphere over a mirroring floor.
+pub const SCENE: &str = "PerspectiveCamera { center 0 1 8 direction 0 -0.1 -1 up 0 1 0 angle 40 }
+Lights { numLights 1 DirectionalLight { direction -1 -2 -1 color 0.9 0.9 0.8 } }
+Background { color 0.2 0.1 0.5 ambientLight 0.2 0.2 0.2 }
+Materials { numMaterials 2
+  Material { diffuseColor 0.8 0.3 0.2 }
+  Material { diffuseColor 0.2 0.4 0.2 reflectiveColor 0.5 0.5 0.5 } }
+Group { numObjects 2
+  MaterialIndex 0 Sphere { center 0 0.5 0 radius 1 }
+  MaterialIndex 1 Plane { normal 0 1 0 offset -0.5 } }
+";
+
+/// Mirrors and glass between which every ray becomes two: with many bounces, no pixel is ever done.
+pub const ENDLESS: &str = "PerspectiveCamera { center 0 0 0 direction 0.3 0.1 -1 up 0 1 0 angle 60 }
+Lights { numLights 1 PointLight { position 0 0 0 color 1 1 1 } }
+Materials { numMaterials 1
+  Material { reflectiveColor 1 1 1 transparentColor 1 1 1 indexOfRefraction 1.5 } }
+Group { numObjects 3 MaterialIndex 0
+  Plane { normal 0 0 1 offset -2 } Plane { normal 0 0 1 offset 2 } Sphere { center 0 0 -1 radius 0.5 } }
+";
+
+/// A folder in which the program runs, with `scene.txt` and `endless.txt`.
+pub struct Place {
+    folder: TempDir,
+}
+
+/// What a run gave.
+pub struct Ran {
+    pub code: Option<i32>,
+    pub out: String,
+    pub err: String,
+}
+
+impl Place {
+    pub fn new() -> Place {
+        let place = Place { folder: TempDir::new().unwrap() };
+        place.put("scene.txt", SCENE);
+        place.put("endless.txt", ENDLESS);
+        place
+    }
+
+    pub fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    pub fn put(&self, name: &str, content: impl AsRef<[u8]>) {
+        std::fs::write(self.path(name), content).unwrap();
+    }
+
+    /// The program with arguments that stand between blanks.
+    pub fn command(&self, arguments: &str) -> Command {
+        let mut command = Command::new(durer());
+        command.current_dir(self.folder.path()).args(arguments.split_whitespace()).stdin(Stdio::null());
+        command
+    }
+
+    pub fn run(&self, arguments: &str) -> Ran {
+        Ran::of(self.command(arguments).output().unwrap())
+    }
+
+    /// Runs, and wants an exit code.
+    #[track_caller]
+    pub fn gives(&self, code: i32, arguments: &str) -> Ran {
+        let ran = self.run(arguments);
+        assert_eq!(ran.code, Some(code), "{arguments}\n{}", ran.err);
+        assert!(!ran.err.contains("panicked"), "{}", ran.err);
+        ran
+    }
+
+    /// Runs, and wants it refused with words, and nothing written.
+    #[track_caller]
+    pub fn refused(&self, code: i32, arguments: &str, words: &[&str]) {
+        let before = self.names();
+        let ran = self.gives(code, arguments);
+        for word in words {
+            assert!(ran.err.contains(word), "{arguments}\n`{word}` is not in:\n{}", ran.err);
+        }
+        assert_eq!(ran.out, "", "{arguments}");
+        assert_eq!(self.names(), before, "{arguments}");
+    }
+
+    /// What is in the folder, sorted.
+    pub fn names(&self) -> Vec<String> {
+        let entries = std::fs::read_dir(self.folder.path()).unwrap();
+        let mut names: Vec<_> = entries.map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
+        names.sort();
+        names
+    }
+
+    pub fn bytes(&self, name: &str) -> Vec<u8> {
+        std::fs::read(self.path(name)).unwrap_or_else(|e| panic!("{name}: {e}"))
+    }
+
+    pub fn image(&self, name: &str) -> Image {
+        read(&self.bytes(name), name).unwrap()
+    }
+
+    pub fn image8(&self, name: &str) -> Image8 {
+        read8(&self.bytes(name), name).unwrap()
+    }
+
+    /// Interrupts a run after a while. Gives what it gave, and how long it took to end.
+    #[cfg(unix)]
+    pub fn interrupted(&self, arguments: &str, after: Duration) -> (Ran, Duration) {
+        let mut command = self.command(arguments);
+        let child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        std::thread::sleep(after);
+        let start = Instant::now();
+        assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
+        let ran = Ran::of(child.wait_with_output().unwrap());
+        (ran, start.elapsed())
+    }
+}
+
+impl Ran {
+    fn of(output: Output) -> Ran {
+        let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
+        Ran { code: output.status.code(), out: text(output.stdout), err: text(output.stderr) }
+    }
+}
+
+pub fn durer() -> &'static str {
+    env!("CARGO_BIN_EXE_durer")
+}
+
+/// The course's scenes and pictures, if they are here.
+pub fn corpus() -> Option<PathBuf> {
+    let beside = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared");
+    let folder = std::env::var_os("DURER_CORPUS").map_or_else(beside, PathBuf::from).join("course");
+    if !folder.is_dir() {
+        println!("skipped: there is no {}", folder.display());
+        return None;
+    }
+    Some(folder)
+}

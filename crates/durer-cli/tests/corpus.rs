@@ -1,0 +1,77 @@
+//! The command lines of all official pictures: each is accepted, and its year is guessed.
+
+mod common;
+
+use common::{Place, corpus};
+use std::collections::BTreeSet;
+
+#[test]
+fn the_year_of_every_official_command_is_guessed() {
+    let Some(course) = corpus() else { return };
+    let place = Place::new();
+    let table = std::fs::read_to_string(course.join("reference.csv")).unwrap();
+    let rows: BTreeSet<(&str, &str)> = table
+        .lines()
+        .skip(1)
+        .filter_map(|line| {
+            let columns: Vec<&str> = line.splitn(6, ',').collect();
+            Some((columns[1], *columns.get(5)?)).filter(|row| !row.1.is_empty())
+        })
+        .collect();
+    assert!(rows.len() > 150, "{} rows", rows.len());
+    let mut wrong = Vec::new();
+    for (dialect, arguments) in rows {
+        // Pictures go into a folder of our own, four pixels wide.
+        let mut words: Vec<String> = arguments.split_whitespace().map(str::to_string).collect();
+        for i in 0..words.len() {
+            if [".tga", ".bmp", ".png"].iter().any(|ending| words[i].ends_with(ending)) {
+                words[i] = place.path(&words[i]).display().to_string();
+            } else if words[i] == "-size" {
+                (words[i + 1], words[i + 2]) = ("4".into(), "4".into());
+            }
+        }
+        let mut command = place.command("course");
+        let output = command.args(words).current_dir(course.join("scenes").join(dialect)).output().unwrap();
+        let err = String::from_utf8_lossy(&output.stderr);
+        if !output.status.success() || !err.starts_with(&format!("note: read as {dialect}")) {
+            wrong.push(format!("{dialect}: {arguments}\n  {err}"));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn scenes_written_anew_make_the_same_picture() {
+    let Some(course) = corpus() else { return };
+    let place = Place::new();
+    let mut count = 0;
+    for dialect in ["f04", "f12a4", "f12a5", "f16", "f23"] {
+        let folder = course.join("scenes").join(dialect);
+        let mut scenes: Vec<_> = std::fs::read_dir(&folder).unwrap().map(|e| e.unwrap().path()).collect();
+        scenes.retain(|path| {
+            // Splines have files of another kind.
+            let name = path.file_name().unwrap().to_string_lossy();
+            name.ends_with(".txt") && !name.starts_with("spline")
+        });
+        scenes.sort();
+        for scene in scenes.iter().step_by(3) {
+            let assets = format!("--dialect {dialect} --assets {} --quiet", folder.display());
+            let path = scene.display();
+            let convert = place.gives(0, &format!("convert {path} -o again.txt --dialect {dialect}"));
+            assert!(convert.out.contains("wrote again.txt"));
+            let render = |scene: &str, name: &str| {
+                let ran = place.run(&format!("render {scene} {assets} --allow-outside --size 24x24 -o {name}"));
+                (ran.code, ran.err.is_empty())
+            };
+            let first = render(&path.to_string(), "first.pfm");
+            if first.0 != Some(0) {
+                println!("not all files of {path} are here");
+                continue;
+            }
+            assert_eq!(first, render("again.txt", "again.pfm"), "{path}");
+            assert!(place.bytes("first.pfm") == place.bytes("again.pfm"), "{path}");
+            count += 1;
+        }
+    }
+    assert!(count > 20, "{count} scenes");
+}

@@ -1,0 +1,233 @@
+//! `durer course`: the command lines of the course's programs.
+
+mod common;
+
+use common::{Place, SCENE};
+
+/// A scene that any year but 2003 and 2020 reads.
+fn plain() -> String {
+    SCENE.replace("reflectiveColor 0.5 0.5 0.5", "")
+}
+
+#[test]
+fn every_option_of_2004() {
+    let place = Place::new();
+    let ran = place.gives(
+        0,
+        "course -input scene.txt -size 20 10 -output o.tga -depth 9 10 d.tga -normals n.tga -shadows -bounces 4 \
+         -shade_back -weight 0.01 -gui -tessellation 100 50 -gouraud -stats -grid 10 10 10 -transparent_shadows \
+         -jittered_samples 4 -gaussian_filter 0.4 -render_samples s.tga 3 -render_filter f.tga 4",
+    );
+    assert!(ran.err.starts_with("note: read as f04"), "{}", ran.err);
+    assert!(ran.out.starts_with("objects 2, rays "), "{}", ran.out);
+    for (name, size) in [("o", (20, 10)), ("d", (20, 10)), ("n", (20, 10)), ("s", (60, 30)), ("f", (81, 41))] {
+        let image = place.image8(&format!("{name}.tga"));
+        assert_eq!((image.width, image.height), size, "{name}");
+        assert!(ran.out.contains(&format!("wrote {name}.tga\n")));
+    }
+    for samples in ["random", "uniform", "jittered"] {
+        for filter in ["box", "tent", "gaussian"] {
+            place.gives(0, &format!("course -input scene.txt -output o.tga -{samples}_samples 9 -{filter}_filter 1.5"));
+        }
+    }
+    place.gives(0, "course -input scene.txt -depth -2 -1.5 d.tga");
+    place.gives(0, "course -input scene.txt -render_filter f.tga 2 -size 9 9");
+}
+
+#[test]
+fn options_of_later_years() {
+    let place = Place::new();
+    place.put("plain.txt", plain());
+    for options in [
+        "--dialect f12a4 -output o.bmp -depth 8 18 d.bmp -normals n.bmp",
+        "--program a5soln -output o.bmp -shadows -bounces 4 -jitter -filter",
+        "--program a5soln-v2 -output o.bmp -reflection_off -refraction_off",
+        "--program a4 -output o.png -shadows -bounces 4 -jitter -filter -depth 8 18 d.png -normals n.png",
+        "--dialect f16 -size 20 20 -output o.png --seed 3 --threads 2 --compat no-stretch,raw-up --assets .",
+    ] {
+        let ran = place.gives(0, &format!("course -input plain.txt -size 12 12 {options} --quiet"));
+        assert_eq!((ran.out.as_str(), ran.err.as_str()), ("", ""), "{options}");
+    }
+}
+
+#[test]
+fn the_picture_of_the_grid() {
+    let place = Place::new();
+    place.gives(0, "course -input scene.txt -size 60 60 -output a.tga -grid 1 1 1 -visualize_grid -depth 5 9 d.tga");
+    place.gives(0, "course -input scene.txt -size 60 60 -output b.tga -visualize_grid");
+    place.gives(0, "course -input scene.txt -size 60 60 -output c.tga");
+    let pictures = ["a.tga", "b.tga", "c.tga"].map(|name| place.bytes(name));
+    // Without a number of cells it has suitable ones: here one, as asked for in the first.
+    assert!(pictures[0] == pictures[1] && pictures[1] != pictures[2]);
+    assert!(place.bytes("d.tga") != pictures[0]);
+}
+
+#[test]
+fn values_are_truncated_without_a_curve() {
+    let place = Place::new();
+    // Corners see the sky, 0.2 0.1 0.5, and the depth there is black.
+    place.gives(0, "course -input scene.txt --dialect f04 -output o.tga -depth 5 10 d.tga -normals n.tga");
+    let image = place.image8("o.tga");
+    assert_eq!((image.width, image.height, image.pixels[0]), (100, 100, [51, 25, 127]));
+    assert_eq!(place.image8("d.tga").pixels[0], [0, 0, 0]);
+    assert_eq!(place.image8("n.tga").pixels[0], [0, 0, 0]);
+    // The floor's normal is straight up.
+    assert_eq!(place.image8("n.tga").pixels[9999], [0, 255, 0]);
+}
+
+#[test]
+fn what_is_refused() {
+    let place = Place::new();
+    for (options, words) in [
+        ("-output o.tga", "-input is missing"),
+        ("-input scene.txt", "nothing to write"),
+        ("-input scene.txt -output", "-output needs FILE"),
+        ("-input scene.txt -depth 9 10", "-depth needs MIN MAX FILE"),
+        ("-input scene.txt -depth 9 10 -normals n.tga", "found -normals"),
+        ("-input scene.txt -output o.tga -size 200", "-size needs W H"),
+        ("-input scene.txt -output o.tga -size 0 3", "at least one pixel"),
+        ("-input scene.txt -output o.tga -size x 3", "`x` is not such a number"),
+        ("-input scene.txt -output o.tga -size 100000 100000", "no possible picture"),
+        ("-input scene.txt -output o.tga -depth 9 9 d.tga", "two different numbers"),
+        ("-input scene.txt -output o.tga -depth 9 inf d.tga", "two different numbers"),
+        ("-input scene.txt -output o.tga -bounces 1000", "at most 256"),
+        ("-input scene.txt -output o.tga -bounces -1", "-bounces"),
+        ("-input scene.txt -output o.tga -weight nan", "0 or more"),
+        ("-input scene.txt -output o.tga -grid 0 1 1", "cells"),
+        ("-input scene.txt -output o.tga -grid 9999999 9999999 9999999", "cells"),
+        ("-input scene.txt -output o.tga -random_samples 0", "number of samples"),
+        ("-input scene.txt -output o.tga -random_samples 65536 -size 4000 4000", "too many"),
+        ("-input scene.txt -output o.tga -box_filter 65", "from 0 to 64"),
+        ("-input scene.txt -output o.tga -box_filter nan", "from 0 to 64"),
+        ("-input scene.txt -render_samples s.tga 0", "zoom"),
+        ("-input scene.txt -render_samples s.tga 1000 -size 9999 9999", "too large"),
+        ("-input scene.txt -output o.tga -shadow", "did you mean -shadows?"),
+        ("-input scene.txt -output o.tga --threads 0", "--threads"),
+        ("-input scene.txt -output o.tga --threads 99999999999", "--threads"),
+        ("-input scene.txt -output o.tga --program a6", "raytracer"),
+        ("-input scene.txt -output o.tga --dialect f05", "f04"),
+        ("-input scene.txt -output o.tga --compat foo", "foo"),
+        ("-input scene.txt -output o.tgb", ".tga"),
+        ("-input scene.txt -output o.tga -normals o.tga", "one file"),
+        ("-input missing.txt -output o.tga", "missing.txt"),
+    ] {
+        place.refused(2, &format!("course {options}"), &[words]);
+    }
+    assert!(place.gives(2, "course").out.contains("-tent_filter"));
+    assert!(place.gives(0, "course --help").out.contains("-tent_filter"));
+}
+
+#[test]
+fn only_f12a4_passes_over_unknown_options() {
+    let place = Place::new();
+    place.put("plain.txt", plain());
+    let ran = place.gives(0, "course --dialect f12a4 -input plain.txt -size 4 4 -output o.bmp -frobnicate");
+    assert!(ran.err.contains("warning: there is no option -frobnicate"), "{}", ran.err);
+    for dialect in ["f04", "f12a5", "f16"] {
+        place.refused(
+            2,
+            &format!("course --dialect {dialect} -input plain.txt -output p.tga -frobnicate"),
+            &["-frobnicate"],
+        );
+    }
+}
+
+#[test]
+fn f12a4_writes_tga_into_what_is_not_called_bmp() {
+    let place = Place::new();
+    place.put("plain.txt", plain());
+    for name in ["o.tga", "o.foo", "o.png", "o", "o.bmp"] {
+        place.gives(0, &format!("course --dialect f12a4 -input plain.txt -size 4 4 -output {name}"));
+        let is_bmp = place.bytes(name).starts_with(b"BM");
+        assert_eq!(is_bmp, name == "o.bmp", "{name}");
+        assert_eq!(durer::image::read8(&place.bytes(name), "o.tga").unwrap().width, 4);
+    }
+    // Where nobody asked for that year, names mean what they say.
+    place.gives(0, "course -input plain.txt -size 4 4 -output p.png");
+    assert!(place.bytes("p.png").starts_with(b"\x89PNG"));
+}
+
+#[test]
+fn the_last_of_several_counts() {
+    let place = Place::new();
+    place.gives(0, "course -input missing.txt -input scene.txt -size 9 9 -size 5 4 -output a.tga -output b.tga");
+    assert_eq!((place.image8("b.tga").width, place.path("a.tga").exists()), (5, false));
+}
+
+#[cfg(unix)]
+#[test]
+fn a_link_of_a_programs_name_is_that_program() {
+    let place = Place::new();
+    place.put("plain.txt", plain());
+    let nodes = "Camera { center 0 0 8 direction 0 0 -1 up 0 1 0 fov 40 }
+Background { color 0.2 0.1 0.5 ambient_light 0.2 0.2 0.2 }
+Materials { Material { diffuse 0.8 0.3 0.2 } }
+Scene { Node { Component<Light> { type directional direction 0 0 -1 color 1 1 1 } Component<Material> { index 0 } Component<Object> { type sphere radius 1 } } }";
+    place.put("nodes.txt", nodes);
+    for (name, scene, side) in [
+        ("raytracer", "scene.txt", 100),
+        ("a4soln", "plain.txt", 100),
+        ("a5soln", "plain.txt", 100),
+        ("a5soln-v2", "plain.txt", 100),
+        ("a4", "plain.txt", 100),
+        ("assignment4", "nodes.txt", 200),
+    ] {
+        std::os::unix::fs::symlink(common::durer(), place.path(name)).unwrap();
+        let mut command = std::process::Command::new(place.path(name));
+        let output = command.args(["-input", scene, "-output", "o.bmp"]).current_dir(place.path("")).output().unwrap();
+        let err = String::from_utf8_lossy(&output.stderr);
+        // Nothing is guessed where the program is known.
+        assert!(output.status.success() && err.is_empty(), "{name}: {err}");
+        assert_eq!(place.image8("o.bmp").width, side, "{name}");
+    }
+}
+
+#[test]
+fn files_are_found_from_the_current_folder_and_beside_the_scene() {
+    let place = Place::new();
+    std::fs::create_dir(place.path("scenes")).unwrap();
+    let scene = plain().replace("Sphere { center 0 0.5 0 radius 1 }", "TriangleMesh { obj_file one.obj }");
+    place.put("scenes/mesh.txt", scene);
+    for folder in ["", "scenes/"] {
+        let mesh = format!("{folder}one.obj");
+        place.put(&mesh, "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+        for dialect in ["f04", "f12a4", "f16"] {
+            let arguments = format!("course --dialect {dialect} -input scenes/mesh.txt -size 4 4 -output o.bmp");
+            let ran = place.run(&arguments);
+            println!("{mesh} {dialect}: {:?}", ran.code);
+            // The current folder is 2004's and 2012's; beside the scene all find it.
+            assert!(ran.code == Some(0) || (dialect == "f16" && folder.is_empty()), "{mesh} {dialect}: {}", ran.err);
+        }
+        std::fs::remove_file(place.path(&mesh)).unwrap();
+    }
+    place.refused(2, "course --dialect f04 -input scenes/mesh.txt -output o.tga", &["one.obj", "mesh.txt:8"]);
+}
+
+#[test]
+fn options_of_another_year_do_not_undo_the_guess() {
+    let place = Place::new();
+    let shiny = plain().replace("diffuseColor 0.8", "shininess 20 diffuseColor 0.8");
+    place.put("shiny.txt", shiny);
+    for (options, dialect) in [
+        ("-output o.bmp", "f12a4"),
+        ("-output o.bmp -shadows", "f12a5"),
+        ("-output o.bmp -shade_back", "f12a4"),
+        ("-output o.tga", "f12a4"),
+        ("-output o.png", "f16"),
+        ("-output o.tga -grid 3 3 3 -shadows", "f12a5"),
+    ] {
+        let ran = place.gives(0, &format!("course -input shiny.txt -size 4 4 {options}"));
+        assert!(ran.err.starts_with(&format!("note: read as {dialect}")), "{options}: {}", ran.err);
+    }
+    let ran = place.gives(0, "course -input scene.txt -size 4 4 -output o.png -jitter");
+    assert!(ran.err.starts_with("note: read as f04"), "{}", ran.err);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_picture_on_standard_output_is_alone_there() {
+    let place = Place::new();
+    let output = place.command("course -input scene.txt -size 8 4 -output /dev/stdout").output().unwrap();
+    let image = durer::image::read8(&output.stdout, "o.tga").unwrap();
+    assert_eq!((output.status.code(), image.width, image.height, output.stdout.len()), (Some(0), 8, 4, 18 + 96));
+}

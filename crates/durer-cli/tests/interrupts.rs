@@ -1,0 +1,99 @@
+//! Ctrl-C: exit code 130, soon, and nothing written.
+#![cfg(unix)]
+
+mod common;
+
+use common::Place;
+use std::process::{Command, Stdio};
+use std::time::Duration;
+
+/// What a busy machine may take longer than the 0.2 s that an idle one should.
+const SOON: Duration = Duration::from_millis(1000);
+
+#[test]
+fn rendering_stops_soon_and_leaves_nothing() {
+    let place = Place::new();
+    place.put("old.png", "an old picture");
+    let before = place.names();
+    for options in [
+        "endless.txt --bounces 256",
+        "endless.txt --bounces 256 --dialect f04",
+        "endless.txt --bounces 256 --jitter --blur",
+        "endless.txt --bounces 256 --sampler random --samples 16 --filter tent",
+        "endless.txt --bounces 256 --show cost",
+        "endless.txt --bounces 256 --show samples --size 9x9",
+        "scene.txt --samples 1048576",
+        "scene.txt --sampler uniform --samples 100 --size 1000x1000",
+        "scene.txt --sampler uniform --samples 16 --size 300x300 --filter gaussian --filter-radius 60",
+        "scene.txt --jitter --size 3500x3500",
+        "scene.txt --size 9000x9000 --samples 64",
+    ] {
+        let (ran, latency) = place.interrupted(&format!("render {options} -o old.png"), Duration::from_millis(400));
+        assert_eq!((ran.code, ran.out.as_str()), (Some(130), ""), "{options}: {}", ran.err);
+        assert!(ran.err.ends_with("interrupted; nothing was written\n"), "{}", ran.err);
+        assert!(latency < SOON, "{options}: {latency:?}");
+        assert_eq!(place.names(), before, "{options}");
+        assert_eq!(place.bytes("old.png"), b"an old picture");
+    }
+    let grid = "course -input scene.txt -output old.png -grid 200 200 200 -visualize_grid -size 15000 15000";
+    let (ran, latency) = place.interrupted(grid, Duration::from_millis(400));
+    assert!(ran.code == Some(130) && latency < SOON, "{latency:?} {}", ran.err);
+}
+
+#[test]
+fn reading_stops_too() {
+    let place = Place::new();
+    // Two million triangles: some seconds of reading and sorting, in a build of any kind.
+    let mut mesh = String::new();
+    for i in 0..400_000 {
+        mesh += &format!("v {i} 0 1\nv {i} 1 {i}\nf {} {} 1\n", 2 * i + 1, 2 * i + 2);
+    }
+    place.put("large.obj", mesh);
+    place.put(
+        "large.txt",
+        common::SCENE.replace("Sphere { center 0 0.5 0 radius 1 }", "TriangleMesh { obj_file large.obj }"),
+    );
+    for command in ["render large.txt -o p.png", "info large.txt", "course -input large.txt -output p.tga"] {
+        let (ran, latency) = place.interrupted(command, Duration::from_millis(50));
+        assert!(ran.code == Some(130) && ran.out.is_empty() && latency < SOON, "{command}: {:?} {latency:?}", ran.code);
+    }
+    assert!(!place.path("p.png").exists());
+}
+
+#[test]
+fn whenever_it_comes_the_file_is_whole_or_not_there() {
+    let place = Place::new();
+    for after in (0..120).step_by(8) {
+        let _ = std::fs::remove_file(place.path("p.png"));
+        let (ran, _) =
+            place.interrupted("render scene.txt --size 300x300 --samples 1 -o p.png", Duration::from_millis(after));
+        match ran.code {
+            Some(0) => assert_eq!(place.image8("p.png").width, 300),
+            Some(130) => assert!(!place.path("p.png").exists()),
+            // Before it is heard at all, the system ends the program; if it has ended already, nothing does.
+            other => assert!(other.is_none(), "{other:?} after {after} ms"),
+        }
+        assert!(place.names().iter().all(|name| !name.ends_with(".tmp")));
+    }
+}
+
+#[test]
+fn a_bar_is_shown_on_a_terminal_only() {
+    let place = Place::new();
+    let on_terminal = |options: &str| {
+        let line = format!("{} render scene.txt --size 1000x1000 --samples 100 -o p.png {options}", common::durer());
+        let mut script = Command::new("script");
+        script
+            .args(["-qec", &format!("timeout -s INT 2 {line}"), "/dev/null"])
+            .current_dir(place.path(""))
+            .stdin(Stdio::null());
+        script.env("TERM", "xterm").output().ok()
+    };
+    let Some(shown) = on_terminal("") else { return println!("skipped: there is no `script`") };
+    let quiet = on_terminal("--quiet").unwrap();
+    assert!(String::from_utf8_lossy(&shown.stdout).contains("rays/s"), "{shown:?}");
+    assert!(!String::from_utf8_lossy(&quiet.stdout).contains("rays/s"), "{quiet:?}");
+    let (ran, _) =
+        place.interrupted("render scene.txt --size 1000x1000 --samples 100 -o p.png", Duration::from_millis(1500));
+    assert!(!ran.err.contains("rays/s"), "{}", ran.err);
+}

@@ -1,0 +1,185 @@
+//! The pictures that `durer render` writes, and what may not change a bit of them.
+
+mod common;
+
+use common::{Place, SCENE};
+
+/// Every way of sampling.
+const SAMPLINGS: [&str; 9] = [
+    "--samples 1",
+    "--samples 5",
+    "--samples 4 --filter mitchell",
+    "--sampler random --samples 3",
+    "--sampler uniform --samples 4 --filter tent --filter-radius 1.5",
+    "--sampler jittered --samples 4 --filter gaussian",
+    "--jitter",
+    "--blur",
+    "--jitter --blur --seed 7",
+];
+
+#[test]
+fn a_crop_is_the_same_part_of_the_whole() {
+    let place = Place::new();
+    for sampling in SAMPLINGS {
+        for dialect in ["f04", "f12a4", "durer"] {
+            let render =
+                format!("render scene.txt --dialect {dialect} --size 37x29 --show color,depth,normals {sampling}");
+            place.put(
+                "scene.txt",
+                if dialect == "f12a4" { SCENE.replace("reflectiveColor 0.5 0.5 0.5", "") } else { SCENE.into() },
+            );
+            place.gives(0, &format!("{render} -o whole.pfm"));
+            place.gives(0, &format!("{render} -o part.pfm --crop 11,7,19x21"));
+            for show in ["color", "depth", "normals"] {
+                let (whole, part) =
+                    (place.image(&format!("whole.{show}.pfm")), place.image(&format!("part.{show}.pfm")));
+                assert_eq!((whole.width, whole.height, part.width, part.height), (37, 29, 19, 21));
+                let bits = |pixel: Option<durer::math::Vec3>| pixel.unwrap().to_array().map(f32::to_bits);
+                for (x, y) in (0..21).flat_map(|y| (0..19).map(move |x| (x, y))) {
+                    assert_eq!(
+                        bits(part.get(x, y)),
+                        bits(whole.get(x + 11, y + 7)),
+                        "{sampling} {dialect} {show} {x},{y}"
+                    );
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn threads_and_structures_change_no_bit() {
+    let place = Place::new();
+    for sampling in SAMPLINGS {
+        let render = format!("render scene.txt --size 40x30 {sampling} -o");
+        place.gives(0, &format!("{render} first.pfm --threads 1"));
+        for other in ["--threads 2", "--threads 7", "--accel none", "--accel grid", "--grid 3x4x5"] {
+            place.gives(0, &format!("{render} other.pfm {other}"));
+            assert!(place.bytes("first.pfm") == place.bytes("other.pfm"), "{sampling} {other}");
+        }
+    }
+}
+
+#[test]
+fn a_seed_changes_random_pictures_only() {
+    let place = Place::new();
+    for sampling in SAMPLINGS {
+        let render = format!("render scene.txt --size 30x30 {} -o", sampling.replace("--seed 7", ""));
+        place.gives(0, &format!("{render} 0.pfm"));
+        place.gives(0, &format!("{render} 1.pfm --seed 18446744073709551615"));
+        let fixed = matches!(sampling, "--samples 1" | "--blur") || sampling.contains("uniform");
+        assert_eq!(place.bytes("0.pfm") == place.bytes("1.pfm"), fixed, "{sampling}");
+    }
+}
+
+#[test]
+fn every_format_is_written_and_read_back() {
+    let place = Place::new();
+    let mut eight_bit = Vec::new();
+    for format in &durer::image::FORMATS {
+        for extension in format.extensions {
+            let name = format!("picture.{extension}");
+            let ran = place.gives(0, &format!("render scene.txt --size 13x7 -o {name}"));
+            assert_eq!(ran.out, format!("wrote {name}\n"));
+            if format.depth == durer::image::Depth::EightBit {
+                eight_bit.push(place.image8(&name));
+            } else {
+                let image = place.image(&name);
+                assert_eq!((image.width, image.height), (13, 7), "{name}");
+            }
+        }
+    }
+    assert!(eight_bit.len() >= 4 && eight_bit.windows(2).all(|pair| pair[0] == pair[1]));
+}
+
+#[test]
+fn several_pictures_are_files_of_their_own_or_layers() {
+    let place = Place::new();
+    let before = place.names();
+    let all = "color,depth,normals,position,uv,barycentric,object,material,cost,samples,filter";
+    let ran = place.gives(0, &format!("render scene.txt --size 9x8 --zoom 5 --show {all} -o a.b.png"));
+    for name in all.split(',') {
+        assert!(ran.out.contains(&format!("wrote a.b.{name}.png\n")), "{}", ran.out);
+        let size = match name {
+            "samples" => (45, 40),
+            "filter" => (46, 41),
+            _ => (9, 8),
+        };
+        let image = place.image8(&format!("a.b.{name}.png"));
+        assert_eq!((image.width, image.height), size, "{name}");
+    }
+    assert_eq!(place.names().len(), before.len() + 11);
+    // EXR holds them all, but for diagrams, whose sizes differ.
+    let ran = place.gives(0, "render scene.txt --size 9x8 --show color,depth,normals -o layers.exr");
+    assert_eq!(ran.out, "wrote layers.exr\n");
+    let text = String::from_utf8_lossy(&place.bytes("layers.exr")).into_owned();
+    assert!(["depth.R", "normals.G"].iter().all(|layer| text.contains(layer)));
+    let ran = place.gives(0, "render scene.txt --size 9x8 --show depth,samples -o dots.exr");
+    assert_eq!(ran.out, "wrote dots.depth.exr\nwrote dots.samples.exr\n");
+    let ran = place.gives(0, "render scene.txt --size 9x9 --show samples -o dots.png");
+    assert_eq!(ran.out, "wrote dots.png\n");
+}
+
+#[test]
+fn names_and_defaults() {
+    let place = Place::new();
+    place.put("my.best.scene.txt", SCENE);
+    let ran = place.gives(0, "render my.best.scene.txt --quiet");
+    assert_eq!((ran.out.as_str(), ran.err.as_str()), ("", ""));
+    assert_eq!((place.image8("my.best.scene.png").width, place.image8("my.best.scene.png").height), (512, 512));
+    let ran = place.gives(0, "render scene.txt --size 3x3 -o p.png");
+    assert!(ran.err.starts_with("note: read as f04: "), "{}", ran.err);
+    let ran = place.gives(0, "render scene.txt --dialect f04 -o p.png");
+    assert_eq!((ran.err.as_str(), place.image8("p.png").width), ("", 100));
+}
+
+#[test]
+fn eight_bits_by_transfer() {
+    let place = Place::new();
+    for transfer in ["srgb", "linear", "course"] {
+        place.gives(
+            0,
+            &format!("render scene.txt --size 2x2 --samples 1 --crop 0,0,1x1 --transfer {transfer} -o {transfer}.png"),
+        );
+    }
+    // The sky, 0.2 0.1 0.5.
+    assert_eq!(place.image8("srgb.png").pixels, [[124, 89, 188]]);
+    assert_eq!(place.image8("linear.png").pixels, [[51, 26, 128]]);
+    assert_eq!(place.image8("course.png").pixels, [[51, 25, 127]]);
+}
+
+#[test]
+fn extreme_values_work() {
+    let place = Place::new();
+    place.put("mirrors.txt", common::ENDLESS.replace("transparentColor 1 1 1 indexOfRefraction 1.5", ""));
+    for options in [
+        "mirrors.txt --bounces 256",
+        "mirrors.txt --bounces 256 --dialect f04 --threads 2 --show color,samples --zoom 1 --sampler uniform",
+        "scene.txt --size 1x1 --samples 4096",
+        "scene.txt --size 1x1 --sampler random --samples 65536",
+        "scene.txt --size 40000x1 --samples 1",
+        "scene.txt --size 1x1 --samples 2 --filter box --filter-radius 64",
+        "scene.txt --size 20x20 --sampler uniform --samples 4 --filter gaussian --filter-radius 64",
+        "scene.txt --threads 1024 --size 2x2",
+        "scene.txt --grid 400x400x400 --size 2x2",
+        "scene.txt --weight 1e30 --size 2x2",
+        "scene.txt --depth-range -1e38 1e38 --show depth --size 2x2",
+        "scene.txt --depth-range 9 -5 --show depth --size 2x2",
+    ] {
+        let size = if options.contains("--size") { "" } else { "--size 20x20" };
+        place.gives(0, &format!("render {options} {size} -o p.png"));
+    }
+}
+
+#[test]
+fn an_existing_link_and_its_file_stay() {
+    let place = Place::new();
+    place.put("real.png", "old");
+    #[cfg(unix)]
+    {
+        std::os::unix::fs::symlink("real.png", place.path("link.png")).unwrap();
+        place.gives(0, "render scene.txt --size 3x3 -o link.png");
+        assert!(place.path("link.png").is_symlink());
+        assert_eq!(place.image8("real.png").width, 3);
+    }
+}

@@ -1,0 +1,196 @@
+//! What is wrong is said, with the right exit code, and nothing is written.
+
+mod common;
+
+use common::{Place, SCENE};
+use std::process::{Command, Stdio};
+
+#[test]
+fn a_bad_scene_gives_all_errors_with_their_places() {
+    let place = Place::new();
+    place.put(
+        "bad.txt",
+        SCENE.replace("angle 40", "angle x").replace("Sphere", "Spheer").replace("center 0 0.5", "centre 0"),
+    );
+    place.refused(
+        2,
+        "render bad.txt -o p.png",
+        &["bad.txt:1:", "bad.txt:8:19", "^^^^^^", "did you mean `Sphere`?", "needs a number", "note: read as f04"],
+    );
+    let quiet = place.gives(2, "render bad.txt -o p.png --quiet");
+    assert!(quiet.err.contains("Spheer") && !quiet.err.contains("note:"), "{}", quiet.err);
+    place.refused(2, "info bad.txt", &["Spheer"]);
+    place.refused(2, "convert bad.txt -o c.txt", &["Spheer"]);
+    place.refused(2, "course -input bad.txt -output p.tga", &["Spheer"]);
+}
+
+#[test]
+fn twenty_errors_are_shown_at_most() {
+    let place = Place::new();
+    place.put("bad.txt", SCENE.replace("numObjects 2", &format!("numObjects 2 {}", "Spheer { } ".repeat(1000))));
+    let ran = place.gives(2, "render bad.txt");
+    assert!(ran.err.matches("\nerror: ").count() < 20, "{}", ran.err);
+    assert!(ran.err.len() < 20_000, "{} bytes", ran.err.len());
+}
+
+#[test]
+fn files_that_a_scene_names_are_missed_at_their_line() {
+    let place = Place::new();
+    let scene = SCENE.replace("Sphere { center 0 0.5 0 radius 1 }", "\nTriangleMesh { obj_file cube.obj }");
+    place.put("mesh.txt", &scene);
+    place.put("cubes.obj", "");
+    place.refused(2, "render mesh.txt -o p.png", &["mesh.txt:9:", "cube.obj", "cubes.obj"]);
+    place.put("texture.txt", SCENE.replace("diffuseColor 0.8", "texture wood.bmp diffuseColor 0.8"));
+    place.refused(2, "render texture.txt -o p.png --dialect durer", &["texture.txt:5:", "wood.bmp"]);
+    place.put("outside.txt", scene.replace("cube.obj", "../cube.obj"));
+    place.gives(2, "render outside.txt -o p.png");
+}
+
+#[test]
+fn what_is_no_scene_is_refused_at_once() {
+    let place = Place::new();
+    for (name, content) in [
+        ("empty.txt", Vec::new()),
+        ("binary.txt", (0..200_000u32).map(|i| (i.wrapping_mul(2_654_435_761) >> 13) as u8).collect()),
+        ("escape.txt", b"\x1b[31mSphere\x1b]0;title\x07\x9b {".to_vec()),
+        ("deep.txt", "Group { numObjects 1 ".repeat(1_000_000).into_bytes()),
+        ("braces.txt", "{".repeat(1_000_000).into_bytes()),
+        ("long.txt", vec![b'a'; 1_000_000]),
+    ] {
+        place.put(name, content);
+        place.refused(2, &format!("render {name} -o p.png"), &["error: "]);
+        let err = place.run(&format!("render {name} -o p.png")).err;
+        assert!(err.len() < 40_000, "{name}: {} bytes of errors", err.len());
+        assert!(!err.chars().any(|c| c.is_control() && c != '\n'), "{name}: {err:?}");
+    }
+    place.refused(2, "render missing.txt -o p.png", &["missing.txt"]);
+    place.refused(2, "render . -o p.png", &["not a regular file"]);
+    place.refused(2, "render scene.txt/below -o p.png", &["scene.txt/below"]);
+}
+
+#[cfg(unix)]
+#[test]
+fn pipes_and_devices_are_no_scenes() {
+    let place = Place::new();
+    assert!(Command::new("mkfifo").arg(place.path("pipe.txt")).status().unwrap().success());
+    place.refused(2, "render pipe.txt -o p.png", &["not a regular file"]);
+    place.refused(2, "render /dev/zero -o p.png", &["not a regular file"]);
+}
+
+#[test]
+fn bad_options_of_render() {
+    let place = Place::new();
+    for (options, words) in [
+        ("--size 0x5", "at least one pixel"),
+        ("--size 5", "640x480"),
+        ("--size 99999999999x1", "640x480"),
+        ("--size 100000x100000", "no possible picture"),
+        ("--size 4294967295x4294967295", "no possible picture"),
+        ("--size 70000x1 -o p.tga", "65535"),
+        ("--crop 0,0,513x1", "crop"),
+        ("--crop 4294967295,0,1x1", "crop"),
+        ("--crop 0,0,0x0", "10,20,64x48"),
+        ("--samples 0", "--samples"),
+        ("--samples 1048577", "--samples"),
+        ("--sampler random --samples 65536 --size 4000x4000", "too many"),
+        ("--show samples --samples 1048576 --zoom 1", "too many"),
+        ("--jitter --size 16000x16000", "too many"),
+        ("--jitter --samples 4", "cannot be used with"),
+        ("--jitter --sampler random", "cannot be used with"),
+        ("--blur --filter tent", "cannot be used with"),
+        ("--sampler sobel", "sobol"),
+        ("--sampler random --filter mitchell", "box, tent and gaussian"),
+        ("--filter gauss", "gaussian"),
+        ("--filter-radius 2", "--filter"),
+        ("--filter box --filter-radius 0", "--filter-radius"),
+        ("--filter box --filter-radius nan", "--filter-radius"),
+        ("--filter box --filter-radius 65", "--filter-radius"),
+        ("--show colour", "color"),
+        ("--show depth,color,depth", "twice"),
+        ("--show samples --size 5000x5000", "too large"),
+        ("--show filter --size 9x9 --zoom 1001", "--zoom"),
+        ("--depth-range 3 3", "--depth-range"),
+        ("--depth-range nan 3", "--depth-range"),
+        ("--depth-range 3", "--depth-range"),
+        ("--transfer gamma", "--transfer"),
+        ("--accel kd", "bvh"),
+        ("--accel none --grid 2x2x2", "--grid"),
+        ("--grid 0x1x1", "10x10x10"),
+        ("--grid 1x1", "10x10x10"),
+        ("--grid 100000x100000x100000", "cells"),
+        ("--threads 0", "--threads"),
+        ("--threads 1000000", "--threads"),
+        ("--seed -1", "-1"),
+        ("--bounces 257", "--bounces"),
+        ("--bounces -1", "-1"),
+        ("--weight -1", "0 or more"),
+        ("--weight nan", "0 or more"),
+        ("--shadows=maybe", "`on` or `off`"),
+        ("--dialect f05", "f04"),
+        ("--compat border-pixel", "border-pixels"),
+        ("-o p.pgn", "did you mean `.png`?"),
+        ("-o picture", ".png"),
+        ("--sise 3x3", "--size"),
+    ] {
+        place.refused(2, &format!("render scene.txt {options}"), &[words]);
+    }
+    place.refused(2, "rendr scene.txt", &["render"]);
+    place.refused(2, "", &["Usage"]);
+}
+
+#[test]
+fn what_cannot_be_written_is_exit_code_1_and_harms_nothing() {
+    let place = Place::new();
+    std::fs::create_dir(place.path("folder.png")).unwrap();
+    place.refused(1, "render scene.txt -o missing/p.png", &["there is no folder `missing`"]);
+    place.refused(1, "render scene.txt -o folder.png", &["it is a folder"]);
+    place.refused(1, "render scene.txt -o scene.txt/p.png", &["there is no folder"]);
+    place.refused(1, "render scene.txt --show color,depth -o missing/p.png", &["there is no folder"]);
+    place.refused(1, "convert scene.txt -o missing/c.txt", &["there is no folder"]);
+    place.refused(1, "course -input scene.txt -output missing/p.tga", &["there is no folder"]);
+    place.put("old.png", "an old picture");
+    for arguments in ["missing.txt -o old.png", "scene.txt --size 70000x70000 -o old.png"] {
+        place.gives(2, &format!("render {arguments}"));
+        assert_eq!(place.bytes("old.png"), b"an old picture");
+    }
+    // One of two cannot be written: neither is.
+    place.refused(1, "course -input scene.txt -size 4 4 -output p.tga -normals missing/n.tga", &["there is no folder"]);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_is_an_error() {
+    let place = Place::new();
+    std::os::unix::fs::symlink("/dev/full", place.path("full.png")).unwrap();
+    place.refused(1, "render scene.txt --size 8x8 -o full.png", &["No space left"]);
+    place.refused(1, "course -input scene.txt -size 8 8 -output p.tga -normals full.png", &["No space left"]);
+    let full = std::fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
+    let ran = place.command("man").stdout(full).stderr(Stdio::null()).status().unwrap();
+    assert_eq!(ran.code(), Some(1));
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn closed_pipes_and_odd_names_do_not_panic() {
+    use std::os::unix::ffi::OsStrExt;
+    let place = Place::new();
+    for arguments in
+        ["dialects", "man", "completions bash", "info scene.txt --json", "course --help", "render missing.txt"]
+    {
+        let script =
+            format!("{} {arguments} 2>&1 | true; {} {arguments} 2>&1 | head -1", common::durer(), common::durer());
+        let ran = Command::new("bash").args(["-c", &script]).current_dir(place.path("")).output().unwrap();
+        assert!(!String::from_utf8_lossy(&ran.stdout).contains("panicked"), "{arguments}");
+    }
+    // The reading end of standard error is closed, and there is something to say.
+    let mut child = place.command("render missing.txt").stderr(Stdio::piped()).spawn().unwrap();
+    drop(child.stderr.take());
+    assert_eq!(child.wait().unwrap().code(), Some(2));
+    let odd = std::ffi::OsStr::from_bytes(b"\xff\xfe.txt");
+    for command in ["render", "course", "info"] {
+        assert_eq!(place.command(command).arg(odd).output().unwrap().status.code(), Some(2), "{command}");
+    }
+    std::os::unix::fs::symlink(common::durer(), place.path("a4soln")).unwrap();
+    let ran = Command::new(place.path("a4soln")).arg(odd).output().unwrap();
+    assert_eq!(ran.status.code(), Some(2));
+}

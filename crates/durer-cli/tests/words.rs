@@ -1,0 +1,68 @@
+//! What the program says of itself and of scenes.
+
+mod common;
+
+use common::{Place, SCENE};
+
+#[test]
+fn help_has_examples() {
+    let place = Place::new();
+    for command in ["", "render", "info", "convert", "dialects", "completions", "man"] {
+        let help = place.gives(0, &format!("{command} --help"));
+        assert!(help.out.contains("Example") && help.out.contains("\n  durer "), "{command}: {}", help.out);
+    }
+    assert!(place.gives(0, "help course").out.contains("Example"));
+    assert!(place.gives(0, "course -help").out.contains("  durer course -input"));
+}
+
+#[test]
+fn manual_completions_and_dialects() {
+    let place = Place::new();
+    let man = place.gives(0, "man").out;
+    assert!(man.contains(".TH durer") && man.contains("durer-render") && man.contains("depth"));
+    for shell in ["bash", "zsh", "fish"] {
+        assert!(place.gives(0, &format!("completions {shell}")).out.contains("transfer"), "{shell}");
+    }
+    place.refused(2, "completions tcl", &["bash"]);
+    let dialects = place.gives(0, "dialects").out;
+    for dialect in durer::dialect::Dialect::ALL {
+        assert!(dialects.contains(&format!("  {}", dialect.name())));
+    }
+    for (_, name, _) in durer::dialect::Compat::ALL {
+        assert!(dialects.contains(&format!("\n  {name} ")), "{name}");
+    }
+}
+
+#[test]
+fn info_as_text_and_json() {
+    let place = Place::new();
+    let text = place.gives(0, "info scene.txt").out;
+    for word in ["dialect    f04", "PerspectiveCamera", "DirectionalLight", "1 Plane, 1 Sphere", "materials  2"] {
+        assert!(text.contains(word), "{word}: {text}");
+    }
+    let ran = place.gives(0, "info scene.txt --json");
+    assert_eq!(ran.err, "");
+    let json: serde_json::Value = serde_json::from_str(&ran.out).unwrap();
+    assert_eq!(
+        (json["dialect"].as_str(), json["objects"].as_u64(), json["lights"].as_u64()),
+        (Some("f04"), Some(2), Some(1))
+    );
+    assert!(json["scene"].is_object());
+}
+
+#[test]
+fn a_scene_written_anew_is_the_same() {
+    let place = Place::new();
+    place.put("commented.txt", format!("# a comment\n{SCENE}"));
+    for (from, options) in [("scene.txt", ""), ("scene.txt", "--to durer"), ("commented.txt", "")] {
+        place.gives(0, &format!("convert {from} -o again.txt {options}"));
+        place.gives(0, &format!("render {from} --dialect durer --size 40x40 -o a.pfm"));
+        place.gives(0, "render again.txt --dialect durer --size 40x40 -o b.pfm");
+        assert!(place.bytes("a.pfm") == place.bytes("b.pfm"), "{from} {options}");
+        place.gives(0, &format!("convert again.txt -o twice.txt {options}"));
+        assert_eq!(place.bytes("again.txt"), place.bytes("twice.txt"));
+    }
+    // In place, too.
+    place.gives(0, "convert again.txt -o again.txt");
+    assert_eq!(place.bytes("again.txt"), place.bytes("twice.txt"));
+}
