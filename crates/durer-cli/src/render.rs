@@ -114,7 +114,8 @@ pub fn rejected(rendered: &Rendered, quiet: bool) {
 
 fn job(args: &RenderArgs, opened: &Opened) -> Result<Job, Failure> {
     let rules = &opened.loaded.rules;
-    let asked = opened.loaded.guess.is_none();
+    // Ours is a dialect like others to ask for, but not an old program.
+    let asked = opened.loaded.guess.is_none() && opened.loaded.dialect != Dialect::Durer;
     let (width, height) = args.size.unwrap_or(rules.size);
     let shows = |name: &str| args.show.iter().any(|show| show == name);
     let depth_range = args.depth_range.as_ref().map(|range| (range[0], range[1]));

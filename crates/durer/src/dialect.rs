@@ -195,6 +195,8 @@ pub struct Rules {
     pub normals_picture: NormalsPicture,
     /// Depth as grey.
     pub depth_picture: DepthPicture,
+    /// Whether pictures on surfaces and of the sky are decoded by sRGB's curve, and not taken as they are.
+    pub srgb_textures: bool,
     /// Where files are looked for.
     pub paths: PathBase,
     /// Whether the ambient light is multiplied with a texture or noise, not just `diffuseColor`.
@@ -247,6 +249,10 @@ compats! {
     ScreenPoint = "screen-point",
     /// A triangle reaches a little beyond its edges: to barycentric coordinates of -0.00001.
     LooseTriangles = "loose-triangles",
+    /// Which side of a surface is seen is judged by its interpolated normal.
+    ShadedSides = "shaded-sides",
+    /// A mesh's triangle is missed where (b - a) x (c - a) · d is less than 0.000001: a small one, seen from its side.
+    ThinTriangles = "thin-triangles",
     /// On a texture, ambient light is that of the pixel shaded before, in rows from the bottom.
     StaleTexels = "stale-texels",
     /// A light is blocked only where the nearest thing towards it is seen from its front. Off where `exit-r0` is asked
@@ -302,6 +308,7 @@ impl Rules {
             bounces: if self.bounces > 0 || self.secondary == Secondary::Colors { ours.bounces } else { 0 },
             file_normals: true,
             epsilon: None,
+            srgb_textures: true,
             paths: PathBase::SceneFile,
             ambient_textured: true,
             falloff: match self.falloff {
@@ -333,10 +340,11 @@ const F04: Rules = Rules {
     epsilon: Some(1e-4),
     normals_picture: NormalsPicture::Abs,
     depth_picture: DepthPicture::NearWhite,
+    srgb_textures: false,
     paths: PathBase::Current,
     ambient_textured: true,
     transparent_shadows: false,
-    compat: bits(&[BlackBacks, ScreenPoint, LooseTriangles, MatrixOnLeft]),
+    compat: bits(&[BlackBacks, ShadedSides, ScreenPoint, LooseTriangles, ThinTriangles, MatrixOnLeft]),
 };
 
 const F12A4: Rules = Rules {
@@ -346,7 +354,7 @@ const F12A4: Rules = Rules {
     highlight: Highlight::Phong,
     falloff: Falloff::None,
     secondary: Secondary::None,
-    compat: bits(&[BorderPixels, Stretch, HighlightBehind, PowZero, MatrixOnLeft, StaleTexels]),
+    compat: bits(&[BorderPixels, ShadedSides, Stretch, HighlightBehind, PowZero, MatrixOnLeft, StaleTexels]),
     ..F04
 };
 
@@ -360,7 +368,7 @@ const F12A5: Rules = Rules {
     secondary: Secondary::SpecularFresnel,
     epsilon: Some(1e-3),
     ambient_textured: false,
-    compat: bits(&[BorderPixels, Stretch, HighlightBehind, PowZero, ShadowFronts, MatrixOnLeft]),
+    compat: bits(&[BorderPixels, ShadedSides, Stretch, HighlightBehind, PowZero, ShadowFronts, MatrixOnLeft]),
     ..F12A4
 };
 
@@ -374,7 +382,17 @@ const F16: Rules = Rules {
     normals_picture: NormalsPicture::Half,
     depth_picture: DepthPicture::NearBlack,
     paths: PathBase::SceneFile,
-    compat: bits(&[BorderPixels, Stretch, RawUp, HighlightBehind, PowZero, MissingFalloff, MatrixOnLeft, BlackSky]),
+    compat: bits(&[
+        BorderPixels,
+        ShadedSides,
+        Stretch,
+        RawUp,
+        HighlightBehind,
+        PowZero,
+        MissingFalloff,
+        MatrixOnLeft,
+        BlackSky,
+    ]),
     ..F12A4
 };
 
@@ -387,6 +405,7 @@ const F23: Rules = Rules {
     paths: PathBase::Assets("assets/assignment4"),
     compat: bits(&[
         BorderPixels,
+        ShadedSides,
         Stretch,
         SkewUp,
         HighlightBehind,
@@ -414,6 +433,7 @@ const DURER: Rules = Rules {
     epsilon: None,
     normals_picture: NormalsPicture::Half,
     depth_picture: DepthPicture::NearWhite,
+    srgb_textures: true,
     paths: PathBase::SceneFile,
     ambient_textured: true,
     transparent_shadows: false,

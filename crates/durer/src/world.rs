@@ -69,6 +69,7 @@ pub struct MeshTree {
     pub bvh: Bvh,
     /// Corners of the triangles in the order of the tree.
     corners: Vec<[Vec3; 3]>,
+    least_volume: f64,
 }
 
 /// A compiled material.
@@ -174,7 +175,16 @@ impl MeshTree {
         let boxes: Vec<Aabb> = (0..mesh.len() as u32).map(|i| Aabb::around(mesh.corners(i))).collect();
         let bvh = Bvh::build(&boxes);
         let corners = bvh.order().iter().map(|&i| mesh.corners(i)).collect();
-        MeshTree { mesh, bvh, corners }
+        MeshTree { mesh, bvh, corners, least_volume: 0.0 }
+    }
+
+    /// The same, blind to triangles seen from their sides: see [`Sheared::least_volume`].
+    pub fn least_volume(self, least_volume: f64) -> Self {
+        MeshTree { least_volume, ..self }
+    }
+
+    fn sheared(&self, ray: &Ray) -> Sheared {
+        Sheared::new(ray).least_volume(self.least_volume)
     }
 
     /// Bytes in memory.
@@ -185,7 +195,7 @@ impl MeshTree {
     /// The first hit before `best`, both of this object; `any` ends at the first found.
     #[inline]
     fn closest<T: Tally>(&self, ray: &Ray, any: bool, tally: &mut T) -> Option<(Crossing, u32)> {
-        let sheared = Sheared::new(ray);
+        let sheared = self.sheared(ray);
         let mut best: Option<(Crossing, u32)> = None;
         self.bvh.walk(ray, tally, |item, t_max, tally| {
             tally.test();
@@ -226,7 +236,7 @@ impl Object {
             Geometry::Primitive(shape) => shape.intersect(&ray),
             // Refused like by the tree: such a ray hits nothing.
             Geometry::Mesh(_) if !crate::bvh::is_sound(&ray) => None,
-            Geometry::Mesh(tree) => Sheared::new(&ray).intersect(tree.mesh.corners(part), ray.t_min, ray.t_max),
+            Geometry::Mesh(tree) => tree.sheared(&ray).intersect(tree.mesh.corners(part), ray.t_min, ray.t_max),
         }
     }
 

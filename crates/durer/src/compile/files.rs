@@ -55,7 +55,9 @@ impl<'r> Loader<'r> {
                 data.loosen();
             }
             let mesh = Mesh::new(data, self.rules.mesh_normals, self.rules.file_normals);
-            Arc::new(MeshTree::new(mesh))
+            // What the official program takes for a determinant of zero.
+            let least_volume = if self.rules.has(Compat::ThinTriangles) { 1e-6 } else { 0.0 };
+            Arc::new(MeshTree::new(mesh).least_volume(least_volume))
         });
         self.meshes.insert(name.path.clone(), tree.clone());
         tree
@@ -67,7 +69,7 @@ impl<'r> Loader<'r> {
             return *known;
         }
         let bytes = self.read(name, "texture", diagnostics);
-        let texture = bytes.and_then(|bytes| decode(name, &name.path, &bytes, diagnostics));
+        let texture = bytes.and_then(|bytes| decode(name, &name.path, &bytes, self.rules.srgb_textures, diagnostics));
         let number = texture.map(|texture| {
             self.textures.push(texture);
             (self.textures.len() - 1) as u32
@@ -98,7 +100,7 @@ impl<'r> Loader<'r> {
             let there = candidates.iter().find(|c| self.resources.source.contains(c)).unwrap_or(&candidates[0]);
             let file = FileName { path: there.clone(), span: name.span };
             let bytes = self.read(&file, "face of the cube map", diagnostics)?;
-            faces.push(decode(name, there, &bytes, diagnostics)?);
+            faces.push(decode(name, there, &bytes, self.rules.srgb_textures, diagnostics)?);
         }
         Some(CubeMap { faces: faces.try_into().ok()? })
     }
@@ -133,9 +135,12 @@ fn missing_help(tried: &[PathBuf], near: Option<String>) -> String {
     }
 }
 
-fn decode(name: &FileName, path: &str, bytes: &[u8], diagnostics: &mut Diagnostics) -> Option<Texture> {
+fn decode(name: &FileName, path: &str, bytes: &[u8], srgb: bool, diagnostics: &mut Diagnostics) -> Option<Texture> {
     match image::read8(bytes, path) {
-        Ok(picture) => Texture::new(picture.width, picture.height, picture.pixels),
+        Ok(picture) => {
+            let texture = Texture::new(picture.width, picture.height, picture.pixels)?;
+            Some(if srgb { texture.decoded(image::decode_srgb) } else { texture })
+        }
         Err(error) => {
             diagnostics.push(Diagnostic::error(format!("the picture `{path}` cannot be used: {error}")).at(name.span));
             None

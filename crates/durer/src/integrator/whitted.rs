@@ -73,7 +73,7 @@ impl Whitted<'_> {
     /// The light that leaves a hit against the ray: of each material that makes it up, by its share.
     fn shade<T: Tally>(&self, ray: &Ray, hit: &Hit, path: Path, tally: &mut T) -> Color {
         let surface = self.world.surface(ray, hit);
-        let from_behind = ray.dir.dot(surface.n_shade) > 0.0;
+        let from_behind = self.sees_back(ray.dir, &surface);
         let black = from_behind && !self.settings.shade_back && self.world.rules.has(Compat::BlackBacks);
         let n = if from_behind && self.settings.shade_back { -surface.n_shade } else { surface.n_shade };
         let material = self.world.objects[hit.object as usize].material;
@@ -97,6 +97,12 @@ impl Whitted<'_> {
             color += self.secondary(ray, &surface, material, path, tally);
         }
         color
+    }
+
+    /// Whether a ray meets a surface on the side that its normal does not point to.
+    fn sees_back(&self, dir: Vec3, surface: &Surface) -> bool {
+        let shaded = self.world.rules.has(Compat::ShadedSides);
+        dir.dot(if shaded { surface.n_shade } else { surface.n_geo }) > 0.0
     }
 
     /// What ambient light meets.
@@ -176,8 +182,10 @@ impl Whitted<'_> {
             }
         });
         // The normal on the ray's side, and the indices before and behind the surface.
-        let leaving = ray.dir.dot(surface.n_shade) > 0.0;
-        let n = if leaving { -surface.n_shade } else { surface.n_shade };
+        let leaving = self.sees_back(ray.dir, surface);
+        let [n, n_geo] = [surface.n_shade, surface.n_geo].map(|n| if leaving { -n } else { n });
+        // An interpolated normal may point away from the ray; the surface itself does not.
+        let n = if ray.dir.dot(n) < 0.0 { n } else { n_geo };
         let (here, there) = match (leaving, fresnel) {
             (true, true) if path.ior != 1.0 => (path.ior, 1.0),
             (true, _) => (ior, 1.0),

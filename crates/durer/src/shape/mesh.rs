@@ -112,6 +112,8 @@ impl Mesh {
             .map_or(n_geo, |normals| mix(normals).normalize_or(n_geo));
         let uv = attribute(&self.data.triangle_uvs, &self.data.uvs, part)
             .map(|[a, b, c]| barycentric.x * a + barycentric.y * b + barycentric.z * c);
+        // Normals in the file say which side is out, whatever way the corners go round.
+        let n_geo = if n_geo.dot(n_shade) < 0.0 { -n_geo } else { n_geo };
         Surface { position, error, curvature: 0.0, n_geo, n_shade, uv, barycentric }
     }
 }

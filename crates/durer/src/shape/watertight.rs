@@ -22,6 +22,7 @@ pub struct Sheared {
     dir: Vec3,
     axes: [usize; 3],
     shear: Vec2,
+    least_volume: f64,
 }
 
 impl Sheared {
@@ -42,7 +43,13 @@ impl Sheared {
         }
         let z = if ray.dir.is_finite() { ray.dir[kz] } else { f32::NAN };
         let shear = Vec2::new(ray.dir[kx] / z, ray.dir[ky] / z);
-        Sheared { origin: ray.origin, dir: ray.dir, axes: [kx, ky, kz], shear }
+        Sheared { origin: ray.origin, dir: ray.dir, axes: [kx, ky, kz], shear, least_volume: 0.0 }
+    }
+
+    /// Misses triangles for which |(b - a) x (c - a) · d| is less than this: see
+    /// [`ThinTriangles`](crate::dialect::Compat::ThinTriangles).
+    pub fn least_volume(self, least_volume: f64) -> Self {
+        Sheared { least_volume, ..self }
     }
 
     /// The crossing with a triangle in the open interval (`t_min`, `t_max`), from either side.
@@ -76,7 +83,11 @@ impl Sheared {
         // The plane's t; seen from nearly its side, the triangle still bounds it (and `max` replaces NaN).
         let kz = self.axes[2];
         let [x, y, z] = p.map(|p| p[kz] / f64::from(self.dir[kz]));
-        let t = n.dot(p[0]) / n.dot(self.dir.as_dvec3());
+        let volume = n.dot(self.dir.as_dvec3());
+        if volume.abs() < self.least_volume {
+            return Crossing { t: f32::NAN, uv: Vec2::ZERO };
+        }
+        let t = n.dot(p[0]) / volume;
         let t = t.max(x.min(y).min(z)).min(x.max(y).max(z));
         Crossing { t: t as f32, uv: Vec2::new((v / det) as f32, (w / det) as f32) }
     }

@@ -12,13 +12,21 @@ pub struct Texture {
     height: u32,
     /// Eight bits a channel, row 0 on top.
     texels: Vec<[u8; 3]>,
+    /// What each of the 256 values means.
+    values: Box<[f32; 256]>,
 }
 
 impl Texture {
     /// From texels, row 0 on top. `None` unless there are width times height of them, and at least one.
     pub fn new(width: u32, height: u32, texels: Vec<[u8; 3]>) -> Option<Self> {
         let count = (width as usize).checked_mul(height as usize)?;
-        (count > 0 && texels.len() == count).then_some(Texture { width, height, texels })
+        let values = Box::new(std::array::from_fn(|i| i as f32 / 255.0));
+        (count > 0 && texels.len() == count).then_some(Texture { width, height, texels, values })
+    }
+
+    /// The same texels, with other meanings of the 256 values.
+    pub fn decoded(self, decode: impl Fn(u8) -> f32) -> Self {
+        Texture { values: Box::new(std::array::from_fn(|i| decode(i as u8))), ..self }
     }
 
     /// Bytes in memory.
@@ -37,7 +45,7 @@ impl Texture {
         let texel = |dx: f32, dy: f32| {
             let i = ((left + dx) as u32).min(self.width - 1);
             let j = ((top + dy) as u32).min(self.height - 1);
-            Color::from(self.texels[j as usize * self.width as usize + i as usize].map(|c| f32::from(c) / 255.0))
+            Color::from(self.texels[j as usize * self.width as usize + i as usize].map(|c| self.values[usize::from(c)]))
         };
         (1.0 - b) * ((1.0 - a) * texel(0.0, 0.0) + a * texel(1.0, 0.0))
             + b * ((1.0 - a) * texel(0.0, 1.0) + a * texel(1.0, 1.0))
