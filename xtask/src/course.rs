@@ -9,7 +9,7 @@ use std::process::{Command, ExitCode, Stdio};
 /// Differences of up to this much in a channel are rounding.
 const ROUNDING: u8 = 2;
 /// Pictures of random samples are made this often, to know how much they differ among themselves.
-const SEEDS: u64 = 12;
+const SEEDS: u64 = 8;
 
 /// One row of the list.
 #[derive(Clone, Debug)]

@@ -381,6 +381,12 @@ impl World {
             Geometry::Primitive(shape) => shape.surface(&local, &crossing),
             Geometry::Mesh(tree) => tree.mesh.surface(hit.part, &crossing),
         };
+        // The old programs, which keep off a surface by an epsilon, take the point from the ray as it is.
+        if self.rules.epsilon.is_some() {
+            let [n_geo, n_shade] =
+                [surface.n_geo, surface.n_shade].map(|n| object.to_world.as_ref().map_or(n, |m| m.normal(n)));
+            return Surface { position: ray.at(hit.t), n_geo, n_shade, ..surface };
+        }
         // Beside the rounding itself, a bent surface leaves the tangent plane by its square.
         let Some(to_world) = &object.to_world else {
             return Surface { error: surface.error + surface.bulge(surface.error), ..surface };
