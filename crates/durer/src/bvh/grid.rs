@@ -9,11 +9,16 @@ use crate::math::{Aabb, Ray, Vec3};
 /// Boxes count as this much larger, in cells, as what a ray's rounding may move it.
 const PAD: f32 = 1e-2;
 
+/// The same for pictures of the cells: only so much that what touches a cell is in it.
+const PICTURE_PAD: f32 = 1e-3;
+
 /// A uniform grid over numbered things.
 #[derive(Clone, Debug)]
 pub struct Grid {
     bounds: Aabb,
     counts: [u32; 3],
+    /// What boxes were enlarged by, in cells.
+    pad: f32,
     /// Where each cell's list starts in `items`, and one past the last.
     starts: Vec<u32>,
     items: Vec<u32>,
@@ -45,6 +50,21 @@ impl Grid {
         boxes: &[Aabb],
         overlaps: impl Fn(usize, Aabb) -> bool,
     ) -> Option<Self> {
+        Self::build_padded(bounds, counts, PAD, boxes, overlaps)
+    }
+
+    /// The same cells for a picture of them, with things only where they are or touch: rays may miss things in it.
+    pub fn for_picture(&self, boxes: &[Aabb], overlaps: impl Fn(usize, Aabb) -> bool) -> Option<Self> {
+        Self::build_padded(self.bounds, self.counts, PICTURE_PAD, boxes, overlaps)
+    }
+
+    fn build_padded(
+        bounds: Aabb,
+        counts: [u32; 3],
+        cell_pad: f32,
+        boxes: &[Aabb],
+        overlaps: impl Fn(usize, Aabb) -> bool,
+    ) -> Option<Self> {
         let cells = counts.iter().try_fold(1u64, |n, &c| n.checked_mul(u64::from(c)))?;
         if cells == 0 || cells > Grid::MOST_CELLS {
             return None;
@@ -52,7 +72,7 @@ impl Grid {
         // A flat box is thickened, so that every cell has a volume; and all are padded against rounding.
         let pad = (1e-5 * bounds.size().max_element()).max(1e-5 * bounds.center().abs().max_element()).max(1e-30);
         let bounds = Aabb { min: bounds.min - pad, max: bounds.max + pad };
-        let mut grid = Grid { bounds, counts, starts: vec![0; cells as usize + 1], items: Vec::new() };
+        let mut grid = Grid { bounds, counts, pad: cell_pad, starts: vec![0; cells as usize + 1], items: Vec::new() };
         let entries = boxes.iter().try_fold(0u64, |sum, b| sum.checked_add(grid.cells_of(b)))?;
         if entries > Grid::MOST_ENTRIES {
             return None;
@@ -116,7 +136,7 @@ impl Grid {
 
     /// The least and the greatest cell that a box overlaps.
     fn range(&self, b: &Aabb) -> ([u32; 3], [u32; 3]) {
-        let pad = PAD * self.cell_size();
+        let pad = self.pad * self.cell_size();
         (self.cell_of(b.min - pad), self.cell_of(b.max + pad))
     }
 
@@ -131,7 +151,7 @@ impl Grid {
             return;
         }
         let (low, high) = self.range(b);
-        let pad = PAD * self.cell_size();
+        let pad = self.pad * self.cell_size();
         for z in low[2]..=high[2] {
             for y in low[1]..=high[1] {
                 for x in low[0]..=high[0] {

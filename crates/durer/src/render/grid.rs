@@ -6,7 +6,7 @@ use crate::bvh::Grid;
 use crate::camera::Raster;
 use crate::image::{Image, checked_count};
 use crate::light::Emitter;
-use crate::math::{Color, Ray, Vec2, Vec3};
+use crate::math::{Aabb, Color, Ray, Vec2, Vec3};
 use crate::world::{Accel, World};
 use rayon::prelude::*;
 use std::sync::atomic::Ordering::Relaxed;
@@ -27,19 +27,30 @@ const COLORS: [Vec3; 8] = [
 pub fn grid_picture(world: &World, job: &Job, control: &Control) -> Result<Image, RenderError> {
     let count = checked_count(job.width, job.height)?;
     let raster = Raster::new(job.width, job.height, &world.rules);
+    let grid = occupied(world);
     let place = |i: u32| Vec2::new((i % job.width) as f32 + 0.5, (i / job.width) as f32 + 0.5);
     let color = |i| {
         if control.cancel.load(Relaxed) {
             return Err(RenderError::Cancelled);
         }
         let ray = camera_ray(world, &raster, place(i));
-        Ok(match world.accel() {
-            Accel::Grid { grid, .. } => cell_color(world, grid, &ray),
-            _ => world.sky(ray.dir),
+        Ok(match &grid {
+            Some(grid) => cell_color(world, grid, &ray),
+            None => world.sky(ray.dir),
         })
     };
     let colors = in_threads(control, || (0..count as u32).into_par_iter().map(color).collect::<Result<_, _>>())??;
     Ok(Image::from_pixels(job.width, job.height, colors)?)
+}
+
+/// The grid's cells with what really overlaps them: the rays' own grid has a margin for rounding.
+fn occupied(world: &World) -> Option<Grid> {
+    let Accel::Grid { grid, parts } = world.accel() else { return None };
+    let object = |part: usize| &world.objects[parts[part].0 as usize];
+    // Only things with bounds are in the grid.
+    let bounds = |i: usize| object(i).part_bounds(parts[i].1).unwrap_or(Aabb::EMPTY);
+    let boxes: Vec<Aabb> = (0..parts.len()).map(bounds).collect();
+    grid.for_picture(&boxes, |i, cell| object(i).overlaps(&cell))
 }
 
 /// The colour of the first occupied cell along a ray.
