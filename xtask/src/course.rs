@@ -38,8 +38,23 @@ enum Verdict {
     Look,
 }
 
-/// Known odd references and why: the reason stands beside the row.
-const REASONS: &[(&str, &str)] = &[];
+/// Rows that do not agree, and why: the reason stands beside the row. None of them counts as passed.
+const REASONS: &[(&str, &str)] = &[
+    ("output5_02b.png", SPHERE_CELLS),
+    ("output5_03.png", "the official camera was not the scene's: no implementation is known to agree"),
+    ("output5_04.png", SPHERE_CELLS),
+    ("output6_18a.png", WOOD),
+    (
+        "output7_02e.png",
+        "at the horizon fields are far smaller than a pixel: single-precision rounding of the old program decides",
+    ),
+    ("output7_04a.png", WOOD),
+    ("output7_04b.png", WOOD),
+];
+
+const SPHERE_CELLS: &str =
+    "which cells a sphere takes is not found for cells that are no cubes, or spheres at the grid's border";
+const WOOD: &str = "the official profile of wood rings is not identified, and the board's parity is swapped";
 
 pub fn run(arguments: &[String]) -> Result<ExitCode> {
     let value = |name: &str| arguments.iter().position(|a| a == name).and_then(|i| arguments.get(i + 1));
