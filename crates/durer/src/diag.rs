@@ -130,9 +130,14 @@ impl Diagnostics {
 
     /// Adds all findings of another collection.
     pub fn extend(&mut self, other: Diagnostics) {
+        let errors = other.list.iter().filter(|d| d.severity == Severity::Error).count();
+        // Those that the other counted without keeping them count here too.
+        let uncollected = (other.errors - errors, other.warnings - (other.list.len() - errors));
         for diagnostic in other.list {
             self.push(diagnostic);
         }
+        self.errors += uncollected.0;
+        self.warnings += uncollected.1;
     }
 
     /// Whether there is an error.
@@ -204,3 +209,6 @@ pub fn did_you_mean<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str
         .filter(|&(distance, candidate)| distance <= (candidate.len().max(word.len()) / 3).max(1))
         .map(|(_, candidate)| candidate)
 }
+
+#[cfg(test)]
+mod tests;

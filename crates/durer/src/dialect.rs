@@ -311,10 +311,6 @@ impl Rules {
             srgb_textures: true,
             paths: PathBase::SceneFile,
             ambient_textured: true,
-            falloff: match self.falloff {
-                Falloff::Bare(None) => Falloff::Bare(None),
-                other => other,
-            },
             compat: 0,
             ..self.clone()
         }

@@ -106,14 +106,9 @@ impl Bvh {
         self.bounds
     }
 
-    /// Numbers of the things in the order in which [`Bvh::closest`] knows them.
+    /// Numbers of the things in the order in which [`Bvh::walk`] knows them.
     pub fn order(&self) -> &[u32] {
         &self.order
-    }
-
-    /// Number of nodes.
-    pub fn node_count(&self) -> usize {
-        self.nodes.len()
     }
 
     /// Bytes in memory.

@@ -10,6 +10,7 @@ use crate::shape::Mesh;
 use crate::source::SourceError;
 use crate::texture::{CubeMap, Texture};
 use crate::world::MeshTree;
+use rayon::prelude::*;
 use std::collections::HashMap;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -94,14 +95,27 @@ impl<'r> Loader<'r> {
 
     fn faces(&mut self, name: &FileName, diagnostics: &mut Diagnostics) -> Option<CubeMap> {
         let folder = name.path.trim_end_matches(['/', '\\']);
-        let mut faces = Vec::with_capacity(6);
+        let (mut files, mut unread) = (Vec::with_capacity(6), Diagnostics::default());
         for face in CubeMap::FACES {
             let candidates = ["bmp", "png", "tga", "ppm"].map(|extension| format!("{folder}/{face}.{extension}"));
             let there = candidates.iter().find(|c| self.resources.source.contains(c)).unwrap_or(&candidates[0]);
             let file = FileName { path: there.clone(), span: name.span };
-            let bytes = self.read(&file, "face of the cube map", diagnostics)?;
-            faces.push(decode(name, there, &bytes, self.rules.srgb_textures, diagnostics)?);
+            let Some(bytes) = self.read(&file, "face of the cube map", &mut unread) else { break };
+            files.push((file.path, bytes));
         }
+        // Decoding takes longer than all else. The first face in order that is wrong is the one complained of.
+        let srgb = self.rules.srgb_textures;
+        let one = |(path, bytes): &(String, Arc<[u8]>)| {
+            let mut own = Diagnostics::default();
+            (decode(name, path, bytes, srgb, &mut own), own)
+        };
+        let decoded: Vec<(Option<Texture>, Diagnostics)> = files.par_iter().map(one).collect();
+        let mut faces = Vec::with_capacity(6);
+        for (face, own) in decoded {
+            diagnostics.extend(own);
+            faces.push(face?);
+        }
+        diagnostics.extend(unread);
         Some(CubeMap { faces: faces.try_into().ok()? })
     }
 

@@ -92,11 +92,6 @@ impl Mesh {
             + size_of_val(&*d.triangle_normals)
     }
 
-    /// Whether it has texture coordinates.
-    pub fn has_uvs(&self) -> bool {
-        !self.data.triangle_uvs.is_empty()
-    }
-
     /// The corners of a triangle.
     pub fn corners(&self, part: u32) -> [Vec3; 3] {
         self.data.triangles[part as usize].map(|i| self.data.positions[i as usize])

@@ -1,15 +1,18 @@
 //! The compiled scene: immutable, with numbers instead of names, ready to be asked by many threads.
 
+mod material;
+mod object;
+
 use crate::bvh::{Bvh, Grid, Tally};
 use crate::camera::{Camera, Frame};
 use crate::dialect::Rules;
 use crate::light::Light;
-use crate::material::{ColorNoise, Pattern, Solid};
-use crate::math::{Aabb, Affine, Color, Ray, Vec2, Vec3};
-use crate::shape::watertight::Sheared;
-use crate::shape::{Crossing, Mesh, Primitive, Shape, Surface};
+use crate::material::Pattern;
+use crate::math::{Aabb, Color, Ray, Vec2, Vec3};
+use crate::shape::{Crossing, Shape, Surface};
 use crate::texture::{CubeMap, Texture};
-use std::sync::Arc;
+pub use material::{HighlightModel, Material, Phong};
+pub use object::{Geometry, MeshTree, Object};
 
 /// A scene ready to be traced.
 #[derive(Debug)]
@@ -36,100 +39,6 @@ pub struct World {
     pub rules: Rules,
     pub(crate) unbounded: Vec<u32>,
     pub(crate) accel: Accel,
-}
-
-/// One thing in the world.
-#[derive(Debug)]
-pub struct Object {
-    /// What it is, in object space.
-    pub geometry: Geometry,
-    /// From object to world space; `None` where they are the same.
-    pub to_world: Option<Affine>,
-    /// Number of its material.
-    pub material: u32,
-    /// Where it is written.
-    pub span: crate::diag::Span,
-}
-
-/// The form of an object.
-#[derive(Clone, Debug)]
-pub enum Geometry {
-    /// A shape of one part.
-    Primitive(Primitive),
-    /// A mesh, shared by all objects that show it.
-    Mesh(Arc<MeshTree>),
-}
-
-/// A mesh with its own tree.
-#[derive(Debug)]
-pub struct MeshTree {
-    /// The mesh.
-    pub mesh: Mesh,
-    /// Its triangles' tree.
-    pub bvh: Bvh,
-    /// Corners of the triangles in the order of the tree.
-    corners: Vec<[Vec3; 3]>,
-    least_volume: f64,
-}
-
-/// A compiled material.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Material {
-    /// Numbers only.
-    Phong(Phong),
-    /// Two materials mixed; the matrix leads from world to pattern space.
-    Solid(Solid, glam::DAffine3),
-}
-
-/// How a material's highlight is computed.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum HighlightModel {
-    /// max(0, N·H)^exponent where N·L > 0.
-    Blinn,
-    /// max(0, R·L)^exponent; `behind`: also where N·L <= 0.
-    Phong {
-        /// Whether surfaces that face away have highlights too.
-        behind: bool,
-    },
-}
-
-/// A Phong material with the rules of its dialect worked in.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Phong {
-    /// Share of light scattered evenly, where neither texture nor noise is.
-    pub diffuse: Color,
-    /// Number of a texture that replaces it.
-    pub texture: Option<u32>,
-    /// Noise that replaces it.
-    pub noise: Option<ColorNoise>,
-    /// Whether the ambient light sees texture and noise too.
-    pub ambient_textured: bool,
-    /// Strength and sharpness of the highlight, if there is one.
-    pub highlight: Option<(Color, f32, HighlightModel)>,
-    /// Weight of the mirrored ray.
-    pub reflective: Color,
-    /// Weight of the transmitted ray.
-    pub transparent: Color,
-    /// Index of refraction inside.
-    pub ior: f32,
-    /// Whether Fresnel's law divides light between the two rays.
-    pub fresnel: bool,
-}
-
-impl Default for Phong {
-    fn default() -> Self {
-        Phong {
-            diffuse: Color::splat(0.8),
-            texture: None,
-            noise: None,
-            ambient_textured: true,
-            highlight: None,
-            reflective: Color::ZERO,
-            transparent: Color::ZERO,
-            ior: 1.0,
-            fresnel: false,
-        }
-    }
 }
 
 /// The structure over all bounded objects.
@@ -166,124 +75,6 @@ pub struct Hit {
 impl Hit {
     fn is_before(&self, other: &Option<Hit>) -> bool {
         other.is_none_or(|o| (self.t, self.object, self.part) < (o.t, o.object, o.part))
-    }
-}
-
-impl MeshTree {
-    /// Builds the tree.
-    pub fn new(mesh: Mesh) -> Self {
-        let boxes: Vec<Aabb> = (0..mesh.len() as u32).map(|i| Aabb::around(mesh.corners(i))).collect();
-        let bvh = Bvh::build(&boxes);
-        let corners = bvh.order().iter().map(|&i| mesh.corners(i)).collect();
-        MeshTree { mesh, bvh, corners, least_volume: 0.0 }
-    }
-
-    /// The same, blind to triangles seen from their sides: see [`Sheared::least_volume`].
-    pub fn least_volume(self, least_volume: f64) -> Self {
-        MeshTree { least_volume, ..self }
-    }
-
-    fn sheared(&self, ray: &Ray) -> Sheared {
-        Sheared::new(ray).least_volume(self.least_volume)
-    }
-
-    /// Bytes in memory.
-    pub fn bytes(&self) -> usize {
-        self.mesh.bytes() + self.bvh.bytes() + size_of_val(&*self.corners)
-    }
-
-    /// The first hit before `best`, both of this object; `any` ends at the first found.
-    #[inline]
-    fn closest<T: Tally>(&self, ray: &Ray, any: bool, tally: &mut T) -> Option<(Crossing, u32)> {
-        let sheared = self.sheared(ray);
-        let mut best: Option<(Crossing, u32)> = None;
-        self.bvh.walk(ray, tally, |item, t_max, tally| {
-            tally.test();
-            // A tie at the present t is kept apart by the number of the triangle.
-            let Some(crossing) = sheared.intersect(self.corners[item], ray.t_min, ray.t_max) else { return t_max };
-            let part = self.bvh.order()[item];
-            if best.is_none_or(|(b, p)| (crossing.t, part) < (b.t, p)) {
-                best = Some((crossing, part));
-            }
-            if any { f32::NEG_INFINITY } else { t_max.min(crossing.t) }
-        });
-        best
-    }
-}
-
-impl Object {
-    fn local_ray(&self, ray: &Ray) -> Ray {
-        self.to_world.as_ref().map_or(*ray, |to_world| to_world.inverse_ray(ray))
-    }
-
-    /// The object's first hit in the ray's interval.
-    fn closest<T: Tally>(&self, ray: &Ray, any: bool, tally: &mut T) -> Option<(Crossing, u32)> {
-        let ray = self.local_ray(ray);
-        match &self.geometry {
-            Geometry::Primitive(shape) => {
-                tally.test();
-                shape.intersect(&ray).map(|crossing| (crossing, 0))
-            }
-            Geometry::Mesh(tree) => tree.closest(&ray, any, tally),
-        }
-    }
-
-    /// The crossing with one part, tested directly.
-    fn part<T: Tally>(&self, ray: &Ray, part: u32, tally: &mut T) -> Option<Crossing> {
-        tally.test();
-        let ray = self.local_ray(ray);
-        match &self.geometry {
-            Geometry::Primitive(shape) => shape.intersect(&ray),
-            // Refused like by the tree: such a ray hits nothing.
-            Geometry::Mesh(_) if !crate::bvh::is_sound(&ray) => None,
-            Geometry::Mesh(tree) => tree.sheared(&ray).intersect(tree.mesh.corners(part), ray.t_min, ray.t_max),
-        }
-    }
-
-    /// How many parts it has.
-    pub fn parts(&self) -> u32 {
-        match &self.geometry {
-            Geometry::Primitive(_) => 1,
-            Geometry::Mesh(tree) => tree.mesh.len() as u32,
-        }
-    }
-
-    /// Bounds in world space; `None` for a shape without end.
-    pub fn bounds(&self) -> Option<Aabb> {
-        let local = match &self.geometry {
-            Geometry::Primitive(shape) => shape.bounds()?,
-            Geometry::Mesh(tree) => tree.bvh.bounds(),
-        };
-        Some(self.moved(local))
-    }
-
-    /// Bounds of one part in world space.
-    pub fn part_bounds(&self, part: u32) -> Option<Aabb> {
-        match &self.geometry {
-            Geometry::Primitive(_) => self.bounds(),
-            Geometry::Mesh(tree) => {
-                let corners = tree.mesh.corners(part);
-                let Some(to_world) = &self.to_world else { return Some(Aabb::around(corners)) };
-                // Tighter than the box of the box, and padded for rounding by a box without size at each corner.
-                let images = corners.map(|c| to_world.bounds(Aabb { min: c, max: c }));
-                Some(images.into_iter().fold(Aabb::EMPTY, Aabb::union))
-            }
-        }
-    }
-
-    /// Whether some of it may lie in a box of world space that overlaps its bounds.
-    pub fn overlaps(&self, cell: &Aabb) -> bool {
-        match (&self.geometry, &self.to_world) {
-            (Geometry::Primitive(shape), None) => shape.overlaps(cell),
-            _ => true,
-        }
-    }
-
-    fn moved(&self, bounds: Aabb) -> Aabb {
-        match &self.to_world {
-            Some(to_world) if !bounds.is_empty() => to_world.bounds(bounds),
-            _ => bounds,
-        }
     }
 }
 

@@ -1,0 +1,64 @@
+//! Materials with the rules of their dialect worked in.
+
+use crate::material::{ColorNoise, Solid};
+use crate::math::Color;
+
+/// A compiled material.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Material {
+    /// Numbers only.
+    Phong(Phong),
+    /// Two materials mixed; the matrix leads from world to pattern space.
+    Solid(Solid, glam::DAffine3),
+}
+
+/// How a material's highlight is computed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum HighlightModel {
+    /// max(0, N·H)^exponent where N·L > 0.
+    Blinn,
+    /// max(0, R·L)^exponent; `behind`: also where N·L <= 0.
+    Phong {
+        /// Whether surfaces that face away have highlights too.
+        behind: bool,
+    },
+}
+
+/// A Phong material with the rules of its dialect worked in.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Phong {
+    /// Share of light scattered evenly, where neither texture nor noise is.
+    pub diffuse: Color,
+    /// Number of a texture that replaces it.
+    pub texture: Option<u32>,
+    /// Noise that replaces it.
+    pub noise: Option<ColorNoise>,
+    /// Whether the ambient light sees texture and noise too.
+    pub ambient_textured: bool,
+    /// Strength and sharpness of the highlight, if there is one.
+    pub highlight: Option<(Color, f32, HighlightModel)>,
+    /// Weight of the mirrored ray.
+    pub reflective: Color,
+    /// Weight of the transmitted ray.
+    pub transparent: Color,
+    /// Index of refraction inside.
+    pub ior: f32,
+    /// Whether Fresnel's law divides light between the two rays.
+    pub fresnel: bool,
+}
+
+impl Default for Phong {
+    fn default() -> Self {
+        Phong {
+            diffuse: Color::splat(0.8),
+            texture: None,
+            noise: None,
+            ambient_textured: true,
+            highlight: None,
+            reflective: Color::ZERO,
+            transparent: Color::ZERO,
+            ior: 1.0,
+            fresnel: false,
+        }
+    }
+}
