@@ -119,7 +119,7 @@ pub struct RenderArgs {
     /// Leave transmitted rays out
     #[arg(long)]
     pub no_refraction: bool,
-    /// Leave out rays that count for less than this [default: 0.001; with --dialect, 0]
+    /// Leave out rays that count for less than this [default: 1/256; with --dialect, 0]
     #[arg(long, allow_negative_numbers = true, value_parser = weight)]
     pub weight: Option<f32>,
 

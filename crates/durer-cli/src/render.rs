@@ -135,7 +135,7 @@ fn job(args: &RenderArgs, opened: &Opened) -> Result<Job, Failure> {
             transparent_shadows: args.transparent_shadows || rules.transparent_shadows,
             reflection: !args.no_reflection,
             refraction: !args.no_refraction,
-            least_weight: args.weight.unwrap_or(if asked { 0.0 } else { 0.001 }),
+            least_weight: args.weight.unwrap_or(if asked { 0.0 } else { 1.0 / 256.0 }),
         },
         color: shows("color"),
         aovs: args.show.iter().filter_map(|name| Aov::from_name(name)).collect(),

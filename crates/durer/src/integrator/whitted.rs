@@ -27,7 +27,8 @@ pub struct Settings {
     pub reflection: bool,
     /// Whether transmitted rays are traced.
     pub refraction: bool,
-    /// A ray that counts for less than this is not traced; as in the course, a colour counts by its magnitude.
+    /// A ray that counts for less than this is not traced. A colour counts by its largest part; for old programs, by its
+    /// length, as in the course.
     pub least_weight: f32,
 }
 
@@ -214,7 +215,9 @@ impl Whitted<'_> {
 
     /// One secondary ray, weighed by a colour.
     fn bounce<T: Tally>(&self, surface: &Surface, dir: Vec3, weight: Color, path: Path, tally: &mut T) -> Color {
-        let total = path.weight * weight.length();
+        // The course takes the length of the colour, which for grey is more than what is left of the light.
+        let old = self.world.rules.epsilon.is_some();
+        let total = path.weight * if old { weight.length() } else { weight.max_element() };
         if weight.max_element() <= 0.0 || total < self.settings.least_weight {
             return Color::ZERO;
         }
