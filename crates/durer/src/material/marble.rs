@@ -4,7 +4,7 @@ use super::{MOST_OCTAVES, Pattern};
 use crate::describe::Rule;
 use crate::described;
 use crate::dialect::set;
-use crate::math::{Vec3, fp, noise};
+use crate::math::{Vec3, noise};
 
 described! {
     /// Two materials in veins across the x axis.
@@ -24,8 +24,7 @@ described! {
 
 impl Pattern for Marble {
     fn weight(&self, q: Vec3) -> f32 {
-        let phase = self.frequency * q.x + self.amplitude * noise::turbulence(q, self.octaves);
-        0.5 * (fp::sin(phase) + 1.0)
+        noise::veins(q, q.x, self.frequency, self.amplitude, self.octaves)
     }
 
     fn materials(&self) -> [u32; 2] {

@@ -4,7 +4,7 @@ use super::MOST_OCTAVES;
 use crate::describe::{FileName, Rule};
 use crate::described;
 use crate::dialect::set;
-use crate::math::{Color, Vec3, fp, noise};
+use crate::math::{Color, Vec3, noise};
 
 described! {
     /// A material with diffuse colour and highlight, which may reflect and let through light.
@@ -53,8 +53,7 @@ described! {
 impl ColorNoise {
     /// The colour at a point: w color1 + (1 - w) color2, w = (sin(frequency x + amplitude N) + 1) / 2.
     pub fn color(&self, p: Vec3) -> Color {
-        let phase = self.frequency * p.x + self.amplitude * noise::turbulence(p, self.octaves);
-        let w = 0.5 * (fp::sin(phase) + 1.0);
+        let w = noise::veins(p, p.x, self.frequency, self.amplitude, self.octaves);
         w * self.color1 + (1.0 - w) * self.color2
     }
 }

@@ -7,7 +7,7 @@ use super::{MOST_OCTAVES, Pattern};
 use crate::describe::Rule;
 use crate::described;
 use crate::dialect::set;
-use crate::math::{Vec3, fp, noise};
+use crate::math::{Vec3, noise};
 
 described! {
     /// Two materials in rings around the y axis.
@@ -28,8 +28,7 @@ described! {
 impl Pattern for Wood {
     fn weight(&self, q: Vec3) -> f32 {
         let radius = (q.x * q.x + q.z * q.z).sqrt();
-        let phase = self.frequency * radius + self.amplitude * noise::turbulence(q, self.octaves);
-        0.5 * (fp::sin(phase) + 1.0)
+        noise::veins(q, radius, self.frequency, self.amplitude, self.octaves)
     }
 
     fn materials(&self) -> [u32; 2] {

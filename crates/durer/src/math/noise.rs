@@ -2,7 +2,7 @@
 //!
 //! Source: Ken Perlin, *Improving Noise*, SIGGRAPH 2002, with its published permutation.
 
-use super::Vec3;
+use super::{Vec3, fp};
 
 /// The published permutation of 0..=255.
 #[rustfmt::skip]
@@ -51,6 +51,12 @@ pub fn turbulence(p: Vec3, octaves: u32) -> f32 {
         frequency *= 2.0;
     }
     sum
+}
+
+/// Veins bent by noise: (sin(frequency x + amplitude N(p)) + 1) / 2, with x how far `p` is along what they run across.
+pub fn veins(p: Vec3, x: f32, frequency: f32, amplitude: f32, octaves: u32) -> f32 {
+    let phase = frequency * x + amplitude * turbulence(p, octaves);
+    0.5 * (fp::sin(phase) + 1.0)
 }
 
 fn lerp(t: f32, a: f32, b: f32) -> f32 {
