@@ -1,5 +1,6 @@
 //! The grammar of 2020 to 2023: a tree of nodes with components.
 
+use super::sections::camera_of;
 use super::fields::Order;
 use super::reader::Reader;
 use crate::camera::Camera;
@@ -19,11 +20,13 @@ impl Reader<'_, '_> {
         self.top(&["Camera", "Background", "Materials", "Scene"], |reader, word, span| {
             match word {
                 "Camera" => reader.camera(Camera::Perspective(Default::default()), span),
-                "OrthographicCamera" => reader.camera(Camera::Orthographic(Default::default()), span),
                 "Background" => reader.background(span),
                 "Materials" => reader.node_materials(span),
                 "Scene" => reader.root_node(span),
-                _ => return false,
+                _ => match camera_of(word).filter(|camera| !matches!(camera, Camera::Perspective(_))) {
+                    Some(camera) => reader.camera(camera, span),
+                    None => return false,
+                },
             }
             true
         });

@@ -46,10 +46,12 @@ impl Writer {
             let Some(value) = thing.get(i) else { continue };
             let word = field.spelling(self.dialect);
             // What the dialect cannot say is left out where it says nothing.
-            if word.is_none() && plain.as_ref().is_some_and(|plain| plain.get(i).as_ref() == Some(&value)) {
+            // As text, for -0 is not 0 there.
+            let (value, usual) = (value_text(&value), plain.as_ref().and_then(|plain| plain.get(i)));
+            if word.is_none() && usual.is_some_and(|usual| value_text(&usual) == value) {
                 continue;
             }
-            self.line(format!("{} {}", word.unwrap_or(field.spellings[0].0), value_text(&value)));
+            self.line(format!("{} {value}", word.unwrap_or(field.spellings[0].0)));
         }
     }
 
@@ -223,6 +225,11 @@ fn value_text(value: &Value) -> String {
         Value::Int(i) => i.to_string(),
         Value::Vec3(v) => vec3_text(*v),
         Value::Path(name) => name.path.clone(),
+        Value::Word(word) => word.clone(),
+        Value::Rows(rows) => {
+            let numbers: Vec<String> = rows.iter().flatten().map(f32::to_string).collect();
+            format!("{{ {} }}", numbers.join(" "))
+        }
     }
 }
 
