@@ -3,13 +3,14 @@
 //! Source: Turner Whitted, *An Improved Illumination Model for Shaded Display*, CACM 23(6), 1980, with the
 //! terms of the course.
 
-use super::spawn::from_surface;
+use super::spawn::{from_surface, to_light};
 use crate::bvh::Tally;
 use crate::dialect::Compat;
 use crate::light::{Emitter, Illumination};
 use crate::math::{Color, Ray, Vec3, fp, gamma, reflect};
 use crate::shape::Surface;
-use crate::world::{HighlightModel, Hit, Phong, World};
+use crate::world::{HighlightModel, Hit, Part, Phong, World};
+use smallvec::SmallVec;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 /// What a picture takes into account.
@@ -77,25 +78,29 @@ impl Whitted<'_> {
         let from_behind = self.sees_back(ray.dir, &surface);
         let black = from_behind && !self.settings.shade_back && self.world.rules.has(Compat::BlackBacks);
         let n = if from_behind && self.settings.shade_back { -surface.n_shade } else { surface.n_shade };
-        let material = self.world.objects[hit.object as usize].material;
+        let parts = self.world.parts(hit, surface.position);
         let mut color = Color::ZERO;
         if !black {
-            self.world.mix(material, surface.position, 1.0, &mut |phong, share| {
-                color += share * self.world.ambient * self.ambient_color(phong, &surface);
-            });
+            // A texture or noise is looked up once for all lights.
+            let diffuse: SmallVec<[Color; 2]> = parts.iter().map(|p| self.diffuse_color(p.phong, &surface)).collect();
+            for (part, &diffuse) in parts.iter().zip(&diffuse) {
+                let met = if part.phong.ambient_textured { diffuse } else { part.phong.diffuse };
+                color += part.share * self.world.ambient * met;
+            }
             for light in &self.world.lights {
                 let seen = light.illuminate(surface.position);
                 let visible = self.visible(&surface, &seen, tally);
-                if visible != Color::ZERO {
-                    self.world.mix(material, surface.position, 1.0, &mut |phong, share| {
-                        color += share * visible * self.direct(phong, &surface, n, ray.dir, &seen);
-                    });
+                if visible == Color::ZERO {
+                    continue;
+                }
+                for (part, &diffuse) in parts.iter().zip(&diffuse) {
+                    color += part.share * visible * direct(part.phong, diffuse, n, ray.dir, &seen);
                 }
             }
         }
         let cancelled = self.cancel.is_some_and(|cancel| cancel.load(Relaxed));
         if path.bounces > 0 && !cancelled {
-            color += self.secondary(ray, &surface, material, path, tally);
+            color += self.secondary(ray, &surface, &parts, path, tally);
         }
         color
     }
@@ -104,11 +109,6 @@ impl Whitted<'_> {
     fn sees_back(&self, dir: Vec3, surface: &Surface) -> bool {
         let shaded = self.world.rules.has(Compat::ShadedSides);
         dir.dot(if shaded { surface.n_shade } else { surface.n_geo }) > 0.0
-    }
-
-    /// What ambient light meets.
-    fn ambient_color(&self, phong: &Phong, surface: &Surface) -> Color {
-        if phong.ambient_textured { self.diffuse_color(phong, surface) } else { phong.diffuse }
     }
 
     /// Noise, else texture, else the diffuse colour.
@@ -125,8 +125,8 @@ impl Whitted<'_> {
         }
         let epsilon = self.world.rules.epsilon;
         // What stands exactly at the light does not block it.
-        let reach = if epsilon.is_some() { seen.distance } else { seen.distance * (1.0 - gamma(16)) };
-        let mut ray = from_surface(surface, seen.to_light, reach, epsilon);
+        let reach = if self.world.rules.is_official() { seen.distance } else { seen.distance * (1.0 - gamma(16)) };
+        let mut ray = to_light(surface, seen.to_light, reach, epsilon);
         if self.world.rules.has(Compat::ShadowFronts) {
             let nearest = self.world.closest(&ray, tally).map(|hit| self.world.surface(&ray, &hit));
             let blocked = nearest.is_some_and(|blocker| blocker.n_shade.dot(ray.dir) <= 0.0);
@@ -140,10 +140,8 @@ impl Whitted<'_> {
         for _ in 0..64 {
             let Some(hit) = self.world.closest(&ray, tally) else { return share };
             let blocker = self.world.surface(&ray, &hit);
-            let mut transparent = Color::ZERO;
-            let material = self.world.objects[hit.object as usize].material;
-            self.world.mix(material, blocker.position, 1.0, &mut |phong, part| transparent += part * phong.transparent);
-            share *= transparent;
+            let parts = self.world.parts(&hit, blocker.position);
+            share *= parts.iter().map(|part| part.share * part.phong.transparent).sum::<Color>();
             if share == Color::ZERO {
                 break;
             }
@@ -152,36 +150,18 @@ impl Whitted<'_> {
         Color::ZERO
     }
 
-    /// Diffuse term and highlight of one light.
-    fn direct(&self, phong: &Phong, surface: &Surface, n: Vec3, view: Vec3, seen: &Illumination) -> Color {
-        let cosine = n.dot(seen.to_light);
-        let mut color = cosine.max(0.0) * self.diffuse_color(phong, surface);
-        if let Some((specular, exponent, model)) = phong.highlight {
-            let base = match model {
-                HighlightModel::Blinn => (cosine > 0.0).then(|| n.dot((seen.to_light - view).normalize_or_zero())),
-                HighlightModel::Phong { behind } => {
-                    (behind || cosine > 0.0).then(|| reflect(view, n).dot(seen.to_light))
-                }
-            };
-            if let Some(base) = base {
-                color += fp::pow(base.max(0.0), exponent) * specular;
-            }
-        }
-        color * seen.color
-    }
-
     /// Mirrored and transmitted light.
-    fn secondary<T: Tally>(&self, ray: &Ray, surface: &Surface, material: u32, path: Path, tally: &mut T) -> Color {
+    fn secondary<T: Tally>(&self, ray: &Ray, surface: &Surface, parts: &[Part], path: Path, tally: &mut T) -> Color {
         // Weights of a mix are mixed; its index is that of the part that weighs most.
         let (mut reflective, mut transparent, mut ior, mut most, mut fresnel) =
             (Color::ZERO, Color::ZERO, 1.0, 0.0, false);
-        self.world.mix(material, surface.position, 1.0, &mut |phong, share| {
+        for &Part { phong, share } in parts {
             reflective += share * phong.reflective;
             transparent += share * phong.transparent;
             if share > most {
                 (most, ior, fresnel) = (share, phong.ior, phong.fresnel);
             }
-        });
+        }
         // The normal on the ray's side, and the indices before and behind the surface.
         let leaving = self.sees_back(ray.dir, surface);
         let [n, n_geo] = [surface.n_shade, surface.n_geo].map(|n| if leaving { -n } else { n });
@@ -216,7 +196,7 @@ impl Whitted<'_> {
     /// One secondary ray, weighed by a colour.
     fn bounce<T: Tally>(&self, surface: &Surface, dir: Vec3, weight: Color, path: Path, tally: &mut T) -> Color {
         // The course takes the length of the colour, which for grey is more than what is left of the light.
-        let old = self.world.rules.epsilon.is_some();
+        let old = self.world.rules.is_official();
         let total = path.weight * if old { weight.length() } else { weight.max_element() };
         if weight.max_element() <= 0.0 || total < self.settings.least_weight {
             return Color::ZERO;
@@ -238,6 +218,22 @@ impl Whitted<'_> {
         let square = rest * rest;
         r0 + (1.0 - r0) * square * square * rest
     }
+}
+
+/// Diffuse term and highlight of one light.
+fn direct(phong: &Phong, diffuse: Color, n: Vec3, view: Vec3, seen: &Illumination) -> Color {
+    let cosine = n.dot(seen.to_light);
+    let mut color = cosine.max(0.0) * diffuse;
+    if let Some((specular, exponent, model)) = phong.highlight {
+        let base = match model {
+            HighlightModel::Blinn => (cosine > 0.0).then(|| n.dot((seen.to_light - view).normalize_or_zero())),
+            HighlightModel::Phong { behind } => (behind || cosine > 0.0).then(|| reflect(view, n).dot(seen.to_light)),
+        };
+        if let Some(base) = base {
+            color += fp::pow(base.max(0.0), exponent) * specular;
+        }
+    }
+    color * seen.color
 }
 
 /// Snell's law: the direction behind a surface whose normal `n` is on the ray's side; `None` for total reflection.

@@ -201,7 +201,10 @@ impl Reader<'_, '_> {
     }
 
     fn component_object(&mut self, keyword: Span) -> Option<Node> {
-        let kind = self.component_type(keyword, &["sphere", "plane", "triangle", "mesh"])?;
+        let kind = self.component_type(keyword, &["sphere", "plane", "triangle", "mesh", "Grid"])?;
+        if kind == "Grid" {
+            return Some(self.voxels(keyword));
+        }
         if kind == "mesh" {
             let mut mesh = TriangleMesh::default();
             self.component_fields(&mut mesh, keyword);
@@ -264,6 +267,6 @@ fn paint(object: &mut Object, material: u32) {
     match &mut object.node {
         Node::Group(group) => group.objects.iter_mut().for_each(|object| paint(object, material)),
         Node::Transform(_, inner) => paint(inner, material),
-        Node::Primitive(_) | Node::Mesh(_) => {}
+        Node::Primitive(_) | Node::Mesh(_) | Node::Voxels(..) => {}
     }
 }
