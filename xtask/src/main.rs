@@ -1,6 +1,7 @@
 //! Commands for those who build Dürer.
 
 mod course;
+mod manual;
 
 use std::process::ExitCode;
 
@@ -9,12 +10,15 @@ const USAGE: &str = "Commands:
       Render every row of the course's reference pictures through `durer course`, and compare.
       --guess: do not name the program, so that the dialect is guessed. --only: rows that contain TEXT.
       --keep: leave our pictures there, with pictures of the differences.
+  cargo xtask manual
+      Write docs/cameras.md from what the cameras state of themselves.
 The course is found in ../shared, or where DURER_CORPUS says.";
 
 fn main() -> anyhow::Result<ExitCode> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     match arguments.first().map(String::as_str) {
         Some("course") => course::run(&arguments[1..]),
+        Some("manual") => manual::run(),
         _ => {
             println!("{USAGE}");
             Ok(ExitCode::from(2))

@@ -72,6 +72,8 @@ pub enum Rule {
     AtMost(u32),
     /// At least so many rows, and at most so many.
     Count(usize, usize),
+    /// A vector of whole numbers from 1 to this.
+    Counts(u32),
 }
 
 impl Rule {
@@ -89,6 +91,11 @@ impl Rule {
             }
             (Rule::UpTo(high), Value::Float(x)) if *x <= 0.0 || *x > high => {
                 Some(format!("must be more than 0 and at most {high}"))
+            }
+            (Rule::Counts(most), Value::Vec3(v))
+                if v.to_array().iter().any(|&n| n.fract() != 0.0 || n < 1.0 || n > most as f32) =>
+            {
+                Some(format!("must be whole numbers from 1 to {most}"))
             }
             (Rule::AtMost(most), Value::Int(i)) if *i > most => Some(format!("must be at most {most}")),
             (Rule::Count(least, most), Value::Rows(rows)) if rows.len() < least || rows.len() > most => {

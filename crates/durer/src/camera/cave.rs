@@ -14,7 +14,7 @@ use super::sheet::Sheet;
 use super::{CameraSample, Eyes, Frame, Lens, Pose};
 use crate::describe::Rule;
 use crate::described;
-use crate::dialect::set;
+use crate::dialect::{Dialect, set};
 use crate::math::{Ray, Vec2, Vec3};
 use glam::{DMat3, DVec2, DVec3};
 
@@ -111,7 +111,10 @@ impl Lens for CaveCamera {
     }
 
     fn problem(&self) -> Option<String> {
-        let frame = Frame::new(self.pose(), crate::dialect::Dialect::Durer.rules());
+        if self.walls.is_empty() {
+            return Some("`walls` must have at least one row".into());
+        }
+        let frame = Frame::new(self.pose(), Dialect::Durer.rules());
         for (i, wall) in self.walls().enumerate() {
             let size = wall.size();
             if size.min_element() <= 0.0 {

@@ -8,6 +8,7 @@
 
 use super::eyes::EyeCircle;
 use super::perspective::half_width;
+use super::sheet::Sheet;
 use super::{CameraSample, Eyes, Frame, Lens, Pose};
 use crate::describe::Rule;
 use crate::described;
@@ -67,7 +68,7 @@ impl Lens for CylindricalCamera {
         for view in self.eyes.views(one) {
             let Some((heading, distance)) = self.circle(view.side).heading(p) else { continue };
             let place = DVec2::new(heading, p.y / distance) + 0.5 * one;
-            if super::sheet::Sheet(one).contains(place) {
+            if Sheet(one).contains(place) {
                 found(self.eyes.point(one, view, place).as_vec2());
             }
         }

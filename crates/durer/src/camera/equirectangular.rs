@@ -7,6 +7,7 @@
 //! Source: Snyder, *Map Projections: A Working Manual*, USGS Professional Paper 1395, 1987, chapter 12.
 
 use super::eyes::EyeCircle;
+use super::sheet::Sheet;
 use super::{CameraSample, Eyes, Frame, Lens, Pose};
 use crate::describe::Rule;
 use crate::described;
@@ -68,7 +69,7 @@ impl Lens for EquirectangularCamera {
         for view in self.eyes.views(one) {
             let Some((heading, distance)) = self.circle(view.side).heading(p) else { continue };
             let place = DVec2::new(heading, fp::atan2_f64(p.y, distance)) + 0.5 * one;
-            if super::sheet::Sheet(one).contains(place) {
+            if Sheet(one).contains(place) {
                 found(self.eyes.point(one, view, place).as_vec2());
             }
         }

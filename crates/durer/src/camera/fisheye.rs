@@ -12,8 +12,8 @@
 //! Source: Miyamoto, *Fish Eye Lens*, Journal of the Optical Society of America 54(8), 1964; Kannala, Brandt, *A Generic
 //! Camera Model and Calibration Method*, PAMI 28(8), 2006, equations 1 to 5.
 
-use super::central::Central;
 use super::Pose;
+use super::central::Central;
 use crate::describe::Rule;
 use crate::dialect::set;
 use crate::math::{Vec2, Vec3, fp};

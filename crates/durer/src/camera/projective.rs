@@ -170,6 +170,9 @@ impl Lens for ProjectiveCamera {
     }
 
     fn problem(&self) -> Option<String> {
+        if self.matrix.len() != 3 {
+            return Some("`matrix` must have 3 rows".into());
+        }
         let ([a, b, c], _) = self.rows();
         let volume = a.dot(b.cross(c)).abs();
         // Compared with rows of these lengths at right angles.

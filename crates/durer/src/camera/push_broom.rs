@@ -11,7 +11,7 @@ use super::sheet::Sheet;
 use super::{CameraSample, Frame, Lens, Pose};
 use crate::describe::Rule;
 use crate::described;
-use crate::dialect::set;
+use crate::dialect::{Dialect, set};
 use crate::math::{Ray, Vec2, Vec3};
 use glam::{DVec2, DVec3};
 
@@ -63,11 +63,12 @@ impl Lens for PushBroomCamera {
     }
 
     fn problem(&self) -> Option<String> {
-        let frame = Frame::new(self.pose(), crate::dialect::Dialect::Durer.rules());
+        let frame = Frame::new(self.pose(), Dialect::Durer.rules());
         let sideways = self.way().dot(frame.right.as_dvec3()).abs();
         // Also where the way has no length.
         let moves = sideways > 1e-6 * self.way().length();
-        (!moves).then(|| "from `start` to `end` the camera must move sideways, not only along `direction` or `up`".into())
+        (!moves)
+            .then(|| "from `start` to `end` the camera must move sideways, not only along `direction` or `up`".into())
     }
 
     fn ray(&self, frame: &Frame, sample: &CameraSample) -> Option<Ray> {

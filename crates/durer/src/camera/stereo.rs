@@ -9,6 +9,7 @@
 //! CG&A 5(9), 1985; Bourke, *Calculating Stereo Pairs*, 1999.
 
 use super::perspective::half_width;
+use super::sheet::Sheet;
 use super::{CameraSample, Eyes, Frame, Lens, Pose};
 use crate::describe::Rule;
 use crate::dialect::set;
@@ -106,7 +107,7 @@ impl Lens for StereoCamera {
             let eye = self.eye(view.side);
             let p = eye.axes.transpose() * (p - eye.at);
             let place = (p.truncate() / p.z - eye.shear) / self.scale() + 0.5 * one;
-            if p.z > 0.0 && super::sheet::Sheet(one).contains(place) {
+            if p.z > 0.0 && Sheet(one).contains(place) {
                 found(self.eyes.point(one, view, place).as_vec2());
             }
         }

@@ -51,7 +51,10 @@ fn sizes_follow_proportions_and_misfits_are_counted() {
     assert_eq!([size(1.0, 1.0), size(4000.0, 1000.0), size(1e4, 1.0)], [(512, 512), (1024, 256), (50000, 5)]);
     let empty = |width, height| Raster::new(width, height, Some(Vec2::new(3.0, 1.0)), &rules(&[])).empty();
     assert_eq!([empty(300, 100), empty(301, 100), empty(300, 300)], [(0, 0), (1, 0), (0, 200)]);
-    assert_eq!([empty(100, 33), empty(100, 34), Raster::new(9, 5, None, &rules(&[])).empty()], [(1, 0), (0, 0), (0, 0)]);
+    assert_eq!(
+        [empty(100, 33), empty(100, 34), Raster::new(9, 5, None, &rules(&[])).empty()],
+        [(1, 0), (0, 0), (0, 0)]
+    );
 }
 
 #[test]

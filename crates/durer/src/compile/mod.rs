@@ -8,15 +8,16 @@ pub(crate) mod testing;
 use crate::bvh::{Bvh, Grid};
 use crate::camera::{Frame, Lens};
 use crate::diag::{Diagnostic, Diagnostics, Files, Span};
-use crate::dialect::{Compat, Rules};
+use crate::dialect::{Compat, MeshNormals, Rules};
 use crate::light::{Emitter, Light};
 use crate::math::{Aabb, Affine, Color};
 use crate::scene::{self, Group, MatrixOp, Node, Scene};
 use crate::shape::mesh::loosened;
-use crate::shape::{Primitive, Triangle};
+use crate::shape::{Mesh, Primitive, Triangle};
 use crate::source::Source;
-use crate::world::{Accel, Geometry, Object, Phong, World};
+use crate::world::{Accel, Geometry, MeshTree, Object, Phong, World};
 use glam::DAffine3;
+use std::sync::Arc;
 
 /// Which structure finds the objects that a ray may meet.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -231,6 +232,14 @@ impl Flattening<'_, '_> {
                 Some(tree) => Geometry::Mesh(tree),
                 None => return,
             },
+            Node::Voxels(grid, balls) => {
+                if (grid.max - grid.min).min_element() <= 0.0 {
+                    let message = "each coordinate of this grid's `max` must be greater than that of its `min`";
+                    return self.diagnostics.push(Diagnostic::error(message).at(object.span));
+                }
+                let mesh = Mesh::new(grid.mesh(balls), MeshNormals::Flat, false);
+                Geometry::Mesh(Arc::new(MeshTree::new(mesh)))
+            }
         };
         let to_world = match to_world == DAffine3::IDENTITY {
             true => None,

@@ -7,6 +7,7 @@ pub mod sphere;
 #[cfg(test)]
 mod tests;
 pub mod triangle;
+pub mod voxels;
 pub mod watertight;
 
 use crate::described_list;
@@ -15,6 +16,7 @@ pub use mesh::{Mesh, MeshData, TriangleMesh};
 pub use plane::Plane;
 pub use sphere::Sphere;
 pub use triangle::Triangle;
+pub use voxels::VoxelGrid;
 
 described_list! {
     /// A shape that is given in the scene file itself.
@@ -52,6 +54,9 @@ pub struct Surface {
     pub uv: Option<Vec2>,
     /// Barycentric coordinates; of use on triangles.
     pub barycentric: Vec3,
+    /// From the point to the bent surface that a flat triangle stands for: where it is seen from the side of `n_shade`,
+    /// and from the other. Zero on what is as it looks. A shadow ray starts there; after Hanika, *Hacking the Shadow Terminator*.
+    pub lifts: [Vec3; 2],
 }
 
 impl Surface {

@@ -11,7 +11,7 @@ use crate::material::Pattern;
 use crate::math::{Aabb, Color, Ray, Vec2, Vec3};
 use crate::shape::{Crossing, Shape, Surface};
 use crate::texture::{CubeMap, Texture};
-pub use material::{HighlightModel, Material, Phong};
+pub use material::{HighlightModel, Material, Part, Parts, Phong};
 pub use object::{Geometry, MeshTree, Object};
 
 /// A scene ready to be traced.
@@ -172,8 +172,8 @@ impl World {
             Geometry::Primitive(shape) => shape.surface(&local, &crossing),
             Geometry::Mesh(tree) => tree.mesh.surface(hit.part, &crossing),
         };
-        // The old programs, which keep off a surface by an epsilon, take the point from the ray as it is.
-        if self.rules.epsilon.is_some() {
+        // The official programs take the point from the ray as it is.
+        if self.rules.is_official() {
             let [n_geo, n_shade] =
                 [surface.n_geo, surface.n_shade].map(|n| object.to_world.as_ref().map_or(n, |m| m.normal(n)));
             return Surface { position: ray.at(hit.t), n_geo, n_shade, ..surface };
@@ -188,6 +188,7 @@ impl World {
             error: error + to_world.spread(surface.bulge(to_world.inverse_spread(error))),
             n_geo: to_world.normal(surface.n_geo),
             n_shade: to_world.normal(surface.n_shade),
+            lifts: surface.lifts.map(|lift| to_world.vector(lift)),
             ..surface
         }
     }
@@ -198,16 +199,22 @@ impl World {
     }
 
     /// The materials that make up a surface point, each with its share.
-    pub fn mix(&self, material: u32, point: Vec3, share: f32, visit: &mut impl FnMut(&Phong, f32)) {
+    pub fn parts(&self, hit: &Hit, point: Vec3) -> Parts<'_> {
+        let mut parts = Parts::new();
+        self.mix(self.objects[hit.object as usize].material, point, 1.0, &mut parts);
+        parts
+    }
+
+    fn mix<'w>(&'w self, material: u32, point: Vec3, share: f32, parts: &mut Parts<'w>) {
         match &self.materials[material as usize] {
-            Material::Phong(phong) => visit(phong, share),
+            Material::Phong(phong) => parts.push(Part { phong, share }),
             Material::Solid(solid, to_pattern) => {
                 let q = to_pattern.transform_point3(point.as_dvec3()).as_vec3();
                 let weight = solid.weight(q);
                 let [first, second] = solid.materials();
                 for (index, weight) in [(first, weight), (second, 1.0 - weight)] {
                     if weight != 0.0 {
-                        self.mix(index, point, share * weight, visit);
+                        self.mix(index, point, share * weight, parts);
                     }
                 }
             }

@@ -112,7 +112,9 @@ mod tests {
         for _ in 0..20_000 {
             let mut roots: [f64; 6] = std::array::from_fn(|_| f64::from(random.between(-1.5, 2.5)));
             roots.sort_by(f64::total_cmp);
-            if roots.windows(2).any(|pair| pair[1] - pair[0] < 0.02) || roots.iter().any(|r| r.abs().min((r - 1.0).abs()) < 1e-3) {
+            if roots.windows(2).any(|pair| pair[1] - pair[0] < 0.02)
+                || roots.iter().any(|r| r.abs().min((r - 1.0).abs()) < 1e-3)
+            {
                 continue;
             }
             let mut found = Vec::new();

@@ -157,7 +157,8 @@ fn walls_that_share_an_edge_show_the_same_along_it() {
     for (column, eye_row) in [(200.0, 0.0), (200.0, 150.0), (400.0, 0.0), (400.0, 150.0)] {
         for row in [0.5, 70.5, 149.5] {
             let at = |x: f32| raster.point(Vec2::new(x, eye_row + row));
-            let seen = |pixel: f32| ray(&camera, CameraSample { pixel: at(pixel), ..CameraSample::at(at(column)) }).unwrap();
+            let seen =
+                |pixel: f32| ray(&camera, CameraSample { pixel: at(pixel), ..CameraSample::at(at(column)) }).unwrap();
             let (before, after) = (seen(column - 0.5), seen(column + 0.5));
             assert_eq!(before.origin, after.origin);
             close(before.dir, after.dir);

@@ -1,8 +1,8 @@
 //! The grammar of 2020 to 2023: a tree of nodes with components.
 
-use super::sections::camera_of;
 use super::fields::Order;
 use super::reader::Reader;
+use super::sections::camera_of;
 use crate::camera::Camera;
 use crate::describe::DescribedList;
 use crate::diag::{Diagnostic, Span, did_you_mean};
@@ -204,7 +204,10 @@ impl Reader<'_, '_> {
     }
 
     fn component_object(&mut self, keyword: Span) -> Option<Node> {
-        let kind = self.component_type(keyword, &["sphere", "plane", "triangle", "mesh"])?;
+        let kind = self.component_type(keyword, &["sphere", "plane", "triangle", "mesh", "Grid"])?;
+        if kind == "Grid" {
+            return Some(self.voxels(keyword));
+        }
         if kind == "mesh" {
             let mut mesh = TriangleMesh::default();
             self.component_fields(&mut mesh, keyword);
@@ -267,6 +270,6 @@ fn paint(object: &mut Object, material: u32) {
     match &mut object.node {
         Node::Group(group) => group.objects.iter_mut().for_each(|object| paint(object, material)),
         Node::Transform(_, inner) => paint(inner, material),
-        Node::Primitive(_) | Node::Mesh(_) => {}
+        Node::Primitive(_) | Node::Mesh(_) | Node::Voxels(..) => {}
     }
 }

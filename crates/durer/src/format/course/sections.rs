@@ -11,7 +11,7 @@ use crate::dialect::{Dialect, DialectSet, set};
 use crate::light::Light;
 use crate::material::{ColorNoise, PhongMaterial, Solid};
 use crate::scene::{Background, Group, Material, Node, Object, Spanned};
-use crate::shape::{Primitive, TriangleMesh};
+use crate::shape::{Primitive, Sphere, TriangleMesh, VoxelGrid};
 
 /// What stands at the top of a file beside the camera.
 const SECTIONS: [&str; 4] = ["Background", "Lights", "Materials", "Group"];
@@ -27,8 +27,8 @@ pub(super) fn is_section(word: &str) -> bool {
 }
 
 /// What stands in a group. Words beyond the first six are no objects.
-pub(super) const IN_GROUP: [&str; 8] =
-    ["Group", "Transform", "Sphere", "Plane", "Triangle", "TriangleMesh", "MaterialIndex", "numObjects"];
+pub(super) const IN_GROUP: [&str; 9] =
+    ["Group", "Transform", "Sphere", "Plane", "Triangle", "TriangleMesh", "MaterialIndex", "numObjects", "Grid"];
 
 impl Reader<'_, '_> {
     /// The whole file.
@@ -263,6 +263,26 @@ impl Reader<'_, '_> {
         Group { objects }
     }
 
+    /// Cells of a box and the balls that fill them; also where a component says so by its type.
+    pub(super) fn voxels(&mut self, keyword: Span) -> Node {
+        let (mut grid, mut balls) = (VoxelGrid::default(), Vec::new());
+        self.fields(&mut grid, keyword, Order::Any, |reader, word, span| {
+            match word {
+                "type" => {
+                    reader.advance();
+                }
+                "rasterizeSphere" => {
+                    let mut ball = Sphere::default();
+                    reader.fields(&mut ball, span, Order::Any, |_, _, _| false);
+                    balls.push(ball);
+                }
+                _ => return false,
+            }
+            true
+        });
+        Node::Voxels(grid, balls)
+    }
+
     /// One object, if the word begins one.
     pub(super) fn object(&mut self, word: &str, span: Span) -> Option<Object> {
         if !self.descend("objects", span) {
@@ -282,6 +302,8 @@ impl Reader<'_, '_> {
             let mut mesh = TriangleMesh::default();
             self.fields(&mut mesh, span, Order::Listed, |_, _, _| false);
             Some(Node::Mesh(mesh))
+        } else if word == "Grid" {
+            Some(self.voxels(span))
         } else {
             self.unknown(word, span, "among objects", &IN_GROUP);
             None

@@ -6,7 +6,7 @@ use crate::dialect::{DialectSet, set};
 use crate::light::Light;
 use crate::material::{ColorNoise, PhongMaterial, Solid};
 use crate::scene::Background;
-use crate::shape::{Primitive, TriangleMesh};
+use crate::shape::{Primitive, TriangleMesh, VoxelGrid};
 use std::collections::HashMap;
 use std::sync::LazyLock;
 
@@ -55,6 +55,7 @@ static WORDS: LazyLock<HashMap<&'static str, DialectSet>> = LazyLock::new(|| {
     list::<PhongMaterial>(&mut words);
     list::<ColorNoise>(&mut words);
     list::<TriangleMesh>(&mut words);
+    list::<VoxelGrid>(&mut words);
     list::<Background>(&mut words);
     for (word, set) in GRAMMAR {
         *words.entry(word).or_insert(0) |= set;
@@ -84,7 +85,7 @@ pub(super) fn begins_block(word: &str) -> bool {
 /// The block in which something belongs that stands in a wrong place.
 pub(super) fn home_of(word: &str) -> Option<&'static str> {
     Some(match word {
-        "Sphere" | "Plane" | "Triangle" | "TriangleMesh" | "Transform" | "MaterialIndex" | "Group" => "Group",
+        "Sphere" | "Plane" | "Triangle" | "TriangleMesh" | "Grid" | "Transform" | "MaterialIndex" | "Group" => "Group",
         "PhongMaterial" | "Material" | "Checkerboard" | "Marble" | "Wood" => "Materials",
         "PointLight" | "DirectionalLight" => "Lights",
         "Translate" | "Scale" | "UniformScale" | "XRotate" | "YRotate" | "ZRotate" | "Rotate" | "Matrix"
