@@ -79,8 +79,8 @@ fn value_of(field: &Field) -> String {
         Rule::Between(low, high) => format!("more than {low}, less than {high}"),
         Rule::UpTo(high) => format!("more than 0, at most {high}"),
         Rule::AtMost(most) => format!("at most {most}"),
-        Rule::Count(least, most) if least == most => format!("{least} of them"),
-        Rule::Count(least, most) => format!("{least} to {most} of them"),
+        Rule::Rows(least, most) if least == most => format!("{least} of them"),
+        Rule::Rows(least, most) => format!("{least} to {most} of them"),
         Rule::Counts(most) => format!("whole, 1 to {most}"),
     };
     format!("{kind}, {rule}")

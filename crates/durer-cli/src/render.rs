@@ -80,8 +80,9 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
     let opened = open(&args.scene, &options, args.quiet)?;
     let job = job(args, &opened)?;
     if job.sampling == Sampling::Center && opened.world.camera.has_aperture() && !args.quiet {
-        let message = "with one sample a pixel only the middle of the lens is used, and nothing is out of focus";
-        report::note(&Diagnostic::warning(message).help("ask for more `--samples`, 64 say"));
+        let message = "with one sample a pixel only the middle of the lens is used, and nothing is out of focus: \
+                       ask for more --samples";
+        report::note(&Diagnostic::warning(message));
     }
     if args.show.iter().any(|show| DIAGRAMS.contains(&show.as_str())) {
         check_diagram(&job, args.zoom).map_err(failure)?;
@@ -165,8 +166,9 @@ fn misfit(world: &World, width: u32, height: u32) {
     }
     let (count, what) = if columns > 0 { (columns, "columns") } else { (rows, "rows") };
     let (w, h) = Raster::natural_size(world.camera.proportions(), (width, height));
-    let message = format!("{count} {what} of {width}x{height} stay empty: this camera's picture has another shape");
-    report::note(&Diagnostic::warning(message).help(format!("`--size {w}x{h}` has it")));
+    report::note(&Diagnostic::warning(format!(
+        "{count} {what} of {width}x{height} stay empty: this camera's picture has the shape of --size {w}x{h}"
+    )));
 }
 
 fn sampling(args: &RenderArgs, asked: bool, plenty: u32) -> Result<Sampling, Failure> {

@@ -79,7 +79,7 @@ fn pictures_take_the_shape_of_their_cameras() {
     // In another shape it stays whole, and what is empty is told.
     place.put("sphere.txt", seen_by(&format!("EquirectangularCamera {{ {POSE} }}")));
     let said = place.gives(0, "render sphere.txt -o a.tga --size 40x40 --samples 1").err;
-    assert!(said.contains("20 rows of 40x40 stay empty") && said.contains("--size"), "{said}");
+    assert!(said.contains("20 rows of 40x40 stay empty") && said.contains("--size 56x28"), "{said}");
     let (_, square) = targa(&place, "a.tga");
     let said = place.gives(0, "render sphere.txt -o b.tga --size 40x20 --samples 1").err;
     assert!(!said.contains("empty"), "{said}");
@@ -139,6 +139,9 @@ fn wrong_cameras_are_told_of() {
     place.refused(2, "render ours.txt -o p.png --strict --dialect f04", &["`FisheyeCamera`"]);
     let said = place.gives(0, "render ours.txt -o p.png --size 9x9 --dialect f04").err;
     assert!(said.contains("`FisheyeCamera` is not a word of f04"), "{said}");
+    assert_eq!(said.matches("warning").count(), 1, "{said}");
+    place.put("short.txt", seen_by("FisheyeCamera { center 0 1 8 up 0 1 0 }").replace("# ours\n", ""));
+    place.refused(2, "render short.txt -o q.png --dialect f04", &["`FisheyeCamera` has no `direction`"]);
     // What is written anew says the same.
     place.gives(0, "convert ours.txt -o again.txt");
     place.gives(0, "render ours.txt -o a.pfm --size 20x20 --samples 2");

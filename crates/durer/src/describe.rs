@@ -71,7 +71,7 @@ pub enum Rule {
     /// At most this whole number.
     AtMost(u32),
     /// At least so many rows, and at most so many.
-    Count(usize, usize),
+    Rows(usize, usize),
     /// A vector of whole numbers from 1 to this.
     Counts(u32),
 }
@@ -98,7 +98,7 @@ impl Rule {
                 Some(format!("must be whole numbers from 1 to {most}"))
             }
             (Rule::AtMost(most), Value::Int(i)) if *i > most => Some(format!("must be at most {most}")),
-            (Rule::Count(least, most), Value::Rows(rows)) if rows.len() < least || rows.len() > most => {
+            (Rule::Rows(least, most), Value::Rows(rows)) if rows.len() < least || rows.len() > most => {
                 let wanted = if least == most { least.to_string() } else { format!("{least} to {most}") };
                 Some(format!("must have {wanted} rows, but has {}", rows.len()))
             }

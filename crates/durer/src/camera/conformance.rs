@@ -16,7 +16,7 @@ fn value(field: &Field, random: &mut Random) -> Value {
     };
     match (field.kind, field.rule) {
         (Kind::Rows(9), _) => Value::Rows((0..1 + random.below(4)).map(|_| wall(random)).collect()),
-        (Kind::Rows(width), Rule::Count(least, most)) => rows(if most > least { least + 3 } else { least }, width),
+        (Kind::Rows(width), Rule::Rows(least, most)) => rows(if most > least { least + 3 } else { least }, width),
         (Kind::Word(words), _) => Value::Word(words[random.below(words.len())].into()),
         (Kind::Int, _) => Value::Int([0, 3, 5, 8][random.below(4)]),
         (Kind::Vec3, Rule::NonZero) => Value::Vec3(random.direction() * random.between(0.5, 2.0)),

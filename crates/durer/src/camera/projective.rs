@@ -27,7 +27,7 @@ described! {
     /// A camera recovered from a photograph: a projective matrix and the lens's distortion.
     ProjectiveCamera ["ProjectiveCamera" in set::DURER] {
         /// The 3x4 matrix, row by row: from homogeneous points of the world to pixels, y downwards; at any scale.
-        matrix: Vec<[f32; 4]> = plain_matrix(), required, Rule::Count(3, 3), ["matrix" in set::DURER];
+        matrix: Vec<[f32; 4]> = plain_matrix(), required, Rule::Rows(3, 3), ["matrix" in set::DURER];
         /// Width of the photograph in pixels.
         width: f32 = 512.0, required, Rule::Positive, ["width" in set::DURER];
         /// Height of the photograph in pixels.

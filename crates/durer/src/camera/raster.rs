@@ -36,7 +36,9 @@ impl Raster {
         let Some(sides) = proportions else { return plain };
         let scale = (plain.0 as f32 * plain.1 as f32 / (sides.x * sides.y)).sqrt();
         let scale = if scale >= 1.0 { scale.round() } else { scale };
-        let side = |length: f32| ((length * scale).round() as u32).max(1);
+        // The smaller side first: the larger one follows it as closely as pixels can.
+        let small = (sides.min_element() * scale).round().max(1.0);
+        let side = |length: f32| (small * (length / sides.min_element())).round() as u32;
         (side(sides.x), side(sides.y))
     }
 

@@ -30,6 +30,8 @@ impl Reader<'_, '_> {
         if !self.open(keyword) {
             return;
         }
+        // Of a thing that only our dialect has, the keyword is complained of, and not its fields as well.
+        let ours = thing.keywords().iter().all(|(_, set)| *set == Dialect::Durer as DialectSet);
         let fields = thing.fields();
         let mut given = vec![None; fields.len()];
         let mut last = 0;
@@ -52,7 +54,7 @@ impl Reader<'_, '_> {
                 continue;
             };
             let field = &fields[index];
-            if field.spelling(self.options.dialect) != Some(word.as_str()) {
+            if !ours && field.spelling(self.options.dialect) != Some(word.as_str()) {
                 let set = field.spellings.iter().find(|(w, _)| *w == word).map_or(0, |s| s.1);
                 self.foreign(&word, span, set);
             }
@@ -75,7 +77,7 @@ impl Reader<'_, '_> {
         if self.errors() > errors {
             return;
         }
-        let dialect = self.options.dialect;
+        let dialect = if ours { Dialect::Durer } else { self.options.dialect };
         for (field, _) in fields.iter().zip(&given).filter(|(f, g)| f.required && g.is_none()) {
             // A field without a word here has a fixed value: the centre of a sphere in a node, say.
             let Some(word) = field.spelling(dialect) else { continue };

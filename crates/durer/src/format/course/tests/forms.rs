@@ -14,7 +14,7 @@ fn sample(kind: Kind, rule: Rule) -> (String, Value) {
     let (text, value) = match kind {
         Kind::Word(words) => (words[words.len() - 1], Value::Word(words[words.len() - 1].into())),
         Kind::Rows(width) => {
-            let count = if let Rule::Count(least, _) = rule { least } else { 1 };
+            let count = if let Rule::Rows(least, _) = rule { least } else { 1 };
             let rows: Vec<Vec<f32>> = (0..count).map(|i| (0..width).map(|j| (3 * i + j) as f32).collect()).collect();
             let numbers: Vec<String> = rows.iter().flatten().map(f32::to_string).collect();
             return (format!("{{ {} }}", numbers.join(" ")), Value::Rows(rows));
