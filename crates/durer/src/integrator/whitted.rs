@@ -77,7 +77,7 @@ impl Whitted<'_> {
         let from_behind = self.sees_back(ray.dir, &surface);
         let black = from_behind && !self.settings.shade_back && self.world.rules.has(Compat::BlackBacks);
         let n = if from_behind && self.settings.shade_back { -surface.n_shade } else { surface.n_shade };
-        let material = self.world.objects[hit.object as usize].material;
+        let material = self.world.material(hit);
         let mut color = Color::ZERO;
         if !black {
             self.world.mix(material, surface.position, 1.0, &mut |phong, share| {
@@ -141,7 +141,7 @@ impl Whitted<'_> {
             let Some(hit) = self.world.closest(&ray, tally) else { return share };
             let blocker = self.world.surface(&ray, &hit);
             let mut transparent = Color::ZERO;
-            let material = self.world.objects[hit.object as usize].material;
+            let material = self.world.material(&hit);
             self.world.mix(material, blocker.position, 1.0, &mut |phong, part| transparent += part * phong.transparent);
             share *= transparent;
             if share == Color::ZERO {

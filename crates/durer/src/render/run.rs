@@ -173,7 +173,7 @@ impl<'a> Renderer<'a> {
             for x in window.left..window.left + window.width {
                 let ray = camera_ray(world, raster, center(x, y));
                 let Some(hit) = world.closest(&ray, &mut ()) else { continue };
-                let material = world.objects[hit.object as usize].material;
+                let material = world.material(&hit);
                 let Material::Phong(phong) = &world.materials[material as usize] else { continue };
                 let texel = self.whitted.diffuse_color(phong, &world.surface(&ray, &hit));
                 let before = last[material as usize].replace(texel).unwrap_or(phong.diffuse);
@@ -316,7 +316,7 @@ impl<'a> Renderer<'a> {
             if cost_wanted {
                 self.whitted.radiance(&ray, &mut counts);
             }
-            let material = hit.map_or(0, |(hit, _)| world.objects[hit.object as usize].material);
+            let material = hit.map_or(0, |(hit, _)| world.material(&hit));
             Some(Seen { hit, material, counts })
         })?;
         let seen: Vec<Seen> = seen.into_iter().flatten().collect();

@@ -5,11 +5,12 @@ use super::reader::Reader;
 use crate::camera::Camera;
 use crate::describe::DescribedList;
 use crate::diag::{Diagnostic, Span, did_you_mean};
+use crate::dialect::{Dialect, set};
 use crate::format::report::shown;
 use crate::light::Light;
 use crate::math::Vec3;
-use crate::scene::{Group, MatrixOp, Node, Object, Spanned};
-use crate::shape::{Primitive, TriangleMesh};
+use crate::scene::{Group, MatrixOp, Node, Object, Operation, Spanned};
+use crate::shape::{HeightField, Primitive, TriangleMesh};
 use glam::DVec3;
 
 impl Reader<'_, '_> {
@@ -91,7 +92,14 @@ impl Reader<'_, '_> {
                     let node = self.component_object(span);
                     inside.objects.extend(node.map(|node| Object { node, material: None, span }));
                 }
-                _ => self.unknown(&word, span, "in a node", &KNOWN),
+                _ => match Operation::from_keyword(&word) {
+                    Some(operation) => {
+                        self.foreign(&word, span, set::DURER);
+                        let node = Node::Solid(operation, self.node_parts(span));
+                        inside.objects.push(Object { node, material: None, span });
+                    }
+                    None => self.unknown(&word, span, "in a node", &KNOWN),
+                },
             }
         }
         self.depth -= 1;
@@ -99,6 +107,21 @@ impl Reader<'_, '_> {
             inside.objects.iter_mut().for_each(|object| paint(object, material));
         }
         inside
+    }
+
+    /// The parts of a solid, each a node. Lights have no place there.
+    fn node_parts(&mut self, keyword: Span) -> Vec<Object> {
+        let mut parts = Vec::new();
+        if !self.open(keyword) {
+            return parts;
+        }
+        while let Some((word, span)) = self.word_before_close() {
+            match word.as_str() {
+                "Node" => parts.extend(self.node(span).object(span)),
+                _ => self.unknown(&word, span, "in a solid", &["Node"]),
+            }
+        }
+        parts
     }
 
     fn node_matrices(&mut self, keyword: Span) -> Vec<MatrixOp> {
@@ -201,7 +224,17 @@ impl Reader<'_, '_> {
     }
 
     fn component_object(&mut self, keyword: Span) -> Option<Node> {
-        let kind = self.component_type(keyword, &["sphere", "plane", "triangle", "mesh"])?;
+        // What nodes have no word for is written as in our own dialect.
+        let own = Primitive::kinds().into_iter().map(|shape| shape.keyword(Dialect::F23));
+        let own = own.filter(|word| word.starts_with(char::is_uppercase));
+        let known: Vec<&str> =
+            ["sphere", "plane", "triangle", "mesh"].into_iter().chain(own).chain(["HeightField"]).collect();
+        let kind = self.component_type(keyword, &known)?;
+        if kind == "HeightField" {
+            let mut field = HeightField::default();
+            self.component_fields(&mut field, keyword);
+            return Some(Node::HeightField(field));
+        }
         if kind == "mesh" {
             let mut mesh = TriangleMesh::default();
             self.component_fields(&mut mesh, keyword);
@@ -264,6 +297,7 @@ fn paint(object: &mut Object, material: u32) {
     match &mut object.node {
         Node::Group(group) => group.objects.iter_mut().for_each(|object| paint(object, material)),
         Node::Transform(_, inner) => paint(inner, material),
-        Node::Primitive(_) | Node::Mesh(_) => {}
+        Node::Solid(_, parts) => parts.iter_mut().for_each(|part| paint(part, material)),
+        Node::Primitive(_) | Node::Mesh(_) | Node::HeightField(_) => {}
     }
 }
