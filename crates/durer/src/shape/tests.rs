@@ -20,7 +20,8 @@ fn samples(random: &mut Random, size: f32, distance: f32) -> Vec<Primitive> {
     let half = 0.5 * Vec3::new(length(0.2), length(0.2), length(0.2));
     let radii = Vec3::new(length(0.3), length(0.3), length(0.3));
     let height = length(0.3) * random.direction();
-    let (e, f) = (length_along(random, size), length_along(random, size));
+    let mut edge = || size * random.between(0.6, 1.0) * random.direction();
+    let (e, f) = (edge(), edge());
     // A third of the cones have a tip, at either end.
     let [base_radius, top_radius] = [[r0, r1], [r0, 0.0], [0.0, r0]][random.below(3)];
     let shapes: Vec<Primitive> = vec![
@@ -38,10 +39,6 @@ fn samples(random: &mut Random, size: f32, distance: f32) -> Vec<Primitive> {
     ];
     assert_eq!(shapes.len(), Primitive::kinds().len(), "a shape of the list is not tested");
     shapes
-}
-
-fn length_along(random: &mut Random, size: f32) -> Vec3 {
-    size * random.between(0.3, 1.0) * random.direction()
 }
 
 /// An ellipsoid, hyperboloid, cone, cylinder or paraboloid.
@@ -128,6 +125,11 @@ fn faces(shape: &Primitive, p: DVec3) -> Vec<f64> {
 /// How far a point is from the surface, or from its continuation, counted along the normal.
 fn distance(shape: &Primitive, p: DVec3) -> f64 {
     faces(shape, p).into_iter().fold(f64::NEG_INFINITY, f64::max)
+}
+
+/// Whether a point of a quadric is so far from the origin that its terms leave only rounding.
+fn too_far(shape: &Primitive, p: DVec3, reach: f64) -> bool {
+    matches!(shape, Primitive::Quadric(_)) && p.length() > 20.0 * reach
 }
 
 /// Whether another face is as near to a point as this.
@@ -260,6 +262,9 @@ fn the_surface_is_on_the_shape_within_its_error_and_in_its_bounds() {
             let surface = shape.surface(ray.line().at(crossing.t.into()), &crossing);
             let p = surface.position.as_dvec3();
             let n = surface.n_geo.as_dvec3();
+            if too_far(&shape, p, f64::from(size + away)) {
+                continue;
+            }
             let bound = n.abs().dot(surface.error.as_dvec3());
             let sag = 0.5 * f64::from(surface.curvature) * surface.error.as_dvec3().length_squared();
             let off = distance(&shape, p);

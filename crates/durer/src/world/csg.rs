@@ -408,3 +408,6 @@ fn slack_of(object: &Object) -> f32 {
     let moved = object.to_world.as_ref().map_or(Vec3::ZERO, |to_world| to_world.spread(reach(local)));
     2.0 * f32::EPSILON * (reach(world).max_element() + moved.max_element())
 }
+
+#[cfg(test)]
+mod tests;

@@ -179,8 +179,8 @@ impl Reader<'_, '_> {
         index
     }
 
-    /// The `type` of a component, whose `{` is left to be read by its fields.
-    fn component_type(&mut self, keyword: Span, known: &[&str]) -> Option<String> {
+    /// The `type` of a component, whose `{` is left to be read by its fields: one of the known ones, or of ours.
+    fn component_type(&mut self, keyword: Span, known: &[&str], ours: &[&str]) -> Option<String> {
         // The word after `{ type` is known before any field is read: type comes first in every file.
         let name = self.text(keyword);
         let at = |reader: &Self, i: usize| reader.ahead(i).map(|t| (reader.text(t.span), t.span));
@@ -195,7 +195,7 @@ impl Reader<'_, '_> {
             return None;
         };
         let (kind, span) = at(self, 1 + usize::from(self.at_open())).unwrap_or((String::new(), first_span));
-        if known.contains(&kind.as_str()) {
+        if known.contains(&kind.as_str()) || ours.contains(&kind.as_str()) {
             return Some(kind);
         }
         let error = Diagnostic::error(format!("`{name}` has no type {}", shown(kind.as_bytes()))).at(span);
@@ -213,7 +213,7 @@ impl Reader<'_, '_> {
 
     /// A light, placed as if its node were the whole scene, and its place there in full precision.
     fn component_light(&mut self, keyword: Span) -> Option<(Spanned<Light>, DVec3)> {
-        let kind = self.component_type(keyword, &["point", "directional"])?;
+        let kind = self.component_type(keyword, &["point", "directional"], &[])?;
         let mut light = Light::from_keyword(&kind)?;
         if let Light::Point(point) = &mut light {
             point.position = Vec3::ZERO;
@@ -226,10 +226,8 @@ impl Reader<'_, '_> {
     fn component_object(&mut self, keyword: Span) -> Option<Node> {
         // What nodes have no word for is written as in our own dialect.
         let own = Primitive::kinds().into_iter().map(|shape| shape.keyword(Dialect::F23));
-        let own = own.filter(|word| word.starts_with(char::is_uppercase));
-        let known: Vec<&str> =
-            ["sphere", "plane", "triangle", "mesh"].into_iter().chain(own).chain(["HeightField"]).collect();
-        let kind = self.component_type(keyword, &known)?;
+        let own: Vec<&str> = own.filter(|word| word.starts_with(char::is_uppercase)).chain(["HeightField"]).collect();
+        let kind = self.component_type(keyword, &["sphere", "plane", "triangle", "mesh"], &own)?;
         if kind == "HeightField" {
             let mut field = HeightField::default();
             self.component_fields(&mut field, keyword);

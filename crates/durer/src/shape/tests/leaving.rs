@@ -109,7 +109,8 @@ fn a_mirrored_and_a_sheared_normal_is_that_of_the_moved_surface() {
             let inverse = affine.inverse();
             let field = |p: DVec3| distance(&shape, inverse.transform_point3(p));
             let p = surface.position.as_dvec3();
-            if near_edge(&shape, inverse.transform_point3(p), 1e-3) {
+            let local = inverse.transform_point3(p);
+            if near_edge(&shape, local, 1e-3) || too_far(&shape, local, 1.0) {
                 continue;
             }
             let bound = surface.n_geo.abs().dot(surface.error);
