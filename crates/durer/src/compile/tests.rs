@@ -63,7 +63,10 @@ fn solids_are_made_of_closed_parts() {
         }
     }
     for name in ["Union", "Merge", "Intersection", "Difference", "Xor"] {
-        assert_eq!(errors(&format!("Group {{ {name} {{ }} }}"), AccelKind::Bvh), [format!("this `{name}` has no parts")]);
+        assert_eq!(
+            errors(&format!("Group {{ {name} {{ }} }}"), AccelKind::Bvh),
+            [format!("this `{name}` has no parts")]
+        );
         assert_eq!(errors(&format!("Group {{ {name} {{ {ball} }} }}"), AccelKind::Bvh), [""; 0]);
     }
     let empty = format!("Group {{ Merge {{ {ball} Group {{ }} }} }}");
@@ -86,8 +89,10 @@ fn open_meshes_are_no_parts_and_closed_ones_are() {
     // Every triangle has corners of its own, at the same places.
     write("loose.obj", format!("{corners}{corners}{}f 5 8 7\n", sides[..3].concat()));
     for (name, closed) in [("closed", true), ("open", false), ("loose", true)] {
-        let text = format!("{CAMERA}Group {{ Difference {{ TriangleMesh {{ obj_file {name}.obj }} \
-            Sphere {{ center 0 0 0 radius 0.5 }} }} }}");
+        let text = format!(
+            "{CAMERA}Group {{ Difference {{ TriangleMesh {{ obj_file {name}.obj }} \
+            Sphere {{ center 0 0 0 radius 0.5 }} }} }}"
+        );
         let (world, findings) = try_read(&text, Dialect::Durer.rules(), AccelKind::Bvh, folder.path());
         assert_eq!(world.is_some(), closed, "{name} {findings:?}");
         let error = findings.iter().find(|d| d.severity == crate::diag::Severity::Error);
@@ -114,10 +119,7 @@ fn shapes_whose_numbers_do_not_fit_together_are_refused() {
             "Disc { center 0 0 0 normal 0 1 0 radius 1 innerRadius 1 }",
             "`innerRadius` of a `Disc` must be less than its `radius`",
         ),
-        (
-            "Rectangle { corner 0 0 0 edge0 1 2 3 edge1 2 4 6 }",
-            "the edges of a `Rectangle` must not be parallel",
-        ),
+        ("Rectangle { corner 0 0 0 edge0 1 2 3 edge1 2 4 6 }", "the edges of a `Rectangle` must not be parallel"),
     ] {
         assert_eq!(errors(&format!("Group {{ {shape} }}"), AccelKind::Bvh), [message]);
         let solid = format!("Group {{ Merge {{ {shape} }} }}");

@@ -110,11 +110,8 @@ fn faces(shape: &Primitive, p: DVec3) -> Vec<f64> {
             let [x, y, z] = p.to_array();
             let g = s.linear.as_dvec3();
             let value = a * x * x + b * y * y + c * z * z + d * x * y + e * x * z + f * y * z + g.dot(p);
-            let slope = DVec3::new(
-                2.0 * a * x + d * y + e * z,
-                2.0 * b * y + d * x + f * z,
-                2.0 * c * z + e * x + f * y,
-            );
+            let slope =
+                DVec3::new(2.0 * a * x + d * y + e * z, 2.0 * b * y + d * x + f * z, 2.0 * c * z + e * x + f * y);
             vec![(value + f64::from(s.constant)) / (slope + g).length()]
         }
         Primitive::Disc(s) => flat(s.normal.as_dvec3(), s.center),

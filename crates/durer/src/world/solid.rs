@@ -91,10 +91,13 @@ impl Solid {
     pub fn bounds(&self) -> Option<Aabb> {
         match self {
             Solid::Part(object) => object.bounds(),
-            Solid::Join { rule: Rule::All, parts, .. } => {
-                parts.iter().filter_map(Solid::bounds).reduce(|a, b| Aabb { min: a.min.max(b.min), max: a.max.min(b.max) })
+            Solid::Join { rule: Rule::All, parts, .. } => parts
+                .iter()
+                .filter_map(Solid::bounds)
+                .reduce(|a, b| Aabb { min: a.min.max(b.min), max: a.max.min(b.max) }),
+            Solid::Join { parts, .. } => {
+                parts.iter().try_fold(Aabb::EMPTY, |all, part| Some(all.union(part.bounds()?)))
             }
-            Solid::Join { parts, .. } => parts.iter().try_fold(Aabb::EMPTY, |all, part| Some(all.union(part.bounds()?))),
         }
     }
 

@@ -57,7 +57,8 @@ fn scene(random: &mut Random, size: f32) -> String {
                 words(random.point())
             ),
             10 => {
-                let mut ball = || format!("Sphere {{ center {} radius {:?} }}", words(size * random.point()), size * 0.2);
+                let mut ball =
+                    || format!("Sphere {{ center {} radius {:?} }}", words(size * random.point()), size * 0.2);
                 format!("Merge {{ {} }}", (0..30).map(|_| ball()).collect::<String>())
             }
             // A sheet in whole numbers, as floors are: its rays run in the faces of its box.

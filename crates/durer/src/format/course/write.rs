@@ -46,7 +46,9 @@ impl Writer {
             let Some(value) = thing.get(i) else { continue };
             let word = field.spelling(self.dialect);
             // What the dialect cannot say is left out where it says nothing.
-            if word.is_none() && plain.as_ref().and_then(|p| p.get(i)).is_some_and(|p| value_text(&p) == value_text(&value)) {
+            if word.is_none()
+                && plain.as_ref().and_then(|p| p.get(i)).is_some_and(|p| value_text(&p) == value_text(&value))
+            {
                 continue;
             }
             self.line(format!("{} {}", word.unwrap_or(field.spellings[0].0), value_text(&value)));
