@@ -60,6 +60,8 @@ pub enum Rule {
     Between(f32, f32),
     /// At most this whole number.
     AtMost(u32),
+    /// A vector of whole numbers from 1 to this.
+    Counts(u32),
 }
 
 impl Rule {
@@ -74,6 +76,11 @@ impl Rule {
             }
             (Rule::Between(low, high), Value::Float(x)) if *x <= low || *x >= high => {
                 Some(format!("must be more than {low} and less than {high}"))
+            }
+            (Rule::Counts(most), Value::Vec3(v))
+                if v.to_array().iter().any(|&n| n.fract() != 0.0 || n < 1.0 || n > most as f32) =>
+            {
+                Some(format!("must be whole numbers from 1 to {most}"))
             }
             (Rule::AtMost(most), Value::Int(i)) if *i > most => Some(format!("must be at most {most}")),
             _ => None,

@@ -296,6 +296,11 @@ impl Rules {
         self.compat & compat.bit() != 0
     }
 
+    /// Whether a picture is to be what an official program made: with its epsilon, its points are its ray's, rounding and all.
+    pub fn is_official(&self) -> bool {
+        self.epsilon.is_some()
+    }
+
     /// The meaning of the same words without the old program's bugs, and with good defaults.
     ///
     /// This is what a file gets whose dialect nobody asked for.

@@ -68,29 +68,72 @@ impl Frame {
     }
 }
 
+/// Where in the picture and in the lens a ray is wanted.
+///
+/// (-1, -1) is the lower left corner of the square that the camera covers, (1, 1) the upper right.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CameraSample {
+    /// The point of the picture.
+    pub point: Vec2,
+    /// The centre of the pixel that the sample is for. A filter may reach beyond the pixel, and beyond the part of the
+    /// picture (a face of a cube, a wall, an eye) that the pixel belongs to: what it finds there continues that part.
+    pub pixel: Vec2,
+    /// The point of the lens, in [0,1)^2; (0.5, 0.5) is its middle.
+    pub lens: Vec2,
+}
+
+impl CameraSample {
+    /// A point of the picture that is its own pixel's centre, through the middle of the lens.
+    pub fn at(point: Vec2) -> Self {
+        CameraSample { point, pixel: point, lens: Vec2::splat(0.5) }
+    }
+}
+
 /// What every camera can do.
 pub trait Lens {
     /// Where it stands.
     fn pose(&self) -> Pose;
 
-    /// The ray through a point of the picture; (-1, -1) is the lower left corner of the square that the
-    /// camera covers, (1, 1) the upper right. The direction has length 1, so that `t` is a distance.
-    fn ray(&self, frame: &Frame, point: Vec2) -> Ray;
+    /// The natural width and height of its picture, in any unit; `None` where any shape will do, and the larger side
+    /// spans the square. A natural picture lies in the middle of the square, which its larger side spans.
+    fn proportions(&self) -> Option<Vec2> {
+        None
+    }
+
+    /// Whether rays through one point of the picture differ by the point of the lens.
+    fn has_aperture(&self) -> bool {
+        false
+    }
+
+    /// The ray of a sample; `None` where the camera sees nothing. The direction has length 1, so that `t` is a distance.
+    fn ray(&self, frame: &Frame, sample: &CameraSample) -> Option<Ray>;
+}
+
+/// Calls a method of whichever camera it is.
+macro_rules! each_camera {
+    ($self:ident, $c:ident => $call:expr) => {
+        match $self {
+            Camera::Perspective($c) => $call,
+            Camera::Orthographic($c) => $call,
+        }
+    };
 }
 
 impl Lens for Camera {
     fn pose(&self) -> Pose {
-        match self {
-            Camera::Perspective(c) => c.pose(),
-            Camera::Orthographic(c) => c.pose(),
-        }
+        each_camera!(self, c => c.pose())
     }
 
-    fn ray(&self, frame: &Frame, point: Vec2) -> Ray {
-        match self {
-            Camera::Perspective(c) => c.ray(frame, point),
-            Camera::Orthographic(c) => c.ray(frame, point),
-        }
+    fn proportions(&self) -> Option<Vec2> {
+        each_camera!(self, c => c.proportions())
+    }
+
+    fn has_aperture(&self) -> bool {
+        each_camera!(self, c => c.has_aperture())
+    }
+
+    fn ray(&self, frame: &Frame, sample: &CameraSample) -> Option<Ray> {
+        each_camera!(self, c => c.ray(frame, sample))
     }
 }
 

@@ -2,11 +2,11 @@
 //!
 //! origin = center + x size/2 right + y size/2 up.
 
-use super::{Frame, Lens, Pose};
+use super::{CameraSample, Frame, Lens, Pose};
 use crate::describe::Rule;
 use crate::described;
 use crate::dialect::set;
-use crate::math::{Ray, Vec2, Vec3};
+use crate::math::{Ray, Vec3};
 
 described! {
     /// A camera that sees without perspective.
@@ -28,9 +28,10 @@ impl Lens for OrthographicCamera {
     }
 
     /// The ray runs both ways: things behind `center` are seen as well, at negative `t`.
-    fn ray(&self, frame: &Frame, point: Vec2) -> Ray {
+    fn ray(&self, frame: &Frame, sample: &CameraSample) -> Option<Ray> {
+        let point = sample.point;
         let half = 0.5 * self.size;
         let origin = frame.eye + point.x * half * frame.right + point.y * half * frame.up;
-        Ray { t_min: f32::NEG_INFINITY, ..Ray::new(origin, frame.forward) }
+        Some(Ray { t_min: f32::NEG_INFINITY, ..Ray::new(origin, frame.forward) })
     }
 }

@@ -2,11 +2,11 @@
 //!
 //! direction = D forward + x right + y up, with D = 1 / tan(angle / 2).
 
-use super::{Frame, Lens, Pose, unit_or};
+use super::{CameraSample, Frame, Lens, Pose, unit_or};
 use crate::describe::Rule;
 use crate::described;
 use crate::dialect::set;
-use crate::math::{Ray, Vec2, Vec3, fp};
+use crate::math::{Ray, Vec3, fp};
 
 described! {
     /// A camera that sees in perspective.
@@ -27,7 +27,8 @@ impl Lens for PerspectiveCamera {
         Pose { center: self.center, direction: self.direction, up: self.up }
     }
 
-    fn ray(&self, frame: &Frame, point: Vec2) -> Ray {
+    fn ray(&self, frame: &Frame, sample: &CameraSample) -> Option<Ray> {
+        let point = sample.point;
         let half = fp::tan_f64(f64::from(self.angle).to_radians() / 2.0) as f32;
         let dir = match frame.screen_point {
             false => frame.forward / half + point.x * frame.right + point.y * frame.up,
@@ -38,6 +39,6 @@ impl Lens for PerspectiveCamera {
                 (corner + along.x * across + along.y * upwards) - frame.eye
             }
         };
-        Ray::new(frame.eye, unit_or(dir, frame.forward))
+        Some(Ray::new(frame.eye, unit_or(dir, frame.forward)))
     }
 }

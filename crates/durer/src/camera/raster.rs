@@ -12,12 +12,22 @@ pub struct Raster {
     pub height: u32,
     border_pixels: bool,
     stretch: bool,
+    /// Half the sides of the camera's natural picture in the square.
+    natural: Option<Vec2>,
 }
 
 impl Raster {
     /// A picture of a size. Its larger side spans the square, unless a compatibility says otherwise.
-    pub fn new(width: u32, height: u32, rules: &Rules) -> Self {
-        Raster { width, height, border_pixels: rules.has(Compat::BorderPixels), stretch: rules.has(Compat::Stretch) }
+    ///
+    /// Where the camera's picture has proportions of its own, it fills this one as far as it can, undistorted and whole.
+    pub fn new(width: u32, height: u32, proportions: Option<Vec2>, rules: &Rules) -> Self {
+        Raster {
+            width,
+            height,
+            border_pixels: rules.has(Compat::BorderPixels),
+            stretch: rules.has(Compat::Stretch),
+            natural: proportions.map(|sides| sides / sides.max_element()),
+        }
     }
 
     /// The point of the square for a place in the picture, in pixels from its upper left corner.
@@ -28,7 +38,12 @@ impl Raster {
         let inset = if self.border_pixels { 1.0 } else { 0.0 };
         let size = Vec2::new(self.width as f32, self.height as f32) - inset;
         // A single pixel lies in the middle.
-        let span = if self.stretch { size } else { Vec2::splat(size.max_element()) }.max(Vec2::ONE);
+        let span = match self.natural {
+            Some(half) => Vec2::splat((size / half).min_element()),
+            None if self.stretch => size,
+            None => Vec2::splat(size.max_element()),
+        };
+        let span = span.max(Vec2::ONE);
         // From the lower left corner of the square, in parts of its side.
         let from_corner = Vec2::new(place.x, self.height as f32 - place.y) - 0.5 * inset + 0.5 * (span - size);
         2.0 * (from_corner / span) - 1.0

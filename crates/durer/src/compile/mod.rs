@@ -9,16 +9,17 @@ pub(crate) mod testing;
 use crate::bvh::{Bvh, Grid};
 use crate::camera::{Frame, Lens};
 use crate::diag::{Diagnostic, Diagnostics, Files, Span};
-use crate::dialect::{Compat, Rules};
+use crate::dialect::{Compat, MeshNormals, Rules};
 use crate::light::{Emitter, Light};
 use crate::math::{Aabb, Affine, Color, Vec3};
 use crate::scene::{self, Group, MatrixOp, Node, Scene};
 use crate::shape::mesh::loosened;
-use crate::shape::{Primitive, Shape, Triangle};
+use crate::shape::{Mesh, Primitive, Shape, Triangle};
 use crate::source::Source;
-use crate::world::{Accel, Geometry, Object, Phong, World};
+use crate::world::{Accel, Geometry, MeshTree, Object, Phong, World};
 use glam::DAffine3;
 use std::collections::HashMap;
+use std::sync::Arc;
 
 /// Which structure finds the objects that a ray may meet.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -253,6 +254,15 @@ impl Flattening<'_, '_> {
             Node::Primitive(shape) => Geometry::Primitive(shape.clone()),
             Node::Mesh(mesh) => Geometry::Mesh(self.loader.mesh(&mesh.obj_file, self.diagnostics)?),
             Node::HeightField(field) => Geometry::Mesh(self.loader.height_field(field, self.diagnostics)?),
+            Node::Voxels(grid, balls) => {
+                if (grid.max - grid.min).min_element() <= 0.0 {
+                    let message = "each coordinate of this grid's `max` must be greater than that of its `min`";
+                    self.diagnostics.push(Diagnostic::error(message).at(object.span));
+                    return None;
+                }
+                let mesh = Mesh::new(grid.mesh(balls), MeshNormals::Flat, false);
+                Geometry::Mesh(Arc::new(MeshTree::new(mesh)))
+            }
             Node::Group(_) | Node::Transform(..) | Node::Solid(..) => return None,
         };
         let to_world = match to_world == DAffine3::IDENTITY {

@@ -85,7 +85,7 @@ impl Flattening<'_, '_> {
                 self.check_shape(shape, part.span);
                 self.shape(part, to_world).map(|object| Solid::Part(Arc::new(object)))
             }
-            Node::Mesh(_) | Node::HeightField(_) => {
+            Node::Mesh(_) | Node::HeightField(_) | Node::Voxels(..) => {
                 let object = self.shape(part, to_world)?;
                 if let Node::Mesh(mesh) = &part.node {
                     self.check_mesh(&object, &mesh.obj_file.path, part.span);

@@ -160,6 +160,22 @@ fn height_fields_are_closed_landscapes() {
 }
 
 #[test]
+fn a_grid_of_cells_needs_a_volume() {
+    let grid = |max: &str| {
+        errors(
+            &format!(
+                "Group {{ Grid {{ min 0 0 0 max {max} numCells 2 2 2 rasterizeSphere {{ center 0 0 0 radius 1 }} }} }}"
+            ),
+            AccelKind::Bvh,
+        )
+    };
+    assert_eq!(grid("1 1 1"), [""; 0]);
+    for max in ["1 0 1", "1 1 -1"] {
+        assert_eq!(grid(max), ["each coordinate of this grid's `max` must be greater than that of its `min`"]);
+    }
+}
+
+#[test]
 fn grids_that_cannot_be_made_are_refused() {
     let balls = "Sphere { center 0 0 0 radius 1 } ".repeat(1000);
     assert_eq!(errors(&format!("Group {{ {balls} }}"), AccelKind::Grid(Some([0, 1, 1]))).len(), 1);

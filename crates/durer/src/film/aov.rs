@@ -13,6 +13,8 @@ use crate::world::Hit;
 /// What the ray through a pixel's centre found.
 #[derive(Clone, Copy, Debug)]
 pub struct Seen {
+    /// Whether the camera sees anything through this pixel.
+    pub covered: bool,
     /// The hit and its surface, if there was one.
     pub hit: Option<(Hit, Surface)>,
     /// Number of the material hit.

@@ -21,13 +21,15 @@ pub struct Film {
     first_rejected: Vec<Rejected>,
 }
 
-/// Sums of one pixel: 64 bytes.
+/// Sums of one pixel: 80 bytes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 struct Pixel {
     /// Weighted colour, in units of 2^-48.
     color: [i128; 3],
     /// Weight, in units of 2^-24.
     weight: i64,
+    /// The part of that weight whose samples saw something, in the same units.
+    covered: i64,
     samples: u64,
 }
 
@@ -74,10 +76,15 @@ impl Film {
 
     /// Adds a sample of some weight (up to 2^10 in size) to a pixel. Panics outside the window.
     pub fn add(&mut self, x: u32, y: u32, sample: u32, color: Color, weight: f32) {
+        self.add_if_seen(x, y, sample, Some(color), weight);
+    }
+
+    /// The same for a sample at which the camera may see nothing: it leaves the pixel transparent by its weight.
+    pub fn add_if_seen(&mut self, x: u32, y: u32, sample: u32, color: Option<Color>, weight: f32) {
         let index = self.index(x, y).expect("the pixel lies in the film's window");
         let weight = f64::from(weight) * WEIGHT_SCALE;
         // At most 24 significant bits are left of the weight, so each product below is exact before its rounding.
-        let (whole, rgb) = (weight.round_ties_even(), color.to_array().map(f64::from));
+        let (whole, rgb) = (weight.round_ties_even(), color.unwrap_or(Vec3::ZERO).to_array().map(f64::from));
         if !(whole.abs() <= GREATEST_WEIGHT * WEIGHT_SCALE && rgb.iter().all(|c| c.abs() <= GREATEST_COLOR)) {
             return self.reject(Rejected { y, x, sample });
         }
@@ -86,6 +93,7 @@ impl Film {
             *sum += (c * (whole / WEIGHT_SCALE) * COLOR_SCALE).round_ties_even() as i128;
         }
         pixel.weight += whole as i64;
+        pixel.covered += if color.is_some() { whole as i64 } else { 0 };
         pixel.samples += 1;
     }
 
@@ -114,6 +122,7 @@ impl Film {
             for (to, from) in self.pixels[start..].iter_mut().zip(source) {
                 to.color.iter_mut().zip(from.color).for_each(|(sum, c)| *sum += c);
                 to.weight += from.weight;
+                to.covered += from.covered;
                 to.samples += from.samples;
             }
         }
@@ -123,7 +132,8 @@ impl Film {
         Ok(())
     }
 
-    /// Weighted mean of a pixel's samples; black where the weights sum to nothing. Panics outside the window.
+    /// Weighted mean of a pixel's samples, those that saw nothing taken for black; black where the weights sum to nothing.
+    /// Panics outside the window.
     pub fn resolve(&self, x: u32, y: u32) -> Color {
         let pixel = self.pixel(x, y);
         if pixel.weight == 0 {
@@ -132,6 +142,17 @@ impl Film {
         // Each sum is rounded to double precision, then divided: two roundings, and one to single.
         let weight = pixel.weight as f64 / WEIGHT_SCALE;
         Vec3::from(pixel.color.map(|sum| (sum as f64 / COLOR_SCALE / weight) as f32))
+    }
+
+    /// The share of a pixel's samples that saw something, by weight, from 0 to 1. Panics outside the window.
+    pub fn coverage(&self, x: u32, y: u32) -> f32 {
+        let pixel = self.pixel(x, y);
+        // Also where the weights sum to nothing: there all is seen that was looked for.
+        if pixel.covered == pixel.weight {
+            return 1.0;
+        }
+        // Filters with negative weights may leave the range; where the weights sum to 0 the quotient is infinite.
+        (pixel.covered as f64 / pixel.weight as f64).clamp(0.0, 1.0) as f32
     }
 
     /// How many samples a pixel holds, without those left out. Panics outside the window.

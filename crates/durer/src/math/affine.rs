@@ -38,6 +38,11 @@ impl Affine {
         self.forward.transform_point3(p.as_dvec3()).as_vec3()
     }
 
+    /// Maps a vector forward: moving changes nothing.
+    pub fn vector(&self, v: Vec3) -> Vec3 {
+        self.forward.transform_vector3(v.as_dvec3()).as_vec3()
+    }
+
     /// Maps a unit normal forward, by the inverse transpose; of unit length again.
     pub fn normal(&self, n: Vec3) -> Vec3 {
         let image = self.inverse.matrix3.transpose() * n.as_dvec3();

@@ -6,4 +6,4 @@ mod run;
 
 pub use grid::grid_picture;
 pub use job::{Control, Crop, Job, Sampling};
-pub use run::{RenderError, Rendered, camera_ray, render, sample_diagram};
+pub use run::{RenderError, Rendered, camera_ray, center_ray, raster, render, sample_diagram};

@@ -2,7 +2,7 @@
 
 use super::job::{Control, Crop, Job, Sampling};
 use crate::bvh::{Counts, Rays};
-use crate::camera::{Lens, Raster};
+use crate::camera::{CameraSample, Lens, Raster};
 use crate::dialect::Compat;
 use crate::film::aov::{Display, Seen, fill_from_last_hit};
 use crate::film::course::{StoredSample, StoredSamples, average_3x3, blur, jittered_position};
@@ -13,7 +13,7 @@ use crate::math::{Aabb, Color, Ray, Vec2, Vec3};
 use crate::sampler::Sampler;
 use crate::world::{Material, World};
 use rayon::prelude::*;
-use std::sync::atomic::Ordering::Relaxed;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 /// Pixels across and down a tile.
 const TILE: u32 = 16;
@@ -79,9 +79,21 @@ pub(super) fn in_threads<T: Send>(control: &Control, work: impl FnOnce() -> T + 
     Ok(threads.build()?.install(work))
 }
 
-/// The ray of a camera through a place in the picture, in pixels from the upper left corner.
-pub fn camera_ray(world: &World, raster: &Raster, place: Vec2) -> Ray {
-    world.camera.ray(&world.frame, raster.point(place))
+/// The picture's pixels on the square that a world's camera covers.
+pub fn raster(world: &World, width: u32, height: u32) -> Raster {
+    Raster::new(width, height, world.camera.proportions(), &world.rules)
+}
+
+/// The ray of a camera for a pixel, through a place in the picture in pixels from the upper left corner, and through a
+/// point of the lens in [0,1)^2; `None` where the camera sees nothing.
+pub fn camera_ray(world: &World, raster: &Raster, pixel: (u32, u32), place: Vec2, lens: Vec2) -> Option<Ray> {
+    let pixel = raster.point(center(pixel.0, pixel.1));
+    world.camera.ray(&world.frame, &CameraSample { point: raster.point(place), pixel, lens })
+}
+
+/// The ray through a pixel's centre and the middle of the lens.
+pub fn center_ray(world: &World, raster: &Raster, (x, y): (u32, u32)) -> Option<Ray> {
+    world.camera.ray(&world.frame, &CameraSample::at(raster.point(center(x, y))))
 }
 
 /// Where the samples of a 2004 job lie, with their colours: for its diagram.
@@ -91,7 +103,16 @@ pub fn sample_diagram(world: &World, job: &Job, control: &Control) -> Result<Sto
         Sampling::Filtered { samples, .. } => (Sampler::Sobol, samples),
         Sampling::Center | Sampling::Course2012 { .. } => (Sampler::Uniform, 1),
     };
-    in_threads(control, || Renderer::new(world, job, control).stored(sampler, samples))?
+    in_threads(control, || Renderer::new(world, job, control).stored(&Pass::default(), sampler, samples))?
+}
+
+/// What the course's ways of sampling are made to show. They know colours only: where the camera sees nothing somewhere,
+/// a second pass shows white where it does.
+#[derive(Default)]
+struct Pass {
+    mask: bool,
+    /// Whether the camera saw nothing at some sample.
+    blind: AtomicBool,
 }
 
 struct Renderer<'a> {
@@ -111,9 +132,9 @@ impl<'a> Renderer<'a> {
         let mut rendered =
             Rendered { layers: Vec::new(), pictures: Vec::new(), rejected: 0, first_rejected: Vec::new() };
         if self.job.color {
-            let image = self.color(&mut rendered)?;
-            rendered.layers.push(Layer::color("color", image.clone()));
-            rendered.pictures.push(Layer::color("color", image));
+            let layer = self.color(&mut rendered)?;
+            rendered.layers.push(layer.clone());
+            rendered.pictures.push(layer);
         }
         if !self.job.aovs.is_empty() {
             self.aovs(&mut rendered)?;
@@ -121,16 +142,25 @@ impl<'a> Renderer<'a> {
         Ok(rendered)
     }
 
-    fn color(&self, rendered: &mut Rendered) -> Result<Image, RenderError> {
+    fn color(&self, rendered: &mut Rendered) -> Result<Layer, RenderError> {
         let (job, window) = (self.job, self.job.window());
-        let raster = Raster::new(job.width, job.height, &self.world.rules);
+        let raster = raster(self.world, job.width, job.height);
+        let layer = |seen: Vec<(Color, f32)>| {
+            let (pixels, coverage) = seen.into_iter().unzip();
+            let image = Image::from_pixels(window.width, window.height, pixels)?;
+            Ok(Layer::color("color", image).with_coverage(coverage))
+        };
         match job.sampling {
             Sampling::Center => {
-                let mut pixels = self.pixels(|x, y, rays| self.radiance(&raster, center(x, y), rays))?;
+                let color = |pixel, rays: &mut Rays| match center_ray(self.world, &raster, pixel) {
+                    Some(ray) => (self.whitted.radiance(&ray, rays), 1.0),
+                    None => (Vec3::ZERO, 0.0),
+                };
+                let mut pixels = self.pixels(|x, y, rays| color((x, y), rays))?;
                 if self.world.rules.has(Compat::StaleTexels) {
                     self.stale_texels(&raster, &mut pixels)?;
                 }
-                Ok(Image::from_pixels(window.width, window.height, pixels)?)
+                layer(pixels)
             }
             Sampling::Filtered { samples, filter } => {
                 let warp = filter.sampler();
@@ -141,57 +171,79 @@ impl<'a> Renderer<'a> {
                             self.check()?;
                             let position = Sampler::Sobol.pixel_position(job.seed, x, y, sample, samples);
                             let (offset, weight) = warp.sample(position);
-                            let color = self.radiance(&raster, center(x, y) + offset, rays);
-                            film.add(x, y, sample, color, weight);
+                            let lens = self.lens(Sampler::Sobol, x, y, sample);
+                            let ray = camera_ray(self.world, &raster, (x, y), center(x, y) + offset, lens);
+                            let color = ray.map(|ray| self.whitted.radiance(&ray, rays));
+                            film.add_if_seen(x, y, sample, color, weight);
                         }
                     }
                     // No sample counts for another tile, so the tile is finished, and its sums need no memory any more.
-                    let pixels = places(tile).map(|(x, y)| film.resolve(x, y)).collect();
+                    let pixels = places(tile).map(|(x, y)| (film.resolve(x, y), film.coverage(x, y))).collect();
                     Ok(Tile { pixels, rejected: film.rejected(), first_rejected: film.first_rejected().to_vec() })
                 })?;
                 rendered.rejected = tiles.iter().map(|(_, tile)| tile.rejected).sum();
                 rendered.first_rejected = tiles.iter().flat_map(|(_, tile)| &tile.first_rejected).copied().collect();
                 rendered.first_rejected.sort();
                 rendered.first_rejected.truncate(16);
-                let pixels = self.assemble(tiles.into_iter().map(|(part, tile)| (part, tile.pixels)));
-                Ok(Image::from_pixels(window.width, window.height, pixels)?)
+                layer(self.assemble(tiles.into_iter().map(|(part, tile)| (part, tile.pixels))))
             }
-            Sampling::Course2004 { sampler, samples, filter } => {
-                let pixels = self.stored(sampler, samples)?.try_reconstruct(filter, || self.check())?;
+            Sampling::Course2004 { sampler, samples, filter } => self.course(|pass| {
+                let pixels = self.stored(pass, sampler, samples)?.try_reconstruct(filter, || self.check())?;
                 self.cropped(job.width, job.height, pixels)
-            }
-            Sampling::Course2012 { jitter, blur } => self.course_2012(jitter, blur),
+            }),
+            Sampling::Course2012 { jitter, blur } => self.course(|pass| self.course_2012(pass, jitter, blur)),
+        }
+    }
+
+    /// A picture of the course's films, and where the camera is blind somewhere, a second one of what it sees.
+    fn course(&self, picture: impl Fn(&Pass) -> Result<Image, RenderError>) -> Result<Layer, RenderError> {
+        let pass = Pass::default();
+        let layer = Layer::color("color", picture(&pass)?);
+        if !pass.blind.into_inner() {
+            return Ok(layer);
+        }
+        let mask = picture(&Pass { mask: true, ..Pass::default() })?;
+        Ok(layer.with_coverage(mask.pixels.iter().map(|share| share.x.clamp(0.0, 1.0)).collect()))
+    }
+
+    /// Where in the lens a sample lies. A lens without extent needs no numbers.
+    fn lens(&self, sampler: Sampler, x: u32, y: u32, sample: u32) -> Vec2 {
+        match self.world.camera.has_aperture() {
+            true => sampler.lens_position(self.job.seed, x, y, sample),
+            false => Vec2::splat(0.5),
         }
     }
 
     /// Replaces the ambient light on textures by that of the pixel shaded before with the same material.
-    fn stale_texels(&self, raster: &Raster, pixels: &mut [Color]) -> Result<(), RenderError> {
+    fn stale_texels(&self, raster: &Raster, pixels: &mut [(Color, f32)]) -> Result<(), RenderError> {
         let (world, window) = (self.world, self.job.window());
         let mut last: Vec<Option<Color>> = vec![None; world.materials.len()];
         for y in (window.top..window.top + window.height).rev() {
             self.check()?;
             for x in window.left..window.left + window.width {
-                let ray = camera_ray(world, raster, center(x, y));
+                let Some(ray) = center_ray(world, raster, (x, y)) else { continue };
                 let Some(hit) = world.closest(&ray, &mut ()) else { continue };
                 let material = world.material(&hit);
                 let Material::Phong(phong) = &world.materials[material as usize] else { continue };
                 let texel = self.whitted.diffuse_color(phong, &world.surface(&ray, &hit));
                 let before = last[material as usize].replace(texel).unwrap_or(phong.diffuse);
                 let pixel = (y - window.top) * window.width + (x - window.left);
-                pixels[pixel as usize] += world.ambient * (before - texel);
+                pixels[pixel as usize].0 += world.ambient * (before - texel);
             }
         }
         Ok(())
     }
 
     /// `-jitter` and `-filter` of 2012. Blur without jitter works on the picture as it is.
-    fn course_2012(&self, jitter: bool, blurred: bool) -> Result<Image, RenderError> {
+    fn course_2012(&self, pass: &Pass, jitter: bool, blurred: bool) -> Result<Image, RenderError> {
         let (job, scale) = (self.job, if jitter { 3 } else { 1 });
         let (width, height) = (job.width * scale, job.height * scale);
-        let raster = Raster::new(width, height, &self.world.rules);
+        let raster = raster(self.world, width, height);
         let sample = |x: u32, y: u32, _: u32| {
             let place = if jitter { jittered_position(job.seed, x, y) } else { Vec2::new(x as f32, y as f32) };
-            Ok(StoredSample { position: place, color: self.kept(&raster, place + 0.5, true)? })
+            let lens = self.lens(Sampler::Random, x, y, 0);
+            let ray = camera_ray(self.world, &raster, (x, y), place + 0.5, lens);
+            Ok(StoredSample { position: place, color: self.kept(pass, ray, true)? })
         };
         let mut pixels = self.keep(width, height, 1, sample)?.try_reconstruct(None, || self.check())?;
         if blurred {
@@ -204,13 +256,14 @@ impl<'a> Renderer<'a> {
         self.cropped(job.width, job.height, pixels)
     }
 
-    fn stored(&self, sampler: Sampler, samples: u32) -> Result<StoredSamples, RenderError> {
+    fn stored(&self, pass: &Pass, sampler: Sampler, samples: u32) -> Result<StoredSamples, RenderError> {
         let (job, samples) = (self.job, sampler.round_up(samples));
-        let raster = Raster::new(job.width, job.height, &self.world.rules);
+        let raster = raster(self.world, job.width, job.height);
         self.keep(job.width, job.height, samples, |x, y, sample| {
             let position = sampler.pixel_position(job.seed, x, y, sample, samples);
-            let color = self.kept(&raster, Vec2::new(x as f32, y as f32) + position, sample + 1 == samples)?;
-            Ok(StoredSample { position, color })
+            let (place, lens) = (Vec2::new(x as f32, y as f32) + position, self.lens(sampler, x, y, sample));
+            let ray = camera_ray(self.world, &raster, (x, y), place, lens);
+            Ok(StoredSample { position, color: self.kept(pass, ray, sample + 1 == samples)? })
         })
     }
 
@@ -230,17 +283,19 @@ impl<'a> Renderer<'a> {
     }
 
     /// The colour of a sample that is kept; the last one of a pixel counts it as done.
-    fn kept(&self, raster: &Raster, place: Vec2, last: bool) -> Result<Color, RenderError> {
+    fn kept(&self, pass: &Pass, ray: Option<Ray>, last: bool) -> Result<Color, RenderError> {
         self.check()?;
+        if pass.mask {
+            return Ok(if ray.is_some() { Vec3::ONE } else { Vec3::ZERO });
+        }
         let mut rays = Rays::default();
-        let color = self.radiance(raster, place, &mut rays);
+        let color = ray.map(|ray| self.whitted.radiance(&ray, &mut rays));
+        if color.is_none() {
+            pass.blind.store(true, Relaxed);
+        }
         self.control.done.fetch_add(u64::from(last), Relaxed);
         self.control.rays.fetch_add(rays.0, Relaxed);
-        Ok(color)
-    }
-
-    fn radiance(&self, raster: &Raster, place: Vec2, rays: &mut Rays) -> Color {
-        self.whitted.radiance(&camera_ray(self.world, raster, place), rays)
+        Ok(color.unwrap_or(Vec3::ZERO))
     }
 
     fn check(&self) -> Result<(), RenderError> {
@@ -307,17 +362,19 @@ impl<'a> Renderer<'a> {
     /// The other pictures: one ray through each pixel's centre.
     fn aovs(&self, rendered: &mut Rendered) -> Result<(), RenderError> {
         let (job, world, window) = (self.job, self.world, self.job.window());
-        let raster = Raster::new(job.width, job.height, &world.rules);
+        let raster = raster(world, job.width, job.height);
         let cost_wanted = job.aovs.iter().any(|aov| aov.name == "cost");
         let seen = self.pixels(|x, y, rays| {
-            let ray = camera_ray(world, &raster, center(x, y));
+            let Some(ray) = center_ray(world, &raster, (x, y)) else {
+                return Some(Seen { covered: false, hit: None, material: 0, counts: Counts::default() });
+            };
             let hit = world.closest(&ray, rays).map(|hit| (hit, world.surface(&ray, &hit)));
             let mut counts = Counts::default();
             if cost_wanted {
                 self.whitted.radiance(&ray, &mut counts);
             }
             let material = hit.map_or(0, |(hit, _)| world.material(&hit));
-            Some(Seen { hit, material, counts })
+            Some(Seen { covered: true, hit, material, counts })
         })?;
         let seen: Vec<Seen> = seen.into_iter().flatten().collect();
         let hits = || seen.iter().filter_map(|seen| seen.hit.as_ref());
@@ -339,16 +396,20 @@ impl<'a> Renderer<'a> {
         };
         for aov in &job.aovs {
             let values: Vec<Vec3> = seen.iter().map(aov.value).collect();
-            let picture = values.iter().zip(&seen).map(|(v, seen)| (aov.picture)(*v, seen.hit.is_some(), &display));
-            let mut picture: Vec<Color> = picture.collect();
+            let color = |(v, seen): (&Vec3, &Seen)| match seen.covered {
+                true => (aov.picture)(*v, seen.hit.is_some(), &display),
+                false => Vec3::ZERO,
+            };
+            let mut picture: Vec<Color> = values.iter().zip(&seen).map(color).collect();
             if aov.name == "normals" && world.rules.has(Compat::StaleNormals) {
                 let hits: Vec<bool> = seen.iter().map(|seen| seen.hit.is_some()).collect();
                 fill_from_last_hit(&mut picture, &hits, window.width as usize);
             }
             let picture = Image::from_pixels(window.width, window.height, picture)?;
             let values = Image::from_pixels(window.width, window.height, values)?;
-            rendered.layers.push(Layer::data(aov.name, values));
-            rendered.pictures.push(Layer::data(aov.name, picture));
+            let coverage: Vec<f32> = seen.iter().map(|seen| f32::from(seen.covered)).collect();
+            rendered.layers.push(Layer::data(aov.name, values).with_coverage(coverage.clone()));
+            rendered.pictures.push(Layer::data(aov.name, picture).with_coverage(coverage));
         }
         Ok(())
     }
@@ -356,7 +417,8 @@ impl<'a> Renderer<'a> {
 
 /// A finished part of a picture.
 struct Tile {
-    pixels: Vec<Color>,
+    /// Colour and coverage of each pixel.
+    pixels: Vec<(Color, f32)>,
     rejected: u64,
     first_rejected: Vec<Rejected>,
 }

@@ -12,7 +12,7 @@ use crate::dialect::set;
 use crate::light::Light;
 use crate::material::{ColorNoise, PhongMaterial, Solid};
 use crate::math::Vec3;
-use crate::shape::{HeightField, Primitive, TriangleMesh};
+use crate::shape::{HeightField, Primitive, Sphere, TriangleMesh, VoxelGrid};
 pub use matrix::MatrixOp;
 use serde::{Deserialize, Serialize};
 
@@ -97,6 +97,8 @@ pub enum Node {
     Primitive(Primitive),
     /// A mesh in a file.
     Mesh(TriangleMesh),
+    /// Cells of a box, filled by balls.
+    Voxels(VoxelGrid, Vec<Sphere>),
     /// A landscape from a picture.
     HeightField(HeightField),
     /// Closed objects combined to one solid.

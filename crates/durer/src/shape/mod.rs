@@ -17,6 +17,7 @@ pub mod sphere;
 mod tests;
 pub mod torus;
 pub mod triangle;
+pub mod voxels;
 pub mod watertight;
 
 use crate::described_list;
@@ -35,6 +36,7 @@ pub use rectangle::Rectangle;
 pub use sphere::Sphere;
 pub use torus::Torus;
 pub use triangle::Triangle;
+pub use voxels::VoxelGrid;
 
 described_list! {
     /// A shape that is given in the scene file itself.
@@ -80,6 +82,9 @@ pub struct Surface {
     pub uv: Option<Vec2>,
     /// Barycentric coordinates; of use on triangles.
     pub barycentric: Vec3,
+    /// From the point to the bent surface that a flat triangle stands for: where it is seen from the side of `n_shade`,
+    /// and from the other. Zero on what is as it looks. A shadow ray starts there; after Hanika, *Hacking the Shadow Terminator*.
+    pub lifts: [Vec3; 2],
 }
 
 impl Surface {
@@ -89,7 +94,16 @@ impl Surface {
         let position = point.as_vec3();
         let n = normal.normalize_or(DVec3::Y).as_vec3();
         let error = gamma(2) * position.abs() + floor;
-        Surface { position, error, curvature: 0.0, n_geo: n, n_shade: n, uv: Some(uv), barycentric: Vec3::ZERO }
+        Surface {
+            position,
+            error,
+            curvature: 0.0,
+            n_geo: n,
+            n_shade: n,
+            uv: Some(uv),
+            barycentric: Vec3::ZERO,
+            lifts: [Vec3::ZERO; 2],
+        }
     }
 
     fn curved(self, curvature: f64) -> Self {

@@ -63,6 +63,7 @@ impl Shape for Plane {
             n_shade: normal,
             uv: Some(Vec2::new(tangent.dot(position), bitangent.dot(position))),
             barycentric: Vec3::ZERO,
+            lifts: [Vec3::ZERO; 2],
         }
     }
 }

@@ -89,6 +89,7 @@ impl Shape for Sphere {
             n_shade: normal,
             uv,
             barycentric: Vec3::ZERO,
+            lifts: [Vec3::ZERO; 2],
         }
     }
 }

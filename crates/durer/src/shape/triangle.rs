@@ -45,7 +45,16 @@ impl Shape for Triangle {
     fn surface(&self, _point: DVec3, crossing: &Crossing) -> Surface {
         let (position, error, barycentric) = interpolate(self.corners(), crossing.uv);
         let n_geo = face_normal(self.corners());
-        Surface { position, error, curvature: 0.0, n_geo, n_shade: n_geo, uv: Some(crossing.uv), barycentric }
+        Surface {
+            position,
+            error,
+            curvature: 0.0,
+            n_geo,
+            n_shade: n_geo,
+            uv: Some(crossing.uv),
+            barycentric,
+            lifts: [Vec3::ZERO; 2],
+        }
     }
 }
 

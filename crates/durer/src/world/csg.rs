@@ -208,7 +208,8 @@ impl Csg {
         if !turned {
             return surface;
         }
-        Surface { n_geo: -surface.n_geo, n_shade: -surface.n_shade, ..surface }
+        let [front, back] = surface.lifts;
+        Surface { n_geo: -surface.n_geo, n_shade: -surface.n_shade, lifts: [back, front], ..surface }
     }
 
     /// The first hit in the ray's interval, and its part.

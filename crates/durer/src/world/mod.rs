@@ -13,7 +13,7 @@ use crate::material::Pattern;
 use crate::math::{Aabb, Color, Ray, Vec2, Vec3};
 use crate::shape::{Crossing, Surface};
 use crate::texture::{CubeMap, Texture};
-pub use material::{HighlightModel, Material, Phong};
+pub use material::{HighlightModel, Material, Part, Parts, Phong};
 pub use object::{Geometry, MeshTree, Object};
 
 /// A scene ready to be traced.
@@ -165,13 +165,13 @@ impl World {
         found
     }
 
-    /// The surface at a hit, in world space. The old programs, which keep off a surface by an epsilon, take the point
-    /// from the ray as it is.
+    /// The surface at a hit, in world space. The official programs take the point from the ray as it
+    /// is.
     pub fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
         let object = &self.objects[hit.object as usize];
         let point = object.local_ray(ray).line().at(f64::from(hit.t));
         let crossing = Crossing { t: hit.t, uv: hit.uv };
-        object.surface(ray, point, &crossing, hit.part, self.rules.epsilon.is_some())
+        object.surface(ray, point, &crossing, hit.part, self.rules.is_official())
     }
 
     /// The number of the material at a hit.
@@ -199,16 +199,22 @@ impl World {
     }
 
     /// The materials that make up a surface point, each with its share.
-    pub fn mix(&self, material: u32, point: Vec3, share: f32, visit: &mut impl FnMut(&Phong, f32)) {
+    pub fn parts(&self, hit: &Hit, point: Vec3) -> Parts<'_> {
+        let mut parts = Parts::new();
+        self.mix(self.material(hit), point, 1.0, &mut parts);
+        parts
+    }
+
+    fn mix<'w>(&'w self, material: u32, point: Vec3, share: f32, parts: &mut Parts<'w>) {
         match &self.materials[material as usize] {
-            Material::Phong(phong) => visit(phong, share),
+            Material::Phong(phong) => parts.push(Part { phong, share }),
             Material::Solid(solid, to_pattern) => {
                 let q = to_pattern.transform_point3(point.as_dvec3()).as_vec3();
                 let weight = solid.weight(q);
                 let [first, second] = solid.materials();
                 for (index, weight) in [(first, weight), (second, 1.0 - weight)] {
                     if weight != 0.0 {
-                        self.mix(index, point, share * weight, visit);
+                        self.mix(index, point, share * weight, parts);
                     }
                 }
             }

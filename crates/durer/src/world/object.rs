@@ -151,6 +151,7 @@ impl Object {
             error: error + to_world.spread(surface.bulge(to_world.inverse_spread(error))),
             n_geo: to_world.normal(surface.n_geo),
             n_shade: to_world.normal(surface.n_shade),
+            lifts: surface.lifts.map(|lift| to_world.vector(lift)),
             ..surface
         }
     }

@@ -227,7 +227,10 @@ impl Reader<'_, '_> {
         // What nodes have no word for is written as in our own dialect.
         let own = Primitive::kinds().into_iter().map(|shape| shape.keyword(Dialect::F23));
         let own: Vec<&str> = own.filter(|word| word.starts_with(char::is_uppercase)).chain(["HeightField"]).collect();
-        let kind = self.component_type(keyword, &["sphere", "plane", "triangle", "mesh"], &own)?;
+        let kind = self.component_type(keyword, &["sphere", "plane", "triangle", "mesh", "Grid"], &own)?;
+        if kind == "Grid" {
+            return Some(self.voxels(keyword));
+        }
         if kind == "HeightField" {
             let mut field = HeightField::default();
             self.component_fields(&mut field, keyword);
@@ -296,6 +299,6 @@ fn paint(object: &mut Object, material: u32) {
         Node::Group(group) => group.objects.iter_mut().for_each(|object| paint(object, material)),
         Node::Transform(_, inner) => paint(inner, material),
         Node::Solid(_, parts) => parts.iter_mut().for_each(|part| paint(part, material)),
-        Node::Primitive(_) | Node::Mesh(_) | Node::HeightField(_) => {}
+        Node::Primitive(_) | Node::Mesh(_) | Node::HeightField(_) | Node::Voxels(..) => {}
     }
 }

@@ -11,7 +11,7 @@ use crate::dialect::{Dialect, DialectSet, set};
 use crate::light::Light;
 use crate::material::{ColorNoise, PhongMaterial, Solid};
 use crate::scene::{Background, Group, Material, Node, Object, Operation, Spanned};
-use crate::shape::{HeightField, Primitive, TriangleMesh};
+use crate::shape::{HeightField, Primitive, Sphere, TriangleMesh, VoxelGrid};
 
 /// What stands at the top of a file.
 pub(super) const SECTIONS: [&str; 6] =
@@ -19,14 +19,14 @@ pub(super) const SECTIONS: [&str; 6] =
 
 /// What stands in a group: [`OBJECTS`] of them are objects.
 #[rustfmt::skip]
-pub(super) const IN_GROUP: [&str; OBJECTS + 2] = [
+pub(super) const IN_GROUP: [&str; OBJECTS + 3] = [
     "Group", "Transform", "Sphere", "Plane", "Triangle", "TriangleMesh",
     "Box", "Cylinder", "Cone", "Torus", "Ellipsoid", "Quadric", "Disc", "Rectangle", "HeightField",
     "Union", "Merge", "Intersection", "Difference", "Xor",
-    "MaterialIndex", "numObjects",
+    "MaterialIndex", "numObjects", "Grid",
 ];
 
-/// How many words of [`IN_GROUP`] begin an object.
+/// How many words of [`IN_GROUP`] begin an object that is proposed in a transform.
 pub(super) const OBJECTS: usize = 20;
 
 impl Reader<'_, '_> {
@@ -257,6 +257,26 @@ impl Reader<'_, '_> {
         Group { objects }
     }
 
+    /// Cells of a box and the balls that fill them; also where a component says so by its type.
+    pub(super) fn voxels(&mut self, keyword: Span) -> Node {
+        let (mut grid, mut balls) = (VoxelGrid::default(), Vec::new());
+        self.fields(&mut grid, keyword, Order::Any, |reader, word, span| {
+            match word {
+                "type" => {
+                    reader.advance();
+                }
+                "rasterizeSphere" => {
+                    let mut ball = Sphere::default();
+                    reader.fields(&mut ball, span, Order::Any, |_, _, _| false);
+                    balls.push(ball);
+                }
+                _ => return false,
+            }
+            true
+        });
+        Node::Voxels(grid, balls)
+    }
+
     /// One object, if the word begins one.
     pub(super) fn object(&mut self, word: &str, span: Span) -> Option<Object> {
         if !self.descend("objects", span) {
@@ -285,6 +305,8 @@ impl Reader<'_, '_> {
             let mut mesh = TriangleMesh::default();
             self.fields(&mut mesh, span, Order::Listed, |_, _, _| false);
             Some(Node::Mesh(mesh))
+        } else if word == "Grid" {
+            Some(self.voxels(span))
         } else {
             self.unknown(word, span, "among objects", &IN_GROUP);
             None

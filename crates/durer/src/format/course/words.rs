@@ -6,7 +6,7 @@ use crate::dialect::{DialectSet, set};
 use crate::light::Light;
 use crate::material::{ColorNoise, PhongMaterial, Solid};
 use crate::scene::{Background, Operation};
-use crate::shape::{HeightField, Primitive, TriangleMesh};
+use crate::shape::{HeightField, Primitive, TriangleMesh, VoxelGrid};
 use std::collections::HashMap;
 use std::sync::LazyLock;
 
@@ -56,6 +56,7 @@ static WORDS: LazyLock<HashMap<&'static str, DialectSet>> = LazyLock::new(|| {
     list::<ColorNoise>(&mut words);
     list::<TriangleMesh>(&mut words);
     list::<HeightField>(&mut words);
+    list::<VoxelGrid>(&mut words);
     list::<Background>(&mut words);
     let operations = Operation::ALL.map(|(word, _)| (word, set::DURER));
     for (word, set) in GRAMMAR.into_iter().chain(operations) {
@@ -86,7 +87,7 @@ pub(super) fn begins_block(word: &str) -> bool {
 /// The block in which something belongs that stands in a wrong place.
 pub(super) fn home_of(word: &str) -> Option<&'static str> {
     Some(match word {
-        "TriangleMesh" | "HeightField" | "Transform" | "MaterialIndex" | "Group" => "Group",
+        "TriangleMesh" | "HeightField" | "Grid" | "Transform" | "MaterialIndex" | "Group" => "Group",
         "PhongMaterial" | "Material" | "Checkerboard" | "Marble" | "Wood" => "Materials",
         "PointLight" | "DirectionalLight" => "Lights",
         "Translate" | "Scale" | "UniformScale" | "XRotate" | "YRotate" | "ZRotate" | "Rotate" | "Matrix"

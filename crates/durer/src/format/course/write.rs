@@ -5,6 +5,7 @@ use crate::dialect::Dialect;
 use crate::light::{Light, PointLight};
 use crate::math::Vec3;
 use crate::scene::{Group, Material, MatrixOp, Node, Object, Scene};
+use crate::shape::{Sphere, VoxelGrid};
 use std::fmt::Write;
 
 /// Writes a scene in a dialect. What the dialect has no word for is written in the words of another year.
@@ -44,14 +45,13 @@ impl Writer {
         let plain = T::from_keyword(thing.keywords()[0].0);
         for (i, field) in thing.fields().iter().enumerate() {
             let Some(value) = thing.get(i) else { continue };
-            let word = field.spelling(self.dialect);
-            // What the dialect cannot say is left out where it says nothing.
-            if word.is_none()
-                && plain.as_ref().and_then(|p| p.get(i)).is_some_and(|p| value_text(&p) == value_text(&value))
-            {
+            let (word, text) = (field.spelling(self.dialect), value_text(&value));
+            // What the dialect cannot say is left out where it says nothing. Texts tell 0 from -0.
+            let plain_text = plain.as_ref().and_then(|plain| plain.get(i)).map(|value| value_text(&value));
+            if word.is_none() && plain_text.as_ref() == Some(&text) {
                 continue;
             }
-            self.line(format!("{} {}", word.unwrap_or(field.spellings[0].0), value_text(&value)));
+            self.line(format!("{} {text}", word.unwrap_or(field.spellings[0].0)));
         }
     }
 
@@ -129,7 +129,13 @@ impl Writer {
             Node::Mesh(mesh) => self.thing(mesh),
             Node::HeightField(field) => self.thing(field),
             Node::Solid(operation, parts) => self.block(operation.keyword(), |w| w.objects(parts)),
+            Node::Voxels(grid, balls) => self.block(grid.keyword(self.dialect), |w| w.voxels(grid, balls)),
         }
+    }
+
+    fn voxels(&mut self, grid: &VoxelGrid, balls: &[Sphere]) {
+        self.fields(grid);
+        balls.iter().for_each(|ball| self.block("rasterizeSphere", |w| w.fields(ball)));
     }
 
     fn matrix(&mut self, op: &MatrixOp) {
@@ -187,9 +193,12 @@ impl Writer {
                 Node::Solid(operation, parts) => {
                     w.block(operation.keyword(), |w| parts.iter().for_each(|part| w.node(part)));
                 }
+                Node::Voxels(grid, balls) => w.voxels_component(grid, balls),
                 Node::Transform(_, inner) => match &inner.node {
-                    Node::Primitive(shape) if inner.material == object.material => w.component("Object", shape),
-                    Node::Mesh(mesh) if inner.material == object.material => w.component("Object", mesh),
+                    _ if inner.material != object.material => w.node(inner),
+                    Node::Primitive(shape) => w.component("Object", shape),
+                    Node::Mesh(mesh) => w.component("Object", mesh),
+                    Node::Voxels(grid, balls) => w.voxels_component(grid, balls),
                     _ => w.node(inner),
                 },
             }
@@ -211,6 +220,13 @@ impl Writer {
         self.block(&format!("Component<{name}>"), |w| {
             w.line(format!("type {}", thing.keyword(w.dialect)));
             w.fields(thing);
+        });
+    }
+
+    fn voxels_component(&mut self, grid: &VoxelGrid, balls: &[Sphere]) {
+        self.block("Component<Object>", |w| {
+            w.line(format!("type {}", grid.keyword(w.dialect)));
+            w.voxels(grid, balls);
         });
     }
 

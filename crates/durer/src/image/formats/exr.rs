@@ -1,7 +1,8 @@
 //! OpenEXR: 32-bit floats, packed without loss, any number of layers.
 //!
 //! Layers share one part. The first colour layer has the plain channels R, G and B, which every viewer shows;
-//! those of the others bear the layer's name: `normals.R`.
+//! those of the others bear the layer's name: `normals.R`. Where the camera does not see everything there is A as well,
+//! with the colours multiplied by it, as the format has it.
 
 use super::limits::{declared_count, pixel_limit};
 use super::{Depth, Format, Image, ImageError, Layer, LayerKind, Raster, WriteOptions};
@@ -35,14 +36,18 @@ fn encode(layers: &[Layer], _: &WriteOptions, out: &mut Vec<u8>) -> Result<(), I
     let mut names = HashSet::new();
     let mut list = SmallVec::new();
     for (index, layer) in layers.iter().enumerate() {
-        for (axis, letter) in ["R", "G", "B"].into_iter().enumerate() {
+        let channels = if layer.coverage.is_some() { &["R", "G", "B", "A"][..] } else { &["R", "G", "B"] };
+        for (axis, letter) in channels.iter().enumerate() {
             let name = if index == plain { letter.to_string() } else { format!("{}.{letter}", layer.name) };
             let bad = || ImageError::unsupported(NAME, format!("`{}` cannot be the name of a layer", layer.name));
             let text = Text::new_or_none(&name).filter(|_| !name.starts_with('.')).ok_or_else(bad)?;
             if !names.insert(name) {
                 return Err(ImageError::unsupported(NAME, format!("two layers are named `{}`", layer.name)));
             }
-            let samples = layer.image.pixels.iter().map(|pixel| pixel[axis]).collect();
+            let samples = match layer.coverage.as_ref().filter(|_| axis == 3) {
+                Some(coverage) => coverage.clone(),
+                None => layer.image.pixels.iter().map(|pixel| pixel[axis]).collect(),
+            };
             list.push(AnyChannel::new(text, FlatSamples::F32(samples)));
         }
     }
@@ -138,7 +143,7 @@ mod tests {
 
     fn layer(name: &str, kind: LayerKind, value: f32) -> Layer {
         let pixels = (0..6).map(|i| Vec3::new(value, i as f32, -value)).collect();
-        Layer { name: name.into(), image: Image { width: 3, height: 2, pixels }, kind }
+        Layer { name: name.into(), image: Image { width: 3, height: 2, pixels }, kind, coverage: None }
     }
 
     #[test]
@@ -159,6 +164,21 @@ mod tests {
         assert_eq!(channels.len(), 9);
         let normals = channels.iter().find(|channel| channel.name.eq("normals.G")).unwrap();
         assert_eq!(normals.sample_data, FlatSamples::F32((0..6).map(|i| i as f32).collect()));
+    }
+
+    #[test]
+    fn what_is_not_seen_everywhere_has_alpha() {
+        let shares: Vec<f32> = (0..6).map(|i| i as f32 / 5.0).collect();
+        let seen = layer("depth", LayerKind::Data, 1.0).with_coverage(shares.clone());
+        let mut out = Vec::new();
+        FORMAT.write(&[layer("", LayerKind::Color, 2.0), seen], &WriteOptions::default(), &mut out).unwrap();
+        let file = tempfile::NamedTempFile::new().unwrap();
+        std::fs::write(file.path(), &out).unwrap();
+        let back = read_all_flat_layers_from_file(file.path()).unwrap();
+        let channels = &back.layer_data[0].channel_data.list;
+        assert_eq!(channels.len(), 7);
+        let alpha = channels.iter().find(|channel| channel.name.eq("depth.A")).unwrap();
+        assert_eq!(alpha.sample_data, FlatSamples::F32(shares));
     }
 
     #[test]

@@ -86,7 +86,7 @@ fn member(object: &scene::Object, p: DVec3) -> bool {
         Node::Transform(ops, inner) => member(inner, MatrixOp::product(ops, false).inverse().transform_point3(p)),
         Node::Primitive(shape) => shape.inside(p).unwrap(),
         Node::Mesh(_) => p.abs().max_element() < 1.0,
-        Node::HeightField(_) => false,
+        Node::HeightField(_) | Node::Voxels(..) => false,
         Node::Solid(operation, parts) => match operation {
             Operation::Union | Operation::Merge => count(parts) > 0,
             Operation::Intersection => count(parts) == parts.len(),

@@ -196,6 +196,7 @@ fn flat(objects: &[Object], out: &mut Vec<(String, Option<u32>)>) {
             Node::Transform(_, inner) => flat(std::slice::from_ref(inner), out),
             Node::Primitive(shape) => out.push((shape.keyword(Dialect::F23).into(), object.material)),
             Node::Mesh(_) | Node::HeightField(_) => out.push(("mesh".into(), object.material)),
+            Node::Voxels(..) => out.push(("grid".into(), object.material)),
             Node::Solid(_, parts) => flat(parts, out),
         }
     }

@@ -7,7 +7,7 @@ use crate::light::Light;
 use crate::material::{ColorNoise, PhongMaterial, Solid, is_material_index};
 use crate::math::Vec3;
 use crate::scene::{Background, Group, Material, MatrixOp, Node, Object, Operation, Scene, Spanned};
-use crate::shape::{HeightField, Primitive, TriangleMesh};
+use crate::shape::{HeightField, Primitive, Sphere, TriangleMesh, VoxelGrid};
 
 /// A generator of random numbers (Knuth's multiplier, the upper half of the state).
 pub(super) struct Random(pub u64);
@@ -51,6 +51,9 @@ impl Random {
             };
             // Angles are rare among all numbers.
             let value = match (field.rule, value) {
+                (Rule::Counts(most), _) => {
+                    Value::Vec3(Vec3::from([0; 3].map(|_| 1.0 + self.below(most as usize) as f32)))
+                }
                 (Rule::Between(low, high), _) => {
                     Value::Float(low + (high - low) * (1 + self.below(998)) as f32 / 1000.0)
                 }
@@ -106,15 +109,21 @@ impl Random {
             *current = Some(self.below(materials + 1) as u32);
         }
         let material = *current;
-        let node = match self.below(if depth > 4 { 4 } else { 7 }) {
+        let node = match self.below(if depth > 4 { 5 } else { 8 }) {
             0 | 1 => Node::Primitive(self.thing::<Primitive>(materials)),
             2 => Node::Mesh(self.thing::<TriangleMesh>(materials)),
             3 => Node::HeightField(self.thing::<HeightField>(materials)),
-            4 => Node::Solid(
+            4 => Node::Voxels(
+                self.thing::<VoxelGrid>(materials),
+                (0..self.below(3))
+                    .map(|_| Sphere { center: self.vec3(), radius: 1.0 + self.below(9) as f32 })
+                    .collect(),
+            ),
+            5 => Node::Solid(
                 Operation::ALL[self.below(5)].1,
                 (0..self.below(4)).map(|_| self.object(depth + 1, materials, current, true)).collect(),
             ),
-            5 => Node::Group(Group {
+            6 => Node::Group(Group {
                 objects: (0..self.below(4)).map(|_| self.object(depth + 1, materials, current, true)).collect(),
             }),
             _ => {
