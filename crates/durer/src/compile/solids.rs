@@ -3,7 +3,7 @@
 use super::Flattening;
 use crate::diag::{Diagnostic, Span};
 use crate::math::Vec3;
-use crate::scene::{self, Node, Operation};
+use crate::scene::{self, Group, Node, Operation};
 use crate::shape::{Primitive, Shape};
 use crate::world::csg::Csg;
 use crate::world::solid::Solid;
@@ -14,40 +14,54 @@ use std::sync::Arc;
 impl Flattening<'_, '_> {
     /// A solid with nothing but groups and transforms around it.
     pub(super) fn solid(&mut self, span: Span, operation: Operation, parts: &[scene::Object], to_world: DAffine3) {
-        let errors = self.diagnostics.error_count();
-        let solids = self.solids(parts, to_world);
+        let (errors, before) = (self.diagnostics.error_count(), self.objects.len());
         self.check_count(span, operation, parts);
+        if operation == Operation::Union {
+            return parts.iter().for_each(|part| self.part_of_union(part, to_world));
+        }
+        let solid = joined(operation, self.solids(parts, to_world));
         if self.diagnostics.error_count() > errors {
             return;
         }
-        // Parts of a union stay as they are.
-        let separate = operation == Operation::Union;
-        let solids = if separate { solids } else { joined(operation, solids).into_iter().collect() };
-        let before = self.objects.len();
-        for solid in solids {
-            for piece in solid.pieces() {
-                self.piece(piece, span);
-            }
-        }
+        solid.into_iter().flat_map(Solid::pieces).for_each(|piece| self.piece(piece, span));
         if self.objects.len() == before && self.diagnostics.error_count() == errors {
             let message = format!("nothing is left of this `{}`: its parts do not meet", operation.keyword());
             self.diagnostics.push(Diagnostic::warning(message).at(span));
         }
     }
 
+    /// Parts of a union stay as they are, but must be closed as all parts are.
+    fn part_of_union(&mut self, part: &scene::Object, to_world: DAffine3) {
+        match &part.node {
+            Node::Group(group) => {
+                self.check_group(group, part.span);
+                group.objects.iter().for_each(|inner| self.part_of_union(inner, to_world));
+            }
+            Node::Transform(ops, inner) => self.part_of_union(inner, to_world * self.product(ops)),
+            Node::Solid(operation, parts) => self.solid(part.span, *operation, parts, to_world),
+            _ => {
+                let solid = self.closed(part, to_world);
+                solid.into_iter().for_each(|solid| self.piece(solid, part.span));
+            }
+        }
+    }
+
     /// A piece of a solid that is apart from the others becomes an object of its own.
     fn piece(&mut self, piece: Solid, span: Span) {
-        let csg = match piece {
-            Solid::Part(object) => return self.objects.push(Arc::unwrap_or_clone(object)),
-            join => Csg::new(join),
+        if let Solid::Part(object) = piece {
+            return self.objects.push(Arc::unwrap_or_clone(object));
+        }
+        let (count, material) = {
+            let parts = piece.parts();
+            (parts.iter().map(|part| u64::from(part.parts())).sum::<u64>(), parts[0].material)
         };
-        if csg.parts().map(|part| u64::from(part.parts())).sum::<u64>() > Csg::MOST_PARTS {
+        if count > Csg::MOST_PARTS {
             let message = format!("the parts of this solid have more than {} triangles", Csg::MOST_PARTS);
             self.diagnostics.push(Diagnostic::error(message).at(span));
             return;
         }
-        let material = csg.parts().next().map_or(0, |part| part.material);
-        self.objects.push(Object { geometry: Geometry::Solid(Arc::new(csg)), to_world: None, material, span });
+        let geometry = Geometry::Solid(Arc::new(Csg::new(piece)));
+        self.objects.push(Object { geometry, to_world: None, material, span });
     }
 
     fn check_count(&mut self, span: Span, operation: Operation, parts: &[scene::Object]) {
@@ -70,10 +84,7 @@ impl Flattening<'_, '_> {
     fn closed(&mut self, part: &scene::Object, to_world: DAffine3) -> Option<Solid> {
         match &part.node {
             Node::Group(group) => {
-                if group.objects.is_empty() {
-                    let message = "an empty `Group` cannot be part of a solid";
-                    self.diagnostics.push(Diagnostic::error(message).at(part.span));
-                }
+                self.check_group(group, part.span);
                 Some(Solid::any(self.solids(&group.objects, to_world)))
             }
             Node::Transform(ops, inner) => self.closed(inner, to_world * self.product(ops)),
@@ -92,6 +103,12 @@ impl Flattening<'_, '_> {
                 }
                 Some(Solid::Part(Arc::new(object)))
             }
+        }
+    }
+
+    fn check_group(&mut self, group: &Group, span: Span) {
+        if group.objects.is_empty() {
+            self.diagnostics.push(Diagnostic::error("an empty `Group` cannot be part of a solid").at(span));
         }
     }
 

@@ -38,6 +38,9 @@ pub enum Solid {
 /// Where more pairs of pieces than this would have to be looked at, they are left together.
 const MOST_PAIRS: usize = 1 << 22;
 
+/// And where more copies of parts than this would be made.
+const MOST_COPIES: usize = 1 << 18;
+
 /// A solid and the box around it; `None` where it has no end.
 type Piece = (Solid, Option<Aabb>);
 
@@ -101,6 +104,14 @@ impl Solid {
         }
     }
 
+    /// All shapes and meshes in it.
+    pub fn parts(&self) -> Vec<&Object> {
+        match self {
+            Solid::Part(object) => vec![object],
+            Solid::Join { parts, cut, .. } => parts.iter().chain(cut).flat_map(Solid::parts).collect(),
+        }
+    }
+
     /// The same, as solids apart from each other, in the order of their first parts. None is left of what is nowhere.
     pub fn pieces(self) -> Vec<Solid> {
         self.boxed_pieces().into_iter().map(|piece| piece.0).collect()
@@ -153,27 +164,41 @@ fn intersected(parts: Vec<Solid>, cut: Vec<Solid>) -> Vec<Piece> {
     let whole = |pieces: Vec<Piece>| Solid::any(pieces.into_iter().map(|piece| piece.0).collect());
     for part in parts {
         let others = part.boxed_pieces();
-        if found.len() * others.len() > MOST_PAIRS {
+        let Some(near) = touching(&found, &others) else {
             found = vec![boxed(Solid::all(vec![whole(found), whole(others)], Vec::new()))];
             continue;
-        }
-        let meet = |(solid, bounds): Piece| {
-            let near = near(&others, bounds);
-            (!near.is_empty()).then(|| boxed(Solid::all(vec![solid, Solid::any(near)], Vec::new())))
         };
-        found = found.into_iter().filter_map(meet).collect();
+        let meet = |(piece, near): (Piece, Vec<usize>)| {
+            (!near.is_empty()).then(|| boxed(Solid::all(vec![piece.0, Solid::any(copies(&others, &near))], Vec::new())))
+        };
+        found = found.into_iter().zip(near).filter_map(meet).collect();
     }
+    found.retain(|(_, bounds)| bounds.is_none_or(|b| !b.is_empty()));
     let cut: Vec<Piece> = cut.into_iter().flat_map(Solid::boxed_pieces).collect();
-    if found.len() * cut.len() > MOST_PAIRS {
+    let Some(near) = touching(&found, &cut) else {
         return vec![boxed(Solid::all(vec![whole(found)], vec![whole(cut)]))];
-    }
-    let cut_off = |(solid, bounds): Piece| (Solid::all(vec![solid], near(&cut, bounds)), bounds);
-    found.into_iter().map(cut_off).filter(|(_, bounds)| bounds.is_none_or(|b| !b.is_empty())).collect()
+    };
+    let cut_off = |((solid, bounds), near): (Piece, Vec<usize>)| (Solid::all(vec![solid], copies(&cut, &near)), bounds);
+    found.into_iter().zip(near).map(cut_off).collect()
 }
 
-/// Those whose boxes touch a box.
-fn near(pieces: &[Piece], bounds: Option<Aabb>) -> Vec<Solid> {
-    pieces.iter().filter(|piece| touch(piece.1, bounds)).map(|piece| piece.0.clone()).collect()
+fn copies(pieces: &[Piece], which: &[usize]) -> Vec<Solid> {
+    which.iter().map(|&i| pieces[i].0.clone()).collect()
+}
+
+/// For each piece those of others whose boxes touch its own; `None` where these are too many to be told apart.
+fn touching(pieces: &[Piece], others: &[Piece]) -> Option<Vec<Vec<usize>>> {
+    if pieces.len() * others.len() > MOST_PAIRS {
+        return None;
+    }
+    let sizes: Vec<usize> = others.iter().map(|other| other.0.parts().len()).collect();
+    let mut copied = 0;
+    let near = |piece: &Piece| -> Option<Vec<usize>> {
+        let near: Vec<usize> = (0..others.len()).filter(|&i| touch(piece.1, others[i].1)).collect();
+        copied += near.iter().map(|&i| sizes[i]).sum::<usize>();
+        (copied <= MOST_COPIES).then_some(near)
+    };
+    pieces.iter().map(near).collect()
 }
 
 /// Whether two boxes touch, or nearly, for all that single precision can tell.

@@ -383,6 +383,9 @@ fn a_union_keeps_inner_surfaces_and_a_merge_does_not() {
         (world.objects.len(), world.all_hits(&Ray::new(Vec3::new(-5.0, 0.0, 0.0), Vec3::X)).count())
     };
     assert_eq!(hits(Operation::Union), (2, 4));
+    // Also where a union is a part of another.
+    let nested = join(Operation::Union, &[&join(Operation::Union, &[&a, &b]), &ball([9.0, 0.0, 0.0], 1.0)]);
+    assert_eq!(world(&nested).objects.len(), 3);
     assert_eq!(hits(Operation::Merge), (1, 2));
     assert_eq!(hits(Operation::Xor), (1, 4));
     assert_eq!(hits(Operation::Intersection), (1, 2));
