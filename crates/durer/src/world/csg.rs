@@ -6,7 +6,7 @@
 //! Image Processing 18, 1982; with counts for the operations, so that an operation of many parts costs no more.
 //!
 //! Faces that coincide: crossings of different parts count as one where their distance across the surfaces is no more
-//! than single precision can tell there, some 2^-20 of the coordinates. All their bits turn together: so no skin is
+//! than single precision can tell there, some 2^-19 of the coordinates. All their bits turn together: so no skin is
 //! left, or appears, where two faces share a plane. If the bit of the whole changes, the surface is that of the part
 //! written first of those that could have made the change: alone, or as the last.
 //!

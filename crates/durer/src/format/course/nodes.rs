@@ -109,7 +109,7 @@ impl Reader<'_, '_> {
         inside
     }
 
-    /// The parts of a solid, each a node. Lights have no place there.
+    /// The parts of a solid, each a node without lights.
     fn node_parts(&mut self, keyword: Span) -> Vec<Object> {
         let mut parts = Vec::new();
         if !self.open(keyword) {
@@ -117,7 +117,13 @@ impl Reader<'_, '_> {
         }
         while let Some((word, span)) = self.word_before_close() {
             match word.as_str() {
-                "Node" => parts.extend(self.node(span).object(span)),
+                "Node" => {
+                    let part = self.node(span);
+                    if let Some((light, _)) = part.lights.first() {
+                        self.error(Diagnostic::error("a light cannot be part of a solid").at(light.span));
+                    }
+                    parts.extend(part.object(span));
+                }
                 _ => self.unknown(&word, span, "in a solid", &["Node"]),
             }
         }
