@@ -135,7 +135,7 @@ impl Whitted<'_> {
         let object = &self.world.objects[hit.object as usize];
         Struck {
             object: hit.object,
-            part: hit.part,
+            part: self.world.triangle(hit),
             t: hit.t,
             position: surface.position,
             n_geo: surface.n_geo,

@@ -183,6 +183,11 @@ impl Csg {
         &self.leaves[self.leaf_of(part)].object
     }
 
+    /// The number of the triangle in that part, or 0.
+    pub fn triangle(&self, part: u32) -> u32 {
+        (part & !(TURNED | ENTERS)) - self.leaves[self.leaf_of(part)].first
+    }
+
     /// Bytes in memory, meshes not counted.
     pub fn bytes(&self) -> usize {
         let lists = size_of_val(&*self.leaves) + size_of_val(&*self.joins) + size_of_val(&*self.start);
@@ -196,8 +201,7 @@ impl Csg {
 
     /// The surface at a hit, in world space; its normals point out of the solid.
     pub fn surface(&self, ray: &Ray, crossing: &Crossing, part: u32, as_is: bool) -> Surface {
-        let leaf = &self.leaves[self.leaf_of(part)];
-        let number = (part & !(TURNED | ENTERS)) - leaf.first;
+        let (leaf, number) = (&self.leaves[self.leaf_of(part)], self.triangle(part));
         let point = leaf.object.local_line(ray).at(f64::from(crossing.t));
         let surface = leaf.object.surface(ray, point, crossing, number, as_is);
         // A mesh may be inside out by itself: what counts is the ray's way.

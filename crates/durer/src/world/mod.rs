@@ -183,6 +183,14 @@ impl World {
         }
     }
 
+    /// The number of the triangle at a hit in its mesh, else 0.
+    pub fn triangle(&self, hit: &Hit) -> u32 {
+        match &self.objects[hit.object as usize].geometry {
+            Geometry::Solid(solid) => solid.triangle(hit.part),
+            _ => hit.part,
+        }
+    }
+
     /// All hits in the ray's interval, from near to far; of several at the same `t` the first.
     pub fn all_hits(&self, ray: &Ray) -> impl Iterator<Item = Hit> {
         let mut rest = *ray;
