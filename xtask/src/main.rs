@@ -1,6 +1,7 @@
 //! Commands for those who build Dürer.
 
 mod course;
+mod manual;
 mod solids;
 
 use std::process::ExitCode;
@@ -13,6 +14,8 @@ const USAGE: &str = "Commands:
   cargo xtask solids
       A million random points against the Boolean of the parts of random solids, and the cost of rays at solids of a
       thousand parts beside that at the same parts as plain objects.
+  cargo xtask manual
+      Write docs/cameras.md from what the cameras state of themselves.
 The course is found in ../shared, or where DURER_CORPUS says.";
 
 fn main() -> anyhow::Result<ExitCode> {
@@ -20,6 +23,7 @@ fn main() -> anyhow::Result<ExitCode> {
     match arguments.first().map(String::as_str) {
         Some("course") => course::run(&arguments[1..]),
         Some("solids") => solids::run(),
+        Some("manual") => manual::run(),
         _ => {
             println!("{USAGE}");
             Ok(ExitCode::from(2))

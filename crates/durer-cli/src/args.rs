@@ -124,7 +124,7 @@ pub struct RenderArgs {
     #[arg(long, allow_negative_numbers = true, value_parser = weight)]
     pub weight: Option<f32>,
 
-    /// Samples a pixel; 1 is the pixel's centre [default: 16; with --dialect, 1]
+    /// Samples a pixel; 1 is the pixel's centre [default: 16, or 64 through a lens or a hole; with --dialect, 1]
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..=1 << 20))]
     pub samples: Option<u32>,
     /// Where samples lie; all but sobol are the course's, with its filters

@@ -4,6 +4,7 @@ use crate::args::{DIAGRAMS, RenderArgs, SceneArgs};
 use crate::output::Target;
 use crate::{Failure, bad, output, progress, report};
 use durer::LoadOptions;
+use durer::camera::{Lens, Raster};
 use durer::compile::AccelKind;
 use durer::diag::{Diagnostic, Diagnostics, Files};
 use durer::dialect::Dialect;
@@ -78,6 +79,10 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
     };
     let opened = open(&args.scene, &options, args.quiet)?;
     let job = job(args, &opened)?;
+    if job.sampling == Sampling::Center && opened.world.camera.has_aperture() && !args.quiet {
+        let message = "with one sample a pixel only the middle of the lens is used, and nothing is out of focus";
+        report::note(&Diagnostic::warning(message).help("ask for more `--samples`, 64 say"));
+    }
     if args.show.iter().any(|show| DIAGRAMS.contains(&show.as_str())) {
         check_diagram(&job, args.zoom).map_err(failure)?;
     }
@@ -119,18 +124,24 @@ pub fn job(args: &RenderArgs, opened: &Opened) -> Result<Job, Failure> {
     let rules = &opened.loaded.rules;
     // Ours is a dialect like others to ask for, but not an old program.
     let asked = opened.loaded.guess.is_none() && opened.loaded.dialect != Dialect::Durer;
-    let (width, height) = args.size.unwrap_or(rules.size);
+    let proportions = opened.world.camera.proportions();
+    let (width, height) = args.size.unwrap_or_else(|| Raster::natural_size(proportions, rules.size));
+    if !args.quiet {
+        misfit(&opened.world, width, height);
+    }
     let shows = |name: &str| args.show.iter().any(|show| show == name);
     let depth_range = args.depth_range.as_ref().map(|range| (range[0], range[1]));
     if depth_range.is_some_and(|(min, max)| !(min.is_finite() && max.is_finite() && min != max)) {
         return Err(bad("--depth-range needs two different numbers"));
     }
+    // A blur needs more samples than an edge.
+    let plenty = if opened.world.camera.has_aperture() { 64 } else { 16 };
     Ok(Job {
         width,
         height,
         crop: args.crop.map(|(left, top, width, height)| Crop { left, top, width, height }),
         seed: args.seed,
-        sampling: sampling(args, asked)?,
+        sampling: sampling(args, asked, plenty)?,
         settings: Settings {
             bounces: args.bounces.unwrap_or(rules.bounces),
             shadows: args.shadows.unwrap_or(rules.shadows),
@@ -146,7 +157,19 @@ pub fn job(args: &RenderArgs, opened: &Opened) -> Result<Job, Failure> {
     })
 }
 
-fn sampling(args: &RenderArgs, asked: bool) -> Result<Sampling, Failure> {
+/// Says that a picture has not the shape of its camera's.
+fn misfit(world: &World, width: u32, height: u32) {
+    let (columns, rows) = durer::render::raster(world, width, height).empty();
+    if (columns, rows) == (0, 0) {
+        return;
+    }
+    let (count, what) = if columns > 0 { (columns, "columns") } else { (rows, "rows") };
+    let (w, h) = Raster::natural_size(world.camera.proportions(), (width, height));
+    let message = format!("{count} {what} of {width}x{height} stay empty: this camera's picture has another shape");
+    report::note(&Diagnostic::warning(message).help(format!("`--size {w}x{h}` has it")));
+}
+
+fn sampling(args: &RenderArgs, asked: bool, plenty: u32) -> Result<Sampling, Failure> {
     if args.jitter || args.blur {
         return Ok(Sampling::Course2012 { jitter: args.jitter, blur: args.blur });
     }
@@ -155,7 +178,7 @@ fn sampling(args: &RenderArgs, asked: bool) -> Result<Sampling, Failure> {
     }
     let sampler = Sampler::from_name(&args.sampler).unwrap_or_default();
     let filter = args.filter.as_deref().and_then(Filter::from_name);
-    let samples = args.samples.unwrap_or(if asked { 1 } else { 16 });
+    let samples = args.samples.unwrap_or(if asked { 1 } else { plenty });
     if sampler == Sampler::Sobol {
         let filter = filter.unwrap_or_default();
         let filter = args.filter_radius.map_or(filter, |radius| filter.with_radius(radius));

@@ -57,7 +57,10 @@ pub fn compile(
         diagnostics.push(Diagnostic::error("the scene has no camera").help("add a `PerspectiveCamera { ... }`"));
         return None;
     };
-    check_camera(scene, camera.pose(), &mut own);
+    match camera.problem() {
+        Some(problem) => own.push(Diagnostic::error(problem).at(scene.camera_span)),
+        None => check_camera(scene, camera.pose(), &mut own),
+    }
     let materials = materials::compile(scene, rules, &mut loader, &mut own);
     let mut flattening = Flattening {
         objects: Vec::new(),
