@@ -5,8 +5,10 @@ mod options;
 pub use options::{Program, program};
 
 use crate::args::weight;
+use crate::diagrams::{self, filter_layer, samples_layer};
+use crate::open::{Opened, open};
 use crate::output::say;
-use crate::render::{Opened, check_diagram, failure, filter_layer, open, rejected, samples_layer};
+use crate::render::{failure, rejected};
 use crate::{Failure, bad, output, progress};
 use durer::LoadOptions;
 use durer::compile::AccelKind;
@@ -39,12 +41,12 @@ pub fn run(arguments: Vec<String>, program_name: Option<&'static Program>) -> Re
     let world = &opened.world;
     let zooms = (given.zoom("-render_samples")?, given.zoom("-render_filter")?);
     for zoom in [zooms.0, zooms.1].into_iter().flatten() {
-        check_diagram(&job, zoom).map_err(failure)?;
+        diagrams::check(&job, zoom).map_err(failure)?;
     }
     // The picture of the grid takes the place of the colour picture.
     let grid_wanted = job.color && given.has("-visualize_grid");
     let job = Job { color: job.color && !grid_wanted, ..job };
-    let (rendered, grid, diagrams) = progress::watch(&job, &control, quiet, || {
+    let (rendered, grid, diagrams) = progress::watch(&control, quiet, || {
         let rendered = durer::render::render(world, &job, &control)?;
         let grid = grid_wanted.then(|| durer::render::grid_picture(world, &job, &control)).transpose()?;
         let samples = zooms.0.map(|zoom| samples_layer(world, &job, &control, zoom)).transpose()?;
@@ -52,14 +54,14 @@ pub fn run(arguments: Vec<String>, program_name: Option<&'static Program>) -> Re
         Ok((rendered, grid.map(|image| Layer::color("color", image)), [samples, filter]))
     })
     .map_err(failure)?;
-    rejected(&rendered, quiet);
+    rejected(&rendered.statistics, quiet);
     if given.has("-stats") {
         stats(&opened, &control);
     }
     let layers = grid.iter().chain(&rendered.pictures).chain(diagrams.iter().flatten());
     let mut files = Vec::new();
     for (layer, (path, format)) in layers.zip(&outputs.0) {
-        files.push((path.clone(), output::encode(format, std::slice::from_ref(layer), Transfer::Course)?));
+        files.push((path.clone(), output::encode(format, std::slice::from_ref(layer), Transfer::Course, &[])?));
     }
     output::save(&files, quiet)
 }
@@ -96,6 +98,8 @@ fn load_options(given: &Given, program_name: Option<&'static Program>) -> Result
             cells => AccelKind::Grid(cells),
         },
         strict: false,
+        threads: threads(given)?,
+        ..LoadOptions::default()
     })
 }
 
@@ -157,7 +161,6 @@ fn job(given: &Given, opened: &Opened) -> Result<Job, Failure> {
     Ok(Job {
         width,
         height,
-        crop: None,
         seed: given.number("--seed")?.unwrap_or(0),
         sampling: sampling(given, opened.loaded.dialect)?,
         settings: Settings {
@@ -172,6 +175,7 @@ fn job(given: &Given, opened: &Opened) -> Result<Job, Failure> {
         color: given.has("-output"),
         aovs: wanted.iter().filter(|w| given.has(w.0)).filter_map(|w| Aov::from_name(w.1)).collect(),
         depth_range,
+        ..Job::default()
     })
 }
 
