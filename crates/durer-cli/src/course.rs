@@ -6,6 +6,7 @@ pub use options::{Program, program};
 
 use crate::args::weight;
 use crate::diagrams::{self, filter_layer, samples_layer};
+use crate::memory::Memory;
 use crate::open::{Opened, open};
 use crate::output::say;
 use crate::render::{failure, rejected};
@@ -37,7 +38,8 @@ pub fn run(arguments: Vec<String>, program_name: Option<&'static Program>) -> Re
     let outputs = Outputs::of(&given, options.dialect)?;
     let opened = open(Path::new(scene), &options, quiet)?;
     let job = job(&given, &opened)?;
-    let control = Arc::new(Control { threads: threads(&given)?, ..Control::default() });
+    let control =
+        Arc::new(Control { threads: threads(&given)?, memory: Memory::Percent(80.0).bytes(), ..Control::default() });
     let world = &opened.world;
     let zooms = (given.zoom("-render_samples")?, given.zoom("-render_filter")?);
     for zoom in [zooms.0, zooms.1].into_iter().flatten() {

@@ -56,7 +56,11 @@ pub fn merge(parts: &[(String, Part)]) -> Result<Part, MergeError> {
     let mut missing = String::new();
     merge_samples(parts, &whole, &mut missing)?;
     merge_rays(parts, &whole, &mut missing)?;
-    if missing.is_empty() { Ok(whole) } else { Err(MergeError::Missing(shards_missing(parts) + &missing)) }
+    if missing.is_empty() {
+        Ok(whole)
+    } else {
+        Err(MergeError::Missing((shards_missing(parts) + &missing).trim_end().into()))
+    }
 }
 
 fn merge_samples(parts: &[(String, Part)], whole: &Part, missing: &mut String) -> Result<(), MergeError> {

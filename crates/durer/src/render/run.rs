@@ -2,8 +2,8 @@
 
 use super::error::{Panicked, RenderError};
 use super::part::{Part, Sampled, Traced, film_of, pass_ends};
-use super::samples::{At, Samples, Stopped};
-use super::{Control, Job, Rendered, Shard, rays};
+use super::samples::{At, Samples, Stopped, kept_bytes};
+use super::{BLOCK, Control, Job, Rendered, Shard, rays};
 use crate::bvh::Rays;
 use crate::film::aov::Look;
 use crate::world::World;
@@ -14,9 +14,19 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 use std::sync::{Mutex, PoisonError, mpsc};
 use std::time::{Duration, Instant};
 
-/// Pixels across and down a tile; where samples around a tile are taken for it alone, tiles are larger.
+/// Pixels across and down a tile; where samples around a tile are taken for it alone, tiles are larger, as long as what is kept
+/// for one takes at most so many bytes.
 const TILE: u32 = 16;
 const TILE_WITH_BORDER: u32 = 64;
+const MOST_BYTES: u64 = 64 << 20;
+
+fn usual_tile(job: &Job) -> u32 {
+    if job.sampling.is_local() {
+        return TILE;
+    }
+    let sides = std::iter::successors(Some(TILE_WITH_BORDER), |side| Some(side / 2)).take_while(|&side| side > BLOCK);
+    sides.chain([BLOCK]).find(|&side| kept_bytes(job, side) <= MOST_BYTES).unwrap_or(BLOCK)
+}
 
 /// How often it is looked whether to stop.
 const LOOK: Duration = Duration::from_millis(5);
@@ -78,7 +88,9 @@ impl Part {
         if self.scene != world.digest || self.look != Look::new(&world.rules) {
             return Err(RenderError::OtherScene);
         }
-        let needed = Part::bytes_needed(&self.job, self.shard);
+        let (pool, tile) = (threads(control)?, control.tile.unwrap_or(usual_tile(&self.job)));
+        let kept = kept_bytes(&self.job, tile).saturating_mul(pool.current_num_threads() as u64);
+        let needed = Part::bytes_needed(&self.job, self.shard).saturating_add(kept);
         if let Some(allowed) = control.memory.filter(|&allowed| needed > allowed) {
             return Err(RenderError::Memory { needed, allowed });
         }
@@ -92,11 +104,11 @@ impl Part {
             control,
             samples: Samples::new(world, &self.job, &stop),
             stop: &stop,
+            tile,
             tiles: AtomicU64::new(0),
             panicked: Mutex::new(None),
         };
         let mut clock = Clock { start, last: start, pause: Duration::ZERO, control, stop: &stop, out_of_time: false };
-        let pool = threads(control)?;
         pool.in_place_scope(|scope| {
             let (finished, passes) = mpsc::channel();
             let work = &work;
@@ -177,6 +189,7 @@ struct Work<'a> {
     control: &'a Control,
     samples: Samples<'a>,
     stop: &'a AtomicBool,
+    tile: u32,
     /// Tiles that were begun.
     tiles: AtomicU64,
     panicked: Mutex<Option<Panicked>>,
@@ -190,7 +203,7 @@ impl Work<'_> {
             (block.is_none() && part.shard.has_rays(index)).then_some(index)
         };
         let blocks: Vec<usize> = part.state().rays.iter().enumerate().filter_map(open).collect();
-        let tiles = part.ray_blocks.tiles(blocks.into_iter(), self.control.tile.unwrap_or(TILE));
+        let tiles = part.ray_blocks.tiles(blocks.into_iter(), self.tile);
         self.each(&tiles, |tile, at| {
             let trace =
                 |&index: &usize| rays::trace(self.world, &part.job, &self.samples, part.ray_blocks.rect(index), at);
@@ -214,8 +227,7 @@ impl Work<'_> {
             wanted.then_some(index)
         };
         let blocks: Vec<usize> = part.state().samples.iter().enumerate().filter_map(open).collect();
-        let usual = if part.job.sampling.is_local() { TILE } else { TILE_WITH_BORDER };
-        let tiles = part.blocks.tiles(blocks.into_iter(), self.control.tile.unwrap_or(usual));
+        let tiles = part.blocks.tiles(blocks.into_iter(), self.tile);
         self.each(&tiles, |tile, at| {
             if part.job.sampling.is_local() { self.sample(tile, end, at) } else { self.finish(tile, at) }
         });

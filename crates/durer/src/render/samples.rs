@@ -45,6 +45,19 @@ pub fn sample_diagram(world: &World, job: &Job, control: &Control) -> Result<Sto
     run::threads(control)?.install(work).map_err(|Stopped| RenderError::Cancelled)
 }
 
+/// Bytes of the samples that are kept at once for a tile, where samples count for other pixels too.
+pub(super) fn kept_bytes(job: &Job, side: u32) -> u64 {
+    match job.sampling {
+        Sampling::Course2004 { sampler, samples, filter: Some(filter) } => {
+            let across = u64::from(side) + 2 * u64::from(filter.support());
+            across * across * u64::from(sampler.round_up(samples)) * size_of::<StoredSample>() as u64
+        }
+        // The picture, what is blurred of it along rows, and then along columns.
+        Sampling::Course2012 { .. } => 3 * 9 * 12 * u64::from(side + 2) * u64::from(side + 2),
+        _ => 0,
+    }
+}
+
 /// What the course's ways of sampling are made to show. They know colours only: where the camera sees nothing somewhere,
 /// it is shown a second time, white where the camera sees and black elsewhere.
 #[derive(Default)]
