@@ -3,8 +3,8 @@
 //! Source: Turner Whitted, *An Improved Illumination Model for Shaded Display*, CACM 23(6), 1980, with the
 //! terms of the course.
 
+use super::account::{RayKind, Shadow, Struck, What, Witness};
 use super::spawn::{from_surface, to_light};
-use crate::bvh::Tally;
 use crate::dialect::Compat;
 use crate::light::{Emitter, Illumination};
 use crate::math::{Color, Ray, Vec3, fp, gamma, reflect};
@@ -62,48 +62,107 @@ struct Path {
 
 impl Whitted<'_> {
     /// The light that comes along a camera ray.
-    pub fn radiance<T: Tally>(&self, ray: &Ray, tally: &mut T) -> Color {
-        self.trace(ray, Path { bounces: self.settings.bounces, ior: 1.0, weight: 1.0 }, tally)
+    pub fn radiance<T: Witness>(&self, ray: &Ray, tally: &mut T) -> Color {
+        let path = Path { bounces: self.settings.bounces, ior: 1.0, weight: 1.0 };
+        tally.begin(|| What::Ray { from: RayKind::Camera, ray: ray.into(), weight: 1.0, hit: None });
+        let color = self.trace(ray, path, tally);
+        tally.end(Color::ONE, Color::ONE, color);
+        color
     }
 
-    fn trace<T: Tally>(&self, ray: &Ray, path: Path, tally: &mut T) -> Color {
+    fn trace<T: Witness>(&self, ray: &Ray, path: Path, tally: &mut T) -> Color {
         match self.world.closest(ray, tally) {
             Some(hit) => self.shade(ray, &hit, path, tally),
-            None => self.world.sky(ray.dir),
+            None => {
+                let sky = self.world.sky(ray.dir);
+                tally.begin(|| What::Sky);
+                tally.end(Color::ONE, Color::ONE, sky);
+                sky
+            }
         }
     }
 
     /// The light that leaves a hit against the ray: of each material that makes it up, by its share.
-    fn shade<T: Tally>(&self, ray: &Ray, hit: &Hit, path: Path, tally: &mut T) -> Color {
+    fn shade<T: Witness>(&self, ray: &Ray, hit: &Hit, path: Path, tally: &mut T) -> Color {
         let surface = self.world.surface(ray, hit);
         let from_behind = self.sees_back(ray.dir, &surface);
         let black = from_behind && !self.settings.shade_back && self.world.rules.has(Compat::BlackBacks);
         let n = if from_behind && self.settings.shade_back { -surface.n_shade } else { surface.n_shade };
         let parts = self.world.parts(hit, surface.position);
+        tally.hit(|| self.struck(ray, hit, &surface, n, from_behind, black));
         let mut color = Color::ZERO;
         if !black {
             // A texture or noise is looked up once for all lights.
             let diffuse: SmallVec<[Color; 2]> = parts.iter().map(|p| self.diffuse_color(p.phong, &surface)).collect();
             for (part, &diffuse) in parts.iter().zip(&diffuse) {
                 let met = if part.phong.ambient_textured { diffuse } else { part.phong.diffuse };
-                color += part.share * self.world.ambient * met;
+                let ambient = part.share * self.world.ambient;
+                tally.begin(|| What::Ambient { share: part.share });
+                tally.end(ambient, Color::ONE, met);
+                color += ambient * met;
             }
-            for light in &self.world.lights {
+            for (number, light) in self.world.lights.iter().enumerate() {
                 let seen = light.illuminate(surface.position);
                 let visible = self.visible(&surface, &seen, tally);
-                if visible == Color::ZERO {
-                    continue;
-                }
                 for (part, &diffuse) in parts.iter().zip(&diffuse) {
-                    color += part.share * visible * direct(part.phong, diffuse, n, ray.dir, &seen);
+                    let share = part.share;
+                    tally.begin(|| {
+                        let shadow = self.settings.shadows.then(|| self.shadow(&surface, &seen, visible));
+                        let (to_light, distance) = (seen.to_light, seen.distance);
+                        What::Light { light: number, to_light, distance, share, shadow }
+                    });
+                    // In the dark nothing is computed.
+                    let direct = match visible == Color::ZERO {
+                        true => Color::ZERO,
+                        false => direct(part.phong, diffuse, n, ray.dir, &seen, tally),
+                    };
+                    tally.end(share * visible, seen.color, direct);
+                    color += share * visible * direct;
                 }
             }
         }
         let cancelled = self.cancel.is_some_and(|cancel| cancel.load(Relaxed));
         if path.bounces > 0 && !cancelled {
             color += self.secondary(ray, &surface, &parts, path, tally);
+        } else if parts.iter().any(|part| part.phong.reflective + part.phong.transparent != Color::ZERO) {
+            tally.begin(|| What::Spent);
+            tally.end(Color::ONE, Color::ONE, Color::ZERO);
         }
         color
+    }
+
+    /// What a witness is told of a hit.
+    fn struck(&self, ray: &Ray, hit: &Hit, surface: &Surface, n: Vec3, from_behind: bool, black: bool) -> Struck {
+        let object = &self.world.objects[hit.object as usize];
+        Struck {
+            object: hit.object,
+            part: hit.part,
+            t: hit.t,
+            position: surface.position,
+            n_geo: surface.n_geo,
+            n_shade: surface.n_shade,
+            n,
+            from_behind,
+            black,
+            uv: surface.uv,
+            barycentric: surface.barycentric,
+            local: object.to_world.as_ref().map(|to_world| (&to_world.inverse_ray(ray)).into()),
+            material: object.material,
+        }
+    }
+
+    /// What a witness is told of a shadow ray.
+    fn shadow(&self, surface: &Surface, seen: &Illumination, share: Color) -> Shadow {
+        let ray = self.shadow_ray(surface, seen);
+        let blocker = self.world.closest(&ray, &mut ()).map(|hit| (hit.object, hit.t));
+        Shadow { ray: (&ray).into(), blocker, share }
+    }
+
+    fn shadow_ray(&self, surface: &Surface, seen: &Illumination) -> Ray {
+        let rules = &self.world.rules;
+        // What stands exactly at the light does not block it.
+        let reach = if rules.is_official() { seen.distance } else { seen.distance * (1.0 - gamma(16)) };
+        to_light(surface, seen.to_light, reach, rules.epsilon)
     }
 
     /// Whether a ray meets a surface on the side that its normal does not point to.
@@ -126,14 +185,11 @@ impl Whitted<'_> {
     }
 
     /// The share of a light that arrives: nothing behind a thing, or what transparent things let through.
-    fn visible<T: Tally>(&self, surface: &Surface, seen: &Illumination, tally: &mut T) -> Color {
+    fn visible<T: Witness>(&self, surface: &Surface, seen: &Illumination, tally: &mut T) -> Color {
         if !self.settings.shadows || seen.color == Color::ZERO {
             return Color::ONE;
         }
-        let epsilon = self.world.rules.epsilon;
-        // What stands exactly at the light does not block it.
-        let reach = if self.world.rules.is_official() { seen.distance } else { seen.distance * (1.0 - gamma(16)) };
-        let mut ray = to_light(surface, seen.to_light, reach, epsilon);
+        let mut ray = self.shadow_ray(surface, seen);
         if self.world.rules.has(Compat::ShadowFronts) {
             let nearest = self.world.closest(&ray, tally).map(|hit| self.world.surface(&ray, &hit));
             let blocked = nearest.is_some_and(|blocker| blocker.n_shade.dot(ray.dir) <= 0.0);
@@ -152,13 +208,13 @@ impl Whitted<'_> {
             if share == Color::ZERO {
                 break;
             }
-            ray = from_surface(&blocker, seen.to_light, ray.t_max - hit.t, epsilon);
+            ray = from_surface(&blocker, seen.to_light, ray.t_max - hit.t, self.world.rules.epsilon);
         }
         Color::ZERO
     }
 
     /// Mirrored and transmitted light.
-    fn secondary<T: Tally>(&self, ray: &Ray, surface: &Surface, parts: &[Part], path: Path, tally: &mut T) -> Color {
+    fn secondary<T: Witness>(&self, ray: &Ray, surface: &Surface, parts: &[Part], path: Path, tally: &mut T) -> Color {
         // Weights of a mix are mixed; its index is that of the part that weighs most.
         let (mut reflective, mut transparent, mut ior, mut most, mut fresnel) =
             (Color::ZERO, Color::ZERO, 1.0, 0.0, false);
@@ -183,33 +239,58 @@ impl Whitted<'_> {
         // A mirror without `shade_back` reflects about the normal as it is; the direction is the same.
         let mirrored = reflect(ray.dir, n);
         let transmitted = if transparent == Color::ZERO { None } else { refract(ray.dir, n, here / there) };
+        if reflective == Color::ZERO && transparent == Color::ZERO {
+            return Color::ZERO;
+        }
+        let total = transparent != Color::ZERO && transmitted.is_none();
         // With one of the two left out, the other has all the light.
-        if fresnel && self.settings.reflection && self.settings.refraction {
-            // Total reflection weighs 1.
-            let r = transmitted.map_or(1.0, |t| self.fresnel(ray.dir, n, t, here, there));
+        let divided = fresnel && self.settings.reflection && self.settings.refraction;
+        // Total reflection weighs 1.
+        let r = divided.then(|| transmitted.map_or(1.0, |t| self.fresnel(ray.dir, n, t, here, there)));
+        if let Some(r) = r {
             reflective *= r;
             transparent *= 1.0 - r;
         }
+        tally.begin(|| What::Secondary { here, there, fresnel: r, total });
         let mut color = Color::ZERO;
         if self.settings.reflection {
-            color += self.bounce(surface, mirrored, reflective, Path { ior: path.ior, ..path }, tally);
+            let path = Path { ior: path.ior, ..path };
+            color += self.bounce(RayKind::Reflected, surface, mirrored, reflective, path, tally);
         }
         if let Some(transmitted) = transmitted.filter(|_| self.settings.refraction) {
-            color += self.bounce(surface, transmitted, transparent, Path { ior: there, ..path }, tally);
+            let path = Path { ior: there, ..path };
+            color += self.bounce(RayKind::Transmitted, surface, transmitted, transparent, path, tally);
         }
+        tally.end(Color::ONE, Color::ONE, color);
         color
     }
 
     /// One secondary ray, weighed by a colour.
-    fn bounce<T: Tally>(&self, surface: &Surface, dir: Vec3, weight: Color, path: Path, tally: &mut T) -> Color {
+    fn bounce<T: Witness>(
+        &self,
+        from: RayKind,
+        surface: &Surface,
+        dir: Vec3,
+        weight: Color,
+        path: Path,
+        tally: &mut T,
+    ) -> Color {
+        if weight.max_element() <= 0.0 {
+            return Color::ZERO;
+        }
         // The course takes the length of the colour, which for grey is more than what is left of the light.
         let old = self.world.rules.is_official();
         let total = path.weight * if old { weight.length() } else { weight.max_element() };
-        if weight.max_element() <= 0.0 || total < self.settings.least_weight {
+        if total < self.settings.least_weight {
+            tally.begin(|| What::Cut { weight: total });
+            tally.end(weight, Color::ONE, Color::ZERO);
             return Color::ZERO;
         }
         let ray = from_surface(surface, dir, f32::INFINITY, self.world.rules.epsilon);
-        weight * self.trace(&ray, Path { bounces: path.bounces - 1, weight: total, ..path }, tally)
+        tally.begin(|| What::Ray { from, ray: (&ray).into(), weight: total, hit: None });
+        let color = self.trace(&ray, Path { bounces: path.bounces - 1, weight: total, ..path }, tally);
+        tally.end(weight, Color::ONE, color);
+        weight * color
     }
 
     /// The mirrored share, by Schlick's approximation: R0 + (1 - R0) (1 - c)^5.
@@ -228,8 +309,10 @@ impl Whitted<'_> {
 }
 
 /// Diffuse term and highlight of one light.
-fn direct(phong: &Phong, diffuse: Color, n: Vec3, view: Vec3, seen: &Illumination) -> Color {
+fn direct<T: Witness>(phong: &Phong, diffuse: Color, n: Vec3, view: Vec3, seen: &Illumination, tally: &mut T) -> Color {
     let cosine = n.dot(seen.to_light);
+    tally.begin(|| What::Diffuse { cosine });
+    tally.end(Color::splat(cosine.max(0.0)), Color::ONE, diffuse);
     let mut color = cosine.max(0.0) * diffuse;
     if let Some((specular, exponent, model)) = phong.highlight {
         let base = match model {
@@ -237,7 +320,10 @@ fn direct(phong: &Phong, diffuse: Color, n: Vec3, view: Vec3, seen: &Illuminatio
             HighlightModel::Phong { behind } => (behind || cosine > 0.0).then(|| reflect(view, n).dot(seen.to_light)),
         };
         if let Some(base) = base {
-            color += fp::pow(base.max(0.0), exponent) * specular;
+            let strength = fp::pow(base.max(0.0), exponent);
+            tally.begin(|| What::Highlight { model: What::highlight(model), base, exponent });
+            tally.end(Color::splat(strength), Color::ONE, specular);
+            color += strength * specular;
         }
     }
     color * seen.color

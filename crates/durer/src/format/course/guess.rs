@@ -109,6 +109,9 @@ pub fn guess(bytes: &[u8], file: u32, hints: &[Hint], exists: &dyn Fn(&str) -> b
 }
 
 fn names(set: DialectSet) -> String {
+    if set & set::ALL == set::CLASSIC {
+        return "the years before 2020".into();
+    }
     let names: Vec<&str> =
         Dialect::ALL.iter().filter(|d| d.is_in(set) && **d != Dialect::Durer).map(|d| d.name()).collect();
     if names.is_empty() { Dialect::Durer.name().into() } else { names.join(", ") }

@@ -3,6 +3,7 @@
 use super::*;
 use crate::compile::{AccelKind, testing};
 use crate::dialect::Dialect;
+use crate::integrator::{Account, Node};
 use crate::math::random::Random;
 use std::path::Path;
 
@@ -261,4 +262,47 @@ fn black_backs_are_black_only_where_that_is_asked_for() {
     assert_eq!(below(Dialect::F04, true), 1.5);
     assert_eq!(below(Dialect::Durer, false), 0.5);
     assert_eq!(below(Dialect::Durer, true), 1.5);
+}
+
+/// Every node below is the sum of its terms, to the bit.
+#[track_caller]
+fn adds_up(node: &Node) {
+    assert_eq!(node.sum(), node.value, "{node:?}");
+    node.terms.iter().for_each(adds_up);
+}
+
+#[test]
+fn an_account_adds_up_to_the_light_that_is_found_without_it() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
+    let mut random = Random(11);
+    let mut kinds = std::collections::BTreeMap::new();
+    for name in ["whitted", "glass", "mirrors", "solid-textures", "smooth-mesh", "globe", "highlights"] {
+        let text = std::fs::read_to_string(folder.join(name).with_extension("txt")).unwrap();
+        for dialect in [Dialect::Durer, Dialect::F04, Dialect::F12a5] {
+            let (world, findings) = testing::try_read(&text, dialect.rules(), AccelKind::Bvh, &folder);
+            let world = world.unwrap_or_else(|| panic!("{findings:?}"));
+            let settings =
+                Settings { bounces: 5, transparent_shadows: random.below(2) == 0, least_weight: 0.01, ..ALL };
+            let whitted = Whitted { world: &world, settings, cancel: None };
+            for _ in 0..60 {
+                let forward = world.frame.forward + 0.3 * random.direction();
+                let ray = Ray::new(world.frame.eye, forward.normalize());
+                let (mut account, mut counts) = (Account::default(), crate::bvh::Counts::default());
+                let color = whitted.radiance(&ray, &mut account);
+                assert_eq!(color, whitted.radiance(&ray, &mut counts));
+                let tree = account.into_tree().unwrap();
+                assert_eq!(tree.value, color);
+                adds_up(&tree);
+                count(&tree, &mut kinds);
+            }
+        }
+    }
+    let known = ["ambient", "cut", "diffuse", "highlight", "light", "ray", "secondary", "sky", "spent"];
+    assert_eq!(kinds.keys().map(String::as_str).collect::<Vec<_>>(), known);
+}
+
+fn count(node: &Node, kinds: &mut std::collections::BTreeMap<String, u32>) {
+    let json = serde_json::to_value(&node.what).unwrap();
+    *kinds.entry(json["kind"].as_str().unwrap().into()).or_default() += 1;
+    node.terms.iter().for_each(|node| count(node, kinds));
 }
