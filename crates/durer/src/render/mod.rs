@@ -15,6 +15,8 @@ mod replay;
 mod run;
 mod samples;
 mod saved;
+#[cfg(test)]
+mod tests;
 pub mod verify;
 
 pub use blocks::{BLOCK, Blocks, Shard, ShardBy};
