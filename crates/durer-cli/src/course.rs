@@ -18,11 +18,12 @@ use durer::film::aov::Aov;
 use durer::film::course::CourseFilter;
 use durer::image::{Format, Layer, Transfer, check_target, format_for};
 use durer::integrator::Settings;
-use durer::render::{Control, Job, Sampling};
+use durer::render::{Control, Job, RenderError, Sampling};
 use durer::sampler::Sampler;
 use options::{Given, PROGRAMS, usage};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::sync::atomic::Ordering::Relaxed;
 
 pub fn run(arguments: Vec<String>, program_name: Option<&'static Program>) -> Result<(), Failure> {
     if arguments.is_empty() || arguments.iter().any(|a| a == "--help" || a == "-h" || a == "-help") {
@@ -56,6 +57,10 @@ pub fn run(arguments: Vec<String>, program_name: Option<&'static Program>) -> Re
         Ok((rendered, grid.map(|image| Layer::color("color", image)), [samples, filter]))
     })
     .map_err(failure)?;
+    // It may have come when all was done already: it was asked for all the same.
+    if control.cancel.load(Relaxed) {
+        return Err(failure(RenderError::Cancelled));
+    }
     rejected(&rendered.statistics, quiet);
     if given.has("-stats") {
         stats(&opened, &control);
@@ -232,6 +237,6 @@ fn threads(given: &Given) -> Result<Option<usize>, Failure> {
 
 /// `-stats`.
 fn stats(opened: &Opened, control: &Control) {
-    let rays = control.rays.load(std::sync::atomic::Ordering::Relaxed);
+    let rays = control.rays.load(Relaxed);
     say(&format!("objects {}, rays {rays}", opened.world.objects.len()));
 }

@@ -30,7 +30,10 @@ pub fn hear_interrupts() {
     let handler = || match &mut *phase() {
         Phase::Rendering(control) if !control.cancel.swap(true, Relaxed) => {}
         Phase::Saving(asked @ false) => *asked = true,
-        _ => std::process::exit(i32::from(Failure::Interrupted("nothing was written".into()).report())),
+        phase => {
+            let what = if matches!(phase, Phase::Harmless) { "nothing was written" } else { "not all was saved" };
+            std::process::exit(i32::from(Failure::Interrupted(what.into()).report()))
+        }
     };
     // Where there can be no handler, Ctrl-C ends the program as it ends others.
     let _ = ctrlc::set_handler(handler);

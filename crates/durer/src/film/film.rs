@@ -101,20 +101,20 @@ impl Film {
         let index = self.index(x, y).expect("the pixel lies in the film's window");
         let weight = f64::from(weight) * WEIGHT_SCALE;
         // At most 24 significant bits are left of the weight, so each product below is exact before its rounding.
-        let (whole, rgb) = (weight.round_ties_even(), color.to_array().map(f64::from));
+        let (whole, rgb) = (rounded(weight), color.to_array().map(f64::from));
         if !(whole.abs() <= GREATEST_WEIGHT * WEIGHT_SCALE && rgb.iter().all(|c| c.abs() <= GREATEST_COLOR)) {
             return self.reject(Rejected { y, x, sample });
         }
         let pixel = &mut self.pixels[index];
         for (sum, c) in pixel.color.iter_mut().zip(rgb) {
-            *sum = sum.wrapping_add((c * (whole / WEIGHT_SCALE) * COLOR_SCALE).round_ties_even() as i128);
+            *sum = sum.wrapping_add(whole_number(c * (whole / WEIGHT_SCALE) * COLOR_SCALE));
         }
         let luminance = luminance(rgb).clamp(-GREATEST_LUMINANCE, GREATEST_LUMINANCE);
-        let luminance = (luminance * LUMINANCE_SCALE).round_ties_even() as i64;
+        let luminance = rounded(luminance * LUMINANCE_SCALE) as i64;
         pixel.luminance = pixel.luminance.wrapping_add(luminance);
         pixel.squares = pixel.squares.wrapping_add(i128::from(luminance) * i128::from(luminance));
         pixel.weight = pixel.weight.wrapping_add(whole as i64);
-        pixel.covered = pixel.covered.wrapping_add((whole * f64::from(share)).round_ties_even() as i64);
+        pixel.covered = pixel.covered.wrapping_add(rounded(whole * f64::from(share)) as i64);
         pixel.samples += 1;
     }
 
@@ -271,4 +271,19 @@ impl Film {
 /// The luminance of a colour.
 pub fn luminance([r, g, b]: [f64; 3]) -> f64 {
     LUMINANCE[0] * r + LUMINANCE[1] * g + LUMINANCE[2] * b
+}
+
+/// A number to the nearest whole one, ties to even.
+///
+/// Where there is no instruction for it, this is a call; but between -2^51 and 2^51 two additions do the same, as they round to
+/// what has no bits below 1.
+fn rounded(x: f64) -> f64 {
+    const MAGIC: f64 = 3.0 * (1_u64 << 51) as f64;
+    if x.abs() < (1_u64 << 51) as f64 { (x + MAGIC) - MAGIC } else { x.round_ties_even() }
+}
+
+/// The same as an integer; small numbers are converted by one instruction.
+fn whole_number(x: f64) -> i128 {
+    let x = rounded(x);
+    if x.abs() < (1_u64 << 62) as f64 { i128::from(x as i64) } else { x as i128 }
 }

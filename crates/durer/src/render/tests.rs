@@ -117,19 +117,20 @@ fn a_crop_is_cut_from_the_whole_picture() {
 #[test]
 fn noise_decides_where_samples_are_taken() {
     let world = world();
-    let job = Job { sampling: filtered(256), noise: Some(0.01), width: 64, height: 64, ..Job::default() };
+    let noise = 0.004;
+    let job = Job { sampling: filtered(256), noise: Some(noise), width: 40, height: 40, ..Job::default() };
     let part = all(&world, &Job { aovs: vec![Aov::from_name("sample-count").unwrap()], ..job.clone() });
     assert!(part.is_finished());
     let counts: Vec<f32> = part.pictures().unwrap().layers[1].image.pixels.iter().map(|p| p.x).collect();
     let (least, most) = counts.iter().fold((f32::MAX, 0.0_f32), |(a, b), &n| (a.min(n), b.max(n)));
-    assert!(least == passes::LEAST as f32 && most > 2.0 * least, "{least} {most}");
+    assert!(least == passes::LEAST as f32 && most >= 3.0 * least, "{least} {most}");
     // The error is what was asked for: against a picture of many more samples, pixel by pixel in sqrt(Y).
     let truth = all(&world, &Job { sampling: filtered(1024), noise: None, ..job.clone() }).pictures().unwrap();
     let (ours, truth) = (&part.pictures().unwrap().layers[0].image, &truth.layers[0].image);
     let seen = |p: &Vec3| (0.2126 * p.x + 0.7152 * p.y + 0.0722 * p.z).max(1.0 / 256.0).sqrt();
     let squares: f32 = ours.pixels.iter().zip(&truth.pixels).map(|(a, b)| (seen(a) - seen(b)).powi(2)).sum();
     let error = (squares / ours.pixels.len() as f32).sqrt();
-    assert!(error < 0.01, "{error}");
+    assert!(error < noise, "{error}");
 }
 
 #[test]
@@ -198,8 +199,8 @@ fn parts_come_back_from_bytes_and_no_bytes_harm() {
     }
     assert!(matches!(Part::read(b"P6 1 1 255 ..."), Err(PartError::NotAPart)));
     // With a right checksum, anything may be in it: an error or a part, whose pictures can be made.
-    for at in 8..bytes.len() - 32 {
-        for new in [0, 1, 0x7f, 0x80, 0xff, bytes[at] ^ 4] {
+    for at in (8..bytes.len() - 32).filter(|at| *at < 1500 || at % 7 == 0) {
+        for new in [0, 0x80, 0xff, bytes[at] ^ 4] {
             let mut changed = bytes[..bytes.len() - 32].to_vec();
             changed[at] = new;
             changed.extend(Digest::of(&changed).0);
@@ -263,16 +264,17 @@ fn a_panic_is_an_error_that_knows_its_sample_and_the_rest_is_kept() {
 #[test]
 fn time_and_cancel_stop_soon_and_the_watcher_is_called() {
     let world = world();
-    let job = Job { sampling: filtered(1 << 20), width: 256, height: 256, ..Job::default() };
+    let job = Job { sampling: filtered(1 << 20), width: 64, height: 64, ..Job::default() };
     let (mut passes, mut saves) = (0, 0);
     let mut watch = |part: &Part, moment| {
         assert!(part.work().1 > 0);
         *if moment == Moment::PassDone { &mut passes } else { &mut saves } += 1;
     };
     let part = Part::new(&world, &job, Shard::WHOLE).unwrap();
-    let every = Some(Duration::from_millis(20));
-    let control = Control { time: Some(Duration::from_millis(300)), save_every: every, ..Control::default() };
-    assert_eq!(part.render(&world, &control, &mut watch).unwrap(), Stop::OutOfTime);
+    for save_every in [None, Some(Duration::from_millis(20))] {
+        let control = Control { time: Some(Duration::from_millis(300)), save_every, ..Control::default() };
+        assert_eq!(part.render(&world, &control, &mut watch).unwrap(), Stop::OutOfTime);
+    }
     assert!(passes > 0 && saves > 0, "{passes} {saves}");
     assert!(part.is_whole() && !part.is_finished());
     let control = Control::default();
