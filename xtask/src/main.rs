@@ -3,6 +3,7 @@
 mod build;
 mod cost;
 mod course;
+mod solids;
 mod torture;
 mod verify;
 
@@ -22,6 +23,9 @@ const USAGE: &str = "Commands:
       disks that cannot be written.
   cargo xtask cost
       What exact sums cost, what a second thread brings, how soon a cancelled render ends.
+  cargo xtask solids
+      A million random points against the Boolean of the parts of random solids, and the cost of rays at solids of a
+      thousand parts beside that at the same parts as plain objects.
 The course is found in ../shared, or where DURER_CORPUS says.";
 
 fn main() -> anyhow::Result<ExitCode> {
@@ -31,6 +35,7 @@ fn main() -> anyhow::Result<ExitCode> {
         Some("verify") => verify::run(&arguments[1..]),
         Some("torture") => torture::run(&arguments[1..]),
         Some("cost") => cost::run(&arguments[1..]),
+        Some("solids") => solids::run(),
         _ => {
             println!("{USAGE}");
             Ok(ExitCode::from(2))

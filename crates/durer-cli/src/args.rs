@@ -30,7 +30,8 @@ pub struct Cli {
 
 #[derive(Subcommand)]
 pub enum Command {
-    Render(Box<RenderArgs>),
+    Render(Box<RenderCommand>),
+    Explain(Box<ExplainArgs>),
     Merge(MergeArgs),
     Verify(Box<VerifyArgs>),
     Course(CourseArgs),
@@ -87,6 +88,19 @@ as layers, or into files of their own: picture.depth.png and so on.
 
 Work that takes long is saved every now and then into PICTURE.part, which --resume goes on with; it is removed
 when the picture is done. Ctrl-C saves what is there.")]
+pub struct RenderCommand {
+    #[command(flatten)]
+    pub render: RenderArgs,
+    /// Print what one pixel sees, and write nothing
+    #[arg(long, value_name = "X,Y", value_parser = pixel)]
+    pub pixel: Option<(u32, u32)>,
+    /// Of that pixel, only this sample
+    #[arg(long, value_name = "NUMBER", requires = "pixel")]
+    pub sample: Option<u32>,
+}
+
+/// What is rendered, how, and whereto
+#[derive(Args)]
 pub struct RenderArgs {
     /// The scene file
     pub scene: PathBuf,
@@ -219,12 +233,6 @@ pub struct WorkArgs {
     /// Whether parts have different pixels or different samples
     #[arg(long, value_name = "WHAT", default_value = "tiles", value_parser = ["tiles", "samples"], requires = "shard")]
     pub shard_by: String,
-    /// Print what one pixel sees, and write nothing
-    #[arg(long, value_name = "X,Y", value_parser = pixel)]
-    pub pixel: Option<(u32, u32)>,
-    /// Of that pixel, only this sample
-    #[arg(long, value_name = "NUMBER", requires = "pixel")]
-    pub sample: Option<u32>,
 }
 
 /// Put parts of a picture together
@@ -274,6 +282,43 @@ pub struct VerifyArgs {
     /// Print the hash alone
     #[arg(short, long)]
     pub quiet: bool,
+}
+
+/// Say why a pixel has its colour: the tree of terms that sums to it
+#[derive(Args)]
+#[command(after_help = "Examples:
+  durer explain scene.txt --pixel 200,150
+  durer explain scene.txt --pixel 200,150 --sample 3 --size 640x480 --bounces 2
+  durer explain scene.txt --brightest --html why.html
+  durer explain scene.txt --ray '0 1 5 0 0 -1' --json
+
+Give the options with which the picture was rendered: they decide the pixel. Those that only say where a picture goes
+change nothing here. With one sample the pixel's centre is explained.")]
+pub struct ExplainArgs {
+    #[command(flatten)]
+    pub render: RenderArgs,
+
+    /// The pixel, counted from 0 at the upper left corner
+    #[arg(long, value_name = "X,Y", value_parser = pixel, conflicts_with_all = ["ray", "brightest", "worst"])]
+    pub pixel: Option<(u32, u32)>,
+    /// The sample whose tree is shown [default: the first]
+    #[arg(long, value_name = "N")]
+    pub sample: Option<u32>,
+    /// Any ray instead of a pixel's: origin and direction
+    #[arg(long, value_name = "OX OY OZ DX DY DZ", value_delimiter = ' ', num_args = 1..=6, allow_negative_numbers = true, conflicts_with_all = ["brightest", "worst", "sample"])]
+    pub ray: Option<Vec<f32>>,
+    /// The brightest pixel of the picture
+    #[arg(long, conflicts_with = "worst")]
+    pub brightest: bool,
+    /// The pixel least like those around it: fireflies, specks
+    #[arg(long)]
+    pub worst: bool,
+    /// As JSON
+    #[arg(long, conflicts_with = "html")]
+    pub json: bool,
+    /// As a page with the picture, the tree and the rays in space
+    #[arg(long, value_name = "FILE")]
+    pub html: Option<PathBuf>,
 }
 
 /// Take the arguments of the course's own programs, of any year
@@ -357,7 +402,7 @@ fn noise(text: &str) -> Result<f32, String> {
 
 fn pixel(text: &str) -> Result<(u32, u32), String> {
     let numbers = text.split_once(',').and_then(|(x, y)| Some((x.trim().parse().ok()?, y.trim().parse().ok()?)));
-    numbers.ok_or_else(|| "say it as 10,20: column and row from the upper left corner".into())
+    numbers.ok_or_else(|| "say it as 200,150: column and row from the upper left corner".into())
 }
 
 fn size(text: &str) -> Result<(u32, u32), String> {

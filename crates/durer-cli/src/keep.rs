@@ -36,7 +36,7 @@ impl Keeper {
         let beside = || (!output.starts_with("/dev")).then(|| lengthened(output, ".part"));
         let path = match () {
             () if work.shard.is_some() => Some(output.to_path_buf()),
-            () if work.no_checkpoint || work.pixel.is_some() => None,
+            () if work.no_checkpoint => None,
             () => work.checkpoint.clone().or_else(beside),
         };
         if let Some(path) = path.as_ref().filter(|_| work.checkpoint.is_some() || work.resume) {

@@ -4,6 +4,7 @@ mod args;
 mod convert;
 mod course;
 mod diagrams;
+mod explain;
 mod info;
 mod job;
 mod keep;
@@ -44,6 +45,7 @@ fn main() -> ExitCode {
             Command::Render(args) => render::run(&args),
             Command::Merge(args) => merge::run(&args),
             Command::Verify(args) => verify::run(&args),
+            Command::Explain(args) => explain::run(&args),
             Command::Course(args) => course::run(args.arguments, None),
             Command::Info(args) => info::run(&args),
             Command::Convert(args) => convert::run(&args),

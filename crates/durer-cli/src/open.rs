@@ -12,6 +12,7 @@ use std::path::Path;
 pub struct Opened {
     pub loaded: Loaded,
     pub world: World,
+    pub files: Files,
 }
 
 /// A scene that was read; what is found is printed when it is compiled.
@@ -42,7 +43,7 @@ impl Read {
             report::note(&guess.note());
         }
         report::print(&self.files, &self.diagnostics, self.quiet);
-        Ok(Opened { loaded: self.loaded, world: world.ok_or(Failure::Input(None))? })
+        Ok(Opened { loaded: self.loaded, world: world.ok_or(Failure::Input(None))?, files: self.files })
     }
 }
 

@@ -1,6 +1,6 @@
 //! `durer render`.
 
-use crate::args::{DIAGRAMS, RenderArgs};
+use crate::args::{DIAGRAMS, RenderArgs, RenderCommand};
 use crate::keep::Keeper;
 use crate::open::{load_options, read};
 use crate::output::{Target, lengthened, say};
@@ -12,7 +12,8 @@ use durer::world::World;
 use std::path::Path;
 use std::sync::Arc;
 
-pub fn run(args: &RenderArgs) -> Result<(), Failure> {
+pub fn run(command: &RenderCommand) -> Result<(), Failure> {
+    let args = &command.render;
     let shard = match args.work.shard {
         Some(shard) if args.work.shard_by == "samples" => Shard { by: ShardBy::Samples, ..shard },
         shard => shard.unwrap_or(Shard::WHOLE),
@@ -21,7 +22,7 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
     let output = args.output.clone().unwrap_or_else(default_name);
     // What is known to prevent writing is better known before the work.
     let target = match args.work.shard {
-        _ if args.work.pixel.is_some() => None,
+        _ if command.pixel.is_some() => None,
         Some(_) => check_target(&output).map(|()| None)?,
         None => Some(Target::new(output.clone(), &shows(args)?)?),
     };
@@ -47,8 +48,8 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
         memory,
         ..Control::default()
     });
-    if let Some(pixel) = args.work.pixel {
-        return print_pixel(args, &opened.world, &job, &control, pixel);
+    if let Some(pixel) = command.pixel {
+        return print_pixel(&opened.world, &job, &control, pixel, command.sample);
     }
     if args.job.show.iter().any(|show| DIAGRAMS.contains(&show.as_str())) {
         if target.is_none() {
@@ -125,14 +126,14 @@ fn replaying(panicked: &Panicked) -> String {
 
 /// `--pixel`.
 fn print_pixel(
-    args: &RenderArgs,
     world: &World,
     job: &Job,
     control: &Control,
     pixel: (u32, u32),
+    sample: Option<u32>,
 ) -> Result<(), Failure> {
-    let color = replay(world, job, control, pixel, args.work.sample).map_err(failure)?;
-    let sample = args.work.sample.map(|sample| format!(", sample {sample}")).unwrap_or_default();
+    let color = replay(world, job, control, pixel, sample).map_err(failure)?;
+    let sample = sample.map(|sample| format!(", sample {sample}")).unwrap_or_default();
     let shown = color.map_or("the camera sees nothing there".into(), |c| format!("{:?} {:?} {:?}", c.x, c.y, c.z));
     say(&format!("pixel {},{}{sample}: {shown}", pixel.0, pixel.1));
     Ok(())

@@ -83,7 +83,7 @@ fn one_pixel_is_told_alone() {
     place.refused(2, &format!("{options} --sample 4"), &["samples from 0 to 3"]);
     place.refused(2, "render scene.txt --size 40x30 --pixel 40,0", &["pixel 40,0 is not in the picture"]);
     place.refused(2, "render scene.txt --sample 3", &["--pixel"]);
-    place.refused(2, "render scene.txt --pixel 3", &["10,20"]);
+    place.refused(2, "render scene.txt --pixel 3", &["200,150"]);
 }
 
 #[test]

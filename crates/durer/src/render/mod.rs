@@ -3,6 +3,7 @@
 mod blocks;
 mod control;
 mod error;
+pub mod explain;
 mod eye;
 mod grid;
 mod job;

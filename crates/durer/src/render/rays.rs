@@ -26,7 +26,7 @@ pub(super) fn trace(world: &World, job: &Job, samples: &Samples, rect: Crop, at:
         if cost_wanted {
             samples.whitted.radiance(&ray, &mut counts);
         }
-        let material = hit.map_or(0, |(hit, _)| world.objects[hit.object as usize].material);
+        let material = hit.map_or(0, |(hit, _)| world.material(&hit));
         let albedo = hit.map_or(Vec3::ZERO, |(hit, surface)| samples.whitted.albedo(&hit, &surface));
         rays.0 += counts.rays;
         seen.push(Seen { covered: true, hit, material, albedo, counts });

@@ -277,7 +277,7 @@ impl<'a> Samples<'a> {
             }
             let Some(ray) = center_ray(world, &self.raster, (x, y)) else { continue };
             let Some(hit) = world.closest(&ray, &mut ()) else { continue };
-            let material = world.objects[hit.object as usize].material;
+            let material = world.material(&hit);
             let Material::Phong(phong) = &world.materials[material as usize] else { continue };
             let texel = self.whitted.diffuse_color(phong, &world.surface(&ray, &hit));
             let before = last[material as usize].replace(texel).unwrap_or(phong.diffuse);

@@ -128,7 +128,8 @@ fn noise_decides_where_samples_are_taken() {
     let truth = all(&world, &Job { sampling: filtered(1024), noise: None, ..job.clone() }).pictures().unwrap();
     let (ours, truth) = (&part.pictures().unwrap().layers[0].image, &truth.layers[0].image);
     let seen = |p: &Vec3| (0.2126 * p.x + 0.7152 * p.y + 0.0722 * p.z).max(1.0 / 256.0).sqrt();
-    let squares: f32 = ours.pixels.iter().zip(&truth.pixels).map(|(a, b)| (seen(a) - seen(b)).powi(2)).sum();
+    let differences = ours.pixels.iter().zip(&truth.pixels).map(|(a, b)| seen(a) - seen(b));
+    let squares: f32 = differences.map(|difference| difference * difference).sum();
     let error = (squares / ours.pixels.len() as f32).sqrt();
     assert!(error < noise, "{error}");
 }
