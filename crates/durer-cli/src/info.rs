@@ -2,8 +2,8 @@
 
 use crate::Failure;
 use crate::args::InfoArgs;
+use crate::open::{load_options, open};
 use crate::output::say;
-use crate::render::{load_options, open};
 use durer::camera::{Lens, Raster};
 use durer::describe::DescribedList;
 use durer::world::{Accel, Geometry, MeshTree, World};

@@ -3,13 +3,20 @@
 mod args;
 mod convert;
 mod course;
+mod diagrams;
 mod explain;
 mod info;
+mod job;
+mod keep;
 mod manual;
+mod memory;
+mod merge;
+mod open;
 mod output;
 mod progress;
 mod render;
 mod report;
+mod verify;
 
 use args::{Cli, Command};
 use clap::Parser;
@@ -36,6 +43,8 @@ fn main() -> ExitCode {
             .and_then(|arguments| course::run(arguments, Some(program))),
         None => match Cli::parse().command {
             Command::Render(args) => render::run(&args),
+            Command::Merge(args) => merge::run(&args),
+            Command::Verify(args) => verify::run(&args),
             Command::Explain(args) => explain::run(&args),
             Command::Course(args) => course::run(args.arguments, None),
             Command::Info(args) => info::run(&args),
@@ -57,8 +66,8 @@ enum Failure {
     Input(Option<String>),
     /// Something else went wrong.
     Other(anyhow::Error),
-    /// The user stopped it.
-    Interrupted,
+    /// The user stopped it; says what became of the work.
+    Interrupted(String),
 }
 
 impl Failure {
@@ -75,8 +84,8 @@ impl Failure {
                 report::complain(&format!("error: {error}"));
                 OTHER_FAILURE
             }
-            Failure::Interrupted => {
-                report::complain("interrupted; nothing was written");
+            Failure::Interrupted(what) => {
+                report::complain(&format!("interrupted; {what}"));
                 INTERRUPTED
             }
         }

@@ -8,6 +8,7 @@ mod formats;
 mod limits;
 mod read;
 mod save;
+mod temporary;
 mod transfer;
 
 #[cfg(test)]
