@@ -103,7 +103,7 @@ fn one(pair: Pair, options: &Options, page: bool) -> Compared {
     let Some(path) = &pair.picture else {
         return Compared { pair, outcome: Outcome::Missing, shown: None };
     };
-    let (reference, picture) = rayon_join(|| read(&pair.reference), || read(path));
+    let (reference, picture) = both(|| read(&pair.reference), || read(path));
     let compared = reference.and_then(|reference| {
         let picture = picture?;
         let found = compare(&reference, &picture, options)
@@ -118,7 +118,7 @@ fn one(pair: Pair, options: &Options, page: bool) -> Compared {
 }
 
 /// Runs two things at once.
-fn rayon_join<A: Send, B: Send>(a: impl FnOnce() -> A + Send, b: impl FnOnce() -> B + Send) -> (A, B) {
+fn both<A: Send, B: Send>(a: impl FnOnce() -> A + Send, b: impl FnOnce() -> B + Send) -> (A, B) {
     std::thread::scope(|scope| {
         let other = scope.spawn(b);
         let a = a();
