@@ -28,6 +28,7 @@ pub struct Cli {
 #[derive(Subcommand)]
 pub enum Command {
     Render(Box<RenderArgs>),
+    Explain(Box<ExplainArgs>),
     Course(CourseArgs),
     Info(InfoArgs),
     Convert(ConvertArgs),
@@ -163,6 +164,43 @@ pub struct RenderArgs {
     pub quiet: bool,
 }
 
+/// Say why a pixel has its colour: the tree of terms that sums to it
+#[derive(Args)]
+#[command(after_help = "Examples:
+  durer explain scene.txt --pixel 200,150
+  durer explain scene.txt --pixel 200,150 --sample 3 --size 640x480 --bounces 2
+  durer explain scene.txt --brightest --html why.html
+  durer explain scene.txt --ray '0 1 5 0 0 -1' --json
+
+Give the options with which the picture was rendered: they decide the pixel. Those that only say where a picture goes
+change nothing here. With one sample the pixel's centre is explained.")]
+pub struct ExplainArgs {
+    #[command(flatten)]
+    pub render: RenderArgs,
+
+    /// The pixel, counted from 0 at the upper left corner
+    #[arg(long, value_name = "X,Y", value_parser = pixel, conflicts_with_all = ["ray", "brightest", "worst"])]
+    pub pixel: Option<(u32, u32)>,
+    /// The sample whose tree is shown [default: the first]
+    #[arg(long, value_name = "N")]
+    pub sample: Option<u32>,
+    /// Any ray instead of a pixel's: origin and direction
+    #[arg(long, value_name = "OX OY OZ DX DY DZ", value_delimiter = ' ', num_args = 1..=6, allow_negative_numbers = true, conflicts_with_all = ["brightest", "worst", "sample"])]
+    pub ray: Option<Vec<f32>>,
+    /// The brightest pixel of the picture
+    #[arg(long, conflicts_with = "worst")]
+    pub brightest: bool,
+    /// The pixel least like those around it: fireflies, specks
+    #[arg(long)]
+    pub worst: bool,
+    /// As JSON
+    #[arg(long, conflicts_with = "html")]
+    pub json: bool,
+    /// As a page with the picture, the tree and the rays in space
+    #[arg(long, value_name = "FILE")]
+    pub html: Option<PathBuf>,
+}
+
 /// Take the arguments of the course's own programs, of any year
 #[derive(Args)]
 #[command(
@@ -283,6 +321,11 @@ fn size(text: &str) -> Result<(u32, u32), String> {
     };
     let size: (u32, u32) = parse().ok_or("say it as 640x480")?;
     if size.0 == 0 || size.1 == 0 { Err("a picture has at least one pixel".into()) } else { Ok(size) }
+}
+
+fn pixel(text: &str) -> Result<(u32, u32), String> {
+    let (x, y) = text.split_once(',').ok_or("say it as 200,150")?;
+    x.trim().parse().ok().zip(y.trim().parse().ok()).ok_or_else(|| "say it as 200,150".into())
 }
 
 fn crop(text: &str) -> Result<(u32, u32, u32, u32), String> {

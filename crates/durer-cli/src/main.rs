@@ -4,6 +4,7 @@ mod args;
 mod compare;
 mod convert;
 mod course;
+mod explain;
 mod info;
 mod manual;
 mod output;
@@ -38,6 +39,7 @@ fn main() -> ExitCode {
             .and_then(|arguments| course::run(arguments, Some(program))),
         None => match Cli::parse().command {
             Command::Render(args) => render::run(&args),
+            Command::Explain(args) => explain::run(&args),
             Command::Course(args) => course::run(args.arguments, None),
             Command::Info(args) => info::run(&args),
             Command::Convert(args) => convert::run(&args),

@@ -24,6 +24,7 @@ use std::sync::Arc;
 pub struct Opened {
     pub loaded: Loaded,
     pub world: World,
+    pub files: Files,
 }
 
 /// Reads and compiles a scene; prints what is found.
@@ -32,13 +33,14 @@ pub fn open(path: &Path, options: &LoadOptions, quiet: bool) -> Result<Opened, F
     let loaded = load(path, options, &mut files, &mut diagnostics).map_err(report::unreadable)?;
     let opened = loaded.and_then(|loaded| {
         let world = loaded.compile(options, &mut files, &mut diagnostics)?;
-        Some(Opened { loaded, world })
+        Some((loaded, world))
     });
-    if let (Some(guess), false) = (opened.as_ref().and_then(|o| o.loaded.guess.as_ref()), quiet) {
+    if let (Some(guess), false) = (opened.as_ref().and_then(|(loaded, _)| loaded.guess.as_ref()), quiet) {
         report::note(&guess.note());
     }
     report::print(&files, &diagnostics, quiet);
-    opened.ok_or(Failure::Input(None))
+    let (loaded, world) = opened.ok_or(Failure::Input(None))?;
+    Ok(Opened { loaded, world, files })
 }
 
 /// What the options about reading say.
@@ -112,7 +114,8 @@ pub fn rejected(rendered: &Rendered, quiet: bool) {
     }
 }
 
-fn job(args: &RenderArgs, opened: &Opened) -> Result<Job, Failure> {
+/// What the options and the scene say of the picture.
+pub fn job(args: &RenderArgs, opened: &Opened) -> Result<Job, Failure> {
     let rules = &opened.loaded.rules;
     // Ours is a dialect like others to ask for, but not an old program.
     let asked = opened.loaded.guess.is_none() && opened.loaded.dialect != Dialect::Durer;

@@ -6,7 +6,7 @@ use crate::diag::{Diagnostic, Diagnostics, Severity};
 use crate::dialect::{Compat, Rules};
 use crate::format;
 use crate::image;
-use crate::shape::Mesh;
+use crate::shape::{HeightField, Mesh};
 use crate::source::SourceError;
 use crate::texture::{CubeMap, Texture};
 use crate::world::MeshTree;
@@ -62,6 +62,37 @@ impl<'r> Loader<'r> {
         });
         self.meshes.insert(name.path.clone(), tree.clone());
         tree
+    }
+
+    /// The mesh of a height field.
+    pub(super) fn height_field(&mut self, field: &HeightField, diagnostics: &mut Diagnostics) -> Option<Arc<MeshTree>> {
+        let name = &field.picture;
+        let bytes = self.read(name, "picture of heights", diagnostics)?;
+        let mut refuse = |message: String| diagnostics.push(Diagnostic::error(message).at(name.span));
+        let picture = match image::read(&bytes, &name.path) {
+            Ok(picture) => picture,
+            Err(error) => {
+                refuse(format!("the picture `{}` cannot be used: {error}", name.path));
+                return None;
+            }
+        };
+        let (width, height) = (picture.width as usize, picture.height as usize);
+        let heights: Vec<f32> = picture.pixels.iter().map(|pixel| (pixel.x + pixel.y + pixel.z) / 3.0).collect();
+        if width < 2 || height < 2 || heights.len() > HeightField::MOST_PIXELS {
+            let most = HeightField::MOST_PIXELS;
+            refuse(format!("{width} x {height} pixels make no landscape: 2 x 2 to {most} in all are needed"));
+            return None;
+        }
+        if heights.iter().any(|height| !height.is_finite()) {
+            refuse(format!("the picture `{}` has heights that are no numbers", name.path));
+            return None;
+        }
+        if let Some(least) = heights.iter().copied().reduce(f32::min).filter(|least| *least < 0.0) {
+            refuse(format!("the picture `{}` has heights of {least}; none may be less than 0", name.path));
+            return None;
+        }
+        let data = field.mesh(width, &heights);
+        Some(Arc::new(MeshTree::new(Mesh::new(data, self.rules.mesh_normals, true))))
     }
 
     /// The number of a picture's texture.

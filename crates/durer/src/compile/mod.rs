@@ -2,6 +2,7 @@
 
 mod files;
 mod materials;
+mod solids;
 #[cfg(test)]
 pub(crate) mod testing;
 
@@ -10,13 +11,14 @@ use crate::camera::{Frame, Lens};
 use crate::diag::{Diagnostic, Diagnostics, Files, Span};
 use crate::dialect::{Compat, MeshNormals, Rules};
 use crate::light::{Emitter, Light};
-use crate::math::{Aabb, Affine, Color};
+use crate::math::{Aabb, Affine, Color, Vec3};
 use crate::scene::{self, Group, MatrixOp, Node, Scene};
 use crate::shape::mesh::loosened;
-use crate::shape::{Mesh, Primitive, Triangle};
+use crate::shape::{Mesh, Primitive, Shape, Triangle};
 use crate::source::Source;
 use crate::world::{Accel, Geometry, MeshTree, Object, Phong, World};
 use glam::DAffine3;
+use std::collections::HashMap;
 use std::sync::Arc;
 
 /// Which structure finds the objects that a ray may meet.
@@ -65,6 +67,7 @@ pub fn compile(
         material_count: materials.len() as u32,
         plain_needed: false,
         bare: None,
+        open_edges: HashMap::new(),
     };
     match &scene.root {
         Some(root) => flattening.group(root, DAffine3::IDENTITY),
@@ -193,6 +196,8 @@ struct Flattening<'a, 'r> {
     plain_needed: bool,
     /// The first object without a material, and how many there are.
     bare: Option<(Span, usize)>,
+    /// An edge at which a mesh is open, if there is one, by its path.
+    open_edges: HashMap<String, Option<[Vec3; 2]>>,
 }
 
 impl Flattening<'_, '_> {
@@ -215,28 +220,50 @@ impl Flattening<'_, '_> {
     }
 
     fn object(&mut self, object: &scene::Object, to_world: DAffine3) {
-        let geometry = match &object.node {
-            Node::Group(group) => return self.group(group, to_world),
-            Node::Transform(ops, inner) => {
-                return self.object(inner, to_world * MatrixOp::product(ops, self.rules.has(Compat::MatrixOnLeft)));
+        match &object.node {
+            Node::Group(group) => self.group(group, to_world),
+            Node::Transform(ops, inner) => self.object(inner, to_world * self.product(ops)),
+            Node::Solid(operation, parts) => self.solid(object.span, *operation, parts, to_world),
+            _ => {
+                let shape = self.shape(object, to_world);
+                self.objects.extend(shape);
             }
+        }
+    }
+
+    fn product(&self, ops: &[MatrixOp]) -> DAffine3 {
+        MatrixOp::product(ops, self.rules.has(Compat::MatrixOnLeft))
+    }
+
+    /// A shape or mesh, placed in the world; `None` after an error.
+    fn shape(&mut self, object: &scene::Object, to_world: DAffine3) -> Option<Object> {
+        let flaw = match &object.node {
+            Node::Primitive(shape) => shape.flaw(),
+            Node::HeightField(field) => field.flaw(),
+            _ => None,
+        };
+        if let Some(flaw) = flaw {
+            self.diagnostics.push(Diagnostic::error(flaw).at(object.span));
+            return None;
+        }
+        let geometry = match &object.node {
             Node::Primitive(Primitive::Triangle(t)) if self.rules.has(Compat::LooseTriangles) => {
                 let [vertex0, vertex1, vertex2] = loosened(t.corners());
                 Geometry::Primitive(Triangle { vertex0, vertex1, vertex2 }.into())
             }
             Node::Primitive(shape) => Geometry::Primitive(shape.clone()),
-            Node::Mesh(mesh) => match self.loader.mesh(&mesh.obj_file, self.diagnostics) {
-                Some(tree) => Geometry::Mesh(tree),
-                None => return,
-            },
+            Node::Mesh(mesh) => Geometry::Mesh(self.loader.mesh(&mesh.obj_file, self.diagnostics)?),
+            Node::HeightField(field) => Geometry::Mesh(self.loader.height_field(field, self.diagnostics)?),
             Node::Voxels(grid, balls) => {
                 if (grid.max - grid.min).min_element() <= 0.0 {
                     let message = "each coordinate of this grid's `max` must be greater than that of its `min`";
-                    return self.diagnostics.push(Diagnostic::error(message).at(object.span));
+                    self.diagnostics.push(Diagnostic::error(message).at(object.span));
+                    return None;
                 }
                 let mesh = Mesh::new(grid.mesh(balls), MeshNormals::Flat, false);
                 Geometry::Mesh(Arc::new(MeshTree::new(mesh)))
             }
+            Node::Group(_) | Node::Transform(..) | Node::Solid(..) => return None,
         };
         let to_world = match to_world == DAffine3::IDENTITY {
             true => None,
@@ -246,7 +273,7 @@ impl Flattening<'_, '_> {
                 None => {
                     let message = "the transforms around this object flatten space, or leave the range of numbers";
                     self.diagnostics.push(Diagnostic::error(message).at(object.span));
-                    return;
+                    return None;
                 }
             },
         };
@@ -260,7 +287,7 @@ impl Flattening<'_, '_> {
                 self.material_count
             }
         };
-        self.objects.push(Object { geometry, to_world, material, span: object.span });
+        Some(Object { geometry, to_world, material, span: object.span })
     }
 }
 

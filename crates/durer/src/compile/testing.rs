@@ -34,6 +34,17 @@ pub fn matrix_words(affine: &DAffine3) -> String {
     format!("Matrix {{ {} }}", words.join(" "))
 }
 
+/// The world of one object, whose files are in a folder.
+pub fn object(object: scene::Object, accel: AccelKind, folder: &Path) -> World {
+    let root = Group { objects: vec![object] };
+    let camera = Some(crate::camera::PerspectiveCamera::default().into());
+    let scene = Scene { camera, root: Some(root), ..Scene::default() };
+    let (mut files, source, mut diagnostics) = (Files::default(), Source::folder(folder), Diagnostics::default());
+    let resources = Resources { source: &source, files: &mut files, sky_optional: false };
+    let world = compile(&scene, Dialect::Durer.rules(), accel, resources, &mut diagnostics);
+    world.unwrap_or_else(|| panic!("{diagnostics:?}"))
+}
+
 /// Some shapes, each moved, and nothing else.
 pub fn shapes(shapes: &[(Primitive, DAffine3)], accel: AccelKind) -> World {
     let object = |node| scene::Object { node, material: None, span: Default::default() };

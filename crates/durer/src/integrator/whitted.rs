@@ -135,7 +135,7 @@ impl Whitted<'_> {
         let object = &self.world.objects[hit.object as usize];
         Struck {
             object: hit.object,
-            part: hit.part,
+            part: self.world.triangle(hit),
             t: hit.t,
             position: surface.position,
             n_geo: surface.n_geo,
@@ -146,7 +146,7 @@ impl Whitted<'_> {
             uv: surface.uv,
             barycentric: surface.barycentric,
             local: object.to_world.as_ref().map(|to_world| (&to_world.inverse_ray(ray)).into()),
-            material: object.material,
+            material: self.world.material(hit),
         }
     }
 

@@ -1,5 +1,6 @@
 //! From a world and a job to pictures.
 
+pub mod explain;
 mod grid;
 mod job;
 mod run;

@@ -37,6 +37,11 @@ pub enum RenderError {
     /// Samplings that keep their samples have not the memory for so many.
     #[error("this way of sampling keeps all samples, and {0} are too many: at most {MOST_KEPT}")]
     TooManySamples(u64),
+    /// A pixel cannot be explained.
+    #[error(
+        "a pixel that is made of its neighbours' samples too cannot be explained; leave out the course's sampler, `--jitter` and `--blur`"
+    )]
+    Unexplained,
     /// A diagram cannot be made as asked for.
     #[error("{0}")]
     Diagram(String),
@@ -223,7 +228,7 @@ impl<'a> Renderer<'a> {
             for x in window.left..window.left + window.width {
                 let Some(ray) = center_ray(world, raster, (x, y)) else { continue };
                 let Some(hit) = world.closest(&ray, &mut ()) else { continue };
-                let material = world.objects[hit.object as usize].material;
+                let material = world.material(&hit);
                 let Material::Phong(phong) = &world.materials[material as usize] else { continue };
                 let texel = self.whitted.diffuse_color(phong, &world.surface(&ray, &hit));
                 let before = last[material as usize].replace(texel).unwrap_or(phong.diffuse);
@@ -373,7 +378,7 @@ impl<'a> Renderer<'a> {
             if cost_wanted {
                 self.whitted.radiance(&ray, &mut counts);
             }
-            let material = hit.map_or(0, |(hit, _)| world.objects[hit.object as usize].material);
+            let material = hit.map_or(0, |(hit, _)| world.material(&hit));
             Some(Seen { covered: true, hit, material, counts })
         })?;
         let seen: Vec<Seen> = seen.into_iter().flatten().collect();

@@ -92,6 +92,25 @@ impl Mesh {
             + size_of_val(&*d.triangle_normals)
     }
 
+    /// Whether every edge borders on an even number of triangles, so that a line crosses the mesh an even number of
+    /// times; else the ends of one that does not. Corners at the same place are one.
+    pub fn open_edge(&self) -> Option<[Vec3; 2]> {
+        // Zeroes of either sign are alike.
+        let key = |p: Vec3| (p + 0.0).to_array().map(f32::to_bits);
+        let mut edges: Vec<([[u32; 3]; 2], [Vec3; 2])> = Vec::with_capacity(3 * self.len());
+        for part in 0..self.len() as u32 {
+            let [a, b, c] = self.corners(part);
+            for [p, q] in [[a, b], [b, c], [c, a]] {
+                let (k, l) = (key(p), key(q));
+                if k != l {
+                    edges.push(([k.min(l), k.max(l)], [p, q]));
+                }
+            }
+        }
+        edges.sort_unstable_by_key(|edge| edge.0);
+        edges.chunk_by(|a, b| a.0 == b.0).find(|same| same.len() % 2 == 1).map(|same| same[0].1)
+    }
+
     /// The corners of a triangle.
     pub fn corners(&self, part: u32) -> [Vec3; 3] {
         self.data.triangles[part as usize].map(|i| self.data.positions[i as usize])

@@ -244,6 +244,11 @@ impl Reader<'_, '_> {
     /// A word that this dialect does not have: refused if strict, else taken with a warning, once.
     pub(super) fn foreign(&mut self, word: &str, span: Span, set: DialectSet) {
         let dialect = self.options.dialect;
+        // What is ours alone is no word of the course's language.
+        if set == Dialect::Durer as DialectSet && dialect == Dialect::Durer && self.options.strict {
+            let message = format!("`{word}` is an extension of Dürer's, and no word of the course's language");
+            return self.error(Diagnostic::error(message).at(span));
+        }
         if dialect.is_in(set) || dialect == Dialect::Durer && !self.options.strict {
             return;
         }

@@ -74,7 +74,12 @@ pub fn guess(bytes: &[u8], file: u32, hints: &[Hint], exists: &dyn Fn(&str) -> b
             (set::F16, "its cube map is of PNG files".into())
         } else if word == "cubeMap" && exists(&format!("{}/left.bmp", text(i + 1))) {
             (set::F12A5, "its cube map is of BMP files".into())
-        } else if let Some(set) = dialects_of(&word).filter(|set| *set != set::F23 || is_telling(&word)) {
+        } else if let Some(set) = dialects_of(&word).filter(|set| match *set {
+            set::F23 => is_telling(&word),
+            // Ours alone: `top` or `min` may be anybody's file name.
+            set::DURER => braced,
+            _ => true,
+        }) {
             (set, format!("`{word}` is a word of {}", names(set)))
         } else {
             continue;
