@@ -37,6 +37,7 @@ pub enum Command {
     Course(CourseArgs),
     Info(InfoArgs),
     Convert(ConvertArgs),
+    Compare(CompareArgs),
     /// List the dialects of the scene language, and the old programs' habits that can be had by name
     #[command(after_help = "Example:\n  durer dialects")]
     Dialects,
@@ -366,6 +367,44 @@ pub struct ConvertArgs {
     pub to: Option<String>,
 }
 
+/// Compare a picture with a reference: numbers, words, a heat map, a page to look at
+#[derive(Args)]
+#[command(after_help = "Examples:
+  durer compare reference.png mine.png
+  durer compare reference.png mine.png --report report.html --tolerance 2/255
+  durer compare reference.exr mine.exr --heat heat.png --json
+  durer compare reference/ mine/ --report report.html
+  durer compare reference/ class/
+
+Folders are compared picture by picture, by name; extensions may differ. Where no name of REFERENCE is in PICTURE itself, but
+some are in folders in it, each of those is taken for one student's.
+Exit code: 0 the same within the tolerance, 1 different or missing, 2 a picture that cannot be read, sizes that differ, wrong
+options, or a file that cannot be written.")]
+pub struct CompareArgs {
+    /// The picture that is right, or a folder of such
+    pub reference: PathBuf,
+    /// The picture to judge, or a folder of such
+    pub picture: PathBuf,
+    /// Write a page for a browser, in one file: slider, blinking, heat map, table
+    #[arg(long, value_name = "FILE.html")]
+    pub report: Option<PathBuf>,
+    /// Write a picture of the FLIP errors
+    #[arg(long, value_name = "PICTURE")]
+    pub heat: Option<PathBuf>,
+    /// The largest difference of a channel that counts as the same, as 2/255 or a number
+    #[arg(long, default_value = "1/255", value_parser = tolerance, allow_negative_numbers = true)]
+    pub tolerance: f32,
+    /// The share of pixels, in percent, that may differ by more
+    #[arg(long, value_name = "PERCENT", default_value_t = 0.0, value_parser = percent, allow_negative_numbers = true)]
+    pub allow: f64,
+    /// How light becomes eight bits where the other picture has those
+    #[arg(long, default_value = "srgb", value_parser = PossibleValuesParser::new(Transfer::ALL.map(Transfer::name)))]
+    pub transfer: String,
+    /// Everything as JSON
+    #[arg(long)]
+    pub json: bool,
+}
+
 /// Pictures that show not the scene but how it is sampled.
 pub const DIAGRAMS: [&str; 2] = ["samples", "filter"];
 
@@ -428,4 +467,20 @@ fn cells(text: &str) -> Result<[u32; 3], String> {
     let numbers: Option<Vec<u32>> = text.split(['x', 'X']).map(|n| n.parse().ok()).collect();
     let cells: Option<[u32; 3]> = numbers.and_then(|n| n.try_into().ok());
     cells.filter(|c| !c.contains(&0)).ok_or("say it as 10x10x10".into())
+}
+
+fn tolerance(text: &str) -> Result<f32, String> {
+    let value: Option<f32> = match text.split_once('/') {
+        Some((n, of)) => n.trim().parse().ok().zip(of.trim().parse::<f32>().ok()).map(|(n, of): (f32, f32)| n / of),
+        None => text.parse().ok(),
+    };
+    value.filter(|t| t.is_finite() && *t >= 0.0).ok_or_else(|| "say it as 2/255 or as a number, 0 or more".into())
+}
+
+fn percent(text: &str) -> Result<f64, String> {
+    text.trim_end_matches('%')
+        .parse()
+        .ok()
+        .filter(|p| (0.0..=100.0).contains(p))
+        .ok_or_else(|| "say a number from 0 to 100".into())
 }

@@ -1,6 +1,7 @@
 //! The `durer` command: a thin shell over the library.
 
 mod args;
+mod compare;
 mod convert;
 mod course;
 mod diagrams;
@@ -27,6 +28,8 @@ use std::process::ExitCode;
 const BAD_INPUT: u8 = 2;
 /// Exit code after anything else that failed.
 const OTHER_FAILURE: u8 = 1;
+/// Exit code of `durer compare` after pictures that differ: as of `cmp` and `diff`, whose 2 says that something is wrong.
+const DIFFERENT: u8 = 1;
 /// Exit code after Ctrl-C.
 const INTERRUPTED: u8 = 130;
 
@@ -49,6 +52,7 @@ fn main() -> ExitCode {
             Command::Course(args) => course::run(args.arguments, None),
             Command::Info(args) => info::run(&args),
             Command::Convert(args) => convert::run(&args),
+            Command::Compare(args) => compare::run(&args),
             Command::Dialects => manual::dialects(),
             Command::Completions { shell } => manual::completions(shell),
             Command::Man => manual::man(),
@@ -66,6 +70,8 @@ enum Failure {
     Input(Option<String>),
     /// Something else went wrong.
     Other(anyhow::Error),
+    /// `durer compare` found pictures that differ, and has said so.
+    Different,
     /// The user stopped it; says what became of the work.
     Interrupted(String),
 }
@@ -84,6 +90,7 @@ impl Failure {
                 report::complain(&format!("error: {error}"));
                 OTHER_FAILURE
             }
+            Failure::Different => DIFFERENT,
             Failure::Interrupted(what) => {
                 report::complain(&format!("interrupted; {what}"));
                 INTERRUPTED
