@@ -2,11 +2,11 @@
 
 use crate::Failure;
 use crate::args::InfoArgs;
+use crate::open::{load_options, open};
 use crate::output::say;
-use crate::render::{load_options, open};
 use durer::camera::{Lens, Raster};
 use durer::describe::DescribedList;
-use durer::world::{Accel, Geometry, World};
+use durer::world::{Accel, Geometry, MeshTree, World};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -98,6 +98,16 @@ struct Counted {
 }
 
 impl Counted {
+    /// Counts a mesh; one that several objects share counts once.
+    fn mesh(&mut self, tree: &Arc<MeshTree>, seen: &mut Vec<*const MeshTree>) {
+        self.triangles += tree.mesh.len();
+        if !seen.contains(&Arc::as_ptr(tree)) {
+            seen.push(Arc::as_ptr(tree));
+            self.distinct_triangles += tree.mesh.len();
+            self.bytes += tree.bytes();
+        }
+    }
+
     fn of(world: &World) -> Self {
         let mut count = Counted::default();
         let mut seen = Vec::new();
@@ -105,14 +115,17 @@ impl Counted {
             let name = match &object.geometry {
                 Geometry::Primitive(shape) => shape.keywords()[0].0,
                 Geometry::Mesh(tree) => {
-                    count.triangles += tree.mesh.len();
-                    // A mesh that several objects share counts once.
-                    if !seen.contains(&Arc::as_ptr(tree)) {
-                        seen.push(Arc::as_ptr(tree));
-                        count.distinct_triangles += tree.mesh.len();
-                        count.bytes += tree.bytes();
-                    }
+                    count.mesh(tree, &mut seen);
                     "TriangleMesh"
+                }
+                Geometry::Solid(solid) => {
+                    count.bytes += solid.bytes();
+                    for part in solid.parts() {
+                        if let Geometry::Mesh(tree) = &part.geometry {
+                            count.mesh(tree, &mut seen);
+                        }
+                    }
+                    "solid"
                 }
             };
             *count.shapes.entry(name).or_default() += 1;

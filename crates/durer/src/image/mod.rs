@@ -3,11 +3,13 @@
 //! Everything in memory is linear floating point; what becomes of it in eight bits says [`Transfer`]. The table
 //! [`FORMATS`] knows the file formats, [`read()`] reads them from memory, [`save()`] puts bytes into a file.
 
+pub mod compare;
 mod error;
 mod formats;
 mod limits;
 mod read;
 mod save;
+mod temporary;
 mod transfer;
 
 #[cfg(test)]

@@ -50,14 +50,10 @@ impl Explanation {
     pub fn sum(&self) -> (Color, f32) {
         let mut film = Film::window(self.x, self.y, 1, 1);
         for s in &self.samples {
-            film.add_if_seen(self.x, self.y, s.sample, s.light.as_ref().map(Node::sum), s.weight);
+            let color = s.light.as_ref().map(|light| light.sum() + self.stale_texels.unwrap_or_default());
+            film.add_if_seen(self.x, self.y, s.sample, color, s.weight);
         }
-        let color = match &self.samples[..] {
-            // A single ray through the centre is no mean.
-            [only] if only.weight == 1.0 => only.light.as_ref().map_or(Vec3::ZERO, Node::sum),
-            _ => film.resolve(self.x, self.y),
-        };
-        (color + self.stale_texels.unwrap_or(Vec3::ZERO), film.coverage(self.x, self.y))
+        (film.resolve(self.x, self.y), film.coverage(self.x, self.y))
     }
 }
 
@@ -121,7 +117,7 @@ fn center(x: u32, y: u32) -> Vec2 {
 fn texel(world: &World, job: &Job, raster: &Raster, pixel: (u32, u32)) -> Option<(u32, Color, Color)> {
     let ray = center_ray(world, raster, pixel)?;
     let hit = world.closest(&ray, &mut ())?;
-    let material = world.objects[hit.object as usize].material;
+    let material = world.material(&hit);
     let Material::Phong(phong) = &world.materials[material as usize] else { return None };
     let whitted = Whitted { world, settings: job.settings, cancel: None };
     Some((material, whitted.diffuse_color(phong, &world.surface(&ray, &hit)), phong.diffuse))

@@ -28,6 +28,16 @@ pub struct MeshData {
 }
 
 impl MeshData {
+    /// Bytes that it takes in memory.
+    pub fn bytes(&self) -> usize {
+        size_of_val(&*self.positions)
+            + size_of_val(&*self.uvs)
+            + size_of_val(&*self.normals)
+            + size_of_val(&*self.triangles)
+            + size_of_val(&*self.triangle_uvs)
+            + size_of_val(&*self.triangle_normals)
+    }
+
     /// Gives every triangle corners of its own, moved out a little; see [`loosened`].
     pub fn loosen(&mut self) {
         let corners = |t: &[u32; 3]| loosened(t.map(|i| self.positions[i as usize]));
@@ -83,13 +93,26 @@ impl Mesh {
 
     /// Bytes that it takes in memory, its acceleration structure not counted.
     pub fn bytes(&self) -> usize {
-        let d = &self.data;
-        size_of_val(&*d.positions)
-            + size_of_val(&*d.uvs)
-            + size_of_val(&*d.normals)
-            + size_of_val(&*d.triangles)
-            + size_of_val(&*d.triangle_uvs)
-            + size_of_val(&*d.triangle_normals)
+        self.data.bytes()
+    }
+
+    /// Whether every edge borders on an even number of triangles, so that a line crosses the mesh an even number of
+    /// times; else the ends of one that does not. Corners at the same place are one.
+    pub fn open_edge(&self) -> Option<[Vec3; 2]> {
+        // Zeroes of either sign are alike.
+        let key = |p: Vec3| (p + 0.0).to_array().map(f32::to_bits);
+        let mut edges: Vec<([[u32; 3]; 2], [Vec3; 2])> = Vec::with_capacity(3 * self.len());
+        for part in 0..self.len() as u32 {
+            let [a, b, c] = self.corners(part);
+            for [p, q] in [[a, b], [b, c], [c, a]] {
+                let (k, l) = (key(p), key(q));
+                if k != l {
+                    edges.push(([k.min(l), k.max(l)], [p, q]));
+                }
+            }
+        }
+        edges.sort_unstable_by_key(|edge| edge.0);
+        edges.chunk_by(|a, b| a.0 == b.0).find(|same| same.len() % 2 == 1).map(|same| same[0].1)
     }
 
     /// The corners of a triangle.

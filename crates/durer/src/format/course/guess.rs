@@ -74,7 +74,12 @@ pub fn guess(bytes: &[u8], file: u32, hints: &[Hint], exists: &dyn Fn(&str) -> b
             (set::F16, "its cube map is of PNG files".into())
         } else if word == "cubeMap" && exists(&format!("{}/left.bmp", text(i + 1))) {
             (set::F12A5, "its cube map is of BMP files".into())
-        } else if let Some(set) = dialects_of(&word).filter(|set| !ambiguous(*set) || is_telling(&word)) {
+        } else if let Some(set) = dialects_of(&word).filter(|set| match *set {
+            set::F23 => is_telling(&word),
+            // Ours alone: `top` or `min` may be anybody's file name.
+            set::DURER => braced,
+            _ => true,
+        }) {
             (set, format!("`{word}` is a word of {}", names(set)))
         } else {
             continue;
@@ -117,12 +122,7 @@ fn names(set: DialectSet) -> String {
     if names.is_empty() { Dialect::Durer.name().into() } else { names.join(", ") }
 }
 
-/// Whether words may be too common to tell a dialect: those of 2020's alone and of ours alone.
-fn ambiguous(words: DialectSet) -> bool {
-    [set::F23, set::DURER].contains(&words)
-}
-
-/// Whether such a word shows its dialect all the same: `sphere`, `point` or `path` may be anybody's file name.
+/// Whether a word of 2020's alone shows that year: `sphere` or `point` may be anybody's file name.
 fn is_telling(word: &str) -> bool {
     word.contains(['<', '_']) || word.starts_with(char::is_uppercase)
 }

@@ -10,8 +10,8 @@ use crate::diag::{Diagnostic, Span};
 use crate::dialect::{Dialect, DialectSet, set};
 use crate::light::Light;
 use crate::material::{ColorNoise, PhongMaterial, Solid};
-use crate::scene::{Background, Group, Material, Node, Object, Spanned};
-use crate::shape::{Primitive, Sphere, TriangleMesh, VoxelGrid};
+use crate::scene::{Background, Group, Material, Node, Object, Operation, Spanned};
+use crate::shape::{HeightField, Primitive, Sphere, TriangleMesh, VoxelGrid};
 
 /// What stands at the top of a file beside the camera.
 const SECTIONS: [&str; 4] = ["Background", "Lights", "Materials", "Group"];
@@ -26,9 +26,17 @@ pub(super) fn is_section(word: &str) -> bool {
     SECTIONS.contains(&word) || camera_of(word).is_some()
 }
 
-/// What stands in a group. Words beyond the first six are no objects.
-pub(super) const IN_GROUP: [&str; 9] =
-    ["Group", "Transform", "Sphere", "Plane", "Triangle", "TriangleMesh", "MaterialIndex", "numObjects", "Grid"];
+/// What stands in a group: [`OBJECTS`] of them are objects.
+#[rustfmt::skip]
+pub(super) const IN_GROUP: [&str; OBJECTS + 3] = [
+    "Group", "Transform", "Sphere", "Plane", "Triangle", "TriangleMesh",
+    "Box", "Cylinder", "Cone", "Torus", "Ellipsoid", "Quadric", "Disc", "Rectangle", "HeightField",
+    "Union", "Merge", "Intersection", "Difference", "Xor",
+    "MaterialIndex", "numObjects", "Grid",
+];
+
+/// How many words of [`IN_GROUP`] begin an object that is proposed in a transform.
+pub(super) const OBJECTS: usize = 20;
 
 impl Reader<'_, '_> {
     /// The whole file.
@@ -295,7 +303,16 @@ impl Reader<'_, '_> {
             Some(Node::Group(self.group(span)))
         } else if word == "Transform" {
             self.transform(span)
+        } else if let Some(operation) = Operation::from_keyword(word) {
+            self.foreign(word, span, set::DURER);
+            Some(Node::Solid(operation, self.group(span).objects))
+        } else if word == "HeightField" {
+            let mut field = HeightField::default();
+            self.check_keyword(&field, span);
+            self.fields(&mut field, span, Order::Any, |_, _, _| false);
+            Some(Node::HeightField(field))
         } else if let Some(mut shape) = Primitive::from_keyword(word).filter(|s| classic(s.keywords())) {
+            self.check_keyword(&shape, span);
             self.fields(&mut shape, span, Order::Listed, |_, _, _| false);
             Some(Node::Primitive(shape))
         } else if word == "TriangleMesh" {

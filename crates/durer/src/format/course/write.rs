@@ -104,14 +104,18 @@ impl Writer {
     fn group(&mut self, group: &Group) {
         self.block("Group", |w| {
             w.line(format!("numObjects {}", group.objects.len()));
-            for object in &group.objects {
-                if let Some(index) = object.material.filter(|_| object.material != w.material) {
-                    w.line(format!("MaterialIndex {index}"));
-                    w.material = Some(index);
-                }
-                w.object(object);
-            }
+            w.objects(&group.objects);
         });
+    }
+
+    fn objects(&mut self, objects: &[Object]) {
+        for object in objects {
+            if let Some(index) = object.material.filter(|_| object.material != self.material) {
+                self.line(format!("MaterialIndex {index}"));
+                self.material = Some(index);
+            }
+            self.object(object);
+        }
     }
 
     fn object(&mut self, object: &Object) {
@@ -123,6 +127,8 @@ impl Writer {
             }),
             Node::Primitive(shape) => self.thing(shape),
             Node::Mesh(mesh) => self.thing(mesh),
+            Node::HeightField(field) => self.thing(field),
+            Node::Solid(operation, parts) => self.block(operation.keyword(), |w| w.objects(parts)),
             Node::Voxels(grid, balls) => self.block(grid.keyword(self.dialect), |w| w.voxels(grid, balls)),
         }
     }
@@ -183,6 +189,10 @@ impl Writer {
                 Node::Group(group) => group.objects.iter().for_each(|inner| w.node(inner)),
                 Node::Primitive(shape) => w.component("Object", shape),
                 Node::Mesh(mesh) => w.component("Object", mesh),
+                Node::HeightField(field) => w.component("Object", field),
+                Node::Solid(operation, parts) => {
+                    w.block(operation.keyword(), |w| parts.iter().for_each(|part| w.node(part)));
+                }
                 Node::Voxels(grid, balls) => w.voxels_component(grid, balls),
                 Node::Transform(_, inner) => match &inner.node {
                     _ if inner.material != object.material => w.node(inner),

@@ -7,7 +7,7 @@ use crate::light::Light;
 use crate::material::{ColorNoise, PhongMaterial, Solid};
 use crate::math::Vec3;
 use crate::scene::{Background, Material, MatrixOp, Node, Object};
-use crate::shape::{Primitive, TriangleMesh};
+use crate::shape::{HeightField, Primitive, TriangleMesh};
 
 /// A value of a kind, unlike the default, as text and as read.
 fn sample(kind: Kind, rule: Rule) -> (String, Value) {
@@ -78,6 +78,13 @@ fn every_keyword_and_field_is_read_in_every_dialect_that_has_it() {
         |_, text| group(text),
         |scene| match first(scene) {
             Node::Primitive(shape) => shape,
+            other => panic!("{other:?}"),
+        },
+    );
+    every_word::<HeightField>(
+        |_, text| group(text),
+        |scene| match first(scene) {
+            Node::HeightField(field) => field,
             other => panic!("{other:?}"),
         },
     );
@@ -196,8 +203,9 @@ fn flat(objects: &[Object], out: &mut Vec<(String, Option<u32>)>) {
             Node::Group(group) => flat(&group.objects, out),
             Node::Transform(_, inner) => flat(std::slice::from_ref(inner), out),
             Node::Primitive(shape) => out.push((shape.keyword(Dialect::F23).into(), object.material)),
+            Node::Mesh(_) | Node::HeightField(_) => out.push(("mesh".into(), object.material)),
             Node::Voxels(..) => out.push(("grid".into(), object.material)),
-            Node::Mesh(_) => out.push(("mesh".into(), object.material)),
+            Node::Solid(_, parts) => flat(parts, out),
         }
     }
 }

@@ -6,8 +6,8 @@ use crate::dialect::Dialect;
 use crate::light::Light;
 use crate::material::{ColorNoise, PhongMaterial, Solid, is_material_index};
 use crate::math::Vec3;
-use crate::scene::{Background, Group, Material, MatrixOp, Node, Object, Scene, Spanned};
-use crate::shape::{Primitive, Sphere, TriangleMesh, VoxelGrid};
+use crate::scene::{Background, Group, Material, MatrixOp, Node, Object, Operation, Scene, Spanned};
+use crate::shape::{HeightField, Primitive, Sphere, TriangleMesh, VoxelGrid};
 
 /// A generator of random numbers (Knuth's multiplier, the upper half of the state).
 pub(super) struct Random(pub u64);
@@ -114,16 +114,21 @@ impl Random {
             *current = Some(self.below(materials + 1) as u32);
         }
         let material = *current;
-        let node = match self.below(if depth > 4 { 4 } else { 6 }) {
+        let node = match self.below(if depth > 4 { 5 } else { 8 }) {
             0 | 1 => Node::Primitive(self.thing::<Primitive>(materials)),
             2 => Node::Mesh(self.thing::<TriangleMesh>(materials)),
-            3 => Node::Voxels(
+            3 => Node::HeightField(self.thing::<HeightField>(materials)),
+            4 => Node::Voxels(
                 self.thing::<VoxelGrid>(materials),
                 (0..self.below(3))
                     .map(|_| Sphere { center: self.vec3(), radius: 1.0 + self.below(9) as f32 })
                     .collect(),
             ),
-            4 => Node::Group(Group {
+            5 => Node::Solid(
+                Operation::ALL[self.below(5)].1,
+                (0..self.below(4)).map(|_| self.object(depth + 1, materials, current, true)).collect(),
+            ),
+            6 => Node::Group(Group {
                 objects: (0..self.below(4)).map(|_| self.object(depth + 1, materials, current, true)).collect(),
             }),
             _ => {
