@@ -134,12 +134,17 @@ fn full_disks(bench: &Bench, offsets: u64) -> Result<()> {
             ensure!(names(&place)? == [name.clone()], "{name}: litter at {limit}: {:?}", names(&place)?);
             fs::remove_file(path)?;
         }
-        let small = tiny_disk(bench, name, options, "head -c \"$FREE\" /dev/zero > filler", offsets.min(10))?;
+        // One page less and less is free, always too few for the file.
+        let small =
+            tiny_disk(bench, name, options, "head -c \"$FILL\" /dev/zero > filler", size.div_ceil(PAGE).min(10))?;
         let read_only = tiny_disk(bench, name, options, "mount -o remount,ro .", 1)?;
         println!("{name:<7}{size:>7} bytes: {offsets} limits; {small} full disks; {read_only} read-only disks");
     }
     Ok(())
 }
+
+/// Bytes that a file takes at least on such a disk.
+const PAGE: u64 = 4096;
 
 /// Runs on a disk of its own, spoilt by a command; how often it could be tried.
 fn tiny_disk(bench: &Bench, name: &str, options: &str, spoil: &str, tries: u64) -> Result<u64> {
@@ -151,14 +156,15 @@ fn tiny_disk(bench: &Bench, name: &str, options: &str, spoil: &str, tries: u64) 
         let inner = bench.render(&format!("{options} --quiet --threads 1"), &place.join(name));
         let mut command = Command::new("unshare");
         command.args(["-Urm", "sh", "-c", SCRIPT]).arg(&place).arg(inner.get_program()).args(inner.get_args());
-        let free = 60 * 1024 - 4096 * (i % 2);
-        let output = command.env("NAME", name).env("SPOIL", spoil).env("FREE", free.to_string()).output()?;
+        // Of sixteen pages the old file has one.
+        let fill = (15 - i) * PAGE;
+        let output = command.env("NAME", name).env("SPOIL", spoil).env("FILL", fill.to_string()).output()?;
         match output.status.code() {
             // No rights to mount anything here.
             Some(99) | None => return Ok(0),
             Some(98) => bail!("{name}: the old file is not intact"),
             Some(97) => bail!("{name}: litter"),
-            _ => refused(&output, "cannot write", name, free)?,
+            _ => refused(&output, "cannot write", name, fill)?,
         }
     }
     Ok(tries)

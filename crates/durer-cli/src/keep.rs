@@ -33,7 +33,8 @@ impl Keeper {
     /// Says now what is known to prevent saving.
     pub fn new(args: &RenderArgs, output: &Path) -> Result<Self, Failure> {
         let work = &args.work;
-        let beside = || (!output.starts_with("/dev")).then(|| lengthened(output, ".part"));
+        let stream = output.starts_with("/dev") || output.starts_with("/proc");
+        let beside = || (!stream).then(|| lengthened(output, ".part"));
         let path = match () {
             () if work.shard.is_some() => Some(output.to_path_buf()),
             () if work.no_checkpoint => None,

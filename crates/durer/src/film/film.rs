@@ -99,22 +99,24 @@ impl Film {
     /// The same for a sample of a colour that covers only a share of the pixel, from 0 to 1.
     pub fn add_covering(&mut self, x: u32, y: u32, sample: u32, (color, share): (Color, f32), weight: f32) {
         let index = self.index(x, y).expect("the pixel lies in the film's window");
-        let weight = f64::from(weight) * WEIGHT_SCALE;
-        // At most 24 significant bits are left of the weight, so each product below is exact before its rounding.
-        let (whole, rgb) = (rounded(weight), color.to_array().map(f64::from));
-        if !(whole.abs() <= GREATEST_WEIGHT * WEIGHT_SCALE && rgb.iter().all(|c| c.abs() <= GREATEST_COLOR)) {
+        let (weight, rgb) = (f64::from(weight) * WEIGHT_SCALE, color.to_array().map(f64::from));
+        if !(weight.abs() <= GREATEST_WEIGHT * WEIGHT_SCALE && rgb.iter().all(|c| c.abs() <= GREATEST_COLOR)) {
             return self.reject(Rejected { y, x, sample });
         }
+        // At most 24 significant bits are left of the weight, so each product below is exact before its rounding.
+        let whole = whole_number(weight) as i64;
+        let scale = whole as f64 * (COLOR_SCALE / WEIGHT_SCALE);
         let pixel = &mut self.pixels[index];
         for (sum, c) in pixel.color.iter_mut().zip(rgb) {
-            *sum = sum.wrapping_add(whole_number(c * (whole / WEIGHT_SCALE) * COLOR_SCALE));
+            *sum = sum.wrapping_add(whole_number(c * scale));
         }
         let luminance = luminance(rgb).clamp(-GREATEST_LUMINANCE, GREATEST_LUMINANCE);
-        let luminance = rounded(luminance * LUMINANCE_SCALE) as i64;
+        let luminance = whole_number(luminance * LUMINANCE_SCALE) as i64;
         pixel.luminance = pixel.luminance.wrapping_add(luminance);
         pixel.squares = pixel.squares.wrapping_add(i128::from(luminance) * i128::from(luminance));
-        pixel.weight = pixel.weight.wrapping_add(whole as i64);
-        pixel.covered = pixel.covered.wrapping_add(rounded(whole * f64::from(share)) as i64);
+        pixel.weight = pixel.weight.wrapping_add(whole);
+        let covered = if share == 1.0 { whole } else { whole_number(whole as f64 * f64::from(share)) as i64 };
+        pixel.covered = pixel.covered.wrapping_add(covered);
         pixel.samples += 1;
     }
 
@@ -273,17 +275,14 @@ pub fn luminance([r, g, b]: [f64; 3]) -> f64 {
     LUMINANCE[0] * r + LUMINANCE[1] * g + LUMINANCE[2] * b
 }
 
-/// A number to the nearest whole one, ties to even.
+/// The nearest whole number, ties to even.
 ///
-/// Where there is no instruction for it, this is a call; but between -2^51 and 2^51 two additions do the same, as they round to
-/// what has no bits below 1.
-fn rounded(x: f64) -> f64 {
-    const MAGIC: f64 = 3.0 * (1_u64 << 51) as f64;
-    if x.abs() < (1_u64 << 51) as f64 { (x + MAGIC) - MAGIC } else { x.round_ties_even() }
-}
-
-/// The same as an integer; small numbers are converted by one instruction.
+/// To convert is a call where there is no instruction for it. But between -2^51 and 2^51 a sum with 3 * 2^51 has no bits below 1
+/// left, so it is rounded, and its bits count on from those of 3 * 2^51 by one for each whole number.
 fn whole_number(x: f64) -> i128 {
-    let x = rounded(x);
-    if x.abs() < (1_u64 << 62) as f64 { i128::from(x as i64) } else { x as i128 }
+    const MAGIC: f64 = 3.0 * (1_u64 << 51) as f64;
+    match x.abs() < (1_u64 << 51) as f64 {
+        true => i128::from(((x + MAGIC).to_bits() as i64).wrapping_sub(MAGIC.to_bits() as i64)),
+        false => x.round_ties_even() as i128,
+    }
 }

@@ -106,7 +106,6 @@ proptest! {
     #[test]
     fn rounding_is_that_of_the_standard(bits in any::<u64>(), small in -1e7_f64..1e7, shift in 0..60_u32) {
         for x in [f64::from_bits(bits), small, small.floor() + 0.5, small * (1_u64 << shift) as f64, -0.5, 0.5, 1.5] {
-            prop_assert!(rounded(x) == x.round_ties_even() || x.is_nan(), "{}", x);
             prop_assert_eq!(whole_number(x), x.round_ties_even() as i128, "{}", x);
         }
     }
