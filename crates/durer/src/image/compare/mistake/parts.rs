@@ -5,6 +5,11 @@ use super::{Finding, WELL, bytes, difference, flow};
 use crate::image::compare::picture::Scale;
 use crate::math::Vec3;
 
+/// Looks for one mistake in the reference, the picture and samples of both.
+type Part = fn(&View, &View, &[Sample]) -> Option<Finding>;
+/// The vector that a colour shows.
+type Decode = fn(Vec3) -> Vec3;
+
 /// Differences smaller than this are not seen: a little more than a 255th.
 const SEEN: f32 = 1.5 / 255.0;
 /// An edge is where neighbours differ by more than this.
@@ -30,14 +35,13 @@ pub fn blank(reference: &View, test: &View) -> Option<Finding> {
 
 /// The part of a picture that explains nearly all of the difference, if there is one.
 pub fn finding(reference: &View, test: &View, samples: &[Sample]) -> Option<Finding> {
-    let all: [fn(&View, &View, &[Sample]) -> Option<Finding>; 7] =
-        [cut_normals, long_normals, saturated, speckles, edges, noise, shaded];
+    let all: [Part; 7] = [cut_normals, long_normals, saturated, speckles, edges, noise, shaded];
     all.iter().find_map(|part| part(reference, test, samples).filter(|finding| finding.explained >= WELL))
 }
 
 /// Samples of unit vectors shown as colours: absolute values, or from -1 to 1 mapped to 0 to 1. Gives the vector of each.
-fn unit_vectors(samples: &[Sample]) -> Option<(fn(Vec3) -> Vec3, Vec<&Sample>)> {
-    let decodings: [fn(Vec3) -> Vec3; 2] = [|color| color, |color| 2.0 * color - 1.0];
+fn unit_vectors(samples: &[Sample]) -> Option<(Decode, Vec<&Sample>)> {
+    let decodings: [Decode; 2] = [|color| color, |color| 2.0 * color - 1.0];
     decodings.into_iter().find_map(|decode| {
         let unit: Vec<&Sample> =
             samples.iter().filter(|s| (decode(s.reference).length() - 1.0).abs() < 0.015).collect();
