@@ -73,7 +73,7 @@ fn work(args: &CompareArgs) -> Result<(), Failure> {
     }
     let mut files: Vec<(PathBuf, Vec<u8>)> = Vec::new();
     if let (Some(path), Some(format), Outcome::Compared(found)) = (&args.heat, heat_format, &all[0].outcome) {
-        files.push((path.clone(), encode(format, &[heat(found)], Transfer::Linear)?));
+        files.push((path.clone(), encode(format, &[heat(found)], Transfer::Linear, &[])?));
     }
     if let Some(path) = &args.report {
         files.push((path.clone(), page::page(&all, &extra, args)?.into_bytes()));

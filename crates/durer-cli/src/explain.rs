@@ -3,8 +3,10 @@
 mod page;
 
 use crate::args::ExplainArgs;
+use crate::job::{accel, job};
+use crate::open::{Opened, load_options, open};
 use crate::output::say;
-use crate::render::{Opened, failure, job, load_options, open};
+use crate::render::failure;
 use crate::{Failure, bad, output, progress};
 use durer::image::Image;
 use durer::integrator::Node;
@@ -26,8 +28,10 @@ enum Subject {
 }
 
 pub fn run(args: &ExplainArgs) -> Result<(), Failure> {
-    let opened = open(&args.render.scene, &load_options(&args.render.reading), args.render.quiet)?;
-    let job = job(&args.render, &opened)?;
+    let mut options = load_options(&args.render.reading);
+    options.accel = accel(&args.render.job)?;
+    let opened = open(&args.render.scene, &options, args.render.quiet)?;
+    let job = job(&args.render.job, &opened.loaded, args.render.work.time.is_some())?;
     let picture = match args.brightest || args.worst || args.html.is_some() {
         true => Some(picture(args, &opened, &job)?),
         false => None,
@@ -59,9 +63,9 @@ pub fn run(args: &ExplainArgs) -> Result<(), Failure> {
 /// The whole picture.
 fn picture(args: &ExplainArgs, opened: &Opened, job: &Job) -> Result<Image, Failure> {
     let job = Job { crop: None, color: true, aovs: Vec::new(), ..job.clone() };
-    let control = Arc::new(Control { threads: args.render.threads.map(usize::from), ..Control::default() });
+    let control = Arc::new(Control { threads: args.render.work.threads.map(usize::from), ..Control::default() });
     let render = || durer::render::render(&opened.world, &job, &control);
-    let mut rendered = progress::watch(&job, &control, args.render.quiet, render).map_err(failure)?;
+    let mut rendered = progress::watch(&control, args.render.quiet, render).map_err(failure)?;
     Ok(rendered.layers.swap_remove(0).image)
 }
 

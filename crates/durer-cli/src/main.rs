@@ -4,13 +4,20 @@ mod args;
 mod compare;
 mod convert;
 mod course;
+mod diagrams;
 mod explain;
 mod info;
+mod job;
+mod keep;
 mod manual;
+mod memory;
+mod merge;
+mod open;
 mod output;
 mod progress;
 mod render;
 mod report;
+mod verify;
 
 use args::{Cli, Command};
 use clap::Parser;
@@ -39,6 +46,8 @@ fn main() -> ExitCode {
             .and_then(|arguments| course::run(arguments, Some(program))),
         None => match Cli::parse().command {
             Command::Render(args) => render::run(&args),
+            Command::Merge(args) => merge::run(&args),
+            Command::Verify(args) => verify::run(&args),
             Command::Explain(args) => explain::run(&args),
             Command::Course(args) => course::run(args.arguments, None),
             Command::Info(args) => info::run(&args),
@@ -63,8 +72,8 @@ enum Failure {
     Other(anyhow::Error),
     /// `durer compare` found pictures that differ, and has said so.
     Different,
-    /// The user stopped it.
-    Interrupted,
+    /// The user stopped it; says what became of the work.
+    Interrupted(String),
 }
 
 impl Failure {
@@ -82,8 +91,8 @@ impl Failure {
                 OTHER_FAILURE
             }
             Failure::Different => DIFFERENT,
-            Failure::Interrupted => {
-                report::complain("interrupted; nothing was written");
+            Failure::Interrupted(what) => {
+                report::complain(&format!("interrupted; {what}"));
                 INTERRUPTED
             }
         }

@@ -10,12 +10,13 @@
 //! 2021, which is less biased than the published constants.
 
 use crate::math::Vec2;
+use serde::{Deserialize, Serialize};
 
 #[cfg(test)]
 pub(crate) mod tests;
 
 /// Where in a pixel its samples lie.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Sampler {
     /// Owen-scrambled Sobol (0,2)-sequence, scrambled anew in each pixel: the least noise.
     #[default]

@@ -27,7 +27,7 @@ impl Shown {
     pub fn new(reference: &Picture, picture: &Picture, found: &Comparison) -> Result<Shown, String> {
         let png = |(layer, transfer): (Layer, Transfer)| -> Result<String, String> {
             let format = format_for("x.png").map_err(|error| error.to_string())?;
-            let bytes = encode(format, &[layer], transfer).map_err(|_| "the picture is too large for a page")?;
+            let bytes = encode(format, &[layer], transfer, &[]).map_err(|_| "the picture is too large for a page")?;
             Ok(format!("data:image/png;base64,{}", STANDARD.encode(bytes)))
         };
         Ok(Shown {

@@ -17,7 +17,7 @@ const MOST_BOXES: usize = 400;
 /// A page that needs nothing else: the picture, the tree of one sample to begin with, and the rays in space.
 pub fn page(explanation: Value, sample: u32, world: &World, picture: &Image) -> Result<String, Failure> {
     let layers = [Layer::color("color", picture.clone())];
-    let png = encode(format(Path::new("picture.png"))?, &layers, Transfer::default())?;
+    let png = encode(format(Path::new("picture.png"))?, &layers, Transfer::default(), &[])?;
     let boxes = world.objects.iter().filter_map(|object| object.bounds()).take(MOST_BOXES);
     let boxes: Vec<Value> = boxes.map(|b| json!({ "min": b.min, "max": b.max })).collect();
     let data = json!({

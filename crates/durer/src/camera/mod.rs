@@ -1,14 +1,35 @@
-//! Cameras: from a place in the picture to a ray. One file each; the list is [`Camera`].
+//! Cameras: from a place in the picture to a ray, and from a point of the world back to the picture. One file each;
+//! the list is [`Camera`].
 
-pub mod orthographic;
-pub mod perspective;
+mod aperture;
+mod central;
+mod eyes;
+mod pose;
 pub mod raster;
+mod sheet;
+
+pub mod cave;
+pub mod cube_map;
+pub mod cylindrical;
+pub mod equirectangular;
+pub mod fisheye;
+pub mod multiple_center;
+pub mod omnimax;
+pub mod orthographic;
+pub mod parabolic;
+pub mod perspective;
+pub mod pinhole;
+pub mod projective;
+pub mod push_broom;
+pub mod stereo;
+pub mod thin_lens;
 
 use crate::described_list;
-use crate::dialect::{Compat, Rules};
 use crate::math::{Ray, Vec2, Vec3};
+pub use eyes::Eyes;
 pub use orthographic::OrthographicCamera;
 pub use perspective::PerspectiveCamera;
+pub use pose::{Frame, Pose};
 pub use raster::Raster;
 
 described_list! {
@@ -16,55 +37,19 @@ described_list! {
     Camera {
         Perspective(perspective::PerspectiveCamera),
         Orthographic(orthographic::OrthographicCamera),
-    }
-}
-
-/// Where a camera stands and how it is turned, as written.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Pose {
-    /// Its position.
-    pub center: Vec3,
-    /// Where it looks; of any length.
-    pub direction: Vec3,
-    /// What it holds upwards; of any length.
-    pub up: Vec3,
-}
-
-/// A camera's axes: where it looks, and the picture's right and up. Of unit length and perpendicular,
-/// but for the compatibilities that say otherwise.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Frame {
-    /// Position of the eye.
-    pub eye: Vec3,
-    /// Where it looks.
-    pub forward: Vec3,
-    /// To the right in the picture.
-    pub right: Vec3,
-    /// Upwards in the picture.
-    pub up: Vec3,
-    /// Whether rays are aimed at rounded points of the world, as [`Compat::ScreenPoint`] says.
-    pub screen_point: bool,
-}
-
-/// A vector's direction, each component divided by the length (glam multiplies by its reciprocal, which rounds once more).
-fn unit_or(v: Vec3, fallback: Vec3) -> Vec3 {
-    let unit = v / v.length();
-    if unit.is_finite() && unit != Vec3::ZERO { unit } else { v.normalize_or(fallback) }
-}
-
-impl Frame {
-    /// The axes of a pose: right = norm(direction x up), up = right x direction.
-    pub fn new(pose: Pose, rules: &Rules) -> Self {
-        let forward = unit_or(pose.direction, Vec3::NEG_Z);
-        let right = unit_or(forward.cross(pose.up), forward.any_orthonormal_vector());
-        let up = if rules.has(Compat::RawUp) {
-            pose.up
-        } else if rules.has(Compat::SkewUp) {
-            pose.up.normalize_or(Vec3::Y)
-        } else {
-            right.cross(forward)
-        };
-        Frame { eye: pose.center, forward, right, up, screen_point: rules.has(Compat::ScreenPoint) }
+        Pinhole(pinhole::PinholeCamera),
+        ThinLens(thin_lens::ThinLensCamera),
+        Stereo(stereo::StereoCamera),
+        Fisheye(fisheye::FisheyeCamera),
+        Omnimax(omnimax::OmnimaxCamera),
+        Parabolic(parabolic::ParabolicCamera),
+        Equirectangular(equirectangular::EquirectangularCamera),
+        Cylindrical(cylindrical::CylindricalCamera),
+        CubeMap(cube_map::CubeMapCamera),
+        Cave(cave::CaveCamera),
+        PushBroom(push_broom::PushBroomCamera),
+        MultipleCenter(multiple_center::MultipleCenterCamera),
+        Projective(projective::ProjectiveCamera),
     }
 }
 
@@ -105,8 +90,25 @@ pub trait Lens {
         false
     }
 
+    /// Why there is no such camera, though each value by itself is allowed.
+    fn problem(&self) -> Option<String> {
+        None
+    }
+
     /// The ray of a sample; `None` where the camera sees nothing. The direction has length 1, so that `t` is a distance.
     fn ray(&self, frame: &Frame, sample: &CameraSample) -> Option<Ray>;
+
+    /// Calls `found` with every point of the picture at which a point of the world is seen through a point of the lens:
+    /// one, none, or several, as for a pair of eyes. What hides it is not asked. Where the picture may have any shape,
+    /// points may lie beyond the square.
+    fn project(&self, frame: &Frame, world: Vec3, lens: Vec2, found: &mut dyn FnMut(Vec2));
+
+    /// The area across the ray at distance `t` that a unit of the picture's area covers, the point of the lens held fast.
+    ///
+    /// This is the Jacobian |(dX/dx × dX/dy) · dir| of X = origin + t dir by the picture's point. Where all rays meet in
+    /// one eye it is t² times the solid angle per area of the picture; where they are parallel it is constant. Undefined
+    /// where there is no ray.
+    fn footprint(&self, frame: &Frame, sample: &CameraSample, t: f32) -> f32;
 }
 
 /// Calls a method of whichever camera it is.
@@ -115,6 +117,19 @@ macro_rules! each_camera {
         match $self {
             Camera::Perspective($c) => $call,
             Camera::Orthographic($c) => $call,
+            Camera::Pinhole($c) => $call,
+            Camera::ThinLens($c) => $call,
+            Camera::Stereo($c) => $call,
+            Camera::Fisheye($c) => $call,
+            Camera::Omnimax($c) => $call,
+            Camera::Parabolic($c) => $call,
+            Camera::Equirectangular($c) => $call,
+            Camera::Cylindrical($c) => $call,
+            Camera::CubeMap($c) => $call,
+            Camera::Cave($c) => $call,
+            Camera::PushBroom($c) => $call,
+            Camera::MultipleCenter($c) => $call,
+            Camera::Projective($c) => $call,
         }
     };
 }
@@ -132,10 +147,24 @@ impl Lens for Camera {
         each_camera!(self, c => c.has_aperture())
     }
 
+    fn problem(&self) -> Option<String> {
+        each_camera!(self, c => c.problem())
+    }
+
     fn ray(&self, frame: &Frame, sample: &CameraSample) -> Option<Ray> {
         each_camera!(self, c => c.ray(frame, sample))
     }
+
+    fn project(&self, frame: &Frame, world: Vec3, lens: Vec2, found: &mut dyn FnMut(Vec2)) {
+        each_camera!(self, c => c.project(frame, world, lens, found));
+    }
+
+    fn footprint(&self, frame: &Frame, sample: &CameraSample, t: f32) -> f32 {
+        each_camera!(self, c => c.footprint(frame, sample, t))
+    }
 }
 
+#[cfg(test)]
+mod conformance;
 #[cfg(test)]
 mod tests;

@@ -30,6 +30,25 @@ impl Raster {
         }
     }
 
+    /// The size of a picture where nobody asks for one: a plain one, or one of about as many pixels in the camera's
+    /// proportions. A unit of these becomes whole pixels where it can, so that faces and walls end between pixels.
+    pub fn natural_size(proportions: Option<Vec2>, plain: (u32, u32)) -> (u32, u32) {
+        let Some(sides) = proportions else { return plain };
+        let scale = (plain.0 as f32 * plain.1 as f32 / (sides.x * sides.y)).sqrt();
+        let scale = if scale >= 1.0 { scale.round() } else { scale };
+        let side = |length: f32| ((length * scale).round() as u32).max(1);
+        (side(sides.x), side(sides.y))
+    }
+
+    /// How many columns and rows stay empty because the picture has not the camera's proportions.
+    pub fn empty(&self) -> (u32, u32) {
+        let Some(half) = self.natural else { return (0, 0) };
+        let size = Vec2::new(self.width as f32, self.height as f32);
+        // Less than a pixel is a rounding of the size.
+        let empty = (size - half * (size / half).min_element()).floor();
+        (empty.x as u32, empty.y as u32)
+    }
+
     /// The point of the square for a place in the picture, in pixels from its upper left corner.
     ///
     /// Pixel (i, j) has its centre at (i + 0.5, j + 0.5), j counted downwards.

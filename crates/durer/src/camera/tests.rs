@@ -1,7 +1,10 @@
 //! Rays of cameras through known places of pictures.
 
 use super::*;
-use crate::dialect::Dialect;
+use crate::dialect::{Compat, Dialect, Rules};
+
+mod family;
+mod lenses;
 
 fn rules(compat: &[Compat]) -> Rules {
     Rules { compat: compat.iter().map(|c| c.bit()).sum(), ..Dialect::Durer.rules().clone() }
@@ -38,6 +41,20 @@ fn a_natural_picture_lies_whole_and_undistorted_in_any_other() {
             assert_eq!(raster.point(end), Vec2::from(corner));
         }
     }
+}
+
+#[test]
+fn sizes_follow_proportions_and_misfits_are_counted() {
+    let size = |w, h| Raster::natural_size(Some(Vec2::new(w, h)), (512, 512));
+    assert_eq!(Raster::natural_size(None, (512, 512)), (512, 512));
+    assert_eq!([size(4.0, 3.0), size(6.0, 1.0), size(360.0, 180.0)], [(592, 444), (1254, 209), (720, 360)]);
+    assert_eq!([size(1.0, 1.0), size(4000.0, 1000.0), size(1e4, 1.0)], [(512, 512), (1024, 256), (50000, 5)]);
+    let empty = |width, height| Raster::new(width, height, Some(Vec2::new(3.0, 1.0)), &rules(&[])).empty();
+    assert_eq!([empty(300, 100), empty(301, 100), empty(300, 300)], [(0, 0), (1, 0), (0, 200)]);
+    assert_eq!(
+        [empty(100, 33), empty(100, 34), Raster::new(9, 5, None, &rules(&[])).empty()],
+        [(1, 0), (0, 0), (0, 0)]
+    );
 }
 
 #[test]

@@ -16,7 +16,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 pub(super) struct Loader<'r> {
-    resources: Resources<'r>,
+    pub(super) resources: Resources<'r>,
     rules: Rules,
     /// By path; `None` for files that could not be read, which are complained of once.
     meshes: HashMap<String, Option<Arc<MeshTree>>>,
@@ -50,6 +50,11 @@ impl<'r> Loader<'r> {
             }
             diagnostics.extend(own);
             data
+        });
+        let mesh = mesh.filter(|data| {
+            // The tree and what its building takes for a while are about as large again as plain triangles.
+            let needed = data.bytes() + 200 * data.triangles.len();
+            self.charge(name, needed as u64, diagnostics)
         });
         let tree = mesh.map(|mut data| {
             if self.rules.has(Compat::LooseTriangles) {
@@ -102,6 +107,7 @@ impl<'r> Loader<'r> {
         }
         let bytes = self.read(name, "texture", diagnostics);
         let texture = bytes.and_then(|bytes| decode(name, &name.path, &bytes, self.rules.srgb_textures, diagnostics));
+        let texture = texture.filter(|texture| self.charge(name, texture.bytes() as u64, diagnostics));
         let number = texture.map(|texture| {
             self.textures.push(texture);
             (self.textures.len() - 1) as u32
@@ -148,6 +154,18 @@ impl<'r> Loader<'r> {
         }
         diagnostics.extend(unread);
         Some(CubeMap { faces: faces.try_into().ok()? })
+    }
+
+    /// Takes memory from what is left; says so where there is too little.
+    fn charge(&mut self, name: &FileName, needed: u64, diagnostics: &mut Diagnostics) -> bool {
+        let left = self.resources.memory;
+        self.resources.memory = left.saturating_sub(needed);
+        if needed > left {
+            let [needed, left] = [needed, left].map(|bytes| bytes.div_ceil(1 << 20));
+            let message = format!("`{}` needs about {needed} MiB of memory, and {left} MiB are left for it", name.path);
+            diagnostics.push(Diagnostic::error(message).at(name.span).help("see `--memory`"));
+        }
+        needed <= left
     }
 
     /// Reads a file; what goes wrong is said at the place that names it.

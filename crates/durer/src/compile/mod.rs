@@ -41,6 +41,8 @@ pub struct Resources<'a> {
     pub files: &'a mut Files,
     /// Whether a scene whose cube map is missing is still compiled, with a warning and the background's colour.
     pub sky_optional: bool,
+    /// Bytes that meshes and pictures may take.
+    pub memory: u64,
 }
 
 /// Turns a scene into a world. Errors and warnings are collected; with an error, there is no world.
@@ -57,7 +59,10 @@ pub fn compile(
         diagnostics.push(Diagnostic::error("the scene has no camera").help("add a `PerspectiveCamera { ... }`"));
         return None;
     };
-    check_camera(scene, camera.pose(), &mut own);
+    match camera.problem() {
+        Some(problem) => own.push(Diagnostic::error(problem).at(scene.camera_span)),
+        None => check_camera(scene, camera.pose(), &mut own),
+    }
     let materials = materials::compile(scene, rules, &mut loader, &mut own);
     let mut flattening = Flattening {
         objects: Vec::new(),
@@ -81,6 +86,8 @@ pub fn compile(
     }
     let cube_map = scene.background.cube_map.as_ref().and_then(|name| loader.cube_map(name, &mut own));
     let (lights, ambient) = lights(scene, rules, &mut own);
+    // Numbers that JSON cannot tell apart, those that are not finite, are in no scene and no rules.
+    let digest = loader.resources.source.digest(&serde_json::to_vec(&(scene, rules)).unwrap_or_default());
     let textures = loader.textures;
     let failed = own.has_errors();
     diagnostics.extend(own);
@@ -98,6 +105,7 @@ pub fn compile(
         textures,
         objects,
         rules: rules.clone(),
+        digest,
         unbounded: Vec::new(),
         accel: Accel::None,
     };

@@ -32,9 +32,11 @@ pub enum Depth {
 
 /// How pictures are written.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct WriteOptions {
+pub struct WriteOptions<'a> {
     /// What makes eight bits of a colour. Formats of floating point have no use for it.
     pub transfer: Transfer,
+    /// Names and texts to be told beside the pictures, in formats that have a place for them.
+    pub attributes: &'a [(&'static str, String)],
 }
 
 /// What a reader found in a file.

@@ -9,6 +9,7 @@ mod formats;
 mod limits;
 mod read;
 mod save;
+mod temporary;
 mod transfer;
 
 #[cfg(test)]

@@ -10,11 +10,12 @@ use crate::light::{Emitter, Illumination};
 use crate::math::{Color, Ray, Vec3, fp, gamma, reflect};
 use crate::shape::Surface;
 use crate::world::{HighlightModel, Hit, Part, Phong, World};
+use serde::{Deserialize, Serialize};
 use smallvec::SmallVec;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 /// What a picture takes into account.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Settings {
     /// Levels of secondary rays; 0 means local light only.
     pub bounces: u32,
@@ -168,6 +169,12 @@ impl Whitted<'_> {
     fn sees_back(&self, dir: Vec3, surface: &Surface) -> bool {
         let shaded = self.world.rules.has(Compat::ShadedSides);
         dir.dot(if shaded { surface.n_shade } else { surface.n_geo }) > 0.0
+    }
+
+    /// The diffuse colour at a hit, of each material that makes it up by its share: its albedo, without any light.
+    pub fn albedo(&self, hit: &Hit, surface: &Surface) -> Color {
+        let parts = self.world.parts(hit, surface.position);
+        parts.iter().map(|part| part.share * self.diffuse_color(part.phong, surface)).sum()
     }
 
     /// Noise, else texture, else the diffuse colour.

@@ -50,14 +50,10 @@ impl Explanation {
     pub fn sum(&self) -> (Color, f32) {
         let mut film = Film::window(self.x, self.y, 1, 1);
         for s in &self.samples {
-            film.add_if_seen(self.x, self.y, s.sample, s.light.as_ref().map(Node::sum), s.weight);
+            let color = s.light.as_ref().map(|light| light.sum() + self.stale_texels.unwrap_or_default());
+            film.add_if_seen(self.x, self.y, s.sample, color, s.weight);
         }
-        let color = match &self.samples[..] {
-            // A single ray through the centre is no mean.
-            [only] if only.weight == 1.0 => only.light.as_ref().map_or(Vec3::ZERO, Node::sum),
-            _ => film.resolve(self.x, self.y),
-        };
-        (color + self.stale_texels.unwrap_or(Vec3::ZERO), film.coverage(self.x, self.y))
+        (film.resolve(self.x, self.y), film.coverage(self.x, self.y))
     }
 }
 

@@ -1,7 +1,7 @@
 //! The course's picture of its uniform grid: the occupied cells as boxes.
 
-use super::run::{center_ray, in_threads, raster};
-use super::{Control, Job, RenderError};
+use super::run::threads;
+use super::{Control, Job, RenderError, center_ray, raster};
 use crate::bvh::Grid;
 use crate::image::{Image, checked_count};
 use crate::light::Emitter;
@@ -27,7 +27,7 @@ pub fn grid_picture(world: &World, job: &Job, control: &Control) -> Result<Image
     let count = checked_count(job.width, job.height)?;
     let raster = raster(world, job.width, job.height);
     let grid = occupied(world);
-    let color = |i| {
+    let color = |i: u32| {
         if control.cancel.load(Relaxed) {
             return Err(RenderError::Cancelled);
         }
@@ -37,7 +37,8 @@ pub fn grid_picture(world: &World, job: &Job, control: &Control) -> Result<Image
             None => world.sky(ray.dir),
         })
     };
-    let colors = in_threads(control, || (0..count as u32).into_par_iter().map(color).collect::<Result<_, _>>())??;
+    let colors =
+        threads(control)?.install(|| (0..count as u32).into_par_iter().map(color).collect::<Result<_, _>>())?;
     Ok(Image::from_pixels(job.width, job.height, colors)?)
 }
 

@@ -28,6 +28,16 @@ pub struct MeshData {
 }
 
 impl MeshData {
+    /// Bytes that it takes in memory.
+    pub fn bytes(&self) -> usize {
+        size_of_val(&*self.positions)
+            + size_of_val(&*self.uvs)
+            + size_of_val(&*self.normals)
+            + size_of_val(&*self.triangles)
+            + size_of_val(&*self.triangle_uvs)
+            + size_of_val(&*self.triangle_normals)
+    }
+
     /// Gives every triangle corners of its own, moved out a little; see [`loosened`].
     pub fn loosen(&mut self) {
         let corners = |t: &[u32; 3]| loosened(t.map(|i| self.positions[i as usize]));
@@ -83,13 +93,7 @@ impl Mesh {
 
     /// Bytes that it takes in memory, its acceleration structure not counted.
     pub fn bytes(&self) -> usize {
-        let d = &self.data;
-        size_of_val(&*d.positions)
-            + size_of_val(&*d.uvs)
-            + size_of_val(&*d.normals)
-            + size_of_val(&*d.triangles)
-            + size_of_val(&*d.triangle_uvs)
-            + size_of_val(&*d.triangle_normals)
+        self.data.bytes()
     }
 
     /// Whether every edge borders on an even number of triangles, so that a line crosses the mesh an even number of

@@ -12,6 +12,7 @@ use crate::light::Light;
 use crate::material::Pattern;
 use crate::math::{Aabb, Color, Ray, Vec2, Vec3};
 use crate::shape::{Crossing, Surface};
+use crate::source::Digest;
 use crate::texture::{CubeMap, Texture};
 pub use material::{HighlightModel, Material, Part, Parts, Phong};
 pub use object::{Geometry, MeshTree, Object};
@@ -39,6 +40,8 @@ pub struct World {
     pub objects: Vec<Object>,
     /// What the words of the scene's dialect mean.
     pub rules: Rules,
+    /// The hash of all that it was made of: description, files, rules.
+    pub digest: Digest,
     pub(crate) unbounded: Vec<u32>,
     pub(crate) accel: Accel,
 }

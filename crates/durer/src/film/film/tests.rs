@@ -101,3 +101,13 @@ fn rejected_samples_are_counted_and_the_first_ones_named() {
     assert_eq!(film.first_rejected()[..2], [Rejected { y: 0, x: 0, sample: 9 }, Rejected { y: 0, x: 1, sample: 0 }]);
     assert_eq!((film.resolve(1, 0), film.samples(1, 0)), (Vec3::splat(0.25), 1));
 }
+
+proptest! {
+    #[test]
+    fn rounding_is_that_of_the_standard(bits in any::<u64>(), small in -1e7_f64..1e7, shift in 0..60_u32) {
+        for x in [f64::from_bits(bits), small, small.floor() + 0.5, small * (1_u64 << shift) as f64, -0.5, 0.5, 1.5] {
+            prop_assert!(rounded(x) == x.round_ties_even() || x.is_nan(), "{}", x);
+            prop_assert_eq!(whole_number(x), x.round_ties_even() as i128, "{}", x);
+        }
+    }
+}

@@ -2,6 +2,7 @@
 
 use super::fields::Order;
 use super::reader::Reader;
+use super::sections::camera_of;
 use crate::camera::Camera;
 use crate::describe::DescribedList;
 use crate::diag::{Diagnostic, Span, did_you_mean};
@@ -20,11 +21,13 @@ impl Reader<'_, '_> {
         self.top(&["Camera", "Background", "Materials", "Scene"], |reader, word, span| {
             match word {
                 "Camera" => reader.camera(Camera::Perspective(Default::default()), span),
-                "OrthographicCamera" => reader.camera(Camera::Orthographic(Default::default()), span),
                 "Background" => reader.background(span),
                 "Materials" => reader.node_materials(span),
                 "Scene" => reader.root_node(span),
-                _ => return false,
+                _ => match camera_of(word).filter(|camera| !matches!(camera, Camera::Perspective(_))) {
+                    Some(camera) => reader.camera(camera, span),
+                    None => return false,
+                },
             }
             true
         });

@@ -13,9 +13,18 @@ use crate::material::{ColorNoise, PhongMaterial, Solid};
 use crate::scene::{Background, Group, Material, Node, Object, Operation, Spanned};
 use crate::shape::{HeightField, Primitive, Sphere, TriangleMesh, VoxelGrid};
 
-/// What stands at the top of a file.
-pub(super) const SECTIONS: [&str; 6] =
-    ["PerspectiveCamera", "OrthographicCamera", "Background", "Lights", "Materials", "Group"];
+/// What stands at the top of a file beside the camera.
+const SECTIONS: [&str; 4] = ["Background", "Lights", "Materials", "Group"];
+
+/// The camera that a word begins, where there are no nodes.
+pub(super) fn camera_of(word: &str) -> Option<Camera> {
+    Camera::from_keyword(word).filter(|_| word != "Camera")
+}
+
+/// Whether a word stands at the top of a file.
+pub(super) fn is_section(word: &str) -> bool {
+    SECTIONS.contains(&word) || camera_of(word).is_some()
+}
 
 /// What stands in a group: [`OBJECTS`] of them are objects.
 #[rustfmt::skip]
@@ -32,13 +41,18 @@ pub(super) const OBJECTS: usize = 20;
 impl Reader<'_, '_> {
     /// The whole file.
     pub(super) fn scene_file(&mut self) {
-        self.top(&SECTIONS, |reader, word, span| {
+        // Years before ours had two cameras.
+        let dialect = self.options.dialect;
+        let kinds = Camera::kinds();
+        let cameras = kinds.iter().filter(|c| dialect == Dialect::Durer || c.keywords()[0].1 != set::DURER);
+        let known: Vec<&str> = cameras.map(|camera| camera.keywords()[0].0).chain(SECTIONS).collect();
+        self.top(&known, |reader, word, span| {
             match word {
                 "Background" => reader.background(span),
                 "Lights" => reader.lights(span),
                 "Materials" => reader.materials(span),
                 "Group" => reader.scene.root = Some(reader.group(span)),
-                _ => match Camera::from_keyword(word).filter(|_| word != "Camera") {
+                _ => match camera_of(word) {
                     Some(camera) => reader.camera(camera, span),
                     None => return false,
                 },
@@ -147,7 +161,7 @@ impl Reader<'_, '_> {
     /// Whether a section of the top ended by a `}` too many: what follows can only stand in it.
     fn closed_early(&self, name: &str) -> bool {
         let word = self.peek_word().unwrap_or_default();
-        self.depth == 0 && !SECTIONS.contains(&word.as_str()) && home_of(&word) == Some(name)
+        self.depth == 0 && !is_section(&word) && home_of(&word) == Some(name)
     }
 
     fn lights(&mut self, keyword: Span) {

@@ -251,6 +251,11 @@ fn value_text(value: &Value) -> String {
         Value::Int(i) => i.to_string(),
         Value::Vec3(v) => vec3_text(*v),
         Value::Path(name) => name.path.clone(),
+        Value::Word(word) => word.clone(),
+        Value::Rows(rows) => {
+            let numbers: Vec<String> = rows.iter().flatten().map(f32::to_string).collect();
+            format!("{{ {} }}", numbers.join(" "))
+        }
     }
 }
 

@@ -33,7 +33,6 @@ fn explanations_sum_to_the_pixels_of_all_our_scenes() {
             let job = Job {
                 width: 24,
                 height: 20,
-                crop: None,
                 seed: 5,
                 sampling,
                 settings: Settings {
@@ -45,9 +44,7 @@ fn explanations_sum_to_the_pixels_of_all_our_scenes() {
                     refraction: true,
                     least_weight: 0.01,
                 },
-                color: true,
-                aovs: Vec::new(),
-                depth_range: None,
+                ..Job::default()
             };
             let picture = render(&world, &job, &Control::default()).unwrap();
             for _ in 0..25 {

@@ -52,12 +52,12 @@ fn strictly_only_the_old_language_is_allowed() {
         (
             Dialect::Durer,
             "Group { numObjects 1 Xor { numObjects 0 } }".into(),
-            "1:22 error: `Xor` is an extension of Dürer's, and no word of the course's language [Xor]",
+            "1:22 error: `Xor` is Dürer's own, and no word of the course's language [Xor]",
         ),
         (
             Dialect::F04,
             "Group { numObjects 1 HeightField { } }".into(),
-            "1:22 error: `HeightField` is not a word of f04, but of durer [HeightField]",
+            "1:22 error: `HeightField` is Dürer's own, and no word of the course's language [HeightField]",
         ),
         (
             Dialect::F12a4,

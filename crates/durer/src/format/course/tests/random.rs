@@ -48,6 +48,10 @@ impl Random {
                     let path = ["a.obj", "meshes/B-2.OBJ", "../x", "Sphere", "\\w\\é.bmp"][self.below(5)].into();
                     Value::Path(FileName { path, ..Default::default() })
                 }
+                Kind::Word(words) => Value::Word(words[self.below(words.len())].into()),
+                Kind::Rows(width) => {
+                    Value::Rows((0..self.below(6)).map(|_| (0..width).map(|_| self.float()).collect()).collect())
+                }
             };
             // Angles are rare among all numbers.
             let value = match (field.rule, value) {
@@ -57,6 +61,7 @@ impl Random {
                 (Rule::Between(low, high), _) => {
                     Value::Float(low + (high - low) * (1 + self.below(998)) as f32 / 1000.0)
                 }
+                (Rule::UpTo(high), _) => Value::Float(high * (1 + self.below(1000)) as f32 / 1000.0),
                 (_, value) => value,
             };
             if field.rule.violation(&value).is_none() {
