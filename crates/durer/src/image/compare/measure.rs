@@ -79,14 +79,14 @@ pub(super) fn measure(pair: &Pair, tolerance: f32) -> (Measures, Vec<f32>) {
         (large.then_some(1.0), vec![0.0; pair.reference.len()])
     } else {
         let [a, b] = pair.shown();
-        let similarity = match pair.scale {
+        let similarity = || match pair.scale {
             Scale::Display => ssim(pair.width, pair.height, &pair.reference, &pair.test),
             Scale::Linear => {
                 let encode = |light: &[Vec3]| light.iter().map(|light| light.map(linear_to_srgb)).collect::<Vec<_>>();
                 ssim(pair.width, pair.height, &encode(&a), &encode(&b))
             }
         };
-        (similarity, flip(pair.width, pair.height, &a, &b))
+        rayon::join(similarity, || flip(pair.width, pair.height, &a, &b))
     };
     let flip = mean(&flip_map);
     let flip_map = match pair.scale {

@@ -118,7 +118,14 @@ fn exchanged(a: (u32, u32), b: (u32, u32)) -> &'static str {
 /// [`CompareError::Sizes`], and [`CompareError::Image`] for a picture whose pixels do not fit its size.
 pub fn compare(reference: &Picture, test: &Picture, options: &Options) -> Result<Comparison, CompareError> {
     let pair = Pair::new(reference, test, options.transfer)?;
-    let (measures, flip_map) = measure::measure(&pair, options.tolerance);
+    let equal = pair.reference == pair.test;
+    // Causes are sought while the measures are taken, for time: they are said only if the pictures turn out to differ.
+    let causes = || match equal {
+        true => (Vec::new(), Vec::new()),
+        false => (mistake::explain(&pair), regions::worst(&pair, options.tolerance)),
+    };
+    let ((measures, flip_map), (findings, regions)) =
+        rayon::join(|| measure::measure(&pair, options.tolerance), causes);
     let pixels = (pair.width * pair.height) as f64;
     let verdict = if measures.largest.is_none() && pair.finite_differs.is_empty() {
         Verdict::Identical
@@ -132,8 +139,8 @@ pub fn compare(reference: &Picture, test: &Picture, options: &Options) -> Result
         width: reference.image.width,
         height: reference.image.height,
         scale: pair.scale,
-        findings: if different { mistake::explain(&pair) } else { Vec::new() },
-        regions: if different { regions::worst(&pair, options.tolerance) } else { Vec::new() },
+        findings: if different { findings } else { Vec::new() },
+        regions: if different { regions } else { Vec::new() },
         measures,
         verdict,
         flip_map,

@@ -30,7 +30,7 @@ fn light(picture: &Picture) -> Picture {
 fn wide_range() -> [Picture; 2] {
     [1.0, 1.5].map(|factor| {
         picture(64, 48, Scale::Linear, move |x, y| {
-            let grey = 2f64.sqrt().sqrt().powi(x as i32 - 32) as f32;
+            let grey = crate::math::fp::pow(2.0, (x as f32 - 32.0) / 4.0);
             Vec3::new(1.0, 0.5, 0.25) * grey * if y % 4 == 0 { factor } else { 1.0 }
         })
     })

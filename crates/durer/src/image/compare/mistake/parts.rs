@@ -5,10 +5,18 @@ use super::{Finding, WELL, bytes, difference, flow};
 use crate::image::compare::picture::Scale;
 use crate::math::Vec3;
 
+/// Looks for one mistake in the reference, the picture and samples of both.
+type Part = fn(&View, &View, &[Sample]) -> Option<Finding>;
+/// The vector that a colour shows.
+type Decode = fn(Vec3) -> Vec3;
+
 /// Differences smaller than this are not seen: a little more than a 255th.
 const SEEN: f32 = 1.5 / 255.0;
 /// An edge is where neighbours differ by more than this.
 const EDGE: f32 = 0.08;
+/// Squared steps between neighbours of a smoothed picture are less than this share of the other's: of an edge at a place in
+/// the pixel that may be any, two thirds are expected.
+const SMOOTHER: f64 = 0.85;
 
 /// A picture that has one colour only.
 pub fn blank(reference: &View, test: &View) -> Option<Finding> {
@@ -27,14 +35,13 @@ pub fn blank(reference: &View, test: &View) -> Option<Finding> {
 
 /// The part of a picture that explains nearly all of the difference, if there is one.
 pub fn finding(reference: &View, test: &View, samples: &[Sample]) -> Option<Finding> {
-    let all: [fn(&View, &View, &[Sample]) -> Option<Finding>; 7] =
-        [cut_normals, long_normals, saturated, speckles, edges, noise, shaded];
+    let all: [Part; 7] = [cut_normals, long_normals, saturated, speckles, edges, noise, shaded];
     all.iter().find_map(|part| part(reference, test, samples).filter(|finding| finding.explained >= WELL))
 }
 
 /// Samples of unit vectors shown as colours: absolute values, or from -1 to 1 mapped to 0 to 1. Gives the vector of each.
-fn unit_vectors(samples: &[Sample]) -> Option<(fn(Vec3) -> Vec3, Vec<&Sample>)> {
-    let decodings: [fn(Vec3) -> Vec3; 2] = [|color| color, |color| 2.0 * color - 1.0];
+fn unit_vectors(samples: &[Sample]) -> Option<(Decode, Vec<&Sample>)> {
+    let decodings: [Decode; 2] = [|color| color, |color| 2.0 * color - 1.0];
     decodings.into_iter().find_map(|decode| {
         let unit: Vec<&Sample> =
             samples.iter().filter(|s| (decode(s.reference).length() - 1.0).abs() < 0.015).collect();
@@ -113,19 +120,23 @@ fn edges(reference: &View, test: &View, samples: &[Sample]) -> Option<Finding> {
     let at_edges: Vec<Sample> = samples.iter().filter(|s| at_edge(reference, s) || at_edge(test, s)).copied().collect();
     let share = at_edges.len() as f64 / samples.len() as f64;
     let explained = difference(&at_edges) / difference(samples);
-    // What each picture leaves of the difference once it is blurred.
-    let rest = |from: &View, other: fn(&Sample) -> Vec3| -> f64 {
-        at_edges.iter().map(|s| f64::from((other(s) - from.blurred(s.x, s.y)).length_squared())).sum()
+    // Smoothing makes one large step between neighbours two or more small ones.
+    let roughness = |picture: &View| -> f64 {
+        let steps = |s: &Sample| {
+            let here = picture.at(s.x, s.y);
+            let (right, below) = (picture.at(s.x + 1, s.y) - here, picture.at(s.x, s.y + 1) - here);
+            f64::from(right.length_squared() + below.length_squared())
+        };
+        at_edges.iter().map(steps).sum()
     };
-    let half = 0.5 * difference(&at_edges);
-    let cause = if rest(test, |s| s.reference) < half {
+    let (own, others) = (roughness(test), roughness(reference));
+    let cause = if others < SMOOTHER * own {
         "the reference is smoothed there, it is not (samples without effect, no filter)".into()
-    } else if let Some(moved) = flow::cause(reference, &at_edges) {
-        moved
-    } else if rest(reference, |s| s.test) < half {
+    } else if own < SMOOTHER * others {
         "it is smoothed there, the reference is not (more samples, a filter)".into()
     } else {
-        "samples lie at other places in the pixels, or are averaged otherwise".to_string()
+        flow::cause(reference, &at_edges)
+            .unwrap_or_else(|| "samples lie at other places in the pixels, or are averaged otherwise".into())
     };
     let words = format!("it differs only at edges ({:.1} % of the picture): {cause}", 100.0 * share);
     (share < 0.4).then_some(Finding { kind: "edges", words, explained })

@@ -73,7 +73,7 @@ fn brightness_and_colour() {
     let half = |v: f32| linear_to_srgb(0.5 * srgb_to_linear(v));
     finds("factor", "light is darker by the factor 0.5", &scene, &move |x, y| scene(x, y).map(half));
     finds("factor", "0.5", &scene, &|x, y| scene(x, y) * Vec3::new(0.5, 1.0, 1.0));
-    finds("added", "+0.1", &scene, &|x, y| scene(x, y) + 0.1);
+    finds("added", "/255) everywhere", &scene, &|x, y| scene(x, y) + 0.1);
     finds("range", "times", &scene, &|x, y| scene(x, y) * 0.5 + 0.3);
     finds("range", "the other way", &scene, &|x, y| 0.8 - scene(x, y) * 0.7);
     finds("inverted", "black for white", &scene, &|x, y| 1.0 - scene(x, y));
@@ -161,7 +161,7 @@ fn samples_at_other_places() {
         samples.sum::<Vec3>() / 16.0
     };
     finds("edges", "the reference is smoothed", &smooth, &middle);
-    finds("edges", "only at edges", &middle, &smooth);
+    finds("edges", "it is smoothed", &middle, &smooth);
 }
 
 #[test]
