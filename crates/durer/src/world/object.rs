@@ -1,8 +1,7 @@
 //! The things in a world, and how a ray meets them.
 
-use crate::bvh::{Bvh, Tally};
-use crate::math::{Aabb, Affine, Ray, Vec3};
-use crate::shape::watertight::Sheared;
+use crate::bvh::{Preset, Tally, TriangleBvh};
+use crate::math::{Aabb, Affine, Ray, Vec2};
 use crate::shape::{Crossing, Mesh, Primitive, Shape};
 use std::sync::Arc;
 
@@ -34,51 +33,35 @@ pub struct MeshTree {
     /// The mesh.
     pub mesh: Mesh,
     /// Its triangles' tree.
-    pub bvh: Bvh,
-    /// Corners of the triangles in the order of the tree.
-    corners: Vec<[Vec3; 3]>,
-    least_volume: f64,
+    pub bvh: TriangleBvh,
 }
 
 impl MeshTree {
     /// Builds the tree.
     pub fn new(mesh: Mesh) -> Self {
-        let boxes: Vec<Aabb> = (0..mesh.len() as u32).map(|i| Aabb::around(mesh.corners(i))).collect();
-        let bvh = Bvh::build(&boxes);
-        let corners = bvh.order().iter().map(|&i| mesh.corners(i)).collect();
-        MeshTree { mesh, bvh, corners, least_volume: 0.0 }
+        let bvh = TriangleBvh::build(mesh.positions(), mesh.triangles(), Preset::Balanced);
+        MeshTree { mesh, bvh }
     }
 
-    /// The same, blind to triangles seen from their sides: see [`Sheared::least_volume`].
+    /// The same, blind to triangles seen from their sides: see [`TriangleBvh::least_volume`].
     pub fn least_volume(self, least_volume: f64) -> Self {
-        MeshTree { least_volume, ..self }
-    }
-
-    fn sheared(&self, ray: &Ray) -> Sheared {
-        Sheared::new(ray).least_volume(self.least_volume)
+        MeshTree { bvh: self.bvh.least_volume(least_volume), ..self }
     }
 
     /// Bytes in memory.
     pub fn bytes(&self) -> usize {
-        self.mesh.bytes() + self.bvh.bytes() + size_of_val(&*self.corners)
+        self.mesh.bytes() + self.bvh.bytes()
     }
 
-    /// The first hit before `best`, both of this object; `any` ends at the first found.
+    /// The first hit in the ray's interval; `any` ends at the first found.
     #[inline]
     fn closest<T: Tally>(&self, ray: &Ray, any: bool, tally: &mut T) -> Option<(Crossing, u32)> {
-        let sheared = self.sheared(ray);
-        let mut best: Option<(Crossing, u32)> = None;
-        self.bvh.walk(ray, tally, |item, t_max, tally| {
-            tally.test();
-            // A tie at the present t is kept apart by the number of the triangle.
-            let Some(crossing) = sheared.intersect(self.corners[item], ray.t_min, ray.t_max) else { return t_max };
-            let part = self.bvh.order()[item];
-            if best.is_none_or(|(b, p)| (crossing.t, part) < (b.t, p)) {
-                best = Some((crossing, part));
-            }
-            if any { f32::NEG_INFINITY } else { t_max.min(crossing.t) }
-        });
-        best
+        if any {
+            let found = self.bvh.occluded_counting(ray, tally);
+            return found.then_some((Crossing { t: ray.t_min, uv: Vec2::ZERO }, 0));
+        }
+        let hit = self.bvh.closest_counting(ray, tally)?;
+        Some((Crossing { t: hit.t, uv: hit.uv }, hit.triangle))
     }
 }
 
@@ -107,7 +90,7 @@ impl Object {
             Geometry::Primitive(shape) => shape.intersect(&ray),
             // Refused like by the tree: such a ray hits nothing.
             Geometry::Mesh(_) if !crate::bvh::is_sound(&ray) => None,
-            Geometry::Mesh(tree) => tree.sheared(&ray).intersect(tree.mesh.corners(part), ray.t_min, ray.t_max),
+            Geometry::Mesh(tree) => tree.bvh.sheared(&ray).intersect(tree.mesh.corners(part), ray.t_min, ray.t_max),
         }
     }
 
