@@ -62,7 +62,7 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
     let (only, keep) = (value("--only"), value("--keep").map(PathBuf::from));
     let corpus = std::env::var_os("DURER_CORPUS").map_or_else(|| PathBuf::from("../shared"), PathBuf::from);
     let course = corpus.join("course").canonicalize().context("the course is not there; set DURER_CORPUS")?;
-    let durer = build()?;
+    let durer = crate::build::durer()?;
     let out = keep.clone().unwrap_or_else(|| std::env::temp_dir().join(format!("durer-course-{}", std::process::id())));
     std::fs::create_dir_all(&out)?;
     let out = out.canonicalize()?;
@@ -106,16 +106,6 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
     }
     println!("\n{passed} passed, {failed} failed, {explained} odd with a known reason, {looked} to look at only");
     Ok(if failed == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE })
-}
-
-fn build() -> Result<PathBuf> {
-    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
-    let status = Command::new(cargo).args(["build", "--release", "--quiet", "--package", "durer-cli"]).status()?;
-    if !status.success() {
-        bail!("the program does not build");
-    }
-    let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| PathBuf::from("target"), PathBuf::from);
-    Ok(target.join("release/durer").canonicalize()?)
 }
 
 fn rows(course: &Path) -> Result<Vec<Row>> {
@@ -281,7 +271,7 @@ impl Bench {
         let image = Image::from_pixels(ours.width * 3, ours.height, pixels)?;
         let path = self.out.join(name);
         let mut bytes = Vec::new();
-        let options = WriteOptions { transfer: Transfer::Linear };
+        let options = WriteOptions { transfer: Transfer::Linear, ..WriteOptions::default() };
         format_for(&path)?.write(&[Layer::color("color", image)], &options, &mut bytes)?;
         durer::image::save(&path, &bytes)?;
         Ok(())

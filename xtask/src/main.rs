@@ -1,7 +1,16 @@
 //! Commands for those who build Dürer.
 
+mod bench_rays;
+mod build;
+mod cost;
 mod course;
+mod manual;
+mod solids;
+mod torture;
+mod verify;
 
+use anyhow::Context;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 const USAGE: &str = "Commands:
@@ -9,15 +18,44 @@ const USAGE: &str = "Commands:
       Render every row of the course's reference pictures through `durer course`, and compare.
       --guess: do not name the program, so that the dialect is guessed. --only: rows that contain TEXT.
       --keep: leave our pictures there, with pictures of the differences.
+  cargo xtask verify [--trials 500] [--only TEXT]
+      `durer verify` for every scene of the repository, with various samplings.
+  cargo xtask torture [--kills 100] [--offsets 50] [--seed 1]
+      Kill the program at random times while it works and saves, and go on with what it left; give it full disks and
+      disks that cannot be written.
+  cargo xtask cost
+      What exact sums cost, what a second thread brings, how soon a cancelled render ends.
+  cargo xtask solids
+      A million random points against the Boolean of the parts of random solids, and the cost of rays at solids of a
+      thousand parts beside that at the same parts as plain objects.
+  cargo xtask bench-rays [--quick] [--mesh NAME] [--threads N] ...
+      The very same rays through Dürer, Embree 4, obvhs, bvh and parry3d; --help says more.
+  cargo xtask manual
+      Write docs/cameras.md from what the cameras state of themselves.
 The course is found in ../shared, or where DURER_CORPUS says.";
 
 fn main() -> anyhow::Result<ExitCode> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     match arguments.first().map(String::as_str) {
         Some("course") => course::run(&arguments[1..]),
+        Some("verify") => verify::run(&arguments[1..]),
+        Some("torture") => torture::run(&arguments[1..]),
+        Some("cost") => cost::run(&arguments[1..]),
+        Some("solids") => solids::run(),
+        Some("bench-rays") => bench_rays::run(&arguments[1..]),
+        Some("manual") => manual::run(),
         _ => {
             println!("{USAGE}");
             Ok(ExitCode::from(2))
         }
     }
+}
+
+/// The repository: `DURER_ROOT`, or where this was built.
+fn root() -> anyhow::Result<PathBuf> {
+    let built = || Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    std::env::var_os("DURER_ROOT")
+        .map_or_else(built, PathBuf::from)
+        .canonicalize()
+        .context("the repository is not there")
 }

@@ -1,13 +1,16 @@
 //! The command line.
 
+use crate::memory::Memory;
 use clap::builder::{ArgPredicate, PossibleValuesParser};
 use clap::{Args, Parser, Subcommand};
 use durer::dialect::{Compat, Dialect};
 use durer::film::Filter;
 use durer::film::aov::AOVS;
 use durer::image::Transfer;
+use durer::render::Shard;
 use durer::sampler::Sampler;
 use std::path::PathBuf;
+use std::time::Duration;
 
 /// A ray tracer: exact, explainable, deterministic.
 #[derive(Parser)]
@@ -27,10 +30,14 @@ pub struct Cli {
 
 #[derive(Subcommand)]
 pub enum Command {
-    Render(Box<RenderArgs>),
+    Render(Box<RenderCommand>),
+    Explain(Box<ExplainArgs>),
+    Merge(MergeArgs),
+    Verify(Box<VerifyArgs>),
     Course(CourseArgs),
     Info(InfoArgs),
     Convert(ConvertArgs),
+    Compare(CompareArgs),
     /// List the dialects of the scene language, and the old programs' habits that can be had by name
     #[command(after_help = "Example:\n  durer dialects")]
     Dialects,
@@ -70,21 +77,57 @@ pub struct SceneArgs {
 #[command(after_help = "Examples:
   durer render scene.txt -o picture.png
   durer render scene.txt -o picture.exr --size 1920x1080 --samples 64
+  durer render scene.txt -o picture.exr --noise 0.01 --time 10m --preview preview.png
+  durer render scene.txt -o picture.exr --samples 256 --resume
+  durer render scene.txt -o three.part --shard 3/16
   durer render scene.txt -o picture.png --show color,depth,normals --depth-range 9 10
   durer render scene.txt -o picture.png --dialect f04 --shadows --bounces 4 --transfer course
   durer render scene.txt -o dots.png --show samples --size 9x9 --sampler jittered --samples 9
 
 The extension of PICTURE says the format: png, tga, bmp, ppm, pfm, exr, hdr. Several pictures go into one EXR file
-as layers, or into files of their own: picture.depth.png and so on.")]
+as layers, or into files of their own: picture.depth.png and so on.
+
+Work that takes long is saved every now and then into PICTURE.part, which --resume goes on with; it is removed
+when the picture is done. Ctrl-C saves what is there.")]
+pub struct RenderCommand {
+    #[command(flatten)]
+    pub render: RenderArgs,
+    /// Print what one pixel sees, and write nothing
+    #[arg(long, value_name = "X,Y", value_parser = pixel)]
+    pub pixel: Option<(u32, u32)>,
+    /// Of that pixel, only this sample
+    #[arg(long, value_name = "NUMBER", requires = "pixel")]
+    pub sample: Option<u32>,
+}
+
+/// What is rendered, how, and whereto
+#[derive(Args)]
 pub struct RenderArgs {
     /// The scene file
     pub scene: PathBuf,
-    /// The picture to write [default: the scene's name with .png, here]
+    /// The picture to write; with --shard, the part [default: the scene's name with .png, here]
     #[arg(short, long, value_name = "PICTURE")]
     pub output: Option<PathBuf>,
     #[command(flatten)]
     pub reading: SceneArgs,
+    #[command(flatten)]
+    pub job: JobArgs,
+    #[command(flatten)]
+    pub work: WorkArgs,
+    /// How colours become eight bits: sRGB's curve, none, or none and truncated as the course has it
+    #[arg(long, default_value = "srgb", value_parser = PossibleValuesParser::new(Transfer::ALL.map(Transfer::name)))]
+    pub transfer: String,
+    /// Print the hash of the film as the last line of standard output
+    #[arg(long)]
+    pub hash: bool,
+    /// Say nothing but errors
+    #[arg(short, long)]
+    pub quiet: bool,
+}
 
+/// What the picture is
+#[derive(Args)]
+pub struct JobArgs {
     /// Size in pixels [default: 512x512; with --dialect, that year's]
     #[arg(long, value_name = "WIDTHxHEIGHT", value_parser = size)]
     pub size: Option<(u32, u32)>,
@@ -97,10 +140,6 @@ pub struct RenderArgs {
     /// Depths shown as the two ends of grey [default: those in the picture]
     #[arg(long, num_args = 2, value_names = ["MIN", "MAX"], allow_negative_numbers = true)]
     pub depth_range: Option<Vec<f32>>,
-    /// How colours become eight bits: sRGB's curve, none, or none and truncated as the course has it
-    #[arg(long, default_value = "srgb", value_parser = PossibleValuesParser::new(Transfer::ALL.map(Transfer::name)))]
-    pub transfer: String,
-
     /// Levels of mirrored and transmitted rays [default: 8; with --dialect, that year's]
     #[arg(long, value_parser = clap::value_parser!(u32).range(0..=256))]
     pub bounces: Option<u32>,
@@ -123,7 +162,8 @@ pub struct RenderArgs {
     #[arg(long, allow_negative_numbers = true, value_parser = weight)]
     pub weight: Option<f32>,
 
-    /// Samples a pixel; 1 is the pixel's centre [default: 16; with --dialect, 1]
+    /// Samples a pixel; 1 is the pixel's centre [default: 16, or 64 through a lens or a hole; with --dialect, 1; with --time,
+    /// no end; with --noise, 4096]
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..=1 << 20))]
     pub samples: Option<u32>,
     /// Where samples lie; all but sobol are the course's, with its filters
@@ -141,6 +181,9 @@ pub struct RenderArgs {
     /// Blur by five taps, as in 2012
     #[arg(long, conflicts_with_all = ["samples", "sampler", "filter"])]
     pub blur: bool,
+    /// Stop where the estimated error of what is seen is below this; 0.01 is a hundredth of the way from black to white
+    #[arg(long, value_name = "ERROR", value_parser = noise)]
+    pub noise: Option<f32>,
     /// Seed of the random numbers
     #[arg(long, default_value_t = 0)]
     pub seed: u64,
@@ -154,12 +197,130 @@ pub struct RenderArgs {
     /// Cells of the grid, which is used then [default: suitable ones]
     #[arg(long, value_name = "XxYxZ", value_parser = cells)]
     pub grid: Option<[u32; 3]>,
-    /// Threads [default: as many as the machine has]
+}
+
+/// When and with how much it is made
+#[derive(Args)]
+pub struct WorkArgs {
+    /// Threads that build and render [default: as many as the machine has]
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
+    /// Pixels across and down the tiles that threads take, in steps of 8 [default: suitable ones]
+    #[arg(long, value_name = "PIXELS", value_parser = clap::value_parser!(u32).range(8..=4096))]
+    pub tile: Option<u32>,
+    /// Stop after this time, as in 30s, 10m, 1h30m
+    #[arg(long, value_name = "TIME", value_parser = humantime::parse_duration)]
+    pub time: Option<Duration>,
+    /// Refuse work that needs more memory: bytes as in 512M or 8G, or a share of the machine's or control group's
+    #[arg(long, default_value = "80%", value_name = "SIZE", value_parser = Memory::parse)]
+    pub memory: Memory,
+    /// Go on with the work that was saved; from the start where none was
+    #[arg(long)]
+    pub resume: bool,
+    /// Where work is saved [default: PICTURE.part, from the first second on]
+    #[arg(long, value_name = "FILE", conflicts_with = "shard")]
+    pub checkpoint: Option<PathBuf>,
+    /// How often work is saved, beside the ends of passes
+    #[arg(long, default_value = "30s", value_name = "TIME", value_parser = humantime::parse_duration)]
+    pub checkpoint_every: Duration,
+    /// Do not save work before it is done
+    #[arg(long, conflicts_with_all = ["checkpoint", "resume", "shard"])]
+    pub no_checkpoint: bool,
+    /// Write what is there into this picture too, after each pass over all pixels
+    #[arg(long, value_name = "PICTURE", conflicts_with = "shard")]
+    pub preview: Option<PathBuf>,
+    /// Make only one of several parts, for `durer merge`
+    #[arg(long, value_name = "INDEX/COUNT", requires = "output")]
+    pub shard: Option<Shard>,
+    /// Whether parts have different pixels or different samples
+    #[arg(long, value_name = "WHAT", default_value = "tiles", value_parser = ["tiles", "samples"], requires = "shard")]
+    pub shard_by: String,
+}
+
+/// Put parts of a picture together
+#[derive(Args)]
+#[command(after_help = "Examples:
+  durer merge one.part two.part three.part -o picture.exr
+  durer merge shards/*.part -o picture.png --hash
+
+The result is the same, bit for bit, as that of one run. Parts of other pictures, work that is in two parts and
+work that is in none are refused.")]
+pub struct MergeArgs {
+    /// The parts, in any order
+    #[arg(required = true)]
+    pub parts: Vec<PathBuf>,
+    /// The picture to write
+    #[arg(short, long, value_name = "PICTURE")]
+    pub output: PathBuf,
+    /// How colours become eight bits
+    #[arg(long, default_value = "srgb", value_parser = PossibleValuesParser::new(Transfer::ALL.map(Transfer::name)))]
+    pub transfer: String,
+    /// Print the hash of the film as the last line of standard output
+    #[arg(long)]
+    pub hash: bool,
     /// Say nothing but errors
     #[arg(short, long)]
     pub quiet: bool,
+}
+
+/// Render a scene in many ways, and see whether the film is always the same
+#[derive(Args)]
+#[command(after_help = "Examples:
+  durer verify scene.txt
+  durer verify scene.txt --trials 500 --size 64x48 --samples 24 --noise 0.02
+
+Ways differ by threads, tile size, shards by tiles or samples, interruptions, the structure that finds what rays
+hit, and the processor's instructions. A small picture is enough; its default is 64x48 with 8 samples.")]
+pub struct VerifyArgs {
+    /// The scene file
+    pub scene: PathBuf,
+    #[command(flatten)]
+    pub reading: SceneArgs,
+    #[command(flatten)]
+    pub job: JobArgs,
+    /// How many ways to try
+    #[arg(long, default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    pub trials: u32,
+    /// Print the hash alone
+    #[arg(short, long)]
+    pub quiet: bool,
+}
+
+/// Say why a pixel has its colour: the tree of terms that sums to it
+#[derive(Args)]
+#[command(after_help = "Examples:
+  durer explain scene.txt --pixel 200,150
+  durer explain scene.txt --pixel 200,150 --sample 3 --size 640x480 --bounces 2
+  durer explain scene.txt --brightest --html why.html
+  durer explain scene.txt --ray '0 1 5 0 0 -1' --json
+
+Give the options with which the picture was rendered: they decide the pixel. Those that only say where a picture goes
+change nothing here. With one sample the pixel's centre is explained.")]
+pub struct ExplainArgs {
+    #[command(flatten)]
+    pub render: RenderArgs,
+
+    /// The pixel, counted from 0 at the upper left corner
+    #[arg(long, value_name = "X,Y", value_parser = pixel, conflicts_with_all = ["ray", "brightest", "worst"])]
+    pub pixel: Option<(u32, u32)>,
+    /// The sample whose tree is shown [default: the first]
+    #[arg(long, value_name = "N")]
+    pub sample: Option<u32>,
+    /// Any ray instead of a pixel's: origin and direction
+    #[arg(long, value_name = "OX OY OZ DX DY DZ", value_delimiter = ' ', num_args = 1..=6, allow_negative_numbers = true, conflicts_with_all = ["brightest", "worst", "sample"])]
+    pub ray: Option<Vec<f32>>,
+    /// The brightest pixel of the picture
+    #[arg(long, conflicts_with = "worst")]
+    pub brightest: bool,
+    /// The pixel least like those around it: fireflies, specks
+    #[arg(long)]
+    pub worst: bool,
+    /// As JSON
+    #[arg(long, conflicts_with = "html")]
+    pub json: bool,
+    /// As a page with the picture, the tree and the rays in space
+    #[arg(long, value_name = "FILE")]
+    pub html: Option<PathBuf>,
 }
 
 /// Take the arguments of the course's own programs, of any year
@@ -206,6 +367,44 @@ pub struct ConvertArgs {
     pub to: Option<String>,
 }
 
+/// Compare a picture with a reference: numbers, words, a heat map, a page to look at
+#[derive(Args)]
+#[command(after_help = "Examples:
+  durer compare reference.png mine.png
+  durer compare reference.png mine.png --report report.html --tolerance 2/255
+  durer compare reference.exr mine.exr --heat heat.png --json
+  durer compare reference/ mine/ --report report.html
+  durer compare reference/ class/
+
+Folders are compared picture by picture, by name; extensions may differ. Where no name of REFERENCE is in PICTURE itself, but
+some are in folders in it, each of those is taken for one student's.
+Exit code: 0 the same within the tolerance, 1 different or missing, 2 a picture that cannot be read, sizes that differ, wrong
+options, or a file that cannot be written.")]
+pub struct CompareArgs {
+    /// The picture that is right, or a folder of such
+    pub reference: PathBuf,
+    /// The picture to judge, or a folder of such
+    pub picture: PathBuf,
+    /// Write a page for a browser, in one file: slider, blinking, heat map, table
+    #[arg(long, value_name = "FILE.html")]
+    pub report: Option<PathBuf>,
+    /// Write a picture of the FLIP errors
+    #[arg(long, value_name = "PICTURE")]
+    pub heat: Option<PathBuf>,
+    /// The largest difference of a channel that counts as the same, as 2/255 or a number
+    #[arg(long, default_value = "1/255", value_parser = tolerance, allow_negative_numbers = true)]
+    pub tolerance: f32,
+    /// The share of pixels, in percent, that may differ by more
+    #[arg(long, value_name = "PERCENT", default_value_t = 0.0, value_parser = percent, allow_negative_numbers = true)]
+    pub allow: f64,
+    /// How light becomes eight bits where the other picture has those
+    #[arg(long, default_value = "srgb", value_parser = PossibleValuesParser::new(Transfer::ALL.map(Transfer::name)))]
+    pub transfer: String,
+    /// Everything as JSON
+    #[arg(long)]
+    pub json: bool,
+}
+
 /// Pictures that show not the scene but how it is sampled.
 pub const DIAGRAMS: [&str; 2] = ["samples", "filter"];
 
@@ -237,6 +436,15 @@ pub fn weight(text: &str) -> Result<f32, String> {
     text.parse().ok().filter(|w: &f32| w.is_finite() && *w >= 0.0).ok_or_else(|| "say a number, 0 or more".into())
 }
 
+fn noise(text: &str) -> Result<f32, String> {
+    text.parse().ok().filter(|n: &f32| n.is_finite() && *n > 0.0).ok_or_else(|| "say a number more than 0".into())
+}
+
+fn pixel(text: &str) -> Result<(u32, u32), String> {
+    let numbers = text.split_once(',').and_then(|(x, y)| Some((x.trim().parse().ok()?, y.trim().parse().ok()?)));
+    numbers.ok_or_else(|| "say it as 200,150: column and row from the upper left corner".into())
+}
+
 fn size(text: &str) -> Result<(u32, u32), String> {
     let parse = || {
         let (width, height) = text.split_once(['x', 'X'])?;
@@ -259,4 +467,20 @@ fn cells(text: &str) -> Result<[u32; 3], String> {
     let numbers: Option<Vec<u32>> = text.split(['x', 'X']).map(|n| n.parse().ok()).collect();
     let cells: Option<[u32; 3]> = numbers.and_then(|n| n.try_into().ok());
     cells.filter(|c| !c.contains(&0)).ok_or("say it as 10x10x10".into())
+}
+
+fn tolerance(text: &str) -> Result<f32, String> {
+    let value: Option<f32> = match text.split_once('/') {
+        Some((n, of)) => n.trim().parse().ok().zip(of.trim().parse::<f32>().ok()).map(|(n, of): (f32, f32)| n / of),
+        None => text.parse().ok(),
+    };
+    value.filter(|t| t.is_finite() && *t >= 0.0).ok_or_else(|| "say it as 2/255 or as a number, 0 or more".into())
+}
+
+fn percent(text: &str) -> Result<f64, String> {
+    text.trim_end_matches('%')
+        .parse()
+        .ok()
+        .filter(|p| (0.0..=100.0).contains(p))
+        .ok_or_else(|| "say a number from 0 to 100".into())
 }

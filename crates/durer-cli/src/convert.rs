@@ -1,7 +1,7 @@
 //! `durer convert`.
 
 use crate::args::ConvertArgs;
-use crate::render::load_options;
+use crate::open::load_options;
 use crate::{Failure, output, report};
 use durer::diag::{Diagnostics, Files};
 use durer::dialect::Dialect;

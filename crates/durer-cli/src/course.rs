@@ -5,8 +5,11 @@ mod options;
 pub use options::{Program, program};
 
 use crate::args::weight;
+use crate::diagrams::{self, filter_layer, samples_layer};
+use crate::memory::Memory;
+use crate::open::{Opened, open};
 use crate::output::say;
-use crate::render::{Opened, check_diagram, failure, filter_layer, open, rejected, samples_layer};
+use crate::render::{failure, rejected};
 use crate::{Failure, bad, output, progress};
 use durer::LoadOptions;
 use durer::compile::AccelKind;
@@ -15,11 +18,12 @@ use durer::film::aov::Aov;
 use durer::film::course::CourseFilter;
 use durer::image::{Format, Layer, Transfer, check_target, format_for};
 use durer::integrator::Settings;
-use durer::render::{Control, Job, Sampling};
+use durer::render::{Control, Job, RenderError, Sampling};
 use durer::sampler::Sampler;
 use options::{Given, PROGRAMS, usage};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::sync::atomic::Ordering::Relaxed;
 
 pub fn run(arguments: Vec<String>, program_name: Option<&'static Program>) -> Result<(), Failure> {
     if arguments.is_empty() || arguments.iter().any(|a| a == "--help" || a == "-h" || a == "-help") {
@@ -35,16 +39,17 @@ pub fn run(arguments: Vec<String>, program_name: Option<&'static Program>) -> Re
     let outputs = Outputs::of(&given, options.dialect)?;
     let opened = open(Path::new(scene), &options, quiet)?;
     let job = job(&given, &opened)?;
-    let control = Arc::new(Control { threads: threads(&given)?, ..Control::default() });
+    let control =
+        Arc::new(Control { threads: threads(&given)?, memory: Memory::Percent(80.0).bytes(), ..Control::default() });
     let world = &opened.world;
     let zooms = (given.zoom("-render_samples")?, given.zoom("-render_filter")?);
     for zoom in [zooms.0, zooms.1].into_iter().flatten() {
-        check_diagram(&job, zoom).map_err(failure)?;
+        diagrams::check(&job, zoom).map_err(failure)?;
     }
     // The picture of the grid takes the place of the colour picture.
     let grid_wanted = job.color && given.has("-visualize_grid");
     let job = Job { color: job.color && !grid_wanted, ..job };
-    let (rendered, grid, diagrams) = progress::watch(&job, &control, quiet, || {
+    let (rendered, grid, diagrams) = progress::watch(&control, quiet, || {
         let rendered = durer::render::render(world, &job, &control)?;
         let grid = grid_wanted.then(|| durer::render::grid_picture(world, &job, &control)).transpose()?;
         let samples = zooms.0.map(|zoom| samples_layer(world, &job, &control, zoom)).transpose()?;
@@ -52,14 +57,18 @@ pub fn run(arguments: Vec<String>, program_name: Option<&'static Program>) -> Re
         Ok((rendered, grid.map(|image| Layer::color("color", image)), [samples, filter]))
     })
     .map_err(failure)?;
-    rejected(&rendered, quiet);
+    // It may have come when all was done already: it was asked for all the same.
+    if control.cancel.load(Relaxed) {
+        return Err(failure(RenderError::Cancelled));
+    }
+    rejected(&rendered.statistics, quiet);
     if given.has("-stats") {
         stats(&opened, &control);
     }
     let layers = grid.iter().chain(&rendered.pictures).chain(diagrams.iter().flatten());
     let mut files = Vec::new();
     for (layer, (path, format)) in layers.zip(&outputs.0) {
-        files.push((path.clone(), output::encode(format, std::slice::from_ref(layer), Transfer::Course)?));
+        files.push((path.clone(), output::encode(format, std::slice::from_ref(layer), Transfer::Course, &[])?));
     }
     output::save(&files, quiet)
 }
@@ -96,6 +105,8 @@ fn load_options(given: &Given, program_name: Option<&'static Program>) -> Result
             cells => AccelKind::Grid(cells),
         },
         strict: false,
+        threads: threads(given)?,
+        ..LoadOptions::default()
     })
 }
 
@@ -157,7 +168,6 @@ fn job(given: &Given, opened: &Opened) -> Result<Job, Failure> {
     Ok(Job {
         width,
         height,
-        crop: None,
         seed: given.number("--seed")?.unwrap_or(0),
         sampling: sampling(given, opened.loaded.dialect)?,
         settings: Settings {
@@ -172,6 +182,7 @@ fn job(given: &Given, opened: &Opened) -> Result<Job, Failure> {
         color: given.has("-output"),
         aovs: wanted.iter().filter(|w| given.has(w.0)).filter_map(|w| Aov::from_name(w.1)).collect(),
         depth_range,
+        ..Job::default()
     })
 }
 
@@ -226,6 +237,6 @@ fn threads(given: &Given) -> Result<Option<usize>, Failure> {
 
 /// `-stats`.
 fn stats(opened: &Opened, control: &Control) {
-    let rays = control.rays.load(std::sync::atomic::Ordering::Relaxed);
+    let rays = control.rays.load(Relaxed);
     say(&format!("objects {}, rays {rays}", opened.world.objects.len()));
 }

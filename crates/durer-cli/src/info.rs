@@ -2,11 +2,11 @@
 
 use crate::Failure;
 use crate::args::InfoArgs;
+use crate::open::{load_options, open};
 use crate::output::say;
-use crate::render::{load_options, open};
-use durer::camera::Lens;
+use durer::camera::{Lens, Raster};
 use durer::describe::DescribedList;
-use durer::world::{Accel, Geometry, World};
+use durer::world::{Accel, Geometry, MeshTree, World};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -33,15 +33,13 @@ pub fn run(args: &InfoArgs) -> Result<(), Failure> {
     let pose = world.camera.pose();
     say(&format!("scene      {}", args.scene.display()));
     say(&format!("dialect    {} ({})", dialect.name(), dialect.rules().title));
-    say(&format!("camera     {} at {}, looking along {}", world.camera.keyword(dialect), pose.center, pose.direction));
+    let camera = &world.camera;
+    let (name, rest) = (camera.keyword(dialect), fields(camera, &["center", "direction"]));
+    say(&format!("camera     {name} at {}, looking along {}: {rest}", pose.center, pose.direction));
+    let (width, height) = Raster::natural_size(camera.proportions(), loaded.rules.size);
+    say(&format!("picture    {width}x{height} where no size is asked for"));
     for light in &world.lights {
-        let fields: Vec<String> = light
-            .fields()
-            .iter()
-            .enumerate()
-            .filter_map(|(i, field)| Some(format!("{} {}", field.name, value(&light.get(i)?))))
-            .collect();
-        say(&format!("light      {}: {}", light.keyword(dialect), fields.join(", ")));
+        say(&format!("light      {}: {}", light.keyword(dialect), fields(light, &[])));
     }
     let shapes: Vec<String> = count.shapes.iter().map(|(name, n)| format!("{n} {name}")).collect();
     say(&format!(
@@ -70,6 +68,13 @@ fn mib(bytes: usize) -> f64 {
     bytes as f64 / f64::from(1 << 20)
 }
 
+/// The fields of a thing with their values, but for some.
+fn fields<T: DescribedList>(thing: &T, except: &[&str]) -> String {
+    let wanted = thing.fields().iter().enumerate().filter(|(_, field)| !except.contains(&field.name));
+    let shown = wanted.filter_map(|(i, field)| Some(format!("{} {}", field.name, value(&thing.get(i)?))));
+    shown.collect::<Vec<_>>().join(", ")
+}
+
 fn value(value: &durer::describe::Value) -> String {
     use durer::describe::Value::*;
     match value {
@@ -77,6 +82,8 @@ fn value(value: &durer::describe::Value) -> String {
         Int(i) => i.to_string(),
         Vec3(v) => v.to_string(),
         Path(name) => name.path.clone(),
+        Word(word) => word.clone(),
+        Rows(rows) => format!("{rows:?}"),
     }
 }
 
@@ -91,6 +98,16 @@ struct Counted {
 }
 
 impl Counted {
+    /// Counts a mesh; one that several objects share counts once.
+    fn mesh(&mut self, tree: &Arc<MeshTree>, seen: &mut Vec<*const MeshTree>) {
+        self.triangles += tree.mesh.len();
+        if !seen.contains(&Arc::as_ptr(tree)) {
+            seen.push(Arc::as_ptr(tree));
+            self.distinct_triangles += tree.mesh.len();
+            self.bytes += tree.bytes();
+        }
+    }
+
     fn of(world: &World) -> Self {
         let mut count = Counted::default();
         let mut seen = Vec::new();
@@ -98,14 +115,17 @@ impl Counted {
             let name = match &object.geometry {
                 Geometry::Primitive(shape) => shape.keywords()[0].0,
                 Geometry::Mesh(tree) => {
-                    count.triangles += tree.mesh.len();
-                    // A mesh that several objects share counts once.
-                    if !seen.contains(&Arc::as_ptr(tree)) {
-                        seen.push(Arc::as_ptr(tree));
-                        count.distinct_triangles += tree.mesh.len();
-                        count.bytes += tree.bytes();
-                    }
+                    count.mesh(tree, &mut seen);
                     "TriangleMesh"
+                }
+                Geometry::Solid(solid) => {
+                    count.bytes += solid.bytes();
+                    for part in solid.parts() {
+                        if let Geometry::Mesh(tree) = &part.geometry {
+                            count.mesh(tree, &mut seen);
+                        }
+                    }
+                    "solid"
                 }
             };
             *count.shapes.entry(name).or_default() += 1;

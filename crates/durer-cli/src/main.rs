@@ -1,14 +1,23 @@
 //! The `durer` command: a thin shell over the library.
 
 mod args;
+mod compare;
 mod convert;
 mod course;
+mod diagrams;
+mod explain;
 mod info;
+mod job;
+mod keep;
 mod manual;
+mod memory;
+mod merge;
+mod open;
 mod output;
 mod progress;
 mod render;
 mod report;
+mod verify;
 
 use args::{Cli, Command};
 use clap::Parser;
@@ -19,6 +28,8 @@ use std::process::ExitCode;
 const BAD_INPUT: u8 = 2;
 /// Exit code after anything else that failed.
 const OTHER_FAILURE: u8 = 1;
+/// Exit code of `durer compare` after pictures that differ: as of `cmp` and `diff`, whose 2 says that something is wrong.
+const DIFFERENT: u8 = 1;
 /// Exit code after Ctrl-C.
 const INTERRUPTED: u8 = 130;
 
@@ -35,9 +46,13 @@ fn main() -> ExitCode {
             .and_then(|arguments| course::run(arguments, Some(program))),
         None => match Cli::parse().command {
             Command::Render(args) => render::run(&args),
+            Command::Merge(args) => merge::run(&args),
+            Command::Verify(args) => verify::run(&args),
+            Command::Explain(args) => explain::run(&args),
             Command::Course(args) => course::run(args.arguments, None),
             Command::Info(args) => info::run(&args),
             Command::Convert(args) => convert::run(&args),
+            Command::Compare(args) => compare::run(&args),
             Command::Dialects => manual::dialects(),
             Command::Completions { shell } => manual::completions(shell),
             Command::Man => manual::man(),
@@ -55,8 +70,10 @@ enum Failure {
     Input(Option<String>),
     /// Something else went wrong.
     Other(anyhow::Error),
-    /// The user stopped it.
-    Interrupted,
+    /// `durer compare` found pictures that differ, and has said so.
+    Different,
+    /// The user stopped it; says what became of the work.
+    Interrupted(String),
 }
 
 impl Failure {
@@ -73,8 +90,9 @@ impl Failure {
                 report::complain(&format!("error: {error}"));
                 OTHER_FAILURE
             }
-            Failure::Interrupted => {
-                report::complain("interrupted; nothing was written");
+            Failure::Different => DIFFERENT,
+            Failure::Interrupted(what) => {
+                report::complain(&format!("interrupted; {what}"));
                 INTERRUPTED
             }
         }

@@ -48,22 +48,34 @@ impl Target {
     pub fn files(&self, rendered: &Rendered, transfer: Transfer) -> Result<Vec<(PathBuf, Vec<u8>)>, Failure> {
         let layers = layers(rendered, self.format);
         let parts = if self.together { layers.chunks(layers.len()) } else { layers.chunks(1) };
-        parts.map(|part| Ok((self.file(&part[0].name), encode(self.format, part, transfer)?))).collect()
+        parts
+            .map(|part| Ok((self.file(&part[0].name), encode(self.format, part, transfer, &rendered.attributes)?)))
+            .collect()
     }
 }
 
-/// The bytes of one file.
-pub fn encode(format: &Format, layers: &[Layer], transfer: Transfer) -> Result<Vec<u8>, Failure> {
+/// The bytes of one file, with texts beside the pictures where the format has a place for them.
+pub fn encode(
+    format: &Format,
+    layers: &[Layer],
+    transfer: Transfer,
+    attributes: &[(&'static str, String)],
+) -> Result<Vec<u8>, Failure> {
     let mut bytes = Vec::new();
     // What a format cannot hold, a size above all, was asked for.
-    format.write(layers, &WriteOptions { transfer }, &mut bytes).map_err(|error| bad(error.to_string()))?;
+    format.write(layers, &WriteOptions { transfer, attributes }, &mut bytes).map_err(|error| bad(error.to_string()))?;
     Ok(bytes)
+}
+
+/// Saves all files or none.
+pub fn save_silently(files: &[(PathBuf, Vec<u8>)]) -> Result<(), Failure> {
+    progress::saving();
+    Ok(save_all(files)?)
 }
 
 /// Saves all files or none, and says so.
 pub fn save(files: &[(PathBuf, Vec<u8>)], quiet: bool) -> Result<(), Failure> {
-    progress::saving();
-    save_all(files)?;
+    save_silently(files)?;
     // Nothing is said of devices: standard output may be one, and the picture in it.
     for (path, _) in files.iter().filter(|(path, _)| !quiet && !path.starts_with("/dev")) {
         say(&format!("wrote {}", path.display()));
@@ -80,4 +92,11 @@ pub fn say(line: &str) {
         }
         _ => {}
     }
+}
+
+/// A name with something more at its end.
+pub fn lengthened(path: &Path, end: &str) -> PathBuf {
+    let mut name = path.as_os_str().to_os_string();
+    name.push(end);
+    name.into()
 }

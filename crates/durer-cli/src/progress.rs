@@ -1,7 +1,7 @@
 //! A progress bar, and what Ctrl-C does.
 
 use crate::Failure;
-use durer::render::{Control, Job, RenderError};
+use durer::render::{Control, RenderError};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::IsTerminal;
 use std::sync::atomic::Ordering::Relaxed;
@@ -30,7 +30,10 @@ pub fn hear_interrupts() {
     let handler = || match &mut *phase() {
         Phase::Rendering(control) if !control.cancel.swap(true, Relaxed) => {}
         Phase::Saving(asked @ false) => *asked = true,
-        _ => std::process::exit(i32::from(Failure::Interrupted.report())),
+        phase => {
+            let what = if matches!(phase, Phase::Harmless) { "nothing was written" } else { "not all was saved" };
+            std::process::exit(i32::from(Failure::Interrupted(what.into()).report()))
+        }
     };
     // Where there can be no handler, Ctrl-C ends the program as it ends others.
     let _ = ctrlc::set_handler(handler);
@@ -43,28 +46,22 @@ pub fn saving() {
 
 /// Runs a render with a progress bar (on a terminal) and Ctrl-C.
 pub fn watch<T>(
-    job: &Job,
     control: &Arc<Control>,
     quiet: bool,
     render: impl FnOnce() -> Result<T, RenderError>,
 ) -> Result<T, RenderError> {
     *phase() = Phase::Rendering(Arc::clone(control));
     let visible = !quiet && std::io::stderr().is_terminal();
-    let result = if visible { with_bar(job, control, render) } else { render() };
+    let result = if visible { with_bar(control, render) } else { render() };
     *phase() = Phase::Harmless;
-    // It may have come when all was done already: it was asked for all the same.
-    if control.cancel.load(Relaxed) { Err(RenderError::Cancelled) } else { result }
+    result
 }
 
-fn with_bar<T>(
-    job: &Job,
-    control: &Control,
-    render: impl FnOnce() -> Result<T, RenderError>,
-) -> Result<T, RenderError> {
+fn with_bar<T>(control: &Control, render: impl FnOnce() -> Result<T, RenderError>) -> Result<T, RenderError> {
     let (finished, wait) = mpsc::channel::<()>();
     std::thread::scope(|scope| {
         scope.spawn(move || {
-            let bar = ProgressBar::with_draw_target(Some(job.work()), ProgressDrawTarget::hidden());
+            let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden());
             let style = ProgressStyle::with_template("{bar:40} {percent:>3} %  {msg}  {eta} left");
             bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
             let start = Instant::now();
@@ -75,6 +72,7 @@ fn with_bar<T>(
                 }
                 let rays = control.rays.load(Relaxed) as f64 / start.elapsed().as_secs_f64();
                 bar.set_message(format!("{:.2} M rays/s", rays / 1e6));
+                bar.set_length(control.all.load(Relaxed));
                 bar.set_position(control.done.load(Relaxed));
             }
             bar.finish_and_clear();
@@ -83,4 +81,24 @@ fn with_bar<T>(
         drop(finished);
         result
     })
+}
+
+/// Works through a list one by one, with a line that tells how far it is where that takes long (on a terminal).
+pub fn each<T, R>(names: &[String], items: Vec<T>, mut work: impl FnMut(T) -> R) -> Vec<R> {
+    let bar = ProgressBar::with_draw_target(Some(items.len() as u64), ProgressDrawTarget::hidden());
+    let style = ProgressStyle::with_template("{bar:40} {pos} of {len}  {elapsed}  {msg}");
+    bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+    if std::io::stderr().is_terminal() {
+        bar.set_draw_target(ProgressDrawTarget::stderr());
+        bar.enable_steady_tick(Duration::from_millis(200));
+    }
+    let done = names.iter().zip(items).map(|(name, item)| {
+        bar.set_message(name.clone());
+        let result = work(item);
+        bar.inc(1);
+        result
+    });
+    let done = done.collect();
+    bar.finish_and_clear();
+    done
 }

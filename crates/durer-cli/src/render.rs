@@ -1,227 +1,164 @@
 //! `durer render`.
 
-use crate::args::{DIAGRAMS, RenderArgs, SceneArgs};
-use crate::output::Target;
-use crate::{Failure, bad, output, progress, report};
-use durer::LoadOptions;
-use durer::compile::AccelKind;
-use durer::diag::{Diagnostic, Diagnostics, Files};
-use durer::dialect::Dialect;
-use durer::film::aov::Aov;
-use durer::film::course::CourseFilter;
-use durer::film::{Filter, diagram};
-use durer::image::{Image, Layer, Transfer};
-use durer::integrator::Settings;
-use durer::math::Vec2;
-use durer::render::{Control, Crop, Job, RenderError, Rendered, Sampling};
-use durer::sampler::Sampler;
+use crate::args::{DIAGRAMS, RenderArgs, RenderCommand};
+use crate::keep::Keeper;
+use crate::open::{load_options, read};
+use crate::output::{Target, lengthened, say};
+use crate::{Failure, bad, diagrams, job, output, progress, report};
+use durer::diag::Diagnostic;
+use durer::image::{Transfer, check_target};
+use durer::render::{Control, Job, Panicked, Part, RenderError, Shard, ShardBy, Statistics, Stop, replay};
 use durer::world::World;
-use durer::{Loaded, load};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 
-/// A scene that was read and compiled, its findings printed.
-pub struct Opened {
-    pub loaded: Loaded,
-    pub world: World,
-}
-
-/// Reads and compiles a scene; prints what is found.
-pub fn open(path: &Path, options: &LoadOptions, quiet: bool) -> Result<Opened, Failure> {
-    let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
-    let loaded = load(path, options, &mut files, &mut diagnostics).map_err(report::unreadable)?;
-    let opened = loaded.and_then(|loaded| {
-        let world = loaded.compile(options, &mut files, &mut diagnostics)?;
-        Some(Opened { loaded, world })
-    });
-    if let (Some(guess), false) = (opened.as_ref().and_then(|o| o.loaded.guess.as_ref()), quiet) {
-        report::note(&guess.note());
-    }
-    report::print(&files, &diagnostics, quiet);
-    opened.ok_or(Failure::Input(None))
-}
-
-/// What the options about reading say.
-pub fn load_options(args: &SceneArgs) -> LoadOptions {
-    LoadOptions {
-        dialect: args.dialect.as_deref().and_then(Dialect::from_name),
-        compat: args.compat.clone(),
-        strict: args.strict,
-        allow_outside: args.allow_outside,
-        assets: args.assets.clone(),
-        ..LoadOptions::default()
-    }
-}
-
-pub fn run(args: &RenderArgs) -> Result<(), Failure> {
-    let default_name = || {
-        let mut name = args.scene.file_stem().unwrap_or_default().to_os_string();
-        name.push(".png");
-        PathBuf::from(name)
+pub fn run(command: &RenderCommand) -> Result<(), Failure> {
+    let args = &command.render;
+    let shard = match args.work.shard {
+        Some(shard) if args.work.shard_by == "samples" => Shard { by: ShardBy::Samples, ..shard },
+        shard => shard.unwrap_or(Shard::WHOLE),
     };
-    let names: Vec<&str> = args.show.iter().map(String::as_str).collect();
-    if let Some(twice) = (1..names.len()).find(|&i| names[..i].contains(&names[i])) {
-        return Err(bad(format!("--show: `{}` is asked for twice", names[twice])));
-    }
-    let target = Target::new(args.output.clone().unwrap_or_else(default_name), &names)?;
-    let transfer = Transfer::from_name(&args.transfer).unwrap_or_default();
+    let default_name = || lengthened(Path::new(args.scene.file_stem().unwrap_or_default()), ".png");
+    let output = args.output.clone().unwrap_or_else(default_name);
+    // What is known to prevent writing is better known before the work.
+    let target = match args.work.shard {
+        _ if command.pixel.is_some() => None,
+        Some(_) => check_target(&output).map(|()| None)?,
+        None => Some(Target::new(output.clone(), &shows(args)?)?),
+    };
+    let keeper = Keeper::new(args, &output)?;
+    let memory = args.work.memory.bytes();
+    let threads = args.work.threads.map(usize::from);
     let mut options = load_options(&args.reading);
-    if args.grid.is_some() && args.accel != "grid" {
-        return Err(bad(format!("--grid makes no sense with --accel {}", args.accel)));
+    (options.accel, options.threads) = (job::accel(&args.job)?, threads);
+    let scene = read(&args.scene, &options, args.quiet)?;
+    let job = job::job(&args.job, &scene.loaded, args.work.time.is_some())?;
+    // What the film takes is not there for the scene.
+    let needed = Part::bytes_needed(&job, shard);
+    options.memory = memory.map(|memory| memory.saturating_sub(needed));
+    if let Some(allowed) = memory.filter(|&memory| needed > memory) {
+        return Err(failure(RenderError::Memory { needed, allowed }));
     }
-    options.accel = match args.accel.as_str() {
-        "grid" => AccelKind::Grid(args.grid),
-        "none" => AccelKind::None,
-        _ => AccelKind::Bvh,
-    };
-    let opened = open(&args.scene, &options, args.quiet)?;
-    let job = job(args, &opened)?;
-    if args.show.iter().any(|show| DIAGRAMS.contains(&show.as_str())) {
-        check_diagram(&job, args.zoom).map_err(failure)?;
+    let opened = scene.compile(&options)?;
+    if !args.quiet {
+        job::warn(&job, &opened.world);
     }
-    let control = Arc::new(Control { threads: args.threads.map(usize::from), ..Control::default() });
-    let rendered = progress::watch(&job, &control, args.quiet, || {
-        let mut rendered = durer::render::render(&opened.world, &job, &control)?;
-        diagrams(args, &opened.world, &job, &control, &mut rendered)?;
-        Ok(rendered)
+    let control = Arc::new(Control {
+        threads,
+        tile: args.work.tile,
+        time: args.work.time,
+        save_every: Some(args.work.checkpoint_every),
+        memory,
+        ..Control::default()
+    });
+    if let Some(pixel) = command.pixel {
+        return print_pixel(&opened.world, &job, &control, pixel, command.sample);
+    }
+    if args.job.show.iter().any(|show| DIAGRAMS.contains(&show.as_str())) {
+        if target.is_none() {
+            return Err(bad("a diagram is not split into parts: leave it out, or --shard"));
+        }
+        diagrams::check(&job, args.job.zoom).map_err(failure)?;
+    }
+    let part = keeper.begin(Part::new(&opened.world, &job, shard).map_err(failure)?)?;
+    let stop = progress::watch(&control, args.quiet, || {
+        part.render(&opened.world, &control, &mut |part, moment| keeper.watch(part, moment))
     })
     .map_err(failure)?;
-    rejected(&rendered, args.quiet);
-    let files = target.files(&rendered, transfer)?;
-    drop(rendered);
-    output::save(&files, args.quiet)
+    rejected(&part.statistics(), args.quiet);
+    let finished = match &stop {
+        Stop::Finished => true,
+        Stop::OutOfTime => part.is_finished(),
+        Stop::Cancelled => return Err(stopped(args, &part, &keeper, target.as_ref())),
+        Stop::Panicked(panicked) => return Err(keeper.after_panic(&part, panicked, &replaying(panicked))),
+    };
+    match target {
+        None => keeper.save(&part).map_err(|error| Failure::Other(error.into()))?,
+        Some(target) => {
+            let mut rendered = part.pictures().map_err(failure)?;
+            diagrams::add(&args.job.show, args.job.zoom, &opened.world, &job, &control, &mut rendered)
+                .map_err(failure)?;
+            let transfer = Transfer::from_name(&args.transfer).unwrap_or_default();
+            output::save(&target.files(&rendered, transfer)?, args.quiet)?;
+            keeper.done(&part, finished);
+        }
+    }
+    if !finished && !args.quiet {
+        let (all, done) = part.work();
+        report::complain(&format!("note: the time was over after {done} of {all} samples"));
+    }
+    if args.hash {
+        say(&part.hash().to_string());
+    }
+    Ok(())
+}
+
+/// What is to be shown, each once.
+fn shows(args: &RenderArgs) -> Result<Vec<&str>, Failure> {
+    let names: Vec<&str> = args.job.show.iter().map(String::as_str).collect();
+    match (1..names.len()).find(|&i| names[..i].contains(&names[i])) {
+        Some(twice) => Err(bad(format!("--show: `{}` is asked for twice", names[twice]))),
+        None => Ok(names),
+    }
+}
+
+/// After Ctrl-C: what is there is saved. A picture is only written if none of its pixels is empty: it may replace a better one.
+fn stopped(args: &RenderArgs, part: &Part, keeper: &Keeper, target: Option<&Target>) -> Failure {
+    let mut written = keeper.after_interrupt(part);
+    if let Some(target) = target.filter(|_| part.is_whole()) {
+        let transfer = Transfer::from_name(&args.transfer).unwrap_or_default();
+        let files = part.pictures().map_err(failure).and_then(|rendered| target.files(&rendered, transfer));
+        if let Ok(files) = files.and_then(|files| output::save_silently(&files).map(|()| files)) {
+            written.extend(files.into_iter().map(|(path, _)| path.display().to_string()));
+        }
+    }
+    let (all, done) = part.work();
+    Failure::Interrupted(match written.is_empty() {
+        true => "nothing was written".into(),
+        false => format!("{} % done, in {}", 100 * done / all.max(1), written.join(" and ")),
+    })
+}
+
+/// The command that makes one sample again: this one, with the sample.
+fn replaying(panicked: &Panicked) -> String {
+    let words = std::env::args().chain(["--pixel".into(), format!("{},{}", panicked.x, panicked.y)]);
+    let sample = panicked.sample.map(|sample| ["--sample".to_string(), sample.to_string()]);
+    let words: Vec<String> = words.chain(sample.into_iter().flatten()).collect();
+    shlex::try_join(words.iter().map(String::as_str)).unwrap_or_default()
+}
+
+/// `--pixel`.
+fn print_pixel(
+    world: &World,
+    job: &Job,
+    control: &Control,
+    pixel: (u32, u32),
+    sample: Option<u32>,
+) -> Result<(), Failure> {
+    let color = replay(world, job, control, pixel, sample).map_err(failure)?;
+    let sample = sample.map(|sample| format!(", sample {sample}")).unwrap_or_default();
+    let shown = color.map_or("the camera sees nothing there".into(), |c| format!("{:?} {:?} {:?}", c.x, c.y, c.z));
+    say(&format!("pixel {},{}{sample}: {shown}", pixel.0, pixel.1));
+    Ok(())
 }
 
 /// What a failed render means for the shell.
 pub fn failure(error: RenderError) -> Failure {
     match error {
-        RenderError::Cancelled => Failure::Interrupted,
-        RenderError::Threads(_) => error.into(),
+        RenderError::Cancelled => Failure::Interrupted("nothing was written".into()),
+        RenderError::Threads(_) | RenderError::Panic(_) => error.into(),
+        RenderError::Memory { .. } => bad(format!("{error}; see --memory")),
         _ => bad(error.to_string()),
     }
 }
 
 /// Says which samples were left out.
-pub fn rejected(rendered: &Rendered, quiet: bool) {
-    if let (Some(first), false) = (rendered.first_rejected.first(), quiet) {
-        let count = rendered.rejected;
+pub fn rejected(statistics: &Statistics, quiet: bool) {
+    if let (Some(first), false) = (statistics.first_rejected.first(), quiet) {
+        let count = statistics.rejected;
         report::note(&Diagnostic::warning(format!(
             "{count} samples were not finite numbers and were left out, the first in pixel {},{} (sample {})",
             first.x, first.y, first.sample
         )));
     }
-}
-
-fn job(args: &RenderArgs, opened: &Opened) -> Result<Job, Failure> {
-    let rules = &opened.loaded.rules;
-    // Ours is a dialect like others to ask for, but not an old program.
-    let asked = opened.loaded.guess.is_none() && opened.loaded.dialect != Dialect::Durer;
-    let (width, height) = args.size.unwrap_or(rules.size);
-    let shows = |name: &str| args.show.iter().any(|show| show == name);
-    let depth_range = args.depth_range.as_ref().map(|range| (range[0], range[1]));
-    if depth_range.is_some_and(|(min, max)| !(min.is_finite() && max.is_finite() && min != max)) {
-        return Err(bad("--depth-range needs two different numbers"));
-    }
-    Ok(Job {
-        width,
-        height,
-        crop: args.crop.map(|(left, top, width, height)| Crop { left, top, width, height }),
-        seed: args.seed,
-        sampling: sampling(args, asked)?,
-        settings: Settings {
-            bounces: args.bounces.unwrap_or(rules.bounces),
-            shadows: args.shadows.unwrap_or(rules.shadows),
-            shade_back: args.shade_back.unwrap_or(rules.shade_back),
-            transparent_shadows: args.transparent_shadows || rules.transparent_shadows,
-            reflection: !args.no_reflection,
-            refraction: !args.no_refraction,
-            least_weight: args.weight.unwrap_or(if asked { 0.0 } else { 1.0 / 256.0 }),
-        },
-        color: shows("color"),
-        aovs: args.show.iter().filter_map(|name| Aov::from_name(name)).collect(),
-        depth_range,
-    })
-}
-
-fn sampling(args: &RenderArgs, asked: bool) -> Result<Sampling, Failure> {
-    if args.jitter || args.blur {
-        return Ok(Sampling::Course2012 { jitter: args.jitter, blur: args.blur });
-    }
-    if args.filter_radius.is_some_and(|r| !(r > 0.0 && r <= 64.0)) {
-        return Err(bad("--filter-radius must be more than 0 and at most 64"));
-    }
-    let sampler = Sampler::from_name(&args.sampler).unwrap_or_default();
-    let filter = args.filter.as_deref().and_then(Filter::from_name);
-    let samples = args.samples.unwrap_or(if asked { 1 } else { 16 });
-    if sampler == Sampler::Sobol {
-        let filter = filter.unwrap_or_default();
-        let filter = args.filter_radius.map_or(filter, |radius| filter.with_radius(radius));
-        return Ok(if samples == 1 { Sampling::Center } else { Sampling::Filtered { samples, filter } });
-    }
-    let filter = match filter {
-        None => None,
-        Some(Filter::Box { .. }) => Some(CourseFilter::Box { radius: args.filter_radius.unwrap_or(0.5) }),
-        Some(Filter::Tent { .. }) => Some(CourseFilter::Tent { radius: args.filter_radius.unwrap_or(1.0) }),
-        Some(Filter::Gaussian { .. }) => Some(CourseFilter::Gaussian { sigma: args.filter_radius.unwrap_or(0.5) }),
-        Some(_) => return Err(bad("the course's samplers take the filters box, tent and gaussian")),
-    };
-    Ok(Sampling::Course2004 { sampler, samples, filter })
-}
-
-/// Adds the diagrams of samples and filter.
-fn diagrams(
-    args: &RenderArgs,
-    world: &World,
-    job: &Job,
-    control: &Control,
-    rendered: &mut Rendered,
-) -> Result<(), RenderError> {
-    for show in &args.show {
-        let made = match show.as_str() {
-            "samples" => samples_layer(world, job, control, args.zoom)?,
-            "filter" => filter_layer(job, args.zoom)?,
-            _ => continue,
-        };
-        rendered.layers.push(made.clone());
-        rendered.pictures.push(made);
-    }
-    Ok(())
-}
-
-/// Where samples lie, as a layer.
-pub fn samples_layer(world: &World, job: &Job, control: &Control, zoom: u32) -> Result<Layer, RenderError> {
-    let stored = durer::render::sample_diagram(world, job, control)?;
-    layer("samples", diagram::samples(&stored, zoom))
-}
-
-/// A filter's weights, as a layer.
-pub fn filter_layer(job: &Job, zoom: u32) -> Result<Layer, RenderError> {
-    let made = match job.sampling {
-        Sampling::Course2004 { filter, .. } => {
-            diagram::filter(job.width, job.height, zoom, filter.unwrap_or(CourseFilter::Box { radius: 0.5 }))
-        }
-        Sampling::Filtered { filter, .. } => {
-            let most = filter.weight(0.0, 0.0);
-            let support = (filter.radius() - 0.5).ceil().max(0.0) as u32;
-            let weight = |offset: Vec2| filter.weight(offset.x, offset.y) / most;
-            diagram::weights(job.width, job.height, zoom, support, weight)
-        }
-        _ => diagram::filter(job.width, job.height, zoom, CourseFilter::Box { radius: 0.5 }),
-    };
-    layer("filter", made)
-}
-
-/// Refuses a diagram too large before it is made.
-pub fn check_diagram(job: &Job, zoom: u32) -> Result<(), RenderError> {
-    let side = |pixels: u32| pixels.saturating_mul(zoom).saturating_add(1);
-    let (width, height) = (side(job.width), side(job.height));
-    if u64::from(width) * u64::from(height) > 1 << 24 {
-        let message = "a diagram of so many pixels is too large; ask for a smaller --size or --zoom";
-        return Err(RenderError::Diagram(message.into()));
-    }
-    Ok(())
-}
-
-fn layer(name: &str, made: diagram::Diagram) -> Result<Layer, RenderError> {
-    Ok(Layer::data(name, Image::from_pixels(made.width, made.height, made.pixels)?))
 }

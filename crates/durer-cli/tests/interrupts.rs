@@ -1,4 +1,4 @@
-//! Ctrl-C: exit code 130, soon, and nothing written.
+//! Ctrl-C: exit code 130, soon, and what is there is saved.
 #![cfg(unix)]
 
 mod common;
@@ -11,7 +11,7 @@ use std::time::Duration;
 const SOON: Duration = Duration::from_millis(1000);
 
 #[test]
-fn rendering_stops_soon_and_leaves_nothing() {
+fn rendering_stops_soon_and_where_there_is_nothing_leaves_nothing() {
     let place = Place::new();
     place.put("old.png", "an old picture");
     let before = place.names();
@@ -22,11 +22,6 @@ fn rendering_stops_soon_and_leaves_nothing() {
         "endless.txt --bounces 256 --sampler random --samples 16 --filter tent",
         "endless.txt --bounces 256 --show cost",
         "endless.txt --bounces 256 --show samples --size 9x9",
-        "scene.txt --samples 1048576",
-        "scene.txt --sampler uniform --samples 100 --size 1000x1000",
-        "scene.txt --sampler uniform --samples 16 --size 300x300 --filter gaussian --filter-radius 60",
-        "scene.txt --jitter --size 3500x3500",
-        "scene.txt --size 9000x9000 --samples 64",
     ] {
         let (ran, latency) = place.interrupted(&format!("render {options} -o old.png"), Duration::from_millis(400));
         assert_eq!((ran.code, ran.out.as_str()), (Some(130), ""), "{options}: {}", ran.err);
@@ -38,6 +33,36 @@ fn rendering_stops_soon_and_leaves_nothing() {
     let grid = "course -input scene.txt -output old.png -grid 200 200 200 -visualize_grid -size 15000 15000";
     let (ran, latency) = place.interrupted(grid, Duration::from_millis(400));
     assert!(ran.code == Some(130) && latency < SOON, "{latency:?} {}", ran.err);
+}
+
+#[test]
+fn what_is_there_is_saved() {
+    let place = Place::new();
+    for options in [
+        "scene.txt --samples 1048576",
+        "scene.txt --sampler uniform --samples 100 --size 1000x1000",
+        "scene.txt --sampler uniform --samples 16 --size 300x300 --filter gaussian --filter-radius 60",
+        "scene.txt --jitter --size 3500x3500",
+        "scene.txt --size 9000x9000 --samples 64",
+    ] {
+        place.put("old.png", "an old picture");
+        let _ = std::fs::remove_file(place.path("old.png.part"));
+        let (ran, latency) = place.interrupted(&format!("render {options} -o old.png"), Duration::from_millis(400));
+        assert_eq!((ran.code, ran.out.as_str()), (Some(130), ""), "{options}: {}", ran.err);
+        assert!(latency < SOON, "{options}: {latency:?}");
+        let told = ran.err.lines().last().unwrap_or_default();
+        assert_eq!(told.contains("old.png.part (--resume"), place.path("old.png.part").exists(), "{options}: {told}");
+        // A picture with holes does not replace an old one.
+        if told.ends_with("and old.png") {
+            assert!(place.image8("old.png").width > 0);
+        } else {
+            assert_eq!(place.bytes("old.png"), b"an old picture", "{options}: {told}");
+        }
+        assert!(place.names().iter().all(|name| !name.ends_with(".tmp")));
+        if options.ends_with("1048576") {
+            assert!(told.ends_with("and old.png"), "{told}");
+        }
+    }
 }
 
 #[test]
@@ -69,7 +94,8 @@ fn whenever_it_comes_the_file_is_whole_or_not_there() {
             place.interrupted("render scene.txt --size 300x300 --samples 1 -o p.png", Duration::from_millis(after));
         match ran.code {
             Some(0) => assert_eq!(place.image8("p.png").width, 300),
-            Some(130) => assert!(!place.path("p.png").exists()),
+            // It may have come when all was done.
+            Some(130) => assert!(!place.path("p.png").exists() || place.image8("p.png").width == 300),
             // Before it is heard at all, the system ends the program; if it has ended already, nothing does.
             other => assert!(other.is_none(), "{other:?} after {after} ms"),
         }

@@ -7,7 +7,7 @@ use common::{Place, SCENE};
 #[test]
 fn help_has_examples() {
     let place = Place::new();
-    for command in ["", "render", "info", "convert", "dialects", "completions", "man"] {
+    for command in ["", "render", "info", "convert", "compare", "dialects", "completions", "man"] {
         let help = place.gives(0, &format!("{command} --help"));
         assert!(help.out.contains("Example") && help.out.contains("\n  durer "), "{command}: {}", help.out);
     }

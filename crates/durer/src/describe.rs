@@ -19,6 +19,10 @@ pub enum Kind {
     Vec3,
     /// A file's path.
     Path,
+    /// One of these words.
+    Word(&'static [&'static str]),
+    /// Rows of so many numbers, in braces.
+    Rows(usize),
 }
 
 /// The path of a file that a scene names, and where it names it.
@@ -43,6 +47,10 @@ pub enum Value {
     Vec3(Vec3),
     /// A file's path, as written.
     Path(FileName),
+    /// A word.
+    Word(String),
+    /// Rows of numbers.
+    Rows(Vec<Vec<f32>>),
 }
 
 /// What a value must be beyond finite.
@@ -58,8 +66,14 @@ pub enum Rule {
     NonZero,
     /// Between these, both excluded.
     Between(f32, f32),
+    /// More than zero and at most this.
+    UpTo(f32),
     /// At most this whole number.
     AtMost(u32),
+    /// At least so many rows, and at most so many.
+    Count(usize, usize),
+    /// A vector of whole numbers from 1 to this.
+    Counts(u32),
 }
 
 impl Rule {
@@ -75,7 +89,19 @@ impl Rule {
             (Rule::Between(low, high), Value::Float(x)) if *x <= low || *x >= high => {
                 Some(format!("must be more than {low} and less than {high}"))
             }
+            (Rule::UpTo(high), Value::Float(x)) if *x <= 0.0 || *x > high => {
+                Some(format!("must be more than 0 and at most {high}"))
+            }
+            (Rule::Counts(most), Value::Vec3(v))
+                if v.to_array().iter().any(|&n| n.fract() != 0.0 || n < 1.0 || n > most as f32) =>
+            {
+                Some(format!("must be whole numbers from 1 to {most}"))
+            }
             (Rule::AtMost(most), Value::Int(i)) if *i > most => Some(format!("must be at most {most}")),
+            (Rule::Count(least, most), Value::Rows(rows)) if rows.len() < least || rows.len() > most => {
+                let wanted = if least == most { least.to_string() } else { format!("{least} to {most}") };
+                Some(format!("must have {wanted} rows, but has {}", rows.len()))
+            }
             _ => None,
         }
     }
@@ -152,6 +178,44 @@ field_type!(f32, Float);
 field_type!(u32, Int);
 field_type!(Vec3, Vec3);
 field_type!(FileName, Path);
+
+impl<const N: usize> FieldType for Vec<[f32; N]> {
+    const KIND: Kind = Kind::Rows(N);
+    fn value(&self) -> Option<Value> {
+        Some(Value::Rows(self.iter().map(|row| row.to_vec()).collect()))
+    }
+    fn from_value(value: Value) -> Option<Self> {
+        match value {
+            Value::Rows(rows) => rows.into_iter().map(|row| row.try_into().ok()).collect(),
+            _ => None,
+        }
+    }
+}
+
+/// Declares an `enum` of words that a field can have as its value; the first is the default.
+#[macro_export]
+macro_rules! described_words {
+    ($(#[doc = $doc:literal])+ $name:ident { $first:ident = $first_word:literal $(, $variant:ident = $word:literal)* }) => {
+        $(#[doc = $doc])+
+        #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+        pub enum $name {
+            #[doc = concat!("`", $first_word, "`")] #[default] $first,
+            $(#[doc = concat!("`", $word, "`")] $variant,)*
+        }
+
+        impl $crate::describe::FieldType for $name {
+            const KIND: $crate::describe::Kind = $crate::describe::Kind::Word(&[$first_word $(, $word)*]);
+            fn value(&self) -> Option<$crate::describe::Value> {
+                let word = match self { $name::$first => $first_word, $($name::$variant => $word,)* };
+                Some($crate::describe::Value::Word(word.into()))
+            }
+            fn from_value(value: $crate::describe::Value) -> Option<Self> {
+                let $crate::describe::Value::Word(word) = value else { return None };
+                match word.as_str() { $first_word => Some($name::$first), $($word => Some($name::$variant),)* _ => None }
+            }
+        }
+    };
+}
 
 impl<T: FieldType> FieldType for Option<T> {
     const KIND: Kind = T::KIND;

@@ -184,13 +184,15 @@ impl Files {
         self.files.get(file as usize).map(|(_, bytes)| &**bytes)
     }
 
-    /// Line and column of the start of a span, both counted from 1; the column in bytes.
+    /// Line and column of the start of a span, both counted from 1; the column in characters, as editors count.
     pub fn position(&self, span: Span) -> Option<(usize, usize)> {
         let before = self.bytes(span.file)?.get(..span.start as usize)?;
         let line = before.iter().filter(|&&b| b == b'\n').count() + 1;
         // A byte order mark is no column of the first line.
         let shown = if line == 1 { before.strip_prefix(b"\xef\xbb\xbf").unwrap_or(before) } else { before };
-        let column = shown.iter().rev().take_while(|&&b| b != b'\n').count() + 1;
+        // Bytes that only go on with a character of UTF-8 begin none.
+        let begins = |b: &&u8| **b & 0xc0 != 0x80;
+        let column = shown.iter().rev().take_while(|&&b| b != b'\n').filter(begins).count() + 1;
         Some((line, column))
     }
 }
@@ -202,9 +204,19 @@ pub fn did_you_mean<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str
         return None;
     }
     let lower = word.to_lowercase();
+    let letters = |word: &str| {
+        let mut letters: Vec<char> = word.chars().collect();
+        letters.sort_unstable();
+        letters
+    };
+    // A word of the same letters is nearest: `RotateY` means `YRotate`.
+    let distance = |candidate: &str| match letters(candidate) == letters(&lower) {
+        true => 0,
+        false => strsim::damerau_levenshtein(&lower, candidate),
+    };
     candidates
         .into_iter()
-        .map(|candidate| (strsim::damerau_levenshtein(&lower, &candidate.to_lowercase()), candidate))
+        .map(|candidate| (distance(&candidate.to_lowercase()), candidate))
         .min_by_key(|&(distance, _)| distance)
         .filter(|&(distance, candidate)| distance <= (candidate.len().max(word.len()) / 3).max(1))
         .map(|(_, candidate)| candidate)

@@ -82,7 +82,7 @@ impl Dialect {
 }
 
 /// How normals of a mesh that brings none are made.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum MeshNormals {
     /// One normal a triangle.
     Flat,
@@ -97,7 +97,7 @@ pub enum MeshNormals {
 }
 
 /// The specular highlight of a light.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Highlight {
     /// max(0, N·H)^exponent, only where N·L > 0.
     Blinn,
@@ -110,7 +110,7 @@ pub enum Highlight {
 }
 
 /// How light fades with distance d, from `attenuation a0 a1 a2` or `falloff f`.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Falloff {
     /// Light does not fade.
     None,
@@ -121,7 +121,7 @@ pub enum Falloff {
 }
 
 /// What a surface reflects and transmits.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Secondary {
     /// Local light only.
     None,
@@ -136,7 +136,7 @@ pub enum Secondary {
 }
 
 /// How a normal becomes a colour.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum NormalsPicture {
     /// |n|, background black.
     Abs,
@@ -145,7 +145,7 @@ pub enum NormalsPicture {
 }
 
 /// How a depth becomes a grey.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum DepthPicture {
     /// (max - t) / (max - min): near is white, background black.
     NearWhite,
@@ -154,7 +154,7 @@ pub enum DepthPicture {
 }
 
 /// Where a file that a scene names is looked for first.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum PathBase {
     /// The current directory.
     Current,
@@ -165,7 +165,7 @@ pub enum PathBase {
 }
 
 /// What the words of a dialect mean.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Rules {
     /// Name on the command line.
     pub name: &'static str,
@@ -294,6 +294,11 @@ impl Rules {
     /// Whether a compatibility is on.
     pub fn has(&self, compat: Compat) -> bool {
         self.compat & compat.bit() != 0
+    }
+
+    /// Whether a picture is to be what an official program made: with its epsilon, its points are its ray's, rounding and all.
+    pub fn is_official(&self) -> bool {
+        self.epsilon.is_some()
     }
 
     /// The meaning of the same words without the old program's bugs, and with good defaults.

@@ -29,6 +29,10 @@ pub struct LoadOptions {
     pub assets: Vec<PathBuf>,
     /// The structure that finds objects.
     pub accel: AccelKind,
+    /// Threads that build the world; `None`: as many as the machine has.
+    pub threads: Option<usize>,
+    /// Bytes that the world may take; `None`: any number.
+    pub memory: Option<u64>,
 }
 
 /// A scene that was read.
@@ -70,6 +74,8 @@ pub fn load(
         source = source.assets(assets);
     }
     let bytes = source.read_path(path, &name)?;
+    // Where the scene lies does not matter for what it is.
+    source.remember("", &bytes);
     let file = files.add(name, bytes.clone());
     let mut guess = None;
     let dialect = options.dialect.unwrap_or_else(|| {
@@ -107,8 +113,14 @@ pub fn load(
 impl Loaded {
     /// Compiles the scene. `None` after errors, which are in `diagnostics`.
     pub fn compile(&self, options: &LoadOptions, files: &mut Files, diagnostics: &mut Diagnostics) -> Option<World> {
-        let resources = Resources { source: &self.source, files, sky_optional: options.course };
-        compile(&self.scene, &self.rules, options.accel, resources, diagnostics)
+        let memory = options.memory.unwrap_or(u64::MAX);
+        let resources = Resources { source: &self.source, files, sky_optional: options.course, memory };
+        let work = || compile(&self.scene, &self.rules, options.accel, resources, diagnostics);
+        // Where there are no threads to be had, one is there already.
+        match options.threads.and_then(|count| rayon::ThreadPoolBuilder::new().num_threads(count).build().ok()) {
+            Some(threads) => threads.install(work),
+            None => work(),
+        }
     }
 }
 

@@ -10,12 +10,13 @@
 //! 2021, which is less biased than the published constants.
 
 use crate::math::Vec2;
+use serde::{Deserialize, Serialize};
 
 #[cfg(test)]
 pub(crate) mod tests;
 
 /// Where in a pixel its samples lie.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Sampler {
     /// Owen-scrambled Sobol (0,2)-sequence, scrambled anew in each pixel: the least noise.
     #[default]
@@ -54,6 +55,14 @@ impl Sampler {
         }
     }
 
+    /// Where in the camera's lens a sample lies, in [0,1)^2. Positions in the pixel tell nothing of it.
+    pub fn lens_position(self, seed: u64, x: u32, y: u32, sample: u32) -> Vec2 {
+        match self {
+            Sampler::Sobol => sample_2d(seed, x, y, sample, LENS_DIMENSION),
+            _ => random_2d(seed, x, y, sample, LENS_DIMENSION),
+        }
+    }
+
     /// Position of a sample in its pixel, in [0,1)^2 from the pixel's top left corner.
     ///
     /// `sample` counts from 0 to `round_up(samples) - 1`. On a grid it runs along rows, the top row first.
@@ -71,8 +80,11 @@ impl Sampler {
     }
 }
 
-/// The dimension that positions in the pixel use; integrators take those from 1 upwards.
+/// The dimension that positions in the pixel use.
 pub const PIXEL_DIMENSION: u32 = 0;
+
+/// The dimension that positions in the camera's lens use; integrators take those from 2 upwards.
+pub const LENS_DIMENSION: u32 = 1;
 
 /// The least number whose square is `samples` or more, from 1 to 65535.
 fn grid_side(samples: u32) -> u32 {

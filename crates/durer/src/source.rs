@@ -1,13 +1,38 @@
 //! Bytes by name: the only place that opens a file for reading.
 //!
-//! Files are read from a few allowed folders, never beyond them, and within a budget of bytes.
+//! Files are read from a few allowed folders, never beyond them, and within a budget of bytes. What was read is remembered
+//! by its hash.
 
 use crate::diag::did_you_mean;
-use std::cell::Cell;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 use std::fs;
 use std::io::Read;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+/// A BLAKE3 hash; shown as 64 hexadecimal digits.
+#[derive(Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+pub struct Digest(pub [u8; 32]);
+
+impl Digest {
+    /// The hash of some bytes.
+    pub fn of(bytes: &[u8]) -> Self {
+        Digest(blake3::hash(bytes).into())
+    }
+}
+
+impl std::fmt::Display for Digest {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        self.0.iter().try_for_each(|byte| write!(f, "{byte:02x}"))
+    }
+}
+
+impl std::fmt::Debug for Digest {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        std::fmt::Display::fmt(self, f)
+    }
+}
 
 /// Why a file could not be had.
 #[derive(Debug, thiserror::Error)]
@@ -55,7 +80,7 @@ pub enum SourceError {
 }
 
 /// Where the files of a scene are, and how much may be read of them.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct Source {
     /// Folders in which a relative name is looked for, in this order.
     search: Vec<PathBuf>,
@@ -63,7 +88,23 @@ pub struct Source {
     allowed: Vec<PathBuf>,
     /// Folders in which a file is also looked for by its last name alone.
     assets: Vec<PathBuf>,
-    left: Cell<u64>,
+    read: Mutex<Already>,
+}
+
+/// What was read already.
+#[derive(Clone, Debug)]
+struct Already {
+    /// Bytes that may still be read.
+    left: u64,
+    /// Hashes of the files, by the names that the scene gives them.
+    files: BTreeMap<String, Digest>,
+}
+
+impl Clone for Source {
+    fn clone(&self) -> Self {
+        let (search, allowed, assets) = (self.search.clone(), self.allowed.clone(), self.assets.clone());
+        Source { search, allowed, assets, read: Mutex::new(self.already().clone()) }
+    }
 }
 
 impl Source {
@@ -77,7 +118,7 @@ impl Source {
             search: vec![folder.clone()],
             allowed: vec![folder],
             assets: Vec::new(),
-            left: Cell::new(Source::DEFAULT_BUDGET),
+            read: Mutex::new(Already { left: Source::DEFAULT_BUDGET, files: BTreeMap::new() }),
         }
     }
 
@@ -112,8 +153,28 @@ impl Source {
 
     /// Sets how many bytes may be read.
     pub fn budget(self, bytes: u64) -> Self {
-        self.left.set(bytes);
+        self.already().left = bytes;
         self
+    }
+
+    fn already(&self) -> MutexGuard<'_, Already> {
+        self.read.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// The hash of all that was read by name, with the names, and of something more.
+    pub fn digest(&self, more: &[u8]) -> Digest {
+        let mut hasher = blake3::Hasher::new();
+        hasher.update(&Digest::of(more).0);
+        for (name, digest) in &self.already().files {
+            hasher.update(&Digest::of(name.as_bytes()).0).update(&digest.0);
+        }
+        Digest(hasher.finalize().into())
+    }
+
+    /// Counts bytes among those that were read by a name.
+    pub fn remember(&self, name: &str, bytes: &[u8]) {
+        let digest = Digest::of(bytes);
+        self.already().files.insert(name.into(), digest);
     }
 
     /// Whether there is a file of that name, which may be read.
@@ -124,7 +185,7 @@ impl Source {
     /// Reads a file by the name that a scene gives it.
     pub fn read(&self, name: &str) -> Result<Arc<[u8]>, SourceError> {
         match self.find(name) {
-            Ok(path) => self.read_path(&path, name),
+            Ok(path) => self.read_path(&path, name).inspect(|bytes| self.remember(name, bytes)),
             Err(SourceError::Missing { name, tried, .. }) => {
                 Err(SourceError::Missing { near: self.near(&tried), name, tried })
             }
@@ -179,7 +240,7 @@ impl Source {
         if !metadata.is_file() {
             return Err(SourceError::NotAFile { name: name.into() });
         }
-        let left = self.left.get();
+        let left = self.already().left;
         let too_large = |size| SourceError::TooLarge { name: name.into(), size, left };
         if metadata.len() > left {
             return Err(too_large(metadata.len()));
@@ -190,7 +251,7 @@ impl Source {
         if bytes.len() as u64 > left {
             return Err(too_large(bytes.len() as u64));
         }
-        self.left.set(left - bytes.len() as u64);
+        self.already().left = left - bytes.len() as u64;
         Ok(bytes.into())
     }
 }

@@ -5,7 +5,7 @@ use durer::diag::{Diagnostics, Files};
 use durer::dialect::Dialect;
 use durer::integrator::Settings;
 use durer::math::Vec3;
-use durer::render::{Control, Job, Sampling, render};
+use durer::render::{Control, Job, render};
 use durer::world::World;
 use durer::{LoadOptions, Loaded, load};
 use std::fs;
@@ -48,9 +48,6 @@ fn pixels(name: &str, accel: AccelKind, threads: usize) -> Vec<Vec3> {
     let job = Job {
         width: 64,
         height: 64,
-        crop: None,
-        seed: 0,
-        sampling: Sampling::Center,
         settings: Settings {
             bounces: loaded.rules.bounces,
             shadows: loaded.rules.shadows,
@@ -60,13 +57,11 @@ fn pixels(name: &str, accel: AccelKind, threads: usize) -> Vec<Vec3> {
             refraction: true,
             least_weight: 0.001,
         },
-        color: true,
-        aovs: Vec::new(),
-        depth_range: None,
+        ..Job::default()
     };
     let control = Control { threads: Some(threads), ..Control::default() };
     let rendered = render(&world, &job, &control).unwrap();
-    assert_eq!(rendered.rejected, 0, "{name}");
+    assert_eq!(rendered.statistics.rejected, 0, "{name}");
     let image = &rendered.layers[0].image;
     (0..64).flat_map(|y| (0..64).map(move |x| image.get(x, y).unwrap())).collect()
 }

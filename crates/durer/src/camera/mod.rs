@@ -1,14 +1,35 @@
-//! Cameras: from a place in the picture to a ray. One file each; the list is [`Camera`].
+//! Cameras: from a place in the picture to a ray, and from a point of the world back to the picture. One file each;
+//! the list is [`Camera`].
 
-pub mod orthographic;
-pub mod perspective;
+mod aperture;
+mod central;
+mod eyes;
+mod pose;
 pub mod raster;
+mod sheet;
+
+pub mod cave;
+pub mod cube_map;
+pub mod cylindrical;
+pub mod equirectangular;
+pub mod fisheye;
+pub mod multiple_center;
+pub mod omnimax;
+pub mod orthographic;
+pub mod parabolic;
+pub mod perspective;
+pub mod pinhole;
+pub mod projective;
+pub mod push_broom;
+pub mod stereo;
+pub mod thin_lens;
 
 use crate::described_list;
-use crate::dialect::{Compat, Rules};
 use crate::math::{Ray, Vec2, Vec3};
+pub use eyes::Eyes;
 pub use orthographic::OrthographicCamera;
 pub use perspective::PerspectiveCamera;
+pub use pose::{Frame, Pose};
 pub use raster::Raster;
 
 described_list! {
@@ -16,55 +37,40 @@ described_list! {
     Camera {
         Perspective(perspective::PerspectiveCamera),
         Orthographic(orthographic::OrthographicCamera),
+        Pinhole(pinhole::PinholeCamera),
+        ThinLens(thin_lens::ThinLensCamera),
+        Stereo(stereo::StereoCamera),
+        Fisheye(fisheye::FisheyeCamera),
+        Omnimax(omnimax::OmnimaxCamera),
+        Parabolic(parabolic::ParabolicCamera),
+        Equirectangular(equirectangular::EquirectangularCamera),
+        Cylindrical(cylindrical::CylindricalCamera),
+        CubeMap(cube_map::CubeMapCamera),
+        Cave(cave::CaveCamera),
+        PushBroom(push_broom::PushBroomCamera),
+        MultipleCenter(multiple_center::MultipleCenterCamera),
+        Projective(projective::ProjectiveCamera),
     }
 }
 
-/// Where a camera stands and how it is turned, as written.
+/// Where in the picture and in the lens a ray is wanted.
+///
+/// (-1, -1) is the lower left corner of the square that the camera covers, (1, 1) the upper right.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Pose {
-    /// Its position.
-    pub center: Vec3,
-    /// Where it looks; of any length.
-    pub direction: Vec3,
-    /// What it holds upwards; of any length.
-    pub up: Vec3,
+pub struct CameraSample {
+    /// The point of the picture.
+    pub point: Vec2,
+    /// The centre of the pixel that the sample is for. A filter may reach beyond the pixel, and beyond the part of the
+    /// picture (a face of a cube, a wall, an eye) that the pixel belongs to: what it finds there continues that part.
+    pub pixel: Vec2,
+    /// The point of the lens, in [0,1)^2; (0.5, 0.5) is its middle.
+    pub lens: Vec2,
 }
 
-/// A camera's axes: where it looks, and the picture's right and up. Of unit length and perpendicular,
-/// but for the compatibilities that say otherwise.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Frame {
-    /// Position of the eye.
-    pub eye: Vec3,
-    /// Where it looks.
-    pub forward: Vec3,
-    /// To the right in the picture.
-    pub right: Vec3,
-    /// Upwards in the picture.
-    pub up: Vec3,
-    /// Whether rays are aimed at rounded points of the world, as [`Compat::ScreenPoint`] says.
-    pub screen_point: bool,
-}
-
-/// A vector's direction, each component divided by the length (glam multiplies by its reciprocal, which rounds once more).
-fn unit_or(v: Vec3, fallback: Vec3) -> Vec3 {
-    let unit = v / v.length();
-    if unit.is_finite() && unit != Vec3::ZERO { unit } else { v.normalize_or(fallback) }
-}
-
-impl Frame {
-    /// The axes of a pose: right = norm(direction x up), up = right x direction.
-    pub fn new(pose: Pose, rules: &Rules) -> Self {
-        let forward = unit_or(pose.direction, Vec3::NEG_Z);
-        let right = unit_or(forward.cross(pose.up), forward.any_orthonormal_vector());
-        let up = if rules.has(Compat::RawUp) {
-            pose.up
-        } else if rules.has(Compat::SkewUp) {
-            pose.up.normalize_or(Vec3::Y)
-        } else {
-            right.cross(forward)
-        };
-        Frame { eye: pose.center, forward, right, up, screen_point: rules.has(Compat::ScreenPoint) }
+impl CameraSample {
+    /// A point of the picture that is its own pixel's centre, through the middle of the lens.
+    pub fn at(point: Vec2) -> Self {
+        CameraSample { point, pixel: point, lens: Vec2::splat(0.5) }
     }
 }
 
@@ -73,26 +79,92 @@ pub trait Lens {
     /// Where it stands.
     fn pose(&self) -> Pose;
 
-    /// The ray through a point of the picture; (-1, -1) is the lower left corner of the square that the
-    /// camera covers, (1, 1) the upper right. The direction has length 1, so that `t` is a distance.
-    fn ray(&self, frame: &Frame, point: Vec2) -> Ray;
+    /// The natural width and height of its picture, in any unit; `None` where any shape will do, and the larger side
+    /// spans the square. A natural picture lies in the middle of the square, which its larger side spans.
+    fn proportions(&self) -> Option<Vec2> {
+        None
+    }
+
+    /// Whether rays through one point of the picture differ by the point of the lens.
+    fn has_aperture(&self) -> bool {
+        false
+    }
+
+    /// Why there is no such camera, though each value by itself is allowed.
+    fn problem(&self) -> Option<String> {
+        None
+    }
+
+    /// The ray of a sample; `None` where the camera sees nothing. The direction has length 1, so that `t` is a distance.
+    fn ray(&self, frame: &Frame, sample: &CameraSample) -> Option<Ray>;
+
+    /// Calls `found` with every point of the picture at which a point of the world is seen through a point of the lens:
+    /// one, none, or several, as for a pair of eyes. What hides it is not asked. Where the picture may have any shape,
+    /// points may lie beyond the square.
+    fn project(&self, frame: &Frame, world: Vec3, lens: Vec2, found: &mut dyn FnMut(Vec2));
+
+    /// The area across the ray at distance `t` that a unit of the picture's area covers, the point of the lens held fast.
+    ///
+    /// This is the Jacobian |(dX/dx × dX/dy) · dir| of X = origin + t dir by the picture's point. Where all rays meet in
+    /// one eye it is t² times the solid angle per area of the picture; where they are parallel it is constant. Undefined
+    /// where there is no ray.
+    fn footprint(&self, frame: &Frame, sample: &CameraSample, t: f32) -> f32;
+}
+
+/// Calls a method of whichever camera it is.
+macro_rules! each_camera {
+    ($self:ident, $c:ident => $call:expr) => {
+        match $self {
+            Camera::Perspective($c) => $call,
+            Camera::Orthographic($c) => $call,
+            Camera::Pinhole($c) => $call,
+            Camera::ThinLens($c) => $call,
+            Camera::Stereo($c) => $call,
+            Camera::Fisheye($c) => $call,
+            Camera::Omnimax($c) => $call,
+            Camera::Parabolic($c) => $call,
+            Camera::Equirectangular($c) => $call,
+            Camera::Cylindrical($c) => $call,
+            Camera::CubeMap($c) => $call,
+            Camera::Cave($c) => $call,
+            Camera::PushBroom($c) => $call,
+            Camera::MultipleCenter($c) => $call,
+            Camera::Projective($c) => $call,
+        }
+    };
 }
 
 impl Lens for Camera {
     fn pose(&self) -> Pose {
-        match self {
-            Camera::Perspective(c) => c.pose(),
-            Camera::Orthographic(c) => c.pose(),
-        }
+        each_camera!(self, c => c.pose())
     }
 
-    fn ray(&self, frame: &Frame, point: Vec2) -> Ray {
-        match self {
-            Camera::Perspective(c) => c.ray(frame, point),
-            Camera::Orthographic(c) => c.ray(frame, point),
-        }
+    fn proportions(&self) -> Option<Vec2> {
+        each_camera!(self, c => c.proportions())
+    }
+
+    fn has_aperture(&self) -> bool {
+        each_camera!(self, c => c.has_aperture())
+    }
+
+    fn problem(&self) -> Option<String> {
+        each_camera!(self, c => c.problem())
+    }
+
+    fn ray(&self, frame: &Frame, sample: &CameraSample) -> Option<Ray> {
+        each_camera!(self, c => c.ray(frame, sample))
+    }
+
+    fn project(&self, frame: &Frame, world: Vec3, lens: Vec2, found: &mut dyn FnMut(Vec2)) {
+        each_camera!(self, c => c.project(frame, world, lens, found));
+    }
+
+    fn footprint(&self, frame: &Frame, sample: &CameraSample, t: f32) -> f32 {
+        each_camera!(self, c => c.footprint(frame, sample, t))
     }
 }
 
+#[cfg(test)]
+mod conformance;
 #[cfg(test)]
 mod tests;

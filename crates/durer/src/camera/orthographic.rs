@@ -2,11 +2,12 @@
 //!
 //! origin = center + x size/2 right + y size/2 up.
 
-use super::{Frame, Lens, Pose};
+use super::{CameraSample, Frame, Lens, Pose};
 use crate::describe::Rule;
 use crate::described;
 use crate::dialect::set;
 use crate::math::{Ray, Vec2, Vec3};
+use glam::DVec2;
 
 described! {
     /// A camera that sees without perspective.
@@ -28,9 +29,20 @@ impl Lens for OrthographicCamera {
     }
 
     /// The ray runs both ways: things behind `center` are seen as well, at negative `t`.
-    fn ray(&self, frame: &Frame, point: Vec2) -> Ray {
-        let half = 0.5 * self.size;
+    fn ray(&self, frame: &Frame, sample: &CameraSample) -> Option<Ray> {
+        let (point, half) = (sample.point, 0.5 * self.size);
         let origin = frame.eye + point.x * half * frame.right + point.y * half * frame.up;
-        Ray { t_min: f32::NEG_INFINITY, ..Ray::new(origin, frame.forward) }
+        Some(Ray { t_min: f32::NEG_INFINITY, ..Ray::new(origin, frame.forward) })
+    }
+
+    fn project(&self, frame: &Frame, world: Vec3, _: Vec2, found: &mut dyn FnMut(Vec2)) {
+        let p = frame.camera_from_world(world);
+        found((DVec2::new(p.x, p.y) / (0.5 * f64::from(self.size))).as_vec2());
+    }
+
+    /// The same at all distances.
+    fn footprint(&self, frame: &Frame, _: &CameraSample, _: f32) -> f32 {
+        let half = 0.5 * f64::from(self.size);
+        (half * half * frame.volume()) as f32
     }
 }

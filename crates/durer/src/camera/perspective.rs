@@ -1,12 +1,17 @@
-//! The pinhole camera: all rays start at the eye.
+//! The pinhole camera of the lecture: all rays start at the eye e, with w = forward, u = right, v = up.
 //!
-//! direction = D forward + x right + y up, with D = 1 / tan(angle / 2).
+//! direction = D w + x u + y v, with D = 1 / tan(angle / 2) and x, y from -1 to 1 across the larger side: in a picture
+//! that is not square the other side runs from -a to a, where a < 1 is its part of the larger one.
+//!
+//! The solid angle of an area dx dy in the plane at distance D is D |u v w| dx dy / |direction|³.
 
-use super::{Frame, Lens, Pose, unit_or};
+use super::pose::unit_or;
+use super::{CameraSample, Frame, Lens, Pose};
 use crate::describe::Rule;
 use crate::described;
 use crate::dialect::set;
 use crate::math::{Ray, Vec2, Vec3, fp};
+use glam::DVec2;
 
 described! {
     /// A camera that sees in perspective.
@@ -22,13 +27,18 @@ described! {
     }
 }
 
+/// Half the width of a field of view, in degrees, at distance 1.
+pub(super) fn half_width(angle: f32) -> f64 {
+    fp::tan_f64(f64::from(angle).to_radians() / 2.0)
+}
+
 impl Lens for PerspectiveCamera {
     fn pose(&self) -> Pose {
         Pose { center: self.center, direction: self.direction, up: self.up }
     }
 
-    fn ray(&self, frame: &Frame, point: Vec2) -> Ray {
-        let half = fp::tan_f64(f64::from(self.angle).to_radians() / 2.0) as f32;
+    fn ray(&self, frame: &Frame, sample: &CameraSample) -> Option<Ray> {
+        let (point, half) = (sample.point, half_width(self.angle) as f32);
         let dir = match frame.screen_point {
             false => frame.forward / half + point.x * frame.right + point.y * frame.up,
             true => {
@@ -38,6 +48,21 @@ impl Lens for PerspectiveCamera {
                 (corner + along.x * across + along.y * upwards) - frame.eye
             }
         };
-        Ray::new(frame.eye, unit_or(dir, frame.forward))
+        Some(Ray::new(frame.eye, unit_or(dir, frame.forward)))
+    }
+
+    fn project(&self, frame: &Frame, world: Vec3, _: Vec2, found: &mut dyn FnMut(Vec2)) {
+        let p = frame.camera_from_world(world);
+        if p.z > 0.0 {
+            found((DVec2::new(p.x, p.y) / (p.z * half_width(self.angle))).as_vec2());
+        }
+    }
+
+    fn footprint(&self, frame: &Frame, sample: &CameraSample, t: f32) -> f32 {
+        let distance = 1.0 / half_width(self.angle);
+        let [u, v, w] = [frame.right, frame.up, frame.forward].map(|axis| axis.as_dvec3());
+        let point = sample.point.as_dvec2();
+        let length = (distance * w + point.x * u + point.y * v).length();
+        (f64::from(t * t) * distance * frame.volume() / (length * length * length)) as f32
     }
 }

@@ -12,12 +12,41 @@ pub struct Raster {
     pub height: u32,
     border_pixels: bool,
     stretch: bool,
+    /// Half the sides of the camera's natural picture in the square.
+    natural: Option<Vec2>,
 }
 
 impl Raster {
     /// A picture of a size. Its larger side spans the square, unless a compatibility says otherwise.
-    pub fn new(width: u32, height: u32, rules: &Rules) -> Self {
-        Raster { width, height, border_pixels: rules.has(Compat::BorderPixels), stretch: rules.has(Compat::Stretch) }
+    ///
+    /// Where the camera's picture has proportions of its own, it fills this one as far as it can, undistorted and whole.
+    pub fn new(width: u32, height: u32, proportions: Option<Vec2>, rules: &Rules) -> Self {
+        Raster {
+            width,
+            height,
+            border_pixels: rules.has(Compat::BorderPixels),
+            stretch: rules.has(Compat::Stretch),
+            natural: proportions.map(|sides| sides / sides.max_element()),
+        }
+    }
+
+    /// The size of a picture where nobody asks for one: a plain one, or one of about as many pixels in the camera's
+    /// proportions. A unit of these becomes whole pixels where it can, so that faces and walls end between pixels.
+    pub fn natural_size(proportions: Option<Vec2>, plain: (u32, u32)) -> (u32, u32) {
+        let Some(sides) = proportions else { return plain };
+        let scale = (plain.0 as f32 * plain.1 as f32 / (sides.x * sides.y)).sqrt();
+        let scale = if scale >= 1.0 { scale.round() } else { scale };
+        let side = |length: f32| ((length * scale).round() as u32).max(1);
+        (side(sides.x), side(sides.y))
+    }
+
+    /// How many columns and rows stay empty because the picture has not the camera's proportions.
+    pub fn empty(&self) -> (u32, u32) {
+        let Some(half) = self.natural else { return (0, 0) };
+        let size = Vec2::new(self.width as f32, self.height as f32);
+        // Less than a pixel is a rounding of the size.
+        let empty = (size - half * (size / half).min_element()).floor();
+        (empty.x as u32, empty.y as u32)
     }
 
     /// The point of the square for a place in the picture, in pixels from its upper left corner.
@@ -28,7 +57,12 @@ impl Raster {
         let inset = if self.border_pixels { 1.0 } else { 0.0 };
         let size = Vec2::new(self.width as f32, self.height as f32) - inset;
         // A single pixel lies in the middle.
-        let span = if self.stretch { size } else { Vec2::splat(size.max_element()) }.max(Vec2::ONE);
+        let span = match self.natural {
+            Some(half) => Vec2::splat((size / half).min_element()),
+            None if self.stretch => size,
+            None => Vec2::splat(size.max_element()),
+        };
+        let span = span.max(Vec2::ONE);
         // From the lower left corner of the square, in parts of its side.
         let from_corner = Vec2::new(place.x, self.height as f32 - place.y) - 0.5 * inset + 0.5 * (span - size);
         2.0 * (from_corner / span) - 1.0

@@ -1,7 +1,10 @@
 //! Rays of cameras through known places of pictures.
 
 use super::*;
-use crate::dialect::Dialect;
+use crate::dialect::{Compat, Dialect, Rules};
+
+mod family;
+mod lenses;
 
 fn rules(compat: &[Compat]) -> Rules {
     Rules { compat: compat.iter().map(|c| c.bit()).sum(), ..Dialect::Durer.rules().clone() }
@@ -13,7 +16,7 @@ fn close(a: Vec3, b: Vec3) {
 
 #[test]
 fn pixel_centres_lie_inside_the_square_and_edges_on_its_border() {
-    let raster = Raster::new(4, 4, &rules(&[]));
+    let raster = Raster::new(4, 4, None, &rules(&[]));
     assert_eq!(raster.point(Vec2::ZERO), Vec2::new(-1.0, 1.0));
     assert_eq!(raster.point(Vec2::splat(4.0)), Vec2::new(1.0, -1.0));
     assert_eq!(raster.point(Vec2::splat(2.0)), Vec2::ZERO);
@@ -24,23 +27,48 @@ fn pixel_centres_lie_inside_the_square_and_edges_on_its_border() {
 fn the_larger_side_spans_the_square_unless_the_picture_is_stretched() {
     for (width, height, corner) in [(8, 4, Vec2::new(1.0, 0.5)), (4, 8, Vec2::new(0.5, 1.0)), (5, 5, Vec2::ONE)] {
         let end = Vec2::new(width as f32, height as f32);
-        assert_eq!(Raster::new(width, height, &rules(&[])).point(end), corner * Vec2::new(1.0, -1.0));
-        assert_eq!(Raster::new(width, height, &rules(&[Compat::Stretch])).point(end), Vec2::new(1.0, -1.0));
+        assert_eq!(Raster::new(width, height, None, &rules(&[])).point(end), corner * Vec2::new(1.0, -1.0));
+        assert_eq!(Raster::new(width, height, None, &rules(&[Compat::Stretch])).point(end), Vec2::new(1.0, -1.0));
     }
+}
+
+#[test]
+fn a_natural_picture_lies_whole_and_undistorted_in_any_other() {
+    for (width, height, corner) in [(8, 4, [1.0, 0.5]), (8, 8, [1.0, 1.0]), (8, 2, [2.0, 0.5]), (2, 8, [1.0, 4.0])] {
+        let end = Vec2::new(width as f32, 0.0);
+        for compat in [&[][..], &[Compat::Stretch]] {
+            let raster = Raster::new(width, height, Some(Vec2::new(6.0, 3.0)), &rules(compat));
+            assert_eq!(raster.point(end), Vec2::from(corner));
+        }
+    }
+}
+
+#[test]
+fn sizes_follow_proportions_and_misfits_are_counted() {
+    let size = |w, h| Raster::natural_size(Some(Vec2::new(w, h)), (512, 512));
+    assert_eq!(Raster::natural_size(None, (512, 512)), (512, 512));
+    assert_eq!([size(4.0, 3.0), size(6.0, 1.0), size(360.0, 180.0)], [(592, 444), (1254, 209), (720, 360)]);
+    assert_eq!([size(1.0, 1.0), size(4000.0, 1000.0), size(1e4, 1.0)], [(512, 512), (1024, 256), (50000, 5)]);
+    let empty = |width, height| Raster::new(width, height, Some(Vec2::new(3.0, 1.0)), &rules(&[])).empty();
+    assert_eq!([empty(300, 100), empty(301, 100), empty(300, 300)], [(0, 0), (1, 0), (0, 200)]);
+    assert_eq!(
+        [empty(100, 33), empty(100, 34), Raster::new(9, 5, None, &rules(&[])).empty()],
+        [(1, 0), (0, 0), (0, 0)]
+    );
 }
 
 #[test]
 fn border_pixels_have_their_centres_on_the_border() {
     let last = Vec2::new(6.5, 4.5);
-    let square = Raster::new(7, 5, &rules(&[Compat::BorderPixels]));
+    let square = Raster::new(7, 5, None, &rules(&[Compat::BorderPixels]));
     assert!((square.point(Vec2::splat(0.5)) - Vec2::new(-1.0, 4.0 / 6.0)).length() < 1e-6);
     assert!((square.point(last) - Vec2::new(1.0, -4.0 / 6.0)).length() < 1e-6);
-    let stretched = Raster::new(7, 5, &rules(&[Compat::BorderPixels, Compat::Stretch]));
+    let stretched = Raster::new(7, 5, None, &rules(&[Compat::BorderPixels, Compat::Stretch]));
     assert_eq!(stretched.point(Vec2::splat(0.5)), Vec2::new(-1.0, 1.0));
     assert_eq!(stretched.point(last), Vec2::new(1.0, -1.0));
     // A picture of one pixel, or one row, has its centre in the middle.
-    assert_eq!(Raster::new(1, 1, &rules(&[Compat::BorderPixels])).point(Vec2::splat(0.5)), Vec2::ZERO);
-    assert_eq!(Raster::new(3, 1, &rules(&[Compat::BorderPixels])).point(Vec2::splat(0.5)), Vec2::new(-1.0, 0.0));
+    assert_eq!(Raster::new(1, 1, None, &rules(&[Compat::BorderPixels])).point(Vec2::splat(0.5)), Vec2::ZERO);
+    assert_eq!(Raster::new(3, 1, None, &rules(&[Compat::BorderPixels])).point(Vec2::splat(0.5)), Vec2::new(-1.0, 0.0));
 }
 
 #[test]
@@ -62,14 +90,15 @@ fn a_frame_is_right_handed_unless_up_is_used_as_written() {
 fn the_pinhole_sees_its_angle_across_the_square() {
     let camera = PerspectiveCamera { center: Vec3::Y, angle: 90.0, ..PerspectiveCamera::default() };
     let frame = Frame::new(camera.pose(), &rules(&[]));
-    let ray = |x, y| camera.ray(&frame, Vec2::new(x, y));
+    let ray = |x, y| camera.ray(&frame, &CameraSample::at(Vec2::new(x, y))).unwrap();
     close(ray(0.0, 0.0).dir, Vec3::NEG_Z);
     close(ray(1.0, 0.0).dir, Vec3::new(1.0, 0.0, -1.0).normalize());
     close(ray(-1.0, -1.0).dir, Vec3::new(-1.0, -1.0, -1.0).normalize());
     assert_eq!((ray(0.3, 0.4).origin, ray(0.3, 0.4).t_min), (Vec3::Y, 0.0));
     for angle in [1.0f32, 30.0, 120.0, 179.0] {
         let camera = PerspectiveCamera { angle, ..camera.clone() };
-        let cosine = camera.ray(&frame, Vec2::X).dir.dot(camera.ray(&frame, Vec2::NEG_X).dir);
+        let dir = |x| camera.ray(&frame, &CameraSample::at(x)).unwrap().dir;
+        let cosine = dir(Vec2::X).dot(dir(Vec2::NEG_X));
         assert!((f64::from(cosine) - libm::cos(f64::from(angle).to_radians())).abs() < 1e-6, "{angle}");
     }
 }
@@ -84,7 +113,7 @@ fn parallel_rays_start_on_the_picture_and_run_both_ways() {
     };
     let frame = Frame::new(camera.pose(), &rules(&[]));
     // right = x cross y = z; up = y.
-    let ray = camera.ray(&frame, Vec2::new(1.0, -0.5));
+    let ray = camera.ray(&frame, &CameraSample::at(Vec2::new(1.0, -0.5))).unwrap();
     close(ray.origin, Vec3::new(1.0, 2.0 - 1.25, 3.0 + 2.5));
     close(ray.dir, Vec3::X);
     assert_eq!((ray.t_min, ray.t_max), (f32::NEG_INFINITY, f32::INFINITY));

@@ -6,7 +6,7 @@ use crate::diag::{Diagnostic, Diagnostics, Severity};
 use crate::dialect::{Compat, Rules};
 use crate::format;
 use crate::image;
-use crate::shape::Mesh;
+use crate::shape::{HeightField, Mesh};
 use crate::source::SourceError;
 use crate::texture::{CubeMap, Texture};
 use crate::world::MeshTree;
@@ -16,7 +16,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 pub(super) struct Loader<'r> {
-    resources: Resources<'r>,
+    pub(super) resources: Resources<'r>,
     rules: Rules,
     /// By path; `None` for files that could not be read, which are complained of once.
     meshes: HashMap<String, Option<Arc<MeshTree>>>,
@@ -51,6 +51,11 @@ impl<'r> Loader<'r> {
             diagnostics.extend(own);
             data
         });
+        let mesh = mesh.filter(|data| {
+            // The tree and what its building takes for a while are about as large again as plain triangles.
+            let needed = data.bytes() + 200 * data.triangles.len();
+            self.charge(name, needed as u64, diagnostics)
+        });
         let tree = mesh.map(|mut data| {
             if self.rules.has(Compat::LooseTriangles) {
                 data.loosen();
@@ -64,6 +69,37 @@ impl<'r> Loader<'r> {
         tree
     }
 
+    /// The mesh of a height field.
+    pub(super) fn height_field(&mut self, field: &HeightField, diagnostics: &mut Diagnostics) -> Option<Arc<MeshTree>> {
+        let name = &field.picture;
+        let bytes = self.read(name, "picture of heights", diagnostics)?;
+        let mut refuse = |message: String| diagnostics.push(Diagnostic::error(message).at(name.span));
+        let picture = match image::read(&bytes, &name.path) {
+            Ok(picture) => picture,
+            Err(error) => {
+                refuse(format!("the picture `{}` cannot be used: {error}", name.path));
+                return None;
+            }
+        };
+        let (width, height) = (picture.width as usize, picture.height as usize);
+        let heights: Vec<f32> = picture.pixels.iter().map(|pixel| (pixel.x + pixel.y + pixel.z) / 3.0).collect();
+        if width < 2 || height < 2 || heights.len() > HeightField::MOST_PIXELS {
+            let most = HeightField::MOST_PIXELS;
+            refuse(format!("{width} x {height} pixels make no landscape: 2 x 2 to {most} in all are needed"));
+            return None;
+        }
+        if heights.iter().any(|height| !height.is_finite()) {
+            refuse(format!("the picture `{}` has heights that are no numbers", name.path));
+            return None;
+        }
+        if let Some(least) = heights.iter().copied().reduce(f32::min).filter(|least| *least < 0.0) {
+            refuse(format!("the picture `{}` has heights of {least}; none may be less than 0", name.path));
+            return None;
+        }
+        let data = field.mesh(width, &heights);
+        Some(Arc::new(MeshTree::new(Mesh::new(data, self.rules.mesh_normals, true))))
+    }
+
     /// The number of a picture's texture.
     pub(super) fn texture(&mut self, name: &FileName, diagnostics: &mut Diagnostics) -> Option<u32> {
         if let Some(known) = self.texture_numbers.get(&name.path) {
@@ -71,6 +107,7 @@ impl<'r> Loader<'r> {
         }
         let bytes = self.read(name, "texture", diagnostics);
         let texture = bytes.and_then(|bytes| decode(name, &name.path, &bytes, self.rules.srgb_textures, diagnostics));
+        let texture = texture.filter(|texture| self.charge(name, texture.bytes() as u64, diagnostics));
         let number = texture.map(|texture| {
             self.textures.push(texture);
             (self.textures.len() - 1) as u32
@@ -117,6 +154,18 @@ impl<'r> Loader<'r> {
         }
         diagnostics.extend(unread);
         Some(CubeMap { faces: faces.try_into().ok()? })
+    }
+
+    /// Takes memory from what is left; says so where there is too little.
+    fn charge(&mut self, name: &FileName, needed: u64, diagnostics: &mut Diagnostics) -> bool {
+        let left = self.resources.memory;
+        self.resources.memory = left.saturating_sub(needed);
+        if needed > left {
+            let [needed, left] = [needed, left].map(|bytes| bytes.div_ceil(1 << 20));
+            let message = format!("`{}` needs about {needed} MiB of memory, and {left} MiB are left for it", name.path);
+            diagnostics.push(Diagnostic::error(message).at(name.span).help("see `--memory`"));
+        }
+        needed <= left
     }
 
     /// Reads a file; what goes wrong is said at the place that names it.

@@ -2,21 +2,24 @@
 
 mod files;
 mod materials;
+mod solids;
 #[cfg(test)]
 pub(crate) mod testing;
 
 use crate::bvh::{Bvh, Grid};
 use crate::camera::{Frame, Lens};
 use crate::diag::{Diagnostic, Diagnostics, Files, Span};
-use crate::dialect::{Compat, Rules};
+use crate::dialect::{Compat, MeshNormals, Rules};
 use crate::light::{Emitter, Light};
-use crate::math::{Aabb, Affine, Color};
+use crate::math::{Aabb, Affine, Color, Vec3};
 use crate::scene::{self, Group, MatrixOp, Node, Scene};
 use crate::shape::mesh::loosened;
-use crate::shape::{Primitive, Triangle};
+use crate::shape::{Mesh, Primitive, Shape, Triangle};
 use crate::source::Source;
-use crate::world::{Accel, Geometry, Object, Phong, World};
+use crate::world::{Accel, Geometry, MeshTree, Object, Phong, World};
 use glam::DAffine3;
+use std::collections::HashMap;
+use std::sync::Arc;
 
 /// Which structure finds the objects that a ray may meet.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -38,6 +41,8 @@ pub struct Resources<'a> {
     pub files: &'a mut Files,
     /// Whether a scene whose cube map is missing is still compiled, with a warning and the background's colour.
     pub sky_optional: bool,
+    /// Bytes that meshes and pictures may take.
+    pub memory: u64,
 }
 
 /// Turns a scene into a world. Errors and warnings are collected; with an error, there is no world.
@@ -54,7 +59,10 @@ pub fn compile(
         diagnostics.push(Diagnostic::error("the scene has no camera").help("add a `PerspectiveCamera { ... }`"));
         return None;
     };
-    check_camera(scene, camera.pose(), &mut own);
+    match camera.problem() {
+        Some(problem) => own.push(Diagnostic::error(problem).at(scene.camera_span)),
+        None => check_camera(scene, camera.pose(), &mut own),
+    }
     let materials = materials::compile(scene, rules, &mut loader, &mut own);
     let mut flattening = Flattening {
         objects: Vec::new(),
@@ -64,6 +72,7 @@ pub fn compile(
         material_count: materials.len() as u32,
         plain_needed: false,
         bare: None,
+        open_edges: HashMap::new(),
     };
     match &scene.root {
         Some(root) => flattening.group(root, DAffine3::IDENTITY),
@@ -77,6 +86,8 @@ pub fn compile(
     }
     let cube_map = scene.background.cube_map.as_ref().and_then(|name| loader.cube_map(name, &mut own));
     let (lights, ambient) = lights(scene, rules, &mut own);
+    // Numbers that JSON cannot tell apart, those that are not finite, are in no scene and no rules.
+    let digest = loader.resources.source.digest(&serde_json::to_vec(&(scene, rules)).unwrap_or_default());
     let textures = loader.textures;
     let failed = own.has_errors();
     diagnostics.extend(own);
@@ -94,6 +105,7 @@ pub fn compile(
         textures,
         objects,
         rules: rules.clone(),
+        digest,
         unbounded: Vec::new(),
         accel: Accel::None,
     };
@@ -192,6 +204,8 @@ struct Flattening<'a, 'r> {
     plain_needed: bool,
     /// The first object without a material, and how many there are.
     bare: Option<(Span, usize)>,
+    /// An edge at which a mesh is open, if there is one, by its path.
+    open_edges: HashMap<String, Option<[Vec3; 2]>>,
 }
 
 impl Flattening<'_, '_> {
@@ -214,20 +228,50 @@ impl Flattening<'_, '_> {
     }
 
     fn object(&mut self, object: &scene::Object, to_world: DAffine3) {
-        let geometry = match &object.node {
-            Node::Group(group) => return self.group(group, to_world),
-            Node::Transform(ops, inner) => {
-                return self.object(inner, to_world * MatrixOp::product(ops, self.rules.has(Compat::MatrixOnLeft)));
+        match &object.node {
+            Node::Group(group) => self.group(group, to_world),
+            Node::Transform(ops, inner) => self.object(inner, to_world * self.product(ops)),
+            Node::Solid(operation, parts) => self.solid(object.span, *operation, parts, to_world),
+            _ => {
+                let shape = self.shape(object, to_world);
+                self.objects.extend(shape);
             }
+        }
+    }
+
+    fn product(&self, ops: &[MatrixOp]) -> DAffine3 {
+        MatrixOp::product(ops, self.rules.has(Compat::MatrixOnLeft))
+    }
+
+    /// A shape or mesh, placed in the world; `None` after an error.
+    fn shape(&mut self, object: &scene::Object, to_world: DAffine3) -> Option<Object> {
+        let flaw = match &object.node {
+            Node::Primitive(shape) => shape.flaw(),
+            Node::HeightField(field) => field.flaw(),
+            _ => None,
+        };
+        if let Some(flaw) = flaw {
+            self.diagnostics.push(Diagnostic::error(flaw).at(object.span));
+            return None;
+        }
+        let geometry = match &object.node {
             Node::Primitive(Primitive::Triangle(t)) if self.rules.has(Compat::LooseTriangles) => {
                 let [vertex0, vertex1, vertex2] = loosened(t.corners());
                 Geometry::Primitive(Triangle { vertex0, vertex1, vertex2 }.into())
             }
             Node::Primitive(shape) => Geometry::Primitive(shape.clone()),
-            Node::Mesh(mesh) => match self.loader.mesh(&mesh.obj_file, self.diagnostics) {
-                Some(tree) => Geometry::Mesh(tree),
-                None => return,
-            },
+            Node::Mesh(mesh) => Geometry::Mesh(self.loader.mesh(&mesh.obj_file, self.diagnostics)?),
+            Node::HeightField(field) => Geometry::Mesh(self.loader.height_field(field, self.diagnostics)?),
+            Node::Voxels(grid, balls) => {
+                if (grid.max - grid.min).min_element() <= 0.0 {
+                    let message = "each coordinate of this grid's `max` must be greater than that of its `min`";
+                    self.diagnostics.push(Diagnostic::error(message).at(object.span));
+                    return None;
+                }
+                let mesh = Mesh::new(grid.mesh(balls), MeshNormals::Flat, false);
+                Geometry::Mesh(Arc::new(MeshTree::new(mesh)))
+            }
+            Node::Group(_) | Node::Transform(..) | Node::Solid(..) => return None,
         };
         let to_world = match to_world == DAffine3::IDENTITY {
             true => None,
@@ -237,7 +281,7 @@ impl Flattening<'_, '_> {
                 None => {
                     let message = "the transforms around this object flatten space, or leave the range of numbers";
                     self.diagnostics.push(Diagnostic::error(message).at(object.span));
-                    return;
+                    return None;
                 }
             },
         };
@@ -251,7 +295,7 @@ impl Flattening<'_, '_> {
                 self.material_count
             }
         };
-        self.objects.push(Object { geometry, to_world, material, span: object.span });
+        Some(Object { geometry, to_world, material, span: object.span })
     }
 }
 

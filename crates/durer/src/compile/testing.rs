@@ -16,7 +16,7 @@ pub fn try_read(text: &str, rules: &Rules, accel: AccelKind, folder: &Path) -> (
     let options = ReadOptions { dialect: Dialect::Durer, strict: false };
     let scene = course::read(text.as_bytes(), file, options, &mut diagnostics);
     let source = Source::folder(folder);
-    let resources = Resources { source: &source, files: &mut files, sky_optional: false };
+    let resources = Resources { source: &source, files: &mut files, sky_optional: false, memory: u64::MAX };
     let world = scene.and_then(|scene| compile(&scene, rules, accel, resources, &mut diagnostics));
     (world, diagnostics)
 }
@@ -34,6 +34,17 @@ pub fn matrix_words(affine: &DAffine3) -> String {
     format!("Matrix {{ {} }}", words.join(" "))
 }
 
+/// The world of one object, whose files are in a folder.
+pub fn object(object: scene::Object, accel: AccelKind, folder: &Path) -> World {
+    let root = Group { objects: vec![object] };
+    let camera = Some(crate::camera::PerspectiveCamera::default().into());
+    let scene = Scene { camera, root: Some(root), ..Scene::default() };
+    let (mut files, source, mut diagnostics) = (Files::default(), Source::folder(folder), Diagnostics::default());
+    let resources = Resources { source: &source, files: &mut files, sky_optional: false, memory: u64::MAX };
+    let world = compile(&scene, Dialect::Durer.rules(), accel, resources, &mut diagnostics);
+    world.unwrap_or_else(|| panic!("{diagnostics:?}"))
+}
+
 /// Some shapes, each moved, and nothing else.
 pub fn shapes(shapes: &[(Primitive, DAffine3)], accel: AccelKind) -> World {
     let object = |node| scene::Object { node, material: None, span: Default::default() };
@@ -46,7 +57,7 @@ pub fn shapes(shapes: &[(Primitive, DAffine3)], accel: AccelKind) -> World {
     let camera = Some(crate::camera::PerspectiveCamera::default().into());
     let scene = Scene { camera, root: Some(root), ..Scene::default() };
     let (mut files, source, mut diagnostics) = (Files::default(), Source::folder("."), Diagnostics::default());
-    let resources = Resources { source: &source, files: &mut files, sky_optional: false };
+    let resources = Resources { source: &source, files: &mut files, sky_optional: false, memory: u64::MAX };
     let world = compile(&scene, Dialect::Durer.rules(), accel, resources, &mut diagnostics);
     world.unwrap_or_else(|| panic!("{diagnostics:?}"))
 }

@@ -46,6 +46,136 @@ fn materials_that_double_or_nest_too_deeply_are_refused() {
 }
 
 #[test]
+fn solids_are_made_of_closed_parts() {
+    let ball = "Sphere { center 0 0 0 radius 1 }";
+    let open = "a surface without an inside cannot be part of a solid";
+    for flat in [
+        "Disc { center 0 0 0 normal 0 1 0 radius 1 }",
+        "Rectangle { corner 0 0 0 edge0 1 0 0 edge1 0 1 0 }",
+        "Triangle { vertex0 0 0 0 vertex1 1 0 0 vertex2 0 1 0 }",
+    ] {
+        for text in [
+            format!("Group {{ Difference {{ {ball} {flat} }} }}"),
+            format!("Group {{ Union {{ Transform {{ Scale 1 2 1 Group {{ {ball} {flat} }} }} }} }}"),
+            format!("Group {{ Xor {{ {ball} Merge {{ {flat} }} }} }}"),
+        ] {
+            assert_eq!(errors(&text, AccelKind::Bvh), [open], "{text}");
+        }
+    }
+    for name in ["Union", "Merge", "Intersection", "Difference", "Xor"] {
+        assert_eq!(
+            errors(&format!("Group {{ {name} {{ }} }}"), AccelKind::Bvh),
+            [format!("this `{name}` has no parts")]
+        );
+        assert_eq!(errors(&format!("Group {{ {name} {{ {ball} }} }}"), AccelKind::Bvh), [""; 0]);
+    }
+    let empty = format!("Group {{ Merge {{ {ball} Group {{ }} }} }}");
+    assert_eq!(errors(&empty, AccelKind::Bvh), ["an empty `Group` cannot be part of a solid"]);
+    // What has no end may take part, and the whole may have none.
+    let endless = format!("Group {{ Merge {{ {ball} Plane {{ normal 0 1 0 offset 0 }} }} }}");
+    for accel in [AccelKind::Bvh, AccelKind::Grid(None), AccelKind::None] {
+        assert_eq!(errors(&endless, accel), [""; 0]);
+    }
+}
+
+#[test]
+fn open_meshes_are_no_parts_and_closed_ones_are() {
+    let folder = tempfile::tempdir().unwrap();
+    let corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n";
+    let sides = ["f 1 3 2\n", "f 1 2 4\n", "f 2 3 4\n", "f 1 4 3\n"];
+    let write = |name: &str, text: String| std::fs::write(folder.path().join(name), text).unwrap();
+    write("closed.obj", format!("{corners}{}", sides.concat()));
+    write("open.obj", format!("{corners}{}", sides[..3].concat()));
+    // Every triangle has corners of its own, at the same places.
+    write("loose.obj", format!("{corners}{corners}{}f 5 8 7\n", sides[..3].concat()));
+    for (name, closed) in [("closed", true), ("open", false), ("loose", true)] {
+        let text = format!(
+            "{CAMERA}Group {{ Difference {{ TriangleMesh {{ obj_file {name}.obj }} \
+            Sphere {{ center 0 0 0 radius 0.5 }} }} }}"
+        );
+        let (world, findings) = try_read(&text, Dialect::Durer.rules(), AccelKind::Bvh, folder.path());
+        assert_eq!(world.is_some(), closed, "{name} {findings:?}");
+        let error = findings.iter().find(|d| d.severity == crate::diag::Severity::Error);
+        if let Some(error) = error {
+            assert_eq!(error.message, "the mesh `open.obj` is not closed, and cannot be part of a solid");
+            assert!(error.span.is_some() && error.help.as_ref().unwrap().contains("the edge from 0 0 "), "{error:?}");
+        }
+    }
+}
+
+#[test]
+fn shapes_whose_numbers_do_not_fit_together_are_refused() {
+    for (shape, message) in [
+        ("Box { min 0 0 0 max 1 0 1 }", "`min` of a `Box` must be less than its `max` in x, y and z"),
+        ("Cylinder { base 1 1 1 top 1 1 1 radius 1 }", "`base` and `top` of a `Cylinder` must not be the same point"),
+        ("Cone { base 0 0 0 top 0 1 0 baseRadius 0 }", "one of the radii of a `Cone` must be more than 0"),
+        (
+            "Torus { center 0 0 0 majorRadius 1 minorRadius 1 }",
+            "`minorRadius` of a `Torus` must be less than its `majorRadius`",
+        ),
+        ("Ellipsoid { center 0 0 0 radii 1 0 1 }", "all `radii` of an `Ellipsoid` must be more than 0"),
+        ("Quadric { squares 0 0 0 constant 1 }", "a `Quadric` needs a number beside its `constant` that is not 0"),
+        (
+            "Disc { center 0 0 0 normal 0 1 0 radius 1 innerRadius 1 }",
+            "`innerRadius` of a `Disc` must be less than its `radius`",
+        ),
+        ("Rectangle { corner 0 0 0 edge0 1 2 3 edge1 2 4 6 }", "the edges of a `Rectangle` must not be parallel"),
+    ] {
+        assert_eq!(errors(&format!("Group {{ {shape} }}"), AccelKind::Bvh), [message]);
+        let solid = format!("Group {{ Merge {{ {shape} }} }}");
+        assert!(errors(&solid, AccelKind::Bvh).contains(&message.to_string()), "{solid}");
+    }
+}
+
+#[test]
+fn height_fields_are_closed_landscapes() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("hills.ppm"), b"P6 3 2 255\n\0\0\0\xff\xff\xff\0\0\0\0\0\0\0\0\0\0\0\0").unwrap();
+    std::fs::write(folder.path().join("dot.ppm"), b"P6 1 1 255\n\0\0\0").unwrap();
+    let read = |body: &str| {
+        let text = format!("{CAMERA}Group {{ {body} }}");
+        try_read(&text, Dialect::Durer.rules(), AccelKind::Bvh, folder.path())
+    };
+    let field = "HeightField { picture hills.ppm min 0 0 0 max 2 1 1 depth 0.5 }";
+    let world = read(field).0.unwrap();
+    let Geometry::Mesh(tree) = &world.objects[0].geometry else { panic!() };
+    assert_eq!(tree.mesh.open_edge(), None);
+    assert_eq!((tree.mesh.len(), world.bounds().min, world.bounds().max.y), (4 + 18, [0.0, -0.5, 0.0].into(), 1.0));
+    // The white pixel is in the middle of the top row, which lies at the least z.
+    let down = |x: f32, z: f32| {
+        let ray = crate::math::Ray::new([x, 5.0, z].into(), [0.0, -1.0, 0.0].into());
+        world.closest(&ray, &mut ()).map(|hit| 5.0 - hit.t)
+    };
+    assert_eq!((down(1.0, 1e-6).unwrap() * 1e4).round(), 1e4);
+    assert_eq!((down(0.5, 1e-6).unwrap() * 1e4).round(), 5e3);
+    assert!(down(0.5, 1.0 - 1e-6).unwrap().abs() < 1e-5 && down(2.1, 0.5).is_none());
+    assert!(read(&format!("Difference {{ {field} Sphere {{ center 1 1 0 radius 0.3 }} }}")).0.is_some());
+    let refused = |body: &str, what: &str| {
+        let (world, findings) = read(body);
+        assert!(world.is_none() && findings.iter().any(|d| d.message.contains(what)), "{findings:?}");
+    };
+    refused("HeightField { picture dot.ppm min 0 0 0 max 1 1 1 }", "1 x 1 pixels make no landscape");
+    refused("HeightField { picture none.ppm min 0 0 0 max 1 1 1 }", "the picture of heights cannot be had");
+    refused("HeightField { picture hills.ppm min 0 0 0 max 1 0 1 }", "`min` of a `HeightField` must be less");
+}
+
+#[test]
+fn a_grid_of_cells_needs_a_volume() {
+    let grid = |max: &str| {
+        errors(
+            &format!(
+                "Group {{ Grid {{ min 0 0 0 max {max} numCells 2 2 2 rasterizeSphere {{ center 0 0 0 radius 1 }} }} }}"
+            ),
+            AccelKind::Bvh,
+        )
+    };
+    assert_eq!(grid("1 1 1"), [""; 0]);
+    for max in ["1 0 1", "1 1 -1"] {
+        assert_eq!(grid(max), ["each coordinate of this grid's `max` must be greater than that of its `min`"]);
+    }
+}
+
+#[test]
 fn grids_that_cannot_be_made_are_refused() {
     let balls = "Sphere { center 0 0 0 radius 1 } ".repeat(1000);
     assert_eq!(errors(&format!("Group {{ {balls} }}"), AccelKind::Grid(Some([0, 1, 1]))).len(), 1);

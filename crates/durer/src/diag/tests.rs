@@ -14,3 +14,26 @@ fn findings_beyond_the_limit_are_counted_also_in_another_collection() {
     let errors = all.iter().filter(|d| d.severity == Severity::Error).count();
     assert_eq!((errors, all.iter().count()), (ERROR_LIMIT, ERROR_LIMIT + 1));
 }
+
+#[test]
+fn columns_are_characters() {
+    let mut files = Files::default();
+    let text = "\u{feff}\u{e4}\u{f6} x\n\u{2026}\u{1d11e}y";
+    let file = files.add("a", text.as_bytes().into());
+    let at = |what: char| {
+        let start = text.find(what).unwrap() as u32;
+        files.position(Span { file, start, end: start + 1 })
+    };
+    assert_eq!((at('\u{e4}'), at('x'), at('y')), (Some((1, 1)), Some((1, 4)), Some((2, 3))));
+}
+
+#[test]
+fn what_is_meant_is_near_or_of_the_same_letters() {
+    let words = ["Rotate", "XRotate", "YRotate", "Scale", "Translate"];
+    let meant = |word| did_you_mean(word, words);
+    assert_eq!(meant("RotateY"), Some("YRotate"));
+    assert_eq!(meant("rotate"), Some("Rotate"));
+    assert_eq!(meant("Rotat"), Some("Rotate"));
+    assert_eq!(meant("Tanslate"), Some("Translate"));
+    assert_eq!(meant("Sphere"), None);
+}

@@ -1,37 +1,94 @@
 //! What a picture can show beside colour: one table.
 //!
-//! These pictures are made of one ray through each pixel's centre. Files of floating point get the values as
-//! they are; eight-bit files get a picture of them between 0 and 1.
+//! Most of these pictures are made of one ray through each pixel's centre, some of the sums of the colour's samples. Files
+//! of floating point get the values as they are; eight-bit files get a picture of them between 0 and 1.
 
 use crate::bvh::Counts;
-use crate::dialect::{Compat, DepthPicture, NormalsPicture, Rules};
+use crate::dialect::{Compat, CompatSet, DepthPicture, NormalsPicture, Rules};
 use crate::math::{Aabb, Color, Vec3};
 use crate::sampler::hash;
 use crate::shape::Surface;
 use crate::world::Hit;
+use serde::{Deserialize, Serialize};
 
 /// What the ray through a pixel's centre found.
 #[derive(Clone, Copy, Debug)]
 pub struct Seen {
+    /// Whether the camera sees anything through this pixel.
+    pub covered: bool,
     /// The hit and its surface, if there was one.
     pub hit: Option<(Hit, Surface)>,
     /// Number of the material hit.
     pub material: u32,
+    /// The diffuse colour hit.
+    pub albedo: Color,
     /// The work for the pixel, with all secondary rays.
     pub counts: Counts,
 }
 
+impl Seen {
+    /// Where the camera sees nothing.
+    pub const NOTHING: Seen = Seen {
+        covered: false,
+        hit: None,
+        material: 0,
+        albedo: Vec3::ZERO,
+        counts: Counts { rays: 0, nodes: 0, tests: 0 },
+    };
+}
+
+/// What is known of a pixel from the samples of its colour.
+#[derive(Clone, Copy, Debug)]
+pub struct Sums {
+    /// How many there are.
+    pub samples: u64,
+    /// Estimated variance of their mean luminance.
+    pub variance: f64,
+}
+
+/// Those rules of a scene's dialect that say how values are shown.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Look {
+    /// Normals as colours.
+    pub normals: NormalsPicture,
+    /// Depth as grey.
+    pub depth: DepthPicture,
+    /// Habits of the official program.
+    pub compat: CompatSet,
+}
+
+impl Look {
+    /// The look of some rules.
+    pub fn new(rules: &Rules) -> Self {
+        Look { normals: rules.normals_picture, depth: rules.depth_picture, compat: rules.compat }
+    }
+
+    /// Whether a compatibility is on.
+    pub fn has(&self, compat: Compat) -> bool {
+        self.compat & compat.bit() != 0
+    }
+}
+
 /// What is needed to make a picture of values.
 #[derive(Clone, Copy, Debug)]
-pub struct Display<'a> {
-    /// Rules of the scene's dialect.
-    pub rules: &'a Rules,
-    /// Depths that become black and white.
-    pub depth_range: (f32, f32),
-    /// The box of all positions in the picture.
-    pub positions: Aabb,
-    /// The greatest cost in the picture.
-    pub greatest_cost: f32,
+pub struct Display {
+    /// How values are shown.
+    pub look: Look,
+    /// Depths that become black and white; `None`: least and greatest of the picture.
+    pub depth_range: Option<(f32, f32)>,
+    /// The box of all values where something was hit.
+    pub hits: Aabb,
+    /// The box of all values.
+    pub all: Aabb,
+}
+
+/// Whence the values of a picture come.
+#[derive(Clone, Copy, Debug)]
+pub enum Value {
+    /// From the ray through the pixel's centre.
+    Ray(fn(&Seen) -> Vec3),
+    /// From the samples of the colour.
+    Sums(fn(&Sums) -> Vec3),
 }
 
 /// One kind of picture.
@@ -42,9 +99,11 @@ pub struct Aov {
     /// What it shows.
     pub doc: &'static str,
     /// The value at a pixel, as files of floating point have it.
-    pub value: fn(&Seen) -> Vec3,
+    pub value: Value,
     /// The value as a colour; the flag tells whether anything was hit.
     pub picture: fn(Vec3, bool, &Display) -> Color,
+    /// Whether that colour depends on the values of other pixels too.
+    pub relative: bool,
 }
 
 impl Aov {
@@ -70,77 +129,127 @@ pub fn fill_from_last_hit(pixels: &mut [Color], hits: &[bool], width: usize) {
 }
 
 /// All kinds of picture beside colour.
-pub static AOVS: [Aov; 8] = [
+pub static AOVS: [Aov; 12] = [
     Aov {
         name: "depth",
         doc: "t of the first hit: the distance, for cameras; infinite where nothing is hit",
-        value: |seen| Vec3::splat(seen.hit.map_or(f32::INFINITY, |(hit, _)| hit.t)),
+        value: Value::Ray(|seen| Vec3::splat(seen.hit.map_or(f32::INFINITY, |(hit, _)| hit.t))),
         picture: depth_picture,
+        relative: true,
     },
     Aov {
         name: "normals",
         doc: "the shading normal in world space",
-        value: |seen| of_surface(seen, |s| s.n_shade),
-        picture: |n, _, display| match display.rules.normals_picture {
-            NormalsPicture::Abs => n.abs(),
-            NormalsPicture::Half => (n + 1.0) * 0.5,
-        },
+        value: Value::Ray(|seen| of_surface(seen, |s| s.n_shade)),
+        picture: normal_picture,
+        // Where nothing is hit, one habit shows the normal hit last.
+        relative: true,
+    },
+    Aov {
+        name: "geometric-normals",
+        doc: "the normal of the surface itself in world space",
+        value: Value::Ray(|seen| of_surface(seen, |s| s.n_geo)),
+        picture: normal_picture,
+        relative: false,
     },
     Aov {
         name: "position",
         doc: "the point in world space; as a picture, within the box of all points seen",
-        value: |seen| of_surface(seen, |s| s.position),
+        value: Value::Ray(|seen| of_surface(seen, |s| s.position)),
         picture: |p, hit, display| {
-            let size = display.positions.size();
-            let one =
-                |axis: usize| if size[axis] > 0.0 { (p[axis] - display.positions.min[axis]) / size[axis] } else { 0.5 };
+            let (size, min) = (display.hits.size(), display.hits.min);
+            let one = |axis: usize| if size[axis] > 0.0 { (p[axis] - min[axis]) / size[axis] } else { 0.5 };
             if hit { Vec3::new(one(0), one(1), one(2)) } else { Vec3::ZERO }
         },
+        relative: true,
     },
     Aov {
         name: "uv",
         doc: "texture coordinates in red and green, 0 where there are none; as a picture, their fraction",
-        value: |seen| of_surface(seen, |s| s.uv.unwrap_or_default().extend(0.0)),
+        value: Value::Ray(|seen| of_surface(seen, |s| s.uv.unwrap_or_default().extend(0.0))),
         picture: |uv, _, _| uv - uv.floor(),
+        relative: false,
     },
     Aov {
         name: "barycentric",
         doc: "barycentric coordinates on the triangle, 0 on other shapes",
-        value: |seen| of_surface(seen, |s| s.barycentric),
+        value: Value::Ray(|seen| of_surface(seen, |s| s.barycentric)),
         picture: |b, _, _| b,
+        relative: false,
+    },
+    Aov {
+        name: "albedo",
+        doc: "the diffuse colour, from textures and patterns too, without any light; 0 where nothing is hit",
+        value: Value::Ray(|seen| seen.albedo),
+        picture: |albedo, _, _| albedo,
+        relative: false,
     },
     Aov {
         name: "object",
         doc: "number of the object, -1 where there is none; as a picture, a colour of its own",
-        value: |seen| Vec3::splat(seen.hit.map_or(-1.0, |(hit, _)| hit.object as f32)),
+        value: Value::Ray(|seen| Vec3::splat(seen.hit.map_or(-1.0, |(hit, _)| hit.object as f32))),
         picture: |id, hit, _| if hit { id_color(id.x) } else { Vec3::ZERO },
+        relative: false,
     },
     Aov {
         name: "material",
         doc: "number of the material, -1 where there is none; as a picture, a colour of its own",
-        value: |seen| Vec3::splat(if seen.hit.is_some() { seen.material as f32 } else { -1.0 }),
+        value: Value::Ray(|seen| Vec3::splat(if seen.hit.is_some() { seen.material as f32 } else { -1.0 })),
         picture: |id, hit, _| if hit { id_color(id.x) } else { Vec3::ZERO },
+        relative: false,
+    },
+    Aov {
+        name: "sample-count",
+        doc: "how many samples the colour is the mean of; as a picture, a heat map",
+        value: Value::Sums(|sums| Vec3::splat(sums.samples as f32)),
+        picture: heat_picture,
+        relative: true,
+    },
+    Aov {
+        name: "variance",
+        doc: "estimated variance of the mean luminance, infinite for one sample; as a picture, a heat map of its root up to 0.1",
+        value: Value::Sums(|sums| Vec3::splat(sums.variance as f32)),
+        picture: |variance, _, _| heat(variance.x.sqrt() * 10.0),
+        relative: false,
     },
     Aov {
         name: "cost",
         doc: "tests of boxes and shapes for the pixel, with all secondary rays; as a picture, a heat map",
-        value: |seen| Vec3::splat((seen.counts.nodes + seen.counts.tests) as f32),
-        picture: |cost, _, display| heat(cost.x / display.greatest_cost.max(1.0)),
+        value: Value::Ray(|seen| Vec3::splat((seen.counts.nodes + seen.counts.tests) as f32)),
+        picture: heat_picture,
+        relative: true,
     },
 ];
+
+fn normal_picture(n: Vec3, _: bool, display: &Display) -> Color {
+    match display.look.normals {
+        NormalsPicture::Abs => n.abs(),
+        NormalsPicture::Half => (n + 1.0) * 0.5,
+    }
+}
+
+fn heat_picture(value: Vec3, _: bool, display: &Display) -> Color {
+    heat(value.x / display.all.max.x.max(1.0))
+}
 
 fn of_surface(seen: &Seen, value: impl Fn(&Surface) -> Vec3) -> Vec3 {
     seen.hit.map_or(Vec3::ZERO, |(_, surface)| value(&surface))
 }
 
 fn depth_picture(depth: Vec3, hit: bool, display: &Display) -> Color {
-    let (min, max) = display.depth_range;
-    let black_sky = display.rules.has(Compat::BlackSky);
-    Vec3::splat(match display.rules.depth_picture {
+    let look = display.look;
+    let (least, greatest) = (display.hits.min.x, display.hits.max.x);
+    let (min, max) = match display.depth_range {
+        // A range that whole numbers cannot tell apart is left as it is.
+        Some((min, max)) if look.has(Compat::WholeDepths) && min.trunc() != max.trunc() => (min.trunc(), max.trunc()),
+        Some(range) => range,
+        None => (least, if greatest > least { greatest } else { least + 1.0 }),
+    };
+    Vec3::splat(match look.depth {
         DepthPicture::NearWhite if !hit => 0.0,
         DepthPicture::NearWhite => ((max - depth.x) / (max - min)).clamp(0.0, 1.0),
         DepthPicture::NearBlack if !hit => {
-            if black_sky {
+            if look.has(Compat::BlackSky) {
                 0.0
             } else {
                 1.0

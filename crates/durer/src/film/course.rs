@@ -2,11 +2,11 @@
 //!
 //! Here is Fall 2004, assignment 7: stored samples, weighted by their offset from the centre of the pixel they are for,
 //! also from neighbouring pixels. `jitter.rs` is Fall 2012, assignment 5.
-//! Rows are made in parallel; each pixel is summed in one fixed order, so threads change no bit.
+//! Each pixel is summed in one fixed order, so it is the same whatever part of the picture it is made with.
 
-use crate::math::{Color, Vec2, Vec3, fp};
+use crate::math::{Color, Vec2, fp};
 use glam::DVec3;
-use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 use std::convert::Infallible;
 
 mod jitter;
@@ -35,29 +35,24 @@ pub struct StoredSamples {
 }
 
 impl StoredSamples {
-    /// Takes every sample: `sample(x, y, number)`, in parallel by rows. At least one a pixel.
-    pub fn take(
-        width: u32,
-        height: u32,
-        per_pixel: u32,
-        sample: impl Fn(u32, u32, u32) -> StoredSample + Sync,
-    ) -> Self {
+    /// Takes every sample: `sample(x, y, number)`, rows from the top. At least one a pixel.
+    pub fn take(width: u32, height: u32, per_pixel: u32, sample: impl Fn(u32, u32, u32) -> StoredSample) -> Self {
         let sample = |x, y, number| Ok::<_, Infallible>(sample(x, y, number));
         let Ok(all) = StoredSamples::try_take(width, height, per_pixel, sample);
         all
     }
 
     /// The same where a sample may be refused, which ends the taking.
-    pub fn try_take<E: Send>(
+    pub fn try_take<E>(
         width: u32,
         height: u32,
         per_pixel: u32,
-        sample: impl Fn(u32, u32, u32) -> Result<StoredSample, E> + Sync,
+        mut sample: impl FnMut(u32, u32, u32) -> Result<StoredSample, E>,
     ) -> Result<Self, E> {
         let per_pixel = per_pixel.max(1);
-        let row = |y| (0..width).flat_map(move |x| (0..per_pixel).map(move |number| (x, y, number)));
-        let take_row = |y| row(y).map(|(x, y, number)| sample(x, y, number)).collect();
-        let rows: Result<Vec<Vec<StoredSample>>, E> = (0..height).into_par_iter().map(take_row).collect();
+        let numbers = |y| (0..width).flat_map(move |x| (0..per_pixel).map(move |number| (x, y, number)));
+        let mut take_row = |y| numbers(y).map(|(x, y, number)| sample(x, y, number)).collect();
+        let rows: Result<Vec<Vec<StoredSample>>, E> = (0..height).map(&mut take_row).collect();
         Ok(StoredSamples { width, height, per_pixel, rows: rows? })
     }
 
@@ -73,32 +68,32 @@ impl StoredSamples {
         &self.rows[y as usize][x as usize * n..][..n]
     }
 
-    /// The picture, row 0 at the top. Without a filter a pixel is the mean of its own samples.
+    /// The picture, row 0 at the top: for each pixel the weighted mean of the samples of all pixels within the filter's support,
+    /// inside the picture.
     ///
-    /// With one it is the weighted mean of the samples of all pixels within the filter's support, inside the picture.
-    /// Where all weights are zero (a filter narrower than the gaps between samples) it is the mean of its own samples too.
-    pub fn reconstruct(&self, filter: Option<CourseFilter>) -> Vec<Color> {
-        let Ok(pixels) = self.try_reconstruct(filter, || Ok::<_, Infallible>(()));
+    /// Where all weights are zero (a filter narrower than the gaps between samples) it is the mean of its own samples.
+    pub fn reconstruct(&self, filter: CourseFilter) -> Vec<Color> {
+        let Ok(pixels) = self.try_reconstruct(filter, (0, 0), self.size(), || Ok::<_, Infallible>(()));
         pixels
     }
 
-    /// The same, asking every now and then whether to go on.
-    pub fn try_reconstruct<E: Send>(
+    /// A part of it, from a column and row on, asking every now and then whether to go on.
+    ///
+    /// It is as in the whole picture where the samples reach as far around the part as the filter, or to the picture's edge.
+    pub fn try_reconstruct<E>(
         &self,
-        filter: Option<CourseFilter>,
-        go_on: impl Fn() -> Result<(), E> + Sync,
+        filter: CourseFilter,
+        (left, top): (u32, u32),
+        (width, height): (u32, u32),
+        go_on: impl Fn() -> Result<(), E>,
     ) -> Result<Vec<Color>, E> {
-        let width = self.width as usize;
-        let mut pixels = vec![Vec3::ZERO; width * self.height as usize];
-        pixels.par_chunks_mut(width.max(1)).zip(0..self.height).try_for_each(|(row, y)| {
-            for (pixel, x) in row.iter_mut().zip(0..self.width) {
+        let places = (top..top + height).flat_map(|y| (left..left + width).map(move |x| (x, y)));
+        places
+            .map(|(x, y)| {
                 go_on()?;
-                let filtered = filter.map(|filter| self.filtered(filter, x, y, &go_on)).transpose()?.flatten();
-                *pixel = filtered.unwrap_or_else(|| self.mean(x, y));
-            }
-            Ok(())
-        })?;
-        Ok(pixels)
+                Ok(self.filtered(filter, x, y, &go_on)?.unwrap_or_else(|| self.mean(x, y)))
+            })
+            .collect()
     }
 
     fn mean(&self, x: u32, y: u32) -> Color {
@@ -133,7 +128,7 @@ impl StoredSamples {
 }
 
 /// A filter of the 2004 course. Lengths in pixels; weights are not normalised, the greatest is 1.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum CourseFilter {
     /// 1 where both distances are at most the radius.
     Box {

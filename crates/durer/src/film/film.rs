@@ -1,5 +1,6 @@
 //! Exact sums: samples are added as integers, so the order of adding and merging changes nothing.
 
+use super::bytes::{Bytes, put, put_signed};
 use crate::math::{Color, Vec3};
 
 #[cfg(test)]
@@ -10,6 +11,9 @@ mod tests;
 /// A weight is rounded once to a multiple of 2^-24, the product of colour and weight once to a multiple of 2^-48 (ties to even).
 /// From then on everything is integer addition. Colours up to 2^44 and weights up to 2^10 are kept: there is room in a pixel
 /// for 2^25 samples of the greatest colour and weight, and for 2^35 of the greatest colour at weight 1.
+///
+/// Beside the mean there are exact sums for its variance: luminances, rounded to multiples of 2^-28 and cut at 2^14 either way,
+/// and their squares, with room for 2^21 samples.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Film {
     left: u32,
@@ -21,13 +25,19 @@ pub struct Film {
     first_rejected: Vec<Rejected>,
 }
 
-/// Sums of one pixel: 64 bytes.
+/// Sums of one pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 struct Pixel {
     /// Weighted colour, in units of 2^-48.
     color: [i128; 3],
+    /// Squares of luminances, in units of 2^-56.
+    squares: i128,
+    /// Luminances, not weighted, in units of 2^-28.
+    luminance: i64,
     /// Weight, in units of 2^-24.
     weight: i64,
+    /// The part of that weight whose samples saw something, in the same units.
+    covered: i64,
     samples: u64,
 }
 
@@ -35,6 +45,10 @@ const COLOR_SCALE: f64 = (1_u64 << 48) as f64;
 const WEIGHT_SCALE: f64 = (1_u64 << 24) as f64;
 const GREATEST_COLOR: f64 = (1_u64 << 44) as f64;
 const GREATEST_WEIGHT: f64 = (1_u64 << 10) as f64;
+const LUMINANCE_SCALE: f64 = (1_u64 << 28) as f64;
+const GREATEST_LUMINANCE: f64 = (1_u64 << 14) as f64;
+/// What red, green and blue of Rec. 709 give to the luminance. Source: ITU-R BT.709.
+const LUMINANCE: [f64; 3] = [0.2126, 0.7152, 0.0722];
 
 /// A sample that was left out because it is infinite, not a number or beyond the film's range. Ordered by row, column, sample.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -74,18 +88,33 @@ impl Film {
 
     /// Adds a sample of some weight (up to 2^10 in size) to a pixel. Panics outside the window.
     pub fn add(&mut self, x: u32, y: u32, sample: u32, color: Color, weight: f32) {
+        self.add_covering(x, y, sample, (color, 1.0), weight);
+    }
+
+    /// The same for a sample at which the camera may see nothing: it leaves the pixel transparent by its weight.
+    pub fn add_if_seen(&mut self, x: u32, y: u32, sample: u32, color: Option<Color>, weight: f32) {
+        self.add_covering(x, y, sample, color.map_or((Color::ZERO, 0.0), |color| (color, 1.0)), weight);
+    }
+
+    /// The same for a sample of a colour that covers only a share of the pixel, from 0 to 1.
+    pub fn add_covering(&mut self, x: u32, y: u32, sample: u32, (color, share): (Color, f32), weight: f32) {
         let index = self.index(x, y).expect("the pixel lies in the film's window");
         let weight = f64::from(weight) * WEIGHT_SCALE;
         // At most 24 significant bits are left of the weight, so each product below is exact before its rounding.
-        let (whole, rgb) = (weight.round_ties_even(), color.to_array().map(f64::from));
+        let (whole, rgb) = (rounded(weight), color.to_array().map(f64::from));
         if !(whole.abs() <= GREATEST_WEIGHT * WEIGHT_SCALE && rgb.iter().all(|c| c.abs() <= GREATEST_COLOR)) {
             return self.reject(Rejected { y, x, sample });
         }
         let pixel = &mut self.pixels[index];
         for (sum, c) in pixel.color.iter_mut().zip(rgb) {
-            *sum += (c * (whole / WEIGHT_SCALE) * COLOR_SCALE).round_ties_even() as i128;
+            *sum = sum.wrapping_add(whole_number(c * (whole / WEIGHT_SCALE) * COLOR_SCALE));
         }
-        pixel.weight += whole as i64;
+        let luminance = luminance(rgb).clamp(-GREATEST_LUMINANCE, GREATEST_LUMINANCE);
+        let luminance = rounded(luminance * LUMINANCE_SCALE) as i64;
+        pixel.luminance = pixel.luminance.wrapping_add(luminance);
+        pixel.squares = pixel.squares.wrapping_add(i128::from(luminance) * i128::from(luminance));
+        pixel.weight = pixel.weight.wrapping_add(whole as i64);
+        pixel.covered = pixel.covered.wrapping_add(rounded(whole * f64::from(share)) as i64);
         pixel.samples += 1;
     }
 
@@ -112,18 +141,65 @@ impl Film {
         for (row, source) in other.pixels.chunks_exact(other.width as usize).enumerate() {
             let start = first + row * self.width as usize;
             for (to, from) in self.pixels[start..].iter_mut().zip(source) {
-                to.color.iter_mut().zip(from.color).for_each(|(sum, c)| *sum += c);
-                to.weight += from.weight;
-                to.samples += from.samples;
+                // Sums from a file may be anything; wrapping, they are still the same in any order.
+                to.color.iter_mut().zip(from.color).for_each(|(sum, c)| *sum = sum.wrapping_add(c));
+                to.squares = to.squares.wrapping_add(from.squares);
+                to.luminance = to.luminance.wrapping_add(from.luminance);
+                to.weight = to.weight.wrapping_add(from.weight);
+                to.covered = to.covered.wrapping_add(from.covered);
+                to.samples = to.samples.wrapping_add(from.samples);
             }
         }
         // Those not remembered come after sixteen others, and so they do in the union.
         other.first_rejected.iter().for_each(|&r| self.reject(r));
-        self.rejected += other.rejected - other.first_rejected.len() as u64;
+        self.rejected = self.rejected.wrapping_add(other.rejected - other.first_rejected.len() as u64);
         Ok(())
     }
 
-    /// Weighted mean of a pixel's samples; black where the weights sum to nothing. Panics outside the window.
+    /// Appends the sums, and what was left out, as bytes: the same for the same sums. The window is not among them.
+    pub fn write(&self, out: &mut Vec<u8>) {
+        for pixel in &self.pixels {
+            put(out, pixel.samples.into());
+            put_signed(out, pixel.weight.into());
+            // Mostly nothing.
+            put_signed(out, i128::from(pixel.weight) - i128::from(pixel.covered));
+            pixel.color.iter().for_each(|&sum| put_signed(out, sum));
+            put_signed(out, pixel.luminance.into());
+            put_signed(out, pixel.squares);
+        }
+        put(out, self.rejected.into());
+        put(out, self.first_rejected.len() as u128);
+        for Rejected { y, x, sample } in &self.first_rejected {
+            [y, x, sample].into_iter().for_each(|&number| put(out, number.into()));
+        }
+    }
+
+    /// Reads what [`Film::write`] wrote into this film, which must have the same window. `None` if the bytes are something else.
+    pub fn read(mut self, bytes: &mut Bytes) -> Option<Self> {
+        for pixel in &mut self.pixels {
+            pixel.samples = bytes.whole()?;
+            pixel.weight = bytes.signed()?;
+            pixel.covered = pixel.weight.checked_sub(bytes.signed()?)?;
+            for sum in &mut pixel.color {
+                *sum = bytes.signed()?;
+            }
+            pixel.luminance = bytes.signed()?;
+            pixel.squares = bytes.signed()?;
+        }
+        self.rejected = bytes.whole()?;
+        let remembered: usize = bytes.whole()?;
+        if remembered as u64 > self.rejected || remembered > REMEMBERED {
+            return None;
+        }
+        for _ in 0..remembered {
+            let (y, x, sample) = (bytes.whole()?, bytes.whole()?, bytes.whole()?);
+            self.first_rejected.push(Rejected { y, x, sample });
+        }
+        self.first_rejected.is_sorted().then_some(self)
+    }
+
+    /// Weighted mean of a pixel's samples, those that saw nothing taken for black; black where the weights sum to nothing.
+    /// Panics outside the window.
     pub fn resolve(&self, x: u32, y: u32) -> Color {
         let pixel = self.pixel(x, y);
         if pixel.weight == 0 {
@@ -132,6 +208,36 @@ impl Film {
         // Each sum is rounded to double precision, then divided: two roundings, and one to single.
         let weight = pixel.weight as f64 / WEIGHT_SCALE;
         Vec3::from(pixel.color.map(|sum| (sum as f64 / COLOR_SCALE / weight) as f32))
+    }
+
+    /// The share of a pixel's samples that saw something, by weight, from 0 to 1. Panics outside the window.
+    pub fn coverage(&self, x: u32, y: u32) -> f32 {
+        let pixel = self.pixel(x, y);
+        // Also where the weights sum to nothing: there all is seen that was looked for.
+        if pixel.covered == pixel.weight {
+            return 1.0;
+        }
+        // Filters with negative weights may leave the range; where the weights sum to 0 the quotient is infinite.
+        (pixel.covered as f64 / pixel.weight as f64).clamp(0.0, 1.0) as f32
+    }
+
+    /// Estimated variance of the pixel's mean luminance, from its samples: what is to be expected of the square of its error.
+    /// Infinite for fewer than two samples. Panics outside the window.
+    ///
+    /// For n samples y of mean m it is sum (y - m)^2 / (n (n - 1)). `gain` is the size of the samples' weights where their mean
+    /// is 1 (see [`super::FilterSampler::gain`]); each error counts that much more.
+    pub fn variance(&self, x: u32, y: u32, gain: f32) -> f64 {
+        let pixel = self.pixel(x, y);
+        let n = pixel.samples as f64;
+        if pixel.samples < 2 {
+            return f64::INFINITY;
+        }
+        let mean = luminance(self.resolve(x, y).to_array().map(f64::from));
+        let sum = pixel.luminance as f64 / LUMINANCE_SCALE;
+        let squares = pixel.squares as f64 / (LUMINANCE_SCALE * LUMINANCE_SCALE);
+        // Of equal samples a rounding is left, which may be negative.
+        let deviation = (squares - 2.0 * mean * sum + mean * mean * n).max(0.0);
+        deviation / (n * (n - 1.0)) * f64::from(gain) * f64::from(gain)
     }
 
     /// How many samples a pixel holds, without those left out. Panics outside the window.
@@ -149,6 +255,9 @@ impl Film {
         &self.first_rejected
     }
 
+    /// Bytes that a pixel takes in memory.
+    pub const PIXEL_BYTES: usize = size_of::<Pixel>();
+
     fn pixel(&self, x: u32, y: u32) -> &Pixel {
         &self.pixels[self.index(x, y).expect("the pixel lies in the film's window")]
     }
@@ -157,4 +266,24 @@ impl Film {
         let (column, row) = (x.checked_sub(self.left)?, y.checked_sub(self.top)?);
         (column < self.width && row < self.height).then(|| row as usize * self.width as usize + column as usize)
     }
+}
+
+/// The luminance of a colour.
+pub fn luminance([r, g, b]: [f64; 3]) -> f64 {
+    LUMINANCE[0] * r + LUMINANCE[1] * g + LUMINANCE[2] * b
+}
+
+/// A number to the nearest whole one, ties to even.
+///
+/// Where there is no instruction for it, this is a call; but between -2^51 and 2^51 two additions do the same, as they round to
+/// what has no bits below 1.
+fn rounded(x: f64) -> f64 {
+    const MAGIC: f64 = 3.0 * (1_u64 << 51) as f64;
+    if x.abs() < (1_u64 << 51) as f64 { (x + MAGIC) - MAGIC } else { x.round_ties_even() }
+}
+
+/// The same as an integer; small numbers are converted by one instruction.
+fn whole_number(x: f64) -> i128 {
+    let x = rounded(x);
+    if x.abs() < (1_u64 << 62) as f64 { i128::from(x as i64) } else { x as i128 }
 }

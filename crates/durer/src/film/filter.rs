@@ -6,13 +6,14 @@
 //! Source: Pharr, Jakob, Humphreys, *Physically Based Rendering*, 4th edition, section 8.8.
 
 use crate::math::{Vec2, fp};
+use serde::{Deserialize, Serialize};
 use std::f32::consts::PI;
 
 #[cfg(test)]
 mod tests;
 
 /// A reconstruction filter. Lengths are in pixels and must be positive and finite.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Filter {
     /// The same weight everywhere: sharp, aliases.
     Box {
@@ -155,6 +156,14 @@ impl FilterSampler {
         // A filter that is nowhere positive is no filter: it is sampled as a box would be, at no gain.
         let gain = if signed > 0.0 { (absolute / signed) * (absolute / signed) } else { 1.0 };
         FilterSampler { filter, knots, gain: gain as f32 }
+    }
+
+    /// The size of a sample's weight: 1 for filters without negative lobes, more for others.
+    pub fn gain(&self) -> f32 {
+        match self.filter {
+            Filter::Mitchell { .. } => self.gain,
+            _ => 1.0,
+        }
     }
 
     /// Warps a uniform position in [0,1)^2 to an offset from the pixel's centre, with the weight of the sample there.

@@ -3,11 +3,12 @@
 //! Pixels are counted from the top left corner; a position in a pixel runs right and down.
 
 pub mod aov;
+pub mod bytes;
 pub mod course;
 pub mod diagram;
 #[expect(clippy::module_inception, reason = "the film is what this room is about")]
 mod film;
 mod filter;
 
-pub use film::{Film, Rejected, WrongWindow};
+pub use film::{Film, Rejected, WrongWindow, luminance};
 pub use filter::{Filter, FilterSampler};

@@ -10,9 +10,9 @@ fn sample() -> Image {
 }
 
 fn written(format: &Format, kind: LayerKind, transfer: Transfer, image: &Image) -> Vec<u8> {
-    let layer = Layer { name: "beauty".into(), image: image.clone(), kind };
+    let layer = Layer { name: "beauty".into(), image: image.clone(), kind, coverage: None };
     let mut out = Vec::new();
-    format.write(&[layer], &WriteOptions { transfer }, &mut out).unwrap();
+    format.write(&[layer], &WriteOptions { transfer, ..WriteOptions::default() }, &mut out).unwrap();
     out
 }
 
@@ -60,6 +60,25 @@ fn odd_sizes_and_odd_values_are_written() {
             let back = read(&written(format, LayerKind::Color, Transfer::Srgb, &image), &name(format)).unwrap();
             assert_eq!((back.width, back.height), (width, height), "{}", format.name);
         }
+    }
+}
+
+#[test]
+fn alpha_is_written_where_a_format_has_it_and_black_elsewhere() {
+    let image = Image::from_pixels(2, 1, vec![Vec3::splat(0.25), Vec3::ZERO]).unwrap();
+    let layer = Layer::data("x", image).with_coverage(vec![0.5, 0.0]);
+    for format in &FORMATS {
+        let mut out = Vec::new();
+        format.write(std::slice::from_ref(&layer), &WriteOptions::default(), &mut out).unwrap();
+        let back = read(&out, &name(format)).unwrap();
+        // Our readers drop alpha; what has it in eight bits has colours that are not multiplied by it.
+        let straight = ["PNG", "TGA"].contains(&format.name);
+        let expected = if straight { 128.0 / 255.0 } else { 0.25 };
+        assert!((back.pixels[0].x - expected).abs() < 0.002, "{}: {}", format.name, back.pixels[0]);
+        assert_eq!(back.pixels[1], Vec3::ZERO, "{}", format.name);
+        // One share for each pixel.
+        let odd = Layer { coverage: Some(vec![0.5]), ..layer.clone() };
+        assert!(format.write(&[odd], &WriteOptions::default(), &mut Vec::new()).is_err());
     }
 }
 

@@ -14,6 +14,7 @@ mod tga;
 use super::limits;
 use super::{Image, Image8, ImageError, Layer, LayerKind, Transfer};
 use crate::diag;
+use crate::math::Vec3;
 use std::path::Path;
 
 /// Every format that is known, in the order in which content is tried.
@@ -31,9 +32,11 @@ pub enum Depth {
 
 /// How pictures are written.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct WriteOptions {
+pub struct WriteOptions<'a> {
     /// What makes eight bits of a colour. Formats of floating point have no use for it.
     pub transfer: Transfer,
+    /// Names and texts to be told beside the pictures, in formats that have a place for them.
+    pub attributes: &'a [(&'static str, String)],
 }
 
 /// What a reader found in a file.
@@ -77,6 +80,9 @@ impl Format {
         }
         for layer in layers {
             layer.image.check()?;
+            if layer.coverage.as_ref().is_some_and(|coverage| coverage.len() != layer.image.pixels.len()) {
+                return Err(ImageError::Size { width: layer.image.width, height: layer.image.height });
+            }
             if (layer.image.width, layer.image.height) != (first.image.width, first.image.height) {
                 return Err(ImageError::LayerSizes { name: layer.name.clone() });
             }
@@ -125,13 +131,31 @@ fn extension(path: &str) -> Option<String> {
     Some(Path::new(path).extension()?.to_str()?.to_lowercase())
 }
 
-/// The bytes of an eight-bit picture: red, green and blue, the top row first.
-fn eight_bit(layer: &Layer, options: &WriteOptions) -> Vec<u8> {
-    let transfer = match (layer.kind, options.transfer) {
+/// What makes eight bits of a layer's numbers.
+fn transfer(layer: &Layer, options: &WriteOptions) -> Transfer {
+    match (layer.kind, options.transfer) {
         // A curve would falsify data; cutting off instead of rounding is what the course did to everything.
         (LayerKind::Data, Transfer::Srgb) => Transfer::Linear,
         (_, transfer) => transfer,
+    }
+}
+
+/// The bytes of an eight-bit picture with alpha: red, green, blue and alpha, the top row first; `None` where it is opaque.
+///
+/// Here colours are those of what is seen alone, without the share of it (straight alpha).
+fn eight_bit_alpha(layer: &Layer, options: &WriteOptions) -> Option<Vec<u8>> {
+    let (transfer, coverage) = (transfer(layer, options), layer.coverage.as_ref()?);
+    let pixel = |(&pixel, &share): (&Vec3, &f32)| {
+        let alone = if share > 0.0 { pixel / share } else { Vec3::ZERO };
+        let [r, g, b] = transfer.encode_pixel(alone);
+        [r, g, b, Transfer::Linear.encode(share)]
     };
+    Some(layer.image.pixels.iter().zip(coverage).flat_map(pixel).collect())
+}
+
+/// The bytes of an eight-bit picture: red, green and blue, the top row first.
+fn eight_bit(layer: &Layer, options: &WriteOptions) -> Vec<u8> {
+    let transfer = transfer(layer, options);
     layer.image.pixels.iter().flat_map(|&pixel| transfer.encode_pixel(pixel)).collect()
 }
 

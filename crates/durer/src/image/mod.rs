@@ -3,11 +3,13 @@
 //! Everything in memory is linear floating point; what becomes of it in eight bits says [`Transfer`]. The table
 //! [`FORMATS`] knows the file formats, [`read()`] reads them from memory, [`save()`] puts bytes into a file.
 
+pub mod compare;
 mod error;
 mod formats;
 mod limits;
 mod read;
 mod save;
+mod temporary;
 mod transfer;
 
 #[cfg(test)]
@@ -62,6 +64,9 @@ pub struct Layer {
     pub image: Image,
     /// What they mean.
     pub kind: LayerKind,
+    /// The share of each pixel, from 0 to 1, that the camera sees at all; `None`: all of each. Colours are those over
+    /// black: a pixel that is half covered has half the light (associated alpha).
+    pub coverage: Option<Vec<f32>>,
 }
 
 impl Image {
@@ -112,12 +117,19 @@ impl Image {
 impl Layer {
     /// A layer of light.
     pub fn color(name: impl Into<String>, image: Image) -> Layer {
-        Layer { name: name.into(), image, kind: LayerKind::Color }
+        Layer { name: name.into(), image, kind: LayerKind::Color, coverage: None }
     }
 
     /// A layer of other numbers.
     pub fn data(name: impl Into<String>, image: Image) -> Layer {
-        Layer { name: name.into(), image, kind: LayerKind::Data }
+        Layer { name: name.into(), image, kind: LayerKind::Data, coverage: None }
+    }
+
+    /// The same layer with the share of each pixel that is seen.
+    pub fn with_coverage(self, coverage: Vec<f32>) -> Layer {
+        // Opaque pictures are written without alpha.
+        let opaque = coverage.iter().all(|&share| share == 1.0);
+        Layer { coverage: if opaque { None } else { Some(coverage) }, ..self }
     }
 }
 

@@ -1,13 +1,13 @@
 //! Files that are whole or not there.
 //!
-//! Bytes go into a temporary file beside the target, are synced, and the file is renamed over the target. Whatever
+//! Bytes go into a temporary file beside the target, are synced, and the file takes the target's name. Whatever
 //! fails, the old file is intact and nothing is left lying about. The new file has the old one's permissions, or
 //! those of an ordinary new file; links to it (hard ones) are not followed, symbolic ones are.
 
+use super::temporary::{Temporary, remove_stale};
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
-use tempfile::NamedTempFile;
 
 /// Why a file could not be saved. The old file, if there is one, is as it was.
 #[derive(Debug, thiserror::Error)]
@@ -62,7 +62,7 @@ pub fn save_all<P: AsRef<Path>, B: AsRef<[u8]>>(files: &[(P, B)]) -> Result<(), 
         device.write_all(bytes.as_ref()).map_err(io)?;
     }
     for (temporary, target) in staged.into_iter().flatten() {
-        temporary.persist(&target).map_err(|failed| SaveError::Io { path: target.clone(), error: failed.error })?;
+        temporary.persist(&target).map_err(|error| SaveError::Io { path: target.clone(), error })?;
         // The new name should outlive a power cut too; where folders cannot be synced, that is left to the system.
         #[cfg(unix)]
         let _ = File::open(folder_of(&target)).and_then(|folder| folder.sync_all());
@@ -70,12 +70,15 @@ pub fn save_all<P: AsRef<Path>, B: AsRef<[u8]>>(files: &[(P, B)]) -> Result<(), 
     Ok(())
 }
 
-/// Says beforehand what is known to prevent saving: better than after a long work.
+/// Says beforehand what is known to prevent saving: better than after a long work. Removes what killed programs left there.
 ///
 /// # Errors
 /// [`SaveError`]. Without one, saving may still fail.
 pub fn check_target(path: impl AsRef<Path>) -> Result<(), SaveError> {
-    resolve(path.as_ref()).map(drop)
+    if let Some((target, _)) = resolve(path.as_ref())? {
+        remove_stale(folder_of(&target));
+    }
+    Ok(())
 }
 
 /// The file to be replaced and, if it is there, what is known of it; `None` if it is to be written to directly.
@@ -98,20 +101,15 @@ fn resolve(path: &Path) -> Result<Option<(PathBuf, Option<fs::Metadata>)>, SaveE
 }
 
 /// Writes the temporary file for a target; `None` if the target is to be written to directly.
-fn stage(path: &Path, bytes: &[u8]) -> Result<Option<(NamedTempFile, PathBuf)>, SaveError> {
+fn stage(path: &Path, bytes: &[u8]) -> Result<Option<(Temporary, PathBuf)>, SaveError> {
     let io = |error| SaveError::Io { path: path.into(), error };
     let Some((target, old)) = resolve(path)? else { return Ok(None) };
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".durer-").suffix(".tmp");
-    // As for any new file, the user's mask is taken off.
-    #[cfg(unix)]
-    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    let mut temporary = builder.tempfile_in(folder_of(&target)).map_err(|error| io(without_path(error)))?;
+    let temporary = Temporary::new_in(folder_of(&target)).map_err(io)?;
     if let Some(old) = old {
-        temporary.as_file().set_permissions(old.permissions()).map_err(io)?;
+        temporary.file().set_permissions(old.permissions()).map_err(io)?;
     }
-    temporary.as_file_mut().write_all(bytes).map_err(io)?;
-    temporary.as_file().sync_all().map_err(io)?;
+    temporary.file().write_all(bytes).map_err(io)?;
+    temporary.file().sync_all().map_err(io)?;
     Ok(Some((temporary, target)))
 }
 
@@ -123,15 +121,6 @@ fn folder_of(path: &Path) -> &Path {
 /// Names of open files: the shell that redirected them holds the file itself, which a rename would not reach.
 fn is_stream(path: &Path) -> bool {
     ["/dev/stdout", "/dev/stderr", "/dev/fd", "/proc"].iter().any(|stream| path.starts_with(stream))
-}
-
-/// The system's reason without the name of the temporary file, which nobody asked for.
-fn without_path(error: io::Error) -> io::Error {
-    let inner = error.get_ref().and_then(std::error::Error::source).and_then(|e| e.downcast_ref::<io::Error>());
-    match inner.and_then(io::Error::raw_os_error) {
-        Some(code) => io::Error::from_raw_os_error(code),
-        None => error.kind().into(),
-    }
 }
 
 #[cfg(test)]

@@ -3,17 +3,19 @@
 //! Source: Turner Whitted, *An Improved Illumination Model for Shaded Display*, CACM 23(6), 1980, with the
 //! terms of the course.
 
-use super::spawn::from_surface;
-use crate::bvh::Tally;
+use super::account::{RayKind, Shadow, Struck, What, Witness};
+use super::spawn::{from_surface, to_light};
 use crate::dialect::Compat;
 use crate::light::{Emitter, Illumination};
 use crate::math::{Color, Ray, Vec3, fp, gamma, reflect};
 use crate::shape::Surface;
-use crate::world::{HighlightModel, Hit, Phong, World};
+use crate::world::{HighlightModel, Hit, Part, Phong, World};
+use serde::{Deserialize, Serialize};
+use smallvec::SmallVec;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 /// What a picture takes into account.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Settings {
     /// Levels of secondary rays; 0 means local light only.
     pub bounces: u32,
@@ -60,44 +62,107 @@ struct Path {
 
 impl Whitted<'_> {
     /// The light that comes along a camera ray.
-    pub fn radiance<T: Tally>(&self, ray: &Ray, tally: &mut T) -> Color {
-        self.trace(ray, Path { bounces: self.settings.bounces, ior: 1.0, weight: 1.0 }, tally)
+    pub fn radiance<T: Witness>(&self, ray: &Ray, tally: &mut T) -> Color {
+        let path = Path { bounces: self.settings.bounces, ior: 1.0, weight: 1.0 };
+        tally.begin(|| What::Ray { from: RayKind::Camera, ray: ray.into(), weight: 1.0, hit: None });
+        let color = self.trace(ray, path, tally);
+        tally.end(Color::ONE, Color::ONE, color);
+        color
     }
 
-    fn trace<T: Tally>(&self, ray: &Ray, path: Path, tally: &mut T) -> Color {
+    fn trace<T: Witness>(&self, ray: &Ray, path: Path, tally: &mut T) -> Color {
         match self.world.closest(ray, tally) {
             Some(hit) => self.shade(ray, &hit, path, tally),
-            None => self.world.sky(ray.dir),
+            None => {
+                let sky = self.world.sky(ray.dir);
+                tally.begin(|| What::Sky);
+                tally.end(Color::ONE, Color::ONE, sky);
+                sky
+            }
         }
     }
 
     /// The light that leaves a hit against the ray: of each material that makes it up, by its share.
-    fn shade<T: Tally>(&self, ray: &Ray, hit: &Hit, path: Path, tally: &mut T) -> Color {
+    fn shade<T: Witness>(&self, ray: &Ray, hit: &Hit, path: Path, tally: &mut T) -> Color {
         let surface = self.world.surface(ray, hit);
         let from_behind = self.sees_back(ray.dir, &surface);
         let black = from_behind && !self.settings.shade_back && self.world.rules.has(Compat::BlackBacks);
         let n = if from_behind && self.settings.shade_back { -surface.n_shade } else { surface.n_shade };
-        let material = self.world.objects[hit.object as usize].material;
+        let parts = self.world.parts(hit, surface.position);
+        tally.hit(|| self.struck(ray, hit, &surface, n, from_behind, black));
         let mut color = Color::ZERO;
         if !black {
-            self.world.mix(material, surface.position, 1.0, &mut |phong, share| {
-                color += share * self.world.ambient * self.ambient_color(phong, &surface);
-            });
-            for light in &self.world.lights {
+            // A texture or noise is looked up once for all lights.
+            let diffuse: SmallVec<[Color; 2]> = parts.iter().map(|p| self.diffuse_color(p.phong, &surface)).collect();
+            for (part, &diffuse) in parts.iter().zip(&diffuse) {
+                let met = if part.phong.ambient_textured { diffuse } else { part.phong.diffuse };
+                let ambient = part.share * self.world.ambient;
+                tally.begin(|| What::Ambient { share: part.share });
+                tally.end(ambient, Color::ONE, met);
+                color += ambient * met;
+            }
+            for (number, light) in self.world.lights.iter().enumerate() {
                 let seen = light.illuminate(surface.position);
                 let visible = self.visible(&surface, &seen, tally);
-                if visible != Color::ZERO {
-                    self.world.mix(material, surface.position, 1.0, &mut |phong, share| {
-                        color += share * visible * self.direct(phong, &surface, n, ray.dir, &seen);
+                for (part, &diffuse) in parts.iter().zip(&diffuse) {
+                    let share = part.share;
+                    tally.begin(|| {
+                        let shadow = self.settings.shadows.then(|| self.shadow(&surface, &seen, visible));
+                        let (to_light, distance) = (seen.to_light, seen.distance);
+                        What::Light { light: number, to_light, distance, share, shadow }
                     });
+                    // In the dark nothing is computed.
+                    let direct = match visible == Color::ZERO {
+                        true => Color::ZERO,
+                        false => direct(part.phong, diffuse, n, ray.dir, &seen, tally),
+                    };
+                    tally.end(share * visible, seen.color, direct);
+                    color += share * visible * direct;
                 }
             }
         }
         let cancelled = self.cancel.is_some_and(|cancel| cancel.load(Relaxed));
         if path.bounces > 0 && !cancelled {
-            color += self.secondary(ray, &surface, material, path, tally);
+            color += self.secondary(ray, &surface, &parts, path, tally);
+        } else if parts.iter().any(|part| part.phong.reflective + part.phong.transparent != Color::ZERO) {
+            tally.begin(|| What::Spent);
+            tally.end(Color::ONE, Color::ONE, Color::ZERO);
         }
         color
+    }
+
+    /// What a witness is told of a hit.
+    fn struck(&self, ray: &Ray, hit: &Hit, surface: &Surface, n: Vec3, from_behind: bool, black: bool) -> Struck {
+        let object = &self.world.objects[hit.object as usize];
+        Struck {
+            object: hit.object,
+            part: self.world.triangle(hit),
+            t: hit.t,
+            position: surface.position,
+            n_geo: surface.n_geo,
+            n_shade: surface.n_shade,
+            n,
+            from_behind,
+            black,
+            uv: surface.uv,
+            barycentric: surface.barycentric,
+            local: object.to_world.as_ref().map(|to_world| (&to_world.inverse_ray(ray)).into()),
+            material: self.world.material(hit),
+        }
+    }
+
+    /// What a witness is told of a shadow ray.
+    fn shadow(&self, surface: &Surface, seen: &Illumination, share: Color) -> Shadow {
+        let ray = self.shadow_ray(surface, seen);
+        let blocker = self.world.closest(&ray, &mut ()).map(|hit| (hit.object, hit.t));
+        Shadow { ray: (&ray).into(), blocker, share }
+    }
+
+    fn shadow_ray(&self, surface: &Surface, seen: &Illumination) -> Ray {
+        let rules = &self.world.rules;
+        // What stands exactly at the light does not block it.
+        let reach = if rules.is_official() { seen.distance } else { seen.distance * (1.0 - gamma(16)) };
+        to_light(surface, seen.to_light, reach, rules.epsilon)
     }
 
     /// Whether a ray meets a surface on the side that its normal does not point to.
@@ -106,9 +171,10 @@ impl Whitted<'_> {
         dir.dot(if shaded { surface.n_shade } else { surface.n_geo }) > 0.0
     }
 
-    /// What ambient light meets.
-    fn ambient_color(&self, phong: &Phong, surface: &Surface) -> Color {
-        if phong.ambient_textured { self.diffuse_color(phong, surface) } else { phong.diffuse }
+    /// The diffuse colour at a hit, of each material that makes it up by its share: its albedo, without any light.
+    pub fn albedo(&self, hit: &Hit, surface: &Surface) -> Color {
+        let parts = self.world.parts(hit, surface.position);
+        parts.iter().map(|part| part.share * self.diffuse_color(part.phong, surface)).sum()
     }
 
     /// Noise, else texture, else the diffuse colour.
@@ -119,14 +185,11 @@ impl Whitted<'_> {
     }
 
     /// The share of a light that arrives: nothing behind a thing, or what transparent things let through.
-    fn visible<T: Tally>(&self, surface: &Surface, seen: &Illumination, tally: &mut T) -> Color {
+    fn visible<T: Witness>(&self, surface: &Surface, seen: &Illumination, tally: &mut T) -> Color {
         if !self.settings.shadows || seen.color == Color::ZERO {
             return Color::ONE;
         }
-        let epsilon = self.world.rules.epsilon;
-        // What stands exactly at the light does not block it.
-        let reach = if epsilon.is_some() { seen.distance } else { seen.distance * (1.0 - gamma(16)) };
-        let mut ray = from_surface(surface, seen.to_light, reach, epsilon);
+        let mut ray = self.shadow_ray(surface, seen);
         if self.world.rules.has(Compat::ShadowFronts) {
             let nearest = self.world.closest(&ray, tally).map(|hit| self.world.surface(&ray, &hit));
             let blocked = nearest.is_some_and(|blocker| blocker.n_shade.dot(ray.dir) <= 0.0);
@@ -140,48 +203,28 @@ impl Whitted<'_> {
         for _ in 0..64 {
             let Some(hit) = self.world.closest(&ray, tally) else { return share };
             let blocker = self.world.surface(&ray, &hit);
-            let mut transparent = Color::ZERO;
-            let material = self.world.objects[hit.object as usize].material;
-            self.world.mix(material, blocker.position, 1.0, &mut |phong, part| transparent += part * phong.transparent);
-            share *= transparent;
+            let parts = self.world.parts(&hit, blocker.position);
+            share *= parts.iter().map(|part| part.share * part.phong.transparent).sum::<Color>();
             if share == Color::ZERO {
                 break;
             }
-            ray = from_surface(&blocker, seen.to_light, ray.t_max - hit.t, epsilon);
+            ray = from_surface(&blocker, seen.to_light, ray.t_max - hit.t, self.world.rules.epsilon);
         }
         Color::ZERO
     }
 
-    /// Diffuse term and highlight of one light.
-    fn direct(&self, phong: &Phong, surface: &Surface, n: Vec3, view: Vec3, seen: &Illumination) -> Color {
-        let cosine = n.dot(seen.to_light);
-        let mut color = cosine.max(0.0) * self.diffuse_color(phong, surface);
-        if let Some((specular, exponent, model)) = phong.highlight {
-            let base = match model {
-                HighlightModel::Blinn => (cosine > 0.0).then(|| n.dot((seen.to_light - view).normalize_or_zero())),
-                HighlightModel::Phong { behind } => {
-                    (behind || cosine > 0.0).then(|| reflect(view, n).dot(seen.to_light))
-                }
-            };
-            if let Some(base) = base {
-                color += fp::pow(base.max(0.0), exponent) * specular;
-            }
-        }
-        color * seen.color
-    }
-
     /// Mirrored and transmitted light.
-    fn secondary<T: Tally>(&self, ray: &Ray, surface: &Surface, material: u32, path: Path, tally: &mut T) -> Color {
+    fn secondary<T: Witness>(&self, ray: &Ray, surface: &Surface, parts: &[Part], path: Path, tally: &mut T) -> Color {
         // Weights of a mix are mixed; its index is that of the part that weighs most.
         let (mut reflective, mut transparent, mut ior, mut most, mut fresnel) =
             (Color::ZERO, Color::ZERO, 1.0, 0.0, false);
-        self.world.mix(material, surface.position, 1.0, &mut |phong, share| {
+        for &Part { phong, share } in parts {
             reflective += share * phong.reflective;
             transparent += share * phong.transparent;
             if share > most {
                 (most, ior, fresnel) = (share, phong.ior, phong.fresnel);
             }
-        });
+        }
         // The normal on the ray's side, and the indices before and behind the surface.
         let leaving = self.sees_back(ray.dir, surface);
         let [n, n_geo] = [surface.n_shade, surface.n_geo].map(|n| if leaving { -n } else { n });
@@ -196,33 +239,58 @@ impl Whitted<'_> {
         // A mirror without `shade_back` reflects about the normal as it is; the direction is the same.
         let mirrored = reflect(ray.dir, n);
         let transmitted = if transparent == Color::ZERO { None } else { refract(ray.dir, n, here / there) };
+        if reflective == Color::ZERO && transparent == Color::ZERO {
+            return Color::ZERO;
+        }
+        let total = transparent != Color::ZERO && transmitted.is_none();
         // With one of the two left out, the other has all the light.
-        if fresnel && self.settings.reflection && self.settings.refraction {
-            // Total reflection weighs 1.
-            let r = transmitted.map_or(1.0, |t| self.fresnel(ray.dir, n, t, here, there));
+        let divided = fresnel && self.settings.reflection && self.settings.refraction;
+        // Total reflection weighs 1.
+        let r = divided.then(|| transmitted.map_or(1.0, |t| self.fresnel(ray.dir, n, t, here, there)));
+        if let Some(r) = r {
             reflective *= r;
             transparent *= 1.0 - r;
         }
+        tally.begin(|| What::Secondary { here, there, fresnel: r, total });
         let mut color = Color::ZERO;
         if self.settings.reflection {
-            color += self.bounce(surface, mirrored, reflective, Path { ior: path.ior, ..path }, tally);
+            let path = Path { ior: path.ior, ..path };
+            color += self.bounce(RayKind::Reflected, surface, mirrored, reflective, path, tally);
         }
         if let Some(transmitted) = transmitted.filter(|_| self.settings.refraction) {
-            color += self.bounce(surface, transmitted, transparent, Path { ior: there, ..path }, tally);
+            let path = Path { ior: there, ..path };
+            color += self.bounce(RayKind::Transmitted, surface, transmitted, transparent, path, tally);
         }
+        tally.end(Color::ONE, Color::ONE, color);
         color
     }
 
     /// One secondary ray, weighed by a colour.
-    fn bounce<T: Tally>(&self, surface: &Surface, dir: Vec3, weight: Color, path: Path, tally: &mut T) -> Color {
+    fn bounce<T: Witness>(
+        &self,
+        from: RayKind,
+        surface: &Surface,
+        dir: Vec3,
+        weight: Color,
+        path: Path,
+        tally: &mut T,
+    ) -> Color {
+        if weight.max_element() <= 0.0 {
+            return Color::ZERO;
+        }
         // The course takes the length of the colour, which for grey is more than what is left of the light.
-        let old = self.world.rules.epsilon.is_some();
+        let old = self.world.rules.is_official();
         let total = path.weight * if old { weight.length() } else { weight.max_element() };
-        if weight.max_element() <= 0.0 || total < self.settings.least_weight {
+        if total < self.settings.least_weight {
+            tally.begin(|| What::Cut { weight: total });
+            tally.end(weight, Color::ONE, Color::ZERO);
             return Color::ZERO;
         }
         let ray = from_surface(surface, dir, f32::INFINITY, self.world.rules.epsilon);
-        weight * self.trace(&ray, Path { bounces: path.bounces - 1, weight: total, ..path }, tally)
+        tally.begin(|| What::Ray { from, ray: (&ray).into(), weight: total, hit: None });
+        let color = self.trace(&ray, Path { bounces: path.bounces - 1, weight: total, ..path }, tally);
+        tally.end(weight, Color::ONE, color);
+        weight * color
     }
 
     /// The mirrored share, by Schlick's approximation: R0 + (1 - R0) (1 - c)^5.
@@ -238,6 +306,27 @@ impl Whitted<'_> {
         let square = rest * rest;
         r0 + (1.0 - r0) * square * square * rest
     }
+}
+
+/// Diffuse term and highlight of one light.
+fn direct<T: Witness>(phong: &Phong, diffuse: Color, n: Vec3, view: Vec3, seen: &Illumination, tally: &mut T) -> Color {
+    let cosine = n.dot(seen.to_light);
+    tally.begin(|| What::Diffuse { cosine });
+    tally.end(Color::splat(cosine.max(0.0)), Color::ONE, diffuse);
+    let mut color = cosine.max(0.0) * diffuse;
+    if let Some((specular, exponent, model)) = phong.highlight {
+        let base = match model {
+            HighlightModel::Blinn => (cosine > 0.0).then(|| n.dot((seen.to_light - view).normalize_or_zero())),
+            HighlightModel::Phong { behind } => (behind || cosine > 0.0).then(|| reflect(view, n).dot(seen.to_light)),
+        };
+        if let Some(base) = base {
+            let strength = fp::pow(base.max(0.0), exponent);
+            tally.begin(|| What::Highlight { model: What::highlight(model), base, exponent });
+            tally.end(Color::splat(strength), Color::ONE, specular);
+            color += strength * specular;
+        }
+    }
+    color * seen.color
 }
 
 /// Snell's law: the direction behind a surface whose normal `n` is on the ray's side; `None` for total reflection.

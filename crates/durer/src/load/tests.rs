@@ -155,3 +155,26 @@ fn a_flattening_transform_is_told_at_its_object() {
         "scene/scene.txt:6:2 error: the transforms around this object flatten space, or leave the range of numbers";
     assert_eq!(found, [expected]);
 }
+
+#[test]
+fn the_digest_is_that_of_all_that_the_picture_depends_on() {
+    let digest = |root: &tempfile::TempDir, options: &LoadOptions| made(root, options).0.unwrap().digest;
+    let (root, again) = (house(&mesh("tri.obj")), house(&mesh("tri.obj")));
+    let options = LoadOptions::default();
+    let first = digest(&root, &options);
+    // Where the files lie does not matter, nor how hits are found, nor what lies beside them.
+    fs::write(again.path().join("scene/other.obj"), "v 1 2 3\n").unwrap();
+    assert_eq!(digest(&again, &LoadOptions { accel: AccelKind::None, ..options.clone() }), first);
+    assert_eq!(digest(&again, &LoadOptions { threads: Some(1), ..options.clone() }), first);
+    // The rules do, and every file that is read.
+    let asked = LoadOptions { dialect: Some(Dialect::F04), ..options.clone() };
+    assert_ne!(digest(&again, &LoadOptions { allow_outside: true, ..asked }), first);
+    fs::write(again.path().join("scene/tri.obj"), TRIANGLE.replace("v 1 0 0", "v 1.0001 0 0")).unwrap();
+    assert_ne!(digest(&again, &options), first);
+    fs::write(again.path().join("scene/tri.obj"), TRIANGLE).unwrap();
+    assert_eq!(digest(&again, &options), first);
+    let scene = fs::read_to_string(again.path().join("scene/scene.txt")).unwrap();
+    fs::write(again.path().join("scene/scene.txt"), scene.replace("diffuseColor 1 1 1", "diffuseColor 1 1 0.5"))
+        .unwrap();
+    assert_ne!(digest(&again, &options), first);
+}

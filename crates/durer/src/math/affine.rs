@@ -1,4 +1,4 @@
-use super::{Aabb, Ray, Vec3, gamma};
+use super::{Aabb, Line, Ray, Vec3, gamma};
 use glam::DAffine3;
 
 /// An invertible affine map between two spaces, with its inverse.
@@ -38,6 +38,11 @@ impl Affine {
         self.forward.transform_point3(p.as_dvec3()).as_vec3()
     }
 
+    /// Maps a vector forward: moving changes nothing.
+    pub fn vector(&self, v: Vec3) -> Vec3 {
+        self.forward.transform_vector3(v.as_dvec3()).as_vec3()
+    }
+
     /// Maps a unit normal forward, by the inverse transpose; of unit length again.
     pub fn normal(&self, n: Vec3) -> Vec3 {
         let image = self.inverse.matrix3.transpose() * n.as_dvec3();
@@ -49,6 +54,12 @@ impl Affine {
         let origin = self.inverse.transform_point3(ray.origin.as_dvec3()).as_vec3();
         let dir = self.inverse.transform_vector3(ray.dir.as_dvec3()).as_vec3();
         Ray { origin, dir, ..*ray }
+    }
+
+    /// Maps the line through a ray backward, in double precision. `t` keeps its meaning.
+    pub fn inverse_line(&self, ray: &Ray) -> Line {
+        let Line { origin, dir } = ray.line();
+        Line { origin: self.inverse.transform_point3(origin), dir: self.inverse.transform_vector3(dir) }
     }
 
     /// Bound on the absolute error of `point(p)` when `p` itself is known to within `error`.

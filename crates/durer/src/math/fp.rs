@@ -32,6 +32,26 @@ pub fn tan_f64(x: f64) -> f64 {
     libm::tan(x)
 }
 
+/// Sine and cosine of an angle in radians, in double precision.
+pub fn sin_cos_f64(x: f64) -> (f64, f64) {
+    (libm::sin(x), libm::cos(x))
+}
+
+/// Arc sine in radians, in double precision.
+pub fn asin_f64(x: f64) -> f64 {
+    libm::asin(x)
+}
+
+/// Arc tangent in radians, in double precision.
+pub fn atan_f64(x: f64) -> f64 {
+    libm::atan(x)
+}
+
+/// Arc tangent of `y / x` with the quadrant of the point (x, y), in radians, in double precision.
+pub fn atan2_f64(y: f64, x: f64) -> f64 {
+    libm::atan2(y, x)
+}
+
 /// Arc sine, in radians.
 pub fn asin(x: f32) -> f32 {
     libm::asinf(x)

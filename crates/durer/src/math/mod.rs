@@ -7,11 +7,12 @@ pub mod noise;
 #[cfg(test)]
 pub mod random;
 mod ray;
+pub mod roots;
 
 pub use aabb::Aabb;
 pub use affine::Affine;
 pub use glam::{Vec2, Vec3};
-pub use ray::Ray;
+pub use ray::{Line, Ray};
 
 /// A colour: linear Rec.709 red, green and blue. Unbounded above.
 pub type Color = Vec3;

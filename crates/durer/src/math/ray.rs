@@ -1,4 +1,5 @@
 use super::Vec3;
+use glam::DVec3;
 
 /// A ray: the points `origin + t * dir` for `t` in the open interval (`t_min`, `t_max`).
 ///
@@ -30,5 +31,36 @@ impl Ray {
     /// Whether `t` lies in the open interval of this ray. False for NaN.
     pub fn contains(&self, t: f32) -> bool {
         t > self.t_min && t < self.t_max
+    }
+
+    /// The whole line through it, in double precision.
+    pub fn line(&self) -> Line {
+        Line { origin: self.origin.as_dvec3(), dir: self.dir.as_dvec3() }
+    }
+}
+
+/// The points `origin + t * dir` for all `t`, in double precision.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Line {
+    /// Where `t` is 0.
+    pub origin: DVec3,
+    /// Direction; its length is one unit of `t`.
+    pub dir: DVec3,
+}
+
+impl Line {
+    /// The point at `t`.
+    pub fn at(&self, t: f64) -> DVec3 {
+        self.origin + t * self.dir
+    }
+
+    /// The `t` at which the line is nearest to a point.
+    pub fn nearest(&self, point: DVec3) -> f64 {
+        (point - self.origin).dot(self.dir) / self.dir.dot(self.dir)
+    }
+
+    /// Whether it can meet anything: all finite, with a direction.
+    pub fn is_sound(&self) -> bool {
+        self.origin.is_finite() && self.dir.is_finite() && self.dir != DVec3::ZERO
     }
 }

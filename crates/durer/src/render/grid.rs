@@ -1,12 +1,11 @@
 //! The course's picture of its uniform grid: the occupied cells as boxes.
 
-use super::run::in_threads;
-use super::{Control, Job, RenderError, camera_ray};
+use super::run::threads;
+use super::{Control, Job, RenderError, center_ray, raster};
 use crate::bvh::Grid;
-use crate::camera::Raster;
 use crate::image::{Image, checked_count};
 use crate::light::Emitter;
-use crate::math::{Aabb, Color, Ray, Vec2, Vec3};
+use crate::math::{Aabb, Color, Ray, Vec3};
 use crate::world::{Accel, World};
 use rayon::prelude::*;
 use std::sync::atomic::Ordering::Relaxed;
@@ -26,20 +25,20 @@ const COLORS: [Vec3; 8] = [
 /// Draws the occupied cells of a world's grid, lit like its objects. Without a grid there is only the background.
 pub fn grid_picture(world: &World, job: &Job, control: &Control) -> Result<Image, RenderError> {
     let count = checked_count(job.width, job.height)?;
-    let raster = Raster::new(job.width, job.height, &world.rules);
+    let raster = raster(world, job.width, job.height);
     let grid = occupied(world);
-    let place = |i: u32| Vec2::new((i % job.width) as f32 + 0.5, (i / job.width) as f32 + 0.5);
-    let color = |i| {
+    let color = |i: u32| {
         if control.cancel.load(Relaxed) {
             return Err(RenderError::Cancelled);
         }
-        let ray = camera_ray(world, &raster, place(i));
+        let Some(ray) = center_ray(world, &raster, (i % job.width, i / job.width)) else { return Ok(Vec3::ZERO) };
         Ok(match &grid {
             Some(grid) => cell_color(world, grid, &ray),
             None => world.sky(ray.dir),
         })
     };
-    let colors = in_threads(control, || (0..count as u32).into_par_iter().map(color).collect::<Result<_, _>>())??;
+    let colors =
+        threads(control)?.install(|| (0..count as u32).into_par_iter().map(color).collect::<Result<_, _>>())?;
     Ok(Image::from_pixels(job.width, job.height, colors)?)
 }
 

@@ -1,14 +1,15 @@
-//! What decides a picture, and what only decides when it is made.
+//! What decides a picture.
 
+use super::passes;
 use crate::film::Filter;
-use crate::film::aov::Aov;
+use crate::film::aov::{Aov, Value};
 use crate::film::course::CourseFilter;
 use crate::integrator::Settings;
 use crate::sampler::Sampler;
-use std::sync::atomic::{AtomicBool, AtomicU64};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 /// Part of a picture, in pixels from its upper left corner.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Crop {
     /// First column.
     pub left: u32,
@@ -20,8 +21,33 @@ pub struct Crop {
     pub height: u32,
 }
 
+impl Crop {
+    /// How many pixels it has.
+    pub fn pixels(self) -> u64 {
+        u64::from(self.width) * u64::from(self.height)
+    }
+
+    /// The least part around this one and another.
+    pub fn around(self, other: Crop) -> Crop {
+        let (left, top) = (self.left.min(other.left), self.top.min(other.top));
+        let right = (self.left + self.width).max(other.left + other.width);
+        let bottom = (self.top + self.height).max(other.top + other.height);
+        Crop { left, top, width: right - left, height: bottom - top }
+    }
+
+    /// Whether a pixel lies in it.
+    pub fn holds(self, x: u32, y: u32) -> bool {
+        x.wrapping_sub(self.left) < self.width && y.wrapping_sub(self.top) < self.height
+    }
+
+    /// Its pixels, in reading order.
+    pub fn places(self) -> impl Iterator<Item = (u32, u32)> {
+        (self.top..self.top + self.height).flat_map(move |y| (self.left..self.left + self.width).map(move |x| (x, y)))
+    }
+}
+
 /// Where in a pixel rays go, and how they become a colour.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Sampling {
     /// One ray through each pixel's centre.
     Center,
@@ -50,8 +76,33 @@ pub enum Sampling {
     },
 }
 
+impl Sampling {
+    /// Samples that a pixel gets in the end. Where samples count for other pixels too, it is one: the finished value.
+    pub fn samples(self) -> u32 {
+        match self {
+            Sampling::Filtered { samples, .. } => samples.max(1),
+            Sampling::Course2004 { sampler, samples, filter: None } => sampler.round_up(samples),
+            _ => 1,
+        }
+    }
+
+    /// The same with another number of samples a pixel, where there is one.
+    pub fn with_samples(self, number: u32) -> Self {
+        match self {
+            Sampling::Filtered { filter, .. } => Sampling::Filtered { samples: number, filter },
+            Sampling::Course2004 { sampler, filter, .. } => Sampling::Course2004 { sampler, samples: number, filter },
+            other => other,
+        }
+    }
+
+    /// Whether a pixel is made of samples of its own alone.
+    pub fn is_local(self) -> bool {
+        !matches!(self, Sampling::Course2004 { filter: Some(_), .. } | Sampling::Course2012 { .. })
+    }
+}
+
 /// What the picture is. Plain data: nothing in here depends on the machine.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Job {
     /// Columns of the whole picture.
     pub width: u32,
@@ -63,45 +114,92 @@ pub struct Job {
     pub seed: u64,
     /// Rays of the colour picture.
     pub sampling: Sampling,
+    /// Where the estimated error falls below this, no more samples are taken: see [`passes::error`]. `None`: nowhere.
+    pub noise: Option<f32>,
     /// What light does.
     pub settings: Settings,
     /// Whether colour is wanted.
     pub color: bool,
     /// Which other pictures are wanted.
+    #[serde(serialize_with = "aov_names", deserialize_with = "named_aovs")]
     pub aovs: Vec<&'static Aov>,
     /// Depths shown as black and white; `None`: least and greatest of the picture.
     pub depth_range: Option<(f32, f32)>,
 }
 
-impl Job {
-    /// The part that is made.
-    pub fn window(&self) -> Crop {
-        self.crop.unwrap_or(Crop { left: 0, top: 0, width: self.width, height: self.height })
-    }
+fn aov_names<S: Serializer>(aovs: &[&'static Aov], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_seq(aovs.iter().map(|aov| aov.name))
+}
 
-    /// Pixels that will be counted in [`Control::done`].
-    pub fn work(&self) -> u64 {
-        let window = self.window();
-        let pixels = u64::from(window.width) * u64::from(window.height);
-        let whole = u64::from(self.width) * u64::from(self.height);
-        let color = match self.sampling {
-            Sampling::Center | Sampling::Filtered { .. } => pixels,
-            Sampling::Course2004 { .. } => whole,
-            Sampling::Course2012 { jitter, .. } => whole * if jitter { 9 } else { 1 },
+fn named_aovs<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<&'static Aov>, D::Error> {
+    let unknown = |name: &str| serde::de::Error::custom(format!("there is no picture `{name}`"));
+    let names = Vec::<String>::deserialize(deserializer)?;
+    names.iter().map(|name| Aov::from_name(name).ok_or_else(|| unknown(name))).collect()
+}
+
+impl Default for Job {
+    /// 512 x 512 pixels of colour, one ray each, with shadows and eight bounces.
+    fn default() -> Self {
+        let settings = Settings {
+            bounces: 8,
+            shadows: true,
+            shade_back: true,
+            transparent_shadows: false,
+            reflection: true,
+            refraction: true,
+            least_weight: 1.0 / 256.0,
         };
-        (if self.color { color } else { 0 }) + if self.aovs.is_empty() { 0 } else { pixels }
+        Job {
+            width: 512,
+            height: 512,
+            crop: None,
+            seed: 0,
+            sampling: Sampling::Center,
+            noise: None,
+            settings,
+            color: true,
+            aovs: Vec::new(),
+            depth_range: None,
+        }
     }
 }
 
-/// How a picture is made: nothing in here changes a bit of it.
-#[derive(Debug, Default)]
-pub struct Control {
-    /// Threads; `None`: as many as the machine has.
-    pub threads: Option<usize>,
-    /// Set by the caller to stop.
-    pub cancel: AtomicBool,
-    /// Pixels done so far; see [`Job::work`].
-    pub done: AtomicU64,
-    /// Rays traced so far.
-    pub rays: AtomicU64,
+impl Job {
+    /// The part that is made.
+    pub fn window(&self) -> Crop {
+        self.crop.unwrap_or(self.whole())
+    }
+
+    /// The whole picture.
+    pub fn whole(&self) -> Crop {
+        Crop { left: 0, top: 0, width: self.width, height: self.height }
+    }
+
+    /// The names of its pictures, in their order.
+    pub fn picture_names(&self) -> impl Iterator<Item = &'static str> {
+        self.color.then_some("color").into_iter().chain(self.aovs.iter().map(|aov| aov.name))
+    }
+
+    /// Whether the colour's samples are wanted, as colour or as something else.
+    pub fn wants_samples(&self) -> bool {
+        self.color || self.aovs.iter().any(|aov| matches!(aov.value, Value::Sums(_)))
+    }
+
+    /// The pictures that come from rays through the pixels' centres.
+    pub fn ray_aovs(&self) -> impl Iterator<Item = (&'static Aov, fn(&crate::film::aov::Seen) -> crate::math::Vec3)> {
+        self.aovs.iter().filter_map(|aov| match aov.value {
+            Value::Ray(value) => Some((*aov, value)),
+            Value::Sums(_) => None,
+        })
+    }
+
+    /// The part for which rays go through the pixels' centres: all where a picture of a part depends on the whole.
+    pub fn ray_window(&self) -> Crop {
+        if self.ray_aovs().any(|(aov, _)| aov.relative) { self.whole() } else { self.window() }
+    }
+
+    /// Whether it stops a block of pixels before its last sample.
+    pub(super) fn is_done(&self, film: &crate::film::Film, rect: Crop, samples: u32, gain: f32) -> bool {
+        self.noise.is_some_and(|noise| samples >= passes::LEAST && passes::error(film, rect, gain) <= f64::from(noise))
+    }
 }

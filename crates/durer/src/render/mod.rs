@@ -1,9 +1,35 @@
 //! From a world and a job to pictures.
 
+mod blocks;
+mod control;
+mod error;
+pub mod explain;
+mod eye;
 mod grid;
 mod job;
+mod merge;
+mod part;
+pub mod passes;
+mod pictures;
+mod rays;
+mod replay;
 mod run;
+mod samples;
+mod saved;
+#[cfg(test)]
+mod tests;
+pub mod verify;
 
+pub use blocks::{BLOCK, Blocks, Shard, ShardBy};
+pub use control::Control;
+pub use error::{Panicked, RenderError, mebibytes};
+pub use eye::{camera_ray, center_ray, raster};
 pub use grid::grid_picture;
-pub use job::{Control, Crop, Job, Sampling};
-pub use run::{RenderError, Rendered, camera_ray, render, sample_diagram};
+pub use job::{Crop, Job, Sampling};
+pub use merge::{MergeError, merge};
+pub use part::{Part, Statistics};
+pub use pictures::Rendered;
+pub use replay::replay;
+pub use run::{Moment, Stop, render};
+pub use samples::sample_diagram;
+pub use saved::PartError;

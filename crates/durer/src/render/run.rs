@@ -1,371 +1,318 @@
-//! Tiles in parallel, each into a film of its own.
+//! The work itself: tiles on threads, pass after pass, until all is made or something stops it.
 
-use super::job::{Control, Crop, Job, Sampling};
-use crate::bvh::{Counts, Rays};
-use crate::camera::{Lens, Raster};
-use crate::dialect::Compat;
-use crate::film::aov::{Display, Seen, fill_from_last_hit};
-use crate::film::course::{StoredSample, StoredSamples, average_3x3, blur, jittered_position};
-use crate::film::{Film, Rejected};
-use crate::image::{Image, ImageError, Layer, checked_count};
-use crate::integrator::Whitted;
-use crate::math::{Aabb, Color, Ray, Vec2, Vec3};
-use crate::sampler::Sampler;
-use crate::world::{Material, World};
+use super::error::{Panicked, RenderError};
+use super::part::{Part, Sampled, Traced, film_of, pass_ends};
+use super::samples::{At, Samples, Stopped, kept_bytes};
+use super::{BLOCK, Control, Job, Rendered, Shard, rays};
+use crate::bvh::Rays;
+use crate::film::aov::Look;
+use crate::world::World;
 use rayon::prelude::*;
-use std::sync::atomic::Ordering::Relaxed;
+use std::cell::Cell;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
+use std::sync::{Mutex, PoisonError, mpsc};
+use std::time::{Duration, Instant};
 
-/// Pixels across and down a tile.
+/// Pixels across and down a tile; where samples around a tile are taken for it alone, tiles are larger, as long as what is kept
+/// for one takes at most so many bytes.
 const TILE: u32 = 16;
+const TILE_WITH_BORDER: u32 = 64;
+const MOST_BYTES: u64 = 64 << 20;
 
-/// The most samples that are kept at once, in at most about 7 GiB with what is made of them: enough for 1920 x 1080 pixels
-/// of 64.
-const MOST_KEPT: u64 = 1 << 27;
-
-/// Why there is no picture.
-#[derive(Debug, thiserror::Error)]
-pub enum RenderError {
-    /// The caller set [`Control::cancel`].
-    #[error("cancelled")]
-    Cancelled,
-    /// The picture is too large, or the part lies outside of it.
-    #[error(transparent)]
-    Image(#[from] ImageError),
-    /// The part to be made does not lie in the picture.
-    #[error("the crop does not lie in the picture of {0} x {1} pixels")]
-    CropOutside(u32, u32),
-    /// Samplings that keep their samples have not the memory for so many.
-    #[error("this way of sampling keeps all samples, and {0} are too many: at most {MOST_KEPT}")]
-    TooManySamples(u64),
-    /// A diagram cannot be made as asked for.
-    #[error("{0}")]
-    Diagram(String),
-    /// The threads could not be had.
-    #[error("cannot start threads: {0}")]
-    Threads(#[from] rayon::ThreadPoolBuildError),
+fn usual_tile(job: &Job) -> u32 {
+    if job.sampling.is_local() {
+        return TILE;
+    }
+    let sides = std::iter::successors(Some(TILE_WITH_BORDER), |side| Some(side / 2)).take_while(|&side| side > BLOCK);
+    sides.chain([BLOCK]).find(|&side| kept_bytes(job, side) <= MOST_BYTES).unwrap_or(BLOCK)
 }
 
-/// Pictures and what was counted on the way.
-#[derive(Debug)]
-pub struct Rendered {
-    /// Colour first, if wanted; then the others in the job's order.
-    ///
-    /// Values are as files of floating point have them; [`Rendered::pictures`] has those for eight bits.
-    pub layers: Vec<Layer>,
-    /// The same as pictures between 0 and 1.
-    pub pictures: Vec<Layer>,
-    /// Samples that were not finite, and left out of the mean.
-    pub rejected: u64,
-    /// The first of them.
-    pub first_rejected: Vec<Rejected>,
+/// How often it is looked whether to stop.
+const LOOK: Duration = Duration::from_millis(5);
+
+/// Why the work ended.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Stop {
+    /// All is made.
+    Finished,
+    /// The caller wanted it.
+    Cancelled,
+    /// Its time was over.
+    OutOfTime,
+    /// A thread panicked.
+    Panicked(Panicked),
+}
+
+/// What the caller may want to do with the part that is being made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Moment {
+    /// Every pixel has the samples of a pass.
+    PassDone,
+    /// It was not saved for as long as [`Control::save_every`] says.
+    SaveDue,
 }
 
 /// Makes the job's pictures of a world.
+///
+/// # Errors
+/// [`RenderError`]; nothing is kept then.
 pub fn render(world: &World, job: &Job, control: &Control) -> Result<Rendered, RenderError> {
-    let window = job.window();
-    let inside =
-        |start: u32, length: u32, size: u32| length > 0 && start.checked_add(length).is_some_and(|end| end <= size);
-    if !inside(window.left, window.width, job.width) || !inside(window.top, window.height, job.height) {
-        return Err(RenderError::CropOutside(job.width, job.height));
+    let part = Part::new(world, job, Shard::WHOLE)?;
+    match part.render(world, control, &mut |_, _| {})? {
+        Stop::Finished | Stop::OutOfTime => part.pictures(),
+        Stop::Cancelled => Err(RenderError::Cancelled),
+        Stop::Panicked(panicked) => Err(panicked.into()),
     }
-    // Refuses pictures too large before anything is computed.
-    checked_count(job.width, job.height)?;
-    in_threads(control, || Renderer::new(world, job, control).render())?
 }
 
-/// Runs work in as many threads as wanted, whose stacks hold the most bounces.
-pub(super) fn in_threads<T: Send>(control: &Control, work: impl FnOnce() -> T + Send) -> Result<T, RenderError> {
-    let threads = rayon::ThreadPoolBuilder::new().num_threads(control.threads.unwrap_or(0)).stack_size(16 << 20);
-    Ok(threads.build()?.install(work))
+/// Threads for some work, as many as wanted, whose stacks hold the most bounces.
+pub(super) fn threads(control: &Control) -> Result<rayon::ThreadPool, RenderError> {
+    Ok(rayon::ThreadPoolBuilder::new().num_threads(control.threads.unwrap_or(0)).stack_size(16 << 20).build()?)
 }
 
-/// The ray of a camera through a place in the picture, in pixels from the upper left corner.
-pub fn camera_ray(world: &World, raster: &Raster, place: Vec2) -> Ray {
-    world.camera.ray(&world.frame, raster.point(place))
-}
-
-/// Where the samples of a 2004 job lie, with their colours: for its diagram.
-pub fn sample_diagram(world: &World, job: &Job, control: &Control) -> Result<StoredSamples, RenderError> {
-    let (sampler, samples) = match job.sampling {
-        Sampling::Course2004 { sampler, samples, .. } => (sampler, samples),
-        Sampling::Filtered { samples, .. } => (Sampler::Sobol, samples),
-        Sampling::Center | Sampling::Course2012 { .. } => (Sampler::Uniform, 1),
-    };
-    in_threads(control, || Renderer::new(world, job, control).stored(sampler, samples))?
-}
-
-struct Renderer<'a> {
-    world: &'a World,
-    job: &'a Job,
-    control: &'a Control,
-    whitted: Whitted<'a>,
-}
-
-impl<'a> Renderer<'a> {
-    fn new(world: &'a World, job: &'a Job, control: &'a Control) -> Self {
-        let whitted = Whitted { world, settings: job.settings, cancel: Some(&control.cancel) };
-        Renderer { world, job, control, whitted }
-    }
-
-    fn render(&self) -> Result<Rendered, RenderError> {
-        let mut rendered =
-            Rendered { layers: Vec::new(), pictures: Vec::new(), rejected: 0, first_rejected: Vec::new() };
-        if self.job.color {
-            let image = self.color(&mut rendered)?;
-            rendered.layers.push(Layer::color("color", image.clone()));
-            rendered.pictures.push(Layer::color("color", image));
+impl Part {
+    /// Goes on with the work until it is finished or stopped. What is made is kept, tile by tile.
+    ///
+    /// `watch` is called in the calling thread at the end of each pass and when it is time to save, while the work goes on. After
+    /// it took some time, ends of passes are passed over until ten times as long has gone by.
+    ///
+    /// # Errors
+    /// [`RenderError::OtherScene`], [`RenderError::Memory`], [`RenderError::Threads`].
+    pub fn render(
+        &self,
+        world: &World,
+        control: &Control,
+        watch: &mut dyn FnMut(&Part, Moment),
+    ) -> Result<Stop, RenderError> {
+        if self.scene != world.digest || self.look != Look::new(&world.rules) {
+            return Err(RenderError::OtherScene);
         }
-        if !self.job.aovs.is_empty() {
-            self.aovs(&mut rendered)?;
+        let (pool, tile) = (threads(control)?, control.tile.unwrap_or(usual_tile(&self.job)));
+        let kept = kept_bytes(&self.job, tile).saturating_mul(pool.current_num_threads() as u64);
+        let needed = Part::bytes_needed(&self.job, self.shard).saturating_add(kept);
+        if let Some(allowed) = control.memory.filter(|&allowed| needed > allowed) {
+            return Err(RenderError::Memory { needed, allowed });
         }
-        Ok(rendered)
-    }
-
-    fn color(&self, rendered: &mut Rendered) -> Result<Image, RenderError> {
-        let (job, window) = (self.job, self.job.window());
-        let raster = Raster::new(job.width, job.height, &self.world.rules);
-        match job.sampling {
-            Sampling::Center => {
-                let mut pixels = self.pixels(|x, y, rays| self.radiance(&raster, center(x, y), rays))?;
-                if self.world.rules.has(Compat::StaleTexels) {
-                    self.stale_texels(&raster, &mut pixels)?;
-                }
-                Ok(Image::from_pixels(window.width, window.height, pixels)?)
-            }
-            Sampling::Filtered { samples, filter } => {
-                let warp = filter.sampler();
-                let tiles = self.tiles(|tile, rays| {
-                    let mut film = Film::window(tile.left, tile.top, tile.width, tile.height);
-                    for (x, y) in places(tile) {
-                        for sample in 0..samples {
-                            self.check()?;
-                            let position = Sampler::Sobol.pixel_position(job.seed, x, y, sample, samples);
-                            let (offset, weight) = warp.sample(position);
-                            let color = self.radiance(&raster, center(x, y) + offset, rays);
-                            film.add(x, y, sample, color, weight);
-                        }
-                    }
-                    // No sample counts for another tile, so the tile is finished, and its sums need no memory any more.
-                    let pixels = places(tile).map(|(x, y)| film.resolve(x, y)).collect();
-                    Ok(Tile { pixels, rejected: film.rejected(), first_rejected: film.first_rejected().to_vec() })
-                })?;
-                rendered.rejected = tiles.iter().map(|(_, tile)| tile.rejected).sum();
-                rendered.first_rejected = tiles.iter().flat_map(|(_, tile)| &tile.first_rejected).copied().collect();
-                rendered.first_rejected.sort();
-                rendered.first_rejected.truncate(16);
-                let pixels = self.assemble(tiles.into_iter().map(|(part, tile)| (part, tile.pixels)));
-                Ok(Image::from_pixels(window.width, window.height, pixels)?)
-            }
-            Sampling::Course2004 { sampler, samples, filter } => {
-                let pixels = self.stored(sampler, samples)?.try_reconstruct(filter, || self.check())?;
-                self.cropped(job.width, job.height, pixels)
-            }
-            Sampling::Course2012 { jitter, blur } => self.course_2012(jitter, blur),
-        }
-    }
-
-    /// Replaces the ambient light on textures by that of the pixel shaded before with the same material.
-    fn stale_texels(&self, raster: &Raster, pixels: &mut [Color]) -> Result<(), RenderError> {
-        let (world, window) = (self.world, self.job.window());
-        let mut last: Vec<Option<Color>> = vec![None; world.materials.len()];
-        for y in (window.top..window.top + window.height).rev() {
-            self.check()?;
-            for x in window.left..window.left + window.width {
-                let ray = camera_ray(world, raster, center(x, y));
-                let Some(hit) = world.closest(&ray, &mut ()) else { continue };
-                let material = world.objects[hit.object as usize].material;
-                let Material::Phong(phong) = &world.materials[material as usize] else { continue };
-                let texel = self.whitted.diffuse_color(phong, &world.surface(&ray, &hit));
-                let before = last[material as usize].replace(texel).unwrap_or(phong.diffuse);
-                let pixel = (y - window.top) * window.width + (x - window.left);
-                pixels[pixel as usize] += world.ambient * (before - texel);
-            }
-        }
-        Ok(())
-    }
-
-    /// `-jitter` and `-filter` of 2012. Blur without jitter works on the picture as it is.
-    fn course_2012(&self, jitter: bool, blurred: bool) -> Result<Image, RenderError> {
-        let (job, scale) = (self.job, if jitter { 3 } else { 1 });
-        let (width, height) = (job.width * scale, job.height * scale);
-        let raster = Raster::new(width, height, &self.world.rules);
-        let sample = |x: u32, y: u32, _: u32| {
-            let place = if jitter { jittered_position(job.seed, x, y) } else { Vec2::new(x as f32, y as f32) };
-            Ok(StoredSample { position: place, color: self.kept(&raster, place + 0.5, true)? })
+        let (start, stop) = (Instant::now(), AtomicBool::new(control.cancel.load(Relaxed)));
+        let (all, done) = self.work();
+        control.all.store(all, Relaxed);
+        control.done.store(done, Relaxed);
+        let work = Work {
+            part: self,
+            world,
+            control,
+            samples: Samples::new(world, &self.job, &stop),
+            stop: &stop,
+            tile,
+            tiles: AtomicU64::new(0),
+            panicked: Mutex::new(None),
         };
-        let mut pixels = self.keep(width, height, 1, sample)?.try_reconstruct(None, || self.check())?;
-        if blurred {
-            pixels = blur(&pixels, width, height);
-        }
-        self.check()?;
-        if jitter {
-            pixels = average_3x3(&pixels, width, height);
-        }
-        self.cropped(job.width, job.height, pixels)
-    }
-
-    fn stored(&self, sampler: Sampler, samples: u32) -> Result<StoredSamples, RenderError> {
-        let (job, samples) = (self.job, sampler.round_up(samples));
-        let raster = Raster::new(job.width, job.height, &self.world.rules);
-        self.keep(job.width, job.height, samples, |x, y, sample| {
-            let position = sampler.pixel_position(job.seed, x, y, sample, samples);
-            let color = self.kept(&raster, Vec2::new(x as f32, y as f32) + position, sample + 1 == samples)?;
-            Ok(StoredSample { position, color })
+        let mut clock = Clock { start, last: start, pause: Duration::ZERO, control, stop: &stop, out_of_time: false };
+        pool.in_place_scope(|scope| {
+            let (finished, passes) = mpsc::channel();
+            let work = &work;
+            scope.spawn(move |_| {
+                work.rays();
+                for end in pass_ends(&self.job, self.shard) {
+                    work.pass(end);
+                    // Nobody listens after the end.
+                    let _ = finished.send(());
+                }
+            });
+            // The sender is dropped with the last pass.
+            loop {
+                match passes.recv_timeout(LOOK) {
+                    Ok(()) => clock.passed(self, watch),
+                    Err(mpsc::RecvTimeoutError::Timeout) => clock.look(self, watch),
+                    Err(mpsc::RecvTimeoutError::Disconnected) => break,
+                }
+            }
+        });
+        let panicked = work.panicked.lock().unwrap_or_else(PoisonError::into_inner).take();
+        Ok(match panicked {
+            Some(panicked) => Stop::Panicked(panicked),
+            None if !stop.load(Relaxed) => Stop::Finished,
+            None if clock.out_of_time => Stop::OutOfTime,
+            None => Stop::Cancelled,
         })
     }
+}
 
-    /// Takes samples that are kept, if there are not too many.
-    fn keep(
-        &self,
-        width: u32,
-        height: u32,
-        samples: u32,
-        sample: impl Fn(u32, u32, u32) -> Result<StoredSample, RenderError> + Sync,
-    ) -> Result<StoredSamples, RenderError> {
-        let count = u64::from(width).saturating_mul(u64::from(height)).saturating_mul(u64::from(samples));
-        if count > MOST_KEPT {
-            return Err(RenderError::TooManySamples(count));
+/// What the calling thread does while others work: it stops them, and calls the watcher.
+struct Clock<'a> {
+    start: Instant,
+    /// When the watcher was last called, and how long it is not called for a pass.
+    last: Instant,
+    pause: Duration,
+    control: &'a Control,
+    stop: &'a AtomicBool,
+    out_of_time: bool,
+}
+
+impl Clock<'_> {
+    fn look(&mut self, part: &Part, watch: &mut dyn FnMut(&Part, Moment)) {
+        if self.control.cancel.load(Relaxed) {
+            self.stop.store(true, Relaxed);
         }
-        StoredSamples::try_take(width, height, samples, sample)
-    }
-
-    /// The colour of a sample that is kept; the last one of a pixel counts it as done.
-    fn kept(&self, raster: &Raster, place: Vec2, last: bool) -> Result<Color, RenderError> {
-        self.check()?;
-        let mut rays = Rays::default();
-        let color = self.radiance(raster, place, &mut rays);
-        self.control.done.fetch_add(u64::from(last), Relaxed);
-        self.control.rays.fetch_add(rays.0, Relaxed);
-        Ok(color)
-    }
-
-    fn radiance(&self, raster: &Raster, place: Vec2, rays: &mut Rays) -> Color {
-        self.whitted.radiance(&camera_ray(self.world, raster, place), rays)
-    }
-
-    fn check(&self) -> Result<(), RenderError> {
-        if self.control.cancel.load(Relaxed) { Err(RenderError::Cancelled) } else { Ok(()) }
-    }
-
-    /// The job's part of a whole picture.
-    fn cropped(&self, width: u32, height: u32, pixels: Vec<Color>) -> Result<Image, RenderError> {
-        let window = self.job.window();
-        let whole = Image::from_pixels(width, height, pixels)?;
-        let part = places(window).filter_map(|(x, y)| whole.get(x, y)).collect();
-        Ok(Image::from_pixels(window.width, window.height, part)?)
-    }
-
-    /// A value for each pixel of the window, in reading order.
-    fn pixels<T: Copy + Default + Send>(
-        &self,
-        value: impl Fn(u32, u32, &mut Rays) -> T + Sync,
-    ) -> Result<Vec<T>, RenderError> {
-        let tiles = self.tiles(|tile, rays| {
-            let value = |(x, y)| self.check().map(|()| value(x, y, rays));
-            places(tile).map(value).collect::<Result<Vec<T>, _>>()
-        })?;
-        Ok(self.assemble(tiles))
-    }
-
-    /// Puts the pixels of tiles into those of the window.
-    fn assemble<T: Copy + Default>(&self, tiles: impl IntoIterator<Item = (Crop, Vec<T>)>) -> Vec<T> {
-        let window = self.job.window();
-        let mut pixels = vec![T::default(); window.width as usize * window.height as usize];
-        for (tile, values) in tiles {
-            for ((x, y), value) in places(tile).zip(values) {
-                pixels[((y - window.top) * window.width + (x - window.left)) as usize] = value;
-            }
+        if self.control.time.is_some_and(|time| self.start.elapsed() >= time) && !self.stop.swap(true, Relaxed) {
+            self.out_of_time = true;
         }
-        pixels
+        if self.control.save_every.is_some_and(|every| self.last.elapsed() >= every) {
+            self.call(part, watch, Moment::SaveDue);
+        }
     }
 
-    /// Cuts the window into tiles and makes them in parallel.
-    fn tiles<T: Send>(
-        &self,
-        make: impl Fn(Crop, &mut Rays) -> Result<T, RenderError> + Sync,
-    ) -> Result<Vec<(Crop, T)>, RenderError> {
-        let window = self.job.window();
-        let columns = window.width.div_ceil(TILE);
-        let count = columns * window.height.div_ceil(TILE);
-        (0..count)
-            .into_par_iter()
-            .map(|i| {
-                let (x, y) = (i % columns * TILE, i / columns * TILE);
-                let (width, height) = (TILE.min(window.width - x), TILE.min(window.height - y));
-                let tile = Crop { left: window.left + x, top: window.top + y, width, height };
-                let mut rays = Rays::default();
-                let made = make(tile, &mut rays)?;
-                // What was made after a cancel means nothing.
-                self.check()?;
-                self.control.done.fetch_add(u64::from(width * height), Relaxed);
-                self.control.rays.fetch_add(rays.0, Relaxed);
-                Ok((tile, made))
-            })
-            .collect()
+    fn passed(&mut self, part: &Part, watch: &mut dyn FnMut(&Part, Moment)) {
+        self.look(part, watch);
+        if self.last.elapsed() >= self.pause {
+            self.call(part, watch, Moment::PassDone);
+        }
     }
 
-    /// The other pictures: one ray through each pixel's centre.
-    fn aovs(&self, rendered: &mut Rendered) -> Result<(), RenderError> {
-        let (job, world, window) = (self.job, self.world, self.job.window());
-        let raster = Raster::new(job.width, job.height, &world.rules);
-        let cost_wanted = job.aovs.iter().any(|aov| aov.name == "cost");
-        let seen = self.pixels(|x, y, rays| {
-            let ray = camera_ray(world, &raster, center(x, y));
-            let hit = world.closest(&ray, rays).map(|hit| (hit, world.surface(&ray, &hit)));
-            let mut counts = Counts::default();
-            if cost_wanted {
-                self.whitted.radiance(&ray, &mut counts);
-            }
-            let material = hit.map_or(0, |(hit, _)| world.objects[hit.object as usize].material);
-            Some(Seen { hit, material, counts })
-        })?;
-        let seen: Vec<Seen> = seen.into_iter().flatten().collect();
-        let hits = || seen.iter().filter_map(|seen| seen.hit.as_ref());
-        let least = hits().map(|(hit, _)| hit.t).fold(f32::INFINITY, f32::min);
-        let greatest = hits().map(|(hit, _)| hit.t).fold(f32::NEG_INFINITY, f32::max);
-        // A range that whole numbers cannot tell apart is left as it is.
-        let whole = |(min, max): (f32, f32)| match world.rules.has(Compat::WholeDepths) && min.trunc() != max.trunc() {
-            true => (min.trunc(), max.trunc()),
-            false => (min, max),
+    fn call(&mut self, part: &Part, watch: &mut dyn FnMut(&Part, Moment), moment: Moment) {
+        // Who wants to stop does not want to wait for this; all is saved in the end.
+        if self.stop.load(Relaxed) {
+            return;
+        }
+        let before = Instant::now();
+        watch(part, moment);
+        self.last = Instant::now();
+        self.pause = 10 * (self.last - before);
+    }
+}
+
+/// What the working threads share.
+struct Work<'a> {
+    part: &'a Part,
+    world: &'a World,
+    control: &'a Control,
+    samples: Samples<'a>,
+    stop: &'a AtomicBool,
+    tile: u32,
+    /// Tiles that were begun.
+    tiles: AtomicU64,
+    panicked: Mutex<Option<Panicked>>,
+}
+
+impl Work<'_> {
+    /// Traces the rays through the centres of pixels where that was not done.
+    fn rays(&self) {
+        let part = self.part;
+        let open = |(index, block): (usize, &Option<Box<Traced>>)| {
+            (block.is_none() && part.shard.has_rays(index)).then_some(index)
         };
-        let display = Display {
-            rules: &world.rules,
-            depth_range: job
-                .depth_range
-                .map(whole)
-                .unwrap_or((least, if greatest > least { greatest } else { least + 1.0 })),
-            positions: Aabb::around(hits().map(|(_, surface)| surface.position)),
-            greatest_cost: seen.iter().map(|s| (s.counts.nodes + s.counts.tests) as f32).fold(0.0, f32::max),
-        };
-        for aov in &job.aovs {
-            let values: Vec<Vec3> = seen.iter().map(aov.value).collect();
-            let picture = values.iter().zip(&seen).map(|(v, seen)| (aov.picture)(*v, seen.hit.is_some(), &display));
-            let mut picture: Vec<Color> = picture.collect();
-            if aov.name == "normals" && world.rules.has(Compat::StaleNormals) {
-                let hits: Vec<bool> = seen.iter().map(|seen| seen.hit.is_some()).collect();
-                fill_from_last_hit(&mut picture, &hits, window.width as usize);
+        let blocks: Vec<usize> = part.state().rays.iter().enumerate().filter_map(open).collect();
+        let tiles = part.ray_blocks.tiles(blocks.into_iter(), self.tile);
+        self.each(&tiles, |tile, at| {
+            let trace =
+                |&index: &usize| rays::trace(self.world, &part.job, &self.samples, part.ray_blocks.rect(index), at);
+            let traced = tile.iter().map(trace).collect::<Result<Vec<_>, _>>()?;
+            let pixels: usize = traced.iter().map(|block| block.found.len()).sum();
+            let rays = traced.iter().map(|block| block.rays).sum();
+            let mut state = part.state();
+            for (&index, block) in tile.iter().zip(traced) {
+                state.rays[index] = Some(Box::new(block));
             }
-            let picture = Image::from_pixels(window.width, window.height, picture)?;
-            let values = Image::from_pixels(window.width, window.height, values)?;
-            rendered.layers.push(Layer::data(aov.name, values));
-            rendered.pictures.push(Layer::data(aov.name, picture));
+            self.count(pixels as u64, rays);
+            Ok(())
+        });
+    }
+
+    /// Takes samples until each pixel that still needs some has as many as this.
+    fn pass(&self, end: u32) {
+        let (part, gain) = (self.part, self.samples.gain());
+        let open = |(index, block): (usize, &Sampled)| {
+            let wanted = part.shard.has_block(index) && block.to < end && !part.is_done(index, block, gain);
+            wanted.then_some(index)
+        };
+        let blocks: Vec<usize> = part.state().samples.iter().enumerate().filter_map(open).collect();
+        let tiles = part.blocks.tiles(blocks.into_iter(), self.tile);
+        self.each(&tiles, |tile, at| {
+            if part.job.sampling.is_local() { self.sample(tile, end, at) } else { self.finish(tile, at) }
+        });
+    }
+
+    /// Adds samples to the blocks of a tile.
+    fn sample(&self, tile: &[usize], end: u32, at: &At) -> Result<(), Stopped> {
+        let part = self.part;
+        let mut made = Vec::with_capacity(tile.len());
+        let (mut taken, mut traced) = (0, 0);
+        for &index in tile {
+            let rect = part.blocks.rect(index);
+            let mut block = part.state().samples[index].clone();
+            let film = block.film.get_or_insert_with(|| Box::new(film_of(rect)));
+            let mut rays = Rays::default();
+            self.samples.add(film, rect, block.to..end, at, &mut rays)?;
+            taken += rect.pixels() * u64::from(end - block.to);
+            traced += rays.0;
+            block.rays += rays.0;
+            block.to = end;
+            made.push(block);
         }
+        self.keep(tile, made, taken, traced);
         Ok(())
     }
-}
 
-/// A finished part of a picture.
-struct Tile {
-    pixels: Vec<Color>,
-    rejected: u64,
-    first_rejected: Vec<Rejected>,
-}
+    /// Makes the finished pixels of a tile, where samples count for several pixels: at once if it is a rectangle, else block by
+    /// block.
+    fn finish(&self, tile: &[usize], at: &At) -> Result<(), Stopped> {
+        let blocks = &self.part.blocks;
+        let rects: Vec<_> = tile.iter().map(|&index| blocks.rect(index)).collect();
+        let around = rects.iter().skip(1).fold(rects[0], |a, b| a.around(*b));
+        let at_once = around.pixels() == rects.iter().map(|rect| rect.pixels()).sum::<u64>();
+        let mut rays = Rays::default();
+        let whole = if at_once { Some(self.samples.finished(around, at, &mut rays)?) } else { None };
+        let mut made = Vec::with_capacity(tile.len());
+        let mut before = 0;
+        for rect in &rects {
+            let own = match &whole {
+                Some(pixels) => {
+                    let pixel = |(x, y)| pixels[((y - around.top) * around.width + (x - around.left)) as usize];
+                    rect.places().map(pixel).collect()
+                }
+                None => self.samples.finished(*rect, at, &mut rays)?,
+            };
+            let mut film = film_of(*rect);
+            rect.places().zip(own).for_each(|((x, y), seen)| film.add_covering(x, y, 0, seen, 1.0));
+            made.push(Sampled { from: 0, to: 1, rays: rays.0 - before, film: Some(Box::new(film)) });
+            before = rays.0;
+        }
+        self.keep(tile, made, around.pixels(), rays.0);
+        Ok(())
+    }
 
-fn center(x: u32, y: u32) -> Vec2 {
-    Vec2::new(x as f32 + 0.5, y as f32 + 0.5)
-}
+    fn keep(&self, tile: &[usize], made: Vec<Sampled>, done: u64, rays: u64) {
+        let mut state = self.part.state();
+        for (&index, block) in tile.iter().zip(made) {
+            state.samples[index] = block;
+        }
+        self.count(done, rays);
+    }
 
-/// The pixels of a part, in reading order.
-fn places(part: Crop) -> impl Iterator<Item = (u32, u32)> {
-    (part.top..part.top + part.height).flat_map(move |y| (part.left..part.left + part.width).map(move |x| (x, y)))
+    fn count(&self, done: u64, rays: u64) {
+        self.control.done.fetch_add(done, Relaxed);
+        self.control.rays.fetch_add(rays, Relaxed);
+    }
+
+    /// Makes tiles in parallel, until something stops it. A panic becomes an error that knows its sample.
+    fn each(&self, tiles: &[Vec<usize>], make: impl Fn(&[usize], &At) -> Result<(), Stopped> + Sync) {
+        // An error ends the work early; why it ended is known elsewhere.
+        let _ = tiles.par_iter().with_max_len(1).try_for_each(|tile| {
+            if self.control.most_tiles.is_some_and(|most| self.tiles.fetch_add(1, Relaxed) >= most) {
+                self.stop.store(true, Relaxed);
+            }
+            self.samples.check()?;
+            let at: At = Cell::new((0, 0, None));
+            catch_unwind(AssertUnwindSafe(|| make(tile, &at))).unwrap_or_else(|payload| {
+                let (x, y, sample) = at.get();
+                let text = payload.downcast_ref::<String>().map(String::as_str);
+                let message = text.or_else(|| payload.downcast_ref::<&str>().copied()).unwrap_or("a panic").to_string();
+                let mut panicked = self.panicked.lock().unwrap_or_else(PoisonError::into_inner);
+                panicked.get_or_insert(Panicked { x, y, sample, message });
+                self.stop.store(true, Relaxed);
+                Err(Stopped)
+            })
+        });
+    }
 }

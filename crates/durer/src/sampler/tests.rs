@@ -133,6 +133,28 @@ fn sobol_is_more_even_than_random() {
 }
 
 #[test]
+fn discrepancies_are_what_they_should_be() {
+    let mean = |sampler: Sampler, n: u32| {
+        let points = |y| -> Vec<_> { (0..n).map(|s| sampler.pixel_position(1, 2, y, s, n)).collect() };
+        (0..10).map(|y| star_discrepancy(&points(y))).sum::<f64>() / 10.0
+    };
+    for side in [4_u32, 8, 12] {
+        let n = side * side;
+        let of = |sampler| mean(sampler, n);
+        // Centres of n cells: the box that ends just before a row of centres lacks half a row.
+        let regular = of(Sampler::Uniform);
+        let step = 1.0 / f64::from(side);
+        assert!((0.5 * step..1.01 * step).contains(&regular), "{n}: {regular}");
+        // One point in each cell is between independent points and a (0,2)-sequence.
+        let (random, jittered, sobol) = (of(Sampler::Random), of(Sampler::Jittered), of(Sampler::Sobol));
+        assert!(sobol < jittered && jittered < random, "{n}: {sobol} {jittered} {random}");
+        // Independent points: of the order of sqrt(1 / n). Source: Doerr, Gnewuch, Wahlström, 2008.
+        let root = f64::from(n).sqrt();
+        assert!((0.5..2.0).contains(&(random * root)), "{n}: {random}");
+    }
+}
+
+#[test]
 fn fast_second_coordinate_is_sobols() {
     // Direction numbers of the polynomial x + 1: v[i] = v[i-1] ^ v[i-1] / 2.
     let slow = |index: u32| {

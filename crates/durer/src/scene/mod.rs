@@ -12,7 +12,7 @@ use crate::dialect::set;
 use crate::light::Light;
 use crate::material::{ColorNoise, PhongMaterial, Solid};
 use crate::math::Vec3;
-use crate::shape::{Primitive, TriangleMesh};
+use crate::shape::{HeightField, Primitive, Sphere, TriangleMesh, VoxelGrid};
 pub use matrix::MatrixOp;
 use serde::{Deserialize, Serialize};
 
@@ -97,4 +97,47 @@ pub enum Node {
     Primitive(Primitive),
     /// A mesh in a file.
     Mesh(TriangleMesh),
+    /// Cells of a box, filled by balls.
+    Voxels(VoxelGrid, Vec<Sphere>),
+    /// A landscape from a picture.
+    HeightField(HeightField),
+    /// Closed objects combined to one solid.
+    Solid(Operation, Vec<Object>),
+}
+
+/// How closed objects are combined; each of them counts with all that it holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Operation {
+    /// All that is in some part. Where no other operation is around it, the parts stay as they are, with the surfaces
+    /// that they have inside each other.
+    Union,
+    /// All that is in some part, as one solid: surfaces inside other parts are gone.
+    Merge,
+    /// What is in every part.
+    Intersection,
+    /// What is in the first part and in no other.
+    Difference,
+    /// What is in an odd number of parts: of two, in one alone.
+    Xor,
+}
+
+impl Operation {
+    /// All of them, by keyword.
+    pub const ALL: [(&str, Operation); 5] = [
+        ("Union", Operation::Union),
+        ("Merge", Operation::Merge),
+        ("Intersection", Operation::Intersection),
+        ("Difference", Operation::Difference),
+        ("Xor", Operation::Xor),
+    ];
+
+    /// The one of a keyword.
+    pub fn from_keyword(word: &str) -> Option<Operation> {
+        Operation::ALL.iter().find(|row| row.0 == word).map(|row| row.1)
+    }
+
+    /// Its keyword.
+    pub fn keyword(self) -> &'static str {
+        Operation::ALL[self as usize].0
+    }
 }

@@ -28,6 +28,16 @@ pub struct MeshData {
 }
 
 impl MeshData {
+    /// Bytes that it takes in memory.
+    pub fn bytes(&self) -> usize {
+        size_of_val(&*self.positions)
+            + size_of_val(&*self.uvs)
+            + size_of_val(&*self.normals)
+            + size_of_val(&*self.triangles)
+            + size_of_val(&*self.triangle_uvs)
+            + size_of_val(&*self.triangle_normals)
+    }
+
     /// Gives every triangle corners of its own, moved out a little; see [`loosened`].
     pub fn loosen(&mut self) {
         let corners = |t: &[u32; 3]| loosened(t.map(|i| self.positions[i as usize]));
@@ -93,13 +103,26 @@ impl Mesh {
 
     /// Bytes that it takes in memory, its acceleration structure not counted.
     pub fn bytes(&self) -> usize {
-        let d = &self.data;
-        size_of_val(&*d.positions)
-            + size_of_val(&*d.uvs)
-            + size_of_val(&*d.normals)
-            + size_of_val(&*d.triangles)
-            + size_of_val(&*d.triangle_uvs)
-            + size_of_val(&*d.triangle_normals)
+        self.data.bytes()
+    }
+
+    /// Whether every edge borders on an even number of triangles, so that a line crosses the mesh an even number of
+    /// times; else the ends of one that does not. Corners at the same place are one.
+    pub fn open_edge(&self) -> Option<[Vec3; 2]> {
+        // Zeroes of either sign are alike.
+        let key = |p: Vec3| (p + 0.0).to_array().map(f32::to_bits);
+        let mut edges: Vec<([[u32; 3]; 2], [Vec3; 2])> = Vec::with_capacity(3 * self.len());
+        for part in 0..self.len() as u32 {
+            let [a, b, c] = self.corners(part);
+            for [p, q] in [[a, b], [b, c], [c, a]] {
+                let (k, l) = (key(p), key(q));
+                if k != l {
+                    edges.push(([k.min(l), k.max(l)], [p, q]));
+                }
+            }
+        }
+        edges.sort_unstable_by_key(|edge| edge.0);
+        edges.chunk_by(|a, b| a.0 == b.0).find(|same| same.len() % 2 == 1).map(|same| same[0].1)
     }
 
     /// The corners of a triangle.
@@ -113,14 +136,30 @@ impl Mesh {
         let (position, error, barycentric) = interpolate(corners, crossing.uv);
         let n_geo = face_normal(corners);
         let mix = |[a, b, c]: [Vec3; 3]| barycentric.x * a + barycentric.y * b + barycentric.z * c;
-        let n_shade = attribute(&self.data.triangle_normals, &self.data.normals, part)
-            .map_or(n_geo, |normals| mix(normals).normalize_or(n_geo));
+        let normals = attribute(&self.data.triangle_normals, &self.data.normals, part);
+        let n_shade = normals.map_or(n_geo, |normals| mix(normals).normalize_or(n_geo));
+        let lifts = normals.map_or([Vec3::ZERO; 2], |normals| {
+            [1.0, -1.0].map(|side| mix(lift(position, corners, normals.map(|n| side * n))))
+        });
         let uv = attribute(&self.data.triangle_uvs, &self.data.uvs, part)
             .map(|[a, b, c]| barycentric.x * a + barycentric.y * b + barycentric.z * c);
         // Normals in the file say which side is out, whatever way the corners go round.
         let n_geo = if n_geo.dot(n_shade) < 0.0 { -n_geo } else { n_geo };
-        Surface { position, error, curvature: 0.0, n_geo, n_shade, uv, barycentric }
+        Surface { position, error, curvature: 0.0, n_geo, n_shade, uv, barycentric, lifts }
     }
+}
+
+/// For each corner, the way from a point of the triangle up to the plane through the corner across its normal; none where
+/// the point lies above that plane.
+///
+/// Their mean by barycentric coordinates leads to the bent surface that the normals speak of. A shadow ray that starts there
+/// does not meet the flat neighbours, which would make a coarse mesh dark by whole triangles along the border of light.
+/// Source: Johannes Hanika, *Hacking the Shadow Terminator*, Ray Tracing Gems II (2021), chapter 4.
+fn lift(point: Vec3, corners: [Vec3; 3], normals: [Vec3; 3]) -> [Vec3; 3] {
+    std::array::from_fn(|i| {
+        let n = normals[i].normalize_or_zero();
+        (corners[i] - point).dot(n).max(0.0) * n
+    })
 }
 
 /// An attribute's values at the corners of a triangle, if it has them all.

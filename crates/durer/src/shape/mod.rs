@@ -1,20 +1,42 @@
 //! Shapes: what a ray can hit. One file each; the list is [`Primitive`].
 
+mod chord;
+pub mod cone;
+pub mod cuboid;
+pub mod cylinder;
+pub mod disc;
+pub mod ellipsoid;
+pub mod height_field;
 pub mod mesh;
 pub mod normals;
 pub mod plane;
+pub mod quadric;
+pub mod rectangle;
 pub mod sphere;
 #[cfg(test)]
 mod tests;
+pub mod torus;
 pub mod triangle;
+pub mod voxels;
 pub mod watertight;
 
 use crate::described_list;
-use crate::math::{Aabb, Ray, Vec2, Vec3};
+use crate::math::{Aabb, Line, Ray, Vec2, Vec3, fp, gamma};
+pub use cone::Cone;
+pub use cuboid::Cuboid;
+pub use cylinder::Cylinder;
+pub use disc::Disc;
+pub use ellipsoid::Ellipsoid;
+use glam::DVec3;
+pub use height_field::HeightField;
 pub use mesh::{Mesh, MeshData, TriangleMesh};
 pub use plane::Plane;
+pub use quadric::Quadric;
+pub use rectangle::Rectangle;
 pub use sphere::Sphere;
+pub use torus::Torus;
 pub use triangle::Triangle;
+pub use voxels::VoxelGrid;
 
 described_list! {
     /// A shape that is given in the scene file itself.
@@ -22,6 +44,14 @@ described_list! {
         Sphere(sphere::Sphere),
         Plane(plane::Plane),
         Triangle(triangle::Triangle),
+        Cuboid(cuboid::Cuboid),
+        Cylinder(cylinder::Cylinder),
+        Cone(cone::Cone),
+        Torus(torus::Torus),
+        Ellipsoid(ellipsoid::Ellipsoid),
+        Quadric(quadric::Quadric),
+        Disc(disc::Disc),
+        Rectangle(rectangle::Rectangle),
     }
 }
 
@@ -31,7 +61,7 @@ pub struct Crossing {
     /// Position along the ray.
     pub t: f32,
     /// Coordinates on the shape, from which [`Shape::surface`] knows the place: the second and third
-    /// barycentric coordinate on triangles, unused elsewhere.
+    /// barycentric coordinate on triangles; on shapes of several faces the number of the face, first.
     pub uv: Vec2,
 }
 
@@ -52,9 +82,34 @@ pub struct Surface {
     pub uv: Option<Vec2>,
     /// Barycentric coordinates; of use on triangles.
     pub barycentric: Vec3,
+    /// From the point to the bent surface that a flat triangle stands for: where it is seen from the side of `n_shade`,
+    /// and from the other. Zero on what is as it looks. A shadow ray starts there; after Hanika, *Hacking the Shadow Terminator*.
+    pub lifts: [Vec3; 2],
 }
 
 impl Surface {
+    /// The surface at a point that is placed on it in double precision, so that it is known to its rounding and to
+    /// `floor`; flat unless a curvature is set.
+    fn new(point: DVec3, normal: DVec3, floor: f32, uv: Vec2) -> Self {
+        let position = point.as_vec3();
+        let n = normal.normalize_or(DVec3::Y).as_vec3();
+        let error = gamma(2) * position.abs() + floor;
+        Surface {
+            position,
+            error,
+            curvature: 0.0,
+            n_geo: n,
+            n_shade: n,
+            uv: Some(uv),
+            barycentric: Vec3::ZERO,
+            lifts: [Vec3::ZERO; 2],
+        }
+    }
+
+    fn curved(self, curvature: f64) -> Self {
+        Surface { curvature: curvature as f32, ..self }
+    }
+
     /// How far the surface may fall away from its tangent plane within an error of the point.
     pub fn bulge(&self, error: Vec3) -> Vec3 {
         0.5 * self.curvature * error.length_squared() * self.n_geo.abs()
@@ -71,11 +126,60 @@ pub trait Shape {
         true
     }
 
-    /// The crossing of least `t` inside the ray's open interval.
-    fn intersect(&self, ray: &Ray) -> Option<Crossing>;
+    /// Offers every crossing of a line with the surface, as `t` and coordinates on the shape, in any order.
+    ///
+    /// A closed shape is crossed where the line goes in or out, and nowhere else: a line that touches it does not count,
+    /// so that crossings along the line alternate between the two.
+    fn crossings(&self, line: &Line, offer: &mut impl FnMut(f64, Vec2));
 
-    /// The surface at a crossing that `intersect` found on this ray.
-    fn surface(&self, ray: &Ray, crossing: &Crossing) -> Surface;
+    /// The crossing of least `t` inside the ray's open interval.
+    fn intersect(&self, ray: &Ray) -> Option<Crossing> {
+        let line = ray.line();
+        let mut first: Option<Crossing> = None;
+        if line.is_sound() {
+            self.crossings(&line, &mut |t, uv| {
+                let t = t as f32;
+                if ray.contains(t) && first.is_none_or(|first| t < first.t) {
+                    first = Some(Crossing { t, uv });
+                }
+            });
+        }
+        first
+    }
+
+    /// The surface at a crossing, next to a point that is on it but for rounding.
+    fn surface(&self, point: DVec3, crossing: &Crossing) -> Surface;
+
+    /// Whether a point is inside; `None` for shapes that are surfaces only.
+    fn inside(&self, _point: DVec3) -> Option<bool> {
+        None
+    }
+
+    /// Whether a line comes from inside the shape, as it may with shapes without end.
+    fn starts_inside(&self, _line: &Line) -> bool {
+        false
+    }
+
+    /// What is wrong with the values of its fields taken together, if anything.
+    fn flaw(&self) -> Option<&'static str> {
+        None
+    }
+}
+
+/// Where a direction points around an axis, from 0 to 1: the angle of (x, y) in turns, counted from -x.
+fn turn(x: f64, y: f64) -> f32 {
+    (fp::atan2(y as f32, x as f32) / std::f32::consts::TAU + 0.5).clamp(0.0, 1.0)
+}
+
+/// A box from points in double precision, enlarged by their rounding.
+fn padded(min: DVec3, max: DVec3) -> Aabb {
+    let pad = gamma(6) * min.abs().max(max.abs()).max_element() as f32;
+    Aabb { min: min.as_vec3() - pad, max: max.as_vec3() + pad }
+}
+
+/// Half the size of the box around a disc of radius 1.
+fn disc_reach(normal: DVec3) -> DVec3 {
+    (DVec3::ONE - normal * normal).max(DVec3::ZERO).map(f64::sqrt)
 }
 
 macro_rules! delegate {
@@ -90,10 +194,22 @@ macro_rules! delegate {
             fn intersect(&self, ray: &Ray) -> Option<Crossing> {
                 match self { $(Primitive::$variant(s) => s.intersect(ray),)+ }
             }
-            fn surface(&self, ray: &Ray, crossing: &Crossing) -> Surface {
-                match self { $(Primitive::$variant(s) => s.surface(ray, crossing),)+ }
+            fn crossings(&self, line: &Line, offer: &mut impl FnMut(f64, Vec2)) {
+                match self { $(Primitive::$variant(s) => s.crossings(line, offer),)+ }
+            }
+            fn surface(&self, point: DVec3, crossing: &Crossing) -> Surface {
+                match self { $(Primitive::$variant(s) => s.surface(point, crossing),)+ }
+            }
+            fn inside(&self, point: DVec3) -> Option<bool> {
+                match self { $(Primitive::$variant(s) => s.inside(point),)+ }
+            }
+            fn starts_inside(&self, line: &Line) -> bool {
+                match self { $(Primitive::$variant(s) => s.starts_inside(line),)+ }
+            }
+            fn flaw(&self) -> Option<&'static str> {
+                match self { $(Primitive::$variant(s) => s.flaw(),)+ }
             }
         }
     };
 }
-delegate!(Sphere, Plane, Triangle);
+delegate!(Sphere, Plane, Triangle, Cuboid, Cylinder, Cone, Torus, Ellipsoid, Quadric, Disc, Rectangle);

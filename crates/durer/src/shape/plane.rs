@@ -4,10 +4,11 @@ use super::{Crossing, Shape, Surface};
 use crate::describe::Rule;
 use crate::described;
 use crate::dialect::set;
-use crate::math::{Aabb, Ray, Vec2, Vec3, gamma};
+use crate::math::{Aabb, Line, Ray, Vec2, Vec3, gamma};
+use glam::DVec3;
 
 described! {
-    /// A plane without end: all points p with normal · p = offset.
+    /// A plane without end: all points p with normal · p = offset. As a part of a solid, all that is behind it.
     Plane ["Plane" in set::CLASSIC, "plane" in set::F23] {
         /// Points to its front; of any length.
         normal: Vec3 = Vec3::Y, required, Rule::NonZero, ["normal" in set::ALL];
@@ -29,13 +30,30 @@ impl Shape for Plane {
         (slope.is_finite() && t.is_finite() && ray.contains(t)).then_some(Crossing { t, uv: Vec2::ZERO })
     }
 
-    fn surface(&self, ray: &Ray, crossing: &Crossing) -> Surface {
+    fn crossings(&self, line: &Line, offer: &mut impl FnMut(f64, Vec2)) {
         let n = self.normal.as_dvec3();
-        let p = ray.origin.as_dvec3() + f64::from(crossing.t) * ray.dir.as_dvec3();
+        let slope = n.dot(line.dir);
+        if slope != 0.0 {
+            offer((f64::from(self.offset) - n.dot(line.origin)) / slope, Vec2::ZERO);
+        }
+    }
+
+    fn inside(&self, point: DVec3) -> Option<bool> {
+        Some(self.normal.as_dvec3().dot(point) < f64::from(self.offset))
+    }
+
+    fn starts_inside(&self, line: &Line) -> bool {
+        let n = self.normal.as_dvec3();
+        let slope = n.dot(line.dir);
+        slope > 0.0 || slope == 0.0 && n.dot(line.origin) < f64::from(self.offset)
+    }
+
+    fn surface(&self, p: DVec3, _crossing: &Crossing) -> Surface {
+        let n = self.normal.as_dvec3();
         // Placed back onto the plane: what is left is the rounding of the coordinates.
         let on = p - n * ((n.dot(p) - f64::from(self.offset)) / n.dot(n));
         let position = on.as_vec3();
-        let normal = n.normalize_or(glam::DVec3::Y).as_vec3();
+        let normal = n.normalize_or(DVec3::Y).as_vec3();
         let (tangent, bitangent) = normal.any_orthonormal_pair();
         Surface {
             position,
@@ -45,6 +63,7 @@ impl Shape for Plane {
             n_shade: normal,
             uv: Some(Vec2::new(tangent.dot(position), bitangent.dot(position))),
             barycentric: Vec3::ZERO,
+            lifts: [Vec3::ZERO; 2],
         }
     }
 }

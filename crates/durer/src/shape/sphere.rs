@@ -4,7 +4,8 @@ use super::{Crossing, Shape, Surface};
 use crate::describe::Rule;
 use crate::described;
 use crate::dialect::set;
-use crate::math::{Aabb, Ray, Vec2, Vec3, fp, gamma};
+use crate::math::{Aabb, Line, Ray, Vec2, Vec3, fp, gamma};
+use glam::DVec3;
 
 described! {
     /// A ball.
@@ -13,6 +14,31 @@ described! {
         center: Vec3 = Vec3::ZERO, required, Rule::Any, ["center" in set::CLASSIC];
         /// Its radius.
         radius: f32 = 1.0, required, Rule::Positive, ["radius" in set::ALL];
+    }
+}
+
+impl Sphere {
+    /// Solves |origin + t dir - center|^2 = radius^2 in double precision.
+    ///
+    /// The discriminant is taken from the point of the ray nearest to the centre, which keeps small, far
+    /// spheres exact. Source: Haines, Günther, Akenine-Möller, *Ray Tracing Gems* (2019), chapter 7.
+    fn roots(&self, line: &Line) -> Option<[f64; 2]> {
+        let o = line.origin - self.center.as_dvec3();
+        let d = line.dir;
+        let r = f64::from(self.radius);
+        let dd = d.dot(d);
+        let b = -o.dot(d);
+        let nearest = o + (b / dd) * d;
+        let discriminant = r * r - nearest.dot(nearest);
+        // A zero direction gives NaN.
+        if discriminant.is_nan() || discriminant < 0.0 {
+            return None;
+        }
+        // q has the sign of b, so that neither root loses digits to cancellation.
+        let c = o.dot(o) - r * r;
+        let q = b + (dd * discriminant).sqrt().copysign(b);
+        let (t0, t1) = if q == 0.0 { (0.0, 0.0) } else { (c / q, q / dd) };
+        Some(if t0 < t1 { [t0, t1] } else { [t1, t0] })
     }
 }
 
@@ -28,34 +54,26 @@ impl Shape for Sphere {
         (cell.center() - self.center).length() <= reach * (1.0 + gamma(8))
     }
 
-    /// Solves |origin + t dir - center|^2 = radius^2 in double precision.
-    ///
-    /// The discriminant is taken from the point of the ray nearest to the centre, which keeps small, far
-    /// spheres exact. Source: Haines, Günther, Akenine-Möller, *Ray Tracing Gems* (2019), chapter 7.
-    fn intersect(&self, ray: &Ray) -> Option<Crossing> {
-        let o = ray.origin.as_dvec3() - self.center.as_dvec3();
-        let d = ray.dir.as_dvec3();
-        let r = f64::from(self.radius);
-        let dd = d.dot(d);
-        let b = -o.dot(d);
-        let nearest = o + (b / dd) * d;
-        let discriminant = r * r - nearest.dot(nearest);
-        // A zero direction gives NaN.
-        if discriminant.is_nan() || discriminant < 0.0 {
-            return None;
+    fn crossings(&self, line: &Line, offer: &mut impl FnMut(f64, Vec2)) {
+        for t in self.roots(line).into_iter().flatten() {
+            offer(t, Vec2::ZERO);
         }
-        // q has the sign of b, so that neither root loses digits to cancellation.
-        let c = o.dot(o) - r * r;
-        let q = b + (dd * discriminant).sqrt().copysign(b);
-        let (t0, t1) = if q == 0.0 { (0.0, 0.0) } else { (c / q, q / dd) };
-        let (near, far) = if t0 < t1 { (t0 as f32, t1 as f32) } else { (t1 as f32, t0 as f32) };
+    }
+
+    fn intersect(&self, ray: &Ray) -> Option<Crossing> {
+        let [near, far] = self.roots(&ray.line())?.map(|t| t as f32);
         let t = if ray.contains(near) { near } else { far };
         ray.contains(t).then_some(Crossing { t, uv: Vec2::ZERO })
     }
 
-    fn surface(&self, ray: &Ray, crossing: &Crossing) -> Surface {
-        let offset = ray.origin.as_dvec3() + f64::from(crossing.t) * ray.dir.as_dvec3() - self.center.as_dvec3();
-        let normal = offset.normalize_or(glam::DVec3::Z).as_vec3();
+    fn inside(&self, point: DVec3) -> Option<bool> {
+        let r = f64::from(self.radius);
+        Some((point - self.center.as_dvec3()).length_squared() < r * r)
+    }
+
+    fn surface(&self, point: DVec3, _crossing: &Crossing) -> Surface {
+        let offset = point - self.center.as_dvec3();
+        let normal = offset.normalize_or(DVec3::Z).as_vec3();
         // Placed back onto the sphere, the point is as exact as its coordinates can be.
         let position = self.center + self.radius * normal;
         let error = gamma(3) * (self.center.abs() + self.radius * normal.abs());
@@ -71,6 +89,7 @@ impl Shape for Sphere {
             n_shade: normal,
             uv,
             barycentric: Vec3::ZERO,
+            lifts: [Vec3::ZERO; 2],
         }
     }
 }

@@ -5,7 +5,8 @@ use super::{Crossing, Shape, Surface};
 use crate::describe::Rule;
 use crate::described;
 use crate::dialect::set;
-use crate::math::{Aabb, Ray, Vec2, Vec3, gamma};
+use crate::math::{Aabb, Line, Ray, Vec2, Vec3, gamma};
+use glam::DVec3;
 
 described! {
     /// A triangle; its front is where its corners go round counter-clockwise.
@@ -35,10 +36,25 @@ impl Shape for Triangle {
         Sheared::new(ray).intersect(self.corners(), ray.t_min, ray.t_max)
     }
 
-    fn surface(&self, _ray: &Ray, crossing: &Crossing) -> Surface {
+    fn crossings(&self, line: &Line, offer: &mut impl FnMut(f64, Vec2)) {
+        let ray = Ray::new(line.origin.as_vec3(), line.dir.as_vec3());
+        let found = self.intersect(&Ray { t_min: f32::NEG_INFINITY, ..ray });
+        found.into_iter().for_each(|crossing| offer(f64::from(crossing.t), crossing.uv));
+    }
+
+    fn surface(&self, _point: DVec3, crossing: &Crossing) -> Surface {
         let (position, error, barycentric) = interpolate(self.corners(), crossing.uv);
         let n_geo = face_normal(self.corners());
-        Surface { position, error, curvature: 0.0, n_geo, n_shade: n_geo, uv: Some(crossing.uv), barycentric }
+        Surface {
+            position,
+            error,
+            curvature: 0.0,
+            n_geo,
+            n_shade: n_geo,
+            uv: Some(crossing.uv),
+            barycentric,
+            lifts: [Vec3::ZERO; 2],
+        }
     }
 }
 
@@ -54,5 +70,5 @@ pub(super) fn interpolate([a, b, c]: [Vec3; 3], uv: Vec2) -> (Vec3, Vec3, Vec3) 
 /// The unit normal (b - a) x (c - a); that of a triangle without area points up.
 pub(super) fn face_normal([a, b, c]: [Vec3; 3]) -> Vec3 {
     let (a, b, c) = (a.as_dvec3(), b.as_dvec3(), c.as_dvec3());
-    (b - a).cross(c - a).normalize_or(glam::DVec3::Y).as_vec3()
+    (b - a).cross(c - a).normalize_or(DVec3::Y).as_vec3()
 }

@@ -2,6 +2,7 @@
 
 use crate::material::{ColorNoise, Solid};
 use crate::math::Color;
+use smallvec::SmallVec;
 
 /// A compiled material.
 #[derive(Clone, Debug, PartialEq)]
@@ -46,6 +47,18 @@ pub struct Phong {
     /// Whether Fresnel's law divides light between the two rays.
     pub fresnel: bool,
 }
+
+/// One of the materials that make up a surface point.
+#[derive(Clone, Copy, Debug)]
+pub struct Part<'w> {
+    /// Its numbers.
+    pub phong: &'w Phong,
+    /// Its share: those of all parts sum to 1.
+    pub share: f32,
+}
+
+/// All of them: mostly one.
+pub type Parts<'w> = SmallVec<[Part<'w>; 2]>;
 
 impl Default for Phong {
     fn default() -> Self {

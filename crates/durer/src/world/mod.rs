@@ -1,7 +1,9 @@
 //! The compiled scene: immutable, with numbers instead of names, ready to be asked by many threads.
 
+pub mod csg;
 mod material;
 mod object;
+pub mod solid;
 
 use crate::bvh::{Bvh, Grid, Tally};
 use crate::camera::{Camera, Frame};
@@ -9,9 +11,10 @@ use crate::dialect::Rules;
 use crate::light::Light;
 use crate::material::Pattern;
 use crate::math::{Aabb, Color, Ray, Vec2, Vec3};
-use crate::shape::{Crossing, Shape, Surface};
+use crate::shape::{Crossing, Surface};
+use crate::source::Digest;
 use crate::texture::{CubeMap, Texture};
-pub use material::{HighlightModel, Material, Phong};
+pub use material::{HighlightModel, Material, Part, Parts, Phong};
 pub use object::{Geometry, MeshTree, Object};
 
 /// A scene ready to be traced.
@@ -37,6 +40,8 @@ pub struct World {
     pub objects: Vec<Object>,
     /// What the words of the scene's dialect mean.
     pub rules: Rules,
+    /// The hash of all that it was made of: description, files, rules.
+    pub digest: Digest,
     pub(crate) unbounded: Vec<u32>,
     pub(crate) accel: Accel,
 }
@@ -68,7 +73,7 @@ pub struct Hit {
     pub uv: Vec2,
     /// Number of the object.
     pub object: u32,
-    /// Number of the triangle in a mesh, else 0.
+    /// Number of the triangle in a mesh; in a solid, what [`csg`] says of it; else 0.
     pub part: u32,
 }
 
@@ -116,7 +121,7 @@ impl World {
                 grid.walk(&outer, tally, |item, _, tally| {
                     let (object, part) = parts[item];
                     let found = self.objects[object as usize].part(&ray, part, tally);
-                    offer(&mut best, &mut ray, object, found.map(|crossing| (crossing, part)));
+                    offer(&mut best, &mut ray, object, found);
                     ray.t_max
                 });
             }
@@ -124,7 +129,7 @@ impl World {
                 for (i, object) in self.objects.iter().enumerate().filter(|(_, o)| o.bounds().is_some()) {
                     for part in 0..object.parts() {
                         let found = object.part(&ray, part, tally);
-                        offer(&mut best, &mut ray, i as u32, found.map(|crossing| (crossing, part)));
+                        offer(&mut best, &mut ray, i as u32, found);
                     }
                 }
             }
@@ -163,33 +168,40 @@ impl World {
         found
     }
 
-    /// The surface at a hit, in world space.
+    /// The surface at a hit, in world space. The official programs take the point from the ray as it
+    /// is.
     pub fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
         let object = &self.objects[hit.object as usize];
-        let local = object.local_ray(ray);
+        let point = object.local_ray(ray).line().at(f64::from(hit.t));
         let crossing = Crossing { t: hit.t, uv: hit.uv };
-        let surface = match &object.geometry {
-            Geometry::Primitive(shape) => shape.surface(&local, &crossing),
-            Geometry::Mesh(tree) => tree.mesh.surface(hit.part, &crossing),
-        };
-        // The old programs, which keep off a surface by an epsilon, take the point from the ray as it is.
-        if self.rules.epsilon.is_some() {
-            let [n_geo, n_shade] =
-                [surface.n_geo, surface.n_shade].map(|n| object.to_world.as_ref().map_or(n, |m| m.normal(n)));
-            return Surface { position: ray.at(hit.t), n_geo, n_shade, ..surface };
+        object.surface(ray, point, &crossing, hit.part, self.rules.is_official())
+    }
+
+    /// The number of the material at a hit.
+    pub fn material(&self, hit: &Hit) -> u32 {
+        let object = &self.objects[hit.object as usize];
+        match &object.geometry {
+            Geometry::Solid(solid) => solid.part(hit.part).material,
+            _ => object.material,
         }
-        // Beside the rounding itself, a bent surface leaves the tangent plane by its square.
-        let Some(to_world) = &object.to_world else {
-            return Surface { error: surface.error + surface.bulge(surface.error), ..surface };
-        };
-        let error = to_world.point_error(surface.position, surface.error);
-        Surface {
-            position: to_world.point(surface.position),
-            error: error + to_world.spread(surface.bulge(to_world.inverse_spread(error))),
-            n_geo: to_world.normal(surface.n_geo),
-            n_shade: to_world.normal(surface.n_shade),
-            ..surface
+    }
+
+    /// The number of the triangle at a hit in its mesh, else 0.
+    pub fn triangle(&self, hit: &Hit) -> u32 {
+        match &self.objects[hit.object as usize].geometry {
+            Geometry::Solid(solid) => solid.triangle(hit.part),
+            _ => hit.part,
         }
+    }
+
+    /// All hits in the ray's interval, from near to far; of several at the same `t` the first.
+    pub fn all_hits(&self, ray: &Ray) -> impl Iterator<Item = Hit> {
+        let mut rest = *ray;
+        std::iter::from_fn(move || {
+            let hit = self.closest(&rest, &mut ())?;
+            rest.t_min = hit.t;
+            Some(hit)
+        })
     }
 
     /// The colour that a ray sees that hits nothing.
@@ -198,16 +210,22 @@ impl World {
     }
 
     /// The materials that make up a surface point, each with its share.
-    pub fn mix(&self, material: u32, point: Vec3, share: f32, visit: &mut impl FnMut(&Phong, f32)) {
+    pub fn parts(&self, hit: &Hit, point: Vec3) -> Parts<'_> {
+        let mut parts = Parts::new();
+        self.mix(self.material(hit), point, 1.0, &mut parts);
+        parts
+    }
+
+    fn mix<'w>(&'w self, material: u32, point: Vec3, share: f32, parts: &mut Parts<'w>) {
         match &self.materials[material as usize] {
-            Material::Phong(phong) => visit(phong, share),
+            Material::Phong(phong) => parts.push(Part { phong, share }),
             Material::Solid(solid, to_pattern) => {
                 let q = to_pattern.transform_point3(point.as_dvec3()).as_vec3();
                 let weight = solid.weight(q);
                 let [first, second] = solid.materials();
                 for (index, weight) in [(first, weight), (second, 1.0 - weight)] {
                     if weight != 0.0 {
-                        self.mix(index, point, share * weight, visit);
+                        self.mix(index, point, share * weight, parts);
                     }
                 }
             }

@@ -1,18 +1,20 @@
 //! The things in a world, and how a ray meets them.
 
+use super::csg::Csg;
 use crate::bvh::{Preset, Tally, TriangleBvh};
-use crate::math::{Aabb, Affine, Ray, Vec2};
-use crate::shape::{Crossing, Mesh, Primitive, Shape};
+use crate::math::{Aabb, Affine, Line, Ray, Vec2};
+use crate::shape::{Crossing, Mesh, Primitive, Shape, Surface};
+use glam::DVec3;
 use std::sync::Arc;
 
 /// One thing in the world.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Object {
     /// What it is, in object space.
     pub geometry: Geometry,
     /// From object to world space; `None` where they are the same.
     pub to_world: Option<Affine>,
-    /// Number of its material.
+    /// Number of its material; the parts of a solid have their own.
     pub material: u32,
     /// Where it is written.
     pub span: crate::diag::Span,
@@ -25,6 +27,8 @@ pub enum Geometry {
     Primitive(Primitive),
     /// A mesh, shared by all objects that show it.
     Mesh(Arc<MeshTree>),
+    /// Closed shapes and meshes combined, whose parts are placed in world space.
+    Solid(Arc<Csg>),
 }
 
 /// A mesh with its own tree.
@@ -53,6 +57,18 @@ impl MeshTree {
         self.mesh.bytes() + self.bvh.bytes()
     }
 
+    /// Offers every crossing of a line, with the number of its triangle, in any order.
+    ///
+    /// The line is taken from its place nearest to the mesh, so that only the mesh's own coordinates round.
+    pub(super) fn crossings<T: Tally>(&self, line: &Line, tally: &mut T, offer: &mut impl FnMut(f64, Vec2, u32)) {
+        let shift = line.nearest(self.bvh.bounds().center().as_dvec3());
+        let ray = Ray::new(line.at(shift).as_vec3(), line.dir.as_vec3());
+        let ray = Ray { t_min: f32::NEG_INFINITY, ..ray };
+        for hit in self.bvh.all_hits_counting(&ray, tally) {
+            offer(f64::from(hit.t) + shift, hit.uv, hit.triangle);
+        }
+    }
+
     /// The first hit in the ray's interval; `any` ends at the first found.
     #[inline]
     fn closest<T: Tally>(&self, ray: &Ray, any: bool, tally: &mut T) -> Option<(Crossing, u32)> {
@@ -70,34 +86,85 @@ impl Object {
         self.to_world.as_ref().map_or(*ray, |to_world| to_world.inverse_ray(ray))
     }
 
-    /// The object's first hit in the ray's interval.
-    pub(super) fn closest<T: Tally>(&self, ray: &Ray, any: bool, tally: &mut T) -> Option<(Crossing, u32)> {
-        let ray = self.local_ray(ray);
+    /// The line through a ray in object space.
+    pub(super) fn local_line(&self, ray: &Ray) -> Line {
+        self.to_world.as_ref().map_or(ray.line(), |to_world| to_world.inverse_line(ray))
+    }
+
+    /// Offers every crossing of the line through a ray, with the number of its part, in any order.
+    pub(super) fn crossings<T: Tally>(&self, ray: &Ray, tally: &mut T, offer: &mut impl FnMut(f64, Vec2, u32)) {
+        let line = self.local_line(ray);
         match &self.geometry {
             Geometry::Primitive(shape) => {
                 tally.test();
-                shape.intersect(&ray).map(|crossing| (crossing, 0))
+                shape.crossings(&line, &mut |t, uv| offer(t, uv, 0));
             }
-            Geometry::Mesh(tree) => tree.closest(&ray, any, tally),
+            Geometry::Mesh(tree) => tree.crossings(&line, tally, offer),
+            // Solids in solids are one tree.
+            Geometry::Solid(_) => {}
         }
     }
 
-    /// The crossing with one part, tested directly.
-    pub(super) fn part<T: Tally>(&self, ray: &Ray, part: u32, tally: &mut T) -> Option<Crossing> {
-        tally.test();
-        let ray = self.local_ray(ray);
+    /// The surface in world space, at a crossing that is next to this point of object space.
+    ///
+    /// With `as_is`, its position is the ray's own, without bounds on its error.
+    pub(super) fn surface(&self, ray: &Ray, point: DVec3, crossing: &Crossing, part: u32, as_is: bool) -> Surface {
+        let surface = match &self.geometry {
+            Geometry::Primitive(shape) => shape.surface(point, crossing),
+            Geometry::Mesh(tree) => tree.mesh.surface(part, crossing),
+            Geometry::Solid(solid) => return solid.surface(ray, crossing, part, as_is),
+        };
+        if as_is {
+            let [n_geo, n_shade] =
+                [surface.n_geo, surface.n_shade].map(|n| self.to_world.as_ref().map_or(n, |m| m.normal(n)));
+            return Surface { position: ray.at(crossing.t), n_geo, n_shade, ..surface };
+        }
+        // Beside the rounding itself, a bent surface leaves the tangent plane by its square.
+        let Some(to_world) = &self.to_world else {
+            return Surface { error: surface.error + surface.bulge(surface.error), ..surface };
+        };
+        let error = to_world.point_error(surface.position, surface.error);
+        Surface {
+            position: to_world.point(surface.position),
+            error: error + to_world.spread(surface.bulge(to_world.inverse_spread(error))),
+            n_geo: to_world.normal(surface.n_geo),
+            n_shade: to_world.normal(surface.n_shade),
+            lifts: surface.lifts.map(|lift| to_world.vector(lift)),
+            ..surface
+        }
+    }
+
+    /// The object's first hit in the ray's interval.
+    pub(super) fn closest<T: Tally>(&self, ray: &Ray, any: bool, tally: &mut T) -> Option<(Crossing, u32)> {
+        let local = self.local_ray(ray);
         match &self.geometry {
-            Geometry::Primitive(shape) => shape.intersect(&ray),
-            // Refused like by the tree: such a ray hits nothing.
-            Geometry::Mesh(_) if !crate::bvh::is_sound(&ray) => None,
-            Geometry::Mesh(tree) => tree.bvh.sheared(&ray).intersect(tree.mesh.corners(part), ray.t_min, ray.t_max),
+            Geometry::Primitive(shape) => {
+                tally.test();
+                shape.intersect(&local).map(|crossing| (crossing, 0))
+            }
+            Geometry::Mesh(tree) => tree.closest(&local, any, tally),
+            Geometry::Solid(solid) => solid.closest(ray, tally),
         }
     }
 
-    /// How many parts it has.
+    /// The crossing with one part, tested directly, and its part; a solid is asked as a whole.
+    pub(super) fn part<T: Tally>(&self, ray: &Ray, part: u32, tally: &mut T) -> Option<(Crossing, u32)> {
+        tally.test();
+        let local = self.local_ray(ray);
+        let crossing = match &self.geometry {
+            Geometry::Primitive(shape) => shape.intersect(&local),
+            // Refused like by the tree: such a ray hits nothing.
+            Geometry::Mesh(_) if !crate::bvh::is_sound(&local) => None,
+            Geometry::Mesh(tree) => tree.bvh.sheared(&local).intersect(tree.mesh.corners(part), ray.t_min, ray.t_max),
+            Geometry::Solid(solid) => return solid.closest(ray, tally),
+        };
+        crossing.map(|crossing| (crossing, part))
+    }
+
+    /// How many parts it has that can be tested directly.
     pub fn parts(&self) -> u32 {
         match &self.geometry {
-            Geometry::Primitive(_) => 1,
+            Geometry::Primitive(_) | Geometry::Solid(_) => 1,
             Geometry::Mesh(tree) => tree.mesh.len() as u32,
         }
     }
@@ -107,6 +174,7 @@ impl Object {
         let local = match &self.geometry {
             Geometry::Primitive(shape) => shape.bounds()?,
             Geometry::Mesh(tree) => tree.bvh.bounds(),
+            Geometry::Solid(solid) => return solid.bounds(),
         };
         Some(self.moved(local))
     }
@@ -114,7 +182,7 @@ impl Object {
     /// Bounds of one part in world space.
     pub fn part_bounds(&self, part: u32) -> Option<Aabb> {
         match &self.geometry {
-            Geometry::Primitive(_) => self.bounds(),
+            Geometry::Primitive(_) | Geometry::Solid(_) => self.bounds(),
             Geometry::Mesh(tree) => {
                 let corners = tree.mesh.corners(part);
                 let Some(to_world) = &self.to_world else { return Some(Aabb::around(corners)) };

@@ -42,7 +42,7 @@ fn scene(random: &mut Random, size: f32) -> String {
     let words = |v: Vec3| format!("{:?} {:?} {:?}", v.x, v.y, v.z);
     let mut nested = 0;
     for _ in 0..random.below(60) + 5 {
-        let object = match random.below(9) {
+        let object = match random.below(12) {
             0..4 => format!("Sphere {{ center {} radius {:?} }}", words(size * random.point()), size * 0.3),
             4 => format!("Plane {{ normal {} offset {:?} }}", words(random.direction()), size * random.unit()),
             5 => {
@@ -51,6 +51,16 @@ fn scene(random: &mut Random, size: f32) -> String {
             }
             6 => "TriangleMesh { obj_file ball.obj }".into(),
             7 => "TriangleMesh { obj_file cube.obj }".into(),
+            8 => format!("Box {{ min {} max {} }}", words(Vec3::splat(-0.3 * size)), words(Vec3::splat(0.2 * size))),
+            9 => format!(
+                "Difference {{ TriangleMesh {{ obj_file cube.obj }} Torus {{ center {} majorRadius 0.6 minorRadius 0.2 }} }}",
+                words(random.point())
+            ),
+            10 => {
+                let mut ball =
+                    || format!("Sphere {{ center {} radius {:?} }}", words(size * random.point()), size * 0.2);
+                format!("Merge {{ {} }}", (0..30).map(|_| ball()).collect::<String>())
+            }
             // A sheet in whole numbers, as floors are: its rays run in the faces of its box.
             _ => "Triangle { vertex0 -2 0 -2 vertex1 2 0 -2 vertex2 -2 0 2 }".into(),
         };

@@ -101,7 +101,12 @@ impl TriangleBvh {
 
     /// All hits in the ray's open interval, by `t` and then by number of the triangle.
     pub fn all_hits(&self, ray: &Ray) -> Vec<TriangleHit> {
-        let mut all = self.query(ray, &mut (), All::default()).0;
+        self.all_hits_counting(ray, &mut ())
+    }
+
+    /// As [`TriangleBvh::all_hits`], counting nodes and tests.
+    pub fn all_hits_counting<T: Tally>(&self, ray: &Ray, tally: &mut T) -> Vec<TriangleHit> {
+        let mut all = self.query(ray, tally, All::default()).0;
         all.sort_unstable_by(|a, b| a.t.total_cmp(&b.t).then(a.triangle.cmp(&b.triangle)));
         // A triangle that was cut is found in several leaves.
         all.dedup_by_key(|hit| hit.triangle);

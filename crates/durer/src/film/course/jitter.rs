@@ -2,7 +2,6 @@
 
 use crate::math::{Color, Vec2, Vec3};
 use crate::sampler::random_2d;
-use rayon::prelude::*;
 
 #[cfg(test)]
 mod tests;
@@ -44,8 +43,7 @@ pub fn blur_and_average(pixels: &[Color], width: u32, height: u32) -> Vec<Color>
     average_3x3(&blur(pixels, width, height), width, height)
 }
 
-/// A picture from a function of column and row, rows in parallel.
-fn by_pixels(width: usize, height: usize, color: impl Fn(usize, usize) -> Color + Sync) -> Vec<Color> {
-    let at = |i: usize| color(i % width, i / width);
-    (0..width * height).into_par_iter().with_min_len(width.max(1)).map(at).collect()
+/// A picture from a function of column and row.
+fn by_pixels(width: usize, height: usize, color: impl Fn(usize, usize) -> Color) -> Vec<Color> {
+    (0..width * height).map(|i| color(i % width, i / width)).collect()
 }

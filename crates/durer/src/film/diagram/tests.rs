@@ -100,7 +100,7 @@ fn filtered_pictures_are_the_official_ones() {
         ("output7_01e_low_res", CourseFilter::Tent { radius: 1.5 }),
         ("output7_01f_low_res", CourseFilter::Gaussian { sigma: 1.0 }),
     ] {
-        assert_agrees(name, 12, 12, &samples.reconstruct(Some(filter)));
+        assert_agrees(name, 12, 12, &samples.reconstruct(filter));
     }
 }
 
@@ -130,7 +130,7 @@ fn a_filtered_chessboard_is_the_official_one() {
         // Colours above 1 are filtered as they are and clamped when the picture is written.
         StoredSample { position, color: chessboard(in_picture * DVec2::new(1.0, -1.0)) }
     });
-    let picture = samples.reconstruct(Some(CourseFilter::Tent { radius: 1.5 }));
+    let picture = samples.reconstruct(CourseFilter::Tent { radius: 1.5 });
     // Farther up a field is smaller than a pixel, and the last bit of a hit decides its colour.
     const NEAR: usize = 45;
     let Some((180, 180, expected)) = official("output7_02e") else { return };

@@ -6,7 +6,9 @@ struct Sample(u32, u32, u32, Vec3, f32);
 
 fn film(samples: &[Sample]) -> Film {
     let mut film = Film::new(3, 2);
-    samples.iter().for_each(|&Sample(x, y, s, color, weight)| film.add(x, y, s, color, weight));
+    // At some samples the camera sees nothing.
+    let seen = |s: u32, color| if s % 4 == 3 { None } else { Some(color) };
+    samples.iter().for_each(|&Sample(x, y, s, color, weight)| film.add_if_seen(x, y, s, seen(s, color), weight));
     film
 }
 
@@ -44,6 +46,8 @@ proptest! {
         for (x, y) in (0..6).map(|i| (i % 3, i / 3)) {
             prop_assert_eq!(whole.resolve(x, y).to_array().map(f32::to_bits), merged.resolve(x, y).to_array().map(f32::to_bits));
             prop_assert!(whole.resolve(x, y).is_finite());
+            prop_assert_eq!(whole.coverage(x, y).to_bits(), merged.coverage(x, y).to_bits());
+            prop_assert!((0.0..=1.0).contains(&whole.coverage(x, y)));
         }
     }
 
@@ -53,6 +57,21 @@ proptest! {
         weights.iter().zip(0..).for_each(|(&w, s)| film.add(0, 0, s, Vec3::from(c), w));
         prop_assert_eq!(film.resolve(0, 0), Vec3::from(c));
     }
+}
+
+#[test]
+fn what_is_not_seen_is_transparent_black_by_its_weight() {
+    let mut film = Film::new(3, 1);
+    film.add(0, 0, 0, Vec3::ONE, 0.5);
+    film.add_if_seen(0, 0, 1, None, 1.5);
+    assert_eq!((film.coverage(0, 0), film.resolve(0, 0), film.samples(0, 0)), (0.25, Vec3::splat(0.25), 2));
+    film.add_if_seen(1, 0, 0, None, 1.0);
+    assert_eq!((film.coverage(1, 0), film.resolve(1, 0)), (0.0, Vec3::ZERO));
+    assert_eq!((film.coverage(2, 0), film.resolve(2, 0)), (1.0, Vec3::ZERO));
+    // Weights that sum to nothing, of which only some saw something.
+    film.add(2, 0, 0, Vec3::ONE, 1.0);
+    film.add_if_seen(2, 0, 1, None, -1.0);
+    assert_eq!((film.coverage(2, 0), film.resolve(2, 0)), (1.0, Vec3::ZERO));
 }
 
 #[test]
@@ -81,4 +100,14 @@ fn rejected_samples_are_counted_and_the_first_ones_named() {
     assert_eq!((film.rejected(), film.first_rejected().len()), (42, REMEMBERED));
     assert_eq!(film.first_rejected()[..2], [Rejected { y: 0, x: 0, sample: 9 }, Rejected { y: 0, x: 1, sample: 0 }]);
     assert_eq!((film.resolve(1, 0), film.samples(1, 0)), (Vec3::splat(0.25), 1));
+}
+
+proptest! {
+    #[test]
+    fn rounding_is_that_of_the_standard(bits in any::<u64>(), small in -1e7_f64..1e7, shift in 0..60_u32) {
+        for x in [f64::from_bits(bits), small, small.floor() + 0.5, small * (1_u64 << shift) as f64, -0.5, 0.5, 1.5] {
+            prop_assert!(rounded(x) == x.round_ties_even() || x.is_nan(), "{}", x);
+            prop_assert_eq!(whole_number(x), x.round_ties_even() as i128, "{}", x);
+        }
+    }
 }

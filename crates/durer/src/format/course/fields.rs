@@ -4,7 +4,7 @@ use super::lexer::TokenKind;
 use super::reader::{Reader, names};
 use super::words::begins_block;
 use crate::describe::{DescribedList, Field, FileName, Kind, Rule, Value};
-use crate::diag::{Diagnostic, Span};
+use crate::diag::{Diagnostic, Span, did_you_mean};
 use crate::dialect::{Dialect, DialectSet};
 use crate::format::report::shown;
 use crate::math::Vec3;
@@ -171,6 +171,8 @@ impl Reader<'_, '_> {
                 self.advance();
                 Value::Path(FileName { path: self.text(token.span), span: token.span })
             }
+            Kind::Word(words) => Value::Word(self.one_of(word, words)?),
+            Kind::Rows(width) => Value::Rows(self.rows(word, keyword, width)?),
         };
         if field.rule != Rule::Any
             && let Some(violation) = field.rule.violation(&value)
@@ -179,6 +181,66 @@ impl Reader<'_, '_> {
             self.error(Diagnostic::error(format!("`{word}` {violation}")).at(span));
         }
         Some(value)
+    }
+
+    /// One of some words.
+    fn one_of(&mut self, field: &str, words: &[&str]) -> Option<String> {
+        let text = self.peek_word().unwrap_or_default();
+        if words.contains(&text.as_str()) {
+            self.advance();
+            return Some(text);
+        }
+        let list = words.join(", ");
+        let Some(token) = self.peek().filter(|t| t.kind == TokenKind::Word) else {
+            self.expected(&format!("one of {list}"), field);
+            return None;
+        };
+        self.advance();
+        let message = format!("`{field}` cannot be {}", shown(text.as_bytes()));
+        let help = match did_you_mean(&text, words.iter().copied()) {
+            Some(near) => format!("did you mean `{near}`?"),
+            None => format!("it is one of {list}"),
+        };
+        self.error(Diagnostic::error(message).at(token.span).help(help));
+        None
+    }
+
+    /// `{ numbers }`: rows of so many each.
+    fn rows(&mut self, field: &str, keyword: Span, width: usize) -> Option<Vec<Vec<f32>>> {
+        if !self.at_open() {
+            self.expected("`{`", field);
+            return None;
+        }
+        let open = self.advance();
+        let mut numbers = Vec::new();
+        while self.peek().is_some_and(|token| token.kind == TokenKind::Word) {
+            match self.number(field, numbers.len() % width + 1, width) {
+                Some(number) => numbers.push(number),
+                None => {
+                    // The error stands for the whole block.
+                    while self.peek().is_some_and(|token| token.kind == TokenKind::Word) {
+                        self.advance();
+                    }
+                    if self.peek().is_some_and(|token| token.kind == TokenKind::Close) {
+                        self.advance();
+                    }
+                    return None;
+                }
+            }
+        }
+        match self.peek().map(|token| token.kind) {
+            Some(TokenKind::Close) => self.advance(),
+            _ => {
+                self.expected("`}`", field);
+                return None;
+            }
+        };
+        if numbers.len() % width != 0 {
+            let message = format!("`{field}` is made of rows of {width} numbers, but has {} in all", numbers.len());
+            self.error(Diagnostic::error(message).at(open.to(self.last_span())).related(keyword, "in this block"));
+            return None;
+        }
+        Some(numbers.chunks_exact(width).map(<[f32]>::to_vec).collect())
     }
 
     /// Three numbers.
@@ -244,6 +306,11 @@ impl Reader<'_, '_> {
     /// A word that this dialect does not have: refused if strict, else taken with a warning, once.
     pub(super) fn foreign(&mut self, word: &str, span: Span, set: DialectSet) {
         let dialect = self.options.dialect;
+        if self.options.strict && set == Dialect::Durer as u8 {
+            let message = format!("`{word}` is Dürer's own, and no word of the course's language");
+            self.error(Diagnostic::error(message).at(span));
+            return;
+        }
         if dialect.is_in(set) || dialect == Dialect::Durer && !self.options.strict {
             return;
         }

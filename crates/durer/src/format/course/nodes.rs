@@ -2,14 +2,16 @@
 
 use super::fields::Order;
 use super::reader::Reader;
+use super::sections::camera_of;
 use crate::camera::Camera;
 use crate::describe::DescribedList;
 use crate::diag::{Diagnostic, Span, did_you_mean};
+use crate::dialect::{Dialect, set};
 use crate::format::report::shown;
 use crate::light::Light;
 use crate::math::Vec3;
-use crate::scene::{Group, MatrixOp, Node, Object, Spanned};
-use crate::shape::{Primitive, TriangleMesh};
+use crate::scene::{Group, MatrixOp, Node, Object, Operation, Spanned};
+use crate::shape::{HeightField, Primitive, TriangleMesh};
 use glam::DVec3;
 
 impl Reader<'_, '_> {
@@ -19,11 +21,13 @@ impl Reader<'_, '_> {
         self.top(&["Camera", "Background", "Materials", "Scene"], |reader, word, span| {
             match word {
                 "Camera" => reader.camera(Camera::Perspective(Default::default()), span),
-                "OrthographicCamera" => reader.camera(Camera::Orthographic(Default::default()), span),
                 "Background" => reader.background(span),
                 "Materials" => reader.node_materials(span),
                 "Scene" => reader.root_node(span),
-                _ => return false,
+                _ => match camera_of(word).filter(|camera| !matches!(camera, Camera::Perspective(_))) {
+                    Some(camera) => reader.camera(camera, span),
+                    None => return false,
+                },
             }
             true
         });
@@ -91,7 +95,14 @@ impl Reader<'_, '_> {
                     let node = self.component_object(span);
                     inside.objects.extend(node.map(|node| Object { node, material: None, span }));
                 }
-                _ => self.unknown(&word, span, "in a node", &KNOWN),
+                _ => match Operation::from_keyword(&word) {
+                    Some(operation) => {
+                        self.foreign(&word, span, set::DURER);
+                        let node = Node::Solid(operation, self.node_parts(span));
+                        inside.objects.push(Object { node, material: None, span });
+                    }
+                    None => self.unknown(&word, span, "in a node", &KNOWN),
+                },
             }
         }
         self.depth -= 1;
@@ -99,6 +110,27 @@ impl Reader<'_, '_> {
             inside.objects.iter_mut().for_each(|object| paint(object, material));
         }
         inside
+    }
+
+    /// The parts of a solid, each a node without lights.
+    fn node_parts(&mut self, keyword: Span) -> Vec<Object> {
+        let mut parts = Vec::new();
+        if !self.open(keyword) {
+            return parts;
+        }
+        while let Some((word, span)) = self.word_before_close() {
+            match word.as_str() {
+                "Node" => {
+                    let part = self.node(span);
+                    if let Some((light, _)) = part.lights.first() {
+                        self.error(Diagnostic::error("a light cannot be part of a solid").at(light.span));
+                    }
+                    parts.extend(part.object(span));
+                }
+                _ => self.unknown(&word, span, "in a solid", &["Node"]),
+            }
+        }
+        parts
     }
 
     fn node_matrices(&mut self, keyword: Span) -> Vec<MatrixOp> {
@@ -156,8 +188,8 @@ impl Reader<'_, '_> {
         index
     }
 
-    /// The `type` of a component, whose `{` is left to be read by its fields.
-    fn component_type(&mut self, keyword: Span, known: &[&str]) -> Option<String> {
+    /// The `type` of a component, whose `{` is left to be read by its fields: one of the known ones, or of ours.
+    fn component_type(&mut self, keyword: Span, known: &[&str], ours: &[&str]) -> Option<String> {
         // The word after `{ type` is known before any field is read: type comes first in every file.
         let name = self.text(keyword);
         let at = |reader: &Self, i: usize| reader.ahead(i).map(|t| (reader.text(t.span), t.span));
@@ -172,7 +204,7 @@ impl Reader<'_, '_> {
             return None;
         };
         let (kind, span) = at(self, 1 + usize::from(self.at_open())).unwrap_or((String::new(), first_span));
-        if known.contains(&kind.as_str()) {
+        if known.contains(&kind.as_str()) || ours.contains(&kind.as_str()) {
             return Some(kind);
         }
         let error = Diagnostic::error(format!("`{name}` has no type {}", shown(kind.as_bytes()))).at(span);
@@ -190,7 +222,7 @@ impl Reader<'_, '_> {
 
     /// A light, placed as if its node were the whole scene, and its place there in full precision.
     fn component_light(&mut self, keyword: Span) -> Option<(Spanned<Light>, DVec3)> {
-        let kind = self.component_type(keyword, &["point", "directional"])?;
+        let kind = self.component_type(keyword, &["point", "directional"], &[])?;
         let mut light = Light::from_keyword(&kind)?;
         if let Light::Point(point) = &mut light {
             point.position = Vec3::ZERO;
@@ -201,7 +233,18 @@ impl Reader<'_, '_> {
     }
 
     fn component_object(&mut self, keyword: Span) -> Option<Node> {
-        let kind = self.component_type(keyword, &["sphere", "plane", "triangle", "mesh"])?;
+        // What nodes have no word for is written as in our own dialect.
+        let own = Primitive::kinds().into_iter().map(|shape| shape.keyword(Dialect::F23));
+        let own: Vec<&str> = own.filter(|word| word.starts_with(char::is_uppercase)).chain(["HeightField"]).collect();
+        let kind = self.component_type(keyword, &["sphere", "plane", "triangle", "mesh", "Grid"], &own)?;
+        if kind == "Grid" {
+            return Some(self.voxels(keyword));
+        }
+        if kind == "HeightField" {
+            let mut field = HeightField::default();
+            self.component_fields(&mut field, keyword);
+            return Some(Node::HeightField(field));
+        }
         if kind == "mesh" {
             let mut mesh = TriangleMesh::default();
             self.component_fields(&mut mesh, keyword);
@@ -264,6 +307,7 @@ fn paint(object: &mut Object, material: u32) {
     match &mut object.node {
         Node::Group(group) => group.objects.iter_mut().for_each(|object| paint(object, material)),
         Node::Transform(_, inner) => paint(inner, material),
-        Node::Primitive(_) | Node::Mesh(_) => {}
+        Node::Solid(_, parts) => parts.iter_mut().for_each(|part| paint(part, material)),
+        Node::Primitive(_) | Node::Mesh(_) | Node::HeightField(_) | Node::Voxels(..) => {}
     }
 }

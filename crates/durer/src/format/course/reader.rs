@@ -237,7 +237,7 @@ impl<'a, 'd> Reader<'a, 'd> {
         let word = self.peek_word().filter(|_| block).unwrap_or_default();
         match self.options.dialect {
             Dialect::F23 => matches!(word.as_str(), "Camera" | "Background" | "Materials" | "Scene"),
-            _ => super::sections::SECTIONS.contains(&word.as_str()) && word != "Group",
+            _ => super::sections::is_section(&word) && word != "Group",
         }
     }
 }

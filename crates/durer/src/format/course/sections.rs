@@ -10,27 +10,49 @@ use crate::diag::{Diagnostic, Span};
 use crate::dialect::{Dialect, DialectSet, set};
 use crate::light::Light;
 use crate::material::{ColorNoise, PhongMaterial, Solid};
-use crate::scene::{Background, Group, Material, Node, Object, Spanned};
-use crate::shape::{Primitive, TriangleMesh};
+use crate::scene::{Background, Group, Material, Node, Object, Operation, Spanned};
+use crate::shape::{HeightField, Primitive, Sphere, TriangleMesh, VoxelGrid};
 
-/// What stands at the top of a file.
-pub(super) const SECTIONS: [&str; 6] =
-    ["PerspectiveCamera", "OrthographicCamera", "Background", "Lights", "Materials", "Group"];
+/// What stands at the top of a file beside the camera.
+const SECTIONS: [&str; 4] = ["Background", "Lights", "Materials", "Group"];
 
-/// What stands in a group. Words beyond the first six are no objects.
-pub(super) const IN_GROUP: [&str; 8] =
-    ["Group", "Transform", "Sphere", "Plane", "Triangle", "TriangleMesh", "MaterialIndex", "numObjects"];
+/// The camera that a word begins, where there are no nodes.
+pub(super) fn camera_of(word: &str) -> Option<Camera> {
+    Camera::from_keyword(word).filter(|_| word != "Camera")
+}
+
+/// Whether a word stands at the top of a file.
+pub(super) fn is_section(word: &str) -> bool {
+    SECTIONS.contains(&word) || camera_of(word).is_some()
+}
+
+/// What stands in a group: [`OBJECTS`] of them are objects.
+#[rustfmt::skip]
+pub(super) const IN_GROUP: [&str; OBJECTS + 3] = [
+    "Group", "Transform", "Sphere", "Plane", "Triangle", "TriangleMesh",
+    "Box", "Cylinder", "Cone", "Torus", "Ellipsoid", "Quadric", "Disc", "Rectangle", "HeightField",
+    "Union", "Merge", "Intersection", "Difference", "Xor",
+    "MaterialIndex", "numObjects", "Grid",
+];
+
+/// How many words of [`IN_GROUP`] begin an object that is proposed in a transform.
+pub(super) const OBJECTS: usize = 20;
 
 impl Reader<'_, '_> {
     /// The whole file.
     pub(super) fn scene_file(&mut self) {
-        self.top(&SECTIONS, |reader, word, span| {
+        // Years before ours had two cameras.
+        let dialect = self.options.dialect;
+        let kinds = Camera::kinds();
+        let cameras = kinds.iter().filter(|c| dialect == Dialect::Durer || c.keywords()[0].1 != set::DURER);
+        let known: Vec<&str> = cameras.map(|camera| camera.keywords()[0].0).chain(SECTIONS).collect();
+        self.top(&known, |reader, word, span| {
             match word {
                 "Background" => reader.background(span),
                 "Lights" => reader.lights(span),
                 "Materials" => reader.materials(span),
                 "Group" => reader.scene.root = Some(reader.group(span)),
-                _ => match Camera::from_keyword(word).filter(|_| word != "Camera") {
+                _ => match camera_of(word) {
                     Some(camera) => reader.camera(camera, span),
                     None => return false,
                 },
@@ -139,7 +161,7 @@ impl Reader<'_, '_> {
     /// Whether a section of the top ended by a `}` too many: what follows can only stand in it.
     fn closed_early(&self, name: &str) -> bool {
         let word = self.peek_word().unwrap_or_default();
-        self.depth == 0 && !SECTIONS.contains(&word.as_str()) && home_of(&word) == Some(name)
+        self.depth == 0 && !is_section(&word) && home_of(&word) == Some(name)
     }
 
     fn lights(&mut self, keyword: Span) {
@@ -249,6 +271,26 @@ impl Reader<'_, '_> {
         Group { objects }
     }
 
+    /// Cells of a box and the balls that fill them; also where a component says so by its type.
+    pub(super) fn voxels(&mut self, keyword: Span) -> Node {
+        let (mut grid, mut balls) = (VoxelGrid::default(), Vec::new());
+        self.fields(&mut grid, keyword, Order::Any, |reader, word, span| {
+            match word {
+                "type" => {
+                    reader.advance();
+                }
+                "rasterizeSphere" => {
+                    let mut ball = Sphere::default();
+                    reader.fields(&mut ball, span, Order::Any, |_, _, _| false);
+                    balls.push(ball);
+                }
+                _ => return false,
+            }
+            true
+        });
+        Node::Voxels(grid, balls)
+    }
+
     /// One object, if the word begins one.
     pub(super) fn object(&mut self, word: &str, span: Span) -> Option<Object> {
         if !self.descend("objects", span) {
@@ -261,13 +303,24 @@ impl Reader<'_, '_> {
             Some(Node::Group(self.group(span)))
         } else if word == "Transform" {
             self.transform(span)
+        } else if let Some(operation) = Operation::from_keyword(word) {
+            self.foreign(word, span, set::DURER);
+            Some(Node::Solid(operation, self.group(span).objects))
+        } else if word == "HeightField" {
+            let mut field = HeightField::default();
+            self.check_keyword(&field, span);
+            self.fields(&mut field, span, Order::Any, |_, _, _| false);
+            Some(Node::HeightField(field))
         } else if let Some(mut shape) = Primitive::from_keyword(word).filter(|s| classic(s.keywords())) {
+            self.check_keyword(&shape, span);
             self.fields(&mut shape, span, Order::Listed, |_, _, _| false);
             Some(Node::Primitive(shape))
         } else if word == "TriangleMesh" {
             let mut mesh = TriangleMesh::default();
             self.fields(&mut mesh, span, Order::Listed, |_, _, _| false);
             Some(Node::Mesh(mesh))
+        } else if word == "Grid" {
+            Some(self.voxels(span))
         } else {
             self.unknown(word, span, "among objects", &IN_GROUP);
             None

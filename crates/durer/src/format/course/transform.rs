@@ -2,7 +2,7 @@
 
 use super::lexer::TokenKind;
 use super::reader::Reader;
-use super::sections::IN_GROUP;
+use super::sections::{IN_GROUP, OBJECTS};
 use super::words::home_of;
 use crate::diag::{Diagnostic, Span};
 use crate::dialect::{Dialect, set};
@@ -34,7 +34,7 @@ impl Reader<'_, '_> {
                 self.error(error.help("write it before the `Transform`"));
                 self.skip_value();
             } else if home_of(&word) != Some("Group") {
-                let known: Vec<&str> = MATRICES.into_iter().chain(IN_GROUP.into_iter().take(6)).collect();
+                let known: Vec<&str> = MATRICES.into_iter().chain(IN_GROUP.into_iter().take(OBJECTS)).collect();
                 self.unknown(&word, span, "in a transform", &known);
             } else {
                 objects += 1;

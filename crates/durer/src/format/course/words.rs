@@ -5,8 +5,8 @@ use crate::describe::DescribedList;
 use crate::dialect::{DialectSet, set};
 use crate::light::Light;
 use crate::material::{ColorNoise, PhongMaterial, Solid};
-use crate::scene::Background;
-use crate::shape::{Primitive, TriangleMesh};
+use crate::scene::{Background, Operation};
+use crate::shape::{HeightField, Primitive, TriangleMesh, VoxelGrid};
 use std::collections::HashMap;
 use std::sync::LazyLock;
 
@@ -55,8 +55,11 @@ static WORDS: LazyLock<HashMap<&'static str, DialectSet>> = LazyLock::new(|| {
     list::<PhongMaterial>(&mut words);
     list::<ColorNoise>(&mut words);
     list::<TriangleMesh>(&mut words);
+    list::<HeightField>(&mut words);
+    list::<VoxelGrid>(&mut words);
     list::<Background>(&mut words);
-    for (word, set) in GRAMMAR {
+    let operations = Operation::ALL.map(|(word, _)| (word, set::DURER));
+    for (word, set) in GRAMMAR.into_iter().chain(operations) {
         *words.entry(word).or_insert(0) |= set;
     }
     words
@@ -84,11 +87,13 @@ pub(super) fn begins_block(word: &str) -> bool {
 /// The block in which something belongs that stands in a wrong place.
 pub(super) fn home_of(word: &str) -> Option<&'static str> {
     Some(match word {
-        "Sphere" | "Plane" | "Triangle" | "TriangleMesh" | "Transform" | "MaterialIndex" | "Group" => "Group",
+        "TriangleMesh" | "HeightField" | "Grid" | "Transform" | "MaterialIndex" | "Group" => "Group",
         "PhongMaterial" | "Material" | "Checkerboard" | "Marble" | "Wood" => "Materials",
         "PointLight" | "DirectionalLight" => "Lights",
         "Translate" | "Scale" | "UniformScale" | "XRotate" | "YRotate" | "ZRotate" | "Rotate" | "Matrix"
         | "Matrix4f" | "translate" | "scale" | "x_rotate" | "y_rotate" | "z_rotate" => "Transform",
+        _ if begins_block(word) && Primitive::from_keyword(word).is_some() => "Group",
+        _ if Operation::from_keyword(word).is_some() => "Group",
         _ => return None,
     })
 }

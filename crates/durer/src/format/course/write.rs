@@ -5,6 +5,7 @@ use crate::dialect::Dialect;
 use crate::light::{Light, PointLight};
 use crate::math::Vec3;
 use crate::scene::{Group, Material, MatrixOp, Node, Object, Scene};
+use crate::shape::{Sphere, VoxelGrid};
 use std::fmt::Write;
 
 /// Writes a scene in a dialect. What the dialect has no word for is written in the words of another year.
@@ -44,12 +45,13 @@ impl Writer {
         let plain = T::from_keyword(thing.keywords()[0].0);
         for (i, field) in thing.fields().iter().enumerate() {
             let Some(value) = thing.get(i) else { continue };
-            let word = field.spelling(self.dialect);
-            // What the dialect cannot say is left out where it says nothing.
-            if word.is_none() && plain.as_ref().is_some_and(|plain| plain.get(i).as_ref() == Some(&value)) {
+            let (word, text) = (field.spelling(self.dialect), value_text(&value));
+            // What the dialect cannot say is left out where it says nothing. Texts tell 0 from -0.
+            let plain_text = plain.as_ref().and_then(|plain| plain.get(i)).map(|value| value_text(&value));
+            if word.is_none() && plain_text.as_ref() == Some(&text) {
                 continue;
             }
-            self.line(format!("{} {}", word.unwrap_or(field.spellings[0].0), value_text(&value)));
+            self.line(format!("{} {text}", word.unwrap_or(field.spellings[0].0)));
         }
     }
 
@@ -102,14 +104,18 @@ impl Writer {
     fn group(&mut self, group: &Group) {
         self.block("Group", |w| {
             w.line(format!("numObjects {}", group.objects.len()));
-            for object in &group.objects {
-                if let Some(index) = object.material.filter(|_| object.material != w.material) {
-                    w.line(format!("MaterialIndex {index}"));
-                    w.material = Some(index);
-                }
-                w.object(object);
-            }
+            w.objects(&group.objects);
         });
+    }
+
+    fn objects(&mut self, objects: &[Object]) {
+        for object in objects {
+            if let Some(index) = object.material.filter(|_| object.material != self.material) {
+                self.line(format!("MaterialIndex {index}"));
+                self.material = Some(index);
+            }
+            self.object(object);
+        }
     }
 
     fn object(&mut self, object: &Object) {
@@ -121,7 +127,15 @@ impl Writer {
             }),
             Node::Primitive(shape) => self.thing(shape),
             Node::Mesh(mesh) => self.thing(mesh),
+            Node::HeightField(field) => self.thing(field),
+            Node::Solid(operation, parts) => self.block(operation.keyword(), |w| w.objects(parts)),
+            Node::Voxels(grid, balls) => self.block(grid.keyword(self.dialect), |w| w.voxels(grid, balls)),
         }
+    }
+
+    fn voxels(&mut self, grid: &VoxelGrid, balls: &[Sphere]) {
+        self.fields(grid);
+        balls.iter().for_each(|ball| self.block("rasterizeSphere", |w| w.fields(ball)));
     }
 
     fn matrix(&mut self, op: &MatrixOp) {
@@ -175,9 +189,16 @@ impl Writer {
                 Node::Group(group) => group.objects.iter().for_each(|inner| w.node(inner)),
                 Node::Primitive(shape) => w.component("Object", shape),
                 Node::Mesh(mesh) => w.component("Object", mesh),
+                Node::HeightField(field) => w.component("Object", field),
+                Node::Solid(operation, parts) => {
+                    w.block(operation.keyword(), |w| parts.iter().for_each(|part| w.node(part)));
+                }
+                Node::Voxels(grid, balls) => w.voxels_component(grid, balls),
                 Node::Transform(_, inner) => match &inner.node {
-                    Node::Primitive(shape) if inner.material == object.material => w.component("Object", shape),
-                    Node::Mesh(mesh) if inner.material == object.material => w.component("Object", mesh),
+                    _ if inner.material != object.material => w.node(inner),
+                    Node::Primitive(shape) => w.component("Object", shape),
+                    Node::Mesh(mesh) => w.component("Object", mesh),
+                    Node::Voxels(grid, balls) => w.voxels_component(grid, balls),
                     _ => w.node(inner),
                 },
             }
@@ -202,6 +223,13 @@ impl Writer {
         });
     }
 
+    fn voxels_component(&mut self, grid: &VoxelGrid, balls: &[Sphere]) {
+        self.block("Component<Object>", |w| {
+            w.line(format!("type {}", grid.keyword(w.dialect)));
+            w.voxels(grid, balls);
+        });
+    }
+
     fn node_matrix(&mut self, op: &MatrixOp) {
         let text = match *op {
             MatrixOp::Translate(v) => format!("translate {}", vec3_text(v)),
@@ -223,6 +251,11 @@ fn value_text(value: &Value) -> String {
         Value::Int(i) => i.to_string(),
         Value::Vec3(v) => vec3_text(*v),
         Value::Path(name) => name.path.clone(),
+        Value::Word(word) => word.clone(),
+        Value::Rows(rows) => {
+            let numbers: Vec<String> = rows.iter().flatten().map(f32::to_string).collect();
+            format!("{{ {} }}", numbers.join(" "))
+        }
     }
 }
 

@@ -1,7 +1,7 @@
 //! Windows bitmap: 24 bits a pixel, bottom row first.
 
 use super::{Depth, Format, ImageError, Layer, WriteOptions, codec, eight_bit};
-use ::image::{ImageFormat, codecs::bmp::BmpEncoder};
+use ::image::{ExtendedColorType, ImageFormat, codecs::bmp::BmpEncoder};
 
 const NAME: &str = "BMP";
 
@@ -19,6 +19,6 @@ fn encode(layers: &[Layer], options: &WriteOptions, out: &mut Vec<u8>) -> Result
     layers.iter().try_for_each(|layer| {
         let size = (layer.image.width, layer.image.height);
         // A row of 2^31 / 3 pixels cannot be padded; the encoder says so.
-        codec::encode(NAME, BmpEncoder::new(&mut *out), &eight_bit(layer, options), size)
+        codec::encode(NAME, BmpEncoder::new(&mut *out), &eight_bit(layer, options), ExtendedColorType::Rgb8, size)
     })
 }

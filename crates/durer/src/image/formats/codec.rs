@@ -46,14 +46,13 @@ pub fn raster(picture: DynamicImage) -> Raster {
     }
 }
 
-/// Encodes eight-bit red, green and blue.
+/// Encodes eight-bit red, green and blue, or those and alpha.
 pub fn encode(
     name: &'static str,
     encoder: impl ImageEncoder,
-    rgb: &[u8],
+    bytes: &[u8],
+    color: ExtendedColorType,
     (width, height): (u32, u32),
 ) -> Result<(), ImageError> {
-    encoder
-        .write_image(rgb, width, height, ExtendedColorType::Rgb8)
-        .map_err(|error| ImageError::unsupported(name, error))
+    encoder.write_image(bytes, width, height, color).map_err(|error| ImageError::unsupported(name, error))
 }

@@ -1,15 +1,16 @@
 //! OpenEXR: 32-bit floats, packed without loss, any number of layers.
 //!
 //! Layers share one part. The first colour layer has the plain channels R, G and B, which every viewer shows;
-//! those of the others bear the layer's name: `normals.R`.
+//! those of the others bear the layer's name: `normals.R`. Where the camera does not see everything there is A as well,
+//! with the colours multiplied by it, as the format has it.
 
 use super::limits::{declared_count, pixel_limit};
 use super::{Depth, Format, Image, ImageError, Layer, LayerKind, Raster, WriteOptions};
 use crate::math::Vec3;
 use ::exr::meta::header::Header;
 use ::exr::prelude::{
-    AnyChannel, AnyChannels, Blocks, Compression, Encoding, FlatSamples, Image as ExrImage, LineOrder, MetaData,
-    ReadChannels, ReadLayers, ReadSpecificChannel, SmallVec, Text, Vec2, WritableImage, read,
+    AnyChannel, AnyChannels, AttributeValue, Blocks, Compression, Encoding, FlatSamples, Image as ExrImage, LineOrder,
+    MetaData, ReadChannels, ReadLayers, ReadSpecificChannel, SmallVec, Text, Vec2, WritableImage, read,
 };
 use std::collections::HashSet;
 use std::io::Cursor;
@@ -30,28 +31,63 @@ pub const FORMAT: Format = Format {
 const ENCODING: Encoding =
     Encoding { compression: Compression::ZIP16, blocks: Blocks::ScanLines, line_order: LineOrder::Increasing };
 
-fn encode(layers: &[Layer], _: &WriteOptions, out: &mut Vec<u8>) -> Result<(), ImageError> {
+fn encode(layers: &[Layer], options: &WriteOptions, out: &mut Vec<u8>) -> Result<(), ImageError> {
     let plain = layers.iter().position(|layer| layer.kind == LayerKind::Color).unwrap_or(0);
     let mut names = HashSet::new();
     let mut list = SmallVec::new();
     for (index, layer) in layers.iter().enumerate() {
-        for (axis, letter) in ["R", "G", "B"].into_iter().enumerate() {
+        let channels = if layer.coverage.is_some() { &["R", "G", "B", "A"][..] } else { &["R", "G", "B"] };
+        for (axis, letter) in channels.iter().enumerate() {
             let name = if index == plain { letter.to_string() } else { format!("{}.{letter}", layer.name) };
             let bad = || ImageError::unsupported(NAME, format!("`{}` cannot be the name of a layer", layer.name));
             let text = Text::new_or_none(&name).filter(|_| !name.starts_with('.')).ok_or_else(bad)?;
             if !names.insert(name) {
                 return Err(ImageError::unsupported(NAME, format!("two layers are named `{}`", layer.name)));
             }
-            let samples = layer.image.pixels.iter().map(|pixel| pixel[axis]).collect();
+            let samples = match layer.coverage.as_ref().filter(|_| axis == 3) {
+                Some(coverage) => coverage.clone(),
+                None => layer.image.pixels.iter().map(|pixel| pixel[axis]).collect(),
+            };
             list.push(AnyChannel::new(text, FlatSamples::F32(samples)));
         }
     }
     let size = layers.first().map(|layer| (layer.image.width as usize, layer.image.height as usize));
-    let picture = ExrImage::from_encoded_channels(size.unwrap_or_default(), ENCODING, AnyChannels::sort(list));
+    let mut picture = ExrImage::from_encoded_channels(size.unwrap_or_default(), ENCODING, AnyChannels::sort(list));
+    for (name, text) in options.attributes {
+        // A text in this format is one of Latin-1; ours are ASCII.
+        let (name, text) = (Text::new_or_none(format!("durer:{name}")), Text::new_or_none(text));
+        if let (Some(name), Some(text)) = (name, text) {
+            picture.layer_data.attributes.other.insert(name, AttributeValue::Text(text));
+        }
+    }
     let mut file = Cursor::new(Vec::new());
     picture.write().to_buffered(&mut file).map_err(|error| ImageError::unsupported(NAME, error))?;
+    sort_attributes(file.get_mut());
     out.append(file.get_mut());
     Ok(())
+}
+
+/// Sorts the attributes in the head of a file of one part by their names.
+///
+/// They are written in the order of a hash map, which is another one each time; but the same picture should be the same bytes.
+/// An attribute is its name, its type (both end with a zero), the length of its value, and the value; a zero ends the head.
+fn sort_attributes(file: &mut [u8]) {
+    // Behind the magic number and the version.
+    const START: usize = 8;
+    let mut attributes = Vec::new();
+    let mut at = START;
+    let end_of_text = |from: usize| Some(from + 1 + file.get(from..)?.iter().position(|&byte| byte == 0)?);
+    while file.get(at).is_some_and(|&byte| byte != 0) {
+        let end = end_of_text(at).and_then(end_of_text).and_then(|length| {
+            let value = file.get(length..length + 4)?.try_into().ok().map(u32::from_le_bytes)?;
+            Some(length + 4 + value as usize)
+        });
+        let Some(attribute) = end.and_then(|end| file.get(at..end)) else { return };
+        attributes.push(attribute.to_vec());
+        at += attribute.len();
+    }
+    attributes.sort();
+    file[START..at].copy_from_slice(&attributes.concat());
 }
 
 /// Reads the first part with R, G and B; failing that, with Y; failing that, with a single channel, as grey.
@@ -138,7 +174,7 @@ mod tests {
 
     fn layer(name: &str, kind: LayerKind, value: f32) -> Layer {
         let pixels = (0..6).map(|i| Vec3::new(value, i as f32, -value)).collect();
-        Layer { name: name.into(), image: Image { width: 3, height: 2, pixels }, kind }
+        Layer { name: name.into(), image: Image { width: 3, height: 2, pixels }, kind, coverage: None }
     }
 
     #[test]
@@ -159,6 +195,41 @@ mod tests {
         assert_eq!(channels.len(), 9);
         let normals = channels.iter().find(|channel| channel.name.eq("normals.G")).unwrap();
         assert_eq!(normals.sample_data, FlatSamples::F32((0..6).map(|i| i as f32).collect()));
+    }
+
+    #[test]
+    fn attributes_are_read_by_others_and_the_bytes_are_always_the_same() {
+        let attributes = ["job", "scene", "statistics", "software"].map(|name| (name, format!("{{\"{name}\":1}}")));
+        let options = WriteOptions { attributes: &attributes, ..WriteOptions::default() };
+        let write = || {
+            let mut out = Vec::new();
+            FORMAT.write(&[layer("x", LayerKind::Color, 2.0)], &options, &mut out).unwrap();
+            out
+        };
+        let out = write();
+        assert!((0..20).all(|_| write() == out));
+        let file = tempfile::NamedTempFile::new().unwrap();
+        std::fs::write(file.path(), &out).unwrap();
+        let back = read_all_flat_layers_from_file(file.path()).unwrap();
+        for (name, text) in &attributes {
+            let name = Text::from(format!("durer:{name}").as_str());
+            assert_eq!(back.layer_data[0].attributes.other[&name], AttributeValue::Text(Text::from(text.as_str())));
+        }
+    }
+
+    #[test]
+    fn what_is_not_seen_everywhere_has_alpha() {
+        let shares: Vec<f32> = (0..6).map(|i| i as f32 / 5.0).collect();
+        let seen = layer("depth", LayerKind::Data, 1.0).with_coverage(shares.clone());
+        let mut out = Vec::new();
+        FORMAT.write(&[layer("", LayerKind::Color, 2.0), seen], &WriteOptions::default(), &mut out).unwrap();
+        let file = tempfile::NamedTempFile::new().unwrap();
+        std::fs::write(file.path(), &out).unwrap();
+        let back = read_all_flat_layers_from_file(file.path()).unwrap();
+        let channels = &back.layer_data[0].channel_data.list;
+        assert_eq!(channels.len(), 7);
+        let alpha = channels.iter().find(|channel| channel.name.eq("depth.A")).unwrap();
+        assert_eq!(alpha.sample_data, FlatSamples::F32(shares));
     }
 
     #[test]

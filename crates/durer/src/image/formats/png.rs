@@ -1,7 +1,7 @@
-//! Portable Network Graphics: eight bits a channel, lossless.
+//! Portable Network Graphics: eight bits a channel, lossless; with alpha where the camera does not see everything.
 
-use super::{Depth, Format, ImageError, Layer, WriteOptions, codec, eight_bit};
-use ::image::{ImageFormat, codecs::png::PngEncoder};
+use super::{Depth, Format, ImageError, Layer, WriteOptions, codec, eight_bit, eight_bit_alpha};
+use ::image::{ExtendedColorType, ImageFormat, codecs::png::PngEncoder};
 
 const NAME: &str = "PNG";
 
@@ -18,6 +18,10 @@ pub const FORMAT: Format = Format {
 fn encode(layers: &[Layer], options: &WriteOptions, out: &mut Vec<u8>) -> Result<(), ImageError> {
     layers.iter().try_for_each(|layer| {
         let size = (layer.image.width, layer.image.height);
-        codec::encode(NAME, PngEncoder::new(&mut *out), &eight_bit(layer, options), size)
+        let encoder = PngEncoder::new(&mut *out);
+        match eight_bit_alpha(layer, options) {
+            Some(rgba) => codec::encode(NAME, encoder, &rgba, ExtendedColorType::Rgba8, size),
+            None => codec::encode(NAME, encoder, &eight_bit(layer, options), ExtendedColorType::Rgb8, size),
+        }
     })
 }

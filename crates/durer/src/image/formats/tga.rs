@@ -1,6 +1,7 @@
-//! Truevision Targa: uncompressed true colour of 24 bits, bottom row first, as the course's programs wrote it.
+//! Truevision Targa: uncompressed true colour of 24 bits, bottom row first, as the course's programs wrote it; of 32 bits
+//! with alpha where the camera does not see everything.
 
-use super::{Depth, Format, ImageError, Layer, WriteOptions, codec, eight_bit};
+use super::{Depth, Format, ImageError, Layer, WriteOptions, codec, eight_bit, eight_bit_alpha};
 use ::image::ImageFormat;
 
 const NAME: &str = "TGA";
@@ -25,7 +26,14 @@ fn encode(layers: &[Layer], options: &WriteOptions, out: &mut Vec<u8>) -> Result
         let [w0, w1] = side(layer.image.width)?.to_le_bytes();
         let [h0, h1] = side(layer.image.height)?.to_le_bytes();
         // No identification, no palette, origin at the lower left.
-        out.extend([0, 0, TRUE_COLOR, 0, 0, 0, 0, 0, 0, 0, 0, 0, w0, w1, h0, h1, 24, 0]);
+        let (bits, alpha_bits) = if layer.coverage.is_some() { (32, 8) } else { (24, 0) };
+        out.extend([0, 0, TRUE_COLOR, 0, 0, 0, 0, 0, 0, 0, 0, 0, w0, w1, h0, h1, bits, alpha_bits]);
+        if let Some(rgba) = eight_bit_alpha(layer, options) {
+            for row in rgba.chunks_exact(layer.image.width as usize * 4).rev() {
+                out.extend(row.as_chunks::<4>().0.iter().flat_map(|&[r, g, b, a]| [b, g, r, a]));
+            }
+            continue;
+        }
         let rgb = eight_bit(layer, options);
         for row in rgb.chunks_exact(layer.image.width as usize * 3).rev() {
             out.extend(row.as_chunks::<3>().0.iter().flat_map(|&[r, g, b]| [b, g, r]));
@@ -46,6 +54,17 @@ mod tests {
         let mut out = Vec::new();
         FORMAT.write(&[Layer::color("", image)], &WriteOptions::default(), &mut out).unwrap();
         assert_eq!(out, [0, 0, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 2, 0, 24, 0, 255, 0, 0, 0, 0, 255]);
+    }
+
+    #[test]
+    fn bytes_of_a_file_with_alpha() {
+        let image = Image::from_pixels(1, 2, vec![Vec3::ZERO, Vec3::X * 0.5]).unwrap();
+        let mut out = Vec::new();
+        let layer = Layer::color("", image).with_coverage(vec![0.0, 0.5]);
+        FORMAT.write(&[layer], &WriteOptions::default(), &mut out).unwrap();
+        assert_eq!(out[..18], [0, 0, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 2, 0, 32, 8]);
+        // Straight alpha: the colour of the covered half is full red.
+        assert_eq!(out[18..], [0, 0, 255, 128, 0, 0, 0, 0]);
     }
 
     #[test]

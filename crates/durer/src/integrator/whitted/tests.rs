@@ -3,6 +3,7 @@
 use super::*;
 use crate::compile::{AccelKind, testing};
 use crate::dialect::Dialect;
+use crate::integrator::{Account, Node};
 use crate::math::random::Random;
 use std::path::Path;
 
@@ -203,6 +204,48 @@ fn coloured_glass_casts_coloured_shadows_if_asked() {
 }
 
 #[test]
+fn a_coarse_smooth_ball_has_no_shadow_on_itself_where_its_normals_face_the_light() {
+    let text = |file: &str, wall: &str| {
+        format!(
+            "{CAMERA} Lights {{ DirectionalLight {{ direction 0 -1 0.2 color 1 1 1 }} }} Group {{ {wall}
+            Transform {{ Translate 3 0 0 Scale 2 1 1 TriangleMesh {{ obj_file {file} }} }} }}"
+        )
+    };
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/meshes");
+    let read = |wall: &str, compat: bool| {
+        let rules = Dialect::Durer.rules();
+        let rules = crate::dialect::Rules { epsilon: compat.then_some(1e-4), ..rules.clone() };
+        testing::try_read(&text("ball80-smooth.obj", wall), &rules, AccelKind::Bvh, &folder).0.unwrap()
+    };
+    // How many points whose normals face the light are dark, and how many points there are.
+    let dark = |world: &World| {
+        let (mut random, mut dark, mut all) = (Random(5), 0, 0);
+        let whitted = Whitted { world, settings: ALL, cancel: None };
+        for _ in 0..20_000 {
+            let origin = Vec3::new(3.0, 0.0, 0.0) + 9.0 * random.direction();
+            let ray = Ray::new(origin, (Vec3::new(3.0, 0.0, 0.0) + random.point() - origin).normalize());
+            let Some(hit) = world.closest(&ray, &mut ()) else { continue };
+            let surface = world.surface(&ray, &hit);
+            let seen = world.lights[0].illuminate(surface.position);
+            // The wall, where there is one, is no part of the ball.
+            if surface.position.y < 1.0 && surface.n_shade.dot(seen.to_light) > 1e-3 {
+                all += 1;
+                dark += i32::from(whitted.visible(&surface, &seen, &mut ()) == Color::ZERO);
+            }
+        }
+        (dark, all)
+    };
+    let (lost, all) = dark(&read("", false));
+    assert!(lost == 0 && all > 5_000, "{lost} of {all}");
+    // Without the remedy, whole triangles.
+    let (lost, all) = dark(&read("", true));
+    assert!(lost > all / 100, "{lost} of {all}");
+    // What stands in the way still does, if it is farther off than the bent surface is from the flat one.
+    let (lost, all) = dark(&read("Plane { normal 0 1 0 offset 1.05 }", false));
+    assert!(lost == all, "{lost} of {all}");
+}
+
+#[test]
 fn black_backs_are_black_only_where_that_is_asked_for() {
     let text = format!(
         "{CAMERA} Background {{ color 0 0 0 ambientLight 0.5 0.5 0.5 }}
@@ -219,4 +262,47 @@ fn black_backs_are_black_only_where_that_is_asked_for() {
     assert_eq!(below(Dialect::F04, true), 1.5);
     assert_eq!(below(Dialect::Durer, false), 0.5);
     assert_eq!(below(Dialect::Durer, true), 1.5);
+}
+
+/// Every node below is the sum of its terms, to the bit.
+#[track_caller]
+fn adds_up(node: &Node) {
+    assert_eq!(node.sum(), node.value, "{node:?}");
+    node.terms.iter().for_each(adds_up);
+}
+
+#[test]
+fn an_account_adds_up_to_the_light_that_is_found_without_it() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
+    let mut random = Random(11);
+    let mut kinds = std::collections::BTreeMap::new();
+    for name in ["whitted", "glass", "mirrors", "solid-textures", "smooth-mesh", "globe", "highlights"] {
+        let text = std::fs::read_to_string(folder.join(name).with_extension("txt")).unwrap();
+        for dialect in [Dialect::Durer, Dialect::F04, Dialect::F12a5] {
+            let (world, findings) = testing::try_read(&text, dialect.rules(), AccelKind::Bvh, &folder);
+            let world = world.unwrap_or_else(|| panic!("{findings:?}"));
+            let settings =
+                Settings { bounces: 5, transparent_shadows: random.below(2) == 0, least_weight: 0.01, ..ALL };
+            let whitted = Whitted { world: &world, settings, cancel: None };
+            for _ in 0..60 {
+                let forward = world.frame.forward + 0.3 * random.direction();
+                let ray = Ray::new(world.frame.eye, forward.normalize());
+                let (mut account, mut counts) = (Account::default(), crate::bvh::Counts::default());
+                let color = whitted.radiance(&ray, &mut account);
+                assert_eq!(color, whitted.radiance(&ray, &mut counts));
+                let tree = account.into_tree().unwrap();
+                assert_eq!(tree.value, color);
+                adds_up(&tree);
+                count(&tree, &mut kinds);
+            }
+        }
+    }
+    let known = ["ambient", "cut", "diffuse", "highlight", "light", "ray", "secondary", "sky", "spent"];
+    assert_eq!(kinds.keys().map(String::as_str).collect::<Vec<_>>(), known);
+}
+
+fn count(node: &Node, kinds: &mut std::collections::BTreeMap<String, u32>) {
+    let json = serde_json::to_value(&node.what).unwrap();
+    *kinds.entry(json["kind"].as_str().unwrap().into()).or_default() += 1;
+    node.terms.iter().for_each(|node| count(node, kinds));
 }

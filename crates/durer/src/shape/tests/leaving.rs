@@ -17,18 +17,19 @@ fn hit(world: &World, shape: &Primitive, affine: &DAffine3, random: &mut Random)
     world.closest(&ray, &mut ()).map(|hit| (ray, hit))
 }
 
-/// Whether a ray from inside, at this hit, ends on a far side of the same shape, as those in spheres do.
-fn is_other_side(world: &World, start: &Surface, ray: &Ray, hit: &Hit) -> bool {
-    let convex = matches!(world.objects[0].geometry, crate::world::Geometry::Primitive(Primitive::Sphere(_)));
+/// Whether a ray ends on another side of the same closed shape: one from inside on its way out, one from outside, where
+/// the shape is not convex, on its way in.
+fn is_other_side(shape: &Primitive, world: &World, start: &Surface, ray: &Ray, hit: &Hit) -> bool {
+    let bent = matches!(shape, Primitive::Torus(_) | Primitive::Quadric(_));
     let end = world.surface(ray, hit);
-    // Of a convex, closed shape, a chord leaves one end against its normal and reaches the other along its normal.
-    convex && ray.dir.dot(start.n_geo) < 0.0 && ray.dir.dot(end.n_geo) > 0.0
+    let (from_inside, goes_out) = (ray.dir.dot(start.n_geo) < 0.0, ray.dir.dot(end.n_geo) > 0.0);
+    shape.inside(DVec3::ZERO).is_some() && (from_inside || bent) && from_inside == goes_out
 }
 
 #[test]
 fn no_ray_meets_the_surface_that_it_leaves() {
     let mut random = Random(5);
-    let mut counts = [0; 3];
+    let mut counts = [0; 11];
     // (stretch of the transform, distance of the object)
     for (stretch, distance) in [(1.0, 0.0), (1.0, 100.0), (10.0, 0.0), (10.0, 1e4), (100.0, 1e3), (1.0, 1e4)] {
         for round in 0..600 {
@@ -48,6 +49,11 @@ fn no_ray_meets_the_surface_that_it_leaves() {
                     if tip < 10.0 * surface.error.length() {
                         continue;
                     }
+                    // Nor is it known on which side of an edge a point is that is nearer to it than its error.
+                    let at = affine.inverse().transform_point3(surface.position.as_dvec3());
+                    if near_edge(&shape, at, f64::from(10.0 * stretch * surface.error.length())) {
+                        continue;
+                    }
                     for _ in 0..40 {
                         let dir = random.between(0.01, 100.0) * random.direction();
                         // A ray that lies in the surface to within the rounding of its direction, which a shear
@@ -59,7 +65,7 @@ fn no_ray_meets_the_surface_that_it_leaves() {
                         let away = from_surface(&surface, dir, f32::INFINITY, None);
                         counts[kind] += 1;
                         let Some(again) = world.closest(&away, &mut ()) else { continue };
-                        let other = is_other_side(&world, &surface, &away, &again);
+                        let other = is_other_side(&shape, &world, &surface, &away, &again);
                         assert!(other, "{shape:?}\n{affine:?}\n{surface:?}\n{away:?}\n{again:?}");
                     }
                 }
@@ -75,7 +81,7 @@ fn rays_start_so_near_that_a_plane_a_thousandth_away_is_met() {
     for round in 0..20_000 {
         // A thousandth is 16 to 32 roundings of numbers up to 500.
         let affine = random.affine(2.0, [0.0, 1.0, 100.0, 300.0][round % 4]);
-        let shape = samples(&mut random, 1.0, 1.0).swap_remove(round % 3);
+        let shape = samples(&mut random, 1.0, 1.0).swap_remove(round % 11);
         let world = testing::shapes(&[(shape.clone(), affine)], AccelKind::None);
         let Some((ray, first)) = hit(&world, &shape, &affine, &mut random) else { continue };
         let surface = world.surface(&ray, &first);
@@ -103,6 +109,10 @@ fn a_mirrored_and_a_sheared_normal_is_that_of_the_moved_surface() {
             let inverse = affine.inverse();
             let field = |p: DVec3| distance(&shape, inverse.transform_point3(p));
             let p = surface.position.as_dvec3();
+            let local = inverse.transform_point3(p);
+            if near_edge(&shape, local, 1e-3) || too_far(&shape, local, 1.0) {
+                continue;
+            }
             let bound = surface.n_geo.abs().dot(surface.error);
             let step = 1e-5;
             let difference = |v: DVec3| (field(p + step * v) - field(p - step * v)) / (2.0 * step);
@@ -141,7 +151,7 @@ fn a_floor_in_a_coordinate_plane_is_left() {
         let mut corner = |x, z| size * Vec3::new(x, 0.0, z) * random.between(0.5, 1.0);
         let floor = Triangle { vertex0: corner(-1.0, -1.0), vertex1: corner(1.0, -1.0), vertex2: corner(0.0, 1.0) };
         let ray = Ray::new(Vec3::Y, 0.1 * random.point() - Vec3::Y);
-        let surface = floor.surface(&ray, &floor.intersect(&ray).unwrap());
+        let surface = floor.surface(DVec3::ZERO, &floor.intersect(&ray).unwrap());
         // No coordinate of the point is off the floor, and no offset is needed; also for low rays.
         let dir = random.direction() * Vec3::new(1.0, [1.0, 0.1, 1e-3][round % 3], 1.0);
         let away = from_surface(&surface, dir, f32::INFINITY, None);

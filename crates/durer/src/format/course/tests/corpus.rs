@@ -21,10 +21,8 @@ pub(super) fn scenes() -> Vec<(PathBuf, Dialect)> {
 fn collect(folder: &Path, dialect: Dialect, found: &mut Vec<(PathBuf, u8)>) {
     for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
         let (path, name) = (entry.path(), entry.file_name().into_string().unwrap());
-        // Splines are curves for another program; the grid of 2003 is in no language of ours.
-        let other = name.starts_with("spline8_")
-            || name == "readme.txt"
-            || path.ends_with("f03/a4/scene0_rasterize_sphere_3x3x3.txt");
+        // Splines are curves for another program.
+        let other = name.starts_with("spline8_") || name == "readme.txt";
         if path.is_dir() {
             collect(&path, dialect, found);
         } else if name.ends_with(".txt") && !other {
@@ -47,11 +45,17 @@ fn the_corpus_reads_without_a_finding() {
 }
 
 #[test]
-fn the_grid_of_2003_is_refused_clearly() {
-    let text = b"Group {\n numObjects 1\n Grid {\n  min -1 -1 -1\n  rasterizeSphere { center 0 0 0 radius 1 }\n }\n}\n";
-    let (_, findings) = read_as(text, Dialect::F03, false);
-    assert_eq!(findings.len(), 1, "{findings:?}");
-    assert!(findings[0].starts_with("3:2 error: `Grid` means nothing among objects [Grid]"), "{findings:?}");
+fn mistakes_in_the_grid_of_2003_are_told() {
+    let found = |inside: &str| {
+        let text = format!("Group {{\n numObjects 1\n Grid {{ {inside} }}\n}}\n");
+        read_as(text.as_bytes(), Dialect::F03, false).1
+    };
+    assert_eq!(found("min -1 -1 -1 max 1 1 1 numCells 3 3 3"), [""; 0]);
+    let wrong = "3:41 error: `numCells` must be whole numbers from 1 to 256 [3 0 3]";
+    assert_eq!(found("min -1 -1 -1 max 1 1 1 numCells 3 0 3"), [wrong]);
+    assert_eq!(found("min -1 -1 -1 max 1 1 1 numCells 3 1.5 3"), [wrong.replace("3 0 3", "3 1.5 3")]);
+    let ball = "min -1 -1 -1 max 1 1 1 numCells 3 3 3 rasterizeSphere { radius 1 }";
+    assert_eq!(found(ball), ["3:47 error: `rasterizeSphere` has no `center` [rasterizeSphere]"]);
 }
 
 #[test]

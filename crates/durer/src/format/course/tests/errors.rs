@@ -70,7 +70,7 @@ fn unknown_words() {
     );
     one_of_nodes(
         "Scene { Component<Object> { radius 1 type sphere } }",
-        "1:29 error: `Component<Object>` must begin with its `type` [radius] (types are sphere, plane, triangle, mesh)",
+        "1:29 error: `Component<Object>` must begin with its `type` [radius] (types are sphere, plane, triangle, mesh, Grid)",
     );
 }
 

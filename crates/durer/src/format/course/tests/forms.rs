@@ -7,18 +7,26 @@ use crate::light::Light;
 use crate::material::{ColorNoise, PhongMaterial, Solid};
 use crate::math::Vec3;
 use crate::scene::{Background, Material, MatrixOp, Node, Object};
-use crate::shape::{Primitive, TriangleMesh};
+use crate::shape::{HeightField, Primitive, TriangleMesh};
 
 /// A value of a kind, unlike the default, as text and as read.
-fn sample(kind: Kind, rule: Rule) -> (&'static str, Value) {
-    match kind {
+fn sample(kind: Kind, rule: Rule) -> (String, Value) {
+    let (text, value) = match kind {
+        Kind::Word(words) => (words[words.len() - 1], Value::Word(words[words.len() - 1].into())),
+        Kind::Rows(width) => {
+            let count = if let Rule::Count(least, _) = rule { least } else { 1 };
+            let rows: Vec<Vec<f32>> = (0..count).map(|i| (0..width).map(|j| (3 * i + j) as f32).collect()).collect();
+            let numbers: Vec<String> = rows.iter().flatten().map(f32::to_string).collect();
+            return (format!("{{ {} }}", numbers.join(" ")), Value::Rows(rows));
+        }
         Kind::Float => ("12.5", Value::Float(12.5)),
         // A solid of two materials before it.
         Kind::Int if rule == Rule::Any => ("1", Value::Int(1)),
         Kind::Int => ("7", Value::Int(7)),
         Kind::Vec3 => (".25 -1.5e1 3.", Value::Vec3(Vec3::new(0.25, -15.0, 3.0))),
         Kind::Path => ("a/b.x", Value::Path(crate::describe::FileName { path: "a/b.x".into(), ..Default::default() })),
-    }
+    };
+    (text.into(), value)
 }
 
 /// Writes every described thing of a list with all fields of a dialect, reads it as `wrap` says and compares.
@@ -70,6 +78,13 @@ fn every_keyword_and_field_is_read_in_every_dialect_that_has_it() {
         |_, text| group(text),
         |scene| match first(scene) {
             Node::Primitive(shape) => shape,
+            other => panic!("{other:?}"),
+        },
+    );
+    every_word::<HeightField>(
+        |_, text| group(text),
+        |scene| match first(scene) {
+            Node::HeightField(field) => field,
             other => panic!("{other:?}"),
         },
     );
@@ -188,7 +203,9 @@ fn flat(objects: &[Object], out: &mut Vec<(String, Option<u32>)>) {
             Node::Group(group) => flat(&group.objects, out),
             Node::Transform(_, inner) => flat(std::slice::from_ref(inner), out),
             Node::Primitive(shape) => out.push((shape.keyword(Dialect::F23).into(), object.material)),
-            Node::Mesh(_) => out.push(("mesh".into(), object.material)),
+            Node::Mesh(_) | Node::HeightField(_) => out.push(("mesh".into(), object.material)),
+            Node::Voxels(..) => out.push(("grid".into(), object.material)),
+            Node::Solid(_, parts) => flat(parts, out),
         }
     }
 }

@@ -50,6 +50,16 @@ fn strictly_only_the_old_language_is_allowed() {
             "1:24 error: `Materials` must come before `Group` [Materials]",
         ),
         (
+            Dialect::Durer,
+            "Group { numObjects 1 Xor { numObjects 0 } }".into(),
+            "1:22 error: `Xor` is Dürer's own, and no word of the course's language [Xor]",
+        ),
+        (
+            Dialect::F04,
+            "Group { numObjects 1 HeightField { } }".into(),
+            "1:22 error: `HeightField` is Dürer's own, and no word of the course's language [HeightField]",
+        ),
+        (
             Dialect::F12a4,
             format!("Group {{ numObjects 1 Transform {{ Translate {{ 1 2 3 }} {ball} }} }}"),
             "1:44 error: `Translate {` is not a word of f12a4, but of f03 [{]",

@@ -6,8 +6,8 @@ use crate::dialect::Dialect;
 use crate::light::Light;
 use crate::material::{ColorNoise, PhongMaterial, Solid, is_material_index};
 use crate::math::Vec3;
-use crate::scene::{Background, Group, Material, MatrixOp, Node, Object, Scene, Spanned};
-use crate::shape::{Primitive, TriangleMesh};
+use crate::scene::{Background, Group, Material, MatrixOp, Node, Object, Operation, Scene, Spanned};
+use crate::shape::{HeightField, Primitive, Sphere, TriangleMesh, VoxelGrid};
 
 /// A generator of random numbers (Knuth's multiplier, the upper half of the state).
 pub(super) struct Random(pub u64);
@@ -48,12 +48,20 @@ impl Random {
                     let path = ["a.obj", "meshes/B-2.OBJ", "../x", "Sphere", "\\w\\é.bmp"][self.below(5)].into();
                     Value::Path(FileName { path, ..Default::default() })
                 }
+                Kind::Word(words) => Value::Word(words[self.below(words.len())].into()),
+                Kind::Rows(width) => {
+                    Value::Rows((0..self.below(6)).map(|_| (0..width).map(|_| self.float()).collect()).collect())
+                }
             };
             // Angles are rare among all numbers.
             let value = match (field.rule, value) {
+                (Rule::Counts(most), _) => {
+                    Value::Vec3(Vec3::from([0; 3].map(|_| 1.0 + self.below(most as usize) as f32)))
+                }
                 (Rule::Between(low, high), _) => {
                     Value::Float(low + (high - low) * (1 + self.below(998)) as f32 / 1000.0)
                 }
+                (Rule::UpTo(high), _) => Value::Float(high * (1 + self.below(1000)) as f32 / 1000.0),
                 (_, value) => value,
             };
             if field.rule.violation(&value).is_none() {
@@ -106,10 +114,21 @@ impl Random {
             *current = Some(self.below(materials + 1) as u32);
         }
         let material = *current;
-        let node = match self.below(if depth > 4 { 3 } else { 5 }) {
+        let node = match self.below(if depth > 4 { 5 } else { 8 }) {
             0 | 1 => Node::Primitive(self.thing::<Primitive>(materials)),
             2 => Node::Mesh(self.thing::<TriangleMesh>(materials)),
-            3 => Node::Group(Group {
+            3 => Node::HeightField(self.thing::<HeightField>(materials)),
+            4 => Node::Voxels(
+                self.thing::<VoxelGrid>(materials),
+                (0..self.below(3))
+                    .map(|_| Sphere { center: self.vec3(), radius: 1.0 + self.below(9) as f32 })
+                    .collect(),
+            ),
+            5 => Node::Solid(
+                Operation::ALL[self.below(5)].1,
+                (0..self.below(4)).map(|_| self.object(depth + 1, materials, current, true)).collect(),
+            ),
+            6 => Node::Group(Group {
                 objects: (0..self.below(4)).map(|_| self.object(depth + 1, materials, current, true)).collect(),
             }),
             _ => {

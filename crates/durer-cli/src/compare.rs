@@ -1,0 +1,156 @@
+//! `durer compare`.
+
+mod page;
+mod pairs;
+mod text;
+
+use crate::args::CompareArgs;
+use crate::output::{encode, format, save, say};
+use crate::{Failure, bad, progress, report};
+use durer::image::compare::{Comparison, Options, Picture, Scale, Verdict, compare, heat_map};
+use durer::image::{Image, Layer, Transfer, check_target, decode_linear};
+use pairs::Pair;
+use std::path::{Path, PathBuf};
+
+/// What came of a pair.
+enum Outcome {
+    Compared(Box<Comparison>),
+    /// There is a reference only.
+    Missing,
+    /// Why they cannot be compared.
+    Failed(String),
+}
+
+/// A pair and what came of it.
+struct Compared {
+    pair: Pair,
+    outcome: Outcome,
+    /// The page's pictures of it, where there is a page.
+    shown: Option<page::Shown>,
+}
+
+impl Compared {
+    /// One word.
+    fn verdict(&self) -> &'static str {
+        match &self.outcome {
+            Outcome::Compared(comparison) => comparison.verdict.name(),
+            Outcome::Missing => "missing",
+            Outcome::Failed(_) => "error",
+        }
+    }
+}
+
+/// Compares, prints, writes; all failures are those of the input's exit code, for 1 says that pictures differ.
+pub fn run(args: &CompareArgs) -> Result<(), Failure> {
+    work(args).map_err(|failure| match failure {
+        Failure::Other(error) => Failure::Input(Some(error.to_string())),
+        failure => failure,
+    })
+}
+
+fn work(args: &CompareArgs) -> Result<(), Failure> {
+    let found = pairs::find(&args.reference, &args.picture)?;
+    let heat_format = args.heat.as_deref().map(format).transpose()?;
+    if args.heat.is_some() && found.folders {
+        return Err(bad("`--heat` is for two pictures; for folders, `--report` has the heat maps"));
+    }
+    args.report.iter().chain(&args.heat).try_for_each(check_target)?;
+    let transfer = Transfer::from_name(&args.transfer).unwrap_or_default();
+    let options = Options { tolerance: args.tolerance, allowed: args.allow / 100.0, transfer };
+
+    let (names, folders, extra) = (found.pairs.iter().map(name).collect::<Vec<_>>(), found.folders, found.extra);
+    let all: Vec<Compared> = progress::each(&names, found.pairs, |pair| one(pair, &options, args.report.is_some()));
+    if let ([Compared { outcome: Outcome::Failed(reason), .. }], false) = (&all[..], folders) {
+        return Err(bad(reason));
+    }
+
+    if args.json {
+        say(&serde_json::to_string_pretty(&text::json(&all, &extra, args))?);
+    } else if folders {
+        text::table(&all, &extra);
+    } else {
+        text::single(&all[0], &options);
+    }
+    let mut files: Vec<(PathBuf, Vec<u8>)> = Vec::new();
+    if let (Some(path), Some(format), Outcome::Compared(found)) = (&args.heat, heat_format, &all[0].outcome) {
+        files.push((path.clone(), encode(format, &[heat(found)], Transfer::Linear, &[])?));
+    }
+    if let Some(path) = &args.report {
+        files.push((path.clone(), page::page(&all, &extra, args)?.into_bytes()));
+    }
+    if !files.is_empty() {
+        save(&files, args.json)?;
+    }
+    let failed = all.iter().filter(|c| matches!(c.outcome, Outcome::Failed(_))).count();
+    let bad_verdict = |c: &Compared| match &c.outcome {
+        Outcome::Compared(found) => found.verdict == Verdict::Different,
+        _ => true,
+    };
+    match failed {
+        0 if all.iter().any(bad_verdict) => Err(Failure::Different),
+        0 => Ok(()),
+        count => Err(bad(format!("{count} of {} could not be compared", text::counted(all.len(), "picture")))),
+    }
+}
+
+/// The name of a pair, with its owner's.
+fn name(pair: &Pair) -> String {
+    pair.who.as_ref().map_or_else(|| pair.name.clone(), |who| format!("{who}/{}", pair.name))
+}
+
+/// Compares one pair.
+fn one(pair: Pair, options: &Options, page: bool) -> Compared {
+    let Some(path) = &pair.picture else {
+        return Compared { pair, outcome: Outcome::Missing, shown: None };
+    };
+    let (reference, picture) = both(|| read(&pair.reference), || read(path));
+    let compared = reference.and_then(|reference| {
+        let picture = picture?;
+        let found = compare(&reference, &picture, options)
+            .map_err(|error| format!("`{}` and `{}`: {error}", pair.reference.display(), path.display()))?;
+        let shown = page.then(|| page::Shown::new(&reference, &picture, &found)).transpose()?;
+        Ok((found, shown))
+    });
+    match compared {
+        Ok((found, shown)) => Compared { pair, outcome: Outcome::Compared(Box::new(found)), shown },
+        Err(reason) => Compared { pair, outcome: Outcome::Failed(reason), shown: None },
+    }
+}
+
+/// Runs two things at once.
+fn both<A: Send, B: Send>(a: impl FnOnce() -> A + Send, b: impl FnOnce() -> B + Send) -> (A, B) {
+    std::thread::scope(|scope| {
+        let other = scope.spawn(b);
+        let a = a();
+        (a, other.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
+    })
+}
+
+fn read(path: &Path) -> Result<Picture, String> {
+    let unreadable = |error: String| format!("cannot read `{}`: {error}", path.display());
+    if path.is_dir() {
+        return Err(unreadable("it is a folder".into()));
+    }
+    let bytes = std::fs::read(path).map_err(|error| unreadable(error.to_string()))?;
+    Picture::read(&bytes, &path.to_string_lossy()).map_err(|error| unreadable(error.to_string()))
+}
+
+/// The heat map as a layer.
+fn heat(found: &Comparison) -> Layer {
+    let map = heat_map(found.width, found.height, &found.flip_map);
+    let pixels = map.pixels.iter().map(|pixel| pixel.map(decode_linear).into()).collect();
+    Layer::data("heat", Image { width: found.width, height: found.height, pixels })
+}
+
+/// A picture as a screen shows it.
+fn screen(picture: &Picture) -> (Layer, Transfer) {
+    match picture.scale {
+        Scale::Display => (Layer::data("", picture.image.clone()), Transfer::Linear),
+        Scale::Linear => (Layer::color("", picture.image.clone()), Transfer::Srgb),
+    }
+}
+
+/// Warns of what is left out.
+fn note(line: &str) {
+    report::complain(&format!("note: {line}"));
+}

@@ -1,0 +1,69 @@
+//! Comparisons as a page for a browser, in one file that needs no network.
+
+use super::{Compared, Outcome, heat, name, screen, text};
+use crate::Failure;
+use crate::args::CompareArgs;
+use crate::output::encode;
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use durer::image::compare::{Comparison, Picture};
+use durer::image::{Layer, Transfer, format_for};
+use serde_json::{Value, json};
+use std::path::PathBuf;
+
+/// The page, but for its data.
+const PAGE: &str = include_str!("page.html");
+/// Where the data go in it.
+const PLACE: &str = "\"the data\"";
+
+/// The pictures of a pair, as the page holds them: PNG in base 64.
+pub struct Shown {
+    reference: String,
+    picture: String,
+    heat: String,
+}
+
+impl Shown {
+    pub fn new(reference: &Picture, picture: &Picture, found: &Comparison) -> Result<Shown, String> {
+        let png = |(layer, transfer): (Layer, Transfer)| -> Result<String, String> {
+            let format = format_for("x.png").map_err(|error| error.to_string())?;
+            let bytes = encode(format, &[layer], transfer, &[]).map_err(|_| "the picture is too large for a page")?;
+            Ok(format!("data:image/png;base64,{}", STANDARD.encode(bytes)))
+        };
+        Ok(Shown {
+            reference: png(screen(reference))?,
+            picture: png(screen(picture))?,
+            heat: png((heat(found), Transfer::Linear))?,
+        })
+    }
+}
+
+/// The page's bytes.
+pub fn page(all: &[Compared], extra: &[PathBuf], args: &CompareArgs) -> Result<String, Failure> {
+    let data = json!({
+        "reference": args.reference.to_string_lossy(),
+        "picture": args.picture.to_string_lossy(),
+        "tolerance": args.tolerance,
+        "allow": args.allow,
+        "students": text::students(all),
+        "extra": extra.iter().map(|path| path.to_string_lossy()).collect::<Vec<_>>(),
+        "pairs": all.iter().map(pair).collect::<Vec<_>>(),
+    });
+    // No text in the data can end the script that holds them.
+    let data = serde_json::to_string(&data)?.replace('<', "\\u003c");
+    let (before, after) = PAGE.split_once(PLACE).unwrap_or((PAGE, ""));
+    Ok(format!("{before}{data}{after}"))
+}
+
+fn pair(compared: &Compared) -> Value {
+    let mut value = text::pair(compared);
+    value["title"] = name(&compared.pair).into();
+    if let Outcome::Compared(found) = &compared.outcome {
+        value["causes"] = text::causes(found).into();
+        value["places"] = found.regions.iter().map(text::place).collect::<Vec<_>>().into();
+    }
+    if let Some(Shown { reference, picture, heat }) = &compared.shown {
+        value["images"] = json!([reference, picture, heat]);
+    }
+    value
+}

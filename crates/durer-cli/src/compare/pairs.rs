@@ -1,0 +1,138 @@
+//! Which pictures belong together.
+
+use crate::{Failure, bad};
+use durer::image::format_for;
+use std::path::{Path, PathBuf};
+
+/// A reference and where its counterpart should be.
+pub struct Pair {
+    /// Whose it is, where a folder has a folder for each student.
+    pub who: Option<String>,
+    /// Its name: that of the file, or the path below the folder.
+    pub name: String,
+    pub reference: PathBuf,
+    /// `None` where there is none.
+    pub picture: Option<PathBuf>,
+}
+
+/// All pairs of two pictures or two folders, and pictures that have no reference.
+pub struct Pairs {
+    pub pairs: Vec<Pair>,
+    pub extra: Vec<PathBuf>,
+    /// Whether folders are compared.
+    pub folders: bool,
+}
+
+/// Folders below folders are followed so far: links may lead in circles.
+const DEPTH: usize = 16;
+
+pub fn find(reference: &Path, picture: &Path) -> Result<Pairs, Failure> {
+    for path in [reference, picture] {
+        if !path.exists() {
+            return Err(bad(format!("cannot read `{}`: there is no such file or folder", path.display())));
+        }
+    }
+    match (reference.is_dir(), picture.is_dir()) {
+        (false, false) => {
+            let name = picture.file_name().unwrap_or(picture.as_os_str()).to_string_lossy().into_owned();
+            let pair = Pair { who: None, name, reference: reference.into(), picture: Some(picture.into()) };
+            Ok(Pairs { pairs: vec![pair], extra: Vec::new(), folders: false })
+        }
+        (true, true) => folders(reference, picture),
+        _ => Err(bad(format!(
+            "`{}` and `{}`: one is a folder, the other is not; give two pictures or two folders",
+            reference.display(),
+            picture.display()
+        ))),
+    }
+}
+
+fn folders(reference: &Path, picture: &Path) -> Result<Pairs, Failure> {
+    let mut references = Vec::new();
+    pictures(reference, Path::new(""), DEPTH, &mut references)?;
+    if references.is_empty() {
+        return Err(bad(format!("there are no pictures in `{}`", reference.display())));
+    }
+    let mut found = Pairs { pairs: Vec::new(), extra: Vec::new(), folders: true };
+    let matched = found.add(None, reference, picture, &references)?;
+    if matched == 0 {
+        // A folder of folders: one for each student.
+        let mut class = Pairs { pairs: Vec::new(), extra: Vec::new(), folders: true };
+        let mut any = 0;
+        for name in names(picture)? {
+            let folder = picture.join(&name);
+            if folder.is_dir() {
+                any += class.add(Some(name.to_string_lossy().into_owned()), reference, &folder, &references)?;
+            }
+        }
+        if any == 0 {
+            return Err(bad(format!(
+                "no picture in `{}` has the name of one in `{}`",
+                picture.display(),
+                reference.display()
+            )));
+        }
+        found = class;
+    }
+    Ok(found)
+}
+
+impl Pairs {
+    /// Adds the pairs of one folder; gives how many references have a counterpart.
+    fn add(
+        &mut self,
+        who: Option<String>,
+        reference: &Path,
+        folder: &Path,
+        references: &[PathBuf],
+    ) -> Result<usize, Failure> {
+        let mut own = Vec::new();
+        pictures(folder, Path::new(""), DEPTH, &mut own)?;
+        let mut matched = 0;
+        let mut used = vec![false; own.len()];
+        for name in references {
+            let stem = name.with_extension("");
+            let exact = own.iter().position(|path| path == name);
+            let place = exact.or_else(|| own.iter().position(|path| path.with_extension("") == stem));
+            if let Some(place) = place {
+                used[place] = true;
+                matched += 1;
+            }
+            self.pairs.push(Pair {
+                who: who.clone(),
+                name: name.display().to_string(),
+                reference: reference.join(name),
+                picture: place.map(|place| folder.join(&own[place])),
+            });
+        }
+        self.extra.extend(own.iter().zip(used).filter(|(_, used)| !used).map(|(path, _)| folder.join(path)));
+        Ok(matched)
+    }
+}
+
+/// Names in a folder, sorted, without hidden ones.
+fn names(folder: &Path) -> Result<Vec<std::ffi::OsString>, Failure> {
+    let unreadable = |error: std::io::Error| bad(format!("cannot read the folder `{}`: {error}", folder.display()));
+    let mut names = Vec::new();
+    for entry in std::fs::read_dir(folder).map_err(unreadable)? {
+        names.push(entry.map_err(unreadable)?.file_name());
+    }
+    names.retain(|name| !name.to_string_lossy().starts_with('.'));
+    names.sort();
+    Ok(names)
+}
+
+/// Collects files in and below a folder whose extension is that of a picture.
+fn pictures(root: &Path, below: &Path, depth: usize, found: &mut Vec<PathBuf>) -> Result<(), Failure> {
+    for name in names(&root.join(below))? {
+        let path = below.join(&name);
+        if root.join(&path).is_dir() {
+            if depth > 0 {
+                pictures(root, &path, depth - 1, found)?;
+            }
+        } else if format_for(&path).is_ok() {
+            found.push(path);
+        }
+    }
+    Ok(())
+}

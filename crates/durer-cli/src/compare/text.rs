@@ -1,0 +1,225 @@
+//! Comparisons as text and as JSON.
+
+use super::{Compared, Outcome, name, note};
+use crate::args::CompareArgs;
+use crate::output::say;
+use durer::image::compare::{Comparison, Finding, Options, Region, Verdict};
+use serde_json::{Value, json};
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+/// Version of the JSON: grows when a field changes its meaning or goes.
+const VERSION: u32 = 1;
+
+/// A number with its noun.
+pub fn counted(count: usize, noun: &str) -> String {
+    if count == 1 { format!("1 {noun}") } else { format!("{count} {noun}s") }
+}
+
+/// One pair of pictures.
+pub fn single(compared: &Compared, options: &Options) {
+    let Outcome::Compared(found) = &compared.outcome else { return };
+    let measures = &found.measures;
+    let pixels = found.width as usize * found.height as usize;
+    let over = format!(
+        "{} of {} ({:.3} %) differ by more than {}",
+        measures.over_tolerance,
+        counted(pixels, "pixel"),
+        100.0 * measures.over_tolerance as f64 / pixels as f64,
+        tolerance(options.tolerance),
+    );
+    match found.verdict {
+        Verdict::Identical => say("identical"),
+        verdict => say(&format!("{}: {over}", verdict.name())),
+    }
+    for line in causes(found) {
+        say(&format!("  {line}"));
+    }
+    say(&format!("  RMSE      {:.6}", measures.rmse));
+    say(&format!(
+        "  PSNR      {} dB",
+        if measures.psnr.is_finite() { format!("{:.2}", measures.psnr) } else { "infinite".into() }
+    ));
+    say(&format!(
+        "  SSIM      {}",
+        measures.ssim.map_or("- (a side has less than 11 pixels)".into(), |s| format!("{s:.5}"))
+    ));
+    say(&format!("  FLIP      {:.5}", measures.flip));
+    if let Some(flip) = measures.hdr_flip {
+        say(&format!("  HDR-FLIP  {flip:.5}"));
+    }
+    if let Some(largest) = &measures.largest {
+        let values = |color: [f32; 3]| color.map(|value| format!("{value:.4}")).join(" ");
+        say(&format!(
+            "  largest   {} at {},{}: {} in the reference, {} here",
+            tolerance(largest.difference),
+            largest.x,
+            largest.y,
+            values(largest.reference.to_array()),
+            values(largest.test.to_array())
+        ));
+    }
+    if let Some((x, y)) = measures.first_not_finite {
+        let [reference, picture] = measures.not_finite;
+        say(&format!(
+            "  not finite  {reference} pixels of the reference, {picture} here, the first that differs at {x},{y}"
+        ));
+    }
+    for region in found.regions.iter().take(3) {
+        say(&format!("  where     {}", place(region)));
+    }
+}
+
+/// What explains the difference, a line for each mistake.
+pub fn causes(found: &Comparison) -> Vec<String> {
+    if found.verdict != Verdict::Different {
+        return Vec::new();
+    }
+    if found.findings.is_empty() {
+        return vec!["none of the usual mistakes explains the difference".into()];
+    }
+    let line = |(i, finding): (usize, &Finding)| {
+        let percent = (1000.0 * finding.explained + 1e-6).floor() / 10.0;
+        match i {
+            0 => format!("{}: explains {percent:.1} % of the squared difference", finding.words),
+            _ => format!("and {}: together {percent:.1} %", finding.words),
+        }
+    };
+    found.findings.iter().enumerate().map(line).collect()
+}
+
+/// A region in words.
+pub fn place(region: &Region) -> String {
+    let Region { x, y, width, height, pixels, mean_difference, share, worst } = region;
+    let [r, g, b] = mean_difference.to_array();
+    format!(
+        "{width}x{height} at {x},{y}: {}, on average {r:+.3} {g:+.3} {b:+.3}, {:.1} % of the squared difference, most at {},{}",
+        counted(*pixels, "pixel"),
+        100.0 * share,
+        worst.0,
+        worst.1
+    )
+}
+
+/// A difference, as 255ths where it is whole ones.
+fn tolerance(value: f32) -> String {
+    let steps = value * 255.0;
+    if (steps - steps.round()).abs() < 1e-3 && steps < 256.0 { format!("{steps:.0}/255") } else { format!("{value}") }
+}
+
+/// Folders: a line for each picture, and one for each student.
+pub fn table(all: &[Compared], extra: &[PathBuf]) {
+    let names: Vec<String> = all.iter().map(|compared| name(&compared.pair)).collect();
+    let wide = names.iter().map(|name| name.chars().count()).max().unwrap_or(0).max(7);
+    say(&format!("{:wide$}  verdict    differ %     RMSE    SSIM    FLIP  why", "picture"));
+    for (name, compared) in names.iter().zip(all) {
+        let verdict = compared.verdict();
+        match &compared.outcome {
+            Outcome::Compared(found) => {
+                let m = &found.measures;
+                let share = 100.0 * m.over_tolerance as f64 / (f64::from(found.width) * f64::from(found.height));
+                let ssim = m.ssim.map_or("-".into(), |ssim| format!("{ssim:.4}"));
+                let flip = m.hdr_flip.unwrap_or(m.flip);
+                let why = causes(found).join("; ");
+                let line =
+                    format!("{name:wide$}  {verdict:9}  {share:8.3}  {:7.4}  {ssim:>6}  {flip:6.4}  {why}", m.rmse);
+                say(line.trim_end());
+            }
+            Outcome::Missing => say(&format!("{name:wide$}  {verdict}")),
+            Outcome::Failed(reason) => say(&format!("{name:wide$}  {verdict}      {reason}")),
+        }
+    }
+    let students = students(all);
+    if !students.is_empty() {
+        let wide = students.keys().map(|who| who.chars().count()).max().unwrap_or(0).max(7);
+        say(&format!("\n{:wide$}  same  different  missing  error", "student"));
+        for (who, [same, different, missing, error]) in &students {
+            say(&format!("{who:wide$}  {same:4}  {different:9}  {missing:7}  {error:5}"));
+        }
+    }
+    if !extra.is_empty() {
+        let shown: Vec<String> = extra.iter().take(5).map(|path| path.display().to_string()).collect();
+        let more = if extra.len() > 5 { " and others" } else { "" };
+        note(&format!("{} without a reference: {}{more}", counted(extra.len(), "picture"), shown.join(", ")));
+    }
+}
+
+/// For each student how many pictures are the same, different, missing and not readable.
+pub fn students(all: &[Compared]) -> BTreeMap<String, [usize; 4]> {
+    let mut students = BTreeMap::new();
+    for compared in all {
+        let Some(who) = &compared.pair.who else { continue };
+        let counts: &mut [usize; 4] = students.entry(who.clone()).or_default();
+        counts[match &compared.outcome {
+            Outcome::Compared(found) => usize::from(found.verdict == Verdict::Different),
+            Outcome::Missing => 2,
+            Outcome::Failed(_) => 3,
+        }] += 1;
+    }
+    students
+}
+
+/// Everything. `psnr` is null where it is infinite, `ssim` where a picture is too small for it.
+pub fn json(all: &[Compared], extra: &[PathBuf], args: &CompareArgs) -> Value {
+    let verdicts = |wanted: &str| all.iter().filter(|compared| compared.verdict() == wanted).count();
+    json!({
+        "version": VERSION,
+        "tolerance": args.tolerance,
+        "allow_percent": args.allow,
+        "identical": verdicts("identical"),
+        "same": verdicts("same"),
+        "different": verdicts("different"),
+        "missing": verdicts("missing"),
+        "errors": verdicts("error"),
+        "pairs": all.iter().map(pair).collect::<Vec<_>>(),
+        "without_reference": extra.iter().map(|path| path.to_string_lossy()).collect::<Vec<_>>(),
+    })
+}
+
+/// One pair.
+pub fn pair(compared: &Compared) -> Value {
+    let pair = &compared.pair;
+    let mut value = json!({
+        "name": pair.name,
+        "student": pair.who,
+        "reference": pair.reference.to_string_lossy(),
+        "picture": pair.picture.as_ref().map(|path| path.to_string_lossy()),
+        "verdict": compared.verdict(),
+    });
+    let more = match &compared.outcome {
+        Outcome::Missing => json!({}),
+        Outcome::Failed(reason) => json!({ "error": reason }),
+        Outcome::Compared(found) => numbers(found),
+    };
+    if let (Value::Object(value), Value::Object(more)) = (&mut value, more) {
+        value.extend(more);
+    }
+    value
+}
+
+fn numbers(found: &Comparison) -> Value {
+    let m = &found.measures;
+    json!({
+        "width": found.width,
+        "height": found.height,
+        "scale": found.scale.name(),
+        "rmse": m.rmse,
+        "psnr": m.psnr.is_finite().then_some(m.psnr),
+        "ssim": m.ssim,
+        "flip": m.flip,
+        "hdr_flip": m.hdr_flip,
+        "largest": m.largest.map(|l| json!({
+            "difference": l.difference, "x": l.x, "y": l.y,
+            "reference": l.reference.to_array(), "picture": l.test.to_array(),
+        })),
+        "over_tolerance": { "pixels": m.over_tolerance,
+            "share": m.over_tolerance as f64 / (f64::from(found.width) * f64::from(found.height)) },
+        "not_finite": { "reference": m.not_finite[0], "picture": m.not_finite[1], "first": m.first_not_finite },
+        "findings": found.findings.iter().map(|f| json!({ "kind": f.kind, "words": f.words, "explained": f.explained }))
+            .collect::<Vec<_>>(),
+        "regions": found.regions.iter().map(|r| json!({
+            "x": r.x, "y": r.y, "width": r.width, "height": r.height, "pixels": r.pixels,
+            "mean_difference": r.mean_difference.to_array(), "share": r.share, "worst": r.worst,
+        })).collect::<Vec<_>>(),
+    })
+}

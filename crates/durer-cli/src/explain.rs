@@ -1,0 +1,195 @@
+//! `durer explain`.
+
+mod page;
+
+use crate::args::ExplainArgs;
+use crate::job::{accel, job};
+use crate::open::{Opened, load_options, open};
+use crate::output::say;
+use crate::render::failure;
+use crate::{Failure, bad, output, progress};
+use durer::image::Image;
+use durer::integrator::Node;
+use durer::integrator::account::What;
+use durer::math::{Color, Ray, Vec3};
+use durer::render::explain::{Explanation, Line, Names, explain, explain_ray, ray_text};
+use durer::render::{Control, Job};
+use std::collections::BTreeSet;
+use std::io::IsTerminal;
+use std::sync::Arc;
+
+/// The version of the JSON.
+const VERSION: u32 = 1;
+
+/// What is explained.
+enum Subject {
+    Pixel(Explanation),
+    Ray(Node),
+}
+
+pub fn run(args: &ExplainArgs) -> Result<(), Failure> {
+    let mut options = load_options(&args.render.reading);
+    options.accel = accel(&args.render.job)?;
+    let opened = open(&args.render.scene, &options, args.render.quiet)?;
+    let job = job(&args.render.job, &opened.loaded, args.render.work.time.is_some())?;
+    let picture = match args.brightest || args.worst || args.html.is_some() {
+        true => Some(picture(args, &opened, &job)?),
+        false => None,
+    };
+    let subject = subject(args, &opened, &job, picture.as_ref())?;
+    let names = Names { files: &opened.files, scene: &opened.loaded.scene, world: &opened.world };
+    if let (Some(path), Some(picture)) = (&args.html, &picture) {
+        let page = page::page(json(&subject, &names), args.sample.unwrap_or(0), &opened.world, picture)?;
+        output::save(&[(path.clone(), page.into_bytes())], args.render.quiet)?;
+        return Ok(());
+    }
+    if args.json {
+        say(&serde_json::to_string_pretty(&json(&subject, &names))?);
+        return Ok(());
+    }
+    let lines = match &subject {
+        Subject::Ray(light) => ray_text(light, &names),
+        Subject::Pixel(pixel) => {
+            // All trees of a pixel would hide each other.
+            let wanted = args.sample.unwrap_or(0);
+            pixel.lines(&names, |sample| sample == wanted)
+        }
+    };
+    let colored = std::io::stdout().is_terminal() && std::env::var_os("NO_COLOR").is_none();
+    lines.iter().for_each(|line| say(&shown(line, colored)));
+    Ok(())
+}
+
+/// The whole picture.
+fn picture(args: &ExplainArgs, opened: &Opened, job: &Job) -> Result<Image, Failure> {
+    let job = Job { crop: None, color: true, aovs: Vec::new(), ..job.clone() };
+    let control = Arc::new(Control { threads: args.render.work.threads.map(usize::from), ..Control::default() });
+    let render = || durer::render::render(&opened.world, &job, &control);
+    let mut rendered = progress::watch(&control, args.render.quiet, render).map_err(failure)?;
+    Ok(rendered.layers.swap_remove(0).image)
+}
+
+fn subject(args: &ExplainArgs, opened: &Opened, job: &Job, picture: Option<&Image>) -> Result<Subject, Failure> {
+    let pixel = match (&args.ray, args.pixel, picture) {
+        (Some(numbers), ..) => {
+            let [ox, oy, oz, dx, dy, dz] = numbers[..] else { return Err(bad("--ray needs six numbers")) };
+            let ray = Ray::new(Vec3::new(ox, oy, oz), Vec3::new(dx, dy, dz));
+            if !(ray.origin.is_finite() && ray.dir.is_finite() && ray.dir != Vec3::ZERO) {
+                return Err(bad("--ray needs finite numbers, and a direction that is not 0 0 0"));
+            }
+            let world = &opened.world;
+            let light = deep(|| explain_ray(world, job, &ray))?;
+            return light.map(Subject::Ray).ok_or_else(|| bad("nothing is known of this ray"));
+        }
+        (None, Some(pixel), _) => pixel,
+        (None, None, Some(picture)) if args.brightest => most(picture, |x, y| luminance(at(picture, x, y))),
+        (None, None, Some(picture)) => most(picture, |x, y| oddness(picture, x, y)),
+        (None, None, None) => return Err(bad("say which pixel: --pixel X,Y, --brightest, --worst, or --ray")),
+    };
+    let world = &opened.world;
+    let explanation = deep(|| explain(world, job, pixel.0, pixel.1))?.map_err(failure)?;
+    if let Some(sample) = args.sample.filter(|&sample| sample as usize >= explanation.samples.len()) {
+        let last = explanation.samples.len() - 1;
+        return Err(bad(format!("there is no sample {sample}: the pixel's are numbered from 0 to {last}")));
+    }
+    Ok(Subject::Pixel(explanation))
+}
+
+/// Runs work whose recursion is as deep as the bounces.
+fn deep<T: Send>(work: impl FnOnce() -> T + Send) -> Result<T, Failure> {
+    std::thread::scope(|scope| {
+        let thread = std::thread::Builder::new().stack_size(64 << 20).spawn_scoped(scope, work)?;
+        thread.join().map_err(|_| Failure::Other(anyhow::anyhow!("the explanation failed; this is an error in durer")))
+    })
+}
+
+fn at(picture: &Image, x: u32, y: u32) -> Color {
+    picture.get(x, y).unwrap_or(Vec3::ZERO)
+}
+
+/// Luminance of linear sRGB (ITU-R BT.709).
+fn luminance(color: Color) -> f32 {
+    0.2126 * color.x + 0.7152 * color.y + 0.0722 * color.z
+}
+
+/// How far a pixel's luminance is from the middle one of those around it.
+fn oddness(picture: &Image, x: u32, y: u32) -> f32 {
+    let mut around: Vec<f32> = (0..9)
+        .filter(|&i| i != 4)
+        .filter_map(|i| picture.get((x + i % 3).checked_sub(1)?, (y + i / 3).checked_sub(1)?))
+        .map(luminance)
+        .collect();
+    around.sort_by(f32::total_cmp);
+    let middle = around.get(around.len() / 2).copied().unwrap_or(0.0);
+    (luminance(at(picture, x, y)) - middle).abs()
+}
+
+/// The first pixel of the greatest value in reading order.
+fn most(picture: &Image, value: impl Fn(u32, u32) -> f32) -> (u32, u32) {
+    let places = (0..picture.height).flat_map(|y| (0..picture.width).map(move |x| (x, y)));
+    let mut best = ((0, 0), f32::NEG_INFINITY);
+    for (x, y) in places {
+        let value = value(x, y);
+        if value > best.1 {
+            best = ((x, y), value);
+        }
+    }
+    best.0
+}
+
+/// A line with what it adds before it.
+fn shown(line: &Line, colored: bool) -> String {
+    let indent = "  ".repeat(line.depth);
+    let text = match line.adds {
+        Some(adds) if line.depth > 0 => format!("+ ({}, {}, {})  {}", adds.x, adds.y, adds.z, line.text),
+        _ => line.text.clone(),
+    };
+    match (colored, line.adds) {
+        (false, _) => format!("{indent}{text}"),
+        // Terms that add nothing, and what is only told of a term, stand back.
+        (true, None | Some(Color::ZERO)) if line.depth > 0 => format!("{indent}\x1b[2m{text}\x1b[0m"),
+        (true, _) => format!("{indent}\x1b[1m{text}\x1b[0m"),
+    }
+}
+
+/// The explanation for programs, with what its numbers of things stand for.
+fn json(subject: &Subject, names: &Names) -> serde_json::Value {
+    let (mut objects, mut lights, mut materials) = (BTreeSet::new(), BTreeSet::new(), BTreeSet::new());
+    let mut note = |node: &Node| match &node.what {
+        What::Ray { hit: Some(hit), .. } => {
+            objects.insert(hit.object);
+            materials.insert(hit.material);
+        }
+        What::Light { light, shadow, .. } => {
+            lights.insert(*light);
+            objects.extend(shadow.as_ref().and_then(|shadow| shadow.blocker).map(|blocker| blocker.0));
+        }
+        _ => {}
+    };
+    match subject {
+        Subject::Ray(light) => visit(light, &mut note),
+        Subject::Pixel(pixel) => {
+            pixel.samples.iter().filter_map(|s| s.light.as_ref()).for_each(|light| visit(light, &mut note));
+        }
+    }
+    let objects: serde_json::Map<_, _> = objects.into_iter().map(|i| (i.to_string(), names.object(i).into())).collect();
+    let materials: serde_json::Map<_, _> =
+        materials.into_iter().map(|i| (i.to_string(), names.material(i).into())).collect();
+    let lights: serde_json::Map<_, _> = lights.into_iter().map(|i| (i.to_string(), names.light(i).into())).collect();
+    let mut json = serde_json::json!({
+        "version": VERSION,
+        "objects": objects,
+        "materials": materials,
+        "lights": lights,
+    });
+    match subject {
+        Subject::Ray(light) => json["ray"] = serde_json::json!(light),
+        Subject::Pixel(pixel) => json["pixel"] = serde_json::json!(pixel),
+    }
+    json
+}
+
+fn visit(node: &Node, note: &mut impl FnMut(&Node)) {
+    note(node);
+    node.terms.iter().for_each(|term| visit(term, note));
+}

@@ -1,0 +1,124 @@
+//! From options to a job.
+
+use crate::args::JobArgs;
+use crate::{Failure, bad, report};
+use durer::Loaded;
+use durer::camera::{Lens, Raster};
+use durer::compile::AccelKind;
+use durer::diag::Diagnostic;
+use durer::dialect::Dialect;
+use durer::film::Filter;
+use durer::film::aov::Aov;
+use durer::film::course::CourseFilter;
+use durer::integrator::Settings;
+use durer::render::{Crop, Job, Sampling};
+use durer::sampler::Sampler;
+use durer::world::World;
+
+/// Samples where noise or time decides when there are enough.
+const MOST_FOR_NOISE: u32 = 4096;
+const MOST_FOR_TIME: u32 = 1 << 20;
+
+/// The structure that the options ask for.
+pub fn accel(args: &JobArgs) -> Result<AccelKind, Failure> {
+    if args.grid.is_some() && args.accel != "grid" {
+        return Err(bad(format!("--grid makes no sense with --accel {}", args.accel)));
+    }
+    Ok(match args.accel.as_str() {
+        "grid" => AccelKind::Grid(args.grid),
+        "none" => AccelKind::None,
+        _ => AccelKind::Bvh,
+    })
+}
+
+/// The job that the options ask for; `timed` if time decides when it ends.
+pub fn job(args: &JobArgs, loaded: &Loaded, timed: bool) -> Result<Job, Failure> {
+    let rules = &loaded.rules;
+    // Ours is a dialect like others to ask for, but not an old program.
+    let asked = loaded.guess.is_none() && loaded.dialect != Dialect::Durer;
+    let camera = loaded.scene.camera.as_ref();
+    let proportions = camera.and_then(|camera| camera.proportions());
+    let (width, height) = args.size.unwrap_or_else(|| Raster::natural_size(proportions, rules.size));
+    // A blur needs more samples than an edge.
+    let plenty = if camera.is_some_and(|camera| camera.has_aperture()) { 64 } else { 16 };
+    let shows = |name: &str| args.show.iter().any(|show| show == name);
+    let depth_range = args.depth_range.as_ref().map(|range| (range[0], range[1]));
+    if depth_range.is_some_and(|(min, max)| !(min.is_finite() && max.is_finite() && min != max)) {
+        return Err(bad("--depth-range needs two different numbers"));
+    }
+    Ok(Job {
+        width,
+        height,
+        crop: args.crop.map(|(left, top, width, height)| Crop { left, top, width, height }),
+        seed: args.seed,
+        sampling: sampling(args, asked, timed, plenty)?,
+        noise: args.noise,
+        settings: Settings {
+            bounces: args.bounces.unwrap_or(rules.bounces),
+            shadows: args.shadows.unwrap_or(rules.shadows),
+            shade_back: args.shade_back.unwrap_or(rules.shade_back),
+            transparent_shadows: args.transparent_shadows || rules.transparent_shadows,
+            reflection: !args.no_reflection,
+            refraction: !args.no_refraction,
+            least_weight: args.weight.unwrap_or(if asked { 0.0 } else { 1.0 / 256.0 }),
+        },
+        color: shows("color"),
+        aovs: args.show.iter().filter_map(|name| Aov::from_name(name)).collect(),
+        depth_range,
+    })
+}
+
+/// Warns of a picture that its camera does not fill, or whose lens stays unused.
+pub fn warn(job: &Job, world: &World) {
+    let camera = &world.camera;
+    let (columns, rows) = durer::render::raster(world, job.width, job.height).empty();
+    if (columns, rows) != (0, 0) {
+        let (count, what) = if columns > 0 { (columns, "columns") } else { (rows, "rows") };
+        let (w, h) = Raster::natural_size(camera.proportions(), (job.width, job.height));
+        report::note(&Diagnostic::warning(format!(
+            "{count} {what} of {}x{} stay empty: this camera's picture has another shape; `--size {w}x{h}` has it",
+            job.width, job.height
+        )));
+    }
+    if job.sampling == Sampling::Center && camera.has_aperture() {
+        let message = "with one sample a pixel only the middle of the lens is used, and nothing is out of focus; ask for \
+                       more `--samples`, 64 say";
+        report::note(&Diagnostic::warning(message));
+    }
+}
+
+fn sampling(args: &JobArgs, asked: bool, timed: bool, plenty: u32) -> Result<Sampling, Failure> {
+    if args.jitter || args.blur {
+        return Ok(Sampling::Course2012 { jitter: args.jitter, blur: args.blur });
+    }
+    if args.filter_radius.is_some_and(|r| !(r > 0.0 && r <= 64.0)) {
+        return Err(bad("--filter-radius must be more than 0 and at most 64"));
+    }
+    let sampler = Sampler::from_name(&args.sampler).unwrap_or_default();
+    if matches!(sampler, Sampler::Uniform | Sampler::Jittered) && (args.noise.is_some() || timed) {
+        return Err(bad(
+            "--noise and --time need a sampler whose first samples are spread over the pixel: sobol or random",
+        ));
+    }
+    let filter = args.filter.as_deref().and_then(Filter::from_name);
+    let usual = match (asked, args.noise.is_some(), timed) {
+        (true, ..) => 1,
+        (false, true, _) => MOST_FOR_NOISE,
+        (false, false, true) => MOST_FOR_TIME,
+        (false, false, false) => plenty,
+    };
+    let samples = args.samples.unwrap_or(usual);
+    if sampler == Sampler::Sobol {
+        let filter = filter.unwrap_or_default();
+        let filter = args.filter_radius.map_or(filter, |radius| filter.with_radius(radius));
+        return Ok(if samples == 1 { Sampling::Center } else { Sampling::Filtered { samples, filter } });
+    }
+    let filter = match filter {
+        None => None,
+        Some(Filter::Box { .. }) => Some(CourseFilter::Box { radius: args.filter_radius.unwrap_or(0.5) }),
+        Some(Filter::Tent { .. }) => Some(CourseFilter::Tent { radius: args.filter_radius.unwrap_or(1.0) }),
+        Some(Filter::Gaussian { .. }) => Some(CourseFilter::Gaussian { sigma: args.filter_radius.unwrap_or(0.5) }),
+        Some(_) => return Err(bad("the course's samplers take the filters box, tent and gaussian")),
+    };
+    Ok(Sampling::Course2004 { sampler, samples, filter })
+}

@@ -1,0 +1,65 @@
+//! Reading and compiling a scene, with its findings printed.
+
+use crate::args::SceneArgs;
+use crate::{Failure, report};
+use durer::diag::{Diagnostics, Files};
+use durer::dialect::Dialect;
+use durer::world::World;
+use durer::{LoadOptions, Loaded, load};
+use std::path::Path;
+
+/// A scene that was read and compiled.
+pub struct Opened {
+    pub loaded: Loaded,
+    pub world: World,
+    pub files: Files,
+}
+
+/// A scene that was read; what is found is printed when it is compiled.
+pub struct Read {
+    pub loaded: Loaded,
+    files: Files,
+    diagnostics: Diagnostics,
+    quiet: bool,
+}
+
+/// Reads a scene.
+pub fn read(path: &Path, options: &LoadOptions, quiet: bool) -> Result<Read, Failure> {
+    let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
+    match load(path, options, &mut files, &mut diagnostics).map_err(report::unreadable)? {
+        Some(loaded) => Ok(Read { loaded, files, diagnostics, quiet }),
+        None => {
+            report::print(&files, &diagnostics, quiet);
+            Err(Failure::Input(None))
+        }
+    }
+}
+
+impl Read {
+    /// Compiles it, and prints what was found.
+    pub fn compile(mut self, options: &LoadOptions) -> Result<Opened, Failure> {
+        let world = self.loaded.compile(options, &mut self.files, &mut self.diagnostics);
+        if let (Some(guess), false, true) = (&self.loaded.guess, self.quiet, world.is_some()) {
+            report::note(&guess.note());
+        }
+        report::print(&self.files, &self.diagnostics, self.quiet);
+        Ok(Opened { loaded: self.loaded, world: world.ok_or(Failure::Input(None))?, files: self.files })
+    }
+}
+
+/// Reads and compiles a scene.
+pub fn open(path: &Path, options: &LoadOptions, quiet: bool) -> Result<Opened, Failure> {
+    read(path, options, quiet)?.compile(options)
+}
+
+/// What the options about reading say.
+pub fn load_options(args: &SceneArgs) -> LoadOptions {
+    LoadOptions {
+        dialect: args.dialect.as_deref().and_then(Dialect::from_name),
+        compat: args.compat.clone(),
+        strict: args.strict,
+        allow_outside: args.allow_outside,
+        assets: args.assets.clone(),
+        ..LoadOptions::default()
+    }
+}

@@ -1,0 +1,98 @@
+//! `durer verify`.
+
+use crate::args::VerifyArgs;
+use crate::open::{load_options, open};
+use crate::output::say;
+use crate::{Failure, bad, job, progress};
+use durer::compile::AccelKind;
+use durer::render::verify::{Way, WayError, compare};
+use durer::render::{Control, Part, RenderError};
+use durer::world::World;
+use std::process::{Command, Stdio};
+use std::sync::Arc;
+use std::sync::atomic::Ordering::Relaxed;
+
+/// Structures that find what rays hit.
+const STRUCTURES: [(&str, AccelKind); 3] =
+    [("bvh", AccelKind::Bvh), ("grid", AccelKind::Grid(None)), ("none", AccelKind::None)];
+
+/// The processor's instructions that can be had, as `DURER_SIMD` takes them. Which are used is decided once for a whole process.
+fn simd_levels() -> Vec<&'static str> {
+    vec!["scalar"]
+}
+
+pub fn run(args: &VerifyArgs) -> Result<(), Failure> {
+    let mut worlds: Vec<(&str, World)> = Vec::new();
+    let mut wanted = None;
+    for (name, accel) in STRUCTURES {
+        let mut options = load_options(&args.reading);
+        options.accel = accel;
+        // What is found is said once.
+        let opened = open(&args.scene, &options, args.quiet || !worlds.is_empty())?;
+        let mut job = job::job(&args.job, &opened.loaded, false)?;
+        (job.width, job.height) = args.job.size.unwrap_or((64, 48));
+        // The work depends on the structure.
+        job.aovs.retain(|aov| aov.name != "cost");
+        if args.job.samples.is_none() && args.job.noise.is_none() {
+            job.sampling = job.sampling.with_samples(8);
+        }
+        wanted = Some(job);
+        worlds.push((name, opened.world));
+    }
+    let Some(job) = wanted else { return Ok(()) };
+    let control = Arc::new(Control::default());
+    control.all.store(args.trials.into(), Relaxed);
+    let plain = || Way::PLAIN.make(&worlds[0].1, &job, &control.cancel);
+    let made = progress::watch(&control, args.quiet, || {
+        let plain = plain().map_err(cancelled)?;
+        for number in 0..u64::from(args.trials) {
+            let way = Way::numbered(number, &job, worlds.len());
+            let (structure, world) = &worlds[way.world];
+            let way_name = format!("{structure}, {way}");
+            match way.make(world, &job, &control.cancel) {
+                Err(WayError::Cancelled) => return Err(RenderError::Cancelled),
+                Err(error) => return Ok(Err(format!("way {number} ({way_name}) failed: {error}"))),
+                Ok(other) => {
+                    if let Some(different) = compare(&plain, &other) {
+                        let (expected, found, place) = (different.expected, different.found, different.place);
+                        return Ok(Err(format!("way {number} ({way_name}) differs: {place}\n{expected}\n{found}")));
+                    }
+                }
+            }
+            control.done.fetch_add(1, Relaxed);
+        }
+        Ok(Ok(plain))
+    });
+    let plain: Part = made.map_err(crate::render::failure)?.map_err(|text| Failure::Other(anyhow::anyhow!(text)))?;
+    let hash = plain.hash().to_string();
+    let levels = simd_levels();
+    if let Some(level) = levels.iter().skip(1).find(|level| hash_at(level).ok().as_ref() != Some(&hash)) {
+        return Err(Failure::Other(anyhow::anyhow!("with DURER_SIMD={level} the film differs")));
+    }
+    if !args.quiet {
+        say(&format!(
+            "{} ways, structures {}, instructions {}: one hash",
+            args.trials,
+            STRUCTURES.map(|s| s.0).join(", "),
+            levels.join(", ")
+        ));
+    }
+    say(&hash);
+    Ok(())
+}
+
+/// The hash that another process finds with other instructions, in fewer ways.
+fn hash_at(level: &str) -> Result<String, Failure> {
+    let arguments = std::env::args_os().skip(1).chain(["--quiet", "--trials", "10"].map(Into::into));
+    let mut command = Command::new(std::env::current_exe()?);
+    let output = command.args(arguments).env("DURER_SIMD", level).stdin(Stdio::null()).output()?;
+    let text = String::from_utf8_lossy(&output.stdout).into_owned();
+    text.lines().last().map(str::to_string).ok_or_else(|| bad("it said nothing"))
+}
+
+fn cancelled(error: WayError) -> RenderError {
+    match error {
+        WayError::Render(error) => error,
+        _ => RenderError::Cancelled,
+    }
+}

@@ -1,0 +1,147 @@
+//! Cameras from the command line: shapes of pictures, alpha, what is refused.
+
+mod common;
+
+use common::{Place, SCENE};
+
+/// The common scene with another camera.
+fn seen_by(camera: &str) -> String {
+    let (_, rest) = SCENE.split_once('\n').unwrap();
+    format!("# ours\n{camera}\n{rest}")
+}
+
+const POSE: &str = "center 0 1 8 direction 0 -0.1 -1 up 0 1 0";
+
+/// Bytes of an uncompressed Targa picture: bits a pixel, and its pixels with alpha, the bottom row first.
+fn targa(place: &Place, name: &str) -> (u8, Vec<[u8; 4]>) {
+    let bytes = place.bytes(name);
+    let (head, rest) = bytes.split_at(18);
+    let pixels = match head[16] {
+        32 => rest.chunks_exact(4).map(|p| [p[0], p[1], p[2], p[3]]).collect(),
+        _ => rest.chunks_exact(3).map(|p| [p[0], p[1], p[2], 255]).collect(),
+    };
+    (head[16], pixels)
+}
+
+#[test]
+fn what_a_camera_does_not_see_is_transparent_however_it_is_sampled() {
+    let place = Place::new();
+    place.put("eye.txt", seen_by(&format!("FisheyeCamera {{ {POSE} angle 160 }}")));
+    let ways = [
+        "--samples 1",
+        "--samples 16",
+        "--sampler jittered --samples 9",
+        "--jitter",
+        "--show depth",
+        "--show normals",
+        "--show object",
+    ];
+    for way in ways {
+        place.gives(0, &format!("render eye.txt --size 40x40 -o eye.tga {way}"));
+        let (bits, pixels) = targa(&place, "eye.tga");
+        assert_eq!(bits, 32, "{way}");
+        let at = |x: usize, y: usize| pixels[y * 40 + x];
+        assert_eq!([at(0, 0), at(39, 0), at(0, 39), at(39, 39)], [[0; 4]; 4], "{way}");
+        assert_eq!([at(20, 20)[3], at(20, 1)[3], at(38, 20)[3]], [255; 3], "{way}");
+        // The rim is smooth where a pixel has several samples.
+        let partly = pixels.iter().filter(|p| ![0, 255].contains(&p[3])).count();
+        assert_eq!(partly > 20, way.contains("jitter") || way == "--samples 16", "{way}: {partly}");
+        // The disc's area, in pixels.
+        let area: f64 = pixels.iter().map(|p| f64::from(p[3]) / 255.0).sum();
+        assert!((area / (400.0 * std::f64::consts::PI) - 1.0).abs() < 0.02, "{way}: {area}");
+    }
+    // The formats without alpha show black there; a picture that is seen everywhere has no alpha.
+    place.gives(0, "render eye.txt --size 40x40 -o eye.ppm");
+    assert_eq!(place.image8("eye.ppm").pixels[0], [0; 3]);
+    place.gives(0, "render eye.txt --size 40x40 -o inside.tga --crop 10,10,20x20");
+    assert_eq!(targa(&place, "inside.tga").0, 24);
+}
+
+#[test]
+fn pictures_take_the_shape_of_their_cameras() {
+    let place = Place::new();
+    for (camera, size) in [
+        ("FisheyeCamera {@}", (512, 512)),
+        ("EquirectangularCamera {@}", (720, 360)),
+        ("EquirectangularCamera {@ eyes topBottom}", (360, 360)),
+        ("EquirectangularCamera {@ eyes sideBySide}", (720, 180)),
+        ("CubeMapCamera {@}", (592, 444)),
+        ("CubeMapCamera {@ layout strip}", (1254, 209)),
+        ("StereoCamera {@ angle 40 separation 0.1 aspect 1.5}", (888, 296)),
+        ("CaveCamera {center 0 1 8 walls {-3 0 4 3 0 4 -3 4 4 3 0 4 3 0 8 3 4 4}}", (810, 324)),
+        ("PerspectiveCamera {@ angle 40}", (512, 512)),
+    ] {
+        place.put("shape.txt", seen_by(&camera.replace('@', POSE)));
+        let said = place.gives(0, "info shape.txt").out;
+        let (width, height) = size;
+        assert!(said.contains(&format!("picture    {width}x{height} where")), "{camera}: {said}");
+    }
+    // In another shape it stays whole, and what is empty is told.
+    place.put("sphere.txt", seen_by(&format!("EquirectangularCamera {{ {POSE} }}")));
+    let said = place.gives(0, "render sphere.txt -o a.tga --size 40x40 --samples 1").err;
+    assert!(said.contains("20 rows of 40x40 stay empty") && said.contains("--size"), "{said}");
+    let (_, square) = targa(&place, "a.tga");
+    let said = place.gives(0, "render sphere.txt -o b.tga --size 40x20 --samples 1").err;
+    assert!(!said.contains("empty"), "{said}");
+    let (bits, whole) = targa(&place, "b.tga");
+    assert_eq!((bits, &square[400..1200], square[0]), (24, &whole[..], [0; 4]));
+}
+
+#[test]
+fn lenses_have_the_same_bits_in_parts_and_on_all_threads() {
+    let place = Place::new();
+    let lens = format!("ThinLensCamera {{ {POSE} angle 40 aperture 0.8 focusDistance 8 blades 5 }}");
+    place.put("lens.txt", seen_by(&lens));
+    place.put("sharp.txt", seen_by(&lens.replace("aperture 0.8", "aperture 0")));
+    for way in ["--samples 8", "--sampler random --samples 8"] {
+        place.gives(0, &format!("render lens.txt -o whole.pfm --size 40x40 --threads 2 {way}"));
+        place.gives(0, &format!("render lens.txt -o part.pfm --size 40x40 --crop 7,9,20x21 --threads 1 {way}"));
+        let (whole, part) = (place.image("whole.pfm"), place.image("part.pfm"));
+        for (x, y) in (0..21).flat_map(|y| (0..20).map(move |x| (x, y))) {
+            assert_eq!(part.get(x, y), whole.get(x + 7, y + 9), "{way} {x},{y}");
+        }
+    }
+    // One sample goes through the lens's middle, as without an opening.
+    let said = place.gives(0, "render lens.txt -o one.pfm --size 40x40 --samples 1").err;
+    assert!(said.contains("nothing is out of focus"), "{said}");
+    place.gives(0, "render sharp.txt -o sharp.pfm --size 40x40 --samples 1");
+    assert_eq!(place.bytes("one.pfm"), place.bytes("sharp.pfm"));
+}
+
+#[test]
+fn wrong_cameras_are_told_of() {
+    let place = Place::new();
+    let refused = |camera: &str, words: &[&str]| {
+        place.put("wrong.txt", seen_by(&camera.replace('@', POSE)));
+        place.refused(2, "render wrong.txt -o p.png --dialect durer", words);
+    };
+    refused("FisheyeCamera {@ projection equdistant}", &["wrong.txt:2:", "equdistant", "did you mean `equidistant`?"]);
+    refused("FisheyeCamera {@ projection 3}", &["cannot be `3`", "stereographic"]);
+    refused("FisheyeCamera {@ angle 400}", &["at most 360"]);
+    refused("FisheyeCamera {@ angle 200 projection orthographic}", &["wrong.txt:2:1", "at most 180 degrees"]);
+    refused("FisheyeCamera {@ projection }", &["`projection` needs one of"]);
+    refused("ThinLensCamera {@ angle 40 blades 2}", &["`blades` must be 0"]);
+    refused("OmnimaxCamera {@ viewer 0 2 0}", &["inside the dome"]);
+    refused("CaveCamera {center 0 0 0 walls {1 2 3}}", &["rows of 9 numbers, but has 3"]);
+    refused("CaveCamera {center 0 0 0 walls {}}", &["must have 1 to 64 rows, but has 0"]);
+    refused("CaveCamera {center 0 0 0 walls {0 0 0 1 0 0 0 1 x}}", &["number 9 of 9", "`x`"]);
+    refused("CaveCamera {center 0 0 0 walls 0 0 0}", &["`walls` needs `{`"]);
+    refused("CaveCamera {center 0 0 0 walls {-1 -1 0 1 -1 0 -1 1 0}}", &["an eye lies in the plane of wall 1"]);
+    refused("PushBroomCamera {start 0 0 0 end 0 0 -1 direction 0 0 -1 up 0 1 0 angle 60}", &["must move sideways"]);
+    refused("MultipleCenterCamera {path {0 0 0 0 0 0  1 0 0 1 0 -1} up 0 1 0 angle 50}", &["at row 1 of `path`"]);
+    refused("ProjectiveCamera {matrix {1 0 0 0 0 1 0 0 0 0 0 1} width 9 height 9}", &["singular"]);
+    refused("ProjectiveCamera {width 9 height 9}", &["has no `matrix`"]);
+    refused("FishEyeCamera {@}", &["did you mean `FisheyeCamera`?"]);
+    refused("FisheyeCamera {@} FisheyeCamera {@ walls 3}", &["no field `walls`"]);
+    // They are words of ours, and strictly nobody's.
+    place.put("ours.txt", seen_by(&format!("FisheyeCamera {{ {POSE} }}")).replace("# ours\n", ""));
+    place.refused(2, "render ours.txt -o p.png --strict", &["`FisheyeCamera` is Dürer's own"]);
+    place.refused(2, "render ours.txt -o p.png --strict --dialect f04", &["`FisheyeCamera`"]);
+    let said = place.gives(0, "render ours.txt -o p.png --size 9x9 --dialect f04").err;
+    assert!(said.contains("`FisheyeCamera` is not a word of f04"), "{said}");
+    // What is written anew says the same.
+    place.gives(0, "convert ours.txt -o again.txt");
+    place.gives(0, "render ours.txt -o a.pfm --size 20x20 --samples 2");
+    place.gives(0, "render again.txt -o b.pfm --size 20x20 --samples 2");
+    assert_eq!(place.bytes("a.pfm"), place.bytes("b.pfm"));
+}

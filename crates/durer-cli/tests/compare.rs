@@ -1,0 +1,296 @@
+//! `durer compare`: numbers, exit codes, folders, heat maps, and the page in a real browser.
+
+mod common;
+
+use common::{Place, corpus};
+use durer::image::{Image8, read8};
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// Writes a picture as PPM.
+fn put(place: &Place, name: &str, picture: &Image8) {
+    let mut bytes = format!("P6 {} {} 255\n", picture.width, picture.height).into_bytes();
+    bytes.extend(picture.pixels.iter().flatten());
+    if let Some(folder) = place.path(name).parent() {
+        std::fs::create_dir_all(folder).unwrap();
+    }
+    place.put(name, bytes);
+}
+
+fn changed(picture: &Image8, change: impl Fn(u32, u32, &dyn Fn(u32, u32) -> [u8; 3]) -> [u8; 3]) -> Image8 {
+    let at = |x: u32, y: u32| picture.pixels[(y * picture.width + x) as usize];
+    let places = (0..picture.height).flat_map(|y| (0..picture.width).map(move |x| (x, y)));
+    Image8 { pixels: places.map(|(x, y)| change(x, y, &at)).collect(), ..*picture }
+}
+
+fn json(text: &str) -> Value {
+    serde_json::from_str(text).unwrap()
+}
+
+/// A rendered picture, named `a.png`, and the same as light, `a.exr`.
+fn rendered() -> (Place, Image8) {
+    let place = Place::new();
+    place.gives(0, "render scene.txt --size 60x50 --samples 1 -q -o a.png");
+    place.gives(0, "render scene.txt --size 60x50 --samples 1 -q -o a.exr");
+    let picture = place.image8("a.png");
+    (place, picture)
+}
+
+#[test]
+fn exit_codes_and_words() {
+    let (place, a) = rendered();
+    assert!(place.gives(0, "compare a.png a.png").out.starts_with("identical\n"));
+    put(&place, "mirror.ppm", &changed(&a, |x, y, at| at(a.width - 1 - x, y)));
+    let ran = place.gives(1, "compare a.png mirror.ppm");
+    assert!(ran.out.starts_with("different: ") && ran.err.is_empty(), "{}{}", ran.out, ran.err);
+    for word in ["mirrored left to right: explains 100.0 %", "RMSE", "PSNR", "SSIM", "FLIP", "largest", "where"] {
+        assert!(ran.out.contains(word), "{word}: {}", ran.out);
+    }
+    put(&place, "near.ppm", &changed(&a, |x, y, at| at(x, y).map(|v| v.saturating_add(2))));
+    place.gives(1, "compare a.png near.ppm");
+    assert!(place.gives(0, "compare a.png near.ppm --tolerance 2/255").out.starts_with("same: 0 of"));
+    place.gives(0, "compare a.png near.ppm --tolerance 0.008");
+    place.gives(0, "compare a.png near.ppm --allow 100");
+    // Light and eight bits of it are the same picture.
+    place.gives(0, "compare a.png a.exr");
+    place.gives(1, "compare a.png a.exr --transfer linear");
+    let light = json(&place.gives(0, "compare a.exr a.exr --json").out);
+    assert_eq!(light["pairs"][0]["hdr_flip"].as_f64(), Some(0.0));
+}
+
+#[test]
+fn bad_input_is_exit_code_2() {
+    let (place, a) = rendered();
+    let small = Image8 { width: 1, height: 1, pixels: vec![[0; 3]] };
+    put(&place, "small.ppm", &small);
+    place.put("broken.png", &place.bytes("a.png")[..200]);
+    place.put("no.png", "no picture");
+    std::fs::create_dir(place.path("empty")).unwrap();
+    for (arguments, words) in [
+        ("a.png small.ppm", "60 x 50 and 1 x 1"),
+        ("a.png missing.png", "missing.png"),
+        ("a.png broken.png", "broken.png"),
+        ("a.png no.png", "no.png"),
+        ("a.png scene.txt", "scene.txt"),
+        ("a.png empty", "one is a folder"),
+        ("empty empty", "no pictures in `empty`"),
+        (". empty", "no picture in `empty`"),
+        ("a.png a.png --tolerance -1", "2/255"),
+        ("a.png a.png --tolerance 1/0", "2/255"),
+        ("a.png a.png --tolerance x", "2/255"),
+        ("a.png a.png --allow 101", "0 to 100"),
+        ("a.png a.png --heat heat.txt", ".png"),
+        ("a.png a.png --heat missing/heat.png", "there is no folder"),
+        ("a.png a.png --report missing/r.html", "there is no folder"),
+        ("a.png", "PICTURE"),
+    ] {
+        place.refused(2, &format!("compare {arguments}"), &[words]);
+    }
+    put(&place, "f/a.ppm", &a);
+    put(&place, "g/a.ppm", &a);
+    place.refused(2, "compare f g --heat heat.png", &["--heat"]);
+    #[cfg(target_os = "linux")]
+    {
+        std::os::unix::fs::symlink("/dev/full", place.path("full.html")).unwrap();
+        assert!(place.gives(2, "compare a.png a.png --report full.html").err.contains("No space left"));
+    }
+}
+
+#[test]
+fn folders_of_pictures_and_of_students() {
+    let (place, a) = rendered();
+    let dark = changed(&a, |x, y, at| at(x, y).map(|v| v / 2));
+    for (name, picture) in [
+        ("ref/one.ppm", &a),
+        ("ref/deep/two.ppm", &a),
+        ("mine/one.ppm", &a),
+        ("mine/deep/two.ppm", &dark),
+        ("mine/more.ppm", &a),
+        ("class/ada/one.ppm", &a),
+        ("class/ada/deep/two.ppm", &a),
+        ("class/bob/one.ppm", &dark),
+        ("class/eve/deep/two.ppm", &a),
+    ] {
+        put(&place, name, picture);
+    }
+    let ran = place.gives(1, "compare ref mine");
+    assert!(ran.out.contains("darker by the factor 0.5") && ran.err.contains("more.ppm"), "{}{}", ran.out, ran.err);
+    place.gives(0, "compare ref/deep mine/deep --allow 100");
+    let found = json(&place.gives(1, "compare ref mine --json").out);
+    assert_eq!(
+        (found["version"].as_u64(), found["identical"].as_u64(), found["different"].as_u64()),
+        (Some(1), Some(1), Some(1))
+    );
+    assert_eq!(found["pairs"][0]["findings"][0]["kind"], "factor");
+
+    let ran = place.gives(1, "compare ref class");
+    let row = |who: &str| {
+        ran.out
+            .lines()
+            .rfind(|l| l.starts_with(who))
+            .unwrap()
+            .split_whitespace()
+            .skip(1)
+            .map(String::from)
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(
+        (row("ada"), row("bob"), row("eve")),
+        (
+            ["2", "0", "0", "0"].map(String::from).to_vec(),
+            ["0", "1", "1", "0"].map(String::from).to_vec(),
+            ["1", "0", "1", "0"].map(String::from).to_vec(),
+        )
+    );
+    // One that cannot be read does not keep the others from being compared.
+    place.put("class/bob/deep.png", "");
+    place.put("class/ada/one.ppm", "P6 9 9");
+    let ran = place.gives(2, "compare ref class --report class.html");
+    assert!(
+        ran.out.contains("eve/one.ppm") && ran.out.contains("error") && ran.err.contains("1 of 6"),
+        "{}{}",
+        ran.out,
+        ran.err
+    );
+    assert!(place.path("class.html").is_file());
+}
+
+#[test]
+fn the_heat_map_is_black_where_nothing_differs() {
+    let (place, a) = rendered();
+    put(&place, "patch.ppm", &changed(&a, |x, y, at| if x > 50 && y > 40 { [255, 0, 255] } else { at(x, y) }));
+    let ran = place.gives(1, "compare a.png patch.ppm --heat heat.png");
+    assert!(ran.out.contains("wrote heat.png"));
+    let heat = place.image8("heat.png");
+    assert_eq!((heat.width, heat.height, heat.pixels[0]), (60, 50, [0, 0, 8]));
+    assert!(heat.pixels[60 * 50 - 1][0] > 200);
+}
+
+/// The mistakes of students, made in the course's own pictures.
+#[test]
+fn mistakes_in_real_pictures_are_named() {
+    let Some(course) = corpus() else { return };
+    let place = Place::new();
+    for name in ["f04/f04-handout/output2_14.png", "f04/f04-handout/output6_04ab.png", "f12a4/binary-f12-a4/07.png"] {
+        let path = course.join("reference").join(name);
+        let a = read8(&std::fs::read(&path).unwrap(), name).unwrap();
+        let (width, height) = (a.width, a.height);
+        let curve = |v: u8| durer::image::Transfer::Srgb.encode(f32::from(v) / 255.0);
+        let wrong: [(&str, Image8); 7] =
+            [
+                ("mirrored", changed(&a, |x, y, at| at(width - 1 - x, y))),
+                ("upside-down", changed(&a, |x, y, at| at(x, height - 1 - y))),
+                ("shifted", changed(&a, |x, y, at| at(x, y.saturating_sub(1)))),
+                ("inverted", changed(&a, |x, y, at| at(x, y).map(|v| 255 - v))),
+                ("factor", changed(&a, |x, y, at| at(x, y).map(|v| v / 2))),
+                ("gamma-once-more", changed(&a, |x, y, at| at(x, y).map(curve))),
+                (
+                    "dark-speckles",
+                    changed(&a, |x, y, at| {
+                        if (x * 7919 + y * 104_729 + x * y) % 31 < 2 { at(x, y).map(|v| v / 5) } else { at(x, y) }
+                    }),
+                ),
+            ];
+        for (kind, picture) in &wrong {
+            put(&place, "wrong.ppm", picture);
+            let arguments = ["compare", "--json", path.to_str().unwrap(), "wrong.ppm"];
+            let output = Command::new(common::durer()).args(arguments).current_dir(place.path("")).output().unwrap();
+            let found = json(&String::from_utf8(output.stdout).unwrap());
+            let findings = &found["pairs"][0]["findings"];
+            assert_eq!(findings[0]["kind"], *kind, "{name}: {findings}");
+        }
+    }
+}
+
+/// Rays through the borders of pixels instead of their middles: the mistake that is made most often.
+#[test]
+fn border_pixels_and_missing_shadows_are_recognised() {
+    let place = Place::new();
+    let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/whitted.txt");
+    std::fs::copy(&scene, place.path("whitted.txt")).unwrap();
+    for (name, options) in [("right", ""), ("border", "--compat border-pixels"), ("bare", "--shadows=off")] {
+        place.gives(0, &format!("render whitted.txt --size 150x150 --samples 1 -q -o {name}.png {options}"));
+    }
+    let words = |name: &str| place.gives(1, &format!("compare right.png {name}.png")).out;
+    assert!(words("border").contains("its rays go to i / (n - 1)"), "{}", words("border"));
+    assert!(words("bare").contains("shadows are missing"), "{}", words("bare"));
+}
+
+fn chromium() -> Option<PathBuf> {
+    let paths = std::env::var_os("PATH")?;
+    let found = ["chromium", "chromium-browser", "google-chrome"]
+        .iter()
+        .find_map(|name| std::env::split_paths(&paths).map(|folder| folder.join(name)).find(|path| path.is_file()));
+    if found.is_none() {
+        println!("skipped: there is no chromium to open the page in");
+    }
+    found
+}
+
+/// Clicks through the page and tells in the document's title what it saw.
+const CLICKS: &str = r##"<script>
+const seen = [];
+const look = () => [getComputedStyle($("over")).visibility, getComputedStyle($("over")).clipPath, getComputedStyle($("over")).mixBlendMode].join(" ");
+const press = mode => { document.querySelector(`button[data-mode=${mode}]`).click(); seen.push(`${mode}: ${look()}`); };
+seen.push(`rows ${document.querySelectorAll("#pairs tr.pick").length}`);
+seen.push(`natural ${$("over").complete && $("over").naturalWidth}x${$("over").naturalHeight}`);
+for (const mode of ["slider", "reference", "picture", "difference", "blink"]) press(mode);
+press("heat");
+seen.push(`heat ${$("over").src === pair.images[2]}`);
+press("slider");
+const box = $("stage").getBoundingClientRect();
+const at = (type, part) => $("stage").dispatchEvent(new PointerEvent(type, { clientX: box.left + part * box.width, clientY: box.top + 5, buttons: 1, bubbles: true, pointerId: 1 }));
+$("stage").setPointerCapture = () => {};
+at("pointerdown", 0.25); at("pointermove", 0.75);
+seen.push(`slid ${getComputedStyle($("over")).clipPath}; ${$("at").textContent}`);
+document.querySelector("#where a").click();
+seen.push(`box ${!$("box").hidden} ${$("box").style.left}`);
+document.querySelectorAll("#pairs tr.pick")[0].click();
+seen.push(`name ${$("name").textContent}`);
+window.dispatchEvent(new KeyboardEvent("keydown", { key: "2" }));
+setTimeout(() => { seen.push(`blinked ${getComputedStyle($("over")).visibility}`); document.title = "SEEN " + seen.join(" | ") + " END"; }, 700);
+</script>"##;
+
+#[test]
+fn the_page_works_in_a_browser_without_network() {
+    let Some(chromium) = chromium() else { return };
+    let (place, a) = rendered();
+    // A name that would end a script, were it not taken as text.
+    for (name, left) in
+        [("ref/one.ppm", 99), ("ref/</script><b>.ppm", 99), ("mine/one.ppm", 99), ("mine/</script><b>.ppm", 30)]
+    {
+        let name = name.replace("</", "<").replace('/', std::path::MAIN_SEPARATOR_STR);
+        put(&place, &name, &changed(&a, |x, y, at| if x > left { [255, 0, 0] } else { at(x, y) }));
+    }
+    place.gives(1, "compare ref mine --report report.html");
+    let page = String::from_utf8(place.bytes("report.html")).unwrap();
+    assert!(!page.contains("http://") && !page.contains("https://"));
+    place.put("clicked.html", page.replace("</body>", &format!("{CLICKS}</body>")));
+    let run = Command::new("timeout")
+        .arg("60")
+        .arg(chromium)
+        .args(["--no-sandbox", "--headless=new", "--disable-gpu", "--virtual-time-budget=4000", "--dump-dom"])
+        .arg(format!("--user-data-dir={}", place.path("browser").display()))
+        .arg(format!("file://{}", place.path("clicked.html").display()))
+        .output()
+        .unwrap();
+    let dom = String::from_utf8_lossy(&run.stdout);
+    let title = dom.split("<title>").nth(1).and_then(|rest| rest.split("</title>").next()).unwrap_or("");
+    assert!(title.starts_with("SEEN "), "{title}\n{}", String::from_utf8_lossy(&run.stderr));
+    for wanted in [
+        "rows 2",
+        "natural 60x50",
+        "slider: visible inset(0px 0px 0px 50%) normal",
+        "reference: hidden",
+        "picture: visible none normal",
+        "difference: visible none difference",
+        "heat true",
+        "slid inset(0px 0px 0px 75%); pixel 45,",
+        "box true 51.6",
+        "different",
+        "blinked hidden",
+    ] {
+        assert!(title.contains(wanted), "`{wanted}` is not in {title}");
+    }
+}

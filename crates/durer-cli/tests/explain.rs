@@ -1,0 +1,108 @@
+//! `durer explain`.
+
+mod common;
+
+use common::Place;
+use serde_json::Value;
+
+const SMALL: &str = "--size 40x30 --quiet";
+
+/// The value that a node's terms sum to, in single precision and in order.
+fn sum(node: &Value) -> [f32; 3] {
+    let color = |name: &str| -> [f32; 3] { std::array::from_fn(|i| node[name][i].as_f64().unwrap() as f32) };
+    let terms = node["terms"].as_array().unwrap();
+    if terms.is_empty() {
+        return color("value");
+    }
+    let mut total = [0.0; 3];
+    for term in terms {
+        let (value, factor) = (sum(term), &term["factor"]);
+        for i in 0..3 {
+            total[i] += factor[i].as_f64().unwrap() as f32 * value[i];
+        }
+    }
+    let scale = color("scale");
+    std::array::from_fn(|i| total[i] * scale[i])
+}
+
+#[test]
+fn the_tree_sums_to_the_pixel_of_the_picture() {
+    let place = Place::new();
+    place.gives(0, &format!("render scene.txt -o p.pfm --samples 1 {SMALL}"));
+    let picture = place.image("p.pfm");
+    for (x, y) in [(20, 12), (20, 26), (3, 3), (31, 20)] {
+        let ran = place.gives(0, &format!("explain scene.txt --pixel {x},{y} --samples 1 --json {SMALL}"));
+        let json: Value = serde_json::from_str(&ran.out).unwrap();
+        let light = &json["pixel"]["samples"][0]["light"];
+        assert_eq!(sum(light), picture.get(x, y).unwrap().to_array(), "{x},{y}");
+    }
+}
+
+#[test]
+fn the_text_names_things_by_their_place_in_the_file() {
+    let place = Place::new();
+    let ran = place.gives(0, &format!("explain scene.txt --pixel 20,13 {SMALL}"));
+    for wanted in [
+        "pixel 20,13 = (",
+        "the mean of 16 samples",
+        "hits Sphere scene.txt:8:19 at t = ",
+        "material 0 scene.txt:5:3",
+        "DirectionalLight scene.txt:2:22: (sum below) · (0.9, 0.9, 0.8)",
+        "the shadow ray is free",
+    ] {
+        assert!(ran.out.contains(wanted), "{wanted}\n{}", ran.out);
+    }
+    assert!(!ran.out.contains('\x1b'), "no colours into a pipe");
+    // Any ray, with a sample of its own neither needed nor allowed.
+    let ran = place.gives(2, "explain scene.txt --quiet --ray 0,3,0,0,-1,0");
+    assert!(ran.err.contains("--ray"), "{}", ran.err);
+    for ray in [&["0 3 0 0 -1 0"][..], &["0", "3", "0", "0", "-1", "0"]] {
+        let output = place.command("explain scene.txt --quiet --ray").args(ray).output().unwrap();
+        let out = String::from_utf8(output.stdout).unwrap();
+        assert!(out.contains("camera ray") && out.contains("hits Sphere scene.txt:8:19 at t = 1.5"), "{out}");
+    }
+}
+
+#[test]
+fn the_brightest_and_the_oddest_pixel_are_found() {
+    let place = Place::new();
+    let scene = common::SCENE.replace("color 0.2 0.1 0.5", "color 0 0 0");
+    place.put("dark.txt", scene);
+    place.gives(0, &format!("render dark.txt -o p.pfm {SMALL}"));
+    let picture = place.image("p.pfm");
+    let light = |x, y| picture.get(x, y).unwrap().dot([0.2126, 0.7152, 0.0722].into());
+    let ran = place.gives(0, &format!("explain dark.txt --brightest --json {SMALL}"));
+    let json: Value = serde_json::from_str(&ran.out).unwrap();
+    let (x, y) = (json["pixel"]["x"].as_u64().unwrap() as u32, json["pixel"]["y"].as_u64().unwrap() as u32);
+    let most = (0..30).flat_map(|y| (0..40).map(move |x| (x, y))).map(|(x, y)| light(x, y)).fold(0.0, f32::max);
+    assert_eq!(light(x, y), most);
+    place.gives(0, &format!("explain dark.txt --worst {SMALL}"));
+}
+
+#[test]
+fn wrong_questions_are_refused() {
+    let place = Place::new();
+    for (question, answer) in [
+        ("", "say which pixel"),
+        ("--pixel 40,3", "the crop does not lie in the picture of 40 x 30 pixels"),
+        ("--pixel 4;3", "say it as 200,150"),
+        ("--pixel 4,3 --sample 16", "there is no sample 16: the pixel's are numbered from 0 to 15"),
+        ("--pixel 4,3 --jitter", "cannot be explained"),
+        ("--pixel 4,3 --sampler random --samples 4", "cannot be explained"),
+        ("--pixel 4,3 --brightest", "cannot be used with"),
+    ] {
+        let ran = place.gives(2, &format!("explain scene.txt {SMALL} {question}"));
+        assert!(ran.err.contains(answer), "{question}: {}", ran.err);
+    }
+}
+
+#[test]
+fn the_page_holds_all_that_it_needs() {
+    let place = Place::new();
+    place.put("a<b.txt", common::SCENE);
+    let ran = place.gives(0, "explain a<b.txt --pixel 20,12 --size 40x30 --html why.html");
+    assert!(ran.out.contains("wrote why.html"), "{}", ran.out);
+    let page = std::fs::read_to_string(place.path("why.html")).unwrap();
+    assert!(page.contains("data:image/png;base64,iVBOR") && page.contains("a\\u003cb.txt") && !page.contains("@DATA@"));
+    assert!(!page.contains("http"), "nothing is fetched");
+}

@@ -1,0 +1,169 @@
+//! Work in parts: shards and their merging, checkpoints and resuming, single pixels, limits.
+
+mod common;
+
+use common::{Place, SCENE};
+
+const SMALL: &str = "render scene.txt --size 40x30 --samples 6 --show color,depth,variance --quiet";
+
+fn last_line(text: &str) -> String {
+    text.lines().last().unwrap_or_default().to_string()
+}
+
+#[test]
+fn shards_merge_to_the_bytes_of_one_run() {
+    let place = Place::new();
+    let hash = last_line(&place.gives(0, &format!("{SMALL} -o whole.exr --hash")).out);
+    assert_eq!(hash.len(), 64, "{hash}");
+    for (by, tile) in [("tiles", 8), ("samples", 32)] {
+        for index in 1..=3 {
+            let shard = format!("--shard {index}/3 --shard-by {by} --tile {tile} --threads {index}");
+            let ran = place.gives(0, &format!("{SMALL} {shard} -o {index}.part"));
+            assert_eq!(ran.out, "");
+        }
+        let ran = place.gives(0, "merge 2.part 3.part 1.part -o merged.exr --hash");
+        assert_eq!(ran.out, format!("wrote merged.exr\n{hash}\n"), "by {by}");
+        assert!(place.bytes("merged.exr") == place.bytes("whole.exr"), "by {by}");
+        place.refused(2, "merge 3.part 1.part -o m.exr", &["missing", "2/3", by]);
+        place.refused(2, "merge 1.part 2.part 3.part 2.part -o m.exr", &["`2.part` and `2.part` overlap"]);
+        place.refused(2, "merge 1.part 2.part 3.part -o m.xyz", &["m.xyz"]);
+    }
+    // Several pictures go into files of their own, named by the job that the parts have in them.
+    place.gives(0, "merge 1.part 2.part 3.part -o m.png --quiet");
+    place.gives(0, &format!("{SMALL} -o w.png"));
+    assert!(place.bytes("m.depth.png") == place.bytes("w.depth.png"));
+    assert!(place.bytes("m.color.png") == place.bytes("w.color.png"));
+    // Parts of something else, and what is no part.
+    place.gives(0, &format!("{SMALL} --seed 7 --shard 2/3 --shard-by samples -o other.part"));
+    place.refused(2, "merge 1.part other.part 3.part -o m.exr", &["other.part", "`seed` is 7"]);
+    let bytes = place.bytes("2.part");
+    place.put("torn.part", &bytes[..bytes.len() / 2]);
+    place.refused(2, "merge 1.part torn.part 3.part -o m.exr", &["torn.part", "torn or damaged"]);
+    place.refused(2, "merge scene.txt -o m.exr", &["scene.txt", "no part"]);
+    place.refused(2, "merge missing.part -o m.exr", &["missing.part"]);
+    place.refused(2, &format!("{SMALL} --shard 7/7 --shard-by samples -o 7.part"), &["only 6 samples"]);
+    place.refused(2, &format!("{SMALL} --shard 4/3 -o 4.part"), &["3/3"]);
+}
+
+#[test]
+fn work_that_was_stopped_is_gone_on_with() {
+    let place = Place::new();
+    let work = "render scene.txt --size 120x90 --samples 300 --quiet --hash";
+    let hash = last_line(&place.gives(0, &format!("{work} -o calm.png")).out);
+    place.gives(0, &format!("{work} --time 30ms --checkpoint c.part -o p.png"));
+    assert!(place.path("c.part").exists(), "it cannot have been finished in 30 ms");
+    // What is there is refused for anything else, and stays.
+    let other = |options: &str, words: &[&str]| {
+        place.refused(2, &format!("{work} --resume --checkpoint c.part -o p.png {options}"), words);
+    };
+    other("--seed 1", &["c.part", "another job", "`seed`"]);
+    other("--bounces 3", &["another job", "`settings`"]);
+    place.put("scene.txt", SCENE.replace("radius 1", "radius 1.5"));
+    other("", &["c.part", "another scene"]);
+    place.put("scene.txt", SCENE);
+    let bytes = place.bytes("c.part");
+    place.put("c.part", &bytes[..bytes.len() - 1]);
+    other("", &["c.part", "torn"]);
+    place.put("c.part", &bytes);
+    let ran = place.gives(0, &format!("{work} --resume --checkpoint c.part -o p.png --threads 3 --tile 40"));
+    assert_eq!(last_line(&ran.out), hash);
+    assert!(place.bytes("p.png") == place.bytes("calm.png") && !place.path("c.part").exists());
+    // Where nothing was saved, it begins from the start.
+    let ran = place.gives(0, &format!("{work} --resume --checkpoint c.part -o p.png"));
+    assert_eq!(last_line(&ran.out), hash);
+}
+
+#[test]
+fn one_pixel_is_told_alone() {
+    let place = Place::new();
+    let options = "render scene.txt --size 40x30 --samples 4 --pixel 20,15";
+    let one = place.gives(0, &format!("{options} --sample 3")).out;
+    assert!(one.starts_with("pixel 20,15, sample 3: 0."), "{one}");
+    assert_eq!(place.names(), ["endless.txt", "scene.txt"]);
+    place.refused(2, &format!("{options} --sample 4"), &["samples from 0 to 3"]);
+    place.refused(2, "render scene.txt --size 40x30 --pixel 40,0", &["pixel 40,0 is not in the picture"]);
+    place.refused(2, "render scene.txt --sample 3", &["--pixel"]);
+    place.refused(2, "render scene.txt --pixel 3", &["200,150"]);
+}
+
+#[test]
+fn rules_of_stopping_and_limits() {
+    let place = Place::new();
+    let ran = place.gives(0, "render scene.txt --size 64x48 --noise 0.02 --show sample-count -o n.exr");
+    assert_eq!(ran.out, "wrote n.exr\n");
+    let counts = place.image("n.exr");
+    let most = counts.pixels.iter().fold(0.0_f32, |most, p| most.max(p.x));
+    assert!(counts.pixels.iter().any(|p| p.x == 16.0) && most > 16.0 && most < 4096.0, "{most}");
+    let ran = place.gives(0, "render scene.txt --size 64x48 --time 100ms --preview v.png -o t.png");
+    assert!(ran.err.contains("the time was over after"), "{}", ran.err);
+    assert_eq!((place.image8("v.png").width, place.image8("t.png").width), (64, 64));
+    assert!(!place.path("t.png.part").exists(), "what nobody wanted is not left");
+    place.refused(2, "render scene.txt --size 4000x4000 --memory 100M", &["needs about", "100 MiB", "--memory"]);
+    place.refused(2, "render scene.txt --memory 5Q", &["8G"]);
+    place.refused(2, "render scene.txt --noise 0", &["more than 0"]);
+    place.refused(2, "render scene.txt --noise 0.1 --sampler jittered", &["sobol or random"]);
+    place.refused(2, "render scene.txt --time soon", &["--time"]);
+    place.refused(2, "render scene.txt --preview p.xyz", &["p.xyz"]);
+    place.refused(2, "render scene.txt --shard 1/2", &["--output"]);
+    let many: String =
+        (0..50_000).map(|i| format!("v {i} 0 1\nv {i} 1 {i}\nf {} {} 1\n", 2 * i + 1, 2 * i + 2)).collect();
+    place.put("large.obj", many);
+    place.put("large.txt", SCENE.replace("Sphere { center 0 0.5 0 radius 1 }", "TriangleMesh { obj_file large.obj }"));
+    place.refused(2, "render large.txt --size 8x8 --memory 8M", &["large.obj", "of memory", "--memory"]);
+}
+
+#[test]
+fn verify_says_one_hash() {
+    let place = Place::new();
+    let ran = place.gives(0, "verify scene.txt --trials 6 --size 24x20");
+    assert!(ran.out.starts_with("6 ways, structures bvh, grid, none"), "{}", ran.out);
+    let hash = last_line(&ran.out);
+    assert_eq!(last_line(&place.gives(0, "verify scene.txt --trials 1 --size 24x20 --quiet").out), hash);
+    place.refused(2, "verify missing.txt", &["missing.txt"]);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_killed_program_leaves_nothing_that_its_next_run_does_not_take_up() {
+    let place = Place::new();
+    let work = "render scene.txt --size 160x120 --samples 80 --quiet --hash --resume --checkpoint-every 5ms";
+    let hash = last_line(&place.gives(0, &format!("{work} -o calm.exr")).out);
+    for i in 0..8 {
+        let mut child = place.command(&format!("{work} -o p.exr")).stdout(std::process::Stdio::null()).spawn().unwrap();
+        std::thread::sleep(std::time::Duration::from_millis(10 + 23 * i));
+        child.kill().unwrap();
+        child.wait().unwrap();
+    }
+    let ran = place.gives(0, &format!("{work} -o p.exr"));
+    assert_eq!(last_line(&ran.out), hash);
+    assert_eq!(place.names(), ["calm.exr", "endless.txt", "p.exr", "scene.txt"]);
+    assert!(place.bytes("p.exr") == place.bytes("calm.exr"));
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_is_told_and_the_old_file_is_intact() {
+    let place = Place::new();
+    for (name, options) in [("p.png", ""), ("p.exr", ""), ("p.part", "--shard 1/2")] {
+        place.put(name, "old");
+        for limit in [0, 100, 1000] {
+            let line = format!("render scene.txt --size 40x30 -o {name} {options}");
+            let mut command = std::process::Command::new("sh");
+            command.args([
+                "-c",
+                "trap '' XFSZ; exec prlimit --fsize=\"$0\" \"$@\"",
+                &limit.to_string(),
+                common::durer(),
+            ]);
+            let output = command.args(line.split_whitespace()).current_dir(place.path("")).output().unwrap();
+            let said = String::from_utf8_lossy(&output.stderr).into_owned();
+            if said.contains("prlimit: not found") {
+                return println!("skipped: there is no `prlimit`");
+            }
+            assert_eq!(output.status.code(), Some(1), "{said}");
+            assert!(said.contains(&format!("cannot write `{name}`")), "{said}");
+            assert_eq!(place.bytes(name), b"old");
+            assert!(place.names().iter().all(|name| !name.ends_with(".tmp")));
+        }
+    }
+}

@@ -1,0 +1,47 @@
+//! The opening of a lens: a disc, or a regular polygon where its blades are straight.
+//!
+//! The unit square goes to the disc by concentric squares and circles, which keeps areas and neighbourhoods
+//! (Shirley, Chiu, *A Low Distortion Map Between Disk and Square*, Journal of Graphics Tools 2(3), 1997). A sector of the
+//! disc goes to the triangle of a blade with its share of the angle along the blade and its share of the radius.
+
+use crate::math::{Vec2, fp};
+use glam::DVec2;
+use std::f64::consts::{FRAC_PI_4, TAU};
+
+/// The most blades that a lens may have.
+pub const MOST_BLADES: u32 = 64;
+
+/// A point of an opening of radius 1 around 0, evenly over its area: a disc for 0 blades, else a polygon whose first
+/// corner lies to the right, turned counter-clockwise by an angle in degrees. (0.5, 0.5) goes to its middle.
+pub fn sample(lens: Vec2, blades: u32, turn: f32) -> DVec2 {
+    let square = 2.0 * lens.as_dvec2() - 1.0;
+    if square == DVec2::ZERO {
+        return DVec2::ZERO;
+    }
+    // Radius and angle of the point on its circle.
+    let (radius, angle) = match square.x.abs() > square.y.abs() {
+        true => (square.x, FRAC_PI_4 * (square.y / square.x)),
+        false => (square.y, 2.0 * FRAC_PI_4 - FRAC_PI_4 * (square.x / square.y)),
+    };
+    let turn = f64::from(turn).to_radians();
+    let direction = |angle: f64| {
+        let (sin, cos) = fp::sin_cos_f64(angle + turn);
+        DVec2::new(cos, sin)
+    };
+    if blades == 0 {
+        return radius * direction(angle);
+    }
+    // A negative radius is a positive one on the other side.
+    let angle = if radius < 0.0 { angle + 0.5 * TAU } else { angle };
+    let share = angle.rem_euclid(TAU) / TAU * f64::from(blades);
+    let along = share - share.floor();
+    let corner = |i: f64| direction(TAU * i / f64::from(blades));
+    let (first, second) = (corner(share.floor()), corner(share.floor() + 1.0));
+    radius.abs() * (first + along * (second - first))
+}
+
+/// What is wrong with a number of blades.
+pub fn problem(blades: u32) -> Option<String> {
+    let wrong = (1..=2).contains(&blades) || blades > MOST_BLADES;
+    wrong.then(|| format!("`blades` must be 0, for a round opening, or 3 to {MOST_BLADES}"))
+}

@@ -1,0 +1,162 @@
+//! The CAVE: screens around a viewer, each showing what he would see through it.
+//!
+//! A wall is given by three corners a (lower left), b (lower right) and c (upper left) as it is seen from inside. The ray
+//! through the part (s, t) of its sides runs from the eye to a + s (b - a) + t (c - a): a frustum with its apex anywhere,
+//! off the wall's middle or not. So two walls that share an edge show the same things at it, whatever the eye: rays are
+//! the same at the same points of the room. The walls lie side by side in one picture, in true proportion, on one ground.
+//! The solid angle of an area at r from the eye on a wall with normal n is |n·r| / |r|³.
+//!
+//! Source: Cruz-Neira, Sandin, DeFanti, *Surround-Screen Projection-Based Virtual Reality: The Design and Implementation
+//! of the CAVE*, SIGGRAPH 1993; Kooima, *Generalized Perspective Projection*, 2009.
+
+use super::pose::world_ray;
+use super::sheet::Sheet;
+use super::{CameraSample, Eyes, Frame, Lens, Pose};
+use crate::describe::Rule;
+use crate::described;
+use crate::dialect::{Dialect, set};
+use crate::math::{Ray, Vec2, Vec3};
+use glam::{DMat3, DVec2, DVec3};
+
+described! {
+    /// Several walls around a viewer, as one picture; for one eye or a pair.
+    CaveCamera ["CaveCamera" in set::DURER] {
+        /// The viewer's eye, or the middle between both: anywhere in the room.
+        center: Vec3 = Vec3::ZERO, required, Rule::Any, ["center" in set::DURER];
+        /// Where the viewer's head is turned, which tells his right from his left; of any length.
+        direction: Vec3 = Vec3::NEG_Z, optional, Rule::NonZero, ["direction" in set::DURER];
+        /// What is up for the viewer's head; need not be perpendicular.
+        up: Vec3 = Vec3::Y, optional, Rule::NonZero, ["up" in set::DURER];
+        /// Three corners for each wall, as seen from inside: lower left, lower right, upper left. From left to right.
+        walls: Vec<[f32; 9]> = front_wall(), required, Rule::Count(1, 64), ["walls" in set::DURER];
+        /// Which eye's picture, or how both are laid out.
+        eyes: Eyes = Eyes::Middle, optional, Rule::Any, ["eyes" in set::DURER];
+        /// Distance between the eyes.
+        separation: f32 = 0.065, optional, Rule::NonNegative, ["separation" in set::DURER];
+    }
+}
+
+fn front_wall() -> Vec<[f32; 9]> {
+    vec![[-1.0, -1.0, -1.0, 1.0, -1.0, -1.0, -1.0, 1.0, -1.0]]
+}
+
+/// A wall: its lower left corner and the sides from it, and where that corner lies on the sheet.
+#[derive(Clone, Copy)]
+struct Wall {
+    corner: DVec3,
+    across: DVec3,
+    upwards: DVec3,
+    left: f64,
+}
+
+impl Wall {
+    fn size(&self) -> DVec2 {
+        DVec2::new(self.across.length(), self.upwards.length())
+    }
+
+    /// The point of the room for a place on the sheet.
+    fn point(&self, place: DVec2) -> DVec3 {
+        let share = (place - DVec2::new(self.left, 0.0)) / self.size();
+        self.corner + share.x * self.across + share.y * self.upwards
+    }
+
+    fn contains(&self, place: DVec2) -> bool {
+        Sheet(self.size()).contains(place - DVec2::new(self.left, 0.0))
+    }
+
+    fn normal(&self) -> DVec3 {
+        self.across.cross(self.upwards).normalize()
+    }
+}
+
+impl CaveCamera {
+    fn walls(&self) -> impl Iterator<Item = Wall> {
+        let mut left = 0.0;
+        self.walls.iter().map(move |row| {
+            let [a, b, c] = [0, 3, 6].map(|i| Vec3::from_slice(&row[i..i + 3]).as_dvec3());
+            let wall = Wall { corner: a, across: b - a, upwards: c - a, left };
+            left += wall.size().x;
+            wall
+        })
+    }
+
+    /// One eye's sheet: all walls in a row.
+    fn one(&self) -> DVec2 {
+        self.walls().fold(DVec2::ZERO, |one, wall| DVec2::new(one.x + wall.size().x, one.y.max(wall.size().y)))
+    }
+
+    /// An eye in the room.
+    fn eye(&self, frame: &Frame, side: f64) -> DVec3 {
+        frame.eye.as_dvec3() + 0.5 * side * f64::from(self.separation) * frame.right.as_dvec3()
+    }
+
+    /// The eye, the wall and its point that a sample sees.
+    fn seen(&self, frame: &Frame, sample: &CameraSample) -> Option<(DVec3, Wall, DVec3)> {
+        let (point, pixel) = (sample.point.as_dvec2(), sample.pixel.as_dvec2());
+        let (one, sheet) = (self.one(), self.eyes.sheet(self.one()));
+        let (view, place) = self.eyes.view(one, point, pixel)?;
+        let at = sheet.place(pixel) - view.corner;
+        let wall = self.walls().find(|wall| wall.contains(at))?;
+        Some((self.eye(frame, view.side), wall, wall.point(place)))
+    }
+}
+
+impl Lens for CaveCamera {
+    fn pose(&self) -> Pose {
+        Pose { center: self.center, direction: self.direction, up: self.up }
+    }
+
+    fn proportions(&self) -> Option<Vec2> {
+        self.eyes.sheet(self.one()).proportions()
+    }
+
+    fn problem(&self) -> Option<String> {
+        if self.walls.is_empty() {
+            return Some("`walls` must have at least one row".into());
+        }
+        let frame = Frame::new(self.pose(), Dialect::Durer.rules());
+        for (i, wall) in self.walls().enumerate() {
+            let size = wall.size();
+            if size.min_element() <= 0.0 {
+                return Some(format!("wall {} has no extent: its corners must differ", i + 1));
+            }
+            if wall.across.dot(wall.upwards).abs() > 1e-3 * size.x * size.y {
+                return Some(format!("wall {} has no right angle at its first corner", i + 1));
+            }
+            for view in self.eyes.views(self.one()) {
+                if (self.eye(&frame, view.side) - wall.corner).dot(wall.normal()).abs() < 1e-6 * size.max_element() {
+                    return Some(format!("an eye lies in the plane of wall {}, and sees nothing of it", i + 1));
+                }
+            }
+        }
+        None
+    }
+
+    fn ray(&self, frame: &Frame, sample: &CameraSample) -> Option<Ray> {
+        let (eye, _, point) = self.seen(frame, sample)?;
+        Some(world_ray(eye, point - eye))
+    }
+
+    fn project(&self, frame: &Frame, world: Vec3, _: Vec2, found: &mut dyn FnMut(Vec2)) {
+        let one = self.one();
+        for view in self.eyes.views(one) {
+            let eye = self.eye(frame, view.side);
+            for wall in self.walls() {
+                // corner + s across + t upwards - eye = k (world - eye): s, t and k at once.
+                let to_world = world.as_dvec3() - eye;
+                let solved = DMat3::from_cols(wall.across, wall.upwards, -to_world).inverse() * (eye - wall.corner);
+                let place = DVec2::new(wall.left, 0.0) + solved.truncate() * wall.size();
+                if solved.z > 0.0 && solved.is_finite() && wall.contains(place) {
+                    found(self.eyes.point(one, view, place).as_vec2());
+                }
+            }
+        }
+    }
+
+    fn footprint(&self, frame: &Frame, sample: &CameraSample, t: f32) -> f32 {
+        let Some((eye, wall, point)) = self.seen(frame, sample) else { return 0.0 };
+        let (to_wall, unit) = (point - eye, self.eyes.sheet(self.one()).unit());
+        let solid_angle = wall.normal().dot(to_wall).abs() / (to_wall.length_squared() * to_wall.length());
+        (f64::from(t * t) * solid_angle * unit * unit) as f32
+    }
+}

@@ -1,0 +1,60 @@
+//! Cameras whose rays all run through one eye: maps between a picture and directions.
+
+use super::{CameraSample, Frame, Lens, Pose};
+use crate::math::{Ray, Vec2, Vec3};
+use glam::{DVec2, DVec3};
+
+/// A camera with one eye. Directions are in the camera's space: x to the right, y upwards, z forwards.
+pub trait Central {
+    /// See [`Lens::pose`].
+    fn stand(&self) -> Pose;
+
+    /// See [`Lens::proportions`].
+    fn shape(&self) -> Option<Vec2> {
+        None
+    }
+
+    /// See [`Lens::problem`].
+    fn fault(&self) -> Option<String> {
+        None
+    }
+
+    /// The direction, of any length, that a point of the picture sees for a pixel.
+    fn direction(&self, point: DVec2, pixel: DVec2) -> Option<DVec3>;
+
+    /// Calls `found` with every point of the picture that sees a unit direction.
+    fn image(&self, direction: DVec3, found: &mut dyn FnMut(DVec2));
+
+    /// The solid angle that a unit of the picture's area sees, in steradians.
+    fn solid_angle(&self, point: DVec2, pixel: DVec2) -> f64;
+}
+
+impl<T: Central> Lens for T {
+    fn pose(&self) -> Pose {
+        self.stand()
+    }
+
+    fn proportions(&self) -> Option<Vec2> {
+        self.shape()
+    }
+
+    fn problem(&self) -> Option<String> {
+        self.fault()
+    }
+
+    fn ray(&self, frame: &Frame, sample: &CameraSample) -> Option<Ray> {
+        let direction = self.direction(sample.point.as_dvec2(), sample.pixel.as_dvec2())?;
+        Some(frame.ray(DVec3::ZERO, direction))
+    }
+
+    fn project(&self, frame: &Frame, world: Vec3, _: Vec2, found: &mut dyn FnMut(Vec2)) {
+        if let Some(direction) = frame.camera_from_world(world).try_normalize() {
+            self.image(direction, &mut |point| found(point.as_vec2()));
+        }
+    }
+
+    fn footprint(&self, _: &Frame, sample: &CameraSample, t: f32) -> f32 {
+        let solid_angle = self.solid_angle(sample.point.as_dvec2(), sample.pixel.as_dvec2());
+        (solid_angle * f64::from(t) * f64::from(t)) as f32
+    }
+}

@@ -1,0 +1,205 @@
+//! What every camera of the list must hold, for its default and for random ones made by walking its description.
+
+use super::*;
+use crate::describe::{DescribedList, Field, Kind, Rule, Value};
+use crate::dialect::Dialect;
+use crate::math::random::Random;
+
+/// Random cameras of each kind, and points for each: 10^5 together.
+const CAMERAS: usize = 20;
+const POINTS: usize = 5_000;
+
+/// A value within a field's rule, of a size that cameras in use have.
+fn value(field: &Field, random: &mut Random) -> Value {
+    let mut rows = |count: usize, width: usize| {
+        Value::Rows((0..count).map(|_| (0..width).map(|_| random.between(-2.0, 2.0)).collect()).collect())
+    };
+    match (field.kind, field.rule) {
+        (Kind::Rows(9), _) => Value::Rows((0..1 + random.below(4)).map(|_| wall(random)).collect()),
+        (Kind::Rows(width), Rule::Count(least, most)) => rows(if most > least { least + 3 } else { least }, width),
+        (Kind::Word(words), _) => Value::Word(words[random.below(words.len())].into()),
+        (Kind::Int, _) => Value::Int([0, 3, 5, 8][random.below(4)]),
+        (Kind::Vec3, Rule::NonZero) => Value::Vec3(random.direction() * random.between(0.5, 2.0)),
+        (Kind::Vec3, _) => Value::Vec3(random.point() * 0.5),
+        (_, Rule::Between(low, high)) => Value::Float(low + (high - low) * random.between(0.1, 0.9)),
+        (_, Rule::UpTo(high)) => Value::Float(high * random.between(0.1, 1.0)),
+        (_, Rule::Positive) => Value::Float(random.between(0.3, 3.0)),
+        (_, Rule::NonNegative) => Value::Float(random.between(0.0, 0.3)),
+        // Twice of what bad lenses have.
+        _ if ["p1", "p2"].contains(&field.name) => Value::Float(random.between(-0.01, 0.01)),
+        (kind, rule) => {
+            assert_eq!((kind, rule), (Kind::Float, Rule::Any), "{}", field.name);
+            Value::Float(random.between(-0.2, 0.2))
+        }
+    }
+}
+
+/// A rectangle a little away.
+fn wall(random: &mut Random) -> Vec<f32> {
+    let turn = random.rotation().as_mat3();
+    let (w, h) = (random.between(0.5, 3.0), random.between(0.5, 3.0));
+    let corners = [[-w, -h], [w, -h], [-w, h]].map(|[x, y]| turn * Vec3::new(x, y, -2.0));
+    corners.iter().flat_map(|corner| corner.to_array()).collect()
+}
+
+fn random_camera(kind: &Camera, random: &mut Random) -> Camera {
+    loop {
+        let mut camera = kind.clone();
+        for (i, field) in kind.fields().iter().enumerate() {
+            let value = value(field, random);
+            assert_eq!(field.rule.violation(&value), None, "{}", field.name);
+            camera.set(i, value);
+        }
+        // One that sees next to nothing would be found out by nothing.
+        let seen = (0..200).filter(|_| looked(&camera, random).1.is_some()).count();
+        if camera.problem().is_none() && seen > 40 {
+            return camera;
+        }
+    }
+}
+
+fn frame(camera: &Camera) -> Frame {
+    Frame::new(camera.pose(), Dialect::Durer.rules())
+}
+
+/// A sample anywhere in the natural picture, and its ray.
+fn looked(camera: &Camera, random: &mut Random) -> (CameraSample, Option<Ray>) {
+    let half = camera.proportions().map_or(Vec2::ONE, |sides| sides / sides.max_element());
+    // A little within, so that no rounding leads outside.
+    let point = 0.98 * half * Vec2::new(random.between(-1.0, 1.0), random.between(-1.0, 1.0));
+    let sample = CameraSample { lens: Vec2::new(random.unit(), random.unit()), ..CameraSample::at(point) };
+    (sample, camera.ray(&frame(camera), &sample))
+}
+
+/// For each kind: its default, then random ones.
+fn all(seed: u64, mut check: impl FnMut(&Camera, &mut Random)) {
+    let mut random = Random(seed);
+    for kind in Camera::kinds() {
+        assert_eq!(kind.problem(), None, "{kind:?}");
+        check(&kind, &mut random);
+        for _ in 1..CAMERAS {
+            check(&random_camera(&kind, &mut random), &mut random);
+        }
+    }
+}
+
+/// How X = ray.at(t) moves across the ray with the picture's point, by differences of fourth order: sideways and upwards.
+fn slopes(camera: &Camera, sample: &CameraSample, t: f32, step: f32) -> Option<[glam::DVec3; 2]> {
+    let frame = frame(camera);
+    let dir = camera.ray(&frame, sample)?.dir.as_dvec3();
+    let at = |offset: Vec2| {
+        let ray = camera.ray(&frame, &CameraSample { point: sample.point + offset, ..*sample })?;
+        Some(ray.origin.as_dvec3() + f64::from(t) * ray.dir.as_dvec3())
+    };
+    let slope = |axis: Vec2| {
+        let near = at(step * axis)? - at(-step * axis)?;
+        let far = at(2.0 * step * axis)? - at(-2.0 * step * axis)?;
+        let slope = (8.0 * near - far) / (12.0 * f64::from(step));
+        Some(slope - slope.dot(dir) * dir)
+    };
+    Some([slope(Vec2::X)?, slope(Vec2::Y)?])
+}
+
+/// By how much a unit of the picture moves the world at least and at most: singular values of the 3x2 matrix of slopes.
+fn stretch([a, b]: [glam::DVec3; 2]) -> (f64, f64) {
+    let (aa, bb, ab) = (a.dot(a), b.dot(b), a.dot(b));
+    let (mean, apart) = (0.5 * (aa + bb), (0.25 * (aa - bb) * (aa - bb) + ab * ab).sqrt());
+    ((mean - apart).max(0.0).sqrt(), (mean + apart).sqrt())
+}
+
+/// The rounding of a world point that was reckoned from an eye in single precision.
+fn rounding(ray: &Ray, t: f32) -> f64 {
+    4.0 * f64::from(f32::EPSILON) * f64::from(ray.origin.length() + t.abs() + 1.0)
+}
+
+#[test]
+fn points_come_back_from_the_world() {
+    let (mut checked, mut skipped) = (0, 0);
+    all(1, |camera, random| {
+        let enough = checked + POINTS;
+        while checked < enough {
+            let (sample, Some(ray)) = looked(camera, random) else { continue };
+            assert!((ray.dir.length() - 1.0).abs() < 1e-6, "{camera:?}");
+            let t = random.between(0.5, 20.0);
+            // The error of the world point, as it is seen in the picture. Where it is large, there is hardly an inverse.
+            let Some((least, _)) = slopes(camera, &sample, t, 1.0 / 1024.0).map(stretch) else {
+                skipped += 1;
+                continue;
+            };
+            let tolerance = 1e-6 + rounding(&ray, t) / least;
+            if tolerance > 1e-4 {
+                skipped += 1;
+                continue;
+            }
+            let mut nearest = f32::INFINITY;
+            camera.project(&frame(camera), ray.at(t), sample.lens, &mut |found| {
+                nearest = nearest.min(found.distance(sample.point));
+            });
+            assert!(f64::from(nearest) <= tolerance, "{nearest} > {tolerance}: {camera:?} {sample:?} {t}");
+            checked += 1;
+        }
+    });
+    assert!(skipped * 20 < checked, "{skipped} beside {checked} were not checked");
+}
+
+#[test]
+fn rays_pass_the_points_that_were_projected() {
+    let mut checked = 0;
+    all(2, |camera, random| {
+        let frame = frame(camera);
+        for _ in 0..POINTS {
+            let world = 6.0 * random.point();
+            let lens = Vec2::new(random.unit(), random.unit());
+            let mut found = Vec::new();
+            camera.project(&frame, world, lens, &mut |point| found.push(point));
+            for point in found {
+                let sample = CameraSample { lens, ..CameraSample::at(point) };
+                // On the very rim a rounding may lead outside.
+                let inwards = CameraSample { pixel: point * (1.0 - 1e-5), point: point * (1.0 - 1e-6), ..sample };
+                let sample = if camera.ray(&frame, &sample).is_some() { sample } else { inwards };
+                let ray = camera.ray(&frame, &sample).unwrap_or_else(|| panic!("{camera:?} {sample:?}"));
+                let t = (world - ray.origin).dot(ray.dir);
+                let Some((_, most)) = slopes(camera, &sample, t, 1.0 / 1024.0).map(stretch) else { continue };
+                let off = f64::from(ray.at(t).distance(world));
+                let moved = 1e-6 + f64::from(point.distance(sample.point));
+                assert!(off <= rounding(&ray, t) + moved * most, "{off}: {camera:?} {sample:?} {world}");
+                assert!(t >= 0.0 || ray.t_min < 0.0, "{camera:?} sees {world} behind itself");
+                checked += 1;
+            }
+        }
+    });
+    assert!(checked > 300_000, "{checked}");
+}
+
+#[test]
+fn footprints_are_areas() {
+    let (mut checked, mut skipped) = (0, 0);
+    all(3, |camera, random| {
+        for _ in 0..POINTS / 10 {
+            let (sample, Some(ray)) = looked(camera, random) else { continue };
+            let t = random.between(0.5, 20.0);
+            let rounded = rounding(&ray, t);
+            // The area, and its error by rounding.
+            let area = |step: f32| {
+                let [a, b] = slopes(camera, &sample, t, step)?;
+                Some((a.cross(b).length(), rounded / f64::from(step) * (a.length() + b.length())))
+            };
+            let steps = [1.0 / 256.0, 1.0 / 128.0, 1.0 / 32.0].map(area);
+            let [Some((fine, error)), Some((coarse, _)), Some((coarsest, _))] = steps else {
+                skipped += 1;
+                continue;
+            };
+            // Where the steps differ, at a joint of a path say, differences do not tell the slope well.
+            let apart = (fine - coarse).abs().max((fine - coarsest).abs());
+            let stated = f64::from(camera.footprint(&frame(camera), &sample, t));
+            let tolerance = 0.001 * fine + error + apart;
+            if tolerance > 0.03 * fine {
+                skipped += 1;
+                continue;
+            }
+            assert!((stated - fine).abs() < tolerance, "{stated} for {fine}: {camera:?} {sample:?} {t}");
+            checked += 1;
+        }
+    });
+    assert!(skipped * 5 < checked, "{skipped} of {checked} were not checked");
+}

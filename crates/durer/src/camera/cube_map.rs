@@ -1,0 +1,108 @@
+//! All directions on the six faces of a cube, as one picture.
+//!
+//! `cross` has four faces in a row, left, front, right, back, with up above and down below the front: every fold is an
+//! edge of the cube. `strip` has them in one row: right, left, up, down, back, front, in the order +x, -x, +y, -y, +z, -z
+//! for a camera that looks along -z. Each face is a square view of 90 degrees, upright as in the cross. The solid angle
+//! per area of a face from -1 to 1 is 1 / |direction|³.
+//!
+//! Source: Greene, *Environment Mapping and Other Applications of World Projections*, CG&A 6(11), 1986.
+
+use super::Pose;
+use super::central::Central;
+use super::sheet::Sheet;
+use crate::describe::Rule;
+use crate::dialect::set;
+use crate::math::{Vec2, Vec3};
+use crate::{described, described_words};
+use glam::{DVec2, DVec3};
+
+described_words! {
+    /// How the faces of a cube lie in a picture.
+    Layout { Cross = "cross", Strip = "strip" }
+}
+
+described! {
+    /// A camera that sees all around, on the six faces of a cube.
+    CubeMapCamera ["CubeMapCamera" in set::DURER] {
+        /// The eye.
+        center: Vec3 = Vec3::ZERO, required, Rule::Any, ["center" in set::DURER];
+        /// The middle of the front face; of any length.
+        direction: Vec3 = Vec3::NEG_Z, required, Rule::NonZero, ["direction" in set::DURER];
+        /// What is up in the front face; need not be perpendicular.
+        up: Vec3 = Vec3::Y, required, Rule::NonZero, ["up" in set::DURER];
+        /// How the faces lie in the picture.
+        layout: Layout = Layout::Cross, optional, Rule::Any, ["layout" in set::DURER];
+    }
+}
+
+/// A face: the directions of its middle, its right and its up, in the camera's space; and its column and row, counted from
+/// the lower left corner, in the cross and in the strip.
+struct Face {
+    axes: [DVec3; 3],
+    cross: [f64; 2],
+    strip: [f64; 2],
+}
+
+const FACES: [Face; 6] = [
+    Face { axes: [DVec3::X, DVec3::NEG_Z, DVec3::Y], cross: [2.0, 1.0], strip: [0.0, 0.0] },
+    Face { axes: [DVec3::NEG_X, DVec3::Z, DVec3::Y], cross: [0.0, 1.0], strip: [1.0, 0.0] },
+    Face { axes: [DVec3::Y, DVec3::X, DVec3::NEG_Z], cross: [1.0, 2.0], strip: [2.0, 0.0] },
+    Face { axes: [DVec3::NEG_Y, DVec3::X, DVec3::Z], cross: [1.0, 0.0], strip: [3.0, 0.0] },
+    Face { axes: [DVec3::NEG_Z, DVec3::NEG_X, DVec3::Y], cross: [3.0, 1.0], strip: [4.0, 0.0] },
+    Face { axes: [DVec3::Z, DVec3::X, DVec3::Y], cross: [1.0, 1.0], strip: [5.0, 0.0] },
+];
+
+impl CubeMapCamera {
+    /// In faces.
+    fn sheet(&self) -> Sheet {
+        Sheet(match self.layout {
+            Layout::Cross => DVec2::new(4.0, 3.0),
+            Layout::Strip => DVec2::new(6.0, 1.0),
+        })
+    }
+
+    fn corner(&self, face: &Face) -> DVec2 {
+        DVec2::from(match self.layout {
+            Layout::Cross => face.cross,
+            Layout::Strip => face.strip,
+        })
+    }
+}
+
+impl Central for CubeMapCamera {
+    fn stand(&self) -> Pose {
+        Pose { center: self.center, direction: self.direction, up: self.up }
+    }
+
+    fn shape(&self) -> Option<Vec2> {
+        self.sheet().proportions()
+    }
+
+    fn direction(&self, point: DVec2, pixel: DVec2) -> Option<DVec3> {
+        let (at, place) = (self.sheet().place(pixel), self.sheet().place(point));
+        let face = FACES.iter().find(|face| Sheet(DVec2::ONE).contains(at - self.corner(face)))?;
+        let on_face = 2.0 * (place - self.corner(face)) - 1.0;
+        let [middle, right, up] = face.axes;
+        Some(middle + on_face.x * right + on_face.y * up)
+    }
+
+    fn image(&self, direction: DVec3, found: &mut dyn FnMut(DVec2)) {
+        // The middle that it is nearest to.
+        let nearest = |best: &'static Face, face: &'static Face| match direction.dot(face.axes[0])
+            > direction.dot(best.axes[0])
+        {
+            true => face,
+            false => best,
+        };
+        let face = FACES.iter().fold(&FACES[0], nearest);
+        let [depth, x, y] = face.axes.map(|axis| direction.dot(axis));
+        found(self.sheet().point(self.corner(face) + 0.5 * (DVec2::new(x, y) / depth + 1.0)));
+    }
+
+    fn solid_angle(&self, point: DVec2, pixel: DVec2) -> f64 {
+        let Some(direction) = self.direction(point, pixel) else { return 0.0 };
+        // A face is 2 wide, and 1 on the sheet.
+        let unit = 2.0 * self.sheet().unit();
+        unit * unit / (direction.length_squared() * direction.length())
+    }
+}

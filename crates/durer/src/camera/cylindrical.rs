@@ -1,0 +1,84 @@
+//! The panorama: a picture on a cylinder around the eye. Upright lines stay straight and upright.
+//!
+//! direction = sin λ right + cos λ forward + h up, with the longitude λ across and the height h on a cylinder of radius 1
+//! upwards. The solid angle of dλ dh is dλ dh / (1 + h²)^(3/2). For one eye of a pair the ray starts on the circle on which
+//! the eyes turn (`eyes.rs`).
+//!
+//! Source: Chen, *QuickTime VR: An Image-Based Approach to Virtual Environment Navigation*, SIGGRAPH 1995.
+
+use super::eyes::EyeCircle;
+use super::perspective::half_width;
+use super::sheet::Sheet;
+use super::{CameraSample, Eyes, Frame, Lens, Pose};
+use crate::describe::Rule;
+use crate::described;
+use crate::dialect::set;
+use crate::math::{Ray, Vec2, Vec3};
+use glam::{DVec2, DVec3};
+
+described! {
+    /// A camera that sees a panorama on a cylinder, for one eye or a pair.
+    CylindricalCamera ["CylindricalCamera" in set::DURER] {
+        /// The eye, or the middle of the circle on which both turn.
+        center: Vec3 = Vec3::ZERO, required, Rule::Any, ["center" in set::DURER];
+        /// What is in the middle of the picture; of any length.
+        direction: Vec3 = Vec3::NEG_Z, required, Rule::NonZero, ["direction" in set::DURER];
+        /// The cylinder's axis; need not be perpendicular.
+        up: Vec3 = Vec3::Y, required, Rule::NonZero, ["up" in set::DURER];
+        /// Field of view from left to right, in degrees.
+        angle: f32 = 360.0, optional, Rule::UpTo(360.0), ["angle" in set::DURER];
+        /// Field of view from bottom to top, in degrees.
+        vertical_angle: f32 = 90.0, optional, Rule::Between(0.0, 180.0), ["verticalAngle" in set::DURER];
+        /// Which eye's picture, or how both are laid out.
+        eyes: Eyes = Eyes::Middle, optional, Rule::Any, ["eyes" in set::DURER];
+        /// Distance between the eyes.
+        separation: f32 = 0.065, optional, Rule::NonNegative, ["separation" in set::DURER];
+    }
+}
+
+impl CylindricalCamera {
+    /// One eye's sheet: the unrolled cylinder of radius 1.
+    fn one(&self) -> DVec2 {
+        DVec2::new(f64::from(self.angle).to_radians(), 2.0 * half_width(self.vertical_angle))
+    }
+
+    fn circle(&self, side: f64) -> EyeCircle {
+        EyeCircle { radius: 0.5 * side * f64::from(self.separation) }
+    }
+}
+
+impl Lens for CylindricalCamera {
+    fn pose(&self) -> Pose {
+        Pose { center: self.center, direction: self.direction, up: self.up }
+    }
+
+    fn proportions(&self) -> Option<Vec2> {
+        self.eyes.sheet(self.one()).proportions()
+    }
+
+    fn ray(&self, frame: &Frame, sample: &CameraSample) -> Option<Ray> {
+        let (view, place) = self.eyes.view(self.one(), sample.point.as_dvec2(), sample.pixel.as_dvec2())?;
+        let place = place - 0.5 * self.one();
+        let (eye, level) = self.circle(view.side).tangent(place.x);
+        Some(frame.ray(eye, level + place.y * DVec3::Y))
+    }
+
+    fn project(&self, frame: &Frame, world: Vec3, _: Vec2, found: &mut dyn FnMut(Vec2)) {
+        let (one, p) = (self.one(), frame.camera_from_world(world));
+        for view in self.eyes.views(one) {
+            let Some((heading, distance)) = self.circle(view.side).heading(p) else { continue };
+            let place = DVec2::new(heading, p.y / distance) + 0.5 * one;
+            if Sheet(one).contains(place) {
+                found(self.eyes.point(one, view, place).as_vec2());
+            }
+        }
+    }
+
+    fn footprint(&self, _: &Frame, sample: &CameraSample, t: f32) -> f32 {
+        let (one, pixel) = (self.one(), sample.pixel.as_dvec2());
+        let Some((_, place)) = self.eyes.view(one, sample.point.as_dvec2(), pixel) else { return 0.0 };
+        let height = place.y - 0.5 * one.y;
+        let (square, unit) = (1.0 + height * height, self.eyes.sheet(one).unit());
+        (f64::from(t * t) * unit * unit / (square * square.sqrt())) as f32
+    }
+}

@@ -1,0 +1,85 @@
+//! The spherical picture: longitude runs across, latitude upwards, both evenly.
+//!
+//! direction = cos φ (sin λ right + cos λ forward) + sin φ up; the whole sphere is twice as wide as high. The solid angle
+//! of dλ dφ is cos φ dλ dφ. For one eye of a pair the ray starts on the circle on which the eyes turn (`eyes.rs`) and is
+//! tangent to it, which changes nothing of the area across the ray.
+//!
+//! Source: Snyder, *Map Projections: A Working Manual*, USGS Professional Paper 1395, 1987, chapter 12.
+
+use super::eyes::EyeCircle;
+use super::sheet::Sheet;
+use super::{CameraSample, Eyes, Frame, Lens, Pose};
+use crate::describe::Rule;
+use crate::described;
+use crate::dialect::set;
+use crate::math::{Ray, Vec2, Vec3, fp};
+use glam::{DVec2, DVec3};
+
+described! {
+    /// A camera that sees all around: longitude and latitude as a rectangle, for one eye or a pair.
+    EquirectangularCamera ["EquirectangularCamera" in set::DURER] {
+        /// The eye, or the middle of the circle on which both turn.
+        center: Vec3 = Vec3::ZERO, required, Rule::Any, ["center" in set::DURER];
+        /// What is in the middle of the picture; of any length.
+        direction: Vec3 = Vec3::NEG_Z, required, Rule::NonZero, ["direction" in set::DURER];
+        /// The north pole; need not be perpendicular.
+        up: Vec3 = Vec3::Y, required, Rule::NonZero, ["up" in set::DURER];
+        /// Field of view from left to right, in degrees.
+        angle: f32 = 360.0, optional, Rule::UpTo(360.0), ["angle" in set::DURER];
+        /// Field of view from bottom to top, in degrees.
+        vertical_angle: f32 = 180.0, optional, Rule::UpTo(180.0), ["verticalAngle" in set::DURER];
+        /// Which eye's picture, or how both are laid out.
+        eyes: Eyes = Eyes::Middle, optional, Rule::Any, ["eyes" in set::DURER];
+        /// Distance between the eyes.
+        separation: f32 = 0.065, optional, Rule::NonNegative, ["separation" in set::DURER];
+    }
+}
+
+impl EquirectangularCamera {
+    /// One eye's sheet, in radians of longitude and latitude.
+    fn one(&self) -> DVec2 {
+        DVec2::new(f64::from(self.angle), f64::from(self.vertical_angle)) * 1f64.to_radians()
+    }
+
+    fn circle(&self, side: f64) -> EyeCircle {
+        EyeCircle { radius: 0.5 * side * f64::from(self.separation) }
+    }
+}
+
+impl Lens for EquirectangularCamera {
+    fn pose(&self) -> Pose {
+        Pose { center: self.center, direction: self.direction, up: self.up }
+    }
+
+    fn proportions(&self) -> Option<Vec2> {
+        // In degrees, so that common pictures have whole numbers.
+        Some(self.eyes.sheet(DVec2::new(f64::from(self.angle), f64::from(self.vertical_angle))).0.as_vec2())
+    }
+
+    fn ray(&self, frame: &Frame, sample: &CameraSample) -> Option<Ray> {
+        let (view, place) = self.eyes.view(self.one(), sample.point.as_dvec2(), sample.pixel.as_dvec2())?;
+        let angles = place - 0.5 * self.one();
+        let (eye, level) = self.circle(view.side).tangent(angles.x);
+        let (sin, cos) = fp::sin_cos_f64(angles.y);
+        Some(frame.ray(eye, cos * level + sin * DVec3::Y))
+    }
+
+    fn project(&self, frame: &Frame, world: Vec3, _: Vec2, found: &mut dyn FnMut(Vec2)) {
+        let (one, p) = (self.one(), frame.camera_from_world(world));
+        for view in self.eyes.views(one) {
+            let Some((heading, distance)) = self.circle(view.side).heading(p) else { continue };
+            let place = DVec2::new(heading, fp::atan2_f64(p.y, distance)) + 0.5 * one;
+            if Sheet(one).contains(place) {
+                found(self.eyes.point(one, view, place).as_vec2());
+            }
+        }
+    }
+
+    fn footprint(&self, _: &Frame, sample: &CameraSample, t: f32) -> f32 {
+        let (one, pixel) = (self.one(), sample.pixel.as_dvec2());
+        let Some((_, place)) = self.eyes.view(one, sample.point.as_dvec2(), pixel) else { return 0.0 };
+        let cos = fp::sin_cos_f64(place.y - 0.5 * one.y).1.abs();
+        let unit = self.eyes.sheet(one).unit();
+        (f64::from(t * t) * cos * unit * unit) as f32
+    }
+}

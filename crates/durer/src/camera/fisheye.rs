@@ -1,0 +1,139 @@
+//! The fisheye: a disc that sees a cone of directions around the axis, up to all of them.
+//!
+//! A direction at the angle θ from the axis lies at the radius r = f(θ) / f(angle / 2) of the disc, where
+//!
+//! - `equidistant`: f = θ: equal angles are equal lengths along the radius;
+//! - `equisolid`: f = 2 sin(θ/2): equal solid angles are equal areas;
+//! - `stereographic`: f = 2 tan(θ/2): small circles stay circles;
+//! - `orthographic`: f = sin θ: the hemisphere's shadow, areas as they light a level surface.
+//!
+//! The solid angle per area is sin θ F² / (f f'), with F = f(angle / 2).
+//!
+//! Source: Miyamoto, *Fish Eye Lens*, Journal of the Optical Society of America 54(8), 1964; Kannala, Brandt, *A Generic
+//! Camera Model and Calibration Method*, PAMI 28(8), 2006, equations 1 to 5.
+
+use super::Pose;
+use super::central::Central;
+use crate::describe::Rule;
+use crate::dialect::set;
+use crate::math::{Vec2, Vec3, fp};
+use crate::{described, described_words};
+use glam::{DVec2, DVec3};
+
+described_words! {
+    /// How the angle from the axis becomes a radius.
+    Projection {
+        Equidistant = "equidistant", Equisolid = "equisolid", Stereographic = "stereographic", Orthographic = "orthographic"
+    }
+}
+
+described! {
+    /// A camera that sees a cone of directions as a disc; the corners see nothing.
+    FisheyeCamera ["FisheyeCamera" in set::DURER] {
+        /// The eye.
+        center: Vec3 = Vec3::ZERO, required, Rule::Any, ["center" in set::DURER];
+        /// Where it looks; of any length.
+        direction: Vec3 = Vec3::NEG_Z, required, Rule::NonZero, ["direction" in set::DURER];
+        /// What is up in the picture; need not be perpendicular.
+        up: Vec3 = Vec3::Y, required, Rule::NonZero, ["up" in set::DURER];
+        /// Field of view across the disc, in degrees: at most 180 for `orthographic`, less than 360 for `stereographic`.
+        angle: f32 = 180.0, optional, Rule::UpTo(360.0), ["angle" in set::DURER];
+        /// How the angle from the axis becomes a radius.
+        projection: Projection = Projection::Equidistant, optional, Rule::Any, ["projection" in set::DURER];
+    }
+}
+
+impl Projection {
+    /// The radius for an angle from the axis, and how fast it grows.
+    pub fn radius(self, theta: f64) -> (f64, f64) {
+        let (sin, cos) = fp::sin_cos_f64(theta);
+        let (half_sin, half_cos) = fp::sin_cos_f64(0.5 * theta);
+        match self {
+            Projection::Equidistant => (theta, 1.0),
+            Projection::Equisolid => (2.0 * half_sin, half_cos),
+            Projection::Stereographic => (2.0 * half_sin / half_cos, 1.0 / (half_cos * half_cos)),
+            Projection::Orthographic => (sin, cos),
+        }
+    }
+
+    /// The angle from the axis for a radius.
+    pub fn theta(self, radius: f64) -> f64 {
+        match self {
+            Projection::Equidistant => radius,
+            Projection::Equisolid => 2.0 * fp::asin_f64((0.5 * radius).min(1.0)),
+            Projection::Stereographic => 2.0 * fp::atan_f64(0.5 * radius),
+            Projection::Orthographic => fp::asin_f64(radius.min(1.0)),
+        }
+    }
+
+    /// The direction that a point of the unit disc sees, where the rim sees the angle `limit` from the axis.
+    pub fn direction(self, point: DVec2, limit: f64) -> Option<DVec3> {
+        let radius = point.length();
+        if radius > 1.0 {
+            return None;
+        }
+        let (sin, cos) = fp::sin_cos_f64(self.theta(radius * self.radius(limit).0));
+        let around = if radius > 0.0 { point / radius } else { DVec2::ZERO };
+        Some((sin * around).extend(cos))
+    }
+
+    /// The point of the unit disc that sees a unit direction.
+    pub fn point(self, direction: DVec3, limit: f64) -> Option<DVec2> {
+        let across = direction.truncate();
+        let (sin, theta) = (across.length(), fp::atan2_f64(across.length(), direction.z));
+        let radius = self.radius(theta).0 / self.radius(limit).0;
+        // Straight behind, any point of the rim will do.
+        let around = if sin > 0.0 { across / sin } else { DVec2::X };
+        (theta <= limit).then(|| radius * around)
+    }
+
+    /// The solid angle per area of the unit disc.
+    pub fn solid_angle(self, point: DVec2, limit: f64) -> f64 {
+        let rim = self.radius(limit).0;
+        let theta = self.theta(point.length() * rim);
+        let (radius, growth) = self.radius(theta);
+        // Both sin θ / f and f' go to 1 in the middle.
+        let share = if radius > 0.0 { fp::sin_cos_f64(theta).0 / radius } else { 1.0 };
+        share * rim * rim / growth
+    }
+}
+
+impl FisheyeCamera {
+    fn limit(&self) -> f64 {
+        0.5 * f64::from(self.angle).to_radians()
+    }
+}
+
+impl Central for FisheyeCamera {
+    fn stand(&self) -> Pose {
+        Pose { center: self.center, direction: self.direction, up: self.up }
+    }
+
+    fn shape(&self) -> Option<Vec2> {
+        Some(Vec2::ONE)
+    }
+
+    fn fault(&self) -> Option<String> {
+        match self.projection {
+            Projection::Orthographic if self.angle > 180.0 => {
+                Some("an orthographic fisheye sees at most 180 degrees".into())
+            }
+            Projection::Stereographic if self.angle > 359.0 => {
+                Some("a stereographic fisheye sees at most 359 degrees: the last one is infinitely far out".into())
+            }
+            _ => None,
+        }
+    }
+
+    fn direction(&self, point: DVec2, _: DVec2) -> Option<DVec3> {
+        self.projection.direction(point, self.limit())
+    }
+
+    fn image(&self, direction: DVec3, found: &mut dyn FnMut(DVec2)) {
+        self.projection.point(direction, self.limit()).into_iter().for_each(found);
+    }
+
+    fn solid_angle(&self, point: DVec2, _: DVec2) -> f64 {
+        self.projection.solid_angle(point, self.limit())
+    }
+}

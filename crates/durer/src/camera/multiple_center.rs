@@ -1,0 +1,187 @@
+//! The multiple-centre-of-projection image: every column of the picture has an eye of its own on a path.
+//!
+//! Eyes e(u) and the points c(u) that they look at run along Catmull-Rom splines through the rows of `path`, at an even
+//! pace from row to row. With w = c - e, right = norm(w x up) and v = right x norm(w), a column is the fan
+//! direction = norm(w) + h v, |h| <= tan(angle / 2). A picture around a thing shows all of its sides at once.
+//!
+//! A point X is seen in the columns whose plane it lies in: (w(u) x up)·(X - e(u)) = 0, a polynomial of degree 6 in
+//! each piece of the spline, all of whose roots are found (`roots.rs`). It may be seen several times.
+//!
+//! The area across a ray at distance t is t / (1 + h²) |dX/du·right| per du dh, where
+//! dX/du·right = e'·right + t (w'·right / |w| + h v'·right) / sqrt(1 + h²) and v'·right = -v·(w' x up) / |w x up|.
+//!
+//! Source: Rademacher, Bishop, *Multiple-Center-of-Projection Images*, SIGGRAPH 1998. Splines: Catmull, Rom, *A Class of
+//! Local Interpolating Splines*, Computer Aided Geometric Design, 1974.
+
+mod roots;
+
+use super::perspective::half_width;
+use super::pose::world_ray;
+use super::sheet::Sheet;
+use super::{CameraSample, Frame, Lens, Pose};
+use crate::describe::Rule;
+use crate::described;
+use crate::dialect::set;
+use crate::math::{Ray, Vec2, Vec3};
+use glam::{DVec2, DVec3};
+
+described! {
+    /// A camera whose columns are seen one after the other from a path.
+    MultipleCenterCamera ["MultipleCenterCamera" in set::DURER] {
+        /// Places along the path, from the picture's left to its right: the eye, and the point that it looks at. Where
+        /// the last is the first, the path is a smooth loop.
+        path: Vec<[f32; 6]> = straight(), required, Rule::Count(2, 1024), ["path" in set::DURER];
+        /// What is up in every column; need not be perpendicular.
+        up: Vec3 = Vec3::Y, required, Rule::NonZero, ["up" in set::DURER];
+        /// Field of view from bottom to top, in degrees.
+        angle: f32 = 60.0, required, Rule::Between(0.0, 180.0), ["angle" in set::DURER];
+        /// Width of the picture over its height.
+        aspect: f32 = 2.0, optional, Rule::Positive, ["aspect" in set::DURER];
+    }
+}
+
+fn straight() -> Vec<[f32; 6]> {
+    vec![[-1.0, 0.0, 0.0, -1.0, 0.0, -1.0], [1.0, 0.0, 0.0, 1.0, 0.0, -1.0]]
+}
+
+/// A cubic piece of a path, by Bézier's control points.
+type Piece = [DVec3; 4];
+
+fn at(piece: &Piece, s: f64) -> DVec3 {
+    let r = 1.0 - s;
+    piece[0] * (r * r * r) + piece[1] * (3.0 * r * r * s) + piece[2] * (3.0 * r * s * s) + piece[3] * (s * s * s)
+}
+
+fn derivative(piece: &Piece, s: f64) -> DVec3 {
+    let (r, [a, b, c, d]) = (1.0 - s, *piece);
+    ((b - a) * (r * r) + (c - b) * (2.0 * r * s) + (d - c) * (s * s)) * 3.0
+}
+
+/// A column: its eye, its axes, and what they change by along the picture (by u from 0 to 1).
+struct Column {
+    eye: DVec3,
+    right: DVec3,
+    up: DVec3,
+    forward: DVec3,
+    /// e'·right
+    eye_moves: f64,
+    /// w'·right / |w|
+    forward_turns: f64,
+    /// v'·right
+    up_turns: f64,
+}
+
+impl MultipleCenterCamera {
+    fn sheet(&self) -> Sheet {
+        Sheet(DVec2::new(f64::from(self.aspect), 1.0))
+    }
+
+    fn pieces(&self) -> usize {
+        self.path.len() - 1
+    }
+
+    /// A piece of the path of the eyes (0) or of what they look at (3).
+    fn piece(&self, index: usize, column: usize) -> Piece {
+        let last = self.pieces();
+        let place = |i: usize| Vec3::from_slice(&self.path[i][column..column + 3]).as_dvec3();
+        let closed = self.path[0] == self.path[last] && last > 2;
+        let tangent = |i: usize| match (i, closed) {
+            (0, true) => 0.5 * (place(1) - place(last - 1)),
+            (i, true) if i == last => 0.5 * (place(1) - place(last - 1)),
+            (0, false) => place(1) - place(0),
+            (i, false) if i == last => place(last) - place(last - 1),
+            (i, _) => 0.5 * (place(i + 1) - place(i - 1)),
+        };
+        let (a, d) = (place(index), place(index + 1));
+        [a, a + tangent(index) / 3.0, d - tangent(index + 1) / 3.0, d]
+    }
+
+    /// The column at a part of the path.
+    fn column(&self, u: f64) -> Column {
+        let count = self.pieces() as f64;
+        let index = (u * count).floor().clamp(0.0, count - 1.0);
+        let (s, up) = (u * count - index, self.up.as_dvec3());
+        let [eyes, targets] = [0, 3].map(|column| self.piece(index as usize, column));
+        let (eye, eye_slope) = (at(&eyes, s), count * derivative(&eyes, s));
+        let (w, w_slope) = (at(&targets, s) - eye, count * derivative(&targets, s) - eye_slope);
+        let (across, forward) = (w.cross(up), w.normalize());
+        let right = across.normalize();
+        let v = right.cross(forward);
+        Column {
+            eye,
+            right,
+            up: v,
+            forward,
+            eye_moves: eye_slope.dot(right),
+            forward_turns: w_slope.dot(right) / w.length(),
+            up_turns: -v.dot(w_slope.cross(up)) / across.length(),
+        }
+    }
+
+    /// The column and the height in its fan for a sample.
+    fn seen(&self, sample: &CameraSample) -> Option<(Column, f64)> {
+        let sheet = self.sheet();
+        let place = sheet.place(sample.point.as_dvec2());
+        let within = sheet.contains(sheet.place(sample.pixel.as_dvec2()));
+        within.then(|| (self.column(place.x / sheet.0.x), (2.0 * place.y - 1.0) * half_width(self.angle)))
+    }
+}
+
+impl Lens for MultipleCenterCamera {
+    /// It stands where the middle column does.
+    fn pose(&self) -> Pose {
+        let Column { eye, forward, .. } = self.column(0.5);
+        Pose { center: eye.as_vec3(), direction: forward.as_vec3(), up: self.up }
+    }
+
+    fn proportions(&self) -> Option<Vec2> {
+        self.sheet().proportions()
+    }
+
+    fn problem(&self) -> Option<String> {
+        if self.path.len() < 2 {
+            return Some("`path` must have at least 2 rows".into());
+        }
+        // Between its rows a path may go wrong too.
+        let steps = 16 * self.pieces();
+        (0..=steps).find_map(|step| {
+            let column = self.column(step as f64 / steps as f64);
+            let row = step as f64 / 16.0 + 1.0;
+            let wrong =
+                !column.right.is_finite() || column.forward.cross(self.up.as_dvec3().normalize()).length() < 1e-6;
+            wrong.then(|| format!("at row {row} of `path` the eye looks nowhere, or along `up`"))
+        })
+    }
+
+    fn ray(&self, _: &Frame, sample: &CameraSample) -> Option<Ray> {
+        let (column, height) = self.seen(sample)?;
+        Some(world_ray(column.eye, column.forward + height * column.up))
+    }
+
+    fn project(&self, _: &Frame, world: Vec3, _: Vec2, found: &mut dyn FnMut(Vec2)) {
+        let (sheet, up, world) = (self.sheet(), self.up.as_dvec3(), world.as_dvec3());
+        for index in 0..self.pieces() {
+            let [eyes, targets] = [0, 3].map(|column| self.piece(index, column));
+            let normals: [DVec3; 4] = std::array::from_fn(|i| (targets[i] - eyes[i]).cross(up));
+            let from_eyes: [DVec3; 4] = std::array::from_fn(|i| world - eyes[i]);
+            roots::each(roots::dot(&normals, &from_eyes), &mut |s| {
+                let u = (index as f64 + s) / self.pieces() as f64;
+                let column = self.column(u);
+                let seen = world - column.eye;
+                let height = seen.dot(column.up) / seen.dot(column.forward) / half_width(self.angle);
+                let place = DVec2::new(u * sheet.0.x, 0.5 * (height + 1.0));
+                if seen.dot(column.forward) > 0.0 && sheet.contains(place) {
+                    found(sheet.point(place).as_vec2());
+                }
+            });
+        }
+    }
+
+    fn footprint(&self, _: &Frame, sample: &CameraSample, t: f32) -> f32 {
+        let Some((column, height)) = self.seen(sample) else { return 0.0 };
+        let (t, square, unit) = (f64::from(t), 1.0 + height * height, self.sheet().unit());
+        let turns = (column.forward_turns + height * column.up_turns) / square.sqrt();
+        let per_place = 2.0 * half_width(self.angle) / self.sheet().0.x;
+        (t / square * (column.eye_moves + t * turns).abs() * per_place * unit * unit) as f32
+    }
+}

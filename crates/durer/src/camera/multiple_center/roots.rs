@@ -1,0 +1,135 @@
+//! All roots of a polynomial between 0 and 1, from its coefficients in Bernstein's form.
+//!
+//! A polynomial has at most as many roots in an interval as its coefficients there change sign, and one where they do
+//! once. Halving the interval by de Casteljau's rule separates the roots; each is then closed in on by false position.
+//!
+//! Source: Lane, Riesenfeld, *Bounds on a Polynomial*, BIT 21, 1981; Farin, *Curves and Surfaces for CAGD*, chapter 4.
+
+use glam::DVec3;
+
+/// Coefficients of a polynomial of degree 6.
+pub type Sextic = [f64; 7];
+
+/// Roots nearer to each other than this are told once.
+const NARROWEST: f64 = 1.0 / (1u64 << 40) as f64;
+
+/// The scalar product of two cubics with vectors as coefficients.
+pub fn dot(a: &[DVec3; 4], b: &[DVec3; 4]) -> Sextic {
+    const THREE: [f64; 4] = [1.0, 3.0, 3.0, 1.0];
+    const SIX: [f64; 7] = [1.0, 6.0, 15.0, 20.0, 15.0, 6.0, 1.0];
+    let mut product = [0.0; 7];
+    for i in 0..4 {
+        for j in 0..4 {
+            product[i + j] += THREE[i] * THREE[j] * a[i].dot(b[j]) / SIX[i + j];
+        }
+    }
+    product
+}
+
+/// Calls `found` with each root, in order. A polynomial that is 0 everywhere has none.
+pub fn each(polynomial: Sextic, found: &mut dyn FnMut(f64)) {
+    if polynomial.iter().any(|c| *c != 0.0) {
+        search(&polynomial, 0.0, 1.0, found);
+    }
+}
+
+fn search(c: &Sextic, start: f64, width: f64, found: &mut dyn FnMut(f64)) {
+    // Zero counts as positive, so that a root on a border belongs to one side of it.
+    let changes = c.windows(2).filter(|pair| (pair[0] < 0.0) != (pair[1] < 0.0)).count();
+    let ends_differ = (c[0] < 0.0) != (c[6] < 0.0);
+    match changes {
+        0 => {}
+        1 => found(start + width * close_in(c)),
+        _ if width <= NARROWEST => {
+            if ends_differ {
+                found(start + 0.5 * width);
+            }
+        }
+        _ => {
+            let (left, right) = split(c, 0.5);
+            search(&left, start, 0.5 * width, found);
+            search(&right, start + 0.5 * width, 0.5 * width, found);
+        }
+    }
+}
+
+/// The coefficients on both sides of a point.
+fn split(c: &Sextic, at: f64) -> (Sextic, Sextic) {
+    let (mut left, mut right) = ([0.0; 7], *c);
+    for (i, first) in left.iter_mut().enumerate() {
+        *first = right[0];
+        for j in 0..6 - i {
+            right[j] += at * (right[j + 1] - right[j]);
+        }
+    }
+    (left, right)
+}
+
+/// The only root, by false position with Illinois' rule: an end that stays twice counts half.
+fn close_in(c: &Sextic) -> f64 {
+    let value = |at: f64| split(c, at).1[0];
+    let ((mut a, mut at_a), (mut b, mut at_b)) = ((0.0, c[0]), (1.0, c[6]));
+    for _ in 0..200 {
+        let middle = (b - at_b * (b - a) / (at_b - at_a)).clamp(a.min(b), a.max(b));
+        let at_middle = value(middle);
+        if at_middle == 0.0 || (b - a).abs() < 1e-15 || middle == b {
+            return middle;
+        }
+        if (at_middle < 0.0) != (at_b < 0.0) {
+            (a, at_a) = (b, at_b);
+        } else {
+            at_a *= 0.5;
+        }
+        (b, at_b) = (middle, at_middle);
+    }
+    b
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::random::Random;
+
+    /// The polynomial with these roots, in Bernstein's form: products of (s - root).
+    fn with_roots(roots: &[f64; 6]) -> Sextic {
+        let mut c = vec![1.0];
+        for root in roots {
+            let degree = c.len();
+            let mut next = vec![0.0; degree + 1];
+            for (i, value) in c.iter().enumerate() {
+                // Raising the degree: (1 - s) -root + s (1 - root).
+                next[i] += value * -root * (degree - i) as f64 / degree as f64;
+                next[i + 1] += value * (1.0 - root) * (i + 1) as f64 / degree as f64;
+            }
+            c = next;
+        }
+        c.try_into().unwrap()
+    }
+
+    #[test]
+    fn all_roots_between_0_and_1_are_found_and_no_others() {
+        let mut random = Random(1);
+        for _ in 0..20_000 {
+            let mut roots: [f64; 6] = std::array::from_fn(|_| f64::from(random.between(-1.5, 2.5)));
+            roots.sort_by(f64::total_cmp);
+            if roots.windows(2).any(|pair| pair[1] - pair[0] < 0.02)
+                || roots.iter().any(|r| r.abs().min((r - 1.0).abs()) < 1e-3)
+            {
+                continue;
+            }
+            let mut found = Vec::new();
+            each(with_roots(&roots), &mut |root| found.push(root));
+            let inside: Vec<f64> = roots.into_iter().filter(|r| (0.0..1.0).contains(r)).collect();
+            assert_eq!(found.len(), inside.len(), "{found:?} {inside:?}");
+            assert!(found.iter().zip(&inside).all(|(a, b)| (a - b).abs() < 1e-7), "{found:?} {inside:?}");
+        }
+    }
+
+    #[test]
+    fn a_polynomial_without_roots_has_none_and_zero_has_none() {
+        let mut found = 0;
+        each([0.0; 7], &mut |_| found += 1);
+        each([1.0, -0.1, 1.0, 1.0, 1.0, -0.1, 1.0], &mut |_| found += 1);
+        assert_eq!(found, 0);
+    }
+}

@@ -1,0 +1,65 @@
+//! A mirror in the shape of a paraboloid under a lens that sees parallel rays: a single viewpoint with a wide view.
+//!
+//! The mirror z = (h² - r²) / 2h has its focus at 0 and its axis along z, towards the lens. Every ray that runs to the
+//! focus is reflected along the axis: its direction, at the angle θ from the axis, is seen at r = h tan(θ/2). The picture
+//! lies like a map seen from above; to someone in the focus who looks up, left and right are exchanged. The rim of the
+//! disc sees half the field of view, r = 1 at θ = angle / 2; the horizon is at r = h. The lens itself, which a real
+//! picture shows in the middle, is left out.
+//!
+//! Source: Nayar, *Catadioptric Omnidirectional Camera*, CVPR 1997; Baker, Nayar, *A Theory of Single-Viewpoint
+//! Catadioptric Image Formation*, IJCV 35(2), 1999.
+
+use super::Pose;
+use super::central::Central;
+use super::fisheye::Projection;
+use crate::describe::Rule;
+use crate::described;
+use crate::dialect::set;
+use crate::math::{Vec2, Vec3};
+use glam::{DVec2, DVec3};
+
+described! {
+    /// A lens above a parabolic mirror; the corners see nothing.
+    ParabolicCamera ["ParabolicCamera" in set::DURER] {
+        /// The mirror's focus: the single viewpoint.
+        center: Vec3 = Vec3::ZERO, required, Rule::Any, ["center" in set::DURER];
+        /// The mirror's axis, from its focus to the lens: usually upwards; of any length.
+        direction: Vec3 = Vec3::Y, required, Rule::NonZero, ["direction" in set::DURER];
+        /// What is up in the picture; need not be perpendicular.
+        up: Vec3 = Vec3::NEG_Z, required, Rule::NonZero, ["up" in set::DURER];
+        /// Field of view around the axis, in degrees: 180 to the horizon, more below it.
+        angle: f32 = 210.0, optional, Rule::Between(0.0, 360.0), ["angle" in set::DURER];
+    }
+}
+
+/// The same picture as a stereographic fisheye's along the axis, mirrored.
+const PROJECTION: Projection = Projection::Stereographic;
+const MIRROR: DVec3 = DVec3::new(-1.0, 1.0, 1.0);
+
+impl ParabolicCamera {
+    fn limit(&self) -> f64 {
+        0.5 * f64::from(self.angle).to_radians()
+    }
+}
+
+impl Central for ParabolicCamera {
+    fn stand(&self) -> Pose {
+        Pose { center: self.center, direction: self.direction, up: self.up }
+    }
+
+    fn shape(&self) -> Option<Vec2> {
+        Some(Vec2::ONE)
+    }
+
+    fn direction(&self, point: DVec2, _: DVec2) -> Option<DVec3> {
+        Some(MIRROR * PROJECTION.direction(point, self.limit())?)
+    }
+
+    fn image(&self, direction: DVec3, found: &mut dyn FnMut(DVec2)) {
+        PROJECTION.point(MIRROR * direction, self.limit()).into_iter().for_each(found);
+    }
+
+    fn solid_angle(&self, point: DVec2, _: DVec2) -> f64 {
+        PROJECTION.solid_angle(point, self.limit())
+    }
+}

@@ -1,0 +1,71 @@
+//! The camera obscura: a hole of some size before a film.
+//!
+//! The film lies at distance f behind the hole, upside down; a point (x, y) of the picture is the point
+//! -w (x, y) of the film, with w = f tan(angle / 2). Light reaches it along straight lines through all points h of the
+//! hole: direction = (h + w (x, y), f). A far point is spread over a disc as large as the hole, a near one over a larger
+//! disc: the picture is sharp nowhere, and with a small hole almost everywhere. Diffraction is left out.
+//!
+//! Source: Renner, *Pinhole Photography*, 4th edition, 2008, chapter 5, for the geometry.
+
+use super::perspective::half_width;
+use super::{CameraSample, Frame, Lens, Pose, aperture};
+use crate::describe::Rule;
+use crate::described;
+use crate::dialect::set;
+use crate::math::{Ray, Vec2, Vec3};
+use glam::{DVec2, DVec3};
+
+described! {
+    /// A camera without a lens, whose hole has a size.
+    PinholeCamera ["PinholeCamera" in set::DURER] {
+        /// The middle of the hole.
+        center: Vec3 = Vec3::ZERO, required, Rule::Any, ["center" in set::DURER];
+        /// Where it looks; of any length.
+        direction: Vec3 = Vec3::NEG_Z, required, Rule::NonZero, ["direction" in set::DURER];
+        /// What is up in the picture; need not be perpendicular.
+        up: Vec3 = Vec3::Y, required, Rule::NonZero, ["up" in set::DURER];
+        /// Field of view across the picture's larger side, in degrees.
+        angle: f32 = 30.0, required, Rule::Between(0.0, 180.0), ["angle" in set::DURER];
+        /// Diameter of the hole.
+        hole: f32 = 0.01, required, Rule::NonNegative, ["hole" in set::DURER];
+        /// Distance from the hole to the film.
+        film_distance: f32 = 1.0, optional, Rule::Positive, ["filmDistance" in set::DURER];
+    }
+}
+
+impl PinholeCamera {
+    /// The point of the hole, the film's distance, and half the film's width, in the camera's space.
+    fn parts(&self, lens: Vec2) -> (DVec2, f64, f64) {
+        let film = f64::from(self.film_distance);
+        (0.5 * f64::from(self.hole) * aperture::sample(lens, 0, 0.0), film, film * half_width(self.angle))
+    }
+}
+
+impl Lens for PinholeCamera {
+    fn pose(&self) -> Pose {
+        Pose { center: self.center, direction: self.direction, up: self.up }
+    }
+
+    fn has_aperture(&self) -> bool {
+        self.hole > 0.0
+    }
+
+    fn ray(&self, frame: &Frame, sample: &CameraSample) -> Option<Ray> {
+        let (hole, film, width) = self.parts(sample.lens);
+        Some(frame.ray(hole.extend(0.0), (hole + width * sample.point.as_dvec2()).extend(film)))
+    }
+
+    fn project(&self, frame: &Frame, world: Vec3, lens: Vec2, found: &mut dyn FnMut(Vec2)) {
+        let (hole, film, width) = self.parts(lens);
+        let p = frame.camera_from_world(world);
+        if p.z > 0.0 {
+            found((((p.truncate() - hole) * (film / p.z) - hole) / width).as_vec2());
+        }
+    }
+
+    fn footprint(&self, _: &Frame, sample: &CameraSample, t: f32) -> f32 {
+        let (hole, film, width) = self.parts(sample.lens);
+        let dir: DVec3 = (hole + width * sample.point.as_dvec2()).extend(film);
+        (f64::from(t * t) * film * width * width / (dir.length_squared() * dir.length())) as f32
+    }
+}

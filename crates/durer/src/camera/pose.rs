@@ -1,0 +1,87 @@
+//! Where a camera stands and how it is turned.
+
+use crate::dialect::{Compat, Rules};
+use crate::math::{Ray, Vec3};
+use glam::{DMat3, DVec3};
+
+/// Where a camera stands and how it is turned, as written.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pose {
+    /// Its position.
+    pub center: Vec3,
+    /// Where it looks; of any length.
+    pub direction: Vec3,
+    /// What it holds upwards; of any length.
+    pub up: Vec3,
+}
+
+/// A camera's axes: where it looks, and the picture's right and up. Of unit length and perpendicular,
+/// but for the compatibilities that say otherwise.
+///
+/// Together they are the camera's space: x to the right, y upwards, z forwards.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Frame {
+    /// Position of the eye.
+    pub eye: Vec3,
+    /// Where it looks.
+    pub forward: Vec3,
+    /// To the right in the picture.
+    pub right: Vec3,
+    /// Upwards in the picture.
+    pub up: Vec3,
+    /// Whether rays are aimed at rounded points of the world, as [`Compat::ScreenPoint`] says.
+    pub screen_point: bool,
+}
+
+/// A vector's direction, each component divided by the length (glam multiplies by its reciprocal, which rounds once more).
+pub(super) fn unit_or(v: Vec3, fallback: Vec3) -> Vec3 {
+    let unit = v / v.length();
+    if unit.is_finite() && unit != Vec3::ZERO { unit } else { v.normalize_or(fallback) }
+}
+
+impl Frame {
+    /// The axes of a pose: right = norm(direction x up), up = right x direction.
+    pub fn new(pose: Pose, rules: &Rules) -> Self {
+        let forward = unit_or(pose.direction, Vec3::NEG_Z);
+        let right = unit_or(forward.cross(pose.up), forward.any_orthonormal_vector());
+        let up = if rules.has(Compat::RawUp) {
+            pose.up
+        } else if rules.has(Compat::SkewUp) {
+            pose.up.normalize_or(Vec3::Y)
+        } else {
+            right.cross(forward)
+        };
+        Frame { eye: pose.center, forward, right, up, screen_point: rules.has(Compat::ScreenPoint) }
+    }
+
+    /// The axes as columns, in double precision: from the camera's space to the world's.
+    fn axes(&self) -> DMat3 {
+        DMat3::from_cols(self.right.as_dvec3(), self.up.as_dvec3(), self.forward.as_dvec3())
+    }
+
+    /// A point of the world in the camera's space.
+    pub(super) fn camera_from_world(&self, point: Vec3) -> DVec3 {
+        self.turned(point.as_dvec3() - self.eye.as_dvec3())
+    }
+
+    /// A vector of the world in the camera's space.
+    pub(super) fn turned(&self, vector: DVec3) -> DVec3 {
+        self.axes().inverse() * vector
+    }
+
+    /// The ray from a point along a direction of any length, both in the camera's space.
+    pub(super) fn ray(&self, origin: DVec3, dir: DVec3) -> Ray {
+        let origin = self.eye.as_dvec3() + self.axes() * origin;
+        world_ray(origin, self.axes() * dir)
+    }
+
+    /// How much of the volume is left in a camera's space with skew axes: 1 where they are perpendicular.
+    pub(super) fn volume(&self) -> f64 {
+        self.axes().determinant().abs()
+    }
+}
+
+/// The ray from a point along a direction of any length, rounded once.
+pub(super) fn world_ray(origin: DVec3, dir: DVec3) -> Ray {
+    Ray::new(origin.as_vec3(), dir.normalize_or(DVec3::NEG_Z).as_vec3())
+}

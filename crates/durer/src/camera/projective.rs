@@ -1,0 +1,211 @@
+//! Any projective camera, as computer vision writes it: a 3x4 matrix in homogeneous coordinates, and lens distortion.
+//!
+//! P = K [R | t] takes a point of the world to a pixel: (x, y, 1) ~ P (X, Y, Z, 1), x to the right and y downwards, with
+//! the centre of the upper left pixel at (0, 0). P may be given at any scale. Its left part M = K R is taken apart into an
+//! upper triangular K and a rotation R; the eye is -M⁻¹ p4. Between R and K the lens distorts the point (x, y) at depth 1,
+//! with s = x² + y², by Brown's and Conrady's model in OpenCV's form:
+//!
+//!     x' = x (1 + k1 s + k2 s² + k3 s³) + 2 p1 x y + p2 (s + 2 x²)
+//!     y' = y (1 + k1 s + k2 s² + k3 s³) + p1 (s + 2 y²) + 2 p2 x y
+//!
+//! Rays need the inverse, by Newton's method. Where the distortion folds back on itself, nothing is seen: there the model
+//! has no meaning.
+//!
+//! Source: Hartley, Zisserman, *Multiple View Geometry in Computer Vision*, 2nd edition, 2004, sections 6.1, 6.2 and A4.1;
+//! Brown, *Decentering Distortion of Lenses*, Photogrammetric Engineering 32(3), 1966.
+
+use super::pose::world_ray;
+use super::sheet::Sheet;
+use super::{CameraSample, Frame, Lens, Pose};
+use crate::describe::Rule;
+use crate::described;
+use crate::dialect::set;
+use crate::math::{Ray, Vec2, Vec3};
+use glam::{DMat2, DMat3, DVec2, DVec3};
+
+described! {
+    /// A camera recovered from a photograph: a projective matrix and the lens's distortion.
+    ProjectiveCamera ["ProjectiveCamera" in set::DURER] {
+        /// The 3x4 matrix, row by row: from homogeneous points of the world to pixels, y downwards; at any scale.
+        matrix: Vec<[f32; 4]> = plain_matrix(), required, Rule::Count(3, 3), ["matrix" in set::DURER];
+        /// Width of the photograph in pixels.
+        width: f32 = 512.0, required, Rule::Positive, ["width" in set::DURER];
+        /// Height of the photograph in pixels.
+        height: f32 = 512.0, required, Rule::Positive, ["height" in set::DURER];
+        /// Radial distortion by the square of the radius.
+        k1: f32 = 0.0, optional, Rule::Any, ["k1" in set::DURER];
+        /// Radial distortion by its fourth power.
+        k2: f32 = 0.0, optional, Rule::Any, ["k2" in set::DURER];
+        /// Tangential distortion, upwards.
+        p1: f32 = 0.0, optional, Rule::Any, ["p1" in set::DURER];
+        /// Tangential distortion, sideways.
+        p2: f32 = 0.0, optional, Rule::Any, ["p2" in set::DURER];
+        /// Radial distortion by the sixth power.
+        k3: f32 = 0.0, optional, Rule::Any, ["k3" in set::DURER];
+    }
+}
+
+/// A camera at the origin that looks along -z.
+fn plain_matrix() -> Vec<[f32; 4]> {
+    vec![[512.0, 0.0, -255.5, 0.0], [0.0, -512.0, -255.5, 0.0], [0.0, 0.0, -1.0, 0.0]]
+}
+
+/// The matrix taken apart.
+struct Parts {
+    eye: DVec3,
+    /// Rows: the camera's right, down and forward in the world.
+    rotation: DMat3,
+    /// Upper triangular, 1 in the last corner.
+    intrinsic: DMat3,
+}
+
+impl ProjectiveCamera {
+    fn sheet(&self) -> Sheet {
+        Sheet(DVec2::new(f64::from(self.width), f64::from(self.height)))
+    }
+
+    /// The left three columns of the matrix, by rows, and the fourth.
+    fn rows(&self) -> ([DVec3; 3], DVec3) {
+        let row = |i: usize| self.matrix[i].map(f64::from);
+        let left = [0, 1, 2].map(|i| DVec3::from_slice(&row(i)[..3]));
+        (left, DVec3::new(row(0)[3], row(1)[3], row(2)[3]))
+    }
+
+    /// K, R and the eye: Gram and Schmidt's rule on the rows of M, from the last upwards.
+    fn parts(&self) -> Parts {
+        let ([a, b, c], last) = self.rows();
+        // Depth is positive before the camera where M keeps right-handed things right-handed.
+        let sign = if a.dot(b.cross(c)) < 0.0 { -1.0 } else { 1.0 };
+        let [a, b, c] = [a, b, c].map(|row| sign * row);
+        let forward = c.normalize();
+        let down = (b - b.dot(forward) * forward).normalize();
+        let right = down.cross(forward);
+        let scale = c.length();
+        let intrinsic = DMat3::from_cols(
+            DVec3::new(a.dot(right), 0.0, 0.0) / scale,
+            DVec3::new(a.dot(down), b.dot(down), 0.0) / scale,
+            DVec3::new(a.dot(forward), b.dot(forward), scale) / scale,
+        );
+        let eye = DMat3::from_cols(a, b, c).transpose().inverse() * (-sign * last);
+        Parts { eye, rotation: DMat3::from_cols(right, down, forward).transpose(), intrinsic }
+    }
+
+    /// The factor 1 + k1 s + k2 s² + k3 s³ and its derivative by s.
+    fn radial(&self, s: f64) -> (f64, f64) {
+        let [k1, k2, k3] = [self.k1, self.k2, self.k3].map(f64::from);
+        (1.0 + s * (k1 + s * (k2 + s * k3)), k1 + s * (2.0 * k2 + s * 3.0 * k3))
+    }
+
+    /// Whether the radius still grows with the distorted radius, all the way from the middle to a point.
+    fn unfolded(&self, point: DVec2) -> bool {
+        let end = point.length_squared();
+        // d/dr of r (1 + k1 r² + ...), as a function of s = r²; its extremes are at the roots of its derivative.
+        let growth = |s: f64| {
+            let (factor, slope) = self.radial(s);
+            factor + 2.0 * s * slope
+        };
+        let [a, b, c] = [3.0 * self.k1, 10.0 * self.k2, 21.0 * self.k3].map(f64::from);
+        let root = (b * b - 4.0 * a * c).max(0.0).sqrt();
+        let extremes = [(-b + root) / (2.0 * c), (-b - root) / (2.0 * c), -a / b];
+        extremes.into_iter().filter(|s| *s > 0.0 && *s < end).chain([end]).all(|s| growth(s) > 0.0)
+    }
+
+    /// The distorted point and its derivatives.
+    fn distorted(&self, point: DVec2) -> (DVec2, DMat2) {
+        let (s, [p1, p2]) = (point.length_squared(), [self.p1, self.p2].map(f64::from));
+        let ((factor, slope), DVec2 { x, y }) = (self.radial(s), point);
+        let tangential =
+            DVec2::new(2.0 * p1 * x * y + p2 * (s + 2.0 * x * x), p1 * (s + 2.0 * y * y) + 2.0 * p2 * x * y);
+        let mixed = 2.0 * x * y * slope + 2.0 * p1 * x + 2.0 * p2 * y;
+        let jacobian = DMat2::from_cols(
+            DVec2::new(factor + 2.0 * x * x * slope + 2.0 * p1 * y + 6.0 * p2 * x, mixed),
+            DVec2::new(mixed, factor + 2.0 * y * y * slope + 6.0 * p1 * y + 2.0 * p2 * x),
+        );
+        (factor * point + tangential, jacobian)
+    }
+
+    /// The point that is distorted to this one, if there is one this side of the fold.
+    fn undistorted(&self, wanted: DVec2) -> Option<DVec2> {
+        // Mostly the first guess will do; where it does not, the point is followed outwards from the middle.
+        let followed = || (1..=16).try_fold(DVec2::ZERO, |point, i| self.solved(point, wanted * (f64::from(i) / 16.0)));
+        self.solved(wanted, wanted).or_else(followed)
+    }
+
+    /// Newton's method from a guess.
+    fn solved(&self, mut point: DVec2, wanted: DVec2) -> Option<DVec2> {
+        for _ in 0..20 {
+            let (there, jacobian) = self.distorted(point);
+            let step = jacobian.inverse() * (wanted - there);
+            point += step;
+            if step.length() <= 1e-15 * (1.0 + point.length()) {
+                break;
+            }
+        }
+        let (there, jacobian) = self.distorted(point);
+        let solved = (there - wanted).length() <= 1e-9 * (1.0 + wanted.length());
+        (solved && jacobian.determinant() > 0.0 && self.unfolded(point)).then_some(point)
+    }
+
+    /// The point at depth 1 that a sample sees.
+    fn seen(&self, parts: &Parts, sample: &CameraSample) -> Option<DVec2> {
+        let sheet = self.sheet();
+        if !sheet.contains(sheet.place(sample.pixel.as_dvec2())) {
+            return None;
+        }
+        let place = sheet.place(sample.point.as_dvec2());
+        let pixel = DVec3::new(place.x - 0.5, sheet.0.y - place.y - 0.5, 1.0);
+        self.undistorted((parts.intrinsic.inverse() * pixel).truncate())
+    }
+}
+
+impl Lens for ProjectiveCamera {
+    fn pose(&self) -> Pose {
+        let Parts { eye, rotation, .. } = self.parts();
+        let rows = rotation.transpose();
+        Pose { center: eye.as_vec3(), direction: rows.z_axis.as_vec3(), up: -rows.y_axis.as_vec3() }
+    }
+
+    fn proportions(&self) -> Option<Vec2> {
+        self.sheet().proportions()
+    }
+
+    fn problem(&self) -> Option<String> {
+        if self.matrix.len() != 3 {
+            return Some("`matrix` must have 3 rows".into());
+        }
+        let ([a, b, c], _) = self.rows();
+        let volume = a.dot(b.cross(c)).abs();
+        // Compared with rows of these lengths at right angles.
+        let singular = volume <= 1e-9 * a.length() * b.length() * c.length() || !self.pose().center.is_finite();
+        singular.then(|| "the left three columns of `matrix` are singular: such a camera has no eye".into())
+    }
+
+    fn ray(&self, _: &Frame, sample: &CameraSample) -> Option<Ray> {
+        let parts = self.parts();
+        let point = self.seen(&parts, sample)?;
+        Some(world_ray(parts.eye, parts.rotation.transpose() * point.extend(1.0)))
+    }
+
+    fn project(&self, _: &Frame, world: Vec3, _: Vec2, found: &mut dyn FnMut(Vec2)) {
+        let (parts, sheet) = (self.parts(), self.sheet());
+        let p = parts.rotation * (world.as_dvec3() - parts.eye);
+        let point = p.truncate() / p.z;
+        let (there, jacobian) = self.distorted(point);
+        if p.z <= 0.0 || jacobian.determinant() <= 0.0 || !self.unfolded(point) {
+            return;
+        }
+        let pixel = parts.intrinsic * there.extend(1.0);
+        let place = DVec2::new(pixel.x + 0.5, sheet.0.y - pixel.y - 0.5);
+        if sheet.contains(place) {
+            found(sheet.point(place).as_vec2());
+        }
+    }
+
+    fn footprint(&self, _: &Frame, sample: &CameraSample, t: f32) -> f32 {
+        let parts = self.parts();
+        let Some(point) = self.seen(&parts, sample) else { return 0.0 };
+        let pixels = parts.intrinsic.determinant() * self.distorted(point).1.determinant();
+        let (dir, unit) = (point.extend(1.0), self.sheet().unit());
+        (f64::from(t * t) * unit * unit / (pixels * dir.length_squared() * dir.length())) as f32
+    }
+}

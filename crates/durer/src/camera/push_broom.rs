@@ -1,0 +1,101 @@
+//! The push-broom: a line of pixels that moves straight on while it records, as satellites and scanners do.
+//!
+//! The column at the part u of the way is a fan of rays from e(u) = start + u (end - start):
+//! direction = forward + h up, |h| <= tan(angle / 2). Along the way there is no perspective, across it there is. The area
+//! across a ray grows in proportion to its length: t |m·right| / |direction|² per du dh, m = end - start.
+//!
+//! Source: Gupta, Hartley, *Linear Pushbroom Cameras*, PAMI 19(9), 1997.
+
+use super::perspective::half_width;
+use super::sheet::Sheet;
+use super::{CameraSample, Frame, Lens, Pose};
+use crate::describe::Rule;
+use crate::described;
+use crate::dialect::{Dialect, set};
+use crate::math::{Ray, Vec2, Vec3};
+use glam::{DVec2, DVec3};
+
+described! {
+    /// A camera whose columns are seen one after the other from a straight way.
+    PushBroomCamera ["PushBroomCamera" in set::DURER] {
+        /// Where the first column is seen from, at the picture's left.
+        start: Vec3 = Vec3::NEG_X, required, Rule::Any, ["start" in set::DURER];
+        /// Where the last column is seen from, at the picture's right.
+        end: Vec3 = Vec3::X, required, Rule::Any, ["end" in set::DURER];
+        /// Where all columns look; of any length.
+        direction: Vec3 = Vec3::NEG_Z, required, Rule::NonZero, ["direction" in set::DURER];
+        /// What is up in the picture; need not be perpendicular.
+        up: Vec3 = Vec3::Y, required, Rule::NonZero, ["up" in set::DURER];
+        /// Field of view from bottom to top, in degrees.
+        angle: f32 = 60.0, required, Rule::Between(0.0, 180.0), ["angle" in set::DURER];
+        /// Width of the picture over its height.
+        aspect: f32 = 2.0, optional, Rule::Positive, ["aspect" in set::DURER];
+    }
+}
+
+impl PushBroomCamera {
+    fn sheet(&self) -> Sheet {
+        Sheet(DVec2::new(f64::from(self.aspect), 1.0))
+    }
+
+    fn way(&self) -> DVec3 {
+        self.end.as_dvec3() - self.start.as_dvec3()
+    }
+
+    /// The part of the way and the height in the fan for a sample.
+    fn column(&self, sample: &CameraSample) -> Option<(f64, f64)> {
+        let sheet = self.sheet();
+        let place = sheet.place(sample.point.as_dvec2());
+        let within = sheet.contains(sheet.place(sample.pixel.as_dvec2()));
+        within.then(|| (place.x / sheet.0.x, (2.0 * place.y - 1.0) * half_width(self.angle)))
+    }
+}
+
+impl Lens for PushBroomCamera {
+    /// It stands half way.
+    fn pose(&self) -> Pose {
+        let center = self.start.as_dvec3() + 0.5 * self.way();
+        Pose { center: center.as_vec3(), direction: self.direction, up: self.up }
+    }
+
+    fn proportions(&self) -> Option<Vec2> {
+        self.sheet().proportions()
+    }
+
+    fn problem(&self) -> Option<String> {
+        let frame = Frame::new(self.pose(), Dialect::Durer.rules());
+        let sideways = self.way().dot(frame.right.as_dvec3()).abs();
+        // Also where the way has no length.
+        let moves = sideways > 1e-6 * self.way().length();
+        (!moves)
+            .then(|| "from `start` to `end` the camera must move sideways, not only along `direction` or `up`".into())
+    }
+
+    fn ray(&self, frame: &Frame, sample: &CameraSample) -> Option<Ray> {
+        let (u, height) = self.column(sample)?;
+        let ray = frame.ray(DVec3::ZERO, DVec3::new(0.0, height, 1.0));
+        Some(Ray { origin: (self.start.as_dvec3() + u * self.way()).as_vec3(), ..ray })
+    }
+
+    fn project(&self, frame: &Frame, world: Vec3, _: Vec2, found: &mut dyn FnMut(Vec2)) {
+        let (from_start, way) = (frame.turned(world.as_dvec3() - self.start.as_dvec3()), frame.turned(self.way()));
+        // The column whose plane the point lies in.
+        let u = from_start.x / way.x;
+        let seen = from_start - u * way;
+        let height = seen.y / seen.z / half_width(self.angle);
+        let sheet = self.sheet();
+        let place = DVec2::new(u * sheet.0.x, 0.5 * (height + 1.0));
+        if seen.z > 0.0 && sheet.contains(place) {
+            found(sheet.point(place).as_vec2());
+        }
+    }
+
+    fn footprint(&self, frame: &Frame, sample: &CameraSample, t: f32) -> f32 {
+        let Some((_, height)) = self.column(sample) else { return 0.0 };
+        let sheet = self.sheet();
+        let unit = sheet.unit();
+        let per_place = 2.0 * half_width(self.angle) / sheet.0.x;
+        let sideways = self.way().dot(frame.right.as_dvec3()).abs();
+        (f64::from(t) * sideways / (1.0 + height * height) * per_place * unit * unit) as f32
+    }
+}

@@ -1,0 +1,121 @@
+//! Two perspective cameras side by side: a pair of pictures for two eyes.
+//!
+//! `offAxis` shears both views so that they share one window at the distance of convergence: what lies there appears on
+//! the screen, nearer things before it, and no vertical parallax arises. `toeIn` turns both cameras to one point there,
+//! as cross-eyed cameras on a rig are; their pictures differ in height towards the corners. `parallel` turns and shears
+//! nothing: all things appear before the screen.
+//!
+//! Source: Hodges, McAllister, *Stereo and Alternating-Pair Techniques for Display of Computer-Generated Images*, IEEE
+//! CG&A 5(9), 1985; Bourke, *Calculating Stereo Pairs*, 1999.
+
+use super::perspective::half_width;
+use super::sheet::Sheet;
+use super::{CameraSample, Eyes, Frame, Lens, Pose};
+use crate::describe::Rule;
+use crate::dialect::set;
+use crate::math::{Ray, Vec2, Vec3};
+use crate::{described, described_words};
+use glam::{DMat3, DVec2, DVec3};
+
+described_words! {
+    /// How two perspective views converge.
+    StereoMethod { OffAxis = "offAxis", ToeIn = "toeIn", Parallel = "parallel" }
+}
+
+described! {
+    /// Two perspective views for two eyes, or one of them.
+    StereoCamera ["StereoCamera" in set::DURER] {
+        /// The middle between the eyes.
+        center: Vec3 = Vec3::ZERO, required, Rule::Any, ["center" in set::DURER];
+        /// Where the viewer looks; of any length.
+        direction: Vec3 = Vec3::NEG_Z, required, Rule::NonZero, ["direction" in set::DURER];
+        /// What is up in the picture; need not be perpendicular.
+        up: Vec3 = Vec3::Y, required, Rule::NonZero, ["up" in set::DURER];
+        /// Field of view across the larger side of one eye's picture, in degrees.
+        angle: f32 = 30.0, required, Rule::Between(0.0, 180.0), ["angle" in set::DURER];
+        /// Distance between the eyes.
+        separation: f32 = 0.065, required, Rule::NonNegative, ["separation" in set::DURER];
+        /// Distance at which both eyes see a thing at the same place of the picture; without meaning for `parallel`.
+        convergence: f32 = 1.0, optional, Rule::Positive, ["convergence" in set::DURER];
+        /// How the views converge.
+        method: StereoMethod = StereoMethod::OffAxis, optional, Rule::Any, ["method" in set::DURER];
+        /// Which eye's picture, or how both are laid out.
+        eyes: Eyes = Eyes::SideBySide, optional, Rule::Any, ["eyes" in set::DURER];
+        /// Width of one eye's picture over its height.
+        aspect: f32 = 1.0, optional, Rule::Positive, ["aspect" in set::DURER];
+    }
+}
+
+/// One eye in the middle's space: where it is, its axes as columns, and by how much its window is moved.
+struct Eye {
+    at: DVec3,
+    axes: DMat3,
+    shear: DVec2,
+}
+
+impl StereoCamera {
+    fn one(&self) -> DVec2 {
+        DVec2::new(f64::from(self.aspect), 1.0)
+    }
+
+    fn eye(&self, side: f64) -> Eye {
+        let (x, convergence) = (0.5 * side * f64::from(self.separation), f64::from(self.convergence));
+        let eye = Eye { at: DVec3::new(x, 0.0, 0.0), axes: DMat3::IDENTITY, shear: DVec2::ZERO };
+        match self.method {
+            StereoMethod::Parallel => eye,
+            // The window at the distance of convergence is the middle's.
+            StereoMethod::OffAxis => Eye { shear: DVec2::new(-x / convergence, 0.0), ..eye },
+            StereoMethod::ToeIn => {
+                let forward = DVec3::new(-x, 0.0, convergence).normalize();
+                let right = DVec3::new(forward.z, 0.0, -forward.x);
+                Eye { axes: DMat3::from_cols(right, DVec3::Y, forward), ..eye }
+            }
+        }
+    }
+
+    /// The units of the window at distance 1 that a unit of one eye's sheet is.
+    fn scale(&self) -> f64 {
+        half_width(self.angle) / (0.5 * self.one().max_element())
+    }
+
+    /// The eye, and the direction from it in its own axes.
+    fn line(&self, sample: &CameraSample) -> Option<(Eye, DVec3)> {
+        let (view, place) = self.eyes.view(self.one(), sample.point.as_dvec2(), sample.pixel.as_dvec2())?;
+        let eye = self.eye(view.side);
+        let dir = ((place - 0.5 * self.one()) * self.scale() + eye.shear).extend(1.0);
+        Some((eye, dir))
+    }
+}
+
+impl Lens for StereoCamera {
+    fn pose(&self) -> Pose {
+        Pose { center: self.center, direction: self.direction, up: self.up }
+    }
+
+    fn proportions(&self) -> Option<Vec2> {
+        self.eyes.sheet(self.one()).proportions()
+    }
+
+    fn ray(&self, frame: &Frame, sample: &CameraSample) -> Option<Ray> {
+        let (eye, dir) = self.line(sample)?;
+        Some(frame.ray(eye.at, eye.axes * dir))
+    }
+
+    fn project(&self, frame: &Frame, world: Vec3, _: Vec2, found: &mut dyn FnMut(Vec2)) {
+        let (one, p) = (self.one(), frame.camera_from_world(world));
+        for view in self.eyes.views(one) {
+            let eye = self.eye(view.side);
+            let p = eye.axes.transpose() * (p - eye.at);
+            let place = (p.truncate() / p.z - eye.shear) / self.scale() + 0.5 * one;
+            if p.z > 0.0 && Sheet(one).contains(place) {
+                found(self.eyes.point(one, view, place).as_vec2());
+            }
+        }
+    }
+
+    fn footprint(&self, _: &Frame, sample: &CameraSample, t: f32) -> f32 {
+        let Some((_, dir)) = self.line(sample) else { return 0.0 };
+        let unit = self.scale() * self.eyes.sheet(self.one()).unit();
+        (f64::from(t * t) * unit * unit / (dir.length_squared() * dir.length())) as f32
+    }
+}

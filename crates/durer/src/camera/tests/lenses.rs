@@ -1,0 +1,157 @@
+//! Lenses, holes, pairs of eyes and distorted photographs.
+
+use super::super::aperture;
+use super::super::pinhole::PinholeCamera;
+use super::super::projective::ProjectiveCamera;
+use super::super::stereo::{StereoCamera, StereoMethod};
+use super::super::thin_lens::ThinLensCamera;
+use super::family::ray;
+use super::*;
+use crate::math::random::Random;
+use glam::DVec2;
+
+#[test]
+fn points_fill_the_opening_evenly() {
+    let mut random = Random(1);
+    for blades in [0, 3, 4, 6, 9] {
+        const COUNT: usize = 200_000;
+        // Mean and mean square radius of a disc of radius 1, or of a regular polygon around it: (2 + cos 2π/n) / 6.
+        let expected = match blades {
+            0 => 0.5,
+            n => (2.0 + libm::cos(std::f64::consts::TAU / f64::from(n))) / 6.0,
+        };
+        let (mut sum, mut squares) = (DVec2::ZERO, 0.0);
+        for _ in 0..COUNT {
+            let point = aperture::sample(Vec2::new(random.unit(), random.unit()), blades, 20.0);
+            assert!(point.length() <= 1.0 + 1e-12);
+            sum += point;
+            squares += point.length_squared();
+        }
+        let n = COUNT as f64;
+        // Five standard errors, with room: no coordinate and no square exceeds 1.
+        let error = 5.0 / n.sqrt();
+        assert!((sum / n).length() < error && (squares / n - expected).abs() < error, "{blades}: {sum} {squares}");
+        assert_eq!(aperture::sample(Vec2::splat(0.5), blades, 20.0), DVec2::ZERO);
+    }
+    assert!([0, 3, 64].iter().all(|&n| aperture::problem(n).is_none()));
+    assert!([1, 2, 65].iter().all(|&n| aperture::problem(n).is_some()));
+}
+
+#[test]
+fn all_rays_of_a_point_meet_in_the_plane_of_focus_and_nowhere_else() {
+    let camera = ThinLensCamera {
+        center: Vec3::Y,
+        angle: 90.0,
+        aperture: 0.5,
+        focus_distance: 4.0,
+        blades: 5,
+        shift_up: 0.25,
+        ..ThinLensCamera::default()
+    };
+    let mut random = Random(2);
+    let point = Vec2::new(0.5, -0.25);
+    for _ in 0..1000 {
+        let sample = CameraSample { lens: Vec2::new(random.unit(), random.unit()), ..CameraSample::at(point) };
+        let ray = ray(&camera, sample).unwrap();
+        let at_depth = |depth: f32| ray.at((depth - ray.origin.z) / ray.dir.z);
+        assert!(at_depth(-4.0).distance(Vec3::new(2.0, 1.0, -4.0)) < 1e-5);
+        // Twice as far, the circle of confusion is as wide as the lens.
+        let off = at_depth(-8.0) - Vec3::new(4.0, 1.0, -8.0);
+        assert!(off.length() <= 0.25 + 1e-5 && off.distance(-(ray.origin - Vec3::Y)) < 1e-5);
+        assert!(ray.origin.distance(Vec3::Y) <= 0.25);
+    }
+    // Without an opening and a shift it is the plain camera.
+    let (plain, lens) = (PerspectiveCamera::default(), ThinLensCamera::default());
+    let sample = CameraSample { lens: Vec2::new(0.1, 0.9), ..CameraSample::at(point) };
+    close(ray(&plain, sample).unwrap().dir, ray(&lens, sample).unwrap().dir);
+}
+
+#[test]
+fn a_hole_blurs_far_points_to_its_own_size_and_near_ones_more() {
+    let camera = PinholeCamera { angle: 90.0, hole: 0.2, film_distance: 0.5, ..PinholeCamera::default() };
+    let frame = Frame::new(camera.pose(), &rules(&[]));
+    let (mut random, mut far, mut near) = (Random(3), 0f32, 0f32);
+    for _ in 0..20_000 {
+        let lens = Vec2::new(random.unit(), random.unit());
+        camera.project(&frame, Vec3::NEG_Z * 1e6, lens, &mut |point| far = far.max(point.length()));
+        camera.project(&frame, Vec3::NEG_Z * 0.5, lens, &mut |point| near = near.max(point.length()));
+    }
+    // The film is 1 wide and the picture 2: a hole of radius 0.1 is 0.2 there, and twice that at the film's distance.
+    assert!((far - 0.2).abs() < 1e-3 && (near - 0.4).abs() < 2e-3, "{far} {near}");
+}
+
+#[test]
+fn pairs_of_eyes_agree_where_their_views_converge() {
+    let camera = StereoCamera { angle: 60.0, separation: 0.3, convergence: 5.0, ..StereoCamera::default() };
+    assert_eq!(camera.proportions(), Some(Vec2::new(2.0, 1.0)));
+    let frame = Frame::new(camera.pose(), &rules(&[]));
+    let pair = |camera: &StereoCamera, point: Vec3| {
+        let mut found = Vec::new();
+        camera.project(&frame, point, Vec2::ZERO, &mut |p| found.push(p));
+        assert_eq!(found.len(), 2, "{found:?}");
+        assert!(found[0].x < 0.0 && found[1].x > 0.0, "the left eye's picture is on the left");
+        // The right eye's place in its picture less the left one's.
+        (found[1] - found[0] - Vec2::X) * 2.0
+    };
+    for point in [Vec3::new(1.0, 0.7, -5.0), Vec3::new(-1.5, 0.2, -5.0)] {
+        assert!(pair(&camera, point).length() < 1e-6);
+        // Cameras that are turned see the same only in the middle: heights differ elsewhere.
+        let turned = StereoCamera { method: StereoMethod::ToeIn, ..camera.clone() };
+        assert!(pair(&turned, Vec3::NEG_Z * 5.0).length() < 1e-6);
+        assert!(pair(&turned, point).y.abs() > 1e-4);
+    }
+    // Nearer things move to the left for the right eye, farther ones to the right; without convergence all move left.
+    assert!(pair(&camera, Vec3::NEG_Z * 2.5).x < -0.05 && pair(&camera, Vec3::NEG_Z * 50.0).x > 0.05);
+    let parallel = StereoCamera { method: StereoMethod::Parallel, ..camera };
+    assert!(pair(&parallel, Vec3::NEG_Z * 50.0).x < -0.005);
+}
+
+/// The matrix of a camera at (1, 2, 3) that looks along -z, for pictures of 200 x 100.
+fn photograph() -> ProjectiveCamera {
+    let (f, cx, cy) = (150.0, 99.5, 49.5);
+    let rows = [[f, 0.0, -cx], [0.0, -f, -cy], [0.0, 0.0, -1.0]];
+    let matrix = rows.map(|r| [r[0], r[1], r[2], -(r[0] + 2.0 * r[1] + 3.0 * r[2])]).to_vec();
+    ProjectiveCamera { matrix, width: 200.0, height: 100.0, ..ProjectiveCamera::default() }
+}
+
+#[test]
+fn a_matrix_of_a_plain_camera_is_that_camera_at_any_scale() {
+    let angle = (2.0 * libm::atan(100.0 / 150.0)).to_degrees() as f32;
+    let plain = PerspectiveCamera { center: Vec3::new(1.0, 2.0, 3.0), angle, ..PerspectiveCamera::default() };
+    for scale in [1.0, -2.0, 1e-3] {
+        let mut camera = photograph();
+        camera.matrix.iter_mut().flatten().for_each(|x| *x *= scale);
+        for (x, y) in [(0.0, 0.0), (0.9, 0.4), (-0.5, -0.5), (0.2, -0.3)] {
+            let sample = CameraSample::at(Vec2::new(x, y));
+            let [a, b] = [ray(&camera, sample).unwrap(), ray(&plain, sample).unwrap()];
+            assert!(a.origin.distance(b.origin) < 1e-5 && a.dir.distance(b.dir) < 1e-6, "{a:?} {b:?}");
+        }
+    }
+    assert!(ProjectiveCamera { matrix: vec![[1.0, 2.0, 3.0, 4.0]; 3], ..photograph() }.problem().is_some());
+}
+
+#[test]
+fn lenses_distort_as_the_formula_says_and_see_nothing_behind_a_fold() {
+    let frame = Frame::new(photograph().pose(), &rules(&[]));
+    let seen = |camera: &ProjectiveCamera, x: f32, y: f32| {
+        let mut found = None;
+        camera.project(&frame, Vec3::new(1.0 + x, 2.0 - y, 2.0), Vec2::ZERO, &mut |point| found = Some(point));
+        // Pixels, y downwards.
+        found.map(|point| Vec2::new(100.0 + 100.0 * point.x - 0.5, 50.0 - 100.0 * point.y - 0.5))
+    };
+    let camera = ProjectiveCamera { k1: -0.2, k2: 0.05, p1: 0.01, p2: -0.02, k3: 0.1, ..photograph() };
+    let (x, y) = (0.4f32, 0.2f32);
+    let s = x * x + y * y;
+    let factor = 1.0 - 0.2 * s + 0.05 * s * s + 0.1 * s * s * s;
+    let expected = Vec2::new(
+        x * factor + 2.0 * 0.01 * x * y - 0.02 * (s + 2.0 * x * x),
+        y * factor + 0.01 * (s + 2.0 * y * y) - 2.0 * 0.02 * x * y,
+    );
+    let found = seen(&camera, x, y).unwrap();
+    assert!(found.distance(150.0 * expected + Vec2::new(99.5, 49.5)) < 1e-3, "{found} {expected}");
+    // r - r³ grows only up to r = 1/sqrt 3, where it is 0.385: farther out there is nothing, in either direction.
+    let folded = ProjectiveCamera { k1: -1.0, ..photograph() };
+    assert!(seen(&folded, 0.55, 0.0).is_some() && seen(&folded, 0.6, 0.0).is_none());
+    let at = |pixels: f32| ray(&folded, CameraSample::at(Vec2::new(pixels / 100.0, 0.0)));
+    assert!(at(0.38 * 150.0).is_some() && at(0.39 * 150.0).is_none());
+}

@@ -1,0 +1,100 @@
+//! The thin lens: what lies at one distance is sharp, the rest is blurred.
+//!
+//! All light that leaves a point of the plane of focus and passes the lens meets in one point of the picture. So the ray
+//! through a point l of the lens goes to the point where the ray through its middle meets the plane at the focus distance
+//! F: direction = (F tan(angle / 2) (x + s, y + r) - l, F). A point at distance z is blurred to the shape of the opening;
+//! in a picture of width 2 its diameter is aperture |F - z| / (F z tan(angle / 2)).
+//!
+//! The shift (s, r) moves the film in its plane, as view cameras do: the camera stays level and sees more above than
+//! below, and upright lines stay parallel.
+//!
+//! Source: Cook, Porter, Carpenter, *Distributed Ray Tracing*, SIGGRAPH 1984; Potmesil, Chakravarty, *A Lens and Aperture
+//! Camera Model for Synthetic Image Generation*, SIGGRAPH 1981, for the circle of confusion.
+
+use super::perspective::half_width;
+use super::{CameraSample, Frame, Lens, Pose, aperture};
+use crate::describe::Rule;
+use crate::described;
+use crate::dialect::set;
+use crate::math::{Ray, Vec2, Vec3};
+use glam::{DVec2, DVec3};
+
+described! {
+    /// A camera with a lens: depth of field, and a film that can be shifted.
+    ThinLensCamera ["ThinLensCamera" in set::DURER] {
+        /// The middle of the lens.
+        center: Vec3 = Vec3::ZERO, required, Rule::Any, ["center" in set::DURER];
+        /// Where it looks: along the lens's axis; of any length.
+        direction: Vec3 = Vec3::NEG_Z, required, Rule::NonZero, ["direction" in set::DURER];
+        /// What is up in the picture; need not be perpendicular.
+        up: Vec3 = Vec3::Y, required, Rule::NonZero, ["up" in set::DURER];
+        /// Field of view across the picture's larger side, in degrees, where nothing is shifted.
+        angle: f32 = 30.0, required, Rule::Between(0.0, 180.0), ["angle" in set::DURER];
+        /// Diameter of the opening: focal length over f-number. 0 makes everything sharp.
+        aperture: f32 = 0.0, optional, Rule::NonNegative, ["aperture" in set::DURER];
+        /// Distance of the plane that is sharp, along the axis.
+        focus_distance: f32 = 1.0, optional, Rule::Positive, ["focusDistance" in set::DURER];
+        /// Straight blades around the opening; 0 makes it round.
+        blades: u32 = 0, optional, Rule::AtMost(aperture::MOST_BLADES), ["blades" in set::DURER];
+        /// Turn of the opening about the axis, in degrees.
+        blade_angle: f32 = 0.0, optional, Rule::Any, ["bladeAngle" in set::DURER];
+        /// What is seen moves to the right by this part of half the larger side.
+        shift_right: f32 = 0.0, optional, Rule::Any, ["shiftRight" in set::DURER];
+        /// What is seen moves upwards by this part of half the larger side.
+        shift_up: f32 = 0.0, optional, Rule::Any, ["shiftUp" in set::DURER];
+    }
+}
+
+impl ThinLensCamera {
+    fn shift(&self) -> DVec2 {
+        DVec2::new(f64::from(self.shift_right), f64::from(self.shift_up))
+    }
+
+    /// The point of the lens, the distance of focus, and half the width of what is seen there.
+    fn parts(&self, lens: Vec2) -> (DVec2, f64, f64) {
+        let focus = f64::from(self.focus_distance);
+        let opening = aperture::sample(lens, self.blades, self.blade_angle);
+        (0.5 * f64::from(self.aperture) * opening, focus, focus * half_width(self.angle))
+    }
+
+    /// Origin and direction in the camera's space.
+    fn line(&self, sample: &CameraSample) -> (DVec3, DVec3) {
+        let (lens, focus, width) = self.parts(sample.lens);
+        let target = width * (sample.point.as_dvec2() + self.shift());
+        (lens.extend(0.0), (target - lens).extend(focus))
+    }
+}
+
+impl Lens for ThinLensCamera {
+    fn pose(&self) -> Pose {
+        Pose { center: self.center, direction: self.direction, up: self.up }
+    }
+
+    fn has_aperture(&self) -> bool {
+        self.aperture > 0.0
+    }
+
+    fn problem(&self) -> Option<String> {
+        aperture::problem(self.blades)
+    }
+
+    fn ray(&self, frame: &Frame, sample: &CameraSample) -> Option<Ray> {
+        let (origin, dir) = self.line(sample);
+        Some(frame.ray(origin, dir))
+    }
+
+    fn project(&self, frame: &Frame, world: Vec3, lens: Vec2, found: &mut dyn FnMut(Vec2)) {
+        let (lens, focus, width) = self.parts(lens);
+        let p = frame.camera_from_world(world);
+        if p.z > 0.0 {
+            let target = lens + (p.truncate() - lens) * (focus / p.z);
+            found((target / width - self.shift()).as_vec2());
+        }
+    }
+
+    fn footprint(&self, _: &Frame, sample: &CameraSample, t: f32) -> f32 {
+        let (_, focus, width) = self.parts(sample.lens);
+        let (_, dir) = self.line(sample);
+        (f64::from(t * t) * focus * width * width / (dir.length_squared() * dir.length())) as f32
+    }
+}

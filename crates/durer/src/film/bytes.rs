@@ -1,0 +1,87 @@
+//! Numbers as bytes: small ones take few of them.
+//!
+//! Whole numbers are written in groups of seven bits, the lowest first, the eighth bit telling that more follow (LEB128);
+//! signed ones alternate around zero (zigzag), so that small ones of either sign are short.
+
+/// Appends a whole number.
+pub fn put(out: &mut Vec<u8>, mut number: u128) {
+    while number > 0x7f {
+        out.push(number as u8 | 0x80);
+        number >>= 7;
+    }
+    out.push(number as u8);
+}
+
+/// Appends a number that may be negative.
+pub fn put_signed(out: &mut Vec<u8>, number: i128) {
+    put(out, ((number << 1) ^ (number >> 127)) as u128);
+}
+
+/// Reads numbers from bytes that may be cut or changed: then there is `None`, and never a panic.
+#[derive(Clone, Copy, Debug)]
+pub struct Bytes<'a>(pub &'a [u8]);
+
+impl<'a> Bytes<'a> {
+    /// The next bytes.
+    pub fn take(&mut self, count: usize) -> Option<&'a [u8]> {
+        let (taken, rest) = self.0.split_at_checked(count)?;
+        self.0 = rest;
+        Some(taken)
+    }
+
+    /// A whole number, if it fits its type.
+    pub fn whole<T: TryFrom<u128>>(&mut self) -> Option<T> {
+        let mut number = 0_u128;
+        for shift in (0..128).step_by(7) {
+            let byte = self.take(1)?[0];
+            let bits = u128::from(byte & 0x7f);
+            number |= bits << shift;
+            if byte < 0x80 {
+                // Bits that were shifted out make another number.
+                return if number >> shift == bits { number.try_into().ok() } else { None };
+            }
+        }
+        None
+    }
+
+    /// A number that may be negative, if it fits its type.
+    pub fn signed<T: TryFrom<i128>>(&mut self) -> Option<T> {
+        let number: u128 = self.whole()?;
+        ((number >> 1) as i128 ^ -((number & 1) as i128)).try_into().ok()
+    }
+
+    /// Four bytes as they stand in memory: a floating-point number, bit for bit.
+    pub fn float(&mut self) -> Option<f32> {
+        Some(f32::from_le_bytes(self.take(4)?.try_into().ok()?))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn numbers_come_back(numbers in prop::collection::vec((any::<u128>(), any::<i128>(), 0_u32..128), 1..20)) {
+            let numbers: Vec<_> = numbers.into_iter().map(|(u, i, s)| (u >> s, i >> s)).collect();
+            let mut out = Vec::new();
+            for &(whole, signed) in &numbers {
+                put(&mut out, whole);
+                put_signed(&mut out, signed);
+            }
+            let mut bytes = Bytes(&out);
+            for &(whole, signed) in &numbers {
+                prop_assert_eq!((bytes.whole(), bytes.signed()), (Some(whole), Some(signed)));
+            }
+            prop_assert!(bytes.0.is_empty() && bytes.whole::<u8>().is_none());
+        }
+
+        #[test]
+        fn any_bytes_are_read_or_refused(junk in prop::collection::vec(any::<u8>(), 0..60)) {
+            let mut bytes = Bytes(&junk);
+            while bytes.signed::<i64>().is_some() {}
+            let _ = (bytes.float(), bytes.take(usize::MAX));
+        }
+    }
+}

@@ -1,0 +1,92 @@
+//! Rules in words about the picture.
+
+use super::bytes;
+use super::rule::Rule;
+
+/// What a rule says of the picture.
+pub fn of(rule: &Rule) -> String {
+    match *rule {
+        Rule::Turned(turn) => match (turn.exchange, turn.columns_back, turn.rows_back) {
+            (false, true, false) => "it is mirrored left to right",
+            (false, false, true) => "it is upside down, mirrored top to bottom",
+            (false, ..) => "it is turned by 180 degrees",
+            (true, true, false) => "it is turned by 90 degrees clockwise",
+            (true, false, true) => "it is turned by 90 degrees counter-clockwise",
+            (true, false, false) => "its columns and rows are exchanged",
+            (true, true, true) => "its columns and rows are exchanged, and both run backwards",
+        }
+        .into(),
+        Rule::Shifted(dx, dy) => {
+            let way = |d: isize, back: &str, on: &str| {
+                let count = d.unsigned_abs();
+                let plural = if count == 1 { "" } else { "s" };
+                (d != 0).then(|| format!("{count} pixel{plural} {}", if d < 0 { back } else { on }))
+            };
+            let ways: Vec<String> =
+                [way(dx, "to the left", "to the right"), way(dy, "up", "down")].into_iter().flatten().collect();
+            format!("it is shifted by {}", ways.join(" and "))
+        }
+        Rule::Channels([2, 1, 0]) => "red and blue are exchanged (BGR for RGB)".into(),
+        Rule::Channels([0, 2, 1]) => "green and blue are exchanged".into(),
+        Rule::Channels([1, 0, 2]) => "red and green are exchanged".into(),
+        Rule::Channels(order) => {
+            let [r, g, b] = order.map(|channel| ["red", "green", "blue"][channel]);
+            format!("its red, green and blue are the reference's {r}, {g} and {b}")
+        }
+        Rule::Grey => "it has the brightness of the reference but no colours".into(),
+        Rule::Inverted([true, true, true]) => {
+            "it is inverted: black for white (a depth mapped the other way, normals of the opposite direction)".into()
+        }
+        Rule::Inverted(which) => {
+            let names = ["red (x)", "green (y)", "blue (z)"];
+            let names: Vec<&str> = (0..3).filter(|&c| which[c]).map(|c| names[c]).collect();
+            format!("{} inverted: an axis that points the other way", joined(&names))
+        }
+        Rule::ThingsInverted => {
+            "it is inverted where the reference is not black (a depth mapped the other way: near for far)".into()
+        }
+        Rule::CurveOnceMore => "the curve of sRGB (gamma) is applied once more: its values are too light".into(),
+        Rule::CurveOnceLess => "the curve of sRGB (gamma) is applied once less: its values are too dark".into(),
+        Rule::Power(exponent) => format!("its values are the reference's to the power of {exponent:.2}: another gamma"),
+        Rule::Factor(factor) => format!("it is {} by the factor {factor:.3}", brightness(factor > 1.0)),
+        Rule::LightFactor(factor) => {
+            format!("its light is {} by the factor {factor:.3} (before the curve of sRGB)", brightness(factor > 1.0))
+        }
+        Rule::Factors(factors) => {
+            let [r, g, b] = factors.to_array();
+            format!("its red, green and blue are the reference's times {r:.3}, {g:.3} and {b:.3}")
+        }
+        Rule::Added(amount) => {
+            format!("it is {} by {amount:+.4} ({:+.1}/255) everywhere", brightness(amount > 0.0), amount * 255.0)
+        }
+        Rule::AddedEach(amounts) => {
+            let [r, g, b] = amounts.to_array();
+            format!("{r:+.4}, {g:+.4} and {b:+.4} are added to its red, green and blue")
+        }
+        Rule::Affine(factor, amount) if factor < 0.0 => format!(
+            "its values are {factor:.3} times the reference's {amount:+.3}: the range is mapped the other way (near for far), and to other ends"
+        ),
+        Rule::Affine(factor, amount) => {
+            format!(
+                "its values are {factor:.3} times the reference's {amount:+.3}: another range (of depth?) is mapped to black and white"
+            )
+        }
+        Rule::Recolored(from, to) => {
+            let ([r, g, b], [r2, g2, b2]) = (bytes(from), bytes(to));
+            format!("the colour ({r}, {g}, {b}) of the reference, its background perhaps, is ({r2}, {g2}, {b2}) here")
+        }
+        Rule::Blurred => "it is blurred: averaged over neighbouring pixels".into(),
+    }
+}
+
+fn brightness(more: bool) -> &'static str {
+    if more { "brighter" } else { "darker" }
+}
+
+fn joined(names: &[&str]) -> String {
+    match names {
+        [one] => format!("{one} is"),
+        [first @ .., last] => format!("{} and {last} are", first.join(", ")),
+        [] => String::new(),
+    }
+}

@@ -1,0 +1,179 @@
+//! Temporary files that leave nothing behind, even where the program is killed.
+//!
+//! On Linux the file has no name until its bytes are safe (`O_TMPFILE`), and vanishes with the program. Elsewhere it has one, and
+//! so it has for a moment before it replaces an old file; what a killed program left then, the next one removes. It knows it by
+//! the lock that a living program holds on its file.
+
+use std::fs::{self, File};
+use std::io;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+use tempfile::NamedTempFile;
+
+/// How the names of temporary files begin and end; those that were whole before they had one begin with `READY`.
+const PREFIX: &str = ".durer-";
+const READY: &str = ".durer-ready-";
+const SUFFIX: &str = ".tmp";
+
+/// A file without a lock that may not be whole is left alone for so long: its program may be about to lock it.
+const PATIENCE: Duration = Duration::from_secs(60);
+
+/// A file that is not yet where it should be.
+pub(super) enum Temporary {
+    /// Without a name.
+    #[cfg(target_os = "linux")]
+    Unnamed(File, PathBuf),
+    /// With a name of its own.
+    Named(NamedTempFile),
+}
+
+impl Temporary {
+    /// An empty file in a folder.
+    pub(super) fn new_in(folder: &Path) -> io::Result<Self> {
+        #[cfg(target_os = "linux")]
+        if let Some(file) = unnamed(folder)? {
+            lock(&file);
+            return Ok(Temporary::Unnamed(file, folder.into()));
+        }
+        let named = builder(PREFIX).tempfile_in(folder).map_err(without_path)?;
+        lock(named.as_file());
+        Ok(Temporary::Named(named))
+    }
+
+    pub(super) fn file(&self) -> &File {
+        match self {
+            #[cfg(target_os = "linux")]
+            Temporary::Unnamed(file, _) => file,
+            Temporary::Named(named) => named.as_file(),
+        }
+    }
+
+    /// Gives it its name. A file that has this name already is replaced.
+    pub(super) fn persist(self, target: &Path) -> io::Result<()> {
+        let named = match self {
+            Temporary::Named(named) => named,
+            #[cfg(target_os = "linux")]
+            Temporary::Unnamed(file, folder) => match link(&file, target) {
+                Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {
+                    // A link replaces nothing; a rename does, and needs a name.
+                    let link = |path: &Path| link(&file, path);
+                    let (_, path) = builder(READY).make_in(folder, link)?.into_parts();
+                    return path.persist(target).map_err(|failed| failed.error);
+                }
+                result => return result,
+            },
+        };
+        named.persist(target).map(drop).map_err(|failed| failed.error)
+    }
+}
+
+fn builder(prefix: &str) -> tempfile::Builder<'_, 'static> {
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(prefix).suffix(SUFFIX);
+    // As for any new file, the user's mask is taken off.
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    builder
+}
+
+/// A file without a name, where the system and the folder have them and names can be given later.
+#[cfg(target_os = "linux")]
+fn unnamed(folder: &Path) -> io::Result<Option<File>> {
+    use rustix::fs::{Mode, OFlags};
+    if !Path::new("/proc/self/fd").is_dir() {
+        return Ok(None);
+    }
+    match rustix::fs::open(folder, OFlags::TMPFILE | OFlags::WRONLY | OFlags::CLOEXEC, Mode::from_raw_mode(0o666)) {
+        Ok(file) => Ok(Some(file.into())),
+        // What systems without them say.
+        Err(rustix::io::Errno::OPNOTSUPP | rustix::io::Errno::ISDIR | rustix::io::Errno::INVAL) => Ok(None),
+        Err(error) => Err(error.into()),
+    }
+}
+
+#[cfg(target_os = "linux")]
+fn link(file: &File, path: &Path) -> io::Result<()> {
+    use rustix::fs::{AtFlags, CWD};
+    use std::os::fd::AsRawFd;
+    let own = format!("/proc/self/fd/{}", file.as_raw_fd());
+    Ok(rustix::fs::linkat(CWD, own, CWD, path, AtFlags::SYMLINK_FOLLOW)?)
+}
+
+/// Marks a file as one of a living program; where that cannot be, it is only taken for older than it is.
+fn lock(file: &File) {
+    #[cfg(unix)]
+    let _ = rustix::fs::flock(file, rustix::fs::FlockOperation::NonBlockingLockExclusive);
+    #[cfg(not(unix))]
+    let _ = file;
+}
+
+/// Removes what killed programs left in a folder.
+pub(super) fn remove_stale(folder: &Path) {
+    #[cfg(unix)]
+    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+        let name = entry.file_name();
+        let name = name.to_string_lossy();
+        if !name.starts_with(PREFIX) || !name.ends_with(SUFFIX) {
+            continue;
+        }
+        let Ok(file) = File::open(entry.path()) else { continue };
+        let free = rustix::fs::flock(&file, rustix::fs::FlockOperation::NonBlockingLockExclusive).is_ok();
+        let age = entry.metadata().and_then(|data| data.modified()).ok().and_then(|time| time.elapsed().ok());
+        if free && (name.starts_with(READY) || age.is_some_and(|age| age > PATIENCE)) {
+            // Whoever may not remove it may not be bothered either.
+            let _ = fs::remove_file(entry.path());
+        }
+    }
+    #[cfg(not(unix))]
+    let _ = folder;
+}
+
+/// The system's reason without the name of the temporary file, which nobody asked for.
+fn without_path(error: io::Error) -> io::Error {
+    let inner = error.get_ref().and_then(std::error::Error::source).and_then(|e| e.downcast_ref::<io::Error>());
+    match inner.and_then(io::Error::raw_os_error) {
+        Some(code) => io::Error::from_raw_os_error(code),
+        None => error.kind().into(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_killed_programs_left_is_removed_and_nothing_else() {
+        let folder = tempfile::tempdir().unwrap();
+        let put = |name: &str| fs::write(folder.path().join(name), "").unwrap();
+        ["picture.png", ".durer-ready-1.tmp", ".durer-young.tmp", ".durer-ready-no", "other.tmp"]
+            .into_iter()
+            .for_each(put);
+        put(".durer-old.tmp");
+        let old = File::options().write(true).open(folder.path().join(".durer-old.tmp")).unwrap();
+        old.set_modified(std::time::SystemTime::now() - 2 * PATIENCE).unwrap();
+        // One of a living program.
+        let living = builder(READY).tempfile_in(folder.path()).unwrap();
+        lock(living.as_file());
+        remove_stale(folder.path());
+        let there = |name: &str| folder.path().join(name).exists();
+        assert!(living.path().exists());
+        assert!(there("picture.png") && there(".durer-young.tmp") && there(".durer-ready-no") && there("other.tmp"));
+        assert!(!there(".durer-ready-1.tmp") && !there(".durer-old.tmp"));
+    }
+
+    #[test]
+    fn files_with_and_without_a_name_replace_others() {
+        use std::io::Write;
+        let folder = tempfile::tempdir().unwrap();
+        let target = folder.path().join("a");
+        let named = |_: &Path| Temporary::Named(builder(PREFIX).tempfile_in(folder.path()).unwrap());
+        let usual = |folder: &Path| Temporary::new_in(folder).unwrap();
+        for (make, text) in [(&usual as &dyn Fn(&Path) -> Temporary, "1"), (&usual, "2"), (&named, "3")] {
+            let temporary = make(folder.path());
+            temporary.file().write_all(text.as_bytes()).unwrap();
+            temporary.persist(&target).unwrap();
+            assert_eq!(fs::read_to_string(&target).unwrap(), text);
+            assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+        }
+    }
+}

@@ -1,0 +1,257 @@
+//! An account of a ray's light: the tree of everything that made it.
+//!
+//! An integrator tells a [`Witness`] each term when it begins it, and what came of it when it ends it. Plain tallies hear
+//! nothing, at no cost; an [`Account`] keeps all of it. In every node,
+//!
+//! value = scale · (sum of the children's factor · value, in order),
+//!
+//! in the arithmetic of the picture: see [`Node::sum`]. So the tree adds up to the colour, and not just nearly.
+
+use crate::bvh::{Counts, Rays, Tally};
+use crate::math::{Color, Ray, Vec2, Vec3};
+use crate::world::HighlightModel;
+use serde::Serialize;
+
+/// Hears what an integrator does. The closures are called only by those that listen.
+pub trait Witness: Tally {
+    /// A term begins.
+    fn begin(&mut self, _what: impl FnOnce() -> What) {}
+    /// The ray of the term that was begun last hits something.
+    fn hit(&mut self, _hit: impl FnOnce() -> Struck) {}
+    /// The term that was begun last is done.
+    fn end(&mut self, _factor: Color, _scale: Color, _value: Color) {}
+}
+
+impl Witness for () {}
+impl Witness for Rays {}
+impl Witness for Counts {}
+
+/// A term: what it is, how it counts, and of what it is made.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Node {
+    /// What it is.
+    pub what: What,
+    /// What it is multiplied by in the node above.
+    pub factor: Color,
+    /// What the sum of the terms below is multiplied by.
+    pub scale: Color,
+    /// What comes of it.
+    pub value: Color,
+    /// The terms that it is the sum of, in the order of addition; none where `what` itself says how it is computed.
+    pub terms: Vec<Node>,
+}
+
+impl Node {
+    /// What the node adds to the one above.
+    pub fn contribution(&self) -> Color {
+        self.factor * self.value
+    }
+
+    /// The sum that `value` is, computed anew from the terms; `value` itself where there are none.
+    pub fn sum(&self) -> Color {
+        if self.terms.is_empty() {
+            return self.value;
+        }
+        let mut sum = Color::ZERO;
+        for term in &self.terms {
+            sum += term.contribution();
+        }
+        sum * self.scale
+    }
+}
+
+/// What sent a ray out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum RayKind {
+    /// The camera.
+    Camera,
+    /// A mirror.
+    Reflected,
+    /// Glass.
+    Transmitted,
+}
+
+/// A ray as numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Line {
+    /// Where it begins.
+    pub origin: Vec3,
+    /// Its direction; not of length 1 in the space of an object that was scaled.
+    pub dir: Vec3,
+    /// Hits count from this `t` on.
+    pub t_min: f32,
+    /// Hits count up to this `t`; `null` in JSON where there is no end.
+    pub t_max: f32,
+}
+
+impl From<&Ray> for Line {
+    fn from(ray: &Ray) -> Self {
+        Line { origin: ray.origin, dir: ray.dir, t_min: ray.t_min, t_max: ray.t_max }
+    }
+}
+
+/// What a ray hit, and how the surface is there.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Struck {
+    /// Number of the object in the world.
+    pub object: u32,
+    /// Number of the triangle in a mesh, else 0.
+    pub part: u32,
+    /// Position along the ray.
+    pub t: f32,
+    /// The point.
+    pub position: Vec3,
+    /// Unit normal of the true surface.
+    pub n_geo: Vec3,
+    /// Unit normal for shading, as the surface has it.
+    pub n_shade: Vec3,
+    /// The normal that light is reckoned with: `n_shade`, turned where a surface is shaded from behind.
+    pub n: Vec3,
+    /// Whether the surface is seen from behind.
+    pub from_behind: bool,
+    /// Whether its back is left black, as an old program has it.
+    pub black: bool,
+    /// Texture coordinates, if the shape has any.
+    pub uv: Option<Vec2>,
+    /// Barycentric coordinates; 0 on what is no triangle.
+    pub barycentric: Vec3,
+    /// The ray in the object's own space, where a transform applies.
+    pub local: Option<Line>,
+    /// Numbers of the materials that make up the point, with their shares.
+    pub material: u32,
+}
+
+/// What stands between a surface and a light.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Shadow {
+    /// The ray to the light.
+    pub ray: Line,
+    /// Number of the first object on it and the `t` of its hit; none where the light is free.
+    pub blocker: Option<(u32, f32)>,
+    /// The share of the light that comes through.
+    pub share: Color,
+}
+
+/// One kind of term.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case", tag = "kind")]
+pub enum What {
+    /// The light that comes along a ray.
+    Ray {
+        /// What sent it out.
+        from: RayKind,
+        /// The ray.
+        ray: Line,
+        /// How much it counts for in the pixel.
+        weight: f32,
+        /// What it hit.
+        hit: Option<Box<Struck>>,
+    },
+    /// The background or sky, where a ray hits nothing.
+    Sky,
+    /// Ambient light times the surface's colour, the value; the factor is share · ambient light.
+    Ambient {
+        /// The material's share in the point.
+        share: f32,
+    },
+    /// The light of one lamp: (diffuse + highlight) · what arrives, which is the scale. The factor is share · what comes through.
+    Light {
+        /// Number of the light in the scene.
+        light: usize,
+        /// Unit vector to it.
+        to_light: Vec3,
+        /// How far it is; `null` in JSON for a light without a place.
+        distance: f32,
+        /// The material's share in the point.
+        share: f32,
+        /// The shadow ray; none where shadows are off.
+        shadow: Option<Shadow>,
+    },
+    /// max(0, N·L), the factor, times the surface's colour, the value.
+    Diffuse {
+        /// N·L.
+        cosine: f32,
+    },
+    /// max(0, base)^exponent, the factor, times the specular colour, the value.
+    Highlight {
+        /// Which base it has.
+        model: &'static str,
+        /// N·H or R·L.
+        base: f32,
+        /// How sharp it is.
+        exponent: f32,
+    },
+    /// Mirrored and transmitted light.
+    Secondary {
+        /// Index of refraction on the ray's side.
+        here: f32,
+        /// Index of refraction behind the surface.
+        there: f32,
+        /// The mirrored share, where Fresnel's law divides the light.
+        fresnel: Option<f32>,
+        /// Whether no light gets through, by total reflection.
+        total: bool,
+    },
+    /// A ray that counts for too little to be traced.
+    Cut {
+        /// What it would count for.
+        weight: f32,
+    },
+    /// Mirrored and transmitted light, of which no more levels are wanted.
+    Spent,
+}
+
+impl What {
+    /// A name for a model of highlights.
+    pub fn highlight(model: HighlightModel) -> &'static str {
+        match model {
+            HighlightModel::Blinn => "N·H",
+            HighlightModel::Phong { .. } => "R·L",
+        }
+    }
+}
+
+/// A witness that keeps everything.
+#[derive(Debug, Default)]
+pub struct Account {
+    /// Terms that were begun and are not done.
+    open: Vec<Node>,
+    /// The term that all others belong to.
+    done: Option<Node>,
+}
+
+impl Account {
+    /// The tree; `None` if nothing was told.
+    pub fn into_tree(self) -> Option<Node> {
+        self.done
+    }
+}
+
+impl Tally for Account {
+    fn ray(&mut self) {}
+    fn node(&mut self) {}
+    fn test(&mut self) {}
+}
+
+impl Witness for Account {
+    fn begin(&mut self, what: impl FnOnce() -> What) {
+        let node = Node { what: what(), factor: Color::ONE, scale: Color::ONE, value: Color::ZERO, terms: Vec::new() };
+        self.open.push(node);
+    }
+
+    fn hit(&mut self, hit: impl FnOnce() -> Struck) {
+        if let Some(Node { what: What::Ray { hit: place, .. }, .. }) = self.open.last_mut() {
+            *place = Some(Box::new(hit()));
+        }
+    }
+
+    fn end(&mut self, factor: Color, scale: Color, value: Color) {
+        let Some(node) = self.open.pop() else { return };
+        let node = Node { factor, scale, value, ..node };
+        match self.open.last_mut() {
+            Some(above) => above.terms.push(node),
+            None => self.done = Some(node),
+        }
+    }
+}

@@ -1,0 +1,123 @@
+//! Real roots of polynomials, in double precision.
+
+/// The roots of a t^2 + 2 b t + c where it changes its sign, in rising order: none, or two. A double root is none.
+///
+/// `a` must not be 0. No root loses digits to cancellation: one of them is c / q. Source: Press et al., *Numerical
+/// Recipes*, section 5.6.
+pub fn quadratic(a: f64, b: f64, c: f64) -> Option<(f64, f64)> {
+    let discriminant = b * b - a * c;
+    if discriminant.is_nan() || discriminant <= 0.0 {
+        return None;
+    }
+    let q = -(b + discriminant.sqrt().copysign(b));
+    let (x, y) = (q / a, if q == 0.0 { 0.0 } else { c / q });
+    Some(if x < y { (x, y) } else { (y, x) })
+}
+
+/// The places in (`low`, `high`) where a polynomial of degree 4 changes its sign, in rising order, and their number.
+///
+/// Coefficients are given from the constant on. Between the roots of its derivative a polynomial is monotonic, so that
+/// each piece with a change of sign has one root, found by bisection that Newton's method hastens. The derivatives'
+/// own roots are found in the same way. A polynomial with the same sign at both ends has an even number of roots.
+pub fn quartic(c: [f64; 5], low: f64, high: f64) -> ([f64; 4], usize) {
+    let second = [2.0 * c[2], 6.0 * c[3], 12.0 * c[4]];
+    let first = [c[1], 2.0 * c[2], 3.0 * c[3], 4.0 * c[4]];
+    let mut bends = [0.0; 4];
+    let mut count = 0;
+    let inside = |t: f64| t > low && t < high;
+    if let Some((x, y)) = quadratic(second[2], 0.5 * second[1], second[0]).filter(|_| second[2] != 0.0) {
+        for t in [x, y].into_iter().filter(|&t| inside(t)) {
+            bends[count] = t;
+            count += 1;
+        }
+    }
+    let (turns, count) = between(&first, &bends[..count], low, high);
+    between(&c, &turns[..count], low, high)
+}
+
+/// The changes of sign of a polynomial that is monotonic between these cuts.
+fn between(c: &[f64], cuts: &[f64], low: f64, high: f64) -> ([f64; 4], usize) {
+    let mut roots = [0.0; 4];
+    let mut count = 0;
+    let mut from = (low, value(c, low).0);
+    for &cut in cuts.iter().chain([&high]) {
+        let to = (cut, value(c, cut).0);
+        if (from.1 < 0.0) != (to.1 < 0.0) && count < 4 {
+            roots[count] = refine(c, from, to);
+            count += 1;
+        }
+        from = to;
+    }
+    (roots, count)
+}
+
+/// A polynomial and its derivative, by Horner's rule.
+fn value(c: &[f64], t: f64) -> (f64, f64) {
+    c.iter().rev().fold((0.0, 0.0), |(value, slope), &c| (value * t + c, slope * t + value))
+}
+
+/// The root between two places of different sign.
+fn refine(c: &[f64], a: (f64, f64), b: (f64, f64)) -> f64 {
+    let (mut low, mut high) = if a.1 < 0.0 { (a.0, b.0) } else { (b.0, a.0) };
+    let mut t = 0.5 * (low + high);
+    for _ in 0..100 {
+        let (v, slope) = value(c, t);
+        if v < 0.0 {
+            low = t;
+        } else {
+            high = t;
+        }
+        let newton = t - v / slope;
+        // A step out of the bracket, or one that is no number, is replaced by halving.
+        let held = newton > low.min(high) && newton < low.max(high);
+        let next = if held { newton } else { 0.5 * (low + high) };
+        if (next - t).abs() <= 1e-16 * t.abs() || next == t {
+            return next;
+        }
+        t = next;
+    }
+    t
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::random::Random;
+
+    #[test]
+    fn polynomials_are_zero_where_they_were_made_so() {
+        let mut random = Random(1);
+        for _ in 0..100_000 {
+            let mut made: [f64; 4] = std::array::from_fn(|_| f64::from(random.between(-1.0, 1.0)));
+            made.sort_by(f64::total_cmp);
+            let scale = f64::from(random.between(0.1, 10.0));
+            // (t - a)(t - b)(t - c)(t - d), one factor after the other.
+            let mut c = [scale, 0.0, 0.0, 0.0, 0.0];
+            for root in made {
+                for i in (0..5).rev() {
+                    c[i] = if i > 0 { c[i - 1] } else { 0.0 } - root * c[i];
+                }
+            }
+            let (roots, count) = quartic(c, -1.5, 1.5);
+            assert_eq!(count % 2, 0);
+            // Roots closer than 1e-4 are known less well, or not told apart.
+            if made.windows(2).any(|w| w[1] - w[0] < 1e-3) {
+                continue;
+            }
+            assert_eq!(count, 4, "{made:?} {roots:?}");
+            for (found, made) in roots.iter().zip(made) {
+                assert!((found - made).abs() < 1e-9, "{made} {found}");
+            }
+        }
+    }
+
+    #[test]
+    fn quadratics_keep_their_digits() {
+        let (x, y) = quadratic(1.0, -0.5e8, 1.0).unwrap();
+        assert!((x - 1e-8).abs() < 1e-22 && (y - 1e8).abs() < 1e-7, "{x} {y}");
+        assert_eq!(quadratic(1.0, -1.0, 1.0), None);
+        assert_eq!(quadratic(1.0, 0.0, 1.0), None);
+        assert_eq!(quadratic(f64::NAN, 0.0, -1.0), None);
+        assert_eq!(quadratic(-1.0, 0.0, 4.0), Some((-2.0, 2.0)));
+    }
+}

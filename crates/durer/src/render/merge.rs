@@ -1,0 +1,153 @@
+//! Shards into one picture.
+
+use super::blocks::{Shard, ShardBy};
+use super::part::{Part, Sampled};
+use super::saved::PartError;
+use std::fmt::Write;
+
+/// Why parts do not make a picture. Parts are told by their names.
+#[derive(Debug, thiserror::Error)]
+pub enum MergeError {
+    /// There are none.
+    #[error("there are no parts to merge")]
+    NoParts,
+    /// A part belongs to another picture than the first.
+    #[error("`{name}` cannot be merged with `{first}`: {error}")]
+    Foreign {
+        /// The part.
+        name: String,
+        /// The first part.
+        first: String,
+        /// Why.
+        error: PartError,
+    },
+    /// Two parts have the same work in them.
+    #[error("`{first}` and `{second}` overlap: both have {what}")]
+    Overlap {
+        /// One.
+        first: String,
+        /// The other.
+        second: String,
+        /// What both have.
+        what: String,
+    },
+    /// Some work is in no part.
+    #[error("there is something missing:\n{0}")]
+    Missing(String),
+    /// What is merged would be too large.
+    #[error(transparent)]
+    Part(#[from] PartError),
+}
+
+/// How many places of what is missing are listed.
+const LISTED: usize = 8;
+
+/// Puts parts together that make up a whole picture: bit for bit what one run would have made. Their order does not matter.
+///
+/// # Errors
+/// [`MergeError`]: parts of other pictures, work that is in two parts, work that is in none.
+pub fn merge(parts: &[(String, Part)]) -> Result<Part, MergeError> {
+    let ((first, start), rest) = parts.split_first().ok_or(MergeError::NoParts)?;
+    for (name, part) in rest {
+        let foreign = |error| MergeError::Foreign { name: name.clone(), first: first.clone(), error };
+        start.same_picture(part).map_err(foreign)?;
+    }
+    let whole = Part::empty(start.job.clone(), Shard::WHOLE, start.scene, start.look).map_err(PartError::from)?;
+    let mut missing = String::new();
+    merge_samples(parts, &whole, &mut missing)?;
+    merge_rays(parts, &whole, &mut missing)?;
+    if missing.is_empty() {
+        Ok(whole)
+    } else {
+        Err(MergeError::Missing((shards_missing(parts) + &missing).trim_end().into()))
+    }
+}
+
+fn merge_samples(parts: &[(String, Part)], whole: &Part, missing: &mut String) -> Result<(), MergeError> {
+    let mut gaps = Vec::new();
+    let (samples, gain) = (whole.job.sampling.samples(), whole.gain());
+    let mut state = whole.state();
+    for (index, merged) in state.samples.iter_mut().enumerate() {
+        // What each part has of the block, by its samples.
+        let mut pieces: Vec<(&str, Sampled)> = Vec::new();
+        for (name, part) in parts {
+            let piece = part.state().samples[index].clone();
+            pieces.extend((piece.to > piece.from).then_some((name.as_str(), piece)));
+        }
+        pieces.sort_by_key(|(_, piece)| piece.from);
+        let rect = whole.blocks.rect(index);
+        if let Some(pair) = pieces.windows(2).find(|pair| pair[1].1.from < pair[0].1.to) {
+            let what = format!("sample {} of pixel {},{}", pair[1].1.from, rect.left, rect.top);
+            let [first, second] = [pair[0].0, pair[1].0].map(String::from);
+            return Err(MergeError::Overlap { first, second, what });
+        }
+        let mut next = 0;
+        for (_, piece) in pieces {
+            if piece.from > next {
+                gaps.push((rect, next, piece.from));
+            }
+            next = piece.to;
+            merged.rays += piece.rays;
+            match (&mut merged.film, piece.film) {
+                (Some(film), Some(other)) => {
+                    film.merge(&other).expect("a block of the same picture has the same pixels")
+                }
+                (film, other) => *film = other,
+            }
+            merged.to = next;
+        }
+        if next < samples && !whole.is_done(index, merged, gain) {
+            gaps.push((rect, next, samples));
+        }
+    }
+    for (rect, from, to) in gaps.iter().take(LISTED) {
+        let (right, bottom) = (rect.left + rect.width - 1, rect.top + rect.height - 1);
+        let _ =
+            writeln!(missing, "  pixels {},{} to {right},{bottom}: samples {from} to {}", rect.left, rect.top, to - 1);
+    }
+    if gaps.len() > LISTED {
+        let _ = writeln!(missing, "  and the samples of {} other blocks", gaps.len() - LISTED);
+    }
+    Ok(())
+}
+
+fn merge_rays(parts: &[(String, Part)], whole: &Part, missing: &mut String) -> Result<(), MergeError> {
+    let mut gaps = 0;
+    let mut state = whole.state();
+    for (index, merged) in state.rays.iter_mut().enumerate() {
+        let mut owner: Option<&str> = None;
+        for (name, part) in parts {
+            let Some(piece) = part.state().rays[index].clone() else { continue };
+            if let Some(first) = owner.replace(name) {
+                let rect = whole.ray_blocks.rect(index);
+                let what = format!("the data of pixel {},{}", rect.left, rect.top);
+                return Err(MergeError::Overlap { first: first.into(), second: name.clone(), what });
+            }
+            *merged = Some(piece);
+        }
+        gaps += usize::from(owner.is_none());
+    }
+    if gaps > 0 {
+        let _ = writeln!(missing, "  the data of {gaps} blocks of 8 x 8 pixels");
+    }
+    Ok(())
+}
+
+/// Which shards are missing or not finished, where all parts are shards of one splitting.
+fn shards_missing(parts: &[(String, Part)]) -> String {
+    let Shard { count, by, .. } = parts[0].1.shard;
+    let mut text = String::new();
+    if parts.iter().all(|(_, part)| part.shard.count == count && part.shard.by == by) {
+        let there = |index: &u32| parts.iter().any(|(_, part)| part.shard.index == *index);
+        let absent: Vec<String> = (1..=count).filter(|i| !there(i)).map(|index| format!("{index}/{count}")).collect();
+        if !absent.is_empty() {
+            let by = if by == ShardBy::Tiles { "tiles" } else { "samples" };
+            let _ = writeln!(text, "  shards by {by}: {}", absent.join(", "));
+        }
+    }
+    for (name, part) in parts.iter().filter(|(_, part)| !part.is_finished()) {
+        let (all, done) = part.work();
+        let _ = writeln!(text, "  `{name}` is not finished: {done} of {all} samples; `--resume` goes on with it");
+    }
+    text
+}

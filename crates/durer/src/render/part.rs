@@ -1,0 +1,284 @@
+//! What is made of a picture so far: exact sums, and which work is in them.
+
+use super::blocks::{Blocks, Shard, ShardBy};
+use super::error::RenderError;
+use super::{Crop, Job, Sampling, passes};
+use crate::film::aov::Look;
+use crate::film::{Film, Rejected};
+use crate::image::checked_count;
+use crate::math::Vec3;
+use crate::source::Digest;
+use crate::world::World;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+/// A picture in the making, or a shard of one: rendered from time to time, saved, read again, merged with others.
+///
+/// It is locked within, so it can be rendered by one thread while another looks at it.
+#[derive(Debug)]
+pub struct Part {
+    pub(super) job: Job,
+    pub(super) shard: Shard,
+    pub(super) scene: Digest,
+    pub(super) look: Look,
+    /// The blocks of the colour's window, and of that of the rays through centres.
+    pub(super) blocks: Blocks,
+    pub(super) ray_blocks: Blocks,
+    state: Mutex<State>,
+}
+
+/// What was made.
+#[derive(Clone, Debug, Default)]
+pub(super) struct State {
+    /// The samples of each block of the colour's window.
+    pub(super) samples: Vec<Sampled>,
+    /// What the rays through the centres of each block's pixels saw, if they were traced.
+    pub(super) rays: Vec<Option<Box<Traced>>>,
+}
+
+/// The samples of one block.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Sampled {
+    /// The first sample of each pixel that is in the film, and one past the last.
+    pub(super) from: u32,
+    pub(super) to: u32,
+    /// Rays traced for them.
+    pub(super) rays: u64,
+    /// Their sums, if there are any.
+    pub(super) film: Option<Box<Film>>,
+}
+
+/// What the rays through the centres of a block's pixels saw.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Traced {
+    /// What each pixel's ray found.
+    pub(super) found: Vec<Found>,
+    /// The values of each picture, one picture after the other.
+    pub(super) values: Vec<Vec3>,
+    /// Rays traced for them.
+    pub(super) rays: u64,
+}
+
+/// What a ray through a pixel's centre found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub(super) enum Found {
+    /// The camera has no ray there.
+    Blind,
+    /// Nothing was hit.
+    Nothing,
+    /// Something was hit.
+    Hit,
+}
+
+/// What was counted while a picture was made; the same however it was made.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Statistics {
+    /// Samples in the picture.
+    pub samples: u64,
+    /// Rays traced for the picture, secondary rays with them.
+    pub rays: u64,
+    /// Samples that were not finite, and left out.
+    pub rejected: u64,
+    /// The first of those.
+    pub first_rejected: Vec<Rejected>,
+}
+
+impl Part {
+    /// A part of a picture of a world of which nothing is made yet.
+    ///
+    /// # Errors
+    /// [`RenderError::Image`], [`RenderError::CropOutside`], and [`RenderError::Shard`] for work that cannot be split so.
+    pub fn new(world: &World, job: &Job, shard: Shard) -> Result<Self, RenderError> {
+        Part::empty(job.clone(), shard, world.digest, Look::new(&world.rules))
+    }
+
+    pub(super) fn empty(job: Job, shard: Shard, scene: Digest, look: Look) -> Result<Self, RenderError> {
+        let window = job.window();
+        let inside =
+            |start: u32, length: u32, size: u32| length > 0 && start.checked_add(length).is_some_and(|end| end <= size);
+        if !inside(window.left, window.width, job.width) || !inside(window.top, window.height, job.height) {
+            return Err(RenderError::CropOutside(job.width, job.height));
+        }
+        // Refuses pictures too large before anything is computed.
+        checked_count(job.width, job.height)?;
+        let (blocks, ray_blocks) = (Blocks::new(window), Blocks::new(job.ray_window()));
+        check_shard(&job, shard, blocks.count())?;
+        let from = shard.range(job.sampling.samples()).0;
+        let count = if job.wants_samples() { blocks.count() } else { 0 };
+        let sampled = Sampled { from, to: from, ..Sampled::default() };
+        let rays = if job.ray_aovs().next().is_some() { vec![None; ray_blocks.count()] } else { Vec::new() };
+        let state = Mutex::new(State { samples: vec![sampled; count], rays });
+        Ok(Part { job, shard, scene, look, blocks, ray_blocks, state })
+    }
+
+    /// What decides the picture.
+    pub fn job(&self) -> &Job {
+        &self.job
+    }
+
+    /// Which part of the work it is.
+    pub fn shard(&self) -> Shard {
+        self.shard
+    }
+
+    /// The hash of the scene.
+    pub fn scene(&self) -> Digest {
+        self.scene
+    }
+
+    /// The hash of all that decides the picture: scene, job and the version of this program.
+    pub fn identity(&self) -> Digest {
+        identity(self.scene, &job_text(&self.job))
+    }
+
+    pub(super) fn state(&self) -> MutexGuard<'_, State> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Whether a block has all samples that it will get, given the size of the samples' weights.
+    pub(super) fn is_done(&self, index: usize, block: &Sampled, gain: f32) -> bool {
+        let end = self.shard.range(self.job.sampling.samples()).1;
+        let enough = |film: &Film| self.job.is_done(film, self.blocks.rect(index), block.to, gain);
+        block.to >= end || block.film.as_deref().is_some_and(enough)
+    }
+
+    /// The size of the samples' weights.
+    pub(super) fn gain(&self) -> f32 {
+        match self.job.sampling {
+            Sampling::Filtered { filter, .. } => filter.sampler().gain(),
+            _ => 1.0,
+        }
+    }
+
+    /// How much work there is in all, and how much of it is done: samples and rays through centres. With a rule that stops earlier,
+    /// it may end before all is done.
+    pub fn work(&self) -> (u64, u64) {
+        let range = self.shard.range(self.job.sampling.samples());
+        let (mut all, mut done) = (0, 0);
+        let state = self.state();
+        for (index, block) in state.samples.iter().enumerate().filter(|(index, _)| self.shard.has_block(*index)) {
+            let pixels = self.blocks.rect(index).pixels();
+            all += pixels * u64::from(range.1 - range.0);
+            done += pixels * u64::from(block.to - block.from);
+        }
+        for (index, block) in state.rays.iter().enumerate().filter(|(index, _)| self.shard.has_rays(*index)) {
+            let pixels = self.ray_blocks.rect(index).pixels();
+            all += pixels;
+            done += if block.is_some() { pixels } else { 0 };
+        }
+        (all, done)
+    }
+
+    /// Whether every pixel of its picture has something.
+    pub fn is_whole(&self) -> bool {
+        let state = self.state();
+        state.samples.iter().all(|block| block.film.is_some()) && state.rays.iter().all(Option::is_some)
+    }
+
+    /// Whether nothing of its work is left.
+    pub fn is_finished(&self) -> bool {
+        let (gain, state) = (self.gain(), self.state());
+        let mut samples = state.samples.iter().enumerate().filter(|(index, _)| self.shard.has_block(*index));
+        let mut rays = state.rays.iter().enumerate().filter(|(index, _)| self.shard.has_rays(*index));
+        samples.all(|(index, block)| self.is_done(index, block, gain)) && rays.all(|(_, block)| block.is_some())
+    }
+
+    /// What was counted.
+    pub fn statistics(&self) -> Statistics {
+        let state = self.state();
+        let mut statistics = Statistics::default();
+        for (index, block) in state.samples.iter().enumerate() {
+            let taken = self.blocks.rect(index).pixels() * u64::from(block.to - block.from);
+            statistics.rays += block.rays;
+            if let Some(film) = &block.film {
+                statistics.samples += taken.saturating_sub(film.rejected());
+                statistics.rejected = statistics.rejected.saturating_add(film.rejected());
+                statistics.first_rejected.extend(film.first_rejected());
+            }
+        }
+        statistics.rays += state.rays.iter().flatten().map(|block| block.rays).sum::<u64>();
+        statistics.first_rejected.sort();
+        statistics.first_rejected.truncate(16);
+        statistics
+    }
+
+    /// The hash of the film: of all sums and values of its window. The same picture has the same hash, however it was made; what
+    /// it cost is not among it.
+    pub fn hash(&self) -> Digest {
+        let (state, mut bytes) = (self.state(), Vec::new());
+        let mut hasher = blake3::Hasher::new();
+        for (index, block) in state.samples.iter().enumerate() {
+            match &block.film {
+                Some(film) => film.write(&mut bytes),
+                None => film_of(self.blocks.rect(index)).write(&mut bytes),
+            }
+            hasher.update(&bytes);
+            bytes.clear();
+        }
+        // The work depends on the structure that finds what rays hit.
+        let names: Vec<&str> = self.job.ray_aovs().map(|(aov, _)| aov.name).collect();
+        for block in state.rays.iter().flatten() {
+            let values = block.values.chunks(block.found.len()).zip(&names).filter(|(_, name)| **name != "cost");
+            for value in values.flat_map(|(values, _)| values).flat_map(|value| value.to_array()) {
+                hasher.update(&value.to_bits().to_le_bytes());
+            }
+        }
+        Digest(hasher.finalize().into())
+    }
+
+    /// Bytes of memory that it takes when all is made, with the pictures made of it.
+    pub fn bytes_needed(job: &Job, shard: Shard) -> u64 {
+        let share = if shard.by == ShardBy::Tiles { u64::from(shard.count) } else { 1 };
+        let (pixels, rays) = (job.window().pixels(), job.ray_window().pixels());
+        let sums = if job.wants_samples() { pixels * Film::PIXEL_BYTES as u64 } else { 0 };
+        let values = rays * (12 * job.ray_aovs().count() as u64 + 1);
+        // Each picture twice, in floating point and for eight bits, and once more in its file.
+        let pictures = 3 * 12 * pixels * (job.aovs.len() as u64 + u64::from(job.color));
+        (sums + values) / share + pictures
+    }
+}
+
+/// The job as text: what is hashed, saved, and told in pictures.
+pub(super) fn job_text(job: &Job) -> String {
+    serde_json::to_string(job).unwrap_or_default()
+}
+
+pub(super) fn identity(scene: Digest, job: &str) -> Digest {
+    Digest::of(format!("durer {} {scene} {job}", env!("CARGO_PKG_VERSION")).as_bytes())
+}
+
+fn check_shard(job: &Job, shard: Shard, blocks: usize) -> Result<(), RenderError> {
+    let refuse = |why: String| Err(RenderError::Shard(why));
+    let samples = job.sampling.samples();
+    if !(1..=shard.count).contains(&shard.index) {
+        return refuse(format!("there is no shard {shard}"));
+    }
+    match shard.by {
+        ShardBy::Tiles if shard.count as usize > blocks => {
+            refuse(format!("the picture has only {blocks} blocks of 8 x 8 pixels, too few for {} shards", shard.count))
+        }
+        ShardBy::Tiles => Ok(()),
+        ShardBy::Samples if !job.sampling.is_local() => {
+            refuse("samples of this kind count for several pixels: such a picture is split by tiles only".into())
+        }
+        ShardBy::Samples if job.noise.is_some() => {
+            refuse("where noise decides, it is by all samples of a pixel: such a picture is split by tiles only".into())
+        }
+        ShardBy::Samples if shard.count > samples => {
+            refuse(format!("there are only {samples} samples a pixel, too few for {} shards", shard.count))
+        }
+        ShardBy::Samples => Ok(()),
+    }
+}
+
+/// A black film of a part of a picture.
+pub(super) fn film_of(part: Crop) -> Film {
+    Film::window(part.left, part.top, part.width, part.height)
+}
+
+/// The ends of the passes of a shard.
+pub(super) fn pass_ends(job: &Job, shard: Shard) -> impl Iterator<Item = u32> {
+    let samples = job.sampling.samples();
+    let (from, to) = shard.range(samples);
+    passes::ends(samples).filter(move |&end| end > from && end < to).chain((to > from).then_some(to))
+}

@@ -1,0 +1,69 @@
+//! In which order samples are taken, and when there are enough.
+
+use super::Crop;
+use crate::film::{Film, luminance};
+
+/// Samples before which nothing is decided about a block.
+pub const LEAST: u32 = 16;
+
+/// The numbers of samples that every pixel has after each pass: 1, 2, 4, 8, 16, 24, 32, 48, 64, 96 and so on, up to all.
+///
+/// They depend on nothing but the number of samples, so decisions at the ends of passes are the same for all ways of making
+/// the picture.
+pub fn ends(samples: u32) -> impl Iterator<Item = u32> {
+    let powers = (0..32).flat_map(|k| {
+        let power = 1_u32 << k;
+        // Halfway to the next power of two, where steps are large.
+        [Some(power), (power >= LEAST).then(|| power.saturating_add(power / 2))]
+    });
+    powers.flatten().take_while(move |&end| end < samples).chain([samples])
+}
+
+/// The estimated error of a block as it is seen: the root of the mean square over its pixels of the standard error of sqrt(Y).
+///
+/// Y is a pixel's luminance, at least 1/256, and 1 is white. The error of sqrt(Y), which is about what the eye sees, is that of Y
+/// divided by 2 sqrt(Y), as in Dammertz et al., *A Hierarchical Automatic Stopping Condition for Monte Carlo Global
+/// Illumination*, WSCG 2010. All is computed from exact sums in a fixed order.
+pub fn error(film: &Film, rect: Crop, gain: f32) -> f64 {
+    let square = |(x, y)| {
+        let luminance = luminance(film.resolve(x, y).to_array().map(f64::from)).max(1.0 / 256.0);
+        film.variance(x, y, gain) / (4.0 * luminance)
+    };
+    (rect.places().map(square).sum::<f64>() / rect.pixels() as f64).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::Vec3;
+    use crate::sampler::random_2d;
+
+    #[test]
+    fn passes_end_where_they_should() {
+        let ends = |n| ends(n).collect::<Vec<_>>();
+        assert_eq!(ends(1), [1]);
+        assert_eq!(ends(5), [1, 2, 4, 5]);
+        assert_eq!(ends(100), [1, 2, 4, 8, 16, 24, 32, 48, 64, 96, 100]);
+        assert!(ends(u32::MAX).windows(2).all(|w| w[0] < w[1]));
+    }
+
+    /// The estimate against the truth: the mean of n uniform numbers has the variance 1 / (12 n).
+    #[test]
+    fn the_error_is_that_of_the_mean() {
+        let rect = Crop { left: 0, top: 0, width: 8, height: 8 };
+        let mut film = Film::new(8, 8);
+        let n = 64;
+        for (x, y) in rect.places() {
+            (0..n).for_each(|s| film.add(x, y, s, Vec3::splat(random_2d(1, x, y, s, 0).x), 1.0));
+        }
+        let (estimate, truth) = (error(&film, rect, 1.0), (1.0 / (12.0 * f64::from(n)) / (4.0 * 0.5)).sqrt());
+        // 64 estimates of 63 degrees of freedom each: a standard error of about 1 %.
+        assert!((estimate / truth - 1.0).abs() < 0.05, "{estimate} {truth}");
+        let mut flat = Film::new(8, 8);
+        for (x, y) in rect.places() {
+            (0..9).for_each(|s| flat.add(x, y, s, Vec3::splat(0.3), 1.0));
+        }
+        assert!(error(&flat, rect, 1.0) < 1e-4);
+        assert_eq!(error(&Film::new(8, 8), rect, 1.0), f64::INFINITY);
+    }
+}

@@ -1,0 +1,148 @@
+//! From sums and values to pictures.
+
+use super::error::RenderError;
+use super::part::{Found, Part, State, Statistics, job_text};
+use super::{Blocks, Crop};
+use crate::dialect::Compat;
+use crate::film::Film;
+use crate::film::aov::{Aov, Display, Sums, Value, fill_from_last_hit};
+use crate::image::{Image, Layer};
+use crate::math::{Aabb, Color, Vec3};
+
+/// Pictures and what was counted on the way.
+#[derive(Debug)]
+pub struct Rendered {
+    /// Colour first, if wanted; then the others in the job's order.
+    ///
+    /// Values are as files of floating point have them; [`Rendered::pictures`] has those for eight bits.
+    pub layers: Vec<Layer>,
+    /// The same as pictures between 0 and 1.
+    pub pictures: Vec<Layer>,
+    /// What was counted.
+    pub statistics: Statistics,
+    /// What files can tell of the pictures beside them: names and texts.
+    pub attributes: Vec<(&'static str, String)>,
+}
+
+impl Part {
+    /// The pictures of what is made so far. Pixels of which nothing is made are black.
+    ///
+    /// # Errors
+    /// [`RenderError::Image`].
+    pub fn pictures(&self) -> Result<Rendered, RenderError> {
+        let statistics = self.statistics();
+        let (job, window) = (&self.job, self.job.window());
+        let mut rendered =
+            Rendered { layers: Vec::new(), pictures: Vec::new(), attributes: self.attributes(&statistics), statistics };
+        let state = self.state();
+        if job.color {
+            let (colors, coverage) = self.colors(&state);
+            let image = Image::from_pixels(window.width, window.height, colors)?;
+            let layer = Layer::color("color", image).with_coverage(coverage);
+            rendered.layers.push(layer.clone());
+            rendered.pictures.push(layer);
+        }
+        let mut rays = 0..;
+        for aov in &job.aovs {
+            let values = match aov.value {
+                Value::Ray(_) => self.traced(&state, rays.next().unwrap_or_default()),
+                Value::Sums(value) => self.summed(&state, value),
+            };
+            let pictures = self.shown(aov, &values);
+            let (values, found): (Vec<Vec3>, Vec<Found>) = values.into_iter().unzip();
+            let coverage: Vec<f32> = found.iter().map(|found| f32::from(u8::from(*found != Found::Blind))).collect();
+            let from = if matches!(aov.value, Value::Ray(_)) { job.ray_window() } else { window };
+            let coverage = cut(coverage, from, window);
+            let layer = |pixels| -> Result<Layer, RenderError> {
+                let image = Image::from_pixels(window.width, window.height, cut(pixels, from, window))?;
+                Ok(Layer::data(aov.name, image).with_coverage(coverage.clone()))
+            };
+            rendered.layers.push(layer(values)?);
+            rendered.pictures.push(layer(pictures)?);
+        }
+        Ok(rendered)
+    }
+
+    /// What files can tell of the picture: nothing that depends on how it was made.
+    fn attributes(&self, statistics: &Statistics) -> Vec<(&'static str, String)> {
+        let Statistics { samples, rays, rejected, .. } = statistics;
+        vec![
+            ("software", format!("durer {}", env!("CARGO_PKG_VERSION"))),
+            ("scene", self.scene.to_string()),
+            ("job", job_text(&self.job)),
+            ("statistics", format!("{{\"samples\":{samples},\"rays\":{rays},\"rejected\":{rejected}}}")),
+        ]
+    }
+
+    /// Colours and coverage; what is not made yet is transparent.
+    fn colors(&self, state: &State) -> (Vec<Color>, Vec<f32>) {
+        let mut pixels = vec![(Color::ZERO, 0.0); self.job.window().pixels() as usize];
+        self.each_sampled(state, |index, film, x, y| pixels[index] = (film.resolve(x, y), film.coverage(x, y)));
+        pixels.into_iter().unzip()
+    }
+
+    /// The values of a picture that comes from the samples.
+    fn summed(&self, state: &State, value: fn(&Sums) -> Vec3) -> Vec<(Vec3, Found)> {
+        let (gain, none) = (self.gain(), Sums { samples: 0, variance: f64::INFINITY });
+        let mut pixels = vec![(value(&none), Found::Blind); self.job.window().pixels() as usize];
+        self.each_sampled(state, |index, film, x, y| {
+            let sums = Sums { samples: film.samples(x, y), variance: film.variance(x, y, gain) };
+            pixels[index] = (value(&sums), Found::Hit);
+        });
+        pixels
+    }
+
+    fn each_sampled(&self, state: &State, mut visit: impl FnMut(usize, &Film, u32, u32)) {
+        let window = self.job.window();
+        for (index, block) in state.samples.iter().enumerate() {
+            let Some(film) = &block.film else { continue };
+            for (x, y) in self.blocks.rect(index).places() {
+                visit(place(window, x, y), film, x, y);
+            }
+        }
+    }
+
+    /// The values of one of the pictures that come from rays.
+    fn traced(&self, state: &State, number: usize) -> Vec<(Vec3, Found)> {
+        let (window, blocks): (Crop, &Blocks) = (self.job.ray_window(), &self.ray_blocks);
+        let mut pixels = vec![(Vec3::ZERO, Found::Blind); window.pixels() as usize];
+        for (index, block) in state.rays.iter().enumerate() {
+            let Some(block) = block else { continue };
+            let values = &block.values[number * block.found.len()..];
+            for ((x, y), value) in blocks.rect(index).places().zip(values.iter().zip(&block.found)) {
+                pixels[place(window, x, y)] = (*value.0, *value.1);
+            }
+        }
+        pixels
+    }
+
+    /// Values as colours.
+    fn shown(&self, aov: &Aov, values: &[(Vec3, Found)]) -> Vec<Color> {
+        let display = Display {
+            look: self.look,
+            depth_range: self.job.depth_range,
+            hits: Aabb::around(values.iter().filter(|value| value.1 == Found::Hit).map(|value| value.0)),
+            all: Aabb::around(values.iter().map(|value| value.0)),
+        };
+        let color = |&(value, found): &(Vec3, Found)| match found {
+            Found::Blind => Vec3::ZERO,
+            _ => (aov.picture)(value, found == Found::Hit, &display),
+        };
+        let mut picture: Vec<Color> = values.iter().map(color).collect();
+        if aov.name == "normals" && self.look.has(Compat::StaleNormals) {
+            let hits: Vec<bool> = values.iter().map(|value| value.1 == Found::Hit).collect();
+            fill_from_last_hit(&mut picture, &hits, self.job.ray_window().width as usize);
+        }
+        picture
+    }
+}
+
+/// The index of a pixel in a window.
+fn place(window: Crop, x: u32, y: u32) -> usize {
+    (y - window.top) as usize * window.width as usize + (x - window.left) as usize
+}
+
+/// The part of a picture that covers more.
+fn cut<T: Copy>(pixels: Vec<T>, from: Crop, to: Crop) -> Vec<T> {
+    if from == to { pixels } else { to.places().map(|(x, y)| pixels[place(from, x, y)]).collect() }
+}

@@ -1,0 +1,49 @@
+//! One pixel or sample alone: to look into an error in this program, or a sample that was left out.
+
+use super::error::RenderError;
+use super::samples::{At, Samples};
+use super::{Control, Crop, Job, Part, Shard, rays, run};
+use crate::bvh::Rays;
+use crate::math::Color;
+use crate::world::World;
+use std::cell::Cell;
+use std::sync::atomic::AtomicBool;
+
+/// The colour of one sample of a job, by itself, if the camera sees anything there. `None`: what a pixel has beside samples of its own, or instead of them.
+///
+/// A panic comes through.
+///
+/// # Errors
+/// [`RenderError`], among them [`RenderError::Shard`] where there is no such pixel or sample.
+pub fn replay(
+    world: &World,
+    job: &Job,
+    control: &Control,
+    (x, y): (u32, u32),
+    sample: Option<u32>,
+) -> Result<Option<Color>, RenderError> {
+    // Refuses impossible jobs.
+    Part::new(world, job, Shard::WHOLE)?;
+    if !job.window().holds(x, y) {
+        return Err(RenderError::Shard(format!("the pixel {x},{y} is not in the picture")));
+    }
+    if sample.is_some_and(|sample| sample >= job.sampling.samples() && job.sampling.is_local()) {
+        return Err(RenderError::Shard(format!("a pixel has samples from 0 to {}", job.sampling.samples() - 1)));
+    }
+    let work = || {
+        let (stop, at): (_, At) = (AtomicBool::new(false), Cell::new((x, y, sample)));
+        let samples = Samples::new(world, job, &stop);
+        let (pixel, mut count) = (Crop { left: x, top: y, width: 1, height: 1 }, Rays::default());
+        match sample {
+            Some(sample) if job.sampling.is_local() => samples.sample(x, y, sample, &mut count).0,
+            _ => {
+                let _ = rays::trace(world, job, &samples, pixel, &at);
+                match job.sampling.is_local() {
+                    true => samples.sample(x, y, 0, &mut count).0,
+                    false => samples.finished(pixel, &at, &mut count).ok().map(|pixels| pixels[0].0),
+                }
+            }
+        }
+    };
+    Ok(run::threads(control)?.install(work))
+}

@@ -1,0 +1,296 @@
+//! How the samples of a block are taken, for each way of sampling.
+
+use super::error::{MOST_KEPT, center};
+use super::{Control, Crop, Job, RenderError, Sampling, camera_ray, center_ray, raster, run};
+use crate::bvh::Rays;
+use crate::camera::{Lens, Raster};
+use crate::dialect::Compat;
+use crate::film::course::{CourseFilter, StoredSample, StoredSamples, average_3x3, blur, jittered_position};
+use crate::film::{Film, FilterSampler};
+use crate::integrator::Whitted;
+use crate::math::{Color, Vec2, Vec3};
+use crate::sampler::Sampler;
+use crate::world::{Material, World};
+use std::cell::Cell;
+use std::ops::Range;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+
+/// The work was stopped before it was finished.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Stopped;
+
+/// Column, row and number of the sample that a thread is at.
+pub(super) type At = Cell<(u32, u32, Option<u32>)>;
+
+/// Where the samples of a job lie, with their colours: for its diagram.
+///
+/// # Errors
+/// [`RenderError`], among them [`RenderError::TooManySamples`].
+pub fn sample_diagram(world: &World, job: &Job, control: &Control) -> Result<StoredSamples, RenderError> {
+    let (sampler, samples) = match job.sampling {
+        Sampling::Course2004 { sampler, samples, .. } => (sampler, samples),
+        Sampling::Filtered { samples, .. } => (Sampler::Sobol, samples),
+        Sampling::Center | Sampling::Course2012 { .. } => (Sampler::Uniform, 1),
+    };
+    let samples = sampler.round_up(samples);
+    let count = job.whole().pixels().saturating_mul(samples.into());
+    if count > MOST_KEPT {
+        return Err(RenderError::TooManySamples(count));
+    }
+    let work = || {
+        let (at, mut rays) = (Cell::new((0, 0, None)), Rays::default());
+        let source = Samples::new(world, job, &control.cancel);
+        source.stored(&Show::default(), job.whole(), (sampler, samples), &at, |_, _| true, &mut rays)
+    };
+    run::threads(control)?.install(work).map_err(|Stopped| RenderError::Cancelled)
+}
+
+/// Bytes of the samples that are kept at once for a tile, where samples count for other pixels too.
+pub(super) fn kept_bytes(job: &Job, side: u32) -> u64 {
+    match job.sampling {
+        Sampling::Course2004 { sampler, samples, filter: Some(filter) } => {
+            let across = u64::from(side) + 2 * u64::from(filter.support());
+            across * across * u64::from(sampler.round_up(samples)) * size_of::<StoredSample>() as u64
+        }
+        // The picture, what is blurred of it along rows, and then along columns.
+        Sampling::Course2012 { .. } => 3 * 9 * 12 * u64::from(side + 2) * u64::from(side + 2),
+        _ => 0,
+    }
+}
+
+/// What the course's ways of sampling are made to show. They know colours only: where the camera sees nothing somewhere,
+/// it is shown a second time, white where the camera sees and black elsewhere.
+#[derive(Default)]
+struct Show {
+    mask: bool,
+    /// Whether the camera saw nothing at some sample.
+    blind: Cell<bool>,
+}
+
+/// Shares of a pixel nearer to 1 than this are 1: sums of a filter's weights are a little off.
+const NEARLY_ALL: f32 = 1.0 - 1e-6;
+
+/// Takes the samples of a job.
+pub(super) struct Samples<'a> {
+    world: &'a World,
+    job: &'a Job,
+    raster: Raster,
+    pub(super) whitted: Whitted<'a>,
+    warp: Option<FilterSampler>,
+    /// What [`Compat::StaleTexels`] adds to each pixel of the whole picture.
+    stale: Vec<Color>,
+    stop: &'a AtomicBool,
+}
+
+impl<'a> Samples<'a> {
+    pub(super) fn new(world: &'a World, job: &'a Job, stop: &'a AtomicBool) -> Self {
+        let warp = match job.sampling {
+            Sampling::Filtered { filter, .. } => Some(filter.sampler()),
+            _ => None,
+        };
+        let whitted = Whitted { world, settings: job.settings, cancel: Some(stop) };
+        let raster = raster(world, job.width, job.height);
+        let mut samples = Samples { world, job, raster, whitted, warp, stale: Vec::new(), stop };
+        if job.sampling == Sampling::Center && world.rules.has(Compat::StaleTexels) {
+            samples.stale = samples.stale_texels();
+        }
+        samples
+    }
+
+    /// The size of a sample's weight.
+    pub(super) fn gain(&self) -> f32 {
+        self.warp.as_ref().map_or(1.0, FilterSampler::gain)
+    }
+
+    pub(super) fn check(&self) -> Result<(), Stopped> {
+        if self.stop.load(Relaxed) { Err(Stopped) } else { Ok(()) }
+    }
+
+    /// Adds samples of every pixel of a film's part.
+    pub(super) fn add(
+        &self,
+        film: &mut Film,
+        part: Crop,
+        range: Range<u32>,
+        at: &At,
+        rays: &mut Rays,
+    ) -> Result<(), Stopped> {
+        for (x, y) in part.places() {
+            for sample in range.clone() {
+                self.check()?;
+                at.set((x, y, Some(sample)));
+                let (color, weight) = self.sample(x, y, sample, rays);
+                film.add_if_seen(x, y, sample, color, weight);
+            }
+        }
+        // What was made after a cancel means nothing.
+        self.check()
+    }
+
+    /// One sample of a pixel: its colour, if the camera sees anything there, and its weight.
+    pub(super) fn sample(&self, x: u32, y: u32, sample: u32, rays: &mut Rays) -> (Option<Color>, f32) {
+        let job = self.job;
+        let (place, sampler, weight) = match (job.sampling, &self.warp) {
+            (Sampling::Filtered { samples, .. }, Some(warp)) => {
+                let position = Sampler::Sobol.pixel_position(job.seed, x, y, sample, samples);
+                let (offset, weight) = warp.sample(position);
+                (center(x, y) + offset, Sampler::Sobol, weight)
+            }
+            (Sampling::Course2004 { sampler, samples, .. }, _) => {
+                let position = sampler.pixel_position(job.seed, x, y, sample, sampler.round_up(samples));
+                (Vec2::new(x as f32, y as f32) + position, sampler, 1.0)
+            }
+            _ => {
+                let stale = self.stale.get((y * job.width + x) as usize).copied().unwrap_or_default();
+                let ray = center_ray(self.world, &self.raster, (x, y));
+                return (ray.map(|ray| self.whitted.radiance(&ray, rays) + stale), 1.0);
+            }
+        };
+        let ray = camera_ray(self.world, &self.raster, (x, y), place, self.lens(sampler, x, y, sample));
+        (ray.map(|ray| self.whitted.radiance(&ray, rays)), weight)
+    }
+
+    /// Where in the lens a sample lies. A lens without extent needs no numbers.
+    fn lens(&self, sampler: Sampler, x: u32, y: u32, sample: u32) -> Vec2 {
+        match self.world.camera.has_aperture() {
+            true => sampler.lens_position(self.job.seed, x, y, sample),
+            false => Vec2::splat(0.5),
+        }
+    }
+
+    /// The finished pixels of a part with their coverage, for samplings whose samples count for other pixels too. Samples around
+    /// the part that are needed for it are taken for it alone.
+    pub(super) fn finished(&self, part: Crop, at: &At, rays: &mut Rays) -> Result<Vec<(Color, f32)>, Stopped> {
+        let show = Show::default();
+        let colors = self.shown(&show, part, at, rays)?;
+        if !show.blind.get() {
+            return Ok(colors.into_iter().map(|color| (color, 1.0)).collect());
+        }
+        let mask = self.shown(&Show { mask: true, ..Show::default() }, part, at, &mut Rays::default())?;
+        let share = |white: Color| if white.x > NEARLY_ALL { 1.0 } else { white.x.max(0.0) };
+        Ok(colors.into_iter().zip(mask).map(|(color, white)| (color, share(white))).collect())
+    }
+
+    fn shown(&self, show: &Show, part: Crop, at: &At, rays: &mut Rays) -> Result<Vec<Color>, Stopped> {
+        match self.job.sampling {
+            Sampling::Course2004 { sampler, samples, filter: Some(filter) } => {
+                self.course_2004(show, part, (sampler, sampler.round_up(samples)), filter, at, rays)
+            }
+            Sampling::Course2012 { jitter, blur } => self.course_2012(show, part, (jitter, blur), at, rays),
+            _ => unreachable!("other samplings add their samples to a film"),
+        }
+    }
+
+    /// The colour of a sample that is kept.
+    fn kept(&self, show: &Show, raster: &Raster, pixel: (u32, u32), place: Vec2, lens: Vec2, rays: &mut Rays) -> Color {
+        let ray = camera_ray(self.world, raster, pixel, place, lens);
+        show.blind.set(show.blind.get() || ray.is_none());
+        let light = |ray| if show.mask { Vec3::ONE } else { self.whitted.radiance(&ray, rays) };
+        ray.map_or(Vec3::ZERO, light)
+    }
+
+    fn course_2004(
+        &self,
+        show: &Show,
+        part: Crop,
+        sampling: (Sampler, u32),
+        filter: CourseFilter,
+        at: &At,
+        rays: &mut Rays,
+    ) -> Result<Vec<Color>, Stopped> {
+        let around = grown(part, filter.support(), self.job.whole());
+        let stored = self.stored(show, around, sampling, at, |x, y| part.holds(x, y), rays)?;
+        let from = (part.left - around.left, part.top - around.top);
+        stored.try_reconstruct(filter, from, (part.width, part.height), || self.check())
+    }
+
+    /// All samples of a part of the picture; only rays of the wanted pixels are counted.
+    fn stored(
+        &self,
+        show: &Show,
+        part: Crop,
+        (sampler, samples): (Sampler, u32),
+        at: &At,
+        counted: impl Fn(u32, u32) -> bool,
+        rays: &mut Rays,
+    ) -> Result<StoredSamples, Stopped> {
+        StoredSamples::try_take(part.width, part.height, samples, |column, row, sample| {
+            self.check()?;
+            let (x, y) = (part.left + column, part.top + row);
+            at.set((x, y, Some(sample)));
+            let position = sampler.pixel_position(self.job.seed, x, y, sample, samples);
+            let (place, lens) = (Vec2::new(x as f32, y as f32) + position, self.lens(sampler, x, y, sample));
+            let mut own = Rays::default();
+            let color = self.kept(show, &self.raster, (x, y), place, lens, &mut own);
+            rays.0 += if counted(x, y) { own.0 } else { 0 };
+            Ok(StoredSample { position, color })
+        })
+    }
+
+    /// `-jitter` and `-filter` of 2012. Blur without jitter works on the picture as it is.
+    fn course_2012(
+        &self,
+        show: &Show,
+        part: Crop,
+        (jitter, blurred): (bool, bool),
+        at: &At,
+        rays: &mut Rays,
+    ) -> Result<Vec<Color>, Stopped> {
+        let scale = if jitter { 3 } else { 1 };
+        let scaled = |crop: Crop| Crop {
+            left: crop.left * scale,
+            top: crop.top * scale,
+            width: crop.width * scale,
+            height: crop.height * scale,
+        };
+        let (inner, whole) = (scaled(part), scaled(self.job.whole()));
+        let around = grown(inner, if blurred { 2 } else { 0 }, whole);
+        let raster = raster(self.world, whole.width, whole.height);
+        let mut pixels = Vec::with_capacity(around.pixels() as usize);
+        for (x, y) in around.places() {
+            self.check()?;
+            at.set((x / scale, y / scale, None));
+            let place = if jitter { jittered_position(self.job.seed, x, y) } else { Vec2::new(x as f32, y as f32) };
+            let lens = self.lens(Sampler::Random, x, y, 0);
+            let mut own = Rays::default();
+            pixels.push(self.kept(show, &raster, (x, y), place + 0.5, lens, &mut own));
+            rays.0 += if inner.holds(x, y) { own.0 } else { 0 };
+        }
+        if blurred {
+            pixels = blur(&pixels, around.width, around.height);
+        }
+        let index = |(x, y)| ((y - around.top) * around.width + (x - around.left)) as usize;
+        let pixels: Vec<Color> = inner.places().map(|place| pixels[index(place)]).collect();
+        self.check()?;
+        Ok(if jitter { average_3x3(&pixels, inner.width, inner.height) } else { pixels })
+    }
+
+    /// The difference, at each pixel of the whole picture, between the ambient light on its texture and that of the pixel shaded
+    /// before with the same material.
+    fn stale_texels(&self) -> Vec<Color> {
+        let (world, job) = (self.world, self.job);
+        let mut last: Vec<Option<Color>> = vec![None; world.materials.len()];
+        let mut differences = vec![Color::ZERO; job.whole().pixels() as usize];
+        for (y, x) in (0..job.height).rev().flat_map(|y| (0..job.width).map(move |x| (y, x))) {
+            if self.check().is_err() {
+                break;
+            }
+            let Some(ray) = center_ray(world, &self.raster, (x, y)) else { continue };
+            let Some(hit) = world.closest(&ray, &mut ()) else { continue };
+            let material = world.material(&hit);
+            let Material::Phong(phong) = &world.materials[material as usize] else { continue };
+            let texel = self.whitted.diffuse_color(phong, &world.surface(&ray, &hit));
+            let before = last[material as usize].replace(texel).unwrap_or(phong.diffuse);
+            differences[(y * job.width + x) as usize] = world.ambient * (before - texel);
+        }
+        differences
+    }
+}
+
+/// A part with some pixels more on each side, within another.
+fn grown(part: Crop, by: u32, within: Crop) -> Crop {
+    let (left, top) = (part.left.saturating_sub(by), part.top.saturating_sub(by));
+    let right = part.left.saturating_add(part.width).saturating_add(by).min(within.width);
+    let bottom = part.top.saturating_add(part.height).saturating_add(by).min(within.height);
+    Crop { left, top, width: right - left, height: bottom - top }
+}

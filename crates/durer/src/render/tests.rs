@@ -1,0 +1,338 @@
+//! One film, however it is made; and what happens when something goes wrong.
+
+use super::verify::{Way, compare};
+use super::*;
+use crate::compile::testing;
+use crate::film::Filter;
+use crate::film::aov::{AOVS, Aov};
+use crate::film::course::CourseFilter;
+use crate::image::Depth;
+use crate::math::Vec3;
+use crate::sampler::Sampler;
+use crate::source::Digest;
+use crate::world::World;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+use std::time::{Duration, Instant};
+
+const TEXT: &str = "PerspectiveCamera { center 0 1 8 direction 0 -0.1 -1 up 0 1 0 angle 40 }
+Lights { numLights 1 PointLight { position 3 6 4 color 0.9 0.9 0.8 } }
+Background { color 0.2 0.1 0.5 ambientLight 0.2 0.2 0.2 }
+Materials { numMaterials 2
+  Material { diffuseColor 0.8 0.3 0.2 }
+  Material { diffuseColor 0.2 0.4 0.2 reflectiveColor 0.5 0.5 0.5 } }
+Group { numObjects 2
+  MaterialIndex 0 Sphere { center 0 0.5 0 radius 1 }
+  MaterialIndex 1 Plane { normal 0 1 0 offset -0.5 } }";
+
+fn world() -> World {
+    testing::read(TEXT)
+}
+
+fn small() -> Job {
+    Job { width: 37, height: 29, ..Job::default() }
+}
+
+fn filtered(samples: u32) -> Sampling {
+    Sampling::Filtered { samples, filter: Filter::default() }
+}
+
+/// Jobs of every kind of sampling.
+fn jobs() -> Vec<Job> {
+    let (sampler, filter) = (Sampler::Jittered, Some(CourseFilter::Tent { radius: 1.5 }));
+    let samplings = [
+        Sampling::Center,
+        filtered(5),
+        Sampling::Filtered { samples: 6, filter: Filter::Mitchell { radius: 2.0 } },
+        Sampling::Course2004 { sampler, samples: 4, filter: None },
+        Sampling::Course2004 { sampler, samples: 4, filter },
+        Sampling::Course2012 { jitter: true, blur: true },
+        Sampling::Course2012 { jitter: false, blur: true },
+    ];
+    let aovs: Vec<&Aov> = AOVS.iter().filter(|aov| aov.name != "cost").collect();
+    let mut jobs: Vec<Job> = samplings.map(|sampling| Job { sampling, aovs: aovs.clone(), ..small() }).into();
+    let crop = Some(Crop { left: 5, top: 3, width: 20, height: 21 });
+    jobs.push(Job { sampling: filtered(3), crop, aovs: aovs.clone(), ..small() });
+    jobs.push(Job { sampling: filtered(64), noise: Some(0.02), aovs, ..small() });
+    jobs
+}
+
+fn all(world: &World, job: &Job) -> Part {
+    Way::PLAIN.make(world, job, &AtomicBool::new(false)).unwrap()
+}
+
+fn one_ray(x: u32) -> Digest {
+    let job = Job { seed: x.into(), sampling: filtered(2), ..small() };
+    all(&world(), &job).hash()
+}
+
+#[test]
+fn every_way_gives_one_film() {
+    let world = world();
+    for job in jobs() {
+        let plain = all(&world, &job);
+        for number in 0..8 {
+            let way = Way::numbered(number, &job, 1);
+            let other = way.make(&world, &job, &AtomicBool::new(false)).unwrap();
+            let difference = compare(&plain, &other);
+            assert!(difference.is_none(), "{:?}, {way}: {difference:?}", job.sampling);
+            // Not only the sums: the pictures and what is told beside them.
+            let (a, b) = (plain.pictures().unwrap(), other.pictures().unwrap());
+            assert_eq!((a.statistics, &a.attributes), (b.statistics, &b.attributes), "{way}");
+            let bits = |layers: &[crate::image::Layer]| -> Vec<u32> {
+                layers.iter().flat_map(|l| &l.image.pixels).flat_map(|p| p.to_array()).map(f32::to_bits).collect()
+            };
+            assert!(bits(&a.layers) == bits(&b.layers) && bits(&a.pictures) == bits(&b.pictures), "{way}");
+        }
+    }
+    assert_ne!(one_ray(1), one_ray(2));
+}
+
+#[test]
+fn a_difference_is_found_and_named() {
+    let world = world();
+    let (a, b) = (all(&world, &small()), all(&world, &Job { seed: 1, ..small() }));
+    assert!(compare(&a, &b).is_none(), "one ray through the centre needs no random numbers");
+    let b =
+        all(&world, &Job { settings: crate::integrator::Settings { shadows: false, ..small().settings }, ..small() });
+    let difference = compare(&a, &b).unwrap();
+    assert!(difference.place.starts_with("pixel ") && difference.expected != difference.found, "{difference:?}");
+}
+
+#[test]
+fn a_crop_is_cut_from_the_whole_picture() {
+    let world = world();
+    let crop = Crop { left: 9, top: 11, width: 13, height: 10 };
+    for job in jobs().into_iter().filter(|job| job.noise.is_none() && job.crop.is_none()) {
+        let whole = all(&world, &job).pictures().unwrap();
+        let part = all(&world, &Job { crop: Some(crop), ..job.clone() }).pictures().unwrap();
+        // The greatest number of samples is known of the crop alone; here all pixels have as many.
+        for (whole, part) in whole.pictures.iter().zip(&part.pictures) {
+            for ((x, y), pixel) in crop.places().zip(&part.image.pixels) {
+                assert_eq!(whole.image.get(x, y), Some(*pixel), "{} {:?} {x},{y}", whole.name, job.sampling);
+            }
+        }
+    }
+}
+
+#[test]
+fn noise_decides_where_samples_are_taken() {
+    let world = world();
+    let noise = 0.004;
+    let job = Job { sampling: filtered(256), noise: Some(noise), width: 40, height: 40, ..Job::default() };
+    let part = all(&world, &Job { aovs: vec![Aov::from_name("sample-count").unwrap()], ..job.clone() });
+    assert!(part.is_finished());
+    let counts: Vec<f32> = part.pictures().unwrap().layers[1].image.pixels.iter().map(|p| p.x).collect();
+    let (least, most) = counts.iter().fold((f32::MAX, 0.0_f32), |(a, b), &n| (a.min(n), b.max(n)));
+    assert!(least == passes::LEAST as f32 && most >= 3.0 * least, "{least} {most}");
+    // The error is what was asked for: against a picture of many more samples, pixel by pixel in sqrt(Y).
+    let truth = all(&world, &Job { sampling: filtered(1024), noise: None, ..job.clone() }).pictures().unwrap();
+    let (ours, truth) = (&part.pictures().unwrap().layers[0].image, &truth.layers[0].image);
+    let seen = |p: &Vec3| (0.2126 * p.x + 0.7152 * p.y + 0.0722 * p.z).max(1.0 / 256.0).sqrt();
+    let differences = ours.pixels.iter().zip(&truth.pixels).map(|(a, b)| seen(a) - seen(b));
+    let squares: f32 = differences.map(|difference| difference * difference).sum();
+    let error = (squares / ours.pixels.len() as f32).sqrt();
+    assert!(error < noise, "{error}");
+}
+
+#[test]
+fn what_does_not_fit_is_not_merged() {
+    let world = world();
+    let job = Job { sampling: filtered(4), aovs: vec![Aov::from_name("depth").unwrap()], ..small() };
+    let make = |job: &Job, index, count, by| {
+        let shard = Shard { index, count, by };
+        let part = Part::new(&world, job, shard).unwrap();
+        part.render(&world, &Control::default(), &mut |_, _| {}).unwrap();
+        (format!("{shard}"), part)
+    };
+    for by in [ShardBy::Tiles, ShardBy::Samples] {
+        let parts: Vec<_> = [2, 3, 1].map(|index| make(&job, index, 3, by)).into();
+        assert_eq!(merge(&parts).unwrap().hash(), all(&world, &job).hash());
+        let missing = merge(&parts[..2]).unwrap_err().to_string();
+        assert!(missing.contains("1/3"), "{missing}");
+        let twice: Vec<_> = [1, 2, 2, 3].map(|index| make(&job, index, 3, by)).into();
+        assert!(
+            matches!(merge(&twice), Err(MergeError::Overlap { first, second, .. }) if first == "2/3" && second == "2/3")
+        );
+        // Halves and thirds leave gaps or overlap.
+        let mixed = [make(&job, 1, 2, by), make(&job, 2, 3, by), make(&job, 3, 3, by)];
+        assert!(merge(&mixed).is_err());
+    }
+    let other = Job { seed: 1, ..job.clone() };
+    let foreign = [make(&job, 1, 2, ShardBy::Tiles), make(&other, 2, 2, ShardBy::Tiles)];
+    let message = merge(&foreign).unwrap_err().to_string();
+    assert!(message.contains("`seed` is 1, and wanted is 0"), "{message}");
+    assert!(matches!(merge(&[]), Err(MergeError::NoParts)));
+    let unfinished = [("x".to_string(), Part::new(&world, &job, Shard::WHOLE).unwrap())];
+    let message = merge(&unfinished).unwrap_err().to_string();
+    assert!(message.contains("`x` is not finished: 0 of"), "{message}");
+}
+
+#[test]
+fn work_that_cannot_be_split_is_refused() {
+    let world = world();
+    let refused = |job: &Job, index, count, by| Part::new(&world, job, Shard { index, count, by }).is_err();
+    let (tiles, samples) = (ShardBy::Tiles, ShardBy::Samples);
+    let local = Job { sampling: filtered(4), ..small() };
+    assert!(!refused(&local, 4, 4, samples) && refused(&local, 5, 5, samples) && refused(&local, 0, 4, samples));
+    assert!(!refused(&local, 20, 20, tiles) && refused(&local, 21, 21, tiles) && refused(&local, 3, 2, tiles));
+    assert!(refused(&Job { noise: Some(0.1), ..local.clone() }, 1, 2, samples));
+    assert!(refused(&Job { sampling: Sampling::Course2012 { jitter: true, blur: true }, ..local }, 1, 2, samples));
+    assert!("3/16".parse::<Shard>().is_ok_and(|shard| shard.index == 3 && shard.count == 16));
+    assert!(["0/3", "4/3", "3", "a/b", "-1/3", "1/0"].iter().all(|text| text.parse::<Shard>().is_err()));
+}
+
+#[test]
+fn parts_come_back_from_bytes_and_no_bytes_harm() {
+    let world = world();
+    let job = Job { sampling: filtered(2), aovs: AOVS.iter().collect(), width: 12, height: 9, ..Job::default() };
+    let part = all(&world, &job);
+    let bytes = part.write();
+    let back = Part::read(&bytes).unwrap();
+    assert_eq!((back.hash(), back.write() == bytes, back.identity()), (part.hash(), true, part.identity()));
+    // Cut or changed anywhere, the checksum tells.
+    for length in 0..bytes.len() {
+        assert!(matches!(Part::read(&bytes[..length]), Err(PartError::Damaged)), "{length}");
+    }
+    for at in 8..bytes.len() {
+        let mut changed = bytes.clone();
+        changed[at] ^= 1 << (at % 8);
+        assert!(matches!(Part::read(&changed), Err(PartError::Damaged)), "{at}");
+    }
+    assert!(matches!(Part::read(b"P6 1 1 255 ..."), Err(PartError::NotAPart)));
+    // With a right checksum, anything may be in it: an error or a part, whose pictures can be made.
+    for at in (8..bytes.len() - 32).filter(|at| *at < 1500 || at % 7 == 0) {
+        for new in [0, 0x80, 0xff, bytes[at] ^ 4] {
+            let mut changed = bytes[..bytes.len() - 32].to_vec();
+            changed[at] = new;
+            changed.extend(Digest::of(&changed).0);
+            if let Ok(read) = Part::read(&changed) {
+                let _ = (read.pictures().is_ok(), read.work(), read.is_finished());
+            }
+        }
+    }
+}
+
+#[test]
+fn work_is_gone_on_with_only_where_it_is_the_same() {
+    let (world, job) = (world(), Job { sampling: filtered(2), ..small() });
+    let part = Part::new(&world, &job, Shard::WHOLE).unwrap();
+    let other = |world: &World, job: &Job, shard| part.same_work(&Part::new(world, job, shard).unwrap());
+    assert!(other(&world, &job, Shard::WHOLE).is_ok());
+    let moved = testing::read(&TEXT.replace("radius 1", "radius 1.0001"));
+    assert!(matches!(other(&moved, &job, Shard::WHOLE), Err(PartError::OtherScene)));
+    assert!(matches!(part.render(&moved, &Control::default(), &mut |_, _| {}), Err(RenderError::OtherScene)));
+    let more = Job { sampling: filtered(3), ..job.clone() };
+    assert!(matches!(other(&world, &more, Shard::WHOLE), Err(PartError::OtherJob(why)) if why.contains("sampling")));
+    let half = Shard { index: 1, count: 2, by: ShardBy::Tiles };
+    assert!(matches!(other(&world, &job, half), Err(PartError::OtherJob(why)) if why.contains("1/2")));
+    // Another version writes another number at the same place.
+    let mut bytes = part.write();
+    let version = env!("CARGO_PKG_VERSION").len();
+    bytes[9 + version] = b'x';
+    let content = bytes.len() - 32;
+    let digest = Digest::of(&bytes[..content]);
+    bytes[content..].copy_from_slice(&digest.0);
+    assert!(matches!(Part::read(&bytes), Err(PartError::OtherVersion(_))));
+}
+
+#[test]
+fn a_panic_is_an_error_that_knows_its_sample_and_the_rest_is_kept() {
+    let mut broken = world();
+    // A material that is not there: whatever shades the sphere panics.
+    broken.objects[0].material = 999;
+    let job = Job { sampling: filtered(4), width: 64, height: 64, ..Job::default() };
+    let part = Part::new(&broken, &job, Shard::WHOLE).unwrap();
+    let control = Control { threads: Some(1), ..Control::default() };
+    let Stop::Panicked(panicked) = part.render(&broken, &control, &mut |_, _| {}).unwrap() else {
+        panic!("the sphere is seen");
+    };
+    assert_eq!(panicked.sample, Some(0), "{panicked}");
+    assert!(panicked.message.contains("index out of bounds") && panicked.to_string().contains("pixel "), "{panicked}");
+    // The same sample alone panics too, its neighbours far away do not.
+    let alone = |x, y| {
+        let one = || replay(&broken, &job, &Control::default(), (x, y), Some(0)).map(|color| color.is_some());
+        std::panic::catch_unwind(std::panic::AssertUnwindSafe(one))
+    };
+    assert!(alone(panicked.x, panicked.y).is_err());
+    assert!(alone(0, 0).unwrap().unwrap());
+    // Tiles before it are kept; with the error mended, the film is as it should be.
+    assert!(part.work().1 > 0);
+    let mended = Part::read(&part.write()).unwrap();
+    mended.render(&world(), &control, &mut |_, _| {}).unwrap();
+    assert_eq!(mended.hash(), all(&world(), &job).hash());
+}
+
+#[test]
+fn time_and_cancel_stop_soon_and_the_watcher_is_called() {
+    let world = world();
+    let job = Job { sampling: filtered(1 << 20), width: 64, height: 64, ..Job::default() };
+    let (mut passes, mut saves) = (0, 0);
+    let mut watch = |part: &Part, moment| {
+        assert!(part.work().1 > 0);
+        *if moment == Moment::PassDone { &mut passes } else { &mut saves } += 1;
+    };
+    let part = Part::new(&world, &job, Shard::WHOLE).unwrap();
+    for save_every in [None, Some(Duration::from_millis(20))] {
+        let control = Control { time: Some(Duration::from_millis(300)), save_every, ..Control::default() };
+        assert_eq!(part.render(&world, &control, &mut watch).unwrap(), Stop::OutOfTime);
+    }
+    assert!(passes > 0 && saves > 0, "{passes} {saves}");
+    assert!(part.is_whole() && !part.is_finished());
+    let control = Control::default();
+    let stopped = std::thread::scope(|scope| {
+        let render = scope.spawn(|| (part.render(&world, &control, &mut |_, _| {}).unwrap(), Instant::now()));
+        std::thread::sleep(Duration::from_millis(50));
+        control.cancel.store(true, Relaxed);
+        let before = Instant::now();
+        let (stop, after) = render.join().unwrap();
+        (stop, after.saturating_duration_since(before))
+    });
+    assert_eq!(stopped.0, Stop::Cancelled);
+    // 100 ms are the promise (`cargo xtask cost` measures it); a busy machine has other work too.
+    assert!(stopped.1 < Duration::from_secs(2), "{:?}", stopped.1);
+}
+
+#[test]
+fn memory_is_estimated_before_it_is_taken() {
+    let (world, job) = (world(), Job { width: 4000, height: 4000, sampling: filtered(4), ..Job::default() });
+    let part = Part::new(&world, &job, Shard::WHOLE).unwrap();
+    let control = Control { memory: Some(1 << 30), ..Control::default() };
+    let error = part.render(&world, &control, &mut |_, _| {}).unwrap_err();
+    assert!(matches!(error, RenderError::Memory { needed, .. } if needed > 1 << 30), "{error}");
+    // Of a shard by tiles only the sums of its own pixels are kept.
+    let shard = Shard { index: 1, count: 100, by: ShardBy::Tiles };
+    assert!(Part::bytes_needed(&job, shard) < Part::bytes_needed(&job, Shard::WHOLE));
+    // What is kept of the course's samples counts too.
+    let filter = Some(CourseFilter::Gaussian { sigma: 30.0 });
+    let course = Sampling::Course2004 { sampler: Sampler::Random, samples: 65536, filter };
+    let part = Part::new(&world, &Job { sampling: course, ..small() }, Shard::WHOLE).unwrap();
+    assert!(matches!(part.render(&world, &control, &mut |_, _| {}), Err(RenderError::Memory { .. })));
+}
+
+#[test]
+fn samples_that_are_not_finite_are_named() {
+    let mut world = world();
+    world.ambient = Vec3::new(f32::NAN, 0.0, 0.0);
+    let part = all(&world, &Job { sampling: filtered(2), ..small() });
+    let statistics = part.statistics();
+    assert!(statistics.rejected > 0 && statistics.first_rejected.len() == 16);
+    assert_eq!(statistics.samples + statistics.rejected, 2 * 37 * 29);
+    let first = statistics.first_rejected[0];
+    let sample = replay(&world, part.job(), &Control::default(), (first.x, first.y), Some(first.sample));
+    assert!(sample.unwrap().unwrap().x.is_nan());
+    assert!(part.pictures().unwrap().layers[0].image.first_non_finite().is_none());
+}
+
+#[test]
+fn files_tell_the_job_and_the_scene() {
+    let world = world();
+    let part = all(&world, &small());
+    let rendered = part.pictures().unwrap();
+    let exr = crate::image::FORMATS.iter().find(|format| format.layers && format.depth == Depth::Float).unwrap();
+    let options = crate::image::WriteOptions { attributes: &rendered.attributes, ..Default::default() };
+    let mut bytes = Vec::new();
+    exr.write(&rendered.layers, &options, &mut bytes).unwrap();
+    for told in [world.digest.to_string(), serde_json::to_string(&small()).unwrap(), "\"samples\":1073".into()] {
+        assert!(bytes.windows(told.len()).any(|window| window == told.as_bytes()), "{told}");
+    }
+}

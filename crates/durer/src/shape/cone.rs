@@ -1,0 +1,109 @@
+//! The cone or frustum between two points, with its caps.
+
+use super::chord::Chord;
+use super::cylinder::{Axis, BASE, SIDE, TOP};
+use super::{Crossing, Shape, Surface};
+use crate::describe::Rule;
+use crate::described;
+use crate::dialect::set;
+use crate::math::{Aabb, Line, Vec2, Vec3, gamma, roots};
+use glam::DVec3;
+
+described! {
+    /// A cone with its cap; or, with a radius at its top too, a frustum with both.
+    Cone ["Cone" in set::DURER] {
+        /// Middle of the cap at the base.
+        base: Vec3 = Vec3::ZERO, required, Rule::Any, ["base" in set::DURER];
+        /// The tip, or the middle of the cap there.
+        top: Vec3 = Vec3::Y, required, Rule::Any, ["top" in set::DURER];
+        /// Radius at the base; it may be 0 where that at the top is not.
+        base_radius: f32 = 1.0, required, Rule::NonNegative, ["baseRadius" in set::DURER];
+        /// Radius at the top; 0, a tip, where none is given.
+        top_radius: f32 = 0.0, optional, Rule::NonNegative, ["topRadius" in set::DURER];
+    }
+}
+
+impl Cone {
+    fn axis(&self) -> Axis {
+        Axis::new(self.base, self.top)
+    }
+
+    fn radii(&self) -> [f64; 2] {
+        [f64::from(self.base_radius), f64::from(self.top_radius)]
+    }
+
+    /// How fast the radius grows with height.
+    fn growth(&self) -> f64 {
+        let [base, top] = self.radii();
+        (top - base) / self.axis().height
+    }
+
+    fn radius_at(&self, y: f64) -> f64 {
+        let [base, top] = self.radii();
+        let share = y / self.axis().height;
+        base * (1.0 - share) + top * share
+    }
+}
+
+impl Shape for Cone {
+    fn bounds(&self) -> Option<Aabb> {
+        Some(self.axis().bounds(self.radii()))
+    }
+
+    /// |q - (q·a) a|^2 = r(q·a)^2 for q seen from the base, a the axis and r the radius, linear in the height.
+    ///
+    /// Steep lines run inside both nappes of the double cone: the one where r > 0 is kept.
+    fn crossings(&self, line: &Line, offer: &mut impl FnMut(f64, Vec2)) {
+        let axis = self.axis();
+        let (shift, near) = axis.near(line);
+        let ((y, o), (slope, d)) = (axis.split(near.origin), axis.split(near.dir));
+        let (r, dr) = (self.radius_at(y), self.growth() * slope);
+        let (a, b, c) = (d.length_squared() - dr * dr, o.dot(d) - r * dr, o.length_squared() - r * r);
+        let slabbed = Chord::LINE.slab(y, slope, [0.0, axis.height], [BASE, TOP]);
+        let chord = match roots::quadratic(a, b, c).filter(|_| a != 0.0) {
+            Some((first, second)) if a > 0.0 => slabbed.between(first, second, [SIDE; 2]),
+            Some((_, second)) if dr > 0.0 => slabbed.between(second, f64::INFINITY, [SIDE; 2]),
+            Some((first, _)) => slabbed.between(f64::NEG_INFINITY, first, [SIDE; 2]),
+            // Parallel to the side: one place only.
+            None if a == 0.0 && b > 0.0 => slabbed.between(f64::NEG_INFINITY, -0.5 * c / b, [SIDE; 2]),
+            None if a == 0.0 && b < 0.0 => slabbed.between(-0.5 * c / b, f64::INFINITY, [SIDE; 2]),
+            None if a < 0.0 || a == 0.0 && c < 0.0 => slabbed,
+            None => return,
+        };
+        chord.offer(&mut |t, uv| offer(t + shift, uv));
+    }
+
+    fn surface(&self, point: DVec3, crossing: &Crossing) -> Surface {
+        let (axis, [base, top]) = (self.axis(), self.radii());
+        if crossing.uv.x != SIDE as f32 {
+            let face = crossing.uv.x as u32;
+            return axis.cap(point, face, if face == TOP { top } else { base });
+        }
+        let (y, around) = axis.split(point - axis.base);
+        let (y, around) = (y.clamp(0.0, axis.height), around.normalize_or(axis.dir.any_orthonormal_vector()));
+        let r = self.radius_at(y);
+        let normal = around - self.growth() * axis.dir;
+        let largest = base.max(top);
+        // At a tip the curvature has no bound; the point's error is far larger than this.
+        let curvature = 1.0 / r.max(1e-6 * largest);
+        let position = axis.base + y * axis.dir + r * around;
+        let floor = gamma(2) * (largest + axis.height) as f32;
+        Surface::new(position, normal, floor, axis.uv(around, y / axis.height)).curved(curvature)
+    }
+
+    fn inside(&self, point: DVec3) -> Option<bool> {
+        let axis = self.axis();
+        let (y, around) = axis.split(point - axis.base);
+        Some(y > 0.0 && y < axis.height && around.length() < self.radius_at(y))
+    }
+
+    fn flaw(&self) -> Option<&'static str> {
+        if self.axis().height == 0.0 {
+            Some("`base` and `top` of a `Cone` must not be the same point")
+        } else if self.base_radius == 0.0 && self.top_radius == 0.0 {
+            Some("one of the radii of a `Cone` must be more than 0")
+        } else {
+            None
+        }
+    }
+}

@@ -1,0 +1,56 @@
+//! The box whose faces are parallel to the coordinate planes.
+
+use super::chord::Chord;
+use super::{Crossing, Shape, Surface, padded};
+use crate::describe::Rule;
+use crate::described;
+use crate::dialect::set;
+use crate::math::{Aabb, Line, Vec2, Vec3};
+use glam::DVec3;
+
+described! {
+    /// A box whose faces are parallel to the coordinate planes.
+    Cuboid ["Box" in set::DURER] {
+        /// Corner of least coordinates.
+        min: Vec3 = Vec3::splat(-1.0), required, Rule::Any, ["min" in set::DURER];
+        /// Corner of greatest coordinates.
+        max: Vec3 = Vec3::ONE, required, Rule::Any, ["max" in set::DURER];
+    }
+}
+
+impl Shape for Cuboid {
+    fn bounds(&self) -> Option<Aabb> {
+        Some(padded(self.min.as_dvec3(), self.max.as_dvec3()))
+    }
+
+    /// Cuts the line by three slabs. Source: Kay and Kajiya, *Ray Tracing Complex Scenes*, SIGGRAPH 1986.
+    fn crossings(&self, line: &Line, offer: &mut impl FnMut(f64, Vec2)) {
+        let (min, max) = (self.min.as_dvec3(), self.max.as_dvec3());
+        let cut = |chord: Chord, axis: usize| {
+            let faces = [2 * axis as u32, 2 * axis as u32 + 1];
+            chord.slab(line.origin[axis], line.dir[axis], [min[axis], max[axis]], faces)
+        };
+        (0..3).fold(Chord::LINE, cut).offer(offer);
+    }
+
+    fn surface(&self, point: DVec3, crossing: &Crossing) -> Surface {
+        let face = crossing.uv.x as usize;
+        let (axis, high) = (face / 2 % 3, face % 2 == 1);
+        let (min, max) = (self.min.as_dvec3(), self.max.as_dvec3());
+        let mut p = point.clamp(min, max);
+        p[axis] = if high { max[axis] } else { min[axis] };
+        let normal = if high { DVec3::AXES[axis] } else { -DVec3::AXES[axis] };
+        let share = (p - min) / (max - min);
+        let uv = [(2, 1), (0, 2), (0, 1)].map(|(u, v)| Vec2::new(share[u] as f32, share[v] as f32))[axis];
+        Surface::new(p, normal, 0.0, uv)
+    }
+
+    fn inside(&self, point: DVec3) -> Option<bool> {
+        Some((point.cmpgt(self.min.as_dvec3()) & point.cmplt(self.max.as_dvec3())).all())
+    }
+
+    fn flaw(&self) -> Option<&'static str> {
+        let thick = self.min.cmplt(self.max).all();
+        (!thick).then_some("`min` of a `Box` must be less than its `max` in x, y and z")
+    }
+}

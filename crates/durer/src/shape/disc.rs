@@ -1,0 +1,60 @@
+//! The disc, whole or with a hole.
+
+use super::{Crossing, Shape, Surface, disc_reach, padded, turn};
+use crate::describe::Rule;
+use crate::described;
+use crate::dialect::set;
+use crate::math::{Aabb, Line, Vec2, Vec3};
+use glam::DVec3;
+
+described! {
+    /// A flat disc.
+    Disc ["Disc" in set::DURER] {
+        /// Its middle.
+        center: Vec3 = Vec3::ZERO, required, Rule::Any, ["center" in set::DURER];
+        /// Points to its front; of any length.
+        normal: Vec3 = Vec3::Y, required, Rule::NonZero, ["normal" in set::DURER];
+        /// Its radius.
+        radius: f32 = 1.0, required, Rule::Positive, ["radius" in set::DURER];
+        /// Radius of the hole in its middle.
+        inner_radius: f32 = 0.0, optional, Rule::NonNegative, ["innerRadius" in set::DURER];
+    }
+}
+
+impl Disc {
+    fn normal(&self) -> DVec3 {
+        self.normal.as_dvec3().normalize_or(DVec3::Y)
+    }
+}
+
+impl Shape for Disc {
+    fn bounds(&self) -> Option<Aabb> {
+        let (center, reach) = (self.center.as_dvec3(), f64::from(self.radius) * disc_reach(self.normal()));
+        Some(padded(center - reach, center + reach))
+    }
+
+    fn crossings(&self, line: &Line, offer: &mut impl FnMut(f64, Vec2)) {
+        let (n, center) = (self.normal(), self.center.as_dvec3());
+        let t = n.dot(center - line.origin) / n.dot(line.dir);
+        let distance = (line.at(t) - center).length();
+        // A parallel line divides by zero, and is nowhere within the radius.
+        if distance <= f64::from(self.radius) && distance >= f64::from(self.inner_radius) {
+            offer(t, Vec2::ZERO);
+        }
+    }
+
+    fn surface(&self, point: DVec3, _crossing: &Crossing) -> Surface {
+        let (n, center, radius) = (self.normal(), self.center.as_dvec3(), f64::from(self.radius));
+        let q = point - center;
+        let q = (q - n.dot(q) * n).clamp_length_max(radius);
+        let (x, z) = n.any_orthonormal_pair();
+        let floor = 1e-14 * (center.abs().max_element() + radius);
+        let uv = Vec2::new(turn(q.dot(x), q.dot(z)), (q.length() / radius) as f32);
+        Surface::new(center + q, n, floor as f32, uv)
+    }
+
+    fn flaw(&self) -> Option<&'static str> {
+        let there = self.inner_radius < self.radius;
+        (!there).then_some("`innerRadius` of a `Disc` must be less than its `radius`")
+    }
+}

@@ -1,0 +1,57 @@
+//! The ellipsoid whose axes are parallel to the coordinate axes.
+
+use super::{Crossing, Shape, Surface, padded, turn};
+use crate::describe::Rule;
+use crate::described;
+use crate::dialect::set;
+use crate::math::{Aabb, Line, Vec2, Vec3, fp, gamma, roots};
+use glam::DVec3;
+
+described! {
+    /// A ball stretched along the coordinate axes.
+    Ellipsoid ["Ellipsoid" in set::DURER] {
+        /// Its middle.
+        center: Vec3 = Vec3::ZERO, required, Rule::Any, ["center" in set::DURER];
+        /// Half its extent along x, y and z.
+        radii: Vec3 = Vec3::ONE, required, Rule::Any, ["radii" in set::DURER];
+    }
+}
+
+impl Shape for Ellipsoid {
+    fn bounds(&self) -> Option<Aabb> {
+        let (center, radii) = (self.center.as_dvec3(), self.radii.as_dvec3());
+        Some(padded(center - radii, center + radii))
+    }
+
+    /// |(p - center) / radii|^2 = 1, from the place of the line that is nearest to the centre of the unit sphere.
+    fn crossings(&self, line: &Line, offer: &mut impl FnMut(f64, Vec2)) {
+        let radii = self.radii.as_dvec3();
+        let unit = Line { origin: (line.origin - self.center.as_dvec3()) / radii, dir: line.dir / radii };
+        let shift = unit.nearest(DVec3::ZERO);
+        let (o, d) = (unit.at(shift), unit.dir);
+        if let Some((first, second)) = roots::quadratic(d.length_squared(), o.dot(d), o.length_squared() - 1.0) {
+            offer(first + shift, Vec2::ZERO);
+            offer(second + shift, Vec2::ZERO);
+        }
+    }
+
+    fn surface(&self, point: DVec3, _crossing: &Crossing) -> Surface {
+        let (center, radii) = (self.center.as_dvec3(), self.radii.as_dvec3());
+        let unit = ((point - center) / radii).normalize_or(DVec3::Z);
+        // Longitude and latitude as on a sphere.
+        let v = fp::asin((unit.y as f32).clamp(-1.0, 1.0)) / std::f32::consts::PI + 0.5;
+        let uv = Vec2::new(turn(-unit.z, unit.x), v);
+        let (least, largest) = (radii.min_element(), radii.max_element());
+        let floor = gamma(2) * largest as f32;
+        Surface::new(center + radii * unit, unit / radii, floor, uv).curved(largest / (least * least))
+    }
+
+    fn inside(&self, point: DVec3) -> Option<bool> {
+        Some(((point - self.center.as_dvec3()) / self.radii.as_dvec3()).length_squared() < 1.0)
+    }
+
+    fn flaw(&self) -> Option<&'static str> {
+        let thick = self.radii.min_element() > 0.0;
+        (!thick).then_some("all `radii` of an `Ellipsoid` must be more than 0")
+    }
+}

@@ -1,0 +1,110 @@
+//! The general quadric: where a polynomial of degree two in x, y and z is zero.
+
+use super::{Crossing, Shape, Surface, padded, turn};
+use crate::describe::Rule;
+use crate::described;
+use crate::dialect::set;
+use crate::math::{Aabb, Line, Vec2, Vec3, fp, gamma, roots};
+use glam::{DMat3, DVec3};
+
+described! {
+    /// Where A x² + B y² + C z² + D xy + E xz + F yz + G x + H y + I z + J is zero; inside, it is less.
+    Quadric ["Quadric" in set::DURER] {
+        /// A, B and C.
+        squares: Vec3 = Vec3::ONE, required, Rule::Any, ["squares" in set::DURER];
+        /// D, E and F.
+        products: Vec3 = Vec3::ZERO, optional, Rule::Any, ["products" in set::DURER];
+        /// G, H and I.
+        linear: Vec3 = Vec3::ZERO, optional, Rule::Any, ["linear" in set::DURER];
+        /// J.
+        constant: f32 = -1.0, required, Rule::Any, ["constant" in set::DURER];
+    }
+}
+
+impl Quadric {
+    /// The symmetric matrix M of p·M p + g·p + j.
+    fn matrix(&self) -> DMat3 {
+        let ([a, b, c], [d, e, f]) = (self.squares.as_dvec3().to_array(), (0.5 * self.products.as_dvec3()).to_array());
+        DMat3::from_cols(DVec3::new(a, d, e), DVec3::new(d, b, f), DVec3::new(e, f, c))
+    }
+
+    fn value(&self, p: DVec3) -> f64 {
+        p.dot(self.matrix() * p + self.linear.as_dvec3()) + f64::from(self.constant)
+    }
+
+    fn gradient(&self, p: DVec3) -> DVec3 {
+        2.0 * (self.matrix() * p) + self.linear.as_dvec3()
+    }
+
+    /// Its polynomial a t^2 + 2 b t + c along a line, from the place nearest to the origin on, and the `t` of that.
+    fn along(&self, line: &Line) -> (f64, [f64; 3]) {
+        let shift = line.nearest(DVec3::ZERO);
+        let (o, d) = (line.at(shift), line.dir);
+        (shift, [d.dot(self.matrix() * d), 0.5 * self.gradient(o).dot(d), self.value(o)])
+    }
+}
+
+impl Shape for Quadric {
+    /// Only an ellipsoid has bounds: where M is positive definite, |p_i - center_i|^2 <= -q(center) (M^-1)_ii.
+    fn bounds(&self) -> Option<Aabb> {
+        let m = self.matrix();
+        let minor = m.x_axis.x * m.y_axis.y - m.x_axis.y * m.x_axis.y;
+        let (scale, determinant) = (m.x_axis.length().max(m.y_axis.length()).max(m.z_axis.length()), m.determinant());
+        let definite = m.x_axis.x > 0.0 && minor > 0.0 && determinant > 1e-9 * scale * scale * scale;
+        let inverse = definite.then(|| m.inverse())?;
+        let center = -0.5 * (inverse * self.linear.as_dvec3());
+        let size = (-self.value(center)).max(0.0);
+        let diagonal = DVec3::new(inverse.x_axis.x, inverse.y_axis.y, inverse.z_axis.z);
+        let reach = (size * diagonal).map(f64::sqrt) * (1.0 + 1e-6);
+        Some(padded(center - reach, center + reach))
+    }
+
+    fn crossings(&self, line: &Line, offer: &mut impl FnMut(f64, Vec2)) {
+        let (shift, [a, b, c]) = self.along(line);
+        if a != 0.0 {
+            if let Some((first, second)) = roots::quadratic(a, b, c) {
+                offer(first + shift, Vec2::ZERO);
+                offer(second + shift, Vec2::ZERO);
+            }
+        } else if b != 0.0 {
+            offer(shift - 0.5 * c / b, Vec2::ZERO);
+        }
+    }
+
+    fn surface(&self, point: DVec3, _crossing: &Crossing) -> Surface {
+        // Newton's steps along the gradient lead back onto the surface.
+        let mut p = point;
+        let mut gradient = self.gradient(p);
+        for _ in 0..3 {
+            let square = gradient.length_squared();
+            if square > 0.0 {
+                p -= gradient * (self.value(p) / square);
+                gradient = self.gradient(p);
+            }
+        }
+        let steepness = gradient.length();
+        let bend = 2.0 * self.matrix().to_cols_array().iter().fold(0.0, |sum: f64, x| sum + x.abs());
+        let size = p.abs().max_element();
+        // Where all terms cancel, as at the tip of a cone, there is no normal, and any curvature.
+        let curvature = (bend / steepness.max(1e-6 * bend * size)).min(1e30);
+        // Texture coordinates: longitude and latitude as seen from the origin.
+        let seen = p.normalize_or(DVec3::Z);
+        let v = fp::asin((seen.y as f32).clamp(-1.0, 1.0)) / std::f32::consts::PI + 0.5;
+        let floor = gamma(2) * size as f32;
+        Surface::new(p, gradient, floor, Vec2::new(turn(-seen.z, seen.x), v)).curved(curvature)
+    }
+
+    fn inside(&self, point: DVec3) -> Option<bool> {
+        Some(self.value(point) < 0.0)
+    }
+
+    fn starts_inside(&self, line: &Line) -> bool {
+        let (_, [a, b, c]) = self.along(line);
+        a < 0.0 || a == 0.0 && (b > 0.0 || b == 0.0 && c < 0.0)
+    }
+
+    fn flaw(&self) -> Option<&'static str> {
+        let nothing = [self.squares, self.products, self.linear].iter().all(|v| *v == Vec3::ZERO);
+        nothing.then_some("a `Quadric` needs a number beside its `constant` that is not 0")
+    }
+}

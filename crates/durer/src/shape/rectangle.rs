@@ -1,0 +1,65 @@
+//! The rectangle, or any parallelogram.
+
+use super::{Crossing, Shape, Surface, padded};
+use crate::describe::Rule;
+use crate::described;
+use crate::dialect::set;
+use crate::math::{Aabb, Line, Vec2, Vec3};
+use glam::DVec3;
+
+described! {
+    /// A rectangle; with edges that are not at right angles, a parallelogram. Its front is where `edge0` turns
+    /// counter-clockwise to `edge1`.
+    Rectangle ["Rectangle" in set::DURER] {
+        /// A corner.
+        corner: Vec3 = Vec3::ZERO, required, Rule::Any, ["corner" in set::DURER];
+        /// From there to the next corner.
+        edge0: Vec3 = Vec3::X, required, Rule::NonZero, ["edge0" in set::DURER];
+        /// From there to the corner before.
+        edge1: Vec3 = Vec3::Y, required, Rule::NonZero, ["edge1" in set::DURER];
+    }
+}
+
+impl Rectangle {
+    fn edges(&self) -> [DVec3; 2] {
+        [self.edge0.as_dvec3(), self.edge1.as_dvec3()]
+    }
+
+    /// The shares of both edges that lead to a point of the plane: Cramer's rule.
+    fn shares(&self, point: DVec3) -> [f64; 2] {
+        let [e, f] = self.edges();
+        let (n, q) = (e.cross(f), point - self.corner.as_dvec3());
+        [q.cross(f).dot(n) / n.length_squared(), e.cross(q).dot(n) / n.length_squared()]
+    }
+}
+
+impl Shape for Rectangle {
+    fn bounds(&self) -> Option<Aabb> {
+        let ([e, f], corner) = (self.edges(), self.corner.as_dvec3());
+        let zero = DVec3::ZERO;
+        Some(padded(corner + e.min(zero) + f.min(zero), corner + e.max(zero) + f.max(zero)))
+    }
+
+    fn crossings(&self, line: &Line, offer: &mut impl FnMut(f64, Vec2)) {
+        let [e, f] = self.edges();
+        let n = e.cross(f);
+        let t = n.dot(self.corner.as_dvec3() - line.origin) / n.dot(line.dir);
+        // A parallel line divides by zero, and its shares are no numbers.
+        let [u, v] = self.shares(line.at(t));
+        if (0.0..=1.0).contains(&u) && (0.0..=1.0).contains(&v) {
+            offer(t, Vec2::new(u as f32, v as f32));
+        }
+    }
+
+    fn surface(&self, point: DVec3, _crossing: &Crossing) -> Surface {
+        let ([e, f], corner) = (self.edges(), self.corner.as_dvec3());
+        let [u, v] = self.shares(point).map(|x| x.clamp(0.0, 1.0));
+        let floor = 1e-14 * (corner.abs() + e.abs() + f.abs()).max_element();
+        Surface::new(corner + u * e + v * f, e.cross(f), floor as f32, Vec2::new(u as f32, v as f32))
+    }
+
+    fn flaw(&self) -> Option<&'static str> {
+        let [e, f] = self.edges().map(|e| e.normalize_or_zero());
+        (e.cross(f).length() < 1e-6).then_some("the edges of a `Rectangle` must not be parallel")
+    }
+}

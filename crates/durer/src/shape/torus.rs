@@ -1,0 +1,104 @@
+//! The torus: all points at one distance from a circle.
+
+use super::{Crossing, Shape, Surface, disc_reach, padded, turn};
+use crate::describe::Rule;
+use crate::described;
+use crate::dialect::set;
+use crate::math::{Aabb, Line, Vec2, Vec3, gamma, roots};
+use glam::DVec3;
+
+described! {
+    /// A ring: all points within one distance from a circle.
+    Torus ["Torus" in set::DURER] {
+        /// Middle of the circle.
+        center: Vec3 = Vec3::ZERO, required, Rule::Any, ["center" in set::DURER];
+        /// Direction across the circle's plane, of any length.
+        axis: Vec3 = Vec3::Y, optional, Rule::NonZero, ["axis" in set::DURER];
+        /// Radius of the circle.
+        major_radius: f32 = 1.0, required, Rule::Positive, ["majorRadius" in set::DURER];
+        /// Distance from the circle: half the ring's thickness.
+        minor_radius: f32 = 0.25, required, Rule::Positive, ["minorRadius" in set::DURER];
+    }
+}
+
+impl Torus {
+    fn axis(&self) -> DVec3 {
+        self.axis.as_dvec3().normalize_or(DVec3::Y)
+    }
+
+    fn radii(&self) -> (f64, f64) {
+        (f64::from(self.major_radius), f64::from(self.minor_radius))
+    }
+
+    /// The nearest point of the circle, seen from the centre.
+    fn nearest(&self, q: DVec3) -> DVec3 {
+        let a = self.axis();
+        self.radii().0 * (q - q.dot(a) * a).normalize_or(a.any_orthonormal_vector())
+    }
+}
+
+impl Shape for Torus {
+    fn bounds(&self) -> Option<Aabb> {
+        let (major, minor) = self.radii();
+        let reach = major * disc_reach(self.axis()) + minor;
+        let center = self.center.as_dvec3();
+        Some(padded(center - reach, center + reach))
+    }
+
+    /// Solves (|p|^2 + R^2 - r^2)^2 = 4 R^2 (|p|^2 - (p·a)^2) for p seen from the centre, a the axis.
+    ///
+    /// Lengths are counted in R from the place nearest to the centre, along a direction of length 1, so that all
+    /// coefficients are of one size. Source of the equation: Hanrahan in Glassner, *An Introduction to Ray Tracing*
+    /// (1989), chapter 3.
+    fn crossings(&self, line: &Line, offer: &mut impl FnMut(f64, Vec2)) {
+        let ((major, minor), a) = (self.radii(), self.axis());
+        let shift = line.nearest(self.center.as_dvec3());
+        let scale = line.dir.length() / major;
+        let (o, d) = ((line.at(shift) - self.center.as_dvec3()) / major, line.dir.normalize_or_zero());
+        let ratio = minor / major;
+        let oo = o.length_squared();
+        // A little beyond the sphere around it, both ends of the line are outside.
+        let reach = 1.001 * (1.0 + ratio);
+        let beside = reach * reach - oo;
+        let thickness = 1.001 * ratio;
+        let (height, slope) = (o.dot(a), d.dot(a));
+        if beside.is_nan() || beside <= 0.0 || slope == 0.0 && height.abs() > thickness {
+            return;
+        }
+        let half = beside.sqrt();
+        // |p|^2 = s^2 + 2 e s + oo, with e = o·d zero but for rounding.
+        let e = o.dot(d);
+        let k = oo + 1.0 - ratio * ratio;
+        let coefficients = [
+            k * k - 4.0 * (oo - height * height),
+            4.0 * k * e - 8.0 * (e - height * slope),
+            2.0 * k + 4.0 * e * e - 4.0 * (1.0 - slope * slope),
+            4.0 * e,
+            1.0,
+        ];
+        let (found, count) = roots::quartic(coefficients, -half, half);
+        found[..count].iter().for_each(|s| offer(s / scale + shift, Vec2::ZERO));
+    }
+
+    fn surface(&self, point: DVec3, _crossing: &Crossing) -> Surface {
+        let ((major, minor), a, center) = (self.radii(), self.axis(), self.center.as_dvec3());
+        let q = point - center;
+        let ring = self.nearest(q);
+        let normal = (q - ring).normalize_or(a);
+        let (x, z) = a.any_orthonormal_pair();
+        let uv = Vec2::new(turn(ring.dot(x), ring.dot(z)), turn(normal.dot(ring) / major, normal.dot(a)));
+        let floor = gamma(2) * (self.major_radius + self.minor_radius);
+        let curvature = (1.0 / minor).max(1.0 / (major - minor));
+        Surface::new(center + ring + minor * normal, normal, floor, uv).curved(curvature)
+    }
+
+    fn inside(&self, point: DVec3) -> Option<bool> {
+        let q = point - self.center.as_dvec3();
+        Some((q - self.nearest(q)).length() < self.radii().1)
+    }
+
+    fn flaw(&self) -> Option<&'static str> {
+        let hole = self.minor_radius < self.major_radius;
+        (!hole).then_some("`minorRadius` of a `Torus` must be less than its `majorRadius`")
+    }
+}

@@ -1,0 +1,418 @@
+//! How a ray meets a solid of several parts (constructive solid geometry).
+//!
+//! All crossings of the ray's line with the surfaces of the parts are collected and sorted. Going along the line, each
+//! crossing turns one part's inside bit, and with it the counts of the operations above it; where the bit of the whole
+//! changes, the line goes in or out of the solid. Source: Roth, *Ray Casting for Modeling Solids*, Computer Graphics and
+//! Image Processing 18, 1982; with counts for the operations, so that an operation of many parts costs no more.
+//!
+//! Faces that coincide: crossings of different parts count as one where their distance across the surfaces is no more
+//! than single precision can tell there, some 2^-19 of the coordinates. All their bits turn together: so no skin is
+//! left, or appears, where two faces share a plane. If the bit of the whole changes, the surface is that of the part
+//! written first of those that could have made the change: alone, or as the last.
+//!
+//! The `part` of a hit is the number of a triangle or shape among those of all parts, with two bits: whether the
+//! surface is turned inside out, and whether the ray enters the solid.
+
+use super::solid::{Rule, Solid};
+use super::{Geometry, Object};
+use crate::bvh::{Bvh, Tally};
+use crate::math::{Aabb, Ray, Vec2, Vec3};
+use crate::shape::{Crossing, Shape, Surface};
+use std::cell::RefCell;
+use std::sync::Arc;
+
+/// Set in a hit's part where the surface is turned inside out, as that of what is cut away.
+pub const TURNED: u32 = 1 << 31;
+/// Set in a hit's part where the ray enters the solid.
+pub const ENTERS: u32 = 1 << 30;
+
+/// Up to so many parts, each is asked; more have a tree of their own.
+const FEW: usize = 8;
+
+/// A solid of several parts.
+#[derive(Debug)]
+pub struct Csg {
+    leaves: Vec<Leaf>,
+    /// The operations; the whole is the first.
+    joins: Vec<Join>,
+    /// How many of its edges hold at the start, for each operation.
+    start: Vec<u32>,
+    /// Parts without end.
+    unbounded: Vec<u32>,
+    /// Numbers of the parts with an end, and the tree over them, if they are many.
+    bounded: Vec<u32>,
+    bvh: Option<Bvh>,
+    bounds: Option<Aabb>,
+    /// The greatest slack of two parts.
+    slack: f32,
+}
+
+/// A part and its place in the tree.
+#[derive(Debug)]
+struct Leaf {
+    object: Arc<Object>,
+    edge: Edge,
+    /// Number of its first triangle.
+    first: u32,
+    /// How far its surface may be off, at least.
+    slack: f32,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Edge {
+    /// Number of the operation above.
+    join: u32,
+    /// Whether the edge holds where the part is not.
+    cut: bool,
+}
+
+#[derive(Debug)]
+struct Join {
+    rule: Rule,
+    edges: u32,
+    /// `None` for the whole.
+    edge: Option<Edge>,
+}
+
+impl Join {
+    fn value(&self, holding: u32) -> bool {
+        match self.rule {
+            Rule::Any => holding > 0,
+            Rule::All => holding == self.edges,
+            Rule::Odd => holding % 2 == 1,
+        }
+    }
+}
+
+/// A crossing of one part's surface.
+#[derive(Clone, Copy, Debug)]
+struct Event {
+    t: f64,
+    leaf: u32,
+    part: u32,
+    uv: Vec2,
+}
+
+/// What is used anew for each ray, one a thread.
+#[derive(Default)]
+struct Scratch {
+    events: Vec<Event>,
+    state: State,
+}
+
+/// What the present place is inside of.
+#[derive(Default)]
+struct State {
+    counts: Vec<u32>,
+    inside: Vec<bool>,
+}
+
+thread_local! {
+    static SCRATCH: RefCell<Scratch> = RefCell::default();
+}
+
+impl Csg {
+    /// More triangles and shapes than this, in all parts together, cannot be told apart.
+    pub const MOST_PARTS: u64 = ENTERS as u64 - 1;
+
+    /// Prepares a solid for rays.
+    pub fn new(solid: Solid) -> Self {
+        let bounds = solid.bounds();
+        let mut csg = Csg {
+            leaves: Vec::new(),
+            joins: Vec::new(),
+            start: Vec::new(),
+            unbounded: Vec::new(),
+            bounded: Vec::new(),
+            bvh: None,
+            bounds,
+            slack: 0.0,
+        };
+        // A single part is a join of one.
+        let solid = match solid {
+            Solid::Part(_) => Solid::Join { rule: Rule::Any, parts: vec![solid], cut: Vec::new() },
+            join => join,
+        };
+        csg.add(solid, None);
+        let mut boxes = Vec::new();
+        for (i, leaf) in csg.leaves.iter().enumerate() {
+            match leaf.object.bounds() {
+                Some(b) => {
+                    csg.bounded.push(i as u32);
+                    boxes.push(b);
+                }
+                None => csg.unbounded.push(i as u32),
+            }
+            csg.slack = csg.slack.max(2.0 * leaf.slack);
+        }
+        csg.bvh = (boxes.len() > FEW).then(|| Bvh::build(&boxes));
+        csg
+    }
+
+    fn add(&mut self, solid: Solid, edge: Option<Edge>) {
+        match (solid, edge) {
+            (Solid::Part(object), Some(edge)) => {
+                let first = self.leaves.last().map_or(0, |last| last.first + last.object.parts());
+                let slack = slack_of(&object);
+                self.leaves.push(Leaf { object, edge, first, slack });
+            }
+            (Solid::Part(_), None) => {}
+            (Solid::Join { rule, parts, cut }, edge) => {
+                let join = self.joins.len() as u32;
+                self.joins.push(Join { rule, edges: (parts.len() + cut.len()) as u32, edge });
+                // At the start nothing is inside of anything, and only what is cut away holds.
+                self.start.push(cut.len() as u32);
+                parts.into_iter().for_each(|part| self.add(part, Some(Edge { join, cut: false })));
+                cut.into_iter().for_each(|part| self.add(part, Some(Edge { join, cut: true })));
+            }
+        }
+    }
+
+    /// The box around it.
+    pub fn bounds(&self) -> Option<Aabb> {
+        self.bounds
+    }
+
+    /// Its parts.
+    pub fn parts(&self) -> impl Iterator<Item = &Object> {
+        self.leaves.iter().map(|leaf| &*leaf.object)
+    }
+
+    /// The part that a hit's `part` names.
+    pub fn part(&self, part: u32) -> &Object {
+        &self.leaves[self.leaf_of(part)].object
+    }
+
+    /// The number of the triangle in that part, or 0.
+    pub fn triangle(&self, part: u32) -> u32 {
+        (part & !(TURNED | ENTERS)) - self.leaves[self.leaf_of(part)].first
+    }
+
+    /// Bytes in memory, meshes not counted.
+    pub fn bytes(&self) -> usize {
+        let lists = size_of_val(&*self.leaves) + size_of_val(&*self.joins) + size_of_val(&*self.start);
+        lists + size_of_val(&*self.unbounded) + size_of_val(&*self.bounded) + self.bvh.as_ref().map_or(0, Bvh::bytes)
+    }
+
+    fn leaf_of(&self, part: u32) -> usize {
+        let number = part & !(TURNED | ENTERS);
+        self.leaves.partition_point(|leaf| leaf.first <= number).saturating_sub(1)
+    }
+
+    /// The surface at a hit, in world space; its normals point out of the solid.
+    pub fn surface(&self, ray: &Ray, crossing: &Crossing, part: u32, as_is: bool) -> Surface {
+        let (leaf, number) = (&self.leaves[self.leaf_of(part)], self.triangle(part));
+        let point = leaf.object.local_line(ray).at(f64::from(crossing.t));
+        let surface = leaf.object.surface(ray, point, crossing, number, as_is);
+        // A mesh may be inside out by itself: what counts is the ray's way.
+        let turned = match leaf.object.geometry {
+            Geometry::Mesh(_) => (surface.n_geo.dot(ray.dir) < 0.0) != (part & ENTERS != 0),
+            _ => part & TURNED != 0,
+        };
+        if !turned {
+            return surface;
+        }
+        let [front, back] = surface.lifts;
+        Surface { n_geo: -surface.n_geo, n_shade: -surface.n_shade, lifts: [back, front], ..surface }
+    }
+
+    /// The first hit in the ray's interval, and its part.
+    pub(super) fn closest<T: Tally>(&self, ray: &Ray, tally: &mut T) -> Option<(Crossing, u32)> {
+        if !crate::bvh::is_sound(ray) {
+            return None;
+        }
+        SCRATCH.with_borrow_mut(|scratch| {
+            let complete = self.collect(ray, true, scratch, tally);
+            let found = self.sweep(ray, scratch);
+            // From inside of all that was merged, the way out may be farther than the next part's way in.
+            if complete < f32::INFINITY && found.is_none_or(|(crossing, _)| crossing.t > complete) {
+                self.collect(ray, false, scratch, tally);
+                return self.sweep(ray, scratch);
+            }
+            found
+        })
+    }
+
+    /// Collects the crossings of all parts that may matter up to the first hit.
+    ///
+    /// Whoever comes from outside a merge is in it at the first way into a part: with `shrink`, parts beyond such a place
+    /// may be left out. Gives up to where the crossings are complete: infinity, if they are.
+    fn collect<T: Tally>(&self, ray: &Ray, shrink: bool, scratch: &mut Scratch, tally: &mut T) -> f32 {
+        let Scratch { events, .. } = scratch;
+        events.clear();
+        let take = |i: u32, events: &mut Vec<Event>, tally: &mut T| {
+            let offer = &mut |t, uv, part| events.push(Event { t, leaf: i, part, uv });
+            self.leaves[i as usize].object.crossings(ray, tally, offer);
+        };
+        self.unbounded.iter().for_each(|&i| take(i, events, tally));
+        let Some(bvh) = &self.bvh else {
+            self.bounded.iter().for_each(|&i| take(i, events, tally));
+            events.sort_unstable_by(order);
+            return f32::INFINITY;
+        };
+        // What begins or ends within the slack of the interval's ends matters too.
+        let reach = self.slack + 4.0 * f32::EPSILON * ray.origin.abs().max_element();
+        let pad = GRAZING as f32 * reach / ray.dir.length();
+        let wide = Ray { t_min: ray.t_min - pad, t_max: ray.t_max + pad, ..*ray };
+        let shrink = shrink && self.joins[0].rule == Rule::Any;
+        let mut complete = f32::INFINITY;
+        bvh.walk(&wide, tally, |item, t_max, tally| {
+            let (i, from) = (self.bounded[bvh.order()[item] as usize], events.len());
+            take(i, events, tally);
+            if !shrink || self.leaves[i as usize].edge.join != 0 {
+                return t_max;
+            }
+            let own = &mut events[from..];
+            own.sort_unstable_by(order);
+            let way_in = own.iter().step_by(2).find(|event| event.t as f32 > ray.t_min);
+            complete = way_in.map_or(complete, |event| complete.min(event.t as f32));
+            t_max.min(complete.next_up() + pad)
+        });
+        events.sort_unstable_by(order);
+        complete
+    }
+
+    /// Goes along the sorted crossings to the first in the interval at which the whole changes.
+    fn sweep(&self, ray: &Ray, scratch: &mut Scratch) -> Option<(Crossing, u32)> {
+        let Scratch { events, state } = scratch;
+        if events.is_empty() {
+            return None;
+        }
+        state.counts.clone_from(&self.start);
+        state.inside.clear();
+        state.inside.resize(self.leaves.len(), false);
+        let mut whole = self.joins[0].value(state.counts[0]);
+        for &i in &self.unbounded {
+            let Geometry::Primitive(shape) = &self.leaves[i as usize].object.geometry else { continue };
+            if shape.starts_inside(&self.leaves[i as usize].object.local_line(ray)) {
+                whole ^= self.toggle(i, state);
+            }
+        }
+        let mut from = 0;
+        while from < events.len() {
+            let to = self.coincident(ray, events, from);
+            let before = whole;
+            for event in &events[from..to] {
+                whole ^= self.toggle(event.leaf, state);
+            }
+            if whole != before {
+                let chosen = if to == from + 1 { &events[from] } else { self.choose(&events[from..to], state) };
+                let t = chosen.t as f32;
+                if t.is_nan() || t >= ray.t_max {
+                    return None;
+                }
+                if t > ray.t_min {
+                    let turned = state.inside[chosen.leaf as usize] != whole;
+                    let bits = if turned { TURNED } else { 0 } | if whole { ENTERS } else { 0 };
+                    let part = (self.leaves[chosen.leaf as usize].first + chosen.part) | bits;
+                    return Some((Crossing { t, uv: chosen.uv }, part));
+                }
+            }
+            from = to;
+        }
+        None
+    }
+
+    /// Turns a part's inside bit; gives whether the bit of the whole turned with it.
+    fn toggle(&self, leaf: u32, state: &mut State) -> bool {
+        let bit = &mut state.inside[leaf as usize];
+        *bit = !*bit;
+        let (mut value, mut edge) = (*bit, self.leaves[leaf as usize].edge);
+        loop {
+            let join = &self.joins[edge.join as usize];
+            let count = &mut state.counts[edge.join as usize];
+            let before = join.value(*count);
+            *count = if value != edge.cut { *count + 1 } else { *count - 1 };
+            value = join.value(*count);
+            if value == before {
+                return false;
+            }
+            match join.edge {
+                Some(above) => edge = above,
+                None => return true,
+            }
+        }
+    }
+
+    /// The end of the crossings that coincide with one: see the head of this file.
+    fn coincident(&self, ray: &Ray, events: &[Event], from: usize) -> usize {
+        let mut to = from + 1;
+        while to < events.len()
+            && events[from..to].iter().all(|event| event.leaf != events[to].leaf)
+            && self.coincide(ray, &events[from], &events[to])
+        {
+            to += 1;
+        }
+        to
+    }
+
+    fn coincide(&self, ray: &Ray, a: &Event, b: &Event) -> bool {
+        let line = ray.line();
+        let gap = (b.t - a.t) * line.dir.length();
+        let [s, u] = [a, b].map(|event| self.leaves[event.leaf as usize].slack);
+        let slack = f64::from(s + u) + 4.0 * f64::from(f32::EPSILON) * line.at(a.t).abs().max_element();
+        if gap.is_nan() || gap <= slack || gap > GRAZING * slack {
+            return gap <= slack;
+        }
+        // A grazing ray runs farther between faces at the same distance.
+        let cosine = |event: &Event| {
+            let object = &self.leaves[event.leaf as usize].object;
+            let crossing = Crossing { t: event.t as f32, uv: event.uv };
+            let n = object.surface(ray, object.local_line(ray).at(event.t), &crossing, event.part, false).n_geo;
+            n.as_dvec3().dot(line.dir).abs() / line.dir.length()
+        };
+        gap * cosine(a).max(cosine(b)) <= slack
+    }
+
+    /// Of crossings that have changed the whole together, the one whose surface is seen.
+    fn choose<'e>(&self, events: &'e [Event], state: &mut State) -> &'e Event {
+        let mut could: Vec<&Event> = Vec::new();
+        // Which would, undone, undo the change?
+        for event in events {
+            if self.toggle(event.leaf, state) {
+                could.push(event);
+            }
+            self.toggle(event.leaf, state);
+        }
+        // And which would make it alone? For this, all are undone, and done again.
+        for event in events {
+            self.toggle(event.leaf, state);
+        }
+        for event in events {
+            if self.toggle(event.leaf, state) {
+                could.push(event);
+            }
+            self.toggle(event.leaf, state);
+        }
+        let mut last = &events[0];
+        for event in events {
+            if self.toggle(event.leaf, state) {
+                last = event;
+            }
+        }
+        could.into_iter().min_by_key(|event| event.leaf).unwrap_or(last)
+    }
+}
+
+/// The sine at which rays graze: flatter ones are off by more than the slack covers.
+const GRAZING: f64 = 1000.0;
+
+fn order(a: &Event, b: &Event) -> std::cmp::Ordering {
+    a.t.total_cmp(&b.t).then(a.leaf.cmp(&b.leaf)).then(a.part.cmp(&b.part))
+}
+
+/// Two roundings of an object's coordinates, in world and in object space.
+fn slack_of(object: &Object) -> f32 {
+    let Some(world) = object.bounds() else { return 0.0 };
+    let local = match &object.geometry {
+        Geometry::Primitive(shape) => shape.bounds().unwrap_or(world),
+        Geometry::Mesh(tree) => tree.bvh.bounds(),
+        Geometry::Solid(_) => world,
+    };
+    let reach = |b: Aabb| b.min.abs().max(b.max.abs());
+    let moved = object.to_world.as_ref().map_or(Vec3::ZERO, |to_world| to_world.spread(reach(local)));
+    2.0 * f32::EPSILON * (reach(world).max_element() + moved.max_element())
+}
+
+#[cfg(test)]
+mod tests;

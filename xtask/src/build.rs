@@ -1,0 +1,19 @@
+//! The program that is tried.
+
+use anyhow::{Result, bail};
+use std::path::PathBuf;
+use std::process::Command;
+
+/// Builds `durer` as it is released; where it is. `DURER_EXE` names one that is built already.
+pub fn durer() -> Result<PathBuf> {
+    if let Some(built) = std::env::var_os("DURER_EXE") {
+        return Ok(PathBuf::from(built).canonicalize()?);
+    }
+    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    let status = Command::new(cargo).args(["build", "--release", "--quiet", "--package", "durer-cli"]).status()?;
+    if !status.success() {
+        bail!("the program does not build");
+    }
+    let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| PathBuf::from("target"), PathBuf::from);
+    Ok(target.join("release/durer").canonicalize()?)
+}

@@ -1,0 +1,173 @@
+//! Programs that are killed while they work and save, disks that are full, folders that must not be written.
+
+use crate::build::durer;
+use anyhow::{Context, Result, bail, ensure};
+use durer::image::{FORMATS, read};
+use durer::render::Part;
+use durer::sampler::hash;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, ExitCode, Output, Stdio};
+use std::time::Instant;
+
+/// What the killed program makes.
+const WORK: &str = "--size 160x120 --samples 64 --checkpoint-every 10ms --threads 2 --quiet --resume --hash";
+
+pub fn run(arguments: &[String]) -> Result<ExitCode> {
+    let number = |name: &str, usual: u64| -> Result<u64> {
+        let value = arguments.iter().position(|a| a == name).and_then(|i| arguments.get(i + 1));
+        value.map_or(Ok(usual), |value| value.parse().with_context(|| format!("{name} needs a number")))
+    };
+    let bench =
+        Bench { durer: durer()?, scene: crate::root()?.join("scenes/whitted.txt"), folder: tempfile::tempdir()? };
+    kills(&bench, number("--kills", 100)?, number("--seed", 1)?)?;
+    full_disks(&bench, number("--offsets", 50)?)?;
+    Ok(ExitCode::SUCCESS)
+}
+
+struct Bench {
+    durer: PathBuf,
+    scene: PathBuf,
+    folder: tempfile::TempDir,
+}
+
+impl Bench {
+    fn render(&self, options: &str, output: &Path) -> Command {
+        let mut command = Command::new(&self.durer);
+        command.arg("render").arg(&self.scene).arg("-o").arg(output).args(options.split_whitespace());
+        command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
+        command
+    }
+
+    /// An empty folder.
+    fn place(&self, name: &str) -> Result<PathBuf> {
+        let place = self.folder.path().join(name);
+        fs::create_dir_all(&place)?;
+        Ok(place)
+    }
+}
+
+fn names(folder: &Path) -> Result<Vec<String>> {
+    let mut names = Vec::new();
+    for entry in fs::read_dir(folder)? {
+        names.push(entry?.file_name().to_string_lossy().into_owned());
+    }
+    names.sort();
+    Ok(names)
+}
+
+fn last_line(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stdout).lines().last().unwrap_or_default().to_string()
+}
+
+/// Kills the program at random times until it was killed often enough; it must end with the film that it would have had.
+fn kills(bench: &Bench, kills: u64, seed: u64) -> Result<()> {
+    let (calm, wild) = (bench.place("calm")?.join("p.exr"), bench.place("wild")?.join("p.exr"));
+    let start = Instant::now();
+    let reference = bench.render(WORK, &calm).output()?;
+    let (expected, usual) = (last_line(&reference), start.elapsed());
+    ensure!(expected.len() == 64, "no hash: {reference:?}");
+    let (mut killed, mut finished, mut litter, mut parts) = (0, 0, 0, 0);
+    while killed < kills {
+        let mut child = bench.render(WORK, &wild).spawn()?;
+        // Some while it starts, most while it works, some while the picture is saved.
+        let share = (hash(seed, killed as u32, finished, 0, 0) >> 11) as f64 / (1_u64 << 53) as f64;
+        std::thread::sleep(usual.mul_f64(share * 0.4));
+        child.kill()?;
+        let output = child.wait_with_output()?;
+        if output.status.code().is_some() {
+            ensure!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+            finished += 1;
+            ensure!(last_line(&output) == expected, "another hash after {killed} kills");
+            fs::remove_file(&wild)?;
+            continue;
+        }
+        killed += 1;
+        for name in names(wild.parent().context("a folder")?)? {
+            let path = wild.with_file_name(&name);
+            match name.as_str() {
+                "p.exr" => drop(read(&fs::read(path)?, &name).with_context(|| format!("torn: {name}"))?),
+                "p.exr.part" => {
+                    Part::read(&fs::read(path)?).with_context(|| format!("torn: {name}"))?;
+                    parts += 1;
+                }
+                _ => litter += 1,
+            }
+        }
+    }
+    let output = bench.render(WORK, &wild).output()?;
+    ensure!(last_line(&output) == expected, "another hash in the end");
+    ensure!(fs::read(&wild)? == fs::read(&calm)?, "other bytes in the end");
+    let left = names(wild.parent().context("a folder")?)?;
+    ensure!(left == ["p.exr"], "litter: {left:?}");
+    println!(
+        "{killed} kills: {parts} checkpoints met, none torn; {finished} runs ended in between, all with one hash; \
+         temporary files met {litter}, left in the end 0"
+    );
+    Ok(())
+}
+
+/// Every writer against a disk that is full after so many bytes, and against one that cannot be written.
+fn full_disks(bench: &Bench, offsets: u64) -> Result<()> {
+    let mut writers: Vec<(String, String)> =
+        FORMATS.iter().map(|format| (format!("p.{}", format.extensions[0]), "--size 48x36".into())).collect();
+    writers.push(("p.part".into(), "--size 48x36 --shard 1/2".into()));
+    for (name, options) in &writers {
+        let whole = bench.place("whole")?.join(name);
+        ensure!(
+            bench.render(&format!("{options} --quiet"), &whole).output()?.status.success(),
+            "{name} cannot be made"
+        );
+        let size = fs::metadata(&whole)?.len();
+        for i in 0..offsets {
+            let limit = size * i / offsets;
+            let place = bench.place("limited")?;
+            let path = place.join(name);
+            fs::write(&path, "old")?;
+            // As on a full disk, writing beyond the limit is an error then, and no signal.
+            let inner = bench.render(&format!("{options} --quiet"), &path);
+            let mut command = Command::new("sh");
+            command.args(["-c", "trap '' XFSZ; exec prlimit --fsize=\"$0\" \"$@\"", &limit.to_string()]);
+            let output = command.arg(inner.get_program()).args(inner.get_args()).output()?;
+            refused(&output, "cannot write", name, limit)?;
+            ensure!(fs::read(&path)? == b"old", "{name}: the old file is not intact at {limit}");
+            ensure!(names(&place)? == [name.clone()], "{name}: litter at {limit}: {:?}", names(&place)?);
+            fs::remove_file(path)?;
+        }
+        let small = tiny_disk(bench, name, options, "head -c \"$FREE\" /dev/zero > filler", offsets.min(10))?;
+        let read_only = tiny_disk(bench, name, options, "mount -o remount,ro .", 1)?;
+        println!("{name:<7}{size:>7} bytes: {offsets} limits; {small} full disks; {read_only} read-only disks");
+    }
+    Ok(())
+}
+
+/// Runs on a disk of its own, spoilt by a command; how often it could be tried.
+fn tiny_disk(bench: &Bench, name: &str, options: &str, spoil: &str, tries: u64) -> Result<u64> {
+    const SCRIPT: &str = "mount -t tmpfs -o size=64k tmpfs \"$0\" || exit 99; cd \"$0\"; echo old > \"$NAME\"
+        eval \"$SPOIL\" 2> /dev/null; \"$@\" 2>&1; code=$?
+        [ \"$(cat \"$NAME\")\" = old ] || exit 98; [ -z \"$(ls -A | grep -v filler | grep -vx \"$NAME\")\" ] || exit 97; exit $code";
+    let place = bench.place("disk")?;
+    for i in 0..tries {
+        let inner = bench.render(&format!("{options} --quiet --threads 1"), &place.join(name));
+        let mut command = Command::new("unshare");
+        command.args(["-Urm", "sh", "-c", SCRIPT]).arg(&place).arg(inner.get_program()).args(inner.get_args());
+        let free = 60 * 1024 - 4096 * (i % 2);
+        let output = command.env("NAME", name).env("SPOIL", spoil).env("FREE", free.to_string()).output()?;
+        match output.status.code() {
+            // No rights to mount anything here.
+            Some(99) | None => return Ok(0),
+            Some(98) => bail!("{name}: the old file is not intact"),
+            Some(97) => bail!("{name}: litter"),
+            _ => refused(&output, "cannot write", name, free)?,
+        }
+    }
+    Ok(tries)
+}
+
+fn refused(output: &Output, words: &str, name: &str, limit: u64) -> Result<()> {
+    let said = [&output.stderr[..], &output.stdout].concat();
+    let said = String::from_utf8_lossy(&said);
+    ensure!(output.status.code().is_some_and(|code| code != 0), "{name} at {limit}: {:?} {said}", output.status);
+    ensure!(said.contains(words), "{name} at {limit} gives no reason: {said}");
+    Ok(())
+}

@@ -1,0 +1,43 @@
+//! `durer verify` over all scenes.
+
+use crate::build::durer;
+use anyhow::{Context, Result};
+use std::path::PathBuf;
+use std::process::{Command, ExitCode};
+
+/// Ways of sampling and rules of stopping; scenes take turns.
+const JOBS: [&str; 5] = [
+    "--show color,depth,normals,albedo,sample-count,variance",
+    "--samples 40 --noise 0.03",
+    "--sampler random --samples 9 --filter gaussian",
+    "--jitter --blur --crop 9,3,31x29 --show color,position",
+    "--filter mitchell --samples 13",
+];
+
+pub fn run(arguments: &[String]) -> Result<ExitCode> {
+    let value = |name: &str| arguments.iter().position(|a| a == name).and_then(|i| arguments.get(i + 1));
+    let (trials, only) = (value("--trials").map_or("500", String::as_str), value("--only"));
+    let mut scenes: Vec<PathBuf> = Vec::new();
+    for entry in std::fs::read_dir(crate::root()?.join("scenes"))? {
+        scenes.push(entry?.path());
+    }
+    scenes.retain(|path| path.extension().is_some_and(|e| e == "txt"));
+    scenes.retain(|path| only.is_none_or(|only| path.to_string_lossy().contains(only.as_str())));
+    scenes.sort();
+    let (durer, mut failed) = (durer()?, 0);
+    for (scene, job) in scenes.iter().zip(JOBS.iter().cycle()) {
+        let mut command = Command::new(&durer);
+        command.arg("verify").arg(scene).args(["--trials", trials]).args(job.split_whitespace());
+        let output = command.output()?;
+        let said = [output.stdout, output.stderr].concat();
+        let said = String::from_utf8(said)?;
+        let name = scene.file_stem().context("a name")?.to_string_lossy();
+        println!(
+            "{name:<16}{job}\n  {}",
+            said.lines().filter(|l| !l.starts_with("note")).collect::<Vec<_>>().join("\n  ")
+        );
+        failed += usize::from(!output.status.success());
+    }
+    println!("\n{} scenes, {failed} failed", scenes.len());
+    Ok(if failed == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+}
