@@ -4,8 +4,8 @@ use crate::rays::{Found, Mesh};
 use anyhow::{Context, Result, bail};
 use durer::math::Ray;
 use libloading::{Library, Symbol};
-use std::mem::ManuallyDrop;
 use std::ffi::{CString, c_char, c_int, c_uint, c_void};
+use std::mem::ManuallyDrop;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicI64, Ordering};
@@ -64,9 +64,11 @@ const COHERENT: c_uint = 1 << 16;
 
 macro_rules! functions {
     ($($name:ident: fn($($arg:ty),*) $(-> $out:ty)?;)*) => {
+        // Named as in the header.
         #[allow(non_snake_case)]
         struct Functions { $($name: unsafe extern "C" fn($($arg),*) $(-> $out)?,)* }
         impl Functions {
+            #[allow(non_snake_case)]
             fn load(library: &Library) -> Result<Self> {
                 // SAFETY: the types are those of Embree 4's header.
                 unsafe {
@@ -121,9 +123,7 @@ impl Embree {
         }
         let memory = Box::new(AtomicI64::new(0));
         // SAFETY: the counter lives as long as the device.
-        unsafe {
-            (functions.rtcSetDeviceMemoryMonitorFunction)(device, count_memory, (&raw const *memory) as Handle)
-        };
+        unsafe { (functions.rtcSetDeviceMemoryMonitorFunction)(device, count_memory, (&raw const *memory) as Handle) };
         // SAFETY: property 0 is the version.
         let version = unsafe { (functions.rtcGetDeviceProperty)(device, 0) };
         Ok(Embree { functions, device, memory, version, _libraries: ManuallyDrop::new((library, companions)) })

@@ -9,7 +9,8 @@ use anyhow::{Context, Result, bail};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-const USAGE: &str = "cargo xtask bench-rays [OPTIONS]: the very same rays through Dürer, Embree 4, obvhs, bvh and parry3d, alternating.
+const USAGE: &str =
+    "cargo xtask bench-rays [OPTIONS]: the very same rays through Dürer, Embree 4, obvhs, bvh and parry3d, alternating.
 
   --quick            fewer rays and rounds: under a minute
   --mesh NAME        only this mesh of ../shared/meshes, or a file; may be repeated

@@ -46,19 +46,6 @@ impl Obvhs {
     pub fn occluded(&self, ray: &Ray) -> bool {
         !self.tree.ray_traverse_miss(Self::ray(ray), |ray, id| self.triangles[id].intersect(ray))
     }
-
-    /// Every crossing: a triangle that was split is offered several times, so numbers are kept once.
-    pub fn count(&self, ray: &Ray) -> usize {
-        let mut found = Vec::new();
-        self.tree.ray_traverse_anyhit(Self::ray(ray), |ray, id| {
-            if self.triangles[id].intersect(ray) < ray.tmax {
-                found.push(self.tree.primitive_indices[id]);
-            }
-        });
-        found.sort_unstable();
-        found.dedup();
-        found.len()
-    }
 }
 
 /// bvh: a binary tree that gives candidates, nearest boxes first.
@@ -126,11 +113,6 @@ impl BvhCrate {
     pub fn occluded(&self, ray: &Ray) -> bool {
         let (query, t_max) = (Self::ray(ray), ray.t_max * ray.dir.length());
         self.tree.traverse_iterator(&query, &self.triangles).any(|c| Self::test(&query, &c.points) < t_max)
-    }
-
-    pub fn count(&self, ray: &Ray) -> usize {
-        let query = Self::ray(ray);
-        self.tree.traverse_iterator(&query, &self.triangles).filter(|c| Self::test(&query, &c.points).is_finite()).count()
     }
 }
 

@@ -16,7 +16,6 @@ type Trace<'a> = Box<dyn Fn(&[Ray], &mut [Found]) + Sync + 'a>;
 
 struct Tracer<'a> {
     name: &'static str,
-    /// Whether it belongs to the comparison of single rays with Embree.
     trace: Trace<'a>,
 }
 
@@ -110,7 +109,10 @@ pub fn run(options: &Options) -> Result<()> {
     };
     let version = embree.as_ref().map_or("none".into(), |embree| embree.version());
     println!("Embree {version}; Dürer's SIMD {}; threads {}", Level::chosen().name(), options.threads);
-    println!("Millions of rays a second, medians of {} rounds; a ratio is Dürer's to the better of Embree's.\n", options.rounds);
+    println!(
+        "Millions of rays a second, medians of {} rounds; a ratio is Dürer's to the better of Embree's.\n",
+        options.rounds
+    );
     let mut ratios = Vec::new();
     for path in &options.meshes {
         one_mesh(&Mesh::read(path)?, options, embree.as_ref(), &mut ratios)?;
@@ -165,8 +167,7 @@ fn one_case(case: &Case, ours: &Ours, tracers: &[Tracer], options: &Options, rat
             seconds[i].push(time(tracer, &case.rays, &mut found[i], options.threads));
         }
     }
-    let rates: Vec<f64> =
-        seconds.iter_mut().map(|seconds| case.rays.len() as f64 / median(seconds) / 1e6).collect();
+    let rates: Vec<f64> = seconds.iter_mut().map(|seconds| case.rays.len() as f64 / median(seconds) / 1e6).collect();
     let rate = |name: &str| tracers.iter().position(|t| t.name == name).map(|i| rates[i]);
     let mut counts = Counts::default();
     for ray in &case.rays {
@@ -180,7 +181,9 @@ fn one_case(case: &Case, ours: &Ours, tracers: &[Tracer], options: &Options, rat
     for (tracer, rate) in tracers.iter().zip(&rates) {
         print!(" {} {rate:<6.2}", tracer.name);
     }
-    if let (Some(medium), Some(high), Some(packets)) = (rate("Embree medium"), rate("Embree high"), rate("Embree 16-wide")) {
+    if let (Some(medium), Some(high), Some(packets)) =
+        (rate("Embree medium"), rate("Embree high"), rate("Embree 16-wide"))
+    {
         let ratio = rates[0] / medium.max(high);
         ratios.push(ratio);
         print!(" | ratio {ratio:.2}, to packets {:.2}", rates[0] / packets);
