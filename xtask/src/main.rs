@@ -1,5 +1,6 @@
 //! Commands for those who build Dürer.
 
+mod bench_rays;
 mod build;
 mod cost;
 mod course;
@@ -27,6 +28,8 @@ const USAGE: &str = "Commands:
   cargo xtask solids
       A million random points against the Boolean of the parts of random solids, and the cost of rays at solids of a
       thousand parts beside that at the same parts as plain objects.
+  cargo xtask bench-rays [--quick] [--mesh NAME] [--threads N] ...
+      The very same rays through Dürer, Embree 4, obvhs, bvh and parry3d; --help says more.
   cargo xtask manual
       Write docs/cameras.md from what the cameras state of themselves.
 The course is found in ../shared, or where DURER_CORPUS says.";
@@ -39,6 +42,7 @@ fn main() -> anyhow::Result<ExitCode> {
         Some("torture") => torture::run(&arguments[1..]),
         Some("cost") => cost::run(&arguments[1..]),
         Some("solids") => solids::run(),
+        Some("bench-rays") => bench_rays::run(&arguments[1..]),
         Some("manual") => manual::run(),
         _ => {
             println!("{USAGE}");

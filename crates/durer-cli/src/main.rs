@@ -35,6 +35,9 @@ const INTERRUPTED: u8 = 130;
 
 fn main() -> ExitCode {
     progress::hear_interrupts();
+    if let Err(error) = durer::bvh::Level::from_environment() {
+        return ExitCode::from(bad(error.to_string()).report());
+    }
     // Under the name of an official program, `durer` is that program.
     let mut words = std::env::args_os();
     let name = words.next().unwrap_or_default();

@@ -3,15 +3,20 @@
 //! They know boxes and numbers of things only; what a thing is, the caller's closure knows. A structure may
 //! offer a thing that the ray misses, never withhold one that it meets; so all of them find the same hit.
 
+mod boxes;
 mod build;
 mod grid;
+mod lanes;
+mod node;
 mod traverse;
+mod triangles;
 
+pub use boxes::Bvh;
+pub use build::Preset;
 pub use grid::Grid;
+pub use lanes::{Level, UnknownLevel};
 pub(crate) use traverse::is_sound;
-
-use crate::math::Aabb;
-use glam::Vec4;
+pub use triangles::{TriangleBvh, TriangleHit};
 
 /// Counts the work of rays. `()` counts nothing, at no cost.
 pub trait Tally {
@@ -64,58 +69,8 @@ impl Tally for Counts {
     }
 }
 
-/// How wide a node is.
-const WIDTH: usize = 4;
-/// Leaves hold at most this many things.
-const LEAF_SIZE: usize = 4;
-
-/// Boxes of up to four children, side by side.
-#[derive(Clone, Copy, Debug)]
-#[repr(align(64))]
-struct Node {
-    min: [Vec4; 3],
-    max: [Vec4; 3],
-    /// An inner child's node number; a leaf's first item and, shifted above bit 28, item count; or [`EMPTY`].
-    children: [u32; WIDTH],
-}
-
-const LEAF_BIT: u32 = 1 << 31;
-const COUNT_SHIFT: u32 = 28;
-const FIRST_MASK: u32 = (1 << COUNT_SHIFT) - 1;
-const EMPTY: u32 = u32::MAX;
-
-/// A bounding volume hierarchy of four-wide nodes over numbered things.
-#[derive(Clone, Debug)]
-pub struct Bvh {
-    nodes: Vec<Node>,
-    /// Numbers of the things, in the order of the leaves.
-    order: Vec<u32>,
-    bounds: Aabb,
-}
-
-impl Bvh {
-    /// Builds over the boxes of things 0, 1, 2, ...; empty boxes are left out. At most 2^28 things.
-    ///
-    /// The result is a function of the boxes alone: the same for any number of threads.
-    pub fn build(boxes: &[Aabb]) -> Self {
-        build::build(boxes)
-    }
-
-    /// The box around everything.
-    pub fn bounds(&self) -> Aabb {
-        self.bounds
-    }
-
-    /// Numbers of the things in the order in which [`Bvh::walk`] knows them.
-    pub fn order(&self) -> &[u32] {
-        &self.order
-    }
-
-    /// Bytes in memory.
-    pub fn bytes(&self) -> usize {
-        size_of_val(&*self.nodes) + size_of_val(&*self.order)
-    }
-}
+/// No leaf of a tree lies deeper than this: it bounds the stack of a walk.
+const DEEPEST: usize = 160;
 
 #[cfg(test)]
 mod tests;

@@ -3,7 +3,7 @@
 use super::traverse::is_sound;
 use super::*;
 use crate::math::random::Random;
-use crate::math::{Ray, Vec3};
+use crate::math::{Aabb, Ray, Vec3};
 
 fn cube(center: Vec3, half: f32) -> Aabb {
     Aabb { min: center - half, max: center + half }
@@ -42,10 +42,9 @@ fn collections() -> Vec<(&'static str, Vec<Aabb>)> {
 }
 
 /// The longest way from the root to a leaf, in nodes.
-fn depth(bvh: &Bvh, node: u32) -> usize {
-    let children = bvh.nodes[node as usize].children;
-    let inner = children.into_iter().filter(|child| child & LEAF_BIT == 0);
-    1 + inner.map(|child| depth(bvh, child)).max().unwrap_or(0)
+fn depth(nodes: &[node::Node], number: u32) -> usize {
+    let inner = nodes[number as usize].children().filter(|(_, _, child)| child & node::LEAF == 0);
+    1 + inner.map(|(_, _, child)| depth(nodes, child)).max().unwrap_or(0)
 }
 
 #[test]
@@ -61,8 +60,7 @@ fn every_thing_is_offered_to_a_ray_through_its_box_whatever_the_boxes() {
             bvh.walk(&Ray::new(Vec3::ZERO, Vec3::X), &mut (), |_, _, _| panic!("nothing is there"));
             continue;
         }
-        // 40 levels of any kind, then halving.
-        assert!(depth(&bvh, 0) <= 40 + 17, "{name}: {}", depth(&bvh, 0));
+        assert!(depth(&bvh.nodes, 0) <= DEEPEST, "{name}: {}", depth(&bvh.nodes, 0));
         for round in 0..200 {
             let i = full[random.below(full.len())];
             let b = boxes[i as usize];
@@ -115,7 +113,7 @@ fn boxes_that_begin_where_the_ray_ends_are_offered_and_an_ended_walk_stops() {
         offered += 1;
         f32::NEG_INFINITY
     });
-    assert!(offered <= LEAF_SIZE, "{offered}");
+    assert!(offered <= node::LEAF_SIZE, "{offered}");
 }
 
 #[test]

@@ -1,120 +1,193 @@
 //! Walking a ray through the tree, nearest boxes first.
+//!
+//! Of the children that the ray meets the nearest is next; the others are pushed, farthest first, by one compressing
+//! store whatever their number. When a hit shortens the ray, what lies beyond is removed from the stack at once. So no
+//! branch depends on how many children are met, and none on a popped distance.
+//!
+//! Source: Fuetterer, Lojewski, Pfreundt, Ebert, *Efficient Ray Tracing Kernels for Modern CPU Architectures*, JCGT
+//! 4(4), 2015.
 
-use super::{Bvh, COUNT_SHIFT, EMPTY, FIRST_MASK, LEAF_BIT, Tally, WIDTH};
+use super::Tally;
+use super::lanes::{Lanes, Room, Stack};
+use super::node::{LEAF, Node};
 use crate::math::{Aabb, Ray, Vec3};
-use glam::Vec4;
 
 /// A ray prepared for boxes: conservative, so that rounding never loses a box that the exact ray meets.
 ///
 /// The near and far side of each slab are chosen by the sign of the direction. Each side is moved outwards by
 /// several roundings of the largest distance that occurs, which also covers the rounding of the triangle test.
-pub struct RayBox {
-    inverse: [Vec4; 3],
-    near_origin: [Vec4; 3],
-    far_origin: [Vec4; 3],
-    negative: [bool; 3],
+#[derive(Clone, Copy)]
+pub(super) struct RayBox {
+    inverse: [f32; 3],
+    near_origin: [f32; 3],
+    far_origin: [f32; 3],
+    /// By axis: 1 where the direction is negative, else 0.
+    negative: [usize; 3],
     t_min: f32,
+    /// Distances of boxes are in these units; 1 where the ray is tame.
+    scale: f32,
+    /// Whether nothing in tests of boxes leaves the range of `f32`, so that they may be in a short form.
+    pub tame: bool,
+    /// Whether coordinates are so small that no test of a triangle overflows.
+    pub moderate: bool,
 }
 
 impl RayBox {
     /// Prepares a ray for a tree with these bounds.
+    #[inline(always)]
     pub fn new(ray: &Ray, bounds: Aabb) -> Self {
-        // Half of the largest number: products with it overflow to infinity, never to NaN.
-        const LARGEST: f32 = f32::MAX * 0.5;
-        let inverse =
-            ray.dir.to_array().map(|d| if d == 0.0 { LARGEST.copysign(d) } else { (1.0 / d).clamp(-LARGEST, LARGEST) });
+        // In this range squares neither overflow nor vanish.
+        const TAME: std::ops::Range<f32> = 1e-15..1e15;
         // Coordinates themselves count too: a ray that was moved into object space is off by their rounding.
         let reach = (ray.origin - bounds.min).abs().max((ray.origin - bounds.max).abs()).max(ray.origin.abs());
-        let pad = 8.0 * f32::EPSILON * reach.max_element() + f32::MIN_POSITIVE;
-        let negative = inverse.map(|i| i < 0.0);
-        let moved = |sign: f32| {
-            std::array::from_fn(|axis| {
-                let step = if negative[axis] { -sign * pad } else { sign * pad };
-                Vec4::splat(ray.origin[axis] + step)
-            })
+        let reach = reach.max_element();
+        let pad = 8.0 * f32::EPSILON * reach + f32::MIN_POSITIVE;
+        let length = ray.dir.abs();
+        let moderate = reach < TAME.end;
+        let tame =
+            moderate && reach > TAME.start && length.min_element() > TAME.start && length.max_element() < TAME.end;
+        let outward = Vec3::splat(pad).copysign(ray.dir);
+        let (near_origin, far_origin) = (ray.origin + outward, ray.origin - outward);
+        let negative = [0, 1, 2].map(|axis| usize::from(ray.dir[axis].is_sign_negative()));
+        let inverse = 1.0 / ray.dir;
+        let (scale, inverse, near_origin, far_origin) = match tame {
+            true => (1.0, inverse, -near_origin * inverse, -far_origin * inverse),
+            false => {
+                // A direction with a power of two taken out, so that distances within the bounds are no extreme numbers.
+                let scale = f32::from_bits(length.max_element().to_bits() & 0x7f80_0000).max(f32::MIN_POSITIVE);
+                let dir = ray.dir / scale;
+                // What moves the ray by much less than the padding counts as zero, and what has no inverse.
+                let still = dir.abs().cmplt(Vec3::splat(1e-30));
+                let inverse = Vec3::select(still, Vec3::INFINITY.copysign(dir), 1.0 / dir);
+                (scale, inverse, near_origin, far_origin)
+            }
         };
-        RayBox {
-            inverse: inverse.map(Vec4::splat),
-            near_origin: moved(1.0),
-            far_origin: moved(-1.0),
-            negative,
-            t_min: ray.t_min,
+        let t_min = if tame { ray.t_min } else { (ray.t_min * scale).next_down() };
+        let [inverse, near_origin, far_origin] = [inverse.to_array(), near_origin.to_array(), far_origin.to_array()];
+        RayBox { inverse, near_origin, far_origin, negative, t_min, scale, tame, moderate }
+    }
+}
+
+impl RayBox {
+    /// A distance along the ray, not too small, as boxes have it.
+    #[inline(always)]
+    fn limit<const TAME: bool>(&self, t: f32) -> f32 {
+        if TAME { t } else { (t * self.scale).next_up() }
+    }
+}
+
+/// What is done with the items of a tree.
+pub(super) trait Visitor {
+    type Tally: Tally;
+
+    fn tally(&mut self) -> &mut Self::Tally;
+
+    /// A leaf will be looked into soon.
+    fn prefetch<L: Lanes>(&self, _: L, _leaf: u32) {}
+
+    /// Looks into a leaf; gives the new `t_max`, at most the old. Minus infinity ends the walk.
+    fn leaf<L: Lanes>(&mut self, lanes: L, leaf: u32, t_max: f32) -> f32;
+}
+
+/// Shows every leaf that the ray may meet before `t_max` to the visitor, roughly from near to far.
+///
+/// Leaves whose boxes begin exactly at `t_max` are still shown. `TAME` must be that of `boxes`.
+#[inline(always)]
+pub(super) fn walk<L: Lanes, V: Visitor, const TAME: bool>(
+    lanes: L,
+    nodes: &[Node],
+    boxes: &RayBox,
+    mut t_max: f32,
+    visitor: &mut V,
+) {
+    let inverse = splat3(lanes, boxes.inverse);
+    let near_origin = splat3(lanes, boxes.near_origin);
+    let far_origin = splat3(lanes, boxes.far_origin);
+    let t_min = lanes.splat(boxes.t_min);
+    let [x, y, z] = boxes.negative;
+    // From far to near: the place 7 is farthest when all signs are positive.
+    let flip = 7 ^ (x | y << 1 | z << 2);
+    let (order, flipped) = (lanes.flipped(flip as u32), &FLIPPED[flip]);
+    let mut limit = lanes.splat(boxes.limit::<TAME>(t_max));
+    let mut room = Room::new();
+    let mut stack = Stack::new(&mut room);
+    let mut child = 0;
+    loop {
+        if child & LEAF == 0 {
+            visitor.tally().node();
+            let node = &nodes[child as usize];
+            macro_rules! slab {
+                ($axis:literal, $side:expr, $origin:ident) => {{
+                    let plane = lanes.load(&node.planes[$axis][$side & 1]);
+                    match TAME {
+                        true => lanes.mul_add(plane, inverse[$axis], $origin[$axis]),
+                        false => lanes.mul(lanes.sub(plane, $origin[$axis]), inverse[$axis]),
+                    }
+                }};
+            }
+            // Zero times infinity is no number, where a ray runs in a side of a box: such a side is left out, being the
+            // first argument here, or the second there where the first is no number.
+            let enter_y = lanes.max(slab!(0, x, near_origin), slab!(1, y, near_origin));
+            let leave_y = lanes.min(slab!(0, !x, far_origin), slab!(1, !y, far_origin));
+            let enter = lanes.max(enter_y, lanes.max(slab!(2, z, near_origin), t_min));
+            let leave = lanes.min(leave_y, lanes.min(slab!(2, !z, far_origin), limit));
+            let met = u32::from(flipped[lanes.le(enter, leave) as usize & 255]);
+            if met != 0 {
+                // The nearest child is next, without a way through the stack.
+                let nearest = 31 - met.leading_zeros();
+                child = node.children[(nearest as usize ^ flip) & 7];
+                lanes.push(&mut stack, &node.children, enter, order, met ^ 1 << nearest);
+                continue;
+            }
+        } else {
+            let t = visitor.leaf(lanes, child, t_max);
+            if t < t_max {
+                if t == f32::NEG_INFINITY {
+                    return;
+                }
+                t_max = t;
+                let far = boxes.limit::<TAME>(t);
+                limit = lanes.splat(far);
+                lanes.drop_beyond(&mut stack, far);
+            }
+        }
+        match stack.pop() {
+            Some(next) => child = next,
+            None => return,
+        }
+        // The one after it is fetched in the meantime.
+        if let Some(later) = stack.peek() {
+            match later & LEAF {
+                0 => {
+                    lanes.prefetch(nodes, later as usize);
+                }
+                _ => visitor.prefetch(lanes, later),
+            }
         }
     }
 }
 
-/// The deepest a stack can get: 28 levels of halving below 40 of any kind, three siblings each.
-const STACK: usize = 3 * 72;
-
-impl Bvh {
-    /// Offers every thing that the ray may meet before `t_max` to `test`, roughly from near to far.
-    ///
-    /// `test` gets the place of a thing in [`Bvh::order`] and the present `t_max`, and gives the new one: at
-    /// most the old. Things whose boxes begin exactly at `t_max` are still offered. Minus infinity ends the walk.
-    #[inline]
-    pub fn walk<T: Tally>(&self, ray: &Ray, tally: &mut T, mut test: impl FnMut(usize, f32, &mut T) -> f32) {
-        if self.nodes.is_empty() || !is_sound(ray) {
-            return;
+/// For each set of lanes, the set with lane i ^ flip in place of i.
+static FLIPPED: [[u8; 256]; 8] = {
+    let mut table = [[0; 256]; 8];
+    let mut i = 0;
+    while i < 8 * 256 * 8 {
+        let (flip, mask, lane) = (i >> 11, i >> 3 & 255, i & 7);
+        if mask >> lane & 1 == 1 {
+            table[flip][mask] |= 1 << (lane ^ flip);
         }
-        let boxes = RayBox::new(ray, self.bounds);
-        let mut t_max = ray.t_max;
-        let mut stack = [(0u32, 0.0f32); STACK];
-        stack[0] = (0, f32::NEG_INFINITY);
-        let mut height = 1;
-        while height > 0 {
-            height -= 1;
-            let (child, near) = stack[height];
-            if near > t_max {
-                continue;
-            }
-            if child & LEAF_BIT != 0 {
-                let first = (child & FIRST_MASK) as usize;
-                let count = ((child & !LEAF_BIT) >> COUNT_SHIFT) as usize + 1;
-                for item in first..first + count {
-                    t_max = test(item, t_max, tally);
-                }
-                continue;
-            }
-            tally.node();
-            let node = &self.nodes[child as usize];
-            let slab = |axis: usize| {
-                let (near, far) = match boxes.negative[axis] {
-                    true => (node.max[axis], node.min[axis]),
-                    false => (node.min[axis], node.max[axis]),
-                };
-                (
-                    (near - boxes.near_origin[axis]) * boxes.inverse[axis],
-                    (far - boxes.far_origin[axis]) * boxes.inverse[axis],
-                )
-            };
-            let ((x0, x1), (y0, y1), (z0, z1)) = (slab(0), slab(1), slab(2));
-            let enter = x0.max(y0).max(z0.max(Vec4::splat(boxes.t_min)));
-            let leave = x1.min(y1).min(z1.min(Vec4::splat(t_max)));
-            let mut mask = enter.cmple(leave).bitmask();
-            // The hit boxes are pushed so that the nearest is on top.
-            let base = height;
-            while mask != 0 {
-                let i = mask.trailing_zeros() as usize;
-                mask &= mask - 1;
-                if node.children[i] == EMPTY {
-                    continue;
-                }
-                let entry = (node.children[i], enter[i]);
-                let mut at = height;
-                while at > base && stack[at - 1].1 < entry.1 {
-                    stack[at] = stack[at - 1];
-                    at -= 1;
-                }
-                stack[at] = entry;
-                height += 1;
-            }
-        }
+        i += 1;
     }
+    table
+};
+
+#[inline(always)]
+fn splat3<L: Lanes>(lanes: L, v: [f32; 3]) -> [L::Floats; 3] {
+    [lanes.splat(v[0]), lanes.splat(v[1]), lanes.splat(v[2])]
 }
 
 /// Whether a ray can hit anything: NaN and infinite ones, and those without direction, cannot.
+#[inline]
 pub(crate) fn is_sound(ray: &Ray) -> bool {
     ray.origin.is_finite() && ray.dir.is_finite() && ray.dir != Vec3::ZERO && ray.t_min < ray.t_max
 }
-
-const _: () = assert!(WIDTH == 4);

@@ -81,6 +81,16 @@ impl Mesh {
         Mesh { data }
     }
 
+    /// Corners' positions.
+    pub fn positions(&self) -> &[Vec3] {
+        &self.data.positions
+    }
+
+    /// Three positions a triangle.
+    pub fn triangles(&self) -> &[[u32; 3]] {
+        &self.data.triangles
+    }
+
     /// How many triangles it has.
     pub fn len(&self) -> usize {
         self.data.triangles.len()

@@ -14,6 +14,7 @@
 
 use super::Crossing;
 use crate::math::{Ray, Vec2, Vec3};
+use glam::DVec3;
 
 /// A ray prepared for many triangles.
 #[derive(Clone, Copy, Debug)]
@@ -27,6 +28,7 @@ pub struct Sheared {
 
 impl Sheared {
     /// Prepares a ray. One without direction, or with an infinite one, hits nothing.
+    #[inline(always)]
     pub fn new(ray: &Ray) -> Self {
         let d = ray.dir.abs();
         // The longest component of the direction becomes the third axis.
@@ -53,48 +55,99 @@ impl Sheared {
     }
 
     /// The crossing with a triangle in the open interval (`t_min`, `t_max`), from either side.
-    #[inline]
+    #[inline(always)]
     pub fn intersect(&self, corners: [Vec3; 3], t_min: f32, t_max: f32) -> Option<Crossing> {
-        let [kx, ky, kz] = self.axes;
-        let flat @ [a, b, c] = corners.map(|corner| {
-            let p = corner - self.origin;
-            Vec2::new(p[kx] - self.shear.x * p[kz], p[ky] - self.shear.y * p[kz])
-        });
-        let front = is_front(b, c);
-        if is_front(c, a) != front || is_front(a, b) != front {
+        if !self.crosses(corners) {
             return None;
         }
-        let crossing = self.crossing(corners, flat);
-        let t = crossing.t;
-        // Refuses also NaN.
-        (t > t_min && t < t_max && t.is_finite()).then_some(crossing)
+        let t = self.distance(corners, t_min, t_max.next_down())?;
+        Some(Crossing { t, uv: self.uv(corners) })
     }
 
-    /// Where a triangle is crossed; `t` is NaN for one that the ray sees from its side, which is crossed by no ray.
-    fn crossing(&self, corners: [Vec3; 3], [a, b, c]: [Vec2; 3]) -> Crossing {
-        // None of the three is of another sign than the others, so their sum is as exact as they are.
-        let (u, v, w) = (edge(b, c), edge(c, a), edge(a, b));
-        let det = u + v + w;
-        if det == 0.0 || det.is_nan() {
-            return Crossing { t: f32::NAN, uv: Vec2::ZERO };
+    /// Whether the line of the ray crosses a triangle, and does not just see it from its side.
+    pub(crate) fn crosses(&self, corners: [Vec3; 3]) -> bool {
+        let flat @ [a, b, c] = self.flatten(corners);
+        let front = is_front(b, c);
+        if is_front(c, a) != front || is_front(a, b) != front {
+            return false;
         }
-        let p = corners.map(|corner| corner.as_dvec3() - self.origin.as_dvec3());
-        let n = (p[1] - p[0]).cross(p[2] - p[0]);
-        // The plane's t; seen from nearly its side, the triangle still bounds it (and `max` replaces NaN).
-        let kz = self.axes[2];
-        let [x, y, z] = p.map(|p| p[kz] / f64::from(self.dir[kz]));
+        let det = areas(flat).element_sum();
+        det != 0.0 && !det.is_nan()
+    }
+
+    /// Where the ray meets a triangle that its line crosses, if after `t_min` and not after `t_last`.
+    #[inline(always)]
+    pub(crate) fn distance(&self, corners: [Vec3; 3], t_min: f32, t_last: f32) -> Option<f32> {
+        let t = self.t(corners)?;
+        // Refuses also NaN.
+        (t > t_min && t <= t_last && t.is_finite()).then_some(t)
+    }
+
+    /// The second and third barycentric coordinate of the crossing with a triangle that is crossed.
+    #[inline(always)]
+    pub(crate) fn uv(&self, corners: [Vec3; 3]) -> Vec2 {
+        // None of the three is of another sign than the others, so their sum is as exact as they are.
+        let areas = areas(self.flatten(corners));
+        let det = areas.element_sum();
+        Vec2::new((areas.y / det) as f32, (areas.z / det) as f32)
+    }
+
+    #[inline(always)]
+    fn flatten(&self, [a, b, c]: [Vec3; 3]) -> [Vec2; 3] {
+        [self.flat(a), self.flat(b), self.flat(c)]
+    }
+
+    /// A corner in the plane across the ray.
+    #[inline(always)]
+    fn flat(&self, corner: Vec3) -> Vec2 {
+        let [kx, ky, kz] = self.axes;
+        let p = corner - self.origin;
+        Vec2::new(p[kx] - self.shear.x * p[kz], p[ky] - self.shear.y * p[kz])
+    }
+
+    /// Where the plane of a triangle is crossed, within the triangle's bounds.
+    #[inline(always)]
+    fn t(&self, corners: [Vec3; 3]) -> Option<f32> {
+        let origin = self.origin.as_dvec3();
+        let [a, b, c] = corners;
+        let (a, b, c) = (a.as_dvec3() - origin, b.as_dvec3() - origin, c.as_dvec3() - origin);
+        let n = (b - a).cross(c - a);
         let volume = n.dot(self.dir.as_dvec3());
         if volume.abs() < self.least_volume {
-            return Crossing { t: f32::NAN, uv: Vec2::ZERO };
+            return None;
         }
-        let t = n.dot(p[0]) / volume;
-        let t = t.max(x.min(y).min(z)).min(x.max(y).max(z));
-        Crossing { t: t as f32, uv: Vec2::new((v / det) as f32, (w / det) as f32) }
+        // Seen from nearly its side, the triangle still bounds it (and `max` replaces NaN).
+        let kz = self.axes[2];
+        let dz = f64::from(self.dir[kz]);
+        let t = n.dot(a) / volume;
+        // Products are rounded monotonically: strictly between two corners' heights, t is between their distances.
+        let height = t * dz;
+        if a[kz].min(b[kz]).min(c[kz]) < height && height < a[kz].max(b[kz]).max(c[kz]) {
+            return Some(t as f32);
+        }
+        let (x, y, z) = (a[kz] / dz, b[kz] / dz, c[kz] / dz);
+        Some(t.max(x.min(y).min(z)).min(x.max(y).max(z)) as f32)
+    }
+
+    /// The axes: two across and the longest of the direction, along which the ray is sheared.
+    pub(crate) fn axes(&self) -> [usize; 3] {
+        self.axes
+    }
+
+    /// How far a corner moves across for each unit along the third axis.
+    pub(crate) fn shear(&self) -> Vec2 {
+        self.shear
     }
 }
 
+/// Twice the areas of the triangles from the origin to the three edges: unnormalised barycentric coordinates.
+#[inline(always)]
+fn areas([a, b, c]: [Vec2; 3]) -> DVec3 {
+    DVec3::new(edge(b, c), edge(c, a), edge(a, b))
+}
+
 /// Whether the edge from `p` to `q` goes round the origin clockwise: the sign of the edge function, never zero.
-#[inline]
+#[inline(always)]
 fn is_front(p: Vec2, q: Vec2) -> bool {
     let value = q.x * p.y - q.y * p.x;
     // Rounding is monotonic: the difference of two rounded products has the sign of the true one.

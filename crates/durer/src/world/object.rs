@@ -1,9 +1,8 @@
 //! The things in a world, and how a ray meets them.
 
 use super::csg::Csg;
-use crate::bvh::{Bvh, Tally};
-use crate::math::{Aabb, Affine, Line, Ray, Vec2, Vec3};
-use crate::shape::watertight::Sheared;
+use crate::bvh::{Preset, Tally, TriangleBvh};
+use crate::math::{Aabb, Affine, Line, Ray, Vec2};
 use crate::shape::{Crossing, Mesh, Primitive, Shape, Surface};
 use glam::DVec3;
 use std::sync::Arc;
@@ -38,33 +37,24 @@ pub struct MeshTree {
     /// The mesh.
     pub mesh: Mesh,
     /// Its triangles' tree.
-    pub bvh: Bvh,
-    /// Corners of the triangles in the order of the tree.
-    corners: Vec<[Vec3; 3]>,
-    least_volume: f64,
+    pub bvh: TriangleBvh,
 }
 
 impl MeshTree {
     /// Builds the tree.
     pub fn new(mesh: Mesh) -> Self {
-        let boxes: Vec<Aabb> = (0..mesh.len() as u32).map(|i| Aabb::around(mesh.corners(i))).collect();
-        let bvh = Bvh::build(&boxes);
-        let corners = bvh.order().iter().map(|&i| mesh.corners(i)).collect();
-        MeshTree { mesh, bvh, corners, least_volume: 0.0 }
+        let bvh = TriangleBvh::build(mesh.positions(), mesh.triangles(), Preset::Balanced);
+        MeshTree { mesh, bvh }
     }
 
-    /// The same, blind to triangles seen from their sides: see [`Sheared::least_volume`].
+    /// The same, blind to triangles seen from their sides: see [`TriangleBvh::least_volume`].
     pub fn least_volume(self, least_volume: f64) -> Self {
-        MeshTree { least_volume, ..self }
-    }
-
-    fn sheared(&self, ray: &Ray) -> Sheared {
-        Sheared::new(ray).least_volume(self.least_volume)
+        MeshTree { bvh: self.bvh.least_volume(least_volume), ..self }
     }
 
     /// Bytes in memory.
     pub fn bytes(&self) -> usize {
-        self.mesh.bytes() + self.bvh.bytes() + size_of_val(&*self.corners)
+        self.mesh.bytes() + self.bvh.bytes()
     }
 
     /// Offers every crossing of a line, with the number of its triangle, in any order.
@@ -74,32 +64,20 @@ impl MeshTree {
         let shift = line.nearest(self.bvh.bounds().center().as_dvec3());
         let ray = Ray::new(line.at(shift).as_vec3(), line.dir.as_vec3());
         let ray = Ray { t_min: f32::NEG_INFINITY, ..ray };
-        let sheared = Sheared::new(&ray);
-        self.bvh.walk(&ray, tally, |item, t_max, tally| {
-            tally.test();
-            if let Some(crossing) = sheared.intersect(self.corners[item], ray.t_min, ray.t_max) {
-                offer(f64::from(crossing.t) + shift, crossing.uv, self.bvh.order()[item]);
-            }
-            t_max
-        });
+        for hit in self.bvh.all_hits_counting(&ray, tally) {
+            offer(f64::from(hit.t) + shift, hit.uv, hit.triangle);
+        }
     }
 
-    /// The first hit before `best`, both of this object; `any` ends at the first found.
+    /// The first hit in the ray's interval; `any` ends at the first found.
     #[inline]
     fn closest<T: Tally>(&self, ray: &Ray, any: bool, tally: &mut T) -> Option<(Crossing, u32)> {
-        let sheared = self.sheared(ray);
-        let mut best: Option<(Crossing, u32)> = None;
-        self.bvh.walk(ray, tally, |item, t_max, tally| {
-            tally.test();
-            // A tie at the present t is kept apart by the number of the triangle.
-            let Some(crossing) = sheared.intersect(self.corners[item], ray.t_min, ray.t_max) else { return t_max };
-            let part = self.bvh.order()[item];
-            if best.is_none_or(|(b, p)| (crossing.t, part) < (b.t, p)) {
-                best = Some((crossing, part));
-            }
-            if any { f32::NEG_INFINITY } else { t_max.min(crossing.t) }
-        });
-        best
+        if any {
+            let found = self.bvh.occluded_counting(ray, tally);
+            return found.then_some((Crossing { t: ray.t_min, uv: Vec2::ZERO }, 0));
+        }
+        let hit = self.bvh.closest_counting(ray, tally)?;
+        Some((Crossing { t: hit.t, uv: hit.uv }, hit.triangle))
     }
 }
 
@@ -177,7 +155,7 @@ impl Object {
             Geometry::Primitive(shape) => shape.intersect(&local),
             // Refused like by the tree: such a ray hits nothing.
             Geometry::Mesh(_) if !crate::bvh::is_sound(&local) => None,
-            Geometry::Mesh(tree) => tree.sheared(&local).intersect(tree.mesh.corners(part), ray.t_min, ray.t_max),
+            Geometry::Mesh(tree) => tree.bvh.sheared(&local).intersect(tree.mesh.corners(part), ray.t_min, ray.t_max),
             Geometry::Solid(solid) => return solid.closest(ray, tally),
         };
         crossing.map(|crossing| (crossing, part))

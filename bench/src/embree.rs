@@ -1,0 +1,339 @@
+//! Embree 4, loaded when the command runs. Names and layouts are those of its `rtcore.h`.
+
+use crate::rays::{Found, Mesh};
+use anyhow::{Context, Result, bail};
+use durer::math::Ray;
+use libloading::{Library, Symbol};
+use std::ffi::{CString, c_char, c_int, c_uint, c_void};
+use std::mem::ManuallyDrop;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicI64, Ordering};
+
+/// How to get it.
+pub const HOW: &str = "Embree 4 is not found. One way to it:
+  pip download embreex --no-deps -d /tmp/embreex && cd /tmp/embreex && unzip -o embreex-*.whl
+and then DURER_EMBREE=/tmp/embreex/embreex.libs (a folder, or the file libembree4*.so itself); Debian's libembree-dev 4 will
+do too. Without it the command runs with --no-embree.";
+
+type Handle = *mut c_void;
+
+#[repr(C, align(16))]
+#[derive(Clone, Copy)]
+struct RayHit1 {
+    org: [f32; 3],
+    tnear: f32,
+    dir: [f32; 3],
+    time: f32,
+    tfar: f32,
+    mask: c_uint,
+    id: c_uint,
+    flags: c_uint,
+    ng: [f32; 3],
+    u: f32,
+    v: f32,
+    prim: c_uint,
+    geom: c_uint,
+    inst: [c_uint; 2],
+    padding: [c_uint; 3],
+}
+
+/// Sixteen rays side by side; fields in the order of [`RayHit1`].
+#[repr(C, align(64))]
+struct RayHit16 {
+    ray: [[f32; 16]; 12],
+    ng: [[f32; 16]; 3],
+    uv: [[f32; 16]; 2],
+    prim: [c_uint; 16],
+    geom: [c_uint; 16],
+    inst: [[c_uint; 16]; 2],
+}
+
+#[repr(C)]
+struct Arguments {
+    flags: c_uint,
+    feature_mask: c_uint,
+    context: Handle,
+    filter: Handle,
+    callback: Handle,
+    min_width_distance_factor: f32,
+}
+
+const NO_GEOMETRY: c_uint = c_uint::MAX;
+const COHERENT: c_uint = 1 << 16;
+
+macro_rules! functions {
+    ($($name:ident: fn($($arg:ty),*) $(-> $out:ty)?;)*) => {
+        // Named as in the header.
+        #[allow(non_snake_case)]
+        struct Functions { $($name: unsafe extern "C" fn($($arg),*) $(-> $out)?,)* }
+        impl Functions {
+            #[allow(non_snake_case)]
+            fn load(library: &Library) -> Result<Self> {
+                // SAFETY: the types are those of Embree 4's header.
+                unsafe {
+                    $(let $name: Symbol<unsafe extern "C" fn($($arg),*) $(-> $out)?> =
+                        library.get(concat!(stringify!($name), "\0").as_bytes())?;)*
+                    Ok(Functions { $($name: *$name,)* })
+                }
+            }
+        }
+    };
+}
+
+type Monitor = unsafe extern "C" fn(Handle, isize, bool) -> bool;
+
+functions! {
+    rtcNewDevice: fn(*const c_char) -> Handle;
+    rtcReleaseDevice: fn(Handle);
+    rtcSetDeviceMemoryMonitorFunction: fn(Handle, Monitor, Handle);
+    rtcGetDeviceProperty: fn(Handle, c_int) -> isize;
+    rtcNewScene: fn(Handle) -> Handle;
+    rtcReleaseScene: fn(Handle);
+    rtcSetSceneBuildQuality: fn(Handle, c_int);
+    rtcSetSceneFlags: fn(Handle, c_int);
+    rtcCommitScene: fn(Handle);
+    rtcNewGeometry: fn(Handle, c_int) -> Handle;
+    rtcReleaseGeometry: fn(Handle);
+    rtcSetNewGeometryBuffer: fn(Handle, c_int, c_uint, c_int, usize, usize) -> Handle;
+    rtcCommitGeometry: fn(Handle);
+    rtcAttachGeometry: fn(Handle, Handle) -> c_uint;
+    rtcIntersect1: fn(Handle, *mut RayHit1, *const Arguments);
+    rtcOccluded1: fn(Handle, *mut RayHit1, *const Arguments);
+    rtcIntersect16: fn(*const c_int, Handle, *mut RayHit16, *const Arguments);
+    rtcOccluded16: fn(*const c_int, Handle, *mut RayHit16, *const Arguments);
+}
+impl Embree {
+    /// Loads the library.
+    pub fn load(path: &Path, threads: usize) -> Result<Self> {
+        // Its companion, the task library, lies beside it under a name that only the wheel knows.
+        let companions: Vec<Library> = siblings(path, "libtbb")
+            .iter()
+            // SAFETY: loading runs the initialisers of a library that the user chose.
+            .filter_map(|path| unsafe { Library::new(path) }.ok())
+            .collect();
+        // SAFETY: as above.
+        let library = unsafe { Library::new(path) }.with_context(|| path.display().to_string())?;
+        let functions = Functions::load(&library)?;
+        let config = CString::new(format!("threads={threads}"))?;
+        // SAFETY: the configuration is a C string.
+        let device = unsafe { (functions.rtcNewDevice)(config.as_ptr()) };
+        if device.is_null() {
+            bail!("Embree gives no device");
+        }
+        let memory = Box::new(AtomicI64::new(0));
+        // SAFETY: the counter lives as long as the device.
+        unsafe { (functions.rtcSetDeviceMemoryMonitorFunction)(device, count_memory, (&raw const *memory) as Handle) };
+        // SAFETY: property 0 is the version.
+        let version = unsafe { (functions.rtcGetDeviceProperty)(device, 0) };
+        Ok(Embree { functions, device, memory, version, _libraries: ManuallyDrop::new((library, companions)) })
+    }
+}
+
+unsafe extern "C" fn count_memory(counter: Handle, bytes: isize, _after: bool) -> bool {
+    // SAFETY: the pointer is the counter given at registration.
+    unsafe { &*(counter as *const AtomicI64) }.fetch_add(bytes as i64, Ordering::Relaxed);
+    true
+}
+
+/// The loaded library with one device.
+pub struct Embree {
+    functions: Functions,
+    device: Handle,
+    memory: Box<AtomicI64>,
+    version: isize,
+    /// Never unloaded: Embree's threads may still run in it.
+    _libraries: ManuallyDrop<(Library, Vec<Library>)>,
+}
+
+// SAFETY: Embree's device and committed scenes may be used from any thread.
+unsafe impl Send for Embree {}
+// SAFETY: as above.
+unsafe impl Sync for Embree {}
+
+/// Build quality.
+#[derive(Clone, Copy, PartialEq)]
+pub enum Quality {
+    Medium = 1,
+    High = 2,
+}
+
+impl Embree {
+    pub fn version(&self) -> String {
+        format!("{}.{}.{}", self.version / 10000, self.version / 100 % 100, self.version % 100)
+    }
+
+    /// Builds a scene of one mesh; gives the seconds of the commit with it.
+    pub fn build(self: &Arc<Self>, mesh: &Mesh, quality: Quality, robust: bool) -> (Scene, f64) {
+        let f = &self.functions;
+        // SAFETY: calls in the order of the manual; the buffers are as large as was asked for.
+        unsafe {
+            let scene = (f.rtcNewScene)(self.device);
+            (f.rtcSetSceneBuildQuality)(scene, quality as c_int);
+            (f.rtcSetSceneFlags)(scene, if robust { 1 << 2 } else { 0 });
+            let geometry = (f.rtcNewGeometry)(self.device, 0);
+            let vertices = (f.rtcSetNewGeometryBuffer)(geometry, 1, 0, 0x9003, 12, mesh.vertices.len());
+            std::slice::from_raw_parts_mut(vertices as *mut durer::math::Vec3, mesh.vertices.len())
+                .copy_from_slice(&mesh.vertices);
+            let indices = (f.rtcSetNewGeometryBuffer)(geometry, 0, 0, 0x5003, 12, mesh.triangles.len());
+            std::slice::from_raw_parts_mut(indices as *mut [u32; 3], mesh.triangles.len())
+                .copy_from_slice(&mesh.triangles);
+            (f.rtcCommitGeometry)(geometry);
+            (f.rtcAttachGeometry)(scene, geometry);
+            (f.rtcReleaseGeometry)(geometry);
+            let before = self.memory.load(Ordering::Relaxed);
+            let clock = std::time::Instant::now();
+            (f.rtcCommitScene)(scene);
+            let seconds = clock.elapsed().as_secs_f64();
+            let bytes = (self.memory.load(Ordering::Relaxed) - before).max(0) as usize;
+            (Scene { embree: self.clone(), scene, bytes }, seconds)
+        }
+    }
+}
+
+impl Drop for Embree {
+    fn drop(&mut self) {
+        // SAFETY: no scene outlives it, for each holds an `Arc`.
+        unsafe { (self.functions.rtcReleaseDevice)(self.device) }
+    }
+}
+
+/// A committed scene.
+pub struct Scene {
+    embree: Arc<Embree>,
+    scene: Handle,
+    /// What its tree takes in memory, vertices and indices not counted.
+    pub bytes: usize,
+}
+
+// SAFETY: a committed scene may be traced from any thread.
+unsafe impl Send for Scene {}
+// SAFETY: as above.
+unsafe impl Sync for Scene {}
+
+impl Drop for Scene {
+    fn drop(&mut self) {
+        // SAFETY: released once.
+        unsafe { (self.embree.functions.rtcReleaseScene)(self.scene) }
+    }
+}
+
+fn single(ray: &Ray) -> RayHit1 {
+    RayHit1 {
+        org: ray.origin.to_array(),
+        tnear: ray.t_min,
+        dir: ray.dir.to_array(),
+        time: 0.0,
+        tfar: ray.t_max,
+        mask: c_uint::MAX,
+        id: 0,
+        flags: 0,
+        ng: [0.0; 3],
+        u: 0.0,
+        v: 0.0,
+        prim: NO_GEOMETRY,
+        geom: NO_GEOMETRY,
+        inst: [NO_GEOMETRY; 2],
+        padding: [0; 3],
+    }
+}
+
+impl Scene {
+    pub fn closest(&self, ray: &Ray) -> Found {
+        let mut query = single(ray);
+        // SAFETY: the record is that of the header, and aligned.
+        unsafe { (self.embree.functions.rtcIntersect1)(self.scene, &mut query, std::ptr::null()) };
+        if query.geom == NO_GEOMETRY { Found::NONE } else { Found { t: query.tfar, triangle: query.prim } }
+    }
+
+    pub fn occluded(&self, ray: &Ray) -> bool {
+        let mut query = single(ray);
+        // SAFETY: a ray with a hit behind it is longer than needed.
+        unsafe { (self.embree.functions.rtcOccluded1)(self.scene, &mut query, std::ptr::null()) };
+        query.tfar < 0.0
+    }
+
+    /// Sixteen rays at once, marked as coherent or not.
+    pub fn packets(&self, rays: &[Ray], found: &mut [Found], any: bool, coherent: bool) {
+        let arguments = Arguments {
+            flags: if coherent { COHERENT } else { 0 },
+            feature_mask: c_uint::MAX,
+            context: std::ptr::null_mut(),
+            filter: std::ptr::null_mut(),
+            callback: std::ptr::null_mut(),
+            min_width_distance_factor: 0.0,
+        };
+        #[repr(align(64))]
+        struct Valid([c_int; 16]);
+        for (rays, found) in rays.chunks(16).zip(found.chunks_mut(16)) {
+            let mut valid = Valid([0; 16]);
+            let mut query = RayHit16 {
+                ray: [[0.0; 16]; 12],
+                ng: [[0.0; 16]; 3],
+                uv: [[0.0; 16]; 2],
+                prim: [NO_GEOMETRY; 16],
+                geom: [NO_GEOMETRY; 16],
+                inst: [[NO_GEOMETRY; 16]; 2],
+            };
+            for (i, ray) in rays.iter().enumerate() {
+                valid.0[i] = -1;
+                for axis in 0..3 {
+                    query.ray[axis][i] = ray.origin[axis];
+                    query.ray[4 + axis][i] = ray.dir[axis];
+                }
+                query.ray[3][i] = ray.t_min;
+                query.ray[8][i] = ray.t_max;
+                query.ray[9][i] = f32::from_bits(u32::MAX);
+            }
+            let f = &self.embree.functions;
+            let call = if any { f.rtcOccluded16 } else { f.rtcIntersect16 };
+            // SAFETY: records are those of the header, and aligned.
+            unsafe { call(valid.0.as_ptr(), self.scene, &mut query, &arguments) };
+            for (i, found) in found.iter_mut().enumerate() {
+                let hit = if any { query.ray[8][i] < 0.0 } else { query.geom[i] != NO_GEOMETRY };
+                *found = match (hit, any) {
+                    (false, _) => Found::NONE,
+                    (true, true) => Found { t: 0.0, triangle: 0 },
+                    (true, false) => Found { t: query.ray[8][i], triangle: query.prim[i] },
+                };
+            }
+        }
+    }
+}
+
+/// Files beside a library (or in a folder) whose names begin so.
+fn siblings(path: &Path, prefix: &str) -> Vec<PathBuf> {
+    let folder = if path.is_dir() { path } else { path.parent().unwrap_or(Path::new(".")) };
+    let mut found: Vec<PathBuf> = std::fs::read_dir(folder)
+        .into_iter()
+        .flatten()
+        .filter_map(|entry| Some(entry.ok()?.path()))
+        .filter(|path| path.file_name().is_some_and(|name| name.to_string_lossy().starts_with(prefix)))
+        .collect();
+    found.sort();
+    found
+}
+
+/// Where the library is: as `DURER_EMBREE` says, or in the places where pip and Debian put it.
+pub fn find() -> Result<PathBuf> {
+    if let Some(path) = std::env::var_os("DURER_EMBREE") {
+        let path = PathBuf::from(path);
+        if path.is_file() {
+            return Ok(path);
+        }
+        return siblings(&path, "libembree4").pop().with_context(|| format!("no libembree4 in {}", path.display()));
+    }
+    let mut folders: Vec<PathBuf> =
+        ["/tmp/embreex/embreex.libs", "/usr/lib/x86_64-linux-gnu", "/usr/lib", "/usr/local/lib"].map(Into::into).into();
+    // What `pip install embreex` left.
+    if let Ok(output) = std::process::Command::new("python3")
+        .args(["-c", "import sysconfig; print(sysconfig.get_paths()['platlib'])"])
+        .output()
+    {
+        let platlib = String::from_utf8_lossy(&output.stdout).trim().to_owned();
+        folders.push(Path::new(&platlib).join("embreex.libs"));
+    }
+    folders.iter().find_map(|folder| siblings(folder, "libembree4").pop()).context(HOW)
+}
+
+const _: () = assert!(size_of::<RayHit1>() == 96 && size_of::<RayHit16>() == 64 * 21);

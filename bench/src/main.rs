@@ -1,0 +1,110 @@
+//! The same rays through Dürer, Embree and the crates that a Rust user would otherwise take.
+
+mod embree;
+mod peers;
+mod rays;
+mod speed;
+
+use anyhow::{Context, Result, bail};
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+const USAGE: &str =
+    "cargo xtask bench-rays [OPTIONS]: the very same rays through Dürer, Embree 4, obvhs, bvh and parry3d, alternating.
+
+  --quick            fewer rays and rounds: under a minute
+  --mesh NAME        only this mesh of ../shared/meshes, or a file; may be repeated
+  --case NAME        only these rays: primary, bounce, shuffled, shadow, ambient; may be repeated
+  --preset NAME      how our tree is built for the rays: fast, balanced, best [best]
+  --threads N        so many threads trace and build [1]
+  --side N           primary rays: N x N, a multiple of 8 [512; quick 256]
+  --rounds N         rounds, of which medians are taken [9; quick 5]
+  --no-peers         Embree only
+  --no-embree        without Embree
+
+Examples:
+  cargo xtask bench-rays --quick
+  cargo xtask bench-rays --mesh dragon --mesh kitchen --threads 2
+  DURER_SIMD=avx2 cargo xtask bench-rays --mesh dragon --no-peers
+
+Meshes are found in ../shared/meshes, or under DURER_CORPUS; Embree where DURER_EMBREE says.";
+
+/// What the command line says.
+pub struct Options {
+    pub meshes: Vec<PathBuf>,
+    pub cases: Vec<String>,
+    pub preset: durer::bvh::Preset,
+    pub threads: usize,
+    pub side: u32,
+    pub rounds: usize,
+    pub peers: bool,
+    pub embree: Option<PathBuf>,
+}
+
+fn options(arguments: &[String]) -> Result<Options> {
+    let (mut names, mut cases) = (Vec::new(), Vec::new());
+    let mut preset = durer::bvh::Preset::Best;
+    let (mut threads, mut side, mut rounds, mut quick) = (1, None, None, false);
+    let (mut peers, mut use_embree) = (true, true);
+    let mut words = arguments.iter();
+    while let Some(word) = words.next() {
+        let mut value = || words.next().with_context(|| format!("`{word}` needs a value"));
+        match word.as_str() {
+            "--quick" => quick = true,
+            "--mesh" => names.push(value()?.clone()),
+            "--case" => cases.push(value()?.clone()),
+            "--preset" => {
+                let name = value()?;
+                let found = durer::bvh::Preset::NAMES.iter().find(|(n, _)| n == name);
+                preset = found.with_context(|| format!("no preset `{name}`"))?.1;
+            }
+            "--threads" => threads = value()?.parse::<usize>()?.clamp(1, 1024),
+            "--side" => side = Some(value()?.parse::<u32>()?.clamp(8, 8192) / 8 * 8),
+            "--rounds" => rounds = Some(value()?.parse::<usize>()?.max(1)),
+            "--no-peers" => peers = false,
+            "--no-embree" => use_embree = false,
+            _ => bail!("`{word}` is no option\n\n{USAGE}"),
+        }
+    }
+    let corpus = std::env::var_os("DURER_CORPUS").map_or_else(|| PathBuf::from("../shared"), PathBuf::from);
+    if names.is_empty() {
+        names = ["bunny", "dragon", "armadillo", "hall", "kitchen", "hairball"].map(String::from).into();
+    }
+    let path = |name: &String| match name.contains(['/', '.']) {
+        true => PathBuf::from(name),
+        false => corpus.join("meshes").join(name).with_extension("ply"),
+    };
+    Ok(Options {
+        meshes: names.iter().map(path).collect(),
+        cases,
+        preset,
+        threads,
+        side: side.unwrap_or(if quick { 256 } else { 512 }),
+        rounds: rounds.unwrap_or(if quick { 5 } else { 9 }),
+        peers,
+        embree: if use_embree { Some(embree::find()?) } else { None },
+    })
+}
+
+fn main() -> ExitCode {
+    match run() {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error}");
+            error.chain().skip(1).for_each(|cause| eprintln!("  {cause}"));
+            ExitCode::from(2)
+        }
+    }
+}
+
+fn run() -> Result<()> {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    if arguments.iter().any(|a| a == "--help" || a == "-h") {
+        println!("{USAGE}");
+        return Ok(());
+    }
+    durer::bvh::Level::from_environment()?;
+    let options = options(&arguments)?;
+    rayon::ThreadPoolBuilder::new().num_threads(options.threads).build_global()?;
+    speed::run(&options)
+}

@@ -1,0 +1,94 @@
+//! A tree over boxes of things that only the caller knows.
+
+use super::Tally;
+use super::build::{self, Settings};
+use super::lanes::{Available, Kernel, Lanes};
+use super::node::{self, Node};
+use super::traverse::{RayBox, Visitor, is_sound, walk};
+use crate::math::{Aabb, Ray};
+
+/// A bounding volume hierarchy of eight-wide nodes over numbered things.
+#[derive(Clone, Debug)]
+pub struct Bvh {
+    pub(super) nodes: Vec<Node>,
+    /// Numbers of the things, in the order of the leaves.
+    order: Vec<u32>,
+    bounds: Aabb,
+    level: Available,
+}
+
+impl Bvh {
+    /// Builds over the boxes of things 0, 1, 2, ...; empty boxes are left out. At most 2^28 things.
+    ///
+    /// The result is a function of the boxes alone: the same for any number of threads.
+    pub fn build(boxes: &[Aabb]) -> Self {
+        let tree = build::build(build::references(boxes), &Settings::THINGS);
+        Bvh { nodes: tree.nodes, order: tree.order, bounds: tree.bounds, level: Available::chosen() }
+    }
+
+    /// The box around everything.
+    pub fn bounds(&self) -> Aabb {
+        self.bounds
+    }
+
+    /// Numbers of the things in the order in which [`Bvh::walk`] knows them.
+    pub fn order(&self) -> &[u32] {
+        &self.order
+    }
+
+    /// Bytes in memory.
+    pub fn bytes(&self) -> usize {
+        size_of_val(&*self.nodes) + size_of_val(&*self.order)
+    }
+
+    /// Offers every thing that the ray may meet before `t_max` to `test`, roughly from near to far.
+    ///
+    /// `test` gets the place of a thing in [`Bvh::order`] and the present `t_max`, and gives the new one: at
+    /// most the old. Things whose boxes begin exactly at `t_max` are still offered. Minus infinity ends the walk.
+    #[inline]
+    pub fn walk<T: Tally>(&self, ray: &Ray, tally: &mut T, test: impl FnMut(usize, f32, &mut T) -> f32) {
+        if self.nodes.is_empty() || !is_sound(ray) {
+            return;
+        }
+        self.level.run(Walk { bvh: self, ray, things: Things { tally, test } });
+    }
+}
+
+struct Walk<'a, T, F> {
+    bvh: &'a Bvh,
+    ray: &'a Ray,
+    things: Things<'a, T, F>,
+}
+
+impl<T: Tally, F: FnMut(usize, f32, &mut T) -> f32> Kernel for Walk<'_, T, F> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(mut self, lanes: L) {
+        let boxes = RayBox::new(self.ray, self.bvh.bounds);
+        match boxes.tame {
+            true => walk::<L, _, true>(lanes, &self.bvh.nodes, &boxes, self.ray.t_max, &mut self.things),
+            false => walk::<L, _, false>(lanes, &self.bvh.nodes, &boxes, self.ray.t_max, &mut self.things),
+        }
+    }
+}
+
+struct Things<'a, T, F> {
+    tally: &'a mut T,
+    test: F,
+}
+
+impl<T: Tally, F: FnMut(usize, f32, &mut T) -> f32> Visitor for Things<'_, T, F> {
+    type Tally = T;
+
+    #[inline(always)]
+    fn tally(&mut self) -> &mut T {
+        self.tally
+    }
+
+    #[inline(always)]
+    fn leaf<L: Lanes>(&mut self, _: L, leaf: u32, t_max: f32) -> f32 {
+        let (first, count) = node::items(leaf);
+        (first..first + count).fold(t_max, |t_max, item| (self.test)(item, t_max, self.tally))
+    }
+}

@@ -1,0 +1,149 @@
+//! Building a tree: references to things, a binary tree over them, and eight-wide nodes from that.
+
+mod binary;
+mod reinsert;
+mod split;
+mod wide;
+
+use super::node::{MOST_ITEMS, Node};
+use crate::math::{Aabb, Vec3};
+use glam::Vec4;
+
+/// How much work goes into a tree.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Preset {
+    /// For things that are built anew often.
+    Fast,
+    /// For most uses.
+    #[default]
+    Balanced,
+    /// For many rays: the tree is improved afterwards, and large triangles are cut.
+    Best,
+}
+
+impl Preset {
+    /// Every preset, with its name.
+    pub const NAMES: [(&'static str, Preset); 3] =
+        [("fast", Preset::Fast), ("balanced", Preset::Balanced), ("best", Preset::Best)];
+}
+
+/// What a tree is to be good for.
+#[derive(Clone, Debug)]
+pub(super) struct Settings {
+    /// Cost of a leaf of so many things, in tests of a node.
+    pub leaf_cost: fn(usize) -> f32,
+    /// Leaves hold at most so many things.
+    pub leaf_size: usize,
+    /// Passes that move subtrees to better places.
+    pub reinsertions: usize,
+    /// How many references may be added by cutting, as a share of the things.
+    pub splits: f32,
+}
+
+impl Settings {
+    /// For things whose tests cost as much as several nodes.
+    pub const THINGS: Settings =
+        Settings { leaf_cost: |count| 2.0 * count as f32, leaf_size: 4, reinsertions: 2, splits: 0.0 };
+
+    pub fn triangles(preset: Preset) -> Settings {
+        // A leaf is tested at once, whatever it holds.
+        let leaf_cost = |count| 1.2 + 0.05 * count as f32;
+        let (reinsertions, splits) = match preset {
+            Preset::Fast => (0, 0.0),
+            Preset::Balanced => (2, 0.0),
+            Preset::Best => (8, 0.2),
+        };
+        Settings { leaf_cost, leaf_size: super::node::LEAF_SIZE, reinsertions, splits }
+    }
+}
+
+/// A box of a thing or of a part of it, and the thing's number.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Reference {
+    min: Vec4,
+    max: Vec4,
+}
+
+impl Reference {
+    fn new(bounds: Aabb, number: u32) -> Self {
+        Reference { min: bounds.min.extend(number_lane(number)), max: bounds.max.extend(0.0) }
+    }
+
+    fn number(&self) -> u32 {
+        lane_number(self.min.w)
+    }
+
+    fn bounds(&self) -> Aabb {
+        Aabb { min: self.min.truncate(), max: self.max.truncate() }
+    }
+
+    fn center(&self) -> Vec4 {
+        0.5 * self.min + 0.5 * self.max
+    }
+}
+
+/// A number below 2^28 in the fourth lane of a vector: as a normal `f32`, which no arithmetic on the lane slows down.
+fn number_lane(number: u32) -> f32 {
+    f32::from_bits(number | 3 << 28)
+}
+
+fn lane_number(lane: f32) -> u32 {
+    lane.to_bits() & !(3 << 28)
+}
+
+/// References to boxes 0, 1, 2, ... but for the empty ones.
+pub(super) fn references(boxes: &[Aabb]) -> Vec<Reference> {
+    assert!(boxes.len() <= MOST_ITEMS, "a tree holds at most 2^28 things");
+    let full = boxes.iter().enumerate().filter(|(_, b)| !b.is_empty());
+    full.map(|(i, b)| Reference::new(*b, i as u32)).collect()
+}
+
+/// References to triangles 0, 1, 2, ...; the largest may be cut into several. Those with corners that are no
+/// finite points are left out.
+pub(super) fn triangle_references(
+    count: usize,
+    corners_of: &(impl Fn(u32) -> [Vec3; 3] + Sync),
+    settings: &Settings,
+) -> Vec<Reference> {
+    assert!(count <= MOST_ITEMS, "a tree holds at most 2^28 triangles");
+    let whole = (0..count as u32).filter_map(|i| {
+        let corners = corners_of(i);
+        corners.iter().all(|p| p.is_finite()).then(|| Reference::new(Aabb::around(corners), i))
+    });
+    let mut references: Vec<Reference> = whole.collect();
+    if settings.splits > 0.0 {
+        split::split(&mut references, corners_of, settings.splits);
+    }
+    references
+}
+
+/// A finished tree.
+pub(super) struct Tree {
+    pub nodes: Vec<Node>,
+    /// Numbers of things by place.
+    pub order: Vec<u32>,
+    pub bounds: Aabb,
+}
+
+/// Builds a tree: a function of the references and settings alone.
+pub(super) fn build(mut references: Vec<Reference>, settings: &Settings) -> Tree {
+    assert!(references.len() <= MOST_ITEMS, "a tree holds at most 2^28 things");
+    let bounds = references.iter().fold(Aabb::EMPTY, |b, r| b.union(r.bounds()));
+    if references.is_empty() {
+        return Tree { nodes: Vec::new(), order: Vec::new(), bounds };
+    }
+    let mut tree = binary::build(&mut references, area_scale(bounds));
+    if settings.reinsertions > 0 {
+        reinsert::improve(&mut tree, settings.reinsertions);
+    }
+    let (nodes, order) = wide::collapse(&tree, &references, settings);
+    Tree { nodes, order, bounds }
+}
+
+/// A power of two that brings sizes near 1, so that areas neither overflow nor vanish.
+fn area_scale(bounds: Aabb) -> f32 {
+    let size = (bounds.max * 0.5 - bounds.min * 0.5).max_element();
+    let exponent = size.to_bits() >> 23 & 0xff;
+    // 2^-e for a size of about 2^e, itself kept in range.
+    f32::from_bits((254 - exponent.clamp(1, 253)) << 23)
+}

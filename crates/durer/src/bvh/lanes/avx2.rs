@@ -1,0 +1,194 @@
+//! AVX2 with FMA.
+
+use super::{COMPRESS, Kernel, Lanes, Stack, WIDTH};
+use std::arch::x86_64::*;
+
+/// Proof that the processor has AVX2, FMA, BMI 1 and 2, and POPCNT.
+#[derive(Clone, Copy)]
+pub struct Avx2(());
+
+pub fn is_available() -> bool {
+    is_x86_feature_detected!("avx2")
+        && is_x86_feature_detected!("fma")
+        && is_x86_feature_detected!("bmi1")
+        && is_x86_feature_detected!("bmi2")
+        && is_x86_feature_detected!("popcnt")
+}
+
+/// # Safety
+///
+/// [`is_available`] must have said so.
+#[target_feature(enable = "avx2,fma,bmi1,bmi2,popcnt")]
+pub unsafe fn run<K: Kernel>(kernel: K) -> K::Output {
+    kernel.run(Avx2(()))
+}
+
+/// What an operation's safety rests on, said once.
+macro_rules! proven {
+    ($($code:tt)*) => {
+        // SAFETY: a value of the type proves that the processor has the instructions; references are valid.
+        unsafe { $($code)* }
+    };
+}
+pub(super) use proven;
+
+/// Nine rows, checked once.
+#[inline(always)]
+pub(super) fn rows(from: &[f32], stride: usize, axes: [usize; 3]) -> [[__m256; 3]; 3] {
+    assert!(stride <= WIDTH && from.len() >= 8 * stride + WIDTH && axes[0].max(axes[1]).max(axes[2]) < 3);
+    macro_rules! row {
+        ($corner:literal, $k:literal) => {
+            // SAFETY: the last row, number 8, ends within the slice; the features are proven by the caller.
+            unsafe { _mm256_loadu_ps(from.as_ptr().add((3 * $corner + axes[$k]) * stride)) }
+        };
+    }
+    [[row!(0, 0), row!(0, 1), row!(0, 2)], [row!(1, 0), row!(1, 1), row!(1, 2)], [row!(2, 0), row!(2, 1), row!(2, 2)]]
+}
+
+/// Eight `f64` as two vectors.
+type Wide = (__m256d, __m256d);
+
+impl Lanes for Avx2 {
+    type Floats = __m256;
+    type Doubles = Wide;
+    type Order = __m256i;
+
+    #[inline(always)]
+    fn splat(self, x: f32) -> __m256 {
+        proven!(_mm256_set1_ps(x))
+    }
+    #[inline(always)]
+    fn load(self, from: &[f32; WIDTH]) -> __m256 {
+        proven!(_mm256_loadu_ps(from.as_ptr()))
+    }
+    #[inline(always)]
+    fn rows(self, from: &[f32], stride: usize, axes: [usize; 3]) -> [[__m256; 3]; 3] {
+        rows(from, stride, axes)
+    }
+    #[inline(always)]
+    fn sub(self, a: __m256, b: __m256) -> __m256 {
+        proven!(_mm256_sub_ps(a, b))
+    }
+    #[inline(always)]
+    fn mul(self, a: __m256, b: __m256) -> __m256 {
+        proven!(_mm256_mul_ps(a, b))
+    }
+    #[inline(always)]
+    fn mul_add(self, a: __m256, b: __m256, c: __m256) -> __m256 {
+        proven!(_mm256_fmadd_ps(a, b, c))
+    }
+    #[inline(always)]
+    fn min(self, a: __m256, b: __m256) -> __m256 {
+        proven!(_mm256_min_ps(a, b))
+    }
+    #[inline(always)]
+    fn max(self, a: __m256, b: __m256) -> __m256 {
+        proven!(_mm256_max_ps(a, b))
+    }
+    #[inline(always)]
+    fn le(self, a: __m256, b: __m256) -> u32 {
+        proven!(_mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(a, b)) as u32)
+    }
+    #[inline(always)]
+    fn lt(self, a: __m256, b: __m256) -> u32 {
+        proven!(_mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LT_OQ>(a, b)) as u32)
+    }
+    #[inline(always)]
+    fn store(self, a: __m256) -> [f32; WIDTH] {
+        let mut to = [0.0; WIDTH];
+        proven!(_mm256_storeu_ps(to.as_mut_ptr(), a));
+        to
+    }
+    #[inline(always)]
+    fn splat_wide(self, x: f64) -> Wide {
+        proven!((_mm256_set1_pd(x), _mm256_set1_pd(x)))
+    }
+    #[inline(always)]
+    fn widen(self, a: __m256) -> Wide {
+        proven!((_mm256_cvtps_pd(_mm256_castps256_ps128(a)), _mm256_cvtps_pd(_mm256_extractf128_ps::<1>(a))))
+    }
+    #[inline(always)]
+    fn narrow(self, a: Wide) -> __m256 {
+        proven!(_mm256_set_m128(_mm256_cvtpd_ps(a.1), _mm256_cvtpd_ps(a.0)))
+    }
+    #[inline(always)]
+    fn add_wide(self, a: Wide, b: Wide) -> Wide {
+        proven!((_mm256_add_pd(a.0, b.0), _mm256_add_pd(a.1, b.1)))
+    }
+    #[inline(always)]
+    fn sub_wide(self, a: Wide, b: Wide) -> Wide {
+        proven!((_mm256_sub_pd(a.0, b.0), _mm256_sub_pd(a.1, b.1)))
+    }
+    #[inline(always)]
+    fn mul_wide(self, a: Wide, b: Wide) -> Wide {
+        proven!((_mm256_mul_pd(a.0, b.0), _mm256_mul_pd(a.1, b.1)))
+    }
+    #[inline(always)]
+    fn div_wide(self, a: Wide, b: Wide) -> Wide {
+        proven!((_mm256_div_pd(a.0, b.0), _mm256_div_pd(a.1, b.1)))
+    }
+    #[inline(always)]
+    fn min_wide(self, a: Wide, b: Wide) -> Wide {
+        proven!((_mm256_min_pd(a.0, b.0), _mm256_min_pd(a.1, b.1)))
+    }
+    #[inline(always)]
+    fn max_wide(self, a: Wide, b: Wide) -> Wide {
+        proven!((_mm256_max_pd(a.0, b.0), _mm256_max_pd(a.1, b.1)))
+    }
+    #[inline(always)]
+    fn lt_wide(self, a: Wide, b: Wide) -> u32 {
+        proven! {
+            let (low, high) = (_mm256_cmp_pd::<_CMP_LT_OQ>(a.0, b.0), _mm256_cmp_pd::<_CMP_LT_OQ>(a.1, b.1));
+            (_mm256_movemask_pd(low) | _mm256_movemask_pd(high) << 4) as u32
+        }
+    }
+    #[inline(always)]
+    fn where_equal(self, a: Wide, b: Wide, x: Wide, y: Wide) -> Wide {
+        proven! {
+            let (low, high) = (_mm256_cmp_pd::<_CMP_EQ_OQ>(a.0, b.0), _mm256_cmp_pd::<_CMP_EQ_OQ>(a.1, b.1));
+            (_mm256_blendv_pd(y.0, x.0, low), _mm256_blendv_pd(y.1, x.1, high))
+        }
+    }
+    #[inline(always)]
+    fn flipped(self, flip: u32) -> __m256i {
+        proven!(_mm256_set1_epi32((flip & 7) as i32))
+    }
+    #[inline(always)]
+    fn push(self, stack: &mut Stack, children: &[u32; WIDTH], near: __m256, order: __m256i, mask: u32) {
+        let (to, to_near) = stack.top();
+        proven! {
+            // The wanted lanes in order, as numbers of lanes out of it.
+            let front = _mm256_xor_si256(_mm256_loadu_si256(COMPRESS[mask as usize & 255].as_ptr().cast()), order);
+            let children = _mm256_loadu_si256(children.as_ptr().cast());
+            _mm256_storeu_si256(to.cast(), _mm256_permutevar8x32_epi32(children, front));
+            _mm256_storeu_ps(to_near, _mm256_permutevar8x32_ps(near, front));
+            stack.grow(mask.count_ones());
+        }
+    }
+    #[inline(always)]
+    fn prefetch<T>(self, slice: &[T], at: usize) {
+        // SAFETY: the instruction takes any address.
+        unsafe { _mm_prefetch::<_MM_HINT_T0>(slice.as_ptr().wrapping_add(at).cast()) };
+    }
+    #[inline(always)]
+    fn drop_beyond(self, stack: &mut Stack, t_max: f32) {
+        let (children, near, height) = stack.all();
+        let (mut from, mut to) = (0, 0);
+        // What is kept never passes what is still to be read.
+        proven! {
+            let limit = _mm256_set1_ps(t_max);
+            while from < height {
+                let valid = (1u32 << (height - from).min(WIDTH)) - 1;
+                let entries = _mm256_loadu_si256(children.add(from).cast());
+                let distances = _mm256_loadu_ps(near.add(from));
+                let mask = _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(distances, limit)) as u32 & valid;
+                let front = _mm256_loadu_si256(COMPRESS[mask as usize & 255].as_ptr().cast());
+                _mm256_storeu_si256(children.add(to).cast(), _mm256_permutevar8x32_epi32(entries, front));
+                _mm256_storeu_ps(near.add(to), _mm256_permutevar8x32_ps(distances, front));
+                to += mask.count_ones() as usize;
+                from += WIDTH;
+            }
+            stack.set_height(to);
+        }
+    }
+}

@@ -1,0 +1,161 @@
+//! AVX-512 on eight lanes: masks in registers of their own, and compression in one instruction.
+
+use super::avx2::{proven, rows};
+use super::{Kernel, Lanes, Stack, WIDTH};
+use std::arch::x86_64::*;
+
+/// Proof that the processor has AVX-512 F, VL and DQ beside what AVX2's level asks for.
+#[derive(Clone, Copy)]
+pub struct Avx512(());
+
+pub fn is_available() -> bool {
+    super::avx2::is_available()
+        && is_x86_feature_detected!("avx512f")
+        && is_x86_feature_detected!("avx512vl")
+        && is_x86_feature_detected!("avx512dq")
+}
+
+/// # Safety
+///
+/// [`is_available`] must have said so.
+#[target_feature(enable = "avx512f,avx512vl,avx512dq,avx2,fma,bmi1,bmi2,popcnt")]
+pub unsafe fn run<K: Kernel>(kernel: K) -> K::Output {
+    kernel.run(Avx512(()))
+}
+
+impl Lanes for Avx512 {
+    type Floats = __m256;
+    type Doubles = __m512d;
+    type Order = __m256i;
+
+    #[inline(always)]
+    fn splat(self, x: f32) -> __m256 {
+        proven!(_mm256_set1_ps(x))
+    }
+    #[inline(always)]
+    fn load(self, from: &[f32; WIDTH]) -> __m256 {
+        proven!(_mm256_loadu_ps(from.as_ptr()))
+    }
+    #[inline(always)]
+    fn rows(self, from: &[f32], stride: usize, axes: [usize; 3]) -> [[__m256; 3]; 3] {
+        rows(from, stride, axes)
+    }
+    #[inline(always)]
+    fn sub(self, a: __m256, b: __m256) -> __m256 {
+        proven!(_mm256_sub_ps(a, b))
+    }
+    #[inline(always)]
+    fn mul(self, a: __m256, b: __m256) -> __m256 {
+        proven!(_mm256_mul_ps(a, b))
+    }
+    #[inline(always)]
+    fn mul_add(self, a: __m256, b: __m256, c: __m256) -> __m256 {
+        proven!(_mm256_fmadd_ps(a, b, c))
+    }
+    #[inline(always)]
+    fn min(self, a: __m256, b: __m256) -> __m256 {
+        proven!(_mm256_min_ps(a, b))
+    }
+    #[inline(always)]
+    fn max(self, a: __m256, b: __m256) -> __m256 {
+        proven!(_mm256_max_ps(a, b))
+    }
+    #[inline(always)]
+    fn le(self, a: __m256, b: __m256) -> u32 {
+        proven!(u32::from(_mm256_cmp_ps_mask::<_CMP_LE_OQ>(a, b)))
+    }
+    #[inline(always)]
+    fn lt(self, a: __m256, b: __m256) -> u32 {
+        proven!(u32::from(_mm256_cmp_ps_mask::<_CMP_LT_OQ>(a, b)))
+    }
+    #[inline(always)]
+    fn store(self, a: __m256) -> [f32; WIDTH] {
+        let mut to = [0.0; WIDTH];
+        proven!(_mm256_storeu_ps(to.as_mut_ptr(), a));
+        to
+    }
+    #[inline(always)]
+    fn splat_wide(self, x: f64) -> __m512d {
+        proven!(_mm512_set1_pd(x))
+    }
+    #[inline(always)]
+    fn widen(self, a: __m256) -> __m512d {
+        proven!(_mm512_cvtps_pd(a))
+    }
+    #[inline(always)]
+    fn narrow(self, a: __m512d) -> __m256 {
+        proven!(_mm512_cvtpd_ps(a))
+    }
+    #[inline(always)]
+    fn add_wide(self, a: __m512d, b: __m512d) -> __m512d {
+        proven!(_mm512_add_pd(a, b))
+    }
+    #[inline(always)]
+    fn sub_wide(self, a: __m512d, b: __m512d) -> __m512d {
+        proven!(_mm512_sub_pd(a, b))
+    }
+    #[inline(always)]
+    fn mul_wide(self, a: __m512d, b: __m512d) -> __m512d {
+        proven!(_mm512_mul_pd(a, b))
+    }
+    #[inline(always)]
+    fn div_wide(self, a: __m512d, b: __m512d) -> __m512d {
+        proven!(_mm512_div_pd(a, b))
+    }
+    #[inline(always)]
+    fn min_wide(self, a: __m512d, b: __m512d) -> __m512d {
+        proven!(_mm512_min_pd(a, b))
+    }
+    #[inline(always)]
+    fn max_wide(self, a: __m512d, b: __m512d) -> __m512d {
+        proven!(_mm512_max_pd(a, b))
+    }
+    #[inline(always)]
+    fn lt_wide(self, a: __m512d, b: __m512d) -> u32 {
+        proven!(u32::from(_mm512_cmp_pd_mask::<_CMP_LT_OQ>(a, b)))
+    }
+    #[inline(always)]
+    fn where_equal(self, a: __m512d, b: __m512d, x: __m512d, y: __m512d) -> __m512d {
+        proven!(_mm512_mask_blend_pd(_mm512_cmp_pd_mask::<_CMP_EQ_OQ>(a, b), y, x))
+    }
+    #[inline(always)]
+    fn flipped(self, flip: u32) -> __m256i {
+        proven!(_mm256_xor_si256(_mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7), _mm256_set1_epi32((flip & 7) as i32)))
+    }
+    #[inline(always)]
+    fn push(self, stack: &mut Stack, children: &[u32; WIDTH], near: __m256, order: __m256i, mask: u32) {
+        let (to, to_near) = stack.top();
+        proven! {
+            let children = _mm256_permutevar8x32_epi32(_mm256_loadu_si256(children.as_ptr().cast()), order);
+            let near = _mm256_permutevar8x32_ps(near, order);
+            _mm256_storeu_si256(to.cast(), _mm256_maskz_compress_epi32(mask as u8, children));
+            _mm256_storeu_ps(to_near, _mm256_maskz_compress_ps(mask as u8, near));
+            stack.grow(mask.count_ones());
+        }
+    }
+    #[inline(always)]
+    fn prefetch<T>(self, slice: &[T], at: usize) {
+        // SAFETY: the instruction takes any address.
+        unsafe { _mm_prefetch::<_MM_HINT_T0>(slice.as_ptr().wrapping_add(at).cast()) };
+    }
+    #[inline(always)]
+    fn drop_beyond(self, stack: &mut Stack, t_max: f32) {
+        let (children, near, height) = stack.all();
+        let (mut from, mut to) = (0, 0);
+        // What is kept never passes what is still to be read.
+        proven! {
+            let limit = _mm256_set1_ps(t_max);
+            while from < height {
+                let valid = (1u32 << (height - from).min(WIDTH)) - 1;
+                let entries = _mm256_loadu_si256(children.add(from).cast());
+                let distances = _mm256_loadu_ps(near.add(from));
+                let mask = _mm256_cmp_ps_mask::<_CMP_LE_OQ>(distances, limit) & valid as u8;
+                _mm256_storeu_si256(children.add(to).cast(), _mm256_maskz_compress_epi32(mask, entries));
+                _mm256_storeu_ps(near.add(to), _mm256_maskz_compress_ps(mask, distances));
+                to += mask.count_ones() as usize;
+                from += WIDTH;
+            }
+            stack.set_height(to);
+        }
+    }
+}

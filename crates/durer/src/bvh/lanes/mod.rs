@@ -1,0 +1,105 @@
+//! Eight numbers side by side, on whatever the processor offers: all the unsafe code of the library.
+//!
+//! [`Lanes`] is what the walk through a tree needs. Each level implements it once, and [`Level::run`] calls a [`Kernel`]
+//! with the one that was chosen. What decides a hit is add, subtract, multiply and compare only, never fused, so
+//! every level gives the same bits; [`Lanes::mul_add`] may be fused or not, and belongs to tests of boxes, which
+//! allow for either.
+#![allow(unsafe_code)]
+
+#[cfg(target_arch = "x86_64")]
+mod avx2;
+#[cfg(target_arch = "x86_64")]
+mod avx512;
+mod level;
+#[cfg(target_arch = "aarch64")]
+mod neon;
+mod scalar;
+mod stack;
+
+pub(super) use level::Available;
+pub use level::{Level, UnknownLevel};
+pub(super) use stack::{Room, Stack};
+
+/// How many numbers lie side by side.
+pub const WIDTH: usize = 8;
+
+/// Operations on eight numbers; a value of the type proves that the processor has them.
+pub(super) trait Lanes: Copy {
+    /// Eight `f32`.
+    type Floats: Copy;
+    /// Eight `f64`.
+    type Doubles: Copy;
+    /// An order of the eight lanes.
+    type Order: Copy;
+
+    fn splat(self, x: f32) -> Self::Floats;
+    fn load(self, from: &[f32; WIDTH]) -> Self::Floats;
+    /// What begins at each of nine rows of `stride` numbers; only the first `stride` lanes mean anything.
+    ///
+    /// Rows come by corner, then by axis in the order of `axes`.
+    fn rows(self, from: &[f32], stride: usize, axes: [usize; 3]) -> [[Self::Floats; 3]; 3];
+    fn sub(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
+    fn mul(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
+    /// a * b + c, rounded once or twice.
+    fn mul_add(self, a: Self::Floats, b: Self::Floats, c: Self::Floats) -> Self::Floats;
+    /// The lesser; `b` where `a` is no number, and one of them where `b` is none.
+    fn min(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
+    /// The greater; `b` where `a` is no number, and one of them where `b` is none.
+    fn max(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
+    /// A bit for each lane where a <= b.
+    fn le(self, a: Self::Floats, b: Self::Floats) -> u32;
+    /// A bit for each lane where a < b.
+    fn lt(self, a: Self::Floats, b: Self::Floats) -> u32;
+    fn store(self, a: Self::Floats) -> [f32; WIDTH];
+    fn splat_wide(self, x: f64) -> Self::Doubles;
+    fn widen(self, a: Self::Floats) -> Self::Doubles;
+    /// Rounded to the nearest.
+    fn narrow(self, a: Self::Doubles) -> Self::Floats;
+    fn add_wide(self, a: Self::Doubles, b: Self::Doubles) -> Self::Doubles;
+    fn sub_wide(self, a: Self::Doubles, b: Self::Doubles) -> Self::Doubles;
+    fn mul_wide(self, a: Self::Doubles, b: Self::Doubles) -> Self::Doubles;
+    fn div_wide(self, a: Self::Doubles, b: Self::Doubles) -> Self::Doubles;
+    /// The lesser; of numbers only.
+    fn min_wide(self, a: Self::Doubles, b: Self::Doubles) -> Self::Doubles;
+    /// The greater; of numbers only.
+    fn max_wide(self, a: Self::Doubles, b: Self::Doubles) -> Self::Doubles;
+    /// A bit for each lane where a < b.
+    fn lt_wide(self, a: Self::Doubles, b: Self::Doubles) -> u32;
+    /// `x` where a == b, else `y`.
+    fn where_equal(self, a: Self::Doubles, b: Self::Doubles, x: Self::Doubles, y: Self::Doubles) -> Self::Doubles;
+    /// The order that puts lane i ^ `flip` at i.
+    fn flipped(self, flip: u32) -> Self::Order;
+    /// Pushes the children whose bits are set, each with its entry distance: those of the first lanes lowest. Bits count
+    /// lanes in the order, children and distances are brought into it.
+    fn push(self, stack: &mut Stack, children: &[u32; WIDTH], near: Self::Floats, order: Self::Order, mask: u32);
+    /// Says that what lies at and after this place of a slice is needed soon, if it exists.
+    fn prefetch<T>(self, slice: &[T], at: usize);
+    /// Removes what begins beyond `t_max`.
+    fn drop_beyond(self, stack: &mut Stack, t_max: f32);
+}
+
+/// A piece of work that runs on any level.
+pub(super) trait Kernel {
+    type Output;
+    /// Must be inlined, to be compiled for the level.
+    fn run<L: Lanes>(self, lanes: L) -> Self::Output;
+}
+
+/// For each set of lanes: their numbers, moved to the front.
+#[cfg(target_arch = "x86_64")]
+static COMPRESS: [[u32; WIDTH]; 256] = {
+    let mut table = [[0; WIDTH]; 256];
+    let mut mask = 0;
+    while mask < 256 {
+        let (mut lane, mut at) = (0, 0);
+        while lane < WIDTH {
+            if mask >> lane & 1 == 1 {
+                table[mask][at] = lane as u32;
+                at += 1;
+            }
+            lane += 1;
+        }
+        mask += 1;
+    }
+    table
+};

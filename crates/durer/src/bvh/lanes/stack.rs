@@ -1,0 +1,105 @@
+//! Nodes that are still to be visited, each with the distance at which the ray enters it.
+
+use super::WIDTH;
+use std::mem::MaybeUninit;
+
+/// As high as the stack of a tree of [`DEEPEST`](crate::bvh::DEEPEST) levels can get, and a vector's width more.
+const ROOM: usize = (WIDTH - 1) * crate::bvh::DEEPEST + 2 * WIDTH;
+
+/// Where a stack lies. It costs nothing to make: what lies above the stack's height is never initialised.
+pub struct Room {
+    children: MaybeUninit<[u32; ROOM]>,
+    near: MaybeUninit<[f32; ROOM]>,
+}
+
+impl Room {
+    #[inline(always)]
+    pub fn new() -> Self {
+        Room { children: MaybeUninit::uninit(), near: MaybeUninit::uninit() }
+    }
+}
+
+/// A stack of nodes.
+pub struct Stack<'a> {
+    // Apart from the height: a constant of both would be written out in full for every ray.
+    room: &'a mut Room,
+    height: usize,
+}
+
+impl<'a> Stack<'a> {
+    #[inline(always)]
+    pub fn new(room: &'a mut Room) -> Self {
+        Stack { room, height: 0 }
+    }
+
+    #[inline(always)]
+    pub fn push(&mut self, child: u32, near: f32) {
+        let (to, to_near) = self.top();
+        // SAFETY: `top` checks that there is room.
+        unsafe {
+            to.write(child);
+            to_near.write(near);
+        }
+        self.height += 1;
+    }
+
+    #[inline(always)]
+    pub fn pop(&mut self) -> Option<u32> {
+        self.height = self.height.checked_sub(1)?;
+        // SAFETY: the height never exceeds the room, and everything below it was written.
+        Some(unsafe { *self.room.children.as_ptr().cast::<u32>().add(self.height) })
+    }
+
+    /// What the next [`Stack::pop`] will give.
+    #[inline(always)]
+    pub fn peek(&self) -> Option<u32> {
+        let top = self.height.checked_sub(1)?;
+        // SAFETY: everything below the height was written.
+        Some(unsafe { *self.room.children.as_ptr().cast::<u32>().add(top) })
+    }
+
+    /// Room for a whole vector on top, to be followed by [`Stack::grow`].
+    #[inline(always)]
+    pub(super) fn top(&mut self) -> (*mut u32, *mut f32) {
+        assert!(self.height + WIDTH <= ROOM);
+        let (children, near, height) = self.all();
+        // SAFETY: there is room for a vector above the height.
+        unsafe { (children.add(height), near.add(height)) }
+    }
+
+    /// # Safety
+    ///
+    /// So many entries must have been written to [`Stack::top`], eight at most.
+    #[inline(always)]
+    pub(super) unsafe fn grow(&mut self, count: u32) {
+        self.height += count as usize;
+    }
+
+    /// Keeps the entries whose distance passes; their order stays.
+    pub(super) fn retain(&mut self, keep: impl Fn(f32) -> bool) {
+        let (children, near, before) = self.all();
+        self.height = 0;
+        for i in 0..before {
+            // SAFETY: everything below the height was written.
+            let (child, near) = unsafe { (*children.add(i), *near.add(i)) };
+            if keep(near) {
+                self.push(child, near);
+            }
+        }
+    }
+
+    /// The lowest child and distance, and the height. There is room for a vector above the height.
+    #[inline(always)]
+    pub(super) fn all(&mut self) -> (*mut u32, *mut f32, usize) {
+        (self.room.children.as_mut_ptr().cast::<u32>(), self.room.near.as_mut_ptr().cast::<f32>(), self.height)
+    }
+
+    /// # Safety
+    ///
+    /// Everything below the height must have been written.
+    #[cfg(target_arch = "x86_64")]
+    #[inline(always)]
+    pub(super) unsafe fn set_height(&mut self, height: usize) {
+        self.height = height;
+    }
+}

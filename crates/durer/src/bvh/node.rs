@@ -1,0 +1,62 @@
+//! The eight-wide node.
+
+use super::lanes::WIDTH;
+use crate::math::Aabb;
+
+/// Boxes of up to eight children, side by side. Those that are not there have empty boxes, which no ray meets.
+///
+/// Children are placed by where they lie: bit k of a place says whether a child lies rather on the upper side of axis
+/// k. For any signs of a ray's direction, places in the order of `place ^ signs` are then roughly from near to far.
+/// Source: Ylitie, Karras, Laine, *Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs*, HPG 2017.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(32))]
+pub(super) struct Node {
+    /// By axis: lower sides, upper sides.
+    pub planes: [[[f32; WIDTH]; 2]; 3],
+    /// An inner child's node number; or [`LEAF`], the count less one shifted by [`COUNT_SHIFT`], and the first item.
+    pub children: [u32; WIDTH],
+}
+
+pub(super) const LEAF: u32 = 1 << 31;
+const COUNT_SHIFT: u32 = 28;
+const FIRST_MASK: u32 = (1 << COUNT_SHIFT) - 1;
+/// A tree holds at most so many items.
+pub(super) const MOST_ITEMS: usize = 1 << COUNT_SHIFT;
+/// A leaf holds at most so many.
+pub(super) const LEAF_SIZE: usize = 8;
+
+impl Node {
+    pub const EMPTY: Node =
+        Node { planes: [[[f32::INFINITY; WIDTH], [f32::NEG_INFINITY; WIDTH]]; 3], children: [LEAF; WIDTH] };
+
+    pub fn set(&mut self, place: usize, bounds: Aabb, child: u32) {
+        for axis in 0..3 {
+            self.planes[axis][0][place] = bounds.min[axis];
+            self.planes[axis][1][place] = bounds.max[axis];
+        }
+        self.children[place] = child;
+    }
+
+    /// The box of a child; empty where there is none.
+    pub fn bounds(&self, place: usize) -> Aabb {
+        let side = |side: usize| std::array::from_fn::<f32, 3, _>(|axis| self.planes[axis][side][place]).into();
+        Aabb { min: side(0), max: side(1) }
+    }
+
+    /// The children that are there: place, box, and number.
+    pub fn children(&self) -> impl Iterator<Item = (usize, Aabb, u32)> {
+        let all = (0..WIDTH).map(|place| (place, self.bounds(place), self.children[place]));
+        all.filter(|(_, bounds, _)| bounds.min.x <= bounds.max.x)
+    }
+}
+
+pub(super) fn leaf(first: usize, count: usize) -> u32 {
+    debug_assert!((1..=LEAF_SIZE).contains(&count) && first < MOST_ITEMS);
+    LEAF | ((count - 1) as u32) << COUNT_SHIFT | first as u32
+}
+
+/// First item and count of a leaf.
+#[inline(always)]
+pub(super) fn items(leaf: u32) -> (usize, usize) {
+    ((leaf & FIRST_MASK) as usize, ((leaf & !LEAF) >> COUNT_SHIFT) as usize + 1)
+}

@@ -1,0 +1,173 @@
+//! A tree over the triangles of a mesh, with the triangles themselves: the kernel that rays spend their time in.
+
+mod build;
+mod leaf;
+mod query;
+
+use super::Tally;
+use super::lanes::{Available, Level};
+use super::node::Node;
+use super::traverse::is_sound;
+use crate::math::{Aabb, Ray, Vec2};
+use crate::shape::watertight::Sheared;
+use query::{All, Any, Nearest, Query};
+
+/// Where a ray meets a mesh.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TriangleHit {
+    /// Position along the ray, in units of the length of its direction.
+    pub t: f32,
+    /// The second and third barycentric coordinate: the point is (1 - u - v) a + u b + v c.
+    pub uv: Vec2,
+    /// Number of the triangle.
+    pub triangle: u32,
+}
+
+/// A bounding volume hierarchy over triangles, for use without any scene.
+///
+/// A ray counts as moved by an infinitesimal across itself, so that it crosses exactly one of the triangles around an
+/// edge or a vertex: no ray slips through a closed mesh, and [`TriangleBvh::count`] is exact. Triangles are met from both
+/// sides. Of hits at the same `t` the one of least number is the closest. All answers are the same, bit for bit, for
+/// all presets, SIMD levels, and numbers of threads.
+///
+/// A ray that is NaN or infinite, or without direction, hits nothing; directions need not be of length 1.
+///
+/// ```
+/// use durer::bvh::{Preset, TriangleBvh};
+/// use durer::math::{Ray, Vec3};
+///
+/// let vertices = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
+/// let triangles = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+/// let tree = TriangleBvh::build(&vertices, &triangles, Preset::default());
+/// let ray = Ray::new(Vec3::new(0.2, 0.2, -1.0), Vec3::Z);
+/// let hit = tree.closest(&ray).unwrap();
+/// assert_eq!((hit.t, hit.triangle), (1.0, 0));
+/// assert!(tree.occluded(&ray));
+/// assert_eq!(tree.count(&ray), 2);
+/// ```
+#[derive(Clone, Debug)]
+pub struct TriangleBvh {
+    nodes: Vec<Node>,
+    /// Numbers of the triangles, in the order of the leaves.
+    order: Vec<u32>,
+    /// Corners by leaf: nine rows, each of as many numbers as the leaf has triangles; a vector's width behind the last.
+    corners: Vec<f32>,
+    bounds: Aabb,
+    level: Available,
+    least_volume: f64,
+}
+
+impl TriangleBvh {
+    /// The same tree with tests at another SIMD level; at the plain one where the processor has not got it.
+    pub fn at_level(self, level: Level) -> Self {
+        TriangleBvh { level: Available::or_scalar(level), ..self }
+    }
+
+    /// The same, blind to triangles for which |(b - a) x (c - a) · d| is less than this: see
+    /// [`ThinTriangles`](crate::dialect::Compat::ThinTriangles).
+    pub(crate) fn least_volume(self, least_volume: f64) -> Self {
+        TriangleBvh { least_volume, ..self }
+    }
+
+    /// A ray prepared for single triangles.
+    #[inline]
+    pub(crate) fn sheared(&self, ray: &Ray) -> Sheared {
+        Sheared::new(ray).least_volume(self.least_volume)
+    }
+
+    /// The first hit in the ray's open interval (`t_min`, `t_max`).
+    #[inline]
+    pub fn closest(&self, ray: &Ray) -> Option<TriangleHit> {
+        self.closest_counting(ray, &mut ())
+    }
+
+    /// As [`TriangleBvh::closest`], counting nodes and tests.
+    #[inline]
+    pub fn closest_counting<T: Tally>(&self, ray: &Ray, tally: &mut T) -> Option<TriangleHit> {
+        self.query(ray, tally, Nearest::default()).hit()
+    }
+
+    /// Whether anything is hit in the ray's open interval.
+    #[inline]
+    pub fn occluded(&self, ray: &Ray) -> bool {
+        self.occluded_counting(ray, &mut ())
+    }
+
+    /// As [`TriangleBvh::occluded`], counting nodes and tests.
+    #[inline]
+    pub fn occluded_counting<T: Tally>(&self, ray: &Ray, tally: &mut T) -> bool {
+        self.query(ray, tally, Any(false)).0
+    }
+
+    /// All hits in the ray's open interval, by `t` and then by number of the triangle.
+    pub fn all_hits(&self, ray: &Ray) -> Vec<TriangleHit> {
+        self.all_hits_counting(ray, &mut ())
+    }
+
+    /// As [`TriangleBvh::all_hits`], counting nodes and tests.
+    pub fn all_hits_counting<T: Tally>(&self, ray: &Ray, tally: &mut T) -> Vec<TriangleHit> {
+        let mut all = self.query(ray, tally, All::default()).0;
+        all.sort_unstable_by(|a, b| a.t.total_cmp(&b.t).then(a.triangle.cmp(&b.triangle)));
+        // A triangle that was cut is found in several leaves.
+        all.dedup_by_key(|hit| hit.triangle);
+        all
+    }
+
+    /// How many triangles the ray crosses in its open interval: odd from inside a closed mesh, even from outside.
+    pub fn count(&self, ray: &Ray) -> usize {
+        self.all_hits(ray).len()
+    }
+
+    /// The first hit of each ray, in order. Neighbours should be neighbours in space, for what they need is fetched once.
+    ///
+    /// # Panics
+    ///
+    /// If there are not as many places for hits as rays.
+    pub fn closest_batch(&self, rays: &[Ray], hits: &mut [Option<TriangleHit>]) {
+        assert_eq!(rays.len(), hits.len(), "a place for each hit");
+        for (ray, hit) in rays.iter().zip(hits) {
+            *hit = self.closest(ray);
+        }
+    }
+
+    /// For each ray, in order, whether anything is hit.
+    ///
+    /// # Panics
+    ///
+    /// If there are not as many places for answers as rays.
+    pub fn occluded_batch(&self, rays: &[Ray], answers: &mut [bool]) {
+        assert_eq!(rays.len(), answers.len(), "a place for each answer");
+        for (ray, answer) in rays.iter().zip(answers) {
+            *answer = self.occluded(ray);
+        }
+    }
+
+    #[inline]
+    fn query<T: Tally, F: query::Found>(&self, ray: &Ray, tally: &mut T, found: F) -> F {
+        match self.nodes.is_empty() || !is_sound(ray) {
+            true => found,
+            false => self.level.run(Query { bvh: self, ray, tally, found }),
+        }
+    }
+
+    /// Bytes in memory.
+    pub fn bytes(&self) -> usize {
+        size_of_val(&*self.nodes) + size_of_val(&*self.order) + size_of_val(&*self.corners)
+    }
+
+    /// Cost of a random ray through the bounds by the surface area heuristic, in tests of a node, where a leaf costs as
+    /// much.
+    pub fn cost(&self) -> f64 {
+        let root = f64::from(self.bounds.half_area());
+        let children = self.nodes.iter().flat_map(|node| node.children());
+        1.0 + children.map(|(_, bounds, _)| f64::from(bounds.half_area()) / root).sum::<f64>()
+    }
+
+    /// The box around everything.
+    pub fn bounds(&self) -> Aabb {
+        self.bounds
+    }
+}
+
+#[cfg(test)]
+mod tests;

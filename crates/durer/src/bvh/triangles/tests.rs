@@ -1,0 +1,235 @@
+//! Trees of triangles against brute force, at every SIMD level and preset.
+
+use super::*;
+use crate::bvh::Preset;
+use crate::math::Vec3;
+use crate::math::random::Random;
+
+type Mesh = (Vec<Vec3>, Vec<[u32; 3]>);
+
+/// A closed sheet over the grid of its corners, which meet bit for bit.
+fn torus(columns: u32, rows: u32) -> Mesh {
+    let turn = |i: u32, count: u32| crate::math::fp::sin_cos_degrees(360.0 * f64::from(i) / f64::from(count));
+    let mut mesh: Mesh = Default::default();
+    for i in 0..columns {
+        for j in 0..rows {
+            let ((s, c), (t, d)) = (turn(i, columns), turn(j, rows));
+            let r = 0.7 + 0.3 * d;
+            mesh.0.push(Vec3::new((r * c) as f32, (0.3 * t) as f32, (r * s) as f32));
+            let at = |i: u32, j: u32| i % columns * rows + j % rows;
+            mesh.1.extend([[at(i, j), at(i + 1, j), at(i + 1, j + 1)], [at(i, j), at(i + 1, j + 1), at(i, j + 1)]]);
+        }
+    }
+    mesh
+}
+
+/// A cube of six times `cuts`^2 squares: rays along axes lie in its faces and edges.
+fn cube(cuts: u32) -> Mesh {
+    let mut mesh: Mesh = Default::default();
+    for face in 0..6 {
+        let first = mesh.0.len() as u32;
+        for i in 0..=cuts {
+            for j in 0..=cuts {
+                let [u, v] = [i, j].map(|k| 2.0 * k as f32 / cuts as f32 - 1.0);
+                let corner =
+                    [[1.0, u, v], [-1.0, v, u], [v, 1.0, u], [u, -1.0, v], [u, v, 1.0], [v, u, -1.0]][face as usize];
+                mesh.0.push(corner.into());
+                if i < cuts && j < cuts {
+                    let at = |i: u32, j: u32| first + i * (cuts + 1) + j;
+                    let [a, b, c, d] = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
+                    mesh.1.extend([[a, b, c], [a, c, d]]);
+                }
+            }
+        }
+    }
+    mesh
+}
+
+/// Triangles that have nothing to do with each other.
+fn soup(random: &mut Random, count: u32, size: f32) -> Mesh {
+    let corners = |_| {
+        let place = random.point();
+        [(); 3].map(|()| place + size * random.point())
+    };
+    let vertices = (0..count).flat_map(corners).collect();
+    (vertices, (0..count).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect())
+}
+
+/// Meshes that are hard on a tree, by name.
+fn hard() -> Vec<(&'static str, Mesh)> {
+    let mut random = Random(7);
+    let grow = |i: u32| libm::pow(1.3, f64::from(i % 400) - 200.0) as f32;
+    let series = (0..400).flat_map(|i| [Vec3::ZERO, grow(i) * Vec3::X, grow(i) * Vec3::new(0.3, 1.0, 0.2)]);
+    let slivers = (0..2000).flat_map(|_| {
+        let (p, along) = (random.point(), random.direction());
+        [p, p + along, p + 0.5 * along + 1e-6 * random.point()]
+    });
+    let apart = |count: u32| (0..count).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect::<Vec<_>>();
+    let slivers: Vec<Vec3> = slivers.collect();
+    let points: Vec<Vec3> = (0..300).map(|_| random.point()).collect();
+    let bad = vec![Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::splat(f32::NAN), Vec3::splat(f32::INFINITY)];
+    vec![
+        ("identical", (vec![Vec3::NEG_ONE, Vec3::X, Vec3::Y], vec![[0, 1, 2]; 20_000])),
+        ("series of sizes", (series.collect(), apart(400))),
+        ("slivers", (slivers, apart(2000))),
+        ("without area", (points, (0..300).map(|i| [i, (7 * i) % 300, i]).collect())),
+        ("not finite", (bad, vec![[0, 1, 2], [0, 1, 3], [0, 4, 2]])),
+        ("one", (vec![Vec3::NEG_ONE, Vec3::X, Vec3::Y], vec![[0, 1, 2]])),
+        ("none", Default::default()),
+        ("soup", soup(&mut random, 3_000, 0.2)),
+        ("large soup", soup(&mut random, 300, 3.0)),
+        ("torus", torus(40, 20)),
+        ("cube", cube(5)),
+    ]
+}
+
+fn scaled((vertices, triangles): &Mesh, scale: f32, offset: Vec3) -> Mesh {
+    (vertices.iter().map(|v| scale * *v + offset).collect(), triangles.clone())
+}
+
+/// Rays of all kinds about a mesh: at vertices, edges and faces, along axes, short, long, and with special numbers.
+fn ray((vertices, triangles): &Mesh, random: &mut Random, scale: f32, offset: Vec3) -> Ray {
+    let mut goal = offset + scale * random.point();
+    if !triangles.is_empty() {
+        let [a, b, c] = triangles[random.below(triangles.len())].map(|i| vertices[i as usize]);
+        goal = [a, 0.5 * (a + b), a + random.unit() * (b - a), (a + b + c) / 3.0, goal][random.below(5)];
+    }
+    let from = offset + scale * [0.5, 2.0, 100.0][random.below(3)] * random.point();
+    let mut ray = Ray::new(from, random.between(0.1, 8.0) * (goal - from));
+    if random.below(3) == 0 {
+        ray.dir = scale * random.between(-2.0, 2.0) * Vec3::AXES[random.below(3)];
+        ray.origin = goal - ray.dir * random.between(-1.0, 3.0);
+    }
+    match random.below(12) {
+        0 => ray.dir[random.below(3)] = [0.0, -0.0, 1e-42, f32::MIN_POSITIVE][random.below(4)],
+        1 => ray.t_min = f32::NEG_INFINITY,
+        2 => (ray.t_min, ray.t_max) = (random.between(-0.2, 0.3), random.between(0.0, 1.0)),
+        _ => {}
+    }
+    ray
+}
+
+/// Every hit, found without a tree.
+fn brute_force((vertices, triangles): &Mesh, ray: &Ray) -> Vec<TriangleHit> {
+    if !is_sound(ray) {
+        return Vec::new();
+    }
+    let sheared = Sheared::new(ray);
+    let hit = |(i, t): (usize, &[u32; 3])| {
+        let corners = t.map(|i| vertices[i as usize]);
+        let crossing =
+            sheared.intersect(corners, ray.t_min, ray.t_max).filter(|_| corners.iter().all(|c| c.is_finite()))?;
+        Some(TriangleHit { t: crossing.t, uv: crossing.uv, triangle: i as u32 })
+    };
+    let mut hits: Vec<TriangleHit> = triangles.iter().enumerate().filter_map(hit).collect();
+    hits.sort_by(|a, b| a.t.total_cmp(&b.t).then(a.triangle.cmp(&b.triangle)));
+    hits
+}
+
+fn bits(hit: &TriangleHit) -> (u32, [u32; 2], u32) {
+    (hit.t.to_bits(), hit.uv.to_array().map(f32::to_bits), hit.triangle)
+}
+
+#[test]
+fn every_tree_at_every_level_finds_what_brute_force_finds() {
+    let mut random = Random(1);
+    let mut found = 0;
+    for (name, mesh) in hard() {
+        for (scale, offset) in
+            [(1.0, Vec3::ZERO), (1.0, Vec3::new(1e4, -3e3, 7e4)), (1e-30, Vec3::ZERO), (1e30, Vec3::ZERO)]
+        {
+            let mesh = scaled(&mesh, scale, offset);
+            let trees: Vec<(String, TriangleBvh)> = Preset::NAMES
+                .into_iter()
+                .flat_map(|(word, preset)| {
+                    let tree = TriangleBvh::build(&mesh.0, &mesh.1, preset);
+                    Level::available().map(move |level| (format!("{word} {level:?}"), tree.clone().at_level(level)))
+                })
+                .collect();
+            let rays = if mesh.1.len() > 5_000 { 20 } else { 120 };
+            for _ in 0..rays {
+                let ray = ray(&mesh, &mut random, scale, offset);
+                let expected = brute_force(&mesh, &ray);
+                found += expected.len().min(1);
+                for (kind, tree) in &trees {
+                    let context = || format!("{name} {scale} {offset} {kind} {ray:?}");
+                    assert_eq!(tree.closest(&ray).as_ref().map(bits), expected.first().map(bits), "{}", context());
+                    assert_eq!(tree.occluded(&ray), !expected.is_empty(), "{}", context());
+                    let all: Vec<_> = tree.all_hits(&ray).iter().map(bits).collect();
+                    assert_eq!(all, expected.iter().map(bits).collect::<Vec<_>>(), "{}", context());
+                }
+            }
+        }
+    }
+    assert!(found > 1_000, "{found}");
+}
+
+#[test]
+fn a_closed_mesh_is_crossed_evenly_from_outside_and_oddly_from_inside() {
+    let mut random = Random(2);
+    let shapes = [(torus(60, 30), Vec3::new(0.7, 0.0, 0.0)), (cube(8), Vec3::ZERO)];
+    for distance in [0.0, 1e3, 1e6] {
+        for (mesh, inside) in &shapes {
+            // Whole numbers keep the mesh closed; its corners are rounded, all alike.
+            let offset = (distance * random.direction()).round();
+            let scale = if distance > 1e5 { 64.0 } else { 1.0 };
+            let mesh = scaled(mesh, scale, offset);
+            let tree = TriangleBvh::build(&mesh.0, &mesh.1, Preset::Best);
+            for round in 0..2_000 {
+                let [a, b, c] = mesh.1[random.below(mesh.1.len())].map(|i| mesh.0[i as usize]);
+                let goal = [a, 0.5 * (a + b), a + random.unit() * (b - a), (a + b + c) / 3.0][round % 4];
+                let outside = offset + scale * [3.0, 1e3][round / 4 % 2] * random.direction();
+                assert!(tree.count(&Ray::new(outside, goal - outside)).is_multiple_of(2), "{outside} {goal}");
+                let start = scale * *inside + offset;
+                for dir in [goal - start, Vec3::AXES[round % 3], -Vec3::AXES[round % 3]] {
+                    assert!(tree.count(&Ray::new(start, dir)) % 2 == 1, "{start} {dir}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_refitted_tree_finds_what_brute_force_finds() {
+    let mut random = Random(3);
+    let mesh = torus(30, 15);
+    for preset in [Preset::Fast, Preset::Best] {
+        let mut tree = TriangleBvh::build(&mesh.0, &mesh.1, preset);
+        for round in 1..6 {
+            let bent = |v: &Vec3| *v + 0.1 * round as f32 * Vec3::new(v.y, v.z * v.x, -v.x) + Vec3::Y * round as f32;
+            let moved: Mesh = (mesh.0.iter().map(bent).collect(), mesh.1.clone());
+            tree.refit(&moved.0, &moved.1);
+            for _ in 0..200 {
+                let ray = ray(&moved, &mut random, 1.0, Vec3::Y * round as f32);
+                assert_eq!(tree.closest(&ray).as_ref().map(bits), brute_force(&moved, &ray).first().map(bits));
+            }
+        }
+    }
+}
+
+#[test]
+fn batches_answer_as_single_rays_do() {
+    let (mesh, mut random) = (torus(20, 10), Random(4));
+    let tree = TriangleBvh::build(&mesh.0, &mesh.1, Preset::Balanced);
+    let rays: Vec<Ray> = (0..100).map(|_| ray(&mesh, &mut random, 1.0, Vec3::ZERO)).collect();
+    let (mut hits, mut occluded) = (vec![None; rays.len()], vec![false; rays.len()]);
+    tree.closest_batch(&rays, &mut hits);
+    tree.occluded_batch(&rays, &mut occluded);
+    for (i, ray) in rays.iter().enumerate() {
+        assert_eq!((hits[i], occluded[i]), (tree.closest(ray), tree.occluded(ray)));
+    }
+    assert!(occluded.iter().filter(|o| **o).count() > 30);
+}
+
+#[test]
+fn a_tree_is_a_function_of_its_triangles() {
+    let mesh = soup(&mut Random(5), 20_000, 0.05);
+    for (name, preset) in Preset::NAMES {
+        let build = |threads: usize| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            let tree = pool.install(|| TriangleBvh::build(&mesh.0, &mesh.1, preset));
+            format!("{:?}{:?}", tree.nodes, tree.order)
+        };
+        assert!(build(1) == build(2), "{name}");
+    }
+}

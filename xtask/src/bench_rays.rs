@@ -1,0 +1,12 @@
+//! `cargo xtask bench-rays`: a workspace of its own, so that the crates we compare with are compiled for it alone.
+
+use crate::root;
+use std::process::{Command, ExitCode};
+
+pub fn run(arguments: &[String]) -> anyhow::Result<ExitCode> {
+    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    let mut command = Command::new(cargo);
+    command.args(["run", "--release", "--quiet", "--manifest-path"]).arg(root()?.join("bench/Cargo.toml")).arg("--");
+    let status = command.args(arguments).status()?;
+    Ok(ExitCode::from(status.code().and_then(|code| u8::try_from(code).ok()).unwrap_or(1)))
+}
