@@ -50,7 +50,7 @@ fn sizes_follow_proportions_and_misfits_are_counted() {
     assert_eq!([size(4.0, 3.0), size(6.0, 1.0), size(360.0, 180.0)], [(592, 444), (1254, 209), (720, 360)]);
     assert_eq!([size(1.0, 1.0), size(4000.0, 1000.0), size(1e4, 1.0)], [(512, 512), (1024, 256), (50000, 5)]);
     // What is proposed has nothing empty, however few pixels there are.
-    for (pixels, w, h) in [(8, 360.0, 180.0), (40, 360.0, 180.0), (33, 6.2832, 2.0), (51, 1.0, 7.3)] {
+    for (pixels, w, h) in [(8, 360.0, 180.0), (40, 360.0, 180.0), (33, 6.25, 2.0), (51, 1.0, 7.3)] {
         let sides = Some(Vec2::new(w, h));
         let (width, height) = Raster::natural_size(sides, (pixels, pixels));
         assert_eq!(Raster::new(width, height, sides, &rules(&[])).empty(), (0, 0), "{width}x{height} for {w}:{h}");

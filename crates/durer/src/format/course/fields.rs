@@ -74,7 +74,7 @@ impl Reader<'_, '_> {
             }
         }
         // A wrong word may have been meant for a field that seems to be missing.
-        if self.errors() > errors {
+        if self.errors() > errors || ours && self.options.strict {
             return;
         }
         let dialect = if ours { Dialect::Durer } else { self.options.dialect };

@@ -1,7 +1,7 @@
 //! Scenes as text.
 
 use crate::describe::{DescribedList, Value};
-use crate::dialect::Dialect;
+use crate::dialect::{Dialect, DialectSet};
 use crate::light::{Light, PointLight};
 use crate::math::Vec3;
 use crate::scene::{Group, Material, MatrixOp, Node, Object, Scene};
@@ -43,9 +43,12 @@ impl Writer {
 
     fn fields<T: DescribedList>(&mut self, thing: &T) {
         let plain = T::from_keyword(thing.keywords()[0].0);
+        // What only our dialect has is written in its words.
+        let ours = thing.keywords().iter().all(|(_, set)| *set == Dialect::Durer as DialectSet);
+        let dialect = if ours { Dialect::Durer } else { self.dialect };
         for (i, field) in thing.fields().iter().enumerate() {
             let Some(value) = thing.get(i) else { continue };
-            let (word, text) = (field.spelling(self.dialect), value_text(&value));
+            let (word, text) = (field.spelling(dialect), value_text(&value));
             // What the dialect cannot say is left out where it says nothing. Texts tell 0 from -0.
             let plain_text = plain.as_ref().and_then(|plain| plain.get(i)).map(|value| value_text(&value));
             if word.is_none() && plain_text.as_ref() == Some(&text) {
