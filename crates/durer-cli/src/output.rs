@@ -38,6 +38,11 @@ impl Target {
         Ok(target)
     }
 
+    /// Whether pictures of this size fit into the files.
+    pub fn check_size(&self, width: u32, height: u32) -> Result<(), Failure> {
+        self.format.check_size(width, height).map_err(|error| bad(error.to_string()))
+    }
+
     /// The file for a picture: named picture.depth.png where each has its own.
     fn file(&self, name: &str) -> PathBuf {
         let extension = self.path.extension().unwrap_or_default().to_string_lossy();

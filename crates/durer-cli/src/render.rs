@@ -6,7 +6,7 @@ use crate::open::{load_options, read};
 use crate::output::{Target, lengthened, say};
 use crate::{Failure, bad, diagrams, job, output, progress, report};
 use durer::diag::Diagnostic;
-use durer::image::{Transfer, check_target};
+use durer::image::{Transfer, check_target, checked_count};
 use durer::render::{Control, Job, Panicked, Part, RenderError, Shard, ShardBy, Statistics, Stop, replay};
 use durer::world::World;
 use std::path::Path;
@@ -33,6 +33,10 @@ pub fn run(command: &RenderCommand) -> Result<(), Failure> {
     (options.accel, options.threads) = (job::accel(&args.job)?, threads);
     let scene = read(&args.scene, &options, args.quiet)?;
     let job = job::job(&args.job, &scene.loaded, args.work.time.is_some())?;
+    // A size that no picture has is refused as such, whatever the memory.
+    checked_count(job.width, job.height).map_err(|error| bad(error.to_string()))?;
+    let window = job.window();
+    target.as_ref().map_or(Ok(()), |target| target.check_size(window.width, window.height))?;
     // What the film takes is not there for the scene.
     let needed = Part::bytes_needed(&job, shard);
     options.memory = memory.map(|memory| memory.saturating_sub(needed));

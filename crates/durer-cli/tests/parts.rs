@@ -89,7 +89,7 @@ fn one_pixel_is_told_alone() {
 #[test]
 fn rules_of_stopping_and_limits() {
     let place = Place::new();
-    let ran = place.gives(0, "render scene.txt --size 64x48 --noise 0.02 --show sample-count -o n.exr");
+    let ran = place.gives(0, "render scene.txt --size 64x48 --noise 0.005 --show sample-count -o n.exr");
     assert_eq!(ran.out, "wrote n.exr\n");
     let counts = place.image("n.exr");
     let most = counts.pixels.iter().fold(0.0_f32, |most, p| most.max(p.x));
@@ -146,7 +146,7 @@ fn a_full_disk_is_told_and_the_old_file_is_intact() {
     let place = Place::new();
     for (name, options) in [("p.png", ""), ("p.exr", ""), ("p.part", "--shard 1/2")] {
         place.put(name, "old");
-        for limit in [0, 100, 1000] {
+        for limit in [0, 100, 500] {
             let line = format!("render scene.txt --size 40x30 -o {name} {options}");
             let mut command = std::process::Command::new("sh");
             command.args([

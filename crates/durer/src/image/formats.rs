@@ -61,6 +61,8 @@ pub struct Format {
     pub depth: Depth,
     /// Whether several layers fit into one file.
     pub layers: bool,
+    /// The greatest width or height that it can hold.
+    pub most_side: u32,
     /// Whether bytes begin as files of this format do.
     begins: fn(&[u8]) -> bool,
     decode: fn(&[u8]) -> Result<Raster, ImageError>,
@@ -68,6 +70,18 @@ pub struct Format {
 }
 
 impl Format {
+    /// Whether a picture of this size fits, which is better known before it is made.
+    ///
+    /// # Errors
+    /// [`ImageError::Size`] and [`ImageError::Unsupported`].
+    pub fn check_size(&self, width: u32, height: u32) -> Result<(), ImageError> {
+        limits::checked_count(width, height)?;
+        match width.max(height) <= self.most_side {
+            true => Ok(()),
+            false => Err(ImageError::unsupported(self.name, format!("a side above {}", self.most_side))),
+        }
+    }
+
     /// Appends a file with these layers to `out`.
     ///
     /// # Errors

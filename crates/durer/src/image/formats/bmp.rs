@@ -10,6 +10,7 @@ pub const FORMAT: Format = Format {
     extensions: &["bmp"],
     depth: Depth::EightBit,
     layers: false,
+    most_side: u32::MAX,
     begins: |bytes| bytes.starts_with(b"BM"),
     decode: |bytes| codec::decode(NAME, ImageFormat::Bmp, bytes),
     encode,

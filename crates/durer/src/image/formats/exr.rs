@@ -22,6 +22,7 @@ pub const FORMAT: Format = Format {
     extensions: &["exr"],
     depth: Depth::Float,
     layers: true,
+    most_side: u32::MAX,
     begins: |bytes| bytes.starts_with(&[0x76, 0x2f, 0x31, 0x01]),
     decode,
     encode,

@@ -13,6 +13,7 @@ pub const FORMAT: Format = Format {
     extensions: &["hdr"],
     depth: Depth::Float,
     layers: false,
+    most_side: u32::MAX,
     begins: |bytes| bytes.starts_with(b"#?RADIANCE") || bytes.starts_with(b"#?RGBE"),
     decode,
     encode,

@@ -11,6 +11,7 @@ pub const FORMAT: Format = Format {
     extensions: &["pfm"],
     depth: Depth::Float,
     layers: false,
+    most_side: u32::MAX,
     begins: |bytes| matches!(bytes, [b'P', b'F' | b'f', space, ..] if space.is_ascii_whitespace()),
     decode,
     encode,

@@ -10,6 +10,7 @@ pub const FORMAT: Format = Format {
     extensions: &["png"],
     depth: Depth::EightBit,
     layers: false,
+    most_side: u32::MAX,
     begins: |bytes| bytes.starts_with(b"\x89PNG\r\n\x1a\n"),
     decode: |bytes| codec::decode(NAME, ImageFormat::Png, bytes),
     encode,

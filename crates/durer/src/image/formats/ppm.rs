@@ -10,6 +10,7 @@ pub const FORMAT: Format = Format {
     extensions: &["ppm", "pnm"],
     depth: Depth::EightBit,
     layers: false,
+    most_side: u32::MAX,
     begins: |bytes| matches!(bytes, [b'P', b'1'..=b'7', b' ' | b'\t'..=b'\r' | b'#', ..]),
     // Samples are scaled from the file's value of white to 255, or to 65535 if that is greater than 255.
     decode: |bytes| codec::decode(NAME, ImageFormat::Pnm, bytes),

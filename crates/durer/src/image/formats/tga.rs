@@ -11,6 +11,7 @@ pub const FORMAT: Format = Format {
     extensions: &["tga"],
     depth: Depth::EightBit,
     layers: false,
+    most_side: 65535,
     // The format has no mark of its own: it is known by its name only.
     begins: |_| false,
     decode: |bytes| codec::decode(NAME, ImageFormat::Tga, bytes),
