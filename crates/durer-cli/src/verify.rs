@@ -4,10 +4,12 @@ use crate::args::VerifyArgs;
 use crate::open::{load_options, open};
 use crate::output::say;
 use crate::{Failure, bad, job, progress};
+use durer::bvh::Level;
 use durer::compile::AccelKind;
 use durer::render::verify::{Way, WayError, compare};
 use durer::render::{Control, Part, RenderError};
 use durer::world::World;
+use std::ffi::OsString;
 use std::process::{Command, Stdio};
 use std::sync::Arc;
 use std::sync::atomic::Ordering::Relaxed;
@@ -18,7 +20,7 @@ const STRUCTURES: [(&str, AccelKind); 3] =
 
 /// The processor's instructions that can be had, as `DURER_SIMD` takes them. Which are used is decided once for a whole process.
 fn simd_levels() -> Vec<&'static str> {
-    vec!["scalar"]
+    Level::available().map(Level::name).collect()
 }
 
 pub fn run(args: &VerifyArgs) -> Result<(), Failure> {
@@ -66,7 +68,7 @@ pub fn run(args: &VerifyArgs) -> Result<(), Failure> {
     let plain: Part = made.map_err(crate::render::failure)?.map_err(|text| Failure::Other(anyhow::anyhow!(text)))?;
     let hash = plain.hash().to_string();
     let levels = simd_levels();
-    if let Some(level) = levels.iter().skip(1).find(|level| hash_at(level).ok().as_ref() != Some(&hash)) {
+    if let Some(level) = levels.iter().find(|level| hash_at(level).ok().as_ref() != Some(&hash)) {
         return Err(Failure::Other(anyhow::anyhow!("with DURER_SIMD={level} the film differs")));
     }
     if !args.quiet {
@@ -83,7 +85,13 @@ pub fn run(args: &VerifyArgs) -> Result<(), Failure> {
 
 /// The hash that another process finds with other instructions, in fewer ways.
 fn hash_at(level: &str) -> Result<String, Failure> {
-    let arguments = std::env::args_os().skip(1).chain(["--quiet", "--trials", "10"].map(Into::into));
+    let mut arguments: Vec<OsString> = std::env::args_os().skip(1).collect();
+    // Options may be given once only.
+    while let Some(at) = arguments.iter().position(|argument| argument == "--trials") {
+        arguments.drain(at..(at + 2).min(arguments.len()));
+    }
+    arguments.retain(|a| a != "--quiet" && a != "-q" && !a.to_string_lossy().starts_with("--trials="));
+    arguments.extend(["--quiet", "--trials", "10"].map(OsString::from));
     let mut command = Command::new(std::env::current_exe()?);
     let output = command.args(arguments).env("DURER_SIMD", level).stdin(Stdio::null()).output()?;
     let text = String::from_utf8_lossy(&output.stdout).into_owned();

@@ -179,7 +179,7 @@ fn mistakes_in_real_pictures_are_named() {
         // One pixel in twenty, without a pattern.
         let speckle = |x: u32, y: u32| {
             let mixed = x.wrapping_mul(0x9e37_79b9) ^ y.wrapping_mul(0x85eb_ca6b).rotate_left(13);
-            ((mixed ^ mixed >> 15).wrapping_mul(0xc2b2_ae35) >> 16) % 20 == 0
+            ((mixed ^ mixed >> 15).wrapping_mul(0xc2b2_ae35) >> 16).is_multiple_of(20)
         };
         let curve = |v: u8| durer::image::Transfer::Srgb.encode(f32::from(v) / 255.0);
         let wrong: [(&str, Image8); 7] = [

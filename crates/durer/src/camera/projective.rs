@@ -5,8 +5,10 @@
 //! upper triangular K and a rotation R; the eye is -M⁻¹ p4. Between R and K the lens distorts the point (x, y) at depth 1,
 //! with s = x² + y², by Brown's and Conrady's model in OpenCV's form:
 //!
-//!     x' = x (1 + k1 s + k2 s² + k3 s³) + 2 p1 x y + p2 (s + 2 x²)
-//!     y' = y (1 + k1 s + k2 s² + k3 s³) + p1 (s + 2 y²) + 2 p2 x y
+//! ```text
+//! x' = x (1 + k1 s + k2 s² + k3 s³) + 2 p1 x y + p2 (s + 2 x²)
+//! y' = y (1 + k1 s + k2 s² + k3 s³) + p1 (s + 2 y²) + 2 p2 x y
+//! ```
 //!
 //! Rays need the inverse, by Newton's method. Where the distortion folds back on itself, nothing is seen: there the model
 //! has no meaning.
