@@ -2,15 +2,16 @@
 
 mod text;
 
-use super::{Job, RenderError, Sampling, camera_ray, center_ray, raster};
-use crate::camera::{Lens, Raster};
+use super::samples::{Aim, Samples};
+use super::{Job, RenderError, Sampling, center_ray, raster};
+use crate::camera::Raster;
 use crate::dialect::Compat;
 use crate::film::Film;
 use crate::integrator::{Account, Node, Whitted};
 use crate::math::{Color, Ray, Vec2, Vec3};
-use crate::sampler::Sampler;
 use crate::world::{Material, World};
 use serde::Serialize;
+use std::sync::atomic::AtomicBool;
 pub use text::{Line, Names, ray_text};
 
 /// A pixel and all that made it.
@@ -73,44 +74,23 @@ pub fn explain(world: &World, job: &Job, x: u32, y: u32) -> Result<Explanation, 
     if x >= job.width || y >= job.height {
         return Err(RenderError::CropOutside(job.width, job.height));
     }
-    let raster = raster(world, job.width, job.height);
-    let mut explanation =
-        Explanation { x, y, color: Vec3::ZERO, coverage: 1.0, samples: Vec::new(), stale_texels: None };
-    match job.sampling {
-        Sampling::Center => {
-            let ray = center_ray(world, &raster, (x, y));
-            let light = ray.and_then(|ray| explain_ray(world, job, &ray));
-            let (place, lens) = (center(x, y), CENTER);
-            explanation.samples.push(SampleAccount { sample: 0, place, lens, weight: 1.0, light });
-            if world.rules.has(Compat::StaleTexels) {
-                explanation.stale_texels = stale_texel(world, job, &raster, (x, y));
-            }
-        }
-        Sampling::Filtered { samples, filter } => {
-            let warp = filter.sampler();
-            for sample in 0..samples {
-                let (offset, weight) = warp.sample(Sampler::Sobol.pixel_position(job.seed, x, y, sample, samples));
-                let place = center(x, y) + offset;
-                let lens = match world.camera.has_aperture() {
-                    true => Sampler::Sobol.lens_position(job.seed, x, y, sample),
-                    false => CENTER,
-                };
-                let ray = camera_ray(world, &raster, (x, y), place, lens);
-                let light = ray.and_then(|ray| explain_ray(world, job, &ray));
-                explanation.samples.push(SampleAccount { sample, place, lens, weight, light });
-            }
-        }
-        Sampling::Course2004 { .. } | Sampling::Course2012 { .. } => return Err(RenderError::Unexplained),
+    if matches!(job.sampling, Sampling::Course2004 { .. } | Sampling::Course2012 { .. }) {
+        return Err(RenderError::Unexplained);
     }
+    let (stop, mut stale_texels) = (AtomicBool::new(false), None);
+    let source = Samples::without_habits(world, job, &stop);
+    let account = |sample| {
+        let Aim { place, lens, weight, ray } = source.aim(x, y, sample);
+        let light = ray.and_then(|ray| explain_ray(world, job, &ray));
+        SampleAccount { sample, place, lens, weight, light }
+    };
+    let samples = (0..job.sampling.samples()).map(account).collect();
+    if job.sampling == Sampling::Center && world.rules.has(Compat::StaleTexels) {
+        stale_texels = stale_texel(world, job, &raster(world, job.width, job.height), (x, y));
+    }
+    let mut explanation = Explanation { x, y, color: Vec3::ZERO, coverage: 1.0, samples, stale_texels };
     (explanation.color, explanation.coverage) = explanation.sum();
     Ok(explanation)
-}
-
-/// The middle of the lens.
-const CENTER: Vec2 = Vec2::splat(0.5);
-
-fn center(x: u32, y: u32) -> Vec2 {
-    Vec2::new(x as f32, y as f32) + 0.5
 }
 
 /// The colour of a texture, noise or plain surface at a pixel's centre, and its material, if that has one.

@@ -8,7 +8,7 @@ use crate::dialect::Compat;
 use crate::film::course::{CourseFilter, StoredSample, StoredSamples, average_3x3, blur, jittered_position};
 use crate::film::{Film, FilterSampler};
 use crate::integrator::Whitted;
-use crate::math::{Color, Vec2, Vec3};
+use crate::math::{Color, Ray, Vec2, Vec3};
 use crate::sampler::Sampler;
 use crate::world::{Material, World};
 use std::cell::Cell;
@@ -70,6 +70,18 @@ struct Show {
 /// Shares of a pixel nearer to 1 than this are 1: sums of a filter's weights are a little off.
 const NEARLY_ALL: f32 = 1.0 - 1e-6;
 
+/// Where a sample goes.
+pub(super) struct Aim {
+    /// In the picture, in pixels from the upper left corner.
+    pub(super) place: Vec2,
+    /// In the lens, from 0 to 1.
+    pub(super) lens: Vec2,
+    /// How much it counts for in the pixel.
+    pub(super) weight: f32,
+    /// Its ray; `None` where the camera sees nothing.
+    pub(super) ray: Option<Ray>,
+}
+
 /// Takes the samples of a job.
 pub(super) struct Samples<'a> {
     world: &'a World,
@@ -84,17 +96,22 @@ pub(super) struct Samples<'a> {
 
 impl<'a> Samples<'a> {
     pub(super) fn new(world: &'a World, job: &'a Job, stop: &'a AtomicBool) -> Self {
+        let mut samples = Self::without_habits(world, job, stop);
+        if job.sampling == Sampling::Center && world.rules.has(Compat::StaleTexels) {
+            samples.stale = samples.stale_texels();
+        }
+        samples
+    }
+
+    /// The same without what [`Compat::StaleTexels`] adds, which takes a look at the whole picture.
+    pub(super) fn without_habits(world: &'a World, job: &'a Job, stop: &'a AtomicBool) -> Self {
         let warp = match job.sampling {
             Sampling::Filtered { filter, .. } => Some(filter.sampler()),
             _ => None,
         };
         let whitted = Whitted { world, settings: job.settings, cancel: Some(stop) };
         let raster = raster(world, job.width, job.height);
-        let mut samples = Samples { world, job, raster, whitted, warp, stale: Vec::new(), stop };
-        if job.sampling == Sampling::Center && world.rules.has(Compat::StaleTexels) {
-            samples.stale = samples.stale_texels();
-        }
-        samples
+        Samples { world, job, raster, whitted, warp, stale: Vec::new(), stop }
     }
 
     /// The size of a sample's weight.
@@ -129,25 +146,31 @@ impl<'a> Samples<'a> {
 
     /// One sample of a pixel: its colour, if the camera sees anything there, and its weight.
     pub(super) fn sample(&self, x: u32, y: u32, sample: u32, rays: &mut Rays) -> (Option<Color>, f32) {
+        let Aim { ray, weight, .. } = self.aim(x, y, sample);
+        let color = ray.map(|ray| self.whitted.radiance(&ray, rays));
+        match self.stale.get((y * self.job.width + x) as usize) {
+            Some(&stale) => (color.map(|color| color + stale), weight),
+            None => (color, weight),
+        }
+    }
+
+    /// Where a sample of a pixel goes, for samplings whose samples count for their own pixel alone.
+    pub(super) fn aim(&self, x: u32, y: u32, sample: u32) -> Aim {
         let job = self.job;
-        let (place, sampler, weight) = match (job.sampling, &self.warp) {
+        let (place, lens, weight) = match (job.sampling, &self.warp) {
             (Sampling::Filtered { samples, .. }, Some(warp)) => {
                 let position = Sampler::Sobol.pixel_position(job.seed, x, y, sample, samples);
                 let (offset, weight) = warp.sample(position);
-                (center(x, y) + offset, Sampler::Sobol, weight)
+                (center(x, y) + offset, self.lens(Sampler::Sobol, x, y, sample), weight)
             }
             (Sampling::Course2004 { sampler, samples, .. }, _) => {
                 let position = sampler.pixel_position(job.seed, x, y, sample, sampler.round_up(samples));
-                (Vec2::new(x as f32, y as f32) + position, sampler, 1.0)
+                (Vec2::new(x as f32, y as f32) + position, self.lens(sampler, x, y, sample), 1.0)
             }
-            _ => {
-                let stale = self.stale.get((y * job.width + x) as usize).copied().unwrap_or_default();
-                let ray = center_ray(self.world, &self.raster, (x, y));
-                return (ray.map(|ray| self.whitted.radiance(&ray, rays) + stale), 1.0);
-            }
+            // One ray through the middles of pixel and lens.
+            _ => (center(x, y), Vec2::splat(0.5), 1.0),
         };
-        let ray = camera_ray(self.world, &self.raster, (x, y), place, self.lens(sampler, x, y, sample));
-        (ray.map(|ray| self.whitted.radiance(&ray, rays)), weight)
+        Aim { place, lens, weight, ray: camera_ray(self.world, &self.raster, (x, y), place, lens) }
     }
 
     /// Where in the lens a sample lies. A lens without extent needs no numbers.
