@@ -32,6 +32,7 @@ pub struct Cli {
 pub enum Command {
     Render(Box<RenderCommand>),
     Explain(Box<ExplainArgs>),
+    Lesson(Box<LessonArgs>),
     Merge(MergeArgs),
     Verify(Box<VerifyArgs>),
     Course(CourseArgs),
@@ -321,6 +322,38 @@ pub struct ExplainArgs {
     /// As a page with the picture, the tree and the rays in space
     #[arg(long, value_name = "FILE")]
     pub html: Option<PathBuf>,
+}
+
+/// Show a scene in the order of the lecture: rays, distance, normals, light by light, with equations and mistakes
+#[derive(Args)]
+#[command(after_help = "Examples:
+  durer lesson scene.txt -o lesson/
+  durer lesson scene.txt -o lesson/ --size 400x300 --samples 64
+  durer lesson scene.txt -o lesson/ --dialect f04 --shadows --bounces 4 --transfer course
+
+FOLDER gets a page for a browser, index.html, which needs nothing else, and the same as lesson.md with its pictures as
+files. A folder that is there already keeps its other files; what an earlier lesson wrote is replaced.
+Give the options with which the picture is rendered: the last step is that picture. A step of which nothing is seen in
+the scene is shown in a small scene of ours, and says so.")]
+pub struct LessonArgs {
+    /// The scene file
+    pub scene: PathBuf,
+    /// The folder to write [default: the scene's name with -lesson, here]
+    #[arg(short, long, value_name = "FOLDER")]
+    pub output: Option<PathBuf>,
+    #[command(flatten)]
+    pub reading: SceneArgs,
+    #[command(flatten)]
+    pub job: JobArgs,
+    /// Threads that build and render [default: as many as the machine has]
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+    /// How colours become eight bits
+    #[arg(long, default_value = "srgb", value_parser = PossibleValuesParser::new(Transfer::ALL.map(Transfer::name)))]
+    pub transfer: String,
+    /// Say nothing but errors
+    #[arg(short, long)]
+    pub quiet: bool,
 }
 
 /// Take the arguments of the course's own programs, of any year

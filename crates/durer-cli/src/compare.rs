@@ -59,7 +59,8 @@ fn work(args: &CompareArgs) -> Result<(), Failure> {
     let options = Options { tolerance: args.tolerance, allowed: args.allow / 100.0, transfer };
 
     let (names, folders, extra) = (found.pairs.iter().map(name).collect::<Vec<_>>(), found.folders, found.extra);
-    let all: Vec<Compared> = progress::each(&names, found.pairs, |pair| one(pair, &options, args.report.is_some()));
+    let all: Vec<Compared> =
+        progress::each(&names, found.pairs, false, |pair| one(pair, &options, args.report.is_some()));
     if let ([Compared { outcome: Outcome::Failed(reason), .. }], false) = (&all[..], folders) {
         return Err(bad(reason));
     }

@@ -9,11 +9,13 @@ mod explain;
 mod info;
 mod job;
 mod keep;
+mod lesson;
 mod manual;
 mod memory;
 mod merge;
 mod open;
 mod output;
+mod page;
 mod progress;
 mod render;
 mod report;
@@ -52,6 +54,7 @@ fn main() -> ExitCode {
             Command::Merge(args) => merge::run(&args),
             Command::Verify(args) => verify::run(&args),
             Command::Explain(args) => explain::run(&args),
+            Command::Lesson(args) => lesson::run(&args),
             Command::Course(args) => course::run(args.arguments, None),
             Command::Info(args) => info::run(&args),
             Command::Convert(args) => convert::run(&args),

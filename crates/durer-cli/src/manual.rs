@@ -18,7 +18,7 @@ pub fn dialects() -> Result<(), Failure> {
             say(&format!("         habits: {}", habits.join(", ")));
         }
     }
-    say("\nHabits of old programs (--compat NAME, --compat no-NAME):");
+    say("\nHabits of old programs, and a usual mistake (--compat NAME, --compat no-NAME):");
     for (_, name, doc) in Compat::ALL {
         say(&format!("  {name:<18}{}", doc.split_whitespace().collect::<Vec<_>>().join(" ")));
     }

@@ -84,11 +84,11 @@ fn with_bar<T>(control: &Control, render: impl FnOnce() -> Result<T, RenderError
 }
 
 /// Works through a list one by one, with a line that tells how far it is where that takes long (on a terminal).
-pub fn each<T, R>(names: &[String], items: Vec<T>, mut work: impl FnMut(T) -> R) -> Vec<R> {
+pub fn each<T, R>(names: &[String], items: Vec<T>, quiet: bool, mut work: impl FnMut(T) -> R) -> Vec<R> {
     let bar = ProgressBar::with_draw_target(Some(items.len() as u64), ProgressDrawTarget::hidden());
     let style = ProgressStyle::with_template("{bar:40} {pos} of {len}  {elapsed}  {msg}");
     bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
-    if std::io::stderr().is_terminal() {
+    if !quiet && std::io::stderr().is_terminal() {
         bar.set_draw_target(ProgressDrawTarget::stderr());
         bar.enable_steady_tick(Duration::from_millis(200));
     }

@@ -212,7 +212,7 @@ pub type CompatSet = u32;
 
 macro_rules! compats {
     ($($(#[doc = $doc:literal])+ $variant:ident = $name:literal,)+) => {
-        /// A named bug or odd habit of an official program. Off unless its dialect, or it by name, is asked for.
+        /// A named bug or odd habit, of an official program where nothing else is said. Off unless its dialect, or it by name, is asked for.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         #[repr(u8)]
         pub enum Compat { $($(#[doc = $doc])+ $variant,)+ }
@@ -266,6 +266,9 @@ compats! {
     StaleNormals = "stale-normals",
     /// The range of a depth picture is cut to whole numbers.
     WholeDepths = "whole-depths",
+    /// Shading normals of transformed things go by the matrix itself and not by its inverse transpose: no official
+    /// program's habit, but a usual mistake.
+    MovedNormals = "moved-normals",
 }
 
 impl Compat {

@@ -13,6 +13,7 @@ pub mod film;
 pub mod format;
 pub mod image;
 pub mod integrator;
+pub mod lesson;
 pub mod light;
 pub mod load;
 pub mod material;

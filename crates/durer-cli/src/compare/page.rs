@@ -3,18 +3,14 @@
 use super::{Compared, Outcome, heat, name, screen, text};
 use crate::Failure;
 use crate::args::CompareArgs;
-use crate::output::encode;
-use base64::Engine;
-use base64::engine::general_purpose::STANDARD;
+use crate::page;
 use durer::image::compare::{Comparison, Picture};
-use durer::image::{Layer, Transfer, format_for};
+use durer::image::{Layer, Transfer};
 use serde_json::{Value, json};
 use std::path::PathBuf;
 
 /// The page, but for its data.
 const PAGE: &str = include_str!("page.html");
-/// Where the data go in it.
-const PLACE: &str = "\"the data\"";
 
 /// The pictures of a pair, as the page holds them: PNG in base 64.
 pub struct Shown {
@@ -26,9 +22,8 @@ pub struct Shown {
 impl Shown {
     pub fn new(reference: &Picture, picture: &Picture, found: &Comparison) -> Result<Shown, String> {
         let png = |(layer, transfer): (Layer, Transfer)| -> Result<String, String> {
-            let format = format_for("x.png").map_err(|error| error.to_string())?;
-            let bytes = encode(format, &[layer], transfer, &[]).map_err(|_| "the picture is too large for a page")?;
-            Ok(format!("data:image/png;base64,{}", STANDARD.encode(bytes)))
+            let png = page::png(layer, transfer).map_err(|_| "the picture is too large for a page")?;
+            Ok(page::uri(&png))
         };
         Ok(Shown {
             reference: png(screen(reference))?,
@@ -49,10 +44,7 @@ pub fn page(all: &[Compared], extra: &[PathBuf], args: &CompareArgs) -> Result<S
         "extra": extra.iter().map(|path| path.to_string_lossy()).collect::<Vec<_>>(),
         "pairs": all.iter().map(pair).collect::<Vec<_>>(),
     });
-    // No text in the data can end the script that holds them.
-    let data = serde_json::to_string(&data)?.replace('<', "\\u003c");
-    let (before, after) = PAGE.split_once(PLACE).unwrap_or((PAGE, ""));
-    Ok(format!("{before}{data}{after}"))
+    Ok(page::with_data(PAGE, &data))
 }
 
 fn pair(compared: &Compared) -> Value {

@@ -1,13 +1,10 @@
 //! The explanation as a page of its own.
 
 use crate::Failure;
-use crate::output::{encode, format};
-use base64::Engine;
-use base64::engine::general_purpose::STANDARD;
+use crate::page;
 use durer::image::{Image, Layer, Transfer};
 use durer::world::World;
 use serde_json::{Value, json};
-use std::path::Path;
 
 /// The page without its data.
 const PAGE: &str = include_str!("page.html");
@@ -16,17 +13,15 @@ const MOST_BOXES: usize = 400;
 
 /// A page that needs nothing else: the picture, the tree of one sample to begin with, and the rays in space.
 pub fn page(explanation: Value, sample: u32, world: &World, picture: &Image) -> Result<String, Failure> {
-    let layers = [Layer::color("color", picture.clone())];
-    let png = encode(format(Path::new("picture.png"))?, &layers, Transfer::default(), &[])?;
+    let picture = page::png(Layer::color("color", picture.clone()), Transfer::default())?;
     let boxes = world.objects.iter().filter_map(|object| object.bounds()).take(MOST_BOXES);
     let boxes: Vec<Value> = boxes.map(|b| json!({ "min": b.min, "max": b.max })).collect();
     let data = json!({
         "explanation": explanation,
         "sample": sample,
-        "picture": format!("data:image/png;base64,{}", STANDARD.encode(png)),
+        "picture": page::uri(&picture),
         "boxes": boxes,
         "eye": world.frame.eye,
     });
-    // Nothing in the data can end the element that it stands in.
-    Ok(PAGE.replacen("@DATA@", &data.to_string().replace('<', "\\u003c"), 1))
+    Ok(page::with_data(PAGE, &data))
 }

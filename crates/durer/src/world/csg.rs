@@ -14,7 +14,7 @@
 //! surface is turned inside out, and whether the ray enters the solid.
 
 use super::solid::{Rule, Solid};
-use super::{Geometry, Object};
+use super::{Geometry, Object, Placing};
 use crate::bvh::{Bvh, Tally};
 use crate::math::{Aabb, Ray, Vec2, Vec3};
 use crate::shape::{Crossing, Shape, Surface};
@@ -200,10 +200,10 @@ impl Csg {
     }
 
     /// The surface at a hit, in world space; its normals point out of the solid.
-    pub fn surface(&self, ray: &Ray, crossing: &Crossing, part: u32, as_is: bool) -> Surface {
+    pub fn surface(&self, ray: &Ray, crossing: &Crossing, part: u32, placing: Placing) -> Surface {
         let (leaf, number) = (&self.leaves[self.leaf_of(part)], self.triangle(part));
         let point = leaf.object.local_line(ray).at(f64::from(crossing.t));
-        let surface = leaf.object.surface(ray, point, crossing, number, as_is);
+        let surface = leaf.object.surface(ray, point, crossing, number, placing);
         // A mesh may be inside out by itself: what counts is the ray's way.
         let turned = match leaf.object.geometry {
             Geometry::Mesh(_) => (surface.n_geo.dot(ray.dir) < 0.0) != (part & ENTERS != 0),
@@ -358,7 +358,9 @@ impl Csg {
         let cosine = |event: &Event| {
             let object = &self.leaves[event.leaf as usize].object;
             let crossing = Crossing { t: event.t as f32, uv: event.uv };
-            let n = object.surface(ray, object.local_line(ray).at(event.t), &crossing, event.part, false).n_geo;
+            let n = object
+                .surface(ray, object.local_line(ray).at(event.t), &crossing, event.part, Placing::default())
+                .n_geo;
             n.as_dvec3().dot(line.dir).abs() / line.dir.length()
         };
         gap * cosine(a).max(cosine(b)) <= slack

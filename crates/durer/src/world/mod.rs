@@ -7,7 +7,7 @@ pub mod solid;
 
 use crate::bvh::{Bvh, Grid, Tally};
 use crate::camera::{Camera, Frame};
-use crate::dialect::Rules;
+use crate::dialect::{Compat, Rules};
 use crate::light::Light;
 use crate::material::Pattern;
 use crate::math::{Aabb, Color, Ray, Vec2, Vec3};
@@ -15,7 +15,7 @@ use crate::shape::{Crossing, Surface};
 use crate::source::Digest;
 use crate::texture::{CubeMap, Texture};
 pub use material::{HighlightModel, Material, Part, Parts, Phong};
-pub use object::{Geometry, MeshTree, Object};
+pub use object::{Geometry, MeshTree, Object, Placing};
 
 /// A scene ready to be traced.
 #[derive(Debug)]
@@ -174,7 +174,8 @@ impl World {
         let object = &self.objects[hit.object as usize];
         let point = object.local_ray(ray).line().at(f64::from(hit.t));
         let crossing = Crossing { t: hit.t, uv: hit.uv };
-        object.surface(ray, point, &crossing, hit.part, self.rules.is_official())
+        let placing = Placing { as_is: self.rules.is_official(), moved_normals: self.rules.has(Compat::MovedNormals) };
+        object.surface(ray, point, &crossing, hit.part, placing)
     }
 
     /// The number of the material at a hit.

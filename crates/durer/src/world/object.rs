@@ -2,7 +2,7 @@
 
 use super::csg::Csg;
 use crate::bvh::{Preset, Tally, TriangleBvh};
-use crate::math::{Aabb, Affine, Line, Ray, Vec2};
+use crate::math::{Aabb, Affine, Line, Ray, Vec2, Vec3};
 use crate::shape::{Crossing, Mesh, Primitive, Shape, Surface};
 use glam::DVec3;
 use std::sync::Arc;
@@ -18,6 +18,15 @@ pub struct Object {
     pub material: u32,
     /// Where it is written.
     pub span: crate::diag::Span,
+}
+
+/// Habits of old programs, and one mistake, in how a surface is placed in the world.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Placing {
+    /// Whether its position is the ray's own, without bounds on its error.
+    pub as_is: bool,
+    /// Whether [`crate::dialect::Compat::MovedNormals`] holds.
+    pub moved_normals: bool,
 }
 
 /// The form of an object.
@@ -106,17 +115,19 @@ impl Object {
     }
 
     /// The surface in world space, at a crossing that is next to this point of object space.
-    ///
-    /// With `as_is`, its position is the ray's own, without bounds on its error.
-    pub(super) fn surface(&self, ray: &Ray, point: DVec3, crossing: &Crossing, part: u32, as_is: bool) -> Surface {
+    pub(super) fn surface(&self, ray: &Ray, point: DVec3, crossing: &Crossing, part: u32, placing: Placing) -> Surface {
         let surface = match &self.geometry {
             Geometry::Primitive(shape) => shape.surface(point, crossing),
             Geometry::Mesh(tree) => tree.mesh.surface(part, crossing),
-            Geometry::Solid(solid) => return solid.surface(ray, crossing, part, as_is),
+            Geometry::Solid(solid) => return solid.surface(ray, crossing, part, placing),
         };
-        if as_is {
-            let [n_geo, n_shade] =
-                [surface.n_geo, surface.n_shade].map(|n| self.to_world.as_ref().map_or(n, |m| m.normal(n)));
+        let shading = |to_world: &Affine, n: Vec3| match placing.moved_normals {
+            true => to_world.vector(n).normalize_or(n),
+            false => to_world.normal(n),
+        };
+        if placing.as_is {
+            let n_geo = self.to_world.as_ref().map_or(surface.n_geo, |m| m.normal(surface.n_geo));
+            let n_shade = self.to_world.as_ref().map_or(surface.n_shade, |m| shading(m, surface.n_shade));
             return Surface { position: ray.at(crossing.t), n_geo, n_shade, ..surface };
         }
         // Beside the rounding itself, a bent surface leaves the tangent plane by its square.
@@ -128,7 +139,7 @@ impl Object {
             position: to_world.point(surface.position),
             error: error + to_world.spread(surface.bulge(to_world.inverse_spread(error))),
             n_geo: to_world.normal(surface.n_geo),
-            n_shade: to_world.normal(surface.n_shade),
+            n_shade: shading(to_world, surface.n_shade),
             lifts: surface.lifts.map(|lift| to_world.vector(lift)),
             ..surface
         }

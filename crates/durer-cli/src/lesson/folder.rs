@@ -1,0 +1,84 @@
+//! The folder of a lesson: only a lesson's own files are ever replaced.
+
+use super::TEXT;
+use crate::output::save_silently;
+use crate::{Failure, bad};
+use durer::image::check_target;
+use std::collections::BTreeSet;
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+
+/// The first line of a lesson's text.
+pub const MARK: &str =
+    "<!-- Written by durer lesson, which also replaces or removes the files that are linked here. -->";
+
+/// Where a lesson goes.
+pub struct Folder {
+    path: PathBuf,
+    /// Whether it is still to be made.
+    new: bool,
+    /// Files in it that an earlier lesson wrote.
+    own: BTreeSet<String>,
+}
+
+impl Folder {
+    /// Says now what is known to prevent writing.
+    pub fn new(path: PathBuf) -> Result<Self, Failure> {
+        if path.exists() && !path.is_dir() {
+            return Err(bad(format!("`{}` is a file; a lesson is written to a folder", path.display())));
+        }
+        let new = !path.exists();
+        let parent = path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        if new && !parent.is_dir() {
+            return Err(bad(format!("there is no folder `{}`", parent.display())));
+        }
+        if !new {
+            check_target(path.join(TEXT))?;
+        }
+        let own = std::fs::read_to_string(path.join(TEXT)).map(|text| linked(&text)).unwrap_or_default();
+        Ok(Folder { path, new, own })
+    }
+
+    /// Writes all files or none, and removes what an earlier lesson wrote and this one did not. Gives the folder.
+    pub fn write(self, files: Vec<(String, Vec<u8>)>) -> Result<PathBuf, Failure> {
+        let foreign = |name: &String| !self.own.contains(name) && self.path.join(name).exists();
+        if let Some((name, _)) = files.iter().find(|(name, _)| foreign(name)) {
+            let path = self.path.join(name);
+            return Err(bad(format!(
+                "`{}` is not of an earlier lesson: choose another folder, or move it",
+                path.display()
+            )));
+        }
+        if self.new {
+            let failed = |error| anyhow::anyhow!("cannot make the folder `{}`: {error}", self.path.display());
+            std::fs::create_dir(&self.path).map_err(failed)?;
+        }
+        let names: BTreeSet<String> = files.iter().map(|file| file.0.clone()).collect();
+        let files: Vec<_> = files.into_iter().map(|(name, bytes)| (self.path.join(name), bytes)).collect();
+        if let Err(failure) = save_silently(&files) {
+            // A folder that was made for nothing goes; where that fails it stays, empty.
+            let _ = if self.new { std::fs::remove_dir(&self.path) } else { Ok(()) };
+            return Err(failure);
+        }
+        for stale in self.own.difference(&names) {
+            match std::fs::remove_file(self.path.join(stale)) {
+                Err(error) if error.kind() != ErrorKind::NotFound => {
+                    return Err(anyhow::anyhow!("cannot remove `{}`: {error}", self.path.join(stale).display()).into());
+                }
+                _ => {}
+            }
+        }
+        Ok(self.path)
+    }
+}
+
+/// The files of a lesson by its text; none if it is another text.
+fn linked(text: &str) -> BTreeSet<String> {
+    if text.lines().next() != Some(MARK) {
+        return BTreeSet::new();
+    }
+    let names = text.split("](").skip(1).filter_map(|rest| rest.split(')').next());
+    // Nothing that lies elsewhere can be named.
+    let names = names.filter(|name| !name.is_empty() && !name.contains(['/', '\\']) && !name.starts_with('.'));
+    names.map(str::to_string).chain([TEXT.to_string()]).collect()
+}

@@ -1,0 +1,49 @@
+//! The lesson as Markdown, with pictures beside it.
+
+use super::folder::MARK;
+use super::{Lesson, PAGE, Written};
+use durer::lesson::OWN_SCENE_NAME;
+use std::fmt::Write;
+
+/// The text of the whole lesson.
+pub fn text(lesson: &Lesson) -> String {
+    let scene = &lesson.scene;
+    let mut text = format!(
+        "{MARK}\n# {scene}, in the order of the lecture\n\nThe same as a page for a browser, with sliders: \
+         [{PAGE}]({PAGE}).\n"
+    );
+    for (number, written) in (1..).zip(&lesson.steps) {
+        step(&mut text, number, written, scene);
+    }
+    text + "\n`durer explain` says of any pixel why it has its colour.\n"
+}
+
+/// Writes one step; a string takes all that is written to it.
+fn step(text: &mut String, number: usize, written: &Written, scene: &str) {
+    let step = &written.step;
+    let _ = writeln!(text, "\n## {number}. {}\n", step.title);
+    if let Some(elsewhere) = written.elsewhere(scene) {
+        let _ = writeln!(
+            text,
+            "> {}\n",
+            elsewhere.replace(OWN_SCENE_NAME, &format!("[{OWN_SCENE_NAME}]({OWN_SCENE_NAME})"))
+        );
+    }
+    let _ = writeln!(text, "{}\n\n```text\n{}\n```\n", step.topic.words, step.topic.equations.join("\n"));
+    // Pictures side by side, with what they show above them.
+    let mut columns = Vec::new();
+    if let (Some(picture), Some(file)) = (&step.before, &written.before) {
+        columns.push((picture.caption, file));
+    }
+    columns.push((step.after.caption, &written.after));
+    columns.extend(written.change.as_ref().map(|file| ("what changed: lighter or darker than grey", file)));
+    columns.extend(written.plan.as_ref().map(|file| ("the middle row's rays from above", file)));
+    let row = |cells: Vec<String>| format!("| {} |", cells.join(" | "));
+    let _ = writeln!(text, "{}", row(columns.iter().map(|column| column.0.to_string()).collect()));
+    let _ = writeln!(text, "{}", row(columns.iter().map(|_| ":-:".to_string()).collect()));
+    let _ =
+        writeln!(text, "{}\n", row(columns.iter().map(|column| format!("![{}]({})", column.0, column.1)).collect()));
+    let _ = writeln!(text, "{}\n", step.words);
+    let places: Vec<String> = step.topic.places.iter().map(|p| format!("`{}`: `{}`", p.file, p.symbol)).collect();
+    let _ = writeln!(text, "In the source:\n\n- {}", places.join("\n- "));
+}

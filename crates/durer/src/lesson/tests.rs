@@ -1,0 +1,109 @@
+//! The steps, and the source that they point at.
+
+use super::*;
+use crate::compile::AccelKind;
+use crate::dialect::{Compat, Dialect};
+use crate::film::Filter;
+use crate::math::{Ray, Vec3};
+use crate::render::{Job, Sampling, render};
+use crate::{LoadOptions, load};
+use std::path::{Path, PathBuf};
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+fn stage(scene: &str, size: u32) -> Stage {
+    let (mut files, mut findings) = Default::default();
+    let options = LoadOptions { accel: AccelKind::Bvh, ..LoadOptions::default() };
+    let loaded = load(&root().join("scenes").join(scene), &options, &mut files, &mut findings).unwrap().unwrap();
+    let world = loaded.compile(&options, &mut files, &mut findings).unwrap();
+    let sampling = Sampling::Filtered { samples: 4, filter: Filter::default() };
+    Stage::new(loaded.scene, files, world, Job { width: size, height: size, sampling, ..Job::default() })
+}
+
+fn lesson(stage: Stage) -> Vec<Step> {
+    let mut teacher = Teacher::new(stage, Transfer::Srgb);
+    TOPICS.iter().flat_map(|topic| teacher.steps(topic, &Control::default()).unwrap()).collect()
+}
+
+#[test]
+fn places_in_the_source_are_there() {
+    for Place { file, symbol } in TOPICS.iter().flat_map(|topic| topic.places) {
+        let text = std::fs::read_to_string(root().join(file)).unwrap_or_else(|error| panic!("{file}: {error}"));
+        let mut found = text.match_indices(symbol).map(|(at, _)| text[at + symbol.len()..].chars().next());
+        let whole = found.any(|next| next.is_none_or(|c| !c.is_alphanumeric() && c != '_'));
+        assert!(whole, "`{symbol}` is not in {file}");
+    }
+}
+
+#[test]
+fn our_own_scene_shows_every_topic() {
+    let mut ours = Stage::ours((64, 48));
+    for topic in &TOPICS {
+        let steps = steps(topic, &mut ours, Transfer::Srgb, true, &Control::default()).unwrap();
+        assert!(!steps.is_empty(), "{}", topic.name);
+        // In a chain every picture of this scene differs.
+        assert_eq!(steps.len(), topic.shots.len().saturating_sub(1).max(1), "{}", topic.name);
+        assert!(steps.iter().all(|step| step.words.ends_with('.')));
+    }
+}
+
+#[test]
+fn a_lesson_ends_with_the_picture_itself_and_is_the_same_each_time() {
+    let bits = |steps: &[Step]| -> Vec<u32> {
+        let pixels = steps.iter().flat_map(|step| &step.after.layer.image.pixels);
+        pixels.flat_map(|pixel| pixel.to_array().map(f32::to_bits)).collect()
+    };
+    let steps = lesson(stage("whitted.txt", 40));
+    let whitted = stage("whitted.txt", 40);
+    let picture = render(&whitted.world, &whitted.job, &Control::default()).unwrap();
+    assert_eq!(steps.last().unwrap().after.layer.image, picture.layers[0].image);
+    assert_eq!(bits(&steps), bits(&lesson(whitted)));
+    // What a step begins with is what an earlier one ended with.
+    let specular = steps.iter().find(|step| step.topic.name == "specular").unwrap();
+    let diffuse = steps.iter().find(|step| step.topic.name == "diffuse").unwrap();
+    assert_eq!(specular.before.as_ref().unwrap().layer, diffuse.after.layer);
+}
+
+#[test]
+fn what_a_scene_cannot_show_is_shown_in_ours() {
+    let ours = |scene: &str| -> Vec<&str> {
+        let steps = lesson(stage(scene, 48));
+        steps.iter().filter(|step| step.ours).map(|step| step.topic.name).collect()
+    };
+    assert_eq!(ours("whitted.txt"), ["transforms"]);
+    let transforms = ours("transforms.txt");
+    assert!(!transforms.contains(&"transforms") && transforms.contains(&"refraction"), "{transforms:?}");
+}
+
+#[test]
+fn acne_is_dark_specks_where_light_falls() {
+    let mut ours = Stage::ours((64, 48));
+    let topic = TOPICS.iter().find(|topic| topic.name == "epsilon").unwrap();
+    let steps = steps(topic, &mut ours, Transfer::Srgb, true, &Control::default()).unwrap();
+    let change = steps[0].change.as_ref().unwrap();
+    // Away with it, and it only gets lighter.
+    assert!(change.changed > 100 && change.lighter == change.changed, "{change:?}");
+}
+
+/// The image of a sphere's normal by the matrix itself, beside that by its inverse transpose.
+#[test]
+fn moved_normals_are_those_of_the_matrix_itself() {
+    let text = "PerspectiveCamera { center 0 0 9 direction 0 0 -1 up 0 1 0 angle 40 }
+        Group { Transform { Scale 2 0.5 1 Sphere { center 0 0 0 radius 1 } } }";
+    for (habit, expected) in [(false, Vec3::new(0.3, 0.8, 0.0)), (true, Vec3::new(1.2, 0.2, 0.0))] {
+        let mut rules = Dialect::Durer.rules().clone();
+        rules.compat = if habit { Compat::MovedNormals.bit() } else { 0 };
+        let folder = Path::new(".");
+        let (world, _) = crate::compile::testing::try_read(text, &rules, AccelKind::Bvh, folder);
+        // The sphere's point (0.6, 0.4, z) in its own space is (1.2, 0.2, z) in the world's.
+        let ray = Ray::new(Vec3::new(1.2, 0.2, 9.0), Vec3::NEG_Z);
+        let world = world.unwrap();
+        let surface = world.surface(&ray, &world.closest(&ray, &mut ()).unwrap());
+        let z = (1.0f32 - 0.36 - 0.16).sqrt();
+        let expected = Vec3::new(expected.x, expected.y, z).normalize();
+        assert!((surface.n_shade - expected).length() < 1e-6, "{habit}: {}", surface.n_shade);
+        assert!((surface.n_geo - Vec3::new(0.3, 0.8, z).normalize()).length() < 1e-6);
+    }
+}
