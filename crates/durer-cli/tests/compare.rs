@@ -2,10 +2,11 @@
 
 mod common;
 
+use common::browser::clicked;
 use common::{Place, corpus};
 use durer::image::{Image8, read8};
 use serde_json::Value;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::Command;
 
 /// Writes a picture as PPM.
@@ -216,44 +217,29 @@ fn border_pixels_and_missing_shadows_are_recognised() {
     assert!(words("bare").contains("shadows are missing"), "{}", words("bare"));
 }
 
-fn chromium() -> Option<PathBuf> {
-    let paths = std::env::var_os("PATH")?;
-    let found = ["chromium", "chromium-browser", "google-chrome"]
-        .iter()
-        .find_map(|name| std::env::split_paths(&paths).map(|folder| folder.join(name)).find(|path| path.is_file()));
-    if found.is_none() {
-        println!("skipped: there is no chromium to open the page in");
-    }
-    found
-}
-
-/// Clicks through the page and tells in the document's title what it saw.
-const CLICKS: &str = r##"<script>
-const seen = [];
+/// Clicks through the page and tells what it saw.
+const CLICKS: &str = r##"
 const look = () => [getComputedStyle($("over")).visibility, getComputedStyle($("over")).clipPath, getComputedStyle($("over")).mixBlendMode].join(" ");
-const press = mode => { document.querySelector(`button[data-mode=${mode}]`).click(); seen.push(`${mode}: ${look()}`); };
-seen.push(`rows ${document.querySelectorAll("#pairs tr.pick").length}`);
-seen.push(`natural ${$("over").complete && $("over").naturalWidth}x${$("over").naturalHeight}`);
+const press = mode => { document.querySelector(`button[data-mode=${mode}]`).click(); see(`${mode}: ${look()}`); };
+see(`rows ${document.querySelectorAll("#pairs tr.pick").length}`);
+see(`natural ${$("over").complete && $("over").naturalWidth}x${$("over").naturalHeight}`);
 for (const mode of ["slider", "reference", "picture", "difference", "blink"]) press(mode);
 press("heat");
-seen.push(`heat ${$("over").src === pair.images[2]}`);
+see(`heat ${$("over").src === pair.images[2]}`);
 press("slider");
-const box = $("stage").getBoundingClientRect();
-const at = (type, part) => $("stage").dispatchEvent(new PointerEvent(type, { clientX: box.left + part * box.width, clientY: box.top + 5, buttons: 1, bubbles: true, pointerId: 1 }));
-$("stage").setPointerCapture = () => {};
-at("pointerdown", 0.25); at("pointermove", 0.75);
-seen.push(`slid ${getComputedStyle($("over")).clipPath}; ${$("at").textContent}`);
+mouse($("stage"), "pointerdown", 0.25, 0.1);
+mouse($("stage"), "pointermove", 0.75, 0.1);
+see(`slid ${getComputedStyle($("over")).clipPath}; ${$("at").textContent}`);
 document.querySelector("#where a").click();
-seen.push(`box ${!$("box").hidden} ${$("box").style.left}`);
+see(`box ${!$("box").hidden} ${$("box").style.left}`);
 document.querySelectorAll("#pairs tr.pick")[0].click();
-seen.push(`name ${$("name").textContent}`);
+see(`name ${$("name").textContent}`);
 window.dispatchEvent(new KeyboardEvent("keydown", { key: "2" }));
-setTimeout(() => { seen.push(`blinked ${getComputedStyle($("over")).visibility}`); document.title = "SEEN " + seen.join(" | ") + " END"; }, 700);
-</script>"##;
+setTimeout(() => { see(`blinked ${getComputedStyle($("over")).visibility}`); done(); }, 700);
+"##;
 
 #[test]
 fn the_page_works_in_a_browser_without_network() {
-    let Some(chromium) = chromium() else { return };
     let (place, a) = rendered();
     // A name that would end a script, were it not taken as text.
     for (name, left) in
@@ -263,20 +249,7 @@ fn the_page_works_in_a_browser_without_network() {
         put(&place, &name, &changed(&a, |x, y, at| if x > left { [255, 0, 0] } else { at(x, y) }));
     }
     place.gives(1, "compare ref mine --report report.html");
-    let page = String::from_utf8(place.bytes("report.html")).unwrap();
-    assert!(!page.contains("http://") && !page.contains("https://"));
-    place.put("clicked.html", page.replace("</body>", &format!("{CLICKS}</body>")));
-    let run = Command::new("timeout")
-        .arg("60")
-        .arg(chromium)
-        .args(["--no-sandbox", "--headless=new", "--disable-gpu", "--virtual-time-budget=4000", "--dump-dom"])
-        .arg(format!("--user-data-dir={}", place.path("browser").display()))
-        .arg(format!("file://{}", place.path("clicked.html").display()))
-        .output()
-        .unwrap();
-    let dom = String::from_utf8_lossy(&run.stdout);
-    let title = dom.split("<title>").nth(1).and_then(|rest| rest.split("</title>").next()).unwrap_or("");
-    assert!(title.starts_with("SEEN "), "{title}\n{}", String::from_utf8_lossy(&run.stderr));
+    let Some(title) = clicked(&place, "report.html", CLICKS) else { return };
     for wanted in [
         "rows 2",
         "natural 60x50",

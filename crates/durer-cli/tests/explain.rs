@@ -3,6 +3,7 @@
 mod common;
 
 use common::Place;
+use common::browser::clicked;
 use serde_json::Value;
 
 const SMALL: &str = "--size 40x30 --quiet";
@@ -104,5 +105,61 @@ fn the_page_holds_all_that_it_needs() {
     assert!(ran.out.contains("wrote why.html"), "{}", ran.out);
     let page = std::fs::read_to_string(place.path("why.html")).unwrap();
     assert!(page.contains("data:image/png;base64,iVBOR") && page.contains("a\\u003cb.txt") && !page.contains("@DATA@"));
-    assert!(!page.contains("http"), "nothing is fetched");
+    assert!(!page.contains("http:") && !page.contains("https:"), "nothing is fetched");
+}
+
+/// Unfolds the tree, chooses another sample, marks a ray, turns space by the mouse.
+const CLICKS: &str = r##"
+const open = () => document.querySelectorAll("#tree details[open]").length;
+see(`terms ${document.querySelectorAll("#tree summary, #tree .leaf").length > 5}`);
+const first = document.querySelector("#tree details"), before = open();
+first.querySelector("summary").click();
+see(`folded ${!first.open && open() === before - 1}`);
+first.querySelector("summary").click();
+see(`unfolded ${first.open && open() === before}`);
+see(`rays ${lines.length > 1} ${lines.filter(line => line.dashed).length}`);
+lines[1].element.querySelector("summary").click();
+see(`marked ${document.querySelectorAll(".marked").length} ${marked === lines[1]}`);
+const space = document.getElementById("space"), shown = () => space.toDataURL();
+const still = shown(), turn = view.turn, tilt = view.tilt;
+mouse(space, "pointermove", 0.9, 0.9, 0);
+see(`unheld ${shown() === still}`);
+mouse(space, "pointerdown", 0.2, 0.5);
+mouse(space, "pointermove", 0.6, 0.7);
+mouse(space, "pointerup", 0.6, 0.7, 0);
+see(`orbited ${view.turn < turn && view.tilt > tilt && shown() !== still}`);
+const turned = shown(), distance = view.distance;
+space.dispatchEvent(new WheelEvent("wheel", { deltaY: -200, bubbles: true, cancelable: true }));
+see(`nearer ${view.distance < distance && shown() !== turned}`);
+const select = document.getElementById("sample"), old = document.getElementById("tree").textContent;
+select.value = "3";
+select.dispatchEvent(new Event("change"));
+see(`another sample ${document.getElementById("tree").textContent !== old}`);
+setTimeout(() => {
+  const sheet = document.getElementById("picture");
+  see(`picture ${!sheet.hidden} ${sheet.width}x${sheet.height}`);
+  done();
+}, 500);
+"##;
+
+#[test]
+fn the_page_works_in_a_browser_without_network() {
+    let place = Place::new();
+    place.gives(0, &format!("explain scene.txt --pixel 20,26 --html why.html --samples 4 {SMALL}"));
+    let Some(seen) = clicked(&place, "why.html", CLICKS) else { return };
+    for wanted in [
+        "terms true",
+        "folded true",
+        "unfolded true",
+        // Of the floor and of what it mirrors, one to the light each.
+        "rays true 2",
+        "marked 1 true",
+        "unheld true",
+        "orbited true",
+        "nearer true",
+        "another sample true",
+        "picture true 40x30",
+    ] {
+        assert!(seen.contains(wanted), "`{wanted}` is not in {seen}");
+    }
 }

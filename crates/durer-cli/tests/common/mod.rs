@@ -2,6 +2,8 @@
 
 #![allow(dead_code, reason = "each test file is a program of its own and uses a part")]
 
+pub mod browser;
+
 use durer::image::{Image, Image8, read, read8};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};

@@ -1,0 +1,141 @@
+//! `durer lesson`: the folder, and the page in a real browser.
+
+mod common;
+
+use common::Place;
+use common::browser::clicked;
+use std::path::Path;
+
+const SMALL: &str = "--size 40x30 --samples 4";
+
+fn names(folder: &Path) -> Vec<String> {
+    let entries = std::fs::read_dir(folder).unwrap();
+    let mut names: Vec<String> = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+    names.sort();
+    names
+}
+
+#[test]
+fn a_lesson_is_a_folder_with_a_page_a_text_and_its_pictures() {
+    let place = Place::new();
+    let ran = place.gives(0, &format!("lesson scene.txt -o out {SMALL}"));
+    assert!(ran.out.starts_with("wrote out/index.html, lesson.md and "), "{}", ran.out);
+    let (text, files) = (String::from_utf8(place.bytes("out/lesson.md")).unwrap(), names(&place.path("out")));
+    // All that the text shows is there, and nothing else.
+    let shown = |name: &str| text.contains(&format!("]({name})")) || name == "lesson.md";
+    assert!(files.iter().all(|name| shown(name)), "{files:?}");
+    assert_eq!(
+        text.matches("](").count(),
+        text.matches(".png)").count() + text.matches(".svg)").count() + 1 + { text.matches("(our-scene.txt)").count() }
+    );
+    assert!(text.contains("> scene.txt cannot show this: no glass is seen in it"), "{text}");
+    assert!(text.contains("`crates/durer/src/integrator/whitted.rs`: `fn refract`"));
+    // The last picture is the one that `render` makes.
+    place.gives(0, &format!("render scene.txt -o p.png -q {SMALL}"));
+    let last = files.iter().rfind(|name| name.ends_with("-supersampling.png")).unwrap();
+    assert_eq!(place.bytes(&format!("out/{last}")), place.bytes("p.png"));
+    // And all of it is the same each time.
+    place.gives(0, &format!("lesson scene.txt -o again --quiet {SMALL}"));
+    assert_eq!(names(&place.path("again")), files);
+    assert!(files.iter().all(|name| place.bytes(&format!("out/{name}")) == place.bytes(&format!("again/{name}"))));
+}
+
+#[test]
+fn only_files_of_an_earlier_lesson_are_replaced() {
+    let place = Place::new();
+    std::fs::create_dir(place.path("out")).unwrap();
+    place.put("out/notes.txt", "mine");
+    place.gives(0, &format!("lesson scene.txt -o out -q {SMALL}"));
+    let first = names(&place.path("out"));
+    // Another scene has other steps; what it does not need any more goes, and the notes stay.
+    place.put("dull.txt", common::SCENE.replace("reflectiveColor 0.5 0.5 0.5", ""));
+    place.gives(0, &format!("lesson dull.txt -o out -q {SMALL}"));
+    place.gives(0, &format!("lesson dull.txt -o fresh -q {SMALL}"));
+    let mut fresh = names(&place.path("fresh"));
+    fresh.push("notes.txt".into());
+    fresh.sort();
+    assert_ne!(first, fresh);
+    assert_eq!(names(&place.path("out")), fresh);
+    assert_eq!(place.bytes("out/notes.txt"), b"mine");
+    // A file of that name which no lesson wrote is in the way.
+    std::fs::create_dir(place.path("site")).unwrap();
+    place.put("site/index.html", "my own page");
+    let ran = place.gives(2, &format!("lesson scene.txt -o site -q {SMALL}"));
+    assert!(ran.err.contains("`site/index.html` is not of an earlier lesson"), "{}", ran.err);
+    assert_eq!(names(&place.path("site")), ["index.html"]);
+}
+
+#[test]
+fn wrong_orders_are_refused_and_leave_nothing() {
+    let place = Place::new();
+    place.put("broken.txt", "PerspectiveCamera {");
+    for (arguments, words) in [
+        ("scene.txt -o scene.txt", "is a file"),
+        ("scene.txt -o no/such/folder", "there is no folder `no/such`"),
+        ("scene.txt -o out --show depth", "leave --crop and --show out"),
+        ("scene.txt -o out --crop 1,1,4x4", "leave --crop and --show out"),
+        ("scene.txt -o out --size 40", "640x480"),
+        ("missing.txt -o out", "missing.txt"),
+        ("broken.txt -o out", "broken.txt"),
+    ] {
+        place.refused(2, &format!("lesson {arguments}"), &[words]);
+    }
+    #[cfg(target_os = "linux")]
+    {
+        std::fs::create_dir(place.path("out")).unwrap();
+        std::os::unix::fs::symlink("/dev/full", place.path("out/x.png")).unwrap();
+        place.put("out/lesson.md", "<!-- Written by durer lesson, which also replaces or removes the files that are linked here. -->\n![x](index.html)");
+        std::os::unix::fs::symlink("/dev/full", place.path("out/index.html")).unwrap();
+        let ran = place.gives(1, &format!("lesson scene.txt -o out {SMALL}"));
+        assert!(ran.err.contains("No space left"), "{}", ran.err);
+        assert_eq!(names(&place.path("out")), ["index.html", "lesson.md", "x.png"]);
+    }
+}
+
+/// Moves the slider, and drags across the picture.
+const CLICKS: &str = r##"
+see(`steps ${document.querySelectorAll("section").length - 1} links ${document.querySelectorAll("nav a").length}`);
+const images = [...document.querySelectorAll("img")];
+const stage = document.querySelector(".stage"), over = stage.querySelectorAll("img")[1], slider = stage.parentElement.querySelector("input");
+const clip = () => getComputedStyle(over).clipPath;
+see(`half ${clip()}`);
+slider.value = 20;
+slider.dispatchEvent(new Event("input"));
+see(`slid ${clip()}`);
+mouse(stage, "pointermove", 0.9, 0.5, 0);
+see(`unheld ${clip()}`);
+mouse(stage, "pointerdown", 0.5, 0.5);
+mouse(stage, "pointermove", 0.75, 0.5);
+see(`dragged ${clip()} ${slider.value}`);
+see(`plan ${document.querySelectorAll(".plan line").length > 5}`);
+see(`equation ${document.querySelector(".equations sub").textContent}`);
+document.querySelectorAll("nav a")[4].click();
+see(`at ${location.hash}`);
+setTimeout(() => {
+  see(`pictures ${images.length > 20} ${images.every(image => image.complete && image.naturalWidth === 40)}`);
+  done();
+}, 500);
+"##;
+
+#[test]
+fn the_page_works_in_a_browser_without_network() {
+    let place = Place::new();
+    // A name that would end a script, were it not taken as text.
+    place.put("<b>.txt", common::SCENE);
+    place.gives(0, &format!("lesson <b>.txt -o out -q {SMALL}"));
+    let Some(seen) = clicked(&place, "out/index.html", CLICKS) else { return };
+    let steps = names(&place.path("out")).iter().filter(|name| name.ends_with("-change.png")).count() + 4;
+    for wanted in [
+        &format!("steps {steps} links {steps}"),
+        "half inset(0px 0px 0px 50%)",
+        "slid inset(0px 0px 0px 20%)",
+        "unheld inset(0px 0px 0px 20%)",
+        "dragged inset(0px 0px 0px 75%) 75",
+        "plan true",
+        "equation a",
+        "at #step-5",
+        "pictures true true",
+    ] {
+        assert!(seen.contains(wanted), "`{wanted}` is not in {seen}");
+    }
+}
