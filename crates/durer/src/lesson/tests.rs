@@ -1,4 +1,4 @@
-//! The steps, and the source that they point at.
+//! The steps of the lesson.
 
 use super::*;
 use crate::compile::AccelKind;
@@ -25,16 +25,6 @@ fn stage(scene: &str, size: u32) -> Stage {
 fn lesson(stage: Stage) -> Vec<Step> {
     let mut teacher = Teacher::new(stage, Transfer::Srgb);
     TOPICS.iter().flat_map(|topic| teacher.steps(topic, &Control::default()).unwrap()).collect()
-}
-
-#[test]
-fn places_in_the_source_are_there() {
-    for Place { file, symbol } in TOPICS.iter().flat_map(|topic| topic.places) {
-        let text = std::fs::read_to_string(root().join(file)).unwrap_or_else(|error| panic!("{file}: {error}"));
-        let mut found = text.match_indices(symbol).map(|(at, _)| text[at + symbol.len()..].chars().next());
-        let whole = found.any(|next| next.is_none_or(|c| !c.is_alphanumeric() && c != '_'));
-        assert!(whole, "`{symbol}` is not in {file}");
-    }
 }
 
 #[test]
