@@ -4,6 +4,7 @@ mod bench_rays;
 mod build;
 mod cost;
 mod course;
+mod explain;
 mod manual;
 mod solids;
 mod torture;
@@ -20,6 +21,9 @@ const USAGE: &str = "Commands:
       --keep: leave our pictures there, with pictures of the differences.
   cargo xtask verify [--trials 500] [--only TEXT]
       `durer verify` for every scene of the repository, with various samplings.
+  cargo xtask explain [--pixels 100000] [--only TEXT]
+      Explain random pixels of every scene of the repository and of the course, in every way of sampling: do the terms
+      sum to the pixel, to the bit? And how long does an explanation take?
   cargo xtask torture [--kills 100] [--offsets 50] [--seed 1]
       Kill the program at random times while it works and saves, and go on with what it left; give it full disks and
       disks that cannot be written.
@@ -39,6 +43,7 @@ fn main() -> anyhow::Result<ExitCode> {
     match arguments.first().map(String::as_str) {
         Some("course") => course::run(&arguments[1..]),
         Some("verify") => verify::run(&arguments[1..]),
+        Some("explain") => explain::run(&arguments[1..]),
         Some("torture") => torture::run(&arguments[1..]),
         Some("cost") => cost::run(&arguments[1..]),
         Some("solids") => solids::run(),

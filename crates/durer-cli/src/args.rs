@@ -304,7 +304,7 @@ pub struct ExplainArgs {
     /// The pixel, counted from 0 at the upper left corner
     #[arg(long, value_name = "X,Y", value_parser = pixel, conflicts_with_all = ["ray", "brightest", "worst"])]
     pub pixel: Option<(u32, u32)>,
-    /// The sample whose tree is shown [default: the first]
+    /// The sample whose tree is shown, by its place in the list [default: the first of those that count most]
     #[arg(long, value_name = "N")]
     pub sample: Option<u32>,
     /// Any ray instead of a pixel's: origin and direction

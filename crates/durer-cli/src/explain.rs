@@ -28,18 +28,28 @@ enum Subject {
 }
 
 pub fn run(args: &ExplainArgs) -> Result<(), Failure> {
+    if args.render.work.time.is_some() {
+        return Err(bad(
+            "how many samples there is time for differs from run to run: say how many there were with --samples",
+        ));
+    }
     let mut options = load_options(&args.render.reading);
     options.accel = accel(&args.render.job)?;
     let opened = open(&args.render.scene, &options, args.render.quiet)?;
-    let job = job(&args.render.job, &opened.loaded, args.render.work.time.is_some())?;
+    let job = job(&args.render.job, &opened.loaded, false)?;
     let picture = match args.brightest || args.worst || args.html.is_some() {
         true => Some(picture(args, &opened, &job)?),
         false => None,
     };
     let subject = subject(args, &opened, &job, picture.as_ref())?;
     let names = Names { files: &opened.files, scene: &opened.loaded.scene, world: &opened.world };
+    // All trees of a pixel would hide each other.
+    let sample = match &subject {
+        Subject::Pixel(pixel) => args.sample.map_or_else(|| pixel.heaviest(), |sample| sample as usize),
+        Subject::Ray(_) => 0,
+    };
     if let (Some(path), Some(picture)) = (&args.html, &picture) {
-        let page = page::page(json(&subject, &names), args.sample.unwrap_or(0), &opened.world, picture)?;
+        let page = page::page(json(&subject, &names), sample, &opened.world, picture)?;
         output::save(&[(path.clone(), page.into_bytes())], args.render.quiet)?;
         return Ok(());
     }
@@ -49,11 +59,7 @@ pub fn run(args: &ExplainArgs) -> Result<(), Failure> {
     }
     let lines = match &subject {
         Subject::Ray(light) => ray_text(light, &names),
-        Subject::Pixel(pixel) => {
-            // All trees of a pixel would hide each other.
-            let wanted = args.sample.unwrap_or(0);
-            pixel.lines(&names, |sample| sample == wanted)
-        }
+        Subject::Pixel(pixel) => pixel.lines(&names, sample),
     };
     let colored = std::io::stdout().is_terminal() && std::env::var_os("NO_COLOR").is_none();
     lines.iter().for_each(|line| say(&shown(line, colored)));

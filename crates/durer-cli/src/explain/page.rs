@@ -12,7 +12,7 @@ const PAGE: &str = include_str!("page.html");
 const MOST_BOXES: usize = 400;
 
 /// A page that needs nothing else: the picture, the tree of one sample to begin with, and the rays in space.
-pub fn page(explanation: Value, sample: u32, world: &World, picture: &Image) -> Result<String, Failure> {
+pub fn page(explanation: Value, sample: usize, world: &World, picture: &Image) -> Result<String, Failure> {
     let picture = page::png(Layer::color("color", picture.clone()), Transfer::default())?;
     let boxes = world.objects.iter().filter_map(|object| object.bounds()).take(MOST_BOXES);
     let boxes: Vec<Value> = boxes.map(|b| json!({ "min": b.min, "max": b.max })).collect();

@@ -114,10 +114,8 @@ impl StoredSamples {
         for row in y.saturating_sub(support)..=y.saturating_add(support).min(self.height - 1) {
             go_on()?;
             for column in x.saturating_sub(support)..=x.saturating_add(support).min(self.width - 1) {
-                // From the centre of the pixel to the corner of the neighbour.
-                let corner = Vec2::new(column as f32 - x as f32, row as f32 - y as f32) - 0.5;
                 for sample in self.pixel(column, row) {
-                    let weight = f64::from(filter.weight(corner + sample.position));
+                    let weight = f64::from(filter.weight_between((column, row), sample.position, (x, y)));
                     sum += weight * sample.color.as_dvec3();
                     total += weight;
                 }
@@ -158,6 +156,13 @@ impl CourseFilter {
                 fp::exp(-offset.length_squared() / (2.0 * sigma * sigma).max(f32::MIN_POSITIVE))
             }
         }
+    }
+
+    /// The weight in a pixel of a sample at a position in another.
+    pub fn weight_between(self, (column, row): (u32, u32), position: Vec2, (x, y): (u32, u32)) -> f32 {
+        // From the centre of the pixel to the corner of the other.
+        let corner = Vec2::new(column as f32 - x as f32, row as f32 - y as f32) - 0.5;
+        self.weight(corner + position)
     }
 
     /// How many pixels to each side of the pixel are looked at.

@@ -21,11 +21,6 @@ pub enum RenderError {
     /// A diagram of samples keeps them, and has not the memory for so many.
     #[error("a diagram keeps all samples, and {0} are too many: at most {MOST_KEPT}")]
     TooManySamples(u64),
-    /// A pixel cannot be explained.
-    #[error(
-        "a pixel that is made of its neighbours' samples too cannot be explained; leave out the course's sampler, `--jitter` and `--blur`"
-    )]
-    Unexplained,
     /// A diagram cannot be made as asked for.
     #[error("{0}")]
     Diagram(String),

@@ -1,12 +1,16 @@
 //! Why a pixel has its colour: every sample, and the tree of terms that it is the sum of.
 
+pub mod check;
+mod course;
 mod text;
 
 use super::samples::{Aim, Samples};
-use super::{Job, RenderError, Sampling, center_ray, raster};
+pub use super::sub_pixels::SubPixels;
+use super::{Blocks, Control, Crop, Job, RenderError, Sampling, center_ray, raster, render};
 use crate::camera::Raster;
 use crate::dialect::Compat;
 use crate::film::Film;
+use crate::film::aov::Aov;
 use crate::integrator::{Account, Node, Whitted};
 use crate::math::{Color, Ray, Vec2, Vec3};
 use crate::world::{Material, World};
@@ -25,16 +29,32 @@ pub struct Explanation {
     pub color: Color,
     /// The share of it that the camera sees at all.
     pub coverage: f32,
-    /// Its samples, in order. The colour is the film's mean of theirs by weight; see [`Explanation::sum`].
+    /// How its samples become its colour; see [`Explanation::sum`].
+    pub mean: Mean,
+    /// Its samples, in the order in which they are summed.
     pub samples: Vec<SampleAccount>,
     /// What an old program's habit `stale-texels` adds to the colour.
     pub stale_texels: Option<Color>,
 }
 
+/// How samples become a pixel.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case", tag = "kind")]
+pub enum Mean {
+    /// All are its own; it is their mean by weight, in the film's exact sums.
+    Own,
+    /// 2004: samples of the pixels around count too; it is the mean by weight, summed in double precision.
+    Around,
+    /// 2012: sub-pixels are blurred along rows, then along columns, then averaged. Weights are those of all this together.
+    SubPixels(SubPixels),
+}
+
 /// One sample of a pixel.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SampleAccount {
-    /// Its number.
+    /// Column and row of the pixel that it was taken for: mostly the one that is explained.
+    pub of: (u32, u32),
+    /// Its number in that pixel.
     pub sample: u32,
     /// Where in the picture it lies, in pixels from the upper left corner.
     pub place: Vec2,
@@ -47,14 +67,26 @@ pub struct SampleAccount {
 }
 
 impl Explanation {
-    /// The pixel's colour and coverage, computed anew from the trees by the film's arithmetic.
+    /// The pixel's colour and coverage, computed anew from the trees by the picture's own arithmetic.
     pub fn sum(&self) -> (Color, f32) {
         let mut film = Film::window(self.x, self.y, 1, 1);
-        for s in &self.samples {
-            let color = s.light.as_ref().map(|light| light.sum() + self.stale_texels.unwrap_or_default());
-            film.add_if_seen(self.x, self.y, s.sample, color, s.weight);
+        let light =
+            |s: &SampleAccount| s.light.as_ref().map(|light| light.sum() + self.stale_texels.unwrap_or_default());
+        if self.mean == Mean::Own {
+            for s in &self.samples {
+                film.add_if_seen(self.x, self.y, s.sample, light(s), s.weight);
+            }
+        } else {
+            let finished = course::finished(&self.mean, &self.samples, light);
+            film.add_covering(self.x, self.y, 0, finished, 1.0);
         }
         (film.resolve(self.x, self.y), film.coverage(self.x, self.y))
+    }
+
+    /// The index of the sample that counts most: the first of those.
+    pub fn heaviest(&self) -> usize {
+        (1..self.samples.len())
+            .fold(0, |best, i| if self.samples[i].weight > self.samples[best].weight { i } else { best })
     }
 }
 
@@ -69,28 +101,49 @@ pub fn explain_ray(world: &World, job: &Job, ray: &Ray) -> Option<Node> {
 ///
 /// # Errors
 ///
-/// The pixel does not lie in the picture, or its colour is made of its neighbours' samples too.
+/// The pixel does not lie in the picture; [`RenderError`] where samples are counted until noise is low enough.
 pub fn explain(world: &World, job: &Job, x: u32, y: u32) -> Result<Explanation, RenderError> {
     if x >= job.width || y >= job.height {
         return Err(RenderError::CropOutside(job.width, job.height));
     }
-    if matches!(job.sampling, Sampling::Course2004 { .. } | Sampling::Course2012 { .. }) {
-        return Err(RenderError::Unexplained);
-    }
     let (stop, mut stale_texels) = (AtomicBool::new(false), None);
     let source = Samples::without_habits(world, job, &stop);
-    let account = |sample| {
-        let Aim { place, lens, weight, ray } = source.aim(x, y, sample);
-        let light = ray.and_then(|ray| explain_ray(world, job, &ray));
-        SampleAccount { sample, place, lens, weight, light }
+    let account = |of, sample, aim: Aim| {
+        let light = aim.ray.and_then(|ray| explain_ray(world, job, &ray));
+        SampleAccount { of, sample, place: aim.place, lens: aim.lens, weight: aim.weight, light }
     };
-    let samples = (0..job.sampling.samples()).map(account).collect();
+    let (mean, samples) = match job.sampling {
+        Sampling::Course2004 { sampler, samples, filter: Some(filter) } => {
+            course::around(&source, job, (x, y), (sampler, samples, filter), account)
+        }
+        Sampling::Course2012 { jitter, blur } => {
+            let grid = SubPixels::new(job, Crop::pixel((x, y)), jitter, blur);
+            course::sub_pixels(&source, world, grid, account)
+        }
+        _ => {
+            let own = (0..count(world, job, (x, y))?).map(|sample| account((x, y), sample, source.aim(x, y, sample)));
+            (Mean::Own, own.collect())
+        }
+    };
     if job.sampling == Sampling::Center && world.rules.has(Compat::StaleTexels) {
         stale_texels = stale_texel(world, job, &raster(world, job.width, job.height), (x, y));
     }
-    let mut explanation = Explanation { x, y, color: Vec3::ZERO, coverage: 1.0, samples, stale_texels };
+    let mut explanation = Explanation { x, y, color: Vec3::ZERO, coverage: 1.0, mean, samples, stale_texels };
     (explanation.color, explanation.coverage) = explanation.sum();
     Ok(explanation)
+}
+
+/// How many samples a pixel has: where noise decides, as many as its block needs.
+fn count(world: &World, job: &Job, (x, y): (u32, u32)) -> Result<u32, RenderError> {
+    if job.noise.is_none() {
+        return Ok(job.sampling.samples());
+    }
+    let window = if job.window().holds(x, y) { job.window() } else { job.whole() };
+    let blocks = Blocks::new(window);
+    let block = blocks.rect(blocks.at(x, y));
+    let aovs = Aov::from_name("sample-count").into_iter().collect();
+    let counted = render(world, &Job { crop: Some(block), color: false, aovs, ..job.clone() }, &Control::default())?;
+    Ok(counted.layers[0].image.get(x - block.left, y - block.top).map_or(0, |count| count.x as u32))
 }
 
 /// The colour of a texture, noise or plain surface at a pixel's centre, and its material, if that has one.

@@ -22,6 +22,11 @@ pub struct Crop {
 }
 
 impl Crop {
+    /// One pixel.
+    pub fn pixel((left, top): (u32, u32)) -> Crop {
+        Crop { left, top, width: 1, height: 1 }
+    }
+
     /// How many pixels it has.
     pub fn pixels(self) -> u64 {
         u64::from(self.width) * u64::from(self.height)
@@ -32,6 +37,14 @@ impl Crop {
         let (left, top) = (self.left.min(other.left), self.top.min(other.top));
         let right = (self.left + self.width).max(other.left + other.width);
         let bottom = (self.top + self.height).max(other.top + other.height);
+        Crop { left, top, width: right - left, height: bottom - top }
+    }
+
+    /// The same with some pixels more on each side, within another.
+    pub fn grown(self, by: u32, within: Crop) -> Crop {
+        let (left, top) = (self.left.saturating_sub(by), self.top.saturating_sub(by));
+        let right = self.left.saturating_add(self.width).saturating_add(by).min(within.width);
+        let bottom = self.top.saturating_add(self.height).saturating_add(by).min(within.height);
         Crop { left, top, width: right - left, height: bottom - top }
     }
 

@@ -16,6 +16,7 @@ mod replay;
 mod run;
 mod samples;
 mod saved;
+mod sub_pixels;
 #[cfg(test)]
 mod tests;
 pub mod verify;

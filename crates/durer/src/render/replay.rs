@@ -33,7 +33,7 @@ pub fn replay(
     let work = || {
         let (stop, at): (_, At) = (AtomicBool::new(false), Cell::new((x, y, sample)));
         let samples = Samples::new(world, job, &stop);
-        let (pixel, mut count) = (Crop { left: x, top: y, width: 1, height: 1 }, Rays::default());
+        let (pixel, mut count) = (Crop::pixel((x, y)), Rays::default());
         match sample {
             Some(sample) if job.sampling.is_local() => samples.sample(x, y, sample, &mut count).0,
             _ => {

@@ -1,11 +1,12 @@
 //! How the samples of a block are taken, for each way of sampling.
 
 use super::error::{MOST_KEPT, center};
+use super::sub_pixels::SubPixels;
 use super::{Control, Crop, Job, RenderError, Sampling, camera_ray, center_ray, raster, run};
 use crate::bvh::Rays;
 use crate::camera::{Lens, Raster};
 use crate::dialect::Compat;
-use crate::film::course::{CourseFilter, StoredSample, StoredSamples, average_3x3, blur, jittered_position};
+use crate::film::course::{CourseFilter, StoredSample, StoredSamples};
 use crate::film::{Film, FilterSampler};
 use crate::integrator::Whitted;
 use crate::math::{Color, Ray, Vec2, Vec3};
@@ -67,8 +68,11 @@ struct Show {
     blind: Cell<bool>,
 }
 
-/// Shares of a pixel nearer to 1 than this are 1: sums of a filter's weights are a little off.
-const NEARLY_ALL: f32 = 1.0 - 1e-6;
+/// The share of a pixel that is seen, of what is shown white where the camera sees. Sums of a filter's weights are a little off:
+/// what is nearly all is all.
+pub(super) fn share(white: Color) -> f32 {
+    if white.x > 1.0 - 1e-6 { 1.0 } else { white.x.max(0.0) }
+}
 
 /// Where a sample goes.
 pub(super) struct Aim {
@@ -164,13 +168,28 @@ impl<'a> Samples<'a> {
                 (center(x, y) + offset, self.lens(Sampler::Sobol, x, y, sample), weight)
             }
             (Sampling::Course2004 { sampler, samples, .. }, _) => {
-                let position = sampler.pixel_position(job.seed, x, y, sample, sampler.round_up(samples));
-                (Vec2::new(x as f32, y as f32) + position, self.lens(sampler, x, y, sample), 1.0)
+                return self.aim_kept((sampler, sampler.round_up(samples)), x, y, sample).0;
             }
             // One ray through the middles of pixel and lens.
             _ => (center(x, y), Vec2::splat(0.5), 1.0),
         };
         Aim { place, lens, weight, ray: camera_ray(self.world, &self.raster, (x, y), place, lens) }
+    }
+
+    /// Where a sample goes that keeps its place in its pixel, which comes with it. It counts for more pixels than one, as a
+    /// filter says.
+    pub(super) fn aim_kept(&self, (sampler, samples): (Sampler, u32), x: u32, y: u32, sample: u32) -> (Aim, Vec2) {
+        let position = sampler.pixel_position(self.job.seed, x, y, sample, samples);
+        let (place, lens) = (Vec2::new(x as f32, y as f32) + position, self.lens(sampler, x, y, sample));
+        let ray = camera_ray(self.world, &self.raster, (x, y), place, lens);
+        (Aim { place, lens, weight: 1.0, ray }, position)
+    }
+
+    /// Where the sample of a sub-pixel goes.
+    pub(super) fn aim_sub_pixel(&self, grid: &SubPixels, raster: &Raster, (x, y): (u32, u32)) -> Aim {
+        let (place, lens) = (grid.place(self.job.seed, (x, y)), self.lens(Sampler::Random, x, y, 0));
+        let ray = camera_ray(self.world, raster, (x, y), place, lens);
+        Aim { place: place / grid.scale() as f32, lens, weight: 1.0, ray }
     }
 
     /// Where in the lens a sample lies. A lens without extent needs no numbers.
@@ -190,7 +209,6 @@ impl<'a> Samples<'a> {
             return Ok(colors.into_iter().map(|color| (color, 1.0)).collect());
         }
         let mask = self.shown(&Show { mask: true, ..Show::default() }, part, at, &mut Rays::default())?;
-        let share = |white: Color| if white.x > NEARLY_ALL { 1.0 } else { white.x.max(0.0) };
         Ok(colors.into_iter().zip(mask).map(|(color, white)| (color, share(white))).collect())
     }
 
@@ -205,11 +223,10 @@ impl<'a> Samples<'a> {
     }
 
     /// The colour of a sample that is kept.
-    fn kept(&self, show: &Show, raster: &Raster, pixel: (u32, u32), place: Vec2, lens: Vec2, rays: &mut Rays) -> Color {
-        let ray = camera_ray(self.world, raster, pixel, place, lens);
-        show.blind.set(show.blind.get() || ray.is_none());
+    fn kept(&self, show: &Show, aim: &Aim, rays: &mut Rays) -> Color {
+        show.blind.set(show.blind.get() || aim.ray.is_none());
         let light = |ray| if show.mask { Vec3::ONE } else { self.whitted.radiance(&ray, rays) };
-        ray.map_or(Vec3::ZERO, light)
+        aim.ray.map_or(Vec3::ZERO, light)
     }
 
     fn course_2004(
@@ -221,7 +238,7 @@ impl<'a> Samples<'a> {
         at: &At,
         rays: &mut Rays,
     ) -> Result<Vec<Color>, Stopped> {
-        let around = grown(part, filter.support(), self.job.whole());
+        let around = part.grown(filter.support(), self.job.whole());
         let stored = self.stored(show, around, sampling, at, |x, y| part.holds(x, y), rays)?;
         let from = (part.left - around.left, part.top - around.top);
         stored.try_reconstruct(filter, from, (part.width, part.height), || self.check())
@@ -232,19 +249,18 @@ impl<'a> Samples<'a> {
         &self,
         show: &Show,
         part: Crop,
-        (sampler, samples): (Sampler, u32),
+        sampling: (Sampler, u32),
         at: &At,
         counted: impl Fn(u32, u32) -> bool,
         rays: &mut Rays,
     ) -> Result<StoredSamples, Stopped> {
-        StoredSamples::try_take(part.width, part.height, samples, |column, row, sample| {
+        StoredSamples::try_take(part.width, part.height, sampling.1, |column, row, sample| {
             self.check()?;
             let (x, y) = (part.left + column, part.top + row);
             at.set((x, y, Some(sample)));
-            let position = sampler.pixel_position(self.job.seed, x, y, sample, samples);
-            let (place, lens) = (Vec2::new(x as f32, y as f32) + position, self.lens(sampler, x, y, sample));
+            let (aim, position) = self.aim_kept(sampling, x, y, sample);
             let mut own = Rays::default();
-            let color = self.kept(show, &self.raster, (x, y), place, lens, &mut own);
+            let color = self.kept(show, &aim, &mut own);
             rays.0 += if counted(x, y) { own.0 } else { 0 };
             Ok(StoredSample { position, color })
         })
@@ -259,33 +275,20 @@ impl<'a> Samples<'a> {
         at: &At,
         rays: &mut Rays,
     ) -> Result<Vec<Color>, Stopped> {
-        let scale = if jitter { 3 } else { 1 };
-        let scaled = |crop: Crop| Crop {
-            left: crop.left * scale,
-            top: crop.top * scale,
-            width: crop.width * scale,
-            height: crop.height * scale,
-        };
-        let (inner, whole) = (scaled(part), scaled(self.job.whole()));
-        let around = grown(inner, if blurred { 2 } else { 0 }, whole);
-        let raster = raster(self.world, whole.width, whole.height);
-        let mut pixels = Vec::with_capacity(around.pixels() as usize);
-        for (x, y) in around.places() {
+        let grid = SubPixels::new(self.job, part, jitter, blurred);
+        let raster = grid.raster(self.world);
+        let mut pixels = Vec::with_capacity(grid.around.pixels() as usize);
+        for (x, y) in grid.around.places() {
             self.check()?;
-            at.set((x / scale, y / scale, None));
-            let place = if jitter { jittered_position(self.job.seed, x, y) } else { Vec2::new(x as f32, y as f32) };
-            let lens = self.lens(Sampler::Random, x, y, 0);
+            let pixel = grid.pixel((x, y));
+            at.set((pixel.0, pixel.1, None));
             let mut own = Rays::default();
-            pixels.push(self.kept(show, &raster, (x, y), place + 0.5, lens, &mut own));
-            rays.0 += if inner.holds(x, y) { own.0 } else { 0 };
+            pixels.push(self.kept(show, &self.aim_sub_pixel(&grid, &raster, (x, y)), &mut own));
+            rays.0 += if grid.inner.holds(x, y) { own.0 } else { 0 };
         }
-        if blurred {
-            pixels = blur(&pixels, around.width, around.height);
-        }
-        let index = |(x, y)| ((y - around.top) * around.width + (x - around.left)) as usize;
-        let pixels: Vec<Color> = inner.places().map(|place| pixels[index(place)]).collect();
+        let pixels = grid.develop(pixels);
         self.check()?;
-        Ok(if jitter { average_3x3(&pixels, inner.width, inner.height) } else { pixels })
+        Ok(pixels)
     }
 
     /// The difference, at each pixel of the whole picture, between the ambient light on its texture and that of the pixel shaded
@@ -308,12 +311,4 @@ impl<'a> Samples<'a> {
         }
         differences
     }
-}
-
-/// A part with some pixels more on each side, within another.
-fn grown(part: Crop, by: u32, within: Crop) -> Crop {
-    let (left, top) = (part.left.saturating_sub(by), part.top.saturating_sub(by));
-    let right = part.left.saturating_add(part.width).saturating_add(by).min(within.width);
-    let bottom = part.top.saturating_add(part.height).saturating_add(by).min(within.height);
-    Crop { left, top, width: right - left, height: bottom - top }
 }

@@ -1,6 +1,6 @@
 //! An explanation in words and numbers, line by line.
 
-use super::{Explanation, SampleAccount};
+use super::{Explanation, Mean, SampleAccount};
 use crate::describe::DescribedList;
 use crate::diag::{Files, Span};
 use crate::integrator::Node;
@@ -65,32 +65,52 @@ impl Names<'_> {
 }
 
 impl Explanation {
-    /// The explanation in lines: the pixel, its samples, and the trees of those samples that are wanted.
-    pub fn lines(&self, names: &Names, wanted: impl Fn(u32) -> bool) -> Vec<Line> {
+    /// The explanation in lines: the pixel, its samples, and the tree of one of them, by its place in the list.
+    pub fn lines(&self, names: &Names, wanted: usize) -> Vec<Line> {
         let mut lines = Vec::new();
         let mut say = |depth, text: String| lines.push(Line { depth, adds: None, text });
         say(0, format!("pixel {},{} = {}", self.x, self.y, rgb(self.color)));
         if self.coverage < 1.0 {
             say(1, format!("the camera sees something at {:.1} % of it", 100.0 * self.coverage));
         }
-        if self.samples.len() > 1 {
+        let all = self.samples.len();
+        if all > 1 {
             let sum: f64 = self.samples.iter().map(|s| f64::from(s.weight)).sum();
-            say(1, format!("the mean of {} samples by weight; the weights sum to {}", self.samples.len(), sum as f32));
+            let of = match &self.mean {
+                Mean::Own => String::new(),
+                Mean::Around => ", also those of pixels around".into(),
+                Mean::SubPixels(_) => ": sub-pixels, blurred and averaged as in 2012".into(),
+            };
+            say(1, format!("the mean of {all} samples by weight{of}; the weights sum to {}", sum as f32));
         }
         if let Some(stale) = self.stale_texels {
             say(1, format!("and {} by the habit `stale-texels`", rgb(stale)));
         }
-        for sample in &self.samples {
-            sample_lines(sample, names, wanted(sample.sample), &mut lines);
+        let nothing = |i: usize| i != wanted && self.samples[i].weight == 0.0 && self.mean != Mean::Own;
+        for (i, sample) in self.samples.iter().enumerate().filter(|(i, _)| !nothing(*i)) {
+            sample_lines(sample, self.number(i), names, i == wanted, &mut lines);
+        }
+        match (0..all).filter(|&i| nothing(i)).count() {
+            0 => {}
+            left => lines.push(Line { depth: 1, adds: None, text: format!("{left} samples more have no weight here") }),
         }
         lines
     }
+
+    /// What a sample is called: its number, and whose it is where several pixels' samples are in the list.
+    fn number(&self, index: usize) -> String {
+        let SampleAccount { of: (x, y), sample, .. } = self.samples[index];
+        match self.mean {
+            Mean::Own => format!("sample {sample}"),
+            _ => format!("sample {index} (number {sample} of pixel {x},{y})"),
+        }
+    }
 }
 
-fn sample_lines(sample: &SampleAccount, names: &Names, whole: bool, lines: &mut Vec<Line>) {
-    let SampleAccount { sample, place, weight, light, .. } = sample;
+fn sample_lines(sample: &SampleAccount, name: String, names: &Names, whole: bool, lines: &mut Vec<Line>) {
+    let SampleAccount { place, weight, light, .. } = sample;
     let seen = light.as_ref().map_or("the camera sees nothing here".into(), |light| rgb(light.value));
-    let text = format!("sample {sample} at {}, {}, weight {weight}: {seen}", place.x, place.y);
+    let text = format!("{name} at {}, {}, weight {weight}: {seen}", place.x, place.y);
     lines.push(Line { depth: 1, adds: None, text });
     if let (Some(light), true) = (light, whole) {
         node_lines(light, names, 2, lines);

@@ -1,0 +1,108 @@
+//! Explanations of random pixels of all scenes, beside the pictures.
+
+use anyhow::{Context, Result};
+use durer::diag::{Diagnostics, Files};
+use durer::integrator::Settings;
+use durer::render::explain::check::{SAMPLINGS, check};
+use durer::render::explain::explain;
+use durer::render::{Job, Sampling};
+use durer::{LoadOptions, Loaded, load};
+use rayon::prelude::*;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::time::{Duration, Instant};
+
+/// Pixels of each scene whose explanation is timed, and the slowest scenes that are told.
+const TIMED: u32 = 5;
+const SLOWEST: usize = 5;
+
+/// What was found in one scene, read in one way.
+struct Found {
+    name: String,
+    differences: Vec<String>,
+    pixels: u32,
+    slowest: Duration,
+}
+
+pub fn run(arguments: &[String]) -> Result<ExitCode> {
+    let value = |name: &str| arguments.iter().position(|a| a == name).and_then(|i| arguments.get(i + 1));
+    let pixels: usize = value("--pixels").map_or(Ok(100_000), |text| text.parse()).context("--pixels: a number")?;
+    let only = value("--only");
+    let mut scenes = Vec::new();
+    collect(&crate::root()?.join("scenes"), &mut scenes)?;
+    let corpus = std::env::var_os("DURER_CORPUS").map_or_else(|| PathBuf::from("../shared"), PathBuf::from);
+    let course = corpus.join("course/scenes");
+    match course.is_dir() {
+        true => collect(&course, &mut scenes)?,
+        false => println!("the course is not there: only our own scenes"),
+    }
+    scenes.retain(|path| only.is_none_or(|only| path.to_string_lossy().contains(only.as_str())));
+    // Every scene with sane rules, and as its year's program understood it; where that is ours, the same twice.
+    let ways: Vec<(&PathBuf, bool)> = scenes.iter().flat_map(|scene| [(scene, false), (scene, true)]).collect();
+    let each = pixels.div_ceil((ways.len() * SAMPLINGS.len()).max(1)) as u32;
+    let pool = rayon::ThreadPoolBuilder::new().stack_size(64 << 20).build()?;
+    let found: Vec<Option<Found>> = pool.install(|| {
+        let ways = ways.par_iter().enumerate();
+        ways.map(|(i, (scene, official))| one(scene, *official, &course, each, i as u64)).collect::<Result<_>>()
+    })?;
+    let unread = found.iter().filter(|found| found.is_none()).count();
+    let mut found: Vec<Found> = found.into_iter().flatten().collect();
+    for Found { name, differences, .. } in &found {
+        differences.iter().for_each(|difference| println!("{name}: {difference}"));
+    }
+    let explained: u32 = found.iter().map(|found| found.pixels).sum();
+    let differ: usize = found.iter().map(|found| found.differences.len()).sum();
+    println!("{} readings of {} files; {unread} are no scenes", found.len(), scenes.len());
+    println!("{explained} pixels explained in {} ways of sampling: {differ} differ", SAMPLINGS.len());
+    found.sort_by_key(|found| std::cmp::Reverse(found.slowest));
+    println!("slowest explanations, of a pixel of 16 samples in 512x512:");
+    for Found { name, slowest, .. } in found.iter().take(SLOWEST) {
+        println!("{:>8.2} ms  {name}", slowest.as_secs_f64() * 1e3);
+    }
+    Ok(if differ == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+}
+
+/// Files that may be scenes, in and below a folder.
+fn collect(folder: &Path, scenes: &mut Vec<PathBuf>) -> Result<()> {
+    let mut paths: Vec<PathBuf> = std::fs::read_dir(folder)?.map(|entry| Ok(entry?.path())).collect::<Result<_>>()?;
+    paths.sort();
+    for path in paths {
+        if path.is_dir() {
+            collect(&path, scenes)?;
+        } else if path.extension().is_some_and(|extension| extension == "txt") {
+            scenes.push(path);
+        }
+    }
+    Ok(())
+}
+
+/// `None` if the file is no scene.
+fn one(scene: &Path, official: bool, course: &Path, pixels: u32, seed: u64) -> Result<Option<Found>> {
+    let assets = ["f16", "f04"].map(|year| course.join(year)).into_iter().filter(|folder| folder.is_dir()).collect();
+    let options = LoadOptions { course: official, assets, ..LoadOptions::default() };
+    let (mut files, mut findings) = (Files::default(), Diagnostics::default());
+    let Some(loaded) = load(scene, &options, &mut files, &mut findings)? else { return Ok(None) };
+    let Some(world) = loaded.compile(&options, &mut files, &mut findings) else { return Ok(None) };
+    let job = Job { width: 24, height: 20, seed, settings: settings(&loaded), ..Job::default() };
+    let differences = check(&world, &job, pixels, seed)?;
+    let sampling = Sampling::Filtered { samples: 16, filter: Default::default() };
+    let job = Job { width: 512, height: 512, sampling, ..job };
+    let timed = (0..TIMED).map(|i| {
+        let start = Instant::now();
+        let (x, y) = (60 + 97 * i, 80 + 83 * i);
+        explain(&world, &job, x, y).map(|_| start.elapsed())
+    });
+    let slowest = timed.collect::<Result<Vec<_>, _>>()?.into_iter().max().unwrap_or_default();
+    let name = format!("{}{}", scene.display(), if official { ", as its year's program" } else { "" });
+    Ok(Some(Found { name, differences, pixels: pixels * SAMPLINGS.len() as u32, slowest }))
+}
+
+/// What a scene asks for; with shadows and some levels of rays in any case.
+fn settings(loaded: &Loaded) -> Settings {
+    Settings {
+        bounces: loaded.rules.bounces.max(4),
+        shade_back: loaded.rules.shade_back,
+        transparent_shadows: loaded.rules.transparent_shadows,
+        ..Job::default().settings
+    }
+}
