@@ -8,12 +8,13 @@ use crate::args::LessonArgs;
 use crate::job::{accel, job, warn};
 use crate::open::{load_options, open};
 use crate::output::{lengthened, say};
+use crate::page::png;
 use crate::render::failure;
 use crate::{Failure, bad, progress};
 use durer::camera::{Lens, Raster};
-use durer::image::{Transfer, checked_count};
-use durer::lesson::{OWN_SCENE, OWN_SCENE_NAME, Stage, Step, TOPICS, Teacher};
-use durer::render::{Control, RenderError};
+use durer::image::{Layer, Transfer, checked_count};
+use durer::lesson::{OWN_SCENE, OWN_SCENE_NAME, Picture, Stage, Step, TOPICS, Teacher, Topic};
+use durer::render::Control;
 use folder::Folder;
 use std::path::Path;
 
@@ -23,13 +24,23 @@ const SIDE: u32 = 256;
 const TEXT: &str = "lesson.md";
 const PAGE: &str = "index.html";
 
-/// A step with the names of its pictures' files.
+/// A picture's caption and its file.
+struct Figure {
+    caption: &'static str,
+    file: String,
+}
+
+/// A step whose pictures are files.
 struct Written {
-    step: Step,
-    before: Option<String>,
-    after: String,
+    topic: &'static Topic,
+    title: String,
+    words: String,
+    ours: bool,
+    before: Option<Figure>,
+    after: Figure,
     change: Option<String>,
-    plan: Option<String>,
+    /// A drawing and its file.
+    plan: Option<(String, String)>,
 }
 
 /// A lesson that is to be written.
@@ -65,15 +76,15 @@ pub fn run(args: &LessonArgs) -> Result<(), Failure> {
     let transfer = Transfer::from_name(&args.transfer).unwrap_or_default();
     let mut teacher = Teacher::new(Stage::new(opened.loaded.scene, opened.files, opened.world, job), transfer);
     let control = Control { threads: options.threads, ..Control::default() };
-    let names: Vec<String> = TOPICS.iter().map(|topic| topic.title.to_string()).collect();
-    // Ctrl-C ends the program here: nothing is written yet.
-    let steps = progress::each(&names, TOPICS.iter().collect(), args.quiet, |topic| teacher.steps(topic, &control));
-    let steps: Vec<Vec<Step>> = steps.into_iter().collect::<Result<_, RenderError>>().map_err(failure)?;
     let scene = args.scene.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let mut lesson = Lesson { scene, steps: Vec::new(), pictures: Vec::new(), transfer };
-    for (number, step) in (1..).zip(steps.into_iter().flatten()) {
-        lesson.add(number, step)?;
-    }
+    let names: Vec<String> = TOPICS.iter().map(|topic| topic.title.to_string()).collect();
+    // Ctrl-C ends the program here: nothing is written yet.
+    let made = progress::each(&names, TOPICS.iter().collect(), args.quiet, |topic| {
+        let steps = teacher.steps(topic, &control).map_err(failure)?;
+        steps.into_iter().try_for_each(|step| lesson.add(step))
+    });
+    made.into_iter().collect::<Result<(), Failure>>()?;
     let files = lesson.files()?;
     let count = files.len() - 2;
     let path = folder.write(files)?;
@@ -85,21 +96,25 @@ pub fn run(args: &LessonArgs) -> Result<(), Failure> {
 
 impl Lesson {
     /// Adds a step, whose pictures' files begin with its number.
-    fn add(&mut self, number: usize, step: Step) -> Result<(), Failure> {
-        let name = format!("{number:02}-{}", step.topic.name);
-        let before = step.before.as_ref().map(|picture| self.picture(format!("{name}-before.png"), &picture.layer));
-        let before = before.transpose()?;
-        let after = self.picture(format!("{name}.png"), &step.after.layer)?;
+    fn add(&mut self, step: Step) -> Result<(), Failure> {
+        let name = format!("{:02}-{}", self.steps.len() + 1, step.topic.name);
+        let figure = |lesson: &mut Lesson, picture: &Picture, end: &str| -> Result<Figure, Failure> {
+            let file = lesson.picture(format!("{name}{end}.png"), &picture.layer)?;
+            Ok(Figure { caption: picture.caption, file })
+        };
+        let before = step.before.as_ref().map(|picture| figure(self, picture, "-before")).transpose()?;
+        let after = figure(self, &step.after, "")?;
         let change = step.change.as_ref().map(|change| self.picture(format!("{name}-change.png"), &change.picture));
         let change = change.transpose()?;
-        let plan = step.plan.is_some().then(|| format!("{name}-plan.svg"));
-        self.steps.push(Written { step, before, after, change, plan });
+        let plan = step.plan.map(|svg| (svg, format!("{name}-plan.svg")));
+        let Step { topic, title, words, ours, .. } = step;
+        self.steps.push(Written { topic, title, words, ours, before, after, change, plan });
         Ok(())
     }
 
     /// The file of a picture: what one step ends with, the next may begin with.
-    fn picture(&mut self, name: String, layer: &durer::image::Layer) -> Result<String, Failure> {
-        let png = crate::page::png(layer.clone(), self.transfer)?;
+    fn picture(&mut self, name: String, layer: &Layer) -> Result<String, Failure> {
+        let png = png(layer.clone(), self.transfer)?;
         if let Some((there, _)) = self.pictures.iter().find(|picture| picture.1 == png) {
             return Ok(there.clone());
         }
@@ -111,21 +126,26 @@ impl Lesson {
     fn files(self) -> Result<Vec<(String, Vec<u8>)>, Failure> {
         let mut files = vec![(PAGE.to_string(), page::page(&self).into_bytes())];
         files.push((TEXT.to_string(), markdown::text(&self).into_bytes()));
-        if self.steps.iter().any(|written| written.step.ours) {
+        if self.shows_ours() {
             files.push((OWN_SCENE_NAME.to_string(), OWN_SCENE.into()));
         }
-        let plans = self.steps.iter().filter_map(|written| Some((written.plan.clone()?, written.step.plan.clone()?)));
-        files.extend(plans.map(|(name, svg)| (name, svg.into_bytes())));
+        let plans = self.steps.into_iter().filter_map(|step| step.plan);
+        files.extend(plans.map(|(svg, name)| (name, svg.into_bytes())));
         files.extend(self.pictures);
         Ok(files)
+    }
+
+    /// Whether some step is shown in our own scene.
+    fn shows_ours(&self) -> bool {
+        self.steps.iter().any(|step| step.ours)
     }
 }
 
 impl Written {
     /// That the step is shown in another scene, and why.
     fn elsewhere(&self, scene: &str) -> Option<String> {
-        let lacking = self.step.topic.lacking;
-        self.step.ours.then(|| {
+        let lacking = self.topic.lacking;
+        self.ours.then(|| {
             format!("{scene} cannot show this: {lacking}. It is shown in a small scene of ours, {OWN_SCENE_NAME}.")
         })
     }

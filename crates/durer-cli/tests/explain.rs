@@ -123,6 +123,46 @@ fn the_page_holds_all_that_it_needs() {
     assert!(!page.contains("http:") && !page.contains("https:"), "nothing is fetched");
 }
 
+/// The names of all fields, and of all kinds, in some JSON.
+fn words(json: &Value, found: &mut std::collections::BTreeSet<String>) {
+    match json {
+        Value::Array(values) => values.iter().for_each(|value| words(value, found)),
+        Value::Object(fields) => {
+            for (name, value) in fields {
+                // What numbers stand for is found by number.
+                if name.parse::<u32>().is_err() {
+                    found.insert(name.clone());
+                }
+                match (name.as_str(), value.as_str()) {
+                    ("kind" | "from", Some(kind)) => drop(found.insert(kind.into())),
+                    _ => words(value, found),
+                }
+            }
+        }
+        _ => {}
+    }
+}
+
+#[test]
+fn all_that_the_json_has_is_documented() {
+    let (place, mut found) = (Place::new(), Default::default());
+    let glass = common::ENDLESS.replace("indexOfRefraction", "refractionIndex");
+    place.put("glass.txt", glass);
+    for arguments in [
+        "scene.txt --pixel 20,26 --bounces 1 --samples 1",
+        "scene.txt --pixel 0,0 --jitter --blur",
+        "scene.txt --pixel 20,13 --sampler random --samples 2 --filter box",
+        "glass.txt --pixel 20,13 --bounces 3 --weight 0.5 --samples 1",
+    ] {
+        let ran = place.gives(0, &format!("explain {arguments} --json {SMALL}"));
+        words(&serde_json::from_str(&ran.out).unwrap(), &mut found);
+    }
+    assert!(found.len() > 60, "{found:?}");
+    let guide = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/explain.md")).unwrap();
+    let missing: Vec<_> = found.iter().filter(|word| !guide.contains(&format!("`{word}`"))).collect();
+    assert!(missing.is_empty(), "{missing:?}");
+}
+
 /// Unfolds the tree, chooses another sample, marks a ray, turns space by the mouse.
 const CLICKS: &str = r##"
 const open = () => document.querySelectorAll("#tree details[open]").length;

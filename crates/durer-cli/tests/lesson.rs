@@ -120,9 +120,12 @@ setTimeout(() => {
 #[test]
 fn the_page_works_in_a_browser_without_network() {
     let place = Place::new();
-    // A name that would end a script, were it not taken as text.
-    place.put("<b>.txt", common::SCENE);
-    place.gives(0, &format!("lesson <b>.txt -o out -q {SMALL}"));
+    // A name that would end a script, or make a link to be removed, were it not taken as text.
+    let scene = "<b>](a).txt";
+    place.put(scene, common::SCENE);
+    place.gives(0, &format!("lesson {scene} -o out -q {SMALL}"));
+    let text = String::from_utf8(place.bytes("out/lesson.md")).unwrap();
+    assert!(text.contains("# &lt;b>&#93;(a).txt") && !text.contains("](a)"), "{text}");
     let Some(seen) = clicked(&place, "out/index.html", CLICKS) else { return };
     let steps = names(&place.path("out")).iter().filter(|name| name.ends_with("-change.png")).count() + 4;
     for wanted in [

@@ -9,8 +9,8 @@ use std::fmt::Write;
 pub fn text(lesson: &Lesson) -> String {
     let scene = &lesson.scene;
     let mut text = format!(
-        "{MARK}\n# {scene}, in the order of the lecture\n\nThe same as a page for a browser, with sliders: \
-         [{PAGE}]({PAGE}).\n"
+        "{MARK}\n# {}, in the order of the lecture\n\nThe same as a page for a browser, with sliders: [{PAGE}]({PAGE}).\n",
+        plain(scene)
     );
     for (number, written) in (1..).zip(&lesson.steps) {
         step(&mut text, number, written, scene);
@@ -19,31 +19,29 @@ pub fn text(lesson: &Lesson) -> String {
 }
 
 /// Writes one step; a string takes all that is written to it.
-fn step(text: &mut String, number: usize, written: &Written, scene: &str) {
-    let step = &written.step;
+fn step(text: &mut String, number: usize, step: &Written, scene: &str) {
     let _ = writeln!(text, "\n## {number}. {}\n", step.title);
-    if let Some(elsewhere) = written.elsewhere(scene) {
-        let _ = writeln!(
-            text,
-            "> {}\n",
-            elsewhere.replace(OWN_SCENE_NAME, &format!("[{OWN_SCENE_NAME}]({OWN_SCENE_NAME})"))
-        );
+    if let Some(elsewhere) = step.elsewhere(scene) {
+        let link = format!("[{OWN_SCENE_NAME}]({OWN_SCENE_NAME})");
+        let _ = writeln!(text, "> {}\n", plain(&elsewhere).replace(OWN_SCENE_NAME, &link));
     }
     let _ = writeln!(text, "{}\n\n```text\n{}\n```\n", step.topic.words, step.topic.equations.join("\n"));
     // Pictures side by side, with what they show above them.
-    let mut columns = Vec::new();
-    if let (Some(picture), Some(file)) = (&step.before, &written.before) {
-        columns.push((picture.caption, file));
-    }
-    columns.push((step.after.caption, &written.after));
-    columns.extend(written.change.as_ref().map(|file| ("what changed: lighter or darker than grey", file)));
-    columns.extend(written.plan.as_ref().map(|file| ("the middle row's rays from above", file)));
+    let mut columns: Vec<(&str, &str)> =
+        step.before.iter().chain([&step.after]).map(|figure| (figure.caption, figure.file.as_str())).collect();
+    columns.extend(step.change.as_ref().map(|file| ("what changed: lighter or darker than grey", file.as_str())));
+    columns.extend(step.plan.as_ref().map(|plan| ("the middle row's rays from above", plan.1.as_str())));
     let row = |cells: Vec<String>| format!("| {} |", cells.join(" | "));
     let _ = writeln!(text, "{}", row(columns.iter().map(|column| column.0.to_string()).collect()));
     let _ = writeln!(text, "{}", row(columns.iter().map(|_| ":-:".to_string()).collect()));
     let _ =
         writeln!(text, "{}\n", row(columns.iter().map(|column| format!("![{}]({})", column.0, column.1)).collect()));
-    let _ = writeln!(text, "{}\n", step.words);
+    let _ = writeln!(text, "{}\n", plain(&step.words));
     let places: Vec<String> = step.topic.places.iter().map(|p| format!("`{}`: `{}`", p.file, p.symbol)).collect();
     let _ = writeln!(text, "In the source:\n\n- {}", places.join("\n- "));
+}
+
+/// Text with a name in it that somebody else chose: it makes no link and no element.
+fn plain(text: &str) -> String {
+    text.replace('[', "&#91;").replace(']', "&#93;").replace('<', "&lt;")
 }

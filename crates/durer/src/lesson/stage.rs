@@ -26,6 +26,9 @@ pub const OWN_SCENE_NAME: &str = "our-scene.txt";
 /// Samples a pixel where the job has one only.
 const SAMPLES: u32 = 16;
 
+/// Pictures that are kept for later steps.
+const KEPT: usize = 4;
+
 /// A picture, and the values that it shows.
 #[derive(Clone, Debug)]
 pub(super) struct Shown {
@@ -101,6 +104,8 @@ impl Stage {
                 Shown { layer: rendered.pictures.swap_remove(0), values: rendered.layers.swap_remove(0).image }
             }
         };
+        // Those that are long past do not come again.
+        self.made.drain(..self.made.len().saturating_sub(KEPT - 1));
         self.made.push((*shot, shown.clone()));
         Ok(shown)
     }
