@@ -6,6 +6,7 @@ use durer::integrator::Settings;
 use durer::render::explain::check::{SAMPLINGS, check};
 use durer::render::explain::explain;
 use durer::render::{Job, Sampling};
+use durer::world::World;
 use durer::{LoadOptions, Loaded, load};
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
@@ -16,7 +17,14 @@ use std::time::{Duration, Instant};
 const TIMED: u32 = 5;
 const SLOWEST: usize = 5;
 
-/// What was found in one scene, read in one way.
+/// A scene, read in one way.
+struct Opened {
+    name: String,
+    world: World,
+    settings: Settings,
+}
+
+/// What was found in it.
 struct Found {
     name: String,
     differences: Vec<String>,
@@ -37,22 +45,20 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
         false => println!("the course is not there: only our own scenes"),
     }
     scenes.retain(|path| only.is_none_or(|only| path.to_string_lossy().contains(only.as_str())));
-    // Every scene with sane rules, and as its year's program understood it; where that is ours, the same twice.
+    // Every scene with sane rules, and as its year's program understood it.
     let ways: Vec<(&PathBuf, bool)> = scenes.iter().flat_map(|scene| [(scene, false), (scene, true)]).collect();
-    let each = pixels.div_ceil((ways.len() * SAMPLINGS.len()).max(1)) as u32;
     let pool = rayon::ThreadPoolBuilder::new().stack_size(64 << 20).build()?;
-    let found: Vec<Option<Found>> = pool.install(|| {
-        let ways = ways.par_iter().enumerate();
-        ways.map(|(i, (scene, official))| one(scene, *official, &course, each, i as u64)).collect::<Result<_>>()
-    })?;
-    let unread = found.iter().filter(|found| found.is_none()).count();
-    let mut found: Vec<Found> = found.into_iter().flatten().collect();
+    let read = || ways.par_iter().map(|(scene, official)| read(scene, *official, &course)).collect::<Result<Vec<_>>>();
+    let opened: Vec<Opened> = pool.install(read)?.into_iter().flatten().collect();
+    let each = pixels.div_ceil((opened.len() * SAMPLINGS.len()).max(1)) as u32;
+    let one = |(i, opened): (usize, &Opened)| opened.explain(each, i as u64);
+    let mut found: Vec<Found> = pool.install(|| opened.par_iter().enumerate().map(one).collect::<Result<_>>())?;
     for Found { name, differences, .. } in &found {
         differences.iter().for_each(|difference| println!("{name}: {difference}"));
     }
     let explained: u32 = found.iter().map(|found| found.pixels).sum();
     let differ: usize = found.iter().map(|found| found.differences.len()).sum();
-    println!("{} readings of {} files; {unread} are no scenes", found.len(), scenes.len());
+    println!("{} readings of {} files, some of which are no scenes", found.len(), scenes.len());
     println!("{explained} pixels explained in {} ways of sampling: {differ} differ", SAMPLINGS.len());
     found.sort_by_key(|found| std::cmp::Reverse(found.slowest));
     println!("slowest explanations, of a pixel of 16 samples in 512x512:");
@@ -76,25 +82,30 @@ fn collect(folder: &Path, scenes: &mut Vec<PathBuf>) -> Result<()> {
     Ok(())
 }
 
-/// `None` if the file is no scene.
-fn one(scene: &Path, official: bool, course: &Path, pixels: u32, seed: u64) -> Result<Option<Found>> {
+/// Reads a scene; `None` if the file is none.
+fn read(scene: &Path, official: bool, course: &Path) -> Result<Option<Opened>> {
     let assets = ["f16", "f04"].map(|year| course.join(year)).into_iter().filter(|folder| folder.is_dir()).collect();
     let options = LoadOptions { course: official, assets, ..LoadOptions::default() };
     let (mut files, mut findings) = (Files::default(), Diagnostics::default());
     let Some(loaded) = load(scene, &options, &mut files, &mut findings)? else { return Ok(None) };
-    let Some(world) = loaded.compile(&options, &mut files, &mut findings) else { return Ok(None) };
-    let job = Job { width: 24, height: 20, seed, settings: settings(&loaded), ..Job::default() };
-    let differences = check(&world, &job, pixels, seed)?;
-    let sampling = Sampling::Filtered { samples: 16, filter: Default::default() };
-    let job = Job { width: 512, height: 512, sampling, ..job };
-    let timed = (0..TIMED).map(|i| {
-        let start = Instant::now();
-        let (x, y) = (60 + 97 * i, 80 + 83 * i);
-        explain(&world, &job, x, y).map(|_| start.elapsed())
-    });
-    let slowest = timed.collect::<Result<Vec<_>, _>>()?.into_iter().max().unwrap_or_default();
+    let world = loaded.compile(&options, &mut files, &mut findings);
     let name = format!("{}{}", scene.display(), if official { ", as its year's program" } else { "" });
-    Ok(Some(Found { name, differences, pixels: pixels * SAMPLINGS.len() as u32, slowest }))
+    Ok(world.map(|world| Opened { name, world, settings: settings(&loaded) }))
+}
+
+impl Opened {
+    fn explain(&self, pixels: u32, seed: u64) -> Result<Found> {
+        let job = Job { width: 24, height: 20, seed, settings: self.settings, ..Job::default() };
+        let differences = check(&self.world, &job, pixels, seed)?;
+        let sampling = Sampling::Filtered { samples: 16, filter: Default::default() };
+        let job = Job { width: 512, height: 512, sampling, ..job };
+        let timed = (0..TIMED).map(|i| {
+            let start = Instant::now();
+            explain(&self.world, &job, 60 + 97 * i, 80 + 83 * i).map(|_| start.elapsed())
+        });
+        let slowest = timed.collect::<Result<Vec<_>, _>>()?.into_iter().max().unwrap_or_default();
+        Ok(Found { name: self.name.clone(), differences, pixels: pixels * SAMPLINGS.len() as u32, slowest })
+    }
 }
 
 /// What a scene asks for; with shadows and some levels of rays in any case.

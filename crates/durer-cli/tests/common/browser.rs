@@ -34,12 +34,12 @@ fn chromium() -> Option<PathBuf> {
     found
 }
 
-/// Opens a page, runs a script at its end, and gives what that saw; `None` where there is no browser.
+/// Opens a page, runs a script at its end, and wants it to see all of some texts. Nothing is done where there is no browser.
 ///
 /// The page must fetch nothing: no file, no network.
 #[track_caller]
-pub fn clicked(place: &Place, page: &str, script: &str) -> Option<String> {
-    let chromium = chromium()?;
+pub fn sees(place: &Place, page: &str, script: &str, wanted: &[&str]) {
+    let Some(chromium) = chromium() else { return };
     let text = String::from_utf8(place.bytes(page)).unwrap();
     // The name of SVG's language is an address that nobody opens.
     let links = text.replace("http://www.w3.org/2000/svg", "");
@@ -58,6 +58,7 @@ pub fn clicked(place: &Place, page: &str, script: &str) -> Option<String> {
     let dom = String::from_utf8_lossy(&run.stdout);
     let title = dom.split("<title>").nth(1).and_then(|rest| rest.split("</title>").next()).unwrap_or("");
     assert!(title.starts_with("SEEN "), "{title}\n{}", String::from_utf8_lossy(&run.stderr));
-    assert!(title.contains("fetched 0"), "{title}");
-    Some(title.to_string())
+    for wanted in wanted.iter().chain(&["fetched 0"]) {
+        assert!(title.contains(wanted), "`{wanted}` is not in {title}");
+    }
 }
