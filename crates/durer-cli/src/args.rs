@@ -333,8 +333,8 @@ pub struct ExplainArgs {
 
 FOLDER gets a page for a browser, index.html, which needs nothing else, and the same as lesson.md with its pictures as
 files. A folder that is there already keeps its other files; what an earlier lesson wrote is replaced.
-Give the options with which the picture is rendered: the last step is that picture. A step of which nothing is seen in
-the scene is shown in a small scene of ours, and says so.")]
+Give the options with which the picture is rendered: the last step is that picture. Without --size its longer side has
+256 pixels. A step of which nothing is seen in the scene is shown in a small scene of ours, and says so.")]
 pub struct LessonArgs {
     /// The scene file
     pub scene: PathBuf,

@@ -26,10 +26,13 @@ pub(super) fn plan(stage: &Stage) -> String {
         let hit = world.closest(&ray, &mut ()).map(|hit| hit.t);
         rays.push((ray, hit));
     }
-    let reach = rays.iter().filter_map(|ray| ray.1).fold(0.0, f32::max);
-    let reach = if reach > 0.0 { reach } else { (world.bounds().center() - frame.eye).length().max(1.0) };
-    let ends =
-        rays.iter().map(|(ray, hit)| (flat(ray.origin), flat(ray.at(hit.unwrap_or(1.2 * reach))), hit.is_some()));
+    // Ground that goes on for ever is not followed for ever: rays end where they are three times as long as the middle one.
+    let mut hits: Vec<f32> = rays.iter().filter_map(|ray| ray.1).collect();
+    hits.sort_by(f32::total_cmp);
+    let nothing = || (world.bounds().center() - frame.eye).length().max(1.0);
+    let reach = hits.get(hits.len() / 2).map_or_else(nothing, |middle| 3.0 * middle);
+    rays.iter_mut().for_each(|ray| ray.1 = ray.1.filter(|t| *t <= reach));
+    let ends = rays.iter().map(|(ray, hit)| (flat(ray.origin), flat(ray.at(hit.unwrap_or(reach))), hit.is_some()));
     let ends: Vec<(Vec2, Vec2, bool)> = ends.filter(|end| end.0.is_finite() && end.1.is_finite()).collect();
 
     // The drawing shows all rays, with a margin.
