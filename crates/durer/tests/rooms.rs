@@ -13,7 +13,7 @@ const FLOORS: [&[&str]; 9] = [
     &["format", "world"],
     &["compile", "film", "integrator"],
     &["render"],
-    &["load"],
+    &["check", "load"],
 ];
 
 fn files(folder: &Path, found: &mut Vec<PathBuf>) {

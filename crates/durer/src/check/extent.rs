@@ -1,0 +1,217 @@
+//! Sizes: things too small or too large to be seen, and fields of view to match.
+
+use super::finding::{Finding, counted, number};
+use super::scout::Scout;
+use super::sight::Sight;
+use super::view::pixels;
+use crate::camera::Camera;
+use crate::diag::{Diagnostic, Span};
+use crate::math::Aabb;
+use crate::scene::{MatrixOp, Node, Object};
+
+/// What spans fewer pixels cannot be recognised.
+const FEWEST_PIXELS: f32 = 6.0;
+/// Beyond this ratio of sizes something is out of scale.
+const OUT_OF_SCALE: f32 = 3e3;
+
+/// All that has an end spans but a few pixels.
+pub(super) fn too_small(scout: &Scout) -> Vec<Finding> {
+    let bounds = scout.world().bounds();
+    let Some(size) = Some(bounds).filter(|b| !b.is_empty()).and_then(|bounds| pixels(scout, bounds)) else {
+        return Vec::new();
+    };
+    let empty = scout.seen().next().is_none();
+    if size >= FEWEST_PIXELS || !empty && !scout.sights().contains(&Sight::Seen) {
+        return Vec::new();
+    }
+    let (span, larger) = (scout.subject.scene.camera_span, scout.subject.job.width.max(scout.subject.job.height));
+    let wanted = 0.6 * larger as f32 / size.max(1e-6);
+    let diagnostic =
+        Diagnostic::warning(format!("all things together are {} pixels wide in a picture of {larger}", number(size)))
+            .effect(if empty {
+                "every ray misses them; the whole picture is background"
+            } else {
+                "next to nothing is seen of them"
+            });
+    let (diagnostic, field) = match &scout.world().camera {
+        Camera::Perspective(camera) if camera.angle > 100.0 => {
+            (diagnostic.help("take a smaller field of view, 40 degrees, say, or go nearer"), "angle")
+        }
+        Camera::Orthographic(camera) => {
+            let help = format!("take a smaller picture: `size {}`, say", number(camera.size / wanted));
+            let place = scout.value(span, &["size"]);
+            let diagnostic = match place {
+                Some(place) => diagnostic.fix(place, number(camera.size / wanted)),
+                None => diagnostic,
+            };
+            (diagnostic.help(help), "size")
+        }
+        _ => {
+            let help = format!("go about {} times nearer, or make them that much larger", number(wanted));
+            (diagnostic.help(help), "center")
+        }
+    };
+    let diagnostic = scout.at_value(diagnostic, span, &[field, if field == "angle" { "fov" } else { field }]);
+    vec![Finding::from(diagnostic).whole(true)]
+}
+
+/// The picture shows a tiny part of things: an angle in radians, say.
+pub(super) fn too_narrow(scout: &Scout) -> Vec<Finding> {
+    let bounds = scout.world().bounds();
+    if bounds.is_empty() {
+        return Vec::new();
+    }
+    let (span, larger) =
+        (scout.subject.scene.camera_span, scout.subject.job.width.max(scout.subject.job.height) as f32);
+    let radians = |angle: f32| angle <= std::f32::consts::PI;
+    match &scout.world().camera {
+        Camera::Perspective(camera) if camera.angle < 5.0 => {
+            // A telescope is there to see far things.
+            let Some(size) = pixels(scout, bounds).filter(|size| *size > 8.0 * larger) else { return Vec::new() };
+            let degrees = camera.angle.to_degrees();
+            let mut diagnostic =
+                Diagnostic::warning(format!("the field of view is {} degrees only", number(camera.angle)))
+                    .effect(format!("less than a {}th of the scene's width is seen", number((size / larger).floor())))
+                    .help("angles are in degrees: 30 to 60 are usual");
+            if let Some(place) = scout.value(span, &["angle", "fov"]).filter(|_| radians(camera.angle)) {
+                let whole = degrees.round().clamp(20.0, 100.0);
+                diagnostic = diagnostic.fix(place, number(whole)).help(format!(
+                    "angles are in degrees; in radians it would be {}: write `{whole}`, say",
+                    number(degrees)
+                ));
+            }
+            vec![Finding::from(scout.at_value(diagnostic, span, &["angle", "fov"])).whole(true)]
+        }
+        Camera::Orthographic(camera) => {
+            let Some(size) = pixels(scout, bounds).filter(|size| *size > 30.0 * larger) else { return Vec::new() };
+            let wanted = number(1.2 * camera.size * size / larger);
+            let diagnostic = Diagnostic::warning(format!("the picture is {} wide only", number(camera.size)))
+                .effect(format!("less than a {}th of the scene's width is seen", number((size / larger).floor())))
+                .help(format!("`size {wanted}` shows all of it"));
+            let diagnostic = match scout.value(span, &["size"]) {
+                Some(place) => diagnostic.fix(place, wanted),
+                None => diagnostic,
+            };
+            vec![Finding::from(scout.at_value(diagnostic, span, &["size"])).whole(true)]
+        }
+        _ => Vec::new(),
+    }
+}
+
+/// Objects far larger or smaller than most.
+pub(super) fn out_of_scale(scout: &Scout) -> Vec<Finding> {
+    let world = scout.world();
+    let sized = |(i, object): (usize, &crate::world::Object)| {
+        let bounds: Aabb = object.bounds().filter(|bounds| !bounds.is_empty())?;
+        Some((i as u32, bounds.size().max_element())).filter(|(_, size)| *size > 0.0)
+    };
+    let mut sizes: Vec<(u32, f32)> = world.objects.iter().enumerate().filter_map(sized).collect();
+    sizes.sort_by(|a, b| a.1.total_cmp(&b.1));
+    if sizes.len() < 2 {
+        return Vec::new();
+    }
+    let middle = sizes[sizes.len() / 2].1;
+    let mut found = Vec::new();
+    for &(object, size) in &sizes {
+        let ratio = if size > middle { size / middle } else { middle / size };
+        // Of two, either may be wrong: the small one is not seen, the large one hides.
+        if ratio < OUT_OF_SCALE {
+            continue;
+        }
+        let word = if size > middle { "larger" } else { "smaller" };
+        let diagnostic = Diagnostic::warning(format!(
+            "the {} is {} times {word} than most things here",
+            scout.object(object),
+            number(ratio)
+        ))
+        .at(scout.object_span(object))
+        .effect(match scout.sights()[object as usize] {
+            Sight::Seen if size > middle => "it may hide or hold the others",
+            Sight::Seen => "hardly a pixel shows it",
+            _ => "it is not seen",
+        })
+        .help(format!("its largest side is {}; look at its size and the `Scale` around it", number(size)));
+        found.push(Finding::from(diagnostic));
+    }
+    found
+}
+
+/// Objects of which nothing is in the picture.
+pub(super) fn unseen(scout: &Scout) -> Vec<Finding> {
+    let sights = scout.sights();
+    let out: Vec<u32> = (0..sights.len() as u32).filter(|&i| sights[i as usize] == Sight::Outside).collect();
+    let hidden: Vec<(u32, u32)> = (0..sights.len() as u32)
+        .filter_map(|i| match sights[i as usize] {
+            Sight::Hidden(by) => Some((i, by)),
+            _ => None,
+        })
+        .collect();
+    let mut found = Vec::new();
+    if let Some(&first) = out.first() {
+        let message = match out.len() {
+            1 => format!("the {} is not in the picture", scout.object(first)),
+            n => format!(
+                "{} are not in the picture; the first is the {}",
+                counted(n, "object", "objects"),
+                scout.object(first)
+            ),
+        };
+        let diagnostic = Diagnostic::note(message)
+            .at(scout.object_span(first))
+            .effect("the camera does not look where it is")
+            .help("look at its place and the transforms around it");
+        found.push(Finding::from(diagnostic));
+    }
+    if let Some(&(first, by)) = hidden.first() {
+        let more =
+            if hidden.len() == 1 { String::new() } else { format!("; {} more are hidden too", hidden.len() - 1) };
+        let diagnostic =
+            Diagnostic::note(format!("the {} is hidden by the {}{more}", scout.object(first), scout.object(by)))
+                .at(scout.object_span(first))
+                .related(scout.object_span(by), "in front of it, or around it")
+                .effect("nothing of it is seen")
+                .help("is it inside the other, or on the wrong side of it?");
+        found.push(Finding::from(diagnostic));
+    }
+    found
+}
+
+/// Rotations by less than a turn in radians, which are fractions of pi.
+pub(super) fn radians(scout: &Scout) -> Vec<Finding> {
+    let mut angles = Vec::new();
+    if let Some(root) = &scout.subject.scene.root {
+        root.objects.iter().for_each(|object| rotations(object, &mut angles));
+    }
+    let fraction = |angle: f32| {
+        let parts = angle.abs() / std::f32::consts::PI * 12.0;
+        angle.abs() > 0.1 && angle.abs() < 6.5 && angle.fract() != 0.0 && (parts - parts.round()).abs() < 0.01
+    };
+    let Some((span, angle)) = angles.into_iter().find(|(_, angle)| fraction(*angle)) else { return Vec::new() };
+    let diagnostic = Diagnostic::warning(format!("a rotation by {angle} degrees looks like radians"))
+        .at(span)
+        .effect("this object is hardly turned")
+        .help(format!("angles are in degrees: {}", number(angle.to_degrees())));
+    vec![Finding::from(diagnostic)]
+}
+
+fn rotations(object: &Object, angles: &mut Vec<(Span, f32)>) {
+    match &object.node {
+        Node::Transform(ops, inner) => {
+            for op in ops {
+                match op {
+                    MatrixOp::XRotate(angle)
+                    | MatrixOp::YRotate(angle)
+                    | MatrixOp::ZRotate(angle)
+                    | MatrixOp::Rotate(_, angle) => {
+                        angles.push((object.span, *angle));
+                    }
+                    _ => {}
+                }
+            }
+            rotations(inner, angles);
+        }
+        Node::Group(group) => group.objects.iter().for_each(|inner| rotations(inner, angles)),
+        Node::Solid(_, parts) => parts.iter().for_each(|part| rotations(part, angles)),
+        _ => {}
+    }
+}
