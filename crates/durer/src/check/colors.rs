@@ -3,6 +3,7 @@
 use super::finding::{Finding, counted, percent, vector};
 use super::scout::Scout;
 use crate::diag::{Diagnostic, Span};
+use crate::dialect::Secondary;
 use crate::light::Light;
 use crate::material::Pattern;
 use crate::math::Color;
@@ -22,27 +23,43 @@ fn phongs<'s>(scout: &'s Scout) -> impl Iterator<Item = (u32, &'s Spanned<Writte
     })
 }
 
-/// How many rays see a material.
+/// How many rays see a material, or one that is mixed of it.
 fn rays(scout: &Scout, material: u32) -> usize {
-    scout.seen().filter(|(_, seen)| seen.material == material).count()
+    scout.seen().filter(|(_, seen)| holds(scout, seen.material, material)).count()
+}
+
+/// Whether a material is another, or mixed of it: of earlier ones, so this ends.
+fn holds(scout: &Scout, whole: u32, part: u32) -> bool {
+    whole == part
+        || match scout.world().materials.get(whole as usize) {
+            Some(Material::Solid(solid, _)) => solid.materials().into_iter().any(|inner| holds(scout, inner, part)),
+            _ => false,
+        }
+}
+
+/// Whether nothing that is seen gives back any light.
+pub(super) fn all_black(scout: &Scout) -> bool {
+    let shows = |(i, _, phong): (u32, &Spanned<Written>, &Phong)| !is_black(phong) && rays(scout, i) > 0;
+    scout.seen().next().is_some() && !phongs(scout).any(shows)
+}
+
+fn is_black(phong: &Phong) -> bool {
+    let shown = phong.reflective + phong.transparent + phong.highlight.map_or(Color::ZERO, |h| h.0);
+    phong.diffuse == Color::ZERO && phong.texture.is_none() && phong.noise.is_none() && shown == Color::ZERO
 }
 
 /// Materials that give back no light at all.
 pub(super) fn black(scout: &Scout) -> Vec<Finding> {
     let all = scout.seen().count();
-    let is_black = |phong: &Phong| {
-        let shown = phong.reflective + phong.transparent + phong.highlight.map_or(Color::ZERO, |h| h.0);
-        phong.diffuse == Color::ZERO && phong.texture.is_none() && phong.noise.is_none() && shown == Color::ZERO
-    };
     let black: Vec<_> = phongs(scout).filter(|(i, _, phong)| is_black(phong) && rays(scout, *i) > 0).collect();
-    let share: usize = black.iter().map(|(i, ..)| rays(scout, *i)).sum();
+    let whole = all_black(scout);
     let say = |(i, written, _): &(u32, &Spanned<Written>, &Phong)| {
         let diagnostic = Diagnostic::warning(format!("material {i} is black: it gives back no light"))
             .label(format!("on {} of what is seen", percent(rays(scout, *i), all)))
             .effect("what is made of it is black, however much light there is")
             .help("`diffuseColor` is the share of light that it gives back: `0.8 0.8 0.8` is a light grey");
         let diagnostic = scout.at_value(diagnostic, written.span, &["diffuseColor", "diffuse"]);
-        Finding::from(diagnostic).whole(share == all)
+        Finding::from(diagnostic).whole(whole)
     };
     black.iter().map(say).collect()
 }
@@ -53,10 +70,9 @@ pub(super) fn no_bounces(scout: &Scout) -> Vec<Finding> {
         return Vec::new();
     }
     let bounces = |phong: &Phong| phong.reflective != Color::ZERO || phong.transparent != Color::ZERO;
-    // Where the highlight's colour is the mirror's too, a plain material mirrors a little, and nobody minds.
-    let meant = |phong: &Phong| {
-        phong.fresnel || (phong.reflective + phong.transparent).max_element() > 0.5 || phong.highlight.is_none()
-    };
+    // Where the highlight's colour is the mirror's too, only what would be black without mirroring is meant as a mirror.
+    let shared = matches!(scout.world().rules.secondary, Secondary::Specular | Secondary::SpecularFresnel);
+    let meant = |phong: &Phong| phong.fresnel || !shared || phong.diffuse.max_element() < 0.15;
     let Some((i, written, phong)) =
         phongs(scout).find(|(i, _, phong)| bounces(phong) && meant(phong) && rays(scout, *i) > 0)
     else {
@@ -84,7 +100,7 @@ fn all_colors(scout: &Scout) -> Vec<Named> {
     let mut colors = Vec::new();
     for (_, written, _) in phongs(scout) {
         let Written::Phong(phong, _) = &written.value else { continue };
-        let named = |color, fields| Named { color, block: written.span, fields, most: 2.0 };
+        let named = |color, fields| Named { color, block: written.span, fields, most: 15.0 };
         colors.push(named(phong.diffuse_color, ["diffuseColor", "diffuse"]));
         colors.push(named(phong.specular_color, ["specularColor", "specular"]));
         colors.push(named(phong.reflective_color, ["reflectiveColor", "reflectiveColor"]));
@@ -108,7 +124,7 @@ fn all_colors(scout: &Scout) -> Vec<Named> {
 pub(super) fn too_large(scout: &Scout) -> Vec<Finding> {
     let mut found = Vec::new();
     let mut say = |color: Color, place: Option<Span>, block: Option<Span>| {
-        let bytes = color.max_element() <= 255.0 && color.max_element() > 10.0;
+        let bytes = color.max_element() <= 255.0;
         let mended = if bytes { color / 255.0 } else { color / color.max_element() };
         let diagnostic = Diagnostic::warning(format!("the colour {} is far beyond 1", vector(color)))
             .effect("it is white, or of a pure colour, whatever the light")

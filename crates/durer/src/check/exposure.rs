@@ -3,22 +3,24 @@
 use super::finding::{Finding, number, percent, vector};
 use super::lights::{VISIBLE, color, place};
 use super::scout::Scout;
-use crate::diag::Diagnostic;
+use crate::diag::{Diagnostic, Severity};
 use crate::math::Color;
 
-/// Values beyond this are cut in eight bits.
+/// Values beyond this are cut in eight bits; beyond the other, much of their shading is lost.
 const BEYOND: f32 = 1.0 + VISIBLE;
-/// Where so large a share of what is seen is cut, it is more than highlights.
+const FAR_BEYOND: f32 = 1.25;
+/// Where so large a share of what is seen is cut, or far beyond, it is more than highlights.
 const MOST_CUT: f32 = 0.4;
+const MOST_FAR: f32 = 0.2;
 
 /// Values beyond 1 in a picture of eight bits.
 pub(super) fn too_bright(scout: &Scout) -> Vec<Finding> {
     let lit: Vec<Color> = scout.seen().map(|(probe, _)| probe.color).filter(|color| color.is_finite()).collect();
+    let far = lit.iter().filter(|color| color.max_element() > FAR_BEYOND).count();
     let cut = lit.iter().filter(|color| color.max_element() > BEYOND).count();
     let white = lit.iter().filter(|color| color.min_element() > BEYOND).count();
-    if lit.is_empty()
-        || (cut as f32) < MOST_CUT * lit.len() as f32 && (white as f32) < 0.5 * MOST_CUT * lit.len() as f32
-    {
+    let over = |count: usize, share: f32| count as f32 > share * lit.len() as f32;
+    if !over(cut, MOST_CUT) && !over(far, MOST_FAR) {
         return Vec::new();
     }
     let brightest = lit.iter().copied().max_by(|a, b| a.max_element().total_cmp(&b.max_element())).unwrap_or_default();
@@ -45,6 +47,9 @@ pub(super) fn too_bright(scout: &Scout) -> Vec<Finding> {
             None => diagnostic,
         };
         diagnostic.span = diagnostic.span.or(scout.value(span, &["color"]).or(Some(span)));
+    }
+    if !over(far, MOST_FAR) {
+        diagnostic.severity = Severity::Note;
     }
     vec![Finding::from(diagnostic).whole(cut * 2 > lit.len())]
 }

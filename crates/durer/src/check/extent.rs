@@ -1,6 +1,6 @@
 //! Sizes: things too small or too large to be seen, and fields of view to match.
 
-use super::finding::{Finding, counted, number};
+use super::finding::{Finding, counted, number, vector};
 use super::scout::Scout;
 use super::sight::Sight;
 use super::view::pixels;
@@ -11,6 +11,8 @@ use crate::scene::{MatrixOp, Node, Object};
 
 /// What spans fewer pixels cannot be recognised.
 const FEWEST_PIXELS: f32 = 6.0;
+/// Of more objects, some may be out of sight.
+const FEW_OBJECTS: usize = 8;
 /// Beyond this ratio of sizes something is out of scale.
 const OUT_OF_SCALE: f32 = 3e3;
 
@@ -58,7 +60,12 @@ pub(super) fn too_small(scout: &Scout) -> Vec<Finding> {
 /// The picture shows a tiny part of things: an angle in radians, say.
 pub(super) fn too_narrow(scout: &Scout) -> Vec<Finding> {
     let bounds = scout.world().bounds();
-    if bounds.is_empty() {
+    if bounds.is_empty()
+        || scout.world().objects.iter().zip(scout.sights()).any(|(object, sight)| {
+            let size = object.bounds().and_then(|bounds| pixels(scout, bounds));
+            *sight == Sight::Seen && size.is_some_and(|size| size < 3.0 * scout.larger())
+        })
+    {
         return Vec::new();
     }
     let (span, larger) =
@@ -131,7 +138,8 @@ pub(super) fn out_of_scale(scout: &Scout) -> Vec<Finding> {
             _ => "it is not seen",
         })
         .help(format!("its largest side is {}; look at its size and the `Scale` around it", number(size)));
-        found.push(Finding::from(diagnostic));
+        let shown = scout.seen().filter(|(_, seen)| seen.object == object).count();
+        found.push(Finding::from(diagnostic).whole(shown * 2 > scout.probes.len()));
     }
     found
 }
@@ -139,6 +147,12 @@ pub(super) fn out_of_scale(scout: &Scout) -> Vec<Finding> {
 /// Objects of which nothing is in the picture.
 pub(super) fn unseen(scout: &Scout) -> Vec<Finding> {
     let sights = scout.sights();
+    // In a large scene something is always beside the picture or behind something.
+    let mut found = far_away(scout);
+    let missing = sights.iter().filter(|sight| matches!(sight, Sight::Outside | Sight::Hidden(_))).count();
+    if sights.len() > FEW_OBJECTS && missing * 3 < sights.len() {
+        return found;
+    }
     let out: Vec<u32> = (0..sights.len() as u32).filter(|&i| sights[i as usize] == Sight::Outside).collect();
     let hidden: Vec<(u32, u32)> = (0..sights.len() as u32)
         .filter_map(|i| match sights[i as usize] {
@@ -146,8 +160,7 @@ pub(super) fn unseen(scout: &Scout) -> Vec<Finding> {
             _ => None,
         })
         .collect();
-    let mut found = Vec::new();
-    if let Some(&first) = out.first() {
+    if let Some(&first) = out.first().filter(|_| found.is_empty()) {
         let message = match out.len() {
             1 => format!("the {} is not in the picture", scout.object(first)),
             n => format!(
@@ -174,6 +187,23 @@ pub(super) fn unseen(scout: &Scout) -> Vec<Finding> {
         found.push(Finding::from(diagnostic));
     }
     found
+}
+
+/// Objects far from all that is seen: thrown away by a transform, say.
+fn far_away(scout: &Scout) -> Vec<Finding> {
+    let both = || scout.world().objects.iter().zip(scout.sights()).enumerate();
+    let seen = both().filter(|(_, (_, sight))| **sight == Sight::Seen).filter_map(|(_, (object, _))| object.bounds());
+    let core = seen.fold(Aabb::EMPTY, Aabb::union);
+    let far = |bounds: Aabb| (bounds.center() - core.center()).length() > 10.0 * core.size().length();
+    let lost = both().find(|(_, (object, sight))| **sight == Sight::Outside && object.bounds().is_some_and(far));
+    let Some((number, (object, _))) = lost.filter(|_| !core.is_empty()) else { return Vec::new() };
+    let place = object.bounds().map_or_else(String::new, |bounds| vector(bounds.center()));
+    let diagnostic =
+        Diagnostic::warning(format!("the {} is far from everything else, at {place}", scout.object(number as u32)))
+            .at(object.span)
+            .effect("it is not in the picture")
+            .help("look at its place and the transforms around it");
+    vec![Finding::from(diagnostic)]
 }
 
 /// Rotations by less than a turn in radians, which are fractions of pi.

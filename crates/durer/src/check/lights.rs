@@ -156,8 +156,51 @@ pub(super) fn blocked(scout: &Scout) -> Vec<Finding> {
     })
 }
 
+/// Where lights together reach a smaller share of what is seen, most of it is in the dark.
+const MOSTLY_DARK: f32 = 0.45;
+/// And here nearly all.
+const NEARLY_ALL_DARK: f32 = 0.25;
+
+/// Lights that do reach something, but little, since most of what is seen faces away from them.
+fn mostly_dark(scout: &Scout) -> Vec<Finding> {
+    let working: Vec<usize> = (0..scout.verdicts().len()).filter(|&i| scout.verdicts()[i] == Verdict::Works).collect();
+    let (mut all, mut reached, mut away) = (0, 0, 0);
+    for (_, seen) in scout.seen() {
+        all += 1;
+        let bright = |lit: &Lit| lit.adds.abs().max_element() > VISIBLE;
+        reached += usize::from(seen.lit.iter().any(bright));
+        away += usize::from(seen.lit.iter().all(|lit| lit.cosine <= 1e-3));
+    }
+    // What is black of itself, or in shadow, tells nothing of where the lights are.
+    let reaches = reached as f32 > MOSTLY_DARK * all as f32;
+    if all == 0 || working.is_empty() || reaches || away * 2 < all - reached || super::colors::all_black(scout) {
+        return Vec::new();
+    }
+    let Some(span) = place(scout, working[0]) else { return Vec::new() };
+    let which = if working.len() == 1 { "this light" } else { "the lights" };
+    let message = format!("{} of what is seen faces away from {which}", percent(away, all));
+    let mut diagnostic = Diagnostic::warning(message)
+        .effect(match scout.world().ambient.max_element() > VISIBLE {
+            true => "most of the picture shows ambient light alone, flat and dark",
+            false => "most of the picture is black",
+        })
+        .help("the light is behind what is seen: `direction` is where light goes, `position` where it is");
+    diagnostic = scout.at_value(diagnostic, span, &["direction", "position"]);
+    // All lights turned round together are meant to be where they came from.
+    for &light in &working {
+        let Some(span) = place(scout, light) else { continue };
+        let written =
+            scout.subject.scene.lights.as_ref().and_then(|lights| lights.get(light)).map(|light| &light.value);
+        if let (Some(Light::Directional(written)), Some(value)) = (written, scout.value(span, &["direction"])) {
+            diagnostic = diagnostic.fix(value, vector(-written.direction));
+        }
+    }
+    vec![Finding::from(diagnostic).whole((reached as f32) < NEARLY_ALL_DARK * all as f32)]
+}
+
 pub(super) fn behind(scout: &Scout) -> Vec<Finding> {
-    each(scout, |light, verdict| {
+    let mut found = mostly_dark(scout);
+    found.extend(each(scout, |light, verdict| {
         if verdict != Verdict::Behind {
             return None;
         }
@@ -191,7 +234,8 @@ pub(super) fn behind(scout: &Scout) -> Vec<Finding> {
         } else {
             Diagnostic { severity: crate::diag::Severity::Note, ..diagnostic }
         })
-    })
+    }));
+    found
 }
 
 pub(super) fn faint(scout: &Scout) -> Vec<Finding> {
@@ -233,7 +277,7 @@ fn before(scout: &Scout, value: Span) -> Span {
 
 pub(super) fn cancelled(scout: &Scout) -> Vec<Finding> {
     each(scout, |light, verdict| {
-        if verdict != Verdict::Cancelled {
+        if verdict != Verdict::Cancelled || super::colors::all_black(scout) {
             return None;
         }
         let message = "what this light shines on gives back none of its colour".to_string();

@@ -24,7 +24,7 @@ mod tests;
 mod view;
 mod words;
 
-use crate::diag::{Diagnostic, Diagnostics, Severity};
+use crate::diag::{Diagnostics, Severity};
 pub use finding::Finding;
 pub use repair::{Repaired, apply};
 pub use scout::{Scout, Subject};
@@ -55,18 +55,24 @@ pub fn reported(diagnostics: &Diagnostics) -> Vec<Finding> {
 }
 
 /// Errors first, then what spoils the whole picture, then the rest, then notes; among those in the order of the table, in which
-/// causes stand before what comes of them. Of many that are alike, the last one told says how many more there are.
+/// causes stand before what comes of them, and each kind once before any is told of again. Of many that are alike, the last one
+/// told says how many more there are.
 fn ordered(mut found: Vec<Finding>) -> Vec<Finding> {
-    found.sort_by_key(|finding| {
-        let Diagnostic { severity, code, .. } = &finding.diagnostic;
-        let level = match severity {
-            Severity::Error => 0,
-            Severity::Warning if finding.whole => 1,
-            Severity::Warning => 2,
-            Severity::Note => 3,
-        };
-        // Errors stay as they were found: the first may be the reason of the others.
-        (level, if level == 0 { 0 } else { table::rank(code) })
+    let level = |finding: &Finding| match finding.diagnostic.severity {
+        Severity::Error => 0,
+        Severity::Warning if finding.whole => 1,
+        Severity::Warning => 2,
+        Severity::Note => 3,
+    };
+    // Errors stay as they were found: the first may be the reason of the others.
+    let rank = |finding: &Finding| if level(finding) == 0 { 0 } else { table::rank(finding.diagnostic.code) };
+    found.sort_by_key(|finding| (level(finding), rank(finding)));
+    let mut told: Vec<(u8, &str)> = Vec::new();
+    found.sort_by_cached_key(|finding| {
+        let kind = (level(finding), finding.diagnostic.code);
+        let again = kind.0 > 0 && told.contains(&kind);
+        told.push(kind);
+        (level(finding), again, rank(finding))
     });
     let mut kept: Vec<Finding> = Vec::with_capacity(found.len());
     let mut more = 0;

@@ -119,6 +119,11 @@ impl<'a> Scout<'a> {
         }
     }
 
+    /// The larger side of the picture in pixels.
+    pub(super) fn larger(&self) -> f32 {
+        self.subject.job.width.max(self.subject.job.height) as f32
+    }
+
     pub(super) fn world(&self) -> &'a World {
         self.subject.world
     }

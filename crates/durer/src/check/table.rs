@@ -48,6 +48,7 @@ checks! {
     "too-narrow": "the picture shows a tiny part of the scene", extent::too_narrow;
     "all-missed": "no ray hits anything, though the camera looks at the scene", view::missed;
     "hidden-behind": "one object hides all others", view::hidden;
+    "out-of-scale": "an object far larger or smaller than most", extent::out_of_scale;
     "up-parallel": "the camera's `up` is parallel to its `direction`", reported;
     // Light.
     "no-light": "no light", reported;
@@ -78,7 +79,6 @@ checks! {
     "degenerate-triangle": "a triangle without area", objects::degenerate;
     "open-glass": "a mesh of glass that is not closed", mesh::open_glass;
     "squashed": "an object made flat, or next to nothing, by its transforms", objects::squashed;
-    "out-of-scale": "an object far larger or smaller than most", extent::out_of_scale;
     "same-place": "two objects with the same surface", objects::twice;
     "light-twice": "a light that is written twice", lights::twice;
     "empty-solid": "a solid of which nothing is left", reported;

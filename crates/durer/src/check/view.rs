@@ -1,6 +1,7 @@
 //! Where the camera stands and looks.
 
 use super::finding::{Finding, number, percent, vector};
+use super::lights::{Verdict, all_fail};
 use super::scout::Scout;
 use super::sight::{Sight, corner};
 use super::solid::around;
@@ -36,8 +37,9 @@ pub(super) fn inside(scout: &Scout) -> Vec<Finding> {
     let mut found = Vec::new();
     for object in around(scout, pose.center) {
         let own = scout.seen().filter(|(_, seen)| seen.object == object).count();
-        // A room has things in it.
-        if own * 100 < rays * 99 {
+        // A room has things in it, and light.
+        let dark = all_fail(scout) && scout.verdicts().contains(&Verdict::Blocked(object));
+        if own * 100 < rays * 99 && !dark {
             continue;
         }
         let Some(bounds) = scout.world().objects[object as usize].bounds() else { continue };
@@ -46,7 +48,10 @@ pub(super) fn inside(scout: &Scout) -> Vec<Finding> {
         let diagnostic = Diagnostic::warning(format!("the camera is inside the {name}"))
             .label("this place is inside it")
             .related(scout.object_span(object), "around the camera")
-            .effect("all that is seen is the inside of it")
+            .effect(match dark {
+                true => "it keeps the light out; all that is seen is in its shadow",
+                false => "all that is seen is the inside of it",
+            })
             .help(format!(
                 "move the camera out of it: against its direction it is outside at `center {}`",
                 vector(outside)

@@ -8,6 +8,7 @@ use super::scout::Scout;
 use crate::describe::FileName;
 use crate::diag::{Diagnostic, Diagnostics, Span};
 use crate::format::read_mesh;
+use crate::math::Aabb;
 use crate::scene::{Group, Node, Object};
 use crate::shape::MeshData;
 use crate::world::Material;
@@ -16,8 +17,10 @@ use topology::Topology;
 
 /// Files of more bytes are not looked into: the check is to take no longer than the eye.
 const MOST_BYTES: usize = 64 << 20;
-/// A share of degenerate or turned triangles that modellers leave behind, and nobody sees.
+/// A share of turned or odd triangles that modellers leave behind, and nobody sees.
 const NEGLIGIBLE: f32 = 0.002;
+/// A share of triangles without area that is more than the poles of a turned body have.
+const MANY_FLAT: f32 = 0.03;
 
 /// A mesh file, and the objects that show it.
 #[derive(Debug)]
@@ -119,11 +122,24 @@ impl MeshFile<'_> {
         self.objects.iter().find(|object| object.material.is_some_and(refracts)).copied()
     }
 
+    /// Whether it is the inner wall of hollow glass: that faces inwards by right.
+    fn is_hollow(&self, scout: &Scout) -> bool {
+        let objects = &scout.world().objects;
+        let own = |object: &&crate::world::Object| self.objects.iter().any(|o| o.span.start == object.span.start);
+        let holds = |outer: &Aabb, inner: &Aabb| outer.min.cmple(inner.min).all() && outer.max.cmpge(inner.max).all();
+        objects.iter().filter(own).filter_map(|object| Some((object, object.bounds()?))).any(|(inner, bounds)| {
+            let around = |other: &crate::world::Object| {
+                other.span.start != inner.span.start && other.bounds().is_some_and(|outer| holds(&outer, &bounds))
+            };
+            self.glass(scout).is_some() && objects.iter().any(|other| other.material == inner.material && around(other))
+        })
+    }
+
     /// Whether it is closed and its normals, made or given, point inwards.
     fn is_inside_out(&self) -> bool {
         let Topology { turned, volume, .. } = &self.topology;
         let against = self.given.as_ref().is_some_and(Given::is_against_all);
-        self.topology.is_closed() && turned.is_empty() && *volume != 0.0 && (*volume < 0.0) != against
+        self.topology.is_nearly_closed() && turned.is_empty() && *volume != 0.0 && (*volume < 0.0) != against
     }
 }
 
@@ -136,7 +152,7 @@ pub(super) fn degenerate(scout: &Scout) -> Vec<Finding> {
         let message =
             format!("{} of {all} of `{}` have no area", counted(flat.len(), "triangle", "triangles"), mesh.name.path);
         let mut diagnostic = mesh.at_triangle(scout, Diagnostic::warning(message), first);
-        if mesh.is_beyond_notice(flat.len()) {
+        if (flat.len() as f32) < MANY_FLAT * all as f32 {
             diagnostic.severity = crate::diag::Severity::Note;
         }
         let diagnostic = diagnostic
@@ -191,7 +207,7 @@ pub(super) fn winding(scout: &Scout) -> Vec<Finding> {
 /// Closed meshes whose normals point inwards.
 pub(super) fn inside_out(scout: &Scout) -> Vec<Finding> {
     let mut found = Vec::new();
-    for mesh in scout.meshes().iter().filter(|mesh| mesh.is_inside_out()) {
+    for mesh in scout.meshes().iter().filter(|mesh| mesh.is_inside_out() && !mesh.is_hollow(scout)) {
         let by_file = mesh.given.is_some();
         let diagnostic = Diagnostic::warning(format!("the normals of `{}` point inwards", mesh.name.path))
             .at(mesh.name.span)

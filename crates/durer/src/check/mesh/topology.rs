@@ -1,6 +1,7 @@
 //! How triangles hang together: edges, sides, volume.
 
-use crate::math::Vec3;
+use crate::math::{Aabb, Vec3};
+use glam::DVec3;
 use std::collections::HashMap;
 
 /// What is found out about some triangles. Corners at the same place are one.
@@ -15,7 +16,11 @@ pub(in crate::check) struct Topology {
     pub some_edge: Option<[Vec3; 2]>,
     /// Triangles that go round the other way than most of those that they hang together with.
     pub turned: Vec<u32>,
-    /// Six times the volume that is enclosed; negative where triangles go round clockwise, seen from outside.
+    /// How many edges there are.
+    pub edges: usize,
+    /// The volume of the box around them.
+    pub box_volume: f64,
+    /// Six times the volume that is enclosed, seen from its middle where it is not closed; negative where triangles go round clockwise, seen from outside.
     pub volume: f64,
 }
 
@@ -27,7 +32,10 @@ impl Topology {
     pub fn of(positions: &[Vec3], triangles: &[[u32; 3]]) -> Self {
         let mut topology = Topology::default();
         let place = same_places(positions);
-        let anchor = positions.first().copied().unwrap_or_default().as_dvec3();
+        let used = triangles.iter().flatten().map(|&corner| positions[corner as usize]);
+        let bounds = Aabb::around(used);
+        let anchor = if bounds.is_empty() { DVec3::ZERO } else { bounds.center().as_dvec3() };
+        topology.box_volume = bounds.size().as_dvec3().element_product();
         let mut edges: Vec<Edge> = Vec::with_capacity(3 * triangles.len());
         for (i, triangle) in triangles.iter().enumerate() {
             let [a, b, c] = triangle.map(|corner| positions[corner as usize].as_dvec3() - anchor);
@@ -45,6 +53,7 @@ impl Topology {
         }
         edges.sort_unstable();
         for same in edges.chunk_by(|a, b| a.0 == b.0) {
+            topology.edges += 1;
             topology.open += usize::from(same.len() == 1);
             topology.crowded += usize::from(same.len() > 2);
             if same.len() != 2 && topology.some_edge.is_none() {
@@ -54,6 +63,11 @@ impl Topology {
         }
         topology.turned = turned(&edges, triangles.len());
         topology
+    }
+
+    /// Whether there are few open edges, as at the top of a vase, and the volume within is no accident.
+    pub fn is_nearly_closed(&self) -> bool {
+        self.is_closed() || self.open * 10 < self.edges && self.volume.abs() > 0.1 * self.box_volume
     }
 
     /// Whether every edge has two triangles.
