@@ -5,7 +5,8 @@ use crate::report;
 use codespan_reporting::term::termcolor::{ColorChoice, StandardStream};
 use durer::check::picture::{Oddity, oddity};
 use durer::check::{Subject, check};
-use durer::image::{Image, Layer};
+use durer::image::Layer;
+use durer::math::Color;
 use durer::render::{Job, Statistics};
 use std::io::IsTerminal;
 
@@ -32,14 +33,14 @@ pub fn after_course(opened: &Opened, job: &Job, pictures: &[Layer], statistics: 
     }
 }
 
-/// A picture of depths of one grey, where its range was asked for.
+/// A picture of depths without any grey, where its range was asked for.
 fn depths(opened: &Opened, job: &Job, pictures: &[Layer], statistics: &Statistics) {
     let Some(layer) = pictures.iter().find(|layer| layer.name == "depth").filter(|_| job.depth_range.is_some()) else {
         return;
     };
-    let flat = |image: &Image| image.pixels.iter().all(|pixel| *pixel == image.pixels[0]);
-    if layer.image.pixels.len() > 1 && flat(&layer.image) {
-        tell(opened, job, statistics, "the picture of depths is of one grey");
+    let grey = |pixel: &Color| pixel.x > 0.0 && pixel.x < 1.0;
+    if !layer.image.pixels.iter().any(grey) {
+        tell(opened, job, statistics, "the picture of depths is black and white");
     }
 }
 

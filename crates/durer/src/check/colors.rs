@@ -51,8 +51,10 @@ fn is_black(phong: &Phong) -> bool {
 /// Materials that give back no light at all.
 pub(super) fn black(scout: &Scout) -> Vec<Finding> {
     let all = scout.seen().count();
-    let black: Vec<_> = phongs(scout).filter(|(i, _, phong)| is_black(phong) && rays(scout, *i) > 0).collect();
     let whole = all_black(scout);
+    // A part of a pattern may be black, unless all of it is.
+    let shown = |i: u32| if whole { rays(scout, i) > 0 } else { scout.seen().any(|(_, seen)| seen.material == i) };
+    let black: Vec<_> = phongs(scout).filter(|(i, _, phong)| is_black(phong) && shown(*i)).collect();
     let say = |(i, written, _): &(u32, &Spanned<Written>, &Phong)| {
         let diagnostic = Diagnostic::warning(format!("material {i} is black: it gives back no light"))
             .label(format!("on {} of what is seen", percent(rays(scout, *i), all)))
@@ -85,6 +87,19 @@ pub(super) fn no_bounces(scout: &Scout) -> Vec<Finding> {
         .effect(if diffuse < 0.1 { "it is black, or nearly so" } else { "only its own colour is seen" })
         .help("ask for some: `--bounces 4` (in the course's programs `-bounces 4`)");
     vec![Finding::from(diagnostic)]
+}
+
+/// Glass of an index that no glass has.
+pub(super) fn odd_index(scout: &Scout) -> Vec<Finding> {
+    let odd = |phong: &Phong| phong.transparent.max_element() > 0.0 && !(0.9..=4.0).contains(&phong.ior);
+    let Some((i, written, phong)) = phongs(scout).find(|(i, _, phong)| odd(phong) && rays(scout, *i) > 0) else {
+        return Vec::new();
+    };
+    let index = super::finding::number(phong.ior);
+    let diagnostic = Diagnostic::warning(format!("material {i} has an index of refraction of {index}"))
+        .effect("light is bent as by nothing that there is, and hardly gets through")
+        .help("water has 1.33, glass 1.5, diamond 2.4; it is the index inside, with 1 outside");
+    vec![Finding::from(scout.at_value(diagnostic, written.span, &["indexOfRefraction", "refractionIndex"]))]
 }
 
 /// A colour in the scene, where it is, and what it is called.
@@ -165,7 +180,7 @@ pub(super) fn background_span(scout: &Scout) -> Option<Span> {
 pub(super) fn negative(scout: &Scout) -> Vec<Finding> {
     let below = |named: &Named| named.color.min_element() < 0.0;
     let say = |Named { color, block, fields, .. }: Named| {
-        let mended = color.max(Color::ZERO);
+        let mended = color.abs();
         let diagnostic = Diagnostic::warning(format!("the colour {} is below zero", vector(color)))
             .effect("it takes light away: what it touches is darker, or black")
             .help(format!("colours go from 0 to 1: `{}`", vector(mended)));

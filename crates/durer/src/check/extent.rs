@@ -216,28 +216,31 @@ pub(super) fn radians(scout: &Scout) -> Vec<Finding> {
         let parts = angle.abs() / std::f32::consts::PI * 12.0;
         angle.abs() > 0.1 && angle.abs() < 6.5 && angle.fract() != 0.0 && (parts - parts.round()).abs() < 0.01
     };
-    let Some((span, angle)) = angles.into_iter().find(|(_, angle)| fraction(*angle)) else { return Vec::new() };
+    let Some((span, words, angle)) = angles.into_iter().find(|(.., angle)| fraction(*angle)) else { return Vec::new() };
+    let degrees = number(angle.to_degrees().round());
     let diagnostic = Diagnostic::warning(format!("a rotation by {angle} degrees looks like radians"))
-        .at(span)
         .effect("this object is hardly turned")
-        .help(format!("angles are in degrees: {}", number(angle.to_degrees())));
-    vec![Finding::from(diagnostic)]
+        .help(format!("angles are in degrees: {degrees}"));
+    let value = scout.value(span, &words).filter(|value| scout.text(*value).parse() == Ok(angle));
+    vec![Finding::from(match value {
+        Some(value) => diagnostic.at(value).fix(value, degrees),
+        None => diagnostic.at(span),
+    })]
 }
 
-fn rotations(object: &Object, angles: &mut Vec<(Span, f32)>) {
+/// A rotation: where its transform is written, what it may be called, and its angle.
+type Rotation = (Span, [&'static str; 2], f32);
+
+fn rotations(object: &Object, angles: &mut Vec<Rotation>) {
     match &object.node {
         Node::Transform(ops, inner) => {
-            for op in ops {
-                match op {
-                    MatrixOp::XRotate(angle)
-                    | MatrixOp::YRotate(angle)
-                    | MatrixOp::ZRotate(angle)
-                    | MatrixOp::Rotate(_, angle) => {
-                        angles.push((object.span, *angle));
-                    }
-                    _ => {}
-                }
-            }
+            angles.extend(ops.iter().filter_map(|op| match op {
+                MatrixOp::XRotate(angle) => Some((object.span, ["XRotate", "x_rotate"], *angle)),
+                MatrixOp::YRotate(angle) => Some((object.span, ["YRotate", "y_rotate"], *angle)),
+                MatrixOp::ZRotate(angle) => Some((object.span, ["ZRotate", "z_rotate"], *angle)),
+                MatrixOp::Rotate(_, angle) => Some((object.span, ["Rotate", "rotate"], *angle)),
+                _ => None,
+            }));
             rotations(inner, angles);
         }
         Node::Group(group) => group.objects.iter().for_each(|inner| rotations(inner, angles)),

@@ -30,11 +30,14 @@ fn turned(scout: &Scout, diagnostic: Diagnostic, object: u32) -> Diagnostic {
     }
 }
 
-/// Objects of which only backs are seen, where backs are not shaded as fronts are.
+/// Objects of which only backs are seen: a warning where backs are not shaded as fronts are, else a note on flat shapes, which
+/// have a front that was meant to be seen.
 pub(super) fn from_behind(scout: &Scout) -> Vec<Finding> {
-    if scout.subject.job.settings.shade_back {
-        return Vec::new();
-    }
+    let shaded = scout.subject.job.settings.shade_back;
+    let is_flat = |i: usize| {
+        let shape = &scout.world().objects[i].geometry;
+        matches!(shape, Geometry::Primitive(Primitive::Triangle(_) | Primitive::Plane(_)))
+    };
     let count = scout.world().objects.len();
     let (mut seen, mut backs, mut black) = (vec![0; count], vec![0; count], false);
     for (_, surface) in scout.seen() {
@@ -43,9 +46,16 @@ pub(super) fn from_behind(scout: &Scout) -> Vec<Finding> {
         black |= surface.black;
     }
     let all: usize = seen.iter().sum();
-    let turned_away = (0..count).filter(|&i| seen[i] > 0 && backs[i] == seen[i]);
+    let turned_away = (0..count).filter(|&i| seen[i] > 0 && backs[i] == seen[i] && (!shaded || is_flat(i)));
     let say = |i: usize| {
-        let diagnostic = Diagnostic::warning(format!("the {} is seen from behind", scout.object(i as u32)))
+        let message = format!("the {} is seen from behind", scout.object(i as u32));
+        if shaded {
+            let note = Diagnostic::note(message)
+                .at(scout.object_span(i as u32))
+                .effect("a tracer that does not shade backs, as the course's without `-shade_back`, leaves it black");
+            return Finding::from(turned(scout, note, i as u32));
+        }
+        let diagnostic = Diagnostic::warning(message)
             .at(scout.object_span(i as u32))
             .effect(if black {
                 "its back is left black"

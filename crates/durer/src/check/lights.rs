@@ -4,9 +4,11 @@ use super::finding::{Finding, number, percent, vector};
 use super::scout::{Lit, Scout};
 use super::solid::around;
 use crate::camera::Lens;
-use crate::diag::{Diagnostic, Span};
+use crate::diag::{Diagnostic, Severity, Span};
+use crate::dialect::Dialect;
+use crate::format::course::place::{block, section};
 use crate::light::{Light, PointLight};
-use crate::math::{Color, Vec3};
+use crate::math::{Color, Ray, Vec3};
 
 /// What adds less than this to a colour is not seen in eight bits.
 pub(super) const VISIBLE: f32 = 1.0 / 512.0;
@@ -56,7 +58,8 @@ fn verdict(scout: &Scout, number: usize) -> Verdict {
         return Verdict::Works;
     }
     if let Light::Point(point) = light
-        && let Some(&object) = around(scout, point.position).iter().find(|&&object| keeps_light(scout, object, &all))
+        && let Some(&object) =
+            around(scout.world(), point.position).iter().find(|&&object| keeps_light(scout, object, &all))
     {
         return Verdict::Inside(object);
     }
@@ -66,10 +69,20 @@ fn verdict(scout: &Scout, number: usize) -> Verdict {
         let most = facing.iter().map(|lit| lit.arrives.abs().max_element()).fold(0.0, f32::max);
         return if most < 4.0 * VISIBLE { Verdict::Faint(most) } else { Verdict::Cancelled };
     }
-    match most_common(&blocked).filter(|_| blocked.len() * 5 > all.len()) {
+    match most_common(&blocked).filter(|_| blocked.len() * 5 > all.len()).or_else(|| behind_plane(scout, light)) {
         Some(object) => Verdict::Blocked(object),
         None => Verdict::Behind,
     }
+}
+
+/// The seen plane that is between the camera and a light, if one is first of all.
+fn behind_plane(scout: &Scout, light: &Light) -> Option<u32> {
+    let Light::Point(point) = light else { return None };
+    let world = scout.world();
+    let way = world.camera.pose().center - point.position;
+    let hit = world.closest(&Ray { t_max: 1.0, ..Ray::new(point.position, way) }, &mut ())?;
+    let is_seen = scout.seen().any(|(_, seen)| seen.object == hit.object);
+    (is_seen && world.objects[hit.object as usize].bounds().is_none()).then_some(hit.object)
 }
 
 /// Whether an object around a light lets nothing out: it blocks something, or nothing that is seen faces the light.
@@ -157,7 +170,7 @@ pub(super) fn blocked(scout: &Scout) -> Vec<Finding> {
 }
 
 /// Where lights together reach a smaller share of what is seen, most of it is in the dark.
-const MOSTLY_DARK: f32 = 0.45;
+const MOSTLY_DARK: f32 = 0.33;
 /// And here nearly all.
 const NEARLY_ALL_DARK: f32 = 0.25;
 
@@ -229,11 +242,7 @@ pub(super) fn behind(scout: &Scout) -> Vec<Finding> {
             }
         };
         // One of several lights may well be meant for another side.
-        Some(if all_fail(scout) {
-            diagnostic
-        } else {
-            Diagnostic { severity: crate::diag::Severity::Note, ..diagnostic }
-        })
+        Some(if all_fail(scout) { diagnostic } else { Diagnostic { severity: Severity::Note, ..diagnostic } })
     }));
     found
 }
@@ -259,7 +268,17 @@ pub(super) fn faint(scout: &Scout) -> Vec<Finding> {
                 let scaled = a / factor;
                 (value, vector(Vec3::new(scaled.x.max(a.x.min(1.0)), scaled.y, scaled.z)), "attenuation".into())
             }
-            _ => (scout.value(span, &["color"])?, vector(point.color * factor), "color".into()),
+            // The dialect fades light by itself, unless something else is written.
+            _ => match (scout.value(span, &["color"])?, divisor(&scout.world().lights[light])) {
+                (color, Some(a)) if scout.subject.dialect == Dialect::F23 => {
+                    let after = Span { start: color.end, ..color };
+                    let text = format!(" attenuation {}", number(a.z / factor));
+                    let help =
+                        format!("without `attenuation` it is {} here: write `{}`, say", number(a.z), text.trim());
+                    return Some(diagnostic.at(color).fix(after, text).help(help));
+                }
+                (color, _) => (color, vector(point.color * factor), "color".into()),
+            },
         };
         let help = format!("it is about {} times too weak: `{field} {text}`, say", number(factor));
         Some(diagnostic.at(value).fix(value, text).help(help))
@@ -329,7 +348,20 @@ pub(super) fn twice(scout: &Scout) -> Vec<Finding> {
     });
     let say = |diagnostic: Diagnostic| {
         let diagnostic = diagnostic.effect("both add up: its light counts twice");
-        Finding::from(diagnostic.help("leave one out"))
+        Finding::from(without(scout, diagnostic.help("leave one out")))
     };
     pairs.map(say).collect()
+}
+
+/// Takes the light that a finding is about out of the file, and out of the count of lights.
+fn without(scout: &Scout, diagnostic: Diagnostic) -> Diagnostic {
+    let Some(own) = diagnostic.span else { return diagnostic };
+    let Some(bytes) = scout.subject.files.bytes(own.file) else { return diagnostic };
+    let Some(whole) = block(bytes, own) else { return diagnostic };
+    let count = section(bytes, own.file, "Lights").and_then(|lights| scout.value(lights, &["numLights"]));
+    let left = scout.world().lights.len() - 1;
+    match count {
+        Some(count) => diagnostic.fix(whole, "").fix(count, left.to_string()),
+        None => diagnostic.fix(whole, ""),
+    }
 }

@@ -33,6 +33,9 @@ pub use table::{CHECKS, Check};
 /// At most so many findings of one kind are told one by one.
 const MOST_ALIKE: usize = 3;
 
+/// Because of these nothing, or one thing alone, is seen.
+const EMPTIES: [&str; 6] = ["camera-inside", "camera-away", "too-small", "too-narrow", "all-missed", "hidden-behind"];
+
 /// All findings about a scene that was read and compiled, those of its reader among them; the causes first.
 pub fn check(subject: &Subject, diagnostics: &Diagnostics) -> Vec<Finding> {
     let scout = Scout::new(subject);
@@ -42,9 +45,13 @@ pub fn check(subject: &Subject, diagnostics: &Diagnostics) -> Vec<Finding> {
         let of_kind = (check.find)(&scout).into_iter();
         found.extend(of_kind.map(|finding| Finding { diagnostic: finding.diagnostic.code(check.code), ..finding }));
     }
-    // What is meant only where nothing else says why.
+    // Some are meant only where nothing else says why.
     if found.iter().any(|finding| finding.whole && !finding.last) {
         found.retain(|finding| !finding.last);
+    }
+    // Where nothing is seen, each thing that is not seen is no finding of its own.
+    if found.iter().any(|finding| EMPTIES.contains(&finding.diagnostic.code) && finding.whole) {
+        found.retain(|finding| finding.diagnostic.code != "unseen");
     }
     ordered(found)
 }

@@ -20,7 +20,7 @@ pub(super) fn not_finite(scout: &Scout) -> Vec<Finding> {
             (format!("pixel {x},{y} (sample {sample})"), light)
         }
         None => match scout.probes.iter().find(|probe| !probe.color.is_finite()) {
-            Some(probe) => ("a ray of the picture".to_string(), explain_ray(world, job, &probe.ray)),
+            Some(probe) => (format!("pixel {},{}", probe.pixel.0, probe.pixel.1), explain_ray(world, job, &probe.ray)),
             None => return Vec::new(),
         },
     };

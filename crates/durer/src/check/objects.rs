@@ -4,7 +4,7 @@ use super::finding::{Finding, number};
 use super::scout::Scout;
 use crate::diag::{Diagnostic, Span};
 use crate::math::Vec3;
-use crate::shape::Primitive;
+use crate::shape::{Plane, Primitive};
 use crate::world::{Geometry, Object};
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -60,7 +60,7 @@ fn same(a: &Object, b: &Object) -> bool {
     placed
         && match (&a.geometry, &b.geometry) {
             (Geometry::Primitive(Primitive::Plane(p)), Geometry::Primitive(Primitive::Plane(q))) => {
-                let unit = |plane: &crate::shape::Plane| {
+                let unit = |plane: &Plane| {
                     let length = plane.normal.length();
                     (plane.normal / length, plane.offset / length)
                 };
@@ -79,6 +79,7 @@ pub(super) fn twice(scout: &Scout) -> Vec<Finding> {
     let objects = &scout.world().objects;
     let mut places: HashMap<[u32; 6], Vec<usize>> = HashMap::new();
     let mut found = Vec::new();
+    found.extend(in_plane(scout));
     for (i, object) in objects.iter().enumerate() {
         // What has no end is at one place with all others that have none.
         let key = object.bounds().map_or([0; 6], |b| {
@@ -92,6 +93,38 @@ pub(super) fn twice(scout: &Scout) -> Vec<Finding> {
             found.push(pair(scout, first, i));
         }
         there.push(i);
+    }
+    found
+}
+
+/// Flat things that lie in a plane, where the two cannot be told apart.
+fn in_plane(scout: &Scout) -> Vec<Finding> {
+    let objects = &scout.world().objects;
+    let planes: Vec<(usize, &Plane)> = objects
+        .iter()
+        .enumerate()
+        .filter_map(|(i, object)| match &object.geometry {
+            Geometry::Primitive(Primitive::Plane(plane)) if object.to_world.is_none() => Some((i, plane)),
+            _ => None,
+        })
+        .collect();
+    let mut found = Vec::new();
+    for (i, object) in objects.iter().enumerate() {
+        let corners = match &object.geometry {
+            Geometry::Primitive(Primitive::Triangle(triangle)) => triangle.corners(),
+            Geometry::Primitive(Primitive::Rectangle(sheet)) => {
+                [sheet.corner, sheet.corner + sheet.edge0, sheet.corner + sheet.edge1]
+            }
+            _ => continue,
+        };
+        let corners = corners.map(|p| object.to_world.as_ref().map_or(p, |to_world| to_world.point(p)));
+        let lies_in = |plane: &Plane| {
+            let off = |p: Vec3| (p.dot(plane.normal) - plane.offset).abs() / plane.normal.length();
+            corners.iter().all(|&p| off(p) <= 1e-5 * (1e-3 + p.abs().max_element()))
+        };
+        if let Some((plane, _)) = planes.iter().find(|(_, plane)| lies_in(plane)) {
+            found.push(pair(scout, *plane, i));
+        }
     }
     found
 }

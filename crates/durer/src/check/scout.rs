@@ -43,6 +43,8 @@ pub struct Subject<'a> {
 /// What one camera ray found.
 #[derive(Clone, Debug)]
 pub(super) struct Probe {
+    /// The pixel of the picture that it goes through.
+    pub pixel: (u32, u32),
     pub ray: Ray,
     pub color: Color,
     pub seen: Option<Seen>,
@@ -106,7 +108,10 @@ impl<'a> Scout<'a> {
         let places: Vec<(u32, u32)> = (0..rows).flat_map(|y| (0..columns).map(move |x| (x, y))).collect();
         let probe = |&place: &(u32, u32)| {
             let ray = center_ray(subject.world, &raster, place)?;
-            Some(Probe::of(ray, &explain_ray(subject.world, &job, &ray)?))
+            let at =
+                |i: u32, of: u32, size: u32| ((2 * u64::from(i) + 1) * u64::from(size) / (2 * u64::from(of))) as u32;
+            let pixel = (at(place.0, columns, width), at(place.1, rows, height));
+            Some(Probe::of(pixel, ray, &explain_ray(subject.world, &job, &ray)?))
         };
         let probes = places.par_iter().filter_map(probe).collect();
         Scout {
@@ -182,8 +187,8 @@ impl<'a> Scout<'a> {
 }
 
 impl Probe {
-    fn of(ray: Ray, light: &Node) -> Self {
-        let mut probe = Probe { ray, color: light.value, seen: None };
+    fn of(pixel: (u32, u32), ray: Ray, light: &Node) -> Self {
+        let mut probe = Probe { pixel, ray, color: light.value, seen: None };
         let What::Ray { hit: Some(hit), .. } = &light.what else { return probe };
         let mut seen = Seen {
             object: hit.object,

@@ -1,7 +1,7 @@
 //! In which objects a point lies.
 
-use super::scout::Scout;
 use crate::math::{Ray, Vec3};
+use crate::world::World;
 
 /// Directions in which no edge of a thing that was made by hand is likely to run.
 const DIRECTIONS: [Vec3; 5] = [
@@ -13,8 +13,7 @@ const DIRECTIONS: [Vec3; 5] = [
 ];
 
 /// The objects with an end in which a point lies: a ray to any side leaves them once more than it enters them.
-pub(super) fn around(scout: &Scout, point: Vec3) -> Vec<u32> {
-    let world = scout.world();
+pub(super) fn around(world: &World, point: Vec3) -> Vec<u32> {
     let boxed = |object: &u32| {
         let bounds = world.objects[*object as usize].bounds();
         bounds.is_some_and(|b| point.cmpge(b.min).all() && point.cmple(b.max).all())

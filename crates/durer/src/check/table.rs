@@ -67,6 +67,7 @@ checks! {
     "light-cancelled": "a light of which the materials give back nothing", lights::cancelled;
     "negative-color": "a colour below zero", colors::negative;
     "no-bounces": "mirrors or glass without secondary rays", colors::no_bounces;
+    "odd-index": "glass of an index that no glass has", colors::odd_index;
     "same-color": "things of the colour of the background", colors::camouflaged;
     "no-coordinates": "a texture on a thing without texture coordinates", colors::no_coordinates;
     // Shapes and meshes.
@@ -89,6 +90,7 @@ checks! {
     "too-dark": "hardly any light", exposure::too_dark;
     "one-color": "a picture of one colour, and nothing found that says why", exposure::one_color;
     // Odd, but mostly harmless.
+    "dialect": "which year's language the scene was taken for", reported;
     "radians": "a rotation that seems to be in radians", extent::radians;
     "repeated": "a section or field that is written twice", reported;
     "foreign-word": "a word of another year", reported;

@@ -6,7 +6,7 @@ use super::scout::Scout;
 use super::sight::{Sight, corner};
 use super::solid::around;
 use crate::camera::{Camera, Lens};
-use crate::diag::Diagnostic;
+use crate::diag::{Diagnostic, Span};
 use crate::math::{Aabb, Vec2, Vec3, fp};
 use crate::shape::Primitive;
 use crate::world::{Geometry, Object};
@@ -35,7 +35,7 @@ pub(super) fn inside(scout: &Scout) -> Vec<Finding> {
     let pose = scout.world().camera.pose();
     let rays = scout.probes.len();
     let mut found = Vec::new();
-    for object in around(scout, pose.center) {
+    for object in around(scout.world(), pose.center) {
         let own = scout.seen().filter(|(_, seen)| seen.object == object).count();
         // A room has things in it, and light.
         let dark = all_fail(scout) && scout.verdicts().contains(&Verdict::Blocked(object));
@@ -243,13 +243,18 @@ pub(super) fn hidden(scout: &Scout) -> Vec<Finding> {
         }
     }
     let covered = scout.seen().count();
-    if hidden == 0 || others > 0 || covered * 2 < scout.probes.len() {
+    let is_plane = scout.world().objects[front as usize].bounds().is_none();
+    // A thing may well stand behind another; behind a plane without end, nothing is ever seen.
+    if hidden == 0 || others > 0 || !is_plane && covered * 2 < scout.probes.len() {
         return Vec::new();
     }
     let name = scout.object(front);
     let behind = scout.seen().all(|(_, seen)| seen.from_behind);
-    let is_plane = scout.world().objects[front as usize].bounds().is_none();
+    let turned = is_plane.then(|| offset_turned(scout, front)).flatten();
     let help = match (is_plane, behind) {
+        _ if is_plane && turned.is_none() => {
+            "the camera and the things behind the plane are on different sides of it: move one of them"
+        }
         (true, true) => {
             "the camera is behind the plane: it stands where p · normal = offset, so the sign of `offset` or of `normal` \
              may be wrong"
@@ -262,18 +267,22 @@ pub(super) fn hidden(scout: &Scout) -> Vec<Finding> {
         .label(format!("covers {} of the picture", percent(covered, scout.probes.len())))
         .effect(format!("{} behind it cannot be seen", super::finding::counted(hidden, "object", "objects")))
         .help(help);
-    let finding = Finding::from(offset_turned(scout, diagnostic, front, is_plane));
-    vec![finding.whole(true)]
+    let diagnostic = match turned {
+        Some((place, text)) => diagnostic.fix(place, text),
+        None => diagnostic,
+    };
+    vec![Finding::from(diagnostic).whole(true)]
 }
 
-/// The other sign of a plane's offset, where that frees the way: the eye is on the other side of it then.
-fn offset_turned(scout: &Scout, diagnostic: Diagnostic, object: u32, is_plane: bool) -> Diagnostic {
-    let Geometry::Primitive(Primitive::Plane(plane)) = &scout.world().objects[object as usize].geometry else {
-        return diagnostic;
-    };
-    let span = scout.object_span(object);
-    match scout.value(span, &["offset"]).filter(|_| is_plane && plane.offset != 0.0) {
-        Some(place) => diagnostic.fix(place, number(-plane.offset)),
-        None => diagnostic,
+/// The other sign of a plane's offset and where it is written, if the camera and the things are on one side of it then.
+fn offset_turned(scout: &Scout, object: u32) -> Option<(Span, String)> {
+    let plane_object = &scout.world().objects[object as usize];
+    let Geometry::Primitive(Primitive::Plane(plane)) = &plane_object.geometry else { return None };
+    if plane_object.to_world.is_some() || plane.offset == 0.0 {
+        return None;
     }
+    let place = scout.value(scout.object_span(object), &["offset"])?;
+    let above = |p: Vec3| p.dot(plane.normal) > -plane.offset;
+    let things = scout.world().bounds();
+    (above(things.center()) == above(scout.world().camera.pose().center)).then(|| (place, number(-plane.offset)))
 }

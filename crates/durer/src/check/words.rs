@@ -3,7 +3,8 @@
 use super::finding::{Finding, vector};
 use super::scout::Scout;
 use crate::camera::Lens;
-use crate::diag::Severity;
+use crate::diag::{Severity, Span};
+use crate::format::course::place;
 use crate::math::Vec3;
 use crate::scene::Material;
 
@@ -73,6 +74,9 @@ fn material_index(scout: &Scout, finding: &mut Finding) {
         finding.diagnostic.help = Some("write the `Materials`".into());
         return;
     }
+    if from_one(scout, finding, count) {
+        return;
+    }
     let meant = index.parse::<usize>().map_or(0, |index| if index == count { count - 1 } else { 0 });
     finding.diagnostic.help = Some(match count {
         1 => "materials are counted from 0: write 0".into(),
@@ -84,6 +88,23 @@ fn material_index(scout: &Scout, finding: &mut Finding) {
     }
 }
 
+/// Where no object has material 0 and one has the material after the last, all were counted from 1.
+fn from_one(scout: &Scout, finding: &mut Finding, count: usize) -> bool {
+    let span = finding.diagnostic.span.unwrap_or_default();
+    let uses = scout.subject.files.bytes(span.file).map(|bytes| place::values(bytes, span.file, "MaterialIndex"));
+    let uses: Vec<(Span, usize)> =
+        uses.into_iter().flatten().filter_map(|value| Some((value, scout.text(value).parse().ok()?))).collect();
+    if count < 2 || uses.iter().any(|(_, index)| *index == 0) || !uses.iter().any(|(_, index)| *index == count) {
+        return false;
+    }
+    finding.diagnostic.help =
+        Some("materials are counted from 0, and these from 1: take 1 off each `MaterialIndex`".into());
+    for (value, index) in uses {
+        finding.diagnostic = finding.diagnostic.clone().fix(value, (index - 1).to_string());
+    }
+    true
+}
+
 fn no_material(scout: &Scout, finding: &mut Finding) {
     finding.diagnostic.effect = Some("it has not the colour that was meant".into());
     let scene = scout.subject.scene;
@@ -91,7 +112,7 @@ fn no_material(scout: &Scout, finding: &mut Finding) {
     let nodes = scout.subject.dialect == crate::dialect::Dialect::F23;
     // At the top of the group it holds for all that follow without one of their own.
     if let Some(first) = first.filter(|first| first.material.is_none() && !scene.materials.is_empty() && !nodes) {
-        let place = crate::diag::Span { end: first.span.start, ..first.span };
+        let place = Span { end: first.span.start, ..first.span };
         finding.diagnostic = finding.diagnostic.clone().fix(place, "MaterialIndex 0 ");
     }
 }

@@ -185,7 +185,12 @@ impl Reader<'_, '_> {
             && let Some(violation) = field.rule.violation(&value)
         {
             let span = start.to(self.last_span());
-            self.error(Diagnostic::error(format!("`{word}` {violation}")).code("bad-value").at(span));
+            let error = Diagnostic::error(format!("`{word}` {violation}")).code("bad-value").at(span);
+            // Where only the sign is wrong, it is clear what was meant.
+            self.error(match value {
+                Value::Float(x) if x < 0.0 => error.fix(span, self.text(span).trim_start_matches('-')),
+                _ => error,
+            });
         }
         Some(value)
     }
@@ -304,11 +309,21 @@ impl Reader<'_, '_> {
         let text = self.text(token.span);
         let message = format!("`{after}` needs {what}, but found {}", shown(text.as_bytes()));
         let error = Diagnostic::error(message).code("syntax").at(token.span).label(format!("{what} expected"));
-        self.error(match number_help(&text).filter(|_| what.contains("number")) {
-            Some((help, Some(meant))) => error.help(help).fix(token.span, meant),
-            Some((help, None)) => error.help(help),
-            None => error,
+        let Some((help, meant)) = number_help(&text).filter(|_| what.contains("number")) else {
+            return self.error(error);
+        };
+        let mut error = error.help(help);
+        // The numbers that follow are most likely written alike.
+        let following = (self.at..).map_while(|i| self.ahead(i - self.at)).map_while(|t| {
+            let text = self.text(t.span);
+            let meant = number_help(&text).and_then(|(_, meant)| meant);
+            (meant.is_some() || text.parse::<f32>().is_ok()).then_some((t.span, meant))
         });
+        if meant.is_some() {
+            let edits: Vec<_> = following.take(16).filter_map(|(span, meant)| Some((span, meant?))).collect();
+            error = edits.into_iter().fold(error, |error, (span, meant)| error.fix(span, meant));
+        }
+        self.error(error);
     }
 
     /// A word that this dialect does not have: refused if strict, else taken with a warning, once.

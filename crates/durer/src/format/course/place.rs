@@ -57,3 +57,14 @@ pub fn section(bytes: &[u8], file: u32, keyword: &str) -> Option<Span> {
     }
     found
 }
+
+/// The places of the words after each occurrence of a word.
+pub fn values(bytes: &[u8], file: u32, word: &str) -> Vec<Span> {
+    let tokens: Vec<Token> = tokens(bytes, file).into_iter().filter(|token| token.kind != TokenKind::Comment).collect();
+    let is_word = |token: &Token| &bytes[token.span.start as usize..token.span.end as usize] == word.as_bytes();
+    tokens
+        .windows(2)
+        .filter(|pair| is_word(&pair[0]) && pair[1].kind == TokenKind::Word)
+        .map(|pair| pair[1].span)
+        .collect()
+}
