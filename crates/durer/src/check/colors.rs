@@ -25,16 +25,28 @@ fn phongs<'s>(scout: &'s Scout) -> impl Iterator<Item = (u32, &'s Spanned<Writte
 
 /// How many rays see a material, or one that is mixed of it.
 fn rays(scout: &Scout, material: u32) -> usize {
-    scout.seen().filter(|(_, seen)| holds(scout, seen.material, material)).count()
+    scout.material_rays()[material as usize]
 }
 
-/// Whether a material is another, or mixed of it: of earlier ones, so this ends.
-fn holds(scout: &Scout, whole: u32, part: u32) -> bool {
-    whole == part
-        || match scout.world().materials.get(whole as usize) {
-            Some(Material::Solid(solid, _)) => solid.materials().into_iter().any(|inner| holds(scout, inner, part)),
-            _ => false,
+/// That number for each material.
+pub(super) fn count_rays(scout: &Scout) -> Vec<usize> {
+    let materials = &scout.world().materials;
+    let (mut direct, mut all) = (vec![0; materials.len()], vec![0; materials.len()]);
+    scout.seen().for_each(|(_, seen)| direct[seen.material as usize] += 1);
+    for (whole, count) in direct.iter().enumerate().filter(|(_, count)| **count > 0) {
+        // A part that is in it several times counts once.
+        let (mut parts, mut known) = (vec![whole], vec![false; materials.len()]);
+        while let Some(part) = parts.pop() {
+            if std::mem::replace(&mut known[part], true) {
+                continue;
+            }
+            all[part] += count;
+            if let Material::Solid(solid, _) = &materials[part] {
+                parts.extend(solid.materials().map(|inner| inner as usize));
+            }
         }
+    }
+    all
 }
 
 /// Whether nothing that is seen gives back any light.
@@ -250,7 +262,7 @@ pub(super) fn unused(scout: &Scout) -> Vec<Finding> {
         }
     }
     // A mixed material uses earlier ones.
-    for i in (0..world.materials.len()).rev().filter(|_| true) {
+    for i in (0..world.materials.len()).rev() {
         if let (Material::Solid(solid, _), true) = (&world.materials[i], used[i]) {
             solid.materials().into_iter().for_each(|part| used[part as usize] = true);
         }

@@ -26,8 +26,8 @@ pub(super) fn too_small(scout: &Scout) -> Vec<Finding> {
     if size >= FEWEST_PIXELS || !empty && !scout.sights().contains(&Sight::Seen) {
         return Vec::new();
     }
-    let (span, larger) = (scout.subject.scene.camera_span, scout.subject.job.width.max(scout.subject.job.height));
-    let wanted = 0.6 * larger as f32 / size.max(1e-6);
+    let (span, larger) = (scout.subject.scene.camera_span, scout.larger());
+    let wanted = 0.6 * larger / size.max(1e-6);
     let diagnostic =
         Diagnostic::warning(format!("all things together are {} pixels wide in a picture of {larger}", number(size)))
             .effect(if empty {
@@ -59,17 +59,13 @@ pub(super) fn too_small(scout: &Scout) -> Vec<Finding> {
 
 /// The picture shows a tiny part of things: an angle in radians, say.
 pub(super) fn too_narrow(scout: &Scout) -> Vec<Finding> {
-    let bounds = scout.world().bounds();
-    if bounds.is_empty()
-        || scout.world().objects.iter().zip(scout.sights()).any(|(object, sight)| {
-            let size = object.bounds().and_then(|bounds| pixels(scout, bounds));
-            *sight == Sight::Seen && size.is_some_and(|size| size < 3.0 * scout.larger())
-        })
-    {
+    let (bounds, span, larger) = (scout.world().bounds(), scout.subject.scene.camera_span, scout.larger());
+    // What is seen whole is not seen too near.
+    let seen = scout.world().objects.iter().zip(scout.sights()).filter(|(_, sight)| **sight == Sight::Seen);
+    let mut sizes = seen.filter_map(|(object, _)| pixels(scout, object.bounds()?));
+    if bounds.is_empty() || sizes.any(|size| size < 3.0 * larger) {
         return Vec::new();
     }
-    let (span, larger) =
-        (scout.subject.scene.camera_span, scout.subject.job.width.max(scout.subject.job.height) as f32);
     let radians = |angle: f32| angle <= std::f32::consts::PI;
     match &scout.world().camera {
         Camera::Perspective(camera) if camera.angle < 5.0 => {

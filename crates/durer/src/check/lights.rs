@@ -325,7 +325,10 @@ pub(super) fn divides(scout: &Scout) -> Vec<Finding> {
             };
             let value = scout.value(span, &["attenuation", "falloff"]);
             let diagnostic = Diagnostic::warning(message)
-                .effect("what it shines on is no number, and is left out of the picture: black, or specks")
+                .effect(match zero {
+                    true => "what it shines on is no number, and is left out of the picture: black, or specks",
+                    false => "it takes light away, or what it shines on is no number: black",
+                })
                 .help("`attenuation 1 0 0` is light that does not fade");
             let triple = scout.subject.scene.lights.as_ref().and_then(|l| l.get(light)).is_some_and(
                 |l| matches!(&l.value, Light::Point(point) if point.attenuation.is_some() && point.falloff.is_none()),

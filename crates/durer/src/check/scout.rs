@@ -87,6 +87,7 @@ pub struct Scout<'a> {
     sights: OnceLock<Vec<Sight>>,
     verdicts: OnceLock<Vec<Verdict>>,
     meshes: OnceLock<Vec<MeshFile<'a>>>,
+    material_rays: OnceLock<Vec<usize>>,
 }
 
 impl<'a> Scout<'a> {
@@ -121,6 +122,7 @@ impl<'a> Scout<'a> {
             sights: OnceLock::new(),
             verdicts: OnceLock::new(),
             meshes: OnceLock::new(),
+            material_rays: OnceLock::new(),
         }
     }
 
@@ -146,6 +148,11 @@ impl<'a> Scout<'a> {
     /// Its mesh files.
     pub(super) fn meshes(&self) -> &[MeshFile<'a>] {
         self.meshes.get_or_init(|| super::mesh::files(self))
+    }
+
+    /// How many rays see each material.
+    pub(super) fn material_rays(&self) -> &[usize] {
+        self.material_rays.get_or_init(|| super::colors::count_rays(self))
     }
 
     /// The rays that hit something.

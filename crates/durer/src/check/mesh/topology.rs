@@ -16,10 +16,8 @@ pub(in crate::check) struct Topology {
     pub some_edge: Option<[Vec3; 2]>,
     /// Triangles that go round the other way than most of those that they hang together with.
     pub turned: Vec<u32>,
-    /// How many edges there are.
-    pub edges: usize,
-    /// The volume of the box around them.
-    pub box_volume: f64,
+    /// The length of the sum of all directed areas, as a share of the sum of their lengths.
+    pub opening: f64,
     /// Six times the volume that is enclosed, seen from its middle where it is not closed; negative where triangles go round clockwise, seen from outside.
     pub volume: f64,
 }
@@ -35,14 +33,16 @@ impl Topology {
         let used = triangles.iter().flatten().map(|&corner| positions[corner as usize]);
         let bounds = Aabb::around(used);
         let anchor = if bounds.is_empty() { DVec3::ZERO } else { bounds.center().as_dvec3() };
-        topology.box_volume = bounds.size().as_dvec3().element_product();
+        let (mut sum, mut area) = (DVec3::ZERO, 0.0);
         let mut edges: Vec<Edge> = Vec::with_capacity(3 * triangles.len());
         for (i, triangle) in triangles.iter().enumerate() {
             let [a, b, c] = triangle.map(|corner| positions[corner as usize].as_dvec3() - anchor);
             topology.volume += a.dot(b.cross(c));
             let longest = (b - a).length_squared().max((c - a).length_squared()).max((c - b).length_squared());
             // Corners on one line, but for rounding.
-            if (b - a).cross(c - a).length() <= 1e-9 * longest {
+            let normal = (b - a).cross(c - a);
+            (sum, area) = (sum + normal, area + normal.length());
+            if normal.length() <= 1e-9 * longest {
                 topology.degenerate.push(i as u32);
                 continue;
             }
@@ -51,9 +51,9 @@ impl Topology {
                 edges.push((u64::from(p.min(q)) << 32 | u64::from(p.max(q)), p < q, i as u32));
             }
         }
+        topology.opening = sum.length() / area.max(f64::MIN_POSITIVE);
         edges.sort_unstable();
         for same in edges.chunk_by(|a, b| a.0 == b.0) {
-            topology.edges += 1;
             topology.open += usize::from(same.len() == 1);
             topology.crowded += usize::from(same.len() > 2);
             if same.len() != 2 && topology.some_edge.is_none() {
@@ -65,9 +65,9 @@ impl Topology {
         topology
     }
 
-    /// Whether there are few open edges, as at the top of a vase, and the volume within is no accident.
+    /// Whether it is closed but for a hole, as at the top of a vase: the directed areas of a closed surface sum to 0.
     pub fn is_nearly_closed(&self) -> bool {
-        self.is_closed() || self.open * 10 < self.edges && self.volume.abs() > 0.1 * self.box_volume
+        self.is_closed() || self.crowded == 0 && self.opening < 0.25
     }
 
     /// Whether every edge has two triangles.
