@@ -1,5 +1,6 @@
 //! The same rays through Dürer, Embree and the crates that a Rust user would otherwise take.
 
+mod edges;
 mod embree;
 mod peers;
 mod rays;
@@ -18,6 +19,7 @@ const USAGE: &str =
   --preset NAME      how our tree is built for the rays: fast, balanced, best [best]
   --threads N        so many threads trace and build [1]
   --side N           primary rays: N x N, a multiple of 8 [512; quick 256]
+  --edges N          no speed: how many of N rays are lost at vertices, edges and centroids of a closed mesh
   --rounds N         rounds, of which medians are taken [9; quick 5]
   --no-peers         Embree only
   --no-embree        without Embree
@@ -26,6 +28,7 @@ Examples:
   cargo xtask bench-rays --quick
   cargo xtask bench-rays --mesh dragon --mesh kitchen --threads 2
   DURER_SIMD=avx2 cargo xtask bench-rays --mesh dragon --no-peers
+  cargo xtask bench-rays --edges 10000000 --threads 2
 
 Meshes are found in ../shared/meshes, or under DURER_CORPUS; Embree where DURER_EMBREE says.";
 
@@ -37,6 +40,7 @@ pub struct Options {
     pub threads: usize,
     pub side: u32,
     pub rounds: usize,
+    pub edges: Option<u32>,
     pub peers: bool,
     pub embree: Option<PathBuf>,
 }
@@ -45,7 +49,7 @@ fn options(arguments: &[String]) -> Result<Options> {
     let (mut names, mut cases) = (Vec::new(), Vec::new());
     let mut preset = durer::bvh::Preset::Best;
     let (mut threads, mut side, mut rounds, mut quick) = (1, None, None, false);
-    let (mut peers, mut use_embree) = (true, true);
+    let (mut peers, mut use_embree, mut edges) = (true, true, None);
     let mut words = arguments.iter();
     while let Some(word) = words.next() {
         let mut value = || words.next().with_context(|| format!("`{word}` needs a value"));
@@ -61,6 +65,7 @@ fn options(arguments: &[String]) -> Result<Options> {
             "--threads" => threads = value()?.parse::<usize>()?.clamp(1, 1024),
             "--side" => side = Some(value()?.parse::<u32>()?.clamp(8, 8192) / 8 * 8),
             "--rounds" => rounds = Some(value()?.parse::<usize>()?.max(1)),
+            "--edges" => edges = Some(value()?.parse::<u32>()?),
             "--no-peers" => peers = false,
             "--no-embree" => use_embree = false,
             _ => bail!("`{word}` is no option\n\n{USAGE}"),
@@ -81,6 +86,7 @@ fn options(arguments: &[String]) -> Result<Options> {
         threads,
         side: side.unwrap_or(if quick { 256 } else { 512 }),
         rounds: rounds.unwrap_or(if quick { 5 } else { 9 }),
+        edges,
         peers,
         embree: if use_embree { Some(embree::find()?) } else { None },
     })
@@ -106,5 +112,8 @@ fn run() -> Result<()> {
     durer::bvh::Level::from_environment()?;
     let options = options(&arguments)?;
     rayon::ThreadPoolBuilder::new().num_threads(options.threads).build_global()?;
-    speed::run(&options)
+    match options.edges {
+        Some(count) => edges::run(&options, count),
+        None => speed::run(&options),
+    }
 }

@@ -91,7 +91,7 @@ fn primary(mesh: &Mesh, side: u32) -> Vec<Ray> {
 }
 
 /// A direction over a surface, by the cosine.
-fn cosine(n: Vec3, i: u32, dimension: u32) -> Vec3 {
+pub fn cosine(n: Vec3, i: u32, dimension: u32) -> Vec3 {
     let u = random_2d(2, i, 0, 0, dimension);
     let z = 2.0 * u.x - 1.0;
     let r = (1.0 - z * z).max(0.0).sqrt();

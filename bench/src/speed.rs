@@ -6,7 +6,7 @@ use crate::peers::{BvhCrate, Obvhs, Parry};
 use crate::rays::{Case, Found, Mesh, cases};
 use anyhow::Result;
 use durer::bvh::{Counts, Level, Preset, TriangleBvh};
-use durer::math::Ray;
+use durer::math::{Ray, fp};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
@@ -119,7 +119,8 @@ pub fn run(options: &Options) -> Result<()> {
     }
     if embree.is_some() && !ratios.is_empty() {
         let least = ratios.iter().copied().fold(f64::INFINITY, f64::min);
-        let mean = (ratios.iter().map(|r| r.ln()).sum::<f64>() / ratios.len() as f64).exp();
+        let logarithms: f32 = ratios.iter().map(|&ratio| fp::ln(ratio as f32)).sum();
+        let mean = fp::exp(logarithms / ratios.len() as f32);
         println!("least ratio of {} cases of single rays: {least:.2}", ratios.len());
         println!("geometric mean of the ratios of single rays: {mean:.3}");
     }

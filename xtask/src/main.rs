@@ -4,6 +4,7 @@ mod bench_rays;
 mod build;
 mod cost;
 mod course;
+mod long;
 mod manual;
 mod solids;
 mod torture;
@@ -30,6 +31,11 @@ const USAGE: &str = "Commands:
       thousand parts beside that at the same parts as plain objects.
   cargo xtask bench-rays [--quick] [--mesh NAME] [--threads N] ...
       The very same rays through Dürer, Embree 4, obvhs, bvh and parry3d; --help says more.
+  cargo xtask bench-rays --edges N [--threads N]
+      How many of N rays each of them loses at the vertices and edges of a closed mesh.
+  cargo xtask long [--only TEXT] [--times N]
+      Tests of the suite with many more numbers: rays against a reference in double precision, rays at edges, rays that
+      leave surfaces, bits of all SIMD levels.
   cargo xtask manual
       Write docs/cameras.md from what the cameras state of themselves.
 The course is found in ../shared, or where DURER_CORPUS says.";
@@ -43,6 +49,7 @@ fn main() -> anyhow::Result<ExitCode> {
         Some("cost") => cost::run(&arguments[1..]),
         Some("solids") => solids::run(),
         Some("bench-rays") => bench_rays::run(&arguments[1..]),
+        Some("long") => long::run(&arguments[1..]),
         Some("manual") => manual::run(),
         _ => {
             println!("{USAGE}");

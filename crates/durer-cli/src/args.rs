@@ -209,7 +209,7 @@ pub struct WorkArgs {
     /// Pixels across and down the tiles that threads take, in steps of 8 [default: suitable ones]
     #[arg(long, value_name = "PIXELS", value_parser = clap::value_parser!(u32).range(8..=4096))]
     pub tile: Option<u32>,
-    /// Stop after this time, as in 30s, 10m, 1h30m
+    /// Stop after this time, as in 30s, 10m, 1h30m, once every pixel has a sample
     #[arg(long, value_name = "TIME", value_parser = humantime::parse_duration)]
     pub time: Option<Duration>,
     /// Refuse work that needs more memory: bytes as in 512M or 8G, or a share of the machine's or control group's

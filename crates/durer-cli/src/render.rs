@@ -91,8 +91,7 @@ pub fn run(command: &RenderCommand) -> Result<(), Failure> {
         }
     }
     if !finished && !args.quiet {
-        let (all, done) = part.work();
-        report::complain(&format!("note: the time was over after {done} of {all} samples"));
+        report::complain(&format!("note: the time was over after {} samples", part.statistics().samples));
     }
     if args.hash {
         say(&part.hash().to_string());

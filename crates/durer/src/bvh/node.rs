@@ -9,7 +9,7 @@ use crate::math::Aabb;
 /// k. For any signs of a ray's direction, places in the order of `place ^ signs` are then roughly from near to far.
 /// Source: Ylitie, Karras, Laine, *Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs*, HPG 2017.
 #[derive(Clone, Copy, Debug)]
-#[repr(C, align(32))]
+#[repr(C, align(64))]
 pub(super) struct Node {
     /// By axis: lower sides, upper sides.
     pub planes: [[[f32; WIDTH]; 2]; 3],

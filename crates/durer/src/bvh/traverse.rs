@@ -82,9 +82,6 @@ pub(super) trait Visitor {
 
     fn tally(&mut self) -> &mut Self::Tally;
 
-    /// A leaf will be looked into soon.
-    fn prefetch<L: Lanes>(&self, _: L, _leaf: u32) {}
-
     /// Looks into a leaf; gives the new `t_max`, at most the old. Minus infinity ends the walk.
     fn leaf<L: Lanes>(&mut self, lanes: L, leaf: u32, t_max: f32) -> f32;
 }
@@ -107,7 +104,7 @@ pub(super) fn walk<L: Lanes, V: Visitor, const TAME: bool>(
     let [x, y, z] = boxes.negative;
     // From far to near: the place 7 is farthest when all signs are positive.
     let flip = 7 ^ (x | y << 1 | z << 2);
-    let (order, flipped) = (lanes.flipped(flip as u32), &FLIPPED[flip]);
+    let (order, ranks) = (lanes.flipped(flip as u32), &RANKS[flip]);
     let mut limit = lanes.splat(boxes.limit::<TAME>(t_max));
     let mut room = Room::new();
     let mut stack = Stack::new(&mut room);
@@ -131,12 +128,12 @@ pub(super) fn walk<L: Lanes, V: Visitor, const TAME: bool>(
             let leave_y = lanes.min(slab!(0, !x, far_origin), slab!(1, !y, far_origin));
             let enter = lanes.max(enter_y, lanes.max(slab!(2, z, near_origin), t_min));
             let leave = lanes.min(leave_y, lanes.min(slab!(2, !z, far_origin), limit));
-            let met = u32::from(flipped[lanes.le(enter, leave) as usize & 255]);
+            let met = lanes.le(enter, leave) as usize & 255;
             if met != 0 {
                 // The nearest child is next, without a way through the stack.
-                let nearest = 31 - met.leading_zeros();
-                child = node.children[(nearest as usize ^ flip) & 7];
-                lanes.push(&mut stack, &node.children, enter, order, met ^ 1 << nearest);
+                let [nearest, others] = ranks[met];
+                child = node.children[nearest as usize & 7];
+                lanes.push(&mut stack, &node.children, enter, order, others.into());
                 continue;
             }
         } else {
@@ -155,26 +152,22 @@ pub(super) fn walk<L: Lanes, V: Visitor, const TAME: bool>(
             Some(next) => child = next,
             None => return,
         }
-        // The one after it is fetched in the meantime.
-        if let Some(later) = stack.peek() {
-            match later & LEAF {
-                0 => {
-                    lanes.prefetch(nodes, later as usize);
-                }
-                _ => visitor.prefetch(lanes, later),
-            }
-        }
     }
 }
 
-/// For each set of lanes, the set with lane i ^ flip in place of i.
-static FLIPPED: [[u8; 256]; 8] = {
-    let mut table = [[0; 256]; 8];
+/// For each set of lanes: the lane i of it whose i ^ flip is greatest, and the others, as a set with i ^ flip in place of i.
+static RANKS: [[[u8; 2]; 256]; 8] = {
+    let mut table = [[[0; 2]; 256]; 8];
     let mut i = 0;
-    while i < 8 * 256 * 8 {
-        let (flip, mask, lane) = (i >> 11, i >> 3 & 255, i & 7);
-        if mask >> lane & 1 == 1 {
-            table[flip][mask] |= 1 << (lane ^ flip);
+    while i < 8 * 256 {
+        let (flip, set) = (i >> 8, i & 255);
+        let (mut rank, mut others) = (0, 0);
+        while rank < 8 {
+            if set >> (rank ^ flip) & 1 == 1 {
+                others |= 1 << rank;
+                table[flip][set] = [(rank ^ flip) as u8, others ^ 1 << rank];
+            }
+            rank += 1;
         }
         i += 1;
     }

@@ -3,6 +3,12 @@
 use super::Vec3;
 use glam::{DAffine3, DMat3, DQuat};
 
+/// How often a test does something: as often as usual, times `DURER_ROUNDS` in the long runs of `cargo xtask long`.
+pub fn rounds(usual: usize) -> usize {
+    let times = std::env::var("DURER_ROUNDS").ok();
+    usual * times.map_or(1, |times| times.parse::<usize>().expect("DURER_ROUNDS is a whole number"))
+}
+
 /// A generator. Source: Steele, Lea, Flood, *Fast Splittable Pseudorandom Number Generators*, OOPSLA 2014.
 pub struct Random(pub u64);
 

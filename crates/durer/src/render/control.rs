@@ -11,7 +11,7 @@ pub struct Control {
     /// Pixels across and down a tile, the work that a thread takes at once; rounded up to a multiple of 8. `None`: a suitable
     /// number.
     pub tile: Option<u32>,
-    /// After this time no more samples are taken.
+    /// After this time no more samples are taken, once every pixel has one.
     pub time: Option<Duration>,
     /// After so many tiles no more work is done, as if it were cancelled: for tests of resuming.
     pub most_tiles: Option<u64>,

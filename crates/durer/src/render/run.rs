@@ -108,7 +108,9 @@ impl Part {
             tiles: AtomicU64::new(0),
             panicked: Mutex::new(None),
         };
-        let mut clock = Clock { start, last: start, pause: Duration::ZERO, control, stop: &stop, out_of_time: false };
+        let whole = !self.job.sampling.is_local() || !self.job.wants_samples();
+        let mut clock =
+            Clock { start, last: start, pause: Duration::ZERO, control, stop: &stop, whole, out_of_time: false };
         pool.in_place_scope(|scope| {
             let (finished, passes) = mpsc::channel();
             let work = &work;
@@ -147,6 +149,8 @@ struct Clock<'a> {
     pause: Duration,
     control: &'a Control,
     stop: &'a AtomicBool,
+    /// Whether every pixel has a sample, or gets all of them at once: before, a picture would have holes.
+    whole: bool,
     out_of_time: bool,
 }
 
@@ -155,7 +159,8 @@ impl Clock<'_> {
         if self.control.cancel.load(Relaxed) {
             self.stop.store(true, Relaxed);
         }
-        if self.control.time.is_some_and(|time| self.start.elapsed() >= time) && !self.stop.swap(true, Relaxed) {
+        let over = self.whole && self.control.time.is_some_and(|time| self.start.elapsed() >= time);
+        if over && !self.stop.swap(true, Relaxed) {
             self.out_of_time = true;
         }
         if self.control.save_every.is_some_and(|every| self.last.elapsed() >= every) {
@@ -164,6 +169,7 @@ impl Clock<'_> {
     }
 
     fn passed(&mut self, part: &Part, watch: &mut dyn FnMut(&Part, Moment)) {
+        self.whole = true;
         self.look(part, watch);
         if self.last.elapsed() >= self.pause {
             self.call(part, watch, Moment::PassDone);

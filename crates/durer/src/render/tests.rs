@@ -278,6 +278,11 @@ fn time_and_cancel_stop_soon_and_the_watcher_is_called() {
     }
     assert!(passes > 0 && saves > 0, "{passes} {saves}");
     assert!(part.is_whole() && !part.is_finished());
+    // No time at all is enough for a picture without holes, and for no more.
+    let hasty = Part::new(&world, &job, Shard::WHOLE).unwrap();
+    let control = Control { time: Some(Duration::ZERO), ..Control::default() };
+    assert_eq!(hasty.render(&world, &control, &mut |_, _| {}).unwrap(), Stop::OutOfTime);
+    assert!(hasty.is_whole() && !hasty.is_finished());
     let control = Control::default();
     let stopped = std::thread::scope(|scope| {
         let render = scope.spawn(|| (part.render(&world, &control, &mut |_, _| {}).unwrap(), Instant::now()));

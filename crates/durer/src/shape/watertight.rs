@@ -17,11 +17,14 @@ use crate::math::{Ray, Vec2, Vec3};
 use glam::DVec3;
 
 /// A ray prepared for many triangles.
+///
+/// It is turned: the longest component of its direction counts as the third axis, and the other two are in the order that keeps
+/// the sides of triangles. So are the corners that [`Sheared::crosses`] and others take.
 #[derive(Clone, Copy, Debug)]
 pub struct Sheared {
+    axes: [usize; 3],
     origin: Vec3,
     dir: Vec3,
-    axes: [usize; 3],
     shear: Vec2,
     least_volume: f64,
 }
@@ -31,7 +34,6 @@ impl Sheared {
     #[inline(always)]
     pub fn new(ray: &Ray) -> Self {
         let d = ray.dir.abs();
-        // The longest component of the direction becomes the third axis.
         let kz = if d.x > d.y && d.x > d.z {
             0
         } else if d.y > d.z {
@@ -43,9 +45,10 @@ impl Sheared {
         if ray.dir[kz] < 0.0 {
             std::mem::swap(&mut kx, &mut ky);
         }
-        let z = if ray.dir.is_finite() { ray.dir[kz] } else { f32::NAN };
-        let shear = Vec2::new(ray.dir[kx] / z, ray.dir[ky] / z);
-        Sheared { origin: ray.origin, dir: ray.dir, axes: [kx, ky, kz], shear, least_volume: 0.0 }
+        let axes = [kx, ky, kz];
+        let (origin, dir) = (turned(axes, ray.origin), turned(axes, ray.dir));
+        let z = if dir.is_finite() { dir.z } else { f32::NAN };
+        Sheared { axes, origin, dir, shear: Vec2::new(dir.x / z, dir.y / z), least_volume: 0.0 }
     }
 
     /// Misses triangles for which |(b - a) x (c - a) · d| is less than this: see
@@ -57,6 +60,7 @@ impl Sheared {
     /// The crossing with a triangle in the open interval (`t_min`, `t_max`), from either side.
     #[inline(always)]
     pub fn intersect(&self, corners: [Vec3; 3], t_min: f32, t_max: f32) -> Option<Crossing> {
+        let corners = corners.map(|corner| turned(self.axes, corner));
         if !self.crosses(corners) {
             return None;
         }
@@ -100,9 +104,8 @@ impl Sheared {
     /// A corner in the plane across the ray.
     #[inline(always)]
     fn flat(&self, corner: Vec3) -> Vec2 {
-        let [kx, ky, kz] = self.axes;
         let p = corner - self.origin;
-        Vec2::new(p[kx] - self.shear.x * p[kz], p[ky] - self.shear.y * p[kz])
+        Vec2::new(p.x - self.shear.x * p.z, p.y - self.shear.y * p.z)
     }
 
     /// Where the plane of a triangle is crossed, within the triangle's bounds.
@@ -117,27 +120,37 @@ impl Sheared {
             return None;
         }
         // Seen from nearly its side, the triangle still bounds it (and `max` replaces NaN).
-        let kz = self.axes[2];
-        let dz = f64::from(self.dir[kz]);
+        let dz = f64::from(self.dir.z);
         let t = n.dot(a) / volume;
         // Products are rounded monotonically: strictly between two corners' heights, t is between their distances.
         let height = t * dz;
-        if a[kz].min(b[kz]).min(c[kz]) < height && height < a[kz].max(b[kz]).max(c[kz]) {
+        if a.z.min(b.z).min(c.z) < height && height < a.z.max(b.z).max(c.z) {
             return Some(t as f32);
         }
-        let (x, y, z) = (a[kz] / dz, b[kz] / dz, c[kz] / dz);
+        let (x, y, z) = (a.z / dz, b.z / dz, c.z / dz);
         Some(t.max(x.min(y).min(z)).min(x.max(y).max(z)) as f32)
     }
 
-    /// The axes: two across and the longest of the direction, along which the ray is sheared.
+    /// The axes in the order of turned vectors.
     pub(crate) fn axes(&self) -> [usize; 3] {
         self.axes
+    }
+
+    /// Origin and direction, turned.
+    pub(crate) fn ray(&self) -> (Vec3, Vec3) {
+        (self.origin, self.dir)
     }
 
     /// How far a corner moves across for each unit along the third axis.
     pub(crate) fn shear(&self) -> Vec2 {
         self.shear
     }
+}
+
+#[inline(always)]
+fn turned([x, y, z]: [usize; 3], v: Vec3) -> Vec3 {
+    let v = v.to_array();
+    Vec3::new(v[x], v[y], v[z])
 }
 
 /// Twice the areas of the triangles from the origin to the three edges: unnormalised barycentric coordinates.

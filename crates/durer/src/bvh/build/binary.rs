@@ -7,13 +7,13 @@ use super::{Reference, lane_number, number_lane};
 use crate::math::Aabb;
 use glam::Vec4;
 
-const BINS: usize = 16;
+pub const BINS: usize = 16;
 /// Below this depth things are halved by number, which bounds the depth of all trees: 28 levels halve 2^28 things.
-const HALVING_DEPTH: usize = 60;
+pub const HALVING_DEPTH: usize = 60;
 /// Subtrees of more references than this are built in parallel.
-const PARALLEL: usize = 4096;
+pub const PARALLEL: usize = 4096;
 /// So few references are sorted rather than put into bins.
-const FEW: usize = 8;
+pub const FEW: usize = 8;
 
 /// A node. Nodes lie in depth-first order: the left child follows its parent, the right child the left one's subtree,
 /// which has twice the left child's count of nodes, less one.
@@ -65,32 +65,38 @@ pub fn build(references: &mut [Reference], scale: f32) -> Tree {
     Tree { nodes, scale }
 }
 
-struct Builder {
-    scale: f32,
+pub struct Builder {
+    pub scale: f32,
 }
 
 /// A box that grows, and how many references are in it.
 #[derive(Clone, Copy)]
-struct Bin {
-    min: Vec4,
-    max: Vec4,
-    count: u32,
+pub struct Bin {
+    pub min: Vec4,
+    pub max: Vec4,
+    pub count: u32,
 }
 
 impl Bin {
-    const EMPTY: Bin = Bin { min: Vec4::INFINITY, max: Vec4::NEG_INFINITY, count: 0 };
+    pub const EMPTY: Bin = Bin { min: Vec4::INFINITY, max: Vec4::NEG_INFINITY, count: 0 };
 
     #[inline]
-    fn with(self, r: &Reference) -> Bin {
-        Bin { min: self.min.min(r.min), max: self.max.max(r.max), count: self.count + 1 }
+    pub fn with(self, r: &Reference) -> Bin {
+        Bin { count: self.count + 1, ..self.around(r) }
+    }
+
+    /// Grown, but not counted.
+    #[inline]
+    pub fn around(self, r: &Reference) -> Bin {
+        Bin { min: self.min.min(r.min), max: self.max.max(r.max), ..self }
     }
 
     #[inline]
-    fn union(self, other: Bin) -> Bin {
+    pub fn union(self, other: Bin) -> Bin {
         Bin { min: self.min.min(other.min), max: self.max.max(other.max), count: self.count + other.count }
     }
 
-    fn cost(&self, scale: f32) -> f32 {
+    pub fn cost(&self, scale: f32) -> f32 {
         half_area(self.min, self.max, scale) * self.count as f32
     }
 }
@@ -104,13 +110,7 @@ impl Builder {
         if count == 1 {
             return;
         }
-        let cut = if depth >= HALVING_DEPTH {
-            halve(references)
-        } else if count <= FEW {
-            self.sorted_cut(references)
-        } else {
-            self.binned_cut(references).unwrap_or_else(|| halve(references))
-        };
+        let cut = self.cut(references, depth);
         let (left, right) = references.split_at_mut(cut);
         let (left_nodes, right_nodes) = nodes[1..].split_at_mut(2 * cut - 1);
         let middle = first + cut as u32;
@@ -122,6 +122,17 @@ impl Builder {
         } else {
             self.subtree(left, first, left_nodes, depth + 1);
             self.subtree(right, middle, right_nodes, depth + 1);
+        }
+    }
+
+    /// Sorts references into two sets; gives the number of the first.
+    pub fn cut(&self, references: &mut [Reference], depth: usize) -> usize {
+        if depth >= HALVING_DEPTH {
+            halve(references)
+        } else if references.len() <= FEW {
+            self.sorted_cut(references)
+        } else {
+            self.binned_cut(references).unwrap_or_else(|| halve(references))
         }
     }
 

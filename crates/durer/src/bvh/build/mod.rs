@@ -2,7 +2,7 @@
 
 mod binary;
 mod reinsert;
-mod split;
+mod spatial;
 mod wide;
 
 use super::node::{MOST_ITEMS, Node};
@@ -17,7 +17,7 @@ pub enum Preset {
     /// For most uses.
     #[default]
     Balanced,
-    /// For many rays: the tree is improved afterwards, and large triangles are cut.
+    /// For many rays: triangles are cut where that helps, and the tree is improved for longer.
     Best,
 }
 
@@ -36,7 +36,7 @@ pub(super) struct Settings {
     pub leaf_size: usize,
     /// Passes that move subtrees to better places.
     pub reinsertions: usize,
-    /// How many references may be added by cutting, as a share of the things.
+    /// How many references may be added by cutting triangles, as a share of them.
     pub splits: f32,
 }
 
@@ -51,7 +51,7 @@ impl Settings {
         let (reinsertions, splits) = match preset {
             Preset::Fast => (0, 0.0),
             Preset::Balanced => (2, 0.0),
-            Preset::Best => (8, 0.2),
+            Preset::Best => (8, 0.5),
         };
         Settings { leaf_cost, leaf_size: super::node::LEAF_SIZE, reinsertions, splits }
     }
@@ -98,23 +98,14 @@ pub(super) fn references(boxes: &[Aabb]) -> Vec<Reference> {
     full.map(|(i, b)| Reference::new(*b, i as u32)).collect()
 }
 
-/// References to triangles 0, 1, 2, ...; the largest may be cut into several. Those with corners that are no
-/// finite points are left out.
-pub(super) fn triangle_references(
-    count: usize,
-    corners_of: &(impl Fn(u32) -> [Vec3; 3] + Sync),
-    settings: &Settings,
-) -> Vec<Reference> {
+/// References to triangles 0, 1, 2, ...; those with corners that are no finite points are left out.
+fn triangle_references(count: usize, corners_of: &(impl Fn(u32) -> [Vec3; 3] + Sync)) -> Vec<Reference> {
     assert!(count <= MOST_ITEMS, "a tree holds at most 2^28 triangles");
     let whole = (0..count as u32).filter_map(|i| {
         let corners = corners_of(i);
         corners.iter().all(|p| p.is_finite()).then(|| Reference::new(Aabb::around(corners), i))
     });
-    let mut references: Vec<Reference> = whole.collect();
-    if settings.splits > 0.0 {
-        split::split(&mut references, corners_of, settings.splits);
-    }
-    references
+    whole.collect()
 }
 
 /// A finished tree.
@@ -125,18 +116,40 @@ pub(super) struct Tree {
     pub bounds: Aabb,
 }
 
-/// Builds a tree: a function of the references and settings alone.
+/// Builds a tree over boxes: a function of the references and settings alone.
 pub(super) fn build(mut references: Vec<Reference>, settings: &Settings) -> Tree {
-    assert!(references.len() <= MOST_ITEMS, "a tree holds at most 2^28 things");
-    let bounds = references.iter().fold(Aabb::EMPTY, |b, r| b.union(r.bounds()));
-    if references.is_empty() {
-        return Tree { nodes: Vec::new(), order: Vec::new(), bounds };
+    let bounds = bounds(&references);
+    match references.is_empty() {
+        true => Tree { nodes: Vec::new(), order: Vec::new(), bounds },
+        false => finish(binary::build(&mut references, area_scale(bounds)), &references, bounds, settings),
     }
-    let mut tree = binary::build(&mut references, area_scale(bounds));
+}
+
+/// Builds a tree over so many triangles, which may be cut.
+pub(super) fn build_triangles(
+    count: usize,
+    corners_of: &(impl Fn(u32) -> [Vec3; 3] + Sync),
+    settings: &Settings,
+) -> Tree {
+    let mut references = triangle_references(count, corners_of);
+    if settings.splits == 0.0 || references.is_empty() {
+        return build(references, settings);
+    }
+    let bounds = bounds(&references);
+    let (tree, references) = spatial::build(&mut references, corners_of, area_scale(bounds), settings.splits);
+    finish(tree, &references, bounds, settings)
+}
+
+fn bounds(references: &[Reference]) -> Aabb {
+    references.iter().fold(Aabb::EMPTY, |b, r| b.union(r.bounds()))
+}
+
+fn finish(mut tree: binary::Tree, references: &[Reference], bounds: Aabb, settings: &Settings) -> Tree {
+    assert!(references.len() <= MOST_ITEMS, "a tree holds at most 2^28 things");
     if settings.reinsertions > 0 {
         reinsert::improve(&mut tree, settings.reinsertions);
     }
-    let (nodes, order) = wide::collapse(&tree, &references, settings);
+    let (nodes, order) = wide::collapse(&tree, references, settings);
     Tree { nodes, order, bounds }
 }
 

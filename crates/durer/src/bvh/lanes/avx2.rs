@@ -3,7 +3,7 @@
 use super::{COMPRESS, Kernel, Lanes, Stack, WIDTH};
 use std::arch::x86_64::*;
 
-/// Proof that the processor has AVX2, FMA, BMI 1 and 2, and POPCNT.
+/// Proof that the processor has AVX2, FMA, BMI 1 and 2, LZCNT, and POPCNT.
 #[derive(Clone, Copy)]
 pub struct Avx2(());
 
@@ -12,13 +12,14 @@ pub fn is_available() -> bool {
         && is_x86_feature_detected!("fma")
         && is_x86_feature_detected!("bmi1")
         && is_x86_feature_detected!("bmi2")
+        && is_x86_feature_detected!("lzcnt")
         && is_x86_feature_detected!("popcnt")
 }
 
 /// # Safety
 ///
 /// [`is_available`] must have said so.
-#[target_feature(enable = "avx2,fma,bmi1,bmi2,popcnt")]
+#[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
 pub unsafe fn run<K: Kernel>(kernel: K) -> K::Output {
     kernel.run(Avx2(()))
 }
@@ -45,12 +46,8 @@ pub(super) fn rows(from: &[f32], stride: usize, axes: [usize; 3]) -> [[__m256; 3
     [[row!(0, 0), row!(0, 1), row!(0, 2)], [row!(1, 0), row!(1, 1), row!(1, 2)], [row!(2, 0), row!(2, 1), row!(2, 2)]]
 }
 
-/// Eight `f64` as two vectors.
-type Wide = (__m256d, __m256d);
-
 impl Lanes for Avx2 {
     type Floats = __m256;
-    type Doubles = Wide;
     type Order = __m256i;
 
     #[inline(always)]
@@ -94,62 +91,6 @@ impl Lanes for Avx2 {
         proven!(_mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LT_OQ>(a, b)) as u32)
     }
     #[inline(always)]
-    fn store(self, a: __m256) -> [f32; WIDTH] {
-        let mut to = [0.0; WIDTH];
-        proven!(_mm256_storeu_ps(to.as_mut_ptr(), a));
-        to
-    }
-    #[inline(always)]
-    fn splat_wide(self, x: f64) -> Wide {
-        proven!((_mm256_set1_pd(x), _mm256_set1_pd(x)))
-    }
-    #[inline(always)]
-    fn widen(self, a: __m256) -> Wide {
-        proven!((_mm256_cvtps_pd(_mm256_castps256_ps128(a)), _mm256_cvtps_pd(_mm256_extractf128_ps::<1>(a))))
-    }
-    #[inline(always)]
-    fn narrow(self, a: Wide) -> __m256 {
-        proven!(_mm256_set_m128(_mm256_cvtpd_ps(a.1), _mm256_cvtpd_ps(a.0)))
-    }
-    #[inline(always)]
-    fn add_wide(self, a: Wide, b: Wide) -> Wide {
-        proven!((_mm256_add_pd(a.0, b.0), _mm256_add_pd(a.1, b.1)))
-    }
-    #[inline(always)]
-    fn sub_wide(self, a: Wide, b: Wide) -> Wide {
-        proven!((_mm256_sub_pd(a.0, b.0), _mm256_sub_pd(a.1, b.1)))
-    }
-    #[inline(always)]
-    fn mul_wide(self, a: Wide, b: Wide) -> Wide {
-        proven!((_mm256_mul_pd(a.0, b.0), _mm256_mul_pd(a.1, b.1)))
-    }
-    #[inline(always)]
-    fn div_wide(self, a: Wide, b: Wide) -> Wide {
-        proven!((_mm256_div_pd(a.0, b.0), _mm256_div_pd(a.1, b.1)))
-    }
-    #[inline(always)]
-    fn min_wide(self, a: Wide, b: Wide) -> Wide {
-        proven!((_mm256_min_pd(a.0, b.0), _mm256_min_pd(a.1, b.1)))
-    }
-    #[inline(always)]
-    fn max_wide(self, a: Wide, b: Wide) -> Wide {
-        proven!((_mm256_max_pd(a.0, b.0), _mm256_max_pd(a.1, b.1)))
-    }
-    #[inline(always)]
-    fn lt_wide(self, a: Wide, b: Wide) -> u32 {
-        proven! {
-            let (low, high) = (_mm256_cmp_pd::<_CMP_LT_OQ>(a.0, b.0), _mm256_cmp_pd::<_CMP_LT_OQ>(a.1, b.1));
-            (_mm256_movemask_pd(low) | _mm256_movemask_pd(high) << 4) as u32
-        }
-    }
-    #[inline(always)]
-    fn where_equal(self, a: Wide, b: Wide, x: Wide, y: Wide) -> Wide {
-        proven! {
-            let (low, high) = (_mm256_cmp_pd::<_CMP_EQ_OQ>(a.0, b.0), _mm256_cmp_pd::<_CMP_EQ_OQ>(a.1, b.1));
-            (_mm256_blendv_pd(y.0, x.0, low), _mm256_blendv_pd(y.1, x.1, high))
-        }
-    }
-    #[inline(always)]
     fn flipped(self, flip: u32) -> __m256i {
         proven!(_mm256_set1_epi32((flip & 7) as i32))
     }
@@ -164,11 +105,6 @@ impl Lanes for Avx2 {
             _mm256_storeu_ps(to_near, _mm256_permutevar8x32_ps(near, front));
             stack.grow(mask.count_ones());
         }
-    }
-    #[inline(always)]
-    fn prefetch<T>(self, slice: &[T], at: usize) {
-        // SAFETY: the instruction takes any address.
-        unsafe { _mm_prefetch::<_MM_HINT_T0>(slice.as_ptr().wrapping_add(at).cast()) };
     }
     #[inline(always)]
     fn drop_beyond(self, stack: &mut Stack, t_max: f32) {

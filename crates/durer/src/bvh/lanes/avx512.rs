@@ -18,14 +18,13 @@ pub fn is_available() -> bool {
 /// # Safety
 ///
 /// [`is_available`] must have said so.
-#[target_feature(enable = "avx512f,avx512vl,avx512dq,avx2,fma,bmi1,bmi2,popcnt")]
+#[target_feature(enable = "avx512f,avx512vl,avx512dq,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
 pub unsafe fn run<K: Kernel>(kernel: K) -> K::Output {
     kernel.run(Avx512(()))
 }
 
 impl Lanes for Avx512 {
     type Floats = __m256;
-    type Doubles = __m512d;
     type Order = __m256i;
 
     #[inline(always)]
@@ -69,56 +68,6 @@ impl Lanes for Avx512 {
         proven!(u32::from(_mm256_cmp_ps_mask::<_CMP_LT_OQ>(a, b)))
     }
     #[inline(always)]
-    fn store(self, a: __m256) -> [f32; WIDTH] {
-        let mut to = [0.0; WIDTH];
-        proven!(_mm256_storeu_ps(to.as_mut_ptr(), a));
-        to
-    }
-    #[inline(always)]
-    fn splat_wide(self, x: f64) -> __m512d {
-        proven!(_mm512_set1_pd(x))
-    }
-    #[inline(always)]
-    fn widen(self, a: __m256) -> __m512d {
-        proven!(_mm512_cvtps_pd(a))
-    }
-    #[inline(always)]
-    fn narrow(self, a: __m512d) -> __m256 {
-        proven!(_mm512_cvtpd_ps(a))
-    }
-    #[inline(always)]
-    fn add_wide(self, a: __m512d, b: __m512d) -> __m512d {
-        proven!(_mm512_add_pd(a, b))
-    }
-    #[inline(always)]
-    fn sub_wide(self, a: __m512d, b: __m512d) -> __m512d {
-        proven!(_mm512_sub_pd(a, b))
-    }
-    #[inline(always)]
-    fn mul_wide(self, a: __m512d, b: __m512d) -> __m512d {
-        proven!(_mm512_mul_pd(a, b))
-    }
-    #[inline(always)]
-    fn div_wide(self, a: __m512d, b: __m512d) -> __m512d {
-        proven!(_mm512_div_pd(a, b))
-    }
-    #[inline(always)]
-    fn min_wide(self, a: __m512d, b: __m512d) -> __m512d {
-        proven!(_mm512_min_pd(a, b))
-    }
-    #[inline(always)]
-    fn max_wide(self, a: __m512d, b: __m512d) -> __m512d {
-        proven!(_mm512_max_pd(a, b))
-    }
-    #[inline(always)]
-    fn lt_wide(self, a: __m512d, b: __m512d) -> u32 {
-        proven!(u32::from(_mm512_cmp_pd_mask::<_CMP_LT_OQ>(a, b)))
-    }
-    #[inline(always)]
-    fn where_equal(self, a: __m512d, b: __m512d, x: __m512d, y: __m512d) -> __m512d {
-        proven!(_mm512_mask_blend_pd(_mm512_cmp_pd_mask::<_CMP_EQ_OQ>(a, b), y, x))
-    }
-    #[inline(always)]
     fn flipped(self, flip: u32) -> __m256i {
         proven!(_mm256_xor_si256(_mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7), _mm256_set1_epi32((flip & 7) as i32)))
     }
@@ -132,11 +81,6 @@ impl Lanes for Avx512 {
             _mm256_storeu_ps(to_near, _mm256_maskz_compress_ps(mask as u8, near));
             stack.grow(mask.count_ones());
         }
-    }
-    #[inline(always)]
-    fn prefetch<T>(self, slice: &[T], at: usize) {
-        // SAFETY: the instruction takes any address.
-        unsafe { _mm_prefetch::<_MM_HINT_T0>(slice.as_ptr().wrapping_add(at).cast()) };
     }
     #[inline(always)]
     fn drop_beyond(self, stack: &mut Stack, t_max: f32) {

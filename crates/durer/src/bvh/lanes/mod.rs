@@ -27,8 +27,6 @@ pub const WIDTH: usize = 8;
 pub(super) trait Lanes: Copy {
     /// Eight `f32`.
     type Floats: Copy;
-    /// Eight `f64`.
-    type Doubles: Copy;
     /// An order of the eight lanes.
     type Order: Copy;
 
@@ -50,30 +48,11 @@ pub(super) trait Lanes: Copy {
     fn le(self, a: Self::Floats, b: Self::Floats) -> u32;
     /// A bit for each lane where a < b.
     fn lt(self, a: Self::Floats, b: Self::Floats) -> u32;
-    fn store(self, a: Self::Floats) -> [f32; WIDTH];
-    fn splat_wide(self, x: f64) -> Self::Doubles;
-    fn widen(self, a: Self::Floats) -> Self::Doubles;
-    /// Rounded to the nearest.
-    fn narrow(self, a: Self::Doubles) -> Self::Floats;
-    fn add_wide(self, a: Self::Doubles, b: Self::Doubles) -> Self::Doubles;
-    fn sub_wide(self, a: Self::Doubles, b: Self::Doubles) -> Self::Doubles;
-    fn mul_wide(self, a: Self::Doubles, b: Self::Doubles) -> Self::Doubles;
-    fn div_wide(self, a: Self::Doubles, b: Self::Doubles) -> Self::Doubles;
-    /// The lesser; of numbers only.
-    fn min_wide(self, a: Self::Doubles, b: Self::Doubles) -> Self::Doubles;
-    /// The greater; of numbers only.
-    fn max_wide(self, a: Self::Doubles, b: Self::Doubles) -> Self::Doubles;
-    /// A bit for each lane where a < b.
-    fn lt_wide(self, a: Self::Doubles, b: Self::Doubles) -> u32;
-    /// `x` where a == b, else `y`.
-    fn where_equal(self, a: Self::Doubles, b: Self::Doubles, x: Self::Doubles, y: Self::Doubles) -> Self::Doubles;
     /// The order that puts lane i ^ `flip` at i.
     fn flipped(self, flip: u32) -> Self::Order;
     /// Pushes the children whose bits are set, each with its entry distance: those of the first lanes lowest. Bits count
     /// lanes in the order, children and distances are brought into it.
     fn push(self, stack: &mut Stack, children: &[u32; WIDTH], near: Self::Floats, order: Self::Order, mask: u32);
-    /// Says that what lies at and after this place of a slice is needed soon, if it exists.
-    fn prefetch<T>(self, slice: &[T], at: usize);
     /// Removes what begins beyond `t_max`.
     fn drop_beyond(self, stack: &mut Stack, t_max: f32);
 }
@@ -103,3 +82,6 @@ static COMPRESS: [[u32; WIDTH]; 256] = {
     }
     table
 };
+
+#[cfg(test)]
+mod tests;

@@ -7,7 +7,6 @@ use std::array::from_fn;
 pub struct Scalar;
 
 type F = [f32; WIDTH];
-type D = [f64; WIDTH];
 
 fn mask(test: impl Fn(usize) -> bool) -> u32 {
     (0..WIDTH).fold(0, |mask, i| mask | u32::from(test(i)) << i)
@@ -15,7 +14,6 @@ fn mask(test: impl Fn(usize) -> bool) -> u32 {
 
 impl Lanes for Scalar {
     type Floats = F;
-    type Doubles = D;
     type Order = u32;
 
     #[inline(always)]
@@ -64,54 +62,6 @@ impl Lanes for Scalar {
         mask(|i| a[i] < b[i])
     }
     #[inline(always)]
-    fn store(self, a: F) -> [f32; WIDTH] {
-        a
-    }
-    #[inline(always)]
-    fn splat_wide(self, x: f64) -> D {
-        [x; WIDTH]
-    }
-    #[inline(always)]
-    fn widen(self, a: F) -> D {
-        from_fn(|i| f64::from(a[i]))
-    }
-    #[inline(always)]
-    fn narrow(self, a: D) -> F {
-        from_fn(|i| a[i] as f32)
-    }
-    #[inline(always)]
-    fn add_wide(self, a: D, b: D) -> D {
-        from_fn(|i| a[i] + b[i])
-    }
-    #[inline(always)]
-    fn sub_wide(self, a: D, b: D) -> D {
-        from_fn(|i| a[i] - b[i])
-    }
-    #[inline(always)]
-    fn mul_wide(self, a: D, b: D) -> D {
-        from_fn(|i| a[i] * b[i])
-    }
-    #[inline(always)]
-    fn div_wide(self, a: D, b: D) -> D {
-        from_fn(|i| a[i] / b[i])
-    }
-    #[inline(always)]
-    fn min_wide(self, a: D, b: D) -> D {
-        from_fn(|i| if a[i] < b[i] { a[i] } else { b[i] })
-    }
-    #[inline(always)]
-    fn max_wide(self, a: D, b: D) -> D {
-        from_fn(|i| if a[i] > b[i] { a[i] } else { b[i] })
-    }
-    #[inline(always)]
-    fn lt_wide(self, a: D, b: D) -> u32 {
-        mask(|i| a[i] < b[i])
-    }
-    #[inline(always)]
-    fn where_equal(self, a: D, b: D, x: D, y: D) -> D {
-        from_fn(|i| if a[i] == b[i] { x[i] } else { y[i] })
-    }
-    #[inline(always)]
     fn flipped(self, flip: u32) -> u32 {
         flip
     }
@@ -123,8 +73,6 @@ impl Lanes for Scalar {
             stack.push(children[(lane ^ flip) as usize % WIDTH], near[(lane ^ flip) as usize % WIDTH]);
         }
     }
-    #[inline(always)]
-    fn prefetch<T>(self, _: &[T], _: usize) {}
     #[inline(always)]
     fn drop_beyond(self, stack: &mut Stack, t_max: f32) {
         stack.retain(|near| near <= t_max);

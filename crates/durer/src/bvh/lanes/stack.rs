@@ -50,14 +50,6 @@ impl<'a> Stack<'a> {
         Some(unsafe { *self.room.children.as_ptr().cast::<u32>().add(self.height) })
     }
 
-    /// What the next [`Stack::pop`] will give.
-    #[inline(always)]
-    pub fn peek(&self) -> Option<u32> {
-        let top = self.height.checked_sub(1)?;
-        // SAFETY: everything below the height was written.
-        Some(unsafe { *self.room.children.as_ptr().cast::<u32>().add(top) })
-    }
-
     /// Room for a whole vector on top, to be followed by [`Stack::grow`].
     #[inline(always)]
     pub(super) fn top(&mut self) -> (*mut u32, *mut f32) {

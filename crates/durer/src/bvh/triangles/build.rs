@@ -18,7 +18,7 @@ impl TriangleBvh {
     pub fn build(vertices: &[Vec3], triangles: &[[u32; 3]], preset: Preset) -> Self {
         let settings = Settings::triangles(preset);
         let corners_of = |number: u32| triangles[number as usize].map(|i| vertices[i as usize]);
-        let tree = build::build(build::triangle_references(triangles.len(), &corners_of, &settings), &settings);
+        let tree = build::build_triangles(triangles.len(), &corners_of, &settings);
         let mut bvh = TriangleBvh {
             corners: vec![0.0; 9 * tree.order.len() + WIDTH],
             nodes: tree.nodes,

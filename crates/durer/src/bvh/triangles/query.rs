@@ -1,6 +1,6 @@
 //! What a ray asks of a tree of triangles.
 
-use super::leaf::{Quick, distances, quick};
+use super::leaf::{Quick, quick};
 use super::{TriangleBvh, TriangleHit};
 use crate::bvh::Tally;
 use crate::bvh::lanes::{Kernel, Lanes, WIDTH};
@@ -73,7 +73,7 @@ impl Found for Nearest {
     #[inline(always)]
     fn finish(&mut self, bvh: &TriangleBvh, sheared: &Sheared) {
         if let Some(place) = self.place {
-            let uv = sheared.uv(bvh.corners_at(place));
+            let uv = sheared.uv(bvh.corners_at(place, sheared));
             self.hit = Some(TriangleHit { t: self.t, uv, triangle: self.triangle });
         }
     }
@@ -107,17 +107,20 @@ impl Found for All {
 
     fn finish(&mut self, bvh: &TriangleBvh, sheared: &Sheared) {
         for (hit, place) in self.0.iter_mut().zip(&self.1) {
-            hit.uv = sheared.uv(bvh.corners_at(*place));
+            hit.uv = sheared.uv(bvh.corners_at(*place, sheared));
         }
     }
 }
 
 impl TriangleBvh {
+    /// The corners of a triangle, turned as the ray is.
     #[inline(always)]
-    fn corners_at(&self, Place { first, count, lane }: Place) -> [Vec3; 3] {
+    fn corners_at(&self, Place { first, count, lane }: Place, sheared: &Sheared) -> [Vec3; 3] {
         let leaf = &self.corners[9 * first..9 * (first + count)];
+        let [x, y, z] = sheared.axes();
         let at = |row: usize| leaf[row * count + lane];
-        [Vec3::new(at(0), at(1), at(2)), Vec3::new(at(3), at(4), at(5)), Vec3::new(at(6), at(7), at(8))]
+        let corner = |row: usize| Vec3::new(at(row + x), at(row + y), at(row + z));
+        [corner(0), corner(3), corner(6)]
     }
 }
 
@@ -170,27 +173,21 @@ impl<T: Tally, F: Found> Visitor for Leaves<'_, T, F> {
             return (0..count).fold(t_max, |t_max, lane| self.one_by_one(first, count, lane, t_max));
         }
         let corners = &self.bvh.corners[9 * first..9 * (first + count) + WIDTH];
-        let Quick { mut candidates, crossed, inside } = quick(lanes, self.ray, self.sheared, corners, count, t_max);
-        if candidates == 0 {
-            return t_max;
-        }
+        let range = (self.ray.t_min, t_max);
+        let Quick { mut candidates, crossed, inside } = quick(lanes, self.sheared, corners, count, range);
         // Where any hit will do, it need not be known where it is.
         let sure = candidates & crossed & inside & self.trusted;
         if F::ANY && sure != 0 {
             return self.offer(t_max, first, count, sure.trailing_zeros() as usize, t_max);
         }
-        let (distances, certain) = distances(lanes, self.ray, self.sheared, corners, count);
-        let certain = crossed & certain & self.trusted;
         while candidates != 0 {
             let lane = candidates.trailing_zeros() as usize;
             candidates &= candidates - 1;
-            let t = distances[lane];
-            t_max = match certain >> lane & 1 {
-                1 if t > self.ray.t_min && t <= t_max => self.offer(t, first, count, lane, t_max),
-                1 => t_max,
+            t_max = match crossed >> lane & 1 {
+                1 => self.crossed(first, count, lane, t_max),
                 _ => self.one_by_one(first, count, lane, t_max),
             };
-            if t_max == f32::NEG_INFINITY {
+            if F::ANY && t_max == f32::NEG_INFINITY {
                 break;
             }
         }
@@ -207,10 +204,16 @@ impl<T: Tally, F: Found> Leaves<'_, T, F> {
     /// A single triangle in full.
     #[cold]
     fn one_by_one(&mut self, first: usize, count: usize, lane: usize, t_max: f32) -> f32 {
-        let corners = self.bvh.corners_at(Place { first, count, lane });
-        if !self.sheared.crosses(corners) {
-            return t_max;
+        match self.sheared.crosses(self.bvh.corners_at(Place { first, count, lane }, self.sheared)) {
+            true => self.crossed(first, count, lane, t_max),
+            false => t_max,
         }
+    }
+
+    /// A triangle that the line of the ray crosses.
+    #[inline(always)]
+    fn crossed(&mut self, first: usize, count: usize, lane: usize, t_max: f32) -> f32 {
+        let corners = self.bvh.corners_at(Place { first, count, lane }, self.sheared);
         match self.sheared.distance(corners, self.ray.t_min, t_max) {
             Some(t) => self.offer(t, first, count, lane, t_max),
             None => t_max,

@@ -1,0 +1,124 @@
+//! How many rays are lost at the edges and vertices of a closed mesh.
+
+use crate::Options;
+use crate::embree::{Embree, Quality};
+use crate::peers::{BvhCrate, Obvhs, Parry};
+use crate::rays::{Found, Mesh, cosine};
+use anyhow::Result;
+use durer::bvh::{Preset, TriangleBvh};
+use durer::math::{Ray, Vec3};
+use durer::sampler::random_2d;
+use rayon::prelude::*;
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// What rays are aimed at.
+const AIMS: [&str; 4] = ["vertices", "edge midpoints", "points of edges", "centroids"];
+
+/// A sphere of 10,242 vertices: an icosahedron whose triangles are divided into four, five times.
+fn sphere(center: Vec3, radius: f32) -> Mesh {
+    let golden = 0.5 * (1.0 + 5.0_f32.sqrt());
+    let mut vertices: Vec<Vec3> = Vec::new();
+    for i in 0..3 {
+        for (a, b) in [(1.0, golden), (-1.0, golden), (1.0, -golden), (-1.0, -golden)] {
+            let mut p = [0.0; 3];
+            (p[i], p[(i + 1) % 3]) = (a, b);
+            vertices.push(Vec3::from(p).normalize());
+        }
+    }
+    // Its faces are the triples of corners as near to each other as corners get.
+    let near = |i: usize, j: usize| vertices[i].distance(vertices[j]) < 1.2;
+    let mut triangles: Vec<[u32; 3]> = Vec::new();
+    for i in 0..12 {
+        for j in i + 1..12 {
+            for k in j + 1..12 {
+                if near(i, j) && near(j, k) && near(k, i) {
+                    let outward = (vertices[j] - vertices[i]).cross(vertices[k] - vertices[i]).dot(vertices[i]) > 0.0;
+                    let [j, k] = if outward { [j, k] } else { [k, j] };
+                    triangles.push([i, j, k].map(|i| i as u32));
+                }
+            }
+        }
+    }
+    for _ in 0..5 {
+        let mut middles = HashMap::new();
+        let mut middle = |a: u32, b: u32| {
+            *middles.entry((a.min(b), a.max(b))).or_insert_with(|| {
+                vertices.push((vertices[a as usize] + vertices[b as usize]).normalize());
+                vertices.len() as u32 - 1
+            })
+        };
+        let divide = |[a, b, c]: [u32; 3]| {
+            let (ab, bc, ca) = (middle(a, b), middle(b, c), middle(c, a));
+            [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
+        };
+        triangles = triangles.into_iter().flat_map(divide).collect();
+    }
+    let vertices = vertices.into_iter().map(|p| center + radius * p).collect();
+    Mesh { name: "sphere".into(), vertices, triangles }
+}
+
+/// Ray number `i`: aimed at each triangle in turn, from inside or from outside where the triangle faces it.
+fn ray(mesh: &Mesh, center: Vec3, radius: f32, aim: usize, i: u32) -> (Ray, bool) {
+    let [a, b, c] = mesh.corners(i % mesh.triangles.len() as u32);
+    let unit = random_2d(4, i, aim as u32, 0, 0).x;
+    let goal = [a, 0.5 * (a + b), a + unit * (b - a), (a + b + c) / 3.0][aim];
+    let normal = (goal - center).normalize();
+    let inside = (i / mesh.triangles.len() as u32).is_multiple_of(2);
+    let origin = match inside {
+        true => center + 0.5 * radius * cosine(normal, i, 8),
+        // Not from so low that the rounding of the goal leads beside the sphere.
+        false => {
+            let back = (normal + cosine(normal, i, 9)).normalize();
+            goal + radius * (0.5 + 100.0 * random_2d(4, i, aim as u32, 0, 1).x) * back
+        }
+    };
+    (Ray::new(origin, goal - origin), inside)
+}
+
+/// How many of so many rays at each aim are lost.
+fn lost(mesh: &Mesh, place: (Vec3, f32), count: u32, closest: impl Fn(&Ray) -> Found + Sync) -> [usize; 4] {
+    [0, 1, 2, 3].map(|aim| {
+        let is_lost = |i: &u32| closest(&ray(mesh, place.0, place.1, aim, *i).0) == Found::NONE;
+        (0..count).into_par_iter().filter(is_lost).count()
+    })
+}
+
+pub fn run(options: &Options, count: u32) -> Result<()> {
+    let embree = match &options.embree {
+        Some(path) => Some(Arc::new(Embree::load(path, options.threads)?)),
+        None => None,
+    };
+    println!(
+        "Rays lost on the way to the closed sphere of 10,242 vertices, of {count} at each aim, half of them from inside."
+    );
+    for (center, radius) in [(Vec3::ZERO, 1.0), (Vec3::new(1e6, -1e6, 1e6), 64.0)] {
+        let mesh = sphere(center, radius);
+        println!("\nsphere of radius {radius} at {center}: {}", AIMS.join(", "));
+        let show = |name: &str, lost: [usize; 4]| println!("  {name:<22}{:?}", lost);
+        let tree = TriangleBvh::build(&mesh.vertices, &mesh.triangles, Preset::Best);
+        let ours = |ray: &Ray| tree.closest(ray).map_or(Found::NONE, |hit| Found { t: hit.t, triangle: hit.triangle });
+        show("Dürer", lost(&mesh, (center, radius), count, ours));
+        let wrong = [0, 1, 2, 3].map(|aim| {
+            let is_wrong = |i: &u32| {
+                let (ray, inside) = ray(&mesh, center, radius, aim, *i);
+                tree.count(&ray) % 2 != usize::from(inside)
+            };
+            (0..count).into_par_iter().filter(is_wrong).count()
+        });
+        show("Dürer, wrong counts", wrong);
+        if let Some(embree) = &embree {
+            for (name, robust) in [("Embree", false), ("Embree, robust", true)] {
+                let (scene, _) = embree.build(&mesh, Quality::High, robust);
+                show(name, lost(&mesh, (center, radius), count, |ray| scene.closest(ray)));
+            }
+        }
+        if options.peers {
+            let (obvhs, bvh, parry) = (Obvhs::build(&mesh), BvhCrate::build(&mesh), Parry::build(&mesh));
+            show("obvhs", lost(&mesh, (center, radius), count, |ray| obvhs.closest(ray)));
+            show("bvh", lost(&mesh, (center, radius), count, |ray| bvh.closest(ray)));
+            show("parry3d", lost(&mesh, (center, radius), count, |ray| parry.closest(ray)));
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,118 @@
+//! All levels give the same bits, whatever the numbers.
+
+use super::*;
+use crate::math::random::{Random, rounds};
+
+/// Numbers on which arithmetic may stumble.
+const SPECIAL: [f32; 14] = [
+    0.0,
+    -0.0,
+    1.0,
+    -1.0,
+    f32::MIN_POSITIVE,
+    -1e-45,
+    1e-40,
+    f32::MAX,
+    f32::MIN,
+    f32::INFINITY,
+    f32::NEG_INFINITY,
+    f32::NAN,
+    16777217.0,
+    0.1,
+];
+
+fn number(random: &mut Random) -> f32 {
+    match random.below(4) {
+        0 => SPECIAL[random.below(SPECIAL.len())],
+        1 => f32::from_bits(random.bits() as u32),
+        _ => random.between(-2.0, 2.0),
+    }
+}
+
+/// Numbers for all lanes, and what is needed beside them.
+struct Input {
+    floats: [[f32; WIDTH]; 3],
+    rows: [f32; 9 * WIDTH],
+    stride: usize,
+    axes: [usize; 3],
+    flip: u32,
+    mask: u32,
+}
+
+impl Input {
+    fn random(random: &mut Random) -> Self {
+        let mut eight = || std::array::from_fn(|_| number(random));
+        let floats = [eight(), eight(), eight()];
+        let rows = std::array::from_fn(|_| number(random));
+        let axes = [[0, 1, 2], [1, 2, 0], [2, 0, 1], [1, 0, 2], [2, 1, 0], [0, 2, 1]][random.below(6)];
+        let (flip, mask) = (random.below(8) as u32, random.below(256) as u32);
+        Input { floats, rows, stride: 1 + random.below(WIDTH), axes, flip, mask }
+    }
+}
+
+/// Everything that lanes do, as bits; where a NaN may have any bits, or either zero may come out, as one of them.
+struct Everything<'a>(&'a Input);
+
+/// How many lanes are looked at for each input: five of arithmetic and comparison, and nine rows.
+const OPERATIONS: usize = 4 + 9 + 2;
+
+impl Kernel for Everything<'_> {
+    type Output = Vec<u32>;
+
+    #[inline(always)]
+    fn run<L: Lanes>(self, lanes: L) -> Vec<u32> {
+        let Input { floats, rows, stride, axes, flip, mask } = self.0;
+        let [a, b, c] = [lanes.load(&floats[0]), lanes.load(&floats[1]), lanes.load(&floats[2])];
+        let mut found = Vec::with_capacity(WIDTH * OPERATIONS + 16);
+        let number = |x: f32| if x.is_nan() { f32::NAN.to_bits() } else { x.to_bits() };
+        // Vectors are told apart by comparing with each lane's number, and come out through the stack.
+        let mut tell = |v: L::Floats, count: usize| {
+            let mut room = Room::new();
+            let mut stack = Stack::new(&mut room);
+            lanes.push(&mut stack, &[7; WIDTH], v, lanes.flipped(0), (1 << count) - 1);
+            let (_, near, height) = stack.all();
+            // SAFETY: everything below the height was written.
+            (0..height).for_each(|i| found.push(number(unsafe { *near.add(i) })));
+        };
+        tell(lanes.sub(a, b), WIDTH);
+        tell(lanes.mul(a, b), WIDTH);
+        // Of two zeros either is the lesser, and of a number and NaN the number if NaN comes first.
+        let zero = lanes.splat(0.0);
+        let (least, greatest) = (lanes.min(a, c), lanes.max(a, c));
+        tell(lanes.mul(least, zero), 0);
+        for corner in lanes.rows(rows, *stride, *axes) {
+            corner.into_iter().for_each(|row| tell(row, *stride));
+        }
+        found.extend([lanes.le(a, b), lanes.lt(a, b), lanes.le(b, a), lanes.lt(b, a)]);
+        let sound = |i: usize| !floats[2][i].is_nan();
+        let compared = (0..WIDTH).filter(|&i| sound(i)).fold(0, |mask, i| mask | 1 << i);
+        found.extend([
+            lanes.le(least, c) & compared,
+            lanes.le(c, greatest) & compared,
+            lanes.lt(least, greatest) & compared,
+        ]);
+        let mut room = Room::new();
+        let mut stack = Stack::new(&mut room);
+        let children = [10, 11, 12, 13, 14, 15, 16, 17];
+        lanes.push(&mut stack, &children, a, lanes.flipped(*flip), *mask);
+        lanes.push(&mut stack, &children, b, lanes.flipped(*flip), !mask & 255);
+        lanes.drop_beyond(&mut stack, floats[2][0]);
+        found.extend(std::iter::from_fn(|| stack.pop()));
+        found
+    }
+}
+
+/// 10^6 lanes; in the long run 10^9.
+#[test]
+fn every_level_gives_the_same_bits() {
+    let mut random = Random(31);
+    let inputs = rounds(1_000_000) / (WIDTH * OPERATIONS);
+    for round in 0..inputs {
+        let input = Input::random(&mut random);
+        let expected = Everything(&input).run(scalar::Scalar);
+        for level in Level::available() {
+            assert_eq!(Available::or_scalar(level).run(Everything(&input)), expected, "{round} {level:?}");
+        }
+    }
+    println!("{} lanes at {} levels", inputs * WIDTH * OPERATIONS, Level::available().count());
+}

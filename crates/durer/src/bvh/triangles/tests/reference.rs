@@ -1,0 +1,150 @@
+//! The trees against a test of triangles in double precision that shares nothing with ours.
+
+use super::*;
+use crate::math::random::rounds;
+use glam::DVec3;
+use rayon::prelude::*;
+use std::ops::AddAssign;
+
+/// What double precision says of a ray and a triangle.
+enum Verdict {
+    /// Crossed there, and by how much `t` may be off.
+    Crossed(f64, f64),
+    Missed,
+    /// The ray passes an edge, or begins, nearer than single precision can tell.
+    Unsure,
+}
+
+/// Signs of the volumes that the ray spans with each edge. A corner may be off by the rounding of its distance from the origin in
+/// each coordinate, and so is a volume by that times the area of the ray and the other corner.
+fn verdict(corners: [Vec3; 3], ray: &Ray) -> Verdict {
+    let (o, d) = (ray.origin.as_dvec3(), ray.dir.as_dvec3());
+    let [a, b, c] = corners.map(|p| p.as_dvec3() - o);
+    let reach = [a, b, c].map(|p| p.abs().max_element()).into_iter().fold(0.0, f64::max);
+    let off = 16.0 * f64::from(f32::EPSILON) * reach;
+    let [ra, rb, rc] = [a, b, c].map(|p| d.cross(p).length());
+    let side = |p: DVec3, q: DVec3, rp: f64, rq: f64| {
+        let volume = d.dot(p.cross(q));
+        match volume.abs() > off * (rp + rq + off * d.length()) {
+            true => volume.signum(),
+            false => 0.0,
+        }
+    };
+    let sides = [side(b, c, rb, rc), side(c, a, rc, ra), side(a, b, ra, rb)];
+    if sides.contains(&1.0) && sides.contains(&-1.0) {
+        return Verdict::Missed;
+    }
+    let n = (b - a).cross(c - a);
+    let (above, volume) = (n.dot(a), n.dot(d));
+    let t = above / volume;
+    if sides.contains(&0.0) || !t.is_finite() || (t * d.length()).abs() < 1e-3 * reach {
+        return Verdict::Unsure;
+    }
+    // Rounded once to single precision; double precision loses what a ray along the surface makes of it.
+    let loss = 1e-14 * n.length() * (reach + t.abs() * d.length()) / volume.abs();
+    match t > 0.0 {
+        true => Verdict::Crossed(t, t * f64::from(f32::EPSILON) + loss),
+        false => Verdict::Missed,
+    }
+}
+
+/// A dozen meshes of a few hundred triangles.
+fn dozen() -> Vec<(&'static str, Mesh)> {
+    let mut random = Random(21);
+    let apart = |vertices: Vec<Vec3>| {
+        let triangles = (0..vertices.len() as u32 / 3).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+        (vertices, triangles)
+    };
+    let slivers = (0..300).flat_map(|_| {
+        let (p, along) = (random.point(), random.direction());
+        [p, p + along, p + 0.5 * along + 0.01 * random.point()]
+    });
+    let slivers = apart(slivers.collect());
+    let layers = (0..150).flat_map(|i| {
+        let y = (i / 2) as f32 / 75.0 - 0.5;
+        [Vec3::new(-1.0, y, -1.0), Vec3::new(1.0, y, -1.0), Vec3::new(0.0, y + 0.1, 1.0)]
+    });
+    let layers = apart(layers.collect());
+    let sizes = (0..200).flat_map(|i| {
+        let size = libm::pow(1.1, f64::from(i) - 150.0) as f32;
+        [size * random.point(), size * random.point(), size * random.point()]
+    });
+    let sizes = apart(sizes.collect());
+    let rim = (0..300).map(|_| random.direction());
+    let fan = (rim.chain([Vec3::ZERO]).collect(), (0..300).map(|i| [300, i, (i + 1) % 300]).collect());
+    let (hills, bumps) = (torus(20, 16), random.point());
+    let hills = (hills.0.iter().map(|p| *p + 0.05 * (9.0 * *p + bumps).fract()).collect(), hills.1);
+    let stretch = |mesh: Mesh, by: Vec3| (mesh.0.iter().map(|p| *p * by).collect(), mesh.1);
+    vec![
+        ("torus", torus(20, 10)),
+        ("cube", cube(5)),
+        ("soup", soup(&mut random, 300, 0.2)),
+        ("large soup", soup(&mut random, 300, 3.0)),
+        ("slivers", slivers),
+        ("layers, each twice", layers),
+        ("sizes", sizes),
+        ("fan", fan),
+        ("hills", hills),
+        ("needle", stretch(torus(20, 10), Vec3::new(1.0, 1e-3, 1e-2))),
+        ("far away", scaled(&torus(20, 10), 1.0, Vec3::new(900.0, -700.0, 300.0))),
+        ("small", scaled(&cube(4), 1e-6, Vec3::ZERO)),
+    ]
+}
+
+#[derive(Default, Debug)]
+struct Tried {
+    crossed: usize,
+    unsure: usize,
+}
+
+impl AddAssign for Tried {
+    fn add_assign(&mut self, other: Self) {
+        self.crossed += other.crossed;
+        self.unsure += other.unsure;
+    }
+}
+
+/// Random rays about a mesh, all hits and the first.
+fn try_rays(name: &str, mesh: &Mesh, seed: u64, rays: usize) -> Tried {
+    let (vertices, triangles) = mesh;
+    let tree = TriangleBvh::build(vertices, triangles, Preset::Best);
+    let bounds = tree.bounds();
+    let (center, size) = (bounds.center(), bounds.size().max_element());
+    let (mut random, mut tried) = (Random(seed), Tried::default());
+    for _ in 0..rays {
+        let origin = center + size * random.between(0.1, 2.0) * random.point();
+        let goal = center + 0.5 * bounds.size() * random.point();
+        let ray = Ray::new(origin, random.between(0.01, 100.0) * (goal - origin));
+        let hits = tree.all_hits(&ray);
+        assert_eq!(tree.closest(&ray).as_ref().map(bits), hits.first().map(bits), "{name} {ray:?}");
+        for (i, triangle) in triangles.iter().enumerate() {
+            let hit = || hits.iter().find(|hit| hit.triangle == i as u32);
+            match verdict(triangle.map(|i| vertices[i as usize]), &ray) {
+                Verdict::Missed => assert!(hits.is_empty() || hit().is_none(), "{name} {i} {ray:?}"),
+                Verdict::Unsure => tried.unsure += 1,
+                Verdict::Crossed(t, off) => {
+                    let hit = hit().unwrap_or_else(|| panic!("{name}: {i} is missed by {ray:?}"));
+                    assert!((f64::from(hit.t) - t).abs() <= off, "{name} {i} {ray:?}: {} {t}", hit.t);
+                    tried.crossed += 1;
+                }
+            }
+        }
+    }
+    tried
+}
+
+/// 10^5 rays a mesh; in the long run 10^7.
+#[test]
+fn double_precision_says_the_same() {
+    const AT_ONCE: usize = 10_000;
+    let all = rounds(100_000);
+    for (number, (name, mesh)) in dozen().into_iter().enumerate() {
+        let part = |i: usize| try_rays(name, &mesh, (number << 32 | i) as u64, AT_ONCE);
+        let tried = (0..all.div_ceil(AT_ONCE)).into_par_iter().map(part).reduce(Tried::default, |mut a, b| {
+            a += b;
+            a
+        });
+        println!("{name}: {all} rays, {} crossings, {} too near an edge to tell", tried.crossed, tried.unsure);
+        assert!(tried.crossed > all / 50 && tried.unsure < tried.crossed / 10, "{name} {tried:?}");
+    }
+}
