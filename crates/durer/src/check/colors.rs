@@ -2,7 +2,7 @@
 
 use super::finding::{Finding, counted, percent, vector};
 use super::scout::Scout;
-use crate::diag::{Diagnostic, Span};
+use crate::diag::{Diagnostic, Severity, Span};
 use crate::dialect::Secondary;
 use crate::light::Light;
 use crate::material::Pattern;
@@ -98,7 +98,9 @@ pub(super) fn no_bounces(scout: &Scout) -> Vec<Finding> {
         .at(written.span)
         .effect(if diffuse < 0.1 { "it is black, or nearly so" } else { "only its own colour is seen" })
         .help("ask for some: `--bounces 4` (in the course's programs `-bounces 4`)");
-    vec![Finding::from(diagnostic)]
+    // Where that year's program makes none unless it is asked, nobody has left them out.
+    let usual = scout.world().rules.bounces == 0;
+    vec![Finding::from(if usual { Diagnostic { severity: Severity::Note, ..diagnostic } } else { diagnostic })]
 }
 
 /// Glass of an index that no glass has.
