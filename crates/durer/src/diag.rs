@@ -123,6 +123,14 @@ impl Diagnostic {
         self
     }
 
+    /// The same, where the place is known.
+    pub fn fix_at(self, place: Option<Span>, text: impl Into<String>) -> Self {
+        match place {
+            Some(span) => self.fix(span, text),
+            None => self,
+        }
+    }
+
     /// Sets the place.
     pub fn at(mut self, span: Span) -> Self {
         self.span = Some(span);

@@ -42,11 +42,9 @@ pub(super) fn too_bright(scout: &Scout) -> Vec<Finding> {
             ));
     for (i, light) in world.lights.iter().enumerate() {
         let Some(span) = place(scout, i) else { continue };
-        diagnostic = match scout.value(span, &["color"]) {
-            Some(value) => diagnostic.fix(value, vector(color(light) * factor)),
-            None => diagnostic,
-        };
-        diagnostic.span = diagnostic.span.or(scout.value(span, &["color"]).or(Some(span)));
+        let value = scout.value(span, &["color"]);
+        diagnostic = diagnostic.fix_at(value, vector(color(light) * factor));
+        diagnostic.span = diagnostic.span.or(value).or(Some(span));
     }
     if !over(far, MOST_FAR) {
         diagnostic.severity = Severity::Note;

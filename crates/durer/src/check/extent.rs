@@ -41,11 +41,7 @@ pub(super) fn too_small(scout: &Scout) -> Vec<Finding> {
         }
         Camera::Orthographic(camera) => {
             let help = format!("take a smaller picture: `size {}`, say", number(camera.size / wanted));
-            let place = scout.value(span, &["size"]);
-            let diagnostic = match place {
-                Some(place) => diagnostic.fix(place, number(camera.size / wanted)),
-                None => diagnostic,
-            };
+            let diagnostic = diagnostic.fix_at(scout.value(span, &["size"]), number(camera.size / wanted));
             (diagnostic.help(help), "size")
         }
         _ => {
@@ -91,10 +87,7 @@ pub(super) fn too_narrow(scout: &Scout) -> Vec<Finding> {
             let diagnostic = Diagnostic::warning(format!("the picture is {} wide only", number(camera.size)))
                 .effect(format!("less than a {}th of the scene's width is seen", number((size / larger).floor())))
                 .help(format!("`size {wanted}` shows all of it"));
-            let diagnostic = match scout.value(span, &["size"]) {
-                Some(place) => diagnostic.fix(place, wanted),
-                None => diagnostic,
-            };
+            let diagnostic = diagnostic.fix_at(scout.value(span, &["size"]), wanted);
             vec![Finding::from(scout.at_value(diagnostic, span, &["size"])).whole(true)]
         }
         _ => Vec::new(),

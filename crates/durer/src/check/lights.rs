@@ -228,11 +228,7 @@ pub(super) fn behind(scout: &Scout) -> Vec<Finding> {
                 let help = format!(
                     "`direction` is where the light goes, not where it is: `direction {turned}` lights this side"
                 );
-                let place = scout.value(span, &["direction"]);
-                let fixed = match place {
-                    Some(place) => diagnostic.fix(place, turned),
-                    None => diagnostic,
-                };
+                let fixed = diagnostic.fix_at(scout.value(span, &["direction"]), turned);
                 scout.at_value(fixed, span, &["direction"]).help(help)
             }
             Light::Point(_) => {

@@ -5,6 +5,7 @@ pub(super) mod topology;
 
 use super::finding::{Finding, counted, percent, vector};
 use super::scout::Scout;
+use crate::camera::Lens;
 use crate::describe::FileName;
 use crate::diag::{Diagnostic, Diagnostics, Span};
 use crate::format::read_mesh;
@@ -122,6 +123,14 @@ impl MeshFile<'_> {
         self.objects.iter().find(|object| object.material.is_some_and(refracts)).copied()
     }
 
+    /// Whether the camera is in it, as in a room: its walls face inwards by right.
+    fn is_room(&self, scout: &Scout) -> bool {
+        let eye = scout.world().camera.pose().center;
+        let own = |object: &&crate::world::Object| self.objects.iter().any(|o| o.span.start == object.span.start);
+        let mut bounds = scout.world().objects.iter().filter(own).filter_map(crate::world::Object::bounds);
+        bounds.any(|b| eye.cmpge(b.min).all() && eye.cmple(b.max).all())
+    }
+
     /// Whether it is the inner wall of hollow glass: that faces inwards by right.
     fn is_hollow(&self, scout: &Scout) -> bool {
         let objects = &scout.world().objects;
@@ -207,7 +216,9 @@ pub(super) fn winding(scout: &Scout) -> Vec<Finding> {
 /// Closed meshes whose normals point inwards.
 pub(super) fn inside_out(scout: &Scout) -> Vec<Finding> {
     let mut found = Vec::new();
-    for mesh in scout.meshes().iter().filter(|mesh| mesh.is_inside_out() && !mesh.is_hollow(scout)) {
+    for mesh in
+        scout.meshes().iter().filter(|mesh| mesh.is_inside_out() && !mesh.is_room(scout) && !mesh.is_hollow(scout))
+    {
         let by_file = mesh.given.is_some();
         let diagnostic = Diagnostic::warning(format!("the normals of `{}` point inwards", mesh.name.path))
             .at(mesh.name.span)

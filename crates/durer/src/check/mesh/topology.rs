@@ -16,6 +16,9 @@ pub(in crate::check) struct Topology {
     pub some_edge: Option<[Vec3; 2]>,
     /// Triangles that go round the other way than most of those that they hang together with.
     pub turned: Vec<u32>,
+    /// How many edges there are, and the volume of the box around them.
+    pub edges: usize,
+    pub box_volume: f64,
     /// The length of the sum of all directed areas, as a share of the sum of their lengths.
     pub opening: f64,
     /// Six times the volume that is enclosed, seen from its middle where it is not closed; negative where triangles go round clockwise, seen from outside.
@@ -33,6 +36,7 @@ impl Topology {
         let used = triangles.iter().flatten().map(|&corner| positions[corner as usize]);
         let bounds = Aabb::around(used);
         let anchor = if bounds.is_empty() { DVec3::ZERO } else { bounds.center().as_dvec3() };
+        topology.box_volume = bounds.size().as_dvec3().element_product();
         let (mut sum, mut area) = (DVec3::ZERO, 0.0);
         let mut edges: Vec<Edge> = Vec::with_capacity(3 * triangles.len());
         for (i, triangle) in triangles.iter().enumerate() {
@@ -54,6 +58,7 @@ impl Topology {
         topology.opening = sum.length() / area.max(f64::MIN_POSITIVE);
         edges.sort_unstable();
         for same in edges.chunk_by(|a, b| a.0 == b.0) {
+            topology.edges += 1;
             topology.open += usize::from(same.len() == 1);
             topology.crowded += usize::from(same.len() > 2);
             if same.len() != 2 && topology.some_edge.is_none() {
@@ -65,9 +70,11 @@ impl Topology {
         topology
     }
 
-    /// Whether it is closed but for a hole, as at the top of a vase: the directed areas of a closed surface sum to 0.
+    /// Whether it is closed but for a hole, as at the top of a vase: the directed areas of a closed surface sum to 0, its rims
+    /// are short, and the volume in it is no accident.
     pub fn is_nearly_closed(&self) -> bool {
-        self.is_closed() || self.crowded == 0 && self.opening < 0.25
+        let short = self.crowded == 0 && self.open * 10 < self.edges;
+        self.is_closed() || short && self.opening < 0.25 && self.volume.abs() > 0.1 * self.box_volume
     }
 
     /// Whether every edge has two triangles.

@@ -189,7 +189,7 @@ impl Reader<'_, '_> {
             // Where only the sign is wrong, it is clear what was meant.
             self.error(match value {
                 Value::Float(x) if x < 0.0 => error.fix(span, self.text(span).trim_start_matches('-')),
-                Value::Vec3(_) if word == "direction" => {
+                Value::Vec3(v) if word == "direction" && v == Vec3::ZERO => {
                     error.help("it is a direction, not the point to look at: that point less the place of the eye")
                 }
                 _ => error,
