@@ -1,5 +1,6 @@
 //! Colours: of materials that show nothing, and numbers that are none of a colour's.
 
+use super::MOST_SOUGHT;
 use super::finding::{Finding, counted, percent, vector};
 use super::scout::Scout;
 use crate::diag::{Diagnostic, Severity, Span};
@@ -75,7 +76,7 @@ pub(super) fn black(scout: &Scout) -> Vec<Finding> {
         let diagnostic = scout.at_value(diagnostic, written.span, &["diffuseColor", "diffuse"]);
         Finding::from(diagnostic).whole(whole)
     };
-    black.iter().map(say).collect()
+    black.iter().take(MOST_SOUGHT).map(say).collect()
 }
 
 /// Mirrors and glass in a picture without secondary rays.
@@ -167,10 +168,9 @@ pub(super) fn too_large(scout: &Scout) -> Vec<Finding> {
         };
         found.push(Finding::from(diagnostic).whole(true));
     };
-    for Named { color, block, fields, most } in all_colors(scout) {
-        if color.max_element() > most {
-            say(color, scout.value(block, &fields), Some(block));
-        }
+    let beyond = all_colors(scout).into_iter().filter(|named| named.color.max_element() > named.most);
+    for Named { color, block, fields, .. } in beyond.take(MOST_SOUGHT) {
+        say(color, scout.value(block, &fields), Some(block));
     }
     let background = &scout.subject.scene.background;
     for (color, fields) in
@@ -204,7 +204,7 @@ pub(super) fn negative(scout: &Scout) -> Vec<Finding> {
         };
         Finding::from(diagnostic)
     };
-    all_colors(scout).into_iter().filter(below).map(say).collect()
+    all_colors(scout).into_iter().filter(below).take(MOST_SOUGHT).map(say).collect()
 }
 
 /// Things that have the colour of what is behind them.

@@ -1,5 +1,6 @@
 //! Sizes: things too small or too large to be seen, and fields of view to match.
 
+use super::MOST_SOUGHT;
 use super::finding::{Finding, counted, number, vector};
 use super::scout::Scout;
 use super::sight::Sight;
@@ -111,7 +112,7 @@ pub(super) fn out_of_scale(scout: &Scout) -> Vec<Finding> {
     for &(object, size) in &sizes {
         let ratio = if size > middle { size / middle } else { middle / size };
         // Of two, either may be wrong: the small one is not seen, the large one hides.
-        if ratio < OUT_OF_SCALE {
+        if ratio < OUT_OF_SCALE || found.len() >= MOST_SOUGHT {
             continue;
         }
         let word = if size > middle { "larger" } else { "smaller" };

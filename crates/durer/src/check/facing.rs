@@ -1,5 +1,6 @@
 //! Sides: surfaces seen from behind, and triangles of the scene file that are turned.
 
+use super::MOST_SOUGHT;
 use super::finding::{Finding, counted};
 use super::mesh::topology::Topology;
 use super::scout::Scout;
@@ -65,7 +66,7 @@ pub(super) fn from_behind(scout: &Scout) -> Vec<Finding> {
             .help("ask for `--shade-back` (in the course's programs `-shade_back`)");
         Finding::from(turned(scout, diagnostic, i as u32)).whole(backs[i] * 10 > all * 9)
     };
-    turned_away.map(say).collect()
+    turned_away.take(MOST_SOUGHT).map(say).collect()
 }
 
 /// Triangles written one by one that hang together, some of which go round the other way.

@@ -12,6 +12,8 @@ use crate::math::{Color, Ray, Vec3};
 
 /// What adds less than this to a colour is not seen in eight bits.
 pub(super) const VISIBLE: f32 = 1.0 / 512.0;
+/// Of more lights, the rest is taken to work.
+const MOST_JUDGED: usize = 500;
 /// A light that adds something to a smaller share of what is seen might as well add nothing.
 const SHARE: f32 = 0.002;
 
@@ -38,13 +40,13 @@ pub(super) enum Verdict {
 
 /// The verdict on each light of the world.
 pub(super) fn verdicts(scout: &Scout) -> Vec<Verdict> {
-    (0..scout.world().lights.len()).map(|light| verdict(scout, light)).collect()
+    let judged = |light| if light < MOST_JUDGED { verdict(scout, light) } else { Verdict::Works };
+    (0..scout.world().lights.len()).map(judged).collect()
 }
 
 fn verdict(scout: &Scout, number: usize) -> Verdict {
     let light = &scout.world().lights[number];
-    let of_light = |lit: &&Lit| lit.light == number;
-    let all: Vec<&Lit> = scout.seen().filter_map(|(_, seen)| seen.lit.iter().find(of_light)).collect();
+    let all: Vec<&Lit> = scout.seen().filter_map(|(_, seen)| seen.by(number)).collect();
     if color(light) == Color::ZERO {
         return Verdict::Black;
     }
@@ -217,8 +219,7 @@ pub(super) fn behind(scout: &Scout) -> Vec<Finding> {
         if verdict != Verdict::Behind {
             return None;
         }
-        let of_light = |lit: &&Lit| lit.light == light;
-        let lit: Vec<Lit> = scout.seen().filter_map(|(_, seen)| seen.lit.iter().find(of_light).copied()).collect();
+        let lit: Vec<&Lit> = scout.seen().filter_map(|(_, seen)| seen.by(light)).collect();
         let away = lit.iter().filter(|lit| lit.cosine <= 1e-3).count();
         let message = format!("this light is behind what is seen: {} of it faces away", percent(away, lit.len()));
         let (diagnostic, span) = useless(scout, light, message)?;

@@ -32,6 +32,8 @@ pub use table::{CHECKS, Check};
 
 /// At most so many findings of one kind are told one by one.
 const MOST_ALIKE: usize = 3;
+/// After so many of one kind, no more are looked for.
+const MOST_SOUGHT: usize = 50;
 
 /// Because of these nothing, or one thing alone, is seen.
 const EMPTIES: [&str; 6] = ["camera-inside", "camera-away", "too-small", "too-narrow", "all-missed", "hidden-behind"];

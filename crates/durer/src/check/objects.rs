@@ -1,5 +1,6 @@
 //! Objects: flat ones, squashed ones, and those at the same place.
 
+use super::MOST_SOUGHT;
 use super::finding::{Finding, number};
 use super::scout::Scout;
 use crate::diag::{Diagnostic, Span};
@@ -89,6 +90,9 @@ pub(super) fn twice(scout: &Scout) -> Vec<Finding> {
         });
         let there = places.entry(key).or_default();
         // Many at one place are told of as pairs with the first ones only.
+        if found.len() >= MOST_SOUGHT {
+            break;
+        }
         if let Some(&first) = there.iter().take(16).find(|&&first| same(&objects[first], object)) {
             found.push(pair(scout, first, i));
         }
@@ -122,7 +126,10 @@ fn in_plane(scout: &Scout) -> Vec<Finding> {
             let off = |p: Vec3| (p.dot(plane.normal) - plane.offset).abs() / plane.normal.length();
             corners.iter().all(|&p| off(p) <= 1e-5 * (1e-3 + p.abs().max_element()))
         };
-        if let Some((plane, _)) = planes.iter().find(|(_, plane)| lies_in(plane)) {
+        if found.len() >= MOST_SOUGHT {
+            break;
+        }
+        if let Some((plane, _)) = planes.iter().take(MOST_SOUGHT).find(|(_, plane)| lies_in(plane)) {
             found.push(pair(scout, *plane, i));
         }
     }

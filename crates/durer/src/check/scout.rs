@@ -17,8 +17,10 @@ use crate::world::World;
 use rayon::prelude::*;
 use std::sync::OnceLock;
 
-/// Rays along the larger side of the picture.
+/// Rays along the larger side of the picture; fewer where there are many lights, of each of which each ray asks.
 const RAYS: u32 = 48;
+const FEWEST_RAYS: u32 = 6;
+const MOST_QUESTIONS: u32 = 1 << 20;
 /// Levels of mirrored and transmitted rays that are looked at, and the least weight of a ray.
 const BOUNCES: u32 = 4;
 const LEAST_WEIGHT: f32 = 1.0 / 64.0;
@@ -95,8 +97,12 @@ impl<'a> Scout<'a> {
     pub fn new(subject: &Subject<'a>) -> Self {
         let Job { width, height, settings, .. } = *subject.job;
         let larger = width.max(height);
+        let lights = subject.world.lights.len().max(1) as u32;
+        let rays =
+            (FEWEST_RAYS..RAYS).take_while(|rays| rays * rays * lights <= MOST_QUESTIONS).last().unwrap_or(FEWEST_RAYS)
+                + 1;
         let [columns, rows] =
-            [width, height].map(|side| ((u64::from(side) * u64::from(RAYS)).div_ceil(larger.into()) as u32).max(1));
+            [width, height].map(|side| ((u64::from(side) * u64::from(rays)).div_ceil(larger.into()) as u32).max(1));
         let raster = raster(subject.world, columns, rows);
         let job = Job {
             settings: Settings {
@@ -193,6 +199,13 @@ impl<'a> Scout<'a> {
     }
 }
 
+impl Seen {
+    /// What a light does here. Lights are told of in their order.
+    pub fn by(&self, light: usize) -> Option<&Lit> {
+        self.lit.get(light).filter(|lit| lit.light == light)
+    }
+}
+
 impl Probe {
     fn of(pixel: (u32, u32), ray: Ray, light: &Node) -> Self {
         let mut probe = Probe { pixel, ray, color: light.value, seen: None };
@@ -213,7 +226,7 @@ impl Probe {
                 // A surface of several materials has a term for each.
                 What::Light { light, to_light, shadow, .. } => {
                     let adds = term.contribution();
-                    match seen.lit.iter_mut().find(|lit| lit.light == *light) {
+                    match seen.lit.last_mut().filter(|lit| lit.light == *light) {
                         Some(lit) => lit.adds += adds,
                         None => seen.lit.push(Lit {
                             light: *light,

@@ -5,9 +5,26 @@ use crate::diag::Span;
 
 /// The tokens inside the block that a keyword begins, and not inside blocks in it, with the block's end.
 fn inside(bytes: &[u8], keyword: Span) -> Option<(Vec<Token>, u32)> {
-    let all = tokens(bytes, keyword.file);
-    let mut rest = all.into_iter().filter(|token| token.kind != TokenKind::Comment);
-    rest.find(|token| token.span.start == keyword.start)?;
+    let rest = bytes.get(keyword.start as usize..)?;
+    // Blocks are short: the rest of a long file is not read for each of them.
+    let mut reach = 1 << 10;
+    loop {
+        let part = &rest[..rest.len().min(reach)];
+        match block_of(part, keyword) {
+            None if part.len() < rest.len() => reach *= 8,
+            found => return found,
+        }
+    }
+}
+
+/// The same for a text that begins with the keyword; `None` where the block does not end in it.
+fn block_of(text: &[u8], keyword: Span) -> Option<(Vec<Token>, u32)> {
+    let moved = |token: Token| {
+        let Span { file, start, end } = token.span;
+        Token { span: Span { file, start: start + keyword.start, end: end + keyword.start }, ..token }
+    };
+    let mut rest = tokens(text, keyword.file).into_iter().filter(|token| token.kind != TokenKind::Comment).map(moved);
+    rest.next()?;
     rest.next().filter(|token| token.kind == TokenKind::Open)?;
     let (mut depth, mut own) = (1, Vec::new());
     for token in rest {

@@ -207,7 +207,7 @@ impl<'a, 'd> Reader<'a, 'd> {
         loop {
             let Some(token) = self.peek() else {
                 let message = format!("the file ends inside `{name}`");
-                let braces = format!("{}\n", "}".repeat(self.blocks.len()));
+                let braces = format!("\n{}\n", "}".repeat(self.blocks.len()));
                 let error = Diagnostic::error(message).code("unclosed-block").at(self.end_span());
                 let error = error.fix(self.end_span(), braces);
                 let error = self.blocks.iter().rev().take(1).fold(error, |e, &b| e.related(b, "opened here"));
