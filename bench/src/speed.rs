@@ -54,6 +54,22 @@ impl Ours {
     fn occluded(&self, ray: &Ray) -> bool {
         self.0.occluded(ray)
     }
+    fn batch(&self, rays: &[Ray], found: &mut [Found], any: bool) {
+        const AT_ONCE: usize = 1024;
+        let (mut hits, mut answers) = ([None; AT_ONCE], [false; AT_ONCE]);
+        for (rays, found) in rays.chunks(AT_ONCE).zip(found.chunks_mut(AT_ONCE)) {
+            match any {
+                false => self.0.closest_batch(rays, &mut hits[..rays.len()]),
+                true => self.0.occluded_batch(rays, &mut answers[..rays.len()]),
+            }
+            for ((found, triangle), occluded) in found.iter_mut().zip(&hits).zip(&answers) {
+                *found = match any {
+                    false => triangle.map_or(Found::NONE, |hit| Found { t: hit.t, triangle: hit.triangle }),
+                    true => hit(*occluded),
+                };
+            }
+        }
+    }
 }
 
 /// Seconds for all rays on so many threads.
@@ -138,6 +154,8 @@ fn one_mesh(mesh: &Mesh, options: &Options, embree: Option<&Arc<Embree>>, ratios
             continue;
         }
         let mut tracers = vec![single!("Dürer", &ours, case.any)];
+        let (any, ours) = (case.any, &ours);
+        tracers.push(Tracer { name: "Dürer batch", trace: Box::new(move |rays, found| ours.batch(rays, found, any)) });
         if let Some([medium, high]) = &scenes {
             tracers.push(single!("Embree medium", medium, case.any));
             tracers.push(single!("Embree high", high, case.any));
@@ -182,12 +200,12 @@ fn one_case(case: &Case, ours: &Ours, tracers: &[Tracer], options: &Options, rat
     for (tracer, rate) in tracers.iter().zip(&rates) {
         print!(" {} {rate:<6.2}", tracer.name);
     }
-    if let (Some(medium), Some(high), Some(packets)) =
-        (rate("Embree medium"), rate("Embree high"), rate("Embree 16-wide"))
+    if let (Some(medium), Some(high), Some(packets), Some(batch)) =
+        (rate("Embree medium"), rate("Embree high"), rate("Embree 16-wide"), rate("Dürer batch"))
     {
         let ratio = rates[0] / medium.max(high);
         ratios.push(ratio);
-        print!(" | ratio {ratio:.2}, to packets {:.2}", rates[0] / packets);
+        print!(" | ratio {ratio:.2}, batch to packets {:.2}", batch / packets);
     }
     print!(" | nodes {:.1}, tests {:.1} a ray", per_ray(counts.nodes), per_ray(counts.tests));
     let differ: Vec<String> = (1..tracers.len())

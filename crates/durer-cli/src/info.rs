@@ -4,8 +4,10 @@ use crate::Failure;
 use crate::args::InfoArgs;
 use crate::open::{load_options, open};
 use crate::output::say;
+use durer::bvh::Counts;
 use durer::camera::{Lens, Raster};
 use durer::describe::DescribedList;
+use durer::render::{center_ray, raster};
 use durer::world::{Accel, Geometry, MeshTree, World};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -15,6 +17,8 @@ pub fn run(args: &InfoArgs) -> Result<(), Failure> {
     let (loaded, world) = (&opened.loaded, &opened.world);
     let dialect = loaded.dialect;
     let count = Counted::of(world);
+    let rays = rays(world);
+    let per_ray = |count: u64| (rays.rays > 0).then(|| count as f64 / rays.rays as f64);
     if args.json {
         let value = serde_json::json!({
             "dialect": dialect.name(),
@@ -24,6 +28,11 @@ pub fn run(args: &InfoArgs) -> Result<(), Failure> {
             "materials": world.materials.len(),
             "lights": world.lights.len(),
             "bytes": count.bytes,
+            "bytes_per_triangle": count.tree_bytes_each(),
+            "tree_cost": count.tree_cost(),
+            "object_tree_cost": count.object_cost,
+            "nodes_per_ray": per_ray(rays.nodes),
+            "tests_per_ray": per_ray(rays.tests),
             "scene": loaded.scene,
         });
         say(&serde_json::to_string_pretty(&value)?);
@@ -61,7 +70,29 @@ pub fn run(args: &InfoArgs) -> Result<(), Failure> {
         mib(count.bytes - count.picture_bytes),
         mib(count.picture_bytes)
     ));
+    let cost =
+        |cost: Option<f64>, of: &str| cost.map(|cost| format!("{cost:.1} nodes for a random ray in that of {of}"));
+    let each = count.tree_bytes_each().map(|bytes| format!("{bytes:.0} bytes a triangle"));
+    let trees = [cost(count.object_cost, "objects"), cost(count.tree_cost(), "triangles"), each];
+    let trees: Vec<String> = trees.into_iter().flatten().collect();
+    if !trees.is_empty() {
+        say(&format!("trees      {}", trees.join(", ")));
+    }
+    if let (Some(nodes), Some(tests)) = (per_ray(rays.nodes), per_ray(rays.tests)) {
+        say(&format!("rays       {nodes:.1} nodes and {tests:.1} tests for each of {} from the camera", rays.rays));
+    }
     Ok(())
+}
+
+/// What it takes to find what the camera sees, by a coarse picture.
+fn rays(world: &World) -> Counts {
+    const SIDE: u32 = 64;
+    let (raster, mut counts) = (raster(world, SIDE, SIDE), Counts::default());
+    let places = (0..SIDE * SIDE).map(|i| (i % SIDE, i / SIDE));
+    for ray in places.filter_map(|place| center_ray(world, &raster, place)) {
+        world.closest(&ray, &mut counts);
+    }
+    counts
 }
 
 fn mib(bytes: usize) -> f64 {
@@ -95,6 +126,10 @@ struct Counted {
     distinct_triangles: usize,
     bytes: usize,
     picture_bytes: usize,
+    tree_bytes: usize,
+    /// Costs of meshes' trees, each times its triangles.
+    costs: f64,
+    object_cost: Option<f64>,
 }
 
 impl Counted {
@@ -105,7 +140,19 @@ impl Counted {
             seen.push(Arc::as_ptr(tree));
             self.distinct_triangles += tree.mesh.len();
             self.bytes += tree.bytes();
+            self.tree_bytes += tree.bvh.bytes();
+            self.costs += tree.bvh.cost() * tree.mesh.len() as f64;
         }
+    }
+
+    /// Cost of a random ray in the mean tree of triangles, each of which counts the same.
+    fn tree_cost(&self) -> Option<f64> {
+        let cost = self.costs / self.distinct_triangles as f64;
+        cost.is_finite().then_some(cost)
+    }
+
+    fn tree_bytes_each(&self) -> Option<f64> {
+        (self.distinct_triangles > 0).then(|| self.tree_bytes as f64 / self.distinct_triangles as f64)
     }
 
     fn of(world: &World) -> Self {
@@ -134,7 +181,10 @@ impl Counted {
         count.picture_bytes = world.textures.iter().chain(faces).map(|texture| texture.bytes()).sum();
         count.bytes += count.picture_bytes + size_of_val(&*world.objects);
         count.bytes += match world.accel() {
-            Accel::Bvh(bvh) => bvh.bytes(),
+            Accel::Bvh(bvh) => {
+                count.object_cost = Some(bvh.cost()).filter(|cost| cost.is_finite());
+                bvh.bytes()
+            }
             Accel::Grid { grid, parts } => grid.bytes() + size_of_val(&**parts),
             Accel::None => 0,
         };

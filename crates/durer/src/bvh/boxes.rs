@@ -41,6 +41,11 @@ impl Bvh {
         size_of_val(&*self.nodes) + size_of_val(&*self.order)
     }
 
+    /// As [`TriangleBvh::cost`](super::TriangleBvh::cost).
+    pub fn cost(&self) -> f64 {
+        node::cost(&self.nodes, self.bounds)
+    }
+
     /// Offers every thing that the ray may meet before `t_max` to `test`, roughly from near to far.
     ///
     /// `test` gets the place of a thing in [`Bvh::order`] and the present `t_max`, and gives the new one: at

@@ -34,6 +34,18 @@ impl Tally for () {
     fn test(&mut self) {}
 }
 
+impl<T: Tally> Tally for &mut T {
+    fn ray(&mut self) {
+        (**self).ray();
+    }
+    fn node(&mut self) {
+        (**self).node();
+    }
+    fn test(&mut self) {
+        (**self).test();
+    }
+}
+
 /// Counts rays alone.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Rays(pub u64);

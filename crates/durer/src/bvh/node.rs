@@ -60,3 +60,10 @@ pub(super) fn leaf(first: usize, count: usize) -> u32 {
 pub(super) fn items(leaf: u32) -> (usize, usize) {
     ((leaf & FIRST_MASK) as usize, ((leaf & !LEAF) >> COUNT_SHIFT) as usize + 1)
 }
+
+/// Cost of a random ray through the bounds by the surface area heuristic, in tests of a node, where a leaf costs as much.
+pub(super) fn cost(nodes: &[Node], bounds: Aabb) -> f64 {
+    let root = f64::from(bounds.half_area());
+    let children = nodes.iter().flat_map(|node| node.children());
+    1.0 + children.map(|(_, bounds, _)| f64::from(bounds.half_area()) / root).sum::<f64>()
+}

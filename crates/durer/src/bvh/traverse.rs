@@ -23,6 +23,8 @@ pub(super) struct RayBox {
     far_origin: [f32; 3],
     /// By axis: 1 where the direction is negative, else 0.
     negative: [usize; 3],
+    /// Children's places in the order from far to near are 0, 1, 2, ... after an exclusive or with this.
+    pub flip: u32,
     t_min: f32,
     /// Distances of boxes are in these units; 1 where the ray is tame.
     scale: f32,
@@ -64,7 +66,9 @@ impl RayBox {
         };
         let t_min = if tame { ray.t_min } else { (ray.t_min * scale).next_down() };
         let [inverse, near_origin, far_origin] = [inverse.to_array(), near_origin.to_array(), far_origin.to_array()];
-        RayBox { inverse, near_origin, far_origin, negative, t_min, scale, tame, moderate }
+        // The place 7 is farthest when all signs are positive.
+        let flip = 7 ^ (negative[0] | negative[1] << 1 | negative[2] << 2) as u32;
+        RayBox { inverse, near_origin, far_origin, negative, flip, t_min, scale, tame, moderate }
     }
 }
 
@@ -97,14 +101,8 @@ pub(super) fn walk<L: Lanes, V: Visitor, const TAME: bool>(
     mut t_max: f32,
     visitor: &mut V,
 ) {
-    let inverse = splat3(lanes, boxes.inverse);
-    let near_origin = splat3(lanes, boxes.near_origin);
-    let far_origin = splat3(lanes, boxes.far_origin);
-    let t_min = lanes.splat(boxes.t_min);
-    let [x, y, z] = boxes.negative;
-    // From far to near: the place 7 is farthest when all signs are positive.
-    let flip = 7 ^ (x | y << 1 | z << 2);
-    let (order, ranks) = (lanes.flipped(flip as u32), &RANKS[flip]);
+    let slabs = Slabs::new(lanes, boxes);
+    let (order, ranks) = (lanes.flipped(boxes.flip), &RANKS[boxes.flip as usize]);
     let mut limit = lanes.splat(boxes.limit::<TAME>(t_max));
     let mut room = Room::new();
     let mut stack = Stack::new(&mut room);
@@ -113,22 +111,7 @@ pub(super) fn walk<L: Lanes, V: Visitor, const TAME: bool>(
         if child & LEAF == 0 {
             visitor.tally().node();
             let node = &nodes[child as usize];
-            macro_rules! slab {
-                ($axis:literal, $side:expr, $origin:ident) => {{
-                    let plane = lanes.load(&node.planes[$axis][$side & 1]);
-                    match TAME {
-                        true => lanes.mul_add(plane, inverse[$axis], $origin[$axis]),
-                        false => lanes.mul(lanes.sub(plane, $origin[$axis]), inverse[$axis]),
-                    }
-                }};
-            }
-            // Zero times infinity is no number, where a ray runs in a side of a box: such a side is left out, being the
-            // first argument here, or the second there where the first is no number.
-            let enter_y = lanes.max(slab!(0, x, near_origin), slab!(1, y, near_origin));
-            let leave_y = lanes.min(slab!(0, !x, far_origin), slab!(1, !y, far_origin));
-            let enter = lanes.max(enter_y, lanes.max(slab!(2, z, near_origin), t_min));
-            let leave = lanes.min(leave_y, lanes.min(slab!(2, !z, far_origin), limit));
-            let met = lanes.le(enter, leave) as usize & 255;
+            let (met, enter) = meet::<L, TAME>(lanes, node, &slabs, limit);
             if met != 0 {
                 // The nearest child is next, without a way through the stack.
                 let [nearest, others] = ranks[met];
@@ -156,7 +139,7 @@ pub(super) fn walk<L: Lanes, V: Visitor, const TAME: bool>(
 }
 
 /// For each set of lanes: the lane i of it whose i ^ flip is greatest, and the others, as a set with i ^ flip in place of i.
-static RANKS: [[[u8; 2]; 256]; 8] = {
+pub(super) static RANKS: [[[u8; 2]; 256]; 8] = {
     let mut table = [[[0; 2]; 256]; 8];
     let mut i = 0;
     while i < 8 * 256 {
@@ -173,6 +156,55 @@ static RANKS: [[[u8; 2]; 256]; 8] = {
     }
     table
 };
+
+/// A ray's numbers for boxes, in all lanes.
+pub(super) struct Slabs<L: Lanes> {
+    inverse: [L::Floats; 3],
+    near_origin: [L::Floats; 3],
+    far_origin: [L::Floats; 3],
+    t_min: L::Floats,
+    negative: [usize; 3],
+}
+
+impl<L: Lanes> Slabs<L> {
+    #[inline(always)]
+    pub fn new(lanes: L, boxes: &RayBox) -> Self {
+        Slabs {
+            inverse: splat3(lanes, boxes.inverse),
+            near_origin: splat3(lanes, boxes.near_origin),
+            far_origin: splat3(lanes, boxes.far_origin),
+            t_min: lanes.splat(boxes.t_min),
+            negative: boxes.negative,
+        }
+    }
+}
+
+/// The children of a node that a ray meets before `limit`, a bit for each, and where it enters them.
+#[inline(always)]
+pub(super) fn meet<L: Lanes, const TAME: bool>(
+    lanes: L,
+    node: &Node,
+    slabs: &Slabs<L>,
+    limit: L::Floats,
+) -> (usize, L::Floats) {
+    let Slabs { inverse, near_origin, far_origin, t_min, negative: [x, y, z] } = slabs;
+    macro_rules! slab {
+        ($axis:literal, $side:expr, $origin:ident) => {{
+            let plane = lanes.load(&node.planes[$axis][$side & 1]);
+            match TAME {
+                true => lanes.mul_add(plane, inverse[$axis], $origin[$axis]),
+                false => lanes.mul(lanes.sub(plane, $origin[$axis]), inverse[$axis]),
+            }
+        }};
+    }
+    // Zero times infinity is no number, where a ray runs in a side of a box: such a side is left out, being the
+    // first argument here, or the second there where the first is no number.
+    let enter_y = lanes.max(slab!(0, x, near_origin), slab!(1, y, near_origin));
+    let leave_y = lanes.min(slab!(0, !x, far_origin), slab!(1, !y, far_origin));
+    let enter = lanes.max(enter_y, lanes.max(slab!(2, z, near_origin), *t_min));
+    let leave = lanes.min(leave_y, lanes.min(slab!(2, !z, far_origin), limit));
+    (lanes.le(enter, leave) as usize & 255, enter)
+}
 
 #[inline(always)]
 fn splat3<L: Lanes>(lanes: L, v: [f32; 3]) -> [L::Floats; 3] {

@@ -83,6 +83,11 @@ impl Lanes for Avx512 {
         }
     }
     #[inline(always)]
+    fn prefetch<T>(self, at: *const T) {
+        // SAFETY: the instruction takes any address.
+        unsafe { _mm_prefetch::<_MM_HINT_T0>(at.cast()) };
+    }
+    #[inline(always)]
     fn drop_beyond(self, stack: &mut Stack, t_max: f32) {
         let (children, near, height) = stack.all();
         let (mut from, mut to) = (0, 0);

@@ -53,8 +53,20 @@ pub(super) trait Lanes: Copy {
     /// Pushes the children whose bits are set, each with its entry distance: those of the first lanes lowest. Bits count
     /// lanes in the order, children and distances are brought into it.
     fn push(self, stack: &mut Stack, children: &[u32; WIDTH], near: Self::Floats, order: Self::Order, mask: u32);
+    /// Has the line of memory at an address, if there is one, brought near.
+    fn prefetch<T>(self, at: *const T);
     /// Removes what begins beyond `t_max`.
     fn drop_beyond(self, stack: &mut Stack, t_max: f32);
+}
+
+/// What [`Lanes::rows`] gives in one lane.
+#[inline(always)]
+pub fn column(from: &[f32], stride: usize, [x, y, z]: [usize; 3], lane: usize) -> [[f32; 3]; 3] {
+    assert!(lane < stride && from.len() >= 9 * stride && x.max(y).max(z) < 3);
+    // SAFETY: the last is in row 8, before the slice's end.
+    let at = |place: usize| unsafe { *from.get_unchecked(place) };
+    let (x, y, z) = (x * stride + lane, y * stride + lane, z * stride + lane);
+    [0, 3 * stride, 6 * stride].map(|corner| [at(corner + x), at(corner + y), at(corner + z)])
 }
 
 /// A piece of work that runs on any level.

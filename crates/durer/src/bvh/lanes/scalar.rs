@@ -74,6 +74,8 @@ impl Lanes for Scalar {
         }
     }
     #[inline(always)]
+    fn prefetch<T>(self, _: *const T) {}
+    #[inline(always)]
     fn drop_beyond(self, stack: &mut Stack, t_max: f32) {
         stack.retain(|near| near <= t_max);
     }

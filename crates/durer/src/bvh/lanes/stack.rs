@@ -50,6 +50,19 @@ impl<'a> Stack<'a> {
         Some(unsafe { *self.room.children.as_ptr().cast::<u32>().add(self.height) })
     }
 
+    pub fn clear(&mut self) {
+        self.height = 0;
+    }
+
+    /// The topmost child, which is removed if wanted; there must be one.
+    #[inline(always)]
+    pub fn pop_if(&mut self, wanted: bool) -> u32 {
+        assert!(self.height > 0);
+        self.height -= usize::from(wanted);
+        // SAFETY: everything below what was the height was written.
+        unsafe { *self.room.children.as_ptr().cast::<u32>().add(self.height - usize::from(!wanted)) }
+    }
+
     /// Room for a whole vector on top, to be followed by [`Stack::grow`].
     #[inline(always)]
     pub(super) fn top(&mut self) -> (*mut u32, *mut f32) {

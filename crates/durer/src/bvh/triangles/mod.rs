@@ -3,14 +3,16 @@
 mod build;
 mod leaf;
 mod query;
+mod stream;
 
 use super::Tally;
 use super::lanes::{Available, Level};
-use super::node::Node;
+use super::node::{self, Node};
 use super::traverse::is_sound;
 use crate::math::{Aabb, Ray, Vec2};
 use crate::shape::watertight::Sheared;
 use query::{All, Any, Nearest, Query};
+use std::marker::PhantomData;
 
 /// Where a ray meets a mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -84,7 +86,7 @@ impl TriangleBvh {
     /// As [`TriangleBvh::closest`], counting nodes and tests.
     #[inline]
     pub fn closest_counting<T: Tally>(&self, ray: &Ray, tally: &mut T) -> Option<TriangleHit> {
-        self.query(ray, tally, Nearest::default()).hit()
+        self.query::<T, Nearest>(ray, tally).hit()
     }
 
     /// Whether anything is hit in the ray's open interval.
@@ -96,7 +98,7 @@ impl TriangleBvh {
     /// As [`TriangleBvh::occluded`], counting nodes and tests.
     #[inline]
     pub fn occluded_counting<T: Tally>(&self, ray: &Ray, tally: &mut T) -> bool {
-        self.query(ray, tally, Any(false)).0
+        self.query::<T, Any>(ray, tally).0
     }
 
     /// All hits in the ray's open interval, by `t` and then by number of the triangle.
@@ -106,7 +108,7 @@ impl TriangleBvh {
 
     /// As [`TriangleBvh::all_hits`], counting nodes and tests.
     pub fn all_hits_counting<T: Tally>(&self, ray: &Ray, tally: &mut T) -> Vec<TriangleHit> {
-        let mut all = self.query(ray, tally, All::default()).0;
+        let mut all = self.query::<T, All>(ray, tally).0;
         all.sort_unstable_by(|a, b| a.t.total_cmp(&b.t).then(a.triangle.cmp(&b.triangle)));
         // A triangle that was cut is found in several leaves.
         all.dedup_by_key(|hit| hit.triangle);
@@ -118,35 +120,32 @@ impl TriangleBvh {
         self.all_hits(ray).len()
     }
 
-    /// The first hit of each ray, in order. Neighbours should be neighbours in space, for what they need is fetched once.
+    /// The first hit of each ray, in order: as [`TriangleBvh::closest`] gives it, but several rays are on their way at once, so that
+    /// none waits for memory. Neighbours should be neighbours in space, for what they need is fetched once.
     ///
     /// # Panics
     ///
     /// If there are not as many places for hits as rays.
     pub fn closest_batch(&self, rays: &[Ray], hits: &mut [Option<TriangleHit>]) {
         assert_eq!(rays.len(), hits.len(), "a place for each hit");
-        for (ray, hit) in rays.iter().zip(hits) {
-            *hit = self.closest(ray);
-        }
+        self.stream(rays, |i, found: Nearest| hits[i] = found.hit());
     }
 
-    /// For each ray, in order, whether anything is hit.
+    /// For each ray, in order, whether anything is hit; several rays are on their way at once.
     ///
     /// # Panics
     ///
     /// If there are not as many places for answers as rays.
     pub fn occluded_batch(&self, rays: &[Ray], answers: &mut [bool]) {
         assert_eq!(rays.len(), answers.len(), "a place for each answer");
-        for (ray, answer) in rays.iter().zip(answers) {
-            *answer = self.occluded(ray);
-        }
+        self.stream(rays, |i, found: Any| answers[i] = found.0);
     }
 
     #[inline]
-    fn query<T: Tally, F: query::Found>(&self, ray: &Ray, tally: &mut T, found: F) -> F {
+    fn query<T: Tally, F: query::Found>(&self, ray: &Ray, tally: &mut T) -> F {
         match self.nodes.is_empty() || !is_sound(ray) {
-            true => found,
-            false => self.level.run(Query { bvh: self, ray, tally, found }),
+            true => F::default(),
+            false => self.level.run(Query { bvh: self, ray, tally, found: PhantomData }),
         }
     }
 
@@ -156,11 +155,9 @@ impl TriangleBvh {
     }
 
     /// Cost of a random ray through the bounds by the surface area heuristic, in tests of a node, where a leaf costs as
-    /// much.
+    /// much. Not a number where the bounds have no area.
     pub fn cost(&self) -> f64 {
-        let root = f64::from(self.bounds.half_area());
-        let children = self.nodes.iter().flat_map(|node| node.children());
-        1.0 + children.map(|(_, bounds, _)| f64::from(bounds.half_area()) / root).sum::<f64>()
+        node::cost(&self.nodes, self.bounds)
     }
 
     /// The box around everything.

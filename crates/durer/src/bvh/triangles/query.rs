@@ -3,18 +3,19 @@
 use super::leaf::{Quick, quick};
 use super::{TriangleBvh, TriangleHit};
 use crate::bvh::Tally;
-use crate::bvh::lanes::{Kernel, Lanes, WIDTH};
+use crate::bvh::lanes::{Kernel, Lanes, WIDTH, column};
 use crate::bvh::node;
 use crate::bvh::traverse::{RayBox, Visitor, walk};
 use crate::math::{Ray, Vec3};
 use crate::shape::watertight::Sheared;
+use std::marker::PhantomData;
 
-/// A question; the answer is collected in `found`.
+/// A question, whose answer is an `F`.
 pub struct Query<'a, T, F> {
     pub bvh: &'a TriangleBvh,
     pub ray: &'a Ray,
     pub tally: &'a mut T,
-    pub found: F,
+    pub found: PhantomData<F>,
 }
 
 /// A triangle in its leaf.
@@ -26,7 +27,7 @@ pub struct Place {
 }
 
 /// An answer in the making.
-pub trait Found {
+pub trait Found: Default {
     /// Whether any hit will do.
     const ANY: bool;
 
@@ -80,6 +81,7 @@ impl Found for Nearest {
 }
 
 /// Whether there is a hit.
+#[derive(Default)]
 pub struct Any(pub bool);
 
 impl Found for Any {
@@ -117,10 +119,7 @@ impl TriangleBvh {
     #[inline(always)]
     fn corners_at(&self, Place { first, count, lane }: Place, sheared: &Sheared) -> [Vec3; 3] {
         let leaf = &self.corners[9 * first..9 * (first + count)];
-        let [x, y, z] = sheared.axes();
-        let at = |row: usize| leaf[row * count + lane];
-        let corner = |row: usize| Vec3::new(at(row + x), at(row + y), at(row + z));
-        [corner(0), corner(3), corner(6)]
+        column(leaf, count, sheared.axes(), lane).map(Vec3::from)
     }
 }
 
@@ -129,32 +128,46 @@ impl<T: Tally, F: Found> Kernel for Query<'_, T, F> {
 
     #[inline(always)]
     fn run<L: Lanes>(self, lanes: L) -> F {
-        let Query { bvh, ray, tally, found } = self;
+        let Query { bvh, ray, tally, .. } = self;
         let boxes = RayBox::new(ray, bvh.bounds);
         let sheared = bvh.sheared(ray);
-        let trusted = if bvh.least_volume == 0.0 { u32::MAX } else { 0 };
-        let mut leaves = Leaves { bvh, sheared: &sheared, ray, tally, found, side_by_side: boxes.moderate, trusted };
+        let mut leaves = Leaves { bvh, sheared, ray: *ray, tally, found: F::default(), side_by_side: boxes.moderate };
         // The interval is open, and what the walk goes by is the last t inside.
         let t_last = ray.t_max.next_down();
         match boxes.tame {
             true => walk::<L, _, true>(lanes, &bvh.nodes, &boxes, t_last, &mut leaves),
             false => walk::<L, _, false>(lanes, &bvh.nodes, &boxes, t_last, &mut leaves),
         }
-        leaves.found.finish(bvh, &sheared);
-        leaves.found
+        leaves.answer()
     }
 }
 
-struct Leaves<'a, T, F> {
+/// A ray among the triangles of leaves.
+pub struct Leaves<'a, T, F> {
     bvh: &'a TriangleBvh,
-    sheared: &'a Sheared,
-    ray: &'a Ray,
-    tally: &'a mut T,
+    sheared: Sheared,
+    ray: Ray,
+    tally: T,
     found: F,
     /// Whether tests side by side are within the range of numbers.
     side_by_side: bool,
-    /// All bits, or none where triangles seen from their sides are not to be hit.
-    trusted: u32,
+}
+
+impl<'a, F: Found> Leaves<'a, (), F> {
+    /// For a ray for which tests side by side are within the range of numbers.
+    #[inline(always)]
+    pub fn new(bvh: &'a TriangleBvh, ray: &Ray) -> Self {
+        Leaves { bvh, sheared: bvh.sheared(ray), ray: *ray, tally: (), found: F::default(), side_by_side: true }
+    }
+}
+
+impl<T, F: Found> Leaves<'_, T, F> {
+    /// What was found, when the search has ended.
+    #[inline(always)]
+    pub fn answer(&mut self) -> F {
+        self.found.finish(self.bvh, &self.sheared);
+        std::mem::take(&mut self.found)
+    }
 }
 
 impl<T: Tally, F: Found> Visitor for Leaves<'_, T, F> {
@@ -162,7 +175,7 @@ impl<T: Tally, F: Found> Visitor for Leaves<'_, T, F> {
 
     #[inline(always)]
     fn tally(&mut self) -> &mut T {
-        self.tally
+        &mut self.tally
     }
 
     #[inline(always)]
@@ -174,10 +187,10 @@ impl<T: Tally, F: Found> Visitor for Leaves<'_, T, F> {
         }
         let corners = &self.bvh.corners[9 * first..9 * (first + count) + WIDTH];
         let range = (self.ray.t_min, t_max);
-        let Quick { mut candidates, crossed, inside } = quick(lanes, self.sheared, corners, count, range);
+        let Quick { mut candidates, crossed, inside } = quick(lanes, &self.sheared, corners, count, range);
         // Where any hit will do, it need not be known where it is.
-        let sure = candidates & crossed & inside & self.trusted;
-        if F::ANY && sure != 0 {
+        let sure = candidates & crossed & inside;
+        if F::ANY && sure != 0 && self.bvh.least_volume == 0.0 {
             return self.offer(t_max, first, count, sure.trailing_zeros() as usize, t_max);
         }
         while candidates != 0 {
@@ -204,7 +217,7 @@ impl<T: Tally, F: Found> Leaves<'_, T, F> {
     /// A single triangle in full.
     #[cold]
     fn one_by_one(&mut self, first: usize, count: usize, lane: usize, t_max: f32) -> f32 {
-        match self.sheared.crosses(self.bvh.corners_at(Place { first, count, lane }, self.sheared)) {
+        match self.sheared.crosses(self.bvh.corners_at(Place { first, count, lane }, &self.sheared)) {
             true => self.crossed(first, count, lane, t_max),
             false => t_max,
         }
@@ -213,7 +226,7 @@ impl<T: Tally, F: Found> Leaves<'_, T, F> {
     /// A triangle that the line of the ray crosses.
     #[inline(always)]
     fn crossed(&mut self, first: usize, count: usize, lane: usize, t_max: f32) -> f32 {
-        let corners = self.bvh.corners_at(Place { first, count, lane }, self.sheared);
+        let corners = self.bvh.corners_at(Place { first, count, lane }, &self.sheared);
         match self.sheared.distance(corners, self.ray.t_min, t_max) {
             Some(t) => self.offer(t, first, count, lane, t_max),
             None => t_max,

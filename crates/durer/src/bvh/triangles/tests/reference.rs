@@ -66,7 +66,7 @@ fn dozen() -> Vec<(&'static str, Mesh)> {
     });
     let layers = apart(layers.collect());
     let sizes = (0..200).flat_map(|i| {
-        let size = libm::pow(1.1, f64::from(i) - 150.0) as f32;
+        let size = libm::pow(1.03, f64::from(i) - 150.0) as f32;
         [size * random.point(), size * random.point(), size * random.point()]
     });
     let sizes = apart(sizes.collect());

@@ -1,0 +1,181 @@
+//! Many rays through one tree, each a step at a time.
+//!
+//! A ray alone waits: for a node from memory, for the result of a test, for the processor that guessed a branch wrongly. Here
+//! several are on their way, and while one waits the others go on. Rays at inner nodes and rays at leaves are on two lists, so what
+//! comes next is no branch: a step writes its ray to both lists, and one of the two gets longer.
+
+use super::TriangleBvh;
+use super::query::{Found, Leaves};
+use crate::bvh::lanes::{Kernel, Lanes, Room, Stack};
+use crate::bvh::node::{self, LEAF, Node};
+use crate::bvh::traverse::{RANKS, RayBox, Slabs, Visitor, is_sound, meet};
+use crate::math::{Ray, Vec3};
+use std::hint::select_unpredictable;
+use std::marker::PhantomData;
+
+/// How many rays are on their way at once.
+const FLYING: usize = 16;
+/// At the bottom of each stack: no leaf has this number, for its items would be beyond the most.
+const END: u32 = u32::MAX;
+
+impl TriangleBvh {
+    /// Answers a question for each ray.
+    pub(super) fn stream<F: Found>(&self, rays: &[Ray], answer: impl FnMut(usize, F)) {
+        self.level.run(Stream { bvh: self, rays, answer, next: 0, found: PhantomData });
+    }
+}
+
+struct Stream<'a, F, A> {
+    bvh: &'a TriangleBvh,
+    rays: &'a [Ray],
+    answer: A,
+    /// The next ray to start.
+    next: usize,
+    found: PhantomData<F>,
+}
+
+/// A ray on its way.
+struct Flyer<'a, F> {
+    number: usize,
+    boxes: RayBox,
+    leaves: Leaves<'a, (), F>,
+    t_max: f32,
+    child: u32,
+}
+
+/// Numbers of rays.
+struct List {
+    numbers: [u8; 2 * FLYING],
+    len: usize,
+}
+
+impl List {
+    const EMPTY: List = List { numbers: [0; 2 * FLYING], len: 0 };
+
+    /// Adds a number if something is so.
+    #[inline(always)]
+    fn add(&mut self, number: u8, wanted: bool) {
+        self.numbers[self.len] = number;
+        self.len += usize::from(wanted);
+    }
+}
+
+impl<'a, F: Found, A: FnMut(usize, F)> Stream<'a, F, A> {
+    /// Puts the next ray in a place, if there is one. Rays that are not traced here are answered at once.
+    #[inline(always)]
+    fn start<L: Lanes>(&mut self, lanes: L, flyer: &mut Flyer<'a, F>, stack: &mut Stack) -> bool {
+        while let Some(ray) = self.rays.get(self.next) {
+            let number = self.next;
+            self.next += 1;
+            if self.bvh.nodes.is_empty() || !is_sound(ray) {
+                (self.answer)(number, F::default());
+                continue;
+            }
+            flyer.boxes = RayBox::new(ray, self.bvh.bounds);
+            if !flyer.boxes.tame {
+                (self.answer)(number, self.bvh.query::<_, F>(ray, &mut ()));
+                continue;
+            }
+            flyer.number = number;
+            flyer.leaves = Leaves::new(self.bvh, ray);
+            (flyer.t_max, flyer.child) = (ray.t_max.next_down(), 0);
+            stack.clear();
+            stack.push(END, f32::NEG_INFINITY);
+            prefetch(lanes, self.bvh, 0);
+            return true;
+        }
+        false
+    }
+}
+
+/// Has what a ray needs next brought near.
+#[inline(always)]
+fn prefetch<L: Lanes>(lanes: L, bvh: &TriangleBvh, child: u32) {
+    let inner = bvh.nodes.as_ptr().wrapping_add(child as usize).cast::<u8>();
+    let leaf = bvh.corners.as_ptr().wrapping_add(9 * node::items(child).0).cast::<u8>();
+    let from = select_unpredictable(child & LEAF == 0, inner, leaf);
+    for line in 0..size_of::<Node>() / 64 {
+        lanes.prefetch(from.wrapping_add(64 * line));
+    }
+}
+
+/// One node of a ray's way: its child is the next node or leaf.
+#[inline(always)]
+fn step<L: Lanes, F: Found>(lanes: L, nodes: &[Node], flyer: &mut Flyer<F>, stack: &mut Stack) {
+    let node = &nodes[flyer.child as usize];
+    let slabs = Slabs::new(lanes, &flyer.boxes);
+    let (met, enter) = meet::<L, true>(lanes, node, &slabs, lanes.splat(flyer.t_max));
+    let flip = flyer.boxes.flip;
+    let [nearest, others] = RANKS[flip as usize & 7][met];
+    lanes.push(stack, &node.children, enter, lanes.flipped(flip), others.into());
+    // If nothing was met, nothing was pushed.
+    let top = stack.pop_if(met == 0);
+    flyer.child = select_unpredictable(met == 0, top, node.children[nearest as usize & 7]);
+}
+
+impl<'a, F: Found, A: FnMut(usize, F)> Kernel for Stream<'a, F, A> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(mut self, lanes: L) {
+        let bvh = self.bvh;
+        let mut rooms: Vec<Room> = (0..FLYING).map(|_| Room::new()).collect();
+        let mut stacks: Vec<Stack> = rooms.iter_mut().map(Stack::new).collect();
+        let nowhere = Ray::new(Vec3::ZERO, Vec3::X);
+        let place = |_| Flyer {
+            number: 0,
+            boxes: RayBox::new(&nowhere, bvh.bounds),
+            leaves: Leaves::new(bvh, &nowhere),
+            t_max: 0.0,
+            child: END,
+        };
+        let mut flyers: Vec<Flyer<F>> = (0..FLYING).map(place).collect();
+        let (mut inner, mut leaves) = (List::EMPTY, List::EMPTY);
+        for (number, (flyer, stack)) in flyers.iter_mut().zip(&mut stacks).enumerate() {
+            let started = self.start(lanes, flyer, stack);
+            inner.add(number as u8, started);
+        }
+        while inner.len + leaves.len > 0 {
+            // A node for each ray that is at one.
+            let before = std::mem::replace(&mut inner.len, 0);
+            for k in 0..before {
+                let number = inner.numbers[k];
+                let (flyer, stack) = (&mut flyers[usize::from(number)], &mut stacks[usize::from(number)]);
+                step(lanes, &bvh.nodes, flyer, stack);
+                prefetch(lanes, bvh, flyer.child);
+                inner.add(number, flyer.child & LEAF == 0);
+                leaves.add(number, flyer.child & LEAF != 0);
+            }
+            // Leaves once there are several.
+            if inner.len >= leaves.len {
+                continue;
+            }
+            let before = std::mem::replace(&mut leaves.len, 0);
+            for k in 0..before {
+                let number = leaves.numbers[k];
+                let (flyer, stack) = (&mut flyers[usize::from(number)], &mut stacks[usize::from(number)]);
+                let mut over = flyer.child == END;
+                if !over {
+                    let t = flyer.leaves.leaf(lanes, flyer.child, flyer.t_max);
+                    over = t == f32::NEG_INFINITY;
+                    if t < flyer.t_max {
+                        flyer.t_max = t;
+                        lanes.drop_beyond(stack, t);
+                    }
+                }
+                if over {
+                    (self.answer)(flyer.number, flyer.leaves.answer());
+                    if !self.start(lanes, flyer, stack) {
+                        // Its place stays empty.
+                        continue;
+                    }
+                } else {
+                    flyer.child = stack.pop_if(true);
+                    prefetch(lanes, bvh, flyer.child);
+                }
+                inner.add(number, flyer.child & LEAF == 0);
+                leaves.add(number, flyer.child & LEAF != 0);
+            }
+        }
+    }
+}
