@@ -1,6 +1,6 @@
 //! One finding, and how it is put into words.
 
-use crate::diag::{Diagnostic, Severity};
+use crate::diag::{Diagnostic, Edit, Severity};
 use crate::math::Vec3;
 
 /// What a check has found.
@@ -44,7 +44,9 @@ pub(super) fn count_more(last: Option<&mut Finding>, more: usize, other: &Findin
     let kept = diagnostic.message.rfind("; and ").filter(|_| more > 1).unwrap_or(diagnostic.message.len());
     diagnostic.message.truncate(kept);
     diagnostic.message += &words;
-    diagnostic.fix.extend(other.diagnostic.fix.iter().cloned());
+    let meets = |edit: &&Edit| diagnostic.fix.iter().any(|own| own.span.start == edit.span.start);
+    let others: Vec<Edit> = other.diagnostic.fix.iter().filter(|edit| !meets(edit)).cloned().collect();
+    diagnostic.fix.extend(others);
 }
 
 /// A number with four significant digits.

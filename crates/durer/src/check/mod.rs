@@ -41,7 +41,7 @@ const EMPTIES: [&str; 6] = ["camera-inside", "camera-away", "too-small", "too-na
 /// All findings about a scene that was read and compiled, those of its reader among them; the causes first.
 pub fn check(subject: &Subject, diagnostics: &Diagnostics) -> Vec<Finding> {
     let scout = Scout::new(subject);
-    let mut found = reported(diagnostics);
+    let mut found: Vec<Finding> = diagnostics.iter().cloned().map(Finding::from).collect();
     found.iter_mut().for_each(|finding| words::complete(&scout, finding));
     for check in CHECKS {
         let of_kind = (check.find)(&scout).into_iter();

@@ -18,18 +18,19 @@ pub fn apply(bytes: &[u8], file: u32, findings: &[Finding]) -> Repaired {
     let mut edits: Vec<&Edit> = Vec::new();
     let mut mended = Vec::new();
     for (i, finding) in findings.iter().enumerate() {
-        let own = &finding.diagnostic.fix;
-        let sound = |edit: &Edit| {
-            let span = edit.span;
-            let inside = span.file == file && span.start <= span.end && span.end as usize <= bytes.len();
-            inside && edits.iter().all(|other| span.end < other.span.start || other.span.end < span.start)
+        let inside = |edit: &Edit| {
+            let Edit { span, .. } = edit;
+            span.file == file && span.start <= span.end && span.end as usize <= bytes.len()
         };
-        if !own.is_empty() && own.iter().all(sound) {
-            edits.extend(own);
+        let mut all = edits.clone();
+        all.extend(&finding.diagnostic.fix);
+        all.sort_by_key(|edit| (edit.span.start, edit.span.end));
+        let apart = all.windows(2).all(|pair| pair[0].span.end < pair[1].span.start);
+        if !finding.diagnostic.fix.is_empty() && apart && finding.diagnostic.fix.iter().all(inside) {
+            edits = all;
             mended.push(i);
         }
     }
-    edits.sort_by_key(|edit| edit.span.start);
     let (mut text, mut at) = (Vec::with_capacity(bytes.len()), 0);
     for edit in edits {
         text.extend_from_slice(&bytes[at..edit.span.start as usize]);
