@@ -36,7 +36,7 @@ pub fn print_to(stream: StandardStream, files: &Files, wanted: &[&Diagnostic]) {
     for diagnostic in wanted {
         // Nothing can be said where the stream is closed.
         let excerpt = Excerpt { files: &shown, around: diagnostic.span };
-        let _ = emit_to_write_style(&mut stream.lock(), &Config::default(), &excerpt, &show(diagnostic));
+        let _ = emit_to_write_style(&mut stream.lock(), &Config::default(), &excerpt, &show(diagnostic, files));
     }
 }
 
@@ -116,7 +116,15 @@ impl<'f> files::Files<'f> for Excerpt<'_> {
     }
 }
 
-fn show(diagnostic: &Diagnostic) -> Shown<usize> {
+/// Whether a second place is shown with a first: in one long line, only what is around the first is.
+fn fits(first: Option<Span>, second: Span, files: &Files) -> bool {
+    let Some(first) = first.filter(|first| first.file == second.file) else { return true };
+    let between = first.start.min(second.start) as usize..first.end.max(second.end) as usize;
+    let text = files.bytes(first.file).and_then(|bytes| bytes.get(between.clone())).unwrap_or_default();
+    between.len() < Excerpt::BEFORE || text.contains(&b'\n')
+}
+
+fn show(diagnostic: &Diagnostic, files: &Files) -> Shown<usize> {
     let level = match diagnostic.severity {
         Severity::Error => Level::Error,
         Severity::Warning => Level::Warning,
@@ -127,7 +135,7 @@ fn show(diagnostic: &Diagnostic) -> Shown<usize> {
     if let Some(span) = diagnostic.span {
         labels.push(Label::primary(span.file as usize, range(span)).with_message(&diagnostic.label));
     }
-    if let Some((span, what)) = &diagnostic.related {
+    if let Some((span, what)) = diagnostic.related.as_ref().filter(|(span, _)| fits(diagnostic.span, *span, files)) {
         labels.push(Label::secondary(span.file as usize, range(*span)).with_message(what));
     }
     let effect = diagnostic.effect.iter().map(|effect| format!("effect: {effect}"));

@@ -20,7 +20,7 @@ pub(super) enum Sight {
 }
 
 /// Objects beyond this number are not looked for one by one.
-const MOST_OBJECTS: usize = 2000;
+const MOST_OBJECTS: usize = 200;
 /// Corners of a mesh that are looked for.
 const MOST_CORNERS: usize = 40;
 
