@@ -40,9 +40,9 @@ pub(super) trait Lanes: Copy {
     fn mul(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
     /// a * b + c, rounded once or twice.
     fn mul_add(self, a: Self::Floats, b: Self::Floats, c: Self::Floats) -> Self::Floats;
-    /// The lesser; `b` where `a` is no number, and one of them where `b` is none.
+    /// `a` where it is less than `b`, else `b`: also where either is no number.
     fn min(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
-    /// The greater; `b` where `a` is no number, and one of them where `b` is none.
+    /// `a` where it is greater than `b`, else `b`: also where either is no number.
     fn max(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
     /// A bit for each lane where a <= b.
     fn le(self, a: Self::Floats, b: Self::Floats) -> u32;

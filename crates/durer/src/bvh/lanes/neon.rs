@@ -67,11 +67,11 @@ impl Lanes for Neon {
     }
     #[inline(always)]
     fn min(self, a: Pair, b: Pair) -> Pair {
-        proven!(Pair(vminnmq_f32(a.0, b.0), vminnmq_f32(a.1, b.1)))
+        proven!(Pair(vbslq_f32(vcltq_f32(a.0, b.0), a.0, b.0), vbslq_f32(vcltq_f32(a.1, b.1), a.1, b.1)))
     }
     #[inline(always)]
     fn max(self, a: Pair, b: Pair) -> Pair {
-        proven!(Pair(vmaxnmq_f32(a.0, b.0), vmaxnmq_f32(a.1, b.1)))
+        proven!(Pair(vbslq_f32(vcgtq_f32(a.0, b.0), a.0, b.0), vbslq_f32(vcgtq_f32(a.1, b.1), a.1, b.1)))
     }
     #[inline(always)]
     fn le(self, a: Pair, b: Pair) -> u32 {
