@@ -10,7 +10,7 @@ use crate::memory::Memory;
 use crate::open::{Opened, open};
 use crate::output::say;
 use crate::render::{failure, rejected};
-use crate::{Failure, bad, output, progress};
+use crate::{Failure, bad, check, output, progress};
 use durer::LoadOptions;
 use durer::compile::AccelKind;
 use durer::dialect::{Compat, Dialect};
@@ -70,7 +70,11 @@ pub fn run(arguments: Vec<String>, program_name: Option<&'static Program>) -> Re
     for (layer, (path, format)) in layers.zip(&outputs.0) {
         files.push((path.clone(), output::encode(format, std::slice::from_ref(layer), Transfer::Course, &[])?));
     }
-    output::save(&files, quiet)
+    output::save(&files, quiet)?;
+    if !quiet {
+        check::after_course(&opened, &job, &rendered.pictures, &rendered.statistics);
+    }
+    Ok(())
 }
 
 fn load_options(given: &Given, program_name: Option<&'static Program>) -> Result<LoadOptions, Failure> {

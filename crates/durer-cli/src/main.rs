@@ -1,6 +1,7 @@
 //! The `durer` command: a thin shell over the library.
 
 mod args;
+mod check;
 mod compare;
 mod convert;
 mod course;
@@ -32,6 +33,8 @@ const BAD_INPUT: u8 = 2;
 const OTHER_FAILURE: u8 = 1;
 /// Exit code of `durer compare` after pictures that differ: as of `cmp` and `diff`, whose 2 says that something is wrong.
 const DIFFERENT: u8 = 1;
+/// Exit code of `durer check` after findings.
+const FOUND: u8 = 1;
 /// Exit code after Ctrl-C.
 const INTERRUPTED: u8 = 130;
 
@@ -56,6 +59,7 @@ fn main() -> ExitCode {
             Command::Explain(args) => explain::run(&args),
             Command::Lesson(args) => lesson::run(&args),
             Command::Course(args) => course::run(args.arguments, None),
+            Command::Check(args) => check::run(&args),
             Command::Info(args) => info::run(&args),
             Command::Convert(args) => convert::run(&args),
             Command::Compare(args) => compare::run(&args),
@@ -78,6 +82,8 @@ enum Failure {
     Other(anyhow::Error),
     /// `durer compare` found pictures that differ, and has said so.
     Different,
+    /// `durer check` has found something, and has said so.
+    Found,
     /// The user stopped it; says what became of the work.
     Interrupted(String),
 }
@@ -97,6 +103,7 @@ impl Failure {
                 OTHER_FAILURE
             }
             Failure::Different => DIFFERENT,
+            Failure::Found => FOUND,
             Failure::Interrupted(what) => {
                 report::complain(&format!("interrupted; {what}"));
                 INTERRUPTED

@@ -13,6 +13,8 @@ pub struct Opened {
     pub loaded: Loaded,
     pub world: World,
     pub files: Files,
+    /// What was found, and printed.
+    pub diagnostics: Diagnostics,
 }
 
 /// A scene that was read; what is found is printed when it is compiled.
@@ -43,7 +45,8 @@ impl Read {
             report::note(&guess.note());
         }
         report::print(&self.files, &self.diagnostics, self.quiet);
-        Ok(Opened { loaded: self.loaded, world: world.ok_or(Failure::Input(None))?, files: self.files })
+        let world = world.ok_or(Failure::Input(None))?;
+        Ok(Opened { loaded: self.loaded, world, files: self.files, diagnostics: self.diagnostics })
     }
 }
 

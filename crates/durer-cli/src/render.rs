@@ -4,7 +4,7 @@ use crate::args::{DIAGRAMS, RenderArgs, RenderCommand};
 use crate::keep::Keeper;
 use crate::open::{load_options, read};
 use crate::output::{Target, lengthened, say};
-use crate::{Failure, bad, diagrams, job, output, progress, report};
+use crate::{Failure, bad, check, diagrams, job, output, progress, report};
 use durer::diag::Diagnostic;
 use durer::image::{Transfer, check_target, checked_count};
 use durer::render::{Control, Job, Panicked, Part, RenderError, Shard, ShardBy, Statistics, Stop, replay};
@@ -85,6 +85,9 @@ pub fn run(command: &RenderCommand) -> Result<(), Failure> {
             let transfer = Transfer::from_name(&args.transfer).unwrap_or_default();
             output::save(&target.files(&rendered, transfer)?, args.quiet)?;
             keeper.done(&part, finished);
+            if finished && !args.quiet {
+                check::after_render(&opened, &job, &rendered.pictures, &rendered.statistics);
+            }
         }
     }
     if !finished && !args.quiet {

@@ -14,6 +14,15 @@ use std::ops::Range;
 pub fn print(files: &Files, diagnostics: &Diagnostics, errors_only: bool) {
     let wanted: Vec<&Diagnostic> =
         diagnostics.iter().filter(|d| !errors_only || d.severity == Severity::Error).collect();
+    let color = if std::io::stderr().is_terminal() { ColorChoice::Auto } else { ColorChoice::Never };
+    print_to(StandardStream::stderr(color), files, &wanted);
+    if diagnostics.error_count() > ERROR_LIMIT {
+        complain(&format!("and {} errors more", diagnostics.error_count() - ERROR_LIMIT));
+    }
+}
+
+/// Prints findings to a stream.
+pub fn print_to(stream: StandardStream, files: &Files, wanted: &[&Diagnostic]) {
     if wanted.is_empty() {
         return;
     }
@@ -24,15 +33,10 @@ pub fn print(files: &Files, diagnostics: &Diagnostics, errors_only: bool) {
         let used = wanted.iter().any(|d| spans(d).any(|span| span.file == file));
         shown.add(name.to_string(), if used { text(bytes) } else { String::new() });
     }
-    let color = if std::io::stderr().is_terminal() { ColorChoice::Auto } else { ColorChoice::Never };
-    let stream = StandardStream::stderr(color);
     for diagnostic in wanted {
-        // Nothing can be said where standard error is closed.
+        // Nothing can be said where the stream is closed.
         let excerpt = Excerpt { files: &shown, around: diagnostic.span };
-        let _ = emit_to_write_style(&mut stream.lock(), &Config::default(), &excerpt, &show(diagnostic));
-    }
-    if diagnostics.error_count() > ERROR_LIMIT {
-        complain(&format!("and {} errors more", diagnostics.error_count() - ERROR_LIMIT));
+        let _ = emit_to_write_style(&mut stream.lock(), &Config::default(), &excerpt, &show(diagnostic, files));
     }
 }
 
@@ -112,7 +116,15 @@ impl<'f> files::Files<'f> for Excerpt<'_> {
     }
 }
 
-fn show(diagnostic: &Diagnostic) -> Shown<usize> {
+/// Whether a second place is shown with a first: in one long line, only what is around the first is.
+fn fits(first: Option<Span>, second: Span, files: &Files) -> bool {
+    let Some(first) = first.filter(|first| first.file == second.file) else { return true };
+    let between = first.start.min(second.start) as usize..first.end.max(second.end) as usize;
+    let text = files.bytes(first.file).and_then(|bytes| bytes.get(between.clone())).unwrap_or_default();
+    between.len() < Excerpt::BEFORE || text.contains(&b'\n')
+}
+
+fn show(diagnostic: &Diagnostic, files: &Files) -> Shown<usize> {
     let level = match diagnostic.severity {
         Severity::Error => Level::Error,
         Severity::Warning => Level::Warning,
@@ -123,9 +135,11 @@ fn show(diagnostic: &Diagnostic) -> Shown<usize> {
     if let Some(span) = diagnostic.span {
         labels.push(Label::primary(span.file as usize, range(span)).with_message(&diagnostic.label));
     }
-    if let Some((span, what)) = &diagnostic.related {
+    if let Some((span, what)) = diagnostic.related.as_ref().filter(|(span, _)| fits(diagnostic.span, *span, files)) {
         labels.push(Label::secondary(span.file as usize, range(*span)).with_message(what));
     }
-    let notes = diagnostic.help.iter().map(|help| format!("help: {help}")).collect();
-    Shown::new(level).with_message(&diagnostic.message).with_labels(labels).with_notes(notes)
+    let effect = diagnostic.effect.iter().map(|effect| format!("effect: {effect}"));
+    let notes = effect.chain(diagnostic.help.iter().map(|help| format!("help: {help}"))).collect();
+    let shown = Shown::new(level).with_message(&diagnostic.message).with_labels(labels).with_notes(notes);
+    if diagnostic.code.is_empty() { shown } else { shown.with_code(diagnostic.code) }
 }

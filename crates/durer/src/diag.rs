@@ -45,11 +45,22 @@ pub enum Severity {
     Error,
 }
 
+/// A change of a file's text: what stands at a place is replaced.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Edit {
+    /// What is replaced; of no length where something is put in.
+    pub span: Span,
+    /// By what.
+    pub text: String,
+}
+
 /// One finding about an input.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Diagnostic {
     /// How bad it is.
     pub severity: Severity,
+    /// The kind of finding, in a word that does not change from version to version; empty where it has none.
+    pub code: &'static str,
     /// What is wrong, in one sentence without a full stop.
     pub message: String,
     /// Where; `None` where it concerns no place in a file.
@@ -60,11 +71,25 @@ pub struct Diagnostic {
     pub help: Option<String>,
     /// Another place that has to do with it, with what it is.
     pub related: Option<(Span, String)>,
+    /// What comes of it in the picture.
+    pub effect: Option<String>,
+    /// The change that mends it, where that is mechanical.
+    pub fix: Vec<Edit>,
 }
 
 impl Diagnostic {
     fn new(severity: Severity, message: impl Into<String>) -> Self {
-        Diagnostic { severity, message: message.into(), span: None, label: String::new(), help: None, related: None }
+        Diagnostic {
+            severity,
+            code: "",
+            message: message.into(),
+            span: None,
+            label: String::new(),
+            help: None,
+            related: None,
+            effect: None,
+            fix: Vec::new(),
+        }
     }
 
     /// A finding because of which no picture can be made.
@@ -80,6 +105,30 @@ impl Diagnostic {
     /// Something worth knowing.
     pub fn note(message: impl Into<String>) -> Self {
         Diagnostic::new(Severity::Note, message)
+    }
+
+    /// Sets the kind.
+    pub fn code(self, code: &'static str) -> Self {
+        Diagnostic { code, ..self }
+    }
+
+    /// Sets what comes of it in the picture.
+    pub fn effect(self, effect: impl Into<String>) -> Self {
+        Diagnostic { effect: Some(effect.into()), ..self }
+    }
+
+    /// Adds a change that is a part of what mends it.
+    pub fn fix(mut self, span: Span, text: impl Into<String>) -> Self {
+        self.fix.push(Edit { span, text: text.into() });
+        self
+    }
+
+    /// The same, where the place is known.
+    pub fn fix_at(self, place: Option<Span>, text: impl Into<String>) -> Self {
+        match place {
+            Some(span) => self.fix(span, text),
+            None => self,
+        }
     }
 
     /// Sets the place.

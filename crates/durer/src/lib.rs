@@ -5,6 +5,7 @@
 
 pub mod bvh;
 pub mod camera;
+pub mod check;
 pub mod compile;
 pub mod describe;
 pub mod diag;
@@ -26,4 +27,4 @@ pub mod source;
 pub mod texture;
 pub mod world;
 
-pub use load::{LoadOptions, Loaded, load};
+pub use load::{LoadOptions, Loaded, load, load_text};

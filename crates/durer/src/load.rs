@@ -8,6 +8,7 @@ use crate::scene::Scene;
 use crate::source::{Source, SourceError};
 use crate::world::World;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// How a scene file is to be understood.
 #[derive(Clone, Debug, Default)]
@@ -62,21 +63,36 @@ pub fn load(
     diagnostics: &mut Diagnostics,
 ) -> Result<Option<Loaded>, SourceError> {
     let name = path.display().to_string();
-    let folder = match path.parent() {
+    let bytes = Source::folder(folder_of(path)).allow_outside().read_path(path, &name)?;
+    Ok(load_text(path, bytes, options, files, diagnostics))
+}
+
+/// The folder in which a file lies.
+fn folder_of(path: &Path) -> PathBuf {
+    match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder.to_path_buf(),
         _ => PathBuf::from("."),
-    };
-    let mut source = Source::folder(&folder);
+    }
+}
+
+/// The same for a text that is, or is to be, in the file of a path. `None` after errors.
+pub fn load_text(
+    path: &Path,
+    bytes: Arc<[u8]>,
+    options: &LoadOptions,
+    files: &mut Files,
+    diagnostics: &mut Diagnostics,
+) -> Option<Loaded> {
+    let mut source = Source::folder(folder_of(path));
     if options.allow_outside {
         source = source.allow_outside();
     }
     for assets in &options.assets {
         source = source.assets(assets);
     }
-    let bytes = source.read_path(path, &name)?;
     // Where the scene lies does not matter for what it is.
     source.remember("", &bytes);
-    let file = files.add(name, bytes.clone());
+    let file = files.add(path.display().to_string(), bytes.clone());
     let mut guess = None;
     let dialect = options.dialect.unwrap_or_else(|| {
         let found = course::guess(&bytes, file, &options.hints, &|name| source.contains(name));
@@ -107,7 +123,7 @@ pub fn load(
         // What is wrong in one dialect may be right in another.
         diagnostics.push(guess.note());
     }
-    Ok(scene.map(|scene| Loaded { scene, rules, dialect, guess, source }))
+    scene.map(|scene| Loaded { scene, rules, dialect, guess, source })
 }
 
 impl Loaded {

@@ -13,7 +13,7 @@ const FLOORS: [&[&str]; 9] = [
     &["format", "world"],
     &["compile", "film", "integrator"],
     &["render"],
-    &["load", "lesson"],
+    &["check", "load", "lesson"],
 ];
 
 fn files(folder: &Path, found: &mut Vec<PathBuf>) {

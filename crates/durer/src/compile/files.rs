@@ -46,7 +46,8 @@ impl<'r> Loader<'r> {
             let data = format::read_mesh(&bytes, file, &name.path, &mut own);
             if own.has_errors() {
                 let message = format!("the mesh `{}` cannot be used", name.path);
-                diagnostics.push(Diagnostic::error(message).at(name.span).label("asked for here"));
+                let error = Diagnostic::error(message).code("bad-file").at(name.span);
+                diagnostics.push(error.label("asked for here"));
             }
             diagnostics.extend(own);
             data
@@ -73,7 +74,7 @@ impl<'r> Loader<'r> {
     pub(super) fn height_field(&mut self, field: &HeightField, diagnostics: &mut Diagnostics) -> Option<Arc<MeshTree>> {
         let name = &field.picture;
         let bytes = self.read(name, "picture of heights", diagnostics)?;
-        let mut refuse = |message: String| diagnostics.push(Diagnostic::error(message).at(name.span));
+        let mut refuse = |message: String| diagnostics.push(Diagnostic::error(message).code("bad-file").at(name.span));
         let picture = match image::read(&bytes, &name.path) {
             Ok(picture) => picture,
             Err(error) => {
@@ -178,9 +179,18 @@ impl<'r> Loader<'r> {
             Ok(bytes) => return Some(bytes),
             Err(error) => error,
         };
-        let diagnostic = Diagnostic::error(format!("the {what} cannot be had: {error}")).at(name.span);
+        let message = format!("the {what} cannot be had: {error}");
+        let diagnostic = Diagnostic::error(message).code("missing-file").at(name.span);
         diagnostics.push(match error {
-            SourceError::Missing { tried, near, .. } => diagnostic.help(missing_help(&tried, near)),
+            SourceError::Missing { tried, near, .. } => {
+                let (help, folder) =
+                    (missing_help(&tried, near.as_deref()), name.path.rfind('/').map_or(0, |at| at + 1));
+                // A face of a cube map is not named in the scene: only its folder is.
+                match near.filter(|_| matches!(what, "mesh" | "texture" | "picture of heights")) {
+                    Some(near) => diagnostic.help(help).fix(name.span, format!("{}{near}", &name.path[..folder])),
+                    None => diagnostic.help(help),
+                }
+            }
             SourceError::Outside { .. } => diagnostic
                 .help("a scene may only name files in and below its own folder, unless `--allow-outside` is given"),
             _ => diagnostic,
@@ -190,7 +200,7 @@ impl<'r> Loader<'r> {
 }
 
 /// Where a file was looked for, and a file there that has nearly its name.
-fn missing_help(tried: &[PathBuf], near: Option<String>) -> String {
+fn missing_help(tried: &[PathBuf], near: Option<&str>) -> String {
     let shown: Vec<String> = tried.iter().map(|path| path.display().to_string()).collect();
     match near {
         Some(near) => format!("did you mean `{near}`? Looked for {}", shown.join(", ")),
@@ -205,7 +215,8 @@ fn decode(name: &FileName, path: &str, bytes: &[u8], srgb: bool, diagnostics: &m
             Some(if srgb { texture.decoded(image::decode_srgb) } else { texture })
         }
         Err(error) => {
-            diagnostics.push(Diagnostic::error(format!("the picture `{path}` cannot be used: {error}")).at(name.span));
+            let message = format!("the picture `{path}` cannot be used: {error}");
+            diagnostics.push(Diagnostic::error(message).code("bad-file").at(name.span));
             None
         }
     }

@@ -56,11 +56,13 @@ pub fn compile(
     let mut own = Diagnostics::default();
     let mut loader = files::Loader::new(resources, rules);
     let Some(camera) = scene.camera.clone() else {
-        diagnostics.push(Diagnostic::error("the scene has no camera").help("add a `PerspectiveCamera { ... }`"));
+        diagnostics.push(
+            Diagnostic::error("the scene has no camera").code("no-camera").help("add a `PerspectiveCamera { ... }`"),
+        );
         return None;
     };
     match camera.problem() {
-        Some(problem) => own.push(Diagnostic::error(problem).at(scene.camera_span)),
+        Some(problem) => own.push(Diagnostic::error(problem).code("bad-value").at(scene.camera_span)),
         None => check_camera(scene, camera.pose(), &mut own),
     }
     let materials = materials::compile(scene, rules, &mut loader, &mut own);
@@ -76,7 +78,10 @@ pub fn compile(
     };
     match &scene.root {
         Some(root) => flattening.group(root, DAffine3::IDENTITY),
-        None => flattening.diagnostics.push(Diagnostic::warning("the scene has no objects: it has no `Group`")),
+        None => {
+            let warning = Diagnostic::warning("the scene has no objects: it has no `Group`");
+            flattening.diagnostics.push(warning.code("no-objects"));
+        }
     }
     flattening.warn_of_bare();
     let Flattening { objects, plain_needed, .. } = flattening;
@@ -161,7 +166,8 @@ fn check_camera(scene: &Scene, pose: crate::camera::Pose, diagnostics: &mut Diag
     let parallel = pose.direction.as_dvec3().normalize_or_zero().cross(pose.up.as_dvec3().normalize_or_zero()).length();
     if parallel < 1e-6 {
         let message = "the camera's `up` is parallel to its `direction`, so which way is up is arbitrary";
-        diagnostics.push(Diagnostic::warning(message).at(scene.camera_span).help("choose another `up`"));
+        let warning = Diagnostic::warning(message).code("up-parallel").at(scene.camera_span);
+        diagnostics.push(warning.help("choose another `up`"));
     }
 }
 
@@ -170,7 +176,7 @@ fn lights(scene: &Scene, rules: &Rules, diagnostics: &mut Diagnostics) -> (Vec<L
     let written = scene.lights.as_deref().unwrap_or_default();
     if written.is_empty() {
         let message = "the scene has no lights: its ambient light is set to 1 1 1, so colours are flat";
-        diagnostics.push(Diagnostic::warning(message));
+        diagnostics.push(Diagnostic::warning(message).code("no-light"));
         return (Vec::new(), Color::ONE);
     }
     for light in written {
@@ -180,14 +186,13 @@ fn lights(scene: &Scene, rules: &Rules, diagnostics: &mut Diagnostics) -> (Vec<L
         };
         if color == Color::ZERO {
             let message = "this light reaches nothing: its color is 0 0 0";
-            diagnostics.push(Diagnostic::warning(message).at(light.span));
+            diagnostics.push(Diagnostic::warning(message).code("black-light").at(light.span));
         }
         let missing = matches!(&light.value, Light::Point(_)) && falloff.is_none();
         if missing && rules.has(Compat::MissingFalloff) {
             let message = "this light has no `falloff`, and divides by zero as the official program does";
-            diagnostics.push(
-                Diagnostic::warning(message).at(light.span).help("the picture will be black; write `falloff 1`, say"),
-            );
+            let warning = Diagnostic::warning(message).code("no-falloff").at(light.span);
+            diagnostics.push(warning.help("the picture will be black; write `falloff 1`, say"));
         }
     }
     (written.iter().map(|light| light.value.resolved(rules)).collect(), scene.background.ambient_light)
@@ -218,7 +223,8 @@ impl Flattening<'_, '_> {
             2 => message += "; so is another",
             n => message += &format!("; so are {} others", n - 1),
         }
-        self.diagnostics.push(Diagnostic::warning(message).at(span).help("write `MaterialIndex 0` before it"));
+        let warning = Diagnostic::warning(message).code("no-material").at(span);
+        self.diagnostics.push(warning.help("write `MaterialIndex 0` before it"));
     }
 
     fn group(&mut self, group: &Group, to_world: DAffine3) {
@@ -251,7 +257,7 @@ impl Flattening<'_, '_> {
             _ => None,
         };
         if let Some(flaw) = flaw {
-            self.diagnostics.push(Diagnostic::error(flaw).at(object.span));
+            self.diagnostics.push(Diagnostic::error(flaw).code("bad-value").at(object.span));
             return None;
         }
         let geometry = match &object.node {
@@ -280,7 +286,7 @@ impl Flattening<'_, '_> {
                 Some(affine) => Some(affine),
                 None => {
                     let message = "the transforms around this object flatten space, or leave the range of numbers";
-                    self.diagnostics.push(Diagnostic::error(message).at(object.span));
+                    self.diagnostics.push(Diagnostic::error(message).code("flat-transform").at(object.span));
                     return None;
                 }
             },

@@ -26,7 +26,7 @@ impl Flattening<'_, '_> {
         solid.into_iter().flat_map(Solid::pieces).for_each(|piece| self.piece(piece, span));
         if self.objects.len() == before && self.diagnostics.error_count() == errors {
             let message = format!("nothing is left of this `{}`: its parts do not meet", operation.keyword());
-            self.diagnostics.push(Diagnostic::warning(message).at(span));
+            self.diagnostics.push(Diagnostic::warning(message).code("empty-solid").at(span));
         }
     }
 
@@ -117,7 +117,7 @@ impl Flattening<'_, '_> {
             let message = "a surface without an inside cannot be part of a solid";
             let help = "solids are made of closed shapes: a flat `Box` or `Cylinder`, say, or a `Plane`, whose inside is \
                         all that is behind it";
-            self.diagnostics.push(Diagnostic::error(message).at(span).help(help));
+            self.diagnostics.push(Diagnostic::error(message).code("open-solid").at(span).help(help));
         }
     }
 
@@ -128,7 +128,7 @@ impl Flattening<'_, '_> {
             let message = format!("the mesh `{path}` is not closed, and cannot be part of a solid");
             let text = |p: Vec3| format!("{} {} {}", p.x, p.y, p.z);
             let help = format!("the edge from {} to {} borders on an odd number of triangles", text(p), text(q));
-            self.diagnostics.push(Diagnostic::error(message).at(span).help(help));
+            self.diagnostics.push(Diagnostic::error(message).code("open-solid").at(span).help(help));
         }
     }
 }

@@ -64,7 +64,8 @@ impl Reader<'_, '_> {
             last = index;
             if let Some(first) = given[index] {
                 let message = format!("`{word}` is given twice; the last counts");
-                self.diagnostics.push(Diagnostic::warning(message).at(span).related(first, "first given here"));
+                let warning = Diagnostic::warning(message).code("repeated").at(span);
+                self.diagnostics.push(warning.related(first, "first given here"));
             }
             given[index] = Some(span);
             if let Some(value) = self.value(field, &word, span) {
@@ -81,7 +82,7 @@ impl Reader<'_, '_> {
         for (field, _) in fields.iter().zip(&given).filter(|(f, g)| f.required && g.is_none()) {
             // A field without a word here has a fixed value: the centre of a sphere in a node, say.
             let Some(word) = field.spelling(dialect) else { continue };
-            self.error(Diagnostic::error(format!("`{name}` has no `{word}`")).at(keyword));
+            self.error(Diagnostic::error(format!("`{name}` has no `{word}`")).code("missing-field").at(keyword));
         }
     }
 
@@ -140,8 +141,8 @@ impl Reader<'_, '_> {
     }
 
     fn unknown_field(&mut self, fields: &[Field], name: &str, word: &str, span: Span, after_path: bool) {
-        let known = fields.iter().flat_map(|f| f.spellings.iter().map(|s| s.0));
-        let help = self.advice(word, known).unwrap_or_else(|| {
+        let known = || fields.iter().flat_map(|f| f.spellings.iter().map(|s| s.0));
+        let help = self.advice(word, known()).unwrap_or_else(|| {
             let mut words: Vec<&str> = fields.iter().filter_map(|f| f.spelling(self.options.dialect)).collect();
             words.dedup();
             match after_path {
@@ -153,7 +154,11 @@ impl Reader<'_, '_> {
             Ok(_) => format!("{} is a number too many in `{name}`", shown(word.as_bytes())),
             Err(_) => format!("`{name}` has no field {}", shown(word.as_bytes())),
         };
-        self.error(Diagnostic::error(message).at(span).label("not known here").help(help));
+        let error = Diagnostic::error(message).code("unknown-word").at(span).label("not known here").help(help);
+        self.error(match self.meant(word, known()) {
+            Some(meant) => error.fix(span, meant),
+            None => error,
+        });
         self.skip_value();
     }
 
@@ -180,7 +185,15 @@ impl Reader<'_, '_> {
             && let Some(violation) = field.rule.violation(&value)
         {
             let span = start.to(self.last_span());
-            self.error(Diagnostic::error(format!("`{word}` {violation}")).at(span));
+            let error = Diagnostic::error(format!("`{word}` {violation}")).code("bad-value").at(span);
+            // Where only the sign is wrong, it is clear what was meant.
+            self.error(match value {
+                Value::Float(x) if x < 0.0 => error.fix(span, self.text(span).trim_start_matches('-')),
+                Value::Vec3(v) if word == "direction" && v == Vec3::ZERO => {
+                    error.help("it is a direction, not the point to look at: that point less the place of the eye")
+                }
+                _ => error,
+            });
         }
         Some(value)
     }
@@ -298,11 +311,22 @@ impl Reader<'_, '_> {
         };
         let text = self.text(token.span);
         let message = format!("`{after}` needs {what}, but found {}", shown(text.as_bytes()));
-        let error = Diagnostic::error(message).at(token.span).label(format!("{what} expected"));
-        self.error(match number_help(&text) {
-            Some(help) if what.contains("number") => error.help(help),
-            _ => error,
+        let error = Diagnostic::error(message).code("syntax").at(token.span).label(format!("{what} expected"));
+        let Some((help, meant)) = number_help(&text).filter(|_| what.contains("number")) else {
+            return self.error(error);
+        };
+        let mut error = error.help(help);
+        // The numbers that follow are most likely written alike.
+        let following = (self.at..).map_while(|i| self.ahead(i - self.at)).map_while(|t| {
+            let text = self.text(t.span);
+            let meant = number_help(&text).and_then(|(_, meant)| meant);
+            (meant.is_some() || text.parse::<f32>().is_ok()).then_some((t.span, meant))
         });
+        if meant.is_some() {
+            let edits: Vec<_> = following.take(16).filter_map(|(span, meant)| Some((span, meant?))).collect();
+            error = edits.into_iter().fold(error, |error, (span, meant)| error.fix(span, meant));
+        }
+        self.error(error);
     }
 
     /// A word that this dialect does not have: refused if strict, else taken with a warning, once.
@@ -323,21 +347,25 @@ impl Reader<'_, '_> {
         if self.options.strict {
             self.error(Diagnostic::error(message).at(span));
         } else {
-            self.diagnostics.push(Diagnostic::warning(message).at(span));
+            self.diagnostics.push(Diagnostic::warning(message).code("foreign-word").at(span));
         }
     }
 }
 
-/// What may be meant by a word that should have been a number.
-fn number_help(text: &str) -> Option<String> {
+/// What may be meant by a word that should have been a number, and how it is written, where that is clear.
+fn number_help(text: &str) -> Option<(String, Option<String>)> {
     let is_number = |text: &str| !text.is_empty() && text.parse::<f32>().is_ok();
     let bare = text.trim_matches(['(', ')', ',', ';', '<', '>', '[', ']', 'f', 'F']);
-    if is_number(&bare.replace(',', ".")) && bare.contains(',') && !bare.contains('.') {
-        Some("decimals are written with a point, and nothing stands between numbers but blanks".into())
+    let point = bare.replace(',', ".");
+    if is_number(&point) && bare.contains(',') && !bare.contains('.') {
+        let help = "decimals are written with a point, and nothing stands between numbers but blanks";
+        Some((help.into(), Some(point).filter(|_| bare == text)))
     } else if bare.contains(',') || bare != text && is_number(bare) {
-        Some("numbers stand alone, with blanks between them: `1 0.5 0`".into())
+        let parts: Vec<&str> = bare.split(',').filter(|part| !part.is_empty()).collect();
+        let clear = parts.iter().all(|part| is_number(part)).then(|| parts.join(" "));
+        Some(("numbers stand alone, with blanks between them: `1 0.5 0`".into(), clear))
     } else if text.starts_with("0x") || text.starts_with("0X") {
-        Some("numbers are written in decimal".into())
+        Some(("numbers are written in decimal".into(), None))
     } else {
         None
     }

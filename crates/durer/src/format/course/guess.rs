@@ -37,7 +37,7 @@ impl Guess {
             let names: Vec<&str> = self.others.iter().map(|d| d.name()).collect();
             message += &format!(" (nothing in it rules out {})", names.join(", "));
         }
-        Diagnostic::note(message)
+        Diagnostic::note(message).code("dialect")
     }
 }
 

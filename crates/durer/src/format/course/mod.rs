@@ -4,6 +4,7 @@ mod fields;
 pub mod guess;
 mod lexer;
 mod nodes;
+pub mod place;
 mod reader;
 mod recover;
 mod sections;

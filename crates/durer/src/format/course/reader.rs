@@ -64,7 +64,9 @@ impl<'a, 'd> Reader<'a, 'd> {
             let slashes = comments.iter().find(|c| self.bytes[c.span.start as usize] == b'/');
             if let Some(comment) = slashes {
                 let message = "comments begin with `#`; this one is passed over all the same";
-                self.diagnostics.push(Diagnostic::warning(message).at(comment.span));
+                let slashes = Span { end: comment.span.start + 2, ..comment.span };
+                let warning = Diagnostic::warning(message).code("comment").at(comment.span);
+                self.diagnostics.push(warning.fix(slashes, "#"));
             }
             return;
         }
@@ -98,7 +100,7 @@ impl<'a, 'd> Reader<'a, 'd> {
             };
             let message = format!("material {index} does not exist: {has}");
             let help = "objects that use it are drawn in plain grey";
-            self.diagnostics.push(Diagnostic::warning(message).at(*span).help(help));
+            self.diagnostics.push(Diagnostic::warning(message).code("material-index").at(*span).help(help));
         }
         self.scene
     }
@@ -204,7 +206,10 @@ impl<'a, 'd> Reader<'a, 'd> {
         let name = self.blocks.last().map(|&block| self.text(block)).unwrap_or_default();
         loop {
             let Some(token) = self.peek() else {
-                let error = Diagnostic::error(format!("the file ends inside `{name}`")).at(self.end_span());
+                let message = format!("the file ends inside `{name}`");
+                let braces = format!("\n{}\n", "}".repeat(self.blocks.len()));
+                let error = Diagnostic::error(message).code("unclosed-block").at(self.end_span());
+                let error = error.fix(self.end_span(), braces);
                 let error = self.blocks.iter().rev().take(1).fold(error, |e, &b| e.related(b, "opened here"));
                 self.error(error.label("`}` expected"));
                 self.stop();

@@ -15,7 +15,9 @@ impl Reader<'_, '_> {
             self.unclosed_at = Some(self.at);
             let span = self.peek().map_or(self.end_span(), |t| t.span);
             let message = format!("`{}` cannot stand in `{}`", self.text(span), self.text(block));
-            let error = Diagnostic::error(message).at(span).label("is there a `}` missing before this?");
+            let error = Diagnostic::error(message).code("unclosed-block").at(span);
+            let (before, brace) = (Span { end: span.start, ..span }, "}\n");
+            let error = error.label("is there a `}` missing before this?").fix(before, brace);
             self.error(error.related(block, "opened here"));
         }
     }
@@ -24,7 +26,8 @@ impl Reader<'_, '_> {
     pub(super) fn reopen_block(&mut self, keyword: Span, found: u32) {
         let message = format!("this `}}` ends `{}` after {found}, but more of it follow", self.text(keyword));
         let brace = self.last_span();
-        self.error(Diagnostic::error(message).at(brace).label("is this `}` one too many?"));
+        let error = Diagnostic::error(message).code("extra-brace").at(brace).fix(brace, "");
+        self.error(error.label("is this `}` one too many?"));
         self.blocks.push(keyword);
     }
 
@@ -78,7 +81,11 @@ impl Reader<'_, '_> {
         };
         let list = || format!("known here: {}", known.join(", "));
         let help = self.advice(word, known.iter().copied()).unwrap_or_else(list);
-        self.error(Diagnostic::error(message).at(span).label("not known here").help(help));
+        let error = Diagnostic::error(message).code("unknown-word").at(span).label("not known here").help(help);
+        self.error(match self.meant(word, known.iter().copied()) {
+            Some(meant) => error.fix(span, meant),
+            None => error,
+        });
         while let Some(token) = self.peek() {
             match token.kind {
                 TokenKind::Close => return,
@@ -91,15 +98,19 @@ impl Reader<'_, '_> {
         }
     }
 
+    /// The known word that is meant by one that is none. A word of the language is hardly a slip of another, unless of its
+    /// capitals.
+    pub(super) fn meant<'w>(&self, word: &str, known: impl IntoIterator<Item = &'w str>) -> Option<&'w str> {
+        let near = did_you_mean(word, known).filter(|near| *near != word)?;
+        (dialects_of(word).is_none() || near.eq_ignore_ascii_case(word)).then_some(near)
+    }
+
     /// What may be meant by a word that stands in a wrong place.
     pub(super) fn advice<'w>(&self, word: &str, known: impl IntoIterator<Item = &'w str>) -> Option<String> {
-        let near = did_you_mean(word, known).filter(|near| *near != word);
-        let did_you_mean = |near: &str| format!("did you mean `{near}`?");
-        let Some(set) = dialects_of(word) else { return near.map(did_you_mean) };
-        // A word of the language is hardly a slip of another, unless of its capitals.
-        if let Some(near) = near.filter(|near| near.eq_ignore_ascii_case(word)) {
-            return Some(did_you_mean(near));
+        if let Some(near) = self.meant(word, known) {
+            return Some(format!("did you mean `{near}`?"));
         }
+        let set = dialects_of(word)?;
         let nodes = self.options.dialect == Dialect::F23;
         if nodes && !Dialect::F23.is_in(set) || !nodes && set == Dialect::F23 as u8 {
             return Some(format!("it is a word of {}", names(set)));

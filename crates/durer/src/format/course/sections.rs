@@ -73,7 +73,8 @@ impl Reader<'_, '_> {
                 self.error(Diagnostic::error("`{` without a keyword").at(span));
             } else if token.kind == TokenKind::Close {
                 let message = "this `}` closes nothing";
-                self.error(Diagnostic::error(message).at(span).help("is there a `}` too many before it?"));
+                let error = Diagnostic::error(message).code("extra-brace").at(span).fix(span, "");
+                self.error(error.help("is there a `}` too many before it?"));
             } else if !section(self, &word, span) {
                 self.unknown(&word, span, "at the top of a scene", known);
             } else {
@@ -81,7 +82,8 @@ impl Reader<'_, '_> {
                 let kind = if word.ends_with("Camera") { "Camera".to_string() } else { word.clone() };
                 if let Some((_, first)) = seen.iter().find(|(earlier, _)| *earlier == kind) {
                     let message = format!("this is another `{kind}`: the last counts, the others are dropped");
-                    let warning = Diagnostic::warning(message).at(span).related(*first, "the first is here");
+                    let warning = Diagnostic::warning(message).code("repeated").at(span);
+                    let warning = warning.related(*first, "the first is here");
                     self.diagnostics.push(warning);
                 } else {
                     seen.push((kind, span));
@@ -149,7 +151,9 @@ impl Reader<'_, '_> {
             Some((n, span)) if n != found => {
                 let message =
                     format!("`{count_word}` says {n}, but {found} {}", if found == 1 { "follows" } else { "follow" });
-                self.error(Diagnostic::error(message).at(span).help(format!("write `{count_word} {found}`")));
+                let fixed = format!("{count_word} {found}");
+                let error = Diagnostic::error(message).code("wrong-count").at(span).fix(span, &*fixed);
+                self.error(error.help(format!("write `{fixed}`")));
             }
             None if self.options.strict => {
                 self.error(Diagnostic::error(format!("`{name}` has no `{count_word}`")).at(keyword));

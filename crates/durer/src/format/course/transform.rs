@@ -73,7 +73,8 @@ impl Reader<'_, '_> {
         };
         if flat {
             let message = "a scale by 0 flattens space, which cannot be undone";
-            self.error(Diagnostic::error(message).at(span.to(self.last_span())));
+            let error = Diagnostic::error(message).code("flat-transform").at(span.to(self.last_span()));
+            self.error(error.help("what should keep its size along an axis has a scale of 1 there"));
         }
     }
 

@@ -239,7 +239,9 @@ fn transforms() {
     for scale in ["Scale -1 0 1", "Scale 0 0 0", "UniformScale 0"] {
         in_group(
             &format!("Transform {{ {scale} {ball} }}"),
-            &format!("2:13 error: a scale by 0 flattens space, which cannot be undone [{scale}]"),
+            &format!(
+                "2:13 error: a scale by 0 flattens space, which cannot be undone [{scale}] (what should keep its size along an axis has a scale of 1 there)"
+            ),
         );
     }
     in_group(
@@ -257,7 +259,7 @@ fn transforms() {
     );
     one_of_nodes(
         "Scene { Node { Transform { scale 1 0 1 } } }",
-        "1:28 error: a scale by 0 flattens space, which cannot be undone [scale 1 0 1]",
+        "1:28 error: a scale by 0 flattens space, which cannot be undone [scale 1 0 1] (what should keep its size along an axis has a scale of 1 there)",
     );
     // A scale that is small is none by 0.
     assert_eq!(findings(&format!("Group {{ Transform {{ Scale 1e-30 1e-30 1 {ball} }} }}"), Dialect::F04), [""; 0]);

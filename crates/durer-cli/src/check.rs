@@ -1,0 +1,141 @@
+//! `durer check`.
+
+mod after;
+mod json;
+mod mend;
+
+use crate::args::CheckArgs;
+use crate::job::{accel, job};
+use crate::open::load_options;
+use crate::output::say;
+use crate::{Failure, bad, output, report};
+use codespan_reporting::term::termcolor::{ColorChoice, StandardStream};
+use durer::check::{CHECKS, Finding, Subject, check, reported};
+use durer::diag::{Diagnostics, Files, Severity};
+use durer::load_text;
+use durer::source::Source;
+use std::io::IsTerminal;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+pub use after::{after_course, after_render};
+
+/// A scene and what was found.
+struct Checked {
+    path: PathBuf,
+    files: Files,
+    findings: Vec<Finding>,
+    /// Its dialect, where it could be read.
+    dialect: Option<&'static str>,
+    /// Whether a picture can be made of it.
+    readable: bool,
+}
+
+impl Checked {
+    fn count(&self, wanted: impl Fn(&Finding) -> bool) -> usize {
+        self.findings.iter().filter(|finding| wanted(finding)).count()
+    }
+}
+
+pub fn run(args: &CheckArgs) -> Result<(), Failure> {
+    if args.codes {
+        let width = CHECKS.iter().map(|check| check.code.len()).max().unwrap_or_default();
+        CHECKS.iter().for_each(|check| say(&format!("{:width$}  {}", check.code, check.about)));
+        return Ok(());
+    }
+    if args.output.is_some() && args.scenes.len() > 1 {
+        return Err(bad("--output is for one scene; without it each is mended in place"));
+    }
+    let mut all = Vec::with_capacity(args.scenes.len());
+    let mut unread = false;
+    for path in &args.scenes {
+        match one(path, args) {
+            Ok(checked) => all.push(checked),
+            // The others are checked all the same.
+            Err(failure) if args.scenes.len() > 1 => {
+                failure.report();
+                unread = true;
+            }
+            Err(failure) => return Err(failure),
+        }
+    }
+    if args.json {
+        say(&serde_json::to_string_pretty(&json::document(&all))?);
+    }
+    if unread || all.iter().any(|(checked, _)| !checked.readable) {
+        return Err(Failure::Input(None));
+    }
+    let serious = all.iter().any(|(checked, _)| checked.count(Finding::is_serious) > 0);
+    if serious { Err(Failure::Found) } else { Ok(()) }
+}
+
+/// Checks one scene, mends it where that is wanted, and says what was found.
+fn one(path: &Path, args: &CheckArgs) -> Result<(Checked, Vec<mend::Change>), Failure> {
+    let bytes = Source::folder(".").allow_outside().read_path(path, &path.display().to_string());
+    let bytes = bytes.map_err(report::unreadable)?;
+    let mut checked = look(path, bytes.clone(), args)?;
+    let mut changes = Vec::new();
+    if args.fix {
+        let target = args.output.as_deref().unwrap_or(path);
+        let (text, made) = mend::mend(&mut checked, bytes.clone(), args)?;
+        changes = made;
+        if !args.json {
+            changes.iter().for_each(|change| say(&change.line()));
+        }
+        if args.output.is_some() || text != bytes {
+            output::save(&[(target.to_path_buf(), text.to_vec())], args.json)?;
+        }
+    }
+    if !args.json {
+        print(&checked, args.fix);
+    }
+    Ok((checked, changes))
+}
+
+/// Reads and checks a text that is, or is to be, in a file.
+fn look(path: &Path, bytes: Arc<[u8]>, args: &CheckArgs) -> Result<Checked, Failure> {
+    let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
+    let mut options = load_options(&args.reading);
+    options.accel = accel(&args.job)?;
+    let loaded = load_text(path, bytes, &options, &mut files, &mut diagnostics);
+    let dialect = loaded.as_ref().map(|loaded| loaded.dialect.name());
+    let world = loaded.as_ref().and_then(|loaded| loaded.compile(&options, &mut files, &mut diagnostics));
+    let readable = world.is_some();
+    let findings = match (&loaded, &world) {
+        (Some(loaded), Some(world)) => {
+            let job = job(&args.job, loaded, false)?;
+            let (scene, dialect, files) = (&loaded.scene, loaded.dialect, &files);
+            check(&Subject { scene, world, dialect, files, job: &job, rejected: None }, &diagnostics)
+        }
+        _ => reported(&diagnostics),
+    };
+    Ok(Checked { path: path.into(), files, findings, dialect, readable })
+}
+
+/// Prints findings, and how many there are.
+fn print(checked: &Checked, mended: bool) {
+    let offer = |finding: &Finding| {
+        let mut diagnostic = finding.diagnostic.clone();
+        if !diagnostic.fix.is_empty() && !mended {
+            let help = diagnostic.help.get_or_insert_default();
+            *help += if help.is_empty() { "`--fix` mends it" } else { " (`--fix` does it)" };
+        }
+        diagnostic
+    };
+    let shown: Vec<_> = checked.findings.iter().map(offer).collect();
+    let color = if std::io::stdout().is_terminal() { ColorChoice::Auto } else { ColorChoice::Never };
+    report::print_to(StandardStream::stdout(color), &checked.files, &shown.iter().collect::<Vec<_>>());
+    let kinds = [(Severity::Error, "error"), (Severity::Warning, "warning"), (Severity::Note, "note")];
+    let counts = kinds.iter().filter_map(|(severity, word)| {
+        let count = checked.count(|finding| finding.diagnostic.severity == *severity);
+        (count > 0).then(|| format!("{count} {word}{}", if count == 1 { "" } else { "s" }))
+    });
+    let counts = counts.collect::<Vec<_>>().join(", ");
+    let found = match (counts.is_empty(), mended) {
+        (true, false) => "nothing found".to_string(),
+        (true, true) => "nothing is left".to_string(),
+        (false, true) => format!("{counts} left"),
+        (false, false) => counts,
+    };
+    say(&format!("{}: {found}", checked.path.display()));
+}

@@ -1,0 +1,83 @@
+//! `--fix`: one edit after the other, each kept only if it mends what it should.
+
+use super::{Checked, look};
+use crate::Failure;
+use crate::args::CheckArgs;
+use durer::check::{CHECKS, Finding, apply};
+use durer::diag::{Edit, Severity};
+use std::sync::Arc;
+
+/// At most so many findings of a scene are mended in one go.
+const MOST: usize = 100;
+
+/// A change that was made.
+pub struct Change {
+    pub code: &'static str,
+    /// Where, in the text as it was at that time.
+    pub place: serde_json::Value,
+    pub at: String,
+    pub old: String,
+    pub new: String,
+}
+
+impl Change {
+    /// In one line.
+    pub fn line(&self) -> String {
+        let Change { at, old, new, code, .. } = self;
+        let what = match (old.is_empty(), new.is_empty()) {
+            (true, _) => format!("put in `{}`", new.trim()),
+            (_, true) => format!("took out `{old}`"),
+            _ => format!("`{old}` is now `{new}`"),
+        };
+        format!("{at}: {what} [{code}]")
+    }
+}
+
+/// Mends what can be; `checked` is what is found in the new text.
+pub fn mend(checked: &mut Checked, mut text: Arc<[u8]>, args: &CheckArgs) -> Result<(Arc<[u8]>, Vec<Change>), Failure> {
+    let mut changes = Vec::new();
+    'again: for _ in 0..MOST {
+        for finding in checked.findings.iter().filter(|finding| !finding.diagnostic.fix.is_empty()) {
+            let repaired = apply(&text, 0, std::slice::from_ref(finding));
+            if repaired.mended.is_empty() {
+                continue;
+            }
+            let bytes: Arc<[u8]> = repaired.bytes.into();
+            let after = look(&checked.path, bytes.clone(), args)?;
+            if is_better(checked, &after, finding) {
+                changes.extend(finding.diagnostic.fix.iter().map(|edit| change(checked, finding, edit)));
+                (*checked, text) = (after, bytes);
+                continue 'again;
+            }
+        }
+        break;
+    }
+    Ok((text, changes))
+}
+
+/// Whether a finding is gone, and nothing worse has come: no error, and nothing that stands before it in the order of causes.
+fn is_better(before: &Checked, after: &Checked, finding: &Finding) -> bool {
+    let code = finding.diagnostic.code;
+    let errors = |checked: &Checked| checked.count(|f| f.diagnostic.severity == Severity::Error);
+    // One finding may stand for several that are alike.
+    let alike = |checked: &Checked| checked.count(|f| f.diagnostic.code == code);
+    if errors(after) < errors(before) {
+        return true;
+    }
+    let rank = |code: &str| CHECKS.iter().position(|check| check.code == code).unwrap_or(CHECKS.len());
+    let worse = |f: &Finding| f.whole && rank(f.diagnostic.code) < rank(code);
+    errors(after) == errors(before) && alike(after) < alike(before) && after.count(worse) <= before.count(worse)
+}
+
+fn change(checked: &Checked, finding: &Finding, edit: &Edit) -> Change {
+    let span = edit.span;
+    let bytes = checked.files.bytes(span.file).unwrap_or_default();
+    let (line, column) = checked.files.position(span).unwrap_or_default();
+    Change {
+        code: finding.diagnostic.code,
+        place: super::json::place(&checked.files, span),
+        at: format!("{}:{line}:{column}", checked.files.name(span.file).unwrap_or_default()),
+        old: String::from_utf8_lossy(&bytes[span.start as usize..span.end as usize]).into_owned(),
+        new: edit.text.clone(),
+    }
+}

@@ -1,0 +1,257 @@
+//! `durer check`: scenes broken by hand, and what it says of them.
+
+mod common;
+
+use common::{Place, Ran};
+use serde_json::Value;
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+
+/// Broken scenes, named by the code of what is wrong with them: `camera-away.backwards.txt`.
+fn broken() -> (PathBuf, Vec<String>) {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/broken");
+    let entries = std::fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap());
+    let mut names: Vec<String> = entries.filter(|name| name.ends_with(".txt")).collect();
+    names.sort();
+    assert!(names.len() >= 60, "{} scenes", names.len());
+    (folder, names)
+}
+
+fn code(name: &str) -> &str {
+    name.split('.').next().unwrap()
+}
+
+/// A place with all broken scenes and their meshes in it.
+fn with_broken() -> (Place, Vec<String>) {
+    let (folder, names) = broken();
+    let place = Place::new();
+    for entry in std::fs::read_dir(&folder).unwrap() {
+        let path = entry.unwrap().path();
+        place.put(&path.file_name().unwrap().to_string_lossy(), std::fs::read(&path).unwrap());
+    }
+    (place, names)
+}
+
+fn json(ran: &Ran) -> Value {
+    serde_json::from_str(&ran.out).unwrap_or_else(|error| panic!("{error}\n{}\n{}", ran.out, ran.err))
+}
+
+fn codes(scene: &Value) -> Vec<String> {
+    let findings = scene["findings"].as_array().unwrap();
+    findings.iter().map(|finding| finding["code"].as_str().unwrap().to_string()).collect()
+}
+
+#[test]
+fn the_cause_is_among_the_first_two() {
+    let (place, names) = with_broken();
+    let ran = place.gives(2, &format!("check --json {}", names.join(" ")));
+    let all = json(&ran);
+    assert_eq!(all["version"], 1);
+    let mut wrong = Vec::new();
+    for (name, scene) in names.iter().zip(all["scenes"].as_array().unwrap()) {
+        assert_eq!(scene["scene"], name.as_str());
+        let codes = codes(scene);
+        if !codes.iter().take(2).any(|found| found == code(name)) {
+            wrong.push(format!("{name}: {codes:?}"));
+        }
+        for finding in scene["findings"].as_array().unwrap() {
+            // A place is in a file that is there, and not beyond its end.
+            let span = &finding["place"];
+            if !span.is_null() {
+                let bytes = place.bytes(span["file"].as_str().unwrap());
+                assert!(span["end"].as_u64().unwrap() as usize <= bytes.len(), "{name}: {finding}");
+                assert!(span["line"].as_u64() >= Some(1) && span["column"].as_u64() >= Some(1), "{name}: {finding}");
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// Scenes that `--fix` must mend wholly: no warning is left.
+const MENDED: [&str; 32] = [
+    "bad-value.radius",
+    "camera-away.backwards",
+    "camera-away.f23",
+    "camera-away.orthographic",
+    "camera-away.point",
+    "color-range.bytes",
+    "color-range.light",
+    "extra-brace",
+    "hidden-behind.floor",
+    "hidden-behind.wall",
+    "light-behind.direction",
+    "light-divides",
+    "light-faint.attenuation",
+    "light-faint.f23",
+    "light-faint.falloff",
+    "light-twice",
+    "material-index.counted-from-1",
+    "missing-file.mesh",
+    "negative-color",
+    "no-material",
+    "radians",
+    "syntax.commas",
+    "too-bright",
+    "too-narrow.radians",
+    "too-narrow.size",
+    "too-small.size",
+    "turned-triangle",
+    "unclosed-block",
+    "unclosed-block.end",
+    "unknown-word.capital",
+    "unknown-word.typo",
+    "up-parallel",
+];
+
+#[test]
+fn what_is_mechanical_is_mended() {
+    let (place, names) = with_broken();
+    for name in &names {
+        let before = place.bytes(name);
+        let ran = place.run(&format!("check {name} --fix -o mended.txt --json"));
+        assert_eq!(place.bytes(name), before, "{name} itself was changed");
+        let scene = &json(&ran)["scenes"][0];
+        let mended = scene["mended"].as_array().unwrap();
+        // What was mended is not found again, by another run either.
+        let again = place.run("check mended.txt --json");
+        assert_eq!(again.code, ran.code, "{name}\n{}", ran.out);
+        let found = codes(&json(&again)["scenes"][0]);
+        assert_eq!(codes(scene), found, "{name}");
+        for change in mended {
+            assert!(!found.iter().any(|code| change["code"] == code.as_str()), "{name}: {change} {found:?}");
+        }
+        if MENDED.contains(&name.trim_end_matches(".txt")) {
+            assert_eq!(ran.code, Some(0), "{name}\n{}", ran.out);
+            assert!(!mended.is_empty(), "{name}");
+        }
+        assert_eq!(mended.is_empty(), place.bytes("mended.txt") == before, "{name}");
+    }
+}
+
+#[test]
+fn mending_in_place_says_what_it_did() {
+    let (place, _) = with_broken();
+    let ran = place.gives(0, "check wrong-count.group.txt --fix");
+    assert!(
+        ran.out.contains("wrong-count.group.txt:8:9: `numObjects 3` is now `numObjects 2` [wrong-count]"),
+        "{}",
+        ran.out
+    );
+    assert!(ran.out.contains("wrote wrong-count.group.txt"), "{}", ran.out);
+    assert!(ran.out.contains("nothing is left"), "{}", ran.out);
+    // There is nothing more to do, and nothing is written.
+    let ran = place.gives(0, "check wrong-count.group.txt --fix");
+    assert!(!ran.out.contains("wrote"), "{}", ran.out);
+    // What cannot be mended is told, and the scene stays as it is.
+    let before = place.bytes("camera-inside.sphere.txt");
+    let ran = place.gives(1, "check camera-inside.sphere.txt --fix");
+    assert!(ran.out.contains("2 warnings left"), "{}", ran.out);
+    assert_eq!(place.bytes("camera-inside.sphere.txt"), before);
+    // Where it cannot be written, nothing is changed.
+    let before = place.bytes("extra-brace.txt");
+    let ran = place.run("check extra-brace.txt --fix -o no/such/folder.txt");
+    assert_ne!(ran.code, Some(0));
+    assert!(ran.err.contains("no folder"), "{}", ran.err);
+    assert_eq!(place.bytes("extra-brace.txt"), before);
+    place.refused(2, "check extra-brace.txt scene.txt --fix -o one.txt", &["--output is for one scene"]);
+}
+
+#[test]
+fn the_exit_code_tells() {
+    let (place, _) = with_broken();
+    assert!(place.gives(0, "check scene.txt").out.contains("scene.txt: nothing found"));
+    // Notes are no reason to fail.
+    assert!(place.gives(0, "check material-index.counted-from-1.txt --fix").out.contains("nothing is left"));
+    assert!(place.gives(1, "check scene.txt light-inside.txt").out.contains("[light-inside]"));
+    assert!(place.gives(2, "check light-inside.txt no-camera.txt scene.txt").out.contains("scene.txt: nothing found"));
+    let ran = place.gives(2, "check nowhere.txt scene.txt");
+    assert!(ran.err.contains("nowhere.txt") && ran.out.contains("scene.txt: nothing found"), "{}{}", ran.err, ran.out);
+    place.refused(2, "check nowhere.txt", &["nowhere.txt"]);
+    place.refused(2, "check", &["SCENE"]);
+}
+
+#[test]
+fn options_decide_what_is_odd() {
+    let place = Place::new();
+    place.put(
+        "back.txt",
+        "PerspectiveCamera { center 0 0 5 direction 0 0 -1 up 0 1 0 angle 40 }
+Lights { numLights 1 DirectionalLight { direction 0 0 -1 color 1 1 1 } }
+Materials { numMaterials 1 PhongMaterial { diffuseColor 1 1 1 } }
+Group { numObjects 1 MaterialIndex 0 Triangle { vertex0 -1 0 0 vertex1 0 1 0 vertex2 1 0 0 } }
+",
+    );
+    place.gives(0, "check back.txt");
+    // The course's programs leave backs black; then it is the triangle's fault.
+    let ran = place.gives(1, "check back.txt --dialect f04");
+    assert!(ran.out.contains("[seen-from-behind]") && ran.out.contains("its back is left black"), "{}", ran.out);
+    place.gives(0, "check back.txt --dialect f04 --fix -o front.txt");
+    place.gives(0, "check front.txt --dialect f04");
+    place.gives(0, "check back.txt --dialect f04 --shade-back");
+
+    place.gives(0, "check scene.txt --depth-range 6 30");
+    for range in ["100 200", "0.1 1", "0 100000"] {
+        let ran = place.gives(1, &format!("check scene.txt --depth-range {range}"));
+        assert!(ran.out.contains("[depth-range]") && ran.out.contains("depths in the picture go from"), "{}", ran.out);
+    }
+    let ran = place.gives(1, "check scene.txt --bounces 0");
+    assert!(ran.out.contains("[no-bounces]"), "{}", ran.out);
+}
+
+#[test]
+fn a_picture_that_looks_wrong_is_told_of_after_the_render() {
+    let (place, _) = with_broken();
+    let render = |scene: &str, more: &str| {
+        place.gives(0, &format!("render {scene} -o p.png --size 40x30 --samples 2 {more}")).err
+    };
+    let err = render("scene.txt", "");
+    assert!(!err.contains("the picture"), "{err}");
+    let err = render("camera-away.point.txt", "");
+    assert!(err.contains("the picture is of one colour; `durer check` says:"), "{err}");
+    assert!(err.contains("[camera-away]") && err.contains("turn it: `direction"), "{err}");
+    let err = render("light-divides.txt", "");
+    assert!(err.contains("lacks samples") && err.contains("[light-divides]") && err.contains("sample 0"), "{err}");
+    let err = render("color-range.light.txt", "");
+    assert!(err.contains("the picture is mostly white") && err.contains("[color-range]"), "{err}");
+    let err = render("scene.txt", "--show depth --depth-range 100 200");
+    assert!(err.contains("[depth-range]"), "{err}");
+    assert_eq!(render("camera-away.point.txt", "--quiet"), "");
+
+    let course = |scene: &str| place.gives(0, &format!("course -input {scene} -output p.tga -size 30 30")).err;
+    assert!(!course("scene.txt").contains("the picture"));
+    // Light is for the students to see; a picture of one colour is nothing to be seen.
+    assert!(!course("color-range.light.txt").contains("the picture"));
+    assert!(course("camera-away.point.txt").contains("[camera-away]"));
+}
+
+#[test]
+fn every_code_is_listed_once() {
+    let place = Place::new();
+    let list = place.gives(0, "check --codes").out;
+    let listed: Vec<&str> = list.lines().map(|line| line.split(' ').next().unwrap()).collect();
+    let distinct: BTreeSet<&str> = listed.iter().copied().collect();
+    assert_eq!(listed.len(), distinct.len());
+    let (_, names) = broken();
+    let shown: BTreeSet<&str> = names.iter().map(|name| code(name)).collect();
+    assert!(shown.is_subset(&distinct), "{:?}", shown.difference(&distinct));
+    // Of nearly every code there is a broken scene; the rest need options, or are no mistakes of a scene.
+    let without: Vec<_> = distinct.difference(&shown).copied().collect();
+    let known = [
+        "all-missed",
+        "bad-file",
+        "comment",
+        "depth-range",
+        "dialect",
+        "empty-solid",
+        "foreign-word",
+        "mesh-file",
+        "no-bounces",
+        "no-falloff",
+        "not-finite",
+        "one-color",
+        "repeated",
+        "too-dark",
+        "unused-material",
+    ];
+    assert_eq!(without, known);
+}

@@ -1,0 +1,89 @@
+//! `durer check` is silent about scenes that are sound: our own, and the course's but for those that are truly odd.
+
+mod common;
+
+use common::{Place, corpus};
+use serde_json::Value;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+/// What is found in the course's scenes, and why it is right.
+const ODD: [(&str, &str, &str); 6] = [
+    ("f04/scene2_05_inside_sphere.txt", "camera-inside", "the camera is inside a sphere, as its name says"),
+    ("f04/scene2_05_inside_sphere.txt", "light-blocked", "with shadows, that sphere keeps all light out"),
+    ("f04/scene3_10_exponent_variations_back.txt", "light-behind", "it is lit from the back, as its name says"),
+    ("f04/scene8_10_transparent_vase.txt", "open-glass", "the vase is of glass, and open at its rim"),
+    ("f23/scene06_bunny_1k.txt", "missing-file", "the pictures of its sky are not there"),
+    ("f23/scene07_arch.txt", "missing-file", "the pictures of its sky are not there"),
+];
+
+/// Notes about the course's scenes: true, and harmless.
+const NOTES: [(&str, usize, &str); 5] = [
+    ("degenerate-mesh", 6, "vases and teapots have triangles without area at their poles"),
+    ("no-light", 7, "the first assignment has no lights yet"),
+    ("seen-from-behind", 1, "a triangle of `scene2_07_sphere_triangles` is turned"),
+    ("too-bright", 2, "two scenes are a tenth too bright"),
+    ("unused-material", 2, "two scenes have a material too many"),
+];
+
+fn scenes(folder: &Path) -> Vec<PathBuf> {
+    let mut scenes: Vec<PathBuf> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    // Splines have files of another kind.
+    let spline = |path: &Path| path.file_name().unwrap().to_string_lossy().starts_with("spline");
+    scenes.retain(|path| path.extension().is_some_and(|extension| extension == "txt") && !spline(path));
+    scenes.sort();
+    scenes
+}
+
+/// The findings of some scenes as (scene, severity, code).
+fn found(scenes: &[PathBuf], options: &str) -> Vec<(String, String, String)> {
+    let place = Place::new();
+    let mut command = place.command(&format!("check --json {options}"));
+    let output = command.args(scenes).output().unwrap();
+    let err = String::from_utf8_lossy(&output.stderr);
+    assert!(!err.contains("panicked"), "{err}");
+    let all: Value = serde_json::from_slice(&output.stdout).unwrap_or_else(|error| panic!("{error}: {err}"));
+    let listed = all["scenes"].as_array().unwrap();
+    assert_eq!(listed.len(), scenes.len());
+    let word = |value: &Value| value.as_str().unwrap().to_string();
+    let each = |scene: &Value| {
+        let path = PathBuf::from(word(&scene["scene"]));
+        let name: Vec<_> = path.iter().rev().take(2).map(|part| part.to_string_lossy().into_owned()).collect();
+        let name = format!("{}/{}", name[1], name[0]);
+        let findings = scene["findings"].as_array().unwrap().iter();
+        findings.map(|finding| (name.clone(), word(&finding["severity"]), word(&finding["code"]))).collect::<Vec<_>>()
+    };
+    listed.iter().flat_map(each).collect()
+}
+
+#[test]
+fn the_course_is_sound_but_for_what_is_truly_odd() {
+    let Some(course) = corpus() else { return };
+    let (mut serious, mut notes) = (Vec::new(), BTreeMap::<String, usize>::new());
+    let mut count = 0;
+    for dialect in ["f04", "f12a4", "f12a5", "f16", "f23"] {
+        let folder = course.join("scenes").join(dialect);
+        let scenes = scenes(&folder);
+        count += scenes.len();
+        for (scene, severity, code) in found(&scenes, &format!("--allow-outside --assets {}", folder.display())) {
+            match severity.as_str() {
+                "note" => *notes.entry(code).or_default() += 1,
+                _ => serious.push((scene, code)),
+            }
+        }
+    }
+    assert!(count > 120, "{count} scenes");
+    let expected: Vec<(String, String)> = ODD.iter().map(|row| (row.0.to_string(), row.1.to_string())).collect();
+    assert_eq!(serious, expected);
+    let expected: BTreeMap<String, usize> = NOTES.iter().map(|row| (row.0.to_string(), row.1)).collect();
+    assert_eq!(notes, expected);
+}
+
+#[test]
+fn our_own_scenes_are_sound() {
+    let own = scenes(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes"));
+    assert!(own.len() > 30, "{} scenes", own.len());
+    let found = found(&own, "");
+    let serious: Vec<_> = found.iter().filter(|finding| finding.1 != "note").collect();
+    assert!(serious.is_empty(), "{serious:?}");
+}

@@ -1,0 +1,285 @@
+//! Colours: of materials that show nothing, and numbers that are none of a colour's.
+
+use super::MOST_SOUGHT;
+use super::finding::{Finding, counted, percent, vector};
+use super::scout::Scout;
+use crate::diag::{Diagnostic, Severity, Span};
+use crate::dialect::Secondary;
+use crate::light::Light;
+use crate::material::Pattern;
+use crate::math::Color;
+use crate::scene::{Material as Written, Spanned};
+use crate::world::{Material, Phong};
+
+/// Colours that differ by less look alike.
+const ALIKE: f32 = 2.0 / 255.0;
+
+/// The Phong materials as written and as they are used, with their numbers.
+fn phongs<'s>(scout: &'s Scout) -> impl Iterator<Item = (u32, &'s Spanned<Written>, &'s Phong)> {
+    let compiled = scout.world().materials.iter();
+    let both = scout.subject.scene.materials.iter().zip(compiled).enumerate();
+    both.filter_map(|(i, (written, compiled))| match compiled {
+        Material::Phong(phong) => Some((i as u32, written, phong)),
+        Material::Solid(..) => None,
+    })
+}
+
+/// How many rays see a material, or one that is mixed of it.
+fn rays(scout: &Scout, material: u32) -> usize {
+    scout.material_rays()[material as usize]
+}
+
+/// That number for each material.
+pub(super) fn count_rays(scout: &Scout) -> Vec<usize> {
+    let materials = &scout.world().materials;
+    let (mut direct, mut all) = (vec![0; materials.len()], vec![0; materials.len()]);
+    scout.seen().for_each(|(_, seen)| direct[seen.material as usize] += 1);
+    for (whole, count) in direct.iter().enumerate().filter(|(_, count)| **count > 0) {
+        // A part that is in it several times counts once.
+        let (mut parts, mut known) = (vec![whole], vec![false; materials.len()]);
+        while let Some(part) = parts.pop() {
+            if std::mem::replace(&mut known[part], true) {
+                continue;
+            }
+            all[part] += count;
+            if let Material::Solid(solid, _) = &materials[part] {
+                parts.extend(solid.materials().map(|inner| inner as usize));
+            }
+        }
+    }
+    all
+}
+
+/// Whether nothing that is seen gives back any light.
+pub(super) fn all_black(scout: &Scout) -> bool {
+    let shows = |(i, _, phong): (u32, &Spanned<Written>, &Phong)| !is_black(phong) && rays(scout, i) > 0;
+    scout.seen().next().is_some() && !phongs(scout).any(shows)
+}
+
+fn is_black(phong: &Phong) -> bool {
+    let shown = phong.reflective + phong.transparent + phong.highlight.map_or(Color::ZERO, |h| h.0);
+    phong.diffuse == Color::ZERO && phong.texture.is_none() && phong.noise.is_none() && shown == Color::ZERO
+}
+
+/// Materials that give back no light at all.
+pub(super) fn black(scout: &Scout) -> Vec<Finding> {
+    let all = scout.seen().count();
+    let whole = all_black(scout);
+    // A part of a pattern may be black, unless all of it is.
+    let shown = |i: u32| if whole { rays(scout, i) > 0 } else { scout.seen().any(|(_, seen)| seen.material == i) };
+    let black: Vec<_> = phongs(scout).filter(|(i, _, phong)| is_black(phong) && shown(*i)).collect();
+    let say = |(i, written, _): &(u32, &Spanned<Written>, &Phong)| {
+        let diagnostic = Diagnostic::warning(format!("material {i} is black: it gives back no light"))
+            .label(format!("on {} of what is seen", percent(rays(scout, *i), all)))
+            .effect("what is made of it is black, however much light there is")
+            .help("`diffuseColor` is the share of light that it gives back: `0.8 0.8 0.8` is a light grey");
+        let diagnostic = scout.at_value(diagnostic, written.span, &["diffuseColor", "diffuse"]);
+        Finding::from(diagnostic).whole(whole)
+    };
+    black.iter().take(MOST_SOUGHT).map(say).collect()
+}
+
+/// Mirrors and glass in a picture without secondary rays.
+pub(super) fn no_bounces(scout: &Scout) -> Vec<Finding> {
+    if scout.subject.job.settings.bounces > 0 {
+        return Vec::new();
+    }
+    let bounces = |phong: &Phong| phong.reflective != Color::ZERO || phong.transparent != Color::ZERO;
+    // Where the highlight's colour is the mirror's too, only what would be black without mirroring is meant as a mirror.
+    let shared = matches!(scout.world().rules.secondary, Secondary::Specular | Secondary::SpecularFresnel);
+    let meant = |phong: &Phong| phong.fresnel || !shared || phong.diffuse.max_element() < 0.15;
+    let Some((i, written, phong)) =
+        phongs(scout).find(|(i, _, phong)| bounces(phong) && meant(phong) && rays(scout, *i) > 0)
+    else {
+        return Vec::new();
+    };
+    let diffuse = phong.diffuse.max_element();
+    let what = if phong.transparent == Color::ZERO { "mirrors" } else { "lets light through" };
+    let diagnostic = Diagnostic::warning(format!("material {i} {what}, but there are 0 levels of secondary rays"))
+        .at(written.span)
+        .effect(if diffuse < 0.1 { "it is black, or nearly so" } else { "only its own colour is seen" })
+        .help("ask for some: `--bounces 4` (in the course's programs `-bounces 4`)");
+    // Where that year's program makes none unless it is asked, nobody has left them out.
+    let usual = scout.world().rules.bounces == 0;
+    vec![Finding::from(if usual { Diagnostic { severity: Severity::Note, ..diagnostic } } else { diagnostic })]
+}
+
+/// Glass of an index that no glass has.
+pub(super) fn odd_index(scout: &Scout) -> Vec<Finding> {
+    let odd = |phong: &Phong| phong.transparent.max_element() > 0.0 && !(0.9..=4.0).contains(&phong.ior);
+    let Some((i, written, phong)) = phongs(scout).find(|(i, _, phong)| odd(phong) && rays(scout, *i) > 0) else {
+        return Vec::new();
+    };
+    let index = super::finding::number(phong.ior);
+    let diagnostic = Diagnostic::warning(format!("material {i} has an index of refraction of {index}"))
+        .effect("light is bent as by nothing that there is, and hardly gets through")
+        .help("water has 1.33, glass 1.5, diamond 2.4; it is the index inside, with 1 outside");
+    vec![Finding::from(scout.at_value(diagnostic, written.span, &["indexOfRefraction", "refractionIndex"]))]
+}
+
+/// A colour in the scene, where it is, and what it is called.
+struct Named {
+    color: Color,
+    block: Span,
+    fields: [&'static str; 2],
+    /// Greatest value that makes sense.
+    most: f32,
+}
+
+fn all_colors(scout: &Scout) -> Vec<Named> {
+    let mut colors = Vec::new();
+    for (_, written, _) in phongs(scout) {
+        let Written::Phong(phong, _) = &written.value else { continue };
+        let named = |color, fields| Named { color, block: written.span, fields, most: 15.0 };
+        colors.push(named(phong.diffuse_color, ["diffuseColor", "diffuse"]));
+        colors.push(named(phong.specular_color, ["specularColor", "specular"]));
+        colors.push(named(phong.reflective_color, ["reflectiveColor", "reflectiveColor"]));
+        colors.push(named(phong.transparent_color, ["transparentColor", "transparentColor"]));
+    }
+    for (written, light) in scout.subject.scene.lights.iter().flatten().zip(&scout.world().lights) {
+        // A light that fades may be as strong as it must.
+        let fades = matches!(light, Light::Point(point) if point.attenuation.is_some());
+        let most = if fades { f32::INFINITY } else { 20.0 };
+        colors.push(Named {
+            color: super::lights::color(light),
+            block: written.span,
+            fields: ["color", "color"],
+            most,
+        });
+    }
+    colors
+}
+
+/// Colours from 0 to 255.
+pub(super) fn too_large(scout: &Scout) -> Vec<Finding> {
+    let mut found = Vec::new();
+    let mut say = |color: Color, place: Option<Span>, block: Option<Span>| {
+        let bytes = color.max_element() <= 255.0;
+        let mended = if bytes { color / 255.0 } else { color / color.max_element() };
+        let diagnostic = Diagnostic::warning(format!("the colour {} is far beyond 1", vector(color)))
+            .effect("it is white, or of a pure colour, whatever the light")
+            .help(match bytes {
+                true => format!("colours go from 0 to 1, not to 255: `{}`", vector(mended)),
+                false => format!("colours go from 0 to 1: `{}`, say", vector(mended)),
+            });
+        let diagnostic = match place {
+            Some(place) => diagnostic.at(place).fix(place, vector(mended)),
+            None => Diagnostic { span: block, ..diagnostic },
+        };
+        found.push(Finding::from(diagnostic).whole(true));
+    };
+    let beyond = all_colors(scout).into_iter().filter(|named| named.color.max_element() > named.most);
+    for Named { color, block, fields, .. } in beyond.take(MOST_SOUGHT) {
+        say(color, scout.value(block, &fields), Some(block));
+    }
+    let background = &scout.subject.scene.background;
+    for (color, fields) in
+        [(background.color, ["color", "color"]), (background.ambient_light, ["ambientLight", "ambient_light"])]
+    {
+        if color.max_element() > 2.0 {
+            let block = background_span(scout);
+            say(color, block.and_then(|block| scout.value(block, &fields)), block);
+        }
+    }
+    found
+}
+
+/// Where the background is written: the scene does not keep it.
+pub(super) fn background_span(scout: &Scout) -> Option<Span> {
+    let file = scout.subject.scene.camera_span.file;
+    crate::format::course::place::section(scout.subject.files.bytes(file)?, file, "Background")
+}
+
+/// Colours below zero.
+pub(super) fn negative(scout: &Scout) -> Vec<Finding> {
+    let below = |named: &Named| named.color.min_element() < 0.0;
+    let say = |Named { color, block, fields, .. }: Named| {
+        let mended = color.abs();
+        let diagnostic = Diagnostic::warning(format!("the colour {} is below zero", vector(color)))
+            .effect("it takes light away: what it touches is darker, or black")
+            .help(format!("colours go from 0 to 1: `{}`", vector(mended)));
+        let diagnostic = match scout.value(block, &fields) {
+            Some(place) => diagnostic.at(place).fix(place, vector(mended)),
+            None => diagnostic.at(block),
+        };
+        Finding::from(diagnostic)
+    };
+    all_colors(scout).into_iter().filter(below).take(MOST_SOUGHT).map(say).collect()
+}
+
+/// Things that have the colour of what is behind them.
+pub(super) fn camouflaged(scout: &Scout) -> Vec<Finding> {
+    let world = scout.world();
+    if world.cube_map.is_some() {
+        return Vec::new();
+    }
+    let shown = |color: Color| color.clamp(Color::ZERO, Color::ONE);
+    let alike = |color: Color| (shown(color) - shown(world.background)).abs().max_element() < ALIKE;
+    let mut seen = scout.seen().peekable();
+    if seen.peek().is_none() || !seen.all(|(probe, _)| alike(probe.color)) {
+        return Vec::new();
+    }
+    let black = shown(world.background).max_element() < ALIKE;
+    let diagnostic = Diagnostic::warning("all that is seen has the colour of the background");
+    let diagnostic = match background_span(scout) {
+        Some(block) => scout.at_value(diagnostic, block, &["color"]),
+        None => diagnostic,
+    };
+    let diagnostic = diagnostic.effect("nothing can be told from it").help(match black {
+        true => "nothing is lit; another background colour would at least show the outlines",
+        false => "take another `color` for the background, or for the materials",
+    });
+    let finding = Finding::from(diagnostic);
+    // Where no light arrives, that is the cause, and this comes of it.
+    vec![if black { finding.last() } else { finding.whole(true) }]
+}
+
+/// Textures on things without texture coordinates.
+pub(super) fn no_coordinates(scout: &Scout) -> Vec<Finding> {
+    let textured = phongs(scout).filter(|(_, _, phong)| phong.texture.is_some());
+    let mut found = Vec::new();
+    for (i, written, _) in textured {
+        let bare = scout.seen().find(|(_, seen)| seen.material == i && !seen.has_uv);
+        if let Some((_, seen)) = bare {
+            let name = scout.object(seen.object);
+            let diagnostic =
+                Diagnostic::warning(format!("material {i} has a texture, but the {name} has no coordinates for it"))
+                    .related(scout.object_span(seen.object), "this has the material")
+                    .effect("the texture is not seen; `diffuseColor` is")
+                    .help("the mesh file needs `vt` lines, and faces as `f 1/1 2/2 3/3`");
+            found.push(Finding::from(scout.at_value(diagnostic, written.span, &["texture"])));
+        }
+    }
+    found
+}
+
+/// Materials that nothing is made of.
+pub(super) fn unused(scout: &Scout) -> Vec<Finding> {
+    let world = scout.world();
+    let mut used = vec![false; world.materials.len()];
+    for object in &world.objects {
+        match &object.geometry {
+            crate::world::Geometry::Solid(solid) => solid.parts().for_each(|part| used[part.material as usize] = true),
+            _ => used[object.material as usize] = true,
+        }
+    }
+    // A mixed material uses earlier ones.
+    for i in (0..world.materials.len()).rev() {
+        if let (Material::Solid(solid, _), true) = (&world.materials[i], used[i]) {
+            solid.materials().into_iter().for_each(|part| used[part as usize] = true);
+        }
+    }
+    let written = &scout.subject.scene.materials;
+    let unused: Vec<usize> = (0..written.len()).filter(|&i| !used[i]).collect();
+    let Some(&first) = unused.first() else { return Vec::new() };
+    let list: Vec<String> = unused.iter().take(8).map(ToString::to_string).collect();
+    let message = match unused.len() {
+        1 => format!("nothing is made of material {first}"),
+        n => format!("nothing is made of {}: {}", counted(n, "material", "materials"), list.join(", ")),
+    };
+    let diagnostic = Diagnostic::note(message)
+        .at(written[first].span)
+        .effect("it changes nothing in the picture")
+        .help("is a `MaterialIndex` wrong? They count from 0");
+    vec![Finding::from(diagnostic)]
+}

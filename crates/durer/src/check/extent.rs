@@ -1,0 +1,240 @@
+//! Sizes: things too small or too large to be seen, and fields of view to match.
+
+use super::MOST_SOUGHT;
+use super::finding::{Finding, counted, number, vector};
+use super::scout::Scout;
+use super::sight::Sight;
+use super::view::pixels;
+use crate::camera::Camera;
+use crate::diag::{Diagnostic, Span};
+use crate::math::Aabb;
+use crate::scene::{MatrixOp, Node, Object};
+
+/// What spans fewer pixels cannot be recognised.
+const FEWEST_PIXELS: f32 = 6.0;
+/// Of more objects, some may be out of sight.
+const FEW_OBJECTS: usize = 8;
+/// Beyond this ratio of sizes something is out of scale.
+const OUT_OF_SCALE: f32 = 3e3;
+
+/// All that has an end spans but a few pixels.
+pub(super) fn too_small(scout: &Scout) -> Vec<Finding> {
+    let bounds = scout.world().bounds();
+    let Some(size) = Some(bounds).filter(|b| !b.is_empty()).and_then(|bounds| pixels(scout, bounds)) else {
+        return Vec::new();
+    };
+    let empty = scout.seen().next().is_none();
+    if size >= FEWEST_PIXELS || !empty && !scout.sights().contains(&Sight::Seen) {
+        return Vec::new();
+    }
+    let (span, larger) = (scout.subject.scene.camera_span, scout.larger());
+    let wanted = 0.6 * larger / size.max(1e-6);
+    let diagnostic =
+        Diagnostic::warning(format!("all things together are {} pixels wide in a picture of {larger}", number(size)))
+            .effect(if empty {
+                "every ray misses them; the whole picture is background"
+            } else {
+                "next to nothing is seen of them"
+            });
+    let (diagnostic, field) = match &scout.world().camera {
+        Camera::Perspective(camera) if camera.angle > 100.0 => {
+            (diagnostic.help("take a smaller field of view, 40 degrees, say, or go nearer"), "angle")
+        }
+        Camera::Orthographic(camera) => {
+            let help = format!("take a smaller picture: `size {}`, say", number(camera.size / wanted));
+            let diagnostic = diagnostic.fix_at(scout.value(span, &["size"]), number(camera.size / wanted));
+            (diagnostic.help(help), "size")
+        }
+        _ => {
+            let help = format!("go about {} times nearer, or make them that much larger", number(wanted));
+            (diagnostic.help(help), "center")
+        }
+    };
+    let diagnostic = scout.at_value(diagnostic, span, &[field, if field == "angle" { "fov" } else { field }]);
+    vec![Finding::from(diagnostic).whole(true)]
+}
+
+/// The picture shows a tiny part of things: an angle in radians, say.
+pub(super) fn too_narrow(scout: &Scout) -> Vec<Finding> {
+    let (bounds, span, larger) = (scout.world().bounds(), scout.subject.scene.camera_span, scout.larger());
+    // What is seen whole is not seen too near.
+    let seen = scout.world().objects.iter().zip(scout.sights()).filter(|(_, sight)| **sight == Sight::Seen);
+    let mut sizes = seen.filter_map(|(object, _)| pixels(scout, object.bounds()?));
+    if bounds.is_empty() || sizes.any(|size| size < 3.0 * larger) {
+        return Vec::new();
+    }
+    let radians = |angle: f32| angle <= std::f32::consts::PI;
+    match &scout.world().camera {
+        Camera::Perspective(camera) if camera.angle < 5.0 => {
+            // A telescope is there to see far things.
+            let Some(size) = pixels(scout, bounds).filter(|size| *size > 8.0 * larger) else { return Vec::new() };
+            let degrees = camera.angle.to_degrees();
+            let mut diagnostic =
+                Diagnostic::warning(format!("the field of view is {} degrees only", number(camera.angle)))
+                    .effect(format!("less than a {}th of the scene's width is seen", number((size / larger).floor())))
+                    .help("angles are in degrees: 30 to 60 are usual");
+            if let Some(place) = scout.value(span, &["angle", "fov"]).filter(|_| radians(camera.angle)) {
+                let whole = degrees.round().clamp(20.0, 100.0);
+                diagnostic = diagnostic.fix(place, number(whole)).help(format!(
+                    "angles are in degrees; in radians it would be {}: write `{whole}`, say",
+                    number(degrees)
+                ));
+            }
+            vec![Finding::from(scout.at_value(diagnostic, span, &["angle", "fov"])).whole(true)]
+        }
+        Camera::Orthographic(camera) => {
+            let Some(size) = pixels(scout, bounds).filter(|size| *size > 30.0 * larger) else { return Vec::new() };
+            let wanted = number(1.2 * camera.size * size / larger);
+            let diagnostic = Diagnostic::warning(format!("the picture is {} wide only", number(camera.size)))
+                .effect(format!("less than a {}th of the scene's width is seen", number((size / larger).floor())))
+                .help(format!("`size {wanted}` shows all of it"));
+            let diagnostic = diagnostic.fix_at(scout.value(span, &["size"]), wanted);
+            vec![Finding::from(scout.at_value(diagnostic, span, &["size"])).whole(true)]
+        }
+        _ => Vec::new(),
+    }
+}
+
+/// Objects far larger or smaller than most.
+pub(super) fn out_of_scale(scout: &Scout) -> Vec<Finding> {
+    let world = scout.world();
+    let sized = |(i, object): (usize, &crate::world::Object)| {
+        let bounds: Aabb = object.bounds().filter(|bounds| !bounds.is_empty())?;
+        Some((i as u32, bounds.size().max_element())).filter(|(_, size)| *size > 0.0)
+    };
+    let mut sizes: Vec<(u32, f32)> = world.objects.iter().enumerate().filter_map(sized).collect();
+    sizes.sort_by(|a, b| a.1.total_cmp(&b.1));
+    if sizes.len() < 2 {
+        return Vec::new();
+    }
+    let middle = sizes[sizes.len() / 2].1;
+    let mut found = Vec::new();
+    for &(object, size) in &sizes {
+        let ratio = if size > middle { size / middle } else { middle / size };
+        // Of two, either may be wrong: the small one is not seen, the large one hides.
+        if ratio < OUT_OF_SCALE || found.len() >= MOST_SOUGHT {
+            continue;
+        }
+        let word = if size > middle { "larger" } else { "smaller" };
+        let diagnostic = Diagnostic::warning(format!(
+            "the {} is {} times {word} than most things here",
+            scout.object(object),
+            number(ratio)
+        ))
+        .at(scout.object_span(object))
+        .effect(match scout.sights()[object as usize] {
+            Sight::Seen if size > middle => "it may hide or hold the others",
+            Sight::Seen => "hardly a pixel shows it",
+            _ => "it is not seen",
+        })
+        .help(format!("its largest side is {}; look at its size and the `Scale` around it", number(size)));
+        let shown = scout.seen().filter(|(_, seen)| seen.object == object).count();
+        found.push(Finding::from(diagnostic).whole(shown * 2 > scout.probes.len()));
+    }
+    found
+}
+
+/// Objects of which nothing is in the picture.
+pub(super) fn unseen(scout: &Scout) -> Vec<Finding> {
+    let sights = scout.sights();
+    // In a large scene something is always beside the picture or behind something.
+    let mut found = far_away(scout);
+    let missing = sights.iter().filter(|sight| matches!(sight, Sight::Outside | Sight::Hidden(_))).count();
+    if sights.len() > FEW_OBJECTS && missing * 3 < sights.len() {
+        return found;
+    }
+    let out: Vec<u32> = (0..sights.len() as u32).filter(|&i| sights[i as usize] == Sight::Outside).collect();
+    let hidden: Vec<(u32, u32)> = (0..sights.len() as u32)
+        .filter_map(|i| match sights[i as usize] {
+            Sight::Hidden(by) => Some((i, by)),
+            _ => None,
+        })
+        .collect();
+    if let Some(&first) = out.first().filter(|_| found.is_empty()) {
+        let message = match out.len() {
+            1 => format!("the {} is not in the picture", scout.object(first)),
+            n => format!(
+                "{} are not in the picture; the first is the {}",
+                counted(n, "object", "objects"),
+                scout.object(first)
+            ),
+        };
+        let diagnostic = Diagnostic::note(message)
+            .at(scout.object_span(first))
+            .effect("the camera does not look where it is")
+            .help("look at its place and the transforms around it");
+        found.push(Finding::from(diagnostic));
+    }
+    if let Some(&(first, by)) = hidden.first() {
+        let more =
+            if hidden.len() == 1 { String::new() } else { format!("; {} more are hidden too", hidden.len() - 1) };
+        let diagnostic =
+            Diagnostic::note(format!("the {} is hidden by the {}{more}", scout.object(first), scout.object(by)))
+                .at(scout.object_span(first))
+                .related(scout.object_span(by), "in front of it, or around it")
+                .effect("nothing of it is seen")
+                .help("is it inside the other, or on the wrong side of it?");
+        found.push(Finding::from(diagnostic));
+    }
+    found
+}
+
+/// Objects far from all that is seen: thrown away by a transform, say.
+fn far_away(scout: &Scout) -> Vec<Finding> {
+    let both = || scout.world().objects.iter().zip(scout.sights()).enumerate();
+    let seen = both().filter(|(_, (_, sight))| **sight == Sight::Seen).filter_map(|(_, (object, _))| object.bounds());
+    let core = seen.fold(Aabb::EMPTY, Aabb::union);
+    let far = |bounds: Aabb| (bounds.center() - core.center()).length() > 10.0 * core.size().length();
+    let lost = both().find(|(_, (object, sight))| **sight == Sight::Outside && object.bounds().is_some_and(far));
+    let Some((number, (object, _))) = lost.filter(|_| !core.is_empty()) else { return Vec::new() };
+    let place = object.bounds().map_or_else(String::new, |bounds| vector(bounds.center()));
+    let diagnostic =
+        Diagnostic::warning(format!("the {} is far from everything else, at {place}", scout.object(number as u32)))
+            .at(object.span)
+            .effect("it is not in the picture")
+            .help("look at its place and the transforms around it");
+    vec![Finding::from(diagnostic)]
+}
+
+/// Rotations by less than a turn in radians, which are fractions of pi.
+pub(super) fn radians(scout: &Scout) -> Vec<Finding> {
+    let mut angles = Vec::new();
+    if let Some(root) = &scout.subject.scene.root {
+        root.objects.iter().for_each(|object| rotations(object, &mut angles));
+    }
+    let fraction = |angle: f32| {
+        let parts = angle.abs() / std::f32::consts::PI * 12.0;
+        angle.abs() > 0.1 && angle.abs() < 6.5 && angle.fract() != 0.0 && (parts - parts.round()).abs() < 0.01
+    };
+    let Some((span, words, angle)) = angles.into_iter().find(|(.., angle)| fraction(*angle)) else { return Vec::new() };
+    let degrees = number(angle.to_degrees().round());
+    let diagnostic = Diagnostic::warning(format!("a rotation by {angle} degrees looks like radians"))
+        .effect("this object is hardly turned")
+        .help(format!("angles are in degrees: {degrees}"));
+    let value = scout.value(span, &words).filter(|value| scout.text(*value).parse() == Ok(angle));
+    vec![Finding::from(match value {
+        Some(value) => diagnostic.at(value).fix(value, degrees),
+        None => diagnostic.at(span),
+    })]
+}
+
+/// A rotation: where its transform is written, what it may be called, and its angle.
+type Rotation = (Span, [&'static str; 2], f32);
+
+fn rotations(object: &Object, angles: &mut Vec<Rotation>) {
+    match &object.node {
+        Node::Transform(ops, inner) => {
+            angles.extend(ops.iter().filter_map(|op| match op {
+                MatrixOp::XRotate(angle) => Some((object.span, ["XRotate", "x_rotate"], *angle)),
+                MatrixOp::YRotate(angle) => Some((object.span, ["YRotate", "y_rotate"], *angle)),
+                MatrixOp::ZRotate(angle) => Some((object.span, ["ZRotate", "z_rotate"], *angle)),
+                MatrixOp::Rotate(_, angle) => Some((object.span, ["Rotate", "rotate"], *angle)),
+                _ => None,
+            }));
+            rotations(inner, angles);
+        }
+        Node::Group(group) => group.objects.iter().for_each(|inner| rotations(inner, angles)),
+        Node::Solid(_, parts) => parts.iter().for_each(|part| rotations(part, angles)),
+        _ => {}
+    }
+}

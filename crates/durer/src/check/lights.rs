@@ -1,0 +1,367 @@
+//! What each light does to what is seen, and why it does nothing.
+
+use super::finding::{Finding, number, percent, vector};
+use super::scout::{Lit, Scout};
+use super::solid::around;
+use crate::camera::Lens;
+use crate::diag::{Diagnostic, Severity, Span};
+use crate::dialect::Dialect;
+use crate::format::course::place::{block, section};
+use crate::light::{Light, PointLight};
+use crate::math::{Color, Ray, Vec3};
+
+/// What adds less than this to a colour is not seen in eight bits.
+pub(super) const VISIBLE: f32 = 1.0 / 512.0;
+/// Of more lights, the rest is taken to work.
+const MOST_JUDGED: usize = 500;
+/// A light that adds something to a smaller share of what is seen might as well add nothing.
+const SHARE: f32 = 0.002;
+
+/// What a light does to what is seen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Verdict {
+    /// It adds to the picture, or there is nothing that it could add to.
+    Works,
+    /// It has no colour.
+    Black,
+    /// It divides by zero, or by less.
+    Divides,
+    /// It is inside this object.
+    Inside(u32),
+    /// This object, more than others, keeps it off what faces it.
+    Blocked(u32),
+    /// What is seen faces away from it.
+    Behind,
+    /// At most so much of it arrives.
+    Faint(f32),
+    /// What it shines on has none of its colours.
+    Cancelled,
+}
+
+/// The verdict on each light of the world.
+pub(super) fn verdicts(scout: &Scout) -> Vec<Verdict> {
+    let judged = |light| if light < MOST_JUDGED { verdict(scout, light) } else { Verdict::Works };
+    (0..scout.world().lights.len()).map(judged).collect()
+}
+
+fn verdict(scout: &Scout, number: usize) -> Verdict {
+    let light = &scout.world().lights[number];
+    let all: Vec<&Lit> = scout.seen().filter_map(|(_, seen)| seen.by(number)).collect();
+    if color(light) == Color::ZERO {
+        return Verdict::Black;
+    }
+    let odd =
+        |lit: &&Lit| !lit.arrives.is_finite() || lit.arrives.min_element() < 0.0 && color(light).min_element() >= 0.0;
+    if divisor(light) == Some(Vec3::ZERO) || all.iter().any(odd) {
+        return Verdict::Divides;
+    }
+    let visible = all.iter().filter(|lit| lit.adds.abs().max_element() > VISIBLE).count();
+    if all.is_empty() || visible as f32 > SHARE * all.len() as f32 {
+        return Verdict::Works;
+    }
+    if let Light::Point(point) = light
+        && let Some(&object) =
+            around(scout.world(), point.position).iter().find(|&&object| keeps_light(scout, object, &all))
+    {
+        return Verdict::Inside(object);
+    }
+    let facing: Vec<&&Lit> = all.iter().filter(|lit| lit.cosine > 1e-3).collect();
+    let blocked: Vec<u32> = facing.iter().filter_map(|lit| lit.blocker).collect();
+    if facing.len() - blocked.len() > all.len() / 50 {
+        let most = facing.iter().map(|lit| lit.arrives.abs().max_element()).fold(0.0, f32::max);
+        return if most < 4.0 * VISIBLE { Verdict::Faint(most) } else { Verdict::Cancelled };
+    }
+    match most_common(&blocked).filter(|_| blocked.len() * 5 > all.len()).or_else(|| behind_plane(scout, light)) {
+        Some(object) => Verdict::Blocked(object),
+        None => Verdict::Behind,
+    }
+}
+
+/// The seen plane that is between the camera and a light, if one is first of all.
+fn behind_plane(scout: &Scout, light: &Light) -> Option<u32> {
+    let Light::Point(point) = light else { return None };
+    let world = scout.world();
+    let way = world.camera.pose().center - point.position;
+    let hit = world.closest(&Ray { t_max: 1.0, ..Ray::new(point.position, way) }, &mut ())?;
+    let is_seen = scout.seen().any(|(_, seen)| seen.object == hit.object);
+    (is_seen && world.objects[hit.object as usize].bounds().is_none()).then_some(hit.object)
+}
+
+/// Whether an object around a light lets nothing out: it blocks something, or nothing that is seen faces the light.
+fn keeps_light(scout: &Scout, object: u32, all: &[&Lit]) -> bool {
+    let shadows = scout.subject.job.settings.shadows;
+    let blocks = all.iter().any(|lit| lit.blocker == Some(object));
+    blocks || !shadows || all.iter().all(|lit| lit.cosine <= 1e-3)
+}
+
+fn most_common(objects: &[u32]) -> Option<u32> {
+    let mut sorted = objects.to_vec();
+    sorted.sort_unstable();
+    sorted.chunk_by(|a, b| a == b).max_by_key(|same| same.len()).map(|same| same[0])
+}
+
+pub(super) fn color(light: &Light) -> Color {
+    match light {
+        Light::Directional(light) => light.color,
+        Light::Point(light) => light.color,
+    }
+}
+
+/// What the light of a point is divided by: its three factors.
+fn divisor(light: &Light) -> Option<Vec3> {
+    match light {
+        Light::Point(PointLight { attenuation, .. }) => *attenuation,
+        Light::Directional(_) => None,
+    }
+}
+
+/// Where a light is written.
+pub(super) fn place(scout: &Scout, light: usize) -> Option<Span> {
+    scout.subject.scene.lights.iter().flatten().nth(light).map(|light| light.span)
+}
+
+/// Whether no light adds anything to what is seen.
+pub(super) fn all_fail(scout: &Scout) -> bool {
+    let verdicts = scout.verdicts();
+    !verdicts.is_empty() && verdicts.iter().all(|verdict| *verdict != Verdict::Works)
+}
+
+/// A warning about a light that adds nothing.
+fn useless(scout: &Scout, light: usize, message: String) -> Option<(Diagnostic, Span)> {
+    let span = place(scout, light)?;
+    let effect = match (all_fail(scout), scout.world().ambient.max_element() > VISIBLE) {
+        (true, false) => "no light reaches what is seen: all surfaces are black",
+        (true, true) => "no light reaches what is seen: surfaces show ambient light alone, flat and dark",
+        (false, _) => "it adds nothing to the picture",
+    };
+    Some((Diagnostic::warning(message).at(span).effect(effect), span))
+}
+
+/// The findings of one kind, each made of a light's number and its verdict.
+fn each(scout: &Scout, find: impl Fn(usize, Verdict) -> Option<Diagnostic>) -> Vec<Finding> {
+    let whole = all_fail(scout);
+    let verdicts = scout.verdicts().iter().enumerate();
+    verdicts.filter_map(|(light, verdict)| Some(Finding::from(find(light, *verdict)?).whole(whole))).collect()
+}
+
+pub(super) fn inside(scout: &Scout) -> Vec<Finding> {
+    each(scout, |light, verdict| {
+        let Verdict::Inside(object) = verdict else { return None };
+        let name = scout.object(object);
+        let (diagnostic, span) = useless(scout, light, format!("this light is inside the {name}"))?;
+        let bounds = scout.world().objects[object as usize].bounds()?;
+        let above = Vec3::new(bounds.center().x, bounds.max.y + bounds.size().max_element(), bounds.center().z);
+        let diagnostic =
+            scout.at_value(diagnostic, span, &["position"]).related(scout.object_span(object), "around the light");
+        Some(diagnostic.help(format!("move it out: `position {}` is above it, say", vector(above))))
+    })
+}
+
+pub(super) fn blocked(scout: &Scout) -> Vec<Finding> {
+    each(scout, |light, verdict| {
+        let Verdict::Blocked(object) = verdict else { return None };
+        let name = scout.object(object);
+        let message = format!("the {name} keeps this light off all that is seen");
+        let (diagnostic, _) = useless(scout, light, message)?;
+        let help = match scout.world().objects[object as usize].bounds() {
+            None => "the light is behind the plane: move it to the other side",
+            Some(_) => "move the light, or what is in its way",
+        };
+        Some(diagnostic.related(scout.object_span(object), "in the way").help(help))
+    })
+}
+
+/// Where lights together reach a smaller share of what is seen, most of it is in the dark.
+const MOSTLY_DARK: f32 = 0.33;
+/// And here nearly all.
+const NEARLY_ALL_DARK: f32 = 0.25;
+
+/// Lights that do reach something, but little, since most of what is seen faces away from them.
+fn mostly_dark(scout: &Scout) -> Vec<Finding> {
+    let working: Vec<usize> = (0..scout.verdicts().len()).filter(|&i| scout.verdicts()[i] == Verdict::Works).collect();
+    let (mut all, mut reached, mut away) = (0, 0, 0);
+    for (_, seen) in scout.seen() {
+        all += 1;
+        let bright = |lit: &Lit| lit.adds.abs().max_element() > VISIBLE;
+        reached += usize::from(seen.lit.iter().any(bright));
+        away += usize::from(seen.lit.iter().all(|lit| lit.cosine <= 1e-3));
+    }
+    // What is black of itself, or in shadow, tells nothing of where the lights are.
+    let reaches = reached as f32 > MOSTLY_DARK * all as f32;
+    if all == 0 || working.is_empty() || reaches || away * 2 < all - reached || super::colors::all_black(scout) {
+        return Vec::new();
+    }
+    let Some(span) = place(scout, working[0]) else { return Vec::new() };
+    let which = if working.len() == 1 { "this light" } else { "the lights" };
+    let message = format!("{} of what is seen faces away from {which}", percent(away, all));
+    let mut diagnostic = Diagnostic::warning(message)
+        .effect(match scout.world().ambient.max_element() > VISIBLE {
+            true => "most of the picture shows ambient light alone, flat and dark",
+            false => "most of the picture is black",
+        })
+        .help("the light is behind what is seen: `direction` is where light goes, `position` where it is");
+    diagnostic = scout.at_value(diagnostic, span, &["direction", "position"]);
+    // All lights turned round together are meant to be where they came from.
+    for &light in &working {
+        let Some(span) = place(scout, light) else { continue };
+        let written =
+            scout.subject.scene.lights.as_ref().and_then(|lights| lights.get(light)).map(|light| &light.value);
+        if let (Some(Light::Directional(written)), Some(value)) = (written, scout.value(span, &["direction"])) {
+            diagnostic = diagnostic.fix(value, vector(-written.direction));
+        }
+    }
+    vec![Finding::from(diagnostic).whole((reached as f32) < NEARLY_ALL_DARK * all as f32)]
+}
+
+pub(super) fn behind(scout: &Scout) -> Vec<Finding> {
+    let mut found = mostly_dark(scout);
+    found.extend(each(scout, |light, verdict| {
+        if verdict != Verdict::Behind {
+            return None;
+        }
+        let lit: Vec<&Lit> = scout.seen().filter_map(|(_, seen)| seen.by(light)).collect();
+        let away = lit.iter().filter(|lit| lit.cosine <= 1e-3).count();
+        let message = format!("this light is behind what is seen: {} of it faces away", percent(away, lit.len()));
+        let (diagnostic, span) = useless(scout, light, message)?;
+        let diagnostic = match &scout.subject.scene.lights.as_ref()?.get(light)?.value {
+            Light::Directional(written) => {
+                let turned = vector(-written.direction);
+                let help = format!(
+                    "`direction` is where the light goes, not where it is: `direction {turned}` lights this side"
+                );
+                let fixed = diagnostic.fix_at(scout.value(span, &["direction"]), turned);
+                scout.at_value(fixed, span, &["direction"]).help(help)
+            }
+            Light::Point(_) => {
+                let eye = scout.world().camera.pose().center;
+                let help = format!("move it to the camera's side: the camera is at {}", vector(eye));
+                scout.at_value(diagnostic, span, &["position"]).help(help)
+            }
+        };
+        // One of several lights may well be meant for another side.
+        Some(if all_fail(scout) { diagnostic } else { Diagnostic { severity: Severity::Note, ..diagnostic } })
+    }));
+    found
+}
+
+pub(super) fn faint(scout: &Scout) -> Vec<Finding> {
+    each(scout, |light, verdict| {
+        let Verdict::Faint(most) = verdict else { return None };
+        let message = format!("this light fades to {} before it arrives", number(most));
+        let (diagnostic, span) = useless(scout, light, message)?;
+        let factor = 0.8 / most.max(1e-30);
+        let written = &scout.subject.scene.lights.as_ref()?.get(light)?.value;
+        let Light::Point(point) = written else {
+            let color = color(written) * factor;
+            let help = format!("it is {} times too weak: `color {}`, say", number(factor), vector(color));
+            return Some(scout.at_value(diagnostic, span, &["color"]).help(help));
+        };
+        // What fades it is wrong, or else its colour.
+        let value = scout.value(span, &["attenuation", "falloff"]);
+        let (value, text, field) = match (value, point.falloff, point.attenuation) {
+            (Some(value), Some(falloff), _) => (value, number(falloff / factor), scout.text(before(scout, value))),
+            (Some(value), None, Some(a)) => {
+                // The constant keeps a light bright near by: it only grows to what it should have been.
+                let scaled = a / factor;
+                (value, vector(Vec3::new(scaled.x.max(a.x.min(1.0)), scaled.y, scaled.z)), "attenuation".into())
+            }
+            // The dialect fades light by itself, unless something else is written.
+            _ => match (scout.value(span, &["color"])?, divisor(&scout.world().lights[light])) {
+                (color, Some(a)) if scout.subject.dialect == Dialect::F23 => {
+                    let after = Span { start: color.end, ..color };
+                    let text = format!(" attenuation {}", number(a.z / factor));
+                    let help =
+                        format!("without `attenuation` it is {} here: write `{}`, say", number(a.z), text.trim());
+                    return Some(diagnostic.at(color).fix(after, text).help(help));
+                }
+                (color, _) => (color, vector(point.color * factor), "color".into()),
+            },
+        };
+        let help = format!("it is about {} times too weak: `{field} {text}`, say", number(factor));
+        Some(diagnostic.at(value).fix(value, text).help(help))
+    })
+}
+
+/// The word before a value.
+fn before(scout: &Scout, value: Span) -> Span {
+    let bytes = scout.subject.files.bytes(value.file).unwrap_or_default();
+    let head = &bytes[..value.start as usize];
+    let end = head.iter().rposition(|b| !b.is_ascii_whitespace()).map_or(0, |at| at + 1);
+    let start = head[..end].iter().rposition(u8::is_ascii_whitespace).map_or(0, |at| at + 1);
+    Span { file: value.file, start: start as u32, end: end as u32 }
+}
+
+pub(super) fn cancelled(scout: &Scout) -> Vec<Finding> {
+    each(scout, |light, verdict| {
+        if verdict != Verdict::Cancelled || super::colors::all_black(scout) {
+            return None;
+        }
+        let message = "what this light shines on gives back none of its colour".to_string();
+        let (diagnostic, span) = useless(scout, light, message)?;
+        let color = vector(color(&scout.world().lights[light]));
+        let help = format!("light and surface are multiplied, channel by channel: this light is {color}");
+        let material = scout.seen().next().map(|(_, seen)| seen.material)?;
+        let diagnostic = match scout.subject.scene.materials.get(material as usize) {
+            Some(material) => diagnostic.related(material.span, "a material that it shines on"),
+            None => diagnostic,
+        };
+        Some(scout.at_value(diagnostic, span, &["color"]).help(help))
+    })
+}
+
+pub(super) fn divides(scout: &Scout) -> Vec<Finding> {
+    let found = scout.verdicts().iter().enumerate().filter(|(_, verdict)| **verdict == Verdict::Divides);
+    found
+        .filter_map(|(light, _)| {
+            let span = place(scout, light)?;
+            let divisor = divisor(&scout.world().lights[light]).unwrap_or_default();
+            let zero = divisor == Vec3::ZERO;
+            let message = match zero {
+                true => "this light divides by zero: its attenuation is 0 0 0".to_string(),
+                false => format!("this light is divided by numbers that are not above zero: {}", vector(divisor)),
+            };
+            let value = scout.value(span, &["attenuation", "falloff"]);
+            let diagnostic = Diagnostic::warning(message)
+                .effect(match zero {
+                    true => "what it shines on is no number, and is left out of the picture: black, or specks",
+                    false => "it takes light away, or what it shines on is no number: black",
+                })
+                .help("`attenuation 1 0 0` is light that does not fade");
+            let triple = scout.subject.scene.lights.as_ref().and_then(|l| l.get(light)).is_some_and(
+                |l| matches!(&l.value, Light::Point(point) if point.attenuation.is_some() && point.falloff.is_none()),
+            );
+            let diagnostic = match value {
+                Some(value) if triple => diagnostic.fix(value, "1 0 0").at(value),
+                _ => diagnostic.at(value.unwrap_or(span)),
+            };
+            Some(Finding::from(diagnostic).whole(true))
+        })
+        .collect()
+}
+
+/// Lights that are written twice.
+pub(super) fn twice(scout: &Scout) -> Vec<Finding> {
+    let lights = scout.subject.scene.lights.as_deref().unwrap_or_default();
+    let pairs = lights.iter().enumerate().filter_map(|(i, light)| {
+        let first = lights[..i].iter().find(|first| first.value == light.value)?;
+        Some(Diagnostic::warning("this light is written twice").at(light.span).related(first.span, "the same"))
+    });
+    let say = |diagnostic: Diagnostic| {
+        let diagnostic = diagnostic.effect("both add up: its light counts twice");
+        Finding::from(without(scout, diagnostic.help("leave one out")))
+    };
+    pairs.map(say).collect()
+}
+
+/// Takes the light that a finding is about out of the file, and out of the count of lights.
+fn without(scout: &Scout, diagnostic: Diagnostic) -> Diagnostic {
+    let Some(own) = diagnostic.span else { return diagnostic };
+    let Some(bytes) = scout.subject.files.bytes(own.file) else { return diagnostic };
+    let Some(whole) = block(bytes, own) else { return diagnostic };
+    let count = section(bytes, own.file, "Lights").and_then(|lights| scout.value(lights, &["numLights"]));
+    let left = scout.world().lights.len() - 1;
+    match count {
+        Some(count) => diagnostic.fix(whole, "").fix(count, left.to_string()),
+        None => diagnostic.fix(whole, ""),
+    }
+}

@@ -1,0 +1,273 @@
+//! Meshes: their triangles, edges and normals, file by file.
+
+mod normals;
+pub(super) mod topology;
+
+use super::finding::{Finding, counted, percent, vector};
+use super::scout::Scout;
+use crate::camera::Lens;
+use crate::describe::FileName;
+use crate::diag::{Diagnostic, Diagnostics, Span};
+use crate::format::read_mesh;
+use crate::math::Aabb;
+use crate::scene::{Group, Node, Object};
+use crate::shape::MeshData;
+use crate::world::Material;
+use normals::Given;
+use topology::Topology;
+
+/// Files of more bytes are not looked into: the check is to take no longer than the eye.
+const MOST_BYTES: usize = 64 << 20;
+/// A share of turned or odd triangles that modellers leave behind, and nobody sees.
+const NEGLIGIBLE: f32 = 0.002;
+/// A share of triangles without area that is more than the poles of a turned body have.
+const MANY_FLAT: f32 = 0.03;
+
+/// A mesh file, and the objects that show it.
+#[derive(Debug)]
+pub(super) struct MeshFile<'s> {
+    name: &'s FileName,
+    /// Its number among the files that were read.
+    file: u32,
+    objects: Vec<&'s Object>,
+    data: MeshData,
+    topology: Topology,
+    /// The normals that the file brings, where they count.
+    given: Option<Given>,
+}
+
+/// All mesh files of a scene.
+pub(super) fn files<'s>(scout: &Scout<'s>) -> Vec<MeshFile<'s>> {
+    let mut uses = Uses::new();
+    if let Some(root) = &scout.subject.scene.root {
+        collect(root, &mut uses);
+    }
+    uses.into_iter().filter_map(|(name, objects)| read(scout, name, objects)).collect()
+}
+
+type Uses<'s> = Vec<(&'s FileName, Vec<&'s Object>)>;
+
+fn collect<'s>(group: &'s Group, uses: &mut Uses<'s>) {
+    group.objects.iter().for_each(|object| collect_object(object, uses));
+}
+
+fn collect_object<'s>(object: &'s Object, uses: &mut Uses<'s>) {
+    match &object.node {
+        Node::Group(group) => collect(group, uses),
+        Node::Transform(_, inner) => collect_object(inner, uses),
+        Node::Solid(_, parts) => parts.iter().for_each(|part| collect_object(part, uses)),
+        Node::Mesh(mesh) => match uses.iter_mut().find(|(name, _)| name.path == mesh.obj_file.path) {
+            Some((_, objects)) => objects.push(object),
+            None => uses.push((&mesh.obj_file, vec![object])),
+        },
+        Node::Primitive(_) | Node::HeightField(_) | Node::Voxels(..) => {}
+    }
+}
+
+fn read<'s>(scout: &Scout<'s>, name: &'s FileName, objects: Vec<&'s Object>) -> Option<MeshFile<'s>> {
+    let files = scout.subject.files;
+    let file = (0..).take_while(|&i| files.name(i).is_some()).find(|&i| files.name(i) == Some(&name.path))?;
+    let bytes = files.bytes(file).filter(|bytes| bytes.len() <= MOST_BYTES)?;
+    // It was read before, and what is wrong with it was said.
+    let data = read_mesh(bytes, file, &name.path, &mut Diagnostics::default())?;
+    let topology = Topology::of(&data.positions, &data.triangles);
+    let given = Given::of(&data).filter(|_| scout.world().rules.file_normals);
+    Some(MeshFile { name, file, objects, data, topology, given })
+}
+
+impl MeshFile<'_> {
+    fn is_beyond_notice(&self, count: usize) -> bool {
+        count == 0 || (count as f32) <= NEGLIGIBLE * self.data.triangles.len() as f32
+    }
+
+    /// The line of a triangle's face in a Wavefront file: a face of n corners is n - 2 triangles.
+    fn face(&self, scout: &Scout, triangle: u32) -> Option<Span> {
+        let bytes = scout.subject.files.bytes(self.file)?;
+        let (mut start, mut before, mut found) = (0, 0, None);
+        for line in bytes.split_inclusive(|b| *b == b'\n') {
+            if line.starts_with(b"f ") || line.starts_with(b"f\t") {
+                let corners = line.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty()).count() - 1;
+                let here = before..before + corners.saturating_sub(2);
+                if here.contains(&(triangle as usize)) {
+                    let end = start + line.trim_ascii_end().len();
+                    found = Some(Span { file: self.file, start: start as u32, end: end as u32 });
+                }
+                before = here.end;
+            }
+            start += line.len();
+        }
+        found.filter(|_| before == self.data.triangles.len())
+    }
+
+    /// A warning about some of its triangles: at the first of them, or where the scene names the file.
+    fn at_triangle(&self, scout: &Scout, diagnostic: Diagnostic, triangle: u32) -> Diagnostic {
+        let corners = self.data.triangles[triangle as usize].map(|i| self.data.positions[i as usize]);
+        match self.face(scout, triangle) {
+            Some(span) => {
+                diagnostic.at(span).label("the first of them").related(self.name.span, "the mesh is shown here")
+            }
+            None => {
+                let corners = corners.map(vector).join(", ");
+                diagnostic.at(self.name.span).label(format!("triangle {triangle} is the first: {corners}"))
+            }
+        }
+    }
+
+    /// The first of its objects that is of glass.
+    fn glass(&self, scout: &Scout) -> Option<&Object> {
+        let materials = &scout.world().materials;
+        let refracts = |material: u32| match materials.get(material as usize) {
+            Some(Material::Phong(phong)) => phong.transparent.max_element() > 0.0 && phong.ior != 1.0,
+            _ => false,
+        };
+        self.objects.iter().find(|object| object.material.is_some_and(refracts)).copied()
+    }
+
+    /// Whether the camera is in it, as in a room: its walls face inwards by right.
+    fn is_room(&self, scout: &Scout) -> bool {
+        let eye = scout.world().camera.pose().center;
+        let own = |object: &&crate::world::Object| self.objects.iter().any(|o| o.span.start == object.span.start);
+        let mut bounds = scout.world().objects.iter().filter(own).filter_map(crate::world::Object::bounds);
+        bounds.any(|b| eye.cmpge(b.min).all() && eye.cmple(b.max).all())
+    }
+
+    /// Whether it is the inner wall of hollow glass: that faces inwards by right.
+    fn is_hollow(&self, scout: &Scout) -> bool {
+        let objects = &scout.world().objects;
+        let own = |object: &&crate::world::Object| self.objects.iter().any(|o| o.span.start == object.span.start);
+        let holds = |outer: &Aabb, inner: &Aabb| outer.min.cmple(inner.min).all() && outer.max.cmpge(inner.max).all();
+        objects.iter().filter(own).filter_map(|object| Some((object, object.bounds()?))).any(|(inner, bounds)| {
+            let around = |other: &crate::world::Object| {
+                other.span.start != inner.span.start && other.bounds().is_some_and(|outer| holds(&outer, &bounds))
+            };
+            self.glass(scout).is_some() && objects.iter().any(|other| other.material == inner.material && around(other))
+        })
+    }
+
+    /// Whether it is closed and its normals, made or given, point inwards.
+    fn is_inside_out(&self) -> bool {
+        let Topology { turned, volume, .. } = &self.topology;
+        let against = self.given.as_ref().is_some_and(Given::is_against_all);
+        self.topology.is_nearly_closed() && turned.is_empty() && *volume != 0.0 && (*volume < 0.0) != against
+    }
+}
+
+/// Triangles without area.
+pub(super) fn degenerate(scout: &Scout) -> Vec<Finding> {
+    let mut found = Vec::new();
+    for mesh in scout.meshes() {
+        let (flat, all) = (&mesh.topology.degenerate, mesh.data.triangles.len());
+        let Some(&first) = flat.first() else { continue };
+        let message =
+            format!("{} of {all} of `{}` have no area", counted(flat.len(), "triangle", "triangles"), mesh.name.path);
+        let mut diagnostic = mesh.at_triangle(scout, Diagnostic::warning(message), first);
+        if (flat.len() as f32) < MANY_FLAT * all as f32 {
+            diagnostic.severity = crate::diag::Severity::Note;
+        }
+        let diagnostic = diagnostic
+            .effect("they are not seen; where they should fill something there is a hole")
+            .help("do two corners have the same number, or the same place? Take them out, or mend their corners");
+        found.push(Finding::from(diagnostic).whole(flat.len() == all));
+    }
+    found
+}
+
+/// Holes and crowded edges where a mesh must have an inside.
+pub(super) fn open_glass(scout: &Scout) -> Vec<Finding> {
+    let mut found = Vec::new();
+    for mesh in scout.meshes() {
+        let Some(glass) = mesh.glass(scout) else { continue };
+        let Topology { open, crowded, some_edge, .. } = &mesh.topology;
+        let Some([p, q]) = some_edge.map(|edge| edge.map(vector)) else { continue };
+        let what = match (open, crowded) {
+            (0, n) => format!("has {} with more than two triangles", counted(*n, "edge", "edges")),
+            (n, 0) => format!("is open: {} with one triangle only", counted(*n, "edge", "edges")),
+            (n, m) => format!("is open: {} with one triangle, {m} with more than two", counted(*n, "edge", "edges")),
+        };
+        let diagnostic = Diagnostic::warning(format!("the mesh `{}` is of glass, but {what}", mesh.name.path))
+            .at(glass.span)
+            .effect("a ray that goes in through a hole never comes out: refraction is wrong behind it")
+            .help(format!("close it; one such edge goes from {p} to {q}"));
+        found.push(Finding::from(diagnostic));
+    }
+    found
+}
+
+/// Triangles that wind the other way than their neighbours.
+pub(super) fn winding(scout: &Scout) -> Vec<Finding> {
+    let mut found = Vec::new();
+    for mesh in scout.meshes().iter().filter(|mesh| mesh.given.is_none()) {
+        let (turned, all) = (&mesh.topology.turned, mesh.data.triangles.len());
+        let Some(&first) = turned.first().filter(|_| !mesh.is_beyond_notice(turned.len())) else { continue };
+        let message = format!(
+            "{} of {all} of `{}` wind the other way than their neighbours",
+            counted(turned.len(), "triangle", "triangles"),
+            mesh.name.path
+        );
+        let diagnostic = mesh
+            .at_triangle(scout, Diagnostic::warning(message), first)
+            .effect("their normals point to the other side: dark or wrongly shaded patches")
+            .help("exchange two corners of each of them");
+        found.push(Finding::from(diagnostic));
+    }
+    found
+}
+
+/// Closed meshes whose normals point inwards.
+pub(super) fn inside_out(scout: &Scout) -> Vec<Finding> {
+    let mut found = Vec::new();
+    for mesh in
+        scout.meshes().iter().filter(|mesh| mesh.is_inside_out() && !mesh.is_room(scout) && !mesh.is_hollow(scout))
+    {
+        let by_file = mesh.given.is_some();
+        let diagnostic = Diagnostic::warning(format!("the normals of `{}` point inwards", mesh.name.path))
+            .at(mesh.name.span)
+            .effect("a tracer that does not turn them shades it as from inside, black; as glass it bends light the wrong way")
+            .help(if by_file { "turn its `vn` vectors round" } else { "let its faces go round counter-clockwise, seen from outside" });
+        found.push(Finding::from(diagnostic));
+    }
+    found
+}
+
+/// Normals in a file that contradict its faces, are missing on some, or are no directions.
+pub(super) fn given_normals(scout: &Scout) -> Vec<Finding> {
+    let mut found = Vec::new();
+    for mesh in scout.meshes() {
+        let Some(given) = &mesh.given else { continue };
+        let all = mesh.data.triangles.len();
+        let some = |list: &[u32]| list.first().copied().filter(|_| !mesh.is_beyond_notice(list.len()));
+        let mut say = |list: &[u32], first: u32, what: &str, effect: &str, help: &str| {
+            let message = format!("{} of the triangles of `{}` {what}", percent(list.len(), all), mesh.name.path);
+            let diagnostic = mesh.at_triangle(scout, Diagnostic::warning(message), first).effect(effect).help(help);
+            found.push(Finding::from(diagnostic));
+        };
+        if let Some(first) = some(&given.against) {
+            say(
+                &given.against,
+                first,
+                "have normals that point to the other side than their corners say",
+                "they are shaded as if seen from behind: dark, or lit from the wrong side",
+                "turn those `vn` round, or exchange two corners of the faces",
+            );
+        }
+        if let Some(first) = some(&given.missing) {
+            say(
+                &given.missing,
+                first,
+                "have no normals in the file, though others have",
+                "they look faceted, or differ from their neighbours",
+                "write faces as `f 1//1 2//2 3//3`, all of them or none",
+            );
+        }
+        if let Some(first) = some(&given.zero) {
+            say(
+                &given.zero,
+                first,
+                "have a normal of length 0",
+                "it is no direction: the shading there is wrong",
+                "a normal has length 1; write its direction",
+            );
+        }
+    }
+    found
+}

@@ -1,0 +1,103 @@
+//! What is wrong with a scene whose picture is black, white, empty or odd, and how to mend it.
+//!
+//! A [`Scout`] sends a coarse grid of camera rays into the world and keeps what each found. The checks of the table
+//! [`CHECKS`] look at that, at the meshes and at the description. Every finding has a code that does not change, a place, an
+//! effect on the picture, a proposed change and, where that is mechanical, the edit of the scene's text.
+
+mod colors;
+mod exposure;
+mod extent;
+mod facing;
+mod finding;
+mod lights;
+mod mesh;
+mod numbers;
+mod objects;
+pub mod picture;
+mod repair;
+mod scout;
+mod sight;
+mod solid;
+mod table;
+#[cfg(test)]
+mod tests;
+mod view;
+mod words;
+
+use crate::diag::{Diagnostics, Severity};
+pub use finding::Finding;
+pub use repair::{Repaired, apply};
+pub use scout::{Scout, Subject};
+pub use table::{CHECKS, Check};
+
+/// At most so many findings of one kind are told one by one.
+const MOST_ALIKE: usize = 3;
+/// After so many of one kind, no more are looked for.
+const MOST_SOUGHT: usize = 50;
+
+/// Because of these nothing, or one thing alone, is seen.
+const EMPTIES: [&str; 6] = ["camera-inside", "camera-away", "too-small", "too-narrow", "all-missed", "hidden-behind"];
+
+/// All findings about a scene that was read and compiled, those of its reader among them; the causes first.
+pub fn check(subject: &Subject, diagnostics: &Diagnostics) -> Vec<Finding> {
+    let scout = Scout::new(subject);
+    let mut found: Vec<Finding> = diagnostics.iter().cloned().map(Finding::from).collect();
+    found.iter_mut().for_each(|finding| words::complete(&scout, finding));
+    for check in CHECKS {
+        let of_kind = (check.find)(&scout).into_iter();
+        found.extend(of_kind.map(|finding| Finding { diagnostic: finding.diagnostic.code(check.code), ..finding }));
+    }
+    // Some are meant only where nothing else says why.
+    if found.iter().any(|finding| finding.whole && !finding.last) {
+        found.retain(|finding| !finding.last);
+    }
+    // Where nothing is seen, each thing that is not seen is no finding of its own.
+    if found.iter().any(|finding| EMPTIES.contains(&finding.diagnostic.code) && finding.whole) {
+        found.retain(|finding| finding.diagnostic.code != "unseen");
+    }
+    ordered(found)
+}
+
+/// The findings of the reader and the compiler alone: of a scene that cannot be rendered.
+pub fn reported(diagnostics: &Diagnostics) -> Vec<Finding> {
+    ordered(diagnostics.iter().cloned().map(Finding::from).collect())
+}
+
+/// Errors first, then what spoils the whole picture, then the rest, then notes; among those in the order of the table, in which
+/// causes stand before what comes of them, and each kind once before any is told of again. Of many that are alike, the last one
+/// told says how many more there are.
+fn ordered(mut found: Vec<Finding>) -> Vec<Finding> {
+    let level = |finding: &Finding| match finding.diagnostic.severity {
+        Severity::Error => 0,
+        Severity::Warning if finding.whole => 1,
+        Severity::Warning => 2,
+        Severity::Note => 3,
+    };
+    // Errors stay as they were found: the first may be the reason of the others.
+    let rank = |finding: &Finding| if level(finding) == 0 { 0 } else { table::rank(finding.diagnostic.code) };
+    found.sort_by_key(|finding| (level(finding), rank(finding)));
+    let mut told: Vec<(u8, &str)> = Vec::new();
+    found.sort_by_cached_key(|finding| {
+        let kind = (level(finding), finding.diagnostic.code);
+        let again = kind.0 > 0 && told.contains(&kind);
+        told.push(kind);
+        (level(finding), again, rank(finding))
+    });
+    let mut kept: Vec<Finding> = Vec::with_capacity(found.len());
+    let mut more = 0;
+    for finding in found {
+        let alike = |other: &&Finding| {
+            let (a, b) = (&finding.diagnostic, &other.diagnostic);
+            a.code == b.code && a.severity == b.severity && a.severity != Severity::Error
+        };
+        let known = kept.iter().rev().take_while(alike).count();
+        if known >= MOST_ALIKE && !finding.diagnostic.code.is_empty() {
+            more += 1;
+            finding::count_more(kept.last_mut(), more, &finding);
+        } else {
+            more = 0;
+            kept.push(finding);
+        }
+    }
+    kept
+}

@@ -1,0 +1,156 @@
+//! Objects: flat ones, squashed ones, and those at the same place.
+
+use super::MOST_SOUGHT;
+use super::finding::{Finding, number};
+use super::scout::Scout;
+use crate::diag::{Diagnostic, Span};
+use crate::math::Vec3;
+use crate::shape::{Plane, Primitive};
+use crate::world::{Geometry, Object};
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// A box thinner than this share of its sides was squashed.
+const SQUASHED: f32 = 1e-5;
+
+/// Triangles of the scene file without area.
+pub(super) fn degenerate(scout: &Scout) -> Vec<Finding> {
+    let flat = |object: &&Object| match &object.geometry {
+        Geometry::Primitive(Primitive::Triangle(triangle)) => {
+            let [a, b, c] = triangle.corners().map(|corner| corner.as_dvec3());
+            (b - a).cross(c - a).length() <= 1e-9 * (b - a).length_squared().max((c - a).length_squared())
+        }
+        _ => false,
+    };
+    let say = |object: &Object| {
+        let diagnostic = Diagnostic::warning("this triangle has no area: its corners lie on one line")
+            .at(object.span)
+            .effect("it is not seen")
+            .help("are two of its corners the same?");
+        Finding::from(diagnostic).whole(scout.world().objects.len() == 1)
+    };
+    scout.world().objects.iter().filter(flat).map(say).collect()
+}
+
+/// Objects that a transform has made flat, or nearly so.
+pub(super) fn squashed(scout: &Scout) -> Vec<Finding> {
+    let mut found = Vec::new();
+    for object in &scout.world().objects {
+        let (Some(to_world), Some(bounds)) = (&object.to_world, object.bounds()) else { continue };
+        let stretched = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| to_world.vector(axis).length());
+        let (least, most) =
+            (stretched.iter().copied().fold(f32::MAX, f32::min), stretched.iter().copied().fold(0.0, f32::max));
+        let thin = least < SQUASHED * most && !bounds.is_empty();
+        if !thin && most > 1e-6 {
+            continue;
+        }
+        let what =
+            if thin { format!("{} times thinner than wide", number(most / least)) } else { "next to nothing".into() };
+        let diagnostic = Diagnostic::warning(format!("the transforms around this object make it {what}"))
+            .at(object.span)
+            .effect("it is seen as a line, or not at all")
+            .help("look at the `Scale` and `UniformScale` around it");
+        found.push(Finding::from(diagnostic));
+    }
+    found
+}
+
+/// Whether two objects have the same surface.
+fn same(a: &Object, b: &Object) -> bool {
+    let placed = a.to_world == b.to_world;
+    placed
+        && match (&a.geometry, &b.geometry) {
+            (Geometry::Primitive(Primitive::Plane(p)), Geometry::Primitive(Primitive::Plane(q))) => {
+                let unit = |plane: &Plane| {
+                    let length = plane.normal.length();
+                    (plane.normal / length, plane.offset / length)
+                };
+                let ((n, d), (m, e)) = (unit(p), unit(q));
+                let near = |m: Vec3, e: f32| (n - m).length() < 1e-6 && (d - e).abs() <= 1e-6 * (1.0 + d.abs());
+                near(m, e) || near(-m, -e)
+            }
+            (Geometry::Primitive(p), Geometry::Primitive(q)) => p == q,
+            (Geometry::Mesh(p), Geometry::Mesh(q)) => Arc::ptr_eq(p, q),
+            _ => false,
+        }
+}
+
+/// Objects that are at the same place twice.
+pub(super) fn twice(scout: &Scout) -> Vec<Finding> {
+    let objects = &scout.world().objects;
+    let mut places: HashMap<[u32; 6], Vec<usize>> = HashMap::new();
+    let mut found = Vec::new();
+    found.extend(in_plane(scout));
+    for (i, object) in objects.iter().enumerate() {
+        // What has no end is at one place with all others that have none.
+        let key = object.bounds().map_or([0; 6], |b| {
+            let [x, y, z] = b.min.to_array().map(f32::to_bits);
+            let [u, v, w] = b.max.to_array().map(f32::to_bits);
+            [x, y, z, u, v, w]
+        });
+        let there = places.entry(key).or_default();
+        // Many at one place are told of as pairs with the first ones only.
+        if found.len() >= MOST_SOUGHT {
+            break;
+        }
+        if let Some(&first) = there.iter().take(16).find(|&&first| same(&objects[first], object)) {
+            found.push(pair(scout, first, i));
+        }
+        there.push(i);
+    }
+    found
+}
+
+/// Flat things that lie in a plane, where the two cannot be told apart.
+fn in_plane(scout: &Scout) -> Vec<Finding> {
+    let objects = &scout.world().objects;
+    let planes: Vec<(usize, &Plane)> = objects
+        .iter()
+        .enumerate()
+        .filter_map(|(i, object)| match &object.geometry {
+            Geometry::Primitive(Primitive::Plane(plane)) if object.to_world.is_none() => Some((i, plane)),
+            _ => None,
+        })
+        .collect();
+    let mut found = Vec::new();
+    for (i, object) in objects.iter().enumerate() {
+        let corners = match &object.geometry {
+            Geometry::Primitive(Primitive::Triangle(triangle)) => triangle.corners(),
+            Geometry::Primitive(Primitive::Rectangle(sheet)) => {
+                [sheet.corner, sheet.corner + sheet.edge0, sheet.corner + sheet.edge1]
+            }
+            _ => continue,
+        };
+        let corners = corners.map(|p| object.to_world.as_ref().map_or(p, |to_world| to_world.point(p)));
+        let lies_in = |plane: &Plane| {
+            let off = |p: Vec3| (p.dot(plane.normal) - plane.offset).abs() / plane.normal.length();
+            corners.iter().all(|&p| off(p) <= 1e-5 * (1e-3 + p.abs().max_element()))
+        };
+        if found.len() >= MOST_SOUGHT {
+            break;
+        }
+        if let Some((plane, _)) = planes.iter().take(MOST_SOUGHT).find(|(_, plane)| lies_in(plane)) {
+            found.push(pair(scout, *plane, i));
+        }
+    }
+    found
+}
+
+fn pair(scout: &Scout, first: usize, second: usize) -> Finding {
+    let objects = &scout.world().objects;
+    let [a, b]: [Span; 2] = [objects[first].span, objects[second].span];
+    let alike = objects[first].material == objects[second].material;
+    let diagnostic = Diagnostic::warning(format!(
+        "the {} is where the {} is already",
+        scout.object(second as u32),
+        scout.object(first as u32)
+    ))
+    .at(b)
+    .related(a, "the same surface")
+    .effect(match alike {
+        true => "it adds nothing; light through it, if it is of glass, is wrong",
+        false => "of two surfaces at one place, one is seen at random: specks, or the one material only",
+    })
+    .help("leave one out, or move it");
+    Finding::from(diagnostic)
+}

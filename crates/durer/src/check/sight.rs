@@ -1,0 +1,95 @@
+//! How each object is seen: in the picture, behind another, or not at all.
+
+use super::scout::Scout;
+use crate::camera::{CameraSample, Lens};
+use crate::math::{Ray, Vec2, Vec3};
+use crate::shape::Primitive;
+use crate::world::{Geometry, Object};
+
+/// How an object is seen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Sight {
+    /// Some of it is in the picture.
+    Seen,
+    /// Some of it would be, but for another object.
+    Hidden(u32),
+    /// None of it lies in the picture.
+    Outside,
+    /// It has no end, or there is nothing of it that could be aimed at.
+    Unknown,
+}
+
+/// Objects beyond this number are not looked for one by one.
+const MOST_OBJECTS: usize = 200;
+/// Corners of a mesh that are looked for.
+const MOST_CORNERS: usize = 40;
+
+/// The sight of each object. What a ray of the grid hit is seen; of the others, points are aimed at.
+pub(super) fn sights(scout: &Scout) -> Vec<Sight> {
+    let objects = &scout.world().objects;
+    let mut sights = vec![Sight::Unknown; objects.len()];
+    scout.seen().for_each(|(_, seen)| sights[seen.object as usize] = Sight::Seen);
+    for (i, object) in objects.iter().enumerate().take(MOST_OBJECTS) {
+        if sights[i] != Sight::Seen {
+            sights[i] = sight(scout, i as u32, object);
+        }
+    }
+    sights
+}
+
+fn sight(scout: &Scout, number: u32, object: &Object) -> Sight {
+    let points = points(object);
+    if points.is_empty() {
+        return Sight::Unknown;
+    }
+    let mut sight = Sight::Outside;
+    for ray in points.iter().flat_map(|&point| rays_to(scout, point)) {
+        match scout.world().closest(&ray, &mut ()) {
+            Some(hit) if hit.object == number => return Sight::Seen,
+            Some(hit) => sight = Sight::Hidden(hit.object),
+            None => {}
+        }
+    }
+    sight
+}
+
+/// The camera's rays to a point that lies in the picture.
+pub(super) fn rays_to(scout: &Scout, point: Vec3) -> Vec<Ray> {
+    let (world, mut places) = (scout.world(), Vec::new());
+    world.camera.project(&world.frame, point, Vec2::splat(0.5), &mut |place| places.push(place));
+    let corner = corner(scout);
+    let inside = places.into_iter().filter(|place| place.abs().cmple(corner).all());
+    inside.filter_map(|place| world.camera.ray(&world.frame, &CameraSample::at(place))).collect()
+}
+
+/// The upper right corner of the picture in the square that the camera covers.
+pub(super) fn corner(scout: &Scout) -> Vec2 {
+    scout.raster.point(Vec2::new(scout.raster.width as f32, 0.0)).abs()
+}
+
+/// Points of an object in the world: corners of triangles and their middles, else a grid through its box.
+fn points(object: &Object) -> Vec<Vec3> {
+    let to_world = |p: Vec3| object.to_world.as_ref().map_or(p, |to_world| to_world.point(p));
+    match &object.geometry {
+        Geometry::Primitive(Primitive::Triangle(triangle)) => within(triangle.corners()).map(to_world).to_vec(),
+        Geometry::Mesh(tree) => {
+            let count = tree.mesh.len();
+            let each = (0..count).step_by((count / MOST_CORNERS).max(1));
+            each.map(|i| to_world(within(tree.mesh.corners(i as u32))[0])).collect()
+        }
+        _ => {
+            let Some(bounds) = object.bounds().filter(|bounds| !bounds.is_empty()) else { return Vec::new() };
+            let (center, half) = (bounds.center(), 0.5 * bounds.size());
+            // Not the corners themselves: round things have nothing there.
+            let steps = [0.0, -0.95, 0.95, -0.5, 0.5];
+            let grid = steps.iter().flat_map(|x| steps.iter().flat_map(move |y| steps.map(|z| Vec3::new(*x, *y, z))));
+            grid.map(|at| center + at * half).collect()
+        }
+    }
+}
+
+/// The middle of a triangle, and points near its corners.
+fn within([a, b, c]: [Vec3; 3]) -> [Vec3; 4] {
+    let middle = (a + b + c) / 3.0;
+    [middle, a.lerp(middle, 0.1), b.lerp(middle, 0.1), c.lerp(middle, 0.1)]
+}

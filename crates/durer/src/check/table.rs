@@ -1,0 +1,107 @@
+//! The table of checks, in the order in which findings are told: causes before what comes of them.
+
+use super::finding::Finding;
+use super::scout::Scout;
+use super::{colors, exposure, extent, facing, lights, mesh, numbers, objects, view};
+
+/// One kind of finding.
+#[derive(Clone, Copy, Debug)]
+pub struct Check {
+    /// Its code.
+    pub code: &'static str,
+    /// What it means.
+    pub about: &'static str,
+    /// Looks for it; what the reader or the compiler reports, nobody looks for again.
+    pub(super) find: fn(&Scout) -> Vec<Finding>,
+}
+
+fn reported(_: &Scout) -> Vec<Finding> {
+    Vec::new()
+}
+
+macro_rules! checks {
+    ($($code:literal: $about:literal, $find:expr;)+) => {
+        /// All kinds of findings.
+        pub const CHECKS: &[Check] = &[$(Check { code: $code, about: $about, find: $find },)+];
+    };
+}
+
+checks! {
+    // What the reader and the compiler report.
+    "syntax": "a word or number that is not understood", reported;
+    "unknown-word": "a word that means nothing where it stands", reported;
+    "unclosed-block": "a brace that is missing", reported;
+    "extra-brace": "a brace too many", reported;
+    "missing-field": "a thing without a field that it needs", reported;
+    "bad-value": "a value that a field cannot have", reported;
+    "wrong-count": "a `numObjects`, `numLights` or `numMaterials` that is not the number that follows", reported;
+    "flat-transform": "a transform that flattens space", reported;
+    "no-camera": "no camera", reported;
+    "missing-file": "a mesh or picture that is not there", reported;
+    "bad-file": "a mesh or picture that cannot be used", reported;
+    "open-solid": "a part of a solid that is not closed", reported;
+    "no-objects": "nothing to be seen", view::no_objects;
+    // Where the camera is.
+    "camera-inside": "the camera is inside an object", view::inside;
+    "camera-away": "the camera looks past everything", view::away;
+    "too-small": "all things together are too small in the picture", extent::too_small;
+    "too-narrow": "the picture shows a tiny part of the scene", extent::too_narrow;
+    "all-missed": "no ray hits anything, though the camera looks at the scene", view::missed;
+    "hidden-behind": "one object hides all others", view::hidden;
+    "out-of-scale": "an object far larger or smaller than most", extent::out_of_scale;
+    "up-parallel": "the camera's `up` is parallel to its `direction`", reported;
+    // Light.
+    "no-light": "no light", reported;
+    "black-light": "a light without colour", reported;
+    "light-divides": "a light that is divided by zero", lights::divides;
+    "no-falloff": "a light without `falloff`, where the old program divides by it", reported;
+    "light-inside": "a light inside an object", lights::inside;
+    "light-blocked": "a light that an object keeps off all that is seen", lights::blocked;
+    "light-behind": "a light that all that is seen faces away from", lights::behind;
+    "light-faint": "a light that fades before it arrives", lights::faint;
+    // Colours.
+    "color-range": "a colour far beyond 1", colors::too_large;
+    "material-index": "a `MaterialIndex` without a material", reported;
+    "no-material": "objects before any `MaterialIndex`", reported;
+    "black-material": "a material that gives back no light", colors::black;
+    "light-cancelled": "a light of which the materials give back nothing", lights::cancelled;
+    "negative-color": "a colour below zero", colors::negative;
+    "no-bounces": "mirrors or glass without secondary rays", colors::no_bounces;
+    "odd-index": "glass of an index that no glass has", colors::odd_index;
+    "same-color": "things of the colour of the background", colors::camouflaged;
+    "no-coordinates": "a texture on a thing without texture coordinates", colors::no_coordinates;
+    // Shapes and meshes.
+    "seen-from-behind": "a surface seen from behind, which is not shaded", facing::from_behind;
+    "turned-triangle": "triangles that face the other way than their neighbours", facing::turned_triangles;
+    "winding": "triangles of a mesh that wind the other way than their neighbours", mesh::winding;
+    "inside-out": "a closed mesh whose normals point inwards", mesh::inside_out;
+    "odd-normals": "normals of a mesh file that contradict its faces, are missing or have no length", mesh::given_normals;
+    "degenerate-mesh": "triangles of a mesh without area", mesh::degenerate;
+    "degenerate-triangle": "a triangle without area", objects::degenerate;
+    "open-glass": "a mesh of glass that is not closed", mesh::open_glass;
+    "squashed": "an object made flat, or next to nothing, by its transforms", objects::squashed;
+    "same-place": "two objects with the same surface", objects::twice;
+    "light-twice": "a light that is written twice", lights::twice;
+    "empty-solid": "a solid of which nothing is left", reported;
+    // The picture.
+    "not-finite": "samples that are no finite numbers", numbers::not_finite;
+    "depth-range": "a range of depths that none of the picture's lies in", exposure::depth_range;
+    "too-bright": "more light than a picture of eight bits can hold", exposure::too_bright;
+    "too-dark": "hardly any light", exposure::too_dark;
+    "one-color": "a picture of one colour, and nothing found that says why", exposure::one_color;
+    // Odd, but mostly harmless.
+    "dialect": "which year's language the scene was taken for", reported;
+    "radians": "a rotation that seems to be in radians", extent::radians;
+    "repeated": "a section or field that is written twice", reported;
+    "foreign-word": "a word of another year", reported;
+    "comment": "a comment that does not begin with `#`", reported;
+    "unseen": "objects that are not in the picture, or hidden", extent::unseen;
+    "unused-material": "a material that nothing is made of", colors::unused;
+    "mesh-file": "something in a mesh file that was passed over", reported;
+}
+
+/// The place of a code in the order of findings; what has none stands before the notes at the end.
+pub(super) fn rank(code: &str) -> usize {
+    let of = |code: &str| CHECKS.iter().position(|check| check.code == code);
+    of(code).or(of("foreign-word")).unwrap_or(CHECKS.len())
+}

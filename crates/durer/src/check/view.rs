@@ -1,0 +1,288 @@
+//! Where the camera stands and looks.
+
+use super::finding::{Finding, number, percent, vector};
+use super::lights::{Verdict, all_fail};
+use super::scout::Scout;
+use super::sight::{Sight, corner};
+use super::solid::around;
+use crate::camera::{Camera, Lens};
+use crate::diag::{Diagnostic, Span};
+use crate::math::{Aabb, Vec2, Vec3, fp};
+use crate::shape::Primitive;
+use crate::world::{Geometry, Object};
+
+/// Whether the camera's rays all start at its place and go one way: those that run both ways see what is behind as well.
+fn has_eye(scout: &Scout) -> bool {
+    !matches!(scout.world().camera, Camera::Orthographic(_) | Camera::PushBroom(_) | Camera::MultipleCenter(_))
+}
+
+/// A scene in which nothing is.
+pub(super) fn no_objects(scout: &Scout) -> Vec<Finding> {
+    let Some(_) = scout.subject.scene.root.as_ref().filter(|_| scout.world().objects.is_empty()) else {
+        return Vec::new();
+    };
+    let diagnostic = Diagnostic::warning("the scene has no objects: its group is empty")
+        .effect("every ray misses; the whole picture is background")
+        .help("write some into the `Group`");
+    vec![Finding::from(diagnostic).whole(true)]
+}
+
+/// Objects that are no room for others, but around the eye.
+pub(super) fn inside(scout: &Scout) -> Vec<Finding> {
+    if !has_eye(scout) {
+        return Vec::new();
+    }
+    let pose = scout.world().camera.pose();
+    let rays = scout.probes.len();
+    let mut found = Vec::new();
+    for object in around(scout.world(), pose.center) {
+        let own = scout.seen().filter(|(_, seen)| seen.object == object).count();
+        // A room has things in it, and light.
+        let dark = all_fail(scout) && scout.verdicts().contains(&Verdict::Blocked(object));
+        if own * 100 < rays * 99 && !dark {
+            continue;
+        }
+        let Some(bounds) = scout.world().objects[object as usize].bounds() else { continue };
+        let name = scout.object(object);
+        let outside = leave(bounds, pose.center, -pose.direction);
+        let diagnostic = Diagnostic::warning(format!("the camera is inside the {name}"))
+            .label("this place is inside it")
+            .related(scout.object_span(object), "around the camera")
+            .effect(match dark {
+                true => "it keeps the light out; all that is seen is in its shadow",
+                false => "all that is seen is the inside of it",
+            })
+            .help(format!(
+                "move the camera out of it: against its direction it is outside at `center {}`",
+                vector(outside)
+            ));
+        let diagnostic = scout.at_value(diagnostic, scout.subject.scene.camera_span, &["center"]);
+        found.push(Finding::from(diagnostic).whole(true));
+    }
+    found
+}
+
+/// The first place beyond a box on the way from a point inside it, with a little room.
+fn leave(bounds: Aabb, from: Vec3, direction: Vec3) -> Vec3 {
+    let direction = direction.normalize_or(Vec3::Z);
+    let way = bounds.clip(from, direction).map_or(0.0, |(_, leave)| leave);
+    from + 1.5 * way * direction
+}
+
+/// What the camera should see: the box around all that has an end, else the nearest place of a plane.
+fn target(scout: &Scout) -> Option<Aabb> {
+    let (world, eye) = (scout.world(), scout.world().camera.pose().center);
+    let bounds = world.bounds();
+    if !bounds.is_empty() {
+        return Some(bounds);
+    }
+    let foot = |object: &Object| match &object.geometry {
+        Geometry::Primitive(Primitive::Plane(plane)) => {
+            let n = plane.normal.normalize_or(Vec3::Y);
+            let on = n * (plane.offset / plane.normal.length().max(f32::MIN_POSITIVE));
+            let to_world = |p: Vec3| object.to_world.as_ref().map_or(p, |to_world| to_world.point(p));
+            let (on, n) = (to_world(on), object.to_world.as_ref().map_or(n, |to_world| to_world.normal(n)));
+            Some(eye + (on - eye).dot(n) * n)
+        }
+        _ => None,
+    };
+    world.objects.iter().find_map(foot).map(|place| Aabb::around([place]))
+}
+
+/// Whether there are things with an end and none of them is in the picture, or nothing is at all.
+fn all_outside(scout: &Scout) -> bool {
+    let world = scout.world();
+    let bounded = || {
+        world.objects.iter().zip(scout.sights()).filter(|(object, _)| object.bounds().is_some_and(|b| !b.is_empty()))
+    };
+    let none = scout.seen().next().is_none();
+    match bounded().next() {
+        Some(_) => bounded().all(|(_, sight)| *sight == Sight::Outside),
+        None => none && !world.objects.is_empty(),
+    }
+}
+
+/// The camera looks past everything, and the middle of things is not in the picture.
+pub(super) fn away(scout: &Scout) -> Vec<Finding> {
+    let Some(bounds) = target(scout).filter(|_| all_outside(scout)) else { return Vec::new() };
+    let (world, span) = (scout.world(), scout.subject.scene.camera_span);
+    let (pose, center) = (world.camera.pose(), bounds.center());
+    if aims(scout, center) {
+        return Vec::new();
+    }
+    let hits = scout.seen().count();
+    let effect = match hits {
+        0 => "every ray misses; the whole picture is background".to_string(),
+        _ => format!("only {} is seen", only_seen(scout)),
+    };
+    let mut diagnostic = Diagnostic::warning("the camera looks past everything").effect(effect);
+    if !has_eye(scout) {
+        let off = center - pose.center;
+        let forward = world.frame.forward;
+        let across = off - off.dot(forward) * forward;
+        let place = pose.center + across;
+        diagnostic.message += &format!(": the middle of the scene lies {} beside its axis", number(across.length()));
+        diagnostic = diagnostic.help(format!("{}move it there: `center {}`", nearest(scout), vector(place)));
+        let diagnostic = mended(scout, diagnostic, "center", place);
+        return vec![Finding::from(diagnostic).whole(true)];
+    }
+    let to = center - pose.center;
+    let angle = degrees(pose.direction, to);
+    diagnostic.message += &format!(": the middle of the scene lies {angle:.0} degrees off its direction");
+    let mut help = format!("{}turn it: `direction {}`", nearest(scout), vector(to));
+    let as_point = pose.direction - pose.center;
+    if degrees(as_point, to) < 20.0 && angle > 20.0 {
+        help += "; `direction` is a direction, not the point to look at";
+    }
+    let diagnostic = match scout.value(span, &["direction"]) {
+        Some(_) => mended(scout, diagnostic.help(help), "direction", to),
+        None => diagnostic.help(help).at(span),
+    };
+    vec![Finding::from(diagnostic).whole(true)]
+}
+
+/// A vector of the camera is to be another.
+fn mended(scout: &Scout, diagnostic: Diagnostic, field: &str, value: Vec3) -> Diagnostic {
+    let span = scout.subject.scene.camera_span;
+    match scout.value(span, &[field]).filter(|_| value != Vec3::ZERO || field == "center") {
+        Some(place) => diagnostic.at(place).fix(place, vector(value)),
+        None => diagnostic.at(span),
+    }
+}
+
+/// Whether the camera sees a place, if nothing is in front of it.
+fn aims(scout: &Scout, place: Vec3) -> bool {
+    !super::sight::rays_to(scout, place).is_empty()
+}
+
+fn degrees(a: Vec3, b: Vec3) -> f32 {
+    let (a, b) = (a.normalize_or_zero(), b.normalize_or_zero());
+    fp::atan2(a.cross(b).length(), a.dot(b)).to_degrees()
+}
+
+/// The names of what is seen instead.
+fn only_seen(scout: &Scout) -> String {
+    let mut objects: Vec<u32> = scout.seen().map(|(_, seen)| seen.object).collect();
+    objects.sort_unstable();
+    objects.dedup();
+    match &objects[..] {
+        [one] => format!("the {}", scout.object(*one)),
+        all => format!("{} objects without an end", all.len()),
+    }
+}
+
+/// By how much the ray that comes nearest misses the ball around an object.
+fn nearest(scout: &Scout) -> String {
+    let world = scout.world();
+    let balls = world.objects.iter().enumerate().filter_map(|(i, object)| {
+        let bounds = object.bounds().filter(|bounds| !bounds.is_empty())?;
+        Some((i as u32, bounds.center(), 0.5 * bounds.size().length()))
+    });
+    let misses = balls.take(500).flat_map(|(i, center, radius)| {
+        scout.probes.iter().map(move |probe| {
+            let to = center - probe.ray.origin;
+            let along = to.dot(probe.ray.dir).max(probe.ray.t_min);
+            (i, (to - along * probe.ray.dir).length() - radius)
+        })
+    });
+    match misses.min_by(|a, b| a.1.total_cmp(&b.1)) {
+        Some((object, by)) if by > 0.0 => {
+            format!("the nearest ray passes {} beside the {}; ", number(by), scout.object(object))
+        }
+        _ => String::new(),
+    }
+}
+
+/// The picture is empty although the camera looks at things: they are too small, or there is nothing of them.
+pub(super) fn missed(scout: &Scout) -> Vec<Finding> {
+    let world = scout.world();
+    if scout.seen().next().is_some() || world.objects.is_empty() {
+        return Vec::new();
+    }
+    let Some(bounds) = target(scout).filter(|bounds| aims(scout, bounds.center())) else { return Vec::new() };
+    let mut diagnostic = Diagnostic::warning("every ray misses, though the camera looks at the middle of the scene")
+        .effect("the whole picture is background")
+        .at(scout.subject.scene.camera_span);
+    let size = pixels(scout, bounds);
+    diagnostic.help = Some(match size {
+        Some(size) if size < 12.0 => return Vec::new(),
+        _ => format!("{}is there a hole in the middle, or is it seen from its edge?", nearest(scout)),
+    });
+    vec![Finding::from(diagnostic).whole(true)]
+}
+
+/// How many pixels of the picture a box spans.
+pub(super) fn pixels(scout: &Scout, bounds: Aabb) -> Option<f32> {
+    let (world, job) = (scout.world(), scout.subject.job);
+    let mut around: Option<(Vec2, Vec2)> = None;
+    let mut unseen = 0;
+    for point in bounds.corners() {
+        let mut places = Vec::new();
+        world.camera.project(&world.frame, point, Vec2::splat(0.5), &mut |place| places.push(place));
+        unseen += usize::from(places.len() != 1);
+        for place in places {
+            let (min, max) = around.unwrap_or((place, place));
+            around = Some((min.min(place), max.max(place)));
+        }
+    }
+    let (min, max) = around.filter(|_| unseen == 0)?;
+    // The larger side of the picture spans 2.
+    Some((max - min).max_element() / (2.0 * corner(scout).max_element()) * job.width.max(job.height) as f32)
+}
+
+/// One thing is in front of all others.
+pub(super) fn hidden(scout: &Scout) -> Vec<Finding> {
+    let mut hits = scout.seen().map(|(_, seen)| seen.object);
+    let Some(front) = hits.next().filter(|front| hits.all(|other| other == *front)) else { return Vec::new() };
+    let (mut hidden, mut others) = (0, 0);
+    for (number, sight) in scout.sights().iter().enumerate().filter(|(i, _)| *i as u32 != front) {
+        match sight {
+            Sight::Hidden(_) => hidden += 1,
+            Sight::Unknown if scout.world().objects[number].bounds().is_none() => {}
+            _ => others += 1,
+        }
+    }
+    let covered = scout.seen().count();
+    let is_plane = scout.world().objects[front as usize].bounds().is_none();
+    // A thing may well stand behind another; behind a plane without end, nothing is ever seen.
+    if hidden == 0 || others > 0 || !is_plane && covered * 2 < scout.probes.len() {
+        return Vec::new();
+    }
+    let name = scout.object(front);
+    let behind = scout.seen().all(|(_, seen)| seen.from_behind);
+    let turned = is_plane.then(|| offset_turned(scout, front)).flatten();
+    let help = match (is_plane, behind) {
+        _ if is_plane && turned.is_none() => {
+            "the camera and the things behind the plane are on different sides of it: move one of them"
+        }
+        (true, true) => {
+            "the camera is behind the plane: it stands where p · normal = offset, so the sign of `offset` or of `normal` \
+             may be wrong"
+        }
+        (true, false) => "the plane stands where p · normal = offset: is the sign of `offset` right?",
+        _ => "move it, make it smaller, or move the camera",
+    };
+    let diagnostic = Diagnostic::warning(format!("the {name} hides everything else"))
+        .at(scout.object_span(front))
+        .label(format!("covers {} of the picture", percent(covered, scout.probes.len())))
+        .effect(format!("{} behind it cannot be seen", super::finding::counted(hidden, "object", "objects")))
+        .help(help);
+    let diagnostic = match turned {
+        Some((place, text)) => diagnostic.fix(place, text),
+        None => diagnostic,
+    };
+    vec![Finding::from(diagnostic).whole(true)]
+}
+
+/// The other sign of a plane's offset and where it is written, if the camera and the things are on one side of it then.
+fn offset_turned(scout: &Scout, object: u32) -> Option<(Span, String)> {
+    let plane_object = &scout.world().objects[object as usize];
+    let Geometry::Primitive(Primitive::Plane(plane)) = &plane_object.geometry else { return None };
+    if plane_object.to_world.is_some() || plane.offset == 0.0 {
+        return None;
+    }
+    let place = scout.value(scout.object_span(object), &["offset"])?;
+    let above = |p: Vec3| p.dot(plane.normal) > -plane.offset;
+    let things = scout.world().bounds();
+    (above(things.center()) == above(scout.world().camera.pose().center)).then(|| (place, number(-plane.offset)))
+}
