@@ -39,7 +39,7 @@ pub enum Command {
     Course(CourseArgs),
     Info(InfoArgs),
     Convert(ConvertArgs),
-    Compare(CompareArgs),
+    Compare(Box<CompareArgs>),
     /// List the dialects of the scene language, and the old programs' habits that can be had by name
     #[command(after_help = "Example:\n  durer dialects")]
     Dialects,
@@ -447,11 +447,14 @@ pub struct ConvertArgs {
   durer compare reference.png mine.png
   durer compare reference.png mine.png --report report.html --tolerance 2/255
   durer compare reference.exr mine.exr --heat heat.png --json
+  durer compare reference.png mine.png --scene scene.txt --bounces 4 --report report.html
   durer compare reference/ mine/ --report report.html
   durer compare reference/ class/
 
 Folders are compared picture by picture, by name; extensions may differ. Where no name of REFERENCE is in PICTURE itself, but
 some are in folders in it, each of those is taken for one student's.
+With --scene, each region that differs tells what is there: the object, its place in the file, the normal, and why the ray has
+its colour. The options with which the picture was rendered decide that.
 Exit code: 0 the same within the tolerance, 1 different or missing, 2 a picture that cannot be read, sizes that differ, wrong
 options, or a file that cannot be written.")]
 pub struct CompareArgs {
@@ -477,6 +480,13 @@ pub struct CompareArgs {
     /// Everything as JSON
     #[arg(long)]
     pub json: bool,
+    /// The scene of the pictures, or a folder of scenes of their names
+    #[arg(long, value_name = "SCENE")]
+    pub scene: Option<PathBuf>,
+    #[command(flatten)]
+    pub reading: SceneArgs,
+    #[command(flatten)]
+    pub job: JobArgs,
 }
 
 /// Pictures that show not the scene but how it is sampled.

@@ -3,6 +3,7 @@
 mod page;
 mod pairs;
 mod text;
+mod there;
 
 use crate::args::CompareArgs;
 use crate::output::{encode, format, save, say};
@@ -11,6 +12,7 @@ use durer::image::compare::{Comparison, Options, Picture, Scale, Verdict, compar
 use durer::image::{Image, Layer, Transfer, check_target, decode_linear};
 use pairs::Pair;
 use std::path::{Path, PathBuf};
+use there::{There, there};
 
 /// What came of a pair.
 enum Outcome {
@@ -27,6 +29,8 @@ struct Compared {
     outcome: Outcome,
     /// The page's pictures of it, where there is a page.
     shown: Option<page::Shown>,
+    /// What of the scene is at each region, where a scene is given.
+    there: Vec<There>,
 }
 
 impl Compared {
@@ -59,10 +63,15 @@ fn work(args: &CompareArgs) -> Result<(), Failure> {
     let options = Options { tolerance: args.tolerance, allowed: args.allow / 100.0, transfer };
 
     let (names, folders, extra) = (found.pairs.iter().map(name).collect::<Vec<_>>(), found.folders, found.extra);
-    let all: Vec<Compared> =
+    let mut all: Vec<Compared> =
         progress::each(&names, found.pairs, false, |pair| one(pair, &options, args.report.is_some()));
     if let ([Compared { outcome: Outcome::Failed(reason), .. }], false) = (&all[..], folders) {
         return Err(bad(reason));
+    }
+    for compared in &mut all {
+        if let Outcome::Compared(found) = &compared.outcome {
+            compared.there = there(args, &compared.pair, found)?;
+        }
     }
 
     if args.json {
@@ -102,7 +111,7 @@ fn name(pair: &Pair) -> String {
 /// Compares one pair.
 fn one(pair: Pair, options: &Options, page: bool) -> Compared {
     let Some(path) = &pair.picture else {
-        return Compared { pair, outcome: Outcome::Missing, shown: None };
+        return Compared { pair, outcome: Outcome::Missing, shown: None, there: Vec::new() };
     };
     let (reference, picture) = both(|| read(&pair.reference), || read(path));
     let compared = reference.and_then(|reference| {
@@ -113,8 +122,8 @@ fn one(pair: Pair, options: &Options, page: bool) -> Compared {
         Ok((found, shown))
     });
     match compared {
-        Ok((found, shown)) => Compared { pair, outcome: Outcome::Compared(Box::new(found)), shown },
-        Err(reason) => Compared { pair, outcome: Outcome::Failed(reason), shown: None },
+        Ok((found, shown)) => Compared { pair, outcome: Outcome::Compared(Box::new(found)), shown, there: Vec::new() },
+        Err(reason) => Compared { pair, outcome: Outcome::Failed(reason), shown: None, there: Vec::new() },
     }
 }
 

@@ -102,7 +102,7 @@ fn subject(args: &ExplainArgs, opened: &Opened, job: &Job, picture: Option<&Imag
 }
 
 /// Runs work whose recursion is as deep as the bounces.
-fn deep<T: Send>(work: impl FnOnce() -> T + Send) -> Result<T, Failure> {
+pub fn deep<T: Send>(work: impl FnOnce() -> T + Send) -> Result<T, Failure> {
     std::thread::scope(|scope| {
         let thread = std::thread::Builder::new().stack_size(64 << 20).spawn_scoped(scope, work)?;
         thread.join().map_err(|_| Failure::Other(anyhow::anyhow!("the explanation failed; this is an error in durer")))
@@ -144,7 +144,7 @@ fn most(picture: &Image, value: impl Fn(u32, u32) -> f32) -> (u32, u32) {
 }
 
 /// A line with what it adds before it.
-fn shown(line: &Line, colored: bool) -> String {
+pub fn shown(line: &Line, colored: bool) -> String {
     let indent = "  ".repeat(line.depth);
     let text = match line.adds {
         Some(adds) if line.depth > 0 => format!("+ ({}, {}, {})  {}", adds.x, adds.y, adds.z, line.text),

@@ -61,6 +61,37 @@ fn exit_codes_and_words() {
 }
 
 #[test]
+fn regions_name_what_is_there() {
+    let place = Place::new();
+    ["a", "b"].iter().for_each(|folder| std::fs::create_dir(place.path(folder)).unwrap());
+    place.gives(0, "render scene.txt --size 60x50 --samples 1 -q -o a/scene.png");
+    place.gives(0, "render scene.txt --size 60x50 --samples 1 --shadows=off -q -o b/scene.png");
+    for (pictures, scene) in [("a/scene.png b/scene.png", "scene.txt"), ("a b", ".")] {
+        let found = json(&place.gives(1, &format!("compare {pictures} --scene {scene} --json")).out);
+        let regions = found["pairs"][0]["regions"].as_array().unwrap();
+        assert!(!regions.is_empty());
+        for region in regions {
+            let (there, worst) = (&region["there"], &region["worst"]);
+            // Shadows fall on the plane.
+            assert!(there["hit"]["object"].as_str().unwrap().starts_with("Plane "), "{there}");
+            assert_eq!(there["hit"]["normal"], serde_json::json!([0.0, 1.0, 0.0]));
+            let command = there["command"].as_str().unwrap().strip_prefix("durer ").unwrap();
+            assert!(command.ends_with(&format!("--pixel {},{} --size 60x50", worst[0], worst[1])), "{command}");
+            place.gives(0, command);
+            let told = there["explanation"].as_array().unwrap();
+            assert!(told.iter().any(|line| line.as_str().unwrap().contains("DirectionalLight")), "{told:?}");
+        }
+    }
+    let text = place.gives(1, "compare a/scene.png b/scene.png --scene scene.txt").out;
+    assert!(text.contains("Plane scene.txt:") && text.contains("durer explain scene.txt --pixel"), "{text}");
+    assert!(place.gives(1, "compare a/scene.png b/scene.png --json").out.contains("\"there\": null"));
+    place.refused(2, "compare a b --scene a", &["no `scene.txt`"]);
+    place.refused(2, "compare a b --scene none.txt", &["none.txt"]);
+    place.gives(1, "compare a/scene.png b/scene.png --scene scene.txt --report r.html");
+    assert!(String::from_utf8(place.bytes("r.html")).unwrap().contains("durer explain scene.txt --pixel"));
+}
+
+#[test]
 fn bad_input_is_exit_code_2() {
     let (place, a) = rendered();
     let small = Image8 { width: 1, height: 1, pixels: vec![[0; 3]] };

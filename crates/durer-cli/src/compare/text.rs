@@ -1,5 +1,6 @@
 //! Comparisons as text and as JSON.
 
+use super::there::There;
 use super::{Compared, Outcome, name, note};
 use crate::args::CompareArgs;
 use crate::output::say;
@@ -65,8 +66,12 @@ pub fn single(compared: &Compared, options: &Options) {
             "  not finite  {reference} pixels of the reference, {picture} here, the first that differs at {x},{y}"
         ));
     }
-    for region in found.regions.iter().take(3) {
+    for (i, region) in found.regions.iter().enumerate().take(3) {
         say(&format!("  where     {}", place(region)));
+        if let Some(there) = compared.there.get(i) {
+            say(&format!("            {}", there.line()));
+            say(&format!("            {}", there.command));
+        }
     }
 }
 
@@ -189,7 +194,7 @@ pub fn pair(compared: &Compared) -> Value {
     let more = match &compared.outcome {
         Outcome::Missing => json!({}),
         Outcome::Failed(reason) => json!({ "error": reason }),
-        Outcome::Compared(found) => numbers(found),
+        Outcome::Compared(found) => numbers(found, &compared.there),
     };
     if let (Value::Object(value), Value::Object(more)) = (&mut value, more) {
         value.extend(more);
@@ -197,7 +202,7 @@ pub fn pair(compared: &Compared) -> Value {
     value
 }
 
-fn numbers(found: &Comparison) -> Value {
+fn numbers(found: &Comparison, there: &[There]) -> Value {
     let m = &found.measures;
     json!({
         "width": found.width,
@@ -217,9 +222,10 @@ fn numbers(found: &Comparison) -> Value {
         "not_finite": { "reference": m.not_finite[0], "picture": m.not_finite[1], "first": m.first_not_finite },
         "findings": found.findings.iter().map(|f| json!({ "kind": f.kind, "words": f.words, "explained": f.explained }))
             .collect::<Vec<_>>(),
-        "regions": found.regions.iter().map(|r| json!({
+        "regions": found.regions.iter().enumerate().map(|(i, r)| json!({
             "x": r.x, "y": r.y, "width": r.width, "height": r.height, "pixels": r.pixels,
             "mean_difference": r.mean_difference.to_array(), "share": r.share, "worst": r.worst,
+            "there": there.get(i).map(There::json),
         })).collect::<Vec<_>>(),
     })
 }

@@ -1,0 +1,100 @@
+//! What of the scene is where pictures differ.
+
+use super::pairs::Pair;
+use crate::args::CompareArgs;
+use crate::explain::{deep, shown};
+use crate::open::{Opened, load_options, open};
+use crate::{Failure, bad, job};
+use durer::image::compare::Comparison;
+use durer::math::Ray;
+use durer::render::explain::{Names, explain_ray, ray_text};
+use durer::render::{Job, center_ray, raster};
+use serde_json::{Value, json};
+use std::path::{Path, PathBuf};
+
+/// What the ray through the middle of a pixel meets.
+pub struct There {
+    /// The object, its place in the file, its material, the distance and the normal, where anything is hit.
+    pub hit: Option<Hit>,
+    /// Why the ray has its colour, by our rules: lines as `durer explain` prints them.
+    pub explanation: Vec<String>,
+    /// The command that tells it of the whole pixel.
+    pub command: String,
+}
+
+pub struct Hit {
+    pub object: String,
+    pub material: String,
+    pub t: f32,
+    pub normal: [f32; 3],
+}
+
+/// For each region what is at the pixel that differs most; nothing where no scene is given.
+pub fn there(args: &CompareArgs, pair: &Pair, found: &Comparison) -> Result<Vec<There>, Failure> {
+    let Some(scene) = &args.scene else { return Ok(Vec::new()) };
+    let path = path(scene, pair)?;
+    let options = load_options(&args.reading);
+    let opened = open(&path, &options, true)?;
+    let job = job::job(&args.job, &opened.loaded, false)?;
+    let job = Job { width: found.width, height: found.height, crop: None, ..job };
+    let raster = raster(&opened.world, job.width, job.height);
+    let look = |place: (u32, u32)| {
+        let shown = path.to_string_lossy();
+        let quoted = shlex::try_quote(&shown).unwrap_or_default();
+        let ((x, y), (width, height)) = (place, (job.width, job.height));
+        let command = format!("durer explain {quoted} --pixel {x},{y} --size {width}x{height}");
+        let ray = center_ray(&opened.world, &raster, place);
+        let (hit, explanation) = ray.map_or(Ok((None, Vec::new())), |ray| along(&opened, &job, &ray))?;
+        Ok(There { hit, explanation, command })
+    };
+    found.regions.iter().map(|region| look(region.worst)).collect()
+}
+
+/// The scene of a pair: in a folder, that of the picture's name.
+fn path(scene: &Path, pair: &Pair) -> Result<PathBuf, Failure> {
+    if !scene.is_dir() {
+        return Ok(scene.into());
+    }
+    let name = Path::new(&pair.name).with_extension("txt");
+    let path = scene.join(&name);
+    match path.exists() {
+        true => Ok(path),
+        false => Err(bad(format!("there is no `{}` in `{}`", name.display(), scene.display()))),
+    }
+}
+
+fn along(opened: &Opened, job: &Job, ray: &Ray) -> Result<(Option<Hit>, Vec<String>), Failure> {
+    let world = &opened.world;
+    let names = Names { files: &opened.files, scene: &opened.loaded.scene, world };
+    let hit = world.closest(ray, &mut ()).map(|hit| Hit {
+        object: names.object(hit.object),
+        material: names.material(world.objects[hit.object as usize].material),
+        t: hit.t,
+        normal: world.surface(ray, &hit).n_shade.to_array(),
+    });
+    let light = deep(|| explain_ray(world, job, ray))?;
+    let lines = light.iter().flat_map(|light| ray_text(light, &names));
+    Ok((hit, lines.map(|line| shown(&line, false)).collect()))
+}
+
+impl There {
+    /// In one line.
+    pub fn line(&self) -> String {
+        match &self.hit {
+            Some(Hit { object, material, t, normal: [x, y, z] }) => {
+                format!("{object}, {material}, t {t}, normal {x:.3} {y:.3} {z:.3}")
+            }
+            None => "nothing is hit there".into(),
+        }
+    }
+
+    pub fn json(&self) -> Value {
+        json!({
+            "hit": self.hit.as_ref().map(|hit| json!({
+                "object": hit.object, "material": hit.material, "t": hit.t, "normal": hit.normal,
+            })),
+            "explanation": self.explanation,
+            "command": self.command,
+        })
+    }
+}
