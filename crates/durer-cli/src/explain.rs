@@ -113,27 +113,26 @@ fn at(picture: &Image, x: u32, y: u32) -> Color {
     picture.get(x, y).unwrap_or(Vec3::ZERO)
 }
 
-/// Luminance of linear sRGB (ITU-R BT.709).
-fn luminance(color: Color) -> f32 {
-    0.2126 * color.x + 0.7152 * color.y + 0.0722 * color.z
+fn luminance(color: Color) -> f64 {
+    durer::film::luminance(color.to_array().map(f64::from))
 }
 
 /// How far a pixel's luminance is from the middle one of those around it.
-fn oddness(picture: &Image, x: u32, y: u32) -> f32 {
-    let mut around: Vec<f32> = (0..9)
+fn oddness(picture: &Image, x: u32, y: u32) -> f64 {
+    let mut around: Vec<f64> = (0..9)
         .filter(|&i| i != 4)
         .filter_map(|i| picture.get((x + i % 3).checked_sub(1)?, (y + i / 3).checked_sub(1)?))
         .map(luminance)
         .collect();
-    around.sort_by(f32::total_cmp);
+    around.sort_by(f64::total_cmp);
     let middle = around.get(around.len() / 2).copied().unwrap_or(0.0);
     (luminance(at(picture, x, y)) - middle).abs()
 }
 
 /// The first pixel of the greatest value in reading order.
-fn most(picture: &Image, value: impl Fn(u32, u32) -> f32) -> (u32, u32) {
+fn most(picture: &Image, value: impl Fn(u32, u32) -> f64) -> (u32, u32) {
     let places = (0..picture.height).flat_map(|y| (0..picture.width).map(move |x| (x, y)));
-    let mut best = ((0, 0), f32::NEG_INFINITY);
+    let mut best = ((0, 0), f64::NEG_INFINITY);
     for (x, y) in places {
         let value = value(x, y);
         if value > best.1 {
