@@ -70,13 +70,14 @@ pub fn run(args: &InfoArgs) -> Result<(), Failure> {
         mib(count.bytes - count.picture_bytes),
         mib(count.picture_bytes)
     ));
-    let cost =
-        |cost: Option<f64>, of: &str| cost.map(|cost| format!("{cost:.1} nodes for a random ray in that of {of}"));
-    let each = count.tree_bytes_each().map(|bytes| format!("{bytes:.0} bytes a triangle"));
-    let trees = [cost(count.object_cost, "objects"), cost(count.tree_cost(), "triangles"), each];
-    let trees: Vec<String> = trees.into_iter().flatten().collect();
-    if !trees.is_empty() {
-        say(&format!("trees      {}", trees.join(", ")));
+    let visits = [(count.object_cost, "objects"), (count.tree_cost(), "triangles")];
+    let visits = visits.into_iter().filter_map(|(cost, of)| Some(format!("{:.1} nodes over {of}", cost?)));
+    let visits = visits.collect::<Vec<_>>().join(", ");
+    if !visits.is_empty() {
+        say(&format!("trees      a random ray is expected to visit {visits}"));
+    }
+    if let Some(bytes) = count.tree_bytes_each() {
+        say(&format!("           {bytes:.0} bytes a triangle"));
     }
     if let (Some(nodes), Some(tests)) = (per_ray(rays.nodes), per_ray(rays.tests)) {
         say(&format!("rays       {nodes:.1} nodes and {tests:.1} tests for each of {} from the camera", rays.rays));
