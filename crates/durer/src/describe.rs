@@ -332,6 +332,11 @@ pub trait DescribedList: Sized {
     /// Sets the i-th field.
     fn set(&mut self, field: usize, value: Value);
 
+    /// Whether only our own dialect has it.
+    fn is_ours(&self) -> bool {
+        self.keywords().iter().all(|(_, set)| *set == Dialect::Durer as DialectSet)
+    }
+
     /// A thing with default values, by a keyword of any dialect.
     fn from_keyword(word: &str) -> Option<Self> {
         Self::kinds().into_iter().find(|kind| kind.keywords().iter().any(|(keyword, _)| *keyword == word))

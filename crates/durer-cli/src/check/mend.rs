@@ -3,7 +3,7 @@
 use super::{Checked, look};
 use crate::Failure;
 use crate::args::CheckArgs;
-use durer::check::{CHECKS, Finding, apply};
+use durer::check::{Finding, apply, rank};
 use durer::diag::{Edit, Severity};
 use std::sync::Arc;
 
@@ -64,7 +64,6 @@ fn is_better(before: &Checked, after: &Checked, finding: &Finding) -> bool {
     if errors(after) < errors(before) {
         return true;
     }
-    let rank = |code: &str| CHECKS.iter().position(|check| check.code == code).unwrap_or(CHECKS.len());
     let worse = |f: &Finding| f.whole && rank(f.diagnostic.code) < rank(code);
     errors(after) == errors(before) && alike(after) < alike(before) && after.count(worse) <= before.count(worse)
 }

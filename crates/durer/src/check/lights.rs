@@ -9,6 +9,7 @@ use crate::dialect::Dialect;
 use crate::format::course::place::{block, section};
 use crate::light::{Light, PointLight};
 use crate::math::{Color, Ray, Vec3};
+use crate::scene::Spanned;
 
 /// What adds less than this to a colour is not seen in eight bits.
 pub(super) const VISIBLE: f32 = 1.0 / 512.0;
@@ -115,9 +116,14 @@ fn divisor(light: &Light) -> Option<Vec3> {
     }
 }
 
+/// A light as it is written.
+fn written<'s>(scout: &Scout<'s>, light: usize) -> Option<&'s Spanned<Light>> {
+    scout.subject.scene.lights.as_ref()?.get(light)
+}
+
 /// Where a light is written.
 pub(super) fn place(scout: &Scout, light: usize) -> Option<Span> {
-    scout.subject.scene.lights.iter().flatten().nth(light).map(|light| light.span)
+    Some(written(scout, light)?.span)
 }
 
 /// Whether no light adds anything to what is seen.
@@ -203,11 +209,8 @@ fn mostly_dark(scout: &Scout) -> Vec<Finding> {
     diagnostic = scout.at_value(diagnostic, span, &["direction", "position"]);
     // All lights turned round together are meant to be where they came from.
     for &light in &working {
-        let Some(span) = place(scout, light) else { continue };
-        let written =
-            scout.subject.scene.lights.as_ref().and_then(|lights| lights.get(light)).map(|light| &light.value);
-        if let (Some(Light::Directional(written)), Some(value)) = (written, scout.value(span, &["direction"])) {
-            diagnostic = diagnostic.fix(value, vector(-written.direction));
+        if let Some(Spanned { value: Light::Directional(light), span }) = written(scout, light) {
+            diagnostic = diagnostic.fix_at(scout.value(*span, &["direction"]), vector(-light.direction));
         }
     }
     vec![Finding::from(diagnostic).whole((reached as f32) < NEARLY_ALL_DARK * all as f32)]
@@ -223,7 +226,7 @@ pub(super) fn behind(scout: &Scout) -> Vec<Finding> {
         let away = lit.iter().filter(|lit| lit.cosine <= 1e-3).count();
         let message = format!("this light is behind what is seen: {} of it faces away", percent(away, lit.len()));
         let (diagnostic, span) = useless(scout, light, message)?;
-        let diagnostic = match &scout.subject.scene.lights.as_ref()?.get(light)?.value {
+        let diagnostic = match &written(scout, light)?.value {
             Light::Directional(written) => {
                 let turned = vector(-written.direction);
                 let help = format!(
@@ -250,7 +253,7 @@ pub(super) fn faint(scout: &Scout) -> Vec<Finding> {
         let message = format!("this light fades to {} before it arrives", number(most));
         let (diagnostic, span) = useless(scout, light, message)?;
         let factor = 0.8 / most.max(1e-30);
-        let written = &scout.subject.scene.lights.as_ref()?.get(light)?.value;
+        let written = &written(scout, light)?.value;
         let Light::Point(point) = written else {
             let color = color(written) * factor;
             let help = format!("it is {} times too weak: `color {}`, say", number(factor), vector(color));
@@ -327,7 +330,7 @@ pub(super) fn divides(scout: &Scout) -> Vec<Finding> {
                     false => "it takes light away, or what it shines on is no number: black",
                 })
                 .help("`attenuation 1 0 0` is light that does not fade");
-            let triple = scout.subject.scene.lights.as_ref().and_then(|l| l.get(light)).is_some_and(
+            let triple = written(scout, light).is_some_and(
                 |l| matches!(&l.value, Light::Point(point) if point.attenuation.is_some() && point.falloff.is_none()),
             );
             let diagnostic = match value {

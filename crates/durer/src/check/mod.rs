@@ -28,7 +28,7 @@ use crate::diag::{Diagnostics, Severity};
 pub use finding::Finding;
 pub use repair::{Repaired, apply};
 pub use scout::{Scout, Subject};
-pub use table::{CHECKS, Check};
+pub use table::{CHECKS, Check, rank};
 
 /// At most so many findings of one kind are told one by one.
 const MOST_ALIKE: usize = 3;

@@ -121,7 +121,7 @@ fn in_plane(scout: &Scout) -> Vec<Finding> {
             }
             _ => continue,
         };
-        let corners = corners.map(|p| object.to_world.as_ref().map_or(p, |to_world| to_world.point(p)));
+        let corners = corners.map(|p| object.world_point(p));
         let lies_in = |plane: &Plane| {
             let off = |p: Vec3| (p.dot(plane.normal) - plane.offset).abs() / plane.normal.length();
             corners.iter().all(|&p| off(p) <= 1e-5 * (1e-3 + p.abs().max_element()))

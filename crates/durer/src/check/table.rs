@@ -101,7 +101,7 @@ checks! {
 }
 
 /// The place of a code in the order of findings; what has none stands before the notes at the end.
-pub(super) fn rank(code: &str) -> usize {
+pub fn rank(code: &str) -> usize {
     let of = |code: &str| CHECKS.iter().position(|check| check.code == code);
     of(code).or(of("foreign-word")).unwrap_or(CHECKS.len())
 }

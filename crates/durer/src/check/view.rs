@@ -80,8 +80,7 @@ fn target(scout: &Scout) -> Option<Aabb> {
         Geometry::Primitive(Primitive::Plane(plane)) => {
             let n = plane.normal.normalize_or(Vec3::Y);
             let on = n * (plane.offset / plane.normal.length().max(f32::MIN_POSITIVE));
-            let to_world = |p: Vec3| object.to_world.as_ref().map_or(p, |to_world| to_world.point(p));
-            let (on, n) = (to_world(on), object.to_world.as_ref().map_or(n, |to_world| to_world.normal(n)));
+            let (on, n) = (object.world_point(on), object.to_world.as_ref().map_or(n, |to_world| to_world.normal(n)));
             Some(eye + (on - eye).dot(n) * n)
         }
         _ => None,

@@ -10,6 +10,11 @@ use crate::math::{Vec2, Vec3};
 /// An index that is not given.
 pub const NO_INDEX: u32 = u32::MAX;
 
+/// What corners at the same place have in common: zeroes of either sign are alike.
+pub fn place_key(p: Vec3) -> [u32; 3] {
+    (p + 0.0).to_array().map(f32::to_bits)
+}
+
 /// What a mesh file holds: plain data, as written, n-gons cut into triangles.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MeshData {
@@ -109,13 +114,11 @@ impl Mesh {
     /// Whether every edge borders on an even number of triangles, so that a line crosses the mesh an even number of
     /// times; else the ends of one that does not. Corners at the same place are one.
     pub fn open_edge(&self) -> Option<[Vec3; 2]> {
-        // Zeroes of either sign are alike.
-        let key = |p: Vec3| (p + 0.0).to_array().map(f32::to_bits);
         let mut edges: Vec<([[u32; 3]; 2], [Vec3; 2])> = Vec::with_capacity(3 * self.len());
         for part in 0..self.len() as u32 {
             let [a, b, c] = self.corners(part);
             for [p, q] in [[a, b], [b, c], [c, a]] {
-                let (k, l) = (key(p), key(q));
+                let (k, l) = (place_key(p), place_key(q));
                 if k != l {
                     edges.push(([k.min(l), k.max(l)], [p, q]));
                 }

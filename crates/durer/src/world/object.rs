@@ -114,6 +114,11 @@ impl Object {
         }
     }
 
+    /// A point of object space in world space.
+    pub fn world_point(&self, p: Vec3) -> Vec3 {
+        self.to_world.as_ref().map_or(p, |to_world| to_world.point(p))
+    }
+
     /// The surface in world space, at a crossing that is next to this point of object space.
     pub(super) fn surface(&self, ray: &Ray, point: DVec3, crossing: &Crossing, part: u32, placing: Placing) -> Surface {
         let surface = match &self.geometry {

@@ -95,7 +95,7 @@ fn ray(world: &World, random: &mut Random, size: f32) -> Ray {
         Geometry::Mesh(tree) => tree.mesh.corners(random.below(tree.mesh.len()) as u32)[random.below(3)],
         _ => corner,
     };
-    let vertex = object.to_world.as_ref().map_or(vertex, |to_world| to_world.point(vertex));
+    let vertex = object.world_point(vertex);
     let far = [1.0, 1.0, 3.0, 100.0, 1e4][random.below(5)];
     let origin = match random.below(5) {
         0 => corner,

@@ -154,7 +154,7 @@ impl<C: Fn(u32) -> [Vec3; 3] + Sync> Cutter<'_, C> {
             let mut right = [(0.0, 0_u32); BINS];
             let mut sum = Bin::EMPTY;
             for bin in (1..count).rev() {
-                sum = Bin { count: sum.count + ends[bin], ..sum.union(Bin { count: 0, ..bins[bin] }) };
+                sum = sum.union(Bin { count: ends[bin], ..bins[bin] });
                 right[bin] = (sum.cost(self.builder.scale), sum.count);
             }
             let mut left = Bin::EMPTY;
@@ -178,32 +178,29 @@ impl<C: Fn(u32) -> [Vec3; 3] + Sync> Cutter<'_, C> {
             match () {
                 () if r.max[axis] <= at => left.push(*r),
                 () if r.min[axis] >= at => right.push(*r),
-                () => through.push(*r),
+                () => through.push((*r, self.halves(axis, at, r))),
             }
         }
         let mut sides = [&left, &right].map(|side| side.iter().fold(Bin::EMPTY, Bin::with));
-        for r in &through {
-            for (side, half) in sides.iter_mut().zip(self.halves(axis, at, r)) {
-                *side = side.with(&half);
-            }
+        for (_, halves) in &through {
+            sides.iter_mut().zip(halves).for_each(|(side, half)| *side = side.with(half));
         }
         let scale = self.builder.scale;
-        for r in through {
-            let [l, s] = sides;
-            let (without_l, without_s) = (Bin { count: l.count - 1, ..l }, Bin { count: s.count - 1, ..s });
-            let both = l.cost(scale) + s.cost(scale);
-            let whole_left = Bin { count: l.count, ..l.with(&r) }.cost(scale) + without_s.cost(scale);
-            let whole_right = without_l.cost(scale) + Bin { count: s.count, ..s.with(&r) }.cost(scale);
-            if both < whole_left.min(whole_right) {
-                let [a, b] = self.halves(axis, at, &r);
+        let cost = |[l, r]: &[Bin; 2]| l.cost(scale) + r.cost(scale);
+        for (whole, [a, b]) in through {
+            let [l, r] = sides;
+            // Its own half is among those counted on either side.
+            let all_left = [l.around(&whole), Bin { count: r.count - 1, ..r }];
+            let all_right = [Bin { count: l.count - 1, ..l }, r.around(&whole)];
+            if cost(&sides) < cost(&all_left).min(cost(&all_right)) {
                 left.push(a);
                 right.push(b);
-            } else if whole_left <= whole_right {
-                sides = [Bin { count: l.count, ..l.with(&r) }, without_s];
-                left.push(r);
+            } else if cost(&all_left) <= cost(&all_right) {
+                sides = all_left;
+                left.push(whole);
             } else {
-                sides = [without_l, Bin { count: s.count, ..s.with(&r) }];
-                right.push(r);
+                sides = all_right;
+                right.push(whole);
             }
         }
         [left, right]

@@ -45,9 +45,7 @@ impl<'a> Stack<'a> {
 
     #[inline(always)]
     pub fn pop(&mut self) -> Option<u32> {
-        self.height = self.height.checked_sub(1)?;
-        // SAFETY: the height never exceeds the room, and everything below it was written.
-        Some(unsafe { *self.room.children.as_ptr().cast::<u32>().add(self.height) })
+        (self.height > 0).then(|| self.pop_if(true))
     }
 
     pub fn clear(&mut self) {

@@ -130,8 +130,7 @@ impl<T: Tally, F: Found> Kernel for Query<'_, T, F> {
     fn run<L: Lanes>(self, lanes: L) -> F {
         let Query { bvh, ray, tally, .. } = self;
         let boxes = RayBox::new(ray, bvh.bounds);
-        let sheared = bvh.sheared(ray);
-        let mut leaves = Leaves { bvh, sheared, ray: *ray, tally, found: F::default(), side_by_side: boxes.moderate };
+        let mut leaves = Leaves::new(bvh, ray, &boxes, tally);
         // The interval is open, and what the walk goes by is the last t inside.
         let t_last = ray.t_max.next_down();
         match boxes.tame {
@@ -153,15 +152,13 @@ pub struct Leaves<'a, T, F> {
     side_by_side: bool,
 }
 
-impl<'a, F: Found> Leaves<'a, (), F> {
-    /// For a ray for which tests side by side are within the range of numbers.
+impl<'a, T, F: Found> Leaves<'a, T, F> {
     #[inline(always)]
-    pub fn new(bvh: &'a TriangleBvh, ray: &Ray) -> Self {
-        Leaves { bvh, sheared: bvh.sheared(ray), ray: *ray, tally: (), found: F::default(), side_by_side: true }
+    pub fn new(bvh: &'a TriangleBvh, ray: &Ray, boxes: &RayBox, tally: T) -> Self {
+        let (sheared, found) = (bvh.sheared(ray), F::default());
+        Leaves { bvh, sheared, ray: *ray, tally, found, side_by_side: boxes.moderate }
     }
-}
 
-impl<T, F: Found> Leaves<'_, T, F> {
     /// What was found, when the search has ended.
     #[inline(always)]
     pub fn answer(&mut self) -> F {

@@ -77,7 +77,7 @@ impl<'a, F: Found, A: FnMut(usize, F)> Stream<'a, F, A> {
                 continue;
             }
             flyer.number = number;
-            flyer.leaves = Leaves::new(self.bvh, ray);
+            flyer.leaves = Leaves::new(self.bvh, ray, &flyer.boxes, ());
             (flyer.t_max, flyer.child) = (ray.t_max.next_down(), 0);
             stack.clear();
             stack.push(END, f32::NEG_INFINITY);
@@ -122,13 +122,8 @@ impl<'a, F: Found, A: FnMut(usize, F)> Kernel for Stream<'a, F, A> {
         let mut rooms: Vec<Room> = (0..FLYING).map(|_| Room::new()).collect();
         let mut stacks: Vec<Stack> = rooms.iter_mut().map(Stack::new).collect();
         let nowhere = Ray::new(Vec3::ZERO, Vec3::X);
-        let place = |_| Flyer {
-            number: 0,
-            boxes: RayBox::new(&nowhere, bvh.bounds),
-            leaves: Leaves::new(bvh, &nowhere),
-            t_max: 0.0,
-            child: END,
-        };
+        let boxes = RayBox::new(&nowhere, bvh.bounds);
+        let place = |_| Flyer { number: 0, boxes, leaves: Leaves::new(bvh, &nowhere, &boxes, ()), t_max: 0.0, child: END };
         let mut flyers: Vec<Flyer<F>> = (0..FLYING).map(place).collect();
         let (mut inner, mut leaves) = (List::EMPTY, List::EMPTY);
         for (number, (flyer, stack)) in flyers.iter_mut().zip(&mut stacks).enumerate() {

@@ -12,7 +12,7 @@ use crate::format::read_mesh;
 use crate::math::Aabb;
 use crate::scene::{Group, Node, Object};
 use crate::shape::MeshData;
-use crate::world::Material;
+use crate::world::{Material, Object as Placed};
 use normals::Given;
 use topology::Topology;
 
@@ -123,21 +123,24 @@ impl MeshFile<'_> {
         self.objects.iter().find(|object| object.material.is_some_and(refracts)).copied()
     }
 
+    /// Its objects as they are placed in the world.
+    fn placed<'w>(&self, scout: &Scout<'w>) -> impl Iterator<Item = &'w Placed> {
+        let own = |object: &&Placed| self.objects.iter().any(|o| o.span.start == object.span.start);
+        scout.world().objects.iter().filter(own)
+    }
+
     /// Whether the camera is in it, as in a room: its walls face inwards by right.
     fn is_room(&self, scout: &Scout) -> bool {
         let eye = scout.world().camera.pose().center;
-        let own = |object: &&crate::world::Object| self.objects.iter().any(|o| o.span.start == object.span.start);
-        let mut bounds = scout.world().objects.iter().filter(own).filter_map(crate::world::Object::bounds);
-        bounds.any(|b| eye.cmpge(b.min).all() && eye.cmple(b.max).all())
+        self.placed(scout).filter_map(Placed::bounds).any(|bounds| bounds.holds(eye))
     }
 
     /// Whether it is the inner wall of hollow glass: that faces inwards by right.
     fn is_hollow(&self, scout: &Scout) -> bool {
         let objects = &scout.world().objects;
-        let own = |object: &&crate::world::Object| self.objects.iter().any(|o| o.span.start == object.span.start);
-        let holds = |outer: &Aabb, inner: &Aabb| outer.min.cmple(inner.min).all() && outer.max.cmpge(inner.max).all();
-        objects.iter().filter(own).filter_map(|object| Some((object, object.bounds()?))).any(|(inner, bounds)| {
-            let around = |other: &crate::world::Object| {
+        let holds = |outer: &Aabb, inner: &Aabb| outer.holds(inner.min) && outer.holds(inner.max);
+        self.placed(scout).filter_map(|object| Some((object, object.bounds()?))).any(|(inner, bounds)| {
+            let around = |other: &Placed| {
                 other.span.start != inner.span.start && other.bounds().is_some_and(|outer| holds(&outer, &bounds))
             };
             self.glass(scout).is_some() && objects.iter().any(|other| other.material == inner.material && around(other))

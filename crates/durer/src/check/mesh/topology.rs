@@ -1,6 +1,7 @@
 //! How triangles hang together: edges, sides, volume.
 
 use crate::math::{Aabb, Vec3};
+use crate::shape::mesh::place_key;
 use glam::DVec3;
 use std::collections::HashMap;
 
@@ -86,9 +87,7 @@ impl Topology {
 /// For each corner, the first one at the same place.
 fn same_places(positions: &[Vec3]) -> Vec<u32> {
     let mut first: HashMap<[u32; 3], u32> = HashMap::with_capacity(positions.len());
-    // Zeroes of either sign are alike.
-    let key = |p: &Vec3| (*p + 0.0).to_array().map(f32::to_bits);
-    positions.iter().enumerate().map(|(i, p)| *first.entry(key(p)).or_insert(i as u32)).collect()
+    positions.iter().enumerate().map(|(i, p)| *first.entry(place_key(*p)).or_insert(i as u32)).collect()
 }
 
 /// Goes from triangle to triangle across edges of two: neighbours that run along their edge alike go round differently. Of each

@@ -31,7 +31,7 @@ impl Reader<'_, '_> {
             return;
         }
         // Of a thing that only our dialect has, the keyword is complained of, and not its fields as well.
-        let ours = thing.keywords().iter().all(|(_, set)| *set == Dialect::Durer as DialectSet);
+        let ours = thing.is_ours();
         let fields = thing.fields();
         let mut given = vec![None; fields.len()];
         let mut last = 0;
@@ -155,10 +155,7 @@ impl Reader<'_, '_> {
             Err(_) => format!("`{name}` has no field {}", shown(word.as_bytes())),
         };
         let error = Diagnostic::error(message).code("unknown-word").at(span).label("not known here").help(help);
-        self.error(match self.meant(word, known()) {
-            Some(meant) => error.fix(span, meant),
-            None => error,
-        });
+        self.error(self.with_meant(error, word, span, known()));
         self.skip_value();
     }
 

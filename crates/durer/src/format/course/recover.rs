@@ -82,10 +82,7 @@ impl Reader<'_, '_> {
         let list = || format!("known here: {}", known.join(", "));
         let help = self.advice(word, known.iter().copied()).unwrap_or_else(list);
         let error = Diagnostic::error(message).code("unknown-word").at(span).label("not known here").help(help);
-        self.error(match self.meant(word, known.iter().copied()) {
-            Some(meant) => error.fix(span, meant),
-            None => error,
-        });
+        self.error(self.with_meant(error, word, span, known.iter().copied()));
         while let Some(token) = self.peek() {
             match token.kind {
                 TokenKind::Close => return,
@@ -100,9 +97,21 @@ impl Reader<'_, '_> {
 
     /// The known word that is meant by one that is none. A word of the language is hardly a slip of another, unless of its
     /// capitals.
-    pub(super) fn meant<'w>(&self, word: &str, known: impl IntoIterator<Item = &'w str>) -> Option<&'w str> {
+    fn meant<'w>(&self, word: &str, known: impl IntoIterator<Item = &'w str>) -> Option<&'w str> {
         let near = did_you_mean(word, known).filter(|near| *near != word)?;
         (dialects_of(word).is_none() || near.eq_ignore_ascii_case(word)).then_some(near)
+    }
+
+    /// An error about a word, with the edit that makes it the one that is meant, if that is clear.
+    pub(super) fn with_meant<'w>(
+        &self,
+        error: Diagnostic,
+        word: &str,
+        span: Span,
+        known: impl IntoIterator<Item = &'w str>,
+    ) -> Diagnostic {
+        let meant = self.meant(word, known);
+        error.fix_at(meant.map(|_| span), meant.unwrap_or_default())
     }
 
     /// What may be meant by a word that stands in a wrong place.

@@ -1,7 +1,7 @@
 //! Scenes as text.
 
 use crate::describe::{DescribedList, Value};
-use crate::dialect::{Dialect, DialectSet};
+use crate::dialect::Dialect;
 use crate::light::{Light, PointLight};
 use crate::math::Vec3;
 use crate::scene::{Group, Material, MatrixOp, Node, Object, Scene};
@@ -44,7 +44,7 @@ impl Writer {
     fn fields<T: DescribedList>(&mut self, thing: &T) {
         let plain = T::from_keyword(thing.keywords()[0].0);
         // What only our dialect has is written in its words.
-        let ours = thing.keywords().iter().all(|(_, set)| *set == Dialect::Durer as DialectSet);
+        let ours = thing.is_ours();
         let dialect = if ours { Dialect::Durer } else { self.dialect };
         for (i, field) in thing.fields().iter().enumerate() {
             let Some(value) = thing.get(i) else { continue };
