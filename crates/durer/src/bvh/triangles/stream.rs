@@ -123,7 +123,8 @@ impl<'a, F: Found, A: FnMut(usize, F)> Kernel for Stream<'a, F, A> {
         let mut stacks: Vec<Stack> = rooms.iter_mut().map(Stack::new).collect();
         let nowhere = Ray::new(Vec3::ZERO, Vec3::X);
         let boxes = RayBox::new(&nowhere, bvh.bounds);
-        let place = |_| Flyer { number: 0, boxes, leaves: Leaves::new(bvh, &nowhere, &boxes, ()), t_max: 0.0, child: END };
+        let place =
+            |_| Flyer { number: 0, boxes, leaves: Leaves::new(bvh, &nowhere, &boxes, ()), t_max: 0.0, child: END };
         let mut flyers: Vec<Flyer<F>> = (0..FLYING).map(place).collect();
         let (mut inner, mut leaves) = (List::EMPTY, List::EMPTY);
         for (number, (flyer, stack)) in flyers.iter_mut().zip(&mut stacks).enumerate() {
