@@ -12,8 +12,10 @@ pub const BINS: usize = 16;
 pub const HALVING_DEPTH: usize = 60;
 /// Subtrees of more references than this are built in parallel.
 pub const PARALLEL: usize = 4096;
-/// So few references are sorted rather than put into bins.
-pub const FEW: usize = 8;
+/// More references than this are put into bins in parallel.
+const MANY: usize = 1 << 15;
+/// Of so few references all divisions are tried.
+pub const FEW: usize = 4;
 
 /// A node. Nodes lie in depth-first order: the left child follows its parent, the right child the left one's subtree,
 /// which has twice the left child's count of nodes, less one.
@@ -61,7 +63,8 @@ pub fn half_area(min: Vec4, max: Vec4, scale: f32) -> f32 {
 pub fn build(references: &mut [Reference], scale: f32) -> Tree {
     let nothing = Node::new(Vec4::ZERO, Vec4::ZERO, 0, 0);
     let mut nodes = vec![nothing; 2 * references.len() - 1];
-    Builder { scale }.subtree(references, 0, &mut nodes, 0);
+    let set = Set::of(references);
+    Builder { scale }.subtree(references, &set, 0, &mut nodes, 0);
     Tree { nodes, scale }
 }
 
@@ -96,164 +99,273 @@ impl Bin {
         Bin { min: self.min.min(other.min), max: self.max.max(other.max), count: self.count + other.count }
     }
 
+    #[inline]
     pub fn cost(&self, scale: f32) -> f32 {
         half_area(self.min, self.max, scale) * self.count as f32
     }
 }
 
+/// What is known of some references: the box around them, their number, and the box around their centres.
+#[derive(Clone, Copy)]
+pub struct Set {
+    pub bounds: Bin,
+    centers: [Vec4; 2],
+}
+
+const NO_CENTERS: [Vec4; 2] = [Vec4::INFINITY, Vec4::NEG_INFINITY];
+
+impl Set {
+    pub fn of(references: &[Reference]) -> Set {
+        if references.len() > MANY {
+            let (a, b) = references.split_at(references.len() / 2);
+            let (a, b) = rayon::join(|| Set::of(a), || Set::of(b));
+            let centers = [a.centers[0].min(b.centers[0]), a.centers[1].max(b.centers[1])];
+            return Set { bounds: a.bounds.union(b.bounds), centers };
+        }
+        let nothing = Set { bounds: Bin::EMPTY, centers: NO_CENTERS };
+        references.iter().fold(nothing, |set, r| {
+            let (center, [low, high]) = (r.center(), set.centers);
+            Set { bounds: set.bounds.with(r), centers: [low.min(center), high.max(center)] }
+        })
+    }
+}
+
+/// Bins of equal width over the centres of references.
+#[derive(Clone, Copy)]
+struct Grid {
+    low: Vec4,
+    scale: Vec4,
+    bins: usize,
+}
+
+impl Grid {
+    fn new(set: &Set, most: usize) -> Grid {
+        // Few references fill few bins.
+        let bins = (4 + set.bounds.count as usize / 16).min(most);
+        let [low, high] = set.centers;
+        // Where a size is zero or leaves the range, all fall into the first bin.
+        let scale = bins as f32 * (1.0 - 1e-6) / (high - low);
+        let scale = Vec4::select(scale.cmplt(Vec4::INFINITY), scale, Vec4::ZERO);
+        Grid { low, scale, bins }
+    }
+
+    /// A reference's bins, added to 2^23, where the last place of a number is 1.
+    #[inline(always)]
+    fn at(&self, r: &Reference) -> Vec4 {
+        let at = (r.center() - self.low) * self.scale - 0.5;
+        // Also where it is not a number.
+        let at = Vec4::select(at.cmpgt(Vec4::ZERO), at, Vec4::ZERO);
+        at.min(Vec4::splat((self.bins - 1) as f32)) + FIRST
+    }
+}
+
+const FIRST: f32 = (1 << 23) as f32;
+
+struct Bins<const N: usize> {
+    boxes: [[[Vec4; 2]; N]; 3],
+    counts: [[u32; N]; 3],
+}
+
+impl<const N: usize> Bins<N> {
+    fn new(references: &[Reference], grid: &Grid) -> Self {
+        if references.len() > MANY {
+            let (a, b) = references.split_at(references.len() / 2);
+            let (mut a, b): (Self, Self) = rayon::join(|| Self::new(a, grid), || Self::new(b, grid));
+            for axis in 0..3 {
+                for i in 0..N {
+                    let ([min, max], [low, high]) = (a.boxes[axis][i], b.boxes[axis][i]);
+                    a.boxes[axis][i] = [min.min(low), max.max(high)];
+                    a.counts[axis][i] += b.counts[axis][i];
+                }
+            }
+            return a;
+        }
+        let mut bins =
+            Bins { boxes: [[[Vec4::INFINITY, Vec4::NEG_INFINITY]; N]; 3], counts: [[0; N]; 3] };
+        // Neighbours in the list fall into the same bins, and would wait for each other.
+        let (a, b) = references.split_at(references.len() / 2);
+        for (a, b) in a.iter().zip(b) {
+            bins.add(a, grid);
+            bins.add(b, grid);
+        }
+        if a.len() < b.len() {
+            bins.add(&b[a.len()], grid);
+        }
+        bins
+    }
+
+    #[inline(always)]
+    fn add(&mut self, r: &Reference, grid: &Grid) {
+        let at = grid.at(r).to_array();
+        for axis in 0..3 {
+            let i = at[axis].to_bits() as usize % N;
+            let [min, max] = &mut self.boxes[axis][i];
+            (*min, *max) = (min.min(r.min), max.max(r.max));
+            self.counts[axis][i] += 1;
+        }
+    }
+
+    fn get(&self, axis: usize, i: usize) -> Bin {
+        let [min, max] = self.boxes[axis][i];
+        Bin { min, max, count: self.counts[axis][i] }
+    }
+}
+
+/// A way to divide references into two sets, and the boxes of these.
+pub struct Cut {
+    pub cost: f32,
+    pub sides: [Bin; 2],
+    way: Way,
+}
+
+enum Way {
+    /// Those in bins before a border along an axis go to the left.
+    Bins { grid: Grid, axis: usize, border: usize },
+    /// Those with a bit in the mask go to the left.
+    Mask(usize),
+    /// Half of them, along the longest axis.
+    Half,
+}
+
 impl Builder {
     /// Builds over some references, the first of which has number `first` among all.
-    fn subtree(&self, references: &mut [Reference], first: u32, nodes: &mut [Node], depth: usize) {
+    fn subtree(&self, references: &mut [Reference], set: &Set, first: u32, nodes: &mut [Node], depth: usize) {
         let count = references.len();
-        let bounds = references.iter().fold(Bin::EMPTY, Bin::with);
-        nodes[0] = Node::new(bounds.min, bounds.max, count as u32, first);
+        nodes[0] = Node::new(set.bounds.min, set.bounds.max, count as u32, first);
         if count == 1 {
             return;
         }
-        let cut = self.cut(references, depth);
+        if let [a, b] = references {
+            nodes[1] = Node::new(a.min, a.max, 1, first);
+            nodes[2] = Node::new(b.min, b.max, 1, first + 1);
+            return;
+        }
+        let (left_set, right_set) = self.divide(references, &self.cut(references, set, depth));
+        let cut = left_set.bounds.count as usize;
         let (left, right) = references.split_at_mut(cut);
         let (left_nodes, right_nodes) = nodes[1..].split_at_mut(2 * cut - 1);
         let middle = first + cut as u32;
         if count > PARALLEL {
             rayon::join(
-                || self.subtree(left, first, left_nodes, depth + 1),
-                || self.subtree(right, middle, right_nodes, depth + 1),
+                || self.subtree(left, &left_set, first, left_nodes, depth + 1),
+                || self.subtree(right, &right_set, middle, right_nodes, depth + 1),
             );
         } else {
-            self.subtree(left, first, left_nodes, depth + 1);
-            self.subtree(right, middle, right_nodes, depth + 1);
+            self.subtree(left, &left_set, first, left_nodes, depth + 1);
+            self.subtree(right, &right_set, middle, right_nodes, depth + 1);
         }
     }
 
-    /// Sorts references into two sets; gives the number of the first.
-    pub fn cut(&self, references: &mut [Reference], depth: usize) -> usize {
-        if depth >= HALVING_DEPTH {
-            halve(references)
-        } else if references.len() <= FEW {
-            self.sorted_cut(references)
-        } else {
-            self.binned_cut(references).unwrap_or_else(|| halve(references))
+    /// The cheapest way to make two sets of references.
+    pub fn cut(&self, references: &[Reference], set: &Set, depth: usize) -> Cut {
+        let half = Cut { cost: f32::INFINITY, sides: [Bin::EMPTY; 2], way: Way::Half };
+        match references.len() {
+            _ if depth >= HALVING_DEPTH => half,
+            ..=FEW => self.few(references),
+            ..=64 => self.binned::<8>(references, set).unwrap_or(half),
+            _ => self.binned::<BINS>(references, set).unwrap_or(half),
         }
     }
 
-    /// Sorts references to the two sides of the cheapest plane between bins; gives the number on the left, or `None`
-    /// where centres cannot be told apart.
-    fn binned_cut(&self, references: &mut [Reference]) -> Option<usize> {
-        let (low, high) = references.iter().fold((Vec4::INFINITY, Vec4::NEG_INFINITY), |(low, high), r| {
-            let center = r.center();
-            (low.min(center), high.max(center))
-        });
-        // Where a size is zero or leaves the range, all fall into the first bin.
-        let scale = BINS as f32 * (1.0 - 1e-6) / (high - low);
-        let scale = Vec4::select(scale.cmplt(Vec4::INFINITY), scale, Vec4::ZERO);
-        let bin_of = |r: &Reference| {
-            // The casts saturate: NaN and all below give 0.
-            let at = (r.center() - low) * scale;
-            [at.x, at.y, at.z].map(|x| (x as u32 as usize).min(BINS - 1))
-        };
-        let mut bins = [[Bin::EMPTY; BINS]; 3];
-        for r in references.iter() {
-            for (axis, at) in bin_of(r).into_iter().enumerate() {
-                bins[axis][at] = bins[axis][at].with(r);
-            }
-        }
+    /// The cheapest plane between bins, or `None` where centres cannot be told apart.
+    fn binned<const N: usize>(&self, references: &[Reference], set: &Set) -> Option<Cut> {
+        let grid = Grid::new(set, N);
+        let bins = Bins::<N>::new(references, &grid);
         let mut best = (f32::INFINITY, 0, 0);
-        for (axis, bins) in bins.iter().enumerate() {
-            let cut = |i, cost| (cost, axis, i);
-            self.cheapest(bins, |i, cost| {
-                if cost < best.0 {
-                    best = cut(i, cost)
-                }
-            });
-        }
-        let (cost, axis, bin) = best;
-        if cost == f32::INFINITY {
-            return None;
-        }
-        let is_left = |r: &Reference| bin_of(r)[axis] < bin;
-        Some(partition(references, is_left))
-    }
-
-    /// Offers the cost of every cut that leaves something on both sides.
-    fn cheapest<const N: usize>(&self, bins: &[Bin; N], mut offer: impl FnMut(usize, f32)) {
-        // Costs of everything right of each plane, then the sum from the left.
-        let mut right_cost = [0.0; N];
-        let mut right = Bin::EMPTY;
-        for i in (1..N).rev() {
-            right = right.union(bins[i]);
-            right_cost[i] = right.cost(self.scale);
-        }
-        let all = right.count + bins[0].count;
-        let mut left = Bin::EMPTY;
-        for i in 1..N {
-            left = left.union(bins[i - 1]);
-            if left.count > 0 && left.count < all {
-                offer(i, left.cost(self.scale) + right_cost[i]);
-            }
-        }
-    }
-
-    /// Sorts a few references along the axis of the cheapest cut; gives the number on its left.
-    fn sorted_cut(&self, references: &mut [Reference]) -> usize {
-        let count = references.len();
-        if count == 2 {
-            return 1;
-        }
-        let mut best = (f32::INFINITY, 0, count / 2);
         for axis in 0..3 {
-            sort(references, axis);
-            let mut bins = [Bin::EMPTY; FEW];
-            for (bin, r) in bins.iter_mut().zip(references.iter()) {
-                *bin = Bin::EMPTY.with(r);
+            // Costs of everything right of each plane, then the sum from the left.
+            let mut right_cost = [0.0; N];
+            let mut right = Bin::EMPTY;
+            for i in (1..grid.bins).rev() {
+                right = right.union(bins.get(axis, i));
+                right_cost[i] = right.cost(self.scale);
             }
-            self.cheapest(&bins, |i, cost| {
-                if cost < best.0 {
-                    best = (cost, axis, i)
+            let mut left = Bin::EMPTY;
+            for i in 1..grid.bins {
+                left = left.union(bins.get(axis, i - 1));
+                let cost = left.cost(self.scale) + right_cost[i];
+                if cost < best.0 && left.count > 0 && left.count < set.bounds.count {
+                    best = (cost, axis, i);
                 }
-            });
+            }
         }
-        if best.1 != 2 {
-            sort(references, best.1);
+        let (cost, axis, border) = best;
+        let side = |range: std::ops::Range<usize>| range.fold(Bin::EMPTY, |all, i| all.union(bins.get(axis, i)));
+        let sides = [side(0..border), side(border..grid.bins)];
+        (cost < f32::INFINITY).then_some(Cut { cost, sides, way: Way::Bins { grid, axis, border } })
+    }
+
+    /// The cheapest of all ways to divide a few references.
+    fn few(&self, references: &[Reference]) -> Cut {
+        let count = references.len();
+        let full = (1 << count) - 1;
+        let mut sets = [Bin::EMPTY; 1 << FEW];
+        let mut costs = [0.0; 1 << FEW];
+        for mask in 1..full {
+            sets[mask] = sets[mask & (mask - 1)].with(&references[mask.trailing_zeros() as usize]);
+            costs[mask] = sets[mask].cost(self.scale);
         }
-        best.2
+        let mut best = (f32::INFINITY, 1);
+        for mask in 1..=full / 2 {
+            let cost = costs[mask] + costs[full - mask];
+            if cost < best.0 {
+                best = (cost, mask);
+            }
+        }
+        let (cost, mask) = best;
+        Cut { cost, sides: [sets[mask], sets[full - mask]], way: Way::Mask(mask) }
+    }
+
+    /// Sorts references into the two sets of a cut.
+    pub fn divide(&self, references: &mut [Reference], cut: &Cut) -> (Set, Set) {
+        let [left, right] = cut.sides;
+        match cut.way {
+            Way::Bins { grid, axis, border } => {
+                let border = FIRST + border as f32;
+                let [l, r] = partition(references, |r| grid.at(r)[axis] < border);
+                (Set { bounds: left, centers: l }, Set { bounds: right, centers: r })
+            }
+            Way::Mask(mask) => {
+                let mut places = [0, left.count as usize];
+                let mut sorted = [references[0]; FEW];
+                for (i, r) in references.iter().enumerate() {
+                    let side = 1 - (mask >> i & 1);
+                    sorted[places[side]] = *r;
+                    places[side] += 1;
+                }
+                references.copy_from_slice(&sorted[..references.len()]);
+                // So few are never put into bins.
+                (Set { bounds: left, centers: NO_CENTERS }, Set { bounds: right, centers: NO_CENTERS })
+            }
+            Way::Half => {
+                let (left, right) = halve(references);
+                (Set::of(left), Set::of(right))
+            }
+        }
     }
 }
 
-/// Moves the references that pass to the front; gives their number.
-fn partition(references: &mut [Reference], is_left: impl Fn(&Reference) -> bool) -> usize {
-    let (mut low, mut high) = (0, references.len());
-    loop {
-        while low < high && is_left(&references[low]) {
-            low += 1;
-        }
-        while low < high && !is_left(&references[high - 1]) {
-            high -= 1;
-        }
-        if low == high {
-            return low;
-        }
-        references.swap(low, high - 1);
+/// Moves the references that pass to the front; gives the boxes around the centres of both sets.
+fn partition(references: &mut [Reference], is_left: impl Fn(&Reference) -> bool) -> [[Vec4; 2]; 2] {
+    let mut centers = [NO_CENTERS; 2];
+    let mut left = 0;
+    for i in 0..references.len() {
+        let r = references[i];
+        let is_left = is_left(&r);
+        // Without a branch, which would be guessed wrongly half of the time.
+        references[i] = references[left];
+        references[left] = r;
+        left += usize::from(is_left);
+        let center = r.center();
+        let [low, high] = &mut centers[usize::from(!is_left)];
+        (*low, *high) = (low.min(center), high.max(center));
     }
-}
-
-/// A few references are sorted by insertion.
-fn sort(references: &mut [Reference], axis: usize) {
-    let key = |r: &Reference| (r.min[axis] * 0.5 + r.max[axis] * 0.5, r.number());
-    for i in 1..references.len() {
-        let mut at = i;
-        while at > 0 && key(&references[at]) < key(&references[at - 1]) {
-            references.swap(at, at - 1);
-            at -= 1;
-        }
-    }
+    centers
 }
 
 /// Sorts along the longest axis and cuts in the middle.
-fn halve(references: &mut [Reference]) -> usize {
-    let (low, high) = references.iter().fold((Vec4::INFINITY, Vec4::NEG_INFINITY), |(low, high), r| {
-        let center = r.center();
-        (low.min(center), high.max(center))
-    });
+fn halve(references: &mut [Reference]) -> (&mut [Reference], &mut [Reference]) {
+    let [low, high] = Set::of(references).centers;
     let size = high - low;
     let axis = if size.x >= size.y && size.x >= size.z {
         0
@@ -268,5 +380,5 @@ fn halve(references: &mut [Reference]) -> usize {
             .then(a.number().cmp(&b.number()))
             .then(a.min[axis].total_cmp(&b.min[axis]))
     });
-    references.len() / 2
+    references.split_at_mut(references.len() / 2)
 }

@@ -5,7 +5,7 @@
 //! Source: Stich, Friedrich, Dietrich, *Spatial Splits in Bounding Volume Hierarchies*, HPG 2009.
 
 use super::Reference;
-use super::binary::{self, BINS, Bin, Builder, FEW, HALVING_DEPTH, Node, PARALLEL, Tree};
+use super::binary::{self, BINS, Bin, Builder, Cut, Set, HALVING_DEPTH, Node, PARALLEL, Tree};
 use crate::math::{Aabb, Vec3};
 
 /// Planes are tried where the overlap has at least this share of the node's area.
@@ -52,22 +52,24 @@ struct Plane {
 impl<C: Fn(u32) -> [Vec3; 3] + Sync> Cutter<'_, C> {
     /// Builds over some references, of which so many more may be made.
     fn subtree(&self, references: &mut [Reference], spare: usize, depth: usize, made: &mut Made) {
-        let bounds = references.iter().fold(Bin::EMPTY, Bin::with);
+        let set = Set::of(references);
+        let bounds = set.bounds;
         let (place, first) = (made.nodes.len(), made.references.len());
         made.nodes.push(Node::new(bounds.min, bounds.max, 1, 0));
         if let [only] = references {
             made.references.push(*only);
             return;
         }
-        let cut = self.builder.cut(references, depth);
-        let parts = if spare > 0 { self.parts(references, &bounds, cut, spare, depth) } else { None };
+        let cut = self.builder.cut(references, &set, depth);
+        let parts = if spare > 0 { self.parts(references, &bounds, &cut, spare, depth) } else { None };
         match parts {
             Some([mut left, mut right]) => {
                 let spare = spare + references.len() - left.len() - right.len();
                 self.both(&mut left, &mut right, spare, depth, made);
             }
             None => {
-                let (left, right) = references.split_at_mut(cut);
+                let (left, _) = self.builder.divide(references, &cut);
+                let (left, right) = references.split_at_mut(left.bounds.count as usize);
                 self.both(left, right, spare, depth, made);
             }
         }
@@ -98,17 +100,17 @@ impl<C: Fn(u32) -> [Vec3; 3] + Sync> Cutter<'_, C> {
         &self,
         references: &[Reference],
         bounds: &Bin,
-        cut: usize,
+        cut: &Cut,
         spare: usize,
         depth: usize,
     ) -> Option<[Vec<Reference>; 2]> {
         let count = references.len();
         // A few references are likely to be a leaf, in which cuts are in vain.
-        if count <= FEW || depth >= HALVING_DEPTH {
+        if count <= 8 || depth >= HALVING_DEPTH {
             return None;
         }
         let scale = self.builder.scale;
-        let [l, r] = [&references[..cut], &references[cut..]].map(|set| set.iter().fold(Bin::EMPTY, Bin::with));
+        let [l, r] = cut.sides;
         let overlap = binary::half_area(l.min.max(r.min), l.max.min(r.max), scale);
         if overlap < OVERLAP * binary::half_area(bounds.min, bounds.max, scale) {
             return None;

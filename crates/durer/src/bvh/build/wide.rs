@@ -11,193 +11,259 @@ use super::Reference;
 use super::Settings;
 use super::binary::{self, half_area};
 use crate::bvh::lanes::WIDTH;
-use crate::bvh::node::{self, Node};
+use crate::bvh::node::{self, LEAF, LEAF_SIZE, Node};
 use crate::math::{Aabb, Vec3};
+use rayon::prelude::*;
 
 /// Subtrees of more references than this are worked on in parallel.
 const PARALLEL: u32 = 4096;
 
+pub fn collapse(tree: &binary::Tree, references: &[Reference], settings: &Settings) -> (Vec<Node>, Vec<u32>) {
+    let mut plans = vec![Plan::default(); tree.nodes.len()];
+    plan(&tree.nodes, &mut plans, tree.scale, settings);
+    // A tree of one leaf still needs a node to hold it.
+    let part = Emitter { tree, references, plans }.part(0);
+    (part.nodes, part.order)
+}
+
 /// Costs of a subtree as a forest of at most 1, 2, ... 7 roots.
 type Costs = [f32; WIDTH - 1];
 
-pub fn collapse(tree: &binary::Tree, references: &[Reference], settings: &Settings) -> (Vec<Node>, Vec<u32>) {
-    let mut costs = vec![[0.0; WIDTH - 1]; tree.nodes.len()];
-    fill_costs(&tree.nodes, &mut costs, tree.scale, settings);
-    let mut emitter = Emitter {
-        tree,
-        references,
-        costs,
-        settings,
-        nodes: Vec::with_capacity(tree.nodes.len() / 24 + 1),
-        order: Vec::with_capacity(references.len()),
-    };
-    // A tree of one leaf still needs a node to hold it.
-    emitter.nodes.push(Node::EMPTY);
-    emitter.fill(0, 0);
-    (emitter.nodes, emitter.order)
+/// What is cheapest: bit 0 says whether the subtree is a leaf as a whole, and three bits from 3 i on, how many of at most i roots
+/// are in the left child, 0 where fewer roots cost no more.
+#[derive(Clone, Copy, Default)]
+struct Plan(u32);
+
+impl Plan {
+    fn is_leaf(self) -> bool {
+        self.0 & 1 == 1
+    }
+
+    fn left(self, roots: usize) -> usize {
+        (self.0 >> (3 * roots) & 7) as usize
+    }
+
+    fn set_left(&mut self, roots: usize, left: usize) {
+        self.0 |= (left as u32) << (3 * roots);
+    }
 }
 
 /// Least costs of two children's forests with so many roots together, and how many of them are the left one's.
+#[inline(always)]
 fn shared(left: &Costs, right: &Costs, roots: usize) -> (f32, usize) {
     let most = WIDTH - 1;
-    (roots.saturating_sub(most).max(1)..=(roots - 1).min(most))
-        .map(|k| (left[k - 1] + right[roots - k - 1], k))
-        .fold((f32::INFINITY, 1), |best, c| if c.0 < best.0 { c } else { best })
+    let mut best = (f32::INFINITY, 1);
+    for k in roots.saturating_sub(most).max(1)..=(roots - 1).min(most) {
+        let cost = left[k - 1] + right[roots - k - 1];
+        best = if cost < best.0 { (cost, k) } else { best };
+    }
+    best
 }
 
-fn leaf_cost(node: &binary::Node, area: f32, settings: &Settings) -> f32 {
-    let count = node.count() as usize;
-    if count <= settings.leaf_size { area * (settings.leaf_cost)(count) } else { f32::INFINITY }
-}
-
-fn fill_costs(nodes: &[binary::Node], costs: &mut [Costs], scale: f32, settings: &Settings) {
+/// Finds what is cheapest for all nodes of a subtree.
+fn plan(nodes: &[binary::Node], plans: &mut [Plan], scale: f32, settings: &Settings) -> Costs {
     let node = &nodes[0];
-    let area = half_area(node.min, node.max, scale);
-    let leaf = leaf_cost(node, area, settings);
-    if node.count() == 1 {
-        costs[0] = [leaf; WIDTH - 1];
-        return;
+    let (area, count) = (half_area(node.min, node.max, scale), node.count() as usize);
+    let leaf = if count <= settings.leaf_size { area * (settings.leaf_cost)(count) } else { f32::INFINITY };
+    if count == 1 {
+        plans[0] = Plan(1);
+        return [leaf; WIDTH - 1];
     }
-    let (own, rest) = costs.split_first_mut().expect("there is a node");
+    let (own, rest) = plans.split_first_mut().expect("there is a node");
     let left_size = 2 * nodes[1].count() as usize - 1;
-    let (left, right) = rest.split_at_mut(left_size);
+    let (left_plans, right_plans) = rest.split_at_mut(left_size);
     let (left_nodes, right_nodes) = nodes[1..].split_at(left_size);
-    if node.count() > PARALLEL {
+    let (left, right) = if node.count() > PARALLEL {
         rayon::join(
-            || fill_costs(left_nodes, left, scale, settings),
-            || fill_costs(right_nodes, right, scale, settings),
-        );
+            || plan(left_nodes, left_plans, scale, settings),
+            || plan(right_nodes, right_plans, scale, settings),
+        )
     } else {
-        fill_costs(left_nodes, left, scale, settings);
-        fill_costs(right_nodes, right, scale, settings);
+        (plan(left_nodes, left_plans, scale, settings), plan(right_nodes, right_plans, scale, settings))
+    };
+    // There are no more roots than references.
+    let most = count.min(WIDTH);
+    let (opened, k) = shared(&left, &right, most);
+    own.set_left(WIDTH, k);
+    let opened = area + opened;
+    // Where costs are no numbers, as with infinite areas, small subtrees are leaves.
+    let is_leaf = count <= settings.leaf_size && !(opened < leaf);
+    own.0 |= u32::from(is_leaf);
+    let mut costs = [if is_leaf { leaf } else { opened }; WIDTH - 1];
+    for roots in 2..=most.min(WIDTH - 1) {
+        let (cost, k) = shared(&left, &right, roots);
+        if cost < costs[roots - 2] {
+            costs[roots - 1..].fill(cost);
+            own.set_left(roots, k);
+        }
     }
-    own[0] = leaf.min(area + shared(&left[0], &right[0], WIDTH).0);
-    for roots in 2..WIDTH {
-        own[roots - 1] = own[roots - 2].min(shared(&left[0], &right[0], roots).0);
-    }
+    costs
 }
 
 struct Emitter<'a> {
     tree: &'a binary::Tree,
     references: &'a [Reference],
-    costs: Vec<Costs>,
-    settings: &'a Settings,
+    plans: Vec<Plan>,
+}
+
+/// A wide node, all nodes below it, and the items of their leaves; both are numbered from 0.
+struct Part {
     nodes: Vec<Node>,
     order: Vec<u32>,
 }
 
 /// Binary nodes that become the children of a wide one.
+#[derive(Default)]
 struct Children {
     list: [usize; WIDTH],
     count: usize,
 }
 
 impl Emitter<'_> {
-    fn split(&self, i: usize) -> (usize, usize) {
-        (i + 1, i + 2 * self.tree.nodes[i + 1].count() as usize)
+    fn count(&self, i: usize) -> usize {
+        self.tree.nodes[i].count() as usize
     }
 
     /// The children of a node that is opened.
     fn open(&self, i: usize) -> Children {
-        let mut children = Children { list: [0; WIDTH], count: 0 };
-        if self.tree.nodes[i].count() == 1 {
-            self.forest(i, 1, &mut children);
-            return children;
+        let mut children = Children::default();
+        match self.count(i) {
+            1 => self.forest(i, 1, &mut children),
+            _ => self.split(i, WIDTH, &mut children),
         }
-        let (left, right) = self.split(i);
-        let (_, k) = shared(&self.costs[left], &self.costs[right], WIDTH);
-        self.forest(left, k, &mut children);
-        self.forest(right, WIDTH - k, &mut children);
         children
     }
 
     /// Adds a subtree's best forest of at most so many roots.
     fn forest(&self, i: usize, mut roots: usize, children: &mut Children) {
-        let costs = &self.costs[i];
-        while roots > 1 && costs[roots - 1] >= costs[roots - 2] {
+        while roots > 1 && self.plans[i].left(roots) == 0 {
             roots -= 1;
         }
-        if roots == 1 {
-            children.list[children.count] = i;
-            children.count += 1;
-            return;
+        if roots > 1 {
+            return self.split(i, roots, children);
         }
-        let (left, right) = self.split(i);
-        let (_, k) = shared(&self.costs[left], &self.costs[right], roots);
-        self.forest(left, k, children);
-        self.forest(right, roots - k, children);
+        children.list[children.count] = i;
+        children.count += 1;
+    }
+
+    /// Adds the forests of both children of a node.
+    fn split(&self, i: usize, roots: usize, children: &mut Children) {
+        let left = self.plans[i].left(roots);
+        self.forest(i + 1, left, children);
+        self.forest(i + 2 * self.count(i + 1), roots - left, children);
+    }
+
+    /// A node of the children of a binary one, and all below.
+    fn part(&self, i: usize) -> Part {
+        let count = self.count(i);
+        let mut part = Part { nodes: Vec::with_capacity(count / 16 + 1), order: Vec::with_capacity(count) };
+        part.nodes.push(Node::EMPTY);
+        self.fill(&mut part, 0, i);
+        part
     }
 
     /// Fills a node with the children of a binary one, and all below.
     ///
     /// What a ray is likely to need together lies together: first the leaves of a node, then its inner children, side
     /// by side, and then what is below each of them.
-    fn fill(&mut self, number: usize, i: usize) {
+    fn fill(&self, part: &mut Part, number: usize, i: usize) {
         let children = self.open(i);
         let list = &children.list[..children.count];
-        let bounds: Vec<Aabb> = list.iter().map(|&i| self.tree.nodes[i].bounds()).collect();
-        let places = places(&bounds);
-        let (leaves, inner): (Vec<usize>, Vec<usize>) = (0..list.len()).partition(|&k| self.is_leaf(list[k]));
-        for &k in &leaves {
-            let leaf = self.leaf(list[k]);
-            self.nodes[number].set(places[k], bounds[k], leaf);
+        let mut bounds = [Aabb::EMPTY; WIDTH];
+        bounds.iter_mut().zip(list).for_each(|(bounds, &i)| *bounds = self.tree.nodes[i].bounds());
+        let places = places(&bounds[..list.len()]);
+        let first = part.nodes.len();
+        let mut inner = Children::default();
+        for (k, &i) in list.iter().enumerate() {
+            let child = if self.plans[i].is_leaf() {
+                self.leaf(part, i)
+            } else {
+                inner.list[inner.count] = i;
+                inner.count += 1;
+                (first + inner.count - 1) as u32
+            };
+            part.nodes[number].set(places[k], bounds[k], child);
         }
-        let first = self.nodes.len();
-        self.nodes.resize(first + inner.len(), Node::EMPTY);
-        for (offset, &k) in inner.iter().enumerate() {
-            self.nodes[number].set(places[k], bounds[k], (first + offset) as u32);
+        let inner = &inner.list[..inner.count];
+        part.nodes.resize(first + inner.len(), Node::EMPTY);
+        if self.count(i) <= PARALLEL as usize {
+            for (offset, &i) in inner.iter().enumerate() {
+                self.fill(part, first + offset, i);
+            }
+            return;
         }
-        for (offset, &k) in inner.iter().enumerate() {
-            self.fill(first + offset, list[k]);
+        let parts: Vec<Part> = inner.par_iter().map(|&i| self.part(i)).collect();
+        for (offset, below) in parts.iter().enumerate() {
+            part.append(first + offset, below);
         }
-    }
-
-    fn is_leaf(&self, i: usize) -> bool {
-        let node = &self.tree.nodes[i];
-        let count = node.count() as usize;
-        let area = half_area(node.min, node.max, self.tree.scale);
-        // Where costs are no numbers, as with infinite areas, small subtrees are leaves.
-        let dearer = self.costs[i][0] < leaf_cost(node, area, self.settings);
-        count == 1 || (count <= self.settings.leaf_size && !dearer)
     }
 
     /// Writes a leaf of everything below a binary node.
-    fn leaf(&mut self, i: usize) -> u32 {
-        let count = self.tree.nodes[i].count() as usize;
-        let below = &self.tree.nodes[i..i + 2 * count - 1];
-        let items = below.iter().filter(|node| node.count() == 1).map(|node| node.item() as usize);
-        let mut items: Vec<u32> = items.map(|item| self.references[item].number()).collect();
-        // Parts of a thing that was cut, when together again, count once.
-        items.sort_unstable();
-        items.dedup();
-        let first = self.order.len();
-        self.order.extend(&items);
-        node::leaf(first, items.len())
+    fn leaf(&self, part: &mut Part, i: usize) -> u32 {
+        let below = &self.tree.nodes[i..i + 2 * self.count(i) - 1];
+        let (mut items, mut count) = ([0; LEAF_SIZE], 0);
+        for node in below.iter().filter(|node| node.count() == 1) {
+            let item = self.references[node.item() as usize].number();
+            // Parts of a thing that was cut, when together again, count once.
+            if !items[..count].contains(&item) {
+                items[count] = item;
+                count += 1;
+            }
+        }
+        items[..count].sort_unstable();
+        let first = part.order.len();
+        part.order.extend_from_slice(&items[..count]);
+        node::leaf(first, count)
+    }
+}
+
+impl Part {
+    /// Puts another part's first node to a place, and the others to the end.
+    fn append(&mut self, number: usize, other: &Part) {
+        let (nodes, items) = (self.nodes.len() as u32 - 1, self.order.len() as u32);
+        let moved = |node: &Node| {
+            let mut moved = *node;
+            for (place, _, child) in node.children() {
+                moved.children[place] += if child & LEAF == 0 { nodes } else { items };
+            }
+            moved
+        };
+        self.nodes[number] = moved(&other.nodes[0]);
+        self.nodes.extend(other.nodes[1..].iter().map(moved));
+        self.order.extend_from_slice(&other.order);
     }
 }
 
 /// A place for each child: those that lie farthest out in a direction choose first.
-fn places(bounds: &[Aabb]) -> Vec<usize> {
-    let all = bounds.iter().copied().fold(Aabb::EMPTY, Aabb::union);
-    let offsets: Vec<Vec3> = bounds.iter().map(|b| b.center() - all.center()).collect();
-    let side = |place: usize, axis: usize| if place >> axis & 1 == 1 { 1.0 } else { -1.0 };
-    let score =
-        |child: usize, place: usize| -> f32 { (0..3).map(|axis| side(place, axis) * offsets[child][axis]).sum() };
-    let mut chosen = vec![WIDTH; bounds.len()];
+fn places(bounds: &[Aabb]) -> [usize; WIDTH] {
+    let center = bounds.iter().copied().fold(Aabb::EMPTY, Aabb::union).center();
+    // How far out each child is towards the place that it wishes: first its octant.
+    let mut wishes = [(0.0, 0); WIDTH];
+    let mut offsets = [Vec3::ZERO; WIDTH];
+    for (i, b) in bounds.iter().enumerate() {
+        offsets[i] = b.center() - center;
+        wishes[i] = (offsets[i].abs().element_sum(), offsets[i].cmpgt(Vec3::ZERO).bitmask() as usize);
+    }
     let mut free = [true; WIDTH];
-    for _ in 0..bounds.len() {
-        let mut best = (f32::NEG_INFINITY, None);
-        for child in (0..bounds.len()).filter(|&child| chosen[child] == WIDTH) {
-            for place in (0..WIDTH).filter(|&place| free[place]) {
-                let score = score(child, place);
-                if score > best.0 || best.1.is_none() {
-                    best = (score, Some((child, place)));
-                }
-            }
-        }
-        let Some((child, place)) = best.1 else { break };
-        chosen[child] = place;
+    let mut chosen = [WIDTH; WIDTH];
+    for _ in bounds {
+        let waiting = |&child: &usize| chosen[child] == WIDTH;
+        let farther = |a: usize, b: usize| if wishes[b].0 > wishes[a].0 { b } else { a };
+        let Some(first) = (0..bounds.len()).filter(waiting).reduce(farther) else { break };
+        let place = wishes[first].1;
+        chosen[first] = place;
         free[place] = false;
+        for child in 0..bounds.len() {
+            if chosen[child] < WIDTH || wishes[child].1 != place {
+                continue;
+            }
+            let score = |place: usize| {
+                let side = |axis: usize| if place >> axis & 1 == 1 { offsets[child][axis] } else { -offsets[child][axis] };
+                (side(0) + side(1) + side(2), place)
+            };
+            let better = |a: (f32, usize), b: (f32, usize)| if b.0 > a.0 { b } else { a };
+            wishes[child] = (0..WIDTH).filter(|&place| free[place]).map(score).reduce(better).unwrap_or_default();
+        }
     }
     chosen
 }
