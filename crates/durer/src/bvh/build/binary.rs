@@ -1,45 +1,54 @@
-//! A binary tree with one reference in each leaf, from the top down by the surface area heuristic.
-//!
-//! Many references are put into bins along each axis; few are sorted, and every cut between them is tried.
-//! Source: Wald, *On fast Construction of SAH-based Bounding Volume Hierarchies*, IEEE RT 2007.
+//! A binary tree over references, from the top down by the surface area heuristic.
 
-use super::{Reference, lane_number, number_lane};
-use crate::math::Aabb;
+use super::cut::{Bin, HALVING_DEPTH, Set};
+use super::spatial::Budget;
+use super::{Reference, Settings, lane, lane_number};
+use crate::math::{Aabb, Vec3};
 use glam::Vec4;
 
-pub const BINS: usize = 16;
-/// Below this depth things are halved by number, which bounds the depth of all trees: 28 levels halve 2^28 things.
-pub const HALVING_DEPTH: usize = 60;
 /// Subtrees of more references than this are built in parallel.
 pub const PARALLEL: usize = 4096;
-/// More references than this are put into bins in parallel.
-const MANY: usize = 1 << 15;
-/// Of so few references all divisions are tried.
-pub const FEW: usize = 4;
 
-/// A node. Nodes lie in depth-first order: the left child follows its parent, the right child the left one's subtree,
-/// which has twice the left child's count of nodes, less one.
+/// A node. Nodes lie in depth-first order: the left child follows its parent, the right child what is below the left one.
 #[derive(Clone, Copy, Debug)]
 pub struct Node {
+    /// With the number of references in the fourth lane, and whether it is a leaf.
     pub min: Vec4,
+    /// With a leaf's first item, or the number of leaves below the left child.
     pub max: Vec4,
 }
 
+const INNER: u32 = 2;
+const LEAF: u32 = 3;
+
 impl Node {
-    /// How many references are below it.
-    pub fn count(&self) -> u32 {
-        lane_number(self.min.w)
-    }
-
-    /// A leaf's reference.
-    pub fn item(&self) -> u32 {
-        lane_number(self.max.w)
-    }
-
-    pub fn new(min: Vec4, max: Vec4, count: u32, item: u32) -> Self {
-        let (mut min, mut max) = (min, max);
-        (min.w, max.w) = (number_lane(count), number_lane(item));
+    pub fn leaf(mut min: Vec4, mut max: Vec4, count: u32, first: u32) -> Self {
+        (min.w, max.w) = (lane(LEAF, count), lane(LEAF, first));
         Node { min, max }
+    }
+
+    pub fn inner(mut min: Vec4, mut max: Vec4, count: u32, left_leaves: u32) -> Self {
+        (min.w, max.w) = (lane(INNER, count), lane(INNER, left_leaves));
+        Node { min, max }
+    }
+
+    pub fn is_leaf(&self) -> bool {
+        self.min.w.to_bits() >> 28 == LEAF
+    }
+
+    /// How many references are below it.
+    pub fn count(&self) -> usize {
+        lane_number(self.min.w) as usize
+    }
+
+    /// Where a leaf's items begin.
+    pub fn first(&self) -> usize {
+        lane_number(self.max.w) as usize
+    }
+
+    /// How far behind its parent the right child is: below the left child are as many nodes as leaves, but for one.
+    pub fn right(&self) -> usize {
+        2 * lane_number(self.max.w) as usize
     }
 
     pub fn bounds(&self) -> Aabb {
@@ -47,9 +56,10 @@ impl Node {
     }
 }
 
-/// The tree, and what sizes are multiplied by before areas are compared.
+/// The tree, the things of its leaves, and what sizes are multiplied by before areas are compared.
 pub struct Tree {
     pub nodes: Vec<Node>,
+    pub items: Vec<u32>,
     pub scale: f32,
 }
 
@@ -60,325 +70,126 @@ pub fn half_area(min: Vec4, max: Vec4, scale: f32) -> f32 {
     d.x * d.y + d.y * d.z + d.z * d.x
 }
 
-pub fn build(references: &mut [Reference], scale: f32) -> Tree {
-    let nothing = Node::new(Vec4::ZERO, Vec4::ZERO, 0, 0);
-    let mut nodes = vec![nothing; 2 * references.len() - 1];
-    let set = Set::of(references);
-    Builder { scale }.subtree(references, &set, 0, &mut nodes, 0);
-    Tree { nodes, scale }
-}
+/// The corners of a triangle by its number.
+pub type Corners<'a> = &'a (dyn Fn(u32) -> [Vec3; 3] + Sync);
 
-pub struct Builder {
+pub struct Builder<'a> {
     pub scale: f32,
+    /// Half the area of everything.
+    pub area: f32,
+    /// So many references may stay together.
+    whole: usize,
+    /// Where things are triangles that may be cut.
+    pub corners_of: Option<Corners<'a>>,
 }
 
-/// A box that grows, and how many references are in it.
-#[derive(Clone, Copy)]
-pub struct Bin {
-    pub min: Vec4,
-    pub max: Vec4,
-    pub count: u32,
+/// Nodes and the items of their leaves, in depth-first order.
+struct Piece {
+    nodes: Vec<Node>,
+    items: Vec<u32>,
 }
 
-impl Bin {
-    pub const EMPTY: Bin = Bin { min: Vec4::INFINITY, max: Vec4::NEG_INFINITY, count: 0 };
+/// How many references and leaves are below a node.
+struct Counts {
+    references: u32,
+    leaves: u32,
+}
 
-    #[inline]
-    pub fn with(self, r: &Reference) -> Bin {
-        Bin { count: self.count + 1, ..self.around(r) }
+/// Builds a tree; triangles whose corners are known may be cut.
+pub fn build(references: &mut [Reference], scale: f32, settings: &Settings, corners_of: Option<Corners>) -> Tree {
+    let all = Set::of(references);
+    let area = half_area(all.bounds.min, all.bounds.max, scale);
+    let builder = Builder { scale, area, whole: settings.whole, corners_of };
+    let share = if corners_of.is_some() { settings.splits } else { 0.0 };
+    let budget = Budget::new((references.len() as f32 * share) as usize);
+    let mut pieces = vec![Piece::new(references.len())];
+    builder.subtree(references, &all, budget, 0, &mut pieces);
+    let (mut nodes, mut items) = (Vec::new(), Vec::new());
+    nodes.reserve_exact(pieces.iter().map(|piece| piece.nodes.len()).sum());
+    items.reserve_exact(pieces.iter().map(|piece| piece.items.len()).sum());
+    for piece in pieces {
+        let before = items.len();
+        nodes.extend(piece.nodes.iter().map(|node| match node.is_leaf() {
+            true => Node::leaf(node.min, node.max, node.count() as u32, (before + node.first()) as u32),
+            false => *node,
+        }));
+        items.extend_from_slice(&piece.items);
     }
+    Tree { nodes, items, scale }
+}
 
-    /// Grown, but not counted.
-    #[inline]
-    pub fn around(self, r: &Reference) -> Bin {
-        Bin { min: self.min.min(r.min), max: self.max.max(r.max), ..self }
-    }
-
-    #[inline]
-    pub fn union(self, other: Bin) -> Bin {
-        Bin { min: self.min.min(other.min), max: self.max.max(other.max), count: self.count + other.count }
-    }
-
-    #[inline]
-    pub fn cost(&self, scale: f32) -> f32 {
-        half_area(self.min, self.max, scale) * self.count as f32
+impl Piece {
+    fn new(count: usize) -> Self {
+        Piece { nodes: Vec::with_capacity(count), items: Vec::with_capacity(count) }
     }
 }
 
-/// What is known of some references: the box around them, their number, and the box around their centres.
-#[derive(Clone, Copy)]
-pub struct Set {
-    pub bounds: Bin,
-    centers: [Vec4; 2],
-}
-
-const NO_CENTERS: [Vec4; 2] = [Vec4::INFINITY, Vec4::NEG_INFINITY];
-
-impl Set {
-    pub fn of(references: &[Reference]) -> Set {
-        if references.len() > MANY {
-            let (a, b) = references.split_at(references.len() / 2);
-            let (a, b) = rayon::join(|| Set::of(a), || Set::of(b));
-            let centers = [a.centers[0].min(b.centers[0]), a.centers[1].max(b.centers[1])];
-            return Set { bounds: a.bounds.union(b.bounds), centers };
+impl Builder<'_> {
+    /// Builds over some references.
+    fn subtree(
+        &self,
+        references: &mut [Reference],
+        set: &Set,
+        mut budget: Budget,
+        depth: usize,
+        pieces: &mut Vec<Piece>,
+    ) -> Counts {
+        let number = pieces.len() - 1;
+        let piece = &mut pieces[number];
+        let (place, Bin { min, max, count }) = (piece.nodes.len(), set.bounds);
+        piece.nodes.push(Node::leaf(min, max, count, piece.items.len() as u32));
+        if references.len() == 1 || references.len() <= self.whole && self.is_whole(references, &set.bounds) {
+            piece.items.extend(references.iter().map(Reference::number));
+            return Counts { references: count, leaves: 1 };
         }
-        let nothing = Set { bounds: Bin::EMPTY, centers: NO_CENTERS };
-        references.iter().fold(nothing, |set, r| {
-            let (center, [low, high]) = (r.center(), set.centers);
-            Set { bounds: set.bounds.with(r), centers: [low.min(center), high.max(center)] }
-        })
-    }
-}
-
-/// Bins of equal width over the centres of references.
-#[derive(Clone, Copy)]
-struct Grid {
-    low: Vec4,
-    scale: Vec4,
-    bins: usize,
-}
-
-impl Grid {
-    fn new(set: &Set, most: usize) -> Grid {
-        // Few references fill few bins.
-        let bins = (4 + set.bounds.count as usize / 16).min(most);
-        let [low, high] = set.centers;
-        // Where a size is zero or leaves the range, all fall into the first bin.
-        let scale = bins as f32 * (1.0 - 1e-6) / (high - low);
-        let scale = Vec4::select(scale.cmplt(Vec4::INFINITY), scale, Vec4::ZERO);
-        Grid { low, scale, bins }
-    }
-
-    /// A reference's bins, added to 2^23, where the last place of a number is 1.
-    #[inline(always)]
-    fn at(&self, r: &Reference) -> Vec4 {
-        let at = (r.center() - self.low) * self.scale - 0.5;
-        // Also where it is not a number.
-        let at = Vec4::select(at.cmpgt(Vec4::ZERO), at, Vec4::ZERO);
-        at.min(Vec4::splat((self.bins - 1) as f32)) + FIRST
-    }
-}
-
-const FIRST: f32 = (1 << 23) as f32;
-
-struct Bins<const N: usize> {
-    boxes: [[[Vec4; 2]; N]; 3],
-    counts: [[u32; N]; 3],
-}
-
-impl<const N: usize> Bins<N> {
-    fn new(references: &[Reference], grid: &Grid) -> Self {
-        if references.len() > MANY {
-            let (a, b) = references.split_at(references.len() / 2);
-            let (mut a, b): (Self, Self) = rayon::join(|| Self::new(a, grid), || Self::new(b, grid));
-            for axis in 0..3 {
-                for i in 0..N {
-                    let ([min, max], [low, high]) = (a.boxes[axis][i], b.boxes[axis][i]);
-                    a.boxes[axis][i] = [min.min(low), max.max(high)];
-                    a.counts[axis][i] += b.counts[axis][i];
-                }
+        let cut = self.cut(references, set, depth);
+        let parts = match depth < HALVING_DEPTH {
+            true => self.parts(references, set, &cut, &mut budget),
+            false => None,
+        };
+        let [left, right] = match parts {
+            Some([mut left, mut right]) => {
+                let sets = [Set::of(&left), Set::of(&right)];
+                self.both([&mut left, &mut right], sets, budget, depth, pieces)
             }
-            return a;
-        }
-        let mut bins =
-            Bins { boxes: [[[Vec4::INFINITY, Vec4::NEG_INFINITY]; N]; 3], counts: [[0; N]; 3] };
-        // Neighbours in the list fall into the same bins, and would wait for each other.
-        let (a, b) = references.split_at(references.len() / 2);
-        for (a, b) in a.iter().zip(b) {
-            bins.add(a, grid);
-            bins.add(b, grid);
-        }
-        if a.len() < b.len() {
-            bins.add(&b[a.len()], grid);
-        }
-        bins
-    }
-
-    #[inline(always)]
-    fn add(&mut self, r: &Reference, grid: &Grid) {
-        let at = grid.at(r).to_array();
-        for axis in 0..3 {
-            let i = at[axis].to_bits() as usize % N;
-            let [min, max] = &mut self.boxes[axis][i];
-            (*min, *max) = (min.min(r.min), max.max(r.max));
-            self.counts[axis][i] += 1;
-        }
-    }
-
-    fn get(&self, axis: usize, i: usize) -> Bin {
-        let [min, max] = self.boxes[axis][i];
-        Bin { min, max, count: self.counts[axis][i] }
-    }
-}
-
-/// A way to divide references into two sets, and the boxes of these.
-pub struct Cut {
-    pub cost: f32,
-    pub sides: [Bin; 2],
-    way: Way,
-}
-
-enum Way {
-    /// Those in bins before a border along an axis go to the left.
-    Bins { grid: Grid, axis: usize, border: usize },
-    /// Those with a bit in the mask go to the left.
-    Mask(usize),
-    /// Half of them, along the longest axis.
-    Half,
-}
-
-impl Builder {
-    /// Builds over some references, the first of which has number `first` among all.
-    fn subtree(&self, references: &mut [Reference], set: &Set, first: u32, nodes: &mut [Node], depth: usize) {
-        let count = references.len();
-        nodes[0] = Node::new(set.bounds.min, set.bounds.max, count as u32, first);
-        if count == 1 {
-            return;
-        }
-        if let [a, b] = references {
-            nodes[1] = Node::new(a.min, a.max, 1, first);
-            nodes[2] = Node::new(b.min, b.max, 1, first + 1);
-            return;
-        }
-        let (left_set, right_set) = self.divide(references, &self.cut(references, set, depth));
-        let cut = left_set.bounds.count as usize;
-        let (left, right) = references.split_at_mut(cut);
-        let (left_nodes, right_nodes) = nodes[1..].split_at_mut(2 * cut - 1);
-        let middle = first + cut as u32;
-        if count > PARALLEL {
-            rayon::join(
-                || self.subtree(left, &left_set, first, left_nodes, depth + 1),
-                || self.subtree(right, &right_set, middle, right_nodes, depth + 1),
-            );
-        } else {
-            self.subtree(left, &left_set, first, left_nodes, depth + 1);
-            self.subtree(right, &right_set, middle, right_nodes, depth + 1);
-        }
-    }
-
-    /// The cheapest way to make two sets of references.
-    pub fn cut(&self, references: &[Reference], set: &Set, depth: usize) -> Cut {
-        let half = Cut { cost: f32::INFINITY, sides: [Bin::EMPTY; 2], way: Way::Half };
-        match references.len() {
-            _ if depth >= HALVING_DEPTH => half,
-            ..=FEW => self.few(references),
-            ..=64 => self.binned::<8>(references, set).unwrap_or(half),
-            _ => self.binned::<BINS>(references, set).unwrap_or(half),
-        }
-    }
-
-    /// The cheapest plane between bins, or `None` where centres cannot be told apart.
-    fn binned<const N: usize>(&self, references: &[Reference], set: &Set) -> Option<Cut> {
-        let grid = Grid::new(set, N);
-        let bins = Bins::<N>::new(references, &grid);
-        let mut best = (f32::INFINITY, 0, 0);
-        for axis in 0..3 {
-            // Costs of everything right of each plane, then the sum from the left.
-            let mut right_cost = [0.0; N];
-            let mut right = Bin::EMPTY;
-            for i in (1..grid.bins).rev() {
-                right = right.union(bins.get(axis, i));
-                right_cost[i] = right.cost(self.scale);
+            None => {
+                let (sides, sets) = self.divide(references, &cut);
+                self.both(sides, sets, budget, depth, pieces)
             }
-            let mut left = Bin::EMPTY;
-            for i in 1..grid.bins {
-                left = left.union(bins.get(axis, i - 1));
-                let cost = left.cost(self.scale) + right_cost[i];
-                if cost < best.0 && left.count > 0 && left.count < set.bounds.count {
-                    best = (cost, axis, i);
-                }
-            }
-        }
-        let (cost, axis, border) = best;
-        let side = |range: std::ops::Range<usize>| range.fold(Bin::EMPTY, |all, i| all.union(bins.get(axis, i)));
-        let sides = [side(0..border), side(border..grid.bins)];
-        (cost < f32::INFINITY).then_some(Cut { cost, sides, way: Way::Bins { grid, axis, border } })
+        };
+        let counts = Counts { references: left.references + right.references, leaves: left.leaves + right.leaves };
+        pieces[number].nodes[place] = Node::inner(min, max, counts.references, left.leaves);
+        counts
     }
 
-    /// The cheapest of all ways to divide a few references.
-    fn few(&self, references: &[Reference]) -> Cut {
-        let count = references.len();
-        let full = (1 << count) - 1;
-        let mut sets = [Bin::EMPTY; 1 << FEW];
-        let mut costs = [0.0; 1 << FEW];
-        for mask in 1..full {
-            sets[mask] = sets[mask & (mask - 1)].with(&references[mask.trailing_zeros() as usize]);
-            costs[mask] = sets[mask].cost(self.scale);
-        }
-        let mut best = (f32::INFINITY, 1);
-        for mask in 1..=full / 2 {
-            let cost = costs[mask] + costs[full - mask];
-            if cost < best.0 {
-                best = (cost, mask);
-            }
-        }
-        let (cost, mask) = best;
-        Cut { cost, sides: [sets[mask], sets[full - mask]], way: Way::Mask(mask) }
+    /// Whether a few references are so near each other that they need no boxes of their own. A large one among small ones does:
+    /// it may find a better place.
+    fn is_whole(&self, references: &[Reference], all: &Bin) -> bool {
+        let areas = references.iter().map(|r| half_area(r.min, r.max, self.scale));
+        half_area(all.min, all.max, self.scale) <= 4.0 * areas.fold(f32::INFINITY, f32::min)
     }
 
-    /// Sorts references into the two sets of a cut.
-    pub fn divide(&self, references: &mut [Reference], cut: &Cut) -> (Set, Set) {
-        let [left, right] = cut.sides;
-        match cut.way {
-            Way::Bins { grid, axis, border } => {
-                let border = FIRST + border as f32;
-                let [l, r] = partition(references, |r| grid.at(r)[axis] < border);
-                (Set { bounds: left, centers: l }, Set { bounds: right, centers: r })
-            }
-            Way::Mask(mask) => {
-                let mut places = [0, left.count as usize];
-                let mut sorted = [references[0]; FEW];
-                for (i, r) in references.iter().enumerate() {
-                    let side = 1 - (mask >> i & 1);
-                    sorted[places[side]] = *r;
-                    places[side] += 1;
-                }
-                references.copy_from_slice(&sorted[..references.len()]);
-                // So few are never put into bins.
-                (Set { bounds: left, centers: NO_CENTERS }, Set { bounds: right, centers: NO_CENTERS })
-            }
-            Way::Half => {
-                let (left, right) = halve(references);
-                (Set::of(left), Set::of(right))
-            }
+    /// Builds over the references of both children.
+    fn both(
+        &self,
+        [left, right]: [&mut [Reference]; 2],
+        [left_set, right_set]: [Set; 2],
+        budget: Budget,
+        depth: usize,
+        pieces: &mut Vec<Piece>,
+    ) -> [Counts; 2] {
+        let [for_left, for_right] = budget.shared(left.len(), right.len());
+        let build = |references: &mut [Reference], set, budget, pieces: &mut Vec<Piece>| {
+            self.subtree(references, set, budget, depth + 1, pieces)
+        };
+        if left.len() + right.len() <= PARALLEL {
+            return [build(left, &left_set, for_left, pieces), build(right, &right_set, for_right, pieces)];
         }
+        let mut others = [vec![Piece::new(left.len())], vec![Piece::new(right.len())]];
+        let [a, b] = &mut others;
+        let (left, right) =
+            rayon::join(|| build(left, &left_set, for_left, a), || build(right, &right_set, for_right, b));
+        others.iter_mut().for_each(|other| pieces.append(other));
+        [left, right]
     }
-}
-
-/// Moves the references that pass to the front; gives the boxes around the centres of both sets.
-fn partition(references: &mut [Reference], is_left: impl Fn(&Reference) -> bool) -> [[Vec4; 2]; 2] {
-    let mut centers = [NO_CENTERS; 2];
-    let mut left = 0;
-    for i in 0..references.len() {
-        let r = references[i];
-        let is_left = is_left(&r);
-        // Without a branch, which would be guessed wrongly half of the time.
-        references[i] = references[left];
-        references[left] = r;
-        left += usize::from(is_left);
-        let center = r.center();
-        let [low, high] = &mut centers[usize::from(!is_left)];
-        (*low, *high) = (low.min(center), high.max(center));
-    }
-    centers
-}
-
-/// Sorts along the longest axis and cuts in the middle.
-fn halve(references: &mut [Reference]) -> (&mut [Reference], &mut [Reference]) {
-    let [low, high] = Set::of(references).centers;
-    let size = high - low;
-    let axis = if size.x >= size.y && size.x >= size.z {
-        0
-    } else if size.y >= size.z {
-        1
-    } else {
-        2
-    };
-    references.sort_unstable_by(|a, b| {
-        a.center()[axis]
-            .total_cmp(&b.center()[axis])
-            .then(a.number().cmp(&b.number()))
-            .then(a.min[axis].total_cmp(&b.min[axis]))
-    });
-    references.split_at_mut(references.len() / 2)
 }

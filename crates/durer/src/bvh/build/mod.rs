@@ -1,6 +1,7 @@
 //! Building a tree: references to things, a binary tree over them, and eight-wide nodes from that.
 
 mod binary;
+mod cut;
 mod reinsert;
 mod spatial;
 mod wide;
@@ -8,6 +9,7 @@ mod wide;
 use super::node::{MOST_ITEMS, Node};
 use crate::math::{Aabb, Vec3};
 use glam::Vec4;
+use wide::Plans;
 
 /// How much work goes into a tree.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -32,6 +34,8 @@ impl Preset {
 pub(super) struct Settings {
     /// Cost of a leaf of so many things, in tests of a node.
     pub leaf_cost: fn(usize) -> f32,
+    /// So few things are kept together.
+    pub whole: usize,
     /// Leaves hold at most so many things.
     pub leaf_size: usize,
     /// Passes that move subtrees to better places.
@@ -43,7 +47,7 @@ pub(super) struct Settings {
 impl Settings {
     /// For things whose tests cost as much as several nodes.
     pub const THINGS: Settings =
-        Settings { leaf_cost: |count| 2.0 * count as f32, leaf_size: 4, reinsertions: 2, splits: 0.0 };
+        Settings { leaf_cost: |count| 2.0 * count as f32, whole: 1, leaf_size: 4, reinsertions: 2, splits: 0.0 };
 
     pub fn triangles(preset: Preset) -> Settings {
         // A leaf is tested at once, whatever it holds.
@@ -51,9 +55,9 @@ impl Settings {
         let (reinsertions, splits) = match preset {
             Preset::Fast => (0, 0.0),
             Preset::Balanced => (2, 0.0),
-            Preset::Best => (8, 0.5),
+            Preset::Best => (4, 0.5),
         };
-        Settings { leaf_cost, leaf_size: super::node::LEAF_SIZE, reinsertions, splits }
+        Settings { leaf_cost, whole: 3, leaf_size: super::node::LEAF_SIZE, reinsertions, splits }
     }
 }
 
@@ -66,7 +70,7 @@ pub(super) struct Reference {
 
 impl Reference {
     fn new(bounds: Aabb, number: u32) -> Self {
-        Reference { min: bounds.min.extend(number_lane(number)), max: bounds.max.extend(0.0) }
+        Reference { min: bounds.min.extend(lane(3, number)), max: bounds.max.extend(0.0) }
     }
 
     fn number(&self) -> u32 {
@@ -82,9 +86,10 @@ impl Reference {
     }
 }
 
-/// A number below 2^28 in the fourth lane of a vector: as a normal `f32`, which no arithmetic on the lane slows down.
-fn number_lane(number: u32) -> f32 {
-    f32::from_bits(number | 3 << 28)
+/// A number below 2^28 and a tag of 2 or 3 in the fourth lane of a vector: as a normal `f32`, which no arithmetic on the lane
+/// slows down.
+fn lane(tag: u32, number: u32) -> f32 {
+    f32::from_bits(number | tag << 28)
 }
 
 fn lane_number(lane: f32) -> u32 {
@@ -117,12 +122,8 @@ pub(super) struct Tree {
 }
 
 /// Builds a tree over boxes: a function of the references and settings alone.
-pub(super) fn build(mut references: Vec<Reference>, settings: &Settings) -> Tree {
-    let bounds = bounds(&references);
-    match references.is_empty() {
-        true => Tree { nodes: Vec::new(), order: Vec::new(), bounds },
-        false => finish(binary::build(&mut references, area_scale(bounds)), &references, bounds, settings),
-    }
+pub(super) fn build(references: Vec<Reference>, settings: &Settings) -> Tree {
+    build_of(references, settings, None)
 }
 
 /// Builds a tree over so many triangles, which may be cut.
@@ -131,25 +132,25 @@ pub(super) fn build_triangles(
     corners_of: &(impl Fn(u32) -> [Vec3; 3] + Sync),
     settings: &Settings,
 ) -> Tree {
-    let mut references = triangle_references(count, corners_of);
-    if settings.splits == 0.0 || references.is_empty() {
-        return build(references, settings);
-    }
-    let bounds = bounds(&references);
-    let (tree, references) = spatial::build(&mut references, corners_of, area_scale(bounds), settings.splits);
-    finish(tree, &references, bounds, settings)
+    build_of(triangle_references(count, corners_of), settings, Some(corners_of))
 }
 
-fn bounds(references: &[Reference]) -> Aabb {
-    references.iter().fold(Aabb::EMPTY, |b, r| b.union(r.bounds()))
-}
-
-fn finish(mut tree: binary::Tree, references: &[Reference], bounds: Aabb, settings: &Settings) -> Tree {
-    assert!(references.len() <= MOST_ITEMS, "a tree holds at most 2^28 things");
-    if settings.reinsertions > 0 {
-        reinsert::improve(&mut tree, settings.reinsertions);
+fn build_of(mut references: Vec<Reference>, settings: &Settings, corners_of: Option<binary::Corners>) -> Tree {
+    let bounds = references.iter().fold(Aabb::EMPTY, |b, r| b.union(r.bounds()));
+    if references.is_empty() {
+        return Tree { nodes: Vec::new(), order: Vec::new(), bounds };
     }
-    let (nodes, order) = wide::collapse(&tree, references, settings);
+    let mut tree = binary::build(&mut references, area_scale(bounds), settings, corners_of);
+    assert!(tree.items.len() <= MOST_ITEMS, "a tree holds at most 2^28 things");
+    let mut plans = Plans::new(&tree.nodes, tree.scale, settings);
+    if let Some(nodes) = reinsert::improved(&tree, settings.reinsertions) {
+        // What is better for two children may be worse for eight. At equal cost fewer triangles are tested.
+        let others = Plans::new(&nodes, tree.scale, settings);
+        if others.cost <= 1.01 * plans.cost {
+            (tree.nodes, plans) = (nodes, others);
+        }
+    }
+    let (nodes, order) = wide::collapse(&tree, plans);
     Tree { nodes, order, bounds }
 }
 

@@ -12,10 +12,10 @@ const SHARE: f64 = 0.08;
 /// A search for a better place ends after so many nodes.
 const PATIENCE: usize = 1 << 12;
 
-/// Runs so many passes. A tree that would become too deep stays as it was.
-pub fn improve(tree: &mut Tree, passes: usize) {
-    if tree.nodes.len() < 5 {
-        return;
+/// The nodes of a tree after so many passes; `None` if there is nothing to improve, or the tree would become too deep.
+pub fn improved(tree: &Tree, passes: usize) -> Option<Vec<Node>> {
+    if tree.nodes.len() < 5 || passes == 0 {
+        return None;
     }
     let mut work = Linked::new(tree);
     for _ in 0..passes {
@@ -23,9 +23,7 @@ pub fn improve(tree: &mut Tree, passes: usize) {
             break;
         }
     }
-    if let Some(nodes) = work.in_order() {
-        tree.nodes = nodes;
-    }
+    work.in_order()
 }
 
 const NONE: u32 = u32::MAX;
@@ -64,8 +62,8 @@ impl Linked {
         };
         let mut nodes: Vec<Link> = tree.nodes.iter().map(link).collect();
         for i in 0..nodes.len() {
-            if nodes[i].node.count() > 1 {
-                let children = [i as u32 + 1, i as u32 + 2 * nodes[i + 1].node.count()];
+            if !nodes[i].node.is_leaf() {
+                let children = [i as u32 + 1, (i + nodes[i].node.right()) as u32];
                 nodes[i].children = children;
                 for child in children {
                     nodes[child as usize].parent = i as u32;
@@ -193,7 +191,7 @@ impl Linked {
             let (min, max): (Vec4, Vec4) = (a.min.min(b.min), a.max.max(b.max));
             let area = half_area(min, max, self.scale);
             let link = &mut self.nodes[i as usize];
-            link.node = Node::new(min, max, 0, 0);
+            link.node = Node::inner(min, max, 0, 0);
             link.area = area;
             i = link.parent;
         }
@@ -202,27 +200,28 @@ impl Linked {
     /// The nodes in depth-first order with their counts; `None` if the tree is too deep.
     fn in_order(&self) -> Option<Vec<Node>> {
         let mut nodes: Vec<Node> = Vec::with_capacity(self.nodes.len());
-        let mut stack = vec![(0, 1, NONE)];
-        let mut parents = Vec::with_capacity(self.nodes.len());
-        while let Some((i, depth, parent)) = stack.pop() {
+        let mut stack = vec![(0, 1)];
+        while let Some((i, depth)) = stack.pop() {
             if depth > DEEPEST {
                 return None;
             }
             let link = self.at(i);
-            let number = nodes.len() as u32;
             nodes.push(link.node);
-            parents.push(parent);
             let [left, right] = link.children;
             if left != NONE {
-                stack.extend([(right, depth + 1, number), (left, depth + 1, number)]);
-                nodes[number as usize] = Node::new(link.node.min, link.node.max, 0, 0);
+                stack.extend([(right, depth + 1), (left, depth + 1)]);
             }
         }
         // Children come after their parents, so counts are added from the end.
-        for i in (1..nodes.len()).rev() {
-            let (count, parent) = (nodes[i].count(), parents[i] as usize);
-            let above = nodes[parent];
-            nodes[parent] = Node::new(above.min, above.max, above.count() + count, 0);
+        let mut leaves = vec![1; nodes.len()];
+        for i in (0..nodes.len()).rev() {
+            if nodes[i].is_leaf() {
+                continue;
+            }
+            let [left, right] = [i + 1, i + 2 * leaves[i + 1] as usize];
+            let count = (nodes[left].count() + nodes[right].count()) as u32;
+            leaves[i] = leaves[left] + leaves[right];
+            nodes[i] = Node::inner(nodes[i].min, nodes[i].max, count, leaves[left]);
         }
         Some(nodes)
     }

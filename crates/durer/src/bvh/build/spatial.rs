@@ -1,45 +1,46 @@
-//! A binary tree whose nodes may be cut in space, where parts of a triangle then go to both sides.
+//! Ways to cut the space of a node in two, where parts of a triangle then go to both sides.
 //!
 //! Where the cheapest division of references into two sets leaves boxes that overlap, planes are tried too; a plane cuts the
 //! triangles that it goes through, unless it is cheaper to leave one whole on one side.
 //! Source: Stich, Friedrich, Dietrich, *Spatial Splits in Bounding Volume Hierarchies*, HPG 2009.
 
 use super::Reference;
-use super::binary::{self, BINS, Bin, Builder, Cut, Set, HALVING_DEPTH, Node, PARALLEL, Tree};
-use crate::math::{Aabb, Vec3};
+use super::binary::{Builder, Corners, half_area};
+use super::cut::{BINS, Bin, Cut, Set};
+use crate::math::Vec3;
+use glam::{BVec4A, Vec4};
 
-/// Planes are tried where the overlap has at least this share of the node's area.
+/// Planes are tried where the overlap has at least this share of the node's area,
 const OVERLAP: f32 = 0.1;
+/// and this share of the area of everything,
+const LEAST: f32 = 1e-5;
+/// across axes along which the node is at least so long, as a share of its greatest length.
+const LENGTH: f32 = 0.3;
 /// They must cost less than this share of what the best two sets cost.
 const GAIN: f32 = 0.95;
+/// A few references are likely to be a leaf, in which cuts are in vain.
+const FEWEST: usize = 16;
+/// After so many searches in vain, one below the other, one level is left out before the next, then two, up to four.
+const IN_VAIN: u32 = 3;
 
-/// Builds a tree over triangles with at most `share` more references for each one that is there; also gives the references, in
-/// the order of its leaves.
-pub fn build<C: Fn(u32) -> [Vec3; 3] + Sync>(
-    references: &mut [Reference],
-    corners_of: &C,
-    scale: f32,
-    share: f32,
-) -> (Tree, Vec<Reference>) {
-    let spare = (references.len() as f32 * share) as usize;
-    let cutter = Cutter { builder: Builder { scale }, corners_of };
-    let mut made = Made::default();
-    cutter.subtree(references, spare, 0, &mut made);
-    let leaves = made.nodes.iter_mut().filter(|node| node.count() == 1);
-    leaves.enumerate().for_each(|(item, leaf)| *leaf = Node::new(leaf.min, leaf.max, 1, item as u32));
-    (Tree { nodes: made.nodes, scale }, made.references)
+/// How many references may be added below a node, and what is known of searches for planes above it.
+#[derive(Clone, Copy)]
+pub struct Budget {
+    references: usize,
+    in_vain: u32,
+    pause: u32,
 }
 
-/// Nodes and the references of their leaves, in depth-first order.
-#[derive(Default)]
-struct Made {
-    nodes: Vec<Node>,
-    references: Vec<Reference>,
-}
+impl Budget {
+    pub fn new(references: usize) -> Self {
+        Budget { references, in_vain: 0, pause: 0 }
+    }
 
-struct Cutter<'a, C> {
-    builder: Builder,
-    corners_of: &'a C,
+    /// What there is to spare goes where more references are.
+    pub fn shared(self, left: usize, right: usize) -> [Budget; 2] {
+        let for_left = (self.references as u64 * left as u64 / (left + right) as u64) as usize;
+        [for_left, self.references - for_left].map(|references| Budget { references, ..self })
+    }
 }
 
 /// A plane that costs so much, all areas times numbers of references.
@@ -49,124 +50,107 @@ struct Plane {
     at: f32,
 }
 
-impl<C: Fn(u32) -> [Vec3; 3] + Sync> Cutter<'_, C> {
-    /// Builds over some references, of which so many more may be made.
-    fn subtree(&self, references: &mut [Reference], spare: usize, depth: usize, made: &mut Made) {
-        let set = Set::of(references);
-        let bounds = set.bounds;
-        let (place, first) = (made.nodes.len(), made.references.len());
-        made.nodes.push(Node::new(bounds.min, bounds.max, 1, 0));
-        if let [only] = references {
-            made.references.push(*only);
-            return;
-        }
-        let cut = self.builder.cut(references, &set, depth);
-        let parts = if spare > 0 { self.parts(references, &bounds, &cut, spare, depth) } else { None };
-        match parts {
-            Some([mut left, mut right]) => {
-                let spare = spare + references.len() - left.len() - right.len();
-                self.both(&mut left, &mut right, spare, depth, made);
-            }
-            None => {
-                let (left, _) = self.builder.divide(references, &cut);
-                let (left, right) = references.split_at_mut(left.bounds.count as usize);
-                self.both(left, right, spare, depth, made);
-            }
-        }
-        let count = made.references.len() - first;
-        made.nodes[place] = Node::new(bounds.min, bounds.max, count as u32, 0);
-    }
-
-    fn both(&self, left: &mut [Reference], right: &mut [Reference], spare: usize, depth: usize, made: &mut Made) {
-        // What is to spare goes where more references are.
-        let all = left.len() + right.len();
-        let for_left = (spare as u64 * left.len() as u64 / all as u64) as usize;
-        if all <= PARALLEL {
-            self.subtree(left, for_left, depth + 1, made);
-            self.subtree(right, spare - for_left, depth + 1, made);
-            return;
-        }
-        let mut other = Made::default();
-        rayon::join(
-            || self.subtree(left, for_left, depth + 1, made),
-            || self.subtree(right, spare - for_left, depth + 1, &mut other),
-        );
-        made.nodes.append(&mut other.nodes);
-        made.references.append(&mut other.references);
-    }
-
-    /// The references on both sides of a plane, if that is better than the two sets before and after `cut`.
-    fn parts(
+impl Builder<'_> {
+    /// The references on both sides of a plane, if that is better than a cut into two sets.
+    pub fn parts(
         &self,
         references: &[Reference],
-        bounds: &Bin,
+        set: &Set,
         cut: &Cut,
-        spare: usize,
-        depth: usize,
+        budget: &mut Budget,
     ) -> Option<[Vec<Reference>; 2]> {
-        let count = references.len();
-        // A few references are likely to be a leaf, in which cuts are in vain.
-        if count <= 8 || depth >= HALVING_DEPTH {
+        let (corners_of, count) = (self.corners_of?, references.len());
+        if count <= FEWEST || budget.references == 0 {
             return None;
         }
-        let scale = self.builder.scale;
         let [l, r] = cut.sides;
-        let overlap = binary::half_area(l.min.max(r.min), l.max.min(r.max), scale);
-        if overlap < OVERLAP * binary::half_area(bounds.min, bounds.max, scale) {
+        let overlap = half_area(l.min.max(r.min), l.max.min(r.max), self.scale);
+        let area = half_area(set.bounds.min, set.bounds.max, self.scale);
+        if overlap < (OVERLAP * area).max(LEAST * self.area) {
             return None;
         }
-        let plane = self.plane(references, bounds)?;
-        if plane.cost >= GAIN * (l.cost(scale) + r.cost(scale)) {
+        if budget.pause > 0 {
+            budget.pause -= 1;
             return None;
         }
-        let parts = self.divide(references, &plane);
+        let plane = self.plane(references, &set.bounds, corners_of)?;
+        if plane.cost >= GAIN * cut.cost {
+            budget.in_vain += 1;
+            budget.pause = budget.in_vain.saturating_sub(IN_VAIN).min(4);
+            return None;
+        }
+        budget.in_vain = 0;
+        let parts = self.halves(references, &plane, corners_of);
         let lens = [parts[0].len(), parts[1].len()];
         let smaller = lens.iter().all(|&len| 0 < len && len < count);
-        (smaller && lens[0] + lens[1] <= count + spare).then_some(parts)
+        budget.references = (budget.references + count).checked_sub(lens[0] + lens[1])?;
+        smaller.then_some(parts)
     }
 
     /// The cheapest plane between bins of equal width.
-    fn plane(&self, references: &[Reference], bounds: &Bin) -> Option<Plane> {
-        let mut best = None::<Plane>;
-        // Few references fill few bins, and each border costs a cut.
+    fn plane(&self, references: &[Reference], bounds: &Bin, corners_of: Corners) -> Option<Plane> {
+        if !(bounds.max - bounds.min).truncate().is_finite() {
+            return None;
+        }
+        let planes = [
+            self.plane_across::<0>(references, bounds, corners_of),
+            self.plane_across::<1>(references, bounds, corners_of),
+            self.plane_across::<2>(references, bounds, corners_of),
+        ];
+        planes.into_iter().flatten().reduce(|a, b| if b.cost < a.cost { b } else { a })
+    }
+
+    fn plane_across<const AXIS: usize>(
+        &self,
+        references: &[Reference],
+        bounds: &Bin,
+        corners_of: Corners,
+    ) -> Option<Plane> {
+        // Few references fill few bins.
         let count = if references.len() > 256 { BINS } else { BINS / 2 };
-        for axis in 0..3 {
-            let (low, high) = (bounds.min[axis], bounds.max[axis]);
-            let width = (high - low) / count as f32;
-            // Flat and immense things are not cut.
-            if !(width.is_normal() && low + width > low && high - width < high) {
+        let (low, high) = (bounds.min[AXIS], bounds.max[AXIS]);
+        let width = (high - low) / count as f32;
+        // Flat and immense things are not cut.
+        if high - low < LENGTH * (bounds.max - bounds.min).truncate().max_element() {
+            return None;
+        }
+        if !(width.is_normal() && low + width > low && high - width < high) {
+            return None;
+        }
+        let at = |bin: usize| low + width * bin as f32;
+        let bin_of = |x: f32| (((x - low) / width) as i32).clamp(0, count as i32 - 1) as usize;
+        let mut bins = [Bin::EMPTY; BINS];
+        let mut ends = [0_u32; BINS];
+        for r in references {
+            let (first, last) = (bin_of(r.min[AXIS]), bin_of(r.max[AXIS]));
+            bins[first].count += 1;
+            ends[last] += 1;
+            if first == last {
+                bins[first] = bins[first].around(r);
                 continue;
             }
-            let at = |bin: usize| low + width * bin as f32;
-            let bin_of = |x: f32| (((x - low) / width) as usize).min(count - 1);
-            let mut bins = [Bin::EMPTY; BINS];
-            let mut ends = [0_u32; BINS];
-            for r in references {
-                let (first, last) = (bin_of(r.min[axis]), bin_of(r.max[axis]));
-                let mut rest = *r;
-                for (bin, number) in bins[first..last].iter_mut().zip(first + 1..) {
-                    let [left, right] = self.halves(axis, at(number), &rest);
-                    *bin = bin.around(&left);
-                    rest = right;
-                }
-                bins[last] = bins[last].around(&rest);
-                bins[first].count += 1;
-                ends[last] += 1;
+            let triangle = Sorted::<AXIS>::new(corners_of(r.number()));
+            let mut from = triangle.section(r.min[AXIS]);
+            for bin in first..=last {
+                let to = triangle.section(if bin < last { at(bin + 1) } else { r.max[AXIS] });
+                bins[bin] = bins[bin].around(&triangle.between(&from, &to, r));
+                from = to;
             }
-            let mut right = [(0.0, 0_u32); BINS];
-            let mut sum = Bin::EMPTY;
-            for bin in (1..count).rev() {
-                sum = sum.union(Bin { count: ends[bin], ..bins[bin] });
-                right[bin] = (sum.cost(self.builder.scale), sum.count);
-            }
-            let mut left = Bin::EMPTY;
-            for bin in 1..count {
-                left = left.union(bins[bin - 1]);
-                let (right_cost, right_count) = right[bin];
-                let cost = left.cost(self.builder.scale) + right_cost;
-                if left.count > 0 && right_count > 0 && best.as_ref().is_none_or(|best| cost < best.cost) {
-                    best = Some(Plane { cost, axis, at: at(bin) });
-                }
+        }
+        let mut best = None::<Plane>;
+        let mut right = [(0.0, 0_u32); BINS];
+        let mut sum = Bin::EMPTY;
+        for bin in (1..count).rev() {
+            sum = sum.union(Bin { count: ends[bin], ..bins[bin] });
+            right[bin] = (sum.cost(self.scale), sum.count);
+        }
+        let mut left = Bin::EMPTY;
+        for bin in 1..count {
+            left = left.union(bins[bin - 1]);
+            let (right_cost, right_count) = right[bin];
+            let cost = left.cost(self.scale) + right_cost;
+            if left.count > 0 && right_count > 0 && best.as_ref().is_none_or(|best| cost < best.cost) {
+                best = Some(Plane { cost, axis: AXIS, at: at(bin) });
             }
         }
         best
@@ -174,20 +158,38 @@ impl<C: Fn(u32) -> [Vec3; 3] + Sync> Cutter<'_, C> {
 
     /// The references on both sides of a plane. Those that it goes through are cut, unless the boxes that grow when one stays whole
     /// cost less.
-    fn divide(&self, references: &[Reference], &Plane { axis, at, .. }: &Plane) -> [Vec<Reference>; 2] {
+    fn halves(
+        &self,
+        references: &[Reference],
+        &Plane { axis, at, .. }: &Plane,
+        corners_of: Corners,
+    ) -> [Vec<Reference>; 2] {
         let (mut left, mut right, mut through) = (Vec::new(), Vec::new(), Vec::new());
         for r in references {
-            match () {
-                () if r.max[axis] <= at => left.push(*r),
-                () if r.min[axis] >= at => right.push(*r),
-                () => through.push((*r, self.halves(axis, at, r))),
+            if r.max[axis] <= at {
+                left.push(*r);
+                continue;
+            } else if r.min[axis] >= at {
+                right.push(*r);
+                continue;
+            }
+            let [a, b] = match axis {
+                0 => Sorted::<0>::new(corners_of(r.number())).halves(at, r),
+                1 => Sorted::<1>::new(corners_of(r.number())).halves(at, r),
+                _ => Sorted::<2>::new(corners_of(r.number())).halves(at, r),
+            };
+            match [a, b].map(|half| half.bounds().is_empty()) {
+                [false, false] => through.push((*r, [a, b])),
+                [false, true] => left.push(a),
+                [true, false] => right.push(b),
+                [true, true] => left.push(*r),
             }
         }
         let mut sides = [&left, &right].map(|side| side.iter().fold(Bin::EMPTY, Bin::with));
         for (_, halves) in &through {
             sides.iter_mut().zip(halves).for_each(|(side, half)| *side = side.with(half));
         }
-        let scale = self.builder.scale;
+        let scale = self.scale;
         let cost = |[l, r]: &[Bin; 2]| l.cost(scale) + r.cost(scale);
         for (whole, [a, b]) in through {
             let [l, r] = sides;
@@ -207,36 +209,67 @@ impl<C: Fn(u32) -> [Vec3; 3] + Sync> Cutter<'_, C> {
         }
         [left, right]
     }
-
-    /// What of a reference lies on both sides of a plane.
-    fn halves(&self, axis: usize, at: f32, r: &Reference) -> [Reference; 2] {
-        let boxes = halves(axis, at, (self.corners_of)(r.number()), r.bounds());
-        // Of a part that only touches the plane nothing may be left.
-        boxes.map(|half| if half.is_empty() { *r } else { Reference::new(half, r.number()) })
-    }
 }
 
-/// The boxes of a triangle's parts on both sides of a plane, within its present box.
-fn halves(axis: usize, at: f32, corners: [Vec3; 3], b: Aabb) -> [Aabb; 2] {
-    let mut halves = [Aabb::EMPTY; 2];
-    for (p, q) in [(corners[0], corners[1]), (corners[1], corners[2]), (corners[2], corners[0])] {
-        if p[axis] <= at {
-            halves[0] = halves[0].with(p);
-        }
-        if p[axis] >= at {
-            halves[1] = halves[1].with(p);
-        }
-        if (p[axis] < at && q[axis] > at) || (p[axis] > at && q[axis] < at) {
-            let (p, q) = (p.as_dvec3(), q.as_dvec3());
-            let crossing = (p + (q - p) * ((f64::from(at) - p[axis]) / (q[axis] - p[axis]))).as_vec3();
-            // Outwards by one rounding, so that the part is inside.
-            let (low, high) = (crossing.map(f32::next_down), crossing.map(f32::next_up));
-            for half in &mut halves {
-                *half = half.with(low).with(high);
-            }
-        }
+/// A triangle with its corners in order along an axis.
+struct Sorted<const AXIS: usize> {
+    corners: [Vec4; 3],
+    /// Bound on the rounding of a section.
+    slack: Vec4,
+}
+
+/// The box of what lies in a plane across the axis: a line between two points.
+struct Section {
+    at: f32,
+    min: Vec4,
+    max: Vec4,
+}
+
+impl<const AXIS: usize> Sorted<AXIS> {
+    #[inline(always)]
+    fn new(corners: [Vec3; 3]) -> Self {
+        let [a, b, c] = corners.map(|p| p.extend(0.0));
+        let sort = |p: Vec4, q: Vec4| if p[AXIS] > q[AXIS] { (q, p) } else { (p, q) };
+        let (a, b) = sort(a, b);
+        let (b, c) = sort(b, c);
+        let (a, b) = sort(a, b);
+        let most = a.abs().max(b.abs()).max(c.abs());
+        // A section is p + (q - p) t with t = (x - p) / (q - p) along the axis: an error of at most 5 units in the last place
+        // of q - p, twice the largest coordinate, and one of the sum; a unit is half of epsilon. The rest is for underflow.
+        Sorted { corners: [a, b, c], slack: 8.0 * f32::EPSILON * most + f32::MIN_POSITIVE }
     }
-    halves[0].max[axis] = at;
-    halves[1].min[axis] = at;
-    halves.map(|half| Aabb { min: half.min.max(b.min), max: half.max.min(b.max) })
+
+    /// The section at a place between the first and the last corner; others are moved there.
+    #[inline(always)]
+    fn section(&self, at: f32) -> Section {
+        let [a, b, c] = self.corners;
+        let x = at.max(a[AXIS]).min(c[AXIS]);
+        let point = |p: Vec4, q: Vec4| {
+            let size = q[AXIS] - p[AXIS];
+            if size > 0.0 { p + (q - p) * ((x - p[AXIS]) / size) } else { p }
+        };
+        let (p, q) = (point(a, c), if x < b[AXIS] { point(a, b) } else { point(b, c) });
+        Section { at, min: p.min(q) - self.slack, max: p.max(q) + self.slack }
+    }
+
+    /// The box of what lies between two sections, within that of a reference; empty if nothing does.
+    #[inline(always)]
+    fn between(&self, from: &Section, to: &Section, r: &Reference) -> Reference {
+        let middle = self.corners[1];
+        let (mut min, mut max) = (from.min.min(to.min), from.max.max(to.max));
+        if from.at <= middle[AXIS] && middle[AXIS] <= to.at {
+            (min, max) = (min.min(middle), max.max(middle));
+        }
+        let across = BVec4A::new(AXIS == 0, AXIS == 1, AXIS == 2, false);
+        let low = Vec4::select(across, Vec4::splat(from.at), r.min);
+        let high = Vec4::select(across, Vec4::splat(to.at), r.max);
+        // The number in the fourth lane is larger than any slack.
+        Reference { min: min.max(low), max: max.min(high) }
+    }
+
+    /// What of a reference lies on both sides of a plane.
+    fn halves(&self, at: f32, r: &Reference) -> [Reference; 2] {
+        let [from, middle, to] = [r.min[AXIS], at, r.max[AXIS]].map(|x| self.section(x));
+        [self.between(&from, &middle, r), self.between(&middle, &to, r)]
+    }
 }

@@ -7,7 +7,6 @@
 //!
 //! Source: Ylitie, Karras, Laine, *Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs*, HPG 2017.
 
-use super::Reference;
 use super::Settings;
 use super::binary::{self, half_area};
 use crate::bvh::lanes::WIDTH;
@@ -16,13 +15,26 @@ use crate::math::{Aabb, Vec3};
 use rayon::prelude::*;
 
 /// Subtrees of more references than this are worked on in parallel.
-const PARALLEL: u32 = 4096;
+const PARALLEL: usize = 4096;
 
-pub fn collapse(tree: &binary::Tree, references: &[Reference], settings: &Settings) -> (Vec<Node>, Vec<u32>) {
-    let mut plans = vec![Plan::default(); tree.nodes.len()];
-    plan(&tree.nodes, &mut plans, tree.scale, settings);
+/// What is cheapest for each node of a binary tree, and the cost of it all.
+pub struct Plans {
+    plans: Vec<Plan>,
+    pub cost: f32,
+}
+
+impl Plans {
+    pub fn new(nodes: &[binary::Node], scale: f32, settings: &Settings) -> Self {
+        let mut plans = vec![Plan::default(); nodes.len()];
+        let cost = plan(nodes, &mut plans, scale, settings)[0];
+        Plans { plans, cost }
+    }
+}
+
+/// The nodes, and the items of their leaves.
+pub fn collapse(tree: &binary::Tree, plans: Plans) -> (Vec<Node>, Vec<u32>) {
     // A tree of one leaf still needs a node to hold it.
-    let part = Emitter { tree, references, plans }.part(0);
+    let part = Emitter { tree, plans: plans.plans }.part(0);
     (part.nodes, part.order)
 }
 
@@ -63,17 +75,16 @@ fn shared(left: &Costs, right: &Costs, roots: usize) -> (f32, usize) {
 /// Finds what is cheapest for all nodes of a subtree.
 fn plan(nodes: &[binary::Node], plans: &mut [Plan], scale: f32, settings: &Settings) -> Costs {
     let node = &nodes[0];
-    let (area, count) = (half_area(node.min, node.max, scale), node.count() as usize);
+    let (area, count) = (half_area(node.min, node.max, scale), node.count());
     let leaf = if count <= settings.leaf_size { area * (settings.leaf_cost)(count) } else { f32::INFINITY };
-    if count == 1 {
+    if node.is_leaf() {
         plans[0] = Plan(1);
         return [leaf; WIDTH - 1];
     }
     let (own, rest) = plans.split_first_mut().expect("there is a node");
-    let left_size = 2 * nodes[1].count() as usize - 1;
-    let (left_plans, right_plans) = rest.split_at_mut(left_size);
-    let (left_nodes, right_nodes) = nodes[1..].split_at(left_size);
-    let (left, right) = if node.count() > PARALLEL {
+    let (left_plans, right_plans) = rest.split_at_mut(node.right() - 1);
+    let (left_nodes, right_nodes) = nodes[1..].split_at(node.right() - 1);
+    let (left, right) = if count > PARALLEL {
         rayon::join(
             || plan(left_nodes, left_plans, scale, settings),
             || plan(right_nodes, right_plans, scale, settings),
@@ -102,7 +113,6 @@ fn plan(nodes: &[binary::Node], plans: &mut [Plan], scale: f32, settings: &Setti
 
 struct Emitter<'a> {
     tree: &'a binary::Tree,
-    references: &'a [Reference],
     plans: Vec<Plan>,
 }
 
@@ -121,15 +131,15 @@ struct Children {
 
 impl Emitter<'_> {
     fn count(&self, i: usize) -> usize {
-        self.tree.nodes[i].count() as usize
+        self.tree.nodes[i].count()
     }
 
     /// The children of a node that is opened.
     fn open(&self, i: usize) -> Children {
         let mut children = Children::default();
-        match self.count(i) {
-            1 => self.forest(i, 1, &mut children),
-            _ => self.split(i, WIDTH, &mut children),
+        match self.tree.nodes[i].is_leaf() {
+            true => self.forest(i, 1, &mut children),
+            false => self.split(i, WIDTH, &mut children),
         }
         children
     }
@@ -150,7 +160,7 @@ impl Emitter<'_> {
     fn split(&self, i: usize, roots: usize, children: &mut Children) {
         let left = self.plans[i].left(roots);
         self.forest(i + 1, left, children);
-        self.forest(i + 2 * self.count(i + 1), roots - left, children);
+        self.forest(i + self.tree.nodes[i].right(), roots - left, children);
     }
 
     /// A node of the children of a binary one, and all below.
@@ -186,7 +196,7 @@ impl Emitter<'_> {
         }
         let inner = &inner.list[..inner.count];
         part.nodes.resize(first + inner.len(), Node::EMPTY);
-        if self.count(i) <= PARALLEL as usize {
+        if self.count(i) <= PARALLEL {
             for (offset, &i) in inner.iter().enumerate() {
                 self.fill(part, first + offset, i);
             }
@@ -200,13 +210,13 @@ impl Emitter<'_> {
 
     /// Writes a leaf of everything below a binary node.
     fn leaf(&self, part: &mut Part, i: usize) -> u32 {
-        let below = &self.tree.nodes[i..i + 2 * self.count(i) - 1];
+        let leaves = self.tree.nodes[i..].iter().filter(|node| node.is_leaf());
+        let below = leaves.flat_map(|leaf| &self.tree.items[leaf.first()..leaf.first() + leaf.count()]);
         let (mut items, mut count) = ([0; LEAF_SIZE], 0);
-        for node in below.iter().filter(|node| node.count() == 1) {
-            let item = self.references[node.item() as usize].number();
+        for item in below.take(self.count(i)) {
             // Parts of a thing that was cut, when together again, count once.
-            if !items[..count].contains(&item) {
-                items[count] = item;
+            if !items[..count].contains(item) {
+                items[count] = *item;
                 count += 1;
             }
         }
@@ -258,7 +268,8 @@ fn places(bounds: &[Aabb]) -> [usize; WIDTH] {
                 continue;
             }
             let score = |place: usize| {
-                let side = |axis: usize| if place >> axis & 1 == 1 { offsets[child][axis] } else { -offsets[child][axis] };
+                let side =
+                    |axis: usize| if place >> axis & 1 == 1 { offsets[child][axis] } else { -offsets[child][axis] };
                 (side(0) + side(1) + side(2), place)
             };
             let better = |a: (f32, usize), b: (f32, usize)| if b.0 > a.0 { b } else { a };

@@ -1,0 +1,301 @@
+//! Ways to divide references into two sets by the surface area heuristic.
+//!
+//! Many references are put into bins along each axis; of few, all divisions are tried.
+//! Source: Wald, *On fast Construction of SAH-based Bounding Volume Hierarchies*, IEEE RT 2007.
+
+use super::Reference;
+use super::binary::{Builder, half_area};
+use glam::Vec4;
+
+pub const BINS: usize = 16;
+/// Below this depth things are halved by number, which bounds the depth of all trees: 28 levels halve 2^28 things.
+pub const HALVING_DEPTH: usize = 60;
+/// More references than this are put into bins in parallel.
+const MANY: usize = 1 << 15;
+/// Of so few references all divisions are tried.
+pub const FEW: usize = 4;
+
+/// A box that grows, and how many references are in it.
+#[derive(Clone, Copy)]
+pub struct Bin {
+    pub min: Vec4,
+    pub max: Vec4,
+    pub count: u32,
+}
+
+impl Bin {
+    pub const EMPTY: Bin = Bin { min: Vec4::INFINITY, max: Vec4::NEG_INFINITY, count: 0 };
+
+    #[inline]
+    pub fn with(self, r: &Reference) -> Bin {
+        Bin { count: self.count + 1, ..self.around(r) }
+    }
+
+    /// Grown, but not counted.
+    #[inline]
+    pub fn around(self, r: &Reference) -> Bin {
+        Bin { min: self.min.min(r.min), max: self.max.max(r.max), ..self }
+    }
+
+    #[inline]
+    pub fn union(self, other: Bin) -> Bin {
+        Bin { min: self.min.min(other.min), max: self.max.max(other.max), count: self.count + other.count }
+    }
+
+    #[inline]
+    pub fn cost(&self, scale: f32) -> f32 {
+        half_area(self.min, self.max, scale) * self.count as f32
+    }
+}
+
+/// What is known of some references: the box around them, their number, and the box around their centres.
+#[derive(Clone, Copy)]
+pub struct Set {
+    pub bounds: Bin,
+    centers: [Vec4; 2],
+}
+
+const NO_CENTERS: [Vec4; 2] = [Vec4::INFINITY, Vec4::NEG_INFINITY];
+
+impl Set {
+    pub fn of(references: &[Reference]) -> Set {
+        if references.len() > MANY {
+            let (a, b) = references.split_at(references.len() / 2);
+            let (a, b) = rayon::join(|| Set::of(a), || Set::of(b));
+            let centers = [a.centers[0].min(b.centers[0]), a.centers[1].max(b.centers[1])];
+            return Set { bounds: a.bounds.union(b.bounds), centers };
+        }
+        let nothing = Set { bounds: Bin::EMPTY, centers: NO_CENTERS };
+        references.iter().fold(nothing, |set, r| {
+            let (center, [low, high]) = (r.center(), set.centers);
+            Set { bounds: set.bounds.with(r), centers: [low.min(center), high.max(center)] }
+        })
+    }
+}
+
+/// Bins of equal width over the centres of references.
+#[derive(Clone, Copy)]
+struct Grid {
+    low: Vec4,
+    scale: Vec4,
+    bins: usize,
+}
+
+impl Grid {
+    fn new(set: &Set, most: usize) -> Grid {
+        // Few references fill few bins.
+        let bins = (4 + set.bounds.count as usize / 16).min(most);
+        let [low, high] = set.centers;
+        // Where a size is zero or leaves the range, all fall into the first bin.
+        let scale = bins as f32 * (1.0 - 1e-6) / (high - low);
+        let scale = Vec4::select(scale.cmplt(Vec4::INFINITY), scale, Vec4::ZERO);
+        Grid { low, scale, bins }
+    }
+
+    /// A reference's bins, added to 2^23, where the last place of a number is 1.
+    #[inline(always)]
+    fn at(&self, r: &Reference) -> Vec4 {
+        let at = (r.center() - self.low) * self.scale - 0.5;
+        // Also where it is not a number.
+        let at = Vec4::select(at.cmpgt(Vec4::ZERO), at, Vec4::ZERO);
+        at.min(Vec4::splat((self.bins - 1) as f32)) + FIRST
+    }
+}
+
+const FIRST: f32 = (1 << 23) as f32;
+
+struct Bins<const N: usize> {
+    boxes: [[[Vec4; 2]; N]; 3],
+    counts: [[u32; N]; 3],
+}
+
+impl<const N: usize> Bins<N> {
+    fn new(references: &[Reference], grid: &Grid) -> Self {
+        if references.len() > MANY {
+            let (a, b) = references.split_at(references.len() / 2);
+            let (mut a, b): (Self, Self) = rayon::join(|| Self::new(a, grid), || Self::new(b, grid));
+            for axis in 0..3 {
+                for i in 0..N {
+                    let ([min, max], [low, high]) = (a.boxes[axis][i], b.boxes[axis][i]);
+                    a.boxes[axis][i] = [min.min(low), max.max(high)];
+                    a.counts[axis][i] += b.counts[axis][i];
+                }
+            }
+            return a;
+        }
+        let mut bins = Bins { boxes: [[[Vec4::INFINITY, Vec4::NEG_INFINITY]; N]; 3], counts: [[0; N]; 3] };
+        // Neighbours in the list fall into the same bins, and would wait for each other.
+        let (a, b) = references.split_at(references.len() / 2);
+        for (a, b) in a.iter().zip(b) {
+            bins.add(a, grid);
+            bins.add(b, grid);
+        }
+        if a.len() < b.len() {
+            bins.add(&b[a.len()], grid);
+        }
+        bins
+    }
+
+    #[inline(always)]
+    fn add(&mut self, r: &Reference, grid: &Grid) {
+        let at = grid.at(r).to_array();
+        for axis in 0..3 {
+            let i = at[axis].to_bits() as usize % N;
+            let [min, max] = &mut self.boxes[axis][i];
+            (*min, *max) = (min.min(r.min), max.max(r.max));
+            self.counts[axis][i] += 1;
+        }
+    }
+
+    fn get(&self, axis: usize, i: usize) -> Bin {
+        let [min, max] = self.boxes[axis][i];
+        Bin { min, max, count: self.counts[axis][i] }
+    }
+}
+
+/// A way to divide references into two sets, and the boxes of these.
+pub struct Cut {
+    pub cost: f32,
+    pub sides: [Bin; 2],
+    way: Way,
+}
+
+enum Way {
+    /// Those in bins before a border along an axis go to the left.
+    Bins { grid: Grid, axis: usize, border: usize },
+    /// Those with a bit in the mask go to the left.
+    Mask(usize),
+    /// Half of them, along the longest axis.
+    Half,
+}
+
+impl Builder<'_> {
+    /// The cheapest way to make two sets of references.
+    pub fn cut(&self, references: &[Reference], set: &Set, depth: usize) -> Cut {
+        // Its two sides are not known yet, but within all.
+        let half = Cut { cost: set.bounds.cost(self.scale), sides: [set.bounds; 2], way: Way::Half };
+        match references.len() {
+            _ if depth >= HALVING_DEPTH => half,
+            ..=FEW => self.few(references),
+            ..=64 => self.binned::<8>(references, set).unwrap_or(half),
+            _ => self.binned::<BINS>(references, set).unwrap_or(half),
+        }
+    }
+
+    /// The cheapest plane between bins, or `None` where centres cannot be told apart.
+    fn binned<const N: usize>(&self, references: &[Reference], set: &Set) -> Option<Cut> {
+        let grid = Grid::new(set, N);
+        let bins = Bins::<N>::new(references, &grid);
+        let mut best = (f32::INFINITY, 0, 0);
+        for axis in 0..3 {
+            // Costs of everything right of each plane, then the sum from the left.
+            let mut right_cost = [0.0; N];
+            let mut right = Bin::EMPTY;
+            for i in (1..grid.bins).rev() {
+                right = right.union(bins.get(axis, i));
+                right_cost[i] = right.cost(self.scale);
+            }
+            let mut left = Bin::EMPTY;
+            for i in 1..grid.bins {
+                left = left.union(bins.get(axis, i - 1));
+                let cost = left.cost(self.scale) + right_cost[i];
+                if cost < best.0 && left.count > 0 && left.count < set.bounds.count {
+                    best = (cost, axis, i);
+                }
+            }
+        }
+        let (cost, axis, border) = best;
+        let side = |range: std::ops::Range<usize>| range.fold(Bin::EMPTY, |all, i| all.union(bins.get(axis, i)));
+        let sides = [side(0..border), side(border..grid.bins)];
+        (cost < f32::INFINITY).then_some(Cut { cost, sides, way: Way::Bins { grid, axis, border } })
+    }
+
+    /// The cheapest of all ways to divide a few references.
+    fn few(&self, references: &[Reference]) -> Cut {
+        let count = references.len();
+        let full = (1 << count) - 1;
+        let mut sets = [Bin::EMPTY; 1 << FEW];
+        let mut costs = [0.0; 1 << FEW];
+        for mask in 1..full {
+            sets[mask] = sets[mask & (mask - 1)].with(&references[mask.trailing_zeros() as usize]);
+            costs[mask] = sets[mask].cost(self.scale);
+        }
+        let mut best = (f32::INFINITY, 1);
+        for mask in 1..=full / 2 {
+            let cost = costs[mask] + costs[full - mask];
+            if cost < best.0 {
+                best = (cost, mask);
+            }
+        }
+        let (cost, mask) = best;
+        Cut { cost, sides: [sets[mask], sets[full - mask]], way: Way::Mask(mask) }
+    }
+
+    /// Sorts references into the two sets of a cut.
+    pub fn divide<'a>(&self, references: &'a mut [Reference], cut: &Cut) -> ([&'a mut [Reference]; 2], [Set; 2]) {
+        let [left, right] = cut.sides;
+        let mut centers = [NO_CENTERS; 2];
+        match cut.way {
+            Way::Bins { grid, axis, border } => {
+                let border = FIRST + border as f32;
+                centers = partition(references, |r| grid.at(r)[axis] < border);
+            }
+            Way::Mask(mask) => {
+                let mut places = [0, left.count as usize];
+                let mut sorted = [references[0]; FEW];
+                for (i, r) in references.iter().enumerate() {
+                    let side = 1 - (mask >> i & 1);
+                    sorted[places[side]] = *r;
+                    places[side] += 1;
+                }
+                references.copy_from_slice(&sorted[..references.len()]);
+            }
+            Way::Half => {
+                let (left, right) = halve(references);
+                let sets = [Set::of(left), Set::of(right)];
+                return ([left, right], sets);
+            }
+        }
+        let (before, after) = references.split_at_mut(left.count as usize);
+        let [l, r] = centers;
+        ([before, after], [Set { bounds: left, centers: l }, Set { bounds: right, centers: r }])
+    }
+}
+
+/// Moves the references that pass to the front; gives the boxes around the centres of both sets.
+fn partition(references: &mut [Reference], is_left: impl Fn(&Reference) -> bool) -> [[Vec4; 2]; 2] {
+    let mut centers = [NO_CENTERS; 2];
+    let mut left = 0;
+    for i in 0..references.len() {
+        let r = references[i];
+        let is_left = is_left(&r);
+        // Without a branch, which would be guessed wrongly half of the time.
+        references[i] = references[left];
+        references[left] = r;
+        left += usize::from(is_left);
+        let center = r.center();
+        let [low, high] = &mut centers[usize::from(!is_left)];
+        (*low, *high) = (low.min(center), high.max(center));
+    }
+    centers
+}
+
+/// Sorts along the longest axis and cuts in the middle.
+fn halve(references: &mut [Reference]) -> (&mut [Reference], &mut [Reference]) {
+    let [low, high] = Set::of(references).centers;
+    let size = high - low;
+    let axis = if size.x >= size.y && size.x >= size.z {
+        0
+    } else if size.y >= size.z {
+        1
+    } else {
+        2
+    };
+    references.sort_unstable_by(|a, b| {
+        a.center()[axis]
+            .total_cmp(&b.center()[axis])
+            .then(a.number().cmp(&b.number()))
+            .then(a.min[axis].total_cmp(&b.min[axis]))
+    });
+    references.split_at_mut(references.len() / 2)
+}
