@@ -1,6 +1,6 @@
 //! A binary tree over references, from the top down by the surface area heuristic.
 
-use super::cut::{Bin, HALVING_DEPTH, Set};
+use super::cut::{Bin, HALVING_DEPTH};
 use super::spatial::Budget;
 use super::{Reference, Settings, lane, lane_number};
 use crate::math::{Aabb, Vec3};
@@ -97,8 +97,8 @@ struct Counts {
 
 /// Builds a tree; triangles whose corners are known may be cut.
 pub fn build(references: &mut [Reference], scale: f32, settings: &Settings, corners_of: Option<Corners>) -> Tree {
-    let all = Set::of(references);
-    let area = half_area(all.bounds.min, all.bounds.max, scale);
+    let all = Bin::of(references);
+    let area = half_area(all.min, all.max, scale);
     let builder = Builder { scale, area, whole: settings.whole, corners_of };
     let share = if corners_of.is_some() { settings.splits } else { 0.0 };
     let budget = Budget::new((references.len() as f32 * share) as usize);
@@ -129,32 +129,32 @@ impl Builder<'_> {
     fn subtree(
         &self,
         references: &mut [Reference],
-        set: &Set,
+        all: &Bin,
         mut budget: Budget,
         depth: usize,
         pieces: &mut Vec<Piece>,
     ) -> Counts {
         let number = pieces.len() - 1;
         let piece = &mut pieces[number];
-        let (place, Bin { min, max, count }) = (piece.nodes.len(), set.bounds);
+        let (place, Bin { min, max, count }) = (piece.nodes.len(), *all);
         piece.nodes.push(Node::leaf(min, max, count, piece.items.len() as u32));
-        if references.len() == 1 || references.len() <= self.whole && self.is_whole(references, &set.bounds) {
+        if references.len() == 1 || references.len() <= self.whole && self.is_whole(references, all) {
             piece.items.extend(references.iter().map(Reference::number));
             return Counts { references: count, leaves: 1 };
         }
-        let cut = self.cut(references, set, depth);
+        let cut = self.cut(references, all, depth);
         let parts = match depth < HALVING_DEPTH {
-            true => self.parts(references, set, &cut, &mut budget),
+            true => self.parts(references, all, &cut, &mut budget),
             false => None,
         };
         let [left, right] = match parts {
             Some([mut left, mut right]) => {
-                let sets = [Set::of(&left), Set::of(&right)];
-                self.both([&mut left, &mut right], sets, budget, depth, pieces)
+                let boxes = [Bin::of(&left), Bin::of(&right)];
+                self.both([&mut left, &mut right], boxes, budget, depth, pieces)
             }
             None => {
-                let (sides, sets) = self.divide(references, &cut);
-                self.both(sides, sets, budget, depth, pieces)
+                let (boxes, middle) = self.divide(references, &cut);
+                self.both(references.split_at_mut(middle).into(), boxes, budget, depth, pieces)
             }
         };
         let counts = Counts { references: left.references + right.references, leaves: left.leaves + right.leaves };
@@ -173,22 +173,22 @@ impl Builder<'_> {
     fn both(
         &self,
         [left, right]: [&mut [Reference]; 2],
-        [left_set, right_set]: [Set; 2],
+        [left_all, right_all]: [Bin; 2],
         budget: Budget,
         depth: usize,
         pieces: &mut Vec<Piece>,
     ) -> [Counts; 2] {
         let [for_left, for_right] = budget.shared(left.len(), right.len());
-        let build = |references: &mut [Reference], set, budget, pieces: &mut Vec<Piece>| {
-            self.subtree(references, set, budget, depth + 1, pieces)
+        let build = |references: &mut [Reference], all, budget, pieces: &mut Vec<Piece>| {
+            self.subtree(references, all, budget, depth + 1, pieces)
         };
         if left.len() + right.len() <= PARALLEL {
-            return [build(left, &left_set, for_left, pieces), build(right, &right_set, for_right, pieces)];
+            return [build(left, &left_all, for_left, pieces), build(right, &right_all, for_right, pieces)];
         }
         let mut others = [vec![Piece::new(left.len())], vec![Piece::new(right.len())]];
         let [a, b] = &mut others;
         let (left, right) =
-            rayon::join(|| build(left, &left_set, for_left, a), || build(right, &right_set, for_right, b));
+            rayon::join(|| build(left, &left_all, for_left, a), || build(right, &right_all, for_right, b));
         others.iter_mut().for_each(|other| pieces.append(other));
         [left, right]
     }

@@ -26,6 +26,10 @@ pub struct Bin {
 impl Bin {
     pub const EMPTY: Bin = Bin { min: Vec4::INFINITY, max: Vec4::NEG_INFINITY, count: 0 };
 
+    pub fn of(references: &[Reference]) -> Bin {
+        references.iter().fold(Bin::EMPTY, Bin::with)
+    }
+
     #[inline]
     pub fn with(self, r: &Reference) -> Bin {
         Bin { count: self.count + 1, ..self.around(r) }
@@ -48,31 +52,6 @@ impl Bin {
     }
 }
 
-/// What is known of some references: the box around them, their number, and the box around their centres.
-#[derive(Clone, Copy)]
-pub struct Set {
-    pub bounds: Bin,
-    centers: [Vec4; 2],
-}
-
-const NO_CENTERS: [Vec4; 2] = [Vec4::INFINITY, Vec4::NEG_INFINITY];
-
-impl Set {
-    pub fn of(references: &[Reference]) -> Set {
-        if references.len() > MANY {
-            let (a, b) = references.split_at(references.len() / 2);
-            let (a, b) = rayon::join(|| Set::of(a), || Set::of(b));
-            let centers = [a.centers[0].min(b.centers[0]), a.centers[1].max(b.centers[1])];
-            return Set { bounds: a.bounds.union(b.bounds), centers };
-        }
-        let nothing = Set { bounds: Bin::EMPTY, centers: NO_CENTERS };
-        references.iter().fold(nothing, |set, r| {
-            let (center, [low, high]) = (r.center(), set.centers);
-            Set { bounds: set.bounds.with(r), centers: [low.min(center), high.max(center)] }
-        })
-    }
-}
-
 /// Bins of equal width over the centres of references.
 #[derive(Clone, Copy)]
 struct Grid {
@@ -82,10 +61,10 @@ struct Grid {
 }
 
 impl Grid {
-    fn new(set: &Set, most: usize) -> Grid {
+    fn new(references: &[Reference], most: usize) -> Grid {
         // Few references fill few bins.
-        let bins = (4 + set.bounds.count as usize / 16).min(most);
-        let [low, high] = set.centers;
+        let bins = (4 + references.len() / 16).min(most);
+        let [low, high] = middles(references);
         // Where a size is zero or leaves the range, all fall into the first bin.
         let scale = bins as f32 * (1.0 - 1e-6) / (high - low);
         let scale = Vec4::select(scale.cmplt(Vec4::INFINITY), scale, Vec4::ZERO);
@@ -95,7 +74,7 @@ impl Grid {
     /// A reference's bins, added to 2^23, where the last place of a number is 1.
     #[inline(always)]
     fn at(&self, r: &Reference) -> Vec4 {
-        let at = (r.center() - self.low) * self.scale - 0.5;
+        let at = (r.middle() - self.low) * self.scale - 0.5;
         // Also where it is not a number.
         let at = Vec4::select(at.cmpgt(Vec4::ZERO), at, Vec4::ZERO);
         at.min(Vec4::splat((self.bins - 1) as f32)) + FIRST
@@ -103,6 +82,14 @@ impl Grid {
 }
 
 const FIRST: f32 = (1 << 23) as f32;
+
+/// The box around all [`Reference::middle`].
+fn middles(references: &[Reference]) -> [Vec4; 2] {
+    references.iter().fold([Vec4::INFINITY, Vec4::NEG_INFINITY], |[low, high], r| {
+        let middle = r.middle();
+        [low.min(middle), high.max(middle)]
+    })
+}
 
 struct Bins<const N: usize> {
     boxes: [[[Vec4; 2]; N]; 3],
@@ -171,22 +158,22 @@ enum Way {
 
 impl Builder<'_> {
     /// The cheapest way to make two sets of references.
-    pub fn cut(&self, references: &[Reference], set: &Set, depth: usize) -> Cut {
+    pub fn cut(&self, references: &[Reference], all: &Bin, depth: usize) -> Cut {
         // Its two sides are not known yet, but within all.
-        let half = Cut { cost: set.bounds.cost(self.scale), sides: [set.bounds; 2], way: Way::Half };
+        let half = Cut { cost: all.cost(self.scale), sides: [*all; 2], way: Way::Half };
         match references.len() {
             _ if depth >= HALVING_DEPTH => half,
             ..=FEW => self.few(references),
-            ..=64 => self.binned::<8>(references, set).unwrap_or(half),
-            _ => self.binned::<BINS>(references, set).unwrap_or(half),
+            ..=64 => self.binned::<8>(references).unwrap_or(half),
+            _ => self.binned::<BINS>(references).unwrap_or(half),
         }
     }
 
     /// The cheapest plane between bins, or `None` where centres cannot be told apart.
-    fn binned<const N: usize>(&self, references: &[Reference], set: &Set) -> Option<Cut> {
-        let grid = Grid::new(set, N);
+    fn binned<const N: usize>(&self, references: &[Reference]) -> Option<Cut> {
+        let grid = Grid::new(references, N);
         let bins = Bins::<N>::new(references, &grid);
-        let mut best = (f32::INFINITY, 0, 0);
+        let (mut best, all) = ((f32::INFINITY, 0, 0), references.len() as u32);
         for axis in 0..3 {
             // Costs of everything right of each plane, then the sum from the left.
             let mut right_cost = [0.0; N];
@@ -199,7 +186,7 @@ impl Builder<'_> {
             for i in 1..grid.bins {
                 left = left.union(bins.get(axis, i - 1));
                 let cost = left.cost(self.scale) + right_cost[i];
-                if cost < best.0 && left.count > 0 && left.count < set.bounds.count {
+                if cost < best.0 && left.count > 0 && left.count < all {
                     best = (cost, axis, i);
                 }
             }
@@ -231,14 +218,13 @@ impl Builder<'_> {
         Cut { cost, sides: [sets[mask], sets[full - mask]], way: Way::Mask(mask) }
     }
 
-    /// Sorts references into the two sets of a cut.
-    pub fn divide<'a>(&self, references: &'a mut [Reference], cut: &Cut) -> ([&'a mut [Reference]; 2], [Set; 2]) {
+    /// Sorts references into the two sets of a cut; gives their boxes, and how many are in the first.
+    pub fn divide(&self, references: &mut [Reference], cut: &Cut) -> ([Bin; 2], usize) {
         let [left, right] = cut.sides;
-        let mut centers = [NO_CENTERS; 2];
         match cut.way {
             Way::Bins { grid, axis, border } => {
                 let border = FIRST + border as f32;
-                centers = partition(references, |r| grid.at(r)[axis] < border);
+                partition(references, |r| grid.at(r)[axis] < border);
             }
             Way::Mask(mask) => {
                 let mut places = [0, left.count as usize];
@@ -252,37 +238,28 @@ impl Builder<'_> {
             }
             Way::Half => {
                 let (left, right) = halve(references);
-                let sets = [Set::of(left), Set::of(right)];
-                return ([left, right], sets);
+                return ([Bin::of(left), Bin::of(right)], left.len());
             }
         }
-        let (before, after) = references.split_at_mut(left.count as usize);
-        let [l, r] = centers;
-        ([before, after], [Set { bounds: left, centers: l }, Set { bounds: right, centers: r }])
+        ([left, right], left.count as usize)
     }
 }
 
-/// Moves the references that pass to the front; gives the boxes around the centres of both sets.
-fn partition(references: &mut [Reference], is_left: impl Fn(&Reference) -> bool) -> [[Vec4; 2]; 2] {
-    let mut centers = [NO_CENTERS; 2];
+/// Moves the references that pass to the front.
+fn partition(references: &mut [Reference], is_left: impl Fn(&Reference) -> bool) {
     let mut left = 0;
     for i in 0..references.len() {
-        let r = references[i];
-        let is_left = is_left(&r);
         // Without a branch, which would be guessed wrongly half of the time.
+        let r = references[i];
         references[i] = references[left];
         references[left] = r;
-        left += usize::from(is_left);
-        let center = r.center();
-        let [low, high] = &mut centers[usize::from(!is_left)];
-        (*low, *high) = (low.min(center), high.max(center));
+        left += usize::from(is_left(&r));
     }
-    centers
 }
 
 /// Sorts along the longest axis and cuts in the middle.
 fn halve(references: &mut [Reference]) -> (&mut [Reference], &mut [Reference]) {
-    let [low, high] = Set::of(references).centers;
+    let [low, high] = middles(references);
     let size = high - low;
     let axis = if size.x >= size.y && size.x >= size.z {
         0
@@ -292,8 +269,8 @@ fn halve(references: &mut [Reference]) -> (&mut [Reference], &mut [Reference]) {
         2
     };
     references.sort_unstable_by(|a, b| {
-        a.center()[axis]
-            .total_cmp(&b.center()[axis])
+        a.middle()[axis]
+            .total_cmp(&b.middle()[axis])
             .then(a.number().cmp(&b.number()))
             .then(a.min[axis].total_cmp(&b.min[axis]))
     });

@@ -6,7 +6,7 @@
 
 use super::Reference;
 use super::binary::{Builder, Corners, half_area};
-use super::cut::{BINS, Bin, Cut, Set};
+use super::cut::{BINS, Bin, Cut};
 use crate::math::Vec3;
 use glam::{BVec4A, Vec4};
 
@@ -55,7 +55,7 @@ impl Builder<'_> {
     pub fn parts(
         &self,
         references: &[Reference],
-        set: &Set,
+        all: &Bin,
         cut: &Cut,
         budget: &mut Budget,
     ) -> Option<[Vec<Reference>; 2]> {
@@ -65,7 +65,7 @@ impl Builder<'_> {
         }
         let [l, r] = cut.sides;
         let overlap = half_area(l.min.max(r.min), l.max.min(r.max), self.scale);
-        let area = half_area(set.bounds.min, set.bounds.max, self.scale);
+        let area = half_area(all.min, all.max, self.scale);
         if overlap < (OVERLAP * area).max(LEAST * self.area) {
             return None;
         }
@@ -73,7 +73,7 @@ impl Builder<'_> {
             budget.pause -= 1;
             return None;
         }
-        let plane = self.plane(references, &set.bounds, corners_of)?;
+        let plane = self.plane(references, all, corners_of)?;
         if plane.cost >= GAIN * cut.cost {
             budget.in_vain += 1;
             budget.pause = budget.in_vain.saturating_sub(IN_VAIN).min(4);

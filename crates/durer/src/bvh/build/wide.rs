@@ -210,20 +210,27 @@ impl Emitter<'_> {
 
     /// Writes a leaf of everything below a binary node.
     fn leaf(&self, part: &mut Part, i: usize) -> u32 {
-        let leaves = self.tree.nodes[i..].iter().filter(|node| node.is_leaf());
-        let below = leaves.flat_map(|leaf| &self.tree.items[leaf.first()..leaf.first() + leaf.count()]);
         let (mut items, mut count) = ([0; LEAF_SIZE], 0);
-        for item in below.take(self.count(i)) {
-            // Parts of a thing that was cut, when together again, count once.
-            if !items[..count].contains(item) {
-                items[count] = *item;
-                count += 1;
+        for leaf in self.tree.nodes[i..].iter().filter(|node| node.is_leaf()) {
+            if count == self.count(i) {
+                break;
+            }
+            let more = &self.tree.items[leaf.first()..leaf.first() + leaf.count()];
+            items[count..count + more.len()].copy_from_slice(more);
+            count += more.len();
+        }
+        // Parts of a thing that was cut, when together again, count once.
+        items[..count].sort_unstable();
+        let mut different = 1;
+        for i in 1..count {
+            if items[i] != items[different - 1] {
+                items[different] = items[i];
+                different += 1;
             }
         }
-        items[..count].sort_unstable();
         let first = part.order.len();
-        part.order.extend_from_slice(&items[..count]);
-        node::leaf(first, count)
+        part.order.extend_from_slice(&items[..different]);
+        node::leaf(first, different)
     }
 }
 

@@ -63,12 +63,11 @@ impl TriangleBvh {
         for node in &self.nodes {
             for (_, _, child) in node.children().filter(|(_, _, child)| child & node::LEAF != 0) {
                 let (first, count) = node::items(child);
-                for lane in 0..count {
-                    let corners = corners_of(self.order[first + lane]);
-                    for (corner, p) in corners.into_iter().enumerate() {
-                        for axis in 0..3 {
-                            self.corners[9 * first + (3 * corner + axis) * count + lane] = p[axis];
-                        }
+                let rows = &mut self.corners[9 * first..9 * (first + count)];
+                for (lane, &number) in self.order[first..first + count].iter().enumerate() {
+                    let corners = corners_of(number);
+                    for row in 0..9 {
+                        rows[row * count + lane] = corners[row / 3][row % 3];
                     }
                 }
             }
