@@ -79,6 +79,8 @@ pub struct Builder<'a> {
     pub area: f32,
     /// So many references may stay together.
     whole: usize,
+    /// So many references are put into how many bins.
+    pub bins: fn(usize) -> usize,
     /// Where things are triangles that may be cut.
     pub corners_of: Option<Corners<'a>>,
 }
@@ -96,14 +98,19 @@ struct Counts {
 }
 
 /// Builds a tree; triangles whose corners are known may be cut.
-pub fn build(references: &mut [Reference], scale: f32, settings: &Settings, corners_of: Option<Corners>) -> Tree {
-    let all = Bin::of(references);
+pub fn build(
+    references: &mut [Reference],
+    all: &Bin,
+    scale: f32,
+    settings: &Settings,
+    corners_of: Option<Corners>,
+) -> Tree {
     let area = half_area(all.min, all.max, scale);
-    let builder = Builder { scale, area, whole: settings.whole, corners_of };
+    let builder = Builder { scale, area, whole: settings.whole, bins: settings.bins, corners_of };
     let share = if corners_of.is_some() { settings.splits } else { 0.0 };
     let budget = Budget::new((references.len() as f32 * share) as usize);
     let mut pieces = vec![Piece::new(references.len())];
-    builder.subtree(references, &all, budget, 0, &mut pieces);
+    builder.subtree(references, all, budget, 0, &mut pieces);
     let (mut nodes, mut items) = (Vec::new(), Vec::new());
     nodes.reserve_exact(pieces.iter().map(|piece| piece.nodes.len()).sum());
     items.reserve_exact(pieces.iter().map(|piece| piece.items.len()).sum());

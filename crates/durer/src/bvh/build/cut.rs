@@ -5,12 +5,12 @@
 
 use super::Reference;
 use super::binary::{Builder, half_area};
-use glam::Vec4;
+use glam::{IVec4, Vec4};
 
 pub const BINS: usize = 16;
 /// Below this depth things are halved by number, which bounds the depth of all trees: 28 levels halve 2^28 things.
 pub const HALVING_DEPTH: usize = 60;
-/// More references than this are put into bins in parallel.
+/// More references than this are looked at in parallel.
 const MANY: usize = 1 << 15;
 /// Of so few references all divisions are tried.
 pub const FEW: usize = 4;
@@ -27,6 +27,11 @@ impl Bin {
     pub const EMPTY: Bin = Bin { min: Vec4::INFINITY, max: Vec4::NEG_INFINITY, count: 0 };
 
     pub fn of(references: &[Reference]) -> Bin {
+        if references.len() > MANY {
+            let (a, b) = references.split_at(references.len() / 2);
+            let (a, b) = rayon::join(|| Bin::of(a), || Bin::of(b));
+            return a.union(b);
+        }
         references.iter().fold(Bin::EMPTY, Bin::with)
     }
 
@@ -61,9 +66,7 @@ struct Grid {
 }
 
 impl Grid {
-    fn new(references: &[Reference], most: usize) -> Grid {
-        // Few references fill few bins.
-        let bins = (4 + references.len() / 16).min(most);
+    fn new(references: &[Reference], bins: usize) -> Grid {
         let [low, high] = middles(references);
         // Where a size is zero or leaves the range, all fall into the first bin.
         let scale = bins as f32 * (1.0 - 1e-6) / (high - low);
@@ -91,53 +94,64 @@ fn middles(references: &[Reference]) -> [Vec4; 2] {
     })
 }
 
-struct Bins<const N: usize> {
-    boxes: [[[Vec4; 2]; N]; 3],
-    counts: [[u32; N]; 3],
+/// For each axis a box, and how many references are in it.
+#[derive(Clone, Copy)]
+struct Bins {
+    boxes: [[Vec4; 2]; 3],
+    counts: IVec4,
 }
 
-impl<const N: usize> Bins<N> {
-    fn new(references: &[Reference], grid: &Grid) -> Self {
-        if references.len() > MANY {
-            let (a, b) = references.split_at(references.len() / 2);
-            let (mut a, b): (Self, Self) = rayon::join(|| Self::new(a, grid), || Self::new(b, grid));
-            for axis in 0..3 {
-                for i in 0..N {
-                    let ([min, max], [low, high]) = (a.boxes[axis][i], b.boxes[axis][i]);
-                    a.boxes[axis][i] = [min.min(low), max.max(high)];
-                    a.counts[axis][i] += b.counts[axis][i];
-                }
-            }
-            return a;
-        }
-        let mut bins = Bins { boxes: [[[Vec4::INFINITY, Vec4::NEG_INFINITY]; N]; 3], counts: [[0; N]; 3] };
-        // Neighbours in the list fall into the same bins, and would wait for each other.
-        let (a, b) = references.split_at(references.len() / 2);
-        for (a, b) in a.iter().zip(b) {
-            bins.add(a, grid);
-            bins.add(b, grid);
-        }
-        if a.len() < b.len() {
-            bins.add(&b[a.len()], grid);
-        }
-        bins
-    }
+impl Bins {
+    const EMPTY: Bins = Bins { boxes: [[Vec4::INFINITY, Vec4::NEG_INFINITY]; 3], counts: IVec4::ZERO };
 
     #[inline(always)]
-    fn add(&mut self, r: &Reference, grid: &Grid) {
-        let at = grid.at(r).to_array();
-        for axis in 0..3 {
-            let i = at[axis].to_bits() as usize % N;
-            let [min, max] = &mut self.boxes[axis][i];
-            (*min, *max) = (min.min(r.min), max.max(r.max));
-            self.counts[axis][i] += 1;
+    fn join(&mut self, other: &Bins) {
+        for ([min, max], [low, high]) in self.boxes.iter_mut().zip(other.boxes) {
+            (*min, *max) = (min.min(low), max.max(high));
         }
+        self.counts += other.counts;
     }
 
-    fn get(&self, axis: usize, i: usize) -> Bin {
-        let [min, max] = self.boxes[axis][i];
-        Bin { min, max, count: self.counts[axis][i] }
+    /// Their costs, side by side.
+    #[inline(always)]
+    fn costs(&self, scale: f32) -> Vec4 {
+        let [a, b, c] = self.boxes.map(|[min, max]| ((max - min) * scale).max(Vec4::ZERO));
+        let [x, y, z] = [0, 1, 2].map(|axis| Vec4::new(a[axis], b[axis], c[axis], 0.0));
+        (x * y + y * z + z * x) * self.counts.as_vec4()
     }
+
+    fn get(&self, axis: usize) -> Bin {
+        let [min, max] = self.boxes[axis];
+        Bin { min, max, count: self.counts[axis] as u32 }
+    }
+}
+
+/// Puts references into bins.
+fn filled<const N: usize>(references: &[Reference], grid: &Grid) -> [Bins; N] {
+    if references.len() > MANY {
+        let (a, b) = references.split_at(references.len() / 2);
+        let (mut a, b) = rayon::join(|| filled::<N>(a, grid), || filled::<N>(b, grid));
+        a.iter_mut().zip(&b).for_each(|(a, b)| a.join(b));
+        return a;
+    }
+    let mut bins = [Bins::EMPTY; N];
+    let mut add = |r: &Reference| {
+        let at = grid.at(r).to_array();
+        for axis in 0..3 {
+            let bins = &mut bins[at[axis].to_bits() as usize % N];
+            let [min, max] = &mut bins.boxes[axis];
+            (*min, *max) = (min.min(r.min), max.max(r.max));
+            bins.counts[axis] += 1;
+        }
+    };
+    // Neighbours in the list fall into the same bins, and would wait for each other.
+    let (a, b) = references.split_at(references.len() / 2);
+    for (a, b) in a.iter().zip(b) {
+        add(a);
+        add(b);
+    }
+    b[a.len()..].iter().for_each(add);
+    bins
 }
 
 /// A way to divide references into two sets, and the boxes of these.
@@ -171,29 +185,35 @@ impl Builder<'_> {
 
     /// The cheapest plane between bins, or `None` where centres cannot be told apart.
     fn binned<const N: usize>(&self, references: &[Reference]) -> Option<Cut> {
-        let grid = Grid::new(references, N);
-        let bins = Bins::<N>::new(references, &grid);
-        let (mut best, all) = ((f32::INFINITY, 0, 0), references.len() as u32);
-        for axis in 0..3 {
-            // Costs of everything right of each plane, then the sum from the left.
-            let mut right_cost = [0.0; N];
-            let mut right = Bin::EMPTY;
-            for i in (1..grid.bins).rev() {
-                right = right.union(bins.get(axis, i));
-                right_cost[i] = right.cost(self.scale);
-            }
-            let mut left = Bin::EMPTY;
-            for i in 1..grid.bins {
-                left = left.union(bins.get(axis, i - 1));
-                let cost = left.cost(self.scale) + right_cost[i];
-                if cost < best.0 && left.count > 0 && left.count < all {
-                    best = (cost, axis, i);
-                }
-            }
+        let grid = Grid::new(references, (self.bins)(references.len()).min(N));
+        let bins = filled::<N>(references, &grid);
+        // Costs of everything right of each border, then the sum from the left, along all axes at once.
+        let mut right_costs = [Vec4::ZERO; N];
+        let mut right = Bins::EMPTY;
+        for i in (1..grid.bins).rev() {
+            right.join(&bins[i]);
+            right_costs[i] = right.costs(self.scale);
         }
-        let (cost, axis, border) = best;
-        let side = |range: std::ops::Range<usize>| range.fold(Bin::EMPTY, |all, i| all.union(bins.get(axis, i)));
-        let sides = [side(0..border), side(border..grid.bins)];
+        let (mut costs, mut borders, mut left) = (Vec4::INFINITY, Vec4::ZERO, Bins::EMPTY);
+        for i in 1..grid.bins {
+            left.join(&bins[i - 1]);
+            let count = left.counts.as_vec4();
+            let both = count.cmpgt(Vec4::ZERO) & count.cmplt(Vec4::splat(references.len() as f32));
+            let cost = left.costs(self.scale) + right_costs[i];
+            let better = both & cost.cmplt(costs);
+            costs = Vec4::select(better, cost, costs);
+            borders = Vec4::select(better, Vec4::splat(i as f32), borders);
+        }
+        let axis = if costs.x <= costs.y && costs.x <= costs.z {
+            0
+        } else if costs.y <= costs.z {
+            1
+        } else {
+            2
+        };
+        let (cost, border) = (costs[axis], borders[axis] as usize);
+        let side = |bins: &[Bins]| bins.iter().fold(Bin::EMPTY, |all, bins| all.union(bins.get(axis)));
+        let sides = [side(&bins[..border]), side(&bins[border..])];
         (cost < f32::INFINITY).then_some(Cut { cost, sides, way: Way::Bins { grid, axis, border } })
     }
 
@@ -223,8 +243,10 @@ impl Builder<'_> {
         let [left, right] = cut.sides;
         match cut.way {
             Way::Bins { grid, axis, border } => {
-                let border = FIRST + border as f32;
-                partition(references, |r| grid.at(r)[axis] < border);
+                // Along the other axes nothing is before it.
+                let mut borders = Vec4::NEG_INFINITY;
+                borders[axis] = FIRST + border as f32;
+                partition(references, |r| grid.at(r).cmplt(borders).any());
             }
             Way::Mask(mask) => {
                 let mut places = [0, left.count as usize];

@@ -8,7 +8,9 @@ mod wide;
 
 use super::node::{MOST_ITEMS, Node};
 use crate::math::{Aabb, Vec3};
+use cut::Bin;
 use glam::Vec4;
+use rayon::prelude::*;
 use wide::Plans;
 
 /// How much work goes into a tree.
@@ -34,8 +36,10 @@ impl Preset {
 pub(super) struct Settings {
     /// Cost of a leaf of so many things, in tests of a node.
     pub leaf_cost: fn(usize) -> f32,
-    /// So few things are kept together.
+    /// So few things stay together where they are near each other.
     pub whole: usize,
+    /// So many things are put into how many bins.
+    pub bins: fn(usize) -> usize,
     /// Leaves hold at most so many things.
     pub leaf_size: usize,
     /// Passes that move subtrees to better places.
@@ -46,20 +50,29 @@ pub(super) struct Settings {
 
 impl Settings {
     /// For things whose tests cost as much as several nodes.
-    pub const THINGS: Settings =
-        Settings { leaf_cost: |count| 2.0 * count as f32, whole: 1, leaf_size: 4, reinsertions: 2, splits: 0.0 };
+    pub const THINGS: Settings = Settings {
+        leaf_cost: |count| 2.0 * count as f32,
+        whole: 1,
+        bins: MANY_BINS,
+        leaf_size: 4,
+        reinsertions: 2,
+        splits: 0.0,
+    };
 
     pub fn triangles(preset: Preset) -> Settings {
         // A leaf is tested at once, whatever it holds.
         let leaf_cost = |count| 1.2 + 0.05 * count as f32;
-        let (reinsertions, splits) = match preset {
-            Preset::Fast => (0, 0.0),
-            Preset::Balanced => (2, 0.0),
-            Preset::Best => (4, 0.5),
-        };
-        Settings { leaf_cost, whole: 3, leaf_size: super::node::LEAF_SIZE, reinsertions, splits }
+        let most = super::node::LEAF_SIZE;
+        let settings = Settings { leaf_cost, whole: most, leaf_size: most, ..Settings::THINGS };
+        match preset {
+            Preset::Fast => Settings { bins: |count| 4 + count / 16, reinsertions: 0, ..settings },
+            Preset::Balanced => settings,
+            Preset::Best => Settings { whole: 3, reinsertions: 4, splits: 0.5, ..settings },
+        }
     }
 }
+
+const MANY_BINS: fn(usize) -> usize = |_| usize::MAX;
 
 /// A box of a thing or of a part of it, and the thing's number.
 #[derive(Clone, Copy, Debug)]
@@ -108,11 +121,16 @@ pub(super) fn references(boxes: &[Aabb]) -> Vec<Reference> {
 /// References to triangles 0, 1, 2, ...; those with corners that are no finite points are left out.
 fn triangle_references(count: usize, corners_of: &(impl Fn(u32) -> [Vec3; 3] + Sync)) -> Vec<Reference> {
     assert!(count <= MOST_ITEMS, "a tree holds at most 2^28 triangles");
-    let whole = (0..count as u32).filter_map(|i| {
+    let reference = |i| {
         let corners = corners_of(i);
-        corners.iter().all(|p| p.is_finite()).then(|| Reference::new(Aabb::around(corners), i))
-    });
-    whole.collect()
+        let whole = corners.iter().all(|p| p.is_finite());
+        Reference::new(if whole { Aabb::around(corners) } else { Aabb::EMPTY }, i)
+    };
+    let mut references: Vec<Reference> = (0..count as u32).into_par_iter().with_min_len(4096).map(reference).collect();
+    if references.par_iter().with_min_len(4096).any(|r| r.min.x > r.max.x) {
+        references.retain(|r| r.min.x <= r.max.x);
+    }
+    references
 }
 
 /// A finished tree.
@@ -138,11 +156,12 @@ pub(super) fn build_triangles(
 }
 
 fn build_of(mut references: Vec<Reference>, settings: &Settings, corners_of: Option<binary::Corners>) -> Tree {
-    let bounds = references.iter().fold(Aabb::EMPTY, |b, r| b.union(r.bounds()));
+    let all = Bin::of(&references);
+    let bounds = Aabb { min: all.min.truncate(), max: all.max.truncate() };
     if references.is_empty() {
         return Tree { nodes: Vec::new(), order: Vec::new(), bounds };
     }
-    let mut tree = binary::build(&mut references, area_scale(bounds), settings, corners_of);
+    let mut tree = binary::build(&mut references, &all, area_scale(bounds), settings, corners_of);
     assert!(tree.items.len() <= MOST_ITEMS, "a tree holds at most 2^28 things");
     let mut plans = Plans::new(&tree.nodes, tree.scale, settings);
     if let Some(nodes) = reinsert::improved(&tree, settings.reinsertions) {

@@ -118,7 +118,8 @@ impl Builder<'_> {
             return None;
         }
         let at = |bin: usize| low + width * bin as f32;
-        let bin_of = |x: f32| (((x - low) / width) as i32).clamp(0, count as i32 - 1) as usize;
+        let scale = 1.0 / width;
+        let bin_of = |x: f32| (((x - low) * scale) as i32).clamp(0, count as i32 - 1) as usize;
         let mut bins = [Bin::EMPTY; BINS];
         let mut ends = [0_u32; BINS];
         for r in references {
@@ -239,16 +240,18 @@ impl<const AXIS: usize> Sorted<AXIS> {
         Sorted { corners: [a, b, c], slack: 8.0 * f32::EPSILON * most + f32::MIN_POSITIVE }
     }
 
-    /// The section at a place between the first and the last corner; others are moved there.
+    /// The section at a place, or the first or last corner where none is there.
     #[inline(always)]
     fn section(&self, at: f32) -> Section {
         let [a, b, c] = self.corners;
-        let x = at.max(a[AXIS]).min(c[AXIS]);
-        let point = |p: Vec4, q: Vec4| {
-            let size = q[AXIS] - p[AXIS];
-            if size > 0.0 { p + (q - p) * ((x - p[AXIS]) / size) } else { p }
+        let point = |p: Vec4, q: Vec4| p + (q - p) * ((at - p[AXIS]) / (q[AXIS] - p[AXIS]));
+        let (p, q) = match () {
+            () if at <= a[AXIS] => return Section { at, min: a, max: a },
+            () if at >= c[AXIS] => return Section { at, min: c, max: c },
+            () if at < b[AXIS] => (point(a, c), point(a, b)),
+            () if at > b[AXIS] => (point(a, c), point(b, c)),
+            () => (point(a, c), b),
         };
-        let (p, q) = (point(a, c), if x < b[AXIS] { point(a, b) } else { point(b, c) });
         Section { at, min: p.min(q) - self.slack, max: p.max(q) + self.slack }
     }
 
