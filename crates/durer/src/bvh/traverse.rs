@@ -1,8 +1,8 @@
 //! Walking a ray through the tree, nearest boxes first.
 //!
 //! Of the children that the ray meets the nearest is next; the others are pushed, farthest first, by one compressing
-//! store whatever their number. When a hit shortens the ray, what lies beyond is removed from the stack at once. So no
-//! branch depends on how many children are met, and none on a popped distance.
+//! store whatever their number, so that no branch depends on how many children are met. What lies beyond a hit is dropped when it
+//! is popped: that is guessed rightly more often than not, and the walk goes on before it is known where the hit is.
 //!
 //! Source: Fuetterer, Lojewski, Pfreundt, Ebert, *Efficient Ray Tracing Kernels for Modern CPU Architectures*, JCGT
 //! 4(4), 2015.
@@ -10,7 +10,9 @@
 use super::Tally;
 use super::lanes::{Lanes, Room, Stack};
 use super::node::{LEAF, Node};
-use crate::math::{Aabb, Ray, Vec3};
+use crate::math::{Ray, Vec3};
+use glam::Vec3A;
+use std::hint::select_unpredictable;
 
 /// A ray prepared for boxes: conservative, so that rounding never loses a box that the exact ray meets.
 ///
@@ -18,13 +20,9 @@ use crate::math::{Aabb, Ray, Vec3};
 /// several roundings of the largest distance that occurs, which also covers the rounding of the triangle test.
 #[derive(Clone, Copy)]
 pub(super) struct RayBox {
-    inverse: [f32; 3],
-    near_origin: [f32; 3],
-    far_origin: [f32; 3],
-    /// By axis: 1 where the direction is negative, else 0.
-    negative: [usize; 3],
-    /// Children's places in the order from far to near are 0, 1, 2, ... after an exclusive or with this.
-    pub flip: u32,
+    planes: Planes,
+    /// A bit for each axis along which the direction is positive.
+    pub positive: u32,
     t_min: f32,
     /// Distances of boxes are in these units; 1 where the ray is tame.
     scale: f32,
@@ -34,45 +32,73 @@ pub(super) struct RayBox {
     pub moderate: bool,
 }
 
-impl RayBox {
-    /// Prepares a ray for a tree with these bounds.
-    #[inline(always)]
-    pub fn new(ray: &Ray, bounds: Aabb) -> Self {
-        // In this range squares neither overflow nor vanish.
-        const TAME: std::ops::Range<f32> = 1e-15..1e15;
-        // Coordinates themselves count too: a ray that was moved into object space is off by their rounding.
-        let reach = (ray.origin - bounds.min).abs().max((ray.origin - bounds.max).abs()).max(ray.origin.abs());
-        let reach = reach.max_element();
-        let pad = 8.0 * f32::EPSILON * reach + f32::MIN_POSITIVE;
-        let length = ray.dir.abs();
-        let moderate = reach < TAME.end;
-        let tame =
-            moderate && reach > TAME.start && length.min_element() > TAME.start && length.max_element() < TAME.end;
-        let outward = Vec3::splat(pad).copysign(ray.dir);
-        let (near_origin, far_origin) = (ray.origin + outward, ray.origin - outward);
-        let negative = [0, 1, 2].map(|axis| usize::from(ray.dir[axis].is_sign_negative()));
-        let inverse = 1.0 / ray.dir;
-        let (scale, inverse, near_origin, far_origin) = match tame {
-            true => (1.0, inverse, -near_origin * inverse, -far_origin * inverse),
-            false => {
-                // A direction with a power of two taken out, so that distances within the bounds are no extreme numbers.
-                let scale = f32::from_bits(length.max_element().to_bits() & 0x7f80_0000).max(f32::MIN_POSITIVE);
-                let dir = ray.dir / scale;
-                // What moves the ray by much less than the padding counts as zero, and what has no inverse.
-                let still = dir.abs().cmplt(Vec3::splat(1e-30));
-                let inverse = Vec3::select(still, Vec3::INFINITY.copysign(dir), 1.0 / dir);
-                (scale, inverse, near_origin, far_origin)
-            }
-        };
-        let t_min = if tame { ray.t_min } else { (ray.t_min * scale).next_down() };
-        let [inverse, near_origin, far_origin] = [inverse.to_array(), near_origin.to_array(), far_origin.to_array()];
-        // The place 7 is farthest when all signs are positive.
-        let flip = 7 ^ (negative[0] | negative[1] << 1 | negative[2] << 2) as u32;
-        RayBox { inverse, near_origin, far_origin, negative, flip, t_min, scale, tame, moderate }
-    }
+/// By axis, what distances of planes are computed from.
+#[derive(Clone, Copy)]
+struct Planes {
+    inverse: [f32; 3],
+    near_origin: [f32; 3],
+    far_origin: [f32; 3],
 }
 
+/// How far the sides of boxes are moved outwards, where numbers are no greater than `reach`.
+fn pad(reach: f32) -> f32 {
+    8.0 * f32::EPSILON * reach + f32::MIN_POSITIVE
+}
+
+/// In this range squares neither overflow nor vanish.
+pub(super) const TAME: std::ops::Range<f32> = 1e-15..1e15;
+
 impl RayBox {
+    /// Prepares a ray for a tree with no coordinates greater than `most`; `None` where it cannot hit anything.
+    #[inline(always)]
+    pub fn new(ray: &Ray, most: f32) -> Option<Self> {
+        let (origin, dir) = (Vec3A::from(ray.origin), Vec3A::from(ray.dir));
+        // Coordinates themselves count too: a ray that was moved into object space is off by their rounding.
+        let reach = origin.abs().max_element() + most;
+        let [start, end] = [TAME.start, TAME.end].map(Vec3A::splat);
+        let (length, ordinary) = (dir.abs(), origin.abs().cmplt(end));
+        let tame = (ordinary & length.cmpgt(start) & length.cmplt(end)).all() && TAME.contains(&reach);
+        if !tame {
+            return is_sound(ray).then(|| Self::wild(ray, reach));
+        }
+        let outward = Vec3A::splat(pad(reach)).copysign(dir);
+        let inverse = 1.0 / dir;
+        let planes = Planes {
+            inverse: inverse.to_array(),
+            near_origin: (-(origin + outward) * inverse).to_array(),
+            far_origin: (-(origin - outward) * inverse).to_array(),
+        };
+        let negative = dir.is_negative_bitmask();
+        (ray.t_min < ray.t_max).then_some(RayBox {
+            planes,
+            positive: 7 ^ negative,
+            t_min: ray.t_min,
+            scale: 1.0,
+            tame,
+            moderate: true,
+        })
+    }
+
+    /// A ray with zeroes or extreme numbers.
+    #[cold]
+    fn wild(ray: &Ray, reach: f32) -> Self {
+        let length = ray.dir.abs();
+        // A direction with a power of two taken out, so that distances within the bounds are no extreme numbers.
+        let scale = f32::from_bits(length.max_element().to_bits() & 0x7f80_0000).max(f32::MIN_POSITIVE);
+        let dir = ray.dir / scale;
+        // What moves the ray by much less than the padding counts as zero, and what has no inverse.
+        let still = dir.abs().cmplt(Vec3::splat(1e-30));
+        let outward = Vec3::splat(pad(reach)).copysign(dir);
+        let planes = Planes {
+            inverse: Vec3::select(still, Vec3::INFINITY.copysign(dir), 1.0 / dir).to_array(),
+            near_origin: (ray.origin + outward).to_array(),
+            far_origin: (ray.origin - outward).to_array(),
+        };
+        let positive = 7 ^ dir.is_negative_bitmask();
+        let t_min = (ray.t_min * scale).next_down();
+        RayBox { planes, positive, t_min, scale, tame: false, moderate: reach < TAME.end }
+    }
+
     /// A distance along the ray, not too small, as boxes have it.
     #[inline(always)]
     fn limit<const TAME: bool>(&self, t: f32) -> f32 {
@@ -92,7 +118,7 @@ pub(super) trait Visitor {
 
 /// Shows every leaf that the ray may meet before `t_max` to the visitor, roughly from near to far.
 ///
-/// Leaves whose boxes begin exactly at `t_max` are still shown. `TAME` must be that of `boxes`.
+/// Gives `t_max` as it is in the end. Leaves whose boxes begin exactly at `t_max` are still shown. `TAME` must be that of `boxes`.
 #[inline(always)]
 pub(super) fn walk<L: Lanes, V: Visitor, const TAME: bool>(
     lanes: L,
@@ -100,10 +126,10 @@ pub(super) fn walk<L: Lanes, V: Visitor, const TAME: bool>(
     boxes: &RayBox,
     mut t_max: f32,
     visitor: &mut V,
-) {
+) -> f32 {
     let slabs = Slabs::new(lanes, boxes);
-    let (order, ranks) = (lanes.flipped(boxes.flip), &RANKS[boxes.flip as usize]);
-    let mut limit = lanes.splat(boxes.limit::<TAME>(t_max));
+    let mut far = boxes.limit::<TAME>(t_max);
+    let mut limit = lanes.splat(far);
     let mut room = Room::new();
     let mut stack = Stack::new(&mut room);
     let mut child = 0;
@@ -114,45 +140,61 @@ pub(super) fn walk<L: Lanes, V: Visitor, const TAME: bool>(
             let (met, enter) = meet::<L, TAME>(lanes, node, &slabs, limit);
             if met != 0 {
                 // The nearest child is next, without a way through the stack.
-                let [nearest, others] = ranks[met];
-                child = node.children[nearest as usize & 7];
-                lanes.push(&mut stack, &node.children, enter, order, others.into());
+                child = push_others(lanes, &mut stack, node, met, enter, boxes.positive);
                 continue;
             }
         } else {
             let t = visitor.leaf(lanes, child, t_max);
             if t < t_max {
-                if t == f32::NEG_INFINITY {
-                    return;
-                }
                 t_max = t;
-                let far = boxes.limit::<TAME>(t);
+                if t == f32::NEG_INFINITY {
+                    return t_max;
+                }
+                far = boxes.limit::<TAME>(t);
                 limit = lanes.splat(far);
-                lanes.drop_beyond(&mut stack, far);
             }
         }
-        match stack.pop() {
-            Some(next) => child = next,
-            None => return,
+        loop {
+            match stack.pop_near() {
+                Some((next, near)) => {
+                    if near <= far {
+                        child = next;
+                        break;
+                    }
+                }
+                None => return t_max,
+            }
         }
     }
 }
 
-/// For each set of lanes: the lane i of it whose i ^ flip is greatest, and the others, as a set with i ^ flip in place of i.
-pub(super) static RANKS: [[[u8; 2]; 256]; 8] = {
-    let mut table = [[[0; 2]; 256]; 8];
-    let mut i = 0;
-    while i < 8 * 256 {
-        let (flip, set) = (i >> 8, i & 255);
-        let (mut rank, mut others) = (0, 0);
-        while rank < 8 {
-            if set >> (rank ^ flip) & 1 == 1 {
-                others |= 1 << rank;
-                table[flip][set] = [(rank ^ flip) as u8, others ^ 1 << rank];
-            }
-            rank += 1;
-        }
-        i += 1;
+/// Gives the nearest of the children that are met, and pushes the others, the farthest first.
+#[inline(always)]
+pub(super) fn push_others<L: Lanes>(
+    lanes: L,
+    stack: &mut Stack,
+    node: &Node,
+    met: u32,
+    enter: L::Floats,
+    positive: u32,
+) -> u32 {
+    // Along a rising axis the first lane is nearest. Ranks are lanes from far to near.
+    let rising = positive & node.axis != 0;
+    let nearest = select_unpredictable(rising, met.trailing_zeros(), 31 - (met | 1).leading_zeros());
+    let flip = select_unpredictable(rising, 7, 0);
+    let ranks = select_unpredictable(rising, REVERSED[met as usize & 255].into(), met);
+    let others = ranks & !(1 << ((nearest ^ flip) & 7));
+    lanes.push(stack, &node.children, enter, lanes.flipped(flip), others);
+    node.children[nearest as usize & 7]
+}
+
+/// Eight bits in reverse.
+static REVERSED: [u8; 256] = {
+    let mut table = [0; 256];
+    let mut bits = 0;
+    while bits < 256 {
+        table[bits] = (bits as u8).reverse_bits();
+        bits += 1;
     }
     table
 };
@@ -163,18 +205,20 @@ pub(super) struct Slabs<L: Lanes> {
     near_origin: [L::Floats; 3],
     far_origin: [L::Floats; 3],
     t_min: L::Floats,
+    /// By axis: 1 where the direction is negative, else 0.
     negative: [usize; 3],
 }
 
 impl<L: Lanes> Slabs<L> {
     #[inline(always)]
     pub fn new(lanes: L, boxes: &RayBox) -> Self {
+        let negative = |axis: u32| (!boxes.positive >> axis & 1) as usize;
         Slabs {
-            inverse: splat3(lanes, boxes.inverse),
-            near_origin: splat3(lanes, boxes.near_origin),
-            far_origin: splat3(lanes, boxes.far_origin),
+            inverse: splat3(lanes, boxes.planes.inverse),
+            near_origin: splat3(lanes, boxes.planes.near_origin),
+            far_origin: splat3(lanes, boxes.planes.far_origin),
             t_min: lanes.splat(boxes.t_min),
-            negative: boxes.negative,
+            negative: [negative(0), negative(1), negative(2)],
         }
     }
 }
@@ -186,7 +230,7 @@ pub(super) fn meet<L: Lanes, const TAME: bool>(
     node: &Node,
     slabs: &Slabs<L>,
     limit: L::Floats,
-) -> (usize, L::Floats) {
+) -> (u32, L::Floats) {
     let Slabs { inverse, near_origin, far_origin, t_min, negative: [x, y, z] } = slabs;
     macro_rules! slab {
         ($axis:literal, $side:expr, $origin:ident) => {{
@@ -203,7 +247,7 @@ pub(super) fn meet<L: Lanes, const TAME: bool>(
     let leave_y = lanes.min(slab!(0, !x, far_origin), slab!(1, !y, far_origin));
     let enter = lanes.max(enter_y, lanes.max(slab!(2, z, near_origin), *t_min));
     let leave = lanes.min(leave_y, lanes.min(slab!(2, !z, far_origin), limit));
-    (lanes.le(enter, leave) as usize & 255, enter)
+    (lanes.le(enter, leave), enter)
 }
 
 #[inline(always)]

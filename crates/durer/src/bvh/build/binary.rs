@@ -7,7 +7,7 @@ use crate::math::{Aabb, Vec3};
 use glam::Vec4;
 
 /// Subtrees of more references than this are built in parallel.
-pub const PARALLEL: usize = 4096;
+const PARALLEL: usize = 4096;
 
 /// A node. Nodes lie in depth-first order: the left child follows its parent, the right child what is below the left one.
 #[derive(Clone, Copy, Debug)]

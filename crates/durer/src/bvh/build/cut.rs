@@ -13,7 +13,7 @@ pub const HALVING_DEPTH: usize = 60;
 /// More references than this are looked at in parallel.
 const MANY: usize = 1 << 15;
 /// Of so few references all divisions are tried.
-pub const FEW: usize = 4;
+const FEW: usize = 4;
 
 /// A box that grows, and how many references are in it.
 #[derive(Clone, Copy)]

@@ -82,9 +82,11 @@ impl Builder<'_> {
         budget.in_vain = 0;
         let parts = self.halves(references, &plane, corners_of);
         let lens = [parts[0].len(), parts[1].len()];
-        let smaller = lens.iter().all(|&len| 0 < len && len < count);
+        if !lens.iter().all(|&len| 0 < len && len < count) {
+            return None;
+        }
         budget.references = (budget.references + count).checked_sub(lens[0] + lens[1])?;
-        smaller.then_some(parts)
+        Some(parts)
     }
 
     /// The cheapest plane between bins of equal width.
@@ -109,11 +111,11 @@ impl Builder<'_> {
         // Few references fill few bins.
         let count = if references.len() > 256 { BINS } else { BINS / 2 };
         let (low, high) = (bounds.min[AXIS], bounds.max[AXIS]);
-        let width = (high - low) / count as f32;
-        // Flat and immense things are not cut.
         if high - low < LENGTH * (bounds.max - bounds.min).truncate().max_element() {
             return None;
         }
+        let width = (high - low) / count as f32;
+        // Flat and immense things are not cut.
         if !(width.is_normal() && low + width > low && high - width < high) {
             return None;
         }
@@ -186,7 +188,7 @@ impl Builder<'_> {
                 [true, true] => left.push(*r),
             }
         }
-        let mut sides = [&left, &right].map(|side| side.iter().fold(Bin::EMPTY, Bin::with));
+        let mut sides = [&left, &right].map(|side| Bin::of(side));
         for (_, halves) in &through {
             sides.iter_mut().zip(halves).for_each(|(side, half)| *side = side.with(half));
         }

@@ -11,7 +11,7 @@ use super::Settings;
 use super::binary::{self, half_area};
 use crate::bvh::lanes::WIDTH;
 use crate::bvh::node::{self, LEAF, LEAF_SIZE, Node};
-use crate::math::{Aabb, Vec3};
+use crate::math::Aabb;
 use rayon::prelude::*;
 
 /// Subtrees of more references than this are worked on in parallel.
@@ -181,7 +181,8 @@ impl Emitter<'_> {
         let list = &children.list[..children.count];
         let mut bounds = [Aabb::EMPTY; WIDTH];
         bounds.iter_mut().zip(list).for_each(|(bounds, &i)| *bounds = self.tree.nodes[i].bounds());
-        let places = places(&bounds[..list.len()]);
+        let (axis, places) = places(&bounds[..list.len()]);
+        part.nodes[number].axis = 1 << axis;
         let first = part.nodes.len();
         let mut inner = Children::default();
         for (k, &i) in list.iter().enumerate() {
@@ -251,37 +252,27 @@ impl Part {
     }
 }
 
-/// A place for each child: those that lie farthest out in a direction choose first.
-fn places(bounds: &[Aabb]) -> [usize; WIDTH] {
-    let center = bounds.iter().copied().fold(Aabb::EMPTY, Aabb::union).center();
-    // How far out each child is towards the place that it wishes: first its octant.
-    let mut wishes = [(0.0, 0); WIDTH];
-    let mut offsets = [Vec3::ZERO; WIDTH];
-    for (i, b) in bounds.iter().enumerate() {
-        offsets[i] = b.center() - center;
-        wishes[i] = (offsets[i].abs().element_sum(), offsets[i].cmpgt(Vec3::ZERO).bitmask() as usize);
-    }
-    let mut free = [true; WIDTH];
-    let mut chosen = [WIDTH; WIDTH];
-    for _ in bounds {
-        let waiting = |&child: &usize| chosen[child] == WIDTH;
-        let farther = |a: usize, b: usize| if wishes[b].0 > wishes[a].0 { b } else { a };
-        let Some(first) = (0..bounds.len()).filter(waiting).reduce(farther) else { break };
-        let place = wishes[first].1;
-        chosen[first] = place;
-        free[place] = false;
-        for child in 0..bounds.len() {
-            if chosen[child] < WIDTH || wishes[child].1 != place {
-                continue;
+/// The axis along which children lie apart best, and a place for each in that order.
+///
+/// Two that are apart are met in the right order by every ray; that they both are met is the likelier the greater they are.
+fn places(bounds: &[Aabb]) -> (usize, [usize; WIDTH]) {
+    let greatest = bounds.iter().map(Aabb::half_area).fold(f32::MIN_POSITIVE, f32::max);
+    let mut areas = [0.0; WIDTH];
+    areas.iter_mut().zip(bounds).for_each(|(area, b)| *area = b.half_area() / greatest);
+    let mut apart = [0.0; 3];
+    for (i, a) in bounds.iter().enumerate() {
+        for (b, area) in bounds.iter().zip(areas).take(i) {
+            for (axis, apart) in apart.iter_mut().enumerate() {
+                let are_apart = a.max[axis] <= b.min[axis] || b.max[axis] <= a.min[axis];
+                *apart += if are_apart { areas[i] * area } else { 0.0 };
             }
-            let score = |place: usize| {
-                let side =
-                    |axis: usize| if place >> axis & 1 == 1 { offsets[child][axis] } else { -offsets[child][axis] };
-                (side(0) + side(1) + side(2), place)
-            };
-            let better = |a: (f32, usize), b: (f32, usize)| if b.0 > a.0 { b } else { a };
-            wishes[child] = (0..WIDTH).filter(|&place| free[place]).map(score).reduce(better).unwrap_or_default();
         }
     }
-    chosen
+    let axis = (1..3).fold(0, |best, axis| if apart[axis] > apart[best] { axis } else { best });
+    let mut order: [usize; WIDTH] = std::array::from_fn(|child| child);
+    let order = &mut order[..bounds.len()];
+    order.sort_by(|&a, &b| bounds[a].center()[axis].total_cmp(&bounds[b].center()[axis]));
+    let mut places = [0; WIDTH];
+    order.iter().enumerate().for_each(|(place, &child)| places[child] = place);
+    (axis, places)
 }

@@ -36,14 +36,19 @@ pub(super) trait Lanes: Copy {
     ///
     /// Rows come by corner, then by axis in the order of `axes`.
     fn rows(self, from: &[f32], stride: usize, axes: [usize; 3]) -> [[Self::Floats; 3]; 3];
+    fn add(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
     fn sub(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
     fn mul(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
+    fn div(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
+    fn abs(self, a: Self::Floats) -> Self::Floats;
     /// a * b + c, rounded once or twice.
     fn mul_add(self, a: Self::Floats, b: Self::Floats, c: Self::Floats) -> Self::Floats;
     /// `a` where it is less than `b`, else `b`: also where either is no number.
     fn min(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
     /// `a` where it is greater than `b`, else `b`: also where either is no number.
     fn max(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
+    /// The least of the lanes whose bits are set, none of which is NaN; infinity if there are none.
+    fn least(self, a: Self::Floats, mask: u32) -> f32;
     /// A bit for each lane where a <= b.
     fn le(self, a: Self::Floats, b: Self::Floats) -> u32;
     /// A bit for each lane where a < b.
@@ -62,8 +67,9 @@ pub(super) trait Lanes: Copy {
 /// What [`Lanes::rows`] gives in one lane.
 #[inline(always)]
 pub fn column(from: &[f32], stride: usize, [x, y, z]: [usize; 3], lane: usize) -> [[f32; 3]; 3] {
-    assert!(lane < stride && from.len() >= 9 * stride && x.max(y).max(z) < 3);
-    // SAFETY: the last is in row 8, before the slice's end.
+    assert!(lane < stride && stride <= WIDTH && from.len() >= 9 * stride + WIDTH);
+    let [x, y, z] = [x & 3, y & 3, z & 3];
+    // SAFETY: so masked, the last is in row 9, before the slice's end.
     let at = |place: usize| unsafe { *from.get_unchecked(place) };
     let (x, y, z) = (x * stride + lane, y * stride + lane, z * stride + lane);
     [0, 3 * stride, 6 * stride].map(|corner| [at(corner + x), at(corner + y), at(corner + z)])
