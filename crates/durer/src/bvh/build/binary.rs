@@ -79,7 +79,7 @@ pub struct Builder<'a> {
     pub area: f32,
     /// So many references may stay together.
     whole: usize,
-    /// So many references are put into how many bins.
+    /// How many bins so many references are put into, at most.
     pub bins: fn(usize) -> usize,
     /// Where things are triangles that may be cut.
     pub corners_of: Option<Corners<'a>>,

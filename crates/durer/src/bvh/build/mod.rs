@@ -38,7 +38,7 @@ pub(super) struct Settings {
     pub leaf_cost: fn(usize) -> f32,
     /// So few things stay together where they are near each other.
     pub whole: usize,
-    /// So many things are put into how many bins.
+    /// How many bins so many things are put into, at most.
     pub bins: fn(usize) -> usize,
     /// Leaves hold at most so many things.
     pub leaf_size: usize,
@@ -53,7 +53,7 @@ impl Settings {
     pub const THINGS: Settings = Settings {
         leaf_cost: |count| 2.0 * count as f32,
         whole: 1,
-        bins: MANY_BINS,
+        bins: |_| cut::BINS,
         leaf_size: 4,
         reinsertions: 2,
         splits: 0.0,
@@ -71,8 +71,6 @@ impl Settings {
         }
     }
 }
-
-const MANY_BINS: fn(usize) -> usize = |_| usize::MAX;
 
 /// A box of a thing or of a part of it, and the thing's number.
 #[derive(Clone, Copy, Debug)]

@@ -278,3 +278,64 @@ impl<const AXIS: usize> Sorted<AXIS> {
         [self.between(&from, &middle, r), self.between(&middle, &to, r)]
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::Aabb;
+    use crate::math::random::{Random, rounds};
+
+    /// Points of a triangle are in the box of the half on their side, whatever the triangle and its present box.
+    fn check<const AXIS: usize>(random: &mut Random, corners: [Vec3; 3], within: Aabb) -> usize {
+        let r = Reference::new(within, 7);
+        let (low, high) = (within.min[AXIS], within.max[AXIS]);
+        let at = low + random.unit() * (high - low);
+        if !(low < at && at < high) {
+            return 0;
+        }
+        let halves = Sorted::<AXIS>::new(corners).halves(at, &r);
+        let mut inside = 0;
+        for _ in 0..50 {
+            let [u, v] = [random.unit(), random.unit()].map(f64::from);
+            let [u, v] = if u + v > 1.0 { [1.0 - u, 1.0 - v] } else { [u, v] };
+            let [a, b, c] = corners.map(|p| p.as_dvec3());
+            let p = a * (1.0 - u - v) + b * u + c * v;
+            // What the point itself is rounded by; a section's own rounding is far greater.
+            let slack = 1e-14 * (a.abs().max(b.abs()).max(c.abs())).max_element();
+            let is_in =
+                |b: Aabb, slack: f64| (p.cmpge(b.min.as_dvec3() - slack) & p.cmple(b.max.as_dvec3() + slack)).all();
+            if is_in(within, -slack) {
+                inside += 1;
+                let half = halves[usize::from(p[AXIS] > f64::from(at))];
+                assert_eq!(half.number(), 7);
+                assert!(is_in(half.bounds(), slack), "{corners:?} {within:?} {AXIS} {at}: {p} {half:?}");
+            }
+        }
+        inside
+    }
+
+    #[test]
+    fn halves_of_a_triangle_hold_what_is_on_their_side() {
+        let (mut random, mut inside) = (Random(1), 0);
+        for round in 0..rounds(20_000) {
+            let scale = [1.0, 1e-30, 1e30, 1e-5][round % 4];
+            let offset = [0.0, 1e4, 0.0, 3.0][round % 4] * random.point();
+            // Slivers, flat ones, and corners at the same height.
+            let mut corners = [(); 3].map(|()| scale * (random.point() + offset));
+            match random.below(4) {
+                0 => corners[2] = corners[0].midpoint(corners[1]) + 1e-6 * scale * random.point(),
+                1 => corners[1][random.below(3)] = corners[0][random.below(3)],
+                2 => corners = corners.map(|p| Vec3 { y: corners[0].y, ..p }),
+                _ => {}
+            }
+            let all = Aabb::around(corners);
+            let mix = |random: &mut Random| all.min + random.unit() * (all.max - all.min);
+            let (p, q) = (mix(&mut random), mix(&mut random));
+            let within = [all, Aabb { min: p.min(q), max: p.max(q) }][random.below(2)];
+            inside += check::<0>(&mut random, corners, within);
+            inside += check::<1>(&mut random, corners, within);
+            inside += check::<2>(&mut random, corners, within);
+        }
+        assert!(inside > 100_000, "{inside}");
+    }
+}
