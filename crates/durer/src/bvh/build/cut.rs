@@ -175,11 +175,15 @@ impl Builder<'_> {
     pub fn cut(&self, references: &[Reference], all: &Bin, depth: usize) -> Cut {
         // Its two sides are not known yet, but within all.
         let half = Cut { cost: all.cost(self.scale), sides: [*all; 2], way: Way::Half };
-        match references.len() {
-            _ if depth >= HALVING_DEPTH => half,
-            ..=FEW => self.few(references),
-            ..=64 => self.binned::<8>(references).unwrap_or(half),
-            _ => self.binned::<BINS>(references).unwrap_or(half),
+        let count = references.len();
+        if depth >= HALVING_DEPTH {
+            half
+        } else if count <= FEW {
+            self.few(references)
+        } else if count <= 64 {
+            self.binned::<8>(references).unwrap_or(half)
+        } else {
+            self.binned::<BINS>(references).unwrap_or(half)
         }
     }
 
@@ -273,8 +277,7 @@ fn partition(references: &mut [Reference], is_left: impl Fn(&Reference) -> bool)
     for i in 0..references.len() {
         // Without a branch, which would be guessed wrongly half of the time.
         let r = references[i];
-        references[i] = references[left];
-        references[left] = r;
+        references.swap(i, left);
         left += usize::from(is_left(&r));
     }
 }

@@ -134,9 +134,9 @@ impl Builder<'_> {
             }
             let triangle = Sorted::<AXIS>::new(corners_of(r.number()));
             let mut from = triangle.section(r.min[AXIS]);
-            for bin in first..=last {
-                let to = triangle.section(if bin < last { at(bin + 1) } else { r.max[AXIS] });
-                bins[bin] = bins[bin].around(&triangle.between(&from, &to, r));
+            for (bin, number) in bins[first..=last].iter_mut().zip(first..) {
+                let to = triangle.section(if number < last { at(number + 1) } else { r.max[AXIS] });
+                *bin = bin.around(&triangle.between(&from, &to, r));
                 from = to;
             }
         }

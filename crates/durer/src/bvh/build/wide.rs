@@ -98,7 +98,8 @@ fn plan(nodes: &[binary::Node], plans: &mut [Plan], scale: f32, settings: &Setti
     own.set_left(WIDTH, k);
     let opened = area + opened;
     // Where costs are no numbers, as with infinite areas, small subtrees are leaves.
-    let is_leaf = count <= settings.leaf_size && !(opened < leaf);
+    let dearer = opened < leaf;
+    let is_leaf = count <= settings.leaf_size && !dearer;
     own.0 |= u32::from(is_leaf);
     let mut costs = [if is_leaf { leaf } else { opened }; WIDTH - 1];
     for roots in 2..=most.min(WIDTH - 1) {
@@ -246,8 +247,9 @@ impl Part {
             }
             moved
         };
-        self.nodes[number] = moved(&other.nodes[0]);
-        self.nodes.extend(other.nodes[1..].iter().map(moved));
+        let mut moved = other.nodes.iter().map(moved);
+        self.nodes[number] = moved.next().expect("a part begins with its node");
+        self.nodes.extend(moved);
         self.order.extend_from_slice(&other.order);
     }
 }
