@@ -114,18 +114,13 @@ impl Sheared {
         if volume.abs() < self.least_volume {
             return None;
         }
-        // Seen from nearly its side, the triangle still bounds it, also where it is no number.
-        let dz = f64::from(self.dir.z);
         let t = n.dot(a) / volume;
-        // Products are rounded monotonically: strictly between two corners' heights, t is between their distances.
-        let height = t * dz;
-        let (low, high) = range([a.z, b.z, c.z]);
-        if low < height && height < high {
-            return Some(t as f32);
-        }
-        let (near, far) = range([a.z / dz, b.z / dz, c.z / dz]);
-        let t = if t > near { t } else { near };
-        Some(if t < far { t } else { far } as f32)
+        // Seen from nearly its side, the triangle still bounds it, also where it is no number. Divisions are rounded
+        // monotonically: the corners' distances are between those of the lowest and of the highest.
+        let (low, high) = (least(a.z, least(b.z, c.z)), most(a.z, most(b.z, c.z)));
+        let dz = f64::from(self.dir.z);
+        let (p, q) = (low / dz, high / dz);
+        Some(least(most(t, least(p, q)), most(p, q)) as f32)
     }
 
     /// The axes in the order of turned vectors.
@@ -144,12 +139,16 @@ impl Sheared {
     }
 }
 
-/// The least and the greatest of three numbers.
+/// The lesser of two numbers, the second where the first is none.
 #[inline(always)]
-fn range([a, b, c]: [f64; 3]) -> (f64, f64) {
-    let least = |a: f64, b: f64| if a < b { a } else { b };
-    let most = |a: f64, b: f64| if a > b { a } else { b };
-    (least(least(a, b), c), most(most(a, b), c))
+fn least(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
+}
+
+/// The greater of two numbers, the second where the first is none.
+#[inline(always)]
+fn most(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
 }
 
 #[inline(always)]
