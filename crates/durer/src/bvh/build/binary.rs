@@ -169,8 +169,7 @@ impl Builder<'_> {
         counts
     }
 
-    /// Whether a few references are so near each other that they need no boxes of their own. A large one among small ones does:
-    /// it may find a better place.
+    /// Whether a few references are so near each other that boxes of their own would spare few tests.
     fn is_whole(&self, references: &[Reference], all: &Bin) -> bool {
         let areas = references.iter().map(|r| half_area(r.min, r.max, self.scale));
         half_area(all.min, all.max, self.scale) <= 4.0 * areas.fold(f32::INFINITY, f32::min)

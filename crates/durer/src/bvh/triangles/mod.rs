@@ -168,4 +168,4 @@ impl TriangleBvh {
 }
 
 #[cfg(test)]
-mod tests;
+pub(super) mod tests;
