@@ -90,10 +90,7 @@ impl Sheared {
     /// The second and third barycentric coordinate of the crossing with a triangle that is crossed.
     #[inline(always)]
     pub(crate) fn uv(&self, corners: [Vec3; 3]) -> Vec2 {
-        // None of the three is of another sign than the others, so their sum is as exact as they are.
-        let areas = areas(self.flatten(corners));
-        let det = areas.element_sum();
-        Vec2::new((areas.y / det) as f32, (areas.z / det) as f32)
+        uv_across(self.flatten(corners))
     }
 
     #[inline(always)]
@@ -111,24 +108,19 @@ impl Sheared {
     /// Where the plane of a triangle is crossed, within the triangle's bounds.
     #[inline(always)]
     fn t(&self, corners: [Vec3; 3]) -> Option<f32> {
-        let origin = self.origin.as_dvec3();
-        let [a, b, c] = corners;
-        let (a, b, c) = (a.as_dvec3() - origin, b.as_dvec3() - origin, c.as_dvec3() - origin);
-        let n = (b - a).cross(c - a);
-        let volume = n.dot(self.dir.as_dvec3());
+        let corners = seen_from(self.origin, corners);
+        let (offset, volume) = plane(corners, self.dir);
         if volume.abs() < self.least_volume {
             return None;
         }
-        // Seen from nearly its side, the triangle still bounds it (and `max` replaces NaN).
-        let dz = f64::from(self.dir.z);
-        let t = n.dot(a) / volume;
+        let (t, dz) = (offset / volume, f64::from(self.dir.z));
         // Products are rounded monotonically: strictly between two corners' heights, t is between their distances.
+        let [a, b, c] = corners.map(|corner| corner.z);
         let height = t * dz;
-        if a.z.min(b.z).min(c.z) < height && height < a.z.max(b.z).max(c.z) {
+        if a.min(b).min(c) < height && height < a.max(b).max(c) {
             return Some(t as f32);
         }
-        let (x, y, z) = (a.z / dz, b.z / dz, c.z / dz);
-        Some(t.max(x.min(y).min(z)).min(x.max(y).max(z)) as f32)
+        Some(bounded(t, corners, dz) as f32)
     }
 
     /// The axes in the order of turned vectors.
@@ -145,6 +137,43 @@ impl Sheared {
     pub(crate) fn shear(&self) -> Vec2 {
         self.shear
     }
+}
+
+/// Where a turned ray meets the plane of a turned triangle, within the triangle's bounds: as [`Sheared::distance`] has it, and no
+/// branch, so that it can be found for several rays side by side.
+#[inline(always)]
+pub(crate) fn distance_along(origin: Vec3, dir: Vec3, corners: [Vec3; 3]) -> f32 {
+    let corners = seen_from(origin, corners);
+    let (offset, volume) = plane(corners, dir);
+    bounded(offset / volume, corners, f64::from(dir.z)) as f32
+}
+
+/// The second and third barycentric coordinate of the origin, by the corners in the plane across a ray that crosses the triangle.
+#[inline(always)]
+pub(crate) fn uv_across(flat: [Vec2; 3]) -> Vec2 {
+    // None of the three is of another sign than the others, so their sum is as exact as they are.
+    let areas = areas(flat);
+    let det = areas.element_sum();
+    Vec2::new((areas.y / det) as f32, (areas.z / det) as f32)
+}
+
+#[inline(always)]
+fn seen_from(origin: Vec3, corners: [Vec3; 3]) -> [DVec3; 3] {
+    corners.map(|corner| corner.as_dvec3() - origin.as_dvec3())
+}
+
+/// How far the plane of a triangle lies from the origin, and how far a direction goes towards it, both times twice its area.
+#[inline(always)]
+fn plane([a, b, c]: [DVec3; 3], dir: Vec3) -> (f64, f64) {
+    let n = (b - a).cross(c - a);
+    (n.dot(a), n.dot(dir.as_dvec3()))
+}
+
+/// A distance, within those of the corners: they bound also a triangle that is seen from nearly its side (and `max` replaces NaN).
+#[inline(always)]
+fn bounded(t: f64, corners: [DVec3; 3], dz: f64) -> f64 {
+    let [x, y, z] = corners.map(|corner| corner.z / dz);
+    t.max(x.min(y).min(z)).min(x.max(y).max(z))
 }
 
 #[inline(always)]

@@ -46,6 +46,16 @@ pub(super) fn rows(from: &[f32], stride: usize, axes: [usize; 3]) -> [[__m256; 3
     [[row!(0, 0), row!(0, 1), row!(0, 2)], [row!(1, 0), row!(1, 1), row!(1, 2)], [row!(2, 0), row!(2, 1), row!(2, 2)]]
 }
 
+/// The least of all lanes.
+#[inline(always)]
+pub(super) fn least(a: __m256) -> f32 {
+    proven! {
+        let four = _mm_min_ps(_mm256_castps256_ps128(a), _mm256_extractf128_ps::<1>(a));
+        let two = _mm_min_ps(four, _mm_movehl_ps(four, four));
+        _mm_cvtss_f32(_mm_min_ss(two, _mm_movehdup_ps(two)))
+    }
+}
+
 impl Lanes for Avx2 {
     type Floats = __m256;
     type Order = __m256i;
@@ -63,12 +73,30 @@ impl Lanes for Avx2 {
         rows(from, stride, axes)
     }
     #[inline(always)]
+    fn store(self, a: __m256) -> [f32; WIDTH] {
+        let mut to = [0.0; WIDTH];
+        proven!(_mm256_storeu_ps(to.as_mut_ptr(), a));
+        to
+    }
+    #[inline(always)]
+    fn add(self, a: __m256, b: __m256) -> __m256 {
+        proven!(_mm256_add_ps(a, b))
+    }
+    #[inline(always)]
     fn sub(self, a: __m256, b: __m256) -> __m256 {
         proven!(_mm256_sub_ps(a, b))
     }
     #[inline(always)]
     fn mul(self, a: __m256, b: __m256) -> __m256 {
         proven!(_mm256_mul_ps(a, b))
+    }
+    #[inline(always)]
+    fn div(self, a: __m256, b: __m256) -> __m256 {
+        proven!(_mm256_div_ps(a, b))
+    }
+    #[inline(always)]
+    fn abs(self, a: __m256) -> __m256 {
+        proven!(_mm256_andnot_ps(_mm256_set1_ps(-0.0), a))
     }
     #[inline(always)]
     fn mul_add(self, a: __m256, b: __m256, c: __m256) -> __m256 {
@@ -81,6 +109,14 @@ impl Lanes for Avx2 {
     #[inline(always)]
     fn max(self, a: __m256, b: __m256) -> __m256 {
         proven!(_mm256_max_ps(a, b))
+    }
+    #[inline(always)]
+    fn least(self, a: __m256, mask: u32) -> f32 {
+        proven! {
+            let wanted = _mm256_and_si256(_mm256_set1_epi32(mask as i32), _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128));
+            let left_out = _mm256_cmpeq_epi32(wanted, _mm256_setzero_si256());
+            least(_mm256_blendv_ps(a, _mm256_set1_ps(f32::INFINITY), _mm256_castsi256_ps(left_out)))
+        }
     }
     #[inline(always)]
     fn le(self, a: __m256, b: __m256) -> u32 {

@@ -1,6 +1,6 @@
 //! AVX-512 on eight lanes: masks in registers of their own, and compression in one instruction.
 
-use super::avx2::{proven, rows};
+use super::avx2::{least, proven, rows};
 use super::{Kernel, Lanes, Stack, WIDTH};
 use std::arch::x86_64::*;
 
@@ -40,12 +40,30 @@ impl Lanes for Avx512 {
         rows(from, stride, axes)
     }
     #[inline(always)]
+    fn store(self, a: __m256) -> [f32; WIDTH] {
+        let mut to = [0.0; WIDTH];
+        proven!(_mm256_storeu_ps(to.as_mut_ptr(), a));
+        to
+    }
+    #[inline(always)]
+    fn add(self, a: __m256, b: __m256) -> __m256 {
+        proven!(_mm256_add_ps(a, b))
+    }
+    #[inline(always)]
     fn sub(self, a: __m256, b: __m256) -> __m256 {
         proven!(_mm256_sub_ps(a, b))
     }
     #[inline(always)]
     fn mul(self, a: __m256, b: __m256) -> __m256 {
         proven!(_mm256_mul_ps(a, b))
+    }
+    #[inline(always)]
+    fn div(self, a: __m256, b: __m256) -> __m256 {
+        proven!(_mm256_div_ps(a, b))
+    }
+    #[inline(always)]
+    fn abs(self, a: __m256) -> __m256 {
+        proven!(_mm256_andnot_ps(_mm256_set1_ps(-0.0), a))
     }
     #[inline(always)]
     fn mul_add(self, a: __m256, b: __m256, c: __m256) -> __m256 {
@@ -58,6 +76,10 @@ impl Lanes for Avx512 {
     #[inline(always)]
     fn max(self, a: __m256, b: __m256) -> __m256 {
         proven!(_mm256_max_ps(a, b))
+    }
+    #[inline(always)]
+    fn least(self, a: __m256, mask: u32) -> f32 {
+        proven!(least(_mm256_mask_mov_ps(_mm256_set1_ps(f32::INFINITY), mask as u8, a)))
     }
     #[inline(always)]
     fn le(self, a: __m256, b: __m256) -> u32 {

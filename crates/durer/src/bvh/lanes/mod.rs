@@ -36,14 +36,20 @@ pub(super) trait Lanes: Copy {
     ///
     /// Rows come by corner, then by axis in the order of `axes`.
     fn rows(self, from: &[f32], stride: usize, axes: [usize; 3]) -> [[Self::Floats; 3]; 3];
+    fn store(self, a: Self::Floats) -> [f32; WIDTH];
+    fn add(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
     fn sub(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
     fn mul(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
+    fn div(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
+    fn abs(self, a: Self::Floats) -> Self::Floats;
     /// a * b + c, rounded once or twice.
     fn mul_add(self, a: Self::Floats, b: Self::Floats, c: Self::Floats) -> Self::Floats;
     /// `a` where it is less than `b`, else `b`: also where either is no number.
     fn min(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
     /// `a` where it is greater than `b`, else `b`: also where either is no number.
     fn max(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
+    /// The least of the lanes whose bits are set, none of which is NaN; infinity if there are none.
+    fn least(self, a: Self::Floats, mask: u32) -> f32;
     /// A bit for each lane where a <= b.
     fn le(self, a: Self::Floats, b: Self::Floats) -> u32;
     /// A bit for each lane where a < b.

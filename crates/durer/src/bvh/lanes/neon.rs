@@ -54,12 +54,33 @@ impl Lanes for Neon {
         })
     }
     #[inline(always)]
+    fn store(self, a: Pair) -> [f32; WIDTH] {
+        let mut to = [0.0; WIDTH];
+        proven! {
+            vst1q_f32(to.as_mut_ptr(), a.0);
+            vst1q_f32(to.as_mut_ptr().add(4), a.1);
+        }
+        to
+    }
+    #[inline(always)]
+    fn add(self, a: Pair, b: Pair) -> Pair {
+        proven!(Pair(vaddq_f32(a.0, b.0), vaddq_f32(a.1, b.1)))
+    }
+    #[inline(always)]
     fn sub(self, a: Pair, b: Pair) -> Pair {
         proven!(Pair(vsubq_f32(a.0, b.0), vsubq_f32(a.1, b.1)))
     }
     #[inline(always)]
     fn mul(self, a: Pair, b: Pair) -> Pair {
         proven!(Pair(vmulq_f32(a.0, b.0), vmulq_f32(a.1, b.1)))
+    }
+    #[inline(always)]
+    fn div(self, a: Pair, b: Pair) -> Pair {
+        proven!(Pair(vdivq_f32(a.0, b.0), vdivq_f32(a.1, b.1)))
+    }
+    #[inline(always)]
+    fn abs(self, a: Pair) -> Pair {
+        proven!(Pair(vabsq_f32(a.0), vabsq_f32(a.1)))
     }
     #[inline(always)]
     fn mul_add(self, a: Pair, b: Pair, c: Pair) -> Pair {
@@ -72,6 +93,10 @@ impl Lanes for Neon {
     #[inline(always)]
     fn max(self, a: Pair, b: Pair) -> Pair {
         proven!(Pair(vbslq_f32(vcgtq_f32(a.0, b.0), a.0, b.0), vbslq_f32(vcgtq_f32(a.1, b.1), a.1, b.1)))
+    }
+    #[inline(always)]
+    fn least(self, a: Pair, mask: u32) -> f32 {
+        super::scalar::Scalar.least(self.store(a), mask)
     }
     #[inline(always)]
     fn le(self, a: Pair, b: Pair) -> u32 {
@@ -87,11 +112,7 @@ impl Lanes for Neon {
     }
     #[inline(always)]
     fn push(self, stack: &mut Stack, children: &[u32; WIDTH], near: Pair, flip: u32, mut mask: u32) {
-        let mut distances = [0.0; WIDTH];
-        proven! {
-            vst1q_f32(distances.as_mut_ptr(), near.0);
-            vst1q_f32(distances.as_mut_ptr().add(4), near.1);
-        }
+        let distances = self.store(near);
         while mask != 0 {
             let lane = mask.trailing_zeros();
             mask &= mask - 1;

@@ -34,12 +34,28 @@ impl Lanes for Scalar {
         })
     }
     #[inline(always)]
+    fn store(self, a: F) -> [f32; WIDTH] {
+        a
+    }
+    #[inline(always)]
+    fn add(self, a: F, b: F) -> F {
+        from_fn(|i| a[i] + b[i])
+    }
+    #[inline(always)]
     fn sub(self, a: F, b: F) -> F {
         from_fn(|i| a[i] - b[i])
     }
     #[inline(always)]
     fn mul(self, a: F, b: F) -> F {
         from_fn(|i| a[i] * b[i])
+    }
+    #[inline(always)]
+    fn div(self, a: F, b: F) -> F {
+        from_fn(|i| a[i] / b[i])
+    }
+    #[inline(always)]
+    fn abs(self, a: F) -> F {
+        a.map(f32::abs)
     }
     #[inline(always)]
     fn mul_add(self, a: F, b: F, c: F) -> F {
@@ -52,6 +68,12 @@ impl Lanes for Scalar {
     #[inline(always)]
     fn max(self, a: F, b: F) -> F {
         from_fn(|i| if a[i] > b[i] { a[i] } else { b[i] })
+    }
+    #[inline(always)]
+    fn least(self, a: F, mask: u32) -> f32 {
+        (0..WIDTH)
+            .filter(|i| mask >> i & 1 == 1)
+            .fold(f32::INFINITY, |least, i| if a[i] < least { a[i] } else { least })
     }
     #[inline(always)]
     fn le(self, a: F, b: F) -> u32 {

@@ -54,7 +54,7 @@ impl Input {
 struct Everything<'a>(&'a Input);
 
 /// Vectors that are looked at for each input: of arithmetic, comparison, a stack before and after, and nine rows.
-const OPERATIONS: usize = 4 + 4 + 2 + 9;
+const OPERATIONS: usize = 7 + 5 + 2 + 9;
 
 impl Kernel for Everything<'_> {
     type Output = Vec<u32>;
@@ -65,7 +65,7 @@ impl Kernel for Everything<'_> {
         let [a, b, c] = [lanes.load(&floats[0]), lanes.load(&floats[1]), lanes.load(&floats[2])];
         let mut found = Vec::with_capacity(WIDTH * OPERATIONS + 16);
         let number = |x: f32| if x.is_nan() { f32::NAN.to_bits() } else { x.to_bits() };
-        // A vector comes out through the stack.
+        // Vectors come out through the stack.
         let mut tell = |v: L::Floats, count: usize| {
             let mut room = Room::new();
             let mut stack = Stack::new(&mut room);
@@ -74,13 +74,20 @@ impl Kernel for Everything<'_> {
             // SAFETY: everything below the height was written.
             (0..height).for_each(|i| found.push(number(unsafe { *near.add(i) })));
         };
+        tell(lanes.add(a, b), WIDTH);
         tell(lanes.sub(a, b), WIDTH);
         tell(lanes.mul(a, b), WIDTH);
+        tell(lanes.div(a, b), WIDTH);
+        tell(lanes.abs(a), WIDTH);
         tell(lanes.min(a, c), WIDTH);
         tell(lanes.max(a, c), WIDTH);
         for corner in lanes.rows(rows, *stride, *axes) {
             corner.into_iter().for_each(|row| tell(row, *stride));
         }
+        found.extend(lanes.store(a).map(number));
+        let numbers = *mask & (lanes.le(c, c));
+        // Zeroes of either sign are as little.
+        found.push((lanes.least(c, numbers) + 0.0).to_bits());
         found.extend([lanes.le(a, b), lanes.lt(a, b), lanes.le(b, a), lanes.lt(b, a)]);
         let mut room = Room::new();
         let mut stack = Stack::new(&mut room);

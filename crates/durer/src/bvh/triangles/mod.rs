@@ -2,6 +2,7 @@
 
 mod build;
 mod leaf;
+mod packet;
 mod query;
 mod stream;
 
@@ -128,7 +129,8 @@ impl TriangleBvh {
     /// If there are not as many places for hits as rays.
     pub fn closest_batch(&self, rays: &[Ray], hits: &mut [Option<TriangleHit>]) {
         assert_eq!(rays.len(), hits.len(), "a place for each hit");
-        self.stream(rays, |i, found: Nearest| hits[i] = found.hit());
+        let rest = self.packets::<false>(rays, |i, hit| hits[i] = hit);
+        self.stream(rays, &rest, |i, found: Nearest| hits[i] = found.hit());
     }
 
     /// For each ray, in order, whether anything is hit; several rays are on their way at once.
@@ -138,7 +140,8 @@ impl TriangleBvh {
     /// If there are not as many places for answers as rays.
     pub fn occluded_batch(&self, rays: &[Ray], answers: &mut [bool]) {
         assert_eq!(rays.len(), answers.len(), "a place for each answer");
-        self.stream(rays, |i, found: Any| answers[i] = found.0);
+        let rest = self.packets::<true>(rays, |i, hit| answers[i] = hit.is_some());
+        self.stream(rays, &rest, |i, found: Any| answers[i] = found.0);
     }
 
     #[inline]

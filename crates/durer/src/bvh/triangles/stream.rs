@@ -19,18 +19,18 @@ const FLYING: usize = 16;
 const END: u32 = u32::MAX;
 
 impl TriangleBvh {
-    /// Answers a question for each ray.
-    pub(super) fn stream<F: Found>(&self, rays: &[Ray], answer: impl FnMut(usize, F)) {
-        self.level.run(Stream { bvh: self, rays, answer, next: 0, found: PhantomData });
+    /// Answers a question for each of the rays with these numbers.
+    pub(super) fn stream<F: Found>(&self, rays: &[Ray], numbers: &[u32], answer: impl FnMut(usize, F)) {
+        self.level.run(Stream { bvh: self, rays, numbers: numbers.iter(), answer, found: PhantomData });
     }
 }
 
 struct Stream<'a, F, A> {
     bvh: &'a TriangleBvh,
     rays: &'a [Ray],
+    /// Of the rays that are still to be started.
+    numbers: std::slice::Iter<'a, u32>,
     answer: A,
-    /// The next ray to start.
-    next: usize,
     found: PhantomData<F>,
 }
 
@@ -64,9 +64,9 @@ impl<'a, F: Found, A: FnMut(usize, F)> Stream<'a, F, A> {
     /// Puts the next ray in a place, if there is one. Rays that are not traced here are answered at once.
     #[inline(always)]
     fn start<L: Lanes>(&mut self, lanes: L, flyer: &mut Flyer<'a, F>, stack: &mut Stack) -> bool {
-        while let Some(ray) = self.rays.get(self.next) {
-            let number = self.next;
-            self.next += 1;
+        while let Some(&number) = self.numbers.next() {
+            let number = number as usize;
+            let ray = &self.rays[number];
             if self.bvh.nodes.is_empty() || !is_sound(ray) {
                 (self.answer)(number, F::default());
                 continue;
