@@ -108,19 +108,11 @@ impl Sheared {
     /// Where the plane of a triangle is crossed, within the triangle's bounds.
     #[inline(always)]
     fn t(&self, corners: [Vec3; 3]) -> Option<f32> {
-        let corners = seen_from(self.origin, corners);
-        let (offset, volume) = plane(corners, self.dir);
-        if volume.abs() < self.least_volume {
+        let along = Along::new(self.origin, self.dir, corners);
+        if along.volume.abs() < self.least_volume {
             return None;
         }
-        let (t, dz) = (offset / volume, f64::from(self.dir.z));
-        // Products are rounded monotonically: strictly between two corners' heights, t is between their distances.
-        let [a, b, c] = corners.map(|corner| corner.z);
-        let height = t * dz;
-        if a.min(b).min(c) < height && height < a.max(b).max(c) {
-            return Some(t as f32);
-        }
-        Some(bounded(t, corners, dz) as f32)
+        Some(if along.is_inside() { along.t as f32 } else { along.bounded() })
     }
 
     /// The axes in the order of turned vectors.
@@ -139,13 +131,40 @@ impl Sheared {
     }
 }
 
-/// Where a turned ray meets the plane of a turned triangle, within the triangle's bounds: as [`Sheared::distance`] has it, and no
-/// branch, so that it can be found for several rays side by side.
-#[inline(always)]
-pub(crate) fn distance_along(origin: Vec3, dir: Vec3, corners: [Vec3; 3]) -> f32 {
-    let corners = seen_from(origin, corners);
-    let (offset, volume) = plane(corners, dir);
-    bounded(offset / volume, corners, f64::from(dir.z)) as f32
+/// A turned ray at the plane of a turned triangle. There is no branch, so that several can be made side by side.
+pub(crate) struct Along {
+    /// The heights of the corners.
+    heights: [f64; 3],
+    /// That of the direction.
+    dz: f64,
+    volume: f64,
+    pub t: f64,
+}
+
+impl Along {
+    #[inline(always)]
+    pub fn new(origin: Vec3, dir: Vec3, [a, b, c]: [Vec3; 3]) -> Self {
+        let (origin, dir) = (origin.as_dvec3(), dir.as_dvec3());
+        let (a, b, c) = (a.as_dvec3() - origin, b.as_dvec3() - origin, c.as_dvec3() - origin);
+        let n = (b - a).cross(c - a);
+        let volume = n.dot(dir);
+        Along { heights: [a.z, b.z, c.z], dz: dir.z, volume, t: n.dot(a) / volume }
+    }
+
+    /// Whether the crossing lies between the corners' heights for sure. Products are rounded monotonically: strictly between two
+    /// heights, t is between their distances.
+    #[inline(always)]
+    pub fn is_inside(&self) -> bool {
+        let ([a, b, c], height) = (self.heights, self.t * self.dz);
+        (a.min(b).min(c) < height) & (height < a.max(b).max(c))
+    }
+
+    /// `t` within the distances of the corners: they bound also a triangle that is seen from nearly its side (and `max` replaces NaN).
+    #[inline(always)]
+    pub fn bounded(&self) -> f32 {
+        let [a, b, c] = self.heights.map(|height| height / self.dz);
+        self.t.max(a.min(b).min(c)).min(a.max(b).max(c)) as f32
+    }
 }
 
 /// The second and third barycentric coordinate of the origin, by the corners in the plane across a ray that crosses the triangle.
@@ -155,25 +174,6 @@ pub(crate) fn uv_across(flat: [Vec2; 3]) -> Vec2 {
     let areas = areas(flat);
     let det = areas.element_sum();
     Vec2::new((areas.y / det) as f32, (areas.z / det) as f32)
-}
-
-#[inline(always)]
-fn seen_from(origin: Vec3, corners: [Vec3; 3]) -> [DVec3; 3] {
-    corners.map(|corner| corner.as_dvec3() - origin.as_dvec3())
-}
-
-/// How far the plane of a triangle lies from the origin, and how far a direction goes towards it, both times twice its area.
-#[inline(always)]
-fn plane([a, b, c]: [DVec3; 3], dir: Vec3) -> (f64, f64) {
-    let n = (b - a).cross(c - a);
-    (n.dot(a), n.dot(dir.as_dvec3()))
-}
-
-/// A distance, within those of the corners: they bound also a triangle that is seen from nearly its side (and `max` replaces NaN).
-#[inline(always)]
-fn bounded(t: f64, corners: [DVec3; 3], dz: f64) -> f64 {
-    let [x, y, z] = corners.map(|corner| corner.z / dz);
-    t.max(x.min(y).min(z)).min(x.max(y).max(z))
 }
 
 #[inline(always)]

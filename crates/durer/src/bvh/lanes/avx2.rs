@@ -1,5 +1,6 @@
 //! AVX2 with FMA.
 
+use super::wide::Two;
 use super::{COMPRESS, Kernel, Lanes, Stack, WIDTH};
 use std::arch::x86_64::*;
 
@@ -59,6 +60,12 @@ pub(super) fn least(a: __m256) -> f32 {
 impl Lanes for Avx2 {
     type Floats = __m256;
     type Order = __m256i;
+    type Wide = Two<Self>;
+
+    #[inline(always)]
+    fn wide(self) -> Two<Self> {
+        Two(self)
+    }
 
     #[inline(always)]
     fn splat(self, x: f32) -> __m256 {

@@ -15,10 +15,12 @@ mod level;
 mod neon;
 mod scalar;
 mod stack;
+mod wide;
 
 pub(super) use level::Available;
 pub use level::{Level, UnknownLevel};
 pub(super) use stack::{Room, Stack};
+pub(super) use wide::{WIDE, Wide};
 
 /// How many numbers lie side by side.
 pub const WIDTH: usize = 8;
@@ -29,6 +31,10 @@ pub(super) trait Lanes: Copy {
     type Floats: Copy;
     /// An order of the eight lanes.
     type Order: Copy;
+    /// The same for sixteen numbers.
+    type Wide: Wide;
+
+    fn wide(self) -> Self::Wide;
 
     fn splat(self, x: f32) -> Self::Floats;
     fn load(self, from: &[f32; WIDTH]) -> Self::Floats;

@@ -1,5 +1,6 @@
 //! NEON: eight lanes as two vectors of four.
 
+use super::wide::Two;
 use super::{Lanes, Stack, WIDTH};
 use std::arch::aarch64::*;
 
@@ -32,6 +33,12 @@ unsafe fn bits(a: uint32x4_t, b: uint32x4_t) -> u32 {
 impl Lanes for Neon {
     type Floats = Pair;
     type Order = u32;
+    type Wide = Two<Self>;
+
+    #[inline(always)]
+    fn wide(self) -> Two<Self> {
+        Two(self)
+    }
 
     #[inline(always)]
     fn splat(self, x: f32) -> Pair {

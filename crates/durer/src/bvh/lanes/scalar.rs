@@ -1,5 +1,6 @@
 //! Plain code.
 
+use super::wide::Two;
 use super::{Lanes, Stack, WIDTH};
 use std::array::from_fn;
 
@@ -15,6 +16,12 @@ fn mask(test: impl Fn(usize) -> bool) -> u32 {
 impl Lanes for Scalar {
     type Floats = F;
     type Order = u32;
+    type Wide = Two<Self>;
+
+    #[inline(always)]
+    fn wide(self) -> Two<Self> {
+        Two(self)
+    }
 
     #[inline(always)]
     fn splat(self, x: f32) -> F {

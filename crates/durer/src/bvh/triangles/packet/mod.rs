@@ -7,16 +7,15 @@
 //! Sources: Wald, Slusallek, Benthin, Wagner, *Interactive Rendering with Coherent Ray Tracing*, Eurographics 2001; Boulos, Wald,
 //! Shirley, *Geometric and Arithmetic Culling Methods for Entire Ray Packets*, University of Utah 2006.
 
-mod eight;
+mod leaf;
+mod rays;
 
-use super::leaf::{edge, flat};
 use super::{TriangleBvh, TriangleHit};
-use crate::bvh::lanes::{Kernel, Lanes, WIDTH, column};
-use crate::bvh::node::{self, LEAF, Node};
-use crate::bvh::traverse::{RANKS, splat3};
-use crate::math::{Ray, Vec2, Vec3};
-use crate::shape::watertight::Sheared;
-use eight::Eight;
+use crate::bvh::lanes::{Kernel, Lanes, WIDE, Wide};
+use crate::bvh::node::{LEAF, Node};
+use crate::bvh::traverse::RANKS;
+use crate::math::{Ray, Vec2};
+use rays::Rays;
 
 /// How many rays may be in a packet.
 const RAYS: usize = 64;
@@ -49,23 +48,8 @@ struct Axes {
 }
 
 impl Axes {
-    /// How many keys there are.
-    const COUNT: usize = 24;
-
-    /// A number for the signs and the longest axis of a direction.
-    #[inline(always)]
-    fn key(dir: Vec3) -> usize {
-        let d = dir.abs();
-        let longest = if d.x > d.y && d.x > d.z {
-            0
-        } else if d.y > d.z {
-            1
-        } else {
-            2
-        };
-        let sign = |x: f32| (x.to_bits() >> 31) as usize;
-        longest << 3 | sign(dir.z) << 2 | sign(dir.y) << 1 | sign(dir.x)
-    }
+    /// How many keys there are: a longest axis, and signs.
+    const KEYS: usize = 24;
 
     fn of_key(key: usize) -> Self {
         let negative = [key & 1, key >> 1 & 1, key >> 2 & 1];
@@ -94,27 +78,37 @@ impl<A: FnMut(usize, Option<TriangleHit>), const ANY: bool> Kernel for Packets<'
             bvh: self.bvh,
             axes: Axes::of_key(0),
             numbers: [0; RAYS],
-            eights: [Eight::EMPTY; RAYS / WIDTH],
+            sixteens: [Rays::EMPTY; RAYS / WIDE],
             groups: 0,
             alive: 0,
             limit: 0.0,
+            meetings: Vec::with_capacity(256),
         };
         let mut stack = Vec::with_capacity(256);
         for (window, rays) in self.rays.chunks(RAYS).enumerate() {
             let first = (window * RAYS) as u32;
-            let mut keys = [0; RAYS];
-            let mut counts = [0; 32];
-            for (key, ray) in keys.iter_mut().zip(rays) {
-                *key = Axes::key(ray.dir) as u8;
-                counts[usize::from(*key & 31)] += 1;
+            let all = u64::MAX >> (RAYS - rays.len());
+            for (i, number) in packet.numbers.iter_mut().enumerate() {
+                *number = first + i.min(rays.len() - 1) as u32;
             }
-            for key in (0..Axes::COUNT).filter(|&key| counts[key] > 0) {
-                let mut count = 0;
-                for (i, _) in keys[..rays.len()].iter().enumerate().filter(|(_, k)| usize::from(**k) == key) {
-                    packet.numbers[count] = first + i as u32;
-                    count += 1;
+            packet.load(self.rays, rays.len());
+            let signs = packet.signs(lanes);
+            for key in 0..Axes::KEYS {
+                let mut members = with_key(signs, key) & all;
+                if members == 0 {
+                    continue;
                 }
-                if count < LEAST || !packet.form(lanes, self.rays, key, count) {
+                let count = members.count_ones() as usize;
+                if members != all {
+                    for number in &mut packet.numbers[..count] {
+                        *number = first + members.trailing_zeros();
+                        members &= members - 1;
+                    }
+                    if count >= LEAST {
+                        packet.load(self.rays, count);
+                    }
+                }
+                if count < LEAST || !packet.prepare(lanes, key, count) {
                     rest.extend_from_slice(&packet.numbers[..count]);
                     continue;
                 }
@@ -125,6 +119,14 @@ impl<A: FnMut(usize, Option<TriangleHit>), const ANY: bool> Kernel for Packets<'
         }
         rest
     }
+}
+
+/// Of rays those with a key, by what [`Rays::signs`] says of all.
+#[inline(always)]
+fn with_key([x, y, z, first, second]: [u64; 5], key: usize) -> u64 {
+    let of = |set: u64, bit: usize| if key >> bit & 1 == 1 { set } else { !set };
+    let longest = [first, second, !(first | second)][key >> 3];
+    of(x, 0) & of(y, 1) & of(z, 2) & longest
 }
 
 /// A node or leaf that is still to be visited.
@@ -138,17 +140,26 @@ struct Entry {
     near: f32,
 }
 
+/// A triangle that some ray met.
+struct Meeting {
+    /// Turned, as the rays are.
+    corners: [[f32; 3]; 3],
+    triangle: u32,
+}
+
 struct Packet<'a> {
     bvh: &'a TriangleBvh,
     axes: Axes,
     numbers: [u32; RAYS],
-    eights: [Eight; RAYS / WIDTH],
-    /// How many of the eights hold rays.
+    sixteens: [Rays; RAYS / WIDE],
+    /// How many of the sixteens hold rays.
     groups: usize,
     /// The rays that still search.
     alive: u64,
     /// None of them goes on beyond.
     limit: f32,
+    /// The first stands for none.
+    meetings: Vec<Meeting>,
 }
 
 /// Intervals around what nodes need of all rays.
@@ -162,6 +173,8 @@ struct Beam<L: Lanes> {
 
 impl<L: Lanes> Beam<L> {
     /// The children of a node that any ray may meet, a bit for each, and where the first enters them.
+    ///
+    /// Roundings are monotonic, so no bound is passed by what a single ray has.
     #[inline(always)]
     fn meet(&self, lanes: L, node: &Node, limit: L::Floats) -> (usize, L::Floats) {
         macro_rules! slab {
@@ -193,21 +206,37 @@ macro_rules! across {
 }
 
 impl Packet<'_> {
-    /// Prepares the rays with the first numbers; says whether they go together.
+    /// Takes the rays with the first numbers, and the last again where lanes are left.
     #[inline(always)]
-    fn form<L: Lanes>(&mut self, lanes: L, rays: &[Ray], key: usize, count: usize) -> bool {
+    fn load(&mut self, rays: &[Ray], count: usize) {
+        self.groups = count.div_ceil(WIDE);
+        for k in 0..self.groups * WIDE {
+            self.sixteens[k / WIDE].set(k % WIDE, &rays[self.numbers[k.min(count - 1)] as usize]);
+        }
+    }
+
+    /// As [`Rays::signs`], for all.
+    #[inline(always)]
+    fn signs<L: Lanes>(&self, lanes: L) -> [u64; 5] {
+        let mut signs = [0; 5];
+        for group in 0..self.groups {
+            for (all, some) in signs.iter_mut().zip(self.sixteens[group].signs(lanes)) {
+                *all |= u64::from(some) << (group * WIDE);
+            }
+        }
+        signs
+    }
+
+    /// Prepares the rays, which have a key in common; says whether they go together.
+    #[inline(always)]
+    fn prepare<L: Lanes>(&mut self, lanes: L, key: usize, count: usize) -> bool {
         self.axes = Axes::of_key(key);
         self.alive = 0;
-        for k in 0..count.next_multiple_of(WIDTH) {
-            let ray = &rays[self.numbers[if k < count { k } else { 0 }] as usize];
-            self.eights[k / WIDTH].set(k % WIDTH, ray);
-        }
-        self.groups = count.div_ceil(WIDTH);
         for group in 0..self.groups {
-            let tame = self.eights[group].prepare(lanes, &self.axes, self.bvh.bounds);
-            self.alive |= u64::from(tame) << (group * WIDTH);
+            let tame = self.sixteens[group].prepare(lanes, &self.axes, self.bvh.bounds);
+            self.alive |= u64::from(tame) << (group * WIDE);
         }
-        let all = u64::MAX >> (64 - count);
+        let all = u64::MAX >> (RAYS - count);
         self.alive &= all;
         self.alive == all
     }
@@ -215,13 +244,14 @@ impl Packet<'_> {
     #[inline(always)]
     fn beam<L: Lanes>(&self, lanes: L) -> Beam<L> {
         // No closures: what is not inlined into the level's entry is compiled without its instructions.
+        let wide = lanes.wide();
         macro_rules! end {
             ($end:ident, $($of:tt)*) => {{
-                let mut all = lanes.load(&self.eights[0].$($of)*);
+                let mut all = wide.load(&self.sixteens[0].$($of)*);
                 for group in 1..self.groups {
-                    all = lanes.$end(lanes.load(&self.eights[group].$($of)*), all);
+                    all = wide.$end(wide.load(&self.sixteens[group].$($of)*), all);
                 }
-                lanes.splat(across!($end, lanes.store(all)))
+                lanes.splat(across!($end, wide.store(all)))
             }};
         }
         let nowhere = lanes.splat(0.0);
@@ -245,11 +275,12 @@ impl Packet<'_> {
     /// The last t of any ray.
     #[inline(always)]
     fn last<L: Lanes>(&self, lanes: L) -> f32 {
-        let mut all = lanes.load(&self.eights[0].t_last);
+        let wide = lanes.wide();
+        let mut all = wide.load(&self.sixteens[0].t_last);
         for group in 1..self.groups {
-            all = lanes.max(lanes.load(&self.eights[group].t_last), all);
+            all = wide.max(wide.load(&self.sixteens[group].t_last), all);
         }
-        across!(max, lanes.store(all))
+        across!(max, wide.store(all))
     }
 
     #[inline(always)]
@@ -257,6 +288,8 @@ impl Packet<'_> {
         let bvh = self.bvh;
         let beam = self.beam(lanes);
         self.limit = self.last(lanes);
+        self.meetings.clear();
+        self.meetings.push(Meeting { corners: [[0.0; 3]; 3], triangle: u32::MAX });
         let flip = self.axes.flip;
         stack.clear();
         let (mut child, mut rays) = (0, self.alive);
@@ -265,9 +298,8 @@ impl Packet<'_> {
                 let node = &bvh.nodes[child as usize];
                 let (met, enter) = beam.meet(lanes, node, lanes.splat(self.limit));
                 if met != 0 {
-                    let [nearest, others] = RANKS[flip as usize & 7][met];
+                    let [nearest, mut others] = RANKS[flip as usize & 7][met];
                     let enter = lanes.store(enter);
-                    let mut others = others;
                     while others != 0 {
                         let place = (others.trailing_zeros() ^ flip) & 7;
                         others &= others - 1;
@@ -292,10 +324,7 @@ impl Packet<'_> {
                 if entry.near > self.limit {
                     continue;
                 }
-                rays = entry.rays;
-                if ANY {
-                    rays &= self.alive;
-                }
+                rays = if ANY { entry.rays & self.alive } else { entry.rays };
                 rays = self.inside(lanes, &bvh.nodes[entry.place as usize / 8], entry.place as usize & 7, rays);
                 if rays != 0 {
                     child = entry.child;
@@ -308,123 +337,54 @@ impl Packet<'_> {
     /// Of some rays those that meet the box of a child.
     #[inline(always)]
     fn inside<L: Lanes>(&self, lanes: L, node: &Node, place: usize, rays: u64) -> u64 {
+        let wide = lanes.wide();
         let [x, y, z] = self.axes.negative;
-        let near = [node.planes[0][x & 1], node.planes[1][y & 1], node.planes[2][z & 1]].map(|p| p[place]);
-        let far = [node.planes[0][!x & 1], node.planes[1][!y & 1], node.planes[2][!z & 1]].map(|p| p[place]);
-        let ([near_x, near_y, near_z], [far_x, far_y, far_z]) = (splat3(lanes, near), splat3(lanes, far));
+        macro_rules! plane {
+            ($axis:literal, $side:expr) => {
+                wide.splat(node.planes[$axis][$side & 1][place])
+            };
+        }
+        let (near_x, near_y, near_z) = (plane!(0, x), plane!(1, y), plane!(2, z));
+        let (far_x, far_y, far_z) = (plane!(0, !x), plane!(1, !y), plane!(2, !z));
         let mut inside = 0;
-        for (group, e) in self.eights.iter().enumerate() {
-            if rays >> (group * WIDTH) & 255 == 0 {
+        for (group, e) in self.sixteens.iter().enumerate() {
+            if rays >> (group * WIDE) & 0xffff == 0 {
                 continue;
             }
             macro_rules! slab {
                 ($axis:literal, $plane:ident, $origin:ident) => {
-                    lanes.mul_add($plane, lanes.load(&e.inverse[$axis]), lanes.load(&e.$origin[$axis]))
+                    wide.mul_add($plane, wide.load(&e.inverse[$axis]), wide.load(&e.$origin[$axis]))
                 };
             }
-            let enter = lanes.max(slab!(0, near_x, near_origin), slab!(1, near_y, near_origin));
-            let enter = lanes.max(enter, lanes.max(slab!(2, near_z, near_origin), lanes.load(&e.t_min)));
-            let leave = lanes.min(slab!(0, far_x, far_origin), slab!(1, far_y, far_origin));
-            let leave = lanes.min(leave, lanes.min(slab!(2, far_z, far_origin), lanes.load(&e.t_last)));
-            inside |= u64::from(lanes.le(enter, leave) & 255) << (group * WIDTH);
+            let enter = wide.max(slab!(0, near_x, near_origin), slab!(1, near_y, near_origin));
+            let enter = wide.max(enter, wide.max(slab!(2, near_z, near_origin), wide.load(&e.t_min)));
+            let leave = wide.min(slab!(0, far_x, far_origin), slab!(1, far_y, far_origin));
+            let leave = wide.min(leave, wide.min(slab!(2, far_z, far_origin), wide.load(&e.t_last)));
+            inside |= u64::from(wide.le(enter, leave)) << (group * WIDE);
         }
         inside & rays
-    }
-
-    /// Some rays among the triangles of a leaf.
-    #[inline(always)]
-    fn leaf<L: Lanes, const ANY: bool>(&mut self, lanes: L, leaf: u32, mut rays: u64) {
-        let (first, count) = node::items(leaf);
-        let [x, y, z] = self.axes.turned;
-        let zero = lanes.splat(0.0);
-        let mut changed = false;
-        for place in 0..count {
-            let corners = column(&self.bvh.corners[9 * first..9 * (first + count)], count, self.axes.turned, place);
-            let rows = [splat3(lanes, corners[0]), splat3(lanes, corners[1]), splat3(lanes, corners[2])];
-            for group in 0..RAYS / WIDTH {
-                let active = (rays >> (group * WIDTH)) as u32 & 255;
-                if active == 0 {
-                    continue;
-                }
-                let e = &self.eights[group];
-                let origin = [lanes.load(&e.origin[x]), lanes.load(&e.origin[y]), lanes.load(&e.origin[z])];
-                let shear = [lanes.load(&e.shear[0]), lanes.load(&e.shear[1])];
-                let a = flat(lanes, rows[0], origin, shear);
-                let b = flat(lanes, rows[1], origin, shear);
-                let c = flat(lanes, rows[2], origin, shear);
-                let (u, v, w) = (edge(lanes, b, c), edge(lanes, c, a), edge(lanes, a, b));
-                let (least, greatest) = (lanes.min(u, lanes.min(v, w)), lanes.max(u, lanes.max(v, w)));
-                let missed = lanes.lt(least, zero) & lanes.lt(zero, greatest);
-                let lowest = lanes.min(a[2], lanes.min(b[2], c[2]));
-                let highest = lanes.max(a[2], lanes.max(b[2], c[2]));
-                let beside =
-                    lanes.lt(lanes.load(&e.heights[1]), lowest) | lanes.lt(highest, lanes.load(&e.heights[0]));
-                let candidates = !(missed | beside) & active;
-                if candidates == 0 {
-                    continue;
-                }
-                let mut crossed = candidates & (lanes.lt(zero, least) | lanes.lt(greatest, zero));
-                let corners = corners.map(Vec3::from);
-                let mut unsure = candidates & !crossed;
-                while unsure != 0 {
-                    let lane = unsure.trailing_zeros();
-                    unsure &= unsure - 1;
-                    crossed |= u32::from(crosses(e, lane as usize, corners)) << lane;
-                }
-                let triangle = self.bvh.order[first + place];
-                let e = &mut self.eights[group];
-                let hit = e.meet(&self.axes, corners, crossed, triangle, leaf, place as u32);
-                if hit != 0 {
-                    changed = true;
-                    if ANY {
-                        rays &= !(u64::from(hit) << (group * WIDTH));
-                        self.alive &= !(u64::from(hit) << (group * WIDTH));
-                    } else {
-                        e.bound(lanes, &self.axes);
-                    }
-                }
-            }
-        }
-        if changed && !ANY {
-            self.limit = self.last(lanes);
-        }
     }
 
     /// Tells what was found.
     #[inline(always)]
     fn answer<const ANY: bool>(&self, all: u64, tell: &mut impl FnMut(usize, Option<TriangleHit>)) {
-        for (group, e) in self.eights.iter().enumerate() {
-            let rays = (all >> (group * WIDTH)) as u32 & 255;
-            if rays == 0 {
-                continue;
-            }
-            let mut corners = [[[0.0; WIDTH]; 3]; 3];
-            if !ANY {
-                for i in 0..WIDTH {
-                    if e.met.triangle[i] != u32::MAX {
-                        let (first, count) = node::items(e.met.leaf[i]);
-                        let rows = &self.bvh.corners[9 * first..9 * (first + count)];
-                        let c = column(rows, count, self.axes.turned, e.met.lane[i] as usize);
-                        for corner in 0..3 {
-                            for axis in 0..3 {
-                                corners[corner][axis][i] = c[corner][axis];
-                            }
-                        }
+        for (group, e) in self.sixteens[..self.groups].iter().enumerate() {
+            let rays = (all >> (group * WIDE)) as u32 & 0xffff;
+            let mut corners = [[[0.0; WIDE]; 3]; 3];
+            for i in (0..WIDE).filter(|_| !ANY) {
+                let from = &self.meetings[e.met[i] as usize].corners;
+                for corner in 0..3 {
+                    for axis in 0..3 {
+                        corners[corner][axis][i] = from[corner][axis];
                     }
                 }
             }
-            let [u, v] = if ANY { [[0.0; WIDTH]; 2] } else { e.uv(&self.axes, &corners) };
-            for i in (0..WIDTH).filter(|i| rays >> i & 1 == 1) {
-                let (t, triangle) = (e.t_last[i], e.met.triangle[i]);
-                let hit = TriangleHit { t, uv: Vec2::new(u[i], v[i]), triangle };
-                tell(self.numbers[group * WIDTH + i] as usize, (triangle != u32::MAX).then_some(hit));
+            let [u, v] = if ANY { [[0.0; WIDE]; 2] } else { e.uv(&self.axes, &corners) };
+            for i in (0..WIDE).filter(|i| rays >> i & 1 == 1) {
+                let triangle = if ANY { 0 } else { self.meetings[e.met[i] as usize].triangle };
+                let hit = TriangleHit { t: e.t_last[i], uv: Vec2::new(u[i], v[i]), triangle };
+                tell(self.numbers[group * WIDE + i] as usize, (e.met[i] != 0).then_some(hit));
             }
         }
     }
-}
-
-/// Whether one of the rays crosses a triangle, exactly.
-#[cold]
-fn crosses(e: &Eight, lane: usize, corners: [Vec3; 3]) -> bool {
-    Sheared::new(&e.ray(lane)).crosses(corners)
 }
