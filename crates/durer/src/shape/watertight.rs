@@ -151,12 +151,29 @@ impl Along {
         Along { heights: [a.z, b.z, c.z], dz: dir.z, volume, t: n.dot(a) / volume }
     }
 
-    /// Whether the crossing lies between the corners' heights for sure. Products are rounded monotonically: strictly between two
-    /// heights, t is between their distances.
+    /// The height of the crossing.
+    #[inline(always)]
+    pub fn height(&self) -> f64 {
+        self.t * self.dz
+    }
+
+    #[inline(always)]
+    pub fn lowest(&self) -> f64 {
+        let [a, b, c] = self.heights;
+        a.min(b).min(c)
+    }
+
+    #[inline(always)]
+    pub fn highest(&self) -> f64 {
+        let [a, b, c] = self.heights;
+        a.max(b).max(c)
+    }
+
+    /// Whether `t` is as it is also with bounds. Products are rounded monotonically: strictly between two heights, t is between
+    /// their distances.
     #[inline(always)]
     pub fn is_inside(&self) -> bool {
-        let ([a, b, c], height) = (self.heights, self.t * self.dz);
-        (a.min(b).min(c) < height) & (height < a.max(b).max(c))
+        self.lowest() < self.height() && self.height() < self.highest()
     }
 
     /// `t` within the distances of the corners: they bound also a triangle that is seen from nearly its side (and `max` replaces NaN).

@@ -1,6 +1,6 @@
 //! AVX-512 on eight lanes: masks in registers of their own, and compression in one instruction.
 
-use super::avx2::{least, proven, rows};
+use super::avx2::{least, proven, rows, transpose};
 use super::{Kernel, Lanes, Stack, WIDE, WIDTH, Wide};
 use std::arch::x86_64::*;
 
@@ -86,6 +86,14 @@ impl Lanes for Avx512 {
     #[inline(always)]
     fn least(self, a: __m256, mask: u32) -> f32 {
         proven!(least(_mm256_mask_mov_ps(_mm256_set1_ps(f32::INFINITY), mask as u8, a)))
+    }
+    #[inline(always)]
+    fn select(self, mask: u32, a: __m256, b: __m256) -> __m256 {
+        proven!(_mm256_mask_mov_ps(b, mask as u8, a))
+    }
+    #[inline(always)]
+    fn transpose(self, rows: [__m256; WIDTH]) -> [__m256; WIDTH] {
+        transpose(rows)
     }
     #[inline(always)]
     fn le(self, a: __m256, b: __m256) -> u32 {
@@ -194,5 +202,13 @@ impl Wide for Avx512 {
     #[inline(always)]
     fn lt(self, a: __m512, b: __m512) -> u32 {
         proven!(u32::from(_mm512_cmp_ps_mask::<_CMP_LT_OQ>(a, b)))
+    }
+    #[inline(always)]
+    fn least(self, a: __m512) -> f32 {
+        proven!(_mm512_reduce_min_ps(a))
+    }
+    #[inline(always)]
+    fn greatest(self, a: __m512) -> f32 {
+        proven!(_mm512_reduce_max_ps(a))
     }
 }

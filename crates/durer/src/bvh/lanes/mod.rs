@@ -56,6 +56,10 @@ pub(super) trait Lanes: Copy {
     fn max(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
     /// The least of the lanes whose bits are set, none of which is NaN; infinity if there are none.
     fn least(self, a: Self::Floats, mask: u32) -> f32;
+    /// `a` in the lanes whose bits are set, `b` in others. Bits stay as they are.
+    fn select(self, mask: u32, a: Self::Floats, b: Self::Floats) -> Self::Floats;
+    /// Lane k of vector i becomes lane i of vector k.
+    fn transpose(self, rows: [Self::Floats; WIDTH]) -> [Self::Floats; WIDTH];
     /// A bit for each lane where a <= b.
     fn le(self, a: Self::Floats, b: Self::Floats) -> u32;
     /// A bit for each lane where a < b.

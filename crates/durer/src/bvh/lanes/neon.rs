@@ -106,6 +106,21 @@ impl Lanes for Neon {
         super::scalar::Scalar.least(self.store(a), mask)
     }
     #[inline(always)]
+    fn select(self, mask: u32, a: Pair, b: Pair) -> Pair {
+        const WEIGHTS: [u32; WIDTH] = [1, 2, 4, 8, 16, 32, 64, 128];
+        proven! {
+            let mask = vdupq_n_u32(mask);
+            let low = vtstq_u32(mask, vld1q_u32(WEIGHTS.as_ptr()));
+            let high = vtstq_u32(mask, vld1q_u32(WEIGHTS.as_ptr().add(4)));
+            Pair(vbslq_f32(low, a.0, b.0), vbslq_f32(high, a.1, b.1))
+        }
+    }
+    #[inline(always)]
+    fn transpose(self, rows: [Pair; WIDTH]) -> [Pair; WIDTH] {
+        let rows = rows.map(|row| self.store(row));
+        super::scalar::Scalar.transpose(rows).map(|row| self.load(&row))
+    }
+    #[inline(always)]
     fn le(self, a: Pair, b: Pair) -> u32 {
         proven!(bits(vcleq_f32(a.0, b.0), vcleq_f32(a.1, b.1)))
     }

@@ -83,6 +83,14 @@ impl Lanes for Scalar {
             .fold(f32::INFINITY, |least, i| if a[i] < least { a[i] } else { least })
     }
     #[inline(always)]
+    fn select(self, mask: u32, a: F, b: F) -> F {
+        from_fn(|i| if mask >> i & 1 == 1 { a[i] } else { b[i] })
+    }
+    #[inline(always)]
+    fn transpose(self, rows: [F; WIDTH]) -> [F; WIDTH] {
+        from_fn(|k| from_fn(|i| rows[i][k]))
+    }
+    #[inline(always)]
     fn le(self, a: F, b: F) -> u32 {
         mask(|i| a[i] <= b[i])
     }

@@ -22,6 +22,10 @@ pub(in crate::bvh) trait Wide: Copy {
     fn max(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
     fn le(self, a: Self::Floats, b: Self::Floats) -> u32;
     fn lt(self, a: Self::Floats, b: Self::Floats) -> u32;
+    /// The least of all lanes, none of which is NaN.
+    fn least(self, a: Self::Floats) -> f32;
+    /// The greatest of all lanes, none of which is NaN.
+    fn greatest(self, a: Self::Floats) -> f32;
 }
 
 /// Two vectors of eight lanes.
@@ -82,5 +86,15 @@ impl<L: Lanes> Wide for Two<L> {
     #[inline(always)]
     fn lt(self, a: Self::Floats, b: Self::Floats) -> u32 {
         self.0.lt(a.0, b.0) & 255 | self.0.lt(a.1, b.1) << WIDTH
+    }
+    #[inline(always)]
+    fn least(self, a: Self::Floats) -> f32 {
+        let halves = self.0.store(self.0.min(a.0, a.1));
+        halves[1..].iter().fold(halves[0], |least, &x| if x < least { x } else { least })
+    }
+    #[inline(always)]
+    fn greatest(self, a: Self::Floats) -> f32 {
+        let halves = self.0.store(self.0.max(a.0, a.1));
+        halves[1..].iter().fold(halves[0], |greatest, &x| if x > greatest { x } else { greatest })
     }
 }

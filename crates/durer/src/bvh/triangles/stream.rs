@@ -90,7 +90,7 @@ impl<'a, F: Found, A: FnMut(usize, F)> Stream<'a, F, A> {
 
 /// Has what a ray needs next brought near.
 #[inline(always)]
-fn prefetch<L: Lanes>(lanes: L, bvh: &TriangleBvh, child: u32) {
+pub(super) fn prefetch<L: Lanes>(lanes: L, bvh: &TriangleBvh, child: u32) {
     let inner = bvh.nodes.as_ptr().wrapping_add(child as usize).cast::<u8>();
     let leaf = bvh.corners.as_ptr().wrapping_add(9 * node::items(child).0).cast::<u8>();
     let from = select_unpredictable(child & LEAF == 0, inner, leaf);

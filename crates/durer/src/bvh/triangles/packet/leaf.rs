@@ -88,7 +88,7 @@ impl Packet<'_> {
                     self.meetings.push(Meeting { corners, triangle });
                 }
                 let (meetings, triangle) = (&self.meetings, self.meetings[number as usize].triangle);
-                met |= e.meet(&self.axes, turned, crossed, number, |other| triangle < meetings[other as usize].triangle);
+                met |= e.meet(lanes, &self.axes, turned, crossed, number, |other| triangle < meetings[other as usize].triangle);
                 all_met |= u64::from(met) << (group * WIDE);
                 if ANY {
                     set_met(&mut e.met, met, number);
@@ -133,7 +133,7 @@ impl Packet<'_> {
                 let inside = lanes.lt(lanes.splat(e.heights[2][i]), lowest)
                     & lanes.lt(highest, lanes.splat(e.heights[3][i]));
                 if candidates & crossed & inside != 0 {
-                    e.met[i] = 1;
+                    e.met[i] = f32::from_bits(1);
                     all_met |= 1 << ray;
                     continue;
                 }
@@ -162,9 +162,9 @@ impl Packet<'_> {
 }
 
 #[inline(always)]
-fn set_met(numbers: &mut [u32; WIDE], met: u32, number: u32) {
+fn set_met(numbers: &mut [f32; WIDE], met: u32, number: u32) {
     for (i, of_ray) in numbers.iter_mut().enumerate() {
-        *of_ray = if met >> i & 1 == 1 { number } else { *of_ray };
+        *of_ray = if met >> i & 1 == 1 { f32::from_bits(number) } else { *of_ray };
     }
 }
 

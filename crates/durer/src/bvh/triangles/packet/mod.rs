@@ -10,8 +10,9 @@
 mod leaf;
 mod rays;
 
+use super::stream::prefetch;
 use super::{TriangleBvh, TriangleHit};
-use crate::bvh::lanes::{Kernel, Lanes, WIDE, Wide};
+use crate::bvh::lanes::{Kernel, Lanes, WIDE, WIDTH, Wide};
 use crate::bvh::node::{LEAF, Node};
 use crate::bvh::traverse::RANKS;
 use crate::math::{Ray, Vec2};
@@ -91,7 +92,7 @@ impl<A: FnMut(usize, Option<TriangleHit>), const ANY: bool> Kernel for Packets<'
             for (i, number) in packet.numbers.iter_mut().enumerate() {
                 *number = first + i.min(rays.len() - 1) as u32;
             }
-            packet.load(self.rays, rays.len());
+            packet.load(lanes, self.rays, rays.len());
             let signs = packet.signs(lanes);
             for key in 0..Axes::KEYS {
                 let mut members = with_key(signs, key) & all;
@@ -105,7 +106,7 @@ impl<A: FnMut(usize, Option<TriangleHit>), const ANY: bool> Kernel for Packets<'
                         members &= members - 1;
                     }
                     if count >= LEAST {
-                        packet.load(self.rays, count);
+                        packet.load(lanes, self.rays, count);
                     }
                 }
                 if count < LEAST || !packet.prepare(lanes, key, count) {
@@ -193,25 +194,18 @@ impl<L: Lanes> Beam<L> {
     }
 }
 
-/// The least or greatest of all lanes.
-macro_rules! across {
-    ($end:ident, $lanes:expr) => {{
-        let lanes = $lanes;
-        let mut all = lanes[0];
-        for lane in &lanes[1..] {
-            all = all.$end(*lane);
-        }
-        all
-    }};
-}
-
 impl Packet<'_> {
     /// Takes the rays with the first numbers, and the last again where lanes are left.
     #[inline(always)]
-    fn load(&mut self, rays: &[Ray], count: usize) {
+    fn load<L: Lanes>(&mut self, lanes: L, rays: &[Ray], count: usize) {
         self.groups = count.div_ceil(WIDE);
-        for k in 0..self.groups * WIDE {
-            self.sixteens[k / WIDE].set(k % WIDE, &rays[self.numbers[k.min(count - 1)] as usize]);
+        for k in (0..self.groups * WIDE).step_by(WIDTH) {
+            let mut eight = [lanes.splat(0.0); WIDTH];
+            for (i, row) in eight.iter_mut().enumerate() {
+                let Ray { origin: o, dir: d, t_min, t_max } = rays[self.numbers[(k + i).min(count - 1)] as usize];
+                *row = lanes.load(&[o.x, o.y, o.z, d.x, d.y, d.z, t_min, t_max]);
+            }
+            self.sixteens[k / WIDE].set(lanes, k % WIDE, eight);
         }
     }
 
@@ -246,12 +240,12 @@ impl Packet<'_> {
         // No closures: what is not inlined into the level's entry is compiled without its instructions.
         let wide = lanes.wide();
         macro_rules! end {
-            ($end:ident, $($of:tt)*) => {{
+            ($end:ident, $across:ident, $($of:tt)*) => {{
                 let mut all = wide.load(&self.sixteens[0].$($of)*);
                 for group in 1..self.groups {
                     all = wide.$end(wide.load(&self.sixteens[group].$($of)*), all);
                 }
-                lanes.splat(across!($end, wide.store(all)))
+                lanes.splat(wide.$across(all))
             }};
         }
         let nowhere = lanes.splat(0.0);
@@ -259,14 +253,14 @@ impl Packet<'_> {
             inverse: [[nowhere; 2]; 3],
             near_from: [nowhere; 3],
             far_from: [nowhere; 3],
-            t_min: end!(min, t_min),
+            t_min: end!(min, least, t_min),
             negative: self.axes.negative,
         };
         for axis in 0..3 {
-            beam.inverse[axis] = [end!(min, inverse[axis]), end!(max, inverse[axis])];
+            beam.inverse[axis] = [end!(min, least, inverse[axis]), end!(max, greatest, inverse[axis])];
             (beam.near_from[axis], beam.far_from[axis]) = match self.axes.negative[axis] {
-                0 => (end!(max, near_from[axis]), end!(min, far_from[axis])),
-                _ => (end!(min, near_from[axis]), end!(max, far_from[axis])),
+                0 => (end!(max, greatest, near_from[axis]), end!(min, least, far_from[axis])),
+                _ => (end!(min, least, near_from[axis]), end!(max, greatest, far_from[axis])),
             };
         }
         beam
@@ -280,7 +274,7 @@ impl Packet<'_> {
         for group in 1..self.groups {
             all = wide.max(wide.load(&self.sixteens[group].t_last), all);
         }
-        across!(max, wide.store(all))
+        wide.greatest(all)
     }
 
     #[inline(always)]
@@ -304,6 +298,7 @@ impl Packet<'_> {
                         let place = (others.trailing_zeros() ^ flip) & 7;
                         others &= others - 1;
                         let next = node.children[place as usize];
+                        prefetch(lanes, bvh, next);
                         stack.push(Entry { rays, child: next, place: child * 8 + place, near: enter[place as usize] });
                     }
                     let inside = self.inside(lanes, node, nearest as usize & 7, rays);
@@ -372,7 +367,7 @@ impl Packet<'_> {
             let rays = (all >> (group * WIDE)) as u32 & 0xffff;
             let mut corners = [[[0.0; WIDE]; 3]; 3];
             for i in (0..WIDE).filter(|_| !ANY) {
-                let from = &self.meetings[e.met[i] as usize].corners;
+                let from = &self.meetings[e.met[i].to_bits() as usize].corners;
                 for corner in 0..3 {
                     for axis in 0..3 {
                         corners[corner][axis][i] = from[corner][axis];
@@ -381,9 +376,9 @@ impl Packet<'_> {
             }
             let [u, v] = if ANY { [[0.0; WIDE]; 2] } else { e.uv(&self.axes, &corners) };
             for i in (0..WIDE).filter(|i| rays >> i & 1 == 1) {
-                let triangle = if ANY { 0 } else { self.meetings[e.met[i] as usize].triangle };
+                let triangle = if ANY { 0 } else { self.meetings[e.met[i].to_bits() as usize].triangle };
                 let hit = TriangleHit { t: e.t_last[i], uv: Vec2::new(u[i], v[i]), triangle };
-                tell(self.numbers[group * WIDE + i] as usize, (e.met[i] != 0).then_some(hit));
+                tell(self.numbers[group * WIDE + i] as usize, (e.met[i].to_bits() != 0).then_some(hit));
             }
         }
     }

@@ -1,7 +1,7 @@
 //! Rays side by side.
 
 use super::Axes;
-use crate::bvh::lanes::{Lanes, WIDE, Wide};
+use crate::bvh::lanes::{Lanes, WIDE, WIDTH, Wide};
 use crate::math::{Aabb, Ray, Vec2, Vec3};
 use crate::shape::watertight::{Along, uv_across};
 
@@ -31,8 +31,8 @@ pub struct Rays {
     /// Heights lower than the first or above the second are outside the interval for sure; those above the third and below the
     /// fourth are inside.
     pub heights: [Numbers; 4],
-    /// Numbers of what was met.
-    pub met: [u32; WIDE],
+    /// Numbers of what was met, as bits.
+    pub met: Numbers,
 }
 
 impl Rays {
@@ -48,16 +48,20 @@ impl Rays {
         t_min: ZERO,
         t_last: ZERO,
         heights: [ZERO; 4],
-        met: [0; WIDE],
+        met: ZERO,
     };
 
+    /// Sets half of the rays, each given as origin, direction and interval.
     #[inline(always)]
-    pub fn set(&mut self, lane: usize, ray: &Ray) {
-        for axis in 0..3 {
-            self.origin[axis][lane] = ray.origin[axis];
-            self.dir[axis][lane] = ray.dir[axis];
+    pub fn set<L: Lanes>(&mut self, lanes: L, first: usize, rays: [L::Floats; WIDTH]) {
+        let [x, y, z, u, v, w, t_min, t_max] = lanes.transpose(rays);
+        let [dx, dy, dz] = &mut self.dir;
+        let [ox, oy, oz] = &mut self.origin;
+        for (to, from) in
+            [(ox, x), (oy, y), (oz, z), (dx, u), (dy, v), (dz, w), (&mut self.t_min, t_min), (&mut self.t_last, t_max)]
+        {
+            to[first..first + WIDTH].copy_from_slice(&lanes.store(from));
         }
-        (self.t_min[lane], self.t_last[lane]) = (ray.t_min, ray.t_max);
     }
 
     /// By axis, a bit for each ray whose direction is negative there; and those of which the first, or the second component is the
@@ -109,7 +113,7 @@ impl Rays {
             [wide.store(wide.div(wide.load(&self.dir[x]), z)), wide.store(wide.div(wide.load(&self.dir[y]), z))];
         // The interval is open.
         self.t_last = self.t_last.map(f32::next_down);
-        self.met = [0; WIDE];
+        self.met = ZERO;
         self.bound(lanes, axes);
         tame
     }
@@ -134,68 +138,53 @@ impl Rays {
     ///
     /// `number` is that of the meeting, and `less` says whether the triangle of another is of greater number.
     #[inline(always)]
-    pub fn meet(
+    pub fn meet<L: Lanes>(
         &mut self,
+        lanes: L,
         axes: &Axes,
         corners: [Vec3; 3],
         crossed: u32,
         number: u32,
         less: impl Fn(u32) -> bool,
     ) -> u32 {
-        const HALF: usize = WIDE / 2;
         let mut met = 0;
-        for (half, crossed) in [(0, crossed & 255), (1, crossed >> HALF)] {
-            if crossed != 0 {
-                met |= self.meet_half(axes, corners, half * HALF, crossed, number, &less) << (half * HALF);
+        for first in [0, WIDTH] {
+            let crossed = crossed >> first & 255;
+            if crossed == 0 {
+                continue;
             }
-        }
-        met
-    }
-
-    #[inline(always)]
-    fn meet_half(
-        &mut self,
-        axes: &Axes,
-        corners: [Vec3; 3],
-        first: usize,
-        crossed: u32,
-        number: u32,
-        less: &impl Fn(u32) -> bool,
-    ) -> u32 {
-        const HALF: usize = WIDE / 2;
-        let [x, y, z] = axes.turned;
-        let half = |numbers: &Numbers| -> [f32; HALF] { std::array::from_fn(|i| numbers[first + i]) };
-        let (ox, oy, oz) = (half(&self.origin[x]), half(&self.origin[y]), half(&self.origin[z]));
-        let (dx, dy, dz) = (half(&self.dir[x]), half(&self.dir[y]), half(&self.dir[z]));
-        let (mut t, mut inside) = ([0.0; HALF], [0; HALF]);
-        for i in 0..HALF {
-            let along = Along::new(Vec3::new(ox[i], oy[i], oz[i]), Vec3::new(dx[i], dy[i], dz[i]), corners);
-            (t[i], inside[i]) = (along.t as f32, u32::from(along.is_inside()) << i);
-        }
-        if inside.iter().fold(0, |all, bit| all | bit) & crossed != crossed {
-            for i in 0..HALF {
+            let [x, y, z] = axes.turned;
+            let (ox, oy, oz) = (half(&self.origin[x], first), half(&self.origin[y], first), half(&self.origin[z], first));
+            let (dx, dy, dz) = (half(&self.dir[x], first), half(&self.dir[y], first), half(&self.dir[z], first));
+            let (mut t, mut height, mut low, mut high) = ([0.0; WIDTH], [0.0; WIDTH], [0.0; WIDTH], [0.0; WIDTH]);
+            for i in 0..WIDTH {
                 let along = Along::new(Vec3::new(ox[i], oy[i], oz[i]), Vec3::new(dx[i], dy[i], dz[i]), corners);
-                t[i] = along.bounded();
+                (t[i], height[i]) = (along.t as f32, along.height() as f32);
+                (low[i], high[i]) = (along.lowest() as f32, along.highest() as f32);
             }
-        }
-        let (t_min, t_last) = (half(&self.t_min), half(&self.t_last));
-        let (mut before, mut same) = ([0; HALF], [0; HALF]);
-        for i in 0..HALF {
+            // Rounding is monotonic: what is so after it, was so before.
+            let height = lanes.load(&height);
+            let inside = lanes.lt(lanes.load(&low), height) & lanes.lt(height, lanes.load(&high));
+            if crossed & !inside != 0 {
+                for i in 0..WIDTH {
+                    let along = Along::new(Vec3::new(ox[i], oy[i], oz[i]), Vec3::new(dx[i], dy[i], dz[i]), corners);
+                    t[i] = along.bounded();
+                }
+            }
+            let (t, t_last) = (lanes.load(&t), lanes.load(half(&self.t_last, first)));
             // Also NaN is refused.
-            before[i] = u32::from((t[i] > t_min[i]) & (t[i] < t_last[i])) << i;
-            same[i] = u32::from((t[i] > t_min[i]) & (t[i] == t_last[i])) << i;
-        }
-        let mut met = before.iter().fold(0, |all, bit| all | bit) & crossed;
-        let mut same = same.iter().fold(0, |all, bit| all | bit) & crossed;
-        while same != 0 {
-            let i = same.trailing_zeros() as usize;
-            same &= same - 1;
-            met |= u32::from(less(self.met[first + i])) << i;
-        }
-        for i in 0..HALF {
-            let wanted = met >> i & 1 == 1;
-            self.t_last[first + i] = if wanted { t[i] } else { t_last[i] };
-            self.met[first + i] = if wanted { number } else { self.met[first + i] };
+            let within = crossed & lanes.lt(lanes.load(half(&self.t_min, first)), t);
+            let mut first_met = within & lanes.lt(t, t_last);
+            let mut same = within & lanes.le(t, t_last) & !first_met;
+            while same != 0 {
+                let i = same.trailing_zeros() as usize;
+                same &= same - 1;
+                first_met |= u32::from(less(self.met[first + i].to_bits())) << i;
+            }
+            let numbers = lanes.select(first_met, lanes.splat(f32::from_bits(number)), lanes.load(half(&self.met, first)));
+            self.met[first..first + WIDTH].copy_from_slice(&lanes.store(numbers));
+            self.t_last[first..first + WIDTH].copy_from_slice(&lanes.store(lanes.select(first_met, t, t_last)));
+            met |= first_met << first;
         }
         met
     }
@@ -214,9 +203,9 @@ impl Rays {
         let at = |v: &[Numbers; 3]| Vec3::new(v[x][lane], v[y][lane], v[z][lane]);
         let along = Along::new(at(&self.origin), at(&self.dir), corners);
         let t = if along.is_inside() { along.t as f32 } else { along.bounded() };
-        let met = t > self.t_min[lane] && (t < self.t_last[lane] || t == self.t_last[lane] && less(self.met[lane]));
+        let met = t > self.t_min[lane] && (t < self.t_last[lane] || t == self.t_last[lane] && less(self.met[lane].to_bits()));
         if met {
-            (self.t_last[lane], self.met[lane]) = (t, number);
+            (self.t_last[lane], self.met[lane]) = (t, f32::from_bits(number));
         }
         met
     }
@@ -242,6 +231,15 @@ impl Rays {
     pub fn ray(&self, lane: usize) -> Ray {
         let at = |v: &[Numbers; 3]| Vec3::new(v[0][lane], v[1][lane], v[2][lane]);
         Ray { origin: at(&self.origin), dir: at(&self.dir), t_min: self.t_min[lane], t_max: self.t_last[lane] }
+    }
+}
+
+/// Eight of the numbers.
+#[inline(always)]
+fn half(numbers: &Numbers, first: usize) -> &[f32; WIDTH] {
+    match numbers[first..].first_chunk() {
+        Some(half) => half,
+        None => unreachable!("sixteen are twice eight"),
     }
 }
 
