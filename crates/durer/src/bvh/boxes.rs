@@ -4,7 +4,7 @@ use super::Tally;
 use super::build::{self, Settings};
 use super::lanes::{Available, Kernel, Lanes};
 use super::node::{self, Node};
-use super::traverse::{RayBox, Visitor, is_sound, walk};
+use super::traverse::{RayBox, Visitor, walk};
 use crate::math::{Aabb, Ray};
 
 /// A bounding volume hierarchy of eight-wide nodes over numbered things.
@@ -52,7 +52,7 @@ impl Bvh {
     /// most the old. Things whose boxes begin exactly at `t_max` are still offered. Minus infinity ends the walk.
     #[inline]
     pub fn walk<T: Tally>(&self, ray: &Ray, tally: &mut T, test: impl FnMut(usize, f32, &mut T) -> f32) {
-        if self.nodes.is_empty() || !is_sound(ray) {
+        if self.nodes.is_empty() {
             return;
         }
         self.level.run(Walk { bvh: self, ray, things: Things { tally, test } });
@@ -70,11 +70,11 @@ impl<T: Tally, F: FnMut(usize, f32, &mut T) -> f32> Kernel for Walk<'_, T, F> {
 
     #[inline(always)]
     fn run<L: Lanes>(mut self, lanes: L) {
-        let boxes = RayBox::new(self.ray, self.bvh.bounds);
+        let Some(boxes) = RayBox::new(self.ray, self.bvh.bounds.reach()) else { return };
         match boxes.tame {
             true => walk::<L, _, true>(lanes, &self.bvh.nodes, &boxes, self.ray.t_max, &mut self.things),
             false => walk::<L, _, false>(lanes, &self.bvh.nodes, &boxes, self.ray.t_max, &mut self.things),
-        }
+        };
     }
 }
 

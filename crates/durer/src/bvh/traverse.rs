@@ -1,8 +1,8 @@
 //! Walking a ray through the tree, nearest boxes first.
 //!
 //! Of the children that the ray meets the nearest is next; the others are pushed, farthest first, by one compressing
-//! store whatever their number. When a hit shortens the ray, what lies beyond is removed from the stack at once. So no
-//! branch depends on how many children are met, and none on a popped distance.
+//! store whatever their number, so that no branch depends on how many children are met. What lies beyond a hit is dropped when it
+//! is popped: that is guessed rightly more often than not, and the walk goes on before it is known where the hit is.
 //!
 //! Source: Fuetterer, Lojewski, Pfreundt, Ebert, *Efficient Ray Tracing Kernels for Modern CPU Architectures*, JCGT
 //! 4(4), 2015.
@@ -10,7 +10,8 @@
 use super::Tally;
 use super::lanes::{Lanes, Room, Stack};
 use super::node::{LEAF, Node};
-use crate::math::{Aabb, Ray, Vec3};
+use crate::math::{Ray, Vec3};
+use glam::Vec3A;
 
 /// A ray prepared for boxes: conservative, so that rounding never loses a box that the exact ray meets.
 ///
@@ -18,12 +19,9 @@ use crate::math::{Aabb, Ray, Vec3};
 /// several roundings of the largest distance that occurs, which also covers the rounding of the triangle test.
 #[derive(Clone, Copy)]
 pub(super) struct RayBox {
-    inverse: [f32; 3],
-    near_origin: [f32; 3],
-    far_origin: [f32; 3],
-    /// By axis: 1 where the direction is negative, else 0.
-    negative: [usize; 3],
-    /// Children's places in the order from far to near are 0, 1, 2, ... after an exclusive or with this.
+    planes: Planes,
+    /// Children's places in the order from far to near are 0, 1, 2, ... after an exclusive or with this: a bit for each
+    /// axis, set where the direction is positive.
     pub flip: u32,
     t_min: f32,
     /// Distances of boxes are in these units; 1 where the ray is tame.
@@ -34,45 +32,73 @@ pub(super) struct RayBox {
     pub moderate: bool,
 }
 
-impl RayBox {
-    /// Prepares a ray for a tree with these bounds.
-    #[inline(always)]
-    pub fn new(ray: &Ray, bounds: Aabb) -> Self {
-        // In this range squares neither overflow nor vanish.
-        const TAME: std::ops::Range<f32> = 1e-15..1e15;
-        // Coordinates themselves count too: a ray that was moved into object space is off by their rounding.
-        let reach = (ray.origin - bounds.min).abs().max((ray.origin - bounds.max).abs()).max(ray.origin.abs());
-        let reach = reach.max_element();
-        let pad = 8.0 * f32::EPSILON * reach + f32::MIN_POSITIVE;
-        let length = ray.dir.abs();
-        let moderate = reach < TAME.end;
-        let tame =
-            moderate && reach > TAME.start && length.min_element() > TAME.start && length.max_element() < TAME.end;
-        let outward = Vec3::splat(pad).copysign(ray.dir);
-        let (near_origin, far_origin) = (ray.origin + outward, ray.origin - outward);
-        let negative = [0, 1, 2].map(|axis| usize::from(ray.dir[axis].is_sign_negative()));
-        let inverse = 1.0 / ray.dir;
-        let (scale, inverse, near_origin, far_origin) = match tame {
-            true => (1.0, inverse, -near_origin * inverse, -far_origin * inverse),
-            false => {
-                // A direction with a power of two taken out, so that distances within the bounds are no extreme numbers.
-                let scale = f32::from_bits(length.max_element().to_bits() & 0x7f80_0000).max(f32::MIN_POSITIVE);
-                let dir = ray.dir / scale;
-                // What moves the ray by much less than the padding counts as zero, and what has no inverse.
-                let still = dir.abs().cmplt(Vec3::splat(1e-30));
-                let inverse = Vec3::select(still, Vec3::INFINITY.copysign(dir), 1.0 / dir);
-                (scale, inverse, near_origin, far_origin)
-            }
-        };
-        let t_min = if tame { ray.t_min } else { (ray.t_min * scale).next_down() };
-        let [inverse, near_origin, far_origin] = [inverse.to_array(), near_origin.to_array(), far_origin.to_array()];
-        // The place 7 is farthest when all signs are positive.
-        let flip = 7 ^ (negative[0] | negative[1] << 1 | negative[2] << 2) as u32;
-        RayBox { inverse, near_origin, far_origin, negative, flip, t_min, scale, tame, moderate }
-    }
+/// By axis, what distances of planes are computed from.
+#[derive(Clone, Copy)]
+struct Planes {
+    inverse: [f32; 3],
+    near_origin: [f32; 3],
+    far_origin: [f32; 3],
 }
 
+/// How far the sides of boxes are moved outwards, where numbers are no greater than `reach`.
+fn pad(reach: f32) -> f32 {
+    8.0 * f32::EPSILON * reach + f32::MIN_POSITIVE
+}
+
+/// In this range squares neither overflow nor vanish.
+pub(super) const TAME: std::ops::Range<f32> = 1e-15..1e15;
+
 impl RayBox {
+    /// Prepares a ray for a tree with no coordinates greater than `most`; `None` where it cannot hit anything.
+    #[inline(always)]
+    pub fn new(ray: &Ray, most: f32) -> Option<Self> {
+        let (origin, dir) = (Vec3A::from(ray.origin), Vec3A::from(ray.dir));
+        // Coordinates themselves count too: a ray that was moved into object space is off by their rounding.
+        let reach = origin.abs().max_element() + most;
+        let [start, end] = [TAME.start, TAME.end].map(Vec3A::splat);
+        let (length, ordinary) = (dir.abs(), origin.abs().cmplt(end));
+        let tame = (ordinary & length.cmpgt(start) & length.cmplt(end)).all() && TAME.contains(&reach);
+        if !tame {
+            return is_sound(ray).then(|| Self::wild(ray, reach));
+        }
+        let outward = Vec3A::splat(pad(reach)).copysign(dir);
+        let inverse = 1.0 / dir;
+        let planes = Planes {
+            inverse: inverse.to_array(),
+            near_origin: (-(origin + outward) * inverse).to_array(),
+            far_origin: (-(origin - outward) * inverse).to_array(),
+        };
+        let negative = dir.is_negative_bitmask();
+        (ray.t_min < ray.t_max).then_some(RayBox {
+            planes,
+            flip: 7 ^ negative,
+            t_min: ray.t_min,
+            scale: 1.0,
+            tame,
+            moderate: true,
+        })
+    }
+
+    /// A ray with zeroes or extreme numbers.
+    #[cold]
+    fn wild(ray: &Ray, reach: f32) -> Self {
+        let length = ray.dir.abs();
+        // A direction with a power of two taken out, so that distances within the bounds are no extreme numbers.
+        let scale = f32::from_bits(length.max_element().to_bits() & 0x7f80_0000).max(f32::MIN_POSITIVE);
+        let dir = ray.dir / scale;
+        // What moves the ray by much less than the padding counts as zero, and what has no inverse.
+        let still = dir.abs().cmplt(Vec3::splat(1e-30));
+        let outward = Vec3::splat(pad(reach)).copysign(dir);
+        let planes = Planes {
+            inverse: Vec3::select(still, Vec3::INFINITY.copysign(dir), 1.0 / dir).to_array(),
+            near_origin: (ray.origin + outward).to_array(),
+            far_origin: (ray.origin - outward).to_array(),
+        };
+        let flip = 7 ^ dir.is_negative_bitmask();
+        let t_min = (ray.t_min * scale).next_down();
+        RayBox { planes, flip, t_min, scale, tame: false, moderate: reach < TAME.end }
+    }
+
     /// A distance along the ray, not too small, as boxes have it.
     #[inline(always)]
     fn limit<const TAME: bool>(&self, t: f32) -> f32 {
@@ -92,7 +118,7 @@ pub(super) trait Visitor {
 
 /// Shows every leaf that the ray may meet before `t_max` to the visitor, roughly from near to far.
 ///
-/// Leaves whose boxes begin exactly at `t_max` are still shown. `TAME` must be that of `boxes`.
+/// Gives `t_max` as it is in the end. Leaves whose boxes begin exactly at `t_max` are still shown. `TAME` must be that of `boxes`.
 #[inline(always)]
 pub(super) fn walk<L: Lanes, V: Visitor, const TAME: bool>(
     lanes: L,
@@ -100,10 +126,11 @@ pub(super) fn walk<L: Lanes, V: Visitor, const TAME: bool>(
     boxes: &RayBox,
     mut t_max: f32,
     visitor: &mut V,
-) {
+) -> f32 {
     let slabs = Slabs::new(lanes, boxes);
     let (order, ranks) = (lanes.flipped(boxes.flip), &RANKS[boxes.flip as usize]);
-    let mut limit = lanes.splat(boxes.limit::<TAME>(t_max));
+    let mut far = boxes.limit::<TAME>(t_max);
+    let mut limit = lanes.splat(far);
     let mut room = Room::new();
     let mut stack = Stack::new(&mut room);
     let mut child = 0;
@@ -122,18 +149,24 @@ pub(super) fn walk<L: Lanes, V: Visitor, const TAME: bool>(
         } else {
             let t = visitor.leaf(lanes, child, t_max);
             if t < t_max {
-                if t == f32::NEG_INFINITY {
-                    return;
-                }
                 t_max = t;
-                let far = boxes.limit::<TAME>(t);
+                if t == f32::NEG_INFINITY {
+                    return t_max;
+                }
+                far = boxes.limit::<TAME>(t);
                 limit = lanes.splat(far);
-                lanes.drop_beyond(&mut stack, far);
             }
         }
-        match stack.pop() {
-            Some(next) => child = next,
-            None => return,
+        loop {
+            match stack.pop_near() {
+                Some((next, near)) => {
+                    if near <= far {
+                        child = next;
+                        break;
+                    }
+                }
+                None => return t_max,
+            }
         }
     }
 }
@@ -163,18 +196,20 @@ pub(super) struct Slabs<L: Lanes> {
     near_origin: [L::Floats; 3],
     far_origin: [L::Floats; 3],
     t_min: L::Floats,
+    /// By axis: 1 where the direction is negative, else 0.
     negative: [usize; 3],
 }
 
 impl<L: Lanes> Slabs<L> {
     #[inline(always)]
     pub fn new(lanes: L, boxes: &RayBox) -> Self {
+        let negative = |axis: u32| (!boxes.flip >> axis & 1) as usize;
         Slabs {
-            inverse: splat3(lanes, boxes.inverse),
-            near_origin: splat3(lanes, boxes.near_origin),
-            far_origin: splat3(lanes, boxes.far_origin),
+            inverse: splat3(lanes, boxes.planes.inverse),
+            near_origin: splat3(lanes, boxes.planes.near_origin),
+            far_origin: splat3(lanes, boxes.planes.far_origin),
             t_min: lanes.splat(boxes.t_min),
-            negative: boxes.negative,
+            negative: [negative(0), negative(1), negative(2)],
         }
     }
 }

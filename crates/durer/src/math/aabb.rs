@@ -28,6 +28,11 @@ impl Aabb {
         Aabb { min: self.min.min(other.min), max: self.max.max(other.max) }
     }
 
+    /// The greatest coordinate of its corners, without signs.
+    pub fn reach(&self) -> f32 {
+        self.min.abs().max(self.max.abs()).max_element()
+    }
+
     /// Whether a point lies in it or on its border.
     pub fn holds(&self, point: Vec3) -> bool {
         point.cmpge(self.min).all() && point.cmple(self.max).all()

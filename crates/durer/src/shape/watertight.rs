@@ -15,6 +15,7 @@
 use super::Crossing;
 use crate::math::{Ray, Vec2, Vec3};
 use glam::DVec3;
+use std::hint::select_unpredictable;
 
 /// A ray prepared for many triangles.
 ///
@@ -33,22 +34,23 @@ impl Sheared {
     /// Prepares a ray. One without direction, or with an infinite one, hits nothing.
     #[inline(always)]
     pub fn new(ray: &Ray) -> Self {
-        let d = ray.dir.abs();
-        let kz = if d.x > d.y && d.x > d.z {
-            0
-        } else if d.y > d.z {
-            1
-        } else {
-            2
-        };
-        let (mut kx, mut ky) = ((kz + 1) % 3, (kz + 2) % 3);
-        if ray.dir[kz] < 0.0 {
-            std::mem::swap(&mut kx, &mut ky);
-        }
-        let axes = [kx, ky, kz];
+        let sheared = Self::finite(ray);
+        let shear = if sheared.dir.z.is_finite() { sheared.shear } else { Vec2::NAN };
+        Sheared { shear, ..sheared }
+    }
+
+    /// Prepares a ray that has a finite direction.
+    #[inline(always)]
+    pub(crate) fn finite(ray: &Ray) -> Self {
+        // By the longest component and its sign: the axes that turn the ray.
+        const AXES: [[[usize; 3]; 2]; 4] =
+            [[[1, 2, 0], [2, 1, 0]], [[2, 0, 1], [0, 2, 1]], [[0, 1, 2], [1, 0, 2]], [[0; 3]; 2]];
+        let [x, y, z] = ray.dir.abs().to_array();
+        let longest = select_unpredictable((x > y) & (x > z), 0, 2 - usize::from(y > z));
+        let negative = ray.dir.is_negative_bitmask() as usize >> longest & 1;
+        let axes = AXES[longest & 3][negative];
         let (origin, dir) = (turned(axes, ray.origin), turned(axes, ray.dir));
-        let z = if dir.is_finite() { dir.z } else { f32::NAN };
-        Sheared { axes, origin, dir, shear: Vec2::new(dir.x / z, dir.y / z), least_volume: 0.0 }
+        Sheared { axes, origin, dir, shear: Vec2::new(dir.x / dir.z, dir.y / dir.z), least_volume: 0.0 }
     }
 
     /// Misses triangles for which |(b - a) x (c - a) · d| is less than this: see
@@ -64,8 +66,9 @@ impl Sheared {
         if !self.crosses(corners) {
             return None;
         }
-        let t = self.distance(corners, t_min, t_max.next_down())?;
-        Some(Crossing { t, uv: self.uv(corners) })
+        let t = self.t(corners)?;
+        // Refuses also NaN.
+        (t > t_min && t < t_max).then(|| Crossing { t, uv: self.uv(corners) })
     }
 
     /// Whether the line of the ray crosses a triangle, and does not just see it from its side.
@@ -77,14 +80,6 @@ impl Sheared {
         }
         let det = areas(flat).element_sum();
         det != 0.0 && !det.is_nan()
-    }
-
-    /// Where the ray meets a triangle that its line crosses, if after `t_min` and not after `t_last`.
-    #[inline(always)]
-    pub(crate) fn distance(&self, corners: [Vec3; 3], t_min: f32, t_last: f32) -> Option<f32> {
-        let t = self.t(corners)?;
-        // Refuses also NaN.
-        (t > t_min && t <= t_last && t.is_finite()).then_some(t)
     }
 
     /// The second and third barycentric coordinate of the crossing with a triangle that is crossed.
@@ -105,9 +100,9 @@ impl Sheared {
         Vec2::new(p.x - self.shear.x * p.z, p.y - self.shear.y * p.z)
     }
 
-    /// Where the plane of a triangle is crossed, within the triangle's bounds.
+    /// Where the ray's line crosses a triangle that it crosses: within the triangle's bounds. It may be infinite.
     #[inline(always)]
-    fn t(&self, corners: [Vec3; 3]) -> Option<f32> {
+    pub(crate) fn t(&self, corners: [Vec3; 3]) -> Option<f32> {
         let along = Along::new(self.origin, self.dir, corners);
         if along.volume.abs() < self.least_volume {
             return None;
@@ -151,36 +146,33 @@ impl Along {
         Along { heights: [a.z, b.z, c.z], dz: dir.z, volume, t: n.dot(a) / volume }
     }
 
-    /// The height of the crossing.
+    /// The height of the crossing with the plane.
     #[inline(always)]
     pub fn height(&self) -> f64 {
         self.t * self.dz
     }
 
+    /// The least and the greatest height of a corner.
     #[inline(always)]
-    pub fn lowest(&self) -> f64 {
-        let [a, b, c] = self.heights;
-        a.min(b).min(c)
+    pub fn heights(&self) -> (f64, f64) {
+        range(self.heights)
     }
 
-    #[inline(always)]
-    pub fn highest(&self) -> f64 {
-        let [a, b, c] = self.heights;
-        a.max(b).max(c)
-    }
-
-    /// Whether `t` is as it is also with bounds. Products are rounded monotonically: strictly between two heights, t is between
-    /// their distances.
+    /// Whether `t` is as it is also with bounds. Products are rounded monotonically: strictly between two corners' heights, t is
+    /// between their distances.
     #[inline(always)]
     pub fn is_inside(&self) -> bool {
-        self.lowest() < self.height() && self.height() < self.highest()
+        let (low, high) = self.heights();
+        low < self.height() && self.height() < high
     }
 
-    /// `t` within the distances of the corners: they bound also a triangle that is seen from nearly its side (and `max` replaces NaN).
+    /// `t` within the distances of the corners: they bound also a triangle that is seen from nearly its side, even where `t` is no
+    /// number.
     #[inline(always)]
     pub fn bounded(&self) -> f32 {
-        let [a, b, c] = self.heights.map(|height| height / self.dz);
-        self.t.max(a.min(b).min(c)).min(a.max(b).max(c)) as f32
+        let (near, far) = range(self.heights.map(|height| height / self.dz));
+        let t = if self.t > near { self.t } else { near };
+        (if t < far { t } else { far }) as f32
     }
 }
 
@@ -193,10 +185,19 @@ pub(crate) fn uv_across(flat: [Vec2; 3]) -> Vec2 {
     Vec2::new((areas.y / det) as f32, (areas.z / det) as f32)
 }
 
+/// The least and the greatest of three numbers.
+#[inline(always)]
+fn range([a, b, c]: [f64; 3]) -> (f64, f64) {
+    let least = |a: f64, b: f64| if a < b { a } else { b };
+    let most = |a: f64, b: f64| if a > b { a } else { b };
+    (least(least(a, b), c), most(most(a, b), c))
+}
+
 #[inline(always)]
 fn turned([x, y, z]: [usize; 3], v: Vec3) -> Vec3 {
-    let v = v.to_array();
-    Vec3::new(v[x], v[y], v[z])
+    let v = v.extend(0.0).to_array();
+    // So masked, indices need not be tested.
+    Vec3::new(v[x & 3], v[y & 3], v[z & 3])
 }
 
 /// Twice the areas of the triangles from the origin to the three edges: unnormalised barycentric coordinates.

@@ -37,11 +37,13 @@ pub(super) use proven;
 /// Nine rows, checked once.
 #[inline(always)]
 pub(super) fn rows(from: &[f32], stride: usize, axes: [usize; 3]) -> [[__m256; 3]; 3] {
-    assert!(stride <= WIDTH && from.len() >= 8 * stride + WIDTH && axes[0].max(axes[1]).max(axes[2]) < 3);
+    assert!(stride <= WIDTH && from.len() >= 9 * stride + WIDTH);
+    // So masked, a row begins no later than behind the last.
+    let starts = [(axes[0] & 3) * stride, (axes[1] & 3) * stride, (axes[2] & 3) * stride];
     macro_rules! row {
         ($corner:literal, $k:literal) => {
-            // SAFETY: the last row, number 8, ends within the slice; the features are proven by the caller.
-            unsafe { _mm256_loadu_ps(from.as_ptr().add((3 * $corner + axes[$k]) * stride)) }
+            // SAFETY: row number 9 would end within the slice; the features are proven by the caller.
+            unsafe { _mm256_loadu_ps(from.as_ptr().add(starts[$k]).add($corner * 3 * stride)) }
         };
     }
     [[row!(0, 0), row!(0, 1), row!(0, 2)], [row!(1, 0), row!(1, 1), row!(1, 2)], [row!(2, 0), row!(2, 1), row!(2, 2)]]

@@ -78,8 +78,9 @@ pub(super) trait Lanes: Copy {
 /// What [`Lanes::rows`] gives in one lane.
 #[inline(always)]
 pub fn column(from: &[f32], stride: usize, [x, y, z]: [usize; 3], lane: usize) -> [[f32; 3]; 3] {
-    assert!(lane < stride && from.len() >= 9 * stride && x.max(y).max(z) < 3);
-    // SAFETY: the last is in row 8, before the slice's end.
+    assert!(lane < stride && stride <= WIDTH && from.len() >= 9 * stride + WIDTH);
+    let [x, y, z] = [x & 3, y & 3, z & 3];
+    // SAFETY: so masked, the last is in row 9, before the slice's end.
     let at = |place: usize| unsafe { *from.get_unchecked(place) };
     let (x, y, z) = (x * stride + lane, y * stride + lane, z * stride + lane);
     [0, 3 * stride, 6 * stride].map(|corner| [at(corner + x), at(corner + y), at(corner + z)])

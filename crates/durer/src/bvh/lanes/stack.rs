@@ -43,9 +43,13 @@ impl<'a> Stack<'a> {
         self.height += 1;
     }
 
+    /// The topmost child and where the ray enters it.
     #[inline(always)]
-    pub fn pop(&mut self) -> Option<u32> {
-        (self.height > 0).then(|| self.pop_if(true))
+    pub fn pop_near(&mut self) -> Option<(u32, f32)> {
+        self.height = self.height.checked_sub(1)?;
+        let (children, near, height) = self.all();
+        // SAFETY: everything below what was the height was written.
+        Some(unsafe { (*children.add(height), *near.add(height)) })
     }
 
     pub fn clear(&mut self) {

@@ -32,7 +32,7 @@ fn number(random: &mut Random) -> f32 {
 /// Numbers for all lanes, and what is needed beside them.
 struct Input {
     floats: [[f32; WIDTH]; 3],
-    rows: [f32; 9 * WIDTH],
+    rows: [f32; 10 * WIDTH],
     stride: usize,
     axes: [usize; 3],
     flip: u32,
@@ -95,7 +95,7 @@ impl Kernel for Everything<'_> {
         lanes.push(&mut stack, &children, a, lanes.flipped(*flip), *mask);
         lanes.push(&mut stack, &children, b, lanes.flipped(*flip), !mask & 255);
         lanes.drop_beyond(&mut stack, floats[2][0]);
-        found.extend(std::iter::from_fn(|| stack.pop()));
+        found.extend(std::iter::from_fn(|| stack.pop_near().map(|(child, _)| child)));
         found
     }
 }

@@ -24,6 +24,7 @@ impl TriangleBvh {
             nodes: tree.nodes,
             order: tree.order,
             bounds: tree.bounds,
+            reach: tree.bounds.reach(),
             level: Available::chosen(),
             least_volume: 0.0,
         };
@@ -56,6 +57,7 @@ impl TriangleBvh {
         }
         self.bounds =
             self.nodes.first().map_or(Aabb::EMPTY, |root| root.children().fold(Aabb::EMPTY, |b, c| b.union(c.1)));
+        self.reach = self.bounds.reach();
     }
 
     /// Writes the corners of all leaves.

@@ -9,7 +9,6 @@ mod stream;
 use super::Tally;
 use super::lanes::{Available, Level};
 use super::node::{self, Node};
-use super::traverse::is_sound;
 use crate::math::{Aabb, Ray, Vec2};
 use crate::shape::watertight::Sheared;
 use query::{All, Any, Nearest, Query};
@@ -56,6 +55,8 @@ pub struct TriangleBvh {
     /// Corners by leaf: nine rows, each of as many numbers as the leaf has triangles; a vector's width behind the last.
     corners: Vec<f32>,
     bounds: Aabb,
+    /// The greatest coordinate, without signs.
+    reach: f32,
     level: Available,
     least_volume: f64,
 }
@@ -87,7 +88,7 @@ impl TriangleBvh {
     /// As [`TriangleBvh::closest`], counting nodes and tests.
     #[inline]
     pub fn closest_counting<T: Tally>(&self, ray: &Ray, tally: &mut T) -> Option<TriangleHit> {
-        self.query::<T, Nearest>(ray, tally).hit()
+        self.query::<T, Nearest>(ray, tally)
     }
 
     /// Whether anything is hit in the ray's open interval.
@@ -99,7 +100,7 @@ impl TriangleBvh {
     /// As [`TriangleBvh::occluded`], counting nodes and tests.
     #[inline]
     pub fn occluded_counting<T: Tally>(&self, ray: &Ray, tally: &mut T) -> bool {
-        self.query::<T, Any>(ray, tally).0
+        self.query::<T, Any>(ray, tally)
     }
 
     /// All hits in the ray's open interval, by `t` and then by number of the triangle.
@@ -109,7 +110,7 @@ impl TriangleBvh {
 
     /// As [`TriangleBvh::all_hits`], counting nodes and tests.
     pub fn all_hits_counting<T: Tally>(&self, ray: &Ray, tally: &mut T) -> Vec<TriangleHit> {
-        let mut all = self.query::<T, All>(ray, tally).0;
+        let mut all = self.query::<T, All>(ray, tally);
         all.sort_unstable_by(|a, b| a.t.total_cmp(&b.t).then(a.triangle.cmp(&b.triangle)));
         // A triangle that was cut is found in several leaves.
         all.dedup_by_key(|hit| hit.triangle);
@@ -130,7 +131,7 @@ impl TriangleBvh {
     pub fn closest_batch(&self, rays: &[Ray], hits: &mut [Option<TriangleHit>]) {
         assert_eq!(rays.len(), hits.len(), "a place for each hit");
         let rest = self.packets::<false>(rays, |i, hit| hits[i] = hit);
-        self.stream(rays, &rest, |i, found: Nearest| hits[i] = found.hit());
+        self.stream::<Nearest>(rays, &rest, |i, hit| hits[i] = hit);
     }
 
     /// For each ray, in order, whether anything is hit; several rays are on their way at once.
@@ -141,14 +142,14 @@ impl TriangleBvh {
     pub fn occluded_batch(&self, rays: &[Ray], answers: &mut [bool]) {
         assert_eq!(rays.len(), answers.len(), "a place for each answer");
         let rest = self.packets::<true>(rays, |i, hit| answers[i] = hit.is_some());
-        self.stream(rays, &rest, |i, found: Any| answers[i] = found.0);
+        self.stream::<Any>(rays, &rest, |i, answer| answers[i] = answer);
     }
 
     #[inline]
-    fn query<T: Tally, F: query::Found>(&self, ray: &Ray, tally: &mut T) -> F {
-        match self.nodes.is_empty() || !is_sound(ray) {
-            true => F::default(),
-            false => self.level.run(Query { bvh: self, ray, tally, found: PhantomData }),
+    fn query<T: Tally, F: query::Found>(&self, ray: &Ray, tally: &mut T) -> F::Answer {
+        match self.nodes.is_empty() {
+            true => F::Answer::default(),
+            false => self.level.run(Query::<T, F> { bvh: self, ray, tally, found: PhantomData }),
         }
     }
 

@@ -1,11 +1,11 @@
 //! What a ray asks of a tree of triangles.
 
-use super::leaf::{Quick, quick};
+use super::leaf::{Flat, Span};
 use super::{TriangleBvh, TriangleHit};
 use crate::bvh::Tally;
 use crate::bvh::lanes::{Kernel, Lanes, WIDTH, column};
 use crate::bvh::node;
-use crate::bvh::traverse::{RayBox, Visitor, walk};
+use crate::bvh::traverse::{RayBox, TAME, Visitor, walk};
 use crate::math::{Ray, Vec3};
 use crate::shape::watertight::Sheared;
 use std::marker::PhantomData;
@@ -21,149 +21,256 @@ pub struct Query<'a, T, F> {
 /// A triangle in its leaf.
 #[derive(Clone, Copy)]
 pub struct Place {
-    first: usize,
-    count: usize,
+    leaf: u32,
     lane: usize,
+}
+
+/// A triangle met at `t`.
+#[derive(Clone, Copy)]
+pub struct Met {
+    t: f32,
+    triangle: u32,
+    place: Place,
+}
+
+/// A ray among triangles.
+pub struct Asked<'a> {
+    bvh: &'a TriangleBvh,
+    sheared: Sheared,
+    t_min: f32,
+    t_max: f32,
 }
 
 /// An answer in the making.
 pub trait Found: Default {
-    /// Whether any hit will do.
-    const ANY: bool;
+    type Answer: Default;
 
-    /// A hit not after `t_max`; gives the new one, and minus infinity to end the search.
-    fn offer(&mut self, t: f32, triangle: u32, place: Place, t_max: f32) -> f32;
+    /// Takes note of triangles of a leaf that are met for sure, not after `t_max`; gives the new one, and minus infinity to end the
+    /// search.
+    fn met<L: Lanes>(&mut self, lanes: L, asked: &Asked, leaf: u32, met: u32, span: &Span<L>, t_max: f32) -> f32;
+
+    /// Takes note of a triangle; gives the new `t_max`.
+    fn met_at(&mut self, asked: &Asked, met: Met, t_max: f32) -> f32;
 
     /// When the search has ended.
-    fn finish(&mut self, _: &TriangleBvh, _: &Sheared) {}
+    fn answer(&mut self, asked: &Asked, t_max: f32) -> Self::Answer;
 }
 
-/// The first hit.
-pub struct Nearest {
-    t: f32,
-    triangle: u32,
-    place: Option<Place>,
-    hit: Option<TriangleHit>,
+/// Triangles of a leaf of which one may be the first, none before `near`.
+#[derive(Clone, Copy)]
+struct Pending {
+    leaf: u32,
+    lanes: u32,
+    near: f32,
 }
+
+/// As many leaves may be pending.
+const PENDING: usize = 4;
+
+/// The first hit. Nearly always bounds are enough to tell which that is, so only in the end it is found out where it is.
+pub struct Nearest {
+    pending: [Pending; PENDING],
+    count: usize,
+    /// The nearest of those of which it is known; one of the number [`NONE`] before there is any.
+    best: Met,
+}
+
+const NONE: u32 = u32::MAX;
 
 impl Default for Nearest {
     #[inline(always)]
     fn default() -> Self {
-        Nearest { t: f32::INFINITY, triangle: u32::MAX, place: None, hit: None }
+        Nearest {
+            pending: [Pending { leaf: 0, lanes: 0, near: 0.0 }; PENDING],
+            count: 0,
+            best: Met { t: f32::INFINITY, triangle: NONE, place: Place { leaf: 0, lane: 0 } },
+        }
     }
 }
 
+/// The lesser of two numbers.
+#[inline(always)]
+fn lesser(a: f32, b: f32) -> f32 {
+    if a < b { a } else { b }
+}
+
 impl Nearest {
+    /// Finds out where the pending triangles are; gives the new `t_max`.
     #[inline(always)]
-    pub fn hit(self) -> Option<TriangleHit> {
-        self.hit
+    fn settle(&mut self, asked: &Asked, mut t_max: f32) -> f32 {
+        for i in 0..self.count {
+            let Pending { leaf, mut lanes, near } = self.pending[i];
+            while lanes != 0 && near <= t_max {
+                let place = Place { leaf, lane: lanes.trailing_zeros() as usize };
+                lanes &= lanes - 1;
+                if let Some(met) = asked.meets(place, t_max) {
+                    t_max = self.met_at(asked, met, t_max);
+                }
+            }
+        }
+        self.count = 0;
+        t_max
     }
 }
 
 impl Found for Nearest {
-    const ANY: bool = false;
+    type Answer = Option<TriangleHit>;
 
     #[inline(always)]
-    fn offer(&mut self, t: f32, triangle: u32, place: Place, t_max: f32) -> f32 {
-        if (t, triangle) < (self.t, self.triangle) {
-            (self.t, self.triangle, self.place) = (t, triangle, Some(place));
+    fn met<L: Lanes>(&mut self, lanes: L, asked: &Asked, leaf: u32, met: u32, span: &Span<L>, mut t_max: f32) -> f32 {
+        if self.count == PENDING {
+            t_max = self.settle(asked, t_max);
         }
-        t_max.min(t)
+        t_max = lesser(lanes.least(span.far, met), t_max);
+        let lanes_left = met & lanes.le(span.near, lanes.splat(t_max));
+        self.pending[self.count] = Pending { leaf, lanes: lanes_left, near: lanes.least(span.near, met) };
+        self.count += 1;
+        t_max
     }
 
     #[inline(always)]
-    fn finish(&mut self, bvh: &TriangleBvh, sheared: &Sheared) {
-        if let Some(place) = self.place {
-            let uv = sheared.uv(bvh.corners_at(place, sheared));
-            self.hit = Some(TriangleHit { t: self.t, uv, triangle: self.triangle });
+    fn met_at(&mut self, _: &Asked, met: Met, t_max: f32) -> f32 {
+        if (met.t, met.triangle) < (self.best.t, self.best.triangle) {
+            self.best = met;
         }
+        lesser(met.t, t_max)
+    }
+
+    #[inline(always)]
+    fn answer(&mut self, asked: &Asked, t_max: f32) -> Option<TriangleHit> {
+        self.settle(asked, t_max);
+        (self.best.triangle != NONE).then(|| asked.hit(self.best))
     }
 }
 
 /// Whether there is a hit.
 #[derive(Default)]
-pub struct Any(pub bool);
+pub struct Any(bool);
 
 impl Found for Any {
-    const ANY: bool = true;
+    type Answer = bool;
 
     #[inline(always)]
-    fn offer(&mut self, _: f32, _: u32, _: Place, _: f32) -> f32 {
+    fn met<L: Lanes>(&mut self, _: L, _: &Asked, _: u32, _: u32, _: &Span<L>, _: f32) -> f32 {
         self.0 = true;
         f32::NEG_INFINITY
+    }
+
+    #[inline(always)]
+    fn met_at(&mut self, _: &Asked, _: Met, _: f32) -> f32 {
+        self.0 = true;
+        f32::NEG_INFINITY
+    }
+
+    #[inline(always)]
+    fn answer(&mut self, _: &Asked, _: f32) -> bool {
+        self.0
     }
 }
 
 /// Every hit, some of them several times.
 #[derive(Default)]
-pub struct All(pub Vec<TriangleHit>, Vec<Place>);
+pub struct All(Vec<TriangleHit>);
 
 impl Found for All {
-    const ANY: bool = false;
+    type Answer = Vec<TriangleHit>;
 
-    fn offer(&mut self, t: f32, triangle: u32, place: Place, t_max: f32) -> f32 {
-        self.0.push(TriangleHit { t, uv: Default::default(), triangle });
-        self.1.push(place);
+    fn met<L: Lanes>(&mut self, _: L, asked: &Asked, leaf: u32, met: u32, _: &Span<L>, t_max: f32) -> f32 {
+        for lane in (0..WIDTH).filter(|lane| met >> lane & 1 == 1) {
+            if let Some(met) = asked.meets(Place { leaf, lane }, t_max) {
+                self.met_at(asked, met, t_max);
+            }
+        }
         t_max
     }
 
-    fn finish(&mut self, bvh: &TriangleBvh, sheared: &Sheared) {
-        for (hit, place) in self.0.iter_mut().zip(&self.1) {
-            hit.uv = sheared.uv(bvh.corners_at(*place, sheared));
-        }
+    fn met_at(&mut self, asked: &Asked, met: Met, t_max: f32) -> f32 {
+        self.0.push(asked.hit(met));
+        t_max
+    }
+
+    fn answer(&mut self, _: &Asked, _: f32) -> Vec<TriangleHit> {
+        std::mem::take(&mut self.0)
     }
 }
 
-impl TriangleBvh {
+impl Asked<'_> {
+    /// The rows of a leaf with what is read past them, and the count of its triangles.
+    #[inline(always)]
+    fn rows(&self, leaf: u32) -> (&[f32], usize) {
+        let (first, count) = node::items(leaf);
+        (&self.bvh.corners[9 * first..9 * (first + count) + WIDTH], count)
+    }
+
     /// The corners of a triangle, turned as the ray is.
     #[inline(always)]
-    fn corners_at(&self, Place { first, count, lane }: Place, sheared: &Sheared) -> [Vec3; 3] {
-        let leaf = &self.corners[9 * first..9 * (first + count)];
-        column(leaf, count, sheared.axes(), lane).map(Vec3::from)
+    fn corners(&self, Place { leaf, lane }: Place) -> [Vec3; 3] {
+        let (rows, count) = self.rows(leaf);
+        column(rows, count, self.sheared.axes(), lane).map(Vec3::from)
+    }
+
+    /// Where a triangle is met that the line of the ray crosses.
+    #[inline(always)]
+    fn meets(&self, place: Place, t_max: f32) -> Option<Met> {
+        let t = self.sheared.t(self.corners(place))?;
+        // Refuses also NaN.
+        let met = t > self.t_min && t < self.t_max && t <= t_max;
+        met.then(|| Met { t, triangle: self.bvh.order[node::items(place.leaf).0 + place.lane], place })
+    }
+
+    #[inline(always)]
+    fn hit(&self, Met { t, triangle, place }: Met) -> TriangleHit {
+        TriangleHit { t, uv: self.sheared.uv(self.corners(place)), triangle }
     }
 }
 
 impl<T: Tally, F: Found> Kernel for Query<'_, T, F> {
-    type Output = F;
+    type Output = F::Answer;
 
     #[inline(always)]
-    fn run<L: Lanes>(self, lanes: L) -> F {
+    fn run<L: Lanes>(self, lanes: L) -> F::Answer {
         let Query { bvh, ray, tally, .. } = self;
-        let boxes = RayBox::new(ray, bvh.bounds);
-        let mut leaves = Leaves::new(bvh, ray, &boxes, tally);
-        // The interval is open, and what the walk goes by is the last t inside.
-        let t_last = ray.t_max.next_down();
-        match boxes.tame {
-            true => walk::<L, _, true>(lanes, &bvh.nodes, &boxes, t_last, &mut leaves),
-            false => walk::<L, _, false>(lanes, &bvh.nodes, &boxes, t_last, &mut leaves),
-        }
-        leaves.answer()
+        let Some(boxes) = RayBox::new(ray, bvh.reach) else { return F::Answer::default() };
+        let mut leaves = Leaves::<_, F>::new(bvh, ray, &boxes, tally);
+        let t_max = match boxes.tame {
+            true => walk::<L, _, true>(lanes, &bvh.nodes, &boxes, ray.t_max, &mut leaves),
+            false => walk::<L, _, false>(lanes, &bvh.nodes, &boxes, ray.t_max, &mut leaves),
+        };
+        leaves.answer(t_max)
     }
 }
 
 /// A ray among the triangles of leaves.
 pub struct Leaves<'a, T, F> {
-    bvh: &'a TriangleBvh,
-    sheared: Sheared,
-    ray: Ray,
+    asked: Asked<'a>,
     tally: T,
     found: F,
-    /// Whether tests side by side are within the range of numbers.
+    inverse_z: f32,
+    /// Whether signs found side by side are within the range of numbers.
     side_by_side: bool,
+    /// Whether bounds of t are, and decide.
+    bounded: bool,
 }
 
 impl<'a, T, F: Found> Leaves<'a, T, F> {
     #[inline(always)]
     pub fn new(bvh: &'a TriangleBvh, ray: &Ray, boxes: &RayBox, tally: T) -> Self {
-        let (sheared, found) = (bvh.sheared(ray), F::default());
-        Leaves { bvh, sheared, ray: *ray, tally, found, side_by_side: boxes.moderate }
+        let sheared = Sheared::finite(ray).least_volume(bvh.least_volume);
+        let dz = sheared.ray().1.z;
+        Leaves {
+            asked: Asked { bvh, sheared, t_min: ray.t_min, t_max: ray.t_max },
+            tally,
+            found: F::default(),
+            inverse_z: 1.0 / dz,
+            side_by_side: boxes.moderate,
+            bounded: (boxes.tame || TAME.contains(&dz.abs())) && bvh.least_volume == 0.0,
+        }
     }
 
     /// What was found, when the search has ended.
     #[inline(always)]
-    pub fn answer(&mut self) -> F {
-        self.found.finish(self.bvh, &self.sheared);
-        std::mem::take(&mut self.found)
+    pub fn answer(&mut self, t_max: f32) -> F::Answer {
+        self.found.answer(&self.asked, t_max)
     }
 }
 
@@ -177,56 +284,47 @@ impl<T: Tally, F: Found> Visitor for Leaves<'_, T, F> {
 
     #[inline(always)]
     fn leaf<L: Lanes>(&mut self, lanes: L, leaf: u32, mut t_max: f32) -> f32 {
-        let (first, count) = node::items(leaf);
+        let (rows, count) = self.asked.rows(leaf);
         (0..count).for_each(|_| self.tally.test());
         if !self.side_by_side {
-            return (0..count).fold(t_max, |t_max, lane| self.one_by_one(first, count, lane, t_max));
+            return self.one_by_one(leaf, (1 << count) - 1, t_max);
         }
-        let corners = &self.bvh.corners[9 * first..9 * (first + count) + WIDTH];
-        let range = (self.ray.t_min, t_max);
-        let Quick { mut candidates, crossed, inside } = quick(lanes, &self.sheared, corners, count, range);
-        // Where any hit will do, it need not be known where it is.
-        let sure = candidates & crossed & inside;
-        if F::ANY && sure != 0 && self.bvh.least_volume == 0.0 {
-            return self.offer(t_max, first, count, sure.trailing_zeros() as usize, t_max);
+        let Asked { sheared, t_min, t_max: end, .. } = &self.asked;
+        let flat = Flat::new(lanes, sheared, rows, count);
+        if flat.crossed | flat.unsure == 0 {
+            return t_max;
         }
-        while candidates != 0 {
-            let lane = candidates.trailing_zeros() as usize;
-            candidates &= candidates - 1;
-            t_max = match crossed >> lane & 1 {
-                1 => self.crossed(first, count, lane, t_max),
-                _ => self.one_by_one(first, count, lane, t_max),
-            };
-            if F::ANY && t_max == f32::NEG_INFINITY {
-                break;
+        let mut unsure = flat.crossed | flat.unsure;
+        if self.bounded {
+            let span = flat.span(lanes, self.inverse_z);
+            let (start, end) = (lanes.splat(*t_min), lanes.splat(*end));
+            // So asked, what is no number is unsure.
+            let left_out = lanes.lt(lanes.splat(t_max), span.near) | lanes.le(span.far, start);
+            let met = flat.crossed & !left_out & lanes.lt(start, span.near) & lanes.lt(span.far, end);
+            unsure &= !(met | flat.crossed & left_out);
+            if met != 0 {
+                t_max = self.found.met(lanes, &self.asked, leaf, met, &span, t_max);
             }
         }
-        t_max
+        match unsure {
+            0 => t_max,
+            _ => self.one_by_one(leaf, unsure, t_max),
+        }
     }
 }
 
 impl<T: Tally, F: Found> Leaves<'_, T, F> {
-    #[inline(always)]
-    fn offer(&mut self, t: f32, first: usize, count: usize, lane: usize, t_max: f32) -> f32 {
-        self.found.offer(t, self.bvh.order[first + lane], Place { first, count, lane }, t_max)
-    }
-
-    /// A single triangle in full.
+    /// Triangles in full.
     #[cold]
-    fn one_by_one(&mut self, first: usize, count: usize, lane: usize, t_max: f32) -> f32 {
-        match self.sheared.crosses(self.bvh.corners_at(Place { first, count, lane }, &self.sheared)) {
-            true => self.crossed(first, count, lane, t_max),
-            false => t_max,
+    fn one_by_one(&mut self, leaf: u32, which: u32, mut t_max: f32) -> f32 {
+        for lane in (0..WIDTH).filter(|lane| which >> lane & 1 == 1) {
+            let place = Place { leaf, lane };
+            if self.asked.sheared.crosses(self.asked.corners(place))
+                && let Some(met) = self.asked.meets(place, t_max)
+            {
+                t_max = self.found.met_at(&self.asked, met, t_max);
+            }
         }
-    }
-
-    /// A triangle that the line of the ray crosses.
-    #[inline(always)]
-    fn crossed(&mut self, first: usize, count: usize, lane: usize, t_max: f32) -> f32 {
-        let corners = self.bvh.corners_at(Place { first, count, lane }, &self.sheared);
-        match self.sheared.distance(corners, self.ray.t_min, t_max) {
-            Some(t) => self.offer(t, first, count, lane, t_max),
-            None => t_max,
-        }
+        t_max
     }
 }

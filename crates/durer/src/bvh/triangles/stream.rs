@@ -8,7 +8,7 @@ use super::TriangleBvh;
 use super::query::{Found, Leaves};
 use crate::bvh::lanes::{Kernel, Lanes, Room, Stack};
 use crate::bvh::node::{self, LEAF, Node};
-use crate::bvh::traverse::{RANKS, RayBox, Slabs, Visitor, is_sound, meet};
+use crate::bvh::traverse::{RANKS, RayBox, Slabs, Visitor, meet};
 use crate::math::{Ray, Vec3};
 use std::hint::select_unpredictable;
 use std::marker::PhantomData;
@@ -20,8 +20,8 @@ const END: u32 = u32::MAX;
 
 impl TriangleBvh {
     /// Answers a question for each of the rays with these numbers.
-    pub(super) fn stream<F: Found>(&self, rays: &[Ray], numbers: &[u32], answer: impl FnMut(usize, F)) {
-        self.level.run(Stream { bvh: self, rays, numbers: numbers.iter(), answer, found: PhantomData });
+    pub(super) fn stream<F: Found>(&self, rays: &[Ray], numbers: &[u32], answer: impl FnMut(usize, F::Answer)) {
+        self.level.run(Stream::<F, _> { bvh: self, rays, numbers: numbers.iter(), answer, found: PhantomData });
     }
 }
 
@@ -60,25 +60,23 @@ impl List {
     }
 }
 
-impl<'a, F: Found, A: FnMut(usize, F)> Stream<'a, F, A> {
+impl<'a, F: Found, A: FnMut(usize, F::Answer)> Stream<'a, F, A> {
     /// Puts the next ray in a place, if there is one. Rays that are not traced here are answered at once.
     #[inline(always)]
     fn start<L: Lanes>(&mut self, lanes: L, flyer: &mut Flyer<'a, F>, stack: &mut Stack) -> bool {
         while let Some(&number) = self.numbers.next() {
             let number = number as usize;
             let ray = &self.rays[number];
-            if self.bvh.nodes.is_empty() || !is_sound(ray) {
-                (self.answer)(number, F::default());
-                continue;
-            }
-            flyer.boxes = RayBox::new(ray, self.bvh.bounds);
-            if !flyer.boxes.tame {
-                (self.answer)(number, self.bvh.query::<_, F>(ray, &mut ()));
-                continue;
+            match RayBox::new(ray, self.bvh.reach) {
+                Some(boxes) if boxes.tame && !self.bvh.nodes.is_empty() => flyer.boxes = boxes,
+                _ => {
+                    (self.answer)(number, self.bvh.query::<_, F>(ray, &mut ()));
+                    continue;
+                }
             }
             flyer.number = number;
             flyer.leaves = Leaves::new(self.bvh, ray, &flyer.boxes, ());
-            (flyer.t_max, flyer.child) = (ray.t_max.next_down(), 0);
+            (flyer.t_max, flyer.child) = (ray.t_max, 0);
             stack.clear();
             stack.push(END, f32::NEG_INFINITY);
             prefetch(lanes, self.bvh, 0);
@@ -113,7 +111,7 @@ fn step<L: Lanes, F: Found>(lanes: L, nodes: &[Node], flyer: &mut Flyer<F>, stac
     flyer.child = select_unpredictable(met == 0, top, node.children[nearest as usize & 7]);
 }
 
-impl<'a, F: Found, A: FnMut(usize, F)> Kernel for Stream<'a, F, A> {
+impl<'a, F: Found, A: FnMut(usize, F::Answer)> Kernel for Stream<'a, F, A> {
     type Output = ();
 
     #[inline(always)]
@@ -122,7 +120,7 @@ impl<'a, F: Found, A: FnMut(usize, F)> Kernel for Stream<'a, F, A> {
         let mut rooms: Vec<Room> = (0..FLYING).map(|_| Room::new()).collect();
         let mut stacks: Vec<Stack> = rooms.iter_mut().map(Stack::new).collect();
         let nowhere = Ray::new(Vec3::ZERO, Vec3::X);
-        let boxes = RayBox::new(&nowhere, bvh.bounds);
+        let boxes = RayBox::new(&nowhere, bvh.reach).expect("a sound ray");
         let place =
             |_| Flyer { number: 0, boxes, leaves: Leaves::new(bvh, &nowhere, &boxes, ()), t_max: 0.0, child: END };
         let mut flyers: Vec<Flyer<F>> = (0..FLYING).map(place).collect();
@@ -160,7 +158,7 @@ impl<'a, F: Found, A: FnMut(usize, F)> Kernel for Stream<'a, F, A> {
                     }
                 }
                 if over {
-                    (self.answer)(flyer.number, flyer.leaves.answer());
+                    (self.answer)(flyer.number, flyer.leaves.answer(flyer.t_max));
                     if !self.start(lanes, flyer, stack) {
                         // Its place stays empty.
                         continue;

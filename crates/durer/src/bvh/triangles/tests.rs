@@ -1,7 +1,7 @@
 //! Trees of triangles against brute force, at every SIMD level and preset.
 
 use super::*;
-use crate::bvh::Preset;
+use crate::bvh::{Preset, is_sound};
 use crate::math::Vec3;
 use crate::math::random::{Random, rounds};
 

@@ -227,7 +227,7 @@ impl Packet<'_> {
         self.axes = Axes::of_key(key);
         self.alive = 0;
         for group in 0..self.groups {
-            let tame = self.sixteens[group].prepare(lanes, &self.axes, self.bvh.bounds);
+            let tame = self.sixteens[group].prepare(lanes, &self.axes, self.bvh.reach);
             self.alive |= u64::from(tame) << (group * WIDE);
         }
         let all = u64::MAX >> (RAYS - count);

@@ -2,7 +2,8 @@
 
 use super::Axes;
 use crate::bvh::lanes::{Lanes, WIDE, WIDTH, Wide};
-use crate::math::{Aabb, Ray, Vec2, Vec3};
+use crate::bvh::traverse::TAME;
+use crate::math::{Ray, Vec2, Vec3};
 use crate::shape::watertight::{Along, uv_across};
 
 /// A number for each of sixteen rays.
@@ -78,22 +79,20 @@ impl Rays {
         [negative[0], negative[1], negative[2], first, wide.lt(z, y) & !first]
     }
 
-    /// Prepares the rays for a tree with these bounds; gives those that are tame, a bit for each.
+    /// Prepares the rays for a tree with no coordinates greater than `most`; gives those that are tame, a bit for each.
     #[inline(always)]
-    pub fn prepare<L: Lanes>(&mut self, lanes: L, axes: &Axes, bounds: Aabb) -> u32 {
+    pub fn prepare<L: Lanes>(&mut self, lanes: L, axes: &Axes, most: f32) -> u32 {
         let wide = lanes.wide();
-        let (least, most) = (wide.splat(1e-15), wide.splat(1e15));
-        let mut reach = wide.splat(0.0);
+        let (least, greatest) = (wide.splat(TAME.start), wide.splat(TAME.end));
+        let mut far = wide.splat(0.0);
         let mut tame = wide.lt(wide.load(&self.t_min), wide.load(&self.t_last));
         for axis in 0..3 {
-            let o = wide.load(&self.origin[axis]);
-            let length = wide.abs(wide.load(&self.dir[axis]));
-            tame &= wide.lt(least, length) & wide.lt(length, most) & wide.lt(wide.abs(o), most);
-            let below = wide.abs(wide.sub(o, wide.splat(bounds.min[axis])));
-            let above = wide.abs(wide.sub(o, wide.splat(bounds.max[axis])));
-            reach = wide.max(wide.max(below, above), wide.max(wide.abs(o), reach));
+            let (o, length) = (wide.abs(wide.load(&self.origin[axis])), wide.abs(wide.load(&self.dir[axis])));
+            tame &= wide.lt(o, greatest) & wide.lt(least, length) & wide.lt(length, greatest);
+            far = wide.max(far, o);
         }
-        tame &= wide.lt(reach, most) & wide.lt(least, reach);
+        let reach = wide.add(far, wide.splat(most));
+        tame &= wide.lt(least, reach) & wide.lt(reach, greatest);
         let pad = wide.add(wide.mul(wide.splat(8.0 * f32::EPSILON), reach), wide.splat(f32::MIN_POSITIVE));
         for axis in 0..3 {
             let (o, d) = (wide.load(&self.origin[axis]), wide.load(&self.dir[axis]));
@@ -160,7 +159,8 @@ impl Rays {
             for i in 0..WIDTH {
                 let along = Along::new(Vec3::new(ox[i], oy[i], oz[i]), Vec3::new(dx[i], dy[i], dz[i]), corners);
                 (t[i], height[i]) = (along.t as f32, along.height() as f32);
-                (low[i], high[i]) = (along.lowest() as f32, along.highest() as f32);
+                let heights = along.heights();
+                (low[i], high[i]) = (heights.0 as f32, heights.1 as f32);
             }
             // Rounding is monotonic: what is so after it, was so before.
             let height = lanes.load(&height);
