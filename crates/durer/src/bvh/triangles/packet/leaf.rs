@@ -33,7 +33,7 @@ impl Packet<'_> {
     fn one_by_one<L: Lanes, const ANY: bool>(&mut self, lanes: L, leaf: u32, mut rays: u64) -> u64 {
         let wide = lanes.wide();
         let (first, count) = node::items(leaf);
-        let rows = &self.bvh.corners[9 * first..9 * (first + count)];
+        let rows = &self.bvh.corners[9 * first..9 * (first + count) + WIDTH];
         let [x, y, z] = self.axes.turned;
         let zero = wide.splat(0.0);
         let mut all_met = 0;
