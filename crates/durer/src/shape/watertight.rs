@@ -103,11 +103,13 @@ impl Sheared {
     /// Where the ray's line crosses a triangle that it crosses: within the triangle's bounds. It may be infinite.
     #[inline(always)]
     pub(crate) fn t(&self, corners: [Vec3; 3]) -> Option<f32> {
-        let along = Along::new(self.origin, self.dir, corners);
-        if along.volume.abs() < self.least_volume {
+        let plane = Plane::new(self.origin, corners);
+        let (volume, dz) = (plane.volume(self.dir), f64::from(self.dir.z));
+        if volume.abs() < self.least_volume {
             return None;
         }
-        Some(if along.is_inside() { along.t as f32 } else { along.bounded() })
+        let t = plane.offset / volume;
+        Some(if plane.is_inside(t * dz) { t as f32 } else { plane.bounded(t, dz) })
     }
 
     /// The axes in the order of turned vectors.
@@ -126,30 +128,33 @@ impl Sheared {
     }
 }
 
-/// A turned ray at the plane of a turned triangle. There is no branch, so that several can be made side by side.
-pub(crate) struct Along {
+/// The plane of a turned triangle, as seen from the origin of a turned ray. Nothing of it branches, so that it can be had for
+/// several rays side by side.
+pub(crate) struct Plane {
+    normal: DVec3,
+    offset: f64,
     /// The heights of the corners.
     heights: [f64; 3],
-    /// That of the direction.
-    dz: f64,
-    volume: f64,
-    pub t: f64,
 }
 
-impl Along {
+impl Plane {
     #[inline(always)]
-    pub fn new(origin: Vec3, dir: Vec3, [a, b, c]: [Vec3; 3]) -> Self {
-        let (origin, dir) = (origin.as_dvec3(), dir.as_dvec3());
+    pub fn new(origin: Vec3, [a, b, c]: [Vec3; 3]) -> Self {
+        let origin = origin.as_dvec3();
         let (a, b, c) = (a.as_dvec3() - origin, b.as_dvec3() - origin, c.as_dvec3() - origin);
-        let n = (b - a).cross(c - a);
-        let volume = n.dot(dir);
-        Along { heights: [a.z, b.z, c.z], dz: dir.z, volume, t: n.dot(a) / volume }
+        let normal = (b - a).cross(c - a);
+        Plane { normal, offset: normal.dot(a), heights: [a.z, b.z, c.z] }
     }
 
-    /// The height of the crossing with the plane.
     #[inline(always)]
-    pub fn height(&self) -> f64 {
-        self.t * self.dz
+    fn volume(&self, dir: Vec3) -> f64 {
+        self.normal.dot(dir.as_dvec3())
+    }
+
+    /// Where a direction leads to the plane; the crossing itself is at [`Plane::bounded`].
+    #[inline(always)]
+    pub fn t(&self, dir: Vec3) -> f64 {
+        self.offset / self.volume(dir)
     }
 
     /// The least and the greatest height of a corner.
@@ -158,20 +163,21 @@ impl Along {
         range(self.heights)
     }
 
-    /// Whether `t` is as it is also with bounds. Products are rounded monotonically: strictly between two corners' heights, t is
-    /// between their distances.
+    /// Whether a crossing of this height is where it is also with bounds. Products are rounded monotonically: strictly between two
+    /// corners' heights, t is between their distances.
     #[inline(always)]
-    pub fn is_inside(&self) -> bool {
+    pub fn is_inside(&self, height: f64) -> bool {
         let (low, high) = self.heights();
-        low < self.height() && self.height() < high
+        low < height && height < high
     }
 
     /// `t` within the distances of the corners: they bound also a triangle that is seen from nearly its side, even where `t` is no
-    /// number.
+    /// number. `dz` is the height of the direction.
     #[inline(always)]
-    pub fn bounded(&self) -> f32 {
-        let (near, far) = range(self.heights.map(|height| height / self.dz));
-        let t = if self.t > near { self.t } else { near };
+    pub fn bounded(&self, t: f64, dz: f64) -> f32 {
+        let [a, b, c] = self.heights;
+        let (near, far) = range([a / dz, b / dz, c / dz]);
+        let t = if t > near { t } else { near };
         (if t < far { t } else { far }) as f32
     }
 }

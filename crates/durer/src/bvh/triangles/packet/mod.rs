@@ -81,6 +81,7 @@ impl<A: FnMut(usize, Option<TriangleHit>), const ANY: bool> Kernel for Packets<'
             numbers: [0; RAYS],
             sixteens: [Rays::EMPTY; RAYS / WIDE],
             groups: 0,
+            pinhole: false,
             alive: 0,
             limit: 0.0,
             meetings: Vec::with_capacity(256),
@@ -115,7 +116,7 @@ impl<A: FnMut(usize, Option<TriangleHit>), const ANY: bool> Kernel for Packets<'
                 }
                 let all = packet.alive;
                 packet.walk::<L, ANY>(lanes, &mut stack);
-                packet.answer::<ANY>(all, &mut self.answer);
+                packet.answer::<L, ANY>(lanes, all, &mut self.answer);
             }
         }
         rest
@@ -155,6 +156,8 @@ struct Packet<'a> {
     sixteens: [Rays; RAYS / WIDE],
     /// How many of the sixteens hold rays.
     groups: usize,
+    /// Whether all rays have the same origin, bit for bit.
+    pinhole: bool,
     /// The rays that still search.
     alive: u64,
     /// None of them goes on beyond.
@@ -230,6 +233,14 @@ impl Packet<'_> {
             let tame = self.sixteens[group].prepare(lanes, &self.axes, self.bvh.reach);
             self.alive |= u64::from(tame) << (group * WIDE);
         }
+        let mut differences = 0;
+        for origin in self.sixteens[..self.groups].iter().map(|e| &e.origin) {
+            for axis in 0..3 {
+                let of_first = self.sixteens[0].origin[axis][0].to_bits();
+                differences = origin[axis].iter().fold(differences, |all, x| all | (x.to_bits() ^ of_first));
+            }
+        }
+        self.pinhole = differences == 0;
         let all = u64::MAX >> (RAYS - count);
         self.alive &= all;
         self.alive == all
@@ -362,16 +373,20 @@ impl Packet<'_> {
 
     /// Tells what was found.
     #[inline(always)]
-    fn answer<const ANY: bool>(&self, all: u64, tell: &mut impl FnMut(usize, Option<TriangleHit>)) {
+    fn answer<L: Lanes, const ANY: bool>(&self, lanes: L, all: u64, tell: &mut impl FnMut(usize, Option<TriangleHit>)) {
         for (group, e) in self.sixteens[..self.groups].iter().enumerate() {
             let rays = (all >> (group * WIDE)) as u32 & 0xffff;
             let mut corners = [[[0.0; WIDE]; 3]; 3];
-            for i in (0..WIDE).filter(|_| !ANY) {
-                let from = &self.meetings[e.met[i].to_bits() as usize].corners;
-                for corner in 0..3 {
-                    for axis in 0..3 {
-                        corners[corner][axis][i] = from[corner][axis];
-                    }
+            for first in [0, WIDTH].into_iter().filter(|_| !ANY) {
+                // Eight of the nine numbers of each at once, then the last.
+                let mut rows = [lanes.splat(0.0); WIDTH];
+                for i in 0..WIDTH {
+                    let [[a, b, c], [d, e, f], [g, h, last]] = self.meetings[e.met[first + i].to_bits() as usize].corners;
+                    rows[i] = lanes.load(&[a, b, c, d, e, f, g, h]);
+                    corners[2][2][first + i] = last;
+                }
+                for (k, numbers) in lanes.transpose(rows).into_iter().enumerate() {
+                    corners[k / 3][k % 3][first..first + WIDTH].copy_from_slice(&lanes.store(numbers));
                 }
             }
             let [u, v] = if ANY { [[0.0; WIDE]; 2] } else { e.uv(&self.axes, &corners) };

@@ -4,7 +4,7 @@ use super::Axes;
 use crate::bvh::lanes::{Lanes, WIDE, WIDTH, Wide};
 use crate::bvh::traverse::TAME;
 use crate::math::{Ray, Vec2, Vec3};
-use crate::shape::watertight::{Along, uv_across};
+use crate::shape::watertight::{Plane, uv_across};
 
 /// A number for each of sixteen rays.
 pub type Numbers = [f32; WIDE];
@@ -27,7 +27,8 @@ pub struct Rays {
     pub far_origin: [Numbers; 3],
     pub shear: [Numbers; 2],
     pub t_min: Numbers,
-    /// The last t inside the interval; after a hit, its t.
+    pub t_max: Numbers,
+    /// The same; after a hit, its t.
     pub t_last: Numbers,
     /// Heights lower than the first or above the second are outside the interval for sure; those above the third and below the
     /// fourth are inside.
@@ -47,6 +48,7 @@ impl Rays {
         far_origin: [ZERO; 3],
         shear: [ZERO; 2],
         t_min: ZERO,
+        t_max: ZERO,
         t_last: ZERO,
         heights: [ZERO; 4],
         met: ZERO,
@@ -110,8 +112,7 @@ impl Rays {
         let z = wide.load(&self.dir[z]);
         self.shear =
             [wide.store(wide.div(wide.load(&self.dir[x]), z)), wide.store(wide.div(wide.load(&self.dir[y]), z))];
-        // The interval is open.
-        self.t_last = self.t_last.map(f32::next_down);
+        self.t_max = self.t_last;
         self.met = ZERO;
         self.bound(lanes, axes);
         tame
@@ -135,58 +136,86 @@ impl Rays {
 
     /// Takes note of a triangle that the lines of some rays cross, of those who meet it in their interval, and before others.
     ///
-    /// `number` is that of the meeting, and `less` says whether the triangle of another is of greater number.
+    /// `number` is that of the meeting, and `less` says whether the triangle of another is of greater number. `plane` is given where
+    /// it is the same for all.
     #[inline(always)]
+    #[allow(clippy::too_many_arguments)]
     pub fn meet<L: Lanes>(
         &mut self,
         lanes: L,
         axes: &Axes,
         corners: [Vec3; 3],
+        plane: Option<&Plane>,
         crossed: u32,
         number: u32,
         less: impl Fn(u32) -> bool,
     ) -> u32 {
-        let mut met = 0;
+        let mut all_met = 0;
         for first in [0, WIDTH] {
             let crossed = crossed >> first & 255;
             if crossed == 0 {
                 continue;
             }
-            let [x, y, z] = axes.turned;
-            let (ox, oy, oz) = (half(&self.origin[x], first), half(&self.origin[y], first), half(&self.origin[z], first));
-            let (dx, dy, dz) = (half(&self.dir[x], first), half(&self.dir[y], first), half(&self.dir[z], first));
-            let (mut t, mut height, mut low, mut high) = ([0.0; WIDTH], [0.0; WIDTH], [0.0; WIDTH], [0.0; WIDTH]);
-            for i in 0..WIDTH {
-                let along = Along::new(Vec3::new(ox[i], oy[i], oz[i]), Vec3::new(dx[i], dy[i], dz[i]), corners);
-                (t[i], height[i]) = (along.t as f32, along.height() as f32);
-                let heights = along.heights();
-                (low[i], high[i]) = (heights.0 as f32, heights.1 as f32);
-            }
-            // Rounding is monotonic: what is so after it, was so before.
-            let height = lanes.load(&height);
-            let inside = lanes.lt(lanes.load(&low), height) & lanes.lt(height, lanes.load(&high));
-            if crossed & !inside != 0 {
-                for i in 0..WIDTH {
-                    let along = Along::new(Vec3::new(ox[i], oy[i], oz[i]), Vec3::new(dx[i], dy[i], dz[i]), corners);
-                    t[i] = along.bounded();
-                }
-            }
-            let (t, t_last) = (lanes.load(&t), lanes.load(half(&self.t_last, first)));
+            let t = lanes.load(&self.distances(lanes, axes, corners, plane, first, crossed));
+            let t_last = lanes.load(half(&self.t_last, first));
             // Also NaN is refused.
             let within = crossed & lanes.lt(lanes.load(half(&self.t_min, first)), t);
-            let mut first_met = within & lanes.lt(t, t_last);
-            let mut same = within & lanes.le(t, t_last) & !first_met;
+            let within = within & lanes.lt(t, lanes.load(half(&self.t_max, first)));
+            let mut met = within & lanes.lt(t, t_last);
+            let mut same = within & lanes.le(t, t_last) & !met;
             while same != 0 {
                 let i = same.trailing_zeros() as usize;
                 same &= same - 1;
-                first_met |= u32::from(less(self.met[first + i].to_bits())) << i;
+                met |= u32::from(less(self.met[first + i].to_bits())) << i;
             }
-            let numbers = lanes.select(first_met, lanes.splat(f32::from_bits(number)), lanes.load(half(&self.met, first)));
+            let numbers = lanes.select(met, lanes.splat(f32::from_bits(number)), lanes.load(half(&self.met, first)));
             self.met[first..first + WIDTH].copy_from_slice(&lanes.store(numbers));
-            self.t_last[first..first + WIDTH].copy_from_slice(&lanes.store(lanes.select(first_met, t, t_last)));
-            met |= first_met << first;
+            self.t_last[first..first + WIDTH].copy_from_slice(&lanes.store(lanes.select(met, t, t_last)));
+            all_met |= met << first;
         }
-        met
+        all_met
+    }
+
+    /// Where eight rays cross a triangle, if their lines do.
+    #[inline(always)]
+    fn distances<L: Lanes>(
+        &self,
+        lanes: L,
+        axes: &Axes,
+        corners: [Vec3; 3],
+        plane: Option<&Plane>,
+        first: usize,
+        crossed: u32,
+    ) -> [f32; WIDTH] {
+        let [x, y, z] = axes.turned;
+        let (ox, oy, oz) = (half(&self.origin[x], first), half(&self.origin[y], first), half(&self.origin[z], first));
+        let (dx, dy, dz) = (half(&self.dir[x], first), half(&self.dir[y], first), half(&self.dir[z], first));
+        let (mut t, mut height, mut low, mut high) = ([0.0; WIDTH], [0.0; WIDTH], [0.0; WIDTH], [0.0; WIDTH]);
+        // The loops have no branches and are alike for all rays: the compiler takes several at once.
+        macro_rules! each {
+            ($i:ident, $plane:expr) => {
+                for $i in 0..WIDTH {
+                    let plane = $plane;
+                    let (at, heights) = (plane.t(Vec3::new(dx[$i], dy[$i], dz[$i])), plane.heights());
+                    (t[$i], height[$i]) = (at as f32, (at * f64::from(dz[$i])) as f32);
+                    (low[$i], high[$i]) = (heights.0 as f32, heights.1 as f32);
+                }
+            };
+        }
+        match plane {
+            Some(plane) => each!(i, plane),
+            None => each!(i, Plane::new(Vec3::new(ox[i], oy[i], oz[i]), corners)),
+        }
+        // Rounding is monotonic: what is so after it, was so before.
+        let height = lanes.load(&height);
+        let inside = lanes.lt(lanes.load(&low), height) & lanes.lt(height, lanes.load(&high));
+        if crossed & !inside != 0 {
+            for i in 0..WIDTH {
+                let plane = Plane::new(Vec3::new(ox[i], oy[i], oz[i]), corners);
+                t[i] = plane.bounded(plane.t(Vec3::new(dx[i], dy[i], dz[i])), f64::from(dz[i]));
+            }
+        }
+        t
     }
 
     /// As [`Rays::meet`] for a single ray.
@@ -200,10 +229,12 @@ impl Rays {
         less: impl Fn(u32) -> bool,
     ) -> bool {
         let [x, y, z] = axes.turned;
-        let at = |v: &[Numbers; 3]| Vec3::new(v[x][lane], v[y][lane], v[z][lane]);
-        let along = Along::new(at(&self.origin), at(&self.dir), corners);
-        let t = if along.is_inside() { along.t as f32 } else { along.bounded() };
-        let met = t > self.t_min[lane] && (t < self.t_last[lane] || t == self.t_last[lane] && less(self.met[lane].to_bits()));
+        let plane = Plane::new(Vec3::new(self.origin[x][lane], self.origin[y][lane], self.origin[z][lane]), corners);
+        let dir = Vec3::new(self.dir[x][lane], self.dir[y][lane], self.dir[z][lane]);
+        let (t, dz) = (plane.t(dir), f64::from(dir.z));
+        let t = if plane.is_inside(t * dz) { t as f32 } else { plane.bounded(t, dz) };
+        let within = t > self.t_min[lane] && t < self.t_max[lane];
+        let met = within && (t < self.t_last[lane] || t == self.t_last[lane] && less(self.met[lane].to_bits()));
         if met {
             (self.t_last[lane], self.met[lane]) = (t, f32::from_bits(number));
         }
@@ -230,7 +261,7 @@ impl Rays {
     /// One of the rays.
     pub fn ray(&self, lane: usize) -> Ray {
         let at = |v: &[Numbers; 3]| Vec3::new(v[0][lane], v[1][lane], v[2][lane]);
-        Ray { origin: at(&self.origin), dir: at(&self.dir), t_min: self.t_min[lane], t_max: self.t_last[lane] }
+        Ray { origin: at(&self.origin), dir: at(&self.dir), t_min: self.t_min[lane], t_max: self.t_max[lane] }
     }
 }
 
@@ -246,5 +277,7 @@ fn half(numbers: &Numbers, first: usize) -> &[f32; WIDTH] {
 /// By how much heights may be off by rounding.
 #[inline(always)]
 fn slack<W: Wide>(wide: W, height: W::Floats) -> W::Floats {
-    wide.add(wide.mul(wide.splat(8.0 * f32::EPSILON), wide.abs(height)), wide.splat(f32::MIN_POSITIVE))
+    let slack = wide.add(wide.mul(wide.splat(8.0 * f32::EPSILON), wide.abs(height)), wide.splat(f32::MIN_POSITIVE));
+    // Infinity less infinity is no number.
+    wide.min(slack, wide.splat(f32::MAX))
 }
