@@ -233,14 +233,12 @@ impl Packet<'_> {
             let tame = self.sixteens[group].prepare(lanes, &self.axes, self.bvh.reach);
             self.alive |= u64::from(tame) << (group * WIDE);
         }
-        let mut differences = 0;
-        for origin in self.sixteens[..self.groups].iter().map(|e| &e.origin) {
-            for axis in 0..3 {
-                let of_first = self.sixteens[0].origin[axis][0].to_bits();
-                differences = origin[axis].iter().fold(differences, |all, x| all | (x.to_bits() ^ of_first));
-            }
+        let [x, y, z] = &self.sixteens[0].origin;
+        let eye = [x[0], y[0], z[0]];
+        self.pinhole = true;
+        for group in 0..self.groups {
+            self.pinhole &= self.sixteens[group].are_from(eye);
         }
-        self.pinhole = differences == 0;
         let all = u64::MAX >> (RAYS - count);
         self.alive &= all;
         self.alive == all
@@ -391,9 +389,13 @@ impl Packet<'_> {
             }
             let [u, v] = if ANY { [[0.0; WIDE]; 2] } else { e.uv(&self.axes, &corners) };
             for i in (0..WIDE).filter(|i| rays >> i & 1 == 1) {
-                let triangle = if ANY { 0 } else { self.meetings[e.met[i].to_bits() as usize].triangle };
-                let hit = TriangleHit { t: e.t_last[i], uv: Vec2::new(u[i], v[i]), triangle };
-                tell(self.numbers[group * WIDE + i] as usize, (e.met[i].to_bits() != 0).then_some(hit));
+                let (number, met) = (self.numbers[group * WIDE + i] as usize, e.met[i].to_bits());
+                if met == 0 {
+                    tell(number, None);
+                } else {
+                    let triangle = if ANY { 0 } else { self.meetings[met as usize].triangle };
+                    tell(number, Some(TriangleHit { t: e.t_last[i], uv: Vec2::new(u[i], v[i]), triangle }));
+                }
             }
         }
     }

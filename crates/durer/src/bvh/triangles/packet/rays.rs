@@ -118,6 +118,18 @@ impl Rays {
         tame
     }
 
+    /// Whether all have this origin, bit for bit.
+    #[inline(always)]
+    pub fn are_from(&self, eye: [f32; 3]) -> bool {
+        let [x, y, z] = &self.origin;
+        let [u, v, w] = eye.map(f32::to_bits);
+        let mut difference = [0; WIDE];
+        for i in 0..WIDE {
+            difference[i] = (x[i].to_bits() ^ u) | (y[i].to_bits() ^ v) | (z[i].to_bits() ^ w);
+        }
+        difference == [0; WIDE]
+    }
+
     /// Sets the bounds of heights.
     #[inline(always)]
     pub fn bound<L: Lanes>(&mut self, lanes: L, axes: &Axes) {
