@@ -6,7 +6,7 @@ use crate::bvh::node;
 use crate::bvh::traverse::splat3;
 use crate::bvh::triangles::leaf::{edge, flat};
 use crate::math::Vec3;
-use crate::shape::watertight::{Plane, Sheared};
+use crate::shape::watertight::Sheared;
 
 impl Packet<'_> {
     /// Shows the triangles of a leaf to some rays: side by side either those or these, whichever is less work.
@@ -17,10 +17,9 @@ impl Packet<'_> {
         for group in 0..self.groups {
             groups += usize::from(rays >> (group * WIDE) & 0xffff != 0);
         }
-        let met = match ((rays.count_ones() as usize) < groups * count, self.pinhole && !ANY) {
-            (true, _) => self.ray_by_ray::<L, ANY>(lanes, leaf, rays),
-            (false, false) => self.one_by_one::<L, ANY, false>(lanes, leaf, rays),
-            (false, true) => self.one_by_one::<L, ANY, true>(lanes, leaf, rays),
+        let met = match (rays.count_ones() as usize) < groups * count {
+            true => self.ray_by_ray::<L, ANY>(lanes, leaf, rays),
+            false => self.one_by_one::<L, ANY>(lanes, leaf, rays),
         };
         if ANY {
             self.alive &= !met;
@@ -29,9 +28,9 @@ impl Packet<'_> {
         }
     }
 
-    /// Each triangle with sixteen rays at once; gives the rays that met one. What depends on origins is computed once for a `PINHOLE`.
+    /// Each triangle with sixteen rays at once; gives the rays that met one.
     #[inline(always)]
-    fn one_by_one<L: Lanes, const ANY: bool, const PINHOLE: bool>(&mut self, lanes: L, leaf: u32, mut rays: u64) -> u64 {
+    fn one_by_one<L: Lanes, const ANY: bool>(&mut self, lanes: L, leaf: u32, mut rays: u64) -> u64 {
         let wide = lanes.wide();
         let (first, count) = node::items(leaf);
         let rows = &self.bvh.corners[9 * first..9 * (first + count) + WIDTH];
@@ -40,27 +39,19 @@ impl Packet<'_> {
         let mut all_met = 0;
         for lane in 0..count {
             let corners = column(rows, count, self.axes.turned, lane);
-            let eye = [self.sixteens[0].origin[x][0], self.sixteens[0].origin[y][0], self.sixteens[0].origin[z][0]];
-            let mut from = [wide3(wide, corners[0]), wide3(wide, corners[1]), wide3(wide, corners[2])];
-            if PINHOLE {
-                from = seen_from(wide, from, wide3(wide, eye));
-            }
-            let (mut number, mut plane) = (0, None);
+            let [a, b, c] = [wide3(wide, corners[0]), wide3(wide, corners[1]), wide3(wide, corners[2])];
+            let mut number = 0;
             for group in 0..self.groups {
                 let active = (rays >> (group * WIDE)) as u32 & 0xffff;
                 if active == 0 {
                     continue;
                 }
                 let e = &mut self.sixteens[group];
-                let mut from = from;
-                if !PINHOLE {
-                    let origin = [wide.load(&e.origin[x]), wide.load(&e.origin[y]), wide.load(&e.origin[z])];
-                    from = seen_from(wide, from, origin);
-                }
+                let origin = [wide.load(&e.origin[x]), wide.load(&e.origin[y]), wide.load(&e.origin[z])];
                 let shear = [wide.load(&e.shear[0]), wide.load(&e.shear[1])];
-                let a = across(wide, from[0], shear);
-                let b = across(wide, from[1], shear);
-                let c = across(wide, from[2], shear);
+                let a = wide_flat(wide, a, origin, shear);
+                let b = wide_flat(wide, b, origin, shear);
+                let c = wide_flat(wide, c, origin, shear);
                 let (u, v, w) = (wide_edge(wide, b, c), wide_edge(wide, c, a), wide_edge(wide, a, b));
                 let (least, greatest) = (wide.min(u, wide.min(v, w)), wide.max(u, wide.max(v, w)));
                 let missed = wide.lt(least, zero) & wide.lt(zero, greatest);
@@ -95,13 +86,9 @@ impl Packet<'_> {
                     number = self.meetings.len() as u32;
                     let triangle = self.bvh.order[first + lane];
                     self.meetings.push(Meeting { corners, triangle });
-                    if PINHOLE {
-                        plane = Some(Plane::new(eye.into(), turned));
-                    }
                 }
-                let plane = if PINHOLE { plane.as_ref() } else { None };
                 let (meetings, triangle) = (&self.meetings, self.meetings[number as usize].triangle);
-                met |= e.meet(lanes, &self.axes, turned, plane, crossed, number, |other| {
+                met |= e.meet(lanes, &self.axes, turned, crossed, number, |other| {
                     triangle < meetings[other as usize].triangle
                 });
                 all_met |= u64::from(met) << (group * WIDE);
@@ -188,21 +175,15 @@ fn wide3<W: Wide>(wide: W, v: [f32; 3]) -> [W::Floats; 3] {
     [wide.splat(v[0]), wide.splat(v[1]), wide.splat(v[2])]
 }
 
-/// As [`flat`] in two steps: corners seen from the origin of rays, and a corner in the plane across them.
+/// As [`flat`].
 #[inline(always)]
-fn seen_from<W: Wide>(wide: W, corners: [[W::Floats; 3]; 3], origin: [W::Floats; 3]) -> [[W::Floats; 3]; 3] {
-    let [a, b, c] = corners;
-    let from = [
-        [wide.sub(a[0], origin[0]), wide.sub(a[1], origin[1]), wide.sub(a[2], origin[2])],
-        [wide.sub(b[0], origin[0]), wide.sub(b[1], origin[1]), wide.sub(b[2], origin[2])],
-        [wide.sub(c[0], origin[0]), wide.sub(c[1], origin[1]), wide.sub(c[2], origin[2])],
-    ];
-    from
-}
-
-#[inline(always)]
-fn across<W: Wide>(wide: W, [x, y, z]: [W::Floats; 3], shear: [W::Floats; 2]) -> [W::Floats; 3] {
-    [wide.sub(x, wide.mul(shear[0], z)), wide.sub(y, wide.mul(shear[1], z)), z]
+fn wide_flat<W: Wide>(wide: W, p: [W::Floats; 3], origin: [W::Floats; 3], shear: [W::Floats; 2]) -> [W::Floats; 3] {
+    let z = wide.sub(p[2], origin[2]);
+    [
+        wide.sub(wide.sub(p[0], origin[0]), wide.mul(shear[0], z)),
+        wide.sub(wide.sub(p[1], origin[1]), wide.mul(shear[1], z)),
+        z,
+    ]
 }
 
 /// As [`edge`].

@@ -81,7 +81,6 @@ impl<A: FnMut(usize, Option<TriangleHit>), const ANY: bool> Kernel for Packets<'
             numbers: [0; RAYS],
             sixteens: [Rays::EMPTY; RAYS / WIDE],
             groups: 0,
-            pinhole: false,
             alive: 0,
             limit: 0.0,
             meetings: Vec::with_capacity(256),
@@ -156,8 +155,6 @@ struct Packet<'a> {
     sixteens: [Rays; RAYS / WIDE],
     /// How many of the sixteens hold rays.
     groups: usize,
-    /// Whether all rays have the same origin, bit for bit.
-    pinhole: bool,
     /// The rays that still search.
     alive: u64,
     /// None of them goes on beyond.
@@ -232,12 +229,6 @@ impl Packet<'_> {
         for group in 0..self.groups {
             let tame = self.sixteens[group].prepare(lanes, &self.axes, self.bvh.reach);
             self.alive |= u64::from(tame) << (group * WIDE);
-        }
-        let [x, y, z] = &self.sixteens[0].origin;
-        let eye = [x[0], y[0], z[0]];
-        self.pinhole = true;
-        for group in 0..self.groups {
-            self.pinhole &= self.sixteens[group].are_from(eye);
         }
         let all = u64::MAX >> (RAYS - count);
         self.alive &= all;

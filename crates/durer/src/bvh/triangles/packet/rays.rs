@@ -118,18 +118,6 @@ impl Rays {
         tame
     }
 
-    /// Whether all have this origin, bit for bit.
-    #[inline(always)]
-    pub fn are_from(&self, eye: [f32; 3]) -> bool {
-        let [x, y, z] = &self.origin;
-        let [u, v, w] = eye.map(f32::to_bits);
-        let mut difference = [0; WIDE];
-        for i in 0..WIDE {
-            difference[i] = (x[i].to_bits() ^ u) | (y[i].to_bits() ^ v) | (z[i].to_bits() ^ w);
-        }
-        difference == [0; WIDE]
-    }
-
     /// Sets the bounds of heights.
     #[inline(always)]
     pub fn bound<L: Lanes>(&mut self, lanes: L, axes: &Axes) {
@@ -148,16 +136,13 @@ impl Rays {
 
     /// Takes note of a triangle that the lines of some rays cross, of those who meet it in their interval, and before others.
     ///
-    /// `number` is that of the meeting, and `less` says whether the triangle of another is of greater number. `plane` is given where
-    /// it is the same for all.
+    /// `number` is that of the meeting, and `less` says whether the triangle of another is of greater number.
     #[inline(always)]
-    #[allow(clippy::too_many_arguments)]
     pub fn meet<L: Lanes>(
         &mut self,
         lanes: L,
         axes: &Axes,
         corners: [Vec3; 3],
-        plane: Option<&Plane>,
         crossed: u32,
         number: u32,
         less: impl Fn(u32) -> bool,
@@ -168,7 +153,7 @@ impl Rays {
             if crossed == 0 {
                 continue;
             }
-            let t = lanes.load(&self.distances(lanes, axes, corners, plane, first, crossed));
+            let t = lanes.load(&self.distances(lanes, axes, corners, first, crossed));
             let t_last = lanes.load(half(&self.t_last, first));
             // Also NaN is refused.
             let within = crossed & lanes.lt(lanes.load(half(&self.t_min, first)), t);
@@ -195,7 +180,6 @@ impl Rays {
         lanes: L,
         axes: &Axes,
         corners: [Vec3; 3],
-        plane: Option<&Plane>,
         first: usize,
         crossed: u32,
     ) -> [f32; WIDTH] {
@@ -203,20 +187,12 @@ impl Rays {
         let (ox, oy, oz) = (half(&self.origin[x], first), half(&self.origin[y], first), half(&self.origin[z], first));
         let (dx, dy, dz) = (half(&self.dir[x], first), half(&self.dir[y], first), half(&self.dir[z], first));
         let (mut t, mut height, mut low, mut high) = ([0.0; WIDTH], [0.0; WIDTH], [0.0; WIDTH], [0.0; WIDTH]);
-        // The loops have no branches and are alike for all rays: the compiler takes several at once.
-        macro_rules! each {
-            ($i:ident, $plane:expr) => {
-                for $i in 0..WIDTH {
-                    let plane = $plane;
-                    let (at, heights) = (plane.t(Vec3::new(dx[$i], dy[$i], dz[$i])), plane.heights());
-                    (t[$i], height[$i]) = (at as f32, (at * f64::from(dz[$i])) as f32);
-                    (low[$i], high[$i]) = (heights.0 as f32, heights.1 as f32);
-                }
-            };
-        }
-        match plane {
-            Some(plane) => each!(i, plane),
-            None => each!(i, Plane::new(Vec3::new(ox[i], oy[i], oz[i]), corners)),
+        // The loop has no branches and is alike for all rays: the compiler takes several at once.
+        for i in 0..WIDTH {
+            let plane = Plane::new(Vec3::new(ox[i], oy[i], oz[i]), corners);
+            let (at, heights) = (plane.t(Vec3::new(dx[i], dy[i], dz[i])), plane.heights());
+            (t[i], height[i]) = (at as f32, (at * f64::from(dz[i])) as f32);
+            (low[i], high[i]) = (heights.0 as f32, heights.1 as f32);
         }
         // Rounding is monotonic: what is so after it, was so before.
         let height = lanes.load(&height);
