@@ -5,9 +5,7 @@ use crate::math::Aabb;
 
 /// Boxes of up to eight children, side by side. Those that are not there have empty boxes, which no ray meets.
 ///
-/// Children are placed by where they lie: bit k of a place says whether a child lies rather on the upper side of axis
-/// k. For any signs of a ray's direction, places in the order of `place ^ signs` are then roughly from near to far.
-/// Source: Ylitie, Karras, Laine, *Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs*, HPG 2017.
+/// Children lie in order along one axis, so that for a ray they are roughly from near to far, or from far to near.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub(super) struct Node {
@@ -15,6 +13,8 @@ pub(super) struct Node {
     pub planes: [[[f32; WIDTH]; 2]; 3],
     /// An inner child's node number; or [`LEAF`], the count less one shifted by [`COUNT_SHIFT`], and the first item.
     pub children: [u32; WIDTH],
+    /// The axis along which children rise, as a bit.
+    pub axis: u32,
 }
 
 pub(super) const LEAF: u32 = 1 << 31;
@@ -27,7 +27,7 @@ pub(super) const LEAF_SIZE: usize = 8;
 
 impl Node {
     pub const EMPTY: Node =
-        Node { planes: [[[f32::INFINITY; WIDTH], [f32::NEG_INFINITY; WIDTH]]; 3], children: [LEAF; WIDTH] };
+        Node { planes: [[[f32::INFINITY; WIDTH], [f32::NEG_INFINITY; WIDTH]]; 3], children: [LEAF; WIDTH], axis: 1 };
 
     pub fn set(&mut self, place: usize, bounds: Aabb, child: u32) {
         for axis in 0..3 {

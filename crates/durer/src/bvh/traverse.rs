@@ -12,6 +12,7 @@ use super::lanes::{Lanes, Room, Stack};
 use super::node::{LEAF, Node};
 use crate::math::{Ray, Vec3};
 use glam::Vec3A;
+use std::hint::select_unpredictable;
 
 /// A ray prepared for boxes: conservative, so that rounding never loses a box that the exact ray meets.
 ///
@@ -20,9 +21,8 @@ use glam::Vec3A;
 #[derive(Clone, Copy)]
 pub(super) struct RayBox {
     planes: Planes,
-    /// Children's places in the order from far to near are 0, 1, 2, ... after an exclusive or with this: a bit for each
-    /// axis, set where the direction is positive.
-    pub flip: u32,
+    /// A bit for each axis along which the direction is positive.
+    pub positive: u32,
     t_min: f32,
     /// Distances of boxes are in these units; 1 where the ray is tame.
     scale: f32,
@@ -71,7 +71,7 @@ impl RayBox {
         let negative = dir.is_negative_bitmask();
         (ray.t_min < ray.t_max).then_some(RayBox {
             planes,
-            flip: 7 ^ negative,
+            positive: 7 ^ negative,
             t_min: ray.t_min,
             scale: 1.0,
             tame,
@@ -94,9 +94,9 @@ impl RayBox {
             near_origin: (ray.origin + outward).to_array(),
             far_origin: (ray.origin - outward).to_array(),
         };
-        let flip = 7 ^ dir.is_negative_bitmask();
+        let positive = 7 ^ dir.is_negative_bitmask();
         let t_min = (ray.t_min * scale).next_down();
-        RayBox { planes, flip, t_min, scale, tame: false, moderate: reach < TAME.end }
+        RayBox { planes, positive, t_min, scale, tame: false, moderate: reach < TAME.end }
     }
 
     /// A distance along the ray, not too small, as boxes have it.
@@ -128,7 +128,6 @@ pub(super) fn walk<L: Lanes, V: Visitor, const TAME: bool>(
     visitor: &mut V,
 ) -> f32 {
     let slabs = Slabs::new(lanes, boxes);
-    let (order, ranks) = (lanes.flipped(boxes.flip), &RANKS[boxes.flip as usize]);
     let mut far = boxes.limit::<TAME>(t_max);
     let mut limit = lanes.splat(far);
     let mut room = Room::new();
@@ -141,9 +140,7 @@ pub(super) fn walk<L: Lanes, V: Visitor, const TAME: bool>(
             let (met, enter) = meet::<L, TAME>(lanes, node, &slabs, limit);
             if met != 0 {
                 // The nearest child is next, without a way through the stack.
-                let [nearest, others] = ranks[met];
-                child = node.children[nearest as usize & 7];
-                lanes.push(&mut stack, &node.children, enter, order, others.into());
+                child = push_others(lanes, &mut stack, node, met, enter, boxes.positive);
                 continue;
             }
         } else {
@@ -171,21 +168,33 @@ pub(super) fn walk<L: Lanes, V: Visitor, const TAME: bool>(
     }
 }
 
-/// For each set of lanes: the lane i of it whose i ^ flip is greatest, and the others, as a set with i ^ flip in place of i.
-pub(super) static RANKS: [[[u8; 2]; 256]; 8] = {
-    let mut table = [[[0; 2]; 256]; 8];
-    let mut i = 0;
-    while i < 8 * 256 {
-        let (flip, set) = (i >> 8, i & 255);
-        let (mut rank, mut others) = (0, 0);
-        while rank < 8 {
-            if set >> (rank ^ flip) & 1 == 1 {
-                others |= 1 << rank;
-                table[flip][set] = [(rank ^ flip) as u8, others ^ 1 << rank];
-            }
-            rank += 1;
-        }
-        i += 1;
+/// Gives the nearest of the children that are met, and pushes the others, the farthest first.
+#[inline(always)]
+pub(super) fn push_others<L: Lanes>(
+    lanes: L,
+    stack: &mut Stack,
+    node: &Node,
+    met: u32,
+    enter: L::Floats,
+    positive: u32,
+) -> u32 {
+    // Along a rising axis the first lane is nearest. Ranks are lanes from far to near.
+    let rising = positive & node.axis != 0;
+    let nearest = select_unpredictable(rising, met.trailing_zeros(), 31 - (met | 1).leading_zeros());
+    let flip = select_unpredictable(rising, 7, 0);
+    let ranks = select_unpredictable(rising, REVERSED[met as usize & 255].into(), met);
+    let others = ranks & !(1 << ((nearest ^ flip) & 7));
+    lanes.push(stack, &node.children, enter, lanes.flipped(flip), others);
+    node.children[nearest as usize & 7]
+}
+
+/// Eight bits in reverse.
+static REVERSED: [u8; 256] = {
+    let mut table = [0; 256];
+    let mut bits = 0;
+    while bits < 256 {
+        table[bits] = (bits as u8).reverse_bits();
+        bits += 1;
     }
     table
 };
@@ -203,7 +212,7 @@ pub(super) struct Slabs<L: Lanes> {
 impl<L: Lanes> Slabs<L> {
     #[inline(always)]
     pub fn new(lanes: L, boxes: &RayBox) -> Self {
-        let negative = |axis: u32| (!boxes.flip >> axis & 1) as usize;
+        let negative = |axis: u32| (!boxes.positive >> axis & 1) as usize;
         Slabs {
             inverse: splat3(lanes, boxes.planes.inverse),
             near_origin: splat3(lanes, boxes.planes.near_origin),
@@ -221,7 +230,7 @@ pub(super) fn meet<L: Lanes, const TAME: bool>(
     node: &Node,
     slabs: &Slabs<L>,
     limit: L::Floats,
-) -> (usize, L::Floats) {
+) -> (u32, L::Floats) {
     let Slabs { inverse, near_origin, far_origin, t_min, negative: [x, y, z] } = slabs;
     macro_rules! slab {
         ($axis:literal, $side:expr, $origin:ident) => {{
@@ -238,7 +247,7 @@ pub(super) fn meet<L: Lanes, const TAME: bool>(
     let leave_y = lanes.min(slab!(0, !x, far_origin), slab!(1, !y, far_origin));
     let enter = lanes.max(enter_y, lanes.max(slab!(2, z, near_origin), *t_min));
     let leave = lanes.min(leave_y, lanes.min(slab!(2, !z, far_origin), limit));
-    (lanes.le(enter, leave) as usize & 255, enter)
+    (lanes.le(enter, leave), enter)
 }
 
 #[inline(always)]

@@ -12,7 +12,7 @@ use super::Settings;
 use super::binary::{self, half_area};
 use crate::bvh::lanes::WIDTH;
 use crate::bvh::node::{self, Node};
-use crate::math::{Aabb, Vec3};
+use crate::math::Aabb;
 
 /// Subtrees of more references than this are worked on in parallel.
 const PARALLEL: u32 = 4096;
@@ -136,7 +136,8 @@ impl Emitter<'_> {
         let children = self.open(i);
         let list = &children.list[..children.count];
         let bounds: Vec<Aabb> = list.iter().map(|&i| self.tree.nodes[i].bounds()).collect();
-        let places = places(&bounds);
+        let (axis, places) = places(&bounds);
+        self.nodes[number].axis = 1 << axis;
         let (leaves, inner): (Vec<usize>, Vec<usize>) = (0..list.len()).partition(|&k| self.is_leaf(list[k]));
         for &k in &leaves {
             let leaf = self.leaf(list[k]);
@@ -176,28 +177,20 @@ impl Emitter<'_> {
     }
 }
 
-/// A place for each child: those that lie farthest out in a direction choose first.
-fn places(bounds: &[Aabb]) -> Vec<usize> {
-    let all = bounds.iter().copied().fold(Aabb::EMPTY, Aabb::union);
-    let offsets: Vec<Vec3> = bounds.iter().map(|b| b.center() - all.center()).collect();
-    let side = |place: usize, axis: usize| if place >> axis & 1 == 1 { 1.0 } else { -1.0 };
-    let score =
-        |child: usize, place: usize| -> f32 { (0..3).map(|axis| side(place, axis) * offsets[child][axis]).sum() };
-    let mut chosen = vec![WIDTH; bounds.len()];
-    let mut free = [true; WIDTH];
-    for _ in 0..bounds.len() {
-        let mut best = (f32::NEG_INFINITY, None);
-        for child in (0..bounds.len()).filter(|&child| chosen[child] == WIDTH) {
-            for place in (0..WIDTH).filter(|&place| free[place]) {
-                let score = score(child, place);
-                if score > best.0 || best.1.is_none() {
-                    best = (score, Some((child, place)));
-                }
-            }
-        }
-        let Some((child, place)) = best.1 else { break };
-        chosen[child] = place;
-        free[place] = false;
-    }
-    chosen
+/// The axis along which children lie apart best, and a place for each in that order.
+///
+/// Two that are apart are met in the right order by every ray; that they both are met is the likelier the greater they are.
+fn places(bounds: &[Aabb]) -> (usize, Vec<usize>) {
+    let greatest = bounds.iter().map(Aabb::half_area).fold(f32::MIN_POSITIVE, f32::max);
+    let apart = |axis: usize| -> f32 {
+        let pairs = bounds.iter().enumerate().flat_map(|(i, a)| bounds[i + 1..].iter().map(move |b| (a, b)));
+        let apart = pairs.filter(|(a, b)| a.max[axis] <= b.min[axis] || b.max[axis] <= a.min[axis]);
+        apart.map(|(a, b)| a.half_area() / greatest * (b.half_area() / greatest)).sum()
+    };
+    let axis = (1..3).fold((0, apart(0)), |best, axis| if apart(axis) > best.1 { (axis, apart(axis)) } else { best }).0;
+    let mut order: Vec<usize> = (0..bounds.len()).collect();
+    order.sort_by(|&a, &b| bounds[a].center()[axis].total_cmp(&bounds[b].center()[axis]));
+    let mut places = vec![0; bounds.len()];
+    order.into_iter().enumerate().for_each(|(place, child)| places[child] = place);
+    (axis, places)
 }

@@ -8,7 +8,7 @@ use super::TriangleBvh;
 use super::query::{Found, Leaves};
 use crate::bvh::lanes::{Kernel, Lanes, Room, Stack};
 use crate::bvh::node::{self, LEAF, Node};
-use crate::bvh::traverse::{RANKS, RayBox, Slabs, Visitor, meet};
+use crate::bvh::traverse::{RayBox, Slabs, Visitor, meet, push_others};
 use crate::math::{Ray, Vec3};
 use std::hint::select_unpredictable;
 use std::marker::PhantomData;
@@ -103,12 +103,9 @@ fn step<L: Lanes, F: Found>(lanes: L, nodes: &[Node], flyer: &mut Flyer<F>, stac
     let node = &nodes[flyer.child as usize];
     let slabs = Slabs::new(lanes, &flyer.boxes);
     let (met, enter) = meet::<L, true>(lanes, node, &slabs, lanes.splat(flyer.t_max));
-    let flip = flyer.boxes.flip;
-    let [nearest, others] = RANKS[flip as usize & 7][met];
-    lanes.push(stack, &node.children, enter, lanes.flipped(flip), others.into());
+    let nearest = push_others(lanes, stack, node, met, enter, flyer.boxes.positive);
     // If nothing was met, nothing was pushed.
-    let top = stack.pop_if(met == 0);
-    flyer.child = select_unpredictable(met == 0, top, node.children[nearest as usize & 7]);
+    flyer.child = select_unpredictable(met == 0, stack.pop_if(met == 0), nearest);
 }
 
 impl<'a, F: Found, A: FnMut(usize, F::Answer)> Kernel for Stream<'a, F, A> {
