@@ -14,7 +14,6 @@ use super::stream::prefetch;
 use super::{TriangleBvh, TriangleHit};
 use crate::bvh::lanes::{Kernel, Lanes, WIDE, WIDTH, Wide};
 use crate::bvh::node::{LEAF, Node};
-use crate::bvh::traverse::RANKS;
 use crate::math::{Ray, Vec2};
 use rays::Rays;
 
@@ -22,6 +21,10 @@ use rays::Rays;
 const RAYS: usize = 64;
 /// So few are better off alone.
 const LEAST: usize = 16;
+/// As far apart directions of a packet may be across the longest axis, for one unit along it.
+const WIDEST_ANGLE: f32 = 0.5;
+/// As far apart origins may be, where the longest side of the tree's bounds is 1.
+const WIDEST_START: f32 = 0.25;
 
 impl TriangleBvh {
     /// Answers for rays that go together, and gives the numbers of the others. Where `ANY`, any hit will do, and only whether there
@@ -45,7 +48,8 @@ struct Axes {
     turned: [usize; 3],
     /// By axis: 1 where directions are negative, else 0.
     negative: [usize; 3],
-    flip: u32,
+    /// A bit for each axis along which they are positive.
+    positive: u32,
 }
 
 impl Axes {
@@ -59,7 +63,7 @@ impl Axes {
         if negative[z] == 1 {
             std::mem::swap(&mut x, &mut y);
         }
-        Axes { turned: [x, y, z], negative, flip: 7 ^ (key as u32 & 7) }
+        Axes { turned: [x, y, z], negative, positive: 7 ^ (key as u32 & 7) }
     }
 }
 
@@ -177,7 +181,7 @@ impl<L: Lanes> Beam<L> {
     ///
     /// Roundings are monotonic, so no bound is passed by what a single ray has.
     #[inline(always)]
-    fn meet(&self, lanes: L, node: &Node, limit: L::Floats) -> (usize, L::Floats) {
+    fn meet(&self, lanes: L, node: &Node, limit: L::Floats) -> (u32, L::Floats) {
         macro_rules! slab {
             ($axis:literal, $side:expr, $from:ident, $end:ident) => {{
                 let plane = lanes.sub(lanes.load(&node.planes[$axis][$side & 1]), self.$from[$axis]);
@@ -190,8 +194,20 @@ impl<L: Lanes> Beam<L> {
         let enter = lanes.max(enter, lanes.max(slab!(2, z, near_from, min), self.t_min));
         let leave = lanes.min(slab!(0, !x, far_from, max), slab!(1, !y, far_from, max));
         let leave = lanes.min(leave, lanes.min(slab!(2, !z, far_from, max), limit));
-        (lanes.le(enter, leave) as usize & 255, enter)
+        (lanes.le(enter, leave), enter)
     }
+}
+
+/// The least or greatest of what all rays of a packet have. (No closure would do: what is not inlined into a level's entry is compiled
+/// without its instructions.)
+macro_rules! end {
+    ($packet:expr, $wide:expr, $end:ident, $across:ident, $($of:tt)*) => {{
+        let mut all = $wide.load(&$packet.sixteens[0].$($of)*);
+        for group in 1..$packet.groups {
+            all = $wide.$end($wide.load(&$packet.sixteens[group].$($of)*), all);
+        }
+        $wide.$across(all)
+    }};
 }
 
 impl Packet<'_> {
@@ -232,35 +248,35 @@ impl Packet<'_> {
         }
         let all = u64::MAX >> (RAYS - count);
         self.alive &= all;
-        self.alive == all
+        self.alive == all && self.is_narrow(lanes)
     }
 
     #[inline(always)]
     fn beam<L: Lanes>(&self, lanes: L) -> Beam<L> {
-        // No closures: what is not inlined into the level's entry is compiled without its instructions.
-        let wide = lanes.wide();
-        macro_rules! end {
-            ($end:ident, $across:ident, $($of:tt)*) => {{
-                let mut all = wide.load(&self.sixteens[0].$($of)*);
-                for group in 1..self.groups {
-                    all = wide.$end(wide.load(&self.sixteens[group].$($of)*), all);
-                }
-                lanes.splat(wide.$across(all))
-            }};
-        }
         let nowhere = lanes.splat(0.0);
+        let wide = lanes.wide();
+        macro_rules! least {
+            ($($of:tt)*) => {
+                lanes.splat(end!(self, wide, min, least, $($of)*))
+            };
+        }
+        macro_rules! greatest {
+            ($($of:tt)*) => {
+                lanes.splat(end!(self, wide, max, greatest, $($of)*))
+            };
+        }
         let mut beam = Beam {
             inverse: [[nowhere; 2]; 3],
             near_from: [nowhere; 3],
             far_from: [nowhere; 3],
-            t_min: end!(min, least, t_min),
+            t_min: least!(t_min),
             negative: self.axes.negative,
         };
         for axis in 0..3 {
-            beam.inverse[axis] = [end!(min, least, inverse[axis]), end!(max, greatest, inverse[axis])];
+            beam.inverse[axis] = [least!(inverse[axis]), greatest!(inverse[axis])];
             (beam.near_from[axis], beam.far_from[axis]) = match self.axes.negative[axis] {
-                0 => (end!(max, greatest, near_from[axis]), end!(min, least, far_from[axis])),
-                _ => (end!(min, least, near_from[axis]), end!(max, greatest, far_from[axis])),
+                0 => (greatest!(near_from[axis]), least!(far_from[axis])),
+                _ => (least!(near_from[axis]), greatest!(far_from[axis])),
             };
         }
         beam
@@ -270,11 +286,21 @@ impl Packet<'_> {
     #[inline(always)]
     fn last<L: Lanes>(&self, lanes: L) -> f32 {
         let wide = lanes.wide();
-        let mut all = wide.load(&self.sixteens[0].t_last);
-        for group in 1..self.groups {
-            all = wide.max(wide.load(&self.sixteens[group].t_last), all);
+        end!(self, wide, max, greatest, t_last)
+    }
+
+    /// Whether rays are so near each other that they mostly meet the same boxes.
+    #[inline(always)]
+    fn is_narrow<L: Lanes>(&self, lanes: L) -> bool {
+        let wide = lanes.wide();
+        macro_rules! extent {
+            ($($of:tt)*) => {
+                end!(self, wide, max, greatest, $($of)*) - end!(self, wide, min, least, $($of)*)
+            };
         }
-        wide.greatest(all)
+        let apart = WIDEST_START * self.bvh.bounds.size().max_element();
+        extent!(shear[0]).max(extent!(shear[1])) <= WIDEST_ANGLE
+            && extent!(origin[0]).max(extent!(origin[1])).max(extent!(origin[2])) <= apart
     }
 
     #[inline(always)]
@@ -284,7 +310,6 @@ impl Packet<'_> {
         self.limit = self.last(lanes);
         self.meetings.clear();
         self.meetings.push(Meeting { corners: [[0.0; 3]; 3], triangle: u32::MAX });
-        let flip = self.axes.flip;
         stack.clear();
         let (mut child, mut rays) = (0, self.alive);
         loop {
@@ -292,11 +317,14 @@ impl Packet<'_> {
                 let node = &bvh.nodes[child as usize];
                 let (met, enter) = beam.meet(lanes, node, lanes.splat(self.limit));
                 if met != 0 {
-                    let [nearest, mut others] = RANKS[flip as usize & 7][met];
-                    let enter = lanes.store(enter);
+                    // Along a rising axis the first place is nearest; the farthest is pushed first.
+                    let rising = self.axes.positive & node.axis != 0;
+                    let (first, last) = (met.trailing_zeros(), 31 - met.leading_zeros());
+                    let nearest = if rising { first } else { last };
+                    let (mut others, enter) = (met ^ 1 << nearest, lanes.store(enter));
                     while others != 0 {
-                        let place = (others.trailing_zeros() ^ flip) & 7;
-                        others &= others - 1;
+                        let place = if rising { 31 - others.leading_zeros() } else { others.trailing_zeros() } & 7;
+                        others ^= 1 << place;
                         let next = node.children[place as usize];
                         prefetch(lanes, bvh, next);
                         stack.push(Entry { rays, child: next, place: child * 8 + place, near: enter[place as usize] });
