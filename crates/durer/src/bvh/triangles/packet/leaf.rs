@@ -96,7 +96,7 @@ impl Packet<'_> {
                     set_met(&mut e.met, met, number);
                     rays &= !(u64::from(met) << (group * WIDE));
                 } else if met != 0 {
-                    e.bound(lanes, &self.axes);
+                    e.bound_last(lanes, &self.axes);
                 }
             }
         }
@@ -156,7 +156,7 @@ impl Packet<'_> {
                 }
             }
             if !ANY && all_met >> ray & 1 == 1 {
-                e.bound(lanes, &self.axes);
+                e.bound_last(lanes, &self.axes);
             }
         }
         all_met

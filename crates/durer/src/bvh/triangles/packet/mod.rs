@@ -65,6 +65,12 @@ impl Axes {
         }
         Axes { turned: [x, y, z], negative, positive: 7 ^ (key as u32 & 7) }
     }
+
+    /// Whether directions are negative along their longest axis.
+    #[inline(always)]
+    fn is_down(&self) -> bool {
+        self.negative[self.turned[2]] == 1
+    }
 }
 
 struct Packets<'a, A, const ANY: bool> {

@@ -120,11 +120,11 @@ impl Rays {
 
     /// Sets the bounds of heights.
     #[inline(always)]
-    pub fn bound<L: Lanes>(&mut self, lanes: L, axes: &Axes) {
+    fn bound<L: Lanes>(&mut self, lanes: L, axes: &Axes) {
         let wide = lanes.wide();
         let dz = wide.load(&self.dir[axes.turned[2]]);
         let (near, far) = (wide.mul(wide.load(&self.t_min), dz), wide.mul(wide.load(&self.t_last), dz));
-        let (low, high) = if axes.negative[axes.turned[2]] == 1 { (far, near) } else { (near, far) };
+        let (low, high) = if axes.is_down() { (far, near) } else { (near, far) };
         let (low_slack, high_slack) = (slack(wide, low), slack(wide, high));
         self.heights = [
             wide.store(wide.sub(low, low_slack)),
@@ -132,6 +132,17 @@ impl Rays {
             wide.store(wide.add(low, low_slack)),
             wide.store(wide.sub(high, high_slack)),
         ];
+    }
+
+    /// Sets that which bounds the last t, outside, after it has changed.
+    #[inline(always)]
+    pub fn bound_last<L: Lanes>(&mut self, lanes: L, axes: &Axes) {
+        let wide = lanes.wide();
+        let far = wide.mul(wide.load(&self.t_last), wide.load(&self.dir[axes.turned[2]]));
+        match axes.is_down() {
+            true => self.heights[0] = wide.store(wide.sub(far, slack(wide, far))),
+            false => self.heights[1] = wide.store(wide.add(far, slack(wide, far))),
+        }
     }
 
     /// Takes note of a triangle that the lines of some rays cross, of those who meet it in their interval, and before others.
