@@ -107,10 +107,18 @@ impl Kernel for Everything<'_> {
 /// Everything that sixteen lanes do.
 #[inline(always)]
 fn wide<W: Wide>(lanes: W, [a, b, c]: &[[f32; WIDTH]; 3]) -> [f32; 7 * WIDE + 6] {
-    let join = |a: &[f32; WIDTH], b: &[f32; WIDTH]| std::array::from_fn(|i| if i < WIDTH { a[i] } else { b[i - WIDTH] });
+    let join =
+        |a: &[f32; WIDTH], b: &[f32; WIDTH]| std::array::from_fn(|i| if i < WIDTH { a[i] } else { b[i - WIDTH] });
     let (a, b) = (lanes.load(&join(a, b)), lanes.load(&join(b, c)));
-    let vectors =
-        [lanes.add(a, b), lanes.sub(a, b), lanes.mul(a, b), lanes.div(a, b), lanes.abs(a), lanes.min(a, b), lanes.max(a, b)];
+    let vectors = [
+        lanes.add(a, b),
+        lanes.sub(a, b),
+        lanes.mul(a, b),
+        lanes.div(a, b),
+        lanes.abs(a),
+        lanes.min(a, b),
+        lanes.max(a, b),
+    ];
     // Where it is no number, the second is taken.
     let ordered = lanes.max(a, lanes.splat(f32::MIN));
     let masks = [lanes.le(a, b), lanes.lt(a, b), lanes.le(b, a), lanes.lt(b, a)].map(|mask| mask as f32);

@@ -64,7 +64,7 @@ impl<'a, F: Found, A: FnMut(usize, F::Answer)> Stream<'a, F, A> {
     /// Puts the next ray in a place, if there is one. Rays that are not traced here are answered at once.
     #[inline(always)]
     fn start<L: Lanes>(&mut self, lanes: L, flyer: &mut Flyer<'a, F>, stack: &mut Stack) -> bool {
-        while let Some(&number) = self.numbers.next() {
+        for &number in self.numbers.by_ref() {
             let number = number as usize;
             let ray = &self.rays[number];
             match RayBox::new(ray, self.bvh.reach) {

@@ -248,7 +248,8 @@ fn batches_answer_as_single_rays_do() {
         for (scale, offset) in [(1.0, Vec3::ZERO), (1.0, Vec3::new(1e4, -3e3, 7e4)), (1e-30, Vec3::ZERO)] {
             let mesh = scaled(&mesh, scale, offset);
             let tree = TriangleBvh::build(&mesh.0, &mesh.1, Preset::Best);
-            let blind = tree.clone().least_volume(0.01 * f64::from(scale).powi(3));
+            let size = f64::from(scale);
+            let blind = tree.clone().least_volume(0.01 * size * size * size);
             let trees: Vec<_> = Level::available().map(|level| tree.clone().at_level(level)).chain([blind]).collect();
             for round in 0..rounds(8) {
                 let mut rays: Vec<Ray> = (0..3).flat_map(|_| bundle(&mesh, &mut random, scale, offset)).collect();

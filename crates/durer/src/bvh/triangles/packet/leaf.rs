@@ -9,7 +9,7 @@ use crate::math::Vec3;
 use crate::shape::watertight::Sheared;
 
 impl Packet<'_> {
-    /// Shows the triangles of a leaf to some rays: side by side either those or these, whichever is less work.
+    /// Shows the triangles of a leaf to some rays: side by side are either those or these, whichever is less work.
     #[inline(always)]
     pub(super) fn leaf<L: Lanes, const ANY: bool>(&mut self, lanes: L, leaf: u32, rays: u64) {
         let (_, count) = node::items(leaf);
@@ -17,7 +17,8 @@ impl Packet<'_> {
         for group in 0..self.groups {
             groups += usize::from(rays >> (group * WIDE) & 0xffff != 0);
         }
-        let met = match (rays.count_ones() as usize) < groups * count {
+        // Found by measurement: where few rays of a group are left, or triangles are many, rays go one by one.
+        let met = match 2 * (rays.count_ones() as usize) < groups * (count + 4) {
             true => self.ray_by_ray::<L, ANY>(lanes, leaf, rays),
             false => self.one_by_one::<L, ANY>(lanes, leaf, rays),
         };
@@ -60,8 +61,7 @@ impl Packet<'_> {
                 }
                 let lowest = wide.min(a[2], wide.min(b[2], c[2]));
                 let highest = wide.max(a[2], wide.max(b[2], c[2]));
-                let beside =
-                    wide.lt(wide.load(&e.heights[1]), lowest) | wide.lt(highest, wide.load(&e.heights[0]));
+                let beside = wide.lt(wide.load(&e.heights[1]), lowest) | wide.lt(highest, wide.load(&e.heights[0]));
                 let candidates = !(missed | beside) & active;
                 if candidates == 0 {
                     continue;
@@ -125,15 +125,16 @@ impl Packet<'_> {
             let missed = lanes.lt(least, zero) & lanes.lt(zero, greatest);
             let lowest = lanes.min(a[2], lanes.min(b[2], c[2]));
             let highest = lanes.max(a[2], lanes.max(b[2], c[2]));
-            let beside = lanes.lt(lanes.splat(e.heights[1][i]), lowest) | lanes.lt(highest, lanes.splat(e.heights[0][i]));
+            let beside =
+                lanes.lt(lanes.splat(e.heights[1][i]), lowest) | lanes.lt(highest, lanes.splat(e.heights[0][i]));
             let mut candidates = !(missed | beside) & ((1 << count) - 1);
             if candidates == 0 {
                 continue;
             }
             let crossed = lanes.lt(zero, least) | lanes.lt(greatest, zero);
             if ANY {
-                let inside = lanes.lt(lanes.splat(e.heights[2][i]), lowest)
-                    & lanes.lt(highest, lanes.splat(e.heights[3][i]));
+                let inside =
+                    lanes.lt(lanes.splat(e.heights[2][i]), lowest) & lanes.lt(highest, lanes.splat(e.heights[3][i]));
                 if candidates & crossed & inside != 0 {
                     e.met[i] = f32::from_bits(1);
                     all_met |= 1 << ray;

@@ -404,7 +404,8 @@ impl Packet<'_> {
                 // Eight of the nine numbers of each at once, then the last.
                 let mut rows = [lanes.splat(0.0); WIDTH];
                 for i in 0..WIDTH {
-                    let [[a, b, c], [d, e, f], [g, h, last]] = self.meetings[e.met[first + i].to_bits() as usize].corners;
+                    let [[a, b, c], [d, e, f], [g, h, last]] =
+                        self.meetings[e.met[first + i].to_bits() as usize].corners;
                     rows[i] = lanes.load(&[a, b, c, d, e, f, g, h]);
                     corners[2][2][first + i] = last;
                 }
