@@ -7,15 +7,27 @@
 //! Sources: Wald, Slusallek, Benthin, Wagner, *Interactive Rendering with Coherent Ray Tracing*, Eurographics 2001; Boulos, Wald,
 //! Shirley, *Geometric and Arithmetic Culling Methods for Entire Ray Packets*, University of Utah 2006.
 
+/// The least or greatest of what all rays of a packet have. (No closure would do: what is not inlined into a level's entry is compiled
+/// without its instructions.)
+macro_rules! end {
+    ($packet:expr, $wide:expr, $end:ident, $across:ident, $($of:tt)*) => {{
+        let mut all = $wide.load(&$packet.sixteens[0].$($of)*);
+        for group in 1..$packet.groups {
+            all = $wide.$end($wide.load(&$packet.sixteens[group].$($of)*), all);
+        }
+        $wide.$across(all)
+    }};
+}
+
 mod leaf;
 mod rays;
+mod walk;
 
-use super::stream::prefetch;
 use super::{TriangleBvh, TriangleHit};
 use crate::bvh::lanes::{Kernel, Lanes, WIDE, WIDTH, Wide};
-use crate::bvh::node::{LEAF, Node};
 use crate::math::{Ray, Vec2};
 use rays::Rays;
+use walk::Entry;
 
 /// How many rays may be in a packet.
 const RAYS: usize = 64;
@@ -44,7 +56,7 @@ impl TriangleBvh {
 /// What the rays of a packet have in common.
 #[derive(Clone, Copy)]
 struct Axes {
-    /// As those of [`Sheared`].
+    /// As those of [`Sheared`](crate::shape::watertight::Sheared).
     turned: [usize; 3],
     /// By axis: 1 where directions are negative, else 0.
     negative: [usize; 3],
@@ -95,7 +107,7 @@ impl<A: FnMut(usize, Option<TriangleHit>), const ANY: bool> Kernel for Packets<'
             limit: 0.0,
             meetings: Vec::with_capacity(256),
         };
-        let mut stack = Vec::with_capacity(256);
+        let mut stack: Vec<Entry> = Vec::with_capacity(256);
         for (window, rays) in self.rays.chunks(RAYS).enumerate() {
             let first = (window * RAYS) as u32;
             let all = u64::MAX >> (RAYS - rays.len());
@@ -104,6 +116,7 @@ impl<A: FnMut(usize, Option<TriangleHit>), const ANY: bool> Kernel for Packets<'
             }
             packet.load(lanes, self.rays, rays.len());
             let signs = packet.signs(lanes);
+            // Usually all have the same key, and are where they should be; else those of each key are put together.
             for key in 0..Axes::KEYS {
                 let mut members = with_key(signs, key) & all;
                 if members == 0 {
@@ -124,6 +137,8 @@ impl<A: FnMut(usize, Option<TriangleHit>), const ANY: bool> Kernel for Packets<'
                     continue;
                 }
                 let all = packet.alive;
+                packet.meetings.clear();
+                packet.meetings.push(Meeting { corners: [[0.0; 3]; 3], triangle: u32::MAX });
                 packet.walk::<L, ANY>(lanes, &mut stack);
                 packet.answer::<L, ANY>(lanes, all, &mut self.answer);
             }
@@ -138,17 +153,6 @@ fn with_key([x, y, z, first, second]: [u64; 5], key: usize) -> u64 {
     let of = |set: u64, bit: usize| if key >> bit & 1 == 1 { set } else { !set };
     let longest = [first, second, !(first | second)][key >> 3];
     of(x, 0) & of(y, 1) & of(z, 2) & longest
-}
-
-/// A node or leaf that is still to be visited.
-#[derive(Clone, Copy)]
-struct Entry {
-    /// The rays that met its parent.
-    rays: u64,
-    child: u32,
-    /// Where its box is: the number of the node times eight, and the place.
-    place: u32,
-    near: f32,
 }
 
 /// A triangle that some ray met.
@@ -171,49 +175,6 @@ struct Packet<'a> {
     limit: f32,
     /// The first stands for none.
     meetings: Vec<Meeting>,
-}
-
-/// Intervals around what nodes need of all rays.
-struct Beam<L: Lanes> {
-    inverse: [[L::Floats; 2]; 3],
-    near_from: [L::Floats; 3],
-    far_from: [L::Floats; 3],
-    t_min: L::Floats,
-    negative: [usize; 3],
-}
-
-impl<L: Lanes> Beam<L> {
-    /// The children of a node that any ray may meet, a bit for each, and where the first enters them.
-    ///
-    /// Roundings are monotonic, so no bound is passed by what a single ray has.
-    #[inline(always)]
-    fn meet(&self, lanes: L, node: &Node, limit: L::Floats) -> (u32, L::Floats) {
-        macro_rules! slab {
-            ($axis:literal, $side:expr, $from:ident, $end:ident) => {{
-                let plane = lanes.sub(lanes.load(&node.planes[$axis][$side & 1]), self.$from[$axis]);
-                let [low, high] = self.inverse[$axis];
-                lanes.$end(lanes.mul(plane, low), lanes.mul(plane, high))
-            }};
-        }
-        let [x, y, z] = self.negative;
-        let enter = lanes.max(slab!(0, x, near_from, min), slab!(1, y, near_from, min));
-        let enter = lanes.max(enter, lanes.max(slab!(2, z, near_from, min), self.t_min));
-        let leave = lanes.min(slab!(0, !x, far_from, max), slab!(1, !y, far_from, max));
-        let leave = lanes.min(leave, lanes.min(slab!(2, !z, far_from, max), limit));
-        (lanes.le(enter, leave), enter)
-    }
-}
-
-/// The least or greatest of what all rays of a packet have. (No closure would do: what is not inlined into a level's entry is compiled
-/// without its instructions.)
-macro_rules! end {
-    ($packet:expr, $wide:expr, $end:ident, $across:ident, $($of:tt)*) => {{
-        let mut all = $wide.load(&$packet.sixteens[0].$($of)*);
-        for group in 1..$packet.groups {
-            all = $wide.$end($wide.load(&$packet.sixteens[group].$($of)*), all);
-        }
-        $wide.$across(all)
-    }};
 }
 
 impl Packet<'_> {
@@ -257,44 +218,6 @@ impl Packet<'_> {
         self.alive == all && self.is_narrow(lanes)
     }
 
-    #[inline(always)]
-    fn beam<L: Lanes>(&self, lanes: L) -> Beam<L> {
-        let nowhere = lanes.splat(0.0);
-        let wide = lanes.wide();
-        macro_rules! least {
-            ($($of:tt)*) => {
-                lanes.splat(end!(self, wide, min, least, $($of)*))
-            };
-        }
-        macro_rules! greatest {
-            ($($of:tt)*) => {
-                lanes.splat(end!(self, wide, max, greatest, $($of)*))
-            };
-        }
-        let mut beam = Beam {
-            inverse: [[nowhere; 2]; 3],
-            near_from: [nowhere; 3],
-            far_from: [nowhere; 3],
-            t_min: least!(t_min),
-            negative: self.axes.negative,
-        };
-        for axis in 0..3 {
-            beam.inverse[axis] = [least!(inverse[axis]), greatest!(inverse[axis])];
-            (beam.near_from[axis], beam.far_from[axis]) = match self.axes.negative[axis] {
-                0 => (greatest!(near_from[axis]), least!(far_from[axis])),
-                _ => (least!(near_from[axis]), greatest!(far_from[axis])),
-            };
-        }
-        beam
-    }
-
-    /// The last t of any ray.
-    #[inline(always)]
-    fn last<L: Lanes>(&self, lanes: L) -> f32 {
-        let wide = lanes.wide();
-        end!(self, wide, max, greatest, t_last)
-    }
-
     /// Whether rays are so near each other that they mostly meet the same boxes.
     #[inline(always)]
     fn is_narrow<L: Lanes>(&self, lanes: L) -> bool {
@@ -307,91 +230,6 @@ impl Packet<'_> {
         let apart = WIDEST_START * self.bvh.bounds.size().max_element();
         extent!(shear[0]).max(extent!(shear[1])) <= WIDEST_ANGLE
             && extent!(origin[0]).max(extent!(origin[1])).max(extent!(origin[2])) <= apart
-    }
-
-    #[inline(always)]
-    fn walk<L: Lanes, const ANY: bool>(&mut self, lanes: L, stack: &mut Vec<Entry>) {
-        let bvh = self.bvh;
-        let beam = self.beam(lanes);
-        self.limit = self.last(lanes);
-        self.meetings.clear();
-        self.meetings.push(Meeting { corners: [[0.0; 3]; 3], triangle: u32::MAX });
-        stack.clear();
-        let (mut child, mut rays) = (0, self.alive);
-        loop {
-            if child & LEAF == 0 {
-                let node = &bvh.nodes[child as usize];
-                let (met, enter) = beam.meet(lanes, node, lanes.splat(self.limit));
-                if met != 0 {
-                    // Along a rising axis the first place is nearest; the farthest is pushed first.
-                    let rising = self.axes.positive & node.axis != 0;
-                    let (first, last) = (met.trailing_zeros(), 31 - met.leading_zeros());
-                    let nearest = if rising { first } else { last };
-                    let (mut others, enter) = (met ^ 1 << nearest, lanes.store(enter));
-                    while others != 0 {
-                        let place = if rising { 31 - others.leading_zeros() } else { others.trailing_zeros() } & 7;
-                        others ^= 1 << place;
-                        let next = node.children[place as usize];
-                        prefetch(lanes, bvh, next);
-                        stack.push(Entry { rays, child: next, place: child * 8 + place, near: enter[place as usize] });
-                    }
-                    let inside = self.inside(lanes, node, nearest as usize & 7, rays);
-                    if inside != 0 {
-                        rays = inside;
-                        child = node.children[nearest as usize & 7];
-                        continue;
-                    }
-                }
-            } else {
-                self.leaf::<L, ANY>(lanes, child, rays);
-                if ANY && self.alive == 0 {
-                    return;
-                }
-            }
-            loop {
-                let Some(entry) = stack.pop() else { return };
-                if entry.near > self.limit {
-                    continue;
-                }
-                rays = if ANY { entry.rays & self.alive } else { entry.rays };
-                rays = self.inside(lanes, &bvh.nodes[entry.place as usize / 8], entry.place as usize & 7, rays);
-                if rays != 0 {
-                    child = entry.child;
-                    break;
-                }
-            }
-        }
-    }
-
-    /// Of some rays those that meet the box of a child.
-    #[inline(always)]
-    fn inside<L: Lanes>(&self, lanes: L, node: &Node, place: usize, rays: u64) -> u64 {
-        let wide = lanes.wide();
-        let [x, y, z] = self.axes.negative;
-        macro_rules! plane {
-            ($axis:literal, $side:expr) => {
-                wide.splat(node.planes[$axis][$side & 1][place])
-            };
-        }
-        let (near_x, near_y, near_z) = (plane!(0, x), plane!(1, y), plane!(2, z));
-        let (far_x, far_y, far_z) = (plane!(0, !x), plane!(1, !y), plane!(2, !z));
-        let mut inside = 0;
-        for (group, e) in self.sixteens.iter().enumerate() {
-            if rays >> (group * WIDE) & 0xffff == 0 {
-                continue;
-            }
-            macro_rules! slab {
-                ($axis:literal, $plane:ident, $origin:ident) => {
-                    wide.mul_add($plane, wide.load(&e.inverse[$axis]), wide.load(&e.$origin[$axis]))
-                };
-            }
-            let enter = wide.max(slab!(0, near_x, near_origin), slab!(1, near_y, near_origin));
-            let enter = wide.max(enter, wide.max(slab!(2, near_z, near_origin), wide.load(&e.t_min)));
-            let leave = wide.min(slab!(0, far_x, far_origin), slab!(1, far_y, far_origin));
-            let leave = wide.min(leave, wide.min(slab!(2, far_z, far_origin), wide.load(&e.t_last)));
-            inside |= u64::from(wide.le(enter, leave)) << (group * WIDE);
-        }
-        inside & rays
     }
 
     /// Tells what was found.
