@@ -104,12 +104,10 @@ impl Sheared {
     #[inline(always)]
     pub(crate) fn t(&self, corners: [Vec3; 3]) -> Option<f32> {
         let plane = Plane::new(self.origin, corners);
-        let (volume, dz) = (plane.volume(self.dir), f64::from(self.dir.z));
-        if volume.abs() < self.least_volume {
+        if plane.volume(self.dir).abs() < self.least_volume {
             return None;
         }
-        let t = plane.offset / volume;
-        Some(if plane.is_inside(t * dz) { t as f32 } else { plane.bounded(t, dz) })
+        Some(plane.t(self.dir))
     }
 
     /// The axes in the order of turned vectors.
@@ -133,8 +131,8 @@ impl Sheared {
 pub(crate) struct Plane {
     normal: DVec3,
     offset: f64,
-    /// The heights of the corners.
-    heights: [f64; 3],
+    /// The heights of the lowest and of the highest corner.
+    heights: [f64; 2],
 }
 
 impl Plane {
@@ -143,7 +141,8 @@ impl Plane {
         let origin = origin.as_dvec3();
         let (a, b, c) = (a.as_dvec3() - origin, b.as_dvec3() - origin, c.as_dvec3() - origin);
         let normal = (b - a).cross(c - a);
-        Plane { normal, offset: normal.dot(a), heights: [a.z, b.z, c.z] }
+        let heights = [least(a.z, least(b.z, c.z)), most(a.z, most(b.z, c.z))];
+        Plane { normal, offset: normal.dot(a), heights }
     }
 
     #[inline(always)]
@@ -151,34 +150,15 @@ impl Plane {
         self.normal.dot(dir.as_dvec3())
     }
 
-    /// Where a direction leads to the plane; the crossing itself is at [`Plane::bounded`].
+    /// Where a direction that crosses the triangle leads to it.
     #[inline(always)]
-    pub fn t(&self, dir: Vec3) -> f64 {
-        self.offset / self.volume(dir)
-    }
-
-    /// The least and the greatest height of a corner.
-    #[inline(always)]
-    pub fn heights(&self) -> (f64, f64) {
-        range(self.heights)
-    }
-
-    /// Whether a crossing of this height is where it is also with bounds. Products are rounded monotonically: strictly between two
-    /// corners' heights, t is between their distances.
-    #[inline(always)]
-    pub fn is_inside(&self, height: f64) -> bool {
-        let (low, high) = self.heights();
-        low < height && height < high
-    }
-
-    /// `t` within the distances of the corners: they bound also a triangle that is seen from nearly its side, even where `t` is no
-    /// number. `dz` is the height of the direction.
-    #[inline(always)]
-    pub fn bounded(&self, t: f64, dz: f64) -> f32 {
-        let [a, b, c] = self.heights;
-        let (near, far) = range([a / dz, b / dz, c / dz]);
-        let t = if t > near { t } else { near };
-        (if t < far { t } else { far }) as f32
+    pub fn t(&self, dir: Vec3) -> f32 {
+        let t = self.offset / self.volume(dir);
+        // Seen from nearly its side, the triangle still bounds it, also where it is no number. Divisions are rounded
+        // monotonically: the corners' distances are between those of the lowest and of the highest.
+        let dz = f64::from(dir.z);
+        let [p, q] = self.heights.map(|height| height / dz);
+        least(most(t, least(p, q)), most(p, q)) as f32
     }
 }
 
@@ -191,12 +171,16 @@ pub(crate) fn uv_across(flat: [Vec2; 3]) -> Vec2 {
     Vec2::new((areas.y / det) as f32, (areas.z / det) as f32)
 }
 
-/// The least and the greatest of three numbers.
+/// The lesser of two numbers, the second where the first is none.
 #[inline(always)]
-fn range([a, b, c]: [f64; 3]) -> (f64, f64) {
-    let least = |a: f64, b: f64| if a < b { a } else { b };
-    let most = |a: f64, b: f64| if a > b { a } else { b };
-    (least(least(a, b), c), most(most(a, b), c))
+fn least(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
+}
+
+/// The greater of two numbers, the second where the first is none.
+#[inline(always)]
+fn most(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
 }
 
 #[inline(always)]

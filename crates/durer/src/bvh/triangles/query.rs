@@ -122,8 +122,9 @@ impl Found for Nearest {
             t_max = self.settle(asked, t_max);
         }
         t_max = lesser(lanes.least(span.far, met), t_max);
-        let lanes_left = met & lanes.le(span.near, lanes.splat(t_max));
-        self.pending[self.count] = Pending { leaf, lanes: lanes_left, near: lanes.least(span.near, met) };
+        // A single one need not wait for bounds.
+        let left = if met.is_power_of_two() { met } else { met & lanes.le(span.near, lanes.splat(t_max)) };
+        self.pending[self.count] = Pending { leaf, lanes: left, near: lanes.least(span.near, met) };
         self.count += 1;
         t_max
     }

@@ -158,13 +158,23 @@ impl Rays {
         number: u32,
         less: impl Fn(u32) -> bool,
     ) -> u32 {
+        let [x, y, z] = axes.turned;
         let mut all_met = 0;
         for first in [0, WIDTH] {
             let crossed = crossed >> first & 255;
             if crossed == 0 {
                 continue;
             }
-            let t = lanes.load(&self.distances(lanes, axes, corners, first, crossed));
+            let (ox, oy, oz) =
+                (half(&self.origin[x], first), half(&self.origin[y], first), half(&self.origin[z], first));
+            let (dx, dy, dz) = (half(&self.dir[x], first), half(&self.dir[y], first), half(&self.dir[z], first));
+            let mut t = [0.0; WIDTH];
+            // There are no branches, and rays are alike: the compiler takes several at once.
+            for i in 0..WIDTH {
+                let plane = Plane::new(Vec3::new(ox[i], oy[i], oz[i]), corners);
+                t[i] = plane.t(Vec3::new(dx[i], dy[i], dz[i]));
+            }
+            let t = lanes.load(&t);
             let t_last = lanes.load(half(&self.t_last, first));
             // Also NaN is refused.
             let within = crossed & lanes.lt(lanes.load(half(&self.t_min, first)), t);
@@ -184,39 +194,6 @@ impl Rays {
         all_met
     }
 
-    /// Where eight rays cross a triangle, if their lines do.
-    #[inline(always)]
-    fn distances<L: Lanes>(
-        &self,
-        lanes: L,
-        axes: &Axes,
-        corners: [Vec3; 3],
-        first: usize,
-        crossed: u32,
-    ) -> [f32; WIDTH] {
-        let [x, y, z] = axes.turned;
-        let (ox, oy, oz) = (half(&self.origin[x], first), half(&self.origin[y], first), half(&self.origin[z], first));
-        let (dx, dy, dz) = (half(&self.dir[x], first), half(&self.dir[y], first), half(&self.dir[z], first));
-        let (mut t, mut height, mut low, mut high) = ([0.0; WIDTH], [0.0; WIDTH], [0.0; WIDTH], [0.0; WIDTH]);
-        // The loop has no branches and is alike for all rays: the compiler takes several at once.
-        for i in 0..WIDTH {
-            let plane = Plane::new(Vec3::new(ox[i], oy[i], oz[i]), corners);
-            let (at, heights) = (plane.t(Vec3::new(dx[i], dy[i], dz[i])), plane.heights());
-            (t[i], height[i]) = (at as f32, (at * f64::from(dz[i])) as f32);
-            (low[i], high[i]) = (heights.0 as f32, heights.1 as f32);
-        }
-        // Rounding is monotonic: what is so after it, was so before.
-        let height = lanes.load(&height);
-        let inside = lanes.lt(lanes.load(&low), height) & lanes.lt(height, lanes.load(&high));
-        if crossed & !inside != 0 {
-            for i in 0..WIDTH {
-                let plane = Plane::new(Vec3::new(ox[i], oy[i], oz[i]), corners);
-                t[i] = plane.bounded(plane.t(Vec3::new(dx[i], dy[i], dz[i])), f64::from(dz[i]));
-            }
-        }
-        t
-    }
-
     /// As [`Rays::meet`] for a single ray.
     #[inline(always)]
     pub fn meet_one(
@@ -230,8 +207,7 @@ impl Rays {
         let [x, y, z] = axes.turned;
         let plane = Plane::new(Vec3::new(self.origin[x][lane], self.origin[y][lane], self.origin[z][lane]), corners);
         let dir = Vec3::new(self.dir[x][lane], self.dir[y][lane], self.dir[z][lane]);
-        let (t, dz) = (plane.t(dir), f64::from(dir.z));
-        let t = if plane.is_inside(t * dz) { t as f32 } else { plane.bounded(t, dz) };
+        let t = plane.t(dir);
         let within = t > self.t_min[lane] && t < self.t_max[lane];
         let met = within && (t < self.t_last[lane] || t == self.t_last[lane] && less(self.met[lane].to_bits()));
         if met {
