@@ -3,6 +3,7 @@
 use crate::rays::{Found, Mesh};
 use anyhow::{Context, Result, bail};
 use durer::math::Ray;
+use glam::DAffine3;
 use libloading::{Library, Symbol};
 use std::ffi::{CString, c_char, c_int, c_uint, c_void};
 use std::mem::ManuallyDrop;
@@ -98,6 +99,8 @@ functions! {
     rtcSetNewGeometryBuffer: fn(Handle, c_int, c_uint, c_int, usize, usize) -> Handle;
     rtcCommitGeometry: fn(Handle);
     rtcAttachGeometry: fn(Handle, Handle) -> c_uint;
+    rtcSetGeometryInstancedScene: fn(Handle, Handle);
+    rtcSetGeometryTransform: fn(Handle, c_uint, c_int, *const f32);
     rtcIntersect1: fn(Handle, *mut RayHit1, *const Arguments);
     rtcOccluded1: fn(Handle, *mut RayHit1, *const Arguments);
     rtcIntersect16: fn(*const c_int, Handle, *mut RayHit16, *const Arguments);
@@ -166,21 +169,61 @@ impl Embree {
     /// Builds a scene of one mesh; gives the seconds of the commit with it.
     pub fn build(self: &Arc<Self>, mesh: &Mesh, quality: Quality, robust: bool) -> (Scene, f64) {
         let f = &self.functions;
-        // SAFETY: calls in the order of the manual; the buffers are as large as was asked for.
+        self.commit(quality, robust, |scene| {
+            // SAFETY: calls in the order of the manual; the buffers are as large as was asked for.
+            unsafe {
+                let geometry = (f.rtcNewGeometry)(self.device, 0);
+                let vertices = (f.rtcSetNewGeometryBuffer)(geometry, 1, 0, 0x9003, 12, mesh.vertices.len());
+                std::slice::from_raw_parts_mut(vertices as *mut durer::math::Vec3, mesh.vertices.len())
+                    .copy_from_slice(&mesh.vertices);
+                let indices = (f.rtcSetNewGeometryBuffer)(geometry, 0, 0, 0x5003, 12, mesh.triangles.len());
+                std::slice::from_raw_parts_mut(indices as *mut [u32; 3], mesh.triangles.len())
+                    .copy_from_slice(&mesh.triangles);
+                self.attach(scene, geometry);
+            }
+        })
+    }
+
+    /// Builds a scene of one scene in many places; gives the seconds of the commit with it.
+    pub fn build_instances(self: &Arc<Self>, object: &Scene, places: &[DAffine3]) -> (Scene, f64) {
+        const INSTANCE: c_int = 121;
+        const COLUMNS_OF_3X4: c_int = 0x9234;
+        let f = &self.functions;
+        self.commit(Quality::High, false, |scene| {
+            for place in places {
+                let columns = place.as_affine3().to_cols_array();
+                // SAFETY: the instanced scene is committed; the matrix has twelve numbers.
+                unsafe {
+                    let geometry = (f.rtcNewGeometry)(self.device, INSTANCE);
+                    (f.rtcSetGeometryInstancedScene)(geometry, object.scene);
+                    (f.rtcSetGeometryTransform)(geometry, 0, COLUMNS_OF_3X4, columns.as_ptr());
+                    self.attach(scene, geometry);
+                }
+            }
+        })
+    }
+
+    /// # Safety
+    ///
+    /// Both handles must be valid; the geometry is given away.
+    unsafe fn attach(&self, scene: Handle, geometry: Handle) {
+        let f = &self.functions;
+        // SAFETY: as the caller's.
+        unsafe {
+            (f.rtcCommitGeometry)(geometry);
+            (f.rtcAttachGeometry)(scene, geometry);
+            (f.rtcReleaseGeometry)(geometry);
+        }
+    }
+
+    fn commit(self: &Arc<Self>, quality: Quality, robust: bool, fill: impl FnOnce(Handle)) -> (Scene, f64) {
+        let f = &self.functions;
+        // SAFETY: calls in the order of the manual.
         unsafe {
             let scene = (f.rtcNewScene)(self.device);
             (f.rtcSetSceneBuildQuality)(scene, quality as c_int);
             (f.rtcSetSceneFlags)(scene, if robust { 1 << 2 } else { 0 });
-            let geometry = (f.rtcNewGeometry)(self.device, 0);
-            let vertices = (f.rtcSetNewGeometryBuffer)(geometry, 1, 0, 0x9003, 12, mesh.vertices.len());
-            std::slice::from_raw_parts_mut(vertices as *mut durer::math::Vec3, mesh.vertices.len())
-                .copy_from_slice(&mesh.vertices);
-            let indices = (f.rtcSetNewGeometryBuffer)(geometry, 0, 0, 0x5003, 12, mesh.triangles.len());
-            std::slice::from_raw_parts_mut(indices as *mut [u32; 3], mesh.triangles.len())
-                .copy_from_slice(&mesh.triangles);
-            (f.rtcCommitGeometry)(geometry);
-            (f.rtcAttachGeometry)(scene, geometry);
-            (f.rtcReleaseGeometry)(geometry);
+            fill(scene);
             let before = self.memory.load(Ordering::Relaxed);
             let clock = std::time::Instant::now();
             (f.rtcCommitScene)(scene);

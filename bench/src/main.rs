@@ -20,6 +20,7 @@ const USAGE: &str =
   --threads N        so many threads trace and build [1]
   --side N           primary rays: N x N, a multiple of 8 [512; quick 256]
   --edges N          no speed: how many of N rays are lost at vertices, edges and centroids of a closed mesh
+  --instances N      N instances of each mesh, against Embree's
   --rounds N         rounds, of which medians are taken [9; quick 5]
   --no-peers         Embree only
   --no-embree        without Embree
@@ -29,6 +30,7 @@ Examples:
   cargo xtask bench-rays --mesh dragon --mesh kitchen --threads 2
   DURER_SIMD=avx2 cargo xtask bench-rays --mesh dragon --no-peers
   cargo xtask bench-rays --edges 10000000 --threads 2
+  cargo xtask bench-rays --mesh bunny --instances 64
 
 Meshes are found in ../shared/meshes, or under DURER_CORPUS; Embree where DURER_EMBREE says.";
 
@@ -41,15 +43,23 @@ pub struct Options {
     pub side: u32,
     pub rounds: usize,
     pub edges: Option<u32>,
+    pub instances: Option<u32>,
     pub peers: bool,
     pub embree: Option<PathBuf>,
+}
+
+impl Options {
+    /// Whether rays of this kind are asked for.
+    pub fn wants(&self, case: &rays::Case) -> bool {
+        self.cases.is_empty() || self.cases.iter().any(|name| name == case.name)
+    }
 }
 
 fn options(arguments: &[String]) -> Result<Options> {
     let (mut names, mut cases) = (Vec::new(), Vec::new());
     let mut preset = durer::bvh::Preset::Best;
     let (mut threads, mut side, mut rounds, mut quick) = (1, None, None, false);
-    let (mut peers, mut use_embree, mut edges) = (true, true, None);
+    let (mut peers, mut use_embree, mut edges, mut instances) = (true, true, None, None);
     let mut words = arguments.iter();
     while let Some(word) = words.next() {
         let mut value = || words.next().with_context(|| format!("`{word}` needs a value"));
@@ -66,6 +76,7 @@ fn options(arguments: &[String]) -> Result<Options> {
             "--side" => side = Some(value()?.parse::<u32>()?.clamp(8, 8192) / 8 * 8),
             "--rounds" => rounds = Some(value()?.parse::<usize>()?.max(1)),
             "--edges" => edges = Some(value()?.parse::<u32>()?),
+            "--instances" => instances = Some(value()?.parse::<u32>()?.clamp(1, 4096)),
             "--no-peers" => peers = false,
             "--no-embree" => use_embree = false,
             _ => bail!("`{word}` is no option\n\n{USAGE}"),
@@ -87,6 +98,7 @@ fn options(arguments: &[String]) -> Result<Options> {
         side: side.unwrap_or(if quick { 256 } else { 512 }),
         rounds: rounds.unwrap_or(if quick { 5 } else { 9 }),
         edges,
+        instances,
         peers,
         embree: if use_embree { Some(embree::find()?) } else { None },
     })

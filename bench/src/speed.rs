@@ -5,8 +5,10 @@ use crate::embree::{Embree, Quality, Scene};
 use crate::peers::{BvhCrate, Obvhs, Parry};
 use crate::rays::{Case, Found, Mesh, cases};
 use anyhow::Result;
-use durer::bvh::{Counts, Level, Preset, TriangleBvh};
-use durer::math::{Ray, fp};
+use durer::bvh::{Counts, Instance, InstanceHit, Instances, Level, Preset, TriangleBvh};
+use durer::math::{Affine, Ray, Vec3, fp};
+use durer::sampler::random_2d;
+use glam::{DAffine3, DMat3, DVec3};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
@@ -131,7 +133,11 @@ pub fn run(options: &Options) -> Result<()> {
     );
     let mut ratios = Vec::new();
     for path in &options.meshes {
-        one_mesh(&Mesh::read(path)?, options, embree.as_ref(), &mut ratios)?;
+        let mesh = Mesh::read(path)?;
+        match options.instances {
+            Some(count) => instances(&mesh, count, options, embree.as_ref(), &mut ratios),
+            None => one_mesh(&mesh, options, embree.as_ref(), &mut ratios),
+        }
     }
     if embree.is_some() && !ratios.is_empty() {
         let least = ratios.iter().copied().fold(f64::INFINITY, f64::min);
@@ -143,14 +149,13 @@ pub fn run(options: &Options) -> Result<()> {
     Ok(())
 }
 
-fn one_mesh(mesh: &Mesh, options: &Options, embree: Option<&Arc<Embree>>, ratios: &mut Vec<f64>) -> Result<()> {
+fn one_mesh(mesh: &Mesh, options: &Options, embree: Option<&Arc<Embree>>, ratios: &mut Vec<f64>) {
     println!("{}: {} triangles", mesh.name, mesh.triangles.len());
     let ours = Ours(TriangleBvh::build(&mesh.vertices, &mesh.triangles, options.preset));
     let scenes = embree.map(|embree| builds(mesh, embree, options.rounds.min(5)));
     let peers = options.peers.then(|| (Obvhs::build(mesh), BvhCrate::build(mesh), Parry::build(mesh)));
     for case in cases(mesh, options.side, |ray| ours.closest(ray)) {
-        let wanted = options.cases.is_empty() || options.cases.iter().any(|name| name == case.name);
-        if !wanted || case.rays.is_empty() {
+        if case.rays.is_empty() || !options.wants(&case) {
             continue;
         }
         let mut tracers = vec![single!("Dürer", &ours, case.any)];
@@ -168,13 +173,100 @@ fn one_mesh(mesh: &Mesh, options: &Options, embree: Option<&Arc<Embree>>, ratios
             tracers.push(single!("bvh", bvh, case.any));
             tracers.push(single!("parry3d", parry, case.any));
         }
-        one_case(&case, &ours, &tracers, options, ratios);
+        let count = |ray: &Ray, counts: &mut Counts| match case.any {
+            false => drop(ours.0.closest_counting(ray, counts)),
+            true => drop(ours.0.occluded_counting(ray, counts)),
+        };
+        one_case(&case, &count, &tracers, options, ratios);
     }
     println!();
-    Ok(())
 }
 
-fn one_case(case: &Case, ours: &Ours, tracers: &[Tracer], options: &Options, ratios: &mut Vec<f64>) {
+/// One mesh in many places, each turned and stretched in its own way.
+fn instances(mesh: &Mesh, count: u32, options: &Options, embree: Option<&Arc<Embree>>, ratios: &mut Vec<f64>) {
+    println!("{} instances of {}: {} triangles", count, mesh.name, mesh.triangles.len());
+    let places = places(mesh, count);
+    let tree = Arc::new(TriangleBvh::build(&mesh.vertices, &mesh.triangles, options.preset));
+    let place = |place: &DAffine3| Instance {
+        tree: tree.clone(),
+        to_world: Affine::new(*place).expect("places can be inverted"),
+    };
+    let clock = Instant::now();
+    let ours = Placed(Instances::new(places.iter().map(place).collect()), mesh.triangles.len() as u32);
+    let time = clock.elapsed().as_secs_f64();
+    let theirs = embree.map(|embree| {
+        let object = embree.build(mesh, Quality::High, false).0;
+        let (scene, seconds) = embree.build_instances(&object, &places);
+        print!("  build     Embree {:.1} ms; ", 1e3 * seconds);
+        (scene, object)
+    });
+    println!("ours {:.1} ms, {} bytes with the mesh", 1e3 * time, ours.0.bytes());
+    for case in cases(&flattened(mesh, &places), options.side, |ray| ours.closest(ray)) {
+        if case.rays.is_empty() || !options.wants(&case) {
+            continue;
+        }
+        let mut tracers = vec![single!("Dürer", &ours, case.any)];
+        if let Some((scene, _)) = &theirs {
+            tracers.push(single!("Embree high", scene, case.any));
+        }
+        let count = |ray: &Ray, counts: &mut Counts| match case.any {
+            false => drop(ours.0.closest_counting(ray, counts)),
+            true => drop(ours.0.occluded_counting(ray, counts)),
+        };
+        one_case(&case, &count, &tracers, options, ratios);
+    }
+    println!();
+}
+
+/// Our instances, in the form of the others, and how many triangles each has.
+struct Placed(Instances, u32);
+
+impl Placed {
+    #[inline]
+    fn closest(&self, ray: &Ray) -> Found {
+        let found = |hit: InstanceHit| Found { t: hit.t, triangle: hit.instance * self.1 + hit.triangle };
+        self.0.closest(ray).map_or(Found::NONE, found)
+    }
+    #[inline]
+    fn occluded(&self, ray: &Ray) -> bool {
+        self.0.occluded(ray)
+    }
+}
+
+/// Places in a cube of cells, each about as large as the mesh.
+fn places(mesh: &Mesh, count: u32) -> Vec<DAffine3> {
+    let side = (1..).find(|side| side * side * side >= count).expect("some cube is large enough");
+    let (center, size) = (mesh.bounds().center().as_dvec3(), f64::from(mesh.bounds().size().max_element()));
+    let place = |i: u32| {
+        let cell = DVec3::new(f64::from(i % side), f64::from(i / side % side), f64::from(i / side / side));
+        let random = |dimension: u32| random_2d(5, i, 0, 0, dimension).as_dvec2();
+        let (turns, stretch) = (6.0 * random(0), 0.6 + 0.6 * random(1));
+        let mut matrix = DMat3::from_rotation_y(turns.x) * DMat3::from_rotation_x(turns.y);
+        // Stretched along one axis, and sheared.
+        matrix *= DMat3::from_diagonal(DVec3::new(stretch.x, stretch.y, 0.9));
+        matrix.y_axis += 0.3 * random(2).x * matrix.x_axis;
+        DAffine3 { matrix3: matrix, translation: size * cell - matrix * center }
+    };
+    (0..count).map(place).collect()
+}
+
+/// The same as one mesh, from which rays are made.
+fn flattened(mesh: &Mesh, places: &[DAffine3]) -> Mesh {
+    let place =
+        |place: &DAffine3| mesh.vertices.iter().map(|v| place.transform_point3(v.as_dvec3()).as_vec3()).collect();
+    let vertices: Vec<Vec<Vec3>> = places.iter().map(place).collect();
+    let all = (0..places.len() as u32)
+        .flat_map(|i| mesh.triangles.iter().map(move |t| t.map(|v| i * mesh.vertices.len() as u32 + v)));
+    Mesh { name: mesh.name.clone(), vertices: vertices.concat(), triangles: all.collect() }
+}
+
+fn one_case(
+    case: &Case,
+    count: &dyn Fn(&Ray, &mut Counts),
+    tracers: &[Tracer],
+    options: &Options,
+    ratios: &mut Vec<f64>,
+) {
     let mut found: Vec<Vec<Found>> = vec![vec![Found::NONE; case.rays.len()]; tracers.len()];
     let mut seconds = vec![Vec::new(); tracers.len()];
     for round in 0..options.rounds {
@@ -189,23 +281,19 @@ fn one_case(case: &Case, ours: &Ours, tracers: &[Tracer], options: &Options, rat
     let rates: Vec<f64> = seconds.iter_mut().map(|seconds| case.rays.len() as f64 / median(seconds) / 1e6).collect();
     let rate = |name: &str| tracers.iter().position(|t| t.name == name).map(|i| rates[i]);
     let mut counts = Counts::default();
-    for ray in &case.rays {
-        match case.any {
-            false => drop(ours.0.closest_counting(ray, &mut counts)),
-            true => drop(ours.0.occluded_counting(ray, &mut counts)),
-        }
-    }
+    case.rays.iter().for_each(|ray| count(ray, &mut counts));
     let per_ray = |n: u64| n as f64 / case.rays.len() as f64;
     print!("  {:<9}", case.name);
     for (tracer, rate) in tracers.iter().zip(&rates) {
         print!(" {} {rate:<6.2}", tracer.name);
     }
-    if let (Some(medium), Some(high), Some(packets), Some(batch)) =
-        (rate("Embree medium"), rate("Embree high"), rate("Embree 16-wide"), rate("Dürer batch"))
+    if let Some(theirs) = rate("Embree high").map(|high| rate("Embree medium").map_or(high, |medium| medium.max(high)))
     {
-        let ratio = rates[0] / medium.max(high);
-        ratios.push(ratio);
-        print!(" | ratio {ratio:.2}, batch to packets {:.2}", batch / packets);
+        ratios.push(rates[0] / theirs);
+        print!(" | ratio {:.2}", rates[0] / theirs);
+    }
+    if let (Some(packets), Some(batch)) = (rate("Embree 16-wide"), rate("Dürer batch")) {
+        print!(", batch to packets {:.2}", batch / packets);
     }
     print!(" | nodes {:.1}, tests {:.1} a ray", per_ray(counts.nodes), per_ray(counts.tests));
     let differ: Vec<String> = (1..tracers.len())

@@ -6,6 +6,7 @@
 mod boxes;
 mod build;
 mod grid;
+mod instances;
 mod lanes;
 mod node;
 mod traverse;
@@ -14,6 +15,7 @@ mod triangles;
 pub use boxes::Bvh;
 pub use build::Preset;
 pub use grid::Grid;
+pub use instances::{Instance, InstanceHit, Instances};
 pub use lanes::{Level, UnknownLevel};
 pub(crate) use traverse::is_sound;
 pub use triangles::{TriangleBvh, TriangleHit};

@@ -50,6 +50,7 @@ impl Affine {
     }
 
     /// Maps a ray backward, into the space that this map leads out of. `t` keeps its meaning.
+    #[inline]
     pub fn inverse_ray(&self, ray: &Ray) -> Ray {
         let origin = self.inverse.transform_point3(ray.origin.as_dvec3()).as_vec3();
         let dir = self.inverse.transform_vector3(ray.dir.as_dvec3()).as_vec3();

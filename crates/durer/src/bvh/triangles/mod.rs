@@ -172,4 +172,4 @@ impl TriangleBvh {
 }
 
 #[cfg(test)]
-mod tests;
+pub(super) mod tests;
