@@ -251,7 +251,7 @@ pub(super) fn meet<L: Lanes, const TAME: bool>(
 }
 
 #[inline(always)]
-fn splat3<L: Lanes>(lanes: L, v: [f32; 3]) -> [L::Floats; 3] {
+pub(super) fn splat3<L: Lanes>(lanes: L, v: [f32; 3]) -> [L::Floats; 3] {
     [lanes.splat(v[0]), lanes.splat(v[1]), lanes.splat(v[2])]
 }
 

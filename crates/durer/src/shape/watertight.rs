@@ -85,10 +85,7 @@ impl Sheared {
     /// The second and third barycentric coordinate of the crossing with a triangle that is crossed.
     #[inline(always)]
     pub(crate) fn uv(&self, corners: [Vec3; 3]) -> Vec2 {
-        // None of the three is of another sign than the others, so their sum is as exact as they are.
-        let areas = areas(self.flatten(corners));
-        let det = areas.element_sum();
-        Vec2::new((areas.y / det) as f32, (areas.z / det) as f32)
+        uv_across(self.flatten(corners))
     }
 
     #[inline(always)]
@@ -106,21 +103,11 @@ impl Sheared {
     /// Where the ray's line crosses a triangle that it crosses: within the triangle's bounds. It may be infinite.
     #[inline(always)]
     pub(crate) fn t(&self, corners: [Vec3; 3]) -> Option<f32> {
-        let origin = self.origin.as_dvec3();
-        let [a, b, c] = corners;
-        let (a, b, c) = (a.as_dvec3() - origin, b.as_dvec3() - origin, c.as_dvec3() - origin);
-        let n = (b - a).cross(c - a);
-        let volume = n.dot(self.dir.as_dvec3());
-        if volume.abs() < self.least_volume {
+        let plane = Plane::new(self.origin, corners);
+        if plane.volume(self.dir).abs() < self.least_volume {
             return None;
         }
-        let t = n.dot(a) / volume;
-        // Seen from nearly its side, the triangle still bounds it, also where it is no number. Divisions are rounded
-        // monotonically: the corners' distances are between those of the lowest and of the highest.
-        let (low, high) = (least(a.z, least(b.z, c.z)), most(a.z, most(b.z, c.z)));
-        let dz = f64::from(self.dir.z);
-        let (p, q) = (low / dz, high / dz);
-        Some(least(most(t, least(p, q)), most(p, q)) as f32)
+        Some(plane.t(self.dir))
     }
 
     /// The axes in the order of turned vectors.
@@ -137,6 +124,51 @@ impl Sheared {
     pub(crate) fn shear(&self) -> Vec2 {
         self.shear
     }
+}
+
+/// The plane of a turned triangle, as seen from the origin of a turned ray. Nothing of it branches, so that it can be had for
+/// several rays side by side.
+pub(crate) struct Plane {
+    normal: DVec3,
+    offset: f64,
+    /// The heights of the lowest and of the highest corner.
+    heights: [f64; 2],
+}
+
+impl Plane {
+    #[inline(always)]
+    pub fn new(origin: Vec3, [a, b, c]: [Vec3; 3]) -> Self {
+        let origin = origin.as_dvec3();
+        let (a, b, c) = (a.as_dvec3() - origin, b.as_dvec3() - origin, c.as_dvec3() - origin);
+        let normal = (b - a).cross(c - a);
+        let heights = [least(a.z, least(b.z, c.z)), most(a.z, most(b.z, c.z))];
+        Plane { normal, offset: normal.dot(a), heights }
+    }
+
+    #[inline(always)]
+    fn volume(&self, dir: Vec3) -> f64 {
+        self.normal.dot(dir.as_dvec3())
+    }
+
+    /// Where a direction that crosses the triangle leads to it.
+    #[inline(always)]
+    pub fn t(&self, dir: Vec3) -> f32 {
+        let t = self.offset / self.volume(dir);
+        // Seen from nearly its side, the triangle still bounds it, also where it is no number. Divisions are rounded
+        // monotonically: the corners' distances are between those of the lowest and of the highest.
+        let dz = f64::from(dir.z);
+        let [p, q] = self.heights.map(|height| height / dz);
+        least(most(t, least(p, q)), most(p, q)) as f32
+    }
+}
+
+/// The second and third barycentric coordinate of the origin, by the corners in the plane across a ray that crosses the triangle.
+#[inline(always)]
+pub(crate) fn uv_across(flat: [Vec2; 3]) -> Vec2 {
+    // None of the three is of another sign than the others, so their sum is as exact as they are.
+    let areas = areas(flat);
+    let det = areas.element_sum();
+    Vec2::new((areas.y / det) as f32, (areas.z / det) as f32)
 }
 
 /// The lesser of two numbers, the second where the first is none.

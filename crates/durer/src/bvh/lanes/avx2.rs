@@ -1,5 +1,6 @@
 //! AVX2 with FMA.
 
+use super::wide::Two;
 use super::{COMPRESS, Kernel, Lanes, Stack, WIDTH};
 use std::arch::x86_64::*;
 
@@ -48,6 +49,40 @@ pub(super) fn rows(from: &[f32], stride: usize, axes: [usize; 3]) -> [[__m256; 3
     [[row!(0, 0), row!(0, 1), row!(0, 2)], [row!(1, 0), row!(1, 1), row!(1, 2)], [row!(2, 0), row!(2, 1), row!(2, 2)]]
 }
 
+/// Ones in the lanes whose bits are set.
+#[inline(always)]
+fn lanes_of(mask: u32) -> __m256i {
+    proven! {
+        let bits = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
+        _mm256_cmpeq_epi32(_mm256_and_si256(_mm256_set1_epi32(mask as i32), bits), bits)
+    }
+}
+
+/// Rows to columns: pairs, then fours, then halves.
+#[inline(always)]
+pub(super) fn transpose([a, b, c, d, e, f, g, h]: [__m256; WIDTH]) -> [__m256; WIDTH] {
+    proven! {
+        let (ab, cd) = (_mm256_unpacklo_ps(a, b), _mm256_unpacklo_ps(c, d));
+        let (ef, gh) = (_mm256_unpacklo_ps(e, f), _mm256_unpacklo_ps(g, h));
+        let (ab_high, cd_high) = (_mm256_unpackhi_ps(a, b), _mm256_unpackhi_ps(c, d));
+        let (ef_high, gh_high) = (_mm256_unpackhi_ps(e, f), _mm256_unpackhi_ps(g, h));
+        let (p0, q0) = (_mm256_shuffle_ps::<0x44>(ab, cd), _mm256_shuffle_ps::<0x44>(ef, gh));
+        let (p1, q1) = (_mm256_shuffle_ps::<0xee>(ab, cd), _mm256_shuffle_ps::<0xee>(ef, gh));
+        let (p2, q2) = (_mm256_shuffle_ps::<0x44>(ab_high, cd_high), _mm256_shuffle_ps::<0x44>(ef_high, gh_high));
+        let (p3, q3) = (_mm256_shuffle_ps::<0xee>(ab_high, cd_high), _mm256_shuffle_ps::<0xee>(ef_high, gh_high));
+        [
+            _mm256_permute2f128_ps::<0x20>(p0, q0),
+            _mm256_permute2f128_ps::<0x20>(p1, q1),
+            _mm256_permute2f128_ps::<0x20>(p2, q2),
+            _mm256_permute2f128_ps::<0x20>(p3, q3),
+            _mm256_permute2f128_ps::<0x31>(p0, q0),
+            _mm256_permute2f128_ps::<0x31>(p1, q1),
+            _mm256_permute2f128_ps::<0x31>(p2, q2),
+            _mm256_permute2f128_ps::<0x31>(p3, q3),
+        ]
+    }
+}
+
 /// The least of all lanes.
 #[inline(always)]
 pub(super) fn least(a: __m256) -> f32 {
@@ -61,6 +96,12 @@ pub(super) fn least(a: __m256) -> f32 {
 impl Lanes for Avx2 {
     type Floats = __m256;
     type Order = __m256i;
+    type Wide = Two<Self>;
+
+    #[inline(always)]
+    fn wide(self) -> Two<Self> {
+        Two(self)
+    }
 
     #[inline(always)]
     fn splat(self, x: f32) -> __m256 {
@@ -73,6 +114,12 @@ impl Lanes for Avx2 {
     #[inline(always)]
     fn rows(self, from: &[f32], stride: usize, axes: [usize; 3]) -> [[__m256; 3]; 3] {
         rows(from, stride, axes)
+    }
+    #[inline(always)]
+    fn store(self, a: __m256) -> [f32; WIDTH] {
+        let mut to = [0.0; WIDTH];
+        proven!(_mm256_storeu_ps(to.as_mut_ptr(), a));
+        to
     }
     #[inline(always)]
     fn add(self, a: __m256, b: __m256) -> __m256 {
@@ -113,6 +160,14 @@ impl Lanes for Avx2 {
             let left_out = _mm256_cmpeq_epi32(wanted, _mm256_setzero_si256());
             least(_mm256_blendv_ps(a, _mm256_set1_ps(f32::INFINITY), _mm256_castsi256_ps(left_out)))
         }
+    }
+    #[inline(always)]
+    fn select(self, mask: u32, a: __m256, b: __m256) -> __m256 {
+        proven!(_mm256_blendv_ps(b, a, _mm256_castsi256_ps(lanes_of(mask))))
+    }
+    #[inline(always)]
+    fn transpose(self, rows: [__m256; WIDTH]) -> [__m256; WIDTH] {
+        transpose(rows)
     }
     #[inline(always)]
     fn le(self, a: __m256, b: __m256) -> u32 {

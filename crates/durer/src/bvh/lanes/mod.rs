@@ -15,10 +15,12 @@ mod level;
 mod neon;
 mod scalar;
 mod stack;
+mod wide;
 
 pub(super) use level::Available;
 pub use level::{Level, UnknownLevel};
 pub(super) use stack::{Room, Stack};
+pub(super) use wide::{WIDE, Wide};
 
 /// How many numbers lie side by side.
 pub const WIDTH: usize = 8;
@@ -29,6 +31,10 @@ pub(super) trait Lanes: Copy {
     type Floats: Copy;
     /// An order of the eight lanes.
     type Order: Copy;
+    /// The same for sixteen numbers.
+    type Wide: Wide;
+
+    fn wide(self) -> Self::Wide;
 
     fn splat(self, x: f32) -> Self::Floats;
     fn load(self, from: &[f32; WIDTH]) -> Self::Floats;
@@ -36,6 +42,7 @@ pub(super) trait Lanes: Copy {
     ///
     /// Rows come by corner, then by axis in the order of `axes`.
     fn rows(self, from: &[f32], stride: usize, axes: [usize; 3]) -> [[Self::Floats; 3]; 3];
+    fn store(self, a: Self::Floats) -> [f32; WIDTH];
     fn add(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
     fn sub(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
     fn mul(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
@@ -49,6 +56,10 @@ pub(super) trait Lanes: Copy {
     fn max(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
     /// The least of the lanes whose bits are set, none of which is NaN; infinity if there are none.
     fn least(self, a: Self::Floats, mask: u32) -> f32;
+    /// `a` in the lanes whose bits are set, `b` in others. Bits stay as they are.
+    fn select(self, mask: u32, a: Self::Floats, b: Self::Floats) -> Self::Floats;
+    /// Lane k of vector i becomes lane i of vector k.
+    fn transpose(self, rows: [Self::Floats; WIDTH]) -> [Self::Floats; WIDTH];
     /// A bit for each lane where a <= b.
     fn le(self, a: Self::Floats, b: Self::Floats) -> u32;
     /// A bit for each lane where a < b.

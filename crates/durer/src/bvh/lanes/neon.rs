@@ -1,5 +1,6 @@
 //! NEON: eight lanes as two vectors of four.
 
+use super::wide::Two;
 use super::{Lanes, Stack, WIDTH};
 use std::arch::aarch64::*;
 
@@ -29,20 +30,15 @@ unsafe fn bits(a: uint32x4_t, b: uint32x4_t) -> u32 {
     }
 }
 
-/// The eight numbers.
-#[inline(always)]
-fn numbers(a: Pair) -> [f32; WIDTH] {
-    let mut to = [0.0; WIDTH];
-    proven! {
-        vst1q_f32(to.as_mut_ptr(), a.0);
-        vst1q_f32(to.as_mut_ptr().add(4), a.1);
-    }
-    to
-}
-
 impl Lanes for Neon {
     type Floats = Pair;
     type Order = u32;
+    type Wide = Two<Self>;
+
+    #[inline(always)]
+    fn wide(self) -> Two<Self> {
+        Two(self)
+    }
 
     #[inline(always)]
     fn splat(self, x: f32) -> Pair {
@@ -63,6 +59,15 @@ impl Lanes for Neon {
                 }
             })
         })
+    }
+    #[inline(always)]
+    fn store(self, a: Pair) -> [f32; WIDTH] {
+        let mut to = [0.0; WIDTH];
+        proven! {
+            vst1q_f32(to.as_mut_ptr(), a.0);
+            vst1q_f32(to.as_mut_ptr().add(4), a.1);
+        }
+        to
     }
     #[inline(always)]
     fn add(self, a: Pair, b: Pair) -> Pair {
@@ -98,7 +103,22 @@ impl Lanes for Neon {
     }
     #[inline(always)]
     fn least(self, a: Pair, mask: u32) -> f32 {
-        super::scalar::Scalar.least(numbers(a), mask)
+        super::scalar::Scalar.least(self.store(a), mask)
+    }
+    #[inline(always)]
+    fn select(self, mask: u32, a: Pair, b: Pair) -> Pair {
+        const WEIGHTS: [u32; WIDTH] = [1, 2, 4, 8, 16, 32, 64, 128];
+        proven! {
+            let mask = vdupq_n_u32(mask);
+            let low = vtstq_u32(mask, vld1q_u32(WEIGHTS.as_ptr()));
+            let high = vtstq_u32(mask, vld1q_u32(WEIGHTS.as_ptr().add(4)));
+            Pair(vbslq_f32(low, a.0, b.0), vbslq_f32(high, a.1, b.1))
+        }
+    }
+    #[inline(always)]
+    fn transpose(self, rows: [Pair; WIDTH]) -> [Pair; WIDTH] {
+        let rows = rows.map(|row| self.store(row));
+        super::scalar::Scalar.transpose(rows).map(|row| self.load(&row))
     }
     #[inline(always)]
     fn le(self, a: Pair, b: Pair) -> u32 {
@@ -114,7 +134,7 @@ impl Lanes for Neon {
     }
     #[inline(always)]
     fn push(self, stack: &mut Stack, children: &[u32; WIDTH], near: Pair, flip: u32, mut mask: u32) {
-        let distances = numbers(near);
+        let distances = self.store(near);
         while mask != 0 {
             let lane = mask.trailing_zeros();
             mask &= mask - 1;

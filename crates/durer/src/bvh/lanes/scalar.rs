@@ -1,5 +1,6 @@
 //! Plain code.
 
+use super::wide::Two;
 use super::{Lanes, Stack, WIDTH};
 use std::array::from_fn;
 
@@ -15,6 +16,12 @@ fn mask(test: impl Fn(usize) -> bool) -> u32 {
 impl Lanes for Scalar {
     type Floats = F;
     type Order = u32;
+    type Wide = Two<Self>;
+
+    #[inline(always)]
+    fn wide(self) -> Two<Self> {
+        Two(self)
+    }
 
     #[inline(always)]
     fn splat(self, x: f32) -> F {
@@ -32,6 +39,10 @@ impl Lanes for Scalar {
                 from_fn(|lane| from[row + lane])
             })
         })
+    }
+    #[inline(always)]
+    fn store(self, a: F) -> [f32; WIDTH] {
+        a
     }
     #[inline(always)]
     fn add(self, a: F, b: F) -> F {
@@ -70,6 +81,14 @@ impl Lanes for Scalar {
         (0..WIDTH)
             .filter(|i| mask >> i & 1 == 1)
             .fold(f32::INFINITY, |least, i| if a[i] < least { a[i] } else { least })
+    }
+    #[inline(always)]
+    fn select(self, mask: u32, a: F, b: F) -> F {
+        from_fn(|i| if mask >> i & 1 == 1 { a[i] } else { b[i] })
+    }
+    #[inline(always)]
+    fn transpose(self, rows: [F; WIDTH]) -> [F; WIDTH] {
+        from_fn(|k| from_fn(|i| rows[i][k]))
     }
     #[inline(always)]
     fn le(self, a: F, b: F) -> u32 {

@@ -50,11 +50,12 @@ impl Input {
     }
 }
 
-/// Everything that lanes do but [`Lanes::mul_add`], as bits; all that are no number as the same.
+/// Everything that lanes do but [`Lanes::mul_add`] and [`Wide::mul_add`], as bits; all that are no number as the same.
 struct Everything<'a>(&'a Input);
 
-/// Vectors that are looked at for each input: of arithmetic, comparison, a stack before and after, and nine rows.
-const OPERATIONS: usize = 7 + 5 + 2 + 9;
+/// Vectors that are looked at for each input: of arithmetic, comparison, a stack before and after, nine rows, and columns; and twice
+/// as wide ones.
+const OPERATIONS: usize = 8 + 5 + 2 + 9 + WIDTH + 2 * 10;
 
 impl Kernel for Everything<'_> {
     type Output = Vec<u32>;
@@ -84,7 +85,11 @@ impl Kernel for Everything<'_> {
         for corner in lanes.rows(rows, *stride, *axes) {
             corner.into_iter().for_each(|row| tell(row, *stride));
         }
-        let numbers = *mask & lanes.le(c, c);
+        tell(lanes.select(*mask, a, b), WIDTH);
+        lanes.transpose([a, b, c, b, a, c, a, b]).into_iter().for_each(|row| tell(row, WIDTH));
+        found.extend(lanes.store(a).map(number));
+        found.extend(wide(lanes.wide(), floats).map(number));
+        let numbers = *mask & (lanes.le(c, c));
         // Zeroes of either sign are as little.
         found.push((lanes.least(c, numbers) + 0.0).to_bits());
         found.extend([lanes.le(a, b), lanes.lt(a, b), lanes.le(b, a), lanes.lt(b, a)]);
@@ -97,6 +102,33 @@ impl Kernel for Everything<'_> {
         found.extend(std::iter::from_fn(|| stack.pop_near().map(|(child, _)| child)));
         found
     }
+}
+
+/// Everything that sixteen lanes do.
+#[inline(always)]
+fn wide<W: Wide>(lanes: W, [a, b, c]: &[[f32; WIDTH]; 3]) -> [f32; 7 * WIDE + 6] {
+    let join =
+        |a: &[f32; WIDTH], b: &[f32; WIDTH]| std::array::from_fn(|i| if i < WIDTH { a[i] } else { b[i - WIDTH] });
+    let (a, b) = (lanes.load(&join(a, b)), lanes.load(&join(b, c)));
+    let vectors = [
+        lanes.add(a, b),
+        lanes.sub(a, b),
+        lanes.mul(a, b),
+        lanes.div(a, b),
+        lanes.abs(a),
+        lanes.min(a, b),
+        lanes.max(a, b),
+    ];
+    // Where it is no number, the second is taken.
+    let ordered = lanes.max(a, lanes.splat(f32::MIN));
+    let masks = [lanes.le(a, b), lanes.lt(a, b), lanes.le(b, a), lanes.lt(b, a)].map(|mask| mask as f32);
+    let [p, q, r, s] = masks;
+    // Zeroes of either sign are as great.
+    let others = [lanes.least(ordered) + 0.0, lanes.greatest(ordered) + 0.0, p, q, r, s];
+    let mut found = [0.0; 7 * WIDE + 6];
+    let all = vectors.into_iter().flat_map(|v| lanes.store(v)).chain(others);
+    found.iter_mut().zip(all).for_each(|(to, x)| *to = x);
+    found
 }
 
 /// 10^6 lanes; in the long run 10^9.

@@ -83,7 +83,7 @@ impl<L: Lanes> Flat<L> {
 
 /// Corners in the plane across the ray, and their heights along the third axis.
 #[inline(always)]
-fn flat<L: Lanes>(lanes: L, p: [L::Floats; 3], origin: [L::Floats; 3], shear: [L::Floats; 2]) -> [L::Floats; 3] {
+pub fn flat<L: Lanes>(lanes: L, p: [L::Floats; 3], origin: [L::Floats; 3], shear: [L::Floats; 2]) -> [L::Floats; 3] {
     let z = lanes.sub(p[2], origin[2]);
     [
         lanes.sub(lanes.sub(p[0], origin[0]), lanes.mul(shear[0], z)),
@@ -94,6 +94,6 @@ fn flat<L: Lanes>(lanes: L, p: [L::Floats; 3], origin: [L::Floats; 3], shear: [L
 
 /// The edge function of the edge from `p` to `q` about the origin.
 #[inline(always)]
-fn edge<L: Lanes>(lanes: L, p: [L::Floats; 3], q: [L::Floats; 3]) -> L::Floats {
+pub fn edge<L: Lanes>(lanes: L, p: [L::Floats; 3], q: [L::Floats; 3]) -> L::Floats {
     lanes.sub(lanes.mul(q[0], p[1]), lanes.mul(q[1], p[0]))
 }

@@ -2,6 +2,7 @@
 
 mod build;
 mod leaf;
+mod packet;
 mod query;
 mod stream;
 
@@ -121,25 +122,28 @@ impl TriangleBvh {
         self.all_hits(ray).len()
     }
 
-    /// The first hit of each ray, in order: as [`TriangleBvh::closest`] gives it, but several rays are on their way at once, so that
-    /// none waits for memory. Neighbours should be neighbours in space, for what they need is fetched once.
+    /// The first hit of each ray, in order: as [`TriangleBvh::closest`] gives it, bit for bit, but faster. Of 64 rays in a row those
+    /// that go nearly the same way share their way through the tree, so neighbours should be neighbours in space, as the pixels of a
+    /// tile are. Of the others several are on their way at once, so that none waits for memory.
     ///
     /// # Panics
     ///
     /// If there are not as many places for hits as rays.
     pub fn closest_batch(&self, rays: &[Ray], hits: &mut [Option<TriangleHit>]) {
         assert_eq!(rays.len(), hits.len(), "a place for each hit");
-        self.stream::<Nearest>(rays, |i, hit| hits[i] = hit);
+        let rest = self.packets::<false>(rays, |i, hit| hits[i] = hit);
+        self.stream::<Nearest>(rays, &rest, |i, hit| hits[i] = hit);
     }
 
-    /// For each ray, in order, whether anything is hit; several rays are on their way at once.
+    /// For each ray, in order, whether anything is hit: as [`TriangleBvh::closest_batch`] goes about it.
     ///
     /// # Panics
     ///
     /// If there are not as many places for answers as rays.
     pub fn occluded_batch(&self, rays: &[Ray], answers: &mut [bool]) {
         assert_eq!(rays.len(), answers.len(), "a place for each answer");
-        self.stream::<Any>(rays, |i, answer| answers[i] = answer);
+        let rest = self.packets::<true>(rays, |i, hit| answers[i] = hit.is_some());
+        self.stream::<Any>(rays, &rest, |i, answer| answers[i] = answer);
     }
 
     #[inline]

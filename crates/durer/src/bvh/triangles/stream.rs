@@ -19,18 +19,18 @@ const FLYING: usize = 16;
 const END: u32 = u32::MAX;
 
 impl TriangleBvh {
-    /// Answers a question for each ray.
-    pub(super) fn stream<F: Found>(&self, rays: &[Ray], answer: impl FnMut(usize, F::Answer)) {
-        self.level.run(Stream::<F, _> { bvh: self, rays, answer, next: 0, found: PhantomData });
+    /// Answers a question for each of the rays with these numbers.
+    pub(super) fn stream<F: Found>(&self, rays: &[Ray], numbers: &[u32], answer: impl FnMut(usize, F::Answer)) {
+        self.level.run(Stream::<F, _> { bvh: self, rays, numbers: numbers.iter(), answer, found: PhantomData });
     }
 }
 
 struct Stream<'a, F, A> {
     bvh: &'a TriangleBvh,
     rays: &'a [Ray],
+    /// Of the rays that are still to be started.
+    numbers: std::slice::Iter<'a, u32>,
     answer: A,
-    /// The next ray to start.
-    next: usize,
     found: PhantomData<F>,
 }
 
@@ -64,9 +64,9 @@ impl<'a, F: Found, A: FnMut(usize, F::Answer)> Stream<'a, F, A> {
     /// Puts the next ray in a place, if there is one. Rays that are not traced here are answered at once.
     #[inline(always)]
     fn start<L: Lanes>(&mut self, lanes: L, flyer: &mut Flyer<'a, F>, stack: &mut Stack) -> bool {
-        while let Some(ray) = self.rays.get(self.next) {
-            let number = self.next;
-            self.next += 1;
+        for &number in self.numbers.by_ref() {
+            let number = number as usize;
+            let ray = &self.rays[number];
             match RayBox::new(ray, self.bvh.reach) {
                 Some(boxes) if boxes.tame && !self.bvh.nodes.is_empty() => flyer.boxes = boxes,
                 _ => {
@@ -88,7 +88,7 @@ impl<'a, F: Found, A: FnMut(usize, F::Answer)> Stream<'a, F, A> {
 
 /// Has what a ray needs next brought near.
 #[inline(always)]
-fn prefetch<L: Lanes>(lanes: L, bvh: &TriangleBvh, child: u32) {
+pub(super) fn prefetch<L: Lanes>(lanes: L, bvh: &TriangleBvh, child: u32) {
     let inner = bvh.nodes.as_ptr().wrapping_add(child as usize).cast::<u8>();
     let leaf = bvh.corners.as_ptr().wrapping_add(9 * node::items(child).0).cast::<u8>();
     let from = select_unpredictable(child & LEAF == 0, inner, leaf);

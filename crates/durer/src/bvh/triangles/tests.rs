@@ -211,18 +211,68 @@ fn a_refitted_tree_finds_what_brute_force_finds() {
     }
 }
 
+/// Neighbours in a picture, through a hole or side by side: at corners, edges and faces, often across octants, with some that are odd.
+fn bundle(mesh: &Mesh, random: &mut Random, scale: f32, offset: Vec3) -> Vec<Ray> {
+    let middle = ray(mesh, random, scale, offset);
+    let count = 1 + random.below(150);
+    let width = [0.0, 1e-6, 0.02, 0.3, 2.0][random.below(5)];
+    let (parallel, odd) = (random.below(3) == 0, random.below(3) == 0);
+    let neighbour = |_| {
+        let across = width * middle.dir.length() * random.point();
+        let mut next = match parallel {
+            true => Ray { origin: middle.origin + across, ..middle },
+            false => Ray { dir: middle.dir + across, ..middle },
+        };
+        if !mesh.1.is_empty() && random.below(4) == 0 {
+            let [a, b, _] = mesh.1[random.below(mesh.1.len())].map(|i| mesh.0[i as usize]);
+            next.dir = [a, 0.5 * (a + b)][random.below(2)] - next.origin;
+        }
+        if odd && random.below(30) == 0 {
+            match random.below(5) {
+                0 => next.dir[random.below(3)] = f32::NAN,
+                1 => next.t_max = next.t_min,
+                2 => next.origin.x = [f32::INFINITY, f32::NAN, 1e30][random.below(3)],
+                3 => next.dir = Vec3::ZERO,
+                _ => next.dir[random.below(3)] = 0.0,
+            }
+        }
+        next
+    };
+    (0..count).map(neighbour).collect()
+}
+
 #[test]
 fn batches_answer_as_single_rays_do() {
-    let (mesh, mut random) = (torus(20, 10), Random(4));
-    let tree = TriangleBvh::build(&mesh.0, &mesh.1, Preset::Balanced);
-    let rays: Vec<Ray> = (0..100).map(|_| ray(&mesh, &mut random, 1.0, Vec3::ZERO)).collect();
-    let (mut hits, mut occluded) = (vec![None; rays.len()], vec![false; rays.len()]);
-    tree.closest_batch(&rays, &mut hits);
-    tree.occluded_batch(&rays, &mut occluded);
-    for (i, ray) in rays.iter().enumerate() {
-        assert_eq!((hits[i], occluded[i]), (tree.closest(ray), tree.occluded(ray)));
+    let (mut random, mut met) = (Random(4), 0);
+    for (name, mesh) in hard() {
+        for (scale, offset) in [(1.0, Vec3::ZERO), (1.0, Vec3::new(1e4, -3e3, 7e4)), (1e-30, Vec3::ZERO)] {
+            let mesh = scaled(&mesh, scale, offset);
+            let tree = TriangleBvh::build(&mesh.0, &mesh.1, Preset::Best);
+            let size = f64::from(scale);
+            let blind = tree.clone().least_volume(0.01 * size * size * size);
+            let trees: Vec<_> = Level::available().map(|level| tree.clone().at_level(level)).chain([blind]).collect();
+            for round in 0..rounds(6) {
+                let mut rays: Vec<Ray> = (0..3).flat_map(|_| bundle(&mesh, &mut random, scale, offset)).collect();
+                // Where each meets very many, a few will do.
+                rays.truncate(if mesh.1.len() > 5_000 { 40 } else { rays.len() });
+                if round == 0 && mesh.1.len() < 5_000 {
+                    rays = (0..100).map(|_| ray(&mesh, &mut random, scale, offset)).collect();
+                }
+                let (mut hits, mut occluded) = (vec![None; rays.len()], vec![false; rays.len()]);
+                for tree in &trees {
+                    tree.closest_batch(&rays, &mut hits);
+                    tree.occluded_batch(&rays, &mut occluded);
+                    for (i, ray) in rays.iter().enumerate() {
+                        let (hit, context) = (tree.closest(ray), || format!("{name} {scale} {offset} {i} {ray:?}"));
+                        assert_eq!(hits[i].as_ref().map(bits), hit.as_ref().map(bits), "{}", context());
+                        assert_eq!(occluded[i], tree.occluded(ray), "{}", context());
+                        met += usize::from(occluded[i]);
+                    }
+                }
+            }
+        }
     }
-    assert!(occluded.iter().filter(|o| **o).count() > 30);
+    assert!(met > 20_000, "{met}");
 }
 
 #[test]

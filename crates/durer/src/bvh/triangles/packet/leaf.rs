@@ -1,0 +1,194 @@
+//! A packet among the triangles of a leaf.
+
+use super::{Meeting, Packet};
+use crate::bvh::lanes::{Lanes, WIDE, WIDTH, Wide, column};
+use crate::bvh::node;
+use crate::bvh::traverse::splat3;
+use crate::bvh::triangles::leaf::{edge, flat};
+use crate::math::Vec3;
+use crate::shape::watertight::Sheared;
+
+impl Packet<'_> {
+    /// Shows the triangles of a leaf to some rays: side by side are either those or these, whichever is less work.
+    #[inline(always)]
+    pub(super) fn leaf<L: Lanes, const ANY: bool>(&mut self, lanes: L, leaf: u32, rays: u64) {
+        let (_, count) = node::items(leaf);
+        let mut groups = 0;
+        for group in 0..self.groups {
+            groups += usize::from(rays >> (group * WIDE) & 0xffff != 0);
+        }
+        // Found by measurement: where few rays of a group are left, or triangles are many, rays go one by one.
+        let met = match 2 * (rays.count_ones() as usize) < groups * (count + 4) {
+            true => self.ray_by_ray::<L, ANY>(lanes, leaf, rays),
+            false => self.one_by_one::<L, ANY>(lanes, leaf, rays),
+        };
+        if ANY {
+            self.alive &= !met;
+        } else if met != 0 {
+            self.limit = self.last(lanes);
+        }
+    }
+
+    /// Each triangle with sixteen rays at once; gives the rays that met one.
+    #[inline(always)]
+    fn one_by_one<L: Lanes, const ANY: bool>(&mut self, lanes: L, leaf: u32, mut rays: u64) -> u64 {
+        let wide = lanes.wide();
+        let (first, count) = node::items(leaf);
+        let rows = &self.bvh.corners[9 * first..9 * (first + count) + WIDTH];
+        let [x, y, z] = self.axes.turned;
+        let zero = wide.splat(0.0);
+        let mut all_met = 0;
+        for lane in 0..count {
+            let corners = column(rows, count, self.axes.turned, lane);
+            let [a, b, c] = [wide3(wide, corners[0]), wide3(wide, corners[1]), wide3(wide, corners[2])];
+            let mut number = 0;
+            for group in 0..self.groups {
+                let active = (rays >> (group * WIDE)) as u32 & 0xffff;
+                if active == 0 {
+                    continue;
+                }
+                let e = &mut self.sixteens[group];
+                let origin = [wide.load(&e.origin[x]), wide.load(&e.origin[y]), wide.load(&e.origin[z])];
+                let shear = [wide.load(&e.shear[0]), wide.load(&e.shear[1])];
+                let a = wide_flat(wide, a, origin, shear);
+                let b = wide_flat(wide, b, origin, shear);
+                let c = wide_flat(wide, c, origin, shear);
+                let (u, v, w) = (wide_edge(wide, b, c), wide_edge(wide, c, a), wide_edge(wide, a, b));
+                let (least, greatest) = (wide.min(u, wide.min(v, w)), wide.max(u, wide.max(v, w)));
+                let missed = wide.lt(least, zero) & wide.lt(zero, greatest);
+                if !missed & active == 0 {
+                    continue;
+                }
+                let lowest = wide.min(a[2], wide.min(b[2], c[2]));
+                let highest = wide.max(a[2], wide.max(b[2], c[2]));
+                let beside = wide.lt(wide.load(&e.heights[1]), lowest) | wide.lt(highest, wide.load(&e.heights[0]));
+                let candidates = !(missed | beside) & active;
+                if candidates == 0 {
+                    continue;
+                }
+                let mut crossed = candidates & (wide.lt(zero, least) | wide.lt(greatest, zero));
+                let mut met = 0;
+                if ANY {
+                    // Where any hit will do, it need not be known where it is.
+                    met = crossed
+                        & wide.lt(wide.load(&e.heights[2]), lowest)
+                        & wide.lt(highest, wide.load(&e.heights[3]));
+                    crossed &= !met;
+                }
+                let turned = corners.map(Vec3::from);
+                let mut unsure = candidates & !(crossed | met);
+                while unsure != 0 {
+                    let lane = unsure.trailing_zeros();
+                    unsure &= unsure - 1;
+                    crossed |= u32::from(Sheared::new(&e.ray(lane as usize)).crosses(turned)) << lane;
+                }
+                if number == 0 {
+                    number = self.meetings.len() as u32;
+                    let triangle = self.bvh.order[first + lane];
+                    self.meetings.push(Meeting { corners, triangle });
+                }
+                let (meetings, triangle) = (&self.meetings, self.meetings[number as usize].triangle);
+                met |= e.meet(lanes, &self.axes, turned, crossed, number, |other| {
+                    triangle < meetings[other as usize].triangle
+                });
+                all_met |= u64::from(met) << (group * WIDE);
+                if ANY {
+                    set_met(&mut e.met, met, number);
+                    rays &= !(u64::from(met) << (group * WIDE));
+                } else if met != 0 {
+                    e.bound_last(lanes, &self.axes);
+                }
+            }
+        }
+        all_met
+    }
+
+    /// All triangles at once with each ray.
+    #[inline(always)]
+    fn ray_by_ray<L: Lanes, const ANY: bool>(&mut self, lanes: L, leaf: u32, mut rays: u64) -> u64 {
+        let (first, count) = node::items(leaf);
+        let rows = &self.bvh.corners[9 * first..9 * (first + count) + WIDTH];
+        let axes @ [x, y, z] = self.axes.turned;
+        let [a, b, c] = lanes.rows(rows, count, axes);
+        let zero = lanes.splat(0.0);
+        let mut all_met = 0;
+        while rays != 0 {
+            let ray = rays.trailing_zeros() as usize;
+            rays &= rays - 1;
+            let (e, i) = (&mut self.sixteens[ray / WIDE], ray % WIDE);
+            let origin = splat3(lanes, [e.origin[x][i], e.origin[y][i], e.origin[z][i]]);
+            let shear = [lanes.splat(e.shear[0][i]), lanes.splat(e.shear[1][i])];
+            let (a, b, c) =
+                (flat(lanes, a, origin, shear), flat(lanes, b, origin, shear), flat(lanes, c, origin, shear));
+            let (u, v, w) = (edge(lanes, b, c), edge(lanes, c, a), edge(lanes, a, b));
+            let (least, greatest) = (lanes.min(u, lanes.min(v, w)), lanes.max(u, lanes.max(v, w)));
+            let missed = lanes.lt(least, zero) & lanes.lt(zero, greatest);
+            let lowest = lanes.min(a[2], lanes.min(b[2], c[2]));
+            let highest = lanes.max(a[2], lanes.max(b[2], c[2]));
+            let beside =
+                lanes.lt(lanes.splat(e.heights[1][i]), lowest) | lanes.lt(highest, lanes.splat(e.heights[0][i]));
+            let mut candidates = !(missed | beside) & ((1 << count) - 1);
+            if candidates == 0 {
+                continue;
+            }
+            let crossed = lanes.lt(zero, least) | lanes.lt(greatest, zero);
+            if ANY {
+                let inside =
+                    lanes.lt(lanes.splat(e.heights[2][i]), lowest) & lanes.lt(highest, lanes.splat(e.heights[3][i]));
+                if candidates & crossed & inside != 0 {
+                    e.met[i] = f32::from_bits(1);
+                    all_met |= 1 << ray;
+                    continue;
+                }
+            }
+            while candidates != 0 {
+                let lane = candidates.trailing_zeros() as usize;
+                candidates &= candidates - 1;
+                let corners = column(rows, count, axes, lane);
+                let turned = corners.map(Vec3::from);
+                if crossed >> lane & 1 == 0 && !Sheared::new(&e.ray(i)).crosses(turned) {
+                    continue;
+                }
+                let (number, triangle) = (self.meetings.len() as u32, self.bvh.order[first + lane]);
+                let meetings = &self.meetings;
+                if e.meet_one(&self.axes, turned, i, number, |other| triangle < meetings[other as usize].triangle) {
+                    self.meetings.push(Meeting { corners, triangle });
+                    all_met |= 1 << ray;
+                }
+            }
+            if !ANY && all_met >> ray & 1 == 1 {
+                e.bound_last(lanes, &self.axes);
+            }
+        }
+        all_met
+    }
+}
+
+#[inline(always)]
+fn set_met(numbers: &mut [f32; WIDE], met: u32, number: u32) {
+    for (i, of_ray) in numbers.iter_mut().enumerate() {
+        *of_ray = if met >> i & 1 == 1 { f32::from_bits(number) } else { *of_ray };
+    }
+}
+
+#[inline(always)]
+fn wide3<W: Wide>(wide: W, v: [f32; 3]) -> [W::Floats; 3] {
+    [wide.splat(v[0]), wide.splat(v[1]), wide.splat(v[2])]
+}
+
+/// As [`flat`].
+#[inline(always)]
+fn wide_flat<W: Wide>(wide: W, p: [W::Floats; 3], origin: [W::Floats; 3], shear: [W::Floats; 2]) -> [W::Floats; 3] {
+    let z = wide.sub(p[2], origin[2]);
+    [
+        wide.sub(wide.sub(p[0], origin[0]), wide.mul(shear[0], z)),
+        wide.sub(wide.sub(p[1], origin[1]), wide.mul(shear[1], z)),
+        z,
+    ]
+}
+
+/// As [`edge`].
+#[inline(always)]
+fn wide_edge<W: Wide>(wide: W, p: [W::Floats; 3], q: [W::Floats; 3]) -> W::Floats {
+    wide.sub(wide.mul(q[0], p[1]), wide.mul(q[1], p[0]))
+}

@@ -1,0 +1,266 @@
+//! Rays that go nearly the same way, through one tree together.
+//!
+//! Up to 64 rays whose directions have the same signs and the same longest axis are a packet. A node is tested once for all of them, by
+//! interval arithmetic; what is left of its children is tested against the rays side by side when it is visited, and so is each
+//! triangle of a leaf. All tests of triangles are those of single rays, with the same roundings, so answers are the same.
+//!
+//! Sources: Wald, Slusallek, Benthin, Wagner, *Interactive Rendering with Coherent Ray Tracing*, Eurographics 2001; Boulos, Wald,
+//! Shirley, *Geometric and Arithmetic Culling Methods for Entire Ray Packets*, University of Utah 2006.
+
+/// The least or greatest of what all rays of a packet have. (No closure would do: what is not inlined into a level's entry is compiled
+/// without its instructions.)
+macro_rules! end {
+    ($packet:expr, $wide:expr, $end:ident, $across:ident, $($of:tt)*) => {{
+        let mut all = $wide.load(&$packet.sixteens[0].$($of)*);
+        for group in 1..$packet.groups {
+            all = $wide.$end($wide.load(&$packet.sixteens[group].$($of)*), all);
+        }
+        $wide.$across(all)
+    }};
+}
+
+mod leaf;
+mod rays;
+mod walk;
+
+use super::{TriangleBvh, TriangleHit};
+use crate::bvh::lanes::{Kernel, Lanes, WIDE, WIDTH, Wide};
+use crate::math::{Ray, Vec2};
+use rays::Rays;
+use walk::Entry;
+
+/// How many rays may be in a packet.
+const RAYS: usize = 64;
+/// So few are better off alone.
+const LEAST: usize = 16;
+/// As far apart directions of a packet may be across the longest axis, for one unit along it.
+const WIDEST_ANGLE: f32 = 0.5;
+/// As far apart origins may be, where the longest side of the tree's bounds is 1.
+const WIDEST_START: f32 = 0.25;
+
+impl TriangleBvh {
+    /// Answers for rays that go together, and gives the numbers of the others. Where `ANY`, any hit will do, and only whether there
+    /// is one means anything.
+    pub(super) fn packets<const ANY: bool>(
+        &self,
+        rays: &[Ray],
+        answer: impl FnMut(usize, Option<TriangleHit>),
+    ) -> Vec<u32> {
+        if self.nodes.is_empty() || self.least_volume != 0.0 {
+            return (0..rays.len() as u32).collect();
+        }
+        self.level.run(Packets::<_, ANY> { bvh: self, rays, answer })
+    }
+}
+
+/// What the rays of a packet have in common.
+#[derive(Clone, Copy)]
+struct Axes {
+    /// As those of [`Sheared`](crate::shape::watertight::Sheared).
+    turned: [usize; 3],
+    /// By axis: 1 where directions are negative, else 0.
+    negative: [usize; 3],
+    /// A bit for each axis along which they are positive.
+    positive: u32,
+}
+
+impl Axes {
+    /// How many keys there are: a longest axis, and signs.
+    const KEYS: usize = 24;
+
+    fn of_key(key: usize) -> Self {
+        let negative = [key & 1, key >> 1 & 1, key >> 2 & 1];
+        let z = key >> 3;
+        let (mut x, mut y) = ((z + 1) % 3, (z + 2) % 3);
+        if negative[z] == 1 {
+            std::mem::swap(&mut x, &mut y);
+        }
+        Axes { turned: [x, y, z], negative, positive: 7 ^ (key as u32 & 7) }
+    }
+
+    /// Whether directions are negative along their longest axis.
+    #[inline(always)]
+    fn is_down(&self) -> bool {
+        self.negative[self.turned[2]] == 1
+    }
+}
+
+struct Packets<'a, A, const ANY: bool> {
+    bvh: &'a TriangleBvh,
+    rays: &'a [Ray],
+    answer: A,
+}
+
+impl<A: FnMut(usize, Option<TriangleHit>), const ANY: bool> Kernel for Packets<'_, A, ANY> {
+    type Output = Vec<u32>;
+
+    #[inline(always)]
+    fn run<L: Lanes>(mut self, lanes: L) -> Vec<u32> {
+        let mut rest = Vec::new();
+        let mut packet = Packet {
+            bvh: self.bvh,
+            axes: Axes::of_key(0),
+            numbers: [0; RAYS],
+            sixteens: [Rays::EMPTY; RAYS / WIDE],
+            groups: 0,
+            alive: 0,
+            limit: 0.0,
+            meetings: Vec::with_capacity(256),
+        };
+        let mut stack: Vec<Entry> = Vec::with_capacity(256);
+        for (window, rays) in self.rays.chunks(RAYS).enumerate() {
+            let first = (window * RAYS) as u32;
+            let all = u64::MAX >> (RAYS - rays.len());
+            for (i, number) in packet.numbers.iter_mut().enumerate() {
+                *number = first + i.min(rays.len() - 1) as u32;
+            }
+            packet.load(lanes, self.rays, rays.len());
+            let signs = packet.signs(lanes);
+            // Usually all have the same key, and are where they should be; else those of each key are put together.
+            for key in 0..Axes::KEYS {
+                let mut members = with_key(signs, key) & all;
+                if members == 0 {
+                    continue;
+                }
+                let count = members.count_ones() as usize;
+                if members != all {
+                    for number in &mut packet.numbers[..count] {
+                        *number = first + members.trailing_zeros();
+                        members &= members - 1;
+                    }
+                    if count >= LEAST {
+                        packet.load(lanes, self.rays, count);
+                    }
+                }
+                if count < LEAST || !packet.prepare(lanes, key, count) {
+                    rest.extend_from_slice(&packet.numbers[..count]);
+                    continue;
+                }
+                let all = packet.alive;
+                packet.meetings.clear();
+                packet.meetings.push(Meeting { corners: [[0.0; 3]; 3], triangle: u32::MAX });
+                packet.walk::<L, ANY>(lanes, &mut stack);
+                packet.answer::<L, ANY>(lanes, all, &mut self.answer);
+            }
+        }
+        rest
+    }
+}
+
+/// Of rays those with a key, by what [`Rays::signs`] says of all.
+#[inline(always)]
+fn with_key([x, y, z, first, second]: [u64; 5], key: usize) -> u64 {
+    let of = |set: u64, bit: usize| if key >> bit & 1 == 1 { set } else { !set };
+    let longest = [first, second, !(first | second)][key >> 3];
+    of(x, 0) & of(y, 1) & of(z, 2) & longest
+}
+
+/// A triangle that some ray met.
+struct Meeting {
+    /// Turned, as the rays are.
+    corners: [[f32; 3]; 3],
+    triangle: u32,
+}
+
+struct Packet<'a> {
+    bvh: &'a TriangleBvh,
+    axes: Axes,
+    numbers: [u32; RAYS],
+    sixteens: [Rays; RAYS / WIDE],
+    /// How many of the sixteens hold rays.
+    groups: usize,
+    /// The rays that still search.
+    alive: u64,
+    /// None of them goes on beyond.
+    limit: f32,
+    /// The first stands for none.
+    meetings: Vec<Meeting>,
+}
+
+impl Packet<'_> {
+    /// Takes the rays with the first numbers, and the last again where lanes are left.
+    #[inline(always)]
+    fn load<L: Lanes>(&mut self, lanes: L, rays: &[Ray], count: usize) {
+        self.groups = count.div_ceil(WIDE);
+        for k in (0..self.groups * WIDE).step_by(WIDTH) {
+            let mut eight = [lanes.splat(0.0); WIDTH];
+            for (i, row) in eight.iter_mut().enumerate() {
+                let Ray { origin: o, dir: d, t_min, t_max } = rays[self.numbers[(k + i).min(count - 1)] as usize];
+                *row = lanes.load(&[o.x, o.y, o.z, d.x, d.y, d.z, t_min, t_max]);
+            }
+            self.sixteens[k / WIDE].set(lanes, k % WIDE, eight);
+        }
+    }
+
+    /// As [`Rays::signs`], for all.
+    #[inline(always)]
+    fn signs<L: Lanes>(&self, lanes: L) -> [u64; 5] {
+        let mut signs = [0; 5];
+        for group in 0..self.groups {
+            for (all, some) in signs.iter_mut().zip(self.sixteens[group].signs(lanes)) {
+                *all |= u64::from(some) << (group * WIDE);
+            }
+        }
+        signs
+    }
+
+    /// Prepares the rays, which have a key in common; says whether they go together.
+    #[inline(always)]
+    fn prepare<L: Lanes>(&mut self, lanes: L, key: usize, count: usize) -> bool {
+        self.axes = Axes::of_key(key);
+        self.alive = 0;
+        for group in 0..self.groups {
+            let tame = self.sixteens[group].prepare(lanes, &self.axes, self.bvh.reach);
+            self.alive |= u64::from(tame) << (group * WIDE);
+        }
+        let all = u64::MAX >> (RAYS - count);
+        self.alive &= all;
+        self.alive == all && self.is_narrow(lanes)
+    }
+
+    /// Whether rays are so near each other that they mostly meet the same boxes.
+    #[inline(always)]
+    fn is_narrow<L: Lanes>(&self, lanes: L) -> bool {
+        let wide = lanes.wide();
+        macro_rules! extent {
+            ($($of:tt)*) => {
+                end!(self, wide, max, greatest, $($of)*) - end!(self, wide, min, least, $($of)*)
+            };
+        }
+        let apart = WIDEST_START * self.bvh.bounds.size().max_element();
+        extent!(shear[0]).max(extent!(shear[1])) <= WIDEST_ANGLE
+            && extent!(origin[0]).max(extent!(origin[1])).max(extent!(origin[2])) <= apart
+    }
+
+    /// Tells what was found.
+    #[inline(always)]
+    fn answer<L: Lanes, const ANY: bool>(&self, lanes: L, all: u64, tell: &mut impl FnMut(usize, Option<TriangleHit>)) {
+        for (group, e) in self.sixteens[..self.groups].iter().enumerate() {
+            let rays = (all >> (group * WIDE)) as u32 & 0xffff;
+            let mut corners = [[[0.0; WIDE]; 3]; 3];
+            for first in [0, WIDTH].into_iter().filter(|_| !ANY) {
+                // Eight of the nine numbers of each at once, then the last.
+                let mut rows = [lanes.splat(0.0); WIDTH];
+                for i in 0..WIDTH {
+                    let [[a, b, c], [d, e, f], [g, h, last]] =
+                        self.meetings[e.met[first + i].to_bits() as usize].corners;
+                    rows[i] = lanes.load(&[a, b, c, d, e, f, g, h]);
+                    corners[2][2][first + i] = last;
+                }
+                for (k, numbers) in lanes.transpose(rows).into_iter().enumerate() {
+                    corners[k / 3][k % 3][first..first + WIDTH].copy_from_slice(&lanes.store(numbers));
+                }
+            }
+            let [u, v] = if ANY { [[0.0; WIDE]; 2] } else { e.uv(&self.axes, &corners) };
+            for i in (0..WIDE).filter(|i| rays >> i & 1 == 1) {
+                let (number, met) = (self.numbers[group * WIDE + i] as usize, e.met[i].to_bits());
+                if met == 0 {
+                    tell(number, None);
+                } else {
+                    let triangle = if ANY { 0 } else { self.meetings[met as usize].triangle };
+                    tell(number, Some(TriangleHit { t: e.t_last[i], uv: Vec2::new(u[i], v[i]), triangle }));
+                }
+            }
+        }
+    }
+}

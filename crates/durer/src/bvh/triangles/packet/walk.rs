@@ -1,0 +1,172 @@
+//! The way of a packet through the tree.
+
+use super::Packet;
+use crate::bvh::lanes::{Lanes, WIDE, Wide};
+use crate::bvh::node::{LEAF, Node};
+use crate::bvh::triangles::stream::prefetch;
+
+/// A node or leaf that is still to be visited.
+#[derive(Clone, Copy)]
+pub struct Entry {
+    /// The rays that met its parent.
+    rays: u64,
+    child: u32,
+    /// Where its box is: the number of the node times eight, and the place.
+    place: u32,
+    near: f32,
+}
+
+/// Intervals around what nodes need of all rays.
+struct Beam<L: Lanes> {
+    inverse: [[L::Floats; 2]; 3],
+    near_from: [L::Floats; 3],
+    far_from: [L::Floats; 3],
+    t_min: L::Floats,
+    negative: [usize; 3],
+}
+
+impl<L: Lanes> Beam<L> {
+    /// The children of a node that any ray may meet, a bit for each, and where the first enters them.
+    ///
+    /// Roundings are monotonic, so no bound is passed by what a single ray has.
+    #[inline(always)]
+    fn meet(&self, lanes: L, node: &Node, limit: L::Floats) -> (u32, L::Floats) {
+        macro_rules! slab {
+            ($axis:literal, $side:expr, $from:ident, $end:ident) => {{
+                let plane = lanes.sub(lanes.load(&node.planes[$axis][$side & 1]), self.$from[$axis]);
+                let [low, high] = self.inverse[$axis];
+                lanes.$end(lanes.mul(plane, low), lanes.mul(plane, high))
+            }};
+        }
+        let [x, y, z] = self.negative;
+        let enter = lanes.max(slab!(0, x, near_from, min), slab!(1, y, near_from, min));
+        let enter = lanes.max(enter, lanes.max(slab!(2, z, near_from, min), self.t_min));
+        let leave = lanes.min(slab!(0, !x, far_from, max), slab!(1, !y, far_from, max));
+        let leave = lanes.min(leave, lanes.min(slab!(2, !z, far_from, max), limit));
+        (lanes.le(enter, leave), enter)
+    }
+}
+
+impl Packet<'_> {
+    #[inline(always)]
+    fn beam<L: Lanes>(&self, lanes: L) -> Beam<L> {
+        let nowhere = lanes.splat(0.0);
+        let wide = lanes.wide();
+        macro_rules! least {
+            ($($of:tt)*) => {
+                lanes.splat(end!(self, wide, min, least, $($of)*))
+            };
+        }
+        macro_rules! greatest {
+            ($($of:tt)*) => {
+                lanes.splat(end!(self, wide, max, greatest, $($of)*))
+            };
+        }
+        let mut beam = Beam {
+            inverse: [[nowhere; 2]; 3],
+            near_from: [nowhere; 3],
+            far_from: [nowhere; 3],
+            t_min: least!(t_min),
+            negative: self.axes.negative,
+        };
+        for axis in 0..3 {
+            beam.inverse[axis] = [least!(inverse[axis]), greatest!(inverse[axis])];
+            (beam.near_from[axis], beam.far_from[axis]) = match self.axes.negative[axis] {
+                0 => (greatest!(near_from[axis]), least!(far_from[axis])),
+                _ => (least!(near_from[axis]), greatest!(far_from[axis])),
+            };
+        }
+        beam
+    }
+
+    /// The last t of any ray.
+    #[inline(always)]
+    pub(super) fn last<L: Lanes>(&self, lanes: L) -> f32 {
+        let wide = lanes.wide();
+        end!(self, wide, max, greatest, t_last)
+    }
+
+    /// Shows the triangles of all leaves that a ray may meet to those rays, roughly from near to far.
+    #[inline(always)]
+    pub(super) fn walk<L: Lanes, const ANY: bool>(&mut self, lanes: L, stack: &mut Vec<Entry>) {
+        let bvh = self.bvh;
+        let beam = self.beam(lanes);
+        self.limit = self.last(lanes);
+        stack.clear();
+        let (mut child, mut rays) = (0, self.alive);
+        loop {
+            if child & LEAF == 0 {
+                let node = &bvh.nodes[child as usize];
+                let (met, enter) = beam.meet(lanes, node, lanes.splat(self.limit));
+                if met != 0 {
+                    // Along a rising axis the first place is nearest; the farthest is pushed first.
+                    let rising = self.axes.positive & node.axis != 0;
+                    let (first, last) = (met.trailing_zeros(), 31 - met.leading_zeros());
+                    let nearest = if rising { first } else { last };
+                    let (mut others, enter) = (met ^ 1 << nearest, lanes.store(enter));
+                    while others != 0 {
+                        let place = if rising { 31 - others.leading_zeros() } else { others.trailing_zeros() } & 7;
+                        others ^= 1 << place;
+                        let next = node.children[place as usize];
+                        prefetch(lanes, bvh, next);
+                        stack.push(Entry { rays, child: next, place: child * 8 + place, near: enter[place as usize] });
+                    }
+                    let inside = self.inside(lanes, node, nearest as usize & 7, rays);
+                    if inside != 0 {
+                        rays = inside;
+                        child = node.children[nearest as usize & 7];
+                        continue;
+                    }
+                }
+            } else {
+                self.leaf::<L, ANY>(lanes, child, rays);
+                if ANY && self.alive == 0 {
+                    return;
+                }
+            }
+            loop {
+                let Some(entry) = stack.pop() else { return };
+                if entry.near > self.limit {
+                    continue;
+                }
+                rays = if ANY { entry.rays & self.alive } else { entry.rays };
+                rays = self.inside(lanes, &bvh.nodes[entry.place as usize / 8], entry.place as usize & 7, rays);
+                if rays != 0 {
+                    child = entry.child;
+                    break;
+                }
+            }
+        }
+    }
+
+    /// Of some rays those that meet the box of a child.
+    #[inline(always)]
+    fn inside<L: Lanes>(&self, lanes: L, node: &Node, place: usize, rays: u64) -> u64 {
+        let wide = lanes.wide();
+        let [x, y, z] = self.axes.negative;
+        macro_rules! plane {
+            ($axis:literal, $side:expr) => {
+                wide.splat(node.planes[$axis][$side & 1][place])
+            };
+        }
+        let (near_x, near_y, near_z) = (plane!(0, x), plane!(1, y), plane!(2, z));
+        let (far_x, far_y, far_z) = (plane!(0, !x), plane!(1, !y), plane!(2, !z));
+        let mut inside = 0;
+        for (group, e) in self.sixteens.iter().enumerate() {
+            if rays >> (group * WIDE) & 0xffff == 0 {
+                continue;
+            }
+            macro_rules! slab {
+                ($axis:literal, $plane:ident, $origin:ident) => {
+                    wide.mul_add($plane, wide.load(&e.inverse[$axis]), wide.load(&e.$origin[$axis]))
+                };
+            }
+            let enter = wide.max(slab!(0, near_x, near_origin), slab!(1, near_y, near_origin));
+            let enter = wide.max(enter, wide.max(slab!(2, near_z, near_origin), wide.load(&e.t_min)));
+            let leave = wide.min(slab!(0, far_x, far_origin), slab!(1, far_y, far_origin));
+            let leave = wide.min(leave, wide.min(slab!(2, far_z, far_origin), wide.load(&e.t_last)));
+            inside |= u64::from(wide.le(enter, leave)) << (group * WIDE);
+        }
+        inside & rays
+    }
+}
