@@ -112,6 +112,9 @@ pub(super) trait Visitor {
 
     fn tally(&mut self) -> &mut Self::Tally;
 
+    /// Has what is likely next brought near.
+    fn fetch<L: Lanes>(&self, _: L, _: u32) {}
+
     /// Looks into a leaf; gives the new `t_max`, at most the old. Minus infinity ends the walk.
     fn leaf<L: Lanes>(&mut self, lanes: L, leaf: u32, t_max: f32) -> f32;
 }
@@ -144,6 +147,9 @@ pub(super) fn walk<L: Lanes, V: Visitor, const TAME: bool>(
                 continue;
             }
         } else {
+            if let Some(next) = stack.peek() {
+                visitor.fetch(lanes, next);
+            }
             let t = visitor.leaf(lanes, child, t_max);
             if t < t_max {
                 t_max = t;

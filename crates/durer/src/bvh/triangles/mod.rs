@@ -124,7 +124,7 @@ impl TriangleBvh {
 
     /// The first hit of each ray, in order: as [`TriangleBvh::closest`] gives it, bit for bit, but faster. Of 64 rays in a row those
     /// that go nearly the same way share their way through the tree, so neighbours should be neighbours in space, as the pixels of a
-    /// tile are. Of the others several are on their way at once, so that none waits for memory.
+    /// tile are. In a large tree several of the others are on their way at once, so that none waits for memory.
     ///
     /// # Panics
     ///
@@ -132,7 +132,7 @@ impl TriangleBvh {
     pub fn closest_batch(&self, rays: &[Ray], hits: &mut [Option<TriangleHit>]) {
         assert_eq!(rays.len(), hits.len(), "a place for each hit");
         let rest = self.packets::<false>(rays, |i, hit| hits[i] = hit);
-        self.stream::<Nearest>(rays, &rest, |i, hit| hits[i] = hit);
+        self.each::<Nearest>(rays, &rest, |i, hit| hits[i] = hit);
     }
 
     /// For each ray, in order, whether anything is hit: as [`TriangleBvh::closest_batch`] goes about it.
@@ -143,7 +143,7 @@ impl TriangleBvh {
     pub fn occluded_batch(&self, rays: &[Ray], answers: &mut [bool]) {
         assert_eq!(rays.len(), answers.len(), "a place for each answer");
         let rest = self.packets::<true>(rays, |i, hit| answers[i] = hit.is_some());
-        self.stream::<Any>(rays, &rest, |i, answer| answers[i] = answer);
+        self.each::<Any>(rays, &rest, |i, answer| answers[i] = answer);
     }
 
     #[inline]

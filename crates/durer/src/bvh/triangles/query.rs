@@ -284,6 +284,11 @@ impl<T: Tally, F: Found> Visitor for Leaves<'_, T, F> {
     }
 
     #[inline(always)]
+    fn fetch<L: Lanes>(&self, lanes: L, child: u32) {
+        super::stream::prefetch(lanes, self.asked.bvh, child);
+    }
+
+    #[inline(always)]
     fn leaf<L: Lanes>(&mut self, lanes: L, leaf: u32, mut t_max: f32) -> f32 {
         let (rows, count) = self.asked.rows(leaf);
         (0..count).for_each(|_| self.tally.test());

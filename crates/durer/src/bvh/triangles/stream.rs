@@ -18,8 +18,19 @@ const FLYING: usize = 16;
 /// At the bottom of each stack: no leaf has this number, for its items would be beyond the most.
 const END: u32 = u32::MAX;
 
+/// Of a tree of fewer bytes, most is near: there, rays are faster one by one.
+const NEAR: usize = 4 << 20;
+
 impl TriangleBvh {
     /// Answers a question for each of the rays with these numbers.
+    pub(super) fn each<F: Found>(&self, rays: &[Ray], numbers: &[u32], mut answer: impl FnMut(usize, F::Answer)) {
+        match self.bytes() < NEAR {
+            true => numbers.iter().for_each(|&i| answer(i as usize, self.query::<_, F>(&rays[i as usize], &mut ()))),
+            false => self.stream::<F>(rays, numbers, answer),
+        }
+    }
+
+    /// As [`TriangleBvh::each`], several on their way at once.
     pub(super) fn stream<F: Found>(&self, rays: &[Ray], numbers: &[u32], answer: impl FnMut(usize, F::Answer)) {
         self.level.run(Stream::<F, _> { bvh: self, rays, numbers: numbers.iter(), answer, found: PhantomData });
     }

@@ -251,7 +251,7 @@ fn batches_answer_as_single_rays_do() {
             let size = f64::from(scale);
             let blind = tree.clone().least_volume(0.01 * size * size * size);
             let trees: Vec<_> = Level::available().map(|level| tree.clone().at_level(level)).chain([blind]).collect();
-            for round in 0..rounds(6) {
+            for round in 0..rounds(4) {
                 let mut rays: Vec<Ray> = (0..3).flat_map(|_| bundle(&mesh, &mut random, scale, offset)).collect();
                 // Where each meets very many, a few will do.
                 rays.truncate(if mesh.1.len() > 5_000 { 40 } else { rays.len() });
@@ -262,6 +262,11 @@ fn batches_answer_as_single_rays_do() {
                 for tree in &trees {
                     tree.closest_batch(&rays, &mut hits);
                     tree.occluded_batch(&rays, &mut occluded);
+                    // As in a large tree.
+                    let (numbers, mut streamed) = ((0..rays.len() as u32).collect::<Vec<_>>(), hits.clone());
+                    tree.stream::<Nearest>(&rays, &numbers, |i, hit| streamed[i] = hit);
+                    tree.stream::<Any>(&rays, &numbers, |i, any| assert_eq!(any, occluded[i], "{name}"));
+                    assert_eq!(format!("{streamed:?}"), format!("{hits:?}"), "{name}");
                     for (i, ray) in rays.iter().enumerate() {
                         let (hit, context) = (tree.closest(ray), || format!("{name} {scale} {offset} {i} {ray:?}"));
                         assert_eq!(hits[i].as_ref().map(bits), hit.as_ref().map(bits), "{}", context());
@@ -272,7 +277,7 @@ fn batches_answer_as_single_rays_do() {
             }
         }
     }
-    assert!(met > 20_000, "{met}");
+    assert!(met > 13_000, "{met}");
 }
 
 #[test]
