@@ -220,9 +220,9 @@ impl<L: Lanes> Slabs<L> {
     pub fn new(lanes: L, boxes: &RayBox) -> Self {
         let negative = |axis: u32| (!boxes.positive >> axis & 1) as usize;
         Slabs {
-            inverse: splat3(lanes, boxes.planes.inverse),
-            near_origin: splat3(lanes, boxes.planes.near_origin),
-            far_origin: splat3(lanes, boxes.planes.far_origin),
+            inverse: lanes.splat3(boxes.planes.inverse),
+            near_origin: lanes.splat3(boxes.planes.near_origin),
+            far_origin: lanes.splat3(boxes.planes.far_origin),
             t_min: lanes.splat(boxes.t_min),
             negative: [negative(0), negative(1), negative(2)],
         }
@@ -254,11 +254,6 @@ pub(super) fn meet<L: Lanes, const TAME: bool>(
     let enter = lanes.max(enter_y, lanes.max(slab!(2, z, near_origin), *t_min));
     let leave = lanes.min(leave_y, lanes.min(slab!(2, !z, far_origin), limit));
     (lanes.le(enter, leave), enter)
-}
-
-#[inline(always)]
-pub(super) fn splat3<L: Lanes>(lanes: L, v: [f32; 3]) -> [L::Floats; 3] {
-    [lanes.splat(v[0]), lanes.splat(v[1]), lanes.splat(v[2])]
 }
 
 /// Whether a ray can hit anything: NaN and infinite ones, and those without direction, cannot.

@@ -42,13 +42,10 @@ impl Sheared {
     /// Prepares a ray that has a finite direction.
     #[inline(always)]
     pub(crate) fn finite(ray: &Ray) -> Self {
-        // By the longest component and its sign: the axes that turn the ray.
-        const AXES: [[[usize; 3]; 2]; 4] =
-            [[[1, 2, 0], [2, 1, 0]], [[2, 0, 1], [0, 2, 1]], [[0, 1, 2], [1, 0, 2]], [[0; 3]; 2]];
         let [x, y, z] = ray.dir.abs().to_array();
         let longest = select_unpredictable((x > y) & (x > z), 0, 2 - usize::from(y > z));
         let negative = ray.dir.is_negative_bitmask() as usize >> longest & 1;
-        let axes = AXES[longest & 3][negative];
+        let axes = turned_axes(longest, negative);
         let (origin, dir) = (turned(axes, ray.origin), turned(axes, ray.dir));
         Sheared { axes, origin, dir, shear: Vec2::new(dir.x / dir.z, dir.y / dir.z), least_volume: 0.0 }
     }
@@ -181,6 +178,15 @@ fn least(a: f64, b: f64) -> f64 {
 #[inline(always)]
 fn most(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
+}
+
+/// The axes that turn a ray, by the longest component of its direction and whether that is negative (1) or not (0).
+#[inline(always)]
+pub(crate) fn turned_axes(longest: usize, negative: usize) -> [usize; 3] {
+    const AXES: [[[usize; 3]; 2]; 4] =
+        [[[1, 2, 0], [2, 1, 0]], [[2, 0, 1], [0, 2, 1]], [[0, 1, 2], [1, 0, 2]], [[0; 3]; 2]];
+    // So masked, indices need not be tested.
+    AXES[longest & 3][negative & 1]
 }
 
 #[inline(always)]

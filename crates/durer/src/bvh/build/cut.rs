@@ -208,13 +208,7 @@ impl Builder<'_> {
             costs = Vec4::select(better, cost, costs);
             borders = Vec4::select(better, Vec4::splat(i as f32), borders);
         }
-        let axis = if costs.x <= costs.y && costs.x <= costs.z {
-            0
-        } else if costs.y <= costs.z {
-            1
-        } else {
-            2
-        };
+        let axis = costs.truncate().min_position();
         let (cost, border) = (costs[axis], borders[axis] as usize);
         let side = |bins: &[Bins]| bins.iter().fold(Bin::EMPTY, |all, bins| all.union(bins.get(axis)));
         let sides = [side(&bins[..border]), side(&bins[border..])];
@@ -285,14 +279,7 @@ fn partition(references: &mut [Reference], is_left: impl Fn(&Reference) -> bool)
 /// Sorts along the longest axis and cuts in the middle.
 fn halve(references: &mut [Reference]) -> (&mut [Reference], &mut [Reference]) {
     let [low, high] = middles(references);
-    let size = high - low;
-    let axis = if size.x >= size.y && size.x >= size.z {
-        0
-    } else if size.y >= size.z {
-        1
-    } else {
-        2
-    };
+    let axis = (high - low).truncate().max_position();
     references.sort_unstable_by(|a, b| {
         a.middle()[axis]
             .total_cmp(&b.middle()[axis])

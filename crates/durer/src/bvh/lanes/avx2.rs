@@ -1,7 +1,7 @@
 //! AVX2 with FMA.
 
 use super::wide::Two;
-use super::{COMPRESS, Kernel, Lanes, Stack, WIDTH};
+use super::{COMPRESS, Kernel, Lanes, Numbers, Stack, WIDTH};
 use std::arch::x86_64::*;
 
 /// Proof that the processor has AVX2, FMA, BMI 1 and 2, LZCNT, and POPCNT.
@@ -33,6 +33,71 @@ macro_rules! proven {
     };
 }
 pub(super) use proven;
+
+/// Operations that are one instruction each.
+macro_rules! operations {
+    ($floats:ty: $($name:ident($($x:ident),+) = $instruction:ident;)*) => {$(
+        #[inline(always)]
+        fn $name(self, $($x: $floats),+) -> $floats {
+            proven!($instruction($($x),+))
+        }
+    )*};
+}
+pub(super) use operations;
+
+/// What [`Numbers`] asks of eight lanes, but for comparisons.
+macro_rules! arithmetic_of_eight {
+    () => {
+        $crate::bvh::lanes::avx2::operations! { __m256:
+            add(a, b) = _mm256_add_ps;
+            sub(a, b) = _mm256_sub_ps;
+            mul(a, b) = _mm256_mul_ps;
+            div(a, b) = _mm256_div_ps;
+            min(a, b) = _mm256_min_ps;
+            max(a, b) = _mm256_max_ps;
+            mul_add(a, b, c) = _mm256_fmadd_ps;
+        }
+        #[inline(always)]
+        fn splat(self, x: f32) -> __m256 {
+            proven!(_mm256_set1_ps(x))
+        }
+        #[inline(always)]
+        fn abs(self, a: __m256) -> __m256 {
+            proven!(_mm256_andnot_ps(_mm256_set1_ps(-0.0), a))
+        }
+    };
+}
+pub(super) use arithmetic_of_eight;
+
+/// What [`Lanes`] asks of memory.
+macro_rules! memory_of_eight {
+    () => {
+        #[inline(always)]
+        fn load(self, from: &[f32; WIDTH]) -> __m256 {
+            proven!(_mm256_loadu_ps(from.as_ptr()))
+        }
+        #[inline(always)]
+        fn store(self, a: __m256) -> [f32; WIDTH] {
+            let mut to = [0.0; WIDTH];
+            proven!(_mm256_storeu_ps(to.as_mut_ptr(), a));
+            to
+        }
+        #[inline(always)]
+        fn rows(self, from: &[f32], stride: usize, axes: [usize; 3]) -> [[__m256; 3]; 3] {
+            $crate::bvh::lanes::avx2::rows(from, stride, axes)
+        }
+        #[inline(always)]
+        fn transpose(self, rows: [__m256; WIDTH]) -> [__m256; WIDTH] {
+            $crate::bvh::lanes::avx2::transpose(rows)
+        }
+        #[inline(always)]
+        fn prefetch<T>(self, at: *const T) {
+            // SAFETY: the instruction takes any address.
+            unsafe { _mm_prefetch::<_MM_HINT_T0>(at.cast()) };
+        }
+    };
+}
+pub(super) use memory_of_eight;
 
 /// Nine rows, checked once.
 #[inline(always)]
@@ -93,66 +158,31 @@ pub(super) fn least(a: __m256) -> f32 {
     }
 }
 
-impl Lanes for Avx2 {
+impl Numbers for Avx2 {
     type Floats = __m256;
+
+    arithmetic_of_eight!();
+    #[inline(always)]
+    fn le(self, a: __m256, b: __m256) -> u32 {
+        proven!(_mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(a, b)) as u32)
+    }
+    #[inline(always)]
+    fn lt(self, a: __m256, b: __m256) -> u32 {
+        proven!(_mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LT_OQ>(a, b)) as u32)
+    }
+}
+
+impl Lanes for Avx2 {
     type Order = __m256i;
     type Wide = Two<Self>;
+
+    memory_of_eight!();
 
     #[inline(always)]
     fn wide(self) -> Two<Self> {
         Two(self)
     }
 
-    #[inline(always)]
-    fn splat(self, x: f32) -> __m256 {
-        proven!(_mm256_set1_ps(x))
-    }
-    #[inline(always)]
-    fn load(self, from: &[f32; WIDTH]) -> __m256 {
-        proven!(_mm256_loadu_ps(from.as_ptr()))
-    }
-    #[inline(always)]
-    fn rows(self, from: &[f32], stride: usize, axes: [usize; 3]) -> [[__m256; 3]; 3] {
-        rows(from, stride, axes)
-    }
-    #[inline(always)]
-    fn store(self, a: __m256) -> [f32; WIDTH] {
-        let mut to = [0.0; WIDTH];
-        proven!(_mm256_storeu_ps(to.as_mut_ptr(), a));
-        to
-    }
-    #[inline(always)]
-    fn add(self, a: __m256, b: __m256) -> __m256 {
-        proven!(_mm256_add_ps(a, b))
-    }
-    #[inline(always)]
-    fn sub(self, a: __m256, b: __m256) -> __m256 {
-        proven!(_mm256_sub_ps(a, b))
-    }
-    #[inline(always)]
-    fn mul(self, a: __m256, b: __m256) -> __m256 {
-        proven!(_mm256_mul_ps(a, b))
-    }
-    #[inline(always)]
-    fn div(self, a: __m256, b: __m256) -> __m256 {
-        proven!(_mm256_div_ps(a, b))
-    }
-    #[inline(always)]
-    fn abs(self, a: __m256) -> __m256 {
-        proven!(_mm256_andnot_ps(_mm256_set1_ps(-0.0), a))
-    }
-    #[inline(always)]
-    fn mul_add(self, a: __m256, b: __m256, c: __m256) -> __m256 {
-        proven!(_mm256_fmadd_ps(a, b, c))
-    }
-    #[inline(always)]
-    fn min(self, a: __m256, b: __m256) -> __m256 {
-        proven!(_mm256_min_ps(a, b))
-    }
-    #[inline(always)]
-    fn max(self, a: __m256, b: __m256) -> __m256 {
-        proven!(_mm256_max_ps(a, b))
-    }
     #[inline(always)]
     fn least(self, a: __m256, mask: u32) -> f32 {
         proven! {
@@ -164,18 +194,6 @@ impl Lanes for Avx2 {
     #[inline(always)]
     fn select(self, mask: u32, a: __m256, b: __m256) -> __m256 {
         proven!(_mm256_blendv_ps(b, a, _mm256_castsi256_ps(lanes_of(mask))))
-    }
-    #[inline(always)]
-    fn transpose(self, rows: [__m256; WIDTH]) -> [__m256; WIDTH] {
-        transpose(rows)
-    }
-    #[inline(always)]
-    fn le(self, a: __m256, b: __m256) -> u32 {
-        proven!(_mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(a, b)) as u32)
-    }
-    #[inline(always)]
-    fn lt(self, a: __m256, b: __m256) -> u32 {
-        proven!(_mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LT_OQ>(a, b)) as u32)
     }
     #[inline(always)]
     fn flipped(self, flip: u32) -> __m256i {
@@ -192,11 +210,6 @@ impl Lanes for Avx2 {
             _mm256_storeu_ps(to_near, _mm256_permutevar8x32_ps(near, front));
             stack.grow(mask.count_ones());
         }
-    }
-    #[inline(always)]
-    fn prefetch<T>(self, at: *const T) {
-        // SAFETY: the instruction takes any address.
-        unsafe { _mm_prefetch::<_MM_HINT_T0>(at.cast()) };
     }
     #[inline(always)]
     fn drop_beyond(self, stack: &mut Stack, t_max: f32) {

@@ -1,7 +1,7 @@
 //! AVX-512 on eight lanes: masks in registers of their own, and compression in one instruction.
 
-use super::avx2::{least, proven, rows, transpose};
-use super::{Kernel, Lanes, Stack, WIDE, WIDTH, Wide};
+use super::avx2::{arithmetic_of_eight, least, memory_of_eight, operations, proven};
+use super::{Kernel, Lanes, Numbers, Stack, WIDE, WIDTH, Wide};
 use std::arch::x86_64::*;
 
 /// Proof that the processor has AVX-512 F, VL and DQ beside what AVX2's level asks for.
@@ -23,78 +23,10 @@ pub unsafe fn run<K: Kernel>(kernel: K) -> K::Output {
     kernel.run(Avx512(()))
 }
 
-impl Lanes for Avx512 {
+impl Numbers for Avx512 {
     type Floats = __m256;
-    type Order = __m256i;
-    type Wide = Avx512;
 
-    #[inline(always)]
-    fn wide(self) -> Avx512 {
-        self
-    }
-
-    #[inline(always)]
-    fn splat(self, x: f32) -> __m256 {
-        proven!(_mm256_set1_ps(x))
-    }
-    #[inline(always)]
-    fn load(self, from: &[f32; WIDTH]) -> __m256 {
-        proven!(_mm256_loadu_ps(from.as_ptr()))
-    }
-    #[inline(always)]
-    fn rows(self, from: &[f32], stride: usize, axes: [usize; 3]) -> [[__m256; 3]; 3] {
-        rows(from, stride, axes)
-    }
-    #[inline(always)]
-    fn store(self, a: __m256) -> [f32; WIDTH] {
-        let mut to = [0.0; WIDTH];
-        proven!(_mm256_storeu_ps(to.as_mut_ptr(), a));
-        to
-    }
-    #[inline(always)]
-    fn add(self, a: __m256, b: __m256) -> __m256 {
-        proven!(_mm256_add_ps(a, b))
-    }
-    #[inline(always)]
-    fn sub(self, a: __m256, b: __m256) -> __m256 {
-        proven!(_mm256_sub_ps(a, b))
-    }
-    #[inline(always)]
-    fn mul(self, a: __m256, b: __m256) -> __m256 {
-        proven!(_mm256_mul_ps(a, b))
-    }
-    #[inline(always)]
-    fn div(self, a: __m256, b: __m256) -> __m256 {
-        proven!(_mm256_div_ps(a, b))
-    }
-    #[inline(always)]
-    fn abs(self, a: __m256) -> __m256 {
-        proven!(_mm256_andnot_ps(_mm256_set1_ps(-0.0), a))
-    }
-    #[inline(always)]
-    fn mul_add(self, a: __m256, b: __m256, c: __m256) -> __m256 {
-        proven!(_mm256_fmadd_ps(a, b, c))
-    }
-    #[inline(always)]
-    fn min(self, a: __m256, b: __m256) -> __m256 {
-        proven!(_mm256_min_ps(a, b))
-    }
-    #[inline(always)]
-    fn max(self, a: __m256, b: __m256) -> __m256 {
-        proven!(_mm256_max_ps(a, b))
-    }
-    #[inline(always)]
-    fn least(self, a: __m256, mask: u32) -> f32 {
-        proven!(least(_mm256_mask_mov_ps(_mm256_set1_ps(f32::INFINITY), mask as u8, a)))
-    }
-    #[inline(always)]
-    fn select(self, mask: u32, a: __m256, b: __m256) -> __m256 {
-        proven!(_mm256_mask_mov_ps(b, mask as u8, a))
-    }
-    #[inline(always)]
-    fn transpose(self, rows: [__m256; WIDTH]) -> [__m256; WIDTH] {
-        transpose(rows)
-    }
+    arithmetic_of_eight!();
     #[inline(always)]
     fn le(self, a: __m256, b: __m256) -> u32 {
         proven!(u32::from(_mm256_cmp_ps_mask::<_CMP_LE_OQ>(a, b)))
@@ -102,6 +34,27 @@ impl Lanes for Avx512 {
     #[inline(always)]
     fn lt(self, a: __m256, b: __m256) -> u32 {
         proven!(u32::from(_mm256_cmp_ps_mask::<_CMP_LT_OQ>(a, b)))
+    }
+}
+
+impl Lanes for Avx512 {
+    type Order = __m256i;
+    type Wide = Sixteen;
+
+    memory_of_eight!();
+
+    #[inline(always)]
+    fn wide(self) -> Sixteen {
+        Sixteen(())
+    }
+
+    #[inline(always)]
+    fn least(self, a: __m256, mask: u32) -> f32 {
+        proven!(least(_mm256_mask_mov_ps(_mm256_set1_ps(f32::INFINITY), mask as u8, a)))
+    }
+    #[inline(always)]
+    fn select(self, mask: u32, a: __m256, b: __m256) -> __m256 {
+        proven!(_mm256_mask_mov_ps(b, mask as u8, a))
     }
     #[inline(always)]
     fn flipped(self, flip: u32) -> __m256i {
@@ -117,11 +70,6 @@ impl Lanes for Avx512 {
             _mm256_storeu_ps(to_near, _mm256_maskz_compress_ps(mask as u8, near));
             stack.grow(mask.count_ones());
         }
-    }
-    #[inline(always)]
-    fn prefetch<T>(self, at: *const T) {
-        // SAFETY: the instruction takes any address.
-        unsafe { _mm_prefetch::<_MM_HINT_T0>(at.cast()) };
     }
     #[inline(always)]
     fn drop_beyond(self, stack: &mut Stack, t_max: f32) {
@@ -145,14 +93,38 @@ impl Lanes for Avx512 {
     }
 }
 
-/// One vector of sixteen lanes.
-impl Wide for Avx512 {
+/// One vector of sixteen lanes; the same proof.
+#[derive(Clone, Copy)]
+pub struct Sixteen(());
+
+impl Numbers for Sixteen {
     type Floats = __m512;
 
+    operations! { __m512:
+        add(a, b) = _mm512_add_ps;
+        sub(a, b) = _mm512_sub_ps;
+        mul(a, b) = _mm512_mul_ps;
+        div(a, b) = _mm512_div_ps;
+        min(a, b) = _mm512_min_ps;
+        max(a, b) = _mm512_max_ps;
+        abs(a) = _mm512_abs_ps;
+        mul_add(a, b, c) = _mm512_fmadd_ps;
+    }
     #[inline(always)]
     fn splat(self, x: f32) -> __m512 {
         proven!(_mm512_set1_ps(x))
     }
+    #[inline(always)]
+    fn le(self, a: __m512, b: __m512) -> u32 {
+        proven!(u32::from(_mm512_cmp_ps_mask::<_CMP_LE_OQ>(a, b)))
+    }
+    #[inline(always)]
+    fn lt(self, a: __m512, b: __m512) -> u32 {
+        proven!(u32::from(_mm512_cmp_ps_mask::<_CMP_LT_OQ>(a, b)))
+    }
+}
+
+impl Wide for Sixteen {
     #[inline(always)]
     fn load(self, from: &[f32; WIDE]) -> __m512 {
         proven!(_mm512_loadu_ps(from.as_ptr()))
@@ -162,46 +134,6 @@ impl Wide for Avx512 {
         let mut to = [0.0; WIDE];
         proven!(_mm512_storeu_ps(to.as_mut_ptr(), a));
         to
-    }
-    #[inline(always)]
-    fn add(self, a: __m512, b: __m512) -> __m512 {
-        proven!(_mm512_add_ps(a, b))
-    }
-    #[inline(always)]
-    fn sub(self, a: __m512, b: __m512) -> __m512 {
-        proven!(_mm512_sub_ps(a, b))
-    }
-    #[inline(always)]
-    fn mul(self, a: __m512, b: __m512) -> __m512 {
-        proven!(_mm512_mul_ps(a, b))
-    }
-    #[inline(always)]
-    fn div(self, a: __m512, b: __m512) -> __m512 {
-        proven!(_mm512_div_ps(a, b))
-    }
-    #[inline(always)]
-    fn abs(self, a: __m512) -> __m512 {
-        proven!(_mm512_abs_ps(a))
-    }
-    #[inline(always)]
-    fn mul_add(self, a: __m512, b: __m512, c: __m512) -> __m512 {
-        proven!(_mm512_fmadd_ps(a, b, c))
-    }
-    #[inline(always)]
-    fn min(self, a: __m512, b: __m512) -> __m512 {
-        proven!(_mm512_min_ps(a, b))
-    }
-    #[inline(always)]
-    fn max(self, a: __m512, b: __m512) -> __m512 {
-        proven!(_mm512_max_ps(a, b))
-    }
-    #[inline(always)]
-    fn le(self, a: __m512, b: __m512) -> u32 {
-        proven!(u32::from(_mm512_cmp_ps_mask::<_CMP_LE_OQ>(a, b)))
-    }
-    #[inline(always)]
-    fn lt(self, a: __m512, b: __m512) -> u32 {
-        proven!(u32::from(_mm512_cmp_ps_mask::<_CMP_LT_OQ>(a, b)))
     }
     #[inline(always)]
     fn least(self, a: __m512) -> f32 {

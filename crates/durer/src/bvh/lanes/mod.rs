@@ -2,7 +2,7 @@
 //!
 //! [`Lanes`] is what the walk through a tree needs. Each level implements it once, and [`Level::run`] calls a [`Kernel`]
 //! with the one that was chosen. What decides a hit is add, subtract, multiply and compare only, never fused, so
-//! every level gives the same bits; [`Lanes::mul_add`] may be fused or not, and belongs to tests of boxes, which
+//! every level gives the same bits; [`Numbers::mul_add`] may be fused or not, and belongs to tests of boxes, which
 //! allow for either.
 #![allow(unsafe_code)]
 
@@ -25,24 +25,12 @@ pub(super) use wide::{WIDE, Wide};
 /// How many numbers lie side by side.
 pub const WIDTH: usize = 8;
 
-/// Operations on eight numbers; a value of the type proves that the processor has them.
-pub(super) trait Lanes: Copy {
-    /// Eight `f32`.
+/// Arithmetic on numbers side by side; a value of the type proves that the processor has it.
+pub(super) trait Numbers: Copy {
+    /// So many `f32`.
     type Floats: Copy;
-    /// An order of the eight lanes.
-    type Order: Copy;
-    /// The same for sixteen numbers.
-    type Wide: Wide;
-
-    fn wide(self) -> Self::Wide;
 
     fn splat(self, x: f32) -> Self::Floats;
-    fn load(self, from: &[f32; WIDTH]) -> Self::Floats;
-    /// What begins at each of nine rows of `stride` numbers; only the first `stride` lanes mean anything.
-    ///
-    /// Rows come by corner, then by axis in the order of `axes`.
-    fn rows(self, from: &[f32], stride: usize, axes: [usize; 3]) -> [[Self::Floats; 3]; 3];
-    fn store(self, a: Self::Floats) -> [f32; WIDTH];
     fn add(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
     fn sub(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
     fn mul(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
@@ -54,16 +42,39 @@ pub(super) trait Lanes: Copy {
     fn min(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
     /// `a` where it is greater than `b`, else `b`: also where either is no number.
     fn max(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
+    /// A bit for each lane where a <= b.
+    fn le(self, a: Self::Floats, b: Self::Floats) -> u32;
+    /// A bit for each lane where a < b.
+    fn lt(self, a: Self::Floats, b: Self::Floats) -> u32;
+
+    /// A vector in each lane.
+    #[inline(always)]
+    fn splat3(self, [x, y, z]: [f32; 3]) -> [Self::Floats; 3] {
+        [self.splat(x), self.splat(y), self.splat(z)]
+    }
+}
+
+/// What can be done with eight numbers.
+pub(super) trait Lanes: Numbers {
+    /// An order of the eight lanes.
+    type Order: Copy;
+    /// The same for sixteen numbers.
+    type Wide: Wide;
+
+    fn wide(self) -> Self::Wide;
+
+    fn load(self, from: &[f32; WIDTH]) -> Self::Floats;
+    /// What begins at each of nine rows of `stride` numbers; only the first `stride` lanes mean anything.
+    ///
+    /// Rows come by corner, then by axis in the order of `axes`.
+    fn rows(self, from: &[f32], stride: usize, axes: [usize; 3]) -> [[Self::Floats; 3]; 3];
+    fn store(self, a: Self::Floats) -> [f32; WIDTH];
     /// The least of the lanes whose bits are set, none of which is NaN; infinity if there are none.
     fn least(self, a: Self::Floats, mask: u32) -> f32;
     /// `a` in the lanes whose bits are set, `b` in others. Bits stay as they are.
     fn select(self, mask: u32, a: Self::Floats, b: Self::Floats) -> Self::Floats;
     /// Lane k of vector i becomes lane i of vector k.
     fn transpose(self, rows: [Self::Floats; WIDTH]) -> [Self::Floats; WIDTH];
-    /// A bit for each lane where a <= b.
-    fn le(self, a: Self::Floats, b: Self::Floats) -> u32;
-    /// A bit for each lane where a < b.
-    fn lt(self, a: Self::Floats, b: Self::Floats) -> u32;
     /// The order that puts lane i ^ `flip` at i.
     fn flipped(self, flip: u32) -> Self::Order;
     /// Pushes the children whose bits are set, each with its entry distance: those of the first lanes lowest. Bits count

@@ -1,7 +1,7 @@
 //! NEON: eight lanes as two vectors of four.
 
 use super::wide::Two;
-use super::{Lanes, Stack, WIDTH};
+use super::{Lanes, Numbers, Stack, WIDTH};
 use std::arch::aarch64::*;
 
 /// Every 64-bit ARM has NEON.
@@ -30,44 +30,12 @@ unsafe fn bits(a: uint32x4_t, b: uint32x4_t) -> u32 {
     }
 }
 
-impl Lanes for Neon {
+impl Numbers for Neon {
     type Floats = Pair;
-    type Order = u32;
-    type Wide = Two<Self>;
-
-    #[inline(always)]
-    fn wide(self) -> Two<Self> {
-        Two(self)
-    }
 
     #[inline(always)]
     fn splat(self, x: f32) -> Pair {
         proven!(Pair(vdupq_n_f32(x), vdupq_n_f32(x)))
-    }
-    #[inline(always)]
-    fn load(self, from: &[f32; WIDTH]) -> Pair {
-        proven!(Pair(vld1q_f32(from.as_ptr()), vld1q_f32(from.as_ptr().add(4))))
-    }
-    #[inline(always)]
-    fn rows(self, from: &[f32], stride: usize, axes: [usize; 3]) -> [[Pair; 3]; 3] {
-        std::array::from_fn(|corner| {
-            std::array::from_fn(|k| {
-                let row = (3 * corner + axes[k]) * stride;
-                match from[row..].first_chunk() {
-                    Some(row) => self.load(row),
-                    None => unreachable!("rows are padded to a vector"),
-                }
-            })
-        })
-    }
-    #[inline(always)]
-    fn store(self, a: Pair) -> [f32; WIDTH] {
-        let mut to = [0.0; WIDTH];
-        proven! {
-            vst1q_f32(to.as_mut_ptr(), a.0);
-            vst1q_f32(to.as_mut_ptr().add(4), a.1);
-        }
-        to
     }
     #[inline(always)]
     fn add(self, a: Pair, b: Pair) -> Pair {
@@ -102,6 +70,50 @@ impl Lanes for Neon {
         proven!(Pair(vbslq_f32(vcgtq_f32(a.0, b.0), a.0, b.0), vbslq_f32(vcgtq_f32(a.1, b.1), a.1, b.1)))
     }
     #[inline(always)]
+    fn le(self, a: Pair, b: Pair) -> u32 {
+        proven!(bits(vcleq_f32(a.0, b.0), vcleq_f32(a.1, b.1)))
+    }
+    #[inline(always)]
+    fn lt(self, a: Pair, b: Pair) -> u32 {
+        proven!(bits(vcltq_f32(a.0, b.0), vcltq_f32(a.1, b.1)))
+    }
+}
+
+impl Lanes for Neon {
+    type Order = u32;
+    type Wide = Two<Self>;
+
+    #[inline(always)]
+    fn wide(self) -> Two<Self> {
+        Two(self)
+    }
+
+    #[inline(always)]
+    fn load(self, from: &[f32; WIDTH]) -> Pair {
+        proven!(Pair(vld1q_f32(from.as_ptr()), vld1q_f32(from.as_ptr().add(4))))
+    }
+    #[inline(always)]
+    fn rows(self, from: &[f32], stride: usize, axes: [usize; 3]) -> [[Pair; 3]; 3] {
+        std::array::from_fn(|corner| {
+            std::array::from_fn(|k| {
+                let row = (3 * corner + axes[k]) * stride;
+                match from[row..].first_chunk() {
+                    Some(row) => self.load(row),
+                    None => unreachable!("rows are padded to a vector"),
+                }
+            })
+        })
+    }
+    #[inline(always)]
+    fn store(self, a: Pair) -> [f32; WIDTH] {
+        let mut to = [0.0; WIDTH];
+        proven! {
+            vst1q_f32(to.as_mut_ptr(), a.0);
+            vst1q_f32(to.as_mut_ptr().add(4), a.1);
+        }
+        to
+    }
+    #[inline(always)]
     fn least(self, a: Pair, mask: u32) -> f32 {
         super::scalar::Scalar.least(self.store(a), mask)
     }
@@ -119,14 +131,6 @@ impl Lanes for Neon {
     fn transpose(self, rows: [Pair; WIDTH]) -> [Pair; WIDTH] {
         let rows = rows.map(|row| self.store(row));
         super::scalar::Scalar.transpose(rows).map(|row| self.load(&row))
-    }
-    #[inline(always)]
-    fn le(self, a: Pair, b: Pair) -> u32 {
-        proven!(bits(vcleq_f32(a.0, b.0), vcleq_f32(a.1, b.1)))
-    }
-    #[inline(always)]
-    fn lt(self, a: Pair, b: Pair) -> u32 {
-        proven!(bits(vcltq_f32(a.0, b.0), vcltq_f32(a.1, b.1)))
     }
     #[inline(always)]
     fn flipped(self, flip: u32) -> u32 {

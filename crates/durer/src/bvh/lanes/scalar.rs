@@ -1,7 +1,7 @@
 //! Plain code.
 
 use super::wide::Two;
-use super::{Lanes, Stack, WIDTH};
+use super::{Lanes, Numbers, Stack, WIDTH};
 use std::array::from_fn;
 
 #[derive(Clone, Copy)]
@@ -13,36 +13,12 @@ fn mask(test: impl Fn(usize) -> bool) -> u32 {
     (0..WIDTH).fold(0, |mask, i| mask | u32::from(test(i)) << i)
 }
 
-impl Lanes for Scalar {
+impl Numbers for Scalar {
     type Floats = F;
-    type Order = u32;
-    type Wide = Two<Self>;
-
-    #[inline(always)]
-    fn wide(self) -> Two<Self> {
-        Two(self)
-    }
 
     #[inline(always)]
     fn splat(self, x: f32) -> F {
         [x; WIDTH]
-    }
-    #[inline(always)]
-    fn load(self, from: &[f32; WIDTH]) -> F {
-        *from
-    }
-    #[inline(always)]
-    fn rows(self, from: &[f32], stride: usize, axes: [usize; 3]) -> [[F; 3]; 3] {
-        from_fn(|corner| {
-            from_fn(|k| {
-                let row = (3 * corner + axes[k]) * stride;
-                from_fn(|lane| from[row + lane])
-            })
-        })
-    }
-    #[inline(always)]
-    fn store(self, a: F) -> [f32; WIDTH] {
-        a
     }
     #[inline(always)]
     fn add(self, a: F, b: F) -> F {
@@ -77,6 +53,42 @@ impl Lanes for Scalar {
         from_fn(|i| if a[i] > b[i] { a[i] } else { b[i] })
     }
     #[inline(always)]
+    fn le(self, a: F, b: F) -> u32 {
+        mask(|i| a[i] <= b[i])
+    }
+    #[inline(always)]
+    fn lt(self, a: F, b: F) -> u32 {
+        mask(|i| a[i] < b[i])
+    }
+}
+
+impl Lanes for Scalar {
+    type Order = u32;
+    type Wide = Two<Self>;
+
+    #[inline(always)]
+    fn wide(self) -> Two<Self> {
+        Two(self)
+    }
+
+    #[inline(always)]
+    fn load(self, from: &[f32; WIDTH]) -> F {
+        *from
+    }
+    #[inline(always)]
+    fn rows(self, from: &[f32], stride: usize, axes: [usize; 3]) -> [[F; 3]; 3] {
+        from_fn(|corner| {
+            from_fn(|k| {
+                let row = (3 * corner + axes[k]) * stride;
+                from_fn(|lane| from[row + lane])
+            })
+        })
+    }
+    #[inline(always)]
+    fn store(self, a: F) -> [f32; WIDTH] {
+        a
+    }
+    #[inline(always)]
     fn least(self, a: F, mask: u32) -> f32 {
         (0..WIDTH)
             .filter(|i| mask >> i & 1 == 1)
@@ -89,14 +101,6 @@ impl Lanes for Scalar {
     #[inline(always)]
     fn transpose(self, rows: [F; WIDTH]) -> [F; WIDTH] {
         from_fn(|k| from_fn(|i| rows[i][k]))
-    }
-    #[inline(always)]
-    fn le(self, a: F, b: F) -> u32 {
-        mask(|i| a[i] <= b[i])
-    }
-    #[inline(always)]
-    fn lt(self, a: F, b: F) -> u32 {
-        mask(|i| a[i] < b[i])
     }
     #[inline(always)]
     fn flipped(self, flip: u32) -> u32 {

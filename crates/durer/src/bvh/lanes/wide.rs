@@ -1,27 +1,14 @@
 //! Sixteen numbers side by side, for rays that go together: one vector of AVX-512, or two of eight lanes.
 
-use super::{Lanes, WIDTH};
+use super::{Lanes, Numbers, WIDTH};
 
 /// How many numbers lie side by side.
 pub const WIDE: usize = 2 * WIDTH;
 
-/// Arithmetic on sixteen numbers, each as [`Lanes`] has it.
-pub(in crate::bvh) trait Wide: Copy {
-    type Floats: Copy;
-
-    fn splat(self, x: f32) -> Self::Floats;
+/// What can be done with sixteen numbers.
+pub(in crate::bvh) trait Wide: Numbers {
     fn load(self, from: &[f32; WIDE]) -> Self::Floats;
     fn store(self, a: Self::Floats) -> [f32; WIDE];
-    fn add(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
-    fn sub(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
-    fn mul(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
-    fn div(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
-    fn abs(self, a: Self::Floats) -> Self::Floats;
-    fn mul_add(self, a: Self::Floats, b: Self::Floats, c: Self::Floats) -> Self::Floats;
-    fn min(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
-    fn max(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
-    fn le(self, a: Self::Floats, b: Self::Floats) -> u32;
-    fn lt(self, a: Self::Floats, b: Self::Floats) -> u32;
     /// The least of all lanes, none of which is NaN.
     fn least(self, a: Self::Floats) -> f32;
     /// The greatest of all lanes, none of which is NaN.
@@ -49,7 +36,7 @@ macro_rules! two {
     )*};
 }
 
-impl<L: Lanes> Wide for Two<L> {
+impl<L: Lanes> Numbers for Two<L> {
     type Floats = (L::Floats, L::Floats);
 
     two! {
@@ -68,6 +55,17 @@ impl<L: Lanes> Wide for Two<L> {
         (self.0.splat(x), self.0.splat(x))
     }
     #[inline(always)]
+    fn le(self, a: Self::Floats, b: Self::Floats) -> u32 {
+        self.0.le(a.0, b.0) & 255 | self.0.le(a.1, b.1) << WIDTH
+    }
+    #[inline(always)]
+    fn lt(self, a: Self::Floats, b: Self::Floats) -> u32 {
+        self.0.lt(a.0, b.0) & 255 | self.0.lt(a.1, b.1) << WIDTH
+    }
+}
+
+impl<L: Lanes> Wide for Two<L> {
+    #[inline(always)]
     fn load(self, from: &[f32; WIDE]) -> Self::Floats {
         let (low, high) = halves(from);
         (self.0.load(low), self.0.load(high))
@@ -78,14 +76,6 @@ impl<L: Lanes> Wide for Two<L> {
         to[..WIDTH].copy_from_slice(&self.0.store(a.0));
         to[WIDTH..].copy_from_slice(&self.0.store(a.1));
         to
-    }
-    #[inline(always)]
-    fn le(self, a: Self::Floats, b: Self::Floats) -> u32 {
-        self.0.le(a.0, b.0) & 255 | self.0.le(a.1, b.1) << WIDTH
-    }
-    #[inline(always)]
-    fn lt(self, a: Self::Floats, b: Self::Floats) -> u32 {
-        self.0.lt(a.0, b.0) & 255 | self.0.lt(a.1, b.1) << WIDTH
     }
     #[inline(always)]
     fn least(self, a: Self::Floats) -> f32 {

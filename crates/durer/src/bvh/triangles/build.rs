@@ -3,10 +3,12 @@
 use super::TriangleBvh;
 use crate::bvh::build::{self, Preset, Settings};
 use crate::bvh::lanes::{Available, WIDTH};
-use crate::bvh::node::{self, Node};
+use crate::bvh::node;
 use crate::math::{Aabb, Vec3};
 use rayon::prelude::*;
-use std::cmp::Reverse;
+
+/// Corners of so many leaves are written at once.
+const AT_ONCE: usize = 1024;
 
 impl TriangleBvh {
     /// Builds over triangles given as three indices each. Those with a corner that is no finite point are never hit.
@@ -64,75 +66,30 @@ impl TriangleBvh {
 
     /// Writes the corners of all leaves.
     fn pack(&mut self, corners_of: impl Fn(u32) -> [Vec3; 3] + Sync) {
-        let packer = Packer { nodes: &self.nodes, order: &self.order, corners_of };
-        if !self.nodes.is_empty() {
-            packer.pack(0, 0, &mut self.corners[..9 * self.order.len()]);
+        let children = self.nodes.iter().flat_map(|node| node.children().map(|(_, _, child)| child));
+        let mut leaves: Vec<u32> = children.filter(|child| child & node::LEAF != 0).collect();
+        leaves.par_sort_unstable_by_key(|&leaf| node::items(leaf).0);
+        // Leaves that follow each other have rows that do.
+        let (mut rest, mut parts) = (&mut self.corners[..], Vec::with_capacity(leaves.len() / AT_ONCE + 1));
+        for leaves in leaves.chunks(AT_ONCE) {
+            let count: usize = leaves.iter().map(|&leaf| node::items(leaf).1).sum();
+            let (part, after) = rest.split_at_mut(9 * count);
+            parts.push((leaves, part));
+            rest = after;
         }
-    }
-}
-
-/// So many numbers are written in parallel.
-const PARALLEL: usize = 9 * 4096;
-
-struct Packer<'a, C> {
-    nodes: &'a [Node],
-    order: &'a [u32],
-    corners_of: C,
-}
-
-impl<C: Fn(u32) -> [Vec3; 3] + Sync> Packer<'_, C> {
-    /// Writes the corners of all leaves below a node, into those of the items from number `first` on.
-    fn pack(&self, number: u32, first: usize, mut corners: &mut [f32]) {
-        let node = &self.nodes[number as usize];
-        let mut children: Vec<(usize, u32)> = node.children().map(|(_, _, child)| (self.first(child), child)).collect();
-        // Items of a child follow each other, so each child gets a part, from the last to the first.
-        children.sort_unstable_by_key(|&(start, _)| Reverse(start));
-        let mut parts = Vec::with_capacity(children.len());
-        for (start, child) in children {
-            let (before, part) = corners.split_at_mut(9 * (start - first));
-            parts.push((start, child, part));
-            corners = before;
-        }
-        parts.into_par_iter().for_each(|(start, child, part)| match (child & node::LEAF, part.len()) {
-            (0, ..PARALLEL) => self.pack_few(child, start, part),
-            (0, _) => self.pack(child, start, part),
-            _ => self.leaf(child, part),
-        });
-    }
-
-    /// The same without parts.
-    fn pack_few(&self, number: u32, first: usize, corners: &mut [f32]) {
-        for (_, _, child) in self.nodes[number as usize].children() {
-            match child & node::LEAF {
-                0 => self.pack_few(child, first, corners),
-                _ => {
-                    let (start, count) = node::items(child);
-                    self.leaf(child, &mut corners[9 * (start - first)..][..9 * count]);
+        let order = &self.order;
+        parts.into_par_iter().for_each(|(leaves, mut part)| {
+            for &leaf in leaves {
+                let (first, count) = node::items(leaf);
+                let (rows, after) = part.split_at_mut(9 * count);
+                for (lane, &number) in order[first..first + count].iter().enumerate() {
+                    let corners = corners_of(number);
+                    for row in 0..9 {
+                        rows[row * count + lane] = corners[row / 3][row % 3];
+                    }
                 }
+                part = after;
             }
-        }
-    }
-
-    /// The first item of a child: its own items come before those of its inner children, and these by number.
-    fn first(&self, mut child: u32) -> usize {
-        while child & node::LEAF == 0 {
-            let children = self.nodes[child as usize].children().map(|(_, _, child)| child);
-            let place = |&child: &u32| match child & node::LEAF {
-                0 => (1, child as usize),
-                _ => (0, node::items(child).0),
-            };
-            child = children.min_by_key(place).expect("a node has children");
-        }
-        node::items(child).0
-    }
-
-    fn leaf(&self, leaf: u32, rows: &mut [f32]) {
-        let (first, count) = node::items(leaf);
-        for (lane, &number) in self.order[first..first + count].iter().enumerate() {
-            let corners = (self.corners_of)(number);
-            for row in 0..9 {
-                rows[row * count + lane] = corners[row / 3][row % 3];
-            }
-        }
+        });
     }
 }

@@ -296,18 +296,22 @@ impl<T: Tally, F: Found> Visitor for Leaves<'_, T, F> {
             return self.one_by_one(leaf, (1 << count) - 1, t_max);
         }
         let Asked { sheared, t_min, t_max: end, .. } = &self.asked;
-        let flat = Flat::new(lanes, sheared, rows, count);
-        if flat.crossed | flat.unsure == 0 {
+        let (origin, shear) = (lanes.splat3(sheared.ray().0.to_array()), sheared.shear());
+        let corners = lanes.rows(rows, count, sheared.axes());
+        let flat = Flat::new(lanes, corners, origin, [lanes.splat(shear.x), lanes.splat(shear.y)]);
+        let there = (1 << count) - 1;
+        let crossed = flat.crossed(lanes) & there;
+        let mut unsure = (crossed | !flat.missed(lanes)) & there;
+        if unsure == 0 {
             return t_max;
         }
-        let mut unsure = flat.crossed | flat.unsure;
         if self.bounded {
             let span = flat.span(lanes, self.inverse_z);
             let (start, end) = (lanes.splat(*t_min), lanes.splat(*end));
             // So asked, what is no number is unsure.
             let left_out = lanes.lt(lanes.splat(t_max), span.near) | lanes.le(span.far, start);
-            let met = flat.crossed & !left_out & lanes.lt(start, span.near) & lanes.lt(span.far, end);
-            unsure &= !(met | flat.crossed & left_out);
+            let met = crossed & !left_out & lanes.lt(start, span.near) & lanes.lt(span.far, end);
+            unsure &= !(met | crossed & left_out);
             if met != 0 {
                 t_max = self.found.met(lanes, &self.asked, leaf, met, &span, t_max);
             }

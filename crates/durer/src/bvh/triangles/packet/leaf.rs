@@ -1,10 +1,9 @@
 //! A packet among the triangles of a leaf.
 
 use super::{Meeting, Packet};
-use crate::bvh::lanes::{Lanes, WIDE, WIDTH, Wide, column};
+use crate::bvh::lanes::{Lanes, Numbers, WIDE, WIDTH, Wide, column};
 use crate::bvh::node;
-use crate::bvh::traverse::splat3;
-use crate::bvh::triangles::leaf::{edge, flat};
+use crate::bvh::triangles::leaf::Flat;
 use crate::math::Vec3;
 use crate::shape::watertight::Sheared;
 
@@ -36,11 +35,10 @@ impl Packet<'_> {
         let (first, count) = node::items(leaf);
         let rows = &self.bvh.corners[9 * first..9 * (first + count) + WIDTH];
         let [x, y, z] = self.axes.turned;
-        let zero = wide.splat(0.0);
         let mut all_met = 0;
         for lane in 0..count {
             let corners = column(rows, count, self.axes.turned, lane);
-            let [a, b, c] = [wide3(wide, corners[0]), wide3(wide, corners[1]), wide3(wide, corners[2])];
+            let triangle = [wide.splat3(corners[0]), wide.splat3(corners[1]), wide.splat3(corners[2])];
             let mut number = 0;
             for group in 0..self.groups {
                 let active = (rays >> (group * WIDE)) as u32 & 0xffff;
@@ -50,23 +48,18 @@ impl Packet<'_> {
                 let e = &mut self.sixteens[group];
                 let origin = [wide.load(&e.origin[x]), wide.load(&e.origin[y]), wide.load(&e.origin[z])];
                 let shear = [wide.load(&e.shear[0]), wide.load(&e.shear[1])];
-                let a = wide_flat(wide, a, origin, shear);
-                let b = wide_flat(wide, b, origin, shear);
-                let c = wide_flat(wide, c, origin, shear);
-                let (u, v, w) = (wide_edge(wide, b, c), wide_edge(wide, c, a), wide_edge(wide, a, b));
-                let (least, greatest) = (wide.min(u, wide.min(v, w)), wide.max(u, wide.max(v, w)));
-                let missed = wide.lt(least, zero) & wide.lt(zero, greatest);
+                let flat = Flat::new(wide, triangle, origin, shear);
+                let missed = flat.missed(wide);
                 if !missed & active == 0 {
                     continue;
                 }
-                let lowest = wide.min(a[2], wide.min(b[2], c[2]));
-                let highest = wide.max(a[2], wide.max(b[2], c[2]));
+                let [lowest, highest] = flat.heights(wide);
                 let beside = wide.lt(wide.load(&e.heights[1]), lowest) | wide.lt(highest, wide.load(&e.heights[0]));
                 let candidates = !(missed | beside) & active;
                 if candidates == 0 {
                     continue;
                 }
-                let mut crossed = candidates & (wide.lt(zero, least) | wide.lt(greatest, zero));
+                let mut crossed = candidates & flat.crossed(wide);
                 let mut met = 0;
                 if ANY {
                     // Where any hit will do, it need not be known where it is.
@@ -87,10 +80,9 @@ impl Packet<'_> {
                     let triangle = self.bvh.order[first + lane];
                     self.meetings.push(Meeting { corners, triangle });
                 }
-                let (meetings, triangle) = (&self.meetings, self.meetings[number as usize].triangle);
-                met |= e.meet(lanes, &self.axes, turned, crossed, number, |other| {
-                    triangle < meetings[other as usize].triangle
-                });
+                let (meetings, own) = (&self.meetings, self.meetings[number as usize].triangle);
+                met |=
+                    e.meet(lanes, &self.axes, turned, crossed, number, |other| own < meetings[other as usize].triangle);
                 all_met |= u64::from(met) << (group * WIDE);
                 if ANY {
                     set_met(&mut e.met, met, number);
@@ -109,29 +101,23 @@ impl Packet<'_> {
         let (first, count) = node::items(leaf);
         let rows = &self.bvh.corners[9 * first..9 * (first + count) + WIDTH];
         let axes @ [x, y, z] = self.axes.turned;
-        let [a, b, c] = lanes.rows(rows, count, axes);
-        let zero = lanes.splat(0.0);
+        let triangles = lanes.rows(rows, count, axes);
         let mut all_met = 0;
         while rays != 0 {
             let ray = rays.trailing_zeros() as usize;
             rays &= rays - 1;
             let (e, i) = (&mut self.sixteens[ray / WIDE], ray % WIDE);
-            let origin = splat3(lanes, [e.origin[x][i], e.origin[y][i], e.origin[z][i]]);
+            let origin = lanes.splat3([e.origin[x][i], e.origin[y][i], e.origin[z][i]]);
             let shear = [lanes.splat(e.shear[0][i]), lanes.splat(e.shear[1][i])];
-            let (a, b, c) =
-                (flat(lanes, a, origin, shear), flat(lanes, b, origin, shear), flat(lanes, c, origin, shear));
-            let (u, v, w) = (edge(lanes, b, c), edge(lanes, c, a), edge(lanes, a, b));
-            let (least, greatest) = (lanes.min(u, lanes.min(v, w)), lanes.max(u, lanes.max(v, w)));
-            let missed = lanes.lt(least, zero) & lanes.lt(zero, greatest);
-            let lowest = lanes.min(a[2], lanes.min(b[2], c[2]));
-            let highest = lanes.max(a[2], lanes.max(b[2], c[2]));
+            let flat = Flat::new(lanes, triangles, origin, shear);
+            let [lowest, highest] = flat.heights(lanes);
             let beside =
                 lanes.lt(lanes.splat(e.heights[1][i]), lowest) | lanes.lt(highest, lanes.splat(e.heights[0][i]));
-            let mut candidates = !(missed | beside) & ((1 << count) - 1);
+            let mut candidates = !(flat.missed(lanes) | beside) & ((1 << count) - 1);
             if candidates == 0 {
                 continue;
             }
-            let crossed = lanes.lt(zero, least) | lanes.lt(greatest, zero);
+            let crossed = flat.crossed(lanes);
             if ANY {
                 let inside =
                     lanes.lt(lanes.splat(e.heights[2][i]), lowest) & lanes.lt(highest, lanes.splat(e.heights[3][i]));
@@ -169,26 +155,4 @@ fn set_met(numbers: &mut [f32; WIDE], met: u32, number: u32) {
     for (i, of_ray) in numbers.iter_mut().enumerate() {
         *of_ray = if met >> i & 1 == 1 { f32::from_bits(number) } else { *of_ray };
     }
-}
-
-#[inline(always)]
-fn wide3<W: Wide>(wide: W, v: [f32; 3]) -> [W::Floats; 3] {
-    [wide.splat(v[0]), wide.splat(v[1]), wide.splat(v[2])]
-}
-
-/// As [`flat`].
-#[inline(always)]
-fn wide_flat<W: Wide>(wide: W, p: [W::Floats; 3], origin: [W::Floats; 3], shear: [W::Floats; 2]) -> [W::Floats; 3] {
-    let z = wide.sub(p[2], origin[2]);
-    [
-        wide.sub(wide.sub(p[0], origin[0]), wide.mul(shear[0], z)),
-        wide.sub(wide.sub(p[1], origin[1]), wide.mul(shear[1], z)),
-        z,
-    ]
-}
-
-/// As [`edge`].
-#[inline(always)]
-fn wide_edge<W: Wide>(wide: W, p: [W::Floats; 3], q: [W::Floats; 3]) -> W::Floats {
-    wide.sub(wide.mul(q[0], p[1]), wide.mul(q[1], p[0]))
 }

@@ -24,8 +24,9 @@ mod rays;
 mod walk;
 
 use super::{TriangleBvh, TriangleHit};
-use crate::bvh::lanes::{Kernel, Lanes, WIDE, WIDTH, Wide};
+use crate::bvh::lanes::{Kernel, Lanes, Numbers, WIDE, WIDTH, Wide};
 use crate::math::{Ray, Vec2};
+use crate::shape::watertight::turned_axes;
 use rays::Rays;
 use walk::Entry;
 
@@ -70,12 +71,8 @@ impl Axes {
 
     fn of_key(key: usize) -> Self {
         let negative = [key & 1, key >> 1 & 1, key >> 2 & 1];
-        let z = key >> 3;
-        let (mut x, mut y) = ((z + 1) % 3, (z + 2) % 3);
-        if negative[z] == 1 {
-            std::mem::swap(&mut x, &mut y);
-        }
-        Axes { turned: [x, y, z], negative, positive: 7 ^ (key as u32 & 7) }
+        let longest = key >> 3;
+        Axes { turned: turned_axes(longest, negative[longest]), negative, positive: 7 ^ (key as u32 & 7) }
     }
 
     /// Whether directions are negative along their longest axis.

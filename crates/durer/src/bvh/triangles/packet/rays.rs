@@ -1,40 +1,40 @@
 //! Rays side by side.
 
 use super::Axes;
-use crate::bvh::lanes::{Lanes, WIDE, WIDTH, Wide};
+use crate::bvh::lanes::{Lanes, Numbers, WIDE, WIDTH, Wide};
 use crate::bvh::traverse::TAME;
 use crate::math::{Ray, Vec2, Vec3};
 use crate::shape::watertight::{Plane, uv_across};
 
 /// A number for each of sixteen rays.
-pub type Numbers = [f32; WIDE];
+pub type PerRay = [f32; WIDE];
 
-const ZERO: Numbers = [0.0; WIDE];
+const ZERO: PerRay = [0.0; WIDE];
 
 /// Sixteen rays of one octant and one longest axis, prepared for boxes as in [`RayBox`](crate::bvh::traverse::RayBox), and for
 /// triangles as in [`Sheared`](crate::shape::watertight::Sheared).
 #[derive(Clone, Copy)]
 #[repr(align(64))]
 pub struct Rays {
-    pub origin: [Numbers; 3],
-    pub dir: [Numbers; 3],
-    pub inverse: [Numbers; 3],
+    pub origin: [PerRay; 3],
+    pub dir: [PerRay; 3],
+    pub inverse: [PerRay; 3],
     /// Origins, moved outwards by the padding of boxes.
-    pub near_from: [Numbers; 3],
-    pub far_from: [Numbers; 3],
+    pub near_from: [PerRay; 3],
+    pub far_from: [PerRay; 3],
     /// The same, times the inverse of the direction, and negated.
-    pub near_origin: [Numbers; 3],
-    pub far_origin: [Numbers; 3],
-    pub shear: [Numbers; 2],
-    pub t_min: Numbers,
-    pub t_max: Numbers,
+    pub near_origin: [PerRay; 3],
+    pub far_origin: [PerRay; 3],
+    pub shear: [PerRay; 2],
+    pub t_min: PerRay,
+    pub t_max: PerRay,
     /// The same; after a hit, its t.
-    pub t_last: Numbers,
+    pub t_last: PerRay,
     /// Heights lower than the first or above the second are outside the interval for sure; those above the third and below the
     /// fourth are inside.
-    pub heights: [Numbers; 4],
-    /// Numbers of what was met, as bits.
-    pub met: Numbers,
+    pub heights: [PerRay; 4],
+    /// PerRay of what was met, as bits.
+    pub met: PerRay,
 }
 
 impl Rays {
@@ -218,12 +218,12 @@ impl Rays {
 
     /// Barycentric coordinates in a triangle for each ray, by coordinate of corners.
     #[inline(always)]
-    pub fn uv(&self, axes: &Axes, corners: &[[Numbers; 3]; 3]) -> [Numbers; 2] {
+    pub fn uv(&self, axes: &Axes, corners: &[[PerRay; 3]; 3]) -> [PerRay; 2] {
         let [x, y, z] = axes.turned;
         let (x, y, z) = (&self.origin[x], &self.origin[y], &self.origin[z]);
         let mut uv = [ZERO; 2];
         for i in 0..WIDE {
-            let flat = |c: &[Numbers; 3]| {
+            let flat = |c: &[PerRay; 3]| {
                 let height = c[2][i] - z[i];
                 Vec2::new(c[0][i] - x[i] - self.shear[0][i] * height, c[1][i] - y[i] - self.shear[1][i] * height)
             };
@@ -235,14 +235,14 @@ impl Rays {
 
     /// One of the rays.
     pub fn ray(&self, lane: usize) -> Ray {
-        let at = |v: &[Numbers; 3]| Vec3::new(v[0][lane], v[1][lane], v[2][lane]);
+        let at = |v: &[PerRay; 3]| Vec3::new(v[0][lane], v[1][lane], v[2][lane]);
         Ray { origin: at(&self.origin), dir: at(&self.dir), t_min: self.t_min[lane], t_max: self.t_max[lane] }
     }
 }
 
 /// Eight of the numbers.
 #[inline(always)]
-fn half(numbers: &Numbers, first: usize) -> &[f32; WIDTH] {
+fn half(numbers: &PerRay, first: usize) -> &[f32; WIDTH] {
     match numbers[first..].first_chunk() {
         Some(half) => half,
         None => unreachable!("sixteen are twice eight"),

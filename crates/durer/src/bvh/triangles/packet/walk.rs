@@ -1,7 +1,7 @@
 //! The way of a packet through the tree.
 
 use super::Packet;
-use crate::bvh::lanes::{Lanes, WIDE, Wide};
+use crate::bvh::lanes::{Lanes, Numbers, WIDE, Wide};
 use crate::bvh::node::{LEAF, Node};
 use crate::bvh::triangles::stream::prefetch;
 
