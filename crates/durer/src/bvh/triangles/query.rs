@@ -6,7 +6,7 @@ use crate::bvh::Tally;
 use crate::bvh::lanes::{Kernel, Lanes, WIDTH, column};
 use crate::bvh::node;
 use crate::bvh::traverse::{RayBox, TAME, Visitor, walk};
-use crate::math::{Ray, Vec3};
+use crate::math::{Ray, Vec2, Vec3};
 use crate::shape::watertight::Sheared;
 use std::marker::PhantomData;
 
@@ -25,14 +25,6 @@ pub struct Place {
     lane: usize,
 }
 
-/// A triangle met at `t`.
-#[derive(Clone, Copy)]
-pub struct Met {
-    t: f32,
-    triangle: u32,
-    place: Place,
-}
-
 /// A ray among triangles.
 pub struct Asked<'a> {
     bvh: &'a TriangleBvh,
@@ -49,19 +41,19 @@ pub trait Found: Default {
     /// search.
     fn met<L: Lanes>(&mut self, lanes: L, asked: &Asked, leaf: u32, met: u32, span: &Span<L>, t_max: f32) -> f32;
 
-    /// Takes note of a triangle; gives the new `t_max`.
-    fn met_at(&mut self, asked: &Asked, met: Met, t_max: f32) -> f32;
+    /// Takes note of a hit; gives the new `t_max`.
+    fn met_at(&mut self, hit: TriangleHit, t_max: f32) -> f32;
 
     /// When the search has ended.
     fn answer(&mut self, asked: &Asked, t_max: f32) -> Self::Answer;
 }
 
-/// Triangles of a leaf of which one may be the first, none before `near`.
+/// Triangles of a leaf of which one may be the first, each not before its `near`.
 #[derive(Clone, Copy)]
 struct Pending {
     leaf: u32,
     lanes: u32,
-    near: f32,
+    near: [f32; WIDTH],
 }
 
 /// As many leaves may be pending.
@@ -72,7 +64,7 @@ pub struct Nearest {
     pending: [Pending; PENDING],
     count: usize,
     /// The nearest of those of which it is known; one of the number [`NONE`] before there is any.
-    best: Met,
+    best: TriangleHit,
 }
 
 const NONE: u32 = u32::MAX;
@@ -81,9 +73,9 @@ impl Default for Nearest {
     #[inline(always)]
     fn default() -> Self {
         Nearest {
-            pending: [Pending { leaf: 0, lanes: 0, near: 0.0 }; PENDING],
+            pending: [Pending { leaf: 0, lanes: 0, near: [0.0; WIDTH] }; PENDING],
             count: 0,
-            best: Met { t: f32::INFINITY, triangle: NONE, place: Place { leaf: 0, lane: 0 } },
+            best: TriangleHit { t: f32::INFINITY, uv: Vec2::ZERO, triangle: NONE },
         }
     }
 }
@@ -99,12 +91,14 @@ impl Nearest {
     #[inline(always)]
     fn settle(&mut self, asked: &Asked, mut t_max: f32) -> f32 {
         for i in 0..self.count {
-            let Pending { leaf, mut lanes, near } = self.pending[i];
-            while lanes != 0 && near <= t_max {
-                let place = Place { leaf, lane: lanes.trailing_zeros() as usize };
+            let Pending { leaf, mut lanes, .. } = self.pending[i];
+            while lanes != 0 {
+                let lane = lanes.trailing_zeros() as usize & (WIDTH - 1);
                 lanes &= lanes - 1;
-                if let Some(met) = asked.meets(place, t_max) {
-                    t_max = self.met_at(asked, met, t_max);
+                if self.pending[i].near[lane] <= t_max
+                    && let Some(hit) = asked.meets(Place { leaf, lane }, t_max)
+                {
+                    t_max = self.met_at(hit, t_max);
                 }
             }
         }
@@ -124,23 +118,23 @@ impl Found for Nearest {
         t_max = lesser(lanes.least(span.far, met), t_max);
         // A single one need not wait for bounds.
         let left = if met.is_power_of_two() { met } else { met & lanes.le(span.near, lanes.splat(t_max)) };
-        self.pending[self.count] = Pending { leaf, lanes: left, near: lanes.least(span.near, met) };
+        self.pending[self.count] = Pending { leaf, lanes: left, near: lanes.store(span.near) };
         self.count += 1;
         t_max
     }
 
     #[inline(always)]
-    fn met_at(&mut self, _: &Asked, met: Met, t_max: f32) -> f32 {
-        if (met.t, met.triangle) < (self.best.t, self.best.triangle) {
-            self.best = met;
+    fn met_at(&mut self, hit: TriangleHit, t_max: f32) -> f32 {
+        if (hit.t, hit.triangle) < (self.best.t, self.best.triangle) {
+            self.best = hit;
         }
-        lesser(met.t, t_max)
+        lesser(hit.t, t_max)
     }
 
     #[inline(always)]
     fn answer(&mut self, asked: &Asked, t_max: f32) -> Option<TriangleHit> {
         self.settle(asked, t_max);
-        (self.best.triangle != NONE).then(|| asked.hit(self.best))
+        (self.best.triangle != NONE).then_some(self.best)
     }
 }
 
@@ -158,7 +152,7 @@ impl Found for Any {
     }
 
     #[inline(always)]
-    fn met_at(&mut self, _: &Asked, _: Met, _: f32) -> f32 {
+    fn met_at(&mut self, _: TriangleHit, _: f32) -> f32 {
         self.0 = true;
         f32::NEG_INFINITY
     }
@@ -178,15 +172,15 @@ impl Found for All {
 
     fn met<L: Lanes>(&mut self, _: L, asked: &Asked, leaf: u32, met: u32, _: &Span<L>, t_max: f32) -> f32 {
         for lane in (0..WIDTH).filter(|lane| met >> lane & 1 == 1) {
-            if let Some(met) = asked.meets(Place { leaf, lane }, t_max) {
-                self.met_at(asked, met, t_max);
+            if let Some(hit) = asked.meets(Place { leaf, lane }, t_max) {
+                self.met_at(hit, t_max);
             }
         }
         t_max
     }
 
-    fn met_at(&mut self, asked: &Asked, met: Met, t_max: f32) -> f32 {
-        self.0.push(asked.hit(met));
+    fn met_at(&mut self, hit: TriangleHit, t_max: f32) -> f32 {
+        self.0.push(hit);
         t_max
     }
 
@@ -212,16 +206,15 @@ impl Asked<'_> {
 
     /// Where a triangle is met that the line of the ray crosses.
     #[inline(always)]
-    fn meets(&self, place: Place, t_max: f32) -> Option<Met> {
-        let t = self.sheared.t(self.corners(place))?;
+    fn meets(&self, place: Place, t_max: f32) -> Option<TriangleHit> {
+        let corners = self.corners(place);
+        let t = self.sheared.t(corners)?;
         // Refuses also NaN.
-        let met = t > self.t_min && t < self.t_max && t <= t_max;
-        met.then(|| Met { t, triangle: self.bvh.order[node::items(place.leaf).0 + place.lane], place })
-    }
-
-    #[inline(always)]
-    fn hit(&self, Met { t, triangle, place }: Met) -> TriangleHit {
-        TriangleHit { t, uv: self.sheared.uv(self.corners(place)), triangle }
+        if !(t > self.t_min && t < self.t_max && t <= t_max) {
+            return None;
+        }
+        let triangle = self.bvh.order[node::items(place.leaf).0 + place.lane];
+        Some(TriangleHit { t, uv: self.sheared.uv(corners), triangle })
     }
 }
 
@@ -330,9 +323,9 @@ impl<T: Tally, F: Found> Leaves<'_, T, F> {
         for lane in (0..WIDTH).filter(|lane| which >> lane & 1 == 1) {
             let place = Place { leaf, lane };
             if self.asked.sheared.crosses(self.asked.corners(place))
-                && let Some(met) = self.asked.meets(place, t_max)
+                && let Some(hit) = self.asked.meets(place, t_max)
             {
-                t_max = self.found.met_at(&self.asked, met, t_max);
+                t_max = self.found.met_at(hit, t_max);
             }
         }
         t_max
