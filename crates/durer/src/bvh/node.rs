@@ -13,7 +13,7 @@ pub(super) struct Node {
     pub planes: [[[f32; WIDTH]; 2]; 3],
     /// An inner child's node number; or [`LEAF`], the count less one shifted by [`COUNT_SHIFT`], and the first item.
     pub children: [u32; WIDTH],
-    /// The axis along which children rise, as a bit.
+    /// The axis along which children rise.
     pub axis: u32,
 }
 
@@ -27,7 +27,7 @@ pub(super) const LEAF_SIZE: usize = 8;
 
 impl Node {
     pub const EMPTY: Node =
-        Node { planes: [[[f32::INFINITY; WIDTH], [f32::NEG_INFINITY; WIDTH]]; 3], children: [LEAF; WIDTH], axis: 1 };
+        Node { planes: [[[f32::INFINITY; WIDTH], [f32::NEG_INFINITY; WIDTH]]; 3], children: [LEAF; WIDTH], axis: 0 };
 
     pub fn set(&mut self, place: usize, bounds: Aabb, child: u32) {
         for axis in 0..3 {

@@ -8,11 +8,10 @@
 //! 4(4), 2015.
 
 use super::Tally;
-use super::lanes::{Lanes, Room, Stack};
+use super::lanes::{Lanes, Room, Side, Stack, WIDTH};
 use super::node::{LEAF, Node};
 use crate::math::{Ray, Vec3};
 use glam::Vec3A;
-use std::hint::select_unpredictable;
 
 /// A ray prepared for boxes: conservative, so that rounding never loses a box that the exact ray meets.
 ///
@@ -184,23 +183,40 @@ pub(super) fn push_others<L: Lanes>(
     enter: L::Floats,
     positive: u32,
 ) -> u32 {
-    // Along a rising axis the first lane is nearest. Ranks are lanes from far to near.
-    let rising = positive & node.axis != 0;
-    let nearest = select_unpredictable(rising, met.trailing_zeros(), 31 - (met | 1).leading_zeros());
-    let flip = select_unpredictable(rising, 7, 0);
-    let ranks = select_unpredictable(rising, REVERSED[met as usize & 255].into(), met);
-    let others = ranks & !(1 << ((nearest ^ flip) & 7));
-    lanes.push(stack, &node.children, enter, lanes.flipped(flip), others);
-    node.children[nearest as usize & 7]
+    // Along a rising axis the first lane is nearest.
+    let set = met as usize & 255 | (positive as usize >> (node.axis & 31) & 1) << 8;
+    let others = (met & met.wrapping_sub(1)).count_ones();
+    lanes.push(stack, &node.children, enter, &FAR_TO_NEAR[set], others);
+    node.children[NEAREST[set] as usize & 7]
 }
 
-/// Eight bits in reverse.
-static REVERSED: [u8; 256] = {
-    let mut table = [0; 256];
-    let mut bits = 0;
-    while bits < 256 {
-        table[bits] = (bits as u8).reverse_bits();
-        bits += 1;
+/// For each set of lanes, when they fall and when they rise: the lanes from far to near.
+static FAR_TO_NEAR: [[u8; WIDTH]; 512] = {
+    let mut table = [[0; WIDTH]; 512];
+    let mut set = 0;
+    while set < 512 {
+        let (mut rank, mut at) = (0, 0);
+        while rank < WIDTH {
+            let lane = if set >= 256 { WIDTH - 1 - rank } else { rank };
+            if set >> lane & 1 == 1 {
+                table[set][at] = lane as u8;
+                at += 1;
+            }
+            rank += 1;
+        }
+        set += 1;
+    }
+    table
+};
+
+/// The same: the nearest lane.
+static NEAREST: [u8; 512] = {
+    let mut table = [0; 512];
+    let mut set = 1;
+    while set < 512 {
+        let lanes = set as u32 & 255 | 1 << 8;
+        table[set] = if set >= 256 { lanes.trailing_zeros() as u8 & 7 } else { ((set as u32 | 1).ilog2()) as u8 };
+        set += 1;
     }
     table
 };
@@ -211,20 +227,20 @@ pub(super) struct Slabs<L: Lanes> {
     near_origin: [L::Floats; 3],
     far_origin: [L::Floats; 3],
     t_min: L::Floats,
-    /// By axis: 1 where the direction is negative, else 0.
-    negative: [usize; 3],
+    /// By axis: the sides where the ray enters.
+    near: [Side; 3],
 }
 
 impl<L: Lanes> Slabs<L> {
     #[inline(always)]
     pub fn new(lanes: L, boxes: &RayBox) -> Self {
-        let negative = |axis: u32| (!boxes.positive >> axis & 1) as usize;
+        let near = |axis: u32| Side::new(boxes.positive >> axis & 1 == 0);
         Slabs {
             inverse: lanes.splat3(boxes.planes.inverse),
             near_origin: lanes.splat3(boxes.planes.near_origin),
             far_origin: lanes.splat3(boxes.planes.far_origin),
             t_min: lanes.splat(boxes.t_min),
-            negative: [negative(0), negative(1), negative(2)],
+            near: [near(0), near(1), near(2)],
         }
     }
 }
@@ -237,10 +253,10 @@ pub(super) fn meet<L: Lanes, const TAME: bool>(
     slabs: &Slabs<L>,
     limit: L::Floats,
 ) -> (u32, L::Floats) {
-    let Slabs { inverse, near_origin, far_origin, t_min, negative: [x, y, z] } = slabs;
+    let Slabs { inverse, near_origin, far_origin, t_min, near: [x, y, z] } = slabs;
     macro_rules! slab {
         ($axis:literal, $side:expr, $origin:ident) => {{
-            let plane = lanes.load(&node.planes[$axis][$side & 1]);
+            let plane = lanes.load($side.of(&node.planes[$axis]));
             match TAME {
                 true => lanes.mul_add(plane, inverse[$axis], $origin[$axis]),
                 false => lanes.mul(lanes.sub(plane, $origin[$axis]), inverse[$axis]),
@@ -250,9 +266,9 @@ pub(super) fn meet<L: Lanes, const TAME: bool>(
     // Zero times infinity is no number, where a ray runs in a side of a box: such a side is left out, being the
     // first argument here, or the second there where the first is no number.
     let enter_y = lanes.max(slab!(0, x, near_origin), slab!(1, y, near_origin));
-    let leave_y = lanes.min(slab!(0, !x, far_origin), slab!(1, !y, far_origin));
+    let leave_y = lanes.min(slab!(0, x.other(), far_origin), slab!(1, y.other(), far_origin));
     let enter = lanes.max(enter_y, lanes.max(slab!(2, z, near_origin), *t_min));
-    let leave = lanes.min(leave_y, lanes.min(slab!(2, !z, far_origin), limit));
+    let leave = lanes.min(leave_y, lanes.min(slab!(2, z.other(), far_origin), limit));
     (lanes.le(enter, leave), enter)
 }
 

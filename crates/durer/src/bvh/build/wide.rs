@@ -183,7 +183,7 @@ impl Emitter<'_> {
         let mut bounds = [Aabb::EMPTY; WIDTH];
         bounds.iter_mut().zip(list).for_each(|(bounds, &i)| *bounds = self.tree.nodes[i].bounds());
         let (axis, places) = places(&bounds[..list.len()]);
-        part.nodes[number].axis = 1 << axis;
+        part.nodes[number].axis = axis as u32;
         let first = part.nodes.len();
         let mut inner = Children::default();
         for (k, &i) in list.iter().enumerate() {

@@ -1,7 +1,7 @@
 //! AVX2 with FMA.
 
 use super::wide::Two;
-use super::{COMPRESS, Kernel, Lanes, Numbers, Stack, WIDTH};
+use super::{Kernel, Lanes, Numbers, Stack, WIDTH};
 use std::arch::x86_64::*;
 
 /// Proof that the processor has AVX2, FMA, BMI 1 and 2, LZCNT, and POPCNT.
@@ -91,6 +91,17 @@ macro_rules! memory_of_eight {
             $crate::bvh::lanes::avx2::transpose(rows)
         }
         #[inline(always)]
+        fn push(self, stack: &mut Stack, children: &[u32; WIDTH], near: __m256, order: &[u8; WIDTH], count: u32) {
+            let (to, to_near) = stack.top();
+            proven! {
+                let order = _mm256_cvtepu8_epi32(_mm_loadl_epi64(order.as_ptr().cast()));
+                let children = _mm256_loadu_si256(children.as_ptr().cast());
+                _mm256_storeu_si256(to.cast(), _mm256_permutevar8x32_epi32(children, order));
+                _mm256_storeu_ps(to_near, _mm256_permutevar8x32_ps(near, order));
+                stack.grow(count);
+            }
+        }
+        #[inline(always)]
         fn prefetch<T>(self, at: *const T) {
             // SAFETY: the instruction takes any address.
             unsafe { _mm_prefetch::<_MM_HINT_T0>(at.cast()) };
@@ -173,7 +184,6 @@ impl Numbers for Avx2 {
 }
 
 impl Lanes for Avx2 {
-    type Order = __m256i;
     type Wide = Two<Self>;
 
     memory_of_eight!();
@@ -194,42 +204,5 @@ impl Lanes for Avx2 {
     #[inline(always)]
     fn select(self, mask: u32, a: __m256, b: __m256) -> __m256 {
         proven!(_mm256_blendv_ps(b, a, _mm256_castsi256_ps(lanes_of(mask))))
-    }
-    #[inline(always)]
-    fn flipped(self, flip: u32) -> __m256i {
-        proven!(_mm256_set1_epi32((flip & 7) as i32))
-    }
-    #[inline(always)]
-    fn push(self, stack: &mut Stack, children: &[u32; WIDTH], near: __m256, order: __m256i, mask: u32) {
-        let (to, to_near) = stack.top();
-        proven! {
-            // The wanted lanes in order, as numbers of lanes out of it.
-            let front = _mm256_xor_si256(_mm256_loadu_si256(COMPRESS[mask as usize & 255].as_ptr().cast()), order);
-            let children = _mm256_loadu_si256(children.as_ptr().cast());
-            _mm256_storeu_si256(to.cast(), _mm256_permutevar8x32_epi32(children, front));
-            _mm256_storeu_ps(to_near, _mm256_permutevar8x32_ps(near, front));
-            stack.grow(mask.count_ones());
-        }
-    }
-    #[inline(always)]
-    fn drop_beyond(self, stack: &mut Stack, t_max: f32) {
-        let (children, near, height) = stack.all();
-        let (mut from, mut to) = (0, 0);
-        // What is kept never passes what is still to be read.
-        proven! {
-            let limit = _mm256_set1_ps(t_max);
-            while from < height {
-                let valid = (1u32 << (height - from).min(WIDTH)) - 1;
-                let entries = _mm256_loadu_si256(children.add(from).cast());
-                let distances = _mm256_loadu_ps(near.add(from));
-                let mask = _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(distances, limit)) as u32 & valid;
-                let front = _mm256_loadu_si256(COMPRESS[mask as usize & 255].as_ptr().cast());
-                _mm256_storeu_si256(children.add(to).cast(), _mm256_permutevar8x32_epi32(entries, front));
-                _mm256_storeu_ps(near.add(to), _mm256_permutevar8x32_ps(distances, front));
-                to += mask.count_ones() as usize;
-                from += WIDTH;
-            }
-            stack.set_height(to);
-        }
     }
 }

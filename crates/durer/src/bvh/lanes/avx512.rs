@@ -38,7 +38,6 @@ impl Numbers for Avx512 {
 }
 
 impl Lanes for Avx512 {
-    type Order = __m256i;
     type Wide = Sixteen;
 
     memory_of_eight!();
@@ -55,41 +54,6 @@ impl Lanes for Avx512 {
     #[inline(always)]
     fn select(self, mask: u32, a: __m256, b: __m256) -> __m256 {
         proven!(_mm256_mask_mov_ps(b, mask as u8, a))
-    }
-    #[inline(always)]
-    fn flipped(self, flip: u32) -> __m256i {
-        proven!(_mm256_xor_si256(_mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7), _mm256_set1_epi32((flip & 7) as i32)))
-    }
-    #[inline(always)]
-    fn push(self, stack: &mut Stack, children: &[u32; WIDTH], near: __m256, order: __m256i, mask: u32) {
-        let (to, to_near) = stack.top();
-        proven! {
-            let children = _mm256_permutevar8x32_epi32(_mm256_loadu_si256(children.as_ptr().cast()), order);
-            let near = _mm256_permutevar8x32_ps(near, order);
-            _mm256_storeu_si256(to.cast(), _mm256_maskz_compress_epi32(mask as u8, children));
-            _mm256_storeu_ps(to_near, _mm256_maskz_compress_ps(mask as u8, near));
-            stack.grow(mask.count_ones());
-        }
-    }
-    #[inline(always)]
-    fn drop_beyond(self, stack: &mut Stack, t_max: f32) {
-        let (children, near, height) = stack.all();
-        let (mut from, mut to) = (0, 0);
-        // What is kept never passes what is still to be read.
-        proven! {
-            let limit = _mm256_set1_ps(t_max);
-            while from < height {
-                let valid = (1u32 << (height - from).min(WIDTH)) - 1;
-                let entries = _mm256_loadu_si256(children.add(from).cast());
-                let distances = _mm256_loadu_ps(near.add(from));
-                let mask = _mm256_cmp_ps_mask::<_CMP_LE_OQ>(distances, limit) & valid as u8;
-                _mm256_storeu_si256(children.add(to).cast(), _mm256_maskz_compress_epi32(mask, entries));
-                _mm256_storeu_ps(near.add(to), _mm256_maskz_compress_ps(mask, distances));
-                to += mask.count_ones() as usize;
-                from += WIDTH;
-            }
-            stack.set_height(to);
-        }
     }
 }
 

@@ -56,8 +56,6 @@ pub(super) trait Numbers: Copy {
 
 /// What can be done with eight numbers.
 pub(super) trait Lanes: Numbers {
-    /// An order of the eight lanes.
-    type Order: Copy;
     /// The same for sixteen numbers.
     type Wide: Wide;
 
@@ -75,15 +73,35 @@ pub(super) trait Lanes: Numbers {
     fn select(self, mask: u32, a: Self::Floats, b: Self::Floats) -> Self::Floats;
     /// Lane k of vector i becomes lane i of vector k.
     fn transpose(self, rows: [Self::Floats; WIDTH]) -> [Self::Floats; WIDTH];
-    /// The order that puts lane i ^ `flip` at i.
-    fn flipped(self, flip: u32) -> Self::Order;
-    /// Pushes the children whose bits are set, each with its entry distance: those of the first lanes lowest. Bits count
-    /// lanes in the order, children and distances are brought into it.
-    fn push(self, stack: &mut Stack, children: &[u32; WIDTH], near: Self::Floats, order: Self::Order, mask: u32);
+    /// Pushes the first `count` children in an order of lanes, each with its entry distance.
+    fn push(self, stack: &mut Stack, children: &[u32; WIDTH], near: Self::Floats, order: &[u8; WIDTH], count: u32);
     /// Has the line of memory at an address, if there is one, brought near.
     fn prefetch<T>(self, at: *const T);
-    /// Removes what begins beyond `t_max`.
-    fn drop_beyond(self, stack: &mut Stack, t_max: f32);
+}
+
+/// One of two neighbouring rows.
+#[derive(Clone, Copy)]
+pub(super) struct Side {
+    /// How many bytes it lies behind the first.
+    offset: usize,
+}
+
+impl Side {
+    #[inline(always)]
+    pub fn new(second: bool) -> Self {
+        Side { offset: usize::from(second) * size_of::<[f32; WIDTH]>() }
+    }
+
+    #[inline(always)]
+    pub fn other(self) -> Self {
+        Side { offset: self.offset ^ size_of::<[f32; WIDTH]>() }
+    }
+
+    #[inline(always)]
+    pub fn of(self, rows: &[[f32; WIDTH]; 2]) -> &[f32; WIDTH] {
+        // SAFETY: both offsets are of rows.
+        unsafe { &*rows.as_ptr().byte_add(self.offset) }
+    }
 }
 
 /// What [`Lanes::rows`] gives in one lane.
@@ -103,25 +121,6 @@ pub(super) trait Kernel {
     /// Must be inlined, to be compiled for the level.
     fn run<L: Lanes>(self, lanes: L) -> Self::Output;
 }
-
-/// For each set of lanes: their numbers, moved to the front.
-#[cfg(target_arch = "x86_64")]
-static COMPRESS: [[u32; WIDTH]; 256] = {
-    let mut table = [[0; WIDTH]; 256];
-    let mut mask = 0;
-    while mask < 256 {
-        let (mut lane, mut at) = (0, 0);
-        while lane < WIDTH {
-            if mask >> lane & 1 == 1 {
-                table[mask][at] = lane as u32;
-                at += 1;
-            }
-            lane += 1;
-        }
-        mask += 1;
-    }
-    table
-};
 
 #[cfg(test)]
 mod tests;

@@ -80,7 +80,6 @@ impl Numbers for Neon {
 }
 
 impl Lanes for Neon {
-    type Order = u32;
     type Wide = Two<Self>;
 
     #[inline(always)]
@@ -133,22 +132,13 @@ impl Lanes for Neon {
         super::scalar::Scalar.transpose(rows).map(|row| self.load(&row))
     }
     #[inline(always)]
-    fn flipped(self, flip: u32) -> u32 {
-        flip & 7
-    }
-    #[inline(always)]
-    fn push(self, stack: &mut Stack, children: &[u32; WIDTH], near: Pair, flip: u32, mut mask: u32) {
-        let distances = self.store(near);
-        while mask != 0 {
-            let lane = mask.trailing_zeros();
-            mask &= mask - 1;
-            stack.push(children[(lane ^ flip) as usize % WIDTH], distances[(lane ^ flip) as usize % WIDTH]);
+    fn push(self, stack: &mut Stack, children: &[u32; WIDTH], near: Pair, order: &[u8; WIDTH], count: u32) {
+        let near = self.store(near);
+        for &lane in order.iter().take(count as usize) {
+            let lane = usize::from(lane) % WIDTH;
+            stack.push(children[lane], near[lane]);
         }
     }
     #[inline(always)]
     fn prefetch<T>(self, _: *const T) {}
-    #[inline(always)]
-    fn drop_beyond(self, stack: &mut Stack, t_max: f32) {
-        stack.retain(|near| near <= t_max);
-    }
 }

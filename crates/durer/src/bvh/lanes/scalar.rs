@@ -63,7 +63,6 @@ impl Numbers for Scalar {
 }
 
 impl Lanes for Scalar {
-    type Order = u32;
     type Wide = Two<Self>;
 
     #[inline(always)]
@@ -103,21 +102,12 @@ impl Lanes for Scalar {
         from_fn(|k| from_fn(|i| rows[i][k]))
     }
     #[inline(always)]
-    fn flipped(self, flip: u32) -> u32 {
-        flip
-    }
-    #[inline(always)]
-    fn push(self, stack: &mut Stack, children: &[u32; WIDTH], near: F, flip: u32, mut mask: u32) {
-        while mask != 0 {
-            let lane = mask.trailing_zeros();
-            mask &= mask - 1;
-            stack.push(children[(lane ^ flip) as usize % WIDTH], near[(lane ^ flip) as usize % WIDTH]);
+    fn push(self, stack: &mut Stack, children: &[u32; WIDTH], near: F, order: &[u8; WIDTH], count: u32) {
+        for &lane in order.iter().take(count as usize) {
+            let lane = usize::from(lane) % WIDTH;
+            stack.push(children[lane], near[lane]);
         }
     }
     #[inline(always)]
     fn prefetch<T>(self, _: *const T) {}
-    #[inline(always)]
-    fn drop_beyond(self, stack: &mut Stack, t_max: f32) {
-        stack.retain(|near| near <= t_max);
-    }
 }

@@ -52,6 +52,18 @@ impl<'a> Stack<'a> {
         Some(unsafe { (*children.add(height), *near.add(height)) })
     }
 
+    /// The topmost child that is entered at `far` or before; it and those above are removed. There must be one.
+    #[inline(always)]
+    pub fn pop_until(&mut self, far: f32) -> u32 {
+        loop {
+            match self.pop_near() {
+                Some((_, near)) if near > far => {}
+                Some((child, _)) => return child,
+                None => unreachable!("the lowest is entered in time"),
+            }
+        }
+    }
+
     /// The topmost child.
     #[inline(always)]
     pub fn peek(&mut self) -> Option<u32> {
@@ -76,7 +88,7 @@ impl<'a> Stack<'a> {
     /// Room for a whole vector on top, to be followed by [`Stack::grow`].
     #[inline(always)]
     pub(super) fn top(&mut self) -> (*mut u32, *mut f32) {
-        assert!(self.height + WIDTH <= ROOM);
+        assert!(self.height <= ROOM - WIDTH);
         let (children, near, height) = self.all();
         // SAFETY: there is room for a vector above the height.
         unsafe { (children.add(height), near.add(height)) }
@@ -90,31 +102,9 @@ impl<'a> Stack<'a> {
         self.height += count as usize;
     }
 
-    /// Keeps the entries whose distance passes; their order stays.
-    pub(super) fn retain(&mut self, keep: impl Fn(f32) -> bool) {
-        let (children, near, before) = self.all();
-        self.height = 0;
-        for i in 0..before {
-            // SAFETY: everything below the height was written.
-            let (child, near) = unsafe { (*children.add(i), *near.add(i)) };
-            if keep(near) {
-                self.push(child, near);
-            }
-        }
-    }
-
     /// The lowest child and distance, and the height. There is room for a vector above the height.
     #[inline(always)]
     pub(super) fn all(&mut self) -> (*mut u32, *mut f32, usize) {
         (self.room.children.as_mut_ptr().cast::<u32>(), self.room.near.as_mut_ptr().cast::<f32>(), self.height)
-    }
-
-    /// # Safety
-    ///
-    /// Everything below the height must have been written.
-    #[cfg(target_arch = "x86_64")]
-    #[inline(always)]
-    pub(super) unsafe fn set_height(&mut self, height: usize) {
-        self.height = height;
     }
 }

@@ -35,7 +35,8 @@ struct Input {
     rows: [f32; 10 * WIDTH],
     stride: usize,
     axes: [usize; 3],
-    flip: u32,
+    order: [u8; WIDTH],
+    count: u32,
     mask: u32,
 }
 
@@ -45,8 +46,9 @@ impl Input {
         let floats = [eight(), eight(), eight()];
         let rows = std::array::from_fn(|_| number(random));
         let axes = [[0, 1, 2], [1, 2, 0], [2, 0, 1], [1, 0, 2], [2, 1, 0], [0, 2, 1]][random.below(6)];
-        let (flip, mask) = (random.below(8) as u32, random.below(256) as u32);
-        Input { floats, rows, stride: 1 + random.below(WIDTH), axes, flip, mask }
+        let order = std::array::from_fn(|_| random.below(WIDTH) as u8);
+        let (count, mask) = (random.below(WIDTH + 1) as u32, random.below(256) as u32);
+        Input { floats, rows, stride: 1 + random.below(WIDTH), axes, order, count, mask }
     }
 }
 
@@ -62,7 +64,7 @@ impl Kernel for Everything<'_> {
 
     #[inline(always)]
     fn run<L: Lanes>(self, lanes: L) -> Vec<u32> {
-        let Input { floats, rows, stride, axes, flip, mask } = self.0;
+        let Input { floats, rows, stride, axes, order, count, mask } = self.0;
         let [a, b, c] = [lanes.load(&floats[0]), lanes.load(&floats[1]), lanes.load(&floats[2])];
         let mut found = Vec::with_capacity(WIDTH * OPERATIONS + 16);
         let number = |x: f32| if x.is_nan() { f32::NAN.to_bits() } else { x.to_bits() };
@@ -70,7 +72,7 @@ impl Kernel for Everything<'_> {
         let mut tell = |v: L::Floats, count: usize| {
             let mut room = Room::new();
             let mut stack = Stack::new(&mut room);
-            lanes.push(&mut stack, &[7; WIDTH], v, lanes.flipped(0), (1 << count) - 1);
+            lanes.push(&mut stack, &[7; WIDTH], v, &[0, 1, 2, 3, 4, 5, 6, 7], count as u32);
             let (_, near, height) = stack.all();
             // SAFETY: everything below the height was written.
             (0..height).for_each(|i| found.push(number(unsafe { *near.add(i) })));
@@ -96,10 +98,9 @@ impl Kernel for Everything<'_> {
         let mut room = Room::new();
         let mut stack = Stack::new(&mut room);
         let children = [10, 11, 12, 13, 14, 15, 16, 17];
-        lanes.push(&mut stack, &children, a, lanes.flipped(*flip), *mask);
-        lanes.push(&mut stack, &children, b, lanes.flipped(*flip), !mask & 255);
-        lanes.drop_beyond(&mut stack, floats[2][0]);
-        found.extend(std::iter::from_fn(|| stack.pop_near().map(|(child, _)| child)));
+        lanes.push(&mut stack, &children, a, order, *count);
+        lanes.push(&mut stack, &children, b, order, WIDTH as u32 - count);
+        found.extend(std::iter::from_fn(|| stack.pop_near()).flat_map(|(child, near)| [child, number(near)]));
         found
     }
 }

@@ -160,10 +160,7 @@ impl<'a, F: Found, A: FnMut(usize, F::Answer)> Kernel for Stream<'a, F, A> {
                 if !over {
                     let t = flyer.leaves.leaf(lanes, flyer.child, flyer.t_max);
                     over = t == f32::NEG_INFINITY;
-                    if t < flyer.t_max {
-                        flyer.t_max = t;
-                        lanes.drop_beyond(stack, t);
-                    }
+                    flyer.t_max = t;
                 }
                 if over {
                     (self.answer)(flyer.number, flyer.leaves.answer(flyer.t_max));
@@ -172,7 +169,7 @@ impl<'a, F: Found, A: FnMut(usize, F::Answer)> Kernel for Stream<'a, F, A> {
                         continue;
                     }
                 } else {
-                    flyer.child = stack.pop_if(true);
+                    flyer.child = stack.pop_until(flyer.t_max);
                     prefetch(lanes, bvh, flyer.child);
                 }
                 inner.add(number, flyer.child & LEAF == 0);
