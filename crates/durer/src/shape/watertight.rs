@@ -100,11 +100,18 @@ impl Sheared {
     /// Where the ray's line crosses a triangle that it crosses: within the triangle's bounds. It may be infinite.
     #[inline(always)]
     pub(crate) fn t(&self, corners: [Vec3; 3]) -> Option<f32> {
-        let plane = Plane::new(self.origin, corners);
-        if plane.volume(self.dir).abs() < self.least_volume {
+        let Plane { normal, offset, heights } = Plane::new(self.origin, corners);
+        self.t_of([offset, normal.dot(self.dir.as_dvec3())], heights)
+    }
+
+    /// The same, from a corner's distance to the plane of the triangle, and that which the ray's direction goes, both times any
+    /// number; and the heights of the lowest and of the highest corner.
+    #[inline(always)]
+    pub(crate) fn t_of(&self, [offset, volume]: [f64; 2], heights: [f64; 2]) -> Option<f32> {
+        if volume.abs() < self.least_volume {
             return None;
         }
-        Some(plane.t(self.dir))
+        Some(t_between(offset / volume, heights, self.dir.z))
     }
 
     /// The axes in the order of turned vectors.
@@ -135,28 +142,35 @@ pub(crate) struct Plane {
 impl Plane {
     #[inline(always)]
     pub fn new(origin: Vec3, [a, b, c]: [Vec3; 3]) -> Self {
-        let origin = origin.as_dvec3();
-        let (a, b, c) = (a.as_dvec3() - origin, b.as_dvec3() - origin, c.as_dvec3() - origin);
+        let heights = heights(origin.z, [a.z, b.z, c.z]);
+        let (a, b, c) = (a.as_dvec3(), b.as_dvec3(), c.as_dvec3());
         let normal = (b - a).cross(c - a);
-        let heights = [least(a.z, least(b.z, c.z)), most(a.z, most(b.z, c.z))];
-        Plane { normal, offset: normal.dot(a), heights }
-    }
-
-    #[inline(always)]
-    fn volume(&self, dir: Vec3) -> f64 {
-        self.normal.dot(dir.as_dvec3())
+        Plane { normal, offset: normal.dot(a - origin.as_dvec3()), heights }
     }
 
     /// Where a direction that crosses the triangle leads to it.
     #[inline(always)]
     pub fn t(&self, dir: Vec3) -> f32 {
-        let t = self.offset / self.volume(dir);
-        // Seen from nearly its side, the triangle still bounds it, also where it is no number. Divisions are rounded
-        // monotonically: the corners' distances are between those of the lowest and of the highest.
-        let dz = f64::from(dir.z);
-        let [p, q] = self.heights.map(|height| height / dz);
-        least(most(t, least(p, q)), most(p, q)) as f32
+        t_between(self.offset / self.normal.dot(dir.as_dvec3()), self.heights, dir.z)
     }
+}
+
+/// The heights of the lowest and of the highest corner above the origin.
+#[inline(always)]
+pub(crate) fn heights(origin: f32, [a, b, c]: [f32; 3]) -> [f64; 2] {
+    let (lowest, highest) = (least(a, least(b, c)), most(a, most(b, c)));
+    [f64::from(lowest) - f64::from(origin), f64::from(highest) - f64::from(origin)]
+}
+
+/// Where a ray of the height `dz` meets a plane, but between the heights of the lowest and of the highest corner.
+///
+/// Seen from nearly its side, the triangle still bounds t, also where that is no number. Divisions are rounded
+/// monotonically: the corners' distances are between those of the lowest and of the highest.
+#[inline(always)]
+pub(crate) fn t_between(t: f64, heights: [f64; 2], dz: f32) -> f32 {
+    let dz = f64::from(dz);
+    let [p, q] = heights.map(|height| height / dz);
+    least(most(t, least(p, q)), most(p, q)) as f32
 }
 
 /// The second and third barycentric coordinate of the origin, by the corners in the plane across a ray that crosses the triangle.
@@ -170,13 +184,13 @@ pub(crate) fn uv_across(flat: [Vec2; 3]) -> Vec2 {
 
 /// The lesser of two numbers, the second where the first is none.
 #[inline(always)]
-fn least(a: f64, b: f64) -> f64 {
+fn least<T: PartialOrd>(a: T, b: T) -> T {
     if a < b { a } else { b }
 }
 
 /// The greater of two numbers, the second where the first is none.
 #[inline(always)]
-fn most(a: f64, b: f64) -> f64 {
+fn most<T: PartialOrd>(a: T, b: T) -> T {
     if a > b { a } else { b }
 }
 

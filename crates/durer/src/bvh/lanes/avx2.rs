@@ -1,7 +1,7 @@
 //! AVX2 with FMA.
 
 use super::wide::Two;
-use super::{Kernel, Lanes, Numbers, Stack, WIDTH};
+use super::{Doubles, Kernel, Lanes, Numbers, Stack, WIDTH};
 use std::arch::x86_64::*;
 
 /// Proof that the processor has AVX2, FMA, BMI 1 and 2, LZCNT, and POPCNT.
@@ -102,6 +102,10 @@ macro_rules! memory_of_eight {
             }
         }
         #[inline(always)]
+        fn doubles(self, [x, y, z]: [f32; 3]) -> $crate::bvh::lanes::avx2::Four {
+            proven!($crate::bvh::lanes::avx2::Four(_mm256_cvtps_pd(_mm_setr_ps(x, y, z, 0.0))))
+        }
+        #[inline(always)]
         fn prefetch<T>(self, at: *const T) {
             // SAFETY: the instruction takes any address.
             unsafe { _mm_prefetch::<_MM_HINT_T0>(at.cast()) };
@@ -169,6 +173,43 @@ pub(super) fn least(a: __m256) -> f32 {
     }
 }
 
+/// Four `f64`, with AVX2.
+#[derive(Clone, Copy)]
+pub struct Four(pub(super) __m256d);
+
+impl Doubles for Four {
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        proven!(Four(_mm256_sub_pd(self.0, other.0)))
+    }
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        proven!(Four(_mm256_mul_pd(self.0, other.0)))
+    }
+    #[inline(always)]
+    fn yzx(self) -> Self {
+        proven!(Four(_mm256_permute4x64_pd::<0b11_00_10_01>(self.0)))
+    }
+    #[inline(always)]
+    fn dots(self, [p, q]: [Self; 2]) -> [f64; 2] {
+        let (p, q) = (self.mul(p).0, self.mul(q).0);
+        let mut sums = [0.0; 2];
+        proven! {
+            let (x_z, y) = (_mm256_unpacklo_pd(p, q), _mm256_castpd256_pd128(_mm256_unpackhi_pd(p, q)));
+            let sum = _mm_add_pd(_mm256_castpd256_pd128(x_z), y);
+            _mm_storeu_pd(sums.as_mut_ptr(), _mm_add_pd(sum, _mm256_extractf128_pd::<1>(x_z)));
+        }
+        sums
+    }
+    #[inline(always)]
+    fn to_array(self) -> [f64; 3] {
+        let mut to = [0.0; 4];
+        proven!(_mm256_storeu_pd(to.as_mut_ptr(), self.0));
+        let [x, y, z, _] = to;
+        [x, y, z]
+    }
+}
+
 impl Numbers for Avx2 {
     type Floats = __m256;
 
@@ -185,6 +226,7 @@ impl Numbers for Avx2 {
 
 impl Lanes for Avx2 {
     type Wide = Two<Self>;
+    type Doubles = Four;
 
     memory_of_eight!();
 

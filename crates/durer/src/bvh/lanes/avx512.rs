@@ -1,6 +1,6 @@
 //! AVX-512 on eight lanes: masks in registers of their own, and compression in one instruction.
 
-use super::avx2::{arithmetic_of_eight, least, memory_of_eight, operations, proven};
+use super::avx2::{Four, arithmetic_of_eight, least, memory_of_eight, operations, proven};
 use super::{Kernel, Lanes, Numbers, Stack, WIDE, WIDTH, Wide};
 use std::arch::x86_64::*;
 
@@ -39,6 +39,7 @@ impl Numbers for Avx512 {
 
 impl Lanes for Avx512 {
     type Wide = Sixteen;
+    type Doubles = Four;
 
     memory_of_eight!();
 

@@ -10,6 +10,7 @@
 mod avx2;
 #[cfg(target_arch = "x86_64")]
 mod avx512;
+mod doubles;
 mod level;
 #[cfg(target_arch = "aarch64")]
 mod neon;
@@ -17,6 +18,7 @@ mod scalar;
 mod stack;
 mod wide;
 
+pub(super) use doubles::Doubles;
 pub(super) use level::Available;
 pub use level::{Level, UnknownLevel};
 pub(super) use stack::{Room, Stack};
@@ -58,8 +60,11 @@ pub(super) trait Numbers: Copy {
 pub(super) trait Lanes: Numbers {
     /// The same for sixteen numbers.
     type Wide: Wide;
+    /// Vectors in space.
+    type Doubles: Doubles;
 
     fn wide(self) -> Self::Wide;
+    fn doubles(self, v: [f32; 3]) -> Self::Doubles;
 
     fn load(self, from: &[f32; WIDTH]) -> Self::Floats;
     /// What begins at each of nine rows of `stride` numbers; only the first `stride` lanes mean anything.

@@ -1,5 +1,6 @@
 //! NEON: eight lanes as two vectors of four.
 
+use super::doubles::Plain;
 use super::wide::Two;
 use super::{Lanes, Numbers, Stack, WIDTH};
 use std::arch::aarch64::*;
@@ -81,10 +82,15 @@ impl Numbers for Neon {
 
 impl Lanes for Neon {
     type Wide = Two<Self>;
+    type Doubles = Plain;
 
     #[inline(always)]
     fn wide(self) -> Two<Self> {
         Two(self)
+    }
+    #[inline(always)]
+    fn doubles(self, [x, y, z]: [f32; 3]) -> Plain {
+        Plain([x.into(), y.into(), z.into()])
     }
 
     #[inline(always)]

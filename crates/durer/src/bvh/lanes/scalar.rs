@@ -1,5 +1,6 @@
 //! Plain code.
 
+use super::doubles::Plain;
 use super::wide::Two;
 use super::{Lanes, Numbers, Stack, WIDTH};
 use std::array::from_fn;
@@ -64,10 +65,15 @@ impl Numbers for Scalar {
 
 impl Lanes for Scalar {
     type Wide = Two<Self>;
+    type Doubles = Plain;
 
     #[inline(always)]
     fn wide(self) -> Two<Self> {
         Two(self)
+    }
+    #[inline(always)]
+    fn doubles(self, [x, y, z]: [f32; 3]) -> Plain {
+        Plain([x.into(), y.into(), z.into()])
     }
 
     #[inline(always)]

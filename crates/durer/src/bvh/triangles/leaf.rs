@@ -1,11 +1,13 @@
 //! Triangles and rays side by side: several triangles and a ray, or a triangle and several rays.
 //!
-//! The test is that of [`Sheared`](crate::shape::watertight::Sheared), with the same roundings. Edge functions in single precision have the right signs
+//! The test is that of [`Sheared`], with the same roundings. Edge functions in single precision have the right signs
 //! wherever they are not zero, so nearly all triangles are refused or accepted by plain vector arithmetic; what is left is
 //! for the scalar test, which is exact. Where a triangle is crossed is known between two bounds, which is nearly always
 //! enough to tell which of two is nearer.
 
-use crate::bvh::lanes::Numbers;
+use crate::bvh::lanes::{Doubles, Lanes, Numbers};
+use crate::math::Vec3;
+use crate::shape::watertight::{Sheared, heights};
 
 /// Triangles in the planes across rays: several and one ray, or one and several rays.
 pub struct Flat<N: Numbers> {
@@ -24,7 +26,7 @@ pub struct Span<N: Numbers> {
 }
 
 impl<N: Numbers> Flat<N> {
-    /// From corners and origins that are turned as [`Sheared`](crate::shape::watertight::Sheared) turns them.
+    /// From corners and origins that are turned as [`Sheared`] turns them.
     ///
     /// Roundings are the same as there, so signs of edge functions are exact where they are not zero.
     #[inline(always)]
@@ -66,7 +68,7 @@ impl<N: Numbers> Flat<N> {
     /// their heights, and H how far those lie apart. With e = 2^-23 a coordinate across is wrong by at most e (R + 2 Z), so an edge
     /// function by at most e (6 R^2 + 8 R Z). Errors of weights move the mean by their sum times H over the sum of weights, and twice
     /// that is a bound also where the sum of weights is uncertain itself, for then it exceeds H, and both the
-    /// mean and the `t` of [`Sheared`](crate::shape::watertight::Sheared) lie between the heights of corners. What else is rounded adds less than 6 e Z, and a few of the
+    /// mean and the `t` of [`Sheared`] lie between the heights of corners. What else is rounded adds less than 6 e Z, and a few of the
     /// least numbers. `1 / dz` is `inverse_z`; the longest component dz of the direction must lie between 10^-15 and 10^15, and
     /// coordinates below 10^15.
     #[inline(always)]
@@ -87,6 +89,17 @@ impl<N: Numbers> Flat<N> {
         let t = numbers.mul(height, numbers.splat(inverse_z));
         Span { near: numbers.sub(t, error), far: numbers.add(t, error) }
     }
+}
+
+/// Where a ray's line crosses a triangle that it crosses, in its turned corners: to the bit as [`Sheared::t`] has it.
+#[inline(always)]
+pub fn t<L: Lanes>(lanes: L, sheared: &Sheared, [a, b, c]: [Vec3; 3]) -> Option<f32> {
+    let (origin, dir) = sheared.ray();
+    let heights = heights(origin.z, [a.z, b.z, c.z]);
+    let (a, b, c) = (lanes.doubles(a.to_array()), lanes.doubles(b.to_array()), lanes.doubles(c.to_array()));
+    let normal = b.sub(a).cross(c.sub(a));
+    let to_plane = normal.dots([a.sub(lanes.doubles(origin.to_array())), lanes.doubles(dir.to_array())]);
+    sheared.t_of(to_plane, heights)
 }
 
 /// Corners in the plane across the ray, and their heights along the third axis.

@@ -1,6 +1,6 @@
 //! What a ray asks of a tree of triangles.
 
-use super::leaf::{Flat, Span};
+use super::leaf::{Flat, Span, t};
 use super::{TriangleBvh, TriangleHit};
 use crate::bvh::Tally;
 use crate::bvh::lanes::{Kernel, Lanes, WIDTH, column};
@@ -45,14 +45,14 @@ pub trait Found: Default {
     fn met_at(&mut self, hit: TriangleHit, t_max: f32) -> f32;
 
     /// When the search has ended.
-    fn answer(&mut self, asked: &Asked, t_max: f32) -> Self::Answer;
+    fn answer<L: Lanes>(&mut self, lanes: L, asked: &Asked, t_max: f32) -> Self::Answer;
 }
 
 /// Triangles of a leaf of which one may be the first, each not before its `near`.
 #[derive(Clone, Copy)]
 struct Pending {
     leaf: u32,
-    lanes: u32,
+    left: u32,
     near: [f32; WIDTH],
 }
 
@@ -73,7 +73,7 @@ impl Default for Nearest {
     #[inline(always)]
     fn default() -> Self {
         Nearest {
-            pending: [Pending { leaf: 0, lanes: 0, near: [0.0; WIDTH] }; PENDING],
+            pending: [Pending { leaf: 0, left: 0, near: [0.0; WIDTH] }; PENDING],
             count: 0,
             best: TriangleHit { t: f32::INFINITY, uv: Vec2::ZERO, triangle: NONE },
         }
@@ -89,14 +89,14 @@ fn lesser(a: f32, b: f32) -> f32 {
 impl Nearest {
     /// Finds out where the pending triangles are; gives the new `t_max`.
     #[inline(always)]
-    fn settle(&mut self, asked: &Asked, mut t_max: f32) -> f32 {
+    fn settle<L: Lanes>(&mut self, lanes: L, asked: &Asked, mut t_max: f32) -> f32 {
         for i in 0..self.count {
-            let Pending { leaf, mut lanes, .. } = self.pending[i];
-            while lanes != 0 {
-                let lane = lanes.trailing_zeros() as usize & (WIDTH - 1);
-                lanes &= lanes - 1;
+            let Pending { leaf, mut left, .. } = self.pending[i];
+            while left != 0 {
+                let lane = left.trailing_zeros() as usize & (WIDTH - 1);
+                left &= left - 1;
                 if self.pending[i].near[lane] <= t_max
-                    && let Some(hit) = asked.meets(Place { leaf, lane }, t_max)
+                    && let Some(hit) = asked.meets(lanes, Place { leaf, lane }, t_max)
                 {
                     t_max = self.met_at(hit, t_max);
                 }
@@ -113,12 +113,12 @@ impl Found for Nearest {
     #[inline(always)]
     fn met<L: Lanes>(&mut self, lanes: L, asked: &Asked, leaf: u32, met: u32, span: &Span<L>, mut t_max: f32) -> f32 {
         if self.count == PENDING {
-            t_max = self.settle(asked, t_max);
+            t_max = self.settle(lanes, asked, t_max);
         }
         t_max = lesser(lanes.least(span.far, met), t_max);
         // A single one need not wait for bounds.
         let left = if met.is_power_of_two() { met } else { met & lanes.le(span.near, lanes.splat(t_max)) };
-        self.pending[self.count] = Pending { leaf, lanes: left, near: lanes.store(span.near) };
+        self.pending[self.count] = Pending { leaf, left, near: lanes.store(span.near) };
         self.count += 1;
         t_max
     }
@@ -132,8 +132,8 @@ impl Found for Nearest {
     }
 
     #[inline(always)]
-    fn answer(&mut self, asked: &Asked, t_max: f32) -> Option<TriangleHit> {
-        self.settle(asked, t_max);
+    fn answer<L: Lanes>(&mut self, lanes: L, asked: &Asked, t_max: f32) -> Option<TriangleHit> {
+        self.settle(lanes, asked, t_max);
         (self.best.triangle != NONE).then_some(self.best)
     }
 }
@@ -158,7 +158,7 @@ impl Found for Any {
     }
 
     #[inline(always)]
-    fn answer(&mut self, _: &Asked, _: f32) -> bool {
+    fn answer<L: Lanes>(&mut self, _: L, _: &Asked, _: f32) -> bool {
         self.0
     }
 }
@@ -170,9 +170,9 @@ pub struct All(Vec<TriangleHit>);
 impl Found for All {
     type Answer = Vec<TriangleHit>;
 
-    fn met<L: Lanes>(&mut self, _: L, asked: &Asked, leaf: u32, met: u32, _: &Span<L>, t_max: f32) -> f32 {
+    fn met<L: Lanes>(&mut self, lanes: L, asked: &Asked, leaf: u32, met: u32, _: &Span<L>, t_max: f32) -> f32 {
         for lane in (0..WIDTH).filter(|lane| met >> lane & 1 == 1) {
-            if let Some(hit) = asked.meets(Place { leaf, lane }, t_max) {
+            if let Some(hit) = asked.meets(lanes, Place { leaf, lane }, t_max) {
                 self.met_at(hit, t_max);
             }
         }
@@ -184,7 +184,7 @@ impl Found for All {
         t_max
     }
 
-    fn answer(&mut self, _: &Asked, _: f32) -> Vec<TriangleHit> {
+    fn answer<L: Lanes>(&mut self, _: L, _: &Asked, _: f32) -> Vec<TriangleHit> {
         std::mem::take(&mut self.0)
     }
 }
@@ -206,9 +206,9 @@ impl Asked<'_> {
 
     /// Where a triangle is met that the line of the ray crosses.
     #[inline(always)]
-    fn meets(&self, place: Place, t_max: f32) -> Option<TriangleHit> {
+    fn meets<L: Lanes>(&self, lanes: L, place: Place, t_max: f32) -> Option<TriangleHit> {
         let corners = self.corners(place);
-        let t = self.sheared.t(corners)?;
+        let t = t(lanes, &self.sheared, corners)?;
         // Refuses also NaN.
         if !(t > self.t_min && t < self.t_max && t <= t_max) {
             return None;
@@ -230,7 +230,7 @@ impl<T: Tally, F: Found> Kernel for Query<'_, T, F> {
             true => walk::<L, _, true>(lanes, &bvh.nodes, &boxes, ray.t_max, &mut leaves),
             false => walk::<L, _, false>(lanes, &bvh.nodes, &boxes, ray.t_max, &mut leaves),
         };
-        leaves.answer(t_max)
+        leaves.answer(lanes, t_max)
     }
 }
 
@@ -263,8 +263,8 @@ impl<'a, T, F: Found> Leaves<'a, T, F> {
 
     /// What was found, when the search has ended.
     #[inline(always)]
-    pub fn answer(&mut self, t_max: f32) -> F::Answer {
-        self.found.answer(&self.asked, t_max)
+    pub fn answer<L: Lanes>(&mut self, lanes: L, t_max: f32) -> F::Answer {
+        self.found.answer(lanes, &self.asked, t_max)
     }
 }
 
@@ -286,7 +286,7 @@ impl<T: Tally, F: Found> Visitor for Leaves<'_, T, F> {
         let (rows, count) = self.asked.rows(leaf);
         (0..count).for_each(|_| self.tally.test());
         if !self.side_by_side {
-            return self.one_by_one(leaf, (1 << count) - 1, t_max);
+            return self.one_by_one(lanes, leaf, (1 << count) - 1, t_max);
         }
         let Asked { sheared, t_min, t_max: end, .. } = &self.asked;
         let (origin, shear) = (lanes.splat3(sheared.ray().0.to_array()), sheared.shear());
@@ -311,7 +311,7 @@ impl<T: Tally, F: Found> Visitor for Leaves<'_, T, F> {
         }
         match unsure {
             0 => t_max,
-            _ => self.one_by_one(leaf, unsure, t_max),
+            _ => self.one_by_one(lanes, leaf, unsure, t_max),
         }
     }
 }
@@ -319,11 +319,11 @@ impl<T: Tally, F: Found> Visitor for Leaves<'_, T, F> {
 impl<T: Tally, F: Found> Leaves<'_, T, F> {
     /// Triangles in full.
     #[cold]
-    fn one_by_one(&mut self, leaf: u32, which: u32, mut t_max: f32) -> f32 {
+    fn one_by_one<L: Lanes>(&mut self, lanes: L, leaf: u32, which: u32, mut t_max: f32) -> f32 {
         for lane in (0..WIDTH).filter(|lane| which >> lane & 1 == 1) {
             let place = Place { leaf, lane };
             if self.asked.sheared.crosses(self.asked.corners(place))
-                && let Some(hit) = self.asked.meets(place, t_max)
+                && let Some(hit) = self.asked.meets(lanes, place, t_max)
             {
                 t_max = self.found.met_at(hit, t_max);
             }
