@@ -103,7 +103,13 @@ impl Available {
             Level::Avx2 => unsafe { super::avx2::run(kernel) },
             #[cfg(target_arch = "aarch64")]
             Level::Neon => kernel.run(super::neon::Neon),
-            _ => kernel.run(scalar::Scalar),
+            _ => plain(kernel),
         }
     }
+}
+
+/// Apart from its callers, whose stacks would be as high as this needs.
+#[inline(never)]
+fn plain<K: Kernel>(kernel: K) -> K::Output {
+    kernel.run(scalar::Scalar)
 }

@@ -37,6 +37,9 @@ pub struct Asked<'a> {
 pub trait Found: Default {
     type Answer: Default;
 
+    /// Whether it is not enough to know that a triangle is met.
+    const PLACE: bool;
+
     /// Takes note of triangles of a leaf that are met for sure, not after `t_max`; gives the new one, and minus infinity to end the
     /// search.
     fn met<L: Lanes>(&mut self, lanes: L, asked: &Asked, leaf: u32, met: u32, span: &Span<L>, t_max: f32) -> f32;
@@ -45,25 +48,12 @@ pub trait Found: Default {
     fn met_at(&mut self, hit: TriangleHit, t_max: f32) -> f32;
 
     /// When the search has ended.
-    fn answer<L: Lanes>(&mut self, lanes: L, asked: &Asked, t_max: f32) -> Self::Answer;
+    fn answer(&mut self) -> Self::Answer;
 }
 
-/// Triangles of a leaf of which one may be the first, each not before its `near`.
-#[derive(Clone, Copy)]
-struct Pending {
-    leaf: u32,
-    left: u32,
-    near: [f32; WIDTH],
-}
-
-/// As many leaves may be pending.
-const PENDING: usize = 4;
-
-/// The first hit. Nearly always bounds are enough to tell which that is, so only in the end it is found out where it is.
+/// The first hit.
 pub struct Nearest {
-    pending: [Pending; PENDING],
-    count: usize,
-    /// The nearest of those of which it is known; one of the number [`NONE`] before there is any.
+    /// One of the number [`NONE`] before there is any.
     best: TriangleHit,
 }
 
@@ -72,11 +62,7 @@ const NONE: u32 = u32::MAX;
 impl Default for Nearest {
     #[inline(always)]
     fn default() -> Self {
-        Nearest {
-            pending: [Pending { leaf: 0, left: 0, near: [0.0; WIDTH] }; PENDING],
-            count: 0,
-            best: TriangleHit { t: f32::INFINITY, uv: Vec2::ZERO, triangle: NONE },
-        }
+        Nearest { best: TriangleHit { t: f32::INFINITY, uv: Vec2::ZERO, triangle: NONE } }
     }
 }
 
@@ -86,41 +72,16 @@ fn lesser(a: f32, b: f32) -> f32 {
     if a < b { a } else { b }
 }
 
-impl Nearest {
-    /// Finds out where the pending triangles are; gives the new `t_max`.
-    #[inline(always)]
-    fn settle<L: Lanes>(&mut self, lanes: L, asked: &Asked, mut t_max: f32) -> f32 {
-        for i in 0..self.count {
-            let Pending { leaf, mut left, .. } = self.pending[i];
-            while left != 0 {
-                let lane = left.trailing_zeros() as usize & (WIDTH - 1);
-                left &= left - 1;
-                if self.pending[i].near[lane] <= t_max
-                    && let Some(hit) = asked.meets(lanes, Place { leaf, lane }, t_max)
-                {
-                    t_max = self.met_at(hit, t_max);
-                }
-            }
-        }
-        self.count = 0;
-        t_max
-    }
-}
-
 impl Found for Nearest {
     type Answer = Option<TriangleHit>;
 
+    const PLACE: bool = true;
+
     #[inline(always)]
-    fn met<L: Lanes>(&mut self, lanes: L, asked: &Asked, leaf: u32, met: u32, span: &Span<L>, mut t_max: f32) -> f32 {
-        if self.count == PENDING {
-            t_max = self.settle(lanes, asked, t_max);
-        }
-        t_max = lesser(lanes.least(span.far, met), t_max);
-        // A single one need not wait for bounds.
-        let left = if met.is_power_of_two() { met } else { met & lanes.le(span.near, lanes.splat(t_max)) };
-        self.pending[self.count] = Pending { leaf, left, near: lanes.store(span.near) };
-        self.count += 1;
-        t_max
+    fn met<L: Lanes>(&mut self, lanes: L, asked: &Asked, leaf: u32, met: u32, span: &Span<L>, t_max: f32) -> f32 {
+        // Nearly always bounds leave one of them.
+        let left = met & lanes.le(span.near, lanes.splat(lesser(lanes.least(span.far, met), t_max)));
+        asked.each(lanes, leaf, left, t_max, |hit, t_max| self.met_at(hit, t_max))
     }
 
     #[inline(always)]
@@ -132,8 +93,7 @@ impl Found for Nearest {
     }
 
     #[inline(always)]
-    fn answer<L: Lanes>(&mut self, lanes: L, asked: &Asked, t_max: f32) -> Option<TriangleHit> {
-        self.settle(lanes, asked, t_max);
+    fn answer(&mut self) -> Option<TriangleHit> {
         (self.best.triangle != NONE).then_some(self.best)
     }
 }
@@ -144,6 +104,8 @@ pub struct Any(bool);
 
 impl Found for Any {
     type Answer = bool;
+
+    const PLACE: bool = false;
 
     #[inline(always)]
     fn met<L: Lanes>(&mut self, _: L, _: &Asked, _: u32, _: u32, _: &Span<L>, _: f32) -> f32 {
@@ -158,7 +120,7 @@ impl Found for Any {
     }
 
     #[inline(always)]
-    fn answer<L: Lanes>(&mut self, _: L, _: &Asked, _: f32) -> bool {
+    fn answer(&mut self) -> bool {
         self.0
     }
 }
@@ -170,13 +132,10 @@ pub struct All(Vec<TriangleHit>);
 impl Found for All {
     type Answer = Vec<TriangleHit>;
 
+    const PLACE: bool = true;
+
     fn met<L: Lanes>(&mut self, lanes: L, asked: &Asked, leaf: u32, met: u32, _: &Span<L>, t_max: f32) -> f32 {
-        for lane in (0..WIDTH).filter(|lane| met >> lane & 1 == 1) {
-            if let Some(hit) = asked.meets(lanes, Place { leaf, lane }, t_max) {
-                self.met_at(hit, t_max);
-            }
-        }
-        t_max
+        asked.each(lanes, leaf, met, t_max, |hit, t_max| self.met_at(hit, t_max))
     }
 
     fn met_at(&mut self, hit: TriangleHit, t_max: f32) -> f32 {
@@ -184,7 +143,7 @@ impl Found for All {
         t_max
     }
 
-    fn answer<L: Lanes>(&mut self, _: L, _: &Asked, _: f32) -> Vec<TriangleHit> {
+    fn answer(&mut self) -> Vec<TriangleHit> {
         std::mem::take(&mut self.0)
     }
 }
@@ -202,6 +161,26 @@ impl Asked<'_> {
     fn corners(&self, Place { leaf, lane }: Place) -> [Vec3; 3] {
         let (rows, count) = self.rows(leaf);
         column(rows, count, self.sheared.axes(), lane).map(Vec3::from)
+    }
+
+    /// Where triangles of a leaf are met, that the line of the ray crosses; gives the last of the new `t_max`.
+    #[inline(always)]
+    fn each<L: Lanes>(
+        &self,
+        lanes: L,
+        leaf: u32,
+        mut crossed: u32,
+        mut t_max: f32,
+        mut met: impl FnMut(TriangleHit, f32) -> f32,
+    ) -> f32 {
+        while crossed != 0 {
+            let lane = crossed.trailing_zeros() as usize;
+            crossed &= crossed - 1;
+            if let Some(hit) = self.meets(lanes, Place { leaf, lane }, t_max) {
+                t_max = met(hit, t_max);
+            }
+        }
+        t_max
     }
 
     /// Where a triangle is met that the line of the ray crosses.
@@ -226,11 +205,11 @@ impl<T: Tally, F: Found> Kernel for Query<'_, T, F> {
         let Query { bvh, ray, tally, .. } = self;
         let Some(boxes) = RayBox::new(ray, bvh.reach) else { return F::Answer::default() };
         let mut leaves = Leaves::<_, F>::new(bvh, ray, &boxes, tally);
-        let t_max = match boxes.tame {
+        match boxes.tame {
             true => walk::<L, _, true>(lanes, &bvh.nodes, &boxes, ray.t_max, &mut leaves),
             false => walk::<L, _, false>(lanes, &bvh.nodes, &boxes, ray.t_max, &mut leaves),
         };
-        leaves.answer(lanes, t_max)
+        leaves.answer()
     }
 }
 
@@ -263,8 +242,8 @@ impl<'a, T, F: Found> Leaves<'a, T, F> {
 
     /// What was found, when the search has ended.
     #[inline(always)]
-    pub fn answer<L: Lanes>(&mut self, lanes: L, t_max: f32) -> F::Answer {
-        self.found.answer(lanes, &self.asked, t_max)
+    pub fn answer(&mut self) -> F::Answer {
+        self.found.answer()
     }
 }
 
@@ -298,7 +277,11 @@ impl<T: Tally, F: Found> Visitor for Leaves<'_, T, F> {
         if unsure == 0 {
             return t_max;
         }
-        if self.bounded {
+        if F::PLACE && crossed.is_power_of_two() {
+            // A single one need not wait for bounds.
+            unsure ^= crossed;
+            t_max = self.asked.each(lanes, leaf, crossed, t_max, |hit, t_max| self.found.met_at(hit, t_max));
+        } else if self.bounded {
             let span = flat.span(lanes, self.inverse_z);
             let (start, end) = (lanes.splat(*t_min), lanes.splat(*end));
             // So asked, what is no number is unsure.
