@@ -187,7 +187,8 @@ pub(super) fn push_others<L: Lanes>(
     let set = met as usize & 255 | (positive as usize >> (node.axis & 31) & 1) << 8;
     let others = (met & met.wrapping_sub(1)).count_ones();
     lanes.push(stack, &node.children, enter, &FAR_TO_NEAR[set], others);
-    node.children[NEAREST[set] as usize & 7]
+    let nearest = std::hint::select_unpredictable(set >= 256, met.trailing_zeros(), ((met | 1).leading_zeros()) ^ 31);
+    node.children[nearest as usize & 7]
 }
 
 /// For each set of lanes, when they fall and when they rise: the lanes from far to near.
@@ -204,18 +205,6 @@ static FAR_TO_NEAR: [[u8; WIDTH]; 512] = {
             }
             rank += 1;
         }
-        set += 1;
-    }
-    table
-};
-
-/// The same: the nearest lane.
-static NEAREST: [u8; 512] = {
-    let mut table = [0; 512];
-    let mut set = 1;
-    while set < 512 {
-        let lanes = set as u32 & 255 | 1 << 8;
-        table[set] = if set >= 256 { lanes.trailing_zeros() as u8 & 7 } else { ((set as u32 | 1).ilog2()) as u8 };
         set += 1;
     }
     table
