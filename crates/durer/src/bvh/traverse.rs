@@ -1,6 +1,6 @@
 //! Walking a ray through the tree, nearest boxes first.
 //!
-//! Of the children that the ray meets the nearest is next; the others are pushed, farthest first, by one compressing
+//! Of the children that the ray meets the nearest is next; the others are pushed, farthest first, by one
 //! store whatever their number, so that no branch depends on how many children are met. What lies beyond a hit is dropped when it
 //! is popped: that is guessed rightly more often than not, and the walk goes on before it is known where the hit is.
 //!
@@ -12,6 +12,7 @@ use super::lanes::{Lanes, Room, Side, Stack, WIDTH};
 use super::node::{LEAF, Node};
 use crate::math::{Ray, Vec3};
 use glam::Vec3A;
+use std::hint::select_unpredictable;
 
 /// A ray prepared for boxes: conservative, so that rounding never loses a box that the exact ray meets.
 ///
@@ -109,6 +110,9 @@ impl RayBox {
 pub(super) trait Visitor {
     type Tally: Tally;
 
+    /// Whether it is all the same which child is next.
+    const ALONG: bool;
+
     fn tally(&mut self) -> &mut Self::Tally;
 
     /// Has what is likely next brought near.
@@ -139,10 +143,13 @@ pub(super) fn walk<L: Lanes, V: Visitor, const TAME: bool>(
         if child & LEAF == 0 {
             visitor.tally().node();
             let node = &nodes[child as usize];
-            let (met, enter) = meet::<L, TAME>(lanes, node, &slabs, limit);
+            let (met, interval) = meet::<L, TAME>(lanes, node, &slabs, limit);
             if met != 0 {
                 // The nearest child is next, without a way through the stack.
-                child = push_others(lanes, &mut stack, node, met, enter, boxes.positive);
+                child = match V::ALONG {
+                    true => next::<L, true>(lanes, &mut stack, node, met, interval, boxes.positive),
+                    false => next::<L, false>(lanes, &mut stack, node, met, interval, boxes.positive),
+                };
                 continue;
             }
         } else {
@@ -173,37 +180,43 @@ pub(super) fn walk<L: Lanes, V: Visitor, const TAME: bool>(
     }
 }
 
-/// Gives the nearest of the children that are met, and pushes the others, the farthest first.
+/// The child that is next, of those that are met; pushes the others, the farthest first.
+///
+/// The next is the one that is entered first, or with `ALONG` the first along the axis of the node, which is known sooner. The order of the
+/// others is that along the axis in any case.
 #[inline(always)]
-pub(super) fn push_others<L: Lanes>(
+pub(super) fn next<L: Lanes, const ALONG: bool>(
     lanes: L,
     stack: &mut Stack,
     node: &Node,
     met: u32,
-    enter: L::Floats,
+    [enter, leave]: [L::Floats; 2],
     positive: u32,
 ) -> u32 {
-    // Along a rising axis the first lane is nearest.
-    let set = met as usize & 255 | (positive as usize >> (node.axis & 31) & 1) << 8;
-    let others = (met & met.wrapping_sub(1)).count_ones();
-    lanes.push(stack, &node.children, enter, &FAR_TO_NEAR[set], others);
-    let nearest = std::hint::select_unpredictable(set >= 256, met.trailing_zeros(), ((met | 1).leading_zeros()) ^ 31);
-    node.children[nearest as usize & 7]
+    let rising = positive >> (node.axis & 31) & 1;
+    let next = match ALONG {
+        true => select_unpredictable(rising == 1, met.trailing_zeros(), 31 ^ (met | 1).leading_zeros()),
+        false => lanes.nearest(enter, leave),
+    };
+    let others = met & !(1 << (next & 7));
+    let order = &FAR_TO_NEAR[rising as usize][others as usize & 255];
+    lanes.push(stack, &node.children, enter, order, others.count_ones());
+    node.children[next as usize & 7]
 }
 
-/// For each set of lanes, when they fall and when they rise: the lanes from far to near.
-static FAR_TO_NEAR: [[u8; WIDTH]; 512] = {
-    let mut table = [[0; WIDTH]; 512];
+/// For each set of lanes, when those that fall and when those that rise are nearer: the lanes from far to near.
+static FAR_TO_NEAR: [[[u8; WIDTH]; 256]; 2] = {
+    let mut table = [[[0; WIDTH]; 256]; 2];
     let mut set = 0;
-    while set < 512 {
-        let (mut rank, mut at) = (0, 0);
-        while rank < WIDTH {
-            let lane = if set >= 256 { WIDTH - 1 - rank } else { rank };
+    while set < 256 {
+        let (mut lane, mut at, count) = (0, 0, (set as u32).count_ones() as usize);
+        while lane < WIDTH {
             if set >> lane & 1 == 1 {
-                table[set][at] = lane as u8;
+                table[0][set][at] = lane as u8;
+                table[1][set][count - 1 - at] = lane as u8;
                 at += 1;
             }
-            rank += 1;
+            lane += 1;
         }
         set += 1;
     }
@@ -234,14 +247,14 @@ impl<L: Lanes> Slabs<L> {
     }
 }
 
-/// The children of a node that a ray meets before `limit`, a bit for each, and where it enters them.
+/// The children of a node that a ray meets before `limit`, a bit for each, and where it enters and leaves them.
 #[inline(always)]
 pub(super) fn meet<L: Lanes, const TAME: bool>(
     lanes: L,
     node: &Node,
     slabs: &Slabs<L>,
     limit: L::Floats,
-) -> (u32, L::Floats) {
+) -> (u32, [L::Floats; 2]) {
     let Slabs { inverse, near_origin, far_origin, t_min, near: [x, y, z] } = slabs;
     macro_rules! slab {
         ($axis:literal, $side:expr, $origin:ident) => {{
@@ -258,7 +271,7 @@ pub(super) fn meet<L: Lanes, const TAME: bool>(
     let leave_y = lanes.min(slab!(0, x.other(), far_origin), slab!(1, y.other(), far_origin));
     let enter = lanes.max(enter_y, lanes.max(slab!(2, z, near_origin), *t_min));
     let leave = lanes.min(leave_y, lanes.min(slab!(2, z.other(), far_origin), limit));
-    (lanes.le(enter, leave), enter)
+    (lanes.le(enter, leave), [enter, leave])
 }
 
 /// Whether a ray can hit anything: NaN and infinite ones, and those without direction, cannot.

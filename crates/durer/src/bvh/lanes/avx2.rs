@@ -91,6 +91,18 @@ macro_rules! memory_of_eight {
             $crate::bvh::lanes::avx2::transpose(rows)
         }
         #[inline(always)]
+        fn nearest(self, a: __m256, b: __m256) -> u32 {
+            proven! {
+                let bits = _mm256_andnot_si256(_mm256_set1_epi32(7), _mm256_castps_si256(a));
+                let key = _mm256_or_si256(bits, _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7));
+                let left_out = _mm256_cmp_ps::<_CMP_NLE_UQ>(a, b);
+                let key = _mm256_or_si256(key, _mm256_castps_si256(left_out));
+                let four = _mm_min_epu32(_mm256_castsi256_si128(key), _mm256_extracti128_si256::<1>(key));
+                let two = _mm_min_epu32(four, _mm_shuffle_epi32::<0b01_00_11_10>(four));
+                _mm_cvtsi128_si32(_mm_min_epu32(two, _mm_shuffle_epi32::<0b10_11_00_01>(two))) as u32 & 7
+            }
+        }
+        #[inline(always)]
         fn push(self, stack: &mut Stack, children: &[u32; WIDTH], near: __m256, order: &[u8; WIDTH], count: u32) {
             let (to, to_near) = stack.top();
             proven! {

@@ -74,6 +74,9 @@ pub(super) trait Lanes: Numbers {
     fn store(self, a: Self::Floats) -> [f32; WIDTH];
     /// The least of the lanes whose bits are set, none of which is NaN; infinity if there are none.
     fn least(self, a: Self::Floats, mask: u32) -> f32;
+    /// The lane where `a` is least of those where it is at most `b`; one of the lanes if there are none. It counts as an integer, without its
+    /// last three bits, so all are after 0 that are less.
+    fn nearest(self, a: Self::Floats, b: Self::Floats) -> u32;
     /// `a` in the lanes whose bits are set, `b` in others. Bits stay as they are.
     fn select(self, mask: u32, a: Self::Floats, b: Self::Floats) -> Self::Floats;
     /// Lane k of vector i becomes lane i of vector k.

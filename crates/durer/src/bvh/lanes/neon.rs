@@ -123,6 +123,18 @@ impl Lanes for Neon {
         super::scalar::Scalar.least(self.store(a), mask)
     }
     #[inline(always)]
+    fn nearest(self, a: Pair, b: Pair) -> u32 {
+        const LANES: [u32; WIDTH] = [0, 1, 2, 3, 4, 5, 6, 7];
+        proven! {
+            let key = |a, b, lanes| {
+                let key = vorrq_u32(vbicq_u32(vreinterpretq_u32_f32(a), vdupq_n_u32(7)), lanes);
+                vornq_u32(key, vcleq_f32(a, b))
+            };
+            let low = key(a.0, b.0, vld1q_u32(LANES.as_ptr()));
+            vminvq_u32(vminq_u32(low, key(a.1, b.1, vld1q_u32(LANES.as_ptr().add(4))))) & 7
+        }
+    }
+    #[inline(always)]
     fn select(self, mask: u32, a: Pair, b: Pair) -> Pair {
         const WEIGHTS: [u32; WIDTH] = [1, 2, 4, 8, 16, 32, 64, 128];
         proven! {

@@ -100,6 +100,11 @@ impl Lanes for Scalar {
             .fold(f32::INFINITY, |least, i| if a[i] < least { a[i] } else { least })
     }
     #[inline(always)]
+    fn nearest(self, a: F, b: F) -> u32 {
+        let key = |i: usize| if a[i] <= b[i] { a[i].to_bits() & !7 | i as u32 } else { u32::MAX };
+        (0..WIDTH).fold(u32::MAX, |least, i| least.min(key(i))) & 7
+    }
+    #[inline(always)]
     fn select(self, mask: u32, a: F, b: F) -> F {
         from_fn(|i| if mask >> i & 1 == 1 { a[i] } else { b[i] })
     }

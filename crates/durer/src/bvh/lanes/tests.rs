@@ -94,7 +94,7 @@ impl Kernel for Everything<'_> {
         let numbers = *mask & (lanes.le(c, c));
         // Zeroes of either sign are as little.
         found.push((lanes.least(c, numbers) + 0.0).to_bits());
-        found.extend([lanes.le(a, b), lanes.lt(a, b), lanes.le(b, a), lanes.lt(b, a)]);
+        found.extend([lanes.le(a, b), lanes.lt(a, b), lanes.le(b, a), lanes.lt(b, a), lanes.nearest(a, b)]);
         let mut room = Room::new();
         let mut stack = Stack::new(&mut room);
         let children = [10, 11, 12, 13, 14, 15, 16, 17];

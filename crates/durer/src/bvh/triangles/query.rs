@@ -250,6 +250,8 @@ impl<'a, T, F: Found> Leaves<'a, T, F> {
 impl<T: Tally, F: Found> Visitor for Leaves<'_, T, F> {
     type Tally = T;
 
+    const ALONG: bool = !F::PLACE;
+
     #[inline(always)]
     fn tally(&mut self) -> &mut T {
         &mut self.tally

@@ -8,7 +8,7 @@ use super::TriangleBvh;
 use super::query::{Found, Leaves};
 use crate::bvh::lanes::{Kernel, Lanes, Room, Stack};
 use crate::bvh::node::{self, LEAF, Node};
-use crate::bvh::traverse::{RayBox, Slabs, Visitor, meet, push_others};
+use crate::bvh::traverse::{RayBox, Slabs, Visitor, meet, next};
 use crate::math::{Ray, Vec3};
 use std::hint::select_unpredictable;
 use std::marker::PhantomData;
@@ -113,8 +113,8 @@ pub(super) fn prefetch<L: Lanes>(lanes: L, bvh: &TriangleBvh, child: u32) {
 fn step<L: Lanes, F: Found>(lanes: L, nodes: &[Node], flyer: &mut Flyer<F>, stack: &mut Stack) {
     let node = &nodes[flyer.child as usize];
     let slabs = Slabs::new(lanes, &flyer.boxes);
-    let (met, enter) = meet::<L, true>(lanes, node, &slabs, lanes.splat(flyer.t_max));
-    let nearest = push_others(lanes, stack, node, met, enter, flyer.boxes.positive);
+    let (met, interval) = meet::<L, true>(lanes, node, &slabs, lanes.splat(flyer.t_max));
+    let nearest = next::<L, true>(lanes, stack, node, met, interval, flyer.boxes.positive);
     // If nothing was met, nothing was pushed.
     flyer.child = select_unpredictable(met == 0, stack.pop_if(met == 0), nearest);
 }
