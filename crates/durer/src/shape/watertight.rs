@@ -14,8 +14,7 @@
 
 use super::Crossing;
 use crate::math::{Ray, Vec2, Vec3};
-use glam::DVec3;
-use std::hint::select_unpredictable;
+use glam::{DVec3, Vec3A};
 
 /// A ray prepared for many triangles.
 ///
@@ -42,11 +41,10 @@ impl Sheared {
     /// Prepares a ray that has a finite direction.
     #[inline(always)]
     pub(crate) fn finite(ray: &Ray) -> Self {
-        let [x, y, z] = ray.dir.abs().to_array();
-        let longest = select_unpredictable((x > y) & (x > z), 0, 2 - usize::from(y > z));
-        let negative = ray.dir.is_negative_bitmask() as usize >> longest & 1;
-        let axes = turned_axes(longest, negative);
-        let (origin, dir) = (turned(axes, ray.origin), turned(axes, ray.dir));
+        let (dir, length) = (Vec3A::from(ray.dir), Vec3A::from(ray.dir).abs());
+        let longest = length.cmpeq(Vec3A::splat(length.max_element())).bitmask();
+        let axes = TURNED[longest as usize & 7][dir.is_negative_bitmask() as usize & 7].map(usize::from);
+        let (origin, dir) = (turned(axes, ray.origin.as_ref()), turned(axes, ray.dir.as_ref()));
         Sheared { axes, origin, dir, shear: Vec2::new(dir.x / dir.z, dir.y / dir.z), least_volume: 0.0 }
     }
 
@@ -59,7 +57,7 @@ impl Sheared {
     /// The crossing with a triangle in the open interval (`t_min`, `t_max`), from either side.
     #[inline(always)]
     pub fn intersect(&self, corners: [Vec3; 3], t_min: f32, t_max: f32) -> Option<Crossing> {
-        let corners = corners.map(|corner| turned(self.axes, corner));
+        let corners = corners.map(|corner| turned(self.axes, corner.as_ref()));
         if !self.crosses(corners) {
             return None;
         }
@@ -196,18 +194,30 @@ fn most<T: PartialOrd>(a: T, b: T) -> T {
 
 /// The axes that turn a ray, by the longest component of its direction and whether that is negative (1) or not (0).
 #[inline(always)]
-pub(crate) fn turned_axes(longest: usize, negative: usize) -> [usize; 3] {
+pub(crate) const fn turned_axes(longest: usize, negative: usize) -> [usize; 3] {
     const AXES: [[[usize; 3]; 2]; 4] =
         [[[1, 2, 0], [2, 1, 0]], [[2, 0, 1], [0, 2, 1]], [[0, 1, 2], [1, 0, 2]], [[0; 3]; 2]];
     // So masked, indices need not be tested.
     AXES[longest & 3][negative & 1]
 }
 
+/// The axes that turn a ray, by which components of its direction are longest (a bit for each; the last of them counts) and which are
+/// negative.
+static TURNED: [[[u8; 3]; 8]; 8] = {
+    let mut table = [[[0, 1, 2]; 8]; 8];
+    let mut at = 8;
+    while at < 64 {
+        let (longest, signs) = ((at as u32 / 8).ilog2() as usize, at % 8);
+        let [x, y, z] = turned_axes(longest, signs >> longest & 1);
+        table[at / 8][signs] = [x as u8, y as u8, z as u8];
+        at += 1;
+    }
+    table
+};
+
 #[inline(always)]
-fn turned([x, y, z]: [usize; 3], v: Vec3) -> Vec3 {
-    let v = v.extend(0.0).to_array();
-    // So masked, indices need not be tested.
-    Vec3::new(v[x & 3], v[y & 3], v[z & 3])
+fn turned([x, y, z]: [usize; 3], v: &[f32; 3]) -> Vec3 {
+    Vec3::new(v[x], v[y], v[z])
 }
 
 /// Twice the areas of the triangles from the origin to the three edges: unnormalised barycentric coordinates.

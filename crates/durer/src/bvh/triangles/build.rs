@@ -1,6 +1,6 @@
 //! Making a tree of triangles, and making it fit again when vertices have moved.
 
-use super::TriangleBvh;
+use super::{ROWS, TriangleBvh, number};
 use crate::bvh::build::{self, Preset, Settings};
 use crate::bvh::lanes::{Available, WIDTH};
 use crate::bvh::node;
@@ -24,15 +24,14 @@ impl TriangleBvh {
         let corners_of = |number: u32| triangles[number as usize].map(|i| vertices[i as usize]);
         let tree = build::build_triangles(triangles.len(), &corners_of, &settings);
         let mut bvh = TriangleBvh {
-            corners: vec![0.0; 9 * tree.order.len() + WIDTH],
+            leaves: vec![0.0; ROWS * tree.order.len() + WIDTH],
             nodes: tree.nodes,
-            order: tree.order,
             bounds: tree.bounds,
             reach: tree.bounds.reach(),
             level: Available::chosen(),
             least_volume: 0.0,
         };
-        bvh.pack(corners_of);
+        bvh.pack(Some(&tree.order), corners_of);
         bvh
     }
 
@@ -44,19 +43,19 @@ impl TriangleBvh {
     /// If an index leads nowhere, or a triangle of the tree is missing.
     pub fn refit(&mut self, vertices: &[Vec3], triangles: &[[u32; 3]]) {
         let corners_of = |number: u32| triangles[number as usize].map(|i| vertices[i as usize]);
-        self.pack(corners_of);
+        self.pack(None, corners_of);
         // Children come after their parents, so boxes are right from the end.
-        for number in (0..self.nodes.len()).rev() {
-            let children: Vec<(usize, Aabb, u32)> = self.nodes[number].children().collect();
+        for parent in (0..self.nodes.len()).rev() {
+            let children: Vec<(usize, Aabb, u32)> = self.nodes[parent].children().collect();
             for (place, _, child) in children {
                 let bounds = match child & node::LEAF {
                     0 => self.nodes[child as usize].children().fold(Aabb::EMPTY, |b, (_, c, _)| b.union(c)),
                     _ => {
-                        let (first, count) = node::items(child);
-                        Aabb::around(self.order[first..first + count].iter().flat_map(|&i| corners_of(i)))
+                        let (rows, count) = self.rows(child);
+                        Aabb::around((0..count).flat_map(|lane| corners_of(number(rows, count, lane))))
                     }
                 };
-                self.nodes[number].set(place, bounds, child);
+                self.nodes[parent].set(place, bounds, child);
             }
         }
         self.bounds =
@@ -64,29 +63,30 @@ impl TriangleBvh {
         self.reach = self.bounds.reach();
     }
 
-    /// Writes the corners of all leaves.
-    fn pack(&mut self, corners_of: impl Fn(u32) -> [Vec3; 3] + Sync) {
+    /// Writes all leaves, with numbers in the order of items, or again with those that they have.
+    fn pack(&mut self, order: Option<&[u32]>, corners_of: impl Fn(u32) -> [Vec3; 3] + Sync) {
         let children = self.nodes.iter().flat_map(|node| node.children().map(|(_, _, child)| child));
         let mut leaves: Vec<u32> = children.filter(|child| child & node::LEAF != 0).collect();
         leaves.par_sort_unstable_by_key(|&leaf| node::items(leaf).0);
         // Leaves that follow each other have rows that do.
-        let (mut rest, mut parts) = (&mut self.corners[..], Vec::with_capacity(leaves.len() / AT_ONCE + 1));
+        let (mut rest, mut parts) = (&mut self.leaves[..], Vec::with_capacity(leaves.len() / AT_ONCE + 1));
         for leaves in leaves.chunks(AT_ONCE) {
             let count: usize = leaves.iter().map(|&leaf| node::items(leaf).1).sum();
-            let (part, after) = rest.split_at_mut(9 * count);
+            let (part, after) = rest.split_at_mut(ROWS * count);
             parts.push((leaves, part));
             rest = after;
         }
-        let order = &self.order;
         parts.into_par_iter().for_each(|(leaves, mut part)| {
             for &leaf in leaves {
                 let (first, count) = node::items(leaf);
-                let (rows, after) = part.split_at_mut(9 * count);
-                for (lane, &number) in order[first..first + count].iter().enumerate() {
+                let (rows, after) = part.split_at_mut(ROWS * count);
+                for lane in 0..count {
+                    let number = order.map_or_else(|| number(rows, count, lane), |order| order[first + lane]);
                     let corners = corners_of(number);
                     for row in 0..9 {
                         rows[row * count + lane] = corners[row / 3][row % 3];
                     }
+                    rows[9 * count + lane] = f32::from_bits(number);
                 }
                 part = after;
             }

@@ -15,8 +15,8 @@ pub struct Flat<N: Numbers> {
     corners: [[N::Floats; 3]; 3],
     /// The edge functions of the edges opposite to the corners.
     edges: [N::Floats; 3],
-    /// The least and the greatest of them.
-    range: [N::Floats; 2],
+    /// The product of the least and the greatest of them.
+    sign: N::Floats,
 }
 
 /// Bounds of the t at which triangles are crossed; NaN where nothing is known.
@@ -37,22 +37,20 @@ impl<N: Numbers> Flat<N> {
             flat(numbers, corners[2], origin, shear),
         ];
         let edges @ [u, v, w] = [edge(numbers, b, c), edge(numbers, c, a), edge(numbers, a, b)];
-        let range = [numbers.min(u, numbers.min(v, w)), numbers.max(u, numbers.max(v, w))];
-        Flat { corners, edges, range }
+        let sign = numbers.mul(numbers.min(u, numbers.min(v, w)), numbers.max(u, numbers.max(v, w)));
+        Flat { corners, edges, sign }
     }
 
     /// The signs of the edge functions say for sure that the line of the ray does not cross the triangle.
     #[inline(always)]
     pub fn missed(&self, numbers: N) -> u32 {
-        let (zero, [least, greatest]) = (numbers.splat(0.0), self.range);
-        numbers.lt(least, zero) & numbers.lt(zero, greatest)
+        numbers.lt(self.sign, numbers.splat(0.0))
     }
 
     /// They say for sure that it does.
     #[inline(always)]
     pub fn crossed(&self, numbers: N) -> u32 {
-        let (zero, [least, greatest]) = (numbers.splat(0.0), self.range);
-        numbers.lt(zero, least) | numbers.lt(greatest, zero)
+        numbers.lt(numbers.splat(0.0), self.sign)
     }
 
     /// The heights of the lowest and of the highest corner.

@@ -7,12 +7,21 @@ mod query;
 mod stream;
 
 use super::Tally;
-use super::lanes::{Available, Level};
+use super::lanes::{Available, Level, WIDTH};
 use super::node::{self, Node};
 use crate::math::{Aabb, Ray, Vec2};
 use crate::shape::watertight::Sheared;
 use query::{All, Any, Nearest, Query};
 use std::marker::PhantomData;
+
+/// What a leaf has of its triangles: nine coordinates and a number.
+const ROWS: usize = 10;
+
+/// The number of a triangle of a leaf, by its rows and the count of its triangles.
+#[inline(always)]
+fn number(rows: &[f32], count: usize, lane: usize) -> u32 {
+    rows[(ROWS - 1) * count + lane].to_bits()
+}
 
 /// Where a ray meets a mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -50,10 +59,9 @@ pub struct TriangleHit {
 #[derive(Clone, Debug)]
 pub struct TriangleBvh {
     nodes: Vec<Node>,
-    /// Numbers of the triangles, in the order of the leaves.
-    order: Vec<u32>,
-    /// Corners by leaf: nine rows, each of as many numbers as the leaf has triangles; a vector's width behind the last.
-    corners: Vec<f32>,
+    /// For each leaf [`ROWS`] rows, each of as many numbers as it has triangles: their corners by axis, and their numbers, as bits. A
+    /// vector's width behind the last.
+    leaves: Vec<f32>,
     bounds: Aabb,
     /// The greatest coordinate, without signs.
     reach: f32,
@@ -146,6 +154,13 @@ impl TriangleBvh {
         self.each::<Any>(rays, &rest, |i, answer| answers[i] = answer);
     }
 
+    /// The rows of a leaf with what is read past them, and the count of its triangles.
+    #[inline(always)]
+    fn rows(&self, leaf: u32) -> (&[f32], usize) {
+        let (first, count) = node::items(leaf);
+        (&self.leaves[ROWS * first..ROWS * (first + count) + WIDTH], count)
+    }
+
     #[inline]
     fn query<T: Tally, F: query::Found>(&self, ray: &Ray, tally: &mut T) -> F::Answer {
         match self.nodes.is_empty() {
@@ -156,7 +171,7 @@ impl TriangleBvh {
 
     /// Bytes in memory.
     pub fn bytes(&self) -> usize {
-        size_of_val(&*self.nodes) + size_of_val(&*self.order) + size_of_val(&*self.corners)
+        size_of_val(&*self.nodes) + size_of_val(&*self.leaves)
     }
 
     /// Cost of a random ray through the bounds by the surface area heuristic, in tests of a node, where a leaf costs as

@@ -1,10 +1,9 @@
 //! What a ray asks of a tree of triangles.
 
 use super::leaf::{Flat, Span, t};
-use super::{TriangleBvh, TriangleHit};
+use super::{TriangleBvh, TriangleHit, number};
 use crate::bvh::Tally;
 use crate::bvh::lanes::{Kernel, Lanes, WIDTH, column};
-use crate::bvh::node;
 use crate::bvh::traverse::{RayBox, TAME, Visitor, walk};
 use crate::math::{Ray, Vec2, Vec3};
 use crate::shape::watertight::Sheared;
@@ -149,18 +148,12 @@ impl Found for All {
 }
 
 impl Asked<'_> {
-    /// The rows of a leaf with what is read past them, and the count of its triangles.
+    /// The corners of a triangle, turned as the ray is, and its number.
     #[inline(always)]
-    fn rows(&self, leaf: u32) -> (&[f32], usize) {
-        let (first, count) = node::items(leaf);
-        (&self.bvh.corners[9 * first..9 * (first + count) + WIDTH], count)
-    }
-
-    /// The corners of a triangle, turned as the ray is.
-    #[inline(always)]
-    fn corners(&self, Place { leaf, lane }: Place) -> [Vec3; 3] {
-        let (rows, count) = self.rows(leaf);
-        column(rows, count, self.sheared.axes(), lane).map(Vec3::from)
+    fn triangle(&self, Place { leaf, lane }: Place) -> ([Vec3; 3], u32) {
+        let (rows, count) = self.bvh.rows(leaf);
+        let [a, b, c] = column(rows, count, self.sheared.axes(), lane);
+        ([a.into(), b.into(), c.into()], number(rows, count, lane))
     }
 
     /// Where triangles of a leaf are met, that the line of the ray crosses; gives the last of the new `t_max`.
@@ -186,13 +179,12 @@ impl Asked<'_> {
     /// Where a triangle is met that the line of the ray crosses.
     #[inline(always)]
     fn meets<L: Lanes>(&self, lanes: L, place: Place, t_max: f32) -> Option<TriangleHit> {
-        let corners = self.corners(place);
+        let (corners, triangle) = self.triangle(place);
         let t = t(lanes, &self.sheared, corners)?;
         // Refuses also NaN.
         if !(t > self.t_min && t < self.t_max && t <= t_max) {
             return None;
         }
-        let triangle = self.bvh.order[node::items(place.leaf).0 + place.lane];
         Some(TriangleHit { t, uv: self.sheared.uv(corners), triangle })
     }
 }
@@ -264,7 +256,7 @@ impl<T: Tally, F: Found> Visitor for Leaves<'_, T, F> {
 
     #[inline(always)]
     fn leaf<L: Lanes>(&mut self, lanes: L, leaf: u32, mut t_max: f32) -> f32 {
-        let (rows, count) = self.asked.rows(leaf);
+        let (rows, count) = self.asked.bvh.rows(leaf);
         (0..count).for_each(|_| self.tally.test());
         if !self.side_by_side {
             return self.one_by_one(lanes, leaf, (1 << count) - 1, t_max);
@@ -307,7 +299,7 @@ impl<T: Tally, F: Found> Leaves<'_, T, F> {
     fn one_by_one<L: Lanes>(&mut self, lanes: L, leaf: u32, which: u32, mut t_max: f32) -> f32 {
         for lane in (0..WIDTH).filter(|lane| which >> lane & 1 == 1) {
             let place = Place { leaf, lane };
-            if self.asked.sheared.crosses(self.asked.corners(place))
+            if self.asked.sheared.crosses(self.asked.triangle(place).0)
                 && let Some(hit) = self.asked.meets(lanes, place, t_max)
             {
                 t_max = self.found.met_at(hit, t_max);

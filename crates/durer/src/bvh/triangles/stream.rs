@@ -4,7 +4,7 @@
 //! several are on their way, and while one waits the others go on. Rays at inner nodes and rays at leaves are on two lists, so what
 //! comes next is no branch: a step writes its ray to both lists, and one of the two gets longer.
 
-use super::TriangleBvh;
+use super::{ROWS, TriangleBvh};
 use super::query::{Found, Leaves};
 use crate::bvh::lanes::{Kernel, Lanes, Room, Stack};
 use crate::bvh::node::{self, LEAF, Node};
@@ -101,7 +101,7 @@ impl<'a, F: Found, A: FnMut(usize, F::Answer)> Stream<'a, F, A> {
 #[inline(always)]
 pub(super) fn prefetch<L: Lanes>(lanes: L, bvh: &TriangleBvh, child: u32) {
     let inner = bvh.nodes.as_ptr().wrapping_add(child as usize).cast::<u8>();
-    let leaf = bvh.corners.as_ptr().wrapping_add(9 * node::items(child).0).cast::<u8>();
+    let leaf = bvh.leaves.as_ptr().wrapping_add(ROWS * node::items(child).0).cast::<u8>();
     let from = select_unpredictable(child & LEAF == 0, inner, leaf);
     for line in 0..size_of::<Node>() / 64 {
         lanes.prefetch(from.wrapping_add(64 * line));

@@ -1,9 +1,10 @@
 //! A packet among the triangles of a leaf.
 
 use super::{Meeting, Packet};
-use crate::bvh::lanes::{Lanes, Numbers, WIDE, WIDTH, Wide, column};
+use crate::bvh::lanes::{Lanes, Numbers, WIDE, Wide, column};
 use crate::bvh::node;
 use crate::bvh::triangles::leaf::Flat;
+use crate::bvh::triangles::number;
 use crate::math::Vec3;
 use crate::shape::watertight::Sheared;
 
@@ -32,14 +33,13 @@ impl Packet<'_> {
     #[inline(always)]
     fn one_by_one<L: Lanes, const ANY: bool>(&mut self, lanes: L, leaf: u32, mut rays: u64) -> u64 {
         let wide = lanes.wide();
-        let (first, count) = node::items(leaf);
-        let rows = &self.bvh.corners[9 * first..9 * (first + count) + WIDTH];
+        let (rows, count) = self.bvh.rows(leaf);
         let [x, y, z] = self.axes.turned;
         let mut all_met = 0;
         for lane in 0..count {
             let corners = column(rows, count, self.axes.turned, lane);
             let triangle = [wide.splat3(corners[0]), wide.splat3(corners[1]), wide.splat3(corners[2])];
-            let mut number = 0;
+            let mut meeting = 0;
             for group in 0..self.groups {
                 let active = (rays >> (group * WIDE)) as u32 & 0xffff;
                 if active == 0 {
@@ -75,17 +75,17 @@ impl Packet<'_> {
                     unsure &= unsure - 1;
                     crossed |= u32::from(Sheared::new(&e.ray(lane as usize)).crosses(turned)) << lane;
                 }
-                if number == 0 {
-                    number = self.meetings.len() as u32;
-                    let triangle = self.bvh.order[first + lane];
+                if meeting == 0 {
+                    meeting = self.meetings.len() as u32;
+                    let triangle = number(rows, count, lane);
                     self.meetings.push(Meeting { corners, triangle });
                 }
-                let (meetings, own) = (&self.meetings, self.meetings[number as usize].triangle);
+                let (meetings, own) = (&self.meetings, self.meetings[meeting as usize].triangle);
                 met |=
-                    e.meet(lanes, &self.axes, turned, crossed, number, |other| own < meetings[other as usize].triangle);
+                    e.meet(lanes, &self.axes, turned, crossed, meeting, |other| own < meetings[other as usize].triangle);
                 all_met |= u64::from(met) << (group * WIDE);
                 if ANY {
-                    set_met(&mut e.met, met, number);
+                    set_met(&mut e.met, met, meeting);
                     rays &= !(u64::from(met) << (group * WIDE));
                 } else if met != 0 {
                     e.bound_last(lanes, &self.axes);
@@ -98,8 +98,7 @@ impl Packet<'_> {
     /// All triangles at once with each ray.
     #[inline(always)]
     fn ray_by_ray<L: Lanes, const ANY: bool>(&mut self, lanes: L, leaf: u32, mut rays: u64) -> u64 {
-        let (first, count) = node::items(leaf);
-        let rows = &self.bvh.corners[9 * first..9 * (first + count) + WIDTH];
+        let (rows, count) = self.bvh.rows(leaf);
         let axes @ [x, y, z] = self.axes.turned;
         let triangles = lanes.rows(rows, count, axes);
         let mut all_met = 0;
@@ -135,9 +134,9 @@ impl Packet<'_> {
                 if crossed >> lane & 1 == 0 && !Sheared::new(&e.ray(i)).crosses(turned) {
                     continue;
                 }
-                let (number, triangle) = (self.meetings.len() as u32, self.bvh.order[first + lane]);
+                let (meeting, triangle) = (self.meetings.len() as u32, number(rows, count, lane));
                 let meetings = &self.meetings;
-                if e.meet_one(&self.axes, turned, i, number, |other| triangle < meetings[other as usize].triangle) {
+                if e.meet_one(&self.axes, turned, i, meeting, |other| triangle < meetings[other as usize].triangle) {
                     self.meetings.push(Meeting { corners, triangle });
                     all_met |= 1 << ray;
                 }
