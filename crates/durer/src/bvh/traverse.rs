@@ -21,8 +21,8 @@ use std::hint::select_unpredictable;
 #[derive(Clone, Copy)]
 pub(super) struct RayBox {
     planes: Planes,
-    /// A bit for each axis along which the direction is positive.
-    pub positive: u32,
+    /// A bit for each axis along which the direction is negative.
+    pub negative: u32,
     t_min: f32,
     /// Distances of boxes are in these units; 1 where the ray is tame.
     scale: f32,
@@ -68,10 +68,9 @@ impl RayBox {
             near_origin: (-(origin + outward) * inverse).to_array(),
             far_origin: (-(origin - outward) * inverse).to_array(),
         };
-        let negative = dir.is_negative_bitmask();
         (ray.t_min < ray.t_max).then_some(RayBox {
             planes,
-            positive: 7 ^ negative,
+            negative: dir.is_negative_bitmask(),
             t_min: ray.t_min,
             scale: 1.0,
             tame,
@@ -94,9 +93,9 @@ impl RayBox {
             near_origin: (ray.origin + outward).to_array(),
             far_origin: (ray.origin - outward).to_array(),
         };
-        let positive = 7 ^ dir.is_negative_bitmask();
+        let negative = dir.is_negative_bitmask();
         let t_min = (ray.t_min * scale).next_down();
-        RayBox { planes, positive, t_min, scale, tame: false, moderate: reach < TAME.end }
+        RayBox { planes, negative, t_min, scale, tame: false, moderate: reach < TAME.end }
     }
 
     /// A distance along the ray, not too small, as boxes have it.
@@ -147,8 +146,8 @@ pub(super) fn walk<L: Lanes, V: Visitor, const TAME: bool>(
             if met != 0 {
                 // The nearest child is next, without a way through the stack.
                 child = match V::ALONG {
-                    true => next::<L, true>(lanes, &mut stack, node, met, interval, boxes.positive),
-                    false => next::<L, false>(lanes, &mut stack, node, met, interval, boxes.positive),
+                    true => next::<L, true>(lanes, &mut stack, node, met, interval, boxes.negative),
+                    false => next::<L, false>(lanes, &mut stack, node, met, interval, boxes.negative),
                 };
                 continue;
             }
@@ -191,20 +190,20 @@ pub(super) fn next<L: Lanes, const ALONG: bool>(
     node: &Node,
     met: u32,
     [enter, leave]: [L::Floats; 2],
-    positive: u32,
+    negative: u32,
 ) -> u32 {
-    let rising = positive >> (node.axis & 31) & 1;
+    let falling = negative >> (node.axis & 31) & 1;
     let next = match ALONG {
-        true => select_unpredictable(rising == 1, met.trailing_zeros(), 31 ^ (met | 1).leading_zeros()),
+        true => select_unpredictable(falling == 0, met.trailing_zeros(), 31 ^ (met | 1).leading_zeros()),
         false => lanes.nearest(enter, leave),
     };
     let others = met & !(1 << (next & 7));
-    let order = &FAR_TO_NEAR[rising as usize][others as usize & 255];
+    let order = &FAR_TO_NEAR[falling as usize][others as usize & 255];
     lanes.push(stack, &node.children, enter, order, others.count_ones());
     node.children[next as usize & 7]
 }
 
-/// For each set of lanes, when those that fall and when those that rise are nearer: the lanes from far to near.
+/// For each set of lanes the lanes from far to near, where the first are nearer and where the last are.
 static FAR_TO_NEAR: [[[u8; WIDTH]; 256]; 2] = {
     let mut table = [[[0; WIDTH]; 256]; 2];
     let mut set = 0;
@@ -212,8 +211,8 @@ static FAR_TO_NEAR: [[[u8; WIDTH]; 256]; 2] = {
         let (mut lane, mut at, count) = (0, 0, (set as u32).count_ones() as usize);
         while lane < WIDTH {
             if set >> lane & 1 == 1 {
-                table[0][set][at] = lane as u8;
-                table[1][set][count - 1 - at] = lane as u8;
+                table[1][set][at] = lane as u8;
+                table[0][set][count - 1 - at] = lane as u8;
                 at += 1;
             }
             lane += 1;
@@ -236,7 +235,7 @@ pub(super) struct Slabs<L: Lanes> {
 impl<L: Lanes> Slabs<L> {
     #[inline(always)]
     pub fn new(lanes: L, boxes: &RayBox) -> Self {
-        let near = |axis: u32| Side::new(boxes.positive >> axis & 1 == 0);
+        let near = |axis: u32| Side::new(boxes.negative as usize >> axis & 1);
         Slabs {
             inverse: lanes.splat3(boxes.planes.inverse),
             near_origin: lanes.splat3(boxes.planes.near_origin),

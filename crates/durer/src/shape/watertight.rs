@@ -43,7 +43,8 @@ impl Sheared {
     pub(crate) fn finite(ray: &Ray) -> Self {
         let (dir, length) = (Vec3A::from(ray.dir), Vec3A::from(ray.dir).abs());
         let longest = length.cmpeq(Vec3A::splat(length.max_element())).bitmask();
-        let axes = TURNED[longest as usize & 7][dir.is_negative_bitmask() as usize & 7].map(usize::from);
+        let [x, y, z, _] = TURNED[longest as usize & 7][dir.is_negative_bitmask() as usize & 7];
+        let axes = [x as usize, y as usize, z as usize];
         let (origin, dir) = (turned(axes, ray.origin.as_ref()), turned(axes, ray.dir.as_ref()));
         Sheared { axes, origin, dir, shear: Vec2::new(dir.x / dir.z, dir.y / dir.z), least_volume: 0.0 }
     }
@@ -203,13 +204,13 @@ pub(crate) const fn turned_axes(longest: usize, negative: usize) -> [usize; 3] {
 
 /// The axes that turn a ray, by which components of its direction are longest (a bit for each; the last of them counts) and which are
 /// negative.
-static TURNED: [[[u8; 3]; 8]; 8] = {
-    let mut table = [[[0, 1, 2]; 8]; 8];
+static TURNED: [[[u32; 4]; 8]; 8] = {
+    let mut table = [[[0, 1, 2, 0]; 8]; 8];
     let mut at = 8;
     while at < 64 {
         let (longest, signs) = ((at as u32 / 8).ilog2() as usize, at % 8);
         let [x, y, z] = turned_axes(longest, signs >> longest & 1);
-        table[at / 8][signs] = [x as u8, y as u8, z as u8];
+        table[at / 8][signs] = [x as u32, y as u32, z as u32, 0];
         at += 1;
     }
     table

@@ -96,8 +96,8 @@ pub(super) struct Side {
 
 impl Side {
     #[inline(always)]
-    pub fn new(second: bool) -> Self {
-        Side { offset: usize::from(second) * size_of::<[f32; WIDTH]>() }
+    pub fn new(row: usize) -> Self {
+        Side { offset: (row & 1) * size_of::<[f32; WIDTH]>() }
     }
 
     #[inline(always)]

@@ -17,13 +17,6 @@ pub struct Query<'a, T, F> {
     pub found: PhantomData<F>,
 }
 
-/// A triangle in its leaf.
-#[derive(Clone, Copy)]
-pub struct Place {
-    leaf: u32,
-    lane: usize,
-}
-
 /// A ray among triangles.
 pub struct Asked<'a> {
     bvh: &'a TriangleBvh,
@@ -150,7 +143,7 @@ impl Found for All {
 impl Asked<'_> {
     /// The corners of a triangle, turned as the ray is, and its number.
     #[inline(always)]
-    fn triangle(&self, Place { leaf, lane }: Place) -> ([Vec3; 3], u32) {
+    fn triangle(&self, leaf: u32, lane: usize) -> ([Vec3; 3], u32) {
         let (rows, count) = self.bvh.rows(leaf);
         let [a, b, c] = column(rows, count, self.sheared.axes(), lane);
         ([a.into(), b.into(), c.into()], number(rows, count, lane))
@@ -169,23 +162,18 @@ impl Asked<'_> {
         while crossed != 0 {
             let lane = crossed.trailing_zeros() as usize;
             crossed &= crossed - 1;
-            if let Some(hit) = self.meets(lanes, Place { leaf, lane }, t_max) {
-                t_max = met(hit, t_max);
+            let (corners, triangle) = self.triangle(leaf, lane);
+            if let Some(t) = t(lanes, &self.sheared, corners).filter(|t| self.is_wanted(*t, t_max)) {
+                t_max = met(TriangleHit { t, uv: self.sheared.uv(corners), triangle }, t_max);
             }
         }
         t_max
     }
 
-    /// Where a triangle is met that the line of the ray crosses.
     #[inline(always)]
-    fn meets<L: Lanes>(&self, lanes: L, place: Place, t_max: f32) -> Option<TriangleHit> {
-        let (corners, triangle) = self.triangle(place);
-        let t = t(lanes, &self.sheared, corners)?;
+    fn is_wanted(&self, t: f32, t_max: f32) -> bool {
         // Refuses also NaN.
-        if !(t > self.t_min && t < self.t_max && t <= t_max) {
-            return None;
-        }
-        Some(TriangleHit { t, uv: self.sheared.uv(corners), triangle })
+        t > self.t_min && t < self.t_max && t <= t_max
     }
 }
 
@@ -259,18 +247,18 @@ impl<T: Tally, F: Found> Visitor for Leaves<'_, T, F> {
         let (rows, count) = self.asked.bvh.rows(leaf);
         (0..count).for_each(|_| self.tally.test());
         if !self.side_by_side {
-            return self.one_by_one(lanes, leaf, (1 << count) - 1, t_max);
+            return self.one_by_one(leaf, (1 << count) - 1, t_max);
         }
         let Asked { sheared, t_min, t_max: end, .. } = &self.asked;
         let (origin, shear) = (lanes.splat3(sheared.ray().0.to_array()), sheared.shear());
         let corners = lanes.rows(rows, count, sheared.axes());
         let flat = Flat::new(lanes, corners, origin, [lanes.splat(shear.x), lanes.splat(shear.y)]);
         let there = (1 << count) - 1;
-        let crossed = flat.crossed(lanes) & there;
-        let mut unsure = (crossed | !flat.missed(lanes)) & there;
+        let mut unsure = !flat.missed(lanes) & there;
         if unsure == 0 {
             return t_max;
         }
+        let crossed = flat.crossed(lanes) & there;
         if F::PLACE && crossed.is_power_of_two() {
             // A single one need not wait for bounds.
             unsure ^= crossed;
@@ -288,7 +276,7 @@ impl<T: Tally, F: Found> Visitor for Leaves<'_, T, F> {
         }
         match unsure {
             0 => t_max,
-            _ => self.one_by_one(lanes, leaf, unsure, t_max),
+            _ => self.one_by_one(leaf, unsure, t_max),
         }
     }
 }
@@ -296,13 +284,14 @@ impl<T: Tally, F: Found> Visitor for Leaves<'_, T, F> {
 impl<T: Tally, F: Found> Leaves<'_, T, F> {
     /// Triangles in full.
     #[cold]
-    fn one_by_one<L: Lanes>(&mut self, lanes: L, leaf: u32, which: u32, mut t_max: f32) -> f32 {
+    fn one_by_one(&mut self, leaf: u32, which: u32, mut t_max: f32) -> f32 {
         for lane in (0..WIDTH).filter(|lane| which >> lane & 1 == 1) {
-            let place = Place { leaf, lane };
-            if self.asked.sheared.crosses(self.asked.triangle(place).0)
-                && let Some(hit) = self.asked.meets(lanes, place, t_max)
+            let (corners, triangle) = self.asked.triangle(leaf, lane);
+            let sheared = &self.asked.sheared;
+            if sheared.crosses(corners)
+                && let Some(t) = sheared.t(corners).filter(|t| self.asked.is_wanted(*t, t_max))
             {
-                t_max = self.found.met_at(hit, t_max);
+                t_max = self.found.met_at(TriangleHit { t, uv: sheared.uv(corners), triangle }, t_max);
             }
         }
         t_max

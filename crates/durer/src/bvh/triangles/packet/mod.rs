@@ -61,8 +61,6 @@ struct Axes {
     turned: [usize; 3],
     /// By axis: 1 where directions are negative, else 0.
     negative: [usize; 3],
-    /// A bit for each axis along which they are positive.
-    positive: u32,
 }
 
 impl Axes {
@@ -72,7 +70,7 @@ impl Axes {
     fn of_key(key: usize) -> Self {
         let negative = [key & 1, key >> 1 & 1, key >> 2 & 1];
         let longest = key >> 3;
-        Axes { turned: turned_axes(longest, negative[longest]), negative, positive: 7 ^ (key as u32 & 7) }
+        Axes { turned: turned_axes(longest, negative[longest]), negative }
     }
 
     /// Whether directions are negative along their longest axis.

@@ -100,7 +100,7 @@ impl Packet<'_> {
                 let (met, enter) = beam.meet(lanes, node, lanes.splat(self.limit));
                 if met != 0 {
                     // Along a rising axis the first place is nearest; the farthest is pushed first.
-                    let rising = self.axes.positive >> node.axis & 1 == 1;
+                    let rising = self.axes.negative[node.axis as usize % 3] == 0;
                     let (first, last) = (met.trailing_zeros(), 31 - met.leading_zeros());
                     let nearest = if rising { first } else { last };
                     let (mut others, enter) = (met ^ 1 << nearest, lanes.store(enter));
