@@ -85,7 +85,7 @@ impl Sheared {
     }
 
     #[inline(always)]
-    fn flatten(&self, [a, b, c]: [Vec3; 3]) -> [Vec2; 3] {
+    pub(crate) fn flatten(&self, [a, b, c]: [Vec3; 3]) -> [Vec2; 3] {
         [self.flat(a), self.flat(b), self.flat(c)]
     }
 

@@ -6,7 +6,7 @@
 //! enough to tell which of two is nearer.
 
 use crate::bvh::lanes::{Doubles, Lanes, Numbers};
-use crate::math::Vec3;
+use crate::math::{Vec2, Vec3};
 use crate::shape::watertight::{Sheared, heights};
 
 /// Triangles in the planes across rays: several and one ray, or one and several rays.
@@ -98,6 +98,17 @@ pub fn t<L: Lanes>(lanes: L, sheared: &Sheared, [a, b, c]: [Vec3; 3]) -> Option<
     let normal = b.sub(a).cross(c.sub(a));
     let to_plane = normal.dots([a.sub(lanes.doubles(origin.to_array())), lanes.doubles(dir.to_array())]);
     sheared.t_of(to_plane, heights)
+}
+
+/// The second and third barycentric coordinate of the crossing, to the bit as [`Sheared::uv`] has them.
+#[inline(always)]
+pub fn uv<L: Lanes>(lanes: L, sheared: &Sheared, corners: [Vec3; 3]) -> Vec2 {
+    let [a, b, c] = sheared.flatten(corners);
+    let (x, y) = (lanes.doubles([a.x, b.x, c.x]), lanes.doubles([a.y, b.y, c.y]));
+    // Twice the areas beside the third corner, the first, and the second.
+    let [c, a, b] = x.yzx().mul(y).sub(y.yzx().mul(x)).to_array();
+    let det = a + b + c;
+    Vec2::new((b / det) as f32, (c / det) as f32)
 }
 
 /// Corners in the plane across the ray, and their heights along the third axis.

@@ -1,6 +1,6 @@
 //! What a ray asks of a tree of triangles.
 
-use super::leaf::{Flat, Span, t};
+use super::leaf::{Flat, Span, t, uv};
 use super::{TriangleBvh, TriangleHit, number};
 use crate::bvh::Tally;
 use crate::bvh::lanes::{Kernel, Lanes, WIDTH, column};
@@ -29,18 +29,17 @@ pub struct Asked<'a> {
 pub trait Found: Default {
     type Answer: Default;
 
-    /// Whether it is not enough to know that a triangle is met.
-    const PLACE: bool;
+    /// Whether it is enough to know that something is hit.
+    const ANY: bool;
 
-    /// Takes note of triangles of a leaf that are met for sure, not after `t_max`; gives the new one, and minus infinity to end the
-    /// search.
-    fn met<L: Lanes>(&mut self, lanes: L, asked: &Asked, leaf: u32, met: u32, span: &Span<L>, t_max: f32) -> f32;
+    /// Of triangles that are hit for sure, those whose hits are wanted, none of them after `t_max`.
+    fn wanted<L: Lanes>(lanes: L, met: u32, span: &Span<L>, t_max: f32) -> u32;
 
-    /// Takes note of a hit; gives the new `t_max`.
-    fn met_at(&mut self, hit: TriangleHit, t_max: f32) -> f32;
+    /// Takes note of a hit, not after `t_max`; gives the new one.
+    fn met(&mut self, hit: TriangleHit, t_max: f32) -> f32;
 
-    /// When the search has ended.
-    fn answer(&mut self) -> Self::Answer;
+    /// When the search has ended, and whether it was enough that something was hit.
+    fn answer(&mut self, any: bool) -> Self::Answer;
 }
 
 /// The first hit.
@@ -67,17 +66,16 @@ fn lesser(a: f32, b: f32) -> f32 {
 impl Found for Nearest {
     type Answer = Option<TriangleHit>;
 
-    const PLACE: bool = true;
+    const ANY: bool = false;
 
+    /// Nearly always bounds leave one.
     #[inline(always)]
-    fn met<L: Lanes>(&mut self, lanes: L, asked: &Asked, leaf: u32, met: u32, span: &Span<L>, t_max: f32) -> f32 {
-        // Nearly always bounds leave one of them.
-        let left = met & lanes.le(span.near, lanes.splat(lesser(lanes.least(span.far, met), t_max)));
-        asked.each(lanes, leaf, left, t_max, |hit, t_max| self.met_at(hit, t_max))
+    fn wanted<L: Lanes>(lanes: L, met: u32, span: &Span<L>, t_max: f32) -> u32 {
+        met & lanes.le(span.near, lanes.splat(lesser(lanes.least(span.far, met), t_max)))
     }
 
     #[inline(always)]
-    fn met_at(&mut self, hit: TriangleHit, t_max: f32) -> f32 {
+    fn met(&mut self, hit: TriangleHit, t_max: f32) -> f32 {
         if (hit.t, hit.triangle) < (self.best.t, self.best.triangle) {
             self.best = hit;
         }
@@ -85,35 +83,33 @@ impl Found for Nearest {
     }
 
     #[inline(always)]
-    fn answer(&mut self) -> Option<TriangleHit> {
+    fn answer(&mut self, _: bool) -> Option<TriangleHit> {
         (self.best.triangle != NONE).then_some(self.best)
     }
 }
 
 /// Whether there is a hit.
 #[derive(Default)]
-pub struct Any(bool);
+pub struct Any;
 
 impl Found for Any {
     type Answer = bool;
 
-    const PLACE: bool = false;
+    const ANY: bool = true;
 
     #[inline(always)]
-    fn met<L: Lanes>(&mut self, _: L, _: &Asked, _: u32, _: u32, _: &Span<L>, _: f32) -> f32 {
-        self.0 = true;
+    fn wanted<L: Lanes>(_: L, _: u32, _: &Span<L>, _: f32) -> u32 {
+        0
+    }
+
+    #[inline(always)]
+    fn met(&mut self, _: TriangleHit, _: f32) -> f32 {
         f32::NEG_INFINITY
     }
 
     #[inline(always)]
-    fn met_at(&mut self, _: TriangleHit, _: f32) -> f32 {
-        self.0 = true;
-        f32::NEG_INFINITY
-    }
-
-    #[inline(always)]
-    fn answer(&mut self) -> bool {
-        self.0
+    fn answer(&mut self, any: bool) -> bool {
+        any
     }
 }
 
@@ -124,18 +120,19 @@ pub struct All(Vec<TriangleHit>);
 impl Found for All {
     type Answer = Vec<TriangleHit>;
 
-    const PLACE: bool = true;
+    const ANY: bool = false;
 
-    fn met<L: Lanes>(&mut self, lanes: L, asked: &Asked, leaf: u32, met: u32, _: &Span<L>, t_max: f32) -> f32 {
-        asked.each(lanes, leaf, met, t_max, |hit, t_max| self.met_at(hit, t_max))
+    #[inline(always)]
+    fn wanted<L: Lanes>(_: L, met: u32, _: &Span<L>, _: f32) -> u32 {
+        met
     }
 
-    fn met_at(&mut self, hit: TriangleHit, t_max: f32) -> f32 {
+    fn met(&mut self, hit: TriangleHit, t_max: f32) -> f32 {
         self.0.push(hit);
         t_max
     }
 
-    fn answer(&mut self) -> Vec<TriangleHit> {
+    fn answer(&mut self, _: bool) -> Vec<TriangleHit> {
         std::mem::take(&mut self.0)
     }
 }
@@ -147,27 +144,6 @@ impl Asked<'_> {
         let (rows, count) = self.bvh.rows(leaf);
         let [a, b, c] = column(rows, count, self.sheared.axes(), lane);
         ([a.into(), b.into(), c.into()], number(rows, count, lane))
-    }
-
-    /// Where triangles of a leaf are met, that the line of the ray crosses; gives the last of the new `t_max`.
-    #[inline(always)]
-    fn each<L: Lanes>(
-        &self,
-        lanes: L,
-        leaf: u32,
-        mut crossed: u32,
-        mut t_max: f32,
-        mut met: impl FnMut(TriangleHit, f32) -> f32,
-    ) -> f32 {
-        while crossed != 0 {
-            let lane = crossed.trailing_zeros() as usize;
-            crossed &= crossed - 1;
-            let (corners, triangle) = self.triangle(leaf, lane);
-            if let Some(t) = t(lanes, &self.sheared, corners).filter(|t| self.is_wanted(*t, t_max)) {
-                t_max = met(TriangleHit { t, uv: self.sheared.uv(corners), triangle }, t_max);
-            }
-        }
-        t_max
     }
 
     #[inline(always)]
@@ -185,11 +161,11 @@ impl<T: Tally, F: Found> Kernel for Query<'_, T, F> {
         let Query { bvh, ray, tally, .. } = self;
         let Some(boxes) = RayBox::new(ray, bvh.reach) else { return F::Answer::default() };
         let mut leaves = Leaves::<_, F>::new(bvh, ray, &boxes, tally);
-        match boxes.tame {
+        let t_max = match boxes.tame {
             true => walk::<L, _, true>(lanes, &bvh.nodes, &boxes, ray.t_max, &mut leaves),
             false => walk::<L, _, false>(lanes, &bvh.nodes, &boxes, ray.t_max, &mut leaves),
         };
-        leaves.answer()
+        leaves.answer(t_max)
     }
 }
 
@@ -222,15 +198,15 @@ impl<'a, T, F: Found> Leaves<'a, T, F> {
 
     /// What was found, when the search has ended.
     #[inline(always)]
-    pub fn answer(&mut self) -> F::Answer {
-        self.found.answer()
+    pub fn answer(&mut self, t_max: f32) -> F::Answer {
+        self.found.answer(t_max == f32::NEG_INFINITY)
     }
 }
 
 impl<T: Tally, F: Found> Visitor for Leaves<'_, T, F> {
     type Tally = T;
 
-    const ALONG: bool = !F::PLACE;
+    const ALONG: bool = F::ANY;
 
     #[inline(always)]
     fn tally(&mut self) -> &mut T {
@@ -258,20 +234,30 @@ impl<T: Tally, F: Found> Visitor for Leaves<'_, T, F> {
         if unsure == 0 {
             return t_max;
         }
-        let crossed = flat.crossed(lanes) & there;
-        if F::PLACE && crossed.is_power_of_two() {
+        let mut wanted = flat.crossed(lanes) & there;
+        if !F::ANY && wanted.is_power_of_two() {
             // A single one need not wait for bounds.
-            unsure ^= crossed;
-            t_max = self.asked.each(lanes, leaf, crossed, t_max, |hit, t_max| self.found.met_at(hit, t_max));
+            unsure ^= wanted;
         } else if self.bounded {
-            let span = flat.span(lanes, self.inverse_z);
+            let (crossed, span) = (wanted, flat.span(lanes, self.inverse_z));
             let (start, end) = (lanes.splat(*t_min), lanes.splat(*end));
             // So asked, what is no number is unsure.
             let left_out = lanes.lt(lanes.splat(t_max), span.near) | lanes.le(span.far, start);
             let met = crossed & !left_out & lanes.lt(start, span.near) & lanes.lt(span.far, end);
+            if F::ANY && met != 0 {
+                return f32::NEG_INFINITY;
+            }
             unsure &= !(met | crossed & left_out);
-            if met != 0 {
-                t_max = self.found.met(lanes, &self.asked, leaf, met, &span, t_max);
+            wanted = if met == 0 { 0 } else { F::wanted(lanes, met, &span, t_max) };
+        } else {
+            wanted = 0;
+        }
+        while wanted != 0 {
+            let lane = wanted.trailing_zeros() as usize;
+            wanted &= wanted - 1;
+            let (corners, triangle) = self.asked.triangle(leaf, lane);
+            if let Some(t) = t(lanes, sheared, corners).filter(|t| self.asked.is_wanted(*t, t_max)) {
+                t_max = self.found.met(TriangleHit { t, uv: uv(lanes, sheared, corners), triangle }, t_max);
             }
         }
         match unsure {
@@ -291,7 +277,7 @@ impl<T: Tally, F: Found> Leaves<'_, T, F> {
             if sheared.crosses(corners)
                 && let Some(t) = sheared.t(corners).filter(|t| self.asked.is_wanted(*t, t_max))
             {
-                t_max = self.found.met_at(TriangleHit { t, uv: sheared.uv(corners), triangle }, t_max);
+                t_max = self.found.met(TriangleHit { t, uv: sheared.uv(corners), triangle }, t_max);
             }
         }
         t_max

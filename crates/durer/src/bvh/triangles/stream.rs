@@ -163,7 +163,7 @@ impl<'a, F: Found, A: FnMut(usize, F::Answer)> Kernel for Stream<'a, F, A> {
                     flyer.t_max = t;
                 }
                 if over {
-                    (self.answer)(flyer.number, flyer.leaves.answer());
+                    (self.answer)(flyer.number, flyer.leaves.answer(flyer.t_max));
                     if !self.start(lanes, flyer, stack) {
                         // Its place stays empty.
                         continue;
