@@ -4,8 +4,8 @@
 //! several are on their way, and while one waits the others go on. Rays at inner nodes and rays at leaves are on two lists, so what
 //! comes next is no branch: a step writes its ray to both lists, and one of the two gets longer.
 
-use super::{ROWS, TriangleBvh};
 use super::query::{Found, Leaves};
+use super::{ROWS, TriangleBvh};
 use crate::bvh::lanes::{Kernel, Lanes, Room, Stack};
 use crate::bvh::node::{self, LEAF, Node};
 use crate::bvh::traverse::{RayBox, Slabs, Visitor, meet, next};
@@ -114,7 +114,10 @@ fn step<L: Lanes, F: Found>(lanes: L, nodes: &[Node], flyer: &mut Flyer<F>, stac
     let node = &nodes[flyer.child as usize];
     let slabs = Slabs::new(lanes, &flyer.boxes);
     let (met, interval) = meet::<L, true>(lanes, node, &slabs, lanes.splat(flyer.t_max));
-    let nearest = next::<L, true>(lanes, stack, node, met, interval, flyer.boxes.negative);
+    let nearest = match F::ANY {
+        true => next::<L, true>(lanes, stack, node, met, interval, flyer.boxes.negative),
+        false => next::<L, false>(lanes, stack, node, met, interval, flyer.boxes.negative),
+    };
     // If nothing was met, nothing was pushed.
     flyer.child = select_unpredictable(met == 0, stack.pop_if(met == 0), nearest);
 }

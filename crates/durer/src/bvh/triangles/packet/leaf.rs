@@ -81,8 +81,8 @@ impl Packet<'_> {
                     self.meetings.push(Meeting { corners, triangle });
                 }
                 let (meetings, own) = (&self.meetings, self.meetings[meeting as usize].triangle);
-                met |=
-                    e.meet(lanes, &self.axes, turned, crossed, meeting, |other| own < meetings[other as usize].triangle);
+                met |= e
+                    .meet(lanes, &self.axes, turned, crossed, meeting, |other| own < meetings[other as usize].triangle);
                 all_met |= u64::from(met) << (group * WIDE);
                 if ANY {
                     set_met(&mut e.met, met, meeting);
