@@ -86,7 +86,7 @@ struct Things<'a, T, F> {
 impl<T: Tally, F: FnMut(usize, f32, &mut T) -> f32> Visitor for Things<'_, T, F> {
     type Tally = T;
 
-    const ALONG: bool = false;
+    const UNORDERED: bool = false;
 
     #[inline(always)]
     fn tally(&mut self) -> &mut T {

@@ -12,7 +12,6 @@ use super::lanes::{Lanes, Room, Side, Stack, WIDTH};
 use super::node::{LEAF, Node};
 use crate::math::{Ray, Vec3};
 use glam::Vec3A;
-use std::hint::select_unpredictable;
 
 /// A ray prepared for boxes: conservative, so that rounding never loses a box that the exact ray meets.
 ///
@@ -109,8 +108,8 @@ impl RayBox {
 pub(super) trait Visitor {
     type Tally: Tally;
 
-    /// Whether it is all the same which child is next.
-    const ALONG: bool;
+    /// Whether it does not matter which child comes first.
+    const UNORDERED: bool;
 
     fn tally(&mut self) -> &mut Self::Tally;
 
@@ -145,7 +144,7 @@ pub(super) fn walk<L: Lanes, V: Visitor, const TAME: bool>(
             let (met, interval) = meet::<L, TAME>(lanes, node, &slabs, limit);
             if met != 0 {
                 // The nearest child is next, without a way through the stack.
-                child = match V::ALONG {
+                child = match V::UNORDERED {
                     true => next::<L, true>(lanes, &mut stack, node, met, interval, boxes.negative),
                     false => next::<L, false>(lanes, &mut stack, node, met, interval, boxes.negative),
                 };
@@ -179,12 +178,12 @@ pub(super) fn walk<L: Lanes, V: Visitor, const TAME: bool>(
     }
 }
 
-/// The child that is next, of those that are met; pushes the others, the farthest first.
+/// The child that is next, of those that are met; pushes the others.
 ///
-/// The next is the one that is entered first, or with `ALONG` the first along the axis of the node, which is known sooner. The order of the
-/// others is that along the axis in any case.
+/// The next is the one that is entered first, and the others are pushed from far to near along the axis of the node. With `UNORDERED`
+/// they come by place, so that the next is known sooner.
 #[inline(always)]
-pub(super) fn next<L: Lanes, const ALONG: bool>(
+pub(super) fn next<L: Lanes, const UNORDERED: bool>(
     lanes: L,
     stack: &mut Stack,
     node: &Node,
@@ -192,10 +191,9 @@ pub(super) fn next<L: Lanes, const ALONG: bool>(
     [enter, leave]: [L::Floats; 2],
     negative: u32,
 ) -> u32 {
-    let falling = negative >> (node.axis & 31) & 1;
-    let next = match ALONG {
-        true => select_unpredictable(falling == 0, met.trailing_zeros(), 31 ^ (met | 1).leading_zeros()),
-        false => lanes.nearest(enter, leave),
+    let (next, falling) = match UNORDERED {
+        true => (met.trailing_zeros(), 0),
+        false => (lanes.nearest(enter, leave), negative >> (node.axis & 31) & 1),
     };
     let others = met & !(1 << (next & 7));
     let order = &FAR_TO_NEAR[falling as usize][others as usize & 255];

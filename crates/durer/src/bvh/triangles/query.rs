@@ -206,7 +206,7 @@ impl<'a, T, F: Found> Leaves<'a, T, F> {
 impl<T: Tally, F: Found> Visitor for Leaves<'_, T, F> {
     type Tally = T;
 
-    const ALONG: bool = F::ANY;
+    const UNORDERED: bool = F::ANY;
 
     #[inline(always)]
     fn tally(&mut self) -> &mut T {
