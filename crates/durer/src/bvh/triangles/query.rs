@@ -174,7 +174,6 @@ pub struct Leaves<'a, T, F> {
     asked: Asked<'a>,
     tally: T,
     found: F,
-    inverse_z: f32,
     /// Whether signs found side by side are within the range of numbers.
     side_by_side: bool,
     /// Whether bounds of t are, and decide.
@@ -190,7 +189,6 @@ impl<'a, T, F: Found> Leaves<'a, T, F> {
             asked: Asked { bvh, sheared, t_min: ray.t_min, t_max: ray.t_max },
             tally,
             found: F::default(),
-            inverse_z: 1.0 / dz,
             side_by_side: boxes.moderate,
             bounded: (boxes.tame || TAME.contains(&dz.abs())) && bvh.least_volume == 0.0,
         }
@@ -239,7 +237,7 @@ impl<T: Tally, F: Found> Visitor for Leaves<'_, T, F> {
             // A single one need not wait for bounds.
             unsure ^= wanted;
         } else if self.bounded {
-            let (crossed, span) = (wanted, flat.span(lanes, self.inverse_z));
+            let (crossed, span) = (wanted, flat.span(lanes, 1.0 / sheared.ray().1.z));
             let (start, end) = (lanes.splat(*t_min), lanes.splat(*end));
             // So asked, what is no number is unsure.
             let left_out = lanes.lt(lanes.splat(t_max), span.near) | lanes.le(span.far, start);
