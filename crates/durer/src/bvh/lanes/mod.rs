@@ -14,6 +14,7 @@ mod doubles;
 mod level;
 #[cfg(target_arch = "aarch64")]
 mod neon;
+mod pages;
 mod scalar;
 mod stack;
 mod wide;
@@ -21,6 +22,7 @@ mod wide;
 pub(super) use doubles::Doubles;
 pub(super) use level::Available;
 pub use level::{Level, UnknownLevel};
+pub(super) use pages::large_pages;
 pub(super) use stack::{Room, Stack};
 pub(super) use wide::{WIDE, Wide};
 

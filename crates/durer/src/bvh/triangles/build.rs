@@ -2,7 +2,7 @@
 
 use super::{ROWS, TriangleBvh, number};
 use crate::bvh::build::{self, Preset, Settings};
-use crate::bvh::lanes::{Available, WIDTH};
+use crate::bvh::lanes::{Available, WIDTH, large_pages};
 use crate::bvh::node;
 use crate::math::{Aabb, Vec3};
 use rayon::prelude::*;
@@ -23,9 +23,14 @@ impl TriangleBvh {
         let settings = Settings::triangles(preset);
         let corners_of = |number: u32| triangles[number as usize].map(|i| vertices[i as usize]);
         let tree = build::build_triangles(triangles.len(), &corners_of, &settings);
+        let leaves = vec![0.0; ROWS * tree.order.len() + WIDTH];
+        large_pages(leaves.as_ptr(), leaves.len());
+        let mut nodes = Vec::with_capacity(tree.nodes.len());
+        large_pages(nodes.as_ptr(), nodes.capacity());
+        nodes.extend_from_slice(&tree.nodes);
         let mut bvh = TriangleBvh {
-            leaves: vec![0.0; ROWS * tree.order.len() + WIDTH],
-            nodes: tree.nodes,
+            leaves,
+            nodes,
             bounds: tree.bounds,
             reach: tree.bounds.reach(),
             level: Available::chosen(),
