@@ -15,7 +15,8 @@ pub struct Flat<N: Numbers> {
     corners: [[N::Floats; 3]; 3],
     /// The edge functions of the edges opposite to the corners.
     edges: [N::Floats; 3],
-    /// The product of the least and the greatest of them.
+    /// The product of the least and the greatest of them: positive where all are of one sign, negative where they are not, and
+    /// zero where nothing is sure.
     sign: N::Floats,
 }
 
