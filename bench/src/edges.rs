@@ -97,7 +97,7 @@ pub fn run(options: &Options, count: u32) -> Result<()> {
         println!("\nsphere of radius {radius} at {center}: {}", AIMS.join(", "));
         let show = |name: &str, lost: [usize; 4]| println!("  {name:<22}{:?}", lost);
         let tree = TriangleBvh::build(&mesh.vertices, &mesh.triangles, Preset::Best);
-        let ours = |ray: &Ray| tree.closest(ray).map_or(Found::NONE, |hit| Found { t: hit.t, triangle: hit.triangle });
+        let ours = |ray: &Ray| Found::from(tree.closest(ray));
         show("Dürer", lost(&mesh, (center, radius), count, ours));
         let wrong = [0, 1, 2, 3].map(|aim| {
             let is_wrong = |i: &u32| {

@@ -1,6 +1,7 @@
 //! Meshes and the rays through them: the very same for every tracer.
 
 use anyhow::{Context, Result};
+use durer::bvh::TriangleHit;
 use durer::diag::Diagnostics;
 use durer::format::read_mesh;
 use durer::math::{Aabb, Ray, Vec3};
@@ -12,6 +13,12 @@ use std::path::Path;
 pub struct Found {
     pub t: f32,
     pub triangle: u32,
+}
+
+impl From<Option<TriangleHit>> for Found {
+    fn from(hit: Option<TriangleHit>) -> Found {
+        hit.map_or(Found::NONE, |TriangleHit { t, triangle, .. }| Found { t, triangle })
+    }
 }
 
 impl Found {

@@ -50,7 +50,7 @@ struct Ours(TriangleBvh);
 impl Ours {
     #[inline]
     fn closest(&self, ray: &Ray) -> Found {
-        self.0.closest(ray).map_or(Found::NONE, |hit| Found { t: hit.t, triangle: hit.triangle })
+        self.0.closest(ray).into()
     }
     #[inline]
     fn occluded(&self, ray: &Ray) -> bool {
@@ -66,7 +66,7 @@ impl Ours {
             }
             for ((found, triangle), occluded) in found.iter_mut().zip(&hits).zip(&answers) {
                 *found = match any {
-                    false => triangle.map_or(Found::NONE, |hit| Found { t: hit.t, triangle: hit.triangle }),
+                    false => (*triangle).into(),
                     true => hit(*occluded),
                 };
             }

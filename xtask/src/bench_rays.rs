@@ -4,8 +4,7 @@ use crate::root;
 use std::process::{Command, ExitCode};
 
 pub fn run(arguments: &[String]) -> anyhow::Result<ExitCode> {
-    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
-    let mut command = Command::new(cargo);
+    let mut command = Command::new(crate::cargo());
     command.args(["run", "--release", "--quiet", "--manifest-path"]).arg(root()?.join("bench/Cargo.toml")).arg("--");
     let status = command.args(arguments).status()?;
     Ok(ExitCode::from(status.code().and_then(|code| u8::try_from(code).ok()).unwrap_or(1)))

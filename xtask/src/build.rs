@@ -9,8 +9,8 @@ pub fn durer() -> Result<PathBuf> {
     if let Some(built) = std::env::var_os("DURER_EXE") {
         return Ok(PathBuf::from(built).canonicalize()?);
     }
-    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
-    let status = Command::new(cargo).args(["build", "--release", "--quiet", "--package", "durer-cli"]).status()?;
+    let status =
+        Command::new(crate::cargo()).args(["build", "--release", "--quiet", "--package", "durer-cli"]).status()?;
     if !status.success() {
         bail!("the program does not build");
     }

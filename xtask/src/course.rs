@@ -57,10 +57,10 @@ const SPHERE_CELLS: &str =
 const WOOD: &str = "the official profile of wood rings is not identified, and the board's parity is swapped";
 
 pub fn run(arguments: &[String]) -> Result<ExitCode> {
-    let value = |name: &str| arguments.iter().position(|a| a == name).and_then(|i| arguments.get(i + 1));
+    let value = |name| crate::value(arguments, name);
     let guess = arguments.iter().any(|a| a == "--guess");
     let (only, keep) = (value("--only"), value("--keep").map(PathBuf::from));
-    let corpus = std::env::var_os("DURER_CORPUS").map_or_else(|| PathBuf::from("../shared"), PathBuf::from);
+    let corpus = crate::corpus();
     let course = corpus.join("course").canonicalize().context("the course is not there; set DURER_CORPUS")?;
     let durer = crate::build::durer()?;
     let out = keep.clone().unwrap_or_else(|| std::env::temp_dir().join(format!("durer-course-{}", std::process::id())));

@@ -33,12 +33,12 @@ struct Found {
 }
 
 pub fn run(arguments: &[String]) -> Result<ExitCode> {
-    let value = |name: &str| arguments.iter().position(|a| a == name).and_then(|i| arguments.get(i + 1));
+    let value = |name| crate::value(arguments, name);
     let pixels: usize = value("--pixels").map_or(Ok(100_000), |text| text.parse()).context("--pixels: a number")?;
     let only = value("--only");
     let mut scenes = Vec::new();
     collect(&crate::root()?.join("scenes"), &mut scenes)?;
-    let corpus = std::env::var_os("DURER_CORPUS").map_or_else(|| PathBuf::from("../shared"), PathBuf::from);
+    let corpus = crate::corpus();
     let course = corpus.join("course/scenes");
     match course.is_dir() {
         true => collect(&course, &mut scenes)?,

@@ -17,19 +17,18 @@ const TESTS: [(&str, u32); 4] = [
 ];
 
 pub fn run(arguments: &[String]) -> Result<ExitCode> {
-    let value = |name: &str| arguments.iter().position(|a| a == name).and_then(|i| arguments.get(i + 1));
+    let value = |name| crate::value(arguments, name);
     let only = value("--only").map_or("", String::as_str);
     let wanted: Vec<_> = TESTS.into_iter().filter(|(name, _)| name.contains(only)).collect();
     if wanted.is_empty() {
         bail!("no long test's name contains `{only}`: {}", TESTS.map(|(name, _)| name).join(", "));
     }
-    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let mut failed = 0;
     for (name, usual) in wanted {
         let times = value("--times").map_or(Ok(usual), |times| times.parse())?;
         println!("{name}, {times} times as long:");
         let start = Instant::now();
-        let mut command = Command::new(&cargo);
+        let mut command = Command::new(crate::cargo());
         command.args(["test", "--quiet", "--package", "durer", "--lib", "--", "--exact", "--nocapture", name]);
         let status = command.env("DURER_ROUNDS", times.to_string()).status()?;
         failed += u32::from(!status.success());

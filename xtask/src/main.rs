@@ -12,6 +12,7 @@ mod torture;
 mod verify;
 
 use anyhow::Context;
+use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -61,6 +62,21 @@ fn main() -> anyhow::Result<ExitCode> {
             Ok(ExitCode::from(2))
         }
     }
+}
+
+/// What follows an option.
+fn value<'a>(arguments: &'a [String], name: &str) -> Option<&'a String> {
+    arguments.iter().position(|a| a == name).and_then(|i| arguments.get(i + 1))
+}
+
+/// The data outside the repository.
+fn corpus() -> PathBuf {
+    std::env::var_os("DURER_CORPUS").map_or_else(|| PathBuf::from("../shared"), PathBuf::from)
+}
+
+/// The `cargo` that runs this.
+fn cargo() -> OsString {
+    std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into())
 }
 
 /// The repository: `DURER_ROOT`, or where this was built.

@@ -15,8 +15,8 @@ const WORK: &str = "--size 160x120 --samples 64 --checkpoint-every 10ms --thread
 
 pub fn run(arguments: &[String]) -> Result<ExitCode> {
     let number = |name: &str, usual: u64| -> Result<u64> {
-        let value = arguments.iter().position(|a| a == name).and_then(|i| arguments.get(i + 1));
-        value.map_or(Ok(usual), |value| value.parse().with_context(|| format!("{name} needs a number")))
+        crate::value(arguments, name)
+            .map_or(Ok(usual), |value| value.parse().with_context(|| format!("{name} needs a number")))
     };
     let bench =
         Bench { durer: durer()?, scene: crate::root()?.join("scenes/whitted.txt"), folder: tempfile::tempdir()? };

@@ -15,7 +15,7 @@ const JOBS: [&str; 5] = [
 ];
 
 pub fn run(arguments: &[String]) -> Result<ExitCode> {
-    let value = |name: &str| arguments.iter().position(|a| a == name).and_then(|i| arguments.get(i + 1));
+    let value = |name| crate::value(arguments, name);
     let (trials, only) = (value("--trials").map_or("500", String::as_str), value("--only"));
     let mut scenes: Vec<PathBuf> = Vec::new();
     for entry in std::fs::read_dir(crate::root()?.join("scenes"))? {

@@ -8,13 +8,13 @@ use crate::args::CheckArgs;
 use crate::job::{accel, job};
 use crate::open::load_options;
 use crate::output::say;
+use crate::report::counted;
 use crate::{Failure, bad, output, report};
-use codespan_reporting::term::termcolor::{ColorChoice, StandardStream};
+use codespan_reporting::term::termcolor::StandardStream;
 use durer::check::{CHECKS, Finding, Subject, check, reported};
 use durer::diag::{Diagnostics, Files, Severity};
 use durer::load_text;
 use durer::source::Source;
-use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -123,12 +123,15 @@ fn print(checked: &Checked, mended: bool) {
         diagnostic
     };
     let shown: Vec<_> = checked.findings.iter().map(offer).collect();
-    let color = if std::io::stdout().is_terminal() { ColorChoice::Auto } else { ColorChoice::Never };
-    report::print_to(StandardStream::stdout(color), &checked.files, &shown.iter().collect::<Vec<_>>());
+    report::print_to(
+        StandardStream::stdout(report::colors(&std::io::stdout())),
+        &checked.files,
+        &shown.iter().collect::<Vec<_>>(),
+    );
     let kinds = [(Severity::Error, "error"), (Severity::Warning, "warning"), (Severity::Note, "note")];
     let counts = kinds.iter().filter_map(|(severity, word)| {
         let count = checked.count(|finding| finding.diagnostic.severity == *severity);
-        (count > 0).then(|| format!("{count} {word}{}", if count == 1 { "" } else { "s" }))
+        (count > 0).then(|| counted(count, word))
     });
     let counts = counts.collect::<Vec<_>>().join(", ");
     let found = match (counts.is_empty(), mended) {

@@ -7,6 +7,7 @@ mod there;
 
 use crate::args::CompareArgs;
 use crate::output::{encode, format, save, say};
+use crate::report::counted;
 use crate::{Failure, bad, progress, report};
 use durer::image::compare::{Comparison, Options, Picture, Scale, Verdict, compare, heat_map};
 use durer::image::{Image, Layer, Transfer, check_target, decode_linear};
@@ -99,7 +100,7 @@ fn work(args: &CompareArgs) -> Result<(), Failure> {
     match failed {
         0 if all.iter().any(bad_verdict) => Err(Failure::Different),
         0 => Ok(()),
-        count => Err(bad(format!("{count} of {} could not be compared", text::counted(all.len(), "picture")))),
+        count => Err(bad(format!("{count} of {} could not be compared", counted(all.len(), "picture")))),
     }
 }
 

@@ -14,11 +14,20 @@ use std::ops::Range;
 pub fn print(files: &Files, diagnostics: &Diagnostics, errors_only: bool) {
     let wanted: Vec<&Diagnostic> =
         diagnostics.iter().filter(|d| !errors_only || d.severity == Severity::Error).collect();
-    let color = if std::io::stderr().is_terminal() { ColorChoice::Auto } else { ColorChoice::Never };
-    print_to(StandardStream::stderr(color), files, &wanted);
+    print_to(StandardStream::stderr(colors(&std::io::stderr())), files, &wanted);
     if diagnostics.error_count() > ERROR_LIMIT {
         complain(&format!("and {} errors more", diagnostics.error_count() - ERROR_LIMIT));
     }
+}
+
+/// A number with its noun.
+pub fn counted(count: usize, noun: &str) -> String {
+    if count == 1 { format!("1 {noun}") } else { format!("{count} {noun}s") }
+}
+
+/// Colours are for terminals.
+pub fn colors(stream: &impl IsTerminal) -> ColorChoice {
+    if stream.is_terminal() { ColorChoice::Auto } else { ColorChoice::Never }
 }
 
 /// Prints findings to a stream.

@@ -2,34 +2,31 @@
 
 use crate::open::Opened;
 use crate::report;
-use codespan_reporting::term::termcolor::{ColorChoice, StandardStream};
+use codespan_reporting::term::termcolor::StandardStream;
 use durer::check::picture::{Oddity, oddity};
 use durer::check::{Subject, check};
 use durer::image::Layer;
 use durer::math::Color;
 use durer::render::{Job, Statistics};
-use std::io::IsTerminal;
 
 /// At most so many findings are told.
 const MOST: usize = 3;
 
 /// After `durer render`: whatever looks wrong is told of.
 pub fn after_render(opened: &Opened, job: &Job, pictures: &[Layer], statistics: &Statistics) {
-    let color = pictures.first().filter(|_| job.color);
-    match color.and_then(|layer| oddity(&layer.image, statistics)) {
-        Some(oddity) => tell(opened, job, statistics, &format!("the picture {}", oddity.words())),
-        None => depths(opened, job, pictures, statistics),
-    }
+    after(opened, job, pictures, statistics, |_| true);
 }
 
 /// After `durer course`: pictures of one colour alone, for those are not meant in any year.
 pub fn after_course(opened: &Opened, job: &Job, pictures: &[Layer], statistics: &Statistics) {
+    after(opened, job, pictures, statistics, |oddity| matches!(oddity, Oddity::Black | Oddity::OneColor));
+}
+
+fn after(opened: &Opened, job: &Job, pictures: &[Layer], statistics: &Statistics, is_odd: impl Fn(&Oddity) -> bool) {
     let color = pictures.first().filter(|_| job.color);
-    match color.and_then(|layer| oddity(&layer.image, statistics)) {
-        Some(oddity @ (Oddity::Black | Oddity::OneColor)) => {
-            tell(opened, job, statistics, &format!("the picture {}", oddity.words()));
-        }
-        _ => depths(opened, job, pictures, statistics),
+    match color.and_then(|layer| oddity(&layer.image, statistics)).filter(is_odd) {
+        Some(oddity) => tell(opened, job, statistics, &format!("the picture {}", oddity.words())),
+        None => depths(opened, job, pictures, statistics),
     }
 }
 
@@ -54,6 +51,5 @@ fn tell(opened: &Opened, job: &Job, statistics: &Statistics, what: &str) {
         true => format!("warning: {what}"),
         false => format!("warning: {what}; `durer check` says:"),
     });
-    let color = if std::io::stderr().is_terminal() { ColorChoice::Auto } else { ColorChoice::Never };
-    report::print_to(StandardStream::stderr(color), files, &told);
+    report::print_to(StandardStream::stderr(report::colors(&std::io::stderr())), files, &told);
 }

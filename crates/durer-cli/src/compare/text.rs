@@ -4,6 +4,7 @@ use super::there::There;
 use super::{Compared, Outcome, name, note};
 use crate::args::CompareArgs;
 use crate::output::say;
+use crate::report::counted;
 use durer::image::compare::{Comparison, Finding, Options, Region, Verdict};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
@@ -11,11 +12,6 @@ use std::path::PathBuf;
 
 /// Version of the JSON: grows when a field changes its meaning or goes.
 const VERSION: u32 = 1;
-
-/// A number with its noun.
-pub fn counted(count: usize, noun: &str) -> String {
-    if count == 1 { format!("1 {noun}") } else { format!("{count} {noun}s") }
-}
 
 /// One pair of pictures.
 pub fn single(compared: &Compared, options: &Options) {
