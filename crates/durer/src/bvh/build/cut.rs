@@ -5,7 +5,7 @@
 
 use super::Reference;
 use super::binary::{Builder, half_area};
-use glam::{IVec4, Vec4};
+use glam::{IVec4, Mat4, Vec4};
 
 pub const BINS: usize = 16;
 /// Below this depth things are halved by number, which bounds the depth of all trees: 28 levels halve 2^28 things.
@@ -115,8 +115,9 @@ impl Bins {
     /// Their costs, side by side.
     #[inline(always)]
     fn costs(&self, scale: f32) -> Vec4 {
-        let [a, b, c] = self.boxes.map(|[min, max]| ((max - min) * scale).max(Vec4::ZERO));
-        let [x, y, z] = [0, 1, 2].map(|axis| Vec4::new(a[axis], b[axis], c[axis], 0.0));
+        let size = |axis: usize| ((self.boxes[axis][1] - self.boxes[axis][0]) * scale).max(Vec4::ZERO);
+        let sizes = Mat4::from_cols(size(0), size(1), size(2), Vec4::ZERO).transpose();
+        let [x, y, z] = [sizes.x_axis, sizes.y_axis, sizes.z_axis];
         (x * y + y * z + z * x) * self.counts.as_vec4()
     }
 
