@@ -110,7 +110,7 @@ macro_rules! memory_of_eight {
                 let children = _mm256_loadu_si256(children.as_ptr().cast());
                 _mm256_storeu_si256(to.cast(), _mm256_permutevar8x32_epi32(children, order));
                 _mm256_storeu_ps(to_near, _mm256_permutevar8x32_ps(near, order));
-                stack.grow(count);
+                stack.grow(count.min(WIDTH as u32));
             }
         }
         #[inline(always)]
@@ -249,11 +249,7 @@ impl Lanes for Avx2 {
 
     #[inline(always)]
     fn least(self, a: __m256, mask: u32) -> f32 {
-        proven! {
-            let wanted = _mm256_and_si256(_mm256_set1_epi32(mask as i32), _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128));
-            let left_out = _mm256_cmpeq_epi32(wanted, _mm256_setzero_si256());
-            least(_mm256_blendv_ps(a, _mm256_set1_ps(f32::INFINITY), _mm256_castsi256_ps(left_out)))
-        }
+        proven!(least(_mm256_blendv_ps(_mm256_set1_ps(f32::INFINITY), a, _mm256_castsi256_ps(lanes_of(mask)))))
     }
     #[inline(always)]
     fn select(self, mask: u32, a: __m256, b: __m256) -> __m256 {
