@@ -23,8 +23,8 @@ use glam::{DVec3, Vec3A};
 #[derive(Clone, Copy, Debug)]
 pub struct Sheared {
     axes: [usize; 3],
-    origin: Vec3,
-    dir: Vec3,
+    origin: Vec3A,
+    dir: Vec3A,
     shear: Vec2,
     least_volume: f64,
 }
@@ -46,7 +46,13 @@ impl Sheared {
         let [x, y, z, _] = TURNED[longest as usize & 7][dir.is_negative_bitmask() as usize & 7];
         let axes = [x as usize, y as usize, z as usize];
         let (origin, dir) = (turned(axes, ray.origin.as_ref()), turned(axes, ray.dir.as_ref()));
-        Sheared { axes, origin, dir, shear: Vec2::new(dir.x / dir.z, dir.y / dir.z), least_volume: 0.0 }
+        Sheared {
+            axes,
+            origin: origin.into(),
+            dir: dir.into(),
+            shear: Vec2::new(dir.x / dir.z, dir.y / dir.z),
+            least_volume: 0.0,
+        }
     }
 
     /// Misses triangles for which |(b - a) x (c - a) · d| is less than this: see
@@ -92,14 +98,14 @@ impl Sheared {
     /// A corner in the plane across the ray.
     #[inline(always)]
     fn flat(&self, corner: Vec3) -> Vec2 {
-        let p = corner - self.origin;
+        let p = corner - Vec3::from(self.origin);
         Vec2::new(p.x - self.shear.x * p.z, p.y - self.shear.y * p.z)
     }
 
     /// Where the ray's line crosses a triangle that it crosses: within the triangle's bounds. It may be infinite.
     #[inline(always)]
     pub(crate) fn t(&self, corners: [Vec3; 3]) -> Option<f32> {
-        let Plane { normal, offset, heights } = Plane::new(self.origin, corners);
+        let Plane { normal, offset, heights } = Plane::new(self.origin.into(), corners);
         self.t_of([offset, normal.dot(self.dir.as_dvec3())], heights)
     }
 
@@ -119,7 +125,7 @@ impl Sheared {
     }
 
     /// Origin and direction, turned.
-    pub(crate) fn ray(&self) -> (Vec3, Vec3) {
+    pub(crate) fn ray(&self) -> (Vec3A, Vec3A) {
         (self.origin, self.dir)
     }
 

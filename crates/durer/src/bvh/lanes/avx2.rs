@@ -114,8 +114,8 @@ macro_rules! memory_of_eight {
             }
         }
         #[inline(always)]
-        fn doubles(self, [x, y, z]: [f32; 3]) -> $crate::bvh::lanes::avx2::Four {
-            proven!($crate::bvh::lanes::avx2::Four(_mm256_cvtps_pd(_mm_setr_ps(x, y, z, 0.0))))
+        fn doubles(self, v: glam::Vec3A) -> $crate::bvh::lanes::avx2::Four {
+            proven!($crate::bvh::lanes::avx2::Four(_mm256_cvtps_pd(v.into())))
         }
         #[inline(always)]
         fn prefetch<T>(self, at: *const T) {

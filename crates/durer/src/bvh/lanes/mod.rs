@@ -26,6 +26,8 @@ pub(super) use pages::large_pages;
 pub(super) use stack::{Room, Stack};
 pub(super) use wide::{WIDE, Wide};
 
+use glam::Vec3A;
+
 /// How many numbers lie side by side.
 pub const WIDTH: usize = 8;
 
@@ -66,7 +68,7 @@ pub(super) trait Lanes: Numbers {
     type Doubles: Doubles;
 
     fn wide(self) -> Self::Wide;
-    fn doubles(self, v: [f32; 3]) -> Self::Doubles;
+    fn doubles(self, v: Vec3A) -> Self::Doubles;
 
     fn load(self, from: &[f32; WIDTH]) -> Self::Floats;
     /// What begins at each of nine rows of `stride` numbers; only the first `stride` lanes mean anything.

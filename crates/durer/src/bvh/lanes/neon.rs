@@ -3,6 +3,7 @@
 use super::doubles::Plain;
 use super::wide::Two;
 use super::{Lanes, Numbers, Stack, WIDTH};
+use glam::Vec3A;
 use std::arch::aarch64::*;
 
 /// Every 64-bit ARM has NEON.
@@ -89,8 +90,8 @@ impl Lanes for Neon {
         Two(self)
     }
     #[inline(always)]
-    fn doubles(self, [x, y, z]: [f32; 3]) -> Plain {
-        Plain([x.into(), y.into(), z.into()])
+    fn doubles(self, v: Vec3A) -> Plain {
+        Plain(v.as_dvec3().to_array())
     }
 
     #[inline(always)]

@@ -3,6 +3,7 @@
 use super::doubles::Plain;
 use super::wide::Two;
 use super::{Lanes, Numbers, Stack, WIDTH};
+use glam::Vec3A;
 use std::array::from_fn;
 
 #[derive(Clone, Copy)]
@@ -72,8 +73,8 @@ impl Lanes for Scalar {
         Two(self)
     }
     #[inline(always)]
-    fn doubles(self, [x, y, z]: [f32; 3]) -> Plain {
-        Plain([x.into(), y.into(), z.into()])
+    fn doubles(self, v: Vec3A) -> Plain {
+        Plain(v.as_dvec3().to_array())
     }
 
     #[inline(always)]

@@ -8,6 +8,7 @@
 use crate::bvh::lanes::{Doubles, Lanes, Numbers};
 use crate::math::{Vec2, Vec3};
 use crate::shape::watertight::{Sheared, heights};
+use glam::Vec3A;
 
 /// Triangles in the planes across rays: several and one ray, or one and several rays.
 pub struct Flat<N: Numbers> {
@@ -95,9 +96,9 @@ impl<N: Numbers> Flat<N> {
 pub fn t<L: Lanes>(lanes: L, sheared: &Sheared, [a, b, c]: [Vec3; 3]) -> Option<f32> {
     let (origin, dir) = sheared.ray();
     let heights = heights(origin.z, [a.z, b.z, c.z]);
-    let (a, b, c) = (lanes.doubles(a.to_array()), lanes.doubles(b.to_array()), lanes.doubles(c.to_array()));
+    let (a, b, c) = (lanes.doubles(a.into()), lanes.doubles(b.into()), lanes.doubles(c.into()));
     let normal = b.sub(a).cross(c.sub(a));
-    let to_plane = normal.dots([a.sub(lanes.doubles(origin.to_array())), lanes.doubles(dir.to_array())]);
+    let to_plane = normal.dots([a.sub(lanes.doubles(origin)), lanes.doubles(dir)]);
     sheared.t_of(to_plane, heights)
 }
 
@@ -105,7 +106,7 @@ pub fn t<L: Lanes>(lanes: L, sheared: &Sheared, [a, b, c]: [Vec3; 3]) -> Option<
 #[inline(always)]
 pub fn uv<L: Lanes>(lanes: L, sheared: &Sheared, corners: [Vec3; 3]) -> Vec2 {
     let [a, b, c] = sheared.flatten(corners);
-    let (x, y) = (lanes.doubles([a.x, b.x, c.x]), lanes.doubles([a.y, b.y, c.y]));
+    let (x, y) = (lanes.doubles(Vec3A::new(a.x, b.x, c.x)), lanes.doubles(Vec3A::new(a.y, b.y, c.y)));
     // Twice the areas beside the third corner, the first, and the second.
     let [c, a, b] = x.yzx().mul(y).sub(y.yzx().mul(x)).to_array();
     let det = a + b + c;

@@ -90,25 +90,25 @@ impl TriangleBvh {
     /// The first hit in the ray's open interval (`t_min`, `t_max`).
     #[inline]
     pub fn closest(&self, ray: &Ray) -> Option<TriangleHit> {
-        self.closest_counting(ray, &mut ())
+        self.query::<_, Nearest>(ray, ())
     }
 
     /// As [`TriangleBvh::closest`], counting nodes and tests.
     #[inline]
     pub fn closest_counting<T: Tally>(&self, ray: &Ray, tally: &mut T) -> Option<TriangleHit> {
-        self.query::<T, Nearest>(ray, tally)
+        self.query::<_, Nearest>(ray, tally)
     }
 
     /// Whether anything is hit in the ray's open interval.
     #[inline]
     pub fn occluded(&self, ray: &Ray) -> bool {
-        self.occluded_counting(ray, &mut ())
+        self.query::<_, Any>(ray, ())
     }
 
     /// As [`TriangleBvh::occluded`], counting nodes and tests.
     #[inline]
     pub fn occluded_counting<T: Tally>(&self, ray: &Ray, tally: &mut T) -> bool {
-        self.query::<T, Any>(ray, tally)
+        self.query::<_, Any>(ray, tally)
     }
 
     /// All hits in the ray's open interval, by `t` and then by number of the triangle.
@@ -118,7 +118,7 @@ impl TriangleBvh {
 
     /// As [`TriangleBvh::all_hits`], counting nodes and tests.
     pub fn all_hits_counting<T: Tally>(&self, ray: &Ray, tally: &mut T) -> Vec<TriangleHit> {
-        let mut all = self.query::<T, All>(ray, tally);
+        let mut all = self.query::<_, All>(ray, tally);
         all.sort_unstable_by(|a, b| a.t.total_cmp(&b.t).then(a.triangle.cmp(&b.triangle)));
         // A triangle that was cut is found in several leaves.
         all.dedup_by_key(|hit| hit.triangle);
@@ -162,10 +162,10 @@ impl TriangleBvh {
     }
 
     #[inline]
-    fn query<T: Tally, F: query::Found>(&self, ray: &Ray, tally: &mut T) -> F::Answer {
+    fn query<T: Tally, F: query::Found>(&self, ray: &Ray, tally: T) -> F::Answer {
         match self.nodes.is_empty() {
             true => F::Answer::default(),
-            false => self.level.run(Query::<T, F> { bvh: self, ray, tally, found: PhantomData }),
+            false => self.level.run(Query::<_, F> { bvh: self, ray, tally, found: PhantomData }),
         }
     }
 

@@ -13,7 +13,7 @@ use std::marker::PhantomData;
 pub struct Query<'a, T, F> {
     pub bvh: &'a TriangleBvh,
     pub ray: &'a Ray,
-    pub tally: &'a mut T,
+    pub tally: T,
     pub found: PhantomData<F>,
 }
 

@@ -25,7 +25,7 @@ impl TriangleBvh {
     /// Answers a question for each of the rays with these numbers.
     pub(super) fn each<F: Found>(&self, rays: &[Ray], numbers: &[u32], mut answer: impl FnMut(usize, F::Answer)) {
         match self.bytes() < NEAR {
-            true => numbers.iter().for_each(|&i| answer(i as usize, self.query::<_, F>(&rays[i as usize], &mut ()))),
+            true => numbers.iter().for_each(|&i| answer(i as usize, self.query::<_, F>(&rays[i as usize], ()))),
             false => self.stream::<F>(rays, numbers, answer),
         }
     }
@@ -81,7 +81,7 @@ impl<'a, F: Found, A: FnMut(usize, F::Answer)> Stream<'a, F, A> {
             match RayBox::new(ray, self.bvh.reach) {
                 Some(boxes) if boxes.tame && !self.bvh.nodes.is_empty() => flyer.boxes = boxes,
                 _ => {
-                    (self.answer)(number, self.bvh.query::<_, F>(ray, &mut ()));
+                    (self.answer)(number, self.bvh.query::<_, F>(ray, ()));
                     continue;
                 }
             }
