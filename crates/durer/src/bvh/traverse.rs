@@ -11,7 +11,7 @@ use super::Tally;
 use super::lanes::{Lanes, Room, Side, Stack, WIDTH};
 use super::node::{LEAF, Node};
 use crate::math::{Ray, Vec3};
-use glam::Vec3A;
+use glam::{Vec3A, Vec4};
 
 /// A ray prepared for boxes: conservative, so that rounding never loses a box that the exact ray meets.
 ///
@@ -53,12 +53,11 @@ impl RayBox {
     pub fn new(ray: &Ray, most: f32) -> Option<Self> {
         let (origin, dir) = (Vec3A::from(ray.origin), Vec3A::from(ray.dir));
         // Coordinates themselves count too: a ray that was moved into object space is off by their rounding.
-        let reach = origin.abs().max_element() + most;
-        let [start, end] = [TAME.start, TAME.end].map(Vec3A::splat);
-        let (length, ordinary) = (dir.abs(), origin.abs().cmplt(end));
-        let tame = (ordinary & length.cmpgt(start) & length.cmplt(end)).all() && TAME.contains(&reach);
-        if !tame {
-            return is_sound(ray).then(|| Self::wild(ray, reach));
+        // As a sum it is also no number where any of them is none.
+        let reach = origin.abs().element_sum() + most;
+        let sizes = dir.abs().extend(reach);
+        if !(sizes.cmpgt(Vec4::splat(TAME.start)) & sizes.cmplt(Vec4::splat(TAME.end))).all() {
+            return is_sound(ray).then(|| Self::wild(ray, ray.origin.abs().max_element() + most));
         }
         let outward = Vec3A::splat(pad(reach)).copysign(dir);
         let inverse = 1.0 / dir;
@@ -72,7 +71,7 @@ impl RayBox {
             negative: dir.is_negative_bitmask(),
             t_min: ray.t_min,
             scale: 1.0,
-            tame,
+            tame: true,
             moderate: true,
         })
     }

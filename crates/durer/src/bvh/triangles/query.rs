@@ -176,22 +176,28 @@ pub struct Leaves<'a, T, F> {
     found: F,
     /// Whether signs found side by side are within the range of numbers.
     side_by_side: bool,
-    /// Whether bounds of t are, and decide.
-    bounded: bool,
+    /// Whether all numbers of the ray are.
+    tame: bool,
 }
 
 impl<'a, T, F: Found> Leaves<'a, T, F> {
     #[inline(always)]
     pub fn new(bvh: &'a TriangleBvh, ray: &Ray, boxes: &RayBox, tally: T) -> Self {
         let sheared = Sheared::finite(ray).least_volume(bvh.least_volume);
-        let dz = sheared.ray().1.z;
         Leaves {
             asked: Asked { bvh, sheared, t_min: ray.t_min, t_max: ray.t_max },
             tally,
             found: F::default(),
             side_by_side: boxes.moderate,
-            bounded: (boxes.tame || TAME.contains(&dz.abs())) && bvh.least_volume == 0.0,
+            tame: boxes.tame,
         }
+    }
+
+    /// Whether bounds of t found side by side are within the range of numbers, and decide.
+    #[inline(always)]
+    fn is_bounded(&self) -> bool {
+        let Asked { bvh, sheared, .. } = &self.asked;
+        (self.tame || TAME.contains(&sheared.ray().1.z.abs())) && bvh.least_volume == 0.0
     }
 
     /// What was found, when the search has ended.
@@ -236,7 +242,7 @@ impl<T: Tally, F: Found> Visitor for Leaves<'_, T, F> {
         if !F::ANY && wanted.is_power_of_two() {
             // A single one need not wait for bounds.
             unsure ^= wanted;
-        } else if self.bounded {
+        } else if self.is_bounded() {
             let (crossed, span) = (wanted, flat.span(lanes, 1.0 / sheared.ray().1.z));
             let (start, end) = (lanes.splat(*t_min), lanes.splat(*end));
             // So asked, what is no number is unsure.
