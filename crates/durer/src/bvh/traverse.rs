@@ -1,6 +1,6 @@
-//! Walking a ray through the tree, nearest boxes first.
+//! Walking a ray through the tree, nearest boxes first, or, where that does not matter, in any order.
 //!
-//! Of the children that the ray meets the nearest is next; the others are pushed, farthest first, by one
+//! Of the children that the ray meets the one that is entered first is next; the others are pushed, farthest along an axis first, by one
 //! store whatever their number, so that no branch depends on how many children are met. What lies beyond a hit is dropped when it
 //! is popped: that is guessed rightly more often than not, and the walk goes on before it is known where the hit is.
 //!
@@ -57,7 +57,7 @@ impl RayBox {
         let reach = origin.abs().element_sum() + most;
         let sizes = dir.abs().extend(reach);
         if !(sizes.cmpgt(Vec4::splat(TAME.start)) & sizes.cmplt(Vec4::splat(TAME.end))).all() {
-            return is_sound(ray).then(|| Self::wild(ray, ray.origin.abs().max_element() + most));
+            return is_sound(ray).then(|| Self::wild(ray, (ray.origin.abs().max_element() + most).min(f32::MAX)));
         }
         let outward = Vec3A::splat(pad(reach)).copysign(dir);
         let inverse = 1.0 / dir;
@@ -119,7 +119,8 @@ pub(super) trait Visitor {
     fn leaf<L: Lanes>(&mut self, lanes: L, leaf: u32, t_max: f32) -> f32;
 }
 
-/// Shows every leaf that the ray may meet before `t_max` to the visitor, roughly from near to far.
+/// Shows every leaf that the ray may meet before `t_max` to the visitor, roughly from near to far if the visitor is not
+/// [`UNORDERED`](Visitor::UNORDERED).
 ///
 /// Gives `t_max` as it is in the end. Leaves whose boxes begin exactly at `t_max` are still shown. `TAME` must be that of `boxes`.
 #[inline(always)]

@@ -69,8 +69,8 @@ macro_rules! arithmetic_of_eight {
 }
 pub(super) use arithmetic_of_eight;
 
-/// What [`Lanes`] asks of memory.
-macro_rules! memory_of_eight {
+/// What [`Lanes`] asks of eight lanes, but for masks.
+macro_rules! order_of_eight {
     () => {
         #[inline(always)]
         fn load(self, from: &[f32; WIDTH]) -> __m256 {
@@ -124,7 +124,7 @@ macro_rules! memory_of_eight {
         }
     };
 }
-pub(super) use memory_of_eight;
+pub(super) use order_of_eight;
 
 /// Nine rows, checked once.
 #[inline(always)]
@@ -240,7 +240,7 @@ impl Lanes for Avx2 {
     type Wide = Two<Self>;
     type Doubles = Four;
 
-    memory_of_eight!();
+    order_of_eight!();
 
     #[inline(always)]
     fn wide(self) -> Two<Self> {

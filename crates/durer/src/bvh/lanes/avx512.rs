@@ -1,6 +1,6 @@
-//! AVX-512 on eight lanes: masks in registers of their own, and compression in one instruction.
+//! AVX-512 on eight lanes, with masks in registers of their own, and on sixteen.
 
-use super::avx2::{Four, arithmetic_of_eight, least, memory_of_eight, operations, proven};
+use super::avx2::{Four, arithmetic_of_eight, least, operations, order_of_eight, proven};
 use super::{Kernel, Lanes, Numbers, Stack, WIDE, WIDTH, Wide};
 use std::arch::x86_64::*;
 
@@ -41,7 +41,7 @@ impl Lanes for Avx512 {
     type Wide = Sixteen;
     type Doubles = Four;
 
-    memory_of_eight!();
+    order_of_eight!();
 
     #[inline(always)]
     fn wide(self) -> Sixteen {

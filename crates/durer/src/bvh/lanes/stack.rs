@@ -102,7 +102,7 @@ impl<'a> Stack<'a> {
         self.height += count as usize;
     }
 
-    /// The lowest child and distance, and the height. There is room for a vector above the height.
+    /// The lowest child and distance, and the height.
     #[inline(always)]
     pub(super) fn all(&mut self) -> (*mut u32, *mut f32, usize) {
         (self.room.children.as_mut_ptr().cast::<u32>(), self.room.near.as_mut_ptr().cast::<f32>(), self.height)

@@ -56,7 +56,7 @@ impl Input {
     }
 }
 
-/// Everything that lanes do but [`Lanes::mul_add`] and [`Wide::mul_add`], as bits; all that are no number as the same.
+/// Everything that lanes do but [`Numbers::mul_add`], as bits; all that are no number as the same.
 struct Everything<'a>(&'a Input);
 
 /// Vectors that are looked at for each input: of arithmetic, comparison, a stack before and after, nine rows, and columns; and twice
@@ -95,6 +95,12 @@ impl Kernel for Everything<'_> {
         lanes.transpose([a, b, c, b, a, c, a, b]).into_iter().for_each(|row| tell(row, WIDTH));
         found.extend(lanes.store(a).map(number));
         found.extend(wide(lanes.wide(), floats).map(number));
+        let [p, q, r] = floats.each_ref().map(|[x, y, z, ..]| lanes.doubles(Vec3A::new(*x, *y, *z)));
+        let vectors = [p.sub(q), p.mul(q), p.yzx(), p.cross(q)].map(Doubles::to_array);
+        let exact = vectors.into_iter().flatten().chain(p.dots([q, r]));
+        found.extend(
+            exact.flat_map(|x| if x.is_nan() { [0; 2] } else { [x.to_bits() as u32, (x.to_bits() >> 32) as u32] }),
+        );
         let numbers = *mask & (lanes.le(c, c));
         // Zeroes of either sign are as little.
         found.push((lanes.least(c, numbers) + 0.0).to_bits());

@@ -1,13 +1,13 @@
 //! Making a tree of triangles, and making it fit again when vertices have moved.
 
-use super::{ROWS, TriangleBvh, number};
+use super::{ROWS, TAG, TriangleBvh, number};
 use crate::bvh::build::{self, Preset, Settings};
 use crate::bvh::lanes::{Available, WIDTH, large_pages};
 use crate::bvh::node;
 use crate::math::{Aabb, Vec3};
 use rayon::prelude::*;
 
-/// Corners of so many leaves are written at once.
+/// Rows of so many leaves are written at once.
 const AT_ONCE: usize = 1024;
 
 impl TriangleBvh {
@@ -57,10 +57,14 @@ impl TriangleBvh {
                     0 => self.nodes[child as usize].children().fold(Aabb::EMPTY, |b, (_, c, _)| b.union(c)),
                     _ => {
                         let (rows, count) = self.rows(child);
-                        Aabb::around((0..count).flat_map(|lane| corners_of(number(rows, count, lane))))
+                        let corners = (0..count).map(|lane| corners_of(number(rows, count, lane)));
+                        Aabb::around(corners.filter(is_finite).flatten())
                     }
                 };
-                self.nodes[parent].set(place, bounds, child);
+                // Where nothing can be hit for now, the old box keeps the place.
+                if !bounds.is_empty() {
+                    self.nodes[parent].set(place, bounds, child);
+                }
             }
         }
         self.bounds =
@@ -87,14 +91,18 @@ impl TriangleBvh {
                 let (rows, after) = part.split_at_mut(ROWS * count);
                 for lane in 0..count {
                     let number = order.map_or_else(|| number(rows, count, lane), |order| order[first + lane]);
-                    let corners = corners_of(number);
+                    let corners = Some(corners_of(number)).filter(is_finite).unwrap_or([Vec3::NAN; 3]);
                     for row in 0..9 {
                         rows[row * count + lane] = corners[row / 3][row % 3];
                     }
-                    rows[9 * count + lane] = f32::from_bits(number);
+                    rows[9 * count + lane] = f32::from_bits(number | TAG);
                 }
                 part = after;
             }
         });
     }
+}
+
+fn is_finite(corners: &[Vec3; 3]) -> bool {
+    corners.iter().all(|p| p.is_finite())
 }

@@ -17,10 +17,13 @@ use std::marker::PhantomData;
 /// What a leaf has of its triangles: nine coordinates and a number.
 const ROWS: usize = 10;
 
+/// Makes a number below 2^28 an `f32` of ordinary size: what is read past the end of a row is computed with, and tiny numbers are slow.
+const TAG: u32 = 1 << 30;
+
 /// The number of a triangle of a leaf, by its rows and the count of its triangles.
 #[inline(always)]
 fn number(rows: &[f32], count: usize, lane: usize) -> u32 {
-    rows[(ROWS - 1) * count + lane].to_bits()
+    rows[(ROWS - 1) * count + lane].to_bits() & !TAG
 }
 
 /// Where a ray meets a mesh.

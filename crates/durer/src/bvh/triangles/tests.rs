@@ -201,12 +201,34 @@ fn a_refitted_tree_finds_what_brute_force_finds() {
         let mut tree = TriangleBvh::build(&mesh.0, &mesh.1, preset);
         for round in 1..6 {
             let bent = |v: &Vec3| *v + 0.1 * round as f32 * Vec3::new(v.y, v.z * v.x, -v.x) + Vec3::Y * round as f32;
-            let moved: Mesh = (mesh.0.iter().map(bent).collect(), mesh.1.clone());
+            let mut moved: Mesh = (mesh.0.iter().map(bent).collect(), mesh.1.clone());
+            // Now and then much is nowhere, and returns.
+            match round {
+                2 => moved.0[50..250].fill(Vec3::NAN),
+                4 => moved.0[..100].fill(Vec3::new(0.0, f32::INFINITY, 1.0)),
+                _ => {}
+            }
             tree.refit(&moved.0, &moved.1);
             for _ in 0..200 {
                 let ray = ray(&moved, &mut random, 1.0, Vec3::Y * round as f32);
                 assert_eq!(tree.closest(&ray).as_ref().map(bits), brute_force(&moved, &ray).first().map(bits));
             }
+        }
+    }
+}
+
+/// Where sums of coordinates leave the range of numbers, what is hit is still a triangle.
+#[test]
+fn the_greatest_numbers_lead_to_triangles() {
+    let mut random = Random(5);
+    let mesh = torus(12, 6);
+    let huge: Mesh = (mesh.0.iter().map(|v| *v / 1.5 * 3e38).collect(), mesh.1.clone());
+    for level in Level::available() {
+        let tree = TriangleBvh::build(&huge.0, &huge.1, Preset::Balanced).at_level(level);
+        for _ in 0..2_000 {
+            let ray = Ray { t_max: f32::INFINITY, ..Ray::new(3e38 * random.point(), random.point()) };
+            let all = tree.all_hits(&ray);
+            assert!(all.iter().all(|hit| (hit.triangle as usize) < huge.1.len()), "{ray:?} {all:?}");
         }
     }
 }

@@ -11,8 +11,8 @@ pub type PerRay = [f32; WIDE];
 
 const ZERO: PerRay = [0.0; WIDE];
 
-/// Sixteen rays of one octant and one longest axis, prepared for boxes as in [`RayBox`](crate::bvh::traverse::RayBox), and for
-/// triangles as in [`Sheared`](crate::shape::watertight::Sheared).
+/// Sixteen rays of one octant and one longest axis, prepared for boxes as in [`RayBox`](crate::bvh::traverse::RayBox), though
+/// with somewhat less padding, and for triangles as in [`Sheared`](crate::shape::watertight::Sheared).
 #[derive(Clone, Copy)]
 #[repr(align(64))]
 pub struct Rays {
@@ -33,7 +33,7 @@ pub struct Rays {
     /// Heights lower than the first or above the second are outside the interval for sure; those above the third and below the
     /// fourth are inside.
     pub heights: [PerRay; 4],
-    /// PerRay of what was met, as bits.
+    /// Numbers of what was met, as bits.
     pub met: PerRay,
 }
 
