@@ -144,10 +144,7 @@ pub(super) fn walk<L: Lanes, V: Visitor, const TAME: bool>(
             let (met, interval) = meet::<L, TAME>(lanes, node, &slabs, limit);
             if met != 0 {
                 // The nearest child is next, without a way through the stack.
-                child = match V::UNORDERED {
-                    true => next::<L, true>(lanes, &mut stack, node, met, interval, boxes.negative),
-                    false => next::<L, false>(lanes, &mut stack, node, met, interval, boxes.negative),
-                };
+                child = next(lanes, V::UNORDERED, &mut stack, node, met, interval, boxes.negative);
                 continue;
             }
         } else {
@@ -180,18 +177,19 @@ pub(super) fn walk<L: Lanes, V: Visitor, const TAME: bool>(
 
 /// The child that is next, of those that are met; pushes the others.
 ///
-/// The next is the one that is entered first, and the others are pushed from far to near along the axis of the node. With `UNORDERED`
+/// The next is the one that is entered first, and the others are pushed from far to near along the axis of the node. If `unordered`
 /// they come by place, so that the next is known sooner.
 #[inline(always)]
-pub(super) fn next<L: Lanes, const UNORDERED: bool>(
+pub(super) fn next<L: Lanes>(
     lanes: L,
+    unordered: bool,
     stack: &mut Stack,
     node: &Node,
     met: u32,
     [enter, leave]: [L::Floats; 2],
     negative: u32,
 ) -> u32 {
-    let (next, falling) = match UNORDERED {
+    let (next, falling) = match unordered {
         true => (met.trailing_zeros(), 0),
         false => (lanes.nearest(enter, leave), negative >> (node.axis & 31) & 1),
     };

@@ -116,13 +116,17 @@ pub(super) fn references(boxes: &[Aabb]) -> Vec<Reference> {
     full.map(|(i, b)| Reference::new(*b, i as u32)).collect()
 }
 
+/// Whether a triangle can be hit.
+pub(super) fn is_finite(corners: &[Vec3; 3]) -> bool {
+    corners.iter().all(|p| p.is_finite())
+}
+
 /// References to triangles 0, 1, 2, ...; those with corners that are no finite points are left out.
 fn triangle_references(count: usize, corners_of: &(impl Fn(u32) -> [Vec3; 3] + Sync)) -> Vec<Reference> {
     assert!(count <= MOST_ITEMS, "a tree holds at most 2^28 triangles");
     let reference = |i| {
         let corners = corners_of(i);
-        let whole = corners.iter().all(|p| p.is_finite());
-        Reference::new(if whole { Aabb::around(corners) } else { Aabb::EMPTY }, i)
+        Reference::new(if is_finite(&corners) { Aabb::around(corners) } else { Aabb::EMPTY }, i)
     };
     let mut references: Vec<Reference> = (0..count as u32).into_par_iter().with_min_len(4096).map(reference).collect();
     if references.par_iter().with_min_len(4096).any(|r| r.min.x > r.max.x) {

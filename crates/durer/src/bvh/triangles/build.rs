@@ -1,7 +1,7 @@
 //! Making a tree of triangles, and making it fit again when vertices have moved.
 
 use super::{ROWS, TAG, TriangleBvh, number};
-use crate::bvh::build::{self, Preset, Settings};
+use crate::bvh::build::{self, Preset, Settings, is_finite};
 use crate::bvh::lanes::{Available, WIDTH, large_pages};
 use crate::bvh::node;
 use crate::math::{Aabb, Vec3};
@@ -101,8 +101,4 @@ impl TriangleBvh {
             }
         });
     }
-}
-
-fn is_finite(corners: &[Vec3; 3]) -> bool {
-    corners.iter().all(|p| p.is_finite())
 }
