@@ -70,11 +70,12 @@ impl<T: Tally, F: FnMut(usize, f32, &mut T) -> f32> Kernel for Walk<'_, T, F> {
 
     #[inline(always)]
     fn run<L: Lanes>(mut self, lanes: L) {
-        let Some(boxes) = RayBox::new(self.ray, self.bvh.bounds.reach()) else { return };
-        match boxes.tame {
-            true => walk::<L, _, true>(lanes, &self.bvh.nodes, &boxes, self.ray.t_max, &mut self.things),
-            false => walk::<L, _, false>(lanes, &self.bvh.nodes, &boxes, self.ray.t_max, &mut self.things),
-        };
+        let (nodes, reach, t_max) = (&self.bvh.nodes, self.bvh.bounds.reach(), self.ray.t_max);
+        if let Some(boxes) = RayBox::new(self.ray, reach) {
+            walk::<L, _, true>(lanes, nodes, &boxes, t_max, &mut self.things);
+        } else if let Some(boxes) = RayBox::wild(self.ray, reach) {
+            walk::<L, _, false>(lanes, nodes, &boxes, t_max, &mut self.things);
+        }
     }
 }
 
@@ -94,7 +95,7 @@ impl<T: Tally, F: FnMut(usize, f32, &mut T) -> f32> Visitor for Things<'_, T, F>
     }
 
     #[inline(always)]
-    fn leaf<L: Lanes>(&mut self, _: L, leaf: u32, t_max: f32) -> f32 {
+    fn leaf<L: Lanes, const TAME: bool>(&mut self, _: L, leaf: u32, t_max: f32) -> f32 {
         let (first, count) = node::items(leaf);
         (first..first + count).fold(t_max, |t_max, item| (self.test)(item, t_max, self.tally))
     }

@@ -25,8 +25,6 @@ pub(super) struct RayBox {
     t_min: f32,
     /// Distances of boxes are in these units; 1 where the ray is tame.
     scale: f32,
-    /// Whether nothing in tests of boxes leaves the range of `f32`, so that they may be in a short form.
-    pub tame: bool,
     /// Whether coordinates are so small that no test of a triangle overflows.
     pub moderate: bool,
 }
@@ -48,7 +46,8 @@ fn pad(reach: f32) -> f32 {
 pub(super) const TAME: std::ops::Range<f32> = 1e-15..1e15;
 
 impl RayBox {
-    /// Prepares a ray for a tree with no coordinates greater than `most`; `None` where it cannot hit anything.
+    /// Prepares a tame ray for a tree with no coordinates greater than `most`: one for which nothing leaves the range of `f32`, and that
+    /// begins no earlier than at its origin. So tests of boxes may be in a short form.
     #[inline(always)]
     pub fn new(ray: &Ray, most: f32) -> Option<Self> {
         let (origin, dir) = (Vec3A::from(ray.origin), Vec3A::from(ray.dir));
@@ -56,29 +55,29 @@ impl RayBox {
         // As a sum it is also no number where any of them is none.
         let reach = origin.abs().element_sum() + most;
         let sizes = dir.abs().extend(reach);
-        if !(sizes.cmpgt(Vec4::splat(TAME.start)) & sizes.cmplt(Vec4::splat(TAME.end))).all() {
-            return is_sound(ray).then(|| Self::wild(ray, (ray.origin.abs().max_element() + most).min(f32::MAX)));
+        let tame = sizes.cmpgt(Vec4::splat(TAME.start)) & sizes.cmplt(Vec4::splat(TAME.end));
+        if !tame.all() || !(0.0..ray.t_max).contains(&ray.t_min) {
+            return None;
         }
-        let outward = Vec3A::splat(pad(reach)).copysign(dir);
         let inverse = 1.0 / dir;
+        let (at, outward) = (origin * -inverse, pad(reach) * inverse.abs());
         let planes = Planes {
             inverse: inverse.to_array(),
-            near_origin: (-(origin + outward) * inverse).to_array(),
-            far_origin: (-(origin - outward) * inverse).to_array(),
+            near_origin: (at - outward).to_array(),
+            far_origin: (at + outward).to_array(),
         };
-        (ray.t_min < ray.t_max).then_some(RayBox {
-            planes,
-            negative: dir.is_negative_bitmask(),
-            t_min: ray.t_min,
-            scale: 1.0,
-            tame: true,
-            moderate: true,
-        })
+        // Not the zero with a sign.
+        let t_min = ray.t_min + 0.0;
+        Some(RayBox { planes, negative: dir.is_negative_bitmask(), t_min, scale: 1.0, moderate: true })
     }
 
-    /// A ray with zeroes or extreme numbers.
+    /// Prepares any ray; `None` where it cannot hit anything.
     #[cold]
-    fn wild(ray: &Ray, reach: f32) -> Self {
+    pub fn wild(ray: &Ray, most: f32) -> Option<Self> {
+        if !is_sound(ray) {
+            return None;
+        }
+        let reach = (ray.origin.abs().max_element() + most).min(f32::MAX);
         let length = ray.dir.abs();
         // A direction with a power of two taken out, so that distances within the bounds are no extreme numbers.
         let scale = f32::from_bits(length.max_element().to_bits() & 0x7f80_0000).max(f32::MIN_POSITIVE);
@@ -93,7 +92,7 @@ impl RayBox {
         };
         let negative = dir.is_negative_bitmask();
         let t_min = (ray.t_min * scale).next_down();
-        RayBox { planes, negative, t_min, scale, tame: false, moderate: reach < TAME.end }
+        Some(RayBox { planes, negative, t_min, scale, moderate: reach < TAME.end })
     }
 
     /// A distance along the ray, not too small, as boxes have it.
@@ -115,14 +114,14 @@ pub(super) trait Visitor {
     /// Has what is likely next brought near.
     fn fetch<L: Lanes>(&self, _: L, _: u32) {}
 
-    /// Looks into a leaf; gives the new `t_max`, at most the old. Minus infinity ends the walk.
-    fn leaf<L: Lanes>(&mut self, lanes: L, leaf: u32, t_max: f32) -> f32;
+    /// Looks into a leaf, with a ray that is `TAME` or not; gives the new `t_max`, at most the old. Minus infinity ends the walk.
+    fn leaf<L: Lanes, const TAME: bool>(&mut self, lanes: L, leaf: u32, t_max: f32) -> f32;
 }
 
 /// Shows every leaf that the ray may meet before `t_max` to the visitor, roughly from near to far if the visitor is not
 /// [`UNORDERED`](Visitor::UNORDERED).
 ///
-/// Gives `t_max` as it is in the end. Leaves whose boxes begin exactly at `t_max` are still shown. `TAME` must be that of `boxes`.
+/// Gives `t_max` as it is in the end. Leaves whose boxes begin exactly at `t_max` are still shown. `TAME` says whether `boxes` are of [`RayBox::new`].
 #[inline(always)]
 pub(super) fn walk<L: Lanes, V: Visitor, const TAME: bool>(
     lanes: L,
@@ -151,7 +150,7 @@ pub(super) fn walk<L: Lanes, V: Visitor, const TAME: bool>(
             if let Some(next) = stack.peek() {
                 visitor.fetch(lanes, next);
             }
-            let t = visitor.leaf(lanes, child, t_max);
+            let t = visitor.leaf::<L, TAME>(lanes, child, t_max);
             if t < t_max {
                 t_max = t;
                 if t == f32::NEG_INFINITY {
@@ -262,10 +261,16 @@ pub(super) fn meet<L: Lanes, const TAME: bool>(
     }
     // Zero times infinity is no number, where a ray runs in a side of a box: such a side is left out, being the
     // first argument here, or the second there where the first is no number.
-    let enter_y = lanes.max(slab!(0, x, near_origin), slab!(1, y, near_origin));
-    let leave_y = lanes.min(slab!(0, x.other(), far_origin), slab!(1, y.other(), far_origin));
-    let enter = lanes.max(enter_y, lanes.max(slab!(2, z, near_origin), *t_min));
-    let leave = lanes.min(leave_y, lanes.min(slab!(2, z.other(), far_origin), limit));
+    macro_rules! end {
+        ($sooner:ident, $least:ident, $a:expr, $b:expr) => {
+            if TAME { lanes.$sooner($a, $b) } else { lanes.$least($a, $b) }
+        };
+    }
+    let enter = end!(later, max, slab!(0, x, near_origin), slab!(1, y, near_origin));
+    let leave = end!(sooner, min, slab!(0, x.other(), far_origin), slab!(1, y.other(), far_origin));
+    let enter_z = end!(later, max, slab!(2, z, near_origin), *t_min);
+    let leave_z = end!(sooner, min, slab!(2, z.other(), far_origin), limit);
+    let (enter, leave) = (end!(later, max, enter, enter_z), end!(sooner, min, leave, leave_z));
     (lanes.le(enter, leave), [enter, leave])
 }
 

@@ -2,6 +2,7 @@
 
 mod aabb;
 mod affine;
+mod doubles;
 pub mod fp;
 pub mod noise;
 #[cfg(test)]
@@ -11,6 +12,7 @@ pub mod roots;
 
 pub use aabb::Aabb;
 pub use affine::Affine;
+pub(crate) use doubles::Doubles;
 pub use glam::{Vec2, Vec3};
 pub use ray::{Line, Ray};
 

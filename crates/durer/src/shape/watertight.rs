@@ -13,8 +13,8 @@
 //! Edelsbrunner and Mücke's *Simulation of Simplicity*, ACM TOG 9(1), 1990.
 
 use super::Crossing;
-use crate::math::{Ray, Vec2, Vec3};
-use glam::{DVec3, Vec3A};
+use crate::math::{Doubles, Ray, Vec2, Vec3};
+use glam::Vec3A;
 
 /// A ray prepared for many triangles.
 ///
@@ -41,18 +41,22 @@ impl Sheared {
     /// Prepares a ray that has a finite direction.
     #[inline(always)]
     pub(crate) fn finite(ray: &Ray) -> Self {
-        let (dir, length) = (Vec3A::from(ray.dir), Vec3A::from(ray.dir).abs());
-        let longest = length.cmpeq(Vec3A::splat(length.max_element())).bitmask();
-        let [x, y, z, _] = TURNED[longest as usize & 7][dir.is_negative_bitmask() as usize & 7];
-        let axes = [x as usize, y as usize, z as usize];
-        let (origin, dir) = (turned(axes, ray.origin.as_ref()), turned(axes, ray.dir.as_ref()));
-        Sheared {
-            axes,
-            origin: origin.into(),
-            dir: dir.into(),
-            shear: Vec2::new(dir.x / dir.z, dir.y / dir.z),
-            least_volume: 0.0,
-        }
+        let axes = turn(ray.dir.into());
+        let [x, y, z] = Sheared::indices(axes);
+        let turned = |v: &[f32; 3]| Vec3A::new(v[x], v[y], v[z]);
+        Self::turned(axes, turned(ray.origin.as_ref()), turned(ray.dir.as_ref()))
+    }
+
+    /// A ray with its axes, by [`turn`], and turned already.
+    #[inline(always)]
+    pub(crate) fn turned(axes: &[u32; 4], origin: Vec3A, dir: Vec3A) -> Self {
+        let shear = dir / dir.z;
+        Sheared { axes: Self::indices(axes), origin, dir, shear: Vec2::new(shear.x, shear.y), least_volume: 0.0 }
+    }
+
+    #[inline(always)]
+    fn indices([x, y, z, _]: &[u32; 4]) -> [usize; 3] {
+        [*x as usize, *y as usize, *z as usize]
     }
 
     /// Misses triangles for which |(b - a) x (c - a) · d| is less than this: see
@@ -80,7 +84,8 @@ impl Sheared {
         if is_front(c, a) != front || is_front(a, b) != front {
             return false;
         }
-        let det = areas(flat).element_sum();
+        let [a, b, c] = areas(flat.map(doubles));
+        let det = a + b + c;
         det != 0.0 && !det.is_nan()
     }
 
@@ -105,18 +110,13 @@ impl Sheared {
     /// Where the ray's line crosses a triangle that it crosses: within the triangle's bounds. It may be infinite.
     #[inline(always)]
     pub(crate) fn t(&self, corners: [Vec3; 3]) -> Option<f32> {
-        let Plane { normal, offset, heights } = Plane::new(self.origin.into(), corners);
-        self.t_of([offset, normal.dot(self.dir.as_dvec3())], heights)
-    }
-
-    /// The same, from a corner's distance to the plane of the triangle, and that which the ray's direction goes, both times any
-    /// number; and the heights of the lowest and of the highest corner.
-    #[inline(always)]
-    pub(crate) fn t_of(&self, [offset, volume]: [f64; 2], heights: [f64; 2]) -> Option<f32> {
+        let (origin, dir) = (self.origin.as_dvec3().to_array(), self.dir.as_dvec3().to_array());
+        let line = Exact { origin, dir, inverse: 1.0 / dir[2] };
+        let [t, volume] = line.t(corners.map(|corner| corner.as_dvec3().to_array()));
         if volume.abs() < self.least_volume {
             return None;
         }
-        Some(t_between(offset / volume, heights, self.dir.z))
+        Some(t as f32)
     }
 
     /// The axes in the order of turned vectors.
@@ -135,68 +135,45 @@ impl Sheared {
     }
 }
 
-/// The plane of a turned triangle, as seen from the origin of a turned ray. Nothing of it branches, so that it can be had for
-/// several rays side by side.
-pub(crate) struct Plane {
-    normal: DVec3,
-    offset: f64,
-    /// The heights of the lowest and of the highest corner.
-    heights: [f64; 2],
+/// The line of a turned ray in double precision; or several side by side, or one beside several triangles. Nothing here branches.
+#[derive(Clone, Copy)]
+pub(crate) struct Exact<D> {
+    pub origin: [D; 3],
+    pub dir: [D; 3],
+    /// 1 over the last component of the direction.
+    pub inverse: D,
 }
 
-impl Plane {
+impl<D: Doubles> Exact<D> {
+    /// Where it crosses a turned triangle that it crosses, and the volume |(b - a) x (c - a) · d| with its sign.
+    ///
+    /// That is where it meets the plane, but between the lowest and the highest corner: seen from nearly its side, the
+    /// triangle still bounds t, also where that is no number. Products are rounded monotonically, so the corners' distances are
+    /// between those of the lowest and of the highest.
     #[inline(always)]
-    pub fn new(origin: Vec3, [a, b, c]: [Vec3; 3]) -> Self {
-        let heights = heights(origin.z, [a.z, b.z, c.z]);
-        let (a, b, c) = (a.as_dvec3(), b.as_dvec3(), c.as_dvec3());
-        let normal = (b - a).cross(c - a);
-        Plane { normal, offset: normal.dot(a - origin.as_dvec3()), heights }
+    pub fn t(&self, [a, b, c]: [[D; 3]; 3]) -> [D; 2] {
+        let normal = D::cross(D::difference(b, a), D::difference(c, a));
+        let volume = D::dot(normal, self.dir);
+        let (lowest, highest) = (a[2].min(b[2].min(c[2])), a[2].max(b[2].max(c[2])));
+        let p = lowest.sub(self.origin[2]).mul(self.inverse);
+        let q = highest.sub(self.origin[2]).mul(self.inverse);
+        let t = D::dot(normal, D::difference(a, self.origin)).div(volume);
+        [t.max(p.min(q)).min(p.max(q)), volume]
     }
-
-    /// Where a direction that crosses the triangle leads to it.
-    #[inline(always)]
-    pub fn t(&self, dir: Vec3) -> f32 {
-        t_between(self.offset / self.normal.dot(dir.as_dvec3()), self.heights, dir.z)
-    }
-}
-
-/// The heights of the lowest and of the highest corner above the origin.
-#[inline(always)]
-pub(crate) fn heights(origin: f32, [a, b, c]: [f32; 3]) -> [f64; 2] {
-    let (lowest, highest) = (least(a, least(b, c)), most(a, most(b, c)));
-    [f64::from(lowest) - f64::from(origin), f64::from(highest) - f64::from(origin)]
-}
-
-/// Where a ray of the height `dz` meets a plane, but between the heights of the lowest and of the highest corner.
-///
-/// Seen from nearly its side, the triangle still bounds t, also where that is no number. Divisions are rounded
-/// monotonically: the corners' distances are between those of the lowest and of the highest.
-#[inline(always)]
-pub(crate) fn t_between(t: f64, heights: [f64; 2], dz: f32) -> f32 {
-    let dz = f64::from(dz);
-    let [p, q] = heights.map(|height| height / dz);
-    least(most(t, least(p, q)), most(p, q)) as f32
 }
 
 /// The second and third barycentric coordinate of the origin, by the corners in the plane across a ray that crosses the triangle.
 #[inline(always)]
 pub(crate) fn uv_across(flat: [Vec2; 3]) -> Vec2 {
+    uv(areas(flat.map(doubles)))
+}
+
+/// The second and third barycentric coordinate, by what [`areas`] gives for a triangle that is crossed.
+#[inline(always)]
+pub(crate) fn uv([a, b, c]: [f64; 3]) -> Vec2 {
     // None of the three is of another sign than the others, so their sum is as exact as they are.
-    let areas = areas(flat);
-    let det = areas.element_sum();
-    Vec2::new((areas.y / det) as f32, (areas.z / det) as f32)
-}
-
-/// The lesser of two numbers, the second where the first is none.
-#[inline(always)]
-fn least<T: PartialOrd>(a: T, b: T) -> T {
-    if a < b { a } else { b }
-}
-
-/// The greater of two numbers, the second where the first is none.
-#[inline(always)]
-fn most<T: PartialOrd>(a: T, b: T) -> T {
-    if a > b { a } else { b }
+    let det = a + b + c;
+    Vec2::new((b / det) as f32, (c / det) as f32)
 }
 
 /// The axes that turn a ray, by the longest component of its direction and whether that is negative (1) or not (0).
@@ -206,6 +183,14 @@ pub(crate) const fn turned_axes(longest: usize, negative: usize) -> [usize; 3] {
         [[[1, 2, 0], [2, 1, 0]], [[2, 0, 1], [0, 2, 1]], [[0, 1, 2], [1, 0, 2]], [[0; 3]; 2]];
     // So masked, indices need not be tested.
     AXES[longest & 3][negative & 1]
+}
+
+/// The axes of a turned ray with such a direction: which component is first, second, and third.
+#[inline(always)]
+pub(crate) fn turn(dir: Vec3A) -> &'static [u32; 4] {
+    let length = dir.abs();
+    let longest = length.cmpeq(Vec3A::splat(length.max_element())).bitmask();
+    &TURNED[longest as usize & 7][dir.is_negative_bitmask() as usize & 7]
 }
 
 /// The axes that turn a ray, by which components of its direction are longest (a bit for each; the last of them counts) and which are
@@ -227,10 +212,21 @@ fn turned([x, y, z]: [usize; 3], v: &[f32; 3]) -> Vec3 {
     Vec3::new(v[x], v[y], v[z])
 }
 
+/// A point in the plane across a ray, in double precision.
+fn doubles(p: Vec2) -> [f64; 2] {
+    [f64::from(p.x), f64::from(p.y)]
+}
+
 /// Twice the areas of the triangles from the origin to the three edges: unnormalised barycentric coordinates.
 #[inline(always)]
-fn areas([a, b, c]: [Vec2; 3]) -> DVec3 {
-    DVec3::new(edge(b, c), edge(c, a), edge(a, b))
+pub(crate) fn areas<D: Doubles>([a, b, c]: [[D; 2]; 3]) -> [D; 3] {
+    [edge(b, c), edge(c, a), edge(a, b)]
+}
+
+/// The edge function of the edge from `p` to `q` about the origin: a product of two `f32` is exact.
+#[inline(always)]
+fn edge<D: Doubles>(p: [D; 2], q: [D; 2]) -> D {
+    q[0].mul(p[1]).sub(q[1].mul(p[0]))
 }
 
 /// Whether the edge from `p` to `q` goes round the origin clockwise: the sign of the edge function, never zero.
@@ -246,13 +242,6 @@ fn is_front(p: Vec2, q: Vec2) -> bool {
 fn is_front_exact(p: Vec2, q: Vec2) -> bool {
     // Terms of the edge function about (e, e^2), in falling order: 1, e, e^2. Differences in double precision, for
     // those of single precision may underflow.
-    [edge(p, q), f64::from(q.y) - f64::from(p.y), f64::from(p.x) - f64::from(q.x)]
-        .into_iter()
-        .find(|term| *term != 0.0)
-        .is_some_and(|term| term > 0.0)
-}
-
-/// The edge function of the edge from `p` to `q` about the origin: a product of two f32 is exact in f64.
-fn edge(p: Vec2, q: Vec2) -> f64 {
-    f64::from(q.x) * f64::from(p.y) - f64::from(q.y) * f64::from(p.x)
+    let [p, q] = [doubles(p), doubles(q)];
+    [edge(p, q), q[1] - p[1], p[0] - q[0]].into_iter().find(|term| *term != 0.0).is_some_and(|term| term > 0.0)
 }

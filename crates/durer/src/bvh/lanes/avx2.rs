@@ -1,7 +1,7 @@
 //! AVX2 with FMA.
 
 use super::wide::Two;
-use super::{Doubles, Kernel, Lanes, Numbers, Stack, WIDTH};
+use super::{Kernel, Lanes, Numbers, Stack, WIDTH};
 use std::arch::x86_64::*;
 
 /// Proof that the processor has AVX2, FMA, BMI 1 and 2, LZCNT, and POPCNT.
@@ -77,18 +77,30 @@ macro_rules! order_of_eight {
             proven!(_mm256_loadu_ps(from.as_ptr()))
         }
         #[inline(always)]
+        fn turn(self, v: glam::Vec3A, order: &[u32; 4]) -> glam::Vec3A {
+            proven!(_mm_permutevar_ps(v.into(), _mm_loadu_si128(order.as_ptr().cast())).into())
+        }
+        #[inline(always)]
         fn store(self, a: __m256) -> [f32; WIDTH] {
             let mut to = [0.0; WIDTH];
             proven!(_mm256_storeu_ps(to.as_mut_ptr(), a));
             to
         }
         #[inline(always)]
-        fn rows(self, from: &[f32], stride: usize, axes: [usize; 3]) -> [[__m256; 3]; 3] {
+        fn rows(self, from: &$crate::bvh::lanes::Rows, stride: usize, axes: [usize; 3]) -> [[__m256; 3]; 3] {
             $crate::bvh::lanes::avx2::rows(from, stride, axes)
         }
         #[inline(always)]
         fn transpose(self, rows: [__m256; WIDTH]) -> [__m256; WIDTH] {
             $crate::bvh::lanes::avx2::transpose(rows)
+        }
+        #[inline(always)]
+        fn sooner(self, a: __m256, b: __m256) -> __m256 {
+            proven!(_mm256_castsi256_ps(_mm256_min_epi32(_mm256_castps_si256(a), _mm256_castps_si256(b))))
+        }
+        #[inline(always)]
+        fn later(self, a: __m256, b: __m256) -> __m256 {
+            proven!(_mm256_castsi256_ps(_mm256_max_epi32(_mm256_castps_si256(a), _mm256_castps_si256(b))))
         }
         #[inline(always)]
         fn nearest(self, a: __m256, b: __m256) -> u32 {
@@ -114,10 +126,6 @@ macro_rules! order_of_eight {
             }
         }
         #[inline(always)]
-        fn doubles(self, v: glam::Vec3A) -> $crate::bvh::lanes::avx2::Four {
-            proven!($crate::bvh::lanes::avx2::Four(_mm256_cvtps_pd(v.into())))
-        }
-        #[inline(always)]
         fn prefetch<T>(self, at: *const T) {
             // SAFETY: the instruction takes any address.
             unsafe { _mm_prefetch::<_MM_HINT_T0>(at.cast()) };
@@ -128,13 +136,13 @@ pub(super) use order_of_eight;
 
 /// Nine rows, checked once.
 #[inline(always)]
-pub(super) fn rows(from: &[f32], stride: usize, axes: [usize; 3]) -> [[__m256; 3]; 3] {
-    assert!(stride <= WIDTH && from.len() >= 9 * stride + WIDTH);
+pub(super) fn rows(from: &super::Rows, stride: usize, axes: [usize; 3]) -> [[__m256; 3]; 3] {
+    assert!(stride <= WIDTH);
     // So masked, a row begins no later than behind the last.
     let starts = [(axes[0] & 3) * stride, (axes[1] & 3) * stride, (axes[2] & 3) * stride];
     macro_rules! row {
         ($corner:literal, $k:literal) => {
-            // SAFETY: row number 9 would end within the slice; the features are proven by the caller.
+            // SAFETY: row number 9 ends before what is read past the last; the features are proven by the caller.
             unsafe { _mm256_loadu_ps(from.as_ptr().add(starts[$k]).add($corner * 3 * stride)) }
         };
     }
@@ -185,41 +193,30 @@ pub(super) fn least(a: __m256) -> f32 {
     }
 }
 
+/// Operations on `f64`, one instruction each.
+macro_rules! doubles {
+    ($doubles:ident: $($name:ident = $instruction:ident;)*) => {
+        impl $crate::math::Doubles for $doubles {$(
+            #[inline(always)]
+            fn $name(self, other: Self) -> Self {
+                proven!($doubles($instruction(self.0, other.0)))
+            }
+        )*}
+    };
+}
+pub(super) use doubles;
+
 /// Four `f64`, with AVX2.
 #[derive(Clone, Copy)]
-pub struct Four(pub(super) __m256d);
+pub struct Four(__m256d);
 
-impl Doubles for Four {
-    #[inline(always)]
-    fn sub(self, other: Self) -> Self {
-        proven!(Four(_mm256_sub_pd(self.0, other.0)))
-    }
-    #[inline(always)]
-    fn mul(self, other: Self) -> Self {
-        proven!(Four(_mm256_mul_pd(self.0, other.0)))
-    }
-    #[inline(always)]
-    fn yzx(self) -> Self {
-        proven!(Four(_mm256_permute4x64_pd::<0b11_00_10_01>(self.0)))
-    }
-    #[inline(always)]
-    fn dots(self, [p, q]: [Self; 2]) -> [f64; 2] {
-        let (p, q) = (self.mul(p).0, self.mul(q).0);
-        let mut sums = [0.0; 2];
-        proven! {
-            let (x_z, y) = (_mm256_unpacklo_pd(p, q), _mm256_castpd256_pd128(_mm256_unpackhi_pd(p, q)));
-            let sum = _mm_add_pd(_mm256_castpd256_pd128(x_z), y);
-            _mm_storeu_pd(sums.as_mut_ptr(), _mm_add_pd(sum, _mm256_extractf128_pd::<1>(x_z)));
-        }
-        sums
-    }
-    #[inline(always)]
-    fn to_array(self) -> [f64; 3] {
-        let mut to = [0.0; 4];
-        proven!(_mm256_storeu_pd(to.as_mut_ptr(), self.0));
-        let [x, y, z, _] = to;
-        [x, y, z]
-    }
+doubles! { Four:
+    add = _mm256_add_pd;
+    sub = _mm256_sub_pd;
+    mul = _mm256_mul_pd;
+    div = _mm256_div_pd;
+    min = _mm256_min_pd;
+    max = _mm256_max_pd;
 }
 
 impl Numbers for Avx2 {
@@ -238,13 +235,37 @@ impl Numbers for Avx2 {
 
 impl Lanes for Avx2 {
     type Wide = Two<Self>;
-    type Doubles = Four;
+    type Doubles = (Four, Four);
 
     order_of_eight!();
 
     #[inline(always)]
     fn wide(self) -> Two<Self> {
         Two(self)
+    }
+    #[inline(always)]
+    fn splat_double(self, x: f64) -> (Four, Four) {
+        proven!((Four(_mm256_set1_pd(x)), Four(_mm256_set1_pd(x))))
+    }
+    #[inline(always)]
+    fn doubles(self, a: __m256) -> (Four, Four) {
+        proven! {
+            let (low, high) = (_mm256_castps256_ps128(a), _mm256_extractf128_ps::<1>(a));
+            (Four(_mm256_cvtps_pd(low)), Four(_mm256_cvtps_pd(high)))
+        }
+    }
+    #[inline(always)]
+    fn singles(self, (low, high): (Four, Four)) -> __m256 {
+        proven!(_mm256_set_m128(_mm256_cvtpd_ps(high.0), _mm256_cvtpd_ps(low.0)))
+    }
+    #[inline(always)]
+    fn store_doubles(self, (low, high): (Four, Four)) -> [f64; WIDTH] {
+        let mut to = [0.0; WIDTH];
+        proven! {
+            _mm256_storeu_pd(to.as_mut_ptr(), low.0);
+            _mm256_storeu_pd(to.as_mut_ptr().add(4), high.0);
+        }
+        to
     }
 
     #[inline(always)]

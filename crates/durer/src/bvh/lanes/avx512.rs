@@ -1,6 +1,6 @@
 //! AVX-512 on eight lanes, with masks in registers of their own, and on sixteen.
 
-use super::avx2::{Four, arithmetic_of_eight, least, operations, order_of_eight, proven};
+use super::avx2::{arithmetic_of_eight, doubles, least, operations, order_of_eight, proven};
 use super::{Kernel, Lanes, Numbers, Stack, WIDE, WIDTH, Wide};
 use std::arch::x86_64::*;
 
@@ -39,13 +39,31 @@ impl Numbers for Avx512 {
 
 impl Lanes for Avx512 {
     type Wide = Sixteen;
-    type Doubles = Four;
+    type Doubles = Eight;
 
     order_of_eight!();
 
     #[inline(always)]
     fn wide(self) -> Sixteen {
         Sixteen(())
+    }
+    #[inline(always)]
+    fn splat_double(self, x: f64) -> Eight {
+        proven!(Eight(_mm512_set1_pd(x)))
+    }
+    #[inline(always)]
+    fn doubles(self, a: __m256) -> Eight {
+        proven!(Eight(_mm512_cvtps_pd(a)))
+    }
+    #[inline(always)]
+    fn singles(self, a: Eight) -> __m256 {
+        proven!(_mm512_cvtpd_ps(a.0))
+    }
+    #[inline(always)]
+    fn store_doubles(self, a: Eight) -> [f64; WIDTH] {
+        let mut to = [0.0; WIDTH];
+        proven!(_mm512_storeu_pd(to.as_mut_ptr(), a.0));
+        to
     }
 
     #[inline(always)]
@@ -56,6 +74,19 @@ impl Lanes for Avx512 {
     fn select(self, mask: u32, a: __m256, b: __m256) -> __m256 {
         proven!(_mm256_mask_mov_ps(b, mask as u8, a))
     }
+}
+
+/// Eight `f64`; the same proof.
+#[derive(Clone, Copy)]
+pub struct Eight(__m512d);
+
+doubles! { Eight:
+    add = _mm512_add_pd;
+    sub = _mm512_sub_pd;
+    mul = _mm512_mul_pd;
+    div = _mm512_div_pd;
+    min = _mm512_min_pd;
+    max = _mm512_max_pd;
 }
 
 /// One vector of sixteen lanes; the same proof.

@@ -10,7 +10,6 @@
 mod avx2;
 #[cfg(target_arch = "x86_64")]
 mod avx512;
-mod doubles;
 mod level;
 #[cfg(target_arch = "aarch64")]
 mod neon;
@@ -19,13 +18,13 @@ mod scalar;
 mod stack;
 mod wide;
 
-pub(super) use doubles::Doubles;
 pub(super) use level::Available;
 pub use level::{Level, UnknownLevel};
 pub(super) use pages::large_pages;
 pub(super) use stack::{Room, Stack};
 pub(super) use wide::{WIDE, Wide};
 
+use crate::math::Doubles;
 use glam::Vec3A;
 
 /// How many numbers lie side by side.
@@ -64,18 +63,29 @@ pub(super) trait Numbers: Copy {
 pub(super) trait Lanes: Numbers {
     /// The same for sixteen numbers.
     type Wide: Wide;
-    /// Vectors in space.
+    /// So many `f64`.
     type Doubles: Doubles;
 
     fn wide(self) -> Self::Wide;
-    fn doubles(self, v: Vec3A) -> Self::Doubles;
+    fn splat_double(self, x: f64) -> Self::Doubles;
+    fn doubles(self, a: Self::Floats) -> Self::Doubles;
+    /// Rounded to single precision.
+    fn singles(self, a: Self::Doubles) -> Self::Floats;
+    fn store_doubles(self, a: Self::Doubles) -> [f64; WIDTH];
+
+    /// The components of a vector in an order.
+    fn turn(self, v: Vec3A, order: &[u32; 4]) -> Vec3A;
 
     fn load(self, from: &[f32; WIDTH]) -> Self::Floats;
     /// What begins at each of nine rows of `stride` numbers; only the first `stride` lanes mean anything.
     ///
     /// Rows come by corner, then by axis in the order of `axes`.
-    fn rows(self, from: &[f32], stride: usize, axes: [usize; 3]) -> [[Self::Floats; 3]; 3];
+    fn rows(self, from: &Rows, stride: usize, axes: [usize; 3]) -> [[Self::Floats; 3]; 3];
     fn store(self, a: Self::Floats) -> [f32; WIDTH];
+    /// The lesser of two numbers as signed integers have it: a negative one where either is negative, else as [`Numbers::min`].
+    fn sooner(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
+    /// The greater of two numbers as signed integers have it: where one of them at least is not negative as [`Numbers::max`].
+    fn later(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
     /// The least of the lanes whose bits are set, none of which is NaN; infinity if there are none.
     fn least(self, a: Self::Floats, mask: u32) -> f32;
     /// The lane where `a` is least of those where it is at most `b`; one of the lanes if there are none. It counts as an integer, without its
@@ -90,6 +100,12 @@ pub(super) trait Lanes: Numbers {
     /// Has the line of memory at an address, if there is one, brought near.
     fn prefetch<T>(self, at: *const T);
 }
+
+/// How many rows a leaf of triangles has: nine coordinates and a number.
+pub const ROWS: usize = 10;
+
+/// As many rows as there may be, with what is read past the last.
+pub type Rows = [f32; ROWS * WIDTH + WIDTH];
 
 /// One of two neighbouring rows.
 #[derive(Clone, Copy)]
@@ -118,10 +134,10 @@ impl Side {
 
 /// What [`Lanes::rows`] gives in one lane.
 #[inline(always)]
-pub fn column(from: &[f32], stride: usize, [x, y, z]: [usize; 3], lane: usize) -> [[f32; 3]; 3] {
-    assert!(lane < stride && stride <= WIDTH && from.len() >= 9 * stride + WIDTH);
+pub fn column(from: &Rows, stride: usize, [x, y, z]: [usize; 3], lane: usize) -> [[f32; 3]; 3] {
+    assert!(lane < WIDTH && stride <= WIDTH);
     let [x, y, z] = [x & 3, y & 3, z & 3];
-    // SAFETY: so masked, the last is in row 9, before the slice's end.
+    // SAFETY: so masked, the last is in row 9 of at most as many numbers as a vector has.
     let at = |place: usize| unsafe { *from.get_unchecked(place) };
     let (x, y, z) = (x * stride + lane, y * stride + lane, z * stride + lane);
     [0, 3 * stride, 6 * stride].map(|corner| [at(corner + x), at(corner + y), at(corner + z)])

@@ -1,9 +1,8 @@
 //! NEON: eight lanes as two vectors of four.
 
-use super::doubles::Plain;
 use super::wide::Two;
 use super::{Lanes, Numbers, Stack, WIDTH};
-use glam::Vec3A;
+use crate::math::Doubles;
 use std::arch::aarch64::*;
 
 /// Every 64-bit ARM has NEON.
@@ -20,6 +19,37 @@ macro_rules! proven {
         // SAFETY: NEON belongs to the target; references are valid.
         unsafe { $($code)* }
     };
+}
+
+/// Two `f64`.
+#[derive(Clone, Copy)]
+pub struct TwoDoubles(float64x2_t);
+
+impl Doubles for TwoDoubles {
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        proven!(TwoDoubles(vaddq_f64(self.0, other.0)))
+    }
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        proven!(TwoDoubles(vsubq_f64(self.0, other.0)))
+    }
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        proven!(TwoDoubles(vmulq_f64(self.0, other.0)))
+    }
+    #[inline(always)]
+    fn div(self, other: Self) -> Self {
+        proven!(TwoDoubles(vdivq_f64(self.0, other.0)))
+    }
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        proven!(TwoDoubles(vbslq_f64(vcltq_f64(self.0, other.0), self.0, other.0)))
+    }
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        proven!(TwoDoubles(vbslq_f64(vcgtq_f64(self.0, other.0), self.0, other.0)))
+    }
 }
 
 #[inline(always)]
@@ -83,23 +113,52 @@ impl Numbers for Neon {
 
 impl Lanes for Neon {
     type Wide = Two<Self>;
-    type Doubles = Plain;
+    type Doubles = ((TwoDoubles, TwoDoubles), (TwoDoubles, TwoDoubles));
 
     #[inline(always)]
     fn wide(self) -> Two<Self> {
         Two(self)
     }
     #[inline(always)]
-    fn doubles(self, v: Vec3A) -> Plain {
-        Plain(v.as_dvec3().to_array())
+    fn splat_double(self, x: f64) -> Self::Doubles {
+        let two = TwoDoubles(proven!(vdupq_n_f64(x)));
+        ((two, two), (two, two))
+    }
+    #[inline(always)]
+    fn doubles(self, a: Pair) -> Self::Doubles {
+        proven! {
+            let four = |a| (TwoDoubles(vcvt_f64_f32(vget_low_f32(a))), TwoDoubles(vcvt_high_f64_f32(a)));
+            (four(a.0), four(a.1))
+        }
+    }
+    #[inline(always)]
+    fn singles(self, (low, high): Self::Doubles) -> Pair {
+        proven! {
+            let four = |(a, b): (TwoDoubles, TwoDoubles)| vcvt_high_f32_f64(vcvt_f32_f64(a.0), b.0);
+            Pair(four(low), four(high))
+        }
+    }
+    #[inline(always)]
+    fn store_doubles(self, ((a, b), (c, d)): Self::Doubles) -> [f64; WIDTH] {
+        let mut to = [0.0; WIDTH];
+        for (to, two) in to.chunks_exact_mut(2).zip([a, b, c, d]) {
+            proven!(vst1q_f64(to.as_mut_ptr(), two.0));
+        }
+        to
     }
 
+    #[inline(always)]
+    fn turn(self, v: glam::Vec3A, [x, y, z, _]: &[u32; 4]) -> glam::Vec3A {
+        let [a, b, c] = v.to_array();
+        let v = [a, b, c, c];
+        glam::Vec3A::new(v[*x as usize & 3], v[*y as usize & 3], v[*z as usize & 3])
+    }
     #[inline(always)]
     fn load(self, from: &[f32; WIDTH]) -> Pair {
         proven!(Pair(vld1q_f32(from.as_ptr()), vld1q_f32(from.as_ptr().add(4))))
     }
     #[inline(always)]
-    fn rows(self, from: &[f32], stride: usize, axes: [usize; 3]) -> [[Pair; 3]; 3] {
+    fn rows(self, from: &super::Rows, stride: usize, axes: [usize; 3]) -> [[Pair; 3]; 3] {
         std::array::from_fn(|corner| {
             std::array::from_fn(|k| {
                 let row = (3 * corner + axes[k]) * stride;
@@ -118,6 +177,20 @@ impl Lanes for Neon {
             vst1q_f32(to.as_mut_ptr().add(4), a.1);
         }
         to
+    }
+    #[inline(always)]
+    fn sooner(self, a: Pair, b: Pair) -> Pair {
+        proven! {
+            let sooner = |a, b| vreinterpretq_f32_s32(vminq_s32(vreinterpretq_s32_f32(a), vreinterpretq_s32_f32(b)));
+            Pair(sooner(a.0, b.0), sooner(a.1, b.1))
+        }
+    }
+    #[inline(always)]
+    fn later(self, a: Pair, b: Pair) -> Pair {
+        proven! {
+            let later = |a, b| vreinterpretq_f32_s32(vmaxq_s32(vreinterpretq_s32_f32(a), vreinterpretq_s32_f32(b)));
+            Pair(later(a.0, b.0), later(a.1, b.1))
+        }
     }
     #[inline(always)]
     fn least(self, a: Pair, mask: u32) -> f32 {

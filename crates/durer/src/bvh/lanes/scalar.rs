@@ -1,15 +1,31 @@
 //! Plain code.
 
-use super::doubles::Plain;
 use super::wide::Two;
 use super::{Lanes, Numbers, Stack, WIDTH};
-use glam::Vec3A;
+use crate::math::Doubles;
 use std::array::from_fn;
 
 #[derive(Clone, Copy)]
 pub struct Scalar;
 
 type F = [f32; WIDTH];
+
+/// Eight `f64`.
+#[derive(Clone, Copy)]
+pub struct Plain([f64; WIDTH]);
+
+macro_rules! plain {
+    ($($name:ident)*) => {$(
+        #[inline(always)]
+        fn $name(self, other: Self) -> Self {
+            Plain(from_fn(|i| Doubles::$name(self.0[i], other.0[i])))
+        }
+    )*};
+}
+
+impl Doubles for Plain {
+    plain! { add sub mul div min max }
+}
 
 fn mask(test: impl Fn(usize) -> bool) -> u32 {
     (0..WIDTH).fold(0, |mask, i| mask | u32::from(test(i)) << i)
@@ -73,16 +89,34 @@ impl Lanes for Scalar {
         Two(self)
     }
     #[inline(always)]
-    fn doubles(self, v: Vec3A) -> Plain {
-        Plain(v.as_dvec3().to_array())
+    fn splat_double(self, x: f64) -> Plain {
+        Plain([x; WIDTH])
+    }
+    #[inline(always)]
+    fn doubles(self, a: F) -> Plain {
+        Plain(a.map(f64::from))
+    }
+    #[inline(always)]
+    fn singles(self, a: Plain) -> F {
+        a.0.map(|x| x as f32)
+    }
+    #[inline(always)]
+    fn store_doubles(self, a: Plain) -> [f64; WIDTH] {
+        a.0
     }
 
+    #[inline(always)]
+    fn turn(self, v: glam::Vec3A, [x, y, z, _]: &[u32; 4]) -> glam::Vec3A {
+        let [a, b, c] = v.to_array();
+        let v = [a, b, c, c];
+        glam::Vec3A::new(v[*x as usize & 3], v[*y as usize & 3], v[*z as usize & 3])
+    }
     #[inline(always)]
     fn load(self, from: &[f32; WIDTH]) -> F {
         *from
     }
     #[inline(always)]
-    fn rows(self, from: &[f32], stride: usize, axes: [usize; 3]) -> [[F; 3]; 3] {
+    fn rows(self, from: &super::Rows, stride: usize, axes: [usize; 3]) -> [[F; 3]; 3] {
         from_fn(|corner| {
             from_fn(|k| {
                 let row = (3 * corner + axes[k]) * stride;
@@ -93,6 +127,14 @@ impl Lanes for Scalar {
     #[inline(always)]
     fn store(self, a: F) -> [f32; WIDTH] {
         a
+    }
+    #[inline(always)]
+    fn sooner(self, a: F, b: F) -> F {
+        from_fn(|i| f32::from_bits((a[i].to_bits() as i32).min(b[i].to_bits() as i32) as u32))
+    }
+    #[inline(always)]
+    fn later(self, a: F, b: F) -> F {
+        from_fn(|i| f32::from_bits((a[i].to_bits() as i32).max(b[i].to_bits() as i32) as u32))
     }
     #[inline(always)]
     fn least(self, a: F, mask: u32) -> f32 {

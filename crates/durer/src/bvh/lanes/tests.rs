@@ -36,7 +36,7 @@ fn number(random: &mut Random) -> f32 {
 /// Numbers for all lanes, and what is needed beside them.
 struct Input {
     floats: [[f32; WIDTH]; 3],
-    rows: [f32; 10 * WIDTH],
+    rows: Rows,
     stride: usize,
     axes: [usize; 3],
     order: [u8; WIDTH],
@@ -59,9 +59,9 @@ impl Input {
 /// Everything that lanes do but [`Numbers::mul_add`], as bits; all that are no number as the same.
 struct Everything<'a>(&'a Input);
 
-/// Vectors that are looked at for each input: of arithmetic, comparison, a stack before and after, nine rows, and columns; and twice
-/// as wide ones.
-const OPERATIONS: usize = 8 + 5 + 2 + 9 + WIDTH + 2 * 10;
+/// Vectors that are looked at for each input: of arithmetic, in double precision, of comparison, a stack before and after, nine rows,
+/// and columns; and twice as wide ones.
+const OPERATIONS: usize = 10 + 7 + 5 + 2 + 9 + WIDTH + 2 * 10;
 
 impl Kernel for Everything<'_> {
     type Output = Vec<u32>;
@@ -88,6 +88,8 @@ impl Kernel for Everything<'_> {
         tell(lanes.abs(a), WIDTH);
         tell(lanes.min(a, c), WIDTH);
         tell(lanes.max(a, c), WIDTH);
+        tell(lanes.sooner(a, c), WIDTH);
+        tell(lanes.later(a, c), WIDTH);
         for corner in lanes.rows(rows, *stride, *axes) {
             corner.into_iter().for_each(|row| tell(row, *stride));
         }
@@ -95,12 +97,14 @@ impl Kernel for Everything<'_> {
         lanes.transpose([a, b, c, b, a, c, a, b]).into_iter().for_each(|row| tell(row, WIDTH));
         found.extend(lanes.store(a).map(number));
         found.extend(wide(lanes.wide(), floats).map(number));
-        let [p, q, r] = floats.each_ref().map(|[x, y, z, ..]| lanes.doubles(Vec3A::new(*x, *y, *z)));
-        let vectors = [p.sub(q), p.mul(q), p.yzx(), p.cross(q)].map(Doubles::to_array);
-        let exact = vectors.into_iter().flatten().chain(p.dots([q, r]));
-        found.extend(
-            exact.flat_map(|x| if x.is_nan() { [0; 2] } else { [x.to_bits() as u32, (x.to_bits() >> 32) as u32] }),
-        );
+        let (p, q) = (lanes.doubles(a), lanes.doubles(c).mul(lanes.splat_double(0.1)));
+        for doubles in [p, p.add(q), p.sub(q), p.mul(q), p.div(q), p.min(q), p.max(q)] {
+            let bits = |x: f64| if x.is_nan() { [0; 2] } else { [x.to_bits() as u32, (x.to_bits() >> 32) as u32] };
+            found.extend(lanes.store_doubles(doubles).into_iter().flat_map(bits));
+            found.extend(lanes.store(lanes.singles(doubles)).map(number));
+        }
+        let turned = lanes.turn(Vec3A::from_slice(&floats[0]), &[axes[0] as u32, axes[1] as u32, axes[2] as u32, 0]);
+        found.extend(turned.to_array().map(number));
         let numbers = *mask & (lanes.le(c, c));
         // Zeroes of either sign are as little.
         found.push((lanes.least(c, numbers) + 0.0).to_bits());

@@ -1,8 +1,8 @@
 //! Making a tree of triangles, and making it fit again when vertices have moved.
 
-use super::{ROWS, TAG, TriangleBvh, number};
+use super::{TAG, TriangleBvh, number};
 use crate::bvh::build::{self, Preset, Settings, is_finite};
-use crate::bvh::lanes::{Available, WIDTH, large_pages};
+use crate::bvh::lanes::{Available, ROWS, Rows, large_pages};
 use crate::bvh::node;
 use crate::math::{Aabb, Vec3};
 use rayon::prelude::*;
@@ -23,7 +23,7 @@ impl TriangleBvh {
         let settings = Settings::triangles(preset);
         let corners_of = |number: u32| triangles[number as usize].map(|i| vertices[i as usize]);
         let tree = build::build_triangles(triangles.len(), &corners_of, &settings);
-        let leaves = vec![0.0; ROWS * tree.order.len() + WIDTH];
+        let leaves = vec![0.0; ROWS * tree.order.len() + size_of::<Rows>() / size_of::<f32>()];
         large_pages(leaves.as_ptr(), leaves.len());
         let mut nodes = Vec::with_capacity(tree.nodes.len());
         large_pages(nodes.as_ptr(), nodes.capacity());
@@ -35,6 +35,7 @@ impl TriangleBvh {
             reach: tree.bounds.reach(),
             level: Available::chosen(),
             least_volume: 0.0,
+            blind: false,
         };
         bvh.pack(Some(&tree.order), corners_of);
         bvh

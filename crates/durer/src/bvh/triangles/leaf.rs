@@ -1,14 +1,12 @@
 //! Triangles and rays side by side: several triangles and a ray, or a triangle and several rays.
 //!
-//! The test is that of [`Sheared`], with the same roundings. Edge functions in single precision have the right signs
+//! The test is that of [`Sheared`](crate::shape::watertight::Sheared), with the same roundings. Edge functions in single precision have the right signs
 //! wherever they are not zero, so nearly all triangles are refused or accepted by plain vector arithmetic; what is left is
-//! for the scalar test, which is exact. Where a triangle is crossed is known between two bounds, which is nearly always
-//! enough to tell which of two is nearer.
+//! for the scalar test, which is exact. Where any triangle will do, it is enough that t lies between two bounds; where the
+//! nearest is wanted, double precision says at once where all of a leaf are.
 
-use crate::bvh::lanes::{Doubles, Lanes, Numbers};
-use crate::math::{Vec2, Vec3};
-use crate::shape::watertight::{Sheared, heights};
-use glam::Vec3A;
+use crate::bvh::lanes::{Lanes, Numbers};
+use crate::shape::watertight::areas;
 
 /// Triangles in the planes across rays: several and one ray, or one and several rays.
 pub struct Flat<N: Numbers> {
@@ -28,7 +26,7 @@ pub struct Span<N: Numbers> {
 }
 
 impl<N: Numbers> Flat<N> {
-    /// From corners and origins that are turned as [`Sheared`] turns them.
+    /// From corners and origins that are turned as [`Sheared`](crate::shape::watertight::Sheared) turns them.
     ///
     /// Roundings are the same as there, so signs of edge functions are exact where they are not zero.
     #[inline(always)]
@@ -91,26 +89,17 @@ impl<N: Numbers> Flat<N> {
     }
 }
 
-/// Where a ray's line crosses a triangle that it crosses, in its turned corners: to the bit as [`Sheared::t`] has it.
-#[inline(always)]
-pub fn t<L: Lanes>(lanes: L, sheared: &Sheared, [a, b, c]: [Vec3; 3]) -> Option<f32> {
-    let (origin, dir) = sheared.ray();
-    let heights = heights(origin.z, [a.z, b.z, c.z]);
-    let (a, b, c) = (lanes.doubles(a.into()), lanes.doubles(b.into()), lanes.doubles(c.into()));
-    let normal = b.sub(a).cross(c.sub(a));
-    let to_plane = normal.dots([a.sub(lanes.doubles(origin)), lanes.doubles(dir)]);
-    sheared.t_of(to_plane, heights)
-}
-
-/// The second and third barycentric coordinate of the crossing, to the bit as [`Sheared::uv`] has them.
-#[inline(always)]
-pub fn uv<L: Lanes>(lanes: L, sheared: &Sheared, corners: [Vec3; 3]) -> Vec2 {
-    let [a, b, c] = sheared.flatten(corners);
-    let (x, y) = (lanes.doubles(Vec3A::new(a.x, b.x, c.x)), lanes.doubles(Vec3A::new(a.y, b.y, c.y)));
-    // Twice the areas beside the third corner, the first, and the second.
-    let [c, a, b] = x.yzx().mul(y).sub(y.yzx().mul(x)).to_array();
-    let det = a + b + c;
-    Vec2::new((b / det) as f32, (c / det) as f32)
+impl<L: Lanes> Flat<L> {
+    /// What [`areas`] gives in each lane.
+    #[inline(always)]
+    pub fn areas(&self, lanes: L) -> [L::Doubles; 3] {
+        let [a, b, c] = self.corners;
+        areas([
+            [lanes.doubles(a[0]), lanes.doubles(a[1])],
+            [lanes.doubles(b[0]), lanes.doubles(b[1])],
+            [lanes.doubles(c[0]), lanes.doubles(c[1])],
+        ])
+    }
 }
 
 /// Corners in the plane across the ray, and their heights along the third axis.

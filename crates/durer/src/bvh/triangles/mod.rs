@@ -7,15 +7,12 @@ mod query;
 mod stream;
 
 use super::Tally;
-use super::lanes::{Available, Level, WIDTH};
+use super::lanes::{Available, Level, ROWS, Rows};
 use super::node::{self, Node};
 use crate::math::{Aabb, Ray, Vec2};
 use crate::shape::watertight::Sheared;
 use query::{All, Any, Nearest, Query};
 use std::marker::PhantomData;
-
-/// What a leaf has of its triangles: nine coordinates and a number.
-const ROWS: usize = 10;
 
 /// Makes a number below 2^28 an `f32` of ordinary size: what is read past the end of a row is computed with, and tiny numbers are slow.
 const TAG: u32 = 1 << 30;
@@ -63,13 +60,15 @@ pub struct TriangleHit {
 pub struct TriangleBvh {
     nodes: Vec<Node>,
     /// For each leaf [`ROWS`] rows, each of as many numbers as it has triangles: their corners by axis, and their numbers, as bits. A
-    /// vector's width behind the last.
+    /// leaf's room behind the last.
     leaves: Vec<f32>,
     bounds: Aabb,
     /// The greatest coordinate, without signs.
     reach: f32,
     level: Available,
     least_volume: f64,
+    /// Whether that is more than nothing.
+    blind: bool,
 }
 
 impl TriangleBvh {
@@ -81,7 +80,7 @@ impl TriangleBvh {
     /// The same, blind to triangles for which |(b - a) x (c - a) · d| is less than this: see
     /// [`ThinTriangles`](crate::dialect::Compat::ThinTriangles).
     pub(crate) fn least_volume(self, least_volume: f64) -> Self {
-        TriangleBvh { least_volume, ..self }
+        TriangleBvh { least_volume, blind: least_volume != 0.0, ..self }
     }
 
     /// A ray prepared for single triangles.
@@ -157,11 +156,14 @@ impl TriangleBvh {
         self.each::<Any>(rays, &rest, |i, answer| answers[i] = answer);
     }
 
-    /// The rows of a leaf with what is read past them, and the count of its triangles.
+    /// The rows of a leaf, and the count of its triangles.
     #[inline(always)]
-    fn rows(&self, leaf: u32) -> (&[f32], usize) {
+    fn rows(&self, leaf: u32) -> (&Rows, usize) {
         let (first, count) = node::items(leaf);
-        (&self.leaves[ROWS * first..ROWS * (first + count) + WIDTH], count)
+        match self.leaves[ROWS * first..].first_chunk() {
+            Some(rows) => (rows, count),
+            None => unreachable!("leaves have a leaf's room behind them"),
+        }
     }
 
     #[inline]

@@ -1,12 +1,13 @@
 //! What a ray asks of a tree of triangles.
 
-use super::leaf::{Flat, Span, t, uv};
+use super::leaf::Flat;
 use super::{TriangleBvh, TriangleHit, number};
 use crate::bvh::Tally;
 use crate::bvh::lanes::{Kernel, Lanes, WIDTH, column};
-use crate::bvh::traverse::{RayBox, TAME, Visitor, walk};
+use crate::bvh::traverse::{RayBox, Visitor, walk};
 use crate::math::{Ray, Vec2, Vec3};
-use crate::shape::watertight::Sheared;
+use crate::shape::watertight::{Exact, Sheared, turn, uv};
+use glam::Vec3A;
 use std::marker::PhantomData;
 
 /// A question, whose answer is an `F`.
@@ -32,8 +33,8 @@ pub trait Found: Default {
     /// Whether it is enough to know that something is hit.
     const ANY: bool;
 
-    /// Of triangles that are hit for sure, those whose hits are wanted, none of them after `t_max`.
-    fn wanted<L: Lanes>(lanes: L, met: u32, span: &Span<L>, t_max: f32) -> u32;
+    /// Of triangles that are hit, those whose hits are wanted.
+    fn wanted<L: Lanes>(lanes: L, met: u32, t: L::Floats) -> u32;
 
     /// Takes note of a hit, not after `t_max`; gives the new one.
     fn met(&mut self, hit: TriangleHit, t_max: f32) -> f32;
@@ -57,29 +58,23 @@ impl Default for Nearest {
     }
 }
 
-/// The lesser of two numbers.
-#[inline(always)]
-fn lesser(a: f32, b: f32) -> f32 {
-    if a < b { a } else { b }
-}
-
 impl Found for Nearest {
     type Answer = Option<TriangleHit>;
 
     const ANY: bool = false;
 
-    /// Nearly always bounds leave one.
     #[inline(always)]
-    fn wanted<L: Lanes>(lanes: L, met: u32, span: &Span<L>, t_max: f32) -> u32 {
-        met & lanes.le(span.near, lanes.splat(lesser(lanes.least(span.far, met), t_max)))
+    fn wanted<L: Lanes>(lanes: L, met: u32, t: L::Floats) -> u32 {
+        met & lanes.le(t, lanes.splat(lanes.least(t, met)))
     }
 
     #[inline(always)]
     fn met(&mut self, hit: TriangleHit, t_max: f32) -> f32 {
-        if (hit.t, hit.triangle) < (self.best.t, self.best.triangle) {
+        // What is the best before there is any has the greatest number.
+        if hit.t < t_max || hit.triangle < self.best.triangle {
             self.best = hit;
         }
-        lesser(hit.t, t_max)
+        hit.t
     }
 
     #[inline(always)]
@@ -98,8 +93,8 @@ impl Found for Any {
     const ANY: bool = true;
 
     #[inline(always)]
-    fn wanted<L: Lanes>(_: L, _: u32, _: &Span<L>, _: f32) -> u32 {
-        0
+    fn wanted<L: Lanes>(_: L, met: u32, _: L::Floats) -> u32 {
+        met
     }
 
     #[inline(always)]
@@ -123,7 +118,7 @@ impl Found for All {
     const ANY: bool = false;
 
     #[inline(always)]
-    fn wanted<L: Lanes>(_: L, met: u32, _: &Span<L>, _: f32) -> u32 {
+    fn wanted<L: Lanes>(_: L, met: u32, _: L::Floats) -> u32 {
         met
     }
 
@@ -158,13 +153,22 @@ impl<T: Tally, F: Found> Kernel for Query<'_, T, F> {
 
     #[inline(always)]
     fn run<L: Lanes>(self, lanes: L) -> F::Answer {
+        if let Some(boxes) = RayBox::new(self.ray, self.bvh.reach) {
+            self.search::<L, true>(lanes, &boxes)
+        } else if let Some(boxes) = RayBox::wild(self.ray, self.bvh.reach) {
+            self.search::<L, false>(lanes, &boxes)
+        } else {
+            F::Answer::default()
+        }
+    }
+}
+
+impl<T: Tally, F: Found> Query<'_, T, F> {
+    #[inline(always)]
+    fn search<L: Lanes, const TAME: bool>(self, lanes: L, boxes: &RayBox) -> F::Answer {
         let Query { bvh, ray, tally, .. } = self;
-        let Some(boxes) = RayBox::new(ray, bvh.reach) else { return F::Answer::default() };
-        let mut leaves = Leaves::<_, F>::new(bvh, ray, &boxes, tally);
-        let t_max = match boxes.tame {
-            true => walk::<L, _, true>(lanes, &bvh.nodes, &boxes, ray.t_max, &mut leaves),
-            false => walk::<L, _, false>(lanes, &bvh.nodes, &boxes, ray.t_max, &mut leaves),
-        };
+        let mut leaves = Leaves::<_, F>::new(lanes, bvh, ray, boxes, tally);
+        let t_max = walk::<L, _, TAME>(lanes, &bvh.nodes, boxes, ray.t_max, &mut leaves);
         leaves.answer(t_max)
     }
 }
@@ -176,28 +180,21 @@ pub struct Leaves<'a, T, F> {
     found: F,
     /// Whether signs found side by side are within the range of numbers.
     side_by_side: bool,
-    /// Whether all numbers of the ray are.
-    tame: bool,
 }
 
 impl<'a, T, F: Found> Leaves<'a, T, F> {
     #[inline(always)]
-    pub fn new(bvh: &'a TriangleBvh, ray: &Ray, boxes: &RayBox, tally: T) -> Self {
-        let sheared = Sheared::finite(ray).least_volume(bvh.least_volume);
+    pub fn new<L: Lanes>(lanes: L, bvh: &'a TriangleBvh, ray: &Ray, boxes: &RayBox, tally: T) -> Self {
+        let (origin, dir) = (Vec3A::from(ray.origin), Vec3A::from(ray.dir));
+        let axes = turn(dir);
+        let sheared = Sheared::turned(axes, lanes.turn(origin, axes), lanes.turn(dir, axes));
+        let sheared = sheared.least_volume(bvh.least_volume);
         Leaves {
             asked: Asked { bvh, sheared, t_min: ray.t_min, t_max: ray.t_max },
             tally,
             found: F::default(),
             side_by_side: boxes.moderate,
-            tame: boxes.tame,
         }
-    }
-
-    /// Whether bounds of t found side by side are within the range of numbers, and decide.
-    #[inline(always)]
-    fn is_bounded(&self) -> bool {
-        let Asked { bvh, sheared, .. } = &self.asked;
-        (self.tame || TAME.contains(&sheared.ray().1.z.abs())) && bvh.least_volume == 0.0
     }
 
     /// What was found, when the search has ended.
@@ -223,13 +220,13 @@ impl<T: Tally, F: Found> Visitor for Leaves<'_, T, F> {
     }
 
     #[inline(always)]
-    fn leaf<L: Lanes>(&mut self, lanes: L, leaf: u32, mut t_max: f32) -> f32 {
+    fn leaf<L: Lanes, const TAME: bool>(&mut self, lanes: L, leaf: u32, mut t_max: f32) -> f32 {
         let (rows, count) = self.asked.bvh.rows(leaf);
         (0..count).for_each(|_| self.tally.test());
-        if !self.side_by_side {
+        if !TAME && !self.side_by_side {
             return self.one_by_one(leaf, (1 << count) - 1, t_max);
         }
-        let Asked { sheared, t_min, t_max: end, .. } = &self.asked;
+        let Asked { bvh, sheared, t_min, t_max: end } = &self.asked;
         let (origin, shear) = (lanes.splat3(sheared.ray().0.to_array()), sheared.shear());
         let corners = lanes.rows(rows, count, sheared.axes());
         let flat = Flat::new(lanes, corners, origin, [lanes.splat(shear.x), lanes.splat(shear.y)]);
@@ -238,30 +235,43 @@ impl<T: Tally, F: Found> Visitor for Leaves<'_, T, F> {
         if unsure == 0 {
             return t_max;
         }
-        let mut wanted = flat.crossed(lanes) & there;
-        if !F::ANY && wanted.is_power_of_two() {
-            // A single one need not wait for bounds.
-            unsure ^= wanted;
-        } else if self.is_bounded() {
-            let (crossed, span) = (wanted, flat.span(lanes, 1.0 / sheared.ray().1.z));
-            let (start, end) = (lanes.splat(*t_min), lanes.splat(*end));
+        let crossed = flat.crossed(lanes) & there;
+        if crossed == 0 || bvh.blind || F::ANY && !TAME {
+            return self.one_by_one(leaf, unsure, t_max);
+        }
+        unsure ^= crossed;
+        let (start, end) = (lanes.splat(*t_min), lanes.splat(*end));
+        if F::ANY {
+            let span = flat.span(lanes, 1.0 / sheared.ray().1.z);
             // So asked, what is no number is unsure.
-            let left_out = lanes.lt(lanes.splat(t_max), span.near) | lanes.le(span.far, start);
-            let met = crossed & !left_out & lanes.lt(start, span.near) & lanes.lt(span.far, end);
-            if F::ANY && met != 0 {
+            if crossed & lanes.lt(start, span.near) & lanes.lt(span.far, end) != 0 {
                 return f32::NEG_INFINITY;
             }
-            unsure &= !(met | crossed & left_out);
-            wanted = if met == 0 { 0 } else { F::wanted(lanes, met, &span, t_max) };
+            unsure |= crossed & !(lanes.le(span.far, start) | lanes.le(end, span.near));
         } else {
-            wanted = 0;
-        }
-        while wanted != 0 {
-            let lane = wanted.trailing_zeros() as usize;
-            wanted &= wanted - 1;
-            let (corners, triangle) = self.asked.triangle(leaf, lane);
-            if let Some(t) = t(lanes, sheared, corners).filter(|t| self.asked.is_wanted(*t, t_max)) {
-                t_max = self.found.met(TriangleHit { t, uv: uv(lanes, sheared, corners), triangle }, t_max);
+            // Hidden, or the compiler would prepare this for every ray, before it is known whether it comes to a leaf.
+            let (origin, dir) = std::hint::black_box(sheared).ray();
+            let line = Exact {
+                origin: doubles(lanes, lanes.splat3(origin.to_array())),
+                dir: doubles(lanes, lanes.splat3(dir.to_array())),
+                inverse: lanes.splat_double(1.0 / f64::from(dir.z)),
+            };
+            let [t, _] = line.t([doubles(lanes, corners[0]), doubles(lanes, corners[1]), doubles(lanes, corners[2])]);
+            let t = lanes.singles(t);
+            // What is no number is left out.
+            let met = crossed & lanes.lt(start, t) & lanes.lt(t, end) & lanes.le(t, lanes.splat(t_max));
+            if met != 0 {
+                let [a, b, c] = flat.areas(lanes);
+                let areas = [lanes.store_doubles(a), lanes.store_doubles(b), lanes.store_doubles(c)];
+                let mut wanted = F::wanted(lanes, met, t);
+                let t = lanes.store(t);
+                while wanted != 0 {
+                    let lane = wanted.trailing_zeros() as usize & 7;
+                    wanted &= wanted - 1;
+                    let uv = uv([areas[0][lane], areas[1][lane], areas[2][lane]]);
+                    let hit = TriangleHit { t: t[lane], uv, triangle: number(rows, count, lane) };
+                    t_max = self.found.met(hit, t_max);
+                }
             }
         }
         match unsure {
@@ -269,6 +279,12 @@ impl<T: Tally, F: Found> Visitor for Leaves<'_, T, F> {
             _ => self.one_by_one(leaf, unsure, t_max),
         }
     }
+}
+
+/// A vector in each lane in double precision.
+#[inline(always)]
+fn doubles<L: Lanes>(lanes: L, [x, y, z]: [L::Floats; 3]) -> [L::Doubles; 3] {
+    [lanes.doubles(x), lanes.doubles(y), lanes.doubles(z)]
 }
 
 impl<T: Tally, F: Found> Leaves<'_, T, F> {

@@ -4,9 +4,9 @@
 //! several are on their way, and while one waits the others go on. Rays at inner nodes and rays at leaves are on two lists, so what
 //! comes next is no branch: a step writes its ray to both lists, and one of the two gets longer.
 
+use super::TriangleBvh;
 use super::query::{Found, Leaves};
-use super::{ROWS, TriangleBvh};
-use crate::bvh::lanes::{Kernel, Lanes, Room, Stack};
+use crate::bvh::lanes::{Kernel, Lanes, ROWS, Room, Stack};
 use crate::bvh::node::{self, LEAF, Node};
 use crate::bvh::traverse::{RayBox, Slabs, Visitor, meet, next};
 use crate::math::{Ray, Vec3};
@@ -79,14 +79,14 @@ impl<'a, F: Found, A: FnMut(usize, F::Answer)> Stream<'a, F, A> {
             let number = number as usize;
             let ray = &self.rays[number];
             match RayBox::new(ray, self.bvh.reach) {
-                Some(boxes) if boxes.tame && !self.bvh.nodes.is_empty() => flyer.boxes = boxes,
+                Some(boxes) if !self.bvh.nodes.is_empty() => flyer.boxes = boxes,
                 _ => {
                     (self.answer)(number, self.bvh.query::<_, F>(ray, ()));
                     continue;
                 }
             }
             flyer.number = number;
-            flyer.leaves = Leaves::new(self.bvh, ray, &flyer.boxes, ());
+            flyer.leaves = Leaves::new(lanes, self.bvh, ray, &flyer.boxes, ());
             (flyer.t_max, flyer.child) = (ray.t_max, 0);
             stack.clear();
             stack.push(END, f32::NEG_INFINITY);
@@ -128,9 +128,14 @@ impl<'a, F: Found, A: FnMut(usize, F::Answer)> Kernel for Stream<'a, F, A> {
         let mut rooms: Vec<Room> = (0..FLYING).map(|_| Room::new()).collect();
         let mut stacks: Vec<Stack> = rooms.iter_mut().map(Stack::new).collect();
         let nowhere = Ray::new(Vec3::ZERO, Vec3::X);
-        let boxes = RayBox::new(&nowhere, bvh.reach).expect("a sound ray");
-        let place =
-            |_| Flyer { number: 0, boxes, leaves: Leaves::new(bvh, &nowhere, &boxes, ()), t_max: 0.0, child: END };
+        let boxes = RayBox::wild(&nowhere, bvh.reach).expect("a sound ray");
+        let place = |_| Flyer {
+            number: 0,
+            boxes,
+            leaves: Leaves::new(lanes, bvh, &nowhere, &boxes, ()),
+            t_max: 0.0,
+            child: END,
+        };
         let mut flyers: Vec<Flyer<F>> = (0..FLYING).map(place).collect();
         let (mut inner, mut leaves) = (List::EMPTY, List::EMPTY);
         for (number, (flyer, stack)) in flyers.iter_mut().zip(&mut stacks).enumerate() {
@@ -158,7 +163,7 @@ impl<'a, F: Found, A: FnMut(usize, F::Answer)> Kernel for Stream<'a, F, A> {
                 let (flyer, stack) = (&mut flyers[usize::from(number)], &mut stacks[usize::from(number)]);
                 let mut over = flyer.child == END;
                 if !over {
-                    let t = flyer.leaves.leaf(lanes, flyer.child, flyer.t_max);
+                    let t = flyer.leaves.leaf::<L, true>(lanes, flyer.child, flyer.t_max);
                     over = t == f32::NEG_INFINITY;
                     flyer.t_max = t;
                 }

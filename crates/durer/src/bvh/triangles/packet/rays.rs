@@ -3,8 +3,8 @@
 use super::Axes;
 use crate::bvh::lanes::{Lanes, Numbers, WIDE, WIDTH, Wide};
 use crate::bvh::traverse::TAME;
-use crate::math::{Ray, Vec2, Vec3};
-use crate::shape::watertight::{Plane, uv_across};
+use crate::math::{Doubles, Ray, Vec2, Vec3};
+use crate::shape::watertight::{Exact, uv_across};
 
 /// A number for each of sixteen rays.
 pub type PerRay = [f32; WIDE];
@@ -165,16 +165,18 @@ impl Rays {
             if crossed == 0 {
                 continue;
             }
-            let (ox, oy, oz) =
-                (half(&self.origin[x], first), half(&self.origin[y], first), half(&self.origin[z], first));
-            let (dx, dy, dz) = (half(&self.dir[x], first), half(&self.dir[y], first), half(&self.dir[z], first));
-            let mut t = [0.0; WIDTH];
-            // There are no branches, and rays are alike: the compiler takes several at once.
-            for i in 0..WIDTH {
-                let plane = Plane::new(Vec3::new(ox[i], oy[i], oz[i]), corners);
-                t[i] = plane.t(Vec3::new(dx[i], dy[i], dz[i]));
+            macro_rules! doubles {
+                ($numbers:expr) => {
+                    lanes.doubles(lanes.load(half($numbers, first)))
+                };
             }
-            let t = lanes.load(&t);
+            let line = Exact {
+                origin: [doubles!(&self.origin[x]), doubles!(&self.origin[y]), doubles!(&self.origin[z])],
+                dir: [doubles!(&self.dir[x]), doubles!(&self.dir[y]), doubles!(&self.dir[z])],
+                inverse: lanes.splat_double(1.0).div(doubles!(&self.dir[z])),
+            };
+            let [t, _] = line.t([splat3(lanes, corners[0]), splat3(lanes, corners[1]), splat3(lanes, corners[2])]);
+            let t = lanes.singles(t);
             let t_last = lanes.load(half(&self.t_last, first));
             // Also NaN is refused.
             let within = crossed & lanes.lt(lanes.load(half(&self.t_min, first)), t);
@@ -205,9 +207,10 @@ impl Rays {
         less: impl Fn(u32) -> bool,
     ) -> bool {
         let [x, y, z] = axes.turned;
-        let plane = Plane::new(Vec3::new(self.origin[x][lane], self.origin[y][lane], self.origin[z][lane]), corners);
-        let dir = Vec3::new(self.dir[x][lane], self.dir[y][lane], self.dir[z][lane]);
-        let t = plane.t(dir);
+        let at = |v: &[PerRay; 3]| [f64::from(v[x][lane]), f64::from(v[y][lane]), f64::from(v[z][lane])];
+        let (origin, dir) = (at(&self.origin), at(&self.dir));
+        let line = Exact { origin, dir, inverse: 1.0 / dir[2] };
+        let t = line.t(corners.map(|corner| corner.as_dvec3().to_array()))[0] as f32;
         let within = t > self.t_min[lane] && t < self.t_max[lane];
         let met = within && (t < self.t_last[lane] || t == self.t_last[lane] && less(self.met[lane].to_bits()));
         if met {
@@ -247,6 +250,13 @@ fn half(numbers: &PerRay, first: usize) -> &[f32; WIDTH] {
         Some(half) => half,
         None => unreachable!("sixteen are twice eight"),
     }
+}
+
+/// The same vector in all lanes.
+#[inline(always)]
+fn splat3<L: Lanes>(lanes: L, v: Vec3) -> [L::Doubles; 3] {
+    let v = v.as_dvec3();
+    [lanes.splat_double(v.x), lanes.splat_double(v.y), lanes.splat_double(v.z)]
 }
 
 /// By how much heights may be off by rounding.
