@@ -61,6 +61,8 @@ pub struct Tree {
     pub nodes: Vec<Node>,
     pub items: Vec<u32>,
     pub scale: f32,
+    /// Whether things are in several leaves.
+    pub is_cut: bool,
 }
 
 /// Half the area of a box.
@@ -122,7 +124,8 @@ pub fn build(
         }));
         items.extend_from_slice(&piece.items);
     }
-    Tree { nodes, items, scale }
+    let is_cut = items.len() > references.len();
+    Tree { nodes, items, scale, is_cut }
 }
 
 impl Piece {

@@ -271,9 +271,9 @@ fn partition(references: &mut [Reference], is_left: impl Fn(&Reference) -> bool)
     let mut left = 0;
     for i in 0..references.len() {
         // Without a branch, which would be guessed wrongly half of the time.
-        let r = references[i];
+        let goes_left = is_left(&references[i]);
         references.swap(i, left);
-        left += usize::from(is_left(&r));
+        left += usize::from(goes_left);
     }
 }
 

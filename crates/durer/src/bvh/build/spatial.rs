@@ -5,7 +5,7 @@
 //! Source: Stich, Friedrich, Dietrich, *Spatial Splits in Bounding Volume Hierarchies*, HPG 2009.
 
 use super::Reference;
-use super::binary::{Builder, Corners, half_area};
+use super::binary::{Builder, half_area};
 use super::cut::{BINS, Bin, Cut};
 use crate::math::Vec3;
 use glam::{BVec4A, Vec4};
@@ -73,14 +73,16 @@ impl Builder<'_> {
             budget.pause -= 1;
             return None;
         }
-        let plane = self.plane(references, all, corners_of)?;
+        // Each is asked for several times, and most are far apart in memory.
+        let corners: Vec<[Vec3; 3]> = references.iter().map(|r| corners_of(r.number())).collect();
+        let plane = self.plane(references, &corners, all)?;
         if plane.cost >= GAIN * cut.cost {
             budget.in_vain += 1;
             budget.pause = budget.in_vain.saturating_sub(IN_VAIN).min(4);
             return None;
         }
         budget.in_vain = 0;
-        let parts = self.halves(references, &plane, corners_of);
+        let parts = self.halves(references, &corners, &plane);
         let lens = [parts[0].len(), parts[1].len()];
         if !lens.iter().all(|&len| 0 < len && len < count) {
             return None;
@@ -90,14 +92,14 @@ impl Builder<'_> {
     }
 
     /// The cheapest plane between bins of equal width.
-    fn plane(&self, references: &[Reference], bounds: &Bin, corners_of: Corners) -> Option<Plane> {
+    fn plane(&self, references: &[Reference], corners: &[[Vec3; 3]], bounds: &Bin) -> Option<Plane> {
         if !(bounds.max - bounds.min).truncate().is_finite() {
             return None;
         }
         let planes = [
-            self.plane_across::<0>(references, bounds, corners_of),
-            self.plane_across::<1>(references, bounds, corners_of),
-            self.plane_across::<2>(references, bounds, corners_of),
+            self.plane_across::<0>(references, corners, bounds),
+            self.plane_across::<1>(references, corners, bounds),
+            self.plane_across::<2>(references, corners, bounds),
         ];
         planes.into_iter().flatten().reduce(|a, b| if b.cost < a.cost { b } else { a })
     }
@@ -105,8 +107,8 @@ impl Builder<'_> {
     fn plane_across<const AXIS: usize>(
         &self,
         references: &[Reference],
+        corners: &[[Vec3; 3]],
         bounds: &Bin,
-        corners_of: Corners,
     ) -> Option<Plane> {
         // Few references fill few bins.
         let count = if references.len() > 256 { BINS } else { BINS / 2 };
@@ -124,7 +126,7 @@ impl Builder<'_> {
         let bin_of = |x: f32| (((x - low) * scale) as i32).clamp(0, count as i32 - 1) as usize;
         let mut bins = [Bin::EMPTY; BINS];
         let mut ends = [0_u32; BINS];
-        for r in references {
+        for (r, &corners) in references.iter().zip(corners) {
             let (first, last) = (bin_of(r.min[AXIS]), bin_of(r.max[AXIS]));
             bins[first].count += 1;
             ends[last] += 1;
@@ -132,7 +134,7 @@ impl Builder<'_> {
                 bins[first] = bins[first].around(r);
                 continue;
             }
-            let triangle = Sorted::<AXIS>::new(corners_of(r.number()));
+            let triangle = Sorted::<AXIS>::new(corners);
             let mut from = triangle.section(r.min[AXIS]);
             for (bin, number) in bins[first..=last].iter_mut().zip(first..) {
                 let to = triangle.section(if number < last { at(number + 1) } else { r.max[AXIS] });
@@ -164,11 +166,11 @@ impl Builder<'_> {
     fn halves(
         &self,
         references: &[Reference],
+        corners: &[[Vec3; 3]],
         &Plane { axis, at, .. }: &Plane,
-        corners_of: Corners,
     ) -> [Vec<Reference>; 2] {
         let (mut left, mut right, mut through) = (Vec::new(), Vec::new(), Vec::new());
-        for r in references {
+        for (r, &corners) in references.iter().zip(corners) {
             if r.max[axis] <= at {
                 left.push(*r);
                 continue;
@@ -177,9 +179,9 @@ impl Builder<'_> {
                 continue;
             }
             let [a, b] = match axis {
-                0 => Sorted::<0>::new(corners_of(r.number())).halves(at, r),
-                1 => Sorted::<1>::new(corners_of(r.number())).halves(at, r),
-                _ => Sorted::<2>::new(corners_of(r.number())).halves(at, r),
+                0 => Sorted::<0>::new(corners).halves(at, r),
+                1 => Sorted::<1>::new(corners).halves(at, r),
+                _ => Sorted::<2>::new(corners).halves(at, r),
             };
             match [a, b].map(|half| half.bounds().is_empty()) {
                 [false, false] => through.push((*r, [a, b])),

@@ -12,6 +12,7 @@ use super::binary::{self, half_area};
 use crate::bvh::lanes::WIDTH;
 use crate::bvh::node::{self, LEAF, LEAF_SIZE, Node};
 use crate::math::Aabb;
+use glam::Vec3A;
 use rayon::prelude::*;
 
 /// Subtrees of more references than this are worked on in parallel.
@@ -221,18 +222,21 @@ impl Emitter<'_> {
             items[count..count + more.len()].copy_from_slice(more);
             count += more.len();
         }
-        // Parts of a thing that was cut, when together again, count once.
-        items[..count].sort_unstable();
-        let mut different = 1;
-        for i in 1..count {
-            if items[i] != items[different - 1] {
-                items[different] = items[i];
-                different += 1;
+        if self.tree.is_cut {
+            // Parts of a thing that was cut, when together again, count once.
+            items[..count].sort_unstable();
+            let mut different = 1;
+            for i in 1..count {
+                if items[i] != items[different - 1] {
+                    items[different] = items[i];
+                    different += 1;
+                }
             }
+            count = different;
         }
         let first = part.order.len();
-        part.order.extend_from_slice(&items[..different]);
-        node::leaf(first, different)
+        part.order.extend_from_slice(&items[..count]);
+        node::leaf(first, count)
     }
 }
 
@@ -259,22 +263,23 @@ impl Part {
 /// Two that are apart are met in the right order by every ray; that they both are met is the likelier the greater they are.
 fn places(bounds: &[Aabb]) -> (usize, [usize; WIDTH]) {
     let greatest = bounds.iter().map(Aabb::half_area).fold(f32::MIN_POSITIVE, f32::max);
-    let mut areas = [0.0; WIDTH];
-    areas.iter_mut().zip(bounds).for_each(|(area, b)| *area = b.half_area() / greatest);
-    let mut apart = [0.0; 3];
+    let mut apart = Vec3A::ZERO;
     for (i, a) in bounds.iter().enumerate() {
-        for (b, area) in bounds.iter().zip(areas).take(i) {
-            for (axis, apart) in apart.iter_mut().enumerate() {
-                let are_apart = a.max[axis] <= b.min[axis] || b.max[axis] <= a.min[axis];
-                *apart += if are_apart { areas[i] * area } else { 0.0 };
-            }
+        let (min, max, area) = (Vec3A::from(a.min), Vec3A::from(a.max), a.half_area() / greatest);
+        for b in &bounds[..i] {
+            let are_apart = max.cmple(b.min.into()) | Vec3A::from(b.max).cmple(min);
+            apart += Vec3A::select(are_apart, Vec3A::splat(area * b.half_area() / greatest), Vec3A::ZERO);
         }
     }
     let axis = (1..3).fold(0, |best, axis| if apart[axis] > apart[best] { axis } else { best });
-    let mut order: [usize; WIDTH] = std::array::from_fn(|child| child);
-    let order = &mut order[..bounds.len()];
-    order.sort_by(|&a, &b| bounds[a].center()[axis].total_cmp(&bounds[b].center()[axis]));
+    // Of those at the same place, in the order of their numbers.
     let mut places = [0; WIDTH];
-    order.iter().enumerate().for_each(|(place, &child)| places[child] = place);
+    for (i, a) in bounds.iter().enumerate() {
+        let center = a.center()[axis];
+        for (j, b) in bounds[..i].iter().enumerate() {
+            let after = b.center()[axis].total_cmp(&center).is_gt();
+            places[if after { j } else { i }] += 1;
+        }
+    }
     (axis, places)
 }

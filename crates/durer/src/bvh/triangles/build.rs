@@ -7,7 +7,7 @@ use crate::bvh::node;
 use crate::math::{Aabb, Vec3};
 use rayon::prelude::*;
 
-/// Rows of so many leaves are written at once.
+/// Rows of about so many triangles are written at once.
 const AT_ONCE: usize = 1024;
 
 impl TriangleBvh {
@@ -37,7 +37,7 @@ impl TriangleBvh {
             least_volume: 0.0,
             blind: false,
         };
-        bvh.pack(Some(&tree.order), corners_of);
+        bvh.pack(Some(&tree.order), vertices, triangles);
         bvh
     }
 
@@ -49,7 +49,7 @@ impl TriangleBvh {
     /// If an index leads nowhere, or a triangle of the tree is missing.
     pub fn refit(&mut self, vertices: &[Vec3], triangles: &[[u32; 3]]) {
         let corners_of = |number: u32| triangles[number as usize].map(|i| vertices[i as usize]);
-        self.pack(None, corners_of);
+        self.pack(None, vertices, triangles);
         // Children come after their parents, so boxes are right from the end.
         for parent in (0..self.nodes.len()).rev() {
             let children: Vec<(usize, Aabb, u32)> = self.nodes[parent].children().collect();
@@ -74,32 +74,59 @@ impl TriangleBvh {
     }
 
     /// Writes all leaves, with numbers in the order of items, or again with those that they have.
-    fn pack(&mut self, order: Option<&[u32]>, corners_of: impl Fn(u32) -> [Vec3; 3] + Sync) {
-        let children = self.nodes.iter().flat_map(|node| node.children().map(|(_, _, child)| child));
-        let mut leaves: Vec<u32> = children.filter(|child| child & node::LEAF != 0).collect();
-        leaves.par_sort_unstable_by_key(|&leaf| node::items(leaf).0);
-        // Leaves that follow each other have rows that do.
-        let (mut rest, mut parts) = (&mut self.leaves[..], Vec::with_capacity(leaves.len() / AT_ONCE + 1));
-        for leaves in leaves.chunks(AT_ONCE) {
-            let count: usize = leaves.iter().map(|&leaf| node::items(leaf).1).sum();
-            let (part, after) = rest.split_at_mut(ROWS * count);
-            parts.push((leaves, part));
-            rest = after;
+    fn pack(&mut self, order: Option<&[u32]>, vertices: &[Vec3], triangles: &[[u32; 3]]) {
+        let items = (self.leaves.len() - size_of::<Rows>() / size_of::<f32>()) / ROWS;
+        // The count of each leaf, where its items begin.
+        let mut counts = vec![0u8; items];
+        for (_, _, child) in self.nodes.iter().flat_map(|node| node.children()) {
+            if child & node::LEAF != 0 {
+                let (first, count) = node::items(child);
+                counts[first] = count as u8;
+            }
         }
-        parts.into_par_iter().for_each(|(leaves, mut part)| {
-            for &leaf in leaves {
-                let (first, count) = node::items(leaf);
+        // Leaves that follow each other have rows that do.
+        let (mut rest, mut first, mut parts) = (&mut self.leaves[..], 0, Vec::with_capacity(items / AT_ONCE + 1));
+        while first < items {
+            let mut last = first + AT_ONCE;
+            while last < items && counts[last] == 0 {
+                last += 1;
+            }
+            let last = last.min(items);
+            let (part, after) = rest.split_at_mut(ROWS * (last - first));
+            parts.push((first, &counts[first..last], part));
+            (first, rest) = (last, after);
+        }
+        parts.into_par_iter().for_each(|(first, mut counts, mut part)| {
+            let numbers: Vec<u32> = match order {
+                Some(order) => order[first..first + counts.len()].to_vec(),
+                None => numbers(counts, part),
+            };
+            // Memory is waited for less where all are asked for at once.
+            let mut indices = numbers.iter().map(|&number| triangles[number as usize]).collect::<Vec<_>>().into_iter();
+            let mut numbers = numbers.into_iter();
+            while let Some(&count) = counts.first() {
+                let count = usize::from(count);
                 let (rows, after) = part.split_at_mut(ROWS * count);
-                for lane in 0..count {
-                    let number = order.map_or_else(|| number(rows, count, lane), |order| order[first + lane]);
-                    let corners = Some(corners_of(number)).filter(is_finite).unwrap_or([Vec3::NAN; 3]);
-                    for row in 0..9 {
-                        rows[row * count + lane] = corners[row / 3][row % 3];
-                    }
-                    rows[9 * count + lane] = f32::from_bits(number | TAG);
+                for (lane, (number, triangle)) in numbers.by_ref().zip(indices.by_ref()).take(count).enumerate() {
+                    let corners = triangle.map(|i| vertices[i as usize]);
+                    let [a, b, c] = if is_finite(&corners) { corners } else { [Vec3::NAN; 3] };
+                    let tagged = f32::from_bits(number | TAG);
+                    let column = [a.x, a.y, a.z, b.x, b.y, b.z, c.x, c.y, c.z, tagged];
+                    rows[lane..].iter_mut().step_by(count).zip(column).for_each(|(to, x)| *to = x);
                 }
-                part = after;
+                (counts, part) = (&counts[count..], after);
             }
         });
     }
+}
+
+/// The numbers of all triangles of some leaves, by the rows and counts of these.
+fn numbers(counts: &[u8], mut rows: &[f32]) -> Vec<u32> {
+    let mut numbers = Vec::with_capacity(counts.len());
+    while numbers.len() < counts.len() {
+        let count = usize::from(counts[numbers.len()]);
+        numbers.extend((0..count).map(|lane| number(rows, count, lane)));
+        rows = &rows[ROWS * count..];
+    }
+    numbers
 }
