@@ -111,7 +111,7 @@ pub(super) trait Visitor {
 
     fn tally(&mut self) -> &mut Self::Tally;
 
-    /// Has what is likely next brought near.
+    /// Has a child that is likely to be visited brought near.
     fn fetch<L: Lanes>(&self, _: L, _: u32) {}
 
     /// Looks into a leaf, with a ray that is `TAME` or not; gives the new `t_max`, at most the old. Minus infinity ends the walk.
@@ -143,13 +143,13 @@ pub(super) fn walk<L: Lanes, V: Visitor, const TAME: bool>(
             let (met, interval) = meet::<L, TAME>(lanes, node, &slabs, limit);
             if met != 0 {
                 // The nearest child is next, without a way through the stack.
-                child = next(lanes, V::UNORDERED, &mut stack, node, met, interval, boxes.negative);
+                let [first, second, third] = next(lanes, V::UNORDERED, &mut stack, node, met, interval, boxes.negative);
+                visitor.fetch(lanes, second);
+                visitor.fetch(lanes, third);
+                child = first;
                 continue;
             }
         } else {
-            if let Some(next) = stack.peek() {
-                visitor.fetch(lanes, next);
-            }
             let t = visitor.leaf::<L, TAME>(lanes, child, t_max);
             if t < t_max {
                 t_max = t;
@@ -174,7 +174,8 @@ pub(super) fn walk<L: Lanes, V: Visitor, const TAME: bool>(
     }
 }
 
-/// The child that is next, of those that are met; pushes the others.
+/// The child that is next, of those that are met; pushes the others. Also gives the two that come after it, or any children of
+/// the node where it has not met as many.
 ///
 /// The next is the one that is entered first, and the others are pushed from far to near along the axis of the node. If `unordered`
 /// they come by place, so that the next is known sooner.
@@ -187,15 +188,17 @@ pub(super) fn next<L: Lanes>(
     met: u32,
     [enter, leave]: [L::Floats; 2],
     negative: u32,
-) -> u32 {
+) -> [u32; 3] {
     let (next, falling) = match unordered {
         true => (met.trailing_zeros(), 0),
         false => (lanes.nearest(enter, leave), negative >> (node.axis & 31) & 1),
     };
     let others = met & !(1 << (next & 7));
     let order = &FAR_TO_NEAR[falling as usize][others as usize & 255];
-    lanes.push(stack, &node.children, enter, order, others.count_ones());
-    node.children[next as usize & 7]
+    let count = others.count_ones();
+    lanes.push(stack, &node.children, enter, order, count);
+    let pushed = |after: u32| order[count.wrapping_sub(after) as usize & 7];
+    [next as u8, pushed(1), pushed(2)].map(|lane| node.children[lane as usize & 7])
 }
 
 /// For each set of lanes the lanes from far to near, where the first are nearer and where the last are.

@@ -64,14 +64,6 @@ impl<'a> Stack<'a> {
         }
     }
 
-    /// The topmost child.
-    #[inline(always)]
-    pub fn peek(&mut self) -> Option<u32> {
-        let (children, _, height) = self.all();
-        // SAFETY: everything below the height was written.
-        (height > 0).then(|| unsafe { *children.add(height - 1) })
-    }
-
     pub fn clear(&mut self) {
         self.height = 0;
     }

@@ -114,7 +114,7 @@ fn step<L: Lanes, F: Found>(lanes: L, nodes: &[Node], flyer: &mut Flyer<F>, stac
     let node = &nodes[flyer.child as usize];
     let slabs = Slabs::new(lanes, &flyer.boxes);
     let (met, interval) = meet::<L, true>(lanes, node, &slabs, lanes.splat(flyer.t_max));
-    let nearest = next(lanes, F::ANY, stack, node, met, interval, flyer.boxes.negative);
+    let [nearest, ..] = next(lanes, F::ANY, stack, node, met, interval, flyer.boxes.negative);
     // If nothing was met, nothing was pushed.
     flyer.child = select_unpredictable(met == 0, stack.pop_if(met == 0), nearest);
 }
