@@ -1,6 +1,7 @@
 //! What a ray asks of a tree of triangles.
 
 use super::leaf::Flat;
+use super::stream::Places;
 use super::{TriangleBvh, TriangleHit, number};
 use crate::bvh::Tally;
 use crate::bvh::lanes::{Kernel, Lanes, WIDTH, column};
@@ -176,6 +177,7 @@ impl<T: Tally, F: Found> Query<'_, T, F> {
 /// A ray among the triangles of leaves.
 pub struct Leaves<'a, T, F> {
     asked: Asked<'a>,
+    places: Places,
     tally: T,
     found: F,
     /// Whether signs found side by side are within the range of numbers.
@@ -191,6 +193,7 @@ impl<'a, T, F: Found> Leaves<'a, T, F> {
         let sheared = sheared.least_volume(bvh.least_volume);
         Leaves {
             asked: Asked { bvh, sheared, t_min: ray.t_min, t_max: ray.t_max },
+            places: Places::new(bvh),
             tally,
             found: F::default(),
             side_by_side: boxes.moderate,
@@ -216,7 +219,7 @@ impl<T: Tally, F: Found> Visitor for Leaves<'_, T, F> {
 
     #[inline(always)]
     fn fetch<L: Lanes>(&self, lanes: L, child: u32) {
-        super::stream::prefetch(lanes, self.asked.bvh, child);
+        self.places.fetch(lanes, child);
     }
 
     #[inline(always)]

@@ -90,21 +90,34 @@ impl<'a, F: Found, A: FnMut(usize, F::Answer)> Stream<'a, F, A> {
             (flyer.t_max, flyer.child) = (ray.t_max, 0);
             stack.clear();
             stack.push(END, f32::NEG_INFINITY);
-            prefetch(lanes, self.bvh, 0);
+            Places::new(self.bvh).fetch(lanes, 0);
             return true;
         }
         false
     }
 }
 
-/// Has what a ray needs next brought near.
-#[inline(always)]
-pub(super) fn prefetch<L: Lanes>(lanes: L, bvh: &TriangleBvh, child: u32) {
-    let inner = bvh.nodes.as_ptr().wrapping_add(child as usize).cast::<u8>();
-    let leaf = bvh.leaves.as_ptr().wrapping_add(ROWS * node::items(child).0).cast::<u8>();
-    let from = select_unpredictable(child & LEAF == 0, inner, leaf);
-    for line in 0..size_of::<Node>() / 64 {
-        lanes.prefetch(from.wrapping_add(64 * line));
+/// Where nodes and leaves are in memory.
+#[derive(Clone, Copy)]
+pub(super) struct Places {
+    nodes_and_leaves: [*const u8; 2],
+}
+
+impl Places {
+    #[inline(always)]
+    pub fn new(bvh: &TriangleBvh) -> Self {
+        Places { nodes_and_leaves: [bvh.nodes.as_ptr().cast(), bvh.leaves.as_ptr().cast()] }
+    }
+
+    /// Has a child brought near.
+    #[inline(always)]
+    pub fn fetch<L: Lanes>(&self, lanes: L, child: u32) {
+        const SIZES: [usize; 2] = [size_of::<Node>(), ROWS * size_of::<f32>()];
+        let (kind, number) = ((child >> 31) as usize, node::items(child).0);
+        let from = self.nodes_and_leaves[kind].wrapping_add(SIZES[kind] * number);
+        for line in 0..size_of::<Node>() / 64 {
+            lanes.prefetch(from.wrapping_add(64 * line));
+        }
     }
 }
 
@@ -125,6 +138,7 @@ impl<'a, F: Found, A: FnMut(usize, F::Answer)> Kernel for Stream<'a, F, A> {
     #[inline(always)]
     fn run<L: Lanes>(mut self, lanes: L) {
         let bvh = self.bvh;
+        let places = Places::new(bvh);
         let mut rooms: Vec<Room> = (0..FLYING).map(|_| Room::new()).collect();
         let mut stacks: Vec<Stack> = rooms.iter_mut().map(Stack::new).collect();
         let nowhere = Ray::new(Vec3::ZERO, Vec3::X);
@@ -149,7 +163,7 @@ impl<'a, F: Found, A: FnMut(usize, F::Answer)> Kernel for Stream<'a, F, A> {
                 let number = inner.numbers[k];
                 let (flyer, stack) = (&mut flyers[usize::from(number)], &mut stacks[usize::from(number)]);
                 step(lanes, &bvh.nodes, flyer, stack);
-                prefetch(lanes, bvh, flyer.child);
+                places.fetch(lanes, flyer.child);
                 inner.add(number, flyer.child & LEAF == 0);
                 leaves.add(number, flyer.child & LEAF != 0);
             }
@@ -175,7 +189,7 @@ impl<'a, F: Found, A: FnMut(usize, F::Answer)> Kernel for Stream<'a, F, A> {
                     }
                 } else {
                     flyer.child = stack.pop_until(flyer.t_max);
-                    prefetch(lanes, bvh, flyer.child);
+                    places.fetch(lanes, flyer.child);
                 }
                 inner.add(number, flyer.child & LEAF == 0);
                 leaves.add(number, flyer.child & LEAF != 0);

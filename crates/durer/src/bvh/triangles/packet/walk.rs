@@ -3,7 +3,7 @@
 use super::Packet;
 use crate::bvh::lanes::{Lanes, Numbers, WIDE, Wide};
 use crate::bvh::node::{LEAF, Node};
-use crate::bvh::triangles::stream::prefetch;
+use crate::bvh::triangles::stream::Places;
 
 /// A node or leaf that is still to be visited.
 #[derive(Clone, Copy)]
@@ -90,7 +90,7 @@ impl Packet<'_> {
     #[inline(always)]
     pub(super) fn walk<L: Lanes, const ANY: bool>(&mut self, lanes: L, stack: &mut Vec<Entry>) {
         let bvh = self.bvh;
-        let beam = self.beam(lanes);
+        let (beam, places) = (self.beam(lanes), Places::new(bvh));
         self.limit = self.last(lanes);
         stack.clear();
         let (mut child, mut rays) = (0, self.alive);
@@ -108,7 +108,7 @@ impl Packet<'_> {
                         let place = if rising { 31 - others.leading_zeros() } else { others.trailing_zeros() } & 7;
                         others ^= 1 << place;
                         let next = node.children[place as usize];
-                        prefetch(lanes, bvh, next);
+                        places.fetch(lanes, next);
                         stack.push(Entry { rays, child: next, place: child * 8 + place, near: enter[place as usize] });
                     }
                     let inside = self.inside(lanes, node, nearest as usize & 7, rays);
