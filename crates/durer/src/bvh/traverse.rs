@@ -143,10 +143,11 @@ pub(super) fn walk<L: Lanes, V: Visitor, const TAME: bool>(
             let (met, interval) = meet::<L, TAME>(lanes, node, &slabs, limit);
             if met != 0 {
                 // The nearest child is next, without a way through the stack.
-                let [first, second, third] = next(lanes, V::UNORDERED, &mut stack, node, met, interval, boxes.negative);
-                visitor.fetch(lanes, second);
-                visitor.fetch(lanes, third);
-                child = first;
+                let likely;
+                (child, likely) = next(lanes, V::UNORDERED, &mut stack, node, met, interval, boxes.negative);
+                visitor.fetch(lanes, likely[0]);
+                visitor.fetch(lanes, likely[1]);
+                visitor.fetch(lanes, likely[2]);
                 continue;
             }
         } else {
@@ -174,8 +175,8 @@ pub(super) fn walk<L: Lanes, V: Visitor, const TAME: bool>(
     }
 }
 
-/// The child that is next, of those that are met; pushes the others. Also gives the two that come after it, or any children of
-/// the node where it has not met as many.
+/// The child that is next, of those that are met; pushes the others. Also gives three that are likely to be visited: the nearest
+/// along the axis of the node that are met, and others where there are fewer.
 ///
 /// The next is the one that is entered first, and the others are pushed from far to near along the axis of the node. If `unordered`
 /// they come by place, so that the next is known sooner.
@@ -188,30 +189,37 @@ pub(super) fn next<L: Lanes>(
     met: u32,
     [enter, leave]: [L::Floats; 2],
     negative: u32,
-) -> [u32; 3] {
+) -> (u32, [u32; 3]) {
     let (next, falling) = match unordered {
         true => (met.trailing_zeros(), 0),
         false => (lanes.nearest(enter, leave), negative >> (node.axis & 31) & 1),
     };
     let others = met & !(1 << (next & 7));
-    let order = &FAR_TO_NEAR[falling as usize][others as usize & 255];
-    let count = others.count_ones();
-    lanes.push(stack, &node.children, enter, order, count);
-    let pushed = |after: u32| order[count.wrapping_sub(after) as usize & 7];
-    [next as u8, pushed(1), pushed(2)].map(|lane| node.children[lane as usize & 7])
+    let (orders, count) = (&FAR_TO_NEAR[falling as usize], others.count_ones());
+    lanes.push(stack, &node.children, enter, &orders[others as usize & 255], count);
+    // Known before it is known which is entered first.
+    let order = &orders[met as usize & 255];
+    let along = |k: u32| node.children[order[count.wrapping_sub(k) as usize & 7] as usize & 7];
+    (node.children[next as usize & 7], [along(0), along(1), along(2)])
 }
 
-/// For each set of lanes the lanes from far to near, where the first are nearer and where the last are.
+/// For each set of lanes the lanes from far to near, where the first are nearer and where the last are; then those that are not in the
+/// set.
 static FAR_TO_NEAR: [[[u8; WIDTH]; 256]; 2] = {
     let mut table = [[[0; WIDTH]; 256]; 2];
     let mut set = 0;
     while set < 256 {
-        let (mut lane, mut at, count) = (0, 0, (set as u32).count_ones() as usize);
+        let count = (set as u32).count_ones() as usize;
+        let (mut lane, mut inside, mut outside) = (0, 0, count);
         while lane < WIDTH {
             if set >> lane & 1 == 1 {
-                table[1][set][at] = lane as u8;
-                table[0][set][count - 1 - at] = lane as u8;
-                at += 1;
+                table[1][set][inside] = lane as u8;
+                table[0][set][count - 1 - inside] = lane as u8;
+                inside += 1;
+            } else {
+                table[1][set][outside] = lane as u8;
+                table[0][set][outside] = lane as u8;
+                outside += 1;
             }
             lane += 1;
         }
