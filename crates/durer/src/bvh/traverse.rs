@@ -147,7 +147,6 @@ pub(super) fn walk<L: Lanes, V: Visitor, const TAME: bool>(
                 (child, likely) = next(lanes, V::UNORDERED, &mut stack, node, met, interval, boxes.negative);
                 visitor.fetch(lanes, likely[0]);
                 visitor.fetch(lanes, likely[1]);
-                visitor.fetch(lanes, likely[2]);
                 continue;
             }
         } else {
@@ -175,8 +174,8 @@ pub(super) fn walk<L: Lanes, V: Visitor, const TAME: bool>(
     }
 }
 
-/// The child that is next, of those that are met; pushes the others. Also gives three that are likely to be visited: the nearest
-/// along the axis of the node that are met, and others where there are fewer.
+/// The child that is next, of those that are met; pushes the others. Also gives two that are likely to be visited: the nearest
+/// along the axis of the node that are met, and any where there are fewer.
 ///
 /// The next is the one that is entered first, and the others are pushed from far to near along the axis of the node. If `unordered`
 /// they come by place, so that the next is known sooner.
@@ -189,7 +188,7 @@ pub(super) fn next<L: Lanes>(
     met: u32,
     [enter, leave]: [L::Floats; 2],
     negative: u32,
-) -> (u32, [u32; 3]) {
+) -> (u32, [u32; 2]) {
     let (next, falling) = match unordered {
         true => (met.trailing_zeros(), 0),
         false => (lanes.nearest(enter, leave), negative >> (node.axis & 31) & 1),
@@ -200,7 +199,7 @@ pub(super) fn next<L: Lanes>(
     // Known before it is known which is entered first.
     let order = &orders[met as usize & 255];
     let along = |k: u32| node.children[order[count.wrapping_sub(k) as usize & 7] as usize & 7];
-    (node.children[next as usize & 7], [along(0), along(1), along(2)])
+    (node.children[next as usize & 7], [along(0), along(1)])
 }
 
 /// For each set of lanes the lanes from far to near, where the first are nearer and where the last are; then those that are not in the
