@@ -43,7 +43,7 @@ fn pad(reach: f32) -> f32 {
 }
 
 /// In this range squares neither overflow nor vanish.
-pub(super) const TAME: std::ops::Range<f32> = 1e-15..1e15;
+pub(super) const ORDINARY: std::ops::Range<f32> = 1e-15..1e15;
 
 impl RayBox {
     /// Prepares a tame ray for a tree with no coordinates greater than `most`: one for which nothing leaves the range of `f32`, and that
@@ -55,7 +55,7 @@ impl RayBox {
         // As a sum it is also no number where any of them is none.
         let reach = origin.abs().element_sum() + most;
         let sizes = dir.abs().extend(reach);
-        let tame = sizes.cmpgt(Vec4::splat(TAME.start)) & sizes.cmplt(Vec4::splat(TAME.end));
+        let tame = sizes.cmpgt(Vec4::splat(ORDINARY.start)) & sizes.cmplt(Vec4::splat(ORDINARY.end));
         if !tame.all() || !(0.0..ray.t_max).contains(&ray.t_min) {
             return None;
         }
@@ -66,7 +66,7 @@ impl RayBox {
             near_origin: (at - outward).to_array(),
             far_origin: (at + outward).to_array(),
         };
-        // Not the zero with a sign.
+        // Not the zero with a sign, for ends of intervals are compared as integers.
         let t_min = ray.t_min + 0.0;
         Some(RayBox { planes, negative: dir.is_negative_bitmask(), t_min, scale: 1.0, moderate: true })
     }
@@ -92,7 +92,7 @@ impl RayBox {
         };
         let negative = dir.is_negative_bitmask();
         let t_min = (ray.t_min * scale).next_down();
-        Some(RayBox { planes, negative, t_min, scale, moderate: reach < TAME.end })
+        Some(RayBox { planes, negative, t_min, scale, moderate: reach < ORDINARY.end })
     }
 
     /// A distance along the ray, not too small, as boxes have it.
@@ -174,8 +174,8 @@ pub(super) fn walk<L: Lanes, V: Visitor, const TAME: bool>(
     }
 }
 
-/// The child that is next, of those that are met; pushes the others. Also gives two that are likely to be visited: the nearest
-/// along the axis of the node that are met, and any where there are fewer.
+/// The child that is next, of those that are met; pushes the others. Also gives two that are likely to be visited: the first of
+/// those that are met in the order of pushing, and any where there are fewer.
 ///
 /// The next is the one that is entered first, and the others are pushed from far to near along the axis of the node. If `unordered`
 /// they come by place, so that the next is known sooner.
@@ -269,8 +269,9 @@ pub(super) fn meet<L: Lanes, const TAME: bool>(
             }
         }};
     }
-    // Zero times infinity is no number, where a ray runs in a side of a box: such a side is left out, being the
-    // first argument here, or the second there where the first is no number.
+    // With a tame ray nothing is NaN, and no start is negative, so of ends as integers the right one is found, or one that is
+    // negative where nothing is met. With others zero times infinity is NaN, where a ray runs in a side of a box: such a side is left
+    // out, being the first argument here, or the second there where the first is NaN.
     macro_rules! end {
         ($sooner:ident, $least:ident, $a:expr, $b:expr) => {
             if TAME { lanes.$sooner($a, $b) } else { lanes.$least($a, $b) }

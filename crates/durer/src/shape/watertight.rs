@@ -40,7 +40,7 @@ impl Sheared {
 
     /// Prepares a ray that has a finite direction.
     #[inline(always)]
-    pub(crate) fn finite(ray: &Ray) -> Self {
+    fn finite(ray: &Ray) -> Self {
         let axes = turn(ray.dir.into());
         let [x, y, z] = Sheared::indices(axes);
         let turned = |v: &[f32; 3]| Vec3A::new(v[x], v[y], v[z]);

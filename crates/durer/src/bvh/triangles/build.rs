@@ -106,6 +106,7 @@ impl TriangleBvh {
             let mut numbers = numbers.into_iter();
             while let Some(&count) = counts.first() {
                 let count = usize::from(count);
+                debug_assert!(count > 0, "every item is in a leaf");
                 let (rows, after) = part.split_at_mut(ROWS * count);
                 for (lane, (number, triangle)) in numbers.by_ref().zip(indices.by_ref()).take(count).enumerate() {
                     let corners = triangle.map(|i| vertices[i as usize]);

@@ -5,7 +5,7 @@ use super::stream::Places;
 use super::{TriangleBvh, TriangleHit, number};
 use crate::bvh::Tally;
 use crate::bvh::lanes::{Kernel, Lanes, WIDTH, column};
-use crate::bvh::traverse::{RayBox, Visitor, walk};
+use crate::bvh::traverse::{ORDINARY, RayBox, Visitor, walk};
 use crate::math::{Ray, Vec2, Vec3};
 use crate::shape::watertight::{Exact, Sheared, turn, uv};
 use glam::Vec3A;
@@ -239,7 +239,8 @@ impl<T: Tally, F: Found> Visitor for Leaves<'_, T, F> {
             return t_max;
         }
         let crossed = flat.crossed(lanes) & there;
-        if crossed == 0 || bvh.blind || F::ANY && !TAME {
+        let is_bounded = TAME || ORDINARY.contains(&sheared.ray().1.z.abs());
+        if crossed == 0 || bvh.blind || F::ANY && !is_bounded {
             return self.one_by_one(leaf, unsure, t_max);
         }
         unsure ^= crossed;

@@ -118,7 +118,7 @@ impl Places {
     pub fn fetch<L: Lanes>(&self, lanes: L, child: u32) {
         const SIZES: [usize; 2] = [size_of::<Node>(), ROWS * size_of::<f32>()];
         let (kind, number) = ((child >> 31) as usize, node::items(child).0);
-        let from = self.nodes_and_leaves[kind].wrapping_add(SIZES[kind] * number);
+        let from = self.nodes_and_leaves[kind].wrapping_add(SIZES[kind].wrapping_mul(number));
         for line in 0..LINES {
             lanes.prefetch(from.wrapping_add(64 * line));
         }

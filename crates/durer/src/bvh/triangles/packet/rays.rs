@@ -2,7 +2,7 @@
 
 use super::Axes;
 use crate::bvh::lanes::{Lanes, Numbers, WIDE, WIDTH, Wide};
-use crate::bvh::traverse::TAME;
+use crate::bvh::traverse::ORDINARY;
 use crate::math::{Doubles, Ray, Vec2, Vec3};
 use crate::shape::watertight::{Exact, uv_across};
 
@@ -85,7 +85,7 @@ impl Rays {
     #[inline(always)]
     pub fn prepare<L: Lanes>(&mut self, lanes: L, axes: &Axes, most: f32) -> u32 {
         let wide = lanes.wide();
-        let (least, greatest) = (wide.splat(TAME.start), wide.splat(TAME.end));
+        let (least, greatest) = (wide.splat(ORDINARY.start), wide.splat(ORDINARY.end));
         let mut far = wide.splat(0.0);
         let mut tame = wide.lt(wide.load(&self.t_min), wide.load(&self.t_last));
         for axis in 0..3 {
