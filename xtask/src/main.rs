@@ -47,14 +47,19 @@ The course is found in ../shared, or where DURER_CORPUS says.";
 
 fn main() -> anyhow::Result<ExitCode> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let help = arguments.iter().any(|argument| argument == "--help");
     match arguments.first().map(String::as_str) {
+        Some("bench-rays") => bench_rays::run(&arguments[1..]),
+        Some(_) if help => {
+            println!("{USAGE}");
+            Ok(ExitCode::SUCCESS)
+        }
         Some("course") => course::run(&arguments[1..]),
         Some("verify") => verify::run(&arguments[1..]),
         Some("explain") => explain::run(&arguments[1..]),
         Some("torture") => torture::run(&arguments[1..]),
         Some("cost") => cost::run(&arguments[1..]),
         Some("solids") => solids::run(),
-        Some("bench-rays") => bench_rays::run(&arguments[1..]),
         Some("long") => long::run(&arguments[1..]),
         Some("manual") => manual::run(),
         _ => {
