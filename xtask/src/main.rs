@@ -49,6 +49,7 @@ fn main() -> anyhow::Result<ExitCode> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let help = arguments.iter().any(|argument| argument == "--help");
     match arguments.first().map(String::as_str) {
+        // It has a help of its own.
         Some("bench-rays") => bench_rays::run(&arguments[1..]),
         Some(_) if help => {
             println!("{USAGE}");

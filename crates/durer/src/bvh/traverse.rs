@@ -1,7 +1,7 @@
 //! Walking a ray through the tree, nearest boxes first, or, where that does not matter, in any order.
 //!
-//! Of the children that the ray meets the one that is entered first is next; the others are pushed, farthest along an axis first, by one
-//! store whatever their number, so that no branch depends on how many children are met. What lies beyond a hit is dropped when it
+//! Of the children that the ray meets the one that is entered first is next; the others are pushed, farthest along an axis first,
+//! by one store whatever their number, so that no branch depends on how many children are met. What lies beyond a hit is dropped when it
 //! is popped: that is guessed rightly more often than not, and the walk goes on before it is known where the hit is.
 //!
 //! Source: Fuetterer, Lojewski, Pfreundt, Ebert, *Efficient Ray Tracing Kernels for Modern CPU Architectures*, JCGT
@@ -121,7 +121,8 @@ pub(super) trait Visitor {
 /// Shows every leaf that the ray may meet before `t_max` to the visitor, roughly from near to far if the visitor is not
 /// [`UNORDERED`](Visitor::UNORDERED).
 ///
-/// Gives `t_max` as it is in the end. Leaves whose boxes begin exactly at `t_max` are still shown. `TAME` says whether `boxes` are of [`RayBox::new`].
+/// Gives `t_max` as it is in the end. Leaves whose boxes begin exactly at `t_max` are still shown. `TAME` says whether `boxes`
+/// are of [`RayBox::new`].
 #[inline(always)]
 pub(super) fn walk<L: Lanes, V: Visitor, const TAME: bool>(
     lanes: L,

@@ -55,30 +55,16 @@ impl Doubles for f64 {
     }
 }
 
+macro_rules! both {
+    ($($name:ident)*) => {$(
+        #[inline(always)]
+        fn $name(self, other: Self) -> Self {
+            (self.0.$name(other.0), self.1.$name(other.1))
+        }
+    )*};
+}
+
 /// Those of both, side by side.
 impl<D: Doubles> Doubles for (D, D) {
-    #[inline(always)]
-    fn add(self, other: Self) -> Self {
-        (self.0.add(other.0), self.1.add(other.1))
-    }
-    #[inline(always)]
-    fn sub(self, other: Self) -> Self {
-        (self.0.sub(other.0), self.1.sub(other.1))
-    }
-    #[inline(always)]
-    fn mul(self, other: Self) -> Self {
-        (self.0.mul(other.0), self.1.mul(other.1))
-    }
-    #[inline(always)]
-    fn div(self, other: Self) -> Self {
-        (self.0.div(other.0), self.1.div(other.1))
-    }
-    #[inline(always)]
-    fn min(self, other: Self) -> Self {
-        (self.0.min(other.0), self.1.min(other.1))
-    }
-    #[inline(always)]
-    fn max(self, other: Self) -> Self {
-        (self.0.max(other.0), self.1.max(other.1))
-    }
+    both! { add sub mul div min max }
 }

@@ -42,9 +42,8 @@ impl Sheared {
     #[inline(always)]
     fn finite(ray: &Ray) -> Self {
         let axes = turn(ray.dir.into());
-        let [x, y, z] = Sheared::indices(axes);
-        let turned = |v: &[f32; 3]| Vec3A::new(v[x], v[y], v[z]);
-        Self::turned(axes, turned(ray.origin.as_ref()), turned(ray.dir.as_ref()))
+        let [origin, dir] = [ray.origin, ray.dir].map(|v| turned(Self::indices(axes), v.as_ref()).into());
+        Self::turned(axes, origin, dir)
     }
 
     /// A ray with its axes, by [`turn`], and turned already.
@@ -110,9 +109,7 @@ impl Sheared {
     /// Where the ray's line crosses a triangle that it crosses: within the triangle's bounds. It may be infinite.
     #[inline(always)]
     pub(crate) fn t(&self, corners: [Vec3; 3]) -> Option<f32> {
-        let (origin, dir) = (self.origin.as_dvec3().to_array(), self.dir.as_dvec3().to_array());
-        let line = Exact { origin, dir, inverse: 1.0 / dir[2] };
-        let [t, volume] = line.t(corners.map(|corner| corner.as_dvec3().to_array()));
+        let [t, volume] = Exact::single(self.origin.into(), self.dir.into(), corners);
         if volume.abs() < self.least_volume {
             return None;
         }
@@ -142,6 +139,15 @@ pub(crate) struct Exact<D> {
     pub dir: [D; 3],
     /// 1 over the last component of the direction.
     pub inverse: D,
+}
+
+impl Exact<f64> {
+    /// What [`Exact::t`] gives for one ray and one triangle.
+    #[inline(always)]
+    pub fn single(origin: Vec3, dir: Vec3, corners: [Vec3; 3]) -> [f64; 2] {
+        let (origin, dir) = (origin.as_dvec3().to_array(), dir.as_dvec3().to_array());
+        Exact { origin, dir, inverse: 1.0 / dir[2] }.t(corners.map(|corner| corner.as_dvec3().to_array()))
+    }
 }
 
 impl<D: Doubles> Exact<D> {

@@ -73,6 +73,12 @@ pub(super) trait Lanes: Numbers {
     fn singles(self, a: Self::Doubles) -> Self::Floats;
     fn store_doubles(self, a: Self::Doubles) -> [f64; WIDTH];
 
+    /// A vector in each lane.
+    #[inline(always)]
+    fn doubles3(self, [x, y, z]: [Self::Floats; 3]) -> [Self::Doubles; 3] {
+        [self.doubles(x), self.doubles(y), self.doubles(z)]
+    }
+
     /// The components of a vector in an order.
     fn turn(self, v: Vec3A, order: &[u32; 4]) -> Vec3A;
 
@@ -105,7 +111,10 @@ pub(super) trait Lanes: Numbers {
 pub const ROWS: usize = 10;
 
 /// As many rows as there may be, with what is read past the last.
-pub type Rows = [f32; ROWS * WIDTH + WIDTH];
+pub type Rows = [f32; ROOM_OF_ROWS];
+
+/// How many numbers that is.
+pub const ROOM_OF_ROWS: usize = ROWS * WIDTH + WIDTH;
 
 /// One of two neighbouring rows.
 #[derive(Clone, Copy)]

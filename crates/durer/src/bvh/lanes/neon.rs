@@ -148,10 +148,8 @@ impl Lanes for Neon {
     }
 
     #[inline(always)]
-    fn turn(self, v: glam::Vec3A, [x, y, z, _]: &[u32; 4]) -> glam::Vec3A {
-        let [a, b, c] = v.to_array();
-        let v = [a, b, c, c];
-        glam::Vec3A::new(v[*x as usize & 3], v[*y as usize & 3], v[*z as usize & 3])
+    fn turn(self, v: glam::Vec3A, order: &[u32; 4]) -> glam::Vec3A {
+        super::scalar::Scalar.turn(v, order)
     }
     #[inline(always)]
     fn load(self, from: &[f32; WIDTH]) -> Pair {

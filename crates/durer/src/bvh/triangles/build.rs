@@ -2,7 +2,7 @@
 
 use super::{TAG, TriangleBvh, number};
 use crate::bvh::build::{self, Preset, Settings, is_finite};
-use crate::bvh::lanes::{Available, ROWS, Rows, large_pages};
+use crate::bvh::lanes::{Available, ROOM_OF_ROWS, ROWS, large_pages};
 use crate::bvh::node;
 use crate::math::{Aabb, Vec3};
 use rayon::prelude::*;
@@ -23,7 +23,7 @@ impl TriangleBvh {
         let settings = Settings::triangles(preset);
         let corners_of = |number: u32| triangles[number as usize].map(|i| vertices[i as usize]);
         let tree = build::build_triangles(triangles.len(), &corners_of, &settings);
-        let leaves = vec![0.0; ROWS * tree.order.len() + size_of::<Rows>() / size_of::<f32>()];
+        let leaves = vec![0.0; ROWS * tree.order.len() + ROOM_OF_ROWS];
         large_pages(leaves.as_ptr(), leaves.len());
         let mut nodes = Vec::with_capacity(tree.nodes.len());
         large_pages(nodes.as_ptr(), nodes.capacity());
@@ -75,7 +75,7 @@ impl TriangleBvh {
 
     /// Writes all leaves, with numbers in the order of items, or again with those that they have.
     fn pack(&mut self, order: Option<&[u32]>, vertices: &[Vec3], triangles: &[[u32; 3]]) {
-        let items = (self.leaves.len() - size_of::<Rows>() / size_of::<f32>()) / ROWS;
+        let items = (self.leaves.len() - ROOM_OF_ROWS) / ROWS;
         // The count of each leaf, where its items begin.
         let mut counts = vec![0u8; items];
         for (_, _, child) in self.nodes.iter().flat_map(|node| node.children()) {

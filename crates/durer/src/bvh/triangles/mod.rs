@@ -1,6 +1,7 @@
 //! A tree over the triangles of a mesh, with the triangles themselves: the kernel that rays spend their time in.
 
 mod build;
+mod fetch;
 mod leaf;
 mod packet;
 mod query;

@@ -1,7 +1,7 @@
 //! What a ray asks of a tree of triangles.
 
+use super::fetch::Places;
 use super::leaf::Flat;
-use super::stream::Places;
 use super::{TriangleBvh, TriangleHit, number};
 use crate::bvh::Tally;
 use crate::bvh::lanes::{Kernel, Lanes, WIDTH, column};
@@ -256,11 +256,11 @@ impl<T: Tally, F: Found> Visitor for Leaves<'_, T, F> {
             // Hidden, or the compiler would prepare this for every ray, before it is known whether it comes to a leaf.
             let (origin, dir) = std::hint::black_box(sheared).ray();
             let line = Exact {
-                origin: doubles(lanes, lanes.splat3(origin.to_array())),
-                dir: doubles(lanes, lanes.splat3(dir.to_array())),
+                origin: lanes.doubles3(lanes.splat3(origin.to_array())),
+                dir: lanes.doubles3(lanes.splat3(dir.to_array())),
                 inverse: lanes.splat_double(1.0 / f64::from(dir.z)),
             };
-            let [t, _] = line.t([doubles(lanes, corners[0]), doubles(lanes, corners[1]), doubles(lanes, corners[2])]);
+            let [t, _] = line.t([lanes.doubles3(corners[0]), lanes.doubles3(corners[1]), lanes.doubles3(corners[2])]);
             let t = lanes.singles(t);
             // What is no number is left out.
             let met = crossed & lanes.lt(start, t) & lanes.lt(t, end) & lanes.le(t, lanes.splat(t_max));
@@ -283,12 +283,6 @@ impl<T: Tally, F: Found> Visitor for Leaves<'_, T, F> {
             _ => self.one_by_one(leaf, unsure, t_max),
         }
     }
-}
-
-/// A vector in each lane in double precision.
-#[inline(always)]
-fn doubles<L: Lanes>(lanes: L, [x, y, z]: [L::Floats; 3]) -> [L::Doubles; 3] {
-    [lanes.doubles(x), lanes.doubles(y), lanes.doubles(z)]
 }
 
 impl<T: Tally, F: Found> Leaves<'_, T, F> {

@@ -5,9 +5,10 @@
 //! comes next is no branch: a step writes its ray to both lists, and one of the two gets longer.
 
 use super::TriangleBvh;
+use super::fetch::Places;
 use super::query::{Found, Leaves};
-use crate::bvh::lanes::{Kernel, Lanes, ROWS, Room, Stack};
-use crate::bvh::node::{self, LEAF, Node};
+use crate::bvh::lanes::{Kernel, Lanes, Room, Stack};
+use crate::bvh::node::{LEAF, Node};
 use crate::bvh::traverse::{RayBox, Slabs, Visitor, meet, next};
 use crate::math::{Ray, Vec3};
 use std::hint::select_unpredictable;
@@ -94,34 +95,6 @@ impl<'a, F: Found, A: FnMut(usize, F::Answer)> Stream<'a, F, A> {
             return true;
         }
         false
-    }
-}
-
-/// So many lines of memory are fetched at once: a node has four and a leaf up to six. What lies behind is its siblings, which are
-/// likely to be visited too; how many pay was found by measurement.
-const LINES: usize = 8;
-
-/// Where nodes and leaves are in memory.
-#[derive(Clone, Copy)]
-pub(super) struct Places {
-    nodes_and_leaves: [*const u8; 2],
-}
-
-impl Places {
-    #[inline(always)]
-    pub fn new(bvh: &TriangleBvh) -> Self {
-        Places { nodes_and_leaves: [bvh.nodes.as_ptr().cast(), bvh.leaves.as_ptr().cast()] }
-    }
-
-    /// Has a child brought near.
-    #[inline(always)]
-    pub fn fetch<L: Lanes>(&self, lanes: L, child: u32) {
-        const SIZES: [usize; 2] = [size_of::<Node>(), ROWS * size_of::<f32>()];
-        let (kind, number) = ((child >> 31) as usize, node::items(child).0);
-        let from = self.nodes_and_leaves[kind].wrapping_add(SIZES[kind].wrapping_mul(number));
-        for line in 0..LINES {
-            lanes.prefetch(from.wrapping_add(64 * line));
-        }
     }
 }
 

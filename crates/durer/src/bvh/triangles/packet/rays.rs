@@ -165,17 +165,23 @@ impl Rays {
             if crossed == 0 {
                 continue;
             }
-            macro_rules! doubles {
-                ($numbers:expr) => {
-                    lanes.doubles(lanes.load(half($numbers, first)))
+            macro_rules! turned {
+                ($v:expr) => {
+                    lanes.doubles3([
+                        lanes.load(half(&$v[x], first)),
+                        lanes.load(half(&$v[y], first)),
+                        lanes.load(half(&$v[z], first)),
+                    ])
                 };
             }
             let line = Exact {
-                origin: [doubles!(&self.origin[x]), doubles!(&self.origin[y]), doubles!(&self.origin[z])],
-                dir: [doubles!(&self.dir[x]), doubles!(&self.dir[y]), doubles!(&self.dir[z])],
-                inverse: lanes.splat_double(1.0).div(doubles!(&self.dir[z])),
+                origin: turned!(self.origin),
+                dir: turned!(self.dir),
+                inverse: lanes.splat_double(1.0).div(turned!(self.dir)[2]),
             };
-            let [t, _] = line.t([splat3(lanes, corners[0]), splat3(lanes, corners[1]), splat3(lanes, corners[2])]);
+            let [a, b, c] = corners;
+            let [a, b, c] = [lanes.splat3(a.into()), lanes.splat3(b.into()), lanes.splat3(c.into())];
+            let [t, _] = line.t([lanes.doubles3(a), lanes.doubles3(b), lanes.doubles3(c)]);
             let t = lanes.singles(t);
             let t_last = lanes.load(half(&self.t_last, first));
             // Also NaN is refused.
@@ -207,10 +213,8 @@ impl Rays {
         less: impl Fn(u32) -> bool,
     ) -> bool {
         let [x, y, z] = axes.turned;
-        let at = |v: &[PerRay; 3]| [f64::from(v[x][lane]), f64::from(v[y][lane]), f64::from(v[z][lane])];
-        let (origin, dir) = (at(&self.origin), at(&self.dir));
-        let line = Exact { origin, dir, inverse: 1.0 / dir[2] };
-        let t = line.t(corners.map(|corner| corner.as_dvec3().to_array()))[0] as f32;
+        let at = |v: &[PerRay; 3]| Vec3::new(v[x][lane], v[y][lane], v[z][lane]);
+        let t = Exact::single(at(&self.origin), at(&self.dir), corners)[0] as f32;
         let within = t > self.t_min[lane] && t < self.t_max[lane];
         let met = within && (t < self.t_last[lane] || t == self.t_last[lane] && less(self.met[lane].to_bits()));
         if met {
@@ -250,13 +254,6 @@ fn half(numbers: &PerRay, first: usize) -> &[f32; WIDTH] {
         Some(half) => half,
         None => unreachable!("sixteen are twice eight"),
     }
-}
-
-/// The same vector in all lanes.
-#[inline(always)]
-fn splat3<L: Lanes>(lanes: L, v: Vec3) -> [L::Doubles; 3] {
-    let v = v.as_dvec3();
-    [lanes.splat_double(v.x), lanes.splat_double(v.y), lanes.splat_double(v.z)]
 }
 
 /// By how much heights may be off by rounding.

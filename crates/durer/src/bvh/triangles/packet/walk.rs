@@ -3,7 +3,7 @@
 use super::Packet;
 use crate::bvh::lanes::{Lanes, Numbers, WIDE, Wide};
 use crate::bvh::node::{LEAF, Node};
-use crate::bvh::triangles::stream::Places;
+use crate::bvh::triangles::fetch::Places;
 
 /// A node or leaf that is still to be visited.
 #[derive(Clone, Copy)]
