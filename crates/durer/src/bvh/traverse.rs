@@ -146,8 +146,7 @@ pub(super) fn walk<L: Lanes, V: Visitor, const TAME: bool>(
                 // The nearest child is next, without a way through the stack.
                 let likely;
                 (child, likely) = next(lanes, V::UNORDERED, &mut stack, node, met, interval, boxes.negative);
-                visitor.fetch(lanes, likely[0]);
-                visitor.fetch(lanes, likely[1]);
+                visitor.fetch(lanes, likely);
                 continue;
             }
         } else {
@@ -175,8 +174,8 @@ pub(super) fn walk<L: Lanes, V: Visitor, const TAME: bool>(
     }
 }
 
-/// The child that is next, of those that are met; pushes the others. Also gives two that are likely to be visited: the first of
-/// those that are met in the order of pushing, and any where there are fewer.
+/// The child that is next, of those that are met; pushes the others. Also gives the one that is likely to be next: the nearest along the
+/// axis of the node.
 ///
 /// The next is the one that is entered first, and the others are pushed from far to near along the axis of the node. If `unordered`
 /// they come by place, so that the next is known sooner.
@@ -189,7 +188,7 @@ pub(super) fn next<L: Lanes>(
     met: u32,
     [enter, leave]: [L::Floats; 2],
     negative: u32,
-) -> (u32, [u32; 2]) {
+) -> (u32, u32) {
     let (next, falling) = match unordered {
         true => (met.trailing_zeros(), 0),
         false => (lanes.nearest(enter, leave), negative >> (node.axis & 31) & 1),
@@ -198,28 +197,22 @@ pub(super) fn next<L: Lanes>(
     let (orders, count) = (&FAR_TO_NEAR[falling as usize], others.count_ones());
     lanes.push(stack, &node.children, enter, &orders[others as usize & 255], count);
     // Known before it is known which is entered first.
-    let order = &orders[met as usize & 255];
-    let along = |k: u32| node.children[order[count.wrapping_sub(k) as usize & 7] as usize & 7];
-    (node.children[next as usize & 7], [along(0), along(1)])
+    let likely = orders[met as usize & 255][count as usize & 7];
+    (node.children[next as usize & 7], node.children[likely as usize & 7])
 }
 
-/// For each set of lanes the lanes from far to near, where the first are nearer and where the last are; then those that are not in the
-/// set.
+/// For each set of lanes the lanes from far to near, where the first are nearer and where the last are.
 static FAR_TO_NEAR: [[[u8; WIDTH]; 256]; 2] = {
     let mut table = [[[0; WIDTH]; 256]; 2];
     let mut set = 0;
     while set < 256 {
         let count = (set as u32).count_ones() as usize;
-        let (mut lane, mut inside, mut outside) = (0, 0, count);
+        let (mut lane, mut place) = (0, 0);
         while lane < WIDTH {
             if set >> lane & 1 == 1 {
-                table[1][set][inside] = lane as u8;
-                table[0][set][count - 1 - inside] = lane as u8;
-                inside += 1;
-            } else {
-                table[1][set][outside] = lane as u8;
-                table[0][set][outside] = lane as u8;
-                outside += 1;
+                table[1][set][place] = lane as u8;
+                table[0][set][count - 1 - place] = lane as u8;
+                place += 1;
             }
             lane += 1;
         }

@@ -10,21 +10,27 @@ pub(crate) trait Doubles: Copy {
     fn min(self, other: Self) -> Self;
     /// This where it is greater than the other, else that: also where either is no number.
     fn max(self, other: Self) -> Self;
+}
 
-    /// A vector less another.
+/// Three components: of one vector, or of several side by side.
+pub(crate) trait Triple: Doubles {
+    /// What a component is.
+    type Component: Doubles;
+
+    fn z(self) -> Self::Component;
+    /// x + y, and then z.
+    fn sum(self) -> Self::Component;
+    /// (y, z, x).
+    fn turned(self) -> Self;
+
     #[inline(always)]
-    fn difference([a, b, c]: [Self; 3], [x, y, z]: [Self; 3]) -> [Self; 3] {
-        [a.sub(x), b.sub(y), c.sub(z)]
+    fn dot(self, other: Self) -> Self::Component {
+        self.mul(other).sum()
     }
 
     #[inline(always)]
-    fn dot([a, b, c]: [Self; 3], [x, y, z]: [Self; 3]) -> Self {
-        a.mul(x).add(b.mul(y)).add(c.mul(z))
-    }
-
-    #[inline(always)]
-    fn cross([a, b, c]: [Self; 3], [x, y, z]: [Self; 3]) -> [Self; 3] {
-        [b.mul(z).sub(c.mul(y)), c.mul(x).sub(a.mul(z)), a.mul(y).sub(b.mul(x))]
+    fn cross(self, other: Self) -> Self {
+        self.mul(other.turned()).sub(self.turned().mul(other)).turned()
     }
 }
 
@@ -67,4 +73,34 @@ macro_rules! both {
 /// Those of both, side by side.
 impl<D: Doubles> Doubles for (D, D) {
     both! { add sub mul div min max }
+}
+
+macro_rules! each {
+    ($($name:ident)*) => {$(
+        #[inline(always)]
+        fn $name(self, [x, y, z]: Self) -> Self {
+            [self[0].$name(x), self[1].$name(y), self[2].$name(z)]
+        }
+    )*};
+}
+
+impl<D: Doubles> Doubles for [D; 3] {
+    each! { add sub mul div min max }
+}
+
+impl<D: Doubles> Triple for [D; 3] {
+    type Component = D;
+
+    #[inline(always)]
+    fn z(self) -> D {
+        self[2]
+    }
+    #[inline(always)]
+    fn sum(self) -> D {
+        self[0].add(self[1]).add(self[2])
+    }
+    #[inline(always)]
+    fn turned(self) -> Self {
+        [self[1], self[2], self[0]]
+    }
 }

@@ -12,7 +12,7 @@ pub mod roots;
 
 pub use aabb::Aabb;
 pub use affine::Affine;
-pub(crate) use doubles::Doubles;
+pub(crate) use doubles::{Doubles, Triple};
 pub use glam::{Vec2, Vec3};
 pub use ray::{Line, Ray};
 

@@ -13,7 +13,7 @@
 //! Edelsbrunner and Mücke's *Simulation of Simplicity*, ACM TOG 9(1), 1990.
 
 use super::Crossing;
-use crate::math::{Doubles, Ray, Vec2, Vec3};
+use crate::math::{Doubles, Ray, Triple, Vec2, Vec3};
 use glam::Vec3A;
 
 /// A ray prepared for many triangles.
@@ -134,14 +134,14 @@ impl Sheared {
 
 /// The line of a turned ray in double precision; or several side by side, or one beside several triangles. Nothing here branches.
 #[derive(Clone, Copy)]
-pub(crate) struct Exact<D> {
-    pub origin: [D; 3],
-    pub dir: [D; 3],
+pub(crate) struct Exact<V: Triple> {
+    pub origin: V,
+    pub dir: V,
     /// 1 over the last component of the direction.
-    pub inverse: D,
+    pub inverse: V::Component,
 }
 
-impl Exact<f64> {
+impl Exact<[f64; 3]> {
     /// What [`Exact::t`] gives for one ray and one triangle.
     #[inline(always)]
     pub fn single(origin: Vec3, dir: Vec3, corners: [Vec3; 3]) -> [f64; 2] {
@@ -150,20 +150,20 @@ impl Exact<f64> {
     }
 }
 
-impl<D: Doubles> Exact<D> {
+impl<V: Triple> Exact<V> {
     /// Where it crosses a turned triangle that it crosses, and the volume |(b - a) x (c - a) · d| with its sign.
     ///
     /// That is where it meets the plane, but between the lowest and the highest corner: seen from nearly its side, the
     /// triangle still bounds t, also where that is no number. Products are rounded monotonically, so the corners' distances are
     /// between those of the lowest and of the highest.
     #[inline(always)]
-    pub fn t(&self, [a, b, c]: [[D; 3]; 3]) -> [D; 2] {
-        let normal = D::cross(D::difference(b, a), D::difference(c, a));
-        let volume = D::dot(normal, self.dir);
-        let (lowest, highest) = (a[2].min(b[2].min(c[2])), a[2].max(b[2].max(c[2])));
-        let p = lowest.sub(self.origin[2]).mul(self.inverse);
-        let q = highest.sub(self.origin[2]).mul(self.inverse);
-        let t = D::dot(normal, D::difference(a, self.origin)).div(volume);
+    pub fn t(&self, [a, b, c]: [V; 3]) -> [V::Component; 2] {
+        let normal = b.sub(a).cross(c.sub(a));
+        let volume = normal.dot(self.dir);
+        let (lowest, highest) = (a.min(b.min(c)), a.max(b.max(c)));
+        let p = lowest.sub(self.origin).z().mul(self.inverse);
+        let q = highest.sub(self.origin).z().mul(self.inverse);
+        let t = normal.dot(a.sub(self.origin)).div(volume);
         [t.max(p.min(q)).min(p.max(q)), volume]
     }
 }
@@ -171,12 +171,7 @@ impl<D: Doubles> Exact<D> {
 /// The second and third barycentric coordinate of the origin, by the corners in the plane across a ray that crosses the triangle.
 #[inline(always)]
 pub(crate) fn uv_across(flat: [Vec2; 3]) -> Vec2 {
-    uv(areas(flat.map(doubles)))
-}
-
-/// The second and third barycentric coordinate, by what [`areas`] gives for a triangle that is crossed.
-#[inline(always)]
-pub(crate) fn uv([a, b, c]: [f64; 3]) -> Vec2 {
+    let [a, b, c] = areas(flat.map(doubles));
     // None of the three is of another sign than the others, so their sum is as exact as they are.
     let det = a + b + c;
     Vec2::new((b / det) as f32, (c / det) as f32)
@@ -225,14 +220,14 @@ fn doubles(p: Vec2) -> [f64; 2] {
 
 /// Twice the areas of the triangles from the origin to the three edges: unnormalised barycentric coordinates.
 #[inline(always)]
-pub(crate) fn areas<D: Doubles>([a, b, c]: [[D; 2]; 3]) -> [D; 3] {
+fn areas([a, b, c]: [[f64; 2]; 3]) -> [f64; 3] {
     [edge(b, c), edge(c, a), edge(a, b)]
 }
 
 /// The edge function of the edge from `p` to `q` about the origin: a product of two `f32` is exact.
 #[inline(always)]
-fn edge<D: Doubles>(p: [D; 2], q: [D; 2]) -> D {
-    q[0].mul(p[1]).sub(q[1].mul(p[0]))
+fn edge(p: [f64; 2], q: [f64; 2]) -> f64 {
+    q[0] * p[1] - q[1] * p[0]
 }
 
 /// Whether the edge from `p` to `q` goes round the origin clockwise: the sign of the edge function, never zero.

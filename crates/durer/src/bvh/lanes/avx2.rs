@@ -2,6 +2,7 @@
 
 use super::wide::Two;
 use super::{Kernel, Lanes, Numbers, Stack, WIDTH};
+use crate::math::Triple;
 use std::arch::x86_64::*;
 
 /// Proof that the processor has AVX2, FMA, BMI 1 and 2, LZCNT, and POPCNT.
@@ -77,6 +78,10 @@ macro_rules! order_of_eight {
             proven!(_mm256_loadu_ps(from.as_ptr()))
         }
         #[inline(always)]
+        fn triple(self, v: glam::Vec3A) -> $crate::bvh::lanes::avx2::Four {
+            $crate::bvh::lanes::avx2::triple(v)
+        }
+        #[inline(always)]
         fn turn(self, v: glam::Vec3A, order: &[u32; 4]) -> glam::Vec3A {
             proven!(_mm_permutevar_ps(v.into(), _mm_loadu_si128(order.as_ptr().cast())).into())
         }
@@ -87,8 +92,8 @@ macro_rules! order_of_eight {
             to
         }
         #[inline(always)]
-        fn rows(self, from: &$crate::bvh::lanes::Rows, stride: usize, axes: [usize; 3]) -> [[__m256; 3]; 3] {
-            $crate::bvh::lanes::avx2::rows(from, stride, axes)
+        fn corners(self, from: &$crate::bvh::lanes::Rows, columns: $crate::bvh::lanes::Columns) -> [[__m256; 3]; 3] {
+            $crate::bvh::lanes::avx2::corners(from, columns)
         }
         #[inline(always)]
         fn transpose(self, rows: [__m256; WIDTH]) -> [__m256; WIDTH] {
@@ -134,16 +139,13 @@ macro_rules! order_of_eight {
 }
 pub(super) use order_of_eight;
 
-/// Nine rows, checked once.
+/// Nine rows.
 #[inline(always)]
-pub(super) fn rows(from: &super::Rows, stride: usize, axes: [usize; 3]) -> [[__m256; 3]; 3] {
-    assert!(stride <= WIDTH);
-    // So masked, a row begins no later than behind the last.
-    let starts = [(axes[0] & 3) * stride, (axes[1] & 3) * stride, (axes[2] & 3) * stride];
+pub(super) fn corners(from: &super::Rows, super::Columns { starts, corner }: super::Columns) -> [[__m256; 3]; 3] {
     macro_rules! row {
         ($corner:literal, $k:literal) => {
             // SAFETY: row number 9 ends before what is read past the last; the features are proven by the caller.
-            unsafe { _mm256_loadu_ps(from.as_ptr().add(starts[$k]).add($corner * 3 * stride)) }
+            unsafe { _mm256_loadu_ps(from.as_ptr().add(starts[$k]).add($corner * corner)) }
         };
     }
     [[row!(0, 0), row!(0, 1), row!(0, 2)], [row!(1, 0), row!(1, 1), row!(1, 2)], [row!(2, 0), row!(2, 1), row!(2, 2)]]
@@ -183,16 +185,6 @@ pub(super) fn transpose([a, b, c, d, e, f, g, h]: [__m256; WIDTH]) -> [__m256; W
     }
 }
 
-/// The least of all lanes.
-#[inline(always)]
-pub(super) fn least(a: __m256) -> f32 {
-    proven! {
-        let four = _mm_min_ps(_mm256_castps256_ps128(a), _mm256_extractf128_ps::<1>(a));
-        let two = _mm_min_ps(four, _mm_movehl_ps(four, four));
-        _mm_cvtss_f32(_mm_min_ss(two, _mm_movehdup_ps(two)))
-    }
-}
-
 /// Operations on `f64`, one instruction each.
 macro_rules! doubles {
     ($doubles:ident: $($name:ident = $instruction:ident;)*) => {
@@ -219,6 +211,32 @@ doubles! { Four:
     max = _mm256_max_pd;
 }
 
+/// A vector in double precision.
+#[inline(always)]
+pub(super) fn triple(v: glam::Vec3A) -> Four {
+    proven!(Four(_mm256_cvtps_pd(v.into())))
+}
+
+impl Triple for Four {
+    type Component = f64;
+
+    #[inline(always)]
+    fn z(self) -> f64 {
+        proven!(_mm_cvtsd_f64(_mm256_extractf128_pd::<1>(self.0)))
+    }
+    #[inline(always)]
+    fn sum(self) -> f64 {
+        proven! {
+            let xy = _mm256_castpd256_pd128(self.0);
+            _mm_cvtsd_f64(_mm_add_sd(xy, _mm_unpackhi_pd(xy, xy))) + self.z()
+        }
+    }
+    #[inline(always)]
+    fn turned(self) -> Self {
+        proven!(Four(_mm256_permute4x64_pd::<0b11_00_10_01>(self.0)))
+    }
+}
+
 impl Numbers for Avx2 {
     type Floats = __m256;
 
@@ -236,6 +254,7 @@ impl Numbers for Avx2 {
 impl Lanes for Avx2 {
     type Wide = Two<Self>;
     type Doubles = (Four, Four);
+    type Triple = Four;
 
     order_of_eight!();
 
@@ -258,20 +277,7 @@ impl Lanes for Avx2 {
     fn singles(self, (low, high): (Four, Four)) -> __m256 {
         proven!(_mm256_set_m128(_mm256_cvtpd_ps(high.0), _mm256_cvtpd_ps(low.0)))
     }
-    #[inline(always)]
-    fn store_doubles(self, (low, high): (Four, Four)) -> [f64; WIDTH] {
-        let mut to = [0.0; WIDTH];
-        proven! {
-            _mm256_storeu_pd(to.as_mut_ptr(), low.0);
-            _mm256_storeu_pd(to.as_mut_ptr().add(4), high.0);
-        }
-        to
-    }
 
-    #[inline(always)]
-    fn least(self, a: __m256, mask: u32) -> f32 {
-        proven!(least(_mm256_blendv_ps(_mm256_set1_ps(f32::INFINITY), a, _mm256_castsi256_ps(lanes_of(mask)))))
-    }
     #[inline(always)]
     fn select(self, mask: u32, a: __m256, b: __m256) -> __m256 {
         proven!(_mm256_blendv_ps(b, a, _mm256_castsi256_ps(lanes_of(mask))))

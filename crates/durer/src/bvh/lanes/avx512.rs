@@ -1,6 +1,6 @@
 //! AVX-512 on eight lanes, with masks in registers of their own, and on sixteen.
 
-use super::avx2::{arithmetic_of_eight, doubles, least, operations, order_of_eight, proven};
+use super::avx2::{Four, arithmetic_of_eight, doubles, operations, order_of_eight, proven};
 use super::{Kernel, Lanes, Numbers, Stack, WIDE, WIDTH, Wide};
 use std::arch::x86_64::*;
 
@@ -40,6 +40,7 @@ impl Numbers for Avx512 {
 impl Lanes for Avx512 {
     type Wide = Sixteen;
     type Doubles = Eight;
+    type Triple = Four;
 
     order_of_eight!();
 
@@ -58,17 +59,6 @@ impl Lanes for Avx512 {
     #[inline(always)]
     fn singles(self, a: Eight) -> __m256 {
         proven!(_mm512_cvtpd_ps(a.0))
-    }
-    #[inline(always)]
-    fn store_doubles(self, a: Eight) -> [f64; WIDTH] {
-        let mut to = [0.0; WIDTH];
-        proven!(_mm512_storeu_pd(to.as_mut_ptr(), a.0));
-        to
-    }
-
-    #[inline(always)]
-    fn least(self, a: __m256, mask: u32) -> f32 {
-        proven!(least(_mm256_mask_mov_ps(_mm256_set1_ps(f32::INFINITY), mask as u8, a)))
     }
     #[inline(always)]
     fn select(self, mask: u32, a: __m256, b: __m256) -> __m256 {

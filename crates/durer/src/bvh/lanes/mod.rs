@@ -24,7 +24,7 @@ pub(super) use pages::large_pages;
 pub(super) use stack::{Room, Stack};
 pub(super) use wide::{WIDE, Wide};
 
-use crate::math::Doubles;
+use crate::math::{Doubles, Triple};
 use glam::Vec3A;
 
 /// How many numbers lie side by side.
@@ -65,13 +65,14 @@ pub(super) trait Lanes: Numbers {
     type Wide: Wide;
     /// So many `f64`.
     type Doubles: Doubles;
+    /// A vector of `f64`.
+    type Triple: Triple<Component = f64>;
 
     fn wide(self) -> Self::Wide;
     fn splat_double(self, x: f64) -> Self::Doubles;
     fn doubles(self, a: Self::Floats) -> Self::Doubles;
     /// Rounded to single precision.
     fn singles(self, a: Self::Doubles) -> Self::Floats;
-    fn store_doubles(self, a: Self::Doubles) -> [f64; WIDTH];
 
     /// A vector in each lane.
     #[inline(always)]
@@ -79,21 +80,20 @@ pub(super) trait Lanes: Numbers {
         [self.doubles(x), self.doubles(y), self.doubles(z)]
     }
 
+    /// A vector in double precision.
+    fn triple(self, v: Vec3A) -> Self::Triple;
+
     /// The components of a vector in an order.
     fn turn(self, v: Vec3A, order: &[u32; 4]) -> Vec3A;
 
     fn load(self, from: &[f32; WIDTH]) -> Self::Floats;
-    /// What begins at each of nine rows of `stride` numbers; only the first `stride` lanes mean anything.
-    ///
-    /// Rows come by corner, then by axis in the order of `axes`.
-    fn rows(self, from: &Rows, stride: usize, axes: [usize; 3]) -> [[Self::Floats; 3]; 3];
+    /// The corners of the triangles of a leaf; only as many lanes as there are triangles mean anything.
+    fn corners(self, from: &Rows, columns: Columns) -> [[Self::Floats; 3]; 3];
     fn store(self, a: Self::Floats) -> [f32; WIDTH];
     /// The lesser of two numbers as signed integers have it: a negative one where either is negative, else as [`Numbers::min`].
     fn sooner(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
     /// The greater of two numbers as signed integers have it: where one of them at least is not negative as [`Numbers::max`].
     fn later(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
-    /// The least of the lanes whose bits are set, none of which is NaN; infinity if there are none.
-    fn least(self, a: Self::Floats, mask: u32) -> f32;
     /// The lane where `a` is least of those where it is at most `b`; one of the lanes if there are none. It counts as an integer, without its
     /// last three bits, so all are after 0 that are less.
     fn nearest(self, a: Self::Floats, b: Self::Floats) -> u32;
@@ -141,15 +141,38 @@ impl Side {
     }
 }
 
-/// What [`Lanes::rows`] gives in one lane.
-#[inline(always)]
-pub fn column(from: &Rows, stride: usize, [x, y, z]: [usize; 3], lane: usize) -> [[f32; 3]; 3] {
-    assert!(lane < WIDTH && stride <= WIDTH);
-    let [x, y, z] = [x & 3, y & 3, z & 3];
-    // SAFETY: so masked, the last is in row 9 of at most as many numbers as a vector has.
-    let at = |place: usize| unsafe { *from.get_unchecked(place) };
-    let (x, y, z) = (x * stride + lane, y * stride + lane, z * stride + lane);
-    [0, 3 * stride, 6 * stride].map(|corner| [at(corner + x), at(corner + y), at(corner + z)])
+/// Where the numbers of a leaf's triangles are, with axes in some order.
+#[derive(Clone, Copy)]
+pub(super) struct Columns {
+    /// Where the rows of the first corner begin, by axis.
+    starts: [usize; 3],
+    /// How many numbers lie between the rows of corners.
+    corner: usize,
+}
+
+impl Columns {
+    /// Of so many triangles.
+    #[inline(always)]
+    pub fn new([x, y, z]: [usize; 3], count: usize) -> Self {
+        assert!(count <= WIDTH);
+        // So masked, no row begins later than the last.
+        Columns { starts: [(x & 3) * count, (y & 3) * count, (z & 3) * count], corner: 3 * count }
+    }
+
+    /// The corners of one triangle.
+    #[inline(always)]
+    pub fn triangle(self, from: &Rows, lane: usize) -> [Vec3A; 3] {
+        assert!(lane < WIDTH);
+        let Columns { starts: [x, y, z], corner } = self;
+        // SAFETY: the last is in row 9 of at most as many numbers as a vector has.
+        let at = |place: usize| unsafe { *from.get_unchecked(place + lane) };
+        let (b, c) = (corner, 2 * corner);
+        [
+            Vec3A::new(at(x), at(y), at(z)),
+            Vec3A::new(at(b + x), at(b + y), at(b + z)),
+            Vec3A::new(at(c + x), at(c + y), at(c + z)),
+        ]
+    }
 }
 
 /// A piece of work that runs on any level.

@@ -114,6 +114,7 @@ impl Numbers for Neon {
 impl Lanes for Neon {
     type Wide = Two<Self>;
     type Doubles = ((TwoDoubles, TwoDoubles), (TwoDoubles, TwoDoubles));
+    type Triple = [f64; 3];
 
     #[inline(always)]
     fn wide(self) -> Two<Self> {
@@ -139,14 +140,9 @@ impl Lanes for Neon {
         }
     }
     #[inline(always)]
-    fn store_doubles(self, ((a, b), (c, d)): Self::Doubles) -> [f64; WIDTH] {
-        let mut to = [0.0; WIDTH];
-        for (to, two) in to.chunks_exact_mut(2).zip([a, b, c, d]) {
-            proven!(vst1q_f64(to.as_mut_ptr(), two.0));
-        }
-        to
+    fn triple(self, v: glam::Vec3A) -> [f64; 3] {
+        v.as_dvec3().to_array()
     }
-
     #[inline(always)]
     fn turn(self, v: glam::Vec3A, order: &[u32; 4]) -> glam::Vec3A {
         super::scalar::Scalar.turn(v, order)
@@ -156,14 +152,11 @@ impl Lanes for Neon {
         proven!(Pair(vld1q_f32(from.as_ptr()), vld1q_f32(from.as_ptr().add(4))))
     }
     #[inline(always)]
-    fn rows(self, from: &super::Rows, stride: usize, axes: [usize; 3]) -> [[Pair; 3]; 3] {
-        std::array::from_fn(|corner| {
-            std::array::from_fn(|k| {
-                let row = (3 * corner + axes[k]) * stride;
-                match from[row..].first_chunk() {
-                    Some(row) => self.load(row),
-                    None => unreachable!("rows are padded to a vector"),
-                }
+    fn corners(self, from: &super::Rows, super::Columns { starts, corner }: super::Columns) -> [[Pair; 3]; 3] {
+        std::array::from_fn(|k| {
+            starts.map(|start| match from[k * corner + start..].first_chunk() {
+                Some(row) => self.load(row),
+                None => unreachable!("rows are padded to a vector"),
             })
         })
     }
@@ -189,10 +182,6 @@ impl Lanes for Neon {
             let later = |a, b| vreinterpretq_f32_s32(vmaxq_s32(vreinterpretq_s32_f32(a), vreinterpretq_s32_f32(b)));
             Pair(later(a.0, b.0), later(a.1, b.1))
         }
-    }
-    #[inline(always)]
-    fn least(self, a: Pair, mask: u32) -> f32 {
-        super::scalar::Scalar.least(self.store(a), mask)
     }
     #[inline(always)]
     fn nearest(self, a: Pair, b: Pair) -> u32 {

@@ -83,6 +83,7 @@ impl Numbers for Scalar {
 impl Lanes for Scalar {
     type Wide = Two<Self>;
     type Doubles = Plain;
+    type Triple = [f64; 3];
 
     #[inline(always)]
     fn wide(self) -> Two<Self> {
@@ -101,10 +102,9 @@ impl Lanes for Scalar {
         a.0.map(|x| x as f32)
     }
     #[inline(always)]
-    fn store_doubles(self, a: Plain) -> [f64; WIDTH] {
-        a.0
+    fn triple(self, v: glam::Vec3A) -> [f64; 3] {
+        v.as_dvec3().to_array()
     }
-
     #[inline(always)]
     fn turn(self, v: glam::Vec3A, [x, y, z, _]: &[u32; 4]) -> glam::Vec3A {
         let [a, b, c] = v.to_array();
@@ -116,13 +116,8 @@ impl Lanes for Scalar {
         *from
     }
     #[inline(always)]
-    fn rows(self, from: &super::Rows, stride: usize, axes: [usize; 3]) -> [[F; 3]; 3] {
-        from_fn(|corner| {
-            from_fn(|k| {
-                let row = (3 * corner + axes[k]) * stride;
-                from_fn(|lane| from[row + lane])
-            })
-        })
+    fn corners(self, from: &super::Rows, super::Columns { starts, corner }: super::Columns) -> [[F; 3]; 3] {
+        from_fn(|k| starts.map(|start| from_fn(|lane| from[k * corner + start + lane])))
     }
     #[inline(always)]
     fn store(self, a: F) -> [f32; WIDTH] {
@@ -135,12 +130,6 @@ impl Lanes for Scalar {
     #[inline(always)]
     fn later(self, a: F, b: F) -> F {
         from_fn(|i| f32::from_bits((a[i].to_bits() as i32).max(b[i].to_bits() as i32) as u32))
-    }
-    #[inline(always)]
-    fn least(self, a: F, mask: u32) -> f32 {
-        (0..WIDTH)
-            .filter(|i| mask >> i & 1 == 1)
-            .fold(f32::INFINITY, |least, i| if a[i] < least { a[i] } else { least })
     }
     #[inline(always)]
     fn nearest(self, a: F, b: F) -> u32 {

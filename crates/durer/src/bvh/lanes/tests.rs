@@ -61,7 +61,7 @@ struct Everything<'a>(&'a Input);
 
 /// Vectors that are looked at for each input: of arithmetic, in double precision, of comparison, a stack before and after, nine rows,
 /// and columns; and twice as wide ones.
-const OPERATIONS: usize = 10 + 3 * 7 + 5 + 2 + 9 + WIDTH + 2 * 10;
+const OPERATIONS: usize = 10 + 2 * 7 + 9 + 5 + 2 + 9 + WIDTH + 2 * 10;
 
 impl Kernel for Everything<'_> {
     type Output = Vec<u32>;
@@ -90,7 +90,7 @@ impl Kernel for Everything<'_> {
         tell(lanes.max(a, c), WIDTH);
         tell(lanes.sooner(a, c), WIDTH);
         tell(lanes.later(a, c), WIDTH);
-        for corner in lanes.rows(rows, *stride, *axes) {
+        for corner in lanes.corners(rows, Columns::new(*axes, *stride)) {
             corner.into_iter().for_each(|row| tell(row, *stride));
         }
         tell(lanes.select(*mask, a, b), WIDTH);
@@ -99,15 +99,20 @@ impl Kernel for Everything<'_> {
         found.extend(wide(lanes.wide(), floats).map(number));
         let (p, q) = (lanes.doubles(a), lanes.doubles(c).mul(lanes.splat_double(0.1)));
         for doubles in [p, p.add(q), p.sub(q), p.mul(q), p.div(q), p.min(q), p.max(q)] {
+            let high = lanes.singles(doubles);
+            found.extend(lanes.store(high).map(number));
+            // What is left of them, as far as it is no infinity less itself.
+            found.extend(lanes.store(lanes.singles(doubles.sub(lanes.doubles(high)))).map(number));
+        }
+        let triple = |i: usize| lanes.triple(Vec3A::from_slice(&floats[i]));
+        let (p, q) = (triple(0), triple(1).mul(triple(2)));
+        for v in [p.add(q), p.sub(q), p.mul(q), p.div(q), p.min(q), p.max(q), p.cross(q)] {
             let bits = |x: f64| if x.is_nan() { [0; 2] } else { [x.to_bits() as u32, (x.to_bits() >> 32) as u32] };
-            found.extend(lanes.store_doubles(doubles).into_iter().flat_map(bits));
-            found.extend(lanes.store(lanes.singles(doubles)).map(number));
+            let all = [v.z(), v.turned().z(), v.turned().turned().z(), v.sum(), v.dot(p)];
+            found.extend(all.into_iter().flat_map(bits));
         }
         let turned = lanes.turn(Vec3A::from_slice(&floats[0]), &[axes[0] as u32, axes[1] as u32, axes[2] as u32, 0]);
         found.extend(turned.to_array().map(number));
-        let numbers = *mask & (lanes.le(c, c));
-        // Zeroes of either sign are as little.
-        found.push((lanes.least(c, numbers) + 0.0).to_bits());
         found.extend([lanes.le(a, b), lanes.lt(a, b), lanes.le(b, a), lanes.lt(b, a), lanes.nearest(a, b)]);
         let mut room = Room::new();
         let mut stack = Stack::new(&mut room);

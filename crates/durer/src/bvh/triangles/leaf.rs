@@ -3,10 +3,9 @@
 //! The test is that of [`Sheared`](crate::shape::watertight::Sheared), with the same roundings. Edge functions in single precision have the right signs
 //! wherever they are not zero, so nearly all triangles are refused or accepted by plain vector arithmetic; what is left is
 //! for the scalar test, which is exact. Where any triangle will do, it is enough that t lies between two bounds; where the
-//! nearest is wanted, double precision says at once where all of a leaf are.
+//! nearest is wanted, double precision says where each is that is crossed.
 
-use crate::bvh::lanes::{Lanes, Numbers};
-use crate::shape::watertight::areas;
+use crate::bvh::lanes::Numbers;
 
 /// Triangles in the planes across rays: several and one ray, or one and several rays.
 pub struct Flat<N: Numbers> {
@@ -86,19 +85,6 @@ impl<N: Numbers> Flat<N> {
         let error = numbers.mul_add(error, numbers.splat(inverse_z.abs()), tiny);
         let t = numbers.mul(height, numbers.splat(inverse_z));
         Span { near: numbers.sub(t, error), far: numbers.add(t, error) }
-    }
-}
-
-impl<L: Lanes> Flat<L> {
-    /// What [`areas`] gives in each lane.
-    #[inline(always)]
-    pub fn areas(&self, lanes: L) -> [L::Doubles; 3] {
-        let [a, b, c] = self.corners;
-        areas([
-            [lanes.doubles(a[0]), lanes.doubles(a[1])],
-            [lanes.doubles(b[0]), lanes.doubles(b[1])],
-            [lanes.doubles(c[0]), lanes.doubles(c[1])],
-        ])
     }
 }
 

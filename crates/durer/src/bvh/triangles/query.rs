@@ -4,10 +4,10 @@ use super::fetch::Places;
 use super::leaf::Flat;
 use super::{TriangleBvh, TriangleHit, number};
 use crate::bvh::Tally;
-use crate::bvh::lanes::{Kernel, Lanes, WIDTH, column};
+use crate::bvh::lanes::{Columns, Kernel, Lanes, WIDTH};
 use crate::bvh::traverse::{ORDINARY, RayBox, Visitor, walk};
 use crate::math::{Ray, Vec2, Vec3};
-use crate::shape::watertight::{Exact, Sheared, turn, uv};
+use crate::shape::watertight::{Exact, Sheared, turn};
 use glam::Vec3A;
 use std::marker::PhantomData;
 
@@ -33,9 +33,6 @@ pub trait Found: Default {
 
     /// Whether it is enough to know that something is hit.
     const ANY: bool;
-
-    /// Of triangles that are hit, those whose hits are wanted.
-    fn wanted<L: Lanes>(lanes: L, met: u32, t: L::Floats) -> u32;
 
     /// Takes note of a hit, not after `t_max`; gives the new one.
     fn met(&mut self, hit: TriangleHit, t_max: f32) -> f32;
@@ -65,11 +62,6 @@ impl Found for Nearest {
     const ANY: bool = false;
 
     #[inline(always)]
-    fn wanted<L: Lanes>(lanes: L, met: u32, t: L::Floats) -> u32 {
-        met & lanes.le(t, lanes.splat(lanes.least(t, met)))
-    }
-
-    #[inline(always)]
     fn met(&mut self, hit: TriangleHit, t_max: f32) -> f32 {
         // What is the best before there is any has the greatest number.
         if hit.t < t_max || hit.triangle < self.best.triangle {
@@ -94,11 +86,6 @@ impl Found for Any {
     const ANY: bool = true;
 
     #[inline(always)]
-    fn wanted<L: Lanes>(_: L, met: u32, _: L::Floats) -> u32 {
-        met
-    }
-
-    #[inline(always)]
     fn met(&mut self, _: TriangleHit, _: f32) -> f32 {
         f32::NEG_INFINITY
     }
@@ -118,11 +105,6 @@ impl Found for All {
 
     const ANY: bool = false;
 
-    #[inline(always)]
-    fn wanted<L: Lanes>(_: L, met: u32, _: L::Floats) -> u32 {
-        met
-    }
-
     fn met(&mut self, hit: TriangleHit, t_max: f32) -> f32 {
         self.0.push(hit);
         t_max
@@ -138,8 +120,8 @@ impl Asked<'_> {
     #[inline(always)]
     fn triangle(&self, leaf: u32, lane: usize) -> ([Vec3; 3], u32) {
         let (rows, count) = self.bvh.rows(leaf);
-        let [a, b, c] = column(rows, count, self.sheared.axes(), lane);
-        ([a.into(), b.into(), c.into()], number(rows, count, lane))
+        let corners = Columns::new(self.sheared.axes(), count).triangle(rows, lane);
+        (corners.map(Vec3::from), number(rows, count, lane))
     }
 
     #[inline(always)]
@@ -229,9 +211,10 @@ impl<T: Tally, F: Found> Visitor for Leaves<'_, T, F> {
         if !TAME && !self.side_by_side {
             return self.one_by_one(leaf, (1 << count) - 1, t_max);
         }
-        let Asked { bvh, sheared, t_min, t_max: end } = &self.asked;
+        let Asked { bvh, sheared, .. } = &self.asked;
         let (origin, shear) = (lanes.splat3(sheared.ray().0.to_array()), sheared.shear());
-        let corners = lanes.rows(rows, count, sheared.axes());
+        let columns = Columns::new(sheared.axes(), count);
+        let corners = lanes.corners(rows, columns);
         let flat = Flat::new(lanes, corners, origin, [lanes.splat(shear.x), lanes.splat(shear.y)]);
         let there = (1 << count) - 1;
         let mut unsure = !flat.missed(lanes) & there;
@@ -244,8 +227,8 @@ impl<T: Tally, F: Found> Visitor for Leaves<'_, T, F> {
             return self.one_by_one(leaf, unsure, t_max);
         }
         unsure ^= crossed;
-        let (start, end) = (lanes.splat(*t_min), lanes.splat(*end));
         if F::ANY {
+            let (start, end) = (lanes.splat(self.asked.t_min), lanes.splat(self.asked.t_max));
             let span = flat.span(lanes, 1.0 / sheared.ray().1.z);
             // So asked, what is no number is unsure.
             if crossed & lanes.lt(start, span.near) & lanes.lt(span.far, end) != 0 {
@@ -254,26 +237,19 @@ impl<T: Tally, F: Found> Visitor for Leaves<'_, T, F> {
             unsure |= crossed & !(lanes.le(span.far, start) | lanes.le(end, span.near));
         } else {
             // Hidden, or the compiler would prepare this for every ray, before it is known whether it comes to a leaf.
-            let (origin, dir) = std::hint::black_box(sheared).ray();
-            let line = Exact {
-                origin: lanes.doubles3(lanes.splat3(origin.to_array())),
-                dir: lanes.doubles3(lanes.splat3(dir.to_array())),
-                inverse: lanes.splat_double(1.0 / f64::from(dir.z)),
-            };
-            let [t, _] = line.t([lanes.doubles3(corners[0]), lanes.doubles3(corners[1]), lanes.doubles3(corners[2])]);
-            let t = lanes.singles(t);
-            // What is no number is left out.
-            let met = crossed & lanes.lt(start, t) & lanes.lt(t, end) & lanes.le(t, lanes.splat(t_max));
-            if met != 0 {
-                let [a, b, c] = flat.areas(lanes);
-                let areas = [lanes.store_doubles(a), lanes.store_doubles(b), lanes.store_doubles(c)];
-                let mut wanted = F::wanted(lanes, met, t);
-                let t = lanes.store(t);
-                while wanted != 0 {
-                    let lane = wanted.trailing_zeros() as usize & 7;
-                    wanted &= wanted - 1;
-                    let uv = uv([areas[0][lane], areas[1][lane], areas[2][lane]]);
-                    let hit = TriangleHit { t: t[lane], uv, triangle: number(rows, count, lane) };
+            let sheared = std::hint::black_box(sheared);
+            let (origin, dir) = sheared.ray();
+            let inverse = 1.0 / f64::from(dir.z);
+            let line = Exact { origin: lanes.triple(origin), dir: lanes.triple(dir), inverse };
+            let mut crossed = crossed;
+            while crossed != 0 {
+                let lane = crossed.trailing_zeros() as usize & 7;
+                crossed &= crossed - 1;
+                let [a, b, c] = columns.triangle(rows, lane);
+                let t = line.t([lanes.triple(a), lanes.triple(b), lanes.triple(c)])[0] as f32;
+                if self.asked.is_wanted(t, t_max) {
+                    let uv = sheared.uv([a.into(), b.into(), c.into()]);
+                    let hit = TriangleHit { t, uv, triangle: number(rows, count, lane) };
                     t_max = self.found.met(hit, t_max);
                 }
             }

@@ -1,7 +1,7 @@
 //! A packet among the triangles of a leaf.
 
 use super::{Meeting, Packet};
-use crate::bvh::lanes::{Lanes, Numbers, WIDE, Wide, column};
+use crate::bvh::lanes::{Columns, Lanes, Numbers, WIDE, Wide};
 use crate::bvh::node;
 use crate::bvh::triangles::leaf::Flat;
 use crate::bvh::triangles::number;
@@ -35,10 +35,11 @@ impl Packet<'_> {
         let wide = lanes.wide();
         let (rows, count) = self.bvh.rows(leaf);
         let [x, y, z] = self.axes.turned;
+        let columns = Columns::new(self.axes.turned, count);
         let mut all_met = 0;
         for lane in 0..count {
-            let corners = column(rows, count, self.axes.turned, lane);
-            let triangle = [wide.splat3(corners[0]), wide.splat3(corners[1]), wide.splat3(corners[2])];
+            let corners @ [a, b, c] = columns.triangle(rows, lane);
+            let triangle = [wide.splat3(a.into()), wide.splat3(b.into()), wide.splat3(c.into())];
             let mut meeting = 0;
             for group in 0..self.groups {
                 let active = (rays >> (group * WIDE)) as u32 & 0xffff;
@@ -78,7 +79,7 @@ impl Packet<'_> {
                 if meeting == 0 {
                     meeting = self.meetings.len() as u32;
                     let triangle = number(rows, count, lane);
-                    self.meetings.push(Meeting { corners, triangle });
+                    self.meetings.push(Meeting { corners: corners.map(|c| c.to_array()), triangle });
                 }
                 let (meetings, own) = (&self.meetings, self.meetings[meeting as usize].triangle);
                 met |= e
@@ -100,7 +101,8 @@ impl Packet<'_> {
     fn ray_by_ray<L: Lanes, const ANY: bool>(&mut self, lanes: L, leaf: u32, mut rays: u64) -> u64 {
         let (rows, count) = self.bvh.rows(leaf);
         let axes @ [x, y, z] = self.axes.turned;
-        let triangles = lanes.rows(rows, count, axes);
+        let columns = Columns::new(axes, count);
+        let triangles = lanes.corners(rows, columns);
         let mut all_met = 0;
         while rays != 0 {
             let ray = rays.trailing_zeros() as usize;
@@ -129,7 +131,7 @@ impl Packet<'_> {
             while candidates != 0 {
                 let lane = candidates.trailing_zeros() as usize;
                 candidates &= candidates - 1;
-                let corners = column(rows, count, axes, lane);
+                let corners = columns.triangle(rows, lane);
                 let turned = corners.map(Vec3::from);
                 if crossed >> lane & 1 == 0 && !Sheared::new(&e.ray(i)).crosses(turned) {
                     continue;
@@ -137,7 +139,7 @@ impl Packet<'_> {
                 let (meeting, triangle) = (self.meetings.len() as u32, number(rows, count, lane));
                 let meetings = &self.meetings;
                 if e.meet_one(&self.axes, turned, i, meeting, |other| triangle < meetings[other as usize].triangle) {
-                    self.meetings.push(Meeting { corners, triangle });
+                    self.meetings.push(Meeting { corners: corners.map(|c| c.to_array()), triangle });
                     all_met |= 1 << ray;
                 }
             }
