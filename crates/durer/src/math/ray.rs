@@ -19,7 +19,7 @@ pub struct Ray {
 
 impl Ray {
     /// The half-line from `origin` along `dir`.
-    pub fn new(origin: Vec3, dir: Vec3) -> Self {
+    pub const fn new(origin: Vec3, dir: Vec3) -> Self {
         Ray { origin, dir, t_min: 0.0, t_max: f32::INFINITY }
     }
 

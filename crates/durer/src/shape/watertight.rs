@@ -22,10 +22,11 @@ use glam::Vec3A;
 /// the sides of triangles. So are the corners that [`Sheared::crosses`] and others take.
 #[derive(Clone, Copy, Debug)]
 pub struct Sheared {
-    axes: [usize; 3],
+    axes: &'static Turn,
     origin: Vec3A,
     dir: Vec3A,
-    shear: Vec2,
+    /// The direction, of which the third component is 1.
+    shear: Vec3A,
     least_volume: f64,
 }
 
@@ -34,7 +35,7 @@ impl Sheared {
     #[inline(always)]
     pub fn new(ray: &Ray) -> Self {
         let sheared = Self::finite(ray);
-        let shear = if sheared.dir.z.is_finite() { sheared.shear } else { Vec2::NAN };
+        let shear = if sheared.dir.z.is_finite() { sheared.shear } else { Vec3A::NAN };
         Sheared { shear, ..sheared }
     }
 
@@ -42,20 +43,14 @@ impl Sheared {
     #[inline(always)]
     fn finite(ray: &Ray) -> Self {
         let axes = turn(ray.dir.into());
-        let [origin, dir] = [ray.origin, ray.dir].map(|v| turned(Self::indices(axes), v.as_ref()).into());
+        let [origin, dir] = [ray.origin, ray.dir].map(|v| turned(axes, v.as_ref()));
         Self::turned(axes, origin, dir)
     }
 
     /// A ray with its axes, by [`turn`], and turned already.
     #[inline(always)]
-    pub(crate) fn turned(axes: &[u32; 4], origin: Vec3A, dir: Vec3A) -> Self {
-        let shear = dir / dir.z;
-        Sheared { axes: Self::indices(axes), origin, dir, shear: Vec2::new(shear.x, shear.y), least_volume: 0.0 }
-    }
-
-    #[inline(always)]
-    fn indices([x, y, z, _]: &[u32; 4]) -> [usize; 3] {
-        [*x as usize, *y as usize, *z as usize]
+    pub(crate) fn turned(axes: &'static Turn, origin: Vec3A, dir: Vec3A) -> Self {
+        Sheared { axes, origin, dir, shear: dir / dir.z, least_volume: 0.0 }
     }
 
     /// Misses triangles for which |(b - a) x (c - a) · d| is less than this: see
@@ -77,7 +72,7 @@ impl Sheared {
     }
 
     /// Whether the line of the ray crosses a triangle, and does not just see it from its side.
-    pub(crate) fn crosses(&self, corners: [Vec3; 3]) -> bool {
+    pub(crate) fn crosses(&self, corners: [Vec3A; 3]) -> bool {
         let flat @ [a, b, c] = self.flatten(corners);
         let front = is_front(b, c);
         if is_front(c, a) != front || is_front(a, b) != front {
@@ -90,26 +85,27 @@ impl Sheared {
 
     /// The second and third barycentric coordinate of the crossing with a triangle that is crossed.
     #[inline(always)]
-    pub(crate) fn uv(&self, corners: [Vec3; 3]) -> Vec2 {
+    pub(crate) fn uv(&self, corners: [Vec3A; 3]) -> Vec2 {
         uv_across(self.flatten(corners))
     }
 
     #[inline(always)]
-    pub(crate) fn flatten(&self, [a, b, c]: [Vec3; 3]) -> [Vec2; 3] {
+    pub(crate) fn flatten(&self, [a, b, c]: [Vec3A; 3]) -> [Vec2; 3] {
         [self.flat(a), self.flat(b), self.flat(c)]
     }
 
     /// A corner in the plane across the ray.
     #[inline(always)]
-    fn flat(&self, corner: Vec3) -> Vec2 {
-        let p = corner - Vec3::from(self.origin);
-        Vec2::new(p.x - self.shear.x * p.z, p.y - self.shear.y * p.z)
+    fn flat(&self, corner: Vec3A) -> Vec2 {
+        let p = corner - self.origin;
+        let flat = p - self.shear * p.z;
+        Vec2::new(flat.x, flat.y)
     }
 
     /// Where the ray's line crosses a triangle that it crosses: within the triangle's bounds. It may be infinite.
     #[inline(always)]
-    pub(crate) fn t(&self, corners: [Vec3; 3]) -> Option<f32> {
-        let [t, volume] = Exact::single(self.origin.into(), self.dir.into(), corners);
+    pub(crate) fn t(&self, corners: [Vec3A; 3]) -> Option<f32> {
+        let [t, volume] = Exact::single(self.origin, self.dir, corners);
         if volume.abs() < self.least_volume {
             return None;
         }
@@ -117,7 +113,7 @@ impl Sheared {
     }
 
     /// The axes in the order of turned vectors.
-    pub(crate) fn axes(&self) -> [usize; 3] {
+    pub(crate) fn axes(&self) -> &'static Turn {
         self.axes
     }
 
@@ -128,7 +124,7 @@ impl Sheared {
 
     /// How far a corner moves across for each unit along the third axis.
     pub(crate) fn shear(&self) -> Vec2 {
-        self.shear
+        Vec2::new(self.shear.x, self.shear.y)
     }
 }
 
@@ -144,7 +140,7 @@ pub(crate) struct Exact<V: Triple> {
 impl Exact<[f64; 3]> {
     /// What [`Exact::t`] gives for one ray and one triangle.
     #[inline(always)]
-    pub fn single(origin: Vec3, dir: Vec3, corners: [Vec3; 3]) -> [f64; 2] {
+    pub fn single(origin: Vec3A, dir: Vec3A, corners: [Vec3A; 3]) -> [f64; 2] {
         let (origin, dir) = (origin.as_dvec3().to_array(), dir.as_dvec3().to_array());
         Exact { origin, dir, inverse: 1.0 / dir[2] }.t(corners.map(|corner| corner.as_dvec3().to_array()))
     }
@@ -177,18 +173,21 @@ pub(crate) fn uv_across(flat: [Vec2; 3]) -> Vec2 {
     Vec2::new((b / det) as f32, (c / det) as f32)
 }
 
+/// Which components of a vector are the first, second, and third of a turned one; the last is there to make a vector of four.
+pub(crate) type Turn = [u32; 4];
+
 /// The axes that turn a ray, by the longest component of its direction and whether that is negative (1) or not (0).
 #[inline(always)]
-pub(crate) const fn turned_axes(longest: usize, negative: usize) -> [usize; 3] {
-    const AXES: [[[usize; 3]; 2]; 4] =
-        [[[1, 2, 0], [2, 1, 0]], [[2, 0, 1], [0, 2, 1]], [[0, 1, 2], [1, 0, 2]], [[0; 3]; 2]];
+pub(crate) const fn turned_axes(longest: usize, negative: usize) -> Turn {
+    const AXES: [[Turn; 2]; 4] =
+        [[[1, 2, 0, 0], [2, 1, 0, 0]], [[2, 0, 1, 0], [0, 2, 1, 0]], [[0, 1, 2, 0], [1, 0, 2, 0]], [[0; 4]; 2]];
     // So masked, indices need not be tested.
     AXES[longest & 3][negative & 1]
 }
 
-/// The axes of a turned ray with such a direction: which component is first, second, and third.
+/// The axes that turn a ray with such a direction.
 #[inline(always)]
-pub(crate) fn turn(dir: Vec3A) -> &'static [u32; 4] {
+pub(crate) fn turn(dir: Vec3A) -> &'static Turn {
     let length = dir.abs();
     let longest = length.cmpeq(Vec3A::splat(length.max_element())).bitmask();
     &TURNED[longest as usize & 7][dir.is_negative_bitmask() as usize & 7]
@@ -196,21 +195,20 @@ pub(crate) fn turn(dir: Vec3A) -> &'static [u32; 4] {
 
 /// The axes that turn a ray, by which components of its direction are longest (a bit for each; the last of them counts) and which are
 /// negative.
-static TURNED: [[[u32; 4]; 8]; 8] = {
+static TURNED: [[Turn; 8]; 8] = {
     let mut table = [[[0, 1, 2, 0]; 8]; 8];
     let mut at = 8;
     while at < 64 {
         let (longest, signs) = ((at as u32 / 8).ilog2() as usize, at % 8);
-        let [x, y, z] = turned_axes(longest, signs >> longest & 1);
-        table[at / 8][signs] = [x as u32, y as u32, z as u32, 0];
+        table[at / 8][signs] = turned_axes(longest, signs >> longest & 1);
         at += 1;
     }
     table
 };
 
 #[inline(always)]
-fn turned([x, y, z]: [usize; 3], v: &[f32; 3]) -> Vec3 {
-    Vec3::new(v[x], v[y], v[z])
+fn turned([x, y, z, _]: &Turn, v: &[f32; 3]) -> Vec3A {
+    Vec3A::new(v[*x as usize], v[*y as usize], v[*z as usize])
 }
 
 /// A point in the plane across a ray, in double precision.

@@ -25,6 +25,7 @@ pub(super) use stack::{Room, Stack};
 pub(super) use wide::{WIDE, Wide};
 
 use crate::math::{Doubles, Triple};
+use crate::shape::watertight::Turn;
 use glam::Vec3A;
 
 /// How many numbers lie side by side.
@@ -83,8 +84,8 @@ pub(super) trait Lanes: Numbers {
     /// A vector in double precision.
     fn triple(self, v: Vec3A) -> Self::Triple;
 
-    /// The components of a vector in an order.
-    fn turn(self, v: Vec3A, order: &[u32; 4]) -> Vec3A;
+    /// A vector with its components in another order.
+    fn turn(self, v: Vec3A, axes: &Turn) -> Vec3A;
 
     fn load(self, from: &[f32; WIDTH]) -> Self::Floats;
     /// The corners of the triangles of a leaf; only as many lanes as there are triangles mean anything.
@@ -153,10 +154,10 @@ pub(super) struct Columns {
 impl Columns {
     /// Of so many triangles.
     #[inline(always)]
-    pub fn new([x, y, z]: [usize; 3], count: usize) -> Self {
+    pub fn new(&[x, y, z, _]: &Turn, count: usize) -> Self {
         assert!(count <= WIDTH);
         // So masked, no row begins later than the last.
-        Columns { starts: [(x & 3) * count, (y & 3) * count, (z & 3) * count], corner: 3 * count }
+        Columns { starts: [x, y, z].map(|axis| (axis & 3) as usize * count), corner: 3 * count }
     }
 
     /// The corners of one triangle.

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::math::random::{Random, rounds};
+use crate::shape::watertight::turned_axes;
 
 /// Numbers on which arithmetic may stumble.
 const SPECIAL: [f32; 14] = [
@@ -38,7 +39,7 @@ struct Input {
     floats: [[f32; WIDTH]; 3],
     rows: Rows,
     stride: usize,
-    axes: [usize; 3],
+    turn: Turn,
     order: [u8; WIDTH],
     count: u32,
     mask: u32,
@@ -49,10 +50,10 @@ impl Input {
         let mut eight = || std::array::from_fn(|_| number(random));
         let floats = [eight(), eight(), eight()];
         let rows = std::array::from_fn(|_| number(random));
-        let axes = [[0, 1, 2], [1, 2, 0], [2, 0, 1], [1, 0, 2], [2, 1, 0], [0, 2, 1]][random.below(6)];
+        let turn = turned_axes(random.below(3), random.below(2));
         let order = std::array::from_fn(|_| random.below(WIDTH) as u8);
         let (count, mask) = (random.below(WIDTH + 1) as u32, random.below(256) as u32);
-        Input { floats, rows, stride: 1 + random.below(WIDTH), axes, order, count, mask }
+        Input { floats, rows, stride: 1 + random.below(WIDTH), turn, order, count, mask }
     }
 }
 
@@ -68,7 +69,7 @@ impl Kernel for Everything<'_> {
 
     #[inline(always)]
     fn run<L: Lanes>(self, lanes: L) -> Vec<u32> {
-        let Input { floats, rows, stride, axes, order, count, mask } = self.0;
+        let Input { floats, rows, stride, turn, order, count, mask } = self.0;
         let [a, b, c] = [lanes.load(&floats[0]), lanes.load(&floats[1]), lanes.load(&floats[2])];
         let mut found = Vec::with_capacity(WIDTH * OPERATIONS + 16);
         let number = |x: f32| if x.is_nan() { f32::NAN.to_bits() } else { x.to_bits() };
@@ -90,7 +91,7 @@ impl Kernel for Everything<'_> {
         tell(lanes.max(a, c), WIDTH);
         tell(lanes.sooner(a, c), WIDTH);
         tell(lanes.later(a, c), WIDTH);
-        for corner in lanes.corners(rows, Columns::new(*axes, *stride)) {
+        for corner in lanes.corners(rows, Columns::new(turn, *stride)) {
             corner.into_iter().for_each(|row| tell(row, *stride));
         }
         tell(lanes.select(*mask, a, b), WIDTH);
@@ -111,7 +112,7 @@ impl Kernel for Everything<'_> {
             let all = [v.z(), v.turned().z(), v.turned().turned().z(), v.sum(), v.dot(p)];
             found.extend(all.into_iter().flat_map(bits));
         }
-        let turned = lanes.turn(Vec3A::from_slice(&floats[0]), &[axes[0] as u32, axes[1] as u32, axes[2] as u32, 0]);
+        let turned = lanes.turn(Vec3A::from_slice(&floats[0]), turn);
         found.extend(turned.to_array().map(number));
         found.extend([lanes.le(a, b), lanes.lt(a, b), lanes.le(b, a), lanes.lt(b, a), lanes.nearest(a, b)]);
         let mut room = Room::new();

@@ -6,7 +6,7 @@ use super::{TriangleBvh, TriangleHit, number};
 use crate::bvh::Tally;
 use crate::bvh::lanes::{Columns, Kernel, Lanes, WIDTH};
 use crate::bvh::traverse::{ORDINARY, RayBox, Visitor, walk};
-use crate::math::{Ray, Vec2, Vec3};
+use crate::math::{Ray, Vec2};
 use crate::shape::watertight::{Exact, Sheared, turn};
 use glam::Vec3A;
 use std::marker::PhantomData;
@@ -22,9 +22,8 @@ pub struct Query<'a, T, F> {
 /// A ray among triangles.
 pub struct Asked<'a> {
     bvh: &'a TriangleBvh,
+    ray: &'a Ray,
     sheared: Sheared,
-    t_min: f32,
-    t_max: f32,
 }
 
 /// An answer in the making.
@@ -118,16 +117,15 @@ impl Found for All {
 impl Asked<'_> {
     /// The corners of a triangle, turned as the ray is, and its number.
     #[inline(always)]
-    fn triangle(&self, leaf: u32, lane: usize) -> ([Vec3; 3], u32) {
+    fn triangle(&self, leaf: u32, lane: usize) -> ([Vec3A; 3], u32) {
         let (rows, count) = self.bvh.rows(leaf);
-        let corners = Columns::new(self.sheared.axes(), count).triangle(rows, lane);
-        (corners.map(Vec3::from), number(rows, count, lane))
+        (Columns::new(self.sheared.axes(), count).triangle(rows, lane), number(rows, count, lane))
     }
 
     #[inline(always)]
     fn is_wanted(&self, t: f32, t_max: f32) -> bool {
         // Refuses also NaN.
-        t > self.t_min && t < self.t_max && t <= t_max
+        t > self.ray.t_min && t < self.ray.t_max && t <= t_max
     }
 }
 
@@ -168,13 +166,12 @@ pub struct Leaves<'a, T, F> {
 
 impl<'a, T, F: Found> Leaves<'a, T, F> {
     #[inline(always)]
-    pub fn new<L: Lanes>(lanes: L, bvh: &'a TriangleBvh, ray: &Ray, boxes: &RayBox, tally: T) -> Self {
+    pub fn new<L: Lanes>(lanes: L, bvh: &'a TriangleBvh, ray: &'a Ray, boxes: &RayBox, tally: T) -> Self {
         let (origin, dir) = (Vec3A::from(ray.origin), Vec3A::from(ray.dir));
         let axes = turn(dir);
         let sheared = Sheared::turned(axes, lanes.turn(origin, axes), lanes.turn(dir, axes));
-        let sheared = sheared.least_volume(bvh.least_volume);
         Leaves {
-            asked: Asked { bvh, sheared, t_min: ray.t_min, t_max: ray.t_max },
+            asked: Asked { bvh, ray, sheared },
             places: Places::new(bvh),
             tally,
             found: F::default(),
@@ -228,7 +225,7 @@ impl<T: Tally, F: Found> Visitor for Leaves<'_, T, F> {
         }
         unsure ^= crossed;
         if F::ANY {
-            let (start, end) = (lanes.splat(self.asked.t_min), lanes.splat(self.asked.t_max));
+            let (start, end) = (lanes.splat(self.asked.ray.t_min), lanes.splat(self.asked.ray.t_max));
             let span = flat.span(lanes, 1.0 / sheared.ray().1.z);
             // So asked, what is no number is unsure.
             if crossed & lanes.lt(start, span.near) & lanes.lt(span.far, end) != 0 {
@@ -248,7 +245,7 @@ impl<T: Tally, F: Found> Visitor for Leaves<'_, T, F> {
                 let [a, b, c] = columns.triangle(rows, lane);
                 let t = line.t([lanes.triple(a), lanes.triple(b), lanes.triple(c)])[0] as f32;
                 if self.asked.is_wanted(t, t_max) {
-                    let uv = sheared.uv([a.into(), b.into(), c.into()]);
+                    let uv = sheared.uv([a, b, c]);
                     let hit = TriangleHit { t, uv, triangle: number(rows, count, lane) };
                     t_max = self.found.met(hit, t_max);
                 }
@@ -267,7 +264,7 @@ impl<T: Tally, F: Found> Leaves<'_, T, F> {
     fn one_by_one(&mut self, leaf: u32, which: u32, mut t_max: f32) -> f32 {
         for lane in (0..WIDTH).filter(|lane| which >> lane & 1 == 1) {
             let (corners, triangle) = self.asked.triangle(leaf, lane);
-            let sheared = &self.asked.sheared;
+            let sheared = self.asked.sheared.least_volume(self.asked.bvh.least_volume);
             if sheared.crosses(corners)
                 && let Some(t) = sheared.t(corners).filter(|t| self.asked.is_wanted(*t, t_max))
             {

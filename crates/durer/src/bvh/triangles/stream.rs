@@ -118,12 +118,12 @@ impl<'a, F: Found, A: FnMut(usize, F::Answer)> Kernel for Stream<'a, F, A> {
         let places = Places::new(bvh);
         let mut rooms: Vec<Room> = (0..FLYING).map(|_| Room::new()).collect();
         let mut stacks: Vec<Stack> = rooms.iter_mut().map(Stack::new).collect();
-        let nowhere = Ray::new(Vec3::ZERO, Vec3::X);
-        let boxes = RayBox::wild(&nowhere, bvh.reach).expect("a sound ray");
+        const NOWHERE: &Ray = &Ray::new(Vec3::ZERO, Vec3::X);
+        let boxes = RayBox::wild(NOWHERE, bvh.reach).expect("a sound ray");
         let place = |_| Flyer {
             number: 0,
             boxes,
-            leaves: Leaves::new(lanes, bvh, &nowhere, &boxes, ()),
+            leaves: Leaves::new(lanes, bvh, NOWHERE, &boxes, ()),
             t_max: 0.0,
             child: END,
         };

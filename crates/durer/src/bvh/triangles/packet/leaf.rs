@@ -5,7 +5,6 @@ use crate::bvh::lanes::{Columns, Lanes, Numbers, WIDE, Wide};
 use crate::bvh::node;
 use crate::bvh::triangles::leaf::Flat;
 use crate::bvh::triangles::number;
-use crate::math::Vec3;
 use crate::shape::watertight::Sheared;
 
 impl Packet<'_> {
@@ -34,8 +33,8 @@ impl Packet<'_> {
     fn one_by_one<L: Lanes, const ANY: bool>(&mut self, lanes: L, leaf: u32, mut rays: u64) -> u64 {
         let wide = lanes.wide();
         let (rows, count) = self.bvh.rows(leaf);
-        let [x, y, z] = self.axes.turned;
-        let columns = Columns::new(self.axes.turned, count);
+        let [x, y, z] = self.axes.turned();
+        let columns = Columns::new(&self.axes.turn, count);
         let mut all_met = 0;
         for lane in 0..count {
             let corners @ [a, b, c] = columns.triangle(rows, lane);
@@ -69,12 +68,11 @@ impl Packet<'_> {
                         & wide.lt(highest, wide.load(&e.heights[3]));
                     crossed &= !met;
                 }
-                let turned = corners.map(Vec3::from);
                 let mut unsure = candidates & !(crossed | met);
                 while unsure != 0 {
                     let lane = unsure.trailing_zeros();
                     unsure &= unsure - 1;
-                    crossed |= u32::from(Sheared::new(&e.ray(lane as usize)).crosses(turned)) << lane;
+                    crossed |= u32::from(Sheared::new(&e.ray(lane as usize)).crosses(corners)) << lane;
                 }
                 if meeting == 0 {
                     meeting = self.meetings.len() as u32;
@@ -82,8 +80,9 @@ impl Packet<'_> {
                     self.meetings.push(Meeting { corners: corners.map(|c| c.to_array()), triangle });
                 }
                 let (meetings, own) = (&self.meetings, self.meetings[meeting as usize].triangle);
-                met |= e
-                    .meet(lanes, &self.axes, turned, crossed, meeting, |other| own < meetings[other as usize].triangle);
+                met |= e.meet(lanes, &self.axes, corners, crossed, meeting, |other| {
+                    own < meetings[other as usize].triangle
+                });
                 all_met |= u64::from(met) << (group * WIDE);
                 if ANY {
                     set_met(&mut e.met, met, meeting);
@@ -100,8 +99,8 @@ impl Packet<'_> {
     #[inline(always)]
     fn ray_by_ray<L: Lanes, const ANY: bool>(&mut self, lanes: L, leaf: u32, mut rays: u64) -> u64 {
         let (rows, count) = self.bvh.rows(leaf);
-        let axes @ [x, y, z] = self.axes.turned;
-        let columns = Columns::new(axes, count);
+        let [x, y, z] = self.axes.turned();
+        let columns = Columns::new(&self.axes.turn, count);
         let triangles = lanes.corners(rows, columns);
         let mut all_met = 0;
         while rays != 0 {
@@ -132,13 +131,12 @@ impl Packet<'_> {
                 let lane = candidates.trailing_zeros() as usize;
                 candidates &= candidates - 1;
                 let corners = columns.triangle(rows, lane);
-                let turned = corners.map(Vec3::from);
-                if crossed >> lane & 1 == 0 && !Sheared::new(&e.ray(i)).crosses(turned) {
+                if crossed >> lane & 1 == 0 && !Sheared::new(&e.ray(i)).crosses(corners) {
                     continue;
                 }
                 let (meeting, triangle) = (self.meetings.len() as u32, number(rows, count, lane));
                 let meetings = &self.meetings;
-                if e.meet_one(&self.axes, turned, i, meeting, |other| triangle < meetings[other as usize].triangle) {
+                if e.meet_one(&self.axes, corners, i, meeting, |other| triangle < meetings[other as usize].triangle) {
                     self.meetings.push(Meeting { corners: corners.map(|c| c.to_array()), triangle });
                     all_met |= 1 << ray;
                 }

@@ -26,7 +26,7 @@ mod walk;
 use super::{TriangleBvh, TriangleHit};
 use crate::bvh::lanes::{Kernel, Lanes, Numbers, WIDE, WIDTH, Wide};
 use crate::math::{Ray, Vec2};
-use crate::shape::watertight::turned_axes;
+use crate::shape::watertight::{Turn, turned_axes};
 use rays::Rays;
 use walk::Entry;
 
@@ -58,7 +58,7 @@ impl TriangleBvh {
 #[derive(Clone, Copy)]
 struct Axes {
     /// As those of [`Sheared`](crate::shape::watertight::Sheared).
-    turned: [usize; 3],
+    turn: Turn,
     /// By axis: 1 where directions are negative, else 0.
     negative: [usize; 3],
 }
@@ -70,13 +70,20 @@ impl Axes {
     fn of_key(key: usize) -> Self {
         let negative = [key & 1, key >> 1 & 1, key >> 2 & 1];
         let longest = key >> 3;
-        Axes { turned: turned_axes(longest, negative[longest]), negative }
+        Axes { turn: turned_axes(longest, negative[longest]), negative }
+    }
+
+    /// Which axes are the first, second, and third of turned vectors.
+    #[inline(always)]
+    fn turned(&self) -> [usize; 3] {
+        let [x, y, z, _] = self.turn;
+        [x as usize, y as usize, z as usize]
     }
 
     /// Whether directions are negative along their longest axis.
     #[inline(always)]
     fn is_down(&self) -> bool {
-        self.negative[self.turned[2]] == 1
+        self.negative[self.turned()[2]] == 1
     }
 }
 

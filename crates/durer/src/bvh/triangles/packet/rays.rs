@@ -5,6 +5,7 @@ use crate::bvh::lanes::{Lanes, Numbers, WIDE, WIDTH, Wide};
 use crate::bvh::traverse::ORDINARY;
 use crate::math::{Doubles, Ray, Triple, Vec2, Vec3};
 use crate::shape::watertight::{Exact, uv_across};
+use glam::Vec3A;
 
 /// A number for each of sixteen rays.
 pub type PerRay = [f32; WIDE];
@@ -108,7 +109,7 @@ impl Rays {
             self.near_origin[axis] = wide.store(wide.mul(wide.sub(zero, near), inverse));
             self.far_origin[axis] = wide.store(wide.mul(wide.sub(zero, far), inverse));
         }
-        let [x, y, z] = axes.turned;
+        let [x, y, z] = axes.turned();
         let z = wide.load(&self.dir[z]);
         self.shear =
             [wide.store(wide.div(wide.load(&self.dir[x]), z)), wide.store(wide.div(wide.load(&self.dir[y]), z))];
@@ -122,7 +123,7 @@ impl Rays {
     #[inline(always)]
     fn bound<L: Lanes>(&mut self, lanes: L, axes: &Axes) {
         let wide = lanes.wide();
-        let dz = wide.load(&self.dir[axes.turned[2]]);
+        let dz = wide.load(&self.dir[axes.turned()[2]]);
         let (near, far) = (wide.mul(wide.load(&self.t_min), dz), wide.mul(wide.load(&self.t_last), dz));
         let (low, high) = if axes.is_down() { (far, near) } else { (near, far) };
         let (low_slack, high_slack) = (slack(wide, low), slack(wide, high));
@@ -138,7 +139,7 @@ impl Rays {
     #[inline(always)]
     pub fn bound_last<L: Lanes>(&mut self, lanes: L, axes: &Axes) {
         let wide = lanes.wide();
-        let far = wide.mul(wide.load(&self.t_last), wide.load(&self.dir[axes.turned[2]]));
+        let far = wide.mul(wide.load(&self.t_last), wide.load(&self.dir[axes.turned()[2]]));
         match axes.is_down() {
             true => self.heights[0] = wide.store(wide.sub(far, slack(wide, far))),
             false => self.heights[1] = wide.store(wide.add(far, slack(wide, far))),
@@ -153,12 +154,12 @@ impl Rays {
         &mut self,
         lanes: L,
         axes: &Axes,
-        corners: [Vec3; 3],
+        corners: [Vec3A; 3],
         crossed: u32,
         number: u32,
         less: impl Fn(u32) -> bool,
     ) -> u32 {
-        let [x, y, z] = axes.turned;
+        let [x, y, z] = axes.turned();
         let mut all_met = 0;
         for first in [0, WIDTH] {
             let crossed = crossed >> first & 255;
@@ -207,13 +208,13 @@ impl Rays {
     pub fn meet_one(
         &mut self,
         axes: &Axes,
-        corners: [Vec3; 3],
+        corners: [Vec3A; 3],
         lane: usize,
         number: u32,
         less: impl Fn(u32) -> bool,
     ) -> bool {
-        let [x, y, z] = axes.turned;
-        let at = |v: &[PerRay; 3]| Vec3::new(v[x][lane], v[y][lane], v[z][lane]);
+        let [x, y, z] = axes.turned();
+        let at = |v: &[PerRay; 3]| Vec3A::new(v[x][lane], v[y][lane], v[z][lane]);
         let t = Exact::single(at(&self.origin), at(&self.dir), corners)[0] as f32;
         let within = t > self.t_min[lane] && t < self.t_max[lane];
         let met = within && (t < self.t_last[lane] || t == self.t_last[lane] && less(self.met[lane].to_bits()));
@@ -226,7 +227,7 @@ impl Rays {
     /// Barycentric coordinates in a triangle for each ray, by coordinate of corners.
     #[inline(always)]
     pub fn uv(&self, axes: &Axes, corners: &[[PerRay; 3]; 3]) -> [PerRay; 2] {
-        let [x, y, z] = axes.turned;
+        let [x, y, z] = axes.turned();
         let (x, y, z) = (&self.origin[x], &self.origin[y], &self.origin[z]);
         let mut uv = [ZERO; 2];
         for i in 0..WIDE {
