@@ -34,6 +34,8 @@ use walk::Entry;
 const RAYS: usize = 64;
 /// So few are better off alone.
 const LEAST: usize = 16;
+/// After rays that do not go together so many windows of rays are left out at most, before it is tried again.
+const MOST_LEFT_OUT: u32 = 15;
 /// As far apart directions of a packet may be across the longest axis, for one unit along it.
 const WIDEST_ANGLE: f32 = 0.5;
 /// As far apart origins may be, where the longest side of the tree's bounds is 1.
@@ -110,8 +112,16 @@ impl<A: FnMut(usize, Option<TriangleHit>), const ANY: bool> Kernel for Packets<'
             meetings: Vec::with_capacity(256),
         };
         let mut stack: Vec<Entry> = Vec::with_capacity(256);
+        // Where rays do not go together, the next will not either: it is tried ever less often.
+        let (mut left_out, mut leave_out) = (0, 0);
         for (window, rays) in self.rays.chunks(RAYS).enumerate() {
             let first = (window * RAYS) as u32;
+            if leave_out > 0 {
+                leave_out -= 1;
+                rest.extend(first..first + rays.len() as u32);
+                continue;
+            }
+            let before = rest.len();
             let all = u64::MAX >> (RAYS - rays.len());
             for (i, number) in packet.numbers.iter_mut().enumerate() {
                 *number = first + i.min(rays.len() - 1) as u32;
@@ -144,6 +154,8 @@ impl<A: FnMut(usize, Option<TriangleHit>), const ANY: bool> Kernel for Packets<'
                 packet.walk::<L, ANY>(lanes, &mut stack);
                 packet.answer::<L, ANY>(lanes, all, &mut self.answer);
             }
+            left_out = if rest.len() < before + rays.len() { 0 } else { MOST_LEFT_OUT.min(2 * left_out + 1) };
+            leave_out = left_out;
         }
         rest
     }
