@@ -24,7 +24,7 @@ pub(super) use pages::large_pages;
 pub(super) use stack::{Room, Stack};
 pub(super) use wide::{WIDE, Wide};
 
-use crate::math::{Doubles, Triple};
+use crate::math::{Doubles, Ray, Triple};
 use crate::shape::watertight::Turn;
 use glam::Vec3A;
 
@@ -140,6 +140,14 @@ impl Side {
         // SAFETY: both offsets are of rows.
         unsafe { &*rows.as_ptr().byte_add(self.offset) }
     }
+}
+
+/// A ray as it lies in memory: origin, direction, and interval.
+#[inline(always)]
+pub(super) fn numbers_of(ray: &Ray) -> &[f32; WIDTH] {
+    const { assert!(size_of::<Ray>() == size_of::<[f32; WIDTH]>()) };
+    // SAFETY: it is eight numbers, in the order in which they are declared.
+    unsafe { &*std::ptr::from_ref(ray).cast() }
 }
 
 /// Where the numbers of a leaf's triangles are, with axes in some order.

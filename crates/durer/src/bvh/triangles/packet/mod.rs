@@ -24,7 +24,7 @@ mod rays;
 mod walk;
 
 use super::{TriangleBvh, TriangleHit};
-use crate::bvh::lanes::{Kernel, Lanes, Numbers, WIDE, WIDTH, Wide};
+use crate::bvh::lanes::{Kernel, Lanes, Numbers, WIDE, WIDTH, Wide, numbers_of};
 use crate::math::{Ray, Vec2};
 use crate::shape::watertight::{Turn, turned_axes};
 use rays::Rays;
@@ -66,9 +66,7 @@ struct Axes {
 }
 
 impl Axes {
-    /// How many keys there are: a longest axis, and signs.
-    const KEYS: usize = 24;
-
+    /// A key is a longest axis and signs.
     fn of_key(key: usize) -> Self {
         let negative = [key & 1, key >> 1 & 1, key >> 2 & 1];
         let longest = key >> 3;
@@ -126,14 +124,14 @@ impl<A: FnMut(usize, Option<TriangleHit>), const ANY: bool> Kernel for Packets<'
             for (i, number) in packet.numbers.iter_mut().enumerate() {
                 *number = first + i.min(rays.len() - 1) as u32;
             }
-            packet.load(lanes, self.rays, rays.len());
+            packet.load(lanes, self.rays, rays.len(), rays);
             let signs = packet.signs(lanes);
             // Usually all have the same key, and are where they should be; else those of each key are put together.
-            for key in 0..Axes::KEYS {
+            let mut left = all;
+            while left != 0 {
+                let key = key_of(signs, left.trailing_zeros());
                 let mut members = with_key(signs, key) & all;
-                if members == 0 {
-                    continue;
-                }
+                left &= !members;
                 let count = members.count_ones() as usize;
                 if members != all {
                     for number in &mut packet.numbers[..count] {
@@ -141,7 +139,7 @@ impl<A: FnMut(usize, Option<TriangleHit>), const ANY: bool> Kernel for Packets<'
                         members &= members - 1;
                     }
                     if count >= LEAST {
-                        packet.load(lanes, self.rays, count);
+                        packet.load(lanes, self.rays, count, &[]);
                     }
                 }
                 if count < LEAST || !packet.prepare(lanes, key, count) {
@@ -161,7 +159,15 @@ impl<A: FnMut(usize, Option<TriangleHit>), const ANY: bool> Kernel for Packets<'
     }
 }
 
-/// Of rays those with a key, by what [`Rays::signs`] says of all.
+/// The key of a ray, by what [`Rays::signs`] says of all.
+#[inline(always)]
+fn key_of([x, y, z, first, second]: [u64; 5], ray: u32) -> usize {
+    let of = |set: u64| (set >> ray & 1) as usize;
+    let longest = if of(first) == 1 { 0 } else { 2 - of(second) };
+    of(x) | of(y) << 1 | of(z) << 2 | longest << 3
+}
+
+/// Of rays those with a key.
 #[inline(always)]
 fn with_key([x, y, z, first, second]: [u64; 5], key: usize) -> u64 {
     let of = |set: u64, bit: usize| if key >> bit & 1 == 1 { set } else { !set };
@@ -192,15 +198,24 @@ struct Packet<'a> {
 }
 
 impl Packet<'_> {
-    /// Takes the rays with the first numbers, and the last again where lanes are left.
+    /// Takes the rays with the first numbers, and the last again where lanes are left. `in_order` are rays of which it is known that they
+    /// are the first.
     #[inline(always)]
-    fn load<L: Lanes>(&mut self, lanes: L, rays: &[Ray], count: usize) {
+    fn load<L: Lanes>(&mut self, lanes: L, rays: &[Ray], count: usize, in_order: &[Ray]) {
         self.groups = count.div_ceil(WIDE);
         for k in (0..self.groups * WIDE).step_by(WIDTH) {
             let mut eight = [lanes.splat(0.0); WIDTH];
-            for (i, row) in eight.iter_mut().enumerate() {
-                let Ray { origin: o, dir: d, t_min, t_max } = rays[self.numbers[(k + i).min(count - 1)] as usize];
-                *row = lanes.load(&[o.x, o.y, o.z, d.x, d.y, d.z, t_min, t_max]);
+            match in_order.get(k..k + WIDTH) {
+                Some(rays) => {
+                    for (row, ray) in eight.iter_mut().zip(rays) {
+                        *row = lanes.load(numbers_of(ray));
+                    }
+                }
+                None => {
+                    for (i, row) in eight.iter_mut().enumerate() {
+                        *row = lanes.load(numbers_of(&rays[self.numbers[(k + i).min(count - 1)] as usize]));
+                    }
+                }
             }
             self.sixteens[k / WIDE].set(lanes, k % WIDE, eight);
         }
