@@ -194,9 +194,10 @@ pub(super) fn next<L: Lanes>(
         false => (lanes.nearest(enter, leave), negative >> (node.axis & 31) & 1),
     };
     let others = met & !(1 << (next & 7));
-    let (orders, count) = (&FAR_TO_NEAR[falling as usize], others.count_ones());
+    // Of those that are met, so that neither the stack nor what is fetched waits for the nearest.
+    let count = met.count_ones() - u32::from(met != 0);
+    let orders = &FAR_TO_NEAR[falling as usize];
     lanes.push(stack, &node.children, enter, &orders[others as usize & 255], count);
-    // Known before it is known which is entered first.
     let likely = orders[met as usize & 255][count as usize & 7];
     (node.children[next as usize & 7], node.children[likely as usize & 7])
 }

@@ -6,6 +6,7 @@ use glam::DVec3;
 /// `dir` is not normalised, so that `t` means the same in world and in object space: a transform
 /// moves origin and direction and leaves `t` alone. `t_min` may be minus infinity.
 #[derive(Clone, Copy, Debug, PartialEq)]
+// The kernel reads rays as eight numbers in this order.
 #[repr(C)]
 pub struct Ray {
     /// Where `t` is 0.

@@ -34,20 +34,14 @@ impl Sheared {
     /// Prepares a ray. One without direction, or with an infinite one, hits nothing.
     #[inline(always)]
     pub fn new(ray: &Ray) -> Self {
-        let sheared = Self::finite(ray);
+        let axes = turn(ray.dir.into());
+        let [origin, dir] = [ray.origin, ray.dir].map(|v| turned(axes, v.as_ref()));
+        let sheared = Self::turned(axes, origin, dir);
         let shear = if sheared.dir.z.is_finite() { sheared.shear } else { Vec3A::NAN };
         Sheared { shear, ..sheared }
     }
 
-    /// Prepares a ray that has a finite direction.
-    #[inline(always)]
-    fn finite(ray: &Ray) -> Self {
-        let axes = turn(ray.dir.into());
-        let [origin, dir] = [ray.origin, ray.dir].map(|v| turned(axes, v.as_ref()));
-        Self::turned(axes, origin, dir)
-    }
-
-    /// A ray with its axes, by [`turn`], and turned already.
+    /// A ray that has a finite direction, with its axes, by [`turn`], and turned already.
     #[inline(always)]
     pub(crate) fn turned(axes: &'static Turn, origin: Vec3A, dir: Vec3A) -> Self {
         Sheared { axes, origin, dir, shear: dir / dir.z, least_volume: 0.0 }
@@ -128,13 +122,13 @@ impl Sheared {
     }
 }
 
-/// The line of a turned ray in double precision; or several side by side, or one beside several triangles. Nothing here branches.
+/// The line of a turned ray in double precision; or several side by side. Nothing here branches.
 #[derive(Clone, Copy)]
 pub(crate) struct Exact<V: Triple> {
-    pub origin: V,
-    pub dir: V,
+    origin: V,
+    dir: V,
     /// 1 over the last component of the direction.
-    pub inverse: V::Component,
+    inverse: V::Component,
 }
 
 impl Exact<[f64; 3]> {
@@ -142,11 +136,17 @@ impl Exact<[f64; 3]> {
     #[inline(always)]
     pub fn single(origin: Vec3A, dir: Vec3A, corners: [Vec3A; 3]) -> [f64; 2] {
         let (origin, dir) = (origin.as_dvec3().to_array(), dir.as_dvec3().to_array());
-        Exact { origin, dir, inverse: 1.0 / dir[2] }.t(corners.map(|corner| corner.as_dvec3().to_array()))
+        Exact::new(origin, dir, 1.0).t(corners.map(|corner| corner.as_dvec3().to_array()))
     }
 }
 
 impl<V: Triple> Exact<V> {
+    /// From origin and direction, with the number 1 as a component has it.
+    #[inline(always)]
+    pub fn new(origin: V, dir: V, one: V::Component) -> Self {
+        Exact { origin, dir, inverse: one.div(dir.z()) }
+    }
+
     /// Where it crosses a turned triangle that it crosses, and the volume |(b - a) x (c - a) · d| with its sign.
     ///
     /// That is where it meets the plane, but between the lowest and the highest corner: seen from nearly its side, the

@@ -144,7 +144,7 @@ pub(super) use order_of_eight;
 pub(super) fn corners(from: &super::Rows, super::Columns { starts, corner }: super::Columns) -> [[__m256; 3]; 3] {
     macro_rules! row {
         ($corner:literal, $k:literal) => {
-            // SAFETY: row number 9 ends before what is read past the last; the features are proven by the caller.
+            // SAFETY: by `Columns::new` it begins in one of the first nine rows; the features are proven by the caller.
             unsafe { _mm256_loadu_ps(from.as_ptr().add(starts[$k]).add($corner * corner)) }
         };
     }
@@ -261,10 +261,6 @@ impl Lanes for Avx2 {
     #[inline(always)]
     fn wide(self) -> Two<Self> {
         Two(self)
-    }
-    #[inline(always)]
-    fn splat_double(self, x: f64) -> (Four, Four) {
-        proven!((Four(_mm256_set1_pd(x)), Four(_mm256_set1_pd(x))))
     }
     #[inline(always)]
     fn doubles(self, a: __m256) -> (Four, Four) {

@@ -49,10 +49,6 @@ impl Lanes for Avx512 {
         Sixteen(())
     }
     #[inline(always)]
-    fn splat_double(self, x: f64) -> Eight {
-        proven!(Eight(_mm512_set1_pd(x)))
-    }
-    #[inline(always)]
     fn doubles(self, a: __m256) -> Eight {
         proven!(Eight(_mm512_cvtps_pd(a)))
     }

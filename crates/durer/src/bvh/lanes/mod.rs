@@ -70,7 +70,6 @@ pub(super) trait Lanes: Numbers {
     type Triple: Triple<Component = f64>;
 
     fn wide(self) -> Self::Wide;
-    fn splat_double(self, x: f64) -> Self::Doubles;
     fn doubles(self, a: Self::Floats) -> Self::Doubles;
     /// Rounded to single precision.
     fn singles(self, a: Self::Doubles) -> Self::Floats;
@@ -111,11 +110,11 @@ pub(super) trait Lanes: Numbers {
 /// How many rows a leaf of triangles has: nine coordinates and a number.
 pub const ROWS: usize = 10;
 
-/// As many rows as there may be, with what is read past the last.
+/// As many rows as there may be. All of a vector that begins in one of the first nine is in them.
 pub type Rows = [f32; ROOM_OF_ROWS];
 
 /// How many numbers that is.
-pub const ROOM_OF_ROWS: usize = ROWS * WIDTH + WIDTH;
+pub const ROOM_OF_ROWS: usize = ROWS * WIDTH;
 
 /// One of two neighbouring rows.
 #[derive(Clone, Copy)]
@@ -173,7 +172,7 @@ impl Columns {
     pub fn triangle(self, from: &Rows, lane: usize) -> [Vec3A; 3] {
         assert!(lane < WIDTH);
         let Columns { starts: [x, y, z], corner } = self;
-        // SAFETY: the last is in row 9 of at most as many numbers as a vector has.
+        // SAFETY: by `new` and this the last is in one of the first ten rows of at most eight numbers.
         let at = |place: usize| unsafe { *from.get_unchecked(place + lane) };
         let (b, c) = (corner, 2 * corner);
         [

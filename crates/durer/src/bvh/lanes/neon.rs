@@ -121,11 +121,6 @@ impl Lanes for Neon {
         Two(self)
     }
     #[inline(always)]
-    fn splat_double(self, x: f64) -> Self::Doubles {
-        let two = TwoDoubles(proven!(vdupq_n_f64(x)));
-        ((two, two), (two, two))
-    }
-    #[inline(always)]
     fn doubles(self, a: Pair) -> Self::Doubles {
         proven! {
             let four = |a| (TwoDoubles(vcvt_f64_f32(vget_low_f32(a))), TwoDoubles(vcvt_high_f64_f32(a)));

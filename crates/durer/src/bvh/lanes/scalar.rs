@@ -90,10 +90,6 @@ impl Lanes for Scalar {
         Two(self)
     }
     #[inline(always)]
-    fn splat_double(self, x: f64) -> Plain {
-        Plain([x; WIDTH])
-    }
-    #[inline(always)]
     fn doubles(self, a: F) -> Plain {
         Plain(a.map(f64::from))
     }

@@ -89,6 +89,7 @@ impl<'a> Stack<'a> {
     /// # Safety
     ///
     /// So many entries must have been written to [`Stack::top`], eight at most.
+    #[cfg(target_arch = "x86_64")]
     #[inline(always)]
     pub(super) unsafe fn grow(&mut self, count: u32) {
         self.height += count as usize;

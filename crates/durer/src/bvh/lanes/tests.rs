@@ -98,7 +98,7 @@ impl Kernel for Everything<'_> {
         lanes.transpose([a, b, c, b, a, c, a, b]).into_iter().for_each(|row| tell(row, WIDTH));
         found.extend(lanes.store(a).map(number));
         found.extend(wide(lanes.wide(), floats).map(number));
-        let (p, q) = (lanes.doubles(a), lanes.doubles(c).mul(lanes.splat_double(0.1)));
+        let (p, q) = (lanes.doubles(a), lanes.doubles(c).mul(lanes.doubles(lanes.splat(0.1))));
         for doubles in [p, p.add(q), p.sub(q), p.mul(q), p.div(q), p.min(q), p.max(q)] {
             let high = lanes.singles(doubles);
             found.extend(lanes.store(high).map(number));

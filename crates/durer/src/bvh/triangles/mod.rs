@@ -135,7 +135,8 @@ impl TriangleBvh {
 
     /// The first hit of each ray, in order: as [`TriangleBvh::closest`] gives it, bit for bit, but faster. Of 64 rays in a row those
     /// that go nearly the same way share their way through the tree, so neighbours should be neighbours in space, as the pixels of a
-    /// tile are. In a large tree several of the others are on their way at once, so that none waits for memory.
+    /// tile are; after rays that do not, up to 960 are not asked whether they do. In a large tree several of the others are on their way
+    /// at once, so that none waits for memory.
     ///
     /// # Panics
     ///

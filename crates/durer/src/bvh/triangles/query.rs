@@ -124,8 +124,7 @@ impl Asked<'_> {
 
     #[inline(always)]
     fn is_wanted(&self, t: f32, t_max: f32) -> bool {
-        // Refuses also NaN.
-        t > self.ray.t_min && t < self.ray.t_max && t <= t_max
+        self.ray.contains(t) && t <= t_max
     }
 }
 
@@ -236,8 +235,7 @@ impl<T: Tally, F: Found> Visitor for Leaves<'_, T, F> {
             // Hidden, or the compiler would prepare this for every ray, before it is known whether it comes to a leaf.
             let sheared = std::hint::black_box(sheared);
             let (origin, dir) = sheared.ray();
-            let inverse = 1.0 / f64::from(dir.z);
-            let line = Exact { origin: lanes.triple(origin), dir: lanes.triple(dir), inverse };
+            let line = Exact::new(lanes.triple(origin), lanes.triple(dir), 1.0);
             let mut crossed = crossed;
             while crossed != 0 {
                 let lane = crossed.trailing_zeros() as usize & 7;
@@ -262,9 +260,9 @@ impl<T: Tally, F: Found> Leaves<'_, T, F> {
     /// Triangles in full.
     #[cold]
     fn one_by_one(&mut self, leaf: u32, which: u32, mut t_max: f32) -> f32 {
+        let sheared = self.asked.sheared.least_volume(self.asked.bvh.least_volume);
         for lane in (0..WIDTH).filter(|lane| which >> lane & 1 == 1) {
             let (corners, triangle) = self.asked.triangle(leaf, lane);
-            let sheared = self.asked.sheared.least_volume(self.asked.bvh.least_volume);
             if sheared.crosses(corners)
                 && let Some(t) = sheared.t(corners).filter(|t| self.asked.is_wanted(*t, t_max))
             {

@@ -282,8 +282,12 @@ fn batches_answer_as_single_rays_do() {
                 }
                 let (mut hits, mut occluded) = (vec![None; rays.len()], vec![false; rays.len()]);
                 for tree in &trees {
-                    tree.closest_batch(&rays, &mut hits);
-                    tree.occluded_batch(&rays, &mut occluded);
+                    // In parts, for after rays that do not go together some are not asked whether they do.
+                    let part = [64, usize::MAX][round % 2];
+                    rays.chunks(part).zip(hits.chunks_mut(part)).for_each(|(rays, to)| tree.closest_batch(rays, to));
+                    rays.chunks(part)
+                        .zip(occluded.chunks_mut(part))
+                        .for_each(|(rays, to)| tree.occluded_batch(rays, to));
                     // As in a large tree.
                     let (numbers, mut streamed) = ((0..rays.len() as u32).collect::<Vec<_>>(), hits.clone());
                     tree.stream::<Nearest>(&rays, &numbers, |i, hit| streamed[i] = hit);

@@ -110,7 +110,7 @@ impl<A: FnMut(usize, Option<TriangleHit>), const ANY: bool> Kernel for Packets<'
             meetings: Vec::with_capacity(256),
         };
         let mut stack: Vec<Entry> = Vec::with_capacity(256);
-        // Where rays do not go together, the next will not either: it is tried ever less often.
+        // Where no rays go together, or none are tame, the next are likely to be alike: it is tried ever less often.
         let (mut left_out, mut leave_out) = (0, 0);
         for (window, rays) in self.rays.chunks(RAYS).enumerate() {
             let first = (window * RAYS) as u32;

@@ -3,7 +3,7 @@
 use super::Axes;
 use crate::bvh::lanes::{Lanes, Numbers, WIDE, WIDTH, Wide};
 use crate::bvh::traverse::ORDINARY;
-use crate::math::{Doubles, Ray, Triple, Vec2, Vec3};
+use crate::math::{Ray, Vec2, Vec3};
 use crate::shape::watertight::{Exact, uv_across};
 use glam::Vec3A;
 
@@ -175,11 +175,7 @@ impl Rays {
                     ])
                 };
             }
-            let line = Exact {
-                origin: turned!(self.origin),
-                dir: turned!(self.dir),
-                inverse: lanes.splat_double(1.0).div(turned!(self.dir).z()),
-            };
+            let line = Exact::new(turned!(self.origin), turned!(self.dir), lanes.doubles(lanes.splat(1.0)));
             let [a, b, c] = corners;
             let [a, b, c] = [lanes.splat3(a.into()), lanes.splat3(b.into()), lanes.splat3(c.into())];
             let [t, _] = line.t([lanes.doubles3(a), lanes.doubles3(b), lanes.doubles3(c)]);
