@@ -20,7 +20,7 @@ const FLYING: usize = 16;
 const END: u32 = u32::MAX;
 
 /// Of a tree of fewer bytes, most is near: there, rays are faster one by one.
-const NEAR: usize = 4 << 20;
+const NEAR: usize = 8 << 20;
 
 impl TriangleBvh {
     /// Answers a question for each of the rays with these numbers.
