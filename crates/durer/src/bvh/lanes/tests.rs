@@ -62,7 +62,7 @@ struct Everything<'a>(&'a Input);
 
 /// Vectors that are looked at for each input: of arithmetic, in double precision, of comparison, a stack before and after, nine rows,
 /// and columns; and twice as wide ones.
-const OPERATIONS: usize = 10 + 2 * 7 + 9 + 5 + 2 + 9 + WIDTH + 2 * 10;
+const OPERATIONS: usize = 10 + 3 * 7 + 9 + 5 + 2 + 9 + WIDTH + 2 * 10;
 
 impl Kernel for Everything<'_> {
     type Output = Vec<u32>;
@@ -100,10 +100,13 @@ impl Kernel for Everything<'_> {
         found.extend(wide(lanes.wide(), floats).map(number));
         let (p, q) = (lanes.doubles(a), lanes.doubles(c).mul(lanes.doubles(lanes.splat(0.1))));
         for doubles in [p, p.add(q), p.sub(q), p.mul(q), p.div(q), p.min(q), p.max(q)] {
-            let high = lanes.singles(doubles);
-            found.extend(lanes.store(high).map(number));
-            // What is left of them, as far as it is no infinity less itself.
-            found.extend(lanes.store(lanes.singles(doubles.sub(lanes.doubles(high)))).map(number));
+            // All digits of a double are in three singles.
+            let mut rest = doubles;
+            for _ in 0..3 {
+                let part = lanes.singles(rest);
+                found.extend(lanes.store(part).map(number));
+                rest = rest.sub(lanes.doubles(part));
+            }
         }
         let triple = |i: usize| lanes.triple(Vec3A::from_slice(&floats[i]));
         let (p, q) = (triple(0), triple(1).mul(triple(2)));

@@ -122,7 +122,7 @@ impl<A: FnMut(usize, Option<TriangleHit>), const ANY: bool> Kernel for Packets<'
             let before = rest.len();
             let all = u64::MAX >> (RAYS - rays.len());
             for (i, number) in packet.numbers.iter_mut().enumerate() {
-                *number = first + i.min(rays.len() - 1) as u32;
+                *number = first + i as u32;
             }
             packet.load(lanes, self.rays, rays.len(), rays);
             let signs = packet.signs(lanes);
