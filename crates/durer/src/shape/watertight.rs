@@ -80,7 +80,8 @@ impl Sheared {
     /// The second and third barycentric coordinate of the crossing with a triangle that is crossed.
     #[inline(always)]
     pub(crate) fn uv(&self, corners: [Vec3A; 3]) -> Vec2 {
-        uv_across(self.flatten(corners))
+        let [u, v] = uv_across(self.flatten(corners).map(doubles));
+        Vec2::new(u as f32, v as f32)
     }
 
     #[inline(always)]
@@ -122,6 +123,30 @@ impl Sheared {
     }
 }
 
+/// The plane of a turned triangle in double precision; or several side by side.
+#[derive(Clone, Copy)]
+pub(crate) struct Plane<V: Triple> {
+    pub normal: V,
+    pub corner: V,
+    /// The heights of the lowest and of the highest corner along the third axis.
+    pub heights: [V::Component; 2],
+}
+
+impl<V: Triple> Plane<V> {
+    #[inline(always)]
+    pub fn new([a, b, c]: [V; 3]) -> Self {
+        let (lowest, highest) = (a.min(b.min(c)), a.max(b.max(c)));
+        Plane { normal: b.sub(a).cross(c.sub(a)), corner: a, heights: [lowest.z(), highest.z()] }
+    }
+}
+
+impl Plane<[f64; 3]> {
+    #[inline(always)]
+    pub fn single(corners: [Vec3A; 3]) -> Self {
+        Plane::new(corners.map(|corner| corner.as_dvec3().to_array()))
+    }
+}
+
 /// The line of a turned ray in double precision; or several side by side. Nothing here branches.
 #[derive(Clone, Copy)]
 pub(crate) struct Exact<V: Triple> {
@@ -136,7 +161,7 @@ impl Exact<[f64; 3]> {
     #[inline(always)]
     pub fn single(origin: Vec3A, dir: Vec3A, corners: [Vec3A; 3]) -> [f64; 2] {
         let (origin, dir) = (origin.as_dvec3().to_array(), dir.as_dvec3().to_array());
-        Exact::new(origin, dir, 1.0).t(corners.map(|corner| corner.as_dvec3().to_array()))
+        Exact::new(origin, dir, 1.0).t(&Plane::single(corners))
     }
 }
 
@@ -144,7 +169,13 @@ impl<V: Triple> Exact<V> {
     /// From origin and direction, with the number 1 as a component has it.
     #[inline(always)]
     pub fn new(origin: V, dir: V, one: V::Component) -> Self {
-        Exact { origin, dir, inverse: one.div(dir.z()) }
+        Self::with_inverse(origin, dir, one.div(dir.z()))
+    }
+
+    /// The same, where 1 over the last component of the direction is known.
+    #[inline(always)]
+    pub fn with_inverse(origin: V, dir: V, inverse: V::Component) -> Self {
+        Exact { origin, dir, inverse }
     }
 
     /// Where it crosses a turned triangle that it crosses, and the volume |(b - a) x (c - a) · d| with its sign.
@@ -153,24 +184,24 @@ impl<V: Triple> Exact<V> {
     /// triangle still bounds t, also where that is no number. Products are rounded monotonically, so the corners' distances are
     /// between those of the lowest and of the highest.
     #[inline(always)]
-    pub fn t(&self, [a, b, c]: [V; 3]) -> [V::Component; 2] {
-        let normal = b.sub(a).cross(c.sub(a));
-        let volume = normal.dot(self.dir);
-        let (lowest, highest) = (a.min(b.min(c)), a.max(b.max(c)));
-        let p = lowest.sub(self.origin).z().mul(self.inverse);
-        let q = highest.sub(self.origin).z().mul(self.inverse);
-        let t = normal.dot(a.sub(self.origin)).div(volume);
+    pub fn t(&self, plane: &Plane<V>) -> [V::Component; 2] {
+        let volume = plane.normal.dot(self.dir);
+        let z = self.origin.z();
+        let [p, q] = plane.heights;
+        let (p, q) = (p.sub(z).mul(self.inverse), q.sub(z).mul(self.inverse));
+        let t = plane.normal.dot(plane.corner.sub(self.origin)).div(volume);
         [t.max(p.min(q)).min(p.max(q)), volume]
     }
 }
 
-/// The second and third barycentric coordinate of the origin, by the corners in the plane across a ray that crosses the triangle.
+/// The second and third barycentric coordinate of the origin, by the corners in the plane across a ray that crosses the triangle; or
+/// those of several side by side.
 #[inline(always)]
-pub(crate) fn uv_across(flat: [Vec2; 3]) -> Vec2 {
-    let [a, b, c] = areas(flat.map(doubles));
+pub(crate) fn uv_across<D: Doubles>(flat: [[D; 2]; 3]) -> [D; 2] {
+    let [a, b, c] = areas(flat);
     // None of the three is of another sign than the others, so their sum is as exact as they are.
-    let det = a + b + c;
-    Vec2::new((b / det) as f32, (c / det) as f32)
+    let det = a.add(b).add(c);
+    [b.div(det), c.div(det)]
 }
 
 /// Which components of a vector are the first, second, and third of a turned one; the last is there to make a vector of four.
@@ -218,14 +249,14 @@ fn doubles(p: Vec2) -> [f64; 2] {
 
 /// Twice the areas of the triangles from the origin to the three edges: unnormalised barycentric coordinates.
 #[inline(always)]
-fn areas([a, b, c]: [[f64; 2]; 3]) -> [f64; 3] {
+fn areas<D: Doubles>([a, b, c]: [[D; 2]; 3]) -> [D; 3] {
     [edge(b, c), edge(c, a), edge(a, b)]
 }
 
 /// The edge function of the edge from `p` to `q` about the origin: a product of two `f32` is exact.
 #[inline(always)]
-fn edge(p: [f64; 2], q: [f64; 2]) -> f64 {
-    q[0] * p[1] - q[1] * p[0]
+fn edge<D: Doubles>(p: [D; 2], q: [D; 2]) -> D {
+    q[0].mul(p[1]).sub(q[1].mul(p[0]))
 }
 
 /// Whether the edge from `p` to `q` goes round the origin clockwise: the sign of the edge function, never zero.

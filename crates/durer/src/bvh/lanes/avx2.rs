@@ -263,11 +263,32 @@ impl Lanes for Avx2 {
         Two(self)
     }
     #[inline(always)]
+    fn join(self, [low, high]: [__m256; 2]) -> (__m256, __m256) {
+        (low, high)
+    }
+    #[inline(always)]
     fn doubles(self, a: __m256) -> (Four, Four) {
         proven! {
             let (low, high) = (_mm256_castps256_ps128(a), _mm256_extractf128_ps::<1>(a));
             (Four(_mm256_cvtps_pd(low)), Four(_mm256_cvtps_pd(high)))
         }
+    }
+    #[inline(always)]
+    fn splat_double(self, x: f64) -> (Four, Four) {
+        proven!((Four(_mm256_set1_pd(x)), Four(_mm256_set1_pd(x))))
+    }
+    #[inline(always)]
+    fn load_doubles(self, from: &[f64; WIDTH]) -> (Four, Four) {
+        proven!((Four(_mm256_loadu_pd(from.as_ptr())), Four(_mm256_loadu_pd(from.as_ptr().add(4)))))
+    }
+    #[inline(always)]
+    fn store_doubles(self, (low, high): (Four, Four)) -> [f64; WIDTH] {
+        let mut to = [0.0; WIDTH];
+        proven! {
+            _mm256_storeu_pd(to.as_mut_ptr(), low.0);
+            _mm256_storeu_pd(to.as_mut_ptr().add(4), high.0);
+        }
+        to
     }
     #[inline(always)]
     fn singles(self, (low, high): (Four, Four)) -> __m256 {

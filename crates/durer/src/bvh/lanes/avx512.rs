@@ -49,8 +49,26 @@ impl Lanes for Avx512 {
         Sixteen(())
     }
     #[inline(always)]
+    fn join(self, [low, high]: [__m256; 2]) -> __m512 {
+        proven!(_mm512_insertf32x8::<1>(_mm512_castps256_ps512(low), high))
+    }
+    #[inline(always)]
     fn doubles(self, a: __m256) -> Eight {
         proven!(Eight(_mm512_cvtps_pd(a)))
+    }
+    #[inline(always)]
+    fn splat_double(self, x: f64) -> Eight {
+        proven!(Eight(_mm512_set1_pd(x)))
+    }
+    #[inline(always)]
+    fn load_doubles(self, from: &[f64; WIDTH]) -> Eight {
+        proven!(Eight(_mm512_loadu_pd(from.as_ptr())))
+    }
+    #[inline(always)]
+    fn store_doubles(self, a: Eight) -> [f64; WIDTH] {
+        let mut to = [0.0; WIDTH];
+        proven!(_mm512_storeu_pd(to.as_mut_ptr(), a.0));
+        to
     }
     #[inline(always)]
     fn singles(self, a: Eight) -> __m256 {
@@ -116,6 +134,10 @@ impl Wide for Sixteen {
         let mut to = [0.0; WIDE];
         proven!(_mm512_storeu_ps(to.as_mut_ptr(), a));
         to
+    }
+    #[inline(always)]
+    fn select(self, mask: u32, a: __m512, b: __m512) -> __m512 {
+        proven!(_mm512_mask_mov_ps(b, mask as u16, a))
     }
     #[inline(always)]
     fn least(self, a: __m512) -> f32 {

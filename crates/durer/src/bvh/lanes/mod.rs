@@ -70,9 +70,15 @@ pub(super) trait Lanes: Numbers {
     type Triple: Triple<Component = f64>;
 
     fn wide(self) -> Self::Wide;
+    /// Sixteen numbers of twice eight.
+    fn join(self, halves: [Self::Floats; 2]) -> <Self::Wide as Numbers>::Floats;
     fn doubles(self, a: Self::Floats) -> Self::Doubles;
     /// Rounded to single precision.
     fn singles(self, a: Self::Doubles) -> Self::Floats;
+
+    fn splat_double(self, x: f64) -> Self::Doubles;
+    fn load_doubles(self, from: &[f64; WIDTH]) -> Self::Doubles;
+    fn store_doubles(self, a: Self::Doubles) -> [f64; WIDTH];
 
     /// A vector in each lane.
     #[inline(always)]

@@ -121,11 +121,35 @@ impl Lanes for Neon {
         Two(self)
     }
     #[inline(always)]
+    fn join(self, [low, high]: [Pair; 2]) -> (Pair, Pair) {
+        (low, high)
+    }
+    #[inline(always)]
     fn doubles(self, a: Pair) -> Self::Doubles {
         proven! {
             let four = |a| (TwoDoubles(vcvt_f64_f32(vget_low_f32(a))), TwoDoubles(vcvt_high_f64_f32(a)));
             (four(a.0), four(a.1))
         }
+    }
+    #[inline(always)]
+    fn splat_double(self, x: f64) -> Self::Doubles {
+        let two = proven!(TwoDoubles(vdupq_n_f64(x)));
+        ((two, two), (two, two))
+    }
+    #[inline(always)]
+    fn load_doubles(self, from: &[f64; WIDTH]) -> Self::Doubles {
+        proven! {
+            let two = |at| TwoDoubles(vld1q_f64(from.as_ptr().add(at)));
+            ((two(0), two(2)), (two(4), two(6)))
+        }
+    }
+    #[inline(always)]
+    fn store_doubles(self, ((a, b), (c, d)): Self::Doubles) -> [f64; WIDTH] {
+        let mut to = [0.0; WIDTH];
+        for (i, two) in [a, b, c, d].into_iter().enumerate() {
+            proven!(vst1q_f64(to.as_mut_ptr().add(2 * i), two.0));
+        }
+        to
     }
     #[inline(always)]
     fn singles(self, (low, high): Self::Doubles) -> Pair {

@@ -90,8 +90,24 @@ impl Lanes for Scalar {
         Two(self)
     }
     #[inline(always)]
+    fn join(self, [low, high]: [F; 2]) -> (F, F) {
+        (low, high)
+    }
+    #[inline(always)]
     fn doubles(self, a: F) -> Plain {
         Plain(a.map(f64::from))
+    }
+    #[inline(always)]
+    fn splat_double(self, x: f64) -> Plain {
+        Plain([x; WIDTH])
+    }
+    #[inline(always)]
+    fn load_doubles(self, from: &[f64; WIDTH]) -> Plain {
+        Plain(*from)
+    }
+    #[inline(always)]
+    fn store_doubles(self, a: Plain) -> [f64; WIDTH] {
+        a.0
     }
     #[inline(always)]
     fn singles(self, a: Plain) -> F {

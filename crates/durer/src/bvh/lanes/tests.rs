@@ -62,7 +62,7 @@ struct Everything<'a>(&'a Input);
 
 /// Vectors that are looked at for each input: of arithmetic, in double precision, of comparison, a stack before and after, nine rows,
 /// and columns; and twice as wide ones.
-const OPERATIONS: usize = 10 + 3 * 7 + 9 + 5 + 2 + 9 + WIDTH + 2 * 10;
+const OPERATIONS: usize = 10 + 3 * 7 + 2 + 9 + 5 + 2 + 9 + WIDTH + 2 * 11;
 
 impl Kernel for Everything<'_> {
     type Output = Vec<u32>;
@@ -97,21 +97,19 @@ impl Kernel for Everything<'_> {
         tell(lanes.select(*mask, a, b), WIDTH);
         lanes.transpose([a, b, c, b, a, c, a, b]).into_iter().for_each(|row| tell(row, WIDTH));
         found.extend(lanes.store(a).map(number));
-        found.extend(wide(lanes.wide(), floats).map(number));
+        found.extend(wide(lanes.wide(), floats, *mask).map(number));
         let (p, q) = (lanes.doubles(a), lanes.doubles(c).mul(lanes.doubles(lanes.splat(0.1))));
+        let bits = |x: f64| if x.is_nan() { [0; 2] } else { [x.to_bits() as u32, (x.to_bits() >> 32) as u32] };
         for doubles in [p, p.add(q), p.sub(q), p.mul(q), p.div(q), p.min(q), p.max(q)] {
-            // All digits of a double are in three singles.
-            let mut rest = doubles;
-            for _ in 0..3 {
-                let part = lanes.singles(rest);
-                found.extend(lanes.store(part).map(number));
-                rest = rest.sub(lanes.doubles(part));
-            }
+            let numbers = lanes.store_doubles(doubles);
+            found.extend(numbers.into_iter().flat_map(bits));
+            let again = lanes.load_doubles(&numbers).add(lanes.splat_double(numbers[0]));
+            found.extend(lanes.store(lanes.singles(again)).map(number));
         }
+        found.extend(lanes.wide().store(lanes.join([a, b])).map(number));
         let triple = |i: usize| lanes.triple(Vec3A::from_slice(&floats[i]));
         let (p, q) = (triple(0), triple(1).mul(triple(2)));
         for v in [p.add(q), p.sub(q), p.mul(q), p.div(q), p.min(q), p.max(q), p.cross(q)] {
-            let bits = |x: f64| if x.is_nan() { [0; 2] } else { [x.to_bits() as u32, (x.to_bits() >> 32) as u32] };
             let all = [v.z(), v.turned().z(), v.turned().turned().z(), v.sum(), v.dot(p)];
             found.extend(all.into_iter().flat_map(bits));
         }
@@ -130,7 +128,7 @@ impl Kernel for Everything<'_> {
 
 /// Everything that sixteen lanes do.
 #[inline(always)]
-fn wide<W: Wide>(lanes: W, [a, b, c]: &[[f32; WIDTH]; 3]) -> [f32; 7 * WIDE + 6] {
+fn wide<W: Wide>(lanes: W, [a, b, c]: &[[f32; WIDTH]; 3], mask: u32) -> [f32; 8 * WIDE + 6] {
     let join =
         |a: &[f32; WIDTH], b: &[f32; WIDTH]| std::array::from_fn(|i| if i < WIDTH { a[i] } else { b[i - WIDTH] });
     let (a, b) = (lanes.load(&join(a, b)), lanes.load(&join(b, c)));
@@ -142,6 +140,7 @@ fn wide<W: Wide>(lanes: W, [a, b, c]: &[[f32; WIDTH]; 3]) -> [f32; 7 * WIDE + 6]
         lanes.abs(a),
         lanes.min(a, b),
         lanes.max(a, b),
+        lanes.select(mask | !mask << WIDTH, a, b),
     ];
     // Where it is no number, the second is taken.
     let ordered = lanes.max(a, lanes.splat(f32::MIN));
@@ -149,7 +148,7 @@ fn wide<W: Wide>(lanes: W, [a, b, c]: &[[f32; WIDTH]; 3]) -> [f32; 7 * WIDE + 6]
     let [p, q, r, s] = masks;
     // Zeroes of either sign are as great.
     let others = [lanes.least(ordered) + 0.0, lanes.greatest(ordered) + 0.0, p, q, r, s];
-    let mut found = [0.0; 7 * WIDE + 6];
+    let mut found = [0.0; 8 * WIDE + 6];
     let all = vectors.into_iter().flat_map(|v| lanes.store(v)).chain(others);
     found.iter_mut().zip(all).for_each(|(to, x)| *to = x);
     found

@@ -9,6 +9,8 @@ pub const WIDE: usize = 2 * WIDTH;
 pub(in crate::bvh) trait Wide: Numbers {
     fn load(self, from: &[f32; WIDE]) -> Self::Floats;
     fn store(self, a: Self::Floats) -> [f32; WIDE];
+    /// `a` in the lanes whose bits are set, `b` in others. Bits stay as they are.
+    fn select(self, mask: u32, a: Self::Floats, b: Self::Floats) -> Self::Floats;
     /// The least of all lanes, none of which is NaN.
     fn least(self, a: Self::Floats) -> f32;
     /// The greatest of all lanes, none of which is NaN.
@@ -76,6 +78,10 @@ impl<L: Lanes> Wide for Two<L> {
         to[..WIDTH].copy_from_slice(&self.0.store(a.0));
         to[WIDTH..].copy_from_slice(&self.0.store(a.1));
         to
+    }
+    #[inline(always)]
+    fn select(self, mask: u32, a: Self::Floats, b: Self::Floats) -> Self::Floats {
+        (self.0.select(mask, a.0, b.0), self.0.select(mask >> WIDTH, a.1, b.1))
     }
     #[inline(always)]
     fn least(self, a: Self::Floats) -> f32 {

@@ -90,7 +90,12 @@ impl<N: Numbers> Flat<N> {
 
 /// Corners in the plane across the ray, and their heights along the third axis.
 #[inline(always)]
-fn flat<N: Numbers>(numbers: N, p: [N::Floats; 3], origin: [N::Floats; 3], shear: [N::Floats; 2]) -> [N::Floats; 3] {
+pub fn flat<N: Numbers>(
+    numbers: N,
+    p: [N::Floats; 3],
+    origin: [N::Floats; 3],
+    shear: [N::Floats; 2],
+) -> [N::Floats; 3] {
     let z = numbers.sub(p[2], origin[2]);
     [
         numbers.sub(numbers.sub(p[0], origin[0]), numbers.mul(shear[0], z)),

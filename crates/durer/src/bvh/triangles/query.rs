@@ -7,7 +7,7 @@ use crate::bvh::Tally;
 use crate::bvh::lanes::{Columns, Kernel, Lanes, WIDTH};
 use crate::bvh::traverse::{ORDINARY, RayBox, Visitor, walk};
 use crate::math::{Ray, Vec2};
-use crate::shape::watertight::{Exact, Sheared, turn};
+use crate::shape::watertight::{Exact, Plane, Sheared, turn};
 use glam::Vec3A;
 use std::marker::PhantomData;
 
@@ -241,7 +241,7 @@ impl<T: Tally, F: Found> Visitor for Leaves<'_, T, F> {
                 let lane = crossed.trailing_zeros() as usize & 7;
                 crossed &= crossed - 1;
                 let [a, b, c] = columns.triangle(rows, lane);
-                let t = line.t([lanes.triple(a), lanes.triple(b), lanes.triple(c)])[0] as f32;
+                let t = line.t(&Plane::new([lanes.triple(a), lanes.triple(b), lanes.triple(c)]))[0] as f32;
                 if self.asked.is_wanted(t, t_max) {
                     let uv = sheared.uv([a, b, c]);
                     let hit = TriangleHit { t, uv, triangle: number(rows, count, lane) };

@@ -1,10 +1,10 @@
 //! A packet among the triangles of a leaf.
 
 use super::{Meeting, Packet};
-use crate::bvh::lanes::{Columns, Lanes, Numbers, WIDE, Wide};
+use crate::bvh::lanes::{Columns, Lanes, Numbers, WIDE, WIDTH, Wide};
 use crate::bvh::node;
 use crate::bvh::triangles::leaf::Flat;
-use crate::bvh::triangles::number;
+use crate::bvh::triangles::number as number_of;
 use crate::shape::watertight::Sheared;
 
 impl Packet<'_> {
@@ -21,33 +21,40 @@ impl Packet<'_> {
             true => self.ray_by_ray::<L, ANY>(lanes, leaf, rays),
             false => self.one_by_one::<L, ANY>(lanes, leaf, rays),
         };
+        self.met |= met;
         if ANY {
             self.alive &= !met;
         } else if met != 0 {
+            for group in 0..self.groups {
+                if met >> (group * WIDE) & 0xffff != 0 {
+                    self.sixteens[group].bound_last(lanes, &self.axes);
+                }
+            }
             self.limit = self.last(lanes);
         }
     }
 
-    /// Each triangle with sixteen rays at once; gives the rays that met one.
+    /// Sixteen rays at once with each triangle; gives the rays that met one.
     #[inline(always)]
-    fn one_by_one<L: Lanes, const ANY: bool>(&mut self, lanes: L, leaf: u32, mut rays: u64) -> u64 {
+    fn one_by_one<L: Lanes, const ANY: bool>(&mut self, lanes: L, leaf: u32, rays: u64) -> u64 {
         let wide = lanes.wide();
         let (rows, count) = self.bvh.rows(leaf);
         let [x, y, z] = self.axes.turned();
         let columns = Columns::new(&self.axes.turn, count);
         let mut all_met = 0;
-        for lane in 0..count {
-            let corners @ [a, b, c] = columns.triangle(rows, lane);
-            let triangle = [wide.splat3(a.into()), wide.splat3(b.into()), wide.splat3(c.into())];
-            let mut meeting = 0;
-            for group in 0..self.groups {
-                let active = (rays >> (group * WIDE)) as u32 & 0xffff;
-                if active == 0 {
-                    continue;
-                }
-                let e = &mut self.sixteens[group];
-                let origin = [wide.load(&e.origin[x]), wide.load(&e.origin[y]), wide.load(&e.origin[z])];
-                let shear = [wide.load(&e.shear[0]), wide.load(&e.shear[1])];
+        // The number of each triangle's meeting, if there is one.
+        let mut meetings = [0; WIDTH];
+        for group in 0..self.groups {
+            let mut active = (rays >> (group * WIDE)) as u32 & 0xffff;
+            if active == 0 {
+                continue;
+            }
+            let e = &mut self.sixteens[group];
+            let origin = [wide.load(&e.origin[x]), wide.load(&e.origin[y]), wide.load(&e.origin[z])];
+            let shear = [wide.load(&e.shear[0]), wide.load(&e.shear[1])];
+            for (lane, meeting) in meetings.iter_mut().enumerate().take(count) {
+                let [a, b, c] = columns.triangle(rows, lane);
+                let triangle = [wide.splat3(a.into()), wide.splat3(b.into()), wide.splat3(c.into())];
                 let flat = Flat::new(wide, triangle, origin, shear);
                 let missed = flat.missed(wide);
                 if !missed & active == 0 {
@@ -69,26 +76,23 @@ impl Packet<'_> {
                     crossed &= !met;
                 }
                 let mut unsure = candidates & !(crossed | met);
+                // Hidden, or the compiler would prepare this for every triangle.
+                let corners = std::hint::black_box([a, b, c]);
                 while unsure != 0 {
                     let lane = unsure.trailing_zeros();
                     unsure &= unsure - 1;
                     crossed |= u32::from(Sheared::new(&e.ray(lane as usize)).crosses(corners)) << lane;
                 }
-                if meeting == 0 {
-                    meeting = self.meetings.len() as u32;
-                    let triangle = number(rows, count, lane);
-                    self.meetings.push(Meeting { corners: corners.map(|c| c.to_array()), triangle });
+                if !ANY || crossed != 0 {
+                    if *meeting == 0 {
+                        *meeting = self.meetings.len() as u32;
+                        self.meetings.push(Meeting::new(corners, number_of(rows, count, lane)));
+                    }
+                    met |= e.meet(lanes, &self.axes, &self.meetings, *meeting, crossed);
                 }
-                let (meetings, own) = (&self.meetings, self.meetings[meeting as usize].triangle);
-                met |= e.meet(lanes, &self.axes, corners, crossed, meeting, |other| {
-                    own < meetings[other as usize].triangle
-                });
                 all_met |= u64::from(met) << (group * WIDE);
                 if ANY {
-                    set_met(&mut e.met, met, meeting);
-                    rays &= !(u64::from(met) << (group * WIDE));
-                } else if met != 0 {
-                    e.bound_last(lanes, &self.axes);
+                    active &= !met;
                 }
             }
         }
@@ -122,7 +126,6 @@ impl Packet<'_> {
                 let inside =
                     lanes.lt(lanes.splat(e.heights[2][i]), lowest) & lanes.lt(highest, lanes.splat(e.heights[3][i]));
                 if candidates & crossed & inside != 0 {
-                    e.met[i] = f32::from_bits(1);
                     all_met |= 1 << ray;
                     continue;
                 }
@@ -134,24 +137,14 @@ impl Packet<'_> {
                 if crossed >> lane & 1 == 0 && !Sheared::new(&e.ray(i)).crosses(corners) {
                     continue;
                 }
-                let (meeting, triangle) = (self.meetings.len() as u32, number(rows, count, lane));
+                let (meeting, triangle) = (self.meetings.len() as u32, number_of(rows, count, lane));
                 let meetings = &self.meetings;
                 if e.meet_one(&self.axes, corners, i, meeting, |other| triangle < meetings[other as usize].triangle) {
-                    self.meetings.push(Meeting { corners: corners.map(|c| c.to_array()), triangle });
+                    self.meetings.push(Meeting::new(corners, triangle));
                     all_met |= 1 << ray;
                 }
             }
-            if !ANY && all_met >> ray & 1 == 1 {
-                e.bound_last(lanes, &self.axes);
-            }
         }
         all_met
-    }
-}
-
-#[inline(always)]
-fn set_met(numbers: &mut [f32; WIDE], met: u32, number: u32) {
-    for (i, of_ray) in numbers.iter_mut().enumerate() {
-        *of_ray = if met >> i & 1 == 1 { f32::from_bits(number) } else { *of_ray };
     }
 }

@@ -26,7 +26,8 @@ mod walk;
 use super::{TriangleBvh, TriangleHit};
 use crate::bvh::lanes::{Kernel, Lanes, Numbers, WIDE, WIDTH, Wide, numbers_of};
 use crate::math::{Ray, Vec2};
-use crate::shape::watertight::{Turn, turned_axes};
+use crate::shape::watertight::{Plane, Turn, turned_axes};
+use glam::Vec3A;
 use rays::Rays;
 use walk::Entry;
 
@@ -106,6 +107,7 @@ impl<A: FnMut(usize, Option<TriangleHit>), const ANY: bool> Kernel for Packets<'
             sixteens: [Rays::EMPTY; RAYS / WIDE],
             groups: 0,
             alive: 0,
+            met: 0,
             limit: 0.0,
             meetings: Vec::with_capacity(256),
         };
@@ -125,6 +127,10 @@ impl<A: FnMut(usize, Option<TriangleHit>), const ANY: bool> Kernel for Packets<'
                 *number = first + i as u32;
             }
             packet.load(lanes, self.rays, rays.len(), rays);
+            // What is next comes near while these rays are on their way.
+            for line in 0..RAYS / 2 {
+                lanes.prefetch(rays.as_ptr().wrapping_add(RAYS + 2 * line));
+            }
             let signs = packet.signs(lanes);
             // Usually all have the same key, and are where they should be; else those of each key are put together.
             let mut left = all;
@@ -146,11 +152,10 @@ impl<A: FnMut(usize, Option<TriangleHit>), const ANY: bool> Kernel for Packets<'
                     rest.extend_from_slice(&packet.numbers[..count]);
                     continue;
                 }
-                let all = packet.alive;
                 packet.meetings.clear();
-                packet.meetings.push(Meeting { corners: [[0.0; 3]; 3], triangle: u32::MAX });
+                packet.meetings.push(Meeting::new([Vec3A::ZERO; 3], u32::MAX));
                 packet.walk::<L, ANY>(lanes, &mut stack);
-                packet.answer::<L, ANY>(lanes, all, &mut self.answer);
+                packet.answer::<L, ANY>(lanes, count, &mut self.answer);
             }
             left_out = if rest.len() < before + rays.len() { 0 } else { MOST_LEFT_OUT.min(2 * left_out + 1) };
             leave_out = left_out;
@@ -180,6 +185,14 @@ struct Meeting {
     /// Turned, as the rays are.
     corners: [[f32; 3]; 3],
     triangle: u32,
+    plane: Plane<[f64; 3]>,
+}
+
+impl Meeting {
+    #[inline(always)]
+    fn new(corners: [Vec3A; 3], triangle: u32) -> Self {
+        Meeting { corners: corners.map(|corner| corner.to_array()), triangle, plane: Plane::single(corners) }
+    }
 }
 
 struct Packet<'a> {
@@ -191,6 +204,8 @@ struct Packet<'a> {
     groups: usize,
     /// The rays that still search.
     alive: u64,
+    /// Those that met anything.
+    met: u64,
     /// None of them goes on beyond.
     limit: f32,
     /// The first stands for none.
@@ -237,7 +252,7 @@ impl Packet<'_> {
     #[inline(always)]
     fn prepare<L: Lanes>(&mut self, lanes: L, key: usize, count: usize) -> bool {
         self.axes = Axes::of_key(key);
-        self.alive = 0;
+        (self.alive, self.met) = (0, 0);
         for group in 0..self.groups {
             let tame = self.sixteens[group].prepare(lanes, &self.axes, self.bvh.reach);
             self.alive |= u64::from(tame) << (group * WIDE);
@@ -261,35 +276,46 @@ impl Packet<'_> {
             && extent!(origin[0]).max(extent!(origin[1])).max(extent!(origin[2])) <= apart
     }
 
-    /// Tells what was found.
+    /// Tells what so many rays have found.
     #[inline(always)]
-    fn answer<L: Lanes, const ANY: bool>(&self, lanes: L, all: u64, tell: &mut impl FnMut(usize, Option<TriangleHit>)) {
-        for (group, e) in self.sixteens[..self.groups].iter().enumerate() {
-            let rays = (all >> (group * WIDE)) as u32 & 0xffff;
-            let mut corners = [[[0.0; WIDE]; 3]; 3];
-            for first in [0, WIDTH].into_iter().filter(|_| !ANY) {
-                // Eight of the nine numbers of each at once, then the last.
-                let mut rows = [lanes.splat(0.0); WIDTH];
-                for i in 0..WIDTH {
-                    let [[a, b, c], [d, e, f], [g, h, last]] =
-                        self.meetings[e.met[first + i].to_bits() as usize].corners;
-                    rows[i] = lanes.load(&[a, b, c, d, e, f, g, h]);
-                    corners[2][2][first + i] = last;
-                }
-                for (k, numbers) in lanes.transpose(rows).into_iter().enumerate() {
-                    corners[k / 3][k % 3][first..first + WIDTH].copy_from_slice(&lanes.store(numbers));
-                }
-            }
-            let [u, v] = if ANY { [[0.0; WIDE]; 2] } else { e.uv(&self.axes, &corners) };
-            for i in (0..WIDE).filter(|i| rays >> i & 1 == 1) {
-                let (number, met) = (self.numbers[group * WIDE + i] as usize, e.met[i].to_bits());
-                if met == 0 {
-                    tell(number, None);
+    fn answer<L: Lanes, const ANY: bool>(
+        &self,
+        lanes: L,
+        count: usize,
+        tell: &mut impl FnMut(usize, Option<TriangleHit>),
+    ) {
+        for (k, numbers) in self.numbers[..count].chunks(WIDTH).enumerate() {
+            let (e, half, mut met) = (&self.sixteens[k / 2], k % 2, self.met >> (k * WIDTH) & 255);
+            let [u, v] = match !ANY && met != 0 {
+                true => e.uv(lanes, &self.axes, half, self.corners(lanes, e.numbers(half))),
+                false => [[0.0; WIDTH]; 2],
+            };
+            for (i, &number) in numbers.iter().enumerate() {
+                let is_met = met & 1 == 1;
+                met >>= 1;
+                let hit = if ANY {
+                    is_met.then_some(TriangleHit { t: 0.0, uv: Vec2::ZERO, triangle: 0 })
+                } else if is_met {
+                    let triangle = self.meetings[e.numbers(half)[i].to_bits() as usize].triangle;
+                    Some(TriangleHit { t: e.t_last[half * WIDTH + i], uv: Vec2::new(u[i], v[i]), triangle })
                 } else {
-                    let triangle = if ANY { 0 } else { self.meetings[met as usize].triangle };
-                    tell(number, Some(TriangleHit { t: e.t_last[i], uv: Vec2::new(u[i], v[i]), triangle }));
-                }
+                    None
+                };
+                tell(number as usize, hit);
             }
         }
+    }
+
+    /// By corner and coordinate, the triangles of eight meetings.
+    #[inline(always)]
+    fn corners<L: Lanes>(&self, lanes: L, numbers: &[f32; WIDTH]) -> [[L::Floats; 3]; 3] {
+        // Eight of the nine numbers of each at once, then the last.
+        let (mut rows, mut lasts) = ([lanes.splat(0.0); WIDTH], [0.0; WIDTH]);
+        for ((row, last), number) in rows.iter_mut().zip(&mut lasts).zip(numbers) {
+            let [[a, b, c], [d, e, f], [g, h, i]] = self.meetings[number.to_bits() as usize].corners;
+            (*row, *last) = (lanes.load(&[a, b, c, d, e, f, g, h]), i);
+        }
+        let [a, b, c, d, e, f, g, h] = lanes.transpose(rows);
+        [[a, b, c], [d, e, f], [g, h, lanes.load(&lasts)]]
     }
 }

@@ -1,10 +1,11 @@
 //! Rays side by side.
 
-use super::Axes;
+use super::{Axes, Meeting};
 use crate::bvh::lanes::{Lanes, Numbers, WIDE, WIDTH, Wide};
 use crate::bvh::traverse::ORDINARY;
-use crate::math::{Ray, Vec2, Vec3};
-use crate::shape::watertight::{Exact, uv_across};
+use crate::bvh::triangles::leaf::flat;
+use crate::math::{Doubles, Ray, Vec3};
+use crate::shape::watertight::{Exact, Plane, uv_across};
 use glam::Vec3A;
 
 /// A number for each of sixteen rays.
@@ -27,6 +28,8 @@ pub struct Rays {
     pub near_origin: [PerRay; 3],
     pub far_origin: [PerRay; 3],
     pub shear: [PerRay; 2],
+    /// 1 over the component of the direction along the longest axis.
+    inverse_z: [[f64; WIDTH]; 2],
     pub t_min: PerRay,
     pub t_max: PerRay,
     /// The same; after a hit, its t.
@@ -48,6 +51,7 @@ impl Rays {
         near_origin: [ZERO; 3],
         far_origin: [ZERO; 3],
         shear: [ZERO; 2],
+        inverse_z: [[0.0; WIDTH]; 2],
         t_min: ZERO,
         t_max: ZERO,
         t_last: ZERO,
@@ -113,6 +117,10 @@ impl Rays {
         let z = wide.load(&self.dir[z]);
         self.shear =
             [wide.store(wide.div(wide.load(&self.dir[x]), z)), wide.store(wide.div(wide.load(&self.dir[y]), z))];
+        for (half, inverse) in self.inverse_z.iter_mut().enumerate() {
+            let z = lanes.doubles(lanes.load(part(&self.dir[axes.turned()[2]], half)));
+            *inverse = lanes.store_doubles(lanes.doubles(lanes.splat(1.0)).div(z));
+        }
         self.t_max = self.t_last;
         self.met = ZERO;
         self.bound(lanes, axes);
@@ -150,53 +158,48 @@ impl Rays {
     ///
     /// `number` is that of the meeting, and `less` says whether the triangle of another is of greater number.
     #[inline(always)]
-    pub fn meet<L: Lanes>(
-        &mut self,
-        lanes: L,
-        axes: &Axes,
-        corners: [Vec3A; 3],
-        crossed: u32,
-        number: u32,
-        less: impl Fn(u32) -> bool,
-    ) -> u32 {
+    pub fn meet<L: Lanes>(&mut self, lanes: L, axes: &Axes, meetings: &[Meeting], number: u32, crossed: u32) -> u32 {
         let [x, y, z] = axes.turned();
-        let mut all_met = 0;
-        for first in [0, WIDTH] {
-            let crossed = crossed >> first & 255;
-            if crossed == 0 {
+        let splat3 = |v: [f64; 3]| [lanes.splat_double(v[0]), lanes.splat_double(v[1]), lanes.splat_double(v[2])];
+        let Meeting { plane, triangle, .. } = &meetings[number as usize];
+        let [low, high] = plane.heights;
+        let plane = Plane {
+            normal: splat3(plane.normal),
+            corner: splat3(plane.corner),
+            heights: [lanes.splat_double(low), lanes.splat_double(high)],
+        };
+        let wide = lanes.wide();
+        let mut halves = [lanes.splat(0.0); 2];
+        for half in [0, 1] {
+            if crossed >> (WIDTH * half) & 255 == 0 {
                 continue;
             }
             macro_rules! turned {
                 ($v:expr) => {
                     lanes.doubles3([
-                        lanes.load(half(&$v[x], first)),
-                        lanes.load(half(&$v[y], first)),
-                        lanes.load(half(&$v[z], first)),
+                        lanes.load(part(&$v[x], half)),
+                        lanes.load(part(&$v[y], half)),
+                        lanes.load(part(&$v[z], half)),
                     ])
                 };
             }
-            let line = Exact::new(turned!(self.origin), turned!(self.dir), lanes.doubles(lanes.splat(1.0)));
-            let [a, b, c] = corners;
-            let [a, b, c] = [lanes.splat3(a.into()), lanes.splat3(b.into()), lanes.splat3(c.into())];
-            let [t, _] = line.t([lanes.doubles3(a), lanes.doubles3(b), lanes.doubles3(c)]);
-            let t = lanes.singles(t);
-            let t_last = lanes.load(half(&self.t_last, first));
-            // Also NaN is refused.
-            let within = crossed & lanes.lt(lanes.load(half(&self.t_min, first)), t);
-            let within = within & lanes.lt(t, lanes.load(half(&self.t_max, first)));
-            let mut met = within & lanes.lt(t, t_last);
-            let mut same = within & lanes.le(t, t_last) & !met;
-            while same != 0 {
-                let i = same.trailing_zeros() as usize;
-                same &= same - 1;
-                met |= u32::from(less(self.met[first + i].to_bits())) << i;
-            }
-            let numbers = lanes.select(met, lanes.splat(f32::from_bits(number)), lanes.load(half(&self.met, first)));
-            self.met[first..first + WIDTH].copy_from_slice(&lanes.store(numbers));
-            self.t_last[first..first + WIDTH].copy_from_slice(&lanes.store(lanes.select(met, t, t_last)));
-            all_met |= met << first;
+            let inverse = lanes.load_doubles(&self.inverse_z[half]);
+            let line = Exact::with_inverse(turned!(self.origin), turned!(self.dir), inverse);
+            halves[half] = lanes.singles(line.t(&plane)[0]);
         }
-        all_met
+        let (t, t_last) = (lanes.join(halves), wide.load(&self.t_last));
+        // Also NaN is refused.
+        let within = crossed & wide.lt(wide.load(&self.t_min), t) & wide.lt(t, wide.load(&self.t_max));
+        let mut met = within & wide.lt(t, t_last);
+        let mut same = within & wide.le(t, t_last) & !met;
+        while same != 0 {
+            let i = same.trailing_zeros();
+            same &= same - 1;
+            met |= u32::from(*triangle < meetings[self.met[i as usize].to_bits() as usize].triangle) << i;
+        }
+        self.met = wide.store(wide.select(met, wide.splat(f32::from_bits(number)), wide.load(&self.met)));
+        self.t_last = wide.store(wide.select(met, t, t_last));
+        met
     }
 
     /// As [`Rays::meet`] for a single ray.
@@ -220,21 +223,31 @@ impl Rays {
         met
     }
 
-    /// Barycentric coordinates in a triangle for each ray, by coordinate of corners.
+    /// Barycentric coordinates for half of the rays, each in a triangle of its own.
     #[inline(always)]
-    pub fn uv(&self, axes: &Axes, corners: &[[PerRay; 3]; 3]) -> [PerRay; 2] {
-        let [x, y, z] = axes.turned();
-        let (x, y, z) = (&self.origin[x], &self.origin[y], &self.origin[z]);
-        let mut uv = [ZERO; 2];
-        for i in 0..WIDE {
-            let flat = |c: &[PerRay; 3]| {
-                let height = c[2][i] - z[i];
-                Vec2::new(c[0][i] - x[i] - self.shear[0][i] * height, c[1][i] - y[i] - self.shear[1][i] * height)
+    pub fn uv<L: Lanes>(&self, lanes: L, axes: &Axes, half: usize, corners: [[L::Floats; 3]; 3]) -> [[f32; WIDTH]; 2] {
+        macro_rules! half {
+            ($v:expr) => {
+                lanes.load(part(&$v, half))
             };
-            let found = uv_across([flat(&corners[0]), flat(&corners[1]), flat(&corners[2])]);
-            (uv[0][i], uv[1][i]) = (found.x, found.y);
         }
-        uv
+        let [x, y, z] = axes.turned();
+        let origin = [half!(self.origin[x]), half!(self.origin[y]), half!(self.origin[z])];
+        let shear = [half!(self.shear[0]), half!(self.shear[1])];
+        macro_rules! flat {
+            ($corner:literal) => {{
+                let [x, y, _] = flat(lanes, corners[$corner], origin, shear);
+                [lanes.doubles(x), lanes.doubles(y)]
+            }};
+        }
+        let [u, v] = uv_across([flat!(0), flat!(1), flat!(2)]);
+        [lanes.store(lanes.singles(u)), lanes.store(lanes.singles(v))]
+    }
+
+    /// The numbers of what half of the rays met, as bits.
+    #[inline(always)]
+    pub fn numbers(&self, half: usize) -> &[f32; WIDTH] {
+        part(&self.met, half)
     }
 
     /// One of the rays.
@@ -244,10 +257,10 @@ impl Rays {
     }
 }
 
-/// Eight of the numbers.
+/// The first or the second eight of the numbers.
 #[inline(always)]
-fn half(numbers: &PerRay, first: usize) -> &[f32; WIDTH] {
-    match numbers[first..].first_chunk() {
+fn part(numbers: &PerRay, half: usize) -> &[f32; WIDTH] {
+    match numbers[WIDTH * half..].first_chunk() {
         Some(half) => half,
         None => unreachable!("sixteen are twice eight"),
     }
