@@ -42,9 +42,9 @@ fn collections() -> Vec<(&'static str, Vec<Aabb>)> {
 }
 
 /// The longest way from the root to a leaf, in nodes.
-fn depth(nodes: &[node::Node], number: u32) -> usize {
-    let inner = nodes[number as usize].children().filter(|(_, _, child)| child & node::LEAF == 0);
-    1 + inner.map(|(_, _, child)| depth(nodes, child)).max().unwrap_or(0)
+fn depth(nodes: &[node::Node], number: usize) -> usize {
+    let inner = nodes[number].children().filter(|(_, _, child)| child & node::LEAF == 0);
+    1 + inner.map(|(_, _, child)| depth(nodes, node::number(child))).max().unwrap_or(0)
 }
 
 #[test]

@@ -8,7 +8,7 @@
 //! 4(4), 2015.
 
 use super::Tally;
-use super::lanes::{Lanes, Room, Side, Stack, WIDTH};
+use super::lanes::{Lanes, Room, Sides, Stack, WIDTH};
 use super::node::{LEAF, Node};
 use crate::math::{Ray, Vec3};
 use glam::{Vec3A, Vec4};
@@ -131,7 +131,7 @@ pub(super) fn walk<L: Lanes, V: Visitor, const TAME: bool>(
     mut t_max: f32,
     visitor: &mut V,
 ) -> f32 {
-    let slabs = Slabs::new(lanes, boxes);
+    let slabs = Slabs::new(lanes, nodes, boxes);
     let mut far = boxes.limit::<TAME>(t_max);
     let mut limit = lanes.splat(far);
     let mut room = Room::new();
@@ -140,12 +140,11 @@ pub(super) fn walk<L: Lanes, V: Visitor, const TAME: bool>(
     loop {
         if child & LEAF == 0 {
             visitor.tally().node();
-            let node = &nodes[child as usize];
-            let (met, interval) = meet::<L, TAME>(lanes, node, &slabs, limit);
+            let (node, met, interval) = meet::<L, TAME>(lanes, &slabs, child, limit);
             if met != 0 {
                 // The nearest child is next, without a way through the stack.
                 let likely;
-                (child, likely) = next(lanes, V::UNORDERED, &mut stack, node, met, interval, boxes.negative);
+                (child, likely) = next::<L, TAME>(lanes, V::UNORDERED, &mut stack, node, met, interval, boxes.negative);
                 visitor.fetch(lanes, likely);
                 continue;
             }
@@ -180,7 +179,7 @@ pub(super) fn walk<L: Lanes, V: Visitor, const TAME: bool>(
 /// The next is the one that is entered first, and the others are pushed from far to near along the axis of the node. If `unordered`
 /// they come by place, so that the next is known sooner.
 #[inline(always)]
-pub(super) fn next<L: Lanes>(
+pub(super) fn next<L: Lanes, const TAME: bool>(
     lanes: L,
     unordered: bool,
     stack: &mut Stack,
@@ -189,17 +188,21 @@ pub(super) fn next<L: Lanes>(
     [enter, leave]: [L::Floats; 2],
     negative: u32,
 ) -> (u32, u32) {
-    let (next, falling) = match unordered {
-        true => (met.trailing_zeros(), 0),
-        false => (lanes.nearest(enter, leave), negative >> (node.axis & 31) & 1),
-    };
-    let others = met & !(1 << (next & 7));
+    let falling = if unordered { 0 } else { negative >> (node.axis & 31) & 1 };
+    let orders = &FAR_TO_NEAR[falling as usize];
     // Of those that are met, so that neither the stack nor what is fetched waits for the nearest.
     let count = met.count_ones() - u32::from(met != 0);
-    let orders = &FAR_TO_NEAR[falling as usize];
-    lanes.push(stack, &node.children, enter, &orders[others as usize & 255], count);
     let likely = orders[met as usize & 255][count as usize & 7];
-    (node.children[next as usize & 7], node.children[likely as usize & 7])
+    let child = |lane: u32| node.children[lane as usize & 7];
+    let (lane, next) = match () {
+        () if unordered => (met.trailing_zeros(), child(met.trailing_zeros())),
+        // Distances of rays that are not tame cannot be compared as integers.
+        () if !TAME => (likely.into(), child(likely.into())),
+        () => lanes.nearest(enter, leave, &node.children),
+    };
+    let others = met & !(1 << (lane & 7));
+    lanes.push(stack, &node.children, enter, &orders[others as usize & 255], count);
+    (next, child(likely.into()))
 }
 
 /// For each set of lanes the lanes from far to near, where the first are nearer and where the last are.
@@ -223,41 +226,40 @@ static FAR_TO_NEAR: [[[u8; WIDTH]; 256]; 2] = {
 };
 
 /// A ray's numbers for boxes, in all lanes.
-pub(super) struct Slabs<L: Lanes> {
+pub(super) struct Slabs<'a, L: Lanes> {
     inverse: [L::Floats; 3],
     near_origin: [L::Floats; 3],
     far_origin: [L::Floats; 3],
     t_min: L::Floats,
-    /// By axis: the sides where the ray enters.
-    near: [Side; 3],
+    sides: Sides<'a, Node>,
 }
 
-impl<L: Lanes> Slabs<L> {
+impl<'a, L: Lanes> Slabs<'a, L> {
     #[inline(always)]
-    pub fn new(lanes: L, boxes: &RayBox) -> Self {
-        let near = |axis: u32| Side::new(boxes.negative as usize >> axis & 1);
+    pub fn new(lanes: L, nodes: &'a [Node], boxes: &RayBox) -> Self {
         Slabs {
             inverse: lanes.splat3(boxes.planes.inverse),
             near_origin: lanes.splat3(boxes.planes.near_origin),
             far_origin: lanes.splat3(boxes.planes.far_origin),
             t_min: lanes.splat(boxes.t_min),
-            near: [near(0), near(1), near(2)],
+            sides: Sides::new(nodes, |node| &node.planes, boxes.negative),
         }
     }
 }
 
-/// The children of a node that a ray meets before `limit`, a bit for each, and where it enters and leaves them.
+/// The node at a place, those of its children that a ray meets before `limit`, a bit for each, and where it enters and leaves them.
 #[inline(always)]
-pub(super) fn meet<L: Lanes, const TAME: bool>(
+pub(super) fn meet<'a, L: Lanes, const TAME: bool>(
     lanes: L,
-    node: &Node,
-    slabs: &Slabs<L>,
+    slabs: &Slabs<'a, L>,
+    place: u32,
     limit: L::Floats,
-) -> (u32, [L::Floats; 2]) {
-    let Slabs { inverse, near_origin, far_origin, t_min, near: [x, y, z] } = slabs;
+) -> (&'a Node, u32, [L::Floats; 2]) {
+    let Slabs { inverse, near_origin, far_origin, t_min, sides } = slabs;
+    let at = sides.at(place);
     macro_rules! slab {
-        ($axis:literal, $side:expr, $origin:ident) => {{
-            let plane = lanes.load($side.of(&node.planes[$axis]));
+        ($axis:literal, $side:ident, $origin:ident) => {{
+            let plane = lanes.load(at.$side($axis));
             match TAME {
                 true => lanes.mul_add(plane, inverse[$axis], $origin[$axis]),
                 false => lanes.mul(lanes.sub(plane, $origin[$axis]), inverse[$axis]),
@@ -272,12 +274,12 @@ pub(super) fn meet<L: Lanes, const TAME: bool>(
             if TAME { lanes.$sooner($a, $b) } else { lanes.$least($a, $b) }
         };
     }
-    let enter = end!(later, max, slab!(0, x, near_origin), slab!(1, y, near_origin));
-    let leave = end!(sooner, min, slab!(0, x.other(), far_origin), slab!(1, y.other(), far_origin));
-    let enter_z = end!(later, max, slab!(2, z, near_origin), *t_min);
-    let leave_z = end!(sooner, min, slab!(2, z.other(), far_origin), limit);
+    let enter = end!(later, max, slab!(0, near, near_origin), slab!(1, near, near_origin));
+    let leave = end!(sooner, min, slab!(0, far, far_origin), slab!(1, far, far_origin));
+    let enter_z = end!(later, max, slab!(2, near, near_origin), *t_min);
+    let leave_z = end!(sooner, min, slab!(2, far, far_origin), limit);
     let (enter, leave) = (end!(later, max, enter, enter_z), end!(sooner, min, leave, leave_z));
-    (lanes.le(enter, leave), [enter, leave])
+    (at.node, end!(not_later, le, enter, leave), [enter, leave])
 }
 
 /// Whether a ray can hit anything: NaN and infinite ones, and those without direction, cannot.

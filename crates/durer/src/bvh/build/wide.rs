@@ -193,7 +193,7 @@ impl Emitter<'_> {
             } else {
                 inner.list[inner.count] = i;
                 inner.count += 1;
-                (first + inner.count - 1) as u32
+                node::place(first + inner.count - 1)
             };
             part.nodes[number].set(places[k], bounds[k], child);
         }
@@ -243,7 +243,9 @@ impl Emitter<'_> {
 impl Part {
     /// Puts another part's first node to a place, and the others to the end.
     fn append(&mut self, number: usize, other: &Part) {
-        let (nodes, items) = (self.nodes.len() as u32 - 1, self.order.len() as u32);
+        // Also the last of them must have a place.
+        node::place(self.nodes.len() + other.nodes.len());
+        let (nodes, items) = (node::place(self.nodes.len() - 1), self.order.len() as u32);
         let moved = |node: &Node| {
             let mut moved = *node;
             for (place, _, child) in node.children() {

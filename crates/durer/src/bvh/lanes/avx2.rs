@@ -108,18 +108,6 @@ macro_rules! order_of_eight {
             proven!(_mm256_castsi256_ps(_mm256_max_epi32(_mm256_castps_si256(a), _mm256_castps_si256(b))))
         }
         #[inline(always)]
-        fn nearest(self, a: __m256, b: __m256) -> u32 {
-            proven! {
-                let bits = _mm256_andnot_si256(_mm256_set1_epi32(7), _mm256_castps_si256(a));
-                let key = _mm256_or_si256(bits, _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7));
-                let left_out = _mm256_cmp_ps::<_CMP_NLE_UQ>(a, b);
-                let key = _mm256_or_si256(key, _mm256_castps_si256(left_out));
-                let four = _mm_min_epu32(_mm256_castsi256_si128(key), _mm256_extracti128_si256::<1>(key));
-                let two = _mm_min_epu32(four, _mm_shuffle_epi32::<0b01_00_11_10>(four));
-                _mm_cvtsi128_si32(_mm_min_epu32(two, _mm_shuffle_epi32::<0b10_11_00_01>(two))) as u32 & 7
-            }
-        }
-        #[inline(always)]
         fn push(self, stack: &mut Stack, children: &[u32; WIDTH], near: __m256, order: &[u8; WIDTH], count: u32) {
             let (to, to_near) = stack.top();
             proven! {
@@ -149,6 +137,19 @@ pub(super) fn corners(from: &super::Rows, super::Columns { starts, corner }: sup
         };
     }
     [[row!(0, 0), row!(0, 1), row!(0, 2)], [row!(1, 0), row!(1, 1), row!(1, 2)], [row!(2, 0), row!(2, 1), row!(2, 2)]]
+}
+
+/// Of keys whose last three bits are numbers of lanes, the lane of the least, and which `of` some things is in it.
+#[inline(always)]
+pub(super) fn least(key: __m256i, of: &[u32; WIDTH]) -> (u32, u32) {
+    proven! {
+        let four = _mm_min_epu32(_mm256_castsi256_si128(key), _mm256_extracti128_si256::<1>(key));
+        let two = _mm_min_epu32(four, _mm_shuffle_epi32::<0b01_00_11_10>(four));
+        let one = _mm_min_epu32(two, _mm_shuffle_epi32::<0b10_11_00_01>(two));
+        // Of an index the last three bits count, so this need not wait for the number of the lane.
+        let of = _mm256_permutevar8x32_epi32(_mm256_loadu_si256(of.as_ptr().cast()), _mm256_castsi128_si256(one));
+        (_mm_cvtsi128_si32(one) as u32 & 7, _mm_cvtsi128_si32(_mm256_castsi256_si128(of)) as u32)
+    }
 }
 
 /// Ones in the lanes whose bits are set.
@@ -295,6 +296,21 @@ impl Lanes for Avx2 {
         proven!(_mm256_set_m128(_mm256_cvtpd_ps(high.0), _mm256_cvtpd_ps(low.0)))
     }
 
+    #[inline(always)]
+    fn not_later(self, a: __m256, b: __m256) -> u32 {
+        proven! {
+            let later = _mm256_cmpgt_epi32(_mm256_castps_si256(a), _mm256_castps_si256(b));
+            _mm256_movemask_ps(_mm256_castsi256_ps(later)) as u32 ^ 255
+        }
+    }
+    #[inline(always)]
+    fn nearest(self, a: __m256, b: __m256, of: &[u32; WIDTH]) -> (u32, u32) {
+        proven! {
+            let (a, b) = (_mm256_castps_si256(a), _mm256_castps_si256(b));
+            let key = _mm256_or_si256(_mm256_andnot_si256(_mm256_set1_epi32(7), a), _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7));
+            least(_mm256_or_si256(key, _mm256_cmpgt_epi32(a, b)), of)
+        }
+    }
     #[inline(always)]
     fn select(self, mask: u32, a: __m256, b: __m256) -> __m256 {
         proven!(_mm256_blendv_ps(b, a, _mm256_castsi256_ps(lanes_of(mask))))

@@ -100,9 +100,11 @@ pub(super) trait Lanes: Numbers {
     fn sooner(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
     /// The greater of two numbers as signed integers have it: where one of them at least is not negative as [`Numbers::max`].
     fn later(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
-    /// The lane where `a` is least of those where it is at most `b`; one of the lanes if there are none. It counts as an integer, without its
-    /// last three bits, so all are after 0 that are less.
-    fn nearest(self, a: Self::Floats, b: Self::Floats) -> u32;
+    /// A bit for each lane where a <= b as signed integers have it.
+    fn not_later(self, a: Self::Floats, b: Self::Floats) -> u32;
+    /// The lane where `a`, of which nothing is negative, is least of those where it is at most `b`; one of the lanes if there are none; and
+    /// which `of` some things is in it. Numbers are compared as signed integers, those of `a` with each other without their last three bits.
+    fn nearest(self, a: Self::Floats, b: Self::Floats, of: &[u32; WIDTH]) -> (u32, u32);
     /// `a` in the lanes whose bits are set, `b` in others. Bits stay as they are.
     fn select(self, mask: u32, a: Self::Floats, b: Self::Floats) -> Self::Floats;
     /// Lane k of vector i becomes lane i of vector k.
@@ -122,28 +124,68 @@ pub type Rows = [f32; ROOM_OF_ROWS];
 /// How many numbers that is.
 pub const ROOM_OF_ROWS: usize = ROWS * WIDTH;
 
-/// One of two neighbouring rows.
-#[derive(Clone, Copy)]
-pub(super) struct Side {
-    /// How many bytes it lies behind the first.
-    offset: usize,
+/// Places are in units of so many bytes: the most that an address can multiply an index by.
+pub const UNIT: usize = 8;
+
+/// Lower and upper sides of eight boxes, by axis.
+pub type Planes = [[[f32; WIDTH]; 2]; 3];
+
+/// The sides of boxes where a ray enters and where it leaves, in each of many nodes.
+pub(super) struct Sides<'a, N> {
+    nodes: &'a [N],
+    /// In the first node, by axis.
+    near: [*const u8; 3],
+    far: [*const u8; 3],
 }
 
-impl Side {
+impl<'a, N> Sides<'a, N> {
+    /// For rays that are negative along the axes whose bits are set. There must be a node.
     #[inline(always)]
-    pub fn new(row: usize) -> Self {
-        Side { offset: (row & 1) * size_of::<[f32; WIDTH]>() }
+    pub fn new(nodes: &'a [N], planes: fn(&N) -> &Planes, negative: u32) -> Self {
+        const { assert!(size_of::<N>().is_power_of_two() && size_of::<N>() >= UNIT) };
+        let first = std::ptr::from_ref(planes(&nodes[0])).cast::<u8>();
+        let offset = first.addr().wrapping_sub(nodes.as_ptr().addr());
+        assert!(offset <= size_of::<N>() - size_of::<Planes>(), "planes belong to their node");
+        let side =
+            |axis: usize, upper: u32| first.wrapping_add((2 * axis + upper as usize) * size_of::<[f32; WIDTH]>());
+        let [x, y, z] = [negative & 1, negative >> 1 & 1, negative >> 2 & 1];
+        Sides {
+            nodes,
+            near: [side(0, x), side(1, y), side(2, z)],
+            far: [side(0, x ^ 1), side(1, y ^ 1), side(2, z ^ 1)],
+        }
     }
 
+    /// The node at a place, which must be one of a node.
     #[inline(always)]
-    pub fn other(self) -> Self {
-        Side { offset: self.offset ^ size_of::<[f32; WIDTH]>() }
+    pub fn at(&self, place: u32) -> At<'a, '_, N> {
+        // Turned so, what is no multiple of a node's size is too great.
+        let number = place.rotate_right((size_of::<N>() / UNIT).trailing_zeros()) as usize;
+        assert!(number < self.nodes.len());
+        At { sides: self, offset: place as usize * UNIT, node: &self.nodes[number] }
+    }
+}
+
+/// A node, and where it is.
+pub(super) struct At<'a, 's, N> {
+    sides: &'s Sides<'a, N>,
+    offset: usize,
+    pub node: &'a N,
+}
+
+impl<'a, N> At<'a, '_, N> {
+    /// Where a ray enters along an axis.
+    #[inline(always)]
+    pub fn near(&self, axis: usize) -> &'a [f32; WIDTH] {
+        // SAFETY: the row is in the first node, and so far behind it is another.
+        unsafe { &*self.sides.near[axis].wrapping_add(self.offset).cast() }
     }
 
+    /// Where it leaves.
     #[inline(always)]
-    pub fn of(self, rows: &[[f32; WIDTH]; 2]) -> &[f32; WIDTH] {
-        // SAFETY: both offsets are of rows.
-        unsafe { &*rows.as_ptr().byte_add(self.offset) }
+    pub fn far(&self, axis: usize) -> &'a [f32; WIDTH] {
+        // SAFETY: as above.
+        unsafe { &*self.sides.far[axis].wrapping_add(self.offset).cast() }
     }
 }
 

@@ -203,15 +203,23 @@ impl Lanes for Neon {
         }
     }
     #[inline(always)]
-    fn nearest(self, a: Pair, b: Pair) -> u32 {
+    fn not_later(self, a: Pair, b: Pair) -> u32 {
+        proven! {
+            let not_later = |a, b| vcleq_s32(vreinterpretq_s32_f32(a), vreinterpretq_s32_f32(b));
+            bits(not_later(a.0, b.0), not_later(a.1, b.1))
+        }
+    }
+    #[inline(always)]
+    fn nearest(self, a: Pair, b: Pair, of: &[u32; WIDTH]) -> (u32, u32) {
         const LANES: [u32; WIDTH] = [0, 1, 2, 3, 4, 5, 6, 7];
         proven! {
             let key = |a, b, lanes| {
                 let key = vorrq_u32(vbicq_u32(vreinterpretq_u32_f32(a), vdupq_n_u32(7)), lanes);
-                vornq_u32(key, vcleq_f32(a, b))
+                vornq_u32(key, vcleq_s32(vreinterpretq_s32_f32(a), vreinterpretq_s32_f32(b)))
             };
             let low = key(a.0, b.0, vld1q_u32(LANES.as_ptr()));
-            vminvq_u32(vminq_u32(low, key(a.1, b.1, vld1q_u32(LANES.as_ptr().add(4))))) & 7
+            let lane = vminvq_u32(vminq_u32(low, key(a.1, b.1, vld1q_u32(LANES.as_ptr().add(4))))) & 7;
+            (lane, of[lane as usize])
         }
     }
     #[inline(always)]

@@ -144,9 +144,15 @@ impl Lanes for Scalar {
         from_fn(|i| f32::from_bits((a[i].to_bits() as i32).max(b[i].to_bits() as i32) as u32))
     }
     #[inline(always)]
-    fn nearest(self, a: F, b: F) -> u32 {
-        let key = |i: usize| if a[i] <= b[i] { a[i].to_bits() & !7 | i as u32 } else { u32::MAX };
-        (0..WIDTH).fold(u32::MAX, |least, i| least.min(key(i))) & 7
+    fn not_later(self, a: F, b: F) -> u32 {
+        mask(|i| a[i].to_bits() as i32 <= b[i].to_bits() as i32)
+    }
+    #[inline(always)]
+    fn nearest(self, a: F, b: F, of: &[u32; WIDTH]) -> (u32, u32) {
+        let met = self.not_later(a, b);
+        let key = |i: usize| if met >> i & 1 == 1 { a[i].to_bits() & !7 | i as u32 } else { u32::MAX };
+        let lane = (0..WIDTH).fold(u32::MAX, |least, i| least.min(key(i))) & 7;
+        (lane, of[lane as usize])
     }
     #[inline(always)]
     fn select(self, mask: u32, a: F, b: F) -> F {

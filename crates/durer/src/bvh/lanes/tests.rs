@@ -115,7 +115,12 @@ impl Kernel for Everything<'_> {
         }
         let turned = lanes.turn(Vec3A::from_slice(&floats[0]), turn);
         found.extend(turned.to_array().map(number));
-        found.extend([lanes.le(a, b), lanes.lt(a, b), lanes.le(b, a), lanes.lt(b, a), lanes.nearest(a, b)]);
+        found.extend([lanes.le(a, b), lanes.lt(a, b), lanes.le(b, a), lanes.lt(b, a)]);
+        // Which lane it is if none is met, nobody asks.
+        let (enter, leave) = (lanes.later(a, lanes.splat(0.0)), b);
+        let nearest = lanes.nearest(enter, leave, &[10, 11, 12, 13, 14, 15, 16, 17]);
+        let met = lanes.not_later(enter, leave);
+        found.extend(if met == 0 { [0; 3] } else { [met, nearest.0, nearest.1] });
         let mut room = Room::new();
         let mut stack = Stack::new(&mut room);
         let children = [10, 11, 12, 13, 14, 15, 16, 17];

@@ -55,7 +55,7 @@ impl TriangleBvh {
             let children: Vec<(usize, Aabb, u32)> = self.nodes[parent].children().collect();
             for (place, _, child) in children {
                 let bounds = match child & node::LEAF {
-                    0 => self.nodes[child as usize].children().fold(Aabb::EMPTY, |b, (_, c, _)| b.union(c)),
+                    0 => self.nodes[node::number(child)].children().fold(Aabb::EMPTY, |b, (_, c, _)| b.union(c)),
                     _ => {
                         let (rows, count) = self.rows(child);
                         let corners = (0..count).map(|lane| corners_of(number(rows, count, lane)));

@@ -1,8 +1,8 @@
 //! Bringing nodes and leaves near before a ray comes to them.
 
 use super::TriangleBvh;
-use crate::bvh::lanes::{Lanes, ROWS};
-use crate::bvh::node::{self, Node};
+use crate::bvh::lanes::{Lanes, ROWS, UNIT};
+use crate::bvh::node;
 
 /// So many lines of memory are fetched at once: a node has four and a leaf up to six. What lies behind is its siblings, which are
 /// likely to be visited too; how many pay was found by measurement.
@@ -23,7 +23,7 @@ impl Places {
     /// Has a child brought near.
     #[inline(always)]
     pub fn fetch<L: Lanes>(&self, lanes: L, child: u32) {
-        const SIZES: [usize; 2] = [size_of::<Node>(), ROWS * size_of::<f32>()];
+        const SIZES: [usize; 2] = [UNIT, ROWS * size_of::<f32>()];
         let (kind, number) = ((child >> 31) as usize, node::items(child).0);
         let from = self.nodes_and_leaves[kind].wrapping_add(SIZES[kind].wrapping_mul(number));
         for line in 0..LINES {

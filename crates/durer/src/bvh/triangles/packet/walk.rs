@@ -2,7 +2,7 @@
 
 use super::Packet;
 use crate::bvh::lanes::{Lanes, Numbers, WIDE, Wide};
-use crate::bvh::node::{LEAF, Node};
+use crate::bvh::node::{self, LEAF, Node};
 use crate::bvh::triangles::fetch::Places;
 
 /// A node or leaf that is still to be visited.
@@ -11,7 +11,7 @@ pub struct Entry {
     /// The rays that met its parent.
     rays: u64,
     child: u32,
-    /// Where its box is: the number of the node times eight, and the place.
+    /// Where its box is: the place of the node, and among the eight, added.
     place: u32,
     near: f32,
 }
@@ -96,7 +96,7 @@ impl Packet<'_> {
         let (mut child, mut rays) = (0, self.alive);
         loop {
             if child & LEAF == 0 {
-                let node = &bvh.nodes[child as usize];
+                let node = &bvh.nodes[node::number(child)];
                 let (met, enter) = beam.meet(lanes, node, lanes.splat(self.limit));
                 if met != 0 {
                     // Along a rising axis the first place is nearest; the farthest is pushed first.
@@ -109,7 +109,7 @@ impl Packet<'_> {
                         others ^= 1 << place;
                         let next = node.children[place as usize];
                         places.fetch(lanes, next);
-                        stack.push(Entry { rays, child: next, place: child * 8 + place, near: enter[place as usize] });
+                        stack.push(Entry { rays, child: next, place: child + place, near: enter[place as usize] });
                     }
                     let inside = self.inside(lanes, node, nearest as usize & 7, rays);
                     if inside != 0 {
@@ -130,7 +130,7 @@ impl Packet<'_> {
                     continue;
                 }
                 rays = if ANY { entry.rays & self.alive } else { entry.rays };
-                rays = self.inside(lanes, &bvh.nodes[entry.place as usize / 8], entry.place as usize & 7, rays);
+                rays = self.inside(lanes, &bvh.nodes[node::number(entry.place)], entry.place as usize & 7, rays);
                 if rays != 0 {
                     child = entry.child;
                     break;
