@@ -14,6 +14,8 @@ pub const HALVING_DEPTH: usize = 60;
 const MANY: usize = 1 << 15;
 /// Of so few references all divisions are tried.
 const FEW: usize = 4;
+/// So many are worth bins of their own for each half of them.
+const SEVERAL: usize = 64;
 
 /// A box that grows, and how many references are in it.
 #[derive(Clone, Copy)]
@@ -32,7 +34,8 @@ impl Bin {
             let (a, b) = rayon::join(|| Bin::of(a), || Bin::of(b));
             return a.union(b);
         }
-        references.iter().fold(Bin::EMPTY, Bin::with)
+        let [min, max] = around_all(references, |r| [r.min, r.max]);
+        Bin { min, max, count: references.len() as u32 }
     }
 
     #[inline]
@@ -88,10 +91,23 @@ const FIRST: f32 = (1 << 23) as f32;
 
 /// The box around all [`Reference::middle`].
 fn middles(references: &[Reference]) -> [Vec4; 2] {
-    references.iter().fold([Vec4::INFINITY, Vec4::NEG_INFINITY], |[low, high], r| {
-        let middle = r.middle();
-        [low.min(middle), high.max(middle)]
-    })
+    around_all(references, |r| [r.middle(); 2])
+}
+
+/// The box around what is known of each reference. Four grow in turn, for each step of one waits for that before.
+fn around_all(references: &[Reference], of: impl Fn(&Reference) -> [Vec4; 2]) -> [Vec4; 2] {
+    let mut boxes = [[Vec4::INFINITY, Vec4::NEG_INFINITY]; 4];
+    let grow = |[min, max]: &mut [Vec4; 2], r: &Reference| {
+        let [low, high] = of(r);
+        (*min, *max) = (min.min(low), max.max(high));
+    };
+    let (fours, rest) = references.as_chunks::<4>();
+    for four in fours {
+        boxes.iter_mut().zip(four).for_each(|(all, r)| grow(all, r));
+    }
+    boxes.iter_mut().zip(rest).for_each(|(all, r)| grow(all, r));
+    let [a, b, c, d] = boxes;
+    [a[0].min(b[0]).min(c[0].min(d[0])), a[1].max(b[1]).max(c[1].max(d[1]))]
 }
 
 /// For each axis a box, and how many references are in it.
@@ -136,7 +152,7 @@ fn filled<const N: usize>(references: &[Reference], grid: &Grid) -> [Bins; N] {
         return a;
     }
     let mut bins = [Bins::EMPTY; N];
-    let mut add = |r: &Reference| {
+    let add = |bins: &mut [Bins; N], r: &Reference| {
         let at = grid.at(r).to_array();
         for axis in 0..3 {
             let bins = &mut bins[at[axis].to_bits() as usize % N];
@@ -145,13 +161,23 @@ fn filled<const N: usize>(references: &[Reference], grid: &Grid) -> [Bins; N] {
             bins.counts[axis] += 1;
         }
     };
-    // Neighbours in the list fall into the same bins, and would wait for each other.
+    // Neighbours in the list fall into the same bins, and would wait for each other; so do all where there is but one bin along an axis.
     let (a, b) = references.split_at(references.len() / 2);
-    for (a, b) in a.iter().zip(b) {
-        add(a);
-        add(b);
+    if references.len() < SEVERAL {
+        for (a, b) in a.iter().zip(b) {
+            add(&mut bins, a);
+            add(&mut bins, b);
+        }
+        b[a.len()..].iter().for_each(|r| add(&mut bins, r));
+        return bins;
     }
-    b[a.len()..].iter().for_each(add);
+    let mut others = [Bins::EMPTY; N];
+    for (a, b) in a.iter().zip(b) {
+        add(&mut bins, a);
+        add(&mut others, b);
+    }
+    b[a.len()..].iter().for_each(|r| add(&mut others, r));
+    bins.iter_mut().zip(&others).for_each(|(a, b)| a.join(b));
     bins
 }
 
