@@ -1,6 +1,6 @@
 //! The eight-wide node.
 
-use super::lanes::{UNIT, WIDTH};
+use super::lanes::WIDTH;
 use crate::math::Aabb;
 
 /// Boxes of up to eight children, side by side. Those that are not there have empty boxes, which no ray meets.
@@ -11,7 +11,7 @@ use crate::math::Aabb;
 pub(super) struct Node {
     /// By axis: lower sides, upper sides.
     pub planes: [[[f32; WIDTH]; 2]; 3],
-    /// An inner child's [`place`]; or [`LEAF`], the count less one shifted by [`COUNT_SHIFT`], and the first item.
+    /// An inner child's [`address`]; or [`LEAF`], the count less one shifted by [`COUNT_SHIFT`], and the first item.
     pub children: [u32; WIDTH],
     /// The axis along which children rise.
     pub axis: u32,
@@ -43,25 +43,32 @@ impl Node {
         Aabb { min: side(0), max: side(1) }
     }
 
-    /// The children that are there: place, box, and number.
+    /// The children that are there: place, box, and child.
     pub fn children(&self) -> impl Iterator<Item = (usize, Aabb, u32)> {
         let all = (0..WIDTH).map(|place| (place, self.bounds(place), self.children[place]));
         all.filter(|(_, bounds, _)| bounds.min.x <= bounds.max.x)
     }
 }
 
-/// A node's place among all: how far behind the first it begins, in units of [`UNIT`] bytes. An address then takes no arithmetic, which
-/// every ray would wait for at every node.
-pub(super) fn place(number: usize) -> u32 {
-    const MOST_NODES: usize = LEAF as usize / (size_of::<Node>() / UNIT);
+/// Addresses of nodes are in units of so many bytes: the most that the processor multiplies an index by.
+pub(super) const UNIT: usize = 8;
+/// So many units are a node.
+pub(super) const UNITS: usize = size_of::<Node>() / UNIT;
+/// A tree has at most so many nodes.
+pub(super) const MOST_NODES: usize = LEAF as usize / UNITS;
+const _: () = assert!(UNITS.is_power_of_two() && MOST_NODES <= 1 << (32 - UNITS.trailing_zeros()));
+
+/// How far behind the first a node begins, in units of [`UNIT`] bytes. Memory is then found without arithmetic, for which every ray
+/// would wait at every node.
+pub(super) fn address(number: usize) -> u32 {
     assert!(number < MOST_NODES, "a tree has at most 2^26 nodes");
-    (number * size_of::<Node>() / UNIT) as u32
+    (number * UNITS) as u32
 }
 
-/// The number of the node at a place.
+/// The number of the node at an address.
 #[inline(always)]
-pub(super) fn number(place: u32) -> usize {
-    place as usize / (size_of::<Node>() / UNIT)
+pub(super) fn number(address: u32) -> usize {
+    address as usize / UNITS
 }
 
 pub(super) fn leaf(first: usize, count: usize) -> u32 {

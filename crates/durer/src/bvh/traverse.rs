@@ -176,7 +176,8 @@ pub(super) fn walk<L: Lanes, V: Visitor, const TAME: bool>(
 /// The child that is next, of those that are met; pushes the others. Also gives the one that is likely to be next: the nearest along the
 /// axis of the node.
 ///
-/// The next is the one that is entered first, and the others are pushed from far to near along the axis of the node. If `unordered`
+/// The next is the one that is entered first (of rays that are not tame, whose distances cannot be compared as integers, the one that is
+/// likely), and the others are pushed from far to near along the axis of the node. If `unordered`
 /// they come by place, so that the next is known sooner.
 #[inline(always)]
 pub(super) fn next<L: Lanes, const TAME: bool>(
@@ -194,11 +195,12 @@ pub(super) fn next<L: Lanes, const TAME: bool>(
     let count = met.count_ones() - u32::from(met != 0);
     let likely = orders[met as usize & 255][count as usize & 7];
     let child = |lane: u32| node.children[lane as usize & 7];
-    let (lane, next) = match () {
-        () if unordered => (met.trailing_zeros(), child(met.trailing_zeros())),
-        // Distances of rays that are not tame cannot be compared as integers.
-        () if !TAME => (likely.into(), child(likely.into())),
-        () => lanes.nearest(enter, leave, &node.children),
+    let (lane, next) = if unordered {
+        (met.trailing_zeros(), child(met.trailing_zeros()))
+    } else if TAME {
+        lanes.nearest(enter, leave, &node.children)
+    } else {
+        (likely.into(), child(likely.into()))
     };
     let others = met & !(1 << (lane & 7));
     lanes.push(stack, &node.children, enter, &orders[others as usize & 255], count);
@@ -231,7 +233,7 @@ pub(super) struct Slabs<'a, L: Lanes> {
     near_origin: [L::Floats; 3],
     far_origin: [L::Floats; 3],
     t_min: L::Floats,
-    sides: Sides<'a, Node>,
+    sides: Sides<'a>,
 }
 
 impl<'a, L: Lanes> Slabs<'a, L> {
@@ -242,21 +244,21 @@ impl<'a, L: Lanes> Slabs<'a, L> {
             near_origin: lanes.splat3(boxes.planes.near_origin),
             far_origin: lanes.splat3(boxes.planes.far_origin),
             t_min: lanes.splat(boxes.t_min),
-            sides: Sides::new(nodes, |node| &node.planes, boxes.negative),
+            sides: Sides::new(nodes, boxes.negative),
         }
     }
 }
 
-/// The node at a place, those of its children that a ray meets before `limit`, a bit for each, and where it enters and leaves them.
+/// The node at an address, those of its children that a ray meets before `limit`, a bit for each, and where it enters and leaves them.
 #[inline(always)]
 pub(super) fn meet<'a, L: Lanes, const TAME: bool>(
     lanes: L,
     slabs: &Slabs<'a, L>,
-    place: u32,
+    address: u32,
     limit: L::Floats,
 ) -> (&'a Node, u32, [L::Floats; 2]) {
     let Slabs { inverse, near_origin, far_origin, t_min, sides } = slabs;
-    let at = sides.at(place);
+    let at = sides.at(address);
     macro_rules! slab {
         ($axis:literal, $side:ident, $origin:ident) => {{
             let plane = lanes.load(at.$side($axis));

@@ -100,7 +100,7 @@ impl Sheared {
     /// Where the ray's line crosses a triangle that it crosses: within the triangle's bounds. It may be infinite.
     #[inline(always)]
     pub(crate) fn t(&self, corners: [Vec3A; 3]) -> Option<f32> {
-        let [t, volume] = Exact::single(self.origin, self.dir, corners);
+        let [t, volume] = Exact::single(self.origin, self.dir).t(&Plane::single(corners));
         if volume.abs() < self.least_volume {
             return None;
         }
@@ -157,22 +157,21 @@ pub(crate) struct Exact<V: Triple> {
 }
 
 impl Exact<[f64; 3]> {
-    /// What [`Exact::t`] gives for one ray and one triangle.
     #[inline(always)]
-    pub fn single(origin: Vec3A, dir: Vec3A, corners: [Vec3A; 3]) -> [f64; 2] {
-        let (origin, dir) = (origin.as_dvec3().to_array(), dir.as_dvec3().to_array());
-        Exact::new(origin, dir, 1.0).t(&Plane::single(corners))
+    pub fn single(origin: Vec3A, dir: Vec3A) -> Self {
+        Exact::new(origin.as_dvec3().to_array(), dir.as_dvec3().to_array())
+    }
+}
+
+impl<V: Triple<Component = f64>> Exact<V> {
+    #[inline(always)]
+    pub fn new(origin: V, dir: V) -> Self {
+        Self::with_inverse(origin, dir, 1.0 / dir.z())
     }
 }
 
 impl<V: Triple> Exact<V> {
-    /// From origin and direction, with the number 1 as a component has it.
-    #[inline(always)]
-    pub fn new(origin: V, dir: V, one: V::Component) -> Self {
-        Self::with_inverse(origin, dir, one.div(dir.z()))
-    }
-
-    /// The same, where 1 over the last component of the direction is known.
+    /// `inverse` is 1 over the last component of the direction.
     #[inline(always)]
     pub fn with_inverse(origin: V, dir: V, inverse: V::Component) -> Self {
         Exact { origin, dir, inverse }

@@ -118,7 +118,7 @@ struct Emitter<'a> {
     plans: Vec<Plan>,
 }
 
-/// A wide node, all nodes below it, and the items of their leaves; both are numbered from 0.
+/// A wide node, all nodes below it, and the items of their leaves; addresses and items count from 0.
 struct Part {
     nodes: Vec<Node>,
     order: Vec<u32>,
@@ -193,7 +193,7 @@ impl Emitter<'_> {
             } else {
                 inner.list[inner.count] = i;
                 inner.count += 1;
-                node::place(first + inner.count - 1)
+                node::address(first + inner.count - 1)
             };
             part.nodes[number].set(places[k], bounds[k], child);
         }
@@ -243,9 +243,9 @@ impl Emitter<'_> {
 impl Part {
     /// Puts another part's first node to a place, and the others to the end.
     fn append(&mut self, number: usize, other: &Part) {
-        // Also the last of them must have a place.
-        node::place(self.nodes.len() + other.nodes.len());
-        let (nodes, items) = (node::place(self.nodes.len() - 1), self.order.len() as u32);
+        // No address is too great if that of the last is not.
+        node::address(self.nodes.len() + other.nodes.len() - 2);
+        let (nodes, items) = (node::address(self.nodes.len() - 1), self.order.len() as u32);
         let moved = |node: &Node| {
             let mut moved = *node;
             for (place, _, child) in node.children() {

@@ -24,9 +24,11 @@ pub(super) use pages::large_pages;
 pub(super) use stack::{Room, Stack};
 pub(super) use wide::{WIDE, Wide};
 
+use super::node::{self, Node};
 use crate::math::{Doubles, Ray, Triple};
 use crate::shape::watertight::Turn;
 use glam::Vec3A;
+use std::mem::offset_of;
 
 /// How many numbers lie side by side.
 pub const WIDTH: usize = 8;
@@ -124,60 +126,49 @@ pub type Rows = [f32; ROOM_OF_ROWS];
 /// How many numbers that is.
 pub const ROOM_OF_ROWS: usize = ROWS * WIDTH;
 
-/// Places are in units of so many bytes: the most that an address can multiply an index by.
-pub const UNIT: usize = 8;
-
-/// Lower and upper sides of eight boxes, by axis.
-pub type Planes = [[[f32; WIDTH]; 2]; 3];
-
 /// The sides of boxes where a ray enters and where it leaves, in each of many nodes.
-pub(super) struct Sides<'a, N> {
-    nodes: &'a [N],
+pub(super) struct Sides<'a> {
+    nodes: &'a [Node],
     /// In the first node, by axis.
     near: [*const u8; 3],
     far: [*const u8; 3],
 }
 
-impl<'a, N> Sides<'a, N> {
-    /// For rays that are negative along the axes whose bits are set. There must be a node.
+impl<'a> Sides<'a> {
+    /// For rays that are negative along the axes whose bits are set.
     #[inline(always)]
-    pub fn new(nodes: &'a [N], planes: fn(&N) -> &Planes, negative: u32) -> Self {
-        const { assert!(size_of::<N>().is_power_of_two() && size_of::<N>() >= UNIT) };
-        let first = std::ptr::from_ref(planes(&nodes[0])).cast::<u8>();
-        let offset = first.addr().wrapping_sub(nodes.as_ptr().addr());
-        assert!(offset <= size_of::<N>() - size_of::<Planes>(), "planes belong to their node");
-        let side =
-            |axis: usize, upper: u32| first.wrapping_add((2 * axis + upper as usize) * size_of::<[f32; WIDTH]>());
+    pub fn new(nodes: &'a [Node], negative: u32) -> Self {
+        assert!(nodes.len() <= node::MOST_NODES);
+        const ROW: usize = size_of::<[f32; WIDTH]>();
+        let first = nodes.as_ptr().cast::<u8>().wrapping_add(offset_of!(Node, planes));
+        let side = |axis: usize, upper: u32| first.wrapping_add((2 * axis + upper as usize) * ROW);
         let [x, y, z] = [negative & 1, negative >> 1 & 1, negative >> 2 & 1];
-        Sides {
-            nodes,
-            near: [side(0, x), side(1, y), side(2, z)],
-            far: [side(0, x ^ 1), side(1, y ^ 1), side(2, z ^ 1)],
-        }
+        let (near, far) = ([side(0, x), side(1, y), side(2, z)], [side(0, x ^ 1), side(1, y ^ 1), side(2, z ^ 1)]);
+        Sides { nodes, near, far }
     }
 
-    /// The node at a place, which must be one of a node.
+    /// The node at an [`address`](node::address), which must be one of a node.
     #[inline(always)]
-    pub fn at(&self, place: u32) -> At<'a, '_, N> {
-        // Turned so, what is no multiple of a node's size is too great.
-        let number = place.rotate_right((size_of::<N>() / UNIT).trailing_zeros()) as usize;
+    pub fn at(&self, address: u32) -> At<'a, '_> {
+        // Turned so, what is no multiple of a node's size is more than there can be.
+        let number = address.rotate_right(node::UNITS.trailing_zeros()) as usize;
         assert!(number < self.nodes.len());
-        At { sides: self, offset: place as usize * UNIT, node: &self.nodes[number] }
+        At { sides: self, offset: address as usize * node::UNIT, node: &self.nodes[number] }
     }
 }
 
 /// A node, and where it is.
-pub(super) struct At<'a, 's, N> {
-    sides: &'s Sides<'a, N>,
+pub(super) struct At<'a, 's> {
+    sides: &'s Sides<'a>,
     offset: usize,
-    pub node: &'a N,
+    pub node: &'a Node,
 }
 
-impl<'a, N> At<'a, '_, N> {
+impl<'a> At<'a, '_> {
     /// Where a ray enters along an axis.
     #[inline(always)]
     pub fn near(&self, axis: usize) -> &'a [f32; WIDTH] {
-        // SAFETY: the row is in the first node, and so far behind it is another.
+        // SAFETY: the row is in the first node, and by `Sides::at` another node is so far behind it.
         unsafe { &*self.sides.near[axis].wrapping_add(self.offset).cast() }
     }
 

@@ -60,8 +60,8 @@ impl Input {
 /// Everything that lanes do but [`Numbers::mul_add`], as bits; all that are no number as the same.
 struct Everything<'a>(&'a Input);
 
-/// Vectors that are looked at for each input: of arithmetic, in double precision, of comparison, a stack before and after, nine rows,
-/// and columns; and twice as wide ones.
+/// Vectors that are looked at for each input: of arithmetic, in double precision, two halves joined, of comparison, a stack before and
+/// after, nine rows, and columns; and twice as wide ones.
 const OPERATIONS: usize = 10 + 3 * 7 + 2 + 9 + 5 + 2 + 9 + WIDTH + 2 * 11;
 
 impl Kernel for Everything<'_> {

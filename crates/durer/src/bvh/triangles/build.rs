@@ -18,7 +18,7 @@ impl TriangleBvh {
     ///
     /// # Panics
     ///
-    /// If an index leads nowhere, or there are more than 2^28 triangles.
+    /// If an index leads nowhere, or there are more than 2^28 triangles or 2^26 nodes (of usual triangles there are 25 for a node).
     pub fn build(vertices: &[Vec3], triangles: &[[u32; 3]], preset: Preset) -> Self {
         let settings = Settings::triangles(preset);
         let corners_of = |number: u32| triangles[number as usize].map(|i| vertices[i as usize]);

@@ -1,7 +1,7 @@
 //! Bringing nodes and leaves near before a ray comes to them.
 
 use super::TriangleBvh;
-use crate::bvh::lanes::{Lanes, ROWS, UNIT};
+use crate::bvh::lanes::{Lanes, ROWS};
 use crate::bvh::node;
 
 /// So many lines of memory are fetched at once: a node has four and a leaf up to six. What lies behind is its siblings, which are
@@ -23,9 +23,10 @@ impl Places {
     /// Has a child brought near.
     #[inline(always)]
     pub fn fetch<L: Lanes>(&self, lanes: L, child: u32) {
-        const SIZES: [usize; 2] = [UNIT, ROWS * size_of::<f32>()];
-        let (kind, number) = ((child >> 31) as usize, node::items(child).0);
-        let from = self.nodes_and_leaves[kind].wrapping_add(SIZES[kind].wrapping_mul(number));
+        const SIZES: [usize; 2] = [node::UNIT, ROWS * size_of::<f32>()];
+        // A node's address has more digits. Behind the first 2 GiB of nodes what is fetched is of no use, and does no harm.
+        let (kind, at) = ((child >> 31) as usize, node::items(child).0);
+        let from = self.nodes_and_leaves[kind].wrapping_add(SIZES[kind].wrapping_mul(at));
         for line in 0..LINES {
             lanes.prefetch(from.wrapping_add(64 * line));
         }

@@ -235,7 +235,7 @@ impl<T: Tally, F: Found> Visitor for Leaves<'_, T, F> {
             // Hidden, or the compiler would prepare this for every ray, before it is known whether it comes to a leaf.
             let sheared = std::hint::black_box(sheared);
             let (origin, dir) = sheared.ray();
-            let line = Exact::new(lanes.triple(origin), lanes.triple(dir), 1.0);
+            let line = Exact::new(lanes.triple(origin), lanes.triple(dir));
             let mut crossed = crossed;
             while crossed != 0 {
                 let lane = crossed.trailing_zeros() as usize & 7;

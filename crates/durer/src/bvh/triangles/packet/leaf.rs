@@ -4,7 +4,7 @@ use super::{Meeting, Packet};
 use crate::bvh::lanes::{Columns, Lanes, Numbers, WIDE, WIDTH, Wide};
 use crate::bvh::node;
 use crate::bvh::triangles::leaf::Flat;
-use crate::bvh::triangles::number as number_of;
+use crate::bvh::triangles::number;
 use crate::shape::watertight::Sheared;
 
 impl Packet<'_> {
@@ -86,7 +86,7 @@ impl Packet<'_> {
                 if !ANY || crossed != 0 {
                     if *meeting == 0 {
                         *meeting = self.meetings.len() as u32;
-                        self.meetings.push(Meeting::new(corners, number_of(rows, count, lane)));
+                        self.meetings.push(Meeting::new(corners, number(rows, count, lane)));
                     }
                     met |= e.meet(lanes, &self.axes, &self.meetings, *meeting, crossed);
                 }
@@ -137,10 +137,9 @@ impl Packet<'_> {
                 if crossed >> lane & 1 == 0 && !Sheared::new(&e.ray(i)).crosses(corners) {
                     continue;
                 }
-                let (meeting, triangle) = (self.meetings.len() as u32, number_of(rows, count, lane));
-                let meetings = &self.meetings;
-                if e.meet_one(&self.axes, corners, i, meeting, |other| triangle < meetings[other as usize].triangle) {
-                    self.meetings.push(Meeting::new(corners, triangle));
+                let meeting = Meeting::new(corners, number(rows, count, lane));
+                if e.meet_one(&self.axes, &self.meetings, &meeting, i) {
+                    self.meetings.push(meeting);
                     all_met |= 1 << ray;
                 }
             }

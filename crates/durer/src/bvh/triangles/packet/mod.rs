@@ -287,7 +287,7 @@ impl Packet<'_> {
         for (k, numbers) in self.numbers[..count].chunks(WIDTH).enumerate() {
             let (e, half, mut met) = (&self.sixteens[k / 2], k % 2, self.met >> (k * WIDTH) & 255);
             let [u, v] = match !ANY && met != 0 {
-                true => e.uv(lanes, &self.axes, half, self.corners(lanes, e.numbers(half))),
+                true => e.uv(lanes, &self.axes, half, self.corners(lanes, e.meetings(half))),
                 false => [[0.0; WIDTH]; 2],
             };
             for (i, &number) in numbers.iter().enumerate() {
@@ -296,7 +296,7 @@ impl Packet<'_> {
                 let hit = if ANY {
                     is_met.then_some(TriangleHit { t: 0.0, uv: Vec2::ZERO, triangle: 0 })
                 } else if is_met {
-                    let triangle = self.meetings[e.numbers(half)[i].to_bits() as usize].triangle;
+                    let triangle = self.meetings[e.meetings(half)[i].to_bits() as usize].triangle;
                     Some(TriangleHit { t: e.t_last[half * WIDTH + i], uv: Vec2::new(u[i], v[i]), triangle })
                 } else {
                     None

@@ -37,8 +37,8 @@ pub struct Rays {
     /// Heights lower than the first or above the second are outside the interval for sure; those above the third and below the
     /// fourth are inside.
     pub heights: [PerRay; 4],
-    /// Numbers of what was met, as bits.
-    pub met: PerRay,
+    /// Numbers of the meetings, as bits; 0 is none. Where any hit will do, they mean nothing.
+    meetings: PerRay,
 }
 
 impl Rays {
@@ -56,7 +56,7 @@ impl Rays {
         t_max: ZERO,
         t_last: ZERO,
         heights: [ZERO; 4],
-        met: ZERO,
+        meetings: ZERO,
     };
 
     /// Sets half of the rays, each given as origin, direction and interval.
@@ -119,10 +119,10 @@ impl Rays {
             [wide.store(wide.div(wide.load(&self.dir[x]), z)), wide.store(wide.div(wide.load(&self.dir[y]), z))];
         for (half, inverse) in self.inverse_z.iter_mut().enumerate() {
             let z = lanes.doubles(lanes.load(part(&self.dir[axes.turned()[2]], half)));
-            *inverse = lanes.store_doubles(lanes.doubles(lanes.splat(1.0)).div(z));
+            *inverse = lanes.store_doubles(lanes.splat_double(1.0).div(z));
         }
         self.t_max = self.t_last;
-        self.met = ZERO;
+        self.meetings = ZERO;
         self.bound(lanes, axes);
         tame
     }
@@ -156,7 +156,7 @@ impl Rays {
 
     /// Takes note of a triangle that the lines of some rays cross, of those who meet it in their interval, and before others.
     ///
-    /// `number` is that of the meeting, and `less` says whether the triangle of another is of greater number.
+    /// It is the meeting of that `number`.
     #[inline(always)]
     pub fn meet<L: Lanes>(&mut self, lanes: L, axes: &Axes, meetings: &[Meeting], number: u32, crossed: u32) -> u32 {
         let [x, y, z] = axes.turned();
@@ -195,30 +195,24 @@ impl Rays {
         while same != 0 {
             let i = same.trailing_zeros();
             same &= same - 1;
-            met |= u32::from(*triangle < meetings[self.met[i as usize].to_bits() as usize].triangle) << i;
+            met |= u32::from(*triangle < meetings[self.meetings[i as usize].to_bits() as usize].triangle) << i;
         }
-        self.met = wide.store(wide.select(met, wide.splat(f32::from_bits(number)), wide.load(&self.met)));
+        self.meetings = wide.store(wide.select(met, wide.splat(f32::from_bits(number)), wide.load(&self.meetings)));
         self.t_last = wide.store(wide.select(met, t, t_last));
         met
     }
 
-    /// As [`Rays::meet`] for a single ray.
+    /// As [`Rays::meet`] for a single ray, and a meeting that would be the next.
     #[inline(always)]
-    pub fn meet_one(
-        &mut self,
-        axes: &Axes,
-        corners: [Vec3A; 3],
-        lane: usize,
-        number: u32,
-        less: impl Fn(u32) -> bool,
-    ) -> bool {
+    pub fn meet_one(&mut self, axes: &Axes, meetings: &[Meeting], next: &Meeting, lane: usize) -> bool {
         let [x, y, z] = axes.turned();
         let at = |v: &[PerRay; 3]| Vec3A::new(v[x][lane], v[y][lane], v[z][lane]);
-        let t = Exact::single(at(&self.origin), at(&self.dir), corners)[0] as f32;
+        let t = Exact::single(at(&self.origin), at(&self.dir)).t(&next.plane)[0] as f32;
+        let (t_last, last) = (self.t_last[lane], &meetings[self.meetings[lane].to_bits() as usize]);
         let within = t > self.t_min[lane] && t < self.t_max[lane];
-        let met = within && (t < self.t_last[lane] || t == self.t_last[lane] && less(self.met[lane].to_bits()));
+        let met = within && (t < t_last || t == t_last && next.triangle < last.triangle);
         if met {
-            (self.t_last[lane], self.met[lane]) = (t, f32::from_bits(number));
+            (self.t_last[lane], self.meetings[lane]) = (t, f32::from_bits(meetings.len() as u32));
         }
         met
     }
@@ -244,10 +238,10 @@ impl Rays {
         [lanes.store(lanes.singles(u)), lanes.store(lanes.singles(v))]
     }
 
-    /// The numbers of what half of the rays met, as bits.
+    /// The numbers of the meetings of half of the rays, as bits.
     #[inline(always)]
-    pub fn numbers(&self, half: usize) -> &[f32; WIDTH] {
-        part(&self.met, half)
+    pub fn meetings(&self, half: usize) -> &[f32; WIDTH] {
+        part(&self.meetings, half)
     }
 
     /// One of the rays.

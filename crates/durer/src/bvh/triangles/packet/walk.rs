@@ -11,8 +11,8 @@ pub struct Entry {
     /// The rays that met its parent.
     rays: u64,
     child: u32,
-    /// Where its box is: the place of the node, and among the eight, added.
-    place: u32,
+    /// Where its box is: the address of the node and the place among the eight, added.
+    box_at: u32,
     near: f32,
 }
 
@@ -109,7 +109,7 @@ impl Packet<'_> {
                         others ^= 1 << place;
                         let next = node.children[place as usize];
                         places.fetch(lanes, next);
-                        stack.push(Entry { rays, child: next, place: child + place, near: enter[place as usize] });
+                        stack.push(Entry { rays, child: next, box_at: child + place, near: enter[place as usize] });
                     }
                     let inside = self.inside(lanes, node, nearest as usize & 7, rays);
                     if inside != 0 {
@@ -130,7 +130,7 @@ impl Packet<'_> {
                     continue;
                 }
                 rays = if ANY { entry.rays & self.alive } else { entry.rays };
-                rays = self.inside(lanes, &bvh.nodes[node::number(entry.place)], entry.place as usize & 7, rays);
+                rays = self.inside(lanes, &bvh.nodes[node::number(entry.box_at)], entry.box_at as usize & 7, rays);
                 if rays != 0 {
                     child = entry.child;
                     break;
