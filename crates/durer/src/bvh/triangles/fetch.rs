@@ -4,9 +4,11 @@ use super::TriangleBvh;
 use crate::bvh::lanes::{Lanes, ROWS};
 use crate::bvh::node;
 
-/// So many lines of memory are fetched at once: a node has four and a leaf up to six. What lies behind is its siblings, which are
-/// likely to be visited too; how many pay was found by measurement.
-const LINES: usize = 8;
+/// So many lines of memory are a child: a node has four and a leaf up to six.
+pub const ITSELF: usize = 6;
+/// What lies behind it is its siblings, which are likely to be visited too where nothing else is on its way. How many lines pay was found by
+/// measurement.
+pub const AND_SIBLINGS: usize = 8;
 
 /// Where nodes and leaves are in memory.
 #[derive(Clone, Copy)]
@@ -20,9 +22,9 @@ impl Places {
         Places { nodes_and_leaves: [bvh.nodes.as_ptr().cast(), bvh.leaves.as_ptr().cast()] }
     }
 
-    /// Has a child brought near.
+    /// Has so many lines of a child brought near.
     #[inline(always)]
-    pub fn fetch<L: Lanes>(&self, lanes: L, child: u32) {
+    pub fn fetch<L: Lanes, const LINES: usize>(&self, lanes: L, child: u32) {
         const SIZES: [usize; 2] = [node::UNIT, ROWS * size_of::<f32>()];
         // A node's address has more digits. Behind the first 2 GiB of nodes what is fetched is of no use, and does no harm.
         let (kind, at) = ((child >> 31) as usize, node::items(child).0);

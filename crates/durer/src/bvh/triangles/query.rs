@@ -1,6 +1,6 @@
 //! What a ray asks of a tree of triangles.
 
-use super::fetch::Places;
+use super::fetch::{AND_SIBLINGS, Places};
 use super::leaf::Flat;
 use super::{TriangleBvh, TriangleHit, number};
 use crate::bvh::Tally;
@@ -197,7 +197,7 @@ impl<T: Tally, F: Found> Visitor for Leaves<'_, T, F> {
 
     #[inline(always)]
     fn fetch<L: Lanes>(&self, lanes: L, child: u32) {
-        self.places.fetch(lanes, child);
+        self.places.fetch::<L, AND_SIBLINGS>(lanes, child);
     }
 
     #[inline(always)]

@@ -5,7 +5,7 @@
 //! comes next is no branch: a step writes its ray to both lists, and one of the two gets longer.
 
 use super::TriangleBvh;
-use super::fetch::Places;
+use super::fetch::{ITSELF, Places};
 use super::query::{Found, Leaves};
 use crate::bvh::lanes::{Kernel, Lanes, Room, Stack};
 use crate::bvh::node::{LEAF, Node};
@@ -91,7 +91,7 @@ impl<'a, F: Found, A: FnMut(usize, F::Answer)> Stream<'a, F, A> {
             (flyer.t_max, flyer.child) = (ray.t_max, 0);
             stack.clear();
             stack.push(END, f32::NEG_INFINITY);
-            Places::new(self.bvh).fetch(lanes, 0);
+            Places::new(self.bvh).fetch::<L, ITSELF>(lanes, 0);
             return true;
         }
         false
@@ -139,7 +139,7 @@ impl<'a, F: Found, A: FnMut(usize, F::Answer)> Kernel for Stream<'a, F, A> {
                 let number = inner.numbers[k];
                 let (flyer, stack) = (&mut flyers[usize::from(number)], &mut stacks[usize::from(number)]);
                 step(lanes, &bvh.nodes, flyer, stack);
-                places.fetch(lanes, flyer.child);
+                places.fetch::<L, ITSELF>(lanes, flyer.child);
                 inner.add(number, flyer.child & LEAF == 0);
                 leaves.add(number, flyer.child & LEAF != 0);
             }
@@ -165,7 +165,7 @@ impl<'a, F: Found, A: FnMut(usize, F::Answer)> Kernel for Stream<'a, F, A> {
                     }
                 } else {
                     flyer.child = stack.pop_until(flyer.t_max);
-                    places.fetch(lanes, flyer.child);
+                    places.fetch::<L, ITSELF>(lanes, flyer.child);
                 }
                 inner.add(number, flyer.child & LEAF == 0);
                 leaves.add(number, flyer.child & LEAF != 0);

@@ -3,7 +3,7 @@
 use super::Packet;
 use crate::bvh::lanes::{Lanes, Numbers, WIDE, Wide};
 use crate::bvh::node::{self, LEAF, Node};
-use crate::bvh::triangles::fetch::Places;
+use crate::bvh::triangles::fetch::{AND_SIBLINGS, Places};
 
 /// A node or leaf that is still to be visited.
 #[derive(Clone, Copy)]
@@ -108,7 +108,7 @@ impl Packet<'_> {
                         let place = if rising { 31 - others.leading_zeros() } else { others.trailing_zeros() } & 7;
                         others ^= 1 << place;
                         let next = node.children[place as usize];
-                        places.fetch(lanes, next);
+                        places.fetch::<L, AND_SIBLINGS>(lanes, next);
                         stack.push(Entry { rays, child: next, box_at: child + place, near: enter[place as usize] });
                     }
                     let inside = self.inside(lanes, node, nearest as usize & 7, rays);
