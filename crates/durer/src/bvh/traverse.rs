@@ -193,18 +193,15 @@ pub(super) fn next<L: Lanes, const TAME: bool>(
     let orders = &FAR_TO_NEAR[falling as usize];
     // Of those that are met, so that neither the stack nor what is fetched waits for the nearest.
     let count = met.count_ones() - u32::from(met != 0);
-    let likely = orders[met as usize & 255][count as usize & 7];
-    let child = |lane: u32| node.children[lane as usize & 7];
-    let (lane, next) = if unordered {
-        (met.trailing_zeros(), child(met.trailing_zeros()))
-    } else if TAME {
-        lanes.nearest(enter, leave, &node.children)
-    } else {
-        (likely.into(), child(likely.into()))
+    let lane = if falling == 1 { met.leading_zeros() ^ 31 } else { met.trailing_zeros() };
+    let likely = node.children[lane as usize & 7];
+    let (lane, next) = match TAME && !unordered {
+        true => lanes.nearest(enter, leave, &node.children),
+        false => (lane, likely),
     };
     let others = met & !(1 << (lane & 7));
     lanes.push(stack, &node.children, enter, &orders[others as usize & 255], count);
-    (next, child(likely.into()))
+    (next, likely)
 }
 
 /// For each set of lanes the lanes from far to near, where the first are nearer and where the last are.

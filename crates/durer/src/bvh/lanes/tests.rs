@@ -98,7 +98,7 @@ impl Kernel for Everything<'_> {
         lanes.transpose([a, b, c, b, a, c, a, b]).into_iter().for_each(|row| tell(row, WIDTH));
         found.extend(lanes.store(a).map(number));
         found.extend(wide(lanes.wide(), floats, *mask).map(number));
-        let (p, q) = (lanes.doubles(a), lanes.doubles(c).mul(lanes.doubles(lanes.splat(0.1))));
+        let (p, q) = (lanes.doubles(a), lanes.doubles(c).mul(lanes.splat_double(0.1)));
         let bits = |x: f64| if x.is_nan() { [0; 2] } else { [x.to_bits() as u32, (x.to_bits() >> 32) as u32] };
         for doubles in [p, p.add(q), p.sub(q), p.mul(q), p.div(q), p.min(q), p.max(q)] {
             let numbers = lanes.store_doubles(doubles);

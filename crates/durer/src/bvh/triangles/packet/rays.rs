@@ -6,7 +6,6 @@ use crate::bvh::traverse::ORDINARY;
 use crate::bvh::triangles::leaf::flat;
 use crate::math::{Doubles, Ray, Vec3};
 use crate::shape::watertight::{Exact, Plane, uv_across};
-use glam::Vec3A;
 
 /// A number for each of sixteen rays.
 pub type PerRay = [f32; WIDE];
@@ -114,12 +113,12 @@ impl Rays {
             self.far_origin[axis] = wide.store(wide.mul(wide.sub(zero, far), inverse));
         }
         let [x, y, z] = axes.turned();
-        let z = wide.load(&self.dir[z]);
+        let dz = wide.load(&self.dir[z]);
         self.shear =
-            [wide.store(wide.div(wide.load(&self.dir[x]), z)), wide.store(wide.div(wide.load(&self.dir[y]), z))];
+            [wide.store(wide.div(wide.load(&self.dir[x]), dz)), wide.store(wide.div(wide.load(&self.dir[y]), dz))];
         for (half, inverse) in self.inverse_z.iter_mut().enumerate() {
-            let z = lanes.doubles(lanes.load(part(&self.dir[axes.turned()[2]], half)));
-            *inverse = lanes.store_doubles(lanes.splat_double(1.0).div(z));
+            let dz = lanes.doubles(lanes.load(part(&self.dir[z], half)));
+            *inverse = lanes.store_doubles(lanes.splat_double(1.0).div(dz));
         }
         self.t_max = self.t_last;
         self.meetings = ZERO;
@@ -206,8 +205,9 @@ impl Rays {
     #[inline(always)]
     pub fn meet_one(&mut self, axes: &Axes, meetings: &[Meeting], next: &Meeting, lane: usize) -> bool {
         let [x, y, z] = axes.turned();
-        let at = |v: &[PerRay; 3]| Vec3A::new(v[x][lane], v[y][lane], v[z][lane]);
-        let t = Exact::single(at(&self.origin), at(&self.dir)).t(&next.plane)[0] as f32;
+        let at = |v: &[PerRay; 3]| [v[x][lane], v[y][lane], v[z][lane]].map(f64::from);
+        let inverse = self.inverse_z[lane / WIDTH][lane % WIDTH];
+        let t = Exact::with_inverse(at(&self.origin), at(&self.dir), inverse).t(&next.plane)[0] as f32;
         let (t_last, last) = (self.t_last[lane], &meetings[self.meetings[lane].to_bits() as usize]);
         let within = t > self.t_min[lane] && t < self.t_max[lane];
         let met = within && (t < t_last || t == t_last && next.triangle < last.triangle);
