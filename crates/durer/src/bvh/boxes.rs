@@ -87,7 +87,7 @@ struct Things<'a, T, F> {
 impl<T: Tally, F: FnMut(usize, f32, &mut T) -> f32> Visitor for Things<'_, T, F> {
     type Tally = T;
 
-    const UNORDERED: bool = false;
+    const ANY: bool = false;
 
     #[inline(always)]
     fn tally(&mut self) -> &mut T {

@@ -13,8 +13,9 @@ pub(super) struct Node {
     pub planes: [[[f32; WIDTH]; 2]; 3],
     /// An inner child's [`address`]; or [`LEAF`], the count less one shifted by [`COUNT_SHIFT`], and the first item.
     pub children: [u32; WIDTH],
-    /// The axis along which children rise.
-    pub axis: u32,
+    /// For each octant of directions, numbered by [`RayBox::negative`](super::traverse::RayBox::negative), a bit: whether rays take the
+    /// children from the last to the first. First for those that want the nearest, then for those to which any hit will do.
+    pub falling: [u32; 2],
 }
 
 pub(super) const LEAF: u32 = 1 << 31;
@@ -26,8 +27,11 @@ pub(super) const MOST_ITEMS: usize = 1 << COUNT_SHIFT;
 pub(super) const LEAF_SIZE: usize = 8;
 
 impl Node {
-    pub const EMPTY: Node =
-        Node { planes: [[[f32::INFINITY; WIDTH], [f32::NEG_INFINITY; WIDTH]]; 3], children: [LEAF; WIDTH], axis: 0 };
+    pub const EMPTY: Node = Node {
+        planes: [[[f32::INFINITY; WIDTH], [f32::NEG_INFINITY; WIDTH]]; 3],
+        children: [LEAF; WIDTH],
+        falling: [0; 2],
+    };
 
     pub fn set(&mut self, place: usize, bounds: Aabb, child: u32) {
         for axis in 0..3 {

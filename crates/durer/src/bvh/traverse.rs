@@ -106,8 +106,8 @@ impl RayBox {
 pub(super) trait Visitor {
     type Tally: Tally;
 
-    /// Whether it does not matter which child comes first.
-    const UNORDERED: bool;
+    /// Whether any hit will do, so that children come in the order that is for that.
+    const ANY: bool;
 
     fn tally(&mut self) -> &mut Self::Tally;
 
@@ -118,8 +118,7 @@ pub(super) trait Visitor {
     fn leaf<L: Lanes, const TAME: bool>(&mut self, lanes: L, leaf: u32, t_max: f32) -> f32;
 }
 
-/// Shows every leaf that the ray may meet before `t_max` to the visitor, roughly from near to far if the visitor is not
-/// [`UNORDERED`](Visitor::UNORDERED).
+/// Shows every leaf that the ray may meet before `t_max` to the visitor, roughly from near to far if not [`ANY`](Visitor::ANY) hit will do.
 ///
 /// Gives `t_max` as it is in the end. Leaves whose boxes begin exactly at `t_max` are still shown. `TAME` says whether `boxes`
 /// are of [`RayBox::new`].
@@ -142,9 +141,9 @@ pub(super) fn walk<L: Lanes, V: Visitor, const TAME: bool>(
             visitor.tally().node();
             let (node, met, interval) = meet::<L, TAME>(lanes, &slabs, child, limit);
             if met != 0 {
-                // The nearest child is next, without a way through the stack.
+                // One child is next without a way through the stack.
                 let likely;
-                (child, likely) = next::<L, TAME>(lanes, V::UNORDERED, &mut stack, node, met, interval, boxes.negative);
+                (child, likely) = next::<L, TAME>(lanes, V::ANY, &mut stack, node, met, interval, boxes.negative);
                 visitor.fetch(lanes, likely);
                 continue;
             }
@@ -173,29 +172,28 @@ pub(super) fn walk<L: Lanes, V: Visitor, const TAME: bool>(
     }
 }
 
-/// The child that is next, of those that are met; pushes the others. Also gives the one that is likely to be next: the nearest along the
-/// axis of the node.
+/// The child that is next, of those that are met; pushes the others. Also gives the one that is likely to be next: the first by
+/// [`Node::falling`].
 ///
-/// The next is the one that is entered first (of rays that are not tame, whose distances cannot be compared as integers, the one that is
-/// likely), and the others are pushed from far to near along the axis of the node. If `unordered`
-/// they come by place, so that the next is known sooner.
+/// The next is the one that is entered first; but the likely one if `any` hit will do, which is known sooner, and of rays that are not
+/// tame, whose distances cannot be compared as integers. The others are pushed in the order of the node, the first last.
 #[inline(always)]
 pub(super) fn next<L: Lanes, const TAME: bool>(
     lanes: L,
-    unordered: bool,
+    any: bool,
     stack: &mut Stack,
     node: &Node,
     met: u32,
     [enter, leave]: [L::Floats; 2],
     negative: u32,
 ) -> (u32, u32) {
-    let falling = if unordered { 0 } else { negative >> (node.axis & 31) & 1 };
+    let falling = node.falling[usize::from(any)] >> (negative & 7) & 1;
     let orders = &FAR_TO_NEAR[falling as usize];
     // Of those that are met, so that neither the stack nor what is fetched waits for the nearest.
     let count = met.count_ones() - u32::from(met != 0);
     let lane = if falling == 1 { met.leading_zeros() ^ 31 } else { met.trailing_zeros() };
     let likely = node.children[lane as usize & 7];
-    let (lane, next) = match TAME && !unordered {
+    let (lane, next) = match TAME && !any {
         true => lanes.nearest(enter, leave, &node.children),
         false => (lane, likely),
     };

@@ -183,8 +183,8 @@ impl Emitter<'_> {
         let list = &children.list[..children.count];
         let mut bounds = [Aabb::EMPTY; WIDTH];
         bounds.iter_mut().zip(list).for_each(|(bounds, &i)| *bounds = self.tree.nodes[i].bounds());
-        let (axis, places) = places(&bounds[..list.len()]);
-        part.nodes[number].axis = axis as u32;
+        let (falling, places) = places(&bounds[..list.len()]);
+        part.nodes[number].falling = falling;
         let first = part.nodes.len();
         let mut inner = Children::default();
         for (k, &i) in list.iter().enumerate() {
@@ -260,10 +260,23 @@ impl Part {
     }
 }
 
-/// The axis along which children lie apart best, and a place for each in that order.
+/// What [`Node::falling`] is where children rise along an axis, the first and the last with such areas.
 ///
-/// Two that are apart are met in the right order by every ray; that they both are met is the likelier the greater they are.
-fn places(bounds: &[Aabb]) -> (usize, [usize; WIDTH]) {
+/// If the nearest hit is wanted, they come from near to far. Where any will do, from far to near: a ray begins on a surface that it leaves,
+/// and what is near is that surface. But in a box at the far end that is small beside that at the near end a hit is less likely.
+fn falling(axis: usize, [first, last]: [f32; 2]) -> [u32; 2] {
+    const NEGATIVE: [u32; 3] = [0b1010_1010, 0b1100_1100, 0b1111_0000];
+    const SMALL: f32 = 0.5;
+    let negative = NEGATIVE[axis];
+    let from_last = if last < SMALL * first { 0 } else { !negative } | if first < SMALL * last { negative } else { 0 };
+    [negative, from_last & 255]
+}
+
+/// A place for each of some children, and what [`Node::falling`] then is.
+///
+/// They are in order along the axis along which they lie apart best: two that are apart are met in the right order by every ray; that they
+/// both are met is the likelier the greater they are.
+fn places(bounds: &[Aabb]) -> ([u32; 2], [usize; WIDTH]) {
     let greatest = bounds.iter().map(Aabb::half_area).fold(f32::MIN_POSITIVE, f32::max);
     let mut apart = Vec3A::ZERO;
     for (i, a) in bounds.iter().enumerate() {
@@ -283,5 +296,9 @@ fn places(bounds: &[Aabb]) -> (usize, [usize; WIDTH]) {
             places[if after { j } else { i }] += 1;
         }
     }
-    (axis, places)
+    let ends = [0, bounds.len() - 1].map(|end| {
+        let child = places.iter().position(|place| *place == end);
+        child.map_or(0.0, |child| bounds[child].half_area())
+    });
+    (falling(axis, ends), places)
 }

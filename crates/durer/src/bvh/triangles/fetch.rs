@@ -8,7 +8,7 @@ use crate::bvh::node;
 pub const ITSELF: usize = 6;
 /// What lies behind it is its siblings, which are likely to be visited too where nothing else is on its way. How many lines pay was found by
 /// measurement.
-pub const AND_SIBLINGS: usize = 8;
+pub const AND_SIBLINGS: usize = 12;
 
 /// Where nodes and leaves are in memory.
 #[derive(Clone, Copy)]

@@ -188,7 +188,7 @@ impl<'a, T, F: Found> Leaves<'a, T, F> {
 impl<T: Tally, F: Found> Visitor for Leaves<'_, T, F> {
     type Tally = T;
 
-    const UNORDERED: bool = F::ANY;
+    const ANY: bool = F::ANY;
 
     #[inline(always)]
     fn tally(&mut self) -> &mut T {

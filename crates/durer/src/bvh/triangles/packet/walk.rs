@@ -91,6 +91,8 @@ impl Packet<'_> {
     pub(super) fn walk<L: Lanes, const ANY: bool>(&mut self, lanes: L, stack: &mut Vec<Entry>) {
         let bvh = self.bvh;
         let (beam, places) = (self.beam(lanes), Places::new(bvh));
+        let [x, y, z] = self.axes.negative;
+        let octant = x | y << 1 | z << 2;
         self.limit = self.last(lanes);
         stack.clear();
         let (mut child, mut rays) = (0, self.alive);
@@ -99,11 +101,11 @@ impl Packet<'_> {
                 let node = &bvh.nodes[node::number(child)];
                 let (met, enter) = beam.meet(lanes, node, lanes.splat(self.limit));
                 if met != 0 {
-                    // Along a rising axis the first place is nearest; the farthest is pushed first.
-                    let rising = self.axes.negative[node.axis as usize % 3] == 0;
+                    // What is visited last is pushed first.
+                    let rising = node.falling[usize::from(ANY)] >> octant & 1 == 0;
                     let (first, last) = (met.trailing_zeros(), 31 - met.leading_zeros());
-                    let nearest = if rising { first } else { last };
-                    let (mut others, enter) = (met ^ 1 << nearest, lanes.store(enter));
+                    let likely = if rising { first } else { last };
+                    let (mut others, enter) = (met ^ 1 << likely, lanes.store(enter));
                     while others != 0 {
                         let place = if rising { 31 - others.leading_zeros() } else { others.trailing_zeros() } & 7;
                         others ^= 1 << place;
@@ -111,10 +113,10 @@ impl Packet<'_> {
                         places.fetch::<L, AND_SIBLINGS>(lanes, next);
                         stack.push(Entry { rays, child: next, box_at: child + place, near: enter[place as usize] });
                     }
-                    let inside = self.inside(lanes, node, nearest as usize & 7, rays);
+                    let inside = self.inside(lanes, node, likely as usize & 7, rays);
                     if inside != 0 {
                         rays = inside;
-                        child = node.children[nearest as usize & 7];
+                        child = node.children[likely as usize & 7];
                         continue;
                     }
                 }
