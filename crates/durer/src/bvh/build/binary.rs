@@ -72,9 +72,6 @@ pub fn half_area(min: Vec4, max: Vec4, scale: f32) -> f32 {
     d.x * d.y + d.y * d.z + d.z * d.x
 }
 
-/// The corners of a triangle by its number.
-pub type Corners<'a> = &'a (dyn Fn(u32) -> [Vec3; 3] + Sync);
-
 pub struct Builder<'a> {
     pub scale: f32,
     /// Half the area of everything.
@@ -83,8 +80,8 @@ pub struct Builder<'a> {
     whole: usize,
     /// How many bins so many references are put into, at most.
     pub bins: fn(usize) -> usize,
-    /// Where things are triangles that may be cut.
-    pub corners_of: Option<Corners<'a>>,
+    /// Where things are triangles that may be cut, their corners; else nothing.
+    pub corners: &'a [[Vec3; 3]],
 }
 
 /// Nodes and the items of their leaves, in depth-first order.
@@ -100,16 +97,10 @@ struct Counts {
 }
 
 /// Builds a tree; triangles whose corners are known may be cut.
-pub fn build(
-    references: &mut [Reference],
-    all: &Bin,
-    scale: f32,
-    settings: &Settings,
-    corners_of: Option<Corners>,
-) -> Tree {
+pub fn build(references: &mut [Reference], all: &Bin, scale: f32, settings: &Settings, corners: &[[Vec3; 3]]) -> Tree {
     let area = half_area(all.min, all.max, scale);
-    let builder = Builder { scale, area, whole: settings.whole, bins: settings.bins, corners_of };
-    let share = if corners_of.is_some() { settings.splits } else { 0.0 };
+    let builder = Builder { scale, area, whole: settings.whole, bins: settings.bins, corners };
+    let share = if corners.is_empty() { 0.0 } else { settings.splits };
     let budget = Budget::new((references.len() as f32 * share) as usize);
     let mut pieces = vec![Piece::new(references.len())];
     builder.subtree(references, all, budget, 0, &mut pieces);

@@ -145,7 +145,7 @@ pub(super) struct Tree {
 
 /// Builds a tree over boxes: a function of the references and settings alone.
 pub(super) fn build(references: Vec<Reference>, settings: &Settings) -> Tree {
-    build_of(references, settings, None)
+    build_of(references, settings, &[])
 }
 
 /// Builds a tree over so many triangles, which may be cut.
@@ -154,16 +154,19 @@ pub(super) fn build_triangles(
     corners_of: &(impl Fn(u32) -> [Vec3; 3] + Sync),
     settings: &Settings,
 ) -> Tree {
-    build_of(triangle_references(count, corners_of), settings, Some(corners_of))
+    // Each is asked for several times.
+    let corners = |count| (0..count).into_par_iter().with_min_len(4096).map(corners_of).collect();
+    let corners: Vec<[Vec3; 3]> = if settings.splits > 0.0 { corners(count as u32) } else { Vec::new() };
+    build_of(triangle_references(count, corners_of), settings, &corners)
 }
 
-fn build_of(mut references: Vec<Reference>, settings: &Settings, corners_of: Option<binary::Corners>) -> Tree {
+fn build_of(mut references: Vec<Reference>, settings: &Settings, corners: &[[Vec3; 3]]) -> Tree {
     let all = Bin::of(&references);
     let bounds = Aabb { min: all.min.truncate(), max: all.max.truncate() };
     if references.is_empty() {
         return Tree { nodes: Vec::new(), order: Vec::new(), bounds };
     }
-    let mut tree = binary::build(&mut references, &all, area_scale(bounds), settings, corners_of);
+    let mut tree = binary::build(&mut references, &all, area_scale(bounds), settings, corners);
     assert!(tree.items.len() <= MOST_ITEMS, "a tree holds at most 2^28 things");
     let mut plans = Plans::new(&tree.nodes, tree.scale, settings);
     if let Some(nodes) = reinsert::improved(&tree, settings.reinsertions) {

@@ -59,7 +59,7 @@ impl Builder<'_> {
         cut: &Cut,
         budget: &mut Budget,
     ) -> Option<[Vec<Reference>; 2]> {
-        let (corners_of, count) = (self.corners_of?, references.len());
+        let count = references.len();
         if count <= FEWEST || budget.references == 0 {
             return None;
         }
@@ -74,7 +74,7 @@ impl Builder<'_> {
             return None;
         }
         // Each is asked for several times, and most are far apart in memory.
-        let corners: Vec<[Vec3; 3]> = references.iter().map(|r| corners_of(r.number())).collect();
+        let corners: Vec<[Vec3; 3]> = references.iter().map(|r| self.corners[r.number() as usize]).collect();
         let plane = self.plane(references, &corners, all)?;
         if plane.cost >= GAIN * cut.cost {
             budget.in_vain += 1;
