@@ -3,6 +3,7 @@
 use super::Packet;
 use crate::bvh::lanes::{Lanes, Numbers, WIDE, Wide};
 use crate::bvh::node::{self, LEAF, Node};
+use crate::bvh::traverse::last_of;
 use crate::bvh::triangles::fetch::{AND_SIBLINGS, Places};
 
 /// A node or leaf that is still to be visited.
@@ -103,11 +104,11 @@ impl Packet<'_> {
                 if met != 0 {
                     // What is visited last is pushed first.
                     let rising = node.falling[usize::from(ANY)] >> octant & 1 == 0;
-                    let (first, last) = (met.trailing_zeros(), 31 - met.leading_zeros());
+                    let (first, last) = (met.trailing_zeros(), last_of(met));
                     let likely = if rising { first } else { last };
                     let (mut others, enter) = (met ^ 1 << likely, lanes.store(enter));
                     while others != 0 {
-                        let place = if rising { 31 - others.leading_zeros() } else { others.trailing_zeros() } & 7;
+                        let place = if rising { last_of(others) } else { others.trailing_zeros() & 7 };
                         others ^= 1 << place;
                         let next = node.children[place as usize];
                         places.fetch::<L, AND_SIBLINGS>(lanes, next);
