@@ -15,7 +15,7 @@ pub(super) struct Node {
     pub children: [u32; WIDTH],
     /// For each octant of directions, numbered by [`RayBox::negative`](super::traverse::RayBox::negative), a bit: whether rays take the
     /// children from the last to the first. First for those that want the nearest, then for those to which any hit will do.
-    pub falling: [u32; 2],
+    pub from_last: [u32; 2],
 }
 
 pub(super) const LEAF: u32 = 1 << 31;
@@ -30,7 +30,7 @@ impl Node {
     pub const EMPTY: Node = Node {
         planes: [[[f32::INFINITY; WIDTH], [f32::NEG_INFINITY; WIDTH]]; 3],
         children: [LEAF; WIDTH],
-        falling: [0; 2],
+        from_last: [0; 2],
     };
 
     pub fn set(&mut self, place: usize, bounds: Aabb, child: u32) {

@@ -1,7 +1,7 @@
-//! Walking a ray through the tree, nearest boxes first, or, where that does not matter, in any order.
+//! Walking a ray through the tree, nearest boxes first, or, where any hit will do, in the order that is likely to find one soon.
 //!
-//! Of the children that the ray meets the one that is entered first is next; the others are pushed, farthest along an axis first,
-//! by one store whatever their number, so that no branch depends on how many children are met. What lies beyond a hit is dropped when it
+//! Of the children that the ray meets the one that is entered first is next, or, where any hit will do, the first in the order of the node;
+//! the others are pushed in that order, by one store whatever their number, so that no branch depends on how many children are met. What lies beyond a hit is dropped when it
 //! is popped: that is guessed rightly more often than not, and the walk goes on before it is known where the hit is.
 //!
 //! Source: Fuetterer, Lojewski, Pfreundt, Ebert, *Efficient Ray Tracing Kernels for Modern CPU Architectures*, JCGT
@@ -173,7 +173,7 @@ pub(super) fn walk<L: Lanes, V: Visitor, const TAME: bool>(
 }
 
 /// The child that is next, of those that are met; pushes the others. Also gives the one that is likely to be next: the first by
-/// [`Node::falling`].
+/// [`Node::from_last`].
 ///
 /// The next is the one that is entered first; but the likely one if `any` hit will do, which is known sooner, and of rays that are not
 /// tame, whose distances cannot be compared as integers. The others are pushed in the order of the node, the first last.
@@ -187,11 +187,11 @@ pub(super) fn next<L: Lanes, const TAME: bool>(
     [enter, leave]: [L::Floats; 2],
     negative: u32,
 ) -> (u32, u32) {
-    let falling = node.falling[usize::from(any)] >> (negative & 7) & 1;
-    let orders = &FAR_TO_NEAR[falling as usize];
+    let from_last = node.from_last[usize::from(any)] >> (negative & 7) & 1;
+    let orders = &PUSHED[from_last as usize];
     // Of those that are met, so that neither the stack nor what is fetched waits for the nearest.
     let count = met.count_ones() - u32::from(met != 0);
-    let lane = if falling == 1 { last_of(met) } else { met.trailing_zeros() };
+    let lane = if from_last == 1 { last_of(met) } else { met.trailing_zeros() };
     let likely = node.children[lane as usize & 7];
     let (lane, next) = match TAME && !any {
         true => lanes.nearest(enter, leave, &node.children),
@@ -208,8 +208,8 @@ pub(super) fn last_of(lanes: u32) -> u32 {
     !(lanes << (32 - WIDTH)).leading_zeros() & 7
 }
 
-/// For each set of lanes the lanes from far to near, where the first are nearer and where the last are.
-static FAR_TO_NEAR: [[[u8; WIDTH]; 256]; 2] = {
+/// For each set of lanes the lanes in the order in which they are pushed, where the first are visited first and where the last are.
+static PUSHED: [[[u8; WIDTH]; 256]; 2] = {
     let mut table = [[[0; WIDTH]; 256]; 2];
     let mut set = 0;
     while set < 256 {

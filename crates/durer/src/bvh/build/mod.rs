@@ -123,7 +123,6 @@ pub(super) fn is_finite(corners: &[Vec3; 3]) -> bool {
 
 /// References to triangles 0, 1, 2, ...; those with corners that are no finite points are left out.
 fn triangle_references(count: usize, corners_of: &(impl Fn(u32) -> [Vec3; 3] + Sync)) -> Vec<Reference> {
-    assert!(count <= MOST_ITEMS, "a tree holds at most 2^28 triangles");
     let reference = |i| {
         let corners = corners_of(i);
         Reference::new(if is_finite(&corners) { Aabb::around(corners) } else { Aabb::EMPTY }, i)
@@ -145,7 +144,7 @@ pub(super) struct Tree {
 
 /// Builds a tree over boxes: a function of the references and settings alone.
 pub(super) fn build(references: Vec<Reference>, settings: &Settings) -> Tree {
-    build_of(references, settings, &[])
+    build_of(references, settings, Vec::new())
 }
 
 /// Builds a tree over so many triangles, which may be cut.
@@ -154,19 +153,23 @@ pub(super) fn build_triangles(
     corners_of: &(impl Fn(u32) -> [Vec3; 3] + Sync),
     settings: &Settings,
 ) -> Tree {
-    // Each is asked for several times.
-    let corners = |count| (0..count).into_par_iter().with_min_len(4096).map(corners_of).collect();
-    let corners: Vec<[Vec3; 3]> = if settings.splits > 0.0 { corners(count as u32) } else { Vec::new() };
-    build_of(triangle_references(count, corners_of), settings, &corners)
+    assert!(count <= MOST_ITEMS, "a tree holds at most 2^28 triangles");
+    if settings.splits == 0.0 {
+        return build_of(triangle_references(count, corners_of), settings, Vec::new());
+    }
+    // Whoever looks for planes asks for the same corners at many levels.
+    let corners: Vec<[Vec3; 3]> = (0..count as u32).into_par_iter().with_min_len(4096).map(corners_of).collect();
+    build_of(triangle_references(count, &|i| corners[i as usize]), settings, corners)
 }
 
-fn build_of(mut references: Vec<Reference>, settings: &Settings, corners: &[[Vec3; 3]]) -> Tree {
+fn build_of(mut references: Vec<Reference>, settings: &Settings, corners: Vec<[Vec3; 3]>) -> Tree {
     let all = Bin::of(&references);
     let bounds = Aabb { min: all.min.truncate(), max: all.max.truncate() };
     if references.is_empty() {
         return Tree { nodes: Vec::new(), order: Vec::new(), bounds };
     }
-    let mut tree = binary::build(&mut references, &all, area_scale(bounds), settings, corners);
+    let mut tree = binary::build(&mut references, &all, area_scale(bounds), settings, &corners);
+    drop(corners);
     assert!(tree.items.len() <= MOST_ITEMS, "a tree holds at most 2^28 things");
     let mut plans = Plans::new(&tree.nodes, tree.scale, settings);
     if let Some(nodes) = reinsert::improved(&tree, settings.reinsertions) {

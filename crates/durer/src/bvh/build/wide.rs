@@ -183,8 +183,8 @@ impl Emitter<'_> {
         let list = &children.list[..children.count];
         let mut bounds = [Aabb::EMPTY; WIDTH];
         bounds.iter_mut().zip(list).for_each(|(bounds, &i)| *bounds = self.tree.nodes[i].bounds());
-        let (falling, places) = places(&bounds[..list.len()]);
-        part.nodes[number].falling = falling;
+        let (from_last, places) = places(&bounds[..list.len()]);
+        part.nodes[number].from_last = from_last;
         let first = part.nodes.len();
         let mut inner = Children::default();
         for (k, &i) in list.iter().enumerate() {
@@ -260,19 +260,19 @@ impl Part {
     }
 }
 
-/// What [`Node::falling`] is where children rise along an axis, the first and the last with such areas.
+/// What [`Node::from_last`] is where children rise along an axis, the first and the last with such areas.
 ///
 /// If the nearest hit is wanted, they come from near to far. Where any will do, from far to near: a ray begins on a surface that it leaves,
 /// and what is near is that surface. But in a box at the far end that is small beside that at the near end a hit is less likely.
-fn falling(axis: usize, [first, last]: [f32; 2]) -> [u32; 2] {
+fn from_last(axis: usize, [first, last]: [f32; 2]) -> [u32; 2] {
     const NEGATIVE: [u32; 3] = [0b1010_1010, 0b1100_1100, 0b1111_0000];
     const SMALL: f32 = 0.5;
     let negative = NEGATIVE[axis];
-    let from_last = if last < SMALL * first { 0 } else { !negative } | if first < SMALL * last { negative } else { 0 };
-    [negative, from_last & 255]
+    let any = if last < SMALL * first { 0 } else { !negative } | if first < SMALL * last { negative } else { 0 };
+    [negative, any & 255]
 }
 
-/// A place for each of some children, and what [`Node::falling`] then is.
+/// A place for each of some children, and what [`Node::from_last`] then is.
 ///
 /// They are in order along the axis along which they lie apart best: two that are apart are met in the right order by every ray; that they
 /// both are met is the likelier the greater they are.
@@ -297,8 +297,43 @@ fn places(bounds: &[Aabb]) -> ([u32; 2], [usize; WIDTH]) {
         }
     }
     let ends = [0, bounds.len() - 1].map(|end| {
-        let child = places.iter().position(|place| *place == end);
-        child.map_or(0.0, |child| bounds[child].half_area())
+        let child = places.iter().position(|place| *place == end).expect("each place is taken");
+        bounds[child].half_area()
     });
-    (falling(axis, ends), places)
+    (from_last(axis, ends), places)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Of two children that are apart along an axis, whichever comes first and whichever is greater, the nearer one is first if the
+    /// nearest hit is wanted; if any will do the farther one, unless it is less than half as large.
+    #[test]
+    fn children_come_in_the_order_that_rays_want() {
+        let child = |axis: usize, at: f32, size: f32| {
+            let (mut min, mut max) = ([0.0; 3], [size; 3]);
+            (min[axis], max[axis]) = (at, at + size);
+            Aabb { min: min.into(), max: max.into() }
+        };
+        // Sizes of the lower and of the upper one, and whether either is small beside the other.
+        let pairs =
+            [(1.0, 1.0, [false; 2]), (1.0, 0.9, [false; 2]), (0.5, 1.0, [true, false]), (1.0, 0.5, [false, true])];
+        for (axis, (lower, upper, small), swapped, octant) in (0..3).flat_map(|axis| {
+            let cases = pairs.into_iter().flat_map(move |pair| [false, true].map(|swapped| (axis, pair, swapped)));
+            cases.flat_map(|(axis, pair, swapped)| (0..8).map(move |octant| (axis, pair, swapped, octant)))
+        }) {
+            let mut bounds = [child(axis, -2.0, lower), child(axis, 2.0, upper)];
+            if swapped {
+                bounds.reverse();
+            }
+            let (from_last, places) = places(&bounds);
+            assert_eq!(places[..2], if swapped { [1, 0] } else { [0, 1] });
+            let negative = octant >> axis & 1;
+            let far = 1 - negative;
+            let first = if small[far] { negative } else { far };
+            let expected = [negative, first].map(|first| first as u32);
+            assert_eq!(from_last.map(|octants| octants >> octant & 1), expected, "{axis} {lower} {upper} {octant}");
+        }
+    }
 }

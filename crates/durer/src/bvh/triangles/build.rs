@@ -14,7 +14,7 @@ impl TriangleBvh {
     /// Builds over triangles given as three indices each. Those with a corner that is no finite point are never hit.
     ///
     /// The result is a function of the arguments alone. It takes about 50 bytes a triangle, and while it is built about 80 more, with `best`
-    /// 290 or, where many triangles are cut, up to 480; the depth is bounded, whatever the triangles.
+    /// 250 or, where many triangles are cut, up to 430; the depth is bounded, whatever the triangles.
     ///
     /// # Panics
     ///

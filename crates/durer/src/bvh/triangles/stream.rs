@@ -103,9 +103,9 @@ impl<'a, F: Found, A: FnMut(usize, F::Answer)> Stream<'a, F, A> {
 fn step<L: Lanes, F: Found>(lanes: L, nodes: &[Node], flyer: &mut Flyer<F>, stack: &mut Stack) {
     let slabs = Slabs::new(lanes, nodes, &flyer.boxes);
     let (node, met, interval) = meet::<L, true>(lanes, &slabs, flyer.child, lanes.splat(flyer.t_max));
-    let (nearest, _) = next::<L, true>(lanes, F::ANY, stack, node, met, interval, flyer.boxes.negative);
+    let (child, _) = next::<L, true>(lanes, F::ANY, stack, node, met, interval, flyer.boxes.negative);
     // If nothing was met, nothing was pushed.
-    flyer.child = select_unpredictable(met == 0, stack.pop_if(met == 0), nearest);
+    flyer.child = select_unpredictable(met == 0, stack.pop_if(met == 0), child);
 }
 
 impl<'a, F: Found, A: FnMut(usize, F::Answer)> Kernel for Stream<'a, F, A> {

@@ -211,7 +211,9 @@ fn a_refitted_tree_finds_what_brute_force_finds() {
             tree.refit(&moved.0, &moved.1);
             for _ in 0..200 {
                 let ray = ray(&moved, &mut random, 1.0, Vec3::Y * round as f32);
-                assert_eq!(tree.closest(&ray).as_ref().map(bits), brute_force(&moved, &ray).first().map(bits));
+                let expected = brute_force(&moved, &ray);
+                assert_eq!(tree.closest(&ray).as_ref().map(bits), expected.first().map(bits));
+                assert_eq!(tree.occluded(&ray), !expected.is_empty());
             }
         }
     }

@@ -87,7 +87,8 @@ impl Packet<'_> {
         end!(self, wide, max, greatest, t_last)
     }
 
-    /// Shows the triangles of all leaves that a ray may meet to those rays, roughly from near to far.
+    /// Shows the triangles of all leaves that a ray may meet to those rays, roughly from near to far, or, where `ANY` hit will do, in the
+    /// order of nodes for that.
     #[inline(always)]
     pub(super) fn walk<L: Lanes, const ANY: bool>(&mut self, lanes: L, stack: &mut Vec<Entry>) {
         let bvh = self.bvh;
@@ -103,7 +104,7 @@ impl Packet<'_> {
                 let (met, enter) = beam.meet(lanes, node, lanes.splat(self.limit));
                 if met != 0 {
                     // What is visited last is pushed first.
-                    let rising = node.falling[usize::from(ANY)] >> octant & 1 == 0;
+                    let rising = node.from_last[usize::from(ANY)] >> octant & 1 == 0;
                     let (first, last) = (met.trailing_zeros(), last_of(met));
                     let likely = if rising { first } else { last };
                     let (mut others, enter) = (met ^ 1 << likely, lanes.store(enter));
