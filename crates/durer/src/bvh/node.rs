@@ -47,6 +47,12 @@ impl Node {
         Aabb { min: side(0), max: side(1) }
     }
 
+    /// Whether rays of an octant take the children from the last to the first: those to which `any` hit will do, or the others.
+    #[inline(always)]
+    pub fn is_from_last(&self, any: bool, octant: u32) -> bool {
+        self.from_last[usize::from(any)] >> (octant & 7) & 1 == 1
+    }
+
     /// The children that are there: place, box, and child.
     pub fn children(&self) -> impl Iterator<Item = (usize, Aabb, u32)> {
         let all = (0..WIDTH).map(|place| (place, self.bounds(place), self.children[place]));

@@ -1,8 +1,9 @@
 //! Walking a ray through the tree, nearest boxes first, or, where any hit will do, in the order that is likely to find one soon.
 //!
 //! Of the children that the ray meets the one that is entered first is next, or, where any hit will do, the first in the order of the node;
-//! the others are pushed in that order, by one store whatever their number, so that no branch depends on how many children are met. What lies beyond a hit is dropped when it
-//! is popped: that is guessed rightly more often than not, and the walk goes on before it is known where the hit is.
+//! the others are pushed in the order of the node, by one store whatever their number, so that no branch depends on how many children are
+//! met. What lies beyond a hit is dropped when it is popped: that is guessed rightly more often than not, and the walk goes on before it
+//! is known where the hit is.
 //!
 //! Source: Fuetterer, Lojewski, Pfreundt, Ebert, *Efficient Ray Tracing Kernels for Modern CPU Architectures*, JCGT
 //! 4(4), 2015.
@@ -187,11 +188,11 @@ pub(super) fn next<L: Lanes, const TAME: bool>(
     [enter, leave]: [L::Floats; 2],
     negative: u32,
 ) -> (u32, u32) {
-    let from_last = node.from_last[usize::from(any)] >> (negative & 7) & 1;
-    let orders = &PUSHED[from_last as usize];
+    let from_last = node.is_from_last(any, negative);
+    let orders = &PUSHED[usize::from(from_last)];
     // Of those that are met, so that neither the stack nor what is fetched waits for the nearest.
     let count = met.count_ones() - u32::from(met != 0);
-    let lane = if from_last == 1 { last_of(met) } else { met.trailing_zeros() };
+    let lane = end_of(met, from_last);
     let likely = node.children[lane as usize & 7];
     let (lane, next) = match TAME && !any {
         true => lanes.nearest(enter, leave, &node.children),
@@ -202,10 +203,11 @@ pub(super) fn next<L: Lanes, const TAME: bool>(
     (next, likely)
 }
 
-/// The last of some lanes, a bit for each. (Of 31 less the leading zeros the compiler makes an instruction that is slow on Zen 4.)
+/// The first of some lanes, a bit for each, or the `last`. (Of 31 less the leading zeros the compiler makes an instruction that is slow on
+/// Zen 4.)
 #[inline(always)]
-pub(super) fn last_of(lanes: u32) -> u32 {
-    !(lanes << (32 - WIDTH)).leading_zeros() & 7
+pub(super) fn end_of(lanes: u32, last: bool) -> u32 {
+    if last { !(lanes << (32 - WIDTH)).leading_zeros() & 7 } else { lanes.trailing_zeros() & 7 }
 }
 
 /// For each set of lanes the lanes in the order in which they are pushed, where the first are visited first and where the last are.

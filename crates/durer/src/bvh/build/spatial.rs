@@ -73,16 +73,14 @@ impl Builder<'_> {
             budget.pause -= 1;
             return None;
         }
-        // Each is asked for several times, and most are far apart in memory.
-        let corners: Vec<[Vec3; 3]> = references.iter().map(|r| self.corners[r.number() as usize]).collect();
-        let plane = self.plane(references, &corners, all)?;
+        let plane = self.plane(references, all)?;
         if plane.cost >= GAIN * cut.cost {
             budget.in_vain += 1;
             budget.pause = budget.in_vain.saturating_sub(IN_VAIN).min(4);
             return None;
         }
         budget.in_vain = 0;
-        let parts = self.halves(references, &corners, &plane);
+        let parts = self.halves(references, &plane);
         let lens = [parts[0].len(), parts[1].len()];
         if !lens.iter().all(|&len| 0 < len && len < count) {
             return None;
@@ -92,24 +90,19 @@ impl Builder<'_> {
     }
 
     /// The cheapest plane between bins of equal width.
-    fn plane(&self, references: &[Reference], corners: &[[Vec3; 3]], bounds: &Bin) -> Option<Plane> {
+    fn plane(&self, references: &[Reference], bounds: &Bin) -> Option<Plane> {
         if !(bounds.max - bounds.min).truncate().is_finite() {
             return None;
         }
         let planes = [
-            self.plane_across::<0>(references, corners, bounds),
-            self.plane_across::<1>(references, corners, bounds),
-            self.plane_across::<2>(references, corners, bounds),
+            self.plane_across::<0>(references, bounds),
+            self.plane_across::<1>(references, bounds),
+            self.plane_across::<2>(references, bounds),
         ];
         planes.into_iter().flatten().reduce(|a, b| if b.cost < a.cost { b } else { a })
     }
 
-    fn plane_across<const AXIS: usize>(
-        &self,
-        references: &[Reference],
-        corners: &[[Vec3; 3]],
-        bounds: &Bin,
-    ) -> Option<Plane> {
+    fn plane_across<const AXIS: usize>(&self, references: &[Reference], bounds: &Bin) -> Option<Plane> {
         // Few references fill few bins.
         let count = if references.len() > 256 { BINS } else { BINS / 2 };
         let (low, high) = (bounds.min[AXIS], bounds.max[AXIS]);
@@ -126,7 +119,7 @@ impl Builder<'_> {
         let bin_of = |x: f32| (((x - low) * scale) as i32).clamp(0, count as i32 - 1) as usize;
         let mut bins = [Bin::EMPTY; BINS];
         let mut ends = [0_u32; BINS];
-        for (r, &corners) in references.iter().zip(corners) {
+        for r in references {
             let (first, last) = (bin_of(r.min[AXIS]), bin_of(r.max[AXIS]));
             bins[first].count += 1;
             ends[last] += 1;
@@ -134,7 +127,7 @@ impl Builder<'_> {
                 bins[first] = bins[first].around(r);
                 continue;
             }
-            let triangle = Sorted::<AXIS>::new(corners);
+            let triangle = Sorted::<AXIS>::new(self.corners[r.number() as usize]);
             let mut from = triangle.section(r.min[AXIS]);
             for (bin, number) in bins[first..=last].iter_mut().zip(first..) {
                 let to = triangle.section(if number < last { at(number + 1) } else { r.max[AXIS] });
@@ -163,14 +156,9 @@ impl Builder<'_> {
 
     /// The references on both sides of a plane. Those that it goes through are cut, unless the boxes that grow when one stays whole
     /// cost less.
-    fn halves(
-        &self,
-        references: &[Reference],
-        corners: &[[Vec3; 3]],
-        &Plane { axis, at, .. }: &Plane,
-    ) -> [Vec<Reference>; 2] {
+    fn halves(&self, references: &[Reference], &Plane { axis, at, .. }: &Plane) -> [Vec<Reference>; 2] {
         let (mut left, mut right, mut through) = (Vec::new(), Vec::new(), Vec::new());
-        for (r, &corners) in references.iter().zip(corners) {
+        for r in references {
             if r.max[axis] <= at {
                 left.push(*r);
                 continue;
@@ -178,6 +166,7 @@ impl Builder<'_> {
                 right.push(*r);
                 continue;
             }
+            let corners = self.corners[r.number() as usize];
             let [a, b] = match axis {
                 0 => Sorted::<0>::new(corners).halves(at, r),
                 1 => Sorted::<1>::new(corners).halves(at, r),

@@ -277,13 +277,15 @@ fn from_last(axis: usize, [first, last]: [f32; 2]) -> [u32; 2] {
 /// They are in order along the axis along which they lie apart best: two that are apart are met in the right order by every ray; that they
 /// both are met is the likelier the greater they are.
 fn places(bounds: &[Aabb]) -> ([u32; 2], [usize; WIDTH]) {
-    let greatest = bounds.iter().map(Aabb::half_area).fold(f32::MIN_POSITIVE, f32::max);
+    let mut areas = [0.0; WIDTH];
+    areas.iter_mut().zip(bounds).for_each(|(area, bounds)| *area = bounds.half_area());
+    let greatest = areas.iter().copied().fold(f32::MIN_POSITIVE, f32::max);
     let mut apart = Vec3A::ZERO;
     for (i, a) in bounds.iter().enumerate() {
-        let (min, max, area) = (Vec3A::from(a.min), Vec3A::from(a.max), a.half_area() / greatest);
-        for b in &bounds[..i] {
+        let (min, max, area) = (Vec3A::from(a.min), Vec3A::from(a.max), areas[i] / greatest);
+        for (b, other) in bounds[..i].iter().zip(areas) {
             let are_apart = max.cmple(b.min.into()) | Vec3A::from(b.max).cmple(min);
-            apart += Vec3A::select(are_apart, Vec3A::splat(area * b.half_area() / greatest), Vec3A::ZERO);
+            apart += Vec3A::select(are_apart, Vec3A::splat(area * other / greatest), Vec3A::ZERO);
         }
     }
     let axis = (1..3).fold(0, |best, axis| if apart[axis] > apart[best] { axis } else { best });
@@ -297,8 +299,8 @@ fn places(bounds: &[Aabb]) -> ([u32; 2], [usize; WIDTH]) {
         }
     }
     let ends = [0, bounds.len() - 1].map(|end| {
-        let child = places.iter().position(|place| *place == end).expect("each place is taken");
-        bounds[child].half_area()
+        let child = places.iter().position(|place| *place == end);
+        areas[child.expect("each place is taken")]
     });
     (from_last(axis, ends), places)
 }
@@ -319,21 +321,20 @@ mod tests {
         // Sizes of the lower and of the upper one, and whether either is small beside the other.
         let pairs =
             [(1.0, 1.0, [false; 2]), (1.0, 0.9, [false; 2]), (0.5, 1.0, [true, false]), (1.0, 0.5, [false, true])];
-        for (axis, (lower, upper, small), swapped, octant) in (0..3).flat_map(|axis| {
-            let cases = pairs.into_iter().flat_map(move |pair| [false, true].map(|swapped| (axis, pair, swapped)));
-            cases.flat_map(|(axis, pair, swapped)| (0..8).map(move |octant| (axis, pair, swapped, octant)))
-        }) {
-            let mut bounds = [child(axis, -2.0, lower), child(axis, 2.0, upper)];
-            if swapped {
-                bounds.reverse();
+        for (axis, (lower, upper, small)) in (0..3).flat_map(|axis| pairs.map(|pair| (axis, pair))) {
+            for (swapped, octant) in [false, true].into_iter().flat_map(|swapped| (0..8).map(move |o| (swapped, o))) {
+                let mut bounds = [child(axis, -2.0, lower), child(axis, 2.0, upper)];
+                if swapped {
+                    bounds.reverse();
+                }
+                let (from_last, places) = places(&bounds);
+                assert_eq!(places[..2], if swapped { [1, 0] } else { [0, 1] });
+                let negative = octant >> axis & 1;
+                let far = 1 - negative;
+                let first = if small[far] { negative } else { far };
+                let expected = [negative, first].map(|first| first as u32);
+                assert_eq!(from_last.map(|octants| octants >> octant & 1), expected, "{axis} {lower} {upper} {octant}");
             }
-            let (from_last, places) = places(&bounds);
-            assert_eq!(places[..2], if swapped { [1, 0] } else { [0, 1] });
-            let negative = octant >> axis & 1;
-            let far = 1 - negative;
-            let first = if small[far] { negative } else { far };
-            let expected = [negative, first].map(|first| first as u32);
-            assert_eq!(from_last.map(|octants| octants >> octant & 1), expected, "{axis} {lower} {upper} {octant}");
         }
     }
 }

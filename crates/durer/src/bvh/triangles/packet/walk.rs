@@ -3,7 +3,7 @@
 use super::Packet;
 use crate::bvh::lanes::{Lanes, Numbers, WIDE, Wide};
 use crate::bvh::node::{self, LEAF, Node};
-use crate::bvh::traverse::last_of;
+use crate::bvh::traverse::end_of;
 use crate::bvh::triangles::fetch::{AND_SIBLINGS, Places};
 
 /// A node or leaf that is still to be visited.
@@ -94,7 +94,7 @@ impl Packet<'_> {
         let bvh = self.bvh;
         let (beam, places) = (self.beam(lanes), Places::new(bvh));
         let [x, y, z] = self.axes.negative;
-        let octant = x | y << 1 | z << 2;
+        let octant = (x | y << 1 | z << 2) as u32;
         self.limit = self.last(lanes);
         stack.clear();
         let (mut child, mut rays) = (0, self.alive);
@@ -104,12 +104,11 @@ impl Packet<'_> {
                 let (met, enter) = beam.meet(lanes, node, lanes.splat(self.limit));
                 if met != 0 {
                     // What is visited last is pushed first.
-                    let rising = node.from_last[usize::from(ANY)] >> octant & 1 == 0;
-                    let (first, last) = (met.trailing_zeros(), last_of(met));
-                    let likely = if rising { first } else { last };
+                    let from_last = node.is_from_last(ANY, octant);
+                    let likely = end_of(met, from_last);
                     let (mut others, enter) = (met ^ 1 << likely, lanes.store(enter));
                     while others != 0 {
-                        let place = if rising { last_of(others) } else { others.trailing_zeros() & 7 };
+                        let place = end_of(others, !from_last);
                         others ^= 1 << place;
                         let next = node.children[place as usize];
                         places.fetch::<L, AND_SIBLINGS>(lanes, next);
