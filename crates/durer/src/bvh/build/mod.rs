@@ -11,6 +11,7 @@ use crate::math::{Aabb, Vec3};
 use cut::Bin;
 use glam::Vec4;
 use rayon::prelude::*;
+use reinsert::Linked;
 use wide::Plans;
 
 /// How much work goes into a tree.
@@ -30,6 +31,12 @@ impl Preset {
     pub const NAMES: [(&'static str, Preset); 3] =
         [("fast", Preset::Fast), ("balanced", Preset::Balanced), ("best", Preset::Best)];
 }
+
+/// Subtrees are no longer moved after a pass that spares less than this share of all boxes' areas.
+const LITTLE: f64 = 0.002;
+
+/// What is better for two children may be worse for eight, most of all where things were cut; after so many passes this can be told.
+const TOLD: usize = 2;
 
 /// What a tree is to be good for.
 #[derive(Clone, Debug)]
@@ -171,16 +178,35 @@ fn build_of(mut references: Vec<Reference>, settings: &Settings, corners: Vec<[V
     let mut tree = binary::build(&mut references, &all, area_scale(bounds), settings, &corners);
     drop(corners);
     assert!(tree.items.len() <= MOST_ITEMS, "a tree holds at most 2^28 things");
-    let mut plans = Plans::new(&tree.nodes, tree.scale, settings);
-    if let Some(nodes) = reinsert::improved(&tree, settings.reinsertions) {
-        // What is better for two children may be worse for eight. At equal cost fewer triangles are tested.
-        let others = Plans::new(&nodes, tree.scale, settings);
-        if others.cost <= 1.01 * plans.cost {
-            (tree.nodes, plans) = (nodes, others);
-        }
-    }
+    let plans = improved(&mut tree, settings);
     let (nodes, order) = wide::collapse(&tree, plans);
     Tree { nodes, order, bounds }
+}
+
+/// Has a tree's subtrees moved to better places, as long as that pays; gives what is cheapest in the end.
+fn improved(tree: &mut binary::Tree, settings: &Settings) -> Plans {
+    let mut plans = Plans::new(&tree.nodes, tree.scale, settings);
+    if settings.reinsertions == 0 || tree.nodes.len() < 5 {
+        return plans;
+    }
+    let mut work = Linked::new(tree);
+    for pass in 1..=settings.reinsertions {
+        let is_last = work.pass() < LITTLE || pass == settings.reinsertions;
+        if !(is_last || pass == TOLD && tree.is_cut) {
+            continue;
+        }
+        let Some(nodes) = work.in_order() else { break };
+        let others = Plans::new(&nodes, tree.scale, settings);
+        // At equal cost fewer triangles are tested.
+        if others.cost > 1.01 * plans.cost {
+            break;
+        }
+        if is_last {
+            (tree.nodes, plans) = (nodes, others);
+            break;
+        }
+    }
+    plans
 }
 
 /// A power of two that brings sizes near 1, so that areas neither overflow nor vanish.

@@ -4,34 +4,20 @@
 
 use super::binary::{Node, Tree, half_area};
 use crate::bvh::DEEPEST;
-use glam::Vec4;
 use rayon::prelude::*;
 
-/// In each pass this share of nodes, those of greatest area, are looked at.
-const SHARE: f64 = 0.08;
+/// In each pass this share of nodes are looked at.
+const SHARE: f64 = 0.04;
 /// A search for a better place ends after so many nodes.
 const PATIENCE: usize = 1 << 12;
 
-/// The nodes of a tree after so many passes; `None` if there is nothing to improve, or the tree would become too deep.
-pub fn improved(tree: &Tree, passes: usize) -> Option<Vec<Node>> {
-    if tree.nodes.len() < 5 || passes == 0 {
-        return None;
-    }
-    let mut work = Linked::new(tree);
-    for _ in 0..passes {
-        if work.pass() == 0 {
-            break;
-        }
-    }
-    work.in_order()
-}
-
 const NONE: u32 = u32::MAX;
 
-/// The tree with explicit links.
-struct Linked {
+/// A tree with explicit links, and the sum of all areas as it was at first.
+pub struct Linked {
     nodes: Vec<Link>,
     scale: f32,
+    area: f64,
 }
 
 #[derive(Clone, Copy)]
@@ -52,7 +38,7 @@ struct Move {
 }
 
 impl Linked {
-    fn new(tree: &Tree) -> Self {
+    pub fn new(tree: &Tree) -> Self {
         let scale = tree.scale;
         let link = |node: &Node| Link {
             node: *node,
@@ -70,7 +56,8 @@ impl Linked {
                 }
             }
         }
-        Linked { nodes, scale }
+        let area = nodes.iter().map(|link| f64::from(link.area)).sum();
+        Linked { nodes, scale, area }
     }
 
     fn at(&self, i: u32) -> &Link {
@@ -82,23 +69,24 @@ impl Linked {
         if a == i { b } else { a }
     }
 
-    /// Looks for better places for the largest nodes, and takes those that do not meddle with each other; gives
-    /// the number of moves.
-    fn pass(&mut self) -> usize {
-        // The root and its children stay.
+    /// Looks for better places where most may be spared, and takes those that do not meddle with each other; gives the share of all areas
+    /// that is spared.
+    pub fn pass(&mut self) -> f64 {
+        // The root and its children stay. Without a subtree its parent is not needed, and somewhere else its own box is.
+        let spared = |i: u32| (self.at(self.at(i).parent).area - self.at(i).area, i);
         let movable = |&i: &u32| i != 0 && self.at(i).parent != 0;
-        let mut candidates: Vec<u32> = (0..self.nodes.len() as u32).filter(movable).collect();
+        let mut candidates: Vec<(f32, u32)> = (0..self.nodes.len() as u32).filter(movable).map(spared).collect();
         let count = ((self.nodes.len() as f64 * SHARE) as usize).clamp(16, 1 << 24).min(candidates.len());
-        let by_area = |a: &u32, b: &u32| self.at(*b).area.total_cmp(&self.at(*a).area).then(a.cmp(b));
         if count < candidates.len() {
-            candidates.select_nth_unstable_by(count, by_area);
+            candidates.select_nth_unstable_by(count, |a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
             candidates.truncate(count);
         }
-        let mut moves: Vec<Move> = candidates.par_iter().with_min_len(64).filter_map(|&from| self.find(from)).collect();
+        let find = |&(_, from): &(f32, u32)| self.find(from);
+        let mut moves: Vec<Move> = candidates.par_iter().with_min_len(64).filter_map(find).collect();
         moves.sort_unstable_by(|a, b| b.gain.total_cmp(&a.gain).then(a.from.cmp(&b.from)));
         let mut touched = vec![false; self.nodes.len()];
-        let mut made = 0;
-        for Move { from, to, .. } in moves {
+        let mut spared = 0.0;
+        for Move { from, to, gain } in moves {
             let parent = self.at(from).parent;
             let involved = [from, to, parent, self.sibling(from), self.at(to).parent, self.at(parent).parent];
             if involved.iter().any(|&i| touched[i as usize]) || self.is_below(to, from) {
@@ -108,9 +96,9 @@ impl Linked {
                 touched[i as usize] = true;
             }
             self.apply(from, to);
-            made += 1;
+            spared += f64::from(gain);
         }
-        made
+        spared / self.area
     }
 
     /// Whether a node lies in a subtree, as it may after an earlier move of the same pass.
@@ -174,7 +162,8 @@ impl Linked {
         self.replace(new_above, to, parent);
         self.nodes[parent as usize].children = [to, from];
         self.nodes[to as usize].parent = parent;
-        self.refit(parent);
+        self.fit(parent);
+        self.refit(new_above);
     }
 
     fn replace(&mut self, parent: u32, old: u32, new: u32) {
@@ -184,21 +173,26 @@ impl Linked {
         self.nodes[new as usize].parent = parent;
     }
 
-    /// Makes boxes fit again, from a node upwards.
+    /// Makes boxes fit again, from a node upwards to where nothing changes.
     fn refit(&mut self, mut i: u32) {
-        while i != NONE {
-            let [a, b] = self.at(i).children.map(|child| self.at(child).node);
-            let (min, max): (Vec4, Vec4) = (a.min.min(b.min), a.max.max(b.max));
-            let area = half_area(min, max, self.scale);
-            let link = &mut self.nodes[i as usize];
-            link.node = Node::inner(min, max, 0, 0);
-            link.area = area;
-            i = link.parent;
+        while i != NONE && self.fit(i) {
+            i = self.at(i).parent;
         }
     }
 
+    /// Makes the box of a node fit its children; gives whether it is another one.
+    fn fit(&mut self, i: u32) -> bool {
+        let [a, b] = self.at(i).children.map(|child| self.at(child).node);
+        let node = Node::inner(a.min.min(b.min), a.max.max(b.max), 0, 0);
+        let area = half_area(node.min, node.max, self.scale);
+        let link = &mut self.nodes[i as usize];
+        let is_other = node.bounds() != link.node.bounds();
+        (link.node, link.area) = (node, area);
+        is_other
+    }
+
     /// The nodes in depth-first order with their counts; `None` if the tree is too deep.
-    fn in_order(&self) -> Option<Vec<Node>> {
+    pub fn in_order(&self) -> Option<Vec<Node>> {
         let mut nodes: Vec<Node> = Vec::with_capacity(self.nodes.len());
         let mut stack = vec![(0, 1)];
         while let Some((i, depth)) = stack.pop() {
@@ -224,5 +218,55 @@ impl Linked {
             nodes[i] = Node::inner(nodes[i].min, nodes[i].max, count, leaves[left]);
         }
         Some(nodes)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::cut::Bin;
+    use super::super::{Settings, area_scale, binary, references};
+    use super::*;
+    use crate::math::Aabb;
+    use crate::math::random::Random;
+
+    /// After each pass boxes are what is around their children, the same things are in leaves, and areas together are no larger.
+    #[test]
+    fn boxes_fit_after_each_pass() {
+        let mut random = Random(3);
+        for count in [5, 60, 3_000] {
+            // Some are great and many are small, so that the first tree is not the best.
+            let size = |random: &mut Random| 0.5 * random.unit().powi(8);
+            let boxes: Vec<Aabb> = (0..count)
+                .map(|_| {
+                    let (at, size) = (random.point(), size(&mut random));
+                    Aabb { min: at - size, max: at + size }
+                })
+                .collect();
+            let mut references = references(&boxes);
+            let all = Bin::of(&references);
+            let scale = area_scale(Aabb { min: all.min.truncate(), max: all.max.truncate() });
+            let tree = binary::build(&mut references, &all, scale, &Settings::THINGS, &[]);
+            let leaves = |nodes: &[Node]| {
+                let mut leaves: Vec<usize> = nodes.iter().filter(|node| node.is_leaf()).map(Node::first).collect();
+                leaves.sort_unstable();
+                leaves
+            };
+            let sum = |nodes: &[Node]| nodes.iter().map(|n| f64::from(half_area(n.min, n.max, scale))).sum::<f64>();
+            let (mut work, mut area, mut spared) = (Linked::new(&tree), sum(&tree.nodes), 0.0);
+            for _ in 0..4 {
+                spared += work.pass();
+                let nodes = work.in_order().expect("a shallow tree");
+                for (i, node) in nodes.iter().enumerate().filter(|(_, node)| !node.is_leaf()) {
+                    let [left, right] = [i + 1, i + node.right()].map(|child| nodes[child]);
+                    assert_eq!(node.bounds(), left.bounds().union(right.bounds()));
+                    assert_eq!(node.count(), left.count() + right.count());
+                }
+                assert_eq!(leaves(&nodes), leaves(&tree.nodes));
+                let now = sum(&nodes);
+                assert!(now <= area * (1.0 + 1e-9), "{now} after {area}");
+                area = now;
+            }
+            assert_eq!(count > 5, spared > 0.0, "{count}: {spared}");
+        }
     }
 }
