@@ -1,6 +1,6 @@
 //! Trees and grids over boxes that are hard on them.
 
-use super::traverse::is_sound;
+use super::traverse::{RayBox, is_sound};
 use super::*;
 use crate::math::random::Random;
 use crate::math::{Aabb, Ray, Vec3};
@@ -184,4 +184,26 @@ fn grid_cells_are_visited_in_order_and_only_up_to_the_hit() {
     let steep = Ray::new(Vec3::new(-0.1, -0.1, 0.1), Vec3::new(1.0, 0.5, 0.0));
     assert_eq!(visited(steep, f32::INFINITY), [[1, 1, 2], [2, 1, 2], [2, 2, 2], [3, 2, 2]]);
     assert_eq!(visited(Ray::new(Vec3::splat(3.0), Vec3::X), f32::INFINITY), [[0; 3]; 0]);
+}
+
+/// They are many: those of orthographic cameras, of voxels, towards a sun overhead.
+#[test]
+fn rays_with_zero_components_are_tame() {
+    let is_tame = |origin, dir| RayBox::new(&Ray::new(origin, dir), 3.0).is_some();
+    for (axis, least) in
+        [0.0, -0.0, 1e-45, -1e-42, f32::MIN_POSITIVE, 1e-20].into_iter().flat_map(|x| (0..3).map(move |axis| (axis, x)))
+    {
+        for length in [1e-9, 1.0, -1.0, 1e14] {
+            let mut dir = Vec3::splat(least);
+            dir[axis] = length;
+            assert!(is_tame(Vec3::ONE, dir), "{dir}");
+            dir[(axis + 1) % 3] = length;
+            assert!(is_tame(Vec3::ZERO, dir), "{dir}");
+        }
+    }
+    for extreme in [0.0, 1e-20, 1e20, f32::INFINITY, f32::NAN] {
+        assert!(!is_tame(Vec3::ONE, extreme * Vec3::X), "{extreme}");
+        assert!(!is_tame(Vec3::ONE, Vec3::new(0.0, extreme, 1.0)) || extreme < 1.0, "{extreme}");
+        assert!(!is_tame(extreme * Vec3::ONE, Vec3::X) || extreme < 1.0, "{extreme}");
+    }
 }

@@ -12,7 +12,8 @@ use super::Tally;
 use super::lanes::{Lanes, Room, Sides, Stack, WIDTH};
 use super::node::{LEAF, Node};
 use crate::math::{Ray, Vec3};
-use glam::{Vec3A, Vec4};
+use glam::Vec3A;
+use std::ops::Range;
 
 /// A ray prepared for boxes: conservative, so that rounding never loses a box that the exact ray meets.
 ///
@@ -44,7 +45,15 @@ fn pad(reach: f32) -> f32 {
 }
 
 /// In this range squares neither overflow nor vanish.
-pub(super) const ORDINARY: std::ops::Range<f32> = 1e-15..1e15;
+pub(super) const ORDINARY: Range<f32> = 1e-15..1e15;
+
+/// How long the longest component of a tame ray's direction is.
+pub(super) const LONGEST: Range<f32> = 1e-10..1e15;
+
+/// Boxes see no component of a tame ray's direction that is less than this share of the longest. So each has an inverse, whose products with
+/// coordinates do not overflow; and within a tree a ray moves by less than 10^-12 of the greatest coordinates, which is next to nothing
+/// beside the padding.
+pub(super) const LEAST_SHARE: f32 = 1e-12;
 
 impl RayBox {
     /// Prepares a tame ray for a tree with no coordinates greater than `most`: one for which nothing leaves the range of `f32`, and that
@@ -55,12 +64,13 @@ impl RayBox {
         // Coordinates themselves count too: a ray that was moved into object space is off by their rounding.
         // As a sum it is also no number where any of them is none.
         let reach = origin.abs().element_sum() + most;
-        let sizes = dir.abs().extend(reach);
-        let tame = sizes.cmpgt(Vec4::splat(ORDINARY.start)) & sizes.cmplt(Vec4::splat(ORDINARY.end));
-        if !tame.all() || !(0.0..ray.t_max).contains(&ray.t_min) {
+        let size = dir.abs();
+        let longest = size.max_element();
+        let is_tame = ORDINARY.contains(&reach) && longest >= LONGEST.start && size.element_sum() < LONGEST.end;
+        if !is_tame || !(0.0..ray.t_max).contains(&ray.t_min) {
             return None;
         }
-        let inverse = 1.0 / dir;
+        let inverse = 1.0 / size.max(Vec3A::splat(LEAST_SHARE * longest)).copysign(dir);
         let (at, outward) = (origin * -inverse, pad(reach) * inverse.abs());
         let planes = Planes {
             inverse: inverse.to_array(),

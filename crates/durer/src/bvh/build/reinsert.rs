@@ -235,10 +235,10 @@ mod tests {
         let mut random = Random(3);
         for count in [5, 60, 3_000] {
             // Some are great and many are small, so that the first tree is not the best.
-            let size = |random: &mut Random| 0.5 * random.unit().powi(8);
+            let square = |x: f32| x * x;
             let boxes: Vec<Aabb> = (0..count)
                 .map(|_| {
-                    let (at, size) = (random.point(), size(&mut random));
+                    let (at, size) = (random.point(), 0.5 * square(square(square(random.unit()))));
                     Aabb { min: at - size, max: at + size }
                 })
                 .collect();

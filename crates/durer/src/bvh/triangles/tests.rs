@@ -309,6 +309,41 @@ fn batches_answer_as_single_rays_do() {
 }
 
 #[test]
+fn rays_along_an_axis_go_together_and_meet_what_is_there() {
+    let mesh = torus(40, 20);
+    let tree = TriangleBvh::build(&mesh.0, &mesh.1, Preset::Best);
+    let mut met = 0;
+    for (axis, small) in [0.0, -0.0, 1e-42].into_iter().flat_map(|x| (0..3).map(move |axis| (axis, x))) {
+        for (sign, level) in [1.0, -1.0].into_iter().flat_map(|sign| Level::available().map(move |level| (sign, level)))
+        {
+            let tree = tree.clone().at_level(level);
+            let mut dir = Vec3::splat(small);
+            dir[axis] = sign;
+            // Through a vertex and beside it.
+            for corner in mesh.0.iter().step_by(73) {
+                let beside = |i: usize| {
+                    let mut at = *corner - 4.0 * sign * Vec3::AXES[axis];
+                    at[(axis + 1) % 3] += 0.01 * (i % 8) as f32;
+                    at[(axis + 2) % 3] += 0.01 * (i / 8) as f32;
+                    at
+                };
+                let rays: Vec<Ray> = (0..64).map(|i| Ray::new(beside(i), dir)).collect();
+                let mut hits = vec![None; rays.len()];
+                assert!(tree.packets::<false>(&rays, |i, hit| hits[i] = hit).is_empty(), "{dir}");
+                for (ray, hit) in rays.iter().zip(&hits) {
+                    let expected = brute_force(&mesh, ray);
+                    assert_eq!(hit.as_ref().map(bits), expected.first().map(bits), "{ray:?}");
+                    assert_eq!(tree.closest(ray).as_ref().map(bits), expected.first().map(bits), "{ray:?}");
+                    assert_eq!((tree.count(ray), expected.len() % 2), (expected.len(), 0), "{ray:?}");
+                    met += usize::from(hit.is_some());
+                }
+            }
+        }
+    }
+    assert!(met > 10_000, "{met}");
+}
+
+#[test]
 fn a_tree_is_a_function_of_its_triangles() {
     // So many that every step has parts that run side by side.
     let mesh = soup(&mut Random(5), 40_000, 0.05);
