@@ -12,7 +12,7 @@ use super::Tally;
 use super::lanes::{Lanes, Room, Sides, Stack, WIDTH};
 use super::node::{LEAF, Node};
 use crate::math::{Ray, Vec3};
-use glam::Vec3A;
+use glam::{Vec3A, Vec3Swizzles, Vec4};
 use std::ops::Range;
 
 /// A ray prepared for boxes: conservative, so that rounding never loses a box that the exact ray meets.
@@ -47,13 +47,10 @@ fn pad(reach: f32) -> f32 {
 /// In this range squares neither overflow nor vanish.
 pub(super) const ORDINARY: Range<f32> = 1e-15..1e15;
 
-/// How long the longest component of a tame ray's direction is.
-pub(super) const LONGEST: Range<f32> = 1e-10..1e15;
-
-/// Boxes see no component of a tame ray's direction that is less than this share of the longest. So each has an inverse, whose products with
-/// coordinates do not overflow; and within a tree a ray moves by less than 10^-12 of the greatest coordinates, which is next to nothing
-/// beside the padding.
-pub(super) const LEAST_SHARE: f32 = 1e-12;
+/// If a component of a direction is at least so long, others may be as small as they like: boxes see none that is less than what is
+/// [`ORDINARY`], so products of inverses and coordinates do not overflow. Within a tree that moves a ray by less than 10^-12 of the greatest
+/// coordinates, which is next to nothing beside the padding.
+pub(super) const LONG: f32 = 1e-3;
 
 impl RayBox {
     /// Prepares a tame ray for a tree with no coordinates greater than `most`: one for which nothing leaves the range of `f32`, and that
@@ -62,20 +59,22 @@ impl RayBox {
     pub fn new(ray: &Ray, most: f32) -> Option<Self> {
         let (origin, dir) = (Vec3A::from(ray.origin), Vec3A::from(ray.dir));
         // Coordinates themselves count too: a ray that was moved into object space is off by their rounding.
-        // As a sum it is also no number where any of them is none.
-        let reach = origin.abs().element_sum() + most;
-        let size = dir.abs();
-        let longest = size.max_element();
-        let is_tame = ORDINARY.contains(&reach) && longest >= LONGEST.start && size.element_sum() < LONGEST.end;
+        // As a sum, in each lane, it is also no number where any of them is none.
+        let from = origin.abs();
+        let reach = (from + from.yzx()) + (from.zxy() + most);
+        let sizes = dir.abs().extend(reach.x);
+        let (above, below) = (sizes.cmpgt(Vec4::splat(ORDINARY.start)), sizes.cmplt(Vec4::splat(ORDINARY.end)));
+        let is_tame = below.all() && (above.all() || above.test(3) && dir.abs().max_element() >= LONG);
         if !is_tame || !(0.0..ray.t_max).contains(&ray.t_min) {
             return None;
         }
-        let inverse = 1.0 / size.max(Vec3A::splat(LEAST_SHARE * longest)).copysign(dir);
-        let (at, outward) = (origin * -inverse, pad(reach) * inverse.abs());
+        let inverse = (1.0 / dir).abs().min(Vec3A::splat(1.0 / ORDINARY.start)).copysign(dir);
+        // As `pad`, for what that adds is nothing beside an ordinary reach.
+        let outward = (8.0 * f32::EPSILON * reach).copysign(dir);
         let planes = Planes {
             inverse: inverse.to_array(),
-            near_origin: (at - outward).to_array(),
-            far_origin: (at + outward).to_array(),
+            near_origin: ((origin + outward) * -inverse).to_array(),
+            far_origin: ((origin - outward) * -inverse).to_array(),
         };
         // Not the zero with a sign, for ends of intervals are compared as integers.
         let t_min = ray.t_min + 0.0;

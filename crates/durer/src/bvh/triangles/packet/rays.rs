@@ -2,7 +2,7 @@
 
 use super::{Axes, Meeting};
 use crate::bvh::lanes::{Lanes, Numbers, WIDE, WIDTH, Wide};
-use crate::bvh::traverse::{LEAST_SHARE, LONGEST, ORDINARY};
+use crate::bvh::traverse::{LONG, ORDINARY};
 use crate::bvh::triangles::leaf::flat;
 use crate::math::{Doubles, Ray, Vec3};
 use crate::shape::watertight::{Exact, Plane, uv_across};
@@ -89,17 +89,19 @@ impl Rays {
     #[inline(always)]
     pub fn prepare<L: Lanes>(&mut self, lanes: L, axes: &Axes, most: f32) -> u32 {
         let wide = lanes.wide();
-        let (mut far, mut longest) = (wide.splat(0.0), wide.splat(0.0));
+        let (least, greatest) = (wide.splat(ORDINARY.start), wide.splat(ORDINARY.end));
+        let (mut far, mut above, mut long) = (wide.splat(0.0), u32::MAX, 0);
         let mut tame = wide.lt(wide.load(&self.t_min), wide.load(&self.t_last));
         for axis in 0..3 {
             let (o, length) = (wide.abs(wide.load(&self.origin[axis])), wide.abs(wide.load(&self.dir[axis])));
-            tame &= wide.lt(o, wide.splat(ORDINARY.end)) & wide.lt(length, wide.splat(LONGEST.end));
-            (far, longest) = (wide.max(far, o), wide.max(longest, length));
+            tame &= wide.lt(o, greatest) & wide.lt(length, greatest);
+            above &= wide.lt(least, length);
+            long |= wide.le(wide.splat(LONG), length);
+            far = wide.max(far, o);
         }
+        tame &= above | long;
         let reach = wide.add(far, wide.splat(most));
-        tame &= wide.lt(wide.splat(ORDINARY.start), reach) & wide.lt(reach, wide.splat(ORDINARY.end));
-        tame &= wide.le(wide.splat(LONGEST.start), longest);
-        let least = wide.mul(longest, wide.splat(LEAST_SHARE));
+        tame &= wide.lt(least, reach) & wide.lt(reach, greatest);
         let pad = wide.add(wide.mul(wide.splat(8.0 * f32::EPSILON), reach), wide.splat(f32::MIN_POSITIVE));
         for axis in 0..3 {
             let (o, length) = (wide.load(&self.origin[axis]), wide.abs(wide.load(&self.dir[axis])));
