@@ -39,22 +39,25 @@ struct Planes {
     far_origin: [f32; 3],
 }
 
-/// How far the sides of boxes are moved outwards, where numbers are no greater than `reach`.
+/// How far the sides of boxes are moved outwards, where numbers are no greater than 1.
+pub(super) const PADDING: f32 = 8.0 * f32::EPSILON;
+
+/// How far they are where numbers are no greater than `reach`.
 fn pad(reach: f32) -> f32 {
-    8.0 * f32::EPSILON * reach + f32::MIN_POSITIVE
+    PADDING * reach + f32::MIN_POSITIVE
 }
 
 /// In this range squares neither overflow nor vanish.
 pub(super) const ORDINARY: Range<f32> = 1e-15..1e15;
 
 /// If a component of a direction is at least so long, others may be as small as they like: boxes see none that is less than what is
-/// [`ORDINARY`], so products of inverses and coordinates do not overflow. Within a tree that moves a ray by less than 10^-12 of the greatest
-/// coordinates, which is next to nothing beside the padding.
-pub(super) const LONG: f32 = 1e-3;
+/// [`ORDINARY`], so products of inverses and coordinates do not overflow. Within a tree that moves a ray by at most 10^-9 of its reach, a
+/// thousandth of the padding.
+pub(super) const LONG: f32 = 1e-6;
 
 impl RayBox {
-    /// Prepares a tame ray for a tree with no coordinates greater than `most`: one for which nothing leaves the range of `f32`, and that
-    /// begins no earlier than at its origin. So tests of boxes may be in a short form.
+    /// Prepares a tame ray for a tree with no coordinates greater than `most`: one for which nothing leaves the range of `f32` (zeros beside
+    /// a [`LONG`] component do not), and that begins no earlier than at its origin. So tests of boxes may be in a short form.
     #[inline(always)]
     pub fn new(ray: &Ray, most: f32) -> Option<Self> {
         let (origin, dir) = (Vec3A::from(ray.origin), Vec3A::from(ray.dir));
@@ -62,15 +65,16 @@ impl RayBox {
         // As a sum, in each lane, it is also no number where any of them is none.
         let from = origin.abs();
         let reach = (from + from.yzx()) + (from.zxy() + most);
-        let sizes = dir.abs().extend(reach.x);
+        let size = dir.abs();
+        let sizes = size.extend(reach.x);
         let (above, below) = (sizes.cmpgt(Vec4::splat(ORDINARY.start)), sizes.cmplt(Vec4::splat(ORDINARY.end)));
-        let is_tame = below.all() && (above.all() || above.test(3) && dir.abs().max_element() >= LONG);
+        let is_tame = below.all() && (above.all() || above.test(3) && size.max_element() >= LONG);
         if !is_tame || !(0.0..ray.t_max).contains(&ray.t_min) {
             return None;
         }
         let inverse = (1.0 / dir).abs().min(Vec3A::splat(1.0 / ORDINARY.start)).copysign(dir);
-        // As `pad`, for what that adds is nothing beside an ordinary reach.
-        let outward = (8.0 * f32::EPSILON * reach).copysign(dir);
+        // `pad` without its least number, which is nothing beside an ordinary reach.
+        let outward = (PADDING * reach).copysign(dir);
         let planes = Planes {
             inverse: inverse.to_array(),
             near_origin: ((origin + outward) * -inverse).to_array(),

@@ -32,10 +32,10 @@ impl Preset {
         [("fast", Preset::Fast), ("balanced", Preset::Balanced), ("best", Preset::Best)];
 }
 
-/// Subtrees are no longer moved after a pass that spares less than this share of all boxes' areas.
+/// No more subtrees are moved after a pass that spares less than this share of all boxes' areas.
 const LITTLE: f64 = 0.002;
 
-/// What is better for two children may be worse for eight, most of all where things were cut; after so many passes this can be told.
+/// What is better for two children may be worse for eight, most of all where things were cut. After so many passes this can be told.
 const TOLD: usize = 2;
 
 /// What a tree is to be good for.
@@ -49,7 +49,7 @@ pub(super) struct Settings {
     pub bins: fn(usize) -> usize,
     /// Leaves hold at most so many things.
     pub leaf_size: usize,
-    /// Passes that move subtrees to better places.
+    /// At most so many passes move subtrees to better places.
     pub reinsertions: usize,
     /// How many references may be added by cutting triangles, as a share of them.
     pub splits: f32,
@@ -183,26 +183,28 @@ fn build_of(mut references: Vec<Reference>, settings: &Settings, corners: Vec<[V
     Tree { nodes, order, bounds }
 }
 
-/// Has a tree's subtrees moved to better places, as long as that pays; gives what is cheapest in the end.
+/// Has a tree's subtrees moved to better places, as long as that pays; gives what is then cheapest for each node.
 fn improved(tree: &mut binary::Tree, settings: &Settings) -> Plans {
     let mut plans = Plans::new(&tree.nodes, tree.scale, settings);
+    // With fewer nodes all are the root and its children, which stay.
     if settings.reinsertions == 0 || tree.nodes.len() < 5 {
         return plans;
     }
     let mut work = Linked::new(tree);
     for pass in 1..=settings.reinsertions {
-        let is_last = work.pass() < LITTLE || pass == settings.reinsertions;
-        if !(is_last || pass == TOLD && tree.is_cut) {
-            continue;
+        // Also where areas are no numbers nothing more is tried.
+        let goes_on = work.pass() >= LITTLE && pass < settings.reinsertions;
+        if !goes_on || pass == TOLD && tree.is_cut {
+            let Some(nodes) = work.in_order() else { break };
+            let others = Plans::new(&nodes, tree.scale, settings);
+            // At equal cost fewer triangles are tested.
+            if others.cost <= 1.01 * plans.cost {
+                (tree.nodes, plans) = (nodes, others);
+            } else {
+                break;
+            }
         }
-        let Some(nodes) = work.in_order() else { break };
-        let others = Plans::new(&nodes, tree.scale, settings);
-        // At equal cost fewer triangles are tested.
-        if others.cost > 1.01 * plans.cost {
-            break;
-        }
-        if is_last {
-            (tree.nodes, plans) = (nodes, others);
+        if !goes_on {
             break;
         }
     }

@@ -312,35 +312,37 @@ fn batches_answer_as_single_rays_do() {
 fn rays_along_an_axis_go_together_and_meet_what_is_there() {
     let mesh = torus(40, 20);
     let tree = TriangleBvh::build(&mesh.0, &mesh.1, Preset::Best);
+    let trees: Vec<_> = Level::available().map(|level| tree.clone().at_level(level)).collect();
     let mut met = 0;
-    for (axis, small) in [0.0, -0.0, 1e-42].into_iter().flat_map(|x| (0..3).map(move |axis| (axis, x))) {
-        for (sign, level) in [1.0, -1.0].into_iter().flat_map(|sign| Level::available().map(move |level| (sign, level)))
-        {
-            let tree = tree.clone().at_level(level);
-            let mut dir = Vec3::splat(small);
-            dir[axis] = sign;
-            // Through a vertex and beside it.
-            for corner in mesh.0.iter().step_by(73) {
-                let beside = |i: usize| {
-                    let mut at = *corner - 4.0 * sign * Vec3::AXES[axis];
-                    at[(axis + 1) % 3] += 0.01 * (i % 8) as f32;
-                    at[(axis + 2) % 3] += 0.01 * (i / 8) as f32;
-                    at
-                };
-                let rays: Vec<Ray> = (0..64).map(|i| Ray::new(beside(i), dir)).collect();
-                let mut hits = vec![None; rays.len()];
-                assert!(tree.packets::<false>(&rays, |i, hit| hits[i] = hit).is_empty(), "{dir}");
-                for (ray, hit) in rays.iter().zip(&hits) {
-                    let expected = brute_force(&mesh, ray);
-                    assert_eq!(hit.as_ref().map(bits), expected.first().map(bits), "{ray:?}");
-                    assert_eq!(tree.closest(ray).as_ref().map(bits), expected.first().map(bits), "{ray:?}");
-                    assert_eq!((tree.count(ray), expected.len() % 2), (expected.len(), 0), "{ray:?}");
-                    met += usize::from(hit.is_some());
-                }
+    for (k, corner) in mesh.0.iter().enumerate().step_by(11) {
+        let (axis, small) = (k % 3, [0.0, -0.0, 1e-42][k / 3 % 3]);
+        let (length, away) = ([1e-6, -1.0, 1.0, -1e14][k % 4], [4.0, 1e4][k / 2 % 2]);
+        let mut dir = Vec3::splat(small);
+        dir[axis] = length;
+        // Through a vertex and beside it.
+        let beside = |i: usize| {
+            let mut at = *corner - away * length.signum() * Vec3::AXES[axis];
+            at[(axis + 1) % 3] += 0.01 * (i % 8) as f32;
+            at[(axis + 2) % 3] += 0.01 * (i / 8) as f32;
+            at
+        };
+        let rays: Vec<Ray> = (0..64).map(|i| Ray::new(beside(i), dir)).collect();
+        let expected: Vec<_> = rays.iter().map(|ray| brute_force(&mesh, ray)).collect();
+        for tree in &trees {
+            let (mut hits, mut occluded) = (vec![None; rays.len()], vec![false; rays.len()]);
+            assert!(tree.packets::<false>(&rays, |i, hit| hits[i] = hit).is_empty(), "{dir}");
+            assert!(tree.packets::<true>(&rays, |i, hit| occluded[i] = hit.is_some()).is_empty(), "{dir}");
+            for (i, (ray, expected)) in rays.iter().zip(&expected).enumerate() {
+                let first = expected.first().map(bits);
+                assert_eq!(hits[i].as_ref().map(bits), first, "{ray:?}");
+                assert_eq!(tree.closest(ray).as_ref().map(bits), first, "{ray:?}");
+                assert_eq!((occluded[i], tree.occluded(ray)), (first.is_some(), first.is_some()), "{ray:?}");
+                assert_eq!((tree.count(ray), expected.len() % 2), (expected.len(), 0), "{ray:?}");
+                met += usize::from(first.is_some());
             }
         }
     }
-    assert!(met > 10_000, "{met}");
+    assert!(met > 5_000, "{met}");
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use super::{Axes, Meeting};
 use crate::bvh::lanes::{Lanes, Numbers, WIDE, WIDTH, Wide};
-use crate::bvh::traverse::{LONG, ORDINARY};
+use crate::bvh::traverse::{LONG, ORDINARY, PADDING};
 use crate::bvh::triangles::leaf::flat;
 use crate::math::{Doubles, Ray, Vec3};
 use crate::shape::watertight::{Exact, Plane, uv_across};
@@ -102,7 +102,7 @@ impl Rays {
         tame &= above | long;
         let reach = wide.add(far, wide.splat(most));
         tame &= wide.lt(least, reach) & wide.lt(reach, greatest);
-        let pad = wide.add(wide.mul(wide.splat(8.0 * f32::EPSILON), reach), wide.splat(f32::MIN_POSITIVE));
+        let pad = wide.add(wide.mul(wide.splat(PADDING), reach), wide.splat(f32::MIN_POSITIVE));
         for axis in 0..3 {
             let (o, length) = (wide.load(&self.origin[axis]), wide.abs(wide.load(&self.dir[axis])));
             let sign = wide.splat(if axes.negative[axis] == 1 { -1.0 } else { 1.0 });
