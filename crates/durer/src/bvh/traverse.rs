@@ -42,11 +42,6 @@ struct Planes {
 /// How far the sides of boxes are moved outwards, where numbers are no greater than 1.
 pub(super) const PADDING: f32 = 8.0 * f32::EPSILON;
 
-/// How far they are where numbers are no greater than `reach`.
-fn pad(reach: f32) -> f32 {
-    PADDING * reach + f32::MIN_POSITIVE
-}
-
 /// In this range squares neither overflow nor vanish.
 pub(super) const ORDINARY: Range<f32> = 1e-15..1e15;
 
@@ -72,8 +67,7 @@ impl RayBox {
         if !is_tame || !(0.0..ray.t_max).contains(&ray.t_min) {
             return None;
         }
-        let inverse = (1.0 / dir).abs().min(Vec3A::splat(1.0 / ORDINARY.start)).copysign(dir);
-        // `pad` without its least number, which is nothing beside an ordinary reach.
+        let inverse = 1.0 / size.max(Vec3A::splat(ORDINARY.start)).copysign(dir);
         let outward = (PADDING * reach).copysign(dir);
         let planes = Planes {
             inverse: inverse.to_array(),
@@ -98,7 +92,8 @@ impl RayBox {
         let dir = ray.dir / scale;
         // What moves the ray by much less than the padding counts as zero, and what has no inverse.
         let still = dir.abs().cmplt(Vec3::splat(1e-30));
-        let outward = Vec3::splat(pad(reach)).copysign(dir);
+        // The reach may be so small that its share vanishes.
+        let outward = Vec3::splat(PADDING * reach + f32::MIN_POSITIVE).copysign(dir);
         let planes = Planes {
             inverse: Vec3::select(still, Vec3::INFINITY.copysign(dir), 1.0 / dir).to_array(),
             near_origin: (ray.origin + outward).to_array(),

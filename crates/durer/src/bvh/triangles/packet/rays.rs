@@ -102,7 +102,7 @@ impl Rays {
         tame &= above | long;
         let reach = wide.add(far, wide.splat(most));
         tame &= wide.lt(least, reach) & wide.lt(reach, greatest);
-        let pad = wide.add(wide.mul(wide.splat(PADDING), reach), wide.splat(f32::MIN_POSITIVE));
+        let pad = wide.mul(wide.splat(PADDING), reach);
         for axis in 0..3 {
             let (o, length) = (wide.load(&self.origin[axis]), wide.abs(wide.load(&self.dir[axis])));
             let sign = wide.splat(if axes.negative[axis] == 1 { -1.0 } else { 1.0 });
