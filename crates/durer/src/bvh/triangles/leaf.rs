@@ -30,10 +30,16 @@ impl<N: Numbers> Flat<N> {
     /// Roundings are the same as there, so signs of edge functions are exact where they are not zero.
     #[inline(always)]
     pub fn new(numbers: N, corners: [[N::Floats; 3]; 3], origin: [N::Floats; 3], shear: [N::Floats; 2]) -> Self {
+        Flat::seen(numbers, from_origin(numbers, corners, origin), shear)
+    }
+
+    /// As [`Flat::new`], from corners [as seen from the origin](from_origin).
+    #[inline(always)]
+    pub fn seen(numbers: N, corners: [[N::Floats; 3]; 3], shear: [N::Floats; 2]) -> Self {
         let corners @ [a, b, c] = [
-            flat(numbers, corners[0], origin, shear),
-            flat(numbers, corners[1], origin, shear),
-            flat(numbers, corners[2], origin, shear),
+            across(numbers, corners[0], shear),
+            across(numbers, corners[1], shear),
+            across(numbers, corners[2], shear),
         ];
         let edges @ [u, v, w] = [edge(numbers, b, c), edge(numbers, c, a), edge(numbers, a, b)];
         let sign = numbers.mul(numbers.min(u, numbers.min(v, w)), numbers.max(u, numbers.max(v, w)));
@@ -56,7 +62,7 @@ impl<N: Numbers> Flat<N> {
     #[inline(always)]
     pub fn heights(&self, numbers: N) -> [N::Floats; 2] {
         let [a, b, c] = self.corners;
-        [numbers.min(a[2], numbers.min(b[2], c[2])), numbers.max(a[2], numbers.max(b[2], c[2]))]
+        ends(numbers, [a[2], b[2], c[2]])
     }
 
     /// Where those that are crossed for sure are.
@@ -88,20 +94,31 @@ impl<N: Numbers> Flat<N> {
     }
 }
 
-/// Corners in the plane across the ray, and their heights along the third axis.
+/// The least and the greatest of three numbers.
 #[inline(always)]
-pub fn flat<N: Numbers>(
+pub fn ends<N: Numbers>(numbers: N, [a, b, c]: [N::Floats; 3]) -> [N::Floats; 2] {
+    [numbers.min(a, numbers.min(b, c)), numbers.max(a, numbers.max(b, c))]
+}
+
+/// Corners as seen from an origin.
+#[inline(always)]
+pub fn from_origin<N: Numbers>(
     numbers: N,
-    p: [N::Floats; 3],
+    corners: [[N::Floats; 3]; 3],
     origin: [N::Floats; 3],
-    shear: [N::Floats; 2],
-) -> [N::Floats; 3] {
-    let z = numbers.sub(p[2], origin[2]);
-    [
-        numbers.sub(numbers.sub(p[0], origin[0]), numbers.mul(shear[0], z)),
-        numbers.sub(numbers.sub(p[1], origin[1]), numbers.mul(shear[1], z)),
-        z,
-    ]
+) -> [[N::Floats; 3]; 3] {
+    macro_rules! seen {
+        ($corner:literal: $($axis:literal)*) => {
+            [$(numbers.sub(corners[$corner][$axis], origin[$axis])),*]
+        };
+    }
+    [seen!(0: 0 1 2), seen!(1: 0 1 2), seen!(2: 0 1 2)]
+}
+
+/// Where a point that is seen from the origin lies in the plane across the ray, and its height along the third axis.
+#[inline(always)]
+pub fn across<N: Numbers>(numbers: N, [x, y, z]: [N::Floats; 3], shear: [N::Floats; 2]) -> [N::Floats; 3] {
+    [numbers.sub(x, numbers.mul(shear[0], z)), numbers.sub(y, numbers.mul(shear[1], z)), z]
 }
 
 /// The edge function of the edge from `p` to `q` about the origin.

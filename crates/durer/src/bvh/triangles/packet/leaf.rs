@@ -1,13 +1,52 @@
 //! A packet among the triangles of a leaf.
 
-use super::{Meeting, Packet};
+use super::{Meeting, Packet, RAYS};
 use crate::bvh::lanes::{Columns, Lanes, Numbers, WIDE, WIDTH, Wide};
 use crate::bvh::node;
-use crate::bvh::triangles::leaf::Flat;
+use crate::bvh::triangles::leaf::{Flat, ends, from_origin};
 use crate::bvh::triangles::number;
-use crate::shape::watertight::Sheared;
+
+/// The triangles of a leaf as seen from a point, by corner and axis.
+struct Seen {
+    corners: [[[f32; WIDTH]; 3]; 3],
+}
+
+impl Seen {
+    const NOTHING: Seen = Seen { corners: [[[0.0; WIDTH]; 3]; 3] };
+
+    /// The corners of one of them, in all lanes.
+    #[inline(always)]
+    fn triangle<N: Numbers>(&self, numbers: N, lane: usize) -> [[N::Floats; 3]; 3] {
+        macro_rules! corner {
+            ($corner:literal: $($axis:literal)*) => {
+                [$(numbers.splat(self.corners[$corner][$axis][lane])),*]
+            };
+        }
+        [corner!(0: 0 1 2), corner!(1: 0 1 2), corner!(2: 0 1 2)]
+    }
+}
 
 impl Packet<'_> {
+    /// Triangles as seen from where the rays begin, if all do at the same point.
+    #[inline(always)]
+    fn as_seen<L: Lanes>(&self, lanes: L, corners: [[L::Floats; 3]; 3]) -> [[L::Floats; 3]; 3] {
+        let [x, y, z] = self.axes.turned();
+        let [e, ..] = &self.sixteens;
+        from_origin(lanes, corners, lanes.splat3([e.origin[x][0], e.origin[y][0], e.origin[z][0]]))
+    }
+
+    /// The same, stored.
+    #[inline(always)]
+    fn seen<L: Lanes>(&self, lanes: L, corners: [[L::Floats; 3]; 3]) -> Seen {
+        let corners = self.as_seen(lanes, corners);
+        macro_rules! corner {
+            ($corner:literal: $($axis:literal)*) => {
+                [$(lanes.store(corners[$corner][$axis])),*]
+            };
+        }
+        Seen { corners: [corner!(0: 0 1 2), corner!(1: 0 1 2), corner!(2: 0 1 2)] }
+    }
+
     /// Shows the triangles of a leaf to some rays: side by side are either those or these, whichever is less work.
     #[inline(always)]
     pub(super) fn leaf<L: Lanes, const ANY: bool>(&mut self, lanes: L, leaf: u32, rays: u64) {
@@ -18,8 +57,10 @@ impl Packet<'_> {
         }
         // Found by measurement: where few rays of a group are left, or triangles are many, rays go one by one.
         let met = match 2 * (rays.count_ones() as usize) < groups * (count + 4) {
-            true => self.ray_by_ray::<L, ANY>(lanes, leaf, rays),
-            false => self.one_by_one::<L, ANY>(lanes, leaf, rays),
+            true if self.is_point => self.ray_by_ray::<L, ANY, true>(lanes, leaf, rays),
+            true => self.ray_by_ray::<L, ANY, false>(lanes, leaf, rays),
+            false if self.is_point => self.one_by_one::<L, ANY, true>(lanes, leaf, rays),
+            false => self.one_by_one::<L, ANY, false>(lanes, leaf, rays),
         };
         self.met |= met;
         if ANY {
@@ -34,13 +75,18 @@ impl Packet<'_> {
         }
     }
 
-    /// Sixteen rays at once with each triangle; gives the rays that met one.
+    /// Sixteen rays at once with each triangle; gives the rays that met one. Where all begin in one `POINT`, it is known once for all how that
+    /// sees the triangles.
     #[inline(always)]
-    fn one_by_one<L: Lanes, const ANY: bool>(&mut self, lanes: L, leaf: u32, rays: u64) -> u64 {
+    fn one_by_one<L: Lanes, const ANY: bool, const POINT: bool>(&mut self, lanes: L, leaf: u32, rays: u64) -> u64 {
         let wide = lanes.wide();
         let (rows, count) = self.bvh.rows(leaf);
         let [x, y, z] = self.axes.turned();
         let columns = Columns::new(&self.axes.turn, count);
+        let seen = match POINT {
+            true => self.seen(lanes, lanes.corners(rows, columns)),
+            false => Seen::NOTHING,
+        };
         let mut all_met = 0;
         // The number of each triangle's meeting, if there is one.
         let mut meetings = [0; WIDTH];
@@ -52,21 +98,33 @@ impl Packet<'_> {
             let e = &mut self.sixteens[group];
             let origin = [wide.load(&e.origin[x]), wide.load(&e.origin[y]), wide.load(&e.origin[z])];
             let shear = [wide.load(&e.shear[0]), wide.load(&e.shear[1])];
-            for (lane, meeting) in meetings.iter_mut().enumerate().take(count) {
-                let [a, b, c] = columns.triangle(rows, lane);
-                let triangle = [wide.splat3(a.into()), wide.splat3(b.into()), wide.splat3(c.into())];
-                let flat = Flat::new(wide, triangle, origin, shear);
-                let missed = flat.missed(wide);
-                if !missed & active == 0 {
-                    continue;
-                }
-                let [lowest, highest] = flat.heights(wide);
+            // First all tests, so that none waits for what another one finds.
+            let (mut masks, mut some) = ([[0; 2]; WIDTH], 0);
+            for (lane, masks) in masks.iter_mut().enumerate().take(count) {
+                let flat = match POINT {
+                    true => Flat::seen(wide, seen.triangle(wide, lane), shear),
+                    false => {
+                        let [a, b, c] = columns.triangle(rows, lane);
+                        let triangle = [wide.splat3(a.into()), wide.splat3(b.into()), wide.splat3(c.into())];
+                        Flat::new(wide, triangle, origin, shear)
+                    }
+                };
+                let candidates = !flat.missed(wide) & active;
+                *masks = [candidates, flat.crossed(wide)];
+                some |= u32::from(candidates != 0) << lane;
+            }
+            while some != 0 {
+                let lane = some.trailing_zeros() as usize & (WIDTH - 1);
+                some &= some - 1;
+                let [candidates, crossed] = masks[lane];
+                let corners = columns.triangle(rows, lane);
+                let [a, b, c] = corners;
+                let z = wide.splat3([a.z, b.z, c.z]);
+                let z = [wide.sub(z[0], origin[2]), wide.sub(z[1], origin[2]), wide.sub(z[2], origin[2])];
+                let [lowest, highest] = ends(wide, z);
                 let beside = wide.lt(wide.load(&e.heights[1]), lowest) | wide.lt(highest, wide.load(&e.heights[0]));
-                let candidates = !(missed | beside) & active;
-                if candidates == 0 {
-                    continue;
-                }
-                let mut crossed = candidates & flat.crossed(wide);
+                let candidates = candidates & active & !beside;
+                let mut crossed = candidates & crossed;
                 let mut met = 0;
                 if ANY {
                     // Where any hit will do, it need not be known where it is.
@@ -75,15 +133,12 @@ impl Packet<'_> {
                         & wide.lt(highest, wide.load(&e.heights[3]));
                     crossed &= !met;
                 }
-                let mut unsure = candidates & !(crossed | met);
-                // Hidden, or the compiler would prepare this for every triangle.
-                let corners = std::hint::black_box([a, b, c]);
-                while unsure != 0 {
-                    let lane = unsure.trailing_zeros();
-                    unsure &= unsure - 1;
-                    crossed |= u32::from(Sheared::new(&e.ray(lane as usize)).crosses(corners)) << lane;
+                let unsure = candidates & !(crossed | met);
+                if unsure != 0 {
+                    crossed |= e.crossing(unsure, corners);
                 }
-                if !ANY || crossed != 0 {
+                if crossed != 0 {
+                    let meeting = &mut meetings[lane];
                     if *meeting == 0 {
                         *meeting = self.meetings.len() as u32;
                         self.meetings.push(Meeting::new(corners, number(rows, count, lane)));
@@ -101,40 +156,49 @@ impl Packet<'_> {
 
     /// All triangles at once with each ray.
     #[inline(always)]
-    fn ray_by_ray<L: Lanes, const ANY: bool>(&mut self, lanes: L, leaf: u32, mut rays: u64) -> u64 {
+    fn ray_by_ray<L: Lanes, const ANY: bool, const POINT: bool>(&mut self, lanes: L, leaf: u32, rays: u64) -> u64 {
         let (rows, count) = self.bvh.rows(leaf);
         let [x, y, z] = self.axes.turned();
         let columns = Columns::new(&self.axes.turn, count);
         let triangles = lanes.corners(rows, columns);
-        let mut all_met = 0;
-        while rays != 0 {
-            let ray = rays.trailing_zeros() as usize;
-            rays &= rays - 1;
-            let (e, i) = (&mut self.sixteens[ray / WIDE], ray % WIDE);
+        let seen = self.as_seen(lanes, triangles);
+        let (mut all_met, mut some) = (0, 0);
+        let mut masks = [[0u8; 2]; RAYS];
+        let mut left = rays;
+        while left != 0 {
+            let ray = left.trailing_zeros() as usize & (RAYS - 1);
+            left &= left - 1;
+            let (e, i) = (&self.sixteens[ray / WIDE], ray % WIDE);
             let origin = lanes.splat3([e.origin[x][i], e.origin[y][i], e.origin[z][i]]);
             let shear = [lanes.splat(e.shear[0][i]), lanes.splat(e.shear[1][i])];
-            let flat = Flat::new(lanes, triangles, origin, shear);
+            let flat = match POINT {
+                true => Flat::seen(lanes, seen, shear),
+                false => Flat::new(lanes, triangles, origin, shear),
+            };
             let [lowest, highest] = flat.heights(lanes);
             let beside =
                 lanes.lt(lanes.splat(e.heights[1][i]), lowest) | lanes.lt(highest, lanes.splat(e.heights[0][i]));
-            let mut candidates = !(flat.missed(lanes) | beside) & ((1 << count) - 1);
-            if candidates == 0 {
-                continue;
-            }
+            let candidates = !(flat.missed(lanes) | beside) & ((1 << count) - 1);
             let crossed = flat.crossed(lanes);
+            masks[ray] = [candidates as u8, crossed as u8];
+            some |= u64::from(candidates != 0) << ray;
             if ANY {
                 let inside =
                     lanes.lt(lanes.splat(e.heights[2][i]), lowest) & lanes.lt(highest, lanes.splat(e.heights[3][i]));
-                if candidates & crossed & inside != 0 {
-                    all_met |= 1 << ray;
-                    continue;
-                }
+                all_met |= u64::from(candidates & crossed & inside != 0) << ray;
             }
+        }
+        some &= !all_met;
+        while some != 0 {
+            let ray = some.trailing_zeros() as usize & (RAYS - 1);
+            some &= some - 1;
+            let (e, i) = (&mut self.sixteens[ray / WIDE], ray % WIDE);
+            let [mut candidates, crossed] = masks[ray].map(u32::from);
             while candidates != 0 {
                 let lane = candidates.trailing_zeros() as usize;
                 candidates &= candidates - 1;
                 let corners = columns.triangle(rows, lane);
-                if crossed >> lane & 1 == 0 && !Sheared::new(&e.ray(i)).crosses(corners) {
+                if crossed >> lane & 1 == 0 && e.crossing(1 << i, corners) == 0 {
                     continue;
                 }
                 let meeting = Meeting::new(corners, number(rows, count, lane));

@@ -106,6 +106,7 @@ impl<A: FnMut(usize, Option<TriangleHit>), const ANY: bool> Kernel for Packets<'
             numbers: [0; RAYS],
             sixteens: [Rays::EMPTY; RAYS / WIDE],
             groups: 0,
+            is_point: false,
             alive: 0,
             met: 0,
             limit: 0.0,
@@ -202,6 +203,8 @@ struct Packet<'a> {
     sixteens: [Rays; RAYS / WIDE],
     /// How many of the sixteens hold rays.
     groups: usize,
+    /// Whether all begin at the same point.
+    is_point: bool,
     /// The rays that still search.
     alive: u64,
     /// Those that met anything.
@@ -264,7 +267,7 @@ impl Packet<'_> {
 
     /// Whether rays are so near each other that they mostly meet the same boxes.
     #[inline(always)]
-    fn is_narrow<L: Lanes>(&self, lanes: L) -> bool {
+    fn is_narrow<L: Lanes>(&mut self, lanes: L) -> bool {
         let wide = lanes.wide();
         macro_rules! extent {
             ($($of:tt)*) => {
@@ -272,8 +275,28 @@ impl Packet<'_> {
             };
         }
         let apart = WIDEST_START * self.bvh.bounds.size().max_element();
+        self.is_point = self.is_point(lanes);
         extent!(shear[0]).max(extent!(shear[1])) <= WIDEST_ANGLE
-            && extent!(origin[0]).max(extent!(origin[1])).max(extent!(origin[2])) <= apart
+            && (self.is_point || extent!(origin[0]).max(extent!(origin[1])).max(extent!(origin[2])) <= apart)
+    }
+
+    /// Whether all rays begin at the same point.
+    #[inline(always)]
+    fn is_point<L: Lanes>(&self, lanes: L) -> bool {
+        let wide = lanes.wide();
+        let mut same = u32::MAX;
+        for axis in 0..3 {
+            let [first, .., last] = self.sixteens[0].origin[axis];
+            if first != last {
+                return false;
+            }
+            let first = wide.splat(first);
+            for group in 0..self.groups {
+                let origin = wide.load(&self.sixteens[group].origin[axis]);
+                same &= wide.le(first, origin) & wide.le(origin, first);
+            }
+        }
+        same & 0xffff == 0xffff
     }
 
     /// Tells what so many rays have found.
@@ -309,6 +332,12 @@ impl Packet<'_> {
     /// By corner and coordinate, the triangles of eight meetings.
     #[inline(always)]
     fn corners<L: Lanes>(&self, lanes: L, numbers: &[f32; WIDTH]) -> [[L::Floats; 3]; 3] {
+        let [first, ..] = *numbers;
+        let (all, one) = (lanes.load(numbers), lanes.splat(first));
+        if lanes.not_later(all, one) & lanes.not_later(one, all) == 255 {
+            let [a, b, c] = self.meetings[first.to_bits() as usize].corners;
+            return [lanes.splat3(a), lanes.splat3(b), lanes.splat3(c)];
+        }
         // Eight of the nine numbers of each at once, then the last.
         let (mut rows, mut lasts) = ([lanes.splat(0.0); WIDTH], [0.0; WIDTH]);
         for ((row, last), number) in rows.iter_mut().zip(&mut lasts).zip(numbers) {

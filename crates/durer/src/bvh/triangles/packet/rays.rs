@@ -3,9 +3,10 @@
 use super::{Axes, Meeting};
 use crate::bvh::lanes::{Lanes, Numbers, WIDE, WIDTH, Wide};
 use crate::bvh::traverse::{LONG, ORDINARY, PADDING};
-use crate::bvh::triangles::leaf::flat;
+use crate::bvh::triangles::leaf::{across, from_origin};
 use crate::math::{Doubles, Ray, Vec3};
-use crate::shape::watertight::{Exact, Plane, uv_across};
+use crate::shape::watertight::{Exact, Plane, Sheared, uv_across};
+use glam::Vec3A;
 
 /// A number for each of sixteen rays.
 pub type PerRay = [f32; WIDE];
@@ -232,9 +233,10 @@ impl Rays {
         let [x, y, z] = axes.turned();
         let origin = [half!(self.origin[x]), half!(self.origin[y]), half!(self.origin[z])];
         let shear = [half!(self.shear[0]), half!(self.shear[1])];
+        let corners = from_origin(lanes, corners, origin);
         macro_rules! flat {
             ($corner:literal) => {{
-                let [x, y, _] = flat(lanes, corners[$corner], origin, shear);
+                let [x, y, _] = across(lanes, corners[$corner], shear);
                 [lanes.doubles(x), lanes.doubles(y)]
             }};
         }
@@ -246,6 +248,18 @@ impl Rays {
     #[inline(always)]
     pub fn meetings(&self, half: usize) -> &[f32; WIDTH] {
         part(&self.meetings, half)
+    }
+
+    /// Of some rays those that cross a turned triangle, by the test that is always sure.
+    #[cold]
+    pub fn crossing(&self, mut rays: u32, corners: [Vec3A; 3]) -> u32 {
+        let mut crossing = 0;
+        while rays != 0 {
+            let ray = rays.trailing_zeros();
+            rays &= rays - 1;
+            crossing |= u32::from(Sheared::new(&self.ray(ray as usize)).crosses(corners)) << ray;
+        }
+        crossing
     }
 
     /// One of the rays.

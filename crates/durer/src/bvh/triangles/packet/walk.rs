@@ -1,6 +1,6 @@
 //! The way of a packet through the tree.
 
-use super::Packet;
+use super::{Packet, Rays};
 use crate::bvh::lanes::{Lanes, Numbers, WIDE, Wide};
 use crate::bvh::node::{self, LEAF, Node};
 use crate::bvh::traverse::end_of;
@@ -73,6 +73,10 @@ impl Packet<'_> {
         for axis in 0..3 {
             beam.inverse[axis] = [least!(inverse[axis]), greatest!(inverse[axis])];
             (beam.near_from[axis], beam.far_from[axis]) = match self.axes.negative[axis] {
+                _ if self.is_point => {
+                    let Rays { near_from, far_from, .. } = &self.sixteens[0];
+                    (lanes.splat(near_from[axis][0]), lanes.splat(far_from[axis][0]))
+                }
                 0 => (greatest!(near_from[axis]), least!(far_from[axis])),
                 _ => (least!(near_from[axis]), greatest!(far_from[axis])),
             };
