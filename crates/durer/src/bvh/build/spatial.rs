@@ -11,7 +11,7 @@ use crate::math::Vec3;
 use glam::{BVec4A, Vec4};
 
 /// Planes are tried where the overlap has at least this share of the node's area,
-const OVERLAP: f32 = 0.15;
+const OVERLAP: f32 = 0.226;
 /// and this share of the area of everything,
 const LEAST: f32 = 1e-5;
 /// across axes along which the node is at least so long, as a share of its greatest length.
@@ -19,7 +19,7 @@ const LENGTH: f32 = 0.3;
 /// They must cost less than this share of what the best two sets cost.
 const GAIN: f32 = 0.95;
 /// With so few references or fewer, cuts spare next to nothing.
-const FEWEST: usize = 64;
+const FEWEST: usize = 330;
 /// After so many searches in vain, one below the other, one level is left out before the next, then two, up to four.
 const IN_VAIN: u32 = 3;
 
