@@ -61,14 +61,14 @@ impl Ours {
         let (mut hits, mut answers) = ([None; AT_ONCE], [false; AT_ONCE]);
         for (rays, found) in rays.chunks(AT_ONCE).zip(found.chunks_mut(AT_ONCE)) {
             match any {
-                false => self.0.closest_batch(rays, &mut hits[..rays.len()]),
-                true => self.0.occluded_batch(rays, &mut answers[..rays.len()]),
-            }
-            for ((found, triangle), occluded) in found.iter_mut().zip(&hits).zip(&answers) {
-                *found = match any {
-                    false => (*triangle).into(),
-                    true => hit(*occluded),
-                };
+                false => {
+                    self.0.closest_batch(rays, &mut hits[..rays.len()]);
+                    found.iter_mut().zip(&hits).for_each(|(found, hit)| *found = (*hit).into());
+                }
+                true => {
+                    self.0.occluded_batch(rays, &mut answers[..rays.len()]);
+                    found.iter_mut().zip(&answers).for_each(|(found, occluded)| *found = hit(*occluded));
+                }
             }
         }
     }

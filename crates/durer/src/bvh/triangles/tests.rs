@@ -346,6 +346,38 @@ fn rays_along_an_axis_go_together_and_meet_what_is_there() {
 }
 
 #[test]
+fn zeros_of_either_sign_are_one_point_where_rays_begin() {
+    // About the origin, so that corners have zeros too, and rays run through edges and vertices.
+    let mesh = cube(8);
+    let tree = TriangleBvh::build(&mesh.0, &mesh.1, Preset::Best);
+    let center = tree.bounds().center();
+    let mesh: Mesh = (mesh.0.iter().map(|at| *at - center).collect(), mesh.1);
+    let tree = TriangleBvh::build(&mesh.0, &mesh.1, Preset::Best);
+    for octant in 0..24 {
+        let signs = Vec3::from_array([0, 1, 2].map(|axis| [1.0, -1.0][octant >> axis & 1]));
+        let rays: Vec<Ray> = (0..64)
+            .map(|i: usize| {
+                let mut dir = Vec3::new(1.0, (i % 8) as f32 / 16.0, (i / 8) as f32 / 16.0);
+                (0..octant / 8).for_each(|_| dir = Vec3::new(dir.z, dir.x, dir.y));
+                let origin = Vec3::from_array([0, 1, 2].map(|axis| [0.0, -0.0][i >> axis & 1]));
+                Ray::new(origin, dir * signs)
+            })
+            .collect();
+        for tree in Level::available().map(|level| tree.clone().at_level(level)) {
+            let mut hits = vec![None; rays.len()];
+            let rest = tree.packets::<false>(&rays, |i, hit| hits[i] = hit);
+            assert!(octant % 8 != 0 || rest.is_empty(), "{octant}");
+            tree.each::<Nearest>(&rays, &rest, |i, hit| hits[i] = hit);
+            for (ray, hit) in rays.iter().zip(&hits) {
+                let expected = brute_force(&mesh, ray);
+                assert_eq!(hit.as_ref().map(bits), expected.first().map(bits), "{ray:?}");
+                assert_eq!((expected.len(), tree.occluded(ray)), (1, true), "{ray:?}");
+            }
+        }
+    }
+}
+
+#[test]
 fn a_tree_is_a_function_of_its_triangles() {
     // So many that every step has parts that run side by side.
     let mesh = soup(&mut Random(5), 40_000, 0.05);

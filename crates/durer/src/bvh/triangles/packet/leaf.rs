@@ -6,23 +6,40 @@ use crate::bvh::node;
 use crate::bvh::triangles::leaf::{Flat, ends, from_origin};
 use crate::bvh::triangles::number;
 
-/// The triangles of a leaf as seen from a point, by corner and axis.
-struct Seen {
-    corners: [[[f32; WIDTH]; 3]; 3],
+/// The triangles of a leaf, by corner and axis.
+struct Corners([[[f32; WIDTH]; 3]; 3]);
+
+/// By corner and axis, as a macro makes each.
+macro_rules! by_corner {
+    ($make:ident) => {
+        [
+            [$make!(0, 0), $make!(0, 1), $make!(0, 2)],
+            [$make!(1, 0), $make!(1, 1), $make!(1, 2)],
+            [$make!(2, 0), $make!(2, 1), $make!(2, 2)],
+        ]
+    };
 }
 
-impl Seen {
-    const NOTHING: Seen = Seen { corners: [[[0.0; WIDTH]; 3]; 3] };
-
-    /// The corners of one of them, in all lanes.
+impl Corners {
     #[inline(always)]
-    fn triangle<N: Numbers>(&self, numbers: N, lane: usize) -> [[N::Floats; 3]; 3] {
-        macro_rules! corner {
-            ($corner:literal: $($axis:literal)*) => {
-                [$(numbers.splat(self.corners[$corner][$axis][lane])),*]
+    fn new<L: Lanes>(lanes: L, corners: [[L::Floats; 3]; 3]) -> Self {
+        macro_rules! stored {
+            ($corner:literal, $axis:literal) => {
+                lanes.store(corners[$corner][$axis])
             };
         }
-        [corner!(0: 0 1 2), corner!(1: 0 1 2), corner!(2: 0 1 2)]
+        Corners(by_corner!(stored))
+    }
+
+    /// Those of one triangle, in all lanes.
+    #[inline(always)]
+    fn triangle<N: Numbers>(&self, numbers: N, lane: usize) -> [[N::Floats; 3]; 3] {
+        macro_rules! one {
+            ($corner:literal, $axis:literal) => {
+                numbers.splat(self.0[$corner][$axis][lane])
+            };
+        }
+        by_corner!(one)
     }
 }
 
@@ -33,18 +50,6 @@ impl Packet<'_> {
         let [x, y, z] = self.axes.turned();
         let [e, ..] = &self.sixteens;
         from_origin(lanes, corners, lanes.splat3([e.origin[x][0], e.origin[y][0], e.origin[z][0]]))
-    }
-
-    /// The same, stored.
-    #[inline(always)]
-    fn seen<L: Lanes>(&self, lanes: L, corners: [[L::Floats; 3]; 3]) -> Seen {
-        let corners = self.as_seen(lanes, corners);
-        macro_rules! corner {
-            ($corner:literal: $($axis:literal)*) => {
-                [$(lanes.store(corners[$corner][$axis])),*]
-            };
-        }
-        Seen { corners: [corner!(0: 0 1 2), corner!(1: 0 1 2), corner!(2: 0 1 2)] }
     }
 
     /// Shows the triangles of a leaf to some rays: side by side are either those or these, whichever is less work.
@@ -83,10 +88,8 @@ impl Packet<'_> {
         let (rows, count) = self.bvh.rows(leaf);
         let [x, y, z] = self.axes.turned();
         let columns = Columns::new(&self.axes.turn, count);
-        let seen = match POINT {
-            true => self.seen(lanes, lanes.corners(rows, columns)),
-            false => Seen::NOTHING,
-        };
+        let corners = lanes.corners(rows, columns);
+        let corners = Corners::new(lanes, if POINT { self.as_seen(lanes, corners) } else { corners });
         let mut all_met = 0;
         // The number of each triangle's meeting, if there is one.
         let mut meetings = [0; WIDTH];
@@ -101,13 +104,10 @@ impl Packet<'_> {
             // First all tests, so that none waits for what another one finds.
             let (mut masks, mut some) = ([[0; 2]; WIDTH], 0);
             for (lane, masks) in masks.iter_mut().enumerate().take(count) {
+                let triangle = corners.triangle(wide, lane);
                 let flat = match POINT {
-                    true => Flat::seen(wide, seen.triangle(wide, lane), shear),
-                    false => {
-                        let [a, b, c] = columns.triangle(rows, lane);
-                        let triangle = [wide.splat3(a.into()), wide.splat3(b.into()), wide.splat3(c.into())];
-                        Flat::new(wide, triangle, origin, shear)
-                    }
+                    true => Flat::seen(wide, triangle, shear),
+                    false => Flat::new(wide, triangle, origin, shear),
                 };
                 let candidates = !flat.missed(wide) & active;
                 *masks = [candidates, flat.crossed(wide)];
