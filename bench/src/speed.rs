@@ -60,15 +60,12 @@ impl Ours {
         const AT_ONCE: usize = 1024;
         let (mut hits, mut answers) = ([None; AT_ONCE], [false; AT_ONCE]);
         for (rays, found) in rays.chunks(AT_ONCE).zip(found.chunks_mut(AT_ONCE)) {
-            match any {
-                false => {
-                    self.0.closest_batch(rays, &mut hits[..rays.len()]);
-                    found.iter_mut().zip(&hits).for_each(|(found, hit)| *found = (*hit).into());
-                }
-                true => {
-                    self.0.occluded_batch(rays, &mut answers[..rays.len()]);
-                    found.iter_mut().zip(&answers).for_each(|(found, occluded)| *found = hit(*occluded));
-                }
+            if any {
+                self.0.occluded_batch(rays, &mut answers[..rays.len()]);
+                found.iter_mut().zip(&answers).for_each(|(found, occluded)| *found = hit(*occluded));
+            } else {
+                self.0.closest_batch(rays, &mut hits[..rays.len()]);
+                found.iter_mut().zip(&hits).for_each(|(found, hit)| *found = (*hit).into());
             }
         }
     }

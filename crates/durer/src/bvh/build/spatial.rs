@@ -18,7 +18,7 @@ const LEAST: f32 = 1e-5;
 const LENGTH: f32 = 0.3;
 /// They must cost less than this share of what the best two sets cost.
 const GAIN: f32 = 0.95;
-/// With so few references or fewer, cuts spare next to nothing.
+/// With so few references or fewer, cuts spare less than they cost.
 const FEWEST: usize = 330;
 /// After so many searches in vain, one below the other, one level is left out before the next, then two, up to four.
 const IN_VAIN: u32 = 3;

@@ -73,9 +73,14 @@ impl TriangleBvh {
         self.reach = self.bounds.reach();
     }
 
+    /// How many triangles all leaves have together: more than there are where some were cut.
+    pub(super) fn items(&self) -> usize {
+        (self.leaves.len() - ROOM_OF_ROWS) / ROWS
+    }
+
     /// Writes all leaves, with numbers in the order of items, or again with those that they have.
     fn pack(&mut self, order: Option<&[u32]>, vertices: &[Vec3], triangles: &[[u32; 3]]) {
-        let items = (self.leaves.len() - ROOM_OF_ROWS) / ROWS;
+        let items = self.items();
         // The count of each leaf, where its items begin.
         let mut counts = vec![0u8; items];
         for (_, _, child) in self.nodes.iter().flat_map(|node| node.children()) {

@@ -82,10 +82,10 @@ impl<N: Numbers> Flat<N> {
         let inverse = numbers.div(numbers.splat(1.0), numbers.add(numbers.add(u, v), w));
         let height = numbers.mul(numbers.mul_add(u, a[2], numbers.mul_add(v, b[2], numbers.mul(w, c[2]))), inverse);
         let reach = |p: [N::Floats; 3]| numbers.max(numbers.abs(p[0]), numbers.abs(p[1]));
-        let across = numbers.max(reach(a), numbers.max(reach(b), reach(c)));
+        let radius = numbers.max(reach(a), numbers.max(reach(b), reach(c)));
         let [lowest, highest] = self.heights(numbers);
         let height_most = numbers.max(numbers.abs(lowest), numbers.abs(highest));
-        let weights = numbers.mul(numbers.mul(across, numbers.splat(64.0 * E)), numbers.add(across, height_most));
+        let weights = numbers.mul(numbers.mul(radius, numbers.splat(64.0 * E)), numbers.add(radius, height_most));
         let moved = numbers.mul_add(numbers.add(weights, tiny), numbers.sub(highest, lowest), tiny);
         let error = numbers.mul_add(moved, numbers.abs(inverse), numbers.mul(height_most, numbers.splat(12.0 * E)));
         let error = numbers.mul_add(error, numbers.splat(inverse_z.abs()), tiny);

@@ -6,7 +6,7 @@ use crate::bvh::node;
 use crate::bvh::triangles::leaf::{Flat, ends, from_origin};
 use crate::bvh::triangles::number;
 
-/// The triangles of a leaf, by corner and axis.
+/// The triangles of a leaf, as they are or as seen from a point, by corner and axis.
 struct Corners([[[f32; WIDTH]; 3]; 3]);
 
 /// By corner and axis, as a macro makes each.
@@ -88,8 +88,8 @@ impl Packet<'_> {
         let (rows, count) = self.bvh.rows(leaf);
         let [x, y, z] = self.axes.turned();
         let columns = Columns::new(&self.axes.turn, count);
-        let corners = lanes.corners(rows, columns);
-        let corners = Corners::new(lanes, if POINT { self.as_seen(lanes, corners) } else { corners });
+        let triangles = lanes.corners(rows, columns);
+        let triangles = Corners::new(lanes, if POINT { self.as_seen(lanes, triangles) } else { triangles });
         let mut all_met = 0;
         // The number of each triangle's meeting, if there is one.
         let mut meetings = [0; WIDTH];
@@ -104,7 +104,7 @@ impl Packet<'_> {
             // First all tests, so that none waits for what another one finds.
             let (mut masks, mut some) = ([[0; 2]; WIDTH], 0);
             for (lane, masks) in masks.iter_mut().enumerate().take(count) {
-                let triangle = corners.triangle(wide, lane);
+                let triangle = triangles.triangle(wide, lane);
                 let flat = match POINT {
                     true => Flat::seen(wide, triangle, shear),
                     false => Flat::new(wide, triangle, origin, shear),
@@ -117,6 +117,9 @@ impl Packet<'_> {
                 let lane = some.trailing_zeros() as usize & (WIDTH - 1);
                 some &= some - 1;
                 let [candidates, crossed] = masks[lane];
+                if candidates & active == 0 {
+                    continue;
+                }
                 let corners = columns.triangle(rows, lane);
                 let [a, b, c] = corners;
                 let z = wide.splat3([a.z, b.z, c.z]);
@@ -161,7 +164,7 @@ impl Packet<'_> {
         let [x, y, z] = self.axes.turned();
         let columns = Columns::new(&self.axes.turn, count);
         let triangles = lanes.corners(rows, columns);
-        let seen = self.as_seen(lanes, triangles);
+        let triangles = if POINT { self.as_seen(lanes, triangles) } else { triangles };
         let (mut all_met, mut some) = (0, 0);
         let mut masks = [[0u8; 2]; RAYS];
         let mut left = rays;
@@ -172,7 +175,7 @@ impl Packet<'_> {
             let origin = lanes.splat3([e.origin[x][i], e.origin[y][i], e.origin[z][i]]);
             let shear = [lanes.splat(e.shear[0][i]), lanes.splat(e.shear[1][i])];
             let flat = match POINT {
-                true => Flat::seen(lanes, seen, shear),
+                true => Flat::seen(lanes, triangles, shear),
                 false => Flat::new(lanes, triangles, origin, shear),
             };
             let [lowest, highest] = flat.heights(lanes);

@@ -262,12 +262,13 @@ impl Packet<'_> {
         }
         let all = u64::MAX >> (RAYS - count);
         self.alive &= all;
+        self.is_point = self.is_point(lanes);
         self.alive == all && self.is_narrow(lanes)
     }
 
     /// Whether rays are so near each other that they mostly meet the same boxes.
     #[inline(always)]
-    fn is_narrow<L: Lanes>(&mut self, lanes: L) -> bool {
+    fn is_narrow<L: Lanes>(&self, lanes: L) -> bool {
         let wide = lanes.wide();
         macro_rules! extent {
             ($($of:tt)*) => {
@@ -275,7 +276,6 @@ impl Packet<'_> {
             };
         }
         let apart = WIDEST_START * self.bvh.bounds.size().max_element();
-        self.is_point = self.is_point(lanes);
         extent!(shear[0]).max(extent!(shear[1])) <= WIDEST_ANGLE
             && (self.is_point || extent!(origin[0]).max(extent!(origin[1])).max(extent!(origin[2])) <= apart)
     }
@@ -333,6 +333,7 @@ impl Packet<'_> {
     #[inline(always)]
     fn corners<L: Lanes>(&self, lanes: L, numbers: &[f32; WIDTH]) -> [[L::Floats; 3]; 3] {
         let [first, ..] = *numbers;
+        // Often they are the same; as integers, for as numbers they are next to nothing.
         let (all, one) = (lanes.load(numbers), lanes.splat(first));
         if lanes.not_later(all, one) & lanes.not_later(one, all) == 255 {
             let [a, b, c] = self.meetings[first.to_bits() as usize].corners;

@@ -222,7 +222,7 @@ impl Rays {
         met
     }
 
-    /// Barycentric coordinates for half of the rays, each in a triangle of its own.
+    /// Barycentric coordinates for half of the rays, each in the triangle that it met.
     #[inline(always)]
     pub fn uv<L: Lanes>(&self, lanes: L, axes: &Axes, half: usize, corners: [[L::Floats; 3]; 3]) -> [[f32; WIDTH]; 2] {
         macro_rules! half {
@@ -252,6 +252,7 @@ impl Rays {
 
     /// Of some rays those that cross a turned triangle, by the test that is always sure.
     #[cold]
+    #[inline(never)]
     pub fn crossing(&self, mut rays: u32, corners: [Vec3A; 3]) -> u32 {
         let mut crossing = 0;
         while rays != 0 {

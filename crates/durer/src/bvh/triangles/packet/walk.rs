@@ -72,11 +72,13 @@ impl Packet<'_> {
         };
         for axis in 0..3 {
             beam.inverse[axis] = [least!(inverse[axis]), greatest!(inverse[axis])];
+            if self.is_point {
+                let Rays { near_from, far_from, .. } = &self.sixteens[0];
+                (beam.near_from[axis], beam.far_from[axis]) =
+                    (lanes.splat(near_from[axis][0]), lanes.splat(far_from[axis][0]));
+                continue;
+            }
             (beam.near_from[axis], beam.far_from[axis]) = match self.axes.negative[axis] {
-                _ if self.is_point => {
-                    let Rays { near_from, far_from, .. } = &self.sixteens[0];
-                    (lanes.splat(near_from[axis][0]), lanes.splat(far_from[axis][0]))
-                }
                 0 => (greatest!(near_from[axis]), least!(far_from[axis])),
                 _ => (least!(near_from[axis]), greatest!(far_from[axis])),
             };
