@@ -7,6 +7,19 @@
 
 use crate::bvh::lanes::Numbers;
 
+/// By corner and axis, as a macro makes each. (No closure would do: what is not inlined into a level's entry is compiled without its
+/// instructions.)
+macro_rules! by_corner {
+    ($make:ident) => {
+        [
+            [$make!(0, 0), $make!(0, 1), $make!(0, 2)],
+            [$make!(1, 0), $make!(1, 1), $make!(1, 2)],
+            [$make!(2, 0), $make!(2, 1), $make!(2, 2)],
+        ]
+    };
+}
+pub(super) use by_corner;
+
 /// Triangles in the planes across rays: several and one ray, or one and several rays.
 pub struct Flat<N: Numbers> {
     /// By corner: where it lies across the ray, and its height along the third axis.
@@ -108,11 +121,11 @@ pub fn from_origin<N: Numbers>(
     origin: [N::Floats; 3],
 ) -> [[N::Floats; 3]; 3] {
     macro_rules! seen {
-        ($corner:literal: $($axis:literal)*) => {
-            [$(numbers.sub(corners[$corner][$axis], origin[$axis])),*]
+        ($corner:literal, $axis:literal) => {
+            numbers.sub(corners[$corner][$axis], origin[$axis])
         };
     }
-    [seen!(0: 0 1 2), seen!(1: 0 1 2), seen!(2: 0 1 2)]
+    by_corner!(seen)
 }
 
 /// Where a point that is seen from the origin lies in the plane across the ray, and its height along the third axis.

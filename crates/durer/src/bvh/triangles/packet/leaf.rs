@@ -3,22 +3,11 @@
 use super::{Meeting, Packet, RAYS};
 use crate::bvh::lanes::{Columns, Lanes, Numbers, WIDE, WIDTH, Wide};
 use crate::bvh::node;
-use crate::bvh::triangles::leaf::{Flat, ends, from_origin};
+use crate::bvh::triangles::leaf::{Flat, by_corner, ends, from_origin};
 use crate::bvh::triangles::number;
 
 /// The triangles of a leaf, as they are or as seen from a point, by corner and axis.
 struct Corners([[[f32; WIDTH]; 3]; 3]);
-
-/// By corner and axis, as a macro makes each.
-macro_rules! by_corner {
-    ($make:ident) => {
-        [
-            [$make!(0, 0), $make!(0, 1), $make!(0, 2)],
-            [$make!(1, 0), $make!(1, 1), $make!(1, 2)],
-            [$make!(2, 0), $make!(2, 1), $make!(2, 2)],
-        ]
-    };
-}
 
 impl Corners {
     #[inline(always)]
@@ -40,6 +29,20 @@ impl Corners {
             };
         }
         by_corner!(one)
+    }
+}
+
+/// Triangles in the planes across rays: as they are, or as seen from the one `POINT` where all rays begin.
+#[inline(always)]
+fn flat<N: Numbers, const POINT: bool>(
+    numbers: N,
+    triangles: [[N::Floats; 3]; 3],
+    origin: [N::Floats; 3],
+    shear: [N::Floats; 2],
+) -> Flat<N> {
+    match POINT {
+        true => Flat::seen(numbers, triangles, shear),
+        false => Flat::new(numbers, triangles, origin, shear),
     }
 }
 
@@ -104,11 +107,7 @@ impl Packet<'_> {
             // First all tests, so that none waits for what another one finds.
             let (mut masks, mut some) = ([[0; 2]; WIDTH], 0);
             for (lane, masks) in masks.iter_mut().enumerate().take(count) {
-                let triangle = triangles.triangle(wide, lane);
-                let flat = match POINT {
-                    true => Flat::seen(wide, triangle, shear),
-                    false => Flat::new(wide, triangle, origin, shear),
-                };
+                let flat = flat::<_, POINT>(wide, triangles.triangle(wide, lane), origin, shear);
                 let candidates = !flat.missed(wide) & active;
                 *masks = [candidates, flat.crossed(wide)];
                 some |= u32::from(candidates != 0) << lane;
@@ -174,10 +173,7 @@ impl Packet<'_> {
             let (e, i) = (&self.sixteens[ray / WIDE], ray % WIDE);
             let origin = lanes.splat3([e.origin[x][i], e.origin[y][i], e.origin[z][i]]);
             let shear = [lanes.splat(e.shear[0][i]), lanes.splat(e.shear[1][i])];
-            let flat = match POINT {
-                true => Flat::seen(lanes, triangles, shear),
-                false => Flat::new(lanes, triangles, origin, shear),
-            };
+            let flat = flat::<_, POINT>(lanes, triangles, origin, shear);
             let [lowest, highest] = flat.heights(lanes);
             let beside =
                 lanes.lt(lanes.splat(e.heights[1][i]), lowest) | lanes.lt(highest, lanes.splat(e.heights[0][i]));
