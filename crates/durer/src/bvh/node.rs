@@ -16,7 +16,23 @@ pub(super) struct Node {
     /// For each octant of directions, numbered by [`RayBox::negative`](super::traverse::RayBox::negative), a bit: whether rays take the
     /// children from the last to the first. First for those that want the nearest, then for those to which any hit will do.
     pub from_last: [u32; 2],
+    /// The address of the first inner child; the others lie behind it, in any order.
+    pub first: u32,
+    /// What a ray must know of the child that is next: its place in the bits of [`PLACE`], and [`IS_LEAF`] or, in the bits of [`BEHIND`],
+    /// how far behind the first inner child it begins. So few bits that they take the place of the last ones of a distance.
+    pub codes: [u8; WIDTH],
 }
+
+/// As many bytes as lie between the orders in the walk's table, in which they are then found without arithmetic.
+pub(super) const FROM_LAST: u32 = size_of::<[[u8; WIDTH]; 1 << WIDTH]>() as u32;
+
+/// Of a [code](Node::codes) the child's place.
+pub(super) const PLACE: u32 = WIDTH as u32 - 1;
+/// Of a code whether the child is a leaf.
+pub(super) const IS_LEAF: u32 = 8;
+/// Of a code how far behind the first inner child another one's address is.
+pub(super) const BEHIND: u32 = PLACE * UNITS as u32;
+const _: () = assert!(BEHIND & (PLACE | IS_LEAF) == 0 && BEHIND < 256);
 
 pub(super) const LEAF: u32 = 1 << 31;
 const COUNT_SHIFT: u32 = 28;
@@ -31,14 +47,20 @@ impl Node {
         planes: [[[f32::INFINITY; WIDTH], [f32::NEG_INFINITY; WIDTH]]; 3],
         children: [LEAF; WIDTH],
         from_last: [0; 2],
+        first: 0,
+        codes: [0; WIDTH],
     };
 
+    /// Sets a child; where it is an inner one, the [`first`](Node::first) must be known.
     pub fn set(&mut self, place: usize, bounds: Aabb, child: u32) {
         for axis in 0..3 {
             self.planes[axis][0][place] = bounds.min[axis];
             self.planes[axis][1][place] = bounds.max[axis];
         }
         self.children[place] = child;
+        let rest = if child & LEAF == 0 { child - self.first } else { IS_LEAF };
+        assert!(rest == IS_LEAF || rest & !BEHIND == 0, "inner children lie side by side");
+        self.codes[place] = (place as u32 | rest) as u8;
     }
 
     /// The box of a child; empty where there is none.
@@ -47,10 +69,11 @@ impl Node {
         Aabb { min: side(0), max: side(1) }
     }
 
-    /// Whether rays of an octant take the children from the last to the first: those to which `any` hit will do, or the others.
+    /// [`FROM_LAST`] if rays of an octant take the children from the last to the first, else 0: those to which `any` hit will do, or the
+    /// others.
     #[inline(always)]
-    pub fn is_from_last(&self, any: bool, octant: u32) -> bool {
-        self.from_last[usize::from(any)] >> (octant & 7) & 1 == 1
+    pub fn order(&self, any: bool, octant: u32) -> u32 {
+        self.from_last[usize::from(any)] << (FROM_LAST.trailing_zeros() - (octant & 7)) & FROM_LAST
     }
 
     /// The children that are there: place, box, and child.

@@ -47,6 +47,18 @@ fn depth(nodes: &[node::Node], number: usize) -> usize {
     1 + inner.map(|(_, _, child)| depth(nodes, node::number(child))).max().unwrap_or(0)
 }
 
+/// The codes of a node's children say where they are, as its addresses do.
+fn codes_are_right(node: &node::Node) -> bool {
+    node.children().all(|(place, _, child)| {
+        let code = u32::from(node.codes[place]);
+        let is_there = match child & node::LEAF {
+            0 => code & node::IS_LEAF == 0 && node.first + (code & node::BEHIND) == child,
+            _ => code & node::IS_LEAF != 0,
+        };
+        is_there && code & node::PLACE == place as u32
+    })
+}
+
 #[test]
 fn every_thing_is_offered_to_a_ray_through_its_box_whatever_the_boxes() {
     let mut random = Random(2);
@@ -61,6 +73,7 @@ fn every_thing_is_offered_to_a_ray_through_its_box_whatever_the_boxes() {
             continue;
         }
         assert!(depth(&bvh.nodes, 0) <= DEEPEST, "{name}: {}", depth(&bvh.nodes, 0));
+        assert!(bvh.nodes.iter().all(codes_are_right), "{name}");
         for round in 0..200 {
             let i = full[random.below(full.len())];
             let b = boxes[i as usize];

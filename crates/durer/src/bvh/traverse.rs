@@ -10,7 +10,7 @@
 
 use super::Tally;
 use super::lanes::{Lanes, Room, Sides, Stack, WIDTH};
-use super::node::{LEAF, Node};
+use super::node::{BEHIND, FROM_LAST, IS_LEAF, LEAF, Node, PLACE};
 use crate::math::{Ray, Vec3};
 use glam::{Vec3A, Vec3Swizzles, Vec4};
 use std::ops::Range;
@@ -141,30 +141,41 @@ pub(super) fn walk<L: Lanes, V: Visitor, const TAME: bool>(
 ) -> f32 {
     let slabs = Slabs::new(lanes, nodes, boxes);
     let mut far = boxes.limit::<TAME>(t_max);
-    let mut limit = lanes.splat(far);
+    let mut limit = lanes.splat(beyond::<TAME>(far));
     let mut room = Room::new();
     let mut stack = Stack::new(&mut room);
     let mut child = 0;
     loop {
-        if child & LEAF == 0 {
-            visitor.tally().node();
-            let (node, met, interval) = meet::<L, TAME>(lanes, &slabs, child, limit);
-            if met != 0 {
-                // One child is next without a way through the stack.
-                let likely;
-                (child, likely) = next::<L, TAME>(lanes, V::ANY, &mut stack, node, met, interval, boxes.negative);
-                visitor.fetch(lanes, likely);
-                continue;
+        'visit: {
+            let mut leaf = child;
+            if child & LEAF == 0 {
+                let mut address = child as usize;
+                leaf = loop {
+                    visitor.tally().node();
+                    let met = meet::<L, TAME>(lanes, &slabs, address, limit);
+                    if met.lanes == 0 {
+                        break 'visit;
+                    }
+                    // One child is next without a way through the stack.
+                    let order = met.node.order(V::ANY, boxes.negative);
+                    let likely = end_of(met.lanes, order != 0);
+                    let next = met.next::<TAME>(lanes, V::ANY, likely);
+                    visitor.fetch(lanes, met.node.children[likely as usize]);
+                    met.push(lanes, &mut stack, next, order);
+                    match met.target::<TAME>(V::ANY, next) {
+                        Target::Node(next) => address = next,
+                        Target::Leaf(leaf) => break leaf,
+                    }
+                };
             }
-        } else {
-            let t = visitor.leaf::<L, TAME>(lanes, child, t_max);
+            let t = visitor.leaf::<L, TAME>(lanes, leaf, t_max);
             if t < t_max {
                 t_max = t;
                 if t == f32::NEG_INFINITY {
                     return t_max;
                 }
                 far = boxes.limit::<TAME>(t);
-                limit = lanes.splat(far);
+                limit = lanes.splat(beyond::<TAME>(far));
             }
         }
         loop {
@@ -181,41 +192,79 @@ pub(super) fn walk<L: Lanes, V: Visitor, const TAME: bool>(
     }
 }
 
-/// The child that is next, of those that are met; pushes the others. Also gives the one that is likely to be next: the first by
-/// [`Node::from_last`].
-///
-/// The next is the one that is entered first; but the likely one if `any` hit will do, which is known sooner, and of rays that are not
-/// tame, whose distances cannot be compared as integers. The others are pushed in the order of the node, the first last.
+/// The end of an interval that a box may begin at, as [`meet`] wants it: for a tame ray the number after it.
 #[inline(always)]
-pub(super) fn next<L: Lanes, const TAME: bool>(
-    lanes: L,
-    any: bool,
-    stack: &mut Stack,
-    node: &Node,
-    met: u32,
-    [enter, leave]: [L::Floats; 2],
-    negative: u32,
-) -> (u32, u32) {
-    let from_last = node.is_from_last(any, negative);
-    let orders = &PUSHED[usize::from(from_last)];
-    // Of those that are met, so that neither the stack nor what is fetched waits for the nearest.
-    let count = met.count_ones() - u32::from(met != 0);
-    let lane = end_of(met, from_last);
-    let likely = node.children[lane as usize & 7];
-    let (lane, next) = match TAME && !any {
-        true => lanes.nearest(enter, leave, &node.children),
-        false => (lane, likely),
-    };
-    let others = met & !(1 << (lane & 7));
-    lanes.push(stack, &node.children, enter, &orders[others as usize & 255], count);
-    (next, likely)
+pub(super) fn beyond<const TAME: bool>(far: f32) -> f32 {
+    // It is positive.
+    if TAME { f32::from_bits(far.to_bits() + 1) } else { far }
 }
 
-/// The first of some lanes, a bit for each, or the `last`. (Of 31 less the leading zeros the compiler makes an instruction that is slow on
-/// Zen 4.)
+/// The children of a node that a ray meets.
+pub(super) struct Met<'a, L: Lanes> {
+    pub node: &'a Node,
+    codes: &'a [u8; WIDTH],
+    /// A bit for each.
+    pub lanes: u32,
+    /// All bits in the lane of each, if the ray is tame.
+    which: L::Floats,
+    /// Where the ray enters them.
+    enter: L::Floats,
+}
+
+/// Where a child is.
+enum Target {
+    /// At an address.
+    Node(usize),
+    Leaf(u32),
+}
+
+impl<L: Lanes> Met<'_, L> {
+    /// The [place](PLACE) of the child that is next, with more of its [code](Node::codes) if it was found by that.
+    ///
+    /// It is the one that is entered first; but the `likely` one if `any` hit will do, which is known sooner, and of rays that are not tame,
+    /// whose distances cannot be compared as integers.
+    #[inline(always)]
+    pub fn next<const TAME: bool>(&self, lanes: L, any: bool, likely: u32) -> u32 {
+        if TAME && !any { lanes.nearest(self.enter, self.which, self.codes) } else { likely }
+    }
+
+    /// Where that child is. A node next to be visited is found by its code, for which a ray waits at every node; leaves, that are as often
+    /// guessed as waited for, by their places.
+    #[inline(always)]
+    fn target<const TAME: bool>(&self, any: bool, next: u32) -> Target {
+        if TAME && !any {
+            if next & IS_LEAF == 0 {
+                return Target::Node(self.node.first as usize + (next & BEHIND) as usize);
+            }
+            return Target::Leaf(self.child(next));
+        }
+        match self.node.children[next as usize] {
+            child if child & LEAF == 0 => Target::Node(child as usize),
+            leaf => Target::Leaf(leaf),
+        }
+    }
+
+    /// As [`Node::children`] have it.
+    #[inline(always)]
+    pub fn child(&self, next: u32) -> u32 {
+        self.node.children[(next & PLACE) as usize]
+    }
+
+    /// Pushes the others in the [order](Node::order) of the node, the first last.
+    #[inline(always)]
+    pub fn push(&self, lanes: L, stack: &mut Stack, next: u32, order: u32) {
+        let orders = &PUSHED[(order / FROM_LAST) as usize];
+        // Of those that are met, so that the stack does not wait for the nearest.
+        let count = self.lanes.count_ones() - u32::from(self.lanes != 0);
+        let others = self.lanes & !(1 << (next & PLACE));
+        lanes.push(stack, &self.node.children, self.enter, &orders[others as usize & 255], count);
+    }
+}
+
+/// The first of some lanes, a bit for each, or the `last`; if there are none something beyond all lanes.
 #[inline(always)]
 pub(super) fn end_of(lanes: u32, last: bool) -> u32 {
-    if last { !(lanes << (32 - WIDTH)).leading_zeros() & 7 } else { lanes.trailing_zeros() & 7 }
+    if last { lanes.leading_zeros() ^ 31 } else { lanes.trailing_zeros() }
 }
 
 /// For each set of lanes the lanes in the order in which they are pushed, where the first are visited first and where the last are.
@@ -260,14 +309,14 @@ impl<'a, L: Lanes> Slabs<'a, L> {
     }
 }
 
-/// The node at an address, those of its children that a ray meets before `limit`, a bit for each, and where it enters and leaves them.
+/// The node at an address, and those of its children that a ray meets before `limit`: of a tame ray the number [`beyond`].
 #[inline(always)]
 pub(super) fn meet<'a, L: Lanes, const TAME: bool>(
     lanes: L,
     slabs: &Slabs<'a, L>,
-    address: u32,
+    address: usize,
     limit: L::Floats,
-) -> (&'a Node, u32, [L::Floats; 2]) {
+) -> Met<'a, L> {
     let Slabs { inverse, near_origin, far_origin, t_min, sides } = slabs;
     let at = sides.at(address);
     macro_rules! slab {
@@ -279,20 +328,24 @@ pub(super) fn meet<'a, L: Lanes, const TAME: bool>(
             }
         }};
     }
-    // With a tame ray nothing is NaN, and no start is negative, so of ends as integers the right one is found, or one that is
-    // negative where nothing is met. With others zero times infinity is NaN, where a ray runs in a side of a box: such a side is left
-    // out, being the first argument here, or the second there where the first is NaN.
-    macro_rules! end {
-        ($sooner:ident, $least:ident, $a:expr, $b:expr) => {
-            if TAME { lanes.$sooner($a, $b) } else { lanes.$least($a, $b) }
+    macro_rules! ends {
+        ($axis:literal) => {
+            [slab!($axis, near, near_origin), slab!($axis, far, far_origin)]
         };
     }
-    let enter = end!(later, max, slab!(0, near, near_origin), slab!(1, near, near_origin));
-    let leave = end!(sooner, min, slab!(0, far, far_origin), slab!(1, far, far_origin));
-    let enter_z = end!(later, max, slab!(2, near, near_origin), *t_min);
-    let leave_z = end!(sooner, min, slab!(2, far, far_origin), limit);
-    let (enter, leave) = (end!(later, max, enter, enter_z), end!(sooner, min, leave, leave_z));
-    (at.node, end!(not_later, le, enter, leave), [enter, leave])
+    let (x, y, z) = (ends!(0), ends!(1), ends!(2));
+    let (node, codes) = (at.node, at.codes());
+    if TAME {
+        // Nothing is NaN, and no start is negative, so of ends as integers the right one is found, or one that is negative where nothing is
+        // met. Boxes are padded by more than what is rounded, so they end after they begin.
+        let [enter, leave] = lanes.interval([x, y, z], [*t_min, limit]);
+        let which = lanes.before(enter, leave);
+        return Met { node, codes, lanes: lanes.signs(which), which, enter };
+    }
+    // Zero times infinity is NaN, where a ray runs in a side of a box: such a side is left out, being the first argument.
+    let enter = lanes.max(z[0], lanes.max(y[0], lanes.max(x[0], *t_min)));
+    let leave = lanes.min(z[1], lanes.min(y[1], lanes.min(x[1], limit)));
+    Met { node, codes, lanes: lanes.le(enter, leave), which: enter, enter }
 }
 
 /// Whether a ray can hit anything: NaN and infinite ones, and those without direction, cannot.

@@ -186,6 +186,7 @@ impl Emitter<'_> {
         let (from_last, places) = places(&bounds[..list.len()]);
         part.nodes[number].from_last = from_last;
         let first = part.nodes.len();
+        part.nodes[number].first = node::address(first);
         let mut inner = Children::default();
         for (k, &i) in list.iter().enumerate() {
             let child = if self.plans[i].is_leaf() {
@@ -248,6 +249,7 @@ impl Part {
         let (nodes, items) = (node::address(self.nodes.len() - 1), self.order.len() as u32);
         let moved = |node: &Node| {
             let mut moved = *node;
+            moved.first += nodes;
             for (place, _, child) in node.children() {
                 moved.children[place] += if child & LEAF == 0 { nodes } else { items };
             }

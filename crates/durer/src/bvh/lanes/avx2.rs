@@ -3,6 +3,7 @@
 use super::wide::Two;
 use super::{Kernel, Lanes, Numbers, Stack, WIDTH};
 use crate::math::Triple;
+use std::arch::asm;
 use std::arch::x86_64::*;
 
 /// Proof that the processor has AVX2, FMA, BMI 1 and 2, LZCNT, and POPCNT.
@@ -108,6 +109,30 @@ macro_rules! order_of_eight {
             proven!(_mm256_castsi256_ps(_mm256_max_epi32(_mm256_castps_si256(a), _mm256_castps_si256(b))))
         }
         #[inline(always)]
+        fn before(self, a: __m256, b: __m256) -> __m256 {
+            proven!($crate::bvh::lanes::avx2::is_greater(b, a))
+        }
+        #[inline(always)]
+        fn signs(self, a: __m256) -> u32 {
+            proven!(_mm256_movemask_ps(a) as u32)
+        }
+        #[inline(always)]
+        fn interval(self, [x, y, z]: [[__m256; 2]; 3], within: [__m256; 2]) -> [__m256; 2] {
+            use $crate::bvh::lanes::avx2::{greater, lesser};
+            let enter = self.later(y[0], self.later(x[0], within[0]));
+            let leave = self.sooner(y[1], self.sooner(x[1], within[1]));
+            proven!([greater(z[0], enter), lesser(z[1], leave)])
+        }
+        #[inline(always)]
+        fn nearest(self, a: __m256, which: __m256, codes: &[u8; WIDTH]) -> u32 {
+            proven! {
+                let (a, which) = (_mm256_castps_si256(a), _mm256_castps_si256(which));
+                let codes = _mm256_cvtepu8_epi32(_mm_loadl_epi64(codes.as_ptr().cast()));
+                let key = _mm256_or_si256(_mm256_and_si256(a, _mm256_set1_epi32(!255)), codes);
+                $crate::bvh::lanes::avx2::least(_mm256_or_si256(key, _mm256_xor_si256(which, _mm256_set1_epi32(-1))))
+            }
+        }
+        #[inline(always)]
         fn push(self, stack: &mut Stack, children: &[u32; WIDTH], near: __m256, order: &[u8; WIDTH], count: u32) {
             let (to, to_near) = stack.top();
             proven! {
@@ -139,18 +164,45 @@ pub(super) fn corners(from: &super::Rows, super::Columns { starts, corner }: sup
     [[row!(0, 0), row!(0, 1), row!(0, 2)], [row!(1, 0), row!(1, 1), row!(1, 2)], [row!(2, 0), row!(2, 1), row!(2, 2)]]
 }
 
-/// Of keys whose last three bits are numbers of lanes, the lane of the least, and which `of` some things is in it.
+/// The least of eight numbers.
 #[inline(always)]
-pub(super) fn least(key: __m256i, of: &[u32; WIDTH]) -> (u32, u32) {
+pub(super) fn least(a: __m256i) -> u32 {
     proven! {
-        let four = _mm_min_epu32(_mm256_castsi256_si128(key), _mm256_extracti128_si256::<1>(key));
+        let four = _mm_min_epu32(_mm256_castsi256_si128(a), _mm256_extracti128_si256::<1>(a));
         let two = _mm_min_epu32(four, _mm_shuffle_epi32::<0b01_00_11_10>(four));
-        let one = _mm_min_epu32(two, _mm_shuffle_epi32::<0b10_11_00_01>(two));
-        // Of an index the last three bits count, so this need not wait for the number of the lane.
-        let of = _mm256_permutevar8x32_epi32(_mm256_loadu_si256(of.as_ptr().cast()), _mm256_castsi128_si256(one));
-        (_mm_cvtsi128_si32(one) as u32 & 7, _mm_cvtsi128_si32(_mm256_castsi256_si128(of)) as u32)
+        _mm_cvtsi128_si32(_mm_min_epu32(two, _mm_shuffle_epi32::<0b10_11_00_01>(two))) as u32
     }
 }
+
+/// An instruction as it stands, which the compiler takes for no other, and of which it changes no order.
+macro_rules! literally {
+    ($name:ident = $instruction:literal) => {
+        /// # Safety
+        ///
+        /// The processor must have AVX2.
+        #[inline]
+        #[target_feature(enable = "avx2")]
+        pub(super) unsafe fn $name(a: __m256, b: __m256) -> __m256 {
+            let c;
+            // SAFETY: it computes one register from two.
+            unsafe {
+                asm!(
+                    concat!($instruction, " {c}, {a}, {b}"),
+                    a = in(ymm_reg) a,
+                    b = in(ymm_reg) b,
+                    c = lateout(ymm_reg) c,
+                    options(pure, nomem, nostack, preserves_flags),
+                );
+            }
+            c
+        }
+    };
+}
+// Of signed integers. With the intrinsics what is last is compared first with what comes before it, and masks are made of comparisons, which
+// takes longer.
+literally!(greater = "vpmaxsd");
+literally!(lesser = "vpminsd");
+literally!(is_greater = "vpcmpgtd");
 
 /// Ones in the lanes whose bits are set.
 #[inline(always)]
@@ -296,21 +348,6 @@ impl Lanes for Avx2 {
         proven!(_mm256_set_m128(_mm256_cvtpd_ps(high.0), _mm256_cvtpd_ps(low.0)))
     }
 
-    #[inline(always)]
-    fn not_later(self, a: __m256, b: __m256) -> u32 {
-        proven! {
-            let later = _mm256_cmpgt_epi32(_mm256_castps_si256(a), _mm256_castps_si256(b));
-            _mm256_movemask_ps(_mm256_castsi256_ps(later)) as u32 ^ 255
-        }
-    }
-    #[inline(always)]
-    fn nearest(self, a: __m256, b: __m256, of: &[u32; WIDTH]) -> (u32, u32) {
-        proven! {
-            let (a, b) = (_mm256_castps_si256(a), _mm256_castps_si256(b));
-            let key = _mm256_or_si256(_mm256_andnot_si256(_mm256_set1_epi32(7), a), _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7));
-            least(_mm256_or_si256(key, _mm256_cmpgt_epi32(a, b)), of)
-        }
-    }
     #[inline(always)]
     fn select(self, mask: u32, a: __m256, b: __m256) -> __m256 {
         proven!(_mm256_blendv_ps(b, a, _mm256_castsi256_ps(lanes_of(mask))))

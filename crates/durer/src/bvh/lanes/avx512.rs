@@ -1,6 +1,6 @@
 //! AVX-512 on eight lanes, with masks in registers of their own, and on sixteen.
 
-use super::avx2::{Four, arithmetic_of_eight, doubles, least, operations, order_of_eight, proven};
+use super::avx2::{Four, arithmetic_of_eight, doubles, operations, order_of_eight, proven};
 use super::{Kernel, Lanes, Numbers, Stack, WIDE, WIDTH, Wide};
 use std::arch::x86_64::*;
 
@@ -73,23 +73,6 @@ impl Lanes for Avx512 {
     #[inline(always)]
     fn singles(self, a: Eight) -> __m256 {
         proven!(_mm512_cvtpd_ps(a.0))
-    }
-    #[inline(always)]
-    fn not_later(self, a: __m256, b: __m256) -> u32 {
-        proven!(u32::from(_mm256_cmple_epi32_mask(_mm256_castps_si256(a), _mm256_castps_si256(b))))
-    }
-    #[inline(always)]
-    fn nearest(self, a: __m256, b: __m256, of: &[u32; WIDTH]) -> (u32, u32) {
-        proven! {
-            let (a, b) = (_mm256_castps_si256(a), _mm256_castps_si256(b));
-            const OR_AND: i32 = 0b1111_1000;
-            let (sign, lanes) = (_mm256_set1_epi32(i32::MIN), _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7));
-            // Where a is greater b or b - a is negative, whose signs come to the key. A comparison would go by way of a mask, which takes
-            // longer.
-            let key = _mm256_ternarylogic_epi32::<OR_AND>(lanes, a, _mm256_set1_epi32(!7));
-            let key = _mm256_ternarylogic_epi32::<OR_AND>(key, b, sign);
-            least(_mm256_ternarylogic_epi32::<OR_AND>(key, _mm256_sub_epi32(b, a), sign), of)
-        }
     }
     #[inline(always)]
     fn select(self, mask: u32, a: __m256, b: __m256) -> __m256 {

@@ -102,11 +102,21 @@ pub(super) trait Lanes: Numbers {
     fn sooner(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
     /// The greater of two numbers as signed integers have it: where one of them at least is not negative as [`Numbers::max`].
     fn later(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
-    /// A bit for each lane where a <= b as signed integers have it.
-    fn not_later(self, a: Self::Floats, b: Self::Floats) -> u32;
-    /// The lane where `a`, of which nothing is negative, is least of those where it is at most `b`; one of the lanes if there are none; and
-    /// which `of` some things is in it. Numbers are compared as signed integers, those of `a` with each other without their last three bits.
-    fn nearest(self, a: Self::Floats, b: Self::Floats, of: &[u32; WIDTH]) -> (u32, u32);
+    /// All bits of the lanes where a < b as signed integers have it, no bits of others.
+    fn before(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
+    /// A bit for each lane that has a sign.
+    fn signs(self, a: Self::Floats) -> u32;
+    /// Where a ray is in slabs, each of which begins and ends somewhere, and in its own interval: the last beginning and the first end, as
+    /// [`Lanes::later`] and [`Lanes::sooner`] have them. What is read from memory last should be the last slab.
+    #[inline(always)]
+    fn interval(self, [x, y, z]: [[Self::Floats; 2]; 3], within: [Self::Floats; 2]) -> [Self::Floats; 2] {
+        let enter = self.later(z[0], self.later(y[0], self.later(x[0], within[0])));
+        let leave = self.sooner(z[1], self.sooner(y[1], self.sooner(x[1], within[1])));
+        [enter, leave]
+    }
+    /// Where `a`, of which nothing is negative, is least of the lanes that have all bits in `which`: `a` without its last eight bits, by
+    /// which lanes are not compared, and with those of the lane's code instead. Something else if there are no such lanes.
+    fn nearest(self, a: Self::Floats, which: Self::Floats, codes: &[u8; WIDTH]) -> u32;
     /// `a` in the lanes whose bits are set, `b` in others. Bits stay as they are.
     fn select(self, mask: u32, a: Self::Floats, b: Self::Floats) -> Self::Floats;
     /// Lane k of vector i becomes lane i of vector k.
@@ -149,11 +159,11 @@ impl<'a> Sides<'a> {
 
     /// The node at an [`address`](node::address), which must be one of a node.
     #[inline(always)]
-    pub fn at(&self, address: u32) -> At<'a, '_> {
+    pub fn at(&self, address: usize) -> At<'a, '_> {
         // Turned so, what is no multiple of a node's size is more than there can be.
-        let number = address.rotate_right(node::UNITS.trailing_zeros()) as usize;
+        let number = address.rotate_right(node::UNITS.trailing_zeros());
         assert!(number < self.nodes.len());
-        At { sides: self, offset: address as usize * node::UNIT, node: &self.nodes[number] }
+        At { sides: self, offset: address * node::UNIT, node: &self.nodes[number] }
     }
 }
 
@@ -170,6 +180,14 @@ impl<'a> At<'a, '_> {
     pub fn near(&self, axis: usize) -> &'a [f32; WIDTH] {
         // SAFETY: the row is in the first node, and by `Sides::at` another node is so far behind it.
         unsafe { &*self.sides.near[axis].wrapping_add(self.offset).cast() }
+    }
+
+    /// The node's [codes](Node::codes), found as soon as its sides, for they are waited for.
+    #[inline(always)]
+    pub fn codes(&self) -> &'a [u8; WIDTH] {
+        let first = self.sides.nodes.as_ptr().cast::<u8>().wrapping_add(offset_of!(Node, codes));
+        // SAFETY: as above.
+        unsafe { &*first.wrapping_add(self.offset).cast() }
     }
 
     /// Where it leaves.

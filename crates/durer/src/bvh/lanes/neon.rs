@@ -203,23 +203,27 @@ impl Lanes for Neon {
         }
     }
     #[inline(always)]
-    fn not_later(self, a: Pair, b: Pair) -> u32 {
+    fn before(self, a: Pair, b: Pair) -> Pair {
         proven! {
-            let not_later = |a, b| vcleq_s32(vreinterpretq_s32_f32(a), vreinterpretq_s32_f32(b));
-            bits(not_later(a.0, b.0), not_later(a.1, b.1))
+            let before =
+                |a, b| vreinterpretq_f32_u32(vcltq_s32(vreinterpretq_s32_f32(a), vreinterpretq_s32_f32(b)));
+            Pair(before(a.0, b.0), before(a.1, b.1))
         }
     }
     #[inline(always)]
-    fn nearest(self, a: Pair, b: Pair, of: &[u32; WIDTH]) -> (u32, u32) {
-        const LANES: [u32; WIDTH] = [0, 1, 2, 3, 4, 5, 6, 7];
+    fn signs(self, a: Pair) -> u32 {
+        proven!(bits(vcltzq_s32(vreinterpretq_s32_f32(a.0)), vcltzq_s32(vreinterpretq_s32_f32(a.1))))
+    }
+    #[inline(always)]
+    fn nearest(self, a: Pair, which: Pair, codes: &[u8; WIDTH]) -> u32 {
         proven! {
-            let key = |a, b, lanes| {
-                let key = vorrq_u32(vbicq_u32(vreinterpretq_u32_f32(a), vdupq_n_u32(7)), lanes);
-                vornq_u32(key, vcleq_s32(vreinterpretq_s32_f32(a), vreinterpretq_s32_f32(b)))
+            let key = |a, which, codes| {
+                let key = vorrq_u32(vbicq_u32(vreinterpretq_u32_f32(a), vdupq_n_u32(255)), codes);
+                vornq_u32(key, vreinterpretq_u32_f32(which))
             };
-            let low = key(a.0, b.0, vld1q_u32(LANES.as_ptr()));
-            let lane = vminvq_u32(vminq_u32(low, key(a.1, b.1, vld1q_u32(LANES.as_ptr().add(4))))) & 7;
-            (lane, of[lane as usize])
+            let codes = vmovl_u8(vld1_u8(codes.as_ptr()));
+            let low = key(a.0, which.0, vmovl_u16(vget_low_u16(codes)));
+            vminvq_u32(vminq_u32(low, key(a.1, which.1, vmovl_high_u16(codes))))
         }
     }
     #[inline(always)]

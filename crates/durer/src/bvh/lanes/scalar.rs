@@ -144,15 +144,18 @@ impl Lanes for Scalar {
         from_fn(|i| f32::from_bits((a[i].to_bits() as i32).max(b[i].to_bits() as i32) as u32))
     }
     #[inline(always)]
-    fn not_later(self, a: F, b: F) -> u32 {
-        mask(|i| a[i].to_bits() as i32 <= b[i].to_bits() as i32)
+    fn before(self, a: F, b: F) -> F {
+        let is_before = |i: usize| (a[i].to_bits() as i32) < b[i].to_bits() as i32;
+        from_fn(|i| f32::from_bits(if is_before(i) { u32::MAX } else { 0 }))
     }
     #[inline(always)]
-    fn nearest(self, a: F, b: F, of: &[u32; WIDTH]) -> (u32, u32) {
-        let met = self.not_later(a, b);
-        let key = |i: usize| if met >> i & 1 == 1 { a[i].to_bits() & !7 | i as u32 } else { u32::MAX };
-        let lane = (0..WIDTH).fold(u32::MAX, |least, i| least.min(key(i))) & 7;
-        (lane, of[lane as usize])
+    fn signs(self, a: F) -> u32 {
+        mask(|i| a[i].is_sign_negative())
+    }
+    #[inline(always)]
+    fn nearest(self, a: F, which: F, codes: &[u8; WIDTH]) -> u32 {
+        let key = |i: usize| a[i].to_bits() & !255 | u32::from(codes[i]) | !which[i].to_bits();
+        (0..WIDTH).fold(u32::MAX, |least, i| least.min(key(i)))
     }
     #[inline(always)]
     fn select(self, mask: u32, a: F, b: F) -> F {

@@ -62,7 +62,7 @@ struct Everything<'a>(&'a Input);
 
 /// Vectors that are looked at for each input: of arithmetic, in double precision, two halves joined, of comparison, a stack before and
 /// after, nine rows, and columns; and twice as wide ones.
-const OPERATIONS: usize = 10 + 3 * 7 + 2 + 9 + 5 + 2 + 9 + WIDTH + 2 * 11;
+const OPERATIONS: usize = 12 + 3 * 7 + 2 + 9 + 5 + 2 + 9 + WIDTH + 2 * 11;
 
 impl Kernel for Everything<'_> {
     type Output = Vec<u32>;
@@ -91,6 +91,7 @@ impl Kernel for Everything<'_> {
         tell(lanes.max(a, c), WIDTH);
         tell(lanes.sooner(a, c), WIDTH);
         tell(lanes.later(a, c), WIDTH);
+        lanes.interval([[a, c], [b, a], [c, b]], [b, c]).into_iter().for_each(|end| tell(end, WIDTH));
         for corner in lanes.corners(rows, Columns::new(turn, *stride)) {
             corner.into_iter().for_each(|row| tell(row, *stride));
         }
@@ -118,9 +119,10 @@ impl Kernel for Everything<'_> {
         found.extend([lanes.le(a, b), lanes.lt(a, b), lanes.le(b, a), lanes.lt(b, a)]);
         // Which lane it is if none is met, nobody asks.
         let (enter, leave) = (lanes.later(a, lanes.splat(0.0)), b);
-        let nearest = lanes.nearest(enter, leave, &[10, 11, 12, 13, 14, 15, 16, 17]);
-        let met = lanes.not_later(enter, leave);
-        found.extend(if met == 0 { [0; 3] } else { [met, nearest.0, nearest.1] });
+        let before = lanes.before(enter, leave);
+        let (met, nearest) = (lanes.signs(before), lanes.nearest(enter, before, &[10, 250, 12, 30, 14, 15, 201, 17]));
+        found.extend(if met == 0 { [0; 2] } else { [met, nearest] });
+        found.push(lanes.signs(a));
         let mut room = Room::new();
         let mut stack = Stack::new(&mut room);
         let children = [10, 11, 12, 13, 14, 15, 16, 17];

@@ -335,7 +335,7 @@ impl Packet<'_> {
         let [first, ..] = *numbers;
         // Often they are the same; as integers, for as numbers they are next to nothing.
         let (all, one) = (lanes.load(numbers), lanes.splat(first));
-        if lanes.not_later(all, one) & lanes.not_later(one, all) == 255 {
+        if lanes.signs(lanes.before(all, one)) | lanes.signs(lanes.before(one, all)) == 0 {
             let [a, b, c] = self.meetings[first.to_bits() as usize].corners;
             return [lanes.splat3(a), lanes.splat3(b), lanes.splat3(c)];
         }

@@ -110,7 +110,7 @@ impl Packet<'_> {
                 let (met, enter) = beam.meet(lanes, node, lanes.splat(self.limit));
                 if met != 0 {
                     // What is visited last is pushed first.
-                    let from_last = node.is_from_last(ANY, octant);
+                    let from_last = node.order(ANY, octant) != 0;
                     let likely = end_of(met, from_last);
                     let (mut others, enter) = (met ^ 1 << likely, lanes.store(enter));
                     while others != 0 {
