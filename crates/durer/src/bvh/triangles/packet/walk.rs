@@ -2,7 +2,7 @@
 
 use super::{Packet, Rays};
 use crate::bvh::lanes::{Lanes, Numbers, WIDE, Wide};
-use crate::bvh::node::{self, LEAF, Node};
+use crate::bvh::node::{self, LEAF, Node, PLACE};
 use crate::bvh::traverse::end_of;
 use crate::bvh::triangles::fetch::{AND_SIBLINGS, Places};
 
@@ -46,6 +46,15 @@ impl<L: Lanes> Beam<L> {
         let leave = lanes.min(leave, lanes.min(slab!(2, !z, far_from, max), limit));
         (lanes.le(enter, leave), enter)
     }
+}
+
+/// Of children that are met, a bit for each, the place of the one that is entered first. (By the order of the node, which is along one axis,
+/// rays along another met what is far before what is near.)
+#[inline(always)]
+fn nearest<L: Lanes>(lanes: L, node: &Node, met: u32, enter: L::Floats) -> u32 {
+    let enter = lanes.select(met, enter, lanes.splat(f32::INFINITY));
+    let all = lanes.splat(f32::from_bits(u32::MAX));
+    lanes.nearest(enter, all, &node.codes) & PLACE
 }
 
 impl Packet<'_> {
@@ -93,8 +102,8 @@ impl Packet<'_> {
         end!(self, wide, max, greatest, t_last)
     }
 
-    /// Shows the triangles of all leaves that a ray may meet to those rays, roughly from near to far, or, where `ANY` hit will do, in the
-    /// order of nodes for that.
+    /// Shows the triangles of all leaves that a ray may meet to those rays, roughly from near to far: of each node what is entered first, then
+    /// the others in its order. Where `ANY` hit will do, all are in the order of nodes for that.
     #[inline(always)]
     pub(super) fn walk<L: Lanes, const ANY: bool>(&mut self, lanes: L, stack: &mut Vec<Entry>) {
         let bvh = self.bvh;
@@ -109,21 +118,25 @@ impl Packet<'_> {
                 let node = &bvh.nodes[node::number(child)];
                 let (met, enter) = beam.meet(lanes, node, lanes.splat(self.limit));
                 if met != 0 {
-                    // What is visited last is pushed first.
+                    let box_at = child;
                     let from_last = node.order(ANY, octant) != 0;
-                    let likely = end_of(met, from_last);
-                    let (mut others, enter) = (met ^ 1 << likely, lanes.store(enter));
+                    let next = match ANY {
+                        true => end_of(met, from_last),
+                        false => nearest(lanes, node, met, enter),
+                    };
+                    // What is visited last is pushed first.
+                    let (mut others, enter) = (met ^ 1 << next, lanes.store(enter));
                     while others != 0 {
                         let place = end_of(others, !from_last);
                         others ^= 1 << place;
-                        let next = node.children[place as usize];
-                        places.fetch::<L, AND_SIBLINGS>(lanes, next);
-                        stack.push(Entry { rays, child: next, box_at: child + place, near: enter[place as usize] });
+                        let (child, near) = (node.children[place as usize], enter[place as usize]);
+                        places.fetch::<L, AND_SIBLINGS>(lanes, child);
+                        stack.push(Entry { rays, child, box_at: box_at + place, near });
                     }
-                    let inside = self.inside(lanes, node, likely as usize & 7, rays);
+                    let inside = self.inside(lanes, node, next as usize & 7, rays);
                     if inside != 0 {
                         rays = inside;
-                        child = node.children[likely as usize & 7];
+                        child = node.children[next as usize & 7];
                         continue;
                     }
                 }
