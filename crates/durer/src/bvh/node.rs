@@ -16,7 +16,7 @@ pub(super) struct Node {
     /// For each octant of directions, numbered by [`RayBox::negative`](super::traverse::RayBox::negative), a bit: whether rays take the
     /// children from the last to the first. First for those that want the nearest, then for those to which any hit will do.
     pub from_last: [u32; 2],
-    /// The address of the first inner child; the others lie behind it, in any order.
+    /// The address of the first inner child, if there is one; the others lie behind it, in any order.
     pub first: u32,
     /// What a ray must know of the child that is next: its place in the bits of [`PLACE`], and [`IS_LEAF`] or, in the bits of [`BEHIND`],
     /// how far behind the first inner child it begins. So few bits that they take the place of the last ones of a distance.

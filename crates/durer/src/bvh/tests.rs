@@ -48,7 +48,7 @@ fn depth(nodes: &[node::Node], number: usize) -> usize {
 }
 
 /// The codes of a node's children say where they are, as its addresses do.
-fn codes_are_right(node: &node::Node) -> bool {
+pub fn codes_are_right(node: &node::Node) -> bool {
     node.children().all(|(place, _, child)| {
         let code = u32::from(node.codes[place]);
         let is_there = match child & node::LEAF {
@@ -61,7 +61,7 @@ fn codes_are_right(node: &node::Node) -> bool {
 
 #[test]
 fn every_thing_is_offered_to_a_ray_through_its_box_whatever_the_boxes() {
-    let mut random = Random(2);
+    let (mut random, mut tame) = (Random(2), 0);
     for (name, boxes) in collections() {
         let bvh = Bvh::build(&boxes);
         let mut order = bvh.order().to_vec();
@@ -84,10 +84,18 @@ fn every_thing_is_offered_to_a_ray_through_its_box_whatever_the_boxes() {
             let reach = (0.5 * b.size()).max_element().max(1e-37);
             let axis = Vec3::AXES[random.below(3)];
             let step = if round % 2 == 0 { reach * random.point() } else { reach * axis };
-            let ray = Ray { t_min: f32::NEG_INFINITY, ..Ray::new(target - step, step) };
+            // It is there at 1.
+            let (t_min, t_max) = [
+                (f32::NEG_INFINITY, f32::INFINITY),
+                (0.0, f32::INFINITY),
+                (0.0, 1.0),
+                (1f32.next_down(), 1f32.next_up()),
+            ][random.below(4)];
+            let ray = Ray { t_min, t_max, ..Ray::new(target - step, step) };
             if !is_sound(&ray) {
                 continue;
             }
+            tame += u32::from(RayBox::new(&ray, bvh.bounds().reach()).is_some());
             let mut offered = false;
             bvh.walk(&ray, &mut (), |item, t_max, _| {
                 offered |= bvh.order()[item] == i;
@@ -96,6 +104,7 @@ fn every_thing_is_offered_to_a_ray_through_its_box_whatever_the_boxes() {
             assert!(offered, "{name}: {b:?} {ray:?}");
         }
     }
+    assert!(tame > 500, "{tame}");
 }
 
 #[test]

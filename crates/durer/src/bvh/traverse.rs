@@ -40,6 +40,10 @@ struct Planes {
 }
 
 /// How far the sides of boxes are moved outwards, where numbers are no greater than 1.
+///
+/// Of that, rounding takes less than 2.5 epsilon on either side: half of one each for the padded origin, the inverse, their product, and the
+/// distance, and less for what follows from these. So computed distances of a box that a ray meets lie before and behind the true ones by
+/// more than 5: a box begins before it ends, though it is flat, and before anything in it.
 pub(super) const PADDING: f32 = 8.0 * f32::EPSILON;
 
 /// In this range squares neither overflow nor vanish.
@@ -141,24 +145,23 @@ pub(super) fn walk<L: Lanes, V: Visitor, const TAME: bool>(
 ) -> f32 {
     let slabs = Slabs::new(lanes, nodes, boxes);
     let mut far = boxes.limit::<TAME>(t_max);
-    let mut limit = lanes.splat(beyond::<TAME>(far));
+    let mut limit = lanes.splat(far);
     let mut room = Room::new();
     let mut stack = Stack::new(&mut room);
     let mut child = 0;
     loop {
         'visit: {
-            let mut leaf = child;
-            if child & LEAF == 0 {
+            let leaf = if child & LEAF == 0 {
                 let mut address = child as usize;
-                leaf = loop {
+                loop {
                     visitor.tally().node();
                     let met = meet::<L, TAME>(lanes, &slabs, address, limit);
-                    if met.lanes == 0 {
+                    if met.mask == 0 {
                         break 'visit;
                     }
                     // One child is next without a way through the stack.
                     let order = met.node.order(V::ANY, boxes.negative);
-                    let likely = end_of(met.lanes, order != 0);
+                    let likely = end_of(met.mask, order != 0);
                     let next = met.next::<TAME>(lanes, V::ANY, likely);
                     visitor.fetch(lanes, met.node.children[likely as usize]);
                     met.push(lanes, &mut stack, next, order);
@@ -166,8 +169,10 @@ pub(super) fn walk<L: Lanes, V: Visitor, const TAME: bool>(
                         Target::Node(next) => address = next,
                         Target::Leaf(leaf) => break leaf,
                     }
-                };
-            }
+                }
+            } else {
+                child
+            };
             let t = visitor.leaf::<L, TAME>(lanes, leaf, t_max);
             if t < t_max {
                 t_max = t;
@@ -175,7 +180,7 @@ pub(super) fn walk<L: Lanes, V: Visitor, const TAME: bool>(
                     return t_max;
                 }
                 far = boxes.limit::<TAME>(t);
-                limit = lanes.splat(beyond::<TAME>(far));
+                limit = lanes.splat(far);
             }
         }
         loop {
@@ -192,20 +197,13 @@ pub(super) fn walk<L: Lanes, V: Visitor, const TAME: bool>(
     }
 }
 
-/// The end of an interval that a box may begin at, as [`meet`] wants it: for a tame ray the number after it.
-#[inline(always)]
-pub(super) fn beyond<const TAME: bool>(far: f32) -> f32 {
-    // It is positive.
-    if TAME { f32::from_bits(far.to_bits() + 1) } else { far }
-}
-
 /// The children of a node that a ray meets.
 pub(super) struct Met<'a, L: Lanes> {
     pub node: &'a Node,
     codes: &'a [u8; WIDTH],
     /// A bit for each.
-    pub lanes: u32,
-    /// All bits in the lane of each, if the ray is tame.
+    pub mask: u32,
+    /// All bits in the lane of each, if the ray is tame; of no meaning if it is not.
     which: L::Floats,
     /// Where the ray enters them.
     enter: L::Floats,
@@ -238,7 +236,7 @@ impl<L: Lanes> Met<'_, L> {
             }
             return Target::Leaf(self.child(next));
         }
-        match self.node.children[next as usize] {
+        match self.child(next) {
             child if child & LEAF == 0 => Target::Node(child as usize),
             leaf => Target::Leaf(leaf),
         }
@@ -255,8 +253,8 @@ impl<L: Lanes> Met<'_, L> {
     pub fn push(&self, lanes: L, stack: &mut Stack, next: u32, order: u32) {
         let orders = &PUSHED[(order / FROM_LAST) as usize];
         // Of those that are met, so that the stack does not wait for the nearest.
-        let count = self.lanes.count_ones() - u32::from(self.lanes != 0);
-        let others = self.lanes & !(1 << (next & PLACE));
+        let count = self.mask.count_ones() - u32::from(self.mask != 0);
+        let others = self.mask & !(1 << (next & PLACE));
         lanes.push(stack, &self.node.children, self.enter, &orders[others as usize & 255], count);
     }
 }
@@ -286,6 +284,7 @@ static PUSHED: [[[u8; WIDTH]; 256]; 2] = {
     }
     table
 };
+const _: () = assert!(size_of_val(&PUSHED[0]) == FROM_LAST as usize);
 
 /// A ray's numbers for boxes, in all lanes.
 pub(super) struct Slabs<'a, L: Lanes> {
@@ -309,7 +308,7 @@ impl<'a, L: Lanes> Slabs<'a, L> {
     }
 }
 
-/// The node at an address, and those of its children that a ray meets before `limit`: of a tame ray the number [`beyond`].
+/// The node at an address, and those of its children that a ray meets before `limit`.
 #[inline(always)]
 pub(super) fn meet<'a, L: Lanes, const TAME: bool>(
     lanes: L,
@@ -337,15 +336,15 @@ pub(super) fn meet<'a, L: Lanes, const TAME: bool>(
     let (node, codes) = (at.node, at.codes());
     if TAME {
         // Nothing is NaN, and no start is negative, so of ends as integers the right one is found, or one that is negative where nothing is
-        // met. Boxes are padded by more than what is rounded, so they end after they begin.
+        // met. Boxes that are met end after they begin, for they are padded.
         let [enter, leave] = lanes.interval([x, y, z], [*t_min, limit]);
         let which = lanes.before(enter, leave);
-        return Met { node, codes, lanes: lanes.signs(which), which, enter };
+        return Met { node, codes, mask: lanes.signs(which), which, enter };
     }
     // Zero times infinity is NaN, where a ray runs in a side of a box: such a side is left out, being the first argument.
     let enter = lanes.max(z[0], lanes.max(y[0], lanes.max(x[0], *t_min)));
     let leave = lanes.min(z[1], lanes.min(y[1], lanes.min(x[1], limit)));
-    Met { node, codes, lanes: lanes.le(enter, leave), which: enter, enter }
+    Met { node, codes, mask: lanes.le(enter, leave), which: enter, enter }
 }
 
 /// Whether a ray can hit anything: NaN and infinite ones, and those without direction, cannot.

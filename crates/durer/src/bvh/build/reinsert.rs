@@ -2,12 +2,15 @@
 //!
 //! Source: Meister, Bittner, *Parallel Reinsertion for Bounding Volume Hierarchy Optimization*, Eurographics 2018.
 
+use super::LITTLE;
 use super::binary::{Node, Tree, half_area};
 use crate::bvh::DEEPEST;
 use rayon::prelude::*;
 
 /// In each pass this share of nodes are looked at. Where much can be spared, most of that is in few of them.
 const SHARE: f64 = 0.04;
+/// And so many times as many where what may be spared does not say where.
+const MOST_SHARES: usize = 3;
 /// A search for a better place ends after so many nodes.
 const PATIENCE: usize = 1 << 12;
 
@@ -35,6 +38,16 @@ struct Move {
     gain: f32,
     from: u32,
     to: u32,
+}
+
+/// So many of some nodes, those of which most may be spared, and the others.
+fn greatest(nodes: &mut [(f32, u32)], count: usize) -> (&[(f32, u32)], &mut [(f32, u32)]) {
+    let count = count.min(nodes.len());
+    if count < nodes.len() {
+        nodes.select_nth_unstable_by(count, |a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+    }
+    let (greatest, others) = nodes.split_at_mut(count);
+    (greatest, others)
 }
 
 impl Linked {
@@ -78,13 +91,17 @@ impl Linked {
         // The root and its children stay.
         let movable = |&i: &u32| i != 0 && self.at(i).parent != 0;
         let mut candidates: Vec<(f32, u32)> = (0..self.nodes.len() as u32).filter(movable).map(spared).collect();
-        let count = ((self.nodes.len() as f64 * SHARE) as usize).clamp(16, 1 << 24).min(candidates.len());
-        if count < candidates.len() {
-            candidates.select_nth_unstable_by(count, |a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
-            candidates.truncate(count);
+        let count = ((self.nodes.len() as f64 * SHARE) as usize).clamp(16, 1 << 24);
+        let (first, rest) = greatest(&mut candidates, count);
+        let (next, rest) = greatest(rest, count / 4);
+        let (mut moves, more) = (self.moves(first), self.moves(next));
+        let gain = |moves: &[Move]| moves.iter().map(|m| f64::from(m.gain)).sum::<f64>();
+        // Where what is found hardly becomes less with what may be spared, that does not say where to look, and more is looked at.
+        let is_even = 4.0 * gain(&more) >= (0.25 * gain(&moves)).max(LITTLE * self.area);
+        moves.extend(more);
+        if is_even {
+            moves.extend(self.moves(greatest(rest, MOST_SHARES * count).0));
         }
-        let find = |&(_, from): &(f32, u32)| self.find(from);
-        let mut moves: Vec<Move> = candidates.par_iter().with_min_len(64).filter_map(find).collect();
         moves.sort_unstable_by(|a, b| b.gain.total_cmp(&a.gain).then(a.from.cmp(&b.from)));
         let mut touched = vec![false; self.nodes.len()];
         let before = self.area;
@@ -100,6 +117,11 @@ impl Linked {
             self.apply(from, to);
         }
         (before - self.area) / before
+    }
+
+    /// Better places for some nodes.
+    fn moves(&self, candidates: &[(f32, u32)]) -> Vec<Move> {
+        candidates.par_iter().with_min_len(64).filter_map(|&(_, from)| self.find(from)).collect()
     }
 
     /// Whether a node lies in a subtree, as it may after an earlier move of the same pass.

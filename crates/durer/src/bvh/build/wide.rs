@@ -186,7 +186,6 @@ impl Emitter<'_> {
         let (from_last, places) = places(&bounds[..list.len()]);
         part.nodes[number].from_last = from_last;
         let first = part.nodes.len();
-        part.nodes[number].first = node::address(first);
         let mut inner = Children::default();
         for (k, &i) in list.iter().enumerate() {
             let child = if self.plans[i].is_leaf() {
@@ -194,6 +193,7 @@ impl Emitter<'_> {
             } else {
                 inner.list[inner.count] = i;
                 inner.count += 1;
+                part.nodes[number].first = node::address(first);
                 node::address(first + inner.count - 1)
             };
             part.nodes[number].set(places[k], bounds[k], child);

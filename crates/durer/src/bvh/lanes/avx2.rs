@@ -198,8 +198,8 @@ macro_rules! literally {
         }
     };
 }
-// Of signed integers. With the intrinsics what is last is compared first with what comes before it, and masks are made of comparisons, which
-// takes longer.
+// Of signed integers. Of the intrinsics, the compiler compares what is last with what comes right before it first, and makes masks of
+// comparisons, which takes longer. (Where all are compared so, not the last only, vectors must be moved between registers.)
 literally!(greater = "vpmaxsd");
 literally!(lesser = "vpminsd");
 literally!(is_greater = "vpcmpgtd");

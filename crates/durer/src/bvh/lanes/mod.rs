@@ -186,7 +186,7 @@ impl<'a> At<'a, '_> {
     #[inline(always)]
     pub fn codes(&self) -> &'a [u8; WIDTH] {
         let first = self.sides.nodes.as_ptr().cast::<u8>().wrapping_add(offset_of!(Node, codes));
-        // SAFETY: as above.
+        // SAFETY: it is in the first node, and another node is so far behind that.
         unsafe { &*first.wrapping_add(self.offset).cast() }
     }
 

@@ -9,7 +9,7 @@ use super::fetch::{ITSELF, Places};
 use super::query::{Found, Leaves};
 use crate::bvh::lanes::{Kernel, Lanes, Room, Stack};
 use crate::bvh::node::{LEAF, Node};
-use crate::bvh::traverse::{RayBox, Slabs, Visitor, beyond, end_of, meet};
+use crate::bvh::traverse::{RayBox, Slabs, Visitor, end_of, meet};
 use crate::math::{Ray, Vec3};
 use std::hint::select_unpredictable;
 use std::marker::PhantomData;
@@ -102,13 +102,12 @@ impl<'a, F: Found, A: FnMut(usize, F::Answer)> Stream<'a, F, A> {
 #[inline(always)]
 fn step<L: Lanes, F: Found>(lanes: L, nodes: &[Node], flyer: &mut Flyer<F>, stack: &mut Stack) {
     let slabs = Slabs::new(lanes, nodes, &flyer.boxes);
-    let limit = lanes.splat(beyond::<true>(flyer.t_max));
-    let met = meet::<L, true>(lanes, &slabs, flyer.child as usize, limit);
+    let met = meet::<L, true>(lanes, &slabs, flyer.child as usize, lanes.splat(flyer.t_max));
     let order = met.node.order(F::ANY, flyer.boxes.negative);
-    let next = met.next::<true>(lanes, F::ANY, end_of(met.lanes, order != 0));
+    let next = met.next::<true>(lanes, F::ANY, end_of(met.mask, order != 0));
     met.push(lanes, stack, next, order);
     // If nothing was met, nothing was pushed.
-    flyer.child = select_unpredictable(met.lanes == 0, stack.pop_if(met.lanes == 0), met.child(next));
+    flyer.child = select_unpredictable(met.mask == 0, stack.pop_if(met.mask == 0), met.child(next));
 }
 
 impl<'a, F: Found, A: FnMut(usize, F::Answer)> Kernel for Stream<'a, F, A> {

@@ -1,6 +1,7 @@
 //! Trees of triangles against brute force, at every SIMD level and preset.
 
 use super::*;
+use crate::bvh::tests::codes_are_right;
 use crate::bvh::{Preset, is_sound};
 use crate::math::Vec3;
 use crate::math::random::{Random, rounds};
@@ -222,6 +223,7 @@ fn a_refitted_tree_finds_what_brute_force_finds() {
                 _ => {}
             }
             tree.refit(&moved.0, &moved.1);
+            assert!(tree.nodes.iter().all(codes_are_right));
             for _ in 0..200 {
                 let ray = ray(&moved, &mut random, 1.0, Vec3::Y * round as f32);
                 let expected = brute_force(&moved, &ray);

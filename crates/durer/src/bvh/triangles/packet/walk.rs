@@ -1,7 +1,7 @@
 //! The way of a packet through the tree.
 
 use super::{Packet, Rays};
-use crate::bvh::lanes::{Lanes, Numbers, WIDE, Wide};
+use crate::bvh::lanes::{Lanes, Numbers, WIDE, WIDTH, Wide};
 use crate::bvh::node::{self, LEAF, Node, PLACE};
 use crate::bvh::traverse::end_of;
 use crate::bvh::triangles::fetch::{AND_SIBLINGS, Places};
@@ -46,15 +46,31 @@ impl<L: Lanes> Beam<L> {
         let leave = lanes.min(leave, lanes.min(slab!(2, !z, far_from, max), limit));
         (lanes.le(enter, leave), enter)
     }
+
+    /// No ray enters anything before: 0, or, where rays begin behind their origins, where the first of the root's children is entered.
+    #[inline(always)]
+    fn start(&self, lanes: L, root: &Node, limit: f32) -> f32 {
+        if lanes.store(self.t_min)[0] >= 0.0 {
+            return 0.0;
+        }
+        let (met, enter) = self.meet(lanes, root, lanes.splat(limit));
+        let enter = lanes.store(enter);
+        let mut start = f32::INFINITY;
+        for place in 0..WIDTH {
+            start = if met >> place & 1 == 1 { start.min(enter[place]) } else { start };
+        }
+        start
+    }
 }
 
-/// Of children that are met, a bit for each, the place of the one that is entered first. (By the order of the node, which is along one axis,
-/// rays along another met what is far before what is near.)
+/// Of children that are met, a bit for each, the place of the one that is entered first, nothing being entered before `start`. (By the order
+/// of the node, which is along one axis, rays along another met what is far before what is near.)
 #[inline(always)]
-fn nearest<L: Lanes>(lanes: L, node: &Node, met: u32, enter: L::Floats) -> u32 {
-    let enter = lanes.select(met, enter, lanes.splat(f32::INFINITY));
-    let all = lanes.splat(f32::from_bits(u32::MAX));
-    lanes.nearest(enter, all, &node.codes) & PLACE
+fn nearest<L: Lanes>(lanes: L, node: &Node, met: u32, enter: L::Floats, start: f32) -> u32 {
+    let nothing = lanes.splat(0.0);
+    let since = lanes.later(lanes.sub(enter, lanes.splat(start)), nothing);
+    let which = lanes.select(met, lanes.splat(f32::from_bits(u32::MAX)), nothing);
+    lanes.nearest(since, which, &node.codes) & PLACE
 }
 
 impl Packet<'_> {
@@ -112,6 +128,7 @@ impl Packet<'_> {
         let octant = (x | y << 1 | z << 2) as u32;
         self.limit = self.last(lanes);
         stack.clear();
+        let start = beam.start(lanes, &bvh.nodes[0], self.limit);
         let (mut child, mut rays) = (0, self.alive);
         loop {
             if child & LEAF == 0 {
@@ -122,7 +139,7 @@ impl Packet<'_> {
                     let from_last = node.order(ANY, octant) != 0;
                     let next = match ANY {
                         true => end_of(met, from_last),
-                        false => nearest(lanes, node, met, enter),
+                        false => nearest(lanes, node, met, enter, start),
                     };
                     // What is visited last is pushed first.
                     let (mut others, enter) = (met ^ 1 << next, lanes.store(enter));
@@ -190,5 +207,44 @@ impl Packet<'_> {
             inside |= u64::from(wide.le(enter, leave)) << (group * WIDE);
         }
         inside & rays
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bvh::lanes::{Available, Kernel, Level};
+    use crate::math::{Aabb, Vec3};
+
+    /// Where children of a node are entered, those of them that are met, and before which nothing is.
+    struct Asked<'a>(&'a Node, [f32; WIDTH], u32, f32);
+
+    impl Kernel for Asked<'_> {
+        type Output = u32;
+
+        #[inline(always)]
+        fn run<L: Lanes>(self, lanes: L) -> u32 {
+            nearest(lanes, self.0, self.2, lanes.load(&self.1), self.3)
+        }
+    }
+
+    #[test]
+    fn what_is_entered_first_is_next_behind_the_origin_too() {
+        let mut node = Node::EMPTY;
+        for place in 0..WIDTH {
+            node.set(place, Aabb::around([Vec3::ZERO]), node::leaf(place, 1));
+        }
+        let enter = [-1.0, -3.0, 0.5, -0.0, -8.0, 2.0, 1e30, -2.0];
+        let cases = [
+            (0b1111_1111, -8.0, 4),
+            (0b1110_1111, -8.0, 1),
+            (0b0110_1000, 0.0, 3),
+            (0b0110_0100, 0.0, 2),
+            (0b0100_0000, 0.0, 6),
+        ];
+        for (level, (met, start, expected)) in Level::available().flat_map(|level| cases.map(|case| (level, case))) {
+            let place = Available::or_scalar(level).run(Asked(&node, enter, met, start));
+            assert_eq!(place, expected, "{level:?} {met:b}");
+        }
     }
 }
