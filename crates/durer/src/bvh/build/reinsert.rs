@@ -40,8 +40,11 @@ struct Move {
     to: u32,
 }
 
+/// What moving a node may spare, and the node.
+type Candidate = (f32, u32);
+
 /// So many of some nodes, those of which most may be spared, and the others.
-fn greatest(nodes: &mut [(f32, u32)], count: usize) -> (&[(f32, u32)], &mut [(f32, u32)]) {
+fn greatest(nodes: &mut [Candidate], count: usize) -> (&[Candidate], &mut [Candidate]) {
     let count = count.min(nodes.len());
     if count < nodes.len() {
         nodes.select_nth_unstable_by(count, |a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
@@ -90,7 +93,7 @@ impl Linked {
         let spared = |i: u32| ((self.at(self.at(i).parent).area - self.at(i).area).max(0.0), i);
         // The root and its children stay.
         let movable = |&i: &u32| i != 0 && self.at(i).parent != 0;
-        let mut candidates: Vec<(f32, u32)> = (0..self.nodes.len() as u32).filter(movable).map(spared).collect();
+        let mut candidates: Vec<Candidate> = (0..self.nodes.len() as u32).filter(movable).map(spared).collect();
         let count = ((self.nodes.len() as f64 * SHARE) as usize).clamp(16, 1 << 24);
         let (first, rest) = greatest(&mut candidates, count);
         let (next, rest) = greatest(rest, count / 4);
@@ -120,7 +123,7 @@ impl Linked {
     }
 
     /// Better places for some nodes.
-    fn moves(&self, candidates: &[(f32, u32)]) -> Vec<Move> {
+    fn moves(&self, candidates: &[Candidate]) -> Vec<Move> {
         candidates.par_iter().with_min_len(64).filter_map(|&(_, from)| self.find(from)).collect()
     }
 

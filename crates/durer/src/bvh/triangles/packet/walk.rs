@@ -1,7 +1,7 @@
 //! The way of a packet through the tree.
 
 use super::{Packet, Rays};
-use crate::bvh::lanes::{Lanes, Numbers, WIDE, WIDTH, Wide};
+use crate::bvh::lanes::{Lanes, Numbers, WIDE, Wide};
 use crate::bvh::node::{self, LEAF, Node, PLACE};
 use crate::bvh::traverse::end_of;
 use crate::bvh::triangles::fetch::{AND_SIBLINGS, Places};
@@ -54,12 +54,8 @@ impl<L: Lanes> Beam<L> {
             return 0.0;
         }
         let (met, enter) = self.meet(lanes, root, lanes.splat(limit));
-        let enter = lanes.store(enter);
-        let mut start = f32::INFINITY;
-        for place in 0..WIDTH {
-            start = if met >> place & 1 == 1 { start.min(enter[place]) } else { start };
-        }
-        start
+        let nowhere = f32::INFINITY;
+        lanes.store(lanes.select(met, enter, lanes.splat(nowhere))).into_iter().fold(nowhere, f32::min)
     }
 }
 
@@ -213,7 +209,7 @@ impl Packet<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::bvh::lanes::{Available, Kernel, Level};
+    use crate::bvh::lanes::{Available, Kernel, Level, WIDTH};
     use crate::math::{Aabb, Vec3};
 
     /// Where children of a node are entered, those of them that are met, and before which nothing is.
