@@ -163,7 +163,7 @@ pub(super) fn walk<L: Lanes, V: Visitor, const TAME: bool>(
                     let order = met.node.order(V::ANY, boxes.negative);
                     let likely = end_of(met.mask, order != 0);
                     let next = met.next::<TAME>(lanes, V::ANY, likely);
-                    visitor.fetch(lanes, met.node.children[likely as usize]);
+                    visitor.fetch(lanes, met.child(likely));
                     met.push(lanes, &mut stack, next, order);
                     match met.target::<TAME>(V::ANY, next) {
                         Target::Node(next) => address = next,
@@ -234,7 +234,7 @@ impl<L: Lanes> Met<'_, L> {
             if next & IS_LEAF == 0 {
                 return Target::Node(self.node.first as usize + (next & BEHIND) as usize);
             }
-            return Target::Leaf(self.child(next));
+            return Target::Leaf(self.child(next & PLACE));
         }
         match self.child(next) {
             child if child & LEAF == 0 => Target::Node(child as usize),
@@ -242,10 +242,10 @@ impl<L: Lanes> Met<'_, L> {
         }
     }
 
-    /// As [`Node::children`] have it.
+    /// The child in a place, as [`Node::children`] have it.
     #[inline(always)]
-    pub fn child(&self, next: u32) -> u32 {
-        self.node.children[(next & PLACE) as usize]
+    pub fn child(&self, place: u32) -> u32 {
+        self.node.children[place as usize]
     }
 
     /// Pushes the others in the [order](Node::order) of the node, the first last.

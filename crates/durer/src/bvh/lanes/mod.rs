@@ -182,19 +182,19 @@ impl<'a> At<'a, '_> {
         unsafe { &*self.sides.near[axis].wrapping_add(self.offset).cast() }
     }
 
+    /// Where it leaves.
+    #[inline(always)]
+    pub fn far(&self, axis: usize) -> &'a [f32; WIDTH] {
+        // SAFETY: as above.
+        unsafe { &*self.sides.far[axis].wrapping_add(self.offset).cast() }
+    }
+
     /// The node's [codes](Node::codes), found as soon as its sides, for they are waited for.
     #[inline(always)]
     pub fn codes(&self) -> &'a [u8; WIDTH] {
         let first = self.sides.nodes.as_ptr().cast::<u8>().wrapping_add(offset_of!(Node, codes));
         // SAFETY: it is in the first node, and another node is so far behind that.
         unsafe { &*first.wrapping_add(self.offset).cast() }
-    }
-
-    /// Where it leaves.
-    #[inline(always)]
-    pub fn far(&self, axis: usize) -> &'a [f32; WIDTH] {
-        // SAFETY: as above.
-        unsafe { &*self.sides.far[axis].wrapping_add(self.offset).cast() }
     }
 }
 

@@ -8,7 +8,7 @@ use super::TriangleBvh;
 use super::fetch::{ITSELF, Places};
 use super::query::{Found, Leaves};
 use crate::bvh::lanes::{Kernel, Lanes, Room, Stack};
-use crate::bvh::node::{LEAF, Node};
+use crate::bvh::node::{LEAF, Node, PLACE};
 use crate::bvh::traverse::{RayBox, Slabs, Visitor, end_of, meet};
 use crate::math::{Ray, Vec3};
 use std::hint::select_unpredictable;
@@ -107,7 +107,7 @@ fn step<L: Lanes, F: Found>(lanes: L, nodes: &[Node], flyer: &mut Flyer<F>, stac
     let next = met.next::<true>(lanes, F::ANY, end_of(met.mask, order != 0));
     met.push(lanes, stack, next, order);
     // If nothing was met, nothing was pushed.
-    flyer.child = select_unpredictable(met.mask == 0, stack.pop_if(met.mask == 0), met.child(next));
+    flyer.child = select_unpredictable(met.mask == 0, stack.pop_if(met.mask == 0), met.child(next & PLACE));
 }
 
 impl<'a, F: Found, A: FnMut(usize, F::Answer)> Kernel for Stream<'a, F, A> {
