@@ -1,22 +1,28 @@
 //! A binary tree over references, from the top down by the surface area heuristic.
 
 use super::cut::{Bin, HALVING_DEPTH};
-use super::spatial::Budget;
+use super::spatial::{FEWEST, Searches};
 use super::{Reference, Settings, lane, lane_number};
+use crate::bvh::lanes::large_pages;
 use crate::math::{Aabb, Vec3};
 use glam::Vec4;
+use rayon::prelude::*;
 
 /// Subtrees of more references than this are built in parallel.
-const PARALLEL: usize = 4096;
+const PARALLEL: u32 = 4096;
 
-/// A node. Nodes lie in depth-first order: the left child follows its parent, the right child what is below the left one.
+/// A node. Nodes lie in depth-first order: the left child follows its parent, the right child what is below the left one, and behind
+/// that, where subtrees were built in parallel, room that is left over.
 #[derive(Clone, Copy, Debug)]
 pub struct Node {
     /// With the number of references in the fourth lane, and whether it is a leaf.
     pub min: Vec4,
-    /// With a leaf's first item, or the number of leaves below the left child.
+    /// With a leaf's first reference, or half of how far behind its parent the right child is.
     pub max: Vec4,
 }
+
+/// A node as it lies in memory: numbers, of which a list of zeros is given by the system as it is touched.
+pub type Slot = [[f32; 4]; 2];
 
 const INNER: u32 = 2;
 const LEAF: u32 = 3;
@@ -27,26 +33,41 @@ impl Node {
         Node { min, max }
     }
 
-    pub fn inner(mut min: Vec4, mut max: Vec4, count: u32, left_leaves: u32) -> Self {
-        (min.w, max.w) = (lane(INNER, count), lane(INNER, left_leaves));
+    pub fn inner(mut min: Vec4, mut max: Vec4, count: u32, right: usize) -> Self {
+        debug_assert!(right.is_multiple_of(2));
+        (min.w, max.w) = (lane(INNER, count), lane(INNER, (right / 2) as u32));
         Node { min, max }
     }
 
+    #[inline]
+    pub fn of(&[min, max]: &Slot) -> Self {
+        Node { min: min.into(), max: max.into() }
+    }
+
+    #[inline]
+    pub fn slot(self) -> Slot {
+        [self.min.into(), self.max.into()]
+    }
+
+    #[inline]
     pub fn is_leaf(&self) -> bool {
         self.min.w.to_bits() >> 28 == LEAF
     }
 
     /// How many references are below it.
+    #[inline]
     pub fn count(&self) -> usize {
         lane_number(self.min.w) as usize
     }
 
-    /// Where a leaf's items begin.
+    /// Where a leaf's references begin.
+    #[inline]
     pub fn first(&self) -> usize {
         lane_number(self.max.w) as usize
     }
 
-    /// How far behind its parent the right child is: below the left child are as many nodes as leaves, but for one.
+    /// How far behind its parent the right child is.
+    #[inline]
     pub fn right(&self) -> usize {
         2 * lane_number(self.max.w) as usize
     }
@@ -56,10 +77,10 @@ impl Node {
     }
 }
 
-/// The tree, the things of its leaves, and what sizes are multiplied by before areas are compared.
+/// The tree, the references of its leaves, and what sizes are multiplied by before areas are compared.
 pub struct Tree {
-    pub nodes: Vec<Node>,
-    pub items: Vec<u32>,
+    pub nodes: Vec<Slot>,
+    pub references: Vec<Reference>,
     pub scale: f32,
     /// Whether things are in several leaves.
     pub is_cut: bool,
@@ -84,112 +105,115 @@ pub struct Builder<'a> {
     pub corners: &'a [[Vec3; 3]],
 }
 
-/// Nodes and the items of their leaves, in depth-first order.
-struct Piece {
-    nodes: Vec<Node>,
-    items: Vec<u32>,
+/// Where a subtree is built.
+struct Room<'a> {
+    /// As many as there are, and room for those that cuts add.
+    references: &'a mut [Reference],
+    /// The place of the first among all.
+    first: usize,
+    /// Twice as many as there is room for references, less one: as many as a tree may need.
+    nodes: &'a mut [Slot],
+    searches: Searches,
 }
 
-/// How many references and leaves are below a node.
+/// How many references are below a node, and how many nodes from it on are taken.
 struct Counts {
     references: u32,
-    leaves: u32,
+    nodes: usize,
 }
 
 /// Builds a tree; triangles whose corners are known may be cut.
-pub fn build(references: &mut [Reference], all: &Bin, scale: f32, settings: &Settings, corners: &[[Vec3; 3]]) -> Tree {
+pub fn build(
+    mut references: Vec<Reference>,
+    all: &Bin,
+    scale: f32,
+    settings: &Settings,
+    corners: &[[Vec3; 3]],
+) -> Tree {
     let area = half_area(all.min, all.max, scale);
     let builder = Builder { scale, area, whole: settings.whole, bins: settings.bins, corners };
-    let share = if corners.is_empty() { 0.0 } else { settings.splits };
-    let budget = Budget::new((references.len() as f32 * share) as usize);
-    let mut pieces = vec![Piece::new(references.len())];
-    builder.subtree(references, all, budget, 0, &mut pieces);
-    let (mut nodes, mut items) = (Vec::new(), Vec::new());
-    nodes.reserve_exact(pieces.iter().map(|piece| piece.nodes.len()).sum());
-    items.reserve_exact(pieces.iter().map(|piece| piece.items.len()).sum());
-    for piece in pieces {
-        let before = items.len();
-        nodes.extend(piece.nodes.iter().map(|node| match node.is_leaf() {
-            true => Node::leaf(node.min, node.max, node.count() as u32, (before + node.first()) as u32),
-            false => *node,
-        }));
-        items.extend_from_slice(&piece.items);
-    }
-    let is_cut = items.len() > references.len();
-    Tree { nodes, items, scale, is_cut }
+    references.par_extend(rayon::iter::repeat_n(references[0], settings.spare(references.len())));
+    let mut nodes = vec![Slot::default(); 2 * references.len() - 1];
+    large_pages(nodes.as_ptr(), nodes.len());
+    let room = Room { references: &mut references, first: 0, nodes: &mut nodes, searches: Searches::default() };
+    let counts = builder.subtree(room, all, 0);
+    nodes.truncate(counts.nodes);
+    Tree { nodes, references, scale, is_cut: counts.references > all.count }
 }
 
-impl Piece {
-    fn new(count: usize) -> Self {
-        Piece { nodes: Vec::with_capacity(count), items: Vec::with_capacity(count) }
+impl Room<'_> {
+    /// Where the room of the right one of two children begins, by how many references are in each.
+    ///
+    /// What there is to spare goes where more references are, but not to the left where there are too few to be cut.
+    fn shared(&self, left: usize, right: usize) -> usize {
+        let spare = self.references.len() - left - right;
+        let for_left = match left > FEWEST {
+            true => (spare as u64 * left as u64 / (left + right) as u64) as usize,
+            false => 0,
+        };
+        left + for_left
     }
 }
 
 impl Builder<'_> {
-    /// Builds over some references.
-    fn subtree(
-        &self,
-        references: &mut [Reference],
-        all: &Bin,
-        mut budget: Budget,
-        depth: usize,
-        pieces: &mut Vec<Piece>,
-    ) -> Counts {
-        let number = pieces.len() - 1;
-        let piece = &mut pieces[number];
-        let (place, Bin { min, max, count }) = (piece.nodes.len(), *all);
-        piece.nodes.push(Node::leaf(min, max, count, piece.items.len() as u32));
-        if references.len() == 1 || references.len() <= self.whole && self.is_whole(references, all) {
-            piece.items.extend(references.iter().map(Reference::number));
-            return Counts { references: count, leaves: 1 };
+    /// Builds over the references that a room begins with.
+    fn subtree(&self, mut room: Room, all: &Bin, depth: usize) -> Counts {
+        let (Bin { min, max, .. }, count) = (*all, all.count as usize);
+        let spare = room.references.len() - count;
+        let references = &mut room.references[..count];
+        if count == 1 || count <= self.whole && self.is_whole(references, all) {
+            room.nodes[0] = Node::leaf(min, max, all.count, room.first as u32).slot();
+            return Counts { references: all.count, nodes: 1 };
         }
         let cut = self.cut(references, all, depth);
         let parts = match depth < HALVING_DEPTH {
-            true => self.parts(references, all, &cut, &mut budget),
+            true => self.parts(references, spare, all, &cut, &mut room.searches),
             false => None,
         };
-        let [left, right] = match parts {
-            Some([mut left, mut right]) => {
-                let boxes = [Bin::of(&left), Bin::of(&right)];
-                self.both([&mut left, &mut right], boxes, budget, depth, pieces)
+        let (boxes, middle) = match parts {
+            Some([left, right]) => {
+                let middle = room.shared(left.len(), right.len());
+                room.references[..left.len()].copy_from_slice(&left);
+                room.references[middle..][..right.len()].copy_from_slice(&right);
+                ([Bin::of(&left), Bin::of(&right)], middle)
             }
             None => {
-                let (boxes, middle) = self.divide(references, &cut);
-                self.both(references.split_at_mut(middle).into(), boxes, budget, depth, pieces)
+                let (boxes, left) = self.divide(references, &cut);
+                let middle = room.shared(left, count - left);
+                if left < middle {
+                    room.references.copy_within(left..count, middle);
+                }
+                (boxes, middle)
             }
         };
-        let counts = Counts { references: left.references + right.references, leaves: left.leaves + right.leaves };
-        pieces[number].nodes[place] = Node::inner(min, max, counts.references, left.leaves);
-        counts
+        let (here, below) = room.nodes.split_first_mut().expect("there is room for a node");
+        let (left, right) = room.references.split_at_mut(middle);
+        let [left_all, right_all] = &boxes;
+        let searches = room.searches;
+        let left = Room { references: left, first: room.first, nodes: &mut [], searches };
+        let right = Room { references: right, first: room.first + middle, nodes: &mut [], searches };
+        let build = |room: Room, all| self.subtree(room, all, depth + 1);
+        let [left, right] = if left_all.count + right_all.count > PARALLEL {
+            let (left_nodes, right_nodes) = below.split_at_mut(2 * middle - 1);
+            let nodes = left_nodes.len();
+            let (left, right) = rayon::join(
+                || build(Room { nodes: left_nodes, ..left }, left_all),
+                || build(Room { nodes: right_nodes, ..right }, right_all),
+            );
+            [Counts { nodes, ..left }, right]
+        } else {
+            let left = build(Room { nodes: below, ..left }, left_all);
+            let right = build(Room { nodes: &mut below[left.nodes..], ..right }, right_all);
+            [left, right]
+        };
+        let references = left.references + right.references;
+        *here = Node::inner(min, max, references, 1 + left.nodes).slot();
+        Counts { references, nodes: 1 + left.nodes + right.nodes }
     }
 
     /// Whether a few references are so near each other that boxes of their own would spare few tests.
     fn is_whole(&self, references: &[Reference], all: &Bin) -> bool {
         let areas = references.iter().map(|r| half_area(r.min, r.max, self.scale));
         half_area(all.min, all.max, self.scale) <= 4.0 * areas.fold(f32::INFINITY, f32::min)
-    }
-
-    /// Builds over the references of both children.
-    fn both(
-        &self,
-        [left, right]: [&mut [Reference]; 2],
-        [left_all, right_all]: [Bin; 2],
-        budget: Budget,
-        depth: usize,
-        pieces: &mut Vec<Piece>,
-    ) -> [Counts; 2] {
-        let [for_left, for_right] = budget.shared(left.len(), right.len());
-        let build = |references: &mut [Reference], all, budget, pieces: &mut Vec<Piece>| {
-            self.subtree(references, all, budget, depth + 1, pieces)
-        };
-        if left.len() + right.len() <= PARALLEL {
-            return [build(left, &left_all, for_left, pieces), build(right, &right_all, for_right, pieces)];
-        }
-        let mut others = [vec![Piece::new(left.len())], vec![Piece::new(right.len())]];
-        let [a, b] = &mut others;
-        let (left, right) =
-            rayon::join(|| build(left, &left_all, for_left, a), || build(right, &right_all, for_right, b));
-        others.iter_mut().for_each(|other| pieces.append(other));
-        [left, right]
     }
 }

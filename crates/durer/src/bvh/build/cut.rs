@@ -29,12 +29,7 @@ impl Bin {
     pub const EMPTY: Bin = Bin { min: Vec4::INFINITY, max: Vec4::NEG_INFINITY, count: 0 };
 
     pub fn of(references: &[Reference]) -> Bin {
-        if references.len() > MANY {
-            let (a, b) = references.split_at(references.len() / 2);
-            let (a, b) = rayon::join(|| Bin::of(a), || Bin::of(b));
-            return a.union(b);
-        }
-        let [min, max] = around_all(references, |r| [r.min, r.max]);
+        let [min, max] = around_all(references, &|r| [r.min, r.max]);
         Bin { min, max, count: references.len() as u32 }
     }
 
@@ -91,11 +86,16 @@ const FIRST: f32 = (1 << 23) as f32;
 
 /// The box around all [`Reference::middle`].
 fn middles(references: &[Reference]) -> [Vec4; 2] {
-    around_all(references, |r| [r.middle(); 2])
+    around_all(references, &|r| [r.middle(); 2])
 }
 
 /// The box around what is known of each reference. Four grow in turn, for each step of one waits for that before.
-fn around_all(references: &[Reference], of: impl Fn(&Reference) -> [Vec4; 2]) -> [Vec4; 2] {
+fn around_all(references: &[Reference], of: &(impl Fn(&Reference) -> [Vec4; 2] + Sync)) -> [Vec4; 2] {
+    if references.len() > MANY {
+        let (a, b) = references.split_at(references.len() / 2);
+        let (a, b) = rayon::join(|| around_all(a, of), || around_all(b, of));
+        return [a[0].min(b[0]), a[1].max(b[1])];
+    }
     let mut boxes = [[Vec4::INFINITY, Vec4::NEG_INFINITY]; 4];
     let grow = |[min, max]: &mut [Vec4; 2], r: &Reference| {
         let [low, high] = of(r);
@@ -296,10 +296,10 @@ impl Builder<'_> {
 fn partition(references: &mut [Reference], is_left: impl Fn(&Reference) -> bool) {
     let mut left = 0;
     for i in 0..references.len() {
+        let (here, other) = (references[i], references[left]);
+        (references[i], references[left]) = (other, here);
         // Without a branch, which would be guessed wrongly half of the time.
-        let goes_left = is_left(&references[i]);
-        references.swap(i, left);
-        left += usize::from(goes_left);
+        left += usize::from(is_left(&here));
     }
 }
 

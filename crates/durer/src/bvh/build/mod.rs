@@ -6,6 +6,7 @@ mod reinsert;
 mod spatial;
 mod wide;
 
+use super::lanes::large_pages;
 use super::node::{MOST_ITEMS, Node};
 use crate::math::{Aabb, Vec3};
 use cut::Bin;
@@ -65,6 +66,11 @@ impl Settings {
         reinsertions: 2,
         splits: 0.0,
     };
+
+    /// How many references cuts may add to so many.
+    fn spare(&self, count: usize) -> usize {
+        ((count as f32 * self.splits) as usize).min(MOST_ITEMS - count)
+    }
 
     pub fn triangles(preset: Preset) -> Settings {
         // A leaf is tested at once, whatever it holds.
@@ -128,13 +134,25 @@ pub(super) fn is_finite(corners: &[Vec3; 3]) -> bool {
     corners.iter().all(|p| p.is_finite())
 }
 
-/// References to triangles 0, 1, 2, ...; those with corners that are no finite points are left out.
-fn triangle_references(count: usize, corners_of: &(impl Fn(u32) -> [Vec3; 3] + Sync)) -> Vec<Reference> {
+/// What there is of each of so many things, with room for more in all.
+fn collected<T: Send>(count: usize, room: usize, of: &(impl Fn(u32) -> T + Sync)) -> Vec<T> {
+    let mut all = Vec::with_capacity(room);
+    large_pages(all.as_ptr(), room);
+    all.par_extend((0..count as u32).into_par_iter().with_min_len(4096).map(of));
+    all
+}
+
+/// References to triangles 0, 1, 2, ..., with room for those that cuts add; those with corners that are no finite points are left out.
+fn triangle_references(
+    count: usize,
+    settings: &Settings,
+    corners_of: &(impl Fn(u32) -> [Vec3; 3] + Sync),
+) -> Vec<Reference> {
     let reference = |i| {
         let corners = corners_of(i);
         Reference::new(if is_finite(&corners) { Aabb::around(corners) } else { Aabb::EMPTY }, i)
     };
-    let mut references: Vec<Reference> = (0..count as u32).into_par_iter().with_min_len(4096).map(reference).collect();
+    let mut references = collected(count, count + settings.spare(count), &reference);
     if references.par_iter().with_min_len(4096).any(|r| r.min.x > r.max.x) {
         references.retain(|r| r.min.x <= r.max.x);
     }
@@ -162,22 +180,21 @@ pub(super) fn build_triangles(
 ) -> Tree {
     assert!(count <= MOST_ITEMS, "a tree holds at most 2^28 triangles");
     if settings.splits == 0.0 {
-        return build_of(triangle_references(count, corners_of), settings, Vec::new());
+        return build_of(triangle_references(count, settings, corners_of), settings, Vec::new());
     }
     // Whoever looks for planes asks for the same corners at many levels.
-    let corners: Vec<[Vec3; 3]> = (0..count as u32).into_par_iter().with_min_len(4096).map(corners_of).collect();
-    build_of(triangle_references(count, &|i| corners[i as usize]), settings, corners)
+    let corners = collected(count, count, corners_of);
+    build_of(triangle_references(count, settings, &|i| corners[i as usize]), settings, corners)
 }
 
-fn build_of(mut references: Vec<Reference>, settings: &Settings, corners: Vec<[Vec3; 3]>) -> Tree {
+fn build_of(references: Vec<Reference>, settings: &Settings, corners: Vec<[Vec3; 3]>) -> Tree {
     let all = Bin::of(&references);
     let bounds = Aabb { min: all.min.truncate(), max: all.max.truncate() };
     if references.is_empty() {
         return Tree { nodes: Vec::new(), order: Vec::new(), bounds };
     }
-    let mut tree = binary::build(&mut references, &all, area_scale(bounds), settings, &corners);
+    let mut tree = binary::build(references, &all, area_scale(bounds), settings, &corners);
     drop(corners);
-    assert!(tree.items.len() <= MOST_ITEMS, "a tree holds at most 2^28 things");
     let plans = improved(&mut tree, settings);
     let (nodes, order) = wide::collapse(&tree, plans);
     Tree { nodes, order, bounds }

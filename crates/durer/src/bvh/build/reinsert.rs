@@ -3,8 +3,9 @@
 //! Source: Meister, Bittner, *Parallel Reinsertion for Bounding Volume Hierarchy Optimization*, Eurographics 2018.
 
 use super::LITTLE;
-use super::binary::{Node, Tree, half_area};
+use super::binary::{Node, Slot, Tree, half_area};
 use crate::bvh::DEEPEST;
+use crate::bvh::lanes::large_pages;
 use rayon::prelude::*;
 
 /// In each pass this share of nodes are looked at. Where much can be spared, most of that is in few of them.
@@ -56,21 +57,21 @@ fn greatest(nodes: &mut [Candidate], count: usize) -> (&[Candidate], &mut [Candi
 impl Linked {
     pub fn new(tree: &Tree) -> Self {
         let scale = tree.scale;
-        let link = |node: &Node| Link {
-            node: *node,
-            area: half_area(node.min, node.max, scale),
-            parent: NONE,
-            children: [NONE; 2],
-        };
-        let mut nodes: Vec<Link> = tree.nodes.iter().map(link).collect();
-        for i in 0..nodes.len() {
-            if !nodes[i].node.is_leaf() {
-                let children = [i as u32 + 1, (i + nodes[i].node.right()) as u32];
-                nodes[i].children = children;
-                for child in children {
-                    nodes[child as usize].parent = i as u32;
-                }
+        let mut nodes: Vec<Link> = Vec::with_capacity(tree.nodes.len());
+        large_pages(nodes.as_ptr(), nodes.capacity());
+        // Nodes follow each other in depth-first order: what comes is a child of the last one that has less than two.
+        let mut parents = Vec::new();
+        for node in tree.nodes.iter().map(Node::of).filter(|node| node.count() > 0) {
+            let i = nodes.len() as u32;
+            let parent = parents.pop().unwrap_or(NONE);
+            if parent != NONE {
+                let children = &mut nodes[parent as usize].children;
+                children[usize::from(children[0] != NONE)] = i;
             }
+            if !node.is_leaf() {
+                parents.extend([i, i]);
+            }
+            nodes.push(Link { node, area: half_area(node.min, node.max, scale), parent, children: [NONE; 2] });
         }
         let area = nodes.iter().map(|link| f64::from(link.area)).sum();
         Linked { nodes, scale, area }
@@ -219,30 +220,32 @@ impl Linked {
     }
 
     /// The nodes in depth-first order with their counts; `None` if the tree is too deep.
-    pub fn in_order(&self) -> Option<Vec<Node>> {
-        let mut nodes: Vec<Node> = Vec::with_capacity(self.nodes.len());
+    pub fn in_order(&self) -> Option<Vec<Slot>> {
+        let mut nodes = Vec::with_capacity(self.nodes.len());
+        large_pages(nodes.as_ptr(), nodes.capacity());
         let mut stack = vec![(0, 1)];
         while let Some((i, depth)) = stack.pop() {
             if depth > DEEPEST {
                 return None;
             }
             let link = self.at(i);
-            nodes.push(link.node);
+            nodes.push(link.node.slot());
             let [left, right] = link.children;
             if left != NONE {
                 stack.extend([(right, depth + 1), (left, depth + 1)]);
             }
         }
         // Children come after their parents, so counts are added from the end.
-        let mut leaves = vec![1; nodes.len()];
+        let mut below = vec![1; nodes.len()];
         for i in (0..nodes.len()).rev() {
-            if nodes[i].is_leaf() {
+            let node = Node::of(&nodes[i]);
+            if node.is_leaf() {
                 continue;
             }
-            let [left, right] = [i + 1, i + 2 * leaves[i + 1] as usize];
-            let count = (nodes[left].count() + nodes[right].count()) as u32;
-            leaves[i] = leaves[left] + leaves[right];
-            nodes[i] = Node::inner(nodes[i].min, nodes[i].max, count, leaves[left]);
+            let [left, right] = [i + 1, i + 1 + below[i + 1] as usize];
+            let count = [left, right].map(|child| Node::of(&nodes[child]).count() as u32);
+            below[i] = 1 + below[left] + below[right];
+            nodes[i] = Node::inner(node.min, node.max, count[0] + count[1], right - i).slot();
         }
         Some(nodes)
     }
@@ -270,25 +273,26 @@ mod tests {
                     Aabb { min: at - size, max: at + size }
                 })
                 .collect();
-            let mut references = references(&boxes);
+            let references = references(&boxes);
             let all = Bin::of(&references);
             let scale = area_scale(Aabb { min: all.min.truncate(), max: all.max.truncate() });
-            let tree = binary::build(&mut references, &all, scale, &Settings::THINGS, &[]);
-            let leaves = |nodes: &[Node]| {
-                let mut leaves: Vec<usize> = nodes.iter().filter(|node| node.is_leaf()).map(Node::first).collect();
+            let tree = binary::build(references, &all, scale, &Settings::THINGS, &[]);
+            let leaves = |nodes: &[Slot]| {
+                let leaves = nodes.iter().map(Node::of).filter(Node::is_leaf);
+                let mut leaves: Vec<usize> = leaves.map(|leaf| leaf.first()).collect();
                 leaves.sort_unstable();
                 leaves
             };
             let area = |node: &Node| half_area(node.min, node.max, scale);
-            let sum = |nodes: &[Node]| nodes.iter().map(|node| f64::from(area(node))).sum::<f64>();
+            let sum = |nodes: &[Slot]| nodes.iter().map(|node| f64::from(area(&Node::of(node)))).sum::<f64>();
             let first = sum(&tree.nodes);
             let (mut work, mut before) = (Linked::new(&tree), first);
             for _ in 0..4 {
                 let spared = work.pass();
                 assert!(work.nodes.iter().all(|link| link.area == area(&link.node)));
                 let nodes = work.in_order().expect("a shallow tree");
-                for (i, node) in nodes.iter().enumerate().filter(|(_, node)| !node.is_leaf()) {
-                    let [left, right] = [i + 1, i + node.right()].map(|child| nodes[child]);
+                for (i, node) in nodes.iter().map(Node::of).enumerate().filter(|(_, node)| !node.is_leaf()) {
+                    let [left, right] = [i + 1, i + node.right()].map(|child| Node::of(&nodes[child]));
                     assert_eq!(node.bounds(), left.bounds().union(right.bounds()));
                     assert_eq!(node.count(), left.count() + right.count());
                 }

@@ -19,28 +19,15 @@ const LENGTH: f32 = 0.3;
 /// They must cost less than this share of what the best two sets cost.
 const GAIN: f32 = 0.95;
 /// With so few references or fewer, cuts spare less than they cost.
-const FEWEST: usize = 330;
+pub const FEWEST: usize = 330;
 /// After so many searches in vain, one below the other, one level is left out before the next, then two, up to four.
 const IN_VAIN: u32 = 3;
 
-/// How many references may be added below a node, and what is known of searches for planes above it.
-#[derive(Clone, Copy)]
-pub struct Budget {
-    references: usize,
+/// What is known of searches for planes above a node.
+#[derive(Clone, Copy, Default)]
+pub struct Searches {
     in_vain: u32,
     pause: u32,
-}
-
-impl Budget {
-    pub fn new(references: usize) -> Self {
-        Budget { references, in_vain: 0, pause: 0 }
-    }
-
-    /// What there is to spare goes where more references are.
-    pub fn shared(self, left: usize, right: usize) -> [Budget; 2] {
-        let for_left = (self.references as u64 * left as u64 / (left + right) as u64) as usize;
-        [for_left, self.references - for_left].map(|references| Budget { references, ..self })
-    }
 }
 
 /// A plane that costs so much, all areas times numbers of references.
@@ -51,16 +38,17 @@ struct Plane {
 }
 
 impl Builder<'_> {
-    /// The references on both sides of a plane, if that is better than a cut into two sets.
+    /// The references on both sides of a plane, if that is better than a cut into two sets, and at most so many more.
     pub fn parts(
         &self,
         references: &[Reference],
+        spare: usize,
         all: &Bin,
         cut: &Cut,
-        budget: &mut Budget,
+        searches: &mut Searches,
     ) -> Option<[Vec<Reference>; 2]> {
         let count = references.len();
-        if count <= FEWEST || budget.references == 0 {
+        if count <= FEWEST || spare == 0 {
             return None;
         }
         let [l, r] = cut.sides;
@@ -69,24 +57,20 @@ impl Builder<'_> {
         if overlap < (OVERLAP * area).max(LEAST * self.area) {
             return None;
         }
-        if budget.pause > 0 {
-            budget.pause -= 1;
+        if searches.pause > 0 {
+            searches.pause -= 1;
             return None;
         }
         let plane = self.plane(references, all)?;
         if plane.cost >= GAIN * cut.cost {
-            budget.in_vain += 1;
-            budget.pause = budget.in_vain.saturating_sub(IN_VAIN).min(4);
+            searches.in_vain += 1;
+            searches.pause = searches.in_vain.saturating_sub(IN_VAIN).min(4);
             return None;
         }
-        budget.in_vain = 0;
+        searches.in_vain = 0;
         let parts = self.halves(references, &plane);
         let lens = [parts[0].len(), parts[1].len()];
-        if !lens.iter().all(|&len| 0 < len && len < count) {
-            return None;
-        }
-        budget.references = (budget.references + count).checked_sub(lens[0] + lens[1])?;
-        Some(parts)
+        (lens.iter().all(|&len| 0 < len && len < count) && lens[0] + lens[1] <= count + spare).then_some(parts)
     }
 
     /// The cheapest plane between bins of equal width.

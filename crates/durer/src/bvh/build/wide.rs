@@ -8,8 +8,8 @@
 //! Source: Ylitie, Karras, Laine, *Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs*, HPG 2017.
 
 use super::Settings;
-use super::binary::{self, half_area};
-use crate::bvh::lanes::WIDTH;
+use super::binary::{self, Slot, half_area};
+use crate::bvh::lanes::{WIDTH, large_pages};
 use crate::bvh::node::{self, LEAF, LEAF_SIZE, Node};
 use crate::math::Aabb;
 use glam::Vec3A;
@@ -20,23 +20,38 @@ const PARALLEL: usize = 4096;
 
 /// What is cheapest for each node of a binary tree, and the cost of it all.
 pub struct Plans {
-    plans: Vec<Plan>,
+    /// Bits of each [`Plan`].
+    plans: Vec<u32>,
     pub cost: f32,
 }
 
 impl Plans {
-    pub fn new(nodes: &[binary::Node], scale: f32, settings: &Settings) -> Self {
-        let mut plans = vec![Plan::default(); nodes.len()];
+    pub fn new(nodes: &[Slot], scale: f32, settings: &Settings) -> Self {
+        let mut plans = vec![0; nodes.len()];
+        large_pages(plans.as_ptr(), plans.len());
         let cost = plan(nodes, &mut plans, scale, settings)[0];
         Plans { plans, cost }
     }
+
+    fn of(&self, i: usize) -> Plan {
+        Plan(self.plans[i])
+    }
 }
 
-/// The nodes, and the items of their leaves.
+/// The nodes, and the things of their leaves.
 pub fn collapse(tree: &binary::Tree, plans: Plans) -> (Vec<Node>, Vec<u32>) {
+    let emitter = Emitter { tree, plans };
     // A tree of one leaf still needs a node to hold it.
-    let part = Emitter { tree, plans: plans.plans }.part(0);
-    (part.nodes, part.order)
+    let mut cuts = Cuts::default();
+    emitter.cuts(0, &mut cuts);
+    let parts: Vec<Part> = cuts.below.par_iter().map(|&i| emitter.part(i)).collect();
+    let mut all = Part::default();
+    all.nodes.reserve_exact(cuts.above + parts.iter().map(|part| part.nodes.len()).sum::<usize>());
+    all.order.reserve_exact(parts.iter().map(|part| part.order.len()).sum());
+    large_pages(all.nodes.as_ptr(), all.nodes.capacity());
+    all.nodes.push(Node::EMPTY);
+    emitter.join(&mut all, 0, 0, &mut parts.iter());
+    (all.nodes, all.order)
 }
 
 /// Costs of a subtree as a forest of at most 1, 2, ... 7 roots.
@@ -74,12 +89,12 @@ fn shared(left: &Costs, right: &Costs, roots: usize) -> (f32, usize) {
 }
 
 /// Finds what is cheapest for all nodes of a subtree.
-fn plan(nodes: &[binary::Node], plans: &mut [Plan], scale: f32, settings: &Settings) -> Costs {
-    let node = &nodes[0];
+fn plan(nodes: &[Slot], plans: &mut [u32], scale: f32, settings: &Settings) -> Costs {
+    let node = binary::Node::of(&nodes[0]);
     let (area, count) = (half_area(node.min, node.max, scale), node.count());
     let leaf = if count <= settings.leaf_size { area * (settings.leaf_cost)(count) } else { f32::INFINITY };
     if node.is_leaf() {
-        plans[0] = Plan(1);
+        plans[0] = 1;
         return [leaf; WIDTH - 1];
     }
     let (own, rest) = plans.split_first_mut().expect("there is a node");
@@ -96,29 +111,32 @@ fn plan(nodes: &[binary::Node], plans: &mut [Plan], scale: f32, settings: &Setti
     // There are no more roots than references.
     let most = count.min(WIDTH);
     let (opened, k) = shared(&left, &right, most);
-    own.set_left(WIDTH, k);
+    let mut plan = Plan::default();
+    plan.set_left(WIDTH, k);
     let opened = area + opened;
     // Where costs are no numbers, as with infinite areas, small subtrees are leaves.
     let dearer = opened < leaf;
     let is_leaf = count <= settings.leaf_size && !dearer;
-    own.0 |= u32::from(is_leaf);
+    plan.0 |= u32::from(is_leaf);
     let mut costs = [if is_leaf { leaf } else { opened }; WIDTH - 1];
     for roots in 2..=most.min(WIDTH - 1) {
         let (cost, k) = shared(&left, &right, roots);
         if cost < costs[roots - 2] {
             costs[roots - 1..].fill(cost);
-            own.set_left(roots, k);
+            plan.set_left(roots, k);
         }
     }
+    *own = plan.0;
     costs
 }
 
 struct Emitter<'a> {
     tree: &'a binary::Tree,
-    plans: Vec<Plan>,
+    plans: Plans,
 }
 
-/// A wide node, all nodes below it, and the items of their leaves; addresses and items count from 0.
+/// A wide node, all nodes below it, and the things of their leaves; addresses and things count from 0.
+#[derive(Default)]
 struct Part {
     nodes: Vec<Node>,
     order: Vec<u32>,
@@ -131,15 +149,22 @@ struct Children {
     count: usize,
 }
 
+/// Where a tree comes apart into parts that are made side by side: binary nodes, and how many wide nodes are above them.
+#[derive(Default)]
+struct Cuts {
+    above: usize,
+    below: Vec<usize>,
+}
+
 impl Emitter<'_> {
-    fn count(&self, i: usize) -> usize {
-        self.tree.nodes[i].count()
+    fn node(&self, i: usize) -> binary::Node {
+        binary::Node::of(&self.tree.nodes[i])
     }
 
     /// The children of a node that is opened.
     fn open(&self, i: usize) -> Children {
         let mut children = Children::default();
-        match self.tree.nodes[i].is_leaf() {
+        match self.node(i).is_leaf() {
             true => self.forest(i, 1, &mut children),
             false => self.split(i, WIDTH, &mut children),
         }
@@ -148,7 +173,7 @@ impl Emitter<'_> {
 
     /// Adds a subtree's best forest of at most so many roots.
     fn forest(&self, i: usize, mut roots: usize, children: &mut Children) {
-        while roots > 1 && self.plans[i].left(roots) == 0 {
+        while roots > 1 && self.plans.of(i).left(roots) == 0 {
             roots -= 1;
         }
         if roots > 1 {
@@ -160,35 +185,65 @@ impl Emitter<'_> {
 
     /// Adds the forests of both children of a node.
     fn split(&self, i: usize, roots: usize, children: &mut Children) {
-        let left = self.plans[i].left(roots);
+        let left = self.plans.of(i).left(roots);
         self.forest(i + 1, left, children);
-        self.forest(i + self.tree.nodes[i].right(), roots - left, children);
+        self.forest(i + self.node(i).right(), roots - left, children);
+    }
+
+    /// Finds, in the order of [`Emitter::fill`], nodes of so few references that what is below is not worth sharing.
+    fn cuts(&self, i: usize, cuts: &mut Cuts) {
+        if self.node(i).count() <= PARALLEL {
+            return cuts.below.push(i);
+        }
+        cuts.above += 1;
+        let children = self.open(i);
+        let inner = children.list[..children.count].iter().filter(|&&i| !self.plans.of(i).is_leaf());
+        inner.for_each(|&i| self.cuts(i, cuts));
     }
 
     /// A node of the children of a binary one, and all below.
     fn part(&self, i: usize) -> Part {
-        let count = self.count(i);
+        let count = self.node(i).count();
         let mut part = Part { nodes: Vec::with_capacity(count / 16 + 1), order: Vec::with_capacity(count) };
         part.nodes.push(Node::EMPTY);
         self.fill(&mut part, 0, i);
         part
     }
 
+    /// Fills a node with the children of a binary one, and all below, of which parts are ready.
+    fn join(&self, all: &mut Part, number: usize, i: usize, parts: &mut std::slice::Iter<Part>) {
+        if self.node(i).count() <= PARALLEL {
+            return all.append(number, parts.next().expect("a part for each cut"));
+        }
+        let (first, inner) = self.wide(all, number, i);
+        for (offset, &i) in inner.list[..inner.count].iter().enumerate() {
+            self.join(all, first + offset, i, parts);
+        }
+    }
+
     /// Fills a node with the children of a binary one, and all below.
+    fn fill(&self, part: &mut Part, number: usize, i: usize) {
+        let (first, inner) = self.wide(part, number, i);
+        for (offset, &i) in inner.list[..inner.count].iter().enumerate() {
+            self.fill(part, first + offset, i);
+        }
+    }
+
+    /// Fills a node with the children of a binary one; gives where the inner ones of these are to be, and which they are.
     ///
     /// What a ray is likely to need together lies together: first the leaves of a node, then its inner children, side
     /// by side, and then what is below each of them.
-    fn fill(&self, part: &mut Part, number: usize, i: usize) {
+    fn wide(&self, part: &mut Part, number: usize, i: usize) -> (usize, Children) {
         let children = self.open(i);
         let list = &children.list[..children.count];
         let mut bounds = [Aabb::EMPTY; WIDTH];
-        bounds.iter_mut().zip(list).for_each(|(bounds, &i)| *bounds = self.tree.nodes[i].bounds());
+        bounds.iter_mut().zip(list).for_each(|(bounds, &i)| *bounds = self.node(i).bounds());
         let (from_last, places) = places(&bounds[..list.len()]);
         part.nodes[number].from_last = from_last;
         let first = part.nodes.len();
         let mut inner = Children::default();
         for (k, &i) in list.iter().enumerate() {
-            let child = if self.plans[i].is_leaf() {
+            let child = if self.plans.of(i).is_leaf() {
                 self.leaf(part, i)
             } else {
                 inner.list[inner.count] = i;
@@ -198,30 +253,22 @@ impl Emitter<'_> {
             };
             part.nodes[number].set(places[k], bounds[k], child);
         }
-        let inner = &inner.list[..inner.count];
-        part.nodes.resize(first + inner.len(), Node::EMPTY);
-        if self.count(i) <= PARALLEL {
-            for (offset, &i) in inner.iter().enumerate() {
-                self.fill(part, first + offset, i);
-            }
-            return;
-        }
-        let parts: Vec<Part> = inner.par_iter().map(|&i| self.part(i)).collect();
-        for (offset, below) in parts.iter().enumerate() {
-            part.append(first + offset, below);
-        }
+        part.nodes.resize(first + inner.count, Node::EMPTY);
+        (first, inner)
     }
 
     /// Writes a leaf of everything below a binary node.
     fn leaf(&self, part: &mut Part, i: usize) -> u32 {
         let (mut items, mut count) = ([0; LEAF_SIZE], 0);
-        for leaf in self.tree.nodes[i..].iter().filter(|node| node.is_leaf()) {
-            if count == self.count(i) {
+        let most = self.node(i).count();
+        for leaf in self.tree.nodes[i..].iter().map(binary::Node::of).filter(binary::Node::is_leaf) {
+            for r in &self.tree.references[leaf.first()..][..leaf.count()] {
+                items[count] = r.number();
+                count += 1;
+            }
+            if count == most {
                 break;
             }
-            let more = &self.tree.items[leaf.first()..leaf.first() + leaf.count()];
-            items[count..count + more.len()].copy_from_slice(more);
-            count += more.len();
         }
         if self.tree.is_cut {
             // Parts of a thing that was cut, when together again, count once.
