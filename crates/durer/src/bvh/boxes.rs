@@ -18,7 +18,7 @@ pub struct Bvh {
 }
 
 impl Bvh {
-    /// Builds over the boxes of things 0, 1, 2, ...; empty boxes are left out. At most 2^28 things, in at most 2^26 nodes.
+    /// Builds over the boxes of things 0, 1, 2, ...; empty boxes are left out. Less than 2^28 things, in at most 2^26 nodes.
     ///
     /// The result is a function of the boxes alone: the same for any number of threads.
     pub fn build(boxes: &[Aabb]) -> Self {

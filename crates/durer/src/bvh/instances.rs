@@ -64,7 +64,7 @@ pub struct Instances {
 }
 
 impl Instances {
-    /// Builds over instances 0, 1, 2, ...; at most 2^28.
+    /// Builds over instances 0, 1, 2, ...; less than 2^28.
     pub fn new(placed: Vec<Instance>) -> Self {
         let bounds = |instance: &Instance| match instance.tree.bounds() {
             empty if empty.is_empty() => Aabb::EMPTY,

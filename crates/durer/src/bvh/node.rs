@@ -37,8 +37,8 @@ const _: () = assert!(BEHIND & (PLACE | IS_LEAF) == 0 && BEHIND < 256);
 pub(super) const LEAF: u32 = 1 << 31;
 const COUNT_SHIFT: u32 = 28;
 const FIRST_MASK: u32 = (1 << COUNT_SHIFT) - 1;
-/// A tree holds at most so many items.
-pub(super) const MOST_ITEMS: usize = 1 << COUNT_SHIFT;
+/// A tree holds at most so many items: so many are counted in the bits of a first one.
+pub(super) const MOST_ITEMS: usize = FIRST_MASK as usize;
 /// A leaf holds at most so many.
 pub(super) const LEAF_SIZE: usize = 8;
 

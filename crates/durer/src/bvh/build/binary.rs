@@ -49,6 +49,12 @@ impl Node {
         [self.min.into(), self.max.into()]
     }
 
+    /// Whether it is one: what lies in memory that nothing was written to is none.
+    #[inline]
+    pub fn is_there(&self) -> bool {
+        self.count() > 0
+    }
+
     #[inline]
     pub fn is_leaf(&self) -> bool {
         self.min.w.to_bits() >> 28 == LEAF
@@ -80,6 +86,7 @@ impl Node {
 /// The tree, the references of its leaves, and what sizes are multiplied by before areas are compared.
 pub struct Tree {
     pub nodes: Vec<Slot>,
+    /// Those that are in no leaf mean nothing.
     pub references: Vec<Reference>,
     pub scale: f32,
     /// Whether things are in several leaves.
@@ -105,14 +112,12 @@ pub struct Builder<'a> {
     pub corners: &'a [[Vec3; 3]],
 }
 
-/// Where a subtree is built.
+/// What a subtree is built over.
 struct Room<'a> {
     /// As many as there are, and room for those that cuts add.
     references: &'a mut [Reference],
     /// The place of the first among all.
     first: usize,
-    /// Twice as many as there is room for references, less one: as many as a tree may need.
-    nodes: &'a mut [Slot],
     searches: Searches,
 }
 
@@ -135,8 +140,8 @@ pub fn build(
     references.par_extend(rayon::iter::repeat_n(references[0], settings.spare(references.len())));
     let mut nodes = vec![Slot::default(); 2 * references.len() - 1];
     large_pages(nodes.as_ptr(), nodes.len());
-    let room = Room { references: &mut references, first: 0, nodes: &mut nodes, searches: Searches::default() };
-    let counts = builder.subtree(room, all, 0);
+    let room = Room { references: &mut references, first: 0, searches: Searches::default() };
+    let counts = builder.subtree(room, &mut nodes, all, 0);
     nodes.truncate(counts.nodes);
     Tree { nodes, references, scale, is_cut: counts.references > all.count }
 }
@@ -144,25 +149,26 @@ pub fn build(
 impl Room<'_> {
     /// Where the room of the right one of two children begins, by how many references are in each.
     ///
-    /// What there is to spare goes where more references are, but not to the left where there are too few to be cut.
-    fn shared(&self, left: usize, right: usize) -> usize {
+    /// What there is to spare goes where more references are, but not where there are too few to be cut.
+    fn middle(&self, left: usize, right: usize) -> usize {
         let spare = self.references.len() - left - right;
-        let for_left = match left > FEWEST {
-            true => (spare as u64 * left as u64 / (left + right) as u64) as usize,
-            false => 0,
+        let for_left = match [left, right].map(|count| count > FEWEST) {
+            [true, true] => (spare as u64 * left as u64 / (left + right) as u64) as usize,
+            [true, false] => spare,
+            [false, _] => 0,
         };
         left + for_left
     }
 }
 
 impl Builder<'_> {
-    /// Builds over the references that a room begins with.
-    fn subtree(&self, mut room: Room, all: &Bin, depth: usize) -> Counts {
+    /// Builds over the references that a room begins with. There must be twice as many nodes as it has references, less one.
+    fn subtree(&self, mut room: Room, nodes: &mut [Slot], all: &Bin, depth: usize) -> Counts {
         let (Bin { min, max, .. }, count) = (*all, all.count as usize);
         let spare = room.references.len() - count;
         let references = &mut room.references[..count];
         if count == 1 || count <= self.whole && self.is_whole(references, all) {
-            room.nodes[0] = Node::leaf(min, max, all.count, room.first as u32).slot();
+            nodes[0] = Node::leaf(min, max, all.count, room.first as u32).slot();
             return Counts { references: all.count, nodes: 1 };
         }
         let cut = self.cut(references, all, depth);
@@ -172,38 +178,35 @@ impl Builder<'_> {
         };
         let (boxes, middle) = match parts {
             Some([left, right]) => {
-                let middle = room.shared(left.len(), right.len());
+                let middle = room.middle(left.len(), right.len());
                 room.references[..left.len()].copy_from_slice(&left);
                 room.references[middle..][..right.len()].copy_from_slice(&right);
                 ([Bin::of(&left), Bin::of(&right)], middle)
             }
             None => {
                 let (boxes, left) = self.divide(references, &cut);
-                let middle = room.shared(left, count - left);
+                let middle = room.middle(left, count - left);
                 if left < middle {
                     room.references.copy_within(left..count, middle);
                 }
                 (boxes, middle)
             }
         };
-        let (here, below) = room.nodes.split_first_mut().expect("there is room for a node");
+        let (here, below) = nodes.split_first_mut().expect("there is room for a node");
         let (left, right) = room.references.split_at_mut(middle);
         let [left_all, right_all] = &boxes;
-        let searches = room.searches;
-        let left = Room { references: left, first: room.first, nodes: &mut [], searches };
-        let right = Room { references: right, first: room.first + middle, nodes: &mut [], searches };
-        let build = |room: Room, all| self.subtree(room, all, depth + 1);
+        let left = Room { references: left, ..room };
+        let right = Room { references: right, first: room.first + middle, ..room };
+        let build = |room, nodes: &mut _, all| self.subtree(room, nodes, all, depth + 1);
         let [left, right] = if left_all.count + right_all.count > PARALLEL {
-            let (left_nodes, right_nodes) = below.split_at_mut(2 * middle - 1);
-            let nodes = left_nodes.len();
-            let (left, right) = rayon::join(
-                || build(Room { nodes: left_nodes, ..left }, left_all),
-                || build(Room { nodes: right_nodes, ..right }, right_all),
-            );
+            let nodes = 2 * middle - 1;
+            let (left_nodes, right_nodes) = below.split_at_mut(nodes);
+            let (left, right) =
+                rayon::join(|| build(left, left_nodes, left_all), || build(right, right_nodes, right_all));
             [Counts { nodes, ..left }, right]
         } else {
-            let left = build(Room { nodes: below, ..left }, left_all);
-            let right = build(Room { nodes: &mut below[left.nodes..], ..right }, right_all);
+            let left = build(left, below, left_all);
+            let right = build(right, &mut below[left.nodes..], right_all);
             [left, right]
         };
         let references = left.references + right.references;
@@ -215,5 +218,89 @@ impl Builder<'_> {
     fn is_whole(&self, references: &[Reference], all: &Bin) -> bool {
         let areas = references.iter().map(|r| half_area(r.min, r.max, self.scale));
         half_area(all.min, all.max, self.scale) <= 4.0 * areas.fold(f32::INFINITY, f32::min)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Preset, area_scale, triangle_references};
+    use super::*;
+    use crate::bvh::node::MOST_ITEMS;
+    use crate::math::random::Random;
+
+    /// Small triangles, of which each tenth is drawn out.
+    fn triangles(random: &mut Random, count: usize) -> Vec<[Vec3; 3]> {
+        let triangle = |i| {
+            let (place, along) = (random.point(), if i % 10 == 3 { random.direction() } else { Vec3::ZERO });
+            [place - along, place + along, place].map(|corner| corner + 0.02 * random.point())
+        };
+        (0..count).map(triangle).collect()
+    }
+
+    /// Checks a tree over some triangles; gives how many slots hold nothing.
+    fn check(tree: &Tree, triangles: &[[Vec3; 3]], room: usize) -> usize {
+        let (mut is_node, mut is_taken) = (vec![false; tree.nodes.len()], vec![false; room]);
+        let (mut is_met, mut stack) = (vec![false; triangles.len()], vec![0]);
+        while let Some(i) = stack.pop() {
+            let node = Node::of(&tree.nodes[i]);
+            assert!(node.is_there() && !std::mem::replace(&mut is_node[i], true));
+            if !node.is_leaf() {
+                let children = [i + 1, i + node.right()];
+                let [left, right] = children.map(|child| Node::of(&tree.nodes[child]));
+                let both = left.bounds().union(right.bounds());
+                assert_eq!(both.union(node.bounds()), node.bounds());
+                assert_eq!(node.count(), left.count() + right.count());
+                stack.extend(children);
+                continue;
+            }
+            let mut bounds = Aabb::EMPTY;
+            let places = node.first()..node.first() + node.count();
+            for (is_taken, r) in is_taken[places.clone()].iter_mut().zip(&tree.references[places]) {
+                assert!(!std::mem::replace(is_taken, true));
+                is_met[r.number() as usize] = true;
+                bounds = bounds.union(r.bounds());
+            }
+            assert_eq!(bounds, node.bounds());
+        }
+        assert!(is_met.iter().all(|met| *met));
+        let taken = is_taken.iter().filter(|taken| **taken).count();
+        assert_eq!(taken, Node::of(&tree.nodes[0]).count());
+        assert_eq!(tree.is_cut, taken > triangles.len());
+        let nothing = tree.nodes.iter().zip(&is_node).filter(|(_, is_node)| !**is_node);
+        nothing.inspect(|(slot, _)| assert_eq!(**slot, Slot::default())).count()
+    }
+
+    /// Every triangle is in leaves that share no references, nodes are where their parents say, and what is left over is empty: whether
+    /// cuts are as many as are of use or as there is room for, and whether subtrees are built side by side.
+    #[test]
+    fn leaves_share_nothing_and_hold_everything() {
+        let mut random = Random(11);
+        let (mut cut, mut with_gaps, mut limited) = (0, 0, 0);
+        for count in [1, 2, 5, 700, 4_096, 4_097, 20_000] {
+            let triangles = triangles(&mut random, count);
+            let taken = [0.0, 0.1, 2.0].map(|splits| {
+                let settings = Settings { splits, ..Settings::triangles(Preset::Best) };
+                let references = triangle_references(count, &settings, &|i| triangles[i as usize]);
+                let all = Bin::of(&references);
+                let scale = area_scale(Aabb { min: all.min.truncate(), max: all.max.truncate() });
+                let tree = build(references, &all, scale, &settings, &triangles);
+                let room = count + settings.spare(count);
+                with_gaps += usize::from(check(&tree, &triangles, room) > 0);
+                Node::of(&tree.nodes[0]).count()
+            });
+            cut += usize::from(taken[2] > count);
+            limited += usize::from(taken[0] < taken[1] && taken[1] < taken[2]);
+        }
+        assert!(cut >= 4 && with_gaps >= 6 && limited >= 3, "{cut} {with_gaps} {limited}");
+    }
+
+    #[test]
+    fn a_node_holds_the_greatest_numbers() {
+        for number in [1, MOST_ITEMS] {
+            let leaf = Node::of(&Node::leaf(Vec4::ZERO, Vec4::ONE, number as u32, number as u32).slot());
+            assert_eq!((leaf.is_leaf(), leaf.count(), leaf.first()), (true, number, number));
+            let inner = Node::of(&Node::inner(Vec4::ZERO, Vec4::ONE, number as u32, 2 * number).slot());
+            assert_eq!((inner.is_leaf(), inner.count(), inner.right()), (false, number, 2 * number));
+        }
     }
 }

@@ -124,7 +124,7 @@ fn lane_number(lane: f32) -> u32 {
 
 /// References to boxes 0, 1, 2, ... but for the empty ones.
 pub(super) fn references(boxes: &[Aabb]) -> Vec<Reference> {
-    assert!(boxes.len() <= MOST_ITEMS, "a tree holds at most 2^28 things");
+    assert!(boxes.len() <= MOST_ITEMS, "a tree holds less than 2^28 things");
     let full = boxes.iter().enumerate().filter(|(_, b)| !b.is_empty());
     full.map(|(i, b)| Reference::new(*b, i as u32)).collect()
 }
@@ -134,7 +134,7 @@ pub(super) fn is_finite(corners: &[Vec3; 3]) -> bool {
     corners.iter().all(|p| p.is_finite())
 }
 
-/// What there is of each of so many things, with room for more in all.
+/// What belongs to each of so many things, in a list with room for so many.
 fn collected<T: Send>(count: usize, room: usize, of: &(impl Fn(u32) -> T + Sync)) -> Vec<T> {
     let mut all = Vec::with_capacity(room);
     large_pages(all.as_ptr(), room);
@@ -178,7 +178,7 @@ pub(super) fn build_triangles(
     corners_of: &(impl Fn(u32) -> [Vec3; 3] + Sync),
     settings: &Settings,
 ) -> Tree {
-    assert!(count <= MOST_ITEMS, "a tree holds at most 2^28 triangles");
+    assert!(count <= MOST_ITEMS, "a tree holds less than 2^28 triangles");
     if settings.splits == 0.0 {
         return build_of(triangle_references(count, settings, corners_of), settings, Vec::new());
     }

@@ -41,14 +41,14 @@ impl Plans {
 /// The nodes, and the things of their leaves.
 pub fn collapse(tree: &binary::Tree, plans: Plans) -> (Vec<Node>, Vec<u32>) {
     let emitter = Emitter { tree, plans };
-    // A tree of one leaf still needs a node to hold it.
-    let mut cuts = Cuts::default();
-    emitter.cuts(0, &mut cuts);
-    let parts: Vec<Part> = cuts.below.par_iter().map(|&i| emitter.part(i)).collect();
+    let mut seams = Seams::default();
+    emitter.seams(0, &mut seams);
+    let parts: Vec<Part> = seams.below.par_iter().map(|&i| emitter.part(i)).collect();
     let mut all = Part::default();
-    all.nodes.reserve_exact(cuts.above + parts.iter().map(|part| part.nodes.len()).sum::<usize>());
-    all.order.reserve_exact(parts.iter().map(|part| part.order.len()).sum());
+    all.nodes.reserve_exact(seams.above + parts.iter().map(|part| part.nodes.len()).sum::<usize>());
+    all.order.reserve_exact(emitter.node(0).count());
     large_pages(all.nodes.as_ptr(), all.nodes.capacity());
+    // A tree of one leaf still needs a node to hold it.
     all.nodes.push(Node::EMPTY);
     emitter.join(&mut all, 0, 0, &mut parts.iter());
     (all.nodes, all.order)
@@ -151,7 +151,7 @@ struct Children {
 
 /// Where a tree comes apart into parts that are made side by side: binary nodes, and how many wide nodes are above them.
 #[derive(Default)]
-struct Cuts {
+struct Seams {
     above: usize,
     below: Vec<usize>,
 }
@@ -191,14 +191,14 @@ impl Emitter<'_> {
     }
 
     /// Finds, in the order of [`Emitter::fill`], nodes of so few references that what is below is not worth sharing.
-    fn cuts(&self, i: usize, cuts: &mut Cuts) {
+    fn seams(&self, i: usize, seams: &mut Seams) {
         if self.node(i).count() <= PARALLEL {
-            return cuts.below.push(i);
+            return seams.below.push(i);
         }
-        cuts.above += 1;
+        seams.above += 1;
         let children = self.open(i);
         let inner = children.list[..children.count].iter().filter(|&&i| !self.plans.of(i).is_leaf());
-        inner.for_each(|&i| self.cuts(i, cuts));
+        inner.for_each(|&i| self.seams(i, seams));
     }
 
     /// A node of the children of a binary one, and all below.
@@ -213,7 +213,7 @@ impl Emitter<'_> {
     /// Fills a node with the children of a binary one, and all below, of which parts are ready.
     fn join(&self, all: &mut Part, number: usize, i: usize, parts: &mut std::slice::Iter<Part>) {
         if self.node(i).count() <= PARALLEL {
-            return all.append(number, parts.next().expect("a part for each cut"));
+            return all.append(number, parts.next().expect("a part for each seam"));
         }
         let (first, inner) = self.wide(all, number, i);
         for (offset, &i) in inner.list[..inner.count].iter().enumerate() {

@@ -59,9 +59,9 @@ pub fn soup(random: &mut Random, count: u32, size: f32) -> Mesh {
 }
 
 /// Small triangles and long ones through all of them, of which some are cut.
-fn bars(random: &mut Random) -> Mesh {
-    let (mut vertices, mut triangles) = soup(random, 400, 0.05);
-    for i in 0..100 {
+fn bars(random: &mut Random, small: u32, long: usize) -> Mesh {
+    let (mut vertices, mut triangles) = soup(random, small, 0.05);
+    for i in 0..long {
         let (first, middle) = (vertices.len() as u32, random.point());
         let along = if i % 2 == 0 { random.direction() } else { Vec3::AXES[i / 2 % 3] };
         vertices.extend([middle - along, middle + along, middle + 0.05 * random.point()]);
@@ -93,7 +93,8 @@ fn hard() -> Vec<(&'static str, Mesh)> {
         ("none", Default::default()),
         ("soup", soup(&mut random, 3_000, 0.2)),
         ("large soup", soup(&mut random, 300, 3.0)),
-        ("bars", bars(&mut random)),
+        ("bars", bars(&mut random, 400, 100)),
+        ("many bars", bars(&mut random, 6_000, 300)),
         ("torus", torus(40, 20)),
         ("cube", cube(5)),
     ]
@@ -395,13 +396,29 @@ fn zeros_of_either_sign_are_one_point_where_rays_begin() {
 #[test]
 fn a_tree_is_a_function_of_its_triangles() {
     // So many that every step has parts that run side by side.
-    let mesh = soup(&mut Random(5), 40_000, 0.05);
-    for (name, preset) in Preset::NAMES {
+    let (soup, bars) = (soup(&mut Random(5), 40_000, 0.05), bars(&mut Random(5), 20_000, 1_000));
+    for (mesh, (name, preset)) in [&soup, &bars].into_iter().flat_map(|mesh| Preset::NAMES.map(|named| (mesh, named))) {
         let build = |threads: usize| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
             let tree = pool.install(|| TriangleBvh::build(&mesh.0, &mesh.1, preset));
             format!("{:?}{:?}", tree.nodes, tree.leaves)
         };
         assert!(build(1) == build(2), "{name}");
+    }
+    assert!(TriangleBvh::build(&bars.0, &bars.1, Preset::Best).items() > bars.1.len(), "no part of a triangle");
+}
+
+/// It arrives where the tree was asked for, whichever thread found it, and the next tree is built.
+#[test]
+fn an_index_that_leads_nowhere_panics() {
+    let (vertices, mut triangles) = soup(&mut Random(3), 20_000, 0.1);
+    for preset in Preset::NAMES.map(|(_, preset)| preset) {
+        for place in [0, 10_000, 19_999] {
+            let right = std::mem::replace(&mut triangles[place], [0, 1, 1 << 20]);
+            let build = || TriangleBvh::build(&vertices, &triangles, preset);
+            assert!(std::panic::catch_unwind(build).is_err(), "{preset:?} {place}");
+            triangles[place] = right;
+        }
+        assert_eq!(TriangleBvh::build(&vertices, &triangles, preset).items(), triangles.len());
     }
 }

@@ -78,7 +78,7 @@ fn dozen() -> Vec<(&'static str, Mesh)> {
     vec![
         ("torus", torus(20, 10)),
         ("cube", cube(5)),
-        ("bars", bars(&mut random)),
+        ("bars", bars(&mut random, 400, 100)),
         ("large soup", soup(&mut random, 300, 3.0)),
         ("slivers", slivers),
         ("layers, each twice", layers),
