@@ -3,7 +3,7 @@
 use super::cut::{Bin, HALVING_DEPTH};
 use super::spatial::{FEWEST, Searches};
 use super::{Reference, Settings, lane, lane_number};
-use crate::bvh::lanes::large_pages;
+use crate::bvh::lanes::repeated;
 use crate::math::{Aabb, Vec3};
 use glam::Vec4;
 use rayon::prelude::*;
@@ -21,13 +21,13 @@ pub struct Node {
     pub max: Vec4,
 }
 
-/// A node as it lies in memory: numbers, of which a list of zeros is given by the system as it is touched.
-pub type Slot = [[f32; 4]; 2];
-
 const INNER: u32 = 2;
 const LEAF: u32 = 3;
 
 impl Node {
+    /// What room that is left over holds.
+    pub const NONE: Node = Node { min: Vec4::ZERO, max: Vec4::ZERO };
+
     pub fn leaf(mut min: Vec4, mut max: Vec4, count: u32, first: u32) -> Self {
         (min.w, max.w) = (lane(LEAF, count), lane(LEAF, first));
         Node { min, max }
@@ -39,17 +39,7 @@ impl Node {
         Node { min, max }
     }
 
-    #[inline]
-    pub fn of(&[min, max]: &Slot) -> Self {
-        Node { min: min.into(), max: max.into() }
-    }
-
-    #[inline]
-    pub fn slot(self) -> Slot {
-        [self.min.into(), self.max.into()]
-    }
-
-    /// Whether it is one: what lies in memory that nothing was written to is none.
+    /// Whether it is one, not [`Node::NONE`].
     #[inline]
     pub fn is_there(&self) -> bool {
         self.count() > 0
@@ -85,7 +75,7 @@ impl Node {
 
 /// The tree, the references of its leaves, and what sizes are multiplied by before areas are compared.
 pub struct Tree {
-    pub nodes: Vec<Slot>,
+    pub nodes: Vec<Node>,
     /// Those that are in no leaf mean nothing.
     pub references: Vec<Reference>,
     pub scale: f32,
@@ -138,8 +128,7 @@ pub fn build(
     let area = half_area(all.min, all.max, scale);
     let builder = Builder { scale, area, whole: settings.whole, bins: settings.bins, corners };
     references.par_extend(rayon::iter::repeat_n(references[0], settings.spare(references.len())));
-    let mut nodes = vec![Slot::default(); 2 * references.len() - 1];
-    large_pages(nodes.as_ptr(), nodes.len());
+    let mut nodes = repeated(Node::NONE, 2 * references.len() - 1);
     let room = Room { references: &mut references, first: 0, searches: Searches::default() };
     let counts = builder.subtree(room, &mut nodes, all, 0);
     nodes.truncate(counts.nodes);
@@ -163,12 +152,12 @@ impl Room<'_> {
 
 impl Builder<'_> {
     /// Builds over the references that a room begins with. There must be twice as many nodes as it has references, less one.
-    fn subtree(&self, mut room: Room, nodes: &mut [Slot], all: &Bin, depth: usize) -> Counts {
+    fn subtree(&self, mut room: Room, nodes: &mut [Node], all: &Bin, depth: usize) -> Counts {
         let (Bin { min, max, .. }, count) = (*all, all.count as usize);
         let spare = room.references.len() - count;
         let references = &mut room.references[..count];
         if count == 1 || count <= self.whole && self.is_whole(references, all) {
-            nodes[0] = Node::leaf(min, max, all.count, room.first as u32).slot();
+            nodes[0] = Node::leaf(min, max, all.count, room.first as u32);
             return Counts { references: all.count, nodes: 1 };
         }
         let cut = self.cut(references, all, depth);
@@ -210,7 +199,7 @@ impl Builder<'_> {
             [left, right]
         };
         let references = left.references + right.references;
-        *here = Node::inner(min, max, references, 1 + left.nodes).slot();
+        *here = Node::inner(min, max, references, 1 + left.nodes);
         Counts { references, nodes: 1 + left.nodes + right.nodes }
     }
 
@@ -242,11 +231,11 @@ mod tests {
         let (mut is_node, mut is_taken) = (vec![false; tree.nodes.len()], vec![false; room]);
         let (mut is_met, mut stack) = (vec![false; triangles.len()], vec![0]);
         while let Some(i) = stack.pop() {
-            let node = Node::of(&tree.nodes[i]);
+            let node = tree.nodes[i];
             assert!(node.is_there() && !std::mem::replace(&mut is_node[i], true));
             if !node.is_leaf() {
                 let children = [i + 1, i + node.right()];
-                let [left, right] = children.map(|child| Node::of(&tree.nodes[child]));
+                let [left, right] = children.map(|child| tree.nodes[child]);
                 let both = left.bounds().union(right.bounds());
                 assert_eq!(both.union(node.bounds()), node.bounds());
                 assert_eq!(node.count(), left.count() + right.count());
@@ -264,10 +253,10 @@ mod tests {
         }
         assert!(is_met.iter().all(|met| *met));
         let taken = is_taken.iter().filter(|taken| **taken).count();
-        assert_eq!(taken, Node::of(&tree.nodes[0]).count());
+        assert_eq!(taken, tree.nodes[0].count());
         assert_eq!(tree.is_cut, taken > triangles.len());
         let nothing = tree.nodes.iter().zip(&is_node).filter(|(_, is_node)| !**is_node);
-        nothing.inspect(|(slot, _)| assert_eq!(**slot, Slot::default())).count()
+        nothing.inspect(|(node, _)| assert!(!node.is_there())).count()
     }
 
     /// Every triangle is in leaves that share no references, nodes are where their parents say, and what is left over is empty: whether
@@ -286,7 +275,7 @@ mod tests {
                 let tree = build(references, &all, scale, &settings, &triangles);
                 let room = count + settings.spare(count);
                 with_gaps += usize::from(check(&tree, &triangles, room) > 0);
-                Node::of(&tree.nodes[0]).count()
+                tree.nodes[0].count()
             });
             cut += usize::from(taken[2] > count);
             limited += usize::from(taken[0] < taken[1] && taken[1] < taken[2]);
@@ -297,9 +286,9 @@ mod tests {
     #[test]
     fn a_node_holds_the_greatest_numbers() {
         for number in [1, MOST_ITEMS] {
-            let leaf = Node::of(&Node::leaf(Vec4::ZERO, Vec4::ONE, number as u32, number as u32).slot());
+            let leaf = Node::leaf(Vec4::ZERO, Vec4::ONE, number as u32, number as u32);
             assert_eq!((leaf.is_leaf(), leaf.count(), leaf.first()), (true, number, number));
-            let inner = Node::of(&Node::inner(Vec4::ZERO, Vec4::ONE, number as u32, 2 * number).slot());
+            let inner = Node::inner(Vec4::ZERO, Vec4::ONE, number as u32, 2 * number);
             assert_eq!((inner.is_leaf(), inner.count(), inner.right()), (false, number, 2 * number));
         }
     }

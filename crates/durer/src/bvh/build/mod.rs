@@ -6,7 +6,7 @@ mod reinsert;
 mod spatial;
 mod wide;
 
-use super::lanes::large_pages;
+use super::lanes::room;
 use super::node::{MOST_ITEMS, Node};
 use crate::math::{Aabb, Vec3};
 use cut::Bin;
@@ -134,14 +134,6 @@ pub(super) fn is_finite(corners: &[Vec3; 3]) -> bool {
     corners.iter().all(|p| p.is_finite())
 }
 
-/// What belongs to each of so many things, in a list with room for so many.
-fn collected<T: Send>(count: usize, room: usize, of: &(impl Fn(u32) -> T + Sync)) -> Vec<T> {
-    let mut all = Vec::with_capacity(room);
-    large_pages(all.as_ptr(), room);
-    all.par_extend((0..count as u32).into_par_iter().with_min_len(4096).map(of));
-    all
-}
-
 /// References to triangles 0, 1, 2, ..., with room for those that cuts add; those with corners that are no finite points are left out.
 fn triangle_references(
     count: usize,
@@ -152,7 +144,8 @@ fn triangle_references(
         let corners = corners_of(i);
         Reference::new(if is_finite(&corners) { Aabb::around(corners) } else { Aabb::EMPTY }, i)
     };
-    let mut references = collected(count, count + settings.spare(count), &reference);
+    let mut references = room(count + settings.spare(count));
+    references.par_extend((0..count as u32).into_par_iter().with_min_len(4096).map(reference));
     if references.par_iter().with_min_len(4096).any(|r| r.min.x > r.max.x) {
         references.retain(|r| r.min.x <= r.max.x);
     }
@@ -183,7 +176,8 @@ pub(super) fn build_triangles(
         return build_of(triangle_references(count, settings, corners_of), settings, Vec::new());
     }
     // Whoever looks for planes asks for the same corners at many levels.
-    let corners = collected(count, count, corners_of);
+    let mut corners = room(count);
+    corners.par_extend((0..count as u32).into_par_iter().with_min_len(4096).map(corners_of));
     build_of(triangle_references(count, settings, &|i| corners[i as usize]), settings, corners)
 }
 

@@ -3,9 +3,9 @@
 //! Source: Meister, Bittner, *Parallel Reinsertion for Bounding Volume Hierarchy Optimization*, Eurographics 2018.
 
 use super::LITTLE;
-use super::binary::{Node, Slot, Tree, half_area};
+use super::binary::{Node, Tree, half_area};
 use crate::bvh::DEEPEST;
-use crate::bvh::lanes::large_pages;
+use crate::bvh::lanes::room;
 use rayon::prelude::*;
 
 /// In each pass this share of nodes are looked at. Where much can be spared, most of that is in few of them.
@@ -57,11 +57,10 @@ fn greatest(nodes: &mut [Candidate], count: usize) -> (&[Candidate], &mut [Candi
 impl Linked {
     pub fn new(tree: &Tree) -> Self {
         let scale = tree.scale;
-        let mut nodes: Vec<Link> = Vec::with_capacity(tree.nodes.len());
-        large_pages(nodes.as_ptr(), nodes.capacity());
+        let mut nodes: Vec<Link> = room(tree.nodes.len());
         // Nodes follow each other in depth-first order: what comes is a child of the last one that has less than two.
         let mut parents = Vec::new();
-        for node in tree.nodes.iter().map(Node::of).filter(Node::is_there) {
+        for &node in tree.nodes.iter().filter(|node| node.is_there()) {
             let i = nodes.len() as u32;
             let parent = parents.pop().unwrap_or(NONE);
             if parent != NONE {
@@ -220,16 +219,15 @@ impl Linked {
     }
 
     /// The nodes in depth-first order with their counts; `None` if the tree is too deep.
-    pub fn in_order(&self) -> Option<Vec<Slot>> {
-        let mut nodes = Vec::with_capacity(self.nodes.len());
-        large_pages(nodes.as_ptr(), nodes.capacity());
+    pub fn in_order(&self) -> Option<Vec<Node>> {
+        let mut nodes: Vec<Node> = room(self.nodes.len());
         let mut stack = vec![(0, 1)];
         while let Some((i, depth)) = stack.pop() {
             if depth > DEEPEST {
                 return None;
             }
             let link = self.at(i);
-            nodes.push(link.node.slot());
+            nodes.push(link.node);
             let [left, right] = link.children;
             if left != NONE {
                 stack.extend([(right, depth + 1), (left, depth + 1)]);
@@ -238,14 +236,14 @@ impl Linked {
         // Children come after their parents, so counts are added from the end.
         let mut below = vec![1_u32; nodes.len()];
         for i in (0..nodes.len()).rev() {
-            let node = Node::of(&nodes[i]);
+            let node = nodes[i];
             if node.is_leaf() {
                 continue;
             }
             let [left, right] = [i + 1, i + 1 + below[i + 1] as usize];
-            let count = [left, right].map(|child| Node::of(&nodes[child]).count() as u32);
+            let count = [left, right].map(|child| nodes[child].count() as u32);
             below[i] = 1 + below[left] + below[right];
-            nodes[i] = Node::inner(node.min, node.max, count[0] + count[1], right - i).slot();
+            nodes[i] = Node::inner(node.min, node.max, count[0] + count[1], right - i);
         }
         Some(nodes)
     }
@@ -279,23 +277,22 @@ mod tests {
             // Where few stay together room is left over between subtrees that are built side by side.
             let settings = Settings { whole: 3, ..Settings::THINGS };
             let tree = binary::build(references, &all, scale, &settings, &[]);
-            assert!((count > 4096) == tree.nodes.iter().any(|node| *node == Slot::default()));
-            let leaves = |nodes: &[Slot]| {
-                let leaves = nodes.iter().map(Node::of).filter(Node::is_leaf);
-                let mut leaves: Vec<usize> = leaves.map(|leaf| leaf.first()).collect();
+            assert!((count > 4096) == tree.nodes.iter().any(|node| !node.is_there()));
+            let leaves = |nodes: &[Node]| {
+                let mut leaves: Vec<usize> = nodes.iter().filter(|node| node.is_leaf()).map(Node::first).collect();
                 leaves.sort_unstable();
                 leaves
             };
             let area = |node: &Node| half_area(node.min, node.max, scale);
-            let sum = |nodes: &[Slot]| nodes.iter().map(|node| f64::from(area(&Node::of(node)))).sum::<f64>();
+            let sum = |nodes: &[Node]| nodes.iter().map(|node| f64::from(area(node))).sum::<f64>();
             let first = sum(&tree.nodes);
             let (mut work, mut before) = (Linked::new(&tree), first);
             for _ in 0..4 {
                 let spared = work.pass();
                 assert!(work.nodes.iter().all(|link| link.area == area(&link.node)));
                 let nodes = work.in_order().expect("a shallow tree");
-                for (i, node) in nodes.iter().map(Node::of).enumerate().filter(|(_, node)| !node.is_leaf()) {
-                    let [left, right] = [i + 1, i + node.right()].map(|child| Node::of(&nodes[child]));
+                for (i, node) in nodes.iter().enumerate().filter(|(_, node)| !node.is_leaf()) {
+                    let [left, right] = [i + 1, i + node.right()].map(|child| nodes[child]);
                     assert_eq!(node.bounds(), left.bounds().union(right.bounds()));
                     assert_eq!(node.count(), left.count() + right.count());
                 }

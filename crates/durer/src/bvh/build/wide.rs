@@ -8,8 +8,8 @@
 //! Source: Ylitie, Karras, Laine, *Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs*, HPG 2017.
 
 use super::Settings;
-use super::binary::{self, Slot, half_area};
-use crate::bvh::lanes::{WIDTH, large_pages};
+use super::binary::{self, half_area};
+use crate::bvh::lanes::{WIDTH, repeated, room};
 use crate::bvh::node::{self, LEAF, LEAF_SIZE, Node};
 use crate::math::Aabb;
 use glam::Vec3A;
@@ -20,34 +20,26 @@ const PARALLEL: usize = 4096;
 
 /// What is cheapest for each node of a binary tree, and the cost of it all.
 pub struct Plans {
-    /// Bits of each [`Plan`].
-    plans: Vec<u32>,
+    plans: Vec<Plan>,
     pub cost: f32,
 }
 
 impl Plans {
-    pub fn new(nodes: &[Slot], scale: f32, settings: &Settings) -> Self {
-        let mut plans = vec![0; nodes.len()];
-        large_pages(plans.as_ptr(), plans.len());
+    pub fn new(nodes: &[binary::Node], scale: f32, settings: &Settings) -> Self {
+        let mut plans = repeated(Plan::default(), nodes.len());
         let cost = plan(nodes, &mut plans, scale, settings)[0];
         Plans { plans, cost }
-    }
-
-    fn of(&self, i: usize) -> Plan {
-        Plan(self.plans[i])
     }
 }
 
 /// The nodes, and the things of their leaves.
 pub fn collapse(tree: &binary::Tree, plans: Plans) -> (Vec<Node>, Vec<u32>) {
-    let emitter = Emitter { tree, plans };
+    let emitter = Emitter { tree, plans: plans.plans };
     let mut seams = Seams::default();
     emitter.seams(0, &mut seams);
     let parts: Vec<Part> = seams.below.par_iter().map(|&i| emitter.part(i)).collect();
-    let mut all = Part::default();
-    all.nodes.reserve_exact(seams.above + parts.iter().map(|part| part.nodes.len()).sum::<usize>());
-    all.order.reserve_exact(emitter.node(0).count());
-    large_pages(all.nodes.as_ptr(), all.nodes.capacity());
+    let count = seams.above + parts.iter().map(|part| part.nodes.len()).sum::<usize>();
+    let mut all = Part { nodes: room(count), order: room(emitter.node(0).count()) };
     // A tree of one leaf still needs a node to hold it.
     all.nodes.push(Node::EMPTY);
     emitter.join(&mut all, 0, 0, &mut parts.iter());
@@ -89,12 +81,12 @@ fn shared(left: &Costs, right: &Costs, roots: usize) -> (f32, usize) {
 }
 
 /// Finds what is cheapest for all nodes of a subtree.
-fn plan(nodes: &[Slot], plans: &mut [u32], scale: f32, settings: &Settings) -> Costs {
-    let node = binary::Node::of(&nodes[0]);
+fn plan(nodes: &[binary::Node], plans: &mut [Plan], scale: f32, settings: &Settings) -> Costs {
+    let node = &nodes[0];
     let (area, count) = (half_area(node.min, node.max, scale), node.count());
     let leaf = if count <= settings.leaf_size { area * (settings.leaf_cost)(count) } else { f32::INFINITY };
     if node.is_leaf() {
-        plans[0] = 1;
+        plans[0] = Plan(1);
         return [leaf; WIDTH - 1];
     }
     let (own, rest) = plans.split_first_mut().expect("there is a node");
@@ -126,17 +118,16 @@ fn plan(nodes: &[Slot], plans: &mut [u32], scale: f32, settings: &Settings) -> C
             plan.set_left(roots, k);
         }
     }
-    *own = plan.0;
+    *own = plan;
     costs
 }
 
 struct Emitter<'a> {
     tree: &'a binary::Tree,
-    plans: Plans,
+    plans: Vec<Plan>,
 }
 
 /// A wide node, all nodes below it, and the things of their leaves; addresses and things count from 0.
-#[derive(Default)]
 struct Part {
     nodes: Vec<Node>,
     order: Vec<u32>,
@@ -157,8 +148,8 @@ struct Seams {
 }
 
 impl Emitter<'_> {
-    fn node(&self, i: usize) -> binary::Node {
-        binary::Node::of(&self.tree.nodes[i])
+    fn node(&self, i: usize) -> &binary::Node {
+        &self.tree.nodes[i]
     }
 
     /// The children of a node that is opened.
@@ -173,7 +164,7 @@ impl Emitter<'_> {
 
     /// Adds a subtree's best forest of at most so many roots.
     fn forest(&self, i: usize, mut roots: usize, children: &mut Children) {
-        while roots > 1 && self.plans.of(i).left(roots) == 0 {
+        while roots > 1 && self.plans[i].left(roots) == 0 {
             roots -= 1;
         }
         if roots > 1 {
@@ -185,7 +176,7 @@ impl Emitter<'_> {
 
     /// Adds the forests of both children of a node.
     fn split(&self, i: usize, roots: usize, children: &mut Children) {
-        let left = self.plans.of(i).left(roots);
+        let left = self.plans[i].left(roots);
         self.forest(i + 1, left, children);
         self.forest(i + self.node(i).right(), roots - left, children);
     }
@@ -197,7 +188,7 @@ impl Emitter<'_> {
         }
         seams.above += 1;
         let children = self.open(i);
-        let inner = children.list[..children.count].iter().filter(|&&i| !self.plans.of(i).is_leaf());
+        let inner = children.list[..children.count].iter().filter(|&&i| !self.plans[i].is_leaf());
         inner.for_each(|&i| self.seams(i, seams));
     }
 
@@ -243,7 +234,7 @@ impl Emitter<'_> {
         let first = part.nodes.len();
         let mut inner = Children::default();
         for (k, &i) in list.iter().enumerate() {
-            let child = if self.plans.of(i).is_leaf() {
+            let child = if self.plans[i].is_leaf() {
                 self.leaf(part, i)
             } else {
                 inner.list[inner.count] = i;
@@ -261,7 +252,7 @@ impl Emitter<'_> {
     fn leaf(&self, part: &mut Part, i: usize) -> u32 {
         let (mut items, mut count) = ([0; LEAF_SIZE], 0);
         let most = self.node(i).count();
-        for leaf in self.tree.nodes[i..].iter().map(binary::Node::of).filter(binary::Node::is_leaf) {
+        for leaf in self.tree.nodes[i..].iter().filter(|node| node.is_leaf()) {
             for r in &self.tree.references[leaf.first()..][..leaf.count()] {
                 items[count] = r.number();
                 count += 1;

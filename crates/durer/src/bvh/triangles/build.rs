@@ -2,7 +2,7 @@
 
 use super::{TAG, TriangleBvh, number};
 use crate::bvh::build::{self, Preset, Settings, is_finite};
-use crate::bvh::lanes::{Available, ROOM_OF_ROWS, ROWS, large_pages};
+use crate::bvh::lanes::{Available, ROOM_OF_ROWS, ROWS, repeated};
 use crate::bvh::node;
 use crate::math::{Aabb, Vec3};
 use rayon::prelude::*;
@@ -31,10 +31,8 @@ impl TriangleBvh {
         let settings = Settings::triangles(preset);
         let corners_of = |number: u32| triangles[number as usize].map(|i| vertices[i as usize]);
         let tree = build::build_triangles(triangles.len(), &corners_of, &settings);
-        let leaves = vec![0.0; ROWS * tree.order.len() + ROOM_OF_ROWS];
-        large_pages(leaves.as_ptr(), leaves.len());
         let mut bvh = TriangleBvh {
-            leaves,
+            leaves: repeated(0.0, ROWS * tree.order.len() + ROOM_OF_ROWS),
             nodes: tree.nodes,
             bounds: tree.bounds,
             reach: tree.bounds.reach(),
