@@ -13,8 +13,8 @@ const AT_ONCE: usize = 1024;
 impl TriangleBvh {
     /// Builds over triangles given as three indices each. Those with a corner that is no finite point are never hit.
     ///
-    /// The result is a function of the arguments alone. It takes about 50 bytes a triangle, where many are cut up to 100, and while it is
-    /// built 100 more, with `balanced` 200 and with `best` 340; the depth is bounded, whatever the triangles.
+    /// The result is a function of the arguments alone. It takes about 50 bytes a triangle, up to 100 where they overlap much, and while it is
+    /// built up to 140 more, with `balanced` 200 and with `best` 340; the depth is bounded, whatever the triangles.
     ///
     /// # Panics
     ///
