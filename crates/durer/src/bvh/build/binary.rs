@@ -2,8 +2,8 @@
 
 use super::cut::{Bin, HALVING_DEPTH};
 use super::spatial::{FEWEST, Searches};
-use super::{Reference, Settings, lane, lane_number};
-use crate::bvh::lanes::repeated;
+use super::{Reference, Settings, area_scale, lane, lane_number};
+use crate::bvh::lanes::listed;
 use crate::math::{Aabb, Vec3};
 use glam::Vec4;
 use rayon::prelude::*;
@@ -117,20 +117,16 @@ struct Counts {
     nodes: usize,
 }
 
-/// Builds a tree; triangles whose corners are known may be cut.
-pub fn build(
-    mut references: Vec<Reference>,
-    all: &Bin,
-    scale: f32,
-    settings: &Settings,
-    corners: &[[Vec3; 3]],
-) -> Tree {
+/// Builds a tree over at least one reference; triangles whose corners are known may be cut.
+pub fn build(mut references: Vec<Reference>, settings: &Settings, corners: &[[Vec3; 3]]) -> Tree {
+    let all = Bin::of(&references);
+    let scale = area_scale(all.bounds());
     let area = half_area(all.min, all.max, scale);
     let builder = Builder { scale, area, whole: settings.whole, bins: settings.bins, corners };
     references.par_extend(rayon::iter::repeat_n(references[0], settings.spare(references.len())));
-    let mut nodes = repeated(Node::NONE, 2 * references.len() - 1);
+    let mut nodes = listed(2 * references.len() - 1, 0, |_| Node::NONE);
     let room = Room { references: &mut references, first: 0, searches: Searches::default() };
-    let counts = builder.subtree(room, &mut nodes, all, 0);
+    let counts = builder.subtree(room, &mut nodes, &all, 0);
     nodes.truncate(counts.nodes);
     Tree { nodes, references, scale, is_cut: counts.references > all.count }
 }
@@ -212,24 +208,16 @@ impl Builder<'_> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Preset, area_scale, triangle_references};
+    use super::super::{Preset, triangle_references};
     use super::*;
     use crate::bvh::node::MOST_ITEMS;
+    use crate::bvh::triangles::tests::bars;
     use crate::math::random::Random;
 
-    /// Small triangles, of which each tenth is drawn out.
-    fn triangles(random: &mut Random, count: usize) -> Vec<[Vec3; 3]> {
-        let triangle = |i| {
-            let (place, along) = (random.point(), if i % 10 == 3 { random.direction() } else { Vec3::ZERO });
-            [place - along, place + along, place].map(|corner| corner + 0.02 * random.point())
-        };
-        (0..count).map(triangle).collect()
-    }
-
-    /// Checks a tree over some triangles; gives how many slots hold nothing.
-    fn check(tree: &Tree, triangles: &[[Vec3; 3]], room: usize) -> usize {
+    /// Checks a tree over so many triangles, with room for so many references; gives how many slots hold nothing.
+    fn check(tree: &Tree, triangles: usize, room: usize) -> usize {
         let (mut is_node, mut is_taken) = (vec![false; tree.nodes.len()], vec![false; room]);
-        let (mut is_met, mut stack) = (vec![false; triangles.len()], vec![0]);
+        let (mut is_met, mut stack) = (vec![false; triangles], vec![0]);
         while let Some(i) = stack.pop() {
             let node = tree.nodes[i];
             assert!(node.is_there() && !std::mem::replace(&mut is_node[i], true));
@@ -254,7 +242,7 @@ mod tests {
         assert!(is_met.iter().all(|met| *met));
         let taken = is_taken.iter().filter(|taken| **taken).count();
         assert_eq!(taken, tree.nodes[0].count());
-        assert_eq!(tree.is_cut, taken > triangles.len());
+        assert_eq!(tree.is_cut, taken > triangles);
         let nothing = tree.nodes.iter().zip(&is_node).filter(|(_, is_node)| !**is_node);
         nothing.inspect(|(node, _)| assert!(!node.is_there())).count()
     }
@@ -266,15 +254,13 @@ mod tests {
         let mut random = Random(11);
         let (mut cut, mut with_gaps, mut limited) = (0, 0, 0);
         for count in [1, 2, 5, 700, 4_096, 4_097, 20_000] {
-            let triangles = triangles(&mut random, count);
+            let (vertices, triangles) = bars(&mut random, (count - count / 10) as u32, count / 10);
+            let corners: Vec<[Vec3; 3]> = triangles.iter().map(|t| t.map(|i| vertices[i as usize])).collect();
             let taken = [0.0, 0.1, 2.0].map(|splits| {
                 let settings = Settings { splits, ..Settings::triangles(Preset::Best) };
-                let references = triangle_references(count, &settings, &|i| triangles[i as usize]);
-                let all = Bin::of(&references);
-                let scale = area_scale(Aabb { min: all.min.truncate(), max: all.max.truncate() });
-                let tree = build(references, &all, scale, &settings, &triangles);
-                let room = count + settings.spare(count);
-                with_gaps += usize::from(check(&tree, &triangles, room) > 0);
+                let references = triangle_references(count, &settings, &|i| corners[i as usize]);
+                let tree = build(references, &settings, &corners);
+                with_gaps += usize::from(check(&tree, count, count + settings.spare(count)) > 0);
                 tree.nodes[0].count()
             });
             cut += usize::from(taken[2] > count);

@@ -5,6 +5,7 @@
 
 use super::Reference;
 use super::binary::{Builder, half_area};
+use crate::math::Aabb;
 use glam::{IVec4, Mat4, Vec4};
 
 pub const BINS: usize = 16;
@@ -31,6 +32,10 @@ impl Bin {
     pub fn of(references: &[Reference]) -> Bin {
         let [min, max] = around_all(references, &|r| [r.min, r.max]);
         Bin { min, max, count: references.len() as u32 }
+    }
+
+    pub fn bounds(&self) -> Aabb {
+        Aabb { min: self.min.truncate(), max: self.max.truncate() }
     }
 
     #[inline]

@@ -6,10 +6,9 @@ mod reinsert;
 mod spatial;
 mod wide;
 
-use super::lanes::room;
+use super::lanes::listed;
 use super::node::{MOST_ITEMS, Node};
 use crate::math::{Aabb, Vec3};
-use cut::Bin;
 use glam::Vec4;
 use rayon::prelude::*;
 use reinsert::Linked;
@@ -140,12 +139,10 @@ fn triangle_references(
     settings: &Settings,
     corners_of: &(impl Fn(u32) -> [Vec3; 3] + Sync),
 ) -> Vec<Reference> {
-    let reference = |i| {
-        let corners = corners_of(i);
-        Reference::new(if is_finite(&corners) { Aabb::around(corners) } else { Aabb::EMPTY }, i)
-    };
-    let mut references = room(count + settings.spare(count));
-    references.par_extend((0..count as u32).into_par_iter().with_min_len(4096).map(reference));
+    let mut references = listed(count, settings.spare(count), |i| {
+        let corners = corners_of(i as u32);
+        Reference::new(if is_finite(&corners) { Aabb::around(corners) } else { Aabb::EMPTY }, i as u32)
+    });
     if references.par_iter().with_min_len(4096).any(|r| r.min.x > r.max.x) {
         references.retain(|r| r.min.x <= r.max.x);
     }
@@ -176,19 +173,17 @@ pub(super) fn build_triangles(
         return build_of(triangle_references(count, settings, corners_of), settings, Vec::new());
     }
     // Whoever looks for planes asks for the same corners at many levels.
-    let mut corners = room(count);
-    corners.par_extend((0..count as u32).into_par_iter().with_min_len(4096).map(corners_of));
+    let corners = listed(count, 0, |i| corners_of(i as u32));
     build_of(triangle_references(count, settings, &|i| corners[i as usize]), settings, corners)
 }
 
 fn build_of(references: Vec<Reference>, settings: &Settings, corners: Vec<[Vec3; 3]>) -> Tree {
-    let all = Bin::of(&references);
-    let bounds = Aabb { min: all.min.truncate(), max: all.max.truncate() };
     if references.is_empty() {
-        return Tree { nodes: Vec::new(), order: Vec::new(), bounds };
+        return Tree { nodes: Vec::new(), order: Vec::new(), bounds: Aabb::EMPTY };
     }
-    let mut tree = binary::build(references, &all, area_scale(bounds), settings, &corners);
+    let mut tree = binary::build(references, settings, &corners);
     drop(corners);
+    let bounds = tree.nodes[0].bounds();
     let plans = improved(&mut tree, settings);
     let (nodes, order) = wide::collapse(&tree, plans);
     Tree { nodes, order, bounds }

@@ -251,8 +251,7 @@ impl Linked {
 
 #[cfg(test)]
 mod tests {
-    use super::super::cut::Bin;
-    use super::super::{Settings, area_scale, binary, references};
+    use super::super::{Settings, binary, references};
     use super::*;
     use crate::math::Aabb;
     use crate::math::random::Random;
@@ -271,19 +270,16 @@ mod tests {
                     Aabb { min: at - size, max: at + size }
                 })
                 .collect();
-            let references = references(&boxes);
-            let all = Bin::of(&references);
-            let scale = area_scale(Aabb { min: all.min.truncate(), max: all.max.truncate() });
             // Where few stay together room is left over between subtrees that are built side by side.
             let settings = Settings { whole: 3, ..Settings::THINGS };
-            let tree = binary::build(references, &all, scale, &settings, &[]);
+            let tree = binary::build(references(&boxes), &settings, &[]);
             assert!((count > 4096) == tree.nodes.iter().any(|node| !node.is_there()));
             let leaves = |nodes: &[Node]| {
                 let mut leaves: Vec<usize> = nodes.iter().filter(|node| node.is_leaf()).map(Node::first).collect();
                 leaves.sort_unstable();
                 leaves
             };
-            let area = |node: &Node| half_area(node.min, node.max, scale);
+            let area = |node: &Node| half_area(node.min, node.max, tree.scale);
             let sum = |nodes: &[Node]| nodes.iter().map(|node| f64::from(area(node))).sum::<f64>();
             let first = sum(&tree.nodes);
             let (mut work, mut before) = (Linked::new(&tree), first);

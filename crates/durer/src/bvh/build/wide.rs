@@ -9,7 +9,7 @@
 
 use super::Settings;
 use super::binary::{self, half_area};
-use crate::bvh::lanes::{WIDTH, repeated, room};
+use crate::bvh::lanes::{WIDTH, listed, room};
 use crate::bvh::node::{self, LEAF, LEAF_SIZE, Node};
 use crate::math::Aabb;
 use glam::Vec3A;
@@ -26,7 +26,7 @@ pub struct Plans {
 
 impl Plans {
     pub fn new(nodes: &[binary::Node], scale: f32, settings: &Settings) -> Self {
-        let mut plans = repeated(Plan::default(), nodes.len());
+        let mut plans = listed(nodes.len(), 0, |_| Plan::default());
         let cost = plan(nodes, &mut plans, scale, settings)[0];
         Plans { plans, cost }
     }
@@ -42,7 +42,7 @@ pub fn collapse(tree: &binary::Tree, plans: Plans) -> (Vec<Node>, Vec<u32>) {
     let mut all = Part { nodes: room(count), order: room(emitter.node(0).count()) };
     // A tree of one leaf still needs a node to hold it.
     all.nodes.push(Node::EMPTY);
-    emitter.join(&mut all, 0, 0, &mut parts.iter());
+    emitter.fill(&mut all, 0, 0, &mut parts.iter());
     (all.nodes, all.order)
 }
 
@@ -103,22 +103,20 @@ fn plan(nodes: &[binary::Node], plans: &mut [Plan], scale: f32, settings: &Setti
     // There are no more roots than references.
     let most = count.min(WIDTH);
     let (opened, k) = shared(&left, &right, most);
-    let mut plan = Plan::default();
-    plan.set_left(WIDTH, k);
+    own.set_left(WIDTH, k);
     let opened = area + opened;
     // Where costs are no numbers, as with infinite areas, small subtrees are leaves.
     let dearer = opened < leaf;
     let is_leaf = count <= settings.leaf_size && !dearer;
-    plan.0 |= u32::from(is_leaf);
+    own.0 |= u32::from(is_leaf);
     let mut costs = [if is_leaf { leaf } else { opened }; WIDTH - 1];
     for roots in 2..=most.min(WIDTH - 1) {
         let (cost, k) = shared(&left, &right, roots);
         if cost < costs[roots - 2] {
             costs[roots - 1..].fill(cost);
-            plan.set_left(roots, k);
+            own.set_left(roots, k);
         }
     }
-    *own = plan;
     costs
 }
 
@@ -197,26 +195,20 @@ impl Emitter<'_> {
         let count = self.node(i).count();
         let mut part = Part { nodes: Vec::with_capacity(count / 16 + 1), order: Vec::with_capacity(count) };
         part.nodes.push(Node::EMPTY);
-        self.fill(&mut part, 0, i);
+        self.fill(&mut part, 0, i, &mut [].iter());
         part
     }
 
-    /// Fills a node with the children of a binary one, and all below, of which parts are ready.
-    fn join(&self, all: &mut Part, number: usize, i: usize, parts: &mut std::slice::Iter<Part>) {
-        if self.node(i).count() <= PARALLEL {
-            return all.append(number, parts.next().expect("a part for each seam"));
+    /// Fills a node with the children of a binary one, and all below; where parts are ready, with those.
+    fn fill(&self, all: &mut Part, number: usize, i: usize, ready: &mut std::slice::Iter<Part>) {
+        if self.node(i).count() <= PARALLEL
+            && let Some(part) = ready.next()
+        {
+            return all.append(number, part);
         }
         let (first, inner) = self.wide(all, number, i);
         for (offset, &i) in inner.list[..inner.count].iter().enumerate() {
-            self.join(all, first + offset, i, parts);
-        }
-    }
-
-    /// Fills a node with the children of a binary one, and all below.
-    fn fill(&self, part: &mut Part, number: usize, i: usize) {
-        let (first, inner) = self.wide(part, number, i);
-        for (offset, &i) in inner.list[..inner.count].iter().enumerate() {
-            self.fill(part, first + offset, i);
+            self.fill(all, first + offset, i, ready);
         }
     }
 

@@ -20,7 +20,7 @@ mod wide;
 
 pub(super) use level::Available;
 pub use level::{Level, UnknownLevel};
-pub(super) use pages::{repeated, room};
+pub(super) use pages::{listed, room};
 pub(super) use stack::{Room, Stack};
 pub(super) use wide::{WIDE, Wide};
 

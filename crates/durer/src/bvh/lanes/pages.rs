@@ -9,12 +9,12 @@ pub fn room<T>(count: usize) -> Vec<T> {
     room
 }
 
-/// A list of so many things that are all the same, on large pages. All threads write it: to touch memory for the first time takes longer
-/// than to write to it.
-pub fn repeated<T: Clone + Send + Sync>(thing: T, count: usize) -> Vec<T> {
-    const AT_ONCE: usize = 1 << 14;
-    let mut all = room(count);
-    all.par_extend(rayon::iter::repeat_n(thing, count).with_min_len(AT_ONCE));
+/// A list of what belongs to 0, 1, 2, ..., on large pages, with room for so many more. All threads write it: to touch memory for the first
+/// time takes longer than to write to it.
+pub fn listed<T: Send>(count: usize, more: usize, of: impl Fn(usize) -> T + Sync + Send) -> Vec<T> {
+    const AT_ONCE: usize = 4096;
+    let mut all = room(count + more);
+    all.par_extend((0..count).into_par_iter().with_min_len(AT_ONCE).map(of));
     all
 }
 

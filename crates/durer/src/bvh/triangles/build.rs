@@ -2,7 +2,7 @@
 
 use super::{TAG, TriangleBvh, number};
 use crate::bvh::build::{self, Preset, Settings, is_finite};
-use crate::bvh::lanes::{Available, ROOM_OF_ROWS, ROWS, repeated};
+use crate::bvh::lanes::{Available, ROOM_OF_ROWS, ROWS, listed};
 use crate::bvh::node;
 use crate::math::{Aabb, Vec3};
 use rayon::prelude::*;
@@ -32,7 +32,7 @@ impl TriangleBvh {
         let corners_of = |number: u32| triangles[number as usize].map(|i| vertices[i as usize]);
         let tree = build::build_triangles(triangles.len(), &corners_of, &settings);
         let mut bvh = TriangleBvh {
-            leaves: repeated(0.0, ROWS * tree.order.len() + ROOM_OF_ROWS),
+            leaves: listed(ROWS * tree.order.len() + ROOM_OF_ROWS, 0, |_| 0.0),
             nodes: tree.nodes,
             bounds: tree.bounds,
             reach: tree.bounds.reach(),

@@ -59,7 +59,7 @@ pub fn soup(random: &mut Random, count: u32, size: f32) -> Mesh {
 }
 
 /// Small triangles and long ones through all of them, of which some are cut.
-fn bars(random: &mut Random, small: u32, long: usize) -> Mesh {
+pub fn bars(random: &mut Random, small: u32, long: usize) -> Mesh {
     let (mut vertices, mut triangles) = soup(random, small, 0.05);
     for i in 0..long {
         let (first, middle) = (vertices.len() as u32, random.point());
