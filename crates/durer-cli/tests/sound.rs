@@ -8,13 +8,11 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// What is found in the course's scenes, and why it is right.
-const ODD: [(&str, &str, &str); 6] = [
+const ODD: [(&str, &str, &str); 4] = [
     ("f04/scene2_05_inside_sphere.txt", "camera-inside", "the camera is inside a sphere, as its name says"),
     ("f04/scene2_05_inside_sphere.txt", "light-blocked", "with shadows, that sphere keeps all light out"),
     ("f04/scene3_10_exponent_variations_back.txt", "light-behind", "it is lit from the back, as its name says"),
     ("f04/scene8_10_transparent_vase.txt", "open-glass", "the vase is of glass, and open at its rim"),
-    ("f23/scene06_bunny_1k.txt", "missing-file", "the pictures of its sky are not there"),
-    ("f23/scene07_arch.txt", "missing-file", "the pictures of its sky are not there"),
 ];
 
 /// Notes about the course's scenes: true, and harmless.
