@@ -86,7 +86,7 @@ fn compiled(body: &str) -> Result<World> {
     let text = format!("PerspectiveCamera {{ center 0 0 0 direction 0 0 1 up 0 1 0 angle 40 }} Group {{ {body} }}");
     let (mut files, mut diagnostics, source) = (Files::default(), Diagnostics::default(), Source::folder("."));
     let file = files.add("balls.txt", text.as_bytes().into());
-    let options = ReadOptions { dialect: Dialect::Durer, strict: false };
+    let options = ReadOptions { dialect: Dialect::Durer, strict: false, compat: 0 };
     let scene = read(text.as_bytes(), file, options, &mut diagnostics).context("the balls cannot be read")?;
     let resources = Resources { source: &source, files: &mut files, sky_optional: false, memory: u64::MAX };
     compile(&scene, Dialect::Durer.rules(), AccelKind::Bvh, resources, &mut diagnostics).context("no world")

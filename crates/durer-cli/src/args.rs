@@ -113,6 +113,8 @@ pub struct RenderArgs {
     #[command(flatten)]
     pub reading: SceneArgs,
     #[command(flatten)]
+    pub view: ViewArgs,
+    #[command(flatten)]
     pub job: JobArgs,
     #[command(flatten)]
     pub work: WorkArgs,
@@ -127,18 +129,26 @@ pub struct RenderArgs {
     pub quiet: bool,
 }
 
-/// What the picture is
+/// Which pictures are made
 #[derive(Args)]
-pub struct JobArgs {
-    /// Size in pixels [default: 512x512; with --dialect, that year's]
-    #[arg(long, value_name = "WIDTHxHEIGHT", value_parser = size)]
-    pub size: Option<(u32, u32)>,
+pub struct ViewArgs {
     /// Make only a part of the picture
     #[arg(long, value_name = "LEFT,TOP,WIDTHxHEIGHT", value_parser = crop)]
     pub crop: Option<(u32, u32, u32, u32)>,
     /// What to show; several are joined by commas
     #[arg(long, value_delimiter = ',', default_value = "color", value_parser = PossibleValuesParser::new(shows()))]
     pub show: Vec<String>,
+    /// Pixels for a pixel in the pictures `samples` and `filter`
+    #[arg(long, default_value_t = 20, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub zoom: u32,
+}
+
+/// What the picture is
+#[derive(Args)]
+pub struct JobArgs {
+    /// Size in pixels [default: 512x512; with --dialect, that year's]
+    #[arg(long, value_name = "WIDTHxHEIGHT", value_parser = size)]
+    pub size: Option<(u32, u32)>,
     /// Depths shown as the two ends of grey [default: those in the picture]
     #[arg(long, num_args = 2, value_names = ["MIN", "MAX"], allow_negative_numbers = true)]
     pub depth_range: Option<Vec<f32>>,
@@ -189,9 +199,6 @@ pub struct JobArgs {
     /// Seed of the random numbers
     #[arg(long, default_value_t = 0)]
     pub seed: u64,
-    /// Pixels for a pixel in the pictures `samples` and `filter`
-    #[arg(long, default_value_t = 20, value_parser = clap::value_parser!(u32).range(1..=1000))]
-    pub zoom: u32,
 
     /// What finds the objects that a ray may hit
     #[arg(long, default_value = "bvh", default_value_if("grid", ArgPredicate::IsPresent, "grid"), value_parser = ["bvh", "grid", "none"])]
@@ -278,6 +285,8 @@ pub struct VerifyArgs {
     pub scene: PathBuf,
     #[command(flatten)]
     pub reading: SceneArgs,
+    #[command(flatten)]
+    pub view: ViewArgs,
     #[command(flatten)]
     pub job: JobArgs,
     /// How many ways to try
@@ -382,6 +391,8 @@ pub struct CheckArgs {
     #[command(flatten)]
     pub reading: SceneArgs,
     #[command(flatten)]
+    pub view: ViewArgs,
+    #[command(flatten)]
     pub job: JobArgs,
     /// Write the scene anew, with all changed that is mechanical
     #[arg(long)]
@@ -485,6 +496,8 @@ pub struct CompareArgs {
     pub scene: Option<PathBuf>,
     #[command(flatten)]
     pub reading: SceneArgs,
+    #[command(flatten)]
+    pub view: ViewArgs,
     #[command(flatten)]
     pub job: JobArgs,
 }

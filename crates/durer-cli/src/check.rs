@@ -103,7 +103,7 @@ fn look(path: &Path, bytes: Arc<[u8]>, args: &CheckArgs) -> Result<Checked, Fail
     let readable = world.is_some();
     let findings = match (&loaded, &world) {
         (Some(loaded), Some(world)) => {
-            let job = job(&args.job, loaded, false)?;
+            let job = job(&args.job, Some(&args.view), loaded, false)?;
             let (scene, dialect, files) = (&loaded.scene, loaded.dialect, &files);
             check(&Subject { scene, world, dialect, files, job: &job, rejected: None }, &diagnostics)
         }

@@ -12,6 +12,7 @@ use crate::output::say;
 use crate::render::{failure, rejected};
 use crate::{Failure, bad, check, output, progress};
 use durer::LoadOptions;
+use durer::camera::{Lens, Raster};
 use durer::compile::AccelKind;
 use durer::dialect::{Compat, Dialect};
 use durer::film::aov::Aov;
@@ -154,7 +155,9 @@ fn course_format(name: &str, asked: Option<Dialect>) -> Result<&'static Format, 
 fn job(given: &Given, opened: &Opened) -> Result<Job, Failure> {
     let rules = &opened.loaded.rules;
     let size = given.numbers::<u32>("-size", 2)?;
-    let (width, height) = size.map_or(rules.size, |size| (size[0], size[1]));
+    // A camera whose picture has a shape of its own makes that; the old programs knew none.
+    let natural = || Raster::natural_size(opened.world.camera.proportions(), rules.size);
+    let (width, height) = size.map_or_else(natural, |size| (size[0], size[1]));
     if width == 0 || height == 0 {
         return Err(bad("-size: a picture has at least one pixel"));
     }

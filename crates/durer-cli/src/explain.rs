@@ -36,7 +36,7 @@ pub fn run(args: &ExplainArgs) -> Result<(), Failure> {
     let mut options = load_options(&args.render.reading);
     options.accel = accel(&args.render.job)?;
     let opened = open(&args.render.scene, &options, args.render.quiet)?;
-    let job = job(&args.render.job, &opened.loaded, false)?;
+    let job = job(&args.render.job, Some(&args.render.view), &opened.loaded, false)?;
     let picture = match args.brightest || args.worst || args.html.is_some() {
         true => Some(picture(args, &opened, &job)?),
         false => None,

@@ -1,6 +1,6 @@
 //! From options to a job.
 
-use crate::args::JobArgs;
+use crate::args::{JobArgs, ViewArgs};
 use crate::{Failure, bad, report};
 use durer::Loaded;
 use durer::camera::{Lens, Raster};
@@ -31,8 +31,8 @@ pub fn accel(args: &JobArgs) -> Result<AccelKind, Failure> {
     })
 }
 
-/// The job that the options ask for; `timed` if time decides when it ends.
-pub fn job(args: &JobArgs, loaded: &Loaded, timed: bool) -> Result<Job, Failure> {
+/// The job that the options ask for, the colour of the whole picture without a view; `timed` if time decides when it ends.
+pub fn job(args: &JobArgs, view: Option<&ViewArgs>, loaded: &Loaded, timed: bool) -> Result<Job, Failure> {
     let rules = &loaded.rules;
     // Ours is a dialect like others to ask for, but not an old program.
     let asked = loaded.guess.is_none() && loaded.dialect != Dialect::Durer;
@@ -41,7 +41,7 @@ pub fn job(args: &JobArgs, loaded: &Loaded, timed: bool) -> Result<Job, Failure>
     let (width, height) = args.size.unwrap_or_else(|| Raster::natural_size(proportions, rules.size));
     // A blur needs more samples than an edge.
     let plenty = if camera.is_some_and(|camera| camera.has_aperture()) { 64 } else { 16 };
-    let shows = |name: &str| args.show.iter().any(|show| show == name);
+    let shown = view.map_or(&[][..], |view| &view.show);
     let depth_range = args.depth_range.as_ref().map(|range| (range[0], range[1]));
     if depth_range.is_some_and(|(min, max)| !(min.is_finite() && max.is_finite() && min != max)) {
         return Err(bad("--depth-range needs two different numbers"));
@@ -49,7 +49,7 @@ pub fn job(args: &JobArgs, loaded: &Loaded, timed: bool) -> Result<Job, Failure>
     Ok(Job {
         width,
         height,
-        crop: args.crop.map(|(left, top, width, height)| Crop { left, top, width, height }),
+        crop: view.and_then(|view| view.crop).map(|(left, top, width, height)| Crop { left, top, width, height }),
         seed: args.seed,
         sampling: sampling(args, asked, timed, plenty)?,
         noise: args.noise,
@@ -62,8 +62,8 @@ pub fn job(args: &JobArgs, loaded: &Loaded, timed: bool) -> Result<Job, Failure>
             refraction: !args.no_refraction,
             least_weight: args.weight.unwrap_or(if asked { 0.0 } else { 1.0 / 256.0 }),
         },
-        color: shows("color"),
-        aovs: args.show.iter().filter_map(|name| Aov::from_name(name)).collect(),
+        color: view.is_none() || shown.iter().any(|show| show == "color"),
+        aovs: shown.iter().filter_map(|name| Aov::from_name(name)).collect(),
         depth_range,
     })
 }

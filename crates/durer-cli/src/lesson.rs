@@ -54,17 +54,12 @@ struct Lesson {
 }
 
 pub fn run(args: &LessonArgs) -> Result<(), Failure> {
-    if args.job.crop.is_some() || args.job.show != ["color"] {
-        return Err(bad(
-            "a lesson shows whole pictures, and chooses itself what they show: leave --crop and --show out",
-        ));
-    }
     let stem = Path::new(args.scene.file_stem().unwrap_or_default());
     let folder = Folder::new(args.output.clone().unwrap_or_else(|| lengthened(stem, "-lesson")))?;
     let mut options = load_options(&args.reading);
     (options.accel, options.threads) = (accel(&args.job)?, args.threads.map(usize::from));
     let opened = open(&args.scene, &options, args.quiet)?;
-    let mut job = job(&args.job, &opened.loaded, false)?;
+    let mut job = job(&args.job, None, &opened.loaded, false)?;
     if args.job.size.is_none() {
         let proportions = opened.world.camera.proportions();
         (job.width, job.height) = Raster::natural_size(proportions, (SIDE, SIDE));

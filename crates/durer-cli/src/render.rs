@@ -32,7 +32,7 @@ pub fn run(command: &RenderCommand) -> Result<(), Failure> {
     let mut options = load_options(&args.reading);
     (options.accel, options.threads) = (job::accel(&args.job)?, threads);
     let scene = read(&args.scene, &options, args.quiet)?;
-    let job = job::job(&args.job, &scene.loaded, args.work.time.is_some())?;
+    let job = job::job(&args.job, Some(&args.view), &scene.loaded, args.work.time.is_some())?;
     // A size that no picture has is refused as such, whatever the memory.
     checked_count(job.width, job.height).map_err(|error| bad(error.to_string()))?;
     let window = job.window();
@@ -58,11 +58,11 @@ pub fn run(command: &RenderCommand) -> Result<(), Failure> {
     if let Some(pixel) = command.pixel {
         return print_pixel(&opened.world, &job, &control, pixel, command.sample);
     }
-    if args.job.show.iter().any(|show| DIAGRAMS.contains(&show.as_str())) {
+    if args.view.show.iter().any(|show| DIAGRAMS.contains(&show.as_str())) {
         if target.is_none() {
             return Err(bad("a diagram is not split into parts: leave it out, or --shard"));
         }
-        diagrams::check(&job, args.job.zoom).map_err(failure)?;
+        diagrams::check(&job, args.view.zoom).map_err(failure)?;
     }
     let part = keeper.begin(Part::new(&opened.world, &job, shard).map_err(failure)?)?;
     let stop = progress::watch(&control, args.quiet, || {
@@ -80,7 +80,7 @@ pub fn run(command: &RenderCommand) -> Result<(), Failure> {
         None => keeper.save(&part).map_err(|error| Failure::Other(error.into()))?,
         Some(target) => {
             let mut rendered = part.pictures().map_err(failure)?;
-            diagrams::add(&args.job.show, args.job.zoom, &opened.world, &job, &control, &mut rendered)
+            diagrams::add(&args.view.show, args.view.zoom, &opened.world, &job, &control, &mut rendered)
                 .map_err(failure)?;
             let transfer = Transfer::from_name(&args.transfer).unwrap_or_default();
             output::save(&target.files(&rendered, transfer)?, args.quiet)?;
@@ -101,7 +101,7 @@ pub fn run(command: &RenderCommand) -> Result<(), Failure> {
 
 /// What is to be shown, each once.
 fn shows(args: &RenderArgs) -> Result<Vec<&str>, Failure> {
-    let names: Vec<&str> = args.job.show.iter().map(String::as_str).collect();
+    let names: Vec<&str> = args.view.show.iter().map(String::as_str).collect();
     match (1..names.len()).find(|&i| names[..i].contains(&names[i])) {
         Some(twice) => Err(bad(format!("--show: `{}` is asked for twice", names[twice]))),
         None => Ok(names),

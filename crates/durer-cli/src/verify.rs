@@ -35,7 +35,7 @@ pub fn run(args: &VerifyArgs) -> Result<(), Failure> {
         options.accel = accel;
         // What is found is said once.
         let opened = open(&args.scene, &options, args.quiet || !worlds.is_empty())?;
-        let mut job = job::job(&args.job, &opened.loaded, false)?;
+        let mut job = job::job(&args.job, Some(&args.view), &opened.loaded, false)?;
         (job.width, job.height) = args.job.size.unwrap_or((64, 48));
         // The work depends on the structure.
         job.aovs.retain(|aov| aov.name != "cost");

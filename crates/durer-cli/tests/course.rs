@@ -230,3 +230,16 @@ fn a_picture_on_standard_output_is_alone_there() {
     let image = durer::image::read8(&output.stdout, "o.tga").unwrap();
     assert_eq!((output.status.code(), image.width, image.height, output.stdout.len()), (Some(0), 8, 4, 18 + 96));
 }
+
+#[test]
+fn a_camera_with_a_shape_of_its_own_makes_pictures_of_that_shape() {
+    let place = Place::new();
+    let camera = "EquirectangularCamera { center 0 0 5 direction 0 0 -1 up 0 1 0 }";
+    let rest = SCENE.split_once("Lights").unwrap().1;
+    place.put("around.txt", format!("{camera}\nLights{rest}"));
+    for (options, size) in [("--dialect durer", (512, 256)), ("--dialect durer -size 30 20", (30, 20))] {
+        place.gives(0, &format!("course -input around.txt {options} -output o.png --quiet"));
+        let image = place.image8("o.png");
+        assert_eq!((image.width, image.height), size, "{options}");
+    }
+}

@@ -72,8 +72,8 @@ fn wrong_orders_are_refused_and_leave_nothing() {
     for (arguments, words) in [
         ("scene.txt -o scene.txt", "is a file"),
         ("scene.txt -o no/such/folder", "there is no folder `no/such`"),
-        ("scene.txt -o out --show depth", "leave --crop and --show out"),
-        ("scene.txt -o out --crop 1,1,4x4", "leave --crop and --show out"),
+        ("scene.txt -o out --show depth", "unexpected argument '--show'"),
+        ("scene.txt -o out --crop 1,1,4x4", "unexpected argument '--crop'"),
         ("scene.txt -o out --size 40", "640x480"),
         ("missing.txt -o out", "missing.txt"),
         ("broken.txt -o out", "broken.txt"),

@@ -201,6 +201,8 @@ pub struct Rules {
     pub paths: PathBase,
     /// Whether the ambient light is multiplied with a texture or noise, not just `diffuseColor`.
     pub ambient_textured: bool,
+    /// Whether ambient light is 1 1 1, whatever is written, in a scene without lights.
+    pub ambient_alone: bool,
     /// Whether coloured, transparent things cast coloured shadows.
     pub transparent_shadows: bool,
     /// Bugs of the official program.
@@ -208,7 +210,7 @@ pub struct Rules {
 }
 
 /// Some compatibilities, as bits.
-pub type CompatSet = u32;
+pub type CompatSet = u64;
 
 macro_rules! compats {
     ($($(#[doc = $doc:literal])+ $variant:ident = $name:literal,)+) => {
@@ -260,6 +262,26 @@ compats! {
     ShadowFronts = "shadow-fronts",
     /// A `Matrix` is multiplied on the left of everything before it.
     MatrixOnLeft = "matrix-on-left",
+    /// The matrices of one transform lose the shear of their product: it is taken apart into moving, turning and
+    /// stretching. Shear between nested transforms stays.
+    DroppedShear = "dropped-shear",
+    /// A plane's normal keeps the length that is written, for light, mirrors and pictures of normals; not inside a
+    /// transform.
+    RawNormals = "raw-normals",
+    /// Light falls on normals of length 1, also where `raw-normals` holds.
+    UnitLight = "unit-light",
+    /// Only meshes show textures.
+    MeshTextures = "mesh-textures",
+    /// Ambient light meets the diffuse colour only where that is written.
+    WrittenAmbient = "written-ambient",
+    /// A camera ray is taken to run in air, also where the camera is inside glass.
+    AirAtEye = "air-at-eye",
+    /// The last line of an `.obj` is lost where no end of line follows it.
+    LostLastLine = "lost-last-line",
+    /// A face of an `.obj` has three corners: the others are passed over.
+    ThreeCorners = "three-corners",
+    /// Normals of an `.obj` belong to the vertices, number by number, whatever its faces say.
+    NormalsByVertex = "normals-by-vertex",
     /// The background is black in depth pictures even where far is white.
     BlackSky = "black-sky",
     /// Where nothing is hit, a picture of normals shows the normal hit last, in rows from the bottom.
@@ -347,8 +369,9 @@ const F04: Rules = Rules {
     srgb_textures: false,
     paths: PathBase::Current,
     ambient_textured: true,
+    ambient_alone: true,
     transparent_shadows: false,
-    compat: bits(&[BlackBacks, ShadedSides, ScreenPoint, LooseTriangles, ThinTriangles, MatrixOnLeft]),
+    compat: bits(&[BlackBacks, ShadedSides, ScreenPoint, LooseTriangles, ThinTriangles, MatrixOnLeft, ThreeCorners]),
 };
 
 const F12A4: Rules = Rules {
@@ -358,7 +381,19 @@ const F12A4: Rules = Rules {
     highlight: Highlight::Phong,
     falloff: Falloff::None,
     secondary: Secondary::None,
-    compat: bits(&[BorderPixels, ShadedSides, Stretch, HighlightBehind, PowZero, MatrixOnLeft, StaleTexels]),
+    compat: bits(&[
+        BorderPixels,
+        ShadedSides,
+        Stretch,
+        HighlightBehind,
+        PowZero,
+        MatrixOnLeft,
+        StaleTexels,
+        RawNormals,
+        MeshTextures,
+        LostLastLine,
+        ThreeCorners,
+    ]),
     ..F04
 };
 
@@ -372,7 +407,21 @@ const F12A5: Rules = Rules {
     secondary: Secondary::SpecularFresnel,
     epsilon: Some(1e-3),
     ambient_textured: false,
-    compat: bits(&[BorderPixels, ShadedSides, Stretch, HighlightBehind, PowZero, ShadowFronts, MatrixOnLeft]),
+    compat: bits(&[
+        BorderPixels,
+        ShadedSides,
+        Stretch,
+        HighlightBehind,
+        PowZero,
+        ShadowFronts,
+        MatrixOnLeft,
+        RawNormals,
+        UnitLight,
+        MeshTextures,
+        AirAtEye,
+        LostLastLine,
+        ThreeCorners,
+    ]),
     ..F12A4
 };
 
@@ -396,6 +445,9 @@ const F16: Rules = Rules {
         MissingFalloff,
         MatrixOnLeft,
         BlackSky,
+        RawNormals,
+        LostLastLine,
+        ThreeCorners,
     ]),
     ..F12A4
 };
@@ -406,6 +458,7 @@ const F23: Rules = Rules {
     size: (200, 200),
     mesh_normals: MeshNormals::SmoothByArea,
     falloff: Falloff::Bare(Some(20.0)),
+    ambient_alone: false,
     paths: PathBase::Assets("assets/assignment4"),
     compat: bits(&[
         BorderPixels,
@@ -418,6 +471,10 @@ const F23: Rules = Rules {
         BlackSky,
         StaleNormals,
         WholeDepths,
+        DroppedShear,
+        WrittenAmbient,
+        ThreeCorners,
+        NormalsByVertex,
     ]),
     ..F16
 };
@@ -440,6 +497,7 @@ const DURER: Rules = Rules {
     srgb_textures: true,
     paths: PathBase::SceneFile,
     ambient_textured: true,
+    ambient_alone: true,
     transparent_shadows: false,
     compat: 0,
 };

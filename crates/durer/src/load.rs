@@ -117,7 +117,7 @@ pub fn load_text(
     if options.course {
         source = source.allow(".");
     }
-    let read = ReadOptions { dialect, strict: options.strict };
+    let read = ReadOptions { dialect, strict: options.strict, compat: rules.compat };
     let scene = course::read(&bytes, file, read, diagnostics);
     if let (None, Some(guess)) = (&scene, &guess) {
         // What is wrong in one dialect may be right in another.

@@ -35,7 +35,7 @@ pub fn there(args: &CompareArgs, pair: &Pair, found: &Comparison) -> Result<Vec<
     let path = path(scene, pair)?;
     let options = load_options(&args.reading);
     let opened = open(&path, &options, true)?;
-    let job = job::job(&args.job, &opened.loaded, false)?;
+    let job = job::job(&args.job, Some(&args.view), &opened.loaded, false)?;
     let job = Job { width: found.width, height: found.height, crop: None, ..job };
     let raster = raster(&opened.world, job.width, job.height);
     let look = |place: (u32, u32)| {

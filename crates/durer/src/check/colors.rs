@@ -131,7 +131,7 @@ fn all_colors(scout: &Scout) -> Vec<Named> {
     for (_, written, _) in phongs(scout) {
         let Written::Phong(phong, _) = &written.value else { continue };
         let named = |color, fields| Named { color, block: written.span, fields, most: 15.0 };
-        colors.push(named(phong.diffuse_color, ["diffuseColor", "diffuse"]));
+        colors.extend(phong.diffuse_color.map(|color| named(color, ["diffuseColor", "diffuse"])));
         colors.push(named(phong.specular_color, ["specularColor", "specular"]));
         colors.push(named(phong.reflective_color, ["reflectiveColor", "reflectiveColor"]));
         colors.push(named(phong.transparent_color, ["transparentColor", "transparentColor"]));

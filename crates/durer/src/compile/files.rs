@@ -4,7 +4,7 @@ use super::Resources;
 use crate::describe::FileName;
 use crate::diag::{Diagnostic, Diagnostics, Severity};
 use crate::dialect::{Compat, Rules};
-use crate::format;
+use crate::format::{self, obj::habits};
 use crate::image;
 use crate::shape::{HeightField, Mesh};
 use crate::source::SourceError;
@@ -43,7 +43,9 @@ impl<'r> Loader<'r> {
         let mesh = self.read(name, "mesh", diagnostics).and_then(|bytes| {
             let file = self.resources.files.add(name.path.clone(), bytes.clone());
             let mut own = Diagnostics::default();
-            let data = format::read_mesh(&bytes, file, &name.path, &mut own);
+            let is_obj = name.path.ends_with(".obj");
+            let known = if is_obj { habits::known(&bytes, self.rules.compat) } else { bytes.as_ref().into() };
+            let data = format::read_mesh(&known, file, &name.path, &mut own);
             if own.has_errors() {
                 let message = format!("the mesh `{}` cannot be used", name.path);
                 let error = Diagnostic::error(message).code("bad-file").at(name.span);
@@ -61,7 +63,8 @@ impl<'r> Loader<'r> {
             if self.rules.has(Compat::LooseTriangles) {
                 data.loosen();
             }
-            let mesh = Mesh::new(data, self.rules.mesh_normals, self.rules.file_normals);
+            let by_vertex = self.rules.has(Compat::NormalsByVertex) && data.give_normals_by_vertex();
+            let mesh = Mesh::new(data, self.rules.mesh_normals, self.rules.file_normals || by_vertex);
             // What the official program takes for a determinant of zero.
             let least_volume = if self.rules.has(Compat::ThinTriangles) { 1e-6 } else { 0.0 };
             Arc::new(MeshTree::new(mesh).least_volume(least_volume))

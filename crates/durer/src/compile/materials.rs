@@ -17,7 +17,7 @@ pub(super) fn compile(
     check_solids(scene, diagnostics);
     let one = |material: &scene::Spanned<scene::Material>| match &material.value {
         scene::Material::Solid(solid, ops) => {
-            let to_pattern = MatrixOp::product(ops, rules.has(Compat::MatrixOnLeft));
+            let to_pattern = MatrixOp::product(ops, rules.compat);
             Material::Solid(solid.clone(), to_pattern)
         }
         scene::Material::Phong(phong, noise) => {
@@ -58,11 +58,16 @@ fn check_solids(scene: &Scene, diagnostics: &mut Diagnostics) {
 
 fn phong_of(m: &PhongMaterial, noise: Option<ColorNoise>, texture: Option<u32>, rules: &Rules) -> Phong {
     let (reflective, transparent, ior) = secondary(m, rules);
+    let diffuse = m.diffuse_color.unwrap_or(Color::ONE);
+    let ambient = match m.diffuse_color {
+        None if rules.has(Compat::WrittenAmbient) => Some(Color::ZERO),
+        _ => (!rules.ambient_textured).then_some(diffuse),
+    };
     Phong {
-        diffuse: m.diffuse_color,
+        diffuse,
         texture,
         noise,
-        ambient_textured: rules.ambient_textured,
+        ambient,
         highlight: highlight(m, rules).filter(|(color, ..)| *color != Color::ZERO),
         reflective,
         transparent,

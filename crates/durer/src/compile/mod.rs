@@ -74,6 +74,7 @@ pub fn compile(
         material_count: materials.len() as u32,
         plain_needed: false,
         bare: None,
+        transforms: 0,
         open_edges: HashMap::new(),
     };
     match &scene.root {
@@ -175,9 +176,12 @@ fn check_camera(scene: &Scene, pose: crate::camera::Pose, diagnostics: &mut Diag
 fn lights(scene: &Scene, rules: &Rules, diagnostics: &mut Diagnostics) -> (Vec<Light>, Color) {
     let written = scene.lights.as_deref().unwrap_or_default();
     if written.is_empty() {
-        let message = "the scene has no lights: its ambient light is set to 1 1 1, so colours are flat";
+        let (message, ambient) = match rules.ambient_alone {
+            true => ("the scene has no lights: its ambient light is set to 1 1 1, so colours are flat", Color::ONE),
+            false => ("the scene has no lights: colours are flat, as ambient as is written", scene.background.ambient_light),
+        };
         diagnostics.push(Diagnostic::warning(message).code("no-light"));
-        return (Vec::new(), Color::ONE);
+        return (Vec::new(), ambient);
     }
     for light in written {
         let (color, falloff) = match &light.value {
@@ -209,6 +213,8 @@ struct Flattening<'a, 'r> {
     plain_needed: bool,
     /// The first object without a material, and how many there are.
     bare: Option<(Span, usize)>,
+    /// How many transforms are around the present object.
+    transforms: u32,
     /// An edge at which a mesh is open, if there is one, by its path.
     open_edges: HashMap<String, Option<[Vec3; 2]>>,
 }
@@ -236,7 +242,11 @@ impl Flattening<'_, '_> {
     fn object(&mut self, object: &scene::Object, to_world: DAffine3) {
         match &object.node {
             Node::Group(group) => self.group(group, to_world),
-            Node::Transform(ops, inner) => self.object(inner, to_world * self.product(ops)),
+            Node::Transform(ops, inner) => {
+                self.transforms += 1;
+                self.object(inner, to_world * self.product(ops));
+                self.transforms -= 1;
+            }
             Node::Solid(operation, parts) => self.solid(object.span, *operation, parts, to_world),
             _ => {
                 let shape = self.shape(object, to_world);
@@ -246,7 +256,7 @@ impl Flattening<'_, '_> {
     }
 
     fn product(&self, ops: &[MatrixOp]) -> DAffine3 {
-        MatrixOp::product(ops, self.rules.has(Compat::MatrixOnLeft))
+        MatrixOp::product(ops, self.rules.compat)
     }
 
     /// A shape or mesh, placed in the world; `None` after an error.
@@ -301,7 +311,13 @@ impl Flattening<'_, '_> {
                 self.material_count
             }
         };
-        Some(Object { geometry, to_world, material, span: object.span })
+        let normal_length = match &object.node {
+            Node::Primitive(Primitive::Plane(plane)) if self.transforms == 0 && self.rules.has(Compat::RawNormals) => {
+                plane.normal.length()
+            }
+            _ => 1.0,
+        };
+        Some(Object { geometry, to_world, material, normal_length, span: object.span })
     }
 }
 

@@ -13,7 +13,7 @@ pub fn try_read(text: &str, rules: &Rules, accel: AccelKind, folder: &Path) -> (
     let mut files = Files::default();
     let file = files.add("scene.txt", text.as_bytes().into());
     let mut diagnostics = Diagnostics::default();
-    let options = ReadOptions { dialect: Dialect::Durer, strict: false };
+    let options = ReadOptions { dialect: Dialect::Durer, strict: false, compat: 0 };
     let scene = course::read(text.as_bytes(), file, options, &mut diagnostics);
     let source = Source::folder(folder);
     let resources = Resources { source: &source, files: &mut files, sky_optional: false, memory: u64::MAX };

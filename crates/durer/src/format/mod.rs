@@ -5,7 +5,7 @@
 
 pub mod course;
 mod number;
-mod obj;
+pub mod obj;
 mod ply;
 mod polygon;
 mod report;

@@ -4,6 +4,7 @@
 //! vertices further down. So nothing but the mesh itself is kept.
 
 mod faces;
+pub mod habits;
 mod words;
 
 use super::number::{NumberError, parse_f32, report_number};

@@ -1,6 +1,7 @@
 //! Integrators: how much light comes along a ray.
 
 pub mod account;
+pub mod media;
 pub mod spawn;
 pub mod whitted;
 

@@ -4,6 +4,7 @@
 //! terms of the course.
 
 use super::account::{RayKind, Shadow, Struck, What, Witness};
+use super::media::{Media, Medium};
 use super::spawn::{from_surface, to_light};
 use crate::dialect::Compat;
 use crate::light::{Emitter, Illumination};
@@ -51,35 +52,56 @@ pub struct Whitted<'w> {
 }
 
 /// What a ray carries from bounce to bounce.
-#[derive(Clone, Copy)]
+#[derive(Clone)]
 struct Path {
     bounces: u32,
-    /// Index of refraction of what the ray runs in.
-    ior: f32,
+    /// What the ray runs in.
+    media: Media,
     /// How much the ray counts for in the pixel.
     weight: f32,
+}
+
+/// How light goes through a surface.
+struct Passage {
+    /// Index of refraction before it.
+    here: f32,
+    /// Index of refraction behind it.
+    there: f32,
+    /// What a ray runs in behind it.
+    behind: Media,
+    /// Whether something else fills the place on both sides, so that there is no surface.
+    hidden: bool,
+}
+
+impl Default for Passage {
+    fn default() -> Self {
+        Passage { here: 1.0, there: 1.0, behind: Media::default(), hidden: false }
+    }
 }
 
 impl Whitted<'_> {
     /// The light that comes along a camera ray.
     pub fn radiance<T: Witness>(&self, ray: &Ray, tally: &mut T) -> Color {
-        let path = Path { bounces: self.settings.bounces, ior: 1.0, weight: 1.0 };
+        let path = Path { bounces: self.settings.bounces, media: Media::default(), weight: 1.0 };
         tally.begin(|| What::Ray { from: RayKind::Camera, ray: ray.into(), weight: 1.0, hit: None });
         let color = self.trace(ray, path, tally);
         tally.end(Color::ONE, Color::ONE, color);
         color
     }
 
-    fn trace<T: Witness>(&self, ray: &Ray, path: Path, tally: &mut T) -> Color {
-        match self.world.closest(ray, tally) {
-            Some(hit) => self.shade(ray, &hit, path, tally),
-            None => {
-                let sky = self.world.sky(ray.dir);
-                tally.begin(|| What::Sky);
-                tally.end(Color::ONE, Color::ONE, sky);
-                sky
+    fn trace<T: Witness>(&self, ray: &Ray, mut path: Path, tally: &mut T) -> Color {
+        let mut rest = *ray;
+        while let Some(hit) = self.world.closest(&rest, tally) {
+            let passage = if self.world.rules.is_official() { None } else { self.passage(ray, &hit, &path.media) };
+            match passage {
+                Some(Passage { hidden: true, behind, .. }) => (path.media, rest.t_min) = (behind, hit.t),
+                _ => return self.shade(ray, &hit, path, tally),
             }
         }
+        let sky = self.world.sky(ray.dir);
+        tally.begin(|| What::Sky);
+        tally.end(Color::ONE, Color::ONE, sky);
+        sky
     }
 
     /// The light that leaves a hit against the ray: of each material that makes it up, by its share.
@@ -88,6 +110,7 @@ impl Whitted<'_> {
         let from_behind = self.sees_back(ray.dir, &surface);
         let black = from_behind && !self.settings.shade_back && self.world.rules.has(Compat::BlackBacks);
         let n = if from_behind && self.settings.shade_back { -surface.n_shade } else { surface.n_shade };
+        let n = if self.world.rules.has(Compat::UnitLight) { n.normalize_or(n) } else { n };
         let parts = self.world.parts(hit, surface.position);
         tally.hit(|| self.struck(ray, hit, &surface, n, from_behind, black));
         let mut color = Color::ZERO;
@@ -95,7 +118,7 @@ impl Whitted<'_> {
             // A texture or noise is looked up once for all lights.
             let diffuse: SmallVec<[Color; 2]> = parts.iter().map(|p| self.diffuse_color(p.phong, &surface)).collect();
             for (part, &diffuse) in parts.iter().zip(&diffuse) {
-                let met = if part.phong.ambient_textured { diffuse } else { part.phong.diffuse };
+                let met = part.phong.ambient.unwrap_or(diffuse);
                 let ambient = part.share * self.world.ambient;
                 tally.begin(|| What::Ambient { share: part.share });
                 tally.end(ambient, Color::ONE, met);
@@ -123,7 +146,7 @@ impl Whitted<'_> {
         }
         let cancelled = self.cancel.is_some_and(|cancel| cancel.load(Relaxed));
         if path.bounces > 0 && !cancelled {
-            color += self.secondary(ray, &surface, &parts, path, tally);
+            color += self.secondary((ray, hit), &surface, &parts, path, tally);
         } else if parts.iter().any(|part| part.phong.reflective + part.phong.transparent != Color::ZERO) {
             tally.begin(|| What::Spent);
             tally.end(Color::ONE, Color::ONE, Color::ZERO);
@@ -214,39 +237,41 @@ impl Whitted<'_> {
     }
 
     /// Mirrored and transmitted light.
-    fn secondary<T: Witness>(&self, ray: &Ray, surface: &Surface, parts: &[Part], path: Path, tally: &mut T) -> Color {
-        // Weights of a mix are mixed; its index is that of the part that weighs most.
-        let (mut reflective, mut transparent, mut ior, mut most, mut fresnel) =
-            (Color::ZERO, Color::ZERO, 1.0, 0.0, false);
-        for &Part { phong, share } in parts {
-            reflective += share * phong.reflective;
-            transparent += share * phong.transparent;
-            if share > most {
-                (most, ior, fresnel) = (share, phong.ior, phong.fresnel);
-            }
+    fn secondary<T: Witness>(
+        &self,
+        (ray, hit): (&Ray, &Hit),
+        surface: &Surface,
+        parts: &[Part],
+        path: Path,
+        tally: &mut T,
+    ) -> Color {
+        let Blend { mut reflective, mut transparent, fresnel, .. } = Blend::of(parts);
+        if reflective == Color::ZERO && transparent == Color::ZERO {
+            return Color::ZERO;
         }
-        // The normal on the ray's side, and the indices before and behind the surface.
+        // The normal on the ray's side.
         let leaving = self.sees_back(ray.dir, surface);
         let [n, n_geo] = [surface.n_shade, surface.n_geo].map(|n| if leaving { -n } else { n });
         // An interpolated normal may point away from the ray; the surface itself does not.
         let n = if ray.dir.dot(n) < 0.0 { n } else { n_geo };
-        let (here, there) = match (leaving, fresnel) {
-            (true, true) if path.ior != 1.0 => (path.ior, 1.0),
-            (true, _) => (ior, 1.0),
-            (false, true) => (path.ior, ior),
-            (false, false) => (1.0, ior),
-        };
         // A mirror without `shade_back` reflects about the normal as it is; the direction is the same.
         let mirrored = reflect(ray.dir, n);
+        // About a normal that is not of length 1 it is another one.
+        let (mirrored, n) = match self.world.rules.has(Compat::RawNormals) {
+            true => (mirrored.normalize_or(n_geo), n.normalize_or(n_geo)),
+            false => (mirrored, n),
+        };
+        let passage = self.passage(ray, hit, &path.media).unwrap_or_default();
+        let Passage { here, there, .. } = passage;
         let transmitted = if transparent == Color::ZERO { None } else { refract(ray.dir, n, here / there) };
-        if reflective == Color::ZERO && transparent == Color::ZERO {
-            return Color::ZERO;
-        }
         let total = transparent != Color::ZERO && transmitted.is_none();
         // With one of the two left out, the other has all the light.
         let divided = fresnel && self.settings.reflection && self.settings.refraction;
         // Total reflection weighs 1.
-        let r = divided.then(|| transmitted.map_or(1.0, |t| self.fresnel(ray.dir, n, t, here, there)));
+        let r = divided.then(|| {
+            let zero = leaving && self.world.rules.has(Compat::ExitR0);
+            transmitted.map_or(1.0, |t| fresnel_share(ray.dir, n, t, (here, there), zero))
+        });
         if let Some(r) = r {
             reflective *= r;
             transparent *= 1.0 - r;
@@ -254,15 +279,67 @@ impl Whitted<'_> {
         tally.begin(|| What::Secondary { here, there, fresnel: r, total });
         let mut color = Color::ZERO;
         if self.settings.reflection {
-            let path = Path { ior: path.ior, ..path };
-            color += self.bounce(RayKind::Reflected, surface, mirrored, reflective, path, tally);
+            color += self.bounce(RayKind::Reflected, surface, mirrored, reflective, path.clone(), tally);
         }
         if let Some(transmitted) = transmitted.filter(|_| self.settings.refraction) {
-            let path = Path { ior: there, ..path };
+            let path = Path { media: passage.behind, ..path };
             color += self.bounce(RayKind::Transmitted, surface, transmitted, transparent, path, tally);
         }
         tally.end(Color::ONE, Color::ONE, color);
         color
+    }
+
+    /// How light that may go through a surface does; `None` where none may.
+    fn passage(&self, ray: &Ray, hit: &Hit, media: &Media) -> Option<Passage> {
+        if !self.world.may_transmit(hit) {
+            return None;
+        }
+        let surface = self.world.surface(ray, hit);
+        let blend = Blend::of(&self.world.parts(hit, surface.position));
+        if blend.transparent == Color::ZERO {
+            return None;
+        }
+        let leaving = self.sees_back(ray.dir, &surface);
+        Some(match self.world.rules.is_official() {
+            true => self.official_passage(hit.object, blend, leaving, media),
+            false => self.nested_passage(ray, hit.object, blend, leaving, media),
+        })
+    }
+
+    /// The course's: one index is carried along, and behind glass there is air.
+    fn official_passage(&self, object: u32, blend: Blend, leaving: bool, media: &Media) -> Passage {
+        let (known, ior) = (media.ior(), blend.ior);
+        let (here, there) = match (leaving, blend.fresnel) {
+            (true, true) if known != 1.0 || self.world.rules.has(Compat::AirAtEye) => (known, 1.0),
+            (true, _) => (ior, 1.0),
+            (false, true) => (known, ior),
+            (false, false) => (1.0, ior),
+        };
+        Passage { here, there, behind: Media::only(Medium { object, ior: there, size: None }), hidden: false }
+    }
+
+    /// Ours: things of glass may be inside each other and overlap.
+    fn nested_passage(&self, ray: &Ray, object: u32, blend: Blend, leaving: bool, media: &Media) -> Passage {
+        let medium = |object: u32, ior: f32| Medium { object, ior, size: self.world.objects[object as usize].extent() };
+        let own = medium(object, blend.ior);
+        if !leaving {
+            let behind = media.entered(own);
+            let hidden = !media.is_air() && behind.object() == media.object() && media.object() != Some(object);
+            return Passage { here: media.ior(), there: behind.ior(), behind, hidden };
+        }
+        // A ray that leaves what it never entered began inside.
+        let found = match media.holds(object) {
+            true => media.clone(),
+            false if own.size.is_none() => media.entered(own),
+            false => {
+                let around = self.world.glass_around(ray.origin).filter(|&(other, _)| other != object);
+                let around = around.map(|(other, ior)| medium(other, ior)).chain([own]);
+                around.fold(Media::default(), |media, medium| media.entered(medium))
+            }
+        };
+        let behind = found.left(object);
+        let hidden = found.object() != Some(object);
+        Passage { here: found.ior(), there: behind.ior(), behind, hidden }
     }
 
     /// One secondary ray, weighed by a colour.
@@ -292,20 +369,44 @@ impl Whitted<'_> {
         tally.end(weight, Color::ONE, color);
         weight * color
     }
+}
 
-    /// The mirrored share, by Schlick's approximation: R0 + (1 - R0) (1 - c)^5.
-    ///
-    /// c is the cosine on the side of the lower index. Source: Schlick, *An Inexpensive BRDF Model for
-    /// Physically-based Rendering*, Eurographics 1994.
-    fn fresnel(&self, dir: Vec3, n: Vec3, transmitted: Vec3, here: f32, there: f32) -> f32 {
-        let ratio = (there - here) / (there + here);
-        let zero = self.world.rules.has(Compat::ExitR0) && there < here;
-        let r0 = if zero { 0.0 } else { ratio * ratio };
-        let cosine = if here <= there { dir.dot(n).abs() } else { transmitted.dot(n).abs() };
-        let rest = 1.0 - cosine;
-        let square = rest * rest;
-        r0 + (1.0 - r0) * square * square * rest
+/// What the materials of a point reflect and let through together. Weights are mixed; the index is that of the part that
+/// weighs most.
+#[derive(Clone, Copy)]
+struct Blend {
+    reflective: Color,
+    transparent: Color,
+    ior: f32,
+    fresnel: bool,
+}
+
+impl Blend {
+    fn of(parts: &[Part]) -> Self {
+        let mut blend = Blend { reflective: Color::ZERO, transparent: Color::ZERO, ior: 1.0, fresnel: false };
+        let mut most = 0.0;
+        for &Part { phong, share } in parts {
+            blend.reflective += share * phong.reflective;
+            blend.transparent += share * phong.transparent;
+            if share > most {
+                (most, blend.ior, blend.fresnel) = (share, phong.ior, phong.fresnel);
+            }
+        }
+        blend
     }
+}
+
+/// The mirrored share, by Schlick's approximation: R0 + (1 - R0) (1 - c)^5; `zero` takes 0 for R0.
+///
+/// c is the cosine on the side of the lower index. Source: Schlick, *An Inexpensive BRDF Model for
+/// Physically-based Rendering*, Eurographics 1994.
+fn fresnel_share(dir: Vec3, n: Vec3, transmitted: Vec3, (here, there): (f32, f32), zero: bool) -> f32 {
+    let ratio = (there - here) / (there + here);
+    let r0 = if zero { 0.0 } else { ratio * ratio };
+    let cosine = if here <= there { dir.dot(n).abs() } else { transmitted.dot(n).abs() };
+    let rest = 1.0 - cosine;
+    let square = rest * rest;
+    r0 + (1.0 - r0) * square * square * rest
 }
 
 /// Diffuse term and highlight of one light.

@@ -65,7 +65,7 @@ impl Stage {
     pub(super) fn ours((width, height): (u32, u32)) -> Self {
         let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
         let file = files.add(OWN_SCENE_NAME, OWN_SCENE.as_bytes().into());
-        let options = ReadOptions { dialect: Dialect::Durer, strict: false };
+        let options = ReadOptions { dialect: Dialect::Durer, strict: false, compat: 0 };
         let source = Source::folder(".");
         let scene = course::read(OWN_SCENE.as_bytes(), file, options, &mut diagnostics).unwrap_or_default();
         let resources = Resources { source: &source, files: &mut files, sky_optional: false, memory: u64::MAX };
@@ -130,7 +130,7 @@ impl Stage {
             let Material::Phong(phong) = material else { continue };
             phong.highlight = phong.highlight.filter(|_| look.highlights);
             // Flat colour is that of textures too, whatever the dialect's ambient light knows of them.
-            phong.ambient_textured |= !look.lights;
+            phong.ambient = phong.ambient.filter(|_| look.lights);
             if phong.fresnel && look.glass != Glass::Fresnel {
                 (phong.fresnel, phong.reflective) = (false, Color::ZERO);
             }

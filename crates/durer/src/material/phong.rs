@@ -9,8 +9,8 @@ use crate::math::{Color, Vec3, noise};
 described! {
     /// A material with diffuse colour and highlight, which may reflect and let through light.
     PhongMaterial ["PhongMaterial" in set::CLASSIC, "Material" in set::ALL] {
-        /// Share of light scattered evenly.
-        diffuse_color: Vec3 = Vec3::ONE, optional, Rule::Any, ["diffuseColor" in set::CLASSIC, "diffuse" in set::F23];
+        /// Share of light scattered evenly; 1 1 1 where nothing is written.
+        diffuse_color: Option<Vec3> = None, optional, Rule::Any, ["diffuseColor" in set::CLASSIC, "diffuse" in set::F23];
         /// Strength of the highlight; in some dialects also of the mirror.
         specular_color: Vec3 = Vec3::ZERO, optional, Rule::Any,
             ["specularColor" in set::CLASSIC, "specular" in set::F23];

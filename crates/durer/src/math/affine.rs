@@ -38,6 +38,11 @@ impl Affine {
         self.forward.transform_point3(p.as_dvec3()).as_vec3()
     }
 
+    /// Maps a point backward.
+    pub fn inverse_point(&self, p: Vec3) -> Vec3 {
+        self.inverse.transform_point3(p.as_dvec3()).as_vec3()
+    }
+
     /// Maps a vector forward: moving changes nothing.
     pub fn vector(&self, v: Vec3) -> Vec3 {
         self.forward.transform_vector3(v.as_dvec3()).as_vec3()

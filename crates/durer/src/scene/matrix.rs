@@ -1,5 +1,6 @@
 //! The matrices of a transform, as written.
 
+use crate::dialect::{Compat, CompatSet};
 use crate::math::{Vec3, fp};
 use glam::{DAffine3, DMat3, DMat4, DVec3};
 use serde::{Deserialize, Serialize};
@@ -40,13 +41,27 @@ impl MatrixOp {
         }
     }
 
-    /// The product of some matrices; with `matrix_on_left`, a `Matrix` is multiplied on the left of what is before it.
-    pub fn product(ops: &[MatrixOp], matrix_on_left: bool) -> DAffine3 {
-        ops.iter().fold(DAffine3::IDENTITY, |product, op| match op {
-            MatrixOp::Matrix(_) if matrix_on_left => op.matrix() * product,
+    /// The product of the matrices of one transform, with the habits [`Compat::MatrixOnLeft`] and [`Compat::DroppedShear`].
+    pub fn product(ops: &[MatrixOp], habits: CompatSet) -> DAffine3 {
+        let has = |compat: Compat| habits & compat.bit() != 0;
+        let product = ops.iter().fold(DAffine3::IDENTITY, |product, op| match op {
+            MatrixOp::Matrix(_) if has(Compat::MatrixOnLeft) => op.matrix() * product,
             _ => product * op.matrix(),
-        })
+        });
+        if has(Compat::DroppedShear) { without_shear(product) } else { product }
     }
+}
+
+/// A map whose axes are made perpendicular, one after the other: what is left of it as translation, rotation and scale.
+///
+/// Source: Spencer W. Thomas, *Decomposing a Matrix into Simple Transformations*, Graphics Gems II (1991), VII.1.
+fn without_shear(map: DAffine3) -> DAffine3 {
+    let DMat3 { x_axis: x, y_axis, z_axis } = map.matrix3;
+    // An axis without length has no direction to take away.
+    let along = |v: DVec3, axis: DVec3| v.project_onto_normalized(axis.normalize_or_zero());
+    let y = y_axis - along(y_axis, x);
+    let z = z_axis - along(z_axis, x) - along(z_axis, y);
+    DAffine3 { matrix3: DMat3::from_cols(x, y, z), ..map }
 }
 
 /// Rodrigues' rotation about a unit axis.

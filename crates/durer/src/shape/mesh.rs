@@ -43,6 +43,15 @@ impl MeshData {
             + size_of_val(&*self.triangle_normals)
     }
 
+    /// Gives every corner the normal of its position's number; false where there are fewer normals than positions.
+    pub fn give_normals_by_vertex(&mut self) -> bool {
+        let enough = self.normals.len() >= self.positions.len();
+        if enough {
+            self.triangle_normals = self.triangles.clone();
+        }
+        enough
+    }
+
     /// Gives every triangle corners of its own, moved out a little; see [`loosened`].
     pub fn loosen(&mut self) {
         let corners = |t: &[u32; 3]| loosened(t.map(|i| self.positions[i as usize]));

@@ -34,8 +34,8 @@ pub struct Phong {
     pub texture: Option<u32>,
     /// Noise that replaces it.
     pub noise: Option<ColorNoise>,
-    /// Whether the ambient light sees texture and noise too.
-    pub ambient_textured: bool,
+    /// What ambient light meets; `None`: the diffuse colour, texture or noise.
+    pub ambient: Option<Color>,
     /// Strength and sharpness of the highlight, if there is one.
     pub highlight: Option<(Color, f32, HighlightModel)>,
     /// Weight of the mirrored ray.
@@ -66,7 +66,7 @@ impl Default for Phong {
             diffuse: Color::splat(0.8),
             texture: None,
             noise: None,
-            ambient_textured: true,
+            ambient: None,
             highlight: None,
             reflective: Color::ZERO,
             transparent: Color::ZERO,

@@ -174,7 +174,11 @@ impl World {
         let object = &self.objects[hit.object as usize];
         let point = object.local_ray(ray).line().at(f64::from(hit.t));
         let crossing = Crossing { t: hit.t, uv: hit.uv };
-        let placing = Placing { as_is: self.rules.is_official(), moved_normals: self.rules.has(Compat::MovedNormals) };
+        let placing = Placing {
+            as_is: self.rules.is_official(),
+            moved_normals: self.rules.has(Compat::MovedNormals),
+            mesh_textures: self.rules.has(Compat::MeshTextures),
+        };
         object.surface(ray, point, &crossing, hit.part, placing)
     }
 
@@ -185,6 +189,24 @@ impl World {
             Geometry::Solid(solid) => solid.part(hit.part).material,
             _ => object.material,
         }
+    }
+
+    /// Whether light may go through at a hit: quickly known, for most materials.
+    pub fn may_transmit(&self, hit: &Hit) -> bool {
+        match &self.materials[self.material(hit) as usize] {
+            Material::Phong(phong) => phong.transparent != Color::ZERO,
+            Material::Solid(..) => true,
+        }
+    }
+
+    /// The closed things of glass that a point is inside, with their indices of refraction.
+    pub fn glass_around(&self, point: Vec3) -> impl Iterator<Item = (u32, f32)> {
+        self.objects.iter().enumerate().filter_map(move |(number, object)| match &self.materials[object.material as usize] {
+            Material::Phong(glass) if glass.transparent != Color::ZERO && object.contains(point) => {
+                Some((number as u32, glass.ior))
+            }
+            _ => None,
+        })
     }
 
     /// The number of the triangle at a hit in its mesh, else 0.

@@ -5,7 +5,7 @@ use crate::bvh::{Preset, Tally, TriangleBvh};
 use crate::math::{Aabb, Affine, Line, Ray, Vec2, Vec3};
 use crate::shape::{Crossing, Mesh, Primitive, Shape, Surface};
 use glam::DVec3;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// One thing in the world.
 #[derive(Clone, Debug)]
@@ -16,6 +16,8 @@ pub struct Object {
     pub to_world: Option<Affine>,
     /// Number of its material; the parts of a solid have their own.
     pub material: u32,
+    /// Length of its normals: other than 1 where [`crate::dialect::Compat::RawNormals`] holds.
+    pub normal_length: f32,
     /// Where it is written.
     pub span: crate::diag::Span,
 }
@@ -27,6 +29,8 @@ pub struct Placing {
     pub as_is: bool,
     /// Whether [`crate::dialect::Compat::MovedNormals`] holds.
     pub moved_normals: bool,
+    /// Whether [`crate::dialect::Compat::MeshTextures`] holds.
+    pub mesh_textures: bool,
 }
 
 /// The form of an object.
@@ -47,13 +51,15 @@ pub struct MeshTree {
     pub mesh: Mesh,
     /// Its triangles' tree.
     pub bvh: TriangleBvh,
+    /// Whether the mesh is closed, once somebody asked.
+    closed: OnceLock<bool>,
 }
 
 impl MeshTree {
     /// Builds the tree.
     pub fn new(mesh: Mesh) -> Self {
         let bvh = TriangleBvh::build(mesh.positions(), mesh.triangles(), Preset::Balanced);
-        MeshTree { mesh, bvh }
+        MeshTree { mesh, bvh, closed: OnceLock::new() }
     }
 
     /// The same, blind to triangles seen from their sides: see [`TriangleBvh::least_volume`].
@@ -64,6 +70,11 @@ impl MeshTree {
     /// Bytes in memory.
     pub fn bytes(&self) -> usize {
         self.mesh.bytes() + self.bvh.bytes()
+    }
+
+    /// Whether the mesh has an inside.
+    pub fn is_closed(&self) -> bool {
+        *self.closed.get_or_init(|| self.mesh.open_edge().is_none())
     }
 
     /// Offers every crossing of a line, with the number of its triangle, in any order.
@@ -133,7 +144,14 @@ impl Object {
         if placing.as_is {
             let n_geo = self.to_world.as_ref().map_or(surface.n_geo, |m| m.normal(surface.n_geo));
             let n_shade = self.to_world.as_ref().map_or(surface.n_shade, |m| shading(m, surface.n_shade));
-            return Surface { position: ray.at(crossing.t), n_geo, n_shade, ..surface };
+            let untextured = placing.mesh_textures && matches!(self.geometry, Geometry::Primitive(_));
+            return Surface {
+                position: ray.at(crossing.t),
+                n_geo,
+                n_shade: self.normal_length * n_shade,
+                uv: surface.uv.filter(|_| !untextured),
+                ..surface
+            };
         }
         // Beside the rounding itself, a bent surface leaves the tangent plane by its square.
         let Some(to_world) = &self.to_world else {
@@ -175,6 +193,35 @@ impl Object {
             Geometry::Solid(solid) => return solid.closest(ray, tally),
         };
         crossing.map(|crossing| (crossing, part))
+    }
+
+    /// Whether it is closed, so that a point is inside it or outside.
+    fn is_closed(&self) -> bool {
+        match &self.geometry {
+            Geometry::Primitive(shape) => shape.inside(DVec3::ZERO).is_some(),
+            Geometry::Mesh(tree) => tree.is_closed(),
+            Geometry::Solid(_) => true,
+        }
+    }
+
+    /// Half the area of the box around it, infinite for what has no end; `None` for what is not closed.
+    pub fn extent(&self) -> Option<f32> {
+        self.is_closed().then(|| self.bounds().map_or(f32::INFINITY, |bounds| bounds.half_area()))
+    }
+
+    /// Whether it is closed and a point of world space is inside.
+    pub fn contains(&self, point: Vec3) -> bool {
+        if !self.is_closed() {
+            return false;
+        }
+        if let Geometry::Primitive(shape) = &self.geometry {
+            let local = self.to_world.as_ref().map_or(point, |to_world| to_world.inverse_point(point));
+            return shape.inside(local.as_dvec3()) == Some(true);
+        }
+        // Any line from inside crosses what is closed an odd number of times.
+        let mut ray = Ray::new(point, Vec3::new(0.48, 0.6, 0.64));
+        let next = |ray: &mut Ray| self.closest(ray, false, &mut ()).map(|(crossing, _)| ray.t_min = crossing.t);
+        std::iter::from_fn(|| next(&mut ray)).count() % 2 == 1
     }
 
     /// How many parts it has that can be tested directly.

@@ -13,7 +13,7 @@ mod words;
 pub mod write;
 
 use crate::diag::{Diagnostic, Diagnostics};
-use crate::dialect::Dialect;
+use crate::dialect::{CompatSet, Dialect};
 use crate::scene::Scene;
 pub use guess::{Guess, Hint, guess};
 pub use write::write;
@@ -26,6 +26,8 @@ pub struct ReadOptions {
     /// Whether only the words of that dialect are allowed: no comments, no words of other years, counts and
     /// order as the old programs wanted them.
     pub strict: bool,
+    /// Habits of its program.
+    pub compat: CompatSet,
 }
 
 /// Reads a scene. All errors are collected; with any, there is no scene.

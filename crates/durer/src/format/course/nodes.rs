@@ -47,7 +47,7 @@ impl Reader<'_, '_> {
 
     fn root_node(&mut self, keyword: Span) {
         let mut inside = self.node(keyword);
-        let to_world = MatrixOp::product(inside.ops.as_deref().unwrap_or_default(), false);
+        let to_world = MatrixOp::product(inside.ops.as_deref().unwrap_or_default(), self.options.compat);
         let lights = std::mem::take(&mut inside.lights).into_iter().map(|(mut light, position)| {
             if let Light::Point(point) = &mut light.value {
                 point.position = to_world.transform_point3(position).as_vec3();
@@ -78,7 +78,7 @@ impl Reader<'_, '_> {
                 "Node" => {
                     let child = self.node(span);
                     inside.has_nodes = true;
-                    let to_outer = MatrixOp::product(child.ops.as_deref().unwrap_or_default(), false);
+                    let to_outer = MatrixOp::product(child.ops.as_deref().unwrap_or_default(), self.options.compat);
                     let lights = child.lights.iter().map(|(light, p)| (light.clone(), to_outer.transform_point3(*p)));
                     inside.lights.extend(lights);
                     inside.objects.extend(child.object(span));

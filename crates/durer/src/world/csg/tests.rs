@@ -83,7 +83,7 @@ fn member(object: &scene::Object, p: DVec3) -> bool {
     let count = |parts: &[scene::Object]| parts.iter().filter(|part| member(part, p)).count();
     match &object.node {
         Node::Group(group) => count(&group.objects) > 0,
-        Node::Transform(ops, inner) => member(inner, MatrixOp::product(ops, false).inverse().transform_point3(p)),
+        Node::Transform(ops, inner) => member(inner, MatrixOp::product(ops, 0).inverse().transform_point3(p)),
         Node::Primitive(shape) => shape.inside(p).unwrap(),
         Node::Mesh(_) => p.abs().max_element() < 1.0,
         Node::HeightField(_) | Node::Voxels(..) => false,

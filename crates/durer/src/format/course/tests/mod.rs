@@ -17,7 +17,7 @@ pub(super) fn read_as(text: &[u8], dialect: Dialect, strict: bool) -> (Option<Sc
     let mut files = Files::default();
     let file = files.add("scene.txt", text.into());
     let mut diagnostics = Diagnostics::default();
-    let scene = read(text, file, ReadOptions { dialect, strict }, &mut diagnostics);
+    let scene = read(text, file, ReadOptions { dialect, strict, compat: 0 }, &mut diagnostics);
     assert_eq!(scene.is_none(), diagnostics.has_errors());
     let line = |d: &Diagnostic| {
         let span = d.span.expect("every finding has a place");

@@ -1,0 +1,110 @@
+//! What a ray runs in: air, or one thing of glass in another.
+
+use smallvec::SmallVec;
+
+/// A thing of glass that a ray is in.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Medium {
+    /// Number of the object.
+    pub object: u32,
+    /// Its index of refraction.
+    pub ior: f32,
+    /// Half the area of its box; `None` for an open surface, which has no inside that is its own.
+    pub size: Option<f32>,
+}
+
+impl Medium {
+    /// Whether it fills the space that it shares with another one. Of two closed things that is the smaller one, so that
+    /// ice displaces water wherever they overlap, from whatever side a ray comes. Of others it is the one met last.
+    fn fills(&self, other: &Medium, met_later: bool) -> bool {
+        match (self.size, other.size) {
+            (Some(a), Some(b)) if a != b => a < b,
+            (Some(_), Some(_)) => self.object > other.object,
+            _ => met_later,
+        }
+    }
+}
+
+/// All that a ray is in, what fills the place last.
+///
+/// Source of the idea: Charles M. Schmidt and Brian Budge, *Simple Nested Dielectrics in Ray Traced Images*, Journal of
+/// Graphics Tools 7(2), 2002; there the order is given by priorities that are written.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Media(SmallVec<[Medium; 2]>);
+
+impl Media {
+    /// Nothing but this.
+    pub fn only(medium: Medium) -> Self {
+        Media(SmallVec::from_slice(&[medium]))
+    }
+
+    /// Whether the ray runs in air.
+    pub fn is_air(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// The index of refraction.
+    pub fn ior(&self) -> f32 {
+        self.0.last().map_or(1.0, |medium| medium.ior)
+    }
+
+    /// Whether the ray is in an object.
+    pub fn holds(&self, object: u32) -> bool {
+        self.0.iter().any(|medium| medium.object == object)
+    }
+
+    /// The object that fills the place.
+    pub fn object(&self) -> Option<u32> {
+        self.0.last().map(|medium| medium.object)
+    }
+
+    /// What it is after entering a thing.
+    pub fn entered(&self, medium: Medium) -> Self {
+        let mut inside = self.0.clone();
+        let behind = inside.iter().rev().take_while(|other| !medium.fills(other, true)).count();
+        inside.insert(inside.len() - behind, medium);
+        Media(inside)
+    }
+
+    /// What it is after leaving an object.
+    pub fn left(&self, object: u32) -> Self {
+        let mut inside = self.0.clone();
+        if let Some(place) = inside.iter().rposition(|medium| medium.object == object) {
+            inside.remove(place);
+        }
+        Media(inside)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const GLASS: Medium = Medium { object: 7, ior: 1.5, size: Some(9.0) };
+    const WATER: Medium = Medium { object: 3, ior: 1.33, size: Some(5.0) };
+    const ICE: Medium = Medium { object: 5, ior: 1.31, size: Some(1.0) };
+    const PANE: Medium = Medium { object: 1, ior: 1.4, size: None };
+
+    #[test]
+    fn the_smallest_closed_thing_fills_the_place_in_any_order_of_entering() {
+        for order in [[GLASS, WATER, ICE], [ICE, WATER, GLASS], [WATER, ICE, GLASS], [ICE, GLASS, WATER]] {
+            let all = order.into_iter().fold(Media::default(), |media, medium| media.entered(medium));
+            assert_eq!((all.ior(), all.object()), (1.31, Some(5)));
+            assert_eq!((all.left(5).ior(), all.left(5).left(3).ior()), (1.33, 1.5));
+            assert_eq!(all.left(3).ior(), 1.31);
+            assert!(all.left(3).left(5).left(7).is_air());
+        }
+        // Twice in one that overlaps itself.
+        let twice = Media::only(ICE).entered(ICE);
+        assert!(twice.left(5).holds(5) && twice.left(5).left(5).is_air());
+        assert_eq!(Media::default().left(2), Media::default());
+    }
+
+    #[test]
+    fn an_open_surface_hides_nothing() {
+        let behind = Media::only(PANE);
+        assert_eq!((behind.ior(), behind.entered(GLASS).ior()), (1.4, 1.5));
+        assert_eq!(behind.entered(GLASS).left(7).ior(), 1.4);
+        assert_eq!(Media::only(ICE).entered(PANE).ior(), 1.4);
+    }
+}
