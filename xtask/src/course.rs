@@ -188,8 +188,6 @@ impl Bench {
         } else if row.compare == "exit-r0" {
             command.args(["--compat", "exit-r0"]);
         }
-        // The pictures of the sky of 2023 are those of 2016; the corpus has them once.
-        command.args(["--assets", "../f16"]);
         let words: Vec<&str> = row.arguments.split_whitespace().collect();
         for (i, word) in words.iter().enumerate() {
             let is_output = files(&words).any(|(_, at)| at == i);

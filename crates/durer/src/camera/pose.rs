@@ -31,6 +31,8 @@ pub struct Frame {
     pub up: Vec3,
     /// Whether rays are aimed at rounded points of the world, as [`Compat::ScreenPoint`] says.
     pub screen_point: bool,
+    /// Whether they are rounded as [`Compat::ReciprocalRays`] says.
+    pub reciprocal: bool,
 }
 
 /// A vector's direction, each component divided by the length (glam multiplies by its reciprocal, which rounds once more).
@@ -39,19 +41,35 @@ pub(super) fn unit_or(v: Vec3, fallback: Vec3) -> Vec3 {
     if unit.is_finite() && unit != Vec3::ZERO { unit } else { v.normalize_or(fallback) }
 }
 
+/// The same as the program of 2004 has it: multiplied by the reciprocal of the length.
+fn scaled_or(v: Vec3, fallback: Vec3) -> Vec3 {
+    let unit = v * (1.0 / (v.as_dvec3().length() as f32));
+    if unit.is_finite() && unit != Vec3::ZERO { unit } else { unit_or(v, fallback) }
+}
+
 impl Frame {
     /// The axes of a pose: right = norm(direction x up), up = right x direction.
     pub fn new(pose: Pose, rules: &Rules) -> Self {
-        let forward = unit_or(pose.direction, Vec3::NEG_Z);
-        let right = unit_or(forward.cross(pose.up), forward.any_orthonormal_vector());
+        let screen_point = rules.has(Compat::ScreenPoint);
+        let reciprocal = rules.has(Compat::ReciprocalRays);
+        let unit = match (screen_point, reciprocal) {
+            (true, _) => scaled_or,
+            // What glam itself does.
+            (false, true) => Vec3::normalize_or,
+            (false, false) => unit_or,
+        };
+        let forward = unit(pose.direction, Vec3::NEG_Z);
+        let written = if reciprocal { pose.up.normalize_or(Vec3::Y) } else { pose.up };
+        let right = unit(forward.cross(written), forward.any_orthonormal_vector());
         let up = if rules.has(Compat::RawUp) {
             pose.up
         } else if rules.has(Compat::SkewUp) {
             pose.up.normalize_or(Vec3::Y)
         } else {
-            right.cross(forward)
+            let up = right.cross(forward);
+            if screen_point { scaled_or(up, up) } else { up }
         };
-        Frame { eye: pose.center, forward, right, up, screen_point: rules.has(Compat::ScreenPoint) }
+        Frame { eye: pose.center, forward, right, up, screen_point, reciprocal }
     }
 
     /// The axes as columns, in double precision: from the camera's space to the world's.

@@ -178,7 +178,9 @@ fn lights(scene: &Scene, rules: &Rules, diagnostics: &mut Diagnostics) -> (Vec<L
     if written.is_empty() {
         let (message, ambient) = match rules.ambient_alone {
             true => ("the scene has no lights: its ambient light is set to 1 1 1, so colours are flat", Color::ONE),
-            false => ("the scene has no lights: colours are flat, as ambient as is written", scene.background.ambient_light),
+            false => {
+                ("the scene has no lights: colours are flat, as ambient as is written", scene.background.ambient_light)
+            }
         };
         diagnostics.push(Diagnostic::warning(message).code("no-light"));
         return (Vec::new(), ambient);

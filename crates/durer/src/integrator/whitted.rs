@@ -327,15 +327,24 @@ impl Whitted<'_> {
             let hidden = !media.is_air() && behind.object() == media.object() && media.object() != Some(object);
             return Passage { here: media.ior(), there: behind.ior(), behind, hidden };
         }
-        // A ray that leaves what it never entered began inside.
-        let found = match media.holds(object) {
-            true => media.clone(),
-            false if own.size.is_none() => media.entered(own),
-            false => {
-                let around = self.world.glass_around(ray.origin).filter(|&(other, _)| other != object);
-                let around = around.map(|(other, ior)| medium(other, ior)).chain([own]);
-                around.fold(Media::default(), |media, medium| media.entered(medium))
-            }
+        let found = if media.holds(object) {
+            media.clone()
+        } else if own.size.is_none() {
+            media.entered(own)
+        } else if self.world.objects[object as usize].contains(ray.origin) {
+            // A ray that leaves what it never entered began inside.
+            let others = self.world.glass_around(ray.origin).filter(|&(other, _)| other != object);
+            let all = others.map(|(other, ior)| medium(other, ior)).chain([own]);
+            all.fold(Media::default(), |media, medium| media.entered(medium))
+        } else {
+            // Turned inside out, it is the wall of a cavity in what is around.
+            let behind = media.object().map_or(Media::default(), |around| media.left(around));
+            return Passage {
+                here: if media.is_air() { own.ior } else { media.ior() },
+                there: behind.ior(),
+                behind,
+                hidden: false,
+            };
         };
         let behind = found.left(object);
         let hidden = found.object() != Some(object);
@@ -439,5 +448,7 @@ pub fn refract(d: Vec3, n: Vec3, eta: f32) -> Option<Vec3> {
     (radicand >= 0.0).then(|| eta * (d - cosine * n) - radicand.sqrt() * n)
 }
 
+#[cfg(test)]
+mod nested;
 #[cfg(test)]
 mod tests;

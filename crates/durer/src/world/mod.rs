@@ -201,11 +201,13 @@ impl World {
 
     /// The closed things of glass that a point is inside, with their indices of refraction.
     pub fn glass_around(&self, point: Vec3) -> impl Iterator<Item = (u32, f32)> {
-        self.objects.iter().enumerate().filter_map(move |(number, object)| match &self.materials[object.material as usize] {
-            Material::Phong(glass) if glass.transparent != Color::ZERO && object.contains(point) => {
-                Some((number as u32, glass.ior))
+        self.objects.iter().enumerate().filter_map(move |(number, object)| {
+            match &self.materials[object.material as usize] {
+                Material::Phong(glass) if glass.transparent != Color::ZERO && object.contains(point) => {
+                    Some((number as u32, glass.ior))
+                }
+                _ => None,
             }
-            _ => None,
         })
     }
 

@@ -50,7 +50,10 @@ fn a_matrix_is_given_by_rows_and_stands_on_the_left_where_that_is_asked_for() {
     let ops = [MatrixOp::Scale(Vec3::splat(10.0)), shear];
     let point = glam::DVec3::ONE;
     assert_eq!(MatrixOp::product(&ops, 0).transform_point3(point).to_array(), [80.0, 70.0, 80.0]);
-    assert_eq!(MatrixOp::product(&ops, Compat::MatrixOnLeft.bit()).transform_point3(point).to_array(), [35.0, 16.0, 17.0]);
+    assert_eq!(
+        MatrixOp::product(&ops, Compat::MatrixOnLeft.bit()).transform_point3(point).to_array(),
+        [35.0, 16.0, 17.0]
+    );
     // Only a `Matrix` is.
     let ops = [MatrixOp::Scale(Vec3::splat(10.0)), MatrixOp::Translate(Vec3::X)];
     assert_eq!(MatrixOp::product(&ops, Compat::MatrixOnLeft.bit()), MatrixOp::product(&ops, 0));
