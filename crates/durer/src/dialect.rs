@@ -249,9 +249,6 @@ compats! {
     /// A perspective ray is aimed at a point in the world, reckoned from the lower left corner of a screen at distance 1
     /// and rounded there: far from the origin, rays are off by that rounding.
     ScreenPoint = "screen-point",
-    /// Directions of perspective rays are rounded as by the program's library: where others divide, they are multiplied
-    /// by a reciprocal.
-    ReciprocalRays = "reciprocal-rays",
     /// A triangle reaches a little beyond its edges: to barycentric coordinates of -0.00001.
     LooseTriangles = "loose-triangles",
     /// Which side of a surface is seen is judged by its interpolated normal.
@@ -468,7 +465,6 @@ const F23: Rules = Rules {
         ShadedSides,
         Stretch,
         SkewUp,
-        ReciprocalRays,
         HighlightBehind,
         PowZero,
         MatrixOnLeft,

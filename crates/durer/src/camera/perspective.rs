@@ -40,10 +40,6 @@ impl Lens for PerspectiveCamera {
     fn ray(&self, frame: &Frame, sample: &CameraSample) -> Option<Ray> {
         let (point, half) = (sample.point, half_width(self.angle) as f32);
         let dir = match frame.screen_point {
-            false if frame.reciprocal => {
-                let dir = 1.0 / half * frame.forward + point.x * frame.right + point.y * frame.up;
-                return Some(Ray::new(frame.eye, dir.normalize_or(frame.forward)));
-            }
             false => frame.forward / half + point.x * frame.right + point.y * frame.up,
             true => {
                 let corner = frame.eye + frame.forward - half * frame.right - half * frame.up;

@@ -31,8 +31,6 @@ pub struct Frame {
     pub up: Vec3,
     /// Whether rays are aimed at rounded points of the world, as [`Compat::ScreenPoint`] says.
     pub screen_point: bool,
-    /// Whether they are rounded as [`Compat::ReciprocalRays`] says.
-    pub reciprocal: bool,
 }
 
 /// A vector's direction, each component divided by the length (glam multiplies by its reciprocal, which rounds once more).
@@ -51,16 +49,9 @@ impl Frame {
     /// The axes of a pose: right = norm(direction x up), up = right x direction.
     pub fn new(pose: Pose, rules: &Rules) -> Self {
         let screen_point = rules.has(Compat::ScreenPoint);
-        let reciprocal = rules.has(Compat::ReciprocalRays);
-        let unit = match (screen_point, reciprocal) {
-            (true, _) => scaled_or,
-            // What glam itself does.
-            (false, true) => Vec3::normalize_or,
-            (false, false) => unit_or,
-        };
+        let unit = if screen_point { scaled_or } else { unit_or };
         let forward = unit(pose.direction, Vec3::NEG_Z);
-        let written = if reciprocal { pose.up.normalize_or(Vec3::Y) } else { pose.up };
-        let right = unit(forward.cross(written), forward.any_orthonormal_vector());
+        let right = unit(forward.cross(pose.up), forward.any_orthonormal_vector());
         let up = if rules.has(Compat::RawUp) {
             pose.up
         } else if rules.has(Compat::SkewUp) {
@@ -69,7 +60,7 @@ impl Frame {
             let up = right.cross(forward);
             if screen_point { scaled_or(up, up) } else { up }
         };
-        Frame { eye: pose.center, forward, right, up, screen_point, reciprocal }
+        Frame { eye: pose.center, forward, right, up, screen_point }
     }
 
     /// The axes as columns, in double precision: from the camera's space to the world's.
