@@ -65,6 +65,7 @@ impl<'r> Loader<'r> {
             }
             let by_vertex = self.rules.has(Compat::NormalsByVertex) && data.give_normals_by_vertex();
             let mesh = Mesh::new(data, self.rules.mesh_normals, self.rules.file_normals || by_vertex);
+            let mesh = self.centered(mesh);
             // What the official program takes for a determinant of zero.
             let least_volume = if self.rules.has(Compat::ThinTriangles) { 1e-6 } else { 0.0 };
             Arc::new(MeshTree::new(mesh).least_volume(least_volume))
@@ -101,7 +102,12 @@ impl<'r> Loader<'r> {
             return None;
         }
         let data = field.mesh(width, &heights);
-        Some(Arc::new(MeshTree::new(Mesh::new(data, self.rules.mesh_normals, true))))
+        Some(Arc::new(MeshTree::new(self.centered(Mesh::new(data, self.rules.mesh_normals, true)))))
+    }
+
+    /// The mesh about the origin, if it lies far away; the official programs leave it there.
+    fn centered(&self, mesh: Mesh) -> Mesh {
+        if self.rules.is_official() { mesh } else { mesh.centered() }
     }
 
     /// The number of a picture's texture.

@@ -291,6 +291,19 @@ impl Flattening<'_, '_> {
             }
             Node::Group(_) | Node::Transform(..) | Node::Solid(..) => return None,
         };
+        // What is far from the origin of coordinates for its size would lose digits there.
+        let (geometry, center) = match geometry {
+            Geometry::Primitive(shape) if !self.rules.is_official() && shape.bounds().is_some_and(Aabb::is_far) => {
+                let (shape, center) = shape.centered().unwrap_or((shape, Vec3::ZERO));
+                (Geometry::Primitive(shape), center)
+            }
+            Geometry::Mesh(tree) => {
+                let center = tree.mesh.center();
+                (Geometry::Mesh(tree), center)
+            }
+            other => (other, Vec3::ZERO),
+        };
+        let to_world = to_world * DAffine3::from_translation(center.as_dvec3());
         let to_world = match to_world == DAffine3::IDENTITY {
             true => None,
             false => match Affine::new(to_world) {
@@ -319,7 +332,7 @@ impl Flattening<'_, '_> {
             }
             _ => 1.0,
         };
-        Some(Object { geometry, to_world, material, normal_length, span: object.span })
+        Some(Object { geometry, to_world, center, material, normal_length, span: object.span })
     }
 }
 

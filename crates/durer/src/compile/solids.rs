@@ -61,7 +61,7 @@ impl Flattening<'_, '_> {
             return;
         }
         let geometry = Geometry::Solid(Arc::new(Csg::new(piece)));
-        self.objects.push(Object { geometry, to_world: None, material, normal_length: 1.0, span });
+        self.objects.push(Object { geometry, to_world: None, center: Vec3::ZERO, material, normal_length: 1.0, span });
     }
 
     fn check_count(&mut self, span: Span, operation: Operation, parts: &[scene::Object]) {

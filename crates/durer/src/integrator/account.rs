@@ -8,7 +8,7 @@
 //! in the arithmetic of the picture: see [`Node::sum`]. So the tree adds up to the colour, and not just nearly.
 
 use crate::bvh::{Counts, Rays, Tally};
-use crate::math::{Color, Ray, Vec2, Vec3};
+use crate::math::{Color, Ray, Ray64, Vec2, Vec3};
 use crate::world::HighlightModel;
 use serde::Serialize;
 
@@ -83,6 +83,12 @@ pub struct Line {
     pub t_min: f32,
     /// Hits count up to this `t`; `null` in JSON where there is no end.
     pub t_max: f32,
+}
+
+impl From<&Ray64> for Line {
+    fn from(ray: &Ray64) -> Self {
+        Line::from(&ray.rounded)
+    }
 }
 
 impl From<&Ray> for Line {

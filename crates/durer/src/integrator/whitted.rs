@@ -8,7 +8,7 @@ use super::media::{Media, Medium};
 use super::spawn::{from_surface, to_light};
 use crate::dialect::Compat;
 use crate::light::{Emitter, Illumination};
-use crate::math::{Color, Ray, Vec3, fp, gamma, reflect};
+use crate::math::{Color, Ray, Ray64, Vec3, fp, gamma, reflect};
 use crate::shape::Surface;
 use crate::world::{HighlightModel, Hit, Part, Phong, World};
 use serde::{Deserialize, Serialize};
@@ -84,30 +84,30 @@ impl Whitted<'_> {
     pub fn radiance<T: Witness>(&self, ray: &Ray, tally: &mut T) -> Color {
         let path = Path { bounces: self.settings.bounces, media: Media::default(), weight: 1.0 };
         tally.begin(|| What::Ray { from: RayKind::Camera, ray: ray.into(), weight: 1.0, hit: None });
-        let color = self.trace(ray, path, tally);
+        let color = self.trace(&ray.into(), path, tally);
         tally.end(Color::ONE, Color::ONE, color);
         color
     }
 
-    fn trace<T: Witness>(&self, ray: &Ray, mut path: Path, tally: &mut T) -> Color {
+    fn trace<T: Witness>(&self, ray: &Ray64, mut path: Path, tally: &mut T) -> Color {
         let mut rest = *ray;
         while let Some(hit) = self.world.closest(&rest, tally) {
             let passage = if self.world.rules.is_official() { None } else { self.passage(ray, &hit, &path.media) };
             match passage {
-                Some(Passage { hidden: true, behind, .. }) => (path.media, rest.t_min) = (behind, hit.t),
+                Some(Passage { hidden: true, behind, .. }) => (path.media, rest.rounded.t_min) = (behind, hit.t),
                 _ => return self.shade(ray, &hit, path, tally),
             }
         }
-        let sky = self.world.sky(ray.dir);
+        let sky = self.world.sky(ray.dir());
         tally.begin(|| What::Sky);
         tally.end(Color::ONE, Color::ONE, sky);
         sky
     }
 
     /// The light that leaves a hit against the ray: of each material that makes it up, by its share.
-    fn shade<T: Witness>(&self, ray: &Ray, hit: &Hit, path: Path, tally: &mut T) -> Color {
+    fn shade<T: Witness>(&self, ray: &Ray64, hit: &Hit, path: Path, tally: &mut T) -> Color {
         let surface = self.world.surface(ray, hit);
-        let from_behind = self.sees_back(ray.dir, &surface);
+        let from_behind = self.sees_back(ray.dir(), &surface);
         let black = from_behind && !self.settings.shade_back && self.world.rules.has(Compat::BlackBacks);
         let n = if from_behind && self.settings.shade_back { -surface.n_shade } else { surface.n_shade };
         let n = if self.world.rules.has(Compat::UnitLight) { n.normalize_or(n) } else { n };
@@ -125,7 +125,7 @@ impl Whitted<'_> {
                 color += ambient * met;
             }
             for (number, light) in self.world.lights.iter().enumerate() {
-                let seen = light.illuminate(surface.position);
+                let seen = light.illuminate(surface.point());
                 let visible = self.visible(&surface, &seen, tally);
                 for (part, &diffuse) in parts.iter().zip(&diffuse) {
                     let share = part.share;
@@ -137,7 +137,7 @@ impl Whitted<'_> {
                     // In the dark nothing is computed.
                     let direct = match visible == Color::ZERO {
                         true => Color::ZERO,
-                        false => direct(part.phong, diffuse, n, ray.dir, &seen, tally),
+                        false => direct(part.phong, diffuse, n, ray.dir(), &seen, tally),
                     };
                     tally.end(share * visible, seen.color, direct);
                     color += share * visible * direct;
@@ -155,7 +155,7 @@ impl Whitted<'_> {
     }
 
     /// What a witness is told of a hit.
-    fn struck(&self, ray: &Ray, hit: &Hit, surface: &Surface, n: Vec3, from_behind: bool, black: bool) -> Struck {
+    fn struck(&self, ray: &Ray64, hit: &Hit, surface: &Surface, n: Vec3, from_behind: bool, black: bool) -> Struck {
         let object = &self.world.objects[hit.object as usize];
         Struck {
             object: hit.object,
@@ -169,7 +169,7 @@ impl Whitted<'_> {
             black,
             uv: surface.uv,
             barycentric: surface.barycentric,
-            local: object.to_world.as_ref().map(|to_world| (&to_world.inverse_ray(ray)).into()),
+            local: object.own_ray(ray).as_ref().map(Into::into),
             material: self.world.material(hit),
         }
     }
@@ -181,7 +181,7 @@ impl Whitted<'_> {
         Shadow { ray: (&ray).into(), blocker, share }
     }
 
-    fn shadow_ray(&self, surface: &Surface, seen: &Illumination) -> Ray {
+    fn shadow_ray(&self, surface: &Surface, seen: &Illumination) -> Ray64 {
         let rules = &self.world.rules;
         // What stands exactly at the light does not block it.
         let reach = if rules.is_official() { seen.distance } else { seen.distance * (1.0 - gamma(16)) };
@@ -215,7 +215,7 @@ impl Whitted<'_> {
         let mut ray = self.shadow_ray(surface, seen);
         if self.world.rules.has(Compat::ShadowFronts) {
             let nearest = self.world.closest(&ray, tally).map(|hit| self.world.surface(&ray, &hit));
-            let blocked = nearest.is_some_and(|blocker| blocker.n_shade.dot(ray.dir) <= 0.0);
+            let blocked = nearest.is_some_and(|blocker| blocker.n_shade.dot(ray.dir()) <= 0.0);
             return if blocked { Color::ZERO } else { Color::ONE };
         }
         if !self.settings.transparent_shadows {
@@ -231,7 +231,7 @@ impl Whitted<'_> {
             if share == Color::ZERO {
                 break;
             }
-            ray = from_surface(&blocker, seen.to_light, ray.t_max - hit.t, self.world.rules.epsilon);
+            ray = from_surface(&blocker, seen.to_light, ray.rounded.t_max - hit.t, self.world.rules.epsilon);
         }
         Color::ZERO
     }
@@ -239,7 +239,7 @@ impl Whitted<'_> {
     /// Mirrored and transmitted light.
     fn secondary<T: Witness>(
         &self,
-        (ray, hit): (&Ray, &Hit),
+        (ray, hit): (&Ray64, &Hit),
         surface: &Surface,
         parts: &[Part],
         path: Path,
@@ -250,12 +250,12 @@ impl Whitted<'_> {
             return Color::ZERO;
         }
         // The normal on the ray's side.
-        let leaving = self.sees_back(ray.dir, surface);
+        let leaving = self.sees_back(ray.dir(), surface);
         let [n, n_geo] = [surface.n_shade, surface.n_geo].map(|n| if leaving { -n } else { n });
         // An interpolated normal may point away from the ray; the surface itself does not.
-        let n = if ray.dir.dot(n) < 0.0 { n } else { n_geo };
+        let n = if ray.dir().dot(n) < 0.0 { n } else { n_geo };
         // A mirror without `shade_back` reflects about the normal as it is; the direction is the same.
-        let mirrored = reflect(ray.dir, n);
+        let mirrored = reflect(ray.dir(), n);
         // About a normal that is not of length 1 it is another one.
         let (mirrored, n) = match self.world.rules.has(Compat::RawNormals) {
             true => (mirrored.normalize_or(n_geo), n.normalize_or(n_geo)),
@@ -263,14 +263,14 @@ impl Whitted<'_> {
         };
         let passage = self.passage(ray, hit, &path.media).unwrap_or_default();
         let Passage { here, there, .. } = passage;
-        let transmitted = if transparent == Color::ZERO { None } else { refract(ray.dir, n, here / there) };
+        let transmitted = if transparent == Color::ZERO { None } else { refract(ray.dir(), n, here / there) };
         let total = transparent != Color::ZERO && transmitted.is_none();
         // With one of the two left out, the other has all the light.
         let divided = fresnel && self.settings.reflection && self.settings.refraction;
         // Total reflection weighs 1.
         let r = divided.then(|| {
             let zero = leaving && self.world.rules.has(Compat::ExitR0);
-            transmitted.map_or(1.0, |t| fresnel_share(ray.dir, n, t, (here, there), zero))
+            transmitted.map_or(1.0, |t| fresnel_share(ray.dir(), n, t, (here, there), zero))
         });
         if let Some(r) = r {
             reflective *= r;
@@ -290,7 +290,7 @@ impl Whitted<'_> {
     }
 
     /// How light that may go through a surface does; `None` where none may.
-    fn passage(&self, ray: &Ray, hit: &Hit, media: &Media) -> Option<Passage> {
+    fn passage(&self, ray: &Ray64, hit: &Hit, media: &Media) -> Option<Passage> {
         if !self.world.may_transmit(hit) {
             return None;
         }
@@ -299,7 +299,7 @@ impl Whitted<'_> {
         if blend.transparent == Color::ZERO {
             return None;
         }
-        let leaving = self.sees_back(ray.dir, &surface);
+        let leaving = self.sees_back(ray.dir(), &surface);
         Some(match self.world.rules.is_official() {
             true => self.official_passage(hit.object, blend, leaving, media),
             false => self.nested_passage(ray, hit.object, blend, leaving, media),
@@ -319,7 +319,7 @@ impl Whitted<'_> {
     }
 
     /// Ours: things of glass may be inside each other and overlap.
-    fn nested_passage(&self, ray: &Ray, object: u32, blend: Blend, leaving: bool, media: &Media) -> Passage {
+    fn nested_passage(&self, ray: &Ray64, object: u32, blend: Blend, leaving: bool, media: &Media) -> Passage {
         let medium = |object: u32, ior: f32| Medium { object, ior, size: self.world.objects[object as usize].extent() };
         let own = medium(object, blend.ior);
         if !leaving {
@@ -331,9 +331,9 @@ impl Whitted<'_> {
             media.clone()
         } else if own.size.is_none() {
             media.entered(own)
-        } else if self.world.objects[object as usize].contains(ray.origin) {
+        } else if self.world.objects[object as usize].contains(ray.rounded.origin) {
             // A ray that leaves what it never entered began inside.
-            let others = self.world.glass_around(ray.origin).filter(|&(other, _)| other != object);
+            let others = self.world.glass_around(ray.rounded.origin).filter(|&(other, _)| other != object);
             let all = others.map(|(other, ior)| medium(other, ior)).chain([own]);
             all.fold(Media::default(), |media, medium| media.entered(medium))
         } else {

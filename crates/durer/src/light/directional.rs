@@ -5,6 +5,7 @@ use crate::describe::Rule;
 use crate::described;
 use crate::dialect::{Rules, set};
 use crate::math::Vec3;
+use glam::DVec3;
 
 described! {
     /// Light that comes from one direction everywhere.
@@ -17,7 +18,7 @@ described! {
 }
 
 impl Emitter for DirectionalLight {
-    fn illuminate(&self, _point: Vec3) -> Illumination {
+    fn illuminate(&self, _point: DVec3) -> Illumination {
         let to_light = (-self.direction).normalize_or(Vec3::Y);
         Illumination { to_light, distance: f32::INFINITY, color: self.color }
     }

@@ -7,6 +7,7 @@ use crate::described_list;
 use crate::dialect::Rules;
 use crate::math::{Color, Vec3};
 pub use directional::DirectionalLight;
+use glam::DVec3;
 pub use point::PointLight;
 
 described_list! {
@@ -31,14 +32,14 @@ pub struct Illumination {
 /// What every light can do.
 pub trait Emitter {
     /// The light that arrives at a point, if nothing is in the way.
-    fn illuminate(&self, point: Vec3) -> Illumination;
+    fn illuminate(&self, point: DVec3) -> Illumination;
 
     /// The same light with the rules of a dialect worked in.
     fn resolved(&self, rules: &Rules) -> Self;
 }
 
 impl Emitter for Light {
-    fn illuminate(&self, point: Vec3) -> Illumination {
+    fn illuminate(&self, point: DVec3) -> Illumination {
         match self {
             Light::Directional(l) => l.illuminate(point),
             Light::Point(l) => l.illuminate(point),

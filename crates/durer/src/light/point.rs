@@ -5,6 +5,7 @@ use crate::describe::Rule;
 use crate::described;
 use crate::dialect::{Compat, Falloff, Rules, set};
 use crate::math::Vec3;
+use glam::DVec3;
 
 described! {
     /// Light that comes from one point.
@@ -22,8 +23,8 @@ described! {
 }
 
 impl Emitter for PointLight {
-    fn illuminate(&self, point: Vec3) -> Illumination {
-        let offset = self.position - point;
+    fn illuminate(&self, point: DVec3) -> Illumination {
+        let offset = (self.position.as_dvec3() - point).as_vec3();
         let distance = offset.length();
         let divisor = match self.attenuation {
             Some(a) => a.x + a.y * distance + a.z * distance * distance,

@@ -6,7 +6,7 @@ use crate::dialect::Dialect;
 /// What arrives of a light of strength 1 at distance 2 in a dialect; exactly representable answers only.
 fn arriving(dialect: Dialect, attenuation: Option<Vec3>, falloff: Option<f32>) -> f32 {
     let light = PointLight { position: Vec3::Z * 2.0, color: Vec3::ONE, attenuation, falloff };
-    let seen = Light::from(light).resolved(dialect.rules()).illuminate(Vec3::ZERO);
+    let seen = Light::from(light).resolved(dialect.rules()).illuminate((Vec3::ZERO).as_dvec3());
     assert_eq!((seen.to_light, seen.distance), (Vec3::Z, 2.0));
     seen.color.x
 }
@@ -30,19 +30,19 @@ fn point_lights_fade_as_their_dialect_says() {
     // The official program of 2016 divides by zero; sane rules do not fade.
     assert!(!arriving(Dialect::F16, None, None).is_finite());
     let light = PointLight::default().resolved(&Dialect::F16.rules().sane());
-    assert_eq!(light.illuminate(Vec3::X * 7.0).color, Vec3::ONE);
+    assert_eq!(light.illuminate((Vec3::X * 7.0).as_dvec3()).color, Vec3::ONE);
 }
 
 #[test]
 fn directional_lights_come_against_their_direction_from_infinity() {
     let light = DirectionalLight { direction: Vec3::new(0.0, -3.0, 4.0), color: Vec3::X };
-    let seen = light.illuminate(Vec3::splat(100.0));
+    let seen = light.illuminate((Vec3::splat(100.0)).as_dvec3());
     assert!((seen.to_light - Vec3::new(0.0, 0.6, -0.8)).length() < 1e-6);
     assert_eq!((seen.distance, seen.color), (f32::INFINITY, Vec3::X));
 }
 
 #[test]
 fn a_point_at_the_light_itself_has_some_direction_to_it() {
-    let seen = PointLight::default().illuminate(Vec3::ZERO);
+    let seen = PointLight::default().illuminate((Vec3::ZERO).as_dvec3());
     assert!(seen.to_light.is_normalized() && seen.distance == 0.0 && seen.color.is_finite());
 }

@@ -53,6 +53,11 @@ impl Aabb {
         0.5 * self.min + 0.5 * self.max
     }
 
+    /// Whether it lies so far from the origin for its size that single precision is coarse on it: by 256 times its size.
+    pub fn is_far(self) -> bool {
+        self.center().abs().max_element() > 256.0 * self.size().max_element()
+    }
+
     /// Half the surface area: what the surface area heuristic compares.
     pub fn half_area(&self) -> f32 {
         let d = self.size();

@@ -1,5 +1,5 @@
-use super::{Aabb, Line, Ray, Vec3, gamma};
-use glam::DAffine3;
+use super::{Aabb, Line, Ray, Ray64, Vec3, gamma};
+use glam::{DAffine3, DVec3};
 
 /// An invertible affine map between two spaces, with its inverse.
 ///
@@ -35,7 +35,12 @@ impl Affine {
 
     /// Maps a point forward.
     pub fn point(&self, p: Vec3) -> Vec3 {
-        self.forward.transform_point3(p.as_dvec3()).as_vec3()
+        self.point64(p).as_vec3()
+    }
+
+    /// Maps a point forward, without rounding the image to single precision.
+    pub fn point64(&self, p: Vec3) -> DVec3 {
+        self.forward.transform_point3(p.as_dvec3())
     }
 
     /// Maps a point backward.
@@ -56,23 +61,27 @@ impl Affine {
 
     /// Maps a ray backward, into the space that this map leads out of. `t` keeps its meaning.
     #[inline]
-    pub fn inverse_ray(&self, ray: &Ray) -> Ray {
-        let origin = self.inverse.transform_point3(ray.origin.as_dvec3()).as_vec3();
-        let dir = self.inverse.transform_vector3(ray.dir.as_dvec3()).as_vec3();
-        Ray { origin, dir, ..*ray }
+    pub fn inverse_ray(&self, ray: impl Into<Ray64>) -> Ray {
+        let ray = ray.into();
+        let origin = self.inverse.transform_point3(ray.origin()).as_vec3();
+        let dir = self.inverse.transform_vector3(ray.rounded.dir.as_dvec3()).as_vec3();
+        Ray { origin, dir, ..ray.rounded }
     }
 
     /// Maps the line through a ray backward, in double precision. `t` keeps its meaning.
-    pub fn inverse_line(&self, ray: &Ray) -> Line {
+    pub fn inverse_line(&self, ray: &Ray64) -> Line {
         let Line { origin, dir } = ray.line();
         Line { origin: self.inverse.transform_point3(origin), dir: self.inverse.transform_vector3(dir) }
     }
 
-    /// Bound on the absolute error of `point(p)` when `p` itself is known to within `error`.
+    /// Bound on the absolute error of `point64(p)` when `p` itself is known to within `error`.
     ///
-    /// The roundings on the way forward and on a later way back are covered.
+    /// The roundings on the way forward and on a later way back are covered: of double precision in world space, where
+    /// 2^-40 leaves room for ill-conditioned maps, and of single precision in object space.
     pub fn point_error(&self, p: Vec3, error: Vec3) -> Vec3 {
-        gamma(2) * self.point(p).abs() + self.spread(error + gamma(2) * p.abs())
+        const DOUBLE: f32 = 1.0 / (1u64 << 40) as f32;
+        let far = self.forward.translation.abs().as_vec3() + self.spread(p.abs());
+        DOUBLE * far + self.spread(error + gamma(2) * p.abs())
     }
 
     /// Bounds on the components of the image of a vector that is known by such bounds.

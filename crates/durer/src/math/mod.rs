@@ -14,7 +14,7 @@ pub use aabb::Aabb;
 pub use affine::Affine;
 pub(crate) use doubles::{Doubles, Triple};
 pub use glam::{Vec2, Vec3};
-pub use ray::{Line, Ray};
+pub use ray::{Line, Ray, Ray64};
 
 /// A colour: linear Rec.709 red, green and blue. Unbounded above.
 pub type Color = Vec3;

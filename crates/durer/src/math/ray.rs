@@ -41,6 +41,62 @@ impl Ray {
     }
 }
 
+/// A ray whose origin is known in double precision.
+///
+/// What the world is asked with: far from the origin of coordinates, single precision would move a secondary ray off the
+/// surface that it starts from, and through the wall beside it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ray64 {
+    /// The ray with its origin rounded to single precision.
+    pub rounded: Ray,
+    /// What rounding left of the origin.
+    pub rest: Vec3,
+}
+
+impl Ray64 {
+    /// The ray from `origin` along `dir` in an open interval of `t`.
+    pub fn new(origin: DVec3, dir: Vec3, t_min: f32, t_max: f32) -> Self {
+        let near = origin.as_vec3();
+        let rest = (origin - near.as_dvec3()).as_vec3();
+        Ray64 { rounded: Ray { origin: near, dir, t_min, t_max }, rest }
+    }
+
+    /// Where `t` is 0.
+    #[inline]
+    pub fn origin(&self) -> DVec3 {
+        self.rounded.origin.as_dvec3() + self.rest.as_dvec3()
+    }
+
+    /// Direction; its length is one unit of `t`.
+    #[inline]
+    pub fn dir(&self) -> Vec3 {
+        self.rounded.dir
+    }
+
+    /// The whole line through it.
+    pub fn line(&self) -> Line {
+        Line { origin: self.origin(), dir: self.rounded.dir.as_dvec3() }
+    }
+}
+
+impl From<Ray> for Ray64 {
+    fn from(rounded: Ray) -> Self {
+        Ray64 { rounded, rest: Vec3::ZERO }
+    }
+}
+
+impl From<&Ray> for Ray64 {
+    fn from(ray: &Ray) -> Self {
+        Ray64::from(*ray)
+    }
+}
+
+impl From<&Ray64> for Ray64 {
+    fn from(ray: &Ray64) -> Self {
+        *ray
+    }
+}
+
 /// The points `origin + t * dir` for all `t`, in double precision.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Line {

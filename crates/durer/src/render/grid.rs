@@ -73,7 +73,7 @@ fn cell_color(world: &World, grid: &Grid, ray: &Ray) -> Color {
     let normal = Vec3::AXES[axis] * from_center[axis].signum();
     let color = COLORS[(count - 1).min(COLORS.len() - 1)];
     let lit = world.lights.iter().map(|light| {
-        let seen = light.illuminate(point);
+        let seen = light.illuminate(point.as_dvec3());
         normal.dot(seen.to_light).max(0.0) * seen.color
     });
     color * (world.ambient + lit.sum::<Color>())

@@ -2,7 +2,7 @@
 
 use super::chord::Chord;
 use super::cylinder::{Axis, BASE, SIDE, TOP};
-use super::{Crossing, Shape, Surface};
+use super::{Crossing, Shape, Surface, exactly, inset};
 use crate::describe::Rule;
 use crate::described;
 use crate::dialect::set;
@@ -73,6 +73,11 @@ impl Shape for Cone {
         chord.offer(&mut |t, uv| offer(t + shift, uv));
     }
 
+    fn centered(&self) -> Option<(Self, Vec3)> {
+        let [base, top] = exactly([self.base, self.top], self.base)?;
+        Some((Cone { base, top, ..self.clone() }, self.base))
+    }
+
     fn surface(&self, point: DVec3, crossing: &Crossing) -> Surface {
         let (axis, [base, top]) = (self.axis(), self.radii());
         if crossing.uv.x != SIDE as f32 {
@@ -80,7 +85,8 @@ impl Shape for Cone {
             return axis.cap(point, face, if face == TOP { top } else { base });
         }
         let (y, around) = axis.split(point - axis.base);
-        let (y, around) = (y.clamp(0.0, axis.height), around.normalize_or(axis.dir.any_orthonormal_vector()));
+        let (y, around) =
+            (inset(y, axis.height, axis.error(base.max(top))), around.normalize_or(axis.dir.any_orthonormal_vector()));
         let r = self.radius_at(y);
         let normal = around - self.growth() * axis.dir;
         let largest = base.max(top);

@@ -1,11 +1,11 @@
 //! The box whose faces are parallel to the coordinate planes.
 
 use super::chord::Chord;
-use super::{Crossing, Shape, Surface, padded};
+use super::{Crossing, Shape, Surface, exactly, inset, padded};
 use crate::describe::Rule;
 use crate::described;
 use crate::dialect::set;
-use crate::math::{Aabb, Line, Vec2, Vec3};
+use crate::math::{Aabb, Line, Vec2, Vec3, gamma};
 use glam::DVec3;
 
 described! {
@@ -33,14 +33,21 @@ impl Shape for Cuboid {
         (0..3).fold(Chord::LINE, cut).offer(offer);
     }
 
+    fn centered(&self) -> Option<(Self, Vec3)> {
+        let [min, max] = exactly([self.min, self.max], self.min)?;
+        Some((Cuboid { min, max }, self.min))
+    }
+
     fn surface(&self, point: DVec3, crossing: &Crossing) -> Surface {
         let face = crossing.uv.x as usize;
         let (axis, high) = (face / 2 % 3, face % 2 == 1);
         let (min, max) = (self.min.as_dvec3(), self.max.as_dvec3());
-        let mut p = point.clamp(min, max);
+        let error = gamma(2) * self.min.abs().max(self.max.abs()).max_element();
+        let size = max - min;
+        let mut p = DVec3::from_array([0, 1, 2].map(|i| min[i] + inset(point[i] - min[i], size[i], error)));
         p[axis] = if high { max[axis] } else { min[axis] };
         let normal = if high { DVec3::AXES[axis] } else { -DVec3::AXES[axis] };
-        let share = (p - min) / (max - min);
+        let share = (p - min) / size;
         let uv = [(2, 1), (0, 2), (0, 1)].map(|(u, v)| Vec2::new(share[u] as f32, share[v] as f32))[axis];
         Surface::new(p, normal, 0.0, uv)
     }

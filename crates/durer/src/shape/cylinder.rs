@@ -1,7 +1,7 @@
 //! The cylinder between two points, with its caps.
 
 use super::chord::Chord;
-use super::{Crossing, Shape, Surface, disc_reach, padded, turn};
+use super::{Crossing, INSET, Shape, Surface, disc_reach, exactly, inset, padded, turn};
 use crate::describe::Rule;
 use crate::described;
 use crate::dialect::set;
@@ -53,6 +53,11 @@ impl Axis {
         (shift, Line { origin: line.at(shift) - self.base, dir: line.dir })
     }
 
+    /// Bound on the error of a point no farther than a radius from the axis.
+    pub(super) fn error(&self, radius: f64) -> f32 {
+        gamma(4) * (self.base.abs().max_element() + self.height + radius) as f32
+    }
+
     /// The box around discs at both ends.
     pub(super) fn bounds(&self, [base_radius, top_radius]: [f64; 2]) -> Aabb {
         let reach = disc_reach(self.dir);
@@ -71,7 +76,8 @@ impl Axis {
     pub(super) fn cap(&self, point: DVec3, face: u32, radius: f64) -> Surface {
         let (height, normal) = if face == TOP { (self.height, self.dir) } else { (0.0, -self.dir) };
         let (_, around) = self.split(point - self.base);
-        let position = self.base + height * self.dir + around.clamp_length_max(radius);
+        let within = radius - f64::from(INSET * self.error(radius)).min(0.25 * radius);
+        let position = self.base + height * self.dir + around.clamp_length_max(within);
         // Planes across tilted axes are known to double precision.
         let floor = 1e-14 * (self.base.abs().max_element() + self.height + radius);
         Surface::new(position, normal, floor as f32, self.uv(around, around.length() / radius))
@@ -103,13 +109,19 @@ impl Shape for Cylinder {
         chord.offer(&mut |t, uv| offer(t + shift, uv));
     }
 
+    fn centered(&self) -> Option<(Self, Vec3)> {
+        let [base, top] = exactly([self.base, self.top], self.base)?;
+        Some((Cylinder { base, top, ..self.clone() }, self.base))
+    }
+
     fn surface(&self, point: DVec3, crossing: &Crossing) -> Surface {
         let (axis, r) = (self.axis(), f64::from(self.radius));
         if crossing.uv.x != SIDE as f32 {
             return axis.cap(point, crossing.uv.x as u32, r);
         }
         let (y, around) = axis.split(point - axis.base);
-        let (y, normal) = (y.clamp(0.0, axis.height), around.normalize_or(axis.dir.any_orthonormal_vector()));
+        let (y, normal) =
+            (inset(y, axis.height, axis.error(r)), around.normalize_or(axis.dir.any_orthonormal_vector()));
         let position = axis.base + y * axis.dir + r * normal;
         let uv = axis.uv(normal, y / axis.height);
         Surface::new(position, normal, gamma(2) * self.radius, uv).curved(1.0 / r)

@@ -43,6 +43,10 @@ impl Shape for Disc {
         }
     }
 
+    fn centered(&self) -> Option<(Self, Vec3)> {
+        Some((Disc { center: Vec3::ZERO, ..self.clone() }, self.center))
+    }
+
     fn surface(&self, point: DVec3, _crossing: &Crossing) -> Surface {
         let (n, center, radius) = (self.normal(), self.center.as_dvec3(), f64::from(self.radius));
         let q = point - center;

@@ -35,6 +35,10 @@ impl Shape for Ellipsoid {
         }
     }
 
+    fn centered(&self) -> Option<(Self, Vec3)> {
+        Some((Ellipsoid { center: Vec3::ZERO, ..self.clone() }, self.center))
+    }
+
     fn surface(&self, point: DVec3, _crossing: &Crossing) -> Surface {
         let (center, radii) = (self.center.as_dvec3(), self.radii.as_dvec3());
         let unit = ((point - center) / radii).normalize_or(DVec3::Z);

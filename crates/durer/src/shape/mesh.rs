@@ -5,7 +5,7 @@ use super::{Crossing, Surface};
 use crate::describe::{FileName, Rule};
 use crate::described;
 use crate::dialect::{MeshNormals, set};
-use crate::math::{Vec2, Vec3};
+use crate::math::{Aabb, Vec2, Vec3};
 
 /// An index that is not given.
 pub const NO_INDEX: u32 = u32::MAX;
@@ -81,6 +81,7 @@ described! {
 #[derive(Clone, Debug, Default)]
 pub struct Mesh {
     data: MeshData,
+    center: Vec3,
 }
 
 impl Mesh {
@@ -92,7 +93,29 @@ impl Mesh {
             data.triangle_normals.clear();
         }
         super::normals::complete(&mut data, rule);
-        Mesh { data }
+        Mesh { data, center: Vec3::ZERO }
+    }
+
+    /// The same about the origin, along the axes where single precision holds that exactly, if it lies [far](Aabb::is_far).
+    pub fn centered(mut self) -> Self {
+        let bounds = Aabb::around(self.data.positions.iter().copied());
+        if bounds.is_far() {
+            let middle = bounds.center();
+            for axis in 0..3 {
+                let moved =
+                    |p: &Vec3| f64::from(p[axis] - middle[axis]) == f64::from(p[axis]) - f64::from(middle[axis]);
+                if self.data.positions.iter().all(moved) {
+                    self.data.positions.iter_mut().for_each(|p| p[axis] -= middle[axis]);
+                    self.center[axis] = middle[axis];
+                }
+            }
+        }
+        self
+    }
+
+    /// How far it was moved by [`Mesh::centered`].
+    pub fn center(&self) -> Vec3 {
+        self.center
     }
 
     /// Corners' positions.
@@ -157,7 +180,7 @@ impl Mesh {
             .map(|[a, b, c]| barycentric.x * a + barycentric.y * b + barycentric.z * c);
         // Normals in the file say which side is out, whatever way the corners go round.
         let n_geo = if n_geo.dot(n_shade) < 0.0 { -n_geo } else { n_geo };
-        Surface { position, error, curvature: 0.0, n_geo, n_shade, uv, barycentric, lifts }
+        Surface { position, rest: Vec3::ZERO, error, curvature: 0.0, n_geo, n_shade, uv, barycentric, lifts }
     }
 }
 

@@ -57,6 +57,7 @@ impl Shape for Plane {
         let (tangent, bitangent) = normal.any_orthonormal_pair();
         Surface {
             position,
+            rest: Vec3::ZERO,
             error: gamma(2) * position.abs(),
             curvature: 0.0,
             n_geo: normal,

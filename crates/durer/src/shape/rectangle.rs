@@ -1,10 +1,10 @@
 //! The rectangle, or any parallelogram.
 
-use super::{Crossing, Shape, Surface, padded};
+use super::{Crossing, Shape, Surface, inset, padded};
 use crate::describe::Rule;
 use crate::described;
 use crate::dialect::set;
-use crate::math::{Aabb, Line, Vec2, Vec3};
+use crate::math::{Aabb, Line, Vec2, Vec3, gamma};
 use glam::DVec3;
 
 described! {
@@ -51,9 +51,15 @@ impl Shape for Rectangle {
         }
     }
 
+    fn centered(&self) -> Option<(Self, Vec3)> {
+        Some((Rectangle { corner: Vec3::ZERO, ..self.clone() }, self.corner))
+    }
+
     fn surface(&self, point: DVec3, _crossing: &Crossing) -> Surface {
         let ([e, f], corner) = (self.edges(), self.corner.as_dvec3());
-        let [u, v] = self.shares(point).map(|x| x.clamp(0.0, 1.0));
+        let error = gamma(2) * (self.corner.abs() + self.edge0.abs() + self.edge1.abs()).max_element();
+        let [u, v] = self.shares(point);
+        let [u, v] = [(u, e), (v, f)].map(|(x, edge)| inset(x, 1.0, error / edge.length() as f32));
         let floor = 1e-14 * (corner.abs() + e.abs() + f.abs()).max_element();
         Surface::new(corner + u * e + v * f, e.cross(f), floor as f32, Vec2::new(u as f32, v as f32))
     }

@@ -71,6 +71,10 @@ impl Shape for Sphere {
         Some((point - self.center.as_dvec3()).length_squared() < r * r)
     }
 
+    fn centered(&self) -> Option<(Self, Vec3)> {
+        Some((Sphere { center: Vec3::ZERO, ..self.clone() }, self.center))
+    }
+
     fn surface(&self, point: DVec3, _crossing: &Crossing) -> Surface {
         let offset = point - self.center.as_dvec3();
         let normal = offset.normalize_or(DVec3::Z).as_vec3();
@@ -83,6 +87,7 @@ impl Shape for Sphere {
         let uv = Some(Vec2::new(u, v));
         Surface {
             position,
+            rest: Vec3::ZERO,
             error,
             curvature: 1.0 / self.radius,
             n_geo: normal,

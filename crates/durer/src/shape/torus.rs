@@ -80,6 +80,10 @@ impl Shape for Torus {
         found[..count].iter().for_each(|s| offer(s / scale + shift, Vec2::ZERO));
     }
 
+    fn centered(&self) -> Option<(Self, Vec3)> {
+        Some((Torus { center: Vec3::ZERO, ..self.clone() }, self.center))
+    }
+
     fn surface(&self, point: DVec3, _crossing: &Crossing) -> Surface {
         let ((major, minor), a, center) = (self.radii(), self.axis(), self.center.as_dvec3());
         let q = point - center;

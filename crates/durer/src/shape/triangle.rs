@@ -1,7 +1,7 @@
 //! A single triangle.
 
 use super::watertight::Sheared;
-use super::{Crossing, Shape, Surface};
+use super::{Crossing, INSET, Shape, Surface, exactly};
 use crate::describe::Rule;
 use crate::described;
 use crate::dialect::set;
@@ -42,11 +42,22 @@ impl Shape for Triangle {
         found.into_iter().for_each(|crossing| offer(f64::from(crossing.t), crossing.uv));
     }
 
+    /// Moved by a multiple of a power of two above its size: so neighbours are mostly moved alike, and still meet in an edge.
+    fn centered(&self) -> Option<(Self, Vec3)> {
+        let corners = self.corners();
+        let size = Aabb::around(corners).size().max_element().max(f32::MIN_POSITIVE);
+        let grid = 64.0 * f32::from_bits(size.to_bits() & 0x7f80_0000);
+        let center = (self.vertex0 / grid).round() * grid;
+        let [vertex0, vertex1, vertex2] = exactly(corners, center)?;
+        Some((Triangle { vertex0, vertex1, vertex2 }, center))
+    }
+
     fn surface(&self, _point: DVec3, crossing: &Crossing) -> Surface {
         let (position, error, barycentric) = interpolate(self.corners(), crossing.uv);
         let n_geo = face_normal(self.corners());
         Surface {
             position,
+            rest: Vec3::ZERO,
             error,
             curvature: 0.0,
             n_geo,
@@ -58,13 +69,35 @@ impl Shape for Triangle {
     }
 }
 
-/// The point with barycentric coordinates (1 - u - v, u, v), a bound on its error, and all three of them.
+/// The point with barycentric coordinates (1 - u - v, u, v), a bound on its error, and all three of them. The point keeps
+/// off the edges: see [`inset`].
 ///
 /// Source of the bound: *Physically Based Rendering*, 4th edition, section 6.8.3.
-pub(super) fn interpolate([a, b, c]: [Vec3; 3], uv: Vec2) -> (Vec3, Vec3, Vec3) {
-    let w = 1.0 - uv.x - uv.y;
-    let (wa, ub, vc) = (w * a, uv.x * b, uv.y * c);
-    (wa + ub + vc, gamma(7) * (wa.abs() + ub.abs() + vc.abs()), Vec3::new(w, uv.x, uv.y))
+pub(super) fn interpolate(corners: [Vec3; 3], uv: Vec2) -> (Vec3, Vec3, Vec3) {
+    let barycentric = Vec3::new(1.0 - uv.x - uv.y, uv.x, uv.y);
+    let (position, error) = weighted(corners, barycentric);
+    match inset(corners, barycentric, error) {
+        Some(moved) => (weighted(corners, moved).0, error, barycentric),
+        None => (position, error, barycentric),
+    }
+}
+
+fn weighted([a, b, c]: [Vec3; 3], weights: Vec3) -> (Vec3, Vec3) {
+    let (wa, ub, vc) = (weights.x * a, weights.y * b, weights.z * c);
+    (wa + ub + vc, gamma(7) * (wa.abs() + ub.abs() + vc.abs()))
+}
+
+/// Barycentric coordinates of a point that lies at least [`INSET`] errors away from all edges, where the given one does not.
+fn inset([a, b, c]: [Vec3; 3], barycentric: Vec3, error: Vec3) -> Option<Vec3> {
+    // The distance from an edge is the barycentric coordinate times twice the area over the edge's length. All squared.
+    let areas = (b - a).cross(c - a).length_squared();
+    let lengths = Vec3::new((c - b).length_squared(), (a - c).length_squared(), (b - a).length_squared());
+    let least = lengths * (INSET * INSET * error.length_squared());
+    if !(areas * barycentric * barycentric).cmplt(least).any() {
+        return None;
+    }
+    let moved = barycentric.max((least / areas).map(f32::sqrt).min(Vec3::splat(0.25)));
+    Some(moved / moved.element_sum())
 }
 
 /// The unit normal (b - a) x (c - a); that of a triangle without area points up.

@@ -16,7 +16,7 @@
 use super::solid::{Rule, Solid};
 use super::{Geometry, Object, Placing};
 use crate::bvh::{Bvh, Tally};
-use crate::math::{Aabb, Ray, Vec2, Vec3};
+use crate::math::{Aabb, Ray, Ray64, Vec2, Vec3};
 use crate::shape::{Crossing, Shape, Surface};
 use std::cell::RefCell;
 use std::sync::Arc;
@@ -200,13 +200,13 @@ impl Csg {
     }
 
     /// The surface at a hit, in world space; its normals point out of the solid.
-    pub fn surface(&self, ray: &Ray, crossing: &Crossing, part: u32, placing: Placing) -> Surface {
+    pub fn surface(&self, ray: &Ray64, crossing: &Crossing, part: u32, placing: Placing) -> Surface {
         let (leaf, number) = (&self.leaves[self.leaf_of(part)], self.triangle(part));
         let point = leaf.object.local_line(ray).at(f64::from(crossing.t));
         let surface = leaf.object.surface(ray, point, crossing, number, placing);
         // A mesh may be inside out by itself: what counts is the ray's way.
         let turned = match leaf.object.geometry {
-            Geometry::Mesh(_) => (surface.n_geo.dot(ray.dir) < 0.0) != (part & ENTERS != 0),
+            Geometry::Mesh(_) => (surface.n_geo.dot(ray.dir()) < 0.0) != (part & ENTERS != 0),
             _ => part & TURNED != 0,
         };
         if !turned {
@@ -217,8 +217,8 @@ impl Csg {
     }
 
     /// The first hit in the ray's interval, and its part.
-    pub(super) fn closest<T: Tally>(&self, ray: &Ray, tally: &mut T) -> Option<(Crossing, u32)> {
-        if !crate::bvh::is_sound(ray) {
+    pub(super) fn closest<T: Tally>(&self, ray: &Ray64, tally: &mut T) -> Option<(Crossing, u32)> {
+        if !crate::bvh::is_sound(&ray.rounded) {
             return None;
         }
         SCRATCH.with_borrow_mut(|scratch| {
@@ -237,7 +237,7 @@ impl Csg {
     ///
     /// Whoever comes from outside a merge is in it at the first way into a part: with `shrink`, parts beyond such a place
     /// may be left out. Gives up to where the crossings are complete: infinity, if they are.
-    fn collect<T: Tally>(&self, ray: &Ray, shrink: bool, scratch: &mut Scratch, tally: &mut T) -> f32 {
+    fn collect<T: Tally>(&self, ray: &Ray64, shrink: bool, scratch: &mut Scratch, tally: &mut T) -> f32 {
         let Scratch { events, .. } = scratch;
         events.clear();
         let take = |i: u32, events: &mut Vec<Event>, tally: &mut T| {
@@ -251,9 +251,9 @@ impl Csg {
             return f32::INFINITY;
         };
         // What begins or ends within the slack of the interval's ends matters too.
-        let reach = self.slack + 4.0 * f32::EPSILON * ray.origin.abs().max_element();
-        let pad = GRAZING as f32 * reach / ray.dir.length();
-        let wide = Ray { t_min: ray.t_min - pad, t_max: ray.t_max + pad, ..*ray };
+        let reach = self.slack + 4.0 * f32::EPSILON * ray.rounded.origin.abs().max_element();
+        let pad = GRAZING as f32 * reach / ray.dir().length();
+        let wide = Ray { t_min: ray.rounded.t_min - pad, t_max: ray.rounded.t_max + pad, ..ray.rounded };
         let shrink = shrink && self.joins[0].rule == Rule::Any;
         let mut complete = f32::INFINITY;
         bvh.walk(&wide, tally, |item, t_max, tally| {
@@ -264,7 +264,7 @@ impl Csg {
             }
             let own = &mut events[from..];
             own.sort_unstable_by(order);
-            let way_in = own.iter().step_by(2).find(|event| event.t as f32 > ray.t_min);
+            let way_in = own.iter().step_by(2).find(|event| event.t as f32 > ray.rounded.t_min);
             complete = way_in.map_or(complete, |event| complete.min(event.t as f32));
             t_max.min(complete.next_up() + pad)
         });
@@ -273,7 +273,7 @@ impl Csg {
     }
 
     /// Goes along the sorted crossings to the first in the interval at which the whole changes.
-    fn sweep(&self, ray: &Ray, scratch: &mut Scratch) -> Option<(Crossing, u32)> {
+    fn sweep(&self, ray: &Ray64, scratch: &mut Scratch) -> Option<(Crossing, u32)> {
         let Scratch { events, state } = scratch;
         if events.is_empty() {
             return None;
@@ -298,10 +298,10 @@ impl Csg {
             if whole != before {
                 let chosen = if to == from + 1 { &events[from] } else { self.choose(&events[from..to], state) };
                 let t = chosen.t as f32;
-                if t.is_nan() || t >= ray.t_max {
+                if t.is_nan() || t >= ray.rounded.t_max {
                     return None;
                 }
-                if t > ray.t_min {
+                if t > ray.rounded.t_min {
                     let turned = state.inside[chosen.leaf as usize] != whole;
                     let bits = if turned { TURNED } else { 0 } | if whole { ENTERS } else { 0 };
                     let part = (self.leaves[chosen.leaf as usize].first + chosen.part) | bits;
@@ -335,7 +335,7 @@ impl Csg {
     }
 
     /// The end of the crossings that coincide with one: see the head of this file.
-    fn coincident(&self, ray: &Ray, events: &[Event], from: usize) -> usize {
+    fn coincident(&self, ray: &Ray64, events: &[Event], from: usize) -> usize {
         let mut to = from + 1;
         while to < events.len()
             && events[from..to].iter().all(|event| event.leaf != events[to].leaf)
@@ -346,7 +346,7 @@ impl Csg {
         to
     }
 
-    fn coincide(&self, ray: &Ray, a: &Event, b: &Event) -> bool {
+    fn coincide(&self, ray: &Ray64, a: &Event, b: &Event) -> bool {
         let line = ray.line();
         let gap = (b.t - a.t) * line.dir.length();
         let [s, u] = [a, b].map(|event| self.leaves[event.leaf as usize].slack);

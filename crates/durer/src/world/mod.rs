@@ -10,7 +10,7 @@ use crate::camera::{Camera, Frame};
 use crate::dialect::{Compat, Rules};
 use crate::light::Light;
 use crate::material::Pattern;
-use crate::math::{Aabb, Color, Ray, Vec2, Vec3};
+use crate::math::{Aabb, Color, Ray64, Vec2, Vec3};
 use crate::shape::{Crossing, Surface};
 use crate::source::Digest;
 use crate::texture::{CubeMap, Texture};
@@ -85,20 +85,20 @@ impl Hit {
 
 impl World {
     /// The first hit in the ray's interval.
-    pub fn closest<T: Tally>(&self, ray: &Ray, tally: &mut T) -> Option<Hit> {
+    pub fn closest<T: Tally>(&self, ray: impl Into<Ray64>, tally: &mut T) -> Option<Hit> {
         tally.ray();
-        if !crate::bvh::is_sound(ray) {
+        let mut ray = ray.into();
+        if !crate::bvh::is_sound(&ray.rounded) {
             return None;
         }
         let mut best: Option<Hit> = None;
-        let mut ray = *ray;
         // A tie is decided by the order of hits, so a later ray may reach just to the present t.
-        let offer = |best: &mut Option<Hit>, ray: &mut Ray, object: u32, found: Option<(Crossing, u32)>| {
+        let offer = |best: &mut Option<Hit>, ray: &mut Ray64, object: u32, found: Option<(Crossing, u32)>| {
             if let Some((Crossing { t, uv }, part)) = found {
                 let hit = Hit { t, uv, object, part };
                 if hit.is_before(best) {
                     *best = Some(hit);
-                    ray.t_max = t.next_up();
+                    ray.rounded.t_max = t.next_up();
                 }
             }
         };
@@ -108,21 +108,21 @@ impl World {
         }
         match &self.accel {
             Accel::Bvh(bvh) => {
-                let outer = ray;
+                let outer = ray.rounded;
                 bvh.walk(&outer, tally, |item, _, tally| {
                     let object = bvh.order()[item];
                     let found = self.objects[object as usize].closest(&ray, false, tally);
                     offer(&mut best, &mut ray, object, found);
-                    ray.t_max
+                    ray.rounded.t_max
                 });
             }
             Accel::Grid { grid, parts } => {
-                let outer = ray;
+                let outer = ray.rounded;
                 grid.walk(&outer, tally, |item, _, tally| {
                     let (object, part) = parts[item];
                     let found = self.objects[object as usize].part(&ray, part, tally);
                     offer(&mut best, &mut ray, object, found);
-                    ray.t_max
+                    ray.rounded.t_max
                 });
             }
             Accel::None => {
@@ -138,9 +138,11 @@ impl World {
     }
 
     /// Whether anything is hit in the ray's interval; the first thing found will do.
-    pub fn occluded<T: Tally>(&self, ray: &Ray, tally: &mut T) -> bool {
+    pub fn occluded<T: Tally>(&self, ray: impl Into<Ray64>, tally: &mut T) -> bool {
         tally.ray();
-        if !crate::bvh::is_sound(ray) {
+        let ray = &ray.into();
+        let outer = &ray.rounded;
+        if !crate::bvh::is_sound(outer) {
             return false;
         }
         if self.unbounded.iter().any(|&i| self.objects[i as usize].closest(ray, true, tally).is_some()) {
@@ -148,11 +150,11 @@ impl World {
         }
         let mut found = false;
         match &self.accel {
-            Accel::Bvh(bvh) => bvh.walk(ray, tally, |item, t_max, tally| {
+            Accel::Bvh(bvh) => bvh.walk(outer, tally, |item, t_max, tally| {
                 found |= self.objects[bvh.order()[item] as usize].closest(ray, true, tally).is_some();
                 if found { f32::NEG_INFINITY } else { t_max }
             }),
-            Accel::Grid { grid, parts } => grid.walk(ray, tally, |item, t_max, tally| {
+            Accel::Grid { grid, parts } => grid.walk(outer, tally, |item, t_max, tally| {
                 let (object, part) = parts[item];
                 found |= self.objects[object as usize].part(ray, part, tally).is_some();
                 if found { f32::NEG_INFINITY } else { t_max }
@@ -170,7 +172,8 @@ impl World {
 
     /// The surface at a hit, in world space. The official programs take the point from the ray as it
     /// is.
-    pub fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
+    pub fn surface(&self, ray: impl Into<Ray64>, hit: &Hit) -> Surface {
+        let ray = &ray.into();
         let object = &self.objects[hit.object as usize];
         let point = object.local_ray(ray).line().at(f64::from(hit.t));
         let crossing = Crossing { t: hit.t, uv: hit.uv };
@@ -220,11 +223,11 @@ impl World {
     }
 
     /// All hits in the ray's interval, from near to far; of several at the same `t` the first.
-    pub fn all_hits(&self, ray: &Ray) -> impl Iterator<Item = Hit> {
-        let mut rest = *ray;
+    pub fn all_hits(&self, ray: impl Into<Ray64>) -> impl Iterator<Item = Hit> {
+        let mut rest = ray.into();
         std::iter::from_fn(move || {
             let hit = self.closest(&rest, &mut ())?;
-            rest.t_min = hit.t;
+            rest.rounded.t_min = hit.t;
             Some(hit)
         })
     }

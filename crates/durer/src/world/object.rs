@@ -2,7 +2,7 @@
 
 use super::csg::Csg;
 use crate::bvh::{Preset, Tally, TriangleBvh};
-use crate::math::{Aabb, Affine, Line, Ray, Vec2, Vec3};
+use crate::math::{Aabb, Affine, Line, Ray, Ray64, Vec2, Vec3};
 use crate::shape::{Crossing, Mesh, Primitive, Shape, Surface};
 use glam::DVec3;
 use std::sync::{Arc, OnceLock};
@@ -14,6 +14,8 @@ pub struct Object {
     pub geometry: Geometry,
     /// From object to world space; `None` where they are the same.
     pub to_world: Option<Affine>,
+    /// How far its geometry was moved to lie about the origin of object space; [`Object::to_world`] moves it back.
+    pub center: Vec3,
     /// Number of its material; the parts of a solid have their own.
     pub material: u32,
     /// Length of its normals: other than 1 where [`crate::dialect::Compat::RawNormals`] holds.
@@ -102,17 +104,23 @@ impl MeshTree {
 }
 
 impl Object {
-    pub(super) fn local_ray(&self, ray: &Ray) -> Ray {
-        self.to_world.as_ref().map_or(*ray, |to_world| to_world.inverse_ray(ray))
+    pub(super) fn local_ray(&self, ray: &Ray64) -> Ray {
+        self.to_world.as_ref().map_or_else(|| ray.rounded, |to_world| to_world.inverse_ray(ray))
+    }
+
+    /// A ray in the space that the object is written in, where a transform applies.
+    pub fn own_ray(&self, ray: &Ray64) -> Option<Ray> {
+        let local = self.to_world.as_ref()?.inverse_ray(ray);
+        Some(Ray { origin: local.origin + self.center, ..local })
     }
 
     /// The line through a ray in object space.
-    pub(super) fn local_line(&self, ray: &Ray) -> Line {
+    pub(super) fn local_line(&self, ray: &Ray64) -> Line {
         self.to_world.as_ref().map_or(ray.line(), |to_world| to_world.inverse_line(ray))
     }
 
     /// Offers every crossing of the line through a ray, with the number of its part, in any order.
-    pub(super) fn crossings<T: Tally>(&self, ray: &Ray, tally: &mut T, offer: &mut impl FnMut(f64, Vec2, u32)) {
+    pub(super) fn crossings<T: Tally>(&self, ray: &Ray64, tally: &mut T, offer: &mut impl FnMut(f64, Vec2, u32)) {
         let line = self.local_line(ray);
         match &self.geometry {
             Geometry::Primitive(shape) => {
@@ -131,7 +139,14 @@ impl Object {
     }
 
     /// The surface in world space, at a crossing that is next to this point of object space.
-    pub(super) fn surface(&self, ray: &Ray, point: DVec3, crossing: &Crossing, part: u32, placing: Placing) -> Surface {
+    pub(super) fn surface(
+        &self,
+        ray: &Ray64,
+        point: DVec3,
+        crossing: &Crossing,
+        part: u32,
+        placing: Placing,
+    ) -> Surface {
         let surface = match &self.geometry {
             Geometry::Primitive(shape) => shape.surface(point, crossing),
             Geometry::Mesh(tree) => tree.mesh.surface(part, crossing),
@@ -146,7 +161,7 @@ impl Object {
             let n_shade = self.to_world.as_ref().map_or(surface.n_shade, |m| shading(m, surface.n_shade));
             let untextured = placing.mesh_textures && matches!(self.geometry, Geometry::Primitive(_));
             return Surface {
-                position: ray.at(crossing.t),
+                position: ray.rounded.at(crossing.t),
                 n_geo,
                 n_shade: self.normal_length * n_shade,
                 uv: surface.uv.filter(|_| !untextured),
@@ -158,8 +173,11 @@ impl Object {
             return Surface { error: surface.error + surface.bulge(surface.error), ..surface };
         };
         let error = to_world.point_error(surface.position, surface.error);
+        let point = to_world.point64(surface.position);
+        let position = point.as_vec3();
         Surface {
-            position: to_world.point(surface.position),
+            position,
+            rest: (point - position.as_dvec3()).as_vec3(),
             error: error + to_world.spread(surface.bulge(to_world.inverse_spread(error))),
             n_geo: to_world.normal(surface.n_geo),
             n_shade: shading(to_world, surface.n_shade),
@@ -169,27 +187,36 @@ impl Object {
     }
 
     /// The object's first hit in the ray's interval.
-    pub(super) fn closest<T: Tally>(&self, ray: &Ray, any: bool, tally: &mut T) -> Option<(Crossing, u32)> {
-        let local = self.local_ray(ray);
+    pub(super) fn closest<T: Tally>(&self, ray: &Ray64, any: bool, tally: &mut T) -> Option<(Crossing, u32)> {
+        let moved;
+        let local = match &self.to_world {
+            Some(to_world) => {
+                moved = to_world.inverse_ray(ray);
+                &moved
+            }
+            None => &ray.rounded,
+        };
         match &self.geometry {
             Geometry::Primitive(shape) => {
                 tally.test();
-                shape.intersect(&local).map(|crossing| (crossing, 0))
+                shape.intersect(local).map(|crossing| (crossing, 0))
             }
-            Geometry::Mesh(tree) => tree.closest(&local, any, tally),
+            Geometry::Mesh(tree) => tree.closest(local, any, tally),
             Geometry::Solid(solid) => solid.closest(ray, tally),
         }
     }
 
     /// The crossing with one part, tested directly, and its part; a solid is asked as a whole.
-    pub(super) fn part<T: Tally>(&self, ray: &Ray, part: u32, tally: &mut T) -> Option<(Crossing, u32)> {
+    pub(super) fn part<T: Tally>(&self, ray: &Ray64, part: u32, tally: &mut T) -> Option<(Crossing, u32)> {
         tally.test();
         let local = self.local_ray(ray);
         let crossing = match &self.geometry {
             Geometry::Primitive(shape) => shape.intersect(&local),
             // Refused like by the tree: such a ray hits nothing.
             Geometry::Mesh(_) if !crate::bvh::is_sound(&local) => None,
-            Geometry::Mesh(tree) => tree.bvh.sheared(&local).intersect(tree.mesh.corners(part), ray.t_min, ray.t_max),
+            Geometry::Mesh(tree) => {
+                tree.bvh.sheared(&local).intersect(tree.mesh.corners(part), local.t_min, local.t_max)
+            }
             Geometry::Solid(solid) => return solid.closest(ray, tally),
         };
         crossing.map(|crossing| (crossing, part))
@@ -219,8 +246,9 @@ impl Object {
             return shape.inside(local.as_dvec3()) == Some(true);
         }
         // Any line from inside crosses what is closed an odd number of times.
-        let mut ray = Ray::new(point, Vec3::new(0.48, 0.6, 0.64));
-        let next = |ray: &mut Ray| self.closest(ray, false, &mut ()).map(|(crossing, _)| ray.t_min = crossing.t);
+        let mut ray = Ray64::from(Ray::new(point, Vec3::new(0.48, 0.6, 0.64)));
+        let next =
+            |ray: &mut Ray64| self.closest(ray, false, &mut ()).map(|(crossing, _)| ray.rounded.t_min = crossing.t);
         std::iter::from_fn(|| next(&mut ray)).count() % 2 == 1
     }
 

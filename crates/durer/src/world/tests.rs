@@ -3,6 +3,7 @@
 use super::*;
 use crate::compile::{AccelKind, testing};
 use crate::dialect::Dialect;
+use crate::math::Ray;
 use crate::math::random::Random;
 use std::fmt::Write;
 use std::path::Path;
@@ -147,8 +148,9 @@ fn all_structures_name_the_same_hit() {
             // Another object at the same t: the same ray, but for all things up to the named one.
             ties += expected.map_or(0, |hit| {
                 let other = |i: &usize| *i != hit.object as usize;
-                let same =
-                    |i: usize| worlds[0].objects[i].closest(&ray, false, &mut ()).is_some_and(|c| c.0.t == hit.t);
+                let same = |i: usize| {
+                    worlds[0].objects[i].closest(&ray.into(), false, &mut ()).is_some_and(|c| c.0.t == hit.t)
+                };
                 usize::from((0..worlds[0].objects.len()).filter(other).any(same))
             });
         }

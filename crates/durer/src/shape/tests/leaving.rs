@@ -3,8 +3,8 @@
 use super::*;
 use crate::compile::{AccelKind, testing};
 use crate::integrator::spawn::from_surface;
-use crate::math::Affine;
 use crate::math::random::rounds;
+use crate::math::{Affine, Ray64};
 use crate::world::{Hit, World};
 use glam::DAffine3;
 
@@ -20,10 +20,10 @@ fn hit(world: &World, shape: &Primitive, affine: &DAffine3, random: &mut Random)
 
 /// Whether a ray ends on another side of the same closed shape: one from inside on its way out, one from outside, where
 /// the shape is not convex, on its way in.
-fn is_other_side(shape: &Primitive, world: &World, start: &Surface, ray: &Ray, hit: &Hit) -> bool {
+fn is_other_side(shape: &Primitive, world: &World, start: &Surface, ray: &Ray64, hit: &Hit) -> bool {
     let bent = matches!(shape, Primitive::Torus(_) | Primitive::Quadric(_));
     let end = world.surface(ray, hit);
-    let (from_inside, goes_out) = (ray.dir.dot(start.n_geo) < 0.0, ray.dir.dot(end.n_geo) > 0.0);
+    let (from_inside, goes_out) = (ray.dir().dot(start.n_geo) < 0.0, ray.dir().dot(end.n_geo) > 0.0);
     shape.inside(DVec3::ZERO).is_some() && (from_inside || bent) && from_inside == goes_out
 }
 
@@ -55,7 +55,7 @@ fn no_ray_meets_the_surface_that_it_leaves() {
                         continue;
                     }
                     // Nor is it known on which side of an edge a point is that is nearer to it than its error.
-                    let at = affine.inverse().transform_point3(surface.position.as_dvec3());
+                    let at = affine.inverse().transform_point3(surface.point());
                     if near_edge(&shape, at, f64::from(10.0 * stretch * off)) {
                         continue;
                     }
@@ -94,7 +94,7 @@ fn rays_start_so_near_that_a_plane_a_thousandth_away_is_met() {
         for side in [1.0, -1.0] {
             let normal = side * surface.n_geo;
             let away = from_surface(&surface, normal, f32::INFINITY, None);
-            let lifted = (away.origin.as_dvec3() - surface.position.as_dvec3()).dot(normal.as_dvec3());
+            let lifted = (away.origin() - surface.point()).dot(normal.as_dvec3());
             // What an unbounded plane shows may be far away.
             let far = surface.position.abs().max_element() > 500.0;
             assert!(far || (0.0..1e-3).contains(&lifted), "{lifted} {shape:?} {affine:?} {surface:?}");
@@ -114,7 +114,7 @@ fn a_mirrored_and_a_sheared_normal_is_that_of_the_moved_surface() {
             // The same surface in world space: where the distance of the point moved back is zero.
             let inverse = affine.inverse();
             let field = |p: DVec3| distance(&shape, inverse.transform_point3(p));
-            let p = surface.position.as_dvec3();
+            let p = surface.point();
             let local = inverse.transform_point3(p);
             if near_edge(&shape, local, 1e-3) || too_far(&shape, local, 1.0) {
                 continue;
@@ -161,6 +161,6 @@ fn a_floor_in_a_coordinate_plane_is_left() {
         // No coordinate of the point is off the floor, and no offset is needed; also for low rays.
         let dir = random.direction() * Vec3::new(1.0, [1.0, 0.1, 1e-3][round % 3], 1.0);
         let away = from_surface(&surface, dir, f32::INFINITY, None);
-        assert_eq!(floor.intersect(&away), None, "{floor:?} {away:?}");
+        assert_eq!(floor.intersect(&away.rounded), None, "{floor:?} {away:?}");
     }
 }
