@@ -42,7 +42,7 @@ const USAGE: &str = "Commands:
       Tests of the suite with many more numbers: rays against a reference in double precision, rays at edges, rays that
       leave surfaces, bits of all SIMD levels.
   cargo xtask manual
-      Write docs/cameras.md from what the cameras state of themselves.
+      Write the reference of the language, docs/language and its pictures, and the grammar for editors.
 The course is found in ../shared, or where DURER_CORPUS says.";
 
 fn main() -> anyhow::Result<ExitCode> {

@@ -1,103 +1,182 @@
-//! `cargo xtask manual`: what the cameras state of themselves, as a page for people.
+//! `cargo xtask manual`: the language's reference as pages with pictures, and a grammar for editors, from what the code states.
 
-use durer::camera::Camera;
-use durer::describe::{DescribedList, Field, Kind, Rule, Value};
-use durer::dialect::{Dialect, set};
+use anyhow::{Context, Result, bail};
+use durer::format::course::reference::{Chapter, Entry, Spelling, dialect_names, entries};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
+use std::process::{Command, ExitCode};
 
-const HEAD: &str = "# Cameras
+const GENERATED: &str = "Written by `cargo xtask manual` from what the code states; a test holds it to that.";
 
-The cameras of Dürer's own dialect of the scene language, with their fields. This page is written by `cargo xtask manual`
-from what the code states; a test holds it to that.
+/// Size of an example's picture.
+const SIZE: &str = "240x180";
 
-A camera is written like `FisheyeCamera { center 0 1 0 direction 0 0 -1 up 0 1 0 angle 180 }`, with its fields in any order.
-Lengths are in the units of the scene, angles in degrees. Fields without a default must be given. Only the first two are
-words of the course's own years; the others are refused with `--strict`. The mathematics of each, with its sources, is at
-the head of its file in `crates/durer/src/camera/`.
-";
-
-pub fn run() -> anyhow::Result<ExitCode> {
-    std::fs::write(page(), text())?;
-    println!("wrote {}", page().display());
+pub fn run() -> Result<ExitCode> {
+    for (path, text) in pages() {
+        std::fs::create_dir_all(path.parent().context("a folder")?)?;
+        std::fs::write(&path, text)?;
+        println!("wrote {}", path.display());
+    }
+    let durer = crate::build::durer()?;
+    std::fs::create_dir_all(pictures())?;
+    for entry in entries() {
+        let Some(scene) = entry.scene() else { continue };
+        // Examples name files of the repository's scenes.
+        let file = tempfile::Builder::new().suffix(".txt").tempfile_in(docs().join("../scenes"))?;
+        std::fs::write(file.path(), scene)?;
+        let picture = pictures().join(picture_name(&entry));
+        let mut command = Command::new(&durer);
+        command.arg("render").arg(file.path()).arg("-o").arg(&picture).args(["--dialect", "durer", "--size", SIZE]);
+        let output = command.output()?;
+        if !output.status.success() {
+            bail!("the example of {} makes no picture: {}", entry.name(), String::from_utf8_lossy(&output.stderr));
+        }
+    }
+    println!("wrote {}", pictures().display());
     Ok(ExitCode::SUCCESS)
 }
 
-fn page() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/cameras.md")
+fn docs() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs")
 }
 
-fn text() -> String {
-    let mut out = HEAD.to_string();
-    for camera in Camera::kinds() {
-        let name = camera.keyword(Dialect::Durer);
-        // Writing to a String cannot fail.
-        let _ = write!(
-            out,
-            "\n## {name}\n\n{}\n\n| field | value | default | meaning |\n| --- | --- | --- | --- |\n",
-            one_line(camera.doc())
-        );
-        for (i, field) in camera.fields().iter().enumerate() {
-            let Some(word) = field.spelling(Dialect::Durer) else { continue };
-            let default = camera.get(i).filter(|_| !field.required).map_or(String::new(), |value| shown(&value));
-            let _ = writeln!(out, "| `{word}` | {} | {default} | {} |", value_of(field), one_line(field.doc));
-        }
-        if camera.keywords().iter().all(|(_, dialects)| *dialects == set::DURER) {
-            continue;
-        }
-        let years: Vec<&str> = Dialect::ALL
-            .into_iter()
-            .filter(|d| *d != Dialect::Durer)
-            .filter(|d| camera.keywords().iter().any(|(_, dialects)| d.is_in(*dialects)))
-            .map(Dialect::name)
+fn pictures() -> PathBuf {
+    docs().join("language/pictures")
+}
+
+fn picture_name(entry: &Entry) -> String {
+    let chapter = entry.chapter.title().to_lowercase();
+    // Two words may differ in nothing but what they stand in: `Noise`.
+    let kind = if entry.doc.contains("instead of the diffuse") { "-color" } else { "" };
+    format!("{chapter}-{}{kind}.png", entry.name().to_lowercase())
+}
+
+/// All texts that are written, with their places.
+fn pages() -> Vec<(PathBuf, String)> {
+    let folder = docs().join("language");
+    let mut pages = vec![(folder.join("index.md"), index()), (docs().join("editors/durer.tmLanguage.json"), grammar())];
+    pages.extend(Chapter::ALL.map(|chapter| (folder.join(file_name(chapter)), page(chapter))));
+    pages
+}
+
+fn file_name(chapter: Chapter) -> String {
+    format!("{}.md", chapter.title().to_lowercase())
+}
+
+fn index() -> String {
+    let mut out = format!(
+        "# The scene language\n\n{GENERATED}\n\nA scene file has a camera, a background, lights, materials and a group of \
+         objects, each a word and a block in braces:\n\n```\nPerspectiveCamera {{ center 0 1 8 direction 0 -0.1 -1 up 0 1 0 \
+         angle 40 }}\nBackground {{ color 0.2 0.1 0.5 ambientLight 0.2 0.2 0.2 }}\nLights {{ DirectionalLight {{ direction -1 \
+         -2 -1 color 0.9 0.9 0.8 }} }}\nMaterials {{ PhongMaterial {{ diffuseColor 0.8 0.3 0.2 }} }}\nGroup {{ MaterialIndex \
+         0 Sphere {{ center 0 0.5 0 radius 1 }} }}\n```\n\nComments begin with `#`. Lengths are in the units of the scene, \
+         angles in degrees, colours linear Rec.709 from 0 to 1 (and beyond). Words of the course's own years are marked with \
+         their dialects; `durer dialects` explains these, `durer words WORD` tells what is here in a terminal. \
+         `docs/editors/durer.tmLanguage.json` is a TextMate grammar that editors colour scenes with.\n"
+    );
+    for chapter in Chapter::ALL {
+        let words: Vec<String> = entries()
+            .iter()
+            .filter(|entry| entry.chapter == chapter)
+            .map(|entry| format!("[{}]({}#{})", entry.name(), file_name(chapter), anchor(entry.name())))
             .collect();
-        let _ = writeln!(out, "\nAlso a camera of {}.", years.join(", "));
+        let _ = write!(out, "\n**[{}]({})**: {}\n", chapter.title(), file_name(chapter), words.join(", "));
     }
     out
 }
 
-fn one_line(doc: &str) -> String {
-    doc.split_whitespace().collect::<Vec<_>>().join(" ")
+/// As GitHub and mdBook make anchors of headings.
+fn anchor(name: &str) -> String {
+    name.to_lowercase().chars().filter(|c| c.is_alphanumeric() || *c == '_' || *c == '-').collect()
 }
 
-/// What a field's value may be.
-fn value_of(field: &Field) -> String {
-    let kind = match field.kind {
-        Kind::Float => "number".to_string(),
-        Kind::Int => "whole number".into(),
-        Kind::Vec3 => "three numbers".into(),
-        Kind::Path => "path".into(),
-        Kind::Word(words) => return words.iter().map(|word| format!("`{word}`")).collect::<Vec<_>>().join(", "),
-        Kind::Rows(width) => format!("`{{ }}` of rows of {width} numbers"),
-    };
-    let rule = match field.rule {
-        Rule::Any => return kind,
-        Rule::Positive => "more than 0".to_string(),
-        Rule::NonNegative => "0 or more".into(),
-        Rule::NonZero => "not 0 0 0".into(),
-        Rule::Between(low, high) => format!("more than {low}, less than {high}"),
-        Rule::UpTo(high) => format!("more than 0, at most {high}"),
-        Rule::AtMost(most) => format!("at most {most}"),
-        Rule::Rows(least, most) if least == most => format!("{least} of them"),
-        Rule::Rows(least, most) => format!("{least} to {most} of them"),
-        Rule::Counts(most) => format!("whole, 1 to {most}"),
-    };
-    format!("{kind}, {rule}")
-}
-
-fn shown(value: &Value) -> String {
-    match value {
-        Value::Float(x) => x.to_string(),
-        Value::Int(i) => i.to_string(),
-        Value::Vec3(v) => format!("{} {} {}", v.x, v.y, v.z),
-        Value::Path(name) => name.path.clone(),
-        Value::Word(word) => format!("`{word}`"),
-        Value::Rows(_) => String::new(),
+fn page(chapter: Chapter) -> String {
+    let mut out = format!("# {}\n\n{GENERATED}\n", chapter.title());
+    for entry in entries().into_iter().filter(|entry| entry.chapter == chapter) {
+        // Writing to a String cannot fail.
+        let _ = write!(out, "\n## {}\n\n{}\n\nWritten {}.\n", entry.name(), entry.doc, spelled(&entry.keywords));
+        if !entry.values.is_empty() {
+            let _ = write!(out, "\n`{} {}`\n", entry.name(), entry.values);
+        }
+        if !entry.fields.is_empty() {
+            out += "\n| field | value | default | meaning |\n| --- | --- | --- | --- |\n";
+        }
+        for field in &entry.fields {
+            let words: Vec<String> = field
+                .words
+                .iter()
+                .filter(|word| word.1 != 0)
+                .map(|&(word, dialects)| match dialects == entry.dialects() {
+                    true => format!("`{word}`"),
+                    false => format!("`{word}` ({})", dialect_names(dialects)),
+                })
+                .collect();
+            let default = match (&field.default, field.required) {
+                (Some(default), _) => default.as_str(),
+                (None, true) => "must be given",
+                (None, false) => "",
+            };
+            let _ = writeln!(out, "| {} | {} | {default} | {} |", words.join("<br>"), field.value, field.doc);
+        }
+        if !entry.example.is_empty() {
+            let _ = write!(out, "\n```\n{}\n```\n", entry.example);
+        }
+        if entry.scene().is_some() {
+            let _ = write!(out, "\n![{}](pictures/{})\n", entry.name(), picture_name(&entry));
+        }
     }
+    out
+}
+
+fn spelled(keywords: &[Spelling]) -> String {
+    let one = |&(word, dialects): &Spelling| format!("`{word}` in {}", dialect_names(dialects));
+    keywords.iter().map(one).collect::<Vec<_>>().join(", ")
+}
+
+/// A TextMate grammar: comments, numbers, blocks, fields, paths.
+fn grammar() -> String {
+    let (mut blocks, mut fields): (Vec<&str>, Vec<&str>) = (Vec::new(), Vec::new());
+    for entry in entries() {
+        let list = if entry.name().starts_with(char::is_uppercase) { &mut blocks } else { &mut fields };
+        list.extend(entry.keywords.iter().map(|keyword| keyword.0));
+        fields.extend(entry.fields.iter().flat_map(|field| field.words.iter().map(|word| word.0)));
+    }
+    let pattern = |list: &mut Vec<&str>| {
+        list.sort_unstable();
+        list.dedup();
+        // Component<Object> ends in no letter.
+        format!("(?<![\\\\w<])(?:{})(?![\\\\w<])", list.join("|"))
+    };
+    format!(
+        r##"{{
+  "name": "Dürer scene",
+  "scopeName": "source.durer",
+  "fileTypes": ["txt"],
+  "patterns": [
+    {{ "name": "comment.line.number-sign.durer", "match": "#.*$" }},
+    {{ "name": "constant.numeric.durer", "match": "(?<![\\w.])[-+]?(?:\\d+\\.?\\d*|\\.\\d+)(?:[eE][-+]?\\d+)?(?![\\w.])" }},
+    {{ "name": "keyword.other.block.durer", "match": "{}" }},
+    {{ "name": "variable.parameter.durer", "match": "{}" }},
+    {{ "name": "string.unquoted.path.durer", "match": "[\\w./-]+\\.(?:obj|ply|png|ppm|tga|bmp|exr|hdr|pfm)" }}
+  ]
+}}
+"##,
+        pattern(&mut blocks),
+        pattern(&mut fields)
+    )
 }
 
 #[test]
-fn the_page_says_what_the_code_states() {
-    assert!(std::fs::read_to_string(page()).unwrap() == text(), "run `cargo xtask manual`");
+fn the_pages_say_what_the_code_states() {
+    for (path, text) in pages() {
+        let written = std::fs::read_to_string(&path).unwrap_or_default();
+        assert!(written == text, "{} is old: run `cargo xtask manual`", path.display());
+    }
+    for entry in entries().iter().filter(|entry| entry.scene().is_some()) {
+        assert!(
+            pictures().join(picture_name(entry)).exists(),
+            "{} has no picture: run `cargo xtask manual`",
+            entry.name()
+        );
+    }
 }

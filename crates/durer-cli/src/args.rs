@@ -43,6 +43,11 @@ pub enum Command {
     /// List the dialects of the scene language, and the old programs' habits that can be had by name
     #[command(after_help = "Example:\n  durer dialects")]
     Dialects,
+    /// Look up a word of the scene language: what it takes, in which dialects, with an example
+    #[command(
+        after_help = "Examples:\n  durer words\n  durer words PhongMaterial\n  durer words falloff --dialect f16"
+    )]
+    Words(WordsArgs),
     /// Print shell completions to standard output
     #[command(after_help = "Example:\n  durer completions bash > ~/.local/share/bash-completion/completions/durer")]
     Completions {
@@ -580,4 +585,14 @@ fn percent(text: &str) -> Result<f64, String> {
         .ok()
         .filter(|p| (0.0..=100.0).contains(p))
         .ok_or_else(|| "say a number from 0 to 100".into())
+}
+
+/// What `durer words` takes.
+#[derive(clap::Args)]
+pub struct WordsArgs {
+    /// The word; without one, all that begin something are listed
+    pub word: Option<String>,
+    /// Only what this dialect has
+    #[arg(long)]
+    pub dialect: Option<String>,
 }

@@ -21,6 +21,7 @@ mod progress;
 mod render;
 mod report;
 mod verify;
+mod words;
 
 use args::{Cli, Command};
 use clap::Parser;
@@ -64,6 +65,7 @@ fn main() -> ExitCode {
             Command::Convert(args) => convert::run(&args),
             Command::Compare(args) => compare::run(&args),
             Command::Dialects => manual::dialects(),
+            Command::Words(args) => words::run(&args),
             Command::Completions { shell } => manual::completions(shell),
             Command::Man => manual::man(),
         },

@@ -131,6 +131,20 @@ impl Operation {
         ("Xor", Operation::Xor),
     ];
 
+    /// What is inside the result.
+    pub fn doc(self) -> &'static str {
+        match self {
+            Operation::Union => {
+                "All that is in some part. Where no other operation is around it, the parts stay as they are, \
+                 with the surfaces that they have inside each other."
+            }
+            Operation::Merge => "All that is in some part, as one solid: surfaces inside other parts are gone.",
+            Operation::Intersection => "What is in every part.",
+            Operation::Difference => "What is in the first part and in no other.",
+            Operation::Xor => "What is in an odd number of parts: of two, in one alone.",
+        }
+    }
+
     /// The one of a keyword.
     pub fn from_keyword(word: &str) -> Option<Operation> {
         Operation::ALL.iter().find(|row| row.0 == word).map(|row| row.1)

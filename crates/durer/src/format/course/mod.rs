@@ -7,6 +7,7 @@ mod nodes;
 pub mod place;
 mod reader;
 mod recover;
+pub mod reference;
 mod sections;
 mod transform;
 mod words;

@@ -79,6 +79,12 @@ pub(super) fn dialects_of(word: &str) -> Option<DialectSet> {
     WORDS.get(word).copied()
 }
 
+/// Every word.
+#[cfg(test)]
+pub(super) fn all() -> impl Iterator<Item = &'static str> {
+    WORDS.keys().copied()
+}
+
 /// Whether a word begins a block with braces.
 pub(super) fn begins_block(word: &str) -> bool {
     word.starts_with(|c: char| c.is_ascii_uppercase()) && WORDS.contains_key(word)

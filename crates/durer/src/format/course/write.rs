@@ -18,6 +18,13 @@ pub fn write(scene: &Scene, dialect: Dialect) -> String {
     writer.out
 }
 
+/// Writes one thing by itself, as [`write`] would.
+pub(super) fn write_thing<T: DescribedList>(thing: &T, dialect: Dialect) -> String {
+    let mut writer = Writer { out: String::new(), depth: 0, dialect, material: None };
+    writer.thing(thing);
+    writer.out
+}
+
 struct Writer {
     out: String,
     depth: usize,

@@ -1,0 +1,85 @@
+//! `durer words`: the language's reference in the terminal.
+
+use crate::args::WordsArgs;
+use crate::output::say;
+use crate::{Failure, bad};
+use durer::diag::did_you_mean;
+use durer::dialect::Dialect;
+use durer::format::course::reference::{Chapter, Entry, FieldEntry, all_words, dialect_names, entries};
+
+pub fn run(args: &WordsArgs) -> Result<(), Failure> {
+    let dialect = args.dialect.as_deref().map(named).transpose()?;
+    let has = |set| dialect.is_none_or(|dialect: Dialect| dialect.is_in(set));
+    let all: Vec<Entry> = entries().into_iter().filter(|entry| has(entry.dialects())).collect();
+    let Some(word) = &args.word else {
+        list(&all, dialect);
+        return Ok(());
+    };
+    let is = |spelled: &str| spelled.eq_ignore_ascii_case(word);
+    let begun: Vec<&Entry> = all.iter().filter(|entry| entry.keywords.iter().any(|k| has(k.1) && is(k.0))).collect();
+    let is_field = |field: &&FieldEntry| field.words.iter().any(|spelled| has(spelled.1) && is(spelled.0));
+    let in_blocks: Vec<(&Entry, &FieldEntry)> =
+        all.iter().flat_map(|entry| entry.fields.iter().filter(is_field).map(move |field| (entry, field))).collect();
+    if begun.is_empty() && in_blocks.is_empty() {
+        let place = dialect.map_or("the language".to_string(), |dialect| format!("the dialect `{}`", dialect.name()));
+        let meant = did_you_mean(word, all_words());
+        let meant = meant.map_or("`durer words` lists all".to_string(), |near| format!("did you mean `{near}`?"));
+        return Err(bad(format!("`{word}` is no word of {place}: {meant}")));
+    }
+    let mut parts: Vec<String> = begun.into_iter().map(described).collect();
+    if !in_blocks.is_empty() {
+        let rows = in_blocks.into_iter().map(|(entry, field)| format!("in {}\n{}", entry.name(), field_text(field)));
+        parts.push(rows.collect::<Vec<_>>().join("\n"));
+    }
+    say(&parts.join("\n\n"));
+    Ok(())
+}
+
+fn named(name: &str) -> Result<Dialect, Failure> {
+    let known = || Dialect::ALL.map(Dialect::name).join(", ");
+    Dialect::from_name(name).ok_or_else(|| bad(format!("`{name}` is no dialect; there are {}", known())))
+}
+
+fn list(all: &[Entry], dialect: Option<Dialect>) {
+    for chapter in Chapter::ALL {
+        let of_chapter: Vec<&Entry> = all.iter().filter(|entry| entry.chapter == chapter).collect();
+        if of_chapter.is_empty() {
+            continue;
+        }
+        say(chapter.title());
+        for entry in of_chapter {
+            let own = entry.keywords.iter().find(|keyword| dialect.is_none_or(|dialect| dialect.is_in(keyword.1)));
+            let first = entry.doc.split_inclusive(". ").next().unwrap_or_default().trim();
+            say(&format!("  {:<22}{first}", own.unwrap_or(&entry.keywords[0]).0));
+        }
+    }
+    say("\n`durer words WORD` tells what follows a word.");
+}
+
+fn described(entry: &Entry) -> String {
+    let spelled: Vec<String> =
+        entry.keywords.iter().map(|&(word, dialects)| format!("{word} ({})", dialect_names(dialects))).collect();
+    let mut text = format!("{}\n  {}", spelled.join(", "), entry.doc);
+    if !entry.values.is_empty() {
+        text += &format!("\n\n  {} {}", entry.name(), entry.values);
+    }
+    if !entry.fields.is_empty() {
+        let fields: Vec<String> = entry.fields.iter().map(field_text).collect();
+        text += &format!("\n\n{}", fields.join("\n"));
+    }
+    if !entry.example.is_empty() {
+        text += &format!("\n\n  Example:\n    {}", entry.example);
+    }
+    text
+}
+
+fn field_text(field: &FieldEntry) -> String {
+    let words = field.words.iter().filter(|spelled| spelled.1 != 0);
+    let words: Vec<String> = words.map(|&(word, dialects)| format!("{word} ({})", dialect_names(dialects))).collect();
+    let given = match (&field.default, field.required) {
+        (Some(default), _) => format!("; {default} where it is not given"),
+        (None, true) => "; must be given".into(),
+        (None, false) => String::new(),
+    };
+    format!("  {}\n      {}{given}\n      {}", words.join(", "), field.value.replace('`', ""), field.doc)
+}

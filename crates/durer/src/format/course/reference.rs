@@ -1,0 +1,418 @@
+//! The reference of the language: every word that begins something, what follows it, in which dialects, with an example.
+//!
+//! What has parameters is read off its statement; the words of the grammar itself, which have none, are a table here.
+
+use super::write::write_thing;
+use crate::camera::Camera;
+use crate::describe::{DescribedList, Kind, Rule, Value};
+use crate::dialect::{Dialect, DialectSet, set};
+use crate::light::Light;
+use crate::material::{ColorNoise, PhongMaterial, Solid};
+use crate::math::Vec3;
+use crate::scene::{Background, Operation};
+use crate::shape::{HeightField, Primitive, TriangleMesh, VoxelGrid};
+
+/// A chapter of the reference.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Chapter {
+    /// The frame of a scene file: sections, groups, counts.
+    Structure,
+    /// What sees.
+    Cameras,
+    /// What shines.
+    Lights,
+    /// How surfaces look.
+    Materials,
+    /// What can be hit.
+    Shapes,
+    /// Shapes combined by Boolean operations.
+    Solids,
+    /// How things are moved.
+    Transforms,
+}
+
+impl Chapter {
+    /// All chapters, in the order of reading.
+    pub const ALL: [Chapter; 7] = [
+        Chapter::Structure,
+        Chapter::Cameras,
+        Chapter::Lights,
+        Chapter::Materials,
+        Chapter::Shapes,
+        Chapter::Solids,
+        Chapter::Transforms,
+    ];
+
+    /// Its title.
+    pub fn title(self) -> &'static str {
+        match self {
+            Chapter::Structure => "Structure",
+            Chapter::Cameras => "Cameras",
+            Chapter::Lights => "Lights",
+            Chapter::Materials => "Materials",
+            Chapter::Shapes => "Shapes",
+            Chapter::Solids => "Solids",
+            Chapter::Transforms => "Transforms",
+        }
+    }
+}
+
+/// A word, with the dialects that have it.
+pub type Spelling = (&'static str, DialectSet);
+
+/// A word that begins something.
+#[derive(Clone, Debug)]
+pub struct Entry {
+    /// The keywords, by dialect; the first is its name here.
+    pub keywords: Vec<Spelling>,
+    /// Where it is described.
+    pub chapter: Chapter,
+    /// What it is.
+    pub doc: String,
+    /// What follows a word that is no block: `x y z`, say.
+    pub values: &'static str,
+    /// The fields of its block.
+    pub fields: Vec<FieldEntry>,
+    /// How it is written in our own dialect; empty where it is not.
+    pub example: String,
+}
+
+/// A field of a block.
+#[derive(Clone, Debug)]
+pub struct FieldEntry {
+    /// Its words, by dialect.
+    pub words: Vec<Spelling>,
+    /// Type and range.
+    pub value: String,
+    /// Whether it must be given.
+    pub required: bool,
+    /// What holds where it is not given, if that is a value.
+    pub default: Option<String>,
+    /// Meaning and unit.
+    pub doc: String,
+}
+
+impl Entry {
+    /// Its name in the reference.
+    pub fn name(&self) -> &'static str {
+        self.keywords[0].0
+    }
+
+    /// The dialects that have it.
+    pub fn dialects(&self) -> DialectSet {
+        self.keywords.iter().fold(0, |all, keyword| all | keyword.1)
+    }
+
+    /// A scene that shows the example, if it can be seen.
+    pub fn scene(&self) -> Option<String> {
+        if self.example.is_empty() {
+            return None;
+        }
+        let example = &self.example;
+        Some(match self.chapter {
+            Chapter::Structure => return None,
+            Chapter::Cameras => format!("{example}\n{TOWN}"),
+            Chapter::Lights => format!(
+                "{EYE}Background {{ color 0 0 0 ambientLight 0.05 0.05 0.05 }}\nLights {{ {example} }}\n{PAINTS}{STILL_LIFE}"
+            ),
+            Chapter::Materials => format!(
+                "{EYE}{DAY}Materials {{\n    {GROUND_PAINT}\n    PhongMaterial {{ diffuseColor 0.75 0.35 0.2 }}\n    \
+                 PhongMaterial {{ diffuseColor 0.9 0.85 0.7 }}\n    {example}\n}}\nGroup {{\n    MaterialIndex 0 \
+                 Plane {{ normal 0 1 0 offset -1 }}\n    MaterialIndex 3 Sphere {{ center 0 0 0 radius 1 }}\n}}\n"
+            ),
+            Chapter::Shapes | Chapter::Solids | Chapter::Transforms => {
+                format!("{EYE}{DAY}{PAINTS}Group {{\n    MaterialIndex 0 {FLOOR}\n    MaterialIndex 1\n{example}\n}}\n")
+            }
+        })
+    }
+}
+
+const EYE: &str = "PerspectiveCamera { center 3.2 2.3 4.4 direction -3.2 -2.4 -4.4 up 0 1 0 angle 34 }\n";
+const DAY: &str = "Background { color 0.78 0.84 0.92 ambientLight 0.3 0.3 0.32 }
+Lights { DirectionalLight { direction -1 -2.2 -0.7 color 0.75 0.75 0.7 } }
+";
+const GROUND_PAINT: &str = "PhongMaterial { diffuseColor 0.72 0.72 0.7 }";
+const PAINTS: &str = "Materials {
+    PhongMaterial { diffuseColor 0.72 0.72 0.7 }
+    PhongMaterial { diffuseColor 0.8 0.5 0.25 specularColor 0.25 0.25 0.25 exponent 30 }
+    PhongMaterial { diffuseColor 0.3 0.5 0.7 }
+}
+";
+const FLOOR: &str = "Plane { normal 0 1 0 offset -1.3 }";
+const STILL_LIFE: &str = "Group {
+    MaterialIndex 0 Plane { normal 0 1 0 offset -1 }
+    MaterialIndex 1 Sphere { center 0.4 -0.2 0 radius 0.8 }
+    MaterialIndex 2 Box { min -1.5 -1 -1.2 max -0.5 0.6 -0.2 }
+}
+";
+const TOWN: &str = "Background { color 0.78 0.84 0.92 ambientLight 0.35 0.35 0.37 }
+Lights { DirectionalLight { direction -1 -2 -0.7 color 0.7 0.7 0.65 } }
+Materials {
+    PhongMaterial { diffuseColor 0.72 0.72 0.7 }
+    PhongMaterial { diffuseColor 0.8 0.35 0.25 }
+    PhongMaterial { diffuseColor 0.3 0.5 0.7 }
+    PhongMaterial { diffuseColor 0.45 0.65 0.35 }
+    PhongMaterial { diffuseColor 0.85 0.75 0.3 }
+    PhongMaterial { diffuseColor 0.4 0.4 0.4 }
+    Checkerboard { materialIndex 0 materialIndex 5 }
+}
+Group {
+    MaterialIndex 6 Plane { normal 0 1 0 offset -1 }
+    MaterialIndex 1 Sphere { center -1.3 -0.2 -5 radius 0.8 }
+    MaterialIndex 2 Box { min 0.4 -1 -6 max 1.8 0.7 -4.6 }
+    MaterialIndex 3 Cone { base 4 -1 -3 top 4 1.5 -3 baseRadius 0.9 }
+    MaterialIndex 4 Cylinder { base -4.5 -1 -2 top -4.5 1.2 -2 radius 0.6 }
+    MaterialIndex 1 Box { min 4 -1 1 max 5 1.2 2 }
+    MaterialIndex 2 Sphere { center -4 -0.1 2.5 radius 0.9 }
+    MaterialIndex 3 Sphere { center 0.5 -0.3 5 radius 0.7 }
+    MaterialIndex 4 Torus { center 0 4 0 axis 0 1 0 majorRadius 1.5 minorRadius 0.3 }
+}
+";
+
+/// Examples that say more than the defaults of a statement do.
+const EXAMPLES: [(&str, &str); 22] = [
+    ("Background", "Background { color 0.7 0.8 0.9 ambientLight 0.2 0.2 0.2 }"),
+    ("DirectionalLight", "DirectionalLight { direction -1 -2 -0.7 color 0.9 0.85 0.7 }"),
+    ("PointLight", "PointLight { position 1.6 1.8 1.4 color 3 2.8 2.4 falloff 0.4 }"),
+    (
+        "PhongMaterial",
+        "PhongMaterial { diffuseColor 0.2 0.4 0.6 specularColor 0.8 0.8 0.8 exponent 60 reflectiveColor 0.2 0.2 0.2 }",
+    ),
+    ("Checkerboard", "Checkerboard { Transform { UniformScale 0.5 } materialIndex 1 materialIndex 2 }"),
+    ("Noise", "Noise { Transform { UniformScale 0.3 } materialIndex 1 materialIndex 2 octaves 3 }"),
+    ("Marble", "Marble { materialIndex 1 materialIndex 2 octaves 4 frequency 6 amplitude 5 }"),
+    ("Wood", "Wood { materialIndex 1 materialIndex 2 octaves 2 frequency 20 amplitude 2 }"),
+    (
+        "Noise in a material",
+        "PhongMaterial { Noise { color 0.2 0.1 0.05 color 0.9 0.7 0.5 octaves 3 frequency 5 amplitude 4 } }",
+    ),
+    ("Plane", "Plane { normal 1 2 0.4 offset -1 }"),
+    ("Triangle", "Triangle { vertex0 -1.2 -1 0.4 vertex1 1.2 -1 0.4 vertex2 0 1.1 -0.4 }"),
+    ("Box", "Box { min -0.8 -1.3 -0.8 max 0.8 0.3 0.8 }"),
+    ("Cylinder", "Cylinder { base 0 -1.3 0 top 0 0.6 0 radius 0.8 }"),
+    ("Cone", "Cone { base 0 -1.3 0 top 0 0.6 0 baseRadius 1 topRadius 0.4 }"),
+    ("Torus", "Torus { center 0 -0.5 0 axis 0.3 1 0.2 majorRadius 1 minorRadius 0.35 }"),
+    ("Ellipsoid", "Ellipsoid { center 0 -0.3 0 radii 1.2 0.9 0.6 }"),
+    ("Disc", "Disc { center 0 -0.4 0 normal 0.3 1 0.6 radius 1.2 innerRadius 0.5 }"),
+    ("Rectangle", "Rectangle { corner -1 -1.1 0.5 edge0 2 0 0 edge1 0 1.6 -1 }"),
+    ("TriangleMesh", "Transform { UniformScale 1.1 TriangleMesh { obj_file meshes/durer-solid.obj } }"),
+    ("HeightField", "HeightField { picture textures/hills.png min -1.4 -1 -1.4 max 1.4 0.2 1.4 depth 0.3 }"),
+    ("Quadric", "Quadric { squares 1 -0.5 1 constant -0.2 }"),
+    ("Grid", "Grid { min -1 -1.2 -1 max 1 0.8 1 numCells 10 10 10 rasterizeSphere { center 0 -0.2 0 radius 0.95 } }"),
+];
+
+/// Words of the grammar itself: spellings, chapter, what follows, meaning, example.
+#[rustfmt::skip]
+const GRAMMAR: &[(&[Spelling], Chapter, &str, &str, &str)] = &[
+    (&[("Lights", set::CLASSIC)], Chapter::Structure, "{ lights }",
+        "The lights. Without any, ambient light counts as 1 1 1.", "Lights { PointLight { position 0 4 0 color 1 1 1 } }"),
+    (&[("Materials", set::ALL)], Chapter::Structure, "{ materials }",
+        "The materials, numbered from 0 as they are written.", "Materials { PhongMaterial { diffuseColor 0.8 0.2 0.2 } }"),
+    (&[("Group", set::CLASSIC)], Chapter::Structure, "{ objects }",
+        "Several objects. The scene has one at its top; groups may hold groups.",
+        "Group { MaterialIndex 0 Sphere { center 0 0 0 radius 1 } }"),
+    (&[("MaterialIndex", set::CLASSIC)], Chapter::Structure, "n",
+        "The material of all objects that follow, up to the next such word.", "MaterialIndex 1"),
+    (&[("numObjects", set::CLASSIC), ("num_objects", set::F03)], Chapter::Structure, "n",
+        "How many objects follow in this group. The course's programs need it; ours checks it where it is written.", ""),
+    (&[("numLights", set::CLASSIC)], Chapter::Structure, "n", "How many lights follow; as `numObjects`.", ""),
+    (&[("numMaterials", set::CLASSIC)], Chapter::Structure, "n", "How many materials follow; as `numObjects`.", ""),
+    (&[("Scene", set::F23)], Chapter::Structure, "{ nodes and components }", "The root node of a scene of 2020 to 2023.", ""),
+    (&[("Node", set::F23)], Chapter::Structure, "{ Transform, nodes and components }",
+        "A place in the tree of a scene of 2020 to 2023: its transform holds for all that is in it.", ""),
+    (&[("Component<Object>", set::F23)], Chapter::Structure, "{ type ... }",
+        "An object at a node: `type` is `sphere`, `plane`, `triangle` or `mesh`; the fields of that shape follow.", ""),
+    (&[("Component<Light>", set::F23)], Chapter::Structure, "{ type ... }",
+        "A light at a node: `type` is `point` or `directional`; its fields follow.", ""),
+    (&[("Component<Material>", set::F23)], Chapter::Structure, "{ index n }",
+        "The material of a node's objects: the number of one in `Materials`.", ""),
+    (&[("type", set::F23)], Chapter::Structure, "word", "What a component is.", ""),
+    (&[("index", set::F23)], Chapter::Structure, "n", "The number of a material.", ""),
+    (&[("Transform", set::ALL)], Chapter::Transforms, "{ matrices object }",
+        "One object, moved. The matrices multiply as they are written: the last is applied to the object first.",
+        "Transform { Translate 0 -0.4 0 ZRotate 25 Scale 1 0.5 0.7 Sphere { center 0 0 0 radius 1 } }"),
+    (&[("Translate", set::CLASSIC), ("translate", set::F23)], Chapter::Transforms, "x y z", "Moves by a vector.",
+        "Transform { Translate 0.8 -0.5 0 Sphere { center 0 0 0 radius 0.7 } }"),
+    (&[("Scale", set::CLASSIC), ("scale", set::F23)], Chapter::Transforms, "x y z",
+        "Stretches along the axes. No factor may be 0; one less than 0 mirrors.",
+        "Transform { Scale 1.2 0.5 0.8 Sphere { center 0 0 0 radius 1 } }"),
+    (&[("UniformScale", set::CLASSIC), ("uniform_scale", set::F23)], Chapter::Transforms, "s",
+        "Enlarges alike in all directions.", "Transform { UniformScale 0.6 Sphere { center 0 0 0 radius 1 } }"),
+    (&[("XRotate", set::CLASSIC), ("x_rotate", set::F23)], Chapter::Transforms, "degrees",
+        "Turns about the x axis: y towards z.", "Transform { XRotate 30 Box { min -0.6 -0.9 -0.6 max 0.6 0.9 0.6 } }"),
+    (&[("YRotate", set::CLASSIC), ("y_rotate", set::F23)], Chapter::Transforms, "degrees",
+        "Turns about the y axis: z towards x.", "Transform { YRotate 60 Box { min -1 -1.2 -0.4 max 1 0.3 0.4 } }"),
+    (&[("ZRotate", set::CLASSIC), ("z_rotate", set::F23)], Chapter::Transforms, "degrees",
+        "Turns about the z axis: x towards y.", "Transform { ZRotate 30 Box { min -0.6 -0.9 -0.6 max 0.6 0.9 0.6 } }"),
+    (&[("Rotate", set::CLASSIC), ("rotate", set::F23)], Chapter::Transforms, "{ x y z degrees }",
+        "Turns about an axis through the origin.",
+        "Transform { Rotate { 1 1 0 50 } Box { min -0.6 -0.9 -0.6 max 0.6 0.9 0.6 } }"),
+    (&[("Matrix", set::OLD | set::DURER), ("Matrix4f", set::NEW | set::DURER)], Chapter::Transforms, "{ 16 numbers }",
+        "Any affine map. `Matrix` lists rows, `Matrix4f` columns; the last row is 0 0 0 1.",
+        "Transform { Matrix { 1 0.6 0 0  0 1 0 -0.4  0 0 1 0  0 0 0 1 } Box { min -0.6 -0.8 -0.6 max 0.6 0.8 0.6 } }"),
+];
+
+/// Every word that begins something, by chapter.
+pub fn entries() -> Vec<Entry> {
+    let mut all: Vec<Entry> = Vec::new();
+    all.extend(of::<Background>(Chapter::Structure));
+    all.extend(of::<Camera>(Chapter::Cameras));
+    all.extend(of::<Light>(Chapter::Lights));
+    all.extend(of::<PhongMaterial>(Chapter::Materials));
+    let noise = of::<ColorNoise>(Chapter::Materials);
+    all.extend(noise.into_iter().map(|entry| Entry { example: example_of("Noise in a material"), ..entry }));
+    all.extend(of::<Solid>(Chapter::Materials));
+    all.extend(of::<Primitive>(Chapter::Shapes));
+    all.extend(of::<TriangleMesh>(Chapter::Shapes));
+    all.extend(of::<HeightField>(Chapter::Shapes));
+    all.extend(of::<VoxelGrid>(Chapter::Shapes));
+    all.extend(Operation::ALL.map(|(word, operation)| Entry {
+        keywords: vec![(word, set::DURER)],
+        chapter: Chapter::Solids,
+        doc: operation.doc().into(),
+        values: "{ closed shapes, solids and groups of them }",
+        fields: Vec::new(),
+        example: format!(
+            "{word} {{ Box {{ min -1 -1.3 -1 max 0.6 0.3 0.6 }} Sphere {{ center 0.5 0 0.5 radius 0.8 }} }}"
+        ),
+    }));
+    all.extend(GRAMMAR.iter().map(|&(keywords, chapter, values, doc, example)| Entry {
+        keywords: keywords.to_vec(),
+        chapter,
+        doc: doc.into(),
+        values,
+        fields: Vec::new(),
+        example: example.into(),
+    }));
+    all.sort_by_key(|entry| Chapter::ALL.iter().position(|chapter| *chapter == entry.chapter));
+    all
+}
+
+/// The entries of a list of described things.
+fn of<T: DescribedList>(chapter: Chapter) -> Vec<Entry> {
+    let entry = |mut kind: T| {
+        let keywords = kind.keywords().to_vec();
+        let own = keywords.iter().fold(0, |all, keyword| all | keyword.1);
+        let fields = (0..kind.fields().len()).map(|i| field(&kind, i, own)).collect();
+        let doc = one_line(kind.doc());
+        let name = keywords[0].0;
+        let example = match EXAMPLES.iter().any(|row| row.0 == name) {
+            true => example_of(name),
+            false => {
+                // A camera a little above the ground sees more of the town.
+                let center = kind.fields().iter().position(|field| field.name == "center");
+                if let (Chapter::Cameras, Some(center)) = (chapter, center) {
+                    kind.set(center, Value::Vec3(Vec3::new(0.0, 0.3, 0.0)));
+                }
+                let text = write_thing(&kind, Dialect::Durer);
+                text.split_whitespace().collect::<Vec<_>>().join(" ")
+            }
+        };
+        Entry { keywords, chapter, doc, values: "", fields, example }
+    };
+    T::kinds().into_iter().map(entry).collect()
+}
+
+fn example_of(name: &str) -> String {
+    EXAMPLES.iter().find(|row| row.0 == name).map_or(String::new(), |row| row.1.into())
+}
+
+fn field<T: DescribedList>(kind: &T, i: usize, own: DialectSet) -> FieldEntry {
+    let field = &kind.fields()[i];
+    let words = field.spellings.iter().map(|&(word, dialects)| (word, dialects & own)).collect();
+    let default = kind.get(i).filter(|_| !field.required).map(|value| value_text(&value));
+    FieldEntry {
+        words,
+        value: value_of(field.kind, field.rule),
+        required: field.required,
+        default: default.filter(|text| !text.is_empty()),
+        doc: one_line(field.doc),
+    }
+}
+
+/// The names of the dialects of a set; `all` where it has them all.
+pub fn dialect_names(dialects: DialectSet) -> String {
+    if dialects == set::ALL {
+        return "all dialects".into();
+    }
+    let names: Vec<&str> = Dialect::ALL.into_iter().filter(|d| d.is_in(dialects)).map(Dialect::name).collect();
+    names.join(", ")
+}
+
+/// What a value of a kind under a rule may be.
+fn value_of(kind: Kind, rule: Rule) -> String {
+    let kind = match kind {
+        Kind::Float => "number".to_string(),
+        Kind::Int => "whole number".into(),
+        Kind::Vec3 => "three numbers".into(),
+        Kind::Path => "path".into(),
+        Kind::Word(words) => return words.iter().map(|word| format!("`{word}`")).collect::<Vec<_>>().join(", "),
+        Kind::Rows(width) => format!("`{{ }}` of rows of {width} numbers"),
+    };
+    let rule = match rule {
+        Rule::Any => return kind,
+        Rule::Positive => "more than 0".to_string(),
+        Rule::NonNegative => "0 or more".into(),
+        Rule::NonZero => "not 0 0 0".into(),
+        Rule::Between(low, high) => format!("more than {low}, less than {high}"),
+        Rule::UpTo(high) => format!("more than 0, at most {high}"),
+        Rule::AtMost(most) => format!("at most {most}"),
+        Rule::Rows(least, most) if least == most => format!("{least} of them"),
+        Rule::Rows(least, most) => format!("{least} to {most} of them"),
+        Rule::Counts(most) => format!("whole, 1 to {most}"),
+    };
+    format!("{kind}, {rule}")
+}
+
+fn value_text(value: &Value) -> String {
+    match value {
+        Value::Float(x) => x.to_string(),
+        Value::Int(i) => i.to_string(),
+        Value::Vec3(v) => format!("{} {} {}", v.x, v.y, v.z),
+        Value::Path(name) => name.path.clone(),
+        Value::Word(word) => word.clone(),
+        Value::Rows(_) => String::new(),
+    }
+}
+
+fn one_line(doc: &str) -> String {
+    doc.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+/// Every word of the language, fields and values among them, sorted: for editors, and to guess what was meant.
+pub fn all_words() -> Vec<&'static str> {
+    let mut words: Vec<&'static str> = Vec::new();
+    for entry in entries() {
+        words.extend(entry.keywords.iter().map(|keyword| keyword.0));
+        words.extend(entry.fields.iter().flat_map(|field| field.words.iter().map(|word| word.0)));
+    }
+    words.sort_unstable();
+    words.dedup();
+    words
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::compile::{AccelKind, testing};
+    use std::path::Path;
+
+    #[test]
+    fn every_word_of_the_reader_is_in_the_reference() {
+        let ours = all_words();
+        let missing: Vec<_> = super::super::words::all().filter(|word| !ours.contains(word)).collect();
+        assert!(missing.is_empty(), "no entry for {missing:?}");
+        let unknown: Vec<_> = ours.iter().filter(|word| super::super::words::dialects_of(word).is_none()).collect();
+        assert!(unknown.is_empty(), "the reader does not know {unknown:?}");
+    }
+
+    #[test]
+    fn every_example_is_a_scene_in_which_something_is_seen() {
+        let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
+        for entry in entries() {
+            let Some(text) = entry.scene() else { continue };
+            let (world, found) = testing::try_read(&text, Dialect::Durer.rules(), AccelKind::Bvh, &scenes);
+            assert!(world.is_some() && found.iter().next().is_none(), "{}: {found:?}\n{text}", entry.name());
+        }
+    }
+}
