@@ -55,7 +55,7 @@ pub enum Command {
 }
 
 /// How a scene is read
-#[derive(Args, Default)]
+#[derive(Args)]
 pub struct SceneArgs {
     /// The scene's dialect, with all habits of that year's program; guessed where not given
     #[arg(long, value_parser = PossibleValuesParser::new(Dialect::ALL.map(Dialect::name)))]
@@ -72,6 +72,9 @@ pub struct SceneArgs {
     /// Look for missing meshes and pictures in this folder too
     #[arg(long, value_name = "FOLDER")]
     pub assets: Vec<PathBuf>,
+    /// Refuse what needs more memory: bytes as in 512M or 8G, or a share of the machine's or control group's
+    #[arg(long, default_value = "80%", value_name = "SIZE", value_parser = Memory::parse)]
+    pub memory: Memory,
 }
 
 /// Render a scene to a picture
@@ -89,8 +92,8 @@ pub struct SceneArgs {
 The extension of PICTURE says the format: png, tga, bmp, ppm, pfm, exr, hdr. Several pictures go into one EXR file
 as layers, or into files of their own: picture.depth.png and so on.
 
-Work that takes long is saved every now and then into PICTURE.part, which --resume goes on with; it is removed
-when the picture is done. Ctrl-C saves what is there.")]
+Work that takes long is saved every now and then into PICTURE.part, which --resume goes on with, and without which word or
+--restart nothing of it is thrown away; it is removed when the picture is done. Ctrl-C, SIGTERM and SIGHUP save what is there.")]
 pub struct RenderCommand {
     #[command(flatten)]
     pub render: RenderArgs,
@@ -213,12 +216,12 @@ pub struct WorkArgs {
     /// Stop after this time, as in 30s, 10m, 1h30m, once every pixel has a sample
     #[arg(long, value_name = "TIME", value_parser = humantime::parse_duration)]
     pub time: Option<Duration>,
-    /// Refuse work that needs more memory: bytes as in 512M or 8G, or a share of the machine's or control group's
-    #[arg(long, default_value = "80%", value_name = "SIZE", value_parser = Memory::parse)]
-    pub memory: Memory,
     /// Go on with the work that was saved; from the start where none was
     #[arg(long)]
     pub resume: bool,
+    /// Throw away unfinished work that was saved, and begin anew
+    #[arg(long, conflicts_with_all = ["resume", "no_checkpoint"])]
+    pub restart: bool,
     /// Where work is saved [default: PICTURE.part, from the first second on]
     #[arg(long, value_name = "FILE", conflicts_with = "shard")]
     pub checkpoint: Option<PathBuf>,

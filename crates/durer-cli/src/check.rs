@@ -5,6 +5,7 @@ mod json;
 mod mend;
 
 use crate::args::CheckArgs;
+use crate::guard::Guard;
 use crate::job::{accel, job};
 use crate::open::load_options;
 use crate::output::say;
@@ -29,6 +30,8 @@ struct Checked {
     dialect: Option<&'static str>,
     /// Whether a picture can be made of it.
     readable: bool,
+    /// The files that it names.
+    named: Vec<PathBuf>,
 }
 
 impl Checked {
@@ -76,14 +79,23 @@ fn one(path: &Path, args: &CheckArgs) -> Result<(Checked, Vec<mend::Change>), Fa
     let mut checked = look(path, bytes.clone(), args)?;
     let mut changes = Vec::new();
     if args.fix {
-        let target = args.output.as_deref().unwrap_or(path);
+        let mut guard = Guard::default();
+        let place = match &args.output {
+            Some(other) => {
+                guard.reads(path)?;
+                guard.writes("--output", other)?
+            }
+            // That the scene is replaced is what was asked for.
+            None => guard.writes("--fix", path)?,
+        };
+        checked.named.iter().try_for_each(|named| guard.reads(named))?;
         let (text, made) = mend::mend(&mut checked, bytes.clone(), args)?;
         changes = made;
         if !args.json {
             changes.iter().for_each(|change| say(&change.line()));
         }
         if args.output.is_some() || text != bytes {
-            output::save(&[(target.to_path_buf(), text.to_vec())], args.json)?;
+            output::save(&[(&place, text.to_vec())], args.json)?;
         }
     }
     if !args.json {
@@ -109,7 +121,8 @@ fn look(path: &Path, bytes: Arc<[u8]>, args: &CheckArgs) -> Result<Checked, Fail
         }
         _ => reported(&diagnostics),
     };
-    Ok(Checked { path: path.into(), files, findings, dialect, readable })
+    let named = loaded.map(|loaded| loaded.files()).unwrap_or_default();
+    Ok(Checked { path: path.into(), files, findings, dialect, readable, named })
 }
 
 /// Prints findings, and how many there are.

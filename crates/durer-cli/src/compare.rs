@@ -7,12 +7,15 @@ mod there;
 
 use crate::args::CompareArgs;
 use crate::output::{encode, format, save, say};
+use crate::guard::Guard;
 use crate::report::counted;
 use crate::{Failure, bad, progress, report};
-use durer::image::compare::{Comparison, Options, Picture, Scale, Verdict, compare, heat_map};
-use durer::image::{Image, Layer, Transfer, check_target, decode_linear};
+use durer::diag::{at_least, at_most};
+use durer::image::compare::{Comparison, Options, Picture, Scale, Verdict, compare, heat_map, memory_needed};
+use durer::image::{Destination, Encoded, Image, Layer, Transfer, decode_linear};
+use durer::source::Source;
 use pairs::Pair;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use there::{There, there};
 
 /// What came of a pair.
@@ -59,19 +62,26 @@ fn work(args: &CompareArgs) -> Result<(), Failure> {
     if args.heat.is_some() && found.folders {
         return Err(bad("`--heat` is for two pictures; for folders, `--report` has the heat maps"));
     }
-    args.report.iter().chain(&args.heat).try_for_each(check_target)?;
+    let mut guard = Guard::default();
+    for pair in &found.pairs {
+        guard.reads(&pair.reference)?;
+        pair.picture.iter().try_for_each(|path| guard.reads(path))?;
+    }
+    let report = args.report.as_ref().map(|path| guard.writes("--report", path)).transpose()?;
+    let heat_file = args.heat.as_ref().map(|path| guard.writes("--heat", path)).transpose()?;
+    let memory = args.reading.memory.bytes().unwrap_or(u64::MAX);
     let transfer = Transfer::from_name(&args.transfer).unwrap_or_default();
     let options = Options { tolerance: args.tolerance, allowed: args.allow / 100.0, transfer };
 
     let (names, folders, extra) = (found.pairs.iter().map(name).collect::<Vec<_>>(), found.folders, found.extra);
     let mut all: Vec<Compared> =
-        progress::each(&names, found.pairs, false, |pair| one(pair, &options, args.report.is_some()));
+        progress::each(&names, found.pairs, false, |pair| one(pair, &options, memory, args.report.is_some()));
     if let ([Compared { outcome: Outcome::Failed(reason), .. }], false) = (&all[..], folders) {
         return Err(bad(reason));
     }
     for compared in &mut all {
         if let Outcome::Compared(found) = &compared.outcome {
-            compared.there = there(args, &compared.pair, found)?;
+            compared.there = there(args, &compared.pair, found, &mut guard)?;
         }
     }
 
@@ -82,12 +92,12 @@ fn work(args: &CompareArgs) -> Result<(), Failure> {
     } else {
         text::single(&all[0], &options);
     }
-    let mut files: Vec<(PathBuf, Vec<u8>)> = Vec::new();
-    if let (Some(path), Some(format), Outcome::Compared(found)) = (&args.heat, heat_format, &all[0].outcome) {
-        files.push((path.clone(), encode(format, &[heat(found)], Transfer::Linear, &[])?));
+    let mut files: Vec<(&Destination, Vec<u8>)> = Vec::new();
+    if let (Some(place), Some(format), Outcome::Compared(found)) = (&heat_file, heat_format, &all[0].outcome) {
+        files.push((place, encode(format, &[heat(found)], Transfer::Linear, &[])?));
     }
-    if let Some(path) = &args.report {
-        files.push((path.clone(), page::page(&all, &extra, args)?.into_bytes()));
+    if let Some(place) = &report {
+        files.push((place, page::page(&all, &extra, args)?.into_bytes()));
     }
     if !files.is_empty() {
         save(&files, args.json)?;
@@ -110,13 +120,11 @@ fn name(pair: &Pair) -> String {
 }
 
 /// Compares one pair.
-fn one(pair: Pair, options: &Options, page: bool) -> Compared {
+fn one(pair: Pair, options: &Options, memory: u64, page: bool) -> Compared {
     let Some(path) = &pair.picture else {
         return Compared { pair, outcome: Outcome::Missing, shown: None, there: Vec::new() };
     };
-    let (reference, picture) = both(|| read(&pair.reference), || read(path));
-    let compared = reference.and_then(|reference| {
-        let picture = picture?;
+    let compared = read_both([&pair.reference, path], memory).and_then(|[reference, picture]| {
         let found = compare(&reference, &picture, options)
             .map_err(|error| format!("`{}` and `{}`: {error}", pair.reference.display(), path.display()))?;
         let shown = page.then(|| page::Shown::new(&reference, &picture, &found)).transpose()?;
@@ -128,22 +136,35 @@ fn one(pair: Pair, options: &Options, page: bool) -> Compared {
     }
 }
 
-/// Runs two things at once.
-fn both<A: Send, B: Send>(a: impl FnOnce() -> A + Send, b: impl FnOnce() -> B + Send) -> (A, B) {
-    std::thread::scope(|scope| {
-        let other = scope.spawn(b);
-        let a = a();
-        (a, other.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
-    })
-}
-
-fn read(path: &Path) -> Result<Picture, String> {
-    let unreadable = |error: String| format!("cannot read `{}`: {error}", path.display());
-    if path.is_dir() {
-        return Err(unreadable("it is a folder".into()));
+/// Reads two pictures of one size. That they have one, and can be compared within the memory, is known before anything is decoded.
+fn read_both(paths: [&Path; 2], memory: u64) -> Result<[Picture; 2], String> {
+    let [a, b] = paths.map(|path| {
+        let unreadable = |error: String| format!("cannot read `{}`: {error}", path.display());
+        match path.is_dir() {
+            true => Err(unreadable("it is a folder".into())),
+            false => {
+                let bytes = Source::folder(".").budget(memory).read_path(path, &path.to_string_lossy());
+                bytes.map_err(|error| error.to_string())
+            }
+        }
+    });
+    let (a, b) = (a?, b?);
+    let open = |bytes, path: &Path| {
+        let unreadable = |error| format!("cannot read `{}`: {error}", path.display());
+        Encoded::open(bytes, &path.to_string_lossy()).map_err(unreadable)
+    };
+    let (a, b) = (open(&a, paths[0])?, open(&b, paths[1])?);
+    let both = format!("`{}` and `{}`", paths[0].display(), paths[1].display());
+    let needed = memory_needed(&a, &b).map_err(|error| format!("{both}: {error}"))?;
+    if needed > memory {
+        let (needed, memory) = (at_least(needed), at_most(memory));
+        return Err(format!("{both}: comparing them needs about {needed} of memory, and {memory} are allowed; see --memory"));
     }
-    let bytes = std::fs::read(path).map_err(|error| unreadable(error.to_string()))?;
-    Picture::read(&bytes, &path.to_string_lossy()).map_err(|error| unreadable(error.to_string()))
+    let decode = |picture: &Encoded, path: &Path| {
+        Picture::decode(picture, memory).map_err(|error| format!("cannot read `{}`: {error}", path.display()))
+    };
+    let (a, b) = rayon::join(|| decode(&a, paths[0]), || decode(&b, paths[1]));
+    Ok([a?, b?])
 }
 
 /// The heat map as a layer.

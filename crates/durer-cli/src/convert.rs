@@ -1,6 +1,7 @@
 //! `durer convert`.
 
 use crate::args::ConvertArgs;
+use crate::guard::Guard;
 use crate::open::load_options;
 use crate::{Failure, output, report};
 use durer::diag::{Diagnostics, Files};
@@ -9,6 +10,9 @@ use durer::format::course::write;
 use durer::load;
 
 pub fn run(args: &ConvertArgs) -> Result<(), Failure> {
+    let mut guard = Guard::default();
+    guard.reads(&args.scene)?;
+    let place = guard.writes("--output", &args.output)?;
     let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
     let options = load_options(&args.reading);
     let loaded = load(&args.scene, &options, &mut files, &mut diagnostics).map_err(report::unreadable)?;
@@ -18,5 +22,5 @@ pub fn run(args: &ConvertArgs) -> Result<(), Failure> {
         report::note(&guess.note());
     }
     let dialect = args.to.as_deref().and_then(Dialect::from_name).unwrap_or(loaded.dialect);
-    output::save(&[(args.output.clone(), write(&loaded.scene, dialect).into_bytes())], false)
+    output::save(&[(&place, write(&loaded.scene, dialect).into_bytes())], false)
 }

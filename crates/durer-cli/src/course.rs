@@ -6,6 +6,7 @@ pub use options::{Program, program};
 
 use crate::args::weight;
 use crate::diagrams::{self, filter_layer, samples_layer};
+use crate::guard::Guard;
 use crate::memory::Memory;
 use crate::open::{Opened, open};
 use crate::output::say;
@@ -16,7 +17,7 @@ use durer::compile::AccelKind;
 use durer::dialect::{Compat, Dialect};
 use durer::film::aov::Aov;
 use durer::film::course::CourseFilter;
-use durer::image::{Format, Layer, Transfer, check_target, format_for};
+use durer::image::{Destination, Format, Layer, Transfer, format_for};
 use durer::integrator::Settings;
 use durer::render::{Control, Job, RenderError, Sampling};
 use durer::sampler::Sampler;
@@ -24,6 +25,9 @@ use options::{Given, PROGRAMS, usage};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::Ordering::Relaxed;
+
+/// The old programs know no limit of memory.
+const MEMORY: Memory = Memory::Percent(80.0);
 
 pub fn run(arguments: Vec<String>, program_name: Option<&'static Program>) -> Result<(), Failure> {
     if arguments.is_empty() || arguments.iter().any(|a| a == "--help" || a == "-h" || a == "-help") {
@@ -36,11 +40,12 @@ pub fn run(arguments: Vec<String>, program_name: Option<&'static Program>) -> Re
     given.check_unknown(options.dialect, quiet)?;
     let scene = given.text("-input").ok_or_else(|| bad("-input is missing: which scene?"))?;
     // Wrong file names are better known before than after the work.
-    let outputs = Outputs::of(&given, options.dialect)?;
-    let opened = open(Path::new(scene), &options, quiet)?;
+    let mut guard = Guard::default();
+    let outputs = Outputs::of(&given, options.dialect, &mut guard)?;
+    let opened = open(Path::new(scene), &options, quiet, &mut guard)?;
     let job = job(&given, &opened)?;
     let control =
-        Arc::new(Control { threads: threads(&given)?, memory: Memory::Percent(80.0).bytes(), ..Control::default() });
+        Arc::new(Control { threads: threads(&given)?, memory: MEMORY.bytes(), ..Control::default() });
     let world = &opened.world;
     let zooms = (given.zoom("-render_samples")?, given.zoom("-render_filter")?);
     for zoom in [zooms.0, zooms.1].into_iter().flatten() {
@@ -67,8 +72,8 @@ pub fn run(arguments: Vec<String>, program_name: Option<&'static Program>) -> Re
     }
     let layers = grid.iter().chain(&rendered.pictures).chain(diagrams.iter().flatten());
     let mut files = Vec::new();
-    for (layer, (path, format)) in layers.zip(&outputs.0) {
-        files.push((path.clone(), output::encode(format, std::slice::from_ref(layer), Transfer::Course, &[])?));
+    for (layer, (place, format)) in layers.zip(&outputs.0) {
+        files.push((place, output::encode(format, std::slice::from_ref(layer), Transfer::Course, &[])?));
     }
     output::save(&files, quiet)?;
     if !quiet {
@@ -110,30 +115,27 @@ fn load_options(given: &Given, program_name: Option<&'static Program>) -> Result
         },
         strict: false,
         threads: threads(given)?,
-        ..LoadOptions::default()
+        memory: MEMORY.bytes(),
     })
 }
 
 /// The files to be written, in the order of the pictures.
-struct Outputs(Vec<(PathBuf, &'static Format)>);
+struct Outputs(Vec<(Destination, &'static Format)>);
 
 impl Outputs {
-    fn of(given: &Given, asked: Option<Dialect>) -> Result<Self, Failure> {
+    fn of(given: &Given, asked: Option<Dialect>, guard: &mut Guard) -> Result<Self, Failure> {
         let names = [
-            given.text("-output"),
-            given.values("-depth").map(|values| values[2].as_str()),
-            given.text("-normals"),
-            given.text("-render_samples"),
-            given.text("-render_filter"),
+            ("-output", given.text("-output")),
+            ("-depth", given.values("-depth").map(|values| values[2].as_str())),
+            ("-normals", given.text("-normals")),
+            ("-render_samples", given.text("-render_samples")),
+            ("-render_filter", given.text("-render_filter")),
         ];
-        let named = names.into_iter().flatten().map(|name| Ok((PathBuf::from(name), course_format(name, asked)?)));
-        let files: Vec<_> = named.collect::<Result<_, Failure>>()?;
-        for (i, (path, _)) in files.iter().enumerate() {
-            if files[..i].iter().any(|(before, _)| before == path) {
-                return Err(bad(format!("two pictures cannot go into one file, {}", path.display())));
-            }
-            check_target(path)?;
-        }
+        let named = names.into_iter().filter_map(|(option, name)| Some((option, name?)));
+        let format = |(option, name)| Ok((option, name, course_format(name, asked)?));
+        let named: Vec<_> = named.map(format).collect::<Result<_, Failure>>()?;
+        let place = |(option, name, format)| Ok((guard.writes(option, Path::new(name))?, format));
+        let files: Vec<_> = named.into_iter().map(place).collect::<Result<_, Failure>>()?;
         if files.is_empty() {
             return Err(bad(
                 "there is nothing to write: give -output, -depth, -normals, -render_samples or -render_filter",

@@ -3,6 +3,7 @@
 mod page;
 
 use crate::args::ExplainArgs;
+use crate::guard::Guard;
 use crate::job::{accel, job};
 use crate::open::{Opened, load_options, open};
 use crate::output::say;
@@ -16,7 +17,7 @@ use durer::render::explain::{Explanation, Line, Names, explain, explain_ray, ray
 use durer::render::{Control, Job};
 use std::collections::BTreeSet;
 use std::io::IsTerminal;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// The version of the JSON.
 const VERSION: u32 = 1;
@@ -35,7 +36,9 @@ pub fn run(args: &ExplainArgs) -> Result<(), Failure> {
     }
     let mut options = load_options(&args.render.reading);
     options.accel = accel(&args.render.job)?;
-    let opened = open(&args.render.scene, &options, args.render.quiet)?;
+    let mut guard = Guard::default();
+    let page_file = args.html.as_ref().map(|path| guard.writes("--html", path)).transpose()?;
+    let opened = open(&args.render.scene, &options, args.render.quiet, &mut guard)?;
     let job = job(&args.render.job, &opened.loaded, false)?;
     let picture = match args.brightest || args.worst || args.html.is_some() {
         true => Some(picture(args, &opened, &job)?),
@@ -48,9 +51,9 @@ pub fn run(args: &ExplainArgs) -> Result<(), Failure> {
         Subject::Pixel(pixel) => args.sample.map_or_else(|| pixel.heaviest(), |sample| sample as usize),
         Subject::Ray(_) => 0,
     };
-    if let (Some(path), Some(picture)) = (&args.html, &picture) {
+    if let (Some(place), Some(picture)) = (&page_file, &picture) {
         let page = page::page(json(&subject, &names), sample, &opened.world, picture)?;
-        output::save(&[(path.clone(), page.into_bytes())], args.render.quiet)?;
+        output::save(&[(place, page.into_bytes())], args.render.quiet)?;
         return Ok(());
     }
     if args.json {
@@ -103,10 +106,16 @@ fn subject(args: &ExplainArgs, opened: &Opened, job: &Job, picture: Option<&Imag
 
 /// Runs work whose recursion is as deep as the bounces.
 pub fn deep<T: Send>(work: impl FnOnce() -> T + Send) -> Result<T, Failure> {
-    std::thread::scope(|scope| {
-        let thread = std::thread::Builder::new().stack_size(64 << 20).spawn_scoped(scope, work)?;
-        thread.join().map_err(|_| Failure::Other(anyhow::anyhow!("the explanation failed; this is an error in durer")))
-    })
+    let work = Mutex::new(Some(work));
+    let take = || work.lock().unwrap_or_else(PoisonError::into_inner).take().map(|work| work());
+    let done = std::thread::scope(|scope| {
+        match std::thread::Builder::new().stack_size(64 << 20).spawn_scoped(scope, take) {
+            Ok(thread) => thread.join().ok().flatten(),
+            // Where no thread can be had, this one has to be deep enough.
+            Err(_) => take(),
+        }
+    });
+    done.ok_or_else(|| Failure::Other(anyhow::anyhow!("the explanation failed; this is an error in durer")))
 }
 
 fn at(picture: &Image, x: u32, y: u32) -> Color {

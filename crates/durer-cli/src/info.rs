@@ -2,6 +2,7 @@
 
 use crate::Failure;
 use crate::args::InfoArgs;
+use crate::guard::Guard;
 use crate::open::{load_options, open};
 use crate::output::say;
 use durer::bvh::Counts;
@@ -13,7 +14,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 pub fn run(args: &InfoArgs) -> Result<(), Failure> {
-    let opened = open(&args.scene, &load_options(&args.reading), args.json)?;
+    let opened = open(&args.scene, &load_options(&args.reading), args.json, &mut Guard::default())?;
     let (loaded, world) = (&opened.loaded, &opened.world);
     let dialect = loaded.dialect;
     let count = Counted::of(world);

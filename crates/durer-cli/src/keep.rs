@@ -1,13 +1,14 @@
 //! What is saved of work that takes long: checkpoints, parts, previews.
 
 use crate::args::RenderArgs;
+use crate::guard::Guard;
 use crate::output::{encode, format, lengthened, say};
 use crate::{Failure, bad, progress, report};
-use durer::image::{Format, SaveError, Transfer, check_target, save};
-use durer::render::{Moment, Panicked, Part};
+use durer::image::{Destination, Format, Transfer, save_all};
+use durer::render::{Moment, Panicked, Part, PartError};
 use durer::source::Source;
 use std::cell::Cell;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::{Duration, Instant};
 
 /// Work that takes less than this is not saved before it is done, unless somebody wants it more often.
@@ -16,12 +17,14 @@ const SHORT: Duration = Duration::from_secs(1);
 /// Saves work.
 pub struct Keeper {
     /// Where it is saved.
-    path: Option<PathBuf>,
+    place: Option<Destination>,
     /// Whether that is what the user wants in the end, and not only until the picture is there.
     wanted: bool,
+    /// What was saved before and is gone on with.
+    saved: Cell<Option<Box<Part>>>,
     resume: bool,
     quiet: bool,
-    preview: Option<(PathBuf, &'static Format)>,
+    preview: Option<(Destination, &'static Format)>,
     transfer: Transfer,
     start: Instant,
     short: Duration,
@@ -30,29 +33,40 @@ pub struct Keeper {
 }
 
 impl Keeper {
-    /// Says now what is known to prevent saving.
-    pub fn new(args: &RenderArgs, output: &Path) -> Result<Self, Failure> {
+    /// Says now what is known to prevent saving. Nothing that is saved is thrown away unless `--restart` says so.
+    pub fn new(args: &RenderArgs, output: &Path, guard: &mut Guard) -> Result<Self, Failure> {
         let work = &args.work;
-        let stream = output.starts_with("/dev") || output.starts_with("/proc");
-        let beside = || (!stream).then(|| lengthened(output, ".part"));
-        let path = match () {
-            () if work.shard.is_some() => Some(output.to_path_buf()),
-            () if work.no_checkpoint => None,
-            () => work.checkpoint.clone().or_else(beside),
+        let (path, option) = match (&work.checkpoint, work.shard) {
+            (_, Some(_)) => (output.to_path_buf(), "--output"),
+            (Some(path), _) => (path.clone(), "--checkpoint"),
+            _ => (lengthened(output, ".part"), "--checkpoint, which is PICTURE.part unless given,"),
         };
-        if let Some(path) = path.as_ref().filter(|_| work.checkpoint.is_some() || work.resume) {
-            check_target(path)?;
+        let wanted = work.shard.is_some() || work.checkpoint.is_some();
+        // Beside a stream there is no place.
+        let beside_stream = !wanted && (output.starts_with("/dev") || output.starts_with("/proc"));
+        let place = match work.no_checkpoint || beside_stream {
+            true => None,
+            false => Some(guard.writes(option, &path)?),
+        };
+        if let Some(place) = place.as_ref().filter(|place| place.is_stream() && work.shard.is_none()) {
+            return Err(bad(format!("{option}: `{}` is no file, and cannot keep anything", place.path().display())));
         }
-        let preview = work.preview.clone().map(|path| Ok::<_, Failure>((format(&path)?, path))).transpose()?;
-        if let Some((_, path)) = &preview {
-            check_target(path)?;
-        }
+        let saved = match &place {
+            Some(place) if !place.is_stream() => what_was_saved(args, place.path())?,
+            _ => None,
+        };
+        let preview = work.preview.as_ref().map(|path| {
+            // The name first: it may be wrong altogether.
+            let format = format(path)?;
+            Ok::<_, Failure>((guard.writes("--preview", path)?, format))
+        });
         Ok(Keeper {
-            path,
-            wanted: work.shard.is_some() || work.checkpoint.is_some(),
+            place,
+            wanted,
+            saved: Cell::new(saved),
             resume: work.resume,
             quiet: args.quiet,
-            preview: preview.map(|(format, path)| (path, format)),
+            preview: preview.transpose()?,
             transfer: Transfer::from_name(&args.transfer).unwrap_or_default(),
             start: Instant::now(),
             short: SHORT.min(work.checkpoint_every),
@@ -62,36 +76,32 @@ impl Keeper {
 
     /// The part that was saved, if it is to be gone on with; else a fresh one.
     pub fn begin(&self, fresh: Part) -> Result<Part, Failure> {
-        let Some(path) = self.path.as_ref().filter(|path| path.exists()) else { return Ok(fresh) };
-        let name = path.display();
-        if !self.resume {
-            if !self.quiet && !self.wanted {
-                report::complain(&format!("note: there is unfinished work in {name}; --resume would go on with it"));
-            }
-            return Ok(fresh);
-        }
-        let saved = read_part(path)?;
-        fresh.same_work(&saved).map_err(|error| bad(format!("cannot go on with `{name}`: {error}")))?;
+        let (Some(saved), Some(place)) = (self.saved.take(), &self.place) else { return Ok(fresh) };
+        let name = place.path().display();
+        fresh.same_work(&saved).map_err(|error| match error {
+            error if self.wanted => bad(format!("cannot go on with `{name}`: {error}")),
+            error => bad(format!("cannot go on with `{name}`: {error}; --restart throws it away")),
+        })?;
         if !self.quiet {
-            let (all, done) = saved.work();
-            report::complain(&format!("note: going on with {name}: {} % done", 100 * done / all.max(1)));
+            report::complain(&format!("note: going on with {name}: {} % done", percent(&saved)));
         }
-        Ok(saved)
+        Ok(*saved)
     }
 
     /// Saves work and preview.
     pub fn watch(&self, part: &Part, moment: Moment) {
-        if self.start.elapsed() >= self.short
-            && let Some(Err(error)) = self.path.as_ref().map(|path| save(path, &part.write()))
+        let due = self.start.elapsed() >= self.short;
+        if let Some(place) = self.place.as_ref().filter(|place| due && !place.is_stream())
+            && let Err(error) = save_part(place, part)
         {
             // The picture may still be saved somewhere else.
-            self.complain(&error.to_string());
+            self.complain(&error);
         }
-        if let (Moment::PassDone, Some((path, format))) = (moment, &self.preview) {
+        if let (Moment::PassDone, Some((place, format))) = (moment, &self.preview) {
             let first = part.pictures().ok().and_then(|rendered| rendered.pictures.into_iter().next());
             let Some(layer) = first else { return };
             let bytes = encode(format, &[layer], self.transfer, &[]);
-            if let Ok(Err(error)) = bytes.map(|bytes| save(path, &bytes)) {
+            if let Ok(Err(error)) = bytes.map(|bytes| save_all(&[(place, bytes)])) {
                 self.complain(&error.to_string());
             }
         }
@@ -104,37 +114,38 @@ impl Keeper {
     }
 
     /// Saves a part that is wanted.
-    pub fn save(&self, part: &Part) -> Result<(), SaveError> {
-        let Some(path) = &self.path else { return Ok(()) };
+    pub fn save(&self, part: &Part) -> Result<(), Failure> {
+        let Some(place) = &self.place else { return Ok(()) };
         progress::saving();
-        save(path, &part.write())?;
-        if !self.quiet {
-            say(&format!("wrote {}", path.display()));
+        save_part(place, part).map_err(|error| Failure::Other(anyhow::anyhow!(error)))?;
+        if !self.quiet && !place.is_stream() {
+            say(&format!("wrote {}", place.path().display()));
         }
         Ok(())
     }
 
     /// The picture is saved. Work that is finished is not needed any more.
     pub fn done(&self, part: &Part, finished: bool) {
-        let Some(path) = &self.path else { return };
+        let Some(place) = &self.place else { return };
         if !finished && (self.wanted || self.resume) {
-            if let Err(error) = save(path, &part.write()) {
-                self.complain(&error.to_string());
+            if let Err(error) = save_part(place, part) {
+                self.complain(&error);
             }
-        } else if read_part(path).is_ok_and(|old| part.same_work(&old).is_ok()) {
+        } else if read_part(place.path()).is_ok_and(|old| part.same_work(&old).is_ok()) {
             // Only what is of this picture; if it cannot be removed, it is only in the way.
-            let _ = std::fs::remove_file(path);
+            let _ = std::fs::remove_file(place.path());
         }
     }
 
     /// Saves what is there. The names of the files that were written.
     pub fn after_interrupt(&self, part: &Part) -> Vec<String> {
-        let Some(path) = self.path.as_ref().filter(|_| part.work().1 > 0) else { return Vec::new() };
+        let due = |place: &&Destination| part.work().1 > 0 && !place.is_stream();
+        let Some(place) = self.place.as_ref().filter(due) else { return Vec::new() };
         progress::saving();
-        match save(path, &part.write()) {
-            Ok(()) => vec![format!("{} (--resume goes on with it)", path.display())],
+        match save_part(place, part) {
+            Ok(()) => vec![format!("{} (--resume goes on with it)", place.path().display())],
             Err(error) => {
-                self.complain(&error.to_string());
+                self.complain(&error);
                 Vec::new()
             }
         }
@@ -148,9 +159,72 @@ impl Keeper {
     }
 }
 
+/// What was saved in a file and is to be gone on with. Refuses to replace what is no part at all, and without `--resume` or
+/// `--restart` what is not finished.
+fn what_was_saved(args: &RenderArgs, path: &Path) -> Result<Option<Box<Part>>, Failure> {
+    let name = path.display();
+    if !path.exists() {
+        return Ok(None);
+    }
+    check_is_part(path).map_err(bad)?;
+    let (work, empty) = (&args.work, path.metadata().is_ok_and(|file| file.len() == 0));
+    if work.restart || empty && !work.resume {
+        return Ok(None);
+    }
+    let restart = "--restart throws it away and begins anew";
+    let part = match (read_part_of(path), work.resume) {
+        (Ok(Ok(part)), true) => return Ok(Some(Box::new(part))),
+        (Ok(Ok(part)), false) => part,
+        (Ok(Err(error)), true) => return Err(bad(format!("`{name}` cannot be used: {error}; {restart}"))),
+        (Ok(Err(error)), false) => return Err(bad(format!("`{name}` was saved before, and {error}; {restart}"))),
+        (Err(failure), _) => return Err(failure),
+    };
+    if part.is_finished() {
+        return Ok(None);
+    }
+    let percent = percent(&part);
+    Err(bad(format!("there is unfinished work in `{name}`, {percent} % done: --resume goes on with it, {restart}")))
+}
+
+fn percent(part: &Part) -> u64 {
+    let (all, done) = part.work();
+    100 * done / all.max(1)
+}
+
+/// Whether a file may be replaced by a part: one that is there already, if it is one itself or empty.
+fn check_is_part(path: &Path) -> Result<(), String> {
+    use std::io::Read;
+    let mut start = Vec::new();
+    let wrong = |error: std::io::Error| format!("cannot read `{}`: {error}", path.display());
+    match std::fs::File::open(path) {
+        Ok(file) => file.take(Part::MAGIC.len() as u64).read_to_end(&mut start).map(drop).map_err(wrong)?,
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => {}
+        Err(error) => return Err(wrong(error)),
+    }
+    match Part::MAGIC.starts_with(&start) {
+        true => Ok(()),
+        false => Err(format!(
+            "`{}` is no part of a picture, and is not replaced by one: choose another name with --checkpoint",
+            path.display()
+        )),
+    }
+}
+
+/// Saves a part, over nothing but a part.
+fn save_part(place: &Destination, part: &Part) -> Result<(), String> {
+    if !place.is_stream() {
+        check_is_part(place.path())?;
+    }
+    save_all(&[(place, part.write())]).map_err(|error| error.to_string())
+}
+
 /// Reads a part from a file.
 pub fn read_part(path: &Path) -> Result<Part, Failure> {
+    read_part_of(path)?.map_err(|error| bad(format!("`{}` cannot be used: {error}", path.display())))
+}
+
+fn read_part_of(path: &Path) -> Result<Result<Part, PartError>, Failure> {
     let name = path.display().to_string();
     let bytes = Source::folder(".").budget(u64::MAX).read_path(path, &name).map_err(report::unreadable)?;
-    Part::read(&bytes).map_err(|error| bad(format!("`{name}` cannot be used: {error}")))
+    Ok(Part::read(&bytes))
 }

@@ -5,6 +5,7 @@ mod markdown;
 mod page;
 
 use crate::args::LessonArgs;
+use crate::guard::Guard;
 use crate::job::{accel, job, warn};
 use crate::open::{load_options, open};
 use crate::output::{lengthened, say};
@@ -60,10 +61,11 @@ pub fn run(args: &LessonArgs) -> Result<(), Failure> {
         ));
     }
     let stem = Path::new(args.scene.file_stem().unwrap_or_default());
-    let folder = Folder::new(args.output.clone().unwrap_or_else(|| lengthened(stem, "-lesson")))?;
+    let mut guard = Guard::default();
+    let folder = Folder::new(args.output.clone().unwrap_or_else(|| lengthened(stem, "-lesson")), &mut guard)?;
     let mut options = load_options(&args.reading);
     (options.accel, options.threads) = (accel(&args.job)?, args.threads.map(usize::from));
-    let opened = open(&args.scene, &options, args.quiet)?;
+    let opened = open(&args.scene, &options, args.quiet, &mut guard)?;
     let mut job = job(&args.job, &opened.loaded, false)?;
     if args.job.size.is_none() {
         let proportions = opened.world.camera.proportions();
@@ -87,7 +89,7 @@ pub fn run(args: &LessonArgs) -> Result<(), Failure> {
     made.into_iter().collect::<Result<(), Failure>>()?;
     let files = lesson.files()?;
     let count = files.len() - 2;
-    let path = folder.write(files)?;
+    let path = folder.write(files, &mut guard)?;
     if !args.quiet {
         say(&format!("wrote {}, {TEXT} and {count} files that they show", path.join(PAGE).display()));
     }

@@ -7,6 +7,7 @@ mod convert;
 mod course;
 mod diagrams;
 mod explain;
+mod guard;
 mod info;
 mod job;
 mod keep;
@@ -35,14 +36,13 @@ const OTHER_FAILURE: u8 = 1;
 const DIFFERENT: u8 = 1;
 /// Exit code of `durer check` after findings.
 const FOUND: u8 = 1;
-/// Exit code after Ctrl-C.
-const INTERRUPTED: u8 = 130;
 
 fn main() -> ExitCode {
     progress::hear_interrupts();
     if let Err(error) = durer::bvh::Level::from_environment() {
         return ExitCode::from(bad(error.to_string()).report());
     }
+    durer::threads::prepare();
     // Under the name of an official program, `durer` is that program.
     let mut words = std::env::args_os();
     let name = words.next().unwrap_or_default();
@@ -106,7 +106,7 @@ impl Failure {
             Failure::Found => FOUND,
             Failure::Interrupted(what) => {
                 report::complain(&format!("interrupted; {what}"));
-                INTERRUPTED
+                progress::interrupted()
             }
         }
     }

@@ -1,6 +1,7 @@
 //! Reading and compiling a scene, with its findings printed.
 
 use crate::args::SceneArgs;
+use crate::guard::Guard;
 use crate::{Failure, report};
 use durer::diag::{Diagnostics, Files};
 use durer::dialect::Dialect;
@@ -26,7 +27,8 @@ pub struct Read {
 }
 
 /// Reads a scene.
-pub fn read(path: &Path, options: &LoadOptions, quiet: bool) -> Result<Read, Failure> {
+pub fn read(path: &Path, options: &LoadOptions, quiet: bool, guard: &mut Guard) -> Result<Read, Failure> {
+    guard.reads(path)?;
     let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
     match load(path, options, &mut files, &mut diagnostics).map_err(report::unreadable)? {
         Some(loaded) => Ok(Read { loaded, files, diagnostics, quiet }),
@@ -39,20 +41,21 @@ pub fn read(path: &Path, options: &LoadOptions, quiet: bool) -> Result<Read, Fai
 
 impl Read {
     /// Compiles it, and prints what was found.
-    pub fn compile(mut self, options: &LoadOptions) -> Result<Opened, Failure> {
+    pub fn compile(mut self, options: &LoadOptions, guard: &mut Guard) -> Result<Opened, Failure> {
         let world = self.loaded.compile(options, &mut self.files, &mut self.diagnostics);
         if let (Some(guess), false, true) = (&self.loaded.guess, self.quiet, world.is_some()) {
             report::note(&guess.note());
         }
         report::print(&self.files, &self.diagnostics, self.quiet);
         let world = world.ok_or(Failure::Input(None))?;
+        self.loaded.files().iter().try_for_each(|path| guard.reads(path))?;
         Ok(Opened { loaded: self.loaded, world, files: self.files, diagnostics: self.diagnostics })
     }
 }
 
 /// Reads and compiles a scene.
-pub fn open(path: &Path, options: &LoadOptions, quiet: bool) -> Result<Opened, Failure> {
-    read(path, options, quiet)?.compile(options)
+pub fn open(path: &Path, options: &LoadOptions, quiet: bool, guard: &mut Guard) -> Result<Opened, Failure> {
+    read(path, options, quiet, guard)?.compile(options, guard)
 }
 
 /// What the options about reading say.
@@ -63,6 +66,7 @@ pub fn load_options(args: &SceneArgs) -> LoadOptions {
         strict: args.strict,
         allow_outside: args.allow_outside,
         assets: args.assets.clone(),
+        memory: args.memory.bytes(),
         ..LoadOptions::default()
     }
 }

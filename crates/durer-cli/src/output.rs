@@ -2,9 +2,11 @@
 
 use crate::args::DIAGRAMS;
 use crate::{Failure, bad, progress};
-use durer::image::{Depth, Format, Layer, Transfer, WriteOptions, check_target, format_for, save_all};
+use crate::guard::Guard;
+use durer::image::{Depth, Destination, Format, Layer, Transfer, WriteOptions, format_for, save_all};
 use durer::render::Rendered;
 use std::io::{ErrorKind, Write};
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::path::{Path, PathBuf};
 
 /// The format of a picture's name, or what is wrong with the name.
@@ -22,20 +24,24 @@ fn layers<'r>(rendered: &'r Rendered, format: &Format) -> &'r [Layer] {
 
 /// Where the pictures of a render go.
 pub struct Target {
-    path: PathBuf,
     format: &'static Format,
-    /// Whether all go into one file. Diagrams do not: their sizes differ.
-    together: bool,
+    /// The file of each, by its name; without a name, that of all. Diagrams go into files of their own: their sizes differ.
+    files: Vec<(Option<String>, Destination)>,
 }
 
 impl Target {
     /// For the named pictures; says now what is known to prevent writing them, which is better than after the work.
-    pub fn new(path: PathBuf, names: &[&str]) -> Result<Self, Failure> {
-        let format = format(&path)?;
+    pub fn new(path: &Path, names: &[&str], guard: &mut Guard) -> Result<Self, Failure> {
+        let format = format(path)?;
         let diagram = names.iter().any(|name| DIAGRAMS.contains(name));
-        let target = Target { together: names.len() == 1 || format.layers && !diagram, path, format };
-        names.iter().try_for_each(|name| check_target(target.file(name)))?;
-        Ok(target)
+        if names.len() == 1 || format.layers && !diagram {
+            return Ok(Target { format, files: vec![(None, guard.writes("--output", path)?)] });
+        }
+        let extension = path.extension().unwrap_or_default().to_string_lossy();
+        // Named picture.depth.png where each has its own.
+        let own = |name: &&str| path.with_extension(format!("{name}.{extension}"));
+        let files = names.iter().map(|name| Ok((Some(name.to_string()), guard.writes("--output", &own(name))?)));
+        Ok(Target { format, files: files.collect::<Result<_, Failure>>()? })
     }
 
     /// Whether pictures of this size fit into the files.
@@ -43,19 +49,18 @@ impl Target {
         self.format.check_size(width, height).map_err(|error| bad(error.to_string()))
     }
 
-    /// The file for a picture: named picture.depth.png where each has its own.
-    fn file(&self, name: &str) -> PathBuf {
-        let extension = self.path.extension().unwrap_or_default().to_string_lossy();
-        if self.together { self.path.clone() } else { self.path.with_extension(format!("{name}.{extension}")) }
-    }
-
     /// The files for some pictures.
-    pub fn files(&self, rendered: &Rendered, transfer: Transfer) -> Result<Vec<(PathBuf, Vec<u8>)>, Failure> {
+    pub fn files(&self, rendered: &Rendered, transfer: Transfer) -> Result<Vec<(&Destination, Vec<u8>)>, Failure> {
         let layers = layers(rendered, self.format);
-        let parts = if self.together { layers.chunks(layers.len()) } else { layers.chunks(1) };
-        parts
-            .map(|part| Ok((self.file(&part[0].name), encode(self.format, part, transfer, &rendered.attributes)?)))
-            .collect()
+        let own = |name: &str| layers.iter().position(|layer| layer.name == name).map(|i| &layers[i..=i]);
+        let file = |(name, place)| {
+            let layers = match name {
+                None => layers,
+                Some(name) => own(name).ok_or_else(|| anyhow::anyhow!("there is no picture `{name}`"))?,
+            };
+            Ok((place, encode(self.format, layers, transfer, &rendered.attributes)?))
+        };
+        self.files.iter().map(|(name, place)| file((name.as_deref(), place))).collect()
     }
 }
 
@@ -73,24 +78,44 @@ pub fn encode(
 }
 
 /// Saves all files or none.
-pub fn save_silently(files: &[(PathBuf, Vec<u8>)]) -> Result<(), Failure> {
+pub fn save_silently(files: &[(&Destination, Vec<u8>)]) -> Result<(), Failure> {
     progress::saving();
     Ok(save_all(files)?)
 }
 
 /// Saves all files or none, and says so.
-pub fn save(files: &[(PathBuf, Vec<u8>)], quiet: bool) -> Result<(), Failure> {
+pub fn save(files: &[(&Destination, Vec<u8>)], quiet: bool) -> Result<(), Failure> {
     save_silently(files)?;
     // Nothing is said of devices: standard output may be one, and the picture in it.
-    for (path, _) in files.iter().filter(|(path, _)| !quiet && !path.starts_with("/dev")) {
-        say(&format!("wrote {}", path.display()));
+    for (place, _) in files.iter().filter(|(place, _)| !quiet && !place.is_stream()) {
+        say(&format!("wrote {}", place.path().display()));
     }
     Ok(())
 }
 
+/// Whether the program was started without a standard output.
+static CLOSED: AtomicBool = AtomicBool::new(false);
+
+/// Finds that out. It has to be before the standard library begins, which then puts the device in its place that swallows
+/// everything.
+#[cfg(unix)]
+#[ctor::ctor(unsafe)]
+fn look_at_standard_output() {
+    CLOSED.store(rustix::io::fcntl_getfd(rustix::stdio::stdout()).is_err(), Relaxed);
+}
+
+/// Whether there is a standard output.
+pub fn has_standard_output() -> bool {
+    !CLOSED.load(Relaxed)
+}
+
 /// A line on standard output. A closed pipe is nobody's fault: who closed it has read enough.
 pub fn say(line: &str) {
-    match writeln!(std::io::stdout(), "{line}") {
+    let written = match has_standard_output() {
+        true => writeln!(std::io::stdout(), "{line}"),
+        false => Err(std::io::Error::other("it is closed")),
+    };
+    match written {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => {
             let failure = Failure::Other(anyhow::anyhow!("cannot write to standard output: {error}"));
             std::process::exit(i32::from(failure.report()));

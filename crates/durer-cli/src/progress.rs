@@ -1,14 +1,14 @@
-//! A progress bar, and what Ctrl-C does.
+//! A progress bar, and what Ctrl-C and other signals do.
 
 use crate::Failure;
 use durer::render::{Control, RenderError};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::IsTerminal;
-use std::sync::atomic::Ordering::Relaxed;
+use std::sync::atomic::{AtomicU8, Ordering::Relaxed};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, mpsc};
 use std::time::{Duration, Instant};
 
-/// What Ctrl-C meets.
+/// What an interruption meets: Ctrl-C, or a signal that asks the program to end.
 enum Phase {
     /// Nothing is written yet: it ends the program.
     Harmless,
@@ -18,30 +18,82 @@ enum Phase {
     Saving(bool),
 }
 
+/// Some programs send a signal twice, to the program and to its group: what comes so soon after another is the same one.
+const SAME: Duration = Duration::from_millis(500);
+
 /// Whoever changes it holds it, so that nothing begins to be saved while the program ends.
 static PHASE: Mutex<Phase> = Mutex::new(Phase::Harmless);
+/// When the last interruption came that was not the same as one before.
+static LAST: Mutex<Option<Instant>> = Mutex::new(None);
+/// The last signal's number: 2 is that of Ctrl-C.
+static SIGNAL: AtomicU8 = AtomicU8::new(2);
 
-fn phase() -> MutexGuard<'static, Phase> {
-    PHASE.lock().unwrap_or_else(PoisonError::into_inner)
+fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Sets what Ctrl-C does from now on.
-pub fn hear_interrupts() {
-    let handler = || match &mut *phase() {
+/// The exit code after an interruption: 130 after Ctrl-C, as shells have it.
+pub fn interrupted() -> u8 {
+    128 + SIGNAL.load(Relaxed)
+}
+
+/// What an interruption does.
+fn interrupt(signal: u8) {
+    let (mut last, mut phase) = (locked(&LAST), locked(&PHASE));
+    if last.is_some_and(|last| last.elapsed() < SAME) {
+        return;
+    }
+    *last = Some(Instant::now());
+    SIGNAL.store(signal, Relaxed);
+    match &mut *phase {
         Phase::Rendering(control) if !control.cancel.swap(true, Relaxed) => {}
         Phase::Saving(asked @ false) => *asked = true,
         phase => {
             let what = if matches!(phase, Phase::Harmless) { "nothing was written" } else { "not all was saved" };
             std::process::exit(i32::from(Failure::Interrupted(what.into()).report()))
         }
-    };
-    // Where there can be no handler, Ctrl-C ends the program as it ends others.
-    let _ = ctrlc::set_handler(handler);
+    }
+}
+
+/// Hears interruptions from now on. Where that cannot be, they end the program as they end others.
+#[cfg(unix)]
+pub fn hear_interrupts() {
+    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGXFSZ};
+    // A file that grows beyond the allowed size is an error of writing then, which has a name.
+    let _ = signal_hook::flag::register(SIGXFSZ, Arc::default());
+    let ignored = ignored_signals();
+    let heard = [SIGINT, SIGTERM, SIGHUP].into_iter().filter(move |signal| ignored >> (signal - 1) & 1 == 0);
+    let (ready, wait) = mpsc::channel();
+    let listener = std::thread::Builder::new().name("signals".into()).spawn(move || {
+        let mut signals = signal_hook::iterator::Signals::new(heard);
+        let _ = ready.send(());
+        signals.iter_mut().flat_map(|signals| signals.forever()).for_each(|signal| interrupt(signal as u8));
+    });
+    // Signals that come before it listens would end the program; after that, none is lost.
+    if listener.is_ok() {
+        let _ = wait.recv();
+    }
+}
+
+/// A bit for each signal that whoever started this program wants it to ignore, as `nohup` does.
+#[cfg(unix)]
+fn ignored_signals() -> u64 {
+    // Where the system does not tell, none.
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).unwrap_or(0)
+}
+
+/// Hears Ctrl-C, Ctrl-Break and the other events of the console. After a closed window the system ends the program whatever it
+/// does: what is left then was saved before.
+#[cfg(not(unix))]
+pub fn hear_interrupts() {
+    let _ = ctrlc::set_handler(|| interrupt(2));
 }
 
 /// Files are about to be saved.
 pub fn saving() {
-    *phase() = Phase::Saving(false);
+    *locked(&PHASE) = Phase::Saving(false);
 }
 
 /// Runs a render with a progress bar (on a terminal) and Ctrl-C.
@@ -50,17 +102,17 @@ pub fn watch<T>(
     quiet: bool,
     render: impl FnOnce() -> Result<T, RenderError>,
 ) -> Result<T, RenderError> {
-    *phase() = Phase::Rendering(Arc::clone(control));
+    *locked(&PHASE) = Phase::Rendering(Arc::clone(control));
     let visible = !quiet && std::io::stderr().is_terminal();
     let result = if visible { with_bar(control, render) } else { render() };
-    *phase() = Phase::Harmless;
+    *locked(&PHASE) = Phase::Harmless;
     result
 }
 
 fn with_bar<T>(control: &Control, render: impl FnOnce() -> Result<T, RenderError>) -> Result<T, RenderError> {
     let (finished, wait) = mpsc::channel::<()>();
     std::thread::scope(|scope| {
-        scope.spawn(move || {
+        let show = move || {
             let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden());
             let style = ProgressStyle::with_template("{bar:40} {percent:>3} %  {msg}  {eta} left");
             bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
@@ -76,7 +128,9 @@ fn with_bar<T>(control: &Control, render: impl FnOnce() -> Result<T, RenderError
                 bar.set_position(control.done.load(Relaxed));
             }
             bar.finish_and_clear();
-        });
+        };
+        // Without a thread for it there is no bar.
+        let _ = std::thread::Builder::new().spawn_scoped(scope, show);
         let result = render();
         drop(finished);
         result
@@ -90,7 +144,10 @@ pub fn each<T, R>(names: &[String], items: Vec<T>, quiet: bool, mut work: impl F
     bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
     if !quiet && std::io::stderr().is_terminal() {
         bar.set_draw_target(ProgressDrawTarget::stderr());
-        bar.enable_steady_tick(Duration::from_millis(200));
+        // That takes a thread, and must not be tried where there is none.
+        if std::thread::Builder::new().spawn(|| {}).is_ok() {
+            bar.enable_steady_tick(Duration::from_millis(200));
+        }
     }
     let done = names.iter().zip(items).map(|(name, item)| {
         bar.set_message(name.clone());

@@ -1,12 +1,13 @@
 //! `durer render`.
 
 use crate::args::{DIAGRAMS, RenderArgs, RenderCommand};
+use crate::guard::Guard;
 use crate::keep::Keeper;
 use crate::open::{load_options, read};
 use crate::output::{Target, lengthened, say};
 use crate::{Failure, bad, check, diagrams, job, output, progress, report};
 use durer::diag::Diagnostic;
-use durer::image::{Transfer, check_target, checked_count};
+use durer::image::{Transfer, checked_count};
 use durer::render::{Control, Job, Panicked, Part, RenderError, Shard, ShardBy, Statistics, Stop, replay};
 use durer::world::World;
 use std::path::Path;
@@ -21,17 +22,20 @@ pub fn run(command: &RenderCommand) -> Result<(), Failure> {
     let default_name = || lengthened(Path::new(args.scene.file_stem().unwrap_or_default()), ".png");
     let output = args.output.clone().unwrap_or_else(default_name);
     // What is known to prevent writing is better known before the work.
-    let target = match args.work.shard {
-        _ if command.pixel.is_some() => None,
-        Some(_) => check_target(&output).map(|()| None)?,
-        None => Some(Target::new(output.clone(), &shows(args)?)?),
+    let mut guard = Guard::default();
+    let (target, keeper) = match (command.pixel, args.work.shard) {
+        (Some(_), _) => (None, None),
+        (_, Some(_)) => (None, Some(Keeper::new(args, &output, &mut guard)?)),
+        _ => {
+            let target = Target::new(&output, &shows(args)?, &mut guard)?;
+            (Some(target), Some(Keeper::new(args, &output, &mut guard)?))
+        }
     };
-    let keeper = Keeper::new(args, &output)?;
-    let memory = args.work.memory.bytes();
-    let threads = args.work.threads.map(usize::from);
     let mut options = load_options(&args.reading);
+    let memory = options.memory;
+    let threads = args.work.threads.map(usize::from);
     (options.accel, options.threads) = (job::accel(&args.job)?, threads);
-    let scene = read(&args.scene, &options, args.quiet)?;
+    let scene = read(&args.scene, &options, args.quiet, &mut guard)?;
     let job = job::job(&args.job, &scene.loaded, args.work.time.is_some())?;
     // A size that no picture has is refused as such, whatever the memory.
     checked_count(job.width, job.height).map_err(|error| bad(error.to_string()))?;
@@ -43,7 +47,7 @@ pub fn run(command: &RenderCommand) -> Result<(), Failure> {
     if let Some(allowed) = memory.filter(|&memory| needed > memory) {
         return Err(failure(RenderError::Memory { needed, allowed }));
     }
-    let opened = scene.compile(&options)?;
+    let opened = scene.compile(&options, &mut guard)?;
     if !args.quiet {
         job::warn(&job, &opened.world);
     }
@@ -55,9 +59,12 @@ pub fn run(command: &RenderCommand) -> Result<(), Failure> {
         memory,
         ..Control::default()
     });
-    if let Some(pixel) = command.pixel {
-        return print_pixel(&opened.world, &job, &control, pixel, command.sample);
-    }
+    let keeper = match (command.pixel, keeper) {
+        (None, Some(keeper)) => keeper,
+        (pixel, _) => {
+            return print_pixel(&opened.world, &job, &control, pixel.unwrap_or_default(), command.sample);
+        }
+    };
     if args.job.show.iter().any(|show| DIAGRAMS.contains(&show.as_str())) {
         if target.is_none() {
             return Err(bad("a diagram is not split into parts: leave it out, or --shard"));
@@ -77,7 +84,7 @@ pub fn run(command: &RenderCommand) -> Result<(), Failure> {
         Stop::Panicked(panicked) => return Err(keeper.after_panic(&part, panicked, &replaying(panicked))),
     };
     match target {
-        None => keeper.save(&part).map_err(|error| Failure::Other(error.into()))?,
+        None => keeper.save(&part)?,
         Some(target) => {
             let mut rendered = part.pictures().map_err(failure)?;
             diagrams::add(&args.job.show, args.job.zoom, &opened.world, &job, &control, &mut rendered)
@@ -115,7 +122,7 @@ fn stopped(args: &RenderArgs, part: &Part, keeper: &Keeper, target: Option<&Targ
         let transfer = Transfer::from_name(&args.transfer).unwrap_or_default();
         let files = part.pictures().map_err(failure).and_then(|rendered| target.files(&rendered, transfer));
         if let Ok(files) = files.and_then(|files| output::save_silently(&files).map(|()| files)) {
-            written.extend(files.into_iter().map(|(path, _)| path.display().to_string()));
+            written.extend(files.into_iter().map(|(place, _)| place.path().display().to_string()));
         }
     }
     let (all, done) = part.work();
@@ -152,7 +159,7 @@ fn print_pixel(
 pub fn failure(error: RenderError) -> Failure {
     match error {
         RenderError::Cancelled => Failure::Interrupted("nothing was written".into()),
-        RenderError::Threads(_) | RenderError::Panic(_) => error.into(),
+        RenderError::Panic(_) => error.into(),
         RenderError::Memory { .. } => bad(format!("{error}; see --memory")),
         _ => bad(error.to_string()),
     }

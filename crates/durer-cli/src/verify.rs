@@ -1,6 +1,7 @@
 //! `durer verify`.
 
 use crate::args::VerifyArgs;
+use crate::guard::Guard;
 use crate::open::{load_options, open};
 use crate::output::say;
 use crate::{Failure, bad, job, progress};
@@ -34,7 +35,7 @@ pub fn run(args: &VerifyArgs) -> Result<(), Failure> {
         let mut options = load_options(&args.reading);
         options.accel = accel;
         // What is found is said once.
-        let opened = open(&args.scene, &options, args.quiet || !worlds.is_empty())?;
+        let opened = open(&args.scene, &options, args.quiet || !worlds.is_empty(), &mut Guard::default())?;
         let mut job = job::job(&args.job, &opened.loaded, false)?;
         (job.width, job.height) = args.job.size.unwrap_or((64, 48));
         // The work depends on the structure.

@@ -271,5 +271,24 @@ pub fn did_you_mean<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str
         .map(|(_, candidate)| candidate)
 }
 
+/// So many bytes for people, rounded up.
+pub fn at_least(bytes: u64) -> String {
+    rounded(bytes, u64::div_ceil)
+}
+
+/// So many bytes for people, rounded down: less than what is told by [`at_least`] of more.
+pub fn at_most(bytes: u64) -> String {
+    rounded(bytes, |bytes, unit| bytes / unit)
+}
+
+fn rounded(bytes: u64, divide: fn(u64, u64) -> u64) -> String {
+    match bytes {
+        1 => "1 byte".into(),
+        0 | 2..0x400 => format!("{bytes} bytes"),
+        0x400..0x10_0000 => format!("{} KiB", divide(bytes, 1 << 10)),
+        _ => format!("{} MiB", divide(bytes, 1 << 20)),
+    }
+}
+
 #[cfg(test)]
 mod tests;

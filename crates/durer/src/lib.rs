@@ -25,6 +25,7 @@ pub mod scene;
 pub mod shape;
 pub mod source;
 pub mod texture;
+pub mod threads;
 pub mod world;
 
 pub use load::{LoadOptions, Loaded, load, load_text};

@@ -6,6 +6,7 @@ use crate::dialect::{Compat, Dialect, PathBase, Rules};
 use crate::format::course::{self, Guess, Hint, ReadOptions};
 use crate::scene::Scene;
 use crate::source::{Source, SourceError};
+use crate::threads;
 use crate::world::World;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -117,6 +118,7 @@ pub fn load_text(
     if options.course {
         source = source.allow(".");
     }
+    source = source.budget(Source::DEFAULT_BUDGET.min(options.memory.unwrap_or(u64::MAX)));
     let read = ReadOptions { dialect, strict: options.strict };
     let scene = course::read(&bytes, file, read, diagnostics);
     if let (None, Some(guess)) = (&scene, &guess) {
@@ -127,14 +129,18 @@ pub fn load_text(
 }
 
 impl Loaded {
+    /// Where the files are that were read for it, the scene's own not among them. All are known when it is compiled.
+    pub fn files(&self) -> Vec<PathBuf> {
+        self.source.paths()
+    }
+
     /// Compiles the scene. `None` after errors, which are in `diagnostics`.
     pub fn compile(&self, options: &LoadOptions, files: &mut Files, diagnostics: &mut Diagnostics) -> Option<World> {
         let memory = options.memory.unwrap_or(u64::MAX);
         let resources = Resources { source: &self.source, files, sky_optional: options.course, memory };
         let work = || compile(&self.scene, &self.rules, options.accel, resources, diagnostics);
-        // Where there are no threads to be had, one is there already.
-        match options.threads.and_then(|count| rayon::ThreadPoolBuilder::new().num_threads(count).build().ok()) {
-            Some(threads) => threads.install(work),
+        match options.threads {
+            Some(_) => threads::install(options.threads, work),
             None => work(),
         }
     }

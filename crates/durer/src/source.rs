@@ -98,6 +98,8 @@ struct Already {
     left: u64,
     /// Hashes of the files, by the names that the scene gives them.
     files: BTreeMap<String, Digest>,
+    /// Where they are.
+    paths: Vec<PathBuf>,
 }
 
 impl Clone for Source {
@@ -118,7 +120,7 @@ impl Source {
             search: vec![folder.clone()],
             allowed: vec![folder],
             assets: Vec::new(),
-            read: Mutex::new(Already { left: Source::DEFAULT_BUDGET, files: BTreeMap::new() }),
+            read: Mutex::new(Already { left: Source::DEFAULT_BUDGET, files: BTreeMap::new(), paths: Vec::new() }),
         }
     }
 
@@ -169,6 +171,11 @@ impl Source {
             hasher.update(&Digest::of(name.as_bytes()).0).update(&digest.0);
         }
         Digest(hasher.finalize().into())
+    }
+
+    /// Where the files are that were read, or tried to be.
+    pub fn paths(&self) -> Vec<PathBuf> {
+        self.already().paths.clone()
     }
 
     /// Counts bytes among those that were read by a name.
@@ -236,6 +243,7 @@ impl Source {
     /// Reads a file that the user named, wherever it is.
     pub fn read_path(&self, path: &Path, name: &str) -> Result<Arc<[u8]>, SourceError> {
         let io = |error| SourceError::Io { name: name.into(), error };
+        self.already().paths.push(path.into());
         let metadata = fs::metadata(path).map_err(io)?;
         if !metadata.is_file() {
             return Err(SourceError::NotAFile { name: name.into() });

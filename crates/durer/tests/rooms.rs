@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 /// The rooms by floor, as ARCHITECTURE.md draws them.
 const FLOORS: [&[&str]; 9] = [
-    &["math", "diag", "dialect"],
+    &["math", "diag", "dialect", "threads"],
     &["sampler", "source", "describe"],
     &["image"],
     &["shape", "camera", "light", "material", "texture"],

@@ -3,6 +3,7 @@
 use super::pairs::Pair;
 use crate::args::CompareArgs;
 use crate::explain::{deep, shown};
+use crate::guard::Guard;
 use crate::open::{Opened, load_options, open};
 use crate::{Failure, bad, job};
 use durer::image::compare::Comparison;
@@ -30,11 +31,16 @@ pub struct Hit {
 }
 
 /// For each region what is at the pixel that differs most; nothing where no scene is given.
-pub fn there(args: &CompareArgs, pair: &Pair, found: &Comparison) -> Result<Vec<There>, Failure> {
+pub fn there(
+    args: &CompareArgs,
+    pair: &Pair,
+    found: &Comparison,
+    guard: &mut Guard,
+) -> Result<Vec<There>, Failure> {
     let Some(scene) = &args.scene else { return Ok(Vec::new()) };
     let path = path(scene, pair)?;
     let options = load_options(&args.reading);
-    let opened = open(&path, &options, true)?;
+    let opened = open(&path, &options, true, guard)?;
     let job = job::job(&args.job, &opened.loaded, false)?;
     let job = Job { width: found.width, height: found.height, crop: None, ..job };
     let raster = raster(&opened.world, job.width, job.height);

@@ -1,9 +1,10 @@
 //! The folder of a lesson: only a lesson's own files are ever replaced.
 
 use super::TEXT;
+use crate::guard::Guard;
 use crate::output::save_silently;
 use crate::{Failure, bad};
-use durer::image::check_target;
+use durer::image::Destination;
 use std::collections::BTreeSet;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
@@ -23,7 +24,7 @@ pub struct Folder {
 
 impl Folder {
     /// Says now what is known to prevent writing.
-    pub fn new(path: PathBuf) -> Result<Self, Failure> {
+    pub fn new(path: PathBuf, guard: &mut Guard) -> Result<Self, Failure> {
         if path.exists() && !path.is_dir() {
             return Err(bad(format!("`{}` is a file; a lesson is written to a folder", path.display())));
         }
@@ -33,14 +34,15 @@ impl Folder {
             return Err(bad(format!("there is no folder `{}`", parent.display())));
         }
         if !new {
-            check_target(path.join(TEXT))?;
+            Destination::new(path.join(TEXT))?;
         }
         let own = std::fs::read_to_string(path.join(TEXT)).map(|text| linked(&text)).unwrap_or_default();
+        own.iter().try_for_each(|name| guard.claim("--output", &path.join(name)))?;
         Ok(Folder { path, new, own })
     }
 
     /// Writes all files or none, and removes what an earlier lesson wrote and this one did not. Gives the folder.
-    pub fn write(self, files: Vec<(String, Vec<u8>)>) -> Result<PathBuf, Failure> {
+    pub fn write(self, files: Vec<(String, Vec<u8>)>, guard: &mut Guard) -> Result<PathBuf, Failure> {
         let foreign = |name: &String| !self.own.contains(name) && self.path.join(name).exists();
         if let Some((name, _)) = files.iter().find(|(name, _)| foreign(name)) {
             let path = self.path.join(name);
@@ -54,8 +56,16 @@ impl Folder {
             std::fs::create_dir(&self.path).map_err(failed)?;
         }
         let names: BTreeSet<String> = files.iter().map(|file| file.0.clone()).collect();
-        let files: Vec<_> = files.into_iter().map(|(name, bytes)| (self.path.join(name), bytes)).collect();
-        if let Err(failure) = save_silently(&files) {
+        let mut place = |name: &String| match self.own.contains(name) {
+            true => Ok(Destination::new(self.path.join(name))?),
+            false => guard.writes("--output", &self.path.join(name)),
+        };
+        let places = files.iter().map(|(name, _)| place(name)).collect::<Result<Vec<_>, Failure>>();
+        let saved = places.and_then(|places| {
+            let bytes = files.into_iter().map(|(_, bytes)| bytes);
+            save_silently(&places.iter().zip(bytes).collect::<Vec<_>>())
+        });
+        if let Err(failure) = saved {
             // A folder that was made for nothing goes; where that fails it stays, empty.
             let _ = if self.new { std::fs::remove_dir(&self.path) } else { Ok(()) };
             return Err(failure);

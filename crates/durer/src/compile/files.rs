@@ -2,10 +2,10 @@
 
 use super::Resources;
 use crate::describe::FileName;
-use crate::diag::{Diagnostic, Diagnostics, Severity};
+use crate::diag::{Diagnostic, Diagnostics, Severity, at_least, at_most};
 use crate::dialect::{Compat, Rules};
 use crate::format;
-use crate::image;
+use crate::image::{self, Encoded, ImageError};
 use crate::shape::{HeightField, Mesh};
 use crate::source::SourceError;
 use crate::texture::{CubeMap, Texture};
@@ -14,6 +14,11 @@ use rayon::prelude::*;
 use std::collections::HashMap;
 use std::path::PathBuf;
 use std::sync::Arc;
+
+/// What the tree and its building take for a while for each triangle, and the triangle itself with it: its corners' places in
+/// the lists of positions and texture coordinates.
+const TREE_BYTES: u64 = 200;
+const TRIANGLE_BYTES: u64 = TREE_BYTES + size_of::<[[u32; 3]; 2]>() as u64;
 
 pub(super) struct Loader<'r> {
     pub(super) resources: Resources<'r>,
@@ -53,9 +58,8 @@ impl<'r> Loader<'r> {
             data
         });
         let mesh = mesh.filter(|data| {
-            // The tree and what its building takes for a while are about as large again as plain triangles.
-            let needed = data.bytes() + 200 * data.triangles.len();
-            self.charge(name, needed as u64, diagnostics)
+            let needed = data.bytes() as u64 + TREE_BYTES * data.triangles.len() as u64;
+            self.charge(name, needed, diagnostics)
         });
         let tree = mesh.map(|mut data| {
             if self.rules.has(Compat::LooseTriangles) {
@@ -74,27 +78,30 @@ impl<'r> Loader<'r> {
     pub(super) fn height_field(&mut self, field: &HeightField, diagnostics: &mut Diagnostics) -> Option<Arc<MeshTree>> {
         let name = &field.picture;
         let bytes = self.read(name, "picture of heights", diagnostics)?;
+        let encoded = used(name, &name.path, Encoded::open(&bytes, &name.path), diagnostics)?;
+        let (width, height) = encoded.size();
         let mut refuse = |message: String| diagnostics.push(Diagnostic::error(message).code("bad-file").at(name.span));
-        let picture = match image::read(&bytes, &name.path) {
-            Ok(picture) => picture,
-            Err(error) => {
-                refuse(format!("the picture `{}` cannot be used: {error}", name.path));
-                return None;
-            }
-        };
-        let (width, height) = (picture.width as usize, picture.height as usize);
-        let heights: Vec<f32> = picture.pixels.iter().map(|pixel| (pixel.x + pixel.y + pixel.z) / 3.0).collect();
-        if width < 2 || height < 2 || heights.len() > HeightField::MOST_PIXELS {
+        if width < 2 || height < 2 || width * height > HeightField::MOST_PIXELS {
             let most = HeightField::MOST_PIXELS;
             refuse(format!("{width} x {height} pixels make no landscape: 2 x 2 to {most} in all are needed"));
             return None;
         }
+        let picture = encoded.read(self.resources.memory, image::decode_linear);
+        let picture = used(name, &name.path, picture, diagnostics)?;
+        let mut refuse = |message: String| diagnostics.push(Diagnostic::error(message).code("bad-file").at(name.span));
+        let heights: Vec<f32> = picture.pixels.iter().map(|pixel| (pixel.x + pixel.y + pixel.z) / 3.0).collect();
+        drop(picture);
         if heights.iter().any(|height| !height.is_finite()) {
             refuse(format!("the picture `{}` has heights that are no numbers", name.path));
             return None;
         }
         if let Some(least) = heights.iter().copied().reduce(f32::min).filter(|least| *least < 0.0) {
             refuse(format!("the picture `{}` has heights of {least}; none may be less than 0", name.path));
+            return None;
+        }
+        // Two triangles a pixel, with their corners' places and tree.
+        let needed = heights.len() as u64 * (size_of::<[f32; 5]>() as u64 + 2 * TRIANGLE_BYTES);
+        if !self.charge(name, needed, diagnostics) {
             return None;
         }
         let data = field.mesh(width, &heights);
@@ -107,7 +114,8 @@ impl<'r> Loader<'r> {
             return *known;
         }
         let bytes = self.read(name, "texture", diagnostics);
-        let texture = bytes.and_then(|bytes| decode(name, &name.path, &bytes, self.rules.srgb_textures, diagnostics));
+        let (srgb, memory) = (self.rules.srgb_textures, self.resources.memory);
+        let texture = bytes.and_then(|bytes| decode(name, &name.path, &bytes, srgb, memory, diagnostics));
         let texture = texture.filter(|texture| self.charge(name, texture.bytes() as u64, diagnostics));
         let number = texture.map(|texture| {
             self.textures.push(texture);
@@ -141,20 +149,29 @@ impl<'r> Loader<'r> {
             let Some(bytes) = self.read(&file, "face of the cube map", &mut unread) else { break };
             files.push((file.path, bytes));
         }
+        // All are decoded at once, so each has what the others before it leave.
+        let mut memory = self.resources.memory;
+        let mut left = Vec::with_capacity(6);
+        for (path, bytes) in &files {
+            left.push(memory);
+            memory = memory.saturating_sub(Encoded::open(bytes, path).map_or(0, |face| face.needed8()));
+        }
         // Decoding takes longer than all else. The first face in order that is wrong is the one complained of.
         let srgb = self.rules.srgb_textures;
-        let one = |(path, bytes): &(String, Arc<[u8]>)| {
+        let one = |((path, bytes), left): (&(String, Arc<[u8]>), &u64)| {
             let mut own = Diagnostics::default();
-            (decode(name, path, bytes, srgb, &mut own), own)
+            (decode(name, path, bytes, srgb, *left, &mut own), own)
         };
-        let decoded: Vec<(Option<Texture>, Diagnostics)> = files.par_iter().map(one).collect();
+        let decoded: Vec<(Option<Texture>, Diagnostics)> = files.par_iter().zip(&left).map(one).collect();
         let mut faces = Vec::with_capacity(6);
         for (face, own) in decoded {
             diagnostics.extend(own);
             faces.push(face?);
         }
         diagnostics.extend(unread);
-        Some(CubeMap { faces: faces.try_into().ok()? })
+        let bytes = faces.iter().map(|face: &Texture| face.bytes() as u64).sum();
+        let affordable = self.charge(name, bytes, diagnostics);
+        Some(CubeMap { faces: faces.try_into().ok()? }).filter(|_| affordable)
     }
 
     /// Takes memory from what is left; says so where there is too little.
@@ -162,8 +179,8 @@ impl<'r> Loader<'r> {
         let left = self.resources.memory;
         self.resources.memory = left.saturating_sub(needed);
         if needed > left {
-            let [needed, left] = [needed, left].map(|bytes| bytes.div_ceil(1 << 20));
-            let message = format!("`{}` needs about {needed} MiB of memory, and {left} MiB are left for it", name.path);
+            let (needed, left) = (at_least(needed), at_most(left));
+            let message = format!("`{}` needs about {needed} of memory, and {left} are left for it", name.path);
             diagnostics.push(Diagnostic::error(message).at(name.span).help("see `--memory`"));
         }
         needed <= left
@@ -208,16 +225,30 @@ fn missing_help(tried: &[PathBuf], near: Option<&str>) -> String {
     }
 }
 
-fn decode(name: &FileName, path: &str, bytes: &[u8], srgb: bool, diagnostics: &mut Diagnostics) -> Option<Texture> {
-    match image::read8(bytes, path) {
-        Ok(picture) => {
-            let texture = Texture::new(picture.width, picture.height, picture.pixels)?;
-            Some(if srgb { texture.decoded(image::decode_srgb) } else { texture })
-        }
-        Err(error) => {
-            let message = format!("the picture `{path}` cannot be used: {error}");
-            diagnostics.push(Diagnostic::error(message).code("bad-file").at(name.span));
-            None
-        }
-    }
+/// The texture of a picture, decoded within some bytes of memory.
+fn decode(
+    name: &FileName,
+    path: &str,
+    bytes: &[u8],
+    srgb: bool,
+    memory: u64,
+    diagnostics: &mut Diagnostics,
+) -> Option<Texture> {
+    let picture = Encoded::open(bytes, path).and_then(|encoded| encoded.read8(memory));
+    let picture = used(name, path, picture, diagnostics)?;
+    let texture = Texture::new(picture.width, picture.height, picture.pixels)?;
+    Some(if srgb { texture.decoded(image::decode_srgb) } else { texture })
+}
+
+/// What came of reading a picture; an error is said at the place that names it.
+fn used<T>(name: &FileName, path: &str, read: Result<T, ImageError>, diagnostics: &mut Diagnostics) -> Option<T> {
+    let refuse = |error: ImageError| {
+        let message = format!("the picture `{path}` cannot be used: {error}");
+        let diagnostic = Diagnostic::error(message).code("bad-file").at(name.span);
+        diagnostics.push(match error {
+            ImageError::Memory { .. } => diagnostic.help("see `--memory`"),
+            _ => diagnostic,
+        });
+    };
+    read.map_err(refuse).ok()
 }

@@ -9,8 +9,8 @@ mod tests;
 /// A window of a picture that adds up weighted samples, each pixel for itself.
 ///
 /// A weight is rounded once to a multiple of 2^-24, the product of colour and weight once to a multiple of 2^-48 (ties to even).
-/// From then on everything is integer addition. Colours up to 2^44 and weights up to 2^10 are kept: there is room in a pixel
-/// for 2^25 samples of the greatest colour and weight, and for 2^35 of the greatest colour at weight 1.
+/// From then on everything is integer addition. Colours are cut at 2^44 either way, and weights are up to 2^10: there is room in a
+/// pixel for 2^25 samples of the greatest colour and weight, and for 2^35 of the greatest colour at weight 1.
 ///
 /// Beside the mean there are exact sums for its variance: luminances, rounded to multiples of 2^-28 and cut at 2^14 either way,
 /// and their squares, with room for 2^21 samples.
@@ -42,12 +42,13 @@ struct Pixel {
 }
 
 impl Pixel {
-    /// Adds a sample; `false` if it is beyond the film's range.
+    /// Adds a sample; `false` if it is no finite number. What is too bright to be kept is cut.
     fn add(&mut self, rgb: [f64; 3], weight: f64, share: f64) -> bool {
         let weight = weight * WEIGHT_SCALE;
-        if !(weight.abs() <= GREATEST_WEIGHT * WEIGHT_SCALE && rgb.iter().all(|c| c.abs() <= GREATEST_COLOR)) {
+        if !(weight.abs() <= GREATEST_WEIGHT * WEIGHT_SCALE && rgb.iter().all(|c| c.is_finite())) {
             return false;
         }
+        let rgb = rgb.map(|c| c.clamp(-GREATEST_COLOR, GREATEST_COLOR));
         // At most 24 significant bits are left of the weight, so each product below is exact before its rounding.
         let weight = weight.round_ties_even();
         let scale = weight * (COLOR_SCALE / WEIGHT_SCALE);
@@ -55,6 +56,20 @@ impl Pixel {
         self.sum(rgb.map(|c| (c * scale).round_ties_even() as i128), weight as i64, luminance.round_ties_even() as i64);
         self.covered = self.covered.wrapping_add((weight * share).round_ties_even() as i64);
         true
+    }
+
+    /// Whether so many samples, or fewer, can have these sums.
+    fn is_possible(&self, most_samples: u32) -> bool {
+        let (n, most) = (i128::from(self.samples), |greatest: f64, scale: f64| greatest as i128 * scale as i128);
+        let within = |sum: i128, greatest: i128| sum.unsigned_abs() <= n.unsigned_abs().saturating_mul(greatest as u128);
+        let luminance = most(GREATEST_LUMINANCE, LUMINANCE_SCALE);
+        self.samples <= u64::from(most_samples)
+            && within(self.weight.into(), most(GREATEST_WEIGHT, WEIGHT_SCALE))
+            && within(self.covered.into(), most(GREATEST_WEIGHT, WEIGHT_SCALE))
+            && self.color.iter().all(|&sum| within(sum, most(GREATEST_COLOR * GREATEST_WEIGHT, COLOR_SCALE)))
+            && within(self.luminance.into(), luminance)
+            && self.squares >= 0
+            && within(self.squares, luminance * luminance)
     }
 
     /// The same numbers, faster, for a sample that covers the pixel, of a colour below [`SMALL_COLOR`] and a weight of at most 1.
@@ -87,7 +102,7 @@ const GREATEST_LUMINANCE: f64 = (1_u64 << 14) as f64;
 /// What red, green and blue of Rec. 709 give to the luminance. Source: ITU-R BT.709.
 const LUMINANCE: [f64; 3] = [0.2126, 0.7152, 0.0722];
 
-/// A sample that was left out because it is infinite, not a number or beyond the film's range. Ordered by row, column, sample.
+/// A sample that was left out because it is infinite or not a number. Ordered by row, column, sample.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Rejected {
     /// Row from the top.
@@ -202,8 +217,9 @@ impl Film {
         }
     }
 
-    /// Reads what [`Film::write`] wrote into this film, which must have the same window. `None` if the bytes are something else.
-    pub fn read(mut self, bytes: &mut Bytes) -> Option<Self> {
+    /// Reads what [`Film::write`] wrote into this film, which must have the same window and got at most so many samples a pixel.
+    /// `None` if the bytes are something else, or sums that no samples have.
+    pub fn read(mut self, bytes: &mut Bytes, most_samples: u32) -> Option<Self> {
         for pixel in &mut self.pixels {
             pixel.samples = bytes.whole()?;
             pixel.weight = bytes.signed()?;
@@ -213,6 +229,9 @@ impl Film {
             }
             pixel.luminance = bytes.signed()?;
             pixel.squares = bytes.signed()?;
+            if !pixel.is_possible(most_samples) {
+                return None;
+            }
         }
         self.rejected = bytes.whole()?;
         let remembered: usize = bytes.whole()?;
@@ -260,7 +279,9 @@ impl Film {
         if pixel.samples < 2 {
             return f64::INFINITY;
         }
+        // Cut as those of the samples are.
         let mean = luminance(self.resolve(x, y).to_array().map(f64::from));
+        let mean = mean.clamp(-GREATEST_LUMINANCE, GREATEST_LUMINANCE);
         let sum = pixel.luminance as f64 / LUMINANCE_SCALE;
         let squares = pixel.squares as f64 / (LUMINANCE_SCALE * LUMINANCE_SCALE);
         // Of equal samples a rounding is left, which may be negative.

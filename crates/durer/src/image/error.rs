@@ -1,6 +1,7 @@
 //! What can be wrong with a picture.
 
 use super::formats::known_extensions;
+use crate::diag::{at_least, at_most};
 
 /// Why a picture cannot be read or written.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -45,6 +46,23 @@ pub enum ImageError {
         /// Length of the file.
         bytes: usize,
     },
+    /// It would take more memory than is allowed.
+    #[error(
+        "its {width} x {height} pixels need about {} of memory, and {} are left for it", at_least(*.needed), at_most(*.allowed)
+    )]
+    Memory {
+        /// Pixels in a row.
+        width: u64,
+        /// Rows.
+        height: u64,
+        /// Bytes that reading it takes.
+        needed: u64,
+        /// Bytes that are allowed.
+        allowed: u64,
+    },
+    /// The system has not so much memory.
+    #[error("it needs {} of memory at once, which cannot be had", at_least(*.0))]
+    NoRoom(u64),
     /// Eight-bit values were asked for, and the picture has others.
     #[error("the picture has not eight bits a channel")]
     NotEightBit,
@@ -83,6 +101,11 @@ impl ImageError {
     /// The bytes break the format's rules.
     pub(super) fn malformed(format: &'static str, reason: impl ToString) -> ImageError {
         ImageError::Malformed { format, reason: reason.to_string() }
+    }
+
+    /// There is no memory for so many things of a size.
+    pub(super) fn no_room(count: usize, size: usize) -> ImageError {
+        ImageError::NoRoom(count as u64 * size as u64)
     }
 
     /// This kind of the format cannot be read or written.

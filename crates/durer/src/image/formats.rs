@@ -15,6 +15,7 @@ use super::limits;
 use super::{Image, Image8, ImageError, Layer, LayerKind, Transfer};
 use crate::diag;
 use crate::math::Vec3;
+use std::panic::UnwindSafe;
 use std::path::Path;
 
 /// Every format that is known, in the order in which content is tried.
@@ -37,6 +38,18 @@ pub struct WriteOptions<'a> {
     pub transfer: Transfer,
     /// Names and texts to be told beside the pictures, in formats that have a place for them.
     pub attributes: &'a [(&'static str, String)],
+}
+
+/// What a file's head tells of its picture.
+pub(super) struct Head {
+    /// Pixels in a row, and rows: as declared, whether possible or not.
+    pub width: u64,
+    pub height: u64,
+    /// Whether a channel has eight bits.
+    pub eight: bool,
+    /// Memory that decoding takes, the decoded picture with it: for each pixel, and beside that.
+    pub bytes_per_pixel: u64,
+    pub spare: u64,
 }
 
 /// What a reader found in a file.
@@ -65,6 +78,9 @@ pub struct Format {
     pub most_side: u32,
     /// Whether bytes begin as files of this format do.
     begins: fn(&[u8]) -> bool,
+    /// Reads the head alone.
+    head: fn(&[u8]) -> Result<Head, ImageError>,
+    /// Reads a picture whose size was found possible.
     decode: fn(&[u8]) -> Result<Raster, ImageError>,
     encode: Encode,
 }
@@ -104,10 +120,17 @@ impl Format {
         (self.encode)(layers, options, out)
     }
 
-    pub(super) fn read(&self, bytes: &[u8]) -> Result<Raster, ImageError> {
-        // Most decoders are other people's code. Should one of them panic, this is one more malformed file.
-        std::panic::catch_unwind(|| (self.decode)(bytes))
-            .unwrap_or_else(|_| Err(ImageError::malformed(self.name, "its decoder failed")))
+    pub(super) fn head(&self, bytes: &[u8]) -> Result<Head, ImageError> {
+        self.caught(|| (self.head)(bytes))
+    }
+
+    pub(super) fn decode(&self, bytes: &[u8]) -> Result<Raster, ImageError> {
+        self.caught(|| (self.decode)(bytes))
+    }
+
+    /// Most decoders are other people's code. Should one of them panic, this is one more malformed file.
+    fn caught<T>(&self, work: impl FnOnce() -> Result<T, ImageError> + UnwindSafe) -> Result<T, ImageError> {
+        std::panic::catch_unwind(work).unwrap_or_else(|_| Err(ImageError::malformed(self.name, "its decoder failed")))
     }
 
     fn has_extension(&self, path: &str) -> bool {

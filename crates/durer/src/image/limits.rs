@@ -1,7 +1,7 @@
 //! How much memory a picture may take.
 //!
-//! A declared size is never trusted. What is allocated while reading is at most about 32 bytes for each of
-//! [`pixel_limit`] pixels, whatever the header says.
+//! A declared size is never trusted: it is read from the file's head, and compared with the file's length and with the memory
+//! that the caller allows, before anything is decoded.
 
 use super::ImageError;
 
@@ -27,6 +27,14 @@ pub(super) fn declared_count(width: u64, height: u64, bytes: usize) -> Result<us
         Some(0) => Err(ImageError::Size { width: width as u32, height: height as u32 }),
         _ => Err(ImageError::TooLarge { width, height, bytes }),
     }
+}
+
+/// So many equal things. Where the system has no memory for them, that is an error and not the end of the program.
+pub(super) fn room_for<T: Clone>(count: usize, thing: T) -> Result<Vec<T>, ImageError> {
+    let mut all = Vec::new();
+    all.try_reserve_exact(count).map_err(|_| ImageError::no_room(count, size_of::<T>()))?;
+    all.resize(count, thing);
+    Ok(all)
 }
 
 /// Number of pixels of a picture, if it is a possible one.

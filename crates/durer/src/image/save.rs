@@ -18,6 +18,24 @@ pub enum SaveError {
         /// Where the file should go.
         path: PathBuf,
     },
+    /// A disk or a socket has this name.
+    #[error("cannot write `{}`: it is neither a file nor a pipe", path.display())]
+    NotAFile {
+        /// Where the file should go.
+        path: PathBuf,
+    },
+    /// It is a symbolic link that leads nowhere: what it names is missing, or is itself.
+    #[error("cannot write `{}`: it is a symbolic link that leads nowhere", path.display())]
+    LostLink {
+        /// Where the file should go.
+        path: PathBuf,
+    },
+    /// It is a pipe without a reader, for whom the system would wait.
+    #[error("cannot write `{}`: it is a pipe that nobody reads; start the reader first", path.display())]
+    NobodyReads {
+        /// Where the bytes should go.
+        path: PathBuf,
+    },
     /// The folder for the file is not there, or is a file itself.
     #[error("cannot write `{}`: there is no folder `{}`", path.display(), folder.display())]
     NoFolder {
@@ -37,46 +55,70 @@ pub enum SaveError {
     },
 }
 
+/// A place for a file that was found to be one that may be written, which is better known before a long work than after it.
+#[derive(Debug)]
+pub struct Destination {
+    path: PathBuf,
+    /// The open device or pipe, which is written to as it is: no one can take its reader away meanwhile.
+    stream: Option<File>,
+}
+
+impl Destination {
+    /// Says what is known to prevent saving. Removes what killed programs left in the folder. A pipe is opened.
+    ///
+    /// # Errors
+    /// [`SaveError`]. Without one, saving may still fail.
+    pub fn new(path: impl Into<PathBuf>) -> Result<Self, SaveError> {
+        let path = path.into();
+        let stream = match resolve(&path)? {
+            Some((target, _)) => {
+                remove_stale(folder_of(&target));
+                None
+            }
+            None => Some(open_stream(&path)?),
+        };
+        Ok(Destination { path, stream })
+    }
+
+    /// Its name.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Whether it is a device or a pipe, in which nothing can be replaced.
+    pub fn is_stream(&self) -> bool {
+        self.stream.is_some()
+    }
+}
+
 /// Puts bytes into a file, wholly or not at all. Devices and pipes are written to directly.
 ///
 /// # Errors
 /// [`SaveError`]; the old file is intact then, and no other is left.
 pub fn save(path: impl AsRef<Path>, bytes: &[u8]) -> Result<(), SaveError> {
-    save_all(&[(path, bytes)])
+    save_all(&[(&Destination::new(path.as_ref())?, bytes)])
 }
 
 /// Puts bytes into several files: all are written beside their targets before the first is renamed.
 ///
 /// # Errors
 /// [`SaveError`]. Unless a rename itself fails, which takes a change of the folders meanwhile, no file is changed.
-pub fn save_all<P: AsRef<Path>, B: AsRef<[u8]>>(files: &[(P, B)]) -> Result<(), SaveError> {
+pub fn save_all<B: AsRef<[u8]>>(files: &[(&Destination, B)]) -> Result<(), SaveError> {
     let mut staged = Vec::with_capacity(files.len());
-    for (path, bytes) in files {
-        staged.push(stage(path.as_ref(), bytes.as_ref())?);
+    for (place, bytes) in files.iter().filter(|file| !file.0.is_stream()) {
+        staged.push(stage(place.path(), bytes.as_ref())?);
     }
     // What cannot be renamed cannot be undone either: it comes when the files are safe on the disk.
-    for ((path, bytes), _) in files.iter().zip(&staged).filter(|(_, staged)| staged.is_none()) {
-        let io = |error| SaveError::Io { path: path.as_ref().into(), error };
-        // A redirected standard output is a file that may have bytes before ours.
-        let mut device = OpenOptions::new().append(true).open(path).map_err(io)?;
-        device.write_all(bytes.as_ref()).map_err(io)?;
+    for (place, bytes) in files {
+        if let Some(mut stream) = place.stream.as_ref() {
+            stream.write_all(bytes.as_ref()).map_err(|error| SaveError::Io { path: place.path.clone(), error })?;
+        }
     }
-    for (temporary, target) in staged.into_iter().flatten() {
+    for (temporary, target) in staged {
         temporary.persist(&target).map_err(|error| SaveError::Io { path: target.clone(), error })?;
         // The new name should outlive a power cut too; where folders cannot be synced, that is left to the system.
         #[cfg(unix)]
         let _ = File::open(folder_of(&target)).and_then(|folder| folder.sync_all());
-    }
-    Ok(())
-}
-
-/// Says beforehand what is known to prevent saving: better than after a long work. Removes what killed programs left there.
-///
-/// # Errors
-/// [`SaveError`]. Without one, saving may still fail.
-pub fn check_target(path: impl AsRef<Path>) -> Result<(), SaveError> {
-    if let Some((target, _)) = resolve(path.as_ref())? {
-        remove_stale(folder_of(&target));
     }
     Ok(())
 }
@@ -86,10 +128,17 @@ fn resolve(path: &Path) -> Result<Option<(PathBuf, Option<fs::Metadata>)>, SaveE
     let io = |error| SaveError::Io { path: path.into(), error };
     let old = match fs::metadata(path) {
         Ok(old) if old.is_dir() => return Err(SaveError::IsFolder { path: path.into() }),
+        Ok(old) if !old.is_file() && !is_pipe_or_device(&old) => {
+            return Err(SaveError::NotAFile { path: path.into() });
+        }
         Ok(old) if !old.is_file() || is_stream(path) => return Ok(None),
         // A rename would replace even a file that must not be written.
         Ok(old) => OpenOptions::new().write(true).open(path).map(|_| Some(old)).map_err(io)?,
-        Err(_) => None,
+        Err(_) if fs::symlink_metadata(path).is_ok_and(|link| link.is_symlink()) => {
+            return Err(SaveError::LostLink { path: path.into() });
+        }
+        Err(error) if matches!(error.kind(), io::ErrorKind::NotFound | io::ErrorKind::NotADirectory) => None,
+        Err(error) => return Err(io(error)),
     };
     // A symbolic link stays one: the file that it names is replaced.
     let target = if old.is_some() { path.canonicalize().map_err(io)? } else { path.to_path_buf() };
@@ -100,17 +149,56 @@ fn resolve(path: &Path) -> Result<Option<(PathBuf, Option<fs::Metadata>)>, SaveE
     Ok(Some((target, old)))
 }
 
-/// Writes the temporary file for a target; `None` if the target is to be written to directly.
-fn stage(path: &Path, bytes: &[u8]) -> Result<Option<(Temporary, PathBuf)>, SaveError> {
+/// Whether bytes may be written to it one after the other.
+fn is_pipe_or_device(old: &fs::Metadata) -> bool {
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::FileTypeExt;
+        old.file_type().is_fifo() || old.file_type().is_char_device()
+    }
+    #[cfg(not(unix))]
+    {
+        let _ = old;
+        true
+    }
+}
+
+/// Opens a device or pipe without waiting for anybody. A redirected standard output is a file that may have bytes before ours.
+fn open_stream(path: &Path) -> Result<File, SaveError> {
+    let mut options = OpenOptions::new();
+    options.append(true);
+    #[cfg(unix)]
+    {
+        use rustix::fs::{OFlags, fcntl_getfl, fcntl_setfl};
+        use std::os::unix::fs::OpenOptionsExt;
+        let opened = options.custom_flags(OFlags::NONBLOCK.bits() as i32).open(path).and_then(|stream| {
+            // Only opening should not wait: a reader may be slow.
+            fcntl_setfl(&stream, fcntl_getfl(&stream)?.difference(OFlags::NONBLOCK))?;
+            Ok(stream)
+        });
+        opened.map_err(|error| match error.raw_os_error() {
+            Some(code) if code == rustix::io::Errno::NXIO.raw_os_error() => {
+                SaveError::NobodyReads { path: path.into() }
+            }
+            _ => SaveError::Io { path: path.into(), error },
+        })
+    }
+    #[cfg(not(unix))]
+    options.open(path).map_err(|error| SaveError::Io { path: path.into(), error })
+}
+
+/// Writes the temporary file for a target.
+fn stage(path: &Path, bytes: &[u8]) -> Result<(Temporary, PathBuf), SaveError> {
     let io = |error| SaveError::Io { path: path.into(), error };
-    let Some((target, old)) = resolve(path)? else { return Ok(None) };
+    // What was a file may be something else by now.
+    let (target, old) = resolve(path)?.ok_or_else(|| SaveError::NotAFile { path: path.into() })?;
     let temporary = Temporary::new_in(folder_of(&target)).map_err(io)?;
     if let Some(old) = old {
         temporary.file().set_permissions(old.permissions()).map_err(io)?;
     }
     temporary.file().write_all(bytes).map_err(io)?;
     temporary.file().sync_all().map_err(io)?;
-    Ok(Some((temporary, target)))
+    Ok((temporary, target))
 }
 
 /// The folder of a file; that of a bare name is the current one.

@@ -39,10 +39,15 @@ fn of_several_files_all_or_none() {
     let folder = tempfile::tempdir().unwrap();
     let [a, b] = ["a", "b"].map(|name| folder.path().join(name));
     save(&a, b"old").unwrap();
-    assert!(save_all(&[(a.clone(), "new"), (folder.path().join("no/b"), "new")]).is_err());
+    let place = |path: &Path| Destination::new(path).unwrap();
+    let lost = folder.path().join("lost");
+    fs::create_dir(&lost).unwrap();
+    let (to_a, to_lost) = (place(&a), place(&lost.join("b")));
+    fs::remove_dir(&lost).unwrap();
+    assert!(save_all(&[(&to_a, "new"), (&to_lost, "new")]).is_err());
     assert_eq!(fs::read(&a).unwrap(), b"old");
     assert_eq!(names(folder.path()), ["a"]);
-    save_all(&[(&a, "new"), (&b, "other")]).unwrap();
+    save_all(&[(&to_a, "new"), (&place(&b), "other")]).unwrap();
     assert_eq!((fs::read(&a).unwrap(), fs::read(&b).unwrap()), (b"new".to_vec(), b"other".to_vec()));
 }
 
@@ -84,8 +89,56 @@ fn devices_are_written_to_directly() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a");
     save(&path, b"old").unwrap();
-    let error = save_all(&[(path.clone(), b"new"), ("/dev/full".into(), b"new")]).unwrap_err();
+    let place = |path: &Path| Destination::new(path).unwrap();
+    let error = save_all(&[(&place(&path), b"new"), (&place(Path::new("/dev/full")), b"new")]).unwrap_err();
     assert!(error.to_string().starts_with("cannot write `/dev/full`: No space left"), "{error}");
     assert_eq!(fs::read(&path).unwrap(), b"old");
     assert_eq!(names(folder.path()), ["a"]);
+}
+
+#[cfg(unix)]
+#[test]
+fn links_that_lead_nowhere_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let [dangling, one, two] = ["dangling", "one", "two"].map(|name| folder.path().join(name));
+    std::os::unix::fs::symlink("missing", &dangling).unwrap();
+    std::os::unix::fs::symlink("two", &one).unwrap();
+    std::os::unix::fs::symlink("one", &two).unwrap();
+    for path in [dangling, one] {
+        assert!(matches!(save(&path, b"x"), Err(SaveError::LostLink { .. })));
+        assert!(fs::symlink_metadata(&path).unwrap().is_symlink());
+    }
+    assert_eq!(names(folder.path()), ["dangling", "one", "two"]);
+}
+
+#[cfg(unix)]
+#[test]
+fn pipes_are_written_through_or_refused() {
+    use std::io::Read;
+    let folder = tempfile::tempdir().unwrap();
+    let pipe = folder.path().join("pipe");
+    assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+    assert!(matches!(Destination::new(&pipe), Err(SaveError::NobodyReads { .. })));
+    let reader = std::thread::spawn({
+        let pipe = pipe.clone();
+        move || {
+            let mut bytes = Vec::new();
+            File::open(pipe).unwrap().read_to_end(&mut bytes).unwrap();
+            bytes
+        }
+    });
+    let place = loop {
+        match Destination::new(&pipe) {
+            Err(SaveError::NobodyReads { .. }) => std::thread::yield_now(),
+            place => break place.unwrap(),
+        }
+    };
+    // More than a pipe holds.
+    let bytes = vec![7; 1 << 20];
+    save_all(&[(&place, &bytes)]).unwrap();
+    drop(place);
+    assert!(reader.join().unwrap() == bytes);
+    let socket = folder.path().join("socket");
+    let _listener = std::os::unix::net::UnixListener::bind(&socket).unwrap();
+    assert!(matches!(Destination::new(&socket), Err(SaveError::NotAFile { .. })));
 }

@@ -1,5 +1,6 @@
 //! Why there is no picture, or not all of it.
 
+use crate::diag::{at_least, at_most};
 use crate::image::ImageError;
 use crate::math::Vec2;
 
@@ -28,7 +29,7 @@ pub enum RenderError {
     #[error("{0}")]
     Shard(String),
     /// It would take too much memory.
-    #[error("rendering needs about {} of memory, and {} are allowed", mebibytes(*.needed), mebibytes(*.allowed))]
+    #[error("rendering needs about {} of memory, and {} are allowed", at_least(*.needed), at_most(*.allowed))]
     Memory {
         /// Bytes that it would take.
         needed: u64,
@@ -41,14 +42,6 @@ pub enum RenderError {
     /// An error in this program.
     #[error(transparent)]
     Panic(#[from] Panicked),
-    /// The threads could not be had.
-    #[error("cannot start threads: {0}")]
-    Threads(#[from] rayon::ThreadPoolBuildError),
-}
-
-/// Bytes for people.
-pub fn mebibytes(bytes: u64) -> String {
-    format!("{} MiB", bytes.div_ceil(1 << 20))
 }
 
 /// A sample that made a thread panic: an error in this program. All other work is kept.

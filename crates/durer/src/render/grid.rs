@@ -1,11 +1,11 @@
 //! The course's picture of its uniform grid: the occupied cells as boxes.
 
-use super::run::threads;
 use super::{Control, Job, RenderError, center_ray, raster};
 use crate::bvh::Grid;
 use crate::image::{Image, checked_count};
 use crate::light::Emitter;
 use crate::math::{Aabb, Color, Ray, Vec3};
+use crate::threads;
 use crate::world::{Accel, World};
 use rayon::prelude::*;
 use std::sync::atomic::Ordering::Relaxed;
@@ -38,7 +38,7 @@ pub fn grid_picture(world: &World, job: &Job, control: &Control) -> Result<Image
         })
     };
     let colors =
-        threads(control)?.install(|| (0..count as u32).into_par_iter().map(color).collect::<Result<_, _>>())?;
+        threads::install(control.threads, || (0..count as u32).into_par_iter().map(color).collect::<Result<_, _>>())?;
     Ok(Image::from_pixels(job.width, job.height, colors)?)
 }
 

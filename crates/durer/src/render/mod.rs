@@ -23,7 +23,7 @@ pub mod verify;
 
 pub use blocks::{BLOCK, Blocks, Shard, ShardBy};
 pub use control::Control;
-pub use error::{Panicked, RenderError, mebibytes};
+pub use error::{Panicked, RenderError};
 pub use eye::{camera_ray, center_ray, raster};
 pub use grid::grid_picture;
 pub use job::{Crop, Job, Sampling};

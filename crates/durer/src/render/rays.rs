@@ -32,7 +32,9 @@ pub(super) fn trace(world: &World, job: &Job, samples: &Samples, rect: Crop, at:
         seen.push(Seen { covered: true, hit, material, albedo, counts });
     }
     samples.check()?;
-    let values = job.ray_aovs().flat_map(|(_, value)| seen.iter().map(value)).collect();
+    // What is no number is shown as nothing.
+    let finite = |value: Vec3| if value.is_finite() { value } else { Vec3::ZERO };
+    let values = job.ray_aovs().flat_map(|(_, value)| seen.iter().map(value).map(finite)).collect();
     let found = |seen: &Seen| match (seen.covered, seen.hit.is_some()) {
         (false, _) => Found::Blind,
         (true, false) => Found::Nothing,

@@ -2,9 +2,10 @@
 
 use super::error::RenderError;
 use super::samples::{At, Samples};
-use super::{Control, Crop, Job, Part, Shard, rays, run};
+use super::{Control, Crop, Job, Part, Shard, rays};
 use crate::bvh::Rays;
 use crate::math::Color;
+use crate::threads;
 use crate::world::World;
 use std::cell::Cell;
 use std::sync::atomic::AtomicBool;
@@ -45,5 +46,5 @@ pub fn replay(
             }
         }
     };
-    Ok(run::threads(control)?.install(work))
+    Ok(threads::install(control.threads, work))
 }

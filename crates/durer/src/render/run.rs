@@ -6,6 +6,7 @@ use super::samples::{At, Samples, Stopped, kept_bytes};
 use super::{BLOCK, Control, Job, Rendered, Shard, rays};
 use crate::bvh::Rays;
 use crate::film::aov::Look;
+use crate::threads;
 use crate::world::World;
 use rayon::prelude::*;
 use std::cell::Cell;
@@ -66,11 +67,6 @@ pub fn render(world: &World, job: &Job, control: &Control) -> Result<Rendered, R
     }
 }
 
-/// Threads for some work, as many as wanted, whose stacks hold the most bounces.
-pub(super) fn threads(control: &Control) -> Result<rayon::ThreadPool, RenderError> {
-    Ok(rayon::ThreadPoolBuilder::new().num_threads(control.threads.unwrap_or(0)).stack_size(16 << 20).build()?)
-}
-
 impl Part {
     /// Goes on with the work until it is finished or stopped. What is made is kept, tile by tile.
     ///
@@ -78,7 +74,7 @@ impl Part {
     /// it took some time, ends of passes are passed over until ten times as long has gone by.
     ///
     /// # Errors
-    /// [`RenderError::OtherScene`], [`RenderError::Memory`], [`RenderError::Threads`].
+    /// [`RenderError::OtherScene`], [`RenderError::Memory`].
     pub fn render(
         &self,
         world: &World,
@@ -88,8 +84,9 @@ impl Part {
         if self.scene != world.digest || self.look != Look::new(&world.rules) {
             return Err(RenderError::OtherScene);
         }
-        let (pool, tile) = (threads(control)?, control.tile.unwrap_or(usual_tile(&self.job)));
-        let kept = kept_bytes(&self.job, tile).saturating_mul(pool.current_num_threads() as u64);
+        let (pool, tile) = (threads::pool(control.threads), control.tile.unwrap_or(usual_tile(&self.job)));
+        let threads = pool.as_ref().map_or(1, rayon::ThreadPool::current_num_threads);
+        let kept = kept_bytes(&self.job, tile).saturating_mul(threads as u64);
         let needed = Part::bytes_needed(&self.job, self.shard).saturating_add(kept);
         if let Some(allowed) = control.memory.filter(|&allowed| needed > allowed) {
             return Err(RenderError::Memory { needed, allowed });
@@ -111,26 +108,36 @@ impl Part {
         let whole = !self.job.sampling.is_local() || !self.job.wants_samples();
         let mut clock =
             Clock { start, last: start, pause: Duration::ZERO, control, stop: &stop, whole, out_of_time: false };
-        pool.in_place_scope(|scope| {
-            let (finished, passes) = mpsc::channel();
-            let work = &work;
-            scope.spawn(move |_| {
-                work.rays();
-                for end in pass_ends(&self.job, self.shard) {
-                    work.pass(end);
-                    // Nobody listens after the end.
-                    let _ = finished.send(());
+        match pool {
+            Some(pool) => pool.in_place_scope(|scope| {
+                let (finished, passes) = mpsc::channel();
+                let work = &work;
+                scope.spawn(move |_| {
+                    work.rays(None);
+                    for end in pass_ends(&self.job, self.shard) {
+                        work.pass(end, None);
+                        // Nobody listens after the end.
+                        let _ = finished.send(());
+                    }
+                });
+                // The sender is dropped with the last pass.
+                loop {
+                    match passes.recv_timeout(LOOK) {
+                        Ok(()) => clock.passed(self, watch),
+                        Err(mpsc::RecvTimeoutError::Timeout) => clock.look(self, watch),
+                        Err(mpsc::RecvTimeoutError::Disconnected) => break,
+                    }
                 }
-            });
-            // The sender is dropped with the last pass.
-            loop {
-                match passes.recv_timeout(LOOK) {
-                    Ok(()) => clock.passed(self, watch),
-                    Err(mpsc::RecvTimeoutError::Timeout) => clock.look(self, watch),
-                    Err(mpsc::RecvTimeoutError::Disconnected) => break,
+            }),
+            // The calling thread does it all, and looks up between tiles.
+            None => {
+                work.rays(Some(&mut || clock.look(self, watch)));
+                for end in pass_ends(&self.job, self.shard) {
+                    work.pass(end, Some(&mut || clock.look(self, watch)));
+                    clock.passed(self, watch);
                 }
             }
-        });
+        }
         let panicked = work.panicked.lock().unwrap_or_else(PoisonError::into_inner).take();
         Ok(match panicked {
             Some(panicked) => Stop::Panicked(panicked),
@@ -188,6 +195,9 @@ impl Clock<'_> {
     }
 }
 
+/// What a thread that has no others does between tiles.
+type Alone<'a> = Option<&'a mut dyn FnMut()>;
+
 /// What the working threads share.
 struct Work<'a> {
     part: &'a Part,
@@ -203,14 +213,14 @@ struct Work<'a> {
 
 impl Work<'_> {
     /// Traces the rays through the centres of pixels where that was not done.
-    fn rays(&self) {
+    fn rays(&self, alone: Alone) {
         let part = self.part;
         let open = |(index, block): (usize, &Option<Box<Traced>>)| {
             (block.is_none() && part.shard.has_rays(index)).then_some(index)
         };
         let blocks: Vec<usize> = part.state().rays.iter().enumerate().filter_map(open).collect();
         let tiles = part.ray_blocks.tiles(blocks.into_iter(), self.tile);
-        self.each(&tiles, |tile, at| {
+        self.each(&tiles, alone, |tile, at| {
             let trace =
                 |&index: &usize| rays::trace(self.world, &part.job, &self.samples, part.ray_blocks.rect(index), at);
             let traced = tile.iter().map(trace).collect::<Result<Vec<_>, _>>()?;
@@ -226,7 +236,7 @@ impl Work<'_> {
     }
 
     /// Takes samples until each pixel that still needs some has as many as this.
-    fn pass(&self, end: u32) {
+    fn pass(&self, end: u32, alone: Alone) {
         let (part, gain) = (self.part, self.samples.gain());
         let open = |(index, block): (usize, &Sampled)| {
             let wanted = part.shard.has_block(index) && block.to < end && !part.is_done(index, block, gain);
@@ -234,7 +244,7 @@ impl Work<'_> {
         };
         let blocks: Vec<usize> = part.state().samples.iter().enumerate().filter_map(open).collect();
         let tiles = part.blocks.tiles(blocks.into_iter(), self.tile);
-        self.each(&tiles, |tile, at| {
+        self.each(&tiles, alone, |tile, at| {
             if part.job.sampling.is_local() { self.sample(tile, end, at) } else { self.finish(tile, at) }
         });
     }
@@ -301,10 +311,9 @@ impl Work<'_> {
         self.control.rays.fetch_add(rays, Relaxed);
     }
 
-    /// Makes tiles in parallel, until something stops it. A panic becomes an error that knows its sample.
-    fn each(&self, tiles: &[Vec<usize>], make: impl Fn(&[usize], &At) -> Result<(), Stopped> + Sync) {
-        // An error ends the work early; why it ended is known elsewhere.
-        let _ = tiles.par_iter().with_max_len(1).try_for_each(|tile| {
+    /// Makes tiles in parallel or alone, until something stops it. A panic becomes an error that knows its sample.
+    fn each(&self, tiles: &[Vec<usize>], alone: Alone, make: impl Fn(&[usize], &At) -> Result<(), Stopped> + Sync) {
+        let one = |tile: &Vec<usize>| {
             if self.control.most_tiles.is_some_and(|most| self.tiles.fetch_add(1, Relaxed) >= most) {
                 self.stop.store(true, Relaxed);
             }
@@ -319,6 +328,14 @@ impl Work<'_> {
                 self.stop.store(true, Relaxed);
                 Err(Stopped)
             })
-        });
+        };
+        // An error ends the work early; why it ended is known elsewhere.
+        let _ = match alone {
+            None => tiles.par_iter().with_max_len(1).try_for_each(one),
+            Some(look) => tiles.iter().try_for_each(|tile| {
+                look();
+                one(tile)
+            }),
+        };
     }
 }

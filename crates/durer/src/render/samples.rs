@@ -2,7 +2,7 @@
 
 use super::error::{MOST_KEPT, center};
 use super::sub_pixels::SubPixels;
-use super::{Control, Crop, Job, RenderError, Sampling, camera_ray, center_ray, raster, run};
+use super::{Control, Crop, Job, RenderError, Sampling, camera_ray, center_ray, raster};
 use crate::bvh::Rays;
 use crate::camera::{Lens, Raster};
 use crate::dialect::Compat;
@@ -11,6 +11,7 @@ use crate::film::{Film, FilterSampler};
 use crate::integrator::Whitted;
 use crate::math::{Color, Ray, Vec2, Vec3};
 use crate::sampler::Sampler;
+use crate::threads;
 use crate::world::{Material, World};
 use std::cell::Cell;
 use std::ops::Range;
@@ -43,7 +44,7 @@ pub fn sample_diagram(world: &World, job: &Job, control: &Control) -> Result<Sto
         let source = Samples::new(world, job, &control.cancel);
         source.stored(&Show::default(), job.whole(), (sampler, samples), &at, |_, _| true, &mut rays)
     };
-    run::threads(control)?.install(work).map_err(|Stopped| RenderError::Cancelled)
+    threads::install(control.threads, work).map_err(|Stopped| RenderError::Cancelled)
 }
 
 /// Bytes of the samples that are kept at once for a tile, where samples count for other pixels too.

@@ -21,7 +21,6 @@ use crate::film::bytes::{Bytes, put};
 use crate::math::Vec3;
 use crate::source::Digest;
 
-const MAGIC: &[u8; 8] = b"DURERPRT";
 const FORMAT: u32 = 1;
 const VERSION: &str = env!("CARGO_PKG_VERSION");
 
@@ -62,9 +61,12 @@ fn text<'a>(bytes: &mut Bytes<'a>) -> Option<&'a str> {
 }
 
 impl Part {
+    /// How files of parts begin.
+    pub const MAGIC: &[u8; 8] = b"DURERPRT";
+
     /// Its bytes, as they are saved. The same work gives the same bytes.
     pub fn write(&self) -> Vec<u8> {
-        let mut out = MAGIC.to_vec();
+        let mut out = Part::MAGIC.to_vec();
         put(&mut out, FORMAT.into());
         put_text(&mut out, VERSION);
         out.extend(self.scene.0);
@@ -101,15 +103,15 @@ impl Part {
     /// # Errors
     /// [`PartError`] for anything but what [`Part::write`] of this version gives.
     pub fn read(bytes: &[u8]) -> Result<Part, PartError> {
-        if !bytes.starts_with(MAGIC) {
-            return Err(if MAGIC.starts_with(bytes) { PartError::Damaged } else { PartError::NotAPart });
+        if !bytes.starts_with(Part::MAGIC) {
+            return Err(if Part::MAGIC.starts_with(bytes) { PartError::Damaged } else { PartError::NotAPart });
         }
         let (content, digest) = bytes.split_last_chunk::<32>().ok_or(PartError::Damaged)?;
         if Digest::of(content).0 != *digest {
             return Err(PartError::Damaged);
         }
         let malformed = |what: &str| PartError::Malformed(what.into());
-        let mut rest = Bytes(&content[MAGIC.len().min(content.len())..]);
+        let mut rest = Bytes(&content[Part::MAGIC.len().min(content.len())..]);
         let (format, version): (Option<u32>, _) = (rest.whole(), text(&mut rest));
         match (format, version) {
             (Some(FORMAT), Some(VERSION)) => {}
@@ -126,6 +128,10 @@ impl Part {
         // A picture for which there are too few bytes would take memory for nothing.
         let part = Part::empty(job, shard, Digest(scene), look)?;
         part.read_blocks(rest).ok_or(malformed("its blocks"))?;
+        // Numbers, texts and orders of blocks could be written in other ways, but never are.
+        if part.write() != bytes {
+            return Err(malformed("it is not as Dürer writes it"));
+        }
         Ok(part)
     }
 
@@ -137,7 +143,7 @@ impl Part {
             if from != range.0 || to <= from || to > range.1 || !self.shard.has_block(number - 1) {
                 return None;
             }
-            let film = film_of(self.blocks.rect(number - 1)).read(&mut rest)?;
+            let film = film_of(self.blocks.rect(number - 1)).read(&mut rest, to - from)?;
             *block = Sampled { from, to, rays, film: Some(Box::new(film)) };
         }
         let pictures = self.job.ray_aovs().count();
@@ -148,7 +154,7 @@ impl Part {
             let found = |&byte: &u8| [Found::Blind, Found::Nothing, Found::Hit].into_iter().find(|f| *f as u8 == byte);
             let found = rest.take(pixels)?.iter().map(found).collect::<Option<_>>()?;
             let mut value = || Some(Vec3::new(rest.float()?, rest.float()?, rest.float()?));
-            let values = (0..pixels * pictures).map(|_| value()).collect::<Option<_>>()?;
+            let values = (0..pixels * pictures).map(|_| value().filter(|v| v.is_finite())).collect::<Option<_>>()?;
             *block = Some(Box::new(Traced { found, values, rays }));
         }
         rest.0.is_empty().then_some(())

@@ -15,7 +15,7 @@ mod ssim;
 #[cfg(test)]
 mod tests;
 
-use super::{ImageError, Transfer};
+use super::{Encoded, ImageError, Transfer};
 use picture::Pair;
 
 pub use heat::heat_map;
@@ -107,6 +107,22 @@ pub enum CompareError {
 
 fn exchanged(a: (u32, u32), b: (u32, u32)) -> &'static str {
     if a == (b.1, b.0) { " (width and height are exchanged)" } else { "" }
+}
+
+/// Bytes of memory that reading and comparing two pictures takes.
+///
+/// # Errors
+/// [`CompareError::Sizes`], which so is known before they are decoded.
+pub fn memory_needed(reference: &Encoded, test: &Encoded) -> Result<u64, CompareError> {
+    // Both as they are, as they are shown, and what the measures take: 91 bytes a pixel were measured.
+    const BYTES_PER_PIXEL: u64 = 100;
+    let [a, b] = [reference, test].map(|picture| picture.size());
+    if a != b {
+        let size = |(width, height)| (width as u32, height as u32);
+        return Err(CompareError::Sizes { reference: size(a), test: size(b) });
+    }
+    let compared = (a.0 as u64 * a.1 as u64).saturating_mul(BYTES_PER_PIXEL);
+    Ok(compared.max(reference.needed().saturating_add(test.needed())))
 }
 
 /// Compares a picture with a reference.

@@ -1,8 +1,7 @@
 //! Two pictures on one scale.
 
 use super::CompareError;
-use crate::image::formats::{Raster, recognise};
-use crate::image::{Depth, Image, ImageError, Transfer, decode_linear, decode_srgb};
+use crate::image::{Depth, Encoded, Image, ImageError, Transfer, decode_linear, decode_srgb};
 use crate::math::{Vec3, fp};
 
 /// What the numbers of a picture are.
@@ -73,17 +72,17 @@ impl Picture {
     /// # Errors
     /// Those of [`read`](crate::image::read).
     pub fn read(bytes: &[u8], name: &str) -> Result<Picture, ImageError> {
-        let format = recognise(bytes, name)?;
+        Picture::decode(&Encoded::open(bytes, name)?, u64::MAX)
+    }
+
+    /// Reads one whose head was read, within so many bytes of memory.
+    ///
+    /// # Errors
+    /// Those of [`Encoded::read`].
+    pub fn decode(encoded: &Encoded, memory: u64) -> Result<Picture, ImageError> {
         // Sixteen bits a channel of PNG and PPM are for a screen too.
-        let scale = if format.depth == Depth::Float { Scale::Linear } else { Scale::Display };
-        let image = match format.read(bytes)? {
-            Raster::Float(image) => image,
-            Raster::Eight(eight) => {
-                let pixels = eight.pixels.iter().map(|pixel| pixel.map(decode_linear).into()).collect();
-                Image { width: eight.width, height: eight.height, pixels }
-            }
-        };
-        Ok(Picture { image, scale })
+        let scale = if encoded.depth() == Depth::Float { Scale::Linear } else { Scale::Display };
+        Ok(Picture { image: encoded.read(memory, decode_linear)?, scale })
     }
 }
 

@@ -12,7 +12,8 @@ pub const FORMAT: Format = Format {
     layers: false,
     most_side: u32::MAX,
     begins: |bytes| bytes.starts_with(b"BM"),
-    decode: |bytes| codec::decode(NAME, ImageFormat::Bmp, bytes),
+    head: |bytes| Ok(codec::head(&codec::decoder(NAME, ImageFormat::Bmp, bytes)?)),
+    decode: |bytes| codec::raster(NAME, codec::decoder(NAME, ImageFormat::Bmp, bytes)?),
     encode,
 };
 

@@ -1,49 +1,84 @@
 //! Decoders and encoders of the `image` crate, with our limits and errors.
 
-use super::limits::{declared_count, pixel_limit};
-use super::{Image, Image8, ImageError, Raster};
+use super::limits::room_for;
+use super::{Head, Image, Image8, ImageError, Raster};
 use crate::math::Vec3;
-use ::image::{DynamicImage, ExtendedColorType, ImageDecoder, ImageEncoder, ImageFormat, ImageReader, Limits};
+use ::image::{ColorType, ExtendedColorType, ImageDecoder, ImageEncoder, ImageFormat, ImageReader};
 use std::io::Cursor;
 
-/// Decodes a file of a format that the crate reads.
-pub fn decode(name: &'static str, format: ImageFormat, bytes: &[u8]) -> Result<Raster, ImageError> {
+/// The decoder of a format that the crate knows. It reads the head alone, so it needs no limits of its own.
+pub fn decoder<'a>(
+    name: &'static str,
+    format: ImageFormat,
+    bytes: &'a [u8],
+) -> Result<impl ImageDecoder + 'a, ImageError> {
     let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
-    reader.limits(memory_limits(bytes.len()));
-    let decoder = reader.into_decoder().map_err(|error| ImageError::malformed(name, error))?;
-    Ok(raster(picture(name, decoder, bytes.len())?))
+    reader.no_limits();
+    reader.into_decoder().map_err(|error| ImageError::malformed(name, error))
 }
 
-/// Decodes the pixels, once the declared size is found to be possible.
-pub fn picture(name: &'static str, decoder: impl ImageDecoder, bytes: usize) -> Result<DynamicImage, ImageError> {
-    let (width, height) = decoder.dimensions();
-    declared_count(width.into(), height.into(), bytes)?;
-    DynamicImage::from_decoder(decoder).map_err(|error| ImageError::malformed(name, error))
-}
-
-/// At most 16 bytes a pixel, the most that a decoded pixel takes, and some for what a file says besides.
-fn memory_limits(bytes: usize) -> Limits {
-    let mut limits = Limits::default();
-    (limits.max_image_width, limits.max_image_height) = (None, None);
-    limits.max_alloc = Some(pixel_limit(bytes) * 16 + (1 << 20));
-    limits
-}
-
-/// Grey becomes three equal channels, alpha is dropped.
-pub fn raster(picture: DynamicImage) -> Raster {
-    use DynamicImage::{ImageLuma8, ImageLumaA8, ImageRgb8, ImageRgba8};
-    let (width, height) = (picture.width(), picture.height());
-    match picture {
-        ImageLuma8(_) | ImageLumaA8(_) | ImageRgb8(_) | ImageRgba8(_) => {
-            let pixels = picture.into_rgb8().into_raw().as_chunks::<3>().0.to_vec();
-            Raster::Eight(Image8 { width, height, pixels })
-        }
-        _ => {
-            let channels = picture.into_rgb32f().into_raw();
-            let pixels = channels.as_chunks::<3>().0.iter().map(|&pixel| Vec3::from(pixel)).collect();
-            Raster::Float(Image { width, height, pixels })
-        }
+/// What a decoder knows before it decodes.
+pub fn head(decoder: &impl ImageDecoder) -> Head {
+    let ((width, height), color) = (decoder.dimensions(), decoder.color_type());
+    let stored: u64 = color.bytes_per_pixel().into();
+    let eight = color.bytes_per_pixel() == color.channel_count();
+    Head {
+        width: width.into(),
+        height: height.into(),
+        eight,
+        bytes_per_pixel: match (color, eight) {
+            (ColorType::Rgb8, _) => stored,
+            (_, true) => stored + size_of::<[u8; 3]>() as u64,
+            (_, false) => stored + size_of::<Vec3>() as u64,
+        },
+        spare: 0,
     }
+}
+
+/// Decodes the pixels: grey becomes three equal channels, alpha is dropped, sixteen bits become 0 to 1.
+pub fn raster(name: &'static str, decoder: impl ImageDecoder) -> Result<Raster, ImageError> {
+    let ((width, height), color) = (decoder.dimensions(), decoder.color_type());
+    let count = width as usize * height as usize;
+    let malformed = |error| ImageError::malformed(name, error);
+    if color == ColorType::Rgb8 {
+        let mut pixels = room_for(count, [0; 3])?;
+        decoder.read_image(pixels.as_flattened_mut()).map_err(malformed)?;
+        return Ok(Raster::Eight(Image8 { width, height, pixels }));
+    }
+    let mut bytes = room_for(count * usize::from(color.bytes_per_pixel()), 0)?;
+    decoder.read_image(&mut bytes).map_err(malformed)?;
+    let eight = |pixel: &[u8]| if pixel.len() < 3 { [pixel[0]; 3] } else { [pixel[0], pixel[1], pixel[2]] };
+    let sixteen = |bytes: &[u8]| f32::from(u16::from_ne_bytes([bytes[0], bytes[1]])) / 65535.0;
+    let float = |bytes: &[u8]| f32::from_ne_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]);
+    let pixels = bytes.chunks_exact(color.bytes_per_pixel().into());
+    Ok(match color {
+        ColorType::L8 | ColorType::La8 | ColorType::Rgba8 => {
+            Raster::Eight(Image8 { width, height, pixels: filled(count, pixels.map(eight))? })
+        }
+        ColorType::L16 | ColorType::La16 => {
+            float_raster(width, height, pixels.map(|pixel| Vec3::splat(sixteen(pixel))))?
+        }
+        ColorType::Rgb16 | ColorType::Rgba16 => {
+            let pixel = |p: &[u8]| Vec3::new(sixteen(p), sixteen(&p[2..]), sixteen(&p[4..]));
+            float_raster(width, height, pixels.map(pixel))?
+        }
+        ColorType::Rgb32F | ColorType::Rgba32F => {
+            let pixel = |p: &[u8]| Vec3::new(float(p), float(&p[4..]), float(&p[8..]));
+            float_raster(width, height, pixels.map(pixel))?
+        }
+        _ => return Err(ImageError::unsupported(name, format!("pixels of the kind {color:?}"))),
+    })
+}
+
+fn float_raster(width: u32, height: u32, pixels: impl ExactSizeIterator<Item = Vec3>) -> Result<Raster, ImageError> {
+    Ok(Raster::Float(Image { width, height, pixels: filled(pixels.len(), pixels)? }))
+}
+
+fn filled<T>(count: usize, items: impl Iterator<Item = T>) -> Result<Vec<T>, ImageError> {
+    let mut all = Vec::new();
+    all.try_reserve_exact(count).map_err(|_| ImageError::no_room(count, size_of::<T>()))?;
+    all.extend(items.take(count));
+    Ok(all)
 }
 
 /// Encodes eight-bit red, green and blue, or those and alpha.

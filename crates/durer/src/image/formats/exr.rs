@@ -4,14 +4,15 @@
 //! those of the others bear the layer's name: `normals.R`. Where the camera does not see everything there is A as well,
 //! with the colours multiplied by it, as the format has it.
 
-use super::limits::{declared_count, pixel_limit};
-use super::{Depth, Format, Image, ImageError, Layer, LayerKind, Raster, WriteOptions};
+use super::limits::{pixel_limit, room_for};
+use super::{Depth, Format, Head, Image, ImageError, Layer, LayerKind, Raster, WriteOptions};
 use crate::math::Vec3;
 use ::exr::meta::header::Header;
 use ::exr::prelude::{
     AnyChannel, AnyChannels, AttributeValue, Blocks, Compression, Encoding, FlatSamples, Image as ExrImage, LineOrder,
     MetaData, ReadChannels, ReadLayers, ReadSpecificChannel, SmallVec, Text, Vec2, WritableImage, read,
 };
+use std::cell::RefCell;
 use std::collections::HashSet;
 use std::io::Cursor;
 
@@ -24,6 +25,7 @@ pub const FORMAT: Format = Format {
     layers: true,
     most_side: u32::MAX,
     begins: |bytes| bytes.starts_with(&[0x76, 0x2f, 0x31, 0x01]),
+    head,
     decode,
     encode,
 };
@@ -91,56 +93,69 @@ fn sort_attributes(file: &mut [u8]) {
     file[START..at].copy_from_slice(&attributes.concat());
 }
 
-/// Reads the first part with R, G and B; failing that, with Y; failing that, with a single channel, as grey.
-fn decode(bytes: &[u8]) -> Result<Raster, ImageError> {
-    let meta = MetaData::read_from_buffered(bytes, false).map_err(malformed)?;
+/// The part that is read, and its channels of red, green and blue: the first part with R, G and B; failing that, with Y; failing
+/// that, with a single channel, as grey.
+fn chosen(meta: &MetaData) -> Result<(&Header, [Text; 3]), ImageError> {
     let flat = || meta.headers.iter().filter(|header| !header.deep);
     let has = |header: &Header, name: &str| header.channels.list.iter().any(|channel| channel.name.eq(name));
-    if let Some(header) = flat().find(|header| ["R", "G", "B"].iter().all(|name| has(header, name))) {
-        return decode_rgb(bytes, header);
+    let colors = ["R", "G", "B"];
+    if let Some(header) = flat().find(|header| colors.iter().all(|name| has(header, name))) {
+        return Ok((header, colors.map(Text::from)));
     }
+    let grey = |name: Text| [name.clone(), name.clone(), name];
     if let Some(header) = flat().find(|header| has(header, "Y")) {
-        return decode_grey(bytes, header, Text::from("Y"));
+        return Ok((header, grey(Text::from("Y"))));
     }
-    match flat()
-        .find_map(|header| Some((header, header.channels.list.first()?)).filter(|_| header.channels.list.len() == 1))
-    {
-        Some((header, channel)) => decode_grey(bytes, header, channel.name.clone()),
-        None => Err(ImageError::unsupported(NAME, "there are no channels R, G and B, nor Y")),
-    }
+    let single = flat().find_map(|header| match &header.channels.list[..] {
+        [channel] => Some((header, grey(channel.name.clone()))),
+        _ => None,
+    });
+    single.ok_or_else(|| ImageError::unsupported(NAME, "there are no channels R, G and B, nor Y"))
 }
 
-fn decode_rgb(bytes: &[u8], header: &Header) -> Result<Raster, ImageError> {
-    let (width, height) = check(header, bytes.len())?;
-    let place =
-        move |pixels: &mut Vec<Vec3>, at, (r, g, b): (f32, f32, f32)| put(pixels, width, at, Vec3::new(r, g, b));
-    let channels = read().no_deep_data().largest_resolution_level().specific_channels();
-    let reader = channels
-        .required("R")
-        .required("G")
-        .required("B")
-        .collect_pixels(move |_, _| vec![Vec3::ZERO; width * height], place)
-        .first_valid_layer()
-        .all_attributes()
-        .non_parallel();
-    let picture = reader.from_buffered(Cursor::new(bytes)).map_err(malformed)?;
-    let pixels = picture.layer_data.channel_data.pixels;
-    Ok(Raster::Float(Image { width: width as u32, height: height as u32, pixels }))
+fn head(bytes: &[u8]) -> Result<Head, ImageError> {
+    let meta = MetaData::read_from_buffered(bytes, false).map_err(malformed)?;
+    let (header, _) = chosen(&meta)?;
+    if header.channels.list.iter().any(|channel| channel.sampling != Vec2(1, 1)) {
+        return Err(ImageError::unsupported(NAME, "channels of lower resolution"));
+    }
+    let Vec2(width, height) = header.layer_size;
+    // A block is decoded with all its channels, wanted or not: packed, unpacked, and sorted by rows.
+    let Vec2(across, down) = header.max_block_pixel_size();
+    let block = (across.min(width) as u64).saturating_mul(down.min(height) as u64);
+    if block.saturating_mul(header.channels.bytes_per_pixel as u64) > pixel_limit(bytes.len()).saturating_mul(16) {
+        return Err(ImageError::TooLarge { width: width as u64, height: height as u64, bytes: bytes.len() });
+    }
+    Ok(Head {
+        width: width as u64,
+        height: height as u64,
+        eight: false,
+        bytes_per_pixel: size_of::<Vec3>() as u64,
+        spare: block.saturating_mul(3 * header.channels.bytes_per_pixel as u64),
+    })
 }
 
-fn decode_grey(bytes: &[u8], header: &Header, name: Text) -> Result<Raster, ImageError> {
-    let (width, height) = check(header, bytes.len())?;
-    let place = move |pixels: &mut Vec<Vec3>, at, (grey,): (f32,)| put(pixels, width, at, Vec3::splat(grey));
+fn decode(bytes: &[u8]) -> Result<Raster, ImageError> {
+    let meta = MetaData::read_from_buffered(bytes, false).map_err(malformed)?;
+    let (header, [red, green, blue]) = chosen(&meta)?;
+    let Vec2(width, height) = header.layer_size;
+    // Asked for at once, so that a lack of memory is an error.
+    let room = RefCell::new(room_for(width * height, Vec3::ZERO)?);
+    let is_grey = red == green;
     let channels = read().no_deep_data().largest_resolution_level().specific_channels();
-    let reader = channels
-        .required(name)
-        .collect_pixels(move |_, _| vec![Vec3::ZERO; width * height], place)
-        .first_valid_layer()
-        .all_attributes()
-        .non_parallel();
-    let picture = reader.from_buffered(Cursor::new(bytes)).map_err(malformed)?;
-    let pixels = picture.layer_data.channel_data.pixels;
-    Ok(Raster::Float(Image { width: width as u32, height: height as u32, pixels }))
+    let picture = if is_grey {
+        let place = move |pixels: &mut Vec<Vec3>, at, (grey,): (f32,)| put(pixels, width, at, Vec3::splat(grey));
+        let channels = channels.required(red).collect_pixels(|_, _| room.take(), place);
+        let reader = channels.first_valid_layer().all_attributes().non_parallel();
+        reader.from_buffered(Cursor::new(bytes)).map_err(malformed)?.layer_data.channel_data.pixels
+    } else {
+        let place =
+            move |pixels: &mut Vec<Vec3>, at, (r, g, b): (f32, f32, f32)| put(pixels, width, at, Vec3::new(r, g, b));
+        let channels = channels.required(red).required(green).required(blue);
+        let reader = channels.collect_pixels(|_, _| room.take(), place).first_valid_layer().all_attributes();
+        reader.non_parallel().from_buffered(Cursor::new(bytes)).map_err(malformed)?.layer_data.channel_data.pixels
+    };
+    Ok(Raster::Float(Image { width: width as u32, height: height as u32, pixels: picture }))
 }
 
 fn put(pixels: &mut [Vec3], width: usize, Vec2(x, y): Vec2<usize>, color: Vec3) {
@@ -151,21 +166,6 @@ fn put(pixels: &mut [Vec3], width: usize, Vec2(x, y): Vec2<usize>, color: Vec3) 
 
 fn malformed(error: ::exr::error::Error) -> ImageError {
     ImageError::malformed(NAME, error)
-}
-
-/// The size of a part, if it may be decoded.
-fn check(header: &Header, bytes: usize) -> Result<(usize, usize), ImageError> {
-    let Vec2(width, height) = header.layer_size;
-    let count = declared_count(width as u64, height as u64, bytes)?;
-    // Blocks are decoded with all their channels, wanted or not: those count too.
-    let per_pixel: u64 = header.channels.list.iter().map(|c| c.sample_type.bytes_per_sample() as u64).sum();
-    if (count as u64).saturating_mul(per_pixel) > pixel_limit(bytes).saturating_mul(16) {
-        return Err(ImageError::TooLarge { width: width as u64, height: height as u64, bytes });
-    }
-    if header.channels.list.iter().any(|channel| channel.sampling != Vec2(1, 1)) {
-        return Err(ImageError::unsupported(NAME, "channels of lower resolution"));
-    }
-    Ok((width, height))
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 //!
 //! Source: Ward, *Real Pixels*, Graphics Gems II, and Radiance's `color.c`.
 
-use super::{Depth, Format, ImageError, Layer, Raster, WriteOptions, codec};
+use super::{Depth, Format, ImageError, Layer, WriteOptions, codec};
 use crate::math::Vec3;
 use ::image::codecs::hdr::HdrDecoder;
 
@@ -15,7 +15,8 @@ pub const FORMAT: Format = Format {
     layers: false,
     most_side: u32::MAX,
     begins: |bytes| bytes.starts_with(b"#?RADIANCE") || bytes.starts_with(b"#?RGBE"),
-    decode,
+    head: |bytes| Ok(codec::head(&decoder(bytes)?)),
+    decode: |bytes| codec::raster(NAME, decoder(bytes)?),
     encode,
 };
 
@@ -27,10 +28,9 @@ const LITERAL_LIMIT: usize = 128;
 /// A shorter run costs more than it saves.
 const LEAST_RUN: usize = 4;
 
-fn decode(bytes: &[u8]) -> Result<Raster, ImageError> {
+fn decoder(bytes: &[u8]) -> Result<HdrDecoder<&[u8]>, ImageError> {
     // The strict decoder knows only one of the two marks; ours was checked before.
-    let decoder = HdrDecoder::new_nonstrict(bytes).map_err(|error| ImageError::malformed(NAME, error))?;
-    Ok(codec::raster(codec::picture(NAME, decoder, bytes.len())?))
+    HdrDecoder::new_nonstrict(bytes).map_err(|error| ImageError::malformed(NAME, error))
 }
 
 fn encode(layers: &[Layer], _: &WriteOptions, out: &mut Vec<u8>) -> Result<(), ImageError> {

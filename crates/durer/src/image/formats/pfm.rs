@@ -1,7 +1,7 @@
 //! Portable float map: red, green and blue as 32-bit floats, little endian, bottom row first.
 
-use super::limits::declared_count;
-use super::{Depth, Format, Image, ImageError, Layer, Raster, WriteOptions};
+use super::limits::room_for;
+use super::{Depth, Format, Head, Image, ImageError, Layer, Raster, WriteOptions};
 use crate::math::Vec3;
 
 const NAME: &str = "PFM";
@@ -13,6 +13,7 @@ pub const FORMAT: Format = Format {
     layers: false,
     most_side: u32::MAX,
     begins: |bytes| matches!(bytes, [b'P', b'F' | b'f', space, ..] if space.is_ascii_whitespace()),
+    head,
     decode,
     encode,
 };
@@ -28,7 +29,16 @@ fn encode(layers: &[Layer], _: &WriteOptions, out: &mut Vec<u8>) -> Result<(), I
     Ok(())
 }
 
-fn decode(bytes: &[u8]) -> Result<Raster, ImageError> {
+/// What the head says, and the bytes behind it.
+struct Opened<'a> {
+    width: u32,
+    height: u32,
+    channels: usize,
+    little_endian: bool,
+    samples: &'a [u8],
+}
+
+fn open(bytes: &[u8]) -> Result<Opened<'_>, ImageError> {
     let mut rest = bytes;
     let mut number = |what: &str| {
         let word = next_word(&mut rest).and_then(|word| std::str::from_utf8(word).ok());
@@ -36,23 +46,34 @@ fn decode(bytes: &[u8]) -> Result<Raster, ImageError> {
     };
     let invalid = |what: &str| ImageError::malformed(NAME, format!("the {what} is not a number"));
     let channels = if number("mark")? == "PF" { 3 } else { 1 };
-    let width: u32 = number("width")?.parse().map_err(|_| invalid("width"))?;
-    let height: u32 = number("height")?.parse().map_err(|_| invalid("height"))?;
+    let width = number("width")?.parse().map_err(|_| invalid("width"))?;
+    let height = number("height")?.parse().map_err(|_| invalid("height"))?;
     let scale: f32 = number("scale")?.parse().map_err(|_| invalid("scale"))?;
+    Ok(Opened { width, height, channels, little_endian: scale < 0.0, samples: rest })
+}
 
+fn head(bytes: &[u8]) -> Result<Head, ImageError> {
+    let Opened { width, height, .. } = open(bytes)?;
+    let bytes_per_pixel = size_of::<Vec3>() as u64;
+    Ok(Head { width: width.into(), height: height.into(), eight: false, bytes_per_pixel, spare: 0 })
+}
+
+fn decode(bytes: &[u8]) -> Result<Raster, ImageError> {
+    let Opened { width, height, channels, little_endian, samples } = open(bytes)?;
     // The size is believed only if all its samples are there.
-    let count = declared_count(width.into(), height.into(), bytes.len())?;
-    let (samples, _) = rest.as_chunks::<4>();
+    let count = width as usize * height as usize;
+    let (samples, _) = samples.as_chunks::<4>();
     let samples =
         samples.get(..count * channels).ok_or_else(|| ImageError::malformed(NAME, "it ends before its last pixel"))?;
-    let sample = |bytes: [u8; 4]| if scale < 0.0 { f32::from_le_bytes(bytes) } else { f32::from_be_bytes(bytes) };
+    let sample = |bytes: [u8; 4]| if little_endian { f32::from_le_bytes(bytes) } else { f32::from_be_bytes(bytes) };
     let color = |pixel: &[[u8; 4]]| match *pixel {
         [r, g, b] => Vec3::new(sample(r), sample(g), sample(b)),
         [grey, ..] => Vec3::splat(sample(grey)),
         [] => Vec3::ZERO,
     };
+    let mut pixels = room_for(count, Vec3::ZERO)?;
     let rows = samples.chunks_exact(width as usize * channels).rev();
-    let pixels = rows.flat_map(|row| row.chunks_exact(channels)).map(color).collect();
+    pixels.iter_mut().zip(rows.flat_map(|row| row.chunks_exact(channels))).for_each(|(to, pixel)| *to = color(pixel));
     Ok(Raster::Float(Image { width, height, pixels }))
 }
 

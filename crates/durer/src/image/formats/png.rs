@@ -1,9 +1,11 @@
 //! Portable Network Graphics: eight bits a channel, lossless; with alpha where the camera does not see everything.
 
-use super::{Depth, Format, ImageError, Layer, WriteOptions, codec, eight_bit, eight_bit_alpha};
+use super::{Depth, Format, Head, ImageError, Layer, Raster, WriteOptions, codec, eight_bit, eight_bit_alpha};
 use ::image::{ExtendedColorType, ImageFormat, codecs::png::PngEncoder};
+use std::borrow::Cow;
 
 const NAME: &str = "PNG";
+const MARK: &[u8] = b"\x89PNG\r\n\x1a\n";
 
 pub const FORMAT: Format = Format {
     name: NAME,
@@ -11,10 +13,54 @@ pub const FORMAT: Format = Format {
     depth: Depth::EightBit,
     layers: false,
     most_side: u32::MAX,
-    begins: |bytes| bytes.starts_with(b"\x89PNG\r\n\x1a\n"),
-    decode: |bytes| codec::decode(NAME, ImageFormat::Png, bytes),
+    begins: |bytes| bytes.starts_with(MARK),
+    head,
+    decode,
     encode,
 };
+
+/// The size and kind of pixels, from the first chunk. What is wrong with the rest is found when it is decoded.
+fn head(bytes: &[u8]) -> Result<Head, ImageError> {
+    let first = chunks(bytes).next().filter(|chunk| chunk[4..8] == *b"IHDR").and_then(|chunk| chunk.get(8..18));
+    let Some([w @ .., depth, color]) = first else { return Err(ImageError::malformed(NAME, "its head is missing")) };
+    let side = |four: &[u8]| four.iter().fold(0, |side, &byte| side << 8 | u64::from(byte));
+    let (width, height) = (side(&w[..4]), side(&w[4..]));
+    // Grey, true colour, a palette of colours, grey with alpha, colour with alpha.
+    let channels = [1, 3, 3, 3, 2, 3, 4][usize::from(*color).min(6)];
+    let transparent = chunks(bytes).any(|chunk| chunk[4..8] == *b"tRNS");
+    let (stored, eight) = (channels + u64::from(transparent), *depth != 16);
+    let bytes_per_pixel = match (eight, stored) {
+        (true, 3) => 3,
+        (true, _) => stored + 3,
+        (false, _) => 2 * stored + 12,
+    };
+    Ok(Head { width, height, eight, bytes_per_pixel, spare: bytes.len() as u64 })
+}
+
+fn decode(bytes: &[u8]) -> Result<Raster, ImageError> {
+    codec::raster(NAME, codec::decoder(NAME, ImageFormat::Png, &essence(bytes))?)
+}
+
+/// The chunks of a file: each is the length of its content, four letters, the content, and a checksum of four bytes.
+fn chunks(bytes: &[u8]) -> impl Iterator<Item = &[u8]> {
+    let mut rest = bytes.get(MARK.len()..).unwrap_or_default();
+    std::iter::from_fn(move || {
+        let length = rest.first_chunk().filter(|_| rest.len() >= 8).copied().map(u32::from_be_bytes)?;
+        let (chunk, after) = rest.split_at((length as usize).saturating_add(12).min(rest.len()));
+        rest = after;
+        Some(chunk)
+    })
+}
+
+/// A file without all that says nothing of its pixels: profiles and texts, of which a few bytes may become gigabytes, animations,
+/// dates. What must be understood begins with an upper case letter. Source: PNG specification, third edition, 5.3 and 5.4.
+fn essence(bytes: &[u8]) -> Cow<'_, [u8]> {
+    let needed = |chunk: &&[u8]| chunk[4].is_ascii_uppercase() || chunk[4..8] == *b"tRNS";
+    match chunks(bytes).all(|chunk| needed(&chunk)) {
+        true => Cow::Borrowed(bytes),
+        false => Cow::Owned(std::iter::once(MARK).chain(chunks(bytes).filter(needed)).flatten().copied().collect()),
+    }
+}
 
 fn encode(layers: &[Layer], options: &WriteOptions, out: &mut Vec<u8>) -> Result<(), ImageError> {
     layers.iter().try_for_each(|layer| {

@@ -1,7 +1,7 @@
 //! Truevision Targa: uncompressed true colour of 24 bits, bottom row first, as the course's programs wrote it; of 32 bits
 //! with alpha where the camera does not see everything.
 
-use super::{Depth, Format, ImageError, Layer, WriteOptions, codec, eight_bit, eight_bit_alpha};
+use super::{Depth, Format, Head, ImageError, Layer, WriteOptions, codec, eight_bit, eight_bit_alpha};
 use ::image::ImageFormat;
 
 const NAME: &str = "TGA";
@@ -14,7 +14,12 @@ pub const FORMAT: Format = Format {
     most_side: 65535,
     // The format has no mark of its own: it is known by its name only.
     begins: |_| false,
-    decode: |bytes| codec::decode(NAME, ImageFormat::Tga, bytes),
+    head: |bytes| {
+        let head = codec::head(&codec::decoder(NAME, ImageFormat::Tga, bytes)?);
+        // The decoder expands palettes and pixels of 16 bits from a copy.
+        Ok(Head { bytes_per_pixel: head.bytes_per_pixel + 2, ..head })
+    },
+    decode: |bytes| codec::raster(NAME, codec::decoder(NAME, ImageFormat::Tga, bytes)?),
     encode,
 };
 

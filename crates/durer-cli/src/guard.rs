@@ -1,0 +1,142 @@
+//! What a run reads and what it writes: no file is both, and none is written twice.
+//!
+//! Whoever opens a file for the user tells it here, and only what was allowed here is written ([`crate::output`] takes nothing
+//! else). It makes no difference by which name, link or detour a file is named.
+
+use crate::{Failure, bad};
+use durer::image::Destination;
+use std::path::{Path, PathBuf};
+
+/// The files of one run.
+#[derive(Default)]
+pub struct Guard {
+    inputs: Vec<Named>,
+    outputs: Vec<Named>,
+}
+
+/// A file, what it is for, and all by which it can be known.
+struct Named {
+    what: &'static str,
+    path: PathBuf,
+    identity: Identity,
+}
+
+/// What two names of one file have in common.
+#[derive(PartialEq)]
+struct Identity {
+    /// Its name without links and detours; of a file that is not there yet, within its folder.
+    name: Option<PathBuf>,
+    /// Its number in its file system, which hard links share.
+    inode: Option<(u64, u64)>,
+}
+
+impl Identity {
+    fn of(path: &Path) -> Self {
+        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        let within = || Some(folder.canonicalize().ok()?.join(path.file_name()?));
+        let name = path.canonicalize().ok().or_else(within);
+        // There, names that differ in capitals alone are usually of one file.
+        let same_case = cfg!(any(windows, target_os = "macos"));
+        let name = name.map(|name| if same_case { name.to_string_lossy().to_lowercase().into() } else { name });
+        Identity { name, inode: inode(path) }
+    }
+
+    fn is_same(&self, other: &Identity) -> bool {
+        self.name.is_some() && self.name == other.name || self.inode.is_some() && self.inode == other.inode
+    }
+}
+
+#[cfg(unix)]
+fn inode(path: &Path) -> Option<(u64, u64)> {
+    use std::os::unix::fs::MetadataExt;
+    path.metadata().ok().map(|metadata| (metadata.dev(), metadata.ino()))
+}
+
+#[cfg(not(unix))]
+fn inode(_: &Path) -> Option<(u64, u64)> {
+    None
+}
+
+impl Guard {
+    /// A file is read: refuses that if it is to be written.
+    pub fn reads(&mut self, path: &Path) -> Result<(), Failure> {
+        let input = Named { what: "", path: path.into(), identity: Identity::of(path) };
+        if let Some(output) = self.outputs.iter().find(|output| output.identity.is_same(&input.identity)) {
+            return Err(both(output, &input));
+        }
+        self.inputs.push(input);
+        Ok(())
+    }
+
+    /// A file is to be written, as the option `what` says: refuses what cannot be written, what is read, and what is written
+    /// already.
+    pub fn writes(&mut self, what: &'static str, path: &Path) -> Result<Destination, Failure> {
+        self.claim(what, path)?;
+        let own = ["/dev/stdout", "/dev/fd/1", "/proc/self/fd/1"].iter().any(|own| path == Path::new(own));
+        if own && !crate::output::has_standard_output() {
+            return Err(anyhow::anyhow!("cannot write `{}`: it is closed", path.display()).into());
+        }
+        Ok(Destination::new(path)?)
+    }
+
+    /// The same for a file that is only removed, or replaced under another claim.
+    pub fn claim(&mut self, what: &'static str, path: &Path) -> Result<(), Failure> {
+        let output = Named { what, path: path.into(), identity: Identity::of(path) };
+        let same = |other: &&Named| other.identity.is_same(&output.identity);
+        if let Some(input) = self.inputs.iter().find(same) {
+            return Err(both(&output, input));
+        }
+        // What is no file holds as much as comes, if anything.
+        let file = !path.exists() || path.is_file();
+        if let Some(other) = self.outputs.iter().find(same).filter(|_| file) {
+            let (what, first) = (output.what, other.what);
+            return Err(bad(format!(
+                "two things cannot go into one file, `{}`, as {first} and {what} say: choose another name",
+                path.display()
+            )));
+        }
+        self.outputs.push(output);
+        Ok(())
+    }
+}
+
+fn both(output: &Named, input: &Named) -> Failure {
+    let (what, path) = (output.what, output.path.display());
+    let named = if output.path == input.path { String::new() } else { format!(", as `{}`", input.path.display()) };
+    bad(format!("{what}: `{path}` would be replaced, and it is read in this run{named}: choose another name"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_file_is_read_and_written_by_whatever_name() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        std::fs::create_dir(at("a")).unwrap();
+        std::fs::write(at("in"), "").unwrap();
+        std::fs::write(at("other"), "").unwrap();
+        let mut same = vec![at("in"), at("./a/../in")];
+        std::fs::hard_link(at("in"), at("hard")).unwrap();
+        same.push(at("hard"));
+        #[cfg(unix)]
+        for (target, link) in [("in", "soft"), ("soft", "softer"), (".", "here")] {
+            std::os::unix::fs::symlink(target, at(link)).unwrap();
+            same.push(if link == "here" { at("here/in") } else { at(link) });
+        }
+        for name in &same {
+            let (mut before, mut after) = (Guard::default(), Guard::default());
+            before.reads(&at("in")).unwrap_or_else(|_| panic!("nothing is written yet"));
+            assert!(before.writes("-o", name).is_err(), "{}", name.display());
+            assert!(before.writes("-o", &at("other")).is_ok());
+            assert!(after.writes("-o", name).is_ok());
+            assert!(after.reads(&at("in")).is_err(), "{}", name.display());
+            assert!(after.writes("--preview", &at("in")).is_err(), "{}", name.display());
+        }
+        // Files that are not there yet.
+        let mut guard = Guard::default();
+        assert!(guard.writes("-o", &at("new")).is_ok() && guard.writes("-o", &at("a/new")).is_ok());
+        assert!(guard.writes("--preview", &at("a/../new")).is_err());
+    }
+}
