@@ -6,8 +6,8 @@ mod text;
 mod there;
 
 use crate::args::CompareArgs;
-use crate::output::{encode, format, save, say};
 use crate::guard::Guard;
+use crate::output::{encode, format, save, say};
 use crate::report::counted;
 use crate::{Failure, bad, progress, report};
 use durer::diag::{at_least, at_most};
@@ -158,7 +158,9 @@ fn read_both(paths: [&Path; 2], memory: u64) -> Result<[Picture; 2], String> {
     let needed = memory_needed(&a, &b).map_err(|error| format!("{both}: {error}"))?;
     if needed > memory {
         let (needed, memory) = (at_least(needed), at_most(memory));
-        return Err(format!("{both}: comparing them needs about {needed} of memory, and {memory} are allowed; see --memory"));
+        return Err(format!(
+            "{both}: comparing them needs about {needed} of memory, and the limit is {memory}; see --memory"
+        ));
     }
     let decode = |picture: &Encoded, path: &Path| {
         Picture::decode(picture, memory).map_err(|error| format!("cannot read `{}`: {error}", path.display()))

@@ -44,8 +44,7 @@ pub fn run(arguments: Vec<String>, program_name: Option<&'static Program>) -> Re
     let outputs = Outputs::of(&given, options.dialect, &mut guard)?;
     let opened = open(Path::new(scene), &options, quiet, &mut guard)?;
     let job = job(&given, &opened)?;
-    let control =
-        Arc::new(Control { threads: threads(&given)?, memory: MEMORY.bytes(), ..Control::default() });
+    let control = Arc::new(Control { threads: threads(&given)?, memory: MEMORY.bytes(), ..Control::default() });
     let world = &opened.world;
     let zooms = (given.zoom("-render_samples")?, given.zoom("-render_filter")?);
     for zoom in [zooms.0, zooms.1].into_iter().flatten() {

@@ -23,6 +23,7 @@ pub struct Keeper {
     /// What was saved before and is gone on with.
     saved: Cell<Option<Box<Part>>>,
     resume: bool,
+    restart: bool,
     quiet: bool,
     preview: Option<(Destination, &'static Format)>,
     transfer: Transfer,
@@ -65,6 +66,7 @@ impl Keeper {
             wanted,
             saved: Cell::new(saved),
             resume: work.resume,
+            restart: work.restart,
             quiet: args.quiet,
             preview: preview.transpose()?,
             transfer: Transfer::from_name(&args.transfer).unwrap_or_default(),
@@ -78,10 +80,9 @@ impl Keeper {
     pub fn begin(&self, fresh: Part) -> Result<Part, Failure> {
         let (Some(saved), Some(place)) = (self.saved.take(), &self.place) else { return Ok(fresh) };
         let name = place.path().display();
-        fresh.same_work(&saved).map_err(|error| match error {
-            error if self.wanted => bad(format!("cannot go on with `{name}`: {error}")),
-            error => bad(format!("cannot go on with `{name}`: {error}; --restart throws it away")),
-        })?;
+        let other =
+            |error| bad(format!("cannot go on with `{name}`: {error}; --restart throws it away and begins anew"));
+        fresh.same_work(&saved).map_err(other)?;
         if !self.quiet {
             report::complain(&format!("note: going on with {name}: {} % done", percent(&saved)));
         }
@@ -131,8 +132,8 @@ impl Keeper {
             if let Err(error) = save_part(place, part) {
                 self.complain(&error);
             }
-        } else if read_part(place.path()).is_ok_and(|old| part.same_work(&old).is_ok()) {
-            // Only what is of this picture; if it cannot be removed, it is only in the way.
+        } else if self.restart || read_part(place.path()).is_ok_and(|old| part.same_work(&old).is_ok()) {
+            // Only what is of this picture, or was to be thrown away; if it cannot be removed, it is only in the way.
             let _ = std::fs::remove_file(place.path());
         }
     }

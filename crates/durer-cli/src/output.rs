@@ -1,13 +1,13 @@
 //! Pictures into files.
 
 use crate::args::DIAGRAMS;
-use crate::{Failure, bad, progress};
 use crate::guard::Guard;
+use crate::{Failure, bad, progress};
 use durer::image::{Depth, Destination, Format, Layer, Transfer, WriteOptions, format_for, save_all};
 use durer::render::Rendered;
 use std::io::{ErrorKind, Write};
-use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 /// The format of a picture's name, or what is wrong with the name.
 pub fn format(path: &Path) -> Result<&'static Format, Failure> {

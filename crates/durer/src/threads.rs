@@ -1,7 +1,8 @@
 //! Threads for work in parallel: as many as are wanted, or as can be had; where there are none, the calling thread does it all.
 
-use rayon::{ThreadPool, ThreadPoolBuilder};
-use std::sync::Once;
+use rayon::{ThreadBuilder, ThreadPool, ThreadPoolBuilder};
+use std::io;
+use std::sync::{Once, mpsc};
 
 /// More threads than this are never started, whatever is asked for.
 pub const MOST: usize = 1024;
@@ -16,22 +17,32 @@ fn wanted(asked: Option<usize>) -> usize {
     asked.or_else(environment).unwrap_or_else(machine).clamp(1, MOST)
 }
 
-/// The wanted number, and what is tried after it where the system does not give so many.
-fn counts(asked: Option<usize>) -> impl Iterator<Item = usize> {
-    std::iter::successors(Some(wanted(asked)), |count| Some(count / 2)).take_while(|&count| count > 0)
+/// Starts as many threads as are wanted and can be had. Each waits for what it is to be in a pool.
+fn started(asked: Option<usize>) -> Vec<mpsc::Sender<ThreadBuilder>> {
+    let start = |_| {
+        let (sender, receiver) = mpsc::channel::<ThreadBuilder>();
+        let run = move || receiver.recv().into_iter().for_each(ThreadBuilder::run);
+        std::thread::Builder::new().stack_size(STACK).spawn(run).ok().map(|_| sender)
+    };
+    (0..wanted(asked)).map_while(start).collect()
 }
 
-fn builder(count: usize) -> ThreadPoolBuilder {
-    ThreadPoolBuilder::new().num_threads(count).stack_size(STACK)
+/// Gives threads that are started already to a pool: this cannot fail half-way, as starting them can.
+fn giving(mut started: Vec<mpsc::Sender<ThreadBuilder>>) -> impl FnMut(ThreadBuilder) -> io::Result<()> {
+    move |thread| {
+        let sent = started.pop().map(|sender| sender.send(thread));
+        sent.and_then(Result::ok).ok_or_else(|| io::Error::other("a thread has ended"))
+    }
 }
 
 /// Threads of one's own; `None` where the system gives none.
 pub fn pool(asked: Option<usize>) -> Option<ThreadPool> {
-    let pool = counts(asked).find_map(|count| builder(count).build().ok());
-    if pool.is_none() {
+    let started = started(asked);
+    if started.is_empty() {
         prepare();
+        return None;
     }
-    pool
+    ThreadPoolBuilder::new().num_threads(started.len()).spawn_handler(giving(started)).build().ok()
 }
 
 /// Does some work with threads of its own; without any, in the calling thread.
@@ -47,9 +58,15 @@ pub fn install<R: Send>(asked: Option<usize>, work: impl FnOnce() -> R + Send) -
 pub fn prepare() {
     static ONCE: Once = Once::new();
     ONCE.call_once(|| {
-        // An error at the end means that there are some already.
-        let _ = counts(None).find(|&count| builder(count).build_global().is_ok()).is_some()
-            || ThreadPoolBuilder::new().num_threads(1).use_current_thread().build_global().is_ok();
+        let started = started(None);
+        // An error means that there are some already.
+        let _ = match started.is_empty() {
+            true => ThreadPoolBuilder::new().num_threads(1).use_current_thread().build_global(),
+            false => {
+                let builder = ThreadPoolBuilder::new().num_threads(started.len());
+                builder.spawn_handler(giving(started)).build_global()
+            }
+        };
     });
 }
 
@@ -61,7 +78,6 @@ mod tests {
     fn there_are_as_many_as_asked_for_and_never_too_many() {
         assert_eq!(pool(Some(3)).unwrap().current_num_threads(), 3);
         assert_eq!((wanted(Some(0)), wanted(Some(usize::MAX))), (1, MOST));
-        assert_eq!(counts(Some(5)).collect::<Vec<_>>(), [5, 2, 1]);
         assert_eq!(install(Some(2), rayon::current_num_threads), 2);
     }
 }

@@ -31,12 +31,7 @@ pub struct Hit {
 }
 
 /// For each region what is at the pixel that differs most; nothing where no scene is given.
-pub fn there(
-    args: &CompareArgs,
-    pair: &Pair,
-    found: &Comparison,
-    guard: &mut Guard,
-) -> Result<Vec<There>, Failure> {
+pub fn there(args: &CompareArgs, pair: &Pair, found: &Comparison, guard: &mut Guard) -> Result<Vec<There>, Failure> {
     let Some(scene) = &args.scene else { return Ok(Vec::new()) };
     let path = path(scene, pair)?;
     let options = load_options(&args.reading);

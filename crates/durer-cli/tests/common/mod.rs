@@ -114,13 +114,30 @@ impl Place {
     /// Interrupts a run after a while. Gives what it gave, and how long it took to end.
     #[cfg(unix)]
     pub fn interrupted(&self, arguments: &str, after: Duration) -> (Ran, Duration) {
+        self.signalled(arguments, after, &["INT"])
+    }
+
+    /// The same with some signals one right after the other.
+    #[cfg(unix)]
+    pub fn signalled(&self, arguments: &str, after: Duration, signals: &[&str]) -> (Ran, Duration) {
         let mut command = self.command(arguments);
         let child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
         std::thread::sleep(after);
-        let start = Instant::now();
-        assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
+        let (start, id) = (Instant::now(), child.id().to_string());
+        for signal in signals {
+            let sent = Command::new("kill").args([&format!("-{signal}"), &id]).stderr(Stdio::null()).status();
+            assert!(sent.unwrap().success() || *signal != signals[0]);
+        }
         let ran = Ran::of(child.wait_with_output().unwrap());
         (ran, start.elapsed())
+    }
+
+    /// Runs in a shell after some words of it, which may limit what the program gets.
+    #[cfg(unix)]
+    pub fn shell(&self, script: &str) -> Ran {
+        let script = script.replace("durer ", &format!("{} ", durer()));
+        let mut command = Command::new("bash");
+        Ran::of(command.args(["-c", &script]).current_dir(self.folder.path()).stdin(Stdio::null()).output().unwrap())
     }
 }
 

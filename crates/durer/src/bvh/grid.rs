@@ -22,6 +22,8 @@ pub struct Grid {
     /// Where each cell's list starts in `items`, and one past the last.
     starts: Vec<u32>,
     items: Vec<u32>,
+    /// How many things there are.
+    things: usize,
 }
 
 impl Grid {
@@ -72,7 +74,14 @@ impl Grid {
         // A flat box is thickened, so that every cell has a volume; and all are padded against rounding.
         let pad = (1e-5 * bounds.size().max_element()).max(1e-5 * bounds.center().abs().max_element()).max(1e-30);
         let bounds = Aabb { min: bounds.min - pad, max: bounds.max + pad };
-        let mut grid = Grid { bounds, counts, pad: cell_pad, starts: vec![0; cells as usize + 1], items: Vec::new() };
+        let mut grid = Grid {
+            bounds,
+            counts,
+            pad: cell_pad,
+            starts: vec![0; cells as usize + 1],
+            items: Vec::new(),
+            things: boxes.len(),
+        };
         let entries = boxes.iter().try_fold(0u64, |sum, b| sum.checked_add(grid.cells_of(b)))?;
         if entries > Grid::MOST_ENTRIES {
             return None;
@@ -172,18 +181,67 @@ impl Grid {
             tally.node();
             items.iter().fold(t_max, |t_max, item| test(*item as usize, t_max, tally))
         };
-        // Where rounding moves rays by more than the padding of cells, as from very far away, all things are offered.
+        // Where rounding moves rays by more than the padding of cells, as from far away, neighbouring cells are visited too.
         let reach = [self.bounds.min, self.bounds.max].map(|c| (ray.origin - c).abs().max(c.abs()).max_element());
         let cut = |axis: &usize| self.counts[*axis] > 1;
         let finest = (0..3).filter(cut).map(|axis| self.cell_size()[axis]).fold(f32::INFINITY, f32::min);
-        if 16.0 * f32::EPSILON * reach[0].max(reach[1]) > PAD * finest && is_sound(ray) {
-            offer(&self.items, ray.t_max);
+        let slip = 16.0 * f32::EPSILON * reach[0].max(reach[1]);
+        if slip > PAD * finest && is_sound(ray) {
+            if !self.walk_wide(ray, slip.into(), &mut offer) {
+                tally.node();
+                (0..self.things).fold(ray.t_max, |t_max, thing| test(thing, t_max, tally));
+            }
             return;
         }
         self.walk_cells(ray, |grid, cell, t_max| {
             let i = grid.number(cell);
             offer(&grid.items[grid.starts[i] as usize..grid.starts[i + 1] as usize], t_max)
         });
+    }
+
+    /// Offers the things of all cells that are at most so far from a ray, layer by layer across the ray's main direction; `false`, and
+    /// none, where that is more work than to offer all things.
+    fn walk_wide(&self, ray: &Ray, slip: f64, offer: &mut impl FnMut(&[u32], f32) -> f32) -> bool {
+        let (line, size, min) = (ray.line(), self.cell_size().as_dvec3(), self.bounds.min.as_dvec3());
+        let main = line.dir.abs().max_position();
+        let [a, b] = [(main + 1) % 3, (main + 2) % 3];
+        let across = |axis: usize| (2.0 * slip / size[axis] + 3.0).min(f64::from(self.counts[axis]));
+        if f64::from(self.counts[main]) * across(a) * across(b) > self.things as f64 {
+            return false;
+        }
+        let pad = slip / line.dir[main].abs();
+        let (begin, mut end) = (f64::from(ray.t_min) - pad, f64::from(ray.t_max) + pad);
+        for layer in 0..self.counts[main] {
+            let layer = if line.dir[main] > 0.0 { layer } else { self.counts[main] - 1 - layer };
+            let [low, high] = [0.0, 1.0].map(|wall| min[main] + (f64::from(layer) + wall) * size[main]);
+            let [t, u] = [low - slip, high + slip].map(|wall| (wall - line.origin[main]) / line.dir[main]);
+            let (near, far) = (t.min(u).max(begin), t.max(u).min(end));
+            if near > end {
+                break;
+            }
+            // The cells of this layer that the ray passes, none where it is outside of the grid.
+            let range = |axis: usize| {
+                let [p, q] = [near, far].map(|t| line.origin[axis] + t * line.dir[axis]);
+                let cell = |at: f64| (at - min[axis]) / size[axis];
+                let (low, high) = (cell(p.min(q) - slip), cell(p.max(q) + slip));
+                let count = f64::from(self.counts[axis]);
+                // An empty range where it ends before the grid or begins behind it.
+                if near > far || !(high >= 0.0 && low < count) {
+                    return 0..0;
+                }
+                low.max(0.0) as u32..high.min(count - 1.0) as u32 + 1
+            };
+            for i in range(a) {
+                for j in range(b) {
+                    let mut cell = [layer; 3];
+                    (cell[a], cell[b]) = (i, j);
+                    let number = self.number(cell);
+                    let items = &self.items[self.starts[number] as usize..self.starts[number + 1] as usize];
+                    end = end.min(f64::from(offer(items, end.min(f64::from(ray.t_max)) as f32)) + pad);
+                }
+            }
+        }
+        true
     }
 
     /// Visits the cells along a ray in order. `visit` gets a cell and the present `t_max`, and gives the new one.

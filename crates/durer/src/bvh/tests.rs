@@ -231,3 +231,42 @@ fn rays_with_zero_components_are_tame() {
         assert_eq!(is_tame(extreme * Vec3::ONE, Vec3::X), extreme < 1.0, "{extreme}");
     }
 }
+
+#[test]
+fn a_far_ray_is_offered_little_and_all_that_it_may_touch() {
+    let at = |i: usize| (i % 20) as f32 / 10.0 - 0.95;
+    let boxes: Vec<Aabb> = (0..8000).map(|i| cube(Vec3::new(at(i), at(i / 20), at(i / 400)), 0.04)).collect();
+    let bounds = boxes.iter().copied().fold(Aabb::EMPTY, Aabb::union);
+    let grid = Grid::build(bounds, Grid::suitable(bounds, boxes.len()), &boxes, |_, _| true).unwrap();
+    let mut random = Random(9);
+    for distance in [1e2, 1e3, 3e3, 1e4, 1e5, 1e6] {
+        let mut offered = 0;
+        for _ in 0..100 {
+            let target = 0.9 * random.point();
+            let ray = Ray::new(target + distance * random.direction(), Vec3::ZERO);
+            let ray = Ray { dir: target - ray.origin, ..ray };
+            let mut found = vec![false; boxes.len()];
+            grid.walk(&ray, &mut (), |item, t_max, _| {
+                offered += 1;
+                found[item] = true;
+                t_max
+            });
+            // What the line meets, or misses by no more than rounding moves it.
+            let slip = 2.0 * f32::EPSILON * distance;
+            for (i, b) in boxes.iter().enumerate() {
+                let near = Aabb { min: b.min - slip, max: b.max + slip };
+                let line = ray.line();
+                let enters = (0..3).map(|a| {
+                    let [t, u] =
+                        [near.min[a], near.max[a]].map(|wall| (f64::from(wall) - line.origin[a]) / line.dir[a]);
+                    (t.min(u), t.max(u))
+                });
+                let (enter, leave) = enters.fold((f64::MIN, f64::MAX), |(e, l), (t, u)| (e.max(t), l.min(u)));
+                assert!(found[i] || enter > leave, "{distance}: {i} is missed");
+            }
+        }
+        // Each thing once at the most, where the ray may be anywhere.
+        assert!(offered <= 100 * boxes.len(), "{distance}: {offered}");
+        assert!(distance > 3e3 || offered < 100 * 400, "{distance}: {offered}");
+    }
+}

@@ -180,7 +180,7 @@ impl<'r> Loader<'r> {
         self.resources.memory = left.saturating_sub(needed);
         if needed > left {
             let (needed, left) = (at_least(needed), at_most(left));
-            let message = format!("`{}` needs about {needed} of memory, and {left} are left for it", name.path);
+            let message = format!("`{}` needs about {needed} of memory, and what is left for it is {left}", name.path);
             diagnostics.push(Diagnostic::error(message).at(name.span).help("see `--memory`"));
         }
         needed <= left

@@ -61,7 +61,8 @@ impl Pixel {
     /// Whether so many samples, or fewer, can have these sums.
     fn is_possible(&self, most_samples: u32) -> bool {
         let (n, most) = (i128::from(self.samples), |greatest: f64, scale: f64| greatest as i128 * scale as i128);
-        let within = |sum: i128, greatest: i128| sum.unsigned_abs() <= n.unsigned_abs().saturating_mul(greatest as u128);
+        let within =
+            |sum: i128, greatest: i128| sum.unsigned_abs() <= n.unsigned_abs().saturating_mul(greatest as u128);
         let luminance = most(GREATEST_LUMINANCE, LUMINANCE_SCALE);
         self.samples <= u64::from(most_samples)
             && within(self.weight.into(), most(GREATEST_WEIGHT, WEIGHT_SCALE))

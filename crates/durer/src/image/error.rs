@@ -48,7 +48,8 @@ pub enum ImageError {
     },
     /// It would take more memory than is allowed.
     #[error(
-        "its {width} x {height} pixels need about {} of memory, and {} are left for it", at_least(*.needed), at_most(*.allowed)
+        "its {width} x {height} pixels need about {} of memory, and what is left for it is {}",
+        at_least(*.needed), at_most(*.allowed)
     )]
     Memory {
         /// Pixels in a row.

@@ -29,7 +29,7 @@ pub enum RenderError {
     #[error("{0}")]
     Shard(String),
     /// It would take too much memory.
-    #[error("rendering needs about {} of memory, and {} are allowed", at_least(*.needed), at_most(*.allowed))]
+    #[error("rendering needs about {} of memory, and the limit is {}", at_least(*.needed), at_most(*.allowed))]
     Memory {
         /// Bytes that it would take.
         needed: u64,

@@ -105,6 +105,8 @@ struct Scratch {
 struct State {
     counts: Vec<u32>,
     inside: Vec<bool>,
+    /// For each part, where the last crossings that coincide begin that one of its own is among, counted from 1.
+    groups: Vec<usize>,
 }
 
 thread_local! {
@@ -281,6 +283,8 @@ impl Csg {
         state.counts.clone_from(&self.start);
         state.inside.clear();
         state.inside.resize(self.leaves.len(), false);
+        state.groups.clear();
+        state.groups.resize(self.leaves.len(), 0);
         let mut whole = self.joins[0].value(state.counts[0]);
         for &i in &self.unbounded {
             let Geometry::Primitive(shape) = &self.leaves[i as usize].object.geometry else { continue };
@@ -290,7 +294,7 @@ impl Csg {
         }
         let mut from = 0;
         while from < events.len() {
-            let to = self.coincident(ray, events, from);
+            let to = self.coincident(ray, events, from, &mut state.groups);
             let before = whole;
             for event in &events[from..to] {
                 whole ^= self.toggle(event.leaf, state);
@@ -334,13 +338,15 @@ impl Csg {
         }
     }
 
-    /// The end of the crossings that coincide with one: see the head of this file.
-    fn coincident(&self, ray: &Ray, events: &[Event], from: usize) -> usize {
+    /// The end of the crossings that coincide with one, each of another part: see the head of this file.
+    fn coincident(&self, ray: &Ray, events: &[Event], from: usize, groups: &mut [usize]) -> usize {
+        groups[events[from].leaf as usize] = from + 1;
         let mut to = from + 1;
         while to < events.len()
-            && events[from..to].iter().all(|event| event.leaf != events[to].leaf)
+            && groups[events[to].leaf as usize] != from + 1
             && self.coincide(ray, &events[from], &events[to])
         {
+            groups[events[to].leaf as usize] = from + 1;
             to += 1;
         }
         to

@@ -97,9 +97,32 @@ fn rejected_samples_are_counted_and_the_first_ones_named() {
     film.add(0, 0, 9, Vec3::ONE, f32::INFINITY);
     film.add(0, 1, 0, Vec3::splat(1e30), 1.0);
     film.add(1, 0, 77, Vec3::splat(0.25), 1.0);
-    assert_eq!((film.rejected(), film.first_rejected().len()), (42, REMEMBERED));
+    assert_eq!((film.rejected(), film.first_rejected().len()), (41, REMEMBERED));
+    // What is too bright is cut.
+    assert_eq!(film.resolve(0, 1), Vec3::splat(GREATEST_COLOR as f32));
     assert_eq!(film.first_rejected()[..2], [Rejected { y: 0, x: 0, sample: 9 }, Rejected { y: 0, x: 1, sample: 0 }]);
     assert_eq!((film.resolve(1, 0), film.samples(1, 0)), (Vec3::splat(0.25), 1));
+}
+
+#[test]
+fn the_variance_of_anything_finite_is_finite_and_of_equal_samples_nothing() {
+    for size in [0.0, 1.0, 1e3, 1e6, 1e12, 1e18, 1e30, f32::MAX] {
+        let mut film = Film::new(2, 1);
+        for s in 0..9 {
+            film.add(0, 0, s, Vec3::splat(size), 1.0);
+            film.add(1, 0, s, Vec3::splat(if s % 2 == 0 { size } else { -size }), 1.0);
+        }
+        let (equal, mixed) = (film.variance(0, 0, 1.0), film.variance(1, 0, 1.0));
+        // Roundings of the mean's to single precision are left.
+        let most = f64::from(size).min(GREATEST_LUMINANCE);
+        assert!(equal <= 1e-12 * most * most, "{size}: {equal}");
+        assert!(mixed.is_finite() && mixed <= most * most, "{size}: {mixed}");
+        assert_eq!(film.rejected(), 0);
+        let mut bytes = Vec::new();
+        film.write(&mut bytes);
+        assert_eq!(Film::new(2, 1).read(&mut Bytes(&bytes), 9), Some(film));
+        assert_eq!(Film::new(2, 1).read(&mut Bytes(&bytes), 8), None, "more samples than there can be");
+    }
 }
 
 proptest! {

@@ -487,3 +487,18 @@ fn rays_that_leave_a_solid_do_not_meet_it_there() {
     }
     assert!(count > 10_000, "{count}");
 }
+
+/// As many crossings coincide as there are parts: each is looked at a few times, not as often as there are others.
+#[test]
+fn coincident_parts_do_not_cost_the_square_of_their_number() {
+    let count = 30_000;
+    for (operation, there) in [(Operation::Merge, true), (Operation::Xor, false), (Operation::Intersection, true)] {
+        let parts = vec![ball([0.0; 3], 1.0); count];
+        let world = world(&join(operation, &parts.iter().collect::<Vec<_>>()));
+        let ray = Ray::new(Vec3::new(0.1, 0.2, 5.0), Vec3::NEG_Z);
+        let hit = world.closest(&ray, &mut ());
+        assert_eq!(hit.is_some(), there, "{operation:?}");
+        // The first part written is the one that is seen.
+        assert!(hit.is_none_or(|hit| hit.part & !(TURNED | ENTERS) == 0), "{operation:?}");
+    }
+}

@@ -1,0 +1,299 @@
+//! What an attack found: files that take all memory, options that destroy files, limits of the system.
+#![cfg(unix)]
+
+mod common;
+
+use common::{Place, SCENE};
+use std::os::unix::fs::symlink;
+use std::time::Duration;
+
+/// A chunk of a PNG.
+fn chunk(kind: &[u8; 4], content: &[u8]) -> Vec<u8> {
+    let mut chunk = (content.len() as u32).to_be_bytes().to_vec();
+    chunk.extend(kind);
+    chunk.extend(content);
+    let mut crc = !0_u32;
+    for byte in kind.iter().chain(content) {
+        crc ^= u32::from(*byte);
+        (0..8).for_each(|_| crc = crc >> 1 ^ if crc & 1 == 1 { 0xedb8_8320 } else { 0 });
+    }
+    chunk.extend((!crc).to_be_bytes());
+    chunk
+}
+
+/// A PNG of one colour, with something between its head and its pixels.
+fn png(side: u32, between: &[u8]) -> Vec<u8> {
+    let mut head = [side.to_be_bytes(), side.to_be_bytes()].concat();
+    head.extend([8, 2, 0, 0, 0]);
+    let pixels = zeros(u64::from(side) * (3 * u64::from(side) + 1));
+    [b"\x89PNG\r\n\x1a\n", &chunk(b"IHDR", &head)[..], between, &chunk(b"IDAT", &pixels), &chunk(b"IEND", b"")].concat()
+}
+
+/// So many zeros, packed as far as deflate goes.
+fn zeros(count: u64) -> Vec<u8> {
+    let mut packer = flate2::write::ZlibEncoder::new(Vec::new(), flate2::Compression::best());
+    std::io::copy(&mut std::io::Read::take(std::io::repeat(0), count), &mut packer).unwrap();
+    packer.finish().unwrap()
+}
+
+fn with_pictures(place: &Place, name: &str) -> [String; 3] {
+    let texture = "PhongMaterial { texture PICTURE diffuseColor 0.8 0.3 0.2 }";
+    let field = "HeightField { picture PICTURE min -1 0 -1  max 1 1 1 }";
+    let sky = "Background { cubeMap sky color 0.2 0.1 0.5";
+    let scenes = [
+        ("texture.txt", SCENE.replace("Material { diffuseColor 0.8 0.3 0.2 }", texture)),
+        ("field.txt", SCENE.replace("Sphere { center 0 0.5 0 radius 1 }", field)),
+        ("sky.txt", SCENE.replace("Background { color 0.2 0.1 0.5", sky)),
+    ];
+    let _ = std::fs::create_dir(place.path("sky"));
+    for face in ["left", "right", "up", "down", "front", "back"] {
+        let face = place.path(&format!("sky/{face}.png"));
+        let _ = std::fs::remove_file(&face);
+        std::fs::hard_link(place.path(name), face).unwrap();
+    }
+    scenes.map(|(file, text)| {
+        place.put(file, text.replace("PICTURE", name));
+        format!("render {file} --dialect durer --size 8x8 --samples 1 --quiet --restart -o {file}.png")
+    })
+}
+
+/// Half a gigabyte of address space for the whole program; on two threads.
+const LIMITED: &str = "ulimit -v 700000; export RAYON_NUM_THREADS=2; durer ";
+
+#[cfg(target_os = "linux")]
+#[test]
+fn profiles_that_inflate_without_end_are_never_inflated() {
+    let place = Place::new();
+    let mut profile = b"x\0\0".to_vec();
+    profile.extend(zeros(1 << 30));
+    place.put("bomb.png", png(4, &chunk(b"iCCP", &profile)));
+    for line in with_pictures(&place, "bomb.png") {
+        let ran = place.shell(&format!("{LIMITED}{line} --threads 2"));
+        assert_eq!(ran.code, Some(0), "{line}: {}", ran.err);
+    }
+    let ran = place.shell(&format!("{LIMITED}compare bomb.png bomb.png"));
+    assert_eq!((ran.code, ran.out.lines().next()), (Some(0), Some("identical")), "{}", ran.err);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn large_pictures_are_refused_by_their_heads() {
+    let place = Place::new();
+    place.put("large.png", png(10_000, b""));
+    let [texture, field, sky] = with_pictures(&place, "large.png");
+    for (line, words) in [(texture, "need about 287 MiB"), (field, "make no landscape"), (sky, "need about 287 MiB")] {
+        let ran = place.shell(&format!("{LIMITED}{line} --threads 2 --memory 256M"));
+        assert_eq!(ran.code, Some(2), "{line}: {}", ran.err);
+        assert!(ran.err.contains(words), "{}", ran.err);
+    }
+    // Six faces are refused together that would each fit alone.
+    place.put("large.png", png(3000, b""));
+    let [texture, _, sky] = with_pictures(&place, "large.png");
+    assert_eq!(place.shell(&format!("{LIMITED}{texture} --threads 2 --memory 64M")).code, Some(0));
+    let ran = place.shell(&format!("{LIMITED}{sky} --threads 2 --memory 64M"));
+    assert!(ran.code == Some(2) && ran.err.contains("what is left for it is"), "{}", ran.err);
+    place.put("small.png", png(8, b""));
+    let ran = place.shell(&format!("{LIMITED}compare large.png large.png --memory 500M"));
+    assert!(ran.code == Some(2) && ran.err.contains("the limit is 500 MiB"), "{}", ran.err);
+    let ran = place.shell(&format!("{LIMITED}compare large.png small.png"));
+    assert!(ran.code == Some(2) && ran.err.contains("different sizes"), "{}", ran.err);
+}
+
+#[test]
+fn no_file_is_read_and_replaced() {
+    let place = Place::new();
+    place.put("p.png", png(8, b""));
+    place.put("m.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    let mesh = SCENE.replace("Sphere { center 0 0.5 0 radius 1 }", "TriangleMesh { obj_file m.obj }");
+    let texture = SCENE.replace("Material { diffuse", "PhongMaterial { texture p.png diffuse");
+    place.put("mesh.txt", mesh);
+    place.put("texture.txt", texture);
+    symlink("p.png", place.path("link.png")).unwrap();
+    std::fs::hard_link(place.path("p.png"), place.path("hard.png")).unwrap();
+    symlink(".", place.path("here")).unwrap();
+    symlink("m.obj", place.path("mesh.png")).unwrap();
+    symlink("scene.txt", place.path("scene.png")).unwrap();
+    let size = "--size 8x8 --samples 1";
+    for line in [
+        format!("render scene.txt {size} -o scene.png"),
+        format!("render scene.txt {size} -o o.png --preview here/scene.png"),
+        format!("render texture.txt --dialect durer {size} -o p.png"),
+        format!("render texture.txt --dialect durer {size} -o ./here/../p.png"),
+        format!("render texture.txt --dialect durer {size} -o link.png"),
+        format!("render texture.txt --dialect durer {size} -o hard.png"),
+        format!("render texture.txt --dialect durer {size} -o o.png --preview p.png"),
+        format!("render mesh.txt {size} -o mesh.png"),
+        format!("explain scene.txt {size} --pixel 3,3 --html scene.txt"),
+        format!("explain mesh.txt {size} --pixel 3,3 --html ./m.obj"),
+        "convert scene.txt -o here/scene.txt".into(),
+        "compare p.png link.png --report hard.png".into(),
+        "compare p.png p.png --report r.html --heat here/p.png".into(),
+        "compare p.png p.png --report scene.txt --scene scene.txt".into(),
+        "check mesh.txt --fix -o m.obj".into(),
+        "check scene.txt --fix -o here/scene.txt".into(),
+        "course -input scene.txt -size 8 8 -output scene.png".into(),
+        "course -input mesh.txt -size 8 8 -normals mesh.png".into(),
+    ] {
+        let before = ["scene.txt", "p.png", "m.obj"].map(|name| place.bytes(name));
+        let names = place.names();
+        let ran = place.gives(2, &line);
+        assert!(ran.err.contains("it is read in this run"), "{line}: {}", ran.err);
+        assert!(before == ["scene.txt", "p.png", "m.obj"].map(|name| place.bytes(name)), "{line}");
+        assert_eq!(place.names(), names, "{line}");
+    }
+    let two = "two things cannot go into one file";
+    place.refused(2, &format!("render scene.txt {size} -o o.png --preview here/o.png"), &[two]);
+    place.refused(2, &format!("render scene.txt {size} -o o.png --checkpoint ./o.png"), &[two]);
+    place.refused(2, "course -input scene.txt -output o.tga -normals ./o.tga", &[two]);
+    // A part that is to be merged, under the name of a picture.
+    place.gives(0, &format!("render scene.txt {size} --shard 1/1 -o part.png --quiet"));
+    place.refused(2, "merge part.png -o here/part.png", &["it is read in this run"]);
+    // Work is never saved over what is no part.
+    for option in ["--checkpoint scene.txt", "--checkpoint here/m.obj", "--shard 1/1"] {
+        let output = if option.starts_with("--sh") { "endless.txt" } else { "o.png" };
+        place.refused(2, &format!("render mesh.txt {size} {option} -o {output}"), &["no part of a picture"]);
+    }
+    place.put("o.png.part", "somebody's download");
+    place.refused(2, &format!("render scene.txt {size} -o o.png"), &["`o.png.part` is no part of a picture"]);
+    assert_eq!(place.bytes("o.png.part"), b"somebody's download");
+}
+
+#[test]
+fn a_lesson_replaces_no_file_of_its_scene() {
+    let place = Place::new();
+    place.gives(0, "lesson scene.txt -o lesson --size 16x12 --samples 1 --quiet");
+    let own: Vec<_> = std::fs::read_dir(place.path("lesson")).unwrap().map(|e| e.unwrap().file_name()).collect();
+    let picture = own.iter().map(|name| name.to_str().unwrap()).find(|name| name.ends_with(".png")).unwrap();
+    let field = format!("HeightField {{ picture {picture} min -1 0 -1  max 1 1 1 }}");
+    place.put("lesson/mine.txt", SCENE.replace("Sphere { center 0 0.5 0 radius 1 }", &field));
+    let before = place.bytes(&format!("lesson/{picture}"));
+    let ran = place.gives(2, "lesson lesson/mine.txt --dialect durer -o lesson --size 16x12 --samples 1 --quiet");
+    assert!(ran.err.contains("it is read in this run"), "{}", ran.err);
+    assert!(place.bytes(&format!("lesson/{picture}")) == before);
+}
+
+#[test]
+fn places_that_are_no_files_are_written_through_or_refused_at_once() {
+    let place = Place::new();
+    symlink("nowhere", place.path("dangling.png")).unwrap();
+    symlink("loop.png", place.path("loop.png")).unwrap();
+    assert!(std::process::Command::new("mkfifo").arg(place.path("pipe.png")).status().unwrap().success());
+    symlink("/dev/null", place.path("null.png")).unwrap();
+    let work = "render scene.txt --size 8x8 --samples 1 --quiet";
+    place.refused(1, &format!("{work} -o dangling.png"), &["leads nowhere"]);
+    place.refused(1, &format!("{work} -o loop.png"), &["leads nowhere"]);
+    place.refused(1, &format!("{work} -o pipe.png"), &["nobody reads"]);
+    place.refused(1, &format!("{work} -o o.png --preview pipe.png"), &["nobody reads"]);
+    place.refused(2, &format!("{work} -o o.png --checkpoint null.png"), &["is no file"]);
+    place.gives(0, &format!("{work} -o null.png --no-checkpoint"));
+    let reader = place.path("pipe.png");
+    let reader = std::thread::spawn(move || std::fs::read(reader).unwrap());
+    // The reader may need a moment.
+    let ran = (0..100).map(|_| place.run(&format!("{work} -o pipe.png"))).find(|ran| ran.code == Some(0));
+    assert!(ran.is_some() && reader.join().unwrap().starts_with(b"\x89PNG"));
+}
+
+#[test]
+fn unfinished_work_is_not_thrown_away_unasked() {
+    let place = Place::new();
+    let work = "render scene.txt --size 300x200 --samples 100000 --quiet";
+    for (place_of_part, options) in [("o.png.part", "-o o.png"), ("s.part", "--shard 1/2 -o s.part")] {
+        let (ran, _) =
+            place.interrupted(&format!("{work} {options} --checkpoint-every 50ms"), Duration::from_millis(700));
+        assert_eq!(ran.code, Some(130), "{}", ran.err);
+        let saved = place.bytes(place_of_part);
+        for other in ["", "--seed 3", "--bounces 1"] {
+            let line = format!("{work} {options} {other}");
+            place.refused(2, &line, &["unfinished work", place_of_part, "--resume", "--restart"]);
+        }
+        place.refused(2, &format!("{work} {options} --resume --seed 3"), &["another job", "--restart"]);
+        place.refused(2, &format!("{work} {options} --resume --restart"), &["cannot be used with"]);
+        assert!(place.bytes(place_of_part) == saved);
+        place.gives(0, &format!("render scene.txt --size 8x8 --quiet {options} --restart"));
+        // A finished shard is replaced as any picture is.
+        place.gives(0, &format!("render scene.txt --size 8x8 --seed 1 --quiet {options}"));
+        assert_eq!(place.path("o.png.part").exists(), false);
+    }
+    let saved = place.bytes("s.part");
+    place.put("s.part", &saved[..saved.len() / 2]);
+    place.refused(2, &format!("{work} --shard 1/2 -o s.part"), &["torn or damaged", "--restart"]);
+}
+
+#[test]
+fn signals_that_end_programs_save_the_work() {
+    let place = Place::new();
+    let work = "render scene.txt --size 300x200 --samples 100000 --quiet --restart -o o.png";
+    for (signals, code) in [
+        (&["INT"][..], 130),
+        (&["TERM"], 143),
+        (&["HUP"], 129),
+        // As `timeout` sends them, and closed terminals.
+        (&["INT", "INT"], 130),
+        (&["TERM", "TERM"], 143),
+        (&["HUP", "TERM"], 129),
+    ] {
+        let (ran, latency) = place.signalled(work, Duration::from_millis(500), signals);
+        assert_eq!(ran.code, Some(code), "{signals:?}: {}", ran.err);
+        assert!(ran.err.contains("o.png.part (--resume"), "{signals:?}: {}", ran.err);
+        assert!(latency < Duration::from_secs(5), "{latency:?}");
+    }
+    // What is started to outlive its terminal does.
+    let ran = place.shell(
+        "trap '' HUP; durer render scene.txt --size 200x150 --samples 400 --quiet --restart -o n.png & \
+         sleep 0.3; kill -HUP $!; wait $!",
+    );
+    assert_eq!(ran.code, Some(0), "{}", ran.err);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn limits_of_the_system_are_errors_with_a_name() {
+    let place = Place::new();
+    let work = "durer render scene.txt --size 64x64 --samples 1 --quiet";
+    let ran = place.shell(&format!("(ulimit -f 1; {work} -o o.pfm 2>&1) | cat; exit ${{PIPESTATUS[0]}}"));
+    assert_eq!(ran.code, Some(1), "{}", ran.out);
+    assert!(ran.out.contains("cannot write `o.pfm`: File too large"), "{}", ran.out);
+    let ran = place.shell(&format!("RAYON_NUM_THREADS=100000 {work} -o o.png"));
+    assert_eq!(ran.code, Some(0), "{}", ran.err);
+    let ran = place.shell(&format!("{work} -o o.png --memory 1"));
+    assert!(ran.code == Some(2) && ran.err.contains("the limit is 1 byte;"), "{}", ran.err);
+    for (line, code) in [
+        ("durer info scene.txt >&-", 1),
+        ("durer render scene.txt --size 8x8 -o c.png >&-", 1),
+        ("durer course -input scene.txt -size 8 8 -output /dev/stdout >&-", 1),
+        ("durer render scene.txt --size 8x8 --quiet -o c.png >&-", 0),
+        ("durer info scene.txt >/dev/null", 0),
+        ("durer info scene.txt 1<>/dev/null", 0),
+    ] {
+        let ran = place.shell(line);
+        assert_eq!(ran.code, Some(code), "{line}: {}", ran.err);
+        assert_eq!(ran.err.contains("it is closed"), code == 1, "{line}: {}", ran.err);
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn without_threads_the_calling_thread_does_it_all() {
+    let place = Place::new();
+    // The limit does not hold for the superuser, who becomes nobody, in a folder that nobody may write to.
+    let nobody = "setpriv --reuid=65534 --regid=65534 --clear-groups";
+    let usable = place.shell(&format!("chmod 777 . && cp {} own && {nobody} ./own dialects", common::durer()));
+    if usable.code != Some(0) {
+        return println!("skipped: there is no other user to be: {}", usable.err);
+    }
+    let run = |limit: u32, arguments: &str| {
+        let ran = place.shell(&format!("{nobody} bash -c 'ulimit -u {limit}; exec ./own {arguments}'"));
+        assert_eq!(ran.code, Some(0), "{limit} {arguments}: {}", ran.err);
+        assert!(!ran.err.contains("panicked"), "{}", ran.err);
+        ran.out
+    };
+    let work = "render scene.txt --size 48x40 --samples 4 --bounces 256 --show color,depth --quiet --hash";
+    let hashes = [1, 2, 3, 4, 1000].map(|limit| run(limit, &format!("{work} -o {limit}.exr")));
+    assert!(hashes.iter().all(|hash| *hash == hashes[0] && hash.len() > 60), "{hashes:?}");
+    assert!(place.bytes("1.exr") == place.bytes("1000.exr"));
+    let _ = run(1, "compare 1.exr 2.exr --report r.html");
+    let _ = run(1, "explain scene.txt --size 48x40 --pixel 20,20 --bounces 256");
+    let _ = run(1, "info scene.txt");
+    let _ = run(1, "lesson scene.txt -o lesson --size 16x12 --samples 1");
+    let _ = run(1, "course -input scene.txt -size 20 20 -output o.tga -grid 5 5 5 -visualize_grid");
+}
