@@ -213,7 +213,7 @@ fn unfinished_work_is_not_thrown_away_unasked() {
         place.gives(0, &format!("render scene.txt --size 48x32 --quiet {options} --restart"));
         // A finished shard is replaced as any picture is.
         place.gives(0, &format!("render scene.txt --size 48x32 --seed 1 --quiet {options}"));
-        assert_eq!(place.path("o.png.part").exists(), false);
+        assert!(!place.path("o.png.part").exists());
     }
     let saved = place.bytes("s.part");
     place.put("s.part", &saved[..saved.len() / 2]);
