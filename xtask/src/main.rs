@@ -5,6 +5,7 @@ mod build;
 mod cost;
 mod course;
 mod explain;
+mod fuzz;
 mod long;
 mod manual;
 mod solids;
@@ -41,6 +42,9 @@ const USAGE: &str = "Commands:
   cargo xtask long [--only TEXT] [--times N]
       Tests of the suite with many more numbers: rays against a reference in double precision, rays at edges, rays that
       leave surfaces, bits of all SIMD levels.
+  cargo xtask fuzz [--minutes 10] [--only TEXT]
+      Random bytes as scenes, meshes, pictures and parts, and random scenes by tree, grid and brute force, side by side.
+      It takes a nightly compiler and cargo-fuzz.
   cargo xtask manual
       Write the reference of the language, docs/language and its pictures, and the grammar for editors.
 The course is found in ../shared, or where DURER_CORPUS says.";
@@ -62,6 +66,7 @@ fn main() -> anyhow::Result<ExitCode> {
         Some("cost") => cost::run(&arguments[1..]),
         Some("solids") => solids::run(),
         Some("long") => long::run(&arguments[1..]),
+        Some("fuzz") => fuzz::run(&arguments[1..]),
         Some("manual") => manual::run(),
         _ => {
             println!("{USAGE}");

@@ -180,7 +180,8 @@ fn what_was_saved(args: &RenderArgs, path: &Path) -> Result<Option<Box<Part>>, F
         (Ok(Err(error)), false) => return Err(bad(format!("`{name}` was saved before, and {error}; {restart}"))),
         (Err(failure), _) => return Err(failure),
     };
-    if part.is_finished() {
+    // A shard is what is wanted, as a picture is. Beside a picture there is a part only as long as there is no picture of it.
+    if work.shard.is_some() && part.is_finished() {
         return Ok(None);
     }
     let percent = percent(&part);
@@ -205,7 +206,7 @@ fn check_is_part(path: &Path) -> Result<(), String> {
     match Part::MAGIC.starts_with(&start) {
         true => Ok(()),
         false => Err(format!(
-            "`{}` is no part of a picture, and is not replaced by one: choose another name with --checkpoint",
+            "`{}` is no part of a picture, and is not replaced by one: choose another name",
             path.display()
         )),
     }

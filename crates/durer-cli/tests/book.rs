@@ -42,7 +42,8 @@ fn smaller(command: &str) -> String {
 fn every_command_of_the_book_runs() {
     for page in PAGES {
         let folder = tempfile::tempdir().unwrap();
-        std::os::unix::fs::symlink(root().join("scenes").canonicalize().unwrap(), folder.path().join("scenes")).unwrap();
+        std::os::unix::fs::symlink(root().join("scenes").canonicalize().unwrap(), folder.path().join("scenes"))
+            .unwrap();
         for command in commands(page) {
             // A shell, for the pages' patterns of file names.
             let line = format!("{} {}", env!("CARGO_BIN_EXE_durer"), smaller(&command));

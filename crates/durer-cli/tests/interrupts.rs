@@ -97,8 +97,10 @@ fn whenever_it_comes_the_file_is_whole_or_not_there() {
     let place = Place::new();
     for after in (0..120).step_by(8) {
         let _ = std::fs::remove_file(place.path("p.png"));
-        let (ran, _) =
-            place.interrupted("render scene.txt --size 300x300 --samples 1 -o p.png", Duration::from_millis(after));
+        let (ran, _) = place.interrupted(
+            "render scene.txt --size 300x300 --samples 1 --restart -o p.png",
+            Duration::from_millis(after),
+        );
         match ran.code {
             Some(0) => assert_eq!(place.image8("p.png").width, 300),
             // It may have come when all was done.
@@ -114,7 +116,8 @@ fn whenever_it_comes_the_file_is_whole_or_not_there() {
 fn a_bar_is_shown_on_a_terminal_only() {
     let place = Place::new();
     let on_terminal = |options: &str| {
-        let line = format!("{} render scene.txt --size 1000x1000 --samples 100 -o p.png {options}", common::durer());
+        let line =
+            format!("{} render scene.txt --size 1000x1000 --samples 100 --restart -o p.png {options}", common::durer());
         let mut script = Command::new("script");
         script
             .args(["-qec", &format!("timeout -s INT 2 {line}"), "/dev/null"])
@@ -126,7 +129,7 @@ fn a_bar_is_shown_on_a_terminal_only() {
     let quiet = on_terminal("--quiet").unwrap();
     assert!(String::from_utf8_lossy(&shown.stdout).contains("rays/s"), "{shown:?}");
     assert!(!String::from_utf8_lossy(&quiet.stdout).contains("rays/s"), "{quiet:?}");
-    let (ran, _) =
-        place.interrupted("render scene.txt --size 1000x1000 --samples 100 -o p.png", Duration::from_millis(1500));
+    let (ran, _) = place
+        .interrupted("render scene.txt --size 1000x1000 --samples 100 --restart -o p.png", Duration::from_millis(1500));
     assert!(!ran.err.contains("rays/s"), "{}", ran.err);
 }

@@ -132,12 +132,12 @@ impl Place {
         (ran, start.elapsed())
     }
 
-    /// Runs in a shell after some words of it, which may limit what the program gets.
+    /// Runs a script, in which `$DURER` is the program and may be limited in what it gets.
     #[cfg(unix)]
     pub fn shell(&self, script: &str) -> Ran {
-        let script = script.replace("durer ", &format!("{} ", durer()));
         let mut command = Command::new("bash");
-        Ran::of(command.args(["-c", &script]).current_dir(self.folder.path()).stdin(Stdio::null()).output().unwrap())
+        command.args(["-c", script]).env("DURER", durer()).current_dir(self.folder.path()).stdin(Stdio::null());
+        Ran::of(command.output().unwrap())
     }
 }
 

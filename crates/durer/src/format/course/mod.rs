@@ -5,6 +5,8 @@ pub mod guess;
 mod lexer;
 mod nodes;
 pub mod place;
+#[cfg(any(test, fuzzing))]
+pub mod random;
 mod reader;
 mod recover;
 pub mod reference;

@@ -6,7 +6,6 @@ mod forms;
 mod limits;
 mod malformed;
 mod mistakes;
-mod random;
 mod round_trip;
 
 use super::*;

@@ -1,4 +1,4 @@
-//! Random scenes, made by walking what every thing says of its fields.
+//! Random scenes, made by walking what every thing says of its fields: for tests, and for fuzzing, whose bytes then decide.
 
 use crate::camera::Camera;
 use crate::describe::{DescribedList, Field, FileName, Kind, Rule, Value};
@@ -9,17 +9,41 @@ use crate::math::Vec3;
 use crate::scene::{Background, Group, Material, MatrixOp, Node, Object, Operation, Scene, Spanned};
 use crate::shape::{HeightField, Primitive, Sphere, TriangleMesh, VoxelGrid};
 
-/// A generator of random numbers (Knuth's multiplier, the upper half of the state).
-pub(super) struct Random(pub u64);
+/// A source of choices: given bytes, and after them a generator of random numbers (Knuth's multiplier, the upper half of the state).
+pub struct Random {
+    state: u64,
+    bytes: std::vec::IntoIter<u8>,
+    /// Whether scenes should be such as can be rendered: small numbers, and files `a.obj` and `a.ppm`.
+    tame: bool,
+}
 
 impl Random {
+    /// Random choices.
+    pub fn seeded(state: u64) -> Self {
+        Random { state, bytes: Vec::new().into_iter(), tame: false }
+    }
+
+    /// Choices that bytes make, for scenes that can be rendered.
+    pub fn tame(bytes: &[u8]) -> Self {
+        Random { state: 1, bytes: Vec::from(bytes).into_iter(), tame: true }
+    }
+
+    /// A number below another, which is not 0.
     pub fn below(&mut self, n: usize) -> usize {
-        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (self.0 >> 33) as usize % n
+        // Two bytes say more than 256 things.
+        let count = if n > 256 { 2 } else { 1 };
+        if self.bytes.len() >= count {
+            return self.bytes.by_ref().take(count).fold(0, |number, byte| number << 8 | usize::from(byte)) % n;
+        }
+        self.state = self.state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (self.state >> 33) as usize % n
     }
 
     /// Any finite number, odd ones among them.
     pub fn float(&mut self) -> f32 {
+        if self.tame {
+            return self.below(129) as f32 / 16.0 - 4.0;
+        }
         match self.below(6) {
             0 => [0.0, -0.0, 1.0, f32::MAX, f32::MIN_POSITIVE, 1e-45, 16777216.0, 0.1][self.below(8)],
             1 => self.below(100) as f32 / 8.0 - 5.0,
@@ -44,6 +68,10 @@ impl Random {
                 Kind::Int if is_material_index(field) => Value::Int(self.below(materials) as u32),
                 Kind::Int => Value::Int(self.below(40) as u32),
                 Kind::Vec3 => Value::Vec3(self.vec3()),
+                Kind::Path if self.tame => {
+                    let path = if field.name == "obj_file" { "a.obj" } else { "a.ppm" }.into();
+                    Value::Path(FileName { path, ..Default::default() })
+                }
                 Kind::Path => {
                     let path = ["a.obj", "meshes/B-2.OBJ", "../x", "Sphere", "\\w\\é.bmp"][self.below(5)].into();
                     Value::Path(FileName { path, ..Default::default() })
@@ -74,7 +102,9 @@ impl Random {
         let mut kinds = T::kinds();
         let mut thing = kinds.remove(self.below(kinds.len()));
         for (i, field) in thing.fields().iter().enumerate() {
-            if field.required || self.below(2) == 0 {
+            // A sky is six files.
+            let missing = self.tame && field.name.to_lowercase().starts_with("cube");
+            if field.required || self.below(2) == 0 && !missing {
                 let value = self.value(field, materials);
                 thing.set(i, value);
             }

@@ -1,0 +1,139 @@
+//! What must hold of any bytes: no panic, no more memory than the bytes justify, and no answer that contradicts itself.
+
+use durer::LoadOptions;
+use durer::compile::AccelKind;
+use durer::diag::{Diagnostics, Files};
+use durer::dialect::Dialect;
+use durer::format::course::{ReadOptions, guess, random::Random, read, write};
+use durer::format::read_mesh;
+use durer::image::{Encoded, ImageError, decode_linear};
+use durer::integrator::Settings;
+use durer::render::{Control, Job, Part, PartError, Shard, Stop};
+use durer::source::Digest;
+use std::path::PathBuf;
+use std::sync::OnceLock;
+
+/// Pictures may take so much memory.
+const MEMORY: u64 = 64 << 20;
+/// Pictures of parts are made up to so many pixels.
+const PIXELS: u64 = 1 << 16;
+
+/// Bytes as a scene file: what is read is written, and read again as the same.
+pub fn scene(data: &[u8]) {
+    let mut files = Files::default();
+    let file = files.add("scene.txt", data.into());
+    guess(data, file, &[], &|_| false);
+    for dialect in Dialect::ALL {
+        for strict in [false, true] {
+            let mut diagnostics = Diagnostics::default();
+            let scene = read(data, file, ReadOptions { dialect, strict }, &mut diagnostics);
+            for diagnostic in diagnostics.iter() {
+                let spans = diagnostic.span.into_iter().chain(diagnostic.related.iter().map(|related| related.0));
+                spans.for_each(|span| assert!(span.start <= span.end && span.end as usize <= data.len()));
+            }
+            if let Some(scene) = scene {
+                write(&scene, dialect);
+            }
+        }
+    }
+}
+
+/// Bytes as a mesh file.
+pub fn mesh(data: &[u8], name: &str) {
+    let mut files = Files::default();
+    let file = files.add(name, data.into());
+    let mut diagnostics = Diagnostics::default();
+    if let Some(mesh) = read_mesh(data, file, name, &mut diagnostics) {
+        let within = |count: usize| move |corner: &u32| (*corner as usize) < count;
+        assert!(mesh.triangles.iter().flatten().all(within(mesh.positions.len())));
+        assert!(mesh.positions.iter().all(|position| position.is_finite()));
+    }
+}
+
+/// Bytes as a picture file: the head says what decoding finds, and how much memory it takes at most.
+pub fn picture(data: &[u8], name: &str) {
+    let Ok(encoded) = Encoded::open(data, name) else { return };
+    let (width, height) = encoded.size();
+    assert!(width * height > 0);
+    match encoded.read(MEMORY, decode_linear) {
+        Ok(image) => {
+            assert_eq!((image.width as usize, image.height as usize), (width, height));
+            assert!(image.check().is_ok() && encoded.needed() <= MEMORY);
+        }
+        Err(ImageError::Memory { needed, .. }) => assert!(needed > MEMORY),
+        Err(ImageError::Malformed { reason, .. }) => assert_ne!(reason, "its decoder failed"),
+        Err(_) => {}
+    }
+}
+
+/// Bytes as saved work: what is read is written as the same bytes, and shows finite colours.
+pub fn part(data: &[u8]) {
+    let mut bytes = data.to_vec();
+    bytes.extend(Digest::of(data).0);
+    match Part::read(&bytes) {
+        Ok(part) => {
+            assert!(part.write() == bytes);
+            part.work();
+            if part.job().whole().pixels() <= PIXELS {
+                part.is_finished();
+                part.hash();
+                let rendered = part.pictures().expect("a part has pictures");
+                let finite =
+                    |layer: &durer::image::Layer| layer.name == "variance" || layer.image.first_non_finite().is_none();
+                assert!(rendered.layers.iter().all(finite));
+            }
+        }
+        Err(error) => assert!(!matches!(error, PartError::Damaged) || data.len() < 8, "{error}"),
+    }
+}
+
+/// A folder with the files that scenes name.
+fn folder() -> PathBuf {
+    static FOLDER: OnceLock<PathBuf> = OnceLock::new();
+    let make = || {
+        let folder = tempfile::tempdir().expect("there is a folder for temporary files").keep();
+        let mesh = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nvt 0 0\nvt 1 0\nvt 0 1\n\
+                    f 1/1 3/3 2/2\nf 1/1 2/2 4/3\nf 1/1 4/2 3/3\nf 2/1 3/2 4/3\n";
+        let picture = [b"P6 2 2 255\n".as_slice(), &[9, 200, 30, 0, 0, 0, 255, 255, 255, 80, 90, 100]].concat();
+        std::fs::write(folder.join("a.obj"), mesh).expect("it can be written");
+        std::fs::write(folder.join("a.ppm"), picture).expect("it can be written");
+        folder
+    };
+    FOLDER.get_or_init(make).clone()
+}
+
+/// A scene that bytes choose: its text is read as itself, and its picture is the same by tree, grid and brute force.
+pub fn ways(data: &[u8]) {
+    let scene = Random::tame(data).scene(Dialect::Durer);
+    let text = write(&scene, Dialect::Durer);
+    let path = folder().join("scene.txt");
+    let settings = Settings { bounces: 2, ..Job::default().settings };
+    let job = Job { width: 12, height: 9, settings, ..Job::default() };
+    let hash = |accel| {
+        let options = LoadOptions {
+            dialect: Some(Dialect::Durer),
+            accel,
+            threads: Some(1),
+            memory: Some(512 << 20),
+            ..LoadOptions::default()
+        };
+        let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
+        let bytes = text.as_bytes().into();
+        let loaded = durer::load_text(&path, bytes, &options, &mut files, &mut diagnostics);
+        let loaded = loaded.unwrap_or_else(|| panic!("what was written is not read: {diagnostics:?}\n{text}"));
+        let world = loaded.compile(&options, &mut files, &mut diagnostics)?;
+        let part = Part::new(&world, &job, Shard::WHOLE).expect("the job is possible");
+        let control = Control { threads: Some(1), ..Control::default() };
+        match part.render(&world, &control, &mut |_, _| {}).expect("it can be rendered") {
+            Stop::Finished => Some(part.hash()),
+            stop => panic!("{stop:?}\n{text}"),
+        }
+    };
+    let Some(plain) = hash(AccelKind::None) else { return };
+    for accel in [AccelKind::Bvh, AccelKind::Grid(None)] {
+        // A grid of too many entries is refused.
+        if let Some(other) = hash(accel) {
+            assert_eq!(other, plain, "{accel:?}\n{text}");
+        }
+    }
+}

@@ -1,0 +1,4 @@
+//! Any bytes as a picture named `x.pfm`.
+#![no_main]
+
+libfuzzer_sys::fuzz_target!(|data: &[u8]| durer_fuzz::picture(data, "x.pfm"));

@@ -1,0 +1,137 @@
+//! Random bytes and scenes against the readers and the tracer, side by side: see fuzz/.
+
+use anyhow::{Context, Result, bail};
+use std::path::{Path, PathBuf};
+use std::process::{Command, ExitCode, Stdio};
+use std::time::Instant;
+
+/// The targets, and the endings of files that they can begin with.
+const TARGETS: [(&str, &[&str]); 12] = [
+    ("scene", &["txt"]),
+    ("obj", &["obj"]),
+    ("ply", &["ply"]),
+    ("png", &["png"]),
+    ("tga", &["tga"]),
+    ("bmp", &["bmp"]),
+    ("ppm", &["ppm"]),
+    ("pfm", &["pfm"]),
+    ("exr", &["exr"]),
+    ("hdr", &["hdr"]),
+    ("part", &[]),
+    ("ways", &[]),
+];
+
+/// Inputs are at most so many bytes, a run takes at most so many MiB of memory, an input so many seconds.
+const MOST_BYTES: u64 = 16 << 10;
+const MOST_MEMORY: u32 = 2048;
+const MOST_SECONDS: u32 = 20;
+
+pub fn run(arguments: &[String]) -> Result<ExitCode> {
+    let minutes: f64 = crate::value(arguments, "--minutes").map_or("10", String::as_str).parse()?;
+    let only = crate::value(arguments, "--only").map_or("", String::as_str);
+    let targets: Vec<_> = TARGETS.iter().filter(|target| target.0.contains(only)).collect();
+    if targets.is_empty() {
+        bail!("no target's name contains `{only}`: {}", TARGETS.map(|target| target.0).join(", "));
+    }
+    what_is_missing()?;
+    let fuzz = crate::root()?.join("fuzz");
+    let built = cargo_fuzz(&fuzz, &["build"]).status()?;
+    if !built.success() {
+        bail!("the targets cannot be built");
+    }
+    let scratch = fuzz.join("target/runs");
+    let (start, mut running) = (Instant::now(), Vec::new());
+    for (name, endings) in targets {
+        let (corpus, seeds) = (fuzz.join("corpus").join(name), scratch.join(name).join("seeds"));
+        std::fs::create_dir_all(&corpus)?;
+        collect_seeds(&seeds, endings)?;
+        let log = scratch.join(name).join("log.txt");
+        let file = std::fs::File::create(&log)?;
+        let mut command = cargo_fuzz(&fuzz, &["run", name]);
+        command.args([&corpus, &fuzz.join("seeds").join(name), &seeds].into_iter().filter(|folder| folder.is_dir()));
+        command.arg("--").args([
+            format!("-max_total_time={}", (60.0 * minutes) as u64),
+            format!("-rss_limit_mb={MOST_MEMORY}"),
+            format!("-malloc_limit_mb={MOST_MEMORY}"),
+            format!("-timeout={MOST_SECONDS}"),
+            format!("-max_len={MOST_BYTES}"),
+            "-print_final_stats=1".into(),
+        ]);
+        let child = command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(file).spawn()?;
+        running.push((name, log, child));
+    }
+    println!("{} targets side by side for {minutes} minutes; logs are in {}", running.len(), scratch.display());
+    let mut found = 0;
+    for (name, log, mut child) in running {
+        let status = child.wait()?;
+        let text = String::from_utf8_lossy(&std::fs::read(&log)?).into_owned();
+        let runs = text.lines().find_map(|line| line.strip_prefix("stat::number_of_executed_units:"));
+        let runs = runs.map_or("?", str::trim);
+        if status.success() {
+            println!("{name}: {runs} inputs, nothing found");
+        } else {
+            found += 1;
+            println!(
+                "{name}: FOUND after {:.0} s; the input is in fuzz/artifacts/{name}, the end of its log:",
+                start.elapsed().as_secs_f64()
+            );
+            let end: Vec<&str> = text.lines().collect();
+            end[end.len().saturating_sub(25)..].iter().for_each(|line| println!("    {line}"));
+        }
+    }
+    Ok(if found == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+}
+
+fn cargo_fuzz(fuzz: &Path, arguments: &[&str]) -> Command {
+    let mut command = Command::new("cargo");
+    // This was started by another toolchain's cargo, which must not choose the compiler.
+    command.env_remove("RUSTUP_TOOLCHAIN").env_remove("CARGO").args(["+nightly", "fuzz"]).args(arguments);
+    command.current_dir(fuzz.join(".."));
+    command
+}
+
+/// Says in plain words what has to be installed.
+fn what_is_missing() -> Result<()> {
+    let there = |arguments: &[&str]| {
+        let mut command = Command::new("cargo");
+        command.env_remove("RUSTUP_TOOLCHAIN").env_remove("CARGO").args(arguments);
+        command.stdout(Stdio::null()).stderr(Stdio::null()).status().is_ok_and(|status| status.success())
+    };
+    if !there(&["+nightly", "--version"]) {
+        bail!(
+            "fuzzing takes a nightly compiler: `rustup toolchain install nightly` installs one beside the stable one"
+        );
+    }
+    if !there(&["+nightly", "fuzz", "--version"]) {
+        bail!("fuzzing takes cargo-fuzz: `cargo install cargo-fuzz` installs it");
+    }
+    Ok(())
+}
+
+/// Copies small files that targets can begin with, of the repository's scenes and of the corpus where it is.
+fn collect_seeds(folder: &Path, endings: &[&str]) -> Result<()> {
+    std::fs::create_dir_all(folder).with_context(|| format!("cannot make {}", folder.display()))?;
+    let mut found = Vec::new();
+    for root in [crate::root()?.join("scenes"), crate::corpus()] {
+        files(&root, endings, 6, &mut found);
+    }
+    for (number, path) in found.iter().take(400).enumerate() {
+        std::fs::copy(path, folder.join(number.to_string()))?;
+    }
+    Ok(())
+}
+
+/// Files below a folder that are small and end so.
+fn files(folder: &Path, endings: &[&str], depth: usize, found: &mut Vec<PathBuf>) {
+    for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
+        let path = entry.path();
+        if path.is_dir() && depth > 0 {
+            files(&path, endings, depth - 1, found);
+        }
+        let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+        let small = entry.metadata().is_ok_and(|metadata| metadata.is_file() && metadata.len() <= MOST_BYTES);
+        if small && endings.contains(&ending.as_str()) {
+            found.push(path);
+        }
+    }
+}
