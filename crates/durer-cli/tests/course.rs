@@ -237,7 +237,7 @@ fn a_camera_with_a_shape_of_its_own_makes_pictures_of_that_shape() {
     let camera = "EquirectangularCamera { center 0 0 5 direction 0 0 -1 up 0 1 0 }";
     let rest = SCENE.split_once("Lights").unwrap().1;
     place.put("around.txt", format!("{camera}\nLights{rest}"));
-    for (options, size) in [("--dialect durer", (512, 256)), ("--dialect durer -size 30 20", (30, 20))] {
+    for (options, size) in [("--dialect durer", (720, 360)), ("--dialect durer -size 30 20", (30, 20))] {
         place.gives(0, &format!("course -input around.txt {options} -output o.png --quiet"));
         let image = place.image8("o.png");
         assert_eq!((image.width, image.height), size, "{options}");

@@ -449,6 +449,4 @@ pub fn refract(d: Vec3, n: Vec3, eta: f32) -> Option<Vec3> {
 }
 
 #[cfg(test)]
-mod nested;
-#[cfg(test)]
 mod tests;

@@ -298,7 +298,7 @@ pub static TOPICS: [Topic; 13] = [
             "F = F_0 + (1 - F_0) (1 - cos θ)⁵,   F_0 = ((n_1 - n_2) / (n_1 + n_2))²",
             "L += F k_r L(p, R) + (1 - F) k_t L(p, t)",
         ],
-        places: &[at("crates/durer/src/integrator/whitted.rs", "fn fresnel")],
+        places: &[at("crates/durer/src/integrator/whitted.rs", "fn fresnel_share")],
         shots: &[color("glass that only transmits", GLASS), color("divided by Fresnel's law", FRESNEL)],
         lacking: "no glass with a `refractionIndex` is seen in it",
     },

@@ -1,5 +1,7 @@
 //! Light in scenes whose answer can be written down.
 
+mod nested;
+
 use super::*;
 use crate::compile::{AccelKind, testing};
 use crate::dialect::Dialect;
