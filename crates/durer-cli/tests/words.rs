@@ -7,7 +7,7 @@ use common::{Place, SCENE};
 #[test]
 fn help_has_examples() {
     let place = Place::new();
-    for command in ["", "render", "info", "convert", "compare", "dialects", "completions", "man"] {
+    for command in ["", "render", "info", "convert", "compare", "dialects", "words", "completions", "man"] {
         let help = place.gives(0, &format!("{command} --help"));
         assert!(help.out.contains("Example") && help.out.contains("\n  durer "), "{command}: {}", help.out);
     }
@@ -76,7 +76,28 @@ fn a_scene_written_anew_is_the_same() {
         place.gives(0, &format!("convert again.txt -o twice.txt {options}"));
         assert_eq!(place.bytes("again.txt"), place.bytes("twice.txt"));
     }
-    // In place, too.
-    place.gives(0, "convert again.txt -o again.txt");
-    assert_eq!(place.bytes("again.txt"), place.bytes("twice.txt"));
+    // Not in place: what is read is not replaced.
+    let before = place.bytes("again.txt");
+    place.refused(2, "convert again.txt -o again.txt", &["again.txt", "is read in this run"]);
+    assert_eq!(place.bytes("again.txt"), before);
+}
+
+#[test]
+fn words_are_looked_up() {
+    let place = Place::new();
+    let all = place.gives(0, "words").out;
+    for word in ["PerspectiveCamera", "PointLight", "PhongMaterial", "Sphere", "Difference", "Transform", "numObjects"]
+    {
+        assert!(all.contains(&format!("  {word} ")), "{word} is not in\n{all}");
+    }
+    let light = place.gives(0, "words pointlight").out;
+    for part in ["f23", "position", "must be given", "falloff", "Example:\n    PointLight {"] {
+        assert!(light.contains(part), "{part} is not in\n{light}");
+    }
+    // A field tells where it is; a dialect has its own words only.
+    assert!(place.gives(0, "words radius").out.contains("in Sphere\n"));
+    assert!(!place.gives(0, "words --dialect f04").out.contains("Torus"));
+    place.refused(2, "words Spere", &["did you mean `Sphere`?"]);
+    place.refused(2, "words Torus --dialect f04", &["the dialect `f04`"]);
+    place.refused(2, "words --dialect f99", &["f99", "f23"]);
 }
