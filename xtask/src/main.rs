@@ -8,6 +8,7 @@ mod explain;
 mod long;
 mod manual;
 mod solids;
+mod teach;
 mod torture;
 mod verify;
 
@@ -41,6 +42,9 @@ const USAGE: &str = "Commands:
   cargo xtask long [--only TEXT] [--times N]
       Tests of the suite with many more numbers: rays against a reference in double precision, rays at edges, rays that
       leave surfaces, bits of all SIMD levels.
+  cargo xtask teach [--compare | --check] [--only TEXT] [--keep FOLDER]
+      Wrong pictures made by a tracer of its own, for `durer compare`, and broken scenes, for `durer check`: how many are told
+      rightly, and how many wrongly?
   cargo xtask manual
       Write docs/cameras.md from what the cameras state of themselves.
 The course is found in ../shared, or where DURER_CORPUS says.";
@@ -61,6 +65,7 @@ fn main() -> anyhow::Result<ExitCode> {
         Some("torture") => torture::run(&arguments[1..]),
         Some("cost") => cost::run(&arguments[1..]),
         Some("solids") => solids::run(),
+        Some("teach") => teach::run(&arguments[1..]),
         Some("long") => long::run(&arguments[1..]),
         Some("manual") => manual::run(),
         _ => {

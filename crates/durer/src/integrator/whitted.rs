@@ -166,7 +166,7 @@ impl Whitted<'_> {
     }
 
     /// Whether a ray meets a surface on the side that its normal does not point to.
-    fn sees_back(&self, dir: Vec3, surface: &Surface) -> bool {
+    pub(crate) fn sees_back(&self, dir: Vec3, surface: &Surface) -> bool {
         let shaded = self.world.rules.has(Compat::ShadedSides);
         dir.dot(if shaded { surface.n_shade } else { surface.n_geo }) > 0.0
     }
@@ -297,7 +297,7 @@ impl Whitted<'_> {
     ///
     /// c is the cosine on the side of the lower index. Source: Schlick, *An Inexpensive BRDF Model for
     /// Physically-based Rendering*, Eurographics 1994.
-    fn fresnel(&self, dir: Vec3, n: Vec3, transmitted: Vec3, here: f32, there: f32) -> f32 {
+    pub(crate) fn fresnel(&self, dir: Vec3, n: Vec3, transmitted: Vec3, here: f32, there: f32) -> f32 {
         let ratio = (there - here) / (there + here);
         let zero = self.world.rules.has(Compat::ExitR0) && there < here;
         let r0 = if zero { 0.0 } else { ratio * ratio };

@@ -1,0 +1,80 @@
+//! Pixels of a variant's picture.
+
+use super::habits::Output;
+use super::{Pupil, Variant};
+use crate::image::Transfer;
+use crate::image::compare::Scale;
+use crate::math::{Color, Vec3, fp};
+use crate::render::{Job, sample_places};
+use rayon::prelude::*;
+
+/// Where pictures are looked at, and how.
+#[derive(Clone, Debug)]
+pub(super) struct View<'j> {
+    /// Columns and rows of the picture, and its samples.
+    pub job: &'j Job,
+    /// Whether values are of a screen or of light.
+    pub scale: Scale,
+    /// What makes a screen's values.
+    pub transfer: Transfer,
+    /// The brightest value of the right picture.
+    pub brightest: f32,
+}
+
+impl View<'_> {
+    /// The light of some pixels.
+    pub fn light(&self, variant: &Variant, places: &[(u32, u32)]) -> Vec<Color> {
+        let raster = variant.raster(self.job.width, self.job.height);
+        let pupil = Pupil::new(&variant.world, variant.settings, &variant.habits);
+        let samples = sample_places(&variant.world, self.job);
+        let pixel = |&(x, y): &(u32, u32)| {
+            let (mut sum, mut weights) = (Color::ZERO, 0.0);
+            samples(x, y, &mut |place, lens, weight| {
+                if let Some(ray) = variant.ray(&raster, (x, y), place, lens) {
+                    sum += weight * pupil.radiance(&ray);
+                }
+                weights += weight;
+            });
+            sum / weights
+        };
+        places.par_iter().with_min_len(16).map(pixel).collect()
+    }
+
+    /// What a picture's file has of some light.
+    pub fn values(&self, output: Output, light: &[Color]) -> Vec<Vec3> {
+        light.iter().map(|&light| self.value(output, light)).collect()
+    }
+
+    /// The values of some pixels of a variant's picture.
+    pub fn picture(&self, variant: &Variant, places: &[(u32, u32)]) -> Vec<Vec3> {
+        let (width, height) = (self.job.width, self.job.height);
+        let sources: Vec<(u32, u32)> = places.iter().map(|place| variant.turn.source(width, height, *place)).collect();
+        let mut values = self.values(variant.output, &self.light(variant, &sources));
+        if variant.turn.bgr {
+            values.iter_mut().for_each(|value| *value = Vec3::new(value.z, value.y, value.x));
+        }
+        values
+    }
+
+    fn value(&self, output: Output, light: Color) -> Vec3 {
+        let light = match output {
+            Output::Scaled if self.brightest > 1.0 => light / self.brightest,
+            Output::CurveMore => light.max(Vec3::ZERO).map(|v| fp::pow(v, 1.0 / 2.2)),
+            Output::CurveLess => light.max(Vec3::ZERO).map(|v| fp::pow(v, 2.2)),
+            _ => light,
+        };
+        if self.scale == Scale::Linear {
+            return light;
+        }
+        let transfer = match (output, self.transfer) {
+            (Output::OtherRounding, Transfer::Course) => Transfer::Linear,
+            (Output::OtherRounding, Transfer::Linear) => Transfer::Course,
+            (_, transfer) => transfer,
+        };
+        if output == Output::Wrapped && transfer != Transfer::Srgb {
+            let half = if transfer == Transfer::Linear { 0.5 } else { 0.0 };
+            return light.map(|v| ((v * 255.0 + half).floor() as i64).rem_euclid(256) as f32 / 255.0);
+        }
+        Vec3::from(transfer.encode_pixel(light).map(f32::from)) / 255.0
+    }
+}
