@@ -8,7 +8,6 @@ mod vector;
 mod wrong;
 
 use anyhow::{Context, Result, bail};
-use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode, Stdio};
 use tracer::{Picture, Tracer};
@@ -77,6 +76,7 @@ fn pictures(durer: &Path, folder: &Path, wanted: &dyn Fn(&str) -> bool) -> Resul
             let own = folder.join(scene.name);
             let name = format!("{}.ppm", case.made.join("+"));
             let picture = Tracer::new(scene, &case.made).picture();
+            let unseen = ppm(scene.size, &picture) == std::fs::read(own.join("own.ppm"))?;
             std::fs::write(own.join(&name), ppm(scene.size, &picture))?;
             let mut compare = Command::new(durer);
             compare.current_dir(&own).args(["compare", "right.ppm", &name, "--scene", "scene.txt", "--json"]);
@@ -84,7 +84,7 @@ fn pictures(durer: &Path, folder: &Path, wanted: &dyn Fn(&str) -> bool) -> Resul
             let started = std::time::Instant::now();
             let text = output(&mut compare)?;
             let seconds = started.elapsed().as_secs_f64();
-            let (told, words) = judged(&text, &case.made);
+            let (told, words) = if unseen { (Told::Unseen, String::new()) } else { judged(&text, &case.made) };
             let line = format!("{told:<9?} {seconds:5.1} s  {:<13} {:<38} {words}", scene.name, case.made.join(" + "));
             println!("{line}");
             Ok((line, told))

@@ -130,7 +130,7 @@ impl Scene {
                     m.shine,
                     v(m.kr),
                     v(m.kt),
-                    m.index
+                    if m.index > 0.0 { m.index } else { 1.0 }
                 ),
                 Year::F12a5 if m.index > 0.0 => write!(t, " shininess {} refractionIndex {}", m.shine, m.index),
                 _ => write!(t, " shininess {}", m.shine),
@@ -174,8 +174,8 @@ impl Scene {
         for thing in &self.things {
             if let Shape::Mesh(name, corners, faces) = &thing.shape {
                 let mut text = String::new();
-                corners.iter().for_each(|p| drop(writeln!(text, "v {}", v(*p))));
-                faces.iter().for_each(|f| drop(writeln!(text, "f {} {} {}", f[0] + 1, f[1] + 1, f[2] + 1)));
+                text.extend(corners.iter().map(|p| format!("v {}\n", v(*p))));
+                text.extend(faces.iter().map(|f| format!("f {} {} {}\n", f[0] + 1, f[1] + 1, f[2] + 1)));
                 files.push((*name, text + "\n"));
             }
         }

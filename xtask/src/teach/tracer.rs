@@ -220,7 +220,10 @@ impl<'s> Tracer<'s> {
                     l = toward;
                 }
                 if self.is("white-lights") {
-                    light = V::ONE;
+                    light = match *lamp {
+                        Lamp::Sun(..) => V::ONE,
+                        Lamp::Bulb(_, _, a) => V::ONE * self.fading(a, distance),
+                    };
                 }
                 if self.blocked(p, toward, distance) {
                     continue;

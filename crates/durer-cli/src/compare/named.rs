@@ -64,6 +64,7 @@ pub fn json(diagnosis: &Diagnosis) -> Value {
     json!({
         "reference_off": diagnosis.off,
         "told": !diagnosis.named.is_empty(),
+        "nearest": diagnosis.tried.iter().map(|n| json!([words(n), n.explained, n.matched])).collect::<Vec<_>>(),
         "named": diagnosis.named.iter().map(one).collect::<Vec<_>>(),
         "lines": lines(diagnosis),
     })

@@ -207,7 +207,7 @@ pub(super) fn missed(scout: &Scout) -> Vec<Finding> {
         Some(size) if size < 12.0 => return Vec::new(),
         _ => format!("{}is there a hole in the middle, or is it seen from its edge?", nearest(scout)),
     });
-    vec![Finding::from(diagnostic).whole(true)]
+    vec![Finding::from(diagnostic).last()]
 }
 
 /// How many pixels of the picture a box spans.
@@ -267,6 +267,30 @@ pub(super) fn hidden(scout: &Scout) -> Vec<Finding> {
         .effect(format!("{} behind it cannot be seen", super::finding::counted(hidden, "object", "objects")))
         .help(help);
     let diagnostic = match turned {
+        Some((place, text)) => diagnostic.fix(place, text),
+        None => diagnostic,
+    };
+    vec![Finding::from(diagnostic).whole(true)]
+}
+
+/// A plane between the camera and all things that have an end, though something else, the sky say, is seen beside it.
+pub(super) fn below_plane(scout: &Scout) -> Vec<Finding> {
+    let objects = &scout.world().objects;
+    let mut front = None;
+    for (object, sight) in objects.iter().zip(scout.sights()).filter(|(object, _)| object.bounds().is_some()) {
+        match (sight, front) {
+            (Sight::Hidden(by), None) if objects[*by as usize].bounds().is_none() => front = Some(*by),
+            (Sight::Hidden(by), Some(known)) if *by == known => {}
+            _ => return Vec::new(),
+        }
+        let _ = object;
+    }
+    let Some(front) = front.filter(|_| hidden(scout).is_empty()) else { return Vec::new() };
+    let diagnostic = Diagnostic::warning(format!("all other things are on the far side of the {}", scout.object(front)))
+        .at(scout.object_span(front))
+        .effect("nothing but the plane and the background is seen")
+        .help("a plane stands where p · normal = offset: look at its `offset`, or at the height of the things");
+    let diagnostic = match offset_turned(scout, front) {
         Some((place, text)) => diagnostic.fix(place, text),
         None => diagnostic,
     };

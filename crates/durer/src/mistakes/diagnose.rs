@@ -59,6 +59,8 @@ pub struct Diagnosis {
     pub off: f64,
     /// What makes the picture; more than one where several make the same of this scene. Empty where nothing does.
     pub named: Vec<Named>,
+    /// What came nearest, whether it is named or not.
+    pub tried: Vec<Named>,
 }
 
 impl Diagnosis {
@@ -82,6 +84,31 @@ struct Pixels {
     reference: Vec<Vec3>,
     test: Vec<Vec3>,
     base: Vec<Vec3>,
+}
+
+impl Trial {
+    fn named(&self) -> Named {
+        let Fit { explained, matched } = self.fit;
+        Named { mistakes: self.mistakes.clone(), explained, matched }
+    }
+}
+
+impl Named {
+    fn fit(&self) -> Fit {
+        Fit { explained: self.explained, matched: self.matched }
+    }
+}
+
+impl Pixels {
+    /// Leaves out those that are not to be kept.
+    fn keep(&mut self, kept: &[bool]) {
+        fn of<T>(list: &mut Vec<T>, kept: &[bool]) {
+            let mut keep = kept.iter();
+            list.retain(|_| *keep.next().unwrap_or(&true));
+        }
+        of(&mut self.places, kept);
+        [&mut self.reference, &mut self.test, &mut self.base].into_iter().for_each(|list| of(list, kept));
+    }
 }
 
 struct Search<'a> {
@@ -128,13 +155,21 @@ pub fn diagnose(question: &Question, told: &(dyn Fn(f64) + Sync)) -> Diagnosis {
         false => Vec::new(),
     };
     search.view.brightest = light.iter().map(|light| light.max_element()).fold(0.0, f32::max).max(1e-6);
-    let full = pixels(&search, FULL);
+    let mut full = pixels(&search, FULL);
+    let steady = search.steady(&full);
+    full.keep(&steady);
     let off = differing(&full.base, &full.reference) as f64 / full.base.len().max(1) as f64;
     told(0.1);
     if off > MOST_OFF || difference(&full.reference, &full.test) == 0.0 {
-        return Diagnosis { off, named: Vec::new() };
+        return Diagnosis { off, ..Diagnosis::default() };
     }
-    let coarse = pixels(&search, COARSE);
+    let few = |most: usize| {
+        let mut pixels = pixels(&search, most);
+        let steady = search.steady(&pixels);
+        pixels.keep(&steady);
+        pixels
+    };
+    let coarse = few(COARSE);
     let mut singles = search.trials(search.singles(), &coarse);
     // What changes nothing in this scene explains nothing.
     singles.retain(|trial| differing(&trial.made, &coarse.base) > 0);
@@ -145,17 +180,29 @@ pub fn diagnose(question: &Question, told: &(dyn Fn(f64) + Sync)) -> Diagnosis {
     close.extend(best_matched(&singles).map(|trial| trial.mistakes.clone()));
     let trials = search.trials(close, &full);
     told(0.5);
-    let named = decided(trials, &full, &Bars::SINGLE);
-    if !named.is_empty() {
-        return Diagnosis { off, named };
+    let tried = tried(&trials);
+    let single = decided(trials, &full, &Bars::SINGLE);
+    if single.first().is_some_and(|named| Bars::CLEAR.passes(&named.fit())) {
+        return Diagnosis { off, named: single, tried };
     }
-    if let Some(share) = search.acne(&full, &all, &reference, &test) {
-        return Diagnosis { off, named: vec![share] };
+    if let Some(share) = search.acne(&all, &reference, &test) {
+        return Diagnosis { off, named: vec![share], tried };
     }
     told(0.6);
-    let named = search.pairs(&singles, [&pixels(&search, COARSER), &coarse, &full]);
+    let (pairs, tried_pairs) = search.pairs(&singles, [&few(COARSER), &coarse, &full]);
     told(1.0);
-    Diagnosis { off, named }
+    // Two mistakes explain more than one; they must explain far more.
+    let rest = |named: &[Named]| named.first().map_or(1.0, |named| 1.0 - named.explained);
+    let named = if rest(&pairs) < 0.35 * rest(&single) { pairs } else { single };
+    Diagnosis { off, named, tried: [tried, tried_pairs].concat() }
+}
+
+/// What was tried at all pixels, the best first.
+fn tried(trials: &[Trial]) -> Vec<Named> {
+    let mut all: Vec<Named> = trials.iter().map(Trial::named).collect();
+    all.sort_by(|a, b| b.explained.total_cmp(&a.explained));
+    all.truncate(8);
+    all
 }
 
 /// The share of the reference's pixels that the scene with the options of the question makes otherwise: looked at in some.
@@ -174,6 +221,26 @@ impl<'a> Search<'a> {
         let lights = self.base.world.lights.len();
         let rows = MISTAKES.iter().copied().flatten();
         rows.flat_map(|row| row.values.numbers(lights).into_iter().map(move |value| vec![(row, value)])).collect()
+    }
+
+    /// Pixels in which the scene's picture does not hang on rounding: a little aside, or with another epsilon, it is the same.
+    fn steady(&self, pixels: &Pixels) -> Vec<bool> {
+        let aside = |by: f32| {
+            let mut variant = self.base.clone();
+            variant.aim.place += by;
+            variant
+        };
+        let mut other = self.base.clone();
+        other.world.rules.epsilon = other.world.rules.epsilon.map_or(Some(1e-4), |epsilon| Some(8.0 * epsilon));
+        let mut steady = vec![true; pixels.places.len()];
+        for variant in [aside(0.004), aside(-0.004), other] {
+            let made = self.view.picture(&variant, &pixels.places);
+            for ((steady, made), base) in steady.iter_mut().zip(&made).zip(&pixels.base) {
+                *steady &= differing(&[*made], &[*base]) == 0;
+            }
+        }
+        // In a picture of nothing but edges, all pixels count.
+        if steady.iter().filter(|s| **s).count() * 2 < steady.len() { vec![true; steady.len()] } else { steady }
     }
 
     fn trials(&self, all: Vec<Vec<(&'static Mistake, f32)>>, pixels: &Pixels) -> Vec<Trial> {
@@ -222,7 +289,7 @@ impl<'a> Search<'a> {
     }
 
     /// Pairs of the best with all others: at few pixels, then at more, then at all.
-    fn pairs(&self, singles: &[Trial], [coarser, coarse, full]: [&Pixels; 3]) -> Vec<Named> {
+    fn pairs(&self, singles: &[Trial], [coarser, coarse, full]: [&Pixels; 3]) -> (Vec<Named>, Vec<Named>) {
         let mut first: Vec<&Trial> = singles.iter().take(BEST).chain(best_matched(singles)).collect();
         first.dedup_by_key(|trial| trial.mistakes[0].0.name);
         let mut pairs: Vec<Vec<(&'static Mistake, f32)>> = Vec::new();
@@ -233,8 +300,9 @@ impl<'a> Search<'a> {
                     pair.iter().any(|p| p.0.name == a.0.name && p.1 == a.1)
                         && pair.iter().any(|p| p.0.name == b.0.name && p.1 == b.1)
                 };
-                if a.0.name != b.0.name && !pairs.iter().any(known) {
-                    // Pixels are turned last.
+                // What hangs on rounding goes with anything, and explains nothing.
+                let shaky = a.0.step == "epsilon" || b.0.step == "epsilon";
+                if a.0.name != b.0.name && !shaky && !pairs.iter().any(known) {
                     pairs.push(vec![a, b]);
                 }
             }
@@ -250,16 +318,18 @@ impl<'a> Search<'a> {
             let of = |one: &(&'static Mistake, f32)| self.trial(vec![*one], full).fit.explained;
             mistakes.iter().map(of).fold(f64::NEG_INFINITY, f64::max)
         };
-        let mut named = decided(self.trials(pairs, full), full, &Bars::PAIR);
+        let trials = self.trials(pairs, full);
+        let tried = tried(&trials);
+        let mut named = decided(trials, full, &Bars::PAIR);
         // Each of the two must be needed.
-        named.retain(|named| alone(&named.mistakes) < named.explained - 0.05);
-        named
+        named.retain(|named| 1.0 - alone(&named.mistakes) > 2.0 * (1.0 - named.explained) + 0.002);
+        (named, tried)
     }
 
     /// Whether rays hit the surface that they leave.
-    fn acne(&self, full: &Pixels, all: &[(u32, u32)], reference: &[Vec3], test: &[Vec3]) -> Option<Named> {
+    fn acne(&self, all: &[(u32, u32)], reference: &[Vec3], test: &[Vec3]) -> Option<Named> {
         let lights = self.base.world.lights.len();
-        if full.places.len() != all.len() || !(1..=4).contains(&lights) || !self.base.settings.shadows {
+        if all.len() > FULL || !(1..=4).contains(&lights) || !self.base.settings.shadows {
             return None;
         }
         let dark = |off: u32| {
@@ -292,8 +362,12 @@ struct Bars {
 }
 
 impl Bars {
-    const SINGLE: Bars = Bars { explained: 0.95, matched: 0.9 };
+    const SINGLE: Bars = Bars { explained: 0.96, matched: 0.9 };
     const PAIR: Bars = Bars { explained: 0.97, matched: 0.95 };
+    /// No more is sought.
+    const CLEAR: Bars = Bars { explained: 0.995, matched: 0.98 };
+    /// As good as can be.
+    const PERFECT: Bars = Bars { explained: 0.998, matched: 0.995 };
 
     fn passes(&self, fit: &Fit) -> bool {
         fit.explained >= self.explained && fit.matched >= self.matched
@@ -312,21 +386,32 @@ fn decided(mut trials: Vec<Trial>, pixels: &Pixels, bars: &Bars) -> Vec<Named> {
             && difference(&best.made, &other.made) <= 0.01 * total
     };
     let rest = |trial: &Trial| 1.0 - trial.fit.explained;
-    let rival = trials.iter().find(|other| {
-        !equal(other) && (rest(other) < 2.0 * rest(best) + 0.01 && other.fit.matched > best.fit.matched - 0.1)
-    });
-    if rival.is_some() {
+    // What fits as well as can be gives way only to what does so too.
+    let (slack, off) = if Bars::PERFECT.passes(&best.fit) { (0.001, 0.01) } else { (0.01, 0.1) };
+    let rival = |other: &&Trial| {
+        !equal(other)
+            && rest(other) < 2.0 * rest(best) + slack
+            && other.fit.matched > best.fit.matched - off
+            // Another value of the same mistake is no rival.
+            && !one_kind(&other.mistakes, &best.mistakes)
+    };
+    let rivals: Vec<&Trial> = trials.iter().filter(rival).collect();
+    if rivals.len() > 2 || rivals.iter().any(|rival| !bars.passes(&rival.fit)) {
         return Vec::new();
     }
     let mut named: Vec<Named> = Vec::new();
-    for trial in trials.iter().filter(|trial| equal(trial)) {
-        let Trial { mistakes, fit, .. } = trial;
+    for trial in trials.iter().filter(|trial| equal(trial)).chain(rivals) {
         // One mistake with two values is one.
-        if !named.iter().any(|n| n.mistakes.iter().zip(mistakes).all(|(a, b)| a.0.name == b.0.name)) {
-            named.push(Named { mistakes: mistakes.clone(), explained: fit.explained, matched: fit.matched });
+        if !named.iter().any(|named| one_kind(&named.mistakes, &trial.mistakes)) {
+            named.push(trial.named());
         }
     }
     named
+}
+
+/// Whether mistakes are the same but for their values.
+fn one_kind(a: &[(&Mistake, f32)], b: &[(&Mistake, f32)]) -> bool {
+    a.len() == b.len() && a.iter().all(|a| b.iter().any(|b| a.0.name == b.0.name && a.0.values != Values::Lights || a.1 == b.1 && a.0.name == b.0.name))
 }
 
 fn same(a: &[(&Mistake, f32)], b: &[(&Mistake, f32)]) -> bool {

@@ -82,8 +82,10 @@ pub enum Sum {
     ClampedEach,
     /// Clamped to 1 before mirrored and transmitted light is added.
     ClampedLocal,
-    /// The last light replaces those before it.
+    /// Each light replaces those before it.
     LastOnly,
+    /// Each light that is not in shadow replaces those before it.
+    LastSeen,
 }
 
 /// What fades light with distance d, beside the factors of the scene.
@@ -184,6 +186,10 @@ pub struct Bounces {
     pub mirror_in_full: bool,
     /// Transmitted light counts in full.
     pub glass_in_full: bool,
+    /// Mirrored rays bring nothing; glass is divided as if they did.
+    pub no_mirror: bool,
+    /// Transmitted rays bring nothing; glass is divided as if they did.
+    pub no_glass: bool,
     /// Where mirrored rays go.
     pub mirror: Mirror,
     /// Where transmitted rays go.
@@ -291,10 +297,10 @@ pub enum Output {
     Scaled,
     /// Rounded where it should be cut off, or the other way.
     OtherRounding,
-    /// The curve of sRGB where there should be none, or once more.
-    CurveMore,
-    /// Its inverse.
-    CurveLess,
+    /// Values to the power of one over this; the curve of sRGB for 0.
+    CurveMore(f32),
+    /// Values to the power of this; without the curve of sRGB, or its inverse, for 0.
+    CurveLess(f32),
 }
 
 /// Where a pixel of the file comes from.

@@ -3,7 +3,7 @@
 use super::habits::Output;
 use super::{Pupil, Variant};
 use crate::image::Transfer;
-use crate::image::compare::Scale;
+use crate::image::compare::{Scale, linear_to_srgb, srgb_to_linear};
 use crate::math::{Color, Vec3, fp};
 use crate::render::{Job, sample_places};
 use rayon::prelude::*;
@@ -57,24 +57,35 @@ impl View<'_> {
     }
 
     fn value(&self, output: Output, light: Color) -> Vec3 {
-        let light = match output {
-            Output::Scaled if self.brightest > 1.0 => light / self.brightest,
-            Output::CurveMore => light.max(Vec3::ZERO).map(|v| fp::pow(v, 1.0 / 2.2)),
-            Output::CurveLess => light.max(Vec3::ZERO).map(|v| fp::pow(v, 2.2)),
-            _ => light,
-        };
+        // Values beyond all measure are white, whatever an old program's whole numbers made of them.
+        let light = if light.is_finite() { light.min(Color::splat(1e6)) } else { light };
+        let light = if output == Output::Scaled && self.brightest > 1.0 { light / self.brightest } else { light };
         if self.scale == Scale::Linear {
             return light;
         }
         let transfer = match (output, self.transfer) {
             (Output::OtherRounding, Transfer::Course) => Transfer::Linear,
             (Output::OtherRounding, Transfer::Linear) => Transfer::Course,
+            // Who leaves the curve out writes what is there.
+            (Output::CurveLess(0.0), Transfer::Srgb) => Transfer::Linear,
             (_, transfer) => transfer,
         };
         if output == Output::Wrapped && transfer != Transfer::Srgb {
             let half = if transfer == Transfer::Linear { 0.5 } else { 0.0 };
             return light.map(|v| ((v * 255.0 + half).floor() as i64).rem_euclid(256) as f32 / 255.0);
         }
-        Vec3::from(transfer.encode_pixel(light).map(f32::from)) / 255.0
+        let eight = |transfer: Transfer, v: Vec3| Vec3::from(transfer.encode_pixel(v).map(f32::from)) / 255.0;
+        // A curve on top of what the transfer makes is reckoned from values that are not cut to eight bits yet.
+        let curved = |v: f32| if transfer == Transfer::Srgb { linear_to_srgb(v.clamp(0.0, 1.0)) } else { v.max(0.0) };
+        let plain = if transfer == Transfer::Course { Transfer::Course } else { Transfer::Linear };
+        match output {
+            Output::CurveMore(0.0) => eight(plain, light.map(|v| linear_to_srgb(curved(v)))),
+            Output::CurveMore(power) => eight(plain, light.map(|v| fp::pow(curved(v), 1.0 / power))),
+            Output::CurveLess(power) if power > 0.0 => eight(plain, light.map(|v| fp::pow(curved(v), power))),
+            Output::CurveLess(_) if self.transfer != Transfer::Srgb => {
+                eight(plain, light.map(|v| srgb_to_linear(curved(v))))
+            }
+            _ => eight(transfer, light),
+        }
     }
 }

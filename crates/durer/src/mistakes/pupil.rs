@@ -143,7 +143,8 @@ impl<'w> Pupil<'w> {
                 let seen = self.illuminated(light, surface.position);
                 let visible = self.visible(&surface, &seen, path.first);
                 any |= visible != Color::ZERO;
-                if habits.sum == Sum::LastOnly {
+                let replaced = habits.sum == Sum::LastSeen && visible != Color::ZERO;
+                if habits.sum == Sum::LastOnly || replaced {
                     color = ambient_seen;
                 }
                 for (part, &diffuse) in parts.iter().zip(&diffuse) {
@@ -337,12 +338,12 @@ impl<'w> Pupil<'w> {
             transparent *= 1.0 - r;
         }
         let mut color = Color::ZERO;
-        if self.settings.reflection {
+        if self.settings.reflection && !habits.no_mirror {
             let full = habits.mirror_in_full && reflective != Color::ZERO;
             let weight = if full { Color::ONE } else { reflective };
             color += self.bounce(surface, mirrored, weight, path);
         }
-        if let Some(transmitted) = transmitted.filter(|_| self.settings.refraction) {
+        if let Some(transmitted) = transmitted.filter(|_| self.settings.refraction && !habits.no_glass) {
             let weight = if habits.glass_in_full { Color::ONE } else { transparent };
             color += self.bounce(surface, transmitted, weight, Path { ior: there, ..path });
         }

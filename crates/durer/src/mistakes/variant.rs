@@ -6,7 +6,7 @@ use crate::compile;
 use crate::dialect::{Compat, Highlight};
 use crate::integrator::Settings;
 use crate::material::PhongMaterial;
-use crate::math::{Affine, Ray, Vec2};
+use crate::math::{Affine, Color, Ray, Vec2};
 use crate::render::raster;
 use crate::scene::{self, Group, MatrixOp, Node, Scene};
 use crate::world::{Geometry, HighlightModel, Material, Phong, World};
@@ -103,6 +103,22 @@ impl<'s> Variant<'s> {
             if let (scene::Material::Phong(written, _), Material::Phong(phong)) = (&written.value, material) {
                 let PhongMaterial { specular_color, shininess, .. } = **written;
                 phong.highlight = Some((specular_color, shininess.unwrap_or(0.0), HighlightModel::Phong { behind }));
+            }
+        }
+    }
+
+    /// Gives a black highlight to materials that have none.
+    pub fn highlights_everywhere(&mut self) {
+        let behind = self.world.rules.has(Compat::HighlightBehind);
+        let model = match self.world.rules.highlight {
+            Highlight::None => return,
+            Highlight::Phong => HighlightModel::Phong { behind },
+            Highlight::Blinn | Highlight::ByKeyword => HighlightModel::Blinn,
+        };
+        for (written, material) in self.scene.materials.iter().zip(&mut self.world.materials) {
+            if let (scene::Material::Phong(written, _), Material::Phong(phong)) = (&written.value, material) {
+                let exponent = written.exponent.or(written.shininess).unwrap_or(1.0);
+                phong.highlight.get_or_insert((Color::ZERO, exponent, model));
             }
         }
     }

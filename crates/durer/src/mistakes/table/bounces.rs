@@ -10,16 +10,18 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "reflections are missing",
         "color += kr * trace(p, R, bounces - 1)",
         "(nothing)",
-        |v, _| v.settings.reflection = false,
-    ),
+        |v, divided| if divided == 0.0 { v.settings.reflection = false } else { v.habits.bounces.no_mirror = true },
+    )
+    .with(Values::Only(&[0.0, 1.0])),
     row(
         "no-refraction",
         "refraction",
         "nothing is seen through glass: the transmitted ray is missing",
         "color += kt * trace(p, T, bounces - 1)",
         "(nothing)",
-        |v, _| v.settings.refraction = false,
-    ),
+        |v, divided| if divided == 0.0 { v.settings.refraction = false } else { v.habits.bounces.no_glass = true },
+    )
+    .with(Values::Only(&[0.0, 1.0])),
     row(
         "no-bounces",
         "reflection",

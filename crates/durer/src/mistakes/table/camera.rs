@@ -13,16 +13,9 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "rays go through the corners of pixels, not through their middles",
         "x = (i + 0.5) / n",
         "x = i / n",
-        |v, _| v.aim.place = Vec2::ZERO,
-    ),
-    row(
-        "pixel-corner-down",
-        "rays",
-        "rays go through the lower left corners of pixels, not through their middles",
-        "x = (i + 0.5) / n, y = (j + 0.5) / n",
-        "x = i / n, y = j / n, rows counted from below",
-        |v, _| v.aim.place = Vec2::new(0.0, 1.0),
-    ),
+        |v, corner| v.aim.place = Vec2::new(corner as u32 as f32 % 2.0, (0.5 * corner).floor()),
+    )
+    .with(Values::Only(&[0.0, 1.0, 2.0, 3.0])),
     row(
         "border-pixels",
         "rays",

@@ -166,7 +166,10 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "the highlights have not the specular colour: they are white, or the light's",
         "ks * pow(base, s) * I",
         "pow(base, s) * I",
-        |v, _| v.habits.highlights.bare = true,
+        |v, _| {
+            v.highlights_everywhere();
+            v.habits.highlights.bare = true;
+        },
     ),
     row(
         "half-sum",
@@ -229,8 +232,9 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "each light replaces those before it, so that only the last one is seen",
         "color += ...",
         "color = ambient * kd + ...",
-        |v, _| v.habits.sum = Sum::LastOnly,
-    ),
+        |v, seen| v.habits.sum = if seen == 0.0 { Sum::LastOnly } else { Sum::LastSeen },
+    )
+    .with(Values::Only(&[0.0, 1.0])),
     row(
         "white-lights",
         "diffuse",

@@ -1,9 +1,12 @@
 //! Mistakes in how light becomes a file. Turned and exchanged pixels are told from the pictures alone.
 
-use super::{Mistake, row};
+use super::{Mistake, Values, row};
 use crate::mistakes::habits::{Output, Turn};
 
 const STRAIGHT: Turn = Turn { exchange: false, columns_back: false, rows_back: false, bgr: false };
+
+/// Usual exponents; 0 is the curve of sRGB itself.
+const POWERS: Values = Values::Only(&[0.0, 2.2, 2.0, 1.8, 2.4]);
 
 pub(super) const MISTAKES: &[Mistake] = &[
     row(
@@ -76,14 +79,16 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "the curve of sRGB (gamma) is applied once more than it should be",
         "value = c * 255",
         "value = pow(c, 1 / 2.2) * 255",
-        |v, _| v.output = Output::CurveMore,
-    ),
+        |v, power| v.output = Output::CurveMore(power),
+    )
+    .with(POWERS),
     row(
         "curve-less",
         "flat",
         "the curve of sRGB (gamma) is undone once more than it should be",
         "value = c * 255",
         "value = pow(c, 2.2) * 255",
-        |v, _| v.output = Output::CurveLess,
-    ),
+        |v, power| v.output = Output::CurveLess(power),
+    )
+    .with(POWERS),
 ];
