@@ -78,7 +78,7 @@ pub fn causes(found: &Comparison) -> Vec<String> {
         return Vec::new();
     }
     if found.findings.is_empty() {
-        return vec!["none of the usual mistakes explains the difference".into()];
+        return vec!["cannot be told from the pictures alone; give `--scene`, with the options that made the reference".into()];
     }
     let line = |(i, finding): (usize, &Finding)| {
         let percent = (1000.0 * finding.explained + 1e-6).floor() / 10.0;

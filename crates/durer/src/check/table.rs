@@ -103,6 +103,7 @@ checks! {
     "radians": "a rotation that seems to be in radians", extent::radians;
     "repeated": "a section or field that is written twice", reported;
     "foreign-word": "a word of another year", reported;
+    "portability": "what the year's own program would refuse", reported;
     "comment": "a comment that does not begin with `#`", reported;
     "unseen": "objects that are not in the picture, or hidden", extent::unseen;
     "unused-material": "a material that nothing is made of", colors::unused;
