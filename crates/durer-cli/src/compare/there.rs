@@ -6,7 +6,8 @@ use crate::explain::{deep, shown};
 use crate::open::Opened;
 use durer::image::compare::Comparison;
 use durer::math::Ray;
-use durer::render::explain::{Names, explain_ray, ray_text};
+use durer::image::Transfer;
+use durer::render::explain::{Names, Telling, explain_ray, ray_text};
 use durer::render::{Job, center_ray, raster};
 use serde_json::{Value, json};
 
@@ -33,13 +34,13 @@ pub fn there(stage: &Stage, found: &Comparison) -> Result<Vec<There>, Failure> {
     let raster = raster(&opened.world, job.width, job.height);
     let look = |place: (u32, u32)| {
         let ray = center_ray(&opened.world, &raster, place);
-        let (hit, explanation) = ray.map_or(Ok((None, Vec::new())), |ray| along(opened, job, &ray))?;
+        let (hit, explanation) = ray.map_or(Ok((None, Vec::new())), |ray| along(opened, job, &ray, stage.transfer))?;
         Ok(There { hit, explanation, command: stage.explain(place) })
     };
     found.regions.iter().map(|region| look(region.worst)).collect()
 }
 
-fn along(opened: &Opened, job: &Job, ray: &Ray) -> Result<(Option<Hit>, Vec<String>), Failure> {
+fn along(opened: &Opened, job: &Job, ray: &Ray, transfer: Transfer) -> Result<(Option<Hit>, Vec<String>), Failure> {
     let world = &opened.world;
     let names = Names { files: &opened.files, scene: &opened.loaded.scene, world };
     let hit = world.closest(ray, &mut ()).map(|hit| Hit {
@@ -49,8 +50,8 @@ fn along(opened: &Opened, job: &Job, ray: &Ray) -> Result<(Option<Hit>, Vec<Stri
         normal: world.surface(ray, &hit).n_shade.to_array(),
     });
     let light = deep(|| explain_ray(world, job, ray))?;
-    let lines = light.iter().flat_map(|light| ray_text(light, &names));
-    Ok((hit, lines.map(|line| shown(&line, false)).collect()))
+    let lines = light.iter().flat_map(|light| ray_text(light, &names, &Telling { transfer, ..Telling::default() }));
+    Ok((hit, lines.map(|line| shown(&line, false, transfer)).collect()))
 }
 
 impl There {

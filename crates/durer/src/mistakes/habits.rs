@@ -262,11 +262,25 @@ pub struct Aim {
     pub scale: f32,
     /// What becomes of a picture that is not square.
     pub aspect: Aspect,
+    /// How many rays a pixel has.
+    pub rays: Rays,
+}
+
+/// How many rays a pixel has.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Rays {
+    /// As asked for.
+    #[default]
+    Right,
+    /// One.
+    One,
+    /// Four by four, evenly.
+    Sixteen,
 }
 
 impl Default for Aim {
     fn default() -> Self {
-        Aim { place: Vec2::splat(0.5), scale: 1.0, aspect: Aspect::Right }
+        Aim { place: Vec2::splat(0.5), scale: 1.0, aspect: Aspect::Right, rays: Rays::Right }
     }
 }
 

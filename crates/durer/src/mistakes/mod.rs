@@ -13,6 +13,9 @@ mod speckles;
 mod table;
 mod variant;
 
+#[cfg(test)]
+mod tests;
+
 
 pub use diagnose::{Diagnosis, Named, Question, diagnose, off};
 pub use pupil::Pupil;

@@ -1,10 +1,10 @@
 //! Pixels of a variant's picture.
 
-use super::habits::Output;
+use super::habits::{Output, Rays};
 use super::{Pupil, Variant};
 use crate::image::Transfer;
 use crate::image::compare::{Scale, linear_to_srgb, srgb_to_linear};
-use crate::math::{Color, Vec3, fp};
+use crate::math::{Color, Vec2, Vec3, fp};
 use crate::render::{Job, sample_places};
 use rayon::prelude::*;
 
@@ -29,12 +29,21 @@ impl View<'_> {
         let samples = sample_places(&variant.world, self.job);
         let pixel = |&(x, y): &(u32, u32)| {
             let (mut sum, mut weights) = (Color::ZERO, 0.0);
-            samples(x, y, &mut |place, lens, weight| {
+            let mut add = |place: Vec2, lens: Vec2, weight: f32| {
                 if let Some(ray) = variant.ray(&raster, (x, y), place, lens) {
                     sum += weight * pupil.radiance(&ray);
                 }
                 weights += weight;
-            });
+            };
+            let corner = Vec2::new(x as f32, y as f32);
+            match variant.aim.rays {
+                Rays::Right => samples(x, y, &mut add),
+                Rays::One => add(corner + 0.5, Vec2::splat(0.5), 1.0),
+                Rays::Sixteen => (0..16_u8).for_each(|i| {
+                    let part = Vec2::new(f32::from(i % 4), f32::from(i / 4));
+                    add(corner + (part + 0.5) / 4.0, Vec2::splat(0.5), 1.0);
+                }),
+            }
             sum / weights
         };
         places.par_iter().with_min_len(16).map(pixel).collect()

@@ -4,7 +4,7 @@ use super::{Mistake, Values, row};
 use crate::camera::Lens;
 use crate::dialect::Compat;
 use crate::math::{Vec2, Vec3, fp};
-use crate::mistakes::habits::Aspect;
+use crate::mistakes::habits::{Aspect, Rays};
 
 pub(super) const MISTAKES: &[Mistake] = &[
     row(
@@ -16,6 +16,22 @@ pub(super) const MISTAKES: &[Mistake] = &[
         |v, corner| v.aim.place = Vec2::new(corner as u32 as f32 % 2.0, (0.5 * corner).floor()),
     )
     .with(Values::Only(&[0.0, 1.0, 2.0, 3.0])),
+    row(
+        "one-ray",
+        "supersampling",
+        "there is one ray a pixel, where the reference has many",
+        "the mean of many samples",
+        "one ray through the middle of each pixel",
+        |v, _| v.aim.rays = Rays::One,
+    ),
+    row(
+        "many-rays",
+        "supersampling",
+        "each pixel is the mean of many rays, where the reference has one",
+        "one ray through the middle of each pixel",
+        "the mean of many samples",
+        |v, _| v.aim.rays = Rays::Sixteen,
+    ),
     row(
         "border-pixels",
         "rays",
