@@ -41,7 +41,12 @@ fn cases() -> Result<Vec<Case>> {
                 }
                 broken = broken.replacen(&old, if end { "" } else { &new }, 1);
             }
-            cases.push(Case { name: format!("{base} {rest}{more}"), codes, options: words(&format!("{options} {more}")), text: broken });
+            cases.push(Case {
+                name: format!("{base} {rest}{more}"),
+                codes,
+                options: words(&format!("{options} {more}")),
+                text: broken,
+            });
         } else if !line.starts_with('#') && !base.is_empty() {
             text += &line.replace("\\r", "\r");
             text += "\n";
@@ -77,7 +82,8 @@ pub fn judge(durer: &Path, folder: &Path, wanted: &dyn Fn(&str) -> bool) -> Resu
             .filter_map(|rest| rest.split('"').next())
             .collect();
         if case.codes.is_empty() {
-            alarms += usize::from(text.contains("\"severity\": \"warning\"") || text.contains("\"severity\": \"error\""));
+            alarms +=
+                usize::from(text.contains("\"severity\": \"warning\"") || text.contains("\"severity\": \"error\""));
             println!("sound   {:<60.60} {found:?}", case.name);
             continue;
         }
@@ -99,7 +105,9 @@ pub fn judge(durer: &Path, folder: &Path, wanted: &dyn Fn(&str) -> bool) -> Resu
         }
     }
     let all = first + second + later + missed;
-    println!("\n| | first | among the first two | later | missed | sound scenes warned about |\n| --- | --- | --- | --- | --- | --- |");
+    println!(
+        "\n| | first | among the first two | later | missed | sound scenes warned about |\n| --- | --- | --- | --- | --- | --- |"
+    );
     println!("| `check`, {all} broken scenes | {first} | {second} | {later} | {missed} | {alarms} |");
     let percent = |count: usize| 100.0 * count as f64 / all.max(1) as f64;
     println!("first: {:.1} %, among the first two: {:.1} %", percent(first), percent(first + second));

@@ -29,7 +29,8 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
     let only = crate::value(arguments, "--only");
     let durer = crate::build::durer()?;
     let keep = crate::value(arguments, "--keep").map(PathBuf::from);
-    let folder = keep.clone().unwrap_or_else(|| std::env::temp_dir().join(format!("durer-teach-{}", std::process::id())));
+    let folder =
+        keep.clone().unwrap_or_else(|| std::env::temp_dir().join(format!("durer-teach-{}", std::process::id())));
     std::fs::create_dir_all(&folder)?;
     let wanted = |name: &str| only.is_none_or(|text| name.contains(text.as_str()));
     let mut good = true;
@@ -61,14 +62,16 @@ fn pictures(durer: &Path, folder: &Path, wanted: &dyn Fn(&str) -> bool) -> Resul
         let theirs = &right[right.len() - 3 * ours.len()..];
         let far = |(a, b): (&[u8; 3], &[u8])| (0..3).any(|c| a[c].abs_diff(b[c]) > 2);
         let off = ours.iter().zip(theirs.chunks(3)).filter(|pair| far(*pair)).count();
-        println!("scene {:<13} the two tracers differ in {:.2} % of the pixels", scene.name, 100.0 * off as f64 / ours.len() as f64);
+        println!(
+            "scene {:<13} the two tracers differ in {:.2} % of the pixels",
+            scene.name,
+            100.0 * off as f64 / ours.len() as f64
+        );
         std::fs::write(own.join("own.ppm"), ppm(scene.size, &ours))?;
     }
     let cases: Vec<wrong::Case> = wrong::cases();
-    let cases: Vec<&wrong::Case> = cases
-        .iter()
-        .filter(|case| wanted(&format!("{} {}", scenes[case.scene].name, case.made.join(" "))))
-        .collect();
+    let cases: Vec<&wrong::Case> =
+        cases.iter().filter(|case| wanted(&format!("{} {}", scenes[case.scene].name, case.made.join(" ")))).collect();
     let results: Vec<Result<(String, Told)>> = cases
         .iter()
         .map(|case| {
@@ -94,7 +97,9 @@ fn pictures(durer: &Path, folder: &Path, wanted: &dyn Fn(&str) -> bool) -> Resul
     let count = |told| results.iter().filter(|r| r.1 == told).count();
     let [right, not_told, wrong, unseen] = [Told::Right, Told::NotTold, Told::Wrong, Told::Unseen].map(count);
     let seen = results.len() - unseen;
-    println!("\n| | named rightly | not told | **named wrongly** | not seen in this scene |\n| --- | --- | --- | --- | --- |");
+    println!(
+        "\n| | named rightly | not told | **named wrongly** | not seen in this scene |\n| --- | --- | --- | --- | --- |"
+    );
     println!("| `compare`, {seen} wrong pictures | {right} | {not_told} | **{wrong}** | {unseen} |");
     println!("rightly: {:.1} %\n", 100.0 * right as f64 / seen.max(1) as f64);
     Ok(wrong == 0 && right * 10 >= seen * 9)

@@ -83,9 +83,7 @@ impl Op {
         };
         match *self {
             Op::Translate(by) => Matrix { by, ..Matrix::ONE },
-            Op::Scale(V(x, y, z)) => {
-                Matrix { rows: [V(x, 0.0, 0.0), V(0.0, y, 0.0), V(0.0, 0.0, z)], by: V::ZERO }
-            }
+            Op::Scale(V(x, y, z)) => Matrix { rows: [V(x, 0.0, 0.0), V(0.0, y, 0.0), V(0.0, 0.0, z)], by: V::ZERO },
             Op::X(angle) => turn(angle, 1, 2),
             Op::Y(angle) => turn(angle, 2, 0),
             Op::Z(angle) => turn(angle, 0, 1),

@@ -91,9 +91,7 @@ impl<'s> Tracer<'s> {
                         let at = |corner: usize| {
                             let around = faces.iter().filter(|f| f.contains(&corner));
                             around
-                                .map(|f| {
-                                    (corners[f[1]] - corners[f[0]]).cross(corners[f[2]] - corners[f[0]])
-                                })
+                                .map(|f| (corners[f[1]] - corners[f[0]]).cross(corners[f[2]] - corners[f[0]]))
                                 .fold(V::ZERO, |a, b| a + b)
                                 .unit()
                         };

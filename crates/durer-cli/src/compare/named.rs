@@ -24,7 +24,9 @@ pub fn lines(diagnosis: &Diagnosis) -> Vec<String> {
         )];
     }
     let Some(first) = diagnosis.named.first() else {
-        return vec!["cannot be told from the pictures: none of the mistakes that were tried explains the difference".into()];
+        return vec![
+            "cannot be told from the pictures: none of the mistakes that were tried explains the difference".into(),
+        ];
     };
     let mut lines = vec![format!(
         "{}: explains {:.1} % of the squared difference",
@@ -37,7 +39,9 @@ pub fn lines(diagnosis: &Diagnosis) -> Vec<String> {
         lines.push(format!("  may be:     {}", with(mistake.wrong)));
         lines.push(format!("  see the step `{}` of `durer lesson`", mistake.step));
     }
-    lines.extend(diagnosis.named.iter().skip(1).take(4).map(|named| format!("  or, the same in this scene: {}", words(named))));
+    lines.extend(
+        diagnosis.named.iter().skip(1).take(4).map(|named| format!("  or, the same in this scene: {}", words(named))),
+    );
     lines
 }
 

@@ -63,9 +63,9 @@ pub fn stage(args: &CompareArgs, pair: &Pair, reference: &Picture) -> Result<Opt
         let Ok((opened, job)) = opened(args, &path, &options, reference) else { continue };
         let mut current = (opened, job);
         for way in shadows.iter().flat_map(|&shadows| {
-            bounces.iter().flat_map(move |&bounces| {
-                [false, true].map(|center| Way { dialect, center, shadows, bounces })
-            })
+            bounces
+                .iter()
+                .flat_map(move |&bounces| [false, true].map(|center| Way { dialect, center, shadows, bounces }))
         }) {
             let kept = current.1.clone();
             way.apply(&mut current.1);

@@ -78,7 +78,9 @@ pub fn causes(found: &Comparison) -> Vec<String> {
         return Vec::new();
     }
     if found.findings.is_empty() {
-        return vec!["cannot be told from the pictures alone; give `--scene`, with the options that made the reference".into()];
+        return vec![
+            "cannot be told from the pictures alone; give `--scene`, with the options that made the reference".into(),
+        ];
     }
     let line = |(i, finding): (usize, &Finding)| {
         let percent = (1000.0 * finding.explained + 1e-6).floor() / 10.0;

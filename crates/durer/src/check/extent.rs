@@ -127,7 +127,13 @@ pub(super) fn out_of_scale(scout: &Scout) -> Vec<Finding> {
     let away = |object: u32| world.objects[object as usize].bounds().map_or(1.0, |b| (b.center() - eye).length());
     let odd = |(object, size): (u32, f32)| (size / away(object).clamp(1e-6, 1e6)).ln().abs();
     let middle = match sizes[..] {
-        [small, large] => if odd(small) < odd(large) { small.1 } else { large.1 },
+        [small, large] => {
+            if odd(small) < odd(large) {
+                small.1
+            } else {
+                large.1
+            }
+        }
         _ => sizes[sizes.len() / 2].1,
     };
     let mut found = Vec::new();
@@ -205,7 +211,8 @@ pub(super) fn unseen(scout: &Scout) -> Vec<Finding> {
 /// Whether light goes through an object.
 fn is_glass(scout: &Scout, object: u32) -> bool {
     let world = scout.world();
-    let phong = |material: &Material| matches!(material, Material::Phong(phong) if phong.transparent.max_element() > 0.0);
+    let phong =
+        |material: &Material| matches!(material, Material::Phong(phong) if phong.transparent.max_element() > 0.0);
     world.materials.get(world.objects[object as usize].material as usize).is_some_and(phong)
 }
 

@@ -381,7 +381,9 @@ pub(super) fn divides(scout: &Scout) -> Vec<Finding> {
                 })
                 .help(match scout.value(span, &["falloff"]) {
                     Some(_) => "write a `falloff` above 0, as `falloff 0.05`",
-                    None if scout.subject.dialect == Dialect::F23 => "write an `attenuation` above 0, as `attenuation 0.05`",
+                    None if scout.subject.dialect == Dialect::F23 => {
+                        "write an `attenuation` above 0, as `attenuation 0.05`"
+                    }
                     None if scout.subject.dialect == Dialect::F16 => "write a `falloff`, as `falloff 0.05`",
                     None => "`attenuation 1 0 0` is light that does not fade",
                 });

@@ -37,7 +37,8 @@ const MOST_ALIKE: usize = 3;
 const MOST_SOUGHT: usize = 50;
 
 /// Because of these nothing, or one thing alone, is seen.
-const EMPTIES: [&str; 7] = ["camera-inside", "camera-away", "too-small", "too-narrow", "all-missed", "hidden-behind", "below-plane"];
+const EMPTIES: [&str; 7] =
+    ["camera-inside", "camera-away", "too-small", "too-narrow", "all-missed", "hidden-behind", "below-plane"];
 
 /// What comes of some causes, and is not told beside them.
 const CONSEQUENCES: &[(&str, &[&str])] = &[

@@ -294,7 +294,8 @@ pub(super) fn below_plane(scout: &Scout) -> Vec<Finding> {
     };
     let Some(front) = front else { return Vec::new() };
     let lid = ceiling(scout) == Some(front);
-    let what = if lid { "everything, the camera too, is below the" } else { "all other things are on the far side of the" };
+    let what =
+        if lid { "everything, the camera too, is below the" } else { "all other things are on the far side of the" };
     let diagnostic = Diagnostic::warning(format!("{what} {}", scout.object(front)))
         .at(scout.object_span(front))
         .effect(match lid {

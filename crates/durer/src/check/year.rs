@@ -69,9 +69,10 @@ pub(super) fn no_exponent(scout: &Scout) -> Vec<Finding> {
             && phong.refraction_index.is_none()
     };
     let say = |(i, written, _): (usize, &Spanned<Written>, &PhongMaterial)| {
-        let diagnostic = Diagnostic::warning(format!("material {i} has a `specularColor` and no `exponent`, which is 1 then"))
-            .effect("its highlight is spread over all of it, pale as chalk")
-            .help("write an `exponent`, 20 say; the higher, the sharper");
+        let diagnostic =
+            Diagnostic::warning(format!("material {i} has a `specularColor` and no `exponent`, which is 1 then"))
+                .effect("its highlight is spread over all of it, pale as chalk")
+                .help("write an `exponent`, 20 say; the higher, the sharper");
         Finding::from(scout.at_value(diagnostic, written.span, &["specularColor"]))
     };
     seen(scout).filter(|(.., phong)| bare(phong)).map(say).take(MOST_SOUGHT).collect()
@@ -86,9 +87,10 @@ pub(super) fn long_up(scout: &Scout) -> Vec<Finding> {
     }
     let (how, word) = if length > 1.0 { (length, "flattened") } else { (1.0 / length, "stretched upwards") };
     let unit = vector(up / length);
-    let diagnostic = Diagnostic::warning(format!("the camera's `up` has the length {}, and is used as it is", number(length)))
-        .effect(format!("the picture is {word}, {} times", number(how)))
-        .help(format!("give it the length 1: `up {unit}`"));
+    let diagnostic =
+        Diagnostic::warning(format!("the camera's `up` has the length {}, and is used as it is", number(length)))
+            .effect(format!("the picture is {word}, {} times", number(how)))
+            .help(format!("give it the length 1: `up {unit}`"));
     let span = scout.subject.scene.camera_span;
     let diagnostic = match scout.value(span, &["up"]) {
         Some(value) => diagnostic.at(value).fix(value, unit),
@@ -110,7 +112,9 @@ pub(super) fn stretched(scout: &Scout) -> Vec<Finding> {
     let diagnostic = Diagnostic::warning(format!("the picture of {} x {} pixels is not square", job.width, job.height))
         .at(scout.subject.scene.camera_span)
         .effect(format!("this year's program stretches it: everything is {} times too {way}", number(ratio)))
-        .help(format!("ask for a square one, as `--size {side}x{side}` (in the course's programs `-size {side} {side}`)"));
+        .help(format!(
+            "ask for a square one, as `--size {side}x{side}` (in the course's programs `-size {side} {side}`)"
+        ));
     vec![Finding::from(diagnostic).whole(true)]
 }
 
@@ -120,11 +124,12 @@ pub(super) fn quads(scout: &Scout) -> Vec<Finding> {
         return Vec::new();
     }
     let say = |(name, count, all, face): (&str, usize, usize, crate::diag::Span)| {
-        let diagnostic = Diagnostic::warning(format!("{count} of the {all} faces of `{name}` have more than three corners"))
-            .at(face)
-            .label("the first of them")
-            .effect("this year's program reads three corners of each, and shows holes, or stops")
-            .help("cut them into triangles: `f 1 2 3 4` is `f 1 2 3` and `f 1 3 4`");
+        let diagnostic =
+            Diagnostic::warning(format!("{count} of the {all} faces of `{name}` have more than three corners"))
+                .at(face)
+                .label("the first of them")
+                .effect("this year's program reads three corners of each, and shows holes, or stops")
+                .help("cut them into triangles: `f 1 2 3 4` is `f 1 2 3` and `f 1 3 4`");
         Finding::from(diagnostic)
     };
     super::mesh::large_faces(scout).into_iter().map(say).collect()
@@ -163,9 +168,10 @@ pub(super) fn full_ambient(scout: &Scout) -> Vec<Finding> {
         return Vec::new();
     }
     let word = scout.word("ambientLight", "ambient_light");
-    let diagnostic = Diagnostic::warning(format!("the ambient light is {}: that is all the light there should be", vector(ambient)))
-        .effect("shadows and shading are washed out: surfaces have their full colour without any lamp")
-        .help(format!("0.1 to 0.3 is usual: `{word} 0.2 0.2 0.2`"));
+    let diagnostic =
+        Diagnostic::warning(format!("the ambient light is {}: that is all the light there should be", vector(ambient)))
+            .effect("shadows and shading are washed out: surfaces have their full colour without any lamp")
+            .help(format!("0.1 to 0.3 is usual: `{word} 0.2 0.2 0.2`"));
     let diagnostic = match super::colors::background_span(scout).and_then(|block| scout.value(block, &[word])) {
         Some(value) => diagnostic.at(value).fix(value, "0.2 0.2 0.2"),
         None => diagnostic,

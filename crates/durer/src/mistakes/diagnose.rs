@@ -5,8 +5,8 @@ use super::pictures::View;
 use super::search::{Fit, difference, differing, fit, sampled};
 use super::table::{MISTAKES, Mistake, Values};
 use super::{Variant, speckles};
-use crate::image::compare::{Picture, Scale};
 use crate::image::Transfer;
+use crate::image::compare::{Picture, Scale};
 use crate::math::Vec3;
 use crate::render::Job;
 use crate::scene::Scene;
@@ -334,7 +334,8 @@ impl<'a> Search<'a> {
         }
         let dark = |off: u32| {
             let mut variant = self.base.clone();
-            variant.world.lights = (0..lights).filter(|i| off >> i & 1 == 0).map(|i| variant.world.lights[i].clone()).collect();
+            variant.world.lights =
+                (0..lights).filter(|i| off >> i & 1 == 0).map(|i| variant.world.lights[i].clone()).collect();
             self.view.picture(&variant, all)
         };
         let shadowed: Vec<Vec<Vec3>> = (1..1_u32 << lights).map(dark).collect();
@@ -411,7 +412,10 @@ fn decided(mut trials: Vec<Trial>, pixels: &Pixels, bars: &Bars) -> Vec<Named> {
 
 /// Whether mistakes are the same but for their values.
 fn one_kind(a: &[(&Mistake, f32)], b: &[(&Mistake, f32)]) -> bool {
-    a.len() == b.len() && a.iter().all(|a| b.iter().any(|b| a.0.name == b.0.name && a.0.values != Values::Lights || a.1 == b.1 && a.0.name == b.0.name))
+    a.len() == b.len()
+        && a.iter().all(|a| {
+            b.iter().any(|b| a.0.name == b.0.name && a.0.values != Values::Lights || a.1 == b.1 && a.0.name == b.0.name)
+        })
 }
 
 fn same(a: &[(&Mistake, f32)], b: &[(&Mistake, f32)]) -> bool {

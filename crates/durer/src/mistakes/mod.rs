@@ -16,7 +16,6 @@ mod variant;
 #[cfg(test)]
 mod tests;
 
-
 pub use diagnose::{Diagnosis, Named, Question, diagnose, off};
 pub use pupil::Pupil;
 pub use table::{MISTAKES, Mistake, Values, of_name};

@@ -206,15 +206,7 @@ impl<'w> Pupil<'w> {
     }
 
     /// Diffuse term and highlight of one light.
-    fn direct(
-        &self,
-        phong: &Phong,
-        diffuse: Color,
-        n: Vec3,
-        view: Vec3,
-        light: &Light,
-        seen: &Illumination,
-    ) -> Color {
+    fn direct(&self, phong: &Phong, diffuse: Color, n: Vec3, view: Vec3, light: &Light, seen: &Illumination) -> Color {
         let habits = self.habits.highlights;
         let lamp = self.lamp(light, seen);
         let cosine = n.dot(lamp);

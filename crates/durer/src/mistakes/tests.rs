@@ -101,13 +101,16 @@ fn found(names: &[(&str, f32)]) -> Diagnosis {
     }
     let (reference, test) = (picture(&right, &job), picture(&wrong, &job));
     let transfer = Transfer::Course;
-    let question = Question { scene: &scene, world: &right.world, job: &job, transfer, reference: &reference, test: &test };
+    let question =
+        Question { scene: &scene, world: &right.world, job: &job, transfer, reference: &reference, test: &test };
     diagnose(&question, &|_| {})
 }
 
 #[test]
 fn mistakes_are_named_alone_and_in_pairs() {
-    for name in ["no-ambient", "no-highlights", "light-negated", "no-shadows", "mirror-negated", "normals-local", "not-bent"] {
+    for name in
+        ["no-ambient", "no-highlights", "light-negated", "no-shadows", "mirror-negated", "normals-local", "not-bent"]
+    {
         let diagnosis = found(&[(name, 0.0)]);
         let named = &diagnosis.named;
         assert!(named.iter().any(|n| n.mistakes.len() == 1 && n.mistakes[0].0.name == name), "{name}: {diagnosis:#?}");

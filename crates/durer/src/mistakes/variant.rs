@@ -43,7 +43,8 @@ impl<'s> Variant<'s> {
 
     /// The ray of a pixel through a place in the picture, in pixels from the upper left corner.
     pub fn ray(&self, raster: &Raster, (x, y): (u32, u32), place: Vec2, lens: Vec2) -> Option<Ray> {
-        let point = |place: Vec2| raster.point(place + self.aim.place - 0.5) * self.aim.factor(raster.width, raster.height);
+        let point =
+            |place: Vec2| raster.point(place + self.aim.place - 0.5) * self.aim.factor(raster.width, raster.height);
         let pixel = point(Vec2::new(x as f32, y as f32) + 0.5);
         self.world.camera.ray(&self.world.frame, &CameraSample { point: point(place), pixel, lens })
     }

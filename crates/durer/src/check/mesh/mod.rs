@@ -202,9 +202,7 @@ pub(super) fn flat_glass(scout: &Scout) -> Vec<Finding> {
     use crate::world::Geometry;
     let world = scout.world();
     let glass = |object: &&Placed| {
-        let refracts = |material: &Material| {
-            matches!(material, Material::Phong(phong) if phong.transparent.max_element() > 0.0 && phong.ior != 1.0)
-        };
+        let refracts = |material: &Material| matches!(material, Material::Phong(phong) if phong.transparent.max_element() > 0.0 && phong.ior != 1.0);
         world.materials.get(object.material as usize).is_some_and(refracts)
     };
     let what = |object: &Placed| match &object.geometry {
@@ -231,7 +229,9 @@ pub(super) fn flat_glass(scout: &Scout) -> Vec<Finding> {
     let say = |(object, what): &(&Placed, &str)| {
         let diagnostic = Diagnostic::warning(format!("this {what} is of glass, and has no inside"))
             .at(object.span)
-            .effect("a ray that goes in never comes out: it is bent once, and all behind is seen as from within the glass")
+            .effect(
+                "a ray that goes in never comes out: it is bent once, and all behind is seen as from within the glass",
+            )
             .help("glass needs a body: a sphere, a closed mesh; or give it the index 1");
         Finding::from(diagnostic)
     };

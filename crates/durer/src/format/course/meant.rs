@@ -40,8 +40,16 @@ const SLIPS: [(&str, &[&str], &str); 30] = [
     ("light", &["PointLight", "DirectionalLight"], ""),
     ("sun", &["DirectionalLight"], ""),
     ("camera", &["PerspectiveCamera", "Camera"], ""),
-    ("rotation", &["YRotate", "y_rotate"], "`XRotate`, `YRotate` and `ZRotate` turn about an axis, `Rotate { x y z angle }` about any"),
-    ("rotate", &["YRotate", "y_rotate"], "`XRotate`, `YRotate` and `ZRotate` turn about an axis, `Rotate { x y z angle }` about any"),
+    (
+        "rotation",
+        &["YRotate", "y_rotate"],
+        "`XRotate`, `YRotate` and `ZRotate` turn about an axis, `Rotate { x y z angle }` about any",
+    ),
+    (
+        "rotate",
+        &["YRotate", "y_rotate"],
+        "`XRotate`, `YRotate` and `ZRotate` turn about an axis, `Rotate { x y z angle }` about any",
+    ),
     ("move", &["Translate", "translate"], ""),
     ("translation", &["Translate", "translate"], ""),
     ("size", &["radius", "Scale", "scale"], ""),
@@ -89,7 +97,9 @@ pub(super) fn misplaced(word: &str, place: &str) -> Option<&'static str> {
         }
         "position" if within("Camera") => "the camera's place is its `center`",
         "position" => "the place of a sphere is its `center`",
-        "color" if within("Material") => "a material's colour is its `diffuseColor` (`diffuse` in the grammar of nodes)",
+        "color" if within("Material") => {
+            "a material's colour is its `diffuseColor` (`diffuse` in the grammar of nodes)"
+        }
         "angle" if within("Orthographic") => "an orthographic picture has a `size`, not an angle",
         "size" if within("Perspective") => "a perspective picture has an `angle`, not a size",
         _ => return None,

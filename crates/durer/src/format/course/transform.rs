@@ -48,7 +48,9 @@ impl Reader<'_, '_> {
         }
         if object.is_none() && self.errors() == errors {
             let error = Diagnostic::error("this `Transform` has no object").code("missing-field").at(keyword);
-            self.error(error.help("write the object after its matrices: `Transform { Translate 0 1 0 Sphere { ... } }`"));
+            self.error(
+                error.help("write the object after its matrices: `Transform { Translate 0 1 0 Sphere { ... } }`"),
+            );
         }
         Some(Node::Transform(ops, Box::new(object?)))
     }
@@ -135,7 +137,8 @@ impl Reader<'_, '_> {
         let error = Diagnostic::error("the axis and the angle of `Rotate` stand in braces").code("syntax").at(whole);
         self.error(match count {
             4 => error.help(format!("write `Rotate {{ {numbers} }}`")).fix(whole, format!("Rotate {{ {numbers} }}")),
-            _ => error.help(format!("about one axis it is `XRotate {numbers}`, `YRotate {numbers}` or `ZRotate {numbers}`")),
+            _ => error
+                .help(format!("about one axis it is `XRotate {numbers}`, `YRotate {numbers}` or `ZRotate {numbers}`")),
         });
         for _ in 0..count {
             self.advance();
@@ -150,8 +153,11 @@ impl Reader<'_, '_> {
             return false;
         }
         let number = self.text(last);
-        let error = Diagnostic::error("`Scale` takes three numbers, one for each axis").code("syntax").at(word.to(last));
-        self.error(error.help(format!("alike along all of them it is `UniformScale {number}`")).fix(word, "UniformScale"));
+        let error =
+            Diagnostic::error("`Scale` takes three numbers, one for each axis").code("syntax").at(word.to(last));
+        self.error(
+            error.help(format!("alike along all of them it is `UniformScale {number}`")).fix(word, "UniformScale"),
+        );
         self.advance();
         true
     }

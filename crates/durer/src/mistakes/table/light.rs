@@ -341,14 +341,9 @@ pub(super) const MISTAKES: &[Mistake] = &[
             points(v.world.lights.iter_mut(), |a| a.map(|a| Vec3::new(a.z, a.y, a.x)));
         },
     ),
-    row(
-        "no-shadows",
-        "shadows",
-        "there are no shadows",
-        "if (occluded(p, L, d)) continue",
-        "(nothing)",
-        |v, _| v.settings.shadows = false,
-    ),
+    row("no-shadows", "shadows", "there are no shadows", "if (occluded(p, L, d)) continue", "(nothing)", |v, _| {
+        v.settings.shadows = false
+    }),
     row(
         "shadows-added",
         "shadows",

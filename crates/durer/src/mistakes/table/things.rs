@@ -126,14 +126,9 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "rotation by -angle, or the transposed matrix",
         |v, _| v.place(|ops, left| turned(ops, left, |angle| -angle)),
     ),
-    row(
-        "transforms-ignored",
-        "transforms",
-        "transforms have no effect",
-        "M = M1 * M2 * M3",
-        "M = identity",
-        |v, _| v.place(|_, _| DAffine3::IDENTITY),
-    ),
+    row("transforms-ignored", "transforms", "transforms have no effect", "M = M1 * M2 * M3", "M = identity", |v, _| {
+        v.place(|_, _| DAffine3::IDENTITY)
+    }),
     row(
         "transforms-inverted",
         "transforms",
@@ -199,20 +194,13 @@ pub(super) const MISTAKES: &[Mistake] = &[
             });
         },
     ),
-    row(
-        "center-ignored",
-        "distance",
-        "the centre of spheres is ignored",
-        "o - center",
-        "o",
-        |v, _| {
-            v.objects(|geometry| {
-                if let Geometry::Primitive(Primitive::Sphere(sphere)) = geometry {
-                    sphere.center = crate::math::Vec3::ZERO;
-                }
-            });
-        },
-    ),
+    row("center-ignored", "distance", "the centre of spheres is ignored", "o - center", "o", |v, _| {
+        v.objects(|geometry| {
+            if let Geometry::Primitive(Primitive::Sphere(sphere)) = geometry {
+                sphere.center = crate::math::Vec3::ZERO;
+            }
+        });
+    }),
     row(
         "farthest-object",
         "distance",

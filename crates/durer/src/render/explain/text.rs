@@ -233,7 +233,11 @@ fn node_lines(node: &Node, names: &Names, depth: usize, telling: &Telling, at: C
             match from {
                 "camera ray" => format!("{from}: {value}"),
                 _ => {
-                    format!("{from}, which counts for {} of the pixel: {} · {value}", number(*weight), split(node, from, &at, names))
+                    format!(
+                        "{from}, which counts for {} of the pixel: {} · {value}",
+                        number(*weight),
+                        split(node, from, &at, names)
+                    )
                 }
             }
         }
@@ -350,7 +354,9 @@ fn shadow_line(shadow: &Shadow, names: &Names) -> String {
     match shadow.share {
         Color::ZERO => format!("in the shadow of {object}, {t} away"),
         Color::ONE if names.world.rules.has(Compat::ShadowFronts) => {
-            format!("{object} stands {t} away, but does not block it: its back is turned to the ray (habit `shadow-fronts`)")
+            format!(
+                "{object} stands {t} away, but does not block it: its back is turned to the ray (habit `shadow-fronts`)"
+            )
         }
         Color::ONE => format!("{object} stands {t} away, but does not block it: it lets all light through"),
         share => format!("through {object}, {t} away, comes {}", rgb(share)),

@@ -137,10 +137,7 @@ impl Rule {
     /// Whether it has numbers that were fitted to the pictures.
     pub fn is_fitted(&self) -> bool {
         use Rule::{Added, AddedEach, Affine, Factor, Factors, LightFactor, Power};
-        matches!(
-            self,
-            Affine(..) | Power(_) | Factor(_) | LightFactor(_) | Factors(_) | Added(_) | AddedEach(_)
-        )
+        matches!(self, Affine(..) | Power(_) | Factor(_) | LightFactor(_) | Factors(_) | Added(_) | AddedEach(_))
     }
 
     /// Its keyword.
