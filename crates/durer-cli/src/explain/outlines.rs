@@ -55,7 +55,7 @@ fn outline(object: &Object, ends: &Aabb) -> Vec<Vec<Vec3>> {
             let (u, v) = n.any_orthonormal_pair();
             let middle = ends.center();
             let foot = middle - (middle.dot(n) - plane.offset / plane.normal.length()) * n;
-            let half = 0.6 * ends.size().length().max(1e-3);
+            let half = 0.4 * ends.size().length().max(1e-3);
             let across = |a: Vec3, b: Vec3| (-3..=3).map(move |i| foot + half * i as f32 / 3.0 * a + half * b);
             let lines = |a: Vec3, b: Vec3| across(a, -b).zip(across(a, b)).map(|(p, q)| vec![p, q]).collect::<Vec<_>>();
             [lines(u, v), lines(v, u)].concat().into_iter().map(place).collect()

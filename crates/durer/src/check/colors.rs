@@ -146,19 +146,27 @@ struct Named {
 
 fn all_colors(scout: &Scout) -> Vec<Named> {
     let mut colors = Vec::new();
-    for (_, written, _) in phongs(scout) {
+    for (i, written, _) in phongs(scout) {
         let Written::Phong(phong, _) = &written.value else { continue };
         // A surface gives back no more than it gets; a highlight may be as strong as it looks well.
-        let named = |color, fields, most| Named { color, block: written.span, fields, most };
+        // What is hardly seen may stand for a lamp.
+        let small = rays(scout, i) * 12 < scout.probes.len();
+        let named = |color, fields, most: f32| {
+            let most = if small { most.max(15.0) } else { most };
+            Named { color, block: written.span, fields, most }
+        };
         colors.push(named(phong.diffuse_color, ["diffuseColor", "diffuse"], 1.001));
         colors.push(named(phong.specular_color, ["specularColor", "specular"], 5.0));
         colors.push(named(phong.reflective_color, ["reflectiveColor", "reflectiveColor"], 1.001));
         colors.push(named(phong.transparent_color, ["transparentColor", "transparentColor"], 1.001));
     }
-    for (written, light) in scout.subject.scene.lights.iter().flatten().zip(&scout.world().lights) {
-        // A light that fades may be as strong as it must.
+    for (number, (written, light)) in scout.subject.scene.lights.iter().flatten().zip(&scout.world().lights).enumerate()
+    {
+        // A light that fades may be as strong as it must, so that not too much of it arrives.
         let fades = matches!(light, Light::Point(point) if point.attenuation.is_some());
-        let most = if fades { f32::INFINITY } else { 20.0 };
+        let arrives = scout.seen().filter_map(|(_, seen)| seen.by(number)).map(|lit| lit.arrives.max_element());
+        let too_much = arrives.fold(0.0, f32::max) > 20.0;
+        let most = if fades && !too_much { f32::INFINITY } else { 20.0 };
         colors.push(Named {
             color: super::lights::color(light),
             block: written.span,

@@ -7,7 +7,7 @@ use super::sight::Sight;
 use super::view::pixels;
 use crate::camera::{Camera, Lens};
 use crate::diag::{Diagnostic, Span};
-use crate::math::Aabb;
+use crate::math::{Aabb, fp};
 use crate::scene::{MatrixOp, Node, Object};
 use crate::world::Material;
 
@@ -125,7 +125,7 @@ pub(super) fn out_of_scale(scout: &Scout) -> Vec<Finding> {
     // Of two, that which the camera's distance speaks for is right.
     let eye = world.camera.pose().center;
     let away = |object: u32| world.objects[object as usize].bounds().map_or(1.0, |b| (b.center() - eye).length());
-    let odd = |(object, size): (u32, f32)| (size / away(object).clamp(1e-6, 1e6)).ln().abs();
+    let odd = |(object, size): (u32, f32)| fp::ln(size / away(object).clamp(1e-6, 1e6)).abs();
     let middle = match sizes[..] {
         [small, large] => {
             if odd(small) < odd(large) {

@@ -370,7 +370,16 @@ pub(super) fn divides(scout: &Scout) -> Vec<Finding> {
             let divisor = divisor(&scout.world().lights[light]).unwrap_or_default();
             let zero = divisor == Vec3::ZERO;
             let message = match zero {
-                true => "this light divides by zero: its attenuation is 0 0 0".to_string(),
+                true => match scout.value(span, &["attenuation", "falloff"]) {
+                    Some(value) => {
+                        format!(
+                            "this light divides by zero: its {} is {}",
+                            scout.text(before(scout, value)),
+                            scout.text(value)
+                        )
+                    }
+                    None => "this light divides by zero: nothing is written of how it fades".to_string(),
+                },
                 false => format!("this light is divided by numbers that are not above zero: {}", vector(divisor)),
             };
             let value = scout.value(span, &["attenuation", "falloff"]);

@@ -412,10 +412,10 @@ fn decided(mut trials: Vec<Trial>, pixels: &Pixels, bars: &Bars) -> Vec<Named> {
 
 /// Whether mistakes are the same but for their values.
 fn one_kind(a: &[(&Mistake, f32)], b: &[(&Mistake, f32)]) -> bool {
-    a.len() == b.len()
-        && a.iter().all(|a| {
-            b.iter().any(|b| a.0.name == b.0.name && a.0.values != Values::Lights || a.1 == b.1 && a.0.name == b.0.name)
-        })
+    // Another light is another mistake.
+    let alike =
+        |a: &(&Mistake, f32), b: &(&Mistake, f32)| a.0.name == b.0.name && (a.0.values != Values::Lights || a.1 == b.1);
+    a.len() == b.len() && a.iter().all(|a| b.iter().any(|b| alike(a, b)))
 }
 
 fn same(a: &[(&Mistake, f32)], b: &[(&Mistake, f32)]) -> bool {

@@ -124,7 +124,7 @@ impl<'w> Pupil<'w> {
         let n = if turned { -surface.n_shade } else { surface.n_shade };
         let parts = world.parts(hit, surface.position);
         let mut color = Color::ZERO;
-        if !(black && !habits.faced) {
+        if !black || habits.faced {
             let diffuse: SmallVec<[Color; 2]> =
                 parts.iter().map(|p| self.right.diffuse_color(p.phong, &surface)).collect();
             let rounds = if habits.ambient == Ambient::EachLight { world.lights.len() } else { 1 };

@@ -227,12 +227,16 @@ pub(super) fn flat_glass(scout: &Scout) -> Vec<Finding> {
     let body = triangles.len() > 3 && Topology::of(&positions, &triangles).open == 0;
     let open = |(_, what): &&(&Placed, &str)| !(body && *what == "triangle");
     let say = |(object, what): &(&Placed, &str)| {
-        let diagnostic = Diagnostic::warning(format!("this {what} is of glass, and has no inside"))
+        let mut diagnostic = Diagnostic::warning(format!("this {what} is of glass, and has no inside"))
             .at(object.span)
             .effect(
                 "a ray that goes in never comes out: it is bent once, and all behind is seen as from within the glass",
             )
             .help("glass needs a body: a sphere, a closed mesh; or give it the index 1");
+        // The surface of a lake is flat by right.
+        if *what != "triangle" && !world.rules.is_official() {
+            diagnostic.severity = crate::diag::Severity::Note;
+        }
         Finding::from(diagnostic)
     };
     flat.iter().filter(open).take(3).map(say).collect()

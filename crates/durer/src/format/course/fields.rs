@@ -154,6 +154,7 @@ impl Reader<'_, '_> {
                 false => format!("its fields are {}", words.join(", ")),
             }
         });
+        let help = super::meant::misplaced(word, name).map_or(help, String::from);
         let message = match word.parse::<f32>() {
             Ok(_) => format!("{} is a number too many in `{name}`", shown(word.as_bytes())),
             Err(_) => format!("`{name}` has no field {}", shown(word.as_bytes())),

@@ -105,7 +105,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "M = M3 * M2 * M1",
         |v, _| {
             v.place(|ops, left| {
-                let reversed: Vec<MatrixOp> = ops.iter().rev().cloned().collect();
+                let reversed: Vec<MatrixOp> = ops.iter().rev().copied().collect();
                 MatrixOp::product(&reversed, left)
             });
         },
@@ -263,7 +263,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
 
 /// The product with other angles of rotation.
 fn turned(ops: &[MatrixOp], left: bool, change: fn(f32) -> f32) -> DAffine3 {
-    let change = |op: &MatrixOp| match op.clone() {
+    let change = |op: &MatrixOp| match *op {
         MatrixOp::XRotate(angle) => MatrixOp::XRotate(change(angle)),
         MatrixOp::YRotate(angle) => MatrixOp::YRotate(change(angle)),
         MatrixOp::ZRotate(angle) => MatrixOp::ZRotate(change(angle)),

@@ -156,7 +156,7 @@ fn has_equal_sides(reference: &View, test: &View, at_edges: &[Sample]) -> bool {
         let (low, high) = equal.fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(l, h), p| (l.min(p), h.max(p)));
         (high - low).max_element() > EDGE
     };
-    differing.iter().filter(sides).count() * 2 > differing.len()
+    differing.iter().filter(sides).count() * 8 > differing.len()
 }
 
 /// How many of a pixel's eight neighbours do not differ as it does.
@@ -197,7 +197,9 @@ fn noise(reference: &View, test: &View, samples: &[Sample]) -> Option<Finding> {
     let alone: usize = seen.iter().map(|s| lonely(reference, test, s)).sum();
     let explained = difference(&seen.iter().copied().copied().collect::<Vec<_>>()) / difference(samples);
     let words = "it differs from pixel to pixel without a pattern: noise, from few samples or other random numbers";
-    (alone > 5 * seen.len() && 10 * seen.len() > samples.len()).then(|| Finding {
+    // Moved edges of a fine pattern look like noise; noise is also where nothing else is.
+    let smooth = seen.iter().filter(|s| !at_edge(reference, s)).count();
+    (alone > 5 * seen.len() && 10 * seen.len() > samples.len() && 2 * smooth > seen.len()).then(|| Finding {
         kind: "noise",
         words: words.into(),
         explained,
