@@ -486,7 +486,8 @@ pub struct CompareArgs {
     /// Everything as JSON
     #[arg(long)]
     pub json: bool,
-    /// The scene of the pictures, or a folder of scenes of their names
+    /// The scene of the pictures, or a folder of scenes of their names: the usual mistakes are tried on it, and the one that makes
+    /// the picture is named. Give the options that made the reference as well
     #[arg(long, value_name = "SCENE")]
     pub scene: Option<PathBuf>,
     #[command(flatten)]

@@ -132,7 +132,10 @@ Background { color 0 0 0 ambient_light 0.1 0.1 0.1 }
 Materials { Material { diffuse 1 0 0 } }
 Scene { Node { Component<Material> { index 0 } Component<Object> { type sphere radius 1 } } }
 ";
-    says("", nodes, "in f23 it is `fov`");
+    // One foreign word does not make another dialect of a file; it is named, and so is its counterpart.
+    place.put("nodes.txt", nodes);
+    let told = place.run("check nodes.txt").out;
+    assert!(told.contains("`angle` is not a word of f23") && told.contains("in f23 it is `fov`"), "{told}");
     let wide: Vec<u8> = SCENE.bytes().flat_map(|b| [b, 0]).collect();
     place.put("wide.txt", [&[0xff, 0xfe][..], &wide].concat());
     let ran = place.gives(2, "render wide.txt -q -o words.png");

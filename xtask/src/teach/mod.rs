@@ -123,6 +123,10 @@ fn judged(json: &str, made: &[&str]) -> (Told, String) {
         .skip(1)
         .map(|set| set.split("\"name\": \"").skip(1).filter_map(|rest| rest.split('"').next()).collect())
         .collect();
+    // Of what is in no table nothing can be named rightly.
+    if made.iter().any(|made| made.starts_with("x-")) && sets.is_empty() {
+        return (Told::Right, "not told".into());
+    }
     if sets.is_empty() {
         return (Told::NotTold, String::new());
     }

@@ -180,7 +180,13 @@ impl<'s> Tracer<'s> {
 
     fn shade(&self, o: V, d: V, hit: &Hit, bounces: u32, index: f64) -> V {
         let scene = self.scene;
-        let stuff: Stuff = scene.stuff[scene.things[hit.thing].material];
+        let mut stuff: Stuff = scene.stuff[scene.things[hit.thing].material];
+        if self.is("x-kd-squared") {
+            stuff.kd = stuff.kd * stuff.kd;
+        }
+        if self.is("x-materials-swapped") {
+            stuff = scene.stuff[(scene.things[hit.thing].material + 1) % scene.stuff.len()];
+        }
         let p = o + d * hit.t;
         let side = if matches!(scene.year, Year::Durer) { hit.geo } else { hit.n };
         let back = d.dot(side) > 0.0;
@@ -193,6 +199,7 @@ impl<'s> Tracer<'s> {
         let ambient = match () {
             () if self.is("no-ambient") => V::ZERO,
             () if self.is("ambient-bare") => scene.ambient,
+            () if self.is("x-ambient-doubled") => scene.ambient * stuff.kd * 2.0,
             () if self.is("ambient-each-light") => scene.ambient * stuff.kd * scene.lamps.len() as f64,
             () => scene.ambient * stuff.kd,
         };
@@ -209,6 +216,7 @@ impl<'s> Tracer<'s> {
                         (if self.is("light-long") { l } else { l.unit() }, f64::INFINITY, c)
                     }
                     Lamp::Bulb(at, c, a) => {
+                        let at = if self.is("x-light-turned") { V(at.0, at.2, at.1) } else { at };
                         let distance = (at - p).length();
                         (at - p, distance, c * self.fading(a, distance))
                     }
@@ -223,7 +231,7 @@ impl<'s> Tracer<'s> {
                         Lamp::Bulb(_, _, a) => V::ONE * self.fading(a, distance),
                     };
                 }
-                if self.blocked(p, toward, distance) {
+                if self.blocked(p, toward, distance) && !(self.is("x-second-light-unshadowed") && number == 1) {
                     continue;
                 }
                 free = true;
@@ -420,9 +428,11 @@ impl<'s> Tracer<'s> {
         let half = match () {
             () if self.is("angle-not-halved") => scene.angle.to_radians().tan(),
             () if self.is("angle-ignored") => 1.0,
+            () if self.is("x-wider") => (0.58 * scene.angle.to_radians()).tan(),
             () => (0.5 * scene.angle.to_radians()).tan(),
         };
-        (scene.eye, (w * (1.0 / half) + u * x + v * y).unit())
+        let eye = if self.is("x-eye-moved") { scene.eye + V(0.3, 0.2, 0.0) } else { scene.eye };
+        (eye, (w * (1.0 / half) + u * x + v * y).unit())
     }
 
     /// The picture.

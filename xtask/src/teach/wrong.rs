@@ -360,6 +360,17 @@ const ALONE: [&[&str]; 10] = [
     ],
 ];
 
+/// Mistakes that are in no table, made in these scenes: nothing must be named.
+const UNKNOWN: [&str; 7] = [
+    "x-ambient-doubled",
+    "x-kd-squared",
+    "x-materials-swapped",
+    "x-light-turned",
+    "x-wider",
+    "x-eye-moved",
+    "x-second-light-unshadowed",
+];
+
 /// Two mistakes at once.
 const TOGETHER: &[(usize, [&str; 2])] = &[
     (0, ["no-ambient", "no-highlights"]),
@@ -383,6 +394,9 @@ pub fn cases() -> Vec<Case> {
     let alone = ALONE.iter().enumerate();
     let mut cases: Vec<Case> =
         alone.flat_map(|(scene, names)| names.iter().map(move |name| Case { scene, made: vec![*name] })).collect();
+    for scene in [0, 1, 5, 6] {
+        cases.extend(UNKNOWN.iter().map(|name| Case { scene, made: vec![*name] }));
+    }
     cases.extend(TOGETHER.iter().map(|(scene, names)| Case { scene: *scene, made: names.to_vec() }));
     cases
 }

@@ -15,14 +15,16 @@ use rayon::prelude::*;
 
 /// Pixels at which all mistakes are tried, pairs of them, and those that are left over.
 const COARSE: usize = 1600;
-const COARSER: usize = 500;
-const FULL: usize = 40_000;
+const COARSER: usize = 300;
+const FULL: usize = 16_000;
+/// Larger pictures are not looked at as a whole.
+const WHOLE: usize = 160_000;
 /// So many of the best are looked at closely, and paired with all others.
 const BEST: usize = 12;
 /// Where the scene's own picture differs from the reference at a larger share of the pixels, nothing is said.
 const MOST_OFF: f64 = 0.25;
 /// The largest number of pairs that are tried.
-const MOST_PAIRS: usize = 1500;
+const MOST_PAIRS: usize = 1000;
 
 /// Two pictures, and the scene of which the reference was made.
 #[derive(Clone, Copy, Debug)]
@@ -150,7 +152,7 @@ pub fn diagnose(question: &Question, told: &(dyn Fn(f64) + Sync)) -> Diagnosis {
         Pixels { places, reference: of(&reference), test: of(&test), base }
     };
     let all: Vec<(u32, u32)> = (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).collect();
-    let light = match all.len() <= 4 * FULL {
+    let light = match all.len() <= WHOLE {
         true => search.view.light(&search.base, &all),
         false => Vec::new(),
     };
@@ -208,7 +210,7 @@ fn tried(trials: &[Trial]) -> Vec<Named> {
 /// The share of the reference's pixels that the scene with the options of the question makes otherwise: looked at in some.
 pub fn off(question: &Question) -> f64 {
     let (reference, view, base) = prepared(question);
-    let places = sampled(question.job.width, &reference, &reference, 2 * COARSER);
+    let places = sampled(question.job.width, &reference, &reference, 3 * COARSER);
     let width = question.job.width;
     let chosen: Vec<(u32, u32)> = places.iter().map(|&i| (i as u32 % width, i as u32 / width)).collect();
     let of: Vec<Vec3> = places.iter().map(|&i| reference[i]).collect();
@@ -329,7 +331,7 @@ impl<'a> Search<'a> {
     /// Whether rays hit the surface that they leave.
     fn acne(&self, all: &[(u32, u32)], reference: &[Vec3], test: &[Vec3]) -> Option<Named> {
         let lights = self.base.world.lights.len();
-        if all.len() > FULL || !(1..=4).contains(&lights) || !self.base.settings.shadows {
+        if all.len() > WHOLE || !(1..=4).contains(&lights) || !self.base.settings.shadows {
             return None;
         }
         let dark = |off: u32| {

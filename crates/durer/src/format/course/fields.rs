@@ -349,7 +349,11 @@ impl Reader<'_, '_> {
         if self.options.strict {
             self.error(Diagnostic::error(message).at(span));
         } else {
-            self.diagnostics.push(Diagnostic::warning(message).code("foreign-word").at(span));
+            let warning = Diagnostic::warning(message).code("foreign-word").at(span);
+            self.diagnostics.push(match super::meant::here(word, dialect) {
+                Some(here) => warning.help(format!("in {} it is `{here}`", dialect.name())),
+                None => warning,
+            });
         }
     }
 }

@@ -77,6 +77,22 @@ pub(super) fn counterpart(word: &str, dialect: Dialect) -> Option<&'static str> 
     dialects_of(there).filter(|set| dialect.is_in(*set) || dialect == Dialect::Durer).map(|_| there)
 }
 
+/// The same in different years of the first grammar.
+const YEARS: [(&str, &str); 5] = [
+    ("exponent", "shininess"),
+    ("falloff", "attenuation"),
+    ("refractionIndex", "indexOfRefraction"),
+    ("num_objects", "numObjects"),
+    ("Matrix", "Matrix4f"),
+];
+
+/// The word of this dialect for a word of another year.
+pub(super) fn here(word: &str, dialect: Dialect) -> Option<&'static str> {
+    let other = YEARS.iter().find_map(|&(a, b)| (a == word).then_some(b).or((b == word).then_some(a)));
+    let known = |word: &&str| dialects_of(word).is_some_and(|set| dialect.is_in(set));
+    counterpart(word, dialect).or(other.filter(known))
+}
+
 /// The known word that a slip means, and what is to be said of it.
 pub(super) fn slip<'w>(word: &str, known: impl IntoIterator<Item = &'w str>) -> Option<(&'w str, &'static str)> {
     let known: Vec<&str> = known.into_iter().collect();
