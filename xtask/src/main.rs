@@ -9,6 +9,7 @@ mod fuzz;
 mod long;
 mod manual;
 mod solids;
+mod teach;
 mod torture;
 mod verify;
 
@@ -45,6 +46,9 @@ const USAGE: &str = "Commands:
   cargo xtask fuzz [--minutes 10] [--only TEXT]
       Random bytes as scenes, meshes, pictures and parts, and random scenes by tree, grid and brute force, side by side.
       It takes a nightly compiler and cargo-fuzz.
+  cargo xtask teach [--compare | --check] [--only TEXT] [--keep FOLDER]
+      Wrong pictures made by a tracer of its own, for `durer compare`, and broken scenes, for `durer check`: how many are told
+      rightly, and how many wrongly?
   cargo xtask manual
       Write the reference of the language, docs/language and its pictures, and the grammar for editors.
 The course is found in ../shared, or where DURER_CORPUS says.";
@@ -65,6 +69,7 @@ fn main() -> anyhow::Result<ExitCode> {
         Some("torture") => torture::run(&arguments[1..]),
         Some("cost") => cost::run(&arguments[1..]),
         Some("solids") => solids::run(),
+        Some("teach") => teach::run(&arguments[1..]),
         Some("long") => long::run(&arguments[1..]),
         Some("fuzz") => fuzz::run(&arguments[1..]),
         Some("manual") => manual::run(),

@@ -334,6 +334,12 @@ pub struct ExplainArgs {
     /// The pixel least like those around it: fireflies, specks
     #[arg(long)]
     pub worst: bool,
+    /// Leave out terms that are a smaller share of the pixel, in percent
+    #[arg(long, value_name = "PERCENT", default_value_t = 0.0, value_parser = percent)]
+    pub min: f64,
+    /// Leave out terms that stand deeper in the tree
+    #[arg(long, value_name = "N")]
+    pub depth: Option<u32>,
     /// As JSON
     #[arg(long, conflicts_with = "html")]
     pub json: bool,
@@ -499,7 +505,8 @@ pub struct CompareArgs {
     /// Everything as JSON
     #[arg(long)]
     pub json: bool,
-    /// The scene of the pictures, or a folder of scenes of their names
+    /// The scene of the pictures, or a folder of scenes of their names: the usual mistakes are tried on it, and the one that makes
+    /// the picture is named. Give the options that made the reference as well
     #[arg(long, value_name = "SCENE")]
     pub scene: Option<PathBuf>,
     #[command(flatten)]

@@ -13,7 +13,7 @@ use crate::report::counted;
 use crate::{Failure, bad, output, report};
 use codespan_reporting::term::termcolor::StandardStream;
 use durer::check::{CHECKS, Finding, Subject, check, reported};
-use durer::diag::{Diagnostics, Files, Severity};
+use durer::diag::{Diagnostics, Edit, Files, Severity};
 use durer::load_text;
 use durer::source::Source;
 use std::path::{Path, PathBuf};
@@ -125,13 +125,27 @@ fn look(path: &Path, bytes: Arc<[u8]>, args: &CheckArgs) -> Result<Checked, Fail
     Ok(Checked { path: path.into(), files, findings, dialect, readable, named })
 }
 
+/// What edits do to the text.
+fn does(edits: &[Edit]) -> String {
+    let one = |edit: &Edit| match edit.text.trim() {
+        "" => "takes it out".to_string(),
+        text => format!("writes `{}`", text.replace('\n', " ")),
+    };
+    match edits {
+        [only] => one(only),
+        [first, rest @ ..] => format!("{}, and makes {}", one(first), counted(rest.len(), "change") + " more"),
+        [] => String::new(),
+    }
+}
+
 /// Prints findings, and how many there are.
 fn print(checked: &Checked, mended: bool) {
     let offer = |finding: &Finding| {
         let mut diagnostic = finding.diagnostic.clone();
         if !diagnostic.fix.is_empty() && !mended {
+            let does = does(&diagnostic.fix);
             let help = diagnostic.help.get_or_insert_default();
-            *help += if help.is_empty() { "`--fix` mends it" } else { " (`--fix` does it)" };
+            *help += &if help.is_empty() { format!("`--fix` {does}") } else { format!(" (`--fix` {does})") };
         }
         diagnostic
     };

@@ -1,7 +1,9 @@
 //! `durer compare`.
 
+mod named;
 mod page;
 mod pairs;
+mod stage;
 mod text;
 mod there;
 
@@ -13,9 +15,11 @@ use crate::{Failure, bad, progress, report};
 use durer::diag::{at_least, at_most};
 use durer::image::compare::{Comparison, Options, Picture, Scale, Verdict, compare, heat_map, memory_needed};
 use durer::image::{Destination, Encoded, Image, Layer, Transfer, decode_linear};
+use durer::mistakes::Diagnosis;
 use durer::source::Source;
 use pairs::Pair;
-use std::path::Path;
+use stage::{Stage, stage};
+use std::path::{Path, PathBuf};
 use there::{There, there};
 
 /// What came of a pair.
@@ -35,9 +39,26 @@ struct Compared {
     shown: Option<page::Shown>,
     /// What of the scene is at each region, where a scene is given.
     there: Vec<There>,
+    /// Which mistakes make the picture, where a scene is given.
+    diagnosis: Option<Diagnosis>,
+    /// What was found out of the reference's options.
+    note: Option<String>,
 }
 
 impl Compared {
+    fn new(pair: Pair, outcome: Outcome, shown: Option<page::Shown>) -> Self {
+        Compared { pair, outcome, shown, there: Vec::new(), diagnosis: None, note: None }
+    }
+
+    /// What explains the difference, in lines.
+    fn causes(&self) -> Vec<String> {
+        match (&self.outcome, &self.diagnosis) {
+            (_, Some(diagnosis)) => named::lines(diagnosis),
+            (Outcome::Compared(found), None) => text::causes(found),
+            _ => Vec::new(),
+        }
+    }
+
     /// One word.
     fn verdict(&self) -> &'static str {
         match &self.outcome {
@@ -79,11 +100,7 @@ fn work(args: &CompareArgs) -> Result<(), Failure> {
     if let ([Compared { outcome: Outcome::Failed(reason), .. }], false) = (&all[..], folders) {
         return Err(bad(reason));
     }
-    for compared in &mut all {
-        if let Outcome::Compared(found) = &compared.outcome {
-            compared.there = there(args, &compared.pair, found, &mut guard)?;
-        }
-    }
+    explain(args, &mut all, memory, &mut guard)?;
 
     if args.json {
         say(&serde_json::to_string_pretty(&text::json(&all, &extra, args))?);
@@ -114,6 +131,31 @@ fn work(args: &CompareArgs) -> Result<(), Failure> {
     }
 }
 
+/// Finds out what of the scene is where pictures differ, and which mistakes make them so.
+fn explain(args: &CompareArgs, all: &mut [Compared], memory: u64, guard: &mut Guard) -> Result<(), Failure> {
+    if args.scene.is_none() {
+        return Ok(());
+    }
+    let mut stages: Vec<(PathBuf, Option<Stage>)> = Vec::new();
+    for compared in all {
+        let (Outcome::Compared(found), Some(picture)) = (&compared.outcome, &compared.pair.picture) else { continue };
+        let [reference, test] = read_both([&compared.pair.reference, picture], memory).map_err(bad)?;
+        // The pictures of a class have one reference.
+        if stages.iter().all(|(path, _)| *path != compared.pair.reference) {
+            stages.truncate(16);
+            stages.insert(0, (compared.pair.reference.clone(), stage(args, &compared.pair, &reference, guard)?));
+        }
+        let known = stages.iter().find(|(path, _)| *path == compared.pair.reference);
+        let Some((_, Some(stage))) = known else { continue };
+        if found.verdict == Verdict::Different {
+            compared.note = stage.note.clone();
+            compared.there = there(stage, found)?;
+            compared.diagnosis = Some(named::named(stage, &reference, &test));
+        }
+    }
+    Ok(())
+}
+
 /// The name of a pair, with its owner's.
 fn name(pair: &Pair) -> String {
     pair.who.as_ref().map_or_else(|| pair.name.clone(), |who| format!("{who}/{}", pair.name))
@@ -122,7 +164,7 @@ fn name(pair: &Pair) -> String {
 /// Compares one pair.
 fn one(pair: Pair, options: &Options, memory: u64, page: bool) -> Compared {
     let Some(path) = &pair.picture else {
-        return Compared { pair, outcome: Outcome::Missing, shown: None, there: Vec::new() };
+        return Compared::new(pair, Outcome::Missing, None);
     };
     let compared = read_both([&pair.reference, path], memory).and_then(|[reference, picture]| {
         let found = compare(&reference, &picture, options)
@@ -131,8 +173,8 @@ fn one(pair: Pair, options: &Options, memory: u64, page: bool) -> Compared {
         Ok((found, shown))
     });
     match compared {
-        Ok((found, shown)) => Compared { pair, outcome: Outcome::Compared(Box::new(found)), shown, there: Vec::new() },
-        Err(reason) => Compared { pair, outcome: Outcome::Failed(reason), shown: None, there: Vec::new() },
+        Ok((found, shown)) => Compared::new(pair, Outcome::Compared(Box::new(found)), shown),
+        Err(reason) => Compared::new(pair, Outcome::Failed(reason), None),
     }
 }
 

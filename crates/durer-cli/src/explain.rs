@@ -1,5 +1,6 @@
 //! `durer explain`.
 
+mod outlines;
 mod page;
 
 use crate::args::ExplainArgs;
@@ -9,11 +10,11 @@ use crate::open::{Opened, load_options, open};
 use crate::output::say;
 use crate::render::failure;
 use crate::{Failure, bad, output, progress};
-use durer::image::Image;
+use durer::image::{Image, Transfer};
 use durer::integrator::Node;
 use durer::integrator::account::What;
 use durer::math::{Color, Ray, Vec3};
-use durer::render::explain::{Explanation, Line, Names, explain, explain_ray, ray_text};
+use durer::render::explain::{Explanation, Line, Names, Telling, explain, explain_ray, number, ray_text};
 use durer::render::{Control, Job};
 use std::collections::BTreeSet;
 use std::io::IsTerminal;
@@ -52,7 +53,7 @@ pub fn run(args: &ExplainArgs) -> Result<(), Failure> {
         Subject::Ray(_) => 0,
     };
     if let (Some(place), Some(picture)) = (&page_file, &picture) {
-        let page = page::page(json(&subject, &names), sample, &opened.world, picture)?;
+        let page = page::page(json(&subject, &names), sample, &opened.world, picture, args)?;
         output::save(&[(place, page.into_bytes())], args.render.quiet)?;
         return Ok(());
     }
@@ -60,12 +61,15 @@ pub fn run(args: &ExplainArgs) -> Result<(), Failure> {
         say(&serde_json::to_string_pretty(&json(&subject, &names))?);
         return Ok(());
     }
+    let transfer = Transfer::from_name(&args.render.transfer).unwrap_or_default();
+    let deepest = args.depth.map_or(usize::MAX, |depth| depth as usize);
+    let telling = Telling { least: (args.min / 100.0) as f32, deepest, transfer };
     let lines = match &subject {
-        Subject::Ray(light) => ray_text(light, &names),
-        Subject::Pixel(pixel) => pixel.lines(&names, sample),
+        Subject::Ray(light) => ray_text(light, &names, &telling),
+        Subject::Pixel(pixel) => pixel.lines(&names, sample, &telling),
     };
     let colored = std::io::stdout().is_terminal() && std::env::var_os("NO_COLOR").is_none();
-    lines.iter().for_each(|line| say(&shown(line, colored)));
+    lines.iter().for_each(|line| say(&shown(line, colored, transfer)));
     Ok(())
 }
 
@@ -95,6 +99,10 @@ fn subject(args: &ExplainArgs, opened: &Opened, job: &Job, picture: Option<&Imag
         (None, None, Some(picture)) => most(picture, |x, y| oddness(picture, x, y)),
         (None, None, None) => return Err(bad("say which pixel: --pixel X,Y, --brightest, --worst, or --ray")),
     };
+    if pixel.0 >= job.width || pixel.1 >= job.height {
+        let (x, y) = pixel;
+        return Err(bad(format!("pixel {x},{y} lies outside the picture of {} x {} pixels", job.width, job.height)));
+    }
     let world = &opened.world;
     let explanation = deep(|| explain(world, job, pixel.0, pixel.1))?.map_err(failure)?;
     if let Some(sample) = args.sample.filter(|&sample| sample as usize >= explanation.samples.len()) {
@@ -151,11 +159,25 @@ fn most(picture: &Image, value: impl Fn(u32, u32) -> f64) -> (u32, u32) {
     best.0
 }
 
+/// A share for people.
+fn percent(share: f32) -> String {
+    match 100.0 * share {
+        0.0 => "0 %".into(),
+        share if share.abs() < 0.1 => "< 0.1 %".into(),
+        share if share.abs() < 10.0 => format!("{share:.1} %"),
+        share => format!("{share:.0} %"),
+    }
+}
+
 /// A line with what it adds before it.
-pub fn shown(line: &Line, colored: bool) -> String {
+pub fn shown(line: &Line, colored: bool, transfer: Transfer) -> String {
     let indent = "  ".repeat(line.depth);
     let text = match line.adds {
-        Some(adds) if line.depth > 0 => format!("+ ({}, {}, {})  {}", adds.x, adds.y, adds.z, line.text),
+        Some(adds) if line.depth > 0 => {
+            let [x, y, z] = adds.to_array().map(number);
+            let [r, g, b] = transfer.encode_pixel(adds);
+            format!("+ ({x}, {y}, {z})  [{}, alone {r} {g} {b}]  {}", percent(line.share), line.text)
+        }
         _ => line.text.clone(),
     };
     match (colored, line.adds) {

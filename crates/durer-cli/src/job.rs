@@ -1,12 +1,12 @@
 //! From options to a job.
 
-use crate::args::{JobArgs, ViewArgs};
+use crate::args::{JobArgs, SceneArgs, ViewArgs};
 use crate::{Failure, bad, report};
 use durer::Loaded;
 use durer::camera::{Lens, Raster};
 use durer::compile::AccelKind;
 use durer::diag::Diagnostic;
-use durer::dialect::Dialect;
+use durer::dialect::{Compat, Dialect};
 use durer::film::Filter;
 use durer::film::aov::Aov;
 use durer::film::course::CourseFilter;
@@ -121,4 +121,76 @@ fn sampling(args: &JobArgs, asked: bool, timed: bool, plenty: u32) -> Result<Sam
         Some(_) => return Err(bad("the course's samplers take the filters box, tent and gaussian")),
     };
     Ok(Sampling::Course2004 { sampler, samples, filter })
+}
+
+/// The options that make a job of a scene, but for its size: those that are not what the scene has by itself.
+pub fn spelled(reading: &SceneArgs, job: &Job, loaded: &Loaded) -> String {
+    let asked = loaded.guess.is_none();
+    let mut words: Vec<String> = Vec::new();
+    let mut add = |word: String| words.push(word);
+    if asked {
+        add(format!("--dialect {}", loaded.dialect.name()));
+    }
+    for (compat, on) in &reading.compat {
+        let name = Compat::ALL.iter().find(|row| row.0 == *compat).map_or("", |row| row.1);
+        add(format!("--compat {}{name}", if *on { "" } else { "no-" }));
+    }
+    for assets in &reading.assets {
+        add(format!("--assets {}", shlex::try_quote(&assets.to_string_lossy()).unwrap_or_default()));
+    }
+    for (flag, on) in [("--strict", reading.strict), ("--allow-outside", reading.allow_outside)] {
+        if on {
+            add(flag.into());
+        }
+    }
+    let (settings, rules) = (&job.settings, &loaded.rules);
+    if settings.bounces != rules.bounces {
+        add(format!("--bounces {}", settings.bounces));
+    }
+    for (name, value, usual) in
+        [("shadows", settings.shadows, rules.shadows), ("shade-back", settings.shade_back, rules.shade_back)]
+    {
+        if value != usual {
+            add(format!("--{name}={}", if value { "on" } else { "off" }));
+        }
+    }
+    let flags = [
+        ("--transparent-shadows", settings.transparent_shadows && !rules.transparent_shadows),
+        ("--no-reflection", !settings.reflection),
+        ("--no-refraction", !settings.refraction),
+    ];
+    flags.into_iter().filter(|flag| flag.1).for_each(|flag| add(flag.0.into()));
+    let old = asked && loaded.dialect != Dialect::Durer;
+    if settings.least_weight != if old { 0.0 } else { 1.0 / 256.0 } {
+        add(format!("--weight {}", settings.least_weight));
+    }
+    match job.sampling {
+        Sampling::Center if !old => add("--samples 1".into()),
+        Sampling::Center => {}
+        Sampling::Filtered { samples, filter } => {
+            add(format!("--samples {samples}"));
+            if filter != Filter::default() {
+                let of_kind = |row: &&(&str, Filter)| row.1.with_radius(filter.radius()) == filter;
+                let name = Filter::NAMES.iter().find(of_kind).map_or("", |row| row.0);
+                add(format!("--filter {name} --filter-radius {}", filter.radius()));
+            }
+        }
+        Sampling::Course2004 { sampler, samples, filter } => {
+            let names = Sampler::NAMES.iter().find(|row| row.1 == sampler).map_or("sobol", |row| row.0);
+            add(format!("--sampler {names} --samples {samples}"));
+            match filter {
+                None => {}
+                Some(CourseFilter::Box { radius }) => add(format!("--filter box --filter-radius {radius}")),
+                Some(CourseFilter::Tent { radius }) => add(format!("--filter tent --filter-radius {radius}")),
+                Some(CourseFilter::Gaussian { sigma }) => add(format!("--filter gaussian --filter-radius {sigma}")),
+            }
+        }
+        Sampling::Course2012 { jitter, blur } => {
+            [("--jitter", jitter), ("--blur", blur)].iter().filter(|f| f.1).for_each(|f| add(f.0.into()));
+        }
+    }
+    if job.seed != 0 {
+        add(format!("--seed {}", job.seed));
+    }
+    words.join(" ")
 }

@@ -37,6 +37,10 @@ struct Written {
     title: String,
     words: String,
     ours: bool,
+    /// Why the scene cannot show it.
+    lacking: &'static str,
+    /// Whether it goes on with the topic of the step before.
+    goes_on: bool,
     before: Option<Figure>,
     after: Figure,
     change: Option<String>,
@@ -104,8 +108,8 @@ impl Lesson {
         let change = step.change.as_ref().map(|change| self.picture(format!("{name}-change.png"), &change.picture));
         let change = change.transpose()?;
         let plan = step.plan.map(|svg| (svg, format!("{name}-plan.svg")));
-        let Step { topic, title, words, ours, .. } = step;
-        self.steps.push(Written { topic, title, words, ours, before, after, change, plan });
+        let Step { topic, title, words, ours, lacking, goes_on, .. } = step;
+        self.steps.push(Written { topic, title, words, ours, lacking, goes_on, before, after, change, plan });
         Ok(())
     }
 
@@ -141,8 +145,9 @@ impl Lesson {
 impl Written {
     /// That the step is shown in another scene, and why.
     fn elsewhere(&self, scene: &str) -> Option<String> {
-        let lacking = self.topic.lacking;
-        self.ours.then(|| {
+        let lacking = self.lacking;
+        // The steps after the first are shown in the same scene.
+        (self.ours && !self.goes_on).then(|| {
             format!("{scene} cannot show this: {lacking}. It is shown in a small scene of ours, {OWN_SCENE_NAME}.")
         })
     }

@@ -18,8 +18,13 @@ pub fn uri(png: &[u8]) -> String {
     format!("data:image/png;base64,{}", STANDARD.encode(png))
 }
 
-/// A page with its data, which go where `@DATA@` stands in its script.
+/// What all pages share: looks, and the beginning of their scripts.
+const STYLE: &str = include_str!("page.css");
+const SCRIPT: &str = include_str!("page.js");
+
+/// A page with what all share, where `@STYLE@` and `@SCRIPT@` stand in it, and its data.
 pub fn with_data(page: &str, data: &Value) -> String {
+    let page = page.replacen("@STYLE@", STYLE, 1).replacen("@SCRIPT@", SCRIPT, 1);
     // Nothing in the data can end the script that holds them.
     page.replacen("@DATA@", &data.to_string().replace('<', "\\u003c"), 1)
 }

@@ -159,3 +159,20 @@ pub fn each<T, R>(names: &[String], items: Vec<T>, quiet: bool, mut work: impl F
     bar.finish_and_clear();
     done
 }
+
+/// Works with a bar that shows how far it is, from 0 to 1, where that takes long (on a terminal).
+pub fn shares<R>(name: &'static str, work: impl FnOnce(&(dyn Fn(f64) + Sync)) -> R) -> R {
+    let bar = ProgressBar::with_draw_target(Some(1000), ProgressDrawTarget::hidden());
+    let style = ProgressStyle::with_template("{bar:40} {percent:>3} %  {msg}  {elapsed}");
+    bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+    bar.set_message(name);
+    let start = Instant::now();
+    let result = work(&|share| {
+        if bar.is_hidden() && start.elapsed() > Duration::from_millis(500) && std::io::stderr().is_terminal() {
+            bar.set_draw_target(ProgressDrawTarget::stderr());
+        }
+        bar.set_position((1000.0 * share) as u64);
+    });
+    bar.finish_and_clear();
+    result
+}

@@ -76,7 +76,9 @@ fn regions_name_what_is_there() {
             assert!(there["hit"]["object"].as_str().unwrap().starts_with("Plane "), "{there}");
             assert_eq!(there["hit"]["normal"], serde_json::json!([0.0, 1.0, 0.0]));
             let command = there["command"].as_str().unwrap().strip_prefix("durer ").unwrap();
-            assert!(command.ends_with(&format!("--pixel {},{} --size 60x50", worst[0], worst[1])), "{command}");
+            // All options that made the reference are there, also those that were found out.
+            let options = format!("--pixel {},{} --size 60x50 --samples 1", worst[0], worst[1]);
+            assert!(command.ends_with(&options), "{command}");
             place.gives(0, command);
             let told = there["explanation"].as_array().unwrap();
             assert!(told.iter().any(|line| line.as_str().unwrap().contains("DirectionalLight")), "{told:?}");
@@ -244,30 +246,60 @@ fn border_pixels_and_missing_shadows_are_recognised() {
         place.gives(0, &format!("render whitted.txt --size 150x150 --samples 1 -q -o {name}.png {options}"));
     }
     let words = |name: &str| place.gives(1, &format!("compare right.png {name}.png")).out;
-    assert!(words("border").contains("its rays go to i / (n - 1)"), "{}", words("border"));
-    assert!(words("bare").contains("shadows are missing"), "{}", words("bare"));
+    // A fine pattern changes everywhere: where pixels alone do not tell, nothing is said.
+    assert!(!words("border").contains("noise"), "{}", words("border"));
+    // What is brighter may be so for many reasons: pixels alone do not tell.
+    assert!(words("bare").contains("the rest is equal: why cannot be told"), "{}", words("bare"));
+    let tried = |name: &str| place.gives(1, &format!("compare right.png {name}.png --scene whitted.txt")).out;
+    assert!(tried("bare").contains("there are no shadows: explains 100.0 %"), "{}", tried("bare"));
+    assert!(tried("border").contains("lie on the picture's border"), "{}", tried("border"));
 }
 
 /// Clicks through the page and tells what it saw.
 const CLICKS: &str = r##"
 const look = () => [getComputedStyle($("over")).visibility, getComputedStyle($("over")).clipPath, getComputedStyle($("over")).mixBlendMode].join(" ");
-const press = mode => { document.querySelector(`button[data-mode=${mode}]`).click(); see(`${mode}: ${look()}`); };
+const choose = mode => { document.querySelector(`button[data-mode=${mode}]`).click(); see(`${mode}: ${look()}`); };
 see(`rows ${document.querySelectorAll("#pairs tr.pick").length}`);
 see(`natural ${$("over").complete && $("over").naturalWidth}x${$("over").naturalHeight}`);
-for (const mode of ["slider", "reference", "picture", "difference", "blink"]) press(mode);
-press("heat");
+for (const mode of ["slider", "reference", "picture", "difference", "blink"]) choose(mode);
+choose("heat");
 see(`heat ${$("over").src === pair.images[2]}`);
-press("slider");
+choose("slider");
 mouse($("stage"), "pointerdown", 0.25, 0.1);
 mouse($("stage"), "pointermove", 0.75, 0.1);
 see(`slid ${getComputedStyle($("over")).clipPath}; ${$("at").textContent}`);
-document.querySelector("#where a").click();
+document.querySelector("#where .place").click();
 see(`box ${!$("box").hidden} ${$("box").style.left}`);
 document.querySelectorAll("#pairs tr.pick")[0].click();
 see(`name ${$("name").textContent}`);
 window.dispatchEvent(new KeyboardEvent("keydown", { key: "2" }));
 setTimeout(() => { see(`blinked ${getComputedStyle($("over")).visibility}`); done(); }, 700);
 "##;
+
+/// A class: who made the same mistake is said, and the table can be saved.
+#[test]
+fn a_class_is_a_matrix_of_students_and_pictures() {
+    let place = Place::new();
+    std::fs::create_dir_all(place.path("ref")).unwrap();
+    place.gives(0, "render scene.txt --size 60x50 --samples 1 -q -o ref/scene.png");
+    for (who, options) in [("ada", "--shadows=off"), ("bob", "--shadows=off"), ("eve", "")] {
+        std::fs::create_dir_all(place.path(&format!("class/{who}"))).unwrap();
+        place.gives(0, &format!("render scene.txt --size 60x50 --samples 1 -q -o class/{who}/scene.png {options}"));
+    }
+    place.gives(1, "compare ref class --scene . --report class.html");
+    let clicks = r##"
+see(`cells ${document.querySelectorAll("#matrix td figure img").length}`);
+see(`same ${document.querySelector(".group").textContent}`);
+see(`csv ${window.table().split("\r\n").length}`);
+document.querySelector("#matrix figure").dispatchEvent(new KeyboardEvent("keydown", { key: "Enter", bubbles: true }));
+see(`picked ${$("name").textContent}`);
+see(`narrow ${document.documentElement.scrollWidth <= document.documentElement.clientWidth}`);
+done();
+"##;
+    let wanted =
+        ["cells 3", "same ada, bob - scene.png: there are no shadows", "csv 5", "picked ada/scene.png", "narrow true"];
+    sees(&place, "class.html", clicks, &wanted);
+}
 
 #[test]
 fn the_page_works_in_a_browser_without_network() {

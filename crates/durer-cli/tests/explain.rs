@@ -51,7 +51,7 @@ fn samplers_of_the_course_are_explained_with_their_neighbours() {
     assert!(text.contains(" samples more have no weight here"), "{text}");
     let text = ran("--jitter --blur");
     assert!(text.contains("the mean of 49 samples by weight: sub-pixels, blurred"), "{text}");
-    assert!(text.contains("hits Sphere scene.txt:8:19"), "{text}");
+    assert!(text.contains("hits Sphere of line 8"), "{text}");
     assert_eq!(ran("--sampler random --samples 5").matches("  sample ").count(), 5);
 }
 
@@ -62,9 +62,11 @@ fn the_text_names_things_by_their_place_in_the_file() {
     for wanted in [
         "pixel 20,13 = (",
         "the mean of 16 samples",
-        "hits Sphere scene.txt:8:19 at t = ",
-        "material 0 scene.txt:5:3",
-        "DirectionalLight scene.txt:2:22: (sum below) · (0.9, 0.9, 0.8)",
+        "hits Sphere of line 8 at t = ",
+        "material 0 of line 5",
+        "DirectionalLight of line 2: (sum below) · (0.9, 0.9, 0.8)",
+        "in eight bits ",
+        " alone ",
         "the shadow ray is free",
     ] {
         assert!(ran.out.contains(wanted), "{wanted}\n{}", ran.out);
@@ -76,8 +78,26 @@ fn the_text_names_things_by_their_place_in_the_file() {
     for ray in [&["0 3 0 0 -1 0"][..], &["0", "3", "0", "0", "-1", "0"]] {
         let output = place.command("explain scene.txt --quiet --ray").args(ray).output().unwrap();
         let out = String::from_utf8(output.stdout).unwrap();
-        assert!(out.contains("camera ray") && out.contains("hits Sphere scene.txt:8:19 at t = 1.5"), "{out}");
+        assert!(out.contains("camera ray") && out.contains("hits Sphere of line 8 at t = 1.5"), "{out}");
     }
+}
+
+/// Small and deep terms are left out, and said to be; nothing has a minus before 0 or more than four digits.
+#[test]
+fn the_text_can_be_read() {
+    let place = Place::new();
+    let told =
+        |options: &str| place.gives(0, &format!("explain scene.txt --pixel 20,26 --samples 1 {options} {SMALL}")).out;
+    let all = told("");
+    assert!(all.contains("mirrored light\n") && !all.contains("index 1 to 1"), "{all}");
+    assert!(!all.contains("-0,") && !all.contains("-0)"), "{all}");
+    let digits =
+        |word: &str| word.chars().filter(char::is_ascii_digit).collect::<String>().trim_start_matches('0').len();
+    assert!(all.split(|c: char| !(c.is_ascii_digit() || c == '.')).all(|word| digits(word) <= 4), "{all}");
+    let pruned = told("--min 20%");
+    assert!(pruned.contains("of less than 20 % each (--min)") && pruned.len() < all.len(), "{pruned}");
+    let flat = told("--depth 3");
+    assert!(flat.contains(" below (--depth)") && flat.len() < all.len(), "{flat}");
 }
 
 #[test]
@@ -101,7 +121,7 @@ fn wrong_questions_are_refused() {
     let place = Place::new();
     for (question, answer) in [
         ("", "say which pixel"),
-        ("--pixel 40,3", "the crop does not lie in the picture of 40 x 30 pixels"),
+        ("--pixel 40,3", "pixel 40,3 lies outside the picture of 40 x 30 pixels"),
         ("--pixel 4;3", "say it as 200,150"),
         ("--pixel 4,3 --sample 16", "there is no sample 16: the pixel's are numbered from 0 to 15"),
         ("--pixel 4,3 --time 1s", "differs from run to run"),
@@ -190,6 +210,12 @@ const select = document.getElementById("sample"), old = document.getElementById(
 select.value = "3";
 select.dispatchEvent(new Event("change"));
 see(`another sample ${document.getElementById("tree").textContent !== old}`);
+const shares = [...document.querySelectorAll("#tree .bar")].map(bar => bar.style.getPropertyValue("--share"));
+see(`bars ${shares[0] === "100%" && shares.length > 4}`);
+space.focus();
+const facing = view.turn;
+space.dispatchEvent(new KeyboardEvent("keydown", { key: "ArrowRight", bubbles: true }));
+see(`keys ${view.turn > facing}`);
 setTimeout(() => {
   const sheet = document.getElementById("picture");
   see(`picture ${!sheet.hidden} ${sheet.width}x${sheet.height}`);
@@ -212,6 +238,8 @@ fn the_page_works_in_a_browser_without_network() {
         "orbited true",
         "nearer true",
         "another sample true",
+        "bars true",
+        "keys true",
         "picture true 40x30",
     ];
     sees(&place, "why.html", CLICKS, &wanted);

@@ -19,6 +19,7 @@ pub mod light;
 pub mod load;
 pub mod material;
 pub mod math;
+pub mod mistakes;
 pub mod render;
 pub mod sampler;
 pub mod scene;

@@ -1,7 +1,7 @@
 //! From a scene file's path to a world: dialect, rules, files.
 
 use crate::compile::{AccelKind, Resources, compile};
-use crate::diag::{Diagnostics, Files};
+use crate::diag::{Diagnostic, Diagnostics, Files, Severity};
 use crate::dialect::{Compat, Dialect, PathBase, Rules};
 use crate::format::course::{self, Guess, Hint, ReadOptions};
 use crate::scene::Scene;
@@ -121,11 +121,31 @@ pub fn load_text(
     source = source.budget(Source::DEFAULT_BUDGET.min(options.memory.unwrap_or(u64::MAX)));
     let read = ReadOptions { dialect, strict: options.strict, compat: rules.compat };
     let scene = course::read(&bytes, file, read, diagnostics);
+    if let (Some(_), Some(dialect), false, false) = (&scene, options.dialect, options.strict, options.course) {
+        diagnostics.extend(portability(&bytes, file, dialect, diagnostics));
+    }
     if let (None, Some(guess)) = (&scene, &guess) {
         // What is wrong in one dialect may be right in another.
         diagnostics.push(guess.note());
     }
     scene.map(|scene| Loaded { scene, rules, dialect, guess, source })
+}
+
+/// What the year's own program would refuse in a file that is read here: the first of it, as a note, unless it was said.
+fn portability(bytes: &[u8], file: u32, dialect: Dialect, said: &Diagnostics) -> Diagnostics {
+    let (mut strict, mut notes) = (Diagnostics::default(), Diagnostics::default());
+    if dialect != Dialect::Durer {
+        course::read(bytes, file, ReadOptions { dialect, strict: true, compat: dialect.rules().compat }, &mut strict);
+    }
+    let first = strict.iter().find(|d| d.severity == Severity::Error);
+    if let Some(first) = first.filter(|first| !said.iter().any(|known| known.span == first.span)) {
+        let message = format!("the program of {} would refuse this file: {}", dialect.name(), first.message);
+        let note = Diagnostic::note(message)
+            .code("portability")
+            .help("it is read here all the same; `--strict` refuses it too");
+        notes.push(Diagnostic { span: first.span, ..note });
+    }
+    notes
 }
 
 impl Loaded {

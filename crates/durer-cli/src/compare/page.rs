@@ -51,7 +51,7 @@ fn pair(compared: &Compared) -> Value {
     let mut value = text::pair(compared);
     value["title"] = name(&compared.pair).into();
     if let Outcome::Compared(found) = &compared.outcome {
-        value["causes"] = text::causes(found).into();
+        value["causes"] = compared.causes().into();
         value["places"] = found.regions.iter().map(text::place).collect::<Vec<_>>().into();
     }
     if let Some(Shown { reference, picture, heat }) = &compared.shown {

@@ -1,7 +1,7 @@
 //! Comparisons as text and as JSON.
 
 use super::there::There;
-use super::{Compared, Outcome, name, note};
+use super::{Compared, Outcome, name, named, note};
 use crate::args::CompareArgs;
 use crate::output::say;
 use crate::report::counted;
@@ -29,7 +29,8 @@ pub fn single(compared: &Compared, options: &Options) {
         Verdict::Identical => say("identical"),
         verdict => say(&format!("{}: {over}", verdict.name())),
     }
-    for line in causes(found) {
+    compared.note.iter().for_each(|line| note(line));
+    for line in compared.causes() {
         say(&format!("  {line}"));
     }
     say(&format!("  RMSE      {:.6}", measures.rmse));
@@ -77,7 +78,9 @@ pub fn causes(found: &Comparison) -> Vec<String> {
         return Vec::new();
     }
     if found.findings.is_empty() {
-        return vec!["none of the usual mistakes explains the difference".into()];
+        return vec![
+            "cannot be told from the pictures alone; give `--scene`, with the options that made the reference".into(),
+        ];
     }
     let line = |(i, finding): (usize, &Finding)| {
         let percent = (1000.0 * finding.explained + 1e-6).floor() / 10.0;
@@ -121,7 +124,7 @@ pub fn table(all: &[Compared], extra: &[PathBuf]) {
                 let share = 100.0 * m.over_tolerance as f64 / (f64::from(found.width) * f64::from(found.height));
                 let ssim = m.ssim.map_or("-".into(), |ssim| format!("{ssim:.4}"));
                 let flip = m.hdr_flip.unwrap_or(m.flip);
-                let why = causes(found).join("; ");
+                let why = compared.causes().first().cloned().unwrap_or_default();
                 let line =
                     format!("{name:wide$}  {verdict:9}  {share:8.3}  {:7.4}  {ssim:>6}  {flip:6.4}  {why}", m.rmse);
                 say(line.trim_end());
@@ -192,6 +195,9 @@ pub fn pair(compared: &Compared) -> Value {
         Outcome::Failed(reason) => json!({ "error": reason }),
         Outcome::Compared(found) => numbers(found, &compared.there),
     };
+    if let Some(diagnosis) = &compared.diagnosis {
+        value["diagnosis"] = named::json(diagnosis);
+    }
     if let (Value::Object(value), Value::Object(more)) = (&mut value, more) {
         value.extend(more);
     }

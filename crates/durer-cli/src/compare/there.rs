@@ -1,17 +1,15 @@
 //! What of the scene is where pictures differ.
 
-use super::pairs::Pair;
-use crate::args::CompareArgs;
+use super::stage::Stage;
+use crate::Failure;
 use crate::explain::{deep, shown};
-use crate::guard::Guard;
-use crate::open::{Opened, load_options, open};
-use crate::{Failure, bad, job};
+use crate::open::Opened;
+use durer::image::Transfer;
 use durer::image::compare::Comparison;
 use durer::math::Ray;
-use durer::render::explain::{Names, explain_ray, ray_text};
+use durer::render::explain::{Names, Telling, explain_ray, ray_text};
 use durer::render::{Job, center_ray, raster};
 use serde_json::{Value, json};
-use std::path::{Path, PathBuf};
 
 /// What the ray through the middle of a pixel meets.
 pub struct There {
@@ -30,41 +28,19 @@ pub struct Hit {
     pub normal: [f32; 3],
 }
 
-/// For each region what is at the pixel that differs most; nothing where no scene is given.
-pub fn there(args: &CompareArgs, pair: &Pair, found: &Comparison, guard: &mut Guard) -> Result<Vec<There>, Failure> {
-    let Some(scene) = &args.scene else { return Ok(Vec::new()) };
-    let path = path(scene, pair)?;
-    let options = load_options(&args.reading);
-    let opened = open(&path, &options, true, guard)?;
-    let job = job::job(&args.job, Some(&args.view), &opened.loaded, false)?;
-    let job = Job { width: found.width, height: found.height, crop: None, ..job };
+/// For each region what is at the pixel that differs most.
+pub fn there(stage: &Stage, found: &Comparison) -> Result<Vec<There>, Failure> {
+    let Stage { opened, job, .. } = stage;
     let raster = raster(&opened.world, job.width, job.height);
     let look = |place: (u32, u32)| {
-        let shown = path.to_string_lossy();
-        let quoted = shlex::try_quote(&shown).unwrap_or_default();
-        let ((x, y), (width, height)) = (place, (job.width, job.height));
-        let command = format!("durer explain {quoted} --pixel {x},{y} --size {width}x{height}");
         let ray = center_ray(&opened.world, &raster, place);
-        let (hit, explanation) = ray.map_or(Ok((None, Vec::new())), |ray| along(&opened, &job, &ray))?;
-        Ok(There { hit, explanation, command })
+        let (hit, explanation) = ray.map_or(Ok((None, Vec::new())), |ray| along(opened, job, &ray, stage.transfer))?;
+        Ok(There { hit, explanation, command: stage.explain(place) })
     };
     found.regions.iter().map(|region| look(region.worst)).collect()
 }
 
-/// The scene of a pair: in a folder, that of the picture's name.
-fn path(scene: &Path, pair: &Pair) -> Result<PathBuf, Failure> {
-    if !scene.is_dir() {
-        return Ok(scene.into());
-    }
-    let name = Path::new(&pair.name).with_extension("txt");
-    let path = scene.join(&name);
-    match path.exists() {
-        true => Ok(path),
-        false => Err(bad(format!("there is no `{}` in `{}`", name.display(), scene.display()))),
-    }
-}
-
-fn along(opened: &Opened, job: &Job, ray: &Ray) -> Result<(Option<Hit>, Vec<String>), Failure> {
+fn along(opened: &Opened, job: &Job, ray: &Ray, transfer: Transfer) -> Result<(Option<Hit>, Vec<String>), Failure> {
     let world = &opened.world;
     let names = Names { files: &opened.files, scene: &opened.loaded.scene, world };
     let hit = world.closest(ray, &mut ()).map(|hit| Hit {
@@ -74,8 +50,8 @@ fn along(opened: &Opened, job: &Job, ray: &Ray) -> Result<(Option<Hit>, Vec<Stri
         normal: world.surface(ray, &hit).n_shade.to_array(),
     });
     let light = deep(|| explain_ray(world, job, ray))?;
-    let lines = light.iter().flat_map(|light| ray_text(light, &names));
-    Ok((hit, lines.map(|line| shown(&line, false)).collect()))
+    let lines = light.iter().flat_map(|light| ray_text(light, &names, &Telling { transfer, ..Telling::default() }));
+    Ok((hit, lines.map(|line| shown(&line, false, transfer)).collect()))
 }
 
 impl There {

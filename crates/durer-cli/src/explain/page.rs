@@ -1,6 +1,8 @@
 //! The explanation as a page of its own.
 
+use super::outlines::{lights, outlines};
 use crate::Failure;
+use crate::args::ExplainArgs;
 use crate::page;
 use durer::image::{Image, Layer, Transfer};
 use durer::world::World;
@@ -8,19 +10,23 @@ use serde_json::{Value, json};
 
 /// The page without its data.
 const PAGE: &str = include_str!("page.html");
-/// At most so many boxes are drawn: more hide each other.
-const MOST_BOXES: usize = 400;
-
 /// A page that needs nothing else: the picture, the tree of one sample to begin with, and the rays in space.
-pub fn page(explanation: Value, sample: usize, world: &World, picture: &Image) -> Result<String, Failure> {
-    let picture = page::png(Layer::color("color", picture.clone()), Transfer::default())?;
-    let boxes = world.objects.iter().filter_map(|object| object.bounds()).take(MOST_BOXES);
-    let boxes: Vec<Value> = boxes.map(|b| json!({ "min": b.min, "max": b.max })).collect();
+pub fn page(
+    explanation: Value,
+    sample: usize,
+    world: &World,
+    picture: &Image,
+    args: &ExplainArgs,
+) -> Result<String, Failure> {
+    let transfer = Transfer::from_name(&args.render.transfer).unwrap_or_default();
+    let picture = page::png(Layer::color("color", picture.clone()), transfer)?;
     let data = json!({
         "explanation": explanation,
         "sample": sample,
         "picture": page::uri(&picture),
-        "boxes": boxes,
+        "transfer": transfer.name(),
+        "outlines": outlines(world),
+        "lights": lights(world),
         "eye": world.frame.eye,
     });
     Ok(page::with_data(PAGE, &data))

@@ -25,7 +25,9 @@ fn step(text: &mut String, number: usize, step: &Written, scene: &str) {
         let link = format!("[{OWN_SCENE_NAME}]({OWN_SCENE_NAME})");
         let _ = writeln!(text, "> {}\n", plain(&elsewhere).replace(OWN_SCENE_NAME, &link));
     }
-    let _ = writeln!(text, "{}\n\n```text\n{}\n```\n", step.topic.words, step.topic.equations.join("\n"));
+    if !step.goes_on {
+        let _ = writeln!(text, "{}\n\n```text\n{}\n```\n", step.topic.words, step.topic.equations.join("\n"));
+    }
     // Pictures side by side, with what they show above them.
     let mut columns: Vec<(&str, &str)> =
         step.before.iter().chain([&step.after]).map(|figure| (figure.caption, figure.file.as_str())).collect();
@@ -37,6 +39,9 @@ fn step(text: &mut String, number: usize, step: &Written, scene: &str) {
     let _ =
         writeln!(text, "{}\n", row(columns.iter().map(|column| format!("![{}]({})", column.0, column.1)).collect()));
     let _ = writeln!(text, "{}\n", plain(&step.words));
+    if step.goes_on {
+        return;
+    }
     let places: Vec<String> = step.topic.places.iter().map(|p| format!("`{}`: `{}`", p.file, p.symbol)).collect();
     let _ = writeln!(text, "In the source:\n\n- {}", places.join("\n- "));
 }

@@ -26,13 +26,14 @@ fn step(step: &Written, scene: &str) -> Value {
     json!({
         "title": step.title,
         "elsewhere": step.elsewhere(scene),
-        "words": step.topic.words,
-        "equations": step.topic.equations,
+        // What the steps of one topic have in common is said once.
+        "words": (!step.goes_on).then_some(step.topic.words),
+        "equations": (!step.goes_on).then_some(step.topic.equations),
         "before": step.before.as_ref().map(figure),
         "after": figure(&step.after),
         "change": step.change,
         "plan": step.plan.as_ref().map(|plan| &plan.0),
         "facts": step.words,
-        "places": step.topic.places.iter().map(|place| json!([place.file, place.symbol])).collect::<Vec<_>>(),
+        "places": step.topic.places.iter().filter(|_| !step.goes_on).map(|place| json!([place.file, place.symbol])).collect::<Vec<_>>(),
     })
 }

@@ -4,7 +4,7 @@ use super::MOST_SOUGHT;
 use super::finding::{Finding, counted, percent, vector};
 use super::scout::Scout;
 use crate::diag::{Diagnostic, Severity, Span};
-use crate::dialect::Secondary;
+use crate::dialect::{Dialect, Secondary};
 use crate::light::Light;
 use crate::material::Pattern;
 use crate::math::Color;
@@ -81,27 +81,45 @@ pub(super) fn black(scout: &Scout) -> Vec<Finding> {
 
 /// Mirrors and glass in a picture without secondary rays.
 pub(super) fn no_bounces(scout: &Scout) -> Vec<Finding> {
-    if scout.subject.job.settings.bounces > 0 {
-        return Vec::new();
-    }
+    let settings = &scout.subject.job.settings;
+    let old = scout.world().rules.is_official();
+    let counts = |color: Color| if old { color.length() } else { color.max_element() };
+    // What counts for too little from the first bounce on is never traced.
+    let cut = |phong: &Phong| counts(phong.reflective).max(counts(phong.transparent)) < settings.least_weight;
+    let none = settings.bounces == 0;
     let bounces = |phong: &Phong| phong.reflective != Color::ZERO || phong.transparent != Color::ZERO;
     // Where the highlight's colour is the mirror's too, only what would be black without mirroring is meant as a mirror.
     let shared = matches!(scout.world().rules.secondary, Secondary::Specular | Secondary::SpecularFresnel);
     let meant = |phong: &Phong| phong.fresnel || !shared || phong.diffuse.max_element() < 0.15;
-    let Some((i, written, phong)) =
-        phongs(scout).find(|(i, _, phong)| bounces(phong) && meant(phong) && rays(scout, *i) > 0)
-    else {
-        return Vec::new();
-    };
+    let all: Vec<_> =
+        phongs(scout).filter(|(i, _, phong)| bounces(phong) && meant(phong) && rays(scout, *i) > 0).collect();
+    let Some((i, written, phong)) = all.iter().find(|(.., phong)| none || cut(phong)) else { return Vec::new() };
     let diffuse = phong.diffuse.max_element();
     let what = if phong.transparent == Color::ZERO { "mirrors" } else { "lets light through" };
-    let diagnostic = Diagnostic::warning(format!("material {i} {what}, but there are 0 levels of secondary rays"))
+    let (message, help) = match none {
+        true => (
+            format!("material {i} {what}, but there are 0 levels of secondary rays"),
+            "ask for some: `--bounces 4` (in the course's programs `-bounces 4`)".to_string(),
+        ),
+        false => (
+            format!(
+                "material {i} {what}, but its rays count for {} and those below {} are left out",
+                super::finding::number(counts(phong.reflective).max(counts(phong.transparent))),
+                super::finding::number(settings.least_weight)
+            ),
+            "ask for a smaller one: `--weight 0.01` (in the course's programs `-weight 0.01`)".to_string(),
+        ),
+    };
+    let diagnostic = Diagnostic::warning(message)
         .at(written.span)
-        .effect(if diffuse < 0.1 { "it is black, or nearly so" } else { "only its own colour is seen" })
-        .help("ask for some: `--bounces 4` (in the course's programs `-bounces 4`)");
+        .effect(if diffuse < 0.15 { "it is black, or nearly so" } else { "only its own colour is seen" })
+        .help(help);
     // Where that year's program makes none unless it is asked, nobody has left them out.
-    let usual = scout.world().rules.bounces == 0;
-    vec![Finding::from(if usual { Diagnostic { severity: Severity::Note, ..diagnostic } } else { diagnostic })]
+    let usual = none && scout.world().rules.bounces == 0;
+    let seen: usize = all.iter().map(|(i, ..)| rays(scout, *i)).sum();
+    let whole = !usual && seen * 2 > scout.seen().count();
+    let finding = Finding::from(if usual { Diagnostic { severity: Severity::Note, ..diagnostic } } else { diagnostic });
+    vec![finding.whole(whole)]
 }
 
 /// Glass of an index that no glass has.
@@ -128,18 +146,27 @@ struct Named {
 
 fn all_colors(scout: &Scout) -> Vec<Named> {
     let mut colors = Vec::new();
-    for (_, written, _) in phongs(scout) {
+    for (i, written, _) in phongs(scout) {
         let Written::Phong(phong, _) = &written.value else { continue };
-        let named = |color, fields| Named { color, block: written.span, fields, most: 15.0 };
-        colors.extend(phong.diffuse_color.map(|color| named(color, ["diffuseColor", "diffuse"])));
-        colors.push(named(phong.specular_color, ["specularColor", "specular"]));
-        colors.push(named(phong.reflective_color, ["reflectiveColor", "reflectiveColor"]));
-        colors.push(named(phong.transparent_color, ["transparentColor", "transparentColor"]));
+        // A surface gives back no more than it gets; a highlight may be as strong as it looks well.
+        // What is hardly seen may stand for a lamp.
+        let small = rays(scout, i) * 12 < scout.probes.len();
+        let named = |color, fields, most: f32| {
+            let most = if small { most.max(15.0) } else { most };
+            Named { color, block: written.span, fields, most }
+        };
+        colors.extend(phong.diffuse_color.map(|color| named(color, ["diffuseColor", "diffuse"], 1.001)));
+        colors.push(named(phong.specular_color, ["specularColor", "specular"], 5.0));
+        colors.push(named(phong.reflective_color, ["reflectiveColor", "reflectiveColor"], 1.001));
+        colors.push(named(phong.transparent_color, ["transparentColor", "transparentColor"], 1.001));
     }
-    for (written, light) in scout.subject.scene.lights.iter().flatten().zip(&scout.world().lights) {
-        // A light that fades may be as strong as it must.
+    for (number, (written, light)) in scout.subject.scene.lights.iter().flatten().zip(&scout.world().lights).enumerate()
+    {
+        // A light that fades may be as strong as it must, so that not too much of it arrives.
         let fades = matches!(light, Light::Point(point) if point.attenuation.is_some());
-        let most = if fades { f32::INFINITY } else { 20.0 };
+        let arrives = scout.seen().filter_map(|(_, seen)| seen.by(number)).map(|lit| lit.arrives.max_element());
+        let too_much = arrives.fold(0.0, f32::max) > 20.0;
+        let most = if fades && !too_much { f32::INFINITY } else { 20.0 };
         colors.push(Named {
             color: super::lights::color(light),
             block: written.span,
@@ -154,19 +181,28 @@ fn all_colors(scout: &Scout) -> Vec<Named> {
 pub(super) fn too_large(scout: &Scout) -> Vec<Finding> {
     let mut found = Vec::new();
     let mut say = |color: Color, place: Option<Span>, block: Option<Span>| {
-        let bytes = color.max_element() <= 255.0;
+        // Only whole numbers of which some are large are meant as 255ths.
+        let whole = color.to_array().iter().all(|c| c.fract() == 0.0);
+        let bytes = whole && (20.0..=255.0).contains(&color.max_element());
         let mended = if bytes { color / 255.0 } else { color / color.max_element() };
-        let diagnostic = Diagnostic::warning(format!("the colour {} is far beyond 1", vector(color)))
-            .effect("it is white, or of a pure colour, whatever the light")
+        let far = color.max_element() > 2.0;
+        let message = format!("the colour {} is {}beyond 1", vector(color), if far { "far " } else { "" });
+        let diagnostic = Diagnostic::warning(message)
+            .effect(match far {
+                true => "it is white, or of a pure colour, whatever the light",
+                false => "more light comes back than arrives: bright parts are cut off, and lose their shading",
+            })
             .help(match bytes {
                 true => format!("colours go from 0 to 1, not to 255: `{}`", vector(mended)),
                 false => format!("colours go from 0 to 1: `{}`, say", vector(mended)),
             });
         let diagnostic = match place {
-            Some(place) => diagnostic.at(place).fix(place, vector(mended)),
+            // What was meant by any other number nobody knows.
+            Some(place) if bytes => diagnostic.at(place).fix(place, vector(mended)),
+            Some(place) => diagnostic.at(place),
             None => Diagnostic { span: block, ..diagnostic },
         };
-        found.push(Finding::from(diagnostic).whole(true));
+        found.push(Finding::from(diagnostic).whole(far));
     };
     let beyond = all_colors(scout).into_iter().filter(|named| named.color.max_element() > named.most);
     for Named { color, block, fields, .. } in beyond.take(MOST_SOUGHT) {
@@ -280,6 +316,9 @@ pub(super) fn unused(scout: &Scout) -> Vec<Finding> {
     let diagnostic = Diagnostic::note(message)
         .at(written[first].span)
         .effect("it changes nothing in the picture")
-        .help("is a `MaterialIndex` wrong? They count from 0");
+        .help(match scout.subject.dialect {
+            Dialect::F23 => "is the `index` of a `Component<Material>` wrong? They count from 0",
+            _ => "is a `MaterialIndex` wrong? They count from 0",
+        });
     vec![Finding::from(diagnostic)]
 }

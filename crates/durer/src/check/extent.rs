@@ -5,10 +5,11 @@ use super::finding::{Finding, counted, number, vector};
 use super::scout::Scout;
 use super::sight::Sight;
 use super::view::pixels;
-use crate::camera::Camera;
+use crate::camera::{Camera, Lens};
 use crate::diag::{Diagnostic, Span};
-use crate::math::Aabb;
+use crate::math::{Aabb, fp};
 use crate::scene::{MatrixOp, Node, Object};
+use crate::world::Material;
 
 /// What spans fewer pixels cannot be recognised.
 const FEWEST_PIXELS: f32 = 6.0;
@@ -16,6 +17,9 @@ const FEWEST_PIXELS: f32 = 6.0;
 const FEW_OBJECTS: usize = 8;
 /// Beyond this ratio of sizes something is out of scale.
 const OUT_OF_SCALE: f32 = 3e3;
+
+/// Sizes of things that single precision can place beside others.
+const ABSURD: std::ops::Range<f32> = 1e-9..1e9;
 
 /// All that has an end spans but a few pixels.
 pub(super) fn too_small(scout: &Scout) -> Vec<Finding> {
@@ -104,10 +108,34 @@ pub(super) fn out_of_scale(scout: &Scout) -> Vec<Finding> {
     };
     let mut sizes: Vec<(u32, f32)> = world.objects.iter().enumerate().filter_map(sized).collect();
     sizes.sort_by(|a, b| a.1.total_cmp(&b.1));
-    if sizes.len() < 2 {
-        return Vec::new();
+    let absurd = sizes.iter().filter(|(_, size)| !ABSURD.contains(size));
+    let lost: Vec<Finding> = absurd
+        .take(MOST_SOUGHT)
+        .map(|&(object, size)| {
+            let diagnostic = Diagnostic::warning(format!("the {} is {} wide", scout.object(object), number(size)))
+                .at(scout.object_span(object))
+                .effect("numbers of this size have not enough digits: it is not seen, or all is inside it")
+                .help("look at its size and the `Scale` around it");
+            Finding::from(diagnostic).whole(size > 1.0)
+        })
+        .collect();
+    if sizes.len() < 2 || !lost.is_empty() {
+        return lost;
     }
-    let middle = sizes[sizes.len() / 2].1;
+    // Of two, that which the camera's distance speaks for is right.
+    let eye = world.camera.pose().center;
+    let away = |object: u32| world.objects[object as usize].bounds().map_or(1.0, |b| (b.center() - eye).length());
+    let odd = |(object, size): (u32, f32)| fp::ln(size / away(object).clamp(1e-6, 1e6)).abs();
+    let middle = match sizes[..] {
+        [small, large] => {
+            if odd(small) < odd(large) {
+                small.1
+            } else {
+                large.1
+            }
+        }
+        _ => sizes[sizes.len() / 2].1,
+    };
     let mut found = Vec::new();
     for &(object, size) in &sizes {
         let ratio = if size > middle { size / middle } else { middle / size };
@@ -146,7 +174,8 @@ pub(super) fn unseen(scout: &Scout) -> Vec<Finding> {
     let out: Vec<u32> = (0..sights.len() as u32).filter(|&i| sights[i as usize] == Sight::Outside).collect();
     let hidden: Vec<(u32, u32)> = (0..sights.len() as u32)
         .filter_map(|i| match sights[i as usize] {
-            Sight::Hidden(by) => Some((i, by)),
+            // What is behind glass, or in a mirror's sight, is seen.
+            Sight::Hidden(by) if !is_glass(scout, by) => Some((i, by)),
             _ => None,
         })
         .collect();
@@ -177,6 +206,14 @@ pub(super) fn unseen(scout: &Scout) -> Vec<Finding> {
         found.push(Finding::from(diagnostic));
     }
     found
+}
+
+/// Whether light goes through an object.
+fn is_glass(scout: &Scout, object: u32) -> bool {
+    let world = scout.world();
+    let phong =
+        |material: &Material| matches!(material, Material::Phong(phong) if phong.transparent.max_element() > 0.0);
+    world.materials.get(world.objects[object as usize].material as usize).is_some_and(phong)
 }
 
 /// Objects far from all that is seen: thrown away by a transform, say.

@@ -18,6 +18,9 @@ const MOST_JUDGED: usize = 500;
 /// A light that adds something to a smaller share of what is seen might as well add nothing.
 const SHARE: f32 = 0.002;
 
+/// Where more of what faces a light than this is in shadow, the light is kept off.
+const MOST_BLOCKED: f32 = 0.95;
+
 /// What a light does to what is seen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Verdict {
@@ -57,7 +60,13 @@ fn verdict(scout: &Scout, number: usize) -> Verdict {
         return Verdict::Divides;
     }
     let visible = all.iter().filter(|lit| lit.adds.abs().max_element() > VISIBLE).count();
-    if all.is_empty() || visible as f32 > SHARE * all.len() as f32 {
+    // A few lights are each meant to be seen.
+    let most = all.iter().map(|lit| lit.adds.abs().max_element()).fold(0.0, f32::max);
+    let arrives = all.iter().map(|lit| lit.arrives.abs().max_element()).fold(0.0, f32::max);
+    if scout.world().lights.len() <= 3 && most > VISIBLE && most < 6.0 * VISIBLE && arrives < 12.0 * VISIBLE {
+        return Verdict::Faint(arrives);
+    }
+    if all.is_empty() || visible as f32 > SHARE * all.len() as f32 && !nearly_blocked(&all) {
         return Verdict::Works;
     }
     if let Light::Point(point) = light
@@ -68,7 +77,7 @@ fn verdict(scout: &Scout, number: usize) -> Verdict {
     }
     let facing: Vec<&&Lit> = all.iter().filter(|lit| lit.cosine > 1e-3).collect();
     let blocked: Vec<u32> = facing.iter().filter_map(|lit| lit.blocker).collect();
-    if facing.len() - blocked.len() > all.len() / 50 {
+    if facing.len() - blocked.len() > all.len() / 50 && !nearly_blocked(&all) {
         let most = facing.iter().map(|lit| lit.arrives.abs().max_element()).fold(0.0, f32::max);
         return if most < 4.0 * VISIBLE { Verdict::Faint(most) } else { Verdict::Cancelled };
     }
@@ -76,6 +85,13 @@ fn verdict(scout: &Scout, number: usize) -> Verdict {
         Some(object) => Verdict::Blocked(object),
         None => Verdict::Behind,
     }
+}
+
+/// Whether something keeps a light off nearly all that faces it: a few pixels at the horizon may be lit.
+fn nearly_blocked(all: &[&Lit]) -> bool {
+    let facing: Vec<&&Lit> = all.iter().filter(|lit| lit.cosine > 1e-3).collect();
+    let blocked = facing.iter().filter(|lit| lit.blocker.is_some()).count();
+    blocked as f32 > MOST_BLOCKED * facing.len() as f32 && facing.len() * 5 > all.len()
 }
 
 /// The seen plane that is between the camera and a light, if one is first of all.
@@ -150,8 +166,29 @@ fn each(scout: &Scout, find: impl Fn(usize, Verdict) -> Option<Diagnostic>) -> V
     verdicts.filter_map(|(light, verdict)| Some(Finding::from(find(light, *verdict)?).whole(whole))).collect()
 }
 
+/// Lights that do something only because nothing casts shadows: an object is around them.
+fn enclosed(scout: &Scout) -> Vec<Finding> {
+    let shadows = scout.subject.job.settings.shadows;
+    let lights = scout.world().lights.iter().enumerate().filter(|_| !shadows).take(MOST_JUDGED);
+    let say = |(light, lamp): (usize, &Light)| {
+        let Light::Point(point) = lamp else { return None };
+        if scout.verdicts()[light] != Verdict::Works {
+            return None;
+        }
+        let object = *around(scout.world(), point.position).first()?;
+        let span = place(scout, light)?;
+        let note = Diagnostic::note(format!("this light is inside the {}", scout.object(object)))
+            .effect("that object has no light from it, and with shadows nothing else has")
+            .related(scout.object_span(object), "around the light")
+            .help("move one of them, unless the object stands for a lamp");
+        Some(Finding::from(scout.at_value(note, span, &["position"])))
+    };
+    lights.filter_map(say).collect()
+}
+
 pub(super) fn inside(scout: &Scout) -> Vec<Finding> {
-    each(scout, |light, verdict| {
+    let mut found = enclosed(scout);
+    found.extend(each(scout, |light, verdict| {
         let Verdict::Inside(object) = verdict else { return None };
         let name = scout.object(object);
         let (diagnostic, span) = useless(scout, light, format!("this light is inside the {name}"))?;
@@ -160,7 +197,8 @@ pub(super) fn inside(scout: &Scout) -> Vec<Finding> {
         let diagnostic =
             scout.at_value(diagnostic, span, &["position"]).related(scout.object_span(object), "around the light");
         Some(diagnostic.help(format!("move it out: `position {}` is above it, say", vector(above))))
-    })
+    }));
+    found
 }
 
 pub(super) fn blocked(scout: &Scout) -> Vec<Finding> {
@@ -169,9 +207,13 @@ pub(super) fn blocked(scout: &Scout) -> Vec<Finding> {
         let name = scout.object(object);
         let message = format!("the {name} keeps this light off all that is seen");
         let (diagnostic, _) = useless(scout, light, message)?;
-        let help = match scout.world().objects[object as usize].bounds() {
-            None => "the light is behind the plane: move it to the other side",
-            Some(_) => "move the light, or what is in its way",
+        let help = match (scout.world().objects[object as usize].bounds(), &scout.world().lights[light]) {
+            (None, Light::Point(_)) => "the light is behind the plane: move it to the other side",
+            (None, Light::Directional(_)) => {
+                "the light comes from behind the plane: turn its `direction`, which is where light goes"
+            }
+            (Some(_), Light::Directional(_)) => "turn the light, or move what is in its way",
+            (Some(_), Light::Point(_)) => "move the light, or what is in its way",
         };
         Some(diagnostic.related(scout.object_span(object), "in the way").help(help))
     })
@@ -186,10 +228,10 @@ const NEARLY_ALL_DARK: f32 = 0.25;
 fn mostly_dark(scout: &Scout) -> Vec<Finding> {
     let working: Vec<usize> = (0..scout.verdicts().len()).filter(|&i| scout.verdicts()[i] == Verdict::Works).collect();
     let (mut all, mut reached, mut away) = (0, 0, 0);
+    let bright = |lit: &Lit| lit.adds.abs().max_element() > VISIBLE;
     for (_, seen) in scout.seen() {
         all += 1;
-        let bright = |lit: &Lit| lit.adds.abs().max_element() > VISIBLE;
-        reached += usize::from(seen.lit.iter().any(bright));
+        reached += usize::from(seen.lit.iter().any(&bright));
         away += usize::from(seen.lit.iter().all(|lit| lit.cosine <= 1e-3));
     }
     // What is black of itself, or in shadow, tells nothing of where the lights are.
@@ -212,6 +254,14 @@ fn mostly_dark(scout: &Scout) -> Vec<Finding> {
         if let Some(Spanned { value: Light::Directional(light), span }) = written(scout, light) {
             diagnostic = diagnostic.fix_at(scout.value(*span, &["direction"]), vector(-light.direction));
         }
+    }
+    // A crescent of a round thing may well be meant; of a floor no light at all is not.
+    let flat = |object: u32| scout.world().objects[object as usize].bounds().is_none();
+    let floor = scout.seen().any(|(_, seen)| flat(seen.object));
+    let lit_floor = scout.seen().any(|(_, seen)| flat(seen.object) && seen.lit.iter().any(bright));
+    if (!floor || lit_floor) && reached as f32 > 0.02 * all as f32 {
+        diagnostic.severity = Severity::Note;
+        return vec![Finding::from(diagnostic)];
     }
     vec![Finding::from(diagnostic).whole((reached as f32) < NEARLY_ALL_DARK * all as f32)]
 }
@@ -320,7 +370,16 @@ pub(super) fn divides(scout: &Scout) -> Vec<Finding> {
             let divisor = divisor(&scout.world().lights[light]).unwrap_or_default();
             let zero = divisor == Vec3::ZERO;
             let message = match zero {
-                true => "this light divides by zero: its attenuation is 0 0 0".to_string(),
+                true => match scout.value(span, &["attenuation", "falloff"]) {
+                    Some(value) => {
+                        format!(
+                            "this light divides by zero: its {} is {}",
+                            scout.text(before(scout, value)),
+                            scout.text(value)
+                        )
+                    }
+                    None => "this light divides by zero: nothing is written of how it fades".to_string(),
+                },
                 false => format!("this light is divided by numbers that are not above zero: {}", vector(divisor)),
             };
             let value = scout.value(span, &["attenuation", "falloff"]);
@@ -329,7 +388,14 @@ pub(super) fn divides(scout: &Scout) -> Vec<Finding> {
                     true => "what it shines on is no number, and is left out of the picture: black, or specks",
                     false => "it takes light away, or what it shines on is no number: black",
                 })
-                .help("`attenuation 1 0 0` is light that does not fade");
+                .help(match scout.value(span, &["falloff"]) {
+                    Some(_) => "write a `falloff` above 0, as `falloff 0.05`",
+                    None if scout.subject.dialect == Dialect::F23 => {
+                        "write an `attenuation` above 0, as `attenuation 0.05`"
+                    }
+                    None if scout.subject.dialect == Dialect::F16 => "write a `falloff`, as `falloff 0.05`",
+                    None => "`attenuation 1 0 0` is light that does not fade",
+                });
             let triple = written(scout, light).is_some_and(
                 |l| matches!(&l.value, Light::Point(point) if point.attenuation.is_some() && point.falloff.is_none()),
             );

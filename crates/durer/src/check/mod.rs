@@ -23,6 +23,7 @@ mod table;
 mod tests;
 mod view;
 mod words;
+mod year;
 
 use crate::diag::{Diagnostics, Severity};
 pub use finding::Finding;
@@ -36,7 +37,23 @@ const MOST_ALIKE: usize = 3;
 const MOST_SOUGHT: usize = 50;
 
 /// Because of these nothing, or one thing alone, is seen.
-const EMPTIES: [&str; 6] = ["camera-inside", "camera-away", "too-small", "too-narrow", "all-missed", "hidden-behind"];
+const EMPTIES: [&str; 7] =
+    ["camera-inside", "camera-away", "too-small", "too-narrow", "all-missed", "hidden-behind", "below-plane"];
+
+/// What comes of some causes, and is not told beside them.
+const CONSEQUENCES: &[(&str, &[&str])] = &[
+    ("color-range", &["too-bright"]),
+    ("full-ambient", &["too-bright"]),
+    ("negative-color", &["too-dark", "light-cancelled"]),
+    ("pow-zero", &["too-bright"]),
+    ("light-twice", &["too-bright"]),
+    ("light-divides", &["not-finite"]),
+    ("no-falloff", &["not-finite", "light-divides"]),
+    ("below-plane", &["unseen", "seen-from-behind"]),
+    ("squashed", &["all-missed"]),
+    ("degenerate-triangle", &["all-missed", "unseen"]),
+    ("black-material", &["too-dark"]),
+];
 
 /// All findings about a scene that was read and compiled, those of its reader among them; the causes first.
 pub fn check(subject: &Subject, diagnostics: &Diagnostics) -> Vec<Finding> {
@@ -50,6 +67,23 @@ pub fn check(subject: &Subject, diagnostics: &Diagnostics) -> Vec<Finding> {
     // Some are meant only where nothing else says why.
     if found.iter().any(|finding| finding.whole && !finding.last) {
         found.retain(|finding| !finding.last);
+    }
+    // A word of another year that says how light fades is why it does not here.
+    let fades = |finding: &Finding| {
+        let word = finding.diagnostic.span.map(|span| scout.text(span)).unwrap_or_default();
+        finding.diagnostic.code == "foreign-word" && ["attenuation", "falloff"].contains(&word.as_str())
+    };
+    if found.iter().any(fades) && found.iter().any(|f| f.diagnostic.code == "no-falloff") {
+        found.retain(|finding| !["no-falloff", "light-divides", "not-finite"].contains(&finding.diagnostic.code));
+        for finding in found.iter_mut().filter(|finding| fades(finding)) {
+            (finding.diagnostic.severity, finding.whole) = (Severity::Warning, true);
+        }
+    }
+    // A colour out of range is the cause of what is too bright; and so on.
+    for (cause, consequences) in CONSEQUENCES {
+        if found.iter().any(|finding| finding.diagnostic.code == *cause && finding.is_serious()) {
+            found.retain(|finding| !consequences.contains(&finding.diagnostic.code));
+        }
     }
     // Where nothing is seen, each thing that is not seen is no finding of its own.
     if found.iter().any(|finding| EMPTIES.contains(&finding.diagnostic.code) && finding.whole) {
@@ -69,9 +103,10 @@ pub fn reported(diagnostics: &Diagnostics) -> Vec<Finding> {
 fn ordered(mut found: Vec<Finding>) -> Vec<Finding> {
     let level = |finding: &Finding| match finding.diagnostic.severity {
         Severity::Error => 0,
+        Severity::Warning if finding.last => 3,
         Severity::Warning if finding.whole => 1,
         Severity::Warning => 2,
-        Severity::Note => 3,
+        Severity::Note => 4,
     };
     // Errors stay as they were found: the first may be the reason of the others.
     let rank = |finding: &Finding| if level(finding) == 0 { 0 } else { table::rank(finding.diagnostic.code) };

@@ -181,6 +181,11 @@ impl<'a> Scout<'a> {
         self.world().objects[number as usize].span
     }
 
+    /// A word of the course's first grammar, or its counterpart in that of nodes, whichever the scene has.
+    pub(super) fn word(&self, classic: &'static str, nodes: &'static str) -> &'static str {
+        if self.subject.dialect == Dialect::F23 { nodes } else { classic }
+    }
+
     /// The text at a place.
     pub(super) fn text(&self, span: Span) -> String {
         let bytes = self.subject.files.bytes(span.file).and_then(|b| b.get(span.start as usize..span.end as usize));

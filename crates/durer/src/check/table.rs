@@ -2,7 +2,7 @@
 
 use super::finding::Finding;
 use super::scout::Scout;
-use super::{colors, exposure, extent, facing, lights, mesh, numbers, objects, view};
+use super::{colors, exposure, extent, facing, lights, mesh, numbers, objects, view, year};
 
 /// One kind of finding.
 #[derive(Clone, Copy, Debug)]
@@ -46,8 +46,11 @@ checks! {
     "camera-away": "the camera looks past everything", view::away;
     "too-small": "all things together are too small in the picture", extent::too_small;
     "too-narrow": "the picture shows a tiny part of the scene", extent::too_narrow;
-    "all-missed": "no ray hits anything, though the camera looks at the scene", view::missed;
     "hidden-behind": "one object hides all others", view::hidden;
+    "below-plane": "a plane between the camera and all other things", view::below_plane;
+    "long-up": "a camera's `up` that is used as it is, and not of length 1", year::long_up;
+    "stretched": "a picture that is not square, under a program that stretches it", year::stretched;
+    "plane-normal": "a plane whose normal is not of length 1", year::plane_normal;
     "out-of-scale": "an object far larger or smaller than most", extent::out_of_scale;
     "up-parallel": "the camera's `up` is parallel to its `direction`", reported;
     // Light.
@@ -60,7 +63,11 @@ checks! {
     "light-behind": "a light that all that is seen faces away from", lights::behind;
     "light-faint": "a light that fades before it arrives", lights::faint;
     // Colours.
-    "color-range": "a colour far beyond 1", colors::too_large;
+    "color-range": "a colour beyond 1", colors::too_large;
+    "full-ambient": "ambient light that leaves nothing to the lamps", year::full_ambient;
+    "pow-zero": "a highlight of shininess 0, which is everywhere", year::pow_zero;
+    "no-exponent": "a highlight's colour without an exponent", year::no_exponent;
+    "same-parts": "a pattern of two equal parts", year::same_parts;
     "material-index": "a `MaterialIndex` without a material", reported;
     "no-material": "objects before any `MaterialIndex`", reported;
     "black-material": "a material that gives back no light", colors::black;
@@ -78,7 +85,8 @@ checks! {
     "odd-normals": "normals of a mesh file that contradict its faces, are missing or have no length", mesh::given_normals;
     "degenerate-mesh": "triangles of a mesh without area", mesh::degenerate;
     "degenerate-triangle": "a triangle without area", objects::degenerate;
-    "open-glass": "a mesh of glass that is not closed", mesh::open_glass;
+    "mesh-quads": "faces that this year's program cannot read", year::quads;
+    "open-glass": "a thing of glass that is not closed", mesh::open_glass;
     "squashed": "an object made flat, or next to nothing, by its transforms", objects::squashed;
     "same-place": "two objects with the same surface", objects::twice;
     "light-twice": "a light that is written twice", lights::twice;
@@ -88,12 +96,14 @@ checks! {
     "depth-range": "a range of depths that none of the picture's lies in", exposure::depth_range;
     "too-bright": "more light than a picture of eight bits can hold", exposure::too_bright;
     "too-dark": "hardly any light", exposure::too_dark;
+    "all-missed": "no ray hits anything, though the camera looks at the scene", view::missed;
     "one-color": "a picture of one colour, and nothing found that says why", exposure::one_color;
     // Odd, but mostly harmless.
     "dialect": "which year's language the scene was taken for", reported;
     "radians": "a rotation that seems to be in radians", extent::radians;
     "repeated": "a section or field that is written twice", reported;
     "foreign-word": "a word of another year", reported;
+    "portability": "what the year's own program would refuse", reported;
     "comment": "a comment that does not begin with `#`", reported;
     "unseen": "objects that are not in the picture, or hidden", extent::unseen;
     "unused-material": "a material that nothing is made of", colors::unused;

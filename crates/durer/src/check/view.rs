@@ -207,7 +207,7 @@ pub(super) fn missed(scout: &Scout) -> Vec<Finding> {
         Some(size) if size < 12.0 => return Vec::new(),
         _ => format!("{}is there a hole in the middle, or is it seen from its edge?", nearest(scout)),
     });
-    vec![Finding::from(diagnostic).whole(true)]
+    vec![Finding::from(diagnostic).last()]
 }
 
 /// How many pixels of the picture a box spans.
@@ -271,6 +271,61 @@ pub(super) fn hidden(scout: &Scout) -> Vec<Finding> {
         None => diagnostic,
     };
     vec![Finding::from(diagnostic).whole(true)]
+}
+
+/// A plane between the camera and all things that have an end, though something else, the sky say, is seen beside it.
+pub(super) fn below_plane(scout: &Scout) -> Vec<Finding> {
+    let objects = &scout.world().objects;
+    let mut front = None;
+    for (object, sight) in objects.iter().zip(scout.sights()).filter(|(object, _)| object.bounds().is_some()) {
+        match (sight, front) {
+            (Sight::Hidden(by), None) if objects[*by as usize].bounds().is_none() => front = Some(*by),
+            (Sight::Hidden(by), Some(known)) if *by == known => {}
+            _ => {
+                front = None;
+                break;
+            }
+        }
+        let _ = object;
+    }
+    let front = match front {
+        Some(front) => Some(front).filter(|_| hidden(scout).is_empty()),
+        None => ceiling(scout),
+    };
+    let Some(front) = front else { return Vec::new() };
+    let lid = ceiling(scout) == Some(front);
+    let what =
+        if lid { "everything, the camera too, is below the" } else { "all other things are on the far side of the" };
+    let diagnostic = Diagnostic::warning(format!("{what} {}", scout.object(front)))
+        .at(scout.object_span(front))
+        .effect(match lid {
+            true => "it is a ceiling that is seen from its back, and keeps off the light from above",
+            false => "nothing but the plane and the background is seen",
+        })
+        .help("a plane stands where p · normal = offset: look at its `offset`, or at the height of the things");
+    let diagnostic = match offset_turned(scout, front) {
+        Some((place, text)) => diagnostic.fix(place, text),
+        None => diagnostic,
+    };
+    vec![Finding::from(diagnostic).whole(true)]
+}
+
+/// The only plane, if it faces up and all things and the camera are below it.
+fn ceiling(scout: &Scout) -> Option<u32> {
+    let world = scout.world();
+    let planes = world.objects.iter().enumerate().filter(|(_, object)| object.bounds().is_none());
+    let mut planes = planes.filter_map(|(i, object)| match &object.geometry {
+        Geometry::Primitive(Primitive::Plane(plane)) if object.to_world.is_none() => Some((i as u32, plane)),
+        _ => None,
+    });
+    let (number, plane) = planes.next().filter(|_| planes.next().is_none())?;
+    let pose = world.camera.pose();
+    let below = |p: Vec3| p.dot(plane.normal) < plane.offset;
+    let faces_up = plane.normal.normalize_or_zero().dot(pose.up.normalize_or_zero()) > 0.7;
+    let things = world.bounds();
+    let all = !things.is_empty() && things.corners().iter().all(|corner| below(*corner)) && below(pose.center);
+    let seen = scout.seen().any(|(_, seen)| seen.object == number);
+    (faces_up && all && seen && !matches!(world.camera, Camera::Orthographic(_))).then_some(number)
 }
 
 /// The other sign of a plane's offset and where it is written, if the camera and the things are on one side of it then.

@@ -127,6 +127,13 @@ pub fn compile(
     Some(world)
 }
 
+/// Makes the structure over a world's objects anew, after they were moved.
+pub(crate) fn rebuild(world: &mut World) {
+    world.unbounded =
+        (0..world.objects.len() as u32).filter(|&i| world.objects[i as usize].bounds().is_none()).collect();
+    world.accel = build_accel(world, AccelKind::Bvh).unwrap_or(Accel::None);
+}
+
 fn build_accel(world: &World, kind: AccelKind) -> Result<Accel, Box<Diagnostic>> {
     let cells = match kind {
         AccelKind::None => return Ok(Accel::None),

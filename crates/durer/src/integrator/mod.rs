@@ -6,4 +6,4 @@ pub mod spawn;
 pub mod whitted;
 
 pub use account::{Account, Node, Witness};
-pub use whitted::{Settings, Whitted};
+pub use whitted::{Settings, Whitted, refract};

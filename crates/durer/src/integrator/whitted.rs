@@ -62,15 +62,15 @@ struct Path {
 }
 
 /// How light goes through a surface.
-struct Passage {
+pub(crate) struct Passage {
     /// Index of refraction before it.
-    here: f32,
+    pub(crate) here: f32,
     /// Index of refraction behind it.
-    there: f32,
+    pub(crate) there: f32,
     /// What a ray runs in behind it.
-    behind: Media,
+    pub(crate) behind: Media,
     /// Whether something else fills the place on both sides, so that there is no surface.
-    hidden: bool,
+    pub(crate) hidden: bool,
 }
 
 impl Default for Passage {
@@ -189,7 +189,7 @@ impl Whitted<'_> {
     }
 
     /// Whether a ray meets a surface on the side that its normal does not point to.
-    fn sees_back(&self, dir: Vec3, surface: &Surface) -> bool {
+    pub(crate) fn sees_back(&self, dir: Vec3, surface: &Surface) -> bool {
         let shaded = self.world.rules.has(Compat::ShadedSides);
         dir.dot(if shaded { surface.n_shade } else { surface.n_geo }) > 0.0
     }
@@ -290,7 +290,7 @@ impl Whitted<'_> {
     }
 
     /// How light that may go through a surface does; `None` where none may.
-    fn passage(&self, ray: &Ray64, hit: &Hit, media: &Media) -> Option<Passage> {
+    pub(crate) fn passage(&self, ray: &Ray64, hit: &Hit, media: &Media) -> Option<Passage> {
         if !self.world.may_transmit(hit) {
             return None;
         }
@@ -383,15 +383,15 @@ impl Whitted<'_> {
 /// What the materials of a point reflect and let through together. Weights are mixed; the index is that of the part that
 /// weighs most.
 #[derive(Clone, Copy)]
-struct Blend {
-    reflective: Color,
-    transparent: Color,
-    ior: f32,
-    fresnel: bool,
+pub(crate) struct Blend {
+    pub(crate) reflective: Color,
+    pub(crate) transparent: Color,
+    pub(crate) ior: f32,
+    pub(crate) fresnel: bool,
 }
 
 impl Blend {
-    fn of(parts: &[Part]) -> Self {
+    pub(crate) fn of(parts: &[Part]) -> Self {
         let mut blend = Blend { reflective: Color::ZERO, transparent: Color::ZERO, ior: 1.0, fresnel: false };
         let mut most = 0.0;
         for &Part { phong, share } in parts {
@@ -409,7 +409,7 @@ impl Blend {
 ///
 /// c is the cosine on the side of the lower index. Source: Schlick, *An Inexpensive BRDF Model for
 /// Physically-based Rendering*, Eurographics 1994.
-fn fresnel_share(dir: Vec3, n: Vec3, transmitted: Vec3, (here, there): (f32, f32), zero: bool) -> f32 {
+pub(crate) fn fresnel_share(dir: Vec3, n: Vec3, transmitted: Vec3, (here, there): (f32, f32), zero: bool) -> f32 {
     let ratio = (there - here) / (there + here);
     let r0 = if zero { 0.0 } else { ratio * ratio };
     let cosine = if here <= there { dir.dot(n).abs() } else { transmitted.dot(n).abs() };

@@ -16,7 +16,7 @@ use crate::render::{Control, RenderError};
 pub use change::Change;
 use stage::Shown;
 pub use stage::{OWN_SCENE, OWN_SCENE_NAME, Stage};
-pub use topics::{Glass, Look, Origin, Place, Shot, TOPICS, Topic};
+pub use topics::{Glass, Look, Place, Shot, TOPICS, Topic};
 
 /// A picture and what it shows.
 #[derive(Clone, Debug)]
@@ -36,6 +36,10 @@ pub struct Step {
     pub title: String,
     /// Whether it is shown in our scene, because the other has nothing of it.
     pub ours: bool,
+    /// Why the other has nothing of it.
+    pub lacking: &'static str,
+    /// Whether it goes on with the topic of the step before.
+    pub goes_on: bool,
     /// What there was before, where that can be compared.
     pub before: Option<Picture>,
     /// What there is now.
@@ -68,15 +72,21 @@ impl Teacher {
     /// # Errors
     /// [`RenderError`].
     pub fn steps(&mut self, topic: &'static Topic, control: &Control) -> Result<Vec<Step>, RenderError> {
+        let lacking = self.stages[0].year_lacks(topic.name).unwrap_or(topic.lacking);
         for (ours, stage) in [false, true].into_iter().zip(&mut self.stages) {
             let steps = steps(topic, stage, self.transfer, ours, control)?;
             if !steps.is_empty() {
-                return Ok(steps);
+                return Ok(marked(steps, lacking));
             }
         }
         // Not even our own scene shows it; a test sees to it that this never happens.
         Ok(Vec::new())
     }
+}
+
+/// Steps that know why they are shown elsewhere, and which of them go on with the one before.
+fn marked(steps: Vec<Step>, lacking: &'static str) -> Vec<Step> {
+    steps.into_iter().enumerate().map(|(i, step)| Step { lacking, goes_on: i > 0, ..step }).collect()
 }
 
 /// The steps of a topic in a scene; none if that cannot show the first of them.
@@ -98,6 +108,8 @@ fn steps(
             topic,
             title: title.clone(),
             ours,
+            lacking: topic.lacking,
+            goes_on: false,
             before,
             after: one(&shown, shot),
             plan: (shot.value == Some("rays")).then(|| plan::plan(stage)),

@@ -61,6 +61,15 @@ pub(super) fn plan(stage: &Stage) -> String {
             dot(&mut svg, to, 2.5, "#e8590c");
         }
     }
+    // The axes of the drawing, in its lower left corner.
+    let corner = Vec2::new(18.0, SIZE - 18.0);
+    for (to, name, at) in [
+        (corner + Vec2::new(46.0, 0.0), "right", corner + Vec2::new(50.0, 4.0)),
+        (corner - Vec2::new(0.0, 46.0), "forward", corner - Vec2::new(6.0, 52.0)),
+    ] {
+        line(&mut svg, corner, to, "stroke=\"#333\" stroke-width=\"1.5\"");
+        let _ = writeln!(svg, "<text x=\"{:.0}\" y=\"{:.0}\" font-size=\"13\" fill=\"#333\">{name}</text>", at.x, at.y);
+    }
     dot(&mut svg, place(Vec2::ZERO), 4.0, "black");
     svg + "</svg>\n"
 }

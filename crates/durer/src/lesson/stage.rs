@@ -1,10 +1,10 @@
 //! A scene that can be shown with parts of its light left out, and with usual mistakes.
 
-use super::topics::{Glass, Look, Origin, Shot};
+use super::topics::{Glass, Look, Shot};
 use crate::camera::Raster;
 use crate::compile::{AccelKind, Resources, compile};
 use crate::diag::{Diagnostics, Files};
-use crate::dialect::{Compat, Dialect, Rules};
+use crate::dialect::{Dialect, Highlight, Rules, Secondary};
 use crate::film::Filter;
 use crate::film::aov::Aov;
 use crate::format::course::{self, ReadOptions};
@@ -12,6 +12,7 @@ use crate::image::{Image, Layer};
 use crate::integrator::Settings;
 use crate::light::Light;
 use crate::math::{Color, Vec3};
+use crate::mistakes::{Variant, of_name};
 use crate::render::explain::Names;
 use crate::render::{Control, Job, RenderError, Sampling, center_ray, raster, render};
 use crate::scene::Scene;
@@ -74,6 +75,24 @@ impl Stage {
         Stage::new(scene, files, world, Job { width, height, ..Job::default() })
     }
 
+    /// Why a step cannot show anything in this scene whatever it holds, if its year's program has nothing of it.
+    pub(super) fn year_lacks(&self, topic: &str) -> Option<&'static str> {
+        let (highlights, secondary) = (self.rules.highlight, self.rules.secondary);
+        match topic {
+            "specular" if highlights == Highlight::None => Some("this year's program has no highlights at all"),
+            "reflection" | "refraction" | "fresnel" if secondary == Secondary::None => {
+                Some("this year's program traces no mirrored or transmitted rays")
+            }
+            "refraction" | "fresnel" if secondary == Secondary::Specular => {
+                Some("this year's program has mirrors, but no glass")
+            }
+            "fresnel" if secondary == Secondary::Colors => {
+                Some("this year's program does not divide light by Fresnel's law")
+            }
+            _ => None,
+        }
+    }
+
     pub(super) fn size(&self) -> (u32, u32) {
         (self.job.width, self.job.height)
     }
@@ -119,11 +138,11 @@ impl Stage {
             false => (Vec::new(), Color::ONE),
         };
         world.rules = self.rules.clone();
-        if look.origin == Origin::OnSurface {
-            world.rules.epsilon = Some(0.0);
-        }
-        if look.moved_normals {
-            world.rules.compat |= Compat::MovedNormals.bit();
+        // The lesson's mistakes are those that change the rules.
+        if let Some(mistake) = look.mistake.and_then(of_name) {
+            let mut variant = Variant::new(&self.scene, world.clone(), self.job.settings);
+            (mistake.make)(&mut variant, 0.0);
+            world.rules = variant.world.rules;
         }
         world.materials = self.materials.clone();
         for material in &mut world.materials {
@@ -141,7 +160,7 @@ impl Stage {
         let all = self.job.settings;
         Settings {
             bounces: look.bounces.min(all.bounces),
-            shadows: look.origin != Origin::NoShadows && all.shadows,
+            shadows: look.shadows && all.shadows,
             refraction: all.refraction && look.glass != Glass::None,
             ..all
         }

@@ -7,27 +7,16 @@ pub struct Look {
     pub lights: bool,
     /// Whether there are highlights.
     pub highlights: bool,
-    /// Whether there are shadows, and where secondary rays begin.
-    pub origin: Origin,
+    /// Whether there are shadows.
+    pub shadows: bool,
     /// Levels of mirrored and transmitted rays, at most as many as the job has.
     pub bounces: u32,
     /// What glass does.
     pub glass: Glass,
-    /// Whether normals of transformed things go by the matrix itself.
-    pub moved_normals: bool,
+    /// The usual mistake that is made, by its name in [`crate::mistakes::MISTAKES`].
+    pub mistake: Option<&'static str>,
     /// Whether a pixel has more than one sample.
     pub sampled: bool,
-}
-
-/// Where rays to lights, mirrors and through glass begin.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Origin {
-    /// There are no shadows.
-    NoShadows,
-    /// On the surface: the rounded point, and every hit beyond it counts.
-    OnSurface,
-    /// As the scene's rules have it.
-    Right,
 }
 
 /// What glass does.
@@ -95,23 +84,23 @@ const fn color(caption: &'static str, look: Look) -> Shot {
 const FLAT: Look = Look {
     lights: false,
     highlights: false,
-    origin: Origin::NoShadows,
+    shadows: false,
     bounces: 0,
     glass: Glass::None,
-    moved_normals: false,
+    mistake: None,
     sampled: false,
 };
 const DIFFUSE: Look = Look { lights: true, ..FLAT };
 const SPECULAR: Look = Look { highlights: true, ..DIFFUSE };
-const SHADOWS: Look = Look { origin: Origin::Right, ..SPECULAR };
-const SPECKLED: Look = Look { origin: Origin::OnSurface, ..SHADOWS };
+const SHADOWS: Look = Look { shadows: true, ..SPECULAR };
+const SPECKLED: Look = Look { mistake: Some("epsilon-0"), ..SHADOWS };
 const fn mirrors(bounces: u32) -> Look {
     Look { bounces, ..SHADOWS }
 }
 const MIRRORS: Look = mirrors(u32::MAX);
 const GLASS: Look = Look { glass: Glass::Transmits, ..MIRRORS };
 const FRESNEL: Look = Look { glass: Glass::Fresnel, ..GLASS };
-const MOVED: Look = Look { moved_normals: true, ..FRESNEL };
+const MOVED: Look = Look { mistake: Some("normals-moved"), ..FRESNEL };
 const SAMPLED: Look = Look { sampled: true, ..FRESNEL };
 
 /// All topics, in the order of the lecture.

@@ -59,6 +59,16 @@ impl Affine {
         image.normalize_or(n.as_dvec3()).as_vec3()
     }
 
+    /// The unit normal whose image by [`Affine::normal`] is this one.
+    pub fn local_normal(&self, n: Vec3) -> Vec3 {
+        (self.forward.matrix3.transpose() * n.as_dvec3()).normalize_or(n.as_dvec3()).as_vec3()
+    }
+
+    /// Maps a normal forward as [`Affine::normal`], but leaves it the length that comes of it.
+    pub fn long_normal(&self, n: Vec3) -> Vec3 {
+        (self.inverse.matrix3.transpose() * n.as_dvec3()).as_vec3()
+    }
+
     /// Maps a ray backward, into the space that this map leads out of. `t` keeps its meaning.
     #[inline]
     pub fn inverse_ray(&self, ray: impl Into<Ray64>) -> Ray {

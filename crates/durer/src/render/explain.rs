@@ -16,7 +16,7 @@ use crate::math::{Color, Ray, Vec2, Vec3};
 use crate::world::{Material, World};
 use serde::Serialize;
 use std::sync::atomic::AtomicBool;
-pub use text::{Line, Names, ray_text};
+pub use text::{Line, Names, Telling, number, ray_text};
 
 /// A pixel and all that made it.
 #[derive(Clone, Debug, PartialEq, Serialize)]

@@ -32,5 +32,5 @@ pub use part::{Part, Statistics};
 pub use pictures::Rendered;
 pub use replay::replay;
 pub use run::{Moment, Stop, render};
-pub use samples::sample_diagram;
+pub use samples::{sample_diagram, sample_places};
 pub use saved::PartError;

@@ -47,6 +47,38 @@ pub fn sample_diagram(world: &World, job: &Job, control: &Control) -> Result<Sto
     threads::install(control.threads, work).map_err(|Stopped| RenderError::Cancelled)
 }
 
+/// Offers where the samples of a pixel go: in the picture, in the lens, and how much each counts. Of samples that count for
+/// other pixels too only the pixel's own are offered.
+pub fn sample_places(world: &World, job: &Job) -> impl Fn(u32, u32, &mut dyn FnMut(Vec2, Vec2, f32)) + Sync {
+    let (aperture, seed, sampling) = (world.camera.has_aperture(), job.seed, job.sampling);
+    let warp = match sampling {
+        Sampling::Filtered { filter, .. } => Some(filter.sampler()),
+        _ => None,
+    };
+    let lens = move |sampler: Sampler, x, y, sample| match aperture {
+        true => sampler.lens_position(seed, x, y, sample),
+        false => Vec2::splat(0.5),
+    };
+    move |x, y, offer| match (sampling, &warp) {
+        (Sampling::Filtered { samples, .. }, Some(warp)) => (0..samples).for_each(|sample| {
+            let (offset, weight) = warp.sample(Sampler::Sobol.pixel_position(seed, x, y, sample, samples));
+            offer(center(x, y) + offset, lens(Sampler::Sobol, x, y, sample), weight);
+        }),
+        (Sampling::Course2004 { sampler, samples, .. }, _) => {
+            let samples = sampler.round_up(samples);
+            (0..samples).for_each(|sample| {
+                let position = sampler.pixel_position(seed, x, y, sample, samples);
+                offer(Vec2::new(x as f32, y as f32) + position, lens(sampler, x, y, sample), 1.0);
+            });
+        }
+        (Sampling::Course2012 { jitter: true, .. }, _) => (0..9_u8).for_each(|i| {
+            let part = Vec2::new(f32::from(i % 3), f32::from(i / 3));
+            offer(center(x, y) + (part - 1.0) / 3.0, Vec2::splat(0.5), 1.0);
+        }),
+        _ => offer(center(x, y), Vec2::splat(0.5), 1.0),
+    }
+}
+
 /// Bytes of the samples that are kept at once for a tile, where samples count for other pixels too.
 pub(super) fn kept_bytes(job: &Job, side: u32) -> u64 {
     match job.sampling {

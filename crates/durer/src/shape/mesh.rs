@@ -165,6 +165,12 @@ impl Mesh {
         self.data.triangles[part as usize].map(|i| self.data.positions[i as usize])
     }
 
+    /// The mean of the normals at a triangle's corners at a crossing, of the length that mixing gives it; `None` on what is flat.
+    pub fn mixed_normal(&self, part: u32, uv: Vec2) -> Option<Vec3> {
+        let [a, b, c] = attribute(&self.data.triangle_normals, &self.data.normals, part)?.map(Vec3::normalize_or_zero);
+        Some((1.0 - uv.x - uv.y) * a + uv.x * b + uv.y * c)
+    }
+
     /// The surface of a triangle at a crossing.
     pub fn surface(&self, part: u32, crossing: &Crossing) -> Surface {
         let corners = self.corners(part);

@@ -4,6 +4,7 @@ pub mod cube_map;
 
 use crate::math::{Color, Vec2};
 pub use cube_map::CubeMap;
+use std::sync::Arc;
 
 /// A decoded picture, looked up as the course does.
 #[derive(Clone, Debug, PartialEq)]
@@ -11,7 +12,7 @@ pub struct Texture {
     width: u32,
     height: u32,
     /// Eight bits a channel, row 0 on top.
-    texels: Vec<[u8; 3]>,
+    texels: Arc<[[u8; 3]]>,
     /// What each of the 256 values means.
     values: Box<[f32; 256]>,
 }
@@ -21,7 +22,7 @@ impl Texture {
     pub fn new(width: u32, height: u32, texels: Vec<[u8; 3]>) -> Option<Self> {
         let count = (width as usize).checked_mul(height as usize)?;
         let values = Box::new(std::array::from_fn(|i| i as f32 / 255.0));
-        (count > 0 && texels.len() == count).then_some(Texture { width, height, texels, values })
+        (count > 0 && texels.len() == count).then_some(Texture { width, height, texels: texels.into(), values })
     }
 
     /// The same texels, with other meanings of the 256 values.

@@ -18,7 +18,7 @@ pub use material::{HighlightModel, Material, Part, Parts, Phong};
 pub use object::{Geometry, MeshTree, Object, Placing};
 
 /// A scene ready to be traced.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct World {
     /// Whence it is seen.
     pub camera: Camera,
@@ -47,7 +47,7 @@ pub struct World {
 }
 
 /// The structure over all bounded objects.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub enum Accel {
     /// A tree over objects; meshes have trees of their own.
     Bvh(Bvh),
@@ -229,6 +229,16 @@ impl World {
             let hit = self.closest(&rest, &mut ())?;
             rest.rounded.t_min = hit.t;
             Some(hit)
+        })
+    }
+
+    /// The nearest hit of each object in the ray's interval, in the order in which they are written.
+    pub fn hits_of_each(&self, ray: impl Into<Ray64>) -> impl Iterator<Item = Hit> {
+        let ray = ray.into();
+        let sound = crate::bvh::is_sound(&ray.rounded);
+        self.objects.iter().enumerate().filter(move |_| sound).filter_map(move |(object, geometry)| {
+            let (crossing, part) = geometry.closest(&ray, false, &mut ())?;
+            Some(Hit { t: crossing.t, uv: crossing.uv, object: object as u32, part })
         })
     }
 

@@ -177,7 +177,7 @@ pub(super) fn degenerate(scout: &Scout) -> Vec<Finding> {
 
 /// Holes and crowded edges where a mesh must have an inside.
 pub(super) fn open_glass(scout: &Scout) -> Vec<Finding> {
-    let mut found = Vec::new();
+    let mut found = flat_glass(scout);
     for mesh in scout.meshes() {
         let Some(glass) = mesh.glass(scout) else { continue };
         let Topology { open, crowded, some_edge, .. } = &mesh.topology;
@@ -194,6 +194,73 @@ pub(super) fn open_glass(scout: &Scout) -> Vec<Finding> {
         found.push(Finding::from(diagnostic));
     }
     found
+}
+
+/// Flat things of glass: what has no inside.
+pub(super) fn flat_glass(scout: &Scout) -> Vec<Finding> {
+    use crate::shape::Primitive;
+    use crate::world::Geometry;
+    let world = scout.world();
+    let glass = |object: &&Placed| {
+        let refracts = |material: &Material| matches!(material, Material::Phong(phong) if phong.transparent.max_element() > 0.0 && phong.ior != 1.0);
+        world.materials.get(object.material as usize).is_some_and(refracts)
+    };
+    let what = |object: &Placed| match &object.geometry {
+        Geometry::Primitive(Primitive::Plane(_)) => Some("plane"),
+        Geometry::Primitive(Primitive::Triangle(_)) => Some("triangle"),
+        Geometry::Primitive(Primitive::Disc(_)) => Some("disc"),
+        Geometry::Primitive(Primitive::Rectangle(_)) => Some("rectangle"),
+        _ => None,
+    };
+    let flat: Vec<(&Placed, &str)> =
+        world.objects.iter().filter(glass).filter_map(|object| Some((object, what(object)?))).collect();
+    // Triangles that close a body are a body.
+    let corners: Vec<_> = flat
+        .iter()
+        .filter_map(|(object, _)| match &object.geometry {
+            Geometry::Primitive(Primitive::Triangle(t)) => Some(t.corners().map(|corner| object.world_point(corner))),
+            _ => None,
+        })
+        .collect();
+    let positions: Vec<_> = corners.iter().flatten().copied().collect();
+    let triangles: Vec<[u32; 3]> = (0..corners.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+    let body = triangles.len() > 3 && Topology::of(&positions, &triangles).open == 0;
+    let open = |(_, what): &&(&Placed, &str)| !(body && *what == "triangle");
+    let say = |(object, what): &(&Placed, &str)| {
+        let mut diagnostic = Diagnostic::warning(format!("this {what} is of glass, and has no inside"))
+            .at(object.span)
+            .effect(
+                "a ray that goes in never comes out: it is bent once, and all behind is seen as from within the glass",
+            )
+            .help("glass needs a body: a sphere, a closed mesh; or give it the index 1");
+        // The surface of a lake is flat by right.
+        if *what != "triangle" && !world.rules.is_official() {
+            diagnostic.severity = crate::diag::Severity::Note;
+        }
+        Finding::from(diagnostic)
+    };
+    flat.iter().filter(open).take(3).map(say).collect()
+}
+
+/// Mesh files with faces of more than three corners: name, how many, of how many, and the first of them.
+pub(super) fn large_faces<'s>(scout: &Scout<'s>) -> Vec<(&'s str, usize, usize, Span)> {
+    let one = |mesh: &MeshFile<'s>| {
+        let bytes = scout.subject.files.bytes(mesh.file)?;
+        let (mut start, mut all, mut large, mut first) = (0, 0, 0, None);
+        for line in bytes.split_inclusive(|b| *b == b'\n') {
+            if line.starts_with(b"f ") || line.starts_with(b"f\t") {
+                all += 1;
+                if line.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty()).count() > 4 {
+                    large += 1;
+                    let end = start + line.trim_ascii_end().len();
+                    first.get_or_insert(Span { file: mesh.file, start: start as u32, end: end as u32 });
+                }
+            }
+            start += line.len();
+        }
+        Some((&*mesh.name.path, large, all, first?))
+    };
+    scout.meshes().iter().filter_map(one).collect()
 }
 
 /// Triangles that wind the other way than their neighbours.

@@ -82,7 +82,11 @@ impl Reader<'_, '_> {
         for (field, _) in fields.iter().zip(&given).filter(|(f, g)| f.required && g.is_none()) {
             // A field without a word here has a fixed value: the centre of a sphere in a node, say.
             let Some(word) = field.spelling(dialect) else { continue };
-            self.error(Diagnostic::error(format!("`{name}` has no `{word}`")).code("missing-field").at(keyword));
+            let error = Diagnostic::error(format!("`{name}` has no `{word}`")).code("missing-field").at(keyword);
+            self.error(match example(word) {
+                Some(value) => error.help(format!("write it into the block, as in `{word} {value}`")),
+                None => error,
+            });
         }
     }
 
@@ -150,6 +154,7 @@ impl Reader<'_, '_> {
                 false => format!("its fields are {}", words.join(", ")),
             }
         });
+        let help = super::meant::misplaced(word, name).map_or(help, String::from);
         let message = match word.parse::<f32>() {
             Ok(_) => format!("{} is a number too many in `{name}`", shown(word.as_bytes())),
             Err(_) => format!("`{name}` has no field {}", shown(word.as_bytes())),
@@ -344,7 +349,11 @@ impl Reader<'_, '_> {
         if self.options.strict {
             self.error(Diagnostic::error(message).at(span));
         } else {
-            self.diagnostics.push(Diagnostic::warning(message).code("foreign-word").at(span));
+            let warning = Diagnostic::warning(message).code("foreign-word").at(span);
+            self.diagnostics.push(match super::meant::here(word, dialect) {
+                Some(here) => warning.help(format!("in {} it is `{here}`", dialect.name())),
+                None => warning,
+            });
         }
     }
 }
@@ -366,4 +375,23 @@ fn number_help(text: &str) -> Option<(String, Option<String>)> {
     } else {
         None
     }
+}
+
+/// A value that a field may have, to show how it is written.
+fn example(field: &str) -> Option<&'static str> {
+    Some(match field {
+        "radius" => "1",
+        "offset" => "0",
+        "normal" | "up" => "0 1 0",
+        "center" | "position" => "0 0 5",
+        "direction" => "0 0 -1",
+        "angle" | "fov" => "30",
+        "size" => "5",
+        "color" => "1 1 1",
+        "vertex0" => "-1 0 0",
+        "vertex1" => "1 0 0",
+        "vertex2" => "0 1 0",
+        "obj_file" => "cube.obj",
+        _ => return None,
+    })
 }

@@ -60,6 +60,18 @@ pub fn guess(bytes: &[u8], file: u32, hints: &[Hint], exists: &dyn Fn(&str) -> b
             reasons.push((keep, why, span));
         }
     };
+    // Words of nodes among words of the years before: what there is most of is meant, and the others are foreign.
+    let (mut nodes, mut classic) = (0_usize, 0_usize);
+    for (i, token) in tokens.iter().enumerate().filter(|(_, token)| token.kind == TokenKind::Word) {
+        let _ = token;
+        let word = text(i);
+        match dialects_of(&word) {
+            Some(set::F23) => nodes += usize::from(is_telling(&word)) * 2,
+            Some(words) if !Dialect::F23.is_in(words) && words != set::DURER => classic += 1,
+            _ => {}
+        }
+    }
+    let majority = if nodes > classic { set::F23 } else { set::ALL };
     let has_section = (0..tokens.len()).any(|i| text(i) == "Materials");
     for (i, token) in tokens.iter().enumerate() {
         let word = text(i);
@@ -84,6 +96,10 @@ pub fn guess(bytes: &[u8], file: u32, hints: &[Hint], exists: &dyn Fn(&str) -> b
         } else {
             continue;
         };
+        // The minority is said where it stands.
+        if majority == set::F23 && keep & set::F23 == 0 {
+            continue;
+        }
         narrow(keep, why, Some(token.span));
     }
     if let Some(comment) = tokens.iter().find(|token| token.kind == TokenKind::Comment) {

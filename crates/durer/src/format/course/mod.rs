@@ -3,6 +3,7 @@
 mod fields;
 pub mod guess;
 mod lexer;
+mod meant;
 mod nodes;
 pub mod place;
 #[cfg(any(test, fuzzing))]
@@ -15,7 +16,7 @@ mod transform;
 mod words;
 pub mod write;
 
-use crate::diag::{Diagnostic, Diagnostics};
+use crate::diag::{Diagnostic, Diagnostics, Span};
 use crate::dialect::{CompatSet, Dialect};
 use crate::scene::Scene;
 pub use guess::{Guess, Hint, guess};
@@ -39,6 +40,10 @@ pub fn read(bytes: &[u8], file: u32, options: ReadOptions, diagnostics: &mut Dia
         diagnostics.push(Diagnostic::error("a scene file must be smaller than 4 GiB"));
         return None;
     }
+    if let Some(problem) = no_text(bytes) {
+        diagnostics.push(Diagnostic::error(problem).code("syntax").at(Span { file, start: 0, end: 0 }));
+        return None;
+    }
     let mut own = Diagnostics::default();
     let mut reader = reader::Reader::new(bytes, file, options, &mut own);
     match options.dialect {
@@ -49,6 +54,19 @@ pub fn read(bytes: &[u8], file: u32, options: ReadOptions, diagnostics: &mut Dia
     let failed = own.has_errors();
     diagnostics.extend(own);
     (!failed).then_some(scene)
+}
+
+/// Why a file is no text that could be a scene, if it is none.
+fn no_text(bytes: &[u8]) -> Option<&'static str> {
+    let head = &bytes[..bytes.len().min(1 << 16)];
+    let zeros = |from: usize| head.iter().skip(from).step_by(2).filter(|b| **b == 0).count() * 4 > head.len();
+    if head.starts_with(b"\xff\xfe") || head.starts_with(b"\xfe\xff") || head.len() > 3 && (zeros(0) != zeros(1)) {
+        return Some("this file is UTF-16, two bytes a letter: save it as UTF-8 or ASCII text");
+    }
+    let odd = |b: &&u8| **b < 9 || (14..32).contains(*b);
+    let count = head.iter().filter(odd).count();
+    let binary = head.contains(&0) || count * 20 > head.len();
+    binary.then_some("this file is no text, but binary: a picture or a model, perhaps, in place of a scene")
 }
 
 #[cfg(test)]

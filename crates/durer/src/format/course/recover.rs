@@ -1,6 +1,7 @@
 //! How reading goes on after a mistake, so that one mistake is one error.
 
 use super::lexer::TokenKind;
+use super::meant::{counterpart, misplaced, slip};
 use super::reader::{Reader, names};
 use super::words::{dialects_of, home_of};
 use crate::diag::{Diagnostic, Span, did_you_mean};
@@ -80,7 +81,8 @@ impl Reader<'_, '_> {
             Err(_) => format!("{} means nothing {place}", shown(word.as_bytes())),
         };
         let list = || format!("known here: {}", known.join(", "));
-        let help = self.advice(word, known.iter().copied()).unwrap_or_else(list);
+        let help = misplaced(word, place).map(String::from);
+        let help = help.or_else(|| self.advice(word, known.iter().copied())).unwrap_or_else(list);
         let error = Diagnostic::error(message).code("unknown-word").at(span).label("not known here").help(help);
         self.error(self.with_meant(error, word, span, known.iter().copied()));
         while let Some(token) = self.peek() {
@@ -98,6 +100,14 @@ impl Reader<'_, '_> {
     /// The known word that is meant by one that is none. A word of the language is hardly a slip of another, unless of its
     /// capitals.
     fn meant<'w>(&self, word: &str, known: impl IntoIterator<Item = &'w str>) -> Option<&'w str> {
+        let known: Vec<&str> = known.into_iter().collect();
+        let there = counterpart(word, self.options.dialect);
+        if let Some(there) = known.iter().find(|known| there == Some(*known)) {
+            return Some(there);
+        }
+        if let Some((meant, _)) = slip(word, known.iter().copied()) {
+            return Some(meant);
+        }
         let near = did_you_mean(word, known).filter(|near| *near != word)?;
         (dialects_of(word).is_none() || near.eq_ignore_ascii_case(word)).then_some(near)
     }
@@ -116,11 +126,21 @@ impl Reader<'_, '_> {
 
     /// What may be meant by a word that stands in a wrong place.
     pub(super) fn advice<'w>(&self, word: &str, known: impl IntoIterator<Item = &'w str>) -> Option<String> {
-        if let Some(near) = self.meant(word, known) {
-            return Some(format!("did you mean `{near}`?"));
+        let known: Vec<&str> = known.into_iter().collect();
+        let year = self.options.dialect.name();
+        if let Some(near) = self.meant(word, known.iter().copied()) {
+            let remark = slip(word, known.iter().copied()).map(|slip| slip.1).filter(|remark| !remark.is_empty());
+            return Some(match (counterpart(word, self.options.dialect), remark) {
+                (Some(there), _) if there == near => format!("in {year} it is `{near}`"),
+                (_, Some(remark)) => format!("did you mean `{near}`? {remark}"),
+                _ => format!("did you mean `{near}`?"),
+            });
         }
         let set = dialects_of(word)?;
         let nodes = self.options.dialect == Dialect::F23;
+        if let Some(there) = counterpart(word, self.options.dialect) {
+            return Some(format!("it is a word of {}; in {year} it is `{there}`", names(set)));
+        }
         if nodes && !Dialect::F23.is_in(set) || !nodes && set == Dialect::F23 as u8 {
             return Some(format!("it is a word of {}", names(set)));
         }

@@ -47,7 +47,10 @@ impl Reader<'_, '_> {
             }
         }
         if object.is_none() && self.errors() == errors {
-            self.error(Diagnostic::error("this `Transform` has no object").at(keyword));
+            let error = Diagnostic::error("this `Transform` has no object").code("missing-field").at(keyword);
+            self.error(
+                error.help("write the object after its matrices: `Transform { Translate 0 1 0 Sphere { ... } }`"),
+            );
         }
         Some(Node::Transform(ops, Box::new(object?)))
     }
@@ -92,7 +95,12 @@ impl Reader<'_, '_> {
                 self.foreign(&format!("{word} {{"), open, set::F03);
             }
         } else if braces_needed {
+            if word == "Rotate" && self.rotate_without_braces(span) {
+                return Some(None);
+            }
             self.expected("`{`", word);
+        } else if word == "Scale" && self.scale_by_one(span) {
+            return Some(None);
         }
         let known = self.errors();
         let op = self.matrix_values(word);
@@ -109,6 +117,49 @@ impl Reader<'_, '_> {
             self.error(error.at(span.to(self.last_span())));
         }
         Some(op)
+    }
+
+    /// How many numbers follow, and where they end.
+    fn numbers_ahead(&self) -> (usize, Span) {
+        let number = |i: usize| self.ahead(i).filter(|t| self.text(t.span).parse::<f32>().is_ok());
+        let count = (0..17).take_while(|i| number(*i).is_some()).count();
+        (count, number(count.saturating_sub(1)).map_or(self.last_span(), |token| token.span))
+    }
+
+    /// `Rotate 0 1 0 45`: says what is missing, and passes over it.
+    fn rotate_without_braces(&mut self, word: Span) -> bool {
+        let (count, last) = self.numbers_ahead();
+        if count != 4 && count != 1 {
+            return false;
+        }
+        let whole = word.to(last);
+        let numbers = self.text(Span { start: word.end, ..whole }).trim().to_string();
+        let error = Diagnostic::error("the axis and the angle of `Rotate` stand in braces").code("syntax").at(whole);
+        self.error(match count {
+            4 => error.help(format!("write `Rotate {{ {numbers} }}`")).fix(whole, format!("Rotate {{ {numbers} }}")),
+            _ => error
+                .help(format!("about one axis it is `XRotate {numbers}`, `YRotate {numbers}` or `ZRotate {numbers}`")),
+        });
+        for _ in 0..count {
+            self.advance();
+        }
+        true
+    }
+
+    /// `Scale 2`: says what is meant, and passes over it.
+    fn scale_by_one(&mut self, word: Span) -> bool {
+        let (count, last) = self.numbers_ahead();
+        if count != 1 {
+            return false;
+        }
+        let number = self.text(last);
+        let error =
+            Diagnostic::error("`Scale` takes three numbers, one for each axis").code("syntax").at(word.to(last));
+        self.error(
+            error.help(format!("alike along all of them it is `UniformScale {number}`")).fix(word, "UniformScale"),
+        );
+        self.advance();
+        true
     }
 
     fn matrix_values(&mut self, word: &str) -> Option<MatrixOp> {

@@ -22,6 +22,7 @@ pub use heat::heat_map;
 pub use measure::{Largest, Measures};
 pub use mistake::Finding;
 pub use picture::{Picture, Scale};
+pub(crate) use picture::{linear_to_srgb, srgb_to_linear};
 pub use regions::Region;
 
 /// What counts as the same.

@@ -48,12 +48,12 @@ impl Scale {
 }
 
 /// The curve of IEC 61966-2-1, from 0 to 1.
-pub(super) fn linear_to_srgb(light: f32) -> f32 {
+pub(crate) fn linear_to_srgb(light: f32) -> f32 {
     if light <= 0.0031308 { 12.92 * light } else { 1.055 * fp::pow(light, 1.0 / 2.4) - 0.055 }
 }
 
 /// The inverse curve of IEC 61966-2-1.
-pub(super) fn srgb_to_linear(value: f32) -> f32 {
+pub(crate) fn srgb_to_linear(value: f32) -> f32 {
     if value <= 0.04045 { value / 12.92 } else { fp::pow((value + 0.055) / 1.055, 2.4) }
 }
 

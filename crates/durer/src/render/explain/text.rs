@@ -3,11 +3,13 @@
 use super::{Explanation, Mean, SampleAccount};
 use crate::describe::DescribedList;
 use crate::diag::{Files, Span};
+use crate::dialect::Compat;
+use crate::image::Transfer;
 use crate::integrator::Node;
 use crate::integrator::account::{Line as RayLine, RayKind, Shadow, Struck, What};
-use crate::math::{Color, Vec3};
+use crate::math::{Color, Vec3, reflect};
 use crate::scene::Scene;
-use crate::world::World;
+use crate::world::{Material, World};
 
 /// What things are called, and where they are written.
 #[derive(Clone, Copy, Debug)]
@@ -27,8 +29,47 @@ pub struct Line {
     pub depth: usize,
     /// What the term adds to the one above; `None` on lines that only tell more of the line before.
     pub adds: Option<Color>,
+    /// The share of the whole that it is, from 0 to 1, by its brightness.
+    pub share: f32,
     /// The line.
     pub text: String,
+}
+
+/// How much is told.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Telling {
+    /// Terms that are a smaller share of the whole are left out.
+    pub least: f32,
+    /// Terms that stand deeper are left out.
+    pub deepest: usize,
+    /// What makes eight bits.
+    pub transfer: Transfer,
+}
+
+impl Default for Telling {
+    /// Everything.
+    fn default() -> Self {
+        Telling { least: 0.0, deepest: usize::MAX, transfer: Transfer::default() }
+    }
+}
+
+/// What is known where a term stands.
+#[derive(Clone, Copy)]
+struct Context {
+    /// What its contribution is multiplied by in the whole.
+    gain: Color,
+    /// The brightness of the whole.
+    whole: f32,
+    /// The ray, the normal and the way to the light that it belongs to.
+    dir: Vec3,
+    n: Vec3,
+    to_light: Vec3,
+    material: Option<u32>,
+    fresnel: Option<f32>,
+}
+
+fn brightness(color: Color) -> f32 {
+    color.dot(Color::new(0.2126, 0.7152, 0.0722))
 }
 
 impl Names<'_> {
@@ -37,6 +78,38 @@ impl Names<'_> {
         match self.files.position(span) {
             Some((line, column)) => format!("{name}:{line}:{column}"),
             None => name.to_string(),
+        }
+    }
+
+    /// The line in which something is written: with the file's name, if it is not the scene's.
+    fn line(&self, span: Span) -> String {
+        let scene = self.scene.camera_span.file;
+        match self.files.position(span) {
+            Some((line, _)) if span.file == scene => format!("of line {line}"),
+            _ => self.place(span),
+        }
+    }
+
+    /// An object's keyword and line.
+    pub fn short_object(&self, number: u32) -> String {
+        let span = self.world.objects[number as usize].span;
+        let bytes = self.files.bytes(span.file).and_then(|b| b.get(span.start as usize..span.end as usize));
+        format!("{} {}", String::from_utf8_lossy(bytes.unwrap_or(b"object")), self.line(span))
+    }
+
+    /// A material's number and line.
+    fn short_material(&self, number: u32) -> String {
+        match self.scene.materials.get(number as usize) {
+            Some(material) => format!("material {number} {}", self.line(material.span)),
+            None => "plain grey".into(),
+        }
+    }
+
+    /// A light's keyword and line.
+    fn short_light(&self, number: usize) -> String {
+        match self.scene.lights.iter().flatten().nth(number) {
+            Some(light) => format!("{} {}", light.value.keywords()[0].0, self.line(light.span)),
+            None => format!("light {number}"),
         }
     }
 
@@ -66,10 +139,12 @@ impl Names<'_> {
 
 impl Explanation {
     /// The explanation in lines: the pixel, its samples, and the tree of one of them, by its place in the list.
-    pub fn lines(&self, names: &Names, wanted: usize) -> Vec<Line> {
+    pub fn lines(&self, names: &Names, wanted: usize, telling: &Telling) -> Vec<Line> {
         let mut lines = Vec::new();
-        let mut say = |depth, text: String| lines.push(Line { depth, adds: None, text });
-        say(0, format!("pixel {},{} = {}", self.x, self.y, rgb(self.color)));
+        let mut say = |depth, text: String| lines.push(Line { depth, adds: None, share: 0.0, text });
+        let [r, g, b] = telling.transfer.encode_pixel(self.color);
+        let curve = telling.transfer.name();
+        say(0, format!("pixel {},{} = {}, in eight bits {r} {g} {b} ({curve})", self.x, self.y, rgb(self.color)));
         if self.coverage < 1.0 {
             say(1, format!("the camera sees something at {:.1} % of it", 100.0 * self.coverage));
         }
@@ -88,11 +163,14 @@ impl Explanation {
         }
         let nothing = |i: usize| i != wanted && self.samples[i].weight == 0.0 && self.mean != Mean::Own;
         for (i, sample) in self.samples.iter().enumerate().filter(|(i, _)| !nothing(*i)) {
-            sample_lines(sample, self.number(i), names, i == wanted, &mut lines);
+            sample_lines(sample, self.number(i), names, (i == wanted).then_some(telling), &mut lines);
         }
         match (0..all).filter(|&i| nothing(i)).count() {
             0 => {}
-            left => lines.push(Line { depth: 1, adds: None, text: format!("{left} samples more have no weight here") }),
+            left => {
+                let text = format!("{left} samples more have no weight here");
+                lines.push(Line { depth: 1, adds: None, share: 0.0, text });
+            }
         }
         lines
     }
@@ -107,28 +185,38 @@ impl Explanation {
     }
 }
 
-fn sample_lines(sample: &SampleAccount, name: String, names: &Names, whole: bool, lines: &mut Vec<Line>) {
+fn sample_lines(sample: &SampleAccount, name: String, names: &Names, whole: Option<&Telling>, lines: &mut Vec<Line>) {
     let SampleAccount { place, weight, light, .. } = sample;
     let seen = light.as_ref().map_or("the camera sees nothing here".into(), |light| rgb(light.value));
-    let text = format!("{name} at {}, {}, weight {weight}: {seen}", place.x, place.y);
-    lines.push(Line { depth: 1, adds: None, text });
-    if let (Some(light), true) = (light, whole) {
-        node_lines(light, names, 2, lines);
+    let text = format!("{name} at {}, {}, weight {}: {seen}", place.x, place.y, number(*weight));
+    lines.push(Line { depth: 1, adds: None, share: 0.0, text });
+    if let (Some(light), Some(telling)) = (light, whole) {
+        node_lines(light, names, 2, telling, Context::of(light), lines);
     }
 }
 
 /// The lines of a tree.
-pub fn ray_text(light: &Node, names: &Names) -> Vec<Line> {
+pub fn ray_text(light: &Node, names: &Names, telling: &Telling) -> Vec<Line> {
     let mut lines = Vec::new();
-    node_lines(light, names, 0, &mut lines);
+    node_lines(light, names, 0, telling, Context::of(light), &mut lines);
     lines
 }
 
-fn node_lines(node: &Node, names: &Names, depth: usize, lines: &mut Vec<Line>) {
+impl Context {
+    fn of(light: &Node) -> Self {
+        let (dir, n, to_light) = (Vec3::ZERO, Vec3::ZERO, Vec3::ZERO);
+        let whole = brightness(light.contribution()).max(f32::MIN_POSITIVE);
+        Context { gain: Color::ONE, whole, dir, n, to_light, material: None, fresnel: None }
+    }
+}
+
+fn node_lines(node: &Node, names: &Names, depth: usize, telling: &Telling, at: Context, lines: &mut Vec<Line>) {
     let (factor, value) = (rgb(node.factor), rgb(node.value));
     let mut more = Vec::new();
+    let mut below = Context { gain: at.gain * node.factor * node.scale, ..at };
     let text = match &node.what {
         What::Ray { from, ray, weight, hit } => {
+            below.dir = ray.dir;
             let from = match from {
                 RayKind::Camera => "camera ray",
                 RayKind::Reflected => "mirrored ray",
@@ -136,12 +224,21 @@ fn node_lines(node: &Node, names: &Names, depth: usize, lines: &mut Vec<Line>) {
             };
             more.push(ray_line(ray));
             match hit {
-                Some(hit) => more.extend(struck_lines(hit, names)),
+                Some(hit) => {
+                    (below.n, below.material) = (hit.n, Some(hit.material));
+                    more.extend(struck_lines(hit, names));
+                }
                 None => more.push("it hits nothing".into()),
             }
             match from {
                 "camera ray" => format!("{from}: {value}"),
-                _ => format!("{from}, which counts for {weight} of the pixel: {factor} · {value}"),
+                _ => {
+                    format!(
+                        "{from}, which counts for {} of the pixel: {} · {value}",
+                        number(*weight),
+                        split(node, from, &at, names)
+                    )
+                }
             }
         }
         What::Sky => "background".into(),
@@ -149,40 +246,86 @@ fn node_lines(node: &Node, names: &Names, depth: usize, lines: &mut Vec<Line>) {
             format!("ambient{}: light {factor} · colour {value}", share_text(*share))
         }
         What::Light { light, to_light, distance, share, shadow } => {
-            more.push(format!("L = {}, {} away; {} arrives", vector(*to_light), distance, rgb(node.scale)));
+            below.to_light = *to_light;
+            more.push(format!("L = {}, {} away; {} arrives", vector(*to_light), number(*distance), rgb(node.scale)));
             more.extend(shadow.iter().map(|shadow| shadow_line(shadow, names)));
             let through = if node.factor == Color::ONE { String::new() } else { format!("{factor} · ") };
-            format!("{}{}: {through}(sum below) · {}", names.light(*light), share_text(*share), rgb(node.scale))
+            let sum = if node.terms.is_empty() { value } else { format!("(sum below) · {}", rgb(node.scale)) };
+            format!("{}{}: {through}{sum}", names.short_light(*light), share_text(*share))
         }
-        What::Diffuse { cosine } => format!("diffuse: max(0, N·L = {cosine}) · {value}"),
+        What::Diffuse { cosine } => format!("diffuse: max(0, N·L = {}) · {value}", number(*cosine)),
         What::Highlight { model, base, exponent } => {
-            format!("highlight: max(0, {model} = {base})^{exponent} = {} · {value}", node.factor.x)
+            more.push(match *model {
+                "N·H" => format!("H = norm(L + V) = {}", vector((at.to_light - at.dir).normalize_or_zero())),
+                _ => format!("R = d - 2 (d·N) N = {}", vector(reflect(at.dir, at.n))),
+            });
+            let (base, exponent, strength) = (number(*base), number(*exponent), number(node.factor.x));
+            format!("highlight: max(0, {model} = {base})^{exponent} = {strength} · {value}")
         }
         What::Secondary { here, there, fresnel, total } => {
-            let mut text = format!("mirrored and transmitted light, from index {here} to {there}");
+            below.fresnel = *fresnel;
+            let mut text = match here == there && fresnel.is_none() {
+                true => "mirrored light".to_string(),
+                false => {
+                    format!("mirrored and transmitted light, from index {} to {}", number(*here), number(*there))
+                }
+            };
             if let Some(share) = fresnel {
-                text += &format!("; Fresnel's law mirrors {share}");
+                text += &format!("; Fresnel's law mirrors {}", number(*share));
             }
             if *total {
                 text += "; all is mirrored: beyond the critical angle nothing gets through";
             }
             text
         }
-        What::Cut { weight } => format!("a ray that counts for {weight} only is not traced (--weight)"),
+        What::Cut { weight } => format!("a ray that counts for {} only is not traced (--weight)", number(*weight)),
         What::Spent => "mirrored and transmitted light is left out: no more levels are wanted (--bounces)".into(),
     };
-    lines.push(Line { depth, adds: Some(node.contribution()), text });
-    lines.extend(more.into_iter().map(|text| Line { depth: depth + 1, adds: None, text }));
-    node.terms.iter().for_each(|term| node_lines(term, names, depth + 1, lines));
+    let contribution = node.contribution();
+    let of_whole = |node: &Node, gain: Color| brightness(gain * node.contribution()) / at.whole;
+    lines.push(Line { depth, adds: Some(contribution), share: of_whole(node, at.gain), text });
+    let mut tell = |text: String| lines.push(Line { depth: depth + 1, adds: None, share: 0.0, text });
+    more.into_iter().for_each(&mut tell);
+    if depth >= telling.deepest && !node.terms.is_empty() {
+        return tell(format!("{} below (--depth)", terms(node.terms.len())));
+    }
+    let small = |term: &&Node| of_whole(term, below.gain).abs() < telling.least;
+    let left = node.terms.iter().filter(small).count();
+    for term in node.terms.iter().filter(|term| !small(term)) {
+        node_lines(term, names, depth + 1, telling, below, lines);
+    }
+    if left > 0 {
+        let text = format!("{} of less than {} % each (--min)", terms(left), number(100.0 * telling.least));
+        lines.push(Line { depth: depth + 1, adds: None, share: 0.0, text });
+    }
+}
+
+fn terms(count: usize) -> String {
+    if count == 1 { "1 term".into() } else { format!("{count} terms") }
+}
+
+/// The factor of a secondary ray: where Fresnel's law divides the light, the material's colour and the share.
+fn split(node: &Node, from: &str, at: &Context, names: &Names) -> String {
+    let phong = at.material.and_then(|i| names.world.materials.get(i as usize));
+    match (at.fresnel, phong) {
+        (Some(r), Some(Material::Phong(phong))) if from == "mirrored ray" => {
+            format!("`specularColor` {} · {}", rgb(phong.reflective), number(r))
+        }
+        (Some(r), Some(Material::Phong(phong))) => {
+            format!("colour {} · (1 - {})", rgb(phong.transparent), number(r))
+        }
+        _ => rgb(node.factor),
+    }
 }
 
 fn struck_lines(hit: &Struck, names: &Names) -> Vec<String> {
-    let mut lines = vec![format!("hits {} at t = {}, point {}", names.object(hit.object), hit.t, vector(hit.position))];
+    let (object, t) = (names.short_object(hit.object), number(hit.t));
+    let mut lines = vec![format!("hits {object} at t = {t}, point {}", vector(hit.position))];
     if hit.barycentric != Vec3::ZERO {
         lines.push(format!("triangle {}, barycentric {}", hit.part, vector(hit.barycentric)));
     }
     if let Some(uv) = hit.uv {
-        lines.push(format!("uv ({}, {})", uv.x, uv.y));
+        lines.push(format!("uv ({}, {})", number(uv.x), number(uv.y)));
     }
     if let Some(local) = &hit.local {
         lines.push(format!("in the object's own space: {}", ray_line(local)));
@@ -201,25 +344,27 @@ fn struck_lines(hit: &Struck, names: &Names) -> Vec<String> {
         };
     }
     lines.push(normal);
-    lines.push(names.material(hit.material));
+    lines.push(names.short_material(hit.material));
     lines
 }
 
 fn shadow_line(shadow: &Shadow, names: &Names) -> String {
-    match (shadow.blocker, shadow.share) {
-        (None, _) => "the shadow ray is free".into(),
-        (Some((object, t)), share) if share == Color::ZERO => {
-            format!("in the shadow of {}, {t} away", names.object(object))
+    let Some((object, t)) = shadow.blocker else { return "the shadow ray is free".into() };
+    let (object, t) = (names.short_object(object), number(t));
+    match shadow.share {
+        Color::ZERO => format!("in the shadow of {object}, {t} away"),
+        Color::ONE if names.world.rules.has(Compat::ShadowFronts) => {
+            format!(
+                "{object} stands {t} away, but does not block it: its back is turned to the ray (habit `shadow-fronts`)"
+            )
         }
-        (Some((object, t)), Color::ONE) => format!("{} stands {t} away, but does not block it", names.object(object)),
-        (Some((object, t)), share) => {
-            format!("through {}, {t} away, comes {}", names.object(object), rgb(share))
-        }
+        Color::ONE => format!("{object} stands {t} away, but does not block it: it lets all light through"),
+        share => format!("through {object}, {t} away, comes {}", rgb(share)),
     }
 }
 
 fn share_text(share: f32) -> String {
-    if share == 1.0 { String::new() } else { format!(" of a part of {share}") }
+    if share == 1.0 { String::new() } else { format!(" of a part of {}", number(share)) }
 }
 
 fn ray_line(ray: &RayLine) -> String {
@@ -227,7 +372,17 @@ fn ray_line(ray: &RayLine) -> String {
 }
 
 fn vector(v: Vec3) -> String {
-    format!("({}, {}, {})", v.x, v.y, v.z)
+    format!("({}, {}, {})", number(v.x), number(v.y), number(v.z))
+}
+
+/// A number with four significant digits, and without a sign where it is 0.
+pub fn number(x: f32) -> String {
+    if x == 0.0 || !x.is_finite() {
+        return if x == 0.0 { "0".into() } else { x.to_string() };
+    }
+    let rounded: f64 = format!("{x:.3e}").parse().unwrap_or(f64::from(x));
+    let size = rounded.abs();
+    if (1e-4..1e7).contains(&size) { rounded.to_string() } else { format!("{rounded:e}") }
 }
 
 fn rgb(color: Color) -> String {

@@ -134,6 +134,12 @@ impl Rule {
         matches!(self, Rule::Turned(_) | Rule::Shifted(..))
     }
 
+    /// Whether it has numbers that were fitted to the pictures.
+    pub fn is_fitted(&self) -> bool {
+        use Rule::{Added, AddedEach, Affine, Factor, Factors, LightFactor, Power};
+        matches!(self, Affine(..) | Power(_) | Factor(_) | LightFactor(_) | Factors(_) | Added(_) | AddedEach(_))
+    }
+
     /// Its keyword.
     pub fn kind(&self) -> &'static str {
         match self {

@@ -75,7 +75,7 @@ fn brightness_and_colour() {
     finds("factor", "0.5", &scene, &|x, y| scene(x, y) * Vec3::new(0.5, 1.0, 1.0));
     finds("added", "/255) everywhere", &scene, &|x, y| scene(x, y) + 0.1);
     finds("range", "times", &scene, &|x, y| scene(x, y) * 0.5 + 0.3);
-    finds("range", "the other way", &scene, &|x, y| 0.8 - scene(x, y) * 0.7);
+    finds("range", "exchanged", &scene, &|x, y| 0.8 - scene(x, y) * 0.7);
     finds("inverted", "black for white", &scene, &|x, y| 1.0 - scene(x, y));
     finds("inverted", "green (y) is inverted", &scene, &|x, y| {
         let color = scene(x, y);

@@ -57,18 +57,19 @@ pub fn of(rule: &Rule) -> String {
             format!("its red, green and blue are the reference's times {r:.3}, {g:.3} and {b:.3}")
         }
         Rule::Added(amount) => {
-            format!("it is {} by {amount:+.4} ({:+.1}/255) everywhere", brightness(amount > 0.0), amount * 255.0)
+            let size = amount.abs();
+            format!("it is {} by {size:.4} ({:.1}/255) everywhere", brightness(amount > 0.0), size * 255.0)
         }
         Rule::AddedEach(amounts) => {
             let [r, g, b] = amounts.to_array();
             format!("{r:+.4}, {g:+.4} and {b:+.4} are added to its red, green and blue")
         }
         Rule::Affine(factor, amount) if factor < 0.0 => format!(
-            "its values are {factor:.3} times the reference's {amount:+.3}: the range is mapped the other way (near for far), and to other ends"
+            "its values are {factor:.3} times the reference's {amount:+.3}: black and white are exchanged, and the range is another"
         ),
         Rule::Affine(factor, amount) => {
             format!(
-                "its values are {factor:.3} times the reference's {amount:+.3}: another range (of depth?) is mapped to black and white"
+                "its values are {factor:.3} times the reference's {amount:+.3}: another range is mapped to black and white"
             )
         }
         Rule::Recolored(from, to) => {

@@ -1,0 +1,75 @@
+//! What the pupil's program does wrong, in words.
+
+use super::stage::Stage;
+use crate::progress;
+use durer::image::compare::Picture;
+use durer::mistakes::{Diagnosis, Named, Question, diagnose};
+use serde_json::{Value, json};
+
+/// Tries the mistakes on a pair of pictures.
+pub fn named(stage: &Stage, reference: &Picture, test: &Picture) -> Diagnosis {
+    let Stage { opened, job, transfer, .. } = stage;
+    let scene = &opened.loaded.scene;
+    let question = Question { scene, world: &opened.world, job, transfer: *transfer, reference, test };
+    progress::shares("trying mistakes", |told| diagnose(&question, told))
+}
+
+/// What was found, in lines: the first says it, those after it show the code.
+pub fn lines(diagnosis: &Diagnosis) -> Vec<String> {
+    if !diagnosis.is_of_scene() {
+        return vec![format!(
+            "cannot be told: {:.0} % of the reference's pixels are not what this scene makes with these options; give those that \
+             made it (--dialect, --shadows, --bounces, --samples, --transfer)",
+            100.0 * diagnosis.off
+        )];
+    }
+    let Some(first) = diagnosis.named.first() else {
+        return vec![
+            "cannot be told from the pictures: none of the mistakes that were tried explains the difference".into(),
+        ];
+    };
+    let mut lines = vec![format!(
+        "{}: explains {:.1} % of the squared difference",
+        words(first),
+        (1000.0 * first.explained + 1e-6).floor() / 10.0
+    )];
+    for (mistake, value) in &first.mistakes {
+        let with = |text: &str| text.replace("{}", &value.to_string());
+        lines.push(format!("  should be:  {}", with(mistake.right)));
+        lines.push(format!("  may be:     {}", with(mistake.wrong)));
+        lines.push(format!("  see the step `{}` of `durer lesson`", mistake.step));
+    }
+    lines.extend(
+        diagnosis.named.iter().skip(1).take(4).map(|named| format!("  or, the same in this scene: {}", words(named))),
+    );
+    lines
+}
+
+/// A mistake, or two, in words.
+pub fn words(named: &Named) -> String {
+    let each: Vec<String> = named.mistakes.iter().map(|(mistake, value)| mistake.told(*value)).collect();
+    each.join("; and ")
+}
+
+/// For programs.
+pub fn json(diagnosis: &Diagnosis) -> Value {
+    let one = |named: &Named| {
+        let mistake = |(mistake, value): &(&durer::mistakes::Mistake, f32)| {
+            json!({
+                "name": mistake.name, "words": mistake.told(*value), "value": value,
+                "right": mistake.right, "wrong": mistake.wrong, "step": mistake.step,
+            })
+        };
+        json!({
+            "mistakes": named.mistakes.iter().map(mistake).collect::<Vec<_>>(),
+            "words": words(named), "explained": named.explained, "matched": named.matched,
+        })
+    };
+    json!({
+        "reference_off": diagnosis.off,
+        "told": !diagnosis.named.is_empty(),
+        "nearest": diagnosis.tried.iter().map(|n| json!([words(n), n.explained, n.matched])).collect::<Vec<_>>(),
+        "named": diagnosis.named.iter().map(one).collect::<Vec<_>>(),
+        "lines": lines(diagnosis),
+    })
+}

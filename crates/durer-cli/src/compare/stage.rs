@@ -1,0 +1,181 @@
+//! The scene of a pair of pictures, with the options that made the reference.
+
+use super::pairs::Pair;
+use crate::args::CompareArgs;
+use crate::guard::Guard;
+use crate::open::{Opened, load_options, open};
+use crate::{Failure, bad, job};
+use durer::LoadOptions;
+use durer::dialect::Dialect;
+use durer::image::Transfer;
+use durer::image::compare::Picture;
+use durer::mistakes::{Question, off};
+use durer::render::{Job, Sampling};
+use std::path::{Path, PathBuf};
+
+/// The reference is made by these options where fewer of its pixels differ.
+const SAME: f64 = 0.01;
+/// The same where samples count for more pixels than one.
+const MOST_OFF: f64 = 0.2;
+
+/// A scene that was opened, and how the reference was made of it.
+pub struct Stage {
+    pub opened: Opened,
+    pub job: Job,
+    pub transfer: Transfer,
+    /// The scene file.
+    pub path: PathBuf,
+    /// The options of `durer` that make this picture, beside its size.
+    pub options: String,
+    /// What was found out of the options, where others were given.
+    pub note: Option<String>,
+}
+
+/// One way in which the reference may have been made.
+struct Way {
+    dialect: Option<Dialect>,
+    center: bool,
+    shadows: Option<bool>,
+    bounces: Option<u32>,
+}
+
+/// Opens the scene of a pair, and finds the options that make the reference: those that are given, or else what a student forgets
+/// to say, one sample a pixel, that year's program, shadows, bounces.
+pub fn stage(
+    args: &CompareArgs,
+    pair: &Pair,
+    reference: &Picture,
+    guard: &mut Guard,
+) -> Result<Option<Stage>, Failure> {
+    let Some(scene) = &args.scene else { return Ok(None) };
+    let path = path(scene, pair)?;
+    let asked = load_options(&args.reading);
+    let first = opened(args, &path, &asked, reference, guard)?;
+    let transfer = Transfer::from_name(&args.transfer).unwrap_or_default();
+    let mut best = (way_off(&first, reference, transfer), first, transfer, None);
+    // Where samples count for pixels around too, edges are not the same to the bit.
+    let enough = if best.1.1.sampling.is_local() { SAME } else { MOST_OFF };
+    if best.0 <= enough {
+        return Ok(Some(finished(args, path, best.1, best.2, None)));
+    }
+    let guessed = asked.dialect.or(best.1.0.loaded.guess.as_ref().map(|guess| guess.dialect));
+    let mut dialects = vec![asked.dialect];
+    if asked.dialect.is_none() {
+        dialects.push(guessed);
+        let others = Dialect::ALL.into_iter().filter(|dialect| Some(*dialect) != guessed && *dialect != Dialect::Durer);
+        dialects.extend(others.map(Some));
+    }
+    let shadows = if args.job.shadows.is_some() { vec![None] } else { vec![None, Some(true), Some(false)] };
+    let bounces = if args.job.bounces.is_some() { vec![None] } else { vec![None, Some(4), Some(0), Some(1), Some(2)] };
+    'found: for dialect in dialects {
+        let options = LoadOptions { dialect, ..load_options(&args.reading) };
+        // A year whose words are others cannot be meant.
+        let Ok((opened, job)) = opened(args, &path, &options, reference, guard) else { continue };
+        let mut current = (opened, job);
+        for way in shadows.iter().flat_map(|&shadows| {
+            bounces
+                .iter()
+                .flat_map(move |&bounces| [false, true].map(|center| Way { dialect, center, shadows, bounces }))
+        }) {
+            let kept = current.1.clone();
+            way.apply(&mut current.1);
+            let tried = [transfer, Transfer::Course, Transfer::Linear, Transfer::Srgb];
+            for transfer in tried {
+                let off = way_off(&current, reference, transfer);
+                if off < 0.5 * best.0 {
+                    let again = reopened(args, &path, &options, reference, &way, guard)?;
+                    best = (off, again, transfer, Some(way.dialect));
+                }
+                if best.0 <= SAME {
+                    break 'found;
+                }
+            }
+            current.1 = kept;
+        }
+    }
+    let (off, found, transfer, _) = best;
+    let mut stage = finished(args, path, found, transfer, None);
+    if off <= SAME {
+        stage.note = Some(format!("the reference is what `{}` makes of the scene: taken so", stage.options));
+    }
+    Ok(Some(stage))
+}
+
+impl Way {
+    fn apply(&self, job: &mut Job) {
+        if self.center {
+            job.sampling = Sampling::Center;
+        }
+        job.settings.shadows = self.shadows.unwrap_or(job.settings.shadows);
+        job.settings.bounces = self.bounces.unwrap_or(job.settings.bounces);
+    }
+}
+
+fn reopened(
+    args: &CompareArgs,
+    path: &Path,
+    options: &LoadOptions,
+    reference: &Picture,
+    way: &Way,
+    guard: &mut Guard,
+) -> Result<(Opened, Job), Failure> {
+    let (opened, mut job) = opened(args, path, options, reference, guard)?;
+    way.apply(&mut job);
+    Ok((opened, job))
+}
+
+fn opened(
+    args: &CompareArgs,
+    path: &Path,
+    options: &LoadOptions,
+    reference: &Picture,
+    guard: &mut Guard,
+) -> Result<(Opened, Job), Failure> {
+    let opened = open(path, options, true, guard)?;
+    let job = job::job(&args.job, Some(&args.view), &opened.loaded, false)?;
+    let (width, height) = (reference.image.width, reference.image.height);
+    let job = Job { width, height, crop: None, color: true, aovs: Vec::new(), ..job };
+    Ok((opened, job))
+}
+
+fn way_off((opened, job): &(Opened, Job), reference: &Picture, transfer: Transfer) -> f64 {
+    off(&Question { scene: &opened.loaded.scene, world: &opened.world, job, transfer, reference, test: reference })
+}
+
+fn finished(
+    args: &CompareArgs,
+    path: PathBuf,
+    (opened, job): (Opened, Job),
+    transfer: Transfer,
+    note: Option<String>,
+) -> Stage {
+    let mut options = job::spelled(&args.reading, &job, &opened.loaded);
+    if transfer != Transfer::Srgb {
+        options += &format!(" --transfer {}", transfer.name());
+    }
+    Stage { options: options.trim().into(), opened, job, transfer, path, note }
+}
+
+impl Stage {
+    /// The command that explains a pixel of the reference.
+    pub fn explain(&self, (x, y): (u32, u32)) -> String {
+        let shown = self.path.to_string_lossy();
+        let quoted = shlex::try_quote(&shown).unwrap_or_default();
+        let Job { width, height, .. } = self.job;
+        let gap = if self.options.is_empty() { "" } else { " " };
+        format!("durer explain {quoted} --pixel {x},{y} --size {width}x{height}{gap}{}", self.options)
+    }
+}
+
+/// The scene of a pair: in a folder, that of the picture's name.
+fn path(scene: &Path, pair: &Pair) -> Result<PathBuf, Failure> {
+    if !scene.is_dir() {
+        return Ok(scene.into());
+    }
+    let name = Path::new(&pair.name).with_extension("txt");
+    let path = scene.join(&name);
+    match path.exists() {
+        true => Ok(path),
+        false => Err(bad(format!("there is no `{}` in `{}`", name.display(), scene.display()))),
+    }
+}

@@ -1,0 +1,76 @@
+//! What a scene looks like in lines, to be drawn in space.
+
+use durer::light::Light;
+use durer::math::{Aabb, Vec3};
+use durer::shape::Primitive;
+use durer::world::{Geometry, Object, World};
+use serde_json::{Value, json};
+
+/// At most so many objects are drawn: more hide each other.
+const MOST: usize = 400;
+/// And so many triangles of a mesh.
+const MOST_TRIANGLES: usize = 600;
+/// Points of a circle.
+const ROUND: usize = 32;
+
+/// The outlines of all objects, each a row of points.
+pub fn outlines(world: &World) -> Vec<Vec<Vec3>> {
+    let ends = world.bounds().union(Aabb::around([world.frame.eye]));
+    world.objects.iter().take(MOST).flat_map(|object| outline(object, &ends)).collect()
+}
+
+/// The lights that have a place, and where the others come from.
+pub fn lights(world: &World) -> Vec<Value> {
+    let bounds = world.bounds().union(Aabb::around([world.frame.eye]));
+    let reach = 0.6 * bounds.size().length();
+    let one = |(i, light): (usize, &Light)| match light {
+        Light::Point(light) => json!({ "at": light.position, "name": format!("light {i}") }),
+        Light::Directional(light) => {
+            let at = bounds.center() - reach * light.direction.normalize_or_zero();
+            json!({ "at": at, "name": format!("from light {i}") })
+        }
+    };
+    world.lights.iter().enumerate().take(16).map(one).collect()
+}
+
+fn outline(object: &Object, ends: &Aabb) -> Vec<Vec<Vec3>> {
+    let place = |points: Vec<Vec3>| points.into_iter().map(|p| object.world_point(p)).collect::<Vec<_>>();
+    let closed = |[a, b, c]: [Vec3; 3]| vec![a, b, c, a];
+    match &object.geometry {
+        Geometry::Primitive(Primitive::Sphere(sphere)) => {
+            let circle = |u: Vec3, v: Vec3| -> Vec<Vec3> {
+                let point = |i: usize| {
+                    let angle = std::f64::consts::TAU * i as f64 / ROUND as f64;
+                    let (s, c) = durer::math::fp::sin_cos_degrees(angle.to_degrees());
+                    sphere.center + sphere.radius * (c as f32 * u + s as f32 * v)
+                };
+                (0..=ROUND).map(point).collect()
+            };
+            [circle(Vec3::X, Vec3::Y), circle(Vec3::Y, Vec3::Z), circle(Vec3::Z, Vec3::X)].map(place).to_vec()
+        }
+        Geometry::Primitive(Primitive::Triangle(triangle)) => vec![place(closed(triangle.corners()))],
+        Geometry::Primitive(Primitive::Plane(plane)) => {
+            // A grid around the place below the middle of all things.
+            let n = plane.normal.normalize_or(Vec3::Y);
+            let (u, v) = n.any_orthonormal_pair();
+            let middle = ends.center();
+            let foot = middle - (middle.dot(n) - plane.offset / plane.normal.length()) * n;
+            let half = 0.4 * ends.size().length().max(1e-3);
+            let across = |a: Vec3, b: Vec3| (-3..=3).map(move |i| foot + half * i as f32 / 3.0 * a + half * b);
+            let lines = |a: Vec3, b: Vec3| across(a, -b).zip(across(a, b)).map(|(p, q)| vec![p, q]).collect::<Vec<_>>();
+            [lines(u, v), lines(v, u)].concat().into_iter().map(place).collect()
+        }
+        Geometry::Mesh(tree) => {
+            let count = tree.mesh.len();
+            let some = (0..count).step_by(count.div_ceil(MOST_TRIANGLES).max(1));
+            some.map(|i| place(closed(tree.mesh.corners(i as u32)))).collect()
+        }
+        _ => object.bounds().filter(|bounds| !bounds.is_empty()).map_or(Vec::new(), |bounds| boxed(&bounds)),
+    }
+}
+
+fn boxed(bounds: &Aabb) -> Vec<Vec<Vec3>> {
+    let corners: Vec<Vec3> = bounds.corners().into_iter().collect();
+    let edges = (0..8_usize).flat_map(|i| (0..3).map(move |k| (i, i | 1 << k))).filter(|(i, j)| i != j);
+    edges.map(|(i, j)| vec![corners[i], corners[j]]).collect()
+}

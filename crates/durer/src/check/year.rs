@@ -1,0 +1,207 @@
+//! What a year's program makes of a scene that others would show as it was meant: its habits, where they are on.
+
+use super::MOST_SOUGHT;
+use super::finding::{Finding, number, percent, vector};
+use super::scout::Scout;
+use crate::camera::Lens;
+use crate::diag::Diagnostic;
+use crate::dialect::{Compat, Highlight};
+use crate::material::PhongMaterial;
+use crate::math::Color;
+use crate::scene::{Material as Written, Spanned};
+
+/// Lengths of a camera's `up` that nobody sees in the picture.
+const UNIT: std::ops::RangeInclusive<f32> = 0.9..=1.1;
+/// Sides of a picture that differ by less look equal.
+const SQUARE: f32 = 1.05;
+
+/// The Phong materials that are seen, as they are written.
+fn seen<'s>(scout: &Scout<'s>) -> impl Iterator<Item = (usize, &'s Spanned<Written>, &'s PhongMaterial)> {
+    let rays = scout.material_rays().to_vec();
+    let all = scout.subject.scene.materials.iter().enumerate();
+    all.filter_map(move |(i, written)| match &written.value {
+        Written::Phong(phong, _) if rays[i] > 0 => Some((i, written, &**phong)),
+        _ => None,
+    })
+}
+
+/// A highlight without sharpness: 0 to the power of 0 is 1.
+pub(super) fn pow_zero(scout: &Scout) -> Vec<Finding> {
+    let rules = &scout.world().rules;
+    if rules.highlight != Highlight::Phong || !rules.has(Compat::PowZero) {
+        return Vec::new();
+    }
+    let all = scout.seen().count();
+    let chalk = |phong: &PhongMaterial| {
+        phong.specular_color.max_element() > 0.02 && phong.shininess.or(phong.exponent).unwrap_or(0.0) == 0.0
+    };
+    let say = |(i, written, phong): (usize, &Spanned<Written>, &PhongMaterial)| {
+        let missing = phong.shininess.is_none();
+        let count = scout.material_rays()[i];
+        let message = match missing {
+            true => format!("material {i} has a `specularColor` and no `shininess`, which is 0 then"),
+            false => format!("the `shininess` of material {i} is 0"),
+        };
+        let message = message.replace("specularColor", scout.word("specularColor", "specular"));
+        let diagnostic = Diagnostic::warning(message)
+            .label(format!("on {} of what is seen", percent(count, all)))
+            .effect("its highlight is everywhere, as on chalk: 0 to the power of 0 is 1")
+            .help("write a `shininess`, 20 say; the higher, the sharper");
+        let value = scout.value(written.span, &["shininess"]);
+        let diagnostic = match value {
+            Some(value) => diagnostic.at(value).fix(value, "20"),
+            None => scout.at_value(diagnostic, written.span, &["specularColor", "specular"]),
+        };
+        Finding::from(diagnostic).whole(count * 2 > all)
+    };
+    seen(scout).filter(|(.., phong)| chalk(phong)).map(say).take(MOST_SOUGHT).collect()
+}
+
+/// A highlight's colour without its exponent, which is 1 then.
+pub(super) fn no_exponent(scout: &Scout) -> Vec<Finding> {
+    if !matches!(scout.world().rules.highlight, Highlight::Blinn | Highlight::ByKeyword) {
+        return Vec::new();
+    }
+    let bare = |phong: &PhongMaterial| {
+        phong.specular_color.max_element() > 0.02
+            && phong.shininess.is_none()
+            && phong.exponent.is_none()
+            && phong.refraction_index.is_none()
+    };
+    let say = |(i, written, _): (usize, &Spanned<Written>, &PhongMaterial)| {
+        let diagnostic =
+            Diagnostic::warning(format!("material {i} has a `specularColor` and no `exponent`, which is 1 then"))
+                .effect("its highlight is spread over all of it, pale as chalk")
+                .help("write an `exponent`, 20 say; the higher, the sharper");
+        Finding::from(scout.at_value(diagnostic, written.span, &["specularColor"]))
+    };
+    seen(scout).filter(|(.., phong)| bare(phong)).map(say).take(MOST_SOUGHT).collect()
+}
+
+/// A camera's `up` that is used as it is written, and has not the length 1.
+pub(super) fn long_up(scout: &Scout) -> Vec<Finding> {
+    let up = scout.world().camera.pose().up;
+    let length = up.length();
+    if !scout.world().rules.has(Compat::RawUp) || UNIT.contains(&length) {
+        return Vec::new();
+    }
+    let (how, word) = if length > 1.0 { (length, "flattened") } else { (1.0 / length, "stretched upwards") };
+    let unit = vector(up / length);
+    let diagnostic =
+        Diagnostic::warning(format!("the camera's `up` has the length {}, and is used as it is", number(length)))
+            .effect(format!("the picture is {word}, {} times", number(how)))
+            .help(format!("give it the length 1: `up {unit}`"));
+    let span = scout.subject.scene.camera_span;
+    let diagnostic = match scout.value(span, &["up"]) {
+        Some(value) => diagnostic.at(value).fix(value, unit),
+        None => diagnostic.at(span),
+    };
+    vec![Finding::from(diagnostic).whole(true)]
+}
+
+/// A picture that is not square, under a program that stretches it.
+pub(super) fn stretched(scout: &Scout) -> Vec<Finding> {
+    let job = scout.subject.job;
+    let (width, height) = (job.width as f32, job.height as f32);
+    let ratio = width.max(height) / width.min(height);
+    if !scout.world().rules.has(Compat::Stretch) || ratio < SQUARE {
+        return Vec::new();
+    }
+    let way = if width > height { "wide" } else { "high" };
+    let side = job.width.max(job.height);
+    let diagnostic = Diagnostic::warning(format!("the picture of {} x {} pixels is not square", job.width, job.height))
+        .at(scout.subject.scene.camera_span)
+        .effect(format!("this year's program stretches it: everything is {} times too {way}", number(ratio)))
+        .help(format!(
+            "ask for a square one, as `--size {side}x{side}` (in the course's programs `-size {side} {side}`)"
+        ));
+    vec![Finding::from(diagnostic).whole(true)]
+}
+
+/// Faces of more than three corners, of which the year's program reads three.
+pub(super) fn quads(scout: &Scout) -> Vec<Finding> {
+    if !scout.world().rules.is_official() {
+        return Vec::new();
+    }
+    let say = |(name, count, all, face): (&str, usize, usize, crate::diag::Span)| {
+        let diagnostic =
+            Diagnostic::warning(format!("{count} of the {all} faces of `{name}` have more than three corners"))
+                .at(face)
+                .label("the first of them")
+                .effect("this year's program reads three corners of each, and shows holes, or stops")
+                .help("cut them into triangles: `f 1 2 3 4` is `f 1 2 3` and `f 1 3 4`");
+        Finding::from(diagnostic)
+    };
+    super::mesh::large_faces(scout).into_iter().map(say).collect()
+}
+
+/// Patterns of which both parts are the same.
+pub(super) fn same_parts(scout: &Scout) -> Vec<Finding> {
+    use crate::material::Pattern;
+    let materials = &scout.subject.scene.materials;
+    let say = |(i, material): (usize, &Spanned<Written>)| {
+        let Written::Solid(solid, _) = &material.value else { return None };
+        let [first, second] = solid.materials();
+        let of = |index: u32| materials.get(index as usize).map(|part| &part.value);
+        if first != second && of(first) != of(second) || scout.material_rays()[i] == 0 {
+            return None;
+        }
+        let message = match first == second {
+            true => format!("both parts of this pattern are material {first}"),
+            false => format!("the two parts of this pattern, materials {first} and {second}, are equal"),
+        };
+        let diagnostic = Diagnostic::warning(message)
+            .at(material.span)
+            .effect("no pattern is seen: it is of one colour")
+            .help("give its two `materialIndex` two different materials before it");
+        Some(Finding::from(diagnostic))
+    };
+    materials.iter().enumerate().filter_map(say).take(MOST_SOUGHT).collect()
+}
+
+/// Ambient light that leaves nothing to the lamps.
+pub(super) fn full_ambient(scout: &Scout) -> Vec<Finding> {
+    let world = scout.world();
+    let ambient = world.ambient;
+    let lamps: Color = world.lights.iter().map(super::lights::color).sum();
+    if ambient.min_element() < 0.8 || ambient.max_element() > 2.0 || lamps.max_element() <= 0.0 {
+        return Vec::new();
+    }
+    let word = scout.word("ambientLight", "ambient_light");
+    let diagnostic =
+        Diagnostic::warning(format!("the ambient light is {}: that is all the light there should be", vector(ambient)))
+            .effect("shadows and shading are washed out: surfaces have their full colour without any lamp")
+            .help(format!("0.1 to 0.3 is usual: `{word} 0.2 0.2 0.2`"));
+    let diagnostic = match super::colors::background_span(scout).and_then(|block| scout.value(block, &[word])) {
+        Some(value) => diagnostic.at(value).fix(value, "0.2 0.2 0.2"),
+        None => diagnostic,
+    };
+    vec![Finding::from(diagnostic).whole(true)]
+}
+
+/// Planes whose normal has not the length 1, where that moves them.
+pub(super) fn plane_normal(scout: &Scout) -> Vec<Finding> {
+    use crate::shape::Primitive;
+    use crate::world::{Geometry, Object};
+    let say = |object: &Object| {
+        let Geometry::Primitive(Primitive::Plane(plane)) = &object.geometry else { return None };
+        let length = plane.normal.length();
+        if (0.98..=1.02).contains(&length) || plane.offset == 0.0 {
+            return None;
+        }
+        let unit = vector(plane.normal / length);
+        let diagnostic = Diagnostic::warning(format!("the normal of this plane has the length {}", number(length)))
+            .effect(format!(
+                "the plane stands where p · normal = offset: {} from the origin, not {}",
+                number(plane.offset.abs() / length),
+                number(plane.offset.abs())
+            ))
+            .help(format!("give it the length 1: `normal {unit}`"));
+        let diagnostic = match scout.value(object.span, &["normal"]) {
+            Some(value) => diagnostic.at(value).fix(value, unit),
+            None => diagnostic.at(object.span),
+        };
+        Some(Finding::from(diagnostic))
+    };
+    scout.world().objects.iter().filter_map(say).take(MOST_SOUGHT).collect()
+}

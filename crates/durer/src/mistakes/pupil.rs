@@ -1,0 +1,371 @@
+//! A pupil's tracer: Whitted's algorithm once more, with any of the usual mistakes.
+//!
+//! It is apart from [`Whitted`], so that what renders pictures asks for no mistakes. Without any it gives the same colours,
+//! to the bit: a test holds the two together.
+
+use super::habits::{Ambient, Cosine, Fading, Fresnel, Glass, Habits, Half, Mirror, Normals, Pick, Sum};
+use crate::dialect::Compat;
+use crate::integrator::media::Media;
+use crate::integrator::spawn::{from_surface, to_light};
+use crate::integrator::whitted::{Blend, Passage, fresnel_share};
+use crate::integrator::{Settings, Whitted, refract};
+use crate::light::{Emitter, Illumination, Light};
+use crate::math::{Color, Ray, Ray64, Vec3, fp, gamma, reflect};
+use crate::shape::{Primitive, Surface};
+use crate::world::{Geometry, HighlightModel, Hit, Part, Phong, World};
+use glam::DVec3;
+use smallvec::SmallVec;
+
+/// The tracer.
+#[derive(Clone, Copy, Debug)]
+pub struct Pupil<'w> {
+    world: &'w World,
+    settings: Settings,
+    habits: &'w Habits,
+    right: Whitted<'w>,
+}
+
+/// What a ray carries from bounce to bounce.
+#[derive(Clone)]
+struct Path {
+    bounces: u32,
+    media: Media,
+    weight: f32,
+    first: bool,
+}
+
+impl<'w> Pupil<'w> {
+    /// For a world, with settings and habits.
+    pub fn new(world: &'w World, settings: Settings, habits: &'w Habits) -> Self {
+        Pupil { world, settings, habits, right: Whitted { world, settings, cancel: None } }
+    }
+
+    /// The light that comes along a camera ray.
+    pub fn radiance(&self, ray: &Ray) -> Color {
+        let path = Path { bounces: self.settings.bounces, media: Media::default(), weight: 1.0, first: true };
+        self.trace(&ray.into(), path)
+    }
+
+    fn trace(&self, ray: &Ray64, mut path: Path) -> Color {
+        let mut rest = *ray;
+        // Some habits find the same hidden surface again.
+        for _ in 0..64 {
+            let Some((hit, t)) = self.closest(&rest) else { break };
+            let official = self.world.rules.is_official();
+            match if official { None } else { self.right.passage(ray, &hit, &path.media) } {
+                Some(Passage { hidden: true, behind, .. }) => (path.media, rest.rounded.t_min) = (behind, hit.t),
+                _ => return self.shade(ray, &hit, t, path),
+            }
+        }
+        if self.habits.bounces.black_sky && !path.first { Color::ZERO } else { self.world.sky(ray.dir()) }
+    }
+
+    /// The hit, and the `t` at which the pupil takes it to be.
+    fn closest(&self, ray: &Ray64) -> Option<(Hit, f32)> {
+        let mut ray = *ray;
+        if self.habits.behind {
+            ray.rounded.t_min = f32::NEG_INFINITY;
+        }
+        let ray = &ray;
+        if self.habits.local_unit {
+            let mut whole = *ray;
+            whole.rounded.t_max = f32::INFINITY;
+            let hits = self.world.hits_of_each(&whole);
+            let seen = hits.map(|hit| (hit, self.own_t(ray, &hit)));
+            return seen.filter(|(_, t)| *t < ray.rounded.t_max).min_by(|a, b| a.1.total_cmp(&b.1));
+        }
+        let hit = match self.habits.pick {
+            Pick::Nearest => self.world.closest(ray, &mut ()),
+            Pick::Last => self.world.all_hits(ray).last(),
+            Pick::FarthestObject => self.world.hits_of_each(ray).max_by(|a, b| a.t.total_cmp(&b.t)),
+            Pick::LastWritten => self.world.hits_of_each(ray).max_by_key(|hit| hit.object),
+            Pick::FirstWritten => self.world.hits_of_each(ray).min_by_key(|hit| hit.object),
+        };
+        hit.map(|hit| (hit, hit.t))
+    }
+
+    /// The length of the way to a hit in the object's own space.
+    fn own_t(&self, ray: &Ray64, hit: &Hit) -> f32 {
+        let to_world = self.world.objects[hit.object as usize].to_world.as_ref();
+        hit.t * to_world.map_or(1.0, |to_world| to_world.inverse_ray(ray).dir.length())
+    }
+
+    fn occluded(&self, ray: &Ray64) -> bool {
+        if self.habits.local_unit {
+            return self.closest(ray).is_some();
+        }
+        let mut ray = *ray;
+        if self.habits.behind {
+            ray.rounded.t_min = f32::NEG_INFINITY;
+        }
+        self.world.occluded(&ray, &mut ())
+    }
+
+    /// The surface with the pupil's normals.
+    fn surface(&self, ray: &Ray64, hit: &Hit, t: f32) -> Surface {
+        let (habits, object) = (self.habits, &self.world.objects[hit.object as usize]);
+        let mut surface = self.world.surface(ray, hit);
+        if t != hit.t {
+            (surface.position, surface.rest) = (ray.rounded.at(t), Vec3::ZERO);
+        }
+        if let (Geometry::Mesh(tree), true) = (&object.geometry, habits.long_mixed)
+            && let Some(mixed) = tree.mesh.mixed_normal(hit.part, hit.uv)
+        {
+            // Transforms that turn and scale evenly keep the share of its length that it lost.
+            surface.n_shade *= mixed.length();
+        }
+        if habits.flat {
+            surface.n_shade = surface.n_geo;
+        }
+        if let (Some(to_world), true) = (&object.to_world, habits.normals != Normals::Right) {
+            let local = to_world.local_normal(surface.n_shade);
+            surface.n_shade = match habits.normals {
+                Normals::Right => surface.n_shade,
+                Normals::Local => local,
+                Normals::Long => to_world.long_normal(local),
+                Normals::ByInverse => to_world.inverse_ray(&Ray::new(Vec3::ZERO, local)).dir.normalize_or(local),
+            };
+        }
+        let triangle = matches!(object.geometry, Geometry::Mesh(_) | Geometry::Primitive(Primitive::Triangle(_)));
+        if habits.triangles_turned && triangle {
+            (surface.n_shade, surface.n_geo) = (-surface.n_shade, -surface.n_geo);
+        }
+        surface
+    }
+
+    fn shade(&self, ray: &Ray64, hit: &Hit, t: f32, path: Path) -> Color {
+        let (world, habits) = (self.world, self.habits);
+        let surface = self.surface(ray, hit, t);
+        let from_behind = self.right.sees_back(ray.dir(), &surface);
+        let black = from_behind && !self.settings.shade_back && world.rules.has(Compat::BlackBacks);
+        let turned = from_behind && (self.settings.shade_back || habits.faced);
+        let n = if turned { -surface.n_shade } else { surface.n_shade };
+        let n = if world.rules.has(Compat::UnitLight) { n.normalize_or(n) } else { n };
+        let parts = world.parts(hit, surface.position);
+        let mut color = Color::ZERO;
+        if !black || habits.faced {
+            let diffuse: SmallVec<[Color; 2]> =
+                parts.iter().map(|p| self.right.diffuse_color(p.phong, &surface)).collect();
+            let rounds = if habits.ambient == Ambient::EachLight { world.lights.len() } else { 1 };
+            let mut ambient_seen = Color::ZERO;
+            for (part, &diffuse) in parts.iter().zip(&diffuse) {
+                let met = part.phong.ambient.unwrap_or(diffuse);
+                let met = if habits.ambient == Ambient::Bare { Color::ONE } else { met };
+                for _ in 0..rounds {
+                    let ambient = part.share * world.ambient;
+                    color += ambient * met;
+                    ambient_seen += ambient * met;
+                }
+            }
+            let mut any = world.lights.is_empty();
+            for light in &world.lights {
+                let seen = self.illuminated(light, surface.point());
+                let visible = self.visible(&surface, &seen, path.first);
+                any |= visible != Color::ZERO;
+                let replaced = habits.sum == Sum::LastSeen && visible != Color::ZERO;
+                if habits.sum == Sum::LastOnly || replaced {
+                    color = ambient_seen;
+                }
+                for (part, &diffuse) in parts.iter().zip(&diffuse) {
+                    if visible != Color::ZERO {
+                        let direct = self.direct(part.phong, diffuse, n, ray.dir(), light, &seen);
+                        color += part.share * visible * direct;
+                    }
+                }
+                if habits.sum == Sum::ClampedEach {
+                    color = color.clamp(Color::ZERO, Color::ONE);
+                }
+            }
+            if habits.shadows.ambient_too && !any {
+                color -= ambient_seen;
+            }
+        }
+        if habits.sum == Sum::ClampedLocal {
+            color = color.clamp(Color::ZERO, Color::ONE);
+        }
+        if path.bounces > 0 {
+            let rounds = if habits.bounces.each_light { world.lights.len() } else { 1 };
+            let secondary = self.secondary((ray, hit), &surface, &parts, path);
+            for _ in 0..rounds {
+                color += secondary;
+            }
+        }
+        color
+    }
+
+    /// What arrives of a light, as the pupil reckons it.
+    fn illuminated(&self, light: &Light, point: DVec3) -> Illumination {
+        let mut seen = light.illuminate(point);
+        match light {
+            Light::Directional(_) if self.habits.lamps.negated => seen.to_light = -seen.to_light,
+            Light::Directional(_) => {}
+            Light::Point(point) => {
+                let d = seen.distance;
+                match self.habits.lamps.fading {
+                    Fading::Right => {}
+                    Fading::Multiplied => {
+                        let a = point.attenuation.unwrap_or(Vec3::X);
+                        seen.color = point.color * (a.x + a.y * d + a.z * d * d);
+                    }
+                    Fading::Linear => seen.color = point.color / d,
+                    Fading::Square => seen.color = point.color / (d * d),
+                }
+            }
+        }
+        seen
+    }
+
+    /// The vector to a light as it enters products: of length 1, but for mistakes.
+    fn lamp(&self, light: &Light, seen: &Illumination) -> Vec3 {
+        match light {
+            Light::Directional(lamp) if self.habits.lamps.long => seen.to_light * lamp.direction.length(),
+            Light::Point(_) if self.habits.lamps.long_points => seen.to_light * seen.distance,
+            _ => seen.to_light,
+        }
+    }
+
+    /// Diffuse term and highlight of one light.
+    fn direct(&self, phong: &Phong, diffuse: Color, n: Vec3, view: Vec3, light: &Light, seen: &Illumination) -> Color {
+        let habits = self.habits.highlights;
+        let lamp = self.lamp(light, seen);
+        let cosine = n.dot(lamp);
+        let factor = match self.habits.cosine {
+            Cosine::Clamped => cosine.max(0.0),
+            Cosine::TwoSided => cosine.abs(),
+            Cosine::Signed => cosine,
+            Cosine::One => 1.0,
+            Cosine::None => 0.0,
+        };
+        let mut color = factor * diffuse;
+        if let Some((specular, exponent, model)) = phong.highlight {
+            let half = |sum: Vec3| match habits.half {
+                Half::Unit => sum.normalize_or_zero(),
+                Half::Sum => sum,
+                Half::Mean => 0.5 * sum,
+            };
+            let base = match model {
+                HighlightModel::Blinn => (cosine > 0.0).then(|| n.dot(half(lamp - view))),
+                HighlightModel::Phong { behind } => (behind || cosine > 0.0).then(|| reflect(view, n).dot(lamp)),
+            };
+            if let Some(base) = base {
+                let mut strength = fp::pow(base.max(0.0), exponent);
+                if habits.times_cosine {
+                    strength *= cosine.max(0.0);
+                }
+                let specular = if habits.bare { Color::ONE } else { specular };
+                let specular = if habits.times_diffuse { specular * diffuse } else { specular };
+                color += strength * specular;
+            }
+        }
+        color * seen.color
+    }
+
+    /// The share of a light that arrives.
+    fn visible(&self, surface: &Surface, seen: &Illumination, first: bool) -> Color {
+        let habits = self.habits.shadows;
+        let unshadowed = self.habits.bounces.unshadowed && !first;
+        if !self.settings.shadows || unshadowed || seen.color == Color::ZERO {
+            return Color::ONE;
+        }
+        let rules = &self.world.rules;
+        let reach = match (habits.endless, rules.is_official()) {
+            (true, _) => f32::INFINITY,
+            (false, true) => seen.distance,
+            (false, false) => seen.distance * (1.0 - gamma(16)),
+        };
+        let epsilon = habits.epsilon.or(rules.epsilon);
+        let mut ray = to_light(surface, seen.to_light, reach, epsilon);
+        if rules.has(Compat::ShadowFronts) {
+            let nearest = self.closest(&ray).map(|(hit, _)| self.world.surface(&ray, &hit));
+            let blocked = nearest.is_some_and(|blocker| blocker.n_shade.dot(ray.dir()) <= 0.0);
+            return if blocked { Color::ZERO } else { Color::ONE };
+        }
+        if !self.settings.transparent_shadows {
+            return if self.occluded(&ray) { Color::ZERO } else { Color::ONE };
+        }
+        let mut share = Color::ONE;
+        for _ in 0..64 {
+            let Some((hit, _)) = self.closest(&ray) else { return share };
+            let blocker = self.world.surface(&ray, &hit);
+            let parts = self.world.parts(&hit, blocker.position);
+            share *= parts.iter().map(|part| part.share * part.phong.transparent).sum::<Color>();
+            if share == Color::ZERO {
+                break;
+            }
+            ray = from_surface(&blocker, seen.to_light, ray.rounded.t_max - hit.t, epsilon);
+        }
+        Color::ZERO
+    }
+
+    /// Mirrored and transmitted light.
+    fn secondary(&self, (ray, hit): (&Ray64, &Hit), surface: &Surface, parts: &[Part], path: Path) -> Color {
+        let habits = self.habits.bounces;
+        let Blend { mut reflective, mut transparent, ior, fresnel } = Blend::of(parts);
+        if reflective == Color::ZERO && transparent == Color::ZERO {
+            return Color::ZERO;
+        }
+        let leaving = self.right.sees_back(ray.dir(), surface);
+        let [n, n_geo] = [surface.n_shade, surface.n_geo].map(|n| if leaving { -n } else { n });
+        let n = if ray.dir().dot(n) < 0.0 { n } else { n_geo };
+        let Passage { here, there, behind, .. } = self.right.passage(ray, hit, &path.media).unwrap_or_default();
+        let eta = match habits.glass {
+            Glass::Right | Glass::Straight => here / there,
+            Glass::Inverted => there / here,
+            Glass::NotSwapped => 1.0 / ior,
+        };
+        let mirrored = match habits.mirror {
+            Mirror::Right => reflect(ray.dir(), n),
+            Mirror::Negated => -reflect(ray.dir(), n),
+            Mirror::Along => ray.dir() - ray.dir().dot(n) * n,
+            Mirror::Plus => ray.dir() + 2.0 * ray.dir().dot(n) * n,
+        };
+        let (mirrored, n) = match self.world.rules.has(Compat::RawNormals) {
+            true => (mirrored.normalize_or(n_geo), n.normalize_or(n_geo)),
+            false => (mirrored, n),
+        };
+        let transmitted = match (transparent == Color::ZERO, habits.glass) {
+            (true, _) => None,
+            (false, Glass::Straight) => Some(ray.dir()),
+            (false, _) => refract(ray.dir(), n, eta),
+        };
+        let divided = fresnel && self.settings.reflection && self.settings.refraction;
+        if divided && habits.fresnel != Fresnel::None {
+            let ratio = (there - here) / (there + here);
+            let schlick = |t| match habits.fresnel {
+                Fresnel::Constant => ratio * ratio,
+                _ => {
+                    let zero = leaving && self.world.rules.has(Compat::ExitR0);
+                    fresnel_share(ray.dir(), n, t, (here, there), zero)
+                }
+            };
+            let r = transmitted.map_or(1.0, schlick);
+            reflective *= r;
+            transparent *= 1.0 - r;
+        }
+        let mut color = Color::ZERO;
+        if self.settings.reflection && !habits.no_mirror {
+            let full = habits.mirror_in_full && reflective != Color::ZERO;
+            let weight = if full { Color::ONE } else { reflective };
+            color += self.bounce(surface, mirrored, weight, path.clone());
+        }
+        if let Some(transmitted) = transmitted.filter(|_| self.settings.refraction && !habits.no_glass) {
+            let weight = if habits.glass_in_full { Color::ONE } else { transparent };
+            color += self.bounce(surface, transmitted, weight, Path { media: behind, ..path });
+        }
+        color
+    }
+
+    fn bounce(&self, surface: &Surface, dir: Vec3, weight: Color, path: Path) -> Color {
+        if weight.max_element() <= 0.0 {
+            return Color::ZERO;
+        }
+        let old = self.world.rules.is_official();
+        let total = path.weight * if old { weight.length() } else { weight.max_element() };
+        if total < self.settings.least_weight {
+            return Color::ZERO;
+        }
+        let epsilon = self.habits.bounces.epsilon.or(self.world.rules.epsilon);
+        let ray = from_surface(surface, dir, f32::INFINITY, epsilon);
+        weight * self.trace(&ray, Path { bounces: path.bounces - 1, weight: total, first: false, ..path })
+    }
+}

@@ -1,0 +1,86 @@
+//! The table of usual mistakes. One file a family; the order within it is the order in which equals are named.
+
+mod bounces;
+mod camera;
+mod light;
+mod output;
+mod things;
+
+use super::Variant;
+
+/// A usual mistake.
+#[derive(Clone, Copy, Debug)]
+pub struct Mistake {
+    /// Its keyword.
+    pub name: &'static str,
+    /// What the program does, without a full stop; `{}` stands for the value.
+    pub words: &'static str,
+    /// How the code should be.
+    pub right: &'static str,
+    /// How it probably is.
+    pub wrong: &'static str,
+    /// The name of the lesson's step about it.
+    pub step: &'static str,
+    /// With which values it is tried.
+    pub values: Values,
+    /// Makes it.
+    pub make: fn(&mut Variant, f32),
+}
+
+/// With which values a mistake is tried.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Values {
+    /// It has none.
+    One,
+    /// With each of these; the true value may lie between them.
+    Numbers(&'static [f32]),
+    /// With each of these, and no others.
+    Only(&'static [f32]),
+    /// With the number of each light, counted from 0.
+    Lights,
+}
+
+impl Values {
+    /// The numbers for a scene of some lights.
+    pub fn numbers(self, lights: usize) -> Vec<f32> {
+        match self {
+            Values::One => vec![0.0],
+            Values::Numbers(numbers) | Values::Only(numbers) => numbers.to_vec(),
+            // Of very many lights one alone is not seen.
+            Values::Lights => (0..lights.min(32)).map(|light| light as f32).collect(),
+        }
+    }
+}
+
+/// All families.
+pub const MISTAKES: [&[Mistake]; 5] =
+    [light::MISTAKES, bounces::MISTAKES, things::MISTAKES, camera::MISTAKES, output::MISTAKES];
+
+/// The mistake of a name.
+pub fn of_name(name: &str) -> Option<&'static Mistake> {
+    MISTAKES.iter().copied().flatten().find(|mistake| mistake.name == name)
+}
+
+/// A row without values.
+const fn row(
+    name: &'static str,
+    step: &'static str,
+    words: &'static str,
+    right: &'static str,
+    wrong: &'static str,
+    make: fn(&mut Variant, f32),
+) -> Mistake {
+    Mistake { name, words, right, wrong, step, values: Values::One, make }
+}
+
+impl Mistake {
+    /// The same, tried with values.
+    const fn with(self, values: Values) -> Mistake {
+        Mistake { values, ..self }
+    }
+
+    /// Its words for a value.
+    pub fn told(&self, value: f32) -> String {
+        self.words.replace("{}", &format!("{}", (f64::from(value) * 1000.0).round() / 1000.0))
+    }
+}

@@ -1,0 +1,276 @@
+//! Mistakes of hits, normals and transforms.
+
+use super::{Mistake, Values, row};
+use crate::dialect::Compat;
+use crate::dialect::CompatSet;
+use crate::mistakes::habits::{Normals, Pick};
+use crate::scene::MatrixOp;
+use crate::shape::Primitive;
+use crate::world::Geometry;
+use glam::DAffine3;
+
+pub(super) const MISTAKES: &[Mistake] = &[
+    row(
+        "normals-local",
+        "transforms",
+        "normals of transformed things are not transformed",
+        "N = normalize(M^-T n)",
+        "N = n",
+        |v, _| v.habits.normals = Normals::Local,
+    ),
+    row(
+        "normals-moved",
+        "transforms",
+        "normals of transformed things go by M, not by its inverse transpose",
+        "N = normalize(M^-T n)",
+        "N = normalize(M n)",
+        |v, _| v.world.rules.compat |= Compat::MovedNormals.bit(),
+    ),
+    row(
+        "normals-inverse",
+        "transforms",
+        "normals of transformed things go by the inverse of M without the transpose",
+        "N = normalize(M^-T n)",
+        "N = normalize(M^-1 n)",
+        |v, _| v.habits.normals = Normals::ByInverse,
+    ),
+    row(
+        "normals-long",
+        "transforms",
+        "normals of transformed things are not normalised",
+        "N = normalize(M^-T n)",
+        "N = M^-T n",
+        |v, _| v.habits.normals = Normals::Long,
+    ),
+    row(
+        "normals-mixed-long",
+        "normals",
+        "normals between the corners of a smooth mesh are not normalised",
+        "N = normalize(a Na + b Nb + c Nc)",
+        "N = a Na + b Nb + c Nc",
+        |v, _| v.habits.long_mixed = true,
+    ),
+    row(
+        "normals-flat",
+        "normals",
+        "smooth meshes are shaded flat, with one normal a triangle",
+        "N = normalize(a Na + b Nb + c Nc)",
+        "N = normalize(cross(b - a, c - a))",
+        |v, _| v.habits.flat = true,
+    ),
+    row(
+        "triangles-turned",
+        "normals",
+        "normals of triangles point the other way",
+        "N = normalize(cross(b - a, c - a))",
+        "N = normalize(cross(c - a, b - a))",
+        |v, _| v.habits.triangles_turned = true,
+    ),
+    row(
+        "normals-faced",
+        "diffuse",
+        "surfaces seen from behind are shaded with their normal turned to the eye, without being asked to",
+        "N as it is (without -shade_back)",
+        "if (dot(N, d) > 0) N = -N",
+        |v, _| v.habits.faced = !v.settings.shade_back,
+    ),
+    row(
+        "backs-not-shaded",
+        "diffuse",
+        "surfaces seen from behind are not shaded with their normal turned",
+        "if (dot(N, d) > 0) N = -N",
+        "N as it is",
+        |v, _| v.settings.shade_back = false,
+    ),
+    row(
+        "black-backs",
+        "diffuse",
+        "whether surfaces seen from behind are black is the other way",
+        "as the year has it",
+        "the other way",
+        |v, _| v.toggle(Compat::BlackBacks),
+    ),
+    row(
+        "local-direction-unit",
+        "transforms",
+        "the ray's direction is normalised in object space, so that t is another there than in the world",
+        "d' = M^-1 d, with t as it is",
+        "d' = normalize(M^-1 d)",
+        |v, _| v.habits.local_unit = true,
+    ),
+    row(
+        "matrices-reversed",
+        "transforms",
+        "the matrices of a transform are multiplied in the wrong order",
+        "M = M1 * M2 * M3",
+        "M = M3 * M2 * M1",
+        |v, _| {
+            v.place(|ops, compat| {
+                let reversed: Vec<MatrixOp> = ops.iter().rev().copied().collect();
+                MatrixOp::product(&reversed, compat)
+            });
+        },
+    ),
+    row(
+        "rotation-radians",
+        "transforms",
+        "angles of rotations are taken as radians",
+        "angle * pi / 180",
+        "angle",
+        |v, _| v.place(|ops, compat| turned(ops, compat, f32::to_degrees)),
+    ),
+    row(
+        "rotation-negated",
+        "transforms",
+        "rotations turn the other way",
+        "rotation by angle",
+        "rotation by -angle, or the transposed matrix",
+        |v, _| v.place(|ops, compat| turned(ops, compat, |angle| -angle)),
+    ),
+    row("transforms-ignored", "transforms", "transforms have no effect", "M = M1 * M2 * M3", "M = identity", |v, _| {
+        v.place(|_, _| DAffine3::IDENTITY)
+    }),
+    row(
+        "transforms-inverted",
+        "transforms",
+        "things are transformed by the inverse of M",
+        "ray to object space by M^-1",
+        "ray to object space by M",
+        |v, _| v.place(|ops, compat| MatrixOp::product(ops, compat).inverse()),
+    ),
+    row(
+        "plane-negated",
+        "distance",
+        "the offset of planes has the wrong sign",
+        "t = (offset - n.o) / n.d",
+        "t = -(offset + n.o) / n.d",
+        |v, _| {
+            v.objects(|geometry| {
+                if let Geometry::Primitive(Primitive::Plane(plane)) = geometry {
+                    plane.offset = -plane.offset;
+                }
+            });
+        },
+    ),
+    row(
+        "plane-through-origin",
+        "distance",
+        "the offset of planes is ignored",
+        "t = (offset - n.o) / n.d",
+        "t = -n.o / n.d",
+        |v, _| {
+            v.objects(|geometry| {
+                if let Geometry::Primitive(Primitive::Plane(plane)) = geometry {
+                    plane.offset = 0.0;
+                }
+            });
+        },
+    ),
+    row(
+        "radius",
+        "distance",
+        "spheres have {} times the radius that they should have",
+        "b^2 - 4 a c with c = |o - center|^2 - r^2",
+        "a wrong factor within",
+        |v, factor| {
+            v.objects(|geometry| {
+                if let Geometry::Primitive(Primitive::Sphere(sphere)) = geometry {
+                    sphere.radius *= factor;
+                }
+            });
+        },
+    )
+    .with(Values::Numbers(&[0.5, 2.0])),
+    row(
+        "radius-not-squared",
+        "distance",
+        "the radius of spheres is not squared",
+        "c = |o - center|^2 - r * r",
+        "c = |o - center|^2 - r",
+        |v, _| {
+            v.objects(|geometry| {
+                if let Geometry::Primitive(Primitive::Sphere(sphere)) = geometry {
+                    sphere.radius = sphere.radius.max(0.0).sqrt();
+                }
+            });
+        },
+    ),
+    row("center-ignored", "distance", "the centre of spheres is ignored", "o - center", "o", |v, _| {
+        v.objects(|geometry| {
+            if let Geometry::Primitive(Primitive::Sphere(sphere)) = geometry {
+                sphere.center = crate::math::Vec3::ZERO;
+            }
+        });
+    }),
+    row(
+        "farthest-object",
+        "distance",
+        "the farthest thing is seen, not the nearest",
+        "if (t < best) best = t",
+        "if (t > best) best = t",
+        |v, _| v.habits.pick = Pick::FarthestObject,
+    ),
+    row(
+        "last-hit",
+        "distance",
+        "the last hit along the ray is taken, not the first: the far root of spheres, say",
+        "t = the least root > t_min",
+        "t = the greatest root",
+        |v, _| v.habits.pick = Pick::Last,
+    ),
+    row(
+        "last-written",
+        "distance",
+        "the thing written last hides all others: hits are not compared by t",
+        "if (t < best) best = t",
+        "best = t",
+        |v, _| v.habits.pick = Pick::LastWritten,
+    ),
+    row(
+        "first-written",
+        "distance",
+        "the thing written first hides all others: a group stops at its first hit",
+        "for each object hit |= object.intersect(...)",
+        "for each object if (object.intersect(...)) return true",
+        |v, _| v.habits.pick = Pick::FirstWritten,
+    ),
+    row(
+        "hits-behind",
+        "distance",
+        "hits behind the ray's origin count: t_min is ignored",
+        "t > t_min && t < best",
+        "t < best",
+        |v, _| v.habits.behind = true,
+    ),
+    row(
+        "thing-missing",
+        "distance",
+        "a kind of thing is missing: {} (0 spheres, 1 planes, 2 triangles, 3 meshes)",
+        "every kind has an intersect(...)",
+        "one that always returns false",
+        |v, kind| {
+            v.world.objects.retain(|object| match &object.geometry {
+                Geometry::Primitive(Primitive::Sphere(_)) => kind != 0.0,
+                Geometry::Primitive(Primitive::Plane(_)) => kind != 1.0,
+                Geometry::Primitive(Primitive::Triangle(_)) => kind != 2.0,
+                Geometry::Mesh(_) => kind != 3.0,
+                _ => true,
+            });
+            v.objects(|_| {});
+        },
+    )
+    .with(Values::Only(&[0.0, 1.0, 2.0, 3.0])),
+];
+
+/// The product with other angles of rotation.
+fn turned(ops: &[MatrixOp], compat: CompatSet, change: fn(f32) -> f32) -> DAffine3 {
+    let change = |op: &MatrixOp| match *op {
+        MatrixOp::XRotate(angle) => MatrixOp::XRotate(change(angle)),
+        MatrixOp::YRotate(angle) => MatrixOp::YRotate(change(angle)),
+        MatrixOp::ZRotate(angle) => MatrixOp::ZRotate(change(angle)),
+        MatrixOp::Rotate(axis, angle) => MatrixOp::Rotate(axis, change(angle)),
+        other => other,
+    };
+    let changed: Vec<MatrixOp> = ops.iter().map(change).collect();
+    MatrixOp::product(&changed, compat)
+}

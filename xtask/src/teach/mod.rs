@@ -1,0 +1,152 @@
+//! Is the teacher right? Wrong pictures for `durer compare` and broken scenes for `durer check`, made by a judge that shares
+//! nothing with the library but the scene language.
+
+mod broken;
+#[allow(clippy::disallowed_methods, reason = "the judge shares no arithmetic with the library")]
+mod scene;
+#[allow(clippy::disallowed_methods, reason = "the judge shares no arithmetic with the library")]
+mod tracer;
+mod vector;
+mod wrong;
+
+use anyhow::{Context, Result, bail};
+use std::path::{Path, PathBuf};
+use std::process::{Command, ExitCode, Stdio};
+use tracer::{Picture, Tracer};
+
+/// What came of a wrong picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Told {
+    /// Named, or named beside others that make the same picture.
+    Right,
+    /// That it cannot be told.
+    NotTold,
+    /// Something else was named.
+    Wrong,
+    /// The picture is the reference: the mistake is not seen.
+    Unseen,
+}
+
+pub fn run(arguments: &[String]) -> Result<ExitCode> {
+    let only = crate::value(arguments, "--only");
+    let durer = crate::build::durer()?;
+    let keep = crate::value(arguments, "--keep").map(PathBuf::from);
+    let folder =
+        keep.clone().unwrap_or_else(|| std::env::temp_dir().join(format!("durer-teach-{}", std::process::id())));
+    std::fs::create_dir_all(&folder)?;
+    let wanted = |name: &str| only.is_none_or(|text| name.contains(text.as_str()));
+    let mut good = true;
+    if !arguments.iter().any(|a| a == "--check") {
+        good &= pictures(&durer, &folder, &wanted)?;
+    }
+    if !arguments.iter().any(|a| a == "--compare") {
+        good &= broken::judge(&durer, &folder, &wanted)?;
+    }
+    if keep.is_none() {
+        std::fs::remove_dir_all(&folder)?;
+    }
+    Ok(if good { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+}
+
+/// Judges `compare`; whether the goals are met.
+fn pictures(durer: &Path, folder: &Path, wanted: &dyn Fn(&str) -> bool) -> Result<bool> {
+    let scenes = wrong::scenes();
+    for scene in &scenes {
+        let own = folder.join(scene.name);
+        std::fs::create_dir_all(&own)?;
+        std::fs::write(own.join("scene.txt"), scene.text())?;
+        scene.files().into_iter().try_for_each(|(name, text)| std::fs::write(own.join(name), text))?;
+        let mut render = Command::new(durer);
+        render.current_dir(&own).args(["render", "scene.txt", "-o", "right.ppm", "-q"]).args(scene.options());
+        output(&mut render)?;
+        let ours = Tracer::new(scene, &[]).picture();
+        let right = std::fs::read(own.join("right.ppm"))?;
+        let theirs = &right[right.len() - 3 * ours.len()..];
+        let far = |(a, b): (&[u8; 3], &[u8])| (0..3).any(|c| a[c].abs_diff(b[c]) > 2);
+        let off = ours.iter().zip(theirs.chunks(3)).filter(|pair| far(*pair)).count();
+        println!(
+            "scene {:<13} the two tracers differ in {:.2} % of the pixels",
+            scene.name,
+            100.0 * off as f64 / ours.len() as f64
+        );
+        std::fs::write(own.join("own.ppm"), ppm(scene.size, &ours))?;
+    }
+    let cases: Vec<wrong::Case> = wrong::cases();
+    let cases: Vec<&wrong::Case> =
+        cases.iter().filter(|case| wanted(&format!("{} {}", scenes[case.scene].name, case.made.join(" ")))).collect();
+    let results: Vec<Result<(String, Told)>> = cases
+        .iter()
+        .map(|case| {
+            let scene = &scenes[case.scene];
+            let own = folder.join(scene.name);
+            let name = format!("{}.ppm", case.made.join("+"));
+            let picture = Tracer::new(scene, &case.made).picture();
+            let unseen = ppm(scene.size, &picture) == std::fs::read(own.join("own.ppm"))?;
+            std::fs::write(own.join(&name), ppm(scene.size, &picture))?;
+            let mut compare = Command::new(durer);
+            compare.current_dir(&own).args(["compare", "right.ppm", &name, "--scene", "scene.txt", "--json"]);
+            compare.args(scene.options().iter().take_while(|o| *o != "--size")).args(&scene.options()[4..]);
+            let started = std::time::Instant::now();
+            let text = output(&mut compare)?;
+            let seconds = started.elapsed().as_secs_f64();
+            let (told, words) = if unseen { (Told::Unseen, String::new()) } else { judged(&text, &case.made) };
+            let line = format!("{told:<9?} {seconds:5.1} s  {:<13} {:<38} {words}", scene.name, case.made.join(" + "));
+            println!("{line}");
+            Ok((line, told))
+        })
+        .collect();
+    let results: Vec<(String, Told)> = results.into_iter().collect::<Result<_>>()?;
+    let count = |told| results.iter().filter(|r| r.1 == told).count();
+    let [right, not_told, wrong, unseen] = [Told::Right, Told::NotTold, Told::Wrong, Told::Unseen].map(count);
+    let seen = results.len() - unseen;
+    println!(
+        "\n| | named rightly | not told | **named wrongly** | not seen in this scene |\n| --- | --- | --- | --- | --- |"
+    );
+    println!("| `compare`, {seen} wrong pictures | {right} | {not_told} | **{wrong}** | {unseen} |");
+    println!("rightly: {:.1} %\n", 100.0 * right as f64 / seen.max(1) as f64);
+    Ok(wrong == 0 && right * 10 >= seen * 9)
+}
+
+/// What the program's JSON says of the mistakes that were made. The judge reads only the names.
+fn judged(json: &str, made: &[&str]) -> (Told, String) {
+    let verdict = |name: &str| json.contains(&format!("\"verdict\": \"{name}\""));
+    if verdict("identical") || verdict("same") {
+        return (Told::Unseen, String::new());
+    }
+    let named = match json.split("\"named\": [").nth(1) {
+        Some(rest) => rest.split("\"reference_off\"").next().unwrap_or(""),
+        None => "",
+    };
+    // One entry for each set of mistakes that make the picture.
+    let sets: Vec<Vec<&str>> = named
+        .split("\"mistakes\": [")
+        .skip(1)
+        .map(|set| set.split("\"name\": \"").skip(1).filter_map(|rest| rest.split('"').next()).collect())
+        .collect();
+    // Of what is in no table nothing can be named rightly.
+    if made.iter().any(|made| made.starts_with("x-")) && sets.is_empty() {
+        return (Told::Right, "not told".into());
+    }
+    if sets.is_empty() {
+        return (Told::NotTold, String::new());
+    }
+    let wanted: Vec<&str> = made.iter().map(|made| wrong::told(made)).collect();
+    let right = sets.iter().any(|set| set.len() == wanted.len() && wanted.iter().all(|name| set.contains(name)));
+    let words = sets.iter().map(|set| set.join(" + ")).collect::<Vec<_>>().join(" = ");
+    (if right { Told::Right } else { Told::Wrong }, words)
+}
+
+fn ppm((width, height): (usize, usize), picture: &Picture) -> Vec<u8> {
+    let mut bytes = format!("P6\n{width} {height}\n255\n").into_bytes();
+    bytes.extend(picture.iter().flatten());
+    bytes
+}
+
+/// What a program prints; exit codes above 1 are failures.
+fn output(command: &mut Command) -> Result<String> {
+    let output = command.stdin(Stdio::null()).output().context("the program does not start")?;
+    if output.status.code().is_none_or(|code| code > 1) {
+        bail!("{command:?}: {}", String::from_utf8_lossy(&output.stderr));
+    }
+    Ok(String::from_utf8_lossy(&output.stdout).into_owned())
+}

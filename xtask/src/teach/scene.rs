@@ -1,0 +1,200 @@
+//! Scenes of the judge: plain data, and their text in the course's language.
+
+use super::vector::{Matrix, V};
+use std::fmt::Write;
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Year {
+    F04,
+    F12a4,
+    F12a5,
+    F16,
+    Durer,
+}
+
+#[derive(Clone, Debug)]
+pub enum Op {
+    Translate(V),
+    Scale(V),
+    X(f64),
+    Y(f64),
+    Z(f64),
+}
+
+#[derive(Clone, Debug)]
+pub enum Shape {
+    Sphere(V, f64),
+    Plane(V, f64),
+    Triangle([V; 3]),
+    /// Corners, and triangles of them; smooth or flat as the year has it.
+    Mesh(&'static str, Vec<V>, Vec<[usize; 3]>),
+}
+
+#[derive(Clone, Debug)]
+pub struct Thing {
+    pub shape: Shape,
+    pub ops: Vec<Op>,
+    pub material: usize,
+}
+
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Stuff {
+    pub kd: V,
+    pub ks: V,
+    pub shine: f64,
+    pub kr: V,
+    pub kt: V,
+    pub index: f64,
+}
+
+#[derive(Clone, Copy, Debug)]
+pub enum Lamp {
+    Sun(V, V),
+    /// Position, colour, attenuation a0 a1 a2.
+    Bulb(V, V, V),
+}
+
+#[derive(Clone, Debug)]
+pub struct Scene {
+    pub name: &'static str,
+    pub year: Year,
+    pub size: (usize, usize),
+    pub shadows: bool,
+    pub bounces: u32,
+    pub eye: V,
+    pub look: V,
+    pub up: V,
+    /// Degrees, or minus the size of an orthographic picture.
+    pub angle: f64,
+    pub background: V,
+    pub ambient: V,
+    pub lamps: Vec<Lamp>,
+    pub stuff: Vec<Stuff>,
+    pub things: Vec<Thing>,
+}
+
+impl Op {
+    pub fn matrix(&self, degrees: impl Fn(f64) -> f64) -> Matrix {
+        let turn = |angle: f64, a: usize, b: usize| {
+            let (s, c) = degrees(angle).sin_cos();
+            let mut m = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+            (m[a][a], m[b][b], m[a][b], m[b][a]) = (c, c, -s, s);
+            Matrix { rows: m.map(|r| V(r[0], r[1], r[2])), by: V::ZERO }
+        };
+        match *self {
+            Op::Translate(by) => Matrix { by, ..Matrix::ONE },
+            Op::Scale(V(x, y, z)) => Matrix { rows: [V(x, 0.0, 0.0), V(0.0, y, 0.0), V(0.0, 0.0, z)], by: V::ZERO },
+            Op::X(angle) => turn(angle, 1, 2),
+            Op::Y(angle) => turn(angle, 2, 0),
+            Op::Z(angle) => turn(angle, 0, 1),
+        }
+    }
+}
+
+fn v(V(x, y, z): V) -> String {
+    format!("{x} {y} {z}")
+}
+
+impl Scene {
+    /// Its text.
+    pub fn text(&self) -> String {
+        let mut t = String::new();
+        let camera = if self.angle > 0.0 { "PerspectiveCamera" } else { "OrthographicCamera" };
+        let lens = if self.angle > 0.0 { format!("angle {}", self.angle) } else { format!("size {}", -self.angle) };
+        let (eye, look, up) = (v(self.eye), v(self.look), v(self.up));
+        let _ = writeln!(t, "{camera} {{\n  center {eye}\n  direction {look}\n  up {up}\n  {lens}\n}}");
+        let _ = writeln!(t, "Lights {{\n  numLights {}", self.lamps.len());
+        for lamp in &self.lamps {
+            let _ = match *lamp {
+                Lamp::Sun(d, c) => writeln!(t, "  DirectionalLight {{ direction {} color {} }}", v(d), v(c)),
+                Lamp::Bulb(p, c, a) => {
+                    let fade = match self.year {
+                        Year::F04 | Year::Durer => format!(" attenuation {}", v(a)),
+                        Year::F12a4 => String::new(),
+                        Year::F12a5 | Year::F16 => format!(" falloff {}", a.2),
+                    };
+                    writeln!(t, "  PointLight {{ position {} color {}{fade} }}", v(p), v(c))
+                }
+            };
+        }
+        let _ = writeln!(t, "}}\nBackground {{ color {} ambientLight {} }}", v(self.background), v(self.ambient));
+        let _ = writeln!(t, "Materials {{\n  numMaterials {}", self.stuff.len());
+        for m in &self.stuff {
+            let _ = write!(t, "  Material {{ diffuseColor {} specularColor {}", v(m.kd), v(m.ks));
+            let _ = match self.year {
+                Year::F04 | Year::Durer => write!(
+                    t,
+                    " exponent {} reflectiveColor {} transparentColor {} indexOfRefraction {}",
+                    m.shine,
+                    v(m.kr),
+                    v(m.kt),
+                    if m.index > 0.0 { m.index } else { 1.0 }
+                ),
+                Year::F12a5 if m.index > 0.0 => write!(t, " shininess {} refractionIndex {}", m.shine, m.index),
+                _ => write!(t, " shininess {}", m.shine),
+            };
+            let _ = writeln!(t, " }}");
+        }
+        let _ = writeln!(t, "}}\nGroup {{\n  numObjects {}", self.things.len());
+        for thing in &self.things {
+            let shape = match &thing.shape {
+                Shape::Sphere(c, r) => format!("Sphere {{ center {} radius {r} }}", v(*c)),
+                Shape::Plane(n, d) => format!("Plane {{ normal {} offset {d} }}", v(*n)),
+                Shape::Triangle([a, b, c]) => {
+                    format!("Triangle {{ vertex0 {} vertex1 {} vertex2 {} }}", v(*a), v(*b), v(*c))
+                }
+                Shape::Mesh(file, ..) => format!("TriangleMesh {{ obj_file {file} }}"),
+            };
+            let ops: Vec<String> = thing
+                .ops
+                .iter()
+                .map(|op| match op {
+                    Op::Translate(by) => format!("Translate {}", v(*by)),
+                    Op::Scale(by) => format!("Scale {}", v(*by)),
+                    Op::X(angle) => format!("XRotate {angle}"),
+                    Op::Y(angle) => format!("YRotate {angle}"),
+                    Op::Z(angle) => format!("ZRotate {angle}"),
+                })
+                .collect();
+            let _ = match ops.is_empty() {
+                true => writeln!(t, "  MaterialIndex {}\n  {shape}", thing.material),
+                false => {
+                    writeln!(t, "  MaterialIndex {}\n  Transform {{ {}\n    {shape} }}", thing.material, ops.join(" "))
+                }
+            };
+        }
+        t + "}\n"
+    }
+
+    /// The mesh files that it names.
+    pub fn files(&self) -> Vec<(&'static str, String)> {
+        let mut files = Vec::new();
+        for thing in &self.things {
+            if let Shape::Mesh(name, corners, faces) = &thing.shape {
+                let mut text = String::new();
+                text.extend(corners.iter().map(|p| format!("v {}\n", v(*p))));
+                text.extend(faces.iter().map(|f| format!("f {} {} {}\n", f[0] + 1, f[1] + 1, f[2] + 1)));
+                files.push((*name, text + "\n"));
+            }
+        }
+        files
+    }
+
+    /// The options of `durer` for its picture.
+    pub fn options(&self) -> Vec<String> {
+        let dialect = match self.year {
+            Year::F04 => "f04",
+            Year::F12a4 => "f12a4",
+            Year::F12a5 => "f12a5",
+            Year::F16 => "f16",
+            Year::Durer => "durer",
+        };
+        let (transfer, w, h) = (if self.year == Year::Durer { "srgb" } else { "course" }, self.size.0, self.size.1);
+        let shadows = if self.shadows { "on" } else { "off" };
+        let words = format!(
+            "--dialect {dialect} --size {w}x{h} --bounces {} --shadows={shadows} --transfer {transfer} --samples 1",
+            self.bounces
+        );
+        words.split(' ').map(String::from).collect()
+    }
+}

@@ -1,0 +1,483 @@
+//! The judge's own tracer. It knows nothing of the library, and makes any of the usual mistakes that it is told by name.
+
+use super::scene::{Lamp, Scene, Shape, Stuff, Thing, Year};
+use super::vector::{Matrix, V};
+
+/// A picture: eight bits a channel, the top row first.
+pub type Picture = Vec<[u8; 3]>;
+
+pub struct Tracer<'s> {
+    scene: &'s Scene,
+    mistakes: &'s [&'static str],
+    /// To the world and back, for each thing.
+    places: Vec<(Matrix, Matrix)>,
+}
+
+struct Hit {
+    t: f64,
+    /// In the world.
+    n: V,
+    geo: V,
+    thing: usize,
+}
+
+impl<'s> Tracer<'s> {
+    pub fn new(scene: &'s Scene, mistakes: &'s [&'static str]) -> Self {
+        let mut tracer = Tracer { scene, mistakes, places: Vec::new() };
+        tracer.places = scene.things.iter().map(|thing| tracer.place(thing)).collect();
+        tracer
+    }
+
+    fn is(&self, name: &str) -> bool {
+        self.mistakes.contains(&name)
+    }
+
+    fn place(&self, thing: &Thing) -> (Matrix, Matrix) {
+        let degrees = |angle: f64| match () {
+            () if self.is("rotation-radians") => angle,
+            () if self.is("rotation-negated") => -angle.to_radians(),
+            () => angle.to_radians(),
+        };
+        let mut m = Matrix::ONE;
+        for op in &thing.ops {
+            let one = op.matrix(degrees);
+            m = if self.is("matrices-reversed") { one.times(&m) } else { m.times(&one) };
+        }
+        if self.is("transforms-ignored") {
+            m = Matrix::ONE;
+        }
+        (m, m.inverse())
+    }
+
+    /// All roots of a thing along a ray in its own space, each with its normals.
+    fn roots(&self, thing: &Thing, o: V, d: V) -> Vec<(f64, V, V)> {
+        let triangle = |p: [V; 3]| {
+            let n = (p[1] - p[0]).cross(p[2] - p[0]);
+            let t = (p[0] - o).dot(n) / d.dot(n);
+            let q = o + d * t;
+            let area = |a: V, b: V| (b - a).cross(q - a).dot(n) / n.dot(n);
+            let w = [area(p[1], p[2]), area(p[2], p[0]), area(p[0], p[1])];
+            let n = if self.is("triangles-turned") { -n } else { n };
+            (w.iter().all(|w| *w >= 0.0) && t.is_finite()).then_some((t, n.unit(), w))
+        };
+        match &thing.shape {
+            Shape::Sphere(c, r) => {
+                let r = if self.is("radius-not-squared") { r.sqrt() } else { *r };
+                let c = if self.is("center-ignored") { V::ZERO } else { *c };
+                let (a, b, k) = (d.dot(d), d.dot(o - c), (o - c).dot(o - c) - r * r);
+                let root = b * b - a * k;
+                if root < 0.0 {
+                    return Vec::new();
+                }
+                let one = |t: f64| {
+                    let n = (o + d * t - c).unit();
+                    (t, n, n)
+                };
+                vec![one((-b - root.sqrt()) / a), one((-b + root.sqrt()) / a)]
+            }
+            Shape::Plane(n, offset) => {
+                let offset = if self.is("plane-negated") { -offset } else { *offset };
+                let t = (offset - n.dot(o)) / n.dot(d);
+                if t.is_finite() { vec![(t, n.unit(), n.unit())] } else { Vec::new() }
+            }
+            Shape::Triangle(p) => triangle(*p).map(|(t, n, _)| (t, n, n)).into_iter().collect(),
+            Shape::Mesh(_, corners, faces) => {
+                let smooth = matches!(self.scene.year, Year::F12a4) && !self.is("normals-flat");
+                let mut found = Vec::new();
+                for face in faces {
+                    let Some((t, n, w)) = triangle(face.map(|i| corners[i])) else { continue };
+                    let mixed = if smooth {
+                        // Weighted by area: sums of cross products.
+                        let at = |corner: usize| {
+                            let around = faces.iter().filter(|f| f.contains(&corner));
+                            around
+                                .map(|f| (corners[f[1]] - corners[f[0]]).cross(corners[f[2]] - corners[f[0]]))
+                                .fold(V::ZERO, |a, b| a + b)
+                                .unit()
+                        };
+                        let n = at(face[0]) * w[0] + at(face[1]) * w[1] + at(face[2]) * w[2];
+                        if self.is("normals-mixed-long") { n } else { n.unit() }
+                    } else {
+                        n
+                    };
+                    found.push((t, mixed, n));
+                }
+                found
+            }
+        }
+    }
+
+    fn hit(&self, o: V, d: V, least: f64, most: f64) -> Option<Hit> {
+        let mut best: Option<Hit> = None;
+        for (number, thing) in self.scene.things.iter().enumerate() {
+            let (to_world, back) = &self.places[number];
+            let (lo, mut ld) = (back.point(o), back.vector(d));
+            if self.is("local-direction-unit") {
+                ld = ld.unit();
+            }
+            let mut own: Option<(f64, V, V)> = None;
+            for (t, n, geo) in self.roots(thing, lo, ld) {
+                let least = if self.is("hits-behind") { f64::NEG_INFINITY } else { least };
+                let better = own.as_ref().is_none_or(|b| if self.is("last-hit") { t > b.0 } else { t < b.0 });
+                if t > least && t < most && better {
+                    own = Some((t, n, geo));
+                }
+            }
+            let Some((t, n, geo)) = own else { continue };
+            let normal = |n: V| match () {
+                () if self.is("normals-local") => n,
+                () if self.is("normals-moved") => to_world.vector(n).unit(),
+                () if self.is("normals-long") => back.transposed().vector(n),
+                () if self.is("normals-mixed-long") => back.transposed().vector(n).unit() * n.length(),
+                () => back.transposed().vector(n).unit(),
+            };
+            let better = best.as_ref().is_none_or(|b| match () {
+                () if self.is("farthest-object") || self.is("last-hit") => t > b.t,
+                () if self.is("last-written") => true,
+                () if self.is("first-written") => false,
+                () => t < b.t,
+            });
+            if better {
+                best = Some(Hit { t, n: normal(n), geo: back.transposed().vector(geo).unit(), thing: number });
+            }
+        }
+        best
+    }
+
+    fn background(&self) -> V {
+        self.scene.background
+    }
+
+    fn epsilon(&self, shadow: bool) -> f64 {
+        let right = match self.scene.year {
+            Year::F04 => 1e-4,
+            Year::F12a5 => 1e-3,
+            Year::F16 => 1e-2,
+            Year::F12a4 | Year::Durer => 1e-5,
+        };
+        match () {
+            () if self.is("epsilon-0") => 0.0,
+            () if self.is("shadows-epsilon") && shadow => 0.4,
+            () if self.is("epsilon-large") => 0.3,
+            () => right,
+        }
+    }
+
+    fn blocked(&self, p: V, l: V, distance: f64) -> bool {
+        if !self.scene.shadows && !self.is("shadows-added") || self.is("no-shadows") {
+            return false;
+        }
+        let most = if self.is("shadows-endless") { f64::INFINITY } else { distance };
+        // In single precision, as pupils have it: that is where acne comes from.
+        let single = |v: V| v.map(|x| f64::from(x as f32));
+        let p = if self.is("epsilon-0") { single(p) } else { p };
+        match self.hit(p, l, self.epsilon(true), most) {
+            // The second program of 2012 looks at the nearest thing's front.
+            Some(hit) if self.scene.year == Year::F12a5 => hit.n.dot(l) <= 0.0,
+            hit => hit.is_some(),
+        }
+    }
+
+    fn shade(&self, o: V, d: V, hit: &Hit, bounces: u32, index: f64) -> V {
+        let scene = self.scene;
+        let mut stuff: Stuff = scene.stuff[scene.things[hit.thing].material];
+        if self.is("x-kd-squared") {
+            stuff.kd = stuff.kd * stuff.kd;
+        }
+        if self.is("x-materials-swapped") {
+            stuff = scene.stuff[(scene.things[hit.thing].material + 1) % scene.stuff.len()];
+        }
+        let p = o + d * hit.t;
+        let side = if matches!(scene.year, Year::Durer) { hit.geo } else { hit.n };
+        let back = d.dot(side) > 0.0;
+        let mut n = hit.n;
+        let faced = scene.year == Year::Durer && !self.is("backs-not-shaded") || self.is("normals-faced");
+        if back && faced {
+            n = -n;
+        }
+        let mut color = V::ZERO;
+        let ambient = match () {
+            () if self.is("no-ambient") => V::ZERO,
+            () if self.is("ambient-bare") => scene.ambient,
+            () if self.is("x-ambient-doubled") => scene.ambient * stuff.kd * 2.0,
+            () if self.is("ambient-each-light") => scene.ambient * stuff.kd * scene.lamps.len() as f64,
+            () => scene.ambient * stuff.kd,
+        };
+        if !(scene.year == Year::F04 && back && !faced) {
+            color = ambient;
+            let mut free = scene.lamps.is_empty();
+            for (number, lamp) in scene.lamps.iter().enumerate() {
+                if self.is("light-missing") && number == 0 {
+                    continue;
+                }
+                let (mut l, distance, mut light) = match *lamp {
+                    Lamp::Sun(along, c) => {
+                        let l = if self.is("light-negated") { along } else { -along };
+                        (if self.is("light-long") { l } else { l.unit() }, f64::INFINITY, c)
+                    }
+                    Lamp::Bulb(at, c, a) => {
+                        let at = if self.is("x-light-turned") { V(at.0, at.2, at.1) } else { at };
+                        let distance = (at - p).length();
+                        (at - p, distance, c * self.fading(a, distance))
+                    }
+                };
+                let toward = l.unit();
+                if matches!(lamp, Lamp::Bulb(..)) && !self.is("point-light-long") {
+                    l = toward;
+                }
+                if self.is("white-lights") {
+                    light = match *lamp {
+                        Lamp::Sun(..) => V::ONE,
+                        Lamp::Bulb(_, _, a) => V::ONE * self.fading(a, distance),
+                    };
+                }
+                if self.blocked(p, toward, distance) && !(self.is("x-second-light-unshadowed") && number == 1) {
+                    continue;
+                }
+                free = true;
+                let direct = self.direct(&stuff, n, d, l) * light;
+                color = if self.is("last-light-only") { ambient + direct } else { color + direct };
+                if self.is("clamped-each-light") {
+                    color = color.map(|c| c.clamp(0.0, 1.0));
+                }
+            }
+            if self.is("shadows-ambient") && !free {
+                color = color - ambient;
+            }
+        }
+        if self.is("clamped-before-bounces") {
+            color = color.map(|c| c.clamp(0.0, 1.0));
+        }
+        if bounces > 0 {
+            color = color + self.secondary(p, d, hit, back, &stuff, bounces, index);
+        }
+        color
+    }
+
+    fn fading(&self, a: V, d: f64) -> f64 {
+        let a = match self.scene.year {
+            Year::F12a4 => V(1.0, 0.0, 0.0),
+            Year::F12a5 => V(1.0, 0.0, a.2),
+            Year::F16 => V(0.0, 0.0, a.2),
+            Year::F04 | Year::Durer => a,
+        };
+        let whole = a.0 + a.1 * d + a.2 * d * d;
+        match () {
+            () if self.is("no-falloff") => 1.0,
+            () if self.is("falloff-1-over-d") => 1.0 / d,
+            () if self.is("falloff-1-over-d2") => 1.0 / (d * d),
+            () if self.is("falloff-multiplied") => whole,
+            () if self.is("falloff-linear") => 1.0 / (a.0 + (a.1 + a.2) * d),
+            () if self.is("falloff-with-one") => 1.0 / (1.0 + whole),
+            () => 1.0 / whole,
+        }
+    }
+
+    fn direct(&self, stuff: &Stuff, n: V, d: V, l: V) -> V {
+        let cosine = n.dot(l);
+        let diffuse = match () {
+            () if self.is("no-diffuse") => 0.0,
+            () if self.is("no-cosine") => 1.0,
+            () if self.is("two-sided") => cosine.abs(),
+            () if self.is("not-clamped-below") => cosine,
+            () => cosine.max(0.0),
+        };
+        let mut color = stuff.kd * diffuse;
+        let none = self.scene.year == Year::F12a5 && !self.is("highlights-added") || self.is("no-highlights");
+        if none {
+            return color;
+        }
+        let exponent = stuff.shine
+            * match () {
+                () if self.is("exponent-doubled") => 2.0,
+                () if self.is("exponent-halved") => 0.5,
+                () if self.is("exponent-3") => 3.0,
+                () => 1.0,
+            };
+        let exponent = if self.is("exponent-one") { 1.0 } else { exponent };
+        let blinn = matches!(self.scene.year, Year::F04 | Year::Durer) != self.is("other-model");
+        let base = if blinn {
+            let h = l - d;
+            let h = match () {
+                () if self.is("half-sum") => h,
+                () if self.is("half-mean") => h * 0.5,
+                () => h.unit(),
+            };
+            if cosine > 0.0 { n.dot(h) } else { return color }
+        } else {
+            if cosine <= 0.0 && self.scene.year == Year::F04 {
+                return color;
+            }
+            let r = d - n * (2.0 * d.dot(n));
+            r.dot(l)
+        };
+        let mut strength = base.max(0.0).powf(exponent);
+        if self.is("highlight-cosine") {
+            strength *= cosine.max(0.0);
+        }
+        let ks = match () {
+            () if self.is("highlight-diffuse") => stuff.ks * stuff.kd,
+            () if self.is("highlight-bare") => V::ONE,
+            () => stuff.ks,
+        };
+        color = color + ks * strength;
+        color
+    }
+
+    #[allow(clippy::too_many_arguments, reason = "the judge's tracer is one function a step")]
+    fn secondary(&self, p: V, d: V, hit: &Hit, back: bool, stuff: &Stuff, bounces: u32, index: f64) -> V {
+        let n = if back { -hit.n } else { hit.n };
+        let glassy = stuff.index > 0.0 && matches!(self.scene.year, Year::F12a5);
+        let (mut kr, mut kt) = match self.scene.year {
+            Year::F04 | Year::Durer => (stuff.kr, stuff.kt),
+            Year::F12a4 => return V::ZERO,
+            Year::F12a5 if glassy => (stuff.ks, stuff.ks),
+            Year::F12a5 | Year::F16 => (stuff.ks, V::ZERO),
+        };
+        let (here, there) = match (back, glassy) {
+            (true, true) => (index, 1.0),
+            (true, false) => (stuff.index, 1.0),
+            (false, true) => (index, stuff.index),
+            (false, false) => (1.0, stuff.index),
+        };
+        let eta = match () {
+            () if self.is("index-inverted") => there / here,
+            () if self.is("exit-not-swapped") => 1.0 / stuff.index,
+            () => here / there,
+        };
+        let mirror = match () {
+            () if self.is("mirror-negated") => n * (2.0 * d.dot(n)) - d,
+            () if self.is("mirror-along") => d - n * d.dot(n),
+            () => d - n * (2.0 * d.dot(n)),
+        };
+        let c = d.dot(n);
+        let root = 1.0 - eta * eta * (1.0 - c * c);
+        let through = match () {
+            () if self.is("not-bent") => Some(d),
+            () => (root >= 0.0).then(|| (d - n * c) * eta - n * root.sqrt()),
+        };
+        if glassy && !self.is("no-fresnel") {
+            let r0 = ((there - here) / (there + here)).powi(2);
+            let cosine = if here <= there { c.abs() } else { through.map_or(0.0, |t| t.dot(n).abs()) };
+            let r = through.map_or(1.0, |_| match self.is("fresnel-constant") {
+                true => r0,
+                false => r0 + (1.0 - r0) * (1.0 - cosine).powi(5),
+            });
+            (kr, kt) = (kr * r, kt * (1.0 - r));
+        }
+        let mut color = V::ZERO;
+        let times = if self.is("secondary-each-light") { self.scene.lamps.len() } else { 1 };
+        for _ in 0..times {
+            if kr.most() > 0.0 && !self.is("no-reflection") {
+                let weight = if self.is("mirror-in-full") { V::ONE } else { kr };
+                color = color + weight * self.trace(p, mirror, bounces - 1, index, false);
+            }
+            if let (Some(t), true) = (through, kt.most() > 0.0 && !self.is("no-refraction")) {
+                let weight = if self.is("glass-in-full") { V::ONE } else { kt };
+                color = color + weight * self.trace(p, t, bounces - 1, there, false);
+            }
+        }
+        color
+    }
+
+    fn trace(&self, o: V, d: V, bounces: u32, index: f64, first: bool) -> V {
+        let least = match first {
+            true if self.scene.angle < 0.0 => f64::NEG_INFINITY,
+            true => 0.0,
+            false => self.epsilon(false),
+        };
+        match self.hit(o, d, least, f64::INFINITY) {
+            Some(hit) => self.shade(o, d, &hit, bounces, index),
+            None if !first && self.is("secondary-black-sky") => V::ZERO,
+            None => self.background(),
+        }
+    }
+
+    /// The ray of a pixel; rows from the top.
+    fn ray(&self, i: usize, j: usize) -> (V, V) {
+        let scene = self.scene;
+        let (w, h) = (scene.size.0 as f64, scene.size.1 as f64);
+        let (i, j) = (i as f64, h - 1.0 - j as f64);
+        let border = matches!(scene.year, Year::F12a4 | Year::F12a5 | Year::F16) != self.is("border-pixels");
+        let old = border;
+        let place = |i: f64, n: f64| match (border, self.is("pixel-corner")) {
+            (_, true) => 2.0 * i / n - 1.0,
+            (true, _) => 2.0 * i / (n - 1.0) - 1.0,
+            (false, _) => 2.0 * (i + 0.5) / n - 1.0,
+        };
+        let (mut x, mut y) = (place(i, w), place(j, h));
+        let stretched = matches!(scene.year, Year::F12a4 | Year::F12a5 | Year::F16) != self.is("stretch");
+        let _ = old;
+        if !stretched {
+            let most = w.max(h);
+            (x, y) = match () {
+                () if self.is("aspect-other-axis") && w > h => (x, y * w / h),
+                () if self.is("aspect-smaller-side") => (x * w / h.min(w), y * h / h.min(w)),
+                () => (x * w / most, y * h / most),
+            };
+        }
+        let w = if self.is("direction-not-unit") { scene.look } else { scene.look.unit() };
+        let u = scene.look.unit().cross(scene.up);
+        let u = if self.is("right-not-unit") { u } else { u.unit() };
+        let raw = (scene.year == Year::F16) != self.is("up-not-orthogonal");
+        let v = if raw { scene.up } else { u.cross(scene.look.unit()) };
+        if scene.angle < 0.0 {
+            let half = -scene.angle * if self.is("size-doubled") { 1.0 } else { 0.5 };
+            return (scene.eye + u * (x * half) + v * (y * half), w);
+        }
+        let half = match () {
+            () if self.is("angle-not-halved") => scene.angle.to_radians().tan(),
+            () if self.is("angle-ignored") => 1.0,
+            () if self.is("x-wider") => (0.58 * scene.angle.to_radians()).tan(),
+            () => (0.5 * scene.angle.to_radians()).tan(),
+        };
+        let eye = if self.is("x-eye-moved") { scene.eye + V(0.3, 0.2, 0.0) } else { scene.eye };
+        (eye, (w * (1.0 / half) + u * x + v * y).unit())
+    }
+
+    /// The picture.
+    pub fn picture(&self) -> Picture {
+        let (w, h) = self.scene.size;
+        let bounces = match () {
+            () if self.is("bounce-less") => self.scene.bounces - 1,
+            () if self.is("bounce-more") => self.scene.bounces + 1,
+            () => self.scene.bounces,
+        };
+        let all: Vec<V> = (0..w * h)
+            .map(|pixel| {
+                let (o, d) = self.ray(pixel % w, pixel / w);
+                self.trace(o, d, bounces, 1.0, true)
+            })
+            .collect();
+        let most = all.iter().map(|c| c.most()).fold(0.0, f64::max);
+        let curve = |c: f64| match () {
+            () if self.scene.year != Year::Durer => c,
+            () if c <= 0.0031308 => 12.92 * c,
+            () => 1.055 * c.powf(1.0 / 2.4) - 0.055,
+        };
+        let eight = |c: f64| {
+            let c = if self.is("scaled-to-maximum") { c / most } else { c };
+            let c = match () {
+                () if self.is("curve-more") => curve(c.max(0.0)).powf(1.0 / 2.2),
+                () if self.is("curve-less") => curve(c.max(0.0)).powf(2.2),
+                () => curve(c.max(0.0)),
+            };
+            match (self.is("wrapped"), self.scene.year) {
+                (true, _) => ((c * 255.0) as i64 & 255) as u8,
+                (_, Year::Durer) => (c * 255.0 + 0.5).clamp(0.0, 255.0) as u8,
+                _ => (c * 255.0).clamp(0.0, 255.0) as u8,
+            }
+        };
+        let at = |i: usize, j: usize| {
+            let (i, j) = match () {
+                () if self.is("mirrored") => (w - 1 - i, j),
+                () if self.is("upside-down") => (i, h - 1 - j),
+                () if self.is("transposed") => (j, i),
+                () => (i, j),
+            };
+            let V(r, g, b) = all[j * w + i];
+            if self.is("bgr") { [eight(b), eight(g), eight(r)] } else { [eight(r), eight(g), eight(b)] }
+        };
+        (0..w * h).map(|pixel| at(pixel % w, pixel / w)).collect()
+    }
+}

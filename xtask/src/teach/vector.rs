@@ -1,0 +1,110 @@
+//! Vectors and matrices of the judge's own tracer: in double precision, and nothing of the library's.
+
+use std::ops::{Add, Mul, Neg, Sub};
+
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct V(pub f64, pub f64, pub f64);
+
+impl Add for V {
+    type Output = V;
+    fn add(self, o: V) -> V {
+        V(self.0 + o.0, self.1 + o.1, self.2 + o.2)
+    }
+}
+
+impl Sub for V {
+    type Output = V;
+    fn sub(self, o: V) -> V {
+        V(self.0 - o.0, self.1 - o.1, self.2 - o.2)
+    }
+}
+
+impl Neg for V {
+    type Output = V;
+    fn neg(self) -> V {
+        self * -1.0
+    }
+}
+
+impl Mul<f64> for V {
+    type Output = V;
+    fn mul(self, f: f64) -> V {
+        V(self.0 * f, self.1 * f, self.2 * f)
+    }
+}
+
+/// Channel by channel.
+impl Mul for V {
+    type Output = V;
+    fn mul(self, o: V) -> V {
+        V(self.0 * o.0, self.1 * o.1, self.2 * o.2)
+    }
+}
+
+impl V {
+    pub const ZERO: V = V(0.0, 0.0, 0.0);
+    pub const ONE: V = V(1.0, 1.0, 1.0);
+
+    pub fn dot(self, o: V) -> f64 {
+        self.0 * o.0 + self.1 * o.1 + self.2 * o.2
+    }
+
+    pub fn cross(self, o: V) -> V {
+        V(self.1 * o.2 - self.2 * o.1, self.2 * o.0 - self.0 * o.2, self.0 * o.1 - self.1 * o.0)
+    }
+
+    pub fn length(self) -> f64 {
+        self.dot(self).sqrt()
+    }
+
+    pub fn unit(self) -> V {
+        self * (1.0 / self.length())
+    }
+
+    pub fn map(self, f: impl Fn(f64) -> f64) -> V {
+        V(f(self.0), f(self.1), f(self.2))
+    }
+
+    pub fn most(self) -> f64 {
+        self.0.max(self.1).max(self.2)
+    }
+}
+
+/// A 3 x 3 matrix by rows, and a translation.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Matrix {
+    pub rows: [V; 3],
+    pub by: V,
+}
+
+impl Matrix {
+    pub const ONE: Matrix = Matrix { rows: [V(1.0, 0.0, 0.0), V(0.0, 1.0, 0.0), V(0.0, 0.0, 1.0)], by: V::ZERO };
+
+    pub fn vector(&self, v: V) -> V {
+        V(self.rows[0].dot(v), self.rows[1].dot(v), self.rows[2].dot(v))
+    }
+
+    pub fn point(&self, p: V) -> V {
+        self.vector(p) + self.by
+    }
+
+    pub fn transposed(&self) -> Matrix {
+        let [a, b, c] = self.rows;
+        Matrix { rows: [V(a.0, b.0, c.0), V(a.1, b.1, c.1), V(a.2, b.2, c.2)], by: V::ZERO }
+    }
+
+    /// This after another.
+    pub fn times(&self, o: &Matrix) -> Matrix {
+        let columns = o.transposed().rows;
+        let row = |r: V| V(r.dot(columns[0]), r.dot(columns[1]), r.dot(columns[2]));
+        Matrix { rows: self.rows.map(row), by: self.point(o.by) }
+    }
+
+    pub fn inverse(&self) -> Matrix {
+        let [a, b, c] = self.transposed().rows;
+        let det = a.dot(b.cross(c));
+        let rows = [b.cross(c) * (1.0 / det), c.cross(a) * (1.0 / det), a.cross(b) * (1.0 / det)];
+        let linear = Matrix { rows, by: V::ZERO };
+        Matrix { by: -linear.vector(self.by), ..linear }
+    }
+}

@@ -1,0 +1,412 @@
+//! Wrong pictures: scenes of the judge, rendered with mistakes by its own tracer.
+
+use super::scene::{Lamp, Op, Scene, Shape, Stuff, Thing, Year};
+use super::vector::V;
+
+/// A wrong picture: which scene, which mistakes, and the names by which they may be told.
+pub struct Case {
+    pub scene: usize,
+    pub made: Vec<&'static str>,
+}
+
+const SUN: Lamp = Lamp::Sun(V(-1.0, -2.0, -1.5), V(0.7, 0.7, 0.6));
+
+fn bulb(at: V, color: V, fade: V) -> Lamp {
+    Lamp::Bulb(at, color, fade)
+}
+
+fn matt(kd: V) -> Stuff {
+    Stuff { kd, shine: 10.0, index: 0.0, ..Stuff::default() }
+}
+
+fn glossy(kd: V, ks: V, shine: f64) -> Stuff {
+    Stuff { ks, shine, ..matt(kd) }
+}
+
+fn sphere(c: V, r: f64, material: usize) -> Thing {
+    Thing { shape: Shape::Sphere(c, r), ops: Vec::new(), material }
+}
+
+fn floor(offset: f64, material: usize) -> Thing {
+    Thing { shape: Shape::Plane(V(0.0, 1.0, 0.0), offset), ops: Vec::new(), material }
+}
+
+fn moved(thing: Thing, ops: Vec<Op>) -> Thing {
+    Thing { ops, ..thing }
+}
+
+/// Eight triangles with corners on the axes.
+fn octahedron(name: &'static str, r: f64) -> Shape {
+    let corners = vec![V(r, 0., 0.), V(-r, 0., 0.), V(0., r, 0.), V(0., -r, 0.), V(0., 0., r), V(0., 0., -r)];
+    let faces = vec![[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4], [2, 0, 5], [1, 2, 5], [3, 1, 5], [0, 3, 5]];
+    Shape::Mesh(name, corners, faces)
+}
+
+/// The scenes, in the course's manner: small, of few things, of every year with the old grammar.
+pub fn scenes() -> Vec<Scene> {
+    let old = Scene {
+        name: "lamps",
+        year: Year::F04,
+        size: (120, 120),
+        shadows: true,
+        bounces: 0,
+        eye: V(0.0, 1.5, 9.0),
+        look: V(0.0, -0.15, -1.0),
+        up: V(0.0, 1.0, 0.0),
+        angle: 36.0,
+        background: V(0.2, 0.1, 0.6),
+        ambient: V(0.15, 0.15, 0.2),
+        lamps: vec![SUN, bulb(V(3.0, 4.0, 3.0), V(1.0, 0.9, 0.5), V(1.0, 0.05, 0.03))],
+        stuff: vec![
+            glossy(V(0.8, 0.3, 0.2), V(0.6, 0.6, 0.6), 16.0),
+            glossy(V(0.2, 0.5, 0.8), V(0.9, 0.9, 0.5), 40.0),
+            matt(V(0.5, 0.6, 0.4)),
+        ],
+        things: vec![sphere(V(-1.1, 0.3, 0.0), 1.0, 0), sphere(V(1.2, 0.0, 0.8), 0.8, 1), floor(-0.8, 2)],
+    };
+    let mirrors = Scene {
+        name: "mirrors",
+        bounces: 2,
+        stuff: vec![
+            Stuff { kr: V(0.5, 0.5, 0.6), ..glossy(V(0.4, 0.2, 0.2), V(0.5, 0.5, 0.5), 20.0) },
+            Stuff { kr: V(0.7, 0.6, 0.5), ..matt(V(0.2, 0.2, 0.2)) },
+            Stuff { kr: V(0.3, 0.3, 0.3), ..matt(V(0.5, 0.6, 0.4)) },
+        ],
+        ..old.clone()
+    };
+    let glass = Scene {
+        name: "glass",
+        bounces: 4,
+        shadows: false,
+        stuff: vec![
+            Stuff {
+                kr: V(0.1, 0.1, 0.1),
+                kt: V(0.8, 0.9, 0.8),
+                index: 1.5,
+                ..glossy(V(0.05, 0.05, 0.05), V(0.6, 0.6, 0.6), 30.0)
+            },
+            matt(V(0.9, 0.5, 0.1)),
+            matt(V(0.4, 0.5, 0.6)),
+            matt(V(0.2, 0.7, 0.3)),
+        ],
+        things: vec![
+            sphere(V(-0.4, 0.4, 1.5), 1.0, 0),
+            sphere(V(1.4, 0.0, -1.0), 0.8, 1),
+            sphere(V(-1.8, 0.2, -2.0), 1.0, 3),
+            floor(-0.8, 2),
+        ],
+        ..old.clone()
+    };
+    let turned = Scene {
+        name: "turned",
+        shadows: false,
+        eye: V(0.0, 0.5, 10.0),
+        look: V(0.0, 0.0, -2.0),
+        things: vec![
+            moved(
+                sphere(V::ZERO, 1.0, 0),
+                vec![Op::Translate(V(-1.3, 0.6, 0.0)), Op::Z(40.0), Op::Scale(V(1.6, 0.6, 1.0))],
+            ),
+            moved(
+                sphere(V(0.2, 0.0, 0.0), 0.9, 1),
+                vec![Op::Translate(V(1.5, -0.4, 0.0)), Op::Y(25.0), Op::X(-35.0), Op::Scale(V(0.5, 1.7, 0.8))],
+            ),
+            Thing {
+                shape: Shape::Triangle([V(-1.0, -1.0, 0.0), V(1.0, -1.0, 0.0), V(0.0, 0.8, 0.5)]),
+                ops: vec![Op::Translate(V(0.0, 0.6, -2.0)), Op::Z(20.0), Op::Scale(V(1.8, 1.2, 1.0))],
+                material: 2,
+            },
+        ],
+        ..old.clone()
+    };
+    let flat = Scene {
+        name: "orthographic",
+        angle: -6.0,
+        eye: V(0.5, 2.0, 6.0),
+        look: V(-0.3, -0.8, -2.0),
+        shadows: false,
+        lamps: vec![Lamp::Sun(V(-0.5, -1.0, -0.7), V(0.8, 0.8, 0.8)), Lamp::Sun(V(1.0, -0.3, -0.4), V(0.2, 0.3, 0.4))],
+        ..old.clone()
+    };
+    let phong = Scene {
+        name: "phong",
+        year: Year::F12a4,
+        shadows: false,
+        lamps: vec![
+            bulb(V(3.0, 4.0, 5.0), V(0.7, 0.6, 0.6), V(1.0, 0.0, 0.0)),
+            Lamp::Sun(V(1.0, -0.5, -0.8), V(0.3, 0.4, 0.3)),
+        ],
+        things: vec![
+            sphere(V(-1.4, 0.6, 0.0), 1.0, 0),
+            Thing {
+                shape: octahedron("octahedron.obj", 1.0),
+                ops: vec![Op::Translate(V(1.2, 0.5, 0.5)), Op::Y(30.0), Op::Scale(V(1.0, 1.5, 1.0))],
+                material: 1,
+            },
+            floor(-0.8, 2),
+        ],
+        ..old.clone()
+    };
+    let falling = Scene {
+        name: "falloff",
+        year: Year::F16,
+        bounces: 2,
+        lamps: vec![
+            bulb(V(2.0, 4.0, 3.0), V(1.0, 1.0, 0.9), V(0.0, 0.0, 0.06)),
+            bulb(V(-4.0, 3.0, 4.0), V(0.4, 0.5, 0.7), V(0.0, 0.0, 0.04)),
+        ],
+        up: V(0.2, 1.0, 0.0),
+        ..old.clone()
+    };
+    let fresnel = Scene {
+        name: "fresnel",
+        year: Year::F12a5,
+        bounces: 4,
+        lamps: vec![bulb(V(3.0, 5.0, 4.0), V(1.5, 1.4, 1.2), V(1.0, 0.0, 0.02))],
+        stuff: vec![
+            Stuff { ks: V(0.9, 0.9, 0.9), index: 1.5, ..matt(V(0.05, 0.05, 0.1)) },
+            Stuff { ks: V(0.4, 0.4, 0.4), ..matt(V(0.6, 0.3, 0.2)) },
+            matt(V(0.5, 0.6, 0.4)),
+        ],
+        ..old.clone()
+    };
+    let ours = Scene { name: "ours", year: Year::Durer, bounces: 3, ..mirrors.clone() };
+    let wide = Scene { name: "wide", size: (160, 100), look: V(0.3, -0.2, -1.3), up: V(0.3, 1.0, 0.1), ..old.clone() };
+    vec![old, mirrors, glass, turned, flat, phong, falling, fresnel, ours, wide]
+}
+
+/// Which mistakes are made in which scenes, alone.
+const ALONE: [&[&str]; 10] = [
+    &[
+        "no-ambient",
+        "ambient-each-light",
+        "ambient-bare",
+        "no-diffuse",
+        "no-cosine",
+        "two-sided",
+        "not-clamped-below",
+        "no-highlights",
+        "exponent-doubled",
+        "exponent-halved",
+        "exponent-3",
+        "exponent-one",
+        "other-model",
+        "highlight-cosine",
+        "highlight-diffuse",
+        "highlight-bare",
+        "half-sum",
+        "half-mean",
+        "light-missing",
+        "last-light-only",
+        "white-lights",
+        "light-negated",
+        "light-long",
+        "point-light-long",
+        "no-falloff",
+        "falloff-1-over-d",
+        "falloff-1-over-d2",
+        "falloff-multiplied",
+        "no-shadows",
+        "shadows-endless",
+        "shadows-ambient",
+        "shadows-epsilon",
+        "clamped-each-light",
+        "pixel-corner",
+        "border-pixels",
+        "angle-not-halved",
+        "angle-ignored",
+        "direction-not-unit",
+        "right-not-unit",
+        "epsilon-0",
+        "plane-negated",
+        "farthest-object",
+        "last-written",
+        "mirrored",
+        "upside-down",
+        "bgr",
+        "curve-more",
+        "curve-less",
+    ],
+    &[
+        "no-reflection",
+        "bounce-less",
+        "bounce-more",
+        "mirror-in-full",
+        "mirror-negated",
+        "mirror-along",
+        "secondary-each-light",
+        "secondary-black-sky",
+        "clamped-before-bounces",
+        "clamped-each-light",
+        "wrapped",
+        "scaled-to-maximum",
+        "no-shadows",
+        "epsilon-large",
+        "exponent-doubled",
+        "highlight-cosine",
+        "no-ambient",
+        "last-hit",
+    ],
+    &[
+        "no-refraction",
+        "index-inverted",
+        "exit-not-swapped",
+        "not-bent",
+        "glass-in-full",
+        "bounce-less",
+        "bounce-more",
+        "shadows-added",
+        "no-reflection",
+        "mirror-negated",
+        "secondary-black-sky",
+        "center-ignored",
+        "exponent-halved",
+    ],
+    &[
+        "normals-local",
+        "normals-moved",
+        "normals-long",
+        "local-direction-unit",
+        "matrices-reversed",
+        "rotation-radians",
+        "rotation-negated",
+        "transforms-ignored",
+        "triangles-turned",
+        "direction-not-unit",
+        "two-sided",
+        "normals-faced",
+        "border-pixels",
+        "point-light-long",
+    ],
+    &[
+        "size-doubled",
+        "pixel-corner",
+        "border-pixels",
+        "up-not-orthogonal",
+        "light-negated",
+        "light-long",
+        "no-ambient",
+        "hits-behind",
+        "transposed",
+    ],
+    &[
+        "normals-flat",
+        "normals-mixed-long",
+        "other-model",
+        "normals-local",
+        "exponent-doubled",
+        "exponent-3",
+        "border-pixels",
+        "light-missing",
+        "local-direction-unit",
+        "no-highlights",
+        "highlight-cosine",
+        "rotation-negated",
+        "matrices-reversed",
+        "two-sided",
+    ],
+    &[
+        "no-falloff",
+        "falloff-1-over-d",
+        "falloff-1-over-d2",
+        "falloff-with-one",
+        "up-not-orthogonal",
+        "no-shadows",
+        "bounce-less",
+        "bounce-more",
+        "mirror-in-full",
+        "last-light-only",
+        "border-pixels",
+        "half-sum",
+        "shadows-endless",
+    ],
+    &[
+        "fresnel-constant",
+        "no-fresnel",
+        "highlights-added",
+        "no-refraction",
+        "no-reflection",
+        "index-inverted",
+        "exit-not-swapped",
+        "not-bent",
+        "bounce-less",
+        "no-falloff",
+        "falloff-linear",
+        "bounce-more",
+    ],
+    &[
+        "no-ambient",
+        "exponent-doubled",
+        "other-model",
+        "no-shadows",
+        "mirror-in-full",
+        "bounce-less",
+        "curve-more",
+        "curve-less",
+        "no-highlights",
+        "light-missing",
+    ],
+    &[
+        "stretch",
+        "aspect-other-axis",
+        "aspect-smaller-side",
+        "right-not-unit",
+        "up-not-orthogonal",
+        "direction-not-unit",
+        "angle-not-halved",
+        "pixel-corner",
+        "mirrored",
+        "upside-down",
+    ],
+];
+
+/// Mistakes that are in no table, made in these scenes: nothing must be named.
+const UNKNOWN: [&str; 7] = [
+    "x-ambient-doubled",
+    "x-kd-squared",
+    "x-materials-swapped",
+    "x-light-turned",
+    "x-wider",
+    "x-eye-moved",
+    "x-second-light-unshadowed",
+];
+
+/// Two mistakes at once.
+const TOGETHER: &[(usize, [&str; 2])] = &[
+    (0, ["no-ambient", "no-highlights"]),
+    (0, ["no-shadows", "exponent-doubled"]),
+    (0, ["mirrored", "no-ambient"]),
+    (0, ["bgr", "no-highlights"]),
+    (0, ["no-falloff", "no-ambient"]),
+    (1, ["bounce-less", "no-shadows"]),
+    (1, ["no-reflection", "no-ambient"]),
+    (2, ["no-reflection", "no-highlights"]),
+    (3, ["normals-local", "no-ambient"]),
+    (3, ["matrices-reversed", "no-highlights"]),
+    (5, ["normals-flat", "no-ambient"]),
+    (6, ["no-falloff", "no-shadows"]),
+    (7, ["no-fresnel", "no-falloff"]),
+    (8, ["no-shadows", "no-highlights"]),
+];
+
+/// All wrong pictures.
+pub fn cases() -> Vec<Case> {
+    let alone = ALONE.iter().enumerate();
+    let mut cases: Vec<Case> =
+        alone.flat_map(|(scene, names)| names.iter().map(move |name| Case { scene, made: vec![*name] })).collect();
+    for scene in [0, 1, 5, 6] {
+        cases.extend(UNKNOWN.iter().map(|name| Case { scene, made: vec![*name] }));
+    }
+    cases.extend(TOGETHER.iter().map(|(scene, names)| Case { scene: *scene, made: names.to_vec() }));
+    cases
+}
+
+/// The name that the table has for a mistake of the judge's tracer.
+pub fn told(made: &str) -> &str {
+    match made {
+        "exponent-doubled" | "exponent-halved" | "exponent-3" => "exponent",
+        "size-doubled" => "size",
+        "falloff-linear" => "falloff-linear",
+        other => other,
+    }
+}
