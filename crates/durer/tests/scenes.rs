@@ -95,16 +95,16 @@ fn scenes_have_the_same_bits_for_all_numbers_of_threads_and_structures() {
 #[test]
 fn scenes_are_told_of_and_shown() {
     let table = fs::read_to_string(root().join("scenes/README.md")).unwrap();
-    let gallery = fs::read_to_string(root().join("README.md")).unwrap();
+    let gallery = fs::read_to_string(root().join("docs/gallery.md")).unwrap();
     let pictures = names("docs/gallery", ".png");
     for name in scenes() {
         let row = format!("| [{name}]({name}.txt) | ");
         assert_eq!(table.lines().filter(|line| line.starts_with(&row)).count(), 1, "{name} in scenes/README.md");
-        assert!(gallery.contains(&format!("](scenes/{name}.txt)")), "{name} is not linked in README.md");
+        assert!(gallery.contains(&format!("](../scenes/{name}.txt)")), "{name} is not linked in docs/gallery.md");
         assert!(pictures.contains(&name), "{name} has no picture in docs/gallery");
     }
     for picture in pictures {
-        let shown = gallery.contains(&format!("docs/gallery/{picture}.png"));
-        assert!(shown, "{picture}.png is not shown in README.md");
+        let shown = gallery.contains(&format!("(gallery/{picture}.png"));
+        assert!(shown, "{picture}.png is not shown in docs/gallery.md");
     }
 }
