@@ -20,7 +20,7 @@ enum Told {
     /// Named, or named beside others that make the same picture.
     Right,
     /// That it cannot be told.
-    NotTold,
+    Nothing,
     /// Something else was named.
     Wrong,
     /// The picture is the reference: the mistake is not seen.
@@ -90,14 +90,14 @@ fn pictures(durer: &Path, folder: &Path, wanted: &dyn Fn(&str) -> bool) -> Resul
             let text = output(&mut compare)?;
             let seconds = started.elapsed().as_secs_f64();
             let (told, words) = if unseen { (Told::Unseen, String::new()) } else { judged(&text, &case.made) };
-            let line = format!("{told:<9?} {seconds:5.1} s  {:<13} {:<38} {words}", scene.name, case.made.join(" + "));
+            let line = format!("{told:<8?} {seconds:5.1} s  {:<13} {:<38} {words}", scene.name, case.made.join(" + "));
             println!("{line}");
             Ok((line, told))
         })
         .collect();
     let results: Vec<(String, Told)> = results.into_iter().collect::<Result<_>>()?;
     let count = |told| results.iter().filter(|r| r.1 == told).count();
-    let [right, not_told, wrong, unseen] = [Told::Right, Told::NotTold, Told::Wrong, Told::Unseen].map(count);
+    let [right, not_told, wrong, unseen] = [Told::Right, Told::Nothing, Told::Wrong, Told::Unseen].map(count);
     let seen = results.len() - unseen;
     println!(
         "\n| | named rightly | not told | **named wrongly** | not seen in this scene |\n| --- | --- | --- | --- | --- |"
@@ -128,7 +128,7 @@ fn judged(json: &str, made: &[&str]) -> (Told, String) {
         return (Told::Right, "not told".into());
     }
     if sets.is_empty() {
-        return (Told::NotTold, String::new());
+        return (Told::Nothing, String::new());
     }
     let wanted: Vec<&str> = made.iter().map(|made| wrong::told(made)).collect();
     let right = sets.iter().any(|set| set.len() == wanted.len() && wanted.iter().all(|name| set.contains(name)));

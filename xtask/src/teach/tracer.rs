@@ -199,7 +199,7 @@ impl<'s> Tracer<'s> {
         let ambient = match () {
             () if self.is("no-ambient") => V::ZERO,
             () if self.is("ambient-bare") => scene.ambient,
-            () if self.is("x-ambient-doubled") => scene.ambient * stuff.kd * 2.0,
+            () if self.is("x-ambient-brighter") => scene.ambient * stuff.kd * 1.6,
             () if self.is("ambient-each-light") => scene.ambient * stuff.kd * scene.lamps.len() as f64,
             () => scene.ambient * stuff.kd,
         };

@@ -362,7 +362,7 @@ const ALONE: [&[&str]; 10] = [
 
 /// Mistakes that are in no table, made in these scenes: nothing must be named.
 const UNKNOWN: [&str; 7] = [
-    "x-ambient-doubled",
+    "x-ambient-brighter",
     "x-kd-squared",
     "x-materials-swapped",
     "x-light-turned",
