@@ -61,7 +61,9 @@ fn without_mistakes_the_picture_is_right() {
             for place in job.whole().places() {
                 let ray = center_ray(&variant.world, &raster, place).unwrap();
                 let (own, right) = (pupil.radiance(&ray), whitted.radiance(&ray, &mut ()));
-                assert_eq!(own, right, "{} at {place:?}", dialect.name());
+                // A year's program may divide by zero.
+                let same = own == right || own.is_nan() && own.is_nan_mask() == right.is_nan_mask();
+                assert!(same, "{} at {place:?}: {own} {right}", dialect.name());
             }
         }
     }

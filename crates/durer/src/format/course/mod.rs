@@ -63,7 +63,8 @@ fn no_text(bytes: &[u8]) -> Option<&'static str> {
     if head.starts_with(b"\xff\xfe") || head.starts_with(b"\xfe\xff") || head.len() > 3 && (zeros(0) != zeros(1)) {
         return Some("this file is UTF-16, two bytes a letter: save it as UTF-8 or ASCII text");
     }
-    let odd = |b: &&u8| **b < 9 || (14..32).contains(*b);
+    // Escape colours what a terminal shows, and may be pasted with it.
+    let odd = |b: &&u8| **b < 9 || (14..32).contains(*b) && **b != 27;
     let count = head.iter().filter(odd).count();
     let binary = head.contains(&0) || count * 20 > head.len();
     binary.then_some("this file is no text, but binary: a picture or a model, perhaps, in place of a scene")

@@ -179,14 +179,14 @@ const EXAMPLES: [(&str, &str); 22] = [
         "PhongMaterial { diffuseColor 0.2 0.4 0.6 specularColor 0.8 0.8 0.8 exponent 60 reflectiveColor 0.2 0.2 0.2 }",
     ),
     ("Checkerboard", "Checkerboard { Transform { UniformScale 0.5 } materialIndex 1 materialIndex 2 }"),
-    ("Noise", "Noise { Transform { UniformScale 0.3 } materialIndex 1 materialIndex 2 octaves 3 }"),
+    ("Noise", "Noise { Transform { UniformScale 0.12 } materialIndex 1 materialIndex 2 octaves 2 }"),
     ("Marble", "Marble { materialIndex 1 materialIndex 2 octaves 4 frequency 6 amplitude 5 }"),
     ("Wood", "Wood { materialIndex 1 materialIndex 2 octaves 2 frequency 20 amplitude 2 }"),
     (
         "Noise in a material",
         "PhongMaterial { Noise { color 0.2 0.1 0.05 color 0.9 0.7 0.5 octaves 3 frequency 5 amplitude 4 } }",
     ),
-    ("Plane", "Plane { normal 1 2 0.4 offset -1 }"),
+    ("Plane", "Plane { normal 2 1 0.4 offset -1.6 }"),
     ("Triangle", "Triangle { vertex0 -1.2 -1 0.4 vertex1 1.2 -1 0.4 vertex2 0 1.1 -0.4 }"),
     ("Box", "Box { min -0.8 -1.3 -0.8 max 0.8 0.3 0.8 }"),
     ("Cylinder", "Cylinder { base 0 -1.3 0 top 0 0.6 0 radius 0.8 }"),
@@ -195,9 +195,12 @@ const EXAMPLES: [(&str, &str); 22] = [
     ("Ellipsoid", "Ellipsoid { center 0 -0.3 0 radii 1.2 0.9 0.6 }"),
     ("Disc", "Disc { center 0 -0.4 0 normal 0.3 1 0.6 radius 1.2 innerRadius 0.5 }"),
     ("Rectangle", "Rectangle { corner -1 -1.1 0.5 edge0 2 0 0 edge1 0 1.6 -1 }"),
-    ("TriangleMesh", "Transform { UniformScale 1.1 TriangleMesh { obj_file meshes/durer-solid.obj } }"),
+    (
+        "TriangleMesh",
+        "Transform { Translate 0 -1.3 0 UniformScale 0.75 TriangleMesh { obj_file meshes/durer-solid.obj } }",
+    ),
     ("HeightField", "HeightField { picture textures/hills.png min -1.4 -1 -1.4 max 1.4 0.2 1.4 depth 0.3 }"),
-    ("Quadric", "Quadric { squares 1 -0.5 1 constant -0.2 }"),
+    ("Quadric", "Quadric { squares 1 2 1.5 products 0.8 0 0.5 linear 0 0.8 0 constant -0.6 }"),
     ("Grid", "Grid { min -1 -1.2 -1 max 1 0.8 1 numCells 10 10 10 rasterizeSphere { center 0 -0.2 0 radius 0.95 } }"),
 ];
 

@@ -149,7 +149,9 @@ impl Reader<'_, '_> {
     /// `Scale 2`: says what is meant, and passes over it.
     fn scale_by_one(&mut self, word: Span) -> bool {
         let (count, last) = self.numbers_ahead();
-        if count != 1 {
+        // What is cut off or no number is told as that.
+        let ends = |text: &str| text.starts_with(|c: char| c.is_ascii_alphabetic() || c == '}');
+        if count != 1 || !self.ahead(1).is_some_and(|next| ends(&self.text(next.span))) {
             return false;
         }
         let number = self.text(last);

@@ -55,7 +55,12 @@ fn mistakes_in_the_grid_of_2003_are_told() {
     assert_eq!(found("min -1 -1 -1 max 1 1 1 numCells 3 0 3"), [wrong]);
     assert_eq!(found("min -1 -1 -1 max 1 1 1 numCells 3 1.5 3"), [wrong.replace("3 0 3", "3 1.5 3")]);
     let ball = "min -1 -1 -1 max 1 1 1 numCells 3 3 3 rasterizeSphere { radius 1 }";
-    assert_eq!(found(ball), ["3:47 error: `rasterizeSphere` has no `center` [rasterizeSphere]"]);
+    assert_eq!(
+        found(ball),
+        [
+            "3:47 error: `rasterizeSphere` has no `center` [rasterizeSphere] (write it into the block, as in `center 0 0 5`)"
+        ]
+    );
 }
 
 #[test]

@@ -112,13 +112,16 @@ fn words_in_the_wrong_place() {
     one("Scene { Node { } }", "1:1 error: `Scene` means nothing at the top of a scene [Scene] (it is a word of f23)");
     one_of_nodes(
         "Group { numObjects 0 }",
-        "1:1 error: `Group` means nothing at the top of a scene [Group] (it is a word of f03, f04, f12a4, f12a5, f16, durer)",
+        "1:1 error: `Group` means nothing at the top of a scene [Group] (it is a word of f03, f04, f12a4, f12a5, f16, durer; in f23 it is `Node`)",
     );
 }
 
 #[test]
 fn fields_and_values() {
-    in_group("Sphere { center 0 0 0 }", "2:1 error: `Sphere` has no `radius` [Sphere]");
+    in_group(
+        "Sphere { center 0 0 0 }",
+        "2:1 error: `Sphere` has no `radius` [Sphere] (write it into the block, as in `radius 1`)",
+    );
     in_group(
         "Sphere { center 0 0\n radius 1 }",
         "3:2 error: `center` needs number 3 of 3, but found `radius` [radius]",
@@ -231,7 +234,10 @@ fn transforms() {
         &format!("Transform {{ {ball} {ball} {ball} }}"),
         "2:46 error: a `Transform` has exactly one object [Sphere] (put several objects into a `Group`)",
     );
-    in_group("Transform { Scale 1 1 1 }", "2:1 error: this `Transform` has no object [Transform]");
+    in_group(
+        "Transform { Scale 1 1 1 }",
+        "2:1 error: this `Transform` has no object [Transform] (write the object after its matrices: `Transform { Translate 0 1 0 Sphere { ... } }`)",
+    );
     in_group(
         &format!("Transform {{ {ball} XRotate 3 YRotate 3 }}"),
         "2:46 error: a transform's matrices come before its object [XRotate]",
@@ -248,7 +254,10 @@ fn transforms() {
         &format!("Transform {{ Rotate {{ 0 0 0 45 }} {ball} }}"),
         "2:13 error: an axis of 0 0 0 points nowhere [Rotate { 0 0 0 45 }] (write the axis first, then the angle)",
     );
-    in_group(&format!("Transform {{ Rotate 0 1 0 45 {ball} }}"), "2:20 error: `Rotate` needs `{`, but found `0` [0]");
+    in_group(
+        &format!("Transform {{ Rotate 0 1 0 45 {ball} }}"),
+        "2:13 error: the axis and the angle of `Rotate` stand in braces [Rotate 0 1 0 45] (write `Rotate { 0 1 0 45 }`)",
+    );
     in_group(
         &format!("Transform {{ Translate 1 x 3 {ball} }}"),
         "2:25 error: `Translate` needs number 2 of 3, but found `x` [x]",
@@ -294,9 +303,12 @@ fn what_is_written_twice_or_by_another_year_is_told_once() {
     );
     one(
         "Materials { Material { shininess 1 } Material { shininess 2 } }",
-        "1:24 warning: `shininess` is not a word of f04, but of f12a4, f12a5, f16, f23, durer [shininess]",
+        "1:24 warning: `shininess` is not a word of f04, but of f12a4, f12a5, f16, f23, durer [shininess] (in f04 it is `exponent`)",
     );
-    one("Group { num_objects 0 }", "1:9 warning: `num_objects` is not a word of f04, but of f03 [num_objects]");
+    one(
+        "Group { num_objects 0 }",
+        "1:9 warning: `num_objects` is not a word of f04, but of f03 [num_objects] (in f04 it is `numObjects`)",
+    );
     one("Group { } // no", "1:11 warning: comments begin with `#`; this one is passed over all the same [// no]");
     let shared = "Lights { PointLight { position 0 0 0 color 1 1 1 attenuation 1 0 0 attenuation 1 0 0 } }";
     assert_eq!(findings(shared, Dialect::F12a5).len(), 2, "{:?}", findings(shared, Dialect::F12a5));

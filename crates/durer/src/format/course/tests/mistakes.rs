@@ -126,7 +126,7 @@ fn one_mistake_gives_one_error() {
         ("radius 1", "radius 1 MaterialIndex 0", "38:18"),
         ("    Triangle {", "}\n    Triangle {", "55:1"),
         ("Sphere {", "Translate 1 2 3\n    Sphere {", "36:5"),
-        ("YRotate 45", "Rotate 0 1 0 45", "43:16"),
+        ("YRotate 45", "Rotate 0 1 0 45", "43:9"),
         ("YRotate 45", "Rotate { 0 1 0 }", "43:24"),
         ("YRotate 45", "Rotate { 0 1 0 45", "44:9"),
         ("YRotate 45", "Scale 1 0 1", "43:9"),
