@@ -219,7 +219,8 @@ fn r0_is_zero_for_rays_that_leave_whatever_the_index() {
                 glass.reflective = Color::ZERO;
             }
         });
-        let r0 = ((index - 1.0) / (index + 1.0)).powi(2);
+        let ratio = (index - 1.0) / (index + 1.0);
+        let r0 = ratio * ratio;
         let through = |world: &World| {
             let ray = Ray::new(Vec3::new(0.0, 5.0, 0.0), Vec3::NEG_Y);
             Whitted { world, settings, cancel: None }.radiance(&ray, &mut ())
