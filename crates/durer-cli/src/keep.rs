@@ -14,6 +14,9 @@ use std::time::{Duration, Instant};
 /// Work that takes less than this is not saved before it is done, unless somebody wants it more often.
 const SHORT: Duration = Duration::from_secs(1);
 
+/// Bytes of work that are taken to be saved in a second, as long as none were.
+const SAVED_PER_SECOND: u64 = 200_000_000;
+
 /// Saves work.
 pub struct Keeper {
     /// Where it is saved.
@@ -29,6 +32,8 @@ pub struct Keeper {
     transfer: Transfer,
     start: Instant,
     short: Duration,
+    /// How long saving took the last time.
+    saving: Cell<Option<Duration>>,
     /// Whether it was said that saving does not work.
     complained: Cell<bool>,
 }
@@ -72,6 +77,7 @@ impl Keeper {
             transfer: Transfer::from_name(&args.transfer).unwrap_or_default(),
             start: Instant::now(),
             short: SHORT.min(work.checkpoint_every),
+            saving: Cell::new(None),
             complained: Cell::new(false),
         })
     }
@@ -91,12 +97,14 @@ impl Keeper {
 
     /// Saves work and preview.
     pub fn watch(&self, part: &Part, moment: Moment) {
-        let due = self.start.elapsed() >= self.short;
-        if let Some(place) = self.place.as_ref().filter(|place| due && !place.is_stream())
-            && let Err(error) = save_part(place, part)
-        {
-            // The picture may still be saved somewhere else.
-            self.complain(&error);
+        let due = self.start.elapsed() >= self.short && self.is_worth_saving(part);
+        if let Some(place) = self.place.as_ref().filter(|place| due && !place.is_stream()) {
+            let before = Instant::now();
+            if let Err(error) = save_part(place, part) {
+                // The picture may still be saved somewhere else.
+                self.complain(&error);
+            }
+            self.saving.set(Some(before.elapsed()));
         }
         if let (Moment::PassDone, Some((place, format))) = (moment, &self.preview) {
             let first = part.pictures().ok().and_then(|rendered| rendered.pictures.into_iter().next());
@@ -106,6 +114,15 @@ impl Keeper {
                 self.complain(&error.to_string());
             }
         }
+    }
+
+    /// Whether what is left of the work takes longer than saving does.
+    fn is_worth_saving(&self, part: &Part) -> bool {
+        let (all, done) = part.work();
+        let left = self.start.elapsed().as_secs_f64() * all.saturating_sub(done) as f64 / done.max(1) as f64;
+        let bytes = Part::bytes_needed(part.job(), part.shard());
+        let saving = self.saving.get().map_or(bytes as f64 / SAVED_PER_SECOND as f64, |saving| saving.as_secs_f64());
+        left > saving
     }
 
     fn complain(&self, error: &str) {

@@ -115,23 +115,19 @@ pub fn compile(
         unbounded: Vec::new(),
         accel: Accel::None,
     };
-    world.unbounded =
-        (0..world.objects.len() as u32).filter(|&i| world.objects[i as usize].bounds().is_none()).collect();
-    match build_accel(&world, accel) {
-        Ok(accel) => world.accel = accel,
-        Err(error) => {
-            diagnostics.push(*error);
-            return None;
-        }
+    if let Err(error) = rebuild(&mut world, accel) {
+        diagnostics.push(*error);
+        return None;
     }
     Some(world)
 }
 
-/// Makes the structure over a world's objects anew, after they were moved.
-pub(crate) fn rebuild(world: &mut World) {
+/// Makes the structure over a world's objects: at first, and anew after they were moved.
+pub(crate) fn rebuild(world: &mut World, kind: AccelKind) -> Result<(), Box<Diagnostic>> {
     world.unbounded =
         (0..world.objects.len() as u32).filter(|&i| world.objects[i as usize].bounds().is_none()).collect();
-    world.accel = build_accel(world, AccelKind::Bvh).unwrap_or(Accel::None);
+    world.accel = build_accel(world, kind)?;
+    Ok(())
 }
 
 fn build_accel(world: &World, kind: AccelKind) -> Result<Accel, Box<Diagnostic>> {

@@ -137,6 +137,8 @@ pub struct FilterSampler {
     filter: Filter,
     /// Absolute weight at each knot, and its integral (trapezoids, in bins) from the centre up to there.
     knots: Vec<(f64, f64)>,
+    /// For each of `BINS` equal shares of the whole integral, the first knot whose integral is above the share's beginning.
+    guide: Vec<u16>,
     /// Integral of the absolute filter over that of the filter: how much a sample must count.
     gain: f32,
 }
@@ -155,7 +157,12 @@ impl FilterSampler {
         }
         // A filter that is nowhere positive is no filter: it is sampled as a box would be, at no gain.
         let gain = if signed > 0.0 { (absolute / signed) * (absolute / signed) } else { 1.0 };
-        FilterSampler { filter, knots, gain: gain as f32 }
+        let above = |share: usize| {
+            let least = share as f64 / BINS as f64 * absolute;
+            knots.partition_point(|&(_, integral)| integral <= least) as u16
+        };
+        let guide = (0..BINS).map(above).collect();
+        FilterSampler { filter, knots, guide, gain: gain as f32 }
     }
 
     /// The size of a sample's weight: 1 for filters without negative lobes, more for others.
@@ -179,12 +186,21 @@ impl FilterSampler {
         (offset, weight)
     }
 
+    /// The bin in which the integral reaches a share of the whole: mostly the one that the guide names, or the next.
+    fn bin(&self, share: f64) -> usize {
+        let target = share * self.knots[BINS].1;
+        let mut above = usize::from(self.guide[((share * BINS as f64) as usize).min(BINS - 1)]);
+        while above <= BINS && self.knots[above].1 <= target {
+            above += 1;
+        }
+        above.clamp(1, BINS)
+    }
+
     /// Inverts the integral of the absolute filter from the centre outwards, on the side that `u` lies on.
     fn warp(&self, u: f32) -> f32 {
         let v = 2.0 * f64::from(u) - 1.0;
         let target = v.abs() * self.knots[BINS].1;
-        // The bin in which the integral reaches the target.
-        let above = self.knots.partition_point(|&(_, integral)| integral <= target).clamp(1, BINS);
+        let above = self.bin(v.abs());
         let ((start, before), (end, _)) = (self.knots[above - 1], self.knots[above]);
         // In the bin: start * t + (end - start) * t^2 / 2 = rest, solved without cancellation.
         let rest = target - before;

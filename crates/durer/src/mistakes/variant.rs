@@ -2,7 +2,7 @@
 
 use super::habits::{Aim, Habits, Output, Turn};
 use crate::camera::{Camera, CameraSample, Frame, Lens, Raster};
-use crate::compile;
+use crate::compile::{self, AccelKind};
 use crate::dialect::{Compat, CompatSet, Highlight};
 use crate::integrator::Settings;
 use crate::material::PhongMaterial;
@@ -142,13 +142,18 @@ impl<'s> Variant<'s> {
                 object.to_world = Affine::new(place).filter(|affine| !affine.is_identity());
             }
         }
-        compile::rebuild(&mut self.world);
+        self.rebuild();
+    }
+
+    fn rebuild(&mut self) {
+        // Unlike a grid, a tree can always be made.
+        let _ = compile::rebuild(&mut self.world, AccelKind::Bvh);
     }
 
     /// Changes all objects.
     pub fn objects(&mut self, change: impl Fn(&mut Geometry)) {
         self.world.objects.iter_mut().for_each(|object| change(&mut object.geometry));
-        compile::rebuild(&mut self.world);
+        self.rebuild();
     }
 }
 

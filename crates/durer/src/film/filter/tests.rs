@@ -53,6 +53,19 @@ fn offsets_follow_the_filter() {
 }
 
 #[test]
+fn the_guide_leads_to_the_bin_that_a_search_finds() {
+    for filter in sizes() {
+        let sampler = filter.sampler();
+        let total = sampler.knots[BINS].1;
+        for i in 0..100_000 {
+            let v = f64::from(i as f32 / 100_000.0);
+            let found = sampler.knots.partition_point(|&(_, integral)| integral <= v * total).clamp(1, BINS);
+            assert_eq!(sampler.bin(v), found, "{filter:?} {v}");
+        }
+    }
+}
+
+#[test]
 fn weights_have_mean_one_and_the_sign_of_the_filter() {
     for filter in sizes() {
         let sampler = filter.sampler();
