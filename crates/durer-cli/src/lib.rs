@@ -1,4 +1,4 @@
-//! The `durer` command: a thin shell over the library.
+//! The `durer` command: a thin shell over the library; and, for other programs, its options ([`embed`]).
 
 mod args;
 mod check;
@@ -6,7 +6,9 @@ mod compare;
 mod convert;
 mod course;
 mod diagrams;
+pub mod embed;
 mod explain;
+mod farm;
 mod guard;
 mod info;
 mod job;
@@ -26,8 +28,8 @@ mod words;
 
 use args::{Cli, Command};
 use clap::Parser;
+use std::ffi::OsString;
 use std::path::Path;
-use std::process::ExitCode;
 
 /// Exit code after a scene, an option or another input that is wrong.
 const BAD_INPUT: u8 = 2;
@@ -38,23 +40,27 @@ const DIFFERENT: u8 = 1;
 /// Exit code of `durer check` after findings.
 const FOUND: u8 = 1;
 
-fn main() -> ExitCode {
+/// Does what a command line says, whose first word is the name of the program; gives the exit code. It hears signals, and may end
+/// the process.
+pub fn run(words: Vec<OsString>) -> u8 {
     progress::hear_interrupts();
     if let Err(error) = durer::bvh::Level::from_environment() {
-        return ExitCode::from(bad(error.to_string()).report());
+        return bad(error.to_string()).report();
     }
     durer::threads::prepare();
     // Under the name of an official program, `durer` is that program.
-    let mut words = std::env::args_os();
-    let name = words.next().unwrap_or_default();
+    let name = words.first().cloned().unwrap_or_default();
     let name = Path::new(&name).file_stem().unwrap_or_default().to_string_lossy();
     let result = match course::program(&name) {
         Some(program) => words
+            .into_iter()
+            .skip(1)
             .map(|word| word.into_string().map_err(|word| bad(format!("{word:?} is not UTF-8"))))
             .collect::<Result<_, _>>()
             .and_then(|arguments| course::run(arguments, Some(program))),
-        None => match Cli::parse().command {
+        None => match Cli::parse_from(words).command {
             Command::Render(args) => render::run(&args),
+            Command::Farm(args) => farm::run(&args),
             Command::Merge(args) => merge::run(&args),
             Command::Verify(args) => verify::run(&args),
             Command::Explain(args) => explain::run(&args),
@@ -71,8 +77,8 @@ fn main() -> ExitCode {
         },
     };
     match result {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(failure) => ExitCode::from(failure.report()),
+        Ok(()) => 0,
+        Err(failure) => failure.report(),
     }
 }
 
