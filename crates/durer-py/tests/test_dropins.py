@@ -54,7 +54,7 @@ def test_trimesh_takes_our_rays():
     assert (ours.intersects_any(o, d) == theirs.intersects_any(o, d)).all()
     assert (ours.intersects_first(o, d) == theirs.intersects_first(o, d)).all()
     for many in (True, False):
-        a, b = ours.intersects_location(o, d, many), theirs.intersects_location(o, d, many)
+        a, b = ours.intersects_location(o, d, many), theirs.intersects_location(o, d, multiple_hits=many)
         order = [np.lexsort((x[2], x[1])) for x in (a, b)]
         assert (a[1][order[0]] == b[1][order[1]]).all() and (a[2][order[0]] == b[2][order[1]]).all()
         assert np.allclose(a[0][order[0]], b[0][order[1]], atol=1e-5)

@@ -106,7 +106,7 @@ def test_scenes_in_code_are_what_their_text_says(tmp_path):
         [
             hollow.of(blue).at((0, 0.5, 0)),
             durer.Group(tetra, durer.Moved(tetra, np.diag([0.5, 2, 0.5, 1])).of(red)).at((1.5, 0, 1)),
-            durer.Plane(normal=(0, 1, 0), offset=-1),
+            durer.Plane(normal=(0, 1, 0), offset=-1).of(durer.Checkerboard(material1=red, material2=blue)),
         ],
         [durer.DirectionalLight(direction=(-1, -2, -1), color=(0.9, 0.9, 0.8))],
         durer.Background(color=(0.2, 0.1, 0.5), ambient_light=(0.2, 0.2, 0.2)),

@@ -59,7 +59,7 @@ fn class(entry: &Entry, word: &str, base: &str) -> String {
         let parameter =
             if field.required { format!("{name}: {kind}") } else { format!("{name}: Optional[{kind}] = None") };
         let _ = writeln!(given, "        {parameter},");
-        let _ = writeln!(rows, "            \"{spelling}\": {name},");
+        let _ = writeln!(rows, "            (\"{spelling}\", {name}),");
     }
     let _ = write!(out, "\n\nclass {word}({base}):\n    \"\"\"{}\n", entry.doc.replace('\\', "\\\\"));
     for (field, _) in &fields {
@@ -73,7 +73,7 @@ fn class(entry: &Entry, word: &str, base: &str) -> String {
     let _ = write!(
         out,
         "    \"\"\"\n\n    def __init__(\n        self,\n        *,\n{given}    ) -> None:\n        super().__init__(\"{word}\", \
-         {{\n{rows}        }})\n"
+         [\n{rows}        ])\n"
     );
     out
 }

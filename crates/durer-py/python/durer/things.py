@@ -24,17 +24,18 @@ def number(value: Any) -> str:
 class Thing:
     """A word of the scene language with its fields."""
 
-    def __init__(self, word: str, fields: Mapping[str, Any]) -> None:
+    def __init__(self, word: str, fields: Iterable[tuple[str, Any]]) -> None:
         self.word = word
-        self.fields = {name: value for name, value in fields.items() if value is not None}
+        # Two fields may be spelled alike, as the materials of a pattern are.
+        self.fields = [(name, value) for name, value in fields if value is not None]
 
     def materials(self) -> list[Material]:
         """The materials that its fields name."""
-        return [value for value in self.fields.values() if isinstance(value, Material)]
+        return [value for _, value in self.fields if isinstance(value, Material)]
 
     def text(self, numbers: Optional[Mapping[int, int]] = None) -> str:
         """How it is written; `numbers` are those of materials, by identity."""
-        parts = [f"{name} {self._value(name, value, numbers or {})}" for name, value in self.fields.items()]
+        parts = [f"{name} {self._value(name, value, numbers or {})}" for name, value in self.fields]
         return f"{self.word} {{ {'  '.join(parts)} }}"
 
     def _value(self, name: str, value: Any, numbers: Mapping[int, int]) -> str:
@@ -54,7 +55,7 @@ class Thing:
         raise ValueError(f"{self.word}: {name} must be one number, three, or rows of them, but has the shape {array.shape}")
 
     def __repr__(self) -> str:
-        return f"{self.word}({', '.join(f'{name}={value!r}' for name, value in self.fields.items())})"
+        return f"{self.word}({', '.join(f'{name}={value!r}' for name, value in self.fields)})"
 
 
 class Camera(Thing):

@@ -29,11 +29,11 @@ class Background(Thing):
         ambient_light: Optional[npt.ArrayLike] = None,
         cube_map: Optional[str] = None,
     ) -> None:
-        super().__init__("Background", {
-            "color": color,
-            "ambientLight": ambient_light,
-            "cubeMap": cube_map,
-        })
+        super().__init__("Background", [
+            ("color", color),
+            ("ambientLight", ambient_light),
+            ("cubeMap", cube_map),
+        ])
 
 
 class PerspectiveCamera(Camera):
@@ -56,12 +56,12 @@ class PerspectiveCamera(Camera):
         up: npt.ArrayLike,
         angle: float,
     ) -> None:
-        super().__init__("PerspectiveCamera", {
-            "center": center,
-            "direction": direction,
-            "up": up,
-            "angle": angle,
-        })
+        super().__init__("PerspectiveCamera", [
+            ("center", center),
+            ("direction", direction),
+            ("up", up),
+            ("angle", angle),
+        ])
 
 
 class OrthographicCamera(Camera):
@@ -84,12 +84,12 @@ class OrthographicCamera(Camera):
         up: npt.ArrayLike,
         size: float,
     ) -> None:
-        super().__init__("OrthographicCamera", {
-            "center": center,
-            "direction": direction,
-            "up": up,
-            "size": size,
-        })
+        super().__init__("OrthographicCamera", [
+            ("center", center),
+            ("direction", direction),
+            ("up", up),
+            ("size", size),
+        ])
 
 
 class PinholeCamera(Camera):
@@ -118,14 +118,14 @@ class PinholeCamera(Camera):
         hole: float,
         film_distance: Optional[float] = None,
     ) -> None:
-        super().__init__("PinholeCamera", {
-            "center": center,
-            "direction": direction,
-            "up": up,
-            "angle": angle,
-            "hole": hole,
-            "filmDistance": film_distance,
-        })
+        super().__init__("PinholeCamera", [
+            ("center", center),
+            ("direction", direction),
+            ("up", up),
+            ("angle", angle),
+            ("hole", hole),
+            ("filmDistance", film_distance),
+        ])
 
 
 class ThinLensCamera(Camera):
@@ -166,18 +166,18 @@ class ThinLensCamera(Camera):
         shift_right: Optional[float] = None,
         shift_up: Optional[float] = None,
     ) -> None:
-        super().__init__("ThinLensCamera", {
-            "center": center,
-            "direction": direction,
-            "up": up,
-            "angle": angle,
-            "aperture": aperture,
-            "focusDistance": focus_distance,
-            "blades": blades,
-            "bladeAngle": blade_angle,
-            "shiftRight": shift_right,
-            "shiftUp": shift_up,
-        })
+        super().__init__("ThinLensCamera", [
+            ("center", center),
+            ("direction", direction),
+            ("up", up),
+            ("angle", angle),
+            ("aperture", aperture),
+            ("focusDistance", focus_distance),
+            ("blades", blades),
+            ("bladeAngle", blade_angle),
+            ("shiftRight", shift_right),
+            ("shiftUp", shift_up),
+        ])
 
 
 class StereoCamera(Camera):
@@ -215,17 +215,17 @@ class StereoCamera(Camera):
         eyes: Optional[Literal["middle", "left", "right", "sideBySide", "topBottom"]] = None,
         aspect: Optional[float] = None,
     ) -> None:
-        super().__init__("StereoCamera", {
-            "center": center,
-            "direction": direction,
-            "up": up,
-            "angle": angle,
-            "separation": separation,
-            "convergence": convergence,
-            "method": method,
-            "eyes": eyes,
-            "aspect": aspect,
-        })
+        super().__init__("StereoCamera", [
+            ("center", center),
+            ("direction", direction),
+            ("up", up),
+            ("angle", angle),
+            ("separation", separation),
+            ("convergence", convergence),
+            ("method", method),
+            ("eyes", eyes),
+            ("aspect", aspect),
+        ])
 
 
 class FisheyeCamera(Camera):
@@ -251,13 +251,13 @@ class FisheyeCamera(Camera):
         angle: Optional[float] = None,
         projection: Optional[Literal["equidistant", "equisolid", "stereographic", "orthographic"]] = None,
     ) -> None:
-        super().__init__("FisheyeCamera", {
-            "center": center,
-            "direction": direction,
-            "up": up,
-            "angle": angle,
-            "projection": projection,
-        })
+        super().__init__("FisheyeCamera", [
+            ("center", center),
+            ("direction", direction),
+            ("up", up),
+            ("angle", angle),
+            ("projection", projection),
+        ])
 
 
 class OmnimaxCamera(Camera):
@@ -292,16 +292,16 @@ class OmnimaxCamera(Camera):
         projector: Optional[npt.ArrayLike] = None,
         viewer: Optional[npt.ArrayLike] = None,
     ) -> None:
-        super().__init__("OmnimaxCamera", {
-            "center": center,
-            "direction": direction,
-            "up": up,
-            "tilt": tilt,
-            "dome": dome,
-            "angle": angle,
-            "projector": projector,
-            "viewer": viewer,
-        })
+        super().__init__("OmnimaxCamera", [
+            ("center", center),
+            ("direction", direction),
+            ("up", up),
+            ("tilt", tilt),
+            ("dome", dome),
+            ("angle", angle),
+            ("projector", projector),
+            ("viewer", viewer),
+        ])
 
 
 class ParabolicCamera(Camera):
@@ -324,12 +324,12 @@ class ParabolicCamera(Camera):
         up: npt.ArrayLike,
         angle: Optional[float] = None,
     ) -> None:
-        super().__init__("ParabolicCamera", {
-            "center": center,
-            "direction": direction,
-            "up": up,
-            "angle": angle,
-        })
+        super().__init__("ParabolicCamera", [
+            ("center", center),
+            ("direction", direction),
+            ("up", up),
+            ("angle", angle),
+        ])
 
 
 class EquirectangularCamera(Camera):
@@ -361,15 +361,15 @@ class EquirectangularCamera(Camera):
         eyes: Optional[Literal["middle", "left", "right", "sideBySide", "topBottom"]] = None,
         separation: Optional[float] = None,
     ) -> None:
-        super().__init__("EquirectangularCamera", {
-            "center": center,
-            "direction": direction,
-            "up": up,
-            "angle": angle,
-            "verticalAngle": vertical_angle,
-            "eyes": eyes,
-            "separation": separation,
-        })
+        super().__init__("EquirectangularCamera", [
+            ("center", center),
+            ("direction", direction),
+            ("up", up),
+            ("angle", angle),
+            ("verticalAngle", vertical_angle),
+            ("eyes", eyes),
+            ("separation", separation),
+        ])
 
 
 class CylindricalCamera(Camera):
@@ -401,15 +401,15 @@ class CylindricalCamera(Camera):
         eyes: Optional[Literal["middle", "left", "right", "sideBySide", "topBottom"]] = None,
         separation: Optional[float] = None,
     ) -> None:
-        super().__init__("CylindricalCamera", {
-            "center": center,
-            "direction": direction,
-            "up": up,
-            "angle": angle,
-            "verticalAngle": vertical_angle,
-            "eyes": eyes,
-            "separation": separation,
-        })
+        super().__init__("CylindricalCamera", [
+            ("center", center),
+            ("direction", direction),
+            ("up", up),
+            ("angle", angle),
+            ("verticalAngle", vertical_angle),
+            ("eyes", eyes),
+            ("separation", separation),
+        ])
 
 
 class CubeMapCamera(Camera):
@@ -432,12 +432,12 @@ class CubeMapCamera(Camera):
         up: npt.ArrayLike,
         layout: Optional[Literal["cross", "strip"]] = None,
     ) -> None:
-        super().__init__("CubeMapCamera", {
-            "center": center,
-            "direction": direction,
-            "up": up,
-            "layout": layout,
-        })
+        super().__init__("CubeMapCamera", [
+            ("center", center),
+            ("direction", direction),
+            ("up", up),
+            ("layout", layout),
+        ])
 
 
 class CaveCamera(Camera):
@@ -466,14 +466,14 @@ class CaveCamera(Camera):
         eyes: Optional[Literal["middle", "left", "right", "sideBySide", "topBottom"]] = None,
         separation: Optional[float] = None,
     ) -> None:
-        super().__init__("CaveCamera", {
-            "center": center,
-            "direction": direction,
-            "up": up,
-            "walls": walls,
-            "eyes": eyes,
-            "separation": separation,
-        })
+        super().__init__("CaveCamera", [
+            ("center", center),
+            ("direction", direction),
+            ("up", up),
+            ("walls", walls),
+            ("eyes", eyes),
+            ("separation", separation),
+        ])
 
 
 class PushBroomCamera(Camera):
@@ -502,14 +502,14 @@ class PushBroomCamera(Camera):
         angle: float,
         aspect: Optional[float] = None,
     ) -> None:
-        super().__init__("PushBroomCamera", {
-            "start": start,
-            "end": end,
-            "direction": direction,
-            "up": up,
-            "angle": angle,
-            "aspect": aspect,
-        })
+        super().__init__("PushBroomCamera", [
+            ("start", start),
+            ("end", end),
+            ("direction", direction),
+            ("up", up),
+            ("angle", angle),
+            ("aspect", aspect),
+        ])
 
 
 class MultipleCenterCamera(Camera):
@@ -532,12 +532,12 @@ class MultipleCenterCamera(Camera):
         angle: float,
         aspect: Optional[float] = None,
     ) -> None:
-        super().__init__("MultipleCenterCamera", {
-            "path": path,
-            "up": up,
-            "angle": angle,
-            "aspect": aspect,
-        })
+        super().__init__("MultipleCenterCamera", [
+            ("path", path),
+            ("up", up),
+            ("angle", angle),
+            ("aspect", aspect),
+        ])
 
 
 class ProjectiveCamera(Camera):
@@ -572,16 +572,16 @@ class ProjectiveCamera(Camera):
         p2: Optional[float] = None,
         k3: Optional[float] = None,
     ) -> None:
-        super().__init__("ProjectiveCamera", {
-            "matrix": matrix,
-            "width": width,
-            "height": height,
-            "k1": k1,
-            "k2": k2,
-            "p1": p1,
-            "p2": p2,
-            "k3": k3,
-        })
+        super().__init__("ProjectiveCamera", [
+            ("matrix", matrix),
+            ("width", width),
+            ("height", height),
+            ("k1", k1),
+            ("k2", k2),
+            ("p1", p1),
+            ("p2", p2),
+            ("k3", k3),
+        ])
 
 
 class DirectionalLight(Light):
@@ -598,10 +598,10 @@ class DirectionalLight(Light):
         direction: npt.ArrayLike,
         color: npt.ArrayLike,
     ) -> None:
-        super().__init__("DirectionalLight", {
-            "direction": direction,
-            "color": color,
-        })
+        super().__init__("DirectionalLight", [
+            ("direction", direction),
+            ("color", color),
+        ])
 
 
 class PointLight(Light):
@@ -624,12 +624,12 @@ class PointLight(Light):
         attenuation: Optional[npt.ArrayLike] = None,
         falloff: Optional[float] = None,
     ) -> None:
-        super().__init__("PointLight", {
-            "position": position,
-            "color": color,
-            "attenuation": attenuation,
-            "falloff": falloff,
-        })
+        super().__init__("PointLight", [
+            ("position", position),
+            ("color", color),
+            ("attenuation", attenuation),
+            ("falloff", falloff),
+        ])
 
 
 class PhongMaterial(Material):
@@ -670,18 +670,18 @@ class PhongMaterial(Material):
         texture: Optional[str] = None,
         bump: Optional[str] = None,
     ) -> None:
-        super().__init__("PhongMaterial", {
-            "diffuseColor": diffuse_color,
-            "specularColor": specular_color,
-            "exponent": exponent,
-            "shininess": shininess,
-            "reflectiveColor": reflective_color,
-            "transparentColor": transparent_color,
-            "indexOfRefraction": index_of_refraction,
-            "refractionIndex": refraction_index,
-            "texture": texture,
-            "bump": bump,
-        })
+        super().__init__("PhongMaterial", [
+            ("diffuseColor", diffuse_color),
+            ("specularColor", specular_color),
+            ("exponent", exponent),
+            ("shininess", shininess),
+            ("reflectiveColor", reflective_color),
+            ("transparentColor", transparent_color),
+            ("indexOfRefraction", index_of_refraction),
+            ("refractionIndex", refraction_index),
+            ("texture", texture),
+            ("bump", bump),
+        ])
 
 
 class Checkerboard(Material):
@@ -698,10 +698,10 @@ class Checkerboard(Material):
         material1: Union[int, Material],
         material2: Union[int, Material],
     ) -> None:
-        super().__init__("Checkerboard", {
-            "materialIndex": material1,
-            "materialIndex": material2,
-        })
+        super().__init__("Checkerboard", [
+            ("materialIndex", material1),
+            ("materialIndex", material2),
+        ])
 
 
 class Noise(Material):
@@ -721,11 +721,11 @@ class Noise(Material):
         material2: Union[int, Material],
         octaves: Union[int, Material],
     ) -> None:
-        super().__init__("Noise", {
-            "materialIndex": material1,
-            "materialIndex": material2,
-            "octaves": octaves,
-        })
+        super().__init__("Noise", [
+            ("materialIndex", material1),
+            ("materialIndex", material2),
+            ("octaves", octaves),
+        ])
 
 
 class Marble(Material):
@@ -751,13 +751,13 @@ class Marble(Material):
         frequency: float,
         amplitude: float,
     ) -> None:
-        super().__init__("Marble", {
-            "materialIndex": material1,
-            "materialIndex": material2,
-            "octaves": octaves,
-            "frequency": frequency,
-            "amplitude": amplitude,
-        })
+        super().__init__("Marble", [
+            ("materialIndex", material1),
+            ("materialIndex", material2),
+            ("octaves", octaves),
+            ("frequency", frequency),
+            ("amplitude", amplitude),
+        ])
 
 
 class Wood(Material):
@@ -783,13 +783,13 @@ class Wood(Material):
         frequency: float,
         amplitude: float,
     ) -> None:
-        super().__init__("Wood", {
-            "materialIndex": material1,
-            "materialIndex": material2,
-            "octaves": octaves,
-            "frequency": frequency,
-            "amplitude": amplitude,
-        })
+        super().__init__("Wood", [
+            ("materialIndex", material1),
+            ("materialIndex", material2),
+            ("octaves", octaves),
+            ("frequency", frequency),
+            ("amplitude", amplitude),
+        ])
 
 
 class Sphere(Shape):
@@ -806,10 +806,10 @@ class Sphere(Shape):
         center: npt.ArrayLike,
         radius: float,
     ) -> None:
-        super().__init__("Sphere", {
-            "center": center,
-            "radius": radius,
-        })
+        super().__init__("Sphere", [
+            ("center", center),
+            ("radius", radius),
+        ])
 
 
 class Plane(Shape):
@@ -826,10 +826,10 @@ class Plane(Shape):
         normal: npt.ArrayLike,
         offset: float,
     ) -> None:
-        super().__init__("Plane", {
-            "normal": normal,
-            "offset": offset,
-        })
+        super().__init__("Plane", [
+            ("normal", normal),
+            ("offset", offset),
+        ])
 
 
 class Triangle(Shape):
@@ -849,11 +849,11 @@ class Triangle(Shape):
         vertex1: npt.ArrayLike,
         vertex2: npt.ArrayLike,
     ) -> None:
-        super().__init__("Triangle", {
-            "vertex0": vertex0,
-            "vertex1": vertex1,
-            "vertex2": vertex2,
-        })
+        super().__init__("Triangle", [
+            ("vertex0", vertex0),
+            ("vertex1", vertex1),
+            ("vertex2", vertex2),
+        ])
 
 
 class Box(Shape):
@@ -870,10 +870,10 @@ class Box(Shape):
         min: npt.ArrayLike,
         max: npt.ArrayLike,
     ) -> None:
-        super().__init__("Box", {
-            "min": min,
-            "max": max,
-        })
+        super().__init__("Box", [
+            ("min", min),
+            ("max", max),
+        ])
 
 
 class Cylinder(Shape):
@@ -893,11 +893,11 @@ class Cylinder(Shape):
         top: npt.ArrayLike,
         radius: float,
     ) -> None:
-        super().__init__("Cylinder", {
-            "base": base,
-            "top": top,
-            "radius": radius,
-        })
+        super().__init__("Cylinder", [
+            ("base", base),
+            ("top", top),
+            ("radius", radius),
+        ])
 
 
 class Cone(Shape):
@@ -920,12 +920,12 @@ class Cone(Shape):
         base_radius: float,
         top_radius: Optional[float] = None,
     ) -> None:
-        super().__init__("Cone", {
-            "base": base,
-            "top": top,
-            "baseRadius": base_radius,
-            "topRadius": top_radius,
-        })
+        super().__init__("Cone", [
+            ("base", base),
+            ("top", top),
+            ("baseRadius", base_radius),
+            ("topRadius", top_radius),
+        ])
 
 
 class Torus(Shape):
@@ -948,12 +948,12 @@ class Torus(Shape):
         major_radius: float,
         minor_radius: float,
     ) -> None:
-        super().__init__("Torus", {
-            "center": center,
-            "axis": axis,
-            "majorRadius": major_radius,
-            "minorRadius": minor_radius,
-        })
+        super().__init__("Torus", [
+            ("center", center),
+            ("axis", axis),
+            ("majorRadius", major_radius),
+            ("minorRadius", minor_radius),
+        ])
 
 
 class Ellipsoid(Shape):
@@ -970,10 +970,10 @@ class Ellipsoid(Shape):
         center: npt.ArrayLike,
         radii: npt.ArrayLike,
     ) -> None:
-        super().__init__("Ellipsoid", {
-            "center": center,
-            "radii": radii,
-        })
+        super().__init__("Ellipsoid", [
+            ("center", center),
+            ("radii", radii),
+        ])
 
 
 class Quadric(Shape):
@@ -996,12 +996,12 @@ class Quadric(Shape):
         linear: Optional[npt.ArrayLike] = None,
         constant: float,
     ) -> None:
-        super().__init__("Quadric", {
-            "squares": squares,
-            "products": products,
-            "linear": linear,
-            "constant": constant,
-        })
+        super().__init__("Quadric", [
+            ("squares", squares),
+            ("products", products),
+            ("linear", linear),
+            ("constant", constant),
+        ])
 
 
 class Disc(Shape):
@@ -1024,12 +1024,12 @@ class Disc(Shape):
         radius: float,
         inner_radius: Optional[float] = None,
     ) -> None:
-        super().__init__("Disc", {
-            "center": center,
-            "normal": normal,
-            "radius": radius,
-            "innerRadius": inner_radius,
-        })
+        super().__init__("Disc", [
+            ("center", center),
+            ("normal", normal),
+            ("radius", radius),
+            ("innerRadius", inner_radius),
+        ])
 
 
 class Rectangle(Shape):
@@ -1049,11 +1049,11 @@ class Rectangle(Shape):
         edge0: npt.ArrayLike,
         edge1: npt.ArrayLike,
     ) -> None:
-        super().__init__("Rectangle", {
-            "corner": corner,
-            "edge0": edge0,
-            "edge1": edge1,
-        })
+        super().__init__("Rectangle", [
+            ("corner", corner),
+            ("edge0", edge0),
+            ("edge1", edge1),
+        ])
 
 
 class TriangleMesh(Shape):
@@ -1067,9 +1067,9 @@ class TriangleMesh(Shape):
         *,
         obj_file: str,
     ) -> None:
-        super().__init__("TriangleMesh", {
-            "obj_file": obj_file,
-        })
+        super().__init__("TriangleMesh", [
+            ("obj_file", obj_file),
+        ])
 
 
 class HeightField(Shape):
@@ -1092,9 +1092,9 @@ class HeightField(Shape):
         max: npt.ArrayLike,
         depth: Optional[float] = None,
     ) -> None:
-        super().__init__("HeightField", {
-            "picture": picture,
-            "min": min,
-            "max": max,
-            "depth": depth,
-        })
+        super().__init__("HeightField", [
+            ("picture", picture),
+            ("min", min),
+            ("max", max),
+            ("depth", depth),
+        ])
