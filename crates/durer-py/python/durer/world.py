@@ -353,7 +353,7 @@ class World:
         return found
 
     def _repr_png_(self) -> bytes:
-        return self.render(size="320x240" if "size" not in self._reading else None, samples=4, progress=False)._repr_png_()
+        return self.render(samples=4, progress=False)._repr_png_()
 
     def __repr__(self) -> str:
         return f"<World {self.path.name}, dialect {self.dialect}>"

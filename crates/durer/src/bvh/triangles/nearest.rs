@@ -39,8 +39,7 @@ impl TriangleBvh {
     /// ```
     pub fn nearest_point(&self, point: Vec3, within: f64) -> Option<NearestPoint> {
         let mut best = Best { squared: within * within, found: None };
-        // So asked, what is no number is refused.
-        if self.nodes.is_empty() || !point.is_finite() || !(within >= 0.0) {
+        if self.nodes.is_empty() || !point.is_finite() || within.is_nan() || within < 0.0 {
             return None;
         }
         let point = point.as_dvec3();
