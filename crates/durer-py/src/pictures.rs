@@ -39,12 +39,15 @@ pub fn compare<'py>(
     Ok((durer_cli::embed::comparison(&found).to_string(), found.flip_map.into_pyarray(py)))
 }
 
-/// The bytes of a picture's file, by the extension of a name: of light if `color`, else of other numbers.
+/// A picture with its name, the share of each pixel that is seen, and whether it is light.
+type Named<'py> = (String, PyReadonlyArray3<'py, f32>, Option<Vec<f32>>, bool);
+
+/// The bytes of a picture's file, by the extension of a name.
 #[pyfunction]
 pub fn encode<'py>(
     py: Python<'py>,
     name: &str,
-    layers: Vec<(String, PyReadonlyArray3<'py, f32>, Option<Vec<f32>>, bool)>,
+    layers: Vec<Named<'py>>,
     transfer: &str,
 ) -> PyResult<Bound<'py, PyBytes>> {
     let format = format_for(std::path::Path::new(name)).map_err(wrong)?;

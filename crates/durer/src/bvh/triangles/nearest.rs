@@ -168,8 +168,8 @@ mod tests {
         let mut random = Random(32);
         for _ in 0..500 {
             let p = (1.5 * random.point()).as_dvec3();
-            let around = p.x.hypot(p.z) - 0.7;
-            let exact = (around.hypot(p.y) - 0.3).abs();
+            let around = DVec3::new(p.x, p.z, 0.0).length() - 0.7;
+            let exact = (DVec3::new(around, p.y, 0.0).length() - 0.3).abs();
             let near = tree.nearest_point(p.as_vec3(), f64::INFINITY).unwrap();
             // The mesh lies within the torus by the sagitta of its edges: 1 - cos(pi / 100) of 0.3, and 1 - cos(pi / 200) of 1.
             assert!((near.distance - exact).abs() < 3e-4, "{p}: {} {exact}", near.distance);
