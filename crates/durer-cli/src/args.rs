@@ -34,7 +34,7 @@ pub enum Command {
     Explain(Box<ExplainArgs>),
     Lesson(Box<LessonArgs>),
     Check(Box<CheckArgs>),
-    Farm(FarmArgs),
+    Farm(crate::farm::FarmArgs),
     Merge(MergeArgs),
     Verify(Box<VerifyArgs>),
     Course(CourseArgs),
@@ -253,33 +253,6 @@ pub struct WorkArgs {
     /// Whether parts have different pixels or different samples
     #[arg(long, value_name = "WHAT", default_value = "tiles", value_parser = ["tiles", "samples"], requires = "shard")]
     pub shard_by: String,
-}
-
-/// Print what a farm needs to render a scene in shards, for an engine that is there already
-#[derive(Args)]
-#[command(after_help = "Examples:
-  durer farm scene.txt --template slurm --shards 64 --samples 256 > job.sh && sbatch job.sh
-  durer farm scene.txt --template k8s --shards 16 > job.yaml && kubectl apply -f job.yaml
-  durer farm scene.txt --template openjd > job.yaml && openjd check job.yaml
-  durer farm scene.txt --template dask > render.py && python render.py
-
-Each shard is `durer render --shard`, and may be done again on another machine; `durer merge` gives the bytes of one run. The
-options of the render stand after those of the farm; they are checked here.")]
-pub struct FarmArgs {
-    /// The scene file
-    pub scene: PathBuf,
-    /// For which engine
-    #[arg(long, value_parser = ["slurm", "k8s", "openjd", "dask"])]
-    pub template: String,
-    /// How many parts
-    #[arg(long, default_value_t = 16, value_parser = clap::value_parser!(u32).range(1..=65535))]
-    pub shards: u32,
-    /// The picture to write in the end [default: the scene's name with .exr]
-    #[arg(short, long, value_name = "PICTURE")]
-    pub output: Option<PathBuf>,
-    /// Options of the render
-    #[arg(trailing_var_arg = true, allow_hyphen_values = true, value_name = "OPTIONS")]
-    pub options: Vec<String>,
 }
 
 /// Put parts of a picture together
