@@ -1,5 +1,7 @@
 //! `cargo xtask manual`: the language's reference as pages with pictures, and a grammar for editors, from what the code states.
 
+mod python;
+
 use anyhow::{Context, Result, bail};
 use durer::format::course::reference::{Chapter, Entry, Spelling, dialect_names, entries};
 use std::fmt::Write;
@@ -55,6 +57,7 @@ fn picture_name(entry: &Entry) -> String {
 fn pages() -> Vec<(PathBuf, String)> {
     let folder = docs().join("language");
     let mut pages = vec![(folder.join("index.md"), index()), (docs().join("editors/durer.tmLanguage.json"), grammar())];
+    pages.push((docs().join("../crates/durer-py/python/durer/words.py"), python::words()));
     pages.extend(Chapter::ALL.map(|chapter| (folder.join(file_name(chapter)), page(chapter))));
     pages
 }

@@ -34,6 +34,7 @@ pub enum Command {
     Explain(Box<ExplainArgs>),
     Lesson(Box<LessonArgs>),
     Check(Box<CheckArgs>),
+    Farm(crate::farm::FarmArgs),
     Merge(MergeArgs),
     Verify(Box<VerifyArgs>),
     Course(CourseArgs),

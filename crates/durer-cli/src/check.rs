@@ -20,6 +20,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 pub use after::{after_course, after_render};
+pub use json::finding;
 
 /// A scene and what was found.
 struct Checked {

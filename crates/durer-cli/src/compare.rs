@@ -69,6 +69,11 @@ impl Compared {
     }
 }
 
+/// What was measured of a pair, as JSON.
+pub fn numbers(found: &Comparison) -> serde_json::Value {
+    text::numbers(found, &[])
+}
+
 /// Compares, prints, writes; all failures are those of the input's exit code, for 1 says that pictures differ.
 pub fn run(args: &CompareArgs) -> Result<(), Failure> {
     work(args).map_err(|failure| match failure {

@@ -116,6 +116,7 @@ fn load_options(given: &Given, program_name: Option<&'static Program>) -> Result
         strict: false,
         threads: threads(given)?,
         memory: MEMORY.bytes(),
+        ..LoadOptions::default()
     })
 }
 

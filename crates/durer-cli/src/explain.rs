@@ -24,7 +24,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 const VERSION: u32 = 1;
 
 /// What is explained.
-enum Subject {
+pub enum Subject {
     Pixel(Explanation),
     Ray(Node),
 }
@@ -189,7 +189,7 @@ pub fn shown(line: &Line, colored: bool, transfer: Transfer) -> String {
 }
 
 /// The explanation for programs, with what its numbers of things stand for.
-fn json(subject: &Subject, names: &Names) -> serde_json::Value {
+pub fn json(subject: &Subject, names: &Names) -> serde_json::Value {
     let (mut objects, mut lights, mut materials) = (BTreeSet::new(), BTreeSet::new(), BTreeSet::new());
     let mut note = |node: &Node| match &node.what {
         What::Ray { hit: Some(hit), .. } => {

@@ -29,6 +29,8 @@ pub struct LoadOptions {
     pub allow_outside: bool,
     /// Folders in which missing files are looked for.
     pub assets: Vec<PathBuf>,
+    /// Files that are in no folder, by the names that the scene gives them.
+    pub given: Vec<(String, Arc<[u8]>)>,
     /// The structure that finds objects.
     pub accel: AccelKind,
     /// Threads that build the world; `None`: as many as the machine has.
@@ -90,6 +92,9 @@ pub fn load_text(
     }
     for assets in &options.assets {
         source = source.assets(assets);
+    }
+    for (name, bytes) in &options.given {
+        source = source.give(name, bytes.clone());
     }
     // Where the scene lies does not matter for what it is.
     source.remember("", &bytes);

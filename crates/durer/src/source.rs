@@ -88,6 +88,8 @@ pub struct Source {
     allowed: Vec<PathBuf>,
     /// Folders in which a file is also looked for by its last name alone.
     assets: Vec<PathBuf>,
+    /// Files that are in no folder, by name: these are looked at first.
+    given: BTreeMap<String, Arc<[u8]>>,
     read: Mutex<Already>,
 }
 
@@ -105,7 +107,8 @@ struct Already {
 impl Clone for Source {
     fn clone(&self) -> Self {
         let (search, allowed, assets) = (self.search.clone(), self.allowed.clone(), self.assets.clone());
-        Source { search, allowed, assets, read: Mutex::new(self.already().clone()) }
+        let (given, read) = (self.given.clone(), Mutex::new(self.already().clone()));
+        Source { search, allowed, assets, given, read }
     }
 }
 
@@ -120,6 +123,7 @@ impl Source {
             search: vec![folder.clone()],
             allowed: vec![folder],
             assets: Vec::new(),
+            given: BTreeMap::new(),
             read: Mutex::new(Already { left: Source::DEFAULT_BUDGET, files: BTreeMap::new(), paths: Vec::new() }),
         }
     }
@@ -145,6 +149,12 @@ impl Source {
         let folder = folder.into();
         self.assets.push(folder.clone());
         self.look_in(folder.clone(), false).allow(folder)
+    }
+
+    /// Has a file by some name that is in no folder, or instead of the one there.
+    pub fn give(mut self, name: impl Into<String>, bytes: Arc<[u8]>) -> Self {
+        self.given.insert(name.into(), bytes);
+        self
     }
 
     /// Allows files anywhere.
@@ -186,11 +196,15 @@ impl Source {
 
     /// Whether there is a file of that name, which may be read.
     pub fn contains(&self, name: &str) -> bool {
-        self.find(name).is_ok()
+        self.given.contains_key(name) || self.find(name).is_ok()
     }
 
     /// Reads a file by the name that a scene gives it.
     pub fn read(&self, name: &str) -> Result<Arc<[u8]>, SourceError> {
+        if let Some(bytes) = self.given.get(name) {
+            self.remember(name, bytes);
+            return Ok(bytes.clone());
+        }
         match self.find(name) {
             Ok(path) => self.read_path(&path, name).inspect(|bytes| self.remember(name, bytes)),
             Err(SourceError::Missing { name, tried, .. }) => {

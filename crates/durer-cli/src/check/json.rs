@@ -23,7 +23,8 @@ pub fn document(all: &[(Checked, Vec<Change>)]) -> Value {
     json!({ "version": VERSION, "scenes": all.iter().map(scene).collect::<Vec<_>>() })
 }
 
-fn finding(finding: &Finding, files: &Files) -> Value {
+/// A finding.
+pub fn finding(finding: &Finding, files: &Files) -> Value {
     let d = &finding.diagnostic;
     json!({
         "code": if d.code.is_empty() { "syntax" } else { d.code },

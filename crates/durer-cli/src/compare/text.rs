@@ -204,7 +204,8 @@ pub fn pair(compared: &Compared) -> Value {
     value
 }
 
-fn numbers(found: &Comparison, there: &[There]) -> Value {
+/// What was measured, and what of the scene is at the worst regions.
+pub fn numbers(found: &Comparison, there: &[There]) -> Value {
     let m = &found.measures;
     json!({
         "width": found.width,

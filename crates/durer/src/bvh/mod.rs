@@ -18,7 +18,7 @@ pub use grid::Grid;
 pub use instances::{Instance, InstanceHit, Instances};
 pub use lanes::{Level, UnknownLevel};
 pub(crate) use traverse::is_sound;
-pub use triangles::{TriangleBvh, TriangleHit};
+pub use triangles::{NearestPoint, TriangleBvh, TriangleHit};
 
 /// Counts the work of rays. `()` counts nothing, at no cost.
 pub trait Tally {

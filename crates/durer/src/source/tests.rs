@@ -97,3 +97,16 @@ fn folders_of_assets_are_searched_by_path_and_by_bare_name() {
     assert_eq!(&*source.read("near.obj").unwrap(), b"near");
     assert!(matches!(source.read("../../etc/passwd.obj"), Err(SourceError::Missing { .. })));
 }
+
+#[test]
+fn given_files_come_first_and_count_as_if_they_were_there() {
+    let (root, source) = house();
+    let given = source.clone().give("near.obj", b"given".as_slice().into()).give("none.obj", b"n".as_slice().into());
+    assert!(given.contains("none.obj") && !source.contains("none.obj"));
+    assert_eq!((&*given.read("near.obj").unwrap(), &*given.read("none.obj").unwrap()), (&b"given"[..], &b"n"[..]));
+    fs::write(root.path().join("scene/near.obj"), "given").unwrap();
+    fs::write(root.path().join("scene/none.obj"), "n").unwrap();
+    source.read("near.obj").unwrap();
+    source.read("none.obj").unwrap();
+    assert_eq!(source.digest(b""), given.digest(b""));
+}

@@ -3,6 +3,7 @@
 mod build;
 mod fetch;
 mod leaf;
+mod nearest;
 mod packet;
 mod query;
 mod stream;
@@ -12,6 +13,7 @@ use super::lanes::{Available, Level, ROWS, Rows};
 use super::node::{self, Node};
 use crate::math::{Aabb, Ray, Vec2};
 use crate::shape::watertight::Sheared;
+pub use nearest::NearestPoint;
 use query::{All, Any, Nearest, Query};
 use std::marker::PhantomData;
 

@@ -80,6 +80,10 @@ pub struct Entry {
 /// A field of a block.
 #[derive(Clone, Debug)]
 pub struct FieldEntry {
+    /// Its name in code.
+    pub name: &'static str,
+    /// What its value is.
+    pub kind: Kind,
     /// Its words, by dialect.
     pub words: Vec<Spelling>,
     /// Type and range.
@@ -325,6 +329,8 @@ fn field<T: DescribedList>(kind: &T, i: usize, own: DialectSet) -> FieldEntry {
     let words = field.spellings.iter().map(|&(word, dialects)| (word, dialects & own)).collect();
     let default = kind.get(i).filter(|_| !field.required).map(|value| value_text(&value));
     FieldEntry {
+        name: field.name,
+        kind: field.kind,
         words,
         value: value_of(field.kind, field.rule),
         required: field.required,

@@ -1,0 +1,101 @@
+"""Rays a second from Python: Dürer beside embreex, trimesh and Open3D, each that is installed, in one run with the same rays.
+
+    python crates/durer-py/bench/rays.py [mesh.ply] [millions of rays]
+"""
+
+import sys
+import time
+
+import numpy as np
+
+import durer
+
+
+def ball(cuts: int) -> tuple[np.ndarray, np.ndarray]:
+    """A bumpy sphere, where no mesh is given."""
+    t, p = np.meshgrid(np.linspace(0.01, np.pi - 0.01, cuts), np.linspace(0, 2 * np.pi, 2 * cuts), indexing="ij")
+    r = 1 + 0.05 * np.sin(20 * t) * np.sin(20 * p)
+    v = np.stack([r * np.sin(t) * np.cos(p), r * np.sin(t) * np.sin(p), r * np.cos(t)], -1).reshape(-1, 3)
+    i = np.arange((cuts - 1) * 2 * cuts).reshape(cuts - 1, 2 * cuts)[:, :-1].reshape(-1)
+    n = 2 * cuts
+    return v.astype("f4"), np.concatenate([np.stack([i, i + n, i + n + 1], 1), np.stack([i, i + n + 1, i + 1], 1)]).astype("i4")
+
+
+def ways(count: int) -> dict[str, tuple[np.ndarray, np.ndarray]]:
+    side, rng = int(count**0.5), np.random.default_rng(1)
+    # Pixels in tiles of 8 x 8, as renderers ask.
+    tiles = np.arange(side // 8 * 8).reshape(-1, 8)
+    y, x = (a.reshape(-1) for a in np.meshgrid(np.arange(side // 8 * 8), np.arange(side // 8 * 8), indexing="ij"))
+    order = np.lexsort((x % 8, y % 8, x // 8, y // 8))
+    d = np.stack([x[order] / len(tiles) / 8 - 0.5, y[order] / len(tiles) / 8 - 0.5, -1.5 * np.ones(len(x))], -1)
+    d = d / np.linalg.norm(d, axis=1, keepdims=True)
+    eye = np.broadcast_to(np.float32([0, 0, 3]), d.shape)
+    o = rng.normal(size=(count, 3))
+    o *= 2 / np.linalg.norm(o, axis=1, keepdims=True)
+    return {
+        "camera": (np.ascontiguousarray(eye, "f4"), d.astype("f4")),
+        "random": (o.astype("f4"), (rng.uniform(-0.9, 0.9, o.shape) - o).astype("f4")),
+    }
+
+
+def rivals(v: np.ndarray, f: np.ndarray) -> dict:
+    found = {}
+    mesh = durer.Mesh(v, f, "best")
+    found["durer, 1 thread"] = lambda o, d: mesh.closest(o, d, threads=1, progress=False).t
+    found["durer, 2 threads"] = lambda o, d: mesh.closest(o, d, threads=2, progress=False).t
+    try:
+        from embreex import rtcore_scene
+        from embreex.mesh_construction import TriangleMesh
+
+        scene = rtcore_scene.EmbreeScene()
+        TriangleMesh(scene, v, f)
+        found["embreex, 1 thread"] = lambda o, d: scene.run(o, d, query="DISTANCE")
+    except ImportError:
+        print("embreex is not installed")
+    try:
+        import trimesh
+
+        theirs = trimesh.Trimesh(v, f, process=False)
+        found["trimesh.ray, 1 thread"] = lambda o, d: theirs.ray.intersects_first(o, d)
+    except ImportError:
+        print("trimesh is not installed")
+    try:
+        import open3d
+
+        rays = open3d.t.geometry.RaycastingScene()
+        rays.add_triangles(open3d.core.Tensor(v), open3d.core.Tensor(f.astype("u4")))
+        for threads in (1, 2):
+            found[f"Open3D, {threads} threads"] = lambda o, d, n=threads: rays.cast_rays(
+                open3d.core.Tensor(np.concatenate([o, d], 1)), nthreads=n
+            )["t_hit"].numpy()
+    except ImportError:
+        print("Open3D is not installed")
+    return found
+
+
+def main() -> None:
+    count = int(1e6 * float(sys.argv[2] if len(sys.argv) > 2 else 1))
+    if len(sys.argv) > 1:
+        import trimesh
+
+        loaded = trimesh.load(sys.argv[1], force="mesh", process=False)
+        v, f = np.array(loaded.vertices, "f4"), np.array(loaded.faces, "i4")
+        v = (v - (v.max(0) + v.min(0)) / 2) / (np.ptp(v, axis=0).max() / 2)
+    else:
+        v, f = ball(200)
+    print(f"{len(f)} triangles, {count} rays; millions of rays a second, medians of 5 rounds in turn")
+    everyone = rivals(v, f)
+    for kind, (o, d) in ways(count).items():
+        times: dict[str, list[float]] = {name: [] for name in everyone}
+        for _ in range(5):
+            for name, ask in everyone.items():
+                start = time.perf_counter()
+                ask(o, d)
+                times[name].append(time.perf_counter() - start)
+        ours = np.median(times["durer, 1 thread"])
+        for name, taken in times.items():
+            print(f"{kind:8} {name:22} {len(o) / np.median(taken) / 1e6:8.2f}   ours, 1 thread: {np.median(taken) / ours:.2f} times")
+
+
+if __name__ == "__main__":
+    main()

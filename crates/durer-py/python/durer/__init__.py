@@ -1,0 +1,24 @@
+"""Dürer for Python: ray queries that lose no ray, and pictures that are exact, explainable and the same everywhere.
+
+    import durer
+
+    mesh = durer.Mesh(vertices, faces)
+    hits = mesh.closest(origins, directions)
+
+    pictures = durer.load("scene.txt").render(size=(640, 480))
+    pictures["color"]
+"""
+
+from . import words
+from ._durer import RenderError, SceneError, __version__
+from .pictures import compare, read
+from .rays import RECORD, AllHits, Hits, Mesh, Nearest, Scene
+from .things import Difference, Group, Intersection, Merge, Model, Moved, Object, Thing, Union_ as Union, Xor
+from .words import *
+from .world import Part, Pictures, World, check, kinds, load, options
+
+__all__ = [
+    "RECORD", "AllHits", "Difference", "Group", "Hits", "Intersection", "Merge", "Mesh", "Model", "Moved", "Nearest", "Object",
+    "Part", "Pictures", "RenderError", "Scene", "SceneError", "Thing", "Union", "World", "Xor", "__version__", "check", "compare",
+    "kinds", "load", "options", "read", *words.__all__,
+]  # fmt: skip

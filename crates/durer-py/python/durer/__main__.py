@@ -1,0 +1,14 @@
+"""The command `durer`, which comes with the package: `python -m durer render scene.txt -o picture.png`."""
+
+import sys
+
+from ._durer import command
+
+
+def main() -> int:
+    """Does what the command line says; gives the exit code."""
+    return command(["durer", *sys.argv[1:]])
+
+
+if __name__ == "__main__":
+    sys.exit(main())

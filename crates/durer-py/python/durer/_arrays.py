@@ -1,0 +1,76 @@
+"""Anything that numpy can see, as arrays of the shape and type that is wanted. Copied only where it has another type or layout."""
+
+from __future__ import annotations
+
+from typing import Any, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+Floats: TypeAlias = npt.NDArray[np.float32]
+Doubles: TypeAlias = npt.NDArray[np.float64]
+Ints: TypeAlias = npt.NDArray[np.int32]
+Bools: TypeAlias = npt.NDArray[np.bool_]
+
+_WORDS = {"f": "numbers", "i": "whole numbers", "u": "whole numbers", "b": "numbers"}
+
+
+def seen(name: str, value: Any) -> npt.NDArray[Any]:
+    """The array that something is: an array, a list, or whatever speaks DLPack (torch, jax, cupy on the host)."""
+    if not isinstance(value, np.ndarray) and hasattr(value, "__dlpack__") and not hasattr(value, "__array__"):
+        value = np.from_dlpack(value)
+    try:
+        array = np.asarray(value)
+    except ValueError as error:
+        raise ValueError(f"{name} must be an array of numbers: {error}") from None
+    if array.dtype.kind not in _WORDS:
+        raise TypeError(f"{name} must be an array of numbers, but its type is {array.dtype}")
+    return array
+
+
+def vectors(name: str, value: Any, width: int = 3) -> Floats:
+    """Rows of so many float32: shape (..., width)."""
+    array = seen(name, value)
+    if array.ndim == 0 or array.shape[-1] != width:
+        raise ValueError(f"{name} must have the shape (..., {width}), but has {array.shape}")
+    with np.errstate(over="ignore"):
+        return np.asarray(array, dtype=np.float32)
+
+
+def rows(array: npt.NDArray[Any], width: int) -> npt.NDArray[Any]:
+    """The same as a list of rows, one after the other in memory."""
+    return np.ascontiguousarray(array.reshape(-1, width))
+
+
+def indices(name: str, value: Any, width: int = 3) -> npt.NDArray[np.uint32]:
+    """Rows of so many whole numbers, 0 or more: shape (n, width)."""
+    array = seen(name, value)
+    if array.ndim != 2 or array.shape[1] != width:
+        raise ValueError(f"{name} must have the shape (n, {width}), but has {array.shape}")
+    if array.dtype.kind not in "iu" and not (array.size == 0 or bool((array == np.floor(array)).all())):
+        raise TypeError(f"{name} must be whole numbers, but the type is {array.dtype}")
+    if array.size and (array.min() < 0 or array.max() > 0xFFFF_FFFF):
+        raise ValueError(f"{name} must be 0 or more, but the least is {array.min()} and the greatest {array.max()}")
+    return np.ascontiguousarray(array, dtype=np.uint32)
+
+
+def scalars(name: str, value: Any, shape: tuple[int, ...]) -> Floats:
+    """One float32, or one for each of a shape."""
+    array = seen(name, value)
+    if array.ndim == 0:
+        return np.asarray(array, dtype=np.float32).reshape(1)
+    if array.shape != shape:
+        raise ValueError(f"{name} must be one number or have the shape {shape}, but has {array.shape}")
+    return np.ascontiguousarray(array, dtype=np.float32).reshape(-1)
+
+
+def matrix(name: str, value: Any) -> Doubles:
+    """An affine map as three rows of four numbers; given so, or as 4 x 4 with 0 0 0 1 below."""
+    array = np.asarray(seen(name, value), dtype=np.float64)
+    if array.shape == (4, 4) and (array[3] == (0, 0, 0, 1)).all():
+        array = array[:3]
+    if array.shape != (3, 4):
+        raise ValueError(f"{name} must be 4 x 4 with the last row 0 0 0 1, or 3 x 4, but has the shape {array.shape}")
+    if not np.isfinite(array).all():
+        raise ValueError(f"{name} has numbers that are not finite")
+    return np.ascontiguousarray(array)

@@ -1,0 +1,29 @@
+"""Progress of long work: a line on standard error, on a terminal, after the first second."""
+
+from __future__ import annotations
+
+import sys
+import time
+from typing import Callable, Optional, TypeAlias, Union
+
+Watch: TypeAlias = Callable[[int, int], object]
+Progress: TypeAlias = Union[None, bool, Watch]
+
+
+def watch(progress: Progress) -> Optional[Watch]:
+    """What is told how much is done of how much: the given function; without one, a line on a terminal."""
+    if callable(progress):
+        return progress
+    if progress is False or progress is None and not sys.stderr.isatty():
+        return None
+    start = time.monotonic()
+
+    def show(done: int, total: int) -> None:
+        if time.monotonic() - start < 1.0:
+            return
+        share = done / max(total, 1)
+        line = f"\r{'=' * round(40 * share):40} {100 * share:3.0f} %"
+        sys.stderr.write("\r" + " " * 48 + "\r" if done >= total else line)
+        sys.stderr.flush()
+
+    return show

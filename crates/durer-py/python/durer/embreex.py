@@ -1,0 +1,52 @@
+"""The calls of `embreex`, answered by Dürer: `EmbreeScene`, `TriangleMesh`, `scene.run`."""
+
+from __future__ import annotations
+
+from typing import Any, Optional
+
+import numpy as np
+import numpy.typing as npt
+
+from .rays import Mesh, Scene, _Rays
+
+
+class EmbreeScene:
+    """Meshes that `TriangleMesh` puts into it. The tree is built when it is asked first."""
+
+    def __init__(self, robust: bool = False) -> None:
+        self.meshes: list[Mesh] = []
+        self._built: Optional[_Rays] = None
+
+    def run(
+        self,
+        vec_origins: npt.ArrayLike,
+        vec_directions: npt.ArrayLike,
+        dists: Optional[npt.ArrayLike] = None,
+        query: str = "INTERSECT",
+        output: Any = None,
+    ) -> Any:
+        """`INTERSECT` gives the triangle of each ray, -1 where there is none; `OCCLUDED` 0 where something is met, else -1;
+        `DISTANCE` how far it is, 1e37 where nothing is. `dists` are the ends of rays; with `output` a dictionary tells all."""
+        if self._built is None:
+            self._built = self.meshes[0] if len(self.meshes) == 1 else Scene(self.meshes)
+        far: npt.ArrayLike = np.inf if dists is None else dists
+        if query not in ("INTERSECT", "OCCLUDED", "DISTANCE"):
+            raise ValueError(f"Embree ray query type {query} not recognized.\nAccepted types are (INTERSECT,OCCLUDED,DISTANCE)")
+        if query == "OCCLUDED":
+            return np.where(self._built.occluded(vec_origins, vec_directions, t_max=far), 0, -1).astype(np.int32)
+        hits = self._built.closest(vec_origins, vec_directions, t_max=far)
+        distance = np.where(hits.hit, hits.t, np.float32(1e37))
+        if output:
+            u, v = hits.uv[..., 0], hits.uv[..., 1]
+            return {"u": u, "v": v, "Ng": hits.normal, "tfar": distance, "primID": hits.triangle, "geomID": hits.object}
+        return hits.triangle if query == "INTERSECT" else distance
+
+
+class TriangleMesh:
+    """Puts a mesh into a scene: vertices and triangles, or the corners of triangles, of shape (n, 3, 3)."""
+
+    def __init__(self, scene: EmbreeScene, vertices: npt.ArrayLike, indices: Optional[npt.ArrayLike] = None) -> None:
+        places = np.asarray(vertices)
+        faces = np.arange(3 * len(places)).reshape(-1, 3) if indices is None else np.asarray(indices)
+        scene.meshes.append(Mesh(places.reshape(-1, 3), faces))
+        scene._built = None

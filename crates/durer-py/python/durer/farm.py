@@ -1,0 +1,93 @@
+"""Pictures on a Dask cluster: shards as tasks, merged bit for bit to what one machine would have made."""
+
+from __future__ import annotations
+
+import functools
+import tempfile
+from pathlib import Path
+from typing import Any, Optional, Sequence, Union
+
+from . import _durer
+from ._progress import Progress, watch
+from .world import Part, PathLike, Pictures, World, load
+
+
+def _files(world: World) -> dict[str, bytes]:
+    """All files of a scene, by their names below its folder; the scene's own first."""
+    files, folder = world.files, world.path.parent.resolve()
+    for source in world._world.sources():
+        path = Path(source).resolve()
+        if path == world.path.resolve() or not path.is_file():
+            continue
+        if not path.is_relative_to(folder):
+            raise ValueError(f"{path} lies outside the scene's folder, and is not sent to a farm")
+        files.setdefault(str(path.relative_to(folder)), path.read_bytes())
+    return files
+
+
+@functools.lru_cache(maxsize=4)
+def _opened(files: tuple[tuple[str, bytes], ...], reading: tuple[str, ...]) -> _durer.World:
+    """A scene from its files: opened once in each worker."""
+    with tempfile.TemporaryDirectory() as folder:
+        for name, content in files:
+            path = Path(folder) / name
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_bytes(content)
+        return _durer.World(Path(folder) / files[0][0], None, [], list(reading))
+
+
+def shard(files: tuple[tuple[str, bytes], ...], reading: tuple[str, ...], words: Sequence[str], index: int, count: int) -> bytes:
+    """One shard, as the bytes of a part: what workers do."""
+    world = _opened(files, reading)
+    all_words = [*words, "--threads", "1", "--shard", f"{index}/{count}"]
+    part = world.part(all_words)
+    world.render(part, all_words, None)
+    return part.write()
+
+
+def render(
+    scene: Union[World, PathLike],
+    *,
+    client: Any,
+    shards: int = 64,
+    words: Optional[Sequence[str]] = None,
+    progress: Progress = None,
+    **options: Any,
+) -> Pictures:
+    """Renders a scene with the workers of a `distributed.Client`, and merges: the same bits and hash as one machine.
+
+    The scene's files are sent once to each worker. A worker that dies costs its shards only, which others make again; workers that come
+    meanwhile take part. Options are those of `World.render`, or its `words` as on the command line. A worker with another version
+    of durer is refused by the merge.
+    """
+    from distributed import as_completed
+
+    world = scene if isinstance(scene, World) else load(scene)
+    asked = [*world._reading, *(words or []), *world._all(options)[len(world._reading) :]]
+    # What is wrong with the options is better known before anything is sent.
+    begun = world._world.part([*asked, "--shard", f"1/{shards}"])
+    del begun
+    files = tuple(_files(world).items())
+    sent = client.scatter(files, broadcast=True, hash=True)
+    shown = watch(progress)
+    name = f"durer-{world.digest[:12]}"
+    futures = [
+        client.submit(shard, sent, tuple(world._reading), asked, index, shards, key=(f"{name}-{hash_of(asked)}", index))
+        for index in range(1, shards + 1)
+    ]
+    try:
+        for done, _ in enumerate(as_completed(futures), 1):  # type: ignore[no-untyped-call, unused-ignore]
+            if shown is not None:
+                shown(done, shards)
+        parts = client.gather(futures)
+    finally:
+        client.cancel([future for future in futures if not future.done()])
+    named = [(f"shard {index}", content) for index, content in enumerate(parts, 1)]
+    return Pictures(Part(_durer.merge(named)))
+
+
+def hash_of(words: Sequence[str]) -> str:
+    """A name for options, the same in all processes."""
+    import hashlib
+
+    return hashlib.sha256("\0".join(words).encode()).hexdigest()[:12]

@@ -1,0 +1,55 @@
+"""Pictures: reading files, comparing."""
+
+from __future__ import annotations
+
+import json
+import os
+from pathlib import Path
+from typing import Any, Union
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _durer
+from ._arrays import Floats, seen
+from .world import PathLike, Pictures
+
+
+def read(path: PathLike) -> tuple[Floats, bool]:
+    """The values of a picture's file, of shape (height, width, 3), as they stand in it; and whether they are values for a screen,
+    from 0 to 1, instead of linear light. Reads all formats that the command writes."""
+    values, width, height, display = _durer.decode(Path(path).read_bytes(), os.fspath(path))
+    return values.reshape(height, width, 3), display
+
+
+def compare(
+    reference: Union[npt.ArrayLike, PathLike, Pictures],
+    picture: Union[npt.ArrayLike, PathLike, Pictures],
+    *,
+    tolerance: float = 1 / 255,
+    allowed: float = 0.0,
+) -> dict[str, Any]:
+    """How a picture differs from a reference: RMSE, PSNR, SSIM, FLIP, the worst regions and what explains the difference, as
+    `durer compare --json` tells it, and `flip_map`, the error of each pixel.
+
+    Pictures are files, what `render` gives, or arrays of shape (height, width, 3): uint8 for a screen, floating point for linear
+    light. `allowed` is the share of pixels that may differ by more than the tolerance.
+    """
+    a, b = _scaled("reference", reference), _scaled("picture", picture)
+    text, flip = _durer.compare(a, b, tolerance, allowed)
+    answer: dict[str, Any] = json.loads(text)
+    answer["flip_map"] = flip.reshape(a[0].shape[:2])
+    return answer
+
+
+def _scaled(name: str, value: Any) -> tuple[Floats, bool]:
+    if isinstance(value, Pictures):
+        return np.ascontiguousarray(value["color"]), False
+    if isinstance(value, (str, os.PathLike)):
+        return read(value)
+    array = seen(name, value)
+    if array.ndim != 3 or array.shape[2] not in (3, 4):
+        raise ValueError(f"{name} must have the shape (height, width, 3), but has {array.shape}")
+    display = array.dtype == np.uint8
+    values = np.ascontiguousarray(array[..., :3], dtype=np.float32)
+    return (values / np.float32(255) if display else values), display

@@ -1,0 +1,141 @@
+"""Cameras as computer vision has them (OpenCV's convention), and what they see of scenes: depth, normals, masks, optical flow."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Union
+
+import numpy as np
+import numpy.typing as npt
+
+from ._arrays import Bools, Doubles, Floats, Ints, seen
+from .rays import Mesh, Scene
+
+
+@dataclass(frozen=True, eq=False)
+class View:
+    """What a camera sees, a number or vector for each pixel: shape (height, width) or (height, width, 3)."""
+
+    #: Depth along the camera's axis, z in its frame, in the unit of the scene: metres, say. Infinite where nothing is seen.
+    depth: Floats
+    #: Distance along the pixel's ray, in the same unit.
+    distance: Floats
+    #: The surface's normal in the camera's frame, towards the camera; 0 where nothing is seen.
+    normals: Floats
+    #: Number of the object, -1 where nothing is seen: instance masks are `instances == i`.
+    instances: Ints
+    #: Number of the triangle, -1 where nothing is seen.
+    triangles: Ints
+    #: The place in the world; not a number where nothing is seen.
+    points: Floats
+
+
+def _zeros() -> Doubles:
+    return np.zeros(5)
+
+
+@dataclass(frozen=True, eq=False)
+class Camera:
+    """A camera in OpenCV's convention: x to the right, y down, z forwards; the middle of the first pixel is (0, 0).
+
+    A point X of the world is R X + t in the camera's frame, with `extrinsics` = [R | t], 3 x 4 or 4 x 4. Its x / z and y / z are
+    distorted by k1, k2, p1, p2[, k3[, k4, k5, k6]], as `cv2.calibrateCamera` gives them, and taken to pixels by `intrinsics`, 3 x 3.
+    """
+
+    intrinsics: npt.ArrayLike
+    extrinsics: npt.ArrayLike
+    width: int
+    height: int
+    distortion: npt.ArrayLike = field(default_factory=_zeros)
+
+    def _inner(self) -> Doubles:
+        inner = np.asarray(seen("intrinsics", self.intrinsics), np.float64)
+        if inner.shape != (3, 3):
+            raise ValueError(f"intrinsics must have the shape (3, 3), but has {inner.shape}")
+        return inner
+
+    def _outer(self) -> tuple[Doubles, Doubles]:
+        outer = np.asarray(seen("extrinsics", self.extrinsics), np.float64)
+        if outer.shape not in ((3, 4), (4, 4)):
+            raise ValueError(f"extrinsics must have the shape (3, 4) or (4, 4), but has {outer.shape}")
+        turn = outer[:3, :3]
+        if not np.allclose(turn @ turn.T, np.eye(3), atol=1e-5) or np.linalg.det(turn) < 0:
+            raise ValueError("the left part of extrinsics must be a rotation")
+        return turn, outer[:3, 3]
+
+    def _coefficients(self) -> Doubles:
+        given = np.asarray(seen("distortion", self.distortion), np.float64).reshape(-1)
+        if len(given) not in (0, 4, 5, 8):
+            raise ValueError(f"distortion must be 4, 5 or 8 numbers, but is {len(given)}")
+        return np.concatenate([given, np.zeros(8 - len(given))])
+
+    def _distorted(self, x: Doubles, y: Doubles) -> tuple[Doubles, Doubles]:
+        k1, k2, p1, p2, k3, k4, k5, k6 = self._coefficients()
+        r2 = x * x + y * y
+        radial = (1 + r2 * (k1 + r2 * (k2 + r2 * k3))) / (1 + r2 * (k4 + r2 * (k5 + r2 * k6)))
+        return (
+            x * radial + 2 * p1 * x * y + p2 * (r2 + 2 * x * x),
+            y * radial + p1 * (r2 + 2 * y * y) + 2 * p2 * x * y,
+        )
+
+    def project(self, points: npt.ArrayLike) -> Doubles:
+        """The pixels, x and y, of points of the world, of shape (..., 3); not a number for points behind the camera."""
+        turn, shift = self._outer()
+        local = np.asarray(seen("points", points), np.float64) @ turn.T + shift
+        with np.errstate(divide="ignore", invalid="ignore"):
+            z = np.where(local[..., 2] > 0, local[..., 2], np.nan)
+            x, y = self._distorted(local[..., 0] / z, local[..., 1] / z)
+        inner = self._inner()
+        return np.stack([inner[0, 0] * x + inner[0, 1] * y + inner[0, 2], inner[1, 1] * y + inner[1, 2]], -1)
+
+    def rays(self) -> tuple[Doubles, Doubles]:
+        """The eye, and for each pixel the direction of its ray in the world, of shape (height, width, 3): its z in the camera's
+        frame is 1, so `t` is depth. Where the lens has no ray, the direction is not a number."""
+        inner, (turn, shift) = self._inner(), self._outer()
+        u, v = np.meshgrid(np.arange(self.width, dtype=np.float64), np.arange(self.height, dtype=np.float64))
+        yd = (v - inner[1, 2]) / inner[1, 1]
+        xd = (u - inner[0, 2] - inner[0, 1] * yd) / inner[0, 0]
+        x, y = xd.copy(), yd.copy()
+        if self._coefficients().any():
+            x, y = self._undistorted(xd, yd)
+        local = np.stack([x, y, np.ones_like(x)], -1)
+        return -turn.T @ shift, local @ turn
+
+    def _undistorted(self, xd: Doubles, yd: Doubles) -> tuple[Doubles, Doubles]:
+        """The inverse of the distortion, by Newton's method with differences for derivatives."""
+        x, y, step = xd.copy(), yd.copy(), 1e-6
+        with np.errstate(all="ignore"):
+            for _ in range(30):
+                (fx, fy), (ax, ay), (bx, by) = (
+                    self._distorted(x, y), self._distorted(x + step, y), self._distorted(x, y + step),
+                )  # fmt: skip
+                a, b, c, d = (ax - fx) / step, (bx - fx) / step, (ay - fy) / step, (by - fy) / step
+                ex, ey, det = fx - xd, fy - yd, a * d - b * c
+                x, y = x - (d * ex - b * ey) / det, y - (a * ey - c * ex) / det
+            fx, fy = self._distorted(x, y)
+            good = np.hypot(fx - xd, fy - yd) < 1e-9
+        return np.where(good, x, np.nan), np.where(good, y, np.nan)
+
+    def view(self, scene: Union[Mesh, Scene]) -> View:
+        """What it sees of a scene."""
+        eye, ways = self.rays()
+        hits = scene.closest(eye, ways)
+        length = np.linalg.norm(ways, axis=-1)
+        normals = hits.normal @ self._outer()[0].T
+        away = (hits.normal * ways).sum(-1, keepdims=True) > 0
+        facing: Floats = np.where(away, -normals, normals).astype(np.float32)
+        with np.errstate(invalid="ignore"):
+            distance: Floats = np.where(hits.hit, hits.t * length, np.inf).astype(np.float32)
+        return View(hits.t, distance, facing, hits.object, hits.triangle, hits.point)
+
+    def flow(self, scene: Union[Mesh, Scene], other: Camera) -> tuple[Doubles, Bools]:
+        """Optical flow to another pose in a scene at rest: how many pixels each moves, of shape (height, width, 2), not a number
+        where nothing is seen; and whether the other camera sees the point too, within its picture and not hidden."""
+        points = self.view(scene).points.astype(np.float64)
+        there = other.project(points)
+        u, v = np.meshgrid(np.arange(self.width), np.arange(self.height))
+        eye = other.rays()[0]
+        with np.errstate(invalid="ignore"):
+            inside = (there >= -0.5).all(-1) & (there[..., 0] < other.width - 0.5) & (there[..., 1] < other.height - 0.5)
+        hidden = scene.occluded(eye, points - eye, t_max=1 - 1e-4)
+        return there - np.stack([u, v], -1), inside & ~hidden

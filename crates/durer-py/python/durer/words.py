@@ -1,0 +1,1100 @@
+"""The words of the scene language as classes. Written by `cargo xtask manual` from what the code states; a test holds it to that."""
+
+# fmt: off
+from __future__ import annotations
+
+from typing import Literal, Optional, Union
+
+import numpy.typing as npt
+
+from .things import Camera, Light, Material, Shape, Thing
+
+__all__ = ["Background", "Box", "CaveCamera", "Checkerboard", "Cone", "CubeMapCamera", "Cylinder", "CylindricalCamera", "DirectionalLight", "Disc", "Ellipsoid", "EquirectangularCamera", "FisheyeCamera", "HeightField", "Marble", "MultipleCenterCamera", "Noise", "OmnimaxCamera", "OrthographicCamera", "ParabolicCamera", "PerspectiveCamera", "PhongMaterial", "PinholeCamera", "Plane", "PointLight", "ProjectiveCamera", "PushBroomCamera", "Quadric", "Rectangle", "Sphere", "StereoCamera", "ThinLensCamera", "Torus", "Triangle", "TriangleMesh", "Wood"]
+
+
+class Background(Thing):
+    """What a ray sees that hits nothing, and the light that is everywhere.
+
+    color: three numbers; 0.5 0.5 0.5 where it is not given. Colour of rays that hit nothing.
+
+    ambient_light: three numbers; 0 0 0 where it is not given. Light that reaches every surface.
+
+    cube_map: path. Folder with six pictures (left, right, up, down, front, back) that replace the colour.
+    """
+
+    def __init__(
+        self,
+        *,
+        color: Optional[npt.ArrayLike] = None,
+        ambient_light: Optional[npt.ArrayLike] = None,
+        cube_map: Optional[str] = None,
+    ) -> None:
+        super().__init__("Background", [
+            ("color", color),
+            ("ambientLight", ambient_light),
+            ("cubeMap", cube_map),
+        ])
+
+
+class PerspectiveCamera(Camera):
+    """A camera that sees in perspective.
+
+    center: three numbers; must be given. The eye.
+
+    direction: three numbers, not 0 0 0; must be given. Where it looks; of any length.
+
+    up: three numbers, not 0 0 0; must be given. What is up in the picture; need not be perpendicular.
+
+    angle: number, more than 0, less than 180; must be given. Field of view across the picture's larger side, in degrees.
+    """
+
+    def __init__(
+        self,
+        *,
+        center: npt.ArrayLike,
+        direction: npt.ArrayLike,
+        up: npt.ArrayLike,
+        angle: float,
+    ) -> None:
+        super().__init__("PerspectiveCamera", [
+            ("center", center),
+            ("direction", direction),
+            ("up", up),
+            ("angle", angle),
+        ])
+
+
+class OrthographicCamera(Camera):
+    """A camera that sees without perspective.
+
+    center: three numbers; must be given. The middle of the picture.
+
+    direction: three numbers, not 0 0 0; must be given. Where it looks; of any length.
+
+    up: three numbers, not 0 0 0; must be given. What is up in the picture; need not be perpendicular.
+
+    size: number, more than 0; must be given. Length of the picture's larger side.
+    """
+
+    def __init__(
+        self,
+        *,
+        center: npt.ArrayLike,
+        direction: npt.ArrayLike,
+        up: npt.ArrayLike,
+        size: float,
+    ) -> None:
+        super().__init__("OrthographicCamera", [
+            ("center", center),
+            ("direction", direction),
+            ("up", up),
+            ("size", size),
+        ])
+
+
+class PinholeCamera(Camera):
+    """A camera without a lens, whose hole has a size.
+
+    center: three numbers; must be given. The middle of the hole.
+
+    direction: three numbers, not 0 0 0; must be given. Where it looks; of any length.
+
+    up: three numbers, not 0 0 0; must be given. What is up in the picture; need not be perpendicular.
+
+    angle: number, more than 0, less than 180; must be given. Field of view across the picture's larger side, in degrees.
+
+    hole: number, 0 or more; must be given. Diameter of the hole.
+
+    film_distance: number, more than 0; 1 where it is not given. Distance from the hole to the film.
+    """
+
+    def __init__(
+        self,
+        *,
+        center: npt.ArrayLike,
+        direction: npt.ArrayLike,
+        up: npt.ArrayLike,
+        angle: float,
+        hole: float,
+        film_distance: Optional[float] = None,
+    ) -> None:
+        super().__init__("PinholeCamera", [
+            ("center", center),
+            ("direction", direction),
+            ("up", up),
+            ("angle", angle),
+            ("hole", hole),
+            ("filmDistance", film_distance),
+        ])
+
+
+class ThinLensCamera(Camera):
+    """A camera with a lens: depth of field, and a film that can be shifted.
+
+    center: three numbers; must be given. The middle of the lens.
+
+    direction: three numbers, not 0 0 0; must be given. Where it looks: along the lens's axis; of any length.
+
+    up: three numbers, not 0 0 0; must be given. What is up in the picture; need not be perpendicular.
+
+    angle: number, more than 0, less than 180; must be given. Field of view across the picture's larger side, in degrees, where nothing is shifted.
+
+    aperture: number, 0 or more; 0 where it is not given. Diameter of the opening: focal length over f-number. 0 makes everything sharp.
+
+    focus_distance: number, more than 0; 1 where it is not given. Distance of the plane that is sharp, along the axis.
+
+    blades: whole number, at most 64; 0 where it is not given. Straight blades around the opening; 0 makes it round.
+
+    blade_angle: number; 0 where it is not given. Turn of the opening about the axis, in degrees.
+
+    shift_right: number; 0 where it is not given. What is seen moves to the right by this part of half the larger side.
+
+    shift_up: number; 0 where it is not given. What is seen moves upwards by this part of half the larger side.
+    """
+
+    def __init__(
+        self,
+        *,
+        center: npt.ArrayLike,
+        direction: npt.ArrayLike,
+        up: npt.ArrayLike,
+        angle: float,
+        aperture: Optional[float] = None,
+        focus_distance: Optional[float] = None,
+        blades: Optional[Union[int, Material]] = None,
+        blade_angle: Optional[float] = None,
+        shift_right: Optional[float] = None,
+        shift_up: Optional[float] = None,
+    ) -> None:
+        super().__init__("ThinLensCamera", [
+            ("center", center),
+            ("direction", direction),
+            ("up", up),
+            ("angle", angle),
+            ("aperture", aperture),
+            ("focusDistance", focus_distance),
+            ("blades", blades),
+            ("bladeAngle", blade_angle),
+            ("shiftRight", shift_right),
+            ("shiftUp", shift_up),
+        ])
+
+
+class StereoCamera(Camera):
+    """Two perspective views for two eyes, or one of them.
+
+    center: three numbers; must be given. The middle between the eyes.
+
+    direction: three numbers, not 0 0 0; must be given. Where the viewer looks; of any length.
+
+    up: three numbers, not 0 0 0; must be given. What is up in the picture; need not be perpendicular.
+
+    angle: number, more than 0, less than 180; must be given. Field of view across the larger side of one eye's picture, in degrees.
+
+    separation: number, 0 or more; must be given. Distance between the eyes.
+
+    convergence: number, more than 0; 1 where it is not given. Distance at which both eyes see a thing at the same place of the picture; without meaning for `parallel`.
+
+    method: `offAxis`, `toeIn`, `parallel`; offAxis where it is not given. How the views converge.
+
+    eyes: `middle`, `left`, `right`, `sideBySide`, `topBottom`; sideBySide where it is not given. Which eye's picture, or how both are laid out.
+
+    aspect: number, more than 0; 1 where it is not given. Width of one eye's picture over its height.
+    """
+
+    def __init__(
+        self,
+        *,
+        center: npt.ArrayLike,
+        direction: npt.ArrayLike,
+        up: npt.ArrayLike,
+        angle: float,
+        separation: float,
+        convergence: Optional[float] = None,
+        method: Optional[Literal["offAxis", "toeIn", "parallel"]] = None,
+        eyes: Optional[Literal["middle", "left", "right", "sideBySide", "topBottom"]] = None,
+        aspect: Optional[float] = None,
+    ) -> None:
+        super().__init__("StereoCamera", [
+            ("center", center),
+            ("direction", direction),
+            ("up", up),
+            ("angle", angle),
+            ("separation", separation),
+            ("convergence", convergence),
+            ("method", method),
+            ("eyes", eyes),
+            ("aspect", aspect),
+        ])
+
+
+class FisheyeCamera(Camera):
+    """A camera that sees a cone of directions as a disc; the corners see nothing.
+
+    center: three numbers; must be given. The eye.
+
+    direction: three numbers, not 0 0 0; must be given. Where it looks; of any length.
+
+    up: three numbers, not 0 0 0; must be given. What is up in the picture; need not be perpendicular.
+
+    angle: number, more than 0, at most 360; 180 where it is not given. Field of view across the disc, in degrees: at most 180 for `orthographic`, less than 360 for `stereographic`.
+
+    projection: `equidistant`, `equisolid`, `stereographic`, `orthographic`; equidistant where it is not given. How the angle from the axis becomes a radius.
+    """
+
+    def __init__(
+        self,
+        *,
+        center: npt.ArrayLike,
+        direction: npt.ArrayLike,
+        up: npt.ArrayLike,
+        angle: Optional[float] = None,
+        projection: Optional[Literal["equidistant", "equisolid", "stereographic", "orthographic"]] = None,
+    ) -> None:
+        super().__init__("FisheyeCamera", [
+            ("center", center),
+            ("direction", direction),
+            ("up", up),
+            ("angle", angle),
+            ("projection", projection),
+        ])
+
+
+class OmnimaxCamera(Camera):
+    """A picture for a tilted dome, with projector and viewer where they are; the corners see nothing.
+
+    center: three numbers; must be given. Where the viewer is in the scene.
+
+    direction: three numbers, not 0 0 0; must be given. Where the audience looks: level to the front; of any length.
+
+    up: three numbers, not 0 0 0; must be given. What is up for the audience; need not be perpendicular.
+
+    tilt: number; 30 where it is not given. Tilt of the dome to the front, in degrees: 0 has its pole overhead, 90 straight ahead.
+
+    dome: number, more than 0, at most 360; 180 where it is not given. How much of a sphere the dome is, in degrees across: 180 is a hemisphere.
+
+    angle: number, more than 0, at most 360; 180 where it is not given. Field of view of the projector, in degrees.
+
+    projector: three numbers; 0 0 0 where it is not given. The projector: to the right of the dome's middle, above and before it, in parts of its radius.
+
+    viewer: three numbers; 0 0 0 where it is not given. The viewer, likewise.
+    """
+
+    def __init__(
+        self,
+        *,
+        center: npt.ArrayLike,
+        direction: npt.ArrayLike,
+        up: npt.ArrayLike,
+        tilt: Optional[float] = None,
+        dome: Optional[float] = None,
+        angle: Optional[float] = None,
+        projector: Optional[npt.ArrayLike] = None,
+        viewer: Optional[npt.ArrayLike] = None,
+    ) -> None:
+        super().__init__("OmnimaxCamera", [
+            ("center", center),
+            ("direction", direction),
+            ("up", up),
+            ("tilt", tilt),
+            ("dome", dome),
+            ("angle", angle),
+            ("projector", projector),
+            ("viewer", viewer),
+        ])
+
+
+class ParabolicCamera(Camera):
+    """A lens above a parabolic mirror; the corners see nothing.
+
+    center: three numbers; must be given. The mirror's focus: the single viewpoint.
+
+    direction: three numbers, not 0 0 0; must be given. The mirror's axis, from its focus to the lens: usually upwards; of any length.
+
+    up: three numbers, not 0 0 0; must be given. What is up in the picture; need not be perpendicular.
+
+    angle: number, more than 0, less than 360; 210 where it is not given. Field of view around the axis, in degrees: 180 to the horizon, more below it.
+    """
+
+    def __init__(
+        self,
+        *,
+        center: npt.ArrayLike,
+        direction: npt.ArrayLike,
+        up: npt.ArrayLike,
+        angle: Optional[float] = None,
+    ) -> None:
+        super().__init__("ParabolicCamera", [
+            ("center", center),
+            ("direction", direction),
+            ("up", up),
+            ("angle", angle),
+        ])
+
+
+class EquirectangularCamera(Camera):
+    """A camera that sees all around: longitude and latitude as a rectangle, for one eye or a pair.
+
+    center: three numbers; must be given. The eye, or the middle of the circle on which both turn.
+
+    direction: three numbers, not 0 0 0; must be given. What is in the middle of the picture; of any length.
+
+    up: three numbers, not 0 0 0; must be given. The north pole; need not be perpendicular.
+
+    angle: number, more than 0, at most 360; 360 where it is not given. Field of view from left to right, in degrees.
+
+    vertical_angle: number, more than 0, at most 180; 180 where it is not given. Field of view from bottom to top, in degrees.
+
+    eyes: `middle`, `left`, `right`, `sideBySide`, `topBottom`; middle where it is not given. Which eye's picture, or how both are laid out.
+
+    separation: number, 0 or more; 0.065 where it is not given. Distance between the eyes.
+    """
+
+    def __init__(
+        self,
+        *,
+        center: npt.ArrayLike,
+        direction: npt.ArrayLike,
+        up: npt.ArrayLike,
+        angle: Optional[float] = None,
+        vertical_angle: Optional[float] = None,
+        eyes: Optional[Literal["middle", "left", "right", "sideBySide", "topBottom"]] = None,
+        separation: Optional[float] = None,
+    ) -> None:
+        super().__init__("EquirectangularCamera", [
+            ("center", center),
+            ("direction", direction),
+            ("up", up),
+            ("angle", angle),
+            ("verticalAngle", vertical_angle),
+            ("eyes", eyes),
+            ("separation", separation),
+        ])
+
+
+class CylindricalCamera(Camera):
+    """A camera that sees a panorama on a cylinder, for one eye or a pair.
+
+    center: three numbers; must be given. The eye, or the middle of the circle on which both turn.
+
+    direction: three numbers, not 0 0 0; must be given. What is in the middle of the picture; of any length.
+
+    up: three numbers, not 0 0 0; must be given. The cylinder's axis; need not be perpendicular.
+
+    angle: number, more than 0, at most 360; 360 where it is not given. Field of view from left to right, in degrees.
+
+    vertical_angle: number, more than 0, less than 180; 90 where it is not given. Field of view from bottom to top, in degrees.
+
+    eyes: `middle`, `left`, `right`, `sideBySide`, `topBottom`; middle where it is not given. Which eye's picture, or how both are laid out.
+
+    separation: number, 0 or more; 0.065 where it is not given. Distance between the eyes.
+    """
+
+    def __init__(
+        self,
+        *,
+        center: npt.ArrayLike,
+        direction: npt.ArrayLike,
+        up: npt.ArrayLike,
+        angle: Optional[float] = None,
+        vertical_angle: Optional[float] = None,
+        eyes: Optional[Literal["middle", "left", "right", "sideBySide", "topBottom"]] = None,
+        separation: Optional[float] = None,
+    ) -> None:
+        super().__init__("CylindricalCamera", [
+            ("center", center),
+            ("direction", direction),
+            ("up", up),
+            ("angle", angle),
+            ("verticalAngle", vertical_angle),
+            ("eyes", eyes),
+            ("separation", separation),
+        ])
+
+
+class CubeMapCamera(Camera):
+    """A camera that sees all around, on the six faces of a cube.
+
+    center: three numbers; must be given. The eye.
+
+    direction: three numbers, not 0 0 0; must be given. The middle of the front face; of any length.
+
+    up: three numbers, not 0 0 0; must be given. What is up in the front face; need not be perpendicular.
+
+    layout: `cross`, `strip`; cross where it is not given. How the faces lie in the picture.
+    """
+
+    def __init__(
+        self,
+        *,
+        center: npt.ArrayLike,
+        direction: npt.ArrayLike,
+        up: npt.ArrayLike,
+        layout: Optional[Literal["cross", "strip"]] = None,
+    ) -> None:
+        super().__init__("CubeMapCamera", [
+            ("center", center),
+            ("direction", direction),
+            ("up", up),
+            ("layout", layout),
+        ])
+
+
+class CaveCamera(Camera):
+    """Several walls around a viewer, as one picture; for one eye or a pair.
+
+    center: three numbers; must be given. The viewer's eye, or the middle between both: anywhere in the room.
+
+    direction: three numbers, not 0 0 0; 0 0 -1 where it is not given. Where the viewer's head is turned, which tells his right from his left; of any length.
+
+    up: three numbers, not 0 0 0; 0 1 0 where it is not given. What is up for the viewer's head; need not be perpendicular.
+
+    walls: `{ }` of rows of 9 numbers, 1 to 64 of them; must be given. Three corners for each wall, as seen from inside: lower left, lower right, upper left. From left to right.
+
+    eyes: `middle`, `left`, `right`, `sideBySide`, `topBottom`; middle where it is not given. Which eye's picture, or how both are laid out.
+
+    separation: number, 0 or more; 0.065 where it is not given. Distance between the eyes.
+    """
+
+    def __init__(
+        self,
+        *,
+        center: npt.ArrayLike,
+        direction: Optional[npt.ArrayLike] = None,
+        up: Optional[npt.ArrayLike] = None,
+        walls: npt.ArrayLike,
+        eyes: Optional[Literal["middle", "left", "right", "sideBySide", "topBottom"]] = None,
+        separation: Optional[float] = None,
+    ) -> None:
+        super().__init__("CaveCamera", [
+            ("center", center),
+            ("direction", direction),
+            ("up", up),
+            ("walls", walls),
+            ("eyes", eyes),
+            ("separation", separation),
+        ])
+
+
+class PushBroomCamera(Camera):
+    """A camera whose columns are seen one after the other from a straight way.
+
+    start: three numbers; must be given. Where the first column is seen from, at the picture's left.
+
+    end: three numbers; must be given. Where the last column is seen from, at the picture's right.
+
+    direction: three numbers, not 0 0 0; must be given. Where all columns look; of any length.
+
+    up: three numbers, not 0 0 0; must be given. What is up in the picture; need not be perpendicular.
+
+    angle: number, more than 0, less than 180; must be given. Field of view from bottom to top, in degrees.
+
+    aspect: number, more than 0; 2 where it is not given. Width of the picture over its height.
+    """
+
+    def __init__(
+        self,
+        *,
+        start: npt.ArrayLike,
+        end: npt.ArrayLike,
+        direction: npt.ArrayLike,
+        up: npt.ArrayLike,
+        angle: float,
+        aspect: Optional[float] = None,
+    ) -> None:
+        super().__init__("PushBroomCamera", [
+            ("start", start),
+            ("end", end),
+            ("direction", direction),
+            ("up", up),
+            ("angle", angle),
+            ("aspect", aspect),
+        ])
+
+
+class MultipleCenterCamera(Camera):
+    """A camera whose columns are seen one after the other from a path.
+
+    path: `{ }` of rows of 6 numbers, 2 to 1024 of them; must be given. Places along the path, from the picture's left to its right: the eye, and the point that it looks at. Where the last is the first, the path is a smooth loop.
+
+    up: three numbers, not 0 0 0; must be given. What is up in every column; need not be perpendicular.
+
+    angle: number, more than 0, less than 180; must be given. Field of view from bottom to top, in degrees.
+
+    aspect: number, more than 0; 2 where it is not given. Width of the picture over its height.
+    """
+
+    def __init__(
+        self,
+        *,
+        path: npt.ArrayLike,
+        up: npt.ArrayLike,
+        angle: float,
+        aspect: Optional[float] = None,
+    ) -> None:
+        super().__init__("MultipleCenterCamera", [
+            ("path", path),
+            ("up", up),
+            ("angle", angle),
+            ("aspect", aspect),
+        ])
+
+
+class ProjectiveCamera(Camera):
+    """A camera recovered from a photograph: a projective matrix and the lens's distortion.
+
+    matrix: `{ }` of rows of 4 numbers, 3 of them; must be given. The 3x4 matrix, row by row: from homogeneous points of the world to pixels, y downwards; at any scale.
+
+    width: number, more than 0; must be given. Width of the photograph in pixels.
+
+    height: number, more than 0; must be given. Height of the photograph in pixels.
+
+    k1: number; 0 where it is not given. Radial distortion by the square of the radius.
+
+    k2: number; 0 where it is not given. Radial distortion by its fourth power.
+
+    p1: number; 0 where it is not given. Tangential distortion, upwards.
+
+    p2: number; 0 where it is not given. Tangential distortion, sideways.
+
+    k3: number; 0 where it is not given. Radial distortion by the sixth power.
+    """
+
+    def __init__(
+        self,
+        *,
+        matrix: npt.ArrayLike,
+        width: float,
+        height: float,
+        k1: Optional[float] = None,
+        k2: Optional[float] = None,
+        p1: Optional[float] = None,
+        p2: Optional[float] = None,
+        k3: Optional[float] = None,
+    ) -> None:
+        super().__init__("ProjectiveCamera", [
+            ("matrix", matrix),
+            ("width", width),
+            ("height", height),
+            ("k1", k1),
+            ("k2", k2),
+            ("p1", p1),
+            ("p2", p2),
+            ("k3", k3),
+        ])
+
+
+class DirectionalLight(Light):
+    """Light that comes from one direction everywhere.
+
+    direction: three numbers, not 0 0 0; must be given. Where the light goes; of any length.
+
+    color: three numbers; must be given. Its colour and strength.
+    """
+
+    def __init__(
+        self,
+        *,
+        direction: npt.ArrayLike,
+        color: npt.ArrayLike,
+    ) -> None:
+        super().__init__("DirectionalLight", [
+            ("direction", direction),
+            ("color", color),
+        ])
+
+
+class PointLight(Light):
+    """Light that comes from one point.
+
+    position: three numbers; must be given. Where it is.
+
+    color: three numbers; must be given. Its colour and strength.
+
+    attenuation: three numbers. How it fades: the divisor's constant, its factor of distance and its factor of distance squared.
+
+    falloff: number, 0 or more. How it fades: the divisor's factor of distance squared; what is added to it depends on the dialect.
+    """
+
+    def __init__(
+        self,
+        *,
+        position: npt.ArrayLike,
+        color: npt.ArrayLike,
+        attenuation: Optional[npt.ArrayLike] = None,
+        falloff: Optional[float] = None,
+    ) -> None:
+        super().__init__("PointLight", [
+            ("position", position),
+            ("color", color),
+            ("attenuation", attenuation),
+            ("falloff", falloff),
+        ])
+
+
+class PhongMaterial(Material):
+    """A material with diffuse colour and highlight, which may reflect and let through light.
+
+    diffuse_color: three numbers. Share of light scattered evenly; 1 1 1 where nothing is written.
+
+    specular_color: three numbers; 0 0 0 where it is not given. Strength of the highlight; in some dialects also of the mirror.
+
+    exponent: number, 0 or more. Sharpness of Blinn's highlight.
+
+    shininess: number, 0 or more. Sharpness of Phong's highlight.
+
+    reflective_color: three numbers; 0 0 0 where it is not given. Weight of the mirrored ray.
+
+    transparent_color: three numbers; 0 0 0 where it is not given. Weight of the transmitted ray.
+
+    index_of_refraction: number, more than 0. Index of refraction of transmitted rays that are weighed by `transparentColor` alone.
+
+    refraction_index: number, 0 or more. Index of refraction of glass that divides light by Fresnel; 0 means none.
+
+    texture: path. A picture that replaces the diffuse colour on meshes with texture coordinates.
+
+    bump: path. A bump map: read over, as in every year.
+    """
+
+    def __init__(
+        self,
+        *,
+        diffuse_color: Optional[npt.ArrayLike] = None,
+        specular_color: Optional[npt.ArrayLike] = None,
+        exponent: Optional[float] = None,
+        shininess: Optional[float] = None,
+        reflective_color: Optional[npt.ArrayLike] = None,
+        transparent_color: Optional[npt.ArrayLike] = None,
+        index_of_refraction: Optional[float] = None,
+        refraction_index: Optional[float] = None,
+        texture: Optional[str] = None,
+        bump: Optional[str] = None,
+    ) -> None:
+        super().__init__("PhongMaterial", [
+            ("diffuseColor", diffuse_color),
+            ("specularColor", specular_color),
+            ("exponent", exponent),
+            ("shininess", shininess),
+            ("reflectiveColor", reflective_color),
+            ("transparentColor", transparent_color),
+            ("indexOfRefraction", index_of_refraction),
+            ("refractionIndex", refraction_index),
+            ("texture", texture),
+            ("bump", bump),
+        ])
+
+
+class Checkerboard(Material):
+    """Unit cubes of two materials in turn.
+
+    material1: whole number; must be given. The material where the sum of the rounded-down coordinates is even.
+
+    material2: whole number; must be given. The other.
+    """
+
+    def __init__(
+        self,
+        *,
+        material1: Union[int, Material],
+        material2: Union[int, Material],
+    ) -> None:
+        super().__init__("Checkerboard", [
+            ("materialIndex", material1),
+            ("materialIndex", material2),
+        ])
+
+
+class Noise(Material):
+    """Two materials mixed by noise.
+
+    material1: whole number; must be given. The material where noise is high.
+
+    material2: whole number; must be given. The material where noise is low.
+
+    octaves: whole number, at most 32; must be given. How many frequencies are summed, each twice the one before.
+    """
+
+    def __init__(
+        self,
+        *,
+        material1: Union[int, Material],
+        material2: Union[int, Material],
+        octaves: Union[int, Material],
+    ) -> None:
+        super().__init__("Noise", [
+            ("materialIndex", material1),
+            ("materialIndex", material2),
+            ("octaves", octaves),
+        ])
+
+
+class Marble(Material):
+    """Two materials in veins across the x axis.
+
+    material1: whole number; must be given. The material where the sine is 1.
+
+    material2: whole number; must be given. The material where the sine is -1.
+
+    octaves: whole number, at most 32; must be given. How many frequencies of noise are summed, each twice the one before.
+
+    frequency: number; must be given. Veins per 2 pi along x.
+
+    amplitude: number; must be given. How much noise bends the veins.
+    """
+
+    def __init__(
+        self,
+        *,
+        material1: Union[int, Material],
+        material2: Union[int, Material],
+        octaves: Union[int, Material],
+        frequency: float,
+        amplitude: float,
+    ) -> None:
+        super().__init__("Marble", [
+            ("materialIndex", material1),
+            ("materialIndex", material2),
+            ("octaves", octaves),
+            ("frequency", frequency),
+            ("amplitude", amplitude),
+        ])
+
+
+class Wood(Material):
+    """Two materials in rings around the y axis.
+
+    material1: whole number; must be given. The material where the sine is 1.
+
+    material2: whole number; must be given. The material where the sine is -1.
+
+    octaves: whole number, at most 32; must be given. How many frequencies of noise are summed, each twice the one before.
+
+    frequency: number; must be given. Rings per 2 pi along the radius.
+
+    amplitude: number; must be given. How much noise bends the rings.
+    """
+
+    def __init__(
+        self,
+        *,
+        material1: Union[int, Material],
+        material2: Union[int, Material],
+        octaves: Union[int, Material],
+        frequency: float,
+        amplitude: float,
+    ) -> None:
+        super().__init__("Wood", [
+            ("materialIndex", material1),
+            ("materialIndex", material2),
+            ("octaves", octaves),
+            ("frequency", frequency),
+            ("amplitude", amplitude),
+        ])
+
+
+class Sphere(Shape):
+    """A ball.
+
+    center: three numbers; must be given. Its middle.
+
+    radius: number, more than 0; must be given. Its radius.
+    """
+
+    def __init__(
+        self,
+        *,
+        center: npt.ArrayLike,
+        radius: float,
+    ) -> None:
+        super().__init__("Sphere", [
+            ("center", center),
+            ("radius", radius),
+        ])
+
+
+class Plane(Shape):
+    """A plane without end: all points p with normal · p = offset. As a part of a solid, all that is behind it.
+
+    normal: three numbers, not 0 0 0; must be given. Points to its front; of any length.
+
+    offset: number; must be given. Distance from the origin along the normal, where that has length 1.
+    """
+
+    def __init__(
+        self,
+        *,
+        normal: npt.ArrayLike,
+        offset: float,
+    ) -> None:
+        super().__init__("Plane", [
+            ("normal", normal),
+            ("offset", offset),
+        ])
+
+
+class Triangle(Shape):
+    """A triangle; its front is where its corners go round counter-clockwise.
+
+    vertex0: three numbers; must be given. First corner.
+
+    vertex1: three numbers; must be given. Second corner.
+
+    vertex2: three numbers; must be given. Third corner.
+    """
+
+    def __init__(
+        self,
+        *,
+        vertex0: npt.ArrayLike,
+        vertex1: npt.ArrayLike,
+        vertex2: npt.ArrayLike,
+    ) -> None:
+        super().__init__("Triangle", [
+            ("vertex0", vertex0),
+            ("vertex1", vertex1),
+            ("vertex2", vertex2),
+        ])
+
+
+class Box(Shape):
+    """A box whose faces are parallel to the coordinate planes.
+
+    min: three numbers; must be given. Corner of least coordinates.
+
+    max: three numbers; must be given. Corner of greatest coordinates.
+    """
+
+    def __init__(
+        self,
+        *,
+        min: npt.ArrayLike,
+        max: npt.ArrayLike,
+    ) -> None:
+        super().__init__("Box", [
+            ("min", min),
+            ("max", max),
+        ])
+
+
+class Cylinder(Shape):
+    """A cylinder with caps, round about the line between two points.
+
+    base: three numbers; must be given. Middle of the cap at one end.
+
+    top: three numbers; must be given. Middle of the cap at the other end.
+
+    radius: number, more than 0; must be given. Its radius.
+    """
+
+    def __init__(
+        self,
+        *,
+        base: npt.ArrayLike,
+        top: npt.ArrayLike,
+        radius: float,
+    ) -> None:
+        super().__init__("Cylinder", [
+            ("base", base),
+            ("top", top),
+            ("radius", radius),
+        ])
+
+
+class Cone(Shape):
+    """A cone with its cap; or, with a radius at its top too, a frustum with both.
+
+    base: three numbers; must be given. Middle of the cap at the base.
+
+    top: three numbers; must be given. The tip, or the middle of the cap there.
+
+    base_radius: number, 0 or more; must be given. Radius at the base; it may be 0 where that at the top is not.
+
+    top_radius: number, 0 or more; 0 where it is not given. Radius at the top; 0, a tip, where none is given.
+    """
+
+    def __init__(
+        self,
+        *,
+        base: npt.ArrayLike,
+        top: npt.ArrayLike,
+        base_radius: float,
+        top_radius: Optional[float] = None,
+    ) -> None:
+        super().__init__("Cone", [
+            ("base", base),
+            ("top", top),
+            ("baseRadius", base_radius),
+            ("topRadius", top_radius),
+        ])
+
+
+class Torus(Shape):
+    """A ring: all points within one distance from a circle.
+
+    center: three numbers; must be given. Middle of the circle.
+
+    axis: three numbers, not 0 0 0; 0 1 0 where it is not given. Direction across the circle's plane, of any length.
+
+    major_radius: number, more than 0; must be given. Radius of the circle.
+
+    minor_radius: number, more than 0; must be given. Distance from the circle: half the ring's thickness.
+    """
+
+    def __init__(
+        self,
+        *,
+        center: npt.ArrayLike,
+        axis: Optional[npt.ArrayLike] = None,
+        major_radius: float,
+        minor_radius: float,
+    ) -> None:
+        super().__init__("Torus", [
+            ("center", center),
+            ("axis", axis),
+            ("majorRadius", major_radius),
+            ("minorRadius", minor_radius),
+        ])
+
+
+class Ellipsoid(Shape):
+    """A ball stretched along the coordinate axes.
+
+    center: three numbers; must be given. Its middle.
+
+    radii: three numbers; must be given. Half its extent along x, y and z.
+    """
+
+    def __init__(
+        self,
+        *,
+        center: npt.ArrayLike,
+        radii: npt.ArrayLike,
+    ) -> None:
+        super().__init__("Ellipsoid", [
+            ("center", center),
+            ("radii", radii),
+        ])
+
+
+class Quadric(Shape):
+    """Where A x² + B y² + C z² + D xy + E xz + F yz + G x + H y + I z + J is zero; inside, it is less.
+
+    squares: three numbers; must be given. A, B and C.
+
+    products: three numbers; 0 0 0 where it is not given. D, E and F.
+
+    linear: three numbers; 0 0 0 where it is not given. G, H and I.
+
+    constant: number; must be given. J.
+    """
+
+    def __init__(
+        self,
+        *,
+        squares: npt.ArrayLike,
+        products: Optional[npt.ArrayLike] = None,
+        linear: Optional[npt.ArrayLike] = None,
+        constant: float,
+    ) -> None:
+        super().__init__("Quadric", [
+            ("squares", squares),
+            ("products", products),
+            ("linear", linear),
+            ("constant", constant),
+        ])
+
+
+class Disc(Shape):
+    """A flat disc.
+
+    center: three numbers; must be given. Its middle.
+
+    normal: three numbers, not 0 0 0; must be given. Points to its front; of any length.
+
+    radius: number, more than 0; must be given. Its radius.
+
+    inner_radius: number, 0 or more; 0 where it is not given. Radius of the hole in its middle.
+    """
+
+    def __init__(
+        self,
+        *,
+        center: npt.ArrayLike,
+        normal: npt.ArrayLike,
+        radius: float,
+        inner_radius: Optional[float] = None,
+    ) -> None:
+        super().__init__("Disc", [
+            ("center", center),
+            ("normal", normal),
+            ("radius", radius),
+            ("innerRadius", inner_radius),
+        ])
+
+
+class Rectangle(Shape):
+    """A rectangle; with edges that are not at right angles, a parallelogram. Its front is where `edge0` turns counter-clockwise to `edge1`.
+
+    corner: three numbers; must be given. A corner.
+
+    edge0: three numbers, not 0 0 0; must be given. From there to the next corner.
+
+    edge1: three numbers, not 0 0 0; must be given. From there to the corner before.
+    """
+
+    def __init__(
+        self,
+        *,
+        corner: npt.ArrayLike,
+        edge0: npt.ArrayLike,
+        edge1: npt.ArrayLike,
+    ) -> None:
+        super().__init__("Rectangle", [
+            ("corner", corner),
+            ("edge0", edge0),
+            ("edge1", edge1),
+        ])
+
+
+class TriangleMesh(Shape):
+    """A triangle mesh in a file of its own.
+
+    obj_file: path; must be given. Path of the mesh file: `.obj` or `.ply`.
+    """
+
+    def __init__(
+        self,
+        *,
+        obj_file: str,
+    ) -> None:
+        super().__init__("TriangleMesh", [
+            ("obj_file", obj_file),
+        ])
+
+
+class HeightField(Shape):
+    """A block whose top is a landscape: a picture's greys are heights, its lower edge is towards z.
+
+    picture: path; must be given. Path of the picture. Black is lowest, and white, or 1 in pictures of floating point, is highest.
+
+    min: three numbers; must be given. Corner of the landscape's box of least coordinates: where heights are 0.
+
+    max: three numbers; must be given. Corner of the landscape's box of greatest coordinates: where heights are 1.
+
+    depth: number, more than 0; 1 where it is not given. How far the block goes on below `min`.
+    """
+
+    def __init__(
+        self,
+        *,
+        picture: str,
+        min: npt.ArrayLike,
+        max: npt.ArrayLike,
+        depth: Optional[float] = None,
+    ) -> None:
+        super().__init__("HeightField", [
+            ("picture", picture),
+            ("min", min),
+            ("max", max),
+            ("depth", depth),
+        ])

@@ -1,0 +1,387 @@
+"""Scenes that are described: from files or in code; their pictures, and why those are as they are."""
+
+from __future__ import annotations
+
+import asyncio
+import difflib
+import json
+import os
+import time
+from pathlib import Path
+from typing import Any, AsyncIterator, Callable, Iterable, Mapping, Optional, TypeAlias, Union
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _durer
+from ._arrays import Floats
+from ._durer import SceneError
+from ._progress import Progress, watch
+from .rays import Mesh
+from .things import Camera, Group, Light, Object, Thing, Writer, ply
+from .words import Background, PhongMaterial
+
+PathLike: TypeAlias = Union[str, "os.PathLike[str]"]
+
+#: Options of the command that say where things are written, which here the caller does.
+_SHELL = {
+    "output", "pixel", "sample", "hash", "quiet", "resume", "restart", "checkpoint", "checkpoint-every", "no-checkpoint",
+    "preview", "transfer", "zoom", "help", "version",
+}  # fmt: skip
+#: Those that say how a scene is read.
+_READING = {"dialect", "compat", "strict", "allow-outside", "assets", "memory", "accel", "grid"}
+#: Kinds of picture whose three channels are one number.
+_SINGLE = {"depth", "object", "material", "sample-count", "variance", "cost"}
+
+_OPTIONS = {name: (help, value, words) for name, help, value, words in _durer.options() if name not in _SHELL}
+
+
+def _words(options: Mapping[str, Any], reading: bool) -> list[str]:
+    """Options as the command's words: `size=(640, 480)` is `--size 640x480`."""
+    words: list[str] = []
+    for name, value in options.items():
+        option = name.replace("_", "-")
+        if option not in _OPTIONS or (option in _READING) != reading:
+            known = [n.replace("-", "_") for n in _OPTIONS if (n in _READING) == reading]
+            near = difflib.get_close_matches(name, known, 1)
+            hint = f"did you mean {near[0]}?" if near else f"there are {', '.join(known)}"
+            raise TypeError(f"there is no option {name}: {hint}")
+        takes = _OPTIONS[option][1]
+        if value is None or value is False and takes is None:
+            continue
+        if takes is None:
+            words.append(f"--{option}")
+        elif isinstance(value, bool):
+            words.append(f"--{option}={'on' if value else 'off'}")
+        elif option == "depth-range":
+            words += [f"--{option}", *(repr(float(x)) for x in value)]
+        elif option == "assets" and not isinstance(value, (str, os.PathLike)):
+            words += [word for folder in value for word in (f"--{option}", os.fspath(folder))]
+        else:
+            words += [f"--{option}", _word(option, value)]
+    return words
+
+
+def _word(option: str, value: Any) -> str:
+    if isinstance(value, (tuple, list, np.ndarray)):
+        parts = [str(x) for x in value]
+        if option == "crop" and len(parts) == 4:
+            return f"{parts[0]},{parts[1]},{parts[2]}x{parts[3]}"
+        return ("," if option in ("show", "compat") else "/" if option == "shard" else "x").join(parts)
+    if option == "time" and isinstance(value, (int, float)):
+        return f"{round(1000 * value)}ms"
+    return os.fspath(value) if isinstance(value, os.PathLike) else str(value)
+
+
+class Pictures(dict[str, Floats]):
+    """Pictures by name, float32, the top row first: `color` is linear light of shape (height, width, 3), `alpha` the share of each
+    pixel that the camera sees, where that is not all; depth and other single numbers have the shape (height, width)."""
+
+    def __init__(self, part: Part) -> None:
+        super().__init__()
+        #: What they are made of.
+        self.part = part
+        self._alpha: dict[str, Optional[npt.NDArray[np.float32]]] = {}
+        for name, width, height, values, alpha in part._part.pictures(False):
+            picture = values.reshape(height, width, 3)
+            self[name] = picture[..., 0].copy() if name in _SINGLE else picture
+            self._alpha[name] = alpha
+            if alpha is not None and "alpha" not in self:
+                self["alpha"] = alpha.reshape(height, width)
+
+    @property
+    def hash(self) -> str:
+        """The hash of the film, as `durer render --hash` prints it for the same job."""
+        return self.part.hash
+
+    def file(self, name: str, transfer: str = "srgb") -> bytes:
+        """The bytes of a file, by the extension of `name`: in eight bits the first picture, as a screen shows it; in `.exr` all."""
+        eight = Path(name).suffix.lower() in (".png", ".tga", ".bmp", ".ppm")
+        layers = []
+        for layer, width, height, values, alpha in self.part._part.pictures(eight):
+            color = layer == "color"
+            layers.append((layer, values.reshape(height, width, 3), None if alpha is None else alpha.tolist(), color))
+        return _durer.encode(name, layers if name.lower().endswith(".exr") else layers[:1], transfer)
+
+    def save(self, path: PathLike, transfer: str = "srgb") -> None:
+        """Writes them into a file: png, tga, bmp, ppm, pfm, hdr or exr."""
+        _write(Path(path), self.file(os.fspath(path), transfer))
+
+    def _repr_png_(self) -> bytes:
+        return self.file("picture.png")
+
+    def __repr__(self) -> str:
+        return f"<Pictures: {', '.join(f'{name} {picture.shape}' for name, picture in self.items())}>"
+
+
+def _write(path: Path, content: bytes) -> None:
+    """Writes a file whole or not at all."""
+    beside = path.with_name(f".{path.name}.{os.getpid()}")
+    try:
+        beside.write_bytes(content)
+        os.replace(beside, path)
+    finally:
+        beside.unlink(missing_ok=True)
+
+
+class Part:
+    """What is made of a picture: a shard, a checkpoint, or all of it."""
+
+    def __init__(self, part: _durer.Part) -> None:
+        self._part = part
+
+    @classmethod
+    def read(cls, source: Union[PathLike, bytes]) -> Part:
+        """From a file or its bytes. Raises RenderError for what is damaged or of another version."""
+        return cls(_durer.Part.read(source if isinstance(source, bytes) else Path(source).read_bytes()))
+
+    @classmethod
+    def merge(cls, parts: Iterable[Union[Part, PathLike, bytes]]) -> Part:
+        """Puts parts together, bit for bit what one run would have made. Refuses those of other pictures, work that is in two
+        of them, and work that is in none."""
+        named = []
+        for i, part in enumerate(parts, 1):
+            if isinstance(part, Part):
+                named.append((f"part {i}", part.bytes()))
+            elif isinstance(part, bytes):
+                named.append((f"part {i}", part))
+            else:
+                named.append((os.fspath(part), Path(part).read_bytes()))
+        return cls(_durer.merge(named))
+
+    def bytes(self) -> bytes:
+        """As `durer render --shard` saves it."""
+        return self._part.write()
+
+    def save(self, path: PathLike) -> None:
+        """Writes it into a file."""
+        _write(Path(path), self.bytes())
+
+    def pictures(self) -> Pictures:
+        """The pictures as far as they are made; pixels of which nothing is made are black."""
+        return Pictures(self)
+
+    @property
+    def hash(self) -> str:
+        """The hash of the film."""
+        return self._part.hash()
+
+    @property
+    def identity(self) -> str:
+        """The hash of all that decides the picture: scene, job and version."""
+        return self._part.identity()
+
+    @property
+    def shard(self) -> str:
+        """Which shard it is of how many: `3/16`."""
+        return self._part.shard()
+
+    @property
+    def job(self) -> dict[str, Any]:
+        """What decides the picture beside the scene."""
+        job: dict[str, Any] = json.loads(self._part.job())
+        return job
+
+    @property
+    def is_finished(self) -> bool:
+        """Whether nothing of its work is left."""
+        return self._part.is_finished()
+
+    @property
+    def statistics(self) -> dict[str, int]:
+        """What was counted: samples, rays, and samples that were left out for they were not finite."""
+        return dict(zip(("samples", "rays", "rejected"), self._part.statistics()))
+
+    def __repr__(self) -> str:
+        total, done = self._part.work()
+        return f"<Part {self.shard}: {100 * done // max(total, 1)} %>"
+
+
+class World:
+    """A scene that is described, ready for pictures. `durer.load` reads one from a file; here it is built in code.
+
+    `objects` are shapes, meshes, groups and solids; `lights` None means the same as a file without lights: ambient light alone.
+    """
+
+    def __init__(
+        self,
+        camera: Camera,
+        objects: Iterable[Union[Object, Mesh]],
+        lights: Optional[Iterable[Light]] = (),
+        background: Optional[Background] = None,
+        *,
+        folder: PathLike = ".",
+        **reading: Any,
+    ) -> None:
+        writer, plain = Writer(), PhongMaterial(diffuse_color=(0.8, 0.8, 0.8))
+        group = Group(*objects)
+        content = group.write(writer, plain)
+        parts: list[str] = [camera.text()]
+        parts += [] if background is None else [background.text()]
+        parts += [] if lights is None else ["Lights {\n    " + "\n    ".join(light.text() for light in lights) + "\n}"]
+        materials = [material.text(writer.numbers) for material in writer.order]
+        parts += ["Materials {\n    " + "\n    ".join(materials) + "\n}", content]
+        given = [(f"mesh{i}.ply", ply(mesh)) for i, mesh in enumerate(writer.meshes)]
+        self._load(Path(folder) / "scene.txt", ("\n".join(parts) + "\n").encode(), given, {"dialect": "durer", **reading})
+
+    def _load(self, path: Path, text: Optional[bytes], given: list[tuple[str, bytes]], reading: Mapping[str, Any]) -> None:
+        self.path, self._text, self._given, self._reading = path, text, given, _words(reading, True)
+        self._world = _durer.World(path, text, given, self._reading)
+
+    @classmethod
+    def load(cls, path: PathLike, **reading: Any) -> World:
+        """Reads any scene that the command reads; options are those of `durer render` about reading: dialect, compat, strict,
+        allow_outside, assets, memory. Raises SceneError with file, line and column."""
+        world = cls.__new__(cls)
+        world._load(Path(path), None, [], reading)
+        return world
+
+    @classmethod
+    def from_text(cls, text: str, folder: PathLike = ".", **reading: Any) -> World:
+        """A scene from a text in the scene language, which counts as a file in a folder."""
+        world = cls.__new__(cls)
+        world._load(Path(folder) / "scene.txt", text.encode(), [], reading)
+        return world
+
+    @property
+    def text(self) -> str:
+        """The scene as it is written."""
+        return (self._text if self._text is not None else self.path.read_bytes()).decode(errors="replace")
+
+    @property
+    def files(self) -> dict[str, bytes]:
+        """The scene's own files: its text as `scene.txt`, and the meshes that were made in code."""
+        text = self._text if self._text is not None else self.path.read_bytes()
+        return {"scene.txt" if self._text is not None else self.path.name: text, **dict(self._given)}
+
+    def save(self, folder: PathLike) -> Path:
+        """Writes its files into a folder and gives the path of the scene, of which the command makes the same picture."""
+        Path(folder).mkdir(parents=True, exist_ok=True)
+        for name, content in self.files.items():
+            _write(Path(folder) / name, content)
+        return Path(folder) / next(iter(self.files))
+
+    @property
+    def digest(self) -> str:
+        """The hash of the scene and all its files."""
+        return self._world.digest()
+
+    @property
+    def dialect(self) -> str:
+        """The dialect of the scene language that it is written in."""
+        return self._world.dialect()
+
+    @property
+    def warnings(self) -> list[str]:
+        """What was found while it was read."""
+        return self._world.warnings()
+
+    @property
+    def description(self) -> dict[str, Any]:
+        """The scene as data."""
+        scene: dict[str, Any] = json.loads(self._world.description())
+        return scene
+
+    def part(self, **options: Any) -> Part:
+        """A part of a picture of which nothing is made yet; with `shard=(3, 16)` a shard."""
+        return Part(self._world.part(self._all(options)))
+
+    def _all(self, options: Mapping[str, Any]) -> list[str]:
+        return self._reading + _words(options, False)
+
+    def render(
+        self,
+        *,
+        part: Optional[Part] = None,
+        progress: Progress = None,
+        callback: Optional[Callable[[Pictures], object]] = None,
+        every: float = 1.0,
+        **options: Any,
+    ) -> Pictures:
+        """Renders pictures. Options are those of `durer render` with the same meaning, defaults and bits: size, samples, show,
+        bounces, crop, noise, time, threads, shard and all others that `durer.options()` lists.
+
+        `part` goes on with work that was begun; `callback` gets the pictures as far as they are, every so many seconds. Ctrl-C
+        and what a callback raises end it; what is made so far is in the part.
+        """
+        begun = part or self.part(**options)
+        shown, last = watch(progress), time.monotonic()
+
+        def look(done: int, total: int) -> None:
+            nonlocal last
+            if shown is not None:
+                shown(done, total)
+            if callback is not None and time.monotonic() - last >= every:
+                callback(begun.pictures())
+                last = time.monotonic()
+
+        wanted = None if shown is None and callback is None else look
+        self._world.render(begun._part, self._all(options), wanted)
+        if shown is not None:
+            shown(1, 1)
+        return begun.pictures()
+
+    async def progressive(self, *, every: float = 1.0, **options: Any) -> AsyncIterator[Pictures]:
+        """Renders in a thread, and gives the pictures as far as they are every so many seconds, at last the finished ones."""
+        part, stop = self.part(**options), False
+
+        def look(done: int, total: int) -> None:
+            if stop:
+                raise InterruptedError
+
+        work = asyncio.ensure_future(
+            asyncio.to_thread(self._world.render, part._part, self._all(options), look)
+        )
+        try:
+            while not (await asyncio.wait([work], timeout=every))[0]:
+                yield part.pictures()
+            work.result()
+            yield part.pictures()
+        finally:
+            stop = True
+            if not work.done():
+                await asyncio.wait([work])
+
+    def explain(self, x: int, y: int, **options: Any) -> dict[str, Any]:
+        """Why a pixel has its colour: a tree of terms that sums to it, as docs/explain.md tells. Give the options of the render."""
+        answer: dict[str, Any] = json.loads(self._world.explain(self._all(options), (x, y)))
+        return answer
+
+    def check(self, **options: Any) -> list[dict[str, Any]]:
+        """What is odd about it, in the order of cause, as `durer check --json` lists it."""
+        found: list[dict[str, Any]] = json.loads(self._world.check(self._all(options)))
+        return found
+
+    def _repr_png_(self) -> bytes:
+        return self.render(samples=4, progress=False)._repr_png_()
+
+    def __repr__(self) -> str:
+        return f"<World {self.path.name}, dialect {self.dialect}>"
+
+
+def load(path: PathLike, **reading: Any) -> World:
+    """Reads any scene that the command reads: see `World.load`."""
+    return World.load(path, **reading)
+
+
+def check(path: PathLike, **options: Any) -> list[dict[str, Any]]:
+    """What is wrong or odd with a scene file, also one that cannot be rendered: as `durer check --json` lists it."""
+    reading = {name: options.pop(name) for name in list(options) if name.replace("_", "-") in _READING}
+    try:
+        return World.load(path, **reading).check(**options)
+    except SceneError as error:
+        found: list[dict[str, Any]] = json.loads(error.args[1])
+        return found
+
+
+def options() -> dict[str, str]:
+    """The options of `World.render`, with what they do."""
+    return {name.replace("-", "_"): help for name, (help, _, _) in _OPTIONS.items() if name not in _READING}
+
+
+def kinds() -> dict[str, str]:
+    """The kinds of pictures that `show` takes beside color, with what they show."""
+    return dict(_durer.Part.kinds())
+
+
+__all__ = ["Part", "Pictures", "SceneError", "Thing", "World", "check", "kinds", "load", "options"]

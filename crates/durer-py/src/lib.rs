@@ -1,0 +1,27 @@
+//! The native half of `import durer`: arrays that are checked already, and texts of JSON. What users see is in `python/durer`.
+
+mod pictures;
+mod rays;
+mod tree;
+mod words;
+mod work;
+mod world;
+
+use pyo3::prelude::*;
+
+/// The native half of `durer`. Its functions take what `durer` has checked, and change without notice.
+#[pymodule]
+fn _durer(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add("__version__", env!("CARGO_PKG_VERSION"))?;
+    module.add("SceneError", module.py().get_type::<world::SceneError>())?;
+    module.add("RenderError", module.py().get_type::<world::RenderError>())?;
+    module.add_class::<tree::Tree>()?;
+    module.add_class::<world::World>()?;
+    module.add_class::<world::Part>()?;
+    module.add_function(wrap_pyfunction!(world::merge, module)?)?;
+    module.add_function(wrap_pyfunction!(pictures::compare, module)?)?;
+    module.add_function(wrap_pyfunction!(pictures::encode, module)?)?;
+    module.add_function(wrap_pyfunction!(pictures::decode, module)?)?;
+    module.add_function(wrap_pyfunction!(words::options, module)?)?;
+    module.add_function(wrap_pyfunction!(words::command, module)?)
+}

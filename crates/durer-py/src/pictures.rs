@@ -1,0 +1,76 @@
+//! Arrays as pictures.
+
+use durer::image::compare::{self as comparing, Options, Picture, Scale};
+use durer::image::{Image, Layer, Transfer, WriteOptions, format_for};
+use durer::math::Vec3;
+use numpy::{IntoPyArray, PyArray1, PyReadonlyArray3};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::PyBytes;
+
+fn wrong(error: impl ToString) -> PyErr {
+    PyValueError::new_err(error.to_string())
+}
+
+/// An array of rows, columns and three channels as a picture.
+fn image(array: &PyReadonlyArray3<f32>) -> PyResult<Image> {
+    let (shape, values) = (array.as_array().shape().to_vec(), array.as_slice()?);
+    let pixels = values.chunks_exact(3).map(Vec3::from_slice).collect();
+    Image::from_pixels(shape[1] as u32, shape[0] as u32, pixels).map_err(wrong)
+}
+
+/// A picture, and whether it is values for a screen instead of linear light.
+type Scaled<'py> = (PyReadonlyArray3<'py, f32>, bool);
+
+/// How a picture differs from a reference, as JSON, and the FLIP error of each pixel.
+#[pyfunction]
+pub fn compare<'py>(
+    py: Python<'py>,
+    reference: Scaled<'py>,
+    picture: Scaled<'py>,
+    tolerance: f32,
+    allowed: f64,
+) -> PyResult<(String, Bound<'py, PyArray1<f32>>)> {
+    let scale = |display: bool| if display { Scale::Display } else { Scale::Linear };
+    let reference = Picture { image: image(&reference.0)?, scale: scale(reference.1) };
+    let picture = Picture { image: image(&picture.0)?, scale: scale(picture.1) };
+    let options = Options { tolerance, allowed, ..Options::default() };
+    let found = crate::work::install(py, None, || comparing::compare(&reference, &picture, &options)).map_err(wrong)?;
+    Ok((durer_cli::embed::comparison(&found).to_string(), found.flip_map.into_pyarray(py)))
+}
+
+/// A picture with its name, the share of each pixel that is seen, and whether it is light.
+type Named<'py> = (String, PyReadonlyArray3<'py, f32>, Option<Vec<f32>>, bool);
+
+/// The bytes of a picture's file, by the extension of a name.
+#[pyfunction]
+pub fn encode<'py>(
+    py: Python<'py>,
+    name: &str,
+    layers: Vec<Named<'py>>,
+    transfer: &str,
+) -> PyResult<Bound<'py, PyBytes>> {
+    let format = format_for(std::path::Path::new(name)).map_err(wrong)?;
+    let known = || format!("transfer must be one of {}", Transfer::ALL.map(Transfer::name).join(", "));
+    let transfer = Transfer::from_name(transfer).ok_or_else(|| PyValueError::new_err(known()))?;
+    let mut all = Vec::with_capacity(layers.len());
+    for (name, pixels, coverage, color) in layers {
+        let layer = if color { Layer::color(name, image(&pixels)?) } else { Layer::data(name, image(&pixels)?) };
+        all.push(match coverage {
+            Some(coverage) => layer.with_coverage(coverage),
+            None => layer,
+        });
+    }
+    let mut bytes = Vec::new();
+    format.write(&all, &WriteOptions { transfer, attributes: &[] }, &mut bytes).map_err(wrong)?;
+    Ok(PyBytes::new(py, &bytes))
+}
+
+/// The values of a picture's file, its width and height, and whether they are for a screen.
+#[pyfunction]
+pub fn decode<'py>(py: Python<'py>, bytes: &[u8], name: &str) -> PyResult<(Bound<'py, PyArray1<f32>>, u32, u32, bool)> {
+    let picture = Picture::read(bytes, name).map_err(|error| wrong(format!("cannot read `{name}`: {error}")))?;
+    let Image { width, height, pixels } = picture.image;
+    let values: Vec<f32> = pixels.iter().flat_map(|pixel| pixel.to_array()).collect();
+    Ok((values.into_pyarray(py), width, height, picture.scale == Scale::Display))
+}

@@ -1,0 +1,65 @@
+//! Rays as they lie in arrays.
+
+use durer::math::{Ray, Vec3};
+use numpy::{PyReadonlyArray1, PyReadonlyArray2};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+/// So many rays are one job: their copies stay in a near cache.
+pub const JOB: usize = 2048;
+
+/// Arrays of rays. Each has a row for each ray, or one for all.
+pub struct RayArrays<'py> {
+    pub origins: PyReadonlyArray2<'py, f32>,
+    pub directions: PyReadonlyArray2<'py, f32>,
+    pub t_min: PyReadonlyArray1<'py, f32>,
+    pub t_max: PyReadonlyArray1<'py, f32>,
+}
+
+/// The same as slices.
+#[derive(Clone, Copy)]
+pub struct Rays<'a> {
+    pub count: usize,
+    origins: &'a [f32],
+    directions: &'a [f32],
+    t_min: &'a [f32],
+    t_max: &'a [f32],
+}
+
+/// Points in a row: three numbers each.
+pub fn points<'a>(array: &'a PyReadonlyArray2<'_, f32>) -> PyResult<&'a [f32]> {
+    let wrong = || PyValueError::new_err("points are rows of three float32, one after the other");
+    array.as_slice().ok().filter(|slice| slice.len().is_multiple_of(3)).ok_or_else(wrong)
+}
+
+/// The i-th of some points, or the only one.
+pub fn point(points: &[f32], i: usize) -> Vec3 {
+    let at = if points.len() == 3 { 0 } else { 3 * i };
+    Vec3::new(points[at], points[at + 1], points[at + 2])
+}
+
+impl RayArrays<'_> {
+    /// So many rays, if the arrays are long enough.
+    pub fn rays(&self, count: usize) -> PyResult<Rays<'_>> {
+        let wrong = || PyValueError::new_err("rays are float32, one after the other, one for all or one for each");
+        let (origins, directions) = (points(&self.origins)?, points(&self.directions)?);
+        let (t_min, t_max) = (self.t_min.as_slice()?, self.t_max.as_slice()?);
+        let fits = |length: usize, each: usize| length == each || length == each * count;
+        let all = fits(origins.len(), 3) && fits(directions.len(), 3) && fits(t_min.len(), 1) && fits(t_max.len(), 1);
+        all.then_some(Rays { count, origins, directions, t_min, t_max }).ok_or_else(wrong)
+    }
+}
+
+impl Rays<'_> {
+    /// The i-th.
+    pub fn get(&self, i: usize) -> Ray {
+        let one = |list: &[f32]| if list.len() == 1 { list[0] } else { list[i] };
+        let (origin, dir) = (point(self.origins, i), point(self.directions, i));
+        Ray { origin, dir, t_min: one(self.t_min), t_max: one(self.t_max) }
+    }
+
+    /// Those of a job, by the number of the first.
+    pub fn job(&self, first: usize) -> Vec<Ray> {
+        (first..self.count.min(first + JOB)).map(|i| self.get(i)).collect()
+    }
+}

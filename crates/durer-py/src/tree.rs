@@ -1,0 +1,319 @@
+//! Trees of triangles, and questions to them.
+
+use crate::rays::{JOB, RayArrays, point, points};
+use crate::work::{each, install};
+use durer::bvh::{Instance, Instances, Preset, TriangleBvh};
+use durer::math::{Affine, Ray, Vec3};
+use glam::{DAffine3, DMat3, DVec3};
+use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1, PyReadonlyArray2};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use std::sync::Arc;
+
+/// Triangles, or trees of triangles in places.
+#[pyclass(frozen, module = "durer._durer")]
+pub struct Tree(Target);
+
+enum Target {
+    Mesh(Arc<TriangleBvh>),
+    Placed(Instances),
+}
+
+/// t, triangle, object, u and v.
+type HitArrays<'py> =
+    (Bound<'py, PyArray1<f32>>, Bound<'py, PyArray1<i32>>, Bound<'py, PyArray1<i32>>, Bound<'py, PyArray1<f32>>);
+
+/// One hit: t, triangle, object, u and v.
+#[derive(Clone, Copy)]
+struct Row(f32, i32, i32, [f32; 2]);
+
+const MISS: Row = Row(f32::INFINITY, -1, -1, [0.0; 2]);
+
+impl Target {
+    fn closest(&self, rays: &[Ray], mut put: impl FnMut(usize, Row)) {
+        match self {
+            Target::Mesh(tree) => {
+                let mut hits = vec![None; rays.len()];
+                tree.closest_batch(rays, &mut hits);
+                for (i, hit) in hits.into_iter().enumerate() {
+                    put(i, hit.map_or(MISS, |hit| Row(hit.t, hit.triangle as i32, 0, hit.uv.to_array())));
+                }
+            }
+            Target::Placed(scene) => {
+                for (i, ray) in rays.iter().enumerate() {
+                    let row = |hit: durer::bvh::InstanceHit| {
+                        Row(hit.t, hit.triangle as i32, hit.instance as i32, hit.uv.to_array())
+                    };
+                    put(i, scene.closest(ray).map_or(MISS, row));
+                }
+            }
+        }
+    }
+
+    fn occluded(&self, rays: &[Ray], answers: &mut [bool]) {
+        match self {
+            Target::Mesh(tree) => tree.occluded_batch(rays, answers),
+            Target::Placed(scene) => answers.iter_mut().zip(rays).for_each(|(to, ray)| *to = scene.occluded(ray)),
+        }
+    }
+
+    fn all_hits(&self, ray: &Ray) -> Vec<Row> {
+        match self {
+            Target::Mesh(tree) => {
+                let row = |hit: durer::bvh::TriangleHit| Row(hit.t, hit.triangle as i32, 0, hit.uv.to_array());
+                tree.all_hits(ray).into_iter().map(row).collect()
+            }
+            Target::Placed(scene) => {
+                let row = |hit: durer::bvh::InstanceHit| {
+                    Row(hit.t, hit.triangle as i32, hit.instance as i32, hit.uv.to_array())
+                };
+                scene.all_hits(ray).into_iter().map(row).collect()
+            }
+        }
+    }
+
+    fn contains(&self, point: Vec3) -> bool {
+        match self {
+            Target::Mesh(tree) => tree.count(&outward(tree, point)) % 2 == 1,
+            Target::Placed(scene) => scene.placed().iter().any(|Instance { tree, to_world }| {
+                let ray = to_world.inverse_ray(Ray::new(point, Vec3::Z));
+                tree.count(&ray) % 2 == 1
+            }),
+        }
+    }
+}
+
+/// The ray along an axis that leaves the bounds soonest; one that hits nothing where the point is no point within them.
+fn outward(tree: &TriangleBvh, point: Vec3) -> Ray {
+    let bounds = tree.bounds();
+    let inside = point.cmpge(bounds.min).all() && point.cmple(bounds.max).all();
+    let mut best = (f32::INFINITY, Vec3::ZERO);
+    for axis in 0..3 {
+        let (low, high) = (point[axis] - bounds.min[axis], bounds.max[axis] - point[axis]);
+        for (way, sign) in [(low, -1.0), (high, 1.0)] {
+            if way < best.0 {
+                best = (way, sign * Vec3::AXES[axis]);
+            }
+        }
+    }
+    Ray::new(point, if inside { best.1 } else { Vec3::ZERO })
+}
+
+#[pymethods]
+impl Tree {
+    /// A tree of triangles.
+    #[staticmethod]
+    fn mesh(
+        py: Python,
+        vertices: PyReadonlyArray2<f32>,
+        faces: PyReadonlyArray2<u32>,
+        preset: &str,
+        threads: Option<usize>,
+    ) -> PyResult<Self> {
+        let names = || Preset::NAMES.map(|row| row.0).join("', '");
+        let wrong = || PyValueError::new_err(format!("preset must be '{}', but is '{preset}'", names()));
+        let preset = Preset::NAMES.iter().find(|row| row.0 == preset).ok_or_else(wrong)?.1;
+        let vertices: Vec<Vec3> = points(&vertices)?.chunks_exact(3).map(Vec3::from_slice).collect();
+        let faces: Vec<[u32; 3]> = faces.as_slice()?.as_chunks().0.to_vec();
+        let out = |face: &[u32; 3]| face.iter().any(|&i| i as usize >= vertices.len());
+        if let Some(i) = faces.iter().position(out) {
+            let message = format!("faces[{i}] is {:?}, but there are only {} vertices", faces[i], vertices.len());
+            return Err(PyValueError::new_err(message));
+        }
+        let tree = install(py, threads, || TriangleBvh::build(&vertices, &faces, preset));
+        Ok(Tree(Target::Mesh(Arc::new(tree))))
+    }
+
+    /// Trees in places: for each a matrix of three rows and four columns.
+    #[staticmethod]
+    fn placed(trees: Vec<PyRef<Tree>>, matrices: PyReadonlyArray2<f64>) -> PyResult<Self> {
+        let rows = matrices.as_slice()?.as_chunks::<12>().0;
+        let mut placed = Vec::with_capacity(trees.len());
+        for (i, (tree, m)) in trees.iter().zip(rows).enumerate() {
+            let Target::Mesh(tree) = &tree.0 else {
+                return Err(PyValueError::new_err(format!("object {i} is no mesh")));
+            };
+            let column = |j: usize| DVec3::new(m[j], m[j + 4], m[j + 8]);
+            let matrix3 = DMat3::from_cols(column(0), column(1), column(2));
+            let singular = || PyValueError::new_err(format!("the matrix of object {i} cannot be inverted"));
+            let to_world = Affine::new(DAffine3 { matrix3, translation: column(3) }).ok_or_else(singular)?;
+            placed.push(Instance { tree: tree.clone(), to_world });
+        }
+        Ok(Tree(Target::Placed(Instances::new(placed))))
+    }
+
+    /// The first hit of each ray.
+    #[allow(clippy::too_many_arguments)]
+    fn closest<'py>(
+        &self,
+        py: Python<'py>,
+        count: usize,
+        origins: PyReadonlyArray2<'py, f32>,
+        directions: PyReadonlyArray2<'py, f32>,
+        t_min: PyReadonlyArray1<'py, f32>,
+        t_max: PyReadonlyArray1<'py, f32>,
+        threads: Option<usize>,
+        watch: Option<Py<PyAny>>,
+    ) -> PyResult<HitArrays<'py>> {
+        let arrays = RayArrays { origins, directions, t_min, t_max };
+        let rays = arrays.rays(count)?;
+        let (mut t, mut uv) = (vec![0.0; count], vec![0.0; 2 * count]);
+        let (mut triangle, mut object) = (vec![0; count], vec![0; count]);
+        let ids = triangle.chunks_mut(JOB).zip(object.chunks_mut(JOB));
+        let jobs = t.chunks_mut(JOB).zip(uv.chunks_mut(2 * JOB)).zip(ids).enumerate().collect();
+        each(py, threads, watch, jobs, |(job, ((t, uv), (triangle, object)))| {
+            self.0.closest(&rays.job(JOB * job), |i, row| {
+                (t[i], triangle[i], object[i]) = (row.0, row.1, row.2);
+                uv[2 * i..2 * i + 2].copy_from_slice(&row.3);
+            });
+        })?;
+        Ok((t.into_pyarray(py), triangle.into_pyarray(py), object.into_pyarray(py), uv.into_pyarray(py)))
+    }
+
+    /// Whether each ray meets anything.
+    #[allow(clippy::too_many_arguments)]
+    fn occluded<'py>(
+        &self,
+        py: Python<'py>,
+        count: usize,
+        origins: PyReadonlyArray2<'py, f32>,
+        directions: PyReadonlyArray2<'py, f32>,
+        t_min: PyReadonlyArray1<'py, f32>,
+        t_max: PyReadonlyArray1<'py, f32>,
+        threads: Option<usize>,
+        watch: Option<Py<PyAny>>,
+    ) -> PyResult<Bound<'py, PyArray1<bool>>> {
+        let arrays = RayArrays { origins, directions, t_min, t_max };
+        let rays = arrays.rays(count)?;
+        let mut answers = vec![false; count];
+        let jobs = answers.chunks_mut(JOB).enumerate().collect();
+        each(py, threads, watch, jobs, |(job, to)| self.0.occluded(&rays.job(JOB * job), to))?;
+        Ok(answers.into_pyarray(py))
+    }
+
+    /// How many triangles each ray crosses.
+    #[allow(clippy::too_many_arguments)]
+    fn count<'py>(
+        &self,
+        py: Python<'py>,
+        count: usize,
+        origins: PyReadonlyArray2<'py, f32>,
+        directions: PyReadonlyArray2<'py, f32>,
+        t_min: PyReadonlyArray1<'py, f32>,
+        t_max: PyReadonlyArray1<'py, f32>,
+        threads: Option<usize>,
+        watch: Option<Py<PyAny>>,
+    ) -> PyResult<Bound<'py, PyArray1<i32>>> {
+        let arrays = RayArrays { origins, directions, t_min, t_max };
+        let rays = arrays.rays(count)?;
+        let mut counts = vec![0; count];
+        let jobs = counts.chunks_mut(JOB).enumerate().collect();
+        each(py, threads, watch, jobs, |(job, to): (usize, &mut [i32])| {
+            let rays = rays.job(JOB * job);
+            to.iter_mut().zip(&rays).for_each(|(to, ray)| *to = self.0.all_hits(ray).len() as i32);
+        })?;
+        Ok(counts.into_pyarray(py))
+    }
+
+    /// All hits of all rays, ray by ray; with them how many each ray has.
+    #[allow(clippy::too_many_arguments)]
+    fn all_hits<'py>(
+        &self,
+        py: Python<'py>,
+        count: usize,
+        origins: PyReadonlyArray2<'py, f32>,
+        directions: PyReadonlyArray2<'py, f32>,
+        t_min: PyReadonlyArray1<'py, f32>,
+        t_max: PyReadonlyArray1<'py, f32>,
+        threads: Option<usize>,
+        watch: Option<Py<PyAny>>,
+    ) -> PyResult<(Bound<'py, PyArray1<i64>>, HitArrays<'py>)> {
+        let arrays = RayArrays { origins, directions, t_min, t_max };
+        let rays = arrays.rays(count)?;
+        let mut counts = vec![0; count];
+        let mut rows: Vec<Vec<Row>> = vec![Vec::new(); count.div_ceil(JOB)];
+        let jobs = counts.chunks_mut(JOB).zip(&mut rows).enumerate().collect();
+        each(py, threads, watch, jobs, |(job, (counts, rows)): (usize, (&mut [i64], &mut Vec<Row>))| {
+            for (count, ray) in counts.iter_mut().zip(&rays.job(JOB * job)) {
+                let hits = self.0.all_hits(ray);
+                *count = hits.len() as i64;
+                rows.extend(hits);
+            }
+        })?;
+        let rows: Vec<Row> = rows.concat();
+        let t: Vec<f32> = rows.iter().map(|row| row.0).collect();
+        let triangle: Vec<i32> = rows.iter().map(|row| row.1).collect();
+        let object: Vec<i32> = rows.iter().map(|row| row.2).collect();
+        let uv: Vec<f32> = rows.iter().flat_map(|row| row.3).collect();
+        let hits = (t.into_pyarray(py), triangle.into_pyarray(py), object.into_pyarray(py), uv.into_pyarray(py));
+        Ok((counts.into_pyarray(py), hits))
+    }
+
+    /// Whether points lie inside, by parity.
+    fn contains<'py>(
+        &self,
+        py: Python<'py>,
+        places: PyReadonlyArray2<'py, f32>,
+        threads: Option<usize>,
+        watch: Option<Py<PyAny>>,
+    ) -> PyResult<Bound<'py, PyArray1<bool>>> {
+        let places = points(&places)?;
+        let mut answers = vec![false; places.len() / 3];
+        let jobs = answers.chunks_mut(JOB).zip(places.chunks(3 * JOB)).collect();
+        each(py, threads, watch, jobs, |(to, places): (&mut [bool], &[f32])| {
+            to.iter_mut().enumerate().for_each(|(i, to)| *to = self.0.contains(point(places, i)));
+        })?;
+        Ok(answers.into_pyarray(py))
+    }
+
+    /// The nearest point of a mesh for each point: distance, triangle, the point, u and v.
+    #[allow(clippy::type_complexity)]
+    fn nearest<'py>(
+        &self,
+        py: Python<'py>,
+        places: PyReadonlyArray2<'py, f32>,
+        within: f64,
+        threads: Option<usize>,
+        watch: Option<Py<PyAny>>,
+    ) -> PyResult<(
+        Bound<'py, PyArray1<f64>>,
+        Bound<'py, PyArray1<i32>>,
+        Bound<'py, PyArray1<f64>>,
+        Bound<'py, PyArray1<f64>>,
+    )> {
+        let Target::Mesh(tree) = &self.0 else { return Err(PyValueError::new_err("only meshes have nearest points")) };
+        let places = points(&places)?;
+        let count = places.len() / 3;
+        let (mut distance, mut triangle) = (vec![f64::INFINITY; count], vec![-1; count]);
+        let (mut near, mut uv) = (vec![f64::NAN; 3 * count], vec![0.0; 2 * count]);
+        let numbers = distance.chunks_mut(JOB).zip(triangle.chunks_mut(JOB));
+        let jobs = numbers.zip(near.chunks_mut(3 * JOB)).zip(uv.chunks_mut(2 * JOB)).zip(places.chunks(3 * JOB));
+        each(py, threads, watch, jobs.collect(), |((((distance, triangle), near), uv), places)| {
+            for i in 0..distance.len() {
+                if let Some(found) = tree.nearest_point(point(places, i), within) {
+                    (distance[i], triangle[i]) = (found.distance, found.triangle as i32);
+                    near[3 * i..3 * i + 3].copy_from_slice(&found.point.to_array());
+                    uv[2 * i..2 * i + 2].copy_from_slice(&found.uv);
+                }
+            }
+        })?;
+        Ok((distance.into_pyarray(py), triangle.into_pyarray(py), near.into_pyarray(py), uv.into_pyarray(py)))
+    }
+
+    /// The box around everything: least and greatest corner.
+    fn bounds(&self) -> ([f32; 3], [f32; 3]) {
+        let bounds = match &self.0 {
+            Target::Mesh(tree) => tree.bounds(),
+            Target::Placed(scene) => scene.bounds(),
+        };
+        (bounds.min.to_array(), bounds.max.to_array())
+    }
+
+    /// Bytes in memory.
+    fn bytes(&self) -> usize {
+        match &self.0 {
+            Target::Mesh(tree) => tree.bytes(),
+            Target::Placed(scene) => scene.bytes(),
+        }
+    }
+}

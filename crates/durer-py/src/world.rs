@@ -1,0 +1,253 @@
+//! Scenes that are described, and what is made of their pictures.
+
+use crate::work::{LOOK, look};
+use durer::diag::{Diagnostics, Files, Severity};
+use durer::film::aov::Aov;
+use durer::image::Layer;
+use durer::render::{self, Control, Stop};
+use durer::{Loaded, load, load_text};
+use durer_cli::embed::{self, Asked};
+use numpy::{IntoPyArray, PyArray1};
+use pyo3::create_exception;
+use pyo3::exceptions::{PyException, PyKeyboardInterrupt, PyOSError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::PyBytes;
+use std::path::PathBuf;
+use std::sync::atomic::Ordering::Relaxed;
+use std::sync::{Arc, mpsc};
+
+create_exception!(durer, SceneError, PyValueError, "A scene of which no picture can be made; says where and why.");
+create_exception!(durer, RenderError, PyException, "A picture that could not be made, or a part that cannot be used.");
+
+fn failed(error: impl ToString) -> PyErr {
+    RenderError::new_err(error.to_string())
+}
+
+/// A scene, read and compiled.
+#[pyclass(frozen, module = "durer._durer")]
+pub struct World {
+    loaded: Loaded,
+    world: durer::world::World,
+    files: Files,
+    read: Diagnostics,
+}
+
+/// Findings in lines: `file:line:column: error: message`.
+fn lines(files: &Files, read: &Diagnostics, wanted: impl Fn(Severity) -> bool) -> Vec<String> {
+    let line = |d: &durer::diag::Diagnostic| {
+        let place = d.span.and_then(|span| {
+            let (line, column) = files.position(span)?;
+            Some(format!("{}:{line}:{column}: ", files.name(span.file)?))
+        });
+        let severity = ["note", "warning", "error"][d.severity as usize];
+        let help = d.help.as_ref().map(|help| format!(" ({help})"));
+        format!("{}{severity}: {}{}", place.unwrap_or_default(), d.message, help.unwrap_or_default())
+    };
+    read.iter().filter(|d| wanted(d.severity)).map(line).collect()
+}
+
+fn asked(words: &[String]) -> PyResult<Asked> {
+    Asked::new(words).map_err(PyValueError::new_err)
+}
+
+#[pymethods]
+impl World {
+    /// Reads the scene in a file, or a text that counts as one, with files that are in no folder.
+    #[new]
+    fn new(
+        py: Python,
+        path: PathBuf,
+        text: Option<Vec<u8>>,
+        given: Vec<(String, Vec<u8>)>,
+        words: Vec<String>,
+    ) -> PyResult<Self> {
+        let mut options = asked(&words)?.load_options().map_err(PyValueError::new_err)?;
+        options.given = given.into_iter().map(|(name, bytes)| (name, bytes.into())).collect();
+        crate::work::install(py, options.threads, || {
+            let (mut files, mut read) = (Files::default(), Diagnostics::default());
+            let loaded = match text {
+                Some(text) => load_text(&path, text.into(), &options, &mut files, &mut read),
+                None => load(&path, &options, &mut files, &mut read).map_err(|e| PyOSError::new_err(e.to_string()))?,
+            };
+            // In the threads that are there already.
+            options.threads = None;
+            let world = loaded.as_ref().and_then(|loaded| loaded.compile(&options, &mut files, &mut read));
+            match (loaded, world) {
+                (Some(loaded), Some(world)) => Ok(World { loaded, world, files, read }),
+                _ => {
+                    let message = lines(&files, &read, |severity| severity == Severity::Error).join("\n");
+                    Err(SceneError::new_err((message, embed::reported(&files, &read).to_string())))
+                }
+            }
+        })
+    }
+
+    /// Warnings and notes.
+    fn warnings(&self) -> Vec<String> {
+        lines(&self.files, &self.read, |severity| severity != Severity::Error)
+    }
+
+    /// The name of its dialect.
+    fn dialect(&self) -> &'static str {
+        self.loaded.dialect.name()
+    }
+
+    /// The hash of the scene and all its files.
+    fn digest(&self) -> String {
+        self.world.digest.to_string()
+    }
+
+    /// Where its files are.
+    fn sources(&self) -> Vec<PathBuf> {
+        self.loaded.files()
+    }
+
+    /// The description as JSON.
+    fn description(&self) -> PyResult<String> {
+        serde_json::to_string(&self.loaded.scene).map_err(failed)
+    }
+
+    /// A part of a picture of which nothing is made yet.
+    fn part(&self, words: Vec<String>) -> PyResult<Part> {
+        let asked = asked(&words)?;
+        let job = asked.job(&self.loaded).map_err(PyValueError::new_err)?;
+        let part =
+            render::Part::new(&self.world, &job, asked.shard()).map_err(|e| PyValueError::new_err(e.to_string()))?;
+        Ok(Part(Arc::new(part)))
+    }
+
+    /// Goes on with a part; says whether it is finished.
+    fn render(&self, py: Python, part: &Part, words: Vec<String>, watch: Option<Py<PyAny>>) -> PyResult<bool> {
+        let (control, part): (Control, _) = (asked(&words)?.control(), part.0.clone());
+        let (stop, interrupted) = py.detach(|| {
+            std::thread::scope(|scope| {
+                let (end, wait) = mpsc::channel::<()>();
+                let control = &control;
+                let work = scope.spawn(move || {
+                    let stop = part.render(&self.world, control, &mut |_, _| {});
+                    drop(end);
+                    stop
+                });
+                let mut result = Ok(());
+                while wait.recv_timeout(LOOK) == Err(mpsc::RecvTimeoutError::Timeout) {
+                    if result.is_ok() {
+                        result = look(watch.as_ref(), control.done.load(Relaxed), control.all.load(Relaxed));
+                        control.cancel.store(result.is_err(), Relaxed);
+                    }
+                }
+                (work.join(), result)
+            })
+        });
+        interrupted?;
+        match stop.map_err(|_| failed("the render failed; this is an error in durer"))?.map_err(failed)? {
+            Stop::Finished => Ok(true),
+            Stop::OutOfTime => Ok(false),
+            Stop::Cancelled => Err(PyKeyboardInterrupt::new_err("")),
+            Stop::Panicked(panicked) => Err(failed(render::RenderError::from(panicked))),
+        }
+    }
+
+    /// Why a pixel has its colour, as JSON.
+    fn explain(&self, py: Python, words: Vec<String>, pixel: (u32, u32)) -> PyResult<String> {
+        let job = asked(&words)?.job(&self.loaded).map_err(PyValueError::new_err)?;
+        let found = py.detach(|| embed::explanation(&self.loaded, &self.world, &self.files, &job, pixel));
+        found.map(|value| value.to_string()).map_err(PyValueError::new_err)
+    }
+
+    /// What is odd about it, as JSON.
+    fn check(&self, py: Python, words: Vec<String>) -> PyResult<String> {
+        let job = asked(&words)?.job(&self.loaded).map_err(PyValueError::new_err)?;
+        Ok(py.detach(|| embed::findings(&self.loaded, &self.world, &self.files, &self.read, &job).to_string()))
+    }
+}
+
+/// What is made of a picture.
+#[pyclass(frozen, module = "durer._durer")]
+pub struct Part(Arc<render::Part>);
+
+/// A picture: name, width, height, values, and the share of each pixel that is seen, if not all of each.
+type Picture<'py> = (String, u32, u32, Bound<'py, PyArray1<f32>>, Option<Bound<'py, PyArray1<f32>>>);
+
+#[pymethods]
+impl Part {
+    /// From the bytes of a file.
+    #[staticmethod]
+    fn read(py: Python, bytes: &[u8]) -> PyResult<Part> {
+        let part = py.detach(|| render::Part::read(bytes)).map_err(failed)?;
+        Ok(Part(Arc::new(part)))
+    }
+
+    /// The bytes of a file.
+    fn write<'py>(&self, py: Python<'py>) -> Bound<'py, PyBytes> {
+        let bytes = py.detach(|| self.0.write());
+        PyBytes::new(py, &bytes)
+    }
+
+    /// The hash of the film.
+    fn hash(&self, py: Python) -> String {
+        py.detach(|| self.0.hash().to_string())
+    }
+
+    /// The hash of all that decides the picture.
+    fn identity(&self) -> String {
+        self.0.identity().to_string()
+    }
+
+    /// Which part of the work it is.
+    fn shard(&self) -> String {
+        self.0.shard().to_string()
+    }
+
+    /// The job as JSON.
+    fn job(&self) -> PyResult<String> {
+        serde_json::to_string(self.0.job()).map_err(failed)
+    }
+
+    /// All work, and how much of it is done.
+    fn work(&self) -> (u64, u64) {
+        self.0.work()
+    }
+
+    /// Whether nothing of its work is left.
+    fn is_finished(&self) -> bool {
+        self.0.is_finished()
+    }
+
+    /// Samples, rays, and samples that were left out.
+    fn statistics(&self) -> (u64, u64, u64) {
+        let statistics = self.0.statistics();
+        (statistics.samples, statistics.rays, statistics.rejected)
+    }
+
+    /// The pictures: values as files of floating point have them, or, if `shown`, as a screen shows them.
+    fn pictures<'py>(&self, py: Python<'py>, shown: bool) -> PyResult<Vec<Picture<'py>>> {
+        let rendered = py.detach(|| self.0.pictures()).map_err(failed)?;
+        let layers = if shown { rendered.pictures } else { rendered.layers };
+        let picture = |layer: Layer| {
+            let values: Vec<f32> = layer.image.pixels.iter().flat_map(|pixel| pixel.to_array()).collect();
+            let coverage = layer.coverage.map(|coverage| coverage.into_pyarray(py));
+            (layer.name, layer.image.width, layer.image.height, values.into_pyarray(py), coverage)
+        };
+        Ok(layers.into_iter().map(picture).collect())
+    }
+
+    /// The names of all kinds of pictures beside colour, with what they show.
+    #[staticmethod]
+    fn kinds() -> Vec<(&'static str, &'static str)> {
+        durer::film::aov::AOVS.iter().map(|aov: &Aov| (aov.name, aov.doc)).collect()
+    }
+}
+
+/// Puts parts together, each with its name.
+#[pyfunction]
+pub fn merge(py: Python, parts: Vec<(String, Vec<u8>)>) -> PyResult<Part> {
+    let whole = py.detach(|| {
+        let read = |(name, bytes): (String, Vec<u8>)| match render::Part::read(&bytes) {
+            Ok(part) => Ok((name, part)),
+            Err(error) => Err(failed(format!("`{name}` cannot be merged: {error}"))),
+        };
+        let parts = parts.into_iter().map(read).collect::<PyResult<Vec<_>>>()?;
+        render::merge(&parts).map_err(failed)
+    })?;
+    Ok(Part(Arc::new(whole)))
+}

@@ -1,0 +1,73 @@
+"""The ray classes of other packages' users, beside closed forms and, where they are installed, those packages."""
+
+import numpy as np
+import pytest
+from test_rays import CUBE, CUBE_FACES, directions, sphere
+
+import durer
+import durer.embreex
+import durer.open3d
+import durer.trimesh
+
+
+def test_open3d_calls_answer():
+    scene = durer.open3d.RaycastingScene()
+    assert scene.add_triangles(CUBE, CUBE_FACES) == 0
+    assert scene.add_triangles(CUBE + np.float32([3, 0, 0]), CUBE_FACES) == 1
+    rays = np.array([[-1, 0.5, 0.25, 1, 0, 0], [2, 0.5, 0.25, 1, 0, 0], [0, 9, 0, 0, 1, 0]], np.float32)
+    hit = scene.cast_rays(rays)
+    assert hit["t_hit"].tolist() == [1, 1, np.inf]
+    assert hit["geometry_ids"].tolist() == [0, 1, scene.INVALID_ID]
+    assert scene.count_intersections(rays).tolist() == [4, 2, 0]
+    assert scene.test_occlusions(rays, tfar=0.5).tolist() == [False] * 3
+    listed = scene.list_intersections(rays)
+    assert listed["ray_splits"].tolist() == [0, 4, 6, 6] and listed["t_hit"].tolist() == [1, 2, 4, 5, 1, 2]
+    points = np.array([[0.5, 0.5, 0.5], [2, 0.5, 0.5], [3.5, 0.5, 0.75]], np.float32)
+    assert scene.compute_signed_distance(points).tolist() == [-0.5, 1, -0.25]
+    assert scene.compute_occupancy(points).tolist() == [1, 0, 1]
+    near = scene.compute_closest_points(points)
+    assert near["geometry_ids"].tolist()[2] == 1 and np.allclose(near["points"][2], [3.5, 0.5, 1])
+    inner, outer = [[10, 0, 4], [0, 10, 3], [0, 0, 1]], np.eye(4)
+    made = scene.create_rays_pinhole(inner, outer, 8, 6)
+    assert made.shape == (6, 8, 6) and np.allclose(made[0, 0, 3:], [-0.35, -0.25, 1])
+
+
+def test_embreex_calls_answer():
+    scene = durer.embreex.EmbreeScene()
+    durer.embreex.TriangleMesh(scene, CUBE, CUBE_FACES)
+    o, d = np.array([[-1, 0.5, 0.25], [5, 5, 5]], "f4"), np.array([[1, 0, 0]] * 2, "f4")
+    assert (scene.run(o, d) >= 0).tolist() == [True, False]
+    assert scene.run(o, d, query="OCCLUDED").tolist() == [0, -1]
+    assert scene.run(o, d, query="DISTANCE").tolist() == [1, np.float32(1e37)]
+    assert set(scene.run(o, d, output=True)) == {"u", "v", "Ng", "tfar", "primID", "geomID"}
+    with pytest.raises(ValueError, match="query type"):
+        scene.run(o, d, query="X")
+
+
+def test_trimesh_takes_our_rays():
+    trimesh = pytest.importorskip("trimesh")
+    mesh = trimesh.Trimesh(*sphere())
+    theirs = trimesh.ray.ray_triangle.RayMeshIntersector(mesh)
+    ours = durer.trimesh.RayMeshIntersector(mesh)
+    o, d = 3 * directions(400, 21), directions(400, 22)
+    d[:200] = -o[:200] + 0.3 * directions(200, 23)
+    assert (ours.intersects_any(o, d) == theirs.intersects_any(o, d)).all()
+    assert (ours.intersects_first(o, d) == theirs.intersects_first(o, d)).all()
+    for many in (True, False):
+        a, b = ours.intersects_location(o, d, many), theirs.intersects_location(o, d, multiple_hits=many)
+        order = [np.lexsort((x[2], x[1])) for x in (a, b)]
+        assert (a[1][order[0]] == b[1][order[1]]).all() and (a[2][order[0]] == b[2][order[1]]).all()
+        assert np.allclose(a[0][order[0]], b[0][order[1]], atol=1e-5)
+    mesh.ray = ours
+    p = np.random.default_rng(3).uniform(-1.2, 1.2, (2000, 3))
+    assert (mesh.contains(p) == ours.contains_points(p)).all()
+    r = np.linalg.norm(p, axis=1)
+    clear = (r < 0.98) | (r > 1)
+    assert (mesh.contains(p) == (r < 1))[clear].all()
+    mesh.apply_translation([100, 0, 0])
+    assert ours.contains_points(p + [100, 0, 0])[clear].tolist() == (r < 1)[clear].tolist()
+    import copy
+    import pickle
+
+    assert copy.deepcopy(ours).intersects_any(o + [100, 0, 0], d).any()
+    assert pickle.loads(pickle.dumps(ours)).intersects_any(o + [100, 0, 0], d).any()

@@ -1,0 +1,174 @@
+"""Scenes, pictures, parts; beside the command, which comes with the package."""
+
+import asyncio
+import json
+import re
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+import durer
+
+SIZE = "48x36"
+
+
+def command(*words, cwd=None):
+    done = subprocess.run([sys.executable, "-m", "durer", *map(str, words)], capture_output=True, text=True, cwd=cwd)
+    return done
+
+
+@pytest.fixture(scope="module")
+def whitted(scenes):
+    return durer.load(scenes / "whitted.txt")
+
+
+def test_a_picture_has_the_commands_bits(whitted, scenes, tmp_path):
+    pictures = whitted.render(size=(48, 36), samples=3, seed=7, show=["color", "depth", "normals"])
+    words = ["--size", SIZE, "--samples", 3, "--seed", 7, "--show", "color,depth,normals", "--hash"]
+    done = command("render", scenes / "whitted.txt", "-o", tmp_path / "a.exr", *words)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.split()[-1] == pictures.hash
+    assert pictures["color"].shape == (36, 48, 3) and pictures["depth"].shape == (36, 48)
+    assert all(picture.dtype == np.float32 for picture in pictures.values())
+    values, display = durer.read(tmp_path / "a.exr")
+    assert not display and values.shape == (36, 48, 3)
+    pictures.save(tmp_path / "b.exr")
+    assert (durer.read(tmp_path / "b.exr")[0] == values).all()
+    assert durer.compare(tmp_path / "a.exr", tmp_path / "b.exr")["verdict"] == "identical"
+
+
+def test_eight_bits_are_the_commands_too(whitted, scenes, tmp_path):
+    whitted.render(size=SIZE).save(tmp_path / "a.png")
+    command("render", scenes / "whitted.txt", "-o", tmp_path / "b.png", "--size", SIZE)
+    assert (durer.read(tmp_path / "a.png")[0] == durer.read(tmp_path / "b.png")[0]).all()
+    assert whitted.render(size=SIZE)._repr_png_().startswith(b"\x89PNG")
+
+
+def test_explanations_sum_to_the_pixel(whitted):
+    options = {"size": (48, 36), "samples": 2}
+    told = whitted.explain(20, 20, **options)
+    assert np.allclose(told["pixel"]["color"], whitted.render(**options)["color"][20, 20], atol=0)
+    with pytest.raises(ValueError, match="crop|pixel|outside"):
+        whitted.explain(48, 0, **options)
+
+
+def test_shards_merge_to_one_run(whitted, tmp_path):
+    options = {"size": SIZE, "samples": 4, "show": "color,object"}
+    whole = whitted.render(**options)
+    parts = [whitted.render(shard=(i, 3), **options).part for i in (1, 2, 3)]
+    parts[1].save(tmp_path / "2.part")
+    merged = durer.Part.merge([parts[2], tmp_path / "2.part", parts[0].bytes()])
+    assert merged.hash == whole.hash and (merged.pictures()["color"] == whole["color"]).all()
+    with pytest.raises(durer.RenderError, match="2/3"):
+        durer.Part.merge([parts[0], parts[2]])
+    with pytest.raises(durer.RenderError, match="overlap"):
+        durer.Part.merge([parts[0], parts[0], parts[1]])
+    with pytest.raises(durer.RenderError, match="no part"):
+        durer.Part.read(b"something else")
+    damaged = bytearray(parts[0].bytes())
+    damaged[-40] ^= 1
+    with pytest.raises(durer.RenderError, match="damaged"):
+        durer.Part.read(bytes(damaged))
+    # The version stands behind the magic and the format's number; the checksum is made anew by nobody else.
+    assert parts[0].shard == "1/3" and parts[0].is_finished and parts[0].job["width"] == 48
+
+
+def test_a_part_goes_on_after_an_error(whitted):
+    options = {"size": (640, 480), "samples": 64}
+    part, seen = whitted.part(**options), []
+
+    def stop(pictures):
+        seen.append(pictures["color"].shape)
+        raise RuntimeError("enough")
+
+    with pytest.raises(RuntimeError, match="enough"):
+        whitted.render(part=part, callback=stop, every=0.0, **options)
+    assert seen == [(480, 640, 3)] and not part.is_finished
+
+
+def test_progressive_pictures_end_with_the_finished_one(whitted):
+    async def all_of():
+        return [p.hash async for p in whitted.progressive(every=0.05, size=(64, 48), samples=8)]
+
+    hashes = asyncio.run(all_of())
+    assert hashes[-1] == whitted.render(size=(64, 48), samples=8).hash
+
+
+def test_scenes_in_code_are_what_their_text_says(tmp_path):
+    red = durer.PhongMaterial(diffuse_color=(0.8, 0.2, 0.2))
+    blue = durer.PhongMaterial(diffuse_color=(0.1, 0.2, 0.9), specular_color=(1, 1, 1), exponent=30)
+    tetra = durer.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
+    hollow = durer.Difference(durer.Box(min=(-1, -1, -1), max=(1, 1, 1)), durer.Sphere(center=(0, 0, 1), radius=0.8).of(red))
+    world = durer.World(
+        durer.PerspectiveCamera(center=(0, 1, 8), direction=(0, -0.1, -1), up=(0, 1, 0), angle=40),
+        [
+            hollow.of(blue).at((0, 0.5, 0)),
+            durer.Group(tetra, durer.Moved(tetra, np.diag([0.5, 2, 0.5, 1])).of(red)).at((1.5, 0, 1)),
+            durer.Plane(normal=(0, 1, 0), offset=-1).of(durer.Checkerboard(material1=red, material2=blue)),
+        ],
+        [durer.DirectionalLight(direction=(-1, -2, -1), color=(0.9, 0.9, 0.8))],
+        durer.Background(color=(0.2, 0.1, 0.5), ambient_light=(0.2, 0.2, 0.2)),
+    )
+    pictures = world.render(size=SIZE, samples=2, show="color,object,material")
+    assert set(np.unique(pictures["material"])) >= {0.0, 1.0, 2.0}
+    scene = world.save(tmp_path / "scene")
+    words = ["--size", SIZE, "--samples", 2, "--show", "color,object,material", "--hash", "--dialect", "durer"]
+    done = command("render", scene, "-o", tmp_path / "a.exr", *words)
+    assert done.stdout.split()[-1] == pictures.hash, done.stderr
+    assert durer.World.from_text(world.text, tmp_path / "scene", dialect="durer").digest == world.digest
+    assert world.check(size=SIZE) == [] or all("code" in finding for finding in world.check(size=SIZE))
+
+
+def test_errors_of_scenes_tell_file_line_and_column(tmp_path):
+    (tmp_path / "bad.txt").write_text("PerspectiveCamera {\n  center 0 0 0\n  direction 0 0 oops\n}\n")
+    with pytest.raises(durer.SceneError, match=r"bad\.txt:3:\d+: error"):
+        durer.load(tmp_path / "bad.txt")
+    found = durer.check(tmp_path / "bad.txt")
+    assert found[0]["severity"] == "error" and found[0]["place"]["line"] == 3
+    with pytest.raises(OSError, match="nothing.txt"):
+        durer.load(tmp_path / "nothing.txt")
+    with pytest.raises(durer.SceneError, match="radius"):
+        durer.World(durer.OrthographicCamera(center=(0, 0, 5), direction=(0, 0, -1), up=(0, 1, 0), size=3),
+                    [durer.Sphere(center=(0, 0, 0), radius=-1)])  # fmt: skip
+
+
+def test_check_finds_what_the_command_finds(tmp_path, scenes):
+    text = (scenes / "whitted.txt").read_text()
+    dark = re.sub(r"Lights \{.*?\n\}", "Lights { }", text, flags=re.S)
+    (tmp_path / "dark.txt").write_text(dark)
+    done = command("check", tmp_path / "dark.txt", "--json")
+    wanted = [finding["code"] for finding in json.loads(done.stdout)["scenes"][0]["findings"]]
+    assert [finding["code"] for finding in durer.check(tmp_path / "dark.txt")] == wanted
+
+
+def test_wrong_options_are_told(whitted):
+    with pytest.raises(TypeError, match="did you mean samples"):
+        whitted.render(sample=3)
+    with pytest.raises(ValueError, match="samples"):
+        whitted.render(samples=0)
+    with pytest.raises(ValueError, match="colour"):
+        whitted.render(show="colour")
+    with pytest.raises(TypeError, match="did you mean dialect"):
+        durer.load("x.txt", dialekt="f04")
+    assert "samples" in durer.options() and "output" not in durer.options() and "depth" in durer.kinds()
+
+
+def test_pictures_are_compared():
+    a = np.zeros((32, 32, 3), np.float32)
+    b = a.copy()
+    b[4:8, 4:8] = 1
+    found = durer.compare(a, b)
+    assert found["verdict"] == "different" and found["flip_map"].shape == (32, 32)
+    assert found["flip_map"][6, 6] > 0.5 > found["flip_map"][30, 30]
+    assert durer.compare((255 * a).astype("u1"), (255 * a).astype("u1"))["verdict"] == "identical"
+    with pytest.raises(ValueError, match="different sizes"):
+        durer.compare(a, b[:16])
+    with pytest.raises(ValueError, match=r"\(height, width, 3\)"):
+        durer.compare(a, b[..., 0])
+
+
+def test_the_command_speaks_for_itself():
+    assert command("--version").stdout.startswith("durer ")
+    assert command("render", "nothing.txt").returncode == 2

@@ -1,0 +1,99 @@
+//! The words of the language as classes of `durer` for Python.
+
+use super::GENERATED;
+use durer::describe::Kind;
+use durer::dialect::{Dialect, DialectSet};
+use durer::format::course::reference::{Chapter, Entry, FieldEntry, entries};
+use std::fmt::Write;
+
+/// The class that a chapter's words are of.
+fn base(chapter: Chapter) -> Option<&'static str> {
+    match chapter {
+        Chapter::Structure => Some("Thing"),
+        Chapter::Cameras => Some("Camera"),
+        Chapter::Lights => Some("Light"),
+        Chapter::Materials => Some("Material"),
+        Chapter::Shapes => Some("Shape"),
+        Chapter::Solids | Chapter::Transforms => None,
+    }
+}
+
+/// The module `durer.words`.
+pub fn words() -> String {
+    let mut classes = String::new();
+    let mut names = Vec::new();
+    for entry in entries() {
+        let Some(base) = base(entry.chapter) else { continue };
+        // A grid has balls in it, and noise that is no solid stands within another material.
+        let nested = entry.name() == "Grid" || entry.doc.contains("instead of the diffuse");
+        if entry.fields.is_empty() || nested {
+            continue;
+        }
+        if let Some(word) = spelled(&entry.keywords) {
+            names.push(format!("\"{word}\""));
+            classes += &class(&entry, word, base);
+        }
+    }
+    names.sort();
+    format!(
+        "\"\"\"The words of the scene language as classes. {GENERATED}\"\"\"\n\n# fmt: off\nfrom __future__ import annotations\n\n\
+         from typing import Literal, Optional, Union\n\nimport numpy.typing as npt\n\n\
+         from .things import Camera, Light, Material, Shape, Thing\n\n__all__ = [{}]\n{classes}",
+        names.join(", ")
+    )
+}
+
+/// The word of our own dialect.
+fn spelled(words: &[(&'static str, DialectSet)]) -> Option<&'static str> {
+    words.iter().find(|word| Dialect::Durer.is_in(word.1)).map(|word| word.0)
+}
+
+fn class(entry: &Entry, word: &str, base: &str) -> String {
+    let fields: Vec<(&FieldEntry, &str)> =
+        entry.fields.iter().filter_map(|field| Some((field, spelled(&field.words)?))).collect();
+    let (mut out, mut rows, mut given) = (String::new(), String::new(), String::new());
+    // What must be given first; writing to a String cannot fail.
+    for (field, spelling) in &fields {
+        let name = name(field);
+        let kind = kind(field.kind);
+        let parameter =
+            if field.required { format!("{name}: {kind}") } else { format!("{name}: Optional[{kind}] = None") };
+        let _ = writeln!(given, "        {parameter},");
+        let _ = writeln!(rows, "            (\"{spelling}\", {name}),");
+    }
+    let _ = write!(out, "\n\nclass {word}({base}):\n    \"\"\"{}\n", entry.doc.replace('\\', "\\\\"));
+    for (field, _) in &fields {
+        let default = match (&field.default, field.required) {
+            (Some(default), _) => format!("; {default} where it is not given"),
+            (None, true) => "; must be given".into(),
+            (None, false) => String::new(),
+        };
+        let _ = write!(out, "\n    {}: {}{default}. {}\n", name(field), field.value, field.doc);
+    }
+    let _ = write!(
+        out,
+        "    \"\"\"\n\n    def __init__(\n        self,\n        *,\n{given}    ) -> None:\n        super().__init__(\"{word}\", \
+         [\n{rows}        ])\n"
+    );
+    out
+}
+
+/// A field's name, which must not be a word of Python.
+fn name(field: &FieldEntry) -> String {
+    match field.name {
+        name @ ("from" | "in" | "is" | "as" | "not" | "with") => format!("{name}_"),
+        name => name.to_string(),
+    }
+}
+
+fn kind(kind: Kind) -> String {
+    match kind {
+        Kind::Float => "float".into(),
+        Kind::Int => "Union[int, Material]".into(),
+        Kind::Vec3 | Kind::Rows(_) => "npt.ArrayLike".into(),
+        Kind::Path => "str".into(),
+        Kind::Word(words) => {
+            format!("Literal[{}]", words.iter().map(|word| format!("\"{word}\"")).collect::<Vec<_>>().join(", "))
+        }
+    }
+}
