@@ -64,7 +64,7 @@ impl MeshTree {
         MeshTree { mesh, bvh, closed: OnceLock::new() }
     }
 
-    /// The same, blind to triangles seen from their sides: see [`TriangleBvh::least_volume`].
+    /// The same, blind to triangles seen from their sides: see `TriangleBvh::least_volume`.
     pub fn least_volume(self, least_volume: f64) -> Self {
         MeshTree { bvh: self.bvh.least_volume(least_volume), ..self }
     }
