@@ -30,6 +30,8 @@ pub struct MeshData {
     pub triangle_uvs: Vec<[u32; 3]>,
     /// Three normals a triangle, or [`NO_INDEX`]; empty where no triangle has any.
     pub triangle_normals: Vec<[u32; 3]>,
+    /// Three vertices a triangle, where [`MeshData::loosen`] took the corners apart; else empty.
+    pub vertices: Vec<[u32; 3]>,
 }
 
 impl MeshData {
@@ -41,6 +43,7 @@ impl MeshData {
             + size_of_val(&*self.triangles)
             + size_of_val(&*self.triangle_uvs)
             + size_of_val(&*self.triangle_normals)
+            + size_of_val(&*self.vertices)
     }
 
     /// Gives every corner the normal of its position's number; false where there are fewer normals than positions.
@@ -56,7 +59,8 @@ impl MeshData {
     pub fn loosen(&mut self) {
         let corners = |t: &[u32; 3]| loosened(t.map(|i| self.positions[i as usize]));
         self.positions = self.triangles.iter().flat_map(corners).collect();
-        self.triangles = (0..self.triangles.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+        let apart = (0..self.triangles.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+        self.vertices = std::mem::replace(&mut self.triangles, apart);
     }
 }
 
@@ -111,6 +115,16 @@ impl Mesh {
             }
         }
         self
+    }
+
+    /// Whether it has one normal a triangle.
+    pub fn is_flat(&self) -> bool {
+        self.data.triangle_normals.is_empty()
+    }
+
+    /// The same with normals that a rule makes, whatever normals it had.
+    pub fn with_normals(&self, rule: MeshNormals) -> Mesh {
+        Mesh { center: self.center, ..Mesh::new(self.data.clone(), rule, false) }
     }
 
     /// How far it was moved by [`Mesh::centered`].

@@ -1,13 +1,13 @@
 //! Mistakes of hits, normals and transforms.
 
 use super::{Mistake, Values, row};
-use crate::dialect::Compat;
-use crate::dialect::CompatSet;
+use crate::dialect::{Compat, CompatSet, MeshNormals};
 use crate::mistakes::habits::{Normals, Pick};
 use crate::scene::MatrixOp;
 use crate::shape::Primitive;
 use crate::world::Geometry;
 use glam::DAffine3;
+use std::sync::Arc;
 
 pub(super) const MISTAKES: &[Mistake] = &[
     row(
@@ -58,6 +58,24 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "N = normalize(cross(b - a, c - a))",
         |v, _| v.habits.flat = true,
     ),
+    row(
+        "normals-smooth",
+        "normals",
+        "flat meshes are shaded smooth, their corners' normals weighted by {} (0 the areas around, 1 each face alike)",
+        "N = normalize(cross(b - a, c - a))",
+        "N = normalize(a Na + b Nb + c Nc)",
+        |v, weight| {
+            let rule = if weight == 0.0 { MeshNormals::SmoothByArea } else { MeshNormals::SmoothByFace };
+            v.objects(|geometry| {
+                if let Geometry::Mesh(tree) = geometry
+                    && tree.mesh.is_flat()
+                {
+                    *tree = Arc::new(tree.with_normals(rule));
+                }
+            });
+        },
+    )
+    .with(Values::Only(&[0.0, 1.0])),
     row(
         "triangles-turned",
         "normals",
