@@ -229,7 +229,9 @@ fn mostly_dark(scout: &Scout) -> Vec<Finding> {
     let working: Vec<usize> = (0..scout.verdicts().len()).filter(|&i| scout.verdicts()[i] == Verdict::Works).collect();
     let (mut all, mut reached, mut away) = (0, 0, 0);
     let bright = |lit: &Lit| lit.adds.abs().max_element() > VISIBLE;
-    for (_, seen) in scout.seen() {
+    // A back that is not shaded as a front is no light's fault.
+    let shaded = scout.subject.job.settings.shade_back;
+    for (_, seen) in scout.seen().filter(|(_, seen)| shaded || !seen.from_behind) {
         all += 1;
         reached += usize::from(seen.lit.iter().any(&bright));
         away += usize::from(seen.lit.iter().all(|lit| lit.cosine <= 1e-3));
@@ -261,6 +263,7 @@ fn mostly_dark(scout: &Scout) -> Vec<Finding> {
     let lit_floor = scout.seen().any(|(_, seen)| flat(seen.object) && seen.lit.iter().any(bright));
     if (!floor || lit_floor) && reached as f32 > 0.02 * all as f32 {
         diagnostic.severity = Severity::Note;
+        diagnostic.fix.clear();
         return vec![Finding::from(diagnostic)];
     }
     vec![Finding::from(diagnostic).whole((reached as f32) < NEARLY_ALL_DARK * all as f32)]

@@ -68,6 +68,7 @@ impl View<'_> {
     fn value(&self, output: Output, light: Color) -> Vec3 {
         // Values beyond all measure are white, whatever an old program's whole numbers made of them.
         let light = if light.is_finite() { light.min(Color::splat(1e6)) } else { light };
+        let light = if output == Output::Toned { light.map(|v| v / (1.0 + v.max(0.0))) } else { light };
         let light = if output == Output::Scaled && self.brightest > 1.0 { light / self.brightest } else { light };
         if self.scale == Scale::Linear {
             return light;

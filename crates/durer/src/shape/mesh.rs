@@ -127,6 +127,24 @@ impl Mesh {
         Mesh { center: self.center, ..Mesh::new(self.data.clone(), rule, false) }
     }
 
+    /// The same with the other half of every triangle's parallelogram, whose normals go on as those of the triangle do.
+    pub fn parallelograms(&self) -> Mesh {
+        let mut data = self.data.clone();
+        fn halves(triangles: &mut Vec<[u32; 3]>, values: &mut Vec<Vec3>) {
+            for i in 0..triangles.len() {
+                let [a, b, c] = triangles[i];
+                let at = |i: u32| values.get(i as usize).copied().unwrap_or_default();
+                let fourth = at(b) + at(c) - at(a);
+                triangles.push([b, values.len() as u32, c]);
+                values.push(fourth);
+            }
+        }
+        halves(&mut data.triangles, &mut data.positions);
+        halves(&mut data.triangle_normals, &mut data.normals);
+        (data.triangle_uvs, data.vertices) = Default::default();
+        Mesh { data, center: self.center }
+    }
+
     /// How far it was moved by [`Mesh::centered`].
     pub fn center(&self) -> Vec3 {
         self.center

@@ -85,6 +85,53 @@ pub(super) const MISTAKES: &[Mistake] = &[
         |v, _| v.habits.triangles_turned = true,
     ),
     row(
+        "spheres-turned",
+        "normals",
+        "normals of spheres point inwards",
+        "N = normalize(p - center)",
+        "N = normalize(center - p)",
+        |v, _| v.habits.spheres_turned = true,
+    ),
+    row(
+        "normals-exchanged",
+        "normals",
+        "the weights of smooth normals belong to other corners (order {})",
+        "N = (1 - b - c) Na + b Nb + c Nc",
+        "the weights or the normals in another order",
+        |v, order| v.habits.mixed_otherwise = order as usize,
+    )
+    .with(Values::Only(&[1.0, 2.0, 3.0, 4.0, 5.0])),
+    row(
+        "parallelograms",
+        "distance",
+        "triangles are parallelograms: nothing asks whether b + c <= 1",
+        "b >= 0 && c >= 0 && b + c <= 1",
+        "b >= 0 && c >= 0",
+        |v, _| v.parallelograms(),
+    ),
+    row(
+        "other-material",
+        "flat",
+        "things have the material after their own, or before it ({})",
+        "materials[index], index from 0",
+        "materials[index + 1], or - 1",
+        |v, by| {
+            let count = v.world.materials.len() as i64;
+            for object in &mut v.world.objects {
+                object.material = (i64::from(object.material) + by as i64).clamp(0, count - 1) as u32;
+            }
+        },
+    )
+    .with(Values::Only(&[1.0, -1.0])),
+    row(
+        "far-spheres",
+        "distance",
+        "the far side of spheres is seen: the greater root is taken",
+        "t = (-b - sqrt(D)) / 2a, unless that is less than t_min",
+        "t = (-b + sqrt(D)) / 2a",
+        |v, _| v.habits.pick = Pick::FarSpheres,
+    ),
+    row(
         "normals-faced",
         "diffuse",
         "surfaces seen from behind are shaded with their normal turned to the eye, without being asked to",
