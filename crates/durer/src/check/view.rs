@@ -293,14 +293,15 @@ pub(super) fn hidden(scout: &Scout) -> Vec<Finding> {
     }
     let name = scout.object(front);
     let behind = scout.seen().all(|(_, seen)| seen.from_behind);
-    let turned = is_plane.then(|| offset_turned(scout, front)).flatten();
+    // Whoever looks at its back may be on the wrong side of it himself.
+    let turned = (is_plane && !behind).then(|| offset_turned(scout, front)).flatten();
     let help = match (is_plane, behind) {
-        _ if is_plane && turned.is_none() => {
+        _ if is_plane && turned.is_none() && !behind => {
             "the camera and the things behind the plane are on different sides of it: move one of them"
         }
         (true, true) => {
-            "the camera is behind the plane: it stands where p · normal = offset, so the sign of `offset` or of `normal` \
-             may be wrong"
+            "the camera is behind the plane, which stands where p · normal = offset: move the camera, or look at `offset` \
+             and at the direction of `normal`"
         }
         (true, false) => "the plane stands where p · normal = offset: is the sign of `offset` right?",
         _ => "move it, make it smaller, or move the camera",
@@ -321,7 +322,10 @@ pub(super) fn hidden(scout: &Scout) -> Vec<Finding> {
 pub(super) fn below_plane(scout: &Scout) -> Vec<Finding> {
     let objects = &scout.world().objects;
     let mut front = None;
-    for (object, sight) in objects.iter().zip(scout.sights()).filter(|(object, _)| object.bounds().is_some()) {
+    let empty = super::objects::empty_solids(scout);
+    let there =
+        |(i, (object, _)): &(usize, (&Object, &Sight))| object.bounds().is_some() && !empty.contains(&(*i as u32));
+    for (_, (object, sight)) in objects.iter().zip(scout.sights()).enumerate().filter(there) {
         let by = match sight {
             Sight::Hidden(by) => Some(*by).filter(|by| objects[*by as usize].bounds().is_none()),
             Sight::Outside if has_eye(scout) => plane_before(scout, object),

@@ -214,6 +214,8 @@ pub struct Bounces {
     pub fresnel: Fresnel,
     /// Local light counts for what the mirror's colour leaves of it.
     pub mixed: bool,
+    /// Mirrors have no local light.
+    pub instead: bool,
     /// They are traced once for each light.
     pub each_light: bool,
     /// Where they hit nothing, they bring no light.
@@ -354,9 +356,17 @@ pub struct Turn {
     pub bgr: bool,
     /// By how many pixels the picture is moved to the right and down.
     pub moved: (i32, i32),
+    /// What nothing is moved to is black, and does not repeat the border.
+    pub black_border: bool,
 }
 
 impl Turn {
+    /// Whether no pixel of the right picture comes to a place.
+    pub fn is_empty(self, width: u32, height: u32, (x, y): (u32, u32)) -> bool {
+        let out = |at: u32, by: i32, size: u32| !(0..i64::from(size)).contains(&(i64::from(at) - i64::from(by)));
+        self.black_border && (out(x, self.moved.0, width) || out(y, self.moved.1, height))
+    }
+
     /// The pixel of the right picture that comes to a place.
     pub fn source(self, width: u32, height: u32, (x, y): (u32, u32)) -> (u32, u32) {
         let x = if self.columns_back { width - 1 - x } else { x };

@@ -59,6 +59,11 @@ impl View<'_> {
         let (width, height) = (self.job.width, self.job.height);
         let sources: Vec<(u32, u32)> = places.iter().map(|place| variant.turn.source(width, height, *place)).collect();
         let mut values = self.values(variant.output, &self.light(variant, &sources));
+        for (value, place) in values.iter_mut().zip(places) {
+            if variant.turn.is_empty(width, height, *place) {
+                *value = Vec3::ZERO;
+            }
+        }
         if variant.turn.bgr {
             values.iter_mut().for_each(|value| *value = Vec3::new(value.z, value.y, value.x));
         }

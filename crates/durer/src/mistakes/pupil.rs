@@ -212,6 +212,9 @@ impl<'w> Pupil<'w> {
             Some(false) if blocked => color = Color::ZERO,
             _ => {}
         }
+        if habits.bounces.instead && path.bounces > 0 && Blend::of(&parts).reflective != Color::ZERO {
+            color = Color::ZERO;
+        }
         if habits.bounces.mixed && path.bounces > 0 {
             color *= Color::ONE - Blend::of(&parts).reflective;
         }

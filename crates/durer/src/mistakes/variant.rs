@@ -157,7 +157,7 @@ impl<'s> Variant<'s> {
             match &mut object.geometry {
                 Geometry::Primitive(Primitive::Triangle(triangle)) => {
                     let [a, b, c] = triangle.corners();
-                    let half = Triangle { vertex0: b, vertex1: b + c - a, vertex2: c, ..triangle.clone() };
+                    let half = Triangle { vertex0: b, vertex1: b + c - a, vertex2: c };
                     halves.push(Object { geometry: Geometry::Primitive(Primitive::Triangle(half)), ..object.clone() });
                 }
                 Geometry::Mesh(tree) => *tree = Arc::new(MeshTree::new(tree.mesh.parallelograms())),

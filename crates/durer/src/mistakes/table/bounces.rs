@@ -205,6 +205,14 @@ pub(super) const MISTAKES: &[Mistake] = &[
         |v, _| v.habits.bounces.mixed = true,
     ),
     row(
+        "mirror-instead",
+        "reflection",
+        "mirrored light replaces the local light of mirrors",
+        "color = local + kr * trace(p, R)",
+        "color = kr * trace(p, R)",
+        |v, _| v.habits.bounces.instead = true,
+    ),
+    row(
         "exit-not-turned",
         "refraction",
         "where a ray leaves the glass, the normal is not turned round",

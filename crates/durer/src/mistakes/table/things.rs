@@ -112,17 +112,21 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "other-material",
         "flat",
-        "things have the material after their own, or before it ({})",
+        "things have the material after their own, or before it ({}: 0 after, 1 before, 2 after, but the last its own)",
         "materials[index], index from 0",
         "materials[index + 1], or - 1",
-        |v, by| {
-            let count = v.world.materials.len() as i64;
+        |v, which| {
+            let count = v.world.materials.len().max(1) as u32;
             for object in &mut v.world.objects {
-                object.material = (i64::from(object.material) + by as i64).clamp(0, count - 1) as u32;
+                object.material = match which as u32 {
+                    0 => (object.material + 1) % count,
+                    1 => (object.material + count - 1) % count,
+                    _ => (object.material + 1).min(count - 1),
+                };
             }
         },
     )
-    .with(Values::Only(&[1.0, -1.0])),
+    .with(Values::Only(&[0.0, 1.0, 2.0])),
     row(
         "far-spheres",
         "distance",
