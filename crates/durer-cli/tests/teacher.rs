@@ -250,7 +250,7 @@ Scene { Node { Component<Material> { index 0 } Component<Object> { type sphere r
     assert!(ran.err.contains("binary") && ran.err.lines().count() < 8, "{}", ran.err);
     // A light's direction is no camera's.
     let still = ("PointLight { position 3 5 4", "DirectionalLight { direction 0 0 0");
-    says("f12a4", &scene("f12a4", &[still]), "where the light goes");
+    says("f12a4", &scene("f12a4", &[still]), "a light's is where the light goes");
     // What the year's own program would refuse is a note.
     place.put("brace.txt", scene("f04", &[("Group {", "Group{")]));
     let ran = place.run("check brace.txt --dialect f04 --bounces 3");

@@ -192,10 +192,9 @@ impl Reader<'_, '_> {
             self.error(match value {
                 Value::Float(x) if x < 0.0 => error.fix(span, self.text(span).trim_start_matches('-')),
                 Value::Vec3(v) if word == "direction" && v == Vec3::ZERO => {
-                    error.help(match self.text(keyword).contains("Light") {
-                        true => "it is where the light goes, as in `direction 0 -1 0` for light from above",
-                        false => "it is a direction, not the point to look at: that point less the place of the eye",
-                    })
+                    error.help(
+                        "a light's is where the light goes; a camera's is the point to look at less the place of the eye",
+                    )
                 }
                 _ => error,
             });
