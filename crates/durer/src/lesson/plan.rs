@@ -68,7 +68,11 @@ pub(super) fn plan(stage: &Stage) -> String {
         (corner - Vec2::new(0.0, 46.0), "forward", corner - Vec2::new(6.0, 52.0)),
     ] {
         line(&mut svg, corner, to, "stroke=\"currentColor\" stroke-width=\"1.5\"");
-        let _ = writeln!(svg, "<text x=\"{:.0}\" y=\"{:.0}\" font-size=\"13\" fill=\"currentColor\">{name}</text>", at.x, at.y);
+        let _ = writeln!(
+            svg,
+            "<text x=\"{:.0}\" y=\"{:.0}\" font-size=\"13\" fill=\"currentColor\">{name}</text>",
+            at.x, at.y
+        );
     }
     dot(&mut svg, place(Vec2::ZERO), 4.0, "currentColor");
     svg + "</svg>\n"
