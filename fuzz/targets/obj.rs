@@ -1,4 +1,4 @@
 //! Any bytes as a Wavefront mesh.
 #![no_main]
 
-libfuzzer_sys::fuzz_target!(|data: &[u8]| durer_fuzz::mesh(data, "x.obj"));
+libfuzzer_sys::fuzz_target!(|data: &[u8]| durer::fuzz::mesh(data, "x.obj"));

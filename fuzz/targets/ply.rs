@@ -1,4 +1,4 @@
 //! Any bytes as a Stanford mesh.
 #![no_main]
 
-libfuzzer_sys::fuzz_target!(|data: &[u8]| durer_fuzz::mesh(data, "x.ply"));
+libfuzzer_sys::fuzz_target!(|data: &[u8]| durer::fuzz::mesh(data, "x.ply"));

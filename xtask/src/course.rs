@@ -38,18 +38,31 @@ enum Verdict {
     Look,
 }
 
-/// Rows that do not agree, and why: the reason stands beside the row. None of them counts as passed.
-const REASONS: &[(&str, &str)] = &[
-    ("output5_02b.png", SPHERE_CELLS),
-    ("output5_03.png", "the official camera was not the scene's: no implementation is known to agree"),
-    ("output5_04.png", SPHERE_CELLS),
-    ("output6_18a.png", WOOD),
-    (
+/// A row that does not agree, and why.
+struct Reason {
+    picture: &'static str,
+    /// Up to which share of pixels, in percent, the cause explains the difference; more is another one.
+    most: f64,
+    words: &'static str,
+}
+
+const fn reason(picture: &'static str, most: f64, words: &'static str) -> Reason {
+    Reason { picture, most, words }
+}
+
+/// Rows that are known not to agree. None of them counts as passed.
+const REASONS: &[Reason] = &[
+    reason("output5_02b.png", 100.0, SPHERE_CELLS),
+    reason("output5_03.png", 100.0, "the official camera was not the scene's: no implementation is known to agree"),
+    reason("output5_04.png", 100.0, SPHERE_CELLS),
+    reason("output6_18a.png", 100.0, WOOD),
+    reason(
         "output7_02e.png",
+        0.17,
         "at the horizon fields are far smaller than a pixel: single-precision rounding of the old program decides",
     ),
-    ("output7_04a.png", WOOD),
-    ("output7_04b.png", WOOD),
+    reason("output7_04a.png", 100.0, WOOD),
+    reason("output7_04b.png", 100.0, WOOD),
 ];
 
 const SPHERE_CELLS: &str =
@@ -78,7 +91,8 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
             Ok(finding) => finding,
             Err(error) => Finding { share: 100.0, largest: 255, verdict: Verdict::Fail, remark: format!("{error:#}") },
         };
-        let reason = REASONS.iter().find(|(name, _)| row.picture.ends_with(name)).map(|r| r.1);
+        let known = |reason: &&Reason| row.picture.ends_with(reason.picture) && finding.share <= reason.most;
+        let reason = REASONS.iter().find(known).map(|reason| reason.words);
         let verdict = match (&finding.verdict, reason) {
             (Verdict::Pass, _) => "pass",
             (Verdict::Look, _) => "look",

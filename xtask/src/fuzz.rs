@@ -1,8 +1,9 @@
-//! Random bytes and scenes against the readers and the tracer, side by side: see fuzz/.
+//! Random bytes and scenes against the readers and the tracer, side by side: see `fuzz/`.
 
 use anyhow::{Context, Result, bail};
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode, Stdio};
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
 /// The targets, and the endings of files that they can begin with.
@@ -33,6 +34,8 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
     if targets.is_empty() {
         bail!("no target's name contains `{only}`: {}", TARGETS.map(|target| target.0).join(", "));
     }
+    let jobs =
+        crate::value(arguments, "--jobs").map_or(Ok(targets.len()), |jobs| jobs.parse())?.clamp(1, targets.len());
     what_is_missing()?;
     let fuzz = crate::root()?.join("fuzz");
     let built = cargo_fuzz(&fuzz, &["build"]).status()?;
@@ -40,46 +43,63 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
         bail!("the targets cannot be built");
     }
     let scratch = fuzz.join("target/runs");
-    let (start, mut running) = (Instant::now(), Vec::new());
-    for (name, endings) in targets {
-        let (corpus, seeds) = (fuzz.join("corpus").join(name), scratch.join(name).join("seeds"));
-        std::fs::create_dir_all(&corpus)?;
-        collect_seeds(&seeds, endings)?;
-        let log = scratch.join(name).join("log.txt");
-        let file = std::fs::File::create(&log)?;
-        let mut command = cargo_fuzz(&fuzz, &["run", name]);
-        command.args([&corpus, &fuzz.join("seeds").join(name), &seeds].into_iter().filter(|folder| folder.is_dir()));
-        command.arg("--").args([
-            format!("-max_total_time={}", (60.0 * minutes) as u64),
-            format!("-rss_limit_mb={MOST_MEMORY}"),
-            format!("-malloc_limit_mb={MOST_MEMORY}"),
-            format!("-timeout={MOST_SECONDS}"),
-            format!("-max_len={MOST_BYTES}"),
-            "-print_final_stats=1".into(),
-        ]);
-        let child = command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(file).spawn()?;
-        running.push((name, log, child));
+    println!("{} targets, {jobs} at a time, {minutes} minutes each; logs are in {}", targets.len(), scratch.display());
+    let (next, found) = (AtomicUsize::new(0), AtomicUsize::new(0));
+    std::thread::scope(|scope| {
+        let one_after_another = || -> Result<()> {
+            while let Some((name, endings)) = targets.get(next.fetch_add(1, Ordering::Relaxed)) {
+                found.fetch_add(usize::from(!is_clean(&fuzz, &scratch, name, endings, minutes)?), Ordering::Relaxed);
+            }
+            Ok(())
+        };
+        let workers: Vec<_> = (0..jobs).map(|_| scope.spawn(one_after_another)).collect();
+        workers.into_iter().try_for_each(|worker| worker.join().unwrap_or_else(|_| bail!("a worker panicked")))
+    })?;
+    if let Some(hours) = hours_of_children() {
+        println!("{hours:.2} hours of processor time");
     }
-    println!("{} targets side by side for {minutes} minutes; logs are in {}", running.len(), scratch.display());
-    let mut found = 0;
-    for (name, log, mut child) in running {
-        let status = child.wait()?;
-        let text = String::from_utf8_lossy(&std::fs::read(&log)?).into_owned();
+    Ok(if found.into_inner() == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+}
+
+/// Runs a target, and whether it found nothing.
+fn is_clean(fuzz: &Path, scratch: &Path, name: &str, endings: &[&str], minutes: f64) -> Result<bool> {
+    let (corpus, seeds) = (fuzz.join("corpus").join(name), scratch.join(name).join("seeds"));
+    std::fs::create_dir_all(&corpus)?;
+    collect_seeds(&seeds, endings)?;
+    let log = scratch.join(name).join("log.txt");
+    let file = std::fs::File::create(&log)?;
+    let mut command = cargo_fuzz(fuzz, &["run", name]);
+    command.args([&corpus, &fuzz.join("seeds").join(name), &seeds].into_iter().filter(|folder| folder.is_dir()));
+    command.arg("--").args([
+        format!("-max_total_time={}", (60.0 * minutes) as u64),
+        format!("-rss_limit_mb={MOST_MEMORY}"),
+        format!("-malloc_limit_mb={MOST_MEMORY}"),
+        format!("-timeout={MOST_SECONDS}"),
+        format!("-max_len={MOST_BYTES}"),
+        "-print_final_stats=1".into(),
+    ]);
+    let start = Instant::now();
+    let status = command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(file).status()?;
+    let text = String::from_utf8_lossy(&std::fs::read(&log)?).into_owned();
+    if status.success() {
         let runs = text.lines().find_map(|line| line.strip_prefix("stat::number_of_executed_units:"));
-        let runs = runs.map_or("?", str::trim);
-        if status.success() {
-            println!("{name}: {runs} inputs, nothing found");
-        } else {
-            found += 1;
-            println!(
-                "{name}: FOUND after {:.0} s; the input is in fuzz/artifacts/{name}, the end of its log:",
-                start.elapsed().as_secs_f64()
-            );
-            let end: Vec<&str> = text.lines().collect();
-            end[end.len().saturating_sub(25)..].iter().for_each(|line| println!("    {line}"));
-        }
+        println!("{name}: {} inputs, nothing found", runs.map_or("?", str::trim));
+        return Ok(true);
     }
-    Ok(if found == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+    let seconds = start.elapsed().as_secs_f64();
+    println!("{name}: FOUND after {seconds:.0} s; the input is in fuzz/artifacts/{name}, the end of its log:");
+    let lines: Vec<&str> = text.lines().collect();
+    lines[lines.len().saturating_sub(25)..].iter().for_each(|line| println!("    {line}"));
+    Ok(false)
+}
+
+/// What the processes that this one waited for took of processors, where Linux tells.
+fn hours_of_children() -> Option<f64> {
+    let stat = std::fs::read_to_string("/proc/self/stat").ok()?;
+    // The name in parentheses may hold spaces. What follows are the fields from the third; 16 and 17 are in 1/100 s.
+    let fields: Vec<&str> = stat.rsplit_once(')')?.1.split_whitespace().collect();
+    let ticks = |number: usize| fields.get(number - 3)?.parse::<f64>().ok();
+    Some((ticks(16)? + ticks(17)?) / 100.0 / 3600.0)
 }
 
 fn cargo_fuzz(fuzz: &Path, arguments: &[&str]) -> Command {

@@ -43,9 +43,9 @@ const USAGE: &str = "Commands:
   cargo xtask long [--only TEXT] [--times N]
       Tests of the suite with many more numbers: rays against a reference in double precision, rays at edges, rays that
       leave surfaces, bits of all SIMD levels.
-  cargo xtask fuzz [--minutes 10] [--only TEXT]
-      Random bytes as scenes, meshes, pictures and parts, and random scenes by tree, grid and brute force, side by side.
-      It takes a nightly compiler and cargo-fuzz.
+  cargo xtask fuzz [--minutes 10] [--only TEXT] [--jobs N]
+      Random bytes as scenes, meshes, pictures and parts, and random scenes by tree, grid and brute force, side by side,
+      or N targets at a time, each for so many minutes. It takes a nightly compiler and cargo-fuzz.
   cargo xtask teach [--compare | --check] [--only TEXT] [--keep FOLDER]
       Wrong pictures made by a tracer of its own, for `durer compare`, and broken scenes, for `durer check`: how many are told
       rightly, and how many wrongly?

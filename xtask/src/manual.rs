@@ -81,11 +81,16 @@ fn index() -> String {
         let words: Vec<String> = entries()
             .iter()
             .filter(|entry| entry.chapter == chapter)
-            .map(|entry| format!("[{}]({}#{})", entry.name(), file_name(chapter), anchor(entry.name())))
+            .map(|entry| format!("[{}]({}#{})", shown(entry.name()), file_name(chapter), anchor(entry.name())))
             .collect();
         let _ = write!(out, "\n**[{}]({})**: {}\n", chapter.title(), file_name(chapter), words.join(", "));
     }
     out
+}
+
+/// A name in Markdown, where `<Object>` would be taken for HTML.
+fn shown(name: &str) -> String {
+    if name.contains('<') { format!("`{name}`") } else { name.into() }
 }
 
 /// As GitHub and mdBook make anchors of headings.
@@ -97,7 +102,7 @@ fn page(chapter: Chapter) -> String {
     let mut out = format!("# {}\n\n{GENERATED}\n", chapter.title());
     for entry in entries().into_iter().filter(|entry| entry.chapter == chapter) {
         // Writing to a String cannot fail.
-        let _ = write!(out, "\n## {}\n\n{}\n\nWritten {}.\n", entry.name(), entry.doc, spelled(&entry.keywords));
+        let _ = write!(out, "\n## {}\n\n{}\n\nWritten {}.\n", shown(entry.name()), entry.doc, spelled(&entry.keywords));
         if !entry.values.is_empty() {
             let _ = write!(out, "\n`{} {}`\n", entry.name(), entry.values);
         }

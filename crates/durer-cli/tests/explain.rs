@@ -82,6 +82,25 @@ fn the_text_names_things_by_their_place_in_the_file() {
     }
 }
 
+/// The vectors of highlights are printed, and the colour that weighs glass of 2012.
+#[test]
+fn the_formulas_have_all_their_factors() {
+    let place = Place::new();
+    let scene = common::SCENE
+        .replace("diffuseColor 0.8 0.3 0.2", "diffuseColor 0.8 0.3 0.2 specularColor 0.5 0.5 0.5 shininess 4");
+    for (year, words, wanted) in [
+        ("f04", "exponent 4", "H = norm(L + V) = ("),
+        ("f12a4", "shininess 4", "R = d - 2 (d·N) N = ("),
+        ("f12a5", "refractionIndex 1.5", "`specularColor` (0.5, 0.5, 0.5) · 0.04"),
+    ] {
+        place.put("year.txt", scene.replace("shininess 4", words));
+        let ran = place.gives(0, &format!("explain year.txt --pixel 19,13 --bounces 1 --dialect {year} {SMALL}"));
+        assert!(ran.out.contains(wanted), "{year}: {}", ran.out);
+    }
+    place.gives(0, &format!("explain scene.txt --pixel 19,13 --transfer linear --html linear.html {SMALL}"));
+    assert!(String::from_utf8(place.bytes("linear.html")).unwrap().contains("\"transfer\":\"linear\""));
+}
+
 /// Small and deep terms are left out, and said to be; nothing has a minus before 0 or more than four digits.
 #[test]
 fn the_text_can_be_read() {

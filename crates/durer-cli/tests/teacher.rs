@@ -61,11 +61,66 @@ const CASES: &[Case] = &[
     ("f04", "", &[("center 1.2 1 0 radius 1", "center 1.2 1 0 radius 1e30")], "out-of-scale"),
     ("f04", "", &[("diffuseColor 0.6 0.6 0.6", "diffuseColor 1.6 1.6 1.6")], "color-range"),
     ("f16", "", &[("falloff 0.03", "attenuation 1 0 0.03")], "foreign-word"),
+    ("f04", "--bounces 3", &[(RIGHT, "Triangle { vertex0 0 0 0 vertex1 2 0 0 vertex2 1 2 0 }")], "open-glass"),
+    (
+        "f04",
+        "",
+        &[
+            ("numMaterials 3", "numMaterials 4"),
+            (GREY, "Material { diffuseColor 0.6 0.6 0.6 } Checkerboard { materialIndex 0 materialIndex 0 }"),
+        ],
+        "same-parts",
+    ),
+    ("f04", "--bounces 3", &[(LEFT, "TriangleMesh { obj_file quad.obj }")], "mesh-quads"),
+    // A floor that faces down is no light's fault.
+    ("f04", "--bounces 3", &[("normal 0 1 0 offset 0", "normal 0 -1 0 offset 0")], "seen-from-behind"),
+    ("f16", "", &[("normal 0 1 0 offset 0", "normal 0 -1 0 offset 0")], "seen-from-behind"),
+    // The cause, and not that nothing is seen or all is of one colour.
+    ("f04", "--bounces 3", &[("direction 0 -0.15 -1", "direction 0 0.15 1")], "camera-away"),
+    (
+        "f04",
+        "--bounces 3",
+        &[(ANGLE, "OrthographicCamera { center -1.2 1 9 direction 0 0 -1 up 0 1 0 size 0.1 }")],
+        "too-narrow",
+    ),
+    // Turned to things that are below the floor, the camera would see the floor.
+    (
+        "f04",
+        "--bounces 3",
+        &[("-1.2 1 0 radius", "-1.2 -7 0 radius"), ("1.2 1 0 radius", "1.2 -8 0 radius")],
+        "below-plane",
+    ),
+    (
+        "f04",
+        "--bounces 3",
+        &[(RIGHT, "Transform { Translate -240 -198 -1791 Sphere { center 0 0 0 radius 1 } }")],
+        "unseen",
+    ),
+    ("f04", "--bounces 3 --show depth --depth-range 12 6", &[], "depth-range"),
+    (
+        "f12a5",
+        "",
+        &[("specularColor 0.9 0.9 0.9 refractionIndex", "specularColor 0 0 0 refractionIndex")],
+        "dull-glass",
+    ),
+    (
+        "durer",
+        "",
+        &[(LEFT, "Difference { Sphere { center -1.2 1 0 radius 1 } Sphere { center -1.2 1 0 radius 1.5 } }")],
+        "empty-solid",
+    ),
+    ("durer", "", &[("PerspectiveCamera {", "ThinLensCamera { aperture 2")], "out-of-focus"),
 ];
+
+const LEFT: &str = "Sphere { center -1.2 1 0 radius 1 }";
+const RIGHT: &str = "Sphere { center 1.2 1 0 radius 1 }";
+const GREY: &str = "Material { diffuseColor 0.6 0.6 0.6 }";
+const ANGLE: &str = "PerspectiveCamera { center 0 2 9 direction 0 -0.15 -1 up 0 1 0 angle 35 }";
 
 #[test]
 fn the_cause_stands_first() {
     let place = Place::new();
+    place.put("quad.obj", "v -2 0 0\nv 0 0 0\nv 0 2 0\nv -2 2 0\nf 1 2 3 4\n");
     for year in ["f04", "f12a4", "f12a5", "f16"] {
         let bounces = if year == "f04" { "--bounces 3" } else { "" };
         let (codes, text) = found(&place, year, bounces, &[]);
@@ -92,6 +147,30 @@ fn consequences_are_silent() {
     assert!(!codes.iter().any(|code| code == "unseen" || code == "hidden-behind"), "{codes:?}");
 }
 
+/// What may be meant so is at most a note, and nothing of it is changed.
+#[test]
+fn what_may_be_meant_is_left_alone() {
+    let place = Place::new();
+    // A crescent moon; and no light but ambient light of 1, as in the first assignment.
+    let moon = "PerspectiveCamera { center 0 0 9 direction 0 0 -1 up 0 1 0 angle 20 }
+Lights { numLights 1 DirectionalLight { direction -1 -0.1 0.35 color 1 1 0.9 } }
+Materials { numMaterials 1 Material { diffuseColor 0.8 0.8 0.8 } }
+Group { numObjects 1 MaterialIndex 0 Sphere { center 0 0 0 radius 1 } }
+";
+    let flat = "PerspectiveCamera { center 0 0 9 direction 0 0 -1 up 0 1 0 angle 20 }
+Background { color 0 0 0 ambientLight 1 1 1 }
+Materials { numMaterials 1 Material { diffuseColor 0.8 0.2 0.2 } }
+Group { numObjects 1 MaterialIndex 0 Sphere { center 0 0 0 radius 1 } }
+";
+    for text in [moon, flat] {
+        place.put("meant.txt", text);
+        let ran = place.gives(0, "check meant.txt --dialect f04");
+        assert!(!ran.out.contains("warning["), "{}", ran.out);
+        place.gives(0, "check meant.txt --dialect f04 --fix");
+        assert_eq!(place.bytes("meant.txt"), text.as_bytes());
+    }
+}
+
 /// A colour of 5 is not 5 of 255, and a year is told its own words.
 #[test]
 fn help_is_what_was_meant() {
@@ -102,6 +181,32 @@ fn help_is_what_was_meant() {
     assert_eq!(place.bytes("five.txt"), before);
     let (_, text) = found(&place, "f16", "", &[("falloff 0.03", "falloff 0")]);
     assert!(!text.contains("attenuation"), "{text}");
+    // Nobody can move a directional light.
+    let behind =
+        ("PointLight { position 3 5 4 color 0.9 0.9 0.9", "DirectionalLight { direction 0.1 1 -0.1 color 0.9 0.9 0.9");
+    let (_, text) = found(&place, "f12a4", "", &[behind]);
+    assert!(text.contains("light-behind") && !text.contains("move it"), "{text}");
+    // Mirrors that give back more than they get are to blame, and not the lights.
+    let mirrors = [
+        ("color 0.2 0.3 0.4 ambientLight 0.1 0.1 0.1", "color 0.9 0.9 0.9 ambientLight 0.4 0.4 0.4"),
+        ("diffuseColor 0.6 0.6 0.6", "diffuseColor 0.6 0.6 0.6 reflectiveColor 1 1 1"),
+    ];
+    let (codes, text) = found(&place, "f04", "--bounces 3", &mirrors);
+    assert!(codes[0] == "too-bright" && text.contains("material 1 gives back 1.6 times what it gets"), "{text}");
+    assert!(!text.contains("colours of the lights"), "{text}");
+    let nodes = "Camera { center 0 0 9 direction 0 0 -1 up 0 1 0 fov 30 }
+Background { color 0 0 0 ambient_light 0.1 0.1 0.1 }
+Materials { Material { diffuse 1 0 0 } }
+Scene { Node { Component<Object> { type sphere radius 1 } }
+  Node { Transform { translate 0 3 4 } Component<Light> { type point color 1 1 1 attenuation 0.05 } } }
+";
+    place.put("nodes.txt", nodes);
+    let told = place.run("check nodes.txt --dialect f23").out;
+    assert!(told.contains("`Component<Material> { index 0 }`") && !told.contains("MaterialIndex"), "{told}");
+    // Each mention of `--fix` says to what.
+    place.put("bytes.txt", scene("f04", &[("diffuseColor 0.7 0.3 0.2", "diffuseColor 204 51 51")]));
+    let told = place.run("check bytes.txt --dialect f04 --bounces 3").out;
+    assert!(told.contains("(`--fix` writes `0.8 0.2 0.2`)"), "{told}");
 }
 
 #[test]
@@ -143,8 +248,14 @@ Scene { Node { Component<Material> { index 0 } Component<Object> { type sphere r
     place.put("binary.txt", (0..4000_u32).map(|i| (i * 7919 % 251) as u8).collect::<Vec<u8>>());
     let ran = place.gives(2, "render binary.txt -q -o words.png");
     assert!(ran.err.contains("binary") && ran.err.lines().count() < 8, "{}", ran.err);
+    // A light's direction is no camera's.
+    let still = ("PointLight { position 3 5 4", "DirectionalLight { direction 0 0 0");
+    says("f12a4", &scene("f12a4", &[still]), "a light's is where the light goes");
     // What the year's own program would refuse is a note.
     place.put("brace.txt", scene("f04", &[("Group {", "Group{")]));
     let ran = place.run("check brace.txt --dialect f04 --bounces 3");
     assert!(ran.out.contains("would refuse this file"), "{}{}", ran.out, ran.err);
+    place.put("count.txt", scene("f04", &[("numObjects 3", "")]));
+    let ran = place.run("check count.txt --dialect f04 --bounces 3");
+    assert!(ran.out.contains("would refuse this file: `Group` has no `numObjects`"), "{}{}", ran.out, ran.err);
 }

@@ -1,6 +1,6 @@
 //! What a thing in a scene file is made of, said once.
 //!
-//! Every shape, camera, material and light states its keyword and its fields in one [`described!`] block. The
+//! Every shape, camera, material and light states its keyword and its fields in one `described!` block. The
 //! reader, the writer, the manual and the generator of random test scenes walk that statement.
 
 use crate::diag::Span;

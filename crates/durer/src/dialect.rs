@@ -282,6 +282,8 @@ compats! {
     ThreeCorners = "three-corners",
     /// Normals of an `.obj` belong to the vertices, number by number, whatever its faces say.
     NormalsByVertex = "normals-by-vertex",
+    /// The sky's face `back` is mirrored, left for right, and `down` stands on its head, so that neither meets its neighbours.
+    MirroredBack = "mirrored-back",
     /// The background is black in depth pictures even where far is white.
     BlackSky = "black-sky",
     /// Where nothing is hit, a picture of normals shows the normal hit last, in rows from the bottom.
@@ -421,6 +423,7 @@ const F12A5: Rules = Rules {
         AirAtEye,
         LostLastLine,
         ThreeCorners,
+        MirroredBack,
     ]),
     ..F12A4
 };
@@ -448,6 +451,7 @@ const F16: Rules = Rules {
         RawNormals,
         LostLastLine,
         ThreeCorners,
+        MirroredBack,
     ]),
     ..F12A4
 };
@@ -474,6 +478,7 @@ const F23: Rules = Rules {
         DroppedShear,
         WrittenAmbient,
         ThreeCorners,
+        MirroredBack,
         NormalsByVertex,
     ]),
     ..F16

@@ -12,6 +12,8 @@ pub mod diag;
 pub mod dialect;
 pub mod film;
 pub mod format;
+#[cfg(any(test, fuzzing))]
+pub mod fuzz;
 pub mod image;
 pub mod integrator;
 pub mod lesson;

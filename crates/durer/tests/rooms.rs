@@ -30,7 +30,7 @@ fn files(folder: &Path, found: &mut Vec<PathBuf>) {
 
 fn is_test(path: &Path) -> bool {
     let text = path.to_string_lossy();
-    ["test", "conformance", "corpus", "random.rs", "generate"].iter().any(|word| text.contains(word))
+    ["test", "conformance", "corpus", "random.rs", "fuzz.rs", "generate"].iter().any(|word| text.contains(word))
 }
 
 fn floor(room: &str) -> Option<usize> {

@@ -82,7 +82,8 @@ impl<'s> Tracer<'s> {
             }
             Shape::Triangle(p) => triangle(*p).map(|(t, n, _)| (t, n, n)).into_iter().collect(),
             Shape::Mesh(_, corners, faces) => {
-                let smooth = matches!(self.scene.year, Year::F12a4) && !self.is("normals-flat");
+                let smooth =
+                    matches!(self.scene.year, Year::F12a4) && !self.is("normals-flat") || self.is("normals-smooth");
                 let mut found = Vec::new();
                 for face in faces {
                     let Some((t, n, w)) = triangle(face.map(|i| corners[i])) else { continue };

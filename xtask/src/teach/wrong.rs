@@ -172,11 +172,26 @@ pub fn scenes() -> Vec<Scene> {
     };
     let ours = Scene { name: "ours", year: Year::Durer, bounces: 3, ..mirrors.clone() };
     let wide = Scene { name: "wide", size: (160, 100), look: V(0.3, -0.2, -1.3), up: V(0.3, 1.0, 0.1), ..old.clone() };
-    vec![old, mirrors, glass, turned, flat, phong, falling, fresnel, ours, wide]
+    let facets = Scene {
+        name: "facets",
+        shadows: false,
+        things: vec![
+            sphere(V(-1.4, 0.6, 0.0), 1.0, 0),
+            Thing {
+                shape: octahedron("facets.obj", 1.0),
+                ops: vec![Op::Translate(V(1.2, 0.5, 0.5)), Op::Y(30.0), Op::Scale(V(1.0, 1.5, 1.0))],
+                material: 1,
+            },
+            floor(-0.8, 2),
+        ],
+        ..old.clone()
+    };
+    let cubes = Scene { name: "cubes", year: Year::F12a5, bounces: 1, ..facets.clone() };
+    vec![old, mirrors, glass, turned, flat, phong, falling, fresnel, ours, wide, facets, cubes]
 }
 
 /// Which mistakes are made in which scenes, alone.
-const ALONE: [&[&str]; 10] = [
+const ALONE: [&[&str]; 12] = [
     &[
         "no-ambient",
         "ambient-each-light",
@@ -358,6 +373,8 @@ const ALONE: [&[&str]; 10] = [
         "mirrored",
         "upside-down",
     ],
+    &["normals-smooth", "triangles-turned", "normals-local", "no-highlights", "two-sided"],
+    &["normals-smooth", "normals-local", "no-falloff"],
 ];
 
 /// Mistakes that are in no table, made in these scenes: nothing must be named.

@@ -133,6 +133,9 @@ fn opened(
 ) -> Result<(Opened, Job), Failure> {
     let opened = open(path, options, true, guard)?;
     let job = job::job(&args.job, Some(&args.view), &opened.loaded, false)?;
+    if !job.color || !job.aovs.is_empty() {
+        return Err(bad("`--scene` tells the mistakes of pictures of colour: leave `--show` away, or `--scene`"));
+    }
     let (width, height) = (reference.image.width, reference.image.height);
     let job = Job { width, height, crop: None, color: true, aovs: Vec::new(), ..job };
     Ok((opened, job))

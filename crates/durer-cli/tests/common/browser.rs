@@ -1,7 +1,7 @@
 //! Pages in a real browser: headless Chromium, from file://.
 
 use super::Place;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// What a page's script may say of itself, put at its end: `see(text)` notes something, `done()` ends.
@@ -36,29 +36,102 @@ fn chromium() -> Option<PathBuf> {
 
 /// Opens a page, runs a script at its end, and wants it to see all of some texts. Nothing is done where there is no browser.
 ///
-/// The page must fetch nothing: no file, no network.
+/// The page must fetch nothing: no file, no network. It must be readable in windows of all sizes, light and dark.
 #[track_caller]
 pub fn sees(place: &Place, page: &str, script: &str, wanted: &[&str]) {
     let Some(chromium) = chromium() else { return };
+    let title = title_of(place, &chromium, page, "clicked.html", &format!("{HELPERS}{script}"));
+    for wanted in wanted.iter().chain(&["fetched 0"]) {
+        assert!(title.contains(wanted), "`{wanted}` is not in {title}");
+    }
+    // Frames are windows of their own to what is in them.
+    put_with(place, page, "framed.html", READABLE);
+    let frames =
+        WIDTHS.map(|width| format!("<iframe src=framed.html style='width:{width}px;height:1000px;border:0'></iframe>"));
+    place.put("frames.html", format!("<!DOCTYPE html><title></title><body>{}</body>", frames.concat()));
+    let title = title_of(place, &chromium, "frames.html", "framing.html", FRAMES);
+    assert_eq!(title.matches(": readable").count(), 2 * WIDTHS.len(), "{page}: {title}");
+}
+
+/// The widths of windows in which pages are looked at.
+const WIDTHS: [u32; 3] = [400, 900, 1600];
+
+/// Waits for what the frames say.
+const FRAMES: &str = r#"
+const told = [];
+window.onmessage = event => {
+  told.push(event.data);
+  if (told.length === document.querySelectorAll("iframe").length) document.title = "SEEN " + told.join(" | ") + " END";
+};
+"#;
+
+/// In light and dark: whether all text has the contrast that WCAG 2.1 AA wants (1.4.3: 4.5 : 1, large text 3 : 1), what is drawn
+/// in colours that of 1.4.11 (3 : 1), and nothing makes the page wider than its window.
+const READABLE: &str = r#"
+const parts = color => { const [r, g, b, a = 1] = color.match(/[\d.]+/g).map(Number); return { rgb: [r, g, b], a }; };
+const light = rgb => rgb.map(c => c / 255).map(c => c <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4).reduce((sum, c, i) => sum + c * [0.2126, 0.7152, 0.0722][i], 0);
+const contrast = (a, b) => { const [x, y] = [light(a), light(b)]; return (Math.max(x, y) + 0.05) / (Math.min(x, y) + 0.05); };
+const over = (top, below) => top.rgb.map((c, i) => top.a * c + (1 - top.a) * below[i]);
+const groundOf = element => {
+  if (!element) return [255, 255, 255];
+  const own = parts(getComputedStyle(element).backgroundColor);
+  return own.a === 1 ? own.rgb : over(own, groundOf(element.parentElement));
+};
+const hex = text => [1, 3, 5].map(i => parseInt(text.slice(i, i + 2), 16));
+const judge = scheme => {
+  document.documentElement.style.colorScheme = scheme;
+  const wrong = [];
+  let least = 21;
+  for (const element of document.querySelectorAll("body *")) {
+    const text = [...element.childNodes].filter(node => node.nodeType === 3).map(node => node.textContent.trim()).join(" ").trim();
+    const style = getComputedStyle(element);
+    if (!text || ["SCRIPT", "STYLE", "NOSCRIPT", "OPTION"].includes(element.tagName) || !element.checkVisibility({ visibilityProperty: true })) continue;
+    const svg = element instanceof SVGElement;
+    const ground = groundOf(element), ink = over(parts(svg ? style.fill : style.color), ground), size = parseFloat(style.fontSize);
+    const found = contrast(ink, ground), large = size >= 24 || size >= 18.66 && style.fontWeight >= 700;
+    least = Math.min(least, found);
+    if (found < (large ? 3 : 4.5)) wrong.push(`${found.toFixed(2)} for "${text.slice(0, 30)}"`);
+  }
+  if (typeof COLORS === "object") for (const [name, color] of Object.entries(COLORS)) {
+    const found = contrast(hex(color), groundOf(document.body));
+    if (found < 3) wrong.push(`${found.toFixed(2)} for lines of ${name}`);
+  }
+  const width = document.documentElement.scrollWidth;
+  if (width > innerWidth) wrong.push(`${width} pixels wide`);
+  return `${innerWidth} ${scheme}: ${wrong.length ? wrong.slice(0, 5).join(", ") : `readable, least contrast ${least.toFixed(2)}`}`;
+};
+window.addEventListener("error", e => parent.postMessage(`ERROR ${e.message}`, "*"));
+setTimeout(() => {
+  document.querySelectorAll("details").forEach(details => details.open = true);
+  parent.postMessage(["light", "dark"].map(judge).join("; "), "*");
+}, 500);
+"#;
+
+/// A page with a script at its end, as another.
+fn put_with(place: &Place, page: &str, name: &str, script: &str) {
+    let text = String::from_utf8(place.bytes(page)).unwrap();
+    let end = text.rfind("</body>").unwrap();
+    place.put(name, format!("{}<script>{script}</script>{}", &text[..end], &text[end..]));
+}
+
+/// The title of a page after a script at its end.
+#[track_caller]
+fn title_of(place: &Place, chromium: &Path, page: &str, name: &str, script: &str) -> String {
     let text = String::from_utf8(place.bytes(page)).unwrap();
     // The name of SVG's language is an address that nobody opens.
     let links = text.replace("http://www.w3.org/2000/svg", "");
     assert!(!links.contains("http://") && !links.contains("https://"), "{page} names an address");
-    let end = text.rfind("</body>").unwrap();
-    let with = format!("{}<script>{HELPERS}{script}</script>{}", &text[..end], &text[end..]);
-    place.put("clicked.html", with);
+    put_with(place, page, name, script);
     let run = Command::new("timeout")
         .arg("60")
         .arg(chromium)
         .args(["--no-sandbox", "--headless=new", "--disable-gpu", "--virtual-time-budget=4000", "--dump-dom"])
         .arg(format!("--user-data-dir={}", place.path("browser").display()))
-        .arg(format!("file://{}", place.path("clicked.html").display()))
+        .arg(format!("file://{}", place.path(name).display()))
         .output()
         .unwrap();
     let dom = String::from_utf8_lossy(&run.stdout);
     let title = dom.split("<title>").nth(1).and_then(|rest| rest.split("</title>").next()).unwrap_or("");
     assert!(title.starts_with("SEEN "), "{title}\n{}", String::from_utf8_lossy(&run.stderr));
-    for wanted in wanted.iter().chain(&["fetched 0"]) {
-        assert!(title.contains(wanted), "`{wanted}` is not in {title}");
-    }
+    title.into()
 }

@@ -220,6 +220,51 @@ pub(super) fn too_large(scout: &Scout) -> Vec<Finding> {
     found
 }
 
+/// The material that is seen most of those whose diffuse, mirrored and transmitted shares are more than all light.
+pub(super) fn gives_too_much(scout: &Scout) -> Option<Diagnostic> {
+    let bounces = scout.subject.job.settings.bounces > 0;
+    let sum = |phong: &Phong| {
+        let glass = if phong.fresnel { Color::ZERO } else { phong.transparent };
+        (phong.diffuse + phong.reflective + glass).max_element()
+    };
+    let adds = |phong: &Phong| phong.reflective != Color::ZERO || phong.transparent != Color::ZERO;
+    let too_much = phongs(scout).filter(|(_, _, phong)| bounces && adds(phong) && sum(phong) > 1.05);
+    let (i, written, phong) = too_much.max_by_key(|(i, ..)| rays(scout, *i)).filter(|(i, ..)| rays(scout, *i) > 0)?;
+    let message = format!(
+        "material {i} gives back {} times what it gets: its diffuse colour and what it mirrors and lets through are more \
+         than 1 together",
+        super::finding::number(sum(phong))
+    );
+    let diagnostic = Diagnostic::warning(message).help("make them smaller, so that they sum to 1 at most");
+    Some(scout.at_value(
+        diagnostic,
+        written.span,
+        &["reflectiveColor", "transparentColor", "specularColor", "specular"],
+    ))
+}
+
+/// Glass whose colour keeps all light in, where that colour weighs what it mirrors and lets through.
+pub(super) fn dull_glass(scout: &Scout) -> Vec<Finding> {
+    if scout.world().rules.secondary != Secondary::SpecularFresnel {
+        return Vec::new();
+    }
+    let dull = |(i, written, _): &(u32, &Spanned<Written>, &Phong)| match &written.value {
+        Written::Phong(phong, _) => {
+            phong.refraction_index.is_some_and(|index| index > 0.0)
+                && phong.specular_color == Color::ZERO
+                && rays(scout, *i) > 0
+        }
+        _ => false,
+    };
+    let say = |(i, written, _): (u32, &Spanned<Written>, &Phong)| {
+        let diagnostic = Diagnostic::warning(format!("material {i} is of glass, and lets nothing through"))
+            .effect("this year's program weighs what glass mirrors and lets through by `specularColor`, which is black")
+            .help("write `specularColor 1 1 1` for clear glass");
+        Finding::from(scout.at_value(diagnostic, written.span, &["specularColor", "refractionIndex"]))
+    };
+    phongs(scout).filter(dull).take(MOST_SOUGHT).map(say).collect()
+}
+
 /// Where the background is written: the scene does not keep it.
 pub(super) fn background_span(scout: &Scout) -> Option<Span> {
     let file = scout.subject.scene.camera_span.file;

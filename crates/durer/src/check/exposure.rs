@@ -40,6 +40,11 @@ pub(super) fn too_bright(scout: &Scout) -> Vec<Finding> {
                 "multiply the colours of the lights by {}, or write a picture that keeps them (.exr, .hdr)",
                 number(factor)
             ));
+    if let Some(cause) = super::colors::gives_too_much(scout) {
+        let severity = if over(far, MOST_FAR) { Severity::Warning } else { Severity::Note };
+        let diagnostic = Diagnostic { severity, effect: diagnostic.effect, ..cause };
+        return vec![Finding::from(diagnostic).whole(cut * 2 > lit.len())];
+    }
     for (i, light) in world.lights.iter().enumerate() {
         let Some(span) = place(scout, i) else { continue };
         let value = scout.value(span, &["color"]);
@@ -98,6 +103,14 @@ pub(super) fn depth_range(scout: &Scout) -> Vec<Finding> {
     let least = depths.iter().copied().fold(f32::INFINITY, f32::min);
     let most = depths.iter().copied().fold(f32::NEG_INFINITY, f32::max);
     let (low, high) = (min.min(max), min.max(max));
+    if min > max {
+        let turned = format!("{} {}", number(max), number(min));
+        let message = format!("the range of depths goes backwards, from {} to {}", number(min), number(max));
+        let help =
+            format!("the nearer comes first: `--depth-range {turned}` (in the course's programs `-depth {turned}`)");
+        let diagnostic = Diagnostic::warning(message).effect("near and far are exchanged in the picture of depths");
+        return vec![Finding::from(diagnostic.help(help))];
+    }
     let outside = depths.iter().filter(|t| **t <= low || **t >= high).count();
     // A range that is far too wide maps all depths to one grey.
     let flat = (most - least) < 0.02 * (high - low) && most > least;

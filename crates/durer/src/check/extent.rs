@@ -87,7 +87,12 @@ pub(super) fn too_narrow(scout: &Scout) -> Vec<Finding> {
             vec![Finding::from(scout.at_value(diagnostic, span, &["angle", "fov"])).whole(true)]
         }
         Camera::Orthographic(camera) => {
-            let Some(size) = pixels(scout, bounds).filter(|size| *size > 30.0 * larger) else { return Vec::new() };
+            // A picture of one thing's surface alone shows nothing.
+            let mut seen: Vec<u32> = scout.seen().map(|(_, seen)| seen.object).collect();
+            seen.sort_unstable();
+            seen.dedup();
+            let most = if seen.len() == 1 { 8.0 } else { 30.0 };
+            let Some(size) = pixels(scout, bounds).filter(|size| *size > most * larger) else { return Vec::new() };
             let wanted = number(1.2 * camera.size * size / larger);
             let diagnostic = Diagnostic::warning(format!("the picture is {} wide only", number(camera.size)))
                 .effect(format!("less than a {}th of the scene's width is seen", number((size / larger).floor())))
@@ -175,7 +180,7 @@ pub(super) fn unseen(scout: &Scout) -> Vec<Finding> {
     let hidden: Vec<(u32, u32)> = (0..sights.len() as u32)
         .filter_map(|i| match sights[i as usize] {
             // What is behind glass, or in a mirror's sight, is seen.
-            Sight::Hidden(by) if !is_glass(scout, by) => Some((i, by)),
+            Sight::Hidden(by) if !is_glass(scout, by) && found.is_empty() => Some((i, by)),
             _ => None,
         })
         .collect();
@@ -222,13 +227,14 @@ fn far_away(scout: &Scout) -> Vec<Finding> {
     let seen = both().filter(|(_, (_, sight))| **sight == Sight::Seen).filter_map(|(_, (object, _))| object.bounds());
     let core = seen.fold(Aabb::EMPTY, Aabb::union);
     let far = |bounds: Aabb| (bounds.center() - core.center()).length() > 10.0 * core.size().length();
-    let lost = both().find(|(_, (object, sight))| **sight == Sight::Outside && object.bounds().is_some_and(far));
+    let out = |sight: &Sight| matches!(sight, Sight::Outside | Sight::Hidden(_));
+    let lost = both().find(|(_, (object, sight))| out(sight) && object.bounds().is_some_and(far));
     let Some((number, (object, _))) = lost.filter(|_| !core.is_empty()) else { return Vec::new() };
     let place = object.bounds().map_or_else(String::new, |bounds| vector(bounds.center()));
     let diagnostic =
         Diagnostic::warning(format!("the {} is far from everything else, at {place}", scout.object(number as u32)))
             .at(object.span)
-            .effect("it is not in the picture")
+            .effect("it is not seen")
             .help("look at its place and the transforms around it");
     vec![Finding::from(diagnostic)]
 }

@@ -47,6 +47,10 @@ pub(super) fn from_behind(scout: &Scout) -> Vec<Finding> {
         black |= surface.black;
     }
     let all: usize = seen.iter().sum();
+    // Who is on the wrong side of what hides everything is told that alone.
+    if !super::view::hidden(scout).is_empty() {
+        return Vec::new();
+    }
     let turned_away = (0..count).filter(|&i| seen[i] > 0 && backs[i] == seen[i] && (!shaded || is_flat(i)));
     let say = |i: usize| {
         let message = format!("the {} is seen from behind", scout.object(i as u32));

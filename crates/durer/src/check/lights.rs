@@ -221,6 +221,8 @@ pub(super) fn blocked(scout: &Scout) -> Vec<Finding> {
 
 /// Where lights together reach a smaller share of what is seen, most of it is in the dark.
 const MOSTLY_DARK: f32 = 0.33;
+/// Where they reach less than this, only a rim is lit.
+const RIM: f32 = 0.2;
 /// And here nearly all.
 const NEARLY_ALL_DARK: f32 = 0.25;
 
@@ -229,7 +231,9 @@ fn mostly_dark(scout: &Scout) -> Vec<Finding> {
     let working: Vec<usize> = (0..scout.verdicts().len()).filter(|&i| scout.verdicts()[i] == Verdict::Works).collect();
     let (mut all, mut reached, mut away) = (0, 0, 0);
     let bright = |lit: &Lit| lit.adds.abs().max_element() > VISIBLE;
-    for (_, seen) in scout.seen() {
+    // A back that is not shaded as a front is no light's fault.
+    let shaded = scout.subject.job.settings.shade_back;
+    for (_, seen) in scout.seen().filter(|(_, seen)| shaded || !seen.from_behind) {
         all += 1;
         reached += usize::from(seen.lit.iter().any(&bright));
         away += usize::from(seen.lit.iter().all(|lit| lit.cosine <= 1e-3));
@@ -261,6 +265,10 @@ fn mostly_dark(scout: &Scout) -> Vec<Finding> {
     let lit_floor = scout.seen().any(|(_, seen)| flat(seen.object) && seen.lit.iter().any(bright));
     if (!floor || lit_floor) && reached as f32 > 0.02 * all as f32 {
         diagnostic.severity = Severity::Note;
+        // A moon is left as it is; a rim of light is more likely a sign too many.
+        if reached as f32 > RIM * all as f32 {
+            diagnostic.fix.clear();
+        }
         return vec![Finding::from(diagnostic)];
     }
     vec![Finding::from(diagnostic).whole((reached as f32) < NEARLY_ALL_DARK * all as f32)]
@@ -274,6 +282,13 @@ pub(super) fn behind(scout: &Scout) -> Vec<Finding> {
         }
         let lit: Vec<&Lit> = scout.seen().filter_map(|(_, seen)| seen.by(light)).collect();
         let away = lit.iter().filter(|lit| lit.cosine <= 1e-3).count();
+        let turned = lit.iter().filter(|lit| lit.cosine < -1e-3).count();
+        if turned * 2 < away {
+            let message = "this light only grazes what is seen".to_string();
+            let (diagnostic, span) = useless(scout, light, message)?;
+            let diagnostic = scout.at_value(diagnostic, span, &["direction", "position"]);
+            return Some(diagnostic.help("turn it so that it shines on the surface, and not along it"));
+        }
         let message = format!("this light is behind what is seen: {} of it faces away", percent(away, lit.len()));
         let (diagnostic, span) = useless(scout, light, message)?;
         let diagnostic = match &written(scout, light)?.value {

@@ -3,8 +3,9 @@
 use super::MOST_SOUGHT;
 use super::finding::{Finding, number};
 use super::scout::Scout;
+use super::sight::Sight;
 use crate::diag::{Diagnostic, Span};
-use crate::math::Vec3;
+use crate::math::{Ray, Vec3};
 use crate::shape::{Plane, Primitive};
 use crate::world::{Geometry, Object};
 use std::collections::HashMap;
@@ -30,6 +31,40 @@ pub(super) fn degenerate(scout: &Scout) -> Vec<Finding> {
         Finding::from(diagnostic).whole(scout.world().objects.len() == 1)
     };
     scout.world().objects.iter().filter(flat).map(say).collect()
+}
+
+/// Solids that no ray meets, as far as a few hundred tell.
+pub(super) fn empty_solids(scout: &Scout) -> Vec<u32> {
+    let world = scout.world();
+    let empty = |&(i, object): &(usize, &Object)| {
+        let Geometry::Solid(_) = &object.geometry else { return false };
+        let Some(bounds) = object.bounds().filter(|_| scout.sights()[i] != Sight::Seen) else { return false };
+        let size = bounds.size();
+        let met = |axis: usize, a: u32, b: u32| {
+            let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
+            let (mut origin, mut dir) = (bounds.min, Vec3::ZERO);
+            origin[axis] -= size.max_element();
+            origin[u] += size[u] * (a as f32 + 0.5) / 12.0;
+            origin[v] += size[v] * (b as f32 + 0.5) / 12.0;
+            dir[axis] = 1.0;
+            world.hits_of_each(&Ray::new(origin, dir)).any(|hit| hit.object as usize == i)
+        };
+        !(0..3).any(|axis| (0..144).any(|cell| met(axis, cell % 12, cell / 12)))
+    };
+    let few = world.objects.len() <= 100;
+    world.objects.iter().enumerate().filter(|_| few).filter(empty).map(|(i, _)| i as u32).take(MOST_SOUGHT).collect()
+}
+
+/// Solids of which nothing is left.
+pub(super) fn empty_solid(scout: &Scout) -> Vec<Finding> {
+    let say = |object: u32| {
+        let diagnostic = Diagnostic::warning(format!("nothing is left of the {}", scout.object(object)))
+            .at(scout.object_span(object))
+            .effect("it is not seen")
+            .help("a part that is taken away covers all of the first, or the parts of an intersection do not meet");
+        Finding::from(diagnostic).whole(scout.seen().next().is_none())
+    };
+    empty_solids(scout).into_iter().map(say).collect()
 }
 
 /// Objects that a transform has made flat, or nearly so.

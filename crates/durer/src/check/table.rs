@@ -46,6 +46,8 @@ checks! {
     "camera-away": "the camera looks past everything", view::away;
     "too-small": "all things together are too small in the picture", extent::too_small;
     "too-narrow": "the picture shows a tiny part of the scene", extent::too_narrow;
+    "empty-solid": "a solid of which nothing is left", objects::empty_solid;
+    "out-of-focus": "a lens that is sharp where nothing is", view::out_of_focus;
     "hidden-behind": "one object hides all others", view::hidden;
     "below-plane": "a plane between the camera and all other things", view::below_plane;
     "long-up": "a camera's `up` that is used as it is, and not of length 1", year::long_up;
@@ -74,6 +76,7 @@ checks! {
     "light-cancelled": "a light of which the materials give back nothing", lights::cancelled;
     "negative-color": "a colour below zero", colors::negative;
     "no-bounces": "mirrors or glass without secondary rays", colors::no_bounces;
+    "dull-glass": "glass whose colour lets nothing through", colors::dull_glass;
     "odd-index": "glass of an index that no glass has", colors::odd_index;
     "same-color": "things of the colour of the background", colors::camouflaged;
     "no-coordinates": "a texture on a thing without texture coordinates", colors::no_coordinates;
@@ -90,7 +93,6 @@ checks! {
     "squashed": "an object made flat, or next to nothing, by its transforms", objects::squashed;
     "same-place": "two objects with the same surface", objects::twice;
     "light-twice": "a light that is written twice", lights::twice;
-    "empty-solid": "a solid of which nothing is left", reported;
     // The picture.
     "not-finite": "samples that are no finite numbers", numbers::not_finite;
     "depth-range": "a range of depths that none of the picture's lies in", exposure::depth_range;

@@ -2,14 +2,17 @@
 
 use super::finding::{Finding, number, percent, vector};
 use super::lights::{Verdict, all_fail};
-use super::scout::Scout;
+use super::scout::{Probe, Scout, Seen};
 use super::sight::{Sight, corner};
 use super::solid::around;
 use crate::camera::{Camera, Lens};
 use crate::diag::{Diagnostic, Span};
-use crate::math::{Aabb, Vec2, Vec3, fp};
+use crate::math::{Aabb, Ray, Vec2, Vec3, fp};
 use crate::shape::Primitive;
 use crate::world::{Geometry, Object};
+
+/// Where every point becomes a disc of so large a share of the picture, nothing is sharp.
+const MOST_BLUR: f32 = 0.08;
 
 /// Whether the camera's rays all start at its place and go one way: those that run both ways see what is behind as well.
 fn has_eye(scout: &Scout) -> bool {
@@ -101,12 +104,22 @@ fn all_outside(scout: &Scout) -> bool {
     }
 }
 
+/// The plane between the camera and an object, if there is one: no camera that turns sees the object.
+fn plane_before(scout: &Scout, object: &Object) -> Option<u32> {
+    let world = scout.world();
+    let (eye, place) = (world.camera.pose().center, object.bounds().filter(|b| !b.is_empty())?.center());
+    let way = Ray { t_max: 1.0, ..Ray::new(eye, place - eye) };
+    world.hits_of_each(&way).map(|hit| hit.object).find(|&other| world.objects[other as usize].bounds().is_none())
+}
+
 /// The camera looks past everything, and the middle of things is not in the picture.
 pub(super) fn away(scout: &Scout) -> Vec<Finding> {
     let Some(bounds) = target(scout).filter(|_| all_outside(scout)) else { return Vec::new() };
     let (world, span) = (scout.world(), scout.subject.scene.camera_span);
     let (pose, center) = (world.camera.pose(), bounds.center());
-    if aims(scout, center) {
+    let mut ended = world.objects.iter().filter(|object| object.bounds().is_some()).peekable();
+    let behind = has_eye(scout) && ended.peek().is_some() && ended.all(|object| plane_before(scout, object).is_some());
+    if aims(scout, center) || behind {
         return Vec::new();
     }
     let hits = scout.seen().count();
@@ -229,12 +242,43 @@ pub(super) fn pixels(scout: &Scout, bounds: Aabb) -> Option<f32> {
     Some((max - min).max_element() / (2.0 * corner(scout).max_element()) * job.width.max(job.height) as f32)
 }
 
+/// A lens that blurs all that is seen.
+pub(super) fn out_of_focus(scout: &Scout) -> Vec<Finding> {
+    let Camera::ThinLens(camera) = &scout.world().camera else { return Vec::new() };
+    let forward = scout.world().frame.forward;
+    let depth = |(probe, seen): (&Probe, &Seen)| seen.t * probe.ray.dir.dot(forward);
+    let depths: Vec<f32> = scout.seen().map(depth).filter(|z| *z > 0.0).collect();
+    // The disc that a point becomes, as a share of the picture's larger side.
+    let (sine, cosine) = fp::sin_cos_degrees(f64::from(0.5 * camera.angle));
+    let width = 2.0 * (sine / cosine) as f32;
+    let blur = |z: f32| camera.aperture * (z - camera.focus_distance).abs() / (camera.focus_distance * z * width);
+    let least = depths.iter().map(|&z| blur(z)).fold(f32::INFINITY, f32::min);
+    if depths.is_empty() || least < MOST_BLUR {
+        return Vec::new();
+    }
+    let mut sorted = depths;
+    sorted.sort_by(f32::total_cmp);
+    let middle = number(sorted[sorted.len() / 2]);
+    let message = format!(
+        "nothing is sharp: the lens is sharp at {}, and all that is seen is {} and more away",
+        number(camera.focus_distance),
+        number(sorted[0])
+    );
+    let diagnostic = Diagnostic::warning(message)
+        .effect(format!("every point is a disc of at least {:.0} % of the picture's width", 100.0 * least))
+        .help(format!("`focusDistance {middle}` is where most things are; a smaller `aperture` blurs less"));
+    let span = scout.subject.scene.camera_span;
+    vec![Finding::from(scout.at_value(diagnostic, span, &["focusDistance", "aperture"])).whole(true)]
+}
+
 /// One thing is in front of all others.
 pub(super) fn hidden(scout: &Scout) -> Vec<Finding> {
     let mut hits = scout.seen().map(|(_, seen)| seen.object);
     let Some(front) = hits.next().filter(|front| hits.all(|other| other == *front)) else { return Vec::new() };
     let (mut hidden, mut others) = (0, 0);
-    for (number, sight) in scout.sights().iter().enumerate().filter(|(i, _)| *i as u32 != front) {
+    let empty = super::objects::empty_solids(scout);
+    let there = |(i, _): &(usize, &Sight)| *i as u32 != front && !empty.contains(&(*i as u32));
+    for (number, sight) in scout.sights().iter().enumerate().filter(there) {
         match sight {
             Sight::Hidden(_) => hidden += 1,
             Sight::Unknown if scout.world().objects[number].bounds().is_none() => {}
@@ -249,14 +293,15 @@ pub(super) fn hidden(scout: &Scout) -> Vec<Finding> {
     }
     let name = scout.object(front);
     let behind = scout.seen().all(|(_, seen)| seen.from_behind);
-    let turned = is_plane.then(|| offset_turned(scout, front)).flatten();
+    // Whoever looks at its back may be on the wrong side of it himself.
+    let turned = (is_plane && !behind).then(|| offset_turned(scout, front)).flatten();
     let help = match (is_plane, behind) {
-        _ if is_plane && turned.is_none() => {
+        _ if is_plane && turned.is_none() && !behind => {
             "the camera and the things behind the plane are on different sides of it: move one of them"
         }
         (true, true) => {
-            "the camera is behind the plane: it stands where p · normal = offset, so the sign of `offset` or of `normal` \
-             may be wrong"
+            "the camera is behind the plane, which stands where p · normal = offset: move the camera, or look at `offset` \
+             and at the direction of `normal`"
         }
         (true, false) => "the plane stands where p · normal = offset: is the sign of `offset` right?",
         _ => "move it, make it smaller, or move the camera",
@@ -277,16 +322,20 @@ pub(super) fn hidden(scout: &Scout) -> Vec<Finding> {
 pub(super) fn below_plane(scout: &Scout) -> Vec<Finding> {
     let objects = &scout.world().objects;
     let mut front = None;
-    for (object, sight) in objects.iter().zip(scout.sights()).filter(|(object, _)| object.bounds().is_some()) {
-        match (sight, front) {
-            (Sight::Hidden(by), None) if objects[*by as usize].bounds().is_none() => front = Some(*by),
-            (Sight::Hidden(by), Some(known)) if *by == known => {}
-            _ => {
-                front = None;
-                break;
-            }
+    let empty = super::objects::empty_solids(scout);
+    let there =
+        |(i, (object, _)): &(usize, (&Object, &Sight))| object.bounds().is_some() && !empty.contains(&(*i as u32));
+    for (_, (object, sight)) in objects.iter().zip(scout.sights()).enumerate().filter(there) {
+        let by = match sight {
+            Sight::Hidden(by) => Some(*by).filter(|by| objects[*by as usize].bounds().is_none()),
+            Sight::Outside if has_eye(scout) => plane_before(scout, object),
+            _ => None,
+        };
+        if by.is_none() || front.is_some_and(|known| Some(known) != by) {
+            front = None;
+            break;
         }
-        let _ = object;
+        front = by;
     }
     let front = match front {
         Some(front) => Some(front).filter(|_| hidden(scout).is_empty()),

@@ -196,10 +196,15 @@ pub(super) fn plane_normal(scout: &Scout) -> Vec<Finding> {
                 number(plane.offset.abs() / length),
                 number(plane.offset.abs())
             ))
-            .help(format!("give it the length 1: `normal {unit}`"));
-        let diagnostic = match scout.value(object.span, &["normal"]) {
-            Some(value) => diagnostic.at(value).fix(value, unit),
-            None => diagnostic.at(object.span),
+            .help(match scout.world().rules.has(Compat::RawNormals) {
+                true => format!("give it the length 1: `normal {unit}`; light counts {} times here", number(length)),
+                false => format!("give it the length 1: `normal {unit}`"),
+            });
+        // The plane stays where it is.
+        let offset = number(plane.offset / length);
+        let diagnostic = match (scout.value(object.span, &["normal"]), scout.value(object.span, &["offset"])) {
+            (Some(value), Some(place)) => diagnostic.at(value).fix(value, unit).fix(place, offset),
+            _ => diagnostic.at(object.span),
         };
         Some(Finding::from(diagnostic))
     };

@@ -180,7 +180,8 @@ impl<'r> Loader<'r> {
         diagnostics.extend(unread);
         let bytes = faces.iter().map(|face: &Texture| face.bytes() as u64).sum();
         let affordable = self.charge(name, bytes, diagnostics);
-        Some(CubeMap { faces: faces.try_into().ok()? }).filter(|_| affordable)
+        let mirrored_back = self.rules.has(Compat::MirroredBack);
+        Some(CubeMap { faces: faces.try_into().ok()?, mirrored_back }).filter(|_| affordable)
     }
 
     /// Takes memory from what is left; says so where there is too little.

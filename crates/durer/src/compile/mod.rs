@@ -9,7 +9,7 @@ pub(crate) mod testing;
 use crate::bvh::{Bvh, Grid};
 use crate::camera::{Frame, Lens};
 use crate::diag::{Diagnostic, Diagnostics, Files, Span};
-use crate::dialect::{Compat, MeshNormals, Rules};
+use crate::dialect::{Compat, Dialect, MeshNormals, Rules};
 use crate::light::{Emitter, Light};
 use crate::math::{Aabb, Affine, Color, Vec3};
 use crate::scene::{self, Group, MatrixOp, Node, Scene};
@@ -56,9 +56,10 @@ pub fn compile(
     let mut own = Diagnostics::default();
     let mut loader = files::Loader::new(resources, rules);
     let Some(camera) = scene.camera.clone() else {
-        diagnostics.push(
-            Diagnostic::error("the scene has no camera").code("no-camera").help("add a `PerspectiveCamera { ... }`"),
-        );
+        diagnostics.push(Diagnostic::error("the scene has no camera").code("no-camera").help(match is_nodes(rules) {
+            true => "add a `Camera { ... }`",
+            false => "add a `PerspectiveCamera { ... }`",
+        }));
         return None;
     };
     match camera.problem() {
@@ -185,7 +186,10 @@ fn lights(scene: &Scene, rules: &Rules, diagnostics: &mut Diagnostics) -> (Vec<L
                 ("the scene has no lights: colours are flat, as ambient as is written", scene.background.ambient_light)
             }
         };
-        diagnostics.push(Diagnostic::warning(message).code("no-light"));
+        // The first assignments have no lights, and ambient light of 1 1 1 as is meant.
+        let meant = scene.background.ambient_light == Color::ONE;
+        let finding = if meant { Diagnostic::note(message) } else { Diagnostic::warning(message) };
+        diagnostics.push(finding.code("no-light"));
         return (Vec::new(), ambient);
     }
     for light in written {
@@ -224,6 +228,11 @@ struct Flattening<'a, 'r> {
     open_edges: HashMap<String, Option<[Vec3; 2]>>,
 }
 
+/// Whether scenes of a dialect are trees of nodes, for words of help.
+fn is_nodes(rules: &Rules) -> bool {
+    rules.name == Dialect::F23.name()
+}
+
 impl Flattening<'_, '_> {
     /// Says once that objects have no material.
     fn warn_of_bare(&mut self) {
@@ -235,7 +244,10 @@ impl Flattening<'_, '_> {
             n => message += &format!("; so are {} others", n - 1),
         }
         let warning = Diagnostic::warning(message).code("no-material").at(span);
-        self.diagnostics.push(warning.help("write `MaterialIndex 0` before it"));
+        self.diagnostics.push(warning.help(match is_nodes(self.rules) {
+            true => "write `Component<Material> { index 0 }` into its node",
+            false => "write `MaterialIndex 0` before it",
+        }));
     }
 
     fn group(&mut self, group: &Group, to_world: DAffine3) {

@@ -49,7 +49,7 @@ pub(super) fn plan(stage: &Stage) -> String {
         let corners: Vec<Vec2> = bounds.corners().map(|corner| place(flat(corner))).into_iter().collect();
         for (i, a) in corners.iter().enumerate() {
             for b in (0..3).map(|axis| i | 1 << axis).filter(|&j| j != i).map(|j| corners[j]) {
-                line(&mut svg, *a, b, "stroke=\"#999\" stroke-width=\"0.7\"");
+                line(&mut svg, *a, b, "stroke=\"#888\" stroke-width=\"0.7\"");
             }
         }
     }
@@ -67,10 +67,14 @@ pub(super) fn plan(stage: &Stage) -> String {
         (corner + Vec2::new(46.0, 0.0), "right", corner + Vec2::new(50.0, 4.0)),
         (corner - Vec2::new(0.0, 46.0), "forward", corner - Vec2::new(6.0, 52.0)),
     ] {
-        line(&mut svg, corner, to, "stroke=\"#333\" stroke-width=\"1.5\"");
-        let _ = writeln!(svg, "<text x=\"{:.0}\" y=\"{:.0}\" font-size=\"13\" fill=\"#333\">{name}</text>", at.x, at.y);
+        line(&mut svg, corner, to, "stroke=\"currentColor\" stroke-width=\"1.5\"");
+        let _ = writeln!(
+            svg,
+            "<text x=\"{:.0}\" y=\"{:.0}\" font-size=\"13\" fill=\"currentColor\">{name}</text>",
+            at.x, at.y
+        );
     }
-    dot(&mut svg, place(Vec2::ZERO), 4.0, "black");
+    dot(&mut svg, place(Vec2::ZERO), 4.0, "currentColor");
     svg + "</svg>\n"
 }
 

@@ -16,6 +16,8 @@ pub enum Pick {
     LastWritten,
     /// That of the object that is written first.
     FirstWritten,
+    /// The nearest, but of spheres the far side.
+    FarSpheres,
 }
 
 /// How normals of transformed things come to the world.
@@ -128,10 +130,12 @@ pub enum Glass {
     NotSwapped,
     /// As if there were no surface.
     Straight,
+    /// With the outward normal also where the ray leaves.
+    Outward,
 }
 
 /// How the divisor of glass is found.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Fresnel {
     /// Schlick's formula.
     #[default]
@@ -140,6 +144,10 @@ pub enum Fresnel {
     Constant,
     /// Not at all: both rays count in full.
     None,
+    /// This share is mirrored at every angle.
+    Share(f32),
+    /// What should be mirrored is transmitted, and the other way.
+    Exchanged,
 }
 
 /// What a light is as a thing in space.
@@ -166,6 +174,8 @@ pub struct Highlights {
     pub bare: bool,
     /// The vector of Blinn's model.
     pub half: Half,
+    /// The direction to the eye has the wrong sign.
+    pub eye_negated: bool,
 }
 
 /// What shadow rays do.
@@ -177,6 +187,12 @@ pub struct Shadows {
     pub ambient_too: bool,
     /// They begin this far along, if given.
     pub epsilon: Option<f32>,
+    /// The share of a light that is left in its shadow.
+    pub left: f32,
+    /// Where one light is blocked, those after it are too.
+    pub later_too: bool,
+    /// Where one light is blocked, there is no light at all; with `true`, mirrored and transmitted light neither.
+    pub black: Option<bool>,
 }
 
 /// What secondary rays do.
@@ -196,6 +212,10 @@ pub struct Bounces {
     pub glass: Glass,
     /// What divides glass.
     pub fresnel: Fresnel,
+    /// Local light counts for what the mirror's colour leaves of it.
+    pub mixed: bool,
+    /// Mirrors have no local light.
+    pub instead: bool,
     /// They are traced once for each light.
     pub each_light: bool,
     /// Where they hit nothing, they bring no light.
@@ -223,6 +243,10 @@ pub struct Habits {
     pub flat: bool,
     /// Normals of triangles point the other way.
     pub triangles_turned: bool,
+    /// Normals of spheres point inwards.
+    pub spheres_turned: bool,
+    /// Which normals of a triangle's corners its three weights belong to; 0 is right.
+    pub mixed_otherwise: usize,
     /// Shaded normals always face the eye.
     pub faced: bool,
     /// Ambient light.
@@ -313,6 +337,8 @@ pub enum Output {
     OtherRounding,
     /// Values to the power of one over this; the curve of sRGB for 0.
     CurveMore(f32),
+    /// c / (1 + c).
+    Toned,
     /// Values to the power of this; without the curve of sRGB, or its inverse, for 0.
     CurveLess(f32),
 }
@@ -328,13 +354,25 @@ pub struct Turn {
     pub rows_back: bool,
     /// Red and blue are exchanged.
     pub bgr: bool,
+    /// By how many pixels the picture is moved to the right and down.
+    pub moved: (i32, i32),
+    /// What nothing is moved to is black, and does not repeat the border.
+    pub black_border: bool,
 }
 
 impl Turn {
+    /// Whether no pixel of the right picture comes to a place.
+    pub fn is_empty(self, width: u32, height: u32, (x, y): (u32, u32)) -> bool {
+        let out = |at: u32, by: i32, size: u32| !(0..i64::from(size)).contains(&(i64::from(at) - i64::from(by)));
+        self.black_border && (out(x, self.moved.0, width) || out(y, self.moved.1, height))
+    }
+
     /// The pixel of the right picture that comes to a place.
     pub fn source(self, width: u32, height: u32, (x, y): (u32, u32)) -> (u32, u32) {
         let x = if self.columns_back { width - 1 - x } else { x };
         let y = if self.rows_back { height - 1 - y } else { y };
-        if self.exchange && width == height { (y, x) } else { (x, y) }
+        let (x, y) = if self.exchange && width == height { (y, x) } else { (x, y) };
+        let from = |at: u32, by: i32, size: u32| at.saturating_add_signed(-by).min(size - 1);
+        (from(x, self.moved.0, width), from(y, self.moved.1, height))
     }
 }

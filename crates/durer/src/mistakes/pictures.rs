@@ -59,6 +59,11 @@ impl View<'_> {
         let (width, height) = (self.job.width, self.job.height);
         let sources: Vec<(u32, u32)> = places.iter().map(|place| variant.turn.source(width, height, *place)).collect();
         let mut values = self.values(variant.output, &self.light(variant, &sources));
+        for (value, place) in values.iter_mut().zip(places) {
+            if variant.turn.is_empty(width, height, *place) {
+                *value = Vec3::ZERO;
+            }
+        }
         if variant.turn.bgr {
             values.iter_mut().for_each(|value| *value = Vec3::new(value.z, value.y, value.x));
         }
@@ -68,6 +73,7 @@ impl View<'_> {
     fn value(&self, output: Output, light: Color) -> Vec3 {
         // Values beyond all measure are white, whatever an old program's whole numbers made of them.
         let light = if light.is_finite() { light.min(Color::splat(1e6)) } else { light };
+        let light = if output == Output::Toned { light.map(|v| v / (1.0 + v.max(0.0))) } else { light };
         let light = if output == Output::Scaled && self.brightest > 1.0 { light / self.brightest } else { light };
         if self.scale == Scale::Linear {
             return light;

@@ -10,7 +10,7 @@ use crate::integrator::spawn::{from_surface, to_light};
 use crate::integrator::whitted::{Blend, Passage, fresnel_share};
 use crate::integrator::{Settings, Whitted, refract};
 use crate::light::{Emitter, Illumination, Light};
-use crate::math::{Color, Ray, Ray64, Vec3, fp, gamma, reflect};
+use crate::math::{Color, Ray, Ray64, Vec2, Vec3, fp, gamma, reflect};
 use crate::shape::{Primitive, Surface};
 use crate::world::{Geometry, HighlightModel, Hit, Part, Phong, World};
 use glam::DVec3;
@@ -80,6 +80,17 @@ impl<'w> Pupil<'w> {
             Pick::FarthestObject => self.world.hits_of_each(ray).max_by(|a, b| a.t.total_cmp(&b.t)),
             Pick::LastWritten => self.world.hits_of_each(ray).max_by_key(|hit| hit.object),
             Pick::FirstWritten => self.world.hits_of_each(ray).min_by_key(|hit| hit.object),
+            Pick::FarSpheres => {
+                let far = |hit: Hit| {
+                    let object = &self.world.objects[hit.object as usize].geometry;
+                    let sphere = matches!(object, Geometry::Primitive(Primitive::Sphere(_)));
+                    let mut rest = *ray;
+                    rest.rounded.t_min = hit.t;
+                    let beyond = |hit: &Hit| self.world.hits_of_each(&rest).find(|other| other.object == hit.object);
+                    sphere.then(|| beyond(&hit)).flatten().unwrap_or(hit)
+                };
+                self.world.hits_of_each(ray).map(far).min_by(|a, b| a.t.total_cmp(&b.t))
+            }
         };
         hit.map(|hit| (hit, hit.t))
     }
@@ -114,6 +125,15 @@ impl<'w> Pupil<'w> {
             // Transforms that turn and scale evenly keep the share of its length that it lost.
             surface.n_shade *= mixed.length();
         }
+        if let (Geometry::Mesh(tree), true) = (&object.geometry, habits.mixed_otherwise > 0) {
+            const ORDERS: [[usize; 3]; 6] = [[0, 1, 2], [1, 2, 0], [2, 0, 1], [1, 0, 2], [0, 2, 1], [2, 1, 0]];
+            let weights = [1.0 - hit.uv.x - hit.uv.y, hit.uv.x, hit.uv.y];
+            let [_, u, v] = ORDERS[habits.mixed_otherwise.min(5)].map(|i| weights[i]);
+            if let Some(mixed) = tree.mesh.mixed_normal(hit.part, Vec2::new(u, v)) {
+                let world = object.to_world.as_ref().map_or(mixed, |to_world| to_world.long_normal(mixed));
+                surface.n_shade = world.normalize_or(surface.n_shade);
+            }
+        }
         if habits.flat {
             surface.n_shade = surface.n_geo;
         }
@@ -127,7 +147,8 @@ impl<'w> Pupil<'w> {
             };
         }
         let triangle = matches!(object.geometry, Geometry::Mesh(_) | Geometry::Primitive(Primitive::Triangle(_)));
-        if habits.triangles_turned && triangle {
+        let sphere = matches!(object.geometry, Geometry::Primitive(Primitive::Sphere(_)));
+        if habits.triangles_turned && triangle || habits.spheres_turned && sphere {
             (surface.n_shade, surface.n_geo) = (-surface.n_shade, -surface.n_geo);
         }
         surface
@@ -142,7 +163,7 @@ impl<'w> Pupil<'w> {
         let n = if turned { -surface.n_shade } else { surface.n_shade };
         let n = if world.rules.has(Compat::UnitLight) { n.normalize_or(n) } else { n };
         let parts = world.parts(hit, surface.position);
-        let mut color = Color::ZERO;
+        let (mut color, mut blocked) = (Color::ZERO, false);
         if !black || habits.faced {
             let diffuse: SmallVec<[Color; 2]> =
                 parts.iter().map(|p| self.right.diffuse_color(p.phong, &surface)).collect();
@@ -161,6 +182,9 @@ impl<'w> Pupil<'w> {
             for light in &world.lights {
                 let seen = self.illuminated(light, surface.point());
                 let visible = self.visible(&surface, &seen, path.first);
+                let visible = if habits.shadows.later_too && blocked { Color::ZERO } else { visible };
+                blocked |= visible == Color::ZERO;
+                let visible = visible.max(Color::splat(habits.shadows.left));
                 any |= visible != Color::ZERO;
                 let replaced = habits.sum == Sum::LastSeen && visible != Color::ZERO;
                 if habits.sum == Sum::LastOnly || replaced {
@@ -182,6 +206,17 @@ impl<'w> Pupil<'w> {
         }
         if habits.sum == Sum::ClampedLocal {
             color = color.clamp(Color::ZERO, Color::ONE);
+        }
+        match habits.shadows.black {
+            Some(true) if blocked => return Color::ZERO,
+            Some(false) if blocked => color = Color::ZERO,
+            _ => {}
+        }
+        if habits.bounces.instead && path.bounces > 0 && Blend::of(&parts).reflective != Color::ZERO {
+            color = Color::ZERO;
+        }
+        if habits.bounces.mixed && path.bounces > 0 {
+            color *= Color::ONE - Blend::of(&parts).reflective;
         }
         if path.bounces > 0 {
             let rounds = if habits.bounces.each_light { world.lights.len() } else { 1 };
@@ -228,6 +263,7 @@ impl<'w> Pupil<'w> {
     fn direct(&self, phong: &Phong, diffuse: Color, n: Vec3, view: Vec3, light: &Light, seen: &Illumination) -> Color {
         let habits = self.habits.highlights;
         let lamp = self.lamp(light, seen);
+        let view = if habits.eye_negated { -view } else { view };
         let cosine = n.dot(lamp);
         let factor = match self.habits.cosine {
             Cosine::Clamped => cosine.max(0.0),
@@ -309,7 +345,7 @@ impl<'w> Pupil<'w> {
         let n = if ray.dir().dot(n) < 0.0 { n } else { n_geo };
         let Passage { here, there, behind, .. } = self.right.passage(ray, hit, &path.media).unwrap_or_default();
         let eta = match habits.glass {
-            Glass::Right | Glass::Straight => here / there,
+            Glass::Right | Glass::Straight | Glass::Outward => here / there,
             Glass::Inverted => there / here,
             Glass::NotSwapped => 1.0 / ior,
         };
@@ -326,6 +362,7 @@ impl<'w> Pupil<'w> {
         let transmitted = match (transparent == Color::ZERO, habits.glass) {
             (true, _) => None,
             (false, Glass::Straight) => Some(ray.dir()),
+            (false, Glass::Outward) if leaving => refract(ray.dir(), n, eta).map(|t| t - 2.0 * t.dot(n) * n),
             (false, _) => refract(ray.dir(), n, eta),
         };
         let divided = fresnel && self.settings.reflection && self.settings.refraction;
@@ -333,12 +370,14 @@ impl<'w> Pupil<'w> {
             let ratio = (there - here) / (there + here);
             let schlick = |t| match habits.fresnel {
                 Fresnel::Constant => ratio * ratio,
+                Fresnel::Share(share) => share,
                 _ => {
                     let zero = leaving && self.world.rules.has(Compat::ExitR0);
                     fresnel_share(ray.dir(), n, t, (here, there), zero)
                 }
             };
             let r = transmitted.map_or(1.0, schlick);
+            let r = if habits.fresnel == Fresnel::Exchanged { 1.0 - r } else { r };
             reflective *= r;
             transparent *= 1.0 - r;
         }

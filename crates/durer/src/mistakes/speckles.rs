@@ -5,8 +5,10 @@ use crate::math::Vec3;
 
 /// How many of the speckles must be of the kind.
 const MOST: f64 = 0.97;
-/// Of neighbours where there are speckles, so many must be without, at least.
+/// Of neighbours where there are speckles, so many must be without, at least; and as many more as there are at the border of
+/// some regions of so many pixels: 2.3 / √count for one disc.
 const BROKEN: f64 = 0.06;
+const BORDERS: f64 = 4.0;
 
 /// Whether a picture shows what a reference shows, but for pixels that are as dark as in the full shadow of some lights; not
 /// whole regions of them, but speckles. `shadowed` are the pictures in which one or more lights are off, `size` the picture's.
@@ -31,6 +33,6 @@ pub(super) fn explained(reference: &[Vec3], test: &[Vec3], shadowed: &[Vec<Vec3>
         }
     }
     let share = of_kind as f64 / count.max(1) as f64;
-    let speckled = broken as f64 > BROKEN.max(0.25 * f64::from(count < 400)) * pairs as f64;
+    let speckled = broken as f64 > (BROKEN + BORDERS / (count.max(1) as f64).sqrt()) * pairs as f64;
     (count * 500 > reference.len() && share >= MOST && speckled).then_some(share)
 }

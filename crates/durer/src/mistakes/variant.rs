@@ -9,8 +9,10 @@ use crate::material::PhongMaterial;
 use crate::math::{Affine, Color, Ray, Vec2};
 use crate::render::raster;
 use crate::scene::{self, Group, MatrixOp, Node, Scene};
-use crate::world::{Geometry, HighlightModel, Material, Phong, World};
+use crate::shape::{Primitive, Triangle};
+use crate::world::{Geometry, HighlightModel, Material, MeshTree, Object, Phong, World};
 use glam::DAffine3;
+use std::sync::Arc;
 
 /// What a mistake changes.
 #[derive(Clone, Debug)]
@@ -95,15 +97,18 @@ impl<'s> Variant<'s> {
     }
 
     /// Gives highlights to materials that have a specular colour, in years whose program has none.
-    pub fn add_highlights(&mut self) {
+    ///
+    /// Their form is 0 for Phong's, 1 for Phong's where the light is on the surface's side, 2 for Blinn's.
+    pub fn add_highlights(&mut self, form: f32) {
         if self.world.rules.highlight != Highlight::None {
             return;
         }
-        let behind = self.world.rules.has(Compat::HighlightBehind);
+        let behind = self.world.rules.has(Compat::HighlightBehind) && form == 0.0;
+        let model = if form == 2.0 { HighlightModel::Blinn } else { HighlightModel::Phong { behind } };
         for (written, material) in self.scene.materials.iter().zip(&mut self.world.materials) {
             if let (scene::Material::Phong(written, _), Material::Phong(phong)) = (&written.value, material) {
                 let PhongMaterial { specular_color, shininess, .. } = **written;
-                phong.highlight = Some((specular_color, shininess.unwrap_or(0.0), HighlightModel::Phong { behind }));
+                phong.highlight = Some((specular_color, shininess.unwrap_or(0.0), model));
             }
         }
     }
@@ -148,6 +153,24 @@ impl<'s> Variant<'s> {
     fn rebuild(&mut self) {
         // Unlike a grid, a tree can always be made.
         let _ = compile::rebuild(&mut self.world, AccelKind::Bvh);
+    }
+
+    /// Adds to every triangle the other half of its parallelogram.
+    pub fn parallelograms(&mut self) {
+        let mut halves = Vec::new();
+        for object in &mut self.world.objects {
+            match &mut object.geometry {
+                Geometry::Primitive(Primitive::Triangle(triangle)) => {
+                    let [a, b, c] = triangle.corners();
+                    let half = Triangle { vertex0: b, vertex1: b + c - a, vertex2: c };
+                    halves.push(Object { geometry: Geometry::Primitive(Primitive::Triangle(half)), ..object.clone() });
+                }
+                Geometry::Mesh(tree) => *tree = Arc::new(MeshTree::new(tree.mesh.parallelograms())),
+                _ => {}
+            }
+        }
+        self.world.objects.extend(halves);
+        compile::rebuild(&mut self.world);
     }
 
     /// Changes all objects.

@@ -30,6 +30,8 @@ pub struct MeshData {
     pub triangle_uvs: Vec<[u32; 3]>,
     /// Three normals a triangle, or [`NO_INDEX`]; empty where no triangle has any.
     pub triangle_normals: Vec<[u32; 3]>,
+    /// Three vertices a triangle, where [`MeshData::loosen`] took the corners apart; else empty.
+    pub vertices: Vec<[u32; 3]>,
 }
 
 impl MeshData {
@@ -41,6 +43,7 @@ impl MeshData {
             + size_of_val(&*self.triangles)
             + size_of_val(&*self.triangle_uvs)
             + size_of_val(&*self.triangle_normals)
+            + size_of_val(&*self.vertices)
     }
 
     /// Gives every corner the normal of its position's number; false where there are fewer normals than positions.
@@ -56,7 +59,8 @@ impl MeshData {
     pub fn loosen(&mut self) {
         let corners = |t: &[u32; 3]| loosened(t.map(|i| self.positions[i as usize]));
         self.positions = self.triangles.iter().flat_map(corners).collect();
-        self.triangles = (0..self.triangles.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+        let apart = (0..self.triangles.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+        self.vertices = std::mem::replace(&mut self.triangles, apart);
     }
 }
 
@@ -111,6 +115,34 @@ impl Mesh {
             }
         }
         self
+    }
+
+    /// Whether it has one normal a triangle.
+    pub fn is_flat(&self) -> bool {
+        self.data.triangle_normals.is_empty()
+    }
+
+    /// The same with normals that a rule makes, whatever normals it had.
+    pub fn with_normals(&self, rule: MeshNormals) -> Mesh {
+        Mesh { center: self.center, ..Mesh::new(self.data.clone(), rule, false) }
+    }
+
+    /// The same with the other half of every triangle's parallelogram, whose normals go on as those of the triangle do.
+    pub fn parallelograms(&self) -> Mesh {
+        let mut data = self.data.clone();
+        fn halves(triangles: &mut Vec<[u32; 3]>, values: &mut Vec<Vec3>) {
+            for i in 0..triangles.len() {
+                let [a, b, c] = triangles[i];
+                let at = |i: u32| values.get(i as usize).copied().unwrap_or_default();
+                let fourth = at(b) + at(c) - at(a);
+                triangles.push([b, values.len() as u32, c]);
+                values.push(fourth);
+            }
+        }
+        halves(&mut data.triangles, &mut data.positions);
+        halves(&mut data.triangle_normals, &mut data.normals);
+        (data.triangle_uvs, data.vertices) = Default::default();
+        Mesh { data, center: self.center }
     }
 
     /// How far it was moved by [`Mesh::centered`].

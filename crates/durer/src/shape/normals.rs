@@ -43,14 +43,16 @@ type Normals = (Vec<Vec3>, Vec<[u32; 3]>);
 
 /// One normal a vertex: the sum over its faces, each weighted by a function of its cross product.
 fn smooth(data: &MeshData, weigh: impl Fn(DVec3) -> DVec3) -> Normals {
-    let mut sums = vec![DVec3::ZERO; data.positions.len()];
-    for &triangle in &data.triangles {
+    let vertices = if data.vertices.is_empty() { &data.triangles } else { &data.vertices };
+    let count = vertices.iter().flatten().max().map_or(0, |&last| last as usize + 1);
+    let mut sums = vec![DVec3::ZERO; count];
+    for (&triangle, vertices) in data.triangles.iter().zip(vertices) {
         let normal = weigh(cross(data, triangle));
-        for i in triangle {
+        for &i in vertices {
             sums[i as usize] += normal;
         }
     }
-    (sums.into_iter().map(|sum| sum.normalize_or_zero().as_vec3()).collect(), data.triangles.clone())
+    (sums.into_iter().map(|sum| sum.normalize_or_zero().as_vec3()).collect(), vertices.clone())
 }
 
 /// One normal a corner: the sum, by angle, over the faces around its vertex that are not beyond a crease.

@@ -19,7 +19,7 @@ use glam::Vec3A;
 /// A ray prepared for many triangles.
 ///
 /// It is turned: the longest component of its direction counts as the third axis, and the other two are in the order that keeps
-/// the sides of triangles. So are the corners that [`Sheared::crosses`] and others take.
+/// the sides of triangles. So are the corners that `Sheared::crosses` and others take.
 #[derive(Clone, Copy, Debug)]
 pub struct Sheared {
     axes: &'static Turn,

@@ -8,6 +8,8 @@ use crate::math::{Color, Vec2, Vec3};
 pub struct CubeMap {
     /// In the order of [`CubeMap::FACES`].
     pub faces: [Texture; 6],
+    /// Whether [`crate::dialect::Compat::MirroredBack`] holds.
+    pub mirrored_back: bool,
 }
 
 impl CubeMap {
@@ -15,6 +17,9 @@ impl CubeMap {
     pub const FACES: [&'static str; 6] = ["left", "right", "up", "down", "front", "back"];
 
     /// The colour that a direction sees. The largest component picks the face; ties go to x, then y.
+    ///
+    /// Seen from inside, every face is upright and not mirrored: the four around with y upwards, `up` with z upwards
+    /// and `down` with -z upwards, so that the six meet without a seam.
     pub fn at(&self, direction: Vec3) -> Color {
         let Vec3 { x, y, z } = direction;
         let d = direction.abs();
@@ -22,11 +27,16 @@ impl CubeMap {
         let (face, u, v) = if d.x >= d.y && d.x >= d.z {
             if x > 0.0 { (1, h(z / x), h(y / x)) } else { (0, h(z / x), 1.0 - h(y / x)) }
         } else if d.y >= d.z {
-            if y > 0.0 { (2, h(x / y), h(z / y)) } else { (3, 1.0 - h(x / y), 1.0 - h(z / y)) }
+            if y > 0.0 { (2, h(x / y), h(z / y)) } else { (3, 1.0 - h(x / y), h(z / y)) }
         } else if z > 0.0 {
             (4, 1.0 - h(x / z), h(y / z))
         } else {
-            (5, h(x / z), 1.0 - h(y / z))
+            (5, 1.0 - h(x / z), 1.0 - h(y / z))
+        };
+        let (u, v) = match face {
+            3 if self.mirrored_back => (u, 1.0 - v),
+            5 if self.mirrored_back => (1.0 - u, v),
+            _ => (u, v),
         };
         self.faces[face].at(Vec2::new(u, v))
     }

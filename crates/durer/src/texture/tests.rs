@@ -49,7 +49,7 @@ fn a_texture_has_as_many_texels_as_it_says() {
 fn directions_see_the_face_that_they_point_to() {
     // One colour a face, from the order of the names.
     let face = |i: u8| Texture::new(1, 1, vec![[i * 10; 3]]).unwrap();
-    let map = CubeMap { faces: std::array::from_fn(|i| face(i as u8)) };
+    let map = CubeMap { faces: std::array::from_fn(|i| face(i as u8)), mirrored_back: false };
     let seen = |d: Vec3| CubeMap::FACES[(map.at(d).x * 25.5).round() as usize];
     for (direction, name) in [
         (Vec3::NEG_X, "left"),
@@ -65,4 +65,48 @@ fn directions_see_the_face_that_they_point_to() {
     assert_eq!(seen(Vec3::ONE), "right");
     assert_eq!(seen(Vec3::new(0.0, -1.0, 1.0)), "down");
     assert!(map.at(Vec3::ZERO).is_finite() && map.at(Vec3::NAN).is_finite());
+}
+
+/// A letter on each face, none of which looks like itself in a mirror or on its head, in the order of the faces' names.
+const LETTERS: [[&str; 5]; 6] = [
+    ["###  ", "#  # ", "###  ", "# #  ", "#  ##"],
+    ["#    ", "#    ", "#    ", "#    ", "#### "],
+    [" ####", "#    ", "# ###", "#   #", " ### "],
+    ["#####", "#    ", "###  ", "#    ", "#    "],
+    ["#### ", "#   #", "#### ", "#    ", "#    "],
+    ["  ###", "   # ", "   # ", "#  # ", " ##  "],
+];
+
+/// What somebody in the middle sees who looks at a face: the course's pictures of a church meet at their edges this way, and
+/// its programs' `back` is mirrored, which more than half of the pixels of their pictures of the rabbit in the church show.
+#[test]
+fn letters_are_seen_upright_and_the_course_mirrors_two() {
+    let face = |rows: &[&str; 5]| {
+        let texels = rows.iter().flat_map(|row| row.bytes()).map(|b| [if b == b'#' { 255 } else { 0 }; 3]);
+        Texture::new(5, 5, texels.collect()).unwrap()
+    };
+    let right = CubeMap { faces: std::array::from_fn(|i| face(&LETTERS[i])), mirrored_back: false };
+    let old = CubeMap { mirrored_back: true, ..right.clone() };
+    let flipped = |rows: [&str; 5]| -> Vec<String> { rows.iter().rev().map(|row| row.to_string()).collect() };
+    let mirrored = |rows: [&str; 5]| -> Vec<String> { rows.iter().map(|row| row.chars().rev().collect()).collect() };
+    let (x, y, z) = (Vec3::X, Vec3::Y, Vec3::Z);
+    for (i, (forward, up)) in [(-x, y), (x, y), (y, z), (-y, -z), (z, y), (-z, y)].into_iter().enumerate() {
+        let side = forward.cross(up);
+        let seen = |map: &CubeMap, mirror: bool, flip: bool| -> Vec<String> {
+            let cell = |i: usize| (2.0 * i as f32 + 1.0) / 5.0 - 1.0;
+            // Texels are exact at their corners: each is looked up there, just inside of the direction in which it begins.
+            let shift = |turned: bool| if turned { 0.999 / 5.0 } else { -0.999 / 5.0 };
+            let pixel = |row: usize, column: usize| {
+                let (u, v) = (cell(column) + shift(mirror), -cell(row) - shift(flip));
+                if map.at(forward + u * side + v * up).x > 0.5 { '#' } else { ' ' }
+            };
+            (0..5).map(|row| (0..5).map(|column| pixel(row, column)).collect()).collect()
+        };
+        let written: Vec<String> = LETTERS[i].iter().map(|row| row.to_string()).collect();
+        assert_eq!(seen(&right, false, false), written, "{}", CubeMap::FACES[i]);
+        let (is_down, is_back) = (CubeMap::FACES[i] == "down", CubeMap::FACES[i] == "back");
+        let wanted = if is_down { flipped(LETTERS[i]) } else { written };
+        let wanted = if is_back { mirrored(LETTERS[i]) } else { wanted };
+        assert_eq!(seen(&old, is_back, is_down), wanted, "{} of the course", CubeMap::FACES[i]);
+    }
 }

@@ -2,6 +2,7 @@
 
 use super::csg::Csg;
 use crate::bvh::{Preset, Tally, TriangleBvh};
+use crate::dialect::MeshNormals;
 use crate::math::{Aabb, Affine, Line, Ray, Ray64, Vec2, Vec3};
 use crate::shape::{Crossing, Mesh, Primitive, Shape, Surface};
 use glam::DVec3;
@@ -64,9 +65,14 @@ impl MeshTree {
         MeshTree { mesh, bvh, closed: OnceLock::new() }
     }
 
-    /// The same, blind to triangles seen from their sides: see [`TriangleBvh::least_volume`].
+    /// The same, blind to triangles seen from their sides: see `TriangleBvh::least_volume`.
     pub fn least_volume(self, least_volume: f64) -> Self {
         MeshTree { bvh: self.bvh.least_volume(least_volume), ..self }
+    }
+
+    /// The same tree of the same mesh with other normals.
+    pub fn with_normals(&self, rule: MeshNormals) -> Self {
+        MeshTree { mesh: self.mesh.with_normals(rule), bvh: self.bvh.clone(), closed: self.closed.clone() }
     }
 
     /// Bytes in memory.

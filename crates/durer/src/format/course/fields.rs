@@ -191,9 +191,9 @@ impl Reader<'_, '_> {
             // Where only the sign is wrong, it is clear what was meant.
             self.error(match value {
                 Value::Float(x) if x < 0.0 => error.fix(span, self.text(span).trim_start_matches('-')),
-                Value::Vec3(v) if word == "direction" && v == Vec3::ZERO => {
-                    error.help("it is a direction, not the point to look at: that point less the place of the eye")
-                }
+                Value::Vec3(v) if word == "direction" && v == Vec3::ZERO => error.help(
+                    "a light's is where the light goes; a camera's is the point to look at less the place of the eye",
+                ),
                 _ => error,
             });
         }

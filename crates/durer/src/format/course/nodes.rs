@@ -68,12 +68,16 @@ impl Reader<'_, '_> {
         if !self.descend("nodes", keyword) || !self.open(keyword) {
             return inside;
         }
-        let mut material_span = None;
+        let (mut material_span, mut transform_span) = (None, None);
         while let Some((word, span)) = self.word_before_close() {
             match word.as_str() {
                 "Transform" => {
-                    let ops = self.node_matrices(span);
-                    inside.ops.get_or_insert_default().extend(ops);
+                    if let Some(first) = transform_span.replace(span) {
+                        let warning = Diagnostic::warning("a node has one transform; the last counts").at(span);
+                        let warning = warning.related(first, "the first is here");
+                        self.diagnostics.push(warning.help("nested nodes have one each"));
+                    }
+                    inside.ops = Some(self.node_matrices(span));
                 }
                 "Node" => {
                     let child = self.node(span);

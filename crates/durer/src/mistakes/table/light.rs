@@ -102,11 +102,12 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "highlights-added",
         "specular",
-        "there are highlights, which this year's program does not have",
+        "there are highlights, which this year's program does not have (of form {}: 0 R.L, 1 R.L where N.L > 0, 2 N.H)",
         "(nothing)",
         "color += ks * pow(max(0, R.L), s) * I",
-        |v, _| v.add_highlights(),
-    ),
+        |v, model| v.add_highlights(model),
+    )
+    .with(Values::Only(&[0.0, 1.0, 2.0])),
     row(
         "exponent",
         "specular",
@@ -367,6 +368,51 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "color = ambient * kd; if (!occluded) color += ...",
         "if (!occluded) color += ambient * kd + ...",
         |v, _| v.habits.shadows.ambient_too = true,
+    ),
+    row(
+        "shadows-later",
+        "shadows",
+        "where one light is blocked, all lights after it are missing too",
+        "if (occluded) continue",
+        "if (occluded) break",
+        |v, _| v.habits.shadows.later_too = true,
+    ),
+    row(
+        "shadows-black",
+        "shadows",
+        "where one light is blocked, all light is missing, the ambient light too ({}: 0 but what mirrors and glass bring, 1 all)",
+        "if (occluded) continue",
+        "if (occluded) return black",
+        |v, all| v.habits.shadows.black = Some(all > 0.0),
+    )
+    .with(Values::Only(&[0.0, 1.0])),
+    row(
+        "shadows-weak",
+        "shadows",
+        "in its shadow a light still counts for {} of what it gives",
+        "if (occluded) continue",
+        "if (occluded) I *= {}",
+        |v, left| v.habits.shadows.left = left,
+    )
+    .with(Values::Numbers(&[0.5, 0.2])),
+    row(
+        "lights-mean",
+        "diffuse",
+        "the sum over the lights is divided by their number",
+        "for each light color += ...",
+        "color / number of lights",
+        |v, _| {
+            let count = v.world.lights.len().max(1) as f32;
+            recolor(v.world.lights.iter_mut(), |color| color / count);
+        },
+    ),
+    row(
+        "eye-negated",
+        "specular",
+        "the direction to the eye has the wrong sign in the highlights",
+        "V = -d: H = normalize(L - d), R.L with R = d - 2 (d.N) N",
+        "V = d: H = normalize(L + d), R = 2 (d.N) N - d",
+        |v, _| v.habits.highlights.eye_negated = true,
     ),
     row(
         "shadows-epsilon",

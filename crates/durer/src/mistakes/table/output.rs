@@ -3,7 +3,8 @@
 use super::{Mistake, Values, row};
 use crate::mistakes::habits::{Output, Turn};
 
-const STRAIGHT: Turn = Turn { exchange: false, columns_back: false, rows_back: false, bgr: false };
+const STRAIGHT: Turn =
+    Turn { exchange: false, columns_back: false, rows_back: false, bgr: false, moved: (0, 0), black_border: false };
 
 /// Usual exponents; 0 is the curve of sRGB itself.
 const POWERS: Values = Values::Only(&[0.0, 2.2, 2.0, 1.8, 2.4]);
@@ -49,6 +50,21 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "blue, green, red",
         |v, _| v.turn = Turn { bgr: true, ..STRAIGHT },
     ),
+    row(
+        "shifted",
+        "rays",
+        "the picture is moved by one pixel ({}: 0 up, 1 down, 2 left, 3 right; 4 to 7 the same, repeating the border)",
+        "rows and columns from 0",
+        "rows or columns from 1",
+        |v, way| {
+            const WAYS: [(i32, i32); 4] = [(0, -1), (0, 1), (-1, 0), (1, 0)];
+            v.turn = Turn { moved: WAYS[way as usize % 4], black_border: way < 4.0, ..STRAIGHT };
+        },
+    )
+    .with(Values::Only(&[0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0])),
+    row("tone-mapped", "flat", "light is compressed, not cut off at 1", "min(1, c)", "c / (1 + c)", |v, _| {
+        v.output = Output::Toned
+    }),
     row(
         "wrapped",
         "flat",

@@ -1,13 +1,13 @@
 //! Mistakes of hits, normals and transforms.
 
 use super::{Mistake, Values, row};
-use crate::dialect::Compat;
-use crate::dialect::CompatSet;
+use crate::dialect::{Compat, CompatSet, MeshNormals};
 use crate::mistakes::habits::{Normals, Pick};
 use crate::scene::MatrixOp;
 use crate::shape::Primitive;
 use crate::world::Geometry;
 use glam::DAffine3;
+use std::sync::Arc;
 
 pub(super) const MISTAKES: &[Mistake] = &[
     row(
@@ -59,12 +59,81 @@ pub(super) const MISTAKES: &[Mistake] = &[
         |v, _| v.habits.flat = true,
     ),
     row(
+        "normals-smooth",
+        "normals",
+        "flat meshes are shaded smooth, their corners' normals weighted by {} (0 the areas around, 1 each face alike)",
+        "N = normalize(cross(b - a, c - a))",
+        "N = normalize(a Na + b Nb + c Nc)",
+        |v, weight| {
+            let rule = if weight == 0.0 { MeshNormals::SmoothByArea } else { MeshNormals::SmoothByFace };
+            v.objects(|geometry| {
+                if let Geometry::Mesh(tree) = geometry
+                    && tree.mesh.is_flat()
+                {
+                    *tree = Arc::new(tree.with_normals(rule));
+                }
+            });
+        },
+    )
+    .with(Values::Only(&[0.0, 1.0])),
+    row(
         "triangles-turned",
         "normals",
         "normals of triangles point the other way",
         "N = normalize(cross(b - a, c - a))",
         "N = normalize(cross(c - a, b - a))",
         |v, _| v.habits.triangles_turned = true,
+    ),
+    row(
+        "spheres-turned",
+        "normals",
+        "normals of spheres point inwards",
+        "N = normalize(p - center)",
+        "N = normalize(center - p)",
+        |v, _| v.habits.spheres_turned = true,
+    ),
+    row(
+        "normals-exchanged",
+        "normals",
+        "the weights of smooth normals belong to other corners (order {})",
+        "N = (1 - b - c) Na + b Nb + c Nc",
+        "the weights or the normals in another order",
+        |v, order| v.habits.mixed_otherwise = order as usize,
+    )
+    .with(Values::Only(&[1.0, 2.0, 3.0, 4.0, 5.0])),
+    row(
+        "parallelograms",
+        "distance",
+        "triangles are parallelograms: nothing asks whether b + c <= 1",
+        "b >= 0 && c >= 0 && b + c <= 1",
+        "b >= 0 && c >= 0",
+        |v, _| v.parallelograms(),
+    ),
+    row(
+        "other-material",
+        "flat",
+        "things have the material after their own, or before it ({}: 0 after, 1 before, 2 after, but the last its own)",
+        "materials[index], index from 0",
+        "materials[index + 1], or - 1",
+        |v, which| {
+            let count = v.world.materials.len().max(1) as u32;
+            for object in &mut v.world.objects {
+                object.material = match which as u32 {
+                    0 => (object.material + 1) % count,
+                    1 => (object.material + count - 1) % count,
+                    _ => (object.material + 1).min(count - 1),
+                };
+            }
+        },
+    )
+    .with(Values::Only(&[0.0, 1.0, 2.0])),
+    row(
+        "far-spheres",
+        "distance",
+        "the far side of spheres is seen: the greater root is taken",
+        "t = (-b - sqrt(D)) / 2a, unless that is less than t_min",
+        "t = (-b + sqrt(D)) / 2a",
+        |v, _| v.habits.pick = Pick::FarSpheres,
     ),
     row(
         "normals-faced",

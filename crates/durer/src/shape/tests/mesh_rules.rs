@@ -126,6 +126,24 @@ fn tiny_meshes_are_as_smooth_as_others() {
     }
 }
 
+/// What was taken apart is still smooth where it was one.
+#[test]
+fn loosened_triangles_share_their_vertices() {
+    let mut apart = ball(8);
+    apart.loosen();
+    for rule in [MeshNormals::SmoothByArea, MeshNormals::SmoothByFace] {
+        let whole = Mesh::new(ball(8), rule, true);
+        let flat = Mesh::new(apart.clone(), MeshNormals::Flat, true);
+        assert!(flat.is_flat() && !whole.is_flat());
+        let smooth = flat.with_normals(rule);
+        for part in 0..whole.len() as u32 {
+            for uv in CORNERS {
+                assert!((normal_at(&smooth, part, uv) - normal_at(&whole, part, uv)).length() < 1e-3);
+            }
+        }
+    }
+}
+
 #[test]
 fn a_files_normals_and_coordinates_are_interpolated() {
     let mut data = MeshData {
@@ -135,6 +153,7 @@ fn a_files_normals_and_coordinates_are_interpolated() {
         triangles: vec![[0, 1, 2]],
         triangle_uvs: vec![[0, 1, 2]],
         triangle_normals: vec![[0, 1, 2]],
+        vertices: Vec::new(),
     };
     let surface = |data: &MeshData, rule, file_normals| {
         let crossing = Crossing { t: 1.0, uv: Vec2::new(0.25, 0.5) };

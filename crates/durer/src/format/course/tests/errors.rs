@@ -1,6 +1,8 @@
 //! Each kind of error and warning, with its place and words.
 
 use super::*;
+use crate::math::Vec3;
+use crate::scene::{MatrixOp, Node};
 
 fn findings(text: &str, dialect: Dialect) -> Vec<String> {
     read_as(text.as_bytes(), dialect, false).1
@@ -309,6 +311,14 @@ fn what_is_written_twice_or_by_another_year_is_told_once() {
         "Group { num_objects 0 }",
         "1:9 warning: `num_objects` is not a word of f04, but of f03 [num_objects] (in f04 it is `numObjects`)",
     );
+    let twice = "Scene { Node { Transform { scale 2 2 2 } Transform { translate 1 0 0 } Component<Object> { type sphere radius 1 } } }";
+    one_of_nodes(
+        twice,
+        "1:42 warning: a node has one transform; the last counts [Transform] (nested nodes have one each)",
+    );
+    let objects = read_as(twice.as_bytes(), Dialect::F23, false).0.unwrap().root.unwrap().objects;
+    let Node::Transform(ops, _) = &objects[0].node else { panic!("{objects:?}") };
+    assert_eq!(ops[..], [MatrixOp::Translate(Vec3::X)]);
     one("Group { } // no", "1:11 warning: comments begin with `#`; this one is passed over all the same [// no]");
     let shared = "Lights { PointLight { position 0 0 0 color 1 1 1 attenuation 1 0 0 attenuation 1 0 0 } }";
     assert_eq!(findings(shared, Dialect::F12a5).len(), 2, "{:?}", findings(shared, Dialect::F12a5));

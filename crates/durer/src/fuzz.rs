@@ -1,15 +1,18 @@
 //! What must hold of any bytes: no panic, no more memory than the bytes justify, and no answer that contradicts itself.
+//!
+//! The targets of `fuzz/` call these functions with random bytes; a test does with the seeds, among which are the bytes that
+//! once broke something.
 
-use durer::LoadOptions;
-use durer::compile::AccelKind;
-use durer::diag::{Diagnostics, Files};
-use durer::dialect::Dialect;
-use durer::format::course::{ReadOptions, guess, random::Random, read, write};
-use durer::format::read_mesh;
-use durer::image::{Encoded, ImageError, decode_linear};
-use durer::integrator::Settings;
-use durer::render::{Control, Job, Part, PartError, Shard, Stop};
-use durer::source::Digest;
+use crate::LoadOptions;
+use crate::compile::AccelKind;
+use crate::diag::{Diagnostics, Files};
+use crate::dialect::Dialect;
+use crate::format::course::{ReadOptions, guess, random::Random, read, write};
+use crate::format::read_mesh;
+use crate::image::{Encoded, ImageError, decode_linear};
+use crate::integrator::Settings;
+use crate::render::{Control, Job, Part, PartError, Shard, Stop};
+use crate::source::Digest;
 use std::path::PathBuf;
 use std::sync::OnceLock;
 
@@ -26,7 +29,8 @@ pub fn scene(data: &[u8]) {
     for dialect in Dialect::ALL {
         for strict in [false, true] {
             let mut diagnostics = Diagnostics::default();
-            let scene = read(data, file, ReadOptions { dialect, strict }, &mut diagnostics);
+            let options = ReadOptions { dialect, strict, compat: dialect.rules().compat };
+            let scene = read(data, file, options, &mut diagnostics);
             for diagnostic in diagnostics.iter() {
                 let spans = diagnostic.span.into_iter().chain(diagnostic.related.iter().map(|related| related.0));
                 spans.for_each(|span| assert!(span.start <= span.end && span.end as usize <= data.len()));
@@ -79,7 +83,7 @@ pub fn part(data: &[u8]) {
                 part.hash();
                 let rendered = part.pictures().expect("a part has pictures");
                 let finite =
-                    |layer: &durer::image::Layer| layer.name == "variance" || layer.image.first_non_finite().is_none();
+                    |layer: &crate::image::Layer| layer.name == "variance" || layer.image.first_non_finite().is_none();
                 assert!(rendered.layers.iter().all(finite));
             }
         }
@@ -119,7 +123,7 @@ pub fn ways(data: &[u8]) {
         };
         let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
         let bytes = text.as_bytes().into();
-        let loaded = durer::load_text(&path, bytes, &options, &mut files, &mut diagnostics);
+        let loaded = crate::load_text(&path, bytes, &options, &mut files, &mut diagnostics);
         let loaded = loaded.unwrap_or_else(|| panic!("what was written is not read: {diagnostics:?}\n{text}"));
         let world = loaded.compile(&options, &mut files, &mut diagnostics)?;
         let part = Part::new(&world, &job, Shard::WHOLE).expect("the job is possible");
@@ -134,6 +138,27 @@ pub fn ways(data: &[u8]) {
         // A grid of too many entries is refused.
         if let Some(other) = hash(accel) {
             assert_eq!(other, plain, "{accel:?}\n{text}");
+        }
+    }
+}
+
+#[cfg(test)]
+#[test]
+fn seeds_hold() {
+    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fuzz");
+    // A package that was published has no seeds.
+    let entries = |path: PathBuf| std::fs::read_dir(path).into_iter().flatten().map(|entry| entry.unwrap().path());
+    for target in entries(root.join("seeds")) {
+        let name = target.file_name().unwrap().to_string_lossy().into_owned();
+        for seed in entries(target) {
+            let data = std::fs::read(&seed).unwrap();
+            match name.as_str() {
+                "scene" => scene(&data),
+                "part" => part(&data),
+                "ways" => ways(&data),
+                "obj" | "ply" => mesh(&data, &format!("x.{name}")),
+                _ => picture(&data, &format!("x.{name}")),
+            }
         }
     }
 }
