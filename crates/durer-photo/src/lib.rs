@@ -20,11 +20,16 @@
 
 pub mod adjust;
 mod error;
+pub mod explain;
+pub mod feature;
 pub mod format;
+pub mod geometry;
+pub mod matching;
 pub mod model;
 pub mod photo;
-pub mod resect;
 mod random;
+pub mod resect;
+pub mod solve;
 
 pub use error::Error;
 pub use model::{Lens, Observation, Point, Pose, Reconstruction, View};

@@ -87,6 +87,8 @@ pub fn adjust_watched(all: &mut Reconstruction, options: &Options, watch: &dyn F
                 report.converged = fall <= options.tolerance * cost;
                 state = next;
                 cost -= fall;
+                // Nothing but rounding is left.
+                report.converged |= cost <= 1e-20 * report.costs[0];
             }
             _ => {
                 damping *= growth;
