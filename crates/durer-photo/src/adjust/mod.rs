@@ -109,6 +109,11 @@ pub fn adjust_watched(all: &mut Reconstruction, options: &Options, watch: &dyn F
     report
 }
 
+/// The derivatives of a pixel by its camera: rotation, translation, f, k1, k2.
+pub(crate) fn camera_jacobian(lens: &crate::Lens, pose: &crate::Pose, point: &nalgebra::Vector3<f64>) -> jacobian::CameraJacobian {
+    jacobian::project(lens, pose, point).1
+}
+
 /// A damped step, and the fall of the cost that it promises.
 fn attempt(system: &System, state: &State, damping: f64) -> Option<(State, f64)> {
     let mut reduced = system.reduce(state, damping);

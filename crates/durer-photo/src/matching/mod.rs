@@ -97,6 +97,9 @@ pub struct Matches {
     pub tracks: Vec<Track>,
 }
 
+/// How [`Picture::focal_from`] begins where nothing was written.
+pub const GUESS: &str = "a guess";
+
 /// What [`Matches::format`] says.
 pub const FORMAT: &str = "durer matches 1";
 
@@ -119,7 +122,7 @@ pub fn describe(photo: &Photo, options: &Options) -> Described {
     }
     let [width, height] = photo.size();
     let guess = f64::from(width) / (2.0 * libm::tan(options.field.to_radians() / 2.0));
-    let guessed = || (guess, format!("a guess: {} degrees across", options.field));
+    let guessed = || (guess, format!("{GUESS}: {} degrees across", options.field));
     let (focal, focal_from) = photo.exif.focal.clone().filter(|_| !options.ignore_exif).unwrap_or_else(guessed);
     let colors = found.iter().map(|(f, _)| photo.color(f64::from(f.x), f64::from(f.y))).collect();
     let (name, size) = (photo.name.clone(), [width, height]);

@@ -13,7 +13,7 @@ pub use register::{pose_of, refined_pose};
 
 use crate::adjust::{self, Loss, adjust};
 use crate::geometry::align::Similarity;
-use crate::matching::Matches;
+use crate::matching::{GUESS, Matches};
 use crate::{Error, Lens, Observation, Point, Reconstruction, View};
 use nalgebra::{Matrix3, Vector2, Vector3};
 
@@ -74,50 +74,89 @@ pub struct Solved {
 
 /// Solves. `progress` hears how many photographs are registered.
 ///
+/// A focal length that is far off, as EXIF's is of photographs that were made smaller, lets few photographs fit or moves far; it is
+/// solved again then, from the focal length that came out or from a usual one, and the better of both counts.
+///
 /// # Errors
 ///
 /// Says why if no two photographs can begin.
 pub fn solve(matches: &Matches, options: &Options, progress: &dyn Fn(usize)) -> Result<Solved, Error> {
+    let first = attempt(matches, matches, options, progress);
+    let usual = |size: [u32; 2]| 1.2 * f64::from(size[0].max(size[1]));
+    let mut again = matches.clone();
+    for (i, picture) in again.pictures.iter_mut().enumerate() {
+        picture.focal = match &first {
+            Ok(solved) if moved(solved.focal(i) / picture.focal) => solved.focal(i),
+            _ if moved(usual(picture.size) / picture.focal) => usual(picture.size),
+            _ => picture.focal,
+        };
+    }
+    let whole = first.as_ref().is_ok_and(|solved| {
+        let near = |(i, picture): (usize, &crate::matching::Picture)| !moved(solved.focal(i) / picture.focal);
+        solved.all.registered() == solved.all.views.len() && matches.pictures.iter().enumerate().all(near)
+    });
+    if whole || options.fixed_focal || again == *matches {
+        return first;
+    }
+    let second = attempt(&again, matches, options, progress);
+    let worth = |solved: &Solved| (solved.all.registered(), solved.all.fit().observations);
+    match (first, second) {
+        (Ok(one), Ok(two)) => Ok(if worth(&two) > worth(&one) { two } else { one }),
+        (one, two) => one.or(two),
+    }
+}
+
+/// Whether a focal length is another one.
+fn moved(ratio: f64) -> bool {
+    !(0.75..=1.33).contains(&ratio)
+}
+
+impl Solved {
+    /// The focal length of a photograph's lens.
+    fn focal(&self, view: usize) -> f64 {
+        self.all.lenses[self.all.views[view].lens].focal
+    }
+}
+
+/// Solves once; what is told goes by what was written with the photographs.
+fn attempt(matches: &Matches, written: &Matches, options: &Options, progress: &dyn Fn(usize)) -> Result<Solved, Error> {
     let mut solver = Solver::new(matches, options);
-    let pair = solver.initial(matches)?;
     let mut notes = Vec::new();
-    let first = pair.map(|i| matches.pictures[i].name.clone());
+    let first = solver.initial(matches)?.map(|i| &matches.pictures[i].name);
     notes.push(format!("began with {} and {}", first[0], first[1]));
     let mut refused = vec![false; solver.views.len()];
     let mut last_adjusted = 2;
-    while let Some((view, count)) = solver.next(&refused) {
+    while let Some(view) = solver.next(&refused) {
         if !solver.register(view) {
             refused[view] = true;
             continue;
         }
-        let _ = count;
         // Others may fit now.
         refused.fill(false);
         solver.extend();
         let known = solver.registered();
         progress(known);
         // Of many photographs, one more changes little.
-        if known >= last_adjusted + 1 + last_adjusted / 10 {
+        if known > last_adjusted + last_adjusted / 10 {
             solver.settle(2);
             last_adjusted = known;
         }
     }
     solver.settle(6);
     for (i, view) in solver.views.iter().enumerate().filter(|(_, view)| view.pose.is_none()) {
-        let links = matches.links.iter().filter(|link| link.pictures.contains(&i)).count();
-        let why = match links {
-            0 => "it shows nothing that another photograph shows",
-            _ => "too few of the points that are known agree on where it was taken",
+        let why = match matches.links.iter().any(|link| link.pictures.contains(&i)) {
+            false => "it shows nothing that another photograph shows",
+            true => "too few of the points that are known agree on where it was taken",
         };
         notes.push(format!("{} is left out: {why}", view.name));
     }
-    let used: Vec<usize> = solver.views.iter().filter(|view| view.pose.is_some()).map(|view| view.lens).collect();
-    for (i, (lens, first)) in solver.lenses.iter().zip(&solver.first).enumerate().filter(|(i, _)| used.contains(i)) {
-        let ratio = lens.focal / first.focal;
-        let guess = matches.pictures.iter().any(|p| p.lens == i && p.focal_from.starts_with("a guess"));
-        if !guess && !(0.75..=1.33).contains(&ratio) {
-            let (f, e) = (lens.focal, first.focal);
-            notes.push(format!("the focal length is {f:.0} pixels, and EXIF says {e:.0}: EXIF may be wrong"));
+    let mut told = Vec::new();
+    for (view, picture) in solver.views.iter().zip(&written.pictures).filter(|(view, _)| view.pose.is_some()) {
+        let focal = solver.lenses[view.lens].focal;
+        if moved(focal / picture.focal) && !picture.focal_from.starts_with(GUESS) && !told.contains(&view.lens) {
+            told.push(view.lens);
+            let (name, wrong) = (&picture.name, picture.focal);
+            notes.push(format!("{name}: the focal length is {focal:.0} pixels, and EXIF says {wrong:.0}: EXIF is wrong"));
         }
     }
     let mut all = solver.reconstruction(true).0;
@@ -215,12 +254,12 @@ impl<'o> Solver<'o> {
         }
     }
 
-    /// The photograph that sees most of the points that are known, and how many.
-    fn next(&self, refused: &[bool]) -> Option<(usize, usize)> {
+    /// The photograph that sees most of the points that are known.
+    fn next(&self, refused: &[bool]) -> Option<usize> {
         let count = |view: usize| self.of_view[view].iter().filter(|(t, _)| self.tracks[*t].position.is_some()).count();
         let open = (0..self.views.len()).filter(|i| self.views[*i].pose.is_none() && !refused[*i]);
         let best = open.map(|i| (i, count(i))).reduce(|a, b| if b.1 > a.1 { b } else { a });
-        best.filter(|(_, count)| *count >= self.options.least)
+        best.filter(|(_, count)| *count >= self.options.least).map(|best| best.0)
     }
 }
 
