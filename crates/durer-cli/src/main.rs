@@ -18,6 +18,7 @@ mod merge;
 mod open;
 mod output;
 mod page;
+mod photo;
 mod progress;
 mod render;
 mod report;
@@ -64,6 +65,7 @@ fn main() -> ExitCode {
             Command::Info(args) => info::run(&args),
             Command::Convert(args) => convert::run(&args),
             Command::Compare(args) => compare::run(&args),
+            Command::Photo(args) => photo::run(&args),
             Command::Dialects => manual::dialects(),
             Command::Words(args) => words::run(&args),
             Command::Completions { shell } => manual::completions(shell),

@@ -6,9 +6,11 @@ mod colmap;
 mod colmap_binary;
 mod colmap_text;
 mod fspy;
+mod given;
 mod gltf;
 mod opensfm;
 mod ply;
+mod scene;
 mod text;
 
 use crate::{Error, Lens, Pose, Reconstruction};
@@ -18,6 +20,8 @@ use std::path::{Path, PathBuf};
 use text::Words;
 
 pub use fspy::read_project;
+pub use given::{read_control, read_lines, read_points};
+pub use scene::projective_camera;
 
 /// How a format's numbers are meant.
 pub struct Convention {

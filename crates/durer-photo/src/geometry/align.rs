@@ -65,3 +65,35 @@ pub fn rigid(world: &[Vector3<f64>], camera: &[Vector3<f64>]) -> Option<Pose> {
     let (means, rotation, _) = turned(world, camera)?;
     Some(Pose { rotation, translation: means[1] - rotation * means[0] })
 }
+
+/// The similarity that brings control points, as the photographs see them, to where they are; and what is left of each.
+///
+/// # Errors
+///
+/// Says so if fewer than three of them are seen by two photographs whose pose is known, or if they are in a line.
+pub fn to_control(
+    all: &Reconstruction,
+    control: &[(Vector3<f64>, Vec<crate::Observation>)],
+) -> Result<(Similarity, Vec<f64>), crate::Error> {
+    let ray = |seen: &crate::Observation| {
+        let view = &all.views[seen.view];
+        let (pose, direction) = (view.pose.as_ref()?, all.lenses[view.lens].unproject(&seen.pixel)?);
+        Some((pose.center(), pose.outwards(&direction).normalize()))
+    };
+    let (mut from, mut to) = (Vec::new(), Vec::new());
+    for (position, seen) in control {
+        let rays: Vec<_> = seen.iter().filter_map(ray).collect();
+        if let Some(point) = super::triangulate::nearest_to_rays(&rays).filter(|_| rays.len() > 1) {
+            from.push(point);
+            to.push(*position);
+        }
+    }
+    let found = similarity(&from, &to).ok_or_else(|| {
+        let count = from.len();
+        crate::Error::new(format!(
+            "control needs three points or more, not in a line, each seen by two photographs whose place is known: {count} are"
+        ))
+    })?;
+    let left = from.iter().zip(&to).map(|(a, b)| (found.apply(a) - b).norm()).collect();
+    Ok((found, left))
+}
