@@ -27,7 +27,7 @@ pub mod geometry;
 pub mod matching;
 pub mod model;
 pub mod photo;
-mod random;
+pub mod random;
 pub mod resect;
 pub mod solve;
 

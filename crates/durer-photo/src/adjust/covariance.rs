@@ -50,7 +50,11 @@ impl Covariance {
 /// Says so where something is not determined by the photographs.
 pub fn covariance(all: &Reconstruction, options: &Options) -> Result<Covariance, Error> {
     let options = Options { loss: Loss::Squared, ..*options };
-    let (system, state, views) = System::new(all, options);
+    // A point that one photograph sees tells nothing of cameras, and nobody knows where it is.
+    let known = |seen: &&crate::Observation| all.views[seen.view].pose.is_some();
+    let mut kept = all.clone();
+    kept.points.retain(|point| !options.points || point.track.iter().filter(known).count() > 1);
+    let (system, state, views) = System::new(&kept, options);
     if views.len() < 2 {
         return Err(Error::new("a covariance needs at least two photographs whose pose is known"));
     }
@@ -67,7 +71,7 @@ pub fn covariance(all: &Reconstruction, options: &Options) -> Result<Covariance,
     let scaled = DMatrix::from_fn(free.len(), free.len(), |i, j| part[(i, j)] / (size[i] * size[j]));
     let inverse = Cholesky::new(scaled).map(|factor| factor.inverse()).filter(|m| m.iter().all(|c| c.is_finite()));
     let inverse = inverse.ok_or_else(|| Error::new("some camera is not determined by what the photographs see"))?;
-    let unknowns = free.len() + if options.points { 3 * all.points.len() } else { 0 };
+    let unknowns = free.len() + if options.points { 3 * kept.points.len() } else { 0 };
     let spare = system.residuals().saturating_sub(unknowns).max(1);
     let sigma = (2.0 * system.cost(&state) / spare as f64).sqrt();
     let mut matrix = DMatrix::zeros(system.size, system.size);

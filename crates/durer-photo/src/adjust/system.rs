@@ -195,15 +195,15 @@ impl System {
 
     /// Adds a block of two observations' columns.
     fn add(&self, to: &mut DMatrix<f64>, a: &Seen, b: &Seen, block: &SMatrix<f64, 9, 9>) {
-        for (from_b, count_b, to_b) in self.columns(b) {
-            for column in 0..count_b {
-                let mut target = to.column_mut(to_b + column);
-                let target = target.as_mut_slice();
-                for (from_a, count_a, to_a) in self.columns(a) {
-                    for row in 0..count_a {
-                        target[to_a + row] += block[(from_a + row, from_b + column)];
-                    }
-                }
+        let [(_, _, pose), (_, _, lens)] = self.columns(a);
+        let (size, all) = (self.size, to.as_mut_slice());
+        for (from, count, start) in self.columns(b) {
+            for column in 0..count {
+                let target = &mut all[(start + column) * size..][..size];
+                let column = block.column(from + column);
+                let (of_pose, of_lens) = column.as_slice().split_at(6);
+                target[pose..pose + 6].iter_mut().zip(of_pose).for_each(|(to, b)| *to += b);
+                target[lens..lens + 3].iter_mut().zip(of_lens).for_each(|(to, b)| *to += b);
             }
         }
     }

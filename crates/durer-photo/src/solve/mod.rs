@@ -138,7 +138,8 @@ fn attempt(matches: &Matches, written: &Matches, options: &Options, progress: &d
         progress(known);
         // Of many photographs, one more changes little.
         if known > last_adjusted + last_adjusted / 10 {
-            solver.settle(2);
+            solver.adjust(false);
+            solver.drop_misfits();
             last_adjusted = known;
         }
     }
@@ -216,18 +217,19 @@ impl<'o> Solver<'o> {
     /// Adjusts and leaves out what does not fit, some times.
     fn settle(&mut self, times: usize) {
         for _ in 0..times {
-            self.adjust();
+            self.adjust(false);
             let dropped = self.drop_misfits();
             let added = self.extend();
             if dropped + added == 0 {
                 break;
             }
         }
-        self.adjust();
+        self.adjust(true);
         self.drop_misfits();
     }
 
-    fn adjust(&mut self) {
+    /// Adjusts all; on the way only so far as the next step needs.
+    fn adjust(&mut self, thoroughly: bool) {
         let (mut all, tracks) = self.reconstruction(false);
         let known = self.registered();
         // Two photographs do not tell a lens.
@@ -236,8 +238,8 @@ impl<'o> Solver<'o> {
             loss: Loss::Huber(1.0),
             focal: free && !self.options.fixed_focal,
             radial: free && !self.options.no_distortion,
-            iterations: 50,
-            tolerance: 1e-6,
+            iterations: if thoroughly { 50 } else { 10 },
+            tolerance: if thoroughly { 1e-7 } else { 1e-3 },
             ..adjust::Options::default()
         };
         let before = self.lenses.clone();
