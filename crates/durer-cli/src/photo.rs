@@ -131,7 +131,8 @@ impl Results {
                 results.outputs.push((output, path.clone(), Vec::new()));
                 continue;
             }
-            let places = output.files(path).iter().map(|file| guard.writes("--output", file)).collect::<Result<_, _>>()?;
+            let places =
+                output.files(path).iter().map(|file| guard.writes("--output", file)).collect::<Result<_, _>>()?;
             results.outputs.push((output, path.clone(), places));
         }
         Ok(results)
@@ -148,9 +149,8 @@ impl Results {
     /// Writes all files or none.
     fn save(mut self, quiet: bool) -> Result<(), Failure> {
         for folder in &self.folders {
-            std::fs::create_dir(folder).map_err(|error| {
-                anyhow::anyhow!("cannot make the folder `{}`: {error}", folder.display())
-            })?;
+            std::fs::create_dir(folder)
+                .map_err(|error| anyhow::anyhow!("cannot make the folder `{}`: {error}", folder.display()))?;
         }
         let saved = (|| {
             for (output, path, places) in &mut self.outputs {

@@ -7,11 +7,18 @@ use std::fmt::Write;
 /// A point: its rays, and its residual in every photograph that sees it.
 pub fn point(all: &Reconstruction, number: usize) -> Result<String, Error> {
     let count = all.points.len();
-    let point = all.points.get(number).ok_or_else(|| Error::new(format!("there is no point {number}: there are {count}, from 0")))?;
+    let point = all
+        .points
+        .get(number)
+        .ok_or_else(|| Error::new(format!("there is no point {number}: there are {count}, from 0")))?;
     let p = point.position;
     let angle = all.angle(point).to_degrees();
     let mut text = format!("point {number} at ({:.6}, {:.6}, {:.6}), colour {:?}\n", p.x, p.y, p.z, point.color);
-    let _ = writeln!(text, "seen in {} photographs; the widest angle between two rays is {angle:.2} degrees", point.track.len());
+    let _ = writeln!(
+        text,
+        "seen in {} photographs; the widest angle between two rays is {angle:.2} degrees",
+        point.track.len()
+    );
     if angle < 1.0 {
         text.push_str("the rays are nearly parallel: how far away it is, is not determined well\n");
     }
@@ -20,7 +27,11 @@ pub fn point(all: &Reconstruction, number: usize) -> Result<String, Error> {
         let (Some(pose), Some(residual)) = (&view.pose, all.residual(&p, seen)) else { continue };
         let (c, d) = (pose.center(), (p - pose.center()).normalize());
         let _ = writeln!(text, "\n{}", view.name);
-        let _ = writeln!(text, "  ray        from ({:.6}, {:.6}, {:.6}) along ({:.6}, {:.6}, {:.6})", c.x, c.y, c.z, d.x, d.y, d.z);
+        let _ = writeln!(
+            text,
+            "  ray        from ({:.6}, {:.6}, {:.6}) along ({:.6}, {:.6}, {:.6})",
+            c.x, c.y, c.z, d.x, d.y, d.z
+        );
         let _ = writeln!(text, "  distance   {:.6}, of which {:.6} along the view", (p - c).norm(), pose.depth(&p));
         let pixel = seen.pixel + residual;
         let _ = writeln!(text, "  should be  ({:.3}, {:.3})", pixel.x, pixel.y);
@@ -50,7 +61,11 @@ pub fn camera(all: &Reconstruction, view: usize) -> Result<String, Error> {
         let _ = writeln!(
             text,
             "  P.{}   | {:9.6} {:9.6} {:9.6} |       {:11.6}",
-            ["x", "y", "z"][i], r[(i, 0)], r[(i, 1)], r[(i, 2)], t[i]
+            ["x", "y", "z"][i],
+            r[(i, 0)],
+            r[(i, 1)],
+            r[(i, 2)],
+            t[i]
         );
     }
     let _ = writeln!(text, "\ntaken at -Rᵀ t = ({:.6}, {:.6}, {:.6})", c.x, c.y, c.z);
@@ -60,12 +75,18 @@ pub fn camera(all: &Reconstruction, view: usize) -> Result<String, Error> {
     let mut squares: Vec<(f64, usize)> = Vec::new();
     for (i, point) in all.points.iter().enumerate() {
         let seen = point.track.iter().find(|seen| seen.view == view);
-        let Some((seen, residual)) = seen.and_then(|seen| Some((seen, all.residual(&point.position, seen)?))) else { continue };
+        let Some((seen, residual)) = seen.and_then(|seen| Some((seen, all.residual(&point.position, seen)?))) else {
+            continue;
+        };
         if squares.len() < 4 {
             let (x, p) = (point.position, pose.apply(&point.position));
             let s = (p.x * p.x + p.y * p.y) / (p.z * p.z);
             let at = seen.pixel + residual;
-            let _ = writeln!(text, "point {i}, X = ({:.4}, {:.4}, {:.4}): P = ({:.4}, {:.4}, {:.4})", x.x, x.y, x.z, p.x, p.y, p.z);
+            let _ = writeln!(
+                text,
+                "point {i}, X = ({:.4}, {:.4}, {:.4}): P = ({:.4}, {:.4}, {:.4})",
+                x.x, x.y, x.z, p.x, p.y, p.z
+            );
             for (axis, middle, along, focal, at, seen) in [
                 ("x", cx, p.x, lens.focal, at.x, seen.pixel.x),
                 ("y", cy, p.y, lens.focal * lens.aspect, at.y, seen.pixel.y),

@@ -30,6 +30,7 @@ pub mod photo;
 pub mod random;
 pub mod resect;
 pub mod solve;
+pub mod tour;
 
 pub use error::Error;
 pub use model::{Lens, Observation, Point, Pose, Reconstruction, View};

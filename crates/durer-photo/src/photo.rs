@@ -51,8 +51,9 @@ pub fn size(file: &str, bytes: &[u8]) -> Result<[u32; 2], Error> {
 
 /// Reads a photograph.
 pub fn read(name: &str, bytes: &[u8]) -> Result<Photo, Error> {
-    let decoded: DynamicImage =
-        reader(name, bytes)?.decode().map_err(|error| Error::of(name, format!("cannot be read as a picture: {error}")))?;
+    let decoded: DynamicImage = reader(name, bytes)?
+        .decode()
+        .map_err(|error| Error::of(name, format!("cannot be read as a picture: {error}")))?;
     let pixels = decoded.into_rgb8();
     if pixels.width().min(pixels.height()) < 16 {
         return Err(Error::of(name, "the picture is too small: both sides need 16 pixels or more"));
@@ -74,7 +75,8 @@ impl Photo {
         let smaller;
         let pixels = if scale < 1.0 {
             let to = |side: u32| ((f64::from(side) * scale).round() as u32).max(16);
-            smaller = image::imageops::resize(&self.pixels, to(width), to(height), image::imageops::FilterType::Triangle);
+            smaller =
+                image::imageops::resize(&self.pixels, to(width), to(height), image::imageops::FilterType::Triangle);
             &smaller
         } else {
             &self.pixels
@@ -140,4 +142,20 @@ fn exif(bytes: &[u8], size: [u32; 2]) -> Exif {
         found.doubt = Some(format!("EXIF's focal length, {focal:.0} pixels by {how}, cannot be true"));
     }
     found
+}
+
+impl Photo {
+    /// The photograph as a JPEG whose longer side has at most so many pixels.
+    pub fn small(&self, side: u32) -> Result<Vec<u8>, Error> {
+        let longer = self.pixels.width().max(self.pixels.height());
+        let to = |pixels: u32| (pixels * side).div_ceil(longer).max(1);
+        let filter = image::imageops::FilterType::Triangle;
+        let smaller = (longer > side)
+            .then(|| image::imageops::resize(&self.pixels, to(self.pixels.width()), to(self.pixels.height()), filter));
+        let mut bytes = Vec::new();
+        let encoder = image::codecs::jpeg::JpegEncoder::new_with_quality(&mut bytes, 80);
+        let pixels = smaller.as_ref().unwrap_or(&self.pixels);
+        pixels.write_with_encoder(encoder).map_err(|error| Error::of(&self.name, error.to_string()))?;
+        Ok(bytes)
+    }
 }

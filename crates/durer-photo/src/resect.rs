@@ -57,7 +57,9 @@ pub fn camera(pairs: &[Pair], known: &Known) -> Result<Resection, Error> {
             None => "the direct linear transform has eleven unknowns, and a point gives two equations",
         };
         let what = if known.focal.is_some() { "known" } else { "unknown" };
-        return Err(Error::new(format!("{least} points or more are needed where the focal length is {what}, and there are {found}: {why}")));
+        return Err(Error::new(format!(
+            "{least} points or more are needed where the focal length is {what}, and there are {found}: {why}"
+        )));
     }
     let [first, second, third] = spread(&points);
     if second <= FLAT * first {
@@ -234,7 +236,9 @@ pub fn from_vanishing_lines(known: &VanishingLines, distance: f64) -> Result<(Le
     let mut points = Vec::new();
     for lines in &known.lines {
         let v = meeting(lines, size).ok_or_else(|| {
-            Error::new("a vanishing point needs two lines or more that do not lie on each other, each by two different pixels")
+            Error::new(
+                "a vanishing point needs two lines or more that do not lie on each other, each by two different pixels",
+            )
         })?;
         if v.z.abs() * 1e4 * size < v.xy().norm() {
             return Err(Error::new(

@@ -70,7 +70,8 @@ fn matches(all: &Reconstruction, focal: f64, outliers: f64) -> Matches {
         let has = |track: &&Track| [a, b].iter().all(|view| track.seen.iter().any(|seen| seen.0 == *view));
         tracks.iter().filter(has).count()
     };
-    let link = |(a, b): (usize, usize)| Link { pictures: [a, b], alike: 0, matches: common(a, b), planar: 0.3, moved: 50.0 };
+    let link =
+        |(a, b): (usize, usize)| Link { pictures: [a, b], alike: 0, matches: common(a, b), planar: 0.3, moved: 50.0 };
     let pairs = (0..count).flat_map(|a| (a + 1..count).map(move |b| (a, b)));
     let links = pairs.map(link).collect();
     Matches { format: FORMAT.into(), pictures: all.views.iter().map(picture).collect(), links, tracks }
@@ -116,7 +117,8 @@ fn nothing_depends_on_the_number_of_threads() {
 
 #[test]
 fn what_tells_no_depth_is_named() {
-    let why = |all: &Reconstruction| solve(&matches(all, FOCAL, 0.0), &Options::default(), &|_| {}).err().unwrap().message;
+    let why =
+        |all: &Reconstruction| solve(&matches(all, FOCAL, 0.0), &Options::default(), &|_| {}).err().unwrap().message;
     // A camera that only turns.
     let mut turned = scene(4, 300, 0.2, 3);
     let center = turned.views[0].pose.unwrap().center();

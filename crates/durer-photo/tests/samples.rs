@@ -63,9 +63,7 @@ fn adjusting_reaches_the_published_ends() {
     let report = adjust(&mut bal, &Options::default());
     println!("{:?} in {:?}", report.costs, start.elapsed());
     assert!(report.converged && bal.fit().cost <= 1.80340e4, "{:?}", report.costs);
-    for name in
-        ["gtsam/dubrovnik-3-7-pre.txt", "bundler-kermit/results.example/bundle.out", "gtsam/Balbianello.out"]
-    {
+    for name in ["gtsam/dubrovnik-3-7-pre.txt", "bundler-kermit/results.example/bundle.out", "gtsam/Balbianello.out"] {
         let mut all = read(&folder.join(name)).unwrap();
         let before = all.fit().cost;
         let report = adjust(&mut all, &Options::default());

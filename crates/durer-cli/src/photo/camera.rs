@@ -16,7 +16,12 @@ pub fn run(args: &CameraArgs) -> Result<(), Failure> {
     let file = args.picture.to_string_lossy();
     let content = bytes(&args.picture, &mut guard)?;
     let place = args.output.as_ref().map(|path| guard.writes("--output", path)).transpose()?;
-    let tell = |line: String| if args.quiet { } else { complain(&line) };
+    let tell = |line: String| {
+        if args.quiet {
+        } else {
+            complain(&line)
+        }
+    };
     let (lens, pose): (Lens, Pose) = if args.picture.extension().is_some_and(|end| end == "fspy") {
         let (lines, _) = read_project(&file, &content).map_err(wrong)?;
         from_vanishing_lines(&lines, args.distance).map_err(wrong)?

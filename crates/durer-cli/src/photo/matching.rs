@@ -26,7 +26,12 @@ pub fn run(args: &MatchArgs) -> Result<(), Failure> {
         ..Options::default()
     };
     let matched = progress::shares("matching photographs", |tell| {
-        let tell = |share: f64| if args.quiet { } else { tell(share) };
+        let tell = |share: f64| {
+            if args.quiet {
+            } else {
+                tell(share)
+            }
+        };
         let mut described = Vec::new();
         let mut doubts = Vec::new();
         for (i, path) in paths.iter().enumerate() {

@@ -65,7 +65,12 @@ fn incremental(args: &SolveArgs, matches: &Matches) -> Result<Reconstruction, Fa
     };
     let count = matches.pictures.len() as f64;
     let solved = progress::shares("solving", |share| {
-        let watch = |known: usize| if args.quiet { } else { share(known as f64 / count) };
+        let watch = |known: usize| {
+            if args.quiet {
+            } else {
+                share(known as f64 / count)
+            }
+        };
         threaded(args.threads, || solve(matches, &options, &watch))
     });
     let solved = solved?.map_err(wrong)?;
@@ -84,11 +89,19 @@ fn adjusted(args: &SolveArgs, guard: &mut Guard) -> Result<Reconstruction, Failu
     }
     let before = all.fit();
     if before.observations == 0 {
-        return Err(crate::bad(format!("`{}` has nothing that photographs see: there is nothing to adjust", args.file.display())));
+        return Err(crate::bad(format!(
+            "`{}` has nothing that photographs see: there is nothing to adjust",
+            args.file.display()
+        )));
     }
     let options = options(args);
     let report = progress::shares("adjusting", |share| {
-        let watch = |step: usize, _: f64| if args.quiet { } else { share(step as f64 / options.iterations as f64) };
+        let watch = |step: usize, _: f64| {
+            if args.quiet {
+            } else {
+                share(step as f64 / options.iterations as f64)
+            }
+        };
         threaded(args.threads, || adjust_watched(&mut all, &options, &watch))
     })?;
     if !args.quiet {
@@ -111,7 +124,10 @@ fn options(args: &SolveArgs) -> adjust::Options {
 /// Says how exactly cameras are known.
 fn exactness(args: &SolveArgs, all: &Reconstruction) -> Result<(), Failure> {
     let found = covariance(all, &options(args)).map_err(wrong)?;
-    say(&format!("standard deviations, for {:.3} pixels in each coordinate; the first photograph is held:", found.sigma));
+    say(&format!(
+        "standard deviations, for {:.3} pixels in each coordinate; the first photograph is held:",
+        found.sigma
+    ));
     for (view, _) in &found.views {
         let (name, place) = (&all.views[*view].name, found.place(all, *view).unwrap_or(0.0));
         let turn = found.pose(*view).map_or(0.0, |c| c.fixed_view::<3, 3>(0, 0).trace().max(0.0).sqrt());

@@ -26,8 +26,12 @@ pub fn project(lens: &Lens, pose: &Pose, point: &Vector3<f64>) -> (Vector2<f64>,
     let (ux, uy) = (fx * (g + 2.0 * x * x * slope), fx * 2.0 * x * y * slope);
     let (vx, vy) = (fy * 2.0 * x * y * slope, fy * (g + 2.0 * y * y * slope));
     let by_p = Matrix2x3::new(
-        ux / z, uy / z, -(ux * x + uy * y) / z, //
-        vx / z, vy / z, -(vx * x + vy * y) / z,
+        ux / z,
+        uy / z,
+        -(ux * x + uy * y) / z, //
+        vx / z,
+        vy / z,
+        -(vx * x + vy * y) / z,
     );
     let mut by_camera = CameraJacobian::zeros();
     for row in 0..2 {
@@ -53,7 +57,8 @@ mod tests {
     #[test]
     fn derivatives_are_those_of_differences() {
         let lens = Lens { aspect: 1.1, radial: [-0.2, 0.07], ..Lens::new([640, 480], 500.0) };
-        let pose = Pose { rotation: rotation_of(&Vector3::new(0.3, -0.2, 0.5)), translation: Vector3::new(0.1, 0.2, 4.0) };
+        let pose =
+            Pose { rotation: rotation_of(&Vector3::new(0.3, -0.2, 0.5)), translation: Vector3::new(0.1, 0.2, 4.0) };
         let point = Vector3::new(0.8, -0.7, 0.3);
         let (_, by_camera, by_point) = project(&lens, &pose, &point);
         let moved = |i: usize, by: f64| {

@@ -110,7 +110,11 @@ pub fn adjust_watched(all: &mut Reconstruction, options: &Options, watch: &dyn F
 }
 
 /// The derivatives of a pixel by its camera: rotation, translation, f, k1, k2.
-pub(crate) fn camera_jacobian(lens: &crate::Lens, pose: &crate::Pose, point: &nalgebra::Vector3<f64>) -> jacobian::CameraJacobian {
+pub(crate) fn camera_jacobian(
+    lens: &crate::Lens,
+    pose: &crate::Pose,
+    point: &nalgebra::Vector3<f64>,
+) -> jacobian::CameraJacobian {
     jacobian::project(lens, pose, point).1
 }
 

@@ -66,9 +66,8 @@ pub fn write(all: &Reconstruction) -> [String; 3] {
         let [width, height] = lens.size;
         let _ = writeln!(cameras, "{} {} {width} {height} {}", i + 1, MODELS[model].0, joined(p));
     }
-    let mut images = String::from(
-        "# IMAGE_ID, QW, QX, QY, QZ, TX, TY, TZ, CAMERA_ID, NAME\n# POINTS2D[] as (X, Y, POINT3D_ID)\n",
-    );
+    let mut images =
+        String::from("# IMAGE_ID, QW, QX, QY, QZ, TX, TY, TZ, CAMERA_ID, NAME\n# POINTS2D[] as (X, Y, POINT3D_ID)\n");
     for (i, view) in all.views.iter().enumerate() {
         let Some(pose) = &view.pose else { continue };
         let (q, t) = (joined(quaternion_of(&pose.rotation)), joined(pose.translation.iter()));

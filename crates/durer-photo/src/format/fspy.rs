@@ -45,10 +45,7 @@ pub fn read_camera(file: &str, json: &[u8]) -> Result<Reconstruction, Error> {
     lens.center[0] += half * camera.principal_point.x;
     lens.center[1] -= half * camera.principal_point.y;
     let rows = camera.view_transform.rows;
-    let pose = Pose {
-        rotation: Matrix3::from_fn(|i, j| rows[i][j]),
-        translation: Vector3::from_fn(|i, _| rows[i][3]),
-    };
+    let pose = Pose { rotation: Matrix3::from_fn(|i, j| rows[i][j]), translation: Vector3::from_fn(|i, _| rows[i][3]) };
     let view = View { name: file.to_string(), lens: 0, pose: Some(opposite(&pose)) };
     Ok(Reconstruction { lenses: vec![lens], views: vec![view], points: Vec::new() })
 }
@@ -66,10 +63,13 @@ pub fn read_project<'b>(file: &'b str, content: &'b [u8]) -> Result<(VanishingLi
     let (state, photograph) = (bytes.u32()? as usize, bytes.u32()? as usize);
     let state = bytes.take(state)?;
     let photograph = bytes.take(photograph)?;
-    let state: Value = serde_json::from_slice(state)
-        .map_err(|error| Error::of(file, format!("its state is broken JSON: {error}")))?;
+    let state: Value =
+        serde_json::from_slice(state).map_err(|error| Error::of(file, format!("its state is broken JSON: {error}")))?;
     if state["globalSettings"]["calibrationMode"] != "TwoVanishingPoints" {
-        return Err(Error::of(file, "only projects with two vanishing points have a camera that follows from the lines alone"));
+        return Err(Error::of(
+            file,
+            "only projects with two vanishing points have a camera that follows from the lines alone",
+        ));
     }
     let size = crate::photo::size(file, photograph)?;
     let [width, height] = size.map(f64::from);

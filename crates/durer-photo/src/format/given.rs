@@ -47,7 +47,11 @@ pub fn read_lines(file: &str, bytes: &[u8], size: [u32; 2]) -> Result<VanishingL
 }
 
 /// Control points: rows `X Y Z photograph u v photograph u v ...`; names without blanks.
-pub fn read_control(file: &str, bytes: &[u8], all: &Reconstruction) -> Result<Vec<(Vector3<f64>, Vec<Observation>)>, Error> {
+pub fn read_control(
+    file: &str,
+    bytes: &[u8],
+    all: &Reconstruction,
+) -> Result<Vec<(Vector3<f64>, Vec<Observation>)>, Error> {
     let mut words = Words::new(file, bytes)?;
     let mut points = Vec::new();
     while words.next_line('#') {

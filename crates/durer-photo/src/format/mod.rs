@@ -58,12 +58,48 @@ pub const CONVENTIONS: [Convention; 9] = {
         row(["Dürer", "in memory", "", DOWN, "matrix", T, CORNER, "f, aspect, cx, cy, k1, k2"]),
         row(["Bundler", "`.out`", "in, out", UP, "matrix by rows", T, MIDDLE, "f, k1, k2"]),
         row(["BAL", "`.txt`", "in, out", UP, "axis times angle", T, MIDDLE, "f, k1, k2"]),
-        row(["COLMAP text", "a folder", "in, out", DOWN, "quaternion w x y z", T, CORNER, "SIMPLE_PINHOLE, PINHOLE, SIMPLE_RADIAL, RADIAL, OPENCV"]),
+        row([
+            "COLMAP text",
+            "a folder",
+            "in, out",
+            DOWN,
+            "quaternion w x y z",
+            T,
+            CORNER,
+            "SIMPLE_PINHOLE, PINHOLE, SIMPLE_RADIAL, RADIAL, OPENCV",
+        ]),
         row(["COLMAP binary", "a folder", "in, out", DOWN, "quaternion w x y z", T, CORNER, "the same"]),
-        row(["OpenSfM", "`.json`", "in, out", DOWN, "axis times angle", T, "longer side = 1, from the middle, y down", "f / longer side, k1, k2"]),
-        row(["fSpy", "`.fspy`, `.json`", "in", UP, "4x4 matrix", T, "longer side from -1 to 1, y up; lines from 0 to 1, y down", "f / half the longer side, cx, cy"]),
+        row([
+            "OpenSfM",
+            "`.json`",
+            "in, out",
+            DOWN,
+            "axis times angle",
+            T,
+            "longer side = 1, from the middle, y down",
+            "f / longer side, k1, k2",
+        ]),
+        row([
+            "fSpy",
+            "`.fspy`, `.json`",
+            "in",
+            UP,
+            "4x4 matrix",
+            T,
+            "longer side from -1 to 1, y up; lines from 0 to 1, y down",
+            "f / half the longer side, cx, cy",
+        ]),
         row(["PLY", "`.ply`", "out", "none", "none", "points and camera centres", "none", "none"]),
-        row(["glTF", "`.gltf`", "out", UP, "quaternion x y z w, camera to world", "camera centre", "none", "vertical field of view"]),
+        row([
+            "glTF",
+            "`.gltf`",
+            "out",
+            UP,
+            "quaternion x y z w, camera to world",
+            "camera centre",
+            "none",
+            "vertical field of view",
+        ]),
     ]
 };
 
@@ -129,7 +165,10 @@ pub fn read(path: &Path) -> Result<Reconstruction, Error> {
             let tracks = tracks.transpose()?;
             opensfm::read(&file, &content, tracks.as_ref().map(|(name, bytes)| (&**name, &**bytes)))
         }
-        _ => Err(Error::of(&file, "the name should end in .out (Bundler), .txt (BAL) or .json (OpenSfM, fSpy), or be COLMAP's folder")),
+        _ => Err(Error::of(
+            &file,
+            "the name should end in .out (Bundler), .txt (BAL) or .json (OpenSfM, fSpy), or be COLMAP's folder",
+        )),
     }
 }
 

@@ -140,11 +140,8 @@ pub fn write(all: &Reconstruction) -> Result<[String; 2], Error> {
             let [r, g, b] = point.color;
             // The size of the feature is not kept; 0.001 is OpenSfM's usual one.
             let row = (&view.name, i, seen.feature, p.x, p.y);
-            let _ = writeln!(
-                tracks,
-                "{}\t{}\t{}\t{}\t{}\t0.001\t{r}\t{g}\t{b}\t-1\t-1",
-                row.0, row.1, row.2, row.3, row.4
-            );
+            let _ =
+                writeln!(tracks, "{}\t{}\t{}\t{}\t{}\t0.001\t{r}\t{g}\t{b}\t-1\t-1", row.0, row.1, row.2, row.3, row.4);
         }
     }
     let json = serde_json::to_string_pretty(&[part]).map_err(|error| Error::new(error.to_string()))?;

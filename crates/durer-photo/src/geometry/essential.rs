@@ -16,8 +16,26 @@ use nalgebra::{Matrix3, SMatrix, Vector3};
 /// The exponents of x, y, z of a cubic's monomials, in Nistér's order: elimination leaves only the last ten, and those below of
 /// the form x zⁿ, y zⁿ and zⁿ.
 const MONOMIALS: [[usize; 3]; 20] = [
-    [3, 0, 0], [0, 3, 0], [2, 1, 0], [1, 2, 0], [2, 0, 1], [2, 0, 0], [0, 2, 1], [0, 2, 0], [1, 1, 1], [1, 1, 0],
-    [1, 0, 2], [1, 0, 1], [1, 0, 0], [0, 1, 2], [0, 1, 1], [0, 1, 0], [0, 0, 3], [0, 0, 2], [0, 0, 1], [0, 0, 0],
+    [3, 0, 0],
+    [0, 3, 0],
+    [2, 1, 0],
+    [1, 2, 0],
+    [2, 0, 1],
+    [2, 0, 0],
+    [0, 2, 1],
+    [0, 2, 0],
+    [1, 1, 1],
+    [1, 1, 0],
+    [1, 0, 2],
+    [1, 0, 1],
+    [1, 0, 0],
+    [0, 1, 2],
+    [0, 1, 1],
+    [0, 1, 0],
+    [0, 0, 3],
+    [0, 0, 2],
+    [0, 0, 1],
+    [0, 0, 0],
 ];
 
 /// A polynomial in x, y, z up to degree three.
@@ -79,16 +97,16 @@ fn solutions(pairs: &[Pair; 5]) -> Option<Vec<Matrix3<f64>>> {
             entry
         })
     });
-    let minor = |a: &Cubic, b: &Cubic, c: &Cubic, d: &Cubic| plus(&algebra.multiply(a, b), &algebra.multiply(c, d), -1.0);
+    let minor =
+        |a: &Cubic, b: &Cubic, c: &Cubic, d: &Cubic| plus(&algebra.multiply(a, b), &algebra.multiply(c, d), -1.0);
     let determinant = algebra.dot([
         (&e[0][0], &minor(&e[1][1], &e[2][2], &e[1][2], &e[2][1])),
         (&e[0][1], &minor(&e[1][2], &e[2][0], &e[1][0], &e[2][2])),
         (&e[0][2], &minor(&e[1][0], &e[2][1], &e[1][1], &e[2][0])),
     ]);
     // L = E Eᵀ - tr(E Eᵀ) / 2, and L E = 0.
-    let mut l: [[Cubic; 3]; 3] = std::array::from_fn(|i| {
-        std::array::from_fn(|j| algebra.dot([0, 1, 2].map(|k| (&e[i][k], &e[j][k]))))
-    });
+    let mut l: [[Cubic; 3]; 3] =
+        std::array::from_fn(|i| std::array::from_fn(|j| algebra.dot([0, 1, 2].map(|k| (&e[i][k], &e[j][k])))));
     let trace = plus(&plus(&l[0][0], &l[1][1], 1.0), &l[2][2], 1.0);
     (0..3).for_each(|i| l[i][i] = plus(&l[i][i], &trace, -0.5));
     let mut all = SMatrix::<f64, 10, 20>::zeros();

@@ -26,8 +26,7 @@ pub fn p3p(points: &[Vector3<f64>; 3], directions: &[Vector3<f64>; 3]) -> Vec<Po
     let coefficients = [
         (1.0 + k1) * (1.0 + k1) - 4.0 * ab * cg * cg,
         4.0 * (-k1 * (1.0 + k1) * cb + 2.0 * ab * cg * cg * cb - (1.0 - k2) * ca * cg),
-        2.0 * (k1 * k1 - 1.0 + 2.0 * k1 * k1 * cb * cb + 2.0 * (1.0 - cob) * ca * ca
-            - 4.0 * k2 * ca * cb * cg
+        2.0 * (k1 * k1 - 1.0 + 2.0 * k1 * k1 * cb * cb + 2.0 * (1.0 - cob) * ca * ca - 4.0 * k2 * ca * cb * cg
             + 2.0 * (1.0 - ab) * cg * cg),
         4.0 * (k1 * (1.0 - k1) * cb - (1.0 - k2) * ca * cg + 2.0 * cob * ca * ca * cb),
         (k1 - 1.0) * (k1 - 1.0) - 4.0 * cob * ca * ca,

@@ -149,10 +149,8 @@ pub fn match_all(
     if photos.len() < 2 {
         return Err(Error::new("two photographs or more are needed: one alone tells no depth"));
     }
-    let keys: Vec<_> = photos
-        .iter()
-        .map(|photo| (photo.camera.clone(), photo.picture.size, photo.picture.focal.to_bits()))
-        .collect();
+    let keys: Vec<_> =
+        photos.iter().map(|photo| (photo.camera.clone(), photo.picture.size, photo.picture.focal.to_bits())).collect();
     let mut seen = Vec::new();
     for (photo, key) in photos.iter_mut().zip(keys) {
         photo.picture.lens = seen.iter().position(|other| *other == key).unwrap_or_else(|| {
@@ -228,8 +226,9 @@ impl Matches {
 
     /// Reads what [`Matches::to_json`] wrote.
     pub fn from_json(file: &str, json: &[u8]) -> Result<Self, Error> {
-        let all: Matches = serde_json::from_slice(json)
-            .map_err(|error| Error::at(file, (error.line(), error.column()), format!("not of durer photo match: {error}")))?;
+        let all: Matches = serde_json::from_slice(json).map_err(|error| {
+            Error::at(file, (error.line(), error.column()), format!("not of durer photo match: {error}"))
+        })?;
         let fail = |why: String| Err(Error::of(file, why));
         if all.format != FORMAT {
             return fail(format!("its format is `{}`, not `{FORMAT}`", all.format));

@@ -157,7 +157,9 @@ fn attempt(matches: &Matches, written: &Matches, options: &Options, progress: &d
         if moved(focal / picture.focal) && !picture.focal_from.starts_with(GUESS) && !told.contains(&view.lens) {
             told.push(view.lens);
             let (name, wrong) = (&picture.name, picture.focal);
-            notes.push(format!("{name}: the focal length is {focal:.0} pixels, and EXIF says {wrong:.0}: EXIF is wrong"));
+            notes.push(format!(
+                "{name}: the focal length is {focal:.0} pixels, and EXIF says {wrong:.0}: EXIF is wrong"
+            ));
         }
     }
     let mut all = solver.reconstruction(true).0;
@@ -204,7 +206,8 @@ impl<'o> Solver<'o> {
         let mut tracks = Vec::new();
         for (t, track) in self.tracks.iter().enumerate() {
             let Some(position) = track.position else { continue };
-            let fits = |(seen, fits): (&Observation, &bool)| (*fits && self.views[seen.view].pose.is_some()).then_some(*seen);
+            let fits =
+                |(seen, fits): (&Observation, &bool)| (*fits && self.views[seen.view].pose.is_some()).then_some(*seen);
             let list: Vec<Observation> = track.seen.iter().zip(&track.fits).filter_map(fits).collect();
             if !all || list.len() >= 2 {
                 points.push(Point { position, color: track.color, track: list });

@@ -88,7 +88,9 @@ impl Solver<'_> {
         let mut best: Option<(Pose, Vec<usize>, Lens)> = None;
         for factor in factors {
             let lens = Lens { focal: factor * self.lenses[number].focal, ..self.lenses[number] };
-            let Some((pose, inliers)) = pose_of(&pairs, &lens, threshold, self.options.seed ^ view as u64) else { continue };
+            let Some((pose, inliers)) = pose_of(&pairs, &lens, threshold, self.options.seed ^ view as u64) else {
+                continue;
+            };
             let enough = inliers.len() * 10 >= pairs.len() * 9;
             if best.as_ref().is_none_or(|best| inliers.len() > best.1.len()) {
                 best = Some((pose, inliers, lens));
@@ -102,7 +104,8 @@ impl Solver<'_> {
             return false;
         }
         let good: Vec<_> = inliers.iter().map(|i| pairs[*i]).collect();
-        let options = Options { loss: Loss::Huber(1.0), focal: free, radial: false, iterations: 20, ..Options::default() };
+        let options =
+            Options { loss: Loss::Huber(1.0), focal: free, radial: false, iterations: 20, ..Options::default() };
         let Some((pose, lens)) = refined_pose(&good, &lens, &pose, &options) else { return false };
         self.views[view].pose = Some(pose);
         self.lenses[number] = lens;

@@ -94,7 +94,8 @@ impl Solver<'_> {
             let rays: Vec<Vector3<f64>> = track.seen.iter().zip(&fits).filter_map(known).collect();
             let wide = rays.iter().enumerate().any(|(i, a)| rays[i + 1..].iter().any(|b| a.dot(b) < widest));
             let registered = |seen: &Observation| self.views[seen.view].pose.is_some();
-            let gone = track.seen.iter().zip(track.fits.iter().zip(&fits)).filter(|(s, (a, b))| registered(s) && **a && !**b);
+            let gone =
+                track.seen.iter().zip(track.fits.iter().zip(&fits)).filter(|(s, (a, b))| registered(s) && **a && !**b);
             dropped += gone.count();
             let track = &mut self.tracks[t];
             track.fits = fits;
