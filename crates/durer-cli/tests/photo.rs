@@ -65,11 +65,15 @@ fn photographs_of_a_known_scene_give_its_cameras() {
     for (i, pose) in cameras().iter().enumerate() {
         place.put("shot.txt", projective_camera(&lens, pose) + SCENE);
         let [width, height] = SIZE;
-        place.gives(0, &format!("render shot.txt -o photos/{i:02}.png --size {width}x{height} --samples 4 -q"));
+        place.gives(0, &format!("render shot.txt -o photos/{i:02}.png --size {width}x{height} --samples 3 -q"));
     }
     place.gives(0, "photo match photos -o matches.json --features 1200 --field 60 -q");
     let solved = place.gives(0, "photo solve matches.json -o solved -o points.ply -o scene.gltf -o bundle.out");
     println!("{}", solved.out);
+    place.gives(0, "photo explain solved --camera 03.png");
+    place.gives(0, "photo explain bundle.out --point 3");
+    place.gives(0, "photo tour solved --pictures photos -o tour.html --side 64 -q");
+    place.refused(2, "photo explain solved --camera 77.png", &["there is no photograph `77.png`; these are: 00.png"]);
     let all = read(&place.path("solved")).unwrap();
     assert_eq!(all.registered(), 20);
     let (far, angle, _) = differences(&all, &cameras());
@@ -78,4 +82,65 @@ fn photographs_of_a_known_scene_give_its_cameras() {
     assert!(far <= 0.001 * LENGTH, "{far}");
     assert!(angle <= 0.05, "{angle}");
     assert!(focal <= 0.002, "{focal}");
+}
+
+/// A picture of noise as PNG, which is another one for each seed.
+fn noise(seed: u64) -> Vec<u8> {
+    let mut random = durer_photo::random::Random::new(seed);
+    let picture = image::GrayImage::from_fn(160, 120, |_, _| image::Luma([random.bits() as u8]));
+    let mut bytes = std::io::Cursor::new(Vec::new());
+    picture.write_to(&mut bytes, image::ImageFormat::Png).unwrap();
+    bytes.into_inner()
+}
+
+#[test]
+fn what_is_no_set_of_photographs_is_refused() {
+    let place = Place::new();
+    let refused = |words: &[&str]| place.refused(2, "photo match photos -o m.json", words);
+    refused(&["cannot read the folder `photos`"]);
+    std::fs::create_dir(place.path("photos")).unwrap();
+    refused(&["there are no photographs in `photos`"]);
+    place.put("photos/a.png", noise(1));
+    refused(&["two photographs or more are needed"]);
+    place.put("photos/b.png", noise(1));
+    refused(&["the same picture again"]);
+    place.put("photos/b.png", noise(2));
+    refused(&["no two of the photographs show the same things"]);
+    place.put("photos/b.png", &noise(2)[..900]);
+    refused(&["b.png: cannot be read as a picture"]);
+    place.put("photos/b.jpg", "no picture");
+    place.put("photos/b.png", noise(2));
+    refused(&["b.jpg: this is neither a JPEG nor a PNG"]);
+}
+
+#[test]
+fn broken_files_are_refused_at_their_place() {
+    let place = Place::new();
+    place.put("p.png", noise(1));
+    let flat =
+        "# X Y Z u v\n0 0 0 10 10\n1 0 0 50 10\n0 1 0 10 50\n1 1 0 50 52\n2 0 0 90 11\n0 2 0 12 90\n2 2 0 95 96\n";
+    for (file, content, command, words) in [
+        ("b.out", "# Bundle file v0.3\n1 0\n700 0 x\n", "photo convert b.out -o c.ply", &["b.out:3:7", "`x`"][..]),
+        ("b.out", "1 1\n", "photo convert b.out -o c.ply", &["b.out", "the file ends"]),
+        ("b.out", "9999999 1\n", "photo convert b.out -o c.ply", &["b.out:1:1", "too short"]),
+        ("b.txt", "1 1 1\n3 0 1 1\n", "photo solve b.txt -o c.ply", &["b.txt:2:1", "there are 1, from 0"]),
+        ("b.txt", "BZh91AY", "photo solve b.txt -o c.ply", &["bunzip2"]),
+        ("b.json", "[{\"cameras\": 3}]", "photo convert b.json -o c.ply", &["b.json:1:"]),
+        ("m.json", "{\"format\": \"durer matches 1\"}", "photo solve m.json -o c.ply", &["m.json:1:"]),
+        ("b.xyz", "", "photo convert b.xyz -o c.ply", &["the name should end in"]),
+        (
+            "p.points",
+            flat,
+            "photo camera p.png --points p.points -o c.txt",
+            &["lie in a plane: DLT has no unique answer"],
+        ),
+        ("p.points", "0 0 0 1\n", "photo camera p.png --points p.points -o c.txt", &["p.points:2:1"]),
+        ("p.lines", "x 1 2 3 4\nq 1 2 3 4\n", "photo camera p.png --lines p.lines -o c.txt", &["p.lines:2:1"]),
+        ("p.fspy", "fspy\u{9}\0\0\0", "photo camera p.fspy -o c.txt", &["version is 9"]),
+    ] {
+        place.put(file, content);
+        place.refused(2, command, words);
+    }
+    place.refused(2, "photo camera p.png", &["--points FILE or --lines FILE"]);
+    place.refused(2, "photo solve b.txt -o b.txt", &["is read in this run"]);
 }
