@@ -8,7 +8,7 @@ use durer_photo::geometry::p3p::p3p;
 use durer_photo::geometry::ransac::{Search, ransac};
 use durer_photo::model::{axis_angle_of, rotation_of};
 use durer_photo::random::Random;
-use durer_photo::resect::{Axis, Known, VanishingLines, camera, from_vanishing_lines};
+use durer_photo::resect::{Axis, Known, Pair, VanishingLines, camera, from_vanishing_lines};
 use durer_photo::{Lens, Pose};
 use nalgebra::{Matrix3, Vector2, Vector3};
 
@@ -120,7 +120,7 @@ fn rotations_come_back_from_axis_and_angle() {
 }
 
 /// Points with the pixels at which a camera sees them.
-fn photographed(count: usize, flat: bool) -> (Lens, Pose, Vec<(Vector3<f64>, Vector2<f64>)>) {
+fn photographed(count: usize, flat: bool) -> (Lens, Pose, Vec<Pair>) {
     let random = &mut Random::new(6);
     let lens = Lens { radial: [-0.1, 0.02], ..Lens::new([800, 600], 750.0) };
     let truth = pose(random);

@@ -96,9 +96,11 @@ impl Tables {
     }
 }
 
-/// The features of each photograph as they are written: place and the point's id; and for each point's observations, the
-/// numbers of their features.
-pub fn features(all: &Reconstruction) -> (Vec<Vec<(Vector2<f64>, usize)>>, Vec<Vec<usize>>) {
+/// A photograph's features: place and the point's id.
+pub type Features = Vec<(Vector2<f64>, usize)>;
+
+/// The features of each photograph as they are written; and for each point's observations, the numbers of their features.
+pub fn features(all: &Reconstruction) -> (Vec<Features>, Vec<Vec<usize>>) {
     let mut features = vec![Vec::new(); all.views.len()];
     let mut numbers = Vec::new();
     for (i, point) in all.points.iter().enumerate() {

@@ -46,12 +46,11 @@ pub fn read_lines(file: &str, bytes: &[u8], size: [u32; 2]) -> Result<VanishingL
     Ok(VanishingLines { size, center, origin, axes: [one.0, two.0], lines: [one.1, two.1] })
 }
 
+/// A place of the world, and where photographs see it.
+pub type Control = (Vector3<f64>, Vec<Observation>);
+
 /// Control points: rows `X Y Z photograph u v photograph u v ...`; names without blanks.
-pub fn read_control(
-    file: &str,
-    bytes: &[u8],
-    all: &Reconstruction,
-) -> Result<Vec<(Vector3<f64>, Vec<Observation>)>, Error> {
+pub fn read_control(file: &str, bytes: &[u8], all: &Reconstruction) -> Result<Vec<Control>, Error> {
     let mut words = Words::new(file, bytes)?;
     let mut points = Vec::new();
     while words.next_line('#') {

@@ -73,7 +73,7 @@ pub fn rigid(world: &[Vector3<f64>], camera: &[Vector3<f64>]) -> Option<Pose> {
 /// Says so if fewer than three of them are seen by two photographs whose pose is known, or if they are in a line.
 pub fn to_control(
     all: &Reconstruction,
-    control: &[(Vector3<f64>, Vec<crate::Observation>)],
+    control: &[crate::format::Control],
 ) -> Result<(Similarity, Vec<f64>), crate::Error> {
     let ray = |seen: &crate::Observation| {
         let view = &all.views[seen.view];

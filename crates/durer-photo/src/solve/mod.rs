@@ -250,11 +250,10 @@ impl<'o> Solver<'o> {
         self.views = all.views;
         self.lenses = all.lenses;
         tracks.iter().zip(&all.points).for_each(|(t, point)| self.tracks[*t].position = Some(point.position));
-        for i in 0..self.lenses.len() {
-            let lens = &self.lenses[i];
+        for ((lens, before), first) in self.lenses.iter_mut().zip(before).zip(&self.first) {
             let sane = (0.2..20.0).contains(&(lens.focal / lens.longer_side())) && lens.radial[0].abs() < 2.0;
             if !sane {
-                self.lenses[i] = Lens { focal: before[i].focal.min(20.0 * before[i].longer_side()), ..self.first[i] };
+                *lens = Lens { focal: before.focal.min(20.0 * before.longer_side()), ..*first };
             }
         }
     }
