@@ -41,6 +41,7 @@ pub enum Command {
     Info(InfoArgs),
     Convert(ConvertArgs),
     Compare(Box<CompareArgs>),
+    Photo(crate::photo::PhotoArgs),
     /// List the dialects of the scene language, and the old programs' habits that can be had by name
     #[command(after_help = "Example:\n  durer dialects")]
     Dialects,

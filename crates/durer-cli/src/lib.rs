@@ -20,6 +20,7 @@ mod merge;
 mod open;
 mod output;
 mod page;
+mod photo;
 mod progress;
 mod render;
 mod report;
@@ -70,6 +71,7 @@ pub fn run(words: Vec<OsString>) -> u8 {
             Command::Info(args) => info::run(&args),
             Command::Convert(args) => convert::run(&args),
             Command::Compare(args) => compare::run(&args),
+            Command::Photo(args) => photo::run(&args),
             Command::Dialects => manual::dialects(),
             Command::Words(args) => words::run(&args),
             Command::Completions { shell } => manual::completions(shell),

@@ -8,8 +8,15 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// The pages, each with commands that go on from one to the next.
-const PAGES: [&str; 6] =
-    ["README.md", "docs/student.md", "docs/teacher.md", "docs/engineer.md", "docs/scenes.md", "docs/explain.md"];
+const PAGES: [&str; 7] = [
+    "README.md",
+    "docs/student.md",
+    "docs/teacher.md",
+    "docs/engineer.md",
+    "docs/scenes.md",
+    "docs/explain.md",
+    "docs/photographs.md",
+];
 
 /// What follows an option in a command, changed so that the test is short.
 const SMALLER: [(&str, &str); 3] = [("--size", "40x30"), ("--samples", "4"), ("--pixel", "20,15")];
@@ -70,5 +77,15 @@ fn links_of_the_pages_lead_somewhere() {
             }
             assert!(page.parent().unwrap().join(file).exists(), "{} links to {link}", page.display());
         }
+    }
+}
+
+#[test]
+fn the_table_of_conventions_is_that_of_the_code() {
+    let text = std::fs::read_to_string(root().join("docs/photographs.md")).unwrap();
+    for c in durer_photo::format::CONVENTIONS {
+        let cells = [c.name, c.files, c.way, c.frame, c.rotation, c.translation, c.pixels, c.lens];
+        let row = format!("| {} |", cells.join(" | "));
+        assert!(text.contains(&row), "docs/photographs.md lacks\n{row}");
     }
 }

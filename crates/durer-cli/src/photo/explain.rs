@@ -1,0 +1,18 @@
+//! `durer photo explain`.
+
+use super::args::ExplainArgs;
+use super::{read, wrong};
+use crate::Failure;
+use crate::guard::Guard;
+use crate::output::say;
+use durer_photo::explain;
+
+pub fn run(args: &ExplainArgs) -> Result<(), Failure> {
+    let all = read(&args.file, args.pictures.as_deref(), &mut Guard::default())?;
+    let text = match (&args.camera, args.point) {
+        (Some(name), _) => explain::view_of(&all, name).and_then(|view| explain::camera(&all, view)),
+        (None, point) => explain::point(&all, point.unwrap_or(0)),
+    };
+    say(text.map_err(wrong)?.trim_end());
+    Ok(())
+}

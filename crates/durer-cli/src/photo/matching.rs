@@ -1,0 +1,75 @@
+//! `durer photo match`.
+
+use super::args::MatchArgs;
+use super::{bytes, name, photographs, threaded, wrong};
+use crate::guard::Guard;
+use crate::output::{save, say};
+use crate::report::complain;
+use crate::{Failure, progress};
+use durer_photo::matching::{GUESS, Matches, Options, describe, match_all};
+use durer_photo::photo;
+
+/// The share of the time that features take; matching takes the rest.
+const FEATURES: f64 = 0.5;
+
+pub fn run(args: &MatchArgs) -> Result<(), Failure> {
+    let mut guard = Guard::default();
+    let paths = photographs(&args.folder)?;
+    paths.iter().try_for_each(|path| guard.reads(path))?;
+    let place = guard.writes("--output", &args.output)?;
+    let options = Options {
+        features: args.features as usize,
+        side: args.side,
+        field: args.field,
+        ignore_exif: args.ignore_exif,
+        seed: args.seed,
+        ..Options::default()
+    };
+    let matched = progress::shares("matching photographs", |tell| {
+        let tell = |share: f64| {
+            if args.quiet {
+            } else {
+                tell(share)
+            }
+        };
+        let mut described = Vec::new();
+        let mut doubts = Vec::new();
+        for (i, path) in paths.iter().enumerate() {
+            // One at a time: photographs are large, and their features are found on all threads.
+            let photo = photo::read(&name(path), &bytes(path, &mut Guard::default())?).map_err(wrong)?;
+            doubts.extend(photo.exif.doubt.as_ref().map(|doubt| format!("{}: {doubt}", photo.name)));
+            described.push(threaded(args.threads, || describe(&photo, &options))?);
+            tell(FEATURES * (i + 1) as f64 / paths.len() as f64);
+        }
+        let watch = |share: f64| tell(FEATURES + (1.0 - FEATURES) * share);
+        let matches = threaded(args.threads, || match_all(described, &options, &watch))?.map_err(wrong)?;
+        Ok::<_, Failure>((matches, doubts))
+    });
+    let (matches, doubts) = matched?;
+    if !args.quiet {
+        doubts.iter().for_each(|doubt| complain(&format!("warning: {doubt}")));
+        table(&matches);
+    }
+    save(&[(&place, matches.to_json().into_bytes())], args.quiet)
+}
+
+/// Says what was found.
+fn table(matches: &Matches) {
+    for (i, picture) in matches.pictures.iter().enumerate() {
+        let partners = matches.links.iter().filter(|link| link.pictures.contains(&i));
+        let (count, most) = partners.fold((0, 0), |(count, most), link| (count + 1, most.max(link.matches)));
+        let [width, height] = picture.size;
+        let (name, features, focal, from) = (&picture.name, picture.features, picture.focal, &picture.focal_from);
+        let from = if from.starts_with(GUESS) { from.clone() } else { format!("EXIF: {from}") };
+        say(&format!(
+            "{name}: {width}x{height}, {features} salient points, focal length {focal:.0} ({from}); matches {count} others, at most \
+             {most} points"
+        ));
+    }
+    for link in matches.links.iter().filter(|link| link.moved < 0.5) {
+        let [a, b] = link.pictures.map(|i| &matches.pictures[i].name);
+        complain(&format!("warning: {a} and {b} are the same picture: together they tell no depth"));
+    }
+    let longest = matches.tracks.iter().map(|track| track.seen.len()).max().unwrap_or(0);
+    say(&format!("{} tracks, the longest in {longest} photographs", matches.tracks.len()));
+}

@@ -1,0 +1,137 @@
+//! `durer photo solve`.
+
+use super::args::SolveArgs;
+use super::{Results, bytes, read, tell, threaded, wrong};
+use crate::guard::Guard;
+use crate::output::say;
+use crate::report::complain;
+use crate::{Failure, progress};
+use durer_photo::adjust::{self, Loss, adjust_watched, covariance};
+use durer_photo::format::read_control;
+use durer_photo::geometry::align::to_control;
+use durer_photo::matching::{FORMAT, Matches};
+use durer_photo::solve::{Options, solve};
+use durer_photo::{Lens, Reconstruction};
+
+pub fn run(args: &SolveArgs) -> Result<(), Failure> {
+    let mut guard = Guard::default();
+    let mut results = Results::new(&args.results, &mut guard)?;
+    let is_file = !args.file.is_dir();
+    let content = if is_file { bytes(&args.file, &mut guard)? } else { Vec::new() };
+    let file = args.file.to_string_lossy();
+    // What is of ours says so in its first line.
+    let head = String::from_utf8_lossy(&content[..content.len().min(80)]).into_owned();
+    let mut all = match head.contains("\"format\"") && head.contains(FORMAT) {
+        true => incremental(args, &Matches::from_json(&file, &content).map_err(wrong)?)?,
+        false => adjusted(args, &mut guard)?,
+    };
+    if let Some(path) = &args.control {
+        let content = bytes(path, &mut guard)?;
+        let control = read_control(&path.to_string_lossy(), &content, &all).map_err(wrong)?;
+        let (similarity, left) = to_control(&all, &control).map_err(wrong)?;
+        similarity.apply_to(&mut all);
+        let worst = left.iter().fold(0.0_f64, |m, d| m.max(*d));
+        if !args.quiet {
+            let (count, scale) = (left.len(), similarity.scale);
+            say(&format!("put on {count} control points, {scale:.6} times as large; the farthest is {worst:.4} off"));
+        }
+    }
+    if !args.quiet {
+        tell(&all);
+        all.lenses.iter().enumerate().for_each(|(i, lens)| say(&lens_line(&all, i, lens)));
+    }
+    if args.covariance {
+        exactness(args, &all)?;
+    }
+    results.add(&all)?;
+    results.save(args.quiet)
+}
+
+fn lens_line(all: &Reconstruction, number: usize, lens: &Lens) -> String {
+    let views = all.views.iter().filter(|view| view.lens == number && view.pose.is_some()).count();
+    let (f, [k1, k2]) = (lens.focal, lens.radial);
+    format!("lens {}: focal length {f:.3} pixels, k1 {k1:.6}, k2 {k2:.6}; {views} photographs", number + 1)
+}
+
+/// From tracks.
+fn incremental(args: &SolveArgs, matches: &Matches) -> Result<Reconstruction, Failure> {
+    let options = Options {
+        fixed_focal: args.fixed_focal,
+        no_distortion: args.no_distortion,
+        own_lenses: args.own_lenses,
+        threshold: args.threshold,
+        seed: args.seed,
+        ..Options::default()
+    };
+    let count = matches.pictures.len() as f64;
+    let solved = progress::shares("solving", |share| {
+        let watch = |known: usize| {
+            if args.quiet {
+            } else {
+                share(known as f64 / count)
+            }
+        };
+        threaded(args.threads, || solve(matches, &options, &watch))
+    });
+    let solved = solved?.map_err(wrong)?;
+    if !args.quiet {
+        solved.notes.iter().for_each(|note| complain(&format!("note: {note}")));
+    }
+    Ok(solved.all)
+}
+
+/// What has cameras already.
+fn adjusted(args: &SolveArgs, guard: &mut Guard) -> Result<Reconstruction, Failure> {
+    let mut all = read(&args.file, args.pictures.as_deref(), guard)?;
+    if args.own_lenses {
+        all.lenses = all.views.iter().map(|view| all.lenses[view.lens]).collect();
+        all.views.iter_mut().enumerate().for_each(|(i, view)| view.lens = i);
+    }
+    let before = all.fit();
+    if before.observations == 0 {
+        return Err(crate::bad(format!(
+            "`{}` has nothing that photographs see: there is nothing to adjust",
+            args.file.display()
+        )));
+    }
+    let options = options(args);
+    let report = progress::shares("adjusting", |share| {
+        let watch = |step: usize, _: f64| {
+            if args.quiet {
+            } else {
+                share(step as f64 / options.iterations as f64)
+            }
+        };
+        threaded(args.threads, || adjust_watched(&mut all, &options, &watch))
+    })?;
+    if !args.quiet {
+        let (steps, end) = (report.costs.len() - 1, if report.converged { "converged" } else { "not converged" });
+        say(&format!("cost {:.6e}, rms {:.4} pixels, before", before.cost, before.rms));
+        say(&format!("{end} after {steps} steps"));
+    }
+    Ok(all)
+}
+
+fn options(args: &SolveArgs) -> adjust::Options {
+    let loss = match &*args.loss {
+        "huber" => Loss::Huber(1.0),
+        "cauchy" => Loss::Cauchy(1.0),
+        _ => Loss::Squared,
+    };
+    adjust::Options { loss, focal: !args.fixed_focal, radial: !args.no_distortion, ..adjust::Options::default() }
+}
+
+/// Says how exactly cameras are known.
+fn exactness(args: &SolveArgs, all: &Reconstruction) -> Result<(), Failure> {
+    let found = covariance(all, &options(args)).map_err(wrong)?;
+    say(&format!(
+        "standard deviations, for {:.3} pixels in each coordinate; the first photograph is held:",
+        found.sigma
+    ));
+    for (view, _) in &found.views {
+        let (name, place) = (&all.views[*view].name, found.place(all, *view).unwrap_or(0.0));
+        let turn = found.pose(*view).map_or(0.0, |c| c.fixed_view::<3, 3>(0, 0).trace().max(0.0).sqrt());
+        say(&format!("{name}: place {place:.6}, direction {:.4} degrees", turn.to_degrees()));
+    }
+    Ok(())
+}

@@ -1,0 +1,43 @@
+//! `durer photo tour`: a page on which one walks among photographs.
+
+use super::args::TourArgs;
+use super::{bytes, read, wrong};
+use crate::guard::Guard;
+use crate::output::save;
+use crate::{Failure, bad, page, progress};
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use durer_photo::photo;
+use durer_photo::tour::shown;
+use serde_json::json;
+
+/// The page without its data.
+const PAGE: &str = include_str!("tour.html");
+
+pub fn run(args: &TourArgs) -> Result<(), Failure> {
+    let mut guard = Guard::default();
+    let all = read(&args.file, Some(&args.pictures), &mut guard)?;
+    let place = guard.writes("--output", &args.output)?;
+    let photographs = shown(&all);
+    if photographs.is_empty() {
+        return Err(bad(format!("nobody knows where any photograph of `{}` was taken", args.file.display())));
+    }
+    let names: Vec<String> = photographs.iter().map(|shown| shown.name.clone()).collect();
+    let pictures = progress::each(&names, photographs.iter().collect(), args.quiet, |shown| {
+        let path = args.pictures.join(&shown.name);
+        let photo = photo::read(&path.to_string_lossy(), &bytes(&path, &mut guard)?).map_err(wrong)?;
+        if photo.size() != shown.size {
+            let ([w, h], [x, y]) = (photo.size(), shown.size);
+            return Err(bad(format!("`{}` is {w}x{h}, and its camera is of a photograph of {x}x{y}", path.display())));
+        }
+        let jpeg = photo.small(args.side).map_err(wrong)?;
+        Ok(format!("data:image/jpeg;base64,{}", STANDARD.encode(jpeg)))
+    });
+    let pictures = pictures.into_iter().collect::<Result<Vec<_>, Failure>>()?;
+    // Six digits are more than a screen shows.
+    let short = |value: f64| (value * 1e6).round() / 1e6;
+    let points: Vec<_> = all.points.iter().map(|point| point.position.map(short).as_slice().to_vec()).collect();
+    let colors: Vec<_> = all.points.iter().map(|point| point.color).collect();
+    let data = json!({"photographs": photographs, "pictures": pictures, "points": points, "colors": colors});
+    save(&[(&place, page::with_data(PAGE, &data).into_bytes())], args.quiet)
+}

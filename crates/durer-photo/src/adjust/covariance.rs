@@ -1,0 +1,85 @@
+//! How exactly cameras are known.
+//!
+//! Near the solution the errors of all parameters have the covariance σ² (Jᵀ J)⁻¹, for errors of σ pixels in each component of
+//! each observation. That of the cameras is σ² times the inverse of the reduced matrix. Place, direction and size of the whole
+//! cannot be known from photographs: they are held by the first photograph's pose and, in the farthest photograph from it, the
+//! largest component of what its translation is from there.
+//!
+//! Source: Hartley, Zisserman, *Multiple View Geometry in Computer Vision*, 2nd edition, 2004, sections 5.2 and A6.
+
+use super::{Loss, Options, System};
+use crate::{Error, Reconstruction};
+use nalgebra::{Cholesky, DMatrix, Matrix6};
+
+/// The covariance of all cameras.
+pub struct Covariance {
+    /// The standard deviation of a component of an observation in pixels, from the residuals that are left.
+    pub sigma: f64,
+    /// For each pose that is known, the number of its photograph, and where its six columns begin: a rotation ω by which the
+    /// pose's rotation R becomes exp([ω]×) R, then its translation.
+    pub views: Vec<(usize, usize)>,
+    /// All cameras together, six rows a pose, then three a lens (f, k1, k2). Zero for what is held.
+    pub matrix: DMatrix<f64>,
+    /// The rows that are free.
+    pub free: Vec<usize>,
+}
+
+impl Covariance {
+    /// Of one photograph's pose.
+    pub fn pose(&self, view: usize) -> Option<Matrix6<f64>> {
+        let (_, at) = *self.views.iter().find(|(number, _)| *number == view)?;
+        Some(self.matrix.fixed_view::<6, 6>(at, at).into_owned())
+    }
+
+    /// The standard deviation of a photograph's place, as a length.
+    pub fn place(&self, all: &Reconstruction, view: usize) -> Option<f64> {
+        let (pose, covariance) = (all.views[view].pose?, self.pose(view)?);
+        let turn = pose.rotation.transpose();
+        let mut jacobian = nalgebra::Matrix3x6::zeros();
+        // R becomes (1 + [ω]×) R, so that C = -Rᵀ t changes by -Rᵀ [ω]×ᵀ t = Rᵀ (ω × t) = -Rᵀ [t]× ω.
+        jacobian.fixed_columns_mut::<3>(0).copy_from(&(-turn * pose.translation.cross_matrix()));
+        jacobian.fixed_columns_mut::<3>(3).copy_from(&-turn);
+        Some((jacobian * covariance * jacobian.transpose()).trace().max(0.0).sqrt())
+    }
+}
+
+/// The covariance of the cameras of a solution; `options` say what was free.
+///
+/// # Errors
+///
+/// Says so where something is not determined by the photographs.
+pub fn covariance(all: &Reconstruction, options: &Options) -> Result<Covariance, Error> {
+    let options = Options { loss: Loss::Squared, ..*options };
+    // A point that one photograph sees tells nothing of cameras, and nobody knows where it is.
+    let known = |seen: &&crate::Observation| all.views[seen.view].pose.is_some();
+    let mut kept = all.clone();
+    kept.points.retain(|point| !options.points || point.track.iter().filter(known).count() > 1);
+    let (system, state, views) = System::new(&kept, options);
+    if views.len() < 2 {
+        return Err(Error::new("a covariance needs at least two photographs whose pose is known"));
+    }
+    let reduced = system.reduce(&state, 0.0);
+    let first = state.poses[0].center();
+    // The other photographs' translations, seen from the first one.
+    let from_first = |i: usize| state.poses[i].apply(&first);
+    let far = (1..views.len()).fold(1, |far, i| if from_first(i).norm() > from_first(far).norm() { i } else { far });
+    let scale = from_first(far).iamax();
+    let free: Vec<usize> =
+        (6..system.size).filter(|i| *i != 6 * far + 3 + scale && reduced.diagonal[*i] > 0.0).collect();
+    let part = DMatrix::from_fn(free.len(), free.len(), |i, j| reduced.matrix[(free[i], free[j])]);
+    let size: Vec<f64> = free.iter().map(|i| reduced.matrix[(*i, *i)].max(0.0).sqrt()).collect();
+    let scaled = DMatrix::from_fn(free.len(), free.len(), |i, j| part[(i, j)] / (size[i] * size[j]));
+    let inverse = Cholesky::new(scaled).map(|factor| factor.inverse()).filter(|m| m.iter().all(|c| c.is_finite()));
+    let inverse = inverse.ok_or_else(|| Error::new("some camera is not determined by what the photographs see"))?;
+    let unknowns = free.len() + if options.points { 3 * kept.points.len() } else { 0 };
+    let spare = system.residuals().saturating_sub(unknowns).max(1);
+    let sigma = (2.0 * system.cost(&state) / spare as f64).sqrt();
+    let mut matrix = DMatrix::zeros(system.size, system.size);
+    for (i, row) in free.iter().enumerate() {
+        for (j, column) in free.iter().enumerate() {
+            matrix[(*row, *column)] = sigma * sigma * inverse[(i, j)] / (size[i] * size[j]);
+        }
+    }
+    let views = views.into_iter().enumerate().map(|(i, view)| (view, 6 * i)).collect();
+    Ok(Covariance { sigma, views, matrix, free })
+}

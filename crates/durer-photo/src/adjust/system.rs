@@ -1,0 +1,257 @@
+//! The normal equations, and the points taken out of them (Schur's complement).
+//!
+//! With the cameras' parameters c and the points' p, a step solves
+//!
+//! ```text
+//! | U  W | |dc|     |gc|
+//! | Wᵀ V | |dp| = - |gp|
+//! ```
+//!
+//! V is made of blocks of 3x3, one for each point, so that (U - W V⁻¹ Wᵀ) dc = -gc + W V⁻¹ gp is small, and each point's step
+//! follows from dc. Source: Triggs, McLauchlan, Hartley, Fitzgibbon, *Bundle Adjustment: A Modern Synthesis*, 2000, section 6.
+
+use super::Options;
+use super::jacobian::{CameraJacobian, project};
+use crate::{Lens, Pose, Reconstruction};
+use nalgebra::{DMatrix, DVector, Matrix2x3, Matrix3, SMatrix, Vector2, Vector3};
+use rayon::prelude::*;
+
+/// What is solved for.
+#[derive(Clone)]
+pub struct State {
+    pub poses: Vec<Pose>,
+    pub lenses: Vec<Lens>,
+    pub points: Vec<Vector3<f64>>,
+}
+
+/// An observation of a photograph whose pose is known: where it is, and of which pose and lens.
+struct Seen {
+    pixel: Vector2<f64>,
+    pose: usize,
+    lens: usize,
+}
+
+/// What is known, and where each parameter stands.
+pub struct System {
+    options: Options,
+    seen: Vec<Seen>,
+    /// Where each point's observations begin, and the end.
+    starts: Vec<usize>,
+    /// Points, in runs of about as many observations. Their number depends on the problem alone, so that sums do too.
+    runs: Vec<std::ops::Range<usize>>,
+    poses: usize,
+    /// How many parameters cameras have: six a pose, then three a lens.
+    pub size: usize,
+}
+
+/// The reduced equations and more that is found on the way.
+pub struct Reduced {
+    /// U - W V⁻¹ Wᵀ without damping of U.
+    pub matrix: DMatrix<f64>,
+    /// -gc + W V⁻¹ gp.
+    pub right: DVector<f64>,
+    /// gc.
+    pub gradient: DVector<f64>,
+    /// The diagonal of U.
+    pub diagonal: DVector<f64>,
+}
+
+/// One observation's weighted residual and derivatives.
+struct Row {
+    residual: Vector2<f64>,
+    by_camera: CameraJacobian,
+    by_point: Matrix2x3<f64>,
+}
+
+/// A point's normal equations, damped.
+struct PointBlock {
+    rows: Vec<Row>,
+    inverse: Matrix3<f64>,
+    gradient: Vector3<f64>,
+    damping: Vector3<f64>,
+}
+
+impl System {
+    /// The problem of a reconstruction; `views` are the numbers of the photographs whose poses are in it.
+    pub fn new(all: &Reconstruction, options: Options) -> (Self, State, Vec<usize>) {
+        let views: Vec<usize> = (0..all.views.len()).filter(|i| all.views[*i].pose.is_some()).collect();
+        let mut number = vec![usize::MAX; all.views.len()];
+        views.iter().enumerate().for_each(|(i, view)| number[*view] = i);
+        let (mut seen, mut starts) = (Vec::new(), vec![0]);
+        for point in &all.points {
+            let known = point.track.iter().filter(|seen| number[seen.view] != usize::MAX);
+            seen.extend(known.map(|seen| Seen {
+                pixel: seen.pixel,
+                pose: number[seen.view],
+                lens: all.views[seen.view].lens,
+            }));
+            starts.push(seen.len());
+        }
+        let size = 6 * views.len() + 3 * all.lenses.len();
+        // As many as keep threads busy, in no more than 256 MiB for their sums.
+        let count = ((1 << 25) / (size * size).max(1)).clamp(1, 16);
+        let bound = |i: usize| starts.partition_point(|start| start * count < i * seen.len()).min(all.points.len());
+        let runs = (0..count).map(|i| bound(i)..if i + 1 == count { all.points.len() } else { bound(i + 1) }).collect();
+        let poses = views.iter().filter_map(|view| all.views[*view].pose).collect();
+        let points = all.points.iter().map(|point| point.position).collect();
+        let state = State { poses, lenses: all.lenses.clone(), points };
+        (System { options, seen, starts, runs, poses: views.len(), size }, state, views)
+    }
+
+    /// Where the nine columns of an observation begin: those of its pose, and those of its lens.
+    fn columns(&self, seen: &Seen) -> [(usize, usize, usize); 2] {
+        [(0, 6, 6 * seen.pose), (6, 3, 6 * self.poses + 3 * seen.lens)]
+    }
+
+    fn seen(&self, point: usize) -> &[Seen] {
+        &self.seen[self.starts[point]..self.starts[point + 1]]
+    }
+
+    /// Half the sum of the losses.
+    pub fn cost(&self, state: &State) -> f64 {
+        let run = |run: &std::ops::Range<usize>| {
+            let one = |i: usize| {
+                let residual = |seen: &Seen| {
+                    let p = state.poses[seen.pose].apply(&state.points[i]);
+                    (state.lenses[seen.lens].project(&p) - seen.pixel).norm_squared()
+                };
+                self.seen(i).iter().map(|seen| self.options.loss.at(residual(seen)).0 / 2.0).sum::<f64>()
+            };
+            run.clone().map(one).sum::<f64>()
+        };
+        self.runs.par_iter().map(run).collect::<Vec<f64>>().into_iter().sum()
+    }
+
+    fn block(&self, state: &State, point: usize, damping: f64) -> PointBlock {
+        let rows: Vec<Row> = self.seen(point).iter().map(|seen| self.row(state, point, seen)).collect();
+        let (mut v, mut gradient) = (Matrix3::zeros(), Vector3::zeros());
+        for row in &rows {
+            v += row.by_point.transpose() * row.by_point;
+            gradient += row.by_point.transpose() * row.residual;
+        }
+        let diagonal = v.diagonal().map(|d| damping * d);
+        let damped = v + Matrix3::from_diagonal(&diagonal);
+        // A point that nothing holds stays where it is.
+        let inverse = damped.try_inverse().filter(|m| m.iter().all(|c| c.is_finite())).unwrap_or_default();
+        PointBlock { rows, inverse, gradient, damping: diagonal }
+    }
+
+    fn row(&self, state: &State, point: usize, seen: &Seen) -> Row {
+        let (lens, pose) = (&state.lenses[seen.lens], &state.poses[seen.pose]);
+        let (pixel, mut by_camera, by_point) = project(lens, pose, &state.points[point]);
+        let residual = pixel - seen.pixel;
+        // The loss as a weight: Triggs' correction without its second derivative.
+        let weight = self.options.loss.at(residual.norm_squared()).1.sqrt();
+        for (column, free) in [(6, self.options.focal), (7, self.options.radial), (8, self.options.radial)] {
+            if !free {
+                by_camera.column_mut(column).fill(0.0);
+            }
+        }
+        let by_point = if self.options.points { weight * by_point } else { Matrix2x3::zeros() };
+        Row { residual: weight * residual, by_camera: weight * by_camera, by_point }
+    }
+
+    /// The reduced equations, with the points' blocks damped.
+    pub fn reduce(&self, state: &State, damping: f64) -> Reduced {
+        let n = self.size;
+        let run = |run: &std::ops::Range<usize>| {
+            let mut half = DMatrix::zeros(n, n);
+            let (mut right, mut gradient, mut diagonal) = (DVector::zeros(n), DVector::zeros(n), DVector::zeros(n));
+            for point in run.clone() {
+                let block = self.block(state, point, damping);
+                let seen = self.seen(point);
+                let step = block.inverse * block.gradient;
+                let w: Vec<SMatrix<f64, 9, 3>> =
+                    block.rows.iter().map(|row| row.by_camera.transpose() * row.by_point).collect();
+                for (i, row) in block.rows.iter().enumerate() {
+                    let squares = row.by_camera.transpose() * row.by_camera;
+                    let g = row.by_camera.transpose() * row.residual;
+                    let reduced = w[i] * step - g;
+                    let solved = w[i] * block.inverse;
+                    for (from, count, to) in self.columns(&seen[i]) {
+                        for k in 0..count {
+                            right[to + k] += reduced[from + k];
+                            gradient[to + k] += g[from + k];
+                            diagonal[to + k] += squares[(from + k, from + k)];
+                        }
+                    }
+                    // The matrix is the sum of `half` and its transpose: of a block on the diagonal, half.
+                    self.add(&mut half, &seen[i], &seen[i], &((squares - solved * w[i].transpose()) * 0.5));
+                    if self.options.points {
+                        for j in 0..i {
+                            self.add(&mut half, &seen[i], &seen[j], &-(solved * w[j].transpose()));
+                        }
+                    }
+                }
+            }
+            (half, right, gradient, diagonal)
+        };
+        let parts: Vec<_> = self.runs.par_iter().map(run).collect();
+        let sum = parts.into_iter().reduce(|a, b| (a.0 + b.0, a.1 + b.1, a.2 + b.2, a.3 + b.3));
+        let (half, right, gradient, diagonal) =
+            sum.unwrap_or_else(|| (DMatrix::zeros(n, n), DVector::zeros(n), DVector::zeros(n), DVector::zeros(n)));
+        Reduced { matrix: &half + half.transpose(), right, gradient, diagonal }
+    }
+
+    /// Adds a block of two observations' columns.
+    fn add(&self, to: &mut DMatrix<f64>, a: &Seen, b: &Seen, block: &SMatrix<f64, 9, 9>) {
+        let [(_, _, pose), (_, _, lens)] = self.columns(a);
+        let (size, all) = (self.size, to.as_mut_slice());
+        for (from, count, start) in self.columns(b) {
+            for column in 0..count {
+                let target = &mut all[(start + column) * size..][..size];
+                let column = block.column(from + column);
+                let (of_pose, of_lens) = column.as_slice().split_at(6);
+                target[pose..pose + 6].iter_mut().zip(of_pose).for_each(|(to, b)| *to += b);
+                target[lens..lens + 3].iter_mut().zip(of_lens).for_each(|(to, b)| *to += b);
+            }
+        }
+    }
+
+    /// The points' steps that follow from the cameras', and how much the points' part of a quadratic model falls.
+    pub fn back(&self, state: &State, damping: f64, step: &DVector<f64>) -> (Vec<Vector3<f64>>, f64) {
+        let run = |run: &std::ops::Range<usize>| {
+            let mut fall = 0.0;
+            let moved = run.clone().map(|point| {
+                let block = self.block(state, point, damping);
+                let mut right = block.gradient;
+                for (row, seen) in block.rows.iter().zip(self.seen(point)) {
+                    let mut along = Vector2::zeros();
+                    for (from, count, to) in self.columns(seen) {
+                        (0..count).for_each(|k| along += row.by_camera.column(from + k) * step[to + k]);
+                    }
+                    right += row.by_point.transpose() * along;
+                }
+                let change = -(block.inverse * right);
+                fall += 0.5 * change.dot(&(block.damping.component_mul(&change) - block.gradient));
+                state.points[point] + change
+            });
+            (moved.collect::<Vec<_>>(), fall)
+        };
+        let parts: Vec<_> = self.runs.par_iter().map(run).collect();
+        let fall = parts.iter().map(|part| part.1).sum();
+        (parts.into_iter().flat_map(|part| part.0).collect(), fall)
+    }
+
+    /// The cameras after a step.
+    pub fn moved(&self, state: &State, step: &DVector<f64>) -> (Vec<Pose>, Vec<Lens>) {
+        let (mut poses, mut lenses) = (state.poses.clone(), state.lenses.clone());
+        let three = |at: usize| Vector3::new(step[at], step[at + 1], step[at + 2]);
+        for (i, pose) in poses.iter_mut().enumerate() {
+            pose.rotation = crate::model::rotation_of(&three(6 * i)) * pose.rotation;
+            pose.translation += three(6 * i + 3);
+        }
+        for (i, lens) in lenses.iter_mut().enumerate() {
+            let change = three(6 * self.poses + 3 * i);
+            lens.focal += change.x;
+            lens.radial[0] += change.y;
+            lens.radial[1] += change.z;
+        }
+        (poses, lenses)
+    }
+
+    /// How many components all residuals have.
+    pub fn residuals(&self) -> usize {
+        2 * self.seen.len()
+    }
+}

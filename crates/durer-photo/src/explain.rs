@@ -1,0 +1,135 @@
+//! Why a camera stands where it does, and a point where it is: the perspective equations with their numbers.
+
+use crate::adjust::{Options, covariance};
+use crate::{Error, Reconstruction};
+use std::fmt::Write;
+
+/// A point: its rays, and its residual in every photograph that sees it.
+pub fn point(all: &Reconstruction, number: usize) -> Result<String, Error> {
+    let count = all.points.len();
+    let point = all
+        .points
+        .get(number)
+        .ok_or_else(|| Error::new(format!("there is no point {number}: there are {count}, from 0")))?;
+    let p = point.position;
+    let angle = all.angle(point).to_degrees();
+    let mut text = format!("point {number} at ({:.6}, {:.6}, {:.6}), colour {:?}\n", p.x, p.y, p.z, point.color);
+    let _ = writeln!(
+        text,
+        "seen in {} photographs; the widest angle between two rays is {angle:.2} degrees",
+        point.track.len()
+    );
+    if angle < 1.0 {
+        text.push_str("the rays are nearly parallel: how far away it is, is not determined well\n");
+    }
+    for seen in &point.track {
+        let view = &all.views[seen.view];
+        let (Some(pose), Some(residual)) = (&view.pose, all.residual(&p, seen)) else { continue };
+        let (c, d) = (pose.center(), (p - pose.center()).normalize());
+        let _ = writeln!(text, "\n{}", view.name);
+        let _ = writeln!(
+            text,
+            "  ray        from ({:.6}, {:.6}, {:.6}) along ({:.6}, {:.6}, {:.6})",
+            c.x, c.y, c.z, d.x, d.y, d.z
+        );
+        let _ = writeln!(text, "  distance   {:.6}, of which {:.6} along the view", (p - c).norm(), pose.depth(&p));
+        let pixel = seen.pixel + residual;
+        let _ = writeln!(text, "  should be  ({:.3}, {:.3})", pixel.x, pixel.y);
+        let _ = writeln!(text, "  is         ({:.3}, {:.3})", seen.pixel.x, seen.pixel.y);
+        let _ = writeln!(text, "  residual   ({:.3}, {:.3}), {:.3} pixels", residual.x, residual.y, residual.norm());
+    }
+    Ok(text)
+}
+
+/// A photograph's number by its name or by the number itself.
+pub fn view_of(all: &Reconstruction, name: &str) -> Result<usize, Error> {
+    let number = all.views.iter().position(|view| view.name == name).or_else(|| name.parse().ok());
+    number.filter(|number| *number < all.views.len()).ok_or_else(|| {
+        let names: Vec<&str> = all.views.iter().take(8).map(|view| &*view.name).collect();
+        Error::new(format!("there is no photograph `{name}`; these are: {}", names.join(", ")))
+    })
+}
+
+/// A camera: the equations by which it sees its first points, what they leave, and how well it is determined.
+pub fn camera(all: &Reconstruction, view: usize) -> Result<String, Error> {
+    let name = &all.views[view].name;
+    let pose = all.views[view].pose.ok_or_else(|| Error::new(format!("nobody knows where {name} was taken")))?;
+    let lens = all.lenses[all.views[view].lens];
+    let (c, r, t) = (pose.center(), pose.rotation, pose.translation);
+    let mut text = format!("{name}\n\nP = R X + t, from the world to the camera (x right, y down, z forward):\n\n");
+    for i in 0..3 {
+        let _ = writeln!(
+            text,
+            "  P.{}   | {:9.6} {:9.6} {:9.6} |       {:11.6}",
+            ["x", "y", "z"][i],
+            r[(i, 0)],
+            r[(i, 1)],
+            r[(i, 2)],
+            t[i]
+        );
+    }
+    let _ = writeln!(text, "\ntaken at -Rᵀ t = ({:.6}, {:.6}, {:.6})", c.x, c.y, c.z);
+    let ([k1, k2], [cx, cy]) = (lens.radial, lens.center);
+    let _ = writeln!(text, "\npixel = ({cx}, {cy}) + {:.3} r (P.x / P.z, {} P.y / P.z)", lens.focal, lens.aspect);
+    let _ = writeln!(text, "r = 1 {k1:+.6} s {k2:+.6} s², where s = (P.x² + P.y²) / P.z²\n");
+    let mut squares: Vec<(f64, usize)> = Vec::new();
+    for (i, point) in all.points.iter().enumerate() {
+        let seen = point.track.iter().find(|seen| seen.view == view);
+        let Some((seen, residual)) = seen.and_then(|seen| Some((seen, all.residual(&point.position, seen)?))) else {
+            continue;
+        };
+        if squares.len() < 4 {
+            let (x, p) = (point.position, pose.apply(&point.position));
+            let s = (p.x * p.x + p.y * p.y) / (p.z * p.z);
+            let at = seen.pixel + residual;
+            let _ = writeln!(
+                text,
+                "point {i}, X = ({:.4}, {:.4}, {:.4}): P = ({:.4}, {:.4}, {:.4})",
+                x.x, x.y, x.z, p.x, p.y, p.z
+            );
+            for (axis, middle, along, focal, at, seen) in [
+                ("x", cx, p.x, lens.focal, at.x, seen.pixel.x),
+                ("y", cy, p.y, lens.focal * lens.aspect, at.y, seen.pixel.y),
+            ] {
+                let r = lens.factor(s);
+                let (z, off) = (p.z, at - seen);
+                let _ = writeln!(
+                    text,
+                    "  {axis}: {middle:.1} + {focal:.3} * {r:.6} * {along:.4} / {z:.4} = {at:.3}, seen at {seen:.3}: {off:+.3}"
+                );
+            }
+        }
+        squares.push((residual.norm_squared(), i));
+    }
+    let count = squares.len();
+    let rms = (squares.iter().map(|s| s.0).sum::<f64>() / count.max(1) as f64).sqrt();
+    let _ = writeln!(text, "\n{} equations of {count} points; rms {rms:.3} pixels", 2 * count);
+    squares.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+    for (square, i) in squares.iter().take(3) {
+        let _ = writeln!(text, "  worst: point {i}, {:.3} pixels", square.sqrt());
+    }
+    let points: Vec<_> = squares.iter().map(|(_, i)| all.points[*i].position).collect();
+    let [first, second, third] = crate::geometry::camera::spread(&points);
+    let _ = writeln!(text, "the points spread {first:.4}, {second:.4}, {third:.4} along their principal axes");
+    if count < 6 {
+        text.push_str("fewer than six points: they alone would not determine the camera (DLT has eleven unknowns)\n");
+    } else if third <= 1e-3 * first {
+        text.push_str("these points lie in a plane: DLT has no unique answer from them alone\n");
+    }
+    match covariance(all, &Options::default()) {
+        Err(error) => {
+            let _ = writeln!(text, "how exactly it is known cannot be said: {error}");
+        }
+        Ok(found) => {
+            if let (Some(place), Some(covariance)) = (found.place(all, view), found.pose(view)) {
+                let turn = covariance.fixed_view::<3, 3>(0, 0).trace().max(0.0).sqrt().to_degrees();
+                let _ = writeln!(
+                    text,
+                    "standard deviations, for {:.3} pixels: place {place:.6}, direction {turn:.4} degrees (the first photograph is held)",
+                    found.sigma
+                );
+            }
+        }
+    }
+    Ok(text)
+}

@@ -1,0 +1,131 @@
+//! Extremes of the difference of Gaussians (Lowe, sections 3 and 4).
+
+use super::Gray;
+use nalgebra::{Matrix3, Vector3};
+use rayon::prelude::*;
+
+/// Scales in an octave that are searched.
+pub const LEVELS: usize = 3;
+/// The blur of an octave's first picture.
+pub const FIRST: f32 = 1.6;
+/// The blur that a photograph has by itself.
+const OWN: f32 = 0.5;
+/// The least difference of Gaussians, of brightness from 0 to 1, and the largest ratio of curvatures.
+const WEAKEST: f32 = 0.02 / LEVELS as f32;
+const EDGE: f32 = 10.0;
+/// Pixels at the border that are not searched.
+const BORDER: usize = 5;
+
+/// Pictures of one size, each blurred more than the one before.
+pub struct Octave {
+    pub blurs: Vec<Gray>,
+    differences: Vec<Gray>,
+}
+
+/// An extreme.
+#[derive(Debug, Clone, Copy)]
+pub struct Point {
+    pub octave: usize,
+    pub level: usize,
+    pub row: usize,
+    pub column: usize,
+    /// Where it is, in pixels' centres of the octave, and its scale in pixels of the octave.
+    pub x: f32,
+    pub y: f32,
+    pub scale: f32,
+    pub strength: f32,
+}
+
+/// 2 to the power of a share of an octave.
+fn power(levels: f32) -> f32 {
+    libm::exp2f(levels / LEVELS as f32)
+}
+
+/// All octaves, until pictures are too small.
+pub fn octaves(gray: &Gray, doubled: bool) -> Vec<Octave> {
+    let (start, own) = if doubled { (gray.doubled(), 2.0 * OWN) } else { (gray.clone(), OWN) };
+    let mut first = start.blurred((FIRST * FIRST - own * own).sqrt());
+    let mut all = Vec::new();
+    while first.width.min(first.height) > 4 * BORDER && all.len() < 8 {
+        let mut blurs = vec![first];
+        for level in 1..LEVELS + 3 {
+            // From one blur to the next, variances add.
+            let (before, after) = (FIRST * power(level as f32 - 1.0), FIRST * power(level as f32));
+            blurs.push(blurs[level - 1].blurred((after * after - before * before).sqrt()));
+        }
+        first = blurs[LEVELS].halved();
+        let differences = blurs.windows(2).map(|pair| pair[1].minus(&pair[0])).collect();
+        all.push(Octave { blurs, differences });
+    }
+    all
+}
+
+/// All extremes.
+pub fn points(octaves: &[Octave]) -> Vec<Point> {
+    let in_octave = |(number, octave): (usize, &Octave)| -> Vec<Point> {
+        let height = octave.differences[0].height;
+        let rows = (1..=LEVELS).flat_map(|level| (BORDER..height - BORDER).map(move |row| (level, row)));
+        let rows: Vec<_> = rows.collect();
+        let found: Vec<Vec<Point>> =
+            rows.into_par_iter().map(|(level, row)| in_row(&octave.differences, number, level, row)).collect();
+        found.into_iter().flatten().collect()
+    };
+    octaves.iter().enumerate().flat_map(in_octave).collect()
+}
+
+fn in_row(d: &[Gray], octave: usize, level: usize, row: usize) -> Vec<Point> {
+    let width = d[0].width;
+    let extreme = |column: &usize| {
+        let value = d[level].at(*column, row);
+        if value.abs() < 0.8 * WEAKEST {
+            return false;
+        }
+        let mut others = (0..27).filter(|i| *i != 13).map(|i| {
+            let (dx, dy, dl) = (i % 3, i / 3 % 3, i / 9);
+            d[level + dl - 1].at(column + dx - 1, row + dy - 1)
+        });
+        if value > 0.0 { others.all(|other| value > other) } else { others.all(|other| value < other) }
+    };
+    (BORDER..width - BORDER).filter(extreme).filter_map(|column| refined(d, octave, level, row, column)).collect()
+}
+
+/// Where the parabola through the neighbours has its extreme; none if that is far away, weak, or on an edge.
+fn refined(d: &[Gray], octave: usize, mut level: usize, mut row: usize, mut column: usize) -> Option<Point> {
+    for _ in 0..5 {
+        let at = |dx: isize, dy: isize, dl: isize| {
+            let place = |base: usize, by: isize| base.wrapping_add_signed(by);
+            d[place(level, dl)].at(place(column, dx), place(row, dy))
+        };
+        let here = at(0, 0, 0);
+        let slope = |a: f32, b: f32| (b - a) / 2.0;
+        let bend = |a: f32, b: f32| a + b - 2.0 * here;
+        let gradient = Vector3::new(
+            slope(at(-1, 0, 0), at(1, 0, 0)),
+            slope(at(0, -1, 0), at(0, 1, 0)),
+            slope(at(0, 0, -1), at(0, 0, 1)),
+        );
+        let (xx, yy) = (bend(at(-1, 0, 0), at(1, 0, 0)), bend(at(0, -1, 0), at(0, 1, 0)));
+        let ll = bend(at(0, 0, -1), at(0, 0, 1));
+        let xy = (at(1, 1, 0) + at(-1, -1, 0) - at(-1, 1, 0) - at(1, -1, 0)) / 4.0;
+        let xl = (at(1, 0, 1) + at(-1, 0, -1) - at(-1, 0, 1) - at(1, 0, -1)) / 4.0;
+        let yl = (at(0, 1, 1) + at(0, -1, -1) - at(0, -1, 1) - at(0, 1, -1)) / 4.0;
+        let hessian = Matrix3::new(xx, xy, xl, xy, yy, yl, xl, yl, ll);
+        let offset = -(hessian.try_inverse()? * gradient);
+        if offset.iter().all(|o| o.abs() <= 0.6) {
+            let strength = here + 0.5 * gradient.dot(&offset);
+            let (trace, determinant) = (xx + yy, xx * yy - xy * xy);
+            let edge = determinant <= 0.0 || trace * trace * EDGE >= (EDGE + 1.0) * (EDGE + 1.0) * determinant;
+            let scale = FIRST * power(level as f32 + offset.z);
+            let (x, y) = (column as f32 + offset.x, row as f32 + offset.y);
+            let strong = strength.abs() >= WEAKEST && !edge;
+            return strong.then_some(Point { octave, level, row, column, x, y, scale, strength });
+        }
+        let moved = |base: usize, by: f32| base.wrapping_add_signed(by.clamp(-1.0, 1.0).round() as isize);
+        (column, row, level) = (moved(column, offset.x), moved(row, offset.y), moved(level, offset.z));
+        let inside = |i: usize, end: usize| (BORDER..end - BORDER).contains(&i);
+        if !(1..=LEVELS).contains(&level) || !inside(column, d[0].width) || !inside(row, d[0].height) {
+            return None;
+        }
+    }
+    None
+}

@@ -1,0 +1,121 @@
+//! COLMAP's folders of `cameras`, `images` and `points3D`: what is in them, apart from [text](super::colmap_text) and
+//! [binary](super::colmap_binary).
+//!
+//! Source: Schönberger, *COLMAP* manual, "Output Format" and "Camera Models".
+
+use crate::model::rotation_of_quaternion;
+use crate::{Error, Lens, Observation, Point, Pose, Reconstruction, View};
+use nalgebra::{Vector2, Vector3};
+use std::collections::BTreeMap;
+
+/// A camera model that is read: its name, its number in binary files, and how many parameters it has.
+pub const MODELS: [(&str, i32, usize); 5] =
+    [("SIMPLE_PINHOLE", 0, 3), ("PINHOLE", 1, 4), ("SIMPLE_RADIAL", 2, 4), ("RADIAL", 3, 5), ("OPENCV", 4, 8)];
+
+/// The lens of a model's parameters.
+pub fn lens(model: usize, size: [u32; 2], p: &[f64]) -> Result<Lens, String> {
+    let (focal, vertical, center, radial) = match model {
+        0 => (p[0], p[0], [p[1], p[2]], [0.0; 2]),
+        1 => (p[0], p[1], [p[2], p[3]], [0.0; 2]),
+        2 => (p[0], p[0], [p[1], p[2]], [p[3], 0.0]),
+        3 => (p[0], p[0], [p[1], p[2]], [p[3], p[4]]),
+        _ if p[6] != 0.0 || p[7] != 0.0 => {
+            return Err("tangential distortion (p1, p2) is not supported: it must be 0".into());
+        }
+        _ => (p[0], p[1], [p[2], p[3]], [p[4], p[5]]),
+    };
+    if focal <= 0.0 || vertical <= 0.0 {
+        return Err("focal lengths must be positive".into());
+    }
+    Ok(Lens { size, focal, aspect: vertical / focal, center, radial })
+}
+
+/// A lens as a model's number in [`MODELS`] and its parameters.
+pub fn parameters(lens: &Lens) -> (usize, Vec<f64>) {
+    let ([x, y], [k1, k2]) = (lens.center, lens.radial);
+    match lens.aspect {
+        1.0 => (3, vec![lens.focal, x, y, k1, k2]),
+        aspect => (4, vec![lens.focal, lens.focal * aspect, x, y, k1, k2, 0.0, 0.0]),
+    }
+}
+
+/// A row of `images`.
+pub struct Image {
+    pub quaternion: [f64; 4],
+    pub translation: [f64; 3],
+    pub camera: u32,
+    pub name: String,
+    /// Where features are.
+    pub features: Vec<[f64; 2]>,
+}
+
+/// A row of `points3D`.
+pub struct Row {
+    pub position: [f64; 3],
+    pub color: [u8; 3],
+    /// Image's id and feature's number.
+    pub track: Vec<(u32, usize)>,
+}
+
+/// What a folder holds, each by its id.
+#[derive(Default)]
+pub struct Tables {
+    pub cameras: BTreeMap<u32, Lens>,
+    pub images: BTreeMap<u32, Image>,
+    pub points: BTreeMap<u64, Row>,
+}
+
+impl Tables {
+    /// All of it as a reconstruction; ids become numbers in their order.
+    pub fn into_reconstruction(self, file: &str) -> Result<Reconstruction, Error> {
+        let fail = |why: String| Error::of(file, why);
+        let lens_of: BTreeMap<u32, usize> = self.cameras.keys().enumerate().map(|(i, id)| (*id, i)).collect();
+        let view_of: BTreeMap<u32, usize> = self.images.keys().enumerate().map(|(i, id)| (*id, i)).collect();
+        let mut all = Reconstruction { lenses: self.cameras.into_values().collect(), ..Default::default() };
+        for (id, image) in &self.images {
+            let lens = *lens_of
+                .get(&image.camera)
+                .ok_or_else(|| fail(format!("image {id} has camera {}, which is not there", image.camera)))?;
+            if image.quaternion.iter().all(|c| *c == 0.0) {
+                return Err(fail(format!("image {id} has a quaternion of length 0")));
+            }
+            let rotation = rotation_of_quaternion(image.quaternion);
+            let pose = Some(Pose { rotation, translation: Vector3::from(image.translation) });
+            all.views.push(View { name: image.name.clone(), lens, pose });
+        }
+        for (id, row) in self.points {
+            let seen = |(image, feature): (u32, usize)| {
+                let pixel = self.images.get(&image).and_then(|image| image.features.get(feature));
+                let pixel = pixel.ok_or_else(|| fail(format!("point {id}: image {image} has no feature {feature}")))?;
+                Ok(Observation { view: view_of[&image], feature, pixel: Vector2::from(*pixel) })
+            };
+            let track = row.track.into_iter().map(seen).collect::<Result<_, Error>>()?;
+            all.points.push(Point { position: Vector3::from(row.position), color: row.color, track });
+        }
+        Ok(all)
+    }
+}
+
+/// A photograph's features: place and the point's id.
+pub type Features = Vec<(Vector2<f64>, usize)>;
+
+/// The features of each photograph as they are written; and for each point's observations, the numbers of their features.
+pub fn features(all: &Reconstruction) -> (Vec<Features>, Vec<Vec<usize>>) {
+    let mut features = vec![Vec::new(); all.views.len()];
+    let mut numbers = Vec::new();
+    for (i, point) in all.points.iter().enumerate() {
+        let number = |seen: &Observation| {
+            features[seen.view].push((seen.pixel, i + 1));
+            features[seen.view].len() - 1
+        };
+        numbers.push(point.track.iter().map(number).collect());
+    }
+    (features, numbers)
+}
+
+/// The mean length of a point's residuals.
+pub fn error(all: &Reconstruction, point: &Point) -> f64 {
+    let lengths: Vec<f64> =
+        point.track.iter().filter_map(|seen| Some(all.residual(&point.position, seen)?.norm())).collect();
+    lengths.iter().sum::<f64>() / lengths.len().max(1) as f64
+}

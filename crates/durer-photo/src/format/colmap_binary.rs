@@ -1,0 +1,162 @@
+//! COLMAP's three tables as binary files: little-endian.
+
+use super::colmap::{Image, MODELS, Row, Tables, error, features, lens, parameters};
+use crate::model::quaternion_of;
+use crate::{Error, Reconstruction};
+
+/// Bytes that are read one after the other.
+pub struct Bytes<'b> {
+    file: &'b str,
+    bytes: &'b [u8],
+    at: usize,
+}
+
+impl<'b> Bytes<'b> {
+    pub fn new(file: &'b str, bytes: &'b [u8]) -> Self {
+        Bytes { file, bytes, at: 0 }
+    }
+
+    /// An error at the bytes that were read last.
+    pub fn error(&self, why: impl AsRef<str>) -> Error {
+        Error::of(self.file, format!("at byte {}: {}", self.at, why.as_ref()))
+    }
+
+    pub fn take(&mut self, count: usize) -> Result<&'b [u8], Error> {
+        let taken = self.at.checked_add(count).and_then(|end| self.bytes.get(self.at..end));
+        let taken = taken.ok_or_else(|| self.error("the file ends too early"))?;
+        self.at += count;
+        Ok(taken)
+    }
+
+    pub fn array<const N: usize>(&mut self) -> Result<[u8; N], Error> {
+        let mut array = [0; N];
+        array.copy_from_slice(self.take(N)?);
+        Ok(array)
+    }
+
+    pub fn u32(&mut self) -> Result<u32, Error> {
+        Ok(u32::from_le_bytes(self.array()?))
+    }
+
+    pub fn u64(&mut self) -> Result<u64, Error> {
+        Ok(u64::from_le_bytes(self.array()?))
+    }
+
+    /// A finite number.
+    pub fn f64(&mut self) -> Result<f64, Error> {
+        let number = f64::from_le_bytes(self.array()?);
+        if number.is_finite() { Ok(number) } else { Err(self.error(format!("{number} is not a number"))) }
+    }
+
+    pub fn numbers<const N: usize>(&mut self) -> Result<[f64; N], Error> {
+        let mut numbers = [0.0; N];
+        for number in &mut numbers {
+            *number = self.f64()?;
+        }
+        Ok(numbers)
+    }
+
+    /// A number of things of which each takes at least some bytes.
+    fn count(&mut self, bytes: usize) -> Result<usize, Error> {
+        let count = self.u64()?;
+        let fits = usize::try_from(count).ok().filter(|count| *count <= (self.bytes.len() - self.at) / bytes);
+        fits.ok_or_else(|| self.error(format!("the file is too short for {count} entries")))
+    }
+
+    fn end(&self) -> Result<(), Error> {
+        if self.at == self.bytes.len() { Ok(()) } else { Err(self.error("the file should end here")) }
+    }
+}
+
+/// Reads the contents of cameras.bin, images.bin and points3D.bin, each with its name.
+pub fn read(folder: &str, [cameras, images, points]: [(&str, &[u8]); 3]) -> Result<Reconstruction, Error> {
+    let mut tables = Tables::default();
+    let mut bytes = Bytes::new(cameras.0, cameras.1);
+    for _ in 0..bytes.count(24)? {
+        let (id, number) = (bytes.u32()?, bytes.u32()? as i32);
+        let model = MODELS.iter().position(|model| model.1 == number);
+        let model = model.ok_or_else(|| bytes.error(format!("the camera model {number} is not supported")))?;
+        let size = [bytes.u64()?, bytes.u64()?].map(|side| side.min(u64::from(u32::MAX)) as u32);
+        let numbers = (0..MODELS[model].2).map(|_| bytes.f64()).collect::<Result<Vec<_>, _>>()?;
+        tables.cameras.insert(id, lens(model, size, &numbers).map_err(|why| bytes.error(why))?);
+    }
+    bytes.end()?;
+    let mut bytes = Bytes::new(images.0, images.1);
+    for _ in 0..bytes.count(73)? {
+        let id = bytes.u32()?;
+        let (quaternion, translation, camera) = (bytes.numbers()?, bytes.numbers()?, bytes.u32()?);
+        let mut name = Vec::new();
+        loop {
+            match bytes.array()? {
+                [0] => break,
+                [byte] => name.push(byte),
+            }
+        }
+        let mut list = Vec::new();
+        for _ in 0..bytes.count(24)? {
+            list.push(bytes.numbers()?);
+            bytes.u64()?;
+        }
+        let name = String::from_utf8_lossy(&name).into_owned();
+        tables.images.insert(id, Image { quaternion, translation, camera, name, features: list });
+    }
+    bytes.end()?;
+    let mut bytes = Bytes::new(points.0, points.1);
+    for _ in 0..bytes.count(51)? {
+        let id = bytes.u64()?;
+        let (position, color) = (bytes.numbers()?, bytes.array()?);
+        bytes.f64()?;
+        let mut track = Vec::new();
+        for _ in 0..bytes.count(8)? {
+            track.push((bytes.u32()?, bytes.u32()? as usize));
+        }
+        tables.points.insert(id, Row { position, color, track });
+    }
+    bytes.end()?;
+    tables.into_reconstruction(folder)
+}
+
+fn put(into: &mut Vec<u8>, numbers: impl IntoIterator<Item = f64>) {
+    numbers.into_iter().for_each(|number| into.extend(number.to_le_bytes()));
+}
+
+/// Writes cameras.bin, images.bin and points3D.bin. Photographs without pose are left out.
+pub fn write(all: &Reconstruction) -> [Vec<u8>; 3] {
+    let (features, numbers) = features(all);
+    let mut cameras = (all.lenses.len() as u64).to_le_bytes().to_vec();
+    for (i, lens) in all.lenses.iter().enumerate() {
+        let (model, p) = parameters(lens);
+        cameras.extend((i as u32 + 1).to_le_bytes());
+        cameras.extend(MODELS[model].1.to_le_bytes());
+        lens.size.iter().for_each(|side| cameras.extend(u64::from(*side).to_le_bytes()));
+        put(&mut cameras, p);
+    }
+    let mut images = (all.registered() as u64).to_le_bytes().to_vec();
+    for (i, view) in all.views.iter().enumerate() {
+        let Some(pose) = &view.pose else { continue };
+        images.extend((i as u32 + 1).to_le_bytes());
+        put(&mut images, quaternion_of(&pose.rotation).into_iter().chain(pose.translation.iter().copied()));
+        images.extend((view.lens as u32 + 1).to_le_bytes());
+        images.extend(view.name.bytes().filter(|byte| *byte != 0).chain([0]));
+        images.extend((features[i].len() as u64).to_le_bytes());
+        for (pixel, id) in &features[i] {
+            put(&mut images, [pixel.x, pixel.y]);
+            images.extend((*id as u64).to_le_bytes());
+        }
+    }
+    let mut points = (all.points.len() as u64).to_le_bytes().to_vec();
+    for (i, point) in all.points.iter().enumerate() {
+        points.extend((i as u64 + 1).to_le_bytes());
+        put(&mut points, point.position.iter().copied());
+        points.extend(point.color);
+        put(&mut points, [error(all, point)]);
+        let posed = point.track.iter().zip(&numbers[i]).filter(|(seen, _)| all.views[seen.view].pose.is_some());
+        let track: Vec<(u32, u32)> = posed.map(|(seen, number)| (seen.view as u32 + 1, *number as u32)).collect();
+        points.extend((track.len() as u64).to_le_bytes());
+        for (view, number) in track {
+            points.extend(view.to_le_bytes());
+            points.extend(number.to_le_bytes());
+        }
+    }
+    [cameras, images, points]
+}

@@ -1,0 +1,105 @@
+//! fSpy's projects (`.fspy`) and exported cameras (`.json`): one photograph's camera from vanishing lines.
+//!
+//! A project is `fspy`, a version, the lengths of its state as JSON and of its photograph, and both. Its points run from 0 to 1
+//! over the photograph, y downwards. An exported camera has points of the image plane instead: the longer side runs from -1
+//! to 1, y upwards; its camera looks down -z.
+//!
+//! Source: fSpy-Blender's documentation, *The fSpy project file format*.
+
+use super::colmap_binary::Bytes;
+use super::opposite;
+use crate::resect::{Axis, VanishingLines};
+use crate::{Error, Lens, Pose, Reconstruction, View};
+use nalgebra::{Matrix3, Vector2, Vector3};
+use serde::Deserialize;
+use serde_json::Value;
+
+#[derive(Deserialize)]
+struct Rows {
+    rows: [[f64; 4]; 4],
+}
+
+#[derive(Deserialize)]
+struct Place {
+    x: f64,
+    y: f64,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+struct Exported {
+    principal_point: Place,
+    view_transform: Rows,
+    relative_focal_length: f64,
+    image_width: u32,
+    image_height: u32,
+}
+
+/// Reads an exported camera.
+pub fn read_camera(file: &str, json: &[u8]) -> Result<Reconstruction, Error> {
+    let camera: Exported = serde_json::from_slice(json)
+        .map_err(|error| Error::at(file, (error.line(), error.column()), format!("fSpy's JSON: {error}")))?;
+    let size = [camera.image_width, camera.image_height];
+    let half = f64::from(size[0].max(size[1])) / 2.0;
+    let mut lens = Lens::new(size, camera.relative_focal_length * half);
+    lens.center[0] += half * camera.principal_point.x;
+    lens.center[1] -= half * camera.principal_point.y;
+    let rows = camera.view_transform.rows;
+    let pose = Pose { rotation: Matrix3::from_fn(|i, j| rows[i][j]), translation: Vector3::from_fn(|i, _| rows[i][3]) };
+    let view = View { name: file.to_string(), lens: 0, pose: Some(opposite(&pose)) };
+    Ok(Reconstruction { lenses: vec![lens], views: vec![view], points: Vec::new() })
+}
+
+/// Reads what a project says of its photograph: its vanishing lines, the point that is the origin, and the photograph itself.
+pub fn read_project<'b>(file: &'b str, content: &'b [u8]) -> Result<(VanishingLines, &'b [u8]), Error> {
+    let mut bytes = Bytes::new(file, content);
+    if bytes.take(4).ok() != Some(b"fspy") {
+        return Err(Error::of(file, "this is not a project of fSpy's"));
+    }
+    let version = bytes.u32()?;
+    if version != 1 {
+        return Err(bytes.error(format!("the project's version is {version}; only version 1 is known")));
+    }
+    let (state, photograph) = (bytes.u32()? as usize, bytes.u32()? as usize);
+    let state = bytes.take(state)?;
+    let photograph = bytes.take(photograph)?;
+    let state: Value =
+        serde_json::from_slice(state).map_err(|error| Error::of(file, format!("its state is broken JSON: {error}")))?;
+    if state["globalSettings"]["calibrationMode"] != "TwoVanishingPoints" {
+        return Err(Error::of(
+            file,
+            "only projects with two vanishing points have a camera that follows from the lines alone",
+        ));
+    }
+    let size = crate::photo::size(file, photograph)?;
+    let [width, height] = size.map(f64::from);
+    let place = |value: &Value| Some(Vector2::new(value["x"].as_f64()? * width, value["y"].as_f64()? * height));
+    let lines = |value: &Value| -> Option<Vec<[Vector2<f64>; 2]>> {
+        let segments = value["lineSegments"].as_array()?.iter();
+        segments.map(|segment| Some([place(&segment[0])?, place(&segment[1])?])).collect()
+    };
+    let axis = |value: &Value| Axis::parse(value.as_str()?);
+    let (base, two) = (&state["controlPointsStateBase"], &state["controlPointsState2VP"]);
+    let settings = &state["calibrationSettingsBase"];
+    let center = match state["calibrationSettings2VP"]["principalPointMode"].as_str() {
+        Some("Manual") => place(&base["principalPoint"]),
+        Some("Default") => Some(Vector2::new(width / 2.0, height / 2.0)),
+        _ => return Err(Error::of(file, "a principal point from three vanishing points is not supported")),
+    };
+    let first = lines(&base["firstVanishingPoint"]);
+    let second = match state["calibrationSettings2VP"]["quadModeEnabled"].as_bool() {
+        // The second pair joins the ends of the first one's lines.
+        Some(true) => first.as_ref().map(|lines| vec![[lines[0][0], lines[1][0]], [lines[0][1], lines[1][1]]]),
+        _ => lines(&two["secondVanishingPoint"]),
+    };
+    let all = || {
+        Some(VanishingLines {
+            size,
+            center: center?,
+            origin: place(&base["origin"])?,
+            axes: [axis(&settings["firstVanishingPointAxis"])?, axis(&settings["secondVanishingPointAxis"])?],
+            lines: [first?, second?],
+        })
+    };
+    Ok((all().ok_or_else(|| Error::of(file, "its state lacks vanishing lines, axes or the origin"))?, photograph))
+}

@@ -1,0 +1,265 @@
+//! What other programs read and write.
+
+mod bal;
+mod bundler;
+mod colmap;
+mod colmap_binary;
+mod colmap_text;
+mod fspy;
+mod given;
+mod gltf;
+mod opensfm;
+mod ply;
+mod scene;
+mod text;
+
+use crate::{Error, Lens, Pose, Reconstruction};
+use nalgebra::{Matrix3, Vector2, Vector3};
+use std::fmt::Display;
+use std::path::{Path, PathBuf};
+use text::Words;
+
+pub use fspy::read_project;
+pub use given::{Control, read_control, read_lines, read_points};
+pub use scene::projective_camera;
+
+/// How a format's numbers are meant.
+pub struct Convention {
+    /// The format.
+    pub name: &'static str,
+    /// How its files are known.
+    pub files: &'static str,
+    /// In which directions it goes.
+    pub way: &'static str,
+    /// The camera's frame.
+    pub frame: &'static str,
+    /// How a rotation is written.
+    pub rotation: &'static str,
+    /// What the translation is.
+    pub translation: &'static str,
+    /// Units and origin of pixels.
+    pub pixels: &'static str,
+    /// Parameters of a lens.
+    pub lens: &'static str,
+}
+
+/// The conventions of all formats.
+pub const CONVENTIONS: [Convention; 9] = {
+    const fn row(f: [&'static str; 8]) -> Convention {
+        let [name, files, way, frame, rotation, translation, pixels, lens] = f;
+        Convention { name, files, way, frame, rotation, translation, pixels, lens }
+    }
+    const T: &str = "P = R X + t";
+    const CORNER: &str = "pixels from the upper left corner, y down";
+    const MIDDLE: &str = "pixels from the middle, y up";
+    const DOWN: &str = "x right, y down, z forward";
+    const UP: &str = "x right, y up, z backward";
+    [
+        row(["Dürer", "in memory", "", DOWN, "matrix", T, CORNER, "f, aspect, cx, cy, k1, k2"]),
+        row(["Bundler", "`.out`", "in, out", UP, "matrix by rows", T, MIDDLE, "f, k1, k2"]),
+        row(["BAL", "`.txt`", "in, out", UP, "axis times angle", T, MIDDLE, "f, k1, k2"]),
+        row([
+            "COLMAP text",
+            "a folder",
+            "in, out",
+            DOWN,
+            "quaternion w x y z",
+            T,
+            CORNER,
+            "SIMPLE_PINHOLE, PINHOLE, SIMPLE_RADIAL, RADIAL, OPENCV",
+        ]),
+        row(["COLMAP binary", "a folder", "in, out", DOWN, "quaternion w x y z", T, CORNER, "the same"]),
+        row([
+            "OpenSfM",
+            "`.json`",
+            "in, out",
+            DOWN,
+            "axis times angle",
+            T,
+            "longer side = 1, from the middle, y down",
+            "f / longer side, k1, k2",
+        ]),
+        row([
+            "fSpy",
+            "`.fspy`, `.json`",
+            "in",
+            UP,
+            "4x4 matrix",
+            T,
+            "longer side from -1 to 1, y up; lines from 0 to 1, y down",
+            "f / half the longer side, cx, cy",
+        ]),
+        row(["PLY", "`.ply`", "out", "none", "none", "points and camera centres", "none", "none"]),
+        row([
+            "glTF",
+            "`.gltf`",
+            "out",
+            UP,
+            "quaternion x y z w, camera to world",
+            "camera centre",
+            "none",
+            "vertical field of view",
+        ]),
+    ]
+};
+
+/// A pose of a camera that looks down -z with y up as one that looks along +z with y down, and back.
+fn opposite(pose: &Pose) -> Pose {
+    let turn = Matrix3::from_diagonal(&Vector3::new(1.0, -1.0, -1.0));
+    Pose { rotation: turn * pose.rotation, translation: turn * pose.translation }
+}
+
+fn joined<T: Display>(values: impl IntoIterator<Item = T>) -> String {
+    text::joined(values)
+}
+
+/// Refuses a lens that is not of square pixels, for formats that have no other.
+fn square(lens: &Lens, format: &str) -> Result<(), Error> {
+    if lens.aspect == 1.0 {
+        return Ok(());
+    }
+    Err(Error::new(format!("{format}'s files know square pixels only, and here is a lens of aspect {}", lens.aspect)))
+}
+
+/// The bytes of a file.
+fn bytes(path: &Path) -> Result<Vec<u8>, Error> {
+    std::fs::read(path).map_err(|error| Error::of(&path.to_string_lossy(), format!("cannot read it: {error}")))
+}
+
+/// The files that [`read`] reads for a path.
+pub fn inputs(path: &Path) -> Vec<PathBuf> {
+    if path.is_dir() {
+        let end = if path.join("cameras.bin").exists() { "bin" } else { "txt" };
+        return ["cameras", "images", "points3D"].map(|name| path.join(format!("{name}.{end}"))).into();
+    }
+    tracks_of(path).into_iter().chain([path.to_path_buf()]).collect()
+}
+
+/// The tracks that belong to a reconstruction of OpenSfM's: its own name with `tracks` for `reconstruction`.
+fn tracks_of(path: &Path) -> Option<PathBuf> {
+    let name = path.file_name()?.to_str()?;
+    let other = path.with_file_name(name.replace("reconstruction", "tracks")).with_extension("csv");
+    (path.extension()? == "json" && other.exists()).then_some(other)
+}
+
+/// Reads cameras and points: the format follows from the name's extension, a folder is COLMAP's.
+pub fn read(path: &Path) -> Result<Reconstruction, Error> {
+    let file = path.to_string_lossy();
+    if path.is_dir() {
+        let paths = inputs(path);
+        let contents = paths.iter().map(|path| bytes(path)).collect::<Result<Vec<_>, _>>()?;
+        let names: Vec<_> = paths.iter().map(|path| path.to_string_lossy()).collect();
+        let tables = [0, 1, 2].map(|i| (&*names[i], &*contents[i]));
+        return match paths[0].extension().is_some_and(|end| end == "bin") {
+            true => colmap_binary::read(&file, tables),
+            false => colmap_text::read(&file, tables),
+        };
+    }
+    let content = bytes(path)?;
+    match path.extension().and_then(|end| end.to_str()) {
+        Some("out") => bundler::read(&file, &content),
+        Some("txt") => bal::read(&file, &content),
+        Some("json") if content.trim_ascii_start().starts_with(b"{") => fspy::read_camera(&file, &content),
+        Some("json") => {
+            let tracks = tracks_of(path).map(|path| Ok((path.to_string_lossy().into_owned(), bytes(&path)?)));
+            let tracks = tracks.transpose()?;
+            opensfm::read(&file, &content, tracks.as_ref().map(|(name, bytes)| (&**name, &**bytes)))
+        }
+        _ => Err(Error::of(
+            &file,
+            "the name should end in .out (Bundler), .txt (BAL) or .json (OpenSfM, fSpy), or be COLMAP's folder",
+        )),
+    }
+}
+
+/// A way to write cameras and points.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Output {
+    /// Bundler's `.out`.
+    Bundler,
+    /// A problem as in *Bundle Adjustment in the Large*.
+    Bal,
+    /// COLMAP's folder of text.
+    ColmapText,
+    /// COLMAP's folder of binary files.
+    ColmapBinary,
+    /// OpenSfM's JSON, and its tracks beside it.
+    OpenSfm,
+    /// Points.
+    Ply,
+    /// Cameras and points.
+    Gltf,
+}
+
+impl Output {
+    /// The format that a name asks for: one without extension is a folder.
+    pub fn of(path: &Path, binary: bool) -> Result<Self, Error> {
+        Ok(match path.extension().and_then(|end| end.to_str()) {
+            None if binary => Output::ColmapBinary,
+            None => Output::ColmapText,
+            Some("out") => Output::Bundler,
+            Some("txt") => Output::Bal,
+            Some("json") => Output::OpenSfm,
+            Some("ply") => Output::Ply,
+            Some("gltf") => Output::Gltf,
+            Some(_) => {
+                let file = path.to_string_lossy();
+                let why = "the name should end in .out, .txt, .json, .ply or .gltf, or be a folder's, for COLMAP";
+                return Err(Error::of(&file, why));
+            }
+        })
+    }
+
+    /// Whether it is a folder.
+    pub fn is_folder(self) -> bool {
+        matches!(self, Output::ColmapText | Output::ColmapBinary)
+    }
+
+    /// The files for a path, in the order of [`Output::write`].
+    pub fn files(self, path: &Path) -> Vec<PathBuf> {
+        let table = |end: &str| ["cameras", "images", "points3D"].map(|name| path.join(format!("{name}.{end}"))).into();
+        match self {
+            Output::ColmapText => table("txt"),
+            Output::ColmapBinary => table("bin"),
+            Output::OpenSfm => {
+                let name = path.file_stem().unwrap_or_default().to_string_lossy();
+                let name = match name.contains("reconstruction") {
+                    true => name.replace("reconstruction", "tracks"),
+                    false => name.into_owned(),
+                };
+                vec![path.to_path_buf(), path.with_file_name(name).with_extension("csv")]
+            }
+            _ => vec![path.to_path_buf()],
+        }
+    }
+
+    /// The files' contents.
+    pub fn write(self, all: &Reconstruction) -> Result<Vec<Vec<u8>>, Error> {
+        Ok(match self {
+            Output::Bundler => vec![bundler::write(all)?],
+            Output::Bal => vec![bal::write(all)?],
+            Output::ColmapText => colmap_text::write(all).map(String::into_bytes).into(),
+            Output::ColmapBinary => colmap_binary::write(all).into(),
+            Output::OpenSfm => opensfm::write(all)?.map(String::into_bytes).into(),
+            Output::Ply => vec![ply::write(all)],
+            Output::Gltf => vec![gltf::write(all)?],
+        })
+    }
+}
+
+impl Reconstruction {
+    /// Tells the size and the name of a photograph, where its format had none: pixels count from its corner then.
+    pub fn set_picture(&mut self, view: usize, name: &str, size: [u32; 2]) {
+        self.views[view].name = name.to_string();
+        let lens = self.views[view].lens;
+        if self.lenses[lens].size != [0, 0] {
+            return;
+        }
+        let shift = Vector2::from(size.map(|side| f64::from(side) / 2.0));
+        self.lenses[lens].size = size;
+        self.lenses[lens].center = shift.into();
+        let views: Vec<bool> = self.views.iter().map(|view| view.lens == lens).collect();
+        let seen = self.points.iter_mut().flat_map(|point| &mut point.track);
+        seen.filter(|seen| views[seen.view]).for_each(|seen| seen.pixel += shift);
+    }
+}

@@ -1,0 +1,149 @@
+//! OpenSfM's `reconstruction.json` with its `tracks.csv`.
+//!
+//! Source: OpenSfM documentation, "Reconstruction file format", "Tracks" and "Geometric Models".
+
+use super::Words;
+use crate::model::{axis_angle_of, rotation_of};
+use crate::{Error, Lens, Observation, Point, Pose, Reconstruction, View};
+use nalgebra::{Vector2, Vector3};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::fmt::Write;
+
+#[derive(Serialize, Deserialize)]
+struct Camera {
+    projection_type: String,
+    width: u32,
+    height: u32,
+    focal: f64,
+    #[serde(default)]
+    k1: f64,
+    #[serde(default)]
+    k2: f64,
+}
+
+#[derive(Serialize, Deserialize)]
+struct Shot {
+    rotation: [f64; 3],
+    translation: [f64; 3],
+    camera: String,
+}
+
+#[derive(Serialize, Deserialize)]
+struct Place {
+    color: [f64; 3],
+    coordinates: [f64; 3],
+}
+
+#[derive(Serialize, Deserialize)]
+struct Part {
+    cameras: BTreeMap<String, Camera>,
+    shots: BTreeMap<String, Shot>,
+    points: BTreeMap<String, Place>,
+}
+
+/// Reads the reconstruction, of several parts the one with the most shots, with its tracks where there are any.
+pub fn read(file: &str, json: &[u8], tracks: Option<(&str, &[u8])>) -> Result<Reconstruction, Error> {
+    let parts: Vec<Part> = serde_json::from_slice(json)
+        .map_err(|error| Error::at(file, (error.line(), error.column()), format!("OpenSfM's JSON: {error}")))?;
+    let part = parts.into_iter().reduce(|best, next| if next.shots.len() > best.shots.len() { next } else { best });
+    let part = part.ok_or_else(|| Error::of(file, "there is no reconstruction in this file"))?;
+    let mut all = Reconstruction::default();
+    let mut lens_of = BTreeMap::new();
+    for (name, camera) in part.cameras {
+        if camera.projection_type != "perspective" {
+            let why = format!("cameras of type `{}` are not supported, only `perspective`", camera.projection_type);
+            return Err(Error::of(file, why));
+        }
+        let size = [camera.width, camera.height];
+        let focal = camera.focal * f64::from(size[0].max(size[1]));
+        lens_of.insert(name, all.lenses.len());
+        all.lenses.push(Lens { radial: [camera.k1, camera.k2], ..Lens::new(size, focal) });
+    }
+    for (name, shot) in part.shots {
+        let lens = lens_of.get(&shot.camera);
+        let lens = *lens.ok_or_else(|| Error::of(file, format!("there is no camera `{}`", shot.camera)))?;
+        let rotation = rotation_of(&Vector3::from(shot.rotation));
+        let pose = Some(Pose { rotation, translation: Vector3::from(shot.translation) });
+        all.views.push(View { name, lens, pose });
+    }
+    let mut point_of = BTreeMap::new();
+    for (id, place) in part.points {
+        point_of.insert(id, all.points.len());
+        let color = place.color.map(|channel| channel.clamp(0.0, 255.0) as u8);
+        all.points.push(Point { position: Vector3::from(place.coordinates), color, track: Vec::new() });
+    }
+    if let Some((file, bytes)) = tracks {
+        let views: BTreeMap<String, usize> =
+            all.views.iter().enumerate().map(|(i, view)| (view.name.clone(), i)).collect();
+        read_tracks(file, bytes, &mut all, &views, &point_of)?;
+    }
+    Ok(all)
+}
+
+/// Adds what the photographs see. Rows of other photographs and points are passed over: not all that was tracked became a point.
+fn read_tracks(
+    file: &str,
+    bytes: &[u8],
+    all: &mut Reconstruction,
+    views: &BTreeMap<String, usize>,
+    points: &BTreeMap<String, usize>,
+) -> Result<(), Error> {
+    let mut words = Words::new(file, bytes)?;
+    let (version, place) = words.word("OPENSFM_TRACKS_VERSION")?;
+    if !["OPENSFM_TRACKS_VERSION_v1", "OPENSFM_TRACKS_VERSION_v2"].contains(&version) {
+        return Err(Error::at(file, place, format!("`{version}` is not OPENSFM_TRACKS_VERSION_v1 or _v2")));
+    }
+    words.rest_of_line();
+    while !words.is_at_end() {
+        // Names may hold blanks: a row's fields are between tabs.
+        let error = words.error("this row should be: photograph, track, feature, x, y, ..., between tabs");
+        let fields: Vec<&str> = words.rest_of_line().split('\t').collect();
+        let number = |i: usize| fields.get(i)?.trim().parse::<f64>().ok().filter(|value| value.is_finite());
+        let feature = fields.get(2).and_then(|field| field.trim().parse().ok());
+        let (Some(feature), Some(x), Some(y)) = (feature, number(3), number(4)) else { return Err(error) };
+        let (Some(view), Some(point)) = (views.get(fields[0]), points.get(fields[1])) else { continue };
+        let lens = all.lenses[all.views[*view].lens];
+        let pixel = Vector2::from(lens.center) + lens.longer_side() * Vector2::new(x, y);
+        all.points[*point].track.push(Observation { view: *view, feature, pixel });
+    }
+    all.points.iter_mut().for_each(|point| point.track.sort_by_key(|seen| seen.view));
+    Ok(())
+}
+
+/// Writes reconstruction.json and tracks.csv. Photographs without pose are left out.
+pub fn write(all: &Reconstruction) -> Result<[String; 2], Error> {
+    let name = |lens: usize| format!("camera {}", lens + 1);
+    let mut part = Part { cameras: BTreeMap::new(), shots: BTreeMap::new(), points: BTreeMap::new() };
+    for (i, lens) in all.lenses.iter().enumerate() {
+        super::square(lens, "OpenSfM")?;
+        let ([width, height], [k1, k2]) = (lens.size, lens.radial);
+        if width == 0 || height == 0 {
+            return Err(Error::new("OpenSfM's files need the size of the photographs: name their folder"));
+        }
+        let focal = lens.focal / lens.longer_side();
+        part.cameras.insert(name(i), Camera { projection_type: "perspective".into(), width, height, focal, k1, k2 });
+    }
+    for view in &all.views {
+        let Some(pose) = &view.pose else { continue };
+        let (rotation, translation) = (axis_angle_of(&pose.rotation).into(), pose.translation.into());
+        part.shots.insert(view.name.clone(), Shot { rotation, translation, camera: name(view.lens) });
+    }
+    let mut tracks = String::from("OPENSFM_TRACKS_VERSION_v2\n");
+    for (i, point) in all.points.iter().enumerate() {
+        let place = Place { color: point.color.map(f64::from), coordinates: point.position.into() };
+        part.points.insert(i.to_string(), place);
+        for seen in &point.track {
+            let view = &all.views[seen.view];
+            let lens = all.lenses[view.lens];
+            let p = (seen.pixel - Vector2::from(lens.center)) / lens.longer_side();
+            let [r, g, b] = point.color;
+            // The size of the feature is not kept; 0.001 is OpenSfM's usual one.
+            let row = (&view.name, i, seen.feature, p.x, p.y);
+            let _ =
+                writeln!(tracks, "{}\t{}\t{}\t{}\t{}\t0.001\t{r}\t{g}\t{b}\t-1\t-1", row.0, row.1, row.2, row.3, row.4);
+        }
+    }
+    let json = serde_json::to_string_pretty(&[part]).map_err(|error| Error::new(error.to_string()))?;
+    Ok([json + "\n", tracks])
+}

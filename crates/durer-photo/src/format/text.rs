@@ -1,0 +1,158 @@
+//! Words and numbers of a text, each with its line and column.
+
+use crate::Error;
+use std::fmt::Display;
+use std::str::FromStr;
+
+/// A text that is read word by word.
+pub struct Words<'t> {
+    file: &'t str,
+    text: &'t str,
+    /// Where the next word is looked for, in bytes.
+    at: usize,
+    line: usize,
+    /// Where the line begins.
+    start: usize,
+}
+
+impl<'t> Words<'t> {
+    /// The words of a file's bytes.
+    pub fn new(file: &'t str, bytes: &'t [u8]) -> Result<Self, Error> {
+        if bytes.starts_with(b"BZh") || bytes.starts_with(&[0x1f, 0x8b]) {
+            let tool = if bytes[0] == b'B' { "bunzip2" } else { "gunzip" };
+            return Err(Error::of(file, format!("this file is compressed: unpack it with {tool} first")));
+        }
+        let text = std::str::from_utf8(bytes).map_err(|error| {
+            let before = &bytes[..error.valid_up_to()];
+            let line = 1 + before.iter().filter(|b| **b == b'\n').count();
+            let column = 1 + before.len() - before.iter().rposition(|b| *b == b'\n').map_or(0, |i| i + 1);
+            Error::at(file, (line, column), "this is not text")
+        })?;
+        Ok(Words { file, text, at: 0, line: 1, start: 0 })
+    }
+
+    fn place(&self) -> (usize, usize) {
+        (self.line, 1 + self.text[self.start..self.at].chars().count())
+    }
+
+    /// An error where the next word begins.
+    pub fn error(&self, message: impl Into<String>) -> Error {
+        Error::at(self.file, self.place(), message)
+    }
+
+    /// Goes to the next word, over ends of lines if that is wanted; says whether there is one.
+    fn advance(&mut self, over_lines: bool) -> bool {
+        for byte in self.text.as_bytes()[self.at..].iter() {
+            match byte {
+                b'\n' if !over_lines => return false,
+                b'\n' => {
+                    self.line += 1;
+                    self.start = self.at + 1;
+                }
+                byte if !byte.is_ascii_whitespace() => return true,
+                _ => {}
+            }
+            self.at += 1;
+        }
+        false
+    }
+
+    /// Whether no words are left.
+    pub fn is_at_end(&mut self) -> bool {
+        !self.advance(true)
+    }
+
+    /// Whether no words are left in this line.
+    pub fn is_at_end_of_line(&mut self) -> bool {
+        !self.advance(false)
+    }
+
+    /// The rest of this line, without blanks at its ends; the next line is next.
+    pub fn rest_of_line(&mut self) -> &'t str {
+        let rest = self.text[self.at..].split('\n').next().unwrap_or_default();
+        self.at += rest.len();
+        rest.trim()
+    }
+
+    /// Goes over the end of this line, all of which was read.
+    pub fn skip_line_end(&mut self) {
+        if !self.advance(false) && self.text[self.at..].starts_with('\n') {
+            self.at += 1;
+            self.line += 1;
+            self.start = self.at;
+        }
+    }
+
+    /// Goes to the next line that is neither empty nor, with this sign at its beginning, a comment.
+    pub fn next_line(&mut self, comment: char) -> bool {
+        while self.advance(true) {
+            if !self.text[self.at..].starts_with(comment) {
+                return true;
+            }
+            self.rest_of_line();
+        }
+        false
+    }
+
+    /// The next word, and where it stands.
+    pub fn word(&mut self, what: &str) -> Result<(&'t str, (usize, usize)), Error> {
+        if !self.advance(true) {
+            return Err(self.error(format!("the file ends where {what} should follow")));
+        }
+        let place = self.place();
+        let word = self.text[self.at..].split_ascii_whitespace().next().unwrap_or_default();
+        self.at += word.len();
+        Ok((word, place))
+    }
+
+    /// The next word as a value of some type.
+    pub fn parse<T: FromStr>(&mut self, what: &str) -> Result<T, Error> {
+        let (word, place) = self.word(what)?;
+        word.parse().map_err(|_| Error::at(self.file, place, format!("`{word}` is not {what}")))
+    }
+
+    /// The next word as a finite number.
+    pub fn number(&mut self, what: &str) -> Result<f64, Error> {
+        let (word, place) = self.word(what)?;
+        let number: Option<f64> = word.parse().ok().filter(|number: &f64| number.is_finite());
+        number.ok_or_else(|| Error::at(self.file, place, format!("`{word}` is not {what}, a number")))
+    }
+
+    /// Some finite numbers.
+    pub fn numbers<const N: usize>(&mut self, what: &str) -> Result<[f64; N], Error> {
+        let mut numbers = [0.0; N];
+        for number in &mut numbers {
+            *number = self.number(what)?;
+        }
+        Ok(numbers)
+    }
+
+    /// A number of things of which each takes at least some bytes of the text: what cannot be true is refused before memory is
+    /// taken for it.
+    pub fn count(&mut self, what: &str, bytes: usize) -> Result<usize, Error> {
+        let (word, place) = self.word(what)?;
+        let fail = |why: String| Error::at(self.file, place, why);
+        let count: usize = word.parse().map_err(|_| fail(format!("`{word}` is not {what}, a count")))?;
+        if count > self.text.len() / bytes + 1 {
+            return Err(fail(format!("{what} is {count}, and the file is too short for that")));
+        }
+        Ok(count)
+    }
+
+    /// The next word as an index.
+    pub fn index(&mut self, what: &str, end: usize) -> Result<usize, Error> {
+        let (word, place) = self.word(what)?;
+        let index: Option<usize> = word.parse().ok().filter(|index| *index < end);
+        index.ok_or_else(|| Error::at(self.file, place, format!("`{word}` is not {what}: there are {end}, from 0")))
+    }
+
+    /// Refuses words that are left.
+    pub fn end(&mut self) -> Result<(), Error> {
+        if self.is_at_end() { Ok(()) } else { Err(self.error("the file should end here")) }
+    }
+}
+
+/// Values with blanks between them.
+pub fn joined<T: Display>(values: impl IntoIterator<Item = T>) -> String {
+    values.into_iter().map(|value| value.to_string()).collect::<Vec<_>>().join(" ")
+}

@@ -1,0 +1,99 @@
+//! How one set of points lies on another.
+//!
+//! Source: Umeyama, *Least-Squares Estimation of Transformation Parameters Between Two Point Patterns*, PAMI 13(4), 1991.
+
+use crate::{Pose, Reconstruction};
+use nalgebra::{Matrix3, Vector3};
+
+/// X' = scale rotation X + shift.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Similarity {
+    /// The factor of lengths.
+    pub scale: f64,
+    /// A rotation.
+    pub rotation: Matrix3<f64>,
+    /// What is added.
+    pub shift: Vector3<f64>,
+}
+
+impl Similarity {
+    /// Where a point goes.
+    pub fn apply(&self, point: &Vector3<f64>) -> Vector3<f64> {
+        self.scale * (self.rotation * point) + self.shift
+    }
+
+    /// Moves cameras and points, so that what the photographs see stays the same.
+    pub fn apply_to(&self, all: &mut Reconstruction) {
+        for view in &mut all.views {
+            if let Some(pose) = &mut view.pose {
+                *pose = Pose::at(&self.apply(&pose.center()), pose.rotation * self.rotation.transpose());
+            }
+        }
+        all.points.iter_mut().for_each(|point| point.position = self.apply(&point.position));
+    }
+}
+
+/// Means, and the singular vectors of the covariance, as a rotation; none where the points are in a line.
+fn turned(from: &[Vector3<f64>], to: &[Vector3<f64>]) -> Option<([Vector3<f64>; 2], Matrix3<f64>, f64)> {
+    let count = from.len().min(to.len()) as f64;
+    let mean = |points: &[Vector3<f64>]| points.iter().sum::<Vector3<f64>>() / count;
+    let means = [mean(from), mean(to)];
+    let product = |(a, b): (&Vector3<f64>, &Vector3<f64>)| (b - means[1]) * (a - means[0]).transpose();
+    let covariance = from.iter().zip(to).map(product).sum::<Matrix3<f64>>() / count;
+    let svd = covariance.svd(true, true);
+    let (u, v, d) = (svd.u?, svd.v_t?, svd.singular_values);
+    if d[1] <= 1e-12 * d[0] || !d[0].is_finite() || d[0] == 0.0 {
+        return None;
+    }
+    let sign = if (u * v).determinant() < 0.0 { -1.0 } else { 1.0 };
+    Some((means, u * Matrix3::from_diagonal(&Vector3::new(1.0, 1.0, sign)) * v, d[0] + d[1] + sign * d[2]))
+}
+
+/// The similarity that takes points nearest to others; none for fewer than three points, and for points in a line.
+pub fn similarity(from: &[Vector3<f64>], to: &[Vector3<f64>]) -> Option<Similarity> {
+    if from.len() < 3 || from.len() != to.len() {
+        return None;
+    }
+    let (means, rotation, trace) = turned(from, to)?;
+    let variance = from.iter().map(|point| (point - means[0]).norm_squared()).sum::<f64>() / from.len() as f64;
+    let scale = trace / variance;
+    Some(Similarity { scale, rotation, shift: means[1] - scale * (rotation * means[0]) })
+}
+
+/// The pose that takes points of the world nearest to points of the camera's frame.
+pub fn rigid(world: &[Vector3<f64>], camera: &[Vector3<f64>]) -> Option<Pose> {
+    let (means, rotation, _) = turned(world, camera)?;
+    Some(Pose { rotation, translation: means[1] - rotation * means[0] })
+}
+
+/// The similarity that brings control points, as the photographs see them, to where they are; and what is left of each.
+///
+/// # Errors
+///
+/// Says so if fewer than three of them are seen by two photographs whose pose is known, or if they are in a line.
+pub fn to_control(
+    all: &Reconstruction,
+    control: &[crate::format::Control],
+) -> Result<(Similarity, Vec<f64>), crate::Error> {
+    let ray = |seen: &crate::Observation| {
+        let view = &all.views[seen.view];
+        let (pose, direction) = (view.pose.as_ref()?, all.lenses[view.lens].unproject(&seen.pixel)?);
+        Some((pose.center(), pose.outwards(&direction).normalize()))
+    };
+    let (mut from, mut to) = (Vec::new(), Vec::new());
+    for (position, seen) in control {
+        let rays: Vec<_> = seen.iter().filter_map(ray).collect();
+        if let Some(point) = super::triangulate::nearest_to_rays(&rays).filter(|_| rays.len() > 1) {
+            from.push(point);
+            to.push(*position);
+        }
+    }
+    let found = similarity(&from, &to).ok_or_else(|| {
+        let count = from.len();
+        crate::Error::new(format!(
+            "control needs three points or more, not in a line, each seen by two photographs whose place is known: {count} are"
+        ))
+    })?;
+    let left = from.iter().zip(&to).map(|(a, b)| (found.apply(a) - b).norm()).collect();
+    Ok((found, left))
+}

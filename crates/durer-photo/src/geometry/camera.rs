@@ -1,0 +1,71 @@
+//! A camera from points of the world and their pixels, when nothing of its lens is known: the direct linear transform.
+//!
+//! x ~ P X with a matrix P of 3x4, of which each point gives two equations, linear in P. With P = K [R | t], K is upper triangular.
+//!
+//! Source: Hartley, Zisserman, *Multiple View Geometry in Computer Vision*, 2nd edition, 2004, sections 7.1 and 6.2.4.
+
+use super::{normalization, null_vector};
+use nalgebra::{DMatrix, Matrix3, Matrix3x4, Matrix4, Vector2, Vector3};
+
+/// The matrix, and how well it is determined.
+pub struct Linear {
+    /// P, at any scale.
+    pub matrix: Matrix3x4<f64>,
+    /// The singular values of the equations in Hartley's normalised coordinates, in falling order. The last is how badly they are
+    /// fulfilled; if the one before it is nothing, other matrices do as well.
+    pub singular: Vec<f64>,
+}
+
+/// How flat points are: the standard deviations along their principal axes, in falling order.
+pub fn spread(points: &[Vector3<f64>]) -> [f64; 3] {
+    let mean = points.iter().sum::<Vector3<f64>>() / points.len().max(1) as f64;
+    let covariance = points.iter().map(|p| (p - mean) * (p - mean).transpose()).sum::<Matrix3<f64>>();
+    let svd = (covariance / points.len().max(1) as f64).svd(false, false);
+    let mut values: [f64; 3] = svd.singular_values.map(|v| v.max(0.0).sqrt()).into();
+    values.sort_by(|a, b| b.total_cmp(a));
+    values
+}
+
+/// The matrix that fulfils the equations of six or more points best.
+pub fn linear(points: &[Vector3<f64>], pixels: &[Vector2<f64>]) -> Option<Linear> {
+    if points.len() < 6 || points.len() != pixels.len() {
+        return None;
+    }
+    let (s, m) = normalization(pixels.iter().copied());
+    let mean = points.iter().sum::<Vector3<f64>>() / points.len() as f64;
+    let size = points.iter().map(|p| (p - mean).norm()).sum::<f64>() / points.len() as f64;
+    let scale = if size > 0.0 { 3f64.sqrt() / size } else { 1.0 };
+    let rows = DMatrix::from_fn(2 * points.len(), 12, |row, column| {
+        let p = (points[row / 2] - mean) * scale;
+        let q = (pixels[row / 2] - m) * s;
+        let p = [p.x, p.y, p.z, 1.0][column % 4];
+        match (row % 2, column / 4) {
+            (0, 0) | (1, 1) => p,
+            (0, 2) => -q.x * p,
+            (1, 2) => -q.y * p,
+            _ => 0.0,
+        }
+    });
+    let (v, singular) = null_vector(&rows);
+    let back = Matrix3::new(1.0 / s, 0.0, m.x, 0.0, 1.0 / s, m.y, 0.0, 0.0, 1.0);
+    let mut normal = Matrix4::identity() * scale;
+    normal.fixed_view_mut::<3, 1>(0, 3).copy_from(&(-scale * mean));
+    normal[(3, 3)] = 1.0;
+    let matrix = back * Matrix3x4::from_row_slice(v.as_slice()) * normal;
+    matrix.iter().all(|c| c.is_finite()).then_some(Linear { matrix, singular })
+}
+
+/// P taken apart: K with 1 in its corner, R, t. Depth is positive where the determinant of P's left part is.
+pub fn take_apart(p: &Matrix3x4<f64>) -> Option<(Matrix3<f64>, Matrix3<f64>, Vector3<f64>)> {
+    let left = p.fixed_columns::<3>(0).into_owned();
+    let p = if left.determinant() < 0.0 { -p } else { *p };
+    let row = |i: usize| Vector3::new(p[(i, 0)], p[(i, 1)], p[(i, 2)]);
+    // Gram and Schmidt's rule on the rows, from the last upwards.
+    let forward = row(2).try_normalize(1e-300)?;
+    let down = (row(1) - row(1).dot(&forward) * forward).try_normalize(1e-300)?;
+    let right = down.cross(&forward);
+    let rotation = Matrix3::from_rows(&[right.transpose(), down.transpose(), forward.transpose()]);
+    let k = p.fixed_columns::<3>(0) * rotation.transpose();
+    let translation = k.try_inverse()? * p.column(3);
+    Some((k / k[(2, 2)], rotation, translation))
+}

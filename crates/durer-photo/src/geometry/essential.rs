@@ -1,0 +1,219 @@
+//! The essential matrix of two photographs whose lenses are known: five correspondences give up to ten.
+//!
+//! q'ᵀ E q = 0 for the directions q and q' in which two cameras see a point, where E = [t]× R takes the second camera's pose from
+//! the first one's frame. E lies in the null space of five equations, E = x X + y Y + z Z + W, and 2 E Eᵀ E = tr(E Eᵀ) E with
+//! det E = 0 are ten cubics in x, y, z. Elimination leaves a polynomial of degree ten in z.
+//!
+//! Source: Nistér, *An Efficient Solution to the Five-Point Relative Pose Problem*, PAMI 26(6), 2004.
+
+use super::fundamental::{Pair, eight_point, sampson};
+use super::polynomial::real_roots;
+use super::ransac::Estimate;
+use super::triangulate::two_views;
+use crate::Pose;
+use nalgebra::{Matrix3, SMatrix, Vector3};
+
+/// The exponents of x, y, z of a cubic's monomials, in Nistér's order: elimination leaves only the last ten, and those below of
+/// the form x zⁿ, y zⁿ and zⁿ.
+const MONOMIALS: [[usize; 3]; 20] = [
+    [3, 0, 0],
+    [0, 3, 0],
+    [2, 1, 0],
+    [1, 2, 0],
+    [2, 0, 1],
+    [2, 0, 0],
+    [0, 2, 1],
+    [0, 2, 0],
+    [1, 1, 1],
+    [1, 1, 0],
+    [1, 0, 2],
+    [1, 0, 1],
+    [1, 0, 0],
+    [0, 1, 2],
+    [0, 1, 1],
+    [0, 1, 0],
+    [0, 0, 3],
+    [0, 0, 2],
+    [0, 0, 1],
+    [0, 0, 0],
+];
+
+/// A polynomial in x, y, z up to degree three.
+type Cubic = [f64; 20];
+
+/// The place of each monomial by its exponents.
+fn place(exponents: [usize; 3]) -> usize {
+    MONOMIALS.iter().position(|m| *m == exponents).unwrap_or(usize::MAX)
+}
+
+/// The places of products, [`usize::MAX`] where the degree is above three.
+fn products() -> [[usize; 20]; 20] {
+    let product = |a: usize, b: usize| place([0, 1, 2].map(|i| MONOMIALS[a][i] + MONOMIALS[b][i]));
+    std::array::from_fn(|a| std::array::from_fn(|b| product(a, b)))
+}
+
+/// Arithmetic of cubics with a table of products.
+struct Algebra([[usize; 20]; 20]);
+
+impl Algebra {
+    fn multiply(&self, a: &Cubic, b: &Cubic) -> Cubic {
+        let mut product = [0.0; 20];
+        for (i, a) in a.iter().enumerate().filter(|(_, a)| **a != 0.0) {
+            for (j, b) in b.iter().enumerate().filter(|(_, b)| **b != 0.0) {
+                product[self.0[i][j]] += a * b;
+            }
+        }
+        product
+    }
+
+    /// The sum of products.
+    fn dot(&self, pairs: [(&Cubic, &Cubic); 3]) -> Cubic {
+        pairs.iter().fold([0.0; 20], |sum, (a, b)| plus(&sum, &self.multiply(a, b), 1.0))
+    }
+}
+
+fn plus(a: &Cubic, b: &Cubic, factor: f64) -> Cubic {
+    std::array::from_fn(|i| a[i] + factor * b[i])
+}
+
+/// All essential matrices of five pairs of directions (x, y, 1).
+pub fn five_point(pairs: &[Pair; 5]) -> Vec<Matrix3<f64>> {
+    solutions(pairs).unwrap_or_default()
+}
+
+fn solutions(pairs: &[Pair; 5]) -> Option<Vec<Matrix3<f64>>> {
+    let rows = SMatrix::<f64, 9, 9>::from_fn(|row, column| {
+        let Some((a, b)) = pairs.get(row) else { return 0.0 };
+        [b.x, b.y, 1.0][column / 3] * [a.x, a.y, 1.0][column % 3]
+    });
+    let v = rows.svd(false, true).v_t?;
+    let basis = [5, 6, 7, 8].map(|i| Matrix3::from_row_slice(v.row(i).transpose().as_slice()));
+    let algebra = Algebra(products());
+    let variables = [[1, 0, 0], [0, 1, 0], [0, 0, 1], [0, 0, 0]].map(place);
+    let e: [[Cubic; 3]; 3] = std::array::from_fn(|i| {
+        std::array::from_fn(|j| {
+            let mut entry = [0.0; 20];
+            (0..4).for_each(|k| entry[variables[k]] = basis[k][(i, j)]);
+            entry
+        })
+    });
+    let minor =
+        |a: &Cubic, b: &Cubic, c: &Cubic, d: &Cubic| plus(&algebra.multiply(a, b), &algebra.multiply(c, d), -1.0);
+    let determinant = algebra.dot([
+        (&e[0][0], &minor(&e[1][1], &e[2][2], &e[1][2], &e[2][1])),
+        (&e[0][1], &minor(&e[1][2], &e[2][0], &e[1][0], &e[2][2])),
+        (&e[0][2], &minor(&e[1][0], &e[2][1], &e[1][1], &e[2][0])),
+    ]);
+    // L = E Eᵀ - tr(E Eᵀ) / 2, and L E = 0.
+    let mut l: [[Cubic; 3]; 3] =
+        std::array::from_fn(|i| std::array::from_fn(|j| algebra.dot([0, 1, 2].map(|k| (&e[i][k], &e[j][k])))));
+    let trace = plus(&plus(&l[0][0], &l[1][1], 1.0), &l[2][2], 1.0);
+    (0..3).for_each(|i| l[i][i] = plus(&l[i][i], &trace, -0.5));
+    let mut all = SMatrix::<f64, 10, 20>::zeros();
+    let entry = |row: usize| match row {
+        9 => determinant,
+        row => algebra.dot([0, 1, 2].map(|k| (&l[row / 3][k], &e[k][row % 3]))),
+    };
+    (0..10).for_each(|row| all.row_mut(row).copy_from_slice(&entry(row)));
+    let left = all.fixed_columns::<10>(0).into_owned();
+    let right = left.lu().solve(&all.fixed_columns::<10>(10).into_owned())?;
+    // Rows by pairs: (x²z, x²), (y²z, y²), (xyz, xy). The first less z times the second has only x, y and powers of z.
+    let polynomials = [4, 6, 8].map(|row| {
+        let (a, b) = (right.row(row), right.row(row + 1));
+        let part = |at: usize, degree: usize| {
+            // Coefficients of zⁿ, from the constant one upwards.
+            let mut p = [0.0; 5];
+            for n in 0..=degree {
+                p[n] += a[at + degree - n];
+                p[n + 1] -= b[at + degree - n];
+            }
+            p
+        };
+        [part(0, 2), part(3, 2), part(6, 3)]
+    });
+    let product = |a: &[f64], b: &[f64]| {
+        let mut p = vec![0.0; a.len() + b.len() - 1];
+        a.iter().enumerate().for_each(|(i, a)| b.iter().enumerate().for_each(|(j, b)| p[i + j] += a * b));
+        p
+    };
+    let cross = |i: usize, j: usize, a: usize, b: usize| -> Vec<f64> {
+        let one = product(&polynomials[i][a], &polynomials[j][b]);
+        let two = product(&polynomials[i][b], &polynomials[j][a]);
+        one.iter().zip(two).map(|(one, two)| one - two).collect()
+    };
+    let terms = [(0, cross(1, 2, 1, 2)), (1, cross(1, 2, 2, 0)), (2, cross(1, 2, 0, 1))]
+        .map(|(column, minor)| product(&polynomials[0][column], &minor));
+    let whole: Vec<f64> = (0..=10).map(|n| terms.iter().map(|term| term[n]).sum()).collect();
+    let at = |p: &[f64; 5], z: f64| p.iter().rev().fold(0.0, |sum, c| sum * z + c);
+    let mut found = Vec::new();
+    for z in real_roots(&whole) {
+        let m = Matrix3::from_fn(|i, j| at(&polynomials[i][j], z));
+        // (x, y, 1) is orthogonal to all rows; the two rows that differ most say it best.
+        let crosses = [(0, 1), (0, 2), (1, 2)].map(|(i, j)| m.row(i).transpose().cross(&m.row(j).transpose()));
+        let best = crosses.into_iter().fold(Vector3::zeros(), |a, b| if b.norm() > a.norm() { b } else { a });
+        let (x, y) = (best.x / best.z, best.y / best.z);
+        let e = basis[0] * x + basis[1] * y + basis[2] * z + basis[3];
+        if e.iter().all(|c| c.is_finite()) {
+            found.push(e / e.norm());
+        }
+    }
+    Some(found)
+}
+
+/// The four poses of the second camera, up to the length of its translation, which is 1.
+pub fn poses(e: &Matrix3<f64>) -> Option<[Pose; 4]> {
+    let svd = e.svd(true, true);
+    let (mut u, mut v) = (svd.u?, svd.v_t?);
+    // The least singular value, which is nearly 0, is the last; both are to be rotations.
+    if u.determinant() < 0.0 {
+        u.column_mut(2).neg_mut();
+    }
+    if v.determinant() < 0.0 {
+        v.row_mut(2).neg_mut();
+    }
+    let w = Matrix3::new(0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0);
+    let (a, b, t) = (u * w * v, u * w.transpose() * v, u.column(2).into_owned());
+    let pose = |rotation, translation| Pose { rotation, translation };
+    Some([pose(a, t), pose(a, -t), pose(b, t), pose(b, -t)])
+}
+
+/// Of the four poses the one that has most points before both cameras, and how many.
+pub fn pose_before(e: &Matrix3<f64>, pairs: &[Pair]) -> Option<(Pose, usize)> {
+    let before = |pose: &Pose| {
+        let in_front = |pair: &&Pair| {
+            let point = two_views(pose, pair);
+            point.z > 0.0 && pose.depth(&point) > 0.0
+        };
+        pairs.iter().filter(in_front).count()
+    };
+    let counted = poses(e)?.into_iter().map(|pose| (pose, before(&pose)));
+    counted.reduce(|best, next| if next.1 > best.1 { next } else { best })
+}
+
+/// Pairs of directions (x, y, 1) some of which are false.
+pub struct Directions<'p>(pub &'p [Pair]);
+
+impl Estimate<5> for Directions<'_> {
+    type Model = Matrix3<f64>;
+
+    fn count(&self) -> usize {
+        self.0.len()
+    }
+
+    fn minimal(&self, sample: &[usize; 5]) -> Vec<Matrix3<f64>> {
+        five_point(&sample.map(|i| self.0[i]))
+    }
+
+    fn refined(&self, inliers: &[usize], _: &Matrix3<f64>) -> Option<Matrix3<f64>> {
+        let e = eight_point(&inliers.iter().map(|i| self.0[*i]).collect::<Vec<_>>())?;
+        let svd = e.svd(true, true);
+        // The nearest essential matrix has the singular values 1, 1, 0.
+        let mut values = Vector3::new(1.0, 1.0, 1.0);
+        values[svd.singular_values.imin()] = 0.0;
+        Some(svd.u? * Matrix3::from_diagonal(&values) * svd.v_t?)
+    }
+
+    fn error(&self, model: &Matrix3<f64>, datum: usize) -> f64 {
+        sampson(model, &self.0[datum])
+    }
+}

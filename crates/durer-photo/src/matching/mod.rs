@@ -1,0 +1,270 @@
+//! From photographs to tracks: the same points of the scene, found in several photographs.
+
+mod pairs;
+mod tracks;
+
+use crate::feature::{Feature, features};
+use crate::photo::Photo;
+use crate::{Error, Lens};
+use nalgebra::Vector2;
+use pairs::{Descriptors, alike, verified};
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+/// How photographs are matched.
+#[derive(Debug, Clone)]
+pub struct Options {
+    /// Features of a photograph at most.
+    pub features: usize,
+    /// Photographs are made smaller until their longer side has at most so many pixels.
+    pub side: u32,
+    /// The nearest feature must be nearer than this times the distance of the second nearest.
+    pub ratio: f64,
+    /// The distance from the epipolar line that is allowed, in pixels of the smaller photograph.
+    pub threshold: f64,
+    /// Matches that must agree with one geometry.
+    pub least: usize,
+    /// The horizontal field of view in degrees where EXIF tells nothing.
+    pub field: f64,
+    /// Take no focal length from EXIF.
+    pub ignore_exif: bool,
+    /// Of the random numbers.
+    pub seed: u64,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        let (features, side, ratio, threshold) = (6000, 1600, 0.8, 2.0);
+        Options { features, side, ratio, threshold, least: 16, field: 45.0, ignore_exif: false, seed: 0 }
+    }
+}
+
+/// A photograph that was matched.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Picture {
+    /// Its file's name.
+    pub name: String,
+    /// Pixels across and down.
+    pub size: [u32; 2],
+    /// The focal length to begin with, in pixels.
+    pub focal: f64,
+    /// How it is known.
+    pub focal_from: String,
+    /// Photographs of one camera, size and focal length share a lens: its number.
+    pub lens: usize,
+    /// How many features were found.
+    pub features: usize,
+}
+
+/// Two photographs that show the same things.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Link {
+    /// Their numbers.
+    pub pictures: [usize; 2],
+    /// Features that look alike.
+    pub alike: usize,
+    /// Of these, what agrees with one fundamental matrix.
+    pub matches: usize,
+    /// The share of these that one homography explains.
+    pub planar: f64,
+    /// The median distance between the places in both pictures, in pixels.
+    pub moved: f64,
+}
+
+/// Where a point is seen: the photograph's number, the feature's number, and the place in pixels from the upper left corner.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Sighting(pub usize, pub usize, pub f64, pub f64);
+
+/// A point of the scene before anyone knows where it is.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Track {
+    /// Its mean colour.
+    pub color: [u8; 3],
+    /// Where it is seen.
+    pub seen: Vec<Sighting>,
+}
+
+/// What matching found.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Matches {
+    /// What the file is.
+    pub format: String,
+    /// The photographs.
+    pub pictures: Vec<Picture>,
+    /// Which of them go together.
+    pub links: Vec<Link>,
+    /// The tracks.
+    pub tracks: Vec<Track>,
+}
+
+/// How [`Picture::focal_from`] begins where nothing was written.
+pub const GUESS: &str = "a guess";
+
+/// What [`Matches::format`] says.
+pub const FORMAT: &str = "durer matches 1";
+
+/// A photograph's features.
+pub struct Described {
+    picture: Picture,
+    camera: String,
+    features: Vec<Feature>,
+    colors: Vec<[u8; 3]>,
+    descriptors: Descriptors,
+    scale: f64,
+}
+
+/// Finds the features of a photograph, which is not needed any more then.
+pub fn describe(photo: &Photo, options: &Options) -> Described {
+    let (gray, scale) = photo.gray(options.side);
+    let mut found = features(&gray, options.features);
+    for (feature, _) in &mut found {
+        (feature.x, feature.y) = (feature.x * scale[0] as f32, feature.y * scale[1] as f32);
+    }
+    let [width, height] = photo.size();
+    let guess = f64::from(width) / (2.0 * libm::tan(options.field.to_radians() / 2.0));
+    let guessed = || (guess, format!("{GUESS}: {} degrees across", options.field));
+    let (focal, focal_from) = photo.exif.focal.clone().filter(|_| !options.ignore_exif).unwrap_or_else(guessed);
+    let colors = found.iter().map(|(f, _)| photo.color(f64::from(f.x), f64::from(f.y))).collect();
+    let (name, size) = (photo.name.clone(), [width, height]);
+    Described {
+        picture: Picture { name, size, focal, focal_from, lens: 0, features: found.len() },
+        camera: photo.exif.camera.clone(),
+        descriptors: Descriptors::new(found.iter().map(|(_, descriptor)| descriptor)),
+        features: found.into_iter().map(|(feature, _)| feature).collect(),
+        colors,
+        scale: scale[0],
+    }
+}
+
+/// Matches all pairs of photographs. `progress` hears the share that is done.
+///
+/// # Errors
+///
+/// Says so if there are fewer than two photographs, or if no two of them show the same things from two places.
+pub fn match_all(
+    mut photos: Vec<Described>,
+    options: &Options,
+    progress: &(dyn Fn(f64) + Sync),
+) -> Result<Matches, Error> {
+    if photos.len() < 2 {
+        return Err(Error::new("two photographs or more are needed: one alone tells no depth"));
+    }
+    let keys: Vec<_> =
+        photos.iter().map(|photo| (photo.camera.clone(), photo.picture.size, photo.picture.focal.to_bits())).collect();
+    let mut seen = Vec::new();
+    for (photo, key) in photos.iter_mut().zip(keys) {
+        photo.picture.lens = seen.iter().position(|other| *other == key).unwrap_or_else(|| {
+            seen.push(key);
+            seen.len() - 1
+        });
+    }
+    let count = photos.len();
+    let all: Vec<(usize, usize)> = (0..count).flat_map(|i| (i + 1..count).map(move |j| (i, j))).collect();
+    let done = std::sync::atomic::AtomicUsize::new(0);
+    let one = |&(i, j): &(usize, usize)| {
+        let (a, b) = (&photos[i], &photos[j]);
+        let candidates = alike(&a.descriptors, &b.descriptors, options.ratio);
+        let places: Vec<_> = candidates.iter().map(|(m, n)| (place(&a.features[*m]), place(&b.features[*n]))).collect();
+        let threshold = options.threshold * a.scale.max(b.scale);
+        let seed = options.seed ^ ((i as u64) << 32 | j as u64);
+        let geometry = verified(&places, threshold, options.least, seed);
+        let now = 1 + done.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+        progress(now as f64 / all.len() as f64);
+        let geometry = geometry?;
+        let matches: Vec<_> = geometry.inliers.iter().map(|k| candidates[*k]).collect();
+        let link = Link {
+            pictures: [i, j],
+            alike: candidates.len(),
+            matches: matches.len(),
+            planar: geometry.planar,
+            moved: geometry.moved,
+        };
+        Some((link, matches))
+    };
+    let found: Vec<_> = all.par_iter().map(one).collect::<Vec<_>>().into_iter().flatten().collect();
+    if found.is_empty() {
+        return Err(Error::new("no two of the photographs show the same things: nothing agrees with one geometry"));
+    }
+    if found.iter().all(|(link, _)| link.moved < 0.5) {
+        return Err(Error::new(
+            "the photographs are the same picture again: nothing moves from one to the next, and so nothing tells depth",
+        ));
+    }
+    let counts: Vec<usize> = photos.iter().map(|photo| photo.features.len()).collect();
+    let connected = found.iter().flat_map(|(link, matches)| {
+        let [i, j] = link.pictures;
+        matches.iter().map(move |(m, n)| ((i, *m), (j, *n)))
+    });
+    let track = |list: Vec<tracks::Member>| {
+        let mean = |channel: usize| {
+            let sum: u32 = list.iter().map(|(i, m)| u32::from(photos[*i].colors[*m][channel])).sum();
+            (sum / list.len() as u32) as u8
+        };
+        let color = [mean(0), mean(1), mean(2)];
+        let sighting = |&(i, m): &tracks::Member| {
+            let p = place(&photos[i].features[m]);
+            Sighting(i, m, p.x, p.y)
+        };
+        Track { color, seen: list.iter().map(sighting).collect() }
+    };
+    let tracks = tracks::tracks(&counts, connected).into_iter().map(track).collect();
+    let links = found.iter().map(|(link, _)| link.clone()).collect();
+    let pictures = photos.into_iter().map(|photo| photo.picture).collect();
+    Ok(Matches { format: FORMAT.into(), pictures, links, tracks })
+}
+
+fn place(feature: &Feature) -> Vector2<f64> {
+    Vector2::new(f64::from(feature.x), f64::from(feature.y))
+}
+
+impl Matches {
+    /// The lenses to begin with.
+    pub fn lenses(&self) -> Vec<Lens> {
+        let first = |lens: usize| self.pictures.iter().find(|picture| picture.lens == lens);
+        (0..self.pictures.len()).map_while(first).map(|picture| Lens::new(picture.size, picture.focal)).collect()
+    }
+
+    /// Reads what [`Matches::to_json`] wrote.
+    pub fn from_json(file: &str, json: &[u8]) -> Result<Self, Error> {
+        let all: Matches = serde_json::from_slice(json).map_err(|error| {
+            Error::at(file, (error.line(), error.column()), format!("not of durer photo match: {error}"))
+        })?;
+        let fail = |why: String| Err(Error::of(file, why));
+        if all.format != FORMAT {
+            return fail(format!("its format is `{}`, not `{FORMAT}`", all.format));
+        }
+        let count = all.lenses().len();
+        for (i, picture) in all.pictures.iter().enumerate() {
+            let fine = picture.focal.is_finite() && picture.focal > 0.0 && picture.size.iter().all(|side| *side > 0);
+            if !fine || picture.lens >= count {
+                return fail(format!("photograph {i} has no size, focal length or lens that could be"));
+            }
+        }
+        for (i, track) in all.tracks.iter().enumerate() {
+            let order = track.seen.windows(2).all(|pair| pair[0].0 < pair[1].0);
+            let fine = |s: &Sighting| s.0 < all.pictures.len() && s.2.is_finite() && s.3.is_finite();
+            if !order || !track.seen.iter().all(fine) {
+                return fail(format!("track {i} names photographs that are not there, twice or out of order"));
+            }
+        }
+        if all.links.iter().any(|link| link.pictures.iter().any(|i| *i >= all.pictures.len())) {
+            return fail("a link names photographs that are not there".into());
+        }
+        Ok(all)
+    }
+
+    /// All of it as text, a row a line.
+    pub fn to_json(&self) -> String {
+        let rows = |values: Vec<String>| values.join(",\n");
+        let row = |value: Result<String, serde_json::Error>| value.unwrap_or_default();
+        let pictures = self.pictures.iter().map(|picture| row(serde_json::to_string(picture))).collect();
+        let links = self.links.iter().map(|link| row(serde_json::to_string(link))).collect();
+        let tracks = self.tracks.iter().map(|track| row(serde_json::to_string(track))).collect();
+        format!(
+            "{{\"format\": \"{FORMAT}\",\n\"pictures\": [\n{}],\n\"links\": [\n{}],\n\"tracks\": [\n{}]}}\n",
+            rows(pictures),
+            rows(links),
+            rows(tracks)
+        )
+    }
+}

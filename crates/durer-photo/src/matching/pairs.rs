@@ -1,0 +1,83 @@
+//! Which features of two photographs look alike, and which of these are of the same points.
+
+use crate::feature::LENGTH;
+use crate::geometry::fundamental::{Pair, Pairs};
+use crate::geometry::homography::{Planar, mapped};
+use crate::geometry::ransac::{Search, ransac};
+use nalgebra::{Matrix3, Vector2};
+
+/// Descriptors as the processor multiplies them fastest.
+pub struct Descriptors {
+    values: Vec<[i16; LENGTH]>,
+    squares: Vec<i32>,
+}
+
+impl Descriptors {
+    /// Of all features of a photograph.
+    pub fn new<'d>(all: impl Iterator<Item = &'d [u8; LENGTH]>) -> Self {
+        let values: Vec<[i16; LENGTH]> = all.map(|descriptor| descriptor.map(i16::from)).collect();
+        let squares = values.iter().map(|v| dot(v, v)).collect();
+        Descriptors { values, squares }
+    }
+}
+
+/// In whole numbers: no processor rounds them otherwise. 128 products of bytes are far from overflow, and without its tests many are
+/// made at once.
+fn dot(a: &[i16; LENGTH], b: &[i16; LENGTH]) -> i32 {
+    a.iter().zip(b).fold(0, |sum, (a, b)| sum.wrapping_add(i32::from(*a).wrapping_mul(i32::from(*b))))
+}
+
+/// Pairs of features that are each other's nearest, clearly nearer than the second nearest is to the first: `ratio` of
+/// distances. Lowe, section 7.1.
+pub fn alike(a: &Descriptors, b: &Descriptors, ratio: f64) -> Vec<(usize, usize)> {
+    let mut back = vec![(i32::MAX, usize::MAX); b.values.len()];
+    let mut forth = Vec::with_capacity(a.values.len());
+    for (i, descriptor) in a.values.iter().enumerate() {
+        let (mut best, mut second, mut at) = (i32::MAX, i32::MAX, usize::MAX);
+        for (j, other) in b.values.iter().enumerate() {
+            let distance = a.squares[i] + b.squares[j] - 2 * dot(descriptor, other);
+            if distance < best {
+                (second, best, at) = (best, distance, j);
+            } else if distance < second {
+                second = distance;
+            }
+            if distance < back[j].0 {
+                back[j] = (distance, i);
+            }
+        }
+        forth.push((best, second, at));
+    }
+    let clear = |(i, (best, second, at)): (usize, (i32, i32, usize))| {
+        let nearer = f64::from(best) < ratio * ratio * f64::from(second);
+        (nearer && back[at].1 == i).then_some((i, at))
+    };
+    forth.into_iter().enumerate().filter(|(_, row)| row.2 != usize::MAX).filter_map(clear).collect()
+}
+
+/// What two photographs have in common.
+pub struct Geometry {
+    /// The matches that agree with it, by their numbers in the list.
+    pub inliers: Vec<usize>,
+    /// The share of these that one homography explains: near 1 the scene is flat or the camera only turned.
+    pub planar: f64,
+    /// The median distance in pixels between the places in both pictures.
+    pub moved: f64,
+}
+
+/// Matches that are of the same points of a rigid scene; none if there are not enough.
+pub fn verified(places: &[Pair], threshold: f64, least: usize, seed: u64) -> Option<Geometry> {
+    let search = Search { threshold, samples: 5000, seed };
+    let (_, inliers) = ransac(&Pairs(places), &search)?;
+    // So few of so many agree by chance.
+    if inliers.len() < least || inliers.len() * 5 < places.len() {
+        return None;
+    }
+    let pairs: Vec<Pair> = inliers.iter().map(|i| places[*i]).collect();
+    let plane = ransac(&Planar(&pairs), &Search { samples: 500, ..search });
+    let near = |h: &Matrix3<f64>| pairs.iter().filter(|(a, b)| (mapped(h, a) - b).norm() < threshold).count();
+    let planar = plane.map_or(0.0, |(h, _)| near(&h) as f64 / pairs.len() as f64);
+    let mut distances: Vec<f64> = pairs.iter().map(|(a, b): &(Vector2<f64>, Vector2<f64>)| (a - b).norm()).collect();
+    distances.sort_by(f64::total_cmp);
+    let moved = distances[distances.len() / 2];
+    Some(Geometry { inliers, planar, moved })
+}

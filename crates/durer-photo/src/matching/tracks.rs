@@ -1,0 +1,32 @@
+//! Features that are matched from photograph to photograph: the same point of the scene, if all is well.
+
+/// A feature: its photograph, and its number there.
+pub type Member = (usize, usize);
+
+/// Features that matches connect, each in the order of photographs. What has two features in one photograph cannot be one point
+/// and is left out.
+pub fn tracks(counts: &[usize], matches: impl Iterator<Item = (Member, Member)>) -> Vec<Vec<Member>> {
+    let mut starts = vec![0];
+    counts.iter().for_each(|count| starts.push(starts[starts.len() - 1] + count));
+    let mut parents: Vec<usize> = (0..starts[counts.len()]).collect();
+    fn root(parents: &mut [usize], mut i: usize) -> usize {
+        while parents[i] != i {
+            parents[i] = parents[parents[i]];
+            i = parents[i];
+        }
+        i
+    }
+    for (a, b) in matches {
+        let (a, b) = (root(&mut parents, starts[a.0] + a.1), root(&mut parents, starts[b.0] + b.1));
+        // The smaller number is the root, whatever the order of matches.
+        parents[a.max(b)] = a.min(b);
+    }
+    let mut lists: Vec<Vec<Member>> = vec![Vec::new(); parents.len()];
+    for (photo, count) in counts.iter().enumerate() {
+        for feature in 0..*count {
+            lists[root(&mut parents, starts[photo] + feature)].push((photo, feature));
+        }
+    }
+    lists.retain(|list| list.len() > 1 && list.windows(2).all(|pair| pair[0].0 != pair[1].0));
+    lists
+}

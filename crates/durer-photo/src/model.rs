@@ -1,0 +1,278 @@
+//! Lenses, poses, views, points: what a reconstruction is made of.
+
+use nalgebra::{Matrix3, Rotation3, Vector2, Vector3};
+
+/// What a camera does to a point in its own frame, by the formula of the [crate's](crate) conventions.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Lens {
+    /// Width and height of the photographs in pixels; 0 where a format does not tell.
+    pub size: [u32; 2],
+    /// Focal length in pixels.
+    pub focal: f64,
+    /// Vertical focal length over horizontal one: 1 for square pixels.
+    pub aspect: f64,
+    /// The principal point in pixels from the upper left corner.
+    pub center: [f64; 2],
+    /// Radial distortion: factors of |p|² and |p|⁴.
+    pub radial: [f64; 2],
+}
+
+impl Lens {
+    /// A lens without distortion whose principal point is the middle.
+    pub fn new(size: [u32; 2], focal: f64) -> Self {
+        Lens { size, focal, aspect: 1.0, center: size.map(|side| f64::from(side) / 2.0), radial: [0.0; 2] }
+    }
+
+    /// The longer side in pixels; twice the focal length where the size is not known.
+    pub fn longer_side(&self) -> f64 {
+        match self.size[0].max(self.size[1]) {
+            0 => 2.0 * self.focal,
+            side => f64::from(side),
+        }
+    }
+
+    /// The pixel of a point in the camera's frame. The formula holds behind the camera too; see [`Pose::depth`].
+    pub fn project(&self, p: &Vector3<f64>) -> Vector2<f64> {
+        let (x, y) = (p.x / p.z, p.y / p.z);
+        let factor = self.focal * self.factor(x * x + y * y);
+        Vector2::new(self.center[0] + factor * x, self.center[1] + factor * self.aspect * y)
+    }
+
+    /// 1 + k1 s + k2 s², for the square s of the radius.
+    pub fn factor(&self, s: f64) -> f64 {
+        1.0 + s * (self.radial[0] + s * self.radial[1])
+    }
+
+    /// The point (x, y, 1) that is seen at a pixel, by Newton's method; none where the distortion has no inverse.
+    pub fn unproject(&self, pixel: &Vector2<f64>) -> Option<Vector3<f64>> {
+        let x = (pixel.x - self.center[0]) / self.focal;
+        let y = (pixel.y - self.center[1]) / (self.focal * self.aspect);
+        let wanted = (x * x + y * y).sqrt();
+        let mut radius = wanted;
+        for _ in 0..30 {
+            let s = radius * radius;
+            // d/dr of r (1 + k1 r² + k2 r⁴).
+            let slope = 1.0 + s * (3.0 * self.radial[0] + 5.0 * s * self.radial[1]);
+            if slope <= 1e-6 {
+                return None;
+            }
+            let step = (wanted - radius * self.factor(s)) / slope;
+            radius += step;
+            if step.abs() <= 1e-15 * (1.0 + radius.abs()) {
+                break;
+            }
+        }
+        let exact = (radius * self.factor(radius * radius) - wanted).abs() <= 1e-9 * (1.0 + wanted);
+        let scale = if wanted > 0.0 { radius / wanted } else { 1.0 };
+        exact.then(|| Vector3::new(x * scale, y * scale, 1.0))
+    }
+}
+
+/// Where a camera stands and looks: P = R X + t.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pose {
+    /// R: its rows are the camera's right, down and forward in the world.
+    pub rotation: Matrix3<f64>,
+    /// t.
+    pub translation: Vector3<f64>,
+}
+
+impl Pose {
+    /// The camera at the origin that looks along +z.
+    pub fn identity() -> Self {
+        Pose { rotation: Matrix3::identity(), translation: Vector3::zeros() }
+    }
+
+    /// The camera at a place, with a rotation.
+    pub fn at(center: &Vector3<f64>, rotation: Matrix3<f64>) -> Self {
+        Pose { rotation, translation: -rotation * center }
+    }
+
+    /// A camera at a place that looks at a point; `up` shows upwards in its picture.
+    pub fn look_at(center: &Vector3<f64>, target: &Vector3<f64>, up: &Vector3<f64>) -> Self {
+        let forward = (target - center).normalize();
+        let right = forward.cross(up).normalize();
+        let down = forward.cross(&right);
+        Pose::at(center, Matrix3::from_rows(&[right.transpose(), down.transpose(), forward.transpose()]))
+    }
+
+    /// A point of the world in the camera's frame.
+    pub fn apply(&self, point: &Vector3<f64>) -> Vector3<f64> {
+        self.rotation * point + self.translation
+    }
+
+    /// Where the camera stands: -Rᵀ t.
+    pub fn center(&self) -> Vector3<f64> {
+        -self.rotation.transpose() * self.translation
+    }
+
+    /// How far before the camera a point is, along the view.
+    pub fn depth(&self, point: &Vector3<f64>) -> f64 {
+        self.apply(point).z
+    }
+
+    /// The direction in the world of a direction in the camera's frame.
+    pub fn outwards(&self, direction: &Vector3<f64>) -> Vector3<f64> {
+        self.rotation.transpose() * direction
+    }
+}
+
+/// The rotation about an axis by its length in radians (Rodrigues).
+pub fn rotation_of(axis_angle: &Vector3<f64>) -> Matrix3<f64> {
+    let angle = axis_angle.norm();
+    let cross = axis_angle.cross_matrix();
+    // sin(a) / a and (1 - cos(a)) / a², whose series do not divide by zero.
+    let (a, b) = if angle < 1e-4 {
+        let s = angle * angle;
+        (1.0 - s / 6.0, 0.5 - s / 24.0)
+    } else {
+        let half = libm::sin(angle / 2.0);
+        (libm::sin(angle) / angle, 2.0 * half * half / (angle * angle))
+    };
+    Matrix3::identity() + a * cross + b * cross * cross
+}
+
+/// The inverse of [`rotation_of`]: an axis whose length is at most π.
+pub fn axis_angle_of(rotation: &Matrix3<f64>) -> Vector3<f64> {
+    let [w, x, y, z] = quaternion_of(rotation);
+    let axis = Vector3::new(x, y, z);
+    let length = axis.norm();
+    if length < 1e-300 { Vector3::zeros() } else { axis * (2.0 * libm::atan2(length, w) / length) }
+}
+
+/// The unit quaternion (w, x, y, z) of a rotation, with w >= 0. Shepperd's choice of the largest component.
+pub fn quaternion_of(r: &Matrix3<f64>) -> [f64; 4] {
+    let (a, b, c) = (r[(0, 0)], r[(1, 1)], r[(2, 2)]);
+    let squares = [1.0 + a + b + c, 1.0 + a - b - c, 1.0 - a + b - c, 1.0 - a - b + c];
+    let largest = (1..4).fold(0, |best, i| if squares[i] > squares[best] { i } else { best });
+    let [yx, zx, zy] = [r[(1, 0)] - r[(0, 1)], r[(0, 2)] - r[(2, 0)], r[(2, 1)] - r[(1, 2)]];
+    let [xy, xz, yz] = [r[(1, 0)] + r[(0, 1)], r[(0, 2)] + r[(2, 0)], r[(2, 1)] + r[(1, 2)]];
+    let twice = squares[largest].sqrt();
+    let d = 0.5 / twice;
+    let h = twice / 2.0;
+    let q = match largest {
+        0 => [h, zy * d, zx * d, yx * d],
+        1 => [zy * d, h, xy * d, xz * d],
+        2 => [zx * d, xy * d, h, yz * d],
+        _ => [yx * d, xz * d, yz * d, h],
+    };
+    let norm = q.iter().map(|c| c * c).sum::<f64>().sqrt() * if q[0] < 0.0 { -1.0 } else { 1.0 };
+    q.map(|c| c / norm)
+}
+
+/// The rotation of a quaternion (w, x, y, z), which need not have length 1.
+pub fn rotation_of_quaternion([w, x, y, z]: [f64; 4]) -> Matrix3<f64> {
+    let q = nalgebra::Quaternion::new(w, x, y, z);
+    *Rotation3::from(nalgebra::UnitQuaternion::from_quaternion(q)).matrix()
+}
+
+/// The rotation nearest to a matrix (Frobenius norm), by its singular values.
+pub fn nearest_rotation(matrix: &Matrix3<f64>) -> Matrix3<f64> {
+    let svd = matrix.svd(true, true);
+    let (Some(u), Some(v)) = (svd.u, svd.v_t) else { return Matrix3::identity() };
+    let sign = if (u * v).determinant() < 0.0 { -1.0 } else { 1.0 };
+    u * Matrix3::from_diagonal(&Vector3::new(1.0, 1.0, sign)) * v
+}
+
+/// A photograph.
+#[derive(Debug, Clone, PartialEq)]
+pub struct View {
+    /// The photograph's file, or a number where a format has no names.
+    pub name: String,
+    /// Its lens, by number; several photographs may share one.
+    pub lens: usize,
+    /// Where it was taken; none where that is not known (yet).
+    pub pose: Option<Pose>,
+}
+
+/// Where a point is seen in a photograph.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Observation {
+    /// The photograph, by number.
+    pub view: usize,
+    /// The feature's number in its photograph.
+    pub feature: usize,
+    /// Pixels from the upper left corner.
+    pub pixel: Vector2<f64>,
+}
+
+/// A point of the scene.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Point {
+    /// Where it is in the world.
+    pub position: Vector3<f64>,
+    /// Red, green, blue.
+    pub color: [u8; 3],
+    /// Where it is seen, in the order of the photographs.
+    pub track: Vec<Observation>,
+}
+
+/// Cameras and points.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Reconstruction {
+    /// The lenses, each of one or more photographs.
+    pub lenses: Vec<Lens>,
+    /// The photographs, also those whose pose is not known.
+    pub views: Vec<View>,
+    /// The points.
+    pub points: Vec<Point>,
+}
+
+/// How well cameras and points agree with the photographs.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Fit {
+    /// Observations by photographs whose pose is known.
+    pub observations: usize,
+    /// Half the sum of the squares of all residuals' components, in square pixels.
+    pub cost: f64,
+    /// The root of the mean square of a residual's length, in pixels.
+    pub rms: f64,
+    /// The longest residual, in pixels.
+    pub max: f64,
+}
+
+impl Reconstruction {
+    /// The pixel at which a photograph should see a point, less where it does; none where its pose is not known.
+    pub fn residual(&self, position: &Vector3<f64>, seen: &Observation) -> Option<Vector2<f64>> {
+        let view = &self.views[seen.view];
+        let pose = view.pose.as_ref()?;
+        Some(self.lenses[view.lens].project(&pose.apply(position)) - seen.pixel)
+    }
+
+    /// How well it all agrees.
+    pub fn fit(&self) -> Fit {
+        let squares = self.points.iter().flat_map(|point| {
+            point.track.iter().filter_map(|seen| Some(self.residual(&point.position, seen)?.norm_squared()))
+        });
+        let mut fit = Fit::default();
+        for square in squares {
+            fit.observations += 1;
+            fit.cost += square / 2.0;
+            fit.max = fit.max.max(square.sqrt());
+        }
+        fit.rms = (2.0 * fit.cost / fit.observations.max(1) as f64).sqrt();
+        fit
+    }
+
+    /// How many photographs have a pose.
+    pub fn registered(&self) -> usize {
+        self.views.iter().filter(|view| view.pose.is_some()).count()
+    }
+
+    /// How many photographs see a point, on average.
+    pub fn track_length(&self) -> f64 {
+        self.points.iter().map(|point| point.track.len()).sum::<usize>() as f64 / self.points.len().max(1) as f64
+    }
+
+    /// The largest angle in radians between two rays to a point.
+    pub fn angle(&self, point: &Point) -> f64 {
+        let toward = |seen: &Observation| {
+            let center = self.views[seen.view].pose.as_ref()?.center();
+            Some((point.position - center).normalize())
+        };
+        let rays: Vec<Vector3<f64>> = point.track.iter().filter_map(toward).collect();
+        let pairs = rays.iter().enumerate().flat_map(|(i, a)| rays[i + 1..].iter().map(move |b| (a, b)));
+        // The angle by its half's chord keeps its precision where it is small.
+        pairs.map(|(a, b)| 2.0 * libm::asin(((a - b).norm() / 2.0).min(1.0))).fold(0.0, f64::max)
+    }
+}

@@ -1,0 +1,161 @@
+//! Photographs as files: pixels, and what the camera wrote beside them.
+
+use crate::Error;
+use crate::feature::Gray;
+use image::{DynamicImage, ImageReader, Limits, RgbImage};
+use std::io::Cursor;
+
+/// A photograph's longer side must not have more pixels than this.
+const LONGEST: u32 = 20_000;
+
+/// A photograph.
+pub struct Photo {
+    /// Its file's name.
+    pub name: String,
+    /// Its pixels as they lie in the file, whatever the camera says of its being turned.
+    pub pixels: RgbImage,
+    /// What the camera wrote.
+    pub exif: Exif,
+}
+
+/// What a camera writes beside the pixels, as far as it tells of the lens.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Exif {
+    /// Maker and model.
+    pub camera: String,
+    /// The focal length in pixels, and how it follows from what is written.
+    pub focal: Option<(f64, String)>,
+    /// What of it cannot be true.
+    pub doubt: Option<String>,
+}
+
+fn reader<'b>(file: &str, bytes: &'b [u8]) -> Result<ImageReader<Cursor<&'b [u8]>>, Error> {
+    let reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format();
+    let mut reader = reader.map_err(|error| Error::of(file, error.to_string()))?;
+    if reader.format().is_none() {
+        return Err(Error::of(file, "this is neither a JPEG nor a PNG"));
+    }
+    let mut limits = Limits::default();
+    limits.max_alloc = Some(2 << 30);
+    (limits.max_image_width, limits.max_image_height) = (Some(LONGEST), Some(LONGEST));
+    reader.limits(limits);
+    Ok(reader)
+}
+
+/// Width and height of a photograph.
+pub fn size(file: &str, bytes: &[u8]) -> Result<[u32; 2], Error> {
+    let size = reader(file, bytes)?.into_dimensions();
+    let (width, height) = size.map_err(|error| Error::of(file, format!("cannot be read as a picture: {error}")))?;
+    Ok([width, height])
+}
+
+/// Reads a photograph.
+pub fn read(name: &str, bytes: &[u8]) -> Result<Photo, Error> {
+    let decoded: DynamicImage = reader(name, bytes)?
+        .decode()
+        .map_err(|error| Error::of(name, format!("cannot be read as a picture: {error}")))?;
+    let pixels = decoded.into_rgb8();
+    if pixels.width().min(pixels.height()) < 16 {
+        return Err(Error::of(name, "the picture is too small: both sides need 16 pixels or more"));
+    }
+    let exif = exif(bytes, [pixels.width(), pixels.height()]);
+    Ok(Photo { name: name.to_string(), pixels, exif })
+}
+
+impl Photo {
+    /// Width and height.
+    pub fn size(&self) -> [u32; 2] {
+        [self.pixels.width(), self.pixels.height()]
+    }
+
+    /// Its brightness from 0 to 1, with a longer side of at most so many pixels, and how many pixels one of these is.
+    pub fn gray(&self, side: u32) -> (Gray, [f64; 2]) {
+        let [width, height] = self.size();
+        let scale = f64::from(side) / f64::from(width.max(height));
+        let smaller;
+        let pixels = if scale < 1.0 {
+            let to = |side: u32| ((f64::from(side) * scale).round() as u32).max(16);
+            smaller =
+                image::imageops::resize(&self.pixels, to(width), to(height), image::imageops::FilterType::Triangle);
+            &smaller
+        } else {
+            &self.pixels
+        };
+        let luma = |p: &image::Rgb<u8>| {
+            (0.299 * f32::from(p.0[0]) + 0.587 * f32::from(p.0[1]) + 0.114 * f32::from(p.0[2])) / 255.0
+        };
+        let (w, h) = pixels.dimensions();
+        let gray = Gray { width: w as usize, height: h as usize, values: pixels.pixels().map(luma).collect() };
+        (gray, [f64::from(width) / f64::from(w), f64::from(height) / f64::from(h)])
+    }
+
+    /// The colour at a place.
+    pub fn color(&self, x: f64, y: f64) -> [u8; 3] {
+        let [width, height] = self.size();
+        self.pixels.get_pixel((x.max(0.0) as u32).min(width - 1), (y.max(0.0) as u32).min(height - 1)).0
+    }
+}
+
+/// What of EXIF tells of the lens. What is broken is as if it were not there: photographs without it are usual.
+fn exif(bytes: &[u8], size: [u32; 2]) -> Exif {
+    use exif::Tag;
+    let mut found = Exif::default();
+    let Ok(exif) = exif::Reader::new().read_from_container(&mut Cursor::new(bytes)) else { return found };
+    let field = |tag: Tag| exif.get_field(tag, exif::In::PRIMARY);
+    let text = |tag: Tag| match field(tag).map(|field| &field.value) {
+        Some(exif::Value::Ascii(parts)) => {
+            String::from_utf8_lossy(parts.first().map_or(&[][..], |part| part)).trim_matches(['\0', ' ']).to_string()
+        }
+        _ => String::new(),
+    };
+    found.camera = format!("{} {}", text(Tag::Make), text(Tag::Model)).trim().to_string();
+    let number = |tag: Tag| -> Option<f64> {
+        let value = match &field(tag)?.value {
+            exif::Value::Rational(values) => values.first()?.to_f64(),
+            value => f64::from(value.get_uint(0)?),
+        };
+        Some(value).filter(|value| value.is_finite() && *value > 0.0)
+    };
+    let [width, height] = size.map(f64::from);
+    let diagonal = |a: f64, b: f64| (a * a + b * b).sqrt();
+    let longer = width.max(height);
+    let from_film = || {
+        // Equivalence is by the diagonal of 36 x 24 mm (CIPA DC-X005).
+        let film = number(Tag::FocalLengthIn35mmFilm)?;
+        let focal = film * diagonal(width, height) / diagonal(36.0, 24.0);
+        Some((focal, format!("{film} mm on 35 mm film")))
+    };
+    let from_sensor = || {
+        let unit = match field(Tag::FocalPlaneResolutionUnit).and_then(|field| field.value.get_uint(0)) {
+            Some(3) => 10.0,
+            Some(4) => 1.0,
+            _ => 25.4,
+        };
+        let (length, per_unit) = (number(Tag::FocalLength)?, number(Tag::FocalPlaneXResolution)?);
+        let taken = number(Tag::PixelXDimension).unwrap_or(width).max(number(Tag::PixelYDimension).unwrap_or(height));
+        Some((length * per_unit / unit * longer / taken, format!("{length} mm and the sensor's resolution")))
+    };
+    let plausible = |(focal, _): &(f64, String)| (0.25..=20.0).contains(&(focal / longer));
+    let all: Vec<_> = [from_sensor(), from_film()].into_iter().flatten().collect();
+    found.focal = all.iter().find(|focal| plausible(focal)).cloned();
+    if let (None, Some((focal, how))) = (&found.focal, all.first()) {
+        found.doubt = Some(format!("EXIF's focal length, {focal:.0} pixels by {how}, cannot be true"));
+    }
+    found
+}
+
+impl Photo {
+    /// The photograph as a JPEG whose longer side has at most so many pixels.
+    pub fn small(&self, side: u32) -> Result<Vec<u8>, Error> {
+        let longer = self.pixels.width().max(self.pixels.height());
+        let to = |pixels: u32| (pixels * side).div_ceil(longer).max(1);
+        let filter = image::imageops::FilterType::Triangle;
+        let smaller = (longer > side)
+            .then(|| image::imageops::resize(&self.pixels, to(self.pixels.width()), to(self.pixels.height()), filter));
+        let mut bytes = Vec::new();
+        let encoder = image::codecs::jpeg::JpegEncoder::new_with_quality(&mut bytes, 80);
+        let pixels = smaller.as_ref().unwrap_or(&self.pixels);
+        pixels.write_with_encoder(encoder).map_err(|error| Error::of(&self.name, error.to_string()))?;
+        Ok(bytes)
+    }
+}

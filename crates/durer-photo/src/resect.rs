@@ -1,0 +1,268 @@
+//! The camera of one photograph: from points of the world that it shows, or from lines that are parallel in the world.
+
+use crate::adjust::{Loss, Options};
+use crate::geometry::camera::{linear, spread, take_apart};
+use crate::solve::{pose_of, refined_pose};
+use crate::{Error, Lens, Pose};
+use nalgebra::{DMatrix, Matrix3, Vector2, Vector3};
+
+/// A point of the world and its pixel.
+pub type Pair = (Vector3<f64>, Vector2<f64>);
+
+/// What is known of the lens, and how false points are told.
+#[derive(Debug, Clone)]
+pub struct Known {
+    /// Pixels across and down.
+    pub size: [u32; 2],
+    /// The focal length in pixels, if it is known.
+    pub focal: Option<f64>,
+    /// Whether k1 and k2 are looked for.
+    pub distortion: bool,
+    /// The longest residual in pixels of a point that is true.
+    pub threshold: f64,
+}
+
+/// A camera that was found.
+#[derive(Debug, Clone)]
+pub struct Resection {
+    /// Its lens.
+    pub lens: Lens,
+    /// Its pose.
+    pub pose: Pose,
+    /// Which points agree.
+    pub inliers: Vec<usize>,
+    /// The root of the mean square of these points' residuals, in pixels.
+    pub rms: f64,
+    /// The ratio of the least to the largest singular value of the parameters' derivatives, each scaled to the same length.
+    pub conditioning: f64,
+}
+
+/// The least spread of points in the third direction, as a share of that in the first.
+const FLAT: f64 = 1e-3;
+/// The least conditioning.
+const CONDITIONED: f64 = 1e-6;
+
+/// Finds the camera. The principal point is the middle, pixels are square.
+///
+/// # Errors
+///
+/// Says why the points tell no camera: too few, in a line, in a plane without a known focal length, or none that they agree on.
+pub fn camera(pairs: &[Pair], known: &Known) -> Result<Resection, Error> {
+    let points: Vec<Vector3<f64>> = pairs.iter().map(|pair| pair.0).collect();
+    let least = if known.focal.is_some() { 4 } else { 6 };
+    if pairs.len() < least {
+        let found = pairs.len();
+        let why = match known.focal {
+            Some(_) => "three points fit up to four cameras, and the fourth decides",
+            None => "the direct linear transform has eleven unknowns, and a point gives two equations",
+        };
+        let what = if known.focal.is_some() { "known" } else { "unknown" };
+        return Err(Error::new(format!(
+            "{least} points or more are needed where the focal length is {what}, and there are {found}: {why}"
+        )));
+    }
+    let [first, second, third] = spread(&points);
+    if second <= FLAT * first {
+        return Err(Error::new("these points lie in a line: the camera could be anywhere around it"));
+    }
+    let flat = third <= FLAT * first;
+    if flat && known.focal.is_none() {
+        return Err(Error::new(
+            "these points lie in a plane: DLT has no unique answer. Name the focal length, or points outside the plane",
+        ));
+    }
+    let side = f64::from(known.size[0].max(known.size[1]));
+    let candidates = match known.focal {
+        Some(focal) => vec![focal],
+        None => {
+            let pixels: Vec<Vector2<f64>> = pairs.iter().map(|pair| pair.1).collect();
+            let transform = linear(&points, &pixels).and_then(|found| take_apart(&found.matrix));
+            let focal = transform.map(|(k, ..)| (k[(0, 0)] + k[(1, 1)]) / 2.0);
+            let usual = [0.5, 0.7, 1.0, 1.4, 2.0, 2.8, 4.0].map(|factor| factor * side);
+            focal.filter(|f| (0.2..20.0).contains(&(f / side))).into_iter().chain(usual).collect()
+        }
+    };
+    let mut best: Option<Resection> = None;
+    for focal in candidates {
+        let lens = Lens::new(known.size, focal);
+        // A focal length that is nearly right leaves points nearly right.
+        let wide = if known.focal.is_some() { known.threshold } else { known.threshold.max(0.02 * side) };
+        let Some(found) = from_lens(pairs, lens, known, wide) else { continue };
+        let better = |best: &Resection| (found.inliers.len(), -found.rms) > (best.inliers.len(), -best.rms);
+        if best.as_ref().is_none_or(better) {
+            best = Some(found);
+        }
+    }
+    let best = best.filter(|best| best.inliers.len() >= least.max(pairs.len() / 2));
+    let best = best.ok_or_else(|| {
+        let limit = known.threshold;
+        Error::new(format!("no camera sees these points at these pixels: fewer than half agree within {limit} pixels"))
+    })?;
+    if best.conditioning < CONDITIONED {
+        return Err(Error::new(
+            "these points do not determine the camera: another focal length and distance would do nearly as well",
+        ));
+    }
+    Ok(best)
+}
+
+/// The camera from a focal length to begin with.
+fn from_lens(pairs: &[Pair], lens: Lens, known: &Known, wide: f64) -> Option<Resection> {
+    let (pose, inliers) = pose_of(pairs, &lens, wide, 0).or_else(|| {
+        // Four points alone: RANSAC wants one more than makes a model.
+        let all: Vec<usize> = (0..pairs.len()).collect();
+        let directions: Option<Vec<_>> = pairs[..3].iter().map(|pair| lens.unproject(&pair.1)).collect();
+        let [a, b, c] = directions?.try_into().ok()?;
+        let poses = crate::geometry::p3p::p3p(&[pairs[0].0, pairs[1].0, pairs[2].0], &[a, b, c]).into_iter();
+        let sum = |pose: &Pose| pairs.iter().map(|pair| residual(&lens, pose, pair)).sum::<f64>();
+        let best = poses.reduce(|a, b| if sum(&b) < sum(&a) { b } else { a })?;
+        (pairs.len() == 4).then_some((best, all))
+    })?;
+    let options = Options {
+        loss: Loss::Huber(known.threshold),
+        focal: known.focal.is_none(),
+        radial: false,
+        tolerance: 1e-12,
+        ..Options::default()
+    };
+    let (mut pose, mut lens, mut inliers) = (pose, lens, inliers);
+    for round in 0..4 {
+        let good: Vec<Pair> = inliers.iter().map(|i| pairs[*i]).collect();
+        let radial = known.distortion && round > 0 && good.len() >= 8;
+        (pose, lens) = refined_pose(&good, &lens, &pose, &Options { radial, ..options })?;
+        inliers = (0..pairs.len()).filter(|i| residual(&lens, &pose, &pairs[*i]) <= known.threshold).collect();
+        if inliers.len() < 4 {
+            return None;
+        }
+    }
+    let side = lens.longer_side();
+    if !(0.05..100.0).contains(&(lens.focal / side)) {
+        return None;
+    }
+    let square = inliers.iter().map(|i| residual(&lens, &pose, &pairs[*i])).map(|r| r * r).sum::<f64>();
+    let rms = (square / inliers.len() as f64).sqrt();
+    let conditioning = conditioning(&lens, &pose, pairs, &inliers, known.focal.is_none());
+    Some(Resection { lens, pose, inliers, rms, conditioning })
+}
+
+fn residual(lens: &Lens, pose: &Pose, (point, pixel): &Pair) -> f64 {
+    let p = pose.apply(point);
+    if p.z > 0.0 { (lens.project(&p) - pixel).norm() } else { f64::INFINITY }
+}
+
+/// See [`Resection::conditioning`].
+fn conditioning(lens: &Lens, pose: &Pose, pairs: &[Pair], inliers: &[usize], focal: bool) -> f64 {
+    let columns = if focal { 7 } else { 6 };
+    let mut rows = DMatrix::zeros(2 * inliers.len().max(4), columns);
+    for (k, i) in inliers.iter().enumerate() {
+        let by_camera = crate::adjust::camera_jacobian(lens, pose, &pairs[*i].0);
+        rows.view_mut((2 * k, 0), (2, columns)).copy_from(&by_camera.columns(0, columns));
+    }
+    for mut column in rows.column_iter_mut() {
+        let norm = column.norm();
+        column /= if norm > 0.0 { norm } else { 1.0 };
+    }
+    let (_, values) = crate::geometry::null_vector(&rows);
+    values[columns - 1] / values[0]
+}
+
+/// A direction along an axis of the world.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Axis {
+    /// 0, 1, 2 for x, y, z.
+    pub index: usize,
+    /// Whether it points to smaller values.
+    pub negative: bool,
+}
+
+impl Axis {
+    /// By its name: `x`, `-x` and so on, or as fSpy has it, `xPositive`, `xNegative`.
+    pub fn parse(name: &str) -> Option<Self> {
+        let (bare, negative) = match name {
+            name if name.ends_with("Negative") => (name.trim_end_matches("Negative"), true),
+            name if name.starts_with('-') => (&name[1..], true),
+            name => (name.trim_end_matches("Positive").trim_start_matches('+'), false),
+        };
+        Some(Axis { index: ["x", "y", "z"].iter().position(|axis| *axis == bare)?, negative })
+    }
+
+    fn direction(self) -> Vector3<f64> {
+        Vector3::ith(self.index, if self.negative { -1.0 } else { 1.0 })
+    }
+}
+
+/// Lines of a photograph that are parallel in the world, in two directions at right angles to each other.
+#[derive(Debug, Clone)]
+pub struct VanishingLines {
+    /// Pixels across and down.
+    pub size: [u32; 2],
+    /// The principal point in pixels.
+    pub center: Vector2<f64>,
+    /// The pixel of the world's origin.
+    pub origin: Vector2<f64>,
+    /// The axis of the world that leads towards each vanishing point.
+    pub axes: [Axis; 2],
+    /// For each, lines by two of their pixels.
+    pub lines: [Vec<[Vector2<f64>; 2]>; 2],
+}
+
+/// Where lines meet: the homogeneous point whose distances from all are least.
+fn meeting(lines: &[[Vector2<f64>; 2]], size: f64) -> Option<Vector3<f64>> {
+    let homogeneous = |p: &Vector2<f64>| Vector3::new(p.x / size, p.y / size, 1.0);
+    let line = |ends: &[Vector2<f64>; 2]| homogeneous(&ends[0]).cross(&homogeneous(&ends[1])).try_normalize(1e-12);
+    let rows: Vec<Vector3<f64>> = lines.iter().map(line).collect::<Option<_>>()?;
+    if rows.len() < 2 {
+        return None;
+    }
+    let (v, values) = crate::geometry::null_vector(&DMatrix::from_fn(rows.len(), 3, |i, j| rows[i][j]));
+    (values[1] > 1e-9 * values[0]).then(|| Vector3::new(v[0] * size, v[1] * size, v[2]))
+}
+
+/// The camera whose vanishing points are v and w: f² = -(v - c)·(w - c), and the directions (v - c, f), (w - c, f) are the axes. The
+/// origin is so far away; photographs do not tell their scale.
+///
+/// Source: Hartley, Zisserman, *Multiple View Geometry in Computer Vision*, 2nd edition, 2004, section 8.6; Guillou and others, *Using
+/// Vanishing Points for Camera Calibration and Coarse 3D Reconstruction from a Single Image*, The Visual Computer 16, 2000.
+///
+/// # Errors
+///
+/// Says why the lines tell no camera.
+pub fn from_vanishing_lines(known: &VanishingLines, distance: f64) -> Result<(Lens, Pose), Error> {
+    let size = f64::from(known.size[0].max(known.size[1]));
+    let [one, two] = known.axes;
+    if one.index == two.index {
+        return Err(Error::new("both sets of lines are of the same axis: they must be at right angles in the world"));
+    }
+    let mut points = Vec::new();
+    for lines in &known.lines {
+        let v = meeting(lines, size).ok_or_else(|| {
+            Error::new(
+                "a vanishing point needs two lines or more that do not lie on each other, each by two different pixels",
+            )
+        })?;
+        if v.z.abs() * 1e4 * size < v.xy().norm() {
+            return Err(Error::new(
+                "lines that are parallel in the world are parallel in the picture too: their vanishing point is infinitely far, and \
+                 the focal length has no unique answer",
+            ));
+        }
+        points.push(v.xy() / v.z - known.center);
+    }
+    let square = -points[0].dot(&points[1]);
+    if square <= 1e-6 * size * size {
+        return Err(Error::new(
+            "no camera has these vanishing points: seen from the principal point they must be more than a right angle apart",
+        ));
+    }
+    let focal = square.sqrt();
+    let lens = Lens { center: known.center.into(), ..Lens::new(known.size, focal) };
+    let seen = |p: &Vector2<f64>| Vector3::new(p.x, p.y, focal).normalize();
+    let (d1, d2) = (seen(&points[0]), seen(&points[1]));
+    let (e1, e2) = (one.direction(), two.direction());
+    let camera = Matrix3::from_columns(&[d1, d2, d1.cross(&d2)]);
+    let world = Matrix3::from_columns(&[e1, e2, e1.cross(&e2)]);
+    let rotation = camera * world.transpose();
+    let origin = known.origin - known.center;
+    let translation = distance * Vector3::new(origin.x / focal, origin.y / focal, 1.0).normalize();
+    Ok((lens, Pose { rotation, translation }))
+}

@@ -1,0 +1,78 @@
+//! The two photographs that begin.
+
+use super::Solver;
+use crate::geometry::essential::{Directions, pose_before};
+use crate::geometry::ransac::{Search, ransac};
+use crate::geometry::triangulate::two_views;
+use crate::matching::{Link, Matches};
+use crate::{Error, Pose};
+use nalgebra::Vector2;
+
+/// Links that are tried: those with most matches.
+const TRIED: usize = 30;
+
+impl Solver<'_> {
+    /// Chooses two photographs that see many points from clearly different places, and sets their poses and points.
+    pub(super) fn initial(&mut self, matches: &Matches) -> Result<[usize; 2], Error> {
+        let mut links: Vec<&Link> = matches.links.iter().collect();
+        links.sort_by(|a, b| b.matches.cmp(&a.matches).then(a.pictures.cmp(&b.pictures)));
+        let mut best: Option<(f64, [usize; 2], Pose)> = None;
+        let mut turned = 0;
+        for link in links.into_iter().take(TRIED) {
+            let Some((pose, count, angle)) = self.relative(link.pictures) else { continue };
+            if angle < self.options.angle.to_radians() {
+                turned += 1;
+                continue;
+            }
+            // Beyond ten degrees, more is not better; a plane leaves the lens open.
+            let score = count as f64 * (angle.to_degrees() / 10.0).min(1.0) * (1.2 - link.planar);
+            if best.as_ref().is_none_or(|best| score > best.0) {
+                best = Some((score, link.pictures, pose));
+            }
+        }
+        let why = if turned > 0 {
+            "the photographs were taken from one place: the camera turned and did not move, and so nothing tells depth"
+        } else {
+            "no two photographs share enough points that agree on one geometry"
+        };
+        let (_, [a, b], pose) = best.ok_or_else(|| Error::new(why))?;
+        self.views[a].pose = Some(Pose::identity());
+        self.views[b].pose = Some(pose);
+        self.extend();
+        self.settle(2);
+        let count = self.tracks.iter().filter(|track| track.position.is_some()).count();
+        if count < self.options.least {
+            return Err(Error::new("no two photographs share enough points that agree on one geometry"));
+        }
+        Ok([a, b])
+    }
+
+    /// The second photograph's pose in the first one's frame, how many points fit it, and the median angle of the rays to them.
+    fn relative(&self, [a, b]: [usize; 2]) -> Option<(Pose, usize, f64)> {
+        let lenses = [a, b].map(|view| self.lenses[self.views[view].lens]);
+        let mut pairs = Vec::new();
+        for (t, k) in &self.of_view[a] {
+            let track = &self.tracks[*t];
+            let Some(other) = track.seen.iter().find(|seen| seen.view == b) else { continue };
+            let direction = |lens: usize, pixel: &Vector2<f64>| Some(lenses[lens].unproject(pixel)?.xy());
+            pairs.extend(direction(0, &track.seen[*k].pixel).zip(direction(1, &other.pixel)));
+        }
+        let threshold = (self.threshold(a) / lenses[0].focal).max(self.threshold(b) / lenses[1].focal);
+        let seed = self.options.seed ^ 0x5eed ^ ((a as u64) << 32 | b as u64);
+        let (e, inliers) = ransac(&Directions(&pairs), &Search { threshold, samples: 2000, seed })?;
+        let inliers: Vec<_> = inliers.into_iter().map(|i| pairs[i]).collect();
+        let (pose, before) = pose_before(&e, &inliers)?;
+        if before < self.options.least || before * 2 < inliers.len() {
+            return None;
+        }
+        let center = pose.center();
+        let angle = |pair: &(Vector2<f64>, Vector2<f64>)| {
+            let point = two_views(&pose, pair);
+            let (one, two) = (point.try_normalize(1e-12)?, (point - center).try_normalize(1e-12)?);
+            Some(2.0 * libm::asin(((one - two).norm() / 2.0).min(1.0))).filter(|a| a.is_finite())
+        };
+        let mut angles: Vec<f64> = inliers.iter().filter_map(angle).collect();
+        angles.sort_by(f64::total_cmp);
+        Some((pose, before, *angles.get(angles.len() / 2)?))
+    }
+}

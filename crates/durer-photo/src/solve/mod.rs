@@ -1,0 +1,288 @@
+//! From tracks to cameras and points, photograph by photograph.
+//!
+//! Two photographs begin ([`initial`]); the photograph that sees most of the points that are known comes next ([`register`]); what
+//! it adds is triangulated ([`structure`]), and all is adjusted again. What does not fit is left out on the way.
+//!
+//! Source: Snavely, Seitz, Szeliski, *Photo Tourism: Exploring Photo Collections in 3D*, SIGGRAPH 2006, section 4.2.
+
+mod initial;
+mod register;
+mod structure;
+
+pub use register::{pose_of, refined_pose};
+
+use crate::adjust::{self, Loss, adjust};
+use crate::geometry::align::Similarity;
+use crate::matching::{GUESS, Matches};
+use crate::{Error, Lens, Observation, Point, Reconstruction, View};
+use nalgebra::{Matrix3, Vector2, Vector3};
+
+/// How it is solved.
+#[derive(Debug, Clone)]
+pub struct Options {
+    /// Hold focal lengths.
+    pub fixed_focal: bool,
+    /// Hold k1 and k2 at 0.
+    pub no_distortion: bool,
+    /// Each photograph has a lens of its own.
+    pub own_lenses: bool,
+    /// The residual in pixels beyond which an observation is left out, for photographs of up to 1600 pixels; more for larger ones.
+    pub threshold: f64,
+    /// The least angle in degrees between the rays to a point.
+    pub angle: f64,
+    /// Points that a photograph must see to be registered.
+    pub least: usize,
+    /// Of the random numbers.
+    pub seed: u64,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        let (fixed_focal, no_distortion, own_lenses) = (false, false, false);
+        Options { fixed_focal, no_distortion, own_lenses, threshold: 2.5, angle: 1.5, least: 15, seed: 0 }
+    }
+}
+
+/// A track on its way to a point.
+struct Growing {
+    color: [u8; 3],
+    seen: Vec<Observation>,
+    /// Which observations fit.
+    fits: Vec<bool>,
+    position: Option<Vector3<f64>>,
+}
+
+/// Everything while it grows.
+struct Solver<'o> {
+    options: &'o Options,
+    views: Vec<View>,
+    lenses: Vec<Lens>,
+    /// The lenses as they were, for those that go astray.
+    first: Vec<Lens>,
+    tracks: Vec<Growing>,
+    /// For each photograph its tracks, and which observation of them it is.
+    of_view: Vec<Vec<(usize, usize)>>,
+}
+
+/// What was solved.
+pub struct Solved {
+    /// Cameras and points.
+    pub all: Reconstruction,
+    /// What is worth telling: photographs left out and why, focal lengths far from EXIF's.
+    pub notes: Vec<String>,
+}
+
+/// Solves. `progress` hears how many photographs are registered.
+///
+/// A focal length that is far off, as EXIF's is of photographs that were made smaller, lets few photographs fit or moves far; it is
+/// solved again then, from the focal length that came out or from a usual one, and the better of both counts.
+///
+/// # Errors
+///
+/// Says why if no two photographs can begin.
+pub fn solve(matches: &Matches, options: &Options, progress: &dyn Fn(usize)) -> Result<Solved, Error> {
+    let first = attempt(matches, matches, options, progress);
+    let usual = |size: [u32; 2]| 1.2 * f64::from(size[0].max(size[1]));
+    let mut again = matches.clone();
+    for (i, picture) in again.pictures.iter_mut().enumerate() {
+        picture.focal = match &first {
+            Ok(solved) if moved(solved.focal(i) / picture.focal) => solved.focal(i),
+            _ if moved(usual(picture.size) / picture.focal) => usual(picture.size),
+            _ => picture.focal,
+        };
+    }
+    let whole = first.as_ref().is_ok_and(|solved| {
+        let near = |(i, picture): (usize, &crate::matching::Picture)| !moved(solved.focal(i) / picture.focal);
+        solved.all.registered() == solved.all.views.len() && matches.pictures.iter().enumerate().all(near)
+    });
+    if whole || options.fixed_focal || again == *matches {
+        return first;
+    }
+    let second = attempt(&again, matches, options, progress);
+    let worth = |solved: &Solved| (solved.all.registered(), solved.all.fit().observations);
+    match (first, second) {
+        (Ok(one), Ok(two)) => Ok(if worth(&two) > worth(&one) { two } else { one }),
+        (one, two) => one.or(two),
+    }
+}
+
+/// Whether a focal length is another one.
+fn moved(ratio: f64) -> bool {
+    !(0.75..=1.33).contains(&ratio)
+}
+
+impl Solved {
+    /// The focal length of a photograph's lens.
+    fn focal(&self, view: usize) -> f64 {
+        self.all.lenses[self.all.views[view].lens].focal
+    }
+}
+
+/// Solves once; what is told goes by what was written with the photographs.
+fn attempt(matches: &Matches, written: &Matches, options: &Options, progress: &dyn Fn(usize)) -> Result<Solved, Error> {
+    let mut solver = Solver::new(matches, options);
+    let mut notes = Vec::new();
+    let first = solver.initial(matches)?.map(|i| &matches.pictures[i].name);
+    notes.push(format!("began with {} and {}", first[0], first[1]));
+    let mut refused = vec![false; solver.views.len()];
+    let mut last_adjusted = 2;
+    while let Some(view) = solver.next(&refused) {
+        if !solver.register(view) {
+            refused[view] = true;
+            continue;
+        }
+        // Others may fit now.
+        refused.fill(false);
+        solver.extend();
+        let known = solver.registered();
+        progress(known);
+        // Of many photographs, one more changes little.
+        if known > last_adjusted + last_adjusted / 10 {
+            solver.adjust(false);
+            solver.drop_misfits();
+            last_adjusted = known;
+        }
+    }
+    solver.settle(6);
+    for (i, view) in solver.views.iter().enumerate().filter(|(_, view)| view.pose.is_none()) {
+        let why = match matches.links.iter().any(|link| link.pictures.contains(&i)) {
+            false => "it shows nothing that another photograph shows",
+            true => "too few of the points that are known agree on where it was taken",
+        };
+        notes.push(format!("{} is left out: {why}", view.name));
+    }
+    let mut told = Vec::new();
+    for (view, picture) in solver.views.iter().zip(&written.pictures).filter(|(view, _)| view.pose.is_some()) {
+        let focal = solver.lenses[view.lens].focal;
+        if moved(focal / picture.focal) && !picture.focal_from.starts_with(GUESS) && !told.contains(&view.lens) {
+            told.push(view.lens);
+            let (name, wrong) = (&picture.name, picture.focal);
+            notes.push(format!(
+                "{name}: the focal length is {focal:.0} pixels, and EXIF says {wrong:.0}: EXIF is wrong"
+            ));
+        }
+    }
+    let mut all = solver.reconstruction(true).0;
+    upright(&mut all);
+    Ok(Solved { all, notes })
+}
+
+impl<'o> Solver<'o> {
+    fn new(matches: &Matches, options: &'o Options) -> Self {
+        let mut lenses = matches.lenses();
+        let lens = |i: usize| if options.own_lenses { i } else { matches.pictures[i].lens };
+        if options.own_lenses {
+            lenses = matches.pictures.iter().map(|picture| Lens::new(picture.size, picture.focal)).collect();
+        }
+        let view = |(i, name): (usize, String)| View { name, lens: lens(i), pose: None };
+        let views: Vec<View> = matches.pictures.iter().map(|p| p.name.clone()).enumerate().map(view).collect();
+        let mut of_view = vec![Vec::new(); views.len()];
+        let mut tracks = Vec::new();
+        for (t, track) in matches.tracks.iter().enumerate() {
+            let seen: Vec<Observation> = track
+                .seen
+                .iter()
+                .map(|s| Observation { view: s.0, feature: s.1, pixel: Vector2::new(s.2, s.3) })
+                .collect();
+            seen.iter().enumerate().for_each(|(k, seen)| of_view[seen.view].push((t, k)));
+            tracks.push(Growing { color: track.color, fits: vec![true; seen.len()], seen, position: None });
+        }
+        Solver { options, views, first: lenses.clone(), lenses, tracks, of_view }
+    }
+
+    fn registered(&self) -> usize {
+        self.views.iter().filter(|view| view.pose.is_some()).count()
+    }
+
+    /// The longest residual that is allowed in a photograph.
+    fn threshold(&self, view: usize) -> f64 {
+        self.options.threshold * (self.lenses[self.views[view].lens].longer_side() / 1600.0).max(1.0)
+    }
+
+    /// The points that are known, with the observations that fit; of each, its track. With `all`, lenses that no registered
+    /// photograph has are kept too.
+    fn reconstruction(&self, all: bool) -> (Reconstruction, Vec<usize>) {
+        let mut points = Vec::new();
+        let mut tracks = Vec::new();
+        for (t, track) in self.tracks.iter().enumerate() {
+            let Some(position) = track.position else { continue };
+            let fits =
+                |(seen, fits): (&Observation, &bool)| (*fits && self.views[seen.view].pose.is_some()).then_some(*seen);
+            let list: Vec<Observation> = track.seen.iter().zip(&track.fits).filter_map(fits).collect();
+            if !all || list.len() >= 2 {
+                points.push(Point { position, color: track.color, track: list });
+                tracks.push(t);
+            }
+        }
+        (Reconstruction { lenses: self.lenses.clone(), views: self.views.clone(), points }, tracks)
+    }
+
+    /// Adjusts and leaves out what does not fit, some times.
+    fn settle(&mut self, times: usize) {
+        for _ in 0..times {
+            self.adjust(false);
+            let dropped = self.drop_misfits();
+            let added = self.extend();
+            if dropped + added == 0 {
+                break;
+            }
+        }
+        self.adjust(true);
+        self.drop_misfits();
+    }
+
+    /// Adjusts all; on the way only so far as the next step needs.
+    fn adjust(&mut self, thoroughly: bool) {
+        let (mut all, tracks) = self.reconstruction(false);
+        let known = self.registered();
+        // Two photographs do not tell a lens.
+        let free = known > 2;
+        let options = adjust::Options {
+            loss: Loss::Huber(1.0),
+            focal: free && !self.options.fixed_focal,
+            radial: free && !self.options.no_distortion,
+            iterations: if thoroughly { 50 } else { 10 },
+            tolerance: if thoroughly { 1e-7 } else { 1e-3 },
+            ..adjust::Options::default()
+        };
+        let before = self.lenses.clone();
+        adjust(&mut all, &options);
+        self.views = all.views;
+        self.lenses = all.lenses;
+        tracks.iter().zip(&all.points).for_each(|(t, point)| self.tracks[*t].position = Some(point.position));
+        for ((lens, before), first) in self.lenses.iter_mut().zip(before).zip(&self.first) {
+            let sane = (0.2..20.0).contains(&(lens.focal / lens.longer_side())) && lens.radial[0].abs() < 2.0;
+            if !sane {
+                *lens = Lens { focal: before.focal.min(20.0 * before.longer_side()), ..*first };
+            }
+        }
+    }
+
+    /// The photograph that sees most of the points that are known.
+    fn next(&self, refused: &[bool]) -> Option<usize> {
+        let count = |view: usize| self.of_view[view].iter().filter(|(t, _)| self.tracks[*t].position.is_some()).count();
+        let open = (0..self.views.len()).filter(|i| self.views[*i].pose.is_none() && !refused[*i]);
+        let best = open.map(|i| (i, count(i))).reduce(|a, b| if b.1 > a.1 { b } else { a });
+        best.filter(|(_, count)| *count >= self.options.least).map(|best| best.0)
+    }
+}
+
+/// Turns, moves and scales the whole: photographs' mean upward direction is y, the points' middle the origin, and the photographs
+/// are 1 from it on average.
+fn upright(all: &mut Reconstruction) {
+    let poses: Vec<_> = all.views.iter().filter_map(|view| view.pose).collect();
+    let up: Vector3<f64> = poses.iter().map(|pose| -pose.rotation.row(1).transpose()).sum();
+    let Some(up) = up.try_normalize(1e-9) else { return };
+    let forward: Vector3<f64> = poses.iter().map(|pose| pose.rotation.row(2).transpose()).sum();
+    let Some(back) = (up * up.dot(&forward) - forward).try_normalize(1e-9) else { return };
+    let rotation = Matrix3::from_rows(&[up.cross(&back).transpose(), up.transpose(), back.transpose()]);
+    let mut middle = Vector3::zeros();
+    for axis in 0..3 {
+        let mut values: Vec<f64> = all.points.iter().map(|point| point.position[axis]).collect();
+        values.sort_by(f64::total_cmp);
+        middle[axis] = values.get(values.len() / 2).copied().unwrap_or(0.0);
+    }
+    let distance = poses.iter().map(|pose| (pose.center() - middle).norm()).sum::<f64>() / poses.len() as f64;
+    let scale = if distance > 0.0 { 1.0 / distance } else { 1.0 };
+    Similarity { scale, rotation, shift: -scale * (rotation * middle) }.apply_to(all);
+}

@@ -1,0 +1,108 @@
+//! Points: which are found, and which observations of them fit.
+
+use super::{Growing, Solver};
+use crate::geometry::triangulate::nearest_to_rays;
+use crate::{Observation, Pose};
+use nalgebra::Vector3;
+
+/// Pairs of rays that are tried for a point.
+const TRIED: usize = 12;
+
+impl Solver<'_> {
+    /// The residual of an observation by a registered photograph; infinite behind it.
+    fn residual(&self, position: &Vector3<f64>, seen: &Observation) -> Option<f64> {
+        let view = &self.views[seen.view];
+        let p = view.pose.as_ref()?.apply(position);
+        let length = (self.lenses[view.lens].project(&p) - seen.pixel).norm();
+        Some(if p.z > 0.0 && length.is_finite() { length } else { f64::INFINITY })
+    }
+
+    fn fits(&self, position: &Vector3<f64>, seen: &Observation) -> bool {
+        self.residual(position, seen).is_some_and(|length| length <= self.threshold(seen.view))
+    }
+
+    /// Triangulates tracks that are no points yet, and takes up observations that fit by now. Gives how many points are new.
+    pub(super) fn extend(&mut self) -> usize {
+        let mut added = 0;
+        for t in 0..self.tracks.len() {
+            let track = &self.tracks[t];
+            let position = match track.position {
+                Some(position) => position,
+                None => match self.triangulated(track) {
+                    Some(position) => {
+                        added += 1;
+                        position
+                    }
+                    None => continue,
+                },
+            };
+            let fits = track.seen.iter().map(|seen| self.fits(&position, seen)).collect();
+            let track = &mut self.tracks[t];
+            (track.position, track.fits) = (Some(position), fits);
+        }
+        added
+    }
+
+    /// Rays of the registered photographs to a track's point.
+    fn rays(&self, track: &Growing) -> Vec<(Vector3<f64>, Vector3<f64>)> {
+        let ray = |seen: &Observation| {
+            let view = &self.views[seen.view];
+            let pose: &Pose = view.pose.as_ref()?;
+            let direction = self.lenses[view.lens].unproject(&seen.pixel)?;
+            Some((pose.center(), pose.outwards(&direction).normalize()))
+        };
+        track.seen.iter().filter_map(ray).collect()
+    }
+
+    /// The point of two of the rays with which most observations agree, at a sufficient angle.
+    fn triangulated(&self, track: &Growing) -> Option<Vector3<f64>> {
+        let rays = self.rays(track);
+        let mut pairs: Vec<(f64, usize, usize)> = Vec::new();
+        for i in 0..rays.len() {
+            pairs.extend((0..i).map(|j| (rays[i].1.dot(&rays[j].1), j, i)));
+        }
+        // The widest angles first.
+        pairs.sort_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
+        let widest = libm::cos(self.options.angle.to_radians());
+        let mut best: Option<(usize, Vector3<f64>)> = None;
+        for (_, i, j) in pairs.iter().take(TRIED).filter(|pair| pair.0 < widest) {
+            let Some(point) = nearest_to_rays(&[rays[*i], rays[*j]]) else { continue };
+            let count = track.seen.iter().filter(|seen| self.fits(&point, seen)).count();
+            if count >= 2 && best.is_none_or(|best| count > best.0) {
+                best = Some((count, point));
+            }
+            if count == rays.len() {
+                break;
+            }
+        }
+        best.map(|best| best.1)
+    }
+
+    /// Leaves out observations whose residual is too long, and points with fewer than two left or too small an angle. Gives how
+    /// many observations went.
+    pub(super) fn drop_misfits(&mut self) -> usize {
+        let mut dropped = 0;
+        let widest = libm::cos(self.options.angle.to_radians());
+        for t in 0..self.tracks.len() {
+            let track = &self.tracks[t];
+            let Some(position) = track.position else { continue };
+            let fits: Vec<bool> = track.seen.iter().map(|seen| self.fits(&position, seen)).collect();
+            let known = |(seen, fits): (&Observation, &bool)| {
+                let pose = self.views[seen.view].pose.as_ref().filter(|_| *fits)?;
+                Some((position - pose.center()).normalize())
+            };
+            let rays: Vec<Vector3<f64>> = track.seen.iter().zip(&fits).filter_map(known).collect();
+            let wide = rays.iter().enumerate().any(|(i, a)| rays[i + 1..].iter().any(|b| a.dot(b) < widest));
+            let registered = |seen: &Observation| self.views[seen.view].pose.is_some();
+            let gone =
+                track.seen.iter().zip(track.fits.iter().zip(&fits)).filter(|(s, (a, b))| registered(s) && **a && !**b);
+            dropped += gone.count();
+            let track = &mut self.tracks[t];
+            track.fits = fits;
+            if !wide {
+                track.position = None;
+            }
+        }
+        dropped
+    }
+}

@@ -1,0 +1,85 @@
+//! What a page needs on which one walks among photographs.
+
+use crate::Reconstruction;
+use crate::geometry::camera::spread;
+use nalgebra::{Matrix3, Vector2, Vector3};
+use serde::Serialize;
+
+/// A photograph in space.
+#[derive(Debug, Clone, Serialize)]
+pub struct Shown {
+    /// The view's number.
+    pub view: usize,
+    /// Its file's name.
+    pub name: String,
+    /// Pixels across and down.
+    pub size: [u32; 2],
+    /// Focal length in pixels.
+    pub focal: f64,
+    /// Where it was taken.
+    pub center: [f64; 3],
+    /// Rows: right, down, forward in the world.
+    pub rotation: [[f64; 3]; 3],
+    /// The corners of the photograph on the plane it is shown on: upper left, upper right, lower right, lower left.
+    pub corners: [[f64; 3]; 4],
+    /// The points it sees, by number.
+    pub points: Vec<usize>,
+}
+
+/// The photographs whose place is known, each on the plane that fits the points it sees; where that is seen from too far aside, on
+/// one across its view.
+pub fn shown(all: &Reconstruction) -> Vec<Shown> {
+    let mut seen = vec![Vec::new(); all.views.len()];
+    for (i, point) in all.points.iter().enumerate() {
+        point.track.iter().for_each(|observation| seen[observation.view].push(i));
+    }
+    let mut list = Vec::new();
+    for (view, points) in seen.into_iter().enumerate() {
+        let Some(pose) = all.views[view].pose else { continue };
+        let lens = all.lenses[all.views[view].lens];
+        let positions: Vec<Vector3<f64>> = points.iter().map(|i| all.points[*i].position).collect();
+        let mut depths: Vec<f64> = positions.iter().map(|p| pose.depth(p)).filter(|d| *d > 0.0).collect();
+        depths.sort_by(f64::total_cmp);
+        let depth = depths.get(depths.len() / 2).copied().unwrap_or(1.0);
+        let forward = pose.outwards(&Vector3::z());
+        let (center, across) = (pose.center(), pose.center() + depth * forward);
+        let [width, height] = lens.size.map(f64::from);
+        let ray = |x: f64, y: f64| {
+            let p = Vector2::new((x - lens.center[0]) / lens.focal, (y - lens.center[1]) / (lens.focal * lens.aspect));
+            pose.outwards(&Vector3::new(p.x, p.y, 1.0))
+        };
+        let rays = [ray(0.0, 0.0), ray(width, 0.0), ray(width, height), ray(0.0, height)];
+        let on = |(origin, normal): (Vector3<f64>, Vector3<f64>)| {
+            let far = rays.map(|ray| (origin - center).dot(&normal) / ray.dot(&normal));
+            // A ray is as long as its depth is large.
+            far.iter()
+                .all(|t| (0.3 * depth..3.0 * depth).contains(t))
+                .then(|| [0, 1, 2, 3].map(|i| center + far[i] * rays[i]))
+        };
+        let corners = plane(&positions).and_then(on).or_else(|| on((across, forward))).unwrap_or([across; 4]);
+        let row = |i: usize| [pose.rotation[(i, 0)], pose.rotation[(i, 1)], pose.rotation[(i, 2)]];
+        list.push(Shown {
+            view,
+            name: all.views[view].name.clone(),
+            size: lens.size,
+            focal: lens.focal,
+            center: center.into(),
+            rotation: [row(0), row(1), row(2)],
+            corners: corners.map(Into::into),
+            points,
+        });
+    }
+    list
+}
+
+/// The plane nearest to points: one of its own, and its normal; none where they are not flat at all.
+fn plane(points: &[Vector3<f64>]) -> Option<(Vector3<f64>, Vector3<f64>)> {
+    let [_, second, third] = spread(points);
+    if points.len() < 8 || third > 0.7 * second {
+        return None;
+    }
+    let mean = points.iter().sum::<Vector3<f64>>() / points.len() as f64;
+    let covariance: Matrix3<f64> = points.iter().map(|p| (p - mean) * (p - mean).transpose()).sum();
+    let eigen = covariance.symmetric_eigen();
+    Some((mean, eigen.eigenvectors.column(eigen.eigenvalues.imin()).into_owned()))
+}
