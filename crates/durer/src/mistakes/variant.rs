@@ -170,7 +170,7 @@ impl<'s> Variant<'s> {
             }
         }
         self.world.objects.extend(halves);
-        compile::rebuild(&mut self.world);
+        self.rebuild();
     }
 
     /// Changes all objects.
