@@ -26,10 +26,12 @@ pub fn real_roots(coefficients: &[f64]) -> Vec<f64> {
         let ([mut low, mut high], mut at_low) = ([ends[0], ends[1]], value(p, ends[0]));
         let at_high = value(p, high);
         let size = p.iter().rev().fold(0.0, |sum, c| sum * high.abs() + c.abs());
-        if at_low * at_high > 0.0 {
-            if at_high.abs() < 1e-13 * size && high != bound {
-                roots.push(high);
-            }
+        // An extreme that is a root is the only one on both sides of it.
+        if at_high.abs() < 1e-13 * size && high != bound {
+            roots.push(high);
+            continue;
+        }
+        if at_low * at_high > 0.0 || roots.last() == Some(&low) {
             continue;
         }
         for _ in 0..200 {
@@ -44,9 +46,7 @@ pub fn real_roots(coefficients: &[f64]) -> Vec<f64> {
                 high = middle;
             }
         }
-        if roots.last() != Some(&high) {
-            roots.push(high);
-        }
+        roots.push(high);
     }
     roots
 }
