@@ -2,7 +2,7 @@
 //!
 //! Given photographs of a scene, [`matching`] finds the same points of the scene in several of them, [`solve`] finds where the
 //! photographs were taken and where the points are, and [`adjust`] makes both as exact as the photographs allow (bundle
-//! adjustment). [`resect`] finds the camera of a single photograph. [`format`] reads and writes what other programs use.
+//! adjustment). [`resect`] finds the camera of a single photograph. [`mod@format`] reads and writes what other programs use.
 //!
 //! # Conventions
 //!

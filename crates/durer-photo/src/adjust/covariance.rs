@@ -16,7 +16,7 @@ pub struct Covariance {
     /// The standard deviation of a component of an observation in pixels, from the residuals that are left.
     pub sigma: f64,
     /// For each pose that is known, the number of its photograph, and where its six columns begin: a rotation ω by which the
-    /// pose's rotation R becomes exp([ω]×) R, then its translation.
+    /// pose's rotation R becomes exp(\[ω\]×) R, then its translation.
     pub views: Vec<(usize, usize)>,
     /// All cameras together, six rows a pose, then three a lens (f, k1, k2). Zero for what is held.
     pub matrix: DMatrix<f64>,

@@ -1,6 +1,6 @@
 //! The essential matrix of two photographs whose lenses are known: five correspondences give up to ten.
 //!
-//! q'ᵀ E q = 0 for the directions q and q' in which two cameras see a point, where E = [t]× R takes the second camera's pose from
+//! q'ᵀ E q = 0 for the directions q and q' in which two cameras see a point, where E = \[t\]× R takes the second camera's pose from
 //! the first one's frame. E lies in the null space of five equations, E = x X + y Y + z Z + W, and 2 E Eᵀ E = tr(E Eᵀ) E with
 //! det E = 0 are ten cubics in x, y, z. Elimination leaves a polynomial of degree ten in z.
 //!

@@ -1,7 +1,7 @@
 //! From tracks to cameras and points, photograph by photograph.
 //!
-//! Two photographs begin ([`initial`]); the photograph that sees most of the points that are known comes next ([`register`]); what
-//! it adds is triangulated ([`structure`]), and all is adjusted again. What does not fit is left out on the way.
+//! Two photographs begin (`initial`); the photograph that sees most of the points that are known comes next (`register`); what
+//! it adds is triangulated (`structure`), and all is adjusted again. What does not fit is left out on the way.
 //!
 //! Source: Snavely, Seitz, Szeliski, *Photo Tourism: Exploring Photo Collections in 3D*, SIGGRAPH 2006, section 4.2.
 
