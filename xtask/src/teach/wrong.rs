@@ -42,6 +42,12 @@ fn octahedron(name: &'static str, r: f64) -> Shape {
     Shape::Mesh(name, corners, faces)
 }
 
+/// A mesh, turned and stretched, beside a ball on a floor.
+fn beside_a_ball(mesh: Shape) -> Vec<Thing> {
+    let ops = vec![Op::Translate(V(1.2, 0.5, 0.5)), Op::Y(30.0), Op::Scale(V(1.0, 1.5, 1.0))];
+    vec![sphere(V(-1.4, 0.6, 0.0), 1.0, 0), Thing { shape: mesh, ops, material: 1 }, floor(-0.8, 2)]
+}
+
 /// The scenes, in the course's manner: small, of few things, of every year with the old grammar.
 pub fn scenes() -> Vec<Scene> {
     let old = Scene {
@@ -136,15 +142,7 @@ pub fn scenes() -> Vec<Scene> {
             bulb(V(3.0, 4.0, 5.0), V(0.7, 0.6, 0.6), V(1.0, 0.0, 0.0)),
             Lamp::Sun(V(1.0, -0.5, -0.8), V(0.3, 0.4, 0.3)),
         ],
-        things: vec![
-            sphere(V(-1.4, 0.6, 0.0), 1.0, 0),
-            Thing {
-                shape: octahedron("octahedron.obj", 1.0),
-                ops: vec![Op::Translate(V(1.2, 0.5, 0.5)), Op::Y(30.0), Op::Scale(V(1.0, 1.5, 1.0))],
-                material: 1,
-            },
-            floor(-0.8, 2),
-        ],
+        things: beside_a_ball(octahedron("octahedron.obj", 1.0)),
         ..old.clone()
     };
     let falling = Scene {
@@ -172,20 +170,8 @@ pub fn scenes() -> Vec<Scene> {
     };
     let ours = Scene { name: "ours", year: Year::Durer, bounces: 3, ..mirrors.clone() };
     let wide = Scene { name: "wide", size: (160, 100), look: V(0.3, -0.2, -1.3), up: V(0.3, 1.0, 0.1), ..old.clone() };
-    let facets = Scene {
-        name: "facets",
-        shadows: false,
-        things: vec![
-            sphere(V(-1.4, 0.6, 0.0), 1.0, 0),
-            Thing {
-                shape: octahedron("facets.obj", 1.0),
-                ops: vec![Op::Translate(V(1.2, 0.5, 0.5)), Op::Y(30.0), Op::Scale(V(1.0, 1.5, 1.0))],
-                material: 1,
-            },
-            floor(-0.8, 2),
-        ],
-        ..old.clone()
-    };
+    let facets =
+        Scene { name: "facets", shadows: false, things: beside_a_ball(octahedron("facets.obj", 1.0)), ..old.clone() };
     let cubes = Scene { name: "cubes", year: Year::F12a5, bounces: 1, ..facets.clone() };
     vec![old, mirrors, glass, turned, flat, phong, falling, fresnel, ours, wide, facets, cubes]
 }

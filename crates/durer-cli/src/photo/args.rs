@@ -52,6 +52,13 @@ pub struct MatchArgs {
     /// Take no focal length from EXIF
     #[arg(long)]
     pub ignore_exif: bool,
+    #[command(flatten)]
+    pub run: RunArgs,
+}
+
+/// How the work is done
+#[derive(Args)]
+pub struct RunArgs {
     /// Seed of the random numbers
     #[arg(long, default_value_t = 0)]
     pub seed: u64,
@@ -115,15 +122,8 @@ pub struct SolveArgs {
     /// Say how exactly each camera is known
     #[arg(long)]
     pub covariance: bool,
-    /// Seed of the random numbers
-    #[arg(long, default_value_t = 0)]
-    pub seed: u64,
-    /// Threads [default: as many as the machine has]
-    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
-    pub threads: Option<u16>,
-    /// Say nothing but errors
-    #[arg(short, long)]
-    pub quiet: bool,
+    #[command(flatten)]
+    pub run: RunArgs,
 }
 
 /// Find the camera of one photograph, from known points or from vanishing lines

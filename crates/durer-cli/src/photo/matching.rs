@@ -22,12 +22,12 @@ pub fn run(args: &MatchArgs) -> Result<(), Failure> {
         side: args.side,
         field: args.field,
         ignore_exif: args.ignore_exif,
-        seed: args.seed,
+        seed: args.run.seed,
         ..Options::default()
     };
     let matched = progress::shares("matching photographs", |tell| {
         let tell = |share: f64| {
-            if args.quiet {
+            if args.run.quiet {
             } else {
                 tell(share)
             }
@@ -38,19 +38,19 @@ pub fn run(args: &MatchArgs) -> Result<(), Failure> {
             // One at a time: photographs are large, and their features are found on all threads.
             let photo = photo::read(&name(path), &bytes(path, &mut Guard::default())?).map_err(wrong)?;
             doubts.extend(photo.exif.doubt.as_ref().map(|doubt| format!("{}: {doubt}", photo.name)));
-            described.push(threaded(args.threads, || describe(&photo, &options))?);
+            described.push(threaded(args.run.threads, || describe(&photo, &options))?);
             tell(FEATURES * (i + 1) as f64 / paths.len() as f64);
         }
         let watch = |share: f64| tell(FEATURES + (1.0 - FEATURES) * share);
-        let matches = threaded(args.threads, || match_all(described, &options, &watch))?.map_err(wrong)?;
+        let matches = threaded(args.run.threads, || match_all(described, &options, &watch))?.map_err(wrong)?;
         Ok::<_, Failure>((matches, doubts))
     });
     let (matches, doubts) = matched?;
-    if !args.quiet {
+    if !args.run.quiet {
         doubts.iter().for_each(|doubt| complain(&format!("warning: {doubt}")));
         table(&matches);
     }
-    save(&[(&place, matches.to_json().into_bytes())], args.quiet)
+    save(&[(&place, matches.to_json().into_bytes())], args.run.quiet)
 }
 
 /// Says what was found.

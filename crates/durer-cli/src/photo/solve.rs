@@ -31,12 +31,12 @@ pub fn run(args: &SolveArgs) -> Result<(), Failure> {
         let (similarity, left) = to_control(&all, &control).map_err(wrong)?;
         similarity.apply_to(&mut all);
         let worst = left.iter().fold(0.0_f64, |m, d| m.max(*d));
-        if !args.quiet {
+        if !args.run.quiet {
             let (count, scale) = (left.len(), similarity.scale);
             say(&format!("put on {count} control points, {scale:.6} times as large; the farthest is {worst:.4} off"));
         }
     }
-    if !args.quiet {
+    if !args.run.quiet {
         tell(&all);
         all.lenses.iter().enumerate().for_each(|(i, lens)| say(&lens_line(&all, i, lens)));
     }
@@ -44,7 +44,7 @@ pub fn run(args: &SolveArgs) -> Result<(), Failure> {
         exactness(args, &all)?;
     }
     results.add(&all)?;
-    results.save(args.quiet)
+    results.save(args.run.quiet)
 }
 
 fn lens_line(all: &Reconstruction, number: usize, lens: &Lens) -> String {
@@ -60,21 +60,21 @@ fn incremental(args: &SolveArgs, matches: &Matches) -> Result<Reconstruction, Fa
         no_distortion: args.no_distortion,
         own_lenses: args.own_lenses,
         threshold: args.threshold,
-        seed: args.seed,
+        seed: args.run.seed,
         ..Options::default()
     };
     let count = matches.pictures.len() as f64;
     let solved = progress::shares("solving", |share| {
         let watch = |known: usize| {
-            if args.quiet {
+            if args.run.quiet {
             } else {
                 share(known as f64 / count)
             }
         };
-        threaded(args.threads, || solve(matches, &options, &watch))
+        threaded(args.run.threads, || solve(matches, &options, &watch))
     });
     let solved = solved?.map_err(wrong)?;
-    if !args.quiet {
+    if !args.run.quiet {
         solved.notes.iter().for_each(|note| complain(&format!("note: {note}")));
     }
     Ok(solved.all)
@@ -97,14 +97,14 @@ fn adjusted(args: &SolveArgs, guard: &mut Guard) -> Result<Reconstruction, Failu
     let options = options(args);
     let report = progress::shares("adjusting", |share| {
         let watch = |step: usize, _: f64| {
-            if args.quiet {
+            if args.run.quiet {
             } else {
                 share(step as f64 / options.iterations as f64)
             }
         };
-        threaded(args.threads, || adjust_watched(&mut all, &options, &watch))
+        threaded(args.run.threads, || adjust_watched(&mut all, &options, &watch))
     })?;
-    if !args.quiet {
+    if !args.run.quiet {
         let (steps, end) = (report.costs.len() - 1, if report.converged { "converged" } else { "not converged" });
         say(&format!("cost {:.6e}, rms {:.4} pixels, before", before.cost, before.rms));
         say(&format!("{end} after {steps} steps"));

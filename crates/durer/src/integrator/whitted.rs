@@ -92,10 +92,10 @@ impl Whitted<'_> {
     fn trace<T: Witness>(&self, ray: &Ray64, mut path: Path, tally: &mut T) -> Color {
         let mut rest = *ray;
         while let Some(hit) = self.world.closest(&rest, tally) {
-            let passage = if self.world.rules.is_official() { None } else { self.passage(ray, &hit, &path.media) };
-            match passage {
+            let surface = self.world.surface(ray, &hit);
+            match self.passage_at(ray, &hit, &surface, &path.media) {
                 Some(Passage { hidden: true, behind, .. }) => (path.media, rest.rounded.t_min) = (behind, hit.t),
-                _ => return self.shade(ray, &hit, path, tally),
+                passage => return self.shade(ray, &hit, &surface, passage, path, tally),
             }
         }
         let sky = self.world.sky(ray.dir());
@@ -105,18 +105,25 @@ impl Whitted<'_> {
     }
 
     /// The light that leaves a hit against the ray: of each material that makes it up, by its share.
-    fn shade<T: Witness>(&self, ray: &Ray64, hit: &Hit, path: Path, tally: &mut T) -> Color {
-        let surface = self.world.surface(ray, hit);
-        let from_behind = self.sees_back(ray.dir(), &surface);
+    fn shade<T: Witness>(
+        &self,
+        ray: &Ray64,
+        hit: &Hit,
+        surface: &Surface,
+        passage: Option<Passage>,
+        path: Path,
+        tally: &mut T,
+    ) -> Color {
+        let from_behind = self.sees_back(ray.dir(), surface);
         let black = from_behind && !self.settings.shade_back && self.world.rules.has(Compat::BlackBacks);
         let n = if from_behind && self.settings.shade_back { -surface.n_shade } else { surface.n_shade };
         let n = if self.world.rules.has(Compat::UnitLight) { n.normalize_or(n) } else { n };
         let parts = self.world.parts(hit, surface.position);
-        tally.hit(|| self.struck(ray, hit, &surface, n, from_behind, black));
+        tally.hit(|| self.struck(ray, hit, surface, n, from_behind, black));
         let mut color = Color::ZERO;
         if !black {
             // A texture or noise is looked up once for all lights.
-            let diffuse: SmallVec<[Color; 2]> = parts.iter().map(|p| self.diffuse_color(p.phong, &surface)).collect();
+            let diffuse: SmallVec<[Color; 2]> = parts.iter().map(|p| self.diffuse_color(p.phong, surface)).collect();
             for (part, &diffuse) in parts.iter().zip(&diffuse) {
                 let met = part.phong.ambient.unwrap_or(diffuse);
                 let ambient = part.share * self.world.ambient;
@@ -126,11 +133,11 @@ impl Whitted<'_> {
             }
             for (number, light) in self.world.lights.iter().enumerate() {
                 let seen = light.illuminate(surface.point());
-                let visible = self.visible(&surface, &seen, tally);
+                let visible = self.visible(surface, &seen, tally);
                 for (part, &diffuse) in parts.iter().zip(&diffuse) {
                     let share = part.share;
                     tally.begin(|| {
-                        let shadow = self.settings.shadows.then(|| self.shadow(&surface, &seen, visible));
+                        let shadow = self.settings.shadows.then(|| self.shadow(surface, &seen, visible));
                         let (to_light, distance) = (seen.to_light, seen.distance);
                         What::Light { light: number, to_light, distance, share, shadow }
                     });
@@ -146,7 +153,7 @@ impl Whitted<'_> {
         }
         let cancelled = self.cancel.is_some_and(|cancel| cancel.load(Relaxed));
         if path.bounces > 0 && !cancelled {
-            color += self.secondary((ray, hit), &surface, &parts, path, tally);
+            color += self.secondary(ray, surface, &parts, passage.unwrap_or_default(), path, tally);
         } else if parts.iter().any(|part| part.phong.reflective + part.phong.transparent != Color::ZERO) {
             tally.begin(|| What::Spent);
             tally.end(Color::ONE, Color::ONE, Color::ZERO);
@@ -239,9 +246,10 @@ impl Whitted<'_> {
     /// Mirrored and transmitted light.
     fn secondary<T: Witness>(
         &self,
-        (ray, hit): (&Ray64, &Hit),
+        ray: &Ray64,
         surface: &Surface,
         parts: &[Part],
+        passage: Passage,
         path: Path,
         tally: &mut T,
     ) -> Color {
@@ -261,7 +269,6 @@ impl Whitted<'_> {
             true => (mirrored.normalize_or(n_geo), n.normalize_or(n_geo)),
             false => (mirrored, n),
         };
-        let passage = self.passage(ray, hit, &path.media).unwrap_or_default();
         let Passage { here, there, .. } = passage;
         let transmitted = if transparent == Color::ZERO { None } else { refract(ray.dir(), n, here / there) };
         let total = transparent != Color::ZERO && transmitted.is_none();
@@ -289,17 +296,22 @@ impl Whitted<'_> {
         color
     }
 
-    /// How light that may go through a surface does; `None` where none may.
+    /// How light that may go through at a hit does; `None` where none may.
     pub(crate) fn passage(&self, ray: &Ray64, hit: &Hit, media: &Media) -> Option<Passage> {
+        let surface = self.world.may_transmit(hit).then(|| self.world.surface(ray, hit))?;
+        self.passage_at(ray, hit, &surface, media)
+    }
+
+    /// The same where the surface at the hit is known.
+    fn passage_at(&self, ray: &Ray64, hit: &Hit, surface: &Surface, media: &Media) -> Option<Passage> {
         if !self.world.may_transmit(hit) {
             return None;
         }
-        let surface = self.world.surface(ray, hit);
         let blend = Blend::of(&self.world.parts(hit, surface.position));
         if blend.transparent == Color::ZERO {
             return None;
         }
-        let leaving = self.sees_back(ray.dir(), &surface);
+        let leaving = self.sees_back(ray.dir(), surface);
         Some(match self.world.rules.is_official() {
             true => self.official_passage(hit.object, blend, leaving, media),
             false => self.nested_passage(ray, hit.object, blend, leaving, media),
