@@ -2,7 +2,7 @@
 
 use crate::rays::{JOB, RayArrays, point, points};
 use crate::work::{each, install};
-use durer::bvh::{Instance, Instances, Preset, TriangleBvh};
+use durer::bvh::{Instance, InstanceHit, Instances, Preset, TriangleBvh, TriangleHit};
 use durer::math::{Affine, Ray, Vec3};
 use glam::{DAffine3, DMat3, DVec3};
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1, PyReadonlyArray2};
@@ -27,6 +27,18 @@ type HitArrays<'py> =
 #[derive(Clone, Copy)]
 struct Row(f32, i32, i32, [f32; 2]);
 
+impl From<TriangleHit> for Row {
+    fn from(hit: TriangleHit) -> Self {
+        Row(hit.t, hit.triangle as i32, 0, hit.uv.to_array())
+    }
+}
+
+impl From<InstanceHit> for Row {
+    fn from(hit: InstanceHit) -> Self {
+        Row(hit.t, hit.triangle as i32, hit.instance as i32, hit.uv.to_array())
+    }
+}
+
 const MISS: Row = Row(f32::INFINITY, -1, -1, [0.0; 2]);
 
 impl Target {
@@ -36,15 +48,12 @@ impl Target {
                 let mut hits = vec![None; rays.len()];
                 tree.closest_batch(rays, &mut hits);
                 for (i, hit) in hits.into_iter().enumerate() {
-                    put(i, hit.map_or(MISS, |hit| Row(hit.t, hit.triangle as i32, 0, hit.uv.to_array())));
+                    put(i, hit.map_or(MISS, Row::from));
                 }
             }
             Target::Placed(scene) => {
                 for (i, ray) in rays.iter().enumerate() {
-                    let row = |hit: durer::bvh::InstanceHit| {
-                        Row(hit.t, hit.triangle as i32, hit.instance as i32, hit.uv.to_array())
-                    };
-                    put(i, scene.closest(ray).map_or(MISS, row));
+                    put(i, scene.closest(ray).map_or(MISS, Row::from));
                 }
             }
         }
@@ -59,16 +68,8 @@ impl Target {
 
     fn all_hits(&self, ray: &Ray) -> Vec<Row> {
         match self {
-            Target::Mesh(tree) => {
-                let row = |hit: durer::bvh::TriangleHit| Row(hit.t, hit.triangle as i32, 0, hit.uv.to_array());
-                tree.all_hits(ray).into_iter().map(row).collect()
-            }
-            Target::Placed(scene) => {
-                let row = |hit: durer::bvh::InstanceHit| {
-                    Row(hit.t, hit.triangle as i32, hit.instance as i32, hit.uv.to_array())
-                };
-                scene.all_hits(ray).into_iter().map(row).collect()
-            }
+            Target::Mesh(tree) => tree.all_hits(ray).into_iter().map(Row::from).collect(),
+            Target::Placed(scene) => scene.all_hits(ray).into_iter().map(Row::from).collect(),
         }
     }
 

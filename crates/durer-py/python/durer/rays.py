@@ -21,6 +21,14 @@ RECORD = np.dtype(
 )
 
 
+def _unit_normals(corners: Doubles) -> Doubles:
+    """Normals of triangles with corners of shape (..., 3, 3); 0 for those without area."""
+    normal = np.cross(corners[..., 1, :] - corners[..., 0, :], corners[..., 2, :] - corners[..., 0, :])
+    length = np.linalg.norm(normal, axis=-1, keepdims=True)
+    unit: Doubles = np.divide(normal, length, out=np.zeros_like(normal), where=length > 0)
+    return unit
+
+
 @dataclass(frozen=True, eq=False)
 class Hits:
     """What rays meet first. All arrays have the shape of the rays, (n,) say, with the components of vectors behind it."""
@@ -53,10 +61,7 @@ class Hits:
     @cached_property
     def normal(self) -> Floats:
         """The triangle's normal, of length 1, to the side from which its corners go round counterclockwise; 0 where nothing is met."""
-        corners = self._source._corners(self.object, self.triangle)
-        normal = np.cross(corners[..., 1, :] - corners[..., 0, :], corners[..., 2, :] - corners[..., 0, :])
-        length = np.linalg.norm(normal, axis=-1, keepdims=True)
-        normal = np.divide(normal, length, out=np.zeros_like(normal), where=length > 0)
+        normal = _unit_normals(self._source._corners(self.object, self.triangle))
         return np.where(self.hit[..., None], normal, 0).astype(np.float32)
 
     def record(self) -> npt.NDArray[np.void]:
@@ -348,11 +353,7 @@ class Mesh(_Rays):
     def normals(self) -> Floats:
         """The normals of all triangles, of length 1; 0 for those without area."""
         zeros = np.zeros(len(self.faces), np.int32)
-        corners = self._corners(zeros, np.arange(len(self.faces), dtype=np.int32))
-        normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-        length = np.linalg.norm(normal, axis=-1, keepdims=True)
-        unit: Floats = np.divide(normal, length, out=np.zeros_like(normal), where=length > 0).astype(np.float32)
-        return unit
+        return _unit_normals(self._corners(zeros, np.arange(len(self.faces), dtype=np.int32))).astype(np.float32)
 
 
 Placed: TypeAlias = Union[Mesh, tuple[Mesh, npt.ArrayLike]]
