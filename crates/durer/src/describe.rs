@@ -68,6 +68,8 @@ pub enum Rule {
     Between(f32, f32),
     /// More than zero and at most this.
     UpTo(f32),
+    /// From 0 to 1.
+    Share,
     /// At most this whole number.
     AtMost(u32),
     /// At least so many rows, and at most so many.
@@ -92,6 +94,7 @@ impl Rule {
             (Rule::UpTo(high), Value::Float(x)) if *x <= 0.0 || *x > high => {
                 Some(format!("must be more than 0 and at most {high}"))
             }
+            (Rule::Share, Value::Float(x)) if *x < 0.0 || *x > 1.0 => Some("must be from 0 to 1".into()),
             (Rule::Counts(most), Value::Vec3(v))
                 if v.to_array().iter().any(|&n| n.fract() != 0.0 || n < 1.0 || n > most as f32) =>
             {

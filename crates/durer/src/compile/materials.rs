@@ -3,7 +3,7 @@
 use super::files::Loader;
 use crate::diag::{Diagnostic, Diagnostics};
 use crate::dialect::{Compat, Highlight, Rules, Secondary};
-use crate::material::{ColorNoise, Pattern, PhongMaterial};
+use crate::material::{ColorNoise, Pattern, PhongMaterial, PrincipledMaterial};
 use crate::math::Color;
 use crate::scene::{self, MatrixOp, Scene};
 use crate::world::{HighlightModel, Material, Phong};
@@ -19,6 +19,10 @@ pub(super) fn compile(
         scene::Material::Solid(solid, ops) => {
             let to_pattern = MatrixOp::product(ops, rules.compat);
             Material::Solid(solid.clone(), to_pattern)
+        }
+        scene::Material::Principled(layers) => {
+            let texture = layers.base_color_texture.as_ref().and_then(|name| loader.texture(name, diagnostics));
+            Material::Phong(Phong { texture, ..plain(layers) })
         }
         scene::Material::Phong(phong, noise) => {
             let texture = phong.texture.as_ref().and_then(|name| loader.texture(name, diagnostics));
@@ -73,6 +77,29 @@ fn phong_of(m: &PhongMaterial, noise: Option<ColorNoise>, texture: Option<u32>, 
         transparent,
         ior: ior.unwrap_or(1.0),
         fresnel: ior.is_some() && glass(m, rules).is_some(),
+    }
+}
+
+/// What Whitted's light makes of layers: the matte base, a highlight as wide as GGX's, metals that are mirrors, and glass.
+fn plain(m: &PrincipledMaterial) -> Phong {
+    let base = m.base_weight * m.base_color;
+    let matte = (1.0 - m.base_metalness) * (1.0 - m.transmission_weight);
+    // Blinn's exponent of the same width at its middle; after Walter and others, *Microfacet Models for Refraction*, 2007.
+    let alpha = (m.specular_roughness * m.specular_roughness).max(1e-3);
+    let exponent = (2.0 / (alpha * alpha) - 2.0).max(1.0);
+    let ratio = (m.specular_ior - 1.0) / (m.specular_ior + 1.0);
+    let at_right_angles = m.specular_weight * ratio * ratio * m.specular_color;
+    let reflects = at_right_angles.lerp(base, m.base_metalness);
+    let smooth = 1.0 - m.specular_roughness;
+    let glass = m.transmission_weight > 0.0;
+    Phong {
+        diffuse: matte * base,
+        highlight: (reflects != Color::ZERO).then_some((reflects, exponent, HighlightModel::Blinn)),
+        reflective: if glass { m.specular_color } else { smooth * m.base_metalness * base },
+        transparent: m.transmission_weight * m.transmission_color,
+        ior: m.specular_ior,
+        fresnel: glass,
+        ..Phong::default()
     }
 }
 

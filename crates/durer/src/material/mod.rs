@@ -1,8 +1,10 @@
-//! Materials: what a surface does with light. One file each; the list is [`Solid`] beside [`PhongMaterial`].
+//! Materials: what a surface does with light. One file each; the list is [`Solid`] beside [`PhongMaterial`] and
+//! [`PrincipledMaterial`].
 
 pub mod checkerboard;
 pub mod marble;
 pub mod phong;
+pub mod principled;
 pub mod solid_noise;
 pub mod wood;
 
@@ -10,6 +12,7 @@ use crate::describe::Field;
 use crate::described_list;
 use crate::math::Vec3;
 pub use phong::{ColorNoise, PhongMaterial};
+pub use principled::PrincipledMaterial;
 
 described_list! {
     /// A material made of two earlier ones, mixed by a pattern in space.

@@ -10,7 +10,7 @@ use crate::described;
 use crate::diag::Span;
 use crate::dialect::set;
 use crate::light::Light;
-use crate::material::{ColorNoise, PhongMaterial, Solid};
+use crate::material::{ColorNoise, PhongMaterial, PrincipledMaterial, Solid};
 use crate::math::Vec3;
 use crate::shape::{HeightField, Primitive, Sphere, TriangleMesh, VoxelGrid};
 pub use matrix::MatrixOp;
@@ -63,6 +63,8 @@ pub struct Spanned<T> {
 pub enum Material {
     /// Diffuse colour, highlight, mirror, glass; noise may replace the diffuse colour.
     Phong(Box<PhongMaterial>, Option<ColorNoise>),
+    /// Layers, as in OpenPBR.
+    Principled(Box<PrincipledMaterial>),
     /// Two earlier materials mixed by a pattern, and the transform from world to pattern space.
     Solid(Solid, Vec<MatrixOp>),
 }

@@ -4,7 +4,7 @@ use crate::camera::Camera;
 use crate::describe::{DescribedList, Field, FileName, Kind, Rule, Value};
 use crate::dialect::Dialect;
 use crate::light::Light;
-use crate::material::{ColorNoise, PhongMaterial, Solid, is_material_index};
+use crate::material::{ColorNoise, PhongMaterial, PrincipledMaterial, Solid, is_material_index};
 use crate::math::Vec3;
 use crate::scene::{Background, Group, Material, MatrixOp, Node, Object, Operation, Scene, Spanned};
 use crate::shape::{HeightField, Primitive, Sphere, TriangleMesh, VoxelGrid};
@@ -89,6 +89,7 @@ impl Random {
                 (Rule::Between(low, high), _) => {
                     Value::Float(low + (high - low) * (1 + self.below(998)) as f32 / 1000.0)
                 }
+                (Rule::Share, _) => Value::Float(self.below(1001) as f32 / 1000.0),
                 (Rule::UpTo(high), _) => Value::Float(high * (1 + self.below(1000)) as f32 / 1000.0),
                 (_, value) => value,
             };
@@ -177,6 +178,8 @@ impl Random {
         for i in 0..self.below(6) {
             materials.push(spanned(if i > 0 && self.below(3) == 0 {
                 Material::Solid(self.thing::<Solid>(i), self.matrices())
+            } else if dialect == Dialect::Durer && self.below(3) == 0 {
+                Material::Principled(Box::new(self.thing::<PrincipledMaterial>(i)))
             } else {
                 let noise = (self.below(3) == 0).then(|| self.thing::<ColorNoise>(i));
                 Material::Phong(Box::new(self.thing::<PhongMaterial>(i)), noise)

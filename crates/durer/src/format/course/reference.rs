@@ -7,7 +7,7 @@ use crate::camera::Camera;
 use crate::describe::{DescribedList, Kind, Rule, Value};
 use crate::dialect::{Dialect, DialectSet, set};
 use crate::light::Light;
-use crate::material::{ColorNoise, PhongMaterial, Solid};
+use crate::material::{ColorNoise, PhongMaterial, PrincipledMaterial, Solid};
 use crate::math::Vec3;
 use crate::scene::{Background, Operation};
 use crate::shape::{HeightField, Primitive, TriangleMesh, VoxelGrid};
@@ -174,7 +174,7 @@ Group {
 ";
 
 /// Examples that say more than the defaults of a statement do.
-const EXAMPLES: [(&str, &str); 22] = [
+const EXAMPLES: [(&str, &str); 23] = [
     ("Background", "Background { color 0.7 0.8 0.9 ambientLight 0.2 0.2 0.2 }"),
     ("DirectionalLight", "DirectionalLight { direction -1 -2 -0.7 color 0.9 0.85 0.7 }"),
     ("PointLight", "PointLight { position 1.6 1.8 1.4 color 3 2.8 2.4 falloff 0.4 }"),
@@ -182,6 +182,7 @@ const EXAMPLES: [(&str, &str); 22] = [
         "PhongMaterial",
         "PhongMaterial { diffuseColor 0.2 0.4 0.6 specularColor 0.8 0.8 0.8 exponent 60 reflectiveColor 0.2 0.2 0.2 }",
     ),
+    ("PrincipledMaterial", "PrincipledMaterial { baseColor 0.9 0.55 0.3 baseMetalness 1 specularRoughness 0.25 }"),
     ("Checkerboard", "Checkerboard { Transform { UniformScale 0.5 } materialIndex 1 materialIndex 2 }"),
     ("Noise", "Noise { Transform { UniformScale 0.12 } materialIndex 1 materialIndex 2 octaves 2 }"),
     ("Marble", "Marble { materialIndex 1 materialIndex 2 octaves 4 frequency 6 amplitude 5 }"),
@@ -266,6 +267,7 @@ pub fn entries() -> Vec<Entry> {
     all.extend(of::<Camera>(Chapter::Cameras));
     all.extend(of::<Light>(Chapter::Lights));
     all.extend(of::<PhongMaterial>(Chapter::Materials));
+    all.extend(of::<PrincipledMaterial>(Chapter::Materials));
     let noise = of::<ColorNoise>(Chapter::Materials);
     all.extend(noise.into_iter().map(|entry| Entry { example: example_of("Noise in a material"), ..entry }));
     all.extend(of::<Solid>(Chapter::Materials));
@@ -364,6 +366,7 @@ fn value_of(kind: Kind, rule: Rule) -> String {
         Rule::NonNegative => "0 or more".into(),
         Rule::NonZero => "not 0 0 0".into(),
         Rule::Between(low, high) => format!("more than {low}, less than {high}"),
+        Rule::Share => "from 0 to 1".into(),
         Rule::UpTo(high) => format!("more than 0, at most {high}"),
         Rule::AtMost(most) => format!("at most {most}"),
         Rule::Rows(least, most) if least == most => format!("{least} of them"),

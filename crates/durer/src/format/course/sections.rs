@@ -9,7 +9,7 @@ use crate::describe::DescribedList;
 use crate::diag::{Diagnostic, Span};
 use crate::dialect::{Dialect, DialectSet, set};
 use crate::light::Light;
-use crate::material::{ColorNoise, PhongMaterial, Solid};
+use crate::material::{ColorNoise, PhongMaterial, PrincipledMaterial, Solid};
 use crate::scene::{Background, Group, Material, Node, Object, Operation, Spanned};
 use crate::shape::{HeightField, Primitive, Sphere, TriangleMesh, VoxelGrid};
 
@@ -217,8 +217,22 @@ impl Reader<'_, '_> {
             }
             return Some(Material::Solid(solid, transform));
         }
+        if let Some(mut principled) = PrincipledMaterial::from_keyword(word) {
+            self.check_keyword(&principled, span);
+            self.fields(&mut principled, span, Order::Any, |_, _, _| false);
+            return Some(Material::Principled(Box::new(principled)));
+        }
         let Some(mut phong) = PhongMaterial::from_keyword(word) else {
-            let known = ["PhongMaterial", "Material", "Checkerboard", "Noise", "Marble", "Wood", "numMaterials"];
+            let known = [
+                "PhongMaterial",
+                "PrincipledMaterial",
+                "Material",
+                "Checkerboard",
+                "Noise",
+                "Marble",
+                "Wood",
+                "numMaterials",
+            ];
             self.unknown(word, span, "among materials", &known);
             return None;
         };

@@ -4,7 +4,7 @@ use crate::camera::Camera;
 use crate::describe::DescribedList;
 use crate::dialect::{DialectSet, set};
 use crate::light::Light;
-use crate::material::{ColorNoise, PhongMaterial, Solid};
+use crate::material::{ColorNoise, PhongMaterial, PrincipledMaterial, Solid};
 use crate::scene::{Background, Operation};
 use crate::shape::{HeightField, Primitive, TriangleMesh, VoxelGrid};
 use std::collections::HashMap;
@@ -53,6 +53,7 @@ static WORDS: LazyLock<HashMap<&'static str, DialectSet>> = LazyLock::new(|| {
     list::<Primitive>(&mut words);
     list::<Solid>(&mut words);
     list::<PhongMaterial>(&mut words);
+    list::<PrincipledMaterial>(&mut words);
     list::<ColorNoise>(&mut words);
     list::<TriangleMesh>(&mut words);
     list::<HeightField>(&mut words);
@@ -94,7 +95,7 @@ pub(super) fn begins_block(word: &str) -> bool {
 pub(super) fn home_of(word: &str) -> Option<&'static str> {
     Some(match word {
         "TriangleMesh" | "HeightField" | "Grid" | "Transform" | "MaterialIndex" | "Group" => "Group",
-        "PhongMaterial" | "Material" | "Checkerboard" | "Marble" | "Wood" => "Materials",
+        "PhongMaterial" | "PrincipledMaterial" | "Material" | "Checkerboard" | "Marble" | "Wood" => "Materials",
         "PointLight" | "DirectionalLight" => "Lights",
         "Translate" | "Scale" | "UniformScale" | "XRotate" | "YRotate" | "ZRotate" | "Rotate" | "Matrix"
         | "Matrix4f" | "translate" | "scale" | "x_rotate" | "y_rotate" | "z_rotate" => "Transform",

@@ -102,6 +102,7 @@ impl Writer {
                     }
                 });
             }
+            Material::Principled(principled) => self.thing(&**principled),
             Material::Solid(solid, transform) => self.block(solid.keyword(self.dialect), |w| {
                 if !transform.is_empty() {
                     w.block("Transform", |w| transform.iter().for_each(|op| w.matrix(op)));

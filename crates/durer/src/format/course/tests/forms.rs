@@ -4,7 +4,7 @@ use super::*;
 use crate::camera::Camera;
 use crate::describe::{DescribedList, Kind, Rule, Value};
 use crate::light::Light;
-use crate::material::{ColorNoise, PhongMaterial, Solid};
+use crate::material::{ColorNoise, PhongMaterial, PrincipledMaterial, Solid};
 use crate::math::Vec3;
 use crate::scene::{Background, Material, MatrixOp, Node, Object};
 use crate::shape::{HeightField, Primitive, TriangleMesh};
@@ -71,6 +71,13 @@ fn every_keyword_and_field_is_read_in_every_dialect_that_has_it() {
         other => panic!("{other:?}"),
     };
     every_word::<PhongMaterial>(|_, text| materials(text), |scene| phong(&scene).0);
+    every_word::<PrincipledMaterial>(
+        |_, text| materials(text),
+        |scene| match &scene.materials[2].value {
+            Material::Principled(principled) => (**principled).clone(),
+            other => panic!("{other:?}"),
+        },
+    );
     every_word::<ColorNoise>(|_, text| materials(&format!("Material {{ {text} }}")), |scene| phong(&scene).1.unwrap());
     let group = |text: &str| format!("Group {{ numObjects 1 {text} }}");
     let first = |scene: Scene| scene.root.unwrap().objects.remove(0).node;
