@@ -1,6 +1,7 @@
 //! The command line.
 
 use crate::memory::Memory;
+use crate::method::MethodArgs;
 use clap::builder::{ArgPredicate, PossibleValuesParser};
 use clap::{Args, Parser, Subcommand};
 use durer::dialect::{Compat, Dialect};
@@ -162,7 +163,10 @@ pub struct JobArgs {
     /// Depths shown as the two ends of grey [default: those in the picture]
     #[arg(long, num_args = 2, value_names = ["MIN", "MAX"], allow_negative_numbers = true)]
     pub depth_range: Option<Vec<f32>>,
-    /// Levels of mirrored and transmitted rays [default: 8; with --dialect, that year's]
+    #[command(flatten)]
+    pub method: MethodArgs,
+    /// Levels of mirrored and transmitted rays; of paths, how often light is scattered after the first time [default: 8, of
+    /// paths 16; with --dialect, that year's]
     #[arg(long, value_parser = clap::value_parser!(u32).range(0..=256))]
     pub bounces: Option<u32>,
     /// Whether things cast shadows [default: on; with --dialect, off]

@@ -16,6 +16,7 @@ use durer::integrator::account::What;
 use durer::math::{Color, Ray, Vec3};
 use durer::render::explain::{Explanation, Line, Names, Telling, explain, explain_ray, number, ray_text};
 use durer::render::{Control, Job};
+use durer::sampler::SampleId;
 use std::collections::BTreeSet;
 use std::io::IsTerminal;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -91,7 +92,7 @@ fn subject(args: &ExplainArgs, opened: &Opened, job: &Job, picture: Option<&Imag
                 return Err(bad("--ray needs finite numbers, and a direction that is not 0 0 0"));
             }
             let world = &opened.world;
-            let light = deep(|| explain_ray(world, job, &ray))?;
+            let light = deep(|| explain_ray(world, job, &ray, SampleId::new(job.seed, (0, 0), 0)))?;
             return light.map(Subject::Ray).ok_or_else(|| bad("nothing is known of this ray"));
         }
         (None, Some(pixel), _) => pixel,

@@ -1,7 +1,7 @@
 //! From options to a job.
 
 use crate::args::{JobArgs, SceneArgs, ViewArgs};
-use crate::{Failure, bad, report};
+use crate::{Failure, bad, method, report};
 use durer::Loaded;
 use durer::camera::{Lens, Raster};
 use durer::compile::AccelKind;
@@ -18,6 +18,9 @@ use durer::world::World;
 /// Samples where noise or time decides when there are enough.
 const MOST_FOR_NOISE: u32 = 4096;
 const MOST_FOR_TIME: u32 = 1 << 20;
+
+/// How often paths are scattered after the first time, unless asked otherwise.
+const PATH_BOUNCES: u32 = 16;
 
 /// The structure that the options ask for.
 pub fn accel(args: &JobArgs) -> Result<AccelKind, Failure> {
@@ -40,7 +43,12 @@ pub fn job(args: &JobArgs, view: Option<&ViewArgs>, loaded: &Loaded, timed: bool
     let proportions = camera.and_then(|camera| camera.proportions());
     let (width, height) = args.size.unwrap_or_else(|| Raster::natural_size(proportions, rules.size));
     // A blur needs more samples than an edge.
-    let plenty = if camera.is_some_and(|camera| camera.has_aperture()) { 64 } else { 16 };
+    let method = method::method(&args.method, &loaded.scene)?;
+    let plenty = if camera.is_some_and(|camera| camera.has_aperture()) || method.is_random() { 64 } else { 16 };
+    if method.is_random() && (args.jitter || args.blur) {
+        return Err(bad(format!("--jitter and --blur make no sense with --integrator {}", method.name())));
+    }
+    let bounces = if method.name() == "path" { PATH_BOUNCES } else { rules.bounces };
     let shown = view.map_or(&[][..], |view| &view.show);
     let depth_range = args.depth_range.as_ref().map(|range| (range[0], range[1]));
     if depth_range.is_some_and(|(min, max)| !(min.is_finite() && max.is_finite() && min != max)) {
@@ -53,8 +61,9 @@ pub fn job(args: &JobArgs, view: Option<&ViewArgs>, loaded: &Loaded, timed: bool
         seed: args.seed,
         sampling: sampling(args, asked, timed, plenty)?,
         noise: args.noise,
+        method,
         settings: Settings {
-            bounces: args.bounces.unwrap_or(rules.bounces),
+            bounces: args.bounces.unwrap_or(bounces),
             shadows: args.shadows.unwrap_or(rules.shadows),
             shade_back: args.shade_back.unwrap_or(rules.shade_back),
             transparent_shadows: args.transparent_shadows || rules.transparent_shadows,
@@ -144,7 +153,9 @@ pub fn spelled(reading: &SceneArgs, job: &Job, loaded: &Loaded) -> String {
         }
     }
     let (settings, rules) = (&job.settings, &loaded.rules);
-    if settings.bounces != rules.bounces {
+    method::spelled(job.method, &loaded.scene).into_iter().for_each(&mut add);
+    let bounces = if job.method.name() == "path" { PATH_BOUNCES } else { rules.bounces };
+    if settings.bounces != bounces {
         add(format!("--bounces {}", settings.bounces));
     }
     for (name, value, usual) in

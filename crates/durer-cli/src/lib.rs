@@ -17,6 +17,7 @@ mod lesson;
 mod manual;
 mod memory;
 mod merge;
+mod method;
 mod open;
 mod output;
 mod page;

@@ -3,6 +3,7 @@
 //! A scene file is read into a [`scene::Scene`] (plain data), compiled into a [`world::World`] (immutable, numbers
 //! only), and rendered by a [`render::Job`] into pictures.
 
+pub mod bsdf;
 pub mod bvh;
 pub mod camera;
 pub mod check;

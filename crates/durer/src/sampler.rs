@@ -86,6 +86,45 @@ pub const PIXEL_DIMENSION: u32 = 0;
 /// The dimension that positions in the camera's lens use; integrators take those from 2 upwards.
 pub const LENS_DIMENSION: u32 = 1;
 
+/// The sample that random numbers are for, and the first dimension that is free. A number depends on nothing else.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct SampleId {
+    /// The job's.
+    pub seed: u64,
+    /// The pixel.
+    pub pixel: (u32, u32),
+    /// The number of the sample in its pixel.
+    pub sample: u32,
+    first: u32,
+}
+
+/// Dimensions from here on are for layers that a ray passes, however many there are.
+const LAYER_DIMENSIONS: u32 = 1 << 16;
+
+impl SampleId {
+    /// Of a sample of a pixel.
+    pub fn new(seed: u64, pixel: (u32, u32), sample: u32) -> Self {
+        SampleId { seed, pixel, sample, first: LENS_DIMENSION + 1 }
+    }
+
+    /// The same sample with other dimensions: `first` of those that integrators may take.
+    pub fn at(self, first: u32) -> Self {
+        SampleId { first: LENS_DIMENSION + 1 + first, ..self }
+    }
+
+    /// Two numbers in [0,1), which with those of the pixel's other samples fill the square evenly.
+    pub fn pair(&self, dimension: u32) -> Vec2 {
+        let (x, y) = self.pixel;
+        sample_2d(self.seed, x, y, self.sample, self.first + dimension)
+    }
+
+    /// A number in [0,1) for a layer on the way after some bounces.
+    pub fn layer(&self, depth: u32, layer: u32) -> f32 {
+        let (x, y) = self.pixel;
+        random_2d(self.seed, x, y, self.sample, LAYER_DIMENSIONS + (depth << 8) + layer).x
+    }
+}
+
 /// The least number whose square is `samples` or more, from 1 to 65535.
 fn grid_side(samples: u32) -> u32 {
     let root = samples.isqrt();

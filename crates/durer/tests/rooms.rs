@@ -9,7 +9,7 @@ const FLOORS: [&[&str]; 10] = [
     &["sampler", "source", "describe"],
     &["image"],
     &["shape", "camera", "light", "material", "texture"],
-    &["scene", "bvh"],
+    &["scene", "bvh", "bsdf"],
     &["format", "world"],
     &["compile", "film", "integrator"],
     &["render"],

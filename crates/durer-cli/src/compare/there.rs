@@ -9,6 +9,7 @@ use durer::image::compare::Comparison;
 use durer::math::Ray;
 use durer::render::explain::{Names, Telling, explain_ray, ray_text};
 use durer::render::{Job, center_ray, raster};
+use durer::sampler::SampleId;
 use serde_json::{Value, json};
 
 /// What the ray through the middle of a pixel meets.
@@ -49,7 +50,7 @@ fn along(opened: &Opened, job: &Job, ray: &Ray, transfer: Transfer) -> Result<(O
         t: hit.t,
         normal: world.surface(ray, &hit).n_shade.to_array(),
     });
-    let light = deep(|| explain_ray(world, job, ray))?;
+    let light = deep(|| explain_ray(world, job, ray, SampleId::default()))?;
     let lines = light.iter().flat_map(|light| ray_text(light, &names, &Telling { transfer, ..Telling::default() }));
     Ok((hit, lines.map(|line| shown(&line, false, transfer)).collect()))
 }

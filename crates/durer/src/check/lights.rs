@@ -7,7 +7,7 @@ use crate::camera::Lens;
 use crate::diag::{Diagnostic, Severity, Span};
 use crate::dialect::Dialect;
 use crate::format::course::place::{block, section};
-use crate::light::{Light, PointLight};
+use crate::light::{Emitter, Light, PointLight};
 use crate::math::{Color, Ray, Vec3};
 use crate::scene::Spanned;
 
@@ -118,17 +118,14 @@ fn most_common(objects: &[u32]) -> Option<u32> {
 }
 
 pub(super) fn color(light: &Light) -> Color {
-    match light {
-        Light::Directional(light) => light.color,
-        Light::Point(light) => light.color,
-    }
+    light.color()
 }
 
 /// What the light of a point is divided by: its three factors.
 fn divisor(light: &Light) -> Option<Vec3> {
     match light {
         Light::Point(PointLight { attenuation, .. }) => *attenuation,
-        Light::Directional(_) => None,
+        _ => None,
     }
 }
 
@@ -208,12 +205,12 @@ pub(super) fn blocked(scout: &Scout) -> Vec<Finding> {
         let message = format!("the {name} keeps this light off all that is seen");
         let (diagnostic, _) = useless(scout, light, message)?;
         let help = match (scout.world().objects[object as usize].bounds(), &scout.world().lights[light]) {
-            (None, Light::Point(_)) => "the light is behind the plane: move it to the other side",
+            (None, Light::Point(_) | Light::Spot(_)) => "the light is behind the plane: move it to the other side",
             (None, Light::Directional(_)) => {
                 "the light comes from behind the plane: turn its `direction`, which is where light goes"
             }
             (Some(_), Light::Directional(_)) => "turn the light, or move what is in its way",
-            (Some(_), Light::Point(_)) => "move the light, or what is in its way",
+            (Some(_), Light::Point(_) | Light::Spot(_)) => "move the light, or what is in its way",
         };
         Some(diagnostic.related(scout.object_span(object), "in the way").help(help))
     })
@@ -300,7 +297,7 @@ pub(super) fn behind(scout: &Scout) -> Vec<Finding> {
                 let fixed = diagnostic.fix_at(scout.value(span, &["direction"]), turned);
                 scout.at_value(fixed, span, &["direction"]).help(help)
             }
-            Light::Point(_) => {
+            Light::Point(_) | Light::Spot(_) => {
                 let eye = scout.world().camera.pose().center;
                 let help = format!("move it to the camera's side: the camera is at {}", vector(eye));
                 scout.at_value(diagnostic, span, &["position"]).help(help)

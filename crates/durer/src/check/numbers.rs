@@ -7,6 +7,7 @@ use crate::integrator::Node;
 use crate::integrator::account::What;
 use crate::math::Color;
 use crate::render::explain::{explain, explain_ray};
+use crate::sampler::SampleId;
 
 /// The first sample that is not finite, and the terms that make it so.
 pub(super) fn not_finite(scout: &Scout) -> Vec<Finding> {
@@ -20,7 +21,10 @@ pub(super) fn not_finite(scout: &Scout) -> Vec<Finding> {
             (format!("pixel {x},{y} (sample {sample})"), light)
         }
         None => match scout.probes.iter().find(|probe| !probe.color.is_finite()) {
-            Some(probe) => (format!("pixel {},{}", probe.pixel.0, probe.pixel.1), explain_ray(world, job, &probe.ray)),
+            Some(probe) => (
+                format!("pixel {},{}", probe.pixel.0, probe.pixel.1),
+                explain_ray(world, job, &probe.ray, SampleId::default()),
+            ),
             None => return Vec::new(),
         },
     };

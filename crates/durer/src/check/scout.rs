@@ -8,10 +8,11 @@ use crate::diag::{Diagnostic, Files, Span};
 use crate::dialect::Dialect;
 use crate::format::course::place;
 use crate::integrator::account::What;
-use crate::integrator::{Node, Settings};
+use crate::integrator::{Method, Node, Settings};
 use crate::math::{Color, Ray};
 use crate::render::explain::{Names, explain_ray};
 use crate::render::{Job, center_ray, raster};
+use crate::sampler::SampleId;
 use crate::scene::Scene;
 use crate::world::World;
 use rayon::prelude::*;
@@ -110,6 +111,8 @@ impl<'a> Scout<'a> {
                 least_weight: settings.least_weight.max(LEAST_WEIGHT),
                 ..settings
             },
+            // Its terms are what the checks ask for.
+            method: Method::Whitted,
             ..subject.job.clone()
         };
         let places: Vec<(u32, u32)> = (0..rows).flat_map(|y| (0..columns).map(move |x| (x, y))).collect();
@@ -118,7 +121,7 @@ impl<'a> Scout<'a> {
             let at =
                 |i: u32, of: u32, size: u32| ((2 * u64::from(i) + 1) * u64::from(size) / (2 * u64::from(of))) as u32;
             let pixel = (at(place.0, columns, width), at(place.1, rows, height));
-            Some(Probe::of(pixel, ray, &explain_ray(subject.world, &job, &ray)?))
+            Some(Probe::of(pixel, ray, &explain_ray(subject.world, &job, &ray, SampleId::default())?))
         };
         let probes = places.par_iter().filter_map(probe).collect();
         Scout {

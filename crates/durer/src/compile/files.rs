@@ -6,9 +6,10 @@ use crate::diag::{Diagnostic, Diagnostics, Severity, at_least, at_most};
 use crate::dialect::{Compat, Rules};
 use crate::format::{self, obj::habits};
 use crate::image::{self, Encoded, ImageError};
+use crate::scene::Background;
 use crate::shape::{HeightField, Mesh};
 use crate::source::SourceError;
-use crate::texture::{CubeMap, Texture};
+use crate::texture::{CubeMap, Environment, Texture};
 use crate::world::MeshTree;
 use rayon::prelude::*;
 use std::collections::HashMap;
@@ -146,6 +147,23 @@ impl<'r> Loader<'r> {
             diagnostics.push(finding);
         }
         map
+    }
+
+    /// The picture around a scene.
+    pub(super) fn environment(&mut self, written: &Background, diagnostics: &mut Diagnostics) -> Option<Environment> {
+        let name = written.environment.as_ref()?;
+        let bytes = self.read(name, "environment", diagnostics)?;
+        let encoded = used(name, &name.path, Encoded::open(&bytes, &name.path), diagnostics)?;
+        let picture = encoded.read(self.resources.memory, image::decode_srgb);
+        let picture = used(name, &name.path, picture, diagnostics)?;
+        let (width, height) = (picture.width, picture.height);
+        let Background { environment_rotation, environment_scale, .. } = *written;
+        let environment = Environment::new(width, height, picture.pixels, environment_rotation, environment_scale);
+        if environment.is_none() {
+            let message = format!("the picture `{}` around the scene is black", name.path);
+            diagnostics.push(Diagnostic::error(message).code("bad-file").at(name.span));
+        }
+        environment.filter(|environment| self.charge(name, environment.bytes() as u64, diagnostics))
     }
 
     fn faces(&mut self, name: &FileName, diagnostics: &mut Diagnostics) -> Option<CubeMap> {

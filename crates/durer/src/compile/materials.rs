@@ -1,12 +1,16 @@
 //! Materials: the dialect's meaning of their words is worked in here.
 
 use super::files::Loader;
+use crate::bsdf::albedo::Dielectric;
+use crate::bsdf::{Layers, Tables};
 use crate::diag::{Diagnostic, Diagnostics};
 use crate::dialect::{Compat, Highlight, Rules, Secondary};
+use crate::material::principled::Walls;
 use crate::material::{ColorNoise, Pattern, PhongMaterial, PrincipledMaterial};
-use crate::math::Color;
+use crate::math::{Color, fp};
 use crate::scene::{self, MatrixOp, Scene};
-use crate::world::{HighlightModel, Material, Phong};
+use crate::world::{Emission, HighlightModel, Material, Phong, Principled};
+use std::sync::Arc;
 
 pub(super) fn compile(
     scene: &Scene,
@@ -15,21 +19,32 @@ pub(super) fn compile(
     diagnostics: &mut Diagnostics,
 ) -> Vec<Material> {
     check_solids(scene, diagnostics);
-    let one = |material: &scene::Spanned<scene::Material>| match &material.value {
+    // Boundaries of the same index share their tables.
+    let mut tables = Vec::new();
+    let mut one = |material: &scene::Spanned<scene::Material>| match &material.value {
         scene::Material::Solid(solid, ops) => {
             let to_pattern = MatrixOp::product(ops, rules.compat);
             Material::Solid(solid.clone(), to_pattern)
         }
         scene::Material::Principled(layers) => {
             let texture = layers.base_color_texture.as_ref().and_then(|name| loader.texture(name, diagnostics));
-            Material::Phong(Phong { texture, ..plain(layers) })
+            let emitted = layers.emission_luminance * layers.emission_color;
+            let emission_texture = layers.emission_texture.as_ref().and_then(|name| loader.texture(name, diagnostics));
+            let emission =
+                Emission { radiance: emitted, texture: emission_texture, two_sided: layers.walls == Walls::Thin };
+            Material::Phong(Phong {
+                texture,
+                emission: (emitted.max_element() > 0.0).then_some(emission),
+                principled: Some(principled(layers, &mut tables)),
+                ..plain(layers)
+            })
         }
         scene::Material::Phong(phong, noise) => {
             let texture = phong.texture.as_ref().and_then(|name| loader.texture(name, diagnostics));
             Material::Phong(phong_of(phong, noise.clone(), texture, rules))
         }
     };
-    scene.materials.iter().map(one).collect()
+    scene.materials.iter().map(&mut one).collect()
 }
 
 /// Refuses solids that lead to themselves, are nested too deeply, or double at each level.
@@ -77,7 +92,18 @@ fn phong_of(m: &PhongMaterial, noise: Option<ColorNoise>, texture: Option<u32>, 
         transparent,
         ior: ior.unwrap_or(1.0),
         fresnel: ior.is_some() && glass(m, rules).is_some(),
+        principled: None,
+        emission: None,
     }
+}
+
+fn principled(m: &PrincipledMaterial, tables: &mut Vec<Arc<Dielectric>>) -> Arc<Principled> {
+    // Beer's law: what is left after a depth is the colour. Black would never be reached.
+    let absorption = match m.transmission_depth > 0.0 {
+        true => m.transmission_color.map(|c| -fp::ln(c.clamp(1e-6, 1.0)) / m.transmission_depth),
+        false => Color::ZERO,
+    };
+    Arc::new(Principled { written: m.clone(), layers: Layers::of(m), tables: Tables::new(m, tables), absorption })
 }
 
 /// What Whitted's light makes of layers: the matte base, a highlight as wide as GGX's, metals that are mirrors, and glass.

@@ -16,7 +16,7 @@ use crate::scene::{self, Group, MatrixOp, Node, Scene};
 use crate::shape::mesh::loosened;
 use crate::shape::{Mesh, Primitive, Shape, Triangle};
 use crate::source::Source;
-use crate::world::{Accel, Geometry, MeshTree, Object, Phong, World};
+use crate::world::{Accel, Emitters, Geometry, MeshTree, Object, Phong, World};
 use glam::DAffine3;
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -92,6 +92,7 @@ pub fn compile(
         compiled.push(crate::world::Material::Phong(Phong::default()));
     }
     let cube_map = scene.background.cube_map.as_ref().and_then(|name| loader.cube_map(name, &mut own));
+    let environment = loader.environment(&scene.background, &mut own);
     let (lights, ambient) = lights(scene, rules, &mut own);
     // Numbers that JSON cannot tell apart, those that are not finite, are in no scene and no rules.
     let digest = loader.resources.source.digest(&serde_json::to_vec(&(scene, rules)).unwrap_or_default());
@@ -106,6 +107,7 @@ pub fn compile(
         camera,
         background: scene.background.color,
         cube_map,
+        environment,
         ambient,
         lights,
         materials: compiled,
@@ -115,7 +117,11 @@ pub fn compile(
         digest,
         unbounded: Vec::new(),
         accel: Accel::None,
+        emitters: Emitters::default(),
+        has_cutouts: false,
     };
+    world.has_cutouts = world.finds_cutouts();
+    world.emitters = Emitters::new(&world);
     if let Err(error) = rebuild(&mut world, accel) {
         diagnostics.push(*error);
         return None;
@@ -193,15 +199,11 @@ fn lights(scene: &Scene, rules: &Rules, diagnostics: &mut Diagnostics) -> (Vec<L
         return (Vec::new(), ambient);
     }
     for light in written {
-        let (color, falloff) = match &light.value {
-            Light::Directional(light) => (light.color, None),
-            Light::Point(light) => (light.color, light.falloff),
-        };
-        if color == Color::ZERO {
+        if light.value.color() == Color::ZERO {
             let message = "this light reaches nothing: its color is 0 0 0";
             diagnostics.push(Diagnostic::warning(message).code("black-light").at(light.span));
         }
-        let missing = matches!(&light.value, Light::Point(_)) && falloff.is_none();
+        let missing = matches!(&light.value, Light::Point(point) if point.falloff.is_none());
         if missing && rules.has(Compat::MissingFalloff) {
             let message = "this light has no `falloff`, and divides by zero as the official program does";
             let warning = Diagnostic::warning(message).code("no-falloff").at(light.span);

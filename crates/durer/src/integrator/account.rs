@@ -10,6 +10,7 @@
 use crate::bvh::{Counts, Rays, Tally};
 use crate::math::{Color, Ray, Ray64, Vec2, Vec3};
 use crate::world::HighlightModel;
+use crate::world::emitters::LightId;
 use serde::Serialize;
 
 /// Hears what an integrator does. The closures are called only by those that listen.
@@ -70,6 +71,8 @@ pub enum RayKind {
     Reflected,
     /// Glass.
     Transmitted,
+    /// A surface that scatters light into many directions.
+    Scattered,
 }
 
 /// A ray as numbers.
@@ -128,6 +131,19 @@ pub struct Struck {
     pub material: u32,
 }
 
+/// How a ray's direction was chosen.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Bounce {
+    /// The lobe that chose it.
+    pub lobe: &'static str,
+    /// The probability with which that lobe was chosen.
+    pub probability: f32,
+    /// The density per solid angle over all lobes; 0 for a single direction.
+    pub pdf: f32,
+    /// The probability that the path went on here.
+    pub survival: f32,
+}
+
 /// What stands between a surface and a light.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Shadow {
@@ -153,6 +169,33 @@ pub enum What {
         weight: f32,
         /// What it hit.
         hit: Option<Box<Struck>>,
+        /// How its direction was chosen at random.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        bounce: Option<Bounce>,
+    },
+    /// A surface's own light, the value; the factor is its weight beside that of being chosen as a light.
+    Emission {
+        /// That weight, by multiple importance sampling.
+        mis: f32,
+    },
+    /// The light of one that was chosen at random, the value; the factor is bsdf · mis · what comes through / (choice · density).
+    Direct {
+        /// Which it is.
+        light: LightId,
+        /// Unit vector to it.
+        to_light: Vec3,
+        /// How far it is; `null` in JSON for what has no place.
+        distance: f32,
+        /// The probability with which it was chosen.
+        choice: f32,
+        /// The density per solid angle of the direction; 0 for a light without extent, whose density counts as 1.
+        pdf: f32,
+        /// The surface's value times the cosine.
+        bsdf: Color,
+        /// Its weight beside that of being met by chance, by multiple importance sampling.
+        mis: f32,
+        /// The shadow ray; none where shadows are off.
+        shadow: Option<Shadow>,
     },
     /// The background or sky, where a ray hits nothing.
     Sky,

@@ -1,6 +1,26 @@
 //! What a ray runs in: air, or one thing of glass in another.
 
+use crate::math::Ray64;
+use crate::world::World;
 use smallvec::SmallVec;
+
+/// How light goes through a surface.
+pub(crate) struct Passage {
+    /// Index of refraction before it.
+    pub(crate) here: f32,
+    /// Index of refraction behind it.
+    pub(crate) there: f32,
+    /// What a ray runs in behind it.
+    pub(crate) behind: Media,
+    /// Whether something else fills the place on both sides, so that there is no surface.
+    pub(crate) hidden: bool,
+}
+
+impl Default for Passage {
+    fn default() -> Self {
+        Passage { here: 1.0, there: 1.0, behind: Media::default(), hidden: false }
+    }
+}
 
 /// A thing of glass that a ray is in.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -73,6 +93,45 @@ impl Media {
             inside.remove(place);
         }
         Media(inside)
+    }
+
+    /// Ours: things of glass may be inside each other and overlap.
+    pub(crate) fn nested_passage(
+        &self,
+        world: &World,
+        ray: &Ray64,
+        (object, ior): (u32, f32),
+        leaving: bool,
+    ) -> Passage {
+        let medium = |object: u32, ior: f32| Medium { object, ior, size: world.objects[object as usize].extent() };
+        let own = medium(object, ior);
+        if !leaving {
+            let behind = self.entered(own);
+            let hidden = !self.is_air() && behind.object() == self.object() && self.object() != Some(object);
+            return Passage { here: self.ior(), there: behind.ior(), behind, hidden };
+        }
+        let found = if self.holds(object) {
+            self.clone()
+        } else if own.size.is_none() {
+            self.entered(own)
+        } else if world.objects[object as usize].contains(ray.rounded.origin) {
+            // A ray that leaves what it never entered began inside.
+            let others = world.glass_around(ray.rounded.origin).filter(|&(other, _)| other != object);
+            let all = others.map(|(other, ior)| medium(other, ior)).chain([own]);
+            all.fold(Media::default(), |media, medium| media.entered(medium))
+        } else {
+            // Turned inside out, it is the wall of a cavity in what is around.
+            let behind = self.object().map_or(Media::default(), |around| self.left(around));
+            return Passage {
+                here: if self.is_air() { own.ior } else { self.ior() },
+                there: behind.ior(),
+                behind,
+                hidden: false,
+            };
+        };
+        let behind = found.left(object);
+        let hidden = found.object() != Some(object);
+        Passage { here: found.ior(), there: behind.ior(), behind, hidden }
     }
 }
 

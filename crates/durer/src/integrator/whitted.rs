@@ -4,6 +4,7 @@
 //! terms of the course.
 
 use super::account::{RayKind, Shadow, Struck, What, Witness};
+pub(crate) use super::media::Passage;
 use super::media::{Media, Medium};
 use super::spawn::{from_surface, to_light};
 use crate::dialect::Compat;
@@ -61,29 +62,11 @@ struct Path {
     weight: f32,
 }
 
-/// How light goes through a surface.
-pub(crate) struct Passage {
-    /// Index of refraction before it.
-    pub(crate) here: f32,
-    /// Index of refraction behind it.
-    pub(crate) there: f32,
-    /// What a ray runs in behind it.
-    pub(crate) behind: Media,
-    /// Whether something else fills the place on both sides, so that there is no surface.
-    pub(crate) hidden: bool,
-}
-
-impl Default for Passage {
-    fn default() -> Self {
-        Passage { here: 1.0, there: 1.0, behind: Media::default(), hidden: false }
-    }
-}
-
 impl Whitted<'_> {
     /// The light that comes along a camera ray.
     pub fn radiance<T: Witness>(&self, ray: &Ray, tally: &mut T) -> Color {
         let path = Path { bounces: self.settings.bounces, media: Media::default(), weight: 1.0 };
-        tally.begin(|| What::Ray { from: RayKind::Camera, ray: ray.into(), weight: 1.0, hit: None });
+        tally.begin(|| What::Ray { from: RayKind::Camera, ray: ray.into(), weight: 1.0, hit: None, bounce: None });
         let color = self.trace(&ray.into(), path, tally);
         tally.end(Color::ONE, Color::ONE, color);
         color
@@ -119,7 +102,7 @@ impl Whitted<'_> {
         let n = if from_behind && self.settings.shade_back { -surface.n_shade } else { surface.n_shade };
         let n = if self.world.rules.has(Compat::UnitLight) { n.normalize_or(n) } else { n };
         let parts = self.world.parts(hit, surface.position);
-        tally.hit(|| self.struck(ray, hit, surface, n, from_behind, black));
+        tally.hit(|| struck(self.world, ray, hit, surface, n, from_behind, black));
         let mut color = Color::ZERO;
         if !black {
             // A texture or noise is looked up once for all lights.
@@ -161,26 +144,6 @@ impl Whitted<'_> {
         color
     }
 
-    /// What a witness is told of a hit.
-    fn struck(&self, ray: &Ray64, hit: &Hit, surface: &Surface, n: Vec3, from_behind: bool, black: bool) -> Struck {
-        let object = &self.world.objects[hit.object as usize];
-        Struck {
-            object: hit.object,
-            part: self.world.triangle(hit),
-            t: hit.t,
-            position: surface.position,
-            n_geo: surface.n_geo,
-            n_shade: surface.n_shade,
-            n,
-            from_behind,
-            black,
-            uv: surface.uv,
-            barycentric: surface.barycentric,
-            local: object.own_ray(ray).as_ref().map(Into::into),
-            material: self.world.material(hit),
-        }
-    }
-
     /// What a witness is told of a shadow ray.
     fn shadow(&self, surface: &Surface, seen: &Illumination, share: Color) -> Shadow {
         let ray = self.shadow_ray(surface, seen);
@@ -209,9 +172,7 @@ impl Whitted<'_> {
 
     /// Noise, else texture, else the diffuse colour.
     pub(crate) fn diffuse_color(&self, phong: &Phong, surface: &Surface) -> Color {
-        let texture = phong.texture.zip(surface.uv).map(|(i, uv)| self.world.textures[i as usize].at(uv));
-        let noise = phong.noise.as_ref().map(|noise| noise.color(surface.position));
-        noise.or(texture).unwrap_or(phong.diffuse)
+        self.world.diffuse_color(phong, surface)
     }
 
     /// The share of a light that arrives: nothing behind a thing, or what transparent things let through.
@@ -314,7 +275,7 @@ impl Whitted<'_> {
         let leaving = self.sees_back(ray.dir(), surface);
         Some(match self.world.rules.is_official() {
             true => self.official_passage(hit.object, blend, leaving, media),
-            false => self.nested_passage(ray, hit.object, blend, leaving, media),
+            false => media.nested_passage(self.world, ray, (hit.object, blend.ior), leaving),
         })
     }
 
@@ -328,39 +289,6 @@ impl Whitted<'_> {
             (false, false) => (1.0, ior),
         };
         Passage { here, there, behind: Media::only(Medium { object, ior: there, size: None }), hidden: false }
-    }
-
-    /// Ours: things of glass may be inside each other and overlap.
-    fn nested_passage(&self, ray: &Ray64, object: u32, blend: Blend, leaving: bool, media: &Media) -> Passage {
-        let medium = |object: u32, ior: f32| Medium { object, ior, size: self.world.objects[object as usize].extent() };
-        let own = medium(object, blend.ior);
-        if !leaving {
-            let behind = media.entered(own);
-            let hidden = !media.is_air() && behind.object() == media.object() && media.object() != Some(object);
-            return Passage { here: media.ior(), there: behind.ior(), behind, hidden };
-        }
-        let found = if media.holds(object) {
-            media.clone()
-        } else if own.size.is_none() {
-            media.entered(own)
-        } else if self.world.objects[object as usize].contains(ray.rounded.origin) {
-            // A ray that leaves what it never entered began inside.
-            let others = self.world.glass_around(ray.rounded.origin).filter(|&(other, _)| other != object);
-            let all = others.map(|(other, ior)| medium(other, ior)).chain([own]);
-            all.fold(Media::default(), |media, medium| media.entered(medium))
-        } else {
-            // Turned inside out, it is the wall of a cavity in what is around.
-            let behind = media.object().map_or(Media::default(), |around| media.left(around));
-            return Passage {
-                here: if media.is_air() { own.ior } else { media.ior() },
-                there: behind.ior(),
-                behind,
-                hidden: false,
-            };
-        };
-        let behind = found.left(object);
-        let hidden = found.object() != Some(object);
-        Passage { here: found.ior(), there: behind.ior(), behind, hidden }
     }
 
     /// One secondary ray, weighed by a colour.
@@ -385,10 +313,38 @@ impl Whitted<'_> {
             return Color::ZERO;
         }
         let ray = from_surface(surface, dir, f32::INFINITY, self.world.rules.epsilon);
-        tally.begin(|| What::Ray { from, ray: (&ray).into(), weight: total, hit: None });
+        tally.begin(|| What::Ray { from, ray: (&ray).into(), weight: total, hit: None, bounce: None });
         let color = self.trace(&ray, Path { bounces: path.bounces - 1, weight: total, ..path }, tally);
         tally.end(weight, Color::ONE, color);
         weight * color
+    }
+}
+
+/// What a witness is told of a hit.
+pub(super) fn struck(
+    world: &World,
+    ray: &Ray64,
+    hit: &Hit,
+    surface: &Surface,
+    n: Vec3,
+    from_behind: bool,
+    black: bool,
+) -> Struck {
+    let object = &world.objects[hit.object as usize];
+    Struck {
+        object: hit.object,
+        part: world.triangle(hit),
+        t: hit.t,
+        position: surface.position,
+        n_geo: surface.n_geo,
+        n_shade: surface.n_shade,
+        n,
+        from_behind,
+        black,
+        uv: surface.uv,
+        barycentric: surface.barycentric,
+        local: object.own_ray(ray).as_ref().map(Into::into),
+        material: world.material(hit),
     }
 }
 

@@ -4,7 +4,7 @@ use super::{Emitter, Illumination};
 use crate::describe::Rule;
 use crate::described;
 use crate::dialect::{Rules, set};
-use crate::math::Vec3;
+use crate::math::{Color, Vec3};
 use glam::DVec3;
 
 described! {
@@ -25,5 +25,9 @@ impl Emitter for DirectionalLight {
 
     fn resolved(&self, _rules: &Rules) -> Self {
         self.clone()
+    }
+
+    fn color(&self) -> Color {
+        self.color
     }
 }

@@ -4,7 +4,7 @@ use super::{Emitter, Illumination};
 use crate::describe::Rule;
 use crate::described;
 use crate::dialect::{Compat, Falloff, Rules, set};
-use crate::math::Vec3;
+use crate::math::{Color, Vec3};
 use glam::DVec3;
 
 described! {
@@ -45,5 +45,14 @@ impl Emitter for PointLight {
             (Falloff::Bare(_), _) => None,
         };
         PointLight { attenuation, falloff: None, ..self.clone() }
+    }
+
+    fn color(&self) -> Color {
+        self.color
+    }
+
+    fn place(&self) -> Option<(Vec3, Color)> {
+        let squared = |a: &Vec3| a.y == 0.0 && a.z > 0.0;
+        self.attenuation.filter(squared).map(|a| (self.position, self.color / a.z))
     }
 }

@@ -11,8 +11,9 @@ use crate::camera::Raster;
 use crate::dialect::Compat;
 use crate::film::Film;
 use crate::film::aov::Aov;
-use crate::integrator::{Account, Node, Whitted};
+use crate::integrator::{Account, Integrator, Node, Whitted};
 use crate::math::{Color, Ray, Vec2, Vec3};
+use crate::sampler::SampleId;
 use crate::world::{Material, World};
 use serde::Serialize;
 use std::sync::atomic::AtomicBool;
@@ -90,10 +91,10 @@ impl Explanation {
     }
 }
 
-/// The tree of the light along any ray.
-pub fn explain_ray(world: &World, job: &Job, ray: &Ray) -> Option<Node> {
+/// The tree of the light along any ray, by the random numbers of a sample.
+pub fn explain_ray(world: &World, job: &Job, ray: &Ray, id: SampleId) -> Option<Node> {
     let mut account = Account::default();
-    Whitted { world, settings: job.settings, cancel: None }.radiance(ray, &mut account);
+    Integrator::new(world, job.method, job.settings, None).radiance(ray, id, &mut account);
     account.into_tree()
 }
 
@@ -109,7 +110,8 @@ pub fn explain(world: &World, job: &Job, x: u32, y: u32) -> Result<Explanation, 
     let (stop, mut stale_texels) = (AtomicBool::new(false), None);
     let source = Samples::without_habits(world, job, &stop);
     let account = |of, sample, aim: Aim| {
-        let light = aim.ray.and_then(|ray| explain_ray(world, job, &ray));
+        let id = SampleId::new(job.seed, of, sample);
+        let light = aim.ray.and_then(|ray| explain_ray(world, job, &ray, id));
         SampleAccount { of, sample, place: aim.place, lens: aim.lens, weight: aim.weight, light }
     };
     let (mean, samples) = match job.sampling {

@@ -4,7 +4,7 @@ use super::passes;
 use crate::film::Filter;
 use crate::film::aov::{Aov, Value};
 use crate::film::course::CourseFilter;
-use crate::integrator::Settings;
+use crate::integrator::{Method, Settings};
 use crate::sampler::Sampler;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
@@ -129,6 +129,9 @@ pub struct Job {
     pub sampling: Sampling,
     /// Where the estimated error falls below this, no more samples are taken: see [`passes::error`]. `None`: nowhere.
     pub noise: Option<f32>,
+    /// What computes the light.
+    #[serde(default)]
+    pub method: Method,
     /// What light does.
     pub settings: Settings,
     /// Whether colour is wanted.
@@ -169,6 +172,7 @@ impl Default for Job {
             seed: 0,
             sampling: Sampling::Center,
             noise: None,
+            method: Method::default(),
             settings,
             color: true,
             aovs: Vec::new(),

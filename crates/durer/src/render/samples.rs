@@ -8,9 +8,9 @@ use crate::camera::{Lens, Raster};
 use crate::dialect::Compat;
 use crate::film::course::{CourseFilter, StoredSample, StoredSamples};
 use crate::film::{Film, FilterSampler};
-use crate::integrator::Whitted;
+use crate::integrator::{Integrator, Whitted};
 use crate::math::{Color, Ray, Vec2, Vec3};
-use crate::sampler::Sampler;
+use crate::sampler::{SampleId, Sampler};
 use crate::threads;
 use crate::world::{Material, World};
 use std::cell::Cell;
@@ -125,6 +125,7 @@ pub(super) struct Samples<'a> {
     job: &'a Job,
     raster: Raster,
     pub(super) whitted: Whitted<'a>,
+    integrator: Integrator<'a>,
     warp: Option<FilterSampler>,
     /// What [`Compat::StaleTexels`] adds to each pixel of the whole picture.
     stale: Vec<Color>,
@@ -147,8 +148,9 @@ impl<'a> Samples<'a> {
             _ => None,
         };
         let whitted = Whitted { world, settings: job.settings, cancel: Some(stop) };
+        let integrator = Integrator::new(world, job.method, job.settings, Some(stop));
         let raster = raster(world, job.width, job.height);
-        Samples { world, job, raster, whitted, warp, stale: Vec::new(), stop }
+        Samples { world, job, raster, whitted, integrator, warp, stale: Vec::new(), stop }
     }
 
     /// The size of a sample's weight.
@@ -184,7 +186,8 @@ impl<'a> Samples<'a> {
     /// One sample of a pixel: its colour, if the camera sees anything there, and its weight.
     pub(super) fn sample(&self, x: u32, y: u32, sample: u32, rays: &mut Rays) -> (Option<Color>, f32) {
         let Aim { ray, weight, .. } = self.aim(x, y, sample);
-        let color = ray.map(|ray| self.whitted.radiance(&ray, rays));
+        let id = SampleId::new(self.job.seed, (x, y), sample);
+        let color = ray.map(|ray| self.integrator.radiance(&ray, id, rays));
         match self.stale.get((y * self.job.width + x) as usize) {
             Some(&stale) => (color.map(|color| color + stale), weight),
             None => (color, weight),
@@ -256,9 +259,9 @@ impl<'a> Samples<'a> {
     }
 
     /// The colour of a sample that is kept.
-    fn kept(&self, show: &Show, aim: &Aim, rays: &mut Rays) -> Color {
+    fn kept(&self, show: &Show, aim: &Aim, id: SampleId, rays: &mut Rays) -> Color {
         show.blind.set(show.blind.get() || aim.ray.is_none());
-        let light = |ray| if show.mask { Vec3::ONE } else { self.whitted.radiance(&ray, rays) };
+        let light = |ray| if show.mask { Vec3::ONE } else { self.integrator.radiance(&ray, id, rays) };
         aim.ray.map_or(Vec3::ZERO, light)
     }
 
@@ -293,7 +296,7 @@ impl<'a> Samples<'a> {
             at.set((x, y, Some(sample)));
             let (aim, position) = self.aim_kept(sampling, x, y, sample);
             let mut own = Rays::default();
-            let color = self.kept(show, &aim, &mut own);
+            let color = self.kept(show, &aim, SampleId::new(self.job.seed, (x, y), sample), &mut own);
             rays.0 += if counted(x, y) { own.0 } else { 0 };
             Ok(StoredSample { position, color })
         })
@@ -316,7 +319,8 @@ impl<'a> Samples<'a> {
             let pixel = grid.pixel((x, y));
             at.set((pixel.0, pixel.1, None));
             let mut own = Rays::default();
-            pixels.push(self.kept(show, &self.aim_sub_pixel(&grid, &raster, (x, y)), &mut own));
+            let id = SampleId::new(self.job.seed, (x, y), 0);
+            pixels.push(self.kept(show, &self.aim_sub_pixel(&grid, &raster, (x, y)), id, &mut own));
             rays.0 += if grid.inner.holds(x, y) { own.0 } else { 0 };
         }
         let pixels = grid.develop(pixels);

@@ -27,6 +27,13 @@ described! {
         /// Folder with six pictures (left, right, up, down, front, back) that replace the colour.
         cube_map: Option<FileName> = None, optional, Rule::Any,
             ["cubeMap" in set::F12A5 | set::F16 | set::DURER, "cube_map" in set::F23];
+        /// A picture of all directions that replaces the colour and lights the scene, best of high dynamic range (`.exr`,
+        /// `.hdr`); its middle is seen towards -z. Whitted's light does not come from it.
+        environment: Option<FileName> = None, optional, Rule::Any, ["environment" in set::DURER];
+        /// How far the environment is turned about y, in degrees.
+        environment_rotation: f32 = 0.0, optional, Rule::Any, ["environmentRotation" in set::DURER];
+        /// What multiplies the environment.
+        environment_scale: Vec3 = Vec3::ONE, optional, Rule::Any, ["environmentScale" in set::DURER];
     }
 }
 
@@ -46,6 +53,14 @@ pub struct Scene {
     /// Where the camera is written.
     #[serde(skip)]
     pub camera_span: Span,
+}
+
+impl Scene {
+    /// Whether it has light or materials that only a path tracer shows: layers, surfaces that shine, an environment.
+    pub fn is_physical(&self) -> bool {
+        let layered = |material: &Spanned<Material>| matches!(material.value, Material::Principled(_));
+        self.background.environment.is_some() || self.materials.iter().any(layered)
+    }
 }
 
 /// A thing and where it is written.

@@ -1,9 +1,11 @@
 //! Pictures on surfaces and around the scene.
 
 pub mod cube_map;
+pub mod environment;
 
 use crate::math::{Color, Vec2};
 pub use cube_map::CubeMap;
+pub use environment::Environment;
 use std::sync::Arc;
 
 /// A decoded picture, looked up as the course does.

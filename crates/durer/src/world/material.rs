@@ -1,8 +1,10 @@
 //! Materials with the rules of their dialect worked in.
 
-use crate::material::{ColorNoise, Solid};
+use crate::bsdf::{Layers, Tables};
+use crate::material::{ColorNoise, PrincipledMaterial, Solid};
 use crate::math::Color;
 use smallvec::SmallVec;
+use std::sync::Arc;
 
 /// A compiled material.
 #[derive(Clone, Debug, PartialEq)]
@@ -23,6 +25,30 @@ pub enum HighlightModel {
         /// Whether surfaces that face away have highlights too.
         behind: bool,
     },
+}
+
+/// A principled material with its files read and its tables worked out.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Principled {
+    /// As written.
+    pub written: PrincipledMaterial,
+    /// The same everywhere, where no texture says otherwise.
+    pub layers: Layers,
+    /// What its boundaries give back.
+    pub tables: Tables,
+    /// What it takes of light on its way through a body, per unit of the world and by colour.
+    pub absorption: Color,
+}
+
+/// The light of a surface's own.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Emission {
+    /// Its radiance, without texture.
+    pub radiance: Color,
+    /// Number of a texture that multiplies it.
+    pub texture: Option<u32>,
+    /// Whether both sides shine, and not only that of the normal.
+    pub two_sided: bool,
 }
 
 /// A Phong material with the rules of its dialect worked in.
@@ -46,6 +72,10 @@ pub struct Phong {
     pub ior: f32,
     /// Whether Fresnel's law divides light between the two rays.
     pub fresnel: bool,
+    /// What a path tracer takes instead of all this.
+    pub principled: Option<Arc<Principled>>,
+    /// The light of its own, which path tracers see.
+    pub emission: Option<Emission>,
 }
 
 /// One of the materials that make up a surface point.
@@ -72,6 +102,8 @@ impl Default for Phong {
             transparent: Color::ZERO,
             ior: 1.0,
             fresnel: false,
+            principled: None,
+            emission: None,
         }
     }
 }

@@ -1,8 +1,10 @@
 //! The compiled scene: immutable, with numbers instead of names, ready to be asked by many threads.
 
 pub mod csg;
+pub mod emitters;
 mod material;
 mod object;
+pub mod shading;
 pub mod solid;
 
 use crate::bvh::{Bvh, Grid, Tally};
@@ -13,9 +15,11 @@ use crate::material::Pattern;
 use crate::math::{Aabb, Color, Ray64, Vec2, Vec3};
 use crate::shape::{Crossing, Surface};
 use crate::source::Digest;
-use crate::texture::{CubeMap, Texture};
-pub use material::{HighlightModel, Material, Part, Parts, Phong};
+use crate::texture::{CubeMap, Environment, Texture};
+pub use emitters::Emitters;
+pub use material::{Emission, HighlightModel, Material, Part, Parts, Phong, Principled};
 pub use object::{Geometry, MeshTree, Object, Placing};
+pub use shading::Shading;
 
 /// A scene ready to be traced.
 #[derive(Clone, Debug)]
@@ -42,6 +46,12 @@ pub struct World {
     pub rules: Rules,
     /// The hash of all that it was made of: description, files, rules.
     pub digest: Digest,
+    /// Light from all around, which replaces colour and cube map.
+    pub environment: Option<Environment>,
+    /// What shines.
+    pub emitters: Emitters,
+    /// Whether some surface is there in part only.
+    pub has_cutouts: bool,
     pub(crate) unbounded: Vec<u32>,
     pub(crate) accel: Accel,
 }
@@ -244,6 +254,9 @@ impl World {
 
     /// The colour that a ray sees that hits nothing.
     pub fn sky(&self, direction: Vec3) -> Color {
+        if let Some(environment) = &self.environment {
+            return environment.at(direction);
+        }
         self.cube_map.as_ref().map_or(self.background, |map| map.at(direction))
     }
 

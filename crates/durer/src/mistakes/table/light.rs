@@ -453,6 +453,7 @@ fn recolor<'l>(lights: impl Iterator<Item = &'l mut Light>, change: impl Fn(Colo
     lights.for_each(|light| match light {
         Light::Directional(light) => light.color = change(light.color),
         Light::Point(light) => light.color = change(light.color),
+        Light::Spot(light) => light.color = change(light.color),
     });
 }
 

@@ -6,9 +6,10 @@ use crate::diag::{Files, Span};
 use crate::dialect::Compat;
 use crate::image::Transfer;
 use crate::integrator::Node;
-use crate::integrator::account::{Line as RayLine, RayKind, Shadow, Struck, What};
+use crate::integrator::account::{Bounce, Line as RayLine, RayKind, Shadow, Struck, What};
 use crate::math::{Color, Vec3, reflect};
 use crate::scene::Scene;
+use crate::world::emitters::LightId;
 use crate::world::{Material, World};
 
 /// What things are called, and where they are written.
@@ -110,6 +111,15 @@ impl Names<'_> {
         match self.scene.lights.iter().flatten().nth(number) {
             Some(light) => format!("{} {}", light.value.keywords()[0].0, self.line(light.span)),
             None => format!("light {number}"),
+        }
+    }
+
+    /// What shines, and the line in which it is written.
+    fn emitter(&self, light: LightId) -> String {
+        match light {
+            LightId::Light(number) => self.short_light(number as usize),
+            LightId::Surface(object, _) => self.short_object(object),
+            LightId::Environment => "the environment".into(),
         }
     }
 
@@ -215,13 +225,15 @@ fn node_lines(node: &Node, names: &Names, depth: usize, telling: &Telling, at: C
     let mut more = Vec::new();
     let mut below = Context { gain: at.gain * node.factor * node.scale, ..at };
     let text = match &node.what {
-        What::Ray { from, ray, weight, hit } => {
+        What::Ray { from, ray, weight, hit, bounce } => {
             below.dir = ray.dir;
             let from = match from {
                 RayKind::Camera => "camera ray",
                 RayKind::Reflected => "mirrored ray",
                 RayKind::Transmitted => "transmitted ray",
+                RayKind::Scattered => "scattered ray",
             };
+            more.extend(bounce.iter().map(bounce_line));
             more.push(ray_line(ray));
             match hit {
                 Some(hit) => {
@@ -242,6 +254,18 @@ fn node_lines(node: &Node, names: &Names, depth: usize, telling: &Telling, at: C
             }
         }
         What::Sky => "background".into(),
+        What::Emission { mis } => format!("light of its own: {value}{}", weight_text(*mis)),
+        What::Direct { light, to_light, distance, choice, pdf, bsdf, mis, shadow } => {
+            more.push(format!("L = {}, {} away", vector(*to_light), number(*distance)));
+            more.push(format!(
+                "surface: value · cos = {}; chosen with probability {}{}",
+                rgb(*bsdf),
+                number(*choice),
+                if *pdf > 0.0 { format!(" and density {} /sr", number(*pdf)) } else { String::new() }
+            ));
+            more.extend(shadow.iter().map(|shadow| shadow_line(shadow, names)));
+            format!("direct light of {}: {factor} · {value}{}", names.emitter(*light), weight_text(*mis))
+        }
         What::Ambient { share } => {
             format!("ambient{}: light {factor} · colour {value}", share_text(*share))
         }
@@ -298,6 +322,20 @@ fn node_lines(node: &Node, names: &Names, depth: usize, telling: &Telling, at: C
         let text = format!("{} of less than {} % each (--min)", terms(left), number(100.0 * telling.least));
         lines.push(Line { depth: depth + 1, adds: None, share: 0.0, text });
     }
+}
+
+/// How a direction was chosen.
+fn bounce_line(bounce: &Bounce) -> String {
+    let Bounce { lobe, probability, pdf, survival } = bounce;
+    let density = if *pdf > 0.0 { format!(", density {} /sr", number(*pdf)) } else { String::new() };
+    let survived =
+        if *survival < 1.0 { format!("; went on with probability {}", number(*survival)) } else { String::new() };
+    format!("chosen by {lobe} (probability {}){density}{survived}", number(*probability))
+}
+
+/// A weight of multiple importance sampling, where it is not 1.
+fn weight_text(mis: f32) -> String {
+    if mis == 1.0 { String::new() } else { format!(" (MIS weight {})", number(mis)) }
 }
 
 fn terms(count: usize) -> String {

@@ -1,0 +1,67 @@
+//! The course's highlights as lobes.
+
+use super::{Scatter, Scattered};
+use crate::bsdf::warp;
+use crate::math::{Color, Vec2, Vec3, fp, reflect};
+use std::f32::consts::FRAC_1_PI;
+
+/// A highlight: color · base^exponent / pi, where the base is N·H (Blinn) or R·L (Phong).
+///
+/// The course has no cosine beside it, and so would give back more light than arrives; here there is one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Blinn {
+    /// Its strength.
+    pub color: Color,
+    /// Its sharpness.
+    pub exponent: f32,
+    /// Whether the base is R·L.
+    pub phong: bool,
+}
+
+impl Blinn {
+    /// More than the share of light that a highlight of strength 1 gives back, from whatever side.
+    pub fn bound(exponent: f32) -> f32 {
+        (8.0 / (exponent + 1.0)).min(1.0)
+    }
+
+    fn base(&self, wo: Vec3, wi: Vec3) -> f32 {
+        match self.phong {
+            true => reflect(-wo, Vec3::Z).dot(wi),
+            false => (wo + wi).try_normalize().map_or(0.0, |h| h.z),
+        }
+    }
+}
+
+impl Scatter for Blinn {
+    fn eval(&self, wo: Vec3, wi: Vec3) -> Color {
+        let base = self.base(wo, wi);
+        if wi.z <= 0.0 || base <= 0.0 {
+            return Color::ZERO;
+        }
+        self.color * (FRAC_1_PI * wi.z * fp::pow(base, self.exponent))
+    }
+
+    fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
+        let base = self.base(wo, wi);
+        if wi.z <= 0.0 || base <= 0.0 {
+            return 0.0;
+        }
+        let density = (self.exponent + 1.0) * 0.5 * FRAC_1_PI * fp::pow(base, self.exponent);
+        match self.phong {
+            true => density,
+            false => {
+                let to_half = wo.dot((wo + wi).normalize_or(Vec3::Z));
+                if to_half > 0.0 { density / (4.0 * to_half) } else { 0.0 }
+            }
+        }
+    }
+
+    fn sample(&self, wo: Vec3, _: f32, u: Vec2) -> Option<Scattered> {
+        let about = warp::polar(fp::pow(u.x, 1.0 / (self.exponent + 1.0)), u.y);
+        let wi = match self.phong {
+            true => crate::bsdf::Frame::around(reflect(-wo, Vec3::Z)).to_world(about),
+            false => 2.0 * wo.dot(about) * about - wo,
+        };
+        (wi.z > 0.0).then_some(Scattered { wi, value: Color::ONE })
+    }
+}

@@ -1,0 +1,61 @@
+//! Matte surfaces: energy-preserving Oren-Nayar.
+//!
+//! Source: Portsmouth, Kutz and Hill, *EON: A practical energy-preserving rough diffuse BRDF*, JCGT 14(1), 2025: Fujii's
+//! version of Oren and Nayar's, and a term that gives back what is scattered more than once.
+
+use super::{Scatter, Scattered};
+use crate::bsdf::warp;
+use crate::math::{Color, Vec2, Vec3, fp};
+use std::f32::consts::{FRAC_1_PI, PI};
+
+/// A matte surface. Its value does not depend on which direction is which.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Diffuse {
+    /// The share of light given back, by colour.
+    pub color: Color,
+    /// From 0 (Lambert) to 1.
+    pub roughness: f32,
+}
+
+const C1: f32 = 0.5 - 2.0 / (3.0 * PI);
+const C2: f32 = 2.0 / 3.0 - 28.0 / (15.0 * PI);
+
+impl Diffuse {
+    /// The directional albedo of single scattering for a white surface.
+    fn single(&self, cosine: f32) -> f32 {
+        let mu = cosine.clamp(1e-6, 1.0);
+        let sine = (1.0 - mu * mu).max(0.0).sqrt();
+        let angle = fp::atan2(sine, mu);
+        let g = sine * (angle - sine * mu) + (2.0 / 3.0) * ((sine / mu) * (1.0 - sine * sine * sine) - sine);
+        (1.0 + self.roughness * FRAC_1_PI * g) / (1.0 + C1 * self.roughness)
+    }
+
+    /// The value without the cosine.
+    pub fn value(&self, wo: Vec3, wi: Vec3) -> Color {
+        if self.roughness == 0.0 {
+            return self.color * FRAC_1_PI;
+        }
+        let a = 1.0 / (1.0 + C1 * self.roughness);
+        let s = wo.dot(wi) - wo.z * wi.z;
+        let s_over_t = if s > 0.0 { s / wo.z.max(wi.z) } else { s };
+        let single = self.color * (FRAC_1_PI * a * (1.0 + self.roughness * s_over_t));
+        let mean = a * (1.0 + C2 * self.roughness);
+        let lost = |w: Vec3| (1.0 - self.single(w.z)).max(1e-7);
+        let again = self.color * self.color * mean / (Vec3::ONE - self.color * (1.0 - mean).max(0.0));
+        single + again * (FRAC_1_PI * lost(wo) * lost(wi) / (1.0 - mean).max(1e-7))
+    }
+}
+
+impl Scatter for Diffuse {
+    fn eval(&self, wo: Vec3, wi: Vec3) -> Color {
+        if wi.z <= 0.0 { Color::ZERO } else { wi.z * self.value(wo, wi) }
+    }
+
+    fn pdf(&self, _: Vec3, wi: Vec3) -> f32 {
+        FRAC_1_PI * wi.z.max(0.0)
+    }
+
+    fn sample(&self, _: Vec3, _: f32, u: Vec2) -> Option<Scattered> {
+        Some(Scattered { wi: warp::cosine_hemisphere(u), value: Color::ONE })
+    }
+}

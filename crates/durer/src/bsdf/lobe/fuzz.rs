@@ -1,0 +1,39 @@
+//! Fuzz: fibres that stand out of a surface, as on velvet.
+//!
+//! Source: Estevez and Kulla, *Production Friendly Microfacet Sheen BRDF*, 2017 (the distribution); Neubelt and Pettineo,
+//! *Crafting a Next-Gen Material Pipeline for The Order: 1886*, 2013 (the masking).
+
+use super::{Scatter, Scattered};
+use crate::bsdf::warp;
+use crate::math::{Color, Vec2, Vec3, fp};
+use std::f32::consts::PI;
+
+/// Fuzz of white fibres. Its directional albedo is [`crate::bsdf::albedo::fuzz`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fuzz {
+    /// From 0 (a thin rim of light) to 1.
+    pub roughness: f32,
+}
+
+/// The value without the cosine.
+pub fn value(roughness: f32, wo: Vec3, wi: Vec3) -> f32 {
+    let Some(h) = (wo + wi).try_normalize().filter(|_| wi.z > 0.0) else { return 0.0 };
+    let sharpness = 1.0 / (roughness * roughness).max(0.01);
+    let sine = (1.0 - h.z * h.z).max(0.0).sqrt();
+    let density = (2.0 + sharpness) * fp::pow(sine, sharpness) / (2.0 * PI);
+    density / (4.0 * (wo.z + wi.z - wo.z * wi.z).max(1e-6))
+}
+
+impl Scatter for Fuzz {
+    fn eval(&self, wo: Vec3, wi: Vec3) -> Color {
+        Color::splat(wi.z.max(0.0) * value(self.roughness, wo, wi))
+    }
+
+    fn pdf(&self, _: Vec3, wi: Vec3) -> f32 {
+        if wi.z > 0.0 { 1.0 / (2.0 * PI) } else { 0.0 }
+    }
+
+    fn sample(&self, _: Vec3, _: f32, u: Vec2) -> Option<Scattered> {
+        Some(Scattered { wi: warp::polar(u.x, u.y), value: Color::ONE })
+    }
+}

@@ -1,0 +1,53 @@
+//! Single directions: mirrors, smooth glass, and what goes straight on.
+
+use super::{Scatter, Scattered};
+use crate::math::{Color, Vec2, Vec3};
+
+/// A perfect mirror; what it reflects is its weight.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Mirror;
+
+/// Refraction by a smooth boundary; what goes through is its weight.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Refraction {
+    /// The index behind the boundary over that before it.
+    pub eta: f32,
+}
+
+/// Light that goes on as if nothing were there.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Through;
+
+/// The direction behind a boundary with normal `h` on the side of `w`; `None` for total reflection. `eta` is the index behind
+/// over that before.
+pub fn refracted(w: Vec3, h: Vec3, eta: f32) -> Option<Vec3> {
+    let cosine = w.dot(h);
+    let sine2 = (1.0 - cosine * cosine).max(0.0) / (eta * eta);
+    (sine2 < 1.0).then(|| (cosine / eta - (1.0 - sine2).sqrt()) * h - w / eta)
+}
+
+macro_rules! single_direction {
+    ($type:ty, |$lobe:ident, $wo:ident| $scattered:expr) => {
+        impl Scatter for $type {
+            fn eval(&self, _: Vec3, _: Vec3) -> Color {
+                Color::ZERO
+            }
+            fn pdf(&self, _: Vec3, _: Vec3) -> f32 {
+                0.0
+            }
+            fn sample(&self, $wo: Vec3, _: f32, _: Vec2) -> Option<Scattered> {
+                let $lobe = self;
+                $scattered
+            }
+            fn is_delta(&self) -> bool {
+                true
+            }
+        }
+    };
+}
+
+single_direction!(Mirror, |_lobe, wo| Some(Scattered { wi: Vec3::new(-wo.x, -wo.y, wo.z), value: Color::ONE }));
+single_direction!(Through, |_lobe, wo| Some(Scattered { wi: -wo, value: Color::ONE }));
+// Radiance is denser where the index is higher: L / n^2 stays what it is. Source: Veach's thesis, section 5.2.
+single_direction!(Refraction, |lobe, wo| refracted(wo, Vec3::Z, lobe.eta)
+    .map(|wi| Scattered { wi, value: Color::splat(1.0 / (lobe.eta * lobe.eta)) }));

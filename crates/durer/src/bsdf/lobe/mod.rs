@@ -1,0 +1,89 @@
+//! Lobes: the ways in which a surface scatters light. One file each; the list is [`Lobe`].
+
+pub mod blinn;
+pub mod diffuse;
+pub mod fuzz;
+pub mod glass;
+pub mod rough;
+pub mod rough_glass;
+
+use crate::math::{Color, Vec2, Vec3};
+
+/// A direction that a lobe chose.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scattered {
+    /// Where the light comes from, locally.
+    pub wi: Vec3,
+    /// Of a lobe of single directions, what it multiplies light by; of others this is not asked.
+    pub value: Color,
+}
+
+/// What every lobe can do. Directions are local and point away from the surface; `wo` is above it (`wo.z` > 0).
+pub trait Scatter {
+    /// The lobe's value times |cos| of `wi`; 0 for a lobe of single directions.
+    fn eval(&self, wo: Vec3, wi: Vec3) -> Color;
+
+    /// The density per solid angle with which [`Scatter::sample`] chooses `wi`; 0 for a lobe of single directions.
+    fn pdf(&self, wo: Vec3, wi: Vec3) -> f32;
+
+    /// A direction; `choice` and `u` are uniform from 0 to 1. `None` where none comes of these numbers.
+    fn sample(&self, wo: Vec3, choice: f32, u: Vec2) -> Option<Scattered>;
+
+    /// Whether it scatters into single directions only.
+    fn is_delta(&self) -> bool {
+        false
+    }
+}
+
+macro_rules! lobes {
+    ($($(#[doc = $doc:literal])+ $name:ident($type:ty),)+) => {
+        /// One way of scattering.
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        pub enum Lobe { $($(#[doc = $doc])+ $name($type),)+ }
+
+        $(impl From<$type> for Lobe {
+            fn from(lobe: $type) -> Self { Lobe::$name(lobe) }
+        })+
+
+        impl Scatter for Lobe {
+            fn eval(&self, wo: Vec3, wi: Vec3) -> Color {
+                match self { $(Lobe::$name(lobe) => lobe.eval(wo, wi),)+ }
+            }
+            fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
+                match self { $(Lobe::$name(lobe) => lobe.pdf(wo, wi),)+ }
+            }
+            fn sample(&self, wo: Vec3, choice: f32, u: Vec2) -> Option<Scattered> {
+                match self { $(Lobe::$name(lobe) => lobe.sample(wo, choice, u),)+ }
+            }
+            fn is_delta(&self) -> bool {
+                match self { $(Lobe::$name(lobe) => lobe.is_delta(),)+ }
+            }
+        }
+
+        impl Lobe {
+            /// Its name, for explanations.
+            pub fn name(&self) -> &'static str {
+                match self { $(Lobe::$name(_) => stringify!($name),)+ }
+            }
+        }
+    };
+}
+
+lobes! {
+    /// Matte: energy-preserving Oren-Nayar; Lambert where it is not rough.
+    Diffuse(diffuse::Diffuse),
+    /// The course's highlight.
+    Blinn(blinn::Blinn),
+    /// A rough mirror: metal, a coat, the skin of plastic.
+    Rough(rough::Rough),
+    /// Rough glass.
+    RoughGlass(rough_glass::RoughGlass),
+    /// A perfect mirror.
+    Mirror(glass::Mirror),
+    /// Perfect refraction.
+    Refraction(glass::Refraction),
+    /// Light that goes straight on.
+    Through(glass::Through),
+    /// Fibres that stand out.
+    Fuzz(fuzz::Fuzz),
+}

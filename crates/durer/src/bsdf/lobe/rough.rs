@@ -1,0 +1,71 @@
+//! Rough mirrors: GGX with the reflectance of a metal or of a dielectric.
+
+use super::{Scatter, Scattered};
+use crate::bsdf::fresnel::{self, F82};
+use crate::bsdf::microfacet::Ggx;
+use crate::math::{Color, Vec2, Vec3};
+
+/// What each facet reflects.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Facet {
+    /// As a metal.
+    Metal(F82),
+    /// As a boundary of dielectrics: the index behind over that before.
+    Dielectric(f32),
+    /// As a thin sheet of a dielectric.
+    Slab(f32),
+    /// All that a thin sheet does not reflect.
+    BehindSlab(f32),
+}
+
+impl Facet {
+    /// At a cosine.
+    pub fn at(&self, cosine: f32) -> Color {
+        match *self {
+            Facet::Metal(f82) => f82.at(cosine),
+            Facet::Dielectric(eta) => Color::splat(fresnel::dielectric(cosine, eta)),
+            Facet::Slab(eta) => Color::splat(fresnel::slab(cosine, eta)),
+            Facet::BehindSlab(eta) => Color::splat(1.0 - fresnel::slab(cosine, eta)),
+        }
+    }
+}
+
+/// A rough mirror.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rough {
+    /// The distribution of normals.
+    pub ggx: Ggx,
+    /// What each of them reflects.
+    pub facet: Facet,
+    /// Whether light goes on behind the surface, as far from its way as a mirror's above: a thin sheet of rough glass.
+    pub behind: bool,
+}
+
+impl Rough {
+    /// The direction as a mirror above the surface has it.
+    fn above(&self, wi: Vec3) -> Vec3 {
+        if self.behind { Vec3::new(wi.x, wi.y, -wi.z) } else { wi }
+    }
+}
+
+impl Scatter for Rough {
+    fn eval(&self, wo: Vec3, wi: Vec3) -> Color {
+        let wi = self.above(wi);
+        let Some(h) = (wo + wi).try_normalize().filter(|_| wi.z > 0.0) else { return Color::ZERO };
+        let value = self.ggx.density(h) * self.ggx.masking_shadowing(wo, wi) / (4.0 * wo.z);
+        value * self.facet.at(wo.dot(h).clamp(0.0, 1.0))
+    }
+
+    fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
+        let wi = self.above(wi);
+        let Some(h) = (wo + wi).try_normalize().filter(|_| wi.z > 0.0) else { return 0.0 };
+        // The visible density without its factor wo·h, over 4 wo·h.
+        self.ggx.masking(wo) * self.ggx.density(h) / (4.0 * wo.z)
+    }
+
+    fn sample(&self, wo: Vec3, _: f32, u: Vec2) -> Option<Scattered> {
+        let h = self.ggx.sample_visible(wo, u);
+        let wi = 2.0 * wo.dot(h) * h - wo;
+        (wi.z > 0.0).then(|| Scattered { wi: self.above(wi), value: Color::ONE })
+    }
+}

@@ -1,0 +1,78 @@
+//! Rough glass: each facet reflects and refracts by Fresnel's equations.
+//!
+//! Source: Walter and others, *Microfacet Models for Refraction through Rough Surfaces*, EGSR 2007.
+
+use super::glass::refracted;
+use super::{Scatter, Scattered};
+use crate::bsdf::fresnel;
+use crate::bsdf::microfacet::Ggx;
+use crate::math::{Color, Vec2, Vec3};
+
+/// A rough boundary of two dielectrics.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RoughGlass {
+    /// The distribution of normals.
+    pub ggx: Ggx,
+    /// The index behind the boundary over that before it.
+    pub eta: f32,
+    /// Tint of what is reflected.
+    pub reflected: Color,
+    /// Tint of what goes through.
+    pub transmitted: Color,
+}
+
+/// The facet that turns one direction into the other, and the change of its solid angle; nothing where there is none.
+fn facet(wo: Vec3, wi: Vec3, eta: f32) -> Option<(Vec3, f32)> {
+    let passes = wi.z < 0.0;
+    let eta = if passes { eta } else { 1.0 };
+    let h = (wi * eta + wo).try_normalize()?;
+    let h = if h.z < 0.0 { -h } else { h };
+    let (to_o, to_i) = (wo.dot(h), wi.dot(h));
+    // A facet is seen from its front only.
+    if to_o <= 0.0 || (to_i < 0.0) != passes {
+        return None;
+    }
+    let spread = match passes {
+        true => {
+            let sum = to_i + to_o / eta;
+            to_i.abs() / (sum * sum)
+        }
+        false => 1.0 / (4.0 * to_o),
+    };
+    Some((h, spread))
+}
+
+impl RoughGlass {
+    /// The part that facets reflect, or let through.
+    fn share(&self, passes: bool, cosine: f32) -> f32 {
+        let reflected = fresnel::dielectric(cosine, self.eta);
+        if passes { 1.0 - reflected } else { reflected }
+    }
+}
+
+impl Scatter for RoughGlass {
+    fn eval(&self, wo: Vec3, wi: Vec3) -> Color {
+        let passes = wi.z < 0.0;
+        let Some((h, spread)) = facet(wo, wi, self.eta) else { return Color::ZERO };
+        let visible = self.ggx.density(h) * self.ggx.masking_shadowing(wo, wi) * wo.dot(h) / wo.z;
+        let value = self.share(passes, wo.dot(h)) * visible * spread;
+        match passes {
+            true => self.transmitted * (value / (self.eta * self.eta)),
+            false => self.reflected * value,
+        }
+    }
+
+    fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
+        let Some((h, spread)) = facet(wo, wi, self.eta) else { return 0.0 };
+        self.share(wi.z < 0.0, wo.dot(h)) * self.ggx.visible_density(wo, h) * spread
+    }
+
+    fn sample(&self, wo: Vec3, choice: f32, u: Vec2) -> Option<Scattered> {
+        let h = self.ggx.sample_visible(wo, u);
+        let wi = match choice < fresnel::dielectric(wo.dot(h).max(0.0), self.eta) {
+            true => Some(2.0 * wo.dot(h) * h - wo).filter(|wi| wi.z > 0.0),
+            false => refracted(wo, h, self.eta).filter(|wi| wi.z < 0.0),
+        }?;
+        Some(Scattered { wi, value: Color::ONE })
+    }
+}

@@ -1,0 +1,86 @@
+//! GGX: a surface of tiny mirrors.
+//!
+//! Sources: Walter and others, *Microfacet Models for Refraction through Rough Surfaces*, EGSR 2007; Heitz, *Understanding the
+//! Masking-Shadowing Function in Microfacet-Based BRDFs*, JCGT 3(2), 2014; Dupuy and Benyoub, *Sampling Visible GGX Normals
+//! with Spherical Caps*, HPG 2023.
+
+use super::warp;
+use crate::math::{Vec2, Vec3};
+use std::f32::consts::PI;
+
+/// Surfaces smoother than this are taken for smooth: alpha along both axes.
+pub const SMOOTH: f32 = 1e-3;
+
+/// The distribution of a rough surface's normals.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ggx {
+    /// Roughness along the local x and y axes.
+    pub alpha: Vec2,
+}
+
+impl Ggx {
+    /// From a roughness from 0 to 1, whose square is alpha, and an anisotropy from 0 to 1, as OpenPBR has them.
+    pub fn new(roughness: f32, anisotropy: f32) -> Self {
+        let square = roughness * roughness;
+        let rest = 1.0 - anisotropy;
+        // Both keep the sum of squares: (ax^2 + ay^2) / 2 = r^4.
+        let ax = square * (2.0 / (1.0 + rest * rest)).sqrt();
+        Ggx { alpha: Vec2::new(ax.min(1.0), rest * ax) }
+    }
+
+    /// Whether it is a mirror, as far as numbers can tell.
+    pub fn is_smooth(&self) -> bool {
+        self.alpha.max_element() < SMOOTH
+    }
+
+    /// At least so rough along both axes that its density is finite.
+    pub fn clamped(self) -> Self {
+        Ggx { alpha: self.alpha.max(Vec2::splat(SMOOTH)) }
+    }
+
+    /// One alpha that stands for both.
+    pub fn mean_alpha(&self) -> f32 {
+        (self.alpha.x * self.alpha.y).sqrt()
+    }
+
+    /// Density of normals at a unit vector.
+    pub fn density(&self, h: Vec3) -> f32 {
+        let s = Vec3::new(h.x / self.alpha.x, h.y / self.alpha.y, h.z).length_squared();
+        1.0 / (PI * self.alpha.x * self.alpha.y * s * s)
+    }
+
+    /// Smith's Lambda: the hidden area over the visible.
+    pub fn lambda(&self, w: Vec3) -> f32 {
+        let slope = (Vec2::new(w.x, w.y) * self.alpha).length_squared();
+        let z2 = w.z * w.z;
+        if slope == 0.0 {
+            return 0.0;
+        }
+        // (sqrt(1 + s) - 1) / 2, without cancellation.
+        let s = slope / z2;
+        0.5 * s / ((1.0 + s).sqrt() + 1.0)
+    }
+
+    /// The share of normals that is seen from a direction.
+    pub fn masking(&self, w: Vec3) -> f32 {
+        1.0 / (1.0 + self.lambda(w))
+    }
+
+    /// The share that is seen from both directions; heights are correlated.
+    pub fn masking_shadowing(&self, wo: Vec3, wi: Vec3) -> f32 {
+        1.0 / (1.0 + self.lambda(wo) + self.lambda(wi))
+    }
+
+    /// Density of the normals seen from `wo`, which is above the surface.
+    pub fn visible_density(&self, wo: Vec3, h: Vec3) -> f32 {
+        self.masking(wo) * self.density(h) * wo.dot(h).max(0.0) / wo.z
+    }
+
+    /// A normal seen from `wo`, with that density.
+    pub fn sample_visible(&self, wo: Vec3, u: Vec2) -> Vec3 {
+        let stretched = Vec3::new(wo.x * self.alpha.x, wo.y * self.alpha.y, wo.z).normalize();
+        let z = (1.0 - u.y) * (1.0 + stretched.z) - stretched.z;
+        let h = warp::polar(z.clamp(-1.0, 1.0), u.x) + stretched;
+        Vec3::new(h.x * self.alpha.x, h.y * self.alpha.y, h.z.max(0.0)).try_normalize().unwrap_or(Vec3::Z)
+    }
+}

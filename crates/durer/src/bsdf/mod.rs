@@ -1,0 +1,120 @@
+//! How a surface point scatters light: some lobes with weights, made for the direction in which it is seen.
+//!
+//! Directions are local to the point's [`Frame`] and point away from the surface. The side from which it is seen is above.
+
+pub mod albedo;
+mod frame;
+pub mod fresnel;
+pub mod layers;
+pub mod lobe;
+pub mod microfacet;
+#[cfg(test)]
+mod tests;
+pub mod warp;
+
+use crate::math::{Color, Vec2, Vec3};
+pub use frame::Frame;
+pub use layers::{Layers, Tables};
+pub use lobe::{Lobe, Scatter};
+use smallvec::SmallVec;
+
+/// A lobe, how much it counts, and how often it is chosen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Weighted {
+    /// The lobe.
+    pub lobe: Lobe,
+    /// What multiplies it.
+    pub weight: Color,
+    /// The probability with which it is sampled.
+    pub probability: f32,
+}
+
+/// The lobes of a point, seen from one direction.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Bsdf {
+    lobes: SmallVec<[Weighted; 6]>,
+    /// The sum of the shares that were given.
+    total: f32,
+}
+
+/// A direction that was chosen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BsdfSample {
+    /// Where the light comes from.
+    pub wi: Vec3,
+    /// What multiplies that light: value · |cos| / density.
+    pub weight: Color,
+    /// Density per solid angle; 0 where it is a single direction.
+    pub pdf: f32,
+    /// The number of the lobe that chose it.
+    pub lobe: usize,
+}
+
+impl Bsdf {
+    /// Adds a lobe. Lobes are chosen in proportion to their `share`: about what they give back.
+    pub fn push(&mut self, lobe: impl Into<Lobe>, weight: Color, share: f32) {
+        if weight.max_element() > 0.0 && share > 0.0 {
+            self.lobes.push(Weighted { lobe: lobe.into(), weight, probability: share });
+            self.total += share;
+        }
+    }
+
+    /// Adds all lobes of another one, each by a factor.
+    pub fn extend(&mut self, other: &Bsdf, factor: f32) {
+        for part in &other.lobes {
+            self.push(part.lobe, factor * part.weight, factor * part.probability);
+        }
+    }
+
+    /// The lobes, with the probabilities that they are chosen.
+    pub fn lobes(&self) -> impl Iterator<Item = Weighted> {
+        self.lobes.iter().map(|part| Weighted { probability: part.probability / self.total, ..*part })
+    }
+
+    /// Whether nothing is scattered.
+    pub fn is_black(&self) -> bool {
+        self.lobes.is_empty()
+    }
+
+    /// Whether lights can be connected with: some lobe scatters into all directions.
+    pub fn is_broad(&self) -> bool {
+        self.lobes.iter().any(|part| !part.lobe.is_delta())
+    }
+
+    /// The value times |cos| of `wi`, without lobes of single directions.
+    pub fn eval(&self, wo: Vec3, wi: Vec3) -> Color {
+        self.lobes.iter().map(|part| part.weight * part.lobe.eval(wo, wi)).sum()
+    }
+
+    /// The density per solid angle with which [`Bsdf::sample`] chooses a direction, without lobes of single directions.
+    pub fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
+        let density = |part: &Weighted| part.probability * part.lobe.pdf(wo, wi);
+        if self.lobes.is_empty() { 0.0 } else { self.lobes.iter().map(density).sum::<f32>() / self.total }
+    }
+
+    /// Chooses a direction by three numbers, uniform from 0 to 1; `None` where light ends.
+    pub fn sample(&self, wo: Vec3, choice: f32, u: Vec2) -> Option<BsdfSample> {
+        let mut rest = choice * self.total;
+        let last = self.lobes.len().checked_sub(1)?;
+        let mut chosen = last;
+        for (i, part) in self.lobes.iter().enumerate() {
+            if rest < part.probability || i == last {
+                chosen = i;
+                break;
+            }
+            rest -= part.probability;
+        }
+        let part = &self.lobes[chosen];
+        // What is left of the number is uniform again.
+        let again = (rest / part.probability).clamp(0.0, 1.0 - f32::EPSILON * 0.5);
+        let scattered = part.lobe.sample(wo, again, u)?;
+        if part.lobe.is_delta() {
+            let weight = part.weight * scattered.value * (self.total / part.probability);
+            return Some(BsdfSample { wi: scattered.wi, weight, pdf: 0.0, lobe: chosen });
+        }
+        let pdf = self.pdf(wo, scattered.wi);
+        let weight = self.eval(wo, scattered.wi) / pdf;
+        let sound = pdf > 0.0 && pdf.is_finite() && weight.is_finite();
+        sound.then_some(BsdfSample { wi: scattered.wi, weight, pdf, lobe: chosen })
+    }
+}

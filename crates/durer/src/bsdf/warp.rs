@@ -1,0 +1,49 @@
+//! From the unit square to directions and places.
+
+use crate::math::{Vec2, Vec3, fp};
+
+/// A point of the unit disc, evenly spread.
+///
+/// Source: Shirley and Chiu, *A Low Distortion Map Between Disk and Square*, Journal of Graphics Tools 2(3), 1997.
+pub fn disc(u: Vec2) -> Vec2 {
+    let p = 2.0 * u - 1.0;
+    if p == Vec2::ZERO {
+        return Vec2::ZERO;
+    }
+    // The angle in quarters of a half turn.
+    let (radius, eighths) = if p.x.abs() > p.y.abs() { (p.x, p.y / p.x) } else { (p.y, 2.0 - p.x / p.y) };
+    let (sin, cos) = fp::sin_cos_degrees(f64::from(eighths) * 45.0);
+    radius * Vec2::new(cos as f32, sin as f32)
+}
+
+/// A direction of the upper hemisphere with density cos / pi.
+pub fn cosine_hemisphere(u: Vec2) -> Vec3 {
+    let p = disc(u);
+    p.extend((1.0 - p.length_squared()).max(0.0).sqrt())
+}
+
+/// A direction with polar coordinates: the cosine to z, and the angle about it as a share of a whole turn.
+pub fn polar(cosine: f32, turn: f32) -> Vec3 {
+    let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
+    let (sin, cos) = fp::sin_cos_degrees(f64::from(turn) * 360.0);
+    Vec3::new(sine * cos as f32, sine * sin as f32, cosine)
+}
+
+/// A direction of the whole sphere, evenly spread: density 1 / (4 pi).
+pub fn sphere(u: Vec2) -> Vec3 {
+    polar(1.0 - 2.0 * u.x, u.y)
+}
+
+/// Barycentric coordinates of a triangle, evenly spread over its area.
+///
+/// Source: Heitz, *A Low-Distortion Map Between Triangle and Square*, 2019.
+pub fn triangle(u: Vec2) -> Vec3 {
+    let (b0, b1) = if u.x < u.y {
+        let b0 = 0.5 * u.x;
+        (b0, u.y - b0)
+    } else {
+        let b1 = 0.5 * u.y;
+        (u.x - b1, b1)
+    };
+    Vec3::new(b0, b1, (1.0 - b0 - b1).max(0.0))
+}

@@ -1,0 +1,47 @@
+//! Ambient occlusion: the share of the sky over a surface that nothing nearby hides.
+//!
+//! Source: Zhukov, Iones and Kronin, *An Ambient Light Illumination Model*, EGWR 1998; each direction counts by its cosine.
+
+use super::account::{RayKind, What, Witness};
+use super::spawn::from_surface;
+use super::whitted::struck;
+use crate::bsdf::{Frame, warp};
+use crate::math::{Color, Ray, Ray64};
+use crate::sampler::SampleId;
+use crate::world::World;
+
+/// The integrator over one world.
+#[derive(Clone, Copy, Debug)]
+pub struct AmbientOcclusion<'w> {
+    /// What is seen.
+    pub world: &'w World,
+    /// How far things count, in units of the world; infinite: all.
+    pub radius: f32,
+}
+
+impl AmbientOcclusion<'_> {
+    /// 1 where one direction, chosen by the random numbers of a sample, is free, and 0 where it is not; white where nothing is hit.
+    pub fn radiance<T: Witness>(&self, ray: &Ray, id: SampleId, tally: &mut T) -> Color {
+        tally.begin(|| What::Ray { from: RayKind::Camera, ray: ray.into(), weight: 1.0, hit: None, bounce: None });
+        let color = self.trace(&ray.into(), id, tally);
+        tally.end(Color::ONE, Color::ONE, color);
+        color
+    }
+
+    fn trace<T: Witness>(&self, ray: &Ray64, id: SampleId, tally: &mut T) -> Color {
+        let mut color = Color::ONE;
+        if let Some(hit) = self.world.closest(ray, tally) {
+            let surface = self.world.surface(ray, &hit);
+            let inside = ray.dir().dot(surface.n_geo) > 0.0;
+            let n = if inside { -surface.n_geo } else { surface.n_geo };
+            tally.hit(|| struck(self.world, ray, &hit, &surface, n, inside, false));
+            let dir = Frame::around(n).to_world(warp::cosine_hemisphere(id.pair(0)));
+            if self.world.occluded(from_surface(&surface, dir, self.radius, None), tally) {
+                color = Color::ZERO;
+            }
+        }
+        tally.begin(|| What::Sky);
+        tally.end(Color::ONE, Color::ONE, color);
+        color
+    }
+}

@@ -1,0 +1,227 @@
+//! Paths against answers in closed form. Their sources and derivations stand beside each.
+
+use super::*;
+use crate::compile::testing::read;
+use crate::render::Job;
+
+/// The mean of many samples along a ray, and its standard error.
+fn light(world: &World, ray: Ray, bounces: u32, samples: u32) -> (f64, f64) {
+    let settings = Settings { bounces, ..Job::default().settings };
+    let path = Path { world, settings, clamp: None, cancel: None };
+    let (mut sum, mut squares) = (0.0, 0.0);
+    for sample in 0..samples {
+        let value = f64::from(path.radiance(&ray, SampleId::new(7, (3, 5), sample), &mut ()).x);
+        sum += value;
+        squares += value * value;
+    }
+    let n = f64::from(samples);
+    (sum / n, ((squares / n - (sum / n) * (sum / n)).max(0.0) / n).sqrt())
+}
+
+/// Asserts an answer within three standard errors and one part in a thousand.
+fn assert_light(name: &str, world: &World, ray: Ray, bounces: u32, expected: f64) {
+    let (mean, error) = light(world, ray, bounces, 1 << 15);
+    assert!((mean - expected).abs() <= 3.0 * error + 0.001 * expected, "{name}: {mean} ± {error}, not {expected}");
+}
+
+fn scene(materials: &str, lights: &str, group: &str) -> World {
+    read(&format!(
+        "PerspectiveCamera {{ center 0 0 5 direction 0 0 -1 up 0 1 0 angle 30 }}\nBackground {{ color 0 0 0 }}\n\
+         Lights {{ {lights} }}\nMaterials {{ {materials} }}\nGroup {{ {group} }}"
+    ))
+}
+
+const MATTE: &str = "PrincipledMaterial { baseColor 0.5 0.5 0.5 specularWeight 0 }";
+
+/// A matte floor at y = 0 of albedo 0.5, seen from the side, and something that shines.
+fn over_floor(lights: &str, shining: &str) -> World {
+    let materials = format!("{MATTE} PrincipledMaterial {{ baseColor 0 0 0 specularWeight 0 emissionLuminance 3 }}");
+    let floor = "MaterialIndex 0 Plane { normal 0 1 0 offset 0 } MaterialIndex 1";
+    scene(&materials, lights, &format!("{floor} {shining}"))
+}
+
+/// A ray that meets the floor at the origin.
+fn to_origin() -> Ray {
+    Ray::new(Vec3::new(2.0, 2.0, 0.0), Vec3::new(-1.0, -1.0, 0.0).normalize())
+}
+
+/// What a floor of albedo 0.5 shows where its irradiance is E: 0.5 E / pi.
+fn shown(irradiance: f64) -> f64 {
+    0.5 * irradiance / std::f64::consts::PI
+}
+
+#[test]
+fn a_closed_furnace_has_the_sum_of_a_geometric_series() {
+    // L = Le (1 - rho^n) / (1 - rho) with n scatterings and the light itself counted.
+    for form in ["Sphere { center 0 0 0 radius 2 }", "Box { min -2 -2 -2 max 2 2 2 }"] {
+        let material = "PrincipledMaterial { baseColor 0.5 0.5 0.5 specularWeight 0 emissionLuminance 0.5 walls thin }";
+        let world = scene(material, "", &format!("MaterialIndex 0 {form}"));
+        let ray = Ray::new(Vec3::new(0.3, 0.2, 0.4), Vec3::new(0.3, 0.5, -0.7).normalize());
+        for bounces in [0, 1, 4] {
+            let n = f64::from(bounces) + 2.0;
+            assert_light(form, &world, ray, bounces, 0.5 * (1.0 - 0.5_f64.powf(n)) / 0.5);
+        }
+    }
+}
+
+#[test]
+fn lights_with_extent_shine_by_their_view_factors() {
+    use std::f64::consts::PI;
+    // A sphere of radiance L and radius r at distance d over the point: E = pi L (r/d)^2.
+    let sphere = over_floor("", "Sphere { center 0 3 0 radius 0.5 }");
+    assert_light("sphere", &sphere, to_origin(), 0, shown(PI * 3.0 * (0.5 / 3.0) * (0.5 / 3.0)));
+    // A disc that faces down, on axis: E = pi L r^2 / (r^2 + d^2).
+    let disc = over_floor("", "Disc { center 0 2 0 normal 0 -1 0 radius 1.5 }");
+    assert_light("disc", &disc, to_origin(), 0, shown(PI * 3.0 * 2.25 / (2.25 + 4.0)));
+    let ring = over_floor("", "Disc { center 0 2 0 normal 0 -1 0 radius 1.5 innerRadius 0.75 }");
+    let hole = 0.5625 / (0.5625 + 4.0);
+    assert_light("ring", &ring, to_origin(), 0, shown(PI * 3.0 * (2.25 / (2.25 + 4.0) - hole)));
+    // A parallel rectangle with a corner over the point, Howell's C-11: with x = a/d and y = b/d, over 2 pi,
+    // F = x / sqrt(1 + x^2) atan(y / sqrt(1 + x^2)) + y / sqrt(1 + y^2) atan(x / sqrt(1 + y^2)).
+    let factor = |x: f64, y: f64| {
+        let (p, q) = ((1.0 + x * x).sqrt(), (1.0 + y * y).sqrt());
+        (x / p * libm::atan(y / p) + y / q * libm::atan(x / q)) / (2.0 * PI)
+    };
+    let rectangle = over_floor("", "Rectangle { corner 0 2 0 edge0 3 0 0 edge1 0 0 1 }");
+    assert_light("rectangle", &rectangle, to_origin(), 0, shown(PI * 3.0 * factor(1.5, 0.5)));
+    let triangles =
+        "Triangle { vertex0 0 2 0 vertex1 3 2 0 vertex2 3 2 1 } Triangle { vertex0 0 2 0 vertex1 3 2 1 vertex2 0 2 1 }";
+    assert_light("triangles", &over_floor("", triangles), to_origin(), 0, shown(PI * 3.0 * factor(1.5, 0.5)));
+    // Moved, turned and stretched, it is the same rectangle.
+    let moved =
+        "Transform { Translate 0 2 0 YRotate 90 Scale 1 1 3 Rectangle { corner 0 0 0 edge0 0 0 1 edge1 -1 0 0 } }";
+    assert_light("moved rectangle", &over_floor("", moved), to_origin(), 0, shown(PI * 3.0 * factor(1.5, 0.5)));
+    // Seen from behind it is dark.
+    let away = over_floor("", "Rectangle { corner 0 2 0 edge0 0 0 1 edge1 3 0 0 }");
+    assert_light("from behind", &away, to_origin(), 0, 0.0);
+}
+
+#[test]
+fn what_is_found_by_chance_and_what_is_connected_with_agree() {
+    // An ellipsoid has no points to choose: directions alone find it. Stretched by 1 it is the sphere that can be chosen.
+    let one = over_floor("", "Sphere { center 0.5 1.5 0 radius 0.8 }");
+    let other = over_floor("", "Ellipsoid { center 0.5 1.5 0 radii 0.8 0.8 0.8 }");
+    let ((a, ea), (b, eb)) = (light(&one, to_origin(), 2, 1 << 15), light(&other, to_origin(), 2, 1 << 15));
+    assert!((a - b).abs() < 4.0 * (ea * ea + eb * eb).sqrt(), "{a} ± {ea}, {b} ± {eb}");
+    assert!(ea < 0.5 * eb, "connecting has less noise: {ea} {eb}");
+}
+
+#[test]
+fn an_integrating_sphere_has_the_same_indirect_light_everywhere() {
+    // A point light of intensity I anywhere in a sphere of area S and albedo rho: E = I cos / d^2 + 4 pi I / S rho / (1 - rho).
+    // A light of colour c makes an irradiance of pi c at distance 1.
+    let world = scene(
+        MATTE,
+        "PointLight { position 0.5 0.8 0 color 1 1 1 attenuation 0 0 1 }",
+        "MaterialIndex 0 Sphere { center 0 0 0 radius 2 }",
+    );
+    for direction in [Vec3::new(0.0, 0.0, -1.0), Vec3::new(-0.6, 0.5, 0.2).normalize()] {
+        let ray = Ray::new(Vec3::ZERO, direction);
+        let hit = 2.0 * direction.as_dvec3();
+        let to_light = DVec3::new(0.5, 0.8, 0.0) - hit;
+        let direct = to_light.normalize().dot(-direction.as_dvec3()) / to_light.length_squared();
+        let everywhere = 4.0 * std::f64::consts::PI / (16.0 * std::f64::consts::PI) * 0.5 / (1.0 - 0.5);
+        assert_light("integrating sphere", &world, ray, 40, shown(std::f64::consts::PI * (direct + everywhere)));
+    }
+}
+
+#[test]
+fn bodies_that_absorb_nothing_vanish_in_even_light() {
+    for material in [
+        "PrincipledMaterial { transmissionWeight 1 specularRoughness 0 }",
+        "PrincipledMaterial { transmissionWeight 1 specularRoughness 0.6 }",
+        "PrincipledMaterial { transmissionWeight 1 specularRoughness 0 walls thin }",
+        "PrincipledMaterial { baseColor 1 1 1 baseMetalness 1 specularRoughness 0.5 }",
+        "PrincipledMaterial { baseColor 1 1 1 specularRoughness 0.2 coatWeight 1 }",
+        "PrincipledMaterial { baseColor 0 0 0 opacity 0 }",
+        "Material { diffuse 0 0 0 specular 1 1 1 transparentColor 1 1 1 refractionIndex 1.4 }",
+    ] {
+        let text = format!(
+            "PerspectiveCamera {{ center 0 0 5 direction 0 0 -1 up 0 1 0 angle 30 }} Background {{ color 0.7 0.7 0.7 }} \
+             Materials {{ {} }} Group {{ MaterialIndex 0 Sphere {{ center 0 0 0 radius 1 }} }}",
+            material.replace("diffuse ", "diffuseColor ").replace("specular ", "specularColor ")
+        );
+        let world = read(&text);
+        for x in [0.0, 0.6, 0.95] {
+            let ray = Ray::new(Vec3::new(x, 0.0, 5.0), Vec3::NEG_Z);
+            let (mean, error) = light(&world, ray, 200, 1 << 13);
+            // What the tables of rough glass leave unexplained: less than half a percent at two boundaries.
+            assert!((mean - 0.7).abs() < 3.0 * error + 0.005, "{material} at {x}: {mean} ± {error}");
+        }
+    }
+}
+
+#[test]
+fn an_absorbing_slab_dims_by_beer_and_fresnel() {
+    // Seen at right angles: T = (1 - F)^2 a / (1 - F^2 a^2) with a = exp(-sigma s); behind is light of 1.
+    let (f, a) = (0.04_f64, 0.3_f64);
+    let glass = "PrincipledMaterial { transmissionWeight 1 specularRoughness 0 transmissionColor 0.3 0.3 0.3 transmissionDepth 2 }";
+    let lamp = "PrincipledMaterial { baseColor 0 0 0 specularWeight 0 emissionLuminance 1 }";
+    let world = scene(
+        &format!("{glass} {lamp}"),
+        "",
+        "MaterialIndex 0 Box { min -9 -9 -1 max 9 9 1 } MaterialIndex 1 Rectangle { corner -9 -9 -3 edge0 18 0 0 edge1 0 18 0 }",
+    );
+    let ray = Ray::new(Vec3::new(0.1, 0.2, 5.0), Vec3::NEG_Z);
+    assert_light("slab", &world, ray, 60, (1.0 - f) * (1.0 - f) * a / (1.0 - f * f * a * a));
+}
+
+#[test]
+fn under_point_lights_the_first_scattering_of_matte_things_is_whitteds() {
+    let world = scene(
+        "PhongMaterial { diffuseColor 0.8 0.5 0.3 }",
+        "PointLight { position 3 4 5 color 1 1 1 attenuation 0 0 0.05 } DirectionalLight { direction -1 -2 -3 color 0.3 0.3 0.3 }",
+        "MaterialIndex 0 Sphere { center 0 0 0 radius 1 } Plane { normal 0 1 0 offset -1 }",
+    );
+    let whitted = super::super::Whitted { world: &world, settings: Job::default().settings, cancel: None };
+    for x in [-2.0, -0.5, 0.0, 0.4, 1.7] {
+        let ray = Ray::new(Vec3::new(0.0, 1.0, 5.0), Vec3::new(0.2 * x, -0.25, -1.0).normalize());
+        assert_light("Whitted's", &world, ray, 0, f64::from(whitted.radiance(&ray, &mut ()).x));
+    }
+}
+
+#[test]
+fn many_lights_give_what_their_sum_gives() {
+    // 40 spheres in a row, as one integral each: E = pi L r^2 cos / d^2 for spheres wholly above the horizon.
+    let mut all = String::new();
+    let mut irradiance = 0.0;
+    for i in 0..40 {
+        let (x, y, r) = (f64::from(i) - 19.5, 2.0 + f64::from(i % 3), 0.1);
+        all += &format!("Sphere {{ center {x} {y} 0.3 radius {r} }} ");
+        let d2 = x * x + y * y + 0.09;
+        irradiance += std::f64::consts::PI * 3.0 * r * r * y / (d2 * d2.sqrt());
+    }
+    assert_light("a row of lights", &over_floor("", &all), to_origin(), 0, shown(irradiance));
+}
+
+#[test]
+fn half_a_screen_casts_half_a_shadow() {
+    let world = scene(
+        &format!("{MATTE} PrincipledMaterial {{ baseColor 0 0 0 opacity 0.25 }}"),
+        "PointLight { position 0 4 0 color 1 1 1 attenuation 0 0 1 }",
+        "MaterialIndex 0 Plane { normal 0 1 0 offset 0 } MaterialIndex 1 Rectangle { corner -1 2 -1 edge0 2 0 0 edge1 0 0 2 }",
+    );
+    assert_light("screen", &world, to_origin(), 0, 0.75 * shown(std::f64::consts::PI / 16.0));
+}
+
+#[test]
+fn what_a_path_tells_sums_to_its_light() {
+    let world = over_floor(
+        "PointLight { position 1 3 1 color 1 1 1 attenuation 0 0 1 }",
+        "Sphere { center 0 3 0 radius 0.5 } MaterialIndex 0 Sphere { center 1 0.5 0 radius 0.5 }",
+    );
+    let settings = Settings { bounces: 6, ..Job::default().settings };
+    let path = Path { world: &world, settings, clamp: Some(0.2), cancel: None };
+    for sample in 0..200 {
+        let id = SampleId::new(1, (0, 0), sample);
+        let mut account = super::super::Account::default();
+        let color = path.radiance(&to_origin(), id, &mut account);
+        let tree = account.into_tree().unwrap();
+        assert_eq!((tree.value, path.radiance(&to_origin(), id, &mut ())), (color, color));
+        fn check(node: &super::super::Node) {
+            assert_eq!(node.sum(), node.value, "{:?}", node.what);
+            node.terms.iter().for_each(check);
+        }
+        check(&tree);
+    }
+}

@@ -1,0 +1,215 @@
+//! What shines: surfaces with a light of their own, the scene's lights, and the surroundings; and how one of them is chosen.
+
+pub mod shape;
+pub mod tree;
+
+use super::{Hit, Object, World};
+use crate::light::Emitter as _;
+use crate::math::{Aabb, Color, Vec2, Vec3};
+use glam::DVec3;
+use serde::Serialize;
+pub use shape::{Form, Place};
+use std::f32::consts::PI;
+use tree::{Bounds, LightTree};
+
+/// A part of an object that shines and can be chosen points of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AreaLight {
+    /// Where it is.
+    pub form: Form,
+    /// Its normal; zero for a sphere.
+    pub normal: Vec3,
+    /// Number of the object.
+    pub object: u32,
+    /// Number of its part.
+    pub part: u32,
+    /// Whether it shines to both sides, and not only to that of its normal.
+    pub two_sided: bool,
+}
+
+/// One of the things that the tree chooses.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Source {
+    /// A surface.
+    Area(AreaLight),
+    /// A light of the scene with a place, by number.
+    Light(u32),
+}
+
+/// All that shines in a world, and the tree to choose from.
+#[derive(Clone, Debug, Default)]
+pub struct Emitters {
+    sources: Vec<Source>,
+    /// The first source of each object; `u32::MAX` where it has none.
+    first: Vec<u32>,
+    /// Lights of the scene that are chosen evenly.
+    even: Vec<u32>,
+    tree: LightTree,
+}
+
+/// What shines at a point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum LightId {
+    /// A light of the scene, by number.
+    Light(u32),
+    /// A part of an object.
+    Surface(u32, u32),
+    /// The surroundings.
+    Environment,
+}
+
+/// A light that was chosen, as seen from a point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LightSample {
+    /// Which it is.
+    pub light: LightId,
+    /// Unit vector to it.
+    pub wi: Vec3,
+    /// How far away a thing may stand in its way.
+    pub reach: f32,
+    /// Its radiance; of a light without extent the irradiance that it makes across its way.
+    pub radiance: Color,
+    /// The probability with which it was chosen.
+    pub choice: f32,
+    /// The density per solid angle of the direction on it; 0 for a light without extent.
+    pub pdf: f32,
+}
+
+impl Emitters {
+    /// Of a world's objects and lights.
+    pub(crate) fn new(world: &World) -> Self {
+        let mut emitters = Emitters { first: vec![u32::MAX; world.objects.len()], ..Emitters::default() };
+        let mut bounds = Vec::new();
+        for (number, object) in world.objects.iter().enumerate() {
+            let Some(emission) = world.emission_of(object.material) else { continue };
+            let start = emitters.sources.len();
+            for part in 0..object.parts() {
+                let Some(area) = AreaLight::new(number as u32, object, part, emission.two_sided) else { break };
+                bounds.push(area.bounds(emission.radiance.max_element()));
+                emitters.sources.push(Source::Area(area));
+            }
+            if emitters.sources.len() > start {
+                emitters.first[number] = start as u32;
+            }
+        }
+        for (number, light) in world.lights.iter().enumerate() {
+            match light.place() {
+                Some((position, intensity)) => {
+                    emitters.sources.push(Source::Light(number as u32));
+                    bounds.push(Bounds {
+                        bounds: Aabb { min: position, max: position },
+                        power: PI * intensity.max_element().max(0.0),
+                        axis: Vec3::Z,
+                        cos_normals: -1.0,
+                        cos_emission: 0.0,
+                        two_sided: false,
+                    });
+                }
+                None => emitters.even.push(number as u32),
+            }
+        }
+        emitters.tree = LightTree::new(&bounds);
+        emitters
+    }
+
+    /// Whether nothing can be chosen.
+    pub fn is_empty(&self, world: &World) -> bool {
+        self.choices(world) == 0
+    }
+
+    /// How many things are chosen evenly: lights without a place, the surroundings, and all that is in the tree.
+    fn choices(&self, world: &World) -> usize {
+        self.even.len() + usize::from(world.environment.is_some()) + usize::from(!self.tree.is_empty())
+    }
+
+    /// Chooses a light for a point with a normal (zero: any) by a number, and a direction to it by two more.
+    pub fn sample(&self, world: &World, point: DVec3, n: Vec3, choice: f32, u: Vec2) -> Option<LightSample> {
+        let choices = self.choices(world);
+        let scaled = choice * choices as f32;
+        let chosen = (scaled as usize).min(choices.checked_sub(1)?);
+        let even = 1.0 / choices as f32;
+        if let Some(&light) = self.even.get(chosen) {
+            return Some(of_light(world, light, point, even));
+        }
+        if let (Some(environment), true) = (&world.environment, chosen == self.even.len()) {
+            let (wi, radiance, pdf) = environment.sample(u)?;
+            let reach = f32::INFINITY;
+            return Some(LightSample { light: LightId::Environment, wi, reach, radiance, choice: even, pdf });
+        }
+        let rest = (scaled - chosen as f32).clamp(0.0, 1.0 - f32::EPSILON * 0.5);
+        let (source, probability) = self.tree.sample(point.as_vec3(), n, rest)?;
+        let choice = even * probability;
+        match &self.sources[source as usize] {
+            Source::Light(light) => Some(of_light(world, *light, point, choice)),
+            Source::Area(area) => area.sample(world, point, choice, u),
+        }
+    }
+
+    /// The density per solid angle with which [`Emitters::sample`] comes upon a hit of a surface that shines; 0 where it
+    /// never does.
+    pub fn pdf_of_hit(&self, world: &World, hit: &Hit, point: DVec3, n: Vec3, wi: Vec3, distance: f32) -> f32 {
+        let first = self.first[hit.object as usize];
+        if first == u32::MAX {
+            return 0.0;
+        }
+        let source = first + hit.part;
+        let Source::Area(area) = &self.sources[source as usize] else { return 0.0 };
+        let choice = self.tree.probability(point.as_vec3(), n, source) / self.choices(world) as f32;
+        let pdf = area.form.pdf(area.normal, point, wi, distance);
+        if pdf.is_finite() { choice * pdf } else { 0.0 }
+    }
+
+    /// The same of a direction in which nothing is hit.
+    pub fn pdf_of_sky(&self, world: &World, wi: Vec3) -> f32 {
+        world.environment.as_ref().map_or(0.0, |sky| sky.pdf(wi) / self.choices(world) as f32)
+    }
+}
+
+/// A light of the scene. Its colour is what a white matte surface shows that faces it: irradiance over pi.
+fn of_light(world: &World, light: u32, point: DVec3, choice: f32) -> LightSample {
+    let seen = world.lights[light as usize].illuminate(point);
+    LightSample {
+        light: LightId::Light(light),
+        wi: seen.to_light,
+        reach: seen.distance,
+        radiance: PI * seen.color,
+        choice,
+        pdf: 0.0,
+    }
+}
+
+impl AreaLight {
+    fn new(number: u32, object: &Object, part: u32, two_sided: bool) -> Option<Self> {
+        let (form, normal) = Form::of(object, part)?;
+        Some(AreaLight { form, normal, object: number, part, two_sided })
+    }
+
+    fn bounds(&self, radiance: f32) -> Bounds {
+        let round = matches!(self.form, Form::Sphere(..));
+        // What is seen of a sphere is a quarter of its surface.
+        let area = self.form.area() * if round { 0.25 } else { 1.0 };
+        let power = area * radiance;
+        Bounds {
+            bounds: self.form.bounds(),
+            power: if power.is_finite() { power.max(0.0) } else { 0.0 },
+            axis: if round { Vec3::Z } else { self.normal },
+            cos_normals: if round { -1.0 } else { 1.0 },
+            cos_emission: 0.0,
+            two_sided: self.two_sided,
+        }
+    }
+
+    fn sample(&self, world: &World, point: DVec3, choice: f32, u: Vec2) -> Option<LightSample> {
+        let place = self.form.sample(self.normal, point, u)?;
+        if place.cosine <= 0.0 && !self.two_sided {
+            return None;
+        }
+        // The point is known to its rounding only; what stands nearer to the emitter than that does not count.
+        let reach = place.distance - 2.0 * self.form.error() / place.cosine.abs().max(1e-3);
+        let hit = Hit { t: place.distance, uv: Vec2::ZERO, object: self.object, part: self.part };
+        let radiance = world.emitted(&hit, point + (place.distance * place.wi).as_dvec3());
+        let light = LightId::Surface(self.object, self.part);
+        Some(LightSample { light, wi: place.wi, reach, radiance, choice, pdf: place.pdf })
+    }
+}

@@ -1,0 +1,259 @@
+//! The forms of emitters in world space, and how points of them are chosen as seen from a point.
+
+use crate::bsdf::{Frame, warp};
+use crate::math::{Aabb, Vec2, Vec3, fp, gamma};
+use crate::shape::{Primitive, Shape};
+use crate::world::Object;
+use crate::world::object::Geometry;
+use glam::DVec3;
+use std::f32::consts::PI;
+
+/// A form whose points can be chosen at random.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Form {
+    /// A corner and two edges.
+    Triangle([Vec3; 3]),
+    /// A corner and two edges.
+    Parallelogram([Vec3; 3]),
+    /// A centre and two half axes at any angle; and the share of the radius that is cut out.
+    Ellipse([Vec3; 3], f32),
+    /// A centre and a radius.
+    Sphere(Vec3, f32),
+}
+
+/// A chosen point of an emitter, as seen from somewhere.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Place {
+    /// Unit vector to it.
+    pub wi: Vec3,
+    /// How far it is.
+    pub distance: f32,
+    /// The cosine of the emitter's normal there to the way back; less than 0 behind it.
+    pub cosine: f32,
+    /// Density per solid angle with which it was chosen.
+    pub pdf: f32,
+}
+
+impl Form {
+    /// The form of one part of an object, with its normal; `None` for what is found by hits alone.
+    pub fn of(object: &Object, part: u32) -> Option<(Form, Vec3)> {
+        let point = |p: Vec3| object.world_point(p);
+        let vector = |v: Vec3| object.to_world.as_ref().map_or(v, |m| m.vector(v));
+        let normal = |n: Vec3| object.to_world.as_ref().map_or(n, |m| m.normal(n));
+        Some(match &object.geometry {
+            Geometry::Mesh(tree) => {
+                let [a, b, c] = tree.mesh.corners(part);
+                let n = (b - a).as_dvec3().cross((c - a).as_dvec3()).normalize_or_zero().as_vec3();
+                (Form::Triangle([point(a), vector(b - a), vector(c - a)]), normal(n))
+            }
+            Geometry::Primitive(Primitive::Triangle(triangle)) => {
+                let [a, b, c] = triangle.corners();
+                let n = (b - a).as_dvec3().cross((c - a).as_dvec3()).normalize_or_zero().as_vec3();
+                (Form::Triangle([point(a), vector(b - a), vector(c - a)]), normal(n))
+            }
+            Geometry::Primitive(Primitive::Rectangle(r)) => {
+                let n = r.edge0.as_dvec3().cross(r.edge1.as_dvec3()).normalize_or_zero().as_vec3();
+                (Form::Parallelogram([point(r.corner), vector(r.edge0), vector(r.edge1)]), normal(n))
+            }
+            Geometry::Primitive(Primitive::Disc(disc)) => {
+                let n = disc.normal.normalize_or(Vec3::Y);
+                let frame = Frame::around(n);
+                let axes = [frame.tangent, frame.bitangent].map(|axis| vector(disc.radius * axis));
+                (Form::Ellipse([point(disc.center), axes[0], axes[1]], disc.inner_radius / disc.radius), normal(n))
+            }
+            Geometry::Primitive(Primitive::Sphere(sphere)) => {
+                let axes = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| vector(sphere.radius * axis));
+                let radius = axes[0].length();
+                let round = axes.iter().all(|axis| (axis.length() - radius).abs() < 1e-5 * radius)
+                    && axes[0].dot(axes[1]).abs() + axes[1].dot(axes[2]).abs() + axes[2].dot(axes[0]).abs()
+                        < 1e-5 * radius * radius;
+                return round.then(|| (Form::Sphere(point(sphere.center), radius), Vec3::ZERO));
+            }
+            Geometry::Primitive(_) | Geometry::Solid(_) => return None,
+        })
+    }
+
+    /// Its area.
+    pub fn area(&self) -> f32 {
+        match self {
+            Form::Triangle([_, e, f]) => 0.5 * e.cross(*f).length(),
+            Form::Parallelogram([_, e, f]) => e.cross(*f).length(),
+            Form::Ellipse([_, u, v], inner) => PI * u.cross(*v).length() * (1.0 - inner * inner),
+            Form::Sphere(_, radius) => 4.0 * PI * radius * radius,
+        }
+    }
+
+    /// The box around it.
+    pub fn bounds(&self) -> Aabb {
+        match *self {
+            Form::Triangle([p, e, f]) => Aabb::around([p, p + e, p + f]),
+            Form::Parallelogram([p, e, f]) => Aabb::around([p, p + e, p + f, p + e + f]),
+            Form::Ellipse([p, u, v], _) => {
+                let reach = (u * u + v * v).map(f32::sqrt);
+                Aabb { min: p - reach, max: p + reach }
+            }
+            Form::Sphere(center, radius) => Aabb { min: center - radius, max: center + radius },
+        }
+    }
+
+    /// Chooses a point of it, as seen from a point; `None` where none can be seen.
+    pub fn sample(&self, normal: Vec3, from: DVec3, u: Vec2) -> Option<Place> {
+        let to = match *self {
+            Form::Triangle([p, e, f]) => {
+                let b = warp::triangle(u);
+                offset(p, from) + b.y * e + b.z * f
+            }
+            Form::Parallelogram([p, e, f]) => {
+                let corner = offset(p, from);
+                if let Some(window) = Window::new(corner, e, f) {
+                    let wi = window.sample(u);
+                    let distance = wi.length();
+                    let wi = wi / distance;
+                    return Some(Place { wi, distance, cosine: -wi.dot(normal), pdf: 1.0 / window.solid_angle as f32 });
+                }
+                corner + u.x * e + u.y * f
+            }
+            Form::Ellipse([p, x, y], inner) => {
+                let d = warp::disc(u);
+                // The area of a ring grows with the square of its radius.
+                let square = inner * inner + (1.0 - inner * inner) * d.length_squared();
+                let d = if inner > 0.0 { d.normalize_or(Vec2::X) * square.sqrt() } else { d };
+                offset(p, from) + d.x * x + d.y * y
+            }
+            Form::Sphere(center, radius) => return cone(offset(center, from), radius, u),
+        };
+        let distance = to.length();
+        let wi = to / distance;
+        let cosine = -wi.dot(normal);
+        let pdf = distance * distance / (cosine.abs() * self.area());
+        (pdf.is_finite() && pdf > 0.0).then_some(Place { wi, distance, cosine, pdf })
+    }
+
+    /// The density per solid angle with which [`Form::sample`] chooses a direction that meets it at a distance.
+    pub fn pdf(&self, normal: Vec3, from: DVec3, wi: Vec3, distance: f32) -> f32 {
+        match *self {
+            Form::Sphere(center, radius) => {
+                let to = offset(center, from);
+                let (d2, r2) = (to.length_squared(), radius * radius);
+                if d2 <= r2 {
+                    return distance * distance / (self.area() * sphere_cosine(to, wi, distance, radius));
+                }
+                1.0 / (2.0 * PI * one_minus_cosine(r2 / d2))
+            }
+            Form::Parallelogram([p, e, f]) if let Some(window) = Window::new(offset(p, from), e, f) => {
+                1.0 / window.solid_angle as f32
+            }
+            _ => distance * distance / (wi.dot(normal).abs() * self.area()),
+        }
+    }
+
+    /// Bound on how far a chosen point may be beside the surface that rays meet.
+    pub fn error(&self) -> f32 {
+        let bounds = self.bounds();
+        gamma(16) * bounds.min.abs().max(bounds.max.abs()).max_element()
+    }
+}
+
+/// From one point to another.
+fn offset(to: Vec3, from: DVec3) -> Vec3 {
+    (to.as_dvec3() - from).as_vec3()
+}
+
+/// 1 - cos of the angle whose sine's square is given, without cancellation.
+fn one_minus_cosine(sine2: f32) -> f32 {
+    sine2 / (1.0 + (1.0 - sine2).max(0.0).sqrt())
+}
+
+/// The cosine of a sphere's normal at a point seen from inside, where `to` leads to the centre.
+fn sphere_cosine(to: Vec3, wi: Vec3, distance: f32, radius: f32) -> f32 {
+    ((distance * wi - to) / radius).dot(wi).abs().max(1e-6)
+}
+
+/// A point of a sphere, evenly over the solid angle in which it is seen.
+///
+/// Source: *Physically Based Rendering*, 4th edition, section 6.2.4.
+fn cone(to: Vec3, radius: f32, u: Vec2) -> Option<Place> {
+    let (d2, r2) = (to.length_squared(), radius * radius);
+    let d = d2.sqrt();
+    if d2 <= r2 {
+        // From inside, evenly over the area.
+        let at = to + radius * warp::sphere(u);
+        let distance = at.length();
+        let wi = at / distance;
+        let cosine = sphere_cosine(to, wi, distance, radius);
+        let pdf = distance * distance / (4.0 * PI * r2 * cosine);
+        // Its outside cannot be seen.
+        return pdf.is_finite().then_some(Place { wi, distance, cosine: -cosine, pdf });
+    }
+    let all = one_minus_cosine(r2 / d2);
+    let below = all * u.x;
+    let cosine = 1.0 - below;
+    let sine2 = (below * (2.0 - below)).max(0.0);
+    let (sin, cos) = fp::sin_cos_degrees(f64::from(u.y) * 360.0);
+    let frame = Frame::around(to / d);
+    let wi = frame.to_world(Vec3::new(sine2.sqrt() * cos as f32, sine2.sqrt() * sin as f32, cosine)).normalize();
+    // Where that direction first meets the sphere.
+    let half = (r2 - d2 * sine2).max(0.0).sqrt();
+    let distance = d * cosine - half;
+    Some(Place { wi, distance, cosine: half / radius, pdf: 1.0 / (2.0 * PI * all) })
+}
+
+/// A rectangle seen from a point, to be sampled evenly over its solid angle.
+///
+/// Source: Ureña, Fajardo and King, *An Area-Preserving Parametrization for Spherical Rectangles*, EGSR 2013.
+struct Window {
+    axes: [DVec3; 3],
+    near: DVec3,
+    far: DVec3,
+    solid_angle: f64,
+    b: [f64; 2],
+    k: f64,
+}
+
+impl Window {
+    /// `None` for what has no right angles, or is seen so small or so flat that its area does as well.
+    fn new(corner: Vec3, e: Vec3, f: Vec3) -> Option<Window> {
+        let (e, f, corner) = (e.as_dvec3(), f.as_dvec3(), corner.as_dvec3());
+        let (le, lf) = (e.length(), f.length());
+        if e.dot(f).abs() > 1e-6 * le * lf {
+            return None;
+        }
+        let (x, y) = (e / le, f / lf);
+        let z = x.cross(y);
+        let z = if corner.dot(z) > 0.0 { -z } else { z };
+        let near = DVec3::new(corner.dot(x), corner.dot(y), corner.dot(z));
+        let far = DVec3::new(near.x + le, near.y + lf, near.z);
+        if near.z > -1e-4 * le.max(lf) {
+            return None;
+        }
+        // Cosines of the angles between the normals of the four planes through the edges.
+        let nz = |a: f64| a / (a * a + near.z * near.z).sqrt();
+        let [n0, n1, n2, n3] = [-nz(near.y), nz(far.x), nz(far.y), -nz(near.x)];
+        let angle = |cosine: f64| std::f64::consts::FRAC_PI_2 - fp::asin_f64(cosine.clamp(-1.0, 1.0));
+        let [g0, g1, g2, g3] = [angle(-n0 * n1), angle(-n1 * n2), angle(-n2 * n3), angle(-n3 * n0)];
+        let solid_angle = g0 + g1 + g2 + g3 - std::f64::consts::TAU;
+        let k = std::f64::consts::TAU - g2 - g3;
+        (solid_angle > 1e-5).then_some(Window { axes: [x, y, z], near, far, solid_angle, b: [n0, n2], k })
+    }
+
+    /// A point of it.
+    fn sample(&self, u: Vec2) -> Vec3 {
+        let (near, far, [b0, b1]) = (self.near, self.far, self.b);
+        let around = f64::from(u.x) * self.solid_angle + self.k;
+        let (sin, cos) = fp::sin_cos_f64(around);
+        let fu = (cos * b0 - b1) / sin;
+        let cu = (1.0 / (fu * fu + b0 * b0).sqrt()).copysign(fu).clamp(-1.0, 1.0);
+        let x = (-(cu * near.z) / (1.0 - cu * cu).max(1e-30).sqrt()).clamp(near.x, far.x);
+        let d2 = x * x + near.z * near.z;
+        let (h0, h1) = (near.y / (d2 + near.y * near.y).sqrt(), far.y / (d2 + far.y * far.y).sqrt());
+        let h = h0 + f64::from(u.y) * (h1 - h0);
+        let y = if h * h < 1.0 - 1e-12 { h * d2.sqrt() / (1.0 - h * h).sqrt() } else { far.y };
+        (x * self.axes[0] + y.clamp(near.y, far.y) * self.axes[1] + near.z * self.axes[2]).as_vec3()
+    }
+}
+
+/// Whether a primitive can be chosen points of: for documents and tests.
+pub fn is_sampled(shape: &Primitive) -> bool {
+    shape.bounds().is_some()
+        && matches!(shape, Primitive::Triangle(_) | Primitive::Rectangle(_) | Primitive::Disc(_) | Primitive::Sphere(_))
+}

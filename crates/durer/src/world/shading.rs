@@ -1,0 +1,175 @@
+//! How a surface point scatters light, and what it shines, as a path tracer sees it.
+
+use super::{Hit, Material, Phong, World};
+use crate::bsdf::lobe::blinn::Blinn;
+use crate::bsdf::lobe::diffuse::Diffuse;
+use crate::bsdf::lobe::glass::{Mirror, Refraction, Through};
+use crate::bsdf::{Bsdf, Frame, fresnel, layers};
+use crate::material::principled::Walls;
+use crate::math::{Color, Vec3};
+use crate::shape::Surface;
+use crate::world::material::Emission;
+use crate::world::{HighlightModel, Principled};
+use glam::DVec3;
+
+/// A surface point as it is seen from one direction.
+#[derive(Clone, Debug)]
+pub struct Shading {
+    /// Its frame; the side from which it is seen is above.
+    pub frame: Frame,
+    /// The true normal on that side.
+    pub n_geo: Vec3,
+    /// The local direction from which it is seen.
+    pub wo: Vec3,
+    /// How it scatters.
+    pub bsdf: Bsdf,
+}
+
+impl Shading {
+    /// The value times the cosine of a direction of the world. Light that comes from behind the true surface and would be
+    /// reflected, or the other way round, is none: the normals for shading are only nearly right.
+    pub fn eval(&self, wi: Vec3) -> Color {
+        let local = self.frame.to_local(wi);
+        let same_side = (local.z > 0.0) == (wi.dot(self.n_geo) > 0.0);
+        if same_side { self.bsdf.eval(self.wo, local) } else { Color::ZERO }
+    }
+
+    /// The density with which that direction would be chosen.
+    pub fn pdf(&self, wi: Vec3) -> f32 {
+        self.bsdf.pdf(self.wo, self.frame.to_local(wi))
+    }
+}
+
+impl World {
+    /// Noise, else texture, else the diffuse colour.
+    pub fn diffuse_color(&self, phong: &Phong, surface: &Surface) -> Color {
+        let texture = phong.texture.zip(surface.uv).map(|(i, uv)| self.textures[i as usize].at(uv));
+        let noise = phong.noise.as_ref().map(|noise| noise.color(surface.position));
+        noise.or(texture).unwrap_or(phong.diffuse)
+    }
+
+    /// How a hit scatters light that is seen against a ray's direction. `inside`: it is seen from the side that its normal
+    /// does not point to; `eta` is the index behind the surface over that before it.
+    pub fn shading(&self, dir: Vec3, hit: &Hit, surface: &Surface, inside: bool, eta: f32) -> Shading {
+        let [n, n_geo] = [surface.n_shade, surface.n_geo].map(|n| if inside { -n } else { n });
+        // An interpolated normal may point away from the ray; the surface itself does not.
+        let n = if dir.dot(n) < 0.0 { n.normalize_or(n_geo) } else { n_geo };
+        let frame = Frame::around(n);
+        let wo = frame.to_local(-dir.normalize_or(-n));
+        let wo = Vec3::new(wo.x, wo.y, wo.z.max(1e-6));
+        let mut bsdf = Bsdf::default();
+        for part in self.parts(hit, surface.position) {
+            let color = self.diffuse_color(part.phong, surface);
+            let own = match &part.phong.principled {
+                Some(principled) => principled_lobes(principled, part.phong, color, wo, inside, eta),
+                None => phong_lobes(part.phong, color, wo, eta),
+            };
+            bsdf.extend(&own, part.share);
+        }
+        Shading { frame, n_geo, wo, bsdf }
+    }
+
+    /// The light of a material's own, if points that shine can be chosen: the same everywhere.
+    pub(super) fn emission_of(&self, material: u32) -> Option<&Emission> {
+        match self.materials.get(material as usize)? {
+            Material::Phong(phong) => phong.emission.as_ref().filter(|emission| emission.texture.is_none()),
+            Material::Solid(..) => None,
+        }
+    }
+
+    /// The light that a surface sends towards one side: from where its normal points, or from behind.
+    pub fn emission(&self, hit: &Hit, surface: &Surface, inside: bool) -> Color {
+        let own = |phong: &Phong| {
+            let emission = phong.emission.as_ref().filter(|emission| emission.two_sided || !inside)?;
+            let texture = emission.texture.zip(surface.uv).map(|(i, uv)| self.textures[i as usize].at(uv));
+            Some(emission.radiance * texture.unwrap_or(Vec3::ONE))
+        };
+        if !self.has_emission(hit) {
+            return Color::ZERO;
+        }
+        let parts = self.parts(hit, surface.position);
+        parts.iter().filter_map(|part| own(part.phong).map(|light| part.share * light)).sum()
+    }
+
+    /// The light of a chosen point of an emitter.
+    pub(super) fn emitted(&self, hit: &Hit, _point: DVec3) -> Color {
+        self.emission_of(self.material(hit)).map_or(Color::ZERO, |emission| emission.radiance)
+    }
+
+    /// Whether a hit may shine: quickly known, for most materials.
+    fn has_emission(&self, hit: &Hit) -> bool {
+        match &self.materials[self.material(hit) as usize] {
+            Material::Phong(phong) => phong.emission.is_some(),
+            Material::Solid(..) => true,
+        }
+    }
+
+    /// The index of refraction of the body that a surface bounds, if light may go into it: that of the part that weighs most.
+    pub fn refracts(&self, hit: &Hit, surface: &Surface) -> Option<f32> {
+        let of = |phong: &Phong| match &phong.principled {
+            Some(own) => (own.written.transmission_weight > 0.0 && own.written.walls == Walls::Solid)
+                .then_some(own.written.specular_ior),
+            None => (phong.transparent != Color::ZERO).then_some(phong.ior),
+        };
+        let mut most = (0.0, None);
+        for part in self.parts(hit, surface.position) {
+            let ior = of(part.phong);
+            most = if ior.is_some() && part.share > most.0 { (part.share, ior) } else { most };
+        }
+        most.1
+    }
+
+    /// The share of a surface that is there.
+    pub fn opacity(&self, hit: &Hit, surface: &Surface) -> f32 {
+        let own = |phong: &Phong| phong.principled.as_ref().map_or(1.0, |own| own.written.opacity);
+        self.parts(hit, surface.position).iter().map(|part| part.share * own(part.phong)).sum()
+    }
+
+    /// Whether some material is there in part only.
+    pub(crate) fn finds_cutouts(&self) -> bool {
+        let own = |phong: &Phong| phong.principled.as_ref().is_some_and(|own| own.written.opacity < 1.0);
+        self.materials.iter().any(|material| matches!(material, Material::Phong(phong) if own(phong)))
+    }
+
+    /// What the body of an object takes of light, per unit of the world.
+    pub fn absorption(&self, object: u32) -> Color {
+        match &self.materials[self.objects[object as usize].material as usize] {
+            Material::Phong(phong) => phong.principled.as_ref().map_or(Color::ZERO, |own| own.absorption),
+            Material::Solid(..) => Color::ZERO,
+        }
+    }
+}
+
+fn principled_lobes(own: &Principled, phong: &Phong, color: Color, wo: Vec3, inside: bool, eta: f32) -> Bsdf {
+    let mut layers = own.layers;
+    if phong.texture.is_some() {
+        layers.base_color = own.layers.base_color * color;
+    }
+    layers::scattering(&own.written, &layers, &own.tables, wo, inside, eta)
+}
+
+/// The course's material under physical light: matte with `diffuseColor` over pi, Blinn's or Phong's highlight, and single
+/// directions for mirror and glass. What would give back more than it gets is scaled down as a whole.
+fn phong_lobes(phong: &Phong, color: Color, wo: Vec3, eta: f32) -> Bsdf {
+    let mut bsdf = Bsdf::default();
+    let (strength, exponent, model) = phong.highlight.unwrap_or((Color::ZERO, 1.0, HighlightModel::Blinn));
+    let reflected = match phong.fresnel {
+        true => fresnel::dielectric(wo.z, eta),
+        false => 1.0,
+    };
+    // Without Fresnel's law both rays have their whole weight.
+    let passing = if phong.fresnel { 1.0 - reflected } else { 1.0 };
+    let (mirror, through) = (reflected * phong.reflective, passing * phong.transparent);
+    let all = color + Blinn::bound(exponent) * strength + mirror + through;
+    let scale = 1.0 / all.max_element().max(1.0);
+    bsdf.push(Diffuse { color, roughness: 0.0 }, Color::splat(scale), scale * color.max_element());
+    let highlight = Blinn { color: strength, exponent, phong: matches!(model, HighlightModel::Phong { .. }) };
+    bsdf.push(highlight, Color::splat(scale), scale * Blinn::bound(exponent) * strength.max_element());
+    bsdf.push(Mirror, scale * mirror, scale * mirror.max_element());
+    let through = scale * through;
+    match eta == 1.0 {
+        true => bsdf.push(Through, through, through.max_element()),
+        false => bsdf.push(Refraction { eta }, through, through.max_element()),
+    }
+    bsdf
+}
