@@ -283,7 +283,7 @@ impl Bench {
         let image = Image::from_pixels(ours.width * 3, ours.height, pixels)?;
         let path = self.out.join(name);
         let mut bytes = Vec::new();
-        let options = WriteOptions { transfer: Transfer::Linear, ..WriteOptions::default() };
+        let options = WriteOptions { display: Transfer::Linear.into(), ..WriteOptions::default() };
         format_for(&path)?.write(&[Layer::color("color", image)], &options, &mut bytes)?;
         durer::image::save(&path, &bytes)?;
         Ok(())

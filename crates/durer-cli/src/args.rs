@@ -1,5 +1,6 @@
 //! The command line.
 
+use crate::display::DisplayArgs;
 use crate::memory::Memory;
 use crate::method::MethodArgs;
 use clap::builder::{ArgPredicate, PossibleValuesParser};
@@ -40,6 +41,7 @@ pub enum Command {
     Verify(Box<VerifyArgs>),
     Course(CourseArgs),
     Info(InfoArgs),
+    Measure(Box<crate::measure::MeasureArgs>),
     Convert(ConvertArgs),
     Compare(Box<CompareArgs>),
     Photo(crate::photo::PhotoArgs),
@@ -129,9 +131,8 @@ pub struct RenderArgs {
     pub job: JobArgs,
     #[command(flatten)]
     pub work: WorkArgs,
-    /// How colours become eight bits: sRGB's curve, none, or none and truncated as the course has it
-    #[arg(long, default_value = "srgb", value_parser = PossibleValuesParser::new(Transfer::ALL.map(Transfer::name)))]
-    pub transfer: String,
+    #[command(flatten)]
+    pub display: DisplayArgs,
     /// Print the hash of the film as the last line of standard output
     #[arg(long)]
     pub hash: bool,
@@ -275,9 +276,8 @@ pub struct MergeArgs {
     /// The picture to write
     #[arg(short, long, value_name = "PICTURE")]
     pub output: PathBuf,
-    /// How colours become eight bits
-    #[arg(long, default_value = "srgb", value_parser = PossibleValuesParser::new(Transfer::ALL.map(Transfer::name)))]
-    pub transfer: String,
+    #[command(flatten)]
+    pub display: DisplayArgs,
     /// Print the hash of the film as the last line of standard output
     #[arg(long)]
     pub hash: bool,

@@ -62,7 +62,7 @@ pub fn run(args: &ExplainArgs) -> Result<(), Failure> {
         say(&serde_json::to_string_pretty(&json(&subject, &names))?);
         return Ok(());
     }
-    let transfer = Transfer::from_name(&args.render.transfer).unwrap_or_default();
+    let transfer = args.render.display.transfer();
     let deepest = args.depth.map_or(usize::MAX, |depth| depth as usize);
     let telling = Telling { least: (args.min / 100.0) as f32, deepest, transfer };
     let lines = match &subject {

@@ -20,7 +20,7 @@ const MOST_FOR_NOISE: u32 = 4096;
 const MOST_FOR_TIME: u32 = 1 << 20;
 
 /// How often paths are scattered after the first time, unless asked otherwise.
-const PATH_BOUNCES: u32 = 16;
+pub const PATH_BOUNCES: u32 = 16;
 
 /// The structure that the options ask for.
 pub fn accel(args: &JobArgs) -> Result<AccelKind, Failure> {

@@ -4,7 +4,7 @@ use crate::args::RenderArgs;
 use crate::guard::Guard;
 use crate::output::{encode, format, lengthened, say};
 use crate::{Failure, bad, progress, report};
-use durer::image::{Destination, Format, Transfer, save_all};
+use durer::image::{Destination, Display, Format, save_all};
 use durer::render::{Moment, Panicked, Part, PartError};
 use durer::source::Source;
 use std::cell::Cell;
@@ -29,7 +29,7 @@ pub struct Keeper {
     restart: bool,
     quiet: bool,
     preview: Option<(Destination, &'static Format)>,
-    transfer: Transfer,
+    display: Display,
     start: Instant,
     short: Duration,
     /// How long saving took the last time.
@@ -74,7 +74,7 @@ impl Keeper {
             restart: work.restart,
             quiet: args.quiet,
             preview: preview.transpose()?,
-            transfer: Transfer::from_name(&args.transfer).unwrap_or_default(),
+            display: args.display.display()?,
             start: Instant::now(),
             short: SHORT.min(work.checkpoint_every),
             saving: Cell::new(None),
@@ -109,7 +109,7 @@ impl Keeper {
         if let (Moment::PassDone, Some((place, format))) = (moment, &self.preview) {
             let first = part.pictures().ok().and_then(|rendered| rendered.pictures.into_iter().next());
             let Some(layer) = first else { return };
-            let bytes = encode(format, &[layer], self.transfer, &[]);
+            let bytes = encode(format, &[layer], self.display, &[]);
             if let Ok(Err(error)) = bytes.map(|bytes| save_all(&[(place, bytes)])) {
                 self.complain(&error.to_string());
             }

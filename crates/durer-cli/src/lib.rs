@@ -6,6 +6,7 @@ mod compare;
 mod convert;
 mod course;
 mod diagrams;
+mod display;
 pub mod embed;
 mod explain;
 mod farm;
@@ -15,6 +16,7 @@ mod job;
 mod keep;
 mod lesson;
 mod manual;
+mod measure;
 mod memory;
 mod merge;
 mod method;
@@ -70,6 +72,7 @@ pub fn run(words: Vec<OsString>) -> u8 {
             Command::Course(args) => course::run(args.arguments, None),
             Command::Check(args) => check::run(&args),
             Command::Info(args) => info::run(&args),
+            Command::Measure(args) => measure::run(&args),
             Command::Convert(args) => convert::run(&args),
             Command::Compare(args) => compare::run(&args),
             Command::Photo(args) => photo::run(&args),

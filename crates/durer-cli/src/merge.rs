@@ -6,7 +6,6 @@ use crate::keep::read_part;
 use crate::output::{Target, say};
 use crate::render::{failure, rejected};
 use crate::{Failure, bad, output};
-use durer::image::Transfer;
 use durer::render::merge;
 use std::path::PathBuf;
 
@@ -24,8 +23,7 @@ pub fn run(args: &MergeArgs) -> Result<(), Failure> {
     drop(parts);
     rejected(&whole.statistics(), args.quiet);
     let rendered = whole.pictures().map_err(failure)?;
-    let transfer = Transfer::from_name(&args.transfer).unwrap_or_default();
-    output::save(&target.files(&rendered, transfer)?, args.quiet)?;
+    output::save(&target.files(&rendered, args.display.display()?)?, args.quiet)?;
     if args.hash {
         say(&whole.hash().to_string());
     }

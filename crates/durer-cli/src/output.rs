@@ -3,7 +3,7 @@
 use crate::args::DIAGRAMS;
 use crate::guard::Guard;
 use crate::{Failure, bad, progress};
-use durer::image::{Depth, Destination, Format, Layer, Transfer, WriteOptions, format_for, save_all};
+use durer::image::{Depth, Destination, Display, Format, Layer, WriteOptions, format_for, save_all};
 use durer::render::Rendered;
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
@@ -50,7 +50,7 @@ impl Target {
     }
 
     /// The files for some pictures.
-    pub fn files(&self, rendered: &Rendered, transfer: Transfer) -> Result<Vec<(&Destination, Vec<u8>)>, Failure> {
+    pub fn files(&self, rendered: &Rendered, display: Display) -> Result<Vec<(&Destination, Vec<u8>)>, Failure> {
         let layers = layers(rendered, self.format);
         let own = |name: &str| layers.iter().position(|layer| layer.name == name).map(|i| &layers[i..=i]);
         let file = |(name, place)| {
@@ -58,7 +58,7 @@ impl Target {
                 None => layers,
                 Some(name) => own(name).ok_or_else(|| anyhow::anyhow!("there is no picture `{name}`"))?,
             };
-            Ok((place, encode(self.format, layers, transfer, &rendered.attributes)?))
+            Ok((place, encode(self.format, layers, display, &rendered.attributes)?))
         };
         self.files.iter().map(|(name, place)| file((name.as_deref(), place))).collect()
     }
@@ -68,12 +68,13 @@ impl Target {
 pub fn encode(
     format: &Format,
     layers: &[Layer],
-    transfer: Transfer,
+    display: impl Into<Display>,
     attributes: &[(&'static str, String)],
 ) -> Result<Vec<u8>, Failure> {
     let mut bytes = Vec::new();
     // What a format cannot hold, a size above all, was asked for.
-    format.write(layers, &WriteOptions { transfer, attributes }, &mut bytes).map_err(|error| bad(error.to_string()))?;
+    let options = WriteOptions { display: display.into(), attributes };
+    format.write(layers, &options, &mut bytes).map_err(|error| bad(error.to_string()))?;
     Ok(bytes)
 }
 

@@ -7,7 +7,7 @@ use crate::open::{load_options, read};
 use crate::output::{Target, lengthened, say};
 use crate::{Failure, bad, check, diagrams, job, output, progress, report};
 use durer::diag::Diagnostic;
-use durer::image::{Transfer, checked_count};
+use durer::image::checked_count;
 use durer::render::{Control, Job, Panicked, Part, RenderError, Shard, ShardBy, Statistics, Stop, replay};
 use durer::world::World;
 use std::path::Path;
@@ -89,8 +89,7 @@ pub fn run(command: &RenderCommand) -> Result<(), Failure> {
             let mut rendered = part.pictures().map_err(failure)?;
             diagrams::add(&args.view.show, args.view.zoom, &opened.world, &job, &control, &mut rendered)
                 .map_err(failure)?;
-            let transfer = Transfer::from_name(&args.transfer).unwrap_or_default();
-            output::save(&target.files(&rendered, transfer)?, args.quiet)?;
+            output::save(&target.files(&rendered, args.display.display()?)?, args.quiet)?;
             keeper.done(&part, finished);
             if finished && !args.quiet {
                 check::after_render(&opened, &job, &rendered.pictures, &rendered.statistics);
@@ -119,8 +118,8 @@ fn shows(args: &RenderArgs) -> Result<Vec<&str>, Failure> {
 fn stopped(args: &RenderArgs, part: &Part, keeper: &Keeper, target: Option<&Target>) -> Failure {
     let mut written = keeper.after_interrupt(part);
     if let Some(target) = target.filter(|_| part.is_whole()) {
-        let transfer = Transfer::from_name(&args.transfer).unwrap_or_default();
-        let files = part.pictures().map_err(failure).and_then(|rendered| target.files(&rendered, transfer));
+        let display = args.display.display().unwrap_or_default();
+        let files = part.pictures().map_err(failure).and_then(|rendered| target.files(&rendered, display));
         if let Ok(files) = files.and_then(|files| output::save_silently(&files).map(|()| files)) {
             written.extend(files.into_iter().map(|(place, _)| place.path().display().to_string()));
         }

@@ -62,7 +62,7 @@ pub fn encode<'py>(
         });
     }
     let mut bytes = Vec::new();
-    format.write(&all, &WriteOptions { transfer, attributes: &[] }, &mut bytes).map_err(wrong)?;
+    format.write(&all, &WriteOptions { display: transfer.into(), attributes: &[] }, &mut bytes).map_err(wrong)?;
     Ok(PyBytes::new(py, &bytes))
 }
 

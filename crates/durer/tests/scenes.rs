@@ -3,7 +3,7 @@
 use durer::compile::AccelKind;
 use durer::diag::{Diagnostics, Files};
 use durer::dialect::Dialect;
-use durer::integrator::Settings;
+use durer::integrator::{Method, Settings};
 use durer::math::Vec3;
 use durer::render::{Control, Job, render};
 use durer::world::World;
@@ -42,6 +42,11 @@ fn opened(name: &str, accel: AccelKind) -> (Loaded, World) {
     (loaded.unwrap(), world.unwrap())
 }
 
+/// What makes a scene's picture.
+fn method(loaded: &Loaded) -> Method {
+    if loaded.scene.is_physical() { Method::Path { clamp: None } } else { Method::Whitted }
+}
+
 /// The colours of a small picture, with one ray through each pixel's centre.
 fn pixels(name: &str, accel: AccelKind, threads: usize) -> Vec<Vec3> {
     let (loaded, world) = opened(name, accel);
@@ -57,6 +62,7 @@ fn pixels(name: &str, accel: AccelKind, threads: usize) -> Vec<Vec3> {
             refraction: true,
             least_weight: 0.001,
         },
+        method: method(&loaded),
         ..Job::default()
     };
     let control = Control { threads: Some(threads), ..Control::default() };

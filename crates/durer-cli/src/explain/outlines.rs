@@ -25,6 +25,7 @@ pub fn lights(world: &World) -> Vec<Value> {
     let reach = 0.6 * bounds.size().length();
     let one = |(i, light): (usize, &Light)| match light {
         Light::Point(light) => json!({ "at": light.position, "name": format!("light {i}") }),
+        Light::Photometric(light) => json!({ "at": light.position, "name": format!("light {i}") }),
         Light::Spot(light) => json!({ "at": light.position, "name": format!("light {i}") }),
         Light::Directional(light) => {
             let at = bounds.center() - reach * light.direction.normalize_or_zero();

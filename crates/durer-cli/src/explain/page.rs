@@ -4,7 +4,7 @@ use super::outlines::{lights, outlines};
 use crate::Failure;
 use crate::args::ExplainArgs;
 use crate::page;
-use durer::image::{Image, Layer, Transfer};
+use durer::image::{Image, Layer};
 use durer::world::World;
 use serde_json::{Value, json};
 
@@ -18,7 +18,7 @@ pub fn page(
     picture: &Image,
     args: &ExplainArgs,
 ) -> Result<String, Failure> {
-    let transfer = Transfer::from_name(&args.render.transfer).unwrap_or_default();
+    let transfer = args.render.display.transfer();
     let picture = page::png(Layer::color("color", picture.clone()), transfer)?;
     let data = json!({
         "explanation": explanation,

@@ -205,12 +205,16 @@ pub(super) fn blocked(scout: &Scout) -> Vec<Finding> {
         let message = format!("the {name} keeps this light off all that is seen");
         let (diagnostic, _) = useless(scout, light, message)?;
         let help = match (scout.world().objects[object as usize].bounds(), &scout.world().lights[light]) {
-            (None, Light::Point(_) | Light::Spot(_)) => "the light is behind the plane: move it to the other side",
+            (None, Light::Point(_) | Light::Spot(_) | Light::Photometric(_)) => {
+                "the light is behind the plane: move it to the other side"
+            }
             (None, Light::Directional(_)) => {
                 "the light comes from behind the plane: turn its `direction`, which is where light goes"
             }
             (Some(_), Light::Directional(_)) => "turn the light, or move what is in its way",
-            (Some(_), Light::Point(_) | Light::Spot(_)) => "move the light, or what is in its way",
+            (Some(_), Light::Point(_) | Light::Spot(_) | Light::Photometric(_)) => {
+                "move the light, or what is in its way"
+            }
         };
         Some(diagnostic.related(scout.object_span(object), "in the way").help(help))
     })
@@ -297,7 +301,7 @@ pub(super) fn behind(scout: &Scout) -> Vec<Finding> {
                 let fixed = diagnostic.fix_at(scout.value(span, &["direction"]), turned);
                 scout.at_value(fixed, span, &["direction"]).help(help)
             }
-            Light::Point(_) | Light::Spot(_) => {
+            Light::Point(_) | Light::Spot(_) | Light::Photometric(_) => {
                 let eye = scout.world().camera.pose().center;
                 let help = format!("move it to the camera's side: the camera is at {}", vector(eye));
                 scout.at_value(diagnostic, span, &["position"]).help(help)

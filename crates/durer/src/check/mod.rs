@@ -13,6 +13,7 @@ mod lights;
 mod mesh;
 mod numbers;
 mod objects;
+mod physical;
 pub mod picture;
 mod repair;
 mod scout;
@@ -60,7 +61,8 @@ pub fn check(subject: &Subject, diagnostics: &Diagnostics) -> Vec<Finding> {
     let scout = Scout::new(subject);
     let mut found: Vec<Finding> = diagnostics.iter().cloned().map(Finding::from).collect();
     found.iter_mut().for_each(|finding| words::complete(&scout, finding));
-    for check in CHECKS {
+    let local = |code: &&str| physical::OF_LOCAL_LIGHT.contains(code) && physical::is_physical(&scout);
+    for check in CHECKS.iter().filter(|check| !local(&check.code)) {
         let of_kind = (check.find)(&scout).into_iter();
         found.extend(of_kind.map(|finding| Finding { diagnostic: finding.diagnostic.code(check.code), ..finding }));
     }

@@ -2,7 +2,7 @@
 
 use super::finding::Finding;
 use super::scout::Scout;
-use super::{colors, exposure, extent, facing, lights, mesh, numbers, objects, view, year};
+use super::{colors, exposure, extent, facing, lights, mesh, numbers, objects, physical, view, year};
 
 /// One kind of finding.
 #[derive(Clone, Copy, Debug)]
@@ -57,6 +57,8 @@ checks! {
     "up-parallel": "the camera's `up` is parallel to its `direction`", reported;
     // Light.
     "no-light": "no light", reported;
+    "no-emitter": "a scene for paths in which nothing shines", physical::no_emitter;
+    "lamp-turned": "a lamp that shines away from all that is seen", physical::lamp_turned;
     "black-light": "a light without colour", reported;
     "light-divides": "a light that is divided by zero", lights::divides;
     "no-falloff": "a light without `falloff`, where the old program divides by it", reported;

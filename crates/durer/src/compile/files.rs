@@ -6,10 +6,11 @@ use crate::diag::{Diagnostic, Diagnostics, Severity, at_least, at_most};
 use crate::dialect::{Compat, Rules};
 use crate::format::{self, obj::habits};
 use crate::image::{self, Encoded, ImageError};
+use crate::light::{Emitter as _, Light, Profile};
 use crate::scene::Background;
 use crate::shape::{HeightField, Mesh};
 use crate::source::SourceError;
-use crate::texture::{CubeMap, Environment, Texture};
+use crate::texture::{CubeMap, Environment, Sky, Texture};
 use crate::world::MeshTree;
 use rayon::prelude::*;
 use std::collections::HashMap;
@@ -20,6 +21,9 @@ use std::sync::Arc;
 /// the lists of positions and texture coordinates.
 const TREE_BYTES: u64 = 200;
 const TRIANGLE_BYTES: u64 = TREE_BYTES + size_of::<[[u32; 3]; 2]>() as u64;
+
+/// Columns of the picture of a clear sky.
+const SKY_WIDTH: u32 = 512;
 
 pub(super) struct Loader<'r> {
     pub(super) resources: Resources<'r>,
@@ -149,9 +153,28 @@ impl<'r> Loader<'r> {
         map
     }
 
+    /// How strong a light shines in each direction, if a file says that.
+    pub(super) fn profile(&mut self, light: &Light, diagnostics: &mut Diagnostics) -> Option<Arc<Profile>> {
+        let name = light.profile()?;
+        let bytes = self.read(name, "photometric file", diagnostics)?;
+        let file = self.resources.files.add(name.path.clone(), bytes.clone());
+        let mut own = Diagnostics::default();
+        let profile = format::ies::read(&bytes, file, &mut own);
+        if own.has_errors() {
+            let message = format!("the photometric file `{}` cannot be used", name.path);
+            diagnostics.push(Diagnostic::error(message).code("bad-file").at(name.span).label("asked for here"));
+        }
+        diagnostics.extend(own);
+        profile.map(Arc::new)
+    }
+
     /// The picture around a scene.
     pub(super) fn environment(&mut self, written: &Background, diagnostics: &mut Diagnostics) -> Option<Environment> {
-        let name = written.environment.as_ref()?;
+        let Some(name) = written.environment.as_ref() else {
+            let sky = Sky::new(written.sun?, written.turbidity);
+            let (turn, scale) = (written.environment_rotation, written.environment_scale);
+            return Environment::new(SKY_WIDTH, SKY_WIDTH / 2, sky.picture(SKY_WIDTH, SKY_WIDTH / 2), turn, scale);
+        };
         let bytes = self.read(name, "environment", diagnostics)?;
         let encoded = used(name, &name.path, Encoded::open(&bytes, &name.path), diagnostics)?;
         let picture = encoded.read(self.resources.memory, image::decode_srgb);

@@ -10,12 +10,14 @@ use crate::bvh::{Bvh, Grid};
 use crate::camera::{Frame, Lens};
 use crate::diag::{Diagnostic, Diagnostics, Files, Span};
 use crate::dialect::{Compat, Dialect, MeshNormals, Rules};
-use crate::light::{Emitter, Light};
-use crate::math::{Aabb, Affine, Color, Vec3};
+use crate::light::{DirectionalLight, Emitter, Light};
+use crate::math::{Aabb, Affine, Color, Vec3, fp};
 use crate::scene::{self, Group, MatrixOp, Node, Scene};
 use crate::shape::mesh::loosened;
 use crate::shape::{Mesh, Primitive, Shape, Triangle};
 use crate::source::Source;
+use crate::texture::Sky;
+use crate::texture::sky::SUN_RADIUS;
 use crate::world::{Accel, Emitters, Geometry, MeshTree, Object, Phong, World};
 use glam::DAffine3;
 use std::collections::HashMap;
@@ -93,7 +95,9 @@ pub fn compile(
     }
     let cube_map = scene.background.cube_map.as_ref().and_then(|name| loader.cube_map(name, &mut own));
     let environment = loader.environment(&scene.background, &mut own);
-    let (lights, ambient) = lights(scene, rules, &mut own);
+    let (mut lights, ambient) = lights(scene, rules, &mut own);
+    lights.extend(sun(&scene.background));
+    let profiles = lights.iter().map(|light| loader.profile(light, &mut own)).collect();
     // Numbers that JSON cannot tell apart, those that are not finite, are in no scene and no rules.
     let digest = loader.resources.source.digest(&serde_json::to_vec(&(scene, rules)).unwrap_or_default());
     let textures = loader.textures;
@@ -109,6 +113,7 @@ pub fn compile(
         cube_map,
         environment,
         ambient,
+        profiles,
         lights,
         materials: compiled,
         textures,
@@ -182,9 +187,25 @@ fn check_camera(scene: &Scene, pose: crate::camera::Pose, diagnostics: &mut Diag
     }
 }
 
+/// The sun that goes with a clear sky.
+fn sun(background: &scene::Background) -> Option<Light> {
+    let way = background.sun?;
+    let sky = Sky::new(way, background.turbidity);
+    let (sin, cos) = fp::sin_cos_degrees(f64::from(-background.environment_rotation));
+    let [sin, cos] = [sin, cos].map(|x| x as f32);
+    let way = Vec3::new(cos * way.x + sin * way.z, way.y.max(0.0), cos * way.z - sin * way.x);
+    // A light's colour is what a white matte surface shows: illuminance over pi.
+    let color = background.environment_scale * sky.sun() / std::f32::consts::PI;
+    Some(DirectionalLight { direction: -way, color, spread: SUN_RADIUS }.into())
+}
+
 /// The lights, and the ambient light that goes with them.
 fn lights(scene: &Scene, rules: &Rules, diagnostics: &mut Diagnostics) -> (Vec<Light>, Color) {
     let written = scene.lights.as_deref().unwrap_or_default();
+    // Light comes from surfaces or from all around.
+    if written.is_empty() && scene.is_physical() {
+        return (Vec::new(), scene.background.ambient_light);
+    }
     if written.is_empty() {
         let (message, ambient) = match rules.ambient_alone {
             true => ("the scene has no lights: its ambient light is set to 1 1 1, so colours are flat", Color::ONE),

@@ -12,7 +12,7 @@ fn sample() -> Image {
 fn written(format: &Format, kind: LayerKind, transfer: Transfer, image: &Image) -> Vec<u8> {
     let layer = Layer { name: "beauty".into(), image: image.clone(), kind, coverage: None };
     let mut out = Vec::new();
-    format.write(&[layer], &WriteOptions { transfer, ..WriteOptions::default() }, &mut out).unwrap();
+    format.write(&[layer], &WriteOptions { display: transfer.into(), ..WriteOptions::default() }, &mut out).unwrap();
     out
 }
 

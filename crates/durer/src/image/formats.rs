@@ -12,7 +12,7 @@ mod ppm;
 mod tga;
 
 use super::limits;
-use super::{Image, Image8, ImageError, Layer, LayerKind, Transfer};
+use super::{Display, Image, Image8, ImageError, Layer, LayerKind, Transfer};
 use crate::diag;
 use crate::math::Vec3;
 use std::panic::UnwindSafe;
@@ -32,10 +32,10 @@ pub enum Depth {
 }
 
 /// How pictures are written.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct WriteOptions<'a> {
     /// What makes eight bits of a colour. Formats of floating point have no use for it.
-    pub transfer: Transfer,
+    pub display: Display,
     /// Names and texts to be told beside the pictures, in formats that have a place for them.
     pub attributes: &'a [(&'static str, String)],
 }
@@ -169,11 +169,12 @@ fn extension(path: &str) -> Option<String> {
 }
 
 /// What makes eight bits of a layer's numbers.
-fn transfer(layer: &Layer, options: &WriteOptions) -> Transfer {
-    match (layer.kind, options.transfer) {
+fn display(layer: &Layer, options: &WriteOptions) -> Display {
+    match (layer.kind, options.display.transfer) {
         // A curve would falsify data; cutting off instead of rounding is what the course did to everything.
-        (LayerKind::Data, Transfer::Srgb) => Transfer::Linear,
-        (_, transfer) => transfer,
+        (LayerKind::Data, Transfer::Srgb) => Transfer::Linear.into(),
+        (LayerKind::Data, transfer) => transfer.into(),
+        _ => options.display,
     }
 }
 
@@ -181,10 +182,10 @@ fn transfer(layer: &Layer, options: &WriteOptions) -> Transfer {
 ///
 /// Here colours are those of what is seen alone, without the share of it (straight alpha).
 fn eight_bit_alpha(layer: &Layer, options: &WriteOptions) -> Option<Vec<u8>> {
-    let (transfer, coverage) = (transfer(layer, options), layer.coverage.as_ref()?);
+    let (display, coverage) = (display(layer, options), layer.coverage.as_ref()?);
     let pixel = |(&pixel, &share): (&Vec3, &f32)| {
         let alone = if share > 0.0 { pixel / share } else { Vec3::ZERO };
-        let [r, g, b] = transfer.encode_pixel(alone);
+        let [r, g, b] = display.encode_pixel(alone);
         [r, g, b, Transfer::Linear.encode(share)]
     };
     Some(layer.image.pixels.iter().zip(coverage).flat_map(pixel).collect())
@@ -192,8 +193,8 @@ fn eight_bit_alpha(layer: &Layer, options: &WriteOptions) -> Option<Vec<u8>> {
 
 /// The bytes of an eight-bit picture: red, green and blue, the top row first.
 fn eight_bit(layer: &Layer, options: &WriteOptions) -> Vec<u8> {
-    let transfer = transfer(layer, options);
-    layer.image.pixels.iter().flat_map(|&pixel| transfer.encode_pixel(pixel)).collect()
+    let display = display(layer, options);
+    layer.image.pixels.iter().flat_map(|&pixel| display.encode_pixel(pixel)).collect()
 }
 
 #[cfg(test)]

@@ -4,6 +4,7 @@
 //! [`FORMATS`] knows the file formats, [`read()`] reads them from memory, [`save()`] puts bytes into a file.
 
 pub mod compare;
+mod display;
 mod error;
 mod formats;
 mod limits;
@@ -15,6 +16,7 @@ mod transfer;
 #[cfg(test)]
 mod conformance;
 
+pub use display::{Display, Tone};
 pub use error::ImageError;
 pub use formats::{Depth, FORMATS, Format, WriteOptions, format_for};
 pub use limits::{MAX_PIXELS, checked_count, pixel_limit};

@@ -9,7 +9,8 @@ use super::account::{Bounce, RayKind, Shadow, What, Witness};
 use super::media::{Media, Passage};
 use super::spawn::{from_surface, to_light};
 use super::whitted::struck;
-use crate::bsdf::BsdfSample;
+use crate::bsdf::lobe::diffuse::Diffuse;
+use crate::bsdf::{Bsdf, BsdfSample, Frame};
 use crate::math::{Color, Ray, Ray64, Vec3, fp, gamma};
 use crate::sampler::SampleId;
 use crate::shape::Surface;
@@ -81,6 +82,19 @@ impl Path<'_> {
         let color = sum * scale;
         tally.end(Color::ONE, scale, color);
         color
+    }
+
+    /// The irradiance at a point on the side of a unit normal, by the random numbers of a sample: pi times what a white matte
+    /// surface shows there.
+    pub fn irradiance<T: Witness>(&self, point: DVec3, normal: Vec3, id: SampleId, tally: &mut T) -> Color {
+        let surface = Surface::around(point, normal);
+        let mut bsdf = Bsdf::default();
+        bsdf.push(Diffuse { color: Color::ONE, roughness: 0.0 }, Color::ONE, 1.0);
+        let shading = Shading { frame: Frame::around(normal), n_geo: normal, wo: Vec3::Z, bsdf };
+        let state = State { media: Media::default(), throughput: Color::ONE, depth: 0, from: None };
+        let vertex = Vertex { surface: &surface, shading: &shading, state: &state };
+        let id = id.at(0);
+        std::f32::consts::PI * (self.direct(&vertex, id, tally) + self.indirect(&vertex, None, id, tally))
     }
 
     /// The light along a ray: a sum, and what the way to it leaves of it.

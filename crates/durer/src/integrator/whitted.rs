@@ -8,7 +8,7 @@ pub(crate) use super::media::Passage;
 use super::media::{Media, Medium};
 use super::spawn::{from_surface, to_light};
 use crate::dialect::Compat;
-use crate::light::{Emitter, Illumination};
+use crate::light::Illumination;
 use crate::math::{Color, Ray, Ray64, Vec3, fp, gamma, reflect};
 use crate::shape::Surface;
 use crate::world::{HighlightModel, Hit, Part, Phong, World};
@@ -114,8 +114,8 @@ impl Whitted<'_> {
                 tally.end(ambient, Color::ONE, met);
                 color += ambient * met;
             }
-            for (number, light) in self.world.lights.iter().enumerate() {
-                let seen = light.illuminate(surface.point());
+            for number in 0..self.world.lights.len() {
+                let seen = self.world.illuminate(number, surface.point());
                 let visible = self.visible(surface, &seen, tally);
                 for (part, &diffuse) in parts.iter().zip(&diffuse) {
                     let share = part.share;

@@ -14,6 +14,8 @@ described! {
         direction: Vec3 = Vec3::NEG_Y, required, Rule::NonZero, ["direction" in set::ALL];
         /// Its colour and strength.
         color: Vec3 = Vec3::ONE, required, Rule::Any, ["color" in set::ALL];
+        /// Half the angle in which it is seen, in degrees, for soft shadows under a path tracer: 0.27 for the sun.
+        spread: f32 = 0.0, optional, Rule::NonNegative, ["spread" in set::DURER];
     }
 }
 
@@ -29,5 +31,9 @@ impl Emitter for DirectionalLight {
 
     fn color(&self) -> Color {
         self.color
+    }
+
+    fn spread(&self) -> f32 {
+        self.spread
     }
 }

@@ -1,14 +1,17 @@
 //! Lights. One file each; the list is [`Light`].
 
 pub mod directional;
+pub mod photometric;
 pub mod point;
 pub mod spot;
 
+use crate::describe::FileName;
 use crate::described_list;
 use crate::dialect::Rules;
 use crate::math::{Color, Vec3};
 pub use directional::DirectionalLight;
 use glam::DVec3;
+pub use photometric::{PhotometricLight, Profile};
 pub use point::PointLight;
 pub use spot::SpotLight;
 
@@ -18,6 +21,7 @@ described_list! {
         Directional(directional::DirectionalLight),
         Point(point::PointLight),
         Spot(spot::SpotLight),
+        Photometric(photometric::PhotometricLight),
     }
 }
 
@@ -48,6 +52,21 @@ pub trait Emitter {
     fn place(&self) -> Option<(Vec3, Color)> {
         None
     }
+
+    /// Half the angle in which it is seen from everywhere, in degrees.
+    fn spread(&self) -> f32 {
+        0.0
+    }
+
+    /// The file that says how strong it shines in each direction.
+    fn profile(&self) -> Option<&FileName> {
+        None
+    }
+
+    /// A direction from the light as that file means it: x is its horizontal angle 0, z its lower side.
+    fn in_profile(&self, dir: Vec3) -> Vec3 {
+        dir
+    }
 }
 
 macro_rules! delegate {
@@ -62,13 +81,22 @@ macro_rules! delegate {
             fn color(&self) -> Color {
                 match self { $(Light::$variant(l) => l.color,)+ }
             }
+            fn spread(&self) -> f32 {
+                match self { $(Light::$variant(l) => l.spread(),)+ }
+            }
+            fn profile(&self) -> Option<&FileName> {
+                match self { $(Light::$variant(l) => l.profile(),)+ }
+            }
+            fn in_profile(&self, dir: Vec3) -> Vec3 {
+                match self { $(Light::$variant(l) => l.in_profile(dir),)+ }
+            }
             fn place(&self) -> Option<(Vec3, Color)> {
                 match self { $(Light::$variant(l) => l.place(),)+ }
             }
         }
     };
 }
-delegate!(Directional, Point, Spot);
+delegate!(Directional, Point, Spot, Photometric);
 
 #[cfg(test)]
 mod tests;

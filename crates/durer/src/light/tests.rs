@@ -35,7 +35,7 @@ fn point_lights_fade_as_their_dialect_says() {
 
 #[test]
 fn directional_lights_come_against_their_direction_from_infinity() {
-    let light = DirectionalLight { direction: Vec3::new(0.0, -3.0, 4.0), color: Vec3::X };
+    let light = DirectionalLight { direction: Vec3::new(0.0, -3.0, 4.0), color: Vec3::X, ..Default::default() };
     let seen = light.illuminate((Vec3::splat(100.0)).as_dvec3());
     assert!((seen.to_light - Vec3::new(0.0, 0.6, -0.8)).length() < 1e-6);
     assert_eq!((seen.distance, seen.color), (f32::INFINITY, Vec3::X));

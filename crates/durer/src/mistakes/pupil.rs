@@ -233,7 +233,7 @@ impl<'w> Pupil<'w> {
         let mut seen = light.illuminate(point);
         match light {
             Light::Directional(_) if self.habits.lamps.negated => seen.to_light = -seen.to_light,
-            Light::Directional(_) | Light::Spot(_) => {}
+            Light::Directional(_) | Light::Spot(_) | Light::Photometric(_) => {}
             Light::Point(point) => {
                 let d = seen.distance;
                 match self.habits.lamps.fading {

@@ -30,6 +30,11 @@ described! {
         /// A picture of all directions that replaces the colour and lights the scene, best of high dynamic range (`.exr`,
         /// `.hdr`); its middle is seen towards -z. Whitted's light does not come from it.
         environment: Option<FileName> = None, optional, Rule::Any, ["environment" in set::DURER];
+        /// The way to the sun, of any length, with y upwards: a clear sky and the sun light the scene, in cd/m^2. Such
+        /// pictures need `--exposure`, -13 say.
+        sun: Option<Vec3> = None, optional, Rule::NonZero, ["sun" in set::DURER];
+        /// How hazy the air is: from 2 (clear) over 3 (a usual day) to 10.
+        turbidity: f32 = 3.0, optional, Rule::Positive, ["turbidity" in set::DURER];
         /// How far the environment is turned about y, in degrees.
         environment_rotation: f32 = 0.0, optional, Rule::Any, ["environmentRotation" in set::DURER];
         /// What multiplies the environment.
@@ -59,7 +64,8 @@ impl Scene {
     /// Whether it has light or materials that only a path tracer shows: layers, surfaces that shine, an environment.
     pub fn is_physical(&self) -> bool {
         let layered = |material: &Spanned<Material>| matches!(material.value, Material::Principled(_));
-        self.background.environment.is_some() || self.materials.iter().any(layered)
+        let background = &self.background;
+        background.environment.is_some() || background.sun.is_some() || self.materials.iter().any(layered)
     }
 }
 

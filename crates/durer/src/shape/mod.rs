@@ -109,6 +109,12 @@ impl Surface {
         }
     }
 
+    /// A flat surface at a point of space, known to a few roundings.
+    pub fn around(point: DVec3, normal: Vec3) -> Self {
+        let floor = gamma(4) * point.abs().max_element() as f32;
+        Surface::new(point, normal.as_dvec3(), floor.max(f32::MIN_POSITIVE), Vec2::ZERO)
+    }
+
     /// The point as it is known. Far from the origin of coordinates that is finer than single precision.
     pub fn point(&self) -> DVec3 {
         self.position.as_dvec3() + self.rest.as_dvec3()

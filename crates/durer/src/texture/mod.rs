@@ -2,10 +2,12 @@
 
 pub mod cube_map;
 pub mod environment;
+pub mod sky;
 
 use crate::math::{Color, Vec2};
 pub use cube_map::CubeMap;
 pub use environment::Environment;
+pub use sky::Sky;
 use std::sync::Arc;
 
 /// A decoded picture, looked up as the course does.

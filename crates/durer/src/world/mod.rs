@@ -10,16 +10,18 @@ pub mod solid;
 use crate::bvh::{Bvh, Grid, Tally};
 use crate::camera::{Camera, Frame};
 use crate::dialect::{Compat, Rules};
-use crate::light::Light;
+use crate::light::{Emitter as _, Illumination, Light, Profile};
 use crate::material::Pattern;
 use crate::math::{Aabb, Color, Ray64, Vec2, Vec3};
 use crate::shape::{Crossing, Surface};
 use crate::source::Digest;
 use crate::texture::{CubeMap, Environment, Texture};
 pub use emitters::Emitters;
+use glam::DVec3;
 pub use material::{Emission, HighlightModel, Material, Part, Parts, Phong, Principled};
 pub use object::{Geometry, MeshTree, Object, Placing};
 pub use shading::Shading;
+use std::sync::Arc;
 
 /// A scene ready to be traced.
 #[derive(Clone, Debug)]
@@ -36,6 +38,8 @@ pub struct World {
     pub ambient: Color,
     /// Lights.
     pub lights: Vec<Light>,
+    /// How strong each light shines in each direction, where that was measured; by number, those behind the last have none.
+    pub profiles: Vec<Option<Arc<Profile>>>,
     /// Materials, by number.
     pub materials: Vec<Material>,
     /// Decoded pictures, by number.
@@ -250,6 +254,18 @@ impl World {
             let (crossing, part) = geometry.closest(&ray, false, &mut ())?;
             Some(Hit { t: crossing.t, uv: crossing.uv, object: object as u32, part })
         })
+    }
+
+    /// The light of a lamp, by number, that arrives at a point if nothing is in the way.
+    pub fn illuminate(&self, light: usize, point: DVec3) -> Illumination {
+        let seen = self.lights[light].illuminate(point);
+        match self.profiles.get(light) {
+            Some(Some(profile)) => {
+                let candela = profile.at(self.lights[light].in_profile(-seen.to_light));
+                Illumination { color: candela * seen.color, ..seen }
+            }
+            _ => seen,
+        }
     }
 
     /// The colour that a ray sees that hits nothing.

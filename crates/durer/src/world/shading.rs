@@ -91,6 +91,16 @@ impl World {
         parts.iter().filter_map(|part| own(part.phong).map(|light| part.share * light)).sum()
     }
 
+    /// Whether a material has a light of its own.
+    pub fn may_shine(&self, material: u32) -> bool {
+        matches!(&self.materials[material as usize], Material::Phong(phong) if phong.emission.is_some())
+    }
+
+    /// Whether a material that shines does so to both sides.
+    pub fn shines_to_both_sides(&self, material: u32) -> Option<bool> {
+        self.emission_of(material).map(|emission| emission.two_sided)
+    }
+
     /// The light of a chosen point of an emitter.
     pub(super) fn emitted(&self, hit: &Hit, _point: DVec3) -> Color {
         self.emission_of(self.material(hit)).map_or(Color::ZERO, |emission| emission.radiance)

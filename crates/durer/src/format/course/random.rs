@@ -186,7 +186,13 @@ impl Random {
             }));
         }
         let light = |random: &mut Self| {
-            let mut value = random.thing::<Light>(0);
+            // The trees of nodes know lights of their own only.
+            let mut value = loop {
+                let value = random.thing::<Light>(0);
+                if !(nodes && value.is_ours()) {
+                    break value;
+                }
+            };
             if let (Light::Point(point), true) = (&mut value, nodes) {
                 // A node adds its place to 0, which makes 0 of -0.
                 point.position += Vec3::ZERO;

@@ -174,10 +174,12 @@ Group {
 ";
 
 /// Examples that say more than the defaults of a statement do.
-const EXAMPLES: [(&str, &str); 23] = [
+const EXAMPLES: [(&str, &str); 25] = [
     ("Background", "Background { color 0.7 0.8 0.9 ambientLight 0.2 0.2 0.2 }"),
     ("DirectionalLight", "DirectionalLight { direction -1 -2 -0.7 color 0.9 0.85 0.7 }"),
     ("PointLight", "PointLight { position 1.6 1.8 1.4 color 3 2.8 2.4 falloff 0.4 }"),
+    ("SpotLight", "SpotLight { position 0 3 1 direction 0 -1 -0.3 color 9 8 6 angle 35 innerAngle 10 }"),
+    ("PhotometricLight", "PhotometricLight { position 0 3 1 file lamps/street.ies color 0.3 0.28 0.24 }"),
     (
         "PhongMaterial",
         "PhongMaterial { diffuseColor 0.2 0.4 0.6 specularColor 0.8 0.8 0.8 exponent 60 reflectiveColor 0.2 0.2 0.2 }",

@@ -454,6 +454,7 @@ fn recolor<'l>(lights: impl Iterator<Item = &'l mut Light>, change: impl Fn(Colo
         Light::Directional(light) => light.color = change(light.color),
         Light::Point(light) => light.color = change(light.color),
         Light::Spot(light) => light.color = change(light.color),
+        Light::Photometric(light) => light.color = change(light.color),
     });
 }
 

@@ -4,8 +4,9 @@ pub mod shape;
 pub mod tree;
 
 use super::{Hit, Object, World};
+use crate::bsdf::{Frame, warp};
 use crate::light::Emitter as _;
-use crate::math::{Aabb, Color, Vec2, Vec3};
+use crate::math::{Aabb, Color, Vec2, Vec3, fp};
 use glam::DVec3;
 use serde::Serialize;
 pub use shape::{Form, Place};
@@ -96,10 +97,12 @@ impl Emitters {
         for (number, light) in world.lights.iter().enumerate() {
             match light.place() {
                 Some((position, intensity)) => {
+                    let profile = world.profiles.get(number).and_then(Option::as_ref);
+                    let most = profile.map_or(1.0, |profile| profile.most());
                     emitters.sources.push(Source::Light(number as u32));
                     bounds.push(Bounds {
                         bounds: Aabb { min: position, max: position },
-                        power: PI * intensity.max_element().max(0.0),
+                        power: PI * most * intensity.max_element().max(0.0),
                         axis: Vec3::Z,
                         cos_normals: -1.0,
                         cos_emission: 0.0,
@@ -130,7 +133,7 @@ impl Emitters {
         let chosen = (scaled as usize).min(choices.checked_sub(1)?);
         let even = 1.0 / choices as f32;
         if let Some(&light) = self.even.get(chosen) {
-            return Some(of_light(world, light, point, even));
+            return Some(spread(world, light, of_light(world, light, point, even), u));
         }
         if let (Some(environment), true) = (&world.environment, chosen == self.even.len()) {
             let (wi, radiance, pdf) = environment.sample(u)?;
@@ -168,7 +171,7 @@ impl Emitters {
 
 /// A light of the scene. Its colour is what a white matte surface shows that faces it: irradiance over pi.
 fn of_light(world: &World, light: u32, point: DVec3, choice: f32) -> LightSample {
-    let seen = world.lights[light as usize].illuminate(point);
+    let seen = world.illuminate(light as usize, point);
     LightSample {
         light: LightId::Light(light),
         wi: seen.to_light,
@@ -177,6 +180,17 @@ fn of_light(world: &World, light: u32, point: DVec3, choice: f32) -> LightSample
         choice,
         pdf: 0.0,
     }
+}
+
+/// A light that is seen under some angle, from one of its directions.
+fn spread(world: &World, light: u32, sample: LightSample, u: Vec2) -> LightSample {
+    let degrees = world.lights[light as usize].spread();
+    if degrees == 0.0 {
+        return sample;
+    }
+    let cosine = fp::sin_cos_degrees(f64::from(degrees.min(90.0))).1 as f32;
+    let around = warp::polar(1.0 - u.x * (1.0 - cosine), u.y);
+    LightSample { wi: Frame::around(sample.wi).to_world(around), ..sample }
 }
 
 impl AreaLight {

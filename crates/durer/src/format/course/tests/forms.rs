@@ -19,6 +19,7 @@ fn sample(kind: Kind, rule: Rule) -> (String, Value) {
             let numbers: Vec<String> = rows.iter().flatten().map(f32::to_string).collect();
             return (format!("{{ {} }}", numbers.join(" ")), Value::Rows(rows));
         }
+        Kind::Float if rule == Rule::Share => ("0.125", Value::Float(0.125)),
         Kind::Float => ("12.5", Value::Float(12.5)),
         // A solid of two materials before it.
         Kind::Int if rule == Rule::Any => ("1", Value::Int(1)),

@@ -1,0 +1,36 @@
+//! How colours become eight bits, from options.
+
+use crate::{Failure, bad};
+use clap::Args;
+use clap::builder::PossibleValuesParser;
+use durer::image::{Display, Tone, Transfer};
+
+/// How colours become eight bits; floating point formats keep them as they are
+#[derive(Args)]
+pub struct DisplayArgs {
+    /// How colours become eight bits: sRGB's curve, none, or none and truncated as the course has it
+    #[arg(long, default_value = "srgb", value_parser = PossibleValuesParser::new(Transfer::ALL.map(Transfer::name)))]
+    pub transfer: String,
+    /// Makes pictures of eight bits brighter by so many stops: each doubles the light
+    #[arg(long, value_name = "EV", default_value_t = 0.0, allow_negative_numbers = true)]
+    pub exposure: f32,
+    /// What becomes of light that eight bits cannot hold
+    #[arg(long, value_name = "CURVE", default_value = "none", value_parser = PossibleValuesParser::new(Tone::ALL.map(|row| row.0)))]
+    pub tone: String,
+}
+
+impl DisplayArgs {
+    /// What the options say.
+    pub fn display(&self) -> Result<Display, Failure> {
+        if !(self.exposure.is_finite() && self.exposure.abs() <= 60.0) {
+            return Err(bad("--exposure must be between -60 and 60"));
+        }
+        let exposure = durer::math::fp::pow(2.0, self.exposure);
+        Ok(Display { exposure, tone: Tone::from_name(&self.tone).unwrap_or_default(), transfer: self.transfer() })
+    }
+
+    /// The curve alone.
+    pub fn transfer(&self) -> Transfer {
+        Transfer::from_name(&self.transfer).unwrap_or_default()
+    }
+}

@@ -1,0 +1,142 @@
+//! `durer measure`: how much light arrives at points.
+
+use crate::args::{JobArgs, SceneArgs};
+use crate::guard::Guard;
+use crate::open::{load_options, open};
+use crate::output::say;
+use crate::{Failure, bad, job};
+use clap::Args;
+use durer::integrator::{Method, Path};
+use durer::math::{Color, Vec3};
+use durer::sampler::SampleId;
+use durer::threads;
+use durer::world::World;
+use rayon::prelude::*;
+use std::path::PathBuf;
+
+/// Measure illuminance and irradiance at points of a scene, as CSV with standard errors
+#[derive(Args)]
+#[command(after_help = "Examples:
+  durer measure room.txt --at 0,0.8,0
+  durer measure room.txt --at 0,0.8,0 --at 1,0.8,0 --normal 0,1,0 --samples 16384
+  durer measure room.txt --grid 0,0.8,0:4,0,0:0,0,6:8x12 > desk.csv
+
+A grid is a corner, two edges from it and numbers of points: the points are the middles of its cells, its normal is edge 1 times
+edge 0 unless --normal says otherwise, so that edges along x and z measure what falls from above.
+The illuminance is in lux where the scene's light is in cd/m^2 (`emissionLuminance`, `sun`); the irradiance is by colour. Nothing
+is measured on the other side of the normal. Standard errors are those of independent samples; these are spread more evenly, and
+are nearer than that.")]
+pub struct MeasureArgs {
+    /// The scene file
+    pub scene: PathBuf,
+    /// A point; may be repeated
+    #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_negative_numbers = true)]
+    pub at: Vec<Vec3>,
+    /// The side from which light is counted [default: 0,1,0]
+    #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_negative_numbers = true)]
+    pub normal: Option<Vec3>,
+    /// Points in rows: corner, two edges and their numbers
+    #[arg(long, value_name = "CORNER:EDGE:EDGE:NxM", value_parser = grid, allow_hyphen_values = true)]
+    pub grid: Vec<Grid>,
+    /// Threads [default: as many as the machine has]
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+    #[command(flatten)]
+    pub reading: SceneArgs,
+    #[command(flatten)]
+    pub job: JobArgs,
+}
+
+/// Points in rows.
+#[derive(Clone, Copy, Debug)]
+pub struct Grid {
+    corner: Vec3,
+    edges: [Vec3; 2],
+    counts: [u32; 2],
+}
+
+/// Samples of a point unless asked otherwise, and points at most.
+const SAMPLES: u32 = 4096;
+const MOST_POINTS: usize = 1 << 20;
+
+fn vector(text: &str) -> Result<Vec3, String> {
+    let numbers: Vec<f32> = text.split(',').map_while(|word| word.trim().parse().ok()).collect();
+    match numbers[..] {
+        [x, y, z] if text.split(',').count() == 3 && numbers.iter().all(|x| x.is_finite()) => Ok(Vec3::new(x, y, z)),
+        _ => Err("three numbers are wanted, as in 0,0.8,0".into()),
+    }
+}
+
+fn grid(text: &str) -> Result<Grid, String> {
+    let wanted = || "wanted is CORNER:EDGE:EDGE:NxM, as in 0,0.8,0:4,0,0:0,0,6:8x12".to_string();
+    let [corner, a, b, counts] = text.split(':').collect::<Vec<_>>()[..] else { return Err(wanted()) };
+    let (n, m) = counts.split_once('x').ok_or_else(wanted)?;
+    let count = |word: &str| word.parse().ok().filter(|n| (1..=4096).contains(n)).ok_or_else(wanted);
+    Ok(Grid { corner: vector(corner)?, edges: [vector(a)?, vector(b)?], counts: [count(n)?, count(m)?] })
+}
+
+impl Grid {
+    fn points(&self) -> impl Iterator<Item = Vec3> {
+        let Grid { corner, edges: [a, b], counts: [n, m] } = *self;
+        let share = |i: u32, n: u32| (i as f32 + 0.5) / n as f32;
+        (0..n * m).map(move |i| corner + share(i % n, n) * a + share(i / n, m) * b)
+    }
+}
+
+/// The mean of some samples, and its standard error.
+fn measured(path: &Path, point: Vec3, normal: Vec3, number: u32, seed: u64, samples: u32) -> (Color, f64, f64) {
+    let (mut sum, mut bright, mut squares) = ([0.0_f64; 3], 0.0, 0.0);
+    for sample in 0..samples {
+        let light = path.irradiance(point.as_dvec3(), normal, SampleId::new(seed, (number, 0), sample), &mut ());
+        let brightness = f64::from(light.dot(Color::new(0.2126, 0.7152, 0.0722)));
+        sum = std::array::from_fn(|i| sum[i] + f64::from(light[i]));
+        (bright, squares) = (bright + brightness, squares + brightness * brightness);
+    }
+    let n = f64::from(samples);
+    let mean = bright / n;
+    let error = ((squares / n - mean * mean).max(0.0) / n).sqrt();
+    (Color::from(sum.map(|sum| (sum / n) as f32)), mean, error)
+}
+
+pub fn run(args: &MeasureArgs) -> Result<(), Failure> {
+    let grids = args.grid.iter().flat_map(|grid| {
+        let normal = grid.edges[1].cross(grid.edges[0]).normalize_or(Vec3::Y);
+        grid.points().map(move |point| (point, normal))
+    });
+    let own = args.at.iter().map(|&point| (point, Vec3::Y)).chain(grids);
+    let mut places: Vec<(Vec3, Vec3)> = own.take(MOST_POINTS + 1).collect();
+    if places.is_empty() || places.len() > MOST_POINTS {
+        return Err(bad(format!("say where: --at X,Y,Z or --grid, at most {MOST_POINTS} points")));
+    }
+    if let Some(normal) = args.normal {
+        let Some(normal) = normal.try_normalize() else { return Err(bad("--normal must not be 0,0,0")) };
+        places.iter_mut().for_each(|place| place.1 = normal);
+    }
+    let opened = open(&args.scene, &load_options(&args.reading), false, &mut Guard::default())?;
+    let job = job::job(&args.job, None, &opened.loaded, false)?;
+    let clamp = match job.method {
+        Method::Path { clamp } => clamp,
+        Method::Whitted if args.job.method.integrator.is_none() => None,
+        other => return Err(bad(format!("measuring needs --integrator path, not {}", other.name()))),
+    };
+    let settings = match job.method {
+        Method::Path { .. } => job.settings,
+        // A scene of the course has its own number of bounces; light has more.
+        _ => durer::integrator::Settings { bounces: args.job.bounces.unwrap_or(job::PATH_BOUNCES), ..job.settings },
+    };
+    let samples = args.job.samples.unwrap_or(SAMPLES);
+    let world: &World = &opened.world;
+    let path = Path { world, settings, clamp, cancel: None };
+    let rows: Vec<_> = threads::install(args.threads.map(usize::from), || {
+        let one = |(number, &(point, normal)): (usize, &(Vec3, Vec3))| {
+            measured(&path, point, normal, number as u32, job.seed, samples)
+        };
+        places.par_iter().enumerate().map(one).collect()
+    });
+    say("x,y,z,nx,ny,nz,illuminance,illuminance_error,irradiance_r,irradiance_g,irradiance_b");
+    for ((point, normal), (light, mean, error)) in places.iter().zip(rows) {
+        let [p, n, c] = [*point, *normal, light].map(|v| format!("{},{},{}", v.x, v.y, v.z));
+        say(&format!("{p},{n},{mean:.6},{error:.6},{c}"));
+    }
+    Ok(())
+}

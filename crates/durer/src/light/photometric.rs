@@ -1,0 +1,164 @@
+//! A light measured in a laboratory: how strong it shines in each direction.
+
+use super::{Emitter, Illumination};
+use crate::describe::{FileName, Rule};
+use crate::described;
+use crate::dialect::{Rules, set};
+use crate::math::{Color, Vec3, fp};
+use glam::DVec3;
+use std::f32::consts::PI;
+
+described! {
+    /// A lamp whose light was measured: a point that shines as an IES file says, in candela.
+    PhotometricLight ["PhotometricLight" in set::DURER] {
+        /// Where it is.
+        position: Vec3 = Vec3::ZERO, required, Rule::Any, ["position" in set::DURER];
+        /// The measurement: an IES file (LM-63-1986 to 2019).
+        file: FileName = FileName::default(), required, Rule::Any, ["file" in set::DURER];
+        /// Where its lower side points.
+        direction: Vec3 = Vec3::NEG_Y, optional, Rule::NonZero, ["direction" in set::DURER];
+        /// Where its horizontal angle 0 points; made perpendicular to `direction`.
+        front: Vec3 = Vec3::X, optional, Rule::NonZero, ["front" in set::DURER];
+        /// What multiplies what was measured, by colour.
+        color: Vec3 = Vec3::ONE, optional, Rule::Any, ["color" in set::DURER];
+    }
+}
+
+impl Emitter for PhotometricLight {
+    /// As if it shone with one candela everywhere: its profile multiplies that.
+    fn illuminate(&self, point: DVec3) -> Illumination {
+        let offset = (self.position.as_dvec3() - point).as_vec3();
+        let distance = offset.length();
+        // A light's colour is what a white matte surface shows: illuminance over pi.
+        let color = self.color / (PI * distance * distance);
+        Illumination { to_light: offset.normalize_or(Vec3::Y), distance, color }
+    }
+
+    fn resolved(&self, _rules: &Rules) -> Self {
+        self.clone()
+    }
+
+    fn color(&self) -> Color {
+        self.color
+    }
+
+    fn place(&self) -> Option<(Vec3, Color)> {
+        Some((self.position, self.color / PI))
+    }
+
+    fn profile(&self) -> Option<&FileName> {
+        Some(&self.file)
+    }
+
+    fn in_profile(&self, dir: Vec3) -> Vec3 {
+        let down = self.direction.normalize_or(Vec3::NEG_Y);
+        let front = self.front - down * self.front.dot(down);
+        let front = front.try_normalize().unwrap_or_else(|| down.any_orthonormal_vector());
+        Vec3::new(dir.dot(front), dir.dot(front.cross(down)), dir.dot(down))
+    }
+}
+
+/// How strong a lamp shines in each direction.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Profile {
+    /// How its angles are meant.
+    pub kind: ProfileKind,
+    /// Vertical angles in degrees, rising.
+    pub vertical: Vec<f32>,
+    /// Horizontal angles in degrees, rising.
+    pub horizontal: Vec<f32>,
+    /// Candela, all vertical angles of the first horizontal one first.
+    pub candela: Vec<f32>,
+}
+
+/// The coordinates of a photometer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ProfileKind {
+    /// C: vertical angles from straight down, horizontal ones about that axis.
+    C,
+    /// B: planes turned about the horizontal axis that lies across the lamp's front.
+    B,
+    /// A: planes turned about the vertical axis.
+    A,
+}
+
+impl Profile {
+    /// The most that it shines anywhere.
+    pub fn most(&self) -> f32 {
+        self.candela.iter().copied().fold(0.0, f32::max)
+    }
+
+    /// Candela in a direction: x is horizontal angle 0, z down. Linear between angles; nothing beyond the vertical ones.
+    pub fn at(&self, dir: Vec3) -> f32 {
+        let degrees = |y: f32, x: f32| fp::atan2(y, x).to_degrees();
+        let across = |a: f32, b: f32| (a * a + b * b).sqrt();
+        let (vertical, horizontal) = match self.kind {
+            ProfileKind::C => (degrees(across(dir.x, dir.y), dir.z), degrees(dir.y, dir.x)),
+            // z is where the lamp looks: down, as it hangs; angles grow towards y and x.
+            ProfileKind::B => (degrees(dir.x, across(dir.y, dir.z)), degrees(dir.y, dir.z)),
+            ProfileKind::A => (degrees(dir.y, across(dir.x, dir.z)), degrees(dir.x, dir.z)),
+        };
+        let horizontal = self.folded(horizontal);
+        // Halves that are not written mirror those that are.
+        let vertical = if self.vertical[0] >= 0.0 { vertical.abs() } else { vertical };
+        let (Some((i, a)), Some((j, b))) = (place(&self.vertical, vertical), place(&self.horizontal, horizontal))
+        else {
+            return 0.0;
+        };
+        let value = |i: usize, j: usize| {
+            let (i, j) = (i.min(self.vertical.len() - 1), j.min(self.horizontal.len() - 1));
+            self.candela[j * self.vertical.len() + i]
+        };
+        let row = |j: usize| value(i, j) * (1.0 - a) + value(i + 1, j) * a;
+        row(j) * (1.0 - b) + row(j + 1) * b
+    }
+
+    /// A horizontal angle within those that are written, by the symmetry that they stand for.
+    fn folded(&self, angle: f32) -> f32 {
+        let (first, last) = (self.horizontal[0], self.horizontal[self.horizontal.len() - 1]);
+        if self.horizontal.len() == 1 {
+            return first;
+        }
+        if self.kind != ProfileKind::C {
+            return if first >= 0.0 { angle.abs() } else { angle };
+        }
+        let angle = angle.rem_euclid(360.0);
+        let half = if angle > 180.0 { 360.0 - angle } else { angle };
+        match (first, last) {
+            (0.0, 90.0) => half.min(180.0 - half),
+            (0.0, 180.0) => half,
+            // Symmetric across the plane from 90 to 270 degrees.
+            (90.0, 270.0) if angle < 90.0 => 180.0 - angle,
+            (90.0, 270.0) if angle > 270.0 => 540.0 - angle,
+            _ => angle,
+        }
+    }
+
+    /// The light in all directions together, in lumen: exact for what is linear between the angles, but for the sine.
+    pub fn flux(&self) -> f64 {
+        let (rows, columns) = (720_u32, 360_u32);
+        let mut sum = 0.0;
+        for i in 0..rows {
+            let (sin, cos) = fp::sin_cos_degrees((f64::from(i) + 0.5) * 180.0 / f64::from(rows));
+            for j in 0..columns {
+                let (s, c) = fp::sin_cos_degrees((f64::from(j) + 0.5) * 360.0 / f64::from(columns));
+                sum += f64::from(self.at(Vec3::new((sin * c) as f32, (sin * s) as f32, cos as f32))) * sin;
+            }
+        }
+        sum * 2.0 * std::f64::consts::PI * std::f64::consts::PI / f64::from(rows * columns)
+    }
+}
+
+/// The last angle that is not beyond a wanted one, and the way from there to the next; `None` outside of all.
+fn place(angles: &[f32], wanted: f32) -> Option<(usize, f32)> {
+    const SLACK: f32 = 1e-3;
+    let (first, last) = (angles[0], angles[angles.len() - 1]);
+    if angles.len() == 1 {
+        return Some((0, 0.0));
+    }
+    if wanted < first - SLACK || wanted > last + SLACK {
+        return None;
+    }
+    let i = angles.partition_point(|&angle| angle <= wanted).clamp(1, angles.len() - 1) - 1;
+    Some((i, ((wanted - angles[i]) / (angles[i + 1] - angles[i])).clamp(0.0, 1.0)))
+}

@@ -1,0 +1,177 @@
+//! Daylight: the clear sky and the sun, from where the sun stands and how hazy the air is.
+//!
+//! Source: Preetham, Shirley and Smits, *A Practical Analytic Model for Daylight*, SIGGRAPH 1999. Brightness is in cd/m^2.
+
+use crate::math::{Color, Vec2, Vec3, fp};
+use std::f32::consts::PI;
+
+/// The sun's illuminance outside the atmosphere, in lux.
+const SUN_OUTSIDE: f32 = 128_000.0;
+
+/// Half the angle in which the sun is seen, in degrees.
+pub const SUN_RADIUS: f32 = 0.2665;
+
+/// A clear sky.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sky {
+    /// Unit vector to the sun.
+    sun: Vec3,
+    /// From 2 (clear) to 10 (hazy).
+    turbidity: f32,
+    /// Brightness and chromaticity at the zenith.
+    zenith: Vec3,
+    /// Perez' five numbers of each.
+    perez: [[f32; 5]; 3],
+    /// Perez' function at the zenith.
+    there: Vec3,
+}
+
+impl Sky {
+    /// `sun` leads to the sun, which is taken to the horizon where it is below. y is up.
+    pub fn new(sun: Vec3, turbidity: f32) -> Self {
+        let sun = Vec3::new(sun.x, sun.y.max(0.0), sun.z).normalize_or(Vec3::Y);
+        let t = turbidity.clamp(1.7, 10.0);
+        let theta = angle(sun.y);
+        let chi = (4.0 / 9.0 - t / 120.0) * (PI - 2.0 * theta);
+        let tan_chi = fp::sin(chi) / fp::cos(chi);
+        let bright = 1_000.0 * ((4.0453 * t - 4.9710) * tan_chi - 0.2155 * t + 2.4192);
+        let powers = [theta * theta * theta, theta * theta, theta, 1.0];
+        let chroma = |rows: [[f32; 4]; 3]| {
+            let row = |row: [f32; 4]| row.iter().zip(powers).map(|(a, b)| a * b).sum::<f32>();
+            t * t * row(rows[0]) + t * row(rows[1]) + row(rows[2])
+        };
+        let x = chroma([
+            [0.00166, -0.00375, 0.00209, 0.0],
+            [-0.02903, 0.06377, -0.03202, 0.00394],
+            [0.11693, -0.21196, 0.06052, 0.25886],
+        ]);
+        let y = chroma([
+            [0.00275, -0.00610, 0.00317, 0.0],
+            [-0.04214, 0.08970, -0.04153, 0.00516],
+            [0.15346, -0.26756, 0.06670, 0.26688],
+        ]);
+        let line = |rows: [(f32, f32); 5]| rows.map(|(slope, start)| slope * t + start);
+        let perez = [
+            line([(0.1787, -1.4630), (-0.3554, 0.4275), (-0.0227, 5.3251), (0.1206, -2.5771), (-0.0670, 0.3703)]),
+            line([(-0.0193, -0.2592), (-0.0665, 0.0008), (-0.0004, 0.2125), (-0.0641, -0.8989), (-0.0033, 0.0452)]),
+            line([(-0.0167, -0.2608), (-0.0950, 0.0092), (-0.0079, 0.2102), (-0.0441, -1.6537), (-0.0109, 0.0529)]),
+        ];
+        let there = Vec3::from(perez.map(|p| shape(&p, 1.0, theta, sun.y)));
+        Sky { sun, turbidity: t, zenith: Vec3::new(bright.max(0.0), x, y), perez, there }
+    }
+
+    /// The light from a unit direction; below the horizon that of the ground, which reflects a fifth.
+    pub fn at(&self, dir: Vec3) -> Color {
+        if dir.y < 0.0 {
+            return Vec3::splat(0.2 * self.zenith.x);
+        }
+        let cos_sun = dir.dot(self.sun).clamp(-1.0, 1.0);
+        let here = Vec3::from(self.perez.map(|p| shape(&p, dir.y.max(0.01), angle(cos_sun), cos_sun)));
+        let Vec3 { x: bright, y: x, z: y } = self.zenith * here / self.there;
+        linear(bright.max(0.0), x, y)
+    }
+
+    /// A picture of all directions: the middle towards -z, y upwards.
+    pub fn picture(&self, width: u32, height: u32) -> Vec<Color> {
+        let pixel = |i: u32| {
+            let place =
+                (Vec2::new((i % width) as f32, (i / width) as f32) + 0.5) / Vec2::new(width as f32, height as f32);
+            let (sin, cos) = fp::sin_cos_degrees(180.0 * f64::from(place.y));
+            let (sin_turn, cos_turn) = fp::sin_cos_degrees(360.0 * f64::from(place.x - 0.5));
+            self.at(Vec3::new((sin * sin_turn) as f32, cos as f32, (-sin * cos_turn) as f32))
+        };
+        (0..width * height).map(pixel).collect()
+    }
+
+    /// The illuminance of the sun on a surface that faces it, in lux, by colour.
+    ///
+    /// Rayleigh's and the aerosol's part of the attenuation, at the wavelengths of red, green and blue.
+    pub fn sun(&self) -> Color {
+        let degrees = angle(self.sun.y).to_degrees();
+        // The mass of air on the way, after Kasten and Young, 1989.
+        let mass = 1.0 / (self.sun.y + 0.50572 * fp::pow(96.07995 - degrees, -1.6364));
+        let beta = 0.04608 * self.turbidity - 0.04586;
+        let through = |wavelength: f32| {
+            fp::exp(-0.008735 * mass * fp::pow(wavelength, -4.08)) * fp::exp(-beta * mass * fp::pow(wavelength, -1.3))
+        };
+        SUN_OUTSIDE * Vec3::new(through(0.61), through(0.55), through(0.465))
+    }
+}
+
+fn angle(cosine: f32) -> f32 {
+    fp::atan2((1.0 - cosine * cosine).max(0.0).sqrt(), cosine)
+}
+
+/// Perez' function of the cosine to the zenith and the angle to the sun.
+fn shape(&[a, b, c, d, e]: &[f32; 5], cos_zenith: f32, to_sun: f32, cos_sun: f32) -> f32 {
+    (1.0 + a * fp::exp(b / cos_zenith)) * (1.0 + c * fp::exp(d * to_sun) + e * cos_sun * cos_sun)
+}
+
+/// Linear Rec.709 of CIE Yxy.
+fn linear(bright: f32, x: f32, y: f32) -> Color {
+    let (big_x, big_z) = (bright * x / y, bright * (1.0 - x - y) / y);
+    Vec3::new(
+        3.2404542 * big_x - 1.5371385 * bright - 0.4985314 * big_z,
+        -0.969266 * big_x + 1.8760108 * bright + 0.041556 * big_z,
+        0.0556434 * big_x - 0.2040259 * bright + 1.0572252 * big_z,
+    )
+    .max(Vec3::ZERO)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sky(height: f64, turbidity: f32) -> Sky {
+        let (sin, cos) = fp::sin_cos_degrees(height);
+        Sky::new(Vec3::new(cos as f32, sin as f32, 0.0), turbidity)
+    }
+
+    fn brightness(color: Color) -> f32 {
+        color.dot(Vec3::new(0.2126, 0.7152, 0.0722))
+    }
+
+    #[test]
+    fn the_zenith_has_the_published_brightness_and_colour() {
+        // By hand from the paper's formulas at turbidity 3 with the sun 45 degrees high:
+        // chi = (4/9 - 3/120) (pi - pi/2) = 0.6589, Yz = 7.1649 tan chi - 0.6465 + 2.4192 = 7.319 kcd/m^2.
+        let sky = sky(45.0, 3.0);
+        assert!((brightness(sky.at(Vec3::Y)) / 7_319.0 - 1.0).abs() < 0.005, "{}", brightness(sky.at(Vec3::Y)));
+        let zenith = sky.at(Vec3::Y);
+        assert!(zenith.z > 1.5 * zenith.x, "blue: {zenith}");
+    }
+
+    #[test]
+    fn daylight_is_as_bright_as_it_is_measured_to_be() {
+        // Clear skies make 10 to 20 klx on the ground beside the sun, and a high sun 60 to 110 klx.
+        let sky = sky(60.0, 3.0);
+        let n = 200;
+        let mut horizontal = 0.0;
+        for i in 0..n * n {
+            let cosine = ((i / n) as f32 + 0.5) / n as f32;
+            let (sin, cos) = fp::sin_cos_degrees(360.0 * (f64::from(i % n) + 0.5) / f64::from(n));
+            let sine = (1.0 - cosine * cosine).sqrt();
+            let dir = Vec3::new(sine * cos as f32, cosine, sine * sin as f32);
+            horizontal += f64::from(brightness(sky.at(dir)) * cosine) * 2.0 * std::f64::consts::PI / f64::from(n * n);
+        }
+        assert!((8_000.0..25_000.0).contains(&horizontal), "{horizontal}");
+        let sun = brightness(sky.sun());
+        assert!((60_000.0..110_000.0).contains(&sun), "{sun}");
+        // A low sun is dimmer and redder.
+        let low = self::sky(3.0, 3.0).sun();
+        assert!(brightness(low) < 0.3 * sun && low.x > 2.0 * low.z, "{low}");
+    }
+
+    #[test]
+    fn the_sky_is_brightest_around_the_sun_and_finite_everywhere() {
+        for height in [0.0, 1.0, 10.0, 45.0, 90.0] {
+            for turbidity in [2.0, 4.0, 9.0] {
+                let sky = sky(height, turbidity);
+                let picture = sky.picture(64, 32);
+                assert!(picture.iter().all(|color| color.is_finite() && color.min_element() >= 0.0));
+                let away = sky.at(Vec3::new(-0.8, 0.6, 0.0));
+                assert!(brightness(sky.at(sky.sun)) > brightness(away), "{height} {turbidity}");
+            }
+        }
+    }
+}
