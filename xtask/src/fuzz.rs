@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
 /// The targets, and the endings of files that they can begin with.
-const TARGETS: [(&str, &[&str]); 12] = [
+const TARGETS: [(&str, &[&str]); 13] = [
     ("scene", &["txt"]),
     ("obj", &["obj"]),
     ("ply", &["ply"]),
@@ -18,6 +18,7 @@ const TARGETS: [(&str, &[&str]); 12] = [
     ("pfm", &["pfm"]),
     ("exr", &["exr"]),
     ("hdr", &["hdr"]),
+    ("ies", &["ies"]),
     ("part", &[]),
     ("ways", &[]),
 ];

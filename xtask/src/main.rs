@@ -11,6 +11,7 @@ mod manual;
 mod solids;
 mod teach;
 mod torture;
+mod validate;
 mod verify;
 
 use anyhow::Context;
@@ -49,6 +50,8 @@ const USAGE: &str = "Commands:
   cargo xtask teach [--compare | --check] [--only TEXT] [--keep FOLDER]
       Wrong pictures made by a tracer of its own, for `durer compare`, and broken scenes, for `durer check`: how many are told
       rightly, and how many wrongly?
+  cargo xtask validate [--samples N]
+      Light against answers in closed form, and docs/validation.md.
   cargo xtask manual
       Write the reference of the language, docs/language and its pictures, and the grammar for editors.
 The course is found in ../shared, or where DURER_CORPUS says.";
@@ -72,6 +75,7 @@ fn main() -> anyhow::Result<ExitCode> {
         Some("teach") => teach::run(&arguments[1..]),
         Some("long") => long::run(&arguments[1..]),
         Some("fuzz") => fuzz::run(&arguments[1..]),
+        Some("validate") => validate::run(&arguments[1..]),
         Some("manual") => manual::run(),
         _ => {
             println!("{USAGE}");

@@ -8,9 +8,10 @@ use crate::compile::AccelKind;
 use crate::diag::{Diagnostics, Files};
 use crate::dialect::Dialect;
 use crate::format::course::{ReadOptions, guess, random::Random, read, write};
-use crate::format::read_mesh;
+use crate::format::{ies, read_mesh};
 use crate::image::{Encoded, ImageError, decode_linear};
-use crate::integrator::Settings;
+use crate::integrator::{Method, Settings};
+use crate::math::Vec3;
 use crate::render::{Control, Job, Part, PartError, Shard, Stop};
 use crate::source::Digest;
 use std::path::PathBuf;
@@ -51,6 +52,20 @@ pub fn mesh(data: &[u8], name: &str) {
         let within = |count: usize| move |corner: &u32| (*corner as usize) < count;
         assert!(mesh.triangles.iter().flatten().all(within(mesh.positions.len())));
         assert!(mesh.positions.iter().all(|position| position.is_finite()));
+    }
+}
+
+/// Bytes as an IES file: what is read shines with finite light everywhere.
+pub fn profile(data: &[u8]) {
+    let mut files = Files::default();
+    let file = files.add("x.ies", data.into());
+    let mut diagnostics = Diagnostics::default();
+    if let Some(profile) = ies::read(data, file, &mut diagnostics) {
+        for dir in [Vec3::X, Vec3::Y, Vec3::Z, Vec3::NEG_Z, Vec3::new(-0.6, 0.0, 0.8), Vec3::new(0.48, -0.6, 0.64)] {
+            assert!(!profile.at(dir).is_nan());
+        }
+    } else {
+        assert!(diagnostics.has_errors());
     }
 }
 
@@ -112,7 +127,9 @@ pub fn ways(data: &[u8]) {
     let text = write(&scene, Dialect::Durer);
     let path = folder().join("scene.txt");
     let settings = Settings { bounces: 2, ..Job::default().settings };
-    let job = Job { width: 12, height: 9, settings, ..Job::default() };
+    // The scenes that paths are made for are made by them.
+    let method = if scene.is_physical() { Method::Path { clamp: None } } else { Method::Whitted };
+    let job = Job { width: 12, height: 9, settings, method, ..Job::default() };
     let hash = |accel| {
         let options = LoadOptions {
             dialect: Some(Dialect::Durer),
@@ -154,6 +171,7 @@ fn seeds_hold() {
             let data = std::fs::read(&seed).unwrap();
             match name.as_str() {
                 "scene" => scene(&data),
+                "ies" => profile(&data),
                 "part" => part(&data),
                 "ways" => ways(&data),
                 "obj" | "ply" => mesh(&data, &format!("x.{name}")),

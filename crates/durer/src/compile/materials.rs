@@ -123,8 +123,9 @@ fn plain(m: &PrincipledMaterial) -> Phong {
         highlight: (reflects != Color::ZERO).then_some((reflects, exponent, HighlightModel::Blinn)),
         reflective: if glass { m.specular_color } else { smooth * m.base_metalness * base },
         transparent: m.transmission_weight * m.transmission_color,
-        ior: m.specular_ior,
-        fresnel: glass,
+        // A sheet bends no light.
+        ior: if m.walls == Walls::Thin { 1.0 } else { m.specular_ior },
+        fresnel: glass && m.walls == Walls::Solid,
         ..Phong::default()
     }
 }

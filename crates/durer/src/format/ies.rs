@@ -135,7 +135,11 @@ fn parse(text: &str, file: u32) -> Result<Profile, Box<Diagnostic>> {
         if value < 0.0 {
             return Err(numbers.error(start, numbers.at, "candela must not be less than 0"));
         }
-        candela.push((scale * value) as f32);
+        let value = (scale * value) as f32;
+        if !value.is_finite() {
+            return Err(numbers.error(start, numbers.at, "so many candela are no number that can be held"));
+        }
+        candela.push(value);
     }
     Ok(Profile { kind, vertical, horizontal, candela })
 }

@@ -4,6 +4,7 @@
 pub mod checkerboard;
 pub mod marble;
 pub mod phong;
+pub mod presets;
 pub mod principled;
 pub mod solid_noise;
 pub mod wood;

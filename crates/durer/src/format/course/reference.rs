@@ -211,6 +211,16 @@ const EXAMPLES: [(&str, &str); 25] = [
     ("Grid", "Grid { min -1 -1.2 -1 max 1 0.8 1 numCells 10 10 10 rasterizeSphere { center 0 -0.2 0 radius 0.95 } }"),
 ];
 
+/// What `preset` takes.
+const PRESET: &str = "First in a `PrincipledMaterial`: a real material by name, which fields after it change. Names: aluminum-brushed, \
+    beryllium, blackboard, blood, brass, brick, carpaint, cesium, charcoal, chromium, cobalt, coffee, concrete, \
+    cooking-oil, copper, diamond, egg-shell, eye-cornea, eye-lens, gasoline, germanium, glass, gold, gray-card, \
+    honey-liquid, ice, iridium, iron, lcd-display-6500k, lead, light-bulb-2700k, light-bulb-5000k, lithium, \
+    magnesium, manganese, mercury, molybdenum, nickel, office-paper, palladium, plastic-acrylic, plastic-pc, \
+    plastic-pet, plastic-polyurethane, plastic-pp, plastic-pvc, platinum, potassium, quartz, rubidium, salt, sand, \
+    sapphire, silicon, silver, sodium, stainless-steel, tire, titanium, toner-black, tungsten, vanadium, velvet, \
+    water, whiteboard, zinc.";
+
 /// Words of the grammar itself: spellings, chapter, what follows, meaning, example.
 #[rustfmt::skip]
 const GRAMMAR: &[(&[Spelling], Chapter, &str, &str, &str)] = &[
@@ -238,6 +248,8 @@ const GRAMMAR: &[(&[Spelling], Chapter, &str, &str, &str)] = &[
         "The material of a node's objects: the number of one in `Materials`.", ""),
     (&[("type", set::F23)], Chapter::Structure, "word", "What a component is.", ""),
     (&[("index", set::F23)], Chapter::Structure, "n", "The number of a material.", ""),
+    (&[("preset", set::DURER)], Chapter::Materials, "name",
+        PRESET, "PrincipledMaterial { preset gold specularRoughness 0.2 }"),
     (&[("Transform", set::ALL)], Chapter::Transforms, "{ matrices object }",
         "One object, moved. The matrices multiply as they are written: the last is applied to the object first.",
         "Transform { Translate 0 -0.4 0 ZRotate 25 Scale 1 0.5 0.7 Sphere { center 0 0 0 radius 1 } }"),

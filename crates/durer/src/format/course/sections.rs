@@ -6,9 +6,10 @@ use super::reader::Reader;
 use super::words::home_of;
 use crate::camera::Camera;
 use crate::describe::DescribedList;
-use crate::diag::{Diagnostic, Span};
+use crate::diag::{Diagnostic, Span, did_you_mean};
 use crate::dialect::{Dialect, DialectSet, set};
 use crate::light::Light;
+use crate::material::presets;
 use crate::material::{ColorNoise, PhongMaterial, PrincipledMaterial, Solid};
 use crate::scene::{Background, Group, Material, Node, Object, Operation, Spanned};
 use crate::shape::{HeightField, Primitive, Sphere, TriangleMesh, VoxelGrid};
@@ -219,7 +220,18 @@ impl Reader<'_, '_> {
         }
         if let Some(mut principled) = PrincipledMaterial::from_keyword(word) {
             self.check_keyword(&principled, span);
-            self.fields(&mut principled, span, Order::Any, |_, _, _| false);
+            // A preset comes first, so that what follows changes it.
+            let first = self.ahead(1).filter(|token| self.at_open() && self.text(token.span) == "preset");
+            let name = first.and_then(|_| self.ahead(2)).map(|token| self.text(token.span));
+            principled = name.as_deref().and_then(presets::named).unwrap_or(principled);
+            let mut seen = first.map(|token| token.span.start);
+            self.fields(&mut principled, span, Order::Any, |reader, word, span| {
+                let known = word == "preset";
+                if known {
+                    reader.preset(span, seen.take() == Some(span.start));
+                }
+                known
+            });
             return Some(Material::Principled(Box::new(principled)));
         }
         let Some(mut phong) = PhongMaterial::from_keyword(word) else {
@@ -249,6 +261,23 @@ impl Reader<'_, '_> {
             known
         });
         Some(Material::Phong(Box::new(phong), noise))
+    }
+
+    /// The name of a preset, which was taken already where it stands first.
+    fn preset(&mut self, word: Span, first: bool) {
+        let Some(name) = self.peek_word() else { return self.expected("a name", "preset") };
+        let span = self.advance();
+        if presets::named(&name).is_none() {
+            let near = did_you_mean(&name, presets::PRESETS.iter().map(|row| row.0));
+            let error = Diagnostic::error(format!("there is no material `{name}`")).code("unknown-word").at(span);
+            self.error(match near {
+                Some(near) => error.help(format!("did you mean `{near}`?")).fix(span, near),
+                None => error.help("`durer words preset` lists them"),
+            });
+        } else if !first {
+            let error = Diagnostic::error("`preset` must come first in its block").at(word);
+            self.error(error.help("it sets all fields; those that follow change it"));
+        }
     }
 
     /// A solid may only be made of earlier materials, so that there is no circle.

@@ -11,7 +11,8 @@ use std::collections::HashMap;
 use std::sync::LazyLock;
 
 /// Words of the grammar itself, which belong to no described thing.
-const GRAMMAR: [(&str, DialectSet); 32] = [
+const GRAMMAR: [(&str, DialectSet); 33] = [
+    ("preset", set::DURER),
     ("Lights", set::CLASSIC),
     ("Materials", set::ALL),
     ("Group", set::CLASSIC),
