@@ -1,13 +1,14 @@
 //! `durer measure`: how much light arrives at points.
 
-use crate::args::{JobArgs, SceneArgs};
+use crate::args::SceneArgs;
 use crate::guard::Guard;
 use crate::open::{load_options, open};
 use crate::output::say;
 use crate::{Failure, bad, job};
 use clap::Args;
-use durer::integrator::{Method, Path};
+use durer::integrator::{Path, Settings};
 use durer::math::{Color, Vec3};
+use durer::render::Job;
 use durer::sampler::SampleId;
 use durer::threads;
 use durer::world::World;
@@ -43,8 +44,15 @@ pub struct MeasureArgs {
     pub threads: Option<u16>,
     #[command(flatten)]
     pub reading: SceneArgs,
-    #[command(flatten)]
-    pub job: JobArgs,
+    /// How often light may be scattered before it arrives
+    #[arg(long, default_value_t = job::PATH_BOUNCES, value_parser = clap::value_parser!(u32).range(0..=256))]
+    pub bounces: u32,
+    /// Samples of each point
+    #[arg(long, default_value_t = 4096, value_parser = clap::value_parser!(u32).range(1..=1 << 24))]
+    pub samples: u32,
+    /// Seed of the random numbers
+    #[arg(long, default_value_t = 0)]
+    pub seed: u64,
 }
 
 /// Points in rows.
@@ -55,8 +63,7 @@ pub struct Grid {
     counts: [u32; 2],
 }
 
-/// Samples of a point unless asked otherwise, and points at most.
-const SAMPLES: u32 = 4096;
+/// Points at most.
 const MOST_POINTS: usize = 1 << 20;
 
 fn vector(text: &str) -> Result<Vec3, String> {
@@ -113,23 +120,12 @@ pub fn run(args: &MeasureArgs) -> Result<(), Failure> {
         places.iter_mut().for_each(|place| place.1 = normal);
     }
     let opened = open(&args.scene, &load_options(&args.reading), false, &mut Guard::default())?;
-    let job = job::job(&args.job, None, &opened.loaded, false)?;
-    let clamp = match job.method {
-        Method::Path { clamp } => clamp,
-        Method::Whitted if args.job.method.integrator.is_none() => None,
-        other => return Err(bad(format!("measuring needs --integrator path, not {}", other.name()))),
-    };
-    let settings = match job.method {
-        Method::Path { .. } => job.settings,
-        // A scene of the course has its own number of bounces; light has more.
-        _ => durer::integrator::Settings { bounces: args.job.bounces.unwrap_or(job::PATH_BOUNCES), ..job.settings },
-    };
-    let samples = args.job.samples.unwrap_or(SAMPLES);
+    let settings = Settings { bounces: args.bounces, ..Job::default().settings };
     let world: &World = &opened.world;
-    let path = Path { world, settings, clamp, cancel: None };
+    let path = Path { world, settings, clamp: None, cancel: None };
     let rows: Vec<_> = threads::install(args.threads.map(usize::from), || {
         let one = |(number, &(point, normal)): (usize, &(Vec3, Vec3))| {
-            measured(&path, point, normal, number as u32, job.seed, samples)
+            measured(&path, point, normal, number as u32, args.seed, args.samples)
         };
         places.par_iter().enumerate().map(one).collect()
     });

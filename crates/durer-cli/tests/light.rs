@@ -1,0 +1,102 @@
+//! Paths from the command line: pictures, measuring, exposure, checks.
+
+mod common;
+
+use common::Place;
+
+/// A matte floor under a lamp that was measured, with a ball that shines.
+const LIT: &str = "PerspectiveCamera { center 0 2 6 direction 0 -0.3 -1 up 0 1 0 angle 40 }
+Background { color 0 0 0 }
+Lights { PhotometricLight { position 0 2 0 file lamp.ies } }
+Materials { PrincipledMaterial { baseColor 0.5 0.5 0.5 specularWeight 0 }
+  PrincipledMaterial { preset gold specularRoughness 0.4 } PrincipledMaterial { baseColor 0 0 0 emissionLuminance 20 } }
+Group { MaterialIndex 0 Plane { normal 0 1 0 offset 0 } MaterialIndex 1 Sphere { center 1 0.5 0 radius 0.5 }
+  MaterialIndex 2 Sphere { center -1 0.3 0.5 radius 0.3 } }
+";
+
+/// 1000 candela straight down, by the cosine.
+const LAMP: &str = "IESNA:LM-63-1995\nTILT=NONE\n1 -1 1 4 1 1 2 0 0 0\n1 1 60\n0 30 60 90\n0\n1000 866.025 500 0\n";
+
+fn lit() -> Place {
+    let place = Place::new();
+    place.put("lit.txt", LIT);
+    place.put("lamp.ies", LAMP);
+    place
+}
+
+#[test]
+fn a_measured_lamp_gives_its_illuminance() {
+    let place = lit();
+    place.put("open.txt", LIT.replace("emissionLuminance 20", ""));
+    // Beside the ball: E = I cos / d^2 with I = 1000 cos.
+    let ran = place.gives(0, "measure open.txt --at 0,0,0 --grid 0,0,0:-1,0,0:0,0,1:1x1 --samples 64 --bounces 0");
+    let rows: Vec<Vec<f64>> =
+        ran.out.lines().skip(1).map(|row| row.split(',').map(|word| word.parse().unwrap()).collect()).collect();
+    assert!(ran.out.starts_with("x,y,z,nx,ny,nz,illuminance,illuminance_error,"));
+    assert!((rows[0][6] - 250.0).abs() < 0.1, "{rows:?}");
+    // At (-0.5, 0, 0.5): cos^2 = 4 / 4.5. Between measured angles it is linear, so that a little is missing.
+    let expected = 1000.0 * (4.0 / 4.5) / 4.5;
+    assert!((rows[1][6] / expected - 1.0).abs() < 0.02 && rows[1][4] == 1.0, "{rows:?}");
+    assert!(place.gives(2, "measure open.txt").err.contains("say where"));
+    assert!(place.gives(2, "measure open.txt --at 0,0").err.contains("three numbers"));
+    assert!(place.gives(2, "measure open.txt --at 0,0,0 --normal 0,0,0").err.contains("--normal"));
+}
+
+#[test]
+fn paths_have_the_same_bits_in_every_way_and_sum_in_explanations() {
+    let place = lit();
+    let hash = |options: &str| {
+        let ran = place.gives(0, &format!("render lit.txt -o p.pfm --size 32x24 --samples 8 --hash -q {options}"));
+        ran.out.lines().last().unwrap().to_string()
+    };
+    let one = hash("--threads 1");
+    assert_eq!((hash("--threads 3 --tile 8"), hash("--accel grid")), (one.clone(), one.clone()));
+    assert_ne!(hash("--bounces 0"), one);
+    assert_ne!(hash("--integrator whitted"), one);
+    let picture = place.image("p.pfm");
+    assert!(picture.pixels.iter().all(|pixel| pixel.is_finite()));
+    let why = place.gives(0, "explain lit.txt --pixel 16,20 --size 32x24 --samples 8 -q").out;
+    assert!(why.contains("direct light of") && why.contains("MIS weight"), "{why}");
+}
+
+#[test]
+fn exposure_and_tone_change_eight_bits_alone() {
+    let place = lit();
+    let bright = |options: &str| {
+        place.gives(0, &format!("render lit.txt -o p.png --size 16x12 --samples 4 -q {options}"));
+        place.image("p.png").pixels.iter().map(|pixel| pixel.x).sum::<f32>()
+    };
+    let (plain, darker) = (bright(""), bright("--exposure -3"));
+    assert!(darker < 0.8 * plain, "{darker} {plain}");
+    assert!(bright("--tone reinhard") < plain);
+    place.gives(0, "render lit.txt -o a.pfm --size 16x12 --samples 4 -q --exposure -3");
+    place.gives(0, "render lit.txt -o b.pfm --size 16x12 --samples 4 -q");
+    assert_eq!(place.image("a.pfm"), place.image("b.pfm"));
+    assert!(place.gives(2, "render lit.txt -o p.png --exposure 1e9").err.contains("--exposure"));
+    assert!(place.gives(2, "render lit.txt -o p.png --clamp 1 --integrator ao").err.contains("--clamp makes no sense"));
+}
+
+#[test]
+fn broken_lamps_names_and_dark_scenes_are_told_of() {
+    let place = lit();
+    place.put("lamp.ies", LAMP.replace("0 30 60 90", "0 30 20 90"));
+    let told = place.gives(1, "render lit.txt -o p.png").err;
+    assert!(told.contains("lamp.ies:5:6") && told.contains("must rise"), "{told}");
+    assert!(!place.path("p.png").exists());
+    place.put("lamp.ies", LAMP);
+    place.put("name.txt", LIT.replace("preset gold", "preset golt"));
+    let told = place.gives(1, "render name.txt -o p.png").err;
+    assert!(told.contains("did you mean `gold`"), "{told}");
+    let dark = LIT.replace("PhotometricLight { position 0 2 0 file lamp.ies }", "").replace("emissionLuminance 20", "");
+    place.put("dark.txt", &dark);
+    assert!(place.gives(1, "check dark.txt").out.contains("no-emitter"));
+    let turned =
+        "MaterialIndex 2 Rectangle { corner -1 3 -1 edge0 0 0 2 edge1 2 0 0 } MaterialIndex 1 Sphere { center 0";
+    place.put(
+        "turned.txt",
+        dark.replace("baseColor 0 0 0", "baseColor 0 0 0 emissionLuminance 9")
+            .replace("MaterialIndex 1 Sphere { center 1", turned),
+    );
+    let told = place.gives(1, "check turned.txt").out;
+    assert!(told.contains("lamp-turned") && told.contains("exchange `edge0` and `edge1`"), "{told}");
+}
