@@ -107,9 +107,49 @@ fn what_is_no_set_of_photographs_is_refused() {
     refused(&["no two of the photographs show the same things"]);
     place.put("photos/b.png", &noise(2)[..900]);
     refused(&["b.png: cannot be read as a picture"]);
-    place.put("photos/b.jpg", "no picture");
     place.put("photos/b.png", noise(2));
+    place.put("photos/b.jpg", "no picture");
     refused(&["b.jpg: this is neither a JPEG nor a PNG"]);
+    // A decoder would fill up with grey what is missing.
+    let jpeg = std::fs::read(concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes/photographs/0.jpg")).unwrap();
+    place.put("photos/b.jpg", &jpeg[..jpeg.len() / 2]);
+    refused(&["b.jpg: cannot be read as a picture: the JPEG is cut off"]);
+    std::fs::remove_file(place.path("photos/b.jpg")).unwrap();
+    // What is no file is no photograph.
+    std::fs::create_dir(place.path("photos/folder.jpg")).unwrap();
+    refused(&["no two of the photographs show the same things"]);
+    assert!(!place.path("m.json").exists());
+    false_matches_are_refused(&place);
+}
+
+/// Twenty thousand correspondences of eight photographs that mean nothing.
+fn false_matches_are_refused(place: &Place) {
+    let mut random = durer_photo::random::Random::new(7);
+    let picture = |i: usize| {
+        format!(
+            r#"{{"name": "{i}.jpg", "size": [400, 300], "focal": 400, "focal_from": "a guess", "lens": 0, "features": 9}}"#
+        )
+    };
+    let pairs: Vec<(usize, usize)> = (0..8).flat_map(|a| (a + 1..8).map(move |b| (a, b))).collect();
+    let link = |(a, b): &(usize, usize)| {
+        format!(r#"{{"pictures": [{a}, {b}], "alike": 700, "matches": 700, "planar": 0.2, "moved": 50}}"#)
+    };
+    let mut seen =
+        |view: usize, i: usize| format!("[{view}, {i}, {}, {}]", 400.0 * random.unit(), 300.0 * random.unit());
+    let mut track = |i: usize| {
+        let (a, b) = pairs[i % pairs.len()];
+        format!(r#"{{"color": [0, 0, 0], "seen": [{}, {}]}}"#, seen(a, i), seen(b, i))
+    };
+    let tracks: Vec<String> = (0..20_000).map(&mut track).collect();
+    let list = |rows: Vec<String>| rows.join(",\n");
+    let (pictures, links) = (list((0..8).map(picture).collect()), list(pairs.iter().map(link).collect()));
+    let (format, tracks) = (durer_photo::matching::FORMAT, list(tracks));
+    place.put(
+        "false.json",
+        format!(r#"{{"format": "{format}", "pictures": [{pictures}], "links": [{links}], "tracks": [{tracks}]}}"#),
+    );
+    place.refused(2, "photo solve false.json -o solved", &["share enough points that agree on one geometry"]);
+    assert!(!place.path("solved").exists());
 }
 
 #[test]
@@ -123,7 +163,7 @@ fn broken_files_are_refused_at_their_place() {
         ("b.out", "1 1\n", "photo convert b.out -o c.ply", &["b.out", "the file ends"]),
         ("b.out", "9999999 1\n", "photo convert b.out -o c.ply", &["b.out:1:1", "too short"]),
         ("b.txt", "1 1 1\n3 0 1 1\n", "photo solve b.txt -o c.ply", &["b.txt:2:1", "there are 1, from 0"]),
-        ("b.txt", "BZh91AY", "photo solve b.txt -o c.ply", &["bunzip2"]),
+        ("b.txt", "BZh91AY", "photo solve b.txt -o c.ply", &["b.txt", "cannot be unpacked (bzip2)"]),
         ("b.json", "[{\"cameras\": 3}]", "photo convert b.json -o c.ply", &["b.json:1:"]),
         ("m.json", "{\"format\": \"durer matches 1\"}", "photo solve m.json -o c.ply", &["m.json:1:"]),
         ("b.xyz", "", "photo convert b.xyz -o c.ply", &["the name should end in"]),

@@ -4,7 +4,7 @@ use super::Solver;
 use crate::geometry::essential::{Directions, pose_before};
 use crate::geometry::ransac::{Search, ransac};
 use crate::geometry::triangulate::two_views;
-use crate::matching::{Link, Matches};
+use crate::matching::{Link, Matches, by_chance};
 use crate::{Error, Pose};
 use nalgebra::Vector2;
 
@@ -60,6 +60,9 @@ impl Solver<'_> {
         let threshold = (self.threshold(a) / lenses[0].focal).max(self.threshold(b) / lenses[1].focal);
         let seed = self.options.seed ^ 0x5eed ^ ((a as u64) << 32 | b as u64);
         let (e, inliers) = ransac(&Directions(&pairs), &Search { threshold, samples: 2000, seed })?;
+        if by_chance(inliers.len(), pairs.len()) {
+            return None;
+        }
         let inliers: Vec<_> = inliers.into_iter().map(|i| pairs[i]).collect();
         let (pose, before) = pose_before(&e, &inliers)?;
         if before < self.options.least || before * 2 < inliers.len() {
