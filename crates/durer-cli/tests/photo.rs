@@ -2,12 +2,14 @@
 
 mod common;
 
-use common::Place;
+use common::{Place, browser};
+use durer::image::read8;
 use durer_photo::format::{projective_camera, read};
 use durer_photo::geometry::align::cameras as aligned;
 use durer_photo::model::axis_angle_of;
 use durer_photo::{Lens, Pose, Reconstruction};
 use nalgebra::Vector3;
+use std::path::Path;
 
 /// Width, height and focal length of the photographs.
 const SIZE: [u32; 2] = [400, 300];
@@ -72,6 +74,18 @@ fn photographs_of_a_known_scene_give_its_cameras() {
     place.gives(0, "photo explain solved --camera 03.png");
     place.gives(0, "photo explain bundle.out --point 3");
     place.gives(0, "photo tour solved --pictures photos -o tour.html --side 64 -q");
+    let walked = [
+        "20 photographs, ",
+        "button first: choose a photograph first, at -1",
+        "strip: 03.png: it sees ",
+        "opacity 0.95, marked true | fills true",
+        "is left true",
+        "another true",
+        "point in several true, told true",
+        "all: 20 photographs, ",
+        "turned true",
+    ];
+    browser::sees(&place, "tour.html", include_str!("common/walk.js"), &walked);
     place.refused(2, "photo explain solved --camera 77.png", &["there is no photograph `77.png`; these are: 00.png"]);
     let all = read(&place.path("solved")).unwrap();
     assert_eq!(all.registered(), 20);
@@ -182,4 +196,50 @@ fn broken_files_are_refused_at_their_place() {
     }
     place.refused(2, "photo camera p.png", &["--points FILE or --lines FILE"]);
     place.refused(2, "photo solve b.txt -o b.txt", &["is read in this run"]);
+}
+
+/// A picture whose sides are equal.
+fn square() -> Vec<u8> {
+    let mut bytes = std::io::Cursor::new(Vec::new());
+    image::GrayImage::new(64, 64).write_to(&mut bytes, image::ImageFormat::Png).unwrap();
+    bytes.into_inner()
+}
+
+#[test]
+fn things_are_placed_in_a_photograph_with_their_shadows() {
+    let place = Place::new();
+    let ours = |name: &str| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/photographs").join(name);
+    for name in ["placed.txt", "2.jpg"] {
+        place.put(name, std::fs::read(ours(name)).unwrap());
+    }
+    place.gives(0, "photo place placed.txt --backplate 2.jpg -o placed.png --samples 4 -q");
+    let placed = read8(&std::fs::read(place.path("placed.png")).unwrap(), "placed.png").unwrap();
+    let plate = image::open(ours("2.jpg")).unwrap().into_rgb8();
+    assert_eq!((placed.width, placed.height), plate.dimensions());
+    let sum = |left: u32, top: u32, width: u32, height: u32| {
+        let pixels = (top..top + height).flat_map(|y| (left..left + width).map(move |x| (x, y)));
+        pixels.fold([[0_u32; 3]; 2], |sum, (x, y)| {
+            let both = [placed.pixels[(y * placed.width + x) as usize], plate.get_pixel(x, y).0];
+            [0, 1].map(|i| [0, 1, 2].map(|c| sum[i][c] + u32::from(both[i][c])))
+        })
+    };
+    // What no thing covers or darkens is the photograph, but for roundings.
+    let [now, before] = sum(0, 0, 320, 80);
+    assert!((0..3).all(|c| now[c].abs_diff(before[c]) < 320 * 80 / 100), "{now:?} {before:?}");
+    // Left of the red ball is its shadow; the ball is red where the floor was grey.
+    let [now, before] = sum(90, 196, 30, 10);
+    assert!((0..3).all(|c| now[c] * 10 < before[c] * 9 && now[c] * 4 > before[c]), "{now:?} {before:?}");
+    let [now, before] = sum(135, 150, 20, 20);
+    assert!(now[0] > 2 * now[2] && before[0] < 3 * before[2], "{now:?} {before:?}");
+    for (options, words) in [
+        ("placed.txt --backplate 2.jpg --stand-in 9", "--stand-in 9: the scene has 4 materials, from 0"),
+        ("placed.txt --backplate 2.jpg --stand-in 0,1,2,3", "there is nothing to place"),
+        ("placed.txt --backplate 2.jpg --size 10x10", "the picture has the photograph's size, 320x240"),
+        ("placed.txt --backplate square.png", "the scene's camera is not of `square.png`"),
+        ("placed.txt --backplate placed.txt", "neither a JPEG nor a PNG"),
+    ] {
+        place.put("square.png", square());
+        place.refused(2, &format!("photo place {options} -o no.png"), &[words]);
+        assert!(!place.path("no.png").exists());
+    }
 }
