@@ -2,7 +2,8 @@
 
     python crates/durer-py/bench/edges.py [thousands of rays]
 
-Each mesh is closed, and all rays begin inside it: one that meets nothing is lost. Rays go to places on edges and to vertices.
+Each mesh is closed and convex, and all rays begin inside it: one that meets nothing is lost, and one that crosses more than one
+triangle is counted twice. Rays go to places on edges and to vertices.
 """
 
 import sys
@@ -54,6 +55,33 @@ def rays(v: np.ndarray, f: np.ndarray, count: int, rng: np.random.Generator) -> 
     # Some begin at round numbers, as people write them.
     o[::2] = np.round(o[::2] * 4) / 4
     return o, (a + share * (b - a)) - o
+
+
+def counters(v: np.ndarray, f: np.ndarray) -> dict[str, Rays]:
+    """For each program that can tell, how many triangles rays cross."""
+    mesh = durer.Mesh(v, f)
+    found: dict[str, Rays] = {"durer": lambda o, d: mesh.count(o, d, progress=False)}
+    try:
+        import trimesh
+        from trimesh.ray.ray_triangle import RayMeshIntersector
+
+        own = RayMeshIntersector(trimesh.Trimesh(v, f, process=False))
+        found["trimesh, its own"] = lambda o, d: np.bincount(
+            own.intersects_id(o, d, multiple_hits=True)[1], minlength=len(o)
+        )
+    except ImportError:
+        pass
+    try:
+        import open3d
+
+        cast = open3d.t.geometry.RaycastingScene()
+        cast.add_triangles(open3d.core.Tensor(v), open3d.core.Tensor(f.astype("u4")))
+        found["Open3D"] = lambda o, d: cast.count_intersections(
+            open3d.core.Tensor(np.concatenate([o, d], 1))
+        ).numpy()
+    except ImportError:
+        pass
+    return found
 
 
 def rivals(v: np.ndarray, f: np.ndarray) -> dict[str, Rays]:
@@ -112,12 +140,14 @@ def main() -> None:
     rng = np.random.default_rng(7)
     for name, (v, f) in {"ball": ball(40, rng), "box": box(16)}.items():
         o, d = rays(v, f, count, rng)
-        print(f"{name} of {len(f)} triangles: of {count} rays to its edges and vertices, so many are lost")
+        print(f"{name} of {len(f)} triangles: of {count} rays to its edges and vertices, so many are lost or counted twice")
+        counts = counters(v, f)
         for rival, hits in rivals(v, f).items():
             # trimesh's own takes long.
             some = slice(0, 20_000 if rival.startswith("trimesh") else count)
             lost = int((~np.asarray(hits(o[some], d[some]))).sum())
-            print(f"    {rival:18} {lost:8} of {len(o[some])}")
+            twice = "?" if rival not in counts else str(int((counts[rival](o[some], d[some]) > 1).sum()))
+            print(f"    {rival:18} {lost:8} of {len(o[some])}, counted twice: {twice}")
 
 
 if __name__ == "__main__":
