@@ -13,8 +13,11 @@ const PIXEL: [f64; 2] = [320.0 - 94.66552734375, 240.0 + 126.220703125];
 const CENTER: [f64; 3] = [-1.0, 0.5, -5.0];
 const HALF: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
-/// The files of each format that is read.
-fn files() -> Vec<(&'static str, &'static str, Vec<(&'static str, Vec<u8>)>)> {
+/// A format by its name in the table, what is read, and its files.
+type Case = (&'static str, &'static str, Vec<(&'static str, Vec<u8>)>);
+
+/// Each format that is read.
+fn files() -> Vec<Case> {
     let bundler = "# Bundle file v0.3\n1 1\n500 0.1 0\n0 -1 0\n-1 0 0\n0 0 -1\n0.5 -1 -5\n1 2 3\n10 20 30\n1 0 0 -94.66552734375 -126.220703125\n";
     // A half turn about (1, -1, 0).
     let bal = "1 1 1\n0 0 -94.66552734375 -126.220703125\n2.221441469079183 -2.221441469079183 0\n0.5 -1 -5\n500 0.1 0\n1 2 3\n";

@@ -393,8 +393,9 @@ class World:
         def three(columns: Floats) -> Floats:
             return np.ascontiguousarray(columns).reshape(*shape, 3)
 
-        numbers = [one(whole[:, i]) for i in range(3)]
-        return Surfaces(one(other[:, 0]), *numbers, three(other[:, 1:4]), three(other[:, 4:7]), three(other[:, 7:]))
+        object, triangle, material = (one(whole[:, i]) for i in range(3))
+        point, normal, shading = (three(other[:, i : i + 3]) for i in (1, 4, 7))
+        return Surfaces(one(other[:, 0]), object, triangle, material, point, normal, shading)
 
     def occluded(
         self,
