@@ -1,6 +1,6 @@
 //! Scenes that are described, and what is made of their pictures.
 
-use crate::rays::{JOB, RayArrays};
+use crate::rays::{self, JOB, Rays};
 use crate::work::{LOOK, each, look};
 use durer::diag::{Diagnostics, Files, Severity};
 use durer::film::aov::Aov;
@@ -8,7 +8,7 @@ use durer::image::Layer;
 use durer::render::{self, Control, Stop};
 use durer::{Loaded, load, load_text};
 use durer_cli::embed::{self, Asked};
-use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1, PyReadonlyArray2};
+use numpy::{IntoPyArray, PyArray1};
 use pyo3::create_exception;
 use pyo3::exceptions::{PyException, PyKeyboardInterrupt, PyOSError, PyValueError};
 use pyo3::prelude::*;
@@ -153,20 +153,15 @@ impl World {
     }
 
     /// What each ray meets first: object, triangle and material; t, the point, and the normals of the true surface and for shading.
-    #[allow(clippy::too_many_arguments)]
     fn closest<'py>(
         &self,
         py: Python<'py>,
-        count: usize,
-        origins: PyReadonlyArray2<'py, f32>,
-        directions: PyReadonlyArray2<'py, f32>,
-        t_min: PyReadonlyArray1<'py, f32>,
-        t_max: PyReadonlyArray1<'py, f32>,
+        asked: rays::Asked<'py>,
         threads: Option<usize>,
         watch: Option<Py<PyAny>>,
     ) -> PyResult<(Bound<'py, PyArray1<i32>>, Bound<'py, PyArray1<f32>>)> {
-        let arrays = RayArrays { origins, directions, t_min, t_max };
-        let rays = arrays.rays(count)?;
+        let rays = Rays::new(&asked)?;
+        let count = rays.count;
         let (mut ids, mut values) = (vec![-1; NUMBERS * count], vec![f32::NAN; VALUES * count]);
         let jobs = ids.chunks_mut(NUMBERS * JOB).zip(values.chunks_mut(VALUES * JOB)).enumerate().collect();
         each(py, threads, watch, jobs, |(job, (ids, values)): (usize, (&mut [i32], &mut [f32]))| {
@@ -186,20 +181,15 @@ impl World {
     }
 
     /// Whether each ray meets anything.
-    #[allow(clippy::too_many_arguments)]
     fn occluded<'py>(
         &self,
         py: Python<'py>,
-        count: usize,
-        origins: PyReadonlyArray2<'py, f32>,
-        directions: PyReadonlyArray2<'py, f32>,
-        t_min: PyReadonlyArray1<'py, f32>,
-        t_max: PyReadonlyArray1<'py, f32>,
+        asked: rays::Asked<'py>,
         threads: Option<usize>,
         watch: Option<Py<PyAny>>,
     ) -> PyResult<Bound<'py, PyArray1<bool>>> {
-        let arrays = RayArrays { origins, directions, t_min, t_max };
-        let rays = arrays.rays(count)?;
+        let rays = Rays::new(&asked)?;
+        let count = rays.count;
         let mut answers = vec![false; count];
         let jobs = answers.chunks_mut(JOB).enumerate().collect();
         each(py, threads, watch, jobs, |(job, to): (usize, &mut [bool])| {

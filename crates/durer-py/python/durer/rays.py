@@ -175,7 +175,7 @@ class _Rays:
     ) -> Hits:
         """What each ray meets first."""
         shape, rays = asked(origins, directions, t_min, t_max)
-        t, triangle, object, uv = self._tree.closest(*rays, threads_asked(threads), watch(progress))
+        t, triangle, object, uv = self._tree.closest(rays, threads_asked(threads), watch(progress))
         return Hits(
             t.reshape(shape),
             triangle.reshape(shape),
@@ -203,7 +203,7 @@ class _Rays:
         """Whether each ray meets anything: faster than `closest`. With directions from point to point and `t_max` 1: whether
         they do not see each other."""
         shape, rays = asked(origins, directions, t_min, t_max)
-        return self._tree.occluded(*rays, threads_asked(threads), watch(progress)).reshape(shape)
+        return self._tree.occluded(rays, threads_asked(threads), watch(progress)).reshape(shape)
 
     def count(
         self,
@@ -217,7 +217,7 @@ class _Rays:
     ) -> Ints:
         """How many triangles each ray crosses: exact, also through edges and vertices."""
         shape, rays = asked(origins, directions, t_min, t_max)
-        return self._tree.count(*rays, threads_asked(threads), watch(progress)).reshape(shape)
+        return self._tree.count(rays, threads_asked(threads), watch(progress)).reshape(shape)
 
     def all_hits(
         self,
@@ -231,7 +231,7 @@ class _Rays:
     ) -> AllHits:
         """All that each ray meets, from near to far."""
         shape, rays = asked(origins, directions, t_min, t_max)
-        count, (t, triangle, object, uv) = self._tree.all_hits(*rays, threads_asked(threads), watch(progress))
+        count, (t, triangle, object, uv) = self._tree.all_hits(rays, threads_asked(threads), watch(progress))
         ray = np.repeat(np.arange(len(count)), count)
         return AllHits(ray, count.reshape(shape), t, triangle, object, uv.reshape(-1, 2))
 

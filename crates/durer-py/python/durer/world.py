@@ -384,7 +384,7 @@ class World:
         """What each ray meets first among all objects: spheres, solids and meshes alike, as the pictures show them. Arrays are those
         of `Mesh.closest`."""
         shape, rays = asked(origins, directions, t_min, t_max)
-        ids, values = self._world.closest(*rays, threads_asked(threads), watch(progress))
+        ids, values = self._world.closest(rays, threads_asked(threads), watch(progress))
         whole, other = ids.reshape(-1, 3), values.reshape(-1, 10)
 
         def one(column: npt.NDArray[Any]) -> Any:
@@ -409,7 +409,7 @@ class World:
     ) -> Bools:
         """Whether each ray meets anything, glass too."""
         shape, rays = asked(origins, directions, t_min, t_max)
-        return self._world.occluded(*rays, threads_asked(threads), watch(progress)).reshape(shape)
+        return self._world.occluded(rays, threads_asked(threads), watch(progress)).reshape(shape)
 
     def explain(self, x: int, y: int, **options: Any) -> dict[str, Any]:
         """Why a pixel has its colour: a tree of terms that sums to it, as docs/explain.md tells. Give the options of the render."""
