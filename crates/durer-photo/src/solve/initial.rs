@@ -7,6 +7,7 @@ use crate::geometry::triangulate::two_views;
 use crate::matching::{Link, Matches, by_chance};
 use crate::{Error, Pose};
 use nalgebra::Vector2;
+use rayon::prelude::*;
 
 /// Links that are tried: those with most matches.
 const TRIED: usize = 30;
@@ -18,8 +19,10 @@ impl Solver<'_> {
         links.sort_by(|a, b| b.matches.cmp(&a.matches).then(a.pictures.cmp(&b.pictures)));
         let mut best: Option<(f64, [usize; 2], Pose)> = None;
         let mut turned = 0;
-        for link in links.into_iter().take(TRIED) {
-            let Some((pose, count, angle)) = self.relative(link.pictures) else { continue };
+        links.truncate(TRIED);
+        let poses: Vec<_> = links.par_iter().map(|link| self.relative(link.pictures)).collect();
+        for (link, found) in links.into_iter().zip(poses) {
+            let Some((pose, count, angle)) = found else { continue };
             if angle < self.options.angle.to_radians() {
                 turned += 1;
                 continue;
