@@ -36,6 +36,7 @@ pub struct World {
 /// Whole numbers of a hit, and others.
 const NUMBERS: usize = 3;
 const VALUES: usize = 10;
+type Found<'py> = (Bound<'py, PyArray1<i32>>, Bound<'py, PyArray1<f32>>);
 
 /// Findings in lines: `file:line:column: error: message`.
 fn lines(files: &Files, read: &Diagnostics, wanted: impl Fn(Severity) -> bool) -> Vec<String> {
@@ -159,7 +160,7 @@ impl World {
         asked: rays::Asked<'py>,
         threads: Option<usize>,
         watch: Option<Py<PyAny>>,
-    ) -> PyResult<(Bound<'py, PyArray1<i32>>, Bound<'py, PyArray1<f32>>)> {
+    ) -> PyResult<Found<'py>> {
         let rays = Rays::new(&asked)?;
         let count = rays.count;
         let (mut ids, mut values) = (vec![-1; NUMBERS * count], vec![f32::NAN; VALUES * count]);
