@@ -140,7 +140,7 @@ Rows of --points are `X Y Z u v`: a point of the world and its pixel, from the u
 `x u1 v1 u2 v2`: the axis of the world that leads towards the vanishing point (x, -x, y, ...), and two pixels of a line along it; and
 `origin u v`. Two axes are needed, and two lines or more of each. A project of fSpy's has all of that in it.
 What is printed, or written by -o, is a block of Dürer's scene language: with it as the camera, a rendered object sits in the
-photograph.")]
+photograph: see `durer photo place`.")]
 pub struct CameraArgs {
     /// The photograph, or a project of fSpy's
     pub picture: PathBuf,
