@@ -18,8 +18,8 @@ use crate::{Error, Lens, Observation, Point, Reconstruction, View};
 use nalgebra::{Matrix3, Vector2, Vector3};
 
 /// Cauchy's loss at so many standard deviations loses a twentieth of the exactness where errors are normal (Holland, Welsch, *Robust
-/// Regression Using Iteratively Reweighted Least-Squares*, 1977), and gains much where they are not: half of all salient points are
-/// off by a tenth of a pixel or less, and some by two.
+/// Regression Using Iteratively Reweighted Least-Squares*, 1977), and gains much where they are not: half of the coordinates of
+/// salient points are off by a tenth of a pixel or less, and some by two pixels.
 const CAUCHY: f64 = 2.385;
 /// No salient point is known better than to so many pixels.
 const FINEST: f64 = 0.02;
