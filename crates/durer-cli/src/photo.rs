@@ -4,6 +4,7 @@ mod args;
 mod camera;
 mod explain;
 mod matching;
+mod place;
 mod solve;
 mod tour;
 
@@ -23,6 +24,7 @@ pub fn run(args: &PhotoArgs) -> Result<(), Failure> {
         PhotoCommand::Match(args) => matching::run(args),
         PhotoCommand::Solve(args) => solve::run(args),
         PhotoCommand::Camera(args) => camera::run(args),
+        PhotoCommand::Place(args) => place::run(args),
         PhotoCommand::Explain(args) => explain::run(args),
         PhotoCommand::Convert(args) => {
             let mut guard = Guard::default();
@@ -62,7 +64,7 @@ fn photographs(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
     let mut paths = entries.map(|entry| Ok(entry?.path())).collect::<Result<Vec<_>, Failure>>()?;
     let known = |path: &PathBuf| {
         let end = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
-        ["jpg", "jpeg", "png"].contains(&&*end)
+        ["jpg", "jpeg", "png"].contains(&&*end) && path.is_file()
     };
     paths.retain(known);
     paths.sort();

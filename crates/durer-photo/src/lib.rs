@@ -24,6 +24,7 @@ pub mod explain;
 pub mod feature;
 pub mod format;
 pub mod geometry;
+mod jpeg;
 pub mod matching;
 pub mod model;
 pub mod photo;

@@ -239,19 +239,29 @@ impl Reconstruction {
         Some(self.lenses[view.lens].project(&pose.apply(position)) - seen.pixel)
     }
 
+    /// The residuals of all observations by photographs whose pose is known.
+    pub fn residuals(&self) -> impl Iterator<Item = Vector2<f64>> {
+        self.points.iter().flat_map(|point| point.track.iter().filter_map(|seen| self.residual(&point.position, seen)))
+    }
+
     /// How well it all agrees.
     pub fn fit(&self) -> Fit {
-        let squares = self.points.iter().flat_map(|point| {
-            point.track.iter().filter_map(|seen| Some(self.residual(&point.position, seen)?.norm_squared()))
-        });
         let mut fit = Fit::default();
-        for square in squares {
+        for square in self.residuals().map(|residual| residual.norm_squared()) {
             fit.observations += 1;
             fit.cost += square / 2.0;
             fit.max = fit.max.max(square.sqrt());
         }
         fit.rms = (2.0 * fit.cost / fit.observations.max(1) as f64).sqrt();
         fit
+    }
+
+    /// The standard deviation of a residual's components, in pixels, by the median of the residuals' lengths: what is far off does
+    /// not count. Normal errors have a median length of √(2 ln 2) of them.
+    pub fn noise(&self) -> f64 {
+        let mut lengths: Vec<f64> = self.residuals().map(|residual| residual.norm()).collect();
+        lengths.sort_by(f64::total_cmp);
+        lengths.get(lengths.len() / 2).map_or(0.0, |median| median / 1.1774)
     }
 
     /// How many photographs have a pose.

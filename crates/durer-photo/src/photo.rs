@@ -2,7 +2,8 @@
 
 use crate::Error;
 use crate::feature::Gray;
-use image::{DynamicImage, ImageReader, Limits, RgbImage};
+use crate::jpeg::is_whole;
+use image::{DynamicImage, ImageError, ImageFormat, ImageReader, Limits, RgbImage};
 use std::io::Cursor;
 
 /// A photograph's longer side must not have more pixels than this.
@@ -42,18 +43,24 @@ fn reader<'b>(file: &str, bytes: &'b [u8]) -> Result<ImageReader<Cursor<&'b [u8]
     Ok(reader)
 }
 
+fn broken(file: &str, error: &ImageError) -> Error {
+    Error::of(file, format!("cannot be read as a picture: {}", error.to_string().trim_end()))
+}
+
 /// Width and height of a photograph.
 pub fn size(file: &str, bytes: &[u8]) -> Result<[u32; 2], Error> {
     let size = reader(file, bytes)?.into_dimensions();
-    let (width, height) = size.map_err(|error| Error::of(file, format!("cannot be read as a picture: {error}")))?;
+    let (width, height) = size.map_err(|error| broken(file, &error))?;
     Ok([width, height])
 }
 
 /// Reads a photograph.
 pub fn read(name: &str, bytes: &[u8]) -> Result<Photo, Error> {
-    let decoded: DynamicImage = reader(name, bytes)?
-        .decode()
-        .map_err(|error| Error::of(name, format!("cannot be read as a picture: {error}")))?;
+    let reader = reader(name, bytes)?;
+    if reader.format() == Some(ImageFormat::Jpeg) && !is_whole(bytes) {
+        return Err(Error::of(name, "cannot be read as a picture: the JPEG is cut off, its end is missing"));
+    }
+    let decoded: DynamicImage = reader.decode().map_err(|error| broken(name, &error))?;
     let pixels = decoded.into_rgb8();
     if pixels.width().min(pixels.height()) < 16 {
         return Err(Error::of(name, "the picture is too small: both sides need 16 pixels or more"));

@@ -2,7 +2,7 @@
 //! covariance says.
 
 use durer_photo::adjust::{Options as Adjust, adjust, covariance};
-use durer_photo::geometry::align::{Similarity, similarity};
+use durer_photo::geometry::align::{Similarity, cameras as aligned};
 use durer_photo::matching::{FORMAT, Link, Matches, Picture, Sighting, Track};
 use durer_photo::model::axis_angle_of;
 use durer_photo::random::Random;
@@ -81,8 +81,7 @@ fn matches(all: &Reconstruction, focal: f64, outliers: f64) -> Matches {
 fn differences(found: &Reconstruction, truth: &Reconstruction) -> (f64, f64) {
     let poses = |all: &Reconstruction| all.views.iter().map(|view| view.pose.unwrap()).collect::<Vec<_>>();
     let (found, truth) = (poses(found), poses(truth));
-    let centers = |poses: &[Pose]| poses.iter().map(Pose::center).collect::<Vec<_>>();
-    let there = similarity(&centers(&found), &centers(&truth)).unwrap();
+    let there = aligned(&found, &truth).unwrap();
     found.iter().zip(&truth).fold((0.0, 0.0), |(far, angle), (a, b)| {
         let turned = a.rotation * there.rotation.transpose() * b.rotation.transpose();
         let distance = (there.apply(&a.center()) - b.center()).norm();

@@ -1,6 +1,6 @@
 //! The small solvers find what made their data, and say so where data tell nothing.
 
-use durer_photo::geometry::align::similarity;
+use durer_photo::geometry::align::{Similarity, cameras, similarity};
 use durer_photo::geometry::camera::{linear, take_apart};
 use durer_photo::geometry::essential::{five_point, pose_before};
 use durer_photo::geometry::fundamental::{Pairs, eight_point, sampson, seven_point};
@@ -9,7 +9,7 @@ use durer_photo::geometry::ransac::{Search, ransac};
 use durer_photo::model::{axis_angle_of, rotation_of};
 use durer_photo::random::Random;
 use durer_photo::resect::{Axis, Known, Pair, VanishingLines, camera, from_vanishing_lines};
-use durer_photo::{Lens, Pose};
+use durer_photo::{Lens, Pose, Reconstruction, View};
 use nalgebra::{Matrix3, Vector2, Vector3};
 
 fn vector(random: &mut Random, size: f64) -> Vector3<f64> {
@@ -106,6 +106,17 @@ fn a_similarity_is_found_again() {
     assert!((found.scale - 2.5).abs() < 1e-12 && (found.rotation - rotation).norm() < 1e-12);
     let line: Vec<_> = (0..5).map(|i| Vector3::new(f64::from(i), 0.0, 0.0)).collect();
     assert_eq!(similarity(&line, &line), None);
+    // Cameras in a line tell by their own rotations how it is turned about itself.
+    let mut turned = |center: &Vector3<f64>| Pose::at(center, rotation_of(&vector(random, 2.0)));
+    let there: Vec<Pose> = line.iter().map(&mut turned).collect();
+    let mut all = Reconstruction::default();
+    all.views.extend(there.iter().map(|pose| View { name: String::new(), lens: 0, pose: Some(*pose) }));
+    Similarity { scale: 0.4, rotation, shift: vector(random, 5.0) }.apply_to(&mut all);
+    let moved: Vec<Pose> = all.views.iter().filter_map(|view| view.pose).collect();
+    let found = cameras(&there, &moved).unwrap();
+    assert!((found.scale - 0.4).abs() < 1e-12 && (found.rotation - rotation).norm() < 1e-12);
+    assert!(there.iter().zip(&moved).all(|(a, b)| (found.apply(&a.center()) - b.center()).norm() < 1e-12));
+    assert_eq!(cameras(&there[..1], &moved[..1]), None);
 }
 
 #[test]

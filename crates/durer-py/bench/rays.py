@@ -1,4 +1,4 @@
-"""Rays a second from Python: Dürer beside embreex, trimesh and Open3D, each that is installed, in one run with the same rays.
+"""Rays a second from Python: Dürer beside embreex, trimesh, Open3D and Mitsuba, each that is installed, in one run with the same rays.
 
     python crates/durer-py/bench/rays.py [mesh.ply] [millions of rays]
 """
@@ -70,6 +70,21 @@ def rivals(v: np.ndarray, f: np.ndarray) -> dict:
             )["t_hit"].numpy()
     except ImportError:
         print("Open3D is not installed")
+    try:
+        import mitsuba
+
+        # Its compiled kind: all threads, rays as columns.
+        mitsuba.set_variant("llvm_ad_rgb")
+        shape = mitsuba.Mesh("mesh", len(v), len(f))
+        parameters = mitsuba.traverse(shape)
+        parameters["vertex_positions"], parameters["faces"] = v.ravel(), f.ravel().astype("u4")
+        parameters.update()
+        world = mitsuba.load_dict({"type": "scene", "shape": shape})
+        found["Mitsuba, all threads"] = lambda o, d: np.asarray(
+            world.ray_intersect_preliminary(mitsuba.Ray3f(mitsuba.Point3f(o.T), mitsuba.Vector3f(d.T))).t
+        )
+    except ImportError:
+        print("Mitsuba is not installed")
     return found
 
 

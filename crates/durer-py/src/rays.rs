@@ -8,15 +8,16 @@ use pyo3::prelude::*;
 /// So many rays are one job: their copies stay in a near cache.
 pub const JOB: usize = 2048;
 
-/// Arrays of rays. Each has a row for each ray, or one for all.
-pub struct RayArrays<'py> {
-    pub origins: PyReadonlyArray2<'py, f32>,
-    pub directions: PyReadonlyArray2<'py, f32>,
-    pub t_min: PyReadonlyArray1<'py, f32>,
-    pub t_max: PyReadonlyArray1<'py, f32>,
-}
+/// How many rays there are; their origins and directions, and where they begin and end: a row for each ray, or one for all.
+pub type Asked<'py> = (
+    usize,
+    PyReadonlyArray2<'py, f32>,
+    PyReadonlyArray2<'py, f32>,
+    PyReadonlyArray1<'py, f32>,
+    PyReadonlyArray1<'py, f32>,
+);
 
-/// The same as slices.
+/// Rays as they lie in arrays.
 #[derive(Clone, Copy)]
 pub struct Rays<'a> {
     pub count: usize,
@@ -38,19 +39,18 @@ pub fn point(points: &[f32], i: usize) -> Vec3 {
     Vec3::new(points[at], points[at + 1], points[at + 2])
 }
 
-impl RayArrays<'_> {
-    /// So many rays, if the arrays are long enough.
-    pub fn rays(&self, count: usize) -> PyResult<Rays<'_>> {
+impl<'a> Rays<'a> {
+    /// The rays of arrays, if these are long enough.
+    pub fn new((count, origins, directions, t_min, t_max): &'a Asked) -> PyResult<Self> {
         let wrong = || PyValueError::new_err("rays are float32, one after the other, one for all or one for each");
-        let (origins, directions) = (points(&self.origins)?, points(&self.directions)?);
-        let (t_min, t_max) = (self.t_min.as_slice()?, self.t_max.as_slice()?);
+        let count = *count;
+        let (origins, directions) = (points(origins)?, points(directions)?);
+        let (t_min, t_max) = (t_min.as_slice()?, t_max.as_slice()?);
         let fits = |length: usize, each: usize| length == each || length == each * count;
         let all = fits(origins.len(), 3) && fits(directions.len(), 3) && fits(t_min.len(), 1) && fits(t_max.len(), 1);
         all.then_some(Rays { count, origins, directions, t_min, t_max }).ok_or_else(wrong)
     }
-}
 
-impl Rays<'_> {
     /// The i-th.
     pub fn get(&self, i: usize) -> Ray {
         let one = |list: &[f32]| if list.len() == 1 { list[0] } else { list[i] };

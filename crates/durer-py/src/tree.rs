@@ -1,11 +1,11 @@
 //! Trees of triangles, and questions to them.
 
-use crate::rays::{JOB, RayArrays, point, points};
+use crate::rays::{Asked, JOB, Rays, point, points};
 use crate::work::{each, install};
 use durer::bvh::{Instance, InstanceHit, Instances, Preset, TriangleBvh, TriangleHit};
 use durer::math::{Affine, Ray, Vec3};
 use glam::{DAffine3, DMat3, DVec3};
-use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1, PyReadonlyArray2};
+use numpy::{IntoPyArray, PyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use std::sync::Arc;
@@ -144,20 +144,15 @@ impl Tree {
     }
 
     /// The first hit of each ray.
-    #[allow(clippy::too_many_arguments)]
     fn closest<'py>(
         &self,
         py: Python<'py>,
-        count: usize,
-        origins: PyReadonlyArray2<'py, f32>,
-        directions: PyReadonlyArray2<'py, f32>,
-        t_min: PyReadonlyArray1<'py, f32>,
-        t_max: PyReadonlyArray1<'py, f32>,
+        asked: Asked<'py>,
         threads: Option<usize>,
         watch: Option<Py<PyAny>>,
     ) -> PyResult<HitArrays<'py>> {
-        let arrays = RayArrays { origins, directions, t_min, t_max };
-        let rays = arrays.rays(count)?;
+        let rays = Rays::new(&asked)?;
+        let count = rays.count;
         let (mut t, mut uv) = (vec![0.0; count], vec![0.0; 2 * count]);
         let (mut triangle, mut object) = (vec![0; count], vec![0; count]);
         let ids = triangle.chunks_mut(JOB).zip(object.chunks_mut(JOB));
@@ -172,20 +167,15 @@ impl Tree {
     }
 
     /// Whether each ray meets anything.
-    #[allow(clippy::too_many_arguments)]
     fn occluded<'py>(
         &self,
         py: Python<'py>,
-        count: usize,
-        origins: PyReadonlyArray2<'py, f32>,
-        directions: PyReadonlyArray2<'py, f32>,
-        t_min: PyReadonlyArray1<'py, f32>,
-        t_max: PyReadonlyArray1<'py, f32>,
+        asked: Asked<'py>,
         threads: Option<usize>,
         watch: Option<Py<PyAny>>,
     ) -> PyResult<Bound<'py, PyArray1<bool>>> {
-        let arrays = RayArrays { origins, directions, t_min, t_max };
-        let rays = arrays.rays(count)?;
+        let rays = Rays::new(&asked)?;
+        let count = rays.count;
         let mut answers = vec![false; count];
         let jobs = answers.chunks_mut(JOB).enumerate().collect();
         each(py, threads, watch, jobs, |(job, to)| self.0.occluded(&rays.job(JOB * job), to))?;
@@ -193,20 +183,15 @@ impl Tree {
     }
 
     /// How many triangles each ray crosses.
-    #[allow(clippy::too_many_arguments)]
     fn count<'py>(
         &self,
         py: Python<'py>,
-        count: usize,
-        origins: PyReadonlyArray2<'py, f32>,
-        directions: PyReadonlyArray2<'py, f32>,
-        t_min: PyReadonlyArray1<'py, f32>,
-        t_max: PyReadonlyArray1<'py, f32>,
+        asked: Asked<'py>,
         threads: Option<usize>,
         watch: Option<Py<PyAny>>,
     ) -> PyResult<Bound<'py, PyArray1<i32>>> {
-        let arrays = RayArrays { origins, directions, t_min, t_max };
-        let rays = arrays.rays(count)?;
+        let rays = Rays::new(&asked)?;
+        let count = rays.count;
         let mut counts = vec![0; count];
         let jobs = counts.chunks_mut(JOB).enumerate().collect();
         each(py, threads, watch, jobs, |(job, to): (usize, &mut [i32])| {
@@ -217,20 +202,15 @@ impl Tree {
     }
 
     /// All hits of all rays, ray by ray; with them how many each ray has.
-    #[allow(clippy::too_many_arguments)]
     fn all_hits<'py>(
         &self,
         py: Python<'py>,
-        count: usize,
-        origins: PyReadonlyArray2<'py, f32>,
-        directions: PyReadonlyArray2<'py, f32>,
-        t_min: PyReadonlyArray1<'py, f32>,
-        t_max: PyReadonlyArray1<'py, f32>,
+        asked: Asked<'py>,
         threads: Option<usize>,
         watch: Option<Py<PyAny>>,
     ) -> PyResult<(Bound<'py, PyArray1<i64>>, HitArrays<'py>)> {
-        let arrays = RayArrays { origins, directions, t_min, t_max };
-        let rays = arrays.rays(count)?;
+        let rays = Rays::new(&asked)?;
+        let count = rays.count;
         let mut counts = vec![0; count];
         let mut rows: Vec<Vec<Row>> = vec![Vec::new(); count.div_ceil(JOB)];
         let jobs = counts.chunks_mut(JOB).zip(&mut rows).enumerate().collect();

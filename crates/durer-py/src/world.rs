@@ -1,6 +1,7 @@
 //! Scenes that are described, and what is made of their pictures.
 
-use crate::work::{LOOK, look};
+use crate::rays::{self, JOB, Rays};
+use crate::work::{LOOK, each, look};
 use durer::diag::{Diagnostics, Files, Severity};
 use durer::film::aov::Aov;
 use durer::image::Layer;
@@ -31,6 +32,11 @@ pub struct World {
     files: Files,
     read: Diagnostics,
 }
+
+/// Whole numbers of a hit, and others.
+const NUMBERS: usize = 3;
+const VALUES: usize = 10;
+type Found<'py> = (Bound<'py, PyArray1<i32>>, Bound<'py, PyArray1<f32>>);
 
 /// Findings in lines: `file:line:column: error: message`.
 fn lines(files: &Files, read: &Diagnostics, wanted: impl Fn(Severity) -> bool) -> Vec<String> {
@@ -145,6 +151,52 @@ impl World {
             Stop::Cancelled => Err(PyKeyboardInterrupt::new_err("")),
             Stop::Panicked(panicked) => Err(failed(render::RenderError::from(panicked))),
         }
+    }
+
+    /// What each ray meets first: object, triangle and material; t, the point, and the normals of the true surface and for shading.
+    fn closest<'py>(
+        &self,
+        py: Python<'py>,
+        asked: rays::Asked<'py>,
+        threads: Option<usize>,
+        watch: Option<Py<PyAny>>,
+    ) -> PyResult<Found<'py>> {
+        let rays = Rays::new(&asked)?;
+        let count = rays.count;
+        let (mut ids, mut values) = (vec![-1; NUMBERS * count], vec![f32::NAN; VALUES * count]);
+        let jobs = ids.chunks_mut(NUMBERS * JOB).zip(values.chunks_mut(VALUES * JOB)).enumerate().collect();
+        each(py, threads, watch, jobs, |(job, (ids, values)): (usize, (&mut [i32], &mut [f32]))| {
+            let rows = ids.as_chunks_mut::<NUMBERS>().0.iter_mut().zip(values.as_chunks_mut::<VALUES>().0);
+            for (ray, (ids, values)) in rays.job(JOB * job).iter().zip(rows) {
+                values[0] = f32::INFINITY;
+                let Some(hit) = self.world.closest(ray, &mut ()) else { continue };
+                let surface = self.world.surface(ray, &hit);
+                *ids = [hit.object, self.world.triangle(&hit), self.world.material(&hit)].map(|id| id as i32);
+                values[0] = hit.t;
+                values[1..4].copy_from_slice(&surface.position.to_array());
+                values[4..7].copy_from_slice(&surface.n_geo.to_array());
+                values[7..].copy_from_slice(&surface.n_shade.to_array());
+            }
+        })?;
+        Ok((ids.into_pyarray(py), values.into_pyarray(py)))
+    }
+
+    /// Whether each ray meets anything.
+    fn occluded<'py>(
+        &self,
+        py: Python<'py>,
+        asked: rays::Asked<'py>,
+        threads: Option<usize>,
+        watch: Option<Py<PyAny>>,
+    ) -> PyResult<Bound<'py, PyArray1<bool>>> {
+        let rays = Rays::new(&asked)?;
+        let count = rays.count;
+        let mut answers = vec![false; count];
+        let jobs = answers.chunks_mut(JOB).enumerate().collect();
+        each(py, threads, watch, jobs, |(job, to): (usize, &mut [bool])| {
+            to.iter_mut().zip(&rays.job(JOB * job)).for_each(|(to, ray)| *to = self.world.occluded(ray, &mut ()));
+        })?;
+        Ok(answers.into_pyarray(py))
     }
 
     /// Why a pixel has its colour, as JSON.

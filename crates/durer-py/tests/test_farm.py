@@ -36,6 +36,22 @@ def test_dask_makes_the_same_bits_whoever_dies(scenes, killed):
         assert pictures.hash == wanted and left == 0
 
 
+def test_frames_come_in_order_with_the_bits_of_one_machine():
+    distributed = pytest.importorskip("distributed")
+    import durer.farm
+
+    things = durer.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
+
+    def frame(i):
+        camera = durer.PerspectiveCamera(center=(i - 1, 1, 5), direction=(0.1 - 0.1 * i, -0.1, -1), up=(0, 1, 0), angle=30)
+        return durer.World(camera, [durer.Model(things)], [durer.DirectionalLight(direction=(-1, -2, -1), color=(1, 1, 1))])
+
+    cluster = distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None, processes=False)
+    with cluster, distributed.Client(cluster) as client:
+        found = [p.hash for p in durer.farm.frames(map(frame, range(5)), client=client, ahead=2, size=(40, 30), samples=4)]
+    assert found == [frame(i).render(size=(40, 30), samples=4).hash for i in range(5)] and len(set(found)) == 5
+
+
 @pytest.mark.parametrize("engine", ["slurm", "k8s", "openjd", "dask"])
 def test_templates_are_whole(engine, scenes):
     done = command("farm", scenes / "whitted.txt", "--template", engine, "--shards", 3, *WORDS)

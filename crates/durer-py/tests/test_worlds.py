@@ -172,3 +172,37 @@ def test_pictures_are_compared():
 def test_the_command_speaks_for_itself():
     assert command("--version").stdout.startswith("durer ")
     assert command("render", "nothing.txt").returncode == 2
+
+
+def test_rays_meet_what_pictures_show() -> None:
+    ball = durer.Sphere(center=(0, 0, 0), radius=1)
+    red = durer.PhongMaterial(diffuse_color=(1, 0, 0))
+    camera = durer.PerspectiveCamera(center=(0, 0, 5), direction=(0, 0, -1), up=(0, 1, 0), angle=30)
+    cube = durer.Mesh(
+        [[x, y, z] for x in (3, 4) for y in (0, 1) for z in (0, 1)],
+        [[0, 1, 3], [0, 3, 2], [4, 6, 7], [4, 7, 5], [0, 4, 5], [0, 5, 1], [2, 3, 7], [2, 7, 6], [0, 2, 6], [0, 6, 4], [1, 5, 7], [1, 7, 3]],
+    )  # fmt: skip
+    world = durer.World(camera, [durer.Plane(normal=(0, 1, 0), offset=-1), ball.of(red), durer.Model(cube)], None)
+    origins = [[0, 0, 5], [0.5, 4, 0.5], [9, 4, 9], [3.5, 5, 0.4], [0, 5, 9], [np.nan, 0, 0]]
+    directions = [[0, 0, -2], [0, -1, 0], [0, -1, 0], [0, -1, 0], [0, 1, 0], [0, 0, 1]]
+    found = world.closest(origins, directions)
+    height = np.sqrt(0.5)
+    np.testing.assert_allclose(found.t, [2, 4 - height, 5, 4, np.inf, np.inf], rtol=1e-6)
+    np.testing.assert_allclose(found.point[:4], [[0, 0, 1], [0.5, height, 0.5], [9, -1, 9], [3.5, 1, 0.4]], atol=1e-6)
+    np.testing.assert_allclose(found.normal[:4], [[0, 0, 1], [0.5, height, 0.5], [0, 1, 0], [0, 1, 0]], atol=1e-6)
+    assert found.hit.tolist() == [True] * 4 + [False] * 2
+    assert np.isnan(found.point[4:]).all() and (found.material[4:] == -1).all()
+    # The numbers are those of the pictures.
+    picture = world.render(size=(9, 9), show="object,material,depth", samples=1)
+    middle = {name: picture[name][4, 4] for name in ("object", "material", "depth")}
+    assert middle == {"object": found.object[0], "material": found.material[0], "depth": 2 * found.t[0]}
+    assert found.object[0] != found.object[2] and found.triangle[3] in (6, 7)
+    assert world.occluded(origins, directions).tolist() == found.hit.tolist()
+    assert world.occluded(origins, directions, t_max=found.t).sum() == 0
+    shaped = world.closest(np.zeros((2, 1, 3)) + [0, 0, 5], np.array([[0, 0, -1.0]] * 3))
+    assert shaped.t.shape == (2, 3) and shaped.normal.shape == (2, 3, 3)
+    with pytest.raises(ValueError, match="directions must have the shape"):
+        world.closest([0, 0, 0], [1, 2])
+    one = world.closest(np.random.default_rng(1).normal(size=(5000, 3)) * 4, [0, -1, 0.1], threads=1)
+    two = world.closest(np.random.default_rng(1).normal(size=(5000, 3)) * 4, [0, -1, 0.1], threads=2)
+    assert all(np.array_equal(getattr(one, n), getattr(two, n), equal_nan=True) for n in ("t", "object", "point", "shading_normal"))

@@ -1,5 +1,6 @@
 //! The command line of `durer photo`.
 
+use crate::args::{JobArgs, SceneArgs};
 use clap::{Args, Subcommand};
 use std::path::PathBuf;
 
@@ -20,6 +21,7 @@ pub enum PhotoCommand {
     Match(MatchArgs),
     Solve(Box<SolveArgs>),
     Camera(CameraArgs),
+    Place(Box<PlaceArgs>),
     Explain(ExplainArgs),
     Convert(ConvertArgs),
     Tour(TourArgs),
@@ -138,7 +140,7 @@ Rows of --points are `X Y Z u v`: a point of the world and its pixel, from the u
 `x u1 v1 u2 v2`: the axis of the world that leads towards the vanishing point (x, -x, y, ...), and two pixels of a line along it; and
 `origin u v`. Two axes are needed, and two lines or more of each. A project of fSpy's has all of that in it.
 What is printed, or written by -o, is a block of Dürer's scene language: with it as the camera, a rendered object sits in the
-photograph.")]
+photograph: see `durer photo place`.")]
 pub struct CameraArgs {
     /// The photograph, or a project of fSpy's
     pub picture: PathBuf,
@@ -164,6 +166,40 @@ pub struct CameraArgs {
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
     /// Say nothing but errors and, without -o, the camera
+    #[arg(short, long)]
+    pub quiet: bool,
+}
+
+/// Put things of a scene into a photograph, with the shadows that they cast there
+#[derive(Args)]
+#[command(after_help = "Examples:
+  durer photo place table.txt --backplate table.jpg -o placed.png
+  durer photo place table.txt --backplate table.jpg --stand-in 0,3 -o placed.exr --samples 64
+
+The scene has the photograph's camera, as `durer photo camera` finds it; things to be seen; and stand-ins for what is in the
+photograph, a plane for its table say, which catch shadows and hide what is behind them, and are not seen themselves. The lights
+should be those of the photograph. The scene is rendered with the things and without them: what the photograph shows becomes
+darker and brighter as the stand-ins do. Their colours only matter in mirrors.")]
+pub struct PlaceArgs {
+    /// The scene file
+    pub scene: PathBuf,
+    /// The photograph: JPEG or PNG
+    #[arg(long, value_name = "PICTURE")]
+    pub backplate: PathBuf,
+    /// The materials of stand-ins, by number; several are joined by commas
+    #[arg(long, value_name = "NUMBERS", value_delimiter = ',', default_value = "0")]
+    pub stand_in: Vec<u32>,
+    /// The picture to write
+    #[arg(short, long, value_name = "PICTURE")]
+    pub output: PathBuf,
+    #[command(flatten)]
+    pub reading: SceneArgs,
+    #[command(flatten)]
+    pub job: JobArgs,
+    /// Threads [default: as many as the machine has]
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+    /// Say nothing but errors
     #[arg(short, long)]
     pub quiet: bool,
 }

@@ -8,7 +8,7 @@ use nalgebra::{Matrix3, Vector2, Vector3};
 use std::fmt::Write;
 
 /// Reads a file. Pictures' sizes are not in it: the origin of pixels is the middle, until
-/// [`Reconstruction::set_size`] is told them.
+/// [`Reconstruction::set_picture`] is told them.
 pub fn read(file: &str, bytes: &[u8]) -> Result<Reconstruction, Error> {
     let mut words = Words::new(file, bytes)?;
     if !words.next_line('#') {

@@ -9,6 +9,7 @@ mod fspy;
 mod given;
 mod gltf;
 mod opensfm;
+mod packed;
 mod ply;
 mod scene;
 mod text;
@@ -121,9 +122,11 @@ fn square(lens: &Lens, format: &str) -> Result<(), Error> {
     Err(Error::new(format!("{format}'s files know square pixels only, and here is a lens of aspect {}", lens.aspect)))
 }
 
-/// The bytes of a file.
+/// The bytes of a file, which gzip or bzip2 may have made smaller.
 fn bytes(path: &Path) -> Result<Vec<u8>, Error> {
-    std::fs::read(path).map_err(|error| Error::of(&path.to_string_lossy(), format!("cannot read it: {error}")))
+    let file = path.to_string_lossy();
+    let bytes = std::fs::read(path).map_err(|error| Error::of(&file, format!("cannot read it: {error}")))?;
+    packed::unpacked(&file, bytes)
 }
 
 /// The files that [`read`] reads for a path.
@@ -142,7 +145,8 @@ fn tracks_of(path: &Path) -> Option<PathBuf> {
     (path.extension()? == "json" && other.exists()).then_some(other)
 }
 
-/// Reads cameras and points: the format follows from the name's extension, a folder is COLMAP's.
+/// Reads cameras and points: the format follows from the name's extension, before `.gz` or `.bz2` where it has that; a folder is
+/// COLMAP's.
 pub fn read(path: &Path) -> Result<Reconstruction, Error> {
     let file = path.to_string_lossy();
     if path.is_dir() {
@@ -156,7 +160,7 @@ pub fn read(path: &Path) -> Result<Reconstruction, Error> {
         };
     }
     let content = bytes(path)?;
-    match path.extension().and_then(|end| end.to_str()) {
+    match packed::plain(path).extension().and_then(|end| end.to_str()) {
         Some("out") => bundler::read(&file, &content),
         Some("txt") => bal::read(&file, &content),
         Some("json") if content.trim_ascii_start().starts_with(b"{") => fspy::read_camera(&file, &content),

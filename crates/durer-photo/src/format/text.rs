@@ -18,10 +18,6 @@ pub struct Words<'t> {
 impl<'t> Words<'t> {
     /// The words of a file's bytes.
     pub fn new(file: &'t str, bytes: &'t [u8]) -> Result<Self, Error> {
-        if bytes.starts_with(b"BZh") || bytes.starts_with(&[0x1f, 0x8b]) {
-            let tool = if bytes[0] == b'B' { "bunzip2" } else { "gunzip" };
-            return Err(Error::of(file, format!("this file is compressed: unpack it with {tool} first")));
-        }
         let text = std::str::from_utf8(bytes).map_err(|error| {
             let before = &bytes[..error.valid_up_to()];
             let line = 1 + before.iter().filter(|b| **b == b'\n').count();

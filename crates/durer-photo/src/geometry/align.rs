@@ -2,6 +2,7 @@
 //!
 //! Source: Umeyama, *Least-Squares Estimation of Transformation Parameters Between Two Point Patterns*, PAMI 13(4), 1991.
 
+use crate::model::nearest_rotation;
 use crate::{Pose, Reconstruction};
 use nalgebra::{Matrix3, Vector3};
 
@@ -58,6 +59,27 @@ pub fn similarity(from: &[Vector3<f64>], to: &[Vector3<f64>]) -> Option<Similari
     let variance = from.iter().map(|point| (point - means[0]).norm_squared()).sum::<f64>() / from.len() as f64;
     let scale = trace / variance;
     Some(Similarity { scale, rotation, shift: means[1] - scale * (rotation * means[0]) })
+}
+
+/// The similarity that brings cameras to others: the rotation nearest to all their turns, and the scale and shift by which their
+/// centres come nearest. Centres alone tell hardly anything of a rotation about a line near which all of them are.
+pub fn cameras(from: &[Pose], to: &[Pose]) -> Option<Similarity> {
+    let count = from.len() as f64;
+    if from.len() < 2 || from.len() != to.len() {
+        return None;
+    }
+    let turned = from.iter().zip(to).map(|(a, b)| b.rotation.transpose() * a.rotation).sum::<Matrix3<f64>>();
+    let rotation = nearest_rotation(&turned);
+    let mean = |poses: &[Pose]| poses.iter().map(Pose::center).sum::<Vector3<f64>>() / count;
+    let means = [rotation * mean(from), mean(to)];
+    let (mut along, mut square) = (0.0, 0.0);
+    for (a, b) in from.iter().zip(to) {
+        let (a, b) = (rotation * a.center() - means[0], b.center() - means[1]);
+        along += a.dot(&b);
+        square += a.norm_squared();
+    }
+    let scale = along / square;
+    (scale.is_finite() && scale > 0.0).then(|| Similarity { scale, rotation, shift: means[1] - scale * means[0] })
 }
 
 /// The pose that takes points of the world nearest to points of the camera's frame.

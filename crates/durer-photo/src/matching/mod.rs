@@ -7,6 +7,7 @@ use crate::feature::{Feature, features};
 use crate::photo::Photo;
 use crate::{Error, Lens};
 use nalgebra::Vector2;
+pub(crate) use pairs::by_chance;
 use pairs::{Descriptors, alike, verified};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};

@@ -64,12 +64,16 @@ pub struct Geometry {
     pub moved: f64,
 }
 
+/// Whether so few of so many matches may agree on one geometry by chance: of false matches, a few in a hundred lie near any line.
+pub fn by_chance(agree: usize, all: usize) -> bool {
+    agree * 5 < all
+}
+
 /// Matches that are of the same points of a rigid scene; none if there are not enough.
 pub fn verified(places: &[Pair], threshold: f64, least: usize, seed: u64) -> Option<Geometry> {
     let search = Search { threshold, samples: 5000, seed };
     let (_, inliers) = ransac(&Pairs(places), &search)?;
-    // So few of so many agree by chance.
-    if inliers.len() < least || inliers.len() * 5 < places.len() {
+    if inliers.len() < least || by_chance(inliers.len(), places.len()) {
         return None;
     }
     let pairs: Vec<Pair> = inliers.iter().map(|i| places[*i]).collect();

@@ -4,9 +4,10 @@ use super::Solver;
 use crate::geometry::essential::{Directions, pose_before};
 use crate::geometry::ransac::{Search, ransac};
 use crate::geometry::triangulate::two_views;
-use crate::matching::{Link, Matches};
+use crate::matching::{Link, Matches, by_chance};
 use crate::{Error, Pose};
 use nalgebra::Vector2;
+use rayon::prelude::*;
 
 /// Links that are tried: those with most matches.
 const TRIED: usize = 30;
@@ -18,8 +19,10 @@ impl Solver<'_> {
         links.sort_by(|a, b| b.matches.cmp(&a.matches).then(a.pictures.cmp(&b.pictures)));
         let mut best: Option<(f64, [usize; 2], Pose)> = None;
         let mut turned = 0;
-        for link in links.into_iter().take(TRIED) {
-            let Some((pose, count, angle)) = self.relative(link.pictures) else { continue };
+        links.truncate(TRIED);
+        let poses: Vec<_> = links.par_iter().map(|link| self.relative(link.pictures)).collect();
+        for (link, found) in links.into_iter().zip(poses) {
+            let Some((pose, count, angle)) = found else { continue };
             if angle < self.options.angle.to_radians() {
                 turned += 1;
                 continue;
@@ -60,6 +63,9 @@ impl Solver<'_> {
         let threshold = (self.threshold(a) / lenses[0].focal).max(self.threshold(b) / lenses[1].focal);
         let seed = self.options.seed ^ 0x5eed ^ ((a as u64) << 32 | b as u64);
         let (e, inliers) = ransac(&Directions(&pairs), &Search { threshold, samples: 2000, seed })?;
+        if by_chance(inliers.len(), pairs.len()) {
+            return None;
+        }
         let inliers: Vec<_> = inliers.into_iter().map(|i| pairs[i]).collect();
         let (pose, before) = pose_before(&e, &inliers)?;
         if before < self.options.least || before * 2 < inliers.len() {

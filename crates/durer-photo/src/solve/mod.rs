@@ -17,6 +17,13 @@ use crate::matching::{GUESS, Matches};
 use crate::{Error, Lens, Observation, Point, Reconstruction, View};
 use nalgebra::{Matrix3, Vector2, Vector3};
 
+/// Cauchy's loss at so many standard deviations loses a twentieth of the exactness where errors are normal (Holland, Welsch, *Robust
+/// Regression Using Iteratively Reweighted Least-Squares*, 1977), and gains much where they are not: half of the coordinates of
+/// salient points are off by a tenth of a pixel or less, and some by two pixels.
+const CAUCHY: f64 = 2.385;
+/// No salient point is known better than to so many pixels.
+const FINEST: f64 = 0.02;
+
 /// How it is solved.
 #[derive(Debug, Clone)]
 pub struct Options {
@@ -238,7 +245,7 @@ impl<'o> Solver<'o> {
         // Two photographs do not tell a lens.
         let free = known > 2;
         let options = adjust::Options {
-            loss: Loss::Huber(1.0),
+            loss: if thoroughly { Loss::Cauchy(CAUCHY * all.noise().max(FINEST)) } else { Loss::Huber(1.0) },
             focal: free && !self.options.fixed_focal,
             radial: free && !self.options.no_distortion,
             iterations: if thoroughly { 50 } else { 10 },

@@ -15,10 +15,10 @@ from .pictures import compare, read
 from .rays import RECORD, AllHits, Hits, Mesh, Nearest, Scene
 from .things import Difference, Group, Intersection, Merge, Model, Moved, Object, Thing, Union_ as Union, Xor
 from .words import *
-from .world import Part, Pictures, World, check, kinds, load, options
+from .world import Part, Pictures, Surfaces, World, check, kinds, load, options
 
 __all__ = [
     "RECORD", "AllHits", "Difference", "Group", "Hits", "Intersection", "Merge", "Mesh", "Model", "Moved", "Nearest", "Object",
-    "Part", "Pictures", "RenderError", "Scene", "SceneError", "Thing", "Union", "World", "Xor", "__version__", "check", "compare",
+    "Part", "Pictures", "RenderError", "Scene", "SceneError", "Surfaces", "Thing", "Union", "World", "Xor", "__version__", "check", "compare",
     "kinds", "load", "options", "read", *words.__all__,
 ]  # fmt: skip

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import functools
 import tempfile
+from collections import deque
 from pathlib import Path
-from typing import Any, Optional, Sequence, Union
+from typing import Any, Iterable, Iterator, Optional, Sequence, Union
 
 from . import _durer
 from ._progress import Progress, watch
@@ -45,6 +46,46 @@ def shard(files: tuple[tuple[str, bytes], ...], reading: tuple[str, ...], words:
     return part.write()
 
 
+def _whole(names: Sequence[str], contents: Sequence[bytes], reading: tuple[str, ...], words: Sequence[str], index: int, count: int) -> bytes:
+    """The same of files whose contents were sent one by one."""
+    return shard(tuple(zip(names, contents)), reading, words, index, count)
+
+
+class _Frame:
+    """A picture whose shards are with the workers."""
+
+    def __init__(
+        self, world: World, client: Any, shards: int, asked: Sequence[str], sent: dict[bytes, Any], number: int
+    ) -> None:
+        # What is wrong with the options is better known before anything is sent.
+        world._world.part([*asked, "--shard", f"1/{shards}"])
+        files = _files(world)
+        for content in files.values():
+            if content not in sent:
+                sent[content] = client.scatter(content, broadcast=True, hash=True)
+        contents = [sent[content] for content in files.values()]
+        name = f"durer-{world.digest[:12]}-{hash_of(asked)}-{number}"
+        self.client = client
+        self.futures = [
+            client.submit(
+                _whole, list(files), contents, tuple(world._reading), asked, index, shards, key=(name, index)
+            )
+            for index in range(1, shards + 1)
+        ]
+
+    def pictures(self) -> Pictures:
+        """Waits for all shards, and merges them."""
+        parts = self.client.gather(self.futures)
+        return Pictures(Part(_durer.merge([(f"shard {index}", content) for index, content in enumerate(parts, 1)])))
+
+    def cancel(self) -> None:
+        self.client.cancel([future for future in self.futures if not future.done()])
+
+
+def _asked(world: World, words: Optional[Sequence[str]], options: dict[str, Any]) -> list[str]:
+    return [*world._reading, *(words or []), *world._all(options)[len(world._reading) :]]
+
+
 def render(
     scene: Union[World, PathLike],
     *,
@@ -63,27 +104,36 @@ def render(
     from distributed import as_completed
 
     world = scene if isinstance(scene, World) else load(scene)
-    asked = [*world._reading, *(words or []), *world._all(options)[len(world._reading) :]]
-    # What is wrong with the options is better known before anything is sent.
-    begun = world._world.part([*asked, "--shard", f"1/{shards}"])
-    del begun
-    files = tuple(_files(world).items())
-    sent = client.scatter(files, broadcast=True, hash=True)
+    frame = _Frame(world, client, shards, _asked(world, words, options), {}, 0)
     shown = watch(progress)
-    name = f"durer-{world.digest[:12]}"
-    futures = [
-        client.submit(shard, sent, tuple(world._reading), asked, index, shards, key=(f"{name}-{hash_of(asked)}", index))
-        for index in range(1, shards + 1)
-    ]
     try:
-        for done, _ in enumerate(as_completed(futures), 1):  # type: ignore[no-untyped-call, unused-ignore]
+        for done, _ in enumerate(as_completed(frame.futures), 1):  # type: ignore[no-untyped-call, unused-ignore]
             if shown is not None:
                 shown(done, shards)
-        parts = client.gather(futures)
+        return frame.pictures()
     finally:
-        client.cancel([future for future in futures if not future.done()])
-    named = [(f"shard {index}", content) for index, content in enumerate(parts, 1)]
-    return Pictures(Part(_durer.merge(named)))
+        frame.cancel()
+
+
+def frames(
+    scenes: Iterable[Union[World, PathLike]], *, client: Any, shards: int = 4, ahead: int = 8, **options: Any
+) -> Iterator[Pictures]:
+    """Renders scenes one after the other, as the frames of an animation whose camera or things move, and gives their pictures in
+    order. Each is made in shards as `render` makes it; up to `ahead` of them are under way at once, and files that frames have in
+    common are sent once."""
+    waiting: deque[_Frame] = deque()
+    sent: dict[bytes, Any] = {}
+    try:
+        for number, scene in enumerate(scenes):
+            world = scene if isinstance(scene, World) else load(scene)
+            waiting.append(_Frame(world, client, shards, _asked(world, None, options), sent, number))
+            if len(waiting) >= ahead:
+                yield waiting.popleft().pictures()
+        while waiting:
+            yield waiting.popleft().pictures()
+    finally:
+        for frame in waiting:
+            frame.cancel()
 
 
 def hash_of(words: Sequence[str]) -> str:

@@ -124,7 +124,25 @@ class Nearest:
 
 
 #: How many rays, origins, directions, t_min and t_max.
-_Asked: TypeAlias = tuple[int, Floats, Floats, Floats, Floats]
+Asked: TypeAlias = tuple[int, Floats, Floats, Floats, Floats]
+
+
+def asked(origins: Any, directions: Any, t_min: Any, t_max: Any) -> tuple[tuple[int, ...], Asked]:
+    """The shape of rays, and their arrays: checked, and broadcast against each other."""
+    origins, directions = vectors("origins", origins), vectors("directions", directions)
+    try:
+        shape = np.broadcast_shapes(origins.shape, directions.shape)[:-1]
+    except ValueError:
+        raise ValueError(
+            f"origins and directions must have shapes that fit together, but have {origins.shape} and {directions.shape}"
+        ) from None
+    count = int(np.prod(shape))
+    arrays: list[Floats] = []
+    for array in (origins, directions):
+        if array.size != 3 and array.shape[:-1] != shape:
+            array = np.broadcast_to(array, (*shape, 3))
+        arrays.append(rows(array, 3))
+    return shape, (count, arrays[0], arrays[1], scalars("t_min", t_min, shape), scalars("t_max", t_max, shape))
 
 
 class _Rays:
@@ -145,22 +163,6 @@ class _Rays:
     def _corners(self, objects: Ints, triangles: Ints) -> Doubles:
         raise NotImplementedError
 
-    def _asked(self, origins: Any, directions: Any, t_min: Any, t_max: Any) -> tuple[tuple[int, ...], _Asked]:
-        origins, directions = vectors("origins", origins), vectors("directions", directions)
-        try:
-            shape = np.broadcast_shapes(origins.shape, directions.shape)[:-1]
-        except ValueError:
-            raise ValueError(
-                f"origins and directions must have shapes that fit together, but have {origins.shape} and {directions.shape}"
-            ) from None
-        count = int(np.prod(shape))
-        arrays: list[Floats] = []
-        for array in (origins, directions):
-            if array.size != 3 and array.shape[:-1] != shape:
-                array = np.broadcast_to(array, (*shape, 3))
-            arrays.append(rows(array, 3))
-        return shape, (count, arrays[0], arrays[1], scalars("t_min", t_min, shape), scalars("t_max", t_max, shape))
-
     def closest(
         self,
         origins: npt.ArrayLike,
@@ -172,16 +174,16 @@ class _Rays:
         progress: Progress = None,
     ) -> Hits:
         """What each ray meets first."""
-        shape, asked = self._asked(origins, directions, t_min, t_max)
-        t, triangle, object, uv = self._tree.closest(*asked, _threads(threads), watch(progress))
+        shape, rays = asked(origins, directions, t_min, t_max)
+        t, triangle, object, uv = self._tree.closest(rays, threads_asked(threads), watch(progress))
         return Hits(
             t.reshape(shape),
             triangle.reshape(shape),
             object.reshape(shape),
             uv.reshape(*shape, 2),
             self,
-            asked[1],
-            asked[2],
+            rays[1],
+            rays[2],
         )
 
     def ray(self, origins: npt.ArrayLike, directions: npt.ArrayLike, **options: Any) -> npt.NDArray[np.void]:
@@ -200,8 +202,8 @@ class _Rays:
     ) -> Bools:
         """Whether each ray meets anything: faster than `closest`. With directions from point to point and `t_max` 1: whether
         they do not see each other."""
-        shape, asked = self._asked(origins, directions, t_min, t_max)
-        return self._tree.occluded(*asked, _threads(threads), watch(progress)).reshape(shape)
+        shape, rays = asked(origins, directions, t_min, t_max)
+        return self._tree.occluded(rays, threads_asked(threads), watch(progress)).reshape(shape)
 
     def count(
         self,
@@ -214,8 +216,8 @@ class _Rays:
         progress: Progress = None,
     ) -> Ints:
         """How many triangles each ray crosses: exact, also through edges and vertices."""
-        shape, asked = self._asked(origins, directions, t_min, t_max)
-        return self._tree.count(*asked, _threads(threads), watch(progress)).reshape(shape)
+        shape, rays = asked(origins, directions, t_min, t_max)
+        return self._tree.count(rays, threads_asked(threads), watch(progress)).reshape(shape)
 
     def all_hits(
         self,
@@ -228,8 +230,8 @@ class _Rays:
         progress: Progress = None,
     ) -> AllHits:
         """All that each ray meets, from near to far."""
-        shape, asked = self._asked(origins, directions, t_min, t_max)
-        count, (t, triangle, object, uv) = self._tree.all_hits(*asked, _threads(threads), watch(progress))
+        shape, rays = asked(origins, directions, t_min, t_max)
+        count, (t, triangle, object, uv) = self._tree.all_hits(rays, threads_asked(threads), watch(progress))
         ray = np.repeat(np.arange(len(count)), count)
         return AllHits(ray, count.reshape(shape), t, triangle, object, uv.reshape(-1, 2))
 
@@ -239,7 +241,7 @@ class _Rays:
         """Whether points, of shape (..., 3), lie inside: by the parity of crossings, which is exact for closed meshes. In a
         scene, inside any of its objects."""
         places = vectors("points", points)
-        answer = self._tree.contains(rows(places, 3), _threads(threads), watch(progress))
+        answer = self._tree.contains(rows(places, 3), threads_asked(threads), watch(progress))
         return answer.reshape(places.shape[:-1])
 
     def nearest(
@@ -273,7 +275,7 @@ class _Rays:
         return self._tree.bytes()
 
 
-def _threads(threads: Optional[int]) -> Optional[int]:
+def threads_asked(threads: Optional[int]) -> Optional[int]:
     if threads is not None and threads < 1:
         raise ValueError(f"threads must be 1 or more, or None for all, but is {threads}")
     return threads
@@ -306,7 +308,7 @@ class Mesh(_Rays):
         if self.vertices.ndim != 2:
             raise ValueError(f"vertices must have the shape (n, 3), but has {self.vertices.shape}")
         self.faces = indices("faces", faces)
-        self._tree = _durer.Tree.mesh(self.vertices, self.faces, preset, _threads(threads))
+        self._tree = _durer.Tree.mesh(self.vertices, self.faces, preset, threads_asked(threads))
 
     def __repr__(self) -> str:
         return f"<Mesh of {len(self.faces)} triangles>"
@@ -326,7 +328,7 @@ class Mesh(_Rays):
     ) -> Nearest:
         places = vectors("points", points)
         shape = places.shape[:-1]
-        found = self._tree.nearest(rows(places, 3), within, _threads(threads), watch(progress))
+        found = self._tree.nearest(rows(places, 3), within, threads_asked(threads), watch(progress))
         distance, triangle, point, uv = found
         triangle = triangle.reshape(shape)
         objects = np.where(triangle >= 0, np.int32(0), np.int32(-1))

@@ -7,6 +7,7 @@ import difflib
 import json
 import os
 import time
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, AsyncIterator, Callable, Iterable, Mapping, Optional, TypeAlias, Union
 
@@ -14,10 +15,10 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _durer
-from ._arrays import Floats
+from ._arrays import Bools, Floats, Ints
 from ._durer import SceneError
 from ._progress import Progress, watch
-from .rays import Mesh
+from .rays import Mesh, asked, threads_asked
 from .things import Camera, Group, Light, Object, Thing, Writer, ply
 from .words import Background, PhongMaterial
 
@@ -197,6 +198,34 @@ class Part:
         return f"<Part {self.shard}: {100 * done // max(total, 1)} %>"
 
 
+@dataclass(frozen=True, eq=False)
+class Surfaces:
+    """What rays meet first in a world. All arrays have the shape of the rays, with the components of vectors behind it."""
+
+    #: Position along the ray, in units of its direction's length; infinite where nothing is met.
+    t: Floats
+    #: Number of the object, as the picture `object` shows it; -1 where nothing is met.
+    object: Ints
+    #: Number of the triangle in a mesh, else 0; -1 where nothing is met.
+    triangle: Ints
+    #: Number of the material; -1 where nothing is met.
+    material: Ints
+    #: Where the surface is met; not a number where nothing is.
+    point: Floats
+    #: The true surface's normal, of length 1, outwards; not a number where nothing is met.
+    normal: Floats
+    #: The normal for shading: interpolated on smooth meshes.
+    shading_normal: Floats
+
+    @property
+    def hit(self) -> Bools:
+        """Where something is met."""
+        return self.object >= 0
+
+    def __repr__(self) -> str:
+        return f"<Surfaces of {self.t.size} rays: {int(self.hit.sum())} meet something>"
+
+
 class World:
     """A scene that is described, ready for pictures. `durer.load` reads one from a file; here it is built in code.
 
@@ -342,6 +371,46 @@ class World:
             if not work.done():
                 await asyncio.wait([work])
 
+    def closest(
+        self,
+        origins: npt.ArrayLike,
+        directions: npt.ArrayLike,
+        t_min: npt.ArrayLike = 0.0,
+        t_max: npt.ArrayLike = np.inf,
+        *,
+        threads: Optional[int] = None,
+        progress: Progress = None,
+    ) -> Surfaces:
+        """What each ray meets first among all objects: spheres, solids and meshes alike, as the pictures show them. Arrays are those
+        of `Mesh.closest`."""
+        shape, rays = asked(origins, directions, t_min, t_max)
+        ids, values = self._world.closest(rays, threads_asked(threads), watch(progress))
+        whole, other = ids.reshape(-1, 3), values.reshape(-1, 10)
+
+        def one(column: npt.NDArray[Any]) -> Any:
+            return np.ascontiguousarray(column).reshape(shape)
+
+        def three(columns: Floats) -> Floats:
+            return np.ascontiguousarray(columns).reshape(*shape, 3)
+
+        object, triangle, material = (one(whole[:, i]) for i in range(3))
+        point, normal, shading = (three(other[:, i : i + 3]) for i in (1, 4, 7))
+        return Surfaces(one(other[:, 0]), object, triangle, material, point, normal, shading)
+
+    def occluded(
+        self,
+        origins: npt.ArrayLike,
+        directions: npt.ArrayLike,
+        t_min: npt.ArrayLike = 0.0,
+        t_max: npt.ArrayLike = np.inf,
+        *,
+        threads: Optional[int] = None,
+        progress: Progress = None,
+    ) -> Bools:
+        """Whether each ray meets anything, glass too."""
+        shape, rays = asked(origins, directions, t_min, t_max)
+        return self._world.occluded(rays, threads_asked(threads), watch(progress)).reshape(shape)
+
     def explain(self, x: int, y: int, **options: Any) -> dict[str, Any]:
         """Why a pixel has its colour: a tree of terms that sums to it, as docs/explain.md tells. Give the options of the render."""
         answer: dict[str, Any] = json.loads(self._world.explain(self._all(options), (x, y)))
@@ -384,4 +453,4 @@ def kinds() -> dict[str, str]:
     return dict(_durer.Part.kinds())
 
 
-__all__ = ["Part", "Pictures", "SceneError", "Thing", "World", "check", "kinds", "load", "options"]
+__all__ = ["Part", "Pictures", "SceneError", "Surfaces", "Thing", "World", "check", "kinds", "load", "options"]

@@ -1,0 +1,212 @@
+//! `durer photo place`: things of a scene in a photograph, with the shadows that they cast there.
+//!
+//! The scene is rendered twice, with the things and without them. What the photograph shows gets as much darker or brighter as its
+//! stand-ins do. Source: Debevec, *Rendering Synthetic Objects into Real Scenes*, SIGGRAPH 1998, section 5.3; a ratio in the place
+//! of its difference, so that the stand-ins' colours do not matter.
+
+use super::args::PlaceArgs;
+use super::{bytes, wrong};
+use crate::guard::Guard;
+use crate::open::{Opened, load_options, read};
+use crate::output::{encode, format, save};
+use crate::render::failure;
+use crate::{Failure, bad, job, progress};
+use durer::diag::{Diagnostics, Files};
+use durer::film::Filter;
+use durer::film::aov::Aov;
+use durer::image::{Image, Layer, Transfer, decode_srgb};
+use durer::math::Vec3;
+use durer::render::{Control, Crop, Job, Sampling, raster, render};
+use durer::scene::{Group, Node, Object};
+use durer::world::World;
+use durer_photo::photo;
+use std::sync::Arc;
+
+/// Rays across and down a pixel that tell how much of it is covered.
+const ACROSS: u32 = 4;
+/// Rows of pixels whose rays are kept at once.
+const BAND: u32 = 64;
+/// How far neighbours lie that tell of the shadow in a pixel that is covered in part.
+const NEAR: usize = 2;
+
+pub fn run(args: &PlaceArgs) -> Result<(), Failure> {
+    let mut guard = Guard::default();
+    let format = format(&args.output)?;
+    let name = args.backplate.to_string_lossy();
+    let photo = photo::read(&name, &bytes(&args.backplate, &mut guard)?).map_err(wrong)?;
+    let place = guard.writes("--output", &args.output)?;
+    let [width, height] = photo.size();
+    let mut options = load_options(&args.reading);
+    let threads = args.threads.map(usize::from);
+    (options.accel, options.threads) = (job::accel(&args.job)?, threads);
+    let mut with = read(&args.scene, &options, args.quiet, &mut guard)?.compile(&options, &mut guard)?;
+    let stand_in = stand_ins(&with, &args.stand_in)?;
+    let mut job = job::job(&args.job, None, &with.loaded, false)?;
+    if args.job.size.is_some_and(|size| size != (width, height)) {
+        return Err(bad(format!("the picture has the photograph's size, {width}x{height}: leave --size out")));
+    }
+    (job.width, job.height) = (width, height);
+    if let (Sampling::Filtered { filter, .. }, None) = (&mut job.sampling, &args.job.filter) {
+        // A pixel of a photograph is the mean of what is in it.
+        *filter = Filter::Box { radius: 0.5 };
+    }
+    if raster(&with.world, width, height).empty() != (0, 0) {
+        return Err(bad(format!(
+            "the scene's camera is not of `{name}`, which is {width}x{height}: `durer photo camera` finds one that is"
+        )));
+    }
+    let control = Arc::new(Control { threads, memory: options.memory, ..Control::default() });
+    let color = |world: &World| -> Result<Vec<Vec3>, Failure> {
+        let rendered = progress::watch(&control, args.quiet, || render(world, &job, &control)).map_err(failure)?;
+        Ok(rendered.layers.into_iter().next().map(|layer| layer.image.pixels).unwrap_or_default())
+    };
+    let colors = color(&with.world)?;
+    let covered = coverage(&with.world, &job, &stand_in, &control, args.quiet)?;
+    let root = with.loaded.scene.root.take();
+    with.loaded.scene.root = root.map(|root| Group { objects: kept(root.objects, &stand_in) });
+    let without = with.loaded.compile(&options, &mut Files::default(), &mut Diagnostics::default());
+    let empty = color(&without.ok_or_else(|| bad("the scene is none without the things in it"))?)?;
+    let plate: Vec<Vec3> = photo.pixels.pixels().map(|p| Vec3::from(p.0.map(decode_srgb))).collect();
+    let pixels = composed(width as usize, &plate, &colors, &empty, &covered);
+    let layer = Layer::color("color", Image::from_pixels(width, height, pixels).map_err(|e| bad(e.to_string()))?);
+    let file = encode(format, &[layer], Transfer::Srgb, &[])?;
+    save(&[(&place, file)], args.quiet)
+}
+
+/// Of each material, whether what has it stands in for something of the photograph.
+fn stand_ins(opened: &Opened, numbers: &[u32]) -> Result<Vec<bool>, Failure> {
+    let count = opened.loaded.scene.materials.len();
+    let mut all = vec![false; count];
+    for number in numbers {
+        let slot = all.get_mut(*number as usize);
+        *slot.ok_or_else(|| bad(format!("--stand-in {number}: the scene has {count} materials, from 0")))? = true;
+    }
+    let objects = opened.loaded.scene.root.iter().flat_map(|root| &root.objects);
+    let (there, others) = objects.fold((false, false), |(a, b), object| {
+        let (c, d) = (has(object, &all, true), has(object, &all, false));
+        (a || c, b || d)
+    });
+    match (there, others) {
+        (false, _) => Err(bad("nothing in the scene has a material of --stand-in: nothing can catch a shadow")),
+        (_, false) => Err(bad("all of the scene has materials of --stand-in: there is nothing to place")),
+        _ => Ok(all),
+    }
+}
+
+/// The objects within one.
+fn parts(node: &Node) -> &[Object] {
+    match node {
+        Node::Group(group) => &group.objects,
+        Node::Solid(_, parts) => parts,
+        Node::Transform(_, object) => std::slice::from_ref(object),
+        _ => &[],
+    }
+}
+
+/// Whether some shape in an object stands in for something, or does not.
+fn has(object: &Object, stand_in: &[bool], wanted: bool) -> bool {
+    let own = object.material.is_some_and(|number| stand_in.get(number as usize) == Some(&true));
+    match parts(&object.node) {
+        [] => own == wanted,
+        parts => parts.iter().any(|part| has(part, stand_in, wanted)),
+    }
+}
+
+/// The objects that stand in for something. A solid is one thing: it stays if some part of it does.
+fn kept(objects: Vec<Object>, stand_in: &[bool]) -> Vec<Object> {
+    let one = |mut object: Object| {
+        if !has(&object, stand_in, true) {
+            return None;
+        }
+        object.node = match object.node {
+            Node::Group(group) => Node::Group(Group { objects: kept(group.objects, stand_in) }),
+            Node::Transform(ops, inner) => Node::Transform(ops, Box::new(kept(vec![*inner], stand_in).pop()?)),
+            node => node,
+        };
+        Some(object)
+    };
+    objects.into_iter().filter_map(one).collect()
+}
+
+/// The share of each pixel in which something is seen that stands in for nothing.
+fn coverage(
+    world: &World,
+    job: &Job,
+    stand_in: &[bool],
+    control: &Arc<Control>,
+    quiet: bool,
+) -> Result<Vec<f32>, Failure> {
+    let (width, height) = (job.width * ACROSS, job.height * ACROSS);
+    let mut covered = vec![0.0_f32; job.width as usize * job.height as usize];
+    for top in (0..height).step_by((BAND * ACROSS) as usize) {
+        let crop = Crop { left: 0, top, width, height: (BAND * ACROSS).min(height - top) };
+        let aovs = Aov::from_name("material").into_iter().collect();
+        let job =
+            Job { width, height, crop: Some(crop), sampling: Sampling::Center, color: false, aovs, ..job.clone() };
+        let seen = progress::watch(control, quiet, || render(world, &job, control)).map_err(failure)?;
+        let Some(layer) = seen.layers.first() else { continue };
+        for (i, material) in layer.image.pixels.iter().enumerate() {
+            let (x, y) = (i as u32 % width, top + i as u32 / width);
+            // What is no material is the background.
+            let thing = material.x >= 0.0 && stand_in.get(material.x as usize) != Some(&true);
+            let pixel = (y / ACROSS) as usize * (width / ACROSS) as usize + (x / ACROSS) as usize;
+            covered[pixel] += f32::from(u8::from(thing)) / (ACROSS * ACROSS) as f32;
+        }
+    }
+    Ok(covered)
+}
+
+/// The photograph with things in it: with them W, without them G, the photograph P, coverage a and shadow r = W / G give
+/// W + (1 - a) r (P - G). That is W where a = 1 and P W / G where a = 0; where a pixel is covered in part, r is that of its
+/// neighbours.
+fn composed(width: usize, plate: &[Vec3], with: &[Vec3], without: &[Vec3], covered: &[f32]) -> Vec<Vec3> {
+    let height = plate.len() / width.max(1);
+    let ratio = |w: f32, g: f32| if g > 0.0 { w / g } else { 1.0 };
+    let shadow = |i: usize| {
+        let (w, g) = (with[i], without[i]);
+        Vec3::new(ratio(w.x, g.x), ratio(w.y, g.y), ratio(w.z, g.z))
+    };
+    let around = |i: usize| {
+        let (x, y) = (i % width, i / width);
+        let (mut sum, mut count) = (Vec3::ZERO, 0.0);
+        for y in y.saturating_sub(NEAR)..(y + NEAR + 1).min(height) {
+            for j in (x.saturating_sub(NEAR)..(x + NEAR + 1).min(width)).map(|x| y * width + x) {
+                if covered[j] == 0.0 {
+                    (sum, count) = (sum + shadow(j), count + 1.0);
+                }
+            }
+        }
+        if count > 0.0 { sum / count } else { Vec3::splat(1.0) }
+    };
+    let pixel = |i: usize| {
+        let r = match covered[i] {
+            a if a >= 1.0 => return with[i],
+            0.0 => shadow(i),
+            _ => around(i),
+        };
+        let seen = with[i] + (1.0 - covered[i]) * r * (plate[i] - without[i]);
+        Vec3::new(seen.x.max(0.0), seen.y.max(0.0), seen.z.max(0.0))
+    };
+    (0..plate.len()).map(pixel).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Vec3, composed};
+
+    #[test]
+    fn shadows_darken_the_photograph_and_things_cover_it() {
+        let [plate, ground, thing] = [0.6, 0.4, 0.9].map(Vec3::splat);
+        // Lit far away; in half a shadow, and half covered and covered beside that.
+        let without = [ground; 6];
+        let with = [ground, ground, ground, 0.5 * ground, 0.5 * thing + 0.25 * ground, thing];
+        let covered = [0.0, 0.0, 0.0, 0.0, 0.5, 1.0];
+        let placed = composed(1, &[plate; 6], &with, &without, &covered);
+        // The neighbours of what is half covered let three quarters of the light through on average.
+        let mixed = 0.5 * thing + 0.25 * ground + 0.5 * 0.75 * (plate - ground);
+        let expected = [plate, plate, plate, 0.5 * plate, mixed, thing];
+        assert!(placed.iter().zip(expected).all(|(a, b)| (*a - b).length() < 1e-6), "{placed:?}");
+        // Where no light falls on what stands in, nothing is known of shadows.
+        assert_eq!(composed(1, &[plate], &[Vec3::ZERO], &[Vec3::ZERO], &[0.0]), [plate]);
+    }
+}

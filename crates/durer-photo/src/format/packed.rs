@@ -1,0 +1,33 @@
+//! Files that gzip or bzip2 made smaller, as those of *Bundle Adjustment in the Large* are.
+
+use crate::Error;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+/// No file is longer than this when it is unpacked; a small one could fill the memory otherwise.
+const LONGEST: u64 = 4 << 30;
+
+/// A file's bytes, unpacked if they begin as those of gzip and bzip2 do.
+pub fn unpacked(file: &str, bytes: Vec<u8>) -> Result<Vec<u8>, Error> {
+    let (packed, mut reader): (_, Box<dyn Read + '_>) = match bytes.get(..3) {
+        Some([0x1f, 0x8b, _]) => ("gzip", Box::new(flate2::read::MultiGzDecoder::new(&*bytes))),
+        Some(b"BZh") => ("bzip2", Box::new(bzip2::read::MultiBzDecoder::new(&*bytes))),
+        _ => return Ok(bytes),
+    };
+    let mut plain = Vec::new();
+    let read = reader.by_ref().take(LONGEST + 1).read_to_end(&mut plain);
+    read.map_err(|error| Error::of(file, format!("cannot be unpacked ({packed}): {error}")))?;
+    if plain.len() as u64 > LONGEST {
+        return Err(Error::of(file, format!("it is longer than {} GiB when it is unpacked", LONGEST >> 30)));
+    }
+    drop(reader);
+    Ok(plain)
+}
+
+/// A path without what gzip and bzip2 add to a name.
+pub fn plain(path: &Path) -> PathBuf {
+    match path.extension().and_then(|end| end.to_str()) {
+        Some("gz" | "bz2") => path.with_extension(""),
+        _ => path.to_path_buf(),
+    }
+}

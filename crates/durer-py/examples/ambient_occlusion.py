@@ -1,0 +1,53 @@
+"""Ambient occlusion, baked to the vertices of a mesh: how much of the sky each of them sees.
+
+    python ambient_occlusion.py [rays for a vertex] [baked.ply]
+"""
+
+import sys
+
+import numpy as np
+from shapes import ball, box, grid, save_ply, together
+
+import durer
+
+
+def directions_about(normals: np.ndarray, count: int, seed: int = 1) -> np.ndarray:
+    """So many directions about each normal, by the cosine with it: shape (n, count, 3)."""
+    u, v = np.random.default_rng(seed).uniform(size=(2, len(normals), count))
+    z, r, turn = np.sqrt(1 - u), np.sqrt(u), 2 * np.pi * v
+    other = np.where(np.abs(normals[:, :1]) < 0.7, [[1.0, 0, 0]], [[0, 1.0, 0]])
+    right = np.cross(other, normals)
+    right /= np.linalg.norm(right, axis=1, keepdims=True)
+    up = np.cross(normals, right)
+    frame = [axis[:, None, :] for axis in (right, up, normals)]
+    return (r * np.cos(turn))[..., None] * frame[0] + (r * np.sin(turn))[..., None] * frame[1] + z[..., None] * frame[2]
+
+
+def vertex_normals(mesh: durer.Mesh) -> np.ndarray:
+    """Means of the normals of the triangles around each vertex, by area."""
+    a, b, c = (mesh.vertices[mesh.faces[:, i]].astype(float) for i in range(3))
+    area = np.cross(b - a, c - a)
+    sums = np.zeros(mesh.vertices.shape)
+    for i in range(3):
+        np.add.at(sums, mesh.faces[:, i], area)
+    return sums / np.maximum(np.linalg.norm(sums, axis=1, keepdims=True), 1e-30)
+
+
+def openness(mesh: durer.Mesh, count: int) -> np.ndarray:
+    """The share of the sky above each vertex, by the cosine, that is seen: 1 where nothing is in the way."""
+    normals = vertex_normals(mesh)
+    # Vertices lie on the surface: rays begin a hundred-thousandth of the whole above it.
+    lift = 1e-5 * np.ptp(mesh.bounds, axis=0).max()
+    origins = (mesh.vertices + lift * normals)[:, None, :]
+    return 1 - mesh.occluded(origins, directions_about(normals, count)).mean(axis=1)
+
+
+def main(count: int = 64, output: str = "baked.ply") -> None:
+    mesh = durer.Mesh(*together(grid(-3, 3, -3, 3, 60), ball(1.0, 24, (0, 0, 1.0)), box((1.2, -1, 0), (2.2, 1, 1.5))))
+    seen = openness(mesh, count)
+    save_ply(output, mesh.vertices, mesh.faces, seen)
+    print(f"{len(seen)} vertices, {count} rays each; the mean sees {100 * seen.mean():.1f} % of the sky; wrote {output}")
+
+
+if __name__ == "__main__":
+    main(*(int(word) if word.isdigit() else word for word in sys.argv[1:]))
