@@ -1,10 +1,11 @@
-//! From a scene file's path to a world: dialect, rules, files.
+//! From a file's path to a world: format, dialect, rules, files.
 
 use crate::compile::{AccelKind, Resources, compile};
 use crate::diag::{Diagnostic, Diagnostics, Files, Severity};
 use crate::dialect::{Compat, Dialect, PathBase, Rules};
 use crate::format::course::{self, Guess, Hint, ReadOptions};
-use crate::scene::Scene;
+use crate::format::scene::{Input, find_scene_format, read_model};
+use crate::scene::{Scene, Staging};
 use crate::source::{Source, SourceError};
 use crate::threads;
 use crate::world::World;
@@ -31,6 +32,8 @@ pub struct LoadOptions {
     pub assets: Vec<PathBuf>,
     /// Files that are in no folder, by the names that the scene gives them.
     pub given: Vec<(String, Arc<[u8]>)>,
+    /// How a model that is no scene becomes one.
+    pub staging: Staging,
     /// The structure that finds objects.
     pub accel: AccelKind,
     /// Threads that build the world; `None`: as many as the machine has.
@@ -99,6 +102,14 @@ pub fn load_text(
     // Where the scene lies does not matter for what it is.
     source.remember("", &bytes);
     let file = files.add(path.display().to_string(), bytes.clone());
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    if let Some(format) = find_scene_format(&bytes, &name).filter(|_| options.dialect.is_none() && !options.course) {
+        let dialect = Dialect::Durer;
+        let source = source.budget(budget(options));
+        let input = Input { bytes: &bytes, file, name: &name, source: &source, staging: &options.staging };
+        let scene = read_model(format, &input, diagnostics)?;
+        return Some(Loaded { scene, rules: dialect.rules().clone(), dialect, guess: None, source });
+    }
     let mut guess = None;
     let dialect = options.dialect.unwrap_or_else(|| {
         let found = course::guess(&bytes, file, &options.hints, &|name| source.contains(name));
@@ -123,7 +134,7 @@ pub fn load_text(
     if options.course {
         source = source.allow(".");
     }
-    source = source.budget(Source::DEFAULT_BUDGET.min(options.memory.unwrap_or(u64::MAX)));
+    source = source.budget(budget(options));
     let read = ReadOptions { dialect, strict: options.strict, compat: rules.compat };
     let scene = course::read(&bytes, file, read, diagnostics);
     if let (Some(_), Some(dialect), false, false) = (&scene, options.dialect, options.strict, options.course) {
@@ -134,6 +145,11 @@ pub fn load_text(
         diagnostics.push(guess.note());
     }
     scene.map(|scene| Loaded { scene, rules, dialect, guess, source })
+}
+
+/// Bytes that may be read.
+fn budget(options: &LoadOptions) -> u64 {
+    Source::DEFAULT_BUDGET.min(options.memory.unwrap_or(u64::MAX))
 }
 
 /// What the year's own program would refuse in a file that is read here: the first of it, as a note, unless it was said.

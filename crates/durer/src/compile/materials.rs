@@ -21,8 +21,8 @@ pub(super) fn compile(
             Material::Solid(solid.clone(), to_pattern)
         }
         scene::Material::Principled(layers) => {
-            let texture = layers.base_color_texture.as_ref().and_then(|name| loader.texture(name, diagnostics));
-            Material::Phong(Phong { texture, ..plain(layers) })
+            let texture = loader.maps(layers, diagnostics).base_color;
+            Material::Phong(Phong { texture, tinted: true, ..plain(layers) })
         }
         scene::Material::Phong(phong, noise) => {
             let texture = phong.texture.as_ref().and_then(|name| loader.texture(name, diagnostics));
@@ -70,6 +70,7 @@ fn phong_of(m: &PhongMaterial, noise: Option<ColorNoise>, texture: Option<u32>, 
     Phong {
         diffuse,
         texture,
+        tinted: false,
         noise,
         ambient,
         highlight: highlight(m, rules).filter(|(color, ..)| *color != Color::ZERO),

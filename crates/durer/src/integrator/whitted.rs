@@ -207,9 +207,13 @@ impl Whitted<'_> {
         parts.iter().map(|part| part.share * self.diffuse_color(part.phong, surface)).sum()
     }
 
-    /// Noise, else texture, else the diffuse colour.
+    /// Noise, else texture, else the diffuse colour; or the diffuse colour times texture and vertices' colours.
     pub(crate) fn diffuse_color(&self, phong: &Phong, surface: &Surface) -> Color {
         let texture = phong.texture.zip(surface.uv).map(|(i, uv)| self.world.textures[i as usize].at(uv));
+        if phong.tinted {
+            let [r, g, b, _] = surface.color;
+            return phong.diffuse * Color::new(r, g, b) * texture.unwrap_or(Color::ONE);
+        }
         let noise = phong.noise.as_ref().map(|noise| noise.color(surface.position));
         noise.or(texture).unwrap_or(phong.diffuse)
     }

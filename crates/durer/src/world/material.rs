@@ -32,6 +32,8 @@ pub struct Phong {
     pub diffuse: Color,
     /// Number of a texture that replaces it.
     pub texture: Option<u32>,
+    /// Whether the texture multiplies the diffuse colour, and the vertices' colours do too, as in materials of layers.
+    pub tinted: bool,
     /// Noise that replaces it.
     pub noise: Option<ColorNoise>,
     /// What ambient light meets; `None`: the diffuse colour, texture or noise.
@@ -65,6 +67,7 @@ impl Default for Phong {
         Phong {
             diffuse: Color::splat(0.8),
             texture: None,
+            tinted: false,
             noise: None,
             ambient: None,
             highlight: None,

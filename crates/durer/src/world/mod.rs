@@ -1,6 +1,7 @@
 //! The compiled scene: immutable, with numbers instead of names, ready to be asked by many threads.
 
 pub mod csg;
+mod maps;
 mod material;
 mod object;
 pub mod solid;
@@ -14,6 +15,7 @@ use crate::math::{Aabb, Color, Ray64, Vec2, Vec3};
 use crate::shape::{Crossing, Surface};
 use crate::source::Digest;
 use crate::texture::{CubeMap, Texture};
+pub use maps::Maps;
 pub use material::{HighlightModel, Material, Part, Parts, Phong};
 pub use object::{Geometry, MeshTree, Object, Placing};
 
