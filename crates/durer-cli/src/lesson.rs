@@ -6,7 +6,7 @@ mod page;
 
 use crate::args::LessonArgs;
 use crate::guard::Guard;
-use crate::job::{accel, job, warn};
+use crate::job::{accel, aspect, job, warn};
 use crate::open::{load_options, open};
 use crate::output::{lengthened, say};
 use crate::page::png;

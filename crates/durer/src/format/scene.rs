@@ -1,6 +1,6 @@
 //! Readers of whole scenes: one row of [`SCENE_FORMATS`] each. What is a mesh alone is a scene of one mesh.
 
-use super::{MESH_FORMATS, extension, read_mesh};
+use super::{MESH_FORMATS, gltf, extension, read_mesh};
 use crate::describe::FileName;
 use crate::diag::{Diagnostics, Span};
 use crate::scene::{Axis, Group, Node, Object, Scene, Staging};
@@ -24,6 +24,13 @@ pub struct SceneFormat {
 
 /// The formats of models, in the order in which content is tried. What is none of them is in the course's language.
 pub const SCENE_FORMATS: &[SceneFormat] = &[
+    SceneFormat {
+        name: "glTF",
+        extensions: &["gltf", "glb"],
+        recognise: gltf::recognise,
+        read: gltf::read,
+        up: Axis::Y,
+    },
     SceneFormat {
         name: MESH_FORMATS[0].name,
         extensions: MESH_FORMATS[0].extensions,

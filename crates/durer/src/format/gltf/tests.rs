@@ -1,0 +1,1 @@
+//! glTF files against what the Khronos validator says of them.
