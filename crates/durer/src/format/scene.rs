@@ -1,6 +1,6 @@
 //! Readers of whole scenes: one row of [`SCENE_FORMATS`] each. What is a mesh alone is a scene of one mesh.
 
-use super::{MESH_FORMATS, gltf, extension, read_mesh};
+use super::{MESH_FORMATS, gltf, obj, extension, read_mesh};
 use crate::describe::FileName;
 use crate::diag::{Diagnostics, Span};
 use crate::scene::{Axis, Group, Node, Object, Scene, Staging};
@@ -43,7 +43,7 @@ pub const SCENE_FORMATS: &[SceneFormat] = &[
         extensions: MESH_FORMATS[1].extensions,
         // Its first word could be anything: only the name tells.
         recognise: |_| false,
-        read: one_mesh,
+        read: obj::scene::read,
         up: MESH_FORMATS[1].up,
     },
     SceneFormat {

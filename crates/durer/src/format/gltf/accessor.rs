@@ -133,6 +133,8 @@ impl Model<'_> {
         let mut accessor =
             Accessor { component, normalized, width, is_matrix, count, view, offset, sparse: None, has_bounds, strided };
         accessor.check(at)?;
+        // Where the bytes are missing, that was said.
+        accessor.view.as_ref().map_or(Some(()), |view| view.slice.as_ref().map(|_| ()))?;
         accessor.sparse = match at.get("sparse") {
             Some(sparse) => Some(self.sparse(&sparse, &accessor)?),
             None => None,
@@ -163,10 +165,11 @@ impl Model<'_> {
             }
             let offset = at.get("byteOffset").map_or(Some(0), |offset| offset.whole(..))? as usize;
             let end = count.checked_mul(size).and_then(|size| size.checked_add(offset));
-            if end.is_none_or(|end| end > found.slice.bytes().len()) {
+            if end.is_none_or(|end| end > found.length) {
                 at.error("ACCESSOR_TOO_LONG", "the rows that are replaced do not fit into their view");
                 return None;
             }
+            found.slice.as_ref()?;
             Some((found, offset))
         };
         let places = (place(&indices, component.size()), place(&values, accessor.row()));
@@ -191,7 +194,7 @@ impl Model<'_> {
 impl Sparse {
     fn index(&self, i: usize) -> u32 {
         let (view, offset) = &self.indices;
-        self.component.whole(&view.slice.bytes()[offset + i * self.component.size()..])
+        self.component.whole(&view.bytes()[offset + i * self.component.size()..])
     }
 }
 
@@ -220,7 +223,7 @@ impl Accessor {
     /// Whether it fits into its view.
     fn check(&self, at: &At) -> Option<()> {
         let Some(view) = &self.view else { return Some(()) };
-        let bytes = view.slice.bytes().len();
+        let bytes = view.length;
         if self.stride() < self.row() {
             let message = format!("rows of {} bytes lie {} bytes apart", self.row(), self.stride());
             at.error("ACCESSOR_SMALL_BYTESTRIDE", message);
@@ -258,7 +261,7 @@ impl Accessor {
     fn dense(&self, i: usize, row: &mut [f32]) {
         match &self.view {
             Some(view) => {
-                let bytes = &view.slice.bytes()[self.offset + i * self.stride()..];
+                let bytes = &view.bytes()[self.offset + i * self.stride()..];
                 (0..row.len()).for_each(|k| row[k] = self.component.float(&bytes[self.place(k)..], self.normalized));
             }
             None => row.fill(0.0),
@@ -275,7 +278,7 @@ impl Accessor {
         if let Some(sparse) = &self.sparse {
             let (view, offset) = &sparse.values;
             for i in 0..sparse.count {
-                let bytes = &view.slice.bytes()[offset + i * self.row()..];
+                let bytes = &view.bytes()[offset + i * self.row()..];
                 let row = &mut rows[sparse.index(i) as usize];
                 (0..width).for_each(|k| row[k] = self.component.float(&bytes[self.place(k)..], self.normalized));
             }
@@ -287,7 +290,7 @@ impl Accessor {
     pub fn wholes(&self) -> Vec<u32> {
         let mut all: Vec<u32> = match &self.view {
             Some(view) => {
-                let (bytes, stride) = (view.slice.bytes(), self.stride());
+                let (bytes, stride) = (view.bytes(), self.stride());
                 (0..self.count).map(|i| self.component.whole(&bytes[self.offset + i * stride..])).collect()
             }
             None => vec![0; self.count],
@@ -295,7 +298,7 @@ impl Accessor {
         if let Some(sparse) = &self.sparse {
             let (view, offset) = &sparse.values;
             for i in 0..sparse.count {
-                all[sparse.index(i) as usize] = self.component.whole(&view.slice.bytes()[offset + i * self.row()..]);
+                all[sparse.index(i) as usize] = self.component.whole(&view.bytes()[offset + i * self.row()..]);
             }
         }
         all

@@ -29,11 +29,24 @@ impl Slice {
     }
 }
 
+/// A buffer: its length as written, and its bytes if they can be had.
+pub(super) struct Buffer {
+    length: usize,
+    pub slice: Option<Slice>,
+}
+
 /// A part of a buffer.
 #[derive(Clone)]
 pub(super) struct View {
-    pub slice: Slice,
+    pub length: usize,
+    pub slice: Option<Slice>,
     pub stride: Option<usize>,
+}
+
+impl View {
+    pub fn bytes(&self) -> &[u8] {
+        self.slice.as_ref().map_or(&[], Slice::bytes)
+    }
 }
 
 /// Where a URI leads.
@@ -51,16 +64,22 @@ pub(super) fn target<'a>(at: &At<'a>) -> Option<Target<'a>> {
     let uri = at.string()?;
     if uri.get(..5).is_some_and(|scheme| scheme.eq_ignore_ascii_case("data:")) {
         let data = uri[5..].split_once(',').and_then(|(kind, data)| {
-            let kind = kind.strip_suffix(";base64")?;
+            let Some(kind) = kind.strip_suffix(";base64") else {
+                // Without that word the data are text.
+                return Some((kind.split(';').next()?, unescaped(data)?.into_bytes()));
+            };
+            if kind.ends_with(';') {
+                return None;
+            }
             let config: GeneralPurposeConfig = NO_PAD.with_decode_padding_mode(DecodePaddingMode::Indifferent);
             Some((kind.split(';').next()?, GeneralPurpose::new(&STANDARD, config).decode(data).ok()?))
         });
         if data.is_none() {
-            at.error("INVALID_URI", "the URI holds no data in base64");
+            at.error("INVALID_URI", "the URI holds no data");
         }
         return data.map(|(kind, bytes)| Target::Data(kind, bytes.into()));
     }
-    let scheme = uri.split_once(':').filter(|(scheme, _)| !scheme.is_empty() && !scheme.contains('/'));
+    let scheme = uri.split_once(':').filter(|(scheme, _)| !scheme.contains('/'));
     if let Some((scheme, _)) = scheme {
         at.error("INVALID_URI", format!("the URI is of the scheme `{scheme}`: only files beside this one are read"));
         return None;
@@ -94,14 +113,19 @@ fn unescaped(uri: &str) -> Option<String> {
 
 impl Model<'_> {
     /// Reads the buffers; those that cannot be had are missed only where something is read of them.
-    pub(super) fn buffers(&self, root: &At) -> Vec<Option<Slice>> {
+    pub(super) fn buffers(&self, root: &At) -> Vec<Option<Buffer>> {
         let Some(buffers) = root.get("buffers") else { return Vec::new() };
         buffers.items().enumerate().map(|(i, buffer)| self.buffer(i, &buffer)).collect()
     }
 
-    fn buffer(&self, number: usize, at: &At) -> Option<Slice> {
+    fn buffer(&self, number: usize, at: &At) -> Option<Buffer> {
         at.object()?;
         let length = at.need("byteLength")?.whole(1..)? as usize;
+        Some(Buffer { length, slice: self.data(number, length, at) })
+    }
+
+    /// The bytes of a buffer.
+    fn data(&self, number: usize, length: usize, at: &At) -> Option<Slice> {
         let bytes = match at.get("uri") {
             Some(uri) => match target(&uri)? {
                 Target::Data(kind, bytes) => {
@@ -157,9 +181,9 @@ impl Model<'_> {
 
     fn view_of(&self, at: &At) -> Option<View> {
         at.object()?;
-        let buffer = at.need("buffer")?.index(self.buffers.len());
+        let buffer = at.need("buffer").and_then(|buffer| buffer.index(self.buffers.len()));
         let offset = at.get("byteOffset").map_or(Some(0), |offset| offset.whole(..));
-        let length = at.need("byteLength")?.whole(1..);
+        let length = at.need("byteLength").and_then(|length| length.whole(1..));
         let stride = match at.get("byteStride") {
             None => None,
             Some(stride) => {
@@ -176,12 +200,13 @@ impl Model<'_> {
             at.error("BUFFER_VIEW_TOO_BIG_BYTE_STRIDE", "the stride is longer than the view");
         }
         let buffer = self.buffers[buffer?].as_ref()?;
-        let slice = offset.checked_add(length).and_then(|end| buffer.part(offset..end));
-        if slice.is_none() {
-            let bytes = buffer.bytes().len();
+        let end = offset.checked_add(length).filter(|end| *end <= buffer.length);
+        if end.is_none() {
+            let bytes = buffer.length;
             let message = format!("{length} bytes from {offset} on do not fit into a buffer of {bytes}");
             at.get("byteLength").unwrap_or(*at).error("BUFFER_VIEW_TOO_LONG", message);
         }
-        Some(View { slice: slice?, stride })
+        let slice = buffer.slice.as_ref().and_then(|slice| slice.part(offset..end?));
+        end.map(|_| View { length, slice, stride })
     }
 }

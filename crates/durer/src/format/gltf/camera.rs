@@ -51,7 +51,13 @@ impl Model<'_> {
             }
             let view = match is_flat {
                 true => Seen::Orthographic(lens.need("ymag")?.number().filter(|half| *half != 0.0)?.abs()),
-                false => Seen::Perspective(lens.need("yfov")?.within(1e-4..PI)?),
+                false => {
+                    let angle = lens.need("yfov")?.within(1e-4..)?;
+                    if angle >= PI {
+                        lens.warning("CAMERA_YFOV_GEQUAL_PI", "`yfov` must be less than pi");
+                    }
+                    Seen::Perspective(angle.min(3.1))
+                }
             };
             Some(CameraData { name, view })
         })
@@ -67,6 +73,7 @@ impl Model<'_> {
             let color = at.get("color").and_then(|color| color.numbers::<3>()).map_or(Vec3::ONE, Vec3::from_array);
             let intensity = at.get("intensity").and_then(|intensity| intensity.within(0.0..)).unwrap_or(1.0);
             if is_spot {
+                at.need("spot");
                 at.warning("NO_COUNTERPART", "a spot light shines in all directions here");
             }
             // Intensities are luminous: what a matte white surface shows is a pi-th of them.

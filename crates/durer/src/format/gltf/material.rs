@@ -146,8 +146,10 @@ impl Model<'_> {
         }
         if let Some(e) = extensions.get("KHR_materials_ior") {
             // 0 stands for an index without bound, which reflects everything.
-            let ior = e.get("ior").and_then(|ior| ior.number()).unwrap_or(1.5);
-            m.specular_ior = if ior == 0.0 { 1e4 } else { ior.max(1.0) };
+            m.specular_ior = match e.get("ior") {
+                Some(ior) if ior.value.as_f64() == Some(0.0) => 1e4,
+                ior => ior.and_then(|ior| ior.within(1.0..)).unwrap_or(1.5),
+            };
         }
         if let Some(e) = extensions.get("KHR_materials_specular") {
             m.specular_weight = share(&e, "specularFactor", 1.0);

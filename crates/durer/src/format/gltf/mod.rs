@@ -23,7 +23,7 @@ use crate::math::Vec3;
 use crate::scene::{Material, Picture, PictureBytes, Scene, Spanned};
 use crate::texture::Mapping;
 use accessor::Accessor;
-use buffers::{Slice, View};
+use buffers::{Buffer, View};
 use camera::{CameraData, LightData};
 pub(super) use container::recognise;
 use container::{Parts, open};
@@ -67,7 +67,7 @@ struct Model<'a> {
     parts: Parts,
     /// Whether KHR_mesh_quantization allows attributes of whole numbers.
     quantized: bool,
-    buffers: Vec<Option<Slice>>,
+    buffers: Vec<Option<Buffer>>,
     views: Vec<Option<View>>,
     accessors: Vec<Option<Accessor>>,
     images: Vec<Option<PictureBytes>>,
@@ -148,7 +148,8 @@ fn scene(input: &Input, parts: Parts, root: At) -> Option<Scene> {
     };
     // Each step needs those before it.
     model.buffers = model.buffers(&root);
-    let bytes: u64 = model.buffers.iter().flatten().map(|buffer| buffer.bytes().len() as u64).sum();
+    let slices = model.buffers.iter().flatten().filter_map(|buffer| buffer.slice.as_ref());
+    let bytes: u64 = slices.map(|slice| slice.bytes().len() as u64).sum();
     model.left.set((256 << 20) + 64 * bytes);
     model.views = model.views(&root);
     model.accessors = model.accessors(&root);
@@ -215,7 +216,7 @@ fn check_version(root: &At) -> Option<()> {
         if wanted > (major, minor) {
             least.error("ASSET_MIN_VERSION_GREATER_THAN_VERSION", "`minVersion` is greater than `version`");
         } else if wanted > (2, 0) {
-            least.error("UNKNOWN_ASSET_MINOR_VERSION", "only version 2.0 of glTF is read");
+            least.warning("UNKNOWN_ASSET_MINOR_VERSION", "only version 2.0 of glTF is known");
         }
     }
     Some(())

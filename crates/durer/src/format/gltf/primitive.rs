@@ -42,6 +42,10 @@ impl Model<'_> {
                 weights.error("MESH_INVALID_WEIGHTS_COUNT", format!("{count} weights for {targets} morph targets"));
             }
         }
+        let counts: Vec<usize> = primitives.items().map(|primitive| primitive.list("targets", |_| ()).len()).collect();
+        if counts.iter().any(|count| *count != counts[0]) {
+            primitives.error("MESH_PRIMITIVES_UNEQUAL_TARGETS_COUNT", "all primitives must have as many morph targets");
+        }
         primitives.items().map(|primitive| self.primitive(&primitive)).collect()
     }
 
@@ -190,6 +194,12 @@ impl Model<'_> {
         }
         self.charge(accessor.count, 4, &indices)?;
         let order = accessor.wholes();
+        let most = u32::MAX >> (32 - 8 * accessor.component.size());
+        if order.contains(&most) {
+            let message = format!("index {most} would begin the primitive anew, and must not be used");
+            indices.error("ACCESSOR_INDEX_PRIMITIVE_RESTART", message);
+            return None;
+        }
         if let Some(wrong) = order.iter().find(|&&i| i as usize >= count) {
             indices.error("ACCESSOR_INDEX_OOB", format!("index {wrong} is out of range: there are {count} vertices"));
             return None;

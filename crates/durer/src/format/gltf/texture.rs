@@ -54,7 +54,7 @@ impl Model<'_> {
                 if found.stride.is_some() {
                     view.error("IMAGE_BUFFER_VIEW_WITH_BYTESTRIDE", "the view of an image must not have a stride");
                 }
-                PictureBytes::Here(name, found.slice.bytes().into())
+                PictureBytes::Here(name, found.slice?.bytes().into())
             }
         };
         let (PictureBytes::File(name) | PictureBytes::Here(name, _)) = &found;

@@ -6,9 +6,8 @@ use std::ops::Range;
 pub(super) fn locate(text: &[u8], pointer: &str) -> Range<usize> {
     let mut walk = Walk { text, at: 0 };
     walk.blanks();
-    let mut range;
     'steps: for step in pointer.split('/').skip(1).map(|step| step.replace("~1", "/").replace("~0", "~")) {
-        range = walk.here();
+        let range = walk.here();
         let opening = walk.peek();
         if !matches!(opening, Some(b'{' | b'[')) {
             break;
@@ -31,7 +30,6 @@ pub(super) fn locate(text: &[u8], pointer: &str) -> Range<usize> {
                 _ => number.to_string() == step,
             };
             if found {
-                range = walk.here();
                 continue 'steps;
             }
             walk.skip();
