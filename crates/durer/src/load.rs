@@ -9,6 +9,7 @@ use crate::scene::{Scene, Staging};
 use crate::source::{Source, SourceError};
 use crate::threads;
 use crate::world::World;
+use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -101,8 +102,13 @@ pub fn load_text(
     }
     // Where the scene lies does not matter for what it is.
     source.remember("", &bytes);
+    let mut name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let mut bytes = bytes;
+    if is_packed(&bytes) {
+        bytes = unpacked(&bytes, budget(options), diagnostics)?;
+        name.truncate(name.strip_suffix(".gz").map_or(name.len(), str::len));
+    }
     let file = files.add(path.display().to_string(), bytes.clone());
-    let name = path.file_name().unwrap_or_default().to_string_lossy();
     if let Some(format) = find_scene_format(&bytes, &name).filter(|_| options.dialect.is_none() && !options.course) {
         let dialect = Dialect::Durer;
         let source = source.budget(budget(options));
@@ -147,6 +153,36 @@ pub fn load_text(
     scene.map(|scene| Loaded { scene, rules, dialect, guess, source })
 }
 
+/// Whether bytes are packed by gzip.
+fn is_packed(bytes: &[u8]) -> bool {
+    bytes.starts_with(b"\x1f\x8b")
+}
+
+/// What is packed by gzip, if it is no more than may be read: the packed file tells its size in its last four bytes, and more
+/// than that is not unpacked.
+fn unpacked(bytes: &[u8], budget: u64, diagnostics: &mut Diagnostics) -> Option<Arc<[u8]>> {
+    // Deflate packs at most 1032 bytes into one.
+    let declared = bytes.last_chunk().map_or(0, |size| u64::from(u32::from_le_bytes(*size)));
+    let refuse = |message: String| Diagnostic::error(message).code("bad-file");
+    if declared > budget || declared > 1032 * bytes.len() as u64 {
+        diagnostics.push(refuse(format!("the packed file would have {declared} bytes: that is too large")));
+        return None;
+    }
+    let mut all = Vec::new();
+    let mut decoder = flate2::read::GzDecoder::new(bytes).take(declared + 1);
+    match decoder.read_to_end(&mut all) {
+        Ok(_) if all.len() as u64 == declared => Some(all.into()),
+        Ok(_) => {
+            diagnostics.push(refuse("the packed file is not as large as it says".into()));
+            None
+        }
+        Err(error) => {
+            diagnostics.push(refuse(format!("the file cannot be unpacked: {error}")));
+            None
+        }
+    }
+}
+
 /// Bytes that may be read.
 fn budget(options: &LoadOptions) -> u64 {
     Source::DEFAULT_BUDGET.min(options.memory.unwrap_or(u64::MAX))
@@ -187,5 +223,7 @@ impl Loaded {
     }
 }
 
+#[cfg(test)]
+mod model_tests;
 #[cfg(test)]
 mod tests;

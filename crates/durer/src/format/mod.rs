@@ -32,6 +32,8 @@ pub struct MeshFormat {
     pub read: fn(&[u8], u32, &mut Diagnostics) -> Option<MeshData>,
     /// The same file as programs with some habits know it.
     pub known: fn(&[u8], CompatSet) -> Cow<'_, [u8]>,
+    /// Writes a mesh.
+    pub write: fn(&MeshData) -> Vec<u8>,
     /// What is up in most models of this format.
     pub up: Axis,
 }
@@ -44,6 +46,7 @@ pub const MESH_FORMATS: &[MeshFormat] = &[
         recognise: ply::recognise,
         read: ply::read,
         known: as_it_is,
+        write: ply::write,
         up: Axis::Y,
     },
     MeshFormat {
@@ -52,6 +55,7 @@ pub const MESH_FORMATS: &[MeshFormat] = &[
         recognise: obj::recognise,
         read: obj::read,
         known: obj::habits::known,
+        write: obj::write,
         up: Axis::Y,
     },
     MeshFormat {
@@ -60,6 +64,7 @@ pub const MESH_FORMATS: &[MeshFormat] = &[
         recognise: stl::recognise,
         read: stl::read,
         known: as_it_is,
+        write: stl::write,
         up: Axis::Z,
     },
 ];
@@ -67,6 +72,12 @@ pub const MESH_FORMATS: &[MeshFormat] = &[
 /// No old program read the format.
 fn as_it_is(bytes: &[u8], _: CompatSet) -> Cow<'_, [u8]> {
     Cow::Borrowed(bytes)
+}
+
+/// The format of mesh files that the ending of a name says.
+pub fn mesh_format_for(name: &str) -> Option<&'static MeshFormat> {
+    let extension = extension(name);
+    MESH_FORMATS.iter().find(|format| format.extensions.contains(&extension.as_str()))
 }
 
 /// Reads a mesh file in the format that its name's ending says or, where that is unknown, its content.
@@ -116,9 +127,7 @@ fn extension(name: &str) -> String {
 }
 
 fn find_format(bytes: &[u8], name: &str) -> Option<&'static MeshFormat> {
-    let extension = extension(name);
-    let by_name = MESH_FORMATS.iter().find(|format| format.extensions.contains(&extension.as_str()));
-    by_name.or_else(|| MESH_FORMATS.iter().find(|format| (format.recognise)(bytes)))
+    mesh_format_for(name).or_else(|| MESH_FORMATS.iter().find(|format| (format.recognise)(bytes)))
 }
 
 fn unknown_format(name: &str) -> Diagnostic {

@@ -8,6 +8,7 @@ pub mod habits;
 mod materials;
 pub(super) mod scene;
 mod words;
+mod write;
 
 use super::number::{NumberError, parse_f32, report_number};
 use super::report::{Report, counted, shown};
@@ -16,6 +17,7 @@ use crate::math::{Vec2, Vec3};
 use crate::shape::mesh::MeshData;
 use std::ops::Range;
 use words::Words;
+pub(super) use write::write;
 
 /// What a statement is to us, by its first word.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -86,6 +88,10 @@ type Switch = (usize, Range<usize>);
 fn read_with(bytes: &[u8], file: u32, switches: &mut Vec<Switch>, diagnostics: &mut Diagnostics) -> Option<MeshData> {
     let mut report = Report::new(file, diagnostics);
     let mut mesh = MeshData::default();
+    if bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff") {
+        report.error(0..2, "this file is UTF-16, two bytes a letter: save it as UTF-8 or ASCII text");
+        return report.finish(diagnostics, mesh);
+    }
     read_vertices(bytes, &mut mesh, &mut report);
     if !report.is_full() {
         faces::read_faces(bytes, &mut mesh, switches, &mut report);

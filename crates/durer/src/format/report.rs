@@ -61,6 +61,11 @@ impl Report {
         self.errors >= self.room
     }
 
+    /// How many findings of all kinds there are.
+    pub fn count(&self) -> usize {
+        self.found.len()
+    }
+
     /// Hands everything on, sorted by place; `result` only where there was no error.
     pub fn finish<T>(mut self, diagnostics: &mut Diagnostics, result: T) -> Option<T> {
         self.found.sort_by_key(|diagnostic| diagnostic.span.map_or(u32::MAX, |span| span.start));

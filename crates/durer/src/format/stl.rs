@@ -4,12 +4,14 @@
 //! order, so the written ones are read over, as are colours that some programs put into a facet's last two bytes.
 
 mod text;
+mod write;
 
 use super::report::{Report, counted};
 use crate::diag::Diagnostics;
 use crate::math::Vec3;
 use crate::shape::mesh::{MeshData, place_key};
 use std::collections::HashMap;
+pub(super) use write::write;
 
 /// Bytes before the facets of a binary file: a free text, and how many there are.
 const HEAD: usize = 84;

@@ -1,9 +1,9 @@
 //! The places that a scene reaches, before it is a world.
 
 use super::{MatrixOp, Node, Object, Scene};
+use crate::math::Vec3;
 use crate::shape::Shape;
-use glam::DAffine3;
-use glam::DVec3;
+use glam::{DAffine3, DVec3};
 
 /// Calls `found` with points whose convex hull holds all bounded objects. Files are not looked into.
 pub fn points(scene: &Scene, found: &mut dyn FnMut(DVec3)) {
@@ -13,7 +13,7 @@ pub fn points(scene: &Scene, found: &mut dyn FnMut(DVec3)) {
 }
 
 fn visit(scene: &Scene, object: &Object, to_world: DAffine3, found: &mut dyn FnMut(DVec3)) {
-    let mut offer = |p: crate::math::Vec3| found(to_world.transform_point3(p.as_dvec3()));
+    let mut offer = |p: Vec3| found(to_world.transform_point3(p.as_dvec3()));
     match &object.node {
         Node::Group(group) => group.objects.iter().for_each(|object| visit(scene, object, to_world, found)),
         Node::Transform(ops, inner) => visit(scene, inner, to_world * MatrixOp::product(ops, 0), found),
@@ -21,15 +21,15 @@ fn visit(scene: &Scene, object: &Object, to_world: DAffine3, found: &mut dyn FnM
         Node::Mesh(mesh) => {
             let Some(data) = scene.assets.meshes.get(&mesh.obj_file.path) else { return };
             // What no triangle shows does not count.
-            for &index in data.triangles.iter().flatten() {
-                offer(data.positions[index as usize]);
-            }
+            let mut used = vec![false; data.positions.len()];
+            data.triangles.iter().flatten().for_each(|&index| used[index as usize] = true);
+            data.positions.iter().zip(used).filter(|(_, used)| *used).for_each(|(p, _)| offer(*p));
         }
         Node::Primitive(shape) => {
             let Some(bounds) = shape.bounds().filter(|bounds| !bounds.is_empty()) else { return };
             for corner in 0..8 {
                 let pick = |axis: usize| if corner >> axis & 1 == 0 { bounds.min[axis] } else { bounds.max[axis] };
-                offer(crate::math::Vec3::new(pick(0), pick(1), pick(2)));
+                offer(Vec3::new(pick(0), pick(1), pick(2)));
             }
         }
         Node::Voxels(grid, _) => [grid.min, grid.max].into_iter().for_each(offer),

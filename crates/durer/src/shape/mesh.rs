@@ -40,6 +40,8 @@ pub struct MeshData {
     /// By the number of the position, the direction in which u grows, and 1 or -1 for the side, seen along the normal's
     /// cross product with it, to which v grows; may be empty.
     pub tangents: Vec<[f32; 4]>,
+    /// Whether triangles without normals are flat, whatever the rule is that makes normals elsewhere.
+    pub flat: bool,
 }
 
 impl MeshData {
@@ -76,6 +78,7 @@ impl MeshData {
             hasher.count(list.len() as u64);
             list.iter().flatten().for_each(|&index| hasher.word(index));
         }
+        hasher.count(self.flat.into());
         hasher.finish()
     }
 
@@ -185,6 +188,11 @@ impl Mesh {
         (data.triangle_uvs, data.vertices) = Default::default();
         (data.colors, data.second_uvs, data.tangents) = Default::default();
         Mesh { data, center: self.center }
+    }
+
+    /// What it is made of.
+    pub fn data(&self) -> &MeshData {
+        &self.data
     }
 
     /// How far it was moved by [`Mesh::centered`].

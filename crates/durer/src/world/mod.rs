@@ -2,6 +2,7 @@
 
 pub mod csg;
 mod maps;
+mod merged;
 mod material;
 mod object;
 pub mod solid;

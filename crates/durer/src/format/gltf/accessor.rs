@@ -139,7 +139,10 @@ impl Model<'_> {
             Some(sparse) => Some(self.sparse(&sparse, &accessor)?),
             None => None,
         };
-        accessor.check_values(at);
+        if accessor.view.is_some() {
+            self.charge(count, 4 * width, at)?;
+            accessor.check_values(at);
+        }
         Some(accessor)
     }
 
@@ -174,6 +177,7 @@ impl Model<'_> {
         };
         let places = (place(&indices, component.size()), place(&values, accessor.row()));
         let sparse = Sparse { count, component, indices: places.0?, values: places.1? };
+        self.charge(count, 4, at)?;
         let mut previous = None;
         for i in 0..count {
             let index = sparse.index(i);

@@ -130,9 +130,6 @@ impl Pose {
     /// The primitive's mesh with its vertices moved.
     pub fn apply(&self, primitive: &Primitive, weights: &[f32], bones: Option<&[DAffine3]>) -> MeshData {
         let mut data = MeshData::clone(&primitive.data);
-        if !primitive.has_normals {
-            data.normals.clear();
-        }
         for (target, &weight) in self.targets.iter().zip(weights) {
             let add = |values: &mut [Vec3], moves: &[Vec3]| {
                 values.iter_mut().zip(moves).for_each(|(value, by)| *value += weight * by);

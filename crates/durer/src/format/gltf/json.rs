@@ -57,8 +57,8 @@ impl<'a> Findings<'a> {
 
     /// An error, warning or note at a JSON pointer, which the message begins with.
     pub fn say(&self, kind: fn(String) -> Diagnostic, code: &'static str, pointer: &str, message: &str) {
-        // A file of a million errors is not walked over a million times.
-        if self.report.borrow().is_full() {
+        // A file of a million errors or warnings is not walked over a million times.
+        if self.report.borrow().is_full() || self.report.borrow().count() > 256 {
             return;
         }
         let shown = if pointer.is_empty() { String::new() } else { format!("{pointer}: ") };

@@ -256,18 +256,19 @@ impl Model<'_> {
         }
     }
 
-    /// Takes memory from what is left: what is decoded stays in proportion to what is there.
+    /// Takes memory and time from what is left: what is made stays in proportion to what is there.
     fn charge(&self, count: usize, size: usize, at: &At) -> Option<()> {
-        match self.left.get().checked_sub(count as u64 * size as u64) {
-            Some(left) => {
-                self.left.set(left);
-                Some(())
-            }
-            None => {
-                at.error("too-large", "the file's accessors are used so often that they make more than fits into memory");
-                None
-            }
+        self.charge_at(count, size, &|| at.pointer())
+    }
+
+    fn charge_at(&self, count: usize, size: usize, pointer: &dyn Fn() -> String) -> Option<()> {
+        let left = self.left.get().checked_sub((count as u64).saturating_mul(size as u64));
+        self.left.set(left.unwrap_or(0));
+        if left.is_none() {
+            let message = "the file uses the same numbers so often that they make more than fits into memory";
+            self.findings.say(Diagnostic::error, "too-large", &pointer(), message);
         }
+        left.map(|_| ())
     }
 
     /// All rows of an accessor.

@@ -133,6 +133,7 @@ impl Model<'_> {
         let rows = |key| attributes.get(key).and_then(|at| self.rows::<4>(self.accessor(&at)?, &at));
         let (moves, turns, scales) = (rows("TRANSLATION"), rows("ROTATION"), rows("SCALE"));
         let count = [&moves, &turns, &scales].into_iter().flatten().map(Vec::len).min()?;
+        self.charge(count, 512, at)?;
         let vector = |v: [f32; 4]| DVec3::new(v[0].into(), v[1].into(), v[2].into());
         let copy = |i: usize| {
             let scale = scales.as_ref().map_or(DVec3::ONE, |rows| vector(rows[i]));
@@ -201,6 +202,10 @@ impl Model<'_> {
             if let Some(pose) = &primitive.pose {
                 let weights = if node.weights.is_empty() { &self.weights[mesh] } else { &node.weights };
                 if pose.moves(weights, bones.is_some()) {
+                    let pointer = || format!("/nodes/{number}");
+                    if self.charge_at(data.bytes(), 1, &pointer).is_none() {
+                        return;
+                    }
                     data = pose.apply(primitive, weights, bones.as_deref()).into();
                     name += &format!("@/nodes/{number}");
                 }

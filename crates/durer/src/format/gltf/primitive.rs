@@ -103,7 +103,6 @@ impl Model<'_> {
         let count = place.count;
         let positions: Vec<Vec3> = self.rows(place, &positions)?.into_iter().map(Vec3::from_array).collect();
         let mut data = MeshData { positions, ..MeshData::default() };
-        let mut has_normals = false;
         for key in attributes.object()?.keys() {
             let Some(attribute) = attributes.get(key) else { continue };
             let equal = self.accessor(&attribute).is_none_or(|accessor| accessor.count == count);
@@ -112,9 +111,9 @@ impl Model<'_> {
                 attribute.error("MESH_PRIMITIVE_UNEQUAL_ACCESSOR_COUNT", message);
                 continue;
             }
-            has_normals |= key == "NORMAL";
             self.fill(&mut data, key, &attribute);
         }
+        let has_normals = data.normals.len() == count;
         if material.is_none_or(|material| !self.blends[material as usize]) {
             data.colors.iter_mut().for_each(|color| color[3] = 1.0);
         }
@@ -132,10 +131,6 @@ impl Model<'_> {
         };
         // Strips are joined by triangles without area.
         data.triangles.retain(|[a, b, c]| a != b && b != c && c != a);
-        if !has_normals {
-            // A missing normal means a flat triangle.
-            data.normals.clear();
-        }
         compact(&mut data, pose.is_some());
         index(&mut data, has_normals);
         Some(Primitive { data: Arc::new(data), material, has_normals, pose: pose.map(Arc::new) })
@@ -235,17 +230,11 @@ fn compact(data: &mut MeshData, keep: bool) {
     data.triangles.iter_mut().flatten().for_each(|i| *i = numbers[*i as usize]);
 }
 
-/// Gives triangles the normals and coordinates of their vertices; normals of their own where the file has none.
+/// Gives triangles the normals and coordinates of their vertices; where the file has no normals, triangles are flat.
 pub(super) fn index(data: &mut MeshData, has_normals: bool) {
-    if has_normals && data.normals.len() == data.positions.len() {
+    data.flat = !has_normals;
+    if has_normals {
         data.triangle_normals = data.triangles.clone();
-    } else {
-        let face = |t: &[u32; 3]| {
-            let [a, b, c] = t.map(|i| data.positions[i as usize].as_dvec3());
-            (b - a).cross(c - a).normalize_or_zero().as_vec3()
-        };
-        data.normals = data.triangles.iter().map(face).collect();
-        data.triangle_normals = (0..data.triangles.len() as u32).map(|i| [i; 3]).collect();
     }
     if !data.uvs.is_empty() {
         data.triangle_uvs = data.triangles.clone();

@@ -54,6 +54,7 @@ impl Model<'_> {
                 if found.stride.is_some() {
                     view.error("IMAGE_BUFFER_VIEW_WITH_BYTESTRIDE", "the view of an image must not have a stride");
                 }
+                self.charge(found.length, 1, at)?;
                 PictureBytes::Here(name, found.slice?.bytes().into())
             }
         };

@@ -62,6 +62,8 @@ struct Written {
     coat_roughness: Option<f32>,
     anisotropy: Option<f32>,
     diffuse_map: Option<FileName>,
+    /// Whether a picture was named, there or not.
+    pictured: bool,
     emission_map: Option<FileName>,
     normal_map: Option<FileName>,
 }
@@ -142,7 +144,10 @@ impl<'a, 'i> Reader<'a, 'i> {
             "pc" => m.coat = number()?,
             "pcr" => m.coat_roughness = number()?,
             "aniso" => m.anisotropy = number()?,
-            "map_kd" => m.diffuse_map = self.map(word, rest, m, diagnostics),
+            "map_kd" => {
+                m.pictured = true;
+                m.diffuse_map = self.map(word, rest, m, diagnostics);
+            }
             "map_ke" => m.emission_map = self.map(word, rest, m, diagnostics),
             "norm" | "map_kn" => m.normal_map = self.map(word, rest, m, diagnostics),
             // Light from everywhere and its maps are computed here.
@@ -197,7 +202,7 @@ impl<'a, 'i> Reader<'a, 'i> {
         let mut m = PrincipledMaterial { base_color: w.diffuse.unwrap_or(Vec3::splat(0.8)), ..PrincipledMaterial::default() };
         m.base_color_texture = w.diffuse_map;
         // Black under a picture is what programs write that mean the picture alone.
-        if m.base_color_texture.is_some() && m.base_color == Vec3::ZERO {
+        if w.pictured && m.base_color == Vec3::ZERO {
             m.base_color = Vec3::ONE;
         }
         let model = w.model.unwrap_or(2.0) as i32;
