@@ -5,8 +5,8 @@ use crate::describe::FileName;
 use crate::diag::{Diagnostic, Diagnostics, Severity, at_least, at_most};
 use crate::dialect::{Compat, Rules};
 use crate::format;
-use crate::material::PrincipledMaterial;
 use crate::image::{self, Encoded, ImageError};
+use crate::material::PrincipledMaterial;
 use crate::scene::{Assets, PictureBytes};
 use crate::shape::{HeightField, Mesh, MeshData};
 use crate::source::SourceError;
@@ -178,9 +178,8 @@ impl<'r> Loader<'r> {
 
     /// The textures of a material in layers; what is wrong with one is said, and the material goes without it.
     pub(super) fn maps(&mut self, layers: &PrincipledMaterial, diagnostics: &mut Diagnostics) -> Maps {
-        let mut one = |name: &Option<FileName>, encoding| {
-            name.as_ref().and_then(|name| self.map(name, encoding, diagnostics))
-        };
+        let mut one =
+            |name: &Option<FileName>, encoding| name.as_ref().and_then(|name| self.map(name, encoding, diagnostics));
         Maps {
             base_color: one(&layers.base_color_texture, Encoding::Srgb),
             metallic_roughness: one(&layers.metallic_roughness_texture, Encoding::Linear),

@@ -1,6 +1,6 @@
 //! Readers of whole scenes: one row of [`SCENE_FORMATS`] each. What is a mesh alone is a scene of one mesh.
 
-use super::{MESH_FORMATS, gltf, obj, extension, read_mesh};
+use super::{MESH_FORMATS, extension, gltf, obj, read_mesh};
 use crate::describe::FileName;
 use crate::diag::{Diagnostics, Span};
 use crate::scene::{Axis, Group, Node, Object, Scene, Staging};

@@ -25,7 +25,8 @@ pub(super) fn recognise(bytes: &[u8]) -> bool {
 
 /// Whether a file is text: binary ones may begin with the word `solid` as well.
 fn is_text(bytes: &[u8]) -> bool {
-    let head = bytes[..bytes.len().min(1 << 12)].strip_prefix(b"\xef\xbb\xbf").unwrap_or(&bytes[..bytes.len().min(1 << 12)]);
+    let head =
+        bytes[..bytes.len().min(1 << 12)].strip_prefix(b"\xef\xbb\xbf").unwrap_or(&bytes[..bytes.len().min(1 << 12)]);
     let head = head.trim_ascii_start();
     let begins = head.get(..5).is_some_and(|word| word.eq_ignore_ascii_case(b"solid"));
     let has = |word: &[u8]| head.windows(word.len()).any(|part| part.eq_ignore_ascii_case(word));
@@ -59,8 +60,7 @@ pub(super) fn read(bytes: &[u8], file: u32, diagnostics: &mut Diagnostics) -> Op
 fn read_binary(bytes: &[u8], mesh: &mut Builder, report: &mut Report) {
     let Some(count) = promised(bytes) else {
         let message = format!("a binary STL file has at least {HEAD} bytes, and this one has {}", bytes.len());
-        report.error(0..bytes.len().min(HEAD), message).help =
-            Some("a text file begins with the word `solid`".into());
+        report.error(0..bytes.len().min(HEAD), message).help = Some("a text file begins with the word `solid`".into());
         return;
     };
     let (facets, rest) = bytes[HEAD..].as_chunks::<FACET>();

@@ -18,8 +18,8 @@ use crate::math::Vec3;
 use crate::shape::{HeightField, Primitive, Sphere, TriangleMesh, VoxelGrid};
 pub use assets::{Assets, Picture, PictureBytes};
 pub use matrix::MatrixOp;
-pub use staging::{Axis, Staging, Studio, View};
 use serde::{Deserialize, Serialize};
+pub use staging::{Axis, Staging, Studio, View};
 
 described! {
     /// What a ray sees that hits nothing, and the light that is everywhere.

@@ -145,8 +145,9 @@ impl Staging {
         let forward = forward.reject_from(sides.up).try_normalize().unwrap_or(-sides.front);
         let right = forward.cross(sides.up);
         let from = |x: f64, y: f64, z: f64| -(x * right + y * sides.up - z * forward).normalize().as_vec3();
-        let light = |direction: Vec3, color: Vec3| {
-            Spanned { value: Light::from(DirectionalLight { direction, color }), span: Span::default() }
+        let light = |direction: Vec3, color: Vec3| Spanned {
+            value: Light::from(DirectionalLight { direction, color }),
+            span: Span::default(),
         };
         let (lights, ambient, sky, ground) = match studio {
             Studio::Sun => (

@@ -2,8 +2,8 @@
 
 pub mod csg;
 mod maps;
-mod merged;
 mod material;
+mod merged;
 mod object;
 pub mod solid;
 

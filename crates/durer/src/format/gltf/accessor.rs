@@ -130,8 +130,18 @@ impl Model<'_> {
         let has_bounds = at.get("min").is_some() && at.get("max").is_some();
         let strided = view.as_ref().is_some_and(|view| view.stride.is_some());
         let count = count as usize;
-        let mut accessor =
-            Accessor { component, normalized, width, is_matrix, count, view, offset, sparse: None, has_bounds, strided };
+        let mut accessor = Accessor {
+            component,
+            normalized,
+            width,
+            is_matrix,
+            count,
+            view,
+            offset,
+            sparse: None,
+            has_bounds,
+            strided,
+        };
         accessor.check(at)?;
         // Where the bytes are missing, that was said.
         accessor.view.as_ref().map_or(Some(()), |view| view.slice.as_ref().map(|_| ()))?;
@@ -240,7 +250,8 @@ impl Accessor {
         }
         let end = self.stride().checked_mul(self.count - 1).and_then(|end| end.checked_add(self.offset + self.row()));
         if end.is_none_or(|end| end > bytes) {
-            let message = format!("{} rows from byte {} on do not fit into a view of {bytes} bytes", self.count, self.offset);
+            let message =
+                format!("{} rows from byte {} on do not fit into a view of {bytes} bytes", self.count, self.offset);
             at.error("ACCESSOR_TOO_LONG", message);
             return None;
         }

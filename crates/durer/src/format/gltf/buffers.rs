@@ -89,7 +89,10 @@ pub(super) fn target<'a>(at: &At<'a>) -> Option<Target<'a>> {
         return None;
     };
     if path.starts_with(['/', '\\']) {
-        at.error("INVALID_URI", format!("the URI {} is absolute: only files beside this one are read", shown(uri.as_bytes())));
+        at.error(
+            "INVALID_URI",
+            format!("the URI {} is absolute: only files beside this one are read", shown(uri.as_bytes())),
+        );
         return None;
     }
     Some(Target::File(path))

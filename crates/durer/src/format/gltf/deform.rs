@@ -86,7 +86,8 @@ impl Model<'_> {
         let mut pose = Pose { targets, ..Pose::default() };
         if let (Some(joints), Some(weights)) = (joints, weights) {
             let numbers = self.accessor(&joints)?;
-            if numbers.width != 4 || !matches!(numbers.component, Component::U8 | Component::U16) || numbers.normalized {
+            if numbers.width != 4 || !matches!(numbers.component, Component::U8 | Component::U16) || numbers.normalized
+            {
                 let message = "JOINTS_0 has four unsigned whole numbers of 8 or 16 bits";
                 joints.error("MESH_PRIMITIVE_ATTRIBUTES_ACCESSOR_INVALID_FORMAT", message);
                 return None;

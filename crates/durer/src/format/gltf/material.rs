@@ -136,7 +136,8 @@ impl Model<'_> {
         for (name, textures) in TEXTURES {
             let Some(extension) = extensions.get(name) else { continue };
             for texture in textures.iter().filter_map(|key| extension.get(key)) {
-                texture.warning("NO_COUNTERPART", format!("this texture of {name} is left out: only its factor counts"));
+                texture
+                    .warning("NO_COUNTERPART", format!("this texture of {name} is left out: only its factor counts"));
             }
         }
         for (name, message) in WITHOUT_COUNTERPART {

@@ -103,7 +103,8 @@ pub(super) fn read(input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene
     let value = match serde_json::from_slice::<Value>(text) {
         Ok(value) => value,
         Err(error) => {
-            let line: usize = text.split_inclusive(|&b| b == b'\n').take(error.line().max(1) - 1).map(<[u8]>::len).sum();
+            let line: usize =
+                text.split_inclusive(|&b| b == b'\n').take(error.line().max(1) - 1).map(<[u8]>::len).sum();
             let at = (start + line + error.column().saturating_sub(1)).min(input.bytes.len());
             let message = error.to_string();
             let message = message.split(" at line ").next().unwrap_or_default();

@@ -72,7 +72,8 @@ impl Model<'_> {
             reached[i] = true;
             stack.extend(nodes[i].children.iter().copied().filter(|&child| child < count && !reached[child]));
         }
-        if let Some(lost) = list.items().zip(&reached).find(|(_, reached)| !**reached).filter(|_| !self.findings.has_errors())
+        if let Some(lost) =
+            list.items().zip(&reached).find(|(_, reached)| !**reached).filter(|_| !self.findings.has_errors())
         {
             lost.0.error("NODE_LOOP", "this node is its own ancestor, or below one that is");
         }
@@ -217,7 +218,9 @@ impl Model<'_> {
             let here = if bones.is_some() { DAffine3::IDENTITY } else { maps[number] };
             let own = [DAffine3::IDENTITY];
             for copy in node.copies.as_deref().unwrap_or(&own) {
-                let Some(object) = self.object(here * *copy, &name, &data, primitive.material, span, scene) else { continue };
+                let Some(object) = self.object(here * *copy, &name, &data, primitive.material, span, scene) else {
+                    continue;
+                };
                 scene.root.get_or_insert_default().objects.push(object);
             }
         }

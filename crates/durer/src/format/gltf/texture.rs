@@ -74,7 +74,10 @@ impl Model<'_> {
             mapping.transform = transformed(&transform);
         }
         if set > 1 {
-            at.warning("MESH_PRIMITIVE_TOO_FEW_TEXCOORDS", format!("texture coordinates {set} are not read: 0 are taken"));
+            at.warning(
+                "MESH_PRIMITIVE_TOO_FEW_TEXCOORDS",
+                format!("texture coordinates {set} are not read: 0 are taken"),
+            );
         }
         mapping.second = set == 1;
         change(&mut mapping);
@@ -114,7 +117,9 @@ impl Model<'_> {
                 match other {
                     Some(name) => at.error(
                         "UNSUPPORTED_EXTENSION",
-                        format!("its picture is compressed ({name}), which is not read: convert it with `gltf-transform`"),
+                        format!(
+                            "its picture is compressed ({name}), which is not read: convert it with `gltf-transform`"
+                        ),
                     ),
                     None => at.warning("TEXTURE_NO_SOURCE", "a texture without a picture is left out"),
                 }

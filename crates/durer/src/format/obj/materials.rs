@@ -25,7 +25,13 @@ pub(super) struct Library {
 }
 
 /// Reads the files that a `mtllib` names: one whose name has blanks, or several.
-pub(super) fn read_files(input: &Input, names: &Range<usize>, span: Span, library: &mut Library, diagnostics: &mut Diagnostics) {
+pub(super) fn read_files(
+    input: &Input,
+    names: &Range<usize>,
+    span: Span,
+    library: &mut Library,
+    diagnostics: &mut Diagnostics,
+) {
     let all = String::from_utf8_lossy(&input.bytes[names.clone()]).into_owned();
     let files = match found(input, &all, span) {
         Some(whole) => vec![(all.clone(), Some(whole))],
@@ -34,7 +40,8 @@ pub(super) fn read_files(input: &Input, names: &Range<usize>, span: Span, librar
     for (name, file) in files {
         let bytes = file.and_then(|file| Some((input.source.read(&file.path).ok()?, file.path)));
         let Some((bytes, path)) = bytes else {
-            let message = format!("there is no file of materials {}: what it has is shown in grey", shown(name.as_bytes()));
+            let message =
+                format!("there is no file of materials {}: what it has is shown in grey", shown(name.as_bytes()));
             diagnostics.push(Diagnostic::warning(message).code("missing-file").at(span));
             continue;
         };
@@ -109,16 +116,25 @@ impl<'a, 'i> Reader<'a, 'i> {
         current.into_iter().for_each(|written| self.finish(written));
         if !self.left_out.is_empty() {
             let all: Vec<&str> = self.left_out.keys().map(String::as_str).collect();
-            let message = format!("`{}` has words without a counterpart, which are left out: {}", self.path, all.join(", "));
+            let message =
+                format!("`{}` has words without a counterpart, which are left out: {}", self.path, all.join(", "));
             diagnostics.push(Diagnostic::note(message).code("NO_COUNTERPART").at(self.span));
         }
     }
 
-    fn word(&mut self, word: &str, rest: &[String], m: &mut Written, diagnostics: &mut Diagnostics) -> Result<(), String> {
+    fn word(
+        &mut self,
+        word: &str,
+        rest: &[String],
+        m: &mut Written,
+        diagnostics: &mut Diagnostics,
+    ) -> Result<(), String> {
         let number = || -> Result<Option<f32>, String> {
             // Some programs write `d -halo 0.5`.
             let text = rest.iter().find(|word| word.as_str() != "-halo").ok_or(format!("`{word}` has no number"))?;
-            parse_f32(text.as_bytes()).map(Some).map_err(|_| format!("`{word}` needs a number, found {}", shown(text.as_bytes())))
+            parse_f32(text.as_bytes())
+                .map(Some)
+                .map_err(|_| format!("`{word}` needs a number, found {}", shown(text.as_bytes())))
         };
         let color = || -> Result<Option<Vec3>, String> {
             // Colours by spectrum or in CIE XYZ have a word before them.
@@ -188,7 +204,12 @@ impl<'a, 'i> Reader<'a, 'i> {
         mapping.transform = [[scale[0], 0.0, offset[0]], [0.0, scale[1], 1.0 - scale[1] - offset[1]]];
         let name = rest.get(at..).unwrap_or_default().join(" ");
         let Some(file) = found(self.input, &name, self.span).filter(|_| !name.is_empty()) else {
-            let message = format!("`{}`, material `{}`: there is no picture {} ({word})", self.path, m.name, shown(name.as_bytes()));
+            let message = format!(
+                "`{}`, material `{}`: there is no picture {} ({word})",
+                self.path,
+                m.name,
+                shown(name.as_bytes())
+            );
             diagnostics.push(Diagnostic::warning(message).code("missing-file").at(self.span));
             return None;
         };
@@ -199,7 +220,8 @@ impl<'a, 'i> Reader<'a, 'i> {
 
     /// Brings the words together. A material that is there keeps its place: the first of a name counts.
     fn finish(&mut self, w: Written) {
-        let mut m = PrincipledMaterial { base_color: w.diffuse.unwrap_or(Vec3::splat(0.8)), ..PrincipledMaterial::default() };
+        let mut m =
+            PrincipledMaterial { base_color: w.diffuse.unwrap_or(Vec3::splat(0.8)), ..PrincipledMaterial::default() };
         m.base_color_texture = w.diffuse_map;
         // Black under a picture is what programs write that mean the picture alone.
         if w.pictured && m.base_color == Vec3::ZERO {

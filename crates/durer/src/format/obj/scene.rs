@@ -41,15 +41,14 @@ pub(in crate::format) fn read(input: &Input, diagnostics: &mut Diagnostics) -> O
     for (part, at) in parts(&data, input.bytes, &switches) {
         let name = String::from_utf8_lossy(&input.bytes[at.clone()]).into_owned();
         let material = library.materials.get_key_value(name.as_str()).map(|(name, material)| {
-            *numbers.entry(name).or_insert_with(|| {
-                scene.add_material(Material::Principled(Box::new(material.clone())))
-            })
+            *numbers.entry(name).or_insert_with(|| scene.add_material(Material::Principled(Box::new(material.clone()))))
         });
         if material.is_none() && !name.is_empty() {
             let known = library.materials.keys().map(String::as_str);
             let meant = did_you_mean(&name, known).map(|meant| format!("did you mean `{meant}`?"));
             let message = format!("no file of materials has {}: a neutral one is shown", shown(name.as_bytes()));
-            diagnostics.push(Diagnostic { help: meant, ..Diagnostic::warning(message).code("no-material").at(span(&at)) });
+            diagnostics
+                .push(Diagnostic { help: meant, ..Diagnostic::warning(message).code("no-material").at(span(&at)) });
         }
         let asset = if name.is_empty() { input.name.to_string() } else { format!("{}#{name}", input.name) };
         let node = scene.add_mesh(&asset, Arc::new(part), span(&at));
@@ -85,7 +84,11 @@ fn parts(data: &MeshData, bytes: &[u8], switches: &[Switch]) -> Vec<(MeshData, R
 fn part(data: &MeshData, runs: &[Range<usize>]) -> MeshData {
     let mut part = MeshData::default();
     let pick = |list: &[[u32; 3]]| -> Vec<[u32; 3]> {
-        if list.is_empty() { Vec::new() } else { runs.iter().flat_map(|run| list[run.clone()].iter().copied()).collect() }
+        if list.is_empty() {
+            Vec::new()
+        } else {
+            runs.iter().flat_map(|run| list[run.clone()].iter().copied()).collect()
+        }
     };
     (part.triangles, part.triangle_uvs) = (pick(&data.triangles), pick(&data.triangle_uvs));
     part.triangle_normals = pick(&data.triangle_normals);

@@ -3,8 +3,8 @@
 use super::body::{Body, Stop};
 use super::header::{Element, Property};
 use super::values::{ValueError, Values};
-use crate::format::number::NumberError;
 use crate::diag::did_you_mean;
+use crate::format::number::NumberError;
 use crate::format::report::{counted, shown};
 use crate::image::decode_srgb;
 use crate::math::{Vec2, Vec3};

@@ -34,7 +34,10 @@ pub(super) fn read(bytes: &[u8], mesh: &mut Builder, report: &mut Report) {
                 }
             }
             _ => {
-                let message = format!("expected `facet`, `vertex` or another word of STL, found {}", shown(&bytes[first.clone()]));
+                let message = format!(
+                    "expected `facet`, `vertex` or another word of STL, found {}",
+                    shown(&bytes[first.clone()])
+                );
                 report.error(first, message);
             }
         }

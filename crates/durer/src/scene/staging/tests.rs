@@ -38,8 +38,7 @@ fn every_view_sees_the_whole_and_fills_the_picture() {
         let corners = (0..12).map(|_| stretch * random.point() * 10f32.powi(round % 7 - 3)).collect();
         let up = [Axis::X, Axis::Y, Axis::Z][round as usize % 3];
         for (view, aspect) in VIEWS.into_iter().flat_map(|view| [1.0, 16.0 / 9.0, 0.4].map(|aspect| (view, aspect))) {
-            let staging =
-                Staging { view: Some(view), up: Some(up), aspect: Some(aspect), ..Staging::default() };
+            let staging = Staging { view: Some(view), up: Some(up), aspect: Some(aspect), ..Staging::default() };
             let scene = staged(scene(Vec::clone(&corners)), &staging);
             let camera = scene.camera.as_ref().unwrap();
             let frame = Frame::new(camera.pose(), Dialect::Durer.rules());
