@@ -3,7 +3,7 @@
 use super::*;
 use crate::diag::Diagnostic;
 use crate::material::PrincipledMaterial;
-use crate::math::Vec3;
+use crate::math::{Vec3, fp};
 use crate::scene::{Material, Node, Studio, View};
 use crate::source::Digest;
 use std::fs;
@@ -281,7 +281,7 @@ fn a_camera_of_gltf_is_chosen_by_name() {
     let Some(crate::camera::Camera::Perspective(left)) = seen("left").0.unwrap().camera else { panic!("no camera") };
     assert_eq!((left.center, left.direction), (Vec3::new(1.0, 2.0, 3.0), Vec3::NEG_Z));
     // Twice as wide as high: tan(angle / 2) = 2 tan(1/2).
-    assert!((left.angle - 2.0 * (2.0 * 0.5f32.tan()).atan().to_degrees()).abs() < 1e-4);
+    assert!((left.angle - 2.0 * fp::atan_f64(2.0 * fp::tan_f64(0.5)).to_degrees() as f32).abs() < 1e-4);
     assert_eq!(seen("right").0.unwrap().camera, seen("1").0.unwrap().camera);
     assert!(seen("rigth").1[0].contains("did you mean `right`?"));
 }

@@ -243,7 +243,7 @@ impl Accessor {
             at.error("ACCESSOR_SMALL_BYTESTRIDE", message);
             return None;
         }
-        if self.offset % self.component.size() != 0 {
+        if !self.offset.is_multiple_of(self.component.size()) {
             let message = format!("offset {} is no multiple of the component's size", self.offset);
             at.get("byteOffset").unwrap_or(*at).error("ACCESSOR_OFFSET_ALIGNMENT", message);
             return None;

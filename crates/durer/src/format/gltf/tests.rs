@@ -113,7 +113,7 @@ fn the_validator_s_files_are_refused_or_survive_for_a_reason() {
                 let reason = |code: &&str| {
                     SURVIVED.iter().any(|(known, folder, _)| code.starts_with(known) && place.contains(folder))
                 };
-                if !codes.iter().all(|code| reason(code)) {
+                if !codes.iter().all(reason) {
                     unreasoned.push(format!("{shown}: {codes:?}"));
                 }
                 survivors += 1;
