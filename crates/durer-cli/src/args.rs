@@ -3,6 +3,7 @@
 use crate::display::DisplayArgs;
 use crate::memory::Memory;
 use crate::method::MethodArgs;
+use crate::staging::StagingArgs;
 use clap::builder::{ArgPredicate, PossibleValuesParser};
 use clap::{Args, Parser, Subcommand};
 use durer::dialect::{Compat, Dialect};
@@ -85,12 +86,15 @@ pub struct SceneArgs {
     /// Refuse what needs more memory: bytes as in 512M or 8G, or a share of the machine's or control group's
     #[arg(long, default_value = "80%", value_name = "SIZE", value_parser = Memory::parse)]
     pub memory: Memory,
+    #[command(flatten)]
+    pub staging: StagingArgs,
 }
 
-/// Render a scene to a picture
+/// Render a scene or a model to a picture
 #[derive(Args)]
 #[command(after_help = "Examples:
   durer render scene.txt -o picture.png
+  durer render model.glb -o picture.png --view iso --studio sun
   durer render scene.txt -o picture.exr --size 1920x1080 --samples 64
   durer render scene.txt -o picture.exr --noise 0.01 --time 10m --preview preview.png
   durer render scene.txt -o picture.exr --samples 256 --resume
@@ -98,6 +102,8 @@ pub struct SceneArgs {
   durer render scene.txt -o picture.png --show color,depth,normals --depth-range 9 10
   durer render scene.txt -o picture.png --dialect f04 --shadows --bounces 4 --transfer course
   durer render scene.txt -o dots.png --show samples --size 9x9 --sampler jittered --samples 9
+
+A scene is a file of the course's language or a model: glTF, GLB, PLY, OBJ, STL. A model without camera and light is seen whole, in a studio.
 
 The extension of PICTURE says the format: png, tga, bmp, ppm, pfm, exr, hdr. Several pictures go into one EXR file
 as layers, or into files of their own: picture.depth.png and so on.
@@ -456,9 +462,11 @@ pub struct InfoArgs {
     pub json: bool,
 }
 
-/// Write a scene anew, in its own or another dialect
+/// Write a scene anew, in its own or another dialect, or its meshes as PLY, OBJ or STL
 #[derive(Args)]
-#[command(after_help = "Example:\n  durer convert scene.txt -o scene_durer.txt --to durer")]
+#[command(
+    after_help = "Examples:\n  durer convert scene.txt -o scene_durer.txt --to durer\n  durer convert model.glb -o model.stl"
+)]
 pub struct ConvertArgs {
     /// The scene file
     pub scene: PathBuf,

@@ -6,7 +6,7 @@ mod mend;
 
 use crate::args::CheckArgs;
 use crate::guard::Guard;
-use crate::job::{accel, job};
+use crate::job::{accel, aspect, job};
 use crate::open::load_options;
 use crate::output::say;
 use crate::report::counted;
@@ -110,6 +110,7 @@ fn look(path: &Path, bytes: Arc<[u8]>, args: &CheckArgs) -> Result<Checked, Fail
     let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
     let mut options = load_options(&args.reading);
     options.accel = accel(&args.job)?;
+    options.staging.aspect = aspect(&args.job);
     let loaded = load_text(path, bytes, &options, &mut files, &mut diagnostics);
     let dialect = loaded.as_ref().map(|loaded| loaded.dialect.name());
     let world = loaded.as_ref().and_then(|loaded| loaded.compile(&options, &mut files, &mut diagnostics));

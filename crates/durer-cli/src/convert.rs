@@ -3,23 +3,48 @@
 use crate::args::ConvertArgs;
 use crate::guard::Guard;
 use crate::open::load_options;
-use crate::{Failure, output, report};
-use durer::diag::{Diagnostics, Files};
+use crate::report::counted;
+use crate::{Failure, bad, output, report};
+use durer::diag::{Diagnostic, Diagnostics, Files};
 use durer::dialect::Dialect;
 use durer::format::course::write;
+use durer::format::{MESH_FORMATS, mesh_format_for};
 use durer::load;
+use durer::scene::Studio;
 
 pub fn run(args: &ConvertArgs) -> Result<(), Failure> {
     let mut guard = Guard::default();
     guard.reads(&args.scene)?;
     let place = guard.writes("--output", &args.output)?;
     let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
-    let options = load_options(&args.reading);
+    let mut options = load_options(&args.reading);
+    let as_mesh = mesh_format_for(&args.output.to_string_lossy()).filter(|_| args.to.is_none());
+    if as_mesh.is_some() {
+        // A ground is no part of a model.
+        options.staging.studio = Some(Studio::None);
+    }
     let loaded = load(&args.scene, &options, &mut files, &mut diagnostics).map_err(report::unreadable)?;
     report::print(&files, &diagnostics, false);
     let loaded = loaded.ok_or(Failure::Input(None))?;
     if let Some(guess) = &loaded.guess {
         report::note(&guess.note());
+    }
+    if let Some(format) = as_mesh {
+        let mut found = Diagnostics::default();
+        let world = loaded.compile(&options, &mut files, &mut found);
+        report::print(&files, &found, true);
+        let (mesh, left_out) = world.ok_or(Failure::Input(None))?.merged_mesh();
+        if left_out > 0 {
+            let objects = counted(left_out, "object");
+            let message = format!("{objects} without triangles left out: {} holds meshes only", format.name);
+            report::note(&Diagnostic::warning(message));
+        }
+        return output::save(&[(&place, (format.write)(&mesh))], false);
+    }
+    if !loaded.scene.assets.is_empty() {
+        let endings: Vec<String> = MESH_FORMATS.iter().map(|format| format!(".{}", format.extensions[0])).collect();
+        let message = "the scene language has no words for the meshes of a model: choose a name that ends in";
+        return Err(bad(format!("{message} {}", endings.join(", "))));
     }
     let dialect = args.to.as_deref().and_then(Dialect::from_name).unwrap_or(loaded.dialect);
     output::save(&[(&place, write(&loaded.scene, dialect).into_bytes())], false)

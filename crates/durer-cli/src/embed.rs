@@ -1,7 +1,7 @@
 //! The command's options for other programs: the same words make the same job, with the same bits.
 
 use crate::args::{Cli, Command, RenderArgs};
-use crate::job::accel;
+use crate::job::{accel, aspect};
 use crate::open::load_options;
 use crate::{Failure, check, compare, explain, job};
 use clap::{CommandFactory, Parser};
@@ -39,7 +39,9 @@ impl Asked {
     /// Options that contradict each other.
     pub fn load_options(&self) -> Result<LoadOptions, String> {
         let accel = accel(&self.0.job).map_err(said)?;
-        Ok(LoadOptions { accel, threads: self.threads(), ..load_options(&self.0.reading) })
+        let mut options = load_options(&self.0.reading);
+        options.staging.aspect = aspect(&self.0.job);
+        Ok(LoadOptions { accel, threads: self.threads(), ..options })
     }
 
     /// What the picture is.

@@ -5,7 +5,7 @@ mod page;
 
 use crate::args::ExplainArgs;
 use crate::guard::Guard;
-use crate::job::{accel, job};
+use crate::job::{accel, aspect, job};
 use crate::open::{Opened, load_options, open};
 use crate::output::say;
 use crate::render::failure;
@@ -38,6 +38,7 @@ pub fn run(args: &ExplainArgs) -> Result<(), Failure> {
     }
     let mut options = load_options(&args.render.reading);
     options.accel = accel(&args.render.job)?;
+    options.staging.aspect = aspect(&args.render.job);
     let mut guard = Guard::default();
     let page_file = args.html.as_ref().map(|path| guard.writes("--html", path)).transpose()?;
     let opened = open(&args.render.scene, &options, args.render.quiet, &mut guard)?;

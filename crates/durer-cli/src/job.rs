@@ -34,6 +34,11 @@ pub fn accel(args: &JobArgs) -> Result<AccelKind, Failure> {
     })
 }
 
+/// The width over the height of the picture that the options ask for.
+pub fn aspect(args: &JobArgs) -> Option<f32> {
+    args.size.map(|(width, height)| width as f32 / height.max(1) as f32)
+}
+
 /// The job that the options ask for, the colour of the whole picture without a view; `timed` if time decides when it ends.
 pub fn job(args: &JobArgs, view: Option<&ViewArgs>, loaded: &Loaded, timed: bool) -> Result<Job, Failure> {
     let rules = &loaded.rules;

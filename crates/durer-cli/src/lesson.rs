@@ -6,7 +6,7 @@ mod page;
 
 use crate::args::LessonArgs;
 use crate::guard::Guard;
-use crate::job::{accel, job, warn};
+use crate::job::{accel, aspect, job, warn};
 use crate::open::{load_options, open};
 use crate::output::{lengthened, say};
 use crate::page::png;
@@ -64,6 +64,7 @@ pub fn run(args: &LessonArgs) -> Result<(), Failure> {
     let folder = Folder::new(args.output.clone().unwrap_or_else(|| lengthened(stem, "-lesson")), &mut guard)?;
     let mut options = load_options(&args.reading);
     (options.accel, options.threads) = (accel(&args.job)?, args.threads.map(usize::from));
+    options.staging.aspect = aspect(&args.job);
     let opened = open(&args.scene, &options, args.quiet, &mut guard)?;
     let mut job = job(&args.job, None, &opened.loaded, false)?;
     if args.job.size.is_none() {

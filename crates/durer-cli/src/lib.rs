@@ -27,6 +27,7 @@ mod photo;
 mod progress;
 mod render;
 mod report;
+mod staging;
 mod verify;
 mod words;
 

@@ -67,6 +67,7 @@ pub fn load_options(args: &SceneArgs) -> LoadOptions {
         allow_outside: args.allow_outside,
         assets: args.assets.clone(),
         memory: args.memory.bytes(),
+        staging: args.staging.staging(),
         ..LoadOptions::default()
     }
 }

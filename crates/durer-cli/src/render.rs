@@ -35,6 +35,7 @@ pub fn run(command: &RenderCommand) -> Result<(), Failure> {
     let memory = options.memory;
     let threads = args.work.threads.map(usize::from);
     (options.accel, options.threads) = (job::accel(&args.job)?, threads);
+    options.staging.aspect = job::aspect(&args.job);
     let scene = read(&args.scene, &options, args.quiet, &mut guard)?;
     let job = job::job(&args.job, Some(&args.view), &scene.loaded, args.work.time.is_some())?;
     // A size that no picture has is refused as such, whatever the memory.

@@ -28,16 +28,21 @@ fn simd_levels() -> Vec<&'static str> {
     }
 }
 
+/// Size of the pictures where none is asked for.
+const SIZE: (u32, u32) = (64, 48);
+
 pub fn run(args: &VerifyArgs) -> Result<(), Failure> {
     let mut worlds: Vec<(&str, World)> = Vec::new();
     let mut wanted = None;
     for (name, accel) in STRUCTURES {
         let mut options = load_options(&args.reading);
         options.accel = accel;
+        let (width, height) = args.job.size.unwrap_or(SIZE);
+        options.staging.aspect = Some(width as f32 / height as f32);
         // What is found is said once.
         let opened = open(&args.scene, &options, args.quiet || !worlds.is_empty(), &mut Guard::default())?;
         let mut job = job::job(&args.job, Some(&args.view), &opened.loaded, false)?;
-        (job.width, job.height) = args.job.size.unwrap_or((64, 48));
+        (job.width, job.height) = (width, height);
         // The work depends on the structure.
         job.aovs.retain(|aov| aov.name != "cost");
         if args.job.samples.is_none() && args.job.noise.is_none() {

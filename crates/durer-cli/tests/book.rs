@@ -8,12 +8,13 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// The pages, each with commands that go on from one to the next.
-const PAGES: [&str; 7] = [
+const PAGES: [&str; 8] = [
     "README.md",
     "docs/student.md",
     "docs/teacher.md",
     "docs/engineer.md",
     "docs/scenes.md",
+    "docs/models.md",
     "docs/explain.md",
     "docs/photographs.md",
 ];

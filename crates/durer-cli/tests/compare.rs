@@ -22,7 +22,7 @@ fn put(place: &Place, name: &str, picture: &Image8) {
 fn changed(picture: &Image8, change: impl Fn(u32, u32, &dyn Fn(u32, u32) -> [u8; 3]) -> [u8; 3]) -> Image8 {
     let at = |x: u32, y: u32| picture.pixels[(y * picture.width + x) as usize];
     let places = (0..picture.height).flat_map(|y| (0..picture.width).map(move |x| (x, y)));
-    Image8 { pixels: places.map(|(x, y)| change(x, y, &at)).collect(), ..*picture }
+    Image8 { pixels: places.map(|(x, y)| change(x, y, &at)).collect(), alpha: Vec::new(), ..*picture }
 }
 
 fn json(text: &str) -> Value {
@@ -96,7 +96,7 @@ fn regions_name_what_is_there() {
 #[test]
 fn bad_input_is_exit_code_2() {
     let (place, a) = rendered();
-    let small = Image8 { width: 1, height: 1, pixels: vec![[0; 3]] };
+    let small = Image8 { width: 1, height: 1, pixels: vec![[0; 3]], alpha: Vec::new() };
     put(&place, "small.ppm", &small);
     place.put("broken.png", &place.bytes("a.png")[..200]);
     place.put("no.png", "no picture");

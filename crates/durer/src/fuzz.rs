@@ -8,14 +8,16 @@ use crate::compile::AccelKind;
 use crate::diag::{Diagnostics, Files};
 use crate::dialect::Dialect;
 use crate::format::course::{ReadOptions, guess, random::Random, read, write};
+use crate::format::scene::{Input, find_scene_format, read_model};
 use crate::format::{ies, read_mesh};
 use crate::image::{Encoded, ImageError, decode_linear};
 use crate::integrator::{Method, Settings};
 use crate::math::Vec3;
 use crate::render::{Control, Job, Part, PartError, Shard, Stop};
-use crate::source::Digest;
+use crate::scene::Staging;
+use crate::source::{Digest, Source};
 use std::path::PathBuf;
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 /// Pictures may take so much memory.
 const MEMORY: u64 = 64 << 20;
@@ -66,6 +68,24 @@ pub fn profile(data: &[u8]) {
         }
     } else {
         assert!(diagnostics.has_errors());
+    }
+}
+
+/// Bytes as a model: what is read of it has sound meshes and a camera.
+pub fn model(data: &[u8], name: &str) {
+    let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
+    let bytes = data.into();
+    let file = files.add(name, Arc::clone(&bytes));
+    let source = Source::folder(folder());
+    for staging in [Staging::default(), Staging { at: Some(0.5), ..Staging::default() }] {
+        let input = Input { bytes: &bytes, file, name, source: &source, staging: &staging };
+        let Some(format) = find_scene_format(data, name) else { return };
+        let Some(scene) = read_model(format, &input, &mut diagnostics) else { continue };
+        assert!(scene.camera.is_some());
+        for mesh in scene.assets.meshes.values() {
+            assert!(mesh.triangles.iter().flatten().all(|&corner| (corner as usize) < mesh.positions.len()));
+            assert!(mesh.positions.iter().all(|position| position.is_finite()));
+        }
     }
 }
 
@@ -174,7 +194,8 @@ fn seeds_hold() {
                 "ies" => profile(&data),
                 "part" => part(&data),
                 "ways" => ways(&data),
-                "obj" | "ply" => mesh(&data, &format!("x.{name}")),
+                "obj" | "ply" | "stl" => mesh(&data, &format!("x.{name}")),
+                "gltf" => model(&data, "x.gltf"),
                 _ => picture(&data, &format!("x.{name}")),
             }
         }

@@ -1,13 +1,15 @@
-//! From a scene file's path to a world: dialect, rules, files.
+//! From a file's path to a world: format, dialect, rules, files.
 
 use crate::compile::{AccelKind, Resources, compile};
 use crate::diag::{Diagnostic, Diagnostics, Files, Severity};
 use crate::dialect::{Compat, Dialect, PathBase, Rules};
 use crate::format::course::{self, Guess, Hint, ReadOptions};
-use crate::scene::Scene;
+use crate::format::scene::{Input, find_scene_format, read_model};
+use crate::scene::{Scene, Staging};
 use crate::source::{Source, SourceError};
 use crate::threads;
 use crate::world::World;
+use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -31,6 +33,8 @@ pub struct LoadOptions {
     pub assets: Vec<PathBuf>,
     /// Files that are in no folder, by the names that the scene gives them.
     pub given: Vec<(String, Arc<[u8]>)>,
+    /// How a model that is no scene becomes one.
+    pub staging: Staging,
     /// The structure that finds objects.
     pub accel: AccelKind,
     /// Threads that build the world; `None`: as many as the machine has.
@@ -98,7 +102,20 @@ pub fn load_text(
     }
     // Where the scene lies does not matter for what it is.
     source.remember("", &bytes);
+    let mut name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let mut bytes = bytes;
+    if is_packed(&bytes) {
+        bytes = unpacked(&bytes, budget(options), diagnostics)?;
+        name.truncate(name.strip_suffix(".gz").map_or(name.len(), str::len));
+    }
     let file = files.add(path.display().to_string(), bytes.clone());
+    if let Some(format) = find_scene_format(&bytes, &name).filter(|_| options.dialect.is_none() && !options.course) {
+        let dialect = Dialect::Durer;
+        let source = source.budget(budget(options));
+        let input = Input { bytes: &bytes, file, name: &name, source: &source, staging: &options.staging };
+        let scene = read_model(format, &input, diagnostics)?;
+        return Some(Loaded { scene, rules: dialect.rules().clone(), dialect, guess: None, source });
+    }
     let mut guess = None;
     let dialect = options.dialect.unwrap_or_else(|| {
         let found = course::guess(&bytes, file, &options.hints, &|name| source.contains(name));
@@ -123,7 +140,7 @@ pub fn load_text(
     if options.course {
         source = source.allow(".");
     }
-    source = source.budget(Source::DEFAULT_BUDGET.min(options.memory.unwrap_or(u64::MAX)));
+    source = source.budget(budget(options));
     let read = ReadOptions { dialect, strict: options.strict, compat: rules.compat };
     let scene = course::read(&bytes, file, read, diagnostics);
     if let (Some(_), Some(dialect), false, false) = (&scene, options.dialect, options.strict, options.course) {
@@ -134,6 +151,41 @@ pub fn load_text(
         diagnostics.push(guess.note());
     }
     scene.map(|scene| Loaded { scene, rules, dialect, guess, source })
+}
+
+/// Whether bytes are packed by gzip.
+fn is_packed(bytes: &[u8]) -> bool {
+    bytes.starts_with(b"\x1f\x8b")
+}
+
+/// What is packed by gzip, if it is no more than may be read: the packed file tells its size in its last four bytes, and more
+/// than that is not unpacked.
+fn unpacked(bytes: &[u8], budget: u64, diagnostics: &mut Diagnostics) -> Option<Arc<[u8]>> {
+    // Deflate packs at most 1032 bytes into one.
+    let declared = bytes.last_chunk().map_or(0, |size| u64::from(u32::from_le_bytes(*size)));
+    let refuse = |message: String| Diagnostic::error(message).code("bad-file");
+    if declared > budget || declared > 1032 * bytes.len() as u64 {
+        diagnostics.push(refuse(format!("the packed file would have {declared} bytes: that is too large")));
+        return None;
+    }
+    let mut all = Vec::new();
+    let mut decoder = flate2::read::GzDecoder::new(bytes).take(declared + 1);
+    match decoder.read_to_end(&mut all) {
+        Ok(_) if all.len() as u64 == declared => Some(all.into()),
+        Ok(_) => {
+            diagnostics.push(refuse("the packed file is not as large as it says".into()));
+            None
+        }
+        Err(error) => {
+            diagnostics.push(refuse(format!("the file cannot be unpacked: {error}")));
+            None
+        }
+    }
+}
+
+/// Bytes that may be read.
+fn budget(options: &LoadOptions) -> u64 {
+    Source::DEFAULT_BUDGET.min(options.memory.unwrap_or(u64::MAX))
 }
 
 /// What the year's own program would refuse in a file that is read here: the first of it, as a note, unless it was said.
@@ -171,5 +223,7 @@ impl Loaded {
     }
 }
 
+#[cfg(test)]
+mod model_tests;
 #[cfg(test)]
 mod tests;

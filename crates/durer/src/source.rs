@@ -20,6 +20,44 @@ impl Digest {
     pub fn of(bytes: &[u8]) -> Self {
         Digest(blake3::hash(bytes).into())
     }
+
+    /// A hash of numbers, to be made one by one.
+    pub fn hasher() -> Hasher {
+        Hasher { hasher: blake3::Hasher::new(), waiting: Vec::with_capacity(Hasher::BLOCK) }
+    }
+}
+
+/// Makes the hash of many numbers, as little-endian bytes.
+#[derive(Debug)]
+pub struct Hasher {
+    hasher: blake3::Hasher,
+    waiting: Vec<u8>,
+}
+
+impl Hasher {
+    /// Bytes that are hashed at once.
+    const BLOCK: usize = 1 << 16;
+
+    /// Adds 32 bits.
+    pub fn word(&mut self, word: u32) {
+        self.waiting.extend(word.to_le_bytes());
+        if self.waiting.len() >= Hasher::BLOCK {
+            self.hasher.update(&self.waiting);
+            self.waiting.clear();
+        }
+    }
+
+    /// Adds a count, in 64 bits.
+    pub fn count(&mut self, count: u64) {
+        self.word(count as u32);
+        self.word((count >> 32) as u32);
+    }
+
+    /// The hash.
+    pub fn finish(mut self) -> Digest {
+        self.hasher.update(&self.waiting);
+        Digest(self.hasher.finalize().into())
+    }
 }
 
 impl std::fmt::Display for Digest {

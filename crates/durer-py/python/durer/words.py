@@ -1059,7 +1059,7 @@ class Rectangle(Shape):
 class TriangleMesh(Shape):
     """A triangle mesh in a file of its own.
 
-    obj_file: path; must be given. Path of the mesh file: `.obj` or `.ply`.
+    obj_file: path; must be given. Path of the mesh file: `.obj`, `.ply` or `.stl`.
     """
 
     def __init__(

@@ -4,14 +4,15 @@ use super::Resources;
 use crate::describe::FileName;
 use crate::diag::{Diagnostic, Diagnostics, Severity, at_least, at_most};
 use crate::dialect::{Compat, Rules};
-use crate::format::{self, obj::habits};
+use crate::format;
 use crate::image::{self, Encoded, ImageError};
 use crate::light::{Emitter as _, Light, Profile};
-use crate::scene::Background;
-use crate::shape::{HeightField, Mesh};
+use crate::material::PrincipledMaterial;
+use crate::scene::{Assets, Background, PictureBytes};
+use crate::shape::{HeightField, Mesh, MeshData};
 use crate::source::SourceError;
-use crate::texture::{CubeMap, Environment, Sky, Texture};
-use crate::world::MeshTree;
+use crate::texture::{CubeMap, Environment, Mapping, Sky, Texture};
+use crate::world::{Maps, MeshTree};
 use rayon::prelude::*;
 use std::collections::HashMap;
 use std::path::PathBuf;
@@ -25,22 +26,39 @@ const TRIANGLE_BYTES: u64 = TREE_BYTES + size_of::<[[u32; 3]; 2]>() as u64;
 /// Columns of the picture of a clear sky.
 const SKY_WIDTH: u32 = 512;
 
+/// What the eight bits of a picture mean.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+enum Encoding {
+    /// Colours, by sRGB's curve.
+    Srgb,
+    /// Other numbers, from 0 to 1.
+    Linear,
+}
+
 pub(super) struct Loader<'r> {
     pub(super) resources: Resources<'r>,
     rules: Rules,
+    assets: &'r Assets,
     /// By path; `None` for files that could not be read, which are complained of once.
     meshes: HashMap<String, Option<Arc<MeshTree>>>,
     texture_numbers: HashMap<String, Option<u32>>,
+    /// Numbers of the textures of materials in layers, by the picture's name and the curve of its values.
+    map_numbers: HashMap<(String, Encoding), Option<u32>>,
+    /// What was decoded for those, by the name of the file or the bytes' place in memory.
+    decoded: HashMap<(String, Encoding), Option<Texture>>,
     pub(super) textures: Vec<Texture>,
 }
 
 impl<'r> Loader<'r> {
-    pub(super) fn new(resources: Resources<'r>, rules: &Rules) -> Self {
+    pub(super) fn new(resources: Resources<'r>, rules: &Rules, assets: &'r Assets) -> Self {
         Loader {
             resources,
             rules: rules.clone(),
+            assets,
             meshes: HashMap::new(),
             texture_numbers: HashMap::new(),
+            map_numbers: HashMap::new(),
+            decoded: HashMap::new(),
             textures: Vec::new(),
         }
     }
@@ -50,20 +68,10 @@ impl<'r> Loader<'r> {
         if let Some(known) = self.meshes.get(&name.path) {
             return known.clone();
         }
-        let mesh = self.read(name, "mesh", diagnostics).and_then(|bytes| {
-            let file = self.resources.files.add(name.path.clone(), bytes.clone());
-            let mut own = Diagnostics::default();
-            let is_obj = name.path.ends_with(".obj");
-            let known = if is_obj { habits::known(&bytes, self.rules.compat) } else { bytes.as_ref().into() };
-            let data = format::read_mesh(&known, file, &name.path, &mut own);
-            if own.has_errors() {
-                let message = format!("the mesh `{}` cannot be used", name.path);
-                let error = Diagnostic::error(message).code("bad-file").at(name.span);
-                diagnostics.push(error.label("asked for here"));
-            }
-            diagnostics.extend(own);
-            data
-        });
+        let mesh = match self.assets.meshes.get(&name.path) {
+            Some(data) => Some(MeshData::clone(data)),
+            None => self.mesh_file(name, diagnostics),
+        };
         let mesh = mesh.filter(|data| {
             let needed = data.bytes() as u64 + TREE_BYTES * data.triangles.len() as u64;
             self.charge(name, needed, diagnostics)
@@ -81,6 +89,21 @@ impl<'r> Loader<'r> {
         });
         self.meshes.insert(name.path.clone(), tree.clone());
         tree
+    }
+
+    /// What a mesh file holds.
+    fn mesh_file(&mut self, name: &FileName, diagnostics: &mut Diagnostics) -> Option<MeshData> {
+        let bytes = self.read(name, "mesh", diagnostics)?;
+        let file = self.resources.files.add(name.path.clone(), bytes.clone());
+        let mut own = Diagnostics::default();
+        let data = format::read_mesh_as(&bytes, file, &name.path, self.rules.compat, &mut own);
+        if own.has_errors() {
+            let message = format!("the mesh `{}` cannot be used", name.path);
+            let error = Diagnostic::error(message).code("bad-file").at(name.span);
+            diagnostics.push(error.label("asked for here"));
+        }
+        diagnostics.extend(own);
+        data
     }
 
     /// The mesh of a height field.
@@ -137,6 +160,62 @@ impl<'r> Loader<'r> {
         });
         self.texture_numbers.insert(name.path.clone(), number);
         number
+    }
+
+    /// The number of a texture of a material in layers: an asset's, or a file's that repeats without end.
+    fn map(&mut self, name: &FileName, encoding: Encoding, diagnostics: &mut Diagnostics) -> Option<u32> {
+        let key = (name.path.clone(), encoding);
+        if let Some(known) = self.map_numbers.get(&key) {
+            return *known;
+        }
+        let asset = self.assets.pictures.get(&name.path);
+        let mapping = asset.map_or_else(Mapping::default, |picture| picture.mapping);
+        let bytes = asset.map(|picture| picture.bytes.clone());
+        let texture = self.picture(name, bytes.unwrap_or(PictureBytes::File(name.path.clone())), encoding, diagnostics);
+        let number = texture.map(|texture| {
+            self.textures.push(texture.mapped(mapping));
+            (self.textures.len() - 1) as u32
+        });
+        self.map_numbers.insert(key, number);
+        number
+    }
+
+    /// The textures of a material in layers; what is wrong with one is said, and the material goes without it.
+    pub(super) fn maps(&mut self, layers: &PrincipledMaterial, diagnostics: &mut Diagnostics) -> Maps {
+        let mut one =
+            |name: &Option<FileName>, encoding| name.as_ref().and_then(|name| self.map(name, encoding, diagnostics));
+        Maps {
+            base_color: one(&layers.base_color_texture, Encoding::Srgb),
+            metallic_roughness: one(&layers.metallic_roughness_texture, Encoding::Linear),
+            emission: one(&layers.emission_texture, Encoding::Srgb),
+            normal: one(&layers.normal_texture, Encoding::Linear),
+        }
+    }
+
+    /// A picture, decoded once whatever number of textures shows it.
+    fn picture(
+        &mut self,
+        name: &FileName,
+        bytes: PictureBytes,
+        encoding: Encoding,
+        diagnostics: &mut Diagnostics,
+    ) -> Option<Texture> {
+        let path = match &bytes {
+            PictureBytes::File(path) | PictureBytes::Here(path, _) => path.clone(),
+        };
+        let key = (path.clone(), encoding);
+        if let Some(known) = self.decoded.get(&key) {
+            return known.clone();
+        }
+        let bytes = match bytes {
+            PictureBytes::Here(_, bytes) => Some(bytes),
+            PictureBytes::File(path) => self.read(&FileName { path, span: name.span }, "texture", diagnostics),
+        };
+        let (srgb, memory) = (encoding == Encoding::Srgb, self.resources.memory);
+        let texture = bytes.and_then(|bytes| decode(name, &path, &bytes, srgb, memory, diagnostics));
+        let texture = texture.filter(|texture| self.charge(name, texture.bytes() as u64, diagnostics));
+        self.decoded.insert(key, texture.clone());
+        texture
     }
 
     /// The cube map of a folder; where it may be missing, that is a warning.
@@ -285,9 +364,10 @@ fn decode(
     memory: u64,
     diagnostics: &mut Diagnostics,
 ) -> Option<Texture> {
-    let picture = Encoded::open(bytes, path).and_then(|encoded| encoded.read8(memory));
+    let picture = Encoded::open(bytes, path).and_then(|encoded| encoded.read_eight(memory));
     let picture = used(name, path, picture, diagnostics)?;
     let texture = Texture::new(picture.width, picture.height, picture.pixels)?;
+    let texture = texture.with_alpha(Some(picture.alpha));
     Some(if srgb { texture.decoded(image::decode_srgb) } else { texture })
 }
 

@@ -9,7 +9,7 @@ use crate::material::principled::Walls;
 use crate::material::{ColorNoise, Pattern, PhongMaterial, PrincipledMaterial};
 use crate::math::{Color, fp};
 use crate::scene::{self, MatrixOp, Scene};
-use crate::world::{Emission, HighlightModel, Material, Phong, Principled};
+use crate::world::{Emission, HighlightModel, Maps, Material, Phong, Principled};
 use std::sync::Arc;
 
 pub(super) fn compile(
@@ -27,15 +27,15 @@ pub(super) fn compile(
             Material::Solid(solid.clone(), to_pattern)
         }
         scene::Material::Principled(layers) => {
-            let texture = layers.base_color_texture.as_ref().and_then(|name| loader.texture(name, diagnostics));
-            let emitted = layers.emission_luminance * layers.emission_color;
-            let emission_texture = layers.emission_texture.as_ref().and_then(|name| loader.texture(name, diagnostics));
-            let emission =
-                Emission { radiance: emitted, texture: emission_texture, two_sided: layers.walls == Walls::Thin };
+            let maps = loader.maps(layers, diagnostics);
+            let radiance = layers.emission_luminance * layers.emission_color;
+            let textured = maps.emission.is_some();
+            let emission = Emission { radiance, textured, two_sided: layers.walls == Walls::Thin };
             Material::Phong(Phong {
-                texture,
-                emission: (emitted.max_element() > 0.0).then_some(emission),
-                principled: Some(principled(layers, &mut tables)),
+                texture: maps.base_color,
+                tinted: true,
+                emission: (radiance.max_element() > 0.0).then_some(emission),
+                principled: Some(principled(layers, maps, &mut tables)),
                 ..plain(layers)
             })
         }
@@ -85,6 +85,7 @@ fn phong_of(m: &PhongMaterial, noise: Option<ColorNoise>, texture: Option<u32>, 
     Phong {
         diffuse,
         texture,
+        tinted: false,
         noise,
         ambient,
         highlight: highlight(m, rules).filter(|(color, ..)| *color != Color::ZERO),
@@ -97,13 +98,13 @@ fn phong_of(m: &PhongMaterial, noise: Option<ColorNoise>, texture: Option<u32>, 
     }
 }
 
-fn principled(m: &PrincipledMaterial, tables: &mut Vec<Arc<Dielectric>>) -> Arc<Principled> {
+fn principled(m: &PrincipledMaterial, maps: Maps, tables: &mut Vec<Arc<Dielectric>>) -> Arc<Principled> {
     // Beer's law: what is left after a depth is the colour. Black would never be reached.
     let absorption = match m.transmission_depth > 0.0 {
         true => m.transmission_color.map(|c| -fp::ln(c.clamp(1e-6, 1.0)) / m.transmission_depth),
         false => Color::ZERO,
     };
-    Arc::new(Principled { written: m.clone(), layers: Layers::of(m), tables: Tables::new(m, tables), absorption })
+    Arc::new(Principled { written: m.clone(), maps, layers: Layers::of(m), tables: Tables::new(m, tables), absorption })
 }
 
 /// What Whitted's light makes of layers: the matte base, a highlight as wide as GGX's, metals that are mirrors, and glass.

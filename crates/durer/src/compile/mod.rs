@@ -56,7 +56,7 @@ pub fn compile(
     diagnostics: &mut Diagnostics,
 ) -> Option<World> {
     let mut own = Diagnostics::default();
-    let mut loader = files::Loader::new(resources, rules);
+    let mut loader = files::Loader::new(resources, rules, &scene.assets);
     let Some(camera) = scene.camera.clone() else {
         diagnostics.push(Diagnostic::error("the scene has no camera").code("no-camera").help(match is_nodes(rules) {
             true => "add a `Camera { ... }`",

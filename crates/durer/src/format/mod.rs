@@ -1,18 +1,25 @@
-//! Readers of mesh files: one file a format, one row of [`MESH_FORMATS`] each.
+//! Readers: one file a format, one row of [`MESH_FORMATS`] or [`SCENE_FORMATS`] each.
 //!
 //! The files come from anywhere. Readers allocate in proportion to the bytes that are there, never to what a file
 //! promises, refuse numbers that are not finite and indices that lead nowhere, and collect errors with their places.
 
 pub mod course;
+mod gltf;
 pub mod ies;
 mod number;
 pub mod obj;
 mod ply;
 mod polygon;
 mod report;
+pub mod scene;
+mod stl;
 
 use crate::diag::{Diagnostic, Diagnostics, did_you_mean};
+use crate::dialect::CompatSet;
+use crate::scene::Axis;
 use crate::shape::mesh::MeshData;
+pub use scene::{SCENE_FORMATS, SceneFormat};
+use std::borrow::Cow;
 
 /// A format of mesh files.
 pub struct MeshFormat {
@@ -24,13 +31,55 @@ pub struct MeshFormat {
     pub recognise: fn(&[u8]) -> bool,
     /// Reads a file; the number goes into the spans. Errors go into the collection, and then there is no mesh.
     pub read: fn(&[u8], u32, &mut Diagnostics) -> Option<MeshData>,
+    /// The same file as programs with some habits know it.
+    pub known: fn(&[u8], CompatSet) -> Cow<'_, [u8]>,
+    /// Writes a mesh.
+    pub write: fn(&MeshData) -> Vec<u8>,
+    /// What is up in most models of this format.
+    pub up: Axis,
 }
 
 /// The formats of mesh files, in the order in which they are tried on a file of unknown ending.
 pub const MESH_FORMATS: &[MeshFormat] = &[
-    MeshFormat { name: "PLY", extensions: &["ply"], recognise: ply::recognise, read: ply::read },
-    MeshFormat { name: "Wavefront OBJ", extensions: &["obj"], recognise: obj::recognise, read: obj::read },
+    MeshFormat {
+        name: "PLY",
+        extensions: &["ply"],
+        recognise: ply::recognise,
+        read: ply::read,
+        known: as_it_is,
+        write: ply::write,
+        up: Axis::Y,
+    },
+    MeshFormat {
+        name: "Wavefront OBJ",
+        extensions: &["obj"],
+        recognise: obj::recognise,
+        read: obj::read,
+        known: obj::habits::known,
+        write: obj::write,
+        up: Axis::Y,
+    },
+    MeshFormat {
+        name: "STL",
+        extensions: &["stl"],
+        recognise: stl::recognise,
+        read: stl::read,
+        known: as_it_is,
+        write: stl::write,
+        up: Axis::Z,
+    },
 ];
+
+/// No old program read the format.
+fn as_it_is(bytes: &[u8], _: CompatSet) -> Cow<'_, [u8]> {
+    Cow::Borrowed(bytes)
+}
+
+/// The format of mesh files that the ending of a name says.
+pub fn mesh_format_for(name: &str) -> Option<&'static MeshFormat> {
+    let extension = extension(name);
+    MESH_FORMATS.iter().find(|format| format.extensions.contains(&extension.as_str()))
+}
 
 /// Reads a mesh file in the format that its name's ending says or, where that is unknown, its content.
 ///
@@ -41,12 +90,23 @@ pub const MESH_FORMATS: &[MeshFormat] = &[
 /// All errors are added to `diagnostics`, with the place of the offending bytes, and then the result is `None`. It is
 /// `None` too where `diagnostics` was full already. Warnings and notes are added likewise and leave the mesh usable.
 pub fn read_mesh(bytes: &[u8], file: u32, name: &str, diagnostics: &mut Diagnostics) -> Option<MeshData> {
+    read_mesh_as(bytes, file, name, 0, diagnostics)
+}
+
+/// The same, with some habits of old programs.
+pub fn read_mesh_as(
+    bytes: &[u8],
+    file: u32,
+    name: &str,
+    habits: CompatSet,
+    diagnostics: &mut Diagnostics,
+) -> Option<MeshData> {
     if let Some(error) = too_large(bytes.len() as u64, name) {
         diagnostics.push(error);
         return None;
     }
     match find_format(bytes, name) {
-        Some(format) => (format.read)(bytes, file, diagnostics),
+        Some(format) => (format.read)(&(format.known)(bytes, habits), file, diagnostics),
         None => {
             diagnostics.push(unknown_format(name));
             None
@@ -68,9 +128,7 @@ fn extension(name: &str) -> String {
 }
 
 fn find_format(bytes: &[u8], name: &str) -> Option<&'static MeshFormat> {
-    let extension = extension(name);
-    let by_name = MESH_FORMATS.iter().find(|format| format.extensions.contains(&extension.as_str()));
-    by_name.or_else(|| MESH_FORMATS.iter().find(|format| (format.recognise)(bytes)))
+    mesh_format_for(name).or_else(|| MESH_FORMATS.iter().find(|format| (format.recognise)(bytes)))
 }
 
 fn unknown_format(name: &str) -> Diagnostic {

@@ -1,11 +1,14 @@
-//! Wavefront `.obj`: the polygons of it, without materials, curves and surfaces.
+//! Wavefront `.obj`: the polygons of it, without curves and surfaces; `scene.rs` adds the materials of `.mtl` files.
 //!
 //! The file is read twice: positions, texture coordinates and normals first, then the faces, which may refer to
 //! vertices further down. So nothing but the mesh itself is kept.
 
 mod faces;
 pub mod habits;
+mod materials;
+pub(super) mod scene;
 mod words;
+mod write;
 
 use super::number::{NumberError, parse_f32, report_number};
 use super::report::{Report, counted, shown};
@@ -14,6 +17,7 @@ use crate::math::{Vec2, Vec3};
 use crate::shape::mesh::MeshData;
 use std::ops::Range;
 use words::Words;
+pub(super) use write::write;
 
 /// What a statement is to us, by its first word.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -22,6 +26,10 @@ enum Statement {
     Uv,
     Normal,
     Face,
+    /// Names the material of what follows.
+    Material,
+    /// Names files of materials.
+    Library,
     /// Known, and without effect on the mesh.
     Ignored,
 }
@@ -38,8 +46,8 @@ const STATEMENTS: &[(&str, Statement)] = &[
     ("g", Statement::Ignored),
     ("s", Statement::Ignored),
     ("mg", Statement::Ignored),
-    ("usemtl", Statement::Ignored),
-    ("mtllib", Statement::Ignored),
+    ("usemtl", Statement::Material),
+    ("mtllib", Statement::Library),
     ("usemap", Statement::Ignored),
     ("maplib", Statement::Ignored),
     ("l", Statement::Ignored),
@@ -70,11 +78,23 @@ pub(super) fn recognise(bytes: &[u8]) -> bool {
 
 /// Reads a file; see [`read_mesh`](super::read_mesh).
 pub(super) fn read(bytes: &[u8], file: u32, diagnostics: &mut Diagnostics) -> Option<MeshData> {
+    read_with(bytes, file, &mut Vec::new(), diagnostics)
+}
+
+/// From which triangle on a material is current, and where it is named.
+type Switch = (usize, Range<usize>);
+
+/// The same, with the places where the material changes.
+fn read_with(bytes: &[u8], file: u32, switches: &mut Vec<Switch>, diagnostics: &mut Diagnostics) -> Option<MeshData> {
     let mut report = Report::new(file, diagnostics);
     let mut mesh = MeshData::default();
+    if bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff") {
+        report.error(0..2, "this file is UTF-16, two bytes a letter: save it as UTF-8 or ASCII text");
+        return report.finish(diagnostics, mesh);
+    }
     read_vertices(bytes, &mut mesh, &mut report);
     if !report.is_full() {
-        faces::read_faces(bytes, &mut mesh, &mut report);
+        faces::read_faces(bytes, &mut mesh, switches, &mut report);
     }
     if mesh.triangles.is_empty() && !report.has_errors() {
         report.warning(bytes.len()..bytes.len(), "the mesh has no triangles");
@@ -89,18 +109,24 @@ fn read_vertices(bytes: &[u8], mesh: &mut MeshData, report: &mut Report) {
     while let Some(keyword) = words.next_statement() {
         match statement(&bytes[keyword.clone()]) {
             Some(Statement::Position) => {
-                let [x, y, z] = numbers(bytes, keyword, 3, &mut words, report);
+                let ([x, y, z, r, g, b], count) = numbers(bytes, keyword, 3, 3, &mut words, report);
                 mesh.positions.push(Vec3::new(x, y, z));
+                // After the place a vertex may have a weight, or a colour.
+                if count == 6 {
+                    mesh.colors.resize(mesh.positions.len() - 1, [1.0; 4]);
+                    let [r, g, b] = [r, g, b].map(decode);
+                    mesh.colors.push([r, g, b, 1.0]);
+                }
             }
             Some(Statement::Uv) => {
-                let [u, v] = numbers(bytes, keyword, 1, &mut words, report);
+                let ([u, v], _) = numbers(bytes, keyword, 1, 2, &mut words, report);
                 mesh.uvs.push(Vec2::new(u, v));
             }
             Some(Statement::Normal) => {
-                let [x, y, z] = numbers(bytes, keyword, 3, &mut words, report);
+                let ([x, y, z], _) = numbers(bytes, keyword, 3, 3, &mut words, report);
                 mesh.normals.push(Vec3::new(x, y, z));
             }
-            Some(Statement::Face | Statement::Ignored) => _ = words.skip_rest(),
+            Some(_) => _ = words.skip_rest(),
             None => {
                 unknown.get_or_insert((keyword, 0)).1 += 1;
                 words.skip_rest();
@@ -109,6 +135,9 @@ fn read_vertices(bytes: &[u8], mesh: &mut MeshData, report: &mut Report) {
         if report.is_full() {
             return;
         }
+    }
+    if !mesh.colors.is_empty() {
+        mesh.colors.resize(mesh.positions.len(), [1.0; 4]);
     }
     if let Some((first, count)) = unknown {
         let word = &bytes[first.clone()];
@@ -119,16 +148,23 @@ fn read_vertices(bytes: &[u8], mesh: &mut MeshData, report: &mut Report) {
     }
 }
 
-/// Reads the numbers of a statement, of which the first `needed` must be there. What is not there or wrong is 0.
+/// A colour's value as programs write it: by sRGB's curve, from 0 to 1. What is no such number is white.
+fn decode(value: f32) -> f32 {
+    if (0.0..=1.0).contains(&value) { crate::image::decode_srgb((value * 255.0 + 0.5) as u8) } else { 1.0 }
+}
+
+/// Reads the numbers of a statement and their count. The first `needed` must be there, the first `sound` finite; what is not
+/// there or wrong is 0.
 ///
 /// More numbers may follow, such as weights and colours. They must be numbers, or two lines have run together.
 fn numbers<const N: usize>(
     bytes: &[u8],
     keyword: Range<usize>,
     needed: usize,
+    sound: usize,
     words: &mut Words,
     report: &mut Report,
-) -> [f32; N] {
+) -> ([f32; N], usize) {
     let mut values = [0.0; N];
     let mut count = 0;
     let mut end = keyword.end;
@@ -137,8 +173,8 @@ fn numbers<const N: usize>(
         match parse_f32(&bytes[word.clone()]) {
             Ok(value) if count < N => values[count] = value,
             Ok(_) => {}
-            // Nobody looks at the rest, so it may be infinite.
-            Err(NumberError::NotFinite) if count >= N => {}
+            // The rest may be infinite: it is looked at by nobody, or is a colour that is none.
+            Err(NumberError::NotFinite) if count >= sound => _ = values.get_mut(count).map(|value| *value = f32::NAN),
             Err(error) => report_number(report, error, word.clone(), &bytes[word]),
         }
         count += 1;
@@ -151,7 +187,7 @@ fn numbers<const N: usize>(
         let message = format!("{name} needs {}, found {count}", counted(needed, "number", "numbers"));
         report.error(keyword.start..end, message);
     }
-    values
+    (values, count)
 }
 
 #[cfg(test)]

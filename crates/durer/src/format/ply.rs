@@ -4,6 +4,7 @@ mod body;
 mod header;
 mod rows;
 mod values;
+mod write;
 
 use super::report::Report;
 use crate::diag::Diagnostics;
@@ -11,6 +12,7 @@ use crate::shape::mesh::MeshData;
 use body::Body;
 use header::{Encoding, read_header};
 use values::{AsciiValues, BinaryValues};
+pub(super) use write::write;
 
 /// Whether a file begins as files of this format do.
 pub(super) fn recognise(bytes: &[u8]) -> bool {

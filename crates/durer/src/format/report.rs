@@ -23,7 +23,6 @@ impl Report {
 
     /// Adds an error at a range of bytes; what it returns takes a label or help.
     pub fn error(&mut self, at: Range<usize>, message: impl Into<String>) -> &mut Diagnostic {
-        self.errors += 1;
         self.add(at, Diagnostic::error(message))
     }
 
@@ -37,7 +36,11 @@ impl Report {
         self.add(at, Diagnostic::note(message))
     }
 
-    fn add(&mut self, at: Range<usize>, diagnostic: Diagnostic) -> &mut Diagnostic {
+    /// Adds a finding at a range of bytes.
+    pub fn add(&mut self, at: Range<usize>, diagnostic: Diagnostic) -> &mut Diagnostic {
+        if diagnostic.severity == Severity::Error {
+            self.errors += 1;
+        }
         let index = self.found.len();
         self.found.push(diagnostic.at(self.span(at)));
         &mut self.found[index]
@@ -56,6 +59,11 @@ impl Report {
     /// Whether reading on is of no use: no more errors are collected.
     pub fn is_full(&self) -> bool {
         self.errors >= self.room
+    }
+
+    /// How many findings of all kinds there are.
+    pub fn count(&self) -> usize {
+        self.found.len()
     }
 
     /// Hands everything on, sorted by place; `result` only where there was no error.

@@ -83,7 +83,7 @@ fn formats_are_found_by_name_and_else_by_content() {
         assert_eq!(read_clean(ply, name), expected);
     }
     assert!(read(obj, "mesh.ply").1[0].contains("expected `ply`"));
-    let known = "known are PLY (.ply), Wavefront OBJ (.obj)";
+    let known = "known are PLY (.ply), Wavefront OBJ (.obj), STL (.stl)";
     assert_eq!(read(b"?", "m").1, [format!("- Error: `m` is no mesh file of a known format ({known})")]);
     assert!(read(b"?", "m.objj").1[0].contains("did you mean `.obj`? Known are"));
     assert!(too_large(u32::MAX as u64, "big.obj").unwrap().message.contains("4294967295 bytes"));

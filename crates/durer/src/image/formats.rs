@@ -6,10 +6,12 @@ mod bmp;
 mod codec;
 mod exr;
 mod hdr;
+mod jpeg;
 mod pfm;
 mod png;
 mod ppm;
 mod tga;
+mod webp;
 
 use super::limits;
 use super::{Display, Image, Image8, ImageError, Layer, LayerKind, Transfer};
@@ -21,6 +23,9 @@ use std::path::Path;
 /// Every format that is known, in the order in which content is tried.
 pub static FORMATS: [Format; 7] =
     [png::FORMAT, tga::FORMAT, bmp::FORMAT, ppm::FORMAT, pfm::FORMAT, exr::FORMAT, hdr::FORMAT];
+
+/// Formats that are read and not written.
+static READ_ONLY: [Format; 2] = [jpeg::FORMAT, webp::FORMAT];
 
 /// What a file holds for each channel of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -153,8 +158,9 @@ pub fn format_for(path: impl AsRef<Path>) -> Result<&'static Format, ImageError>
 
 /// The format of a file's content, or failing that, of its name.
 pub(super) fn recognise(bytes: &[u8], name: &str) -> Result<&'static Format, ImageError> {
-    let by_content = FORMATS.iter().find(|format| (format.begins)(bytes));
-    let by_name = || FORMATS.iter().find(|format| format.has_extension(name));
+    let all = || FORMATS.iter().chain(&READ_ONLY);
+    let by_content = all().find(|format| (format.begins)(bytes));
+    let by_name = || all().find(|format| format.has_extension(name));
     by_content.or_else(by_name).ok_or_else(|| ImageError::Unrecognised { name: name.into() })
 }
 

@@ -46,6 +46,8 @@ pub struct Image8 {
     pub height: u32,
     /// Red, green and blue, row by row from the top, each from left to right.
     pub pixels: Vec<[u8; 3]>,
+    /// Opacity of each, in 255ths; empty where the file has none.
+    pub alpha: Vec<u8>,
 }
 
 /// What the numbers of a layer mean, and so whether a transfer curve may touch them.

@@ -61,6 +61,19 @@ impl<'a> Encoded<'a> {
         }
     }
 
+    /// Its values in eight bits: those of sixteen are rounded. Numbers of floating-point formats have no eight bits.
+    ///
+    /// # Errors
+    /// Those of [`Encoded::read8`].
+    pub fn read_eight(&self, memory: u64) -> Result<Image8, ImageError> {
+        if self.head.eight || self.format.depth == Depth::Float {
+            return self.read8(memory);
+        }
+        let Image { width, height, pixels } = self.read(memory, decode_linear)?;
+        let eight = |pixel: Vec3| pixel.to_array().map(|value| (value * 255.0 + 0.5) as u8);
+        Ok(Image8 { width, height, pixels: pixels.into_iter().map(eight).collect(), alpha: Vec::new() })
+    }
+
     /// Its pixels, with a meaning for each of the values of eight bits. Numbers of floating-point formats come as they are.
     ///
     /// # Errors
@@ -68,7 +81,7 @@ impl<'a> Encoded<'a> {
     pub fn read(&self, memory: u64, decode: fn(u8) -> f32) -> Result<Image, ImageError> {
         Ok(match self.decode(self.needed(), memory)? {
             Raster::Float(image) => image,
-            Raster::Eight(Image8 { width, height, pixels }) => {
+            Raster::Eight(Image8 { width, height, pixels, .. }) => {
                 let table: [f32; 256] = std::array::from_fn(|value| decode(value as u8));
                 let mut all = Vec::new();
                 all.try_reserve_exact(pixels.len())

@@ -170,7 +170,7 @@ impl Whitted<'_> {
         parts.iter().map(|part| part.share * self.diffuse_color(part.phong, surface)).sum()
     }
 
-    /// Noise, else texture, else the diffuse colour.
+    /// Noise, else texture, else the diffuse colour; or the diffuse colour times texture and vertices' colours.
     pub(crate) fn diffuse_color(&self, phong: &Phong, surface: &Surface) -> Color {
         self.world.diffuse_color(phong, surface)
     }

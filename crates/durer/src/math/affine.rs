@@ -33,6 +33,11 @@ impl Affine {
         *self == Affine::IDENTITY
     }
 
+    /// Whether it makes left of right.
+    pub fn mirrors(&self) -> bool {
+        self.forward.matrix3.determinant() < 0.0
+    }
+
     /// Maps a point forward.
     pub fn point(&self, p: Vec3) -> Vec3 {
         self.point64(p).as_vec3()

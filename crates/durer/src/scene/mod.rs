@@ -2,7 +2,10 @@
 //!
 //! Nothing here is computed, cached or looked up; `compile` turns it into a world.
 
+pub mod assets;
+pub mod extent;
 pub mod matrix;
+pub mod staging;
 
 use crate::camera::Camera;
 use crate::describe::{FileName, Rule};
@@ -13,8 +16,10 @@ use crate::light::Light;
 use crate::material::{ColorNoise, PhongMaterial, PrincipledMaterial, Solid};
 use crate::math::Vec3;
 use crate::shape::{HeightField, Primitive, Sphere, TriangleMesh, VoxelGrid};
+pub use assets::{Assets, Picture, PictureBytes};
 pub use matrix::MatrixOp;
 use serde::{Deserialize, Serialize};
+pub use staging::{Axis, Staging, Studio, View};
 
 described! {
     /// What a ray sees that hits nothing, and the light that is everywhere.
@@ -55,6 +60,9 @@ pub struct Scene {
     pub materials: Vec<Spanned<Material>>,
     /// All objects.
     pub root: Option<Group>,
+    /// Meshes and pictures that are in no files of their own.
+    #[serde(skip_serializing_if = "Assets::is_empty", skip_deserializing)]
+    pub assets: Assets,
     /// Where the camera is written.
     #[serde(skip)]
     pub camera_span: Span,

@@ -6,6 +6,7 @@ use crate::describe::{FileName, Rule};
 use crate::described;
 use crate::dialect::{MeshNormals, set};
 use crate::math::{Aabb, Vec2, Vec3};
+use crate::source::Digest;
 
 /// An index that is not given.
 pub const NO_INDEX: u32 = u32::MAX;
@@ -32,6 +33,15 @@ pub struct MeshData {
     pub triangle_normals: Vec<[u32; 3]>,
     /// Three vertices a triangle, where [`MeshData::loosen`] took the corners apart; else empty.
     pub vertices: Vec<[u32; 3]>,
+    /// Linear red, green, blue and opacity, by the number of the position; empty where no vertex has a colour.
+    pub colors: Vec<[f32; 4]>,
+    /// A second set of texture coordinates, by the number of the position; may be empty.
+    pub second_uvs: Vec<Vec2>,
+    /// By the number of the position, the direction in which u grows, and 1 or -1 for the side, seen along the normal's
+    /// cross product with it, to which v grows; may be empty.
+    pub tangents: Vec<[f32; 4]>,
+    /// Whether triangles without normals are flat, whatever the rule is that makes normals elsewhere.
+    pub flat: bool,
 }
 
 impl MeshData {
@@ -44,6 +54,32 @@ impl MeshData {
             + size_of_val(&*self.triangle_uvs)
             + size_of_val(&*self.triangle_normals)
             + size_of_val(&*self.vertices)
+            + size_of_val(&*self.colors)
+            + size_of_val(&*self.second_uvs)
+            + size_of_val(&*self.tangents)
+    }
+
+    /// The hash of all that it holds.
+    pub fn digest(&self) -> Digest {
+        let mut hasher = Digest::hasher();
+        let floats: [(usize, &mut dyn Iterator<Item = f32>); 6] = [
+            (self.positions.len(), &mut self.positions.iter().flat_map(Vec3::to_array)),
+            (self.uvs.len(), &mut self.uvs.iter().flat_map(Vec2::to_array)),
+            (self.normals.len(), &mut self.normals.iter().flat_map(Vec3::to_array)),
+            (self.second_uvs.len(), &mut self.second_uvs.iter().flat_map(Vec2::to_array)),
+            (self.colors.len(), &mut self.colors.iter().flatten().copied()),
+            (self.tangents.len(), &mut self.tangents.iter().flatten().copied()),
+        ];
+        for (count, values) in floats {
+            hasher.count(count as u64);
+            values.for_each(|value| hasher.word(value.to_bits()));
+        }
+        for list in [&self.triangles, &self.triangle_uvs, &self.triangle_normals, &self.vertices] {
+            hasher.count(list.len() as u64);
+            list.iter().flatten().for_each(|&index| hasher.word(index));
+        }
+        hasher.count(self.flat.into());
+        hasher.finish()
     }
 
     /// Gives every corner the normal of its position's number; false where there are fewer normals than positions.
@@ -59,6 +95,14 @@ impl MeshData {
     pub fn loosen(&mut self) {
         let corners = |t: &[u32; 3]| loosened(t.map(|i| self.positions[i as usize]));
         self.positions = self.triangles.iter().flat_map(corners).collect();
+        fn apart<T: Copy>(values: &mut Vec<T>, triangles: &[[u32; 3]]) {
+            if !values.is_empty() {
+                *values = triangles.iter().flatten().map(|&i| values[i as usize]).collect();
+            }
+        }
+        apart(&mut self.colors, &self.triangles);
+        apart(&mut self.second_uvs, &self.triangles);
+        apart(&mut self.tangents, &self.triangles);
         let apart = (0..self.triangles.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
         self.vertices = std::mem::replace(&mut self.triangles, apart);
     }
@@ -76,7 +120,7 @@ pub fn loosened([a, b, c]: [Vec3; 3]) -> [Vec3; 3] {
 described! {
     /// A triangle mesh in a file of its own.
     TriangleMesh ["TriangleMesh" in set::CLASSIC, "mesh" in set::F23] {
-        /// Path of the mesh file: `.obj` or `.ply`.
+        /// Path of the mesh file: `.obj`, `.ply` or `.stl`.
         obj_file: FileName = FileName::default(), required, Rule::Any, ["obj_file" in set::ALL];
     }
 }
@@ -142,7 +186,13 @@ impl Mesh {
         halves(&mut data.triangles, &mut data.positions);
         halves(&mut data.triangle_normals, &mut data.normals);
         (data.triangle_uvs, data.vertices) = Default::default();
+        (data.colors, data.second_uvs, data.tangents) = Default::default();
         Mesh { data, center: self.center }
+    }
+
+    /// What it is made of.
+    pub fn data(&self) -> &MeshData {
+        &self.data
     }
 
     /// How far it was moved by [`Mesh::centered`].
@@ -203,6 +253,38 @@ impl Mesh {
         Some((1.0 - uv.x - uv.y) * a + uv.x * b + uv.y * c)
     }
 
+    /// The vertices' colours and opacity, mixed at a point of a triangle.
+    fn color(&self, part: u32, barycentric: Vec3) -> Option<[f32; 4]> {
+        let [a, b, c] = attribute(&self.data.triangles, &self.data.colors, part)?;
+        let Vec3 { x, y, z } = barycentric;
+        Some(std::array::from_fn(|i| x * a[i] + y * b[i] + z * c[i]))
+    }
+
+    /// The second texture coordinates at a point of a triangle.
+    pub fn second_uv(&self, part: u32, barycentric: Vec3) -> Option<Vec2> {
+        let [a, b, c] = attribute(&self.data.triangles, &self.data.second_uvs, part)?;
+        Some(barycentric.x * a + barycentric.y * b + barycentric.z * c)
+    }
+
+    /// The directions in which u and v grow at a point of a triangle: those of the file, or those of the triangle.
+    pub fn tangents(&self, part: u32, barycentric: Vec3, normal: Vec3, second: bool) -> Option<[Vec3; 2]> {
+        if let Some(corners) = attribute(&self.data.triangles, &self.data.tangents, part).filter(|_| !second) {
+            let [a, b, c] = corners.map(|[x, y, z, _]| Vec3::new(x, y, z));
+            let tangent = barycentric.x * a + barycentric.y * b + barycentric.z * c;
+            return Some([tangent, corners[0][3] * normal.cross(tangent)]);
+        }
+        let [a, b, c] = match second {
+            true => attribute(&self.data.triangles, &self.data.second_uvs, part)?,
+            false => attribute(&self.data.triangle_uvs, &self.data.uvs, part)?,
+        };
+        let [p, q, r] = self.corners(part);
+        let (along, across) = (b - a, c - a);
+        let area = along.perp_dot(across);
+        let u = ((q - p) * across.y - (r - p) * along.y) / area;
+        let v = ((r - p) * along.x - (q - p) * across.x) / area;
+        (u.is_finite() && v.is_finite() && u != Vec3::ZERO && v != Vec3::ZERO).then_some([u, v])
+    }
+
     /// The surface of a triangle at a crossing.
     pub fn surface(&self, part: u32, crossing: &Crossing) -> Surface {
         let corners = self.corners(part);
@@ -218,7 +300,8 @@ impl Mesh {
             .map(|[a, b, c]| barycentric.x * a + barycentric.y * b + barycentric.z * c);
         // Normals in the file say which side is out, whatever way the corners go round.
         let n_geo = if n_geo.dot(n_shade) < 0.0 { -n_geo } else { n_geo };
-        Surface { position, rest: Vec3::ZERO, error, curvature: 0.0, n_geo, n_shade, uv, barycentric, lifts }
+        let color = self.color(part, barycentric).unwrap_or([1.0; 4]);
+        Surface { position, rest: Vec3::ZERO, error, curvature: 0.0, n_geo, n_shade, uv, barycentric, lifts, color }
     }
 }
 

@@ -87,6 +87,8 @@ pub struct Surface {
     /// From the point to the bent surface that a flat triangle stands for: where it is seen from the side of `n_shade`,
     /// and from the other. Zero on what is as it looks. A shadow ray starts there; after Hanika, *Hacking the Shadow Terminator*.
     pub lifts: [Vec3; 2],
+    /// Linear red, green, blue and opacity that the vertices of a mesh bring; all 1 where they bring none.
+    pub color: [f32; 4],
 }
 
 impl Surface {
@@ -106,6 +108,7 @@ impl Surface {
             uv: Some(uv),
             barycentric: Vec3::ZERO,
             lifts: [Vec3::ZERO; 2],
+            color: [1.0; 4],
         }
     }
 

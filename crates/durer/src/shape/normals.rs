@@ -8,7 +8,7 @@ use glam::DVec3;
 /// Gives every triangle without normals the ones that the rule makes.
 pub(super) fn complete(data: &mut MeshData, rule: MeshNormals) {
     let missing = |data: &MeshData, i: usize| data.triangle_normals.get(i).is_none_or(|n| n.contains(&NO_INDEX));
-    if (0..data.triangles.len()).all(|i| !missing(data, i)) {
+    if data.flat || (0..data.triangles.len()).all(|i| !missing(data, i)) {
         return;
     }
     let rule = match rule {

@@ -65,6 +65,7 @@ impl Shape for Plane {
             uv: Some(Vec2::new(tangent.dot(position), bitangent.dot(position))),
             barycentric: Vec3::ZERO,
             lifts: [Vec3::ZERO; 2],
+            color: [1.0; 4],
         }
     }
 }

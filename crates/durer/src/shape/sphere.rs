@@ -95,6 +95,7 @@ impl Shape for Sphere {
             uv,
             barycentric: Vec3::ZERO,
             lifts: [Vec3::ZERO; 2],
+            color: [1.0; 4],
         }
     }
 }

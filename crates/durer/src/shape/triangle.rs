@@ -65,6 +65,7 @@ impl Shape for Triangle {
             uv: Some(crossing.uv),
             barycentric,
             lifts: [Vec3::ZERO; 2],
+            color: [1.0; 4],
         }
     }
 }

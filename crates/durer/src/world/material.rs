@@ -3,6 +3,7 @@
 use crate::bsdf::{Layers, Tables};
 use crate::material::{ColorNoise, PrincipledMaterial, Solid};
 use crate::math::Color;
+use crate::world::Maps;
 use smallvec::SmallVec;
 use std::sync::Arc;
 
@@ -32,7 +33,9 @@ pub enum HighlightModel {
 pub struct Principled {
     /// As written.
     pub written: PrincipledMaterial,
-    /// The same everywhere, where no texture says otherwise.
+    /// Its pictures.
+    pub maps: Maps,
+    /// The same everywhere, where no picture says otherwise.
     pub layers: Layers,
     /// What its boundaries give back.
     pub tables: Tables,
@@ -45,8 +48,8 @@ pub struct Principled {
 pub struct Emission {
     /// Its radiance, without texture.
     pub radiance: Color,
-    /// Number of a texture that multiplies it.
-    pub texture: Option<u32>,
+    /// Whether a picture multiplies it.
+    pub textured: bool,
     /// Whether both sides shine, and not only that of the normal.
     pub two_sided: bool,
 }
@@ -58,6 +61,8 @@ pub struct Phong {
     pub diffuse: Color,
     /// Number of a texture that replaces it.
     pub texture: Option<u32>,
+    /// Whether the texture multiplies the diffuse colour, and the vertices' colours do too, as in materials of layers.
+    pub tinted: bool,
     /// Noise that replaces it.
     pub noise: Option<ColorNoise>,
     /// What ambient light meets; `None`: the diffuse colour, texture or noise.
@@ -95,6 +100,7 @@ impl Default for Phong {
         Phong {
             diffuse: Color::splat(0.8),
             texture: None,
+            tinted: false,
             noise: None,
             ambient: None,
             highlight: None,

@@ -2,7 +2,9 @@
 
 pub mod csg;
 pub mod emitters;
+mod maps;
 mod material;
+mod merged;
 mod object;
 pub mod shading;
 pub mod solid;
@@ -18,6 +20,7 @@ use crate::source::Digest;
 use crate::texture::{CubeMap, Environment, Texture};
 pub use emitters::Emitters;
 use glam::DVec3;
+pub use maps::Maps;
 pub use material::{Emission, HighlightModel, Material, Part, Parts, Phong, Principled};
 pub use object::{Geometry, MeshTree, Object, Placing};
 pub use shading::Shading;

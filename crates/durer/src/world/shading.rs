@@ -1,6 +1,6 @@
 //! How a surface point scatters light, and what it shines, as a path tracer sees it.
 
-use super::{Hit, Material, Phong, World};
+use super::{Geometry, Hit, Material, Object, Phong, World};
 use crate::bsdf::lobe::blinn::Blinn;
 use crate::bsdf::lobe::diffuse::Diffuse;
 use crate::bsdf::lobe::glass::{Mirror, Refraction, Through};
@@ -8,8 +8,8 @@ use crate::bsdf::{Bsdf, Frame, fresnel, layers};
 use crate::material::principled::Walls;
 use crate::math::{Color, Vec3};
 use crate::shape::Surface;
+use crate::world::HighlightModel;
 use crate::world::material::Emission;
-use crate::world::{HighlightModel, Principled};
 use glam::DVec3;
 
 /// A surface point as it is seen from one direction.
@@ -41,9 +41,13 @@ impl Shading {
 }
 
 impl World {
-    /// Noise, else texture, else the diffuse colour.
+    /// Noise, else texture, else the diffuse colour; or the diffuse colour times texture and vertices' colours.
     pub fn diffuse_color(&self, phong: &Phong, surface: &Surface) -> Color {
         let texture = phong.texture.zip(surface.uv).map(|(i, uv)| self.textures[i as usize].at(uv));
+        if phong.tinted {
+            let [r, g, b, _] = surface.color;
+            return phong.diffuse * Color::new(r, g, b) * texture.unwrap_or(Color::ONE);
+        }
         let noise = phong.noise.as_ref().map(|noise| noise.color(surface.position));
         noise.or(texture).unwrap_or(phong.diffuse)
     }
@@ -51,18 +55,25 @@ impl World {
     /// How a hit scatters light that is seen against a ray's direction. `inside`: it is seen from the side that its normal
     /// does not point to; `eta` is the index behind the surface over that before it.
     pub fn shading(&self, dir: Vec3, hit: &Hit, surface: &Surface, inside: bool, eta: f32) -> Shading {
-        let [n, n_geo] = [surface.n_shade, surface.n_geo].map(|n| if inside { -n } else { n });
+        let parts = self.parts(hit, surface.position);
+        // The first normal map of a mixture counts for all of it.
+        let mapped =
+            parts.iter().find_map(|part| part.phong.principled.as_ref().filter(|own| own.maps.normal.is_some()));
+        let n_shade = mapped.map_or(surface.n_shade, |own| self.layers_at(own, hit, surface).1);
+        let [n, n_geo] = [n_shade, surface.n_geo].map(|n| if inside { -n } else { n });
         // An interpolated normal may point away from the ray; the surface itself does not.
         let n = if dir.dot(n) < 0.0 { n.normalize_or(n_geo) } else { n_geo };
         let frame = Frame::around(n);
         let wo = frame.to_local(-dir.normalize_or(-n));
         let wo = Vec3::new(wo.x, wo.y, wo.z.max(1e-6));
         let mut bsdf = Bsdf::default();
-        for part in self.parts(hit, surface.position) {
-            let color = self.diffuse_color(part.phong, surface);
+        for part in parts {
             let own = match &part.phong.principled {
-                Some(principled) => principled_lobes(principled, part.phong, color, wo, inside, eta),
-                None => phong_lobes(part.phong, color, wo, eta),
+                Some(own) => {
+                    let (layers, _) = self.layers_at(own, hit, surface);
+                    layers::scattering(&own.written, &layers, &own.tables, wo, inside, eta)
+                }
+                None => phong_lobes(part.phong, self.diffuse_color(part.phong, surface), wo, eta),
             };
             bsdf.extend(&own, part.share);
         }
@@ -72,7 +83,7 @@ impl World {
     /// The light of a material's own, if points that shine can be chosen: the same everywhere.
     pub(super) fn emission_of(&self, material: u32) -> Option<&Emission> {
         match self.materials.get(material as usize)? {
-            Material::Phong(phong) => phong.emission.as_ref().filter(|emission| emission.texture.is_none()),
+            Material::Phong(phong) => phong.emission.as_ref().filter(|emission| !emission.textured),
             Material::Solid(..) => None,
         }
     }
@@ -81,8 +92,8 @@ impl World {
     pub fn emission(&self, hit: &Hit, surface: &Surface, inside: bool) -> Color {
         let own = |phong: &Phong| {
             let emission = phong.emission.as_ref().filter(|emission| emission.two_sided || !inside)?;
-            let texture = emission.texture.zip(surface.uv).map(|(i, uv)| self.textures[i as usize].at(uv));
-            Some(emission.radiance * texture.unwrap_or(Vec3::ONE))
+            let own = phong.principled.as_ref().filter(|_| emission.textured);
+            Some(emission.radiance * own.map_or(Color::ONE, |own| self.emission_at(own, hit, surface)))
         };
         if !self.has_emission(hit) {
             return Color::ZERO;
@@ -131,14 +142,19 @@ impl World {
 
     /// The share of a surface that is there.
     pub fn opacity(&self, hit: &Hit, surface: &Surface) -> f32 {
-        let own = |phong: &Phong| phong.principled.as_ref().map_or(1.0, |own| own.written.opacity);
+        let own = |phong: &Phong| phong.principled.as_ref().map_or(1.0, |own| self.opacity_at(own, hit, surface));
         self.parts(hit, surface.position).iter().map(|part| part.share * own(part.phong)).sum()
     }
 
     /// Whether some material is there in part only.
     pub(crate) fn finds_cutouts(&self) -> bool {
-        let own = |phong: &Phong| phong.principled.as_ref().is_some_and(|own| own.written.opacity < 1.0);
+        let own = |phong: &Phong| phong.principled.as_ref().is_some_and(|own| self.is_cutout(own));
+        let clear = |object: &Object| match &object.geometry {
+            Geometry::Mesh(tree) => tree.mesh.data().colors.iter().any(|color| color[3] < 1.0),
+            _ => false,
+        };
         self.materials.iter().any(|material| matches!(material, Material::Phong(phong) if own(phong)))
+            || self.objects.iter().any(clear)
     }
 
     /// What the body of an object takes of light, per unit of the world.
@@ -148,14 +164,6 @@ impl World {
             Material::Solid(..) => Color::ZERO,
         }
     }
-}
-
-fn principled_lobes(own: &Principled, phong: &Phong, color: Color, wo: Vec3, inside: bool, eta: f32) -> Bsdf {
-    let mut layers = own.layers;
-    if phong.texture.is_some() {
-        layers.base_color = own.layers.base_color * color;
-    }
-    layers::scattering(&own.written, &layers, &own.tables, wo, inside, eta)
 }
 
 /// The course's material under physical light: matte with `diffuseColor` over pi, Blinn's or Phong's highlight, and single

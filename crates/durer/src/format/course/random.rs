@@ -208,6 +208,7 @@ impl Random {
             lights,
             materials,
             root: (nodes || self.below(8) > 0).then_some(Group { objects }),
+            assets: Default::default(),
             camera_span: Default::default(),
         }
     }

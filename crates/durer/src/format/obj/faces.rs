@@ -1,6 +1,6 @@
 //! The faces of a Wavefront file, once all of its vertices are known.
 
-use super::{Statement, statement, words::Words};
+use super::{Statement, Switch, statement, words::Words};
 use crate::format::number::parse_integer;
 use crate::format::polygon::Cutter;
 use crate::format::report::{Report, counted, shown};
@@ -15,7 +15,7 @@ const KINDS: [(&str, &str, &str); 3] =
     [("vertex", "vertices", "v"), ("texture coordinate", "texture coordinates", "vt"), ("normal", "normals", "vn")];
 
 /// Reads the faces and cuts them into triangles. Repeated corners are kept: they do no harm.
-pub(super) fn read_faces(bytes: &[u8], mesh: &mut MeshData, report: &mut Report) {
+pub(super) fn read_faces(bytes: &[u8], mesh: &mut MeshData, switches: &mut Vec<Switch>, report: &mut Report) {
     let mut reader = FaceReader {
         bytes,
         total: [mesh.positions.len(), mesh.uvs.len(), mesh.normals.len()],
@@ -31,7 +31,8 @@ pub(super) fn read_faces(bytes: &[u8], mesh: &mut MeshData, report: &mut Report)
             Some(Statement::Uv) => reader.so_far[1] += 1,
             Some(Statement::Normal) => reader.so_far[2] += 1,
             Some(Statement::Face) => reader.face(keyword, &mut words, mesh, report),
-            Some(Statement::Ignored) | None => {}
+            Some(Statement::Material) => switches.push((mesh.triangles.len(), rest_of(&mut words, keyword.end))),
+            Some(Statement::Library | Statement::Ignored) | None => {}
         }
         words.skip_rest();
         if report.is_full() {
@@ -47,6 +48,14 @@ pub(super) fn read_faces(bytes: &[u8], mesh: &mut MeshData, report: &mut Report)
     if let Some((first, count)) = reader.degenerate {
         let verb = if count == 1 { "names" } else { "name" };
         report.note(first, format!("{} {verb} a vertex twice; the first is here", counted(count, "face", "faces")));
+    }
+}
+
+/// The rest of a statement as one range, for names may have blanks.
+pub(super) fn rest_of(words: &mut Words, end: usize) -> Range<usize> {
+    match words.next_word() {
+        Some(first) => first.start..words.skip_rest().unwrap_or(first.end),
+        None => end..end,
     }
 }
 

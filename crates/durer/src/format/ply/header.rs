@@ -55,6 +55,19 @@ impl Scalar {
         }
     }
 
+    /// The greatest value of the type where colours are whole numbers; 1 where they are not.
+    pub fn greatest(self) -> f32 {
+        match self {
+            Scalar::I8 => 127.0,
+            Scalar::U8 => 255.0,
+            Scalar::I16 => 32767.0,
+            Scalar::U16 => 65535.0,
+            Scalar::I32 => i32::MAX as f32,
+            Scalar::U32 => u32::MAX as f32,
+            Scalar::F32 | Scalar::F64 => 1.0,
+        }
+    }
+
     pub fn is_integer(self) -> bool {
         !matches!(self, Scalar::F32 | Scalar::F64)
     }

@@ -2,14 +2,16 @@
 
 use super::body::{Body, Stop};
 use super::header::{Element, Property};
-use super::values::Values;
+use super::values::{ValueError, Values};
 use crate::diag::did_you_mean;
+use crate::format::number::NumberError;
 use crate::format::report::{counted, shown};
+use crate::image::decode_srgb;
 use crate::math::{Vec2, Vec3};
 use crate::shape::mesh::NO_INDEX;
 
 /// The properties of a vertex that are read, by all of their names, in the order of a [`Row`].
-const COLUMNS: [&[&str]; 8] = [
+const COLUMNS: [&[&str]; 12] = [
     &["x"],
     &["y"],
     &["z"],
@@ -18,9 +20,13 @@ const COLUMNS: [&[&str]; 8] = [
     &["nz"],
     &["u", "s", "texture_u", "texture_s"],
     &["v", "t", "texture_v", "texture_t"],
+    &["red", "r", "diffuse_red"],
+    &["green", "g", "diffuse_green"],
+    &["blue", "b", "diffuse_blue"],
+    &["alpha", "a", "diffuse_alpha"],
 ];
 
-/// Position, normal and texture coordinates.
+/// Position, normal, texture coordinates, colour and opacity.
 type Row = [f32; COLUMNS.len()];
 
 const CORNER_LISTS: [&str; 2] = ["vertex_indices", "vertex_index"];
@@ -35,6 +41,10 @@ impl<V: Values> Body<'_, '_, V> {
             let Some(column) = COLUMNS.iter().position(|names| names.iter().any(|n| n.as_bytes() == name)) else {
                 continue;
             };
+            // Lists by the names of colours are something else.
+            if property.count.is_some() && column >= 8 {
+                continue;
+            }
             if property.count.is_some() {
                 self.report.error(property.name.clone(), format!("{} must be a number, not a list", shown(name)));
             }
@@ -59,11 +69,18 @@ impl<V: Values> Body<'_, '_, V> {
     pub(super) fn read_vertices(&mut self, element: &Element) -> Result<(), Stop> {
         let columns = self.columns(element)?;
         let has = |range: std::ops::Range<usize>| range.clone().all(|column| columns.contains(&Some(column)));
-        let (has_normals, has_uvs) = (has(3..6), has(6..8));
+        let (has_normals, has_uvs, has_colors) = (has(3..6), has(6..8), has(8..11));
+        // Whole numbers are shares of the greatest of their type.
+        let most = |column: usize| {
+            let at = columns.iter().position(|found| *found == Some(column));
+            at.map_or(1.0, |at| element.properties[at].scalar.greatest())
+        };
+        let most: [f32; 4] = std::array::from_fn(|i| most(8 + i));
         let rows = self.likely_rows(element);
         self.mesh.positions.reserve_exact(rows);
         self.mesh.normals.reserve_exact(if has_normals { rows } else { 0 });
         self.mesh.uvs.reserve_exact(if has_uvs { rows } else { 0 });
+        self.mesh.colors.reserve_exact(if has_colors { rows } else { 0 });
         for row in 0..element.rows {
             let mut values: Row = [0.0; COLUMNS.len()];
             for (property, &column) in element.properties.iter().zip(&columns) {
@@ -73,16 +90,23 @@ impl<V: Values> Body<'_, '_, V> {
                 };
                 match self.values.float(property.scalar) {
                     Ok(value) => values[column] = value,
+                    Err(ValueError::Number(NumberError::NotFinite)) if column >= 8 => values[column] = 1.0,
                     Err(error) => self.tolerate(error, element, row)?,
                 }
             }
-            let [x, y, z, nx, ny, nz, u, v] = values;
+            let [x, y, z, nx, ny, nz, u, v, color @ ..] = values;
             self.mesh.positions.push(Vec3::new(x, y, z));
             if has_normals {
                 self.mesh.normals.push(Vec3::new(nx, ny, nz));
             }
             if has_uvs {
                 self.mesh.uvs.push(Vec2::new(u, v));
+            }
+            if has_colors {
+                let share = |i: usize| (color[i] / most[i]).clamp(0.0, 1.0);
+                let light = |i: usize| decode_srgb((share(i) * 255.0 + 0.5) as u8);
+                let opacity = if columns.contains(&Some(11)) { share(3) } else { 1.0 };
+                self.mesh.colors.push([light(0), light(1), light(2), opacity]);
             }
         }
         Ok(())

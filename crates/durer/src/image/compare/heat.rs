@@ -14,7 +14,7 @@ const RAMP: [[f32; 3]; 6] = [
 
 /// A picture of errors from 0 (black) to 1 (light yellow), row by row.
 pub fn heat_map(width: u32, height: u32, errors: &[f32]) -> Image8 {
-    Image8 { width, height, pixels: errors.iter().map(|&error| heat(error)).collect() }
+    Image8 { width, height, pixels: errors.iter().map(|&error| heat(error)).collect(), alpha: Vec::new() }
 }
 
 fn heat(error: f32) -> [u8; 3] {

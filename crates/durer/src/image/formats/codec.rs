@@ -28,14 +28,14 @@ pub fn head(decoder: &impl ImageDecoder) -> Head {
         eight,
         bytes_per_pixel: match (color, eight) {
             (ColorType::Rgb8, _) => stored,
-            (_, true) => stored + size_of::<[u8; 3]>() as u64,
+            (_, true) => stored + size_of::<[u8; 3]>() as u64 + u64::from(color.has_alpha()),
             (_, false) => stored + size_of::<Vec3>() as u64,
         },
         spare: 0,
     }
 }
 
-/// Decodes the pixels: grey becomes three equal channels, alpha is dropped, sixteen bits become 0 to 1.
+/// Decodes the pixels: grey becomes three equal channels, alpha of eight bits is kept apart and other alpha dropped, sixteen bits become 0 to 1.
 pub fn raster(name: &'static str, decoder: impl ImageDecoder) -> Result<Raster, ImageError> {
     let ((width, height), color) = (decoder.dimensions(), decoder.color_type());
     let count = width as usize * height as usize;
@@ -43,7 +43,7 @@ pub fn raster(name: &'static str, decoder: impl ImageDecoder) -> Result<Raster, 
     if color == ColorType::Rgb8 {
         let mut pixels = room_for(count, [0; 3])?;
         decoder.read_image(pixels.as_flattened_mut()).map_err(malformed)?;
-        return Ok(Raster::Eight(Image8 { width, height, pixels }));
+        return Ok(Raster::Eight(Image8 { width, height, pixels, alpha: Vec::new() }));
     }
     let mut bytes = room_for(count * usize::from(color.bytes_per_pixel()), 0)?;
     decoder.read_image(&mut bytes).map_err(malformed)?;
@@ -53,7 +53,11 @@ pub fn raster(name: &'static str, decoder: impl ImageDecoder) -> Result<Raster, 
     let pixels = bytes.chunks_exact(color.bytes_per_pixel().into());
     Ok(match color {
         ColorType::L8 | ColorType::La8 | ColorType::Rgba8 => {
-            Raster::Eight(Image8 { width, height, pixels: filled(count, pixels.map(eight))? })
+            let alpha = match color.has_alpha() {
+                true => filled(count, pixels.clone().map(|pixel| pixel[pixel.len() - 1]))?,
+                false => Vec::new(),
+            };
+            Raster::Eight(Image8 { width, height, pixels: filled(count, pixels.map(eight))?, alpha })
         }
         ColorType::L16 | ColorType::La16 => {
             float_raster(width, height, pixels.map(|pixel| Vec3::splat(sixteen(pixel))))?

@@ -31,6 +31,7 @@ fn head(bytes: &[u8]) -> Result<Head, ImageError> {
     let (stored, eight) = (channels + u64::from(transparent), *depth != 16);
     let bytes_per_pixel = match (eight, stored) {
         (true, 3) => 3,
+        (true, 2 | 4) => stored + 4,
         (true, _) => stored + 3,
         (false, _) => 2 * stored + 12,
     };

@@ -153,7 +153,7 @@ fn a_files_normals_and_coordinates_are_interpolated() {
         triangles: vec![[0, 1, 2]],
         triangle_uvs: vec![[0, 1, 2]],
         triangle_normals: vec![[0, 1, 2]],
-        vertices: Vec::new(),
+        ..MeshData::default()
     };
     let surface = |data: &MeshData, rule, file_normals| {
         let crossing = Crossing { t: 1.0, uv: Vec2::new(0.25, 0.5) };

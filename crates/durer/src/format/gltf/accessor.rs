@@ -1,0 +1,321 @@
+//! Accessors: numbers of all component types in buffers, strided, normalised, sparse.
+
+use super::Model;
+use super::buffers::View;
+use super::json::At;
+
+/// The type of one number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Component {
+    I8,
+    U8,
+    I16,
+    U16,
+    U32,
+    F32,
+}
+
+impl Component {
+    fn of(code: u64) -> Option<Component> {
+        Some(match code {
+            5120 => Component::I8,
+            5121 => Component::U8,
+            5122 => Component::I16,
+            5123 => Component::U16,
+            5125 => Component::U32,
+            5126 => Component::F32,
+            _ => return None,
+        })
+    }
+
+    pub fn size(self) -> usize {
+        match self {
+            Component::I8 | Component::U8 => 1,
+            Component::I16 | Component::U16 => 2,
+            Component::U32 | Component::F32 => 4,
+        }
+    }
+
+    /// The number at the start of some bytes; a normalised one lies between -1 or 0 and 1 (chapter 3.11 of the specification).
+    fn float(self, b: &[u8], normalized: bool) -> f32 {
+        let (value, most) = match self {
+            Component::I8 => (f32::from(b[0] as i8), 127.0),
+            Component::U8 => (f32::from(b[0]), 255.0),
+            Component::I16 => (f32::from(i16::from_le_bytes([b[0], b[1]])), 32767.0),
+            Component::U16 => (f32::from(u16::from_le_bytes([b[0], b[1]])), 65535.0),
+            Component::U32 => return u32::from_le_bytes([b[0], b[1], b[2], b[3]]) as f32,
+            Component::F32 => return f32::from_le_bytes([b[0], b[1], b[2], b[3]]),
+        };
+        if normalized { (value / most).max(-1.0) } else { value }
+    }
+
+    fn whole(self, b: &[u8]) -> u32 {
+        match self {
+            Component::I8 | Component::U8 => b[0].into(),
+            Component::I16 | Component::U16 => u16::from_le_bytes([b[0], b[1]]).into(),
+            Component::U32 | Component::F32 => u32::from_le_bytes([b[0], b[1], b[2], b[3]]),
+        }
+    }
+}
+
+/// Rows of numbers.
+#[derive(Clone)]
+pub(super) struct Accessor {
+    pub component: Component,
+    pub normalized: bool,
+    /// Numbers in a row: 1 to 4, or 4, 9 and 16 for matrices.
+    pub width: usize,
+    pub is_matrix: bool,
+    pub count: usize,
+    view: Option<View>,
+    offset: usize,
+    sparse: Option<Sparse>,
+    pub has_bounds: bool,
+    /// Whether its view says how far rows lie apart.
+    pub strided: bool,
+}
+
+#[derive(Clone)]
+struct Sparse {
+    count: usize,
+    component: Component,
+    indices: (View, usize),
+    values: (View, usize),
+}
+
+/// The most rows of an accessor whose numbers are in no buffer, but all 0.
+const MOST_ZEROES: u64 = 1 << 22;
+
+const TYPES: [(&str, usize); 7] =
+    [("SCALAR", 1), ("VEC2", 2), ("VEC3", 3), ("VEC4", 4), ("MAT2", 4), ("MAT3", 9), ("MAT4", 16)];
+
+impl Model<'_> {
+    pub(super) fn accessors(&self, root: &At) -> Vec<Option<Accessor>> {
+        let Some(accessors) = root.get("accessors") else { return Vec::new() };
+        accessors.items().map(|accessor| self.accessor_of(&accessor)).collect()
+    }
+
+    fn component(&self, at: &At) -> Option<Component> {
+        let code = at.whole(..)?;
+        let component = Component::of(code);
+        if component.is_none() {
+            at.error("VALUE_NOT_IN_LIST", format!("invalid value {code}: it is no type of a component"));
+        }
+        component
+    }
+
+    fn accessor_of(&self, at: &At) -> Option<Accessor> {
+        at.object()?;
+        let component = at.need("componentType").and_then(|code| self.component(&code));
+        let count = at.need("count").and_then(|count| count.whole(1..=u64::from(u32::MAX)));
+        let width = at.need("type").and_then(|kind| kind.word(&TYPES));
+        let normalized = at.get("normalized").and_then(|flag| flag.boolean()).unwrap_or(false);
+        let (component, count, width) = (component?, count?, width?);
+        let is_matrix = at.get("type").and_then(|kind| kind.string()).is_some_and(|kind| kind.starts_with("MAT"));
+        let offset = at.get("byteOffset").map_or(Some(0), |offset| offset.whole(..))? as usize;
+        let view = match at.get("bufferView") {
+            Some(view) => Some(self.views[view.index(self.views.len())?].clone()?),
+            None => {
+                if let Some(offset) = at.get("byteOffset") {
+                    offset.error("UNSATISFIED_DEPENDENCY", "`byteOffset` needs a `bufferView`");
+                }
+                if count > MOST_ZEROES {
+                    let message = format!("an accessor of {count} zeroes is too large: at most {MOST_ZEROES}");
+                    at.error("VALUE_NOT_IN_RANGE", message);
+                    return None;
+                }
+                None
+            }
+        };
+        let has_bounds = at.get("min").is_some() && at.get("max").is_some();
+        let strided = view.as_ref().is_some_and(|view| view.stride.is_some());
+        let count = count as usize;
+        let mut accessor = Accessor {
+            component,
+            normalized,
+            width,
+            is_matrix,
+            count,
+            view,
+            offset,
+            sparse: None,
+            has_bounds,
+            strided,
+        };
+        accessor.check(at)?;
+        // Where the bytes are missing, that was said.
+        accessor.view.as_ref().map_or(Some(()), |view| view.slice.as_ref().map(|_| ()))?;
+        accessor.sparse = match at.get("sparse") {
+            Some(sparse) => Some(self.sparse(&sparse, &accessor)?),
+            None => None,
+        };
+        if accessor.view.is_some() {
+            self.charge(count, 4 * width, at)?;
+            accessor.check_values(at);
+        }
+        Some(accessor)
+    }
+
+    fn sparse(&self, at: &At, accessor: &Accessor) -> Option<Sparse> {
+        let count = at.need("count")?.whole(1..)? as usize;
+        if count > accessor.count {
+            let message = format!("{count} rows are replaced, and there are {}", accessor.count);
+            at.get("count").unwrap_or(*at).error("ACCESSOR_SPARSE_COUNT_OUT_OF_RANGE", message);
+            return None;
+        }
+        let (indices, values) = (at.need("indices")?, at.need("values")?);
+        let component = self.component(&indices.need("componentType")?)?;
+        if matches!(component, Component::I8 | Component::I16 | Component::F32) {
+            indices.error("VALUE_NOT_IN_LIST", "indices must be unsigned whole numbers");
+            return None;
+        }
+        let place = |at: &At, size: usize| {
+            let view = at.need("bufferView")?;
+            let found = self.views[view.index(self.views.len())?].clone()?;
+            if found.stride.is_some() {
+                view.error("BUFFER_VIEW_INVALID_BYTE_STRIDE", "rows that are replaced must lie side by side");
+                return None;
+            }
+            let offset = at.get("byteOffset").map_or(Some(0), |offset| offset.whole(..))? as usize;
+            let end = count.checked_mul(size).and_then(|size| size.checked_add(offset));
+            if end.is_none_or(|end| end > found.length) {
+                at.error("ACCESSOR_TOO_LONG", "the rows that are replaced do not fit into their view");
+                return None;
+            }
+            found.slice.as_ref()?;
+            Some((found, offset))
+        };
+        let places = (place(&indices, component.size()), place(&values, accessor.row()));
+        let sparse = Sparse { count, component, indices: places.0?, values: places.1? };
+        self.charge(count, 4, at)?;
+        let mut previous = None;
+        for i in 0..count {
+            let index = sparse.index(i);
+            if index as usize >= accessor.count {
+                indices.error("ACCESSOR_SPARSE_INDEX_OOB", format!("there is no row {index}"));
+                return None;
+            }
+            if previous.is_some_and(|previous| index <= previous) {
+                indices.error("ACCESSOR_SPARSE_INDICES_NON_INCREASING", "indices must strictly increase");
+                return None;
+            }
+            previous = Some(index);
+        }
+        Some(sparse)
+    }
+}
+
+impl Sparse {
+    fn index(&self, i: usize) -> u32 {
+        let (view, offset) = &self.indices;
+        self.component.whole(&view.bytes()[offset + i * self.component.size()..])
+    }
+}
+
+impl Accessor {
+    /// Where in a row the i-th number is: columns of matrices begin at multiples of four bytes.
+    fn place(&self, i: usize) -> usize {
+        let size = self.component.size();
+        let rows = match self.width {
+            9 => 3,
+            4 if self.is_matrix => 2,
+            _ => return i * size,
+        };
+        (i / rows) * (rows * size).next_multiple_of(4) + (i % rows) * size
+    }
+
+    /// Bytes of a row.
+    fn row(&self) -> usize {
+        self.place(self.width - 1) + self.component.size()
+    }
+
+    fn stride(&self) -> usize {
+        let dense = if self.is_matrix { self.row().next_multiple_of(self.component.size()) } else { self.row() };
+        self.view.as_ref().and_then(|view| view.stride).unwrap_or(dense)
+    }
+
+    /// Whether it fits into its view.
+    fn check(&self, at: &At) -> Option<()> {
+        let Some(view) = &self.view else { return Some(()) };
+        let bytes = view.length;
+        if self.stride() < self.row() {
+            let message = format!("rows of {} bytes lie {} bytes apart", self.row(), self.stride());
+            at.error("ACCESSOR_SMALL_BYTESTRIDE", message);
+            return None;
+        }
+        if !self.offset.is_multiple_of(self.component.size()) {
+            let message = format!("offset {} is no multiple of the component's size", self.offset);
+            at.get("byteOffset").unwrap_or(*at).error("ACCESSOR_OFFSET_ALIGNMENT", message);
+            return None;
+        }
+        let end = self.stride().checked_mul(self.count - 1).and_then(|end| end.checked_add(self.offset + self.row()));
+        if end.is_none_or(|end| end > bytes) {
+            let message =
+                format!("{} rows from byte {} on do not fit into a view of {bytes} bytes", self.count, self.offset);
+            at.error("ACCESSOR_TOO_LONG", message);
+            return None;
+        }
+        Some(())
+    }
+
+    /// Whether all numbers are finite.
+    fn check_values(&self, at: &At) {
+        if self.component != Component::F32 {
+            return;
+        }
+        let mut row = [0.0; 16];
+        for i in 0..self.count {
+            self.dense(i, &mut row[..self.width]);
+            if !row[..self.width].iter().all(|x| x.is_finite()) {
+                at.error("ACCESSOR_INVALID_FLOAT", format!("row {i} has a number that is infinite or none"));
+                return;
+            }
+        }
+    }
+
+    fn dense(&self, i: usize, row: &mut [f32]) {
+        match &self.view {
+            Some(view) => {
+                let bytes = &view.bytes()[self.offset + i * self.stride()..];
+                (0..row.len()).for_each(|k| row[k] = self.component.float(&bytes[self.place(k)..], self.normalized));
+            }
+            None => row.fill(0.0),
+        }
+    }
+
+    /// All rows; numbers beyond the accessor's own are left 0.
+    pub fn rows<const N: usize>(&self) -> Vec<[f32; N]> {
+        let width = self.width.min(N);
+        let mut rows = vec![[0.0; N]; self.count];
+        if self.view.is_some() {
+            rows.iter_mut().enumerate().for_each(|(i, row)| self.dense(i, &mut row[..width]));
+        }
+        if let Some(sparse) = &self.sparse {
+            let (view, offset) = &sparse.values;
+            for i in 0..sparse.count {
+                let bytes = &view.bytes()[offset + i * self.row()..];
+                let row = &mut rows[sparse.index(i) as usize];
+                (0..width).for_each(|k| row[k] = self.component.float(&bytes[self.place(k)..], self.normalized));
+            }
+        }
+        rows
+    }
+
+    /// All rows of one whole number.
+    pub fn wholes(&self) -> Vec<u32> {
+        let mut all: Vec<u32> = match &self.view {
+            Some(view) => {
+                let (bytes, stride) = (view.bytes(), self.stride());
+                (0..self.count).map(|i| self.component.whole(&bytes[self.offset + i * stride..])).collect()
+            }
+            None => vec![0; self.count],
+        };
+        if let Some(sparse) = &self.sparse {
+            let (view, offset) = &sparse.values;
+            for i in 0..sparse.count {
+                all[sparse.index(i) as usize] = self.component.whole(&view.bytes()[offset + i * self.row()..]);
+            }
+        }
+        all
+    }
+}

@@ -1,0 +1,169 @@
+//! Where in a JSON text a pointer leads: the text is walked once more, for messages only.
+
+use std::ops::Range;
+
+/// The range of the value that a pointer names or, where it is not there, of the innermost value around it.
+pub(super) fn locate(text: &[u8], pointer: &str) -> Range<usize> {
+    let mut walk = Walk { text, at: 0 };
+    walk.blanks();
+    'steps: for step in pointer.split('/').skip(1).map(|step| step.replace("~1", "/").replace("~0", "~")) {
+        let range = walk.here();
+        let opening = walk.peek();
+        if !matches!(opening, Some(b'{' | b'[')) {
+            break;
+        }
+        walk.at += 1;
+        let mut number = 0;
+        loop {
+            walk.blanks();
+            if matches!(walk.peek(), None | Some(b'}' | b']')) {
+                return range;
+            }
+            let found = match opening {
+                Some(b'{') => {
+                    let key = walk.key();
+                    walk.blanks();
+                    walk.at += 1; // the colon
+                    walk.blanks();
+                    key == step
+                }
+                _ => number.to_string() == step,
+            };
+            if found {
+                continue 'steps;
+            }
+            walk.skip();
+            walk.blanks();
+            if walk.peek() == Some(b',') {
+                walk.at += 1;
+            }
+            number += 1;
+        }
+    }
+    walk.here()
+}
+
+/// Where the items of a list begin that is a property of the document.
+pub(super) fn items(text: &[u8], key: &str) -> Vec<usize> {
+    let list = locate(text, &format!("/{key}"));
+    let (mut walk, mut starts) = (Walk { text, at: list.start }, Vec::new());
+    if walk.peek() != Some(b'[') {
+        return starts;
+    }
+    walk.at += 1;
+    loop {
+        walk.blanks();
+        if matches!(walk.peek(), None | Some(b']' | b'}')) {
+            return starts;
+        }
+        starts.push(walk.at);
+        walk.skip();
+        walk.blanks();
+        if walk.peek() == Some(b',') {
+            walk.at += 1;
+        }
+    }
+}
+
+struct Walk<'a> {
+    text: &'a [u8],
+    at: usize,
+}
+
+impl Walk<'_> {
+    fn peek(&self) -> Option<u8> {
+        self.text.get(self.at).copied()
+    }
+
+    fn blanks(&mut self) {
+        while matches!(self.peek(), Some(b' ' | b'\t' | b'\n' | b'\r')) {
+            self.at += 1;
+        }
+    }
+
+    /// The value here, or the first byte of one of several parts.
+    fn here(&self) -> Range<usize> {
+        let mut walk = Walk { ..*self };
+        if matches!(walk.peek(), Some(b'{' | b'[')) {
+            return self.at..self.at + 1;
+        }
+        walk.skip();
+        self.at.min(self.text.len())..walk.at.min(self.text.len())
+    }
+
+    fn key(&mut self) -> String {
+        let start = self.at;
+        self.string();
+        let text = &self.text[start.min(self.text.len())..self.at.min(self.text.len())];
+        serde_json::from_slice(text).unwrap_or_default()
+    }
+
+    fn string(&mut self) {
+        self.at += 1;
+        while let Some(byte) = self.peek() {
+            self.at += 1;
+            match byte {
+                b'"' => return,
+                b'\\' => self.at += 1,
+                _ => {}
+            }
+        }
+    }
+
+    /// Goes past a value: to where brackets that were opened are closed again.
+    fn skip(&mut self) {
+        let mut depth = 0usize;
+        loop {
+            match self.peek() {
+                None => return,
+                Some(b'"') => self.string(),
+                Some(b'{' | b'[') => {
+                    depth += 1;
+                    self.at += 1;
+                }
+                Some(b'}' | b']') => {
+                    if depth == 0 {
+                        return;
+                    }
+                    depth -= 1;
+                    self.at += 1;
+                    if depth == 0 {
+                        return;
+                    }
+                }
+                Some(b',') if depth == 0 => return,
+                Some(b' ' | b'\t' | b'\n' | b'\r') if depth == 0 => return,
+                Some(_) => self.at += 1,
+            }
+            if depth == 0 && self.text.get(self.at.wrapping_sub(1)) == Some(&b'"') {
+                return;
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pointers_lead_to_values() {
+        let text = br#"{ "a": [1, {"b/c": "x\"}y", "d": [ ]}, -2.5e3], "e": true }"#;
+        let at = |pointer: &str| String::from_utf8_lossy(&text[locate(text, pointer)]).into_owned();
+        assert_eq!(at(""), "{");
+        assert_eq!(at("/a"), "[");
+        assert_eq!((at("/a/0"), at("/a/2"), at("/e")), ("1".into(), "-2.5e3".into(), "true".into()));
+        assert_eq!(at("/a/1/b~1c"), r#""x\"}y""#);
+        assert_eq!(at("/a/1/d"), "[");
+        assert_eq!(items(text, "a").iter().map(|&i| text[i]).collect::<Vec<_>>(), b"1{-");
+        assert!(items(text, "e").is_empty() && items(text, "x").is_empty());
+        // What is not there is said of what is around it.
+        assert_eq!((at("/a/7"), at("/a/1/none"), at("/e/x")), ("[".into(), "{".into(), "true".into()));
+        for end in 0..text.len() {
+            for pointer in ["", "/a/2", "/a/1/d/0", "/e", "/e/f/g"] {
+                let range = locate(&text[..end], pointer);
+                assert!(range.start <= range.end && range.end <= end, "{end} {pointer}");
+            }
+        }
+    }
+}

@@ -1,0 +1,288 @@
+//! glTF files against what the Khronos validator says of them, the numbers of accessors, and damage of all kinds.
+
+use crate::diag::{Diagnostics, Files, Severity};
+use crate::format::scene::{Input, find_scene_format, read_model};
+use crate::math::{Vec2, Vec3};
+use crate::scene::{Scene, Staging};
+use crate::shape::MeshData;
+use crate::source::Source;
+use std::path::{Path, PathBuf};
+
+/// Reads bytes as a file of a folder; findings as severity, code and message.
+fn read(bytes: &[u8], folder: &Path, name: &str, at: Option<f32>) -> (Option<Scene>, Vec<(Severity, String)>) {
+    let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
+    let bytes = bytes.into();
+    let file = files.add(name, std::sync::Arc::clone(&bytes));
+    let source = Source::folder(folder);
+    let staging = Staging { at, ..Staging::default() };
+    let input = Input { bytes: &bytes, file, name, source: &source, staging: &staging };
+    let format = find_scene_format(&bytes, name).expect("it is known");
+    let scene = read_model(format, &input, &mut diagnostics);
+    for span in diagnostics.iter().filter_map(|finding| finding.span) {
+        assert!(span.start <= span.end && span.end as usize <= bytes.len(), "{span:?}");
+    }
+    assert_eq!(scene.is_none(), diagnostics.has_errors(), "{name}");
+    (scene, diagnostics.iter().map(|d| (d.severity, format!("{} {}", d.code, d.message))).collect())
+}
+
+fn corpus(folder: &str) -> Option<PathBuf> {
+    let default = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared");
+    let root = std::env::var_os("DURER_CORPUS").map_or_else(default, PathBuf::from).join("samples/gltf").join(folder);
+    if !root.is_dir() {
+        println!("skipped: there is no {}", root.display());
+        return None;
+    }
+    Some(root)
+}
+
+fn below(folder: &Path, found: &mut Vec<PathBuf>) {
+    let mut entries: Vec<PathBuf> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    entries.sort();
+    for path in entries {
+        match path.is_dir() {
+            true => below(&path, found),
+            false if path.extension().is_some_and(|e| e == "gltf" || e == "glb") => found.push(path),
+            false => {}
+        }
+    }
+}
+
+/// Errors of the validator with which a file is still shown, in which of its folders, and why.
+const SURVIVED: &[(&str, &str, &str)] = &[
+    ("", "/animation", "animations are read only where a moment is asked for"),
+    ("ACCESSOR_ELEMENT_OUT_OF_", "accessor_data/", "bounds are those of the numbers, whatever the file says of them"),
+    ("ACCESSOR_MAX_MISMATCH", "accessor_data/", "as before"),
+    ("ACCESSOR_MIN_MISMATCH", "accessor_data/", "as before"),
+    (
+        "BUFFER_VIEW_INVALID_BYTE_STRIDE",
+        "buffer_view/",
+        "a stride where none belongs says where the numbers are all the same",
+    ),
+    ("BUFFER_VIEW_TARGET_OVERRIDE", "mesh/", "what a view is for is a hint to graphics hardware"),
+    ("IMAGE_", "image", "pictures are known by their bytes, and decoded where a material shows them"),
+    ("INVALID_URI", "image", "as before: the bytes are not of the kind that is declared"),
+    ("TEXTURE_INVALID_IMAGE_MIME_TYPE", "texture", "as before"),
+    ("MESH_PRIMITIVE_ACCESSOR_WITHOUT_BYTESTRIDE", "mesh/", "numbers that share a view lie where they lie"),
+    ("MESH_PRIMITIVE_ATTRIBUTES_ACCESSOR_UNSIGNED_INT", "mesh/", "attributes of one's own are not read"),
+    ("MESH_PRIMITIVE_JOINTS_WEIGHTS_MISMATCH", "mesh/", "only the first set is read"),
+    ("MESH_PRIMITIVE_NO_TANGENT_SPACE", "clearcoat", "normals of coats are not read"),
+    ("MESH_PRIMITIVE_TOO_FEW_TEXCOORDS", "uv_sets", "a texture without coordinates is left out"),
+    (
+        "MESH_PRIMITIVE_INDICES_ACCESSOR_WITH_BYTESTRIDE",
+        "mesh/",
+        "refused where the view has bytes, which it has not here",
+    ),
+    ("NODE_SKIN_NO_SCENE", "skin/", "bones need not be seen"),
+    ("NODE_WEIGHTS_INVALID", "node/", "weights too many move nothing"),
+    ("NON_REQUIRED_EXTENSION", "quantization", "what is used is known, required or not"),
+    ("SKIN_NO_COMMON_ROOT", "skin/", "bones lie where their own parents put them"),
+    ("SKIN_SKELETON_INVALID", "skin/", "the root of a skeleton is a hint"),
+    ("TYPE_MISMATCH", "variants", "variants of materials are not read"),
+    ("UNDEFINED_PROPERTY", "variants", "as before"),
+    ("UNRESOLVED_REFERENCE", "variants", "as before"),
+    ("VALUE_NOT_IN_RANGE", "iridescence", "iridescence is not read"),
+    ("VALUE_NOT_IN_RANGE", "dispersion", "dispersion is not read"),
+    ("TYPE_MISMATCH", "visibility", "visibility of nodes is not read"),
+    ("UNDECLARED_EXTENSION", "webp", "an extension is read where it stands"),
+    ("UNEXPECTED_EXTENSION_OBJECT", "", "an extension where none belongs is passed over"),
+    ("UNSATISFIED_DEPENDENCY", "node/", "weights and skins of nodes without a mesh move nothing"),
+];
+
+#[test]
+fn the_validator_s_files_are_refused_or_survive_for_a_reason() {
+    let Some(root) = corpus("validator") else { return };
+    let mut paths = Vec::new();
+    below(&root, &mut paths);
+    let (mut refused, mut same, mut clean, mut survivors) = (0, 0, 0, 0);
+    let mut unreasoned = Vec::new();
+    for path in &paths {
+        let report = path.with_file_name(format!("{}.report.json", path.file_name().unwrap().to_string_lossy()));
+        let report: serde_json::Value = serde_json::from_slice(&std::fs::read(report).unwrap()).unwrap();
+        let messages = report["issues"]["messages"].as_array().unwrap();
+        let errors: Vec<_> = messages.iter().filter(|message| message["severity"] == 0).collect();
+        let codes: Vec<&str> = errors.iter().map(|error| error["code"].as_str().unwrap()).collect();
+        let name = path.file_name().unwrap().to_string_lossy().into_owned();
+        let (scene, findings) = read(&std::fs::read(path).unwrap(), path.parent().unwrap(), &name, None);
+        let ours: Vec<&String> = findings.iter().filter(|f| f.0 == Severity::Error).map(|f| &f.1).collect();
+        let shown = path.strip_prefix(&root).unwrap().display();
+        match (errors.is_empty(), scene.is_some()) {
+            (true, true) => clean += 1,
+            (true, false) => panic!("{shown} is sound, and refused: {ours:?}"),
+            (false, true) => {
+                let place = format!("/{shown}");
+                let reason = |code: &&str| {
+                    SURVIVED.iter().any(|(known, folder, _)| code.starts_with(known) && place.contains(folder))
+                };
+                if !codes.iter().all(reason) {
+                    unreasoned.push(format!("{shown}: {codes:?}"));
+                }
+                survivors += 1;
+            }
+            (false, false) => {
+                refused += 1;
+                let place = |error: &&&serde_json::Value| {
+                    let pointer = error["pointer"].as_str().unwrap_or_default();
+                    let code = error["code"].as_str().unwrap();
+                    ours.iter().any(|own| own.starts_with(code) && own.contains(pointer))
+                };
+                same += usize::from(errors.iter().filter(place).count() > 0);
+            }
+        }
+    }
+    println!(
+        "{refused} refused, {same} of them with the validator's code and place; {survivors} survive; {clean} clean"
+    );
+    assert!(unreasoned.is_empty(), "these should be refused: {unreasoned:#?}");
+    assert!(same * 10 >= refused * 9, "{same} of {refused}");
+}
+
+#[test]
+fn the_models_of_khronos_are_read_at_rest_and_moving() {
+    let Some(root) = corpus("khronos") else { return };
+    let mut paths = Vec::new();
+    below(&root, &mut paths);
+    for path in paths.iter().filter(|path| !path.to_string_lossy().contains("Draco")) {
+        for at in [None, Some(0.6)] {
+            let name = path.file_name().unwrap().to_string_lossy().into_owned();
+            let (scene, findings) = read(&std::fs::read(path).unwrap(), path.parent().unwrap(), &name, at);
+            let scene = scene.unwrap_or_else(|| panic!("{}: {findings:?}", path.display()));
+            assert!(!scene.assets.meshes.is_empty(), "{}", path.display());
+            for mesh in scene.assets.meshes.values() {
+                assert!(mesh.triangles.iter().flatten().all(|&i| (i as usize) < mesh.positions.len()));
+                assert!(mesh.positions.iter().all(|p| p.is_finite()));
+            }
+        }
+    }
+}
+
+/// A document whose only mesh has these properties of its primitive, over a buffer of these bytes.
+fn document(views: &str, accessors: &str, primitive: &str, bytes: &[u8]) -> String {
+    use base64::Engine;
+    let data = base64::engine::general_purpose::STANDARD.encode(bytes);
+    format!(
+        r#"{{"asset":{{"version":"2.0"}},
+"buffers":[{{"byteLength":{},"uri":"data:application/octet-stream;base64,{data}"}}],
+"bufferViews":[{views}],"accessors":[{accessors}],
+"meshes":[{{"primitives":[{{{primitive}}}]}}],"nodes":[{{"mesh":0}}],"scenes":[{{"nodes":[0]}}]}}"#,
+        bytes.len()
+    )
+}
+
+fn mesh(text: &str) -> MeshData {
+    let (scene, findings) = read(text.as_bytes(), Path::new("."), "a.gltf", None);
+    let scene = scene.unwrap_or_else(|| panic!("{findings:?}"));
+    MeshData::clone(scene.assets.meshes.values().next().unwrap())
+}
+
+const BOUNDS: &str = r#""min":[0,0,0],"max":[9,9,9]"#;
+
+#[test]
+fn accessors_are_strided_normalised_and_sparse() {
+    // Four positions of 16 bits in rows of 12 bytes with coordinates of 8 bits, and one row that is replaced.
+    let mut bytes: Vec<u8> = Vec::new();
+    for i in 0..4u16 {
+        [i, 2 * i, 3 * i].iter().for_each(|x| bytes.extend(x.to_le_bytes()));
+        bytes.extend([0, 0, 255, 51 * i as u8, 0, 0]);
+    }
+    bytes.extend([2, 0]);
+    [7u16, 8, 9].iter().for_each(|x| bytes.extend(x.to_le_bytes()));
+    let views = r#"{"buffer":0,"byteLength":48,"byteStride":12},{"buffer":0,"byteOffset":48,"byteLength":8}"#;
+    let accessors = format!(
+        r#"{{"bufferView":0,"componentType":5123,"count":4,"type":"VEC3",{BOUNDS},"sparse":{{"count":1,
+            "indices":{{"bufferView":1,"componentType":5121}},"values":{{"bufferView":1,"byteOffset":2}}}}}},
+           {{"bufferView":0,"byteOffset":8,"componentType":5121,"normalized":true,"count":4,"type":"VEC2"}}"#
+    );
+    let primitive = r#""attributes":{"POSITION":0,"TEXCOORD_0":1},"mode":5"#;
+    let text = document(views, &accessors, primitive, &bytes)
+        .replace(r#""asset":"#, r#""extensionsUsed":["KHR_mesh_quantization"],"asset":"#);
+    let data = mesh(&text);
+    let at = |x: f32| Vec3::new(x, 2.0 * x, 3.0 * x);
+    assert_eq!(data.positions, [at(0.0), at(1.0), Vec3::new(7.0, 8.0, 9.0), at(3.0)]);
+    assert_eq!(data.uvs[1], Vec2::new(1.0, 1.0 - 0.2));
+    // A strip turns round at every other triangle, and its triangles are flat.
+    assert_eq!(data.triangles, [[0, 1, 2], [1, 3, 2]]);
+    assert!(data.flat && data.triangle_normals.is_empty());
+}
+
+#[test]
+fn fans_and_lists_without_indices() {
+    let corners = [[0.0f32, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.5, 1.0], [0.5; 3]];
+    let bytes: Vec<u8> = corners.iter().flatten().flat_map(|x| x.to_le_bytes()).collect();
+    let views = r#"{"buffer":0,"byteLength":72}"#;
+    let accessors = format!(r#"{{"bufferView":0,"componentType":5126,"count":6,"type":"VEC3",{BOUNDS}}}"#);
+    let of =
+        |mode: &str| mesh(&document(views, &accessors, &format!(r#""attributes":{{"POSITION":0}}{mode}"#), &bytes));
+    assert_eq!(of("").triangles, [[0, 1, 2], [3, 4, 5]]);
+    assert_eq!(of(r#","mode":6"#).triangles, [[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 5]]);
+    let text = document(views, &accessors, r#""attributes":{"POSITION":0},"mode":1"#, &bytes);
+    let (scene, findings) = read(text.as_bytes(), Path::new("."), "a.gltf", None);
+    assert!(scene.is_some() && findings[0].1.contains("points and lines"), "{findings:?}");
+}
+
+#[test]
+fn damage_is_refused_and_breaks_nothing() {
+    let bytes: Vec<u8> = (0..9).flat_map(|i| (i as f32).to_le_bytes()).chain([0, 1, 2, 0]).collect();
+    let views = r#"{"buffer":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":3}"#;
+    let accessors = format!(
+        r#"{{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3",{BOUNDS}}},
+           {{"bufferView":1,"componentType":5121,"count":3,"type":"SCALAR"}}"#
+    );
+    let text =
+        document(views, &accessors, r#""attributes":{"POSITION":0,"NORMAL":0},"indices":1,"material":0"#, &bytes);
+    let text = text.replace(
+        r#""nodes":[{"mesh":0}]"#,
+        r#""materials":[{"pbrMetallicRoughness":{"baseColorFactor":[1,0,0,1]}}],"cameras":[{"type":"perspective",
+        "perspective":{"yfov":0.7,"znear":0.1}}],"nodes":[{"mesh":0,"children":[1]},{"camera":0,"rotation":[0,0,0,1]}]"#,
+    );
+    assert!(mesh(&text).triangles.len() == 1);
+    for end in 0..text.len() {
+        read(&text.as_bytes()[..end], Path::new("."), "a.gltf", Some(1.0));
+    }
+    let mut state = 5u64;
+    let mut random = |below: usize| {
+        state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (state >> 33) as usize % below
+    };
+    let words = ["0", "-1", "1e300", "4294967295", "null", "[]", "{}", "\"\"", "true", "9", "0.5"];
+    for _ in 0..2000 {
+        let mut changed = text.clone().into_bytes();
+        let at = random(changed.len());
+        match random(3) {
+            0 => changed[at] = random(256) as u8,
+            1 => {
+                // A number becomes something else.
+                let from = (at..changed.len()).find(|&i| changed[i].is_ascii_digit()).unwrap_or(at);
+                changed.splice(from..from + 1, words[random(words.len())].bytes());
+            }
+            _ => changed[at] = changed[random(changed.len())],
+        }
+        read(&changed, Path::new("."), "a.gltf", Some(1.0));
+    }
+}
+
+#[test]
+fn bones_targets_and_key_frames_move_vertices() {
+    let Some(root) = corpus("khronos") else { return };
+    let at = |name: &str, moment| {
+        let path = root.join(name);
+        let file = path.file_name().unwrap().to_string_lossy().into_owned();
+        let (scene, findings) = read(&std::fs::read(&path).unwrap(), path.parent().unwrap(), &file, moment);
+        scene.unwrap_or_else(|| panic!("{findings:?}"))
+    };
+    let positions = |scene: &Scene| scene.assets.meshes.values().next().unwrap().positions.clone();
+    // Targets move the tip of the triangle by (-1, 1, 0) and by (1, 1, 0); at rest and at first neither does.
+    let rest = positions(&at("SimpleMorph/glTF/SimpleMorph.gltf", Some(0.0)));
+    let moved = positions(&at("SimpleMorph/glTF/SimpleMorph.gltf", Some(2.0)));
+    assert_eq!(rest, [Vec3::ZERO, Vec3::X, Vec3::new(0.5, 0.5, 0.0)]);
+    assert!(moved[2].y > 1.0 && moved[..2] == rest[..2], "{moved:?}");
+    // A quarter of its second of turning about z is a quarter turn.
+    let turned = at("AnimatedTriangle/glTF/AnimatedTriangle.gltf", Some(0.25));
+    let mut reached = Vec::new();
+    crate::scene::extent::points(&turned, &mut |p| reached.push(p.as_vec3()));
+    assert!(reached.iter().any(|p| p.abs_diff_eq(Vec3::new(0.0, 1.0, 0.0), 1e-5)), "{reached:?}");
+    assert!(reached.iter().any(|p| p.abs_diff_eq(Vec3::new(-1.0, 0.0, 0.0), 1e-5)), "{reached:?}");
+    // A bone that turns takes the upper end of the strip with it, and leaves the lower.
+    let bent = positions(&at("SimpleSkin/glTF/SimpleSkin.gltf", Some(1.0)));
+    let straight = positions(&at("SimpleSkin/glTF/SimpleSkin.gltf", Some(0.0)));
+    assert!(bent[0].abs_diff_eq(straight[0], 1e-6) && !bent[9].abs_diff_eq(straight[9], 0.1), "{bent:?} {straight:?}");
+}

@@ -1,0 +1,128 @@
+//! A Wavefront file with the materials that it names: a mesh for each.
+
+use super::faces::rest_of;
+use super::materials::{self, Library};
+use super::words::Words;
+use super::{Statement, Switch, read_with, statement};
+use crate::describe::FileName;
+use crate::diag::{Diagnostic, Diagnostics, Span, did_you_mean};
+use crate::format::report::shown;
+use crate::format::scene::Input;
+use crate::format::too_large;
+use crate::scene::{Group, Material, Object, Scene};
+use crate::shape::MeshData;
+use crate::shape::mesh::NO_INDEX;
+use std::collections::BTreeMap;
+use std::ops::Range;
+use std::sync::Arc;
+
+/// Reads a file; see [`read_model`](crate::format::scene::read_model).
+pub(in crate::format) fn read(input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
+    if let Some(error) = too_large(input.bytes.len() as u64, input.name) {
+        diagnostics.push(error);
+        return None;
+    }
+    let mut switches = Vec::new();
+    let data = read_with(input.bytes, input.file, &mut switches, diagnostics)?;
+    let span = |at: &Range<usize>| Span { file: input.file, start: at.start as u32, end: at.end as u32 };
+    let mut library = Library::default();
+    let mut words = Words::new(input.bytes);
+    while let Some(keyword) = words.next_statement() {
+        if statement(&input.bytes[keyword.clone()]) == Some(Statement::Library) {
+            let names = rest_of(&mut words, keyword.end);
+            materials::read_files(input, &names, span(&names), &mut library, diagnostics);
+        }
+        words.skip_rest();
+    }
+    let mut scene = Scene::default();
+    scene.assets.pictures = std::mem::take(&mut library.pictures);
+    let mut objects = Vec::new();
+    let mut numbers: BTreeMap<&str, u32> = BTreeMap::new();
+    for (part, at) in parts(&data, input.bytes, &switches) {
+        let name = String::from_utf8_lossy(&input.bytes[at.clone()]).into_owned();
+        let material = library.materials.get_key_value(name.as_str()).map(|(name, material)| {
+            *numbers.entry(name).or_insert_with(|| scene.add_material(Material::Principled(Box::new(material.clone()))))
+        });
+        if material.is_none() && !name.is_empty() {
+            let known = library.materials.keys().map(String::as_str);
+            let meant = did_you_mean(&name, known).map(|meant| format!("did you mean `{meant}`?"));
+            let message = format!("no file of materials has {}: a neutral one is shown", shown(name.as_bytes()));
+            diagnostics
+                .push(Diagnostic { help: meant, ..Diagnostic::warning(message).code("no-material").at(span(&at)) });
+        }
+        let asset = if name.is_empty() { input.name.to_string() } else { format!("{}#{name}", input.name) };
+        let node = scene.add_mesh(&asset, Arc::new(part), span(&at));
+        objects.push(Object { node, material, span: span(&at) });
+    }
+    scene.root = Some(Group { objects });
+    Some(scene)
+}
+
+/// A mesh for each name of a material, in the order of the names' first triangles, and a place where it is named.
+fn parts(data: &MeshData, bytes: &[u8], switches: &[Switch]) -> Vec<(MeshData, Range<usize>)> {
+    let ends = switches.iter().skip(1).map(|switch| switch.0).chain([data.triangles.len()]);
+    let runs = switches.iter().zip(ends).map(|((start, at), end)| (*start..end, at.clone()));
+    let before = 0..switches.first().map_or(data.triangles.len(), |switch| switch.0);
+    let mut order: Vec<(Vec<Range<usize>>, Range<usize>)> = Vec::new();
+    let mut known: BTreeMap<&[u8], usize> = BTreeMap::new();
+    for (run, at) in [(before, 0..0)].into_iter().chain(runs).filter(|(run, _)| !run.is_empty()) {
+        let number = *known.entry(&bytes[at.clone()]).or_insert_with(|| {
+            order.push((Vec::new(), at));
+            order.len() - 1
+        });
+        order[number].0.push(run);
+    }
+    match order.as_slice() {
+        // Nothing to part.
+        [] => vec![(data.clone(), 0..0)],
+        [(_, at)] => vec![(data.clone(), at.clone())],
+        _ => order.into_iter().map(|(runs, at)| (part(data, &runs), at)).collect(),
+    }
+}
+
+/// Some of the triangles, with what they use.
+fn part(data: &MeshData, runs: &[Range<usize>]) -> MeshData {
+    let mut part = MeshData::default();
+    let pick = |list: &[[u32; 3]]| -> Vec<[u32; 3]> {
+        if list.is_empty() {
+            Vec::new()
+        } else {
+            runs.iter().flat_map(|run| list[run.clone()].iter().copied()).collect()
+        }
+    };
+    (part.triangles, part.triangle_uvs) = (pick(&data.triangles), pick(&data.triangle_uvs));
+    part.triangle_normals = pick(&data.triangle_normals);
+    let places = renumber(&mut part.triangles);
+    part.positions = places.iter().map(|&i| data.positions[i as usize]).collect();
+    if !data.colors.is_empty() {
+        part.colors = places.iter().map(|&i| data.colors[i as usize]).collect();
+    }
+    part.uvs = renumber(&mut part.triangle_uvs).iter().map(|&i| data.uvs[i as usize]).collect();
+    part.normals = renumber(&mut part.triangle_normals).iter().map(|&i| data.normals[i as usize]).collect();
+    for list in [&mut part.triangle_uvs, &mut part.triangle_normals] {
+        if list.iter().flatten().all(|&i| i == NO_INDEX) {
+            list.clear();
+        }
+    }
+    part
+}
+
+/// Numbers what is used from 0 on; gives the old numbers.
+fn renumber(list: &mut [[u32; 3]]) -> Vec<u32> {
+    let mut used: Vec<u32> = list.iter().flatten().copied().filter(|&i| i != NO_INDEX).collect();
+    used.sort_unstable();
+    used.dedup();
+    for i in list.iter_mut().flatten().filter(|i| **i != NO_INDEX) {
+        *i = used.partition_point(|&old| old < *i) as u32;
+    }
+    used
+}
+
+/// The name of a file that may be had, of those that a material may mean: as written, or its last name beside the scene.
+pub(super) fn found(input: &Input, path: &str, span: Span) -> Option<FileName> {
+    let portable = path.replace('\\', "/");
+    let last = portable.rsplit('/').next().unwrap_or_default();
+    let names = [portable.as_str(), last];
+    let name = names.into_iter().find(|name| !name.is_empty() && input.source.contains(name))?;
+    Some(FileName { path: name.to_string(), span })
+}

@@ -1,0 +1,103 @@
+//! Readers of whole scenes: one row of [`SCENE_FORMATS`] each. What is a mesh alone is a scene of one mesh.
+
+use super::{MESH_FORMATS, extension, gltf, obj, read_mesh};
+use crate::describe::FileName;
+use crate::diag::{Diagnostics, Span};
+use crate::scene::{Axis, Group, Node, Object, Scene, Staging};
+use crate::shape::{MeshData, TriangleMesh};
+use crate::source::Source;
+use std::sync::Arc;
+
+/// A format of files that hold scenes, or models that become scenes.
+pub struct SceneFormat {
+    /// Its name for people.
+    pub name: &'static str,
+    /// Endings of its files' names, in lower case, without the dot.
+    pub extensions: &'static [&'static str],
+    /// Whether a file that begins with these bytes is of this format, whatever its name.
+    pub recognise: fn(&[u8]) -> bool,
+    /// Reads a file. Errors go into the collection, and then there is no scene.
+    pub read: fn(&Input, &mut Diagnostics) -> Option<Scene>,
+    /// What is up in most models of this format.
+    pub up: Axis,
+}
+
+/// The formats of models, in the order in which content is tried. What is none of them is in the course's language.
+pub const SCENE_FORMATS: &[SceneFormat] = &[
+    SceneFormat {
+        name: "glTF",
+        extensions: &["gltf", "glb"],
+        recognise: gltf::recognise,
+        read: gltf::read,
+        up: Axis::Y,
+    },
+    SceneFormat {
+        name: MESH_FORMATS[0].name,
+        extensions: MESH_FORMATS[0].extensions,
+        recognise: MESH_FORMATS[0].recognise,
+        read: one_mesh,
+        up: MESH_FORMATS[0].up,
+    },
+    SceneFormat {
+        name: MESH_FORMATS[1].name,
+        extensions: MESH_FORMATS[1].extensions,
+        // Its first word could be anything: only the name tells.
+        recognise: |_| false,
+        read: obj::scene::read,
+        up: MESH_FORMATS[1].up,
+    },
+    SceneFormat {
+        name: MESH_FORMATS[2].name,
+        extensions: MESH_FORMATS[2].extensions,
+        recognise: MESH_FORMATS[2].recognise,
+        read: one_mesh,
+        up: MESH_FORMATS[2].up,
+    },
+];
+
+/// A file that is to become a scene.
+pub struct Input<'a> {
+    /// Its bytes.
+    pub bytes: &'a Arc<[u8]>,
+    /// Its number in [`Files`](crate::diag::Files), for spans.
+    pub file: u32,
+    /// Its last name, with ending.
+    pub name: &'a str,
+    /// Reads the files that it names.
+    pub source: &'a Source,
+    /// How it is to be shown.
+    pub staging: &'a Staging,
+}
+
+/// The format of a file that is a model: by its content, or failing that by its name. `None`: it is text of the course's
+/// language, or nothing that is known.
+pub fn find_scene_format(bytes: &[u8], name: &str) -> Option<&'static SceneFormat> {
+    let extension = extension(name);
+    let by_name = SCENE_FORMATS.iter().find(|format| format.extensions.contains(&extension.as_str()));
+    by_name.or_else(|| SCENE_FORMATS.iter().find(|format| (format.recognise)(bytes)))
+}
+
+/// Reads a model as a scene, and adds the camera, light and material that it lacks.
+pub fn read_model(format: &SceneFormat, input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
+    let mut scene = (format.read)(input, diagnostics)?;
+    input.staging.complete(&mut scene, format.up);
+    Some(scene)
+}
+
+/// A scene of one mesh without a material.
+fn one_mesh(input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
+    let span = Span { file: input.file, start: 0, end: 0 };
+    let data = read_mesh(input.bytes, input.file, input.name, diagnostics)?;
+    let mut scene = Scene::default();
+    let node = scene.add_mesh(input.name, Arc::new(data), span);
+    scene.root = Some(Group { objects: vec![Object { node, material: None, span }] });
+    Some(scene)
+}
+
+impl Scene {
+    /// Adds a mesh in memory by a name that no other has, and gives what shows it.
+    pub(super) fn add_mesh(&mut self, name: &str, data: Arc<MeshData>, span: Span) -> Node {
+        self.assets.meshes.insert(name.to_string(), data);
+        Node::Mesh(TriangleMesh { obj_file: FileName { path: name.to_string(), span } })
+    }
+}

@@ -1,0 +1,22 @@
+//! WebP, with and without loss: read only.
+
+use super::{Depth, Format, Head, ImageError, codec};
+use ::image::ImageFormat;
+
+const NAME: &str = "WebP";
+
+pub const FORMAT: Format = Format {
+    name: NAME,
+    extensions: &["webp"],
+    depth: Depth::EightBit,
+    layers: false,
+    most_side: 16384,
+    begins: |bytes| bytes.starts_with(b"RIFF") && bytes.get(8..12) == Some(b"WEBP"),
+    head: |bytes| {
+        let head = codec::head(&codec::decoder(NAME, ImageFormat::WebP, bytes)?);
+        // Frames, and planes of their own for brightness, colour and alpha.
+        Ok(Head { bytes_per_pixel: head.bytes_per_pixel + 8, spare: bytes.len() as u64, ..head })
+    },
+    decode: |bytes| codec::raster(NAME, codec::decoder(NAME, ImageFormat::WebP, bytes)?),
+    encode: |_, _, _| Err(ImageError::unsupported(NAME, "writing: choose PNG")),
+};

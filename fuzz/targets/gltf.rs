@@ -1,0 +1,4 @@
+//! Any bytes as a model.
+#![no_main]
+
+libfuzzer_sys::fuzz_target!(|data: &[u8]| durer::fuzz::model(data, "x.gltf"));
