@@ -6,7 +6,7 @@
 
 use super::fresnel;
 use super::lobe::fuzz;
-use super::microfacet::{Ggx, SMOOTH};
+use super::microfacet::Ggx;
 use crate::math::{Vec2, Vec3};
 use std::sync::LazyLock;
 
@@ -141,9 +141,4 @@ fn single(ggx: Ggx, wo: Vec3, eta: f32, u: Vec2, all: bool) -> f32 {
         sum += if down.z < 0.0 { (1.0 - reflected) * visible(down) } else { 0.0 };
     }
     sum
-}
-
-/// Whether a roughness is so small that the surface is taken for smooth.
-pub fn is_smooth(roughness: f32) -> bool {
-    roughness * roughness < SMOOTH
 }

@@ -38,11 +38,6 @@ impl Ggx {
         Ggx { alpha: self.alpha.max(Vec2::splat(SMOOTH)) }
     }
 
-    /// One alpha that stands for both.
-    pub fn mean_alpha(&self) -> f32 {
-        (self.alpha.x * self.alpha.y).sqrt()
-    }
-
     /// Density of normals at a unit vector.
     pub fn density(&self, h: Vec3) -> f32 {
         let s = Vec3::new(h.x / self.alpha.x, h.y / self.alpha.y, h.z).length_squared();

@@ -10,7 +10,6 @@ use crate::math::{Color, Vec3};
 use crate::shape::Surface;
 use crate::world::HighlightModel;
 use crate::world::material::Emission;
-use glam::DVec3;
 
 /// A surface point as it is seen from one direction.
 #[derive(Clone, Debug)]
@@ -110,11 +109,6 @@ impl World {
     /// Whether a material that shines does so to both sides.
     pub fn shines_to_both_sides(&self, material: u32) -> Option<bool> {
         self.emission_of(material).map(|emission| emission.two_sided)
-    }
-
-    /// The light of a chosen point of an emitter.
-    pub(super) fn emitted(&self, hit: &Hit, _point: DVec3) -> Color {
-        self.emission_of(self.material(hit)).map_or(Color::ZERO, |emission| emission.radiance)
     }
 
     /// Whether a hit may shine: quickly known, for most materials.

@@ -116,11 +116,6 @@ impl Emitters {
         emitters
     }
 
-    /// Whether nothing can be chosen.
-    pub fn is_empty(&self, world: &World) -> bool {
-        self.choices(world) == 0
-    }
-
     /// How many things are chosen evenly: lights without a place, the surroundings, and all that is in the tree.
     fn choices(&self, world: &World) -> usize {
         self.even.len() + usize::from(world.environment.is_some()) + usize::from(!self.tree.is_empty())
@@ -221,8 +216,7 @@ impl AreaLight {
         }
         // The point is known to its rounding only; what stands nearer to the emitter than that does not count.
         let reach = place.distance - 2.0 * self.form.error() / place.cosine.abs().max(1e-3);
-        let hit = Hit { t: place.distance, uv: Vec2::ZERO, object: self.object, part: self.part };
-        let radiance = world.emitted(&hit, point + (place.distance * place.wi).as_dvec3());
+        let radiance = world.emission_of(world.objects[self.object as usize].material)?.radiance;
         let light = LightId::Surface(self.object, self.part);
         Some(LightSample { light, wi: place.wi, reach, radiance, choice, pdf: place.pdf })
     }

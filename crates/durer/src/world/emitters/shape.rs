@@ -2,7 +2,7 @@
 
 use crate::bsdf::{Frame, warp};
 use crate::math::{Aabb, Vec2, Vec3, fp, gamma};
-use crate::shape::{Primitive, Shape};
+use crate::shape::Primitive;
 use crate::world::Object;
 use crate::world::object::Geometry;
 use glam::DVec3;
@@ -250,10 +250,4 @@ impl Window {
         let y = if h * h < 1.0 - 1e-12 { h * d2.sqrt() / (1.0 - h * h).sqrt() } else { far.y };
         (x * self.axes[0] + y.clamp(near.y, far.y) * self.axes[1] + near.z * self.axes[2]).as_vec3()
     }
-}
-
-/// Whether a primitive can be chosen points of: for documents and tests.
-pub fn is_sampled(shape: &Primitive) -> bool {
-    shape.bounds().is_some()
-        && matches!(shape, Primitive::Triangle(_) | Primitive::Rectangle(_) | Primitive::Disc(_) | Primitive::Sphere(_))
 }
