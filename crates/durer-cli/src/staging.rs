@@ -56,7 +56,10 @@ pub enum Light {
 }
 
 fn seconds(text: &str) -> Result<f32, String> {
-    text.parse().ok().filter(|&at: &f32| at.is_finite() && at >= 0.0).ok_or("expected seconds, 0 or more".into())
+    text.parse()
+        .ok()
+        .filter(|&at: &f32| at.is_finite() && at >= 0.0)
+        .ok_or("expected a number of seconds, 0 or more".into())
 }
 
 impl StagingArgs {

@@ -21,7 +21,7 @@ fn a_model_is_rendered_from_all_sides_in_any_light() {
         assert_ne!(hash(other), usual, "{other}");
     }
     place.refused(2, "render a.stl -o a.png --view behind", &["behind", "three-quarter"]);
-    place.refused(2, "render a.stl -o a.png --at -1", &["--at"]);
+    place.refused(2, "render a.stl -o a.png --at soon", &["--at", "seconds"]);
     assert!(place.gives(0, "info a.stl").out.contains("2 in meshes"));
 }
 

@@ -156,14 +156,15 @@ impl Staging {
                 Vec3::new(0.3, 0.5, 0.85),
                 Vec3::new(0.55, 0.5, 0.42),
             ),
+            // Such that a white thing is brighter than what is behind it, under paths as under Whitted's light.
             _ => (
                 vec![
-                    light(from(-0.6, 1.0, 0.7), Vec3::splat(0.62)),
-                    light(from(1.0, 0.5, 0.5), Vec3::new(0.17, 0.18, 0.2)),
+                    light(from(-0.6, 1.0, 0.7), Vec3::splat(0.75)),
+                    light(from(1.0, 0.5, 0.5), Vec3::new(0.095, 0.1, 0.11)),
                 ],
                 Vec3::splat(0.25),
-                Vec3::splat(0.6),
-                Vec3::splat(0.8),
+                Vec3::splat(0.4),
+                Vec3::splat(0.5),
             ),
         };
         scene.lights = Some(lights);
