@@ -3,7 +3,7 @@
 use anyhow::{Context, Result, bail};
 use durer::diag::{Diagnostics, Files};
 use durer::integrator::{Path, Settings};
-use durer::math::Vec3;
+use durer::math::{Vec3, fp};
 use durer::render::Job;
 use durer::sampler::SampleId;
 use durer::world::World;
@@ -36,7 +36,7 @@ const GLASS: &str = "PrincipledMaterial { transmissionWeight 1 specularRoughness
 /// The view factor of a parallel rectangle with a corner over the point, its sides over its distance.
 fn corner(x: f64, y: f64) -> f64 {
     let (p, q) = ((1.0 + x * x).sqrt(), (1.0 + y * y).sqrt());
-    (x / p * (y / p).atan() + y / q * (x / q).atan()) / (2.0 * PI)
+    (x / p * fp::atan_f64(y / p) + y / q * fp::atan_f64(x / q)) / (2.0 * PI)
 }
 
 fn cases() -> Vec<Case> {
@@ -52,7 +52,7 @@ fn cases() -> Vec<Case> {
         bounces: 0,
         answer,
     };
-    let cos3 = |h: f64, x: f64| h / (h * h + x * x).powf(1.5);
+    let cos3 = |h: f64, x: f64| h / ((h * h + x * x) * (h * h + x * x).sqrt());
     vec![
         case(
             "Point source of 100 cd, 2 m high, 1.5 m aside",

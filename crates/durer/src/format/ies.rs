@@ -39,7 +39,7 @@ impl Numbers<'_> {
 
     fn count(&mut self, what: &str) -> Result<usize, Box<Diagnostic>> {
         let (number, start) = self.next(what)?;
-        match number >= 1.0 && number <= MOST_ANGLES && number.fract() == 0.0 {
+        match (1.0..=MOST_ANGLES).contains(&number) && number.fract() == 0.0 {
             true => Ok(number as usize),
             false => {
                 Err(self.error(start, self.at, format!("the {what} must be a whole number from 1 to {MOST_ANGLES}")))

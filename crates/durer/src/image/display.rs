@@ -93,7 +93,7 @@ fn agx(color: Color) -> Color {
         0.078_433_6,
         0.079_223_745,
         0.079_166_13,
-        0.879_142_97,
+        0.879_143,
     ]);
     let (least, most) = (-12.473_93, 4.026_069);
     let log2 = |x: f32| fp::ln(x.max(1e-10)) * std::f32::consts::LOG2_E;

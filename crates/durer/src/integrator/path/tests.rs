@@ -58,8 +58,8 @@ fn a_closed_furnace_has_the_sum_of_a_geometric_series() {
         let world = scene(material, "", &format!("MaterialIndex 0 {form}"));
         let ray = Ray::new(Vec3::new(0.3, 0.2, 0.4), Vec3::new(0.3, 0.5, -0.7).normalize());
         for bounces in [0, 1, 4] {
-            let n = f64::from(bounces) + 2.0;
-            assert_light(form, &world, ray, bounces, 0.5 * (1.0 - 0.5_f64.powf(n)) / 0.5);
+            let power = (0..bounces + 2).fold(1.0, |power, _| 0.5 * power);
+            assert_light(form, &world, ray, bounces, 0.5 * (1.0 - power) / 0.5);
         }
     }
 }
