@@ -17,7 +17,7 @@ use std::path::PathBuf;
 
 /// Measure illuminance and irradiance at points of a scene, as CSV with standard errors
 #[derive(Args)]
-#[command(after_help = "Examples:
+#[command(mut_arg("at", |moment| moment.long("moment")), after_help = "Examples:
   durer measure room.txt --at 0,0.8,0
   durer measure room.txt --at 0,0.8,0 --at 1,0.8,0 --normal 0,1,0 --samples 16384
   durer measure room.txt --grid 0,0.8,0:4,0,0:0,0,6:8x12 > desk.csv
@@ -31,8 +31,8 @@ pub struct MeasureArgs {
     /// The scene file
     pub scene: PathBuf,
     /// A point; may be repeated
-    #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_negative_numbers = true)]
-    pub at: Vec<Vec3>,
+    #[arg(id = "point", long = "at", value_name = "X,Y,Z", value_parser = vector, allow_negative_numbers = true)]
+    pub points: Vec<Vec3>,
     /// The side from which light is counted [default: 0,1,0]
     #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_negative_numbers = true)]
     pub normal: Option<Vec3>,
@@ -110,7 +110,7 @@ pub fn run(args: &MeasureArgs) -> Result<(), Failure> {
         let normal = grid.edges[1].cross(grid.edges[0]).normalize_or(Vec3::Y);
         grid.points().map(move |point| (point, normal))
     });
-    let own = args.at.iter().map(|&point| (point, Vec3::Y)).chain(grids);
+    let own = args.points.iter().map(|&point| (point, Vec3::Y)).chain(grids);
     let mut places: Vec<(Vec3, Vec3)> = own.take(MOST_POINTS + 1).collect();
     if places.is_empty() || places.len() > MOST_POINTS {
         return Err(bad(format!("say where: --at X,Y,Z or --grid, at most {MOST_POINTS} points")));

@@ -227,7 +227,7 @@ fn the_reader_knows_what_is_meant() {
         (sphere, "Transform { Rotate 0 1 0 45 Sphere { center 0 0 0 radius 1 } }", "write `Rotate { 0 1 0 45 }`"),
         (sphere, "Transform { Translate 0 1 0 }", "write the object after its matrices"),
         (sphere, "Sphere { center 0 0 0 }", "as in `radius 1`"),
-        ("PointLight {", "SpotLight {", "there are no spot lights"),
+        ("PointLight {", "SpotLight {", "`SpotLight` has no field `attenuation`"),
         ("PointLight {", "DirectionalLight {", "a directional light has no place"),
     ] {
         says("f04", &scene("f04", &[(old, new)]), wanted);

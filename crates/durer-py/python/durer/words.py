@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from .things import Camera, Light, Material, Shape, Thing
 
-__all__ = ["Background", "Box", "CaveCamera", "Checkerboard", "Cone", "CubeMapCamera", "Cylinder", "CylindricalCamera", "DirectionalLight", "Disc", "Ellipsoid", "EquirectangularCamera", "FisheyeCamera", "HeightField", "Marble", "MultipleCenterCamera", "Noise", "OmnimaxCamera", "OrthographicCamera", "ParabolicCamera", "PerspectiveCamera", "PhongMaterial", "PinholeCamera", "Plane", "PointLight", "ProjectiveCamera", "PushBroomCamera", "Quadric", "Rectangle", "Sphere", "StereoCamera", "ThinLensCamera", "Torus", "Triangle", "TriangleMesh", "Wood"]
+__all__ = ["Background", "Box", "CaveCamera", "Checkerboard", "Cone", "CubeMapCamera", "Cylinder", "CylindricalCamera", "DirectionalLight", "Disc", "Ellipsoid", "EquirectangularCamera", "FisheyeCamera", "HeightField", "Marble", "MultipleCenterCamera", "Noise", "OmnimaxCamera", "OrthographicCamera", "ParabolicCamera", "PerspectiveCamera", "PhongMaterial", "PhotometricLight", "PinholeCamera", "Plane", "PointLight", "PrincipledMaterial", "ProjectiveCamera", "PushBroomCamera", "Quadric", "Rectangle", "Sphere", "SpotLight", "StereoCamera", "ThinLensCamera", "Torus", "Triangle", "TriangleMesh", "Wood"]
 
 
 class Background(Thing):
@@ -20,6 +20,16 @@ class Background(Thing):
     ambient_light: three numbers; 0 0 0 where it is not given. Light that reaches every surface.
 
     cube_map: path. Folder with six pictures (left, right, up, down, front, back) that replace the colour.
+
+    environment: path. A picture of all directions that replaces the colour and lights the scene, best of high dynamic range (`.exr`, `.hdr`); its middle is seen towards -z. Whitted's light does not come from it.
+
+    sun: three numbers, not 0 0 0. The way to the sun, of any length, with y upwards: a clear sky and the sun light the scene, in cd/m^2. Such pictures need `--exposure`, -13 say.
+
+    turbidity: number, more than 0; 3 where it is not given. How hazy the air is: from 2 (clear) over 3 (a usual day) to 10.
+
+    environment_rotation: number; 0 where it is not given. How far the environment is turned about y, in degrees.
+
+    environment_scale: three numbers; 1 1 1 where it is not given. What multiplies the environment.
     """
 
     def __init__(
@@ -28,11 +38,21 @@ class Background(Thing):
         color: Optional[npt.ArrayLike] = None,
         ambient_light: Optional[npt.ArrayLike] = None,
         cube_map: Optional[str] = None,
+        environment: Optional[str] = None,
+        sun: Optional[npt.ArrayLike] = None,
+        turbidity: Optional[float] = None,
+        environment_rotation: Optional[float] = None,
+        environment_scale: Optional[npt.ArrayLike] = None,
     ) -> None:
         super().__init__("Background", [
             ("color", color),
             ("ambientLight", ambient_light),
             ("cubeMap", cube_map),
+            ("environment", environment),
+            ("sun", sun),
+            ("turbidity", turbidity),
+            ("environmentRotation", environment_rotation),
+            ("environmentScale", environment_scale),
         ])
 
 
@@ -590,6 +610,8 @@ class DirectionalLight(Light):
     direction: three numbers, not 0 0 0; must be given. Where the light goes; of any length.
 
     color: three numbers; must be given. Its colour and strength.
+
+    spread: number, 0 or more; 0 where it is not given. Half the angle in which it is seen, in degrees, for soft shadows under a path tracer: 0.27 for the sun.
     """
 
     def __init__(
@@ -597,10 +619,12 @@ class DirectionalLight(Light):
         *,
         direction: npt.ArrayLike,
         color: npt.ArrayLike,
+        spread: Optional[float] = None,
     ) -> None:
         super().__init__("DirectionalLight", [
             ("direction", direction),
             ("color", color),
+            ("spread", spread),
         ])
 
 
@@ -629,6 +653,70 @@ class PointLight(Light):
             ("color", color),
             ("attenuation", attenuation),
             ("falloff", falloff),
+        ])
+
+
+class SpotLight(Light):
+    """Light that comes from one point into a cone, and fades with the square of the distance.
+
+    position: three numbers; must be given. Where it is.
+
+    direction: three numbers, not 0 0 0; must be given. Where the middle of the cone points; of any length.
+
+    color: three numbers; must be given. What arrives in the middle at distance 1.
+
+    angle: number, more than 0, at most 180; 45 where it is not given. Degrees from the middle to where the cone ends.
+
+    inner_angle: number, 0 or more; 0 where it is not given. Degrees from the middle to where it begins to fade; not more than `angle`.
+    """
+
+    def __init__(
+        self,
+        *,
+        position: npt.ArrayLike,
+        direction: npt.ArrayLike,
+        color: npt.ArrayLike,
+        angle: Optional[float] = None,
+        inner_angle: Optional[float] = None,
+    ) -> None:
+        super().__init__("SpotLight", [
+            ("position", position),
+            ("direction", direction),
+            ("color", color),
+            ("angle", angle),
+            ("innerAngle", inner_angle),
+        ])
+
+
+class PhotometricLight(Light):
+    """A lamp whose light was measured: a point that shines as an IES file says, in candela.
+
+    position: three numbers; must be given. Where it is.
+
+    file: path; must be given. The measurement: an IES file (LM-63-1986 to 2019).
+
+    direction: three numbers, not 0 0 0; 0 -1 0 where it is not given. Where its lower side points.
+
+    front: three numbers, not 0 0 0; 1 0 0 where it is not given. Where its horizontal angle 0 points; made perpendicular to `direction`.
+
+    color: three numbers; 1 1 1 where it is not given. What multiplies what was measured, by colour.
+    """
+
+    def __init__(
+        self,
+        *,
+        position: npt.ArrayLike,
+        file: str,
+        direction: Optional[npt.ArrayLike] = None,
+        front: Optional[npt.ArrayLike] = None,
+        color: Optional[npt.ArrayLike] = None,
+    ) -> None:
+        super().__init__("PhotometricLight", [
+            ("position", position),
+            ("file", file),
+            ("direction", direction),
+            ("front", front),
+            ("color", color),
         ])
 
 
@@ -681,6 +769,134 @@ class PhongMaterial(Material):
             ("refractionIndex", refraction_index),
             ("texture", texture),
             ("bump", bump),
+        ])
+
+
+class PrincipledMaterial(Material):
+    """A material of layers: fuzz on a coat on metal, glass or matte. Names and meanings are those of OpenPBR Surface.
+
+    base_weight: number, from 0 to 1; 1 where it is not given. Strength of the base, from 0 to 1: of the matte colour and of the metal's.
+
+    base_color: three numbers; 0.8 0.8 0.8 where it is not given. Share of light that the matte base scatters, and what a metal reflects at right angles; from 0 to 1.
+
+    base_color_texture: path. A picture that multiplies `baseColor`; its values are read as sRGB, and its alpha multiplies `opacity`.
+
+    base_diffuse_roughness: number, from 0 to 1; 0 where it is not given. How rough the matte base is, from 0 (Lambert) to 1.
+
+    base_metalness: number, from 0 to 1; 0 where it is not given. From 0 (glass or matte) to 1 (metal).
+
+    specular_weight: number, 0 or more; 1 where it is not given. Strength of the reflection, from 0 to 1 or more: it scales what reflects at right angles.
+
+    specular_color: three numbers; 1 1 1 where it is not given. Tint of the reflection; on metal the colour near grazing angles.
+
+    specular_roughness: number, from 0 to 1; 0.3 where it is not given. How rough the surface is, from 0 (a mirror) to 1; its square is GGX's alpha.
+
+    metallic_roughness_texture: path. A picture whose green multiplies `specularRoughness` and whose blue multiplies `baseMetalness`.
+
+    specular_anisotropy: number, from 0 to 1; 0 where it is not given. How much longer than wide the highlight is, from 0 (round) to 1.
+
+    specular_rotation: number; 0 where it is not given. Turns the highlight about the normal, in whole turns, from the direction in which u grows.
+
+    specular_ior: number, more than 0; 1.5 where it is not given. Index of refraction inside.
+
+    transmission_weight: number, from 0 to 1; 0 where it is not given. From 0 (matte) to 1 (glass).
+
+    transmission_color: three numbers; 1 1 1 where it is not given. Colour of light that went `transmissionDepth` deep; where that is 0, of all that passes the surface.
+
+    transmission_depth: number, 0 or more; 0 where it is not given. How deep light goes until it has `transmissionColor`, in units of the world; 0: the surface tints it.
+
+    coat_weight: number, from 0 to 1; 0 where it is not given. Strength of the clear coat, from 0 to 1.
+
+    coat_color: three numbers; 1 1 1 where it is not given. Colour of what passes the coat down and up again at right angles.
+
+    coat_roughness: number, from 0 to 1; 0 where it is not given. How rough the coat is, from 0 to 1.
+
+    coat_ior: number, more than 0; 1.6 where it is not given. Index of refraction of the coat.
+
+    coat_darkening: number, from 0 to 1; 1 where it is not given. How much a coat darkens what it covers by reflecting light back down, from 0 to 1 (as physics has it).
+
+    fuzz_weight: number, from 0 to 1; 0 where it is not given. Strength of the fuzz on top, as of velvet or dust, from 0 to 1.
+
+    fuzz_color: three numbers; 1 1 1 where it is not given. Colour of the fuzz.
+
+    fuzz_roughness: number, from 0 to 1; 0.5 where it is not given. How rough the fuzz is, from 0 to 1.
+
+    emission_luminance: number, 0 or more; 0 where it is not given. How bright the surface shines, in cd/m^2; a pixel of value 1 shows 1 cd/m^2.
+
+    emission_color: three numbers; 1 1 1 where it is not given. Colour of its own light, which multiplies `emissionLuminance`.
+
+    emission_texture: path. A picture that multiplies `emissionColor`; its values are read as sRGB.
+
+    normal_texture: path. A picture of normals in tangent space, as glTF has it: red and green point along u and v, blue outwards.
+
+    opacity: number, from 0 to 1; 1 where it is not given. Share of the surface that is there, from 0 to 1: the rest lets light through as if nothing were there.
+
+    walls: `solid`, `thin`; solid where it is not given. `thin`: a sheet without inside, through which light goes straight; `solid`: the skin of a body.
+    """
+
+    def __init__(
+        self,
+        *,
+        base_weight: Optional[float] = None,
+        base_color: Optional[npt.ArrayLike] = None,
+        base_color_texture: Optional[str] = None,
+        base_diffuse_roughness: Optional[float] = None,
+        base_metalness: Optional[float] = None,
+        specular_weight: Optional[float] = None,
+        specular_color: Optional[npt.ArrayLike] = None,
+        specular_roughness: Optional[float] = None,
+        metallic_roughness_texture: Optional[str] = None,
+        specular_anisotropy: Optional[float] = None,
+        specular_rotation: Optional[float] = None,
+        specular_ior: Optional[float] = None,
+        transmission_weight: Optional[float] = None,
+        transmission_color: Optional[npt.ArrayLike] = None,
+        transmission_depth: Optional[float] = None,
+        coat_weight: Optional[float] = None,
+        coat_color: Optional[npt.ArrayLike] = None,
+        coat_roughness: Optional[float] = None,
+        coat_ior: Optional[float] = None,
+        coat_darkening: Optional[float] = None,
+        fuzz_weight: Optional[float] = None,
+        fuzz_color: Optional[npt.ArrayLike] = None,
+        fuzz_roughness: Optional[float] = None,
+        emission_luminance: Optional[float] = None,
+        emission_color: Optional[npt.ArrayLike] = None,
+        emission_texture: Optional[str] = None,
+        normal_texture: Optional[str] = None,
+        opacity: Optional[float] = None,
+        walls: Optional[Literal["solid", "thin"]] = None,
+    ) -> None:
+        super().__init__("PrincipledMaterial", [
+            ("baseWeight", base_weight),
+            ("baseColor", base_color),
+            ("baseColorTexture", base_color_texture),
+            ("baseDiffuseRoughness", base_diffuse_roughness),
+            ("baseMetalness", base_metalness),
+            ("specularWeight", specular_weight),
+            ("specularColor", specular_color),
+            ("specularRoughness", specular_roughness),
+            ("metallicRoughnessTexture", metallic_roughness_texture),
+            ("specularAnisotropy", specular_anisotropy),
+            ("specularRotation", specular_rotation),
+            ("specularIor", specular_ior),
+            ("transmissionWeight", transmission_weight),
+            ("transmissionColor", transmission_color),
+            ("transmissionDepth", transmission_depth),
+            ("coatWeight", coat_weight),
+            ("coatColor", coat_color),
+            ("coatRoughness", coat_roughness),
+            ("coatIor", coat_ior),
+            ("coatDarkening", coat_darkening),
+            ("fuzzWeight", fuzz_weight),
+            ("fuzzColor", fuzz_color),
+            ("fuzzRoughness", fuzz_roughness),
+            ("emissionLuminance", emission_luminance),
+            ("emissionColor", emission_color),
+            ("emissionTexture", emission_texture),
+            ("normalTexture", normal_texture),
+            ("opacity", opacity),
+            ("walls", walls),
         ])
 
 
@@ -1059,7 +1275,7 @@ class Rectangle(Shape):
 class TriangleMesh(Shape):
     """A triangle mesh in a file of its own.
 
-    obj_file: path; must be given. Path of the mesh file: `.obj`, `.ply` or `.stl`.
+    obj_file: path; must be given. Path of the mesh file: `.obj` or `.ply`.
     """
 
     def __init__(

@@ -250,8 +250,8 @@ impl<'r> Loader<'r> {
     /// The picture around a scene.
     pub(super) fn environment(&mut self, written: &Background, diagnostics: &mut Diagnostics) -> Option<Environment> {
         let Some(name) = written.environment.as_ref() else {
-            let sky = Sky::new(written.sun?, written.turbidity);
-            let (turn, scale) = (written.environment_rotation, written.environment_scale);
+            let sky = Sky::new(written.sun?, written.turbidity());
+            let (turn, scale) = written.environment_placing();
             return Environment::new(SKY_WIDTH, SKY_WIDTH / 2, sky.picture(SKY_WIDTH, SKY_WIDTH / 2), turn, scale);
         };
         let bytes = self.read(name, "environment", diagnostics)?;
@@ -259,8 +259,8 @@ impl<'r> Loader<'r> {
         let picture = encoded.read(self.resources.memory, image::decode_srgb);
         let picture = used(name, &name.path, picture, diagnostics)?;
         let (width, height) = (picture.width, picture.height);
-        let Background { environment_rotation, environment_scale, .. } = *written;
-        let environment = Environment::new(width, height, picture.pixels, environment_rotation, environment_scale);
+        let (turn, scale) = written.environment_placing();
+        let environment = Environment::new(width, height, picture.pixels, turn, scale);
         if environment.is_none() {
             let message = format!("the picture `{}` around the scene is black", name.path);
             diagnostics.push(Diagnostic::error(message).code("bad-file").at(name.span));

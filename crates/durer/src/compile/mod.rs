@@ -190,13 +190,14 @@ fn check_camera(scene: &Scene, pose: crate::camera::Pose, diagnostics: &mut Diag
 /// The sun that goes with a clear sky.
 fn sun(background: &scene::Background) -> Option<Light> {
     let way = background.sun?;
-    let sky = Sky::new(way, background.turbidity);
-    let (sin, cos) = fp::sin_cos_degrees(f64::from(-background.environment_rotation));
+    let sky = Sky::new(way, background.turbidity());
+    let (turn, scale) = background.environment_placing();
+    let (sin, cos) = fp::sin_cos_degrees(f64::from(-turn));
     let [sin, cos] = [sin, cos].map(|x| x as f32);
     let way = Vec3::new(cos * way.x + sin * way.z, way.y.max(0.0), cos * way.z - sin * way.x);
     // A light's colour is what a white matte surface shows: illuminance over pi.
-    let color = background.environment_scale * sky.sun() / std::f32::consts::PI;
-    Some(DirectionalLight { direction: -way, color, spread: SUN_RADIUS }.into())
+    let color = scale * sky.sun() / std::f32::consts::PI;
+    Some(DirectionalLight { direction: -way, color, spread: Some(SUN_RADIUS) }.into())
 }
 
 /// The lights, and the ambient light that goes with them.

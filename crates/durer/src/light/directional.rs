@@ -15,7 +15,7 @@ described! {
         /// Its colour and strength.
         color: Vec3 = Vec3::ONE, required, Rule::Any, ["color" in set::ALL];
         /// Half the angle in which it is seen, in degrees, for soft shadows under a path tracer: 0.27 for the sun.
-        spread: f32 = 0.0, optional, Rule::NonNegative, ["spread" in set::DURER];
+        spread: Option<f32> = None, optional, Rule::NonNegative, ["spread" in set::DURER];
     }
 }
 
@@ -34,6 +34,6 @@ impl Emitter for DirectionalLight {
     }
 
     fn spread(&self) -> f32 {
-        self.spread
+        self.spread.unwrap_or(0.0)
     }
 }

@@ -319,7 +319,7 @@ impl<'a> Samples<'a> {
             let pixel = grid.pixel((x, y));
             at.set((pixel.0, pixel.1, None));
             let mut own = Rays::default();
-            let id = SampleId::new(self.job.seed, (x, y), 0);
+            let id = SampleId::new(self.job.seed, pixel, grid.number((x, y)));
             pixels.push(self.kept(show, &self.aim_sub_pixel(&grid, &raster, (x, y)), id, &mut own));
             rays.0 += if grid.inner.holds(x, y) { own.0 } else { 0 };
         }

@@ -51,6 +51,11 @@ impl SubPixels {
         (x / self.scale(), y / self.scale())
     }
 
+    /// The number of a sub-pixel in its pixel.
+    pub(super) fn number(&self, (x, y): (u32, u32)) -> u32 {
+        y % self.scale() * self.scale() + x % self.scale()
+    }
+
     /// Where the ray of one goes, in sub-pixels from the upper left corner of the picture.
     pub(super) fn place(&self, seed: u64, (x, y): (u32, u32)) -> Vec2 {
         let corner = if self.jitter { jittered_position(seed, x, y) } else { Vec2::new(x as f32, y as f32) };

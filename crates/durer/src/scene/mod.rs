@@ -38,12 +38,24 @@ described! {
         /// The way to the sun, of any length, with y upwards: a clear sky and the sun light the scene, in cd/m^2. Such
         /// pictures need `--exposure`, -13 say.
         sun: Option<Vec3> = None, optional, Rule::NonZero, ["sun" in set::DURER];
-        /// How hazy the air is: from 2 (clear) over 3 (a usual day) to 10.
-        turbidity: f32 = 3.0, optional, Rule::Positive, ["turbidity" in set::DURER];
+        /// How hazy the air is: from 2 (clear) over 3 (a usual day, where nothing is written) to 10.
+        turbidity: Option<f32> = None, optional, Rule::Positive, ["turbidity" in set::DURER];
         /// How far the environment is turned about y, in degrees.
-        environment_rotation: f32 = 0.0, optional, Rule::Any, ["environmentRotation" in set::DURER];
+        environment_rotation: Option<f32> = None, optional, Rule::Any, ["environmentRotation" in set::DURER];
         /// What multiplies the environment.
-        environment_scale: Vec3 = Vec3::ONE, optional, Rule::Any, ["environmentScale" in set::DURER];
+        environment_scale: Option<Vec3> = None, optional, Rule::Any, ["environmentScale" in set::DURER];
+    }
+}
+
+impl Background {
+    /// How hazy the air is.
+    pub fn turbidity(&self) -> f32 {
+        self.turbidity.unwrap_or(3.0)
+    }
+
+    /// How far the environment is turned about y, in degrees, and what multiplies it.
+    pub fn environment_placing(&self) -> (f32, Vec3) {
+        (self.environment_rotation.unwrap_or(0.0), self.environment_scale.unwrap_or(Vec3::ONE))
     }
 }
 

@@ -142,8 +142,9 @@ mod tests {
     }
 
     #[test]
-    fn daylight_is_as_bright_as_it_is_measured_to_be() {
-        // Clear skies make 10 to 20 klx on the ground beside the sun, and a high sun 60 to 110 klx.
+    fn daylight_is_as_bright_as_the_paper_says() {
+        // The paper's formulas, summed over the sky by a program of its own, say 31.53 klx on the ground; that is twice what IES gives
+        // for a clear sky at this height of the sun (0.8 + 15.5 sqrt(sin h)). A high sun makes 60 to 110 klx.
         let sky = sky(60.0, 3.0);
         let n = 200;
         let mut horizontal = 0.0;
@@ -154,7 +155,7 @@ mod tests {
             let dir = Vec3::new(sine * cos as f32, cosine, sine * sin as f32);
             horizontal += f64::from(brightness(sky.at(dir)) * cosine) * 2.0 * std::f64::consts::PI / f64::from(n * n);
         }
-        assert!((8_000.0..25_000.0).contains(&horizontal), "{horizontal}");
+        assert!((horizontal / 31_530.0 - 1.0).abs() < 0.01, "{horizontal}");
         let sun = brightness(sky.sun());
         assert!((60_000.0..110_000.0).contains(&sun), "{sun}");
         // A low sun is dimmer and redder.

@@ -28,15 +28,14 @@ const COUNTERPARTS: [(&str, &str); 20] = [
 ];
 
 /// What people write, what they mean, and what is to be said of it. The first of the meant words that is known in the place counts.
-const SLIPS: [(&str, &[&str], &str); 30] = [
+const SLIPS: [(&str, &[&str], &str); 29] = [
     ("plain", &["Plane", "plane"], ""),
     ("ball", &["Sphere", "sphere"], ""),
     ("mesh", &["TriangleMesh"], ""),
     ("model", &["TriangleMesh", "mesh"], ""),
     ("file", &["obj_file"], ""),
     ("obj", &["obj_file", "TriangleMesh", "mesh"], ""),
-    ("spotlight", &["PointLight"], "there are no spot lights"),
-    ("arealight", &["PointLight"], "there are no lights with an area"),
+    ("arealight", &["PointLight"], "a surface shines by the `emissionLuminance` of its `PrincipledMaterial`"),
     ("light", &["PointLight", "DirectionalLight"], ""),
     ("sun", &["DirectionalLight"], ""),
     ("camera", &["PerspectiveCamera", "Camera"], ""),

@@ -138,7 +138,7 @@ impl Model<'_> {
         let direction = map.transform_vector3(DVec3::NEG_Z).normalize_or(DVec3::NEG_Z).as_vec3();
         let position = map.translation.as_vec3();
         let value: Light = match (is_directional, cone) {
-            (true, _) => DirectionalLight { direction, color, spread: 0.0 }.into(),
+            (true, _) => DirectionalLight { direction, color, spread: None }.into(),
             (false, Some([inner_angle, angle])) => {
                 let angle = angle.clamp(1e-3, 180.0);
                 SpotLight { position, direction, color, angle, inner_angle }.into()

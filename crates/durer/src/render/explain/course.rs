@@ -46,8 +46,7 @@ pub(super) fn sub_pixels(
         let mut white = vec![Color::ZERO; count];
         white[i] = Color::ONE;
         let aim = source.aim_sub_pixel(&grid, &raster, place);
-        let number = place.1 % grid.scale() * grid.scale() + place.0 % grid.scale();
-        account(grid.pixel(place), number, Aim { weight: grid.develop(white)[0].x, ..aim })
+        account(grid.pixel(place), grid.number(place), Aim { weight: grid.develop(white)[0].x, ..aim })
     };
     let samples = grid.around.places().enumerate().map(one).collect();
     (Mean::SubPixels(grid), samples)
