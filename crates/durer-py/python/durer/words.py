@@ -25,11 +25,11 @@ class Background(Thing):
 
     sun: three numbers, not 0 0 0. The way to the sun, of any length, with y upwards: a clear sky and the sun light the scene, in cd/m^2. Such pictures need `--exposure`, -13 say.
 
-    turbidity: number, more than 0; 3 where it is not given. How hazy the air is: from 2 (clear) over 3 (a usual day) to 10.
+    turbidity: number, more than 0. How hazy the air is: from 2 (clear) over 3 (a usual day, where nothing is written) to 10.
 
-    environment_rotation: number; 0 where it is not given. How far the environment is turned about y, in degrees.
+    environment_rotation: number. How far the environment is turned about y, in degrees.
 
-    environment_scale: three numbers; 1 1 1 where it is not given. What multiplies the environment.
+    environment_scale: three numbers. What multiplies the environment.
     """
 
     def __init__(
@@ -611,7 +611,7 @@ class DirectionalLight(Light):
 
     color: three numbers; must be given. Its colour and strength.
 
-    spread: number, 0 or more; 0 where it is not given. Half the angle in which it is seen, in degrees, for soft shadows under a path tracer: 0.27 for the sun.
+    spread: number, 0 or more. Half the angle in which it is seen, in degrees, for soft shadows under a path tracer: 0.27 for the sun.
     """
 
     def __init__(
@@ -1275,7 +1275,7 @@ class Rectangle(Shape):
 class TriangleMesh(Shape):
     """A triangle mesh in a file of its own.
 
-    obj_file: path; must be given. Path of the mesh file: `.obj` or `.ply`.
+    obj_file: path; must be given. Path of the mesh file: `.obj`, `.ply` or `.stl`.
     """
 
     def __init__(
