@@ -22,8 +22,8 @@ use std::path::PathBuf;
   durer measure room.txt --at 0,0.8,0 --at 1,0.8,0 --normal 0,1,0 --samples 16384
   durer measure room.txt --grid 0,0.8,0:4,0,0:0,0,6:8x12 > desk.csv
 
-A grid is a corner, two edges from it and numbers of points: the points are the middles of its cells, its normal is edge 1 times
-edge 0 unless --normal says otherwise, so that edges along x and z measure what falls from above.
+A grid is a corner, two edges from it and numbers of points: the points are the middles of its cells. Unless --normal says otherwise
+it measures what falls from above; an upright grid has the normal of its second edge times its first.
 The illuminance is in lux where the scene's light is in cd/m^2 (`emissionLuminance`, `sun`); the irradiance is by colour. Nothing
 is measured on the other side of the normal. Standard errors are those of independent samples; these are spread more evenly, and
 are nearer than that.")]
@@ -108,6 +108,7 @@ fn measured(path: &Path, point: Vec3, normal: Vec3, number: u32, seed: u64, samp
 pub fn run(args: &MeasureArgs) -> Result<(), Failure> {
     let grids = args.grid.iter().flat_map(|grid| {
         let normal = grid.edges[1].cross(grid.edges[0]).normalize_or(Vec3::Y);
+        let normal = if normal.y < 0.0 { -normal } else { normal };
         grid.points().map(move |point| (point, normal))
     });
     let own = args.points.iter().map(|&point| (point, Vec3::Y)).chain(grids);

@@ -56,7 +56,7 @@ fn paths_have_the_same_bits_in_every_way_and_sum_in_explanations() {
     let picture = place.image("p.pfm");
     assert!(picture.pixels.iter().all(|pixel| pixel.is_finite()));
     let why = place.gives(0, "explain lit.txt --pixel 16,20 --size 32x24 --samples 8 -q").out;
-    assert!(why.contains("direct light of") && why.contains("MIS weight"), "{why}");
+    assert!(why.contains("direct light of PhotometricLight") && why.contains("chosen by Diffuse"), "{why}");
 }
 
 #[test]

@@ -140,9 +140,10 @@ impl Form {
                 }
                 1.0 / (2.0 * PI * one_minus_cosine(r2 / d2))
             }
-            Form::Parallelogram([p, e, f]) if let Some(window) = Window::new(offset(p, from), e, f) => {
-                1.0 / window.solid_angle as f32
-            }
+            Form::Parallelogram([p, e, f]) => match Window::new(offset(p, from), e, f) {
+                Some(window) => 1.0 / window.solid_angle as f32,
+                None => distance * distance / (wi.dot(normal).abs() * self.area()),
+            },
             _ => distance * distance / (wi.dot(normal).abs() * self.area()),
         }
     }
