@@ -34,9 +34,10 @@ fn a_measured_lamp_gives_its_illuminance() {
         ran.out.lines().skip(1).map(|row| row.split(',').map(|word| word.parse().unwrap()).collect()).collect();
     assert!(ran.out.starts_with("x,y,z,nx,ny,nz,illuminance,illuminance_error,"));
     assert!((rows[0][6] - 250.0).abs() < 0.1, "{rows:?}");
-    // At (-0.5, 0, 0.5): cos^2 = 4 / 4.5. Between measured angles it is linear, so that a little is missing.
-    let expected = 1000.0 * (4.0 / 4.5) / 4.5;
-    assert!((rows[1][6] / expected - 1.0).abs() < 0.02 && rows[1][4] == 1.0, "{rows:?}");
+    // At (-0.5, 0, 0.5), 19.4712 degrees from straight down: candela are linear between 0 and 30 degrees.
+    let candela = 1000.0 - (1000.0 - 866.025) * 19.4712 / 30.0;
+    let expected = candela * (4.0_f64 / 4.5).sqrt() / 4.5;
+    assert!((rows[1][6] / expected - 1.0).abs() < 1e-4 && rows[1][4] == 1.0, "{rows:?}");
     assert!(place.gives(2, "measure open.txt").err.contains("say where"));
     assert!(place.gives(2, "measure open.txt --at 0,0").err.contains("three numbers"));
     assert!(place.gives(2, "measure open.txt --at 0,0,0 --normal 0,0,0").err.contains("--normal"));
