@@ -93,12 +93,26 @@ impl<'r> Loader<'r> {
 
     /// What a mesh file holds.
     fn mesh_file(&mut self, name: &FileName, diagnostics: &mut Diagnostics) -> Option<MeshData> {
-        let bytes = self.read(name, "mesh", diagnostics)?;
+        let habits = self.rules.compat;
+        self.parsed(name, "mesh", diagnostics, |bytes, file, own| {
+            format::read_mesh_as(bytes, file, &name.path, habits, own)
+        })
+    }
+
+    /// What a reader makes of a file; its errors are followed by the place that names the file.
+    fn parsed<T>(
+        &mut self,
+        name: &FileName,
+        what: &str,
+        diagnostics: &mut Diagnostics,
+        read: impl FnOnce(&[u8], u32, &mut Diagnostics) -> Option<T>,
+    ) -> Option<T> {
+        let bytes = self.read(name, what, diagnostics)?;
         let file = self.resources.files.add(name.path.clone(), bytes.clone());
         let mut own = Diagnostics::default();
-        let data = format::read_mesh_as(&bytes, file, &name.path, self.rules.compat, &mut own);
+        let data = read(&bytes, file, &mut own);
         if own.has_errors() {
-            let message = format!("the mesh `{}` cannot be used", name.path);
+            let message = format!("the {what} `{}` cannot be used", name.path);
             let error = Diagnostic::error(message).code("bad-file").at(name.span);
             diagnostics.push(error.label("asked for here"));
         }
@@ -234,17 +248,7 @@ impl<'r> Loader<'r> {
 
     /// How strong a light shines in each direction, if a file says that.
     pub(super) fn profile(&mut self, light: &Light, diagnostics: &mut Diagnostics) -> Option<Arc<Profile>> {
-        let name = light.profile()?;
-        let bytes = self.read(name, "photometric file", diagnostics)?;
-        let file = self.resources.files.add(name.path.clone(), bytes.clone());
-        let mut own = Diagnostics::default();
-        let profile = format::ies::read(&bytes, file, &mut own);
-        if own.has_errors() {
-            let message = format!("the photometric file `{}` cannot be used", name.path);
-            diagnostics.push(Diagnostic::error(message).code("bad-file").at(name.span).label("asked for here"));
-        }
-        diagnostics.extend(own);
-        profile.map(Arc::new)
+        self.parsed(light.profile()?, "photometric file", diagnostics, format::ies::read).map(Arc::new)
     }
 
     /// The picture around a scene.

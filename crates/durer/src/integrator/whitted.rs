@@ -4,8 +4,7 @@
 //! terms of the course.
 
 use super::account::{RayKind, Shadow, Struck, What, Witness};
-pub(crate) use super::media::Passage;
-use super::media::{Media, Medium};
+use super::media::{Media, Medium, Passage};
 use super::spawn::{from_surface, to_light};
 use crate::dialect::Compat;
 use crate::light::Illumination;
@@ -106,7 +105,8 @@ impl Whitted<'_> {
         let mut color = Color::ZERO;
         if !black {
             // A texture or noise is looked up once for all lights.
-            let diffuse: SmallVec<[Color; 2]> = parts.iter().map(|p| self.diffuse_color(p.phong, surface)).collect();
+            let diffuse: SmallVec<[Color; 2]> =
+                parts.iter().map(|p| self.world.diffuse_color(p.phong, surface)).collect();
             for (part, &diffuse) in parts.iter().zip(&diffuse) {
                 let met = part.phong.ambient.unwrap_or(diffuse);
                 let ambient = part.share * self.world.ambient;
@@ -167,12 +167,7 @@ impl Whitted<'_> {
     /// The diffuse colour at a hit, of each material that makes it up by its share: its albedo, without any light.
     pub fn albedo(&self, hit: &Hit, surface: &Surface) -> Color {
         let parts = self.world.parts(hit, surface.position);
-        parts.iter().map(|part| part.share * self.diffuse_color(part.phong, surface)).sum()
-    }
-
-    /// Noise, else texture, else the diffuse colour; or the diffuse colour times texture and vertices' colours.
-    pub(crate) fn diffuse_color(&self, phong: &Phong, surface: &Surface) -> Color {
-        self.world.diffuse_color(phong, surface)
+        parts.iter().map(|part| part.share * self.world.diffuse_color(part.phong, surface)).sum()
     }
 
     /// The share of a light that arrives: nothing behind a thing, or what transparent things let through.

@@ -6,8 +6,9 @@
 use super::habits::{Ambient, Cosine, Fading, Fresnel, Glass, Habits, Half, Mirror, Normals, Pick, Sum};
 use crate::dialect::Compat;
 use crate::integrator::media::Media;
+use crate::integrator::media::Passage;
 use crate::integrator::spawn::{from_surface, to_light};
-use crate::integrator::whitted::{Blend, Passage, fresnel_share};
+use crate::integrator::whitted::{Blend, fresnel_share};
 use crate::integrator::{Settings, Whitted, refract};
 use crate::light::{Emitter, Illumination, Light};
 use crate::math::{Color, Ray, Ray64, Vec2, Vec3, fp, gamma, reflect};
@@ -166,7 +167,7 @@ impl<'w> Pupil<'w> {
         let (mut color, mut blocked) = (Color::ZERO, false);
         if !black || habits.faced {
             let diffuse: SmallVec<[Color; 2]> =
-                parts.iter().map(|p| self.right.diffuse_color(p.phong, &surface)).collect();
+                parts.iter().map(|p| self.world.diffuse_color(p.phong, &surface)).collect();
             let rounds = if habits.ambient == Ambient::EachLight { world.lights.len() } else { 1 };
             let mut ambient_seen = Color::ZERO;
             for (part, &diffuse) in parts.iter().zip(&diffuse) {

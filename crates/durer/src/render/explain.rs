@@ -11,7 +11,7 @@ use crate::camera::Raster;
 use crate::dialect::Compat;
 use crate::film::Film;
 use crate::film::aov::Aov;
-use crate::integrator::{Account, Integrator, Node, Whitted};
+use crate::integrator::{Account, Integrator, Node};
 use crate::math::{Color, Ray, Vec2, Vec3};
 use crate::sampler::SampleId;
 use crate::world::{Material, World};
@@ -149,22 +149,21 @@ fn count(world: &World, job: &Job, (x, y): (u32, u32)) -> Result<u32, RenderErro
 }
 
 /// The colour of a texture, noise or plain surface at a pixel's centre, and its material, if that has one.
-fn texel(world: &World, job: &Job, raster: &Raster, pixel: (u32, u32)) -> Option<(u32, Color, Color)> {
+fn texel(world: &World, raster: &Raster, pixel: (u32, u32)) -> Option<(u32, Color, Color)> {
     let ray = center_ray(world, raster, pixel)?;
     let hit = world.closest(&ray, &mut ())?;
     let material = world.material(&hit);
     let Material::Phong(phong) = &world.materials[material as usize] else { return None };
-    let whitted = Whitted { world, settings: job.settings, cancel: None };
-    Some((material, whitted.diffuse_color(phong, &world.surface(&ray, &hit)), phong.diffuse))
+    Some((material, world.diffuse_color(phong, &world.surface(&ray, &hit)), phong.diffuse))
 }
 
 /// What [`Compat::StaleTexels`] adds: the ambient light of the pixel before with the same material, less its own.
 fn stale_texel(world: &World, job: &Job, raster: &Raster, (x, y): (u32, u32)) -> Option<Color> {
-    let (material, own, plain) = texel(world, job, raster, (x, y))?;
+    let (material, own, plain) = texel(world, raster, (x, y))?;
     // In rows from the bottom: first those of this row to the left, from right to left, then the rows below.
     let row = |y: u32, end: u32| (0..end).rev().map(move |x| (x, y));
     let mut before = row(y, x).chain((y + 1..job.height).flat_map(|y| row(y, job.width)));
-    let before = before.find_map(|pixel| texel(world, job, raster, pixel).filter(|found| found.0 == material));
+    let before = before.find_map(|pixel| texel(world, raster, pixel).filter(|found| found.0 == material));
     Some(world.ambient * (before.map_or(plain, |found| found.1) - own))
 }
 

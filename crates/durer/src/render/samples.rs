@@ -342,7 +342,7 @@ impl<'a> Samples<'a> {
             let Some(hit) = world.closest(&ray, &mut ()) else { continue };
             let material = world.material(&hit);
             let Material::Phong(phong) = &world.materials[material as usize] else { continue };
-            let texel = self.whitted.diffuse_color(phong, &world.surface(&ray, &hit));
+            let texel = world.diffuse_color(phong, &world.surface(&ray, &hit));
             let before = last[material as usize].replace(texel).unwrap_or(phong.diffuse);
             differences[(y * job.width + x) as usize] = world.ambient * (before - texel);
         }

@@ -20,11 +20,10 @@ pub struct Maps {
 }
 
 impl World {
-    /// What of a material in layers differs from point to point, and the normal to shade with: on the side of the surface's own,
-    /// of length 1.
+    /// What of a material in layers differs from point to point.
     ///
     /// `surface` is the [surface](World::surface) at that hit. Where it has no texture coordinates, pictures are left out.
-    pub fn layers_at(&self, own: &Principled, hit: &Hit, surface: &Surface) -> (Layers, Vec3) {
+    pub fn layers_at(&self, own: &Principled, hit: &Hit, surface: &Surface) -> Layers {
         let mut here = own.layers;
         let [r, g, b, _] = surface.color;
         here.base_color *= Vec3::new(r, g, b);
@@ -35,7 +34,7 @@ impl World {
             here.roughness *= roughness;
             here.metalness *= metalness;
         }
-        (here, self.mapped_normal(own.maps.normal, hit, surface).unwrap_or(surface.n_shade))
+        here
     }
 
     /// What a picture makes of a surface's own light.
@@ -70,7 +69,7 @@ impl World {
     }
 
     /// The normal that a normal map says: x along the direction in which the picture's u grows, y along its v upwards.
-    fn mapped_normal(&self, map: Option<u32>, hit: &Hit, surface: &Surface) -> Option<Vec3> {
+    pub(super) fn mapped_normal(&self, map: Option<u32>, hit: &Hit, surface: &Surface) -> Option<Vec3> {
         let texture = &self.textures[map? as usize];
         let mapping = texture.mapping().copied().unwrap_or_default();
         let object = &self.objects[hit.object as usize];

@@ -56,9 +56,8 @@ impl World {
     pub fn shading(&self, dir: Vec3, hit: &Hit, surface: &Surface, inside: bool, eta: f32) -> Shading {
         let parts = self.parts(hit, surface.position);
         // The first normal map of a mixture counts for all of it.
-        let mapped =
-            parts.iter().find_map(|part| part.phong.principled.as_ref().filter(|own| own.maps.normal.is_some()));
-        let n_shade = mapped.map_or(surface.n_shade, |own| self.layers_at(own, hit, surface).1);
+        let map = parts.iter().find_map(|part| part.phong.principled.as_ref()?.maps.normal);
+        let n_shade = self.mapped_normal(map, hit, surface).unwrap_or(surface.n_shade);
         let [n, n_geo] = [n_shade, surface.n_geo].map(|n| if inside { -n } else { n });
         // An interpolated normal may point away from the ray; the surface itself does not.
         let n = if dir.dot(n) < 0.0 { n.normalize_or(n_geo) } else { n_geo };
@@ -69,7 +68,7 @@ impl World {
         for part in parts {
             let own = match &part.phong.principled {
                 Some(own) => {
-                    let (layers, _) = self.layers_at(own, hit, surface);
+                    let layers = self.layers_at(own, hit, surface);
                     layers::scattering(&own.written, &layers, &own.tables, wo, inside, eta)
                 }
                 None => phong_lobes(part.phong, self.diffuse_color(part.phong, surface), wo, eta),
