@@ -167,7 +167,7 @@ pub static TOPICS: [Topic; 13] = [
                 patterns are part of a surface's colour.",
         equations: &["L = k_d"],
         places: &[
-            at("crates/durer/src/integrator/whitted.rs", "fn diffuse_color"),
+            at("crates/durer/src/world/shading.rs", "fn diffuse_color"),
             at("crates/durer/src/world/mod.rs", "fn sky"),
             at("crates/durer/src/texture/mod.rs", "fn at"),
         ],
