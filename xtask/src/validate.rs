@@ -6,6 +6,7 @@ use durer::integrator::{Path, Settings};
 use durer::math::{Vec3, fp};
 use durer::render::Job;
 use durer::sampler::SampleId;
+use durer::spectrum::ColorMode;
 use durer::world::World;
 use durer::{LoadOptions, load_text};
 use std::f64::consts::PI;
@@ -169,7 +170,7 @@ fn world(case: &Case) -> Result<World> {
 fn measured(case: &Case, samples: u32) -> Result<(f64, f64)> {
     let world = world(case)?;
     let settings = Settings { bounces: case.bounces, ..Job::default().settings };
-    let path = Path { world: &world, settings, clamp: None, cancel: None };
+    let path = Path { world: &world, settings, clamp: None, color: ColorMode::Rgb, cancel: None };
     let (mut sum, mut squares) = (0.0, 0.0);
     for sample in 0..samples {
         let (point, normal) = case.at;

@@ -2,6 +2,7 @@
 
 use crate::args::SceneArgs;
 use crate::guard::Guard;
+use crate::method::color_mode;
 use crate::open::{load_options, open};
 use crate::output::say;
 use crate::{Failure, bad, job};
@@ -10,6 +11,7 @@ use durer::integrator::{Path, Settings};
 use durer::math::{Color, Vec3};
 use durer::render::Job;
 use durer::sampler::SampleId;
+use durer::spectrum::ColorMode;
 use durer::threads;
 use durer::world::World;
 use rayon::prelude::*;
@@ -47,6 +49,9 @@ pub struct MeasureArgs {
     /// How often light may be scattered before it arrives
     #[arg(long, default_value_t = job::PATH_BOUNCES, value_parser = clap::value_parser!(u32).range(0..=256))]
     pub bounces: u32,
+    /// What light is made of: rgb or spectral
+    #[arg(long, value_name = "MODE", default_value = "rgb", value_parser = color_mode())]
+    pub color: ColorMode,
     /// Samples of each point
     #[arg(long, default_value_t = 4096, value_parser = clap::value_parser!(u32).range(1..=1 << 24))]
     pub samples: u32,
@@ -123,7 +128,7 @@ pub fn run(args: &MeasureArgs) -> Result<(), Failure> {
     let opened = open(&args.scene, &load_options(&args.reading), false, &mut Guard::default())?;
     let settings = Settings { bounces: args.bounces, ..Job::default().settings };
     let world: &World = &opened.world;
-    let path = Path { world, settings, clamp: None, cancel: None };
+    let path = Path { world, settings, clamp: None, color: args.color, cancel: None };
     let rows: Vec<_> = threads::install(args.threads.map(usize::from), || {
         let one = |(number, &(point, normal)): (usize, &(Vec3, Vec3))| {
             measured(&path, point, normal, number as u32, args.seed, args.samples)

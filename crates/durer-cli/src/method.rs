@@ -2,9 +2,10 @@
 
 use crate::{Failure, bad};
 use clap::Args;
-use clap::builder::PossibleValuesParser;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use durer::integrator::Method;
 use durer::scene::Scene;
+use durer::spectrum::ColorMode;
 
 /// What computes the light
 #[derive(Args)]
@@ -17,16 +18,25 @@ pub struct MethodArgs {
     /// specks, and light with them [default: no limit]
     #[arg(long, value_name = "RADIANCE")]
     pub clamp: Option<f32>,
+    /// With path: what light is made of: rgb, or spectral (four wavelengths at a time: coloured light on coloured things,
+    /// prisms) [default: rgb]
+    #[arg(long, value_name = "MODE", value_parser = color_mode())]
+    pub color: Option<ColorMode>,
     /// With ao: how far things count, in units of the world [default: all count]
     #[arg(long, value_name = "DISTANCE")]
     pub ao_radius: Option<f32>,
+}
+
+/// Reads what light is made of.
+pub fn color_mode() -> impl TypedValueParser<Value = ColorMode> {
+    PossibleValuesParser::new(ColorMode::NAMES).map(|name| ColorMode::from_name(&name).unwrap_or_default())
 }
 
 /// The method that the options ask for, or that the scene needs.
 pub fn method(args: &MethodArgs, scene: &Scene) -> Result<Method, Failure> {
     let usual = if args.ao_radius.is_some() {
         "ao"
-    } else if args.clamp.is_some() || scene.is_physical() {
+    } else if args.clamp.is_some() || args.color.is_some() || scene.is_physical() {
         "path"
     } else {
         "whitted"
@@ -40,8 +50,11 @@ pub fn method(args: &MethodArgs, scene: &Scene) -> Result<Method, Failure> {
             return Err(bad(format!("{option} must be more than 0")));
         }
     }
+    if args.color.is_some() && name != "path" {
+        return Err(bad(format!("--color makes no sense with --integrator {name}")));
+    }
     Ok(match name {
-        "path" => Method::Path { clamp: args.clamp },
+        "path" => Method::Path { clamp: args.clamp, color: args.color.unwrap_or_default() },
         "ao" => Method::Ao { radius: args.ao_radius.unwrap_or(f32::INFINITY) },
         _ => Method::Whitted,
     })
@@ -55,7 +68,12 @@ pub fn spelled(method: Method, scene: &Scene) -> Vec<String> {
         words.push(format!("--integrator {}", method.name()));
     }
     match method {
-        Method::Path { clamp: Some(clamp) } => words.push(format!("--clamp {clamp}")),
+        Method::Path { clamp, color } => {
+            words.extend(clamp.map(|clamp| format!("--clamp {clamp}")));
+            if color != ColorMode::default() {
+                words.push(format!("--color {}", color.name()));
+            }
+        }
         Method::Ao { radius } if radius.is_finite() => words.push(format!("--ao-radius {radius}")),
         _ => {}
     }

@@ -28,6 +28,7 @@ pub mod sampler;
 pub mod scene;
 pub mod shape;
 pub mod source;
+pub mod spectrum;
 pub mod texture;
 pub mod threads;
 pub mod world;

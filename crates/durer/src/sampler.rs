@@ -101,6 +101,9 @@ pub struct SampleId {
 /// Dimensions from here on are for layers that a ray passes, however many there are.
 const LAYER_DIMENSIONS: u32 = 1 << 16;
 
+/// The dimension that wavelengths use.
+const WAVELENGTH_DIMENSION: u32 = 1 << 15;
+
 impl SampleId {
     /// Of a sample of a pixel.
     pub fn new(seed: u64, pixel: (u32, u32), sample: u32) -> Self {
@@ -116,6 +119,12 @@ impl SampleId {
     pub fn pair(&self, dimension: u32) -> Vec2 {
         let (x, y) = self.pixel;
         sample_2d(self.seed, x, y, self.sample, self.first + dimension)
+    }
+
+    /// The number in [0,1) that wavelengths are chosen by.
+    pub fn wavelength(&self) -> f32 {
+        let (x, y) = self.pixel;
+        sample_2d(self.seed, x, y, self.sample, WAVELENGTH_DIMENSION).x
     }
 
     /// A number in [0,1) for a layer on the way after some bounces.

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 /// The rooms by floor, as ARCHITECTURE.md draws them.
 const FLOORS: [&[&str]; 10] = [
     &["math", "diag", "dialect", "threads"],
-    &["sampler", "source", "describe"],
+    &["sampler", "source", "describe", "spectrum"],
     &["image"],
     &["shape", "camera", "light", "material", "texture"],
     &["scene", "bvh", "bsdf"],

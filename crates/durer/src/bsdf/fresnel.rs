@@ -1,6 +1,7 @@
 //! How much light a smooth boundary reflects.
 
-use crate::math::{Color, Vec3, fp};
+use crate::math::fp;
+use crate::spectrum::Spectrum;
 
 /// The share of unpolarised light that a boundary of two dielectrics reflects. `cosine` is that of the light's way to the
 /// normal, from 0 to 1; `eta` is the index behind the boundary over the index before it.
@@ -47,28 +48,29 @@ pub fn ior_of_reflectance(r0: f32) -> f32 {
 /// Source: Kutz, Hasan and Edmondson, *Novel aspects of the Adobe Standard Material*, 2021, section 2.3; OpenPBR, Metal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct F82 {
-    f0: Color,
+    f0: Spectrum,
     /// How much is taken from Schlick's curve, in units of cos (1 - cos)^6.
-    dip: Color,
+    dip: Spectrum,
 }
 
 impl F82 {
     /// All of every colour, from everywhere.
-    pub const WHITE: F82 = F82 { f0: Vec3::ONE, dip: Vec3::ZERO };
+    pub const WHITE: F82 = F82 { f0: Spectrum::ONE, dip: Spectrum::ZERO };
 
     /// From the colour at right angles and the tint.
-    pub fn new(f0: Color, tint: Color) -> Self {
+    pub fn new(f0: Spectrum, tint: Spectrum) -> Self {
         const COSINE: f32 = 1.0 / 7.0;
         let rest = 1.0 - COSINE;
         let (power5, power6) = (rest * rest * rest * rest * rest, rest * rest * rest * rest * rest * rest);
-        let schlick = f0 + (Vec3::ONE - f0) * power5;
-        F82 { f0, dip: schlick * (Vec3::ONE - tint) / (COSINE * power6) }
+        let schlick = f0 + (Spectrum::ONE - f0) * power5;
+        F82 { f0, dip: schlick * (Spectrum::ONE - tint) / (COSINE * power6) }
     }
 
     /// At a cosine from 0 to 1.
-    pub fn at(&self, cosine: f32) -> Color {
+    pub fn at(&self, cosine: f32) -> Spectrum {
         let rest = (1.0 - cosine).clamp(0.0, 1.0);
         let power5 = rest * rest * rest * rest * rest;
-        (self.f0 + (Vec3::ONE - self.f0) * power5 - self.dip * cosine * power5 * rest).clamp(Vec3::ZERO, Vec3::ONE)
+        (self.f0 + (Spectrum::ONE - self.f0) * power5 - self.dip * cosine * power5 * rest)
+            .clamp(Spectrum::ZERO, Spectrum::ONE)
     }
 }

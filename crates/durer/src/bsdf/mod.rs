@@ -12,7 +12,8 @@ pub mod microfacet;
 mod tests;
 pub mod warp;
 
-use crate::math::{Color, Vec2, Vec3};
+use crate::math::{Vec2, Vec3};
+use crate::spectrum::Spectrum;
 pub use frame::Frame;
 pub use layers::{Layers, Tables};
 pub use lobe::{Lobe, Scatter};
@@ -24,7 +25,7 @@ pub struct Weighted {
     /// The lobe.
     pub lobe: Lobe,
     /// What multiplies it.
-    pub weight: Color,
+    pub weight: Spectrum,
     /// The probability with which it is sampled.
     pub probability: f32,
 }
@@ -43,7 +44,7 @@ pub struct BsdfSample {
     /// Where the light comes from.
     pub wi: Vec3,
     /// What multiplies that light: value · |cos| / density.
-    pub weight: Color,
+    pub weight: Spectrum,
     /// Density per solid angle; 0 where it is a single direction.
     pub pdf: f32,
     /// The number of the lobe that chose it.
@@ -52,7 +53,7 @@ pub struct BsdfSample {
 
 impl Bsdf {
     /// Adds a lobe. Lobes are chosen in proportion to their `share`: about what they give back.
-    pub fn push(&mut self, lobe: impl Into<Lobe>, weight: Color, share: f32) {
+    pub fn push(&mut self, lobe: impl Into<Lobe>, weight: Spectrum, share: f32) {
         if weight.max_element() > 0.0 && share > 0.0 {
             self.lobes.push(Weighted { lobe: lobe.into(), weight, probability: share });
             self.total += share;
@@ -82,7 +83,7 @@ impl Bsdf {
     }
 
     /// The value times |cos| of `wi`, without lobes of single directions.
-    pub fn eval(&self, wo: Vec3, wi: Vec3) -> Color {
+    pub fn eval(&self, wo: Vec3, wi: Vec3) -> Spectrum {
         self.lobes.iter().map(|part| part.weight * part.lobe.eval(wo, wi)).sum()
     }
 

@@ -11,6 +11,7 @@ use crate::material::PrincipledMaterial;
 use crate::material::principled::Walls;
 use crate::math::random::Random;
 use crate::sampler;
+use crate::spectrum::Lanes;
 use std::f64::consts::TAU;
 
 /// A direction seen from above, at a cosine.
@@ -27,15 +28,15 @@ fn broad() -> Vec<(&'static str, Lobe)> {
         Lobe::from(RoughGlass {
             ggx: Ggx::new(roughness, 0.0).clamped(),
             eta,
-            reflected: Vec3::ONE,
-            transmitted: Vec3::ONE,
+            reflected: Spectrum::ONE,
+            transmitted: Spectrum::ONE,
         })
     };
     vec![
-        ("Lambert", Diffuse { color: Vec3::ONE, roughness: 0.0 }.into()),
-        ("rough matte", Diffuse { color: Vec3::ONE, roughness: 1.0 }.into()),
-        ("Blinn", Blinn { color: Vec3::ONE, exponent: 30.0, phong: false }.into()),
-        ("Phong", Blinn { color: Vec3::ONE, exponent: 12.0, phong: true }.into()),
+        ("Lambert", Diffuse { color: Spectrum::ONE, roughness: 0.0 }.into()),
+        ("rough matte", Diffuse { color: Spectrum::ONE, roughness: 1.0 }.into()),
+        ("Blinn", Blinn { color: Spectrum::ONE, exponent: 30.0, phong: false }.into()),
+        ("Phong", Blinn { color: Spectrum::ONE, exponent: 12.0, phong: true }.into()),
         ("fuzz", Fuzz { roughness: 0.4 }.into()),
         ("rough metal", rough(0.5, 0.0, Facet::Metal(fresnel::F82::WHITE), false)),
         ("brushed metal", rough(0.7, 0.6, Facet::Metal(fresnel::F82::WHITE), false)),
@@ -182,7 +183,8 @@ fn what_absorbs_nothing_is_white_in_even_light() {
 }
 
 fn scattering_of(material: &PrincipledMaterial, layers: &Layers, tables: &Tables, wo: Vec3) -> Bsdf {
-    layers::scattering(material, layers, tables, wo, false, material.specular_ior)
+    let view = layers::View { lanes: &Lanes::Rgb, wo, inside: false, eta: material.specular_ior };
+    layers::scattering(material, layers, tables, view)
 }
 
 /// The same where what went into glass counts by flux and not by radiance.
@@ -243,8 +245,8 @@ fn fresnel_and_its_mean_agree() {
     assert!((fresnel::dielectric(1.0, 1.5) - 0.04).abs() < 1e-6);
     assert_eq!(fresnel::dielectric(0.1, 1.0 / 1.5), 1.0);
     // At 82 degrees a metal of tint t reflects t of Schlick's curve.
-    let f0 = Vec3::new(0.9, 0.6, 0.3);
-    let (plain, tinted) = (fresnel::F82::new(f0, Vec3::ONE), fresnel::F82::new(f0, Vec3::splat(0.8)));
+    let f0 = Spectrum::new(0.9, 0.6, 0.3, 0.6);
+    let (plain, tinted) = (fresnel::F82::new(f0, Spectrum::ONE), fresnel::F82::new(f0, Spectrum::splat(0.8)));
     assert!((tinted.at(1.0 / 7.0) - 0.8 * plain.at(1.0 / 7.0)).abs().max_element() < 1e-5);
     assert!((tinted.at(1.0) - f0).abs().max_element() < 1e-6);
 }
@@ -254,7 +256,7 @@ fn highlights_of_the_course_give_back_less_than_their_bound() {
     for (exponent, phong) in [(1.0, false), (5.0, false), (40.0, false), (1.0, true), (25.0, true)] {
         for cosine in [1.0, 0.7, 0.3, 0.05] {
             let mut bsdf = Bsdf::default();
-            bsdf.push(Blinn { color: Vec3::ONE, exponent, phong }, Vec3::ONE, 1.0);
+            bsdf.push(Blinn { color: Spectrum::ONE, exponent, phong }, Spectrum::ONE, 1.0);
             let (mean, _) = given(&bsdf, seen(cosine, 0.0), 1 << 14);
             assert!(mean <= f64::from(Blinn::bound(exponent)), "{exponent} {phong} {cosine}: {mean}");
         }

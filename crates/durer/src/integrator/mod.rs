@@ -9,6 +9,7 @@ pub mod whitted;
 
 use crate::math::{Color, Ray};
 use crate::sampler::SampleId;
+use crate::spectrum::ColorMode;
 use crate::world::World;
 pub use account::{Account, Node, Witness};
 pub use ao::AmbientOcclusion;
@@ -28,6 +29,8 @@ pub enum Method {
     Path {
         /// Light that was scattered more than once is not brighter than this.
         clamp: Option<f32>,
+        /// What colours are on the way.
+        color: ColorMode,
     },
     /// How much of the sky things leave free.
     Ao {
@@ -37,6 +40,9 @@ pub enum Method {
 }
 
 impl Method {
+    /// All light, as it is without wishes.
+    pub const PATH: Method = Method::Path { clamp: None, color: ColorMode::Rgb };
+
     /// Names on the command line.
     pub const NAMES: [&'static str; 3] = ["whitted", "path", "ao"];
 
@@ -71,7 +77,7 @@ impl<'w> Integrator<'w> {
     pub fn new(world: &'w World, method: Method, settings: Settings, cancel: Option<&'w AtomicBool>) -> Self {
         match method {
             Method::Whitted => Integrator::Whitted(Whitted { world, settings, cancel }),
-            Method::Path { clamp } => Integrator::Path(Path { world, settings, clamp, cancel }),
+            Method::Path { clamp, color } => Integrator::Path(Path { world, settings, clamp, color, cancel }),
             Method::Ao { radius } => Integrator::Ao(AmbientOcclusion { world, radius }),
         }
     }

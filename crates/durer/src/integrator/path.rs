@@ -14,6 +14,7 @@ use crate::bsdf::{Bsdf, BsdfSample, Frame};
 use crate::math::{Color, Ray, Ray64, Vec3, fp, gamma};
 use crate::sampler::SampleId;
 use crate::shape::Surface;
+use crate::spectrum::{ColorMode, Lanes, Spectrum};
 use crate::world::emitters::LightSample;
 use crate::world::{Hit, Shading, World};
 use glam::DVec3;
@@ -28,6 +29,8 @@ pub struct Path<'w> {
     pub settings: Settings,
     /// Light that was scattered more than once is not brighter than this. It removes bright specks, and light with them.
     pub clamp: Option<f32>,
+    /// What colours are on the way.
+    pub color: ColorMode,
     /// Once set, no more rays are traced, and what comes out means nothing.
     pub cancel: Option<&'w AtomicBool>,
 }
@@ -45,16 +48,38 @@ enum Use {
 /// Pairs that a bounce takes.
 const USES: u32 = 4;
 
+/// What is the same all along a path.
+#[derive(Clone, Copy)]
+struct Sample {
+    /// Its random numbers.
+    id: SampleId,
+    /// What its light is made of.
+    lanes: Lanes,
+}
+
+impl Sample {
+    /// The random numbers of a bounce.
+    fn bounce(&self, depth: u32) -> SampleId {
+        self.id.at(depth * USES)
+    }
+}
+
 /// What a ray carries from bounce to bounce.
 struct State {
     /// What the ray runs in.
     media: Media,
-    /// How much it counts for in the pixel, by colour.
-    throughput: Color,
+    /// How much it counts for in the pixel, by lane.
+    throughput: Spectrum,
     /// How often it was scattered.
     depth: u32,
     /// Where it was scattered last, if lights can be found there in another way.
     from: Option<Scattered>,
+}
+
+impl Default for State {
+    fn default() -> Self {
+        State { media: Media::default(), throughput: Spectrum::ONE, depth: 0, from: None }
+    }
 }
 
 /// A point from which lights were connected with.
@@ -76,12 +101,12 @@ struct Vertex<'a> {
 impl Path<'_> {
     /// The light that comes along a camera ray, by the random numbers of a sample.
     pub fn radiance<T: Witness>(&self, ray: &Ray, id: SampleId, tally: &mut T) -> Color {
-        let state = State { media: Media::default(), throughput: Color::ONE, depth: 0, from: None };
+        let sample = Sample { id, lanes: Lanes::new(self.color, id.wavelength()) };
         tally.begin(|| What::Ray { from: RayKind::Camera, ray: ray.into(), weight: 1.0, hit: None, bounce: None });
-        let (sum, scale) = self.trace(&ray.into(), state, id, tally);
-        let color = sum * scale;
-        tally.end(Color::ONE, scale, color);
-        color
+        let (sum, scale) = self.trace(&ray.into(), State::default(), &sample, tally);
+        let light = sum * scale;
+        tally.end(Color::ONE, scale.truncate(), light.truncate());
+        sample.lanes.color(light)
     }
 
     /// The irradiance at a point on the side of a unit normal, by the random numbers of a sample: pi times what a white matte
@@ -89,54 +114,55 @@ impl Path<'_> {
     pub fn irradiance<T: Witness>(&self, point: DVec3, normal: Vec3, id: SampleId, tally: &mut T) -> Color {
         let surface = Surface::around(point, normal);
         let mut bsdf = Bsdf::default();
-        bsdf.push(Diffuse { color: Color::ONE, roughness: 0.0 }, Color::ONE, 1.0);
+        bsdf.push(Diffuse { color: Spectrum::ONE, roughness: 0.0 }, Spectrum::ONE, 1.0);
         let shading = Shading { frame: Frame::around(normal), n_geo: normal, wo: Vec3::Z, bsdf };
-        let state = State { media: Media::default(), throughput: Color::ONE, depth: 0, from: None };
-        let vertex = Vertex { surface: &surface, shading: &shading, state: &state };
-        let id = id.at(0);
-        std::f32::consts::PI * (self.direct(&vertex, id, tally) + self.indirect(&vertex, None, id, tally))
+        let sample = Sample { id, lanes: Lanes::new(self.color, id.wavelength()) };
+        let vertex = Vertex { surface: &surface, shading: &shading, state: &State::default() };
+        let light = self.direct(&vertex, &sample, tally) + self.indirect(&vertex, None, &sample, tally);
+        std::f32::consts::PI * sample.lanes.color(light)
     }
 
     /// The light along a ray: a sum, and what the way to it leaves of it.
-    fn trace<T: Witness>(&self, ray: &Ray64, mut state: State, id: SampleId, tally: &mut T) -> (Color, Color) {
+    fn trace<T: Witness>(&self, ray: &Ray64, mut state: State, sample: &Sample, tally: &mut T) -> (Spectrum, Spectrum) {
         let mut rest = *ray;
-        let mut scale = Color::ONE;
+        let mut scale = Spectrum::ONE;
         let (mut walked, mut layers) = (0.0, 0);
         while let Some(hit) = self.world.closest(&rest, tally) {
             let surface = self.world.surface(ray, &hit);
             let length = hit.t * ray.dir().length();
-            scale *= self.left_of_light(&state.media, length - walked);
+            scale *= self.left_of_light(&state.media, length - walked, &sample.lanes);
             walked = length;
             if self.world.has_cutouts {
                 let opacity = self.world.opacity(&hit, &surface);
                 layers += 1;
                 // What is not there at all does not count as a bounce.
-                if opacity < 1.0 && id.layer(state.depth, layers) >= opacity {
+                if opacity < 1.0 && sample.id.layer(state.depth, layers) >= opacity {
                     rest.rounded.t_min = hit.t;
                     continue;
                 }
             }
             match self.passage(ray, &hit, &surface, &state.media) {
                 Some(Passage { hidden: true, behind, .. }) => (state.media, rest.rounded.t_min) = (behind, hit.t),
-                passage => return (self.scattered(ray, &hit, &surface, passage, state, id, tally), scale),
+                passage => return (self.scattered(ray, &hit, &surface, passage, state, sample, tally), scale),
             }
         }
         let sky = self.world.sky(ray.dir());
         let weight =
             state.from.map_or(1.0, |from| power(from.pdf, self.world.emitters.pdf_of_sky(self.world, ray.dir())));
+        let sky = sample.lanes.light(sky);
         tally.begin(|| What::Sky);
-        tally.end(Color::splat(weight), Color::ONE, sky);
+        tally.end(Color::splat(weight), Color::ONE, sky.truncate());
         (weight * sky, scale)
     }
 
     /// What a way through the body that a ray is in leaves of its light.
     ///
     /// Source: Beer's law.
-    fn left_of_light(&self, media: &Media, length: f32) -> Color {
-        let Some(object) = media.object() else { return Color::ONE };
+    fn left_of_light(&self, media: &Media, length: f32, lanes: &Lanes) -> Spectrum {
+        let Some(object) = media.object() else { return Spectrum::ONE };
         match self.world.absorption(object) {
-            Color::ZERO => Color::ONE,
-            absorption => (-absorption * length).map(fp::exp),
+            Color::ZERO => Spectrum::ONE,
+            absorption => (-lanes.coefficient(absorption) * length).map(fp::exp),
         }
     }
 
@@ -159,31 +185,31 @@ impl Path<'_> {
         surface: &Surface,
         passage: Option<Passage>,
         state: State,
-        id: SampleId,
+        sample: &Sample,
         tally: &mut T,
-    ) -> Color {
+    ) -> Spectrum {
         let inside = ray.dir().dot(surface.n_geo) > 0.0;
         let eta = passage.as_ref().map_or(1.0, |passage| passage.there / passage.here);
-        let shading = self.world.shading(ray.dir(), hit, surface, inside, eta);
+        let shading = self.world.shading(ray.dir(), hit, surface, (inside, eta), &sample.lanes);
         tally.hit(|| struck(self.world, ray, hit, surface, shading.frame.normal, inside, false));
-        let mut sum = Color::ZERO;
+        let mut sum = Spectrum::ZERO;
         let emitted = self.world.emission(hit, surface, inside);
         if emitted != Color::ZERO {
+            let emitted = sample.lanes.light(emitted);
             let weight = self.weight_of_hit(ray, hit, &state);
             tally.begin(|| What::Emission { mis: weight });
-            tally.end(Color::splat(weight), Color::ONE, emitted);
+            tally.end(Color::splat(weight), Color::ONE, emitted.truncate());
             sum += weight * emitted;
         }
         let cancelled = self.cancel.is_some_and(|cancel| cancel.load(Relaxed));
         if state.depth > self.settings.bounces || cancelled || shading.bsdf.is_black() {
             return sum;
         }
-        let id = id.at(state.depth * USES);
         let vertex = Vertex { surface, shading: &shading, state: &state };
         if shading.bsdf.is_broad() {
-            sum += self.direct(&vertex, id, tally);
+            sum += self.direct(&vertex, sample, tally);
         }
-        sum + self.indirect(&vertex, passage, id, tally)
+        sum + self.indirect(&vertex, passage, sample, tally)
     }
 
     /// How much a light counts that a ray met by its direction, where it could have been connected with too.
@@ -195,14 +221,15 @@ impl Path<'_> {
     }
 
     /// The light of one light that is chosen.
-    fn direct<T: Witness>(&self, vertex: &Vertex, id: SampleId, tally: &mut T) -> Color {
+    fn direct<T: Witness>(&self, vertex: &Vertex, sample: &Sample, tally: &mut T) -> Spectrum {
         let (world, surface, shading) = (self.world, vertex.surface, vertex.shading);
+        let id = sample.bounce(vertex.state.depth);
         let (choice, place) = (id.pair(Use::Light as u32).x, id.pair(Use::PlaceOnLight as u32));
-        let sample = world.emitters.sample(world, surface.point(), shading.frame.normal, choice, place);
-        let Some(light) = sample else { return Color::ZERO };
+        let chosen = world.emitters.sample(world, surface.point(), shading.frame.normal, choice, place);
+        let Some(light) = chosen else { return Spectrum::ZERO };
         let value = shading.eval(light.wi);
-        if value == Color::ZERO || light.radiance == Color::ZERO {
-            return Color::ZERO;
+        if value == Spectrum::ZERO || light.radiance == Color::ZERO {
+            return Spectrum::ZERO;
         }
         let (weight, density) = match light.pdf > 0.0 {
             true => (power(light.choice * light.pdf, shading.pdf(light.wi)), light.choice * light.pdf),
@@ -217,45 +244,53 @@ impl Path<'_> {
             distance: light.reach,
             choice: light.choice,
             pdf: light.pdf,
-            bsdf: value,
+            bsdf: value.truncate(),
             mis: weight,
             shadow: self.settings.shadows.then(|| self.shadow(surface, &light, visible)),
         });
-        tally.end(factor, Color::ONE, light.radiance);
-        factor * light.radiance
+        let radiance = sample.lanes.light(light.radiance);
+        tally.end(factor.truncate(), Color::ONE, radiance.truncate());
+        factor * radiance
     }
 
     /// The light from a direction that is chosen.
-    fn indirect<T: Witness>(&self, vertex: &Vertex, passage: Option<Passage>, id: SampleId, tally: &mut T) -> Color {
+    fn indirect<T: Witness>(
+        &self,
+        vertex: &Vertex,
+        passage: Option<Passage>,
+        sample: &Sample,
+        tally: &mut T,
+    ) -> Spectrum {
         let Vertex { surface, shading, state } = *vertex;
+        let id = sample.bounce(state.depth);
         let (numbers, u) = (id.pair(Use::Lobe as u32), id.pair(Use::Direction as u32));
-        let Some(sample) = shading.bsdf.sample(shading.wo, numbers.x, u) else { return Color::ZERO };
-        let wi = shading.frame.to_world(sample.wi);
-        let passes = sample.wi.z < 0.0;
+        let Some(chosen) = shading.bsdf.sample(shading.wo, numbers.x, u) else { return Spectrum::ZERO };
+        let wi = shading.frame.to_world(chosen.wi);
+        let passes = chosen.wi.z < 0.0;
         if passes != (wi.dot(shading.n_geo) < 0.0) {
-            return Color::ZERO;
+            return Spectrum::ZERO;
         }
-        let throughput = state.throughput * sample.weight;
+        let throughput = state.throughput * chosen.weight;
         // Paths go on with a probability that keeps those that go on equally bright.
         let survival = match state.depth {
             0..3 => 1.0,
             _ => throughput.max_element().min(0.95),
         };
         if survival <= 0.0 || numbers.y >= survival {
-            return Color::ZERO;
+            return Spectrum::ZERO;
         }
-        let weight = sample.weight / survival;
+        let weight = chosen.weight / survival;
         let media = match passage {
             Some(passage) if passes => passage.behind,
             _ => state.media.clone(),
         };
-        let delta = sample.pdf == 0.0;
+        let delta = chosen.pdf == 0.0;
         let below = State {
             media,
             throughput: throughput / survival,
             depth: state.depth + 1,
             // Nothing can be connected with over a single direction.
-            from: (!delta).then(|| Scattered { point: surface.point(), n: shading.frame.normal, pdf: sample.pdf }),
+            from: (!delta).then(|| Scattered { point: surface.point(), n: shading.frame.normal, pdf: chosen.pdf }),
         };
         let ray = from_surface(surface, wi, f32::INFINITY, None);
         tally.begin(|| What::Ray {
@@ -267,18 +302,18 @@ impl Path<'_> {
             ray: (&ray).into(),
             weight: below.throughput.max_element(),
             hit: None,
-            bounce: Some(bounce(shading, &sample, survival)),
+            bounce: Some(bounce(shading, &chosen, survival)),
         });
         let indirect = state.depth > 0;
-        let (sum, scale) = self.trace(&ray, below, id, tally);
+        let (sum, scale) = self.trace(&ray, below, sample, tally);
         let scale = scale * self.clamped(sum * scale * weight * state.throughput, indirect);
-        let color = sum * scale;
-        tally.end(weight, scale, color);
-        weight * color
+        let light = sum * scale;
+        tally.end(weight.truncate(), scale.truncate(), light.truncate());
+        weight * light
     }
 
     /// What is left of light that is too bright.
-    fn clamped(&self, arriving: Color, indirect: bool) -> f32 {
+    fn clamped(&self, arriving: Spectrum, indirect: bool) -> f32 {
         match self.clamp {
             Some(most) if indirect && arriving.max_element() > most => most / arriving.max_element(),
             _ => 1.0,

@@ -1,13 +1,15 @@
 //! How a surface point scatters light, and what it shines, as a path tracer sees it.
 
 use super::{Geometry, Hit, Material, Object, Phong, World};
+use crate::bsdf::layers::{self, View};
 use crate::bsdf::lobe::blinn::Blinn;
 use crate::bsdf::lobe::diffuse::Diffuse;
 use crate::bsdf::lobe::glass::{Mirror, Refraction, Through};
-use crate::bsdf::{Bsdf, Frame, fresnel, layers};
+use crate::bsdf::{Bsdf, Frame, fresnel};
 use crate::material::principled::Walls;
 use crate::math::{Color, Vec3};
 use crate::shape::Surface;
+use crate::spectrum::{Lanes, Spectrum};
 use crate::world::HighlightModel;
 use crate::world::material::Emission;
 
@@ -27,10 +29,10 @@ pub struct Shading {
 impl Shading {
     /// The value times the cosine of a direction of the world. Light that comes from behind the true surface and would be
     /// reflected, or the other way round, is none: the normals for shading are only nearly right.
-    pub fn eval(&self, wi: Vec3) -> Color {
+    pub fn eval(&self, wi: Vec3) -> Spectrum {
         let local = self.frame.to_local(wi);
         let same_side = (local.z > 0.0) == (wi.dot(self.n_geo) > 0.0);
-        if same_side { self.bsdf.eval(self.wo, local) } else { Color::ZERO }
+        if same_side { self.bsdf.eval(self.wo, local) } else { Spectrum::ZERO }
     }
 
     /// The density with which that direction would be chosen.
@@ -53,7 +55,14 @@ impl World {
 
     /// How a hit scatters light that is seen against a ray's direction. `inside`: it is seen from the side that its normal
     /// does not point to; `eta` is the index behind the surface over that before it.
-    pub fn shading(&self, dir: Vec3, hit: &Hit, surface: &Surface, inside: bool, eta: f32) -> Shading {
+    pub fn shading(
+        &self,
+        dir: Vec3,
+        hit: &Hit,
+        surface: &Surface,
+        (inside, eta): (bool, f32),
+        lanes: &Lanes,
+    ) -> Shading {
         let parts = self.parts(hit, surface.position);
         // The first normal map of a mixture counts for all of it.
         let map = parts.iter().find_map(|part| part.phong.principled.as_ref()?.maps.normal);
@@ -69,9 +78,9 @@ impl World {
             let own = match &part.phong.principled {
                 Some(own) => {
                     let layers = self.layers_at(own, hit, surface);
-                    layers::scattering(&own.written, &layers, &own.tables, wo, inside, eta)
+                    layers::scattering(&own.written, &layers, &own.tables, View { lanes, wo, inside, eta })
                 }
-                None => phong_lobes(part.phong, self.diffuse_color(part.phong, surface), wo, eta),
+                None => phong_lobes(part.phong, self.diffuse_color(part.phong, surface), wo, eta, lanes),
             };
             bsdf.extend(&own, part.share);
         }
@@ -161,21 +170,23 @@ impl World {
 
 /// The course's material under physical light: matte with `diffuseColor` over pi, Blinn's or Phong's highlight, and single
 /// directions for mirror and glass. What would give back more than it gets is scaled down as a whole.
-fn phong_lobes(phong: &Phong, color: Color, wo: Vec3, eta: f32) -> Bsdf {
+fn phong_lobes(phong: &Phong, color: Color, wo: Vec3, eta: f32, lanes: &Lanes) -> Bsdf {
     let mut bsdf = Bsdf::default();
     let (strength, exponent, model) = phong.highlight.unwrap_or((Color::ZERO, 1.0, HighlightModel::Blinn));
+    let [color, strength, reflective, transparent] =
+        [color, strength, phong.reflective, phong.transparent].map(|color| lanes.reflectance(color));
     let reflected = match phong.fresnel {
         true => fresnel::dielectric(wo.z, eta),
         false => 1.0,
     };
     // Without Fresnel's law both rays have their whole weight.
     let passing = if phong.fresnel { 1.0 - reflected } else { 1.0 };
-    let (mirror, through) = (reflected * phong.reflective, passing * phong.transparent);
+    let (mirror, through) = (reflected * reflective, passing * transparent);
     let all = color + Blinn::bound(exponent) * strength + mirror + through;
     let scale = 1.0 / all.max_element().max(1.0);
-    bsdf.push(Diffuse { color, roughness: 0.0 }, Color::splat(scale), scale * color.max_element());
+    bsdf.push(Diffuse { color, roughness: 0.0 }, Spectrum::splat(scale), scale * color.max_element());
     let highlight = Blinn { color: strength, exponent, phong: matches!(model, HighlightModel::Phong { .. }) };
-    bsdf.push(highlight, Color::splat(scale), scale * Blinn::bound(exponent) * strength.max_element());
+    bsdf.push(highlight, Spectrum::splat(scale), scale * Blinn::bound(exponent) * strength.max_element());
     bsdf.push(Mirror, scale * mirror, scale * mirror.max_element());
     let through = scale * through;
     match eta == 1.0 {

@@ -2,7 +2,8 @@
 
 use super::{Scatter, Scattered};
 use crate::bsdf::warp;
-use crate::math::{Color, Vec2, Vec3, fp, reflect};
+use crate::math::{Vec2, Vec3, fp, reflect};
+use crate::spectrum::Spectrum;
 use std::f32::consts::FRAC_1_PI;
 
 /// A highlight: color · base^exponent / pi, where the base is N·H (Blinn) or R·L (Phong).
@@ -11,7 +12,7 @@ use std::f32::consts::FRAC_1_PI;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Blinn {
     /// Its strength.
-    pub color: Color,
+    pub color: Spectrum,
     /// Its sharpness.
     pub exponent: f32,
     /// Whether the base is R·L.
@@ -33,10 +34,10 @@ impl Blinn {
 }
 
 impl Scatter for Blinn {
-    fn eval(&self, wo: Vec3, wi: Vec3) -> Color {
+    fn eval(&self, wo: Vec3, wi: Vec3) -> Spectrum {
         let base = self.base(wo, wi);
         if wi.z <= 0.0 || base <= 0.0 {
-            return Color::ZERO;
+            return Spectrum::ZERO;
         }
         self.color * (FRAC_1_PI * wi.z * fp::pow(base, self.exponent))
     }
@@ -62,6 +63,6 @@ impl Scatter for Blinn {
             true => crate::bsdf::Frame::around(reflect(-wo, Vec3::Z)).to_world(about),
             false => 2.0 * wo.dot(about) * about - wo,
         };
-        (wi.z > 0.0).then_some(Scattered { wi, value: Color::ONE })
+        (wi.z > 0.0).then_some(Scattered { wi, value: Spectrum::ONE })
     }
 }

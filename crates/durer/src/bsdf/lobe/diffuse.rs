@@ -5,14 +5,15 @@
 
 use super::{Scatter, Scattered};
 use crate::bsdf::warp;
-use crate::math::{Color, Vec2, Vec3, fp};
+use crate::math::{Vec2, Vec3, fp};
+use crate::spectrum::Spectrum;
 use std::f32::consts::{FRAC_1_PI, PI};
 
 /// A matte surface. Its value does not depend on which direction is which.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Diffuse {
     /// The share of light given back, by colour.
-    pub color: Color,
+    pub color: Spectrum,
     /// From 0 (Lambert) to 1.
     pub roughness: f32,
 }
@@ -31,7 +32,7 @@ impl Diffuse {
     }
 
     /// The value without the cosine.
-    pub fn value(&self, wo: Vec3, wi: Vec3) -> Color {
+    pub fn value(&self, wo: Vec3, wi: Vec3) -> Spectrum {
         if self.roughness == 0.0 {
             return self.color * FRAC_1_PI;
         }
@@ -41,14 +42,14 @@ impl Diffuse {
         let single = self.color * (FRAC_1_PI * a * (1.0 + self.roughness * s_over_t));
         let mean = a * (1.0 + C2 * self.roughness);
         let lost = |w: Vec3| (1.0 - self.single(w.z)).max(1e-7);
-        let again = self.color * self.color * mean / (Vec3::ONE - self.color * (1.0 - mean).max(0.0));
+        let again = self.color * self.color * mean / (Spectrum::ONE - self.color * (1.0 - mean).max(0.0));
         single + again * (FRAC_1_PI * lost(wo) * lost(wi) / (1.0 - mean).max(1e-7))
     }
 }
 
 impl Scatter for Diffuse {
-    fn eval(&self, wo: Vec3, wi: Vec3) -> Color {
-        if wi.z <= 0.0 { Color::ZERO } else { wi.z * self.value(wo, wi) }
+    fn eval(&self, wo: Vec3, wi: Vec3) -> Spectrum {
+        if wi.z <= 0.0 { Spectrum::ZERO } else { wi.z * self.value(wo, wi) }
     }
 
     fn pdf(&self, _: Vec3, wi: Vec3) -> f32 {
@@ -56,6 +57,6 @@ impl Scatter for Diffuse {
     }
 
     fn sample(&self, _: Vec3, _: f32, u: Vec2) -> Option<Scattered> {
-        Some(Scattered { wi: warp::cosine_hemisphere(u), value: Color::ONE })
+        Some(Scattered { wi: warp::cosine_hemisphere(u), value: Spectrum::ONE })
     }
 }

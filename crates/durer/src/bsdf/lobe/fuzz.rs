@@ -5,7 +5,8 @@
 
 use super::{Scatter, Scattered};
 use crate::bsdf::warp;
-use crate::math::{Color, Vec2, Vec3, fp};
+use crate::math::{Vec2, Vec3, fp};
+use crate::spectrum::Spectrum;
 use std::f32::consts::PI;
 
 /// Fuzz of white fibres. Its directional albedo is [`crate::bsdf::albedo::fuzz`].
@@ -25,8 +26,8 @@ pub fn value(roughness: f32, wo: Vec3, wi: Vec3) -> f32 {
 }
 
 impl Scatter for Fuzz {
-    fn eval(&self, wo: Vec3, wi: Vec3) -> Color {
-        Color::splat(wi.z.max(0.0) * value(self.roughness, wo, wi))
+    fn eval(&self, wo: Vec3, wi: Vec3) -> Spectrum {
+        Spectrum::splat(wi.z.max(0.0) * value(self.roughness, wo, wi))
     }
 
     fn pdf(&self, _: Vec3, wi: Vec3) -> f32 {
@@ -34,6 +35,6 @@ impl Scatter for Fuzz {
     }
 
     fn sample(&self, _: Vec3, _: f32, u: Vec2) -> Option<Scattered> {
-        Some(Scattered { wi: warp::polar(u.x, u.y), value: Color::ONE })
+        Some(Scattered { wi: warp::polar(u.x, u.y), value: Spectrum::ONE })
     }
 }

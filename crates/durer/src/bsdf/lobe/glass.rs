@@ -1,7 +1,8 @@
 //! Single directions: mirrors, smooth glass, and what goes straight on.
 
 use super::{Scatter, Scattered};
-use crate::math::{Color, Vec2, Vec3};
+use crate::math::{Vec2, Vec3};
+use crate::spectrum::Spectrum;
 
 /// A perfect mirror; what it reflects is its weight.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,8 +30,8 @@ pub fn refracted(w: Vec3, h: Vec3, eta: f32) -> Option<Vec3> {
 macro_rules! single_direction {
     ($type:ty, |$lobe:ident, $wo:ident| $scattered:expr) => {
         impl Scatter for $type {
-            fn eval(&self, _: Vec3, _: Vec3) -> Color {
-                Color::ZERO
+            fn eval(&self, _: Vec3, _: Vec3) -> Spectrum {
+                Spectrum::ZERO
             }
             fn pdf(&self, _: Vec3, _: Vec3) -> f32 {
                 0.0
@@ -46,8 +47,8 @@ macro_rules! single_direction {
     };
 }
 
-single_direction!(Mirror, |_lobe, wo| Some(Scattered { wi: Vec3::new(-wo.x, -wo.y, wo.z), value: Color::ONE }));
-single_direction!(Through, |_lobe, wo| Some(Scattered { wi: -wo, value: Color::ONE }));
+single_direction!(Mirror, |_lobe, wo| Some(Scattered { wi: Vec3::new(-wo.x, -wo.y, wo.z), value: Spectrum::ONE }));
+single_direction!(Through, |_lobe, wo| Some(Scattered { wi: -wo, value: Spectrum::ONE }));
 // Radiance is denser where the index is higher: L / n^2 stays what it is. Source: Veach's thesis, section 5.2.
 single_direction!(Refraction, |lobe, wo| refracted(wo, Vec3::Z, lobe.eta)
-    .map(|wi| Scattered { wi, value: Color::splat(1.0 / (lobe.eta * lobe.eta)) }));
+    .map(|wi| Scattered { wi, value: Spectrum::splat(1.0 / (lobe.eta * lobe.eta)) }));

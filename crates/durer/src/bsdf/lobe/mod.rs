@@ -7,7 +7,8 @@ pub mod glass;
 pub mod rough;
 pub mod rough_glass;
 
-use crate::math::{Color, Vec2, Vec3};
+use crate::math::{Vec2, Vec3};
+use crate::spectrum::Spectrum;
 
 /// A direction that a lobe chose.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,13 +16,13 @@ pub struct Scattered {
     /// Where the light comes from, locally.
     pub wi: Vec3,
     /// Of a lobe of single directions, what it multiplies light by; of others this is not asked.
-    pub value: Color,
+    pub value: Spectrum,
 }
 
 /// What every lobe can do. Directions are local and point away from the surface; `wo` is above it (`wo.z` > 0).
 pub trait Scatter {
     /// The lobe's value times |cos| of `wi`; 0 for a lobe of single directions.
-    fn eval(&self, wo: Vec3, wi: Vec3) -> Color;
+    fn eval(&self, wo: Vec3, wi: Vec3) -> Spectrum;
 
     /// The density per solid angle with which [`Scatter::sample`] chooses `wi`; 0 for a lobe of single directions.
     fn pdf(&self, wo: Vec3, wi: Vec3) -> f32;
@@ -46,7 +47,7 @@ macro_rules! lobes {
         })+
 
         impl Scatter for Lobe {
-            fn eval(&self, wo: Vec3, wi: Vec3) -> Color {
+            fn eval(&self, wo: Vec3, wi: Vec3) -> Spectrum {
                 match self { $(Lobe::$name(lobe) => lobe.eval(wo, wi),)+ }
             }
             fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {

@@ -3,7 +3,8 @@
 use super::{Scatter, Scattered};
 use crate::bsdf::fresnel::{self, F82};
 use crate::bsdf::microfacet::Ggx;
-use crate::math::{Color, Vec2, Vec3};
+use crate::math::{Vec2, Vec3};
+use crate::spectrum::Spectrum;
 
 /// What each facet reflects.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,12 +21,12 @@ pub enum Facet {
 
 impl Facet {
     /// At a cosine.
-    pub fn at(&self, cosine: f32) -> Color {
+    pub fn at(&self, cosine: f32) -> Spectrum {
         match *self {
             Facet::Metal(f82) => f82.at(cosine),
-            Facet::Dielectric(eta) => Color::splat(fresnel::dielectric(cosine, eta)),
-            Facet::Slab(eta) => Color::splat(fresnel::slab(cosine, eta)),
-            Facet::BehindSlab(eta) => Color::splat(1.0 - fresnel::slab(cosine, eta)),
+            Facet::Dielectric(eta) => Spectrum::splat(fresnel::dielectric(cosine, eta)),
+            Facet::Slab(eta) => Spectrum::splat(fresnel::slab(cosine, eta)),
+            Facet::BehindSlab(eta) => Spectrum::splat(1.0 - fresnel::slab(cosine, eta)),
         }
     }
 }
@@ -49,9 +50,9 @@ impl Rough {
 }
 
 impl Scatter for Rough {
-    fn eval(&self, wo: Vec3, wi: Vec3) -> Color {
+    fn eval(&self, wo: Vec3, wi: Vec3) -> Spectrum {
         let wi = self.above(wi);
-        let Some(h) = (wo + wi).try_normalize().filter(|_| wi.z > 0.0) else { return Color::ZERO };
+        let Some(h) = (wo + wi).try_normalize().filter(|_| wi.z > 0.0) else { return Spectrum::ZERO };
         let value = self.ggx.density(h) * self.ggx.masking_shadowing(wo, wi) / (4.0 * wo.z);
         value * self.facet.at(wo.dot(h).clamp(0.0, 1.0))
     }
@@ -66,6 +67,6 @@ impl Scatter for Rough {
     fn sample(&self, wo: Vec3, _: f32, u: Vec2) -> Option<Scattered> {
         let h = self.ggx.sample_visible(wo, u);
         let wi = 2.0 * wo.dot(h) * h - wo;
-        (wi.z > 0.0).then(|| Scattered { wi: self.above(wi), value: Color::ONE })
+        (wi.z > 0.0).then(|| Scattered { wi: self.above(wi), value: Spectrum::ONE })
     }
 }

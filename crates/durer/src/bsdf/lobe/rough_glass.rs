@@ -6,7 +6,8 @@ use super::glass::refracted;
 use super::{Scatter, Scattered};
 use crate::bsdf::fresnel;
 use crate::bsdf::microfacet::Ggx;
-use crate::math::{Color, Vec2, Vec3};
+use crate::math::{Vec2, Vec3};
+use crate::spectrum::Spectrum;
 
 /// A rough boundary of two dielectrics.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -16,9 +17,9 @@ pub struct RoughGlass {
     /// The index behind the boundary over that before it.
     pub eta: f32,
     /// Tint of what is reflected.
-    pub reflected: Color,
+    pub reflected: Spectrum,
     /// Tint of what goes through.
-    pub transmitted: Color,
+    pub transmitted: Spectrum,
 }
 
 /// The facet that turns one direction into the other, and the change of its solid angle; nothing where there is none.
@@ -51,9 +52,9 @@ impl RoughGlass {
 }
 
 impl Scatter for RoughGlass {
-    fn eval(&self, wo: Vec3, wi: Vec3) -> Color {
+    fn eval(&self, wo: Vec3, wi: Vec3) -> Spectrum {
         let passes = wi.z < 0.0;
-        let Some((h, spread)) = facet(wo, wi, self.eta) else { return Color::ZERO };
+        let Some((h, spread)) = facet(wo, wi, self.eta) else { return Spectrum::ZERO };
         let visible = self.ggx.density(h) * self.ggx.masking_shadowing(wo, wi) * wo.dot(h) / wo.z;
         let value = self.share(passes, wo.dot(h)) * visible * spread;
         match passes {
@@ -73,6 +74,6 @@ impl Scatter for RoughGlass {
             true => Some(2.0 * wo.dot(h) * h - wo).filter(|wi| wi.z > 0.0),
             false => refracted(wo, h, self.eta).filter(|wi| wi.z < 0.0),
         }?;
-        Some(Scattered { wi, value: Color::ONE })
+        Some(Scattered { wi, value: Spectrum::ONE })
     }
 }

@@ -1,0 +1,66 @@
+use super::*;
+
+/// Colours of every kind, among them those near the edges.
+fn colors() -> Vec<Color> {
+    let steps = [0.0, 0.03, 0.2, 0.5, 0.8, 1.0];
+    let rows = steps.into_iter().flat_map(|r| steps.into_iter().map(move |g| (r, g)));
+    rows.flat_map(|(r, g)| steps.into_iter().map(move |b| Color::new(r, g, b))).collect()
+}
+
+#[test]
+fn daylight_is_white_whatever_wavelengths_are_chosen() {
+    // The mean over evenly spaced choices is the integral.
+    let n = 4096;
+    let mean = |light: &dyn Fn(&Lanes) -> Spectrum| {
+        let lanes = (0..n).map(|i| Lanes::new(ColorMode::Spectral, (i as f32 + 0.5) / n as f32));
+        lanes.map(|lanes| lanes.color(light(&lanes)).as_dvec3()).sum::<glam::DVec3>().as_vec3() / n as f32
+    };
+    let white = mean(&|lanes| lanes.light(Color::ONE));
+    assert!((white - Color::ONE).abs().max_element() < 2e-4, "{white}");
+    for color in [Color::new(0.2, 0.5, 0.9), Color::new(30.0, 4.0, 1.0), Color::new(0.1, 0.4, 0.05)] {
+        let seen = mean(&|lanes| lanes.light(color));
+        assert!((seen - color).abs().max_element() < 3e-3 * color.max_element(), "{color} {seen}");
+        let under_daylight = mean(&|lanes| lanes.reflectance(color / 30.0) * lanes.light(Color::ONE)) * 30.0;
+        assert!(
+            (under_daylight - color).abs().max_element() < 6e-3 * color.max_element().max(10.0),
+            "{under_daylight}"
+        );
+    }
+}
+
+#[test]
+fn wavelengths_are_chosen_by_their_density() {
+    // The density's integral between quantiles is the step of the number.
+    for i in 0..100 {
+        let (a, b) = (wavelength((i as f32 + 1.0) / 100.0), wavelength(i as f32 / 100.0));
+        let (low, high) = (a.min(b), a.max(b));
+        let middle = 0.5 * (low + high);
+        let mass = (density(low) + 4.0 * density(middle) + density(high)) * (high - low) / 6.0;
+        assert!((mass - 0.01).abs() < 2e-4, "{i}: {mass} between {low} and {high}");
+    }
+}
+
+#[test]
+fn smooth_spectra_have_their_colours() {
+    let mut worst = (0.0, Color::ZERO);
+    for color in colors() {
+        let off = (upsample::color(&upsample::smooth(color)) - color).abs().max_element();
+        // Pure colours at full strength are no reflectance of anything.
+        let saturated = color.max_element() > 0.99 && color.min_element() < 0.01;
+        if !saturated && off > worst.0 {
+            worst = (off, color);
+        }
+        assert!(off < 0.08, "{color}: off by {off}");
+    }
+    assert!(worst.0 < 0.01, "{worst:?}");
+}
+
+#[test]
+fn grey_is_the_same_at_every_wavelength_and_lanes_of_colours_are_colours() {
+    let waves = Lanes::new(ColorMode::Spectral, 0.3);
+    assert_eq!(waves.reflectance(Color::splat(0.4)), Spectrum::splat(0.4));
+    let color = Color::new(0.1, 0.7, 2.0);
+    let spectrum = Lanes::Rgb.light(color);
+    assert_eq!((Lanes::Rgb.color(spectrum), spectrum.w, spectrum.max_element()), (color, 0.7, 2.0));
+    assert!(ColorMode::NAMES.iter().all(|name| ColorMode::from_name(name).unwrap().name() == *name));
+}
