@@ -22,6 +22,7 @@ pub mod light;
 pub mod load;
 pub mod material;
 pub mod math;
+pub mod medium;
 pub mod mistakes;
 pub mod render;
 pub mod sampler;

@@ -134,6 +134,42 @@ impl SampleId {
     }
 }
 
+/// Dimensions from here on are for media, however often light is scattered in them.
+const MEDIUM_DIMENSIONS: u32 = 1 << 17;
+
+/// Numbers in [0,1) one after the other, as many as are wanted, for a way through a medium.
+#[derive(Clone, Copy, Debug)]
+pub struct Stream {
+    id: SampleId,
+    dimension: u32,
+    taken: u32,
+}
+
+impl SampleId {
+    /// Numbers for a way after some bounces; `side` tells ways from the same point apart.
+    pub fn stream(&self, depth: u32, side: u32) -> Stream {
+        Stream { id: *self, dimension: MEDIUM_DIMENSIONS + 2 * depth + side, taken: 0 }
+    }
+}
+
+impl Stream {
+    /// The next number. The first two fill their square evenly over the samples of a pixel; the others are independent.
+    pub fn number(&mut self) -> f32 {
+        let SampleId { seed, pixel: (x, y), sample, .. } = self.id;
+        self.taken += 1;
+        match self.taken {
+            1 => sample_2d(seed, x, y, sample, self.dimension).x,
+            2 => sample_2d(seed, x, y, sample, self.dimension).y,
+            n => unit(mix(hash(seed, x, y, sample, self.dimension) ^ u64::from(n)) as u32),
+        }
+    }
+
+    /// The next two.
+    pub fn pair(&mut self) -> Vec2 {
+        Vec2::new(self.number(), self.number())
+    }
+}
+
 /// The least number whose square is `samples` or more, from 1 to 65535.
 fn grid_side(samples: u32) -> u32 {
     let root = samples.isqrt();

@@ -8,7 +8,7 @@ const FLOORS: [&[&str]; 10] = [
     &["math", "diag", "dialect", "threads"],
     &["sampler", "source", "describe", "spectrum"],
     &["image"],
-    &["shape", "camera", "light", "material", "texture"],
+    &["shape", "camera", "light", "material", "texture", "medium"],
     &["scene", "bvh", "bsdf"],
     &["format", "world"],
     &["compile", "film", "integrator"],

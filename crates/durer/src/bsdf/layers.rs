@@ -4,7 +4,7 @@
 //! which they are seen. OpenPBR calls that albedo scaling. It keeps energy, but the whole is not reciprocal.
 
 use super::albedo::{self, Dielectric};
-use super::lobe::diffuse::Diffuse;
+use super::lobe::diffuse::{Diffuse, DiffuseTransmission};
 use super::lobe::fuzz::Fuzz;
 use super::lobe::glass::{Mirror, Refraction, Through};
 use super::lobe::rough::{Facet, Rough};
@@ -159,12 +159,35 @@ impl Stack<'_> {
         }
         let opaque = dielectric * (1.0 - m.transmission_weight);
         if opaque.max_element() > 0.0 {
+            if view.inside && m.has_subsurface() && m.transmission_weight == 0.0 {
+                // Light that was scattered inside leaves in all directions.
+                bsdf.push(DiffuseTransmission { color: Spectrum::ONE }, opaque, opaque.max_element());
+                return bsdf;
+            }
             let given = self.boundary(&mut bsdf, &self.tables.opaque, roughness, opaque * self.specular);
             let diffuse = Diffuse { color: self.base, roughness: m.base_diffuse_roughness };
             let weight = opaque * (1.0 - given);
-            bsdf.push(diffuse, weight, (weight * self.base).max_element());
+            let matte = weight * (1.0 - m.subsurface_weight);
+            bsdf.push(diffuse, matte, (matte * self.base).max_element());
+            self.subsurface(&mut bsdf, weight * m.subsurface_weight);
         }
         bsdf
+    }
+
+    /// Light that goes into the body, or of a sheet comes out on both sides.
+    fn subsurface(&self, bsdf: &mut Bsdf, weight: Spectrum) {
+        if weight.max_element() <= 0.0 {
+            return;
+        }
+        let m = self.material;
+        if m.has_subsurface() {
+            return bsdf.push(DiffuseTransmission { color: Spectrum::ONE }, weight, weight.max_element());
+        }
+        let color = self.view.lanes.reflectance(m.subsurface_color);
+        let onwards = 0.5 * (1.0 + m.subsurface_scatter_anisotropy);
+        let share = (weight * color).max_element();
+        bsdf.push(Diffuse { color, roughness: 0.0 }, weight * (1.0 - onwards), share * (1.0 - onwards));
+        bsdf.push(DiffuseTransmission { color }, weight * onwards, share * onwards);
     }
 
     /// The reflection of a boundary of dielectrics seen from outside; returns its albedo.

@@ -82,6 +82,11 @@ impl Bsdf {
         self.lobes.iter().any(|part| !part.lobe.is_delta())
     }
 
+    /// Whether light from behind the surface is scattered too, and not only along single directions.
+    pub fn passes_light(&self) -> bool {
+        self.lobes.iter().any(|part| part.lobe.passes_light())
+    }
+
     /// The value times |cos| of `wi`, without lobes of single directions.
     pub fn eval(&self, wo: Vec3, wi: Vec3) -> Spectrum {
         self.lobes.iter().map(|part| part.weight * part.lobe.eval(wo, wi)).sum()

@@ -1,7 +1,7 @@
 //! Lobes and layers: what they give back, and whether they sample what they say.
 
 use super::lobe::blinn::Blinn;
-use super::lobe::diffuse::Diffuse;
+use super::lobe::diffuse::{Diffuse, DiffuseTransmission};
 use super::lobe::fuzz::Fuzz;
 use super::lobe::rough::{Facet, Rough};
 use super::lobe::rough_glass::RoughGlass;
@@ -35,6 +35,7 @@ fn broad() -> Vec<(&'static str, Lobe)> {
     vec![
         ("Lambert", Diffuse { color: Spectrum::ONE, roughness: 0.0 }.into()),
         ("rough matte", Diffuse { color: Spectrum::ONE, roughness: 1.0 }.into()),
+        ("matte, other side", DiffuseTransmission { color: Spectrum::ONE }.into()),
         ("Blinn", Blinn { color: Spectrum::ONE, exponent: 30.0, phong: false }.into()),
         ("Phong", Blinn { color: Spectrum::ONE, exponent: 12.0, phong: true }.into()),
         ("fuzz", Fuzz { roughness: 0.4 }.into()),

@@ -8,6 +8,8 @@ use crate::format;
 use crate::image::{self, Encoded, ImageError};
 use crate::light::{Emitter as _, Light, Profile};
 use crate::material::PrincipledMaterial;
+use crate::math::Aabb;
+use crate::medium::DensityGrid;
 use crate::scene::{Assets, Background, PictureBytes};
 use crate::shape::{HeightField, Mesh, MeshData};
 use crate::source::SourceError;
@@ -249,6 +251,14 @@ impl<'r> Loader<'r> {
     /// How strong a light shines in each direction, if a file says that.
     pub(super) fn profile(&mut self, light: &Light, diagnostics: &mut Diagnostics) -> Option<Arc<Profile>> {
         self.parsed(light.profile()?, "photometric file", diagnostics, format::ies::read).map(Arc::new)
+    }
+
+    /// The densities of a file, and the box that they fill.
+    pub(super) fn density(&mut self, name: &FileName, diagnostics: &mut Diagnostics) -> Option<(Aabb, DensityGrid)> {
+        let memory = self.resources.memory;
+        let read = |bytes: &[u8], file: u32, own: &mut Diagnostics| format::vol::read(bytes, file, memory, own);
+        let (bounds, grid) = self.parsed(name, "file of densities", diagnostics, read)?;
+        self.charge(name, grid.bytes() as u64, diagnostics).then_some((bounds, grid))
     }
 
     /// The picture around a scene.

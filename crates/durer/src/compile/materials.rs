@@ -1,13 +1,14 @@
 //! Materials: the dialect's meaning of their words is worked in here.
 
 use super::files::Loader;
+use super::media;
 use crate::bsdf::albedo::Dielectric;
 use crate::bsdf::{Layers, Tables};
 use crate::diag::{Diagnostic, Diagnostics};
 use crate::dialect::{Compat, Highlight, Rules, Secondary};
 use crate::material::principled::Walls;
 use crate::material::{ColorNoise, Pattern, PhongMaterial, PrincipledMaterial};
-use crate::math::{Color, fp};
+use crate::math::Color;
 use crate::scene::{self, MatrixOp, Scene};
 use crate::world::{Emission, HighlightModel, Maps, Material, Phong, Principled};
 use std::sync::Arc;
@@ -99,12 +100,14 @@ fn phong_of(m: &PhongMaterial, noise: Option<ColorNoise>, texture: Option<u32>, 
 }
 
 fn principled(m: &PrincipledMaterial, maps: Maps, tables: &mut Vec<Arc<Dielectric>>) -> Arc<Principled> {
-    // Beer's law: what is left after a depth is the colour. Black would never be reached.
-    let absorption = match m.transmission_depth > 0.0 {
-        true => m.transmission_color.map(|c| -fp::ln(c.clamp(1e-6, 1.0)) / m.transmission_depth),
-        false => Color::ZERO,
-    };
-    Arc::new(Principled { written: m.clone(), maps, layers: Layers::of(m), tables: Tables::new(m, tables), absorption })
+    Arc::new(Principled {
+        written: m.clone(),
+        maps,
+        layers: Layers::of(m),
+        tables: Tables::new(m, tables),
+        medium: media::inside(m),
+        interface: media::is_interface(m),
+    })
 }
 
 /// What Whitted's light makes of layers: the matte base, a highlight as wide as GGX's, metals that are mirrors, and glass.

@@ -2,6 +2,7 @@
 
 mod files;
 mod materials;
+mod media;
 mod solids;
 #[cfg(test)]
 pub(crate) mod testing;
@@ -95,6 +96,7 @@ pub fn compile(
     }
     let cube_map = scene.background.cube_map.as_ref().and_then(|name| loader.cube_map(name, &mut own));
     let environment = loader.environment(&scene.background, &mut own);
+    let fog = scene.fog.as_ref().and_then(|fog| media::fog(fog, &mut loader, &mut own));
     let (mut lights, ambient) = lights(scene, rules, &mut own);
     lights.extend(sun(&scene.background));
     let profiles = lights.iter().map(|light| loader.profile(light, &mut own)).collect();
@@ -123,9 +125,12 @@ pub fn compile(
         unbounded: Vec::new(),
         accel: Accel::None,
         emitters: Emitters::default(),
+        fog,
         has_cutouts: false,
+        has_interfaces: false,
     };
     world.has_cutouts = world.finds_cutouts();
+    world.has_interfaces = world.finds_interfaces();
     world.emitters = Emitters::new(&world);
     if let Err(error) = rebuild(&mut world, accel) {
         diagnostics.push(*error);

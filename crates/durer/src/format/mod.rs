@@ -13,6 +13,7 @@ mod polygon;
 mod report;
 pub mod scene;
 mod stl;
+pub mod vol;
 
 use crate::diag::{Diagnostic, Diagnostics, did_you_mean};
 use crate::dialect::CompatSet;

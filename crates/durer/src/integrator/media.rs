@@ -22,9 +22,9 @@ impl Default for Passage {
     }
 }
 
-/// A thing of glass that a ray is in.
+/// A thing that light goes into, as a ray is in it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Medium {
+pub struct Body {
     /// Number of the object.
     pub object: u32,
     /// Its index of refraction.
@@ -33,10 +33,10 @@ pub struct Medium {
     pub size: Option<f32>,
 }
 
-impl Medium {
+impl Body {
     /// Whether it fills the space that it shares with another one. Of two closed things that is the smaller one, so that
     /// ice displaces water wherever they overlap, from whatever side a ray comes. Of others it is the one met last.
-    fn fills(&self, other: &Medium, met_later: bool) -> bool {
+    fn fills(&self, other: &Body, met_later: bool) -> bool {
         match (self.size, other.size) {
             (Some(a), Some(b)) if a != b => a < b,
             (Some(_), Some(_)) => self.object > other.object,
@@ -50,11 +50,11 @@ impl Medium {
 /// Source of the idea: Charles M. Schmidt and Brian Budge, *Simple Nested Dielectrics in Ray Traced Images*, Journal of
 /// Graphics Tools 7(2), 2002; there the order is given by priorities that are written.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Media(SmallVec<[Medium; 2]>);
+pub struct Media(SmallVec<[Body; 2]>);
 
 impl Media {
     /// Nothing but this.
-    pub fn only(medium: Medium) -> Self {
+    pub fn only(medium: Body) -> Self {
         Media(SmallVec::from_slice(&[medium]))
     }
 
@@ -79,7 +79,7 @@ impl Media {
     }
 
     /// What it is after entering a thing.
-    pub fn entered(&self, medium: Medium) -> Self {
+    pub fn entered(&self, medium: Body) -> Self {
         let mut inside = self.0.clone();
         let behind = inside.iter().rev().take_while(|other| !medium.fills(other, true)).count();
         inside.insert(inside.len() - behind, medium);
@@ -103,7 +103,7 @@ impl Media {
         (object, ior): (u32, f32),
         leaving: bool,
     ) -> Passage {
-        let medium = |object: u32, ior: f32| Medium { object, ior, size: world.objects[object as usize].extent() };
+        let medium = |object: u32, ior: f32| Body { object, ior, size: world.objects[object as usize].extent() };
         let own = medium(object, ior);
         if !leaving {
             let behind = self.entered(own);
@@ -139,10 +139,10 @@ impl Media {
 mod tests {
     use super::*;
 
-    const GLASS: Medium = Medium { object: 7, ior: 1.5, size: Some(9.0) };
-    const WATER: Medium = Medium { object: 3, ior: 1.33, size: Some(5.0) };
-    const ICE: Medium = Medium { object: 5, ior: 1.31, size: Some(1.0) };
-    const PANE: Medium = Medium { object: 1, ior: 1.4, size: None };
+    const GLASS: Body = Body { object: 7, ior: 1.5, size: Some(9.0) };
+    const WATER: Body = Body { object: 3, ior: 1.33, size: Some(5.0) };
+    const ICE: Body = Body { object: 5, ior: 1.31, size: Some(1.0) };
+    const PANE: Body = Body { object: 1, ior: 1.4, size: None };
 
     #[test]
     fn the_smallest_closed_thing_fills_the_place_in_any_order_of_entering() {

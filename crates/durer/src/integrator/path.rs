@@ -10,8 +10,9 @@ use super::media::{Media, Passage};
 use super::spawn::{from_surface, to_light};
 use super::whitted::struck;
 use crate::bsdf::lobe::diffuse::Diffuse;
-use crate::bsdf::{Bsdf, BsdfSample, Frame};
-use crate::math::{Color, Ray, Ray64, Vec3, fp, gamma};
+use crate::bsdf::{Bsdf, Frame};
+use crate::math::{Color, Ray, Ray64, Vec2, Vec3, gamma};
+use crate::medium::{Flight, HenyeyGreenstein, Way};
 use crate::sampler::SampleId;
 use crate::shape::Surface;
 use crate::spectrum::{ColorMode, Lanes, Spectrum};
@@ -74,11 +75,13 @@ struct State {
     depth: u32,
     /// Where it was scattered last, if lights can be found there in another way.
     from: Option<Scattered>,
+    /// Whether only the first lane still counts, since others would go other ways.
+    alone: bool,
 }
 
 impl Default for State {
     fn default() -> Self {
-        State { media: Media::default(), throughput: Spectrum::ONE, depth: 0, from: None }
+        State { media: Media::default(), throughput: Spectrum::ONE, depth: 0, from: None, alone: false }
     }
 }
 
@@ -86,6 +89,7 @@ impl Default for State {
 #[derive(Clone, Copy)]
 struct Scattered {
     point: DVec3,
+    /// The normal; zero in a medium.
     n: Vec3,
     /// The density with which the direction was chosen.
     pdf: f32,
@@ -93,10 +97,120 @@ struct Scattered {
 
 /// A point on the way of a path.
 struct Vertex<'a> {
-    surface: &'a Surface,
-    shading: &'a Shading,
+    place: Place<'a>,
     state: &'a State,
 }
+
+/// What scatters light there.
+enum Place<'a> {
+    /// A surface, and how light goes through it if it does.
+    Surface(&'a Surface, &'a Shading, Option<&'a Passage>),
+    /// A medium, along a unit direction.
+    Medium(DVec3, Vec3, HenyeyGreenstein),
+}
+
+/// A direction that was chosen.
+struct Chosen {
+    wi: Vec3,
+    weight: Spectrum,
+    /// 0 for a single direction.
+    pdf: f32,
+    /// Whether it leads behind the surface.
+    passes: bool,
+    lobe: &'static str,
+    probability: f32,
+}
+
+impl Place<'_> {
+    fn point(&self) -> DVec3 {
+        match self {
+            Place::Surface(surface, ..) => surface.point(),
+            Place::Medium(point, ..) => *point,
+        }
+    }
+
+    /// The normal that lights are chosen for; zero where light comes from all sides.
+    fn normal(&self) -> Vec3 {
+        match self {
+            Place::Surface(_, shading, _) if !shading.bsdf.passes_light() => shading.frame.normal,
+            _ => Vec3::ZERO,
+        }
+    }
+
+    /// Whether lights can be connected with.
+    fn is_broad(&self) -> bool {
+        match self {
+            Place::Surface(_, shading, _) => shading.bsdf.is_broad(),
+            Place::Medium(..) => true,
+        }
+    }
+
+    /// The value, times the cosine of a surface.
+    fn eval(&self, wi: Vec3) -> Spectrum {
+        match self {
+            Place::Surface(_, shading, _) => shading.eval(wi),
+            Place::Medium(_, dir, phase) => Spectrum::splat(phase.value(*dir, wi)),
+        }
+    }
+
+    fn pdf(&self, wi: Vec3) -> f32 {
+        match self {
+            Place::Surface(_, shading, _) => shading.pdf(wi),
+            Place::Medium(_, dir, phase) => phase.value(*dir, wi),
+        }
+    }
+
+    fn sample(&self, choice: f32, u: Vec2) -> Option<Chosen> {
+        match self {
+            Place::Surface(_, shading, _) => {
+                let chosen = shading.bsdf.sample(shading.wo, choice, u)?;
+                let wi = shading.frame.to_world(chosen.wi);
+                let passes = chosen.wi.z < 0.0;
+                if passes != (wi.dot(shading.n_geo) < 0.0) {
+                    return None;
+                }
+                let lobe = shading.bsdf.lobes().nth(chosen.lobe)?;
+                let (name, probability) = (lobe.lobe.name(), lobe.probability);
+                Some(Chosen { wi, weight: chosen.weight, pdf: chosen.pdf, passes, lobe: name, probability })
+            }
+            Place::Medium(_, dir, phase) => {
+                let wi = phase.sample(*dir, u);
+                let pdf = phase.value(*dir, wi);
+                let lobe = "HenyeyGreenstein";
+                Some(Chosen { wi, weight: Spectrum::ONE, pdf, passes: false, lobe, probability: 1.0 })
+            }
+        }
+    }
+
+    /// A ray from there.
+    fn spawn(&self, wi: Vec3) -> Ray64 {
+        match self {
+            Place::Surface(surface, ..) => from_surface(surface, wi, f32::INFINITY, None),
+            Place::Medium(point, ..) => Ray64::new(*point, wi, 0.0, f32::INFINITY),
+        }
+    }
+
+    /// The ray to a light.
+    fn shadow_ray(&self, light: &LightSample) -> Ray64 {
+        // What stands exactly at the light does not block it.
+        let reach = light.reach * (1.0 - gamma(16));
+        match self {
+            Place::Surface(surface, ..) => to_light(surface, light.wi, reach, None),
+            Place::Medium(point, ..) => Ray64::new(*point, light.wi, 0.0, reach),
+        }
+    }
+
+    /// What a ray from there runs in.
+    fn media<'a>(&'a self, state: &'a State, wi: Vec3) -> &'a Media {
+        match self {
+            Place::Surface(_, shading, Some(passage)) if wi.dot(shading.n_geo) < 0.0 => &passage.behind,
+            _ => &state.media,
+        }
+    }
+}
+
+/// How often light is scattered in a body at most until it gets out.
+const MAX_WALK: u32 = 10_000;
 
 impl Path<'_> {
     /// The light that comes along a camera ray, by the random numbers of a sample.
@@ -117,21 +231,58 @@ impl Path<'_> {
         bsdf.push(Diffuse { color: Spectrum::ONE, roughness: 0.0 }, Spectrum::ONE, 1.0);
         let shading = Shading { frame: Frame::around(normal), n_geo: normal, wo: Vec3::Z, bsdf };
         let sample = Sample { id, lanes: Lanes::new(self.color, id.wavelength()) };
-        let vertex = Vertex { surface: &surface, shading: &shading, state: &State::default() };
-        let light = self.direct(&vertex, &sample, tally) + self.indirect(&vertex, None, &sample, tally);
+        let vertex = Vertex { place: Place::Surface(&surface, &shading, None), state: &State::default() };
+        let light = self.direct(&vertex, &sample, tally) + self.indirect(&vertex, &sample, tally);
         std::f32::consts::PI * sample.lanes.color(light)
     }
 
     /// The light along a ray: a sum, and what the way to it leaves of it.
     fn trace<T: Witness>(&self, ray: &Ray64, mut state: State, sample: &Sample, tally: &mut T) -> (Spectrum, Spectrum) {
-        let mut rest = *ray;
+        let mut ray = *ray;
+        let mut rest = ray;
         let mut scale = Spectrum::ONE;
-        let (mut walked, mut layers) = (0.0, 0);
-        while let Some(hit) = self.world.closest(&rest, tally) {
-            let surface = self.world.surface(ray, &hit);
-            let length = hit.t * ray.dir().length();
-            scale *= self.left_of_light(&state.media, length - walked, &sample.lanes);
+        let (mut walked, mut layers, mut scattered) = (0.0, 0, 0);
+        let mut numbers = sample.id.stream(state.depth, 0);
+        loop {
+            let hit = self.world.closest(&rest, tally);
+            let stretch = ray.dir().length();
+            let length = hit.map_or(f32::INFINITY, |hit| hit.t * stretch);
+            if let Some(medium) = self.world.medium(state.media.object()) {
+                let way = Way { origin: ray.origin(), dir: ray.dir() / stretch, from: walked, to: length };
+                let weights = state.throughput * scale;
+                match medium.flight(&way, weights, &sample.lanes, &mut || numbers.number()) {
+                    Flight::Passed(left) => scale *= left,
+                    Flight::Scattered(distance, left) => {
+                        scale *= left;
+                        // Never beyond what bounds it.
+                        let distance = distance.min(length * (1.0 - gamma(16)));
+                        let point = way.origin + f64::from(distance) * way.dir.as_dvec3();
+                        if self.world.is_open(state.media.object()) {
+                            state.throughput *= scale;
+                            let place = Place::Medium(point, way.dir, medium.phase);
+                            return (self.scattered(&Vertex { place, state: &state }, sample, tally), scale);
+                        }
+                        // No lamp is seen from inside: the way is followed until it leads out.
+                        scattered += 1;
+                        let survival = match scattered {
+                            0..16 => 1.0,
+                            _ => (state.throughput * scale).max_element().min(1.0),
+                        };
+                        let cancelled = scattered % 256 == 0 && self.is_cancelled();
+                        if scattered > MAX_WALK || cancelled || numbers.number() >= survival {
+                            return (Spectrum::ZERO, scale);
+                        }
+                        scale /= survival;
+                        let dir = medium.phase.sample(way.dir, numbers.pair());
+                        ray = Ray64::new(point, dir, 0.0, f32::INFINITY);
+                        (rest, walked, state.from) = (ray, 0.0, None);
+                        continue;
+                    }
+                }
+            }
+            let Some(hit) = hit else { break };
             walked = length;
+            let surface = self.world.surface(&ray, &hit);
             if self.world.has_cutouts {
                 let opacity = self.world.opacity(&hit, &surface);
                 layers += 1;
@@ -141,9 +292,14 @@ impl Path<'_> {
                     continue;
                 }
             }
-            match self.passage(ray, &hit, &surface, &state.media) {
-                Some(Passage { hidden: true, behind, .. }) => (state.media, rest.rounded.t_min) = (behind, hit.t),
-                passage => return (self.scattered(ray, &hit, &surface, passage, state, sample, tally), scale),
+            match self.passage(&ray, &hit, &surface, &state.media, &sample.lanes) {
+                Some(passage) if self.is_nothing(&hit, &passage) => {
+                    (state.media, rest.rounded.t_min) = (passage.behind, hit.t);
+                }
+                passage => {
+                    state.throughput *= scale;
+                    return (self.met(&ray, &hit, &surface, passage, state, sample, tally), scale);
+                }
             }
         }
         let sky = self.world.sky(ray.dir());
@@ -155,36 +311,34 @@ impl Path<'_> {
         (weight * sky, scale)
     }
 
-    /// What a way through the body that a ray is in leaves of its light.
-    ///
-    /// Source: Beer's law.
-    fn left_of_light(&self, media: &Media, length: f32, lanes: &Lanes) -> Spectrum {
-        let Some(object) = media.object() else { return Spectrum::ONE };
-        match self.world.absorption(object) {
-            Color::ZERO => Spectrum::ONE,
-            absorption => (-lanes.coefficient(absorption) * length).map(fp::exp),
-        }
+    fn is_cancelled(&self) -> bool {
+        self.cancel.is_some_and(|cancel| cancel.load(Relaxed))
     }
 
-    /// How light goes through a hit of a body that lets it through.
-    fn passage(&self, ray: &Ray64, hit: &Hit, surface: &Surface, media: &Media) -> Option<Passage> {
-        if !self.world.may_transmit(hit) {
+    /// How light goes through a hit of a body that lets it in.
+    fn passage(&self, ray: &Ray64, hit: &Hit, surface: &Surface, media: &Media, lanes: &Lanes) -> Option<Passage> {
+        if !self.world.may_enter(hit) {
             return None;
         }
-        let ior = self.world.refracts(hit, surface)?;
+        let ior = self.world.refracts(hit, surface, lanes)?;
         let leaving = ray.dir().dot(surface.n_geo) > 0.0;
         Some(media.nested_passage(self.world, ray, (hit.object, ior), leaving))
     }
 
+    /// Whether a surface does nothing to light but to let it into another medium.
+    fn is_nothing(&self, hit: &Hit, passage: &Passage) -> bool {
+        passage.hidden || passage.here == passage.there && self.world.is_interface(hit)
+    }
+
     /// The light that leaves a hit against the ray.
     #[expect(clippy::too_many_arguments)]
-    fn scattered<T: Witness>(
+    fn met<T: Witness>(
         &self,
         ray: &Ray64,
         hit: &Hit,
         surface: &Surface,
         passage: Option<Passage>,
-        state: State,
+        mut state: State,
         sample: &Sample,
         tally: &mut T,
     ) -> Spectrum {
@@ -201,42 +355,58 @@ impl Path<'_> {
             tally.end(Color::splat(weight), Color::ONE, emitted.truncate());
             sum += weight * emitted;
         }
-        let cancelled = self.cancel.is_some_and(|cancel| cancel.load(Relaxed));
-        if state.depth > self.settings.bounces || cancelled || shading.bsdf.is_black() {
+        if shading.bsdf.is_black() {
             return sum;
         }
-        let vertex = Vertex { surface, shading: &shading, state: &state };
-        if shading.bsdf.is_broad() {
-            sum += self.direct(&vertex, sample, tally);
+        let mut kept = Spectrum::ONE;
+        if !state.alone && sample.lanes.hero().is_some() && self.world.disperses(hit, surface) {
+            // The other wavelengths would be bent otherwise: the first stands for all.
+            kept = Spectrum::X * 4.0;
+            (state.throughput, state.alone) = (state.throughput * kept, true);
         }
-        sum + self.indirect(&vertex, passage, sample, tally)
+        let place = Place::Surface(surface, &shading, passage.as_ref());
+        sum + kept * self.scattered(&Vertex { place, state: &state }, sample, tally)
+    }
+
+    /// The light that a point scatters against the ray.
+    fn scattered<T: Witness>(&self, vertex: &Vertex, sample: &Sample, tally: &mut T) -> Spectrum {
+        if vertex.state.depth > self.settings.bounces || self.is_cancelled() {
+            return Spectrum::ZERO;
+        }
+        let mut sum = Spectrum::ZERO;
+        if vertex.place.is_broad() {
+            sum += self.direct(vertex, sample, tally);
+        }
+        sum + self.indirect(vertex, sample, tally)
     }
 
     /// How much a light counts that a ray met by its direction, where it could have been connected with too.
     fn weight_of_hit(&self, ray: &Ray64, hit: &Hit, state: &State) -> f32 {
         let Some(from) = state.from else { return 1.0 };
-        let length = ray.dir().length();
-        let (wi, distance) = (ray.dir() / length, hit.t * length);
-        power(from.pdf, self.world.emitters.pdf_of_hit(self.world, hit, from.point, from.n, wi, distance))
+        let way = ray.origin() + f64::from(hit.t) * ray.dir().as_dvec3() - from.point;
+        let distance = way.length();
+        let wi = ray.dir().normalize();
+        let pdf = self.world.emitters.pdf_of_hit(self.world, hit, from.point, from.n, wi, distance as f32);
+        power(from.pdf, pdf)
     }
 
     /// The light of one light that is chosen.
     fn direct<T: Witness>(&self, vertex: &Vertex, sample: &Sample, tally: &mut T) -> Spectrum {
-        let (world, surface, shading) = (self.world, vertex.surface, vertex.shading);
+        let (world, place) = (self.world, &vertex.place);
         let id = sample.bounce(vertex.state.depth);
-        let (choice, place) = (id.pair(Use::Light as u32).x, id.pair(Use::PlaceOnLight as u32));
-        let chosen = world.emitters.sample(world, surface.point(), shading.frame.normal, choice, place);
+        let (choice, u) = (id.pair(Use::Light as u32).x, id.pair(Use::PlaceOnLight as u32));
+        let chosen = world.emitters.sample(world, place.point(), place.normal(), choice, u);
         let Some(light) = chosen else { return Spectrum::ZERO };
-        let value = shading.eval(light.wi);
+        let value = place.eval(light.wi);
         if value == Spectrum::ZERO || light.radiance == Color::ZERO {
             return Spectrum::ZERO;
         }
         let (weight, density) = match light.pdf > 0.0 {
-            true => (power(light.choice * light.pdf, shading.pdf(light.wi)), light.choice * light.pdf),
+            true => (power(light.choice * light.pdf, place.pdf(light.wi)), light.choice * light.pdf),
             // Directions never meet a light without extent.
             false => (1.0, light.choice),
         };
-        let visible = self.visible(surface, &light, tally);
+        let visible = self.visible(vertex, &light, sample, tally);
         let factor = value * (weight / density) * visible;
         tally.begin(|| What::Direct {
             light: light.light,
@@ -246,7 +416,7 @@ impl Path<'_> {
             pdf: light.pdf,
             bsdf: value.truncate(),
             mis: weight,
-            shadow: self.settings.shadows.then(|| self.shadow(surface, &light, visible)),
+            shadow: self.settings.shadows.then(|| self.shadow(place, &light, visible)),
         });
         let radiance = sample.lanes.light(light.radiance);
         tally.end(factor.truncate(), Color::ONE, radiance.truncate());
@@ -254,22 +424,11 @@ impl Path<'_> {
     }
 
     /// The light from a direction that is chosen.
-    fn indirect<T: Witness>(
-        &self,
-        vertex: &Vertex,
-        passage: Option<Passage>,
-        sample: &Sample,
-        tally: &mut T,
-    ) -> Spectrum {
-        let Vertex { surface, shading, state } = *vertex;
+    fn indirect<T: Witness>(&self, vertex: &Vertex, sample: &Sample, tally: &mut T) -> Spectrum {
+        let Vertex { place, state } = vertex;
         let id = sample.bounce(state.depth);
         let (numbers, u) = (id.pair(Use::Lobe as u32), id.pair(Use::Direction as u32));
-        let Some(chosen) = shading.bsdf.sample(shading.wo, numbers.x, u) else { return Spectrum::ZERO };
-        let wi = shading.frame.to_world(chosen.wi);
-        let passes = chosen.wi.z < 0.0;
-        if passes != (wi.dot(shading.n_geo) < 0.0) {
-            return Spectrum::ZERO;
-        }
+        let Some(chosen) = place.sample(numbers.x, u) else { return Spectrum::ZERO };
         let throughput = state.throughput * chosen.weight;
         // Paths go on with a probability that keeps those that go on equally bright.
         let survival = match state.depth {
@@ -280,21 +439,18 @@ impl Path<'_> {
             return Spectrum::ZERO;
         }
         let weight = chosen.weight / survival;
-        let media = match passage {
-            Some(passage) if passes => passage.behind,
-            _ => state.media.clone(),
-        };
         let delta = chosen.pdf == 0.0;
         let below = State {
-            media,
+            media: place.media(state, chosen.wi).clone(),
             throughput: throughput / survival,
             depth: state.depth + 1,
             // Nothing can be connected with over a single direction.
-            from: (!delta).then(|| Scattered { point: surface.point(), n: shading.frame.normal, pdf: chosen.pdf }),
+            from: (!delta).then(|| Scattered { point: place.point(), n: place.normal(), pdf: chosen.pdf }),
+            alone: state.alone,
         };
-        let ray = from_surface(surface, wi, f32::INFINITY, None);
+        let ray = place.spawn(chosen.wi);
         tally.begin(|| What::Ray {
-            from: match (delta, passes) {
+            from: match (delta, chosen.passes) {
                 (true, false) => RayKind::Reflected,
                 (true, true) => RayKind::Transmitted,
                 (false, _) => RayKind::Scattered,
@@ -302,7 +458,7 @@ impl Path<'_> {
             ray: (&ray).into(),
             weight: below.throughput.max_element(),
             hit: None,
-            bounce: Some(bounce(shading, &chosen, survival)),
+            bounce: Some(Bounce { lobe: chosen.lobe, probability: chosen.probability, pdf: chosen.pdf, survival }),
         });
         let indirect = state.depth > 0;
         let (sum, scale) = self.trace(&ray, below, sample, tally);
@@ -321,39 +477,53 @@ impl Path<'_> {
     }
 
     /// The share of a light that arrives.
-    fn visible<T: Witness>(&self, surface: &Surface, light: &LightSample, tally: &mut T) -> f32 {
+    fn visible<T: Witness>(&self, vertex: &Vertex, light: &LightSample, sample: &Sample, tally: &mut T) -> Spectrum {
         if !self.settings.shadows {
-            return 1.0;
+            return Spectrum::ONE;
         }
-        let mut ray = shadow_ray(surface, light);
-        if !self.world.has_cutouts {
-            return if self.world.occluded(&ray, tally) { 0.0 } else { 1.0 };
+        let Vertex { place, state } = vertex;
+        let mut media = place.media(state, light.wi).clone();
+        let mut ray = place.shadow_ray(light);
+        let mut share = Spectrum::ONE;
+        let mut numbers = sample.id.stream(state.depth, 1);
+        let mut pass = |media: &Media, ray: &Ray64, to: f32| match self.world.medium(media.object()) {
+            Some(medium) => {
+                let way = Way { origin: ray.origin(), dir: light.wi, from: 0.0, to };
+                medium.transmittance(&way, &sample.lanes, &mut || numbers.number())
+            }
+            None => Spectrum::ONE,
+        };
+        if !self.world.has_cutouts && !self.world.has_interfaces {
+            return match self.world.occluded(&ray, tally) {
+                true => Spectrum::ZERO,
+                false => pass(&media, &ray, ray.rounded.t_max),
+            };
         }
-        let mut share = 1.0;
         // A thing with many layers is followed only so far.
         for _ in 0..64 {
-            let Some(hit) = self.world.closest(&ray, tally) else { return share };
+            let Some(hit) = self.world.closest(&ray, tally) else {
+                return share * pass(&media, &ray, ray.rounded.t_max);
+            };
+            share *= pass(&media, &ray, hit.t);
             let blocker = self.world.surface(&ray, &hit);
-            share *= 1.0 - self.world.opacity(&hit, &blocker);
-            if share <= 0.0 {
+            match self.passage(&ray, &hit, &blocker, &media, &sample.lanes) {
+                Some(passage) if self.is_nothing(&hit, &passage) => media = passage.behind,
+                _ => share *= 1.0 - self.world.opacity(&hit, &blocker),
+            }
+            if share == Spectrum::ZERO {
                 break;
             }
             ray = from_surface(&blocker, light.wi, ray.rounded.t_max - hit.t, None);
         }
-        0.0
+        Spectrum::ZERO
     }
 
     /// What a witness is told of a shadow ray.
-    fn shadow(&self, surface: &Surface, light: &LightSample, share: f32) -> Shadow {
-        let ray = shadow_ray(surface, light);
+    fn shadow(&self, place: &Place, light: &LightSample, share: Spectrum) -> Shadow {
+        let ray = place.shadow_ray(light);
         let blocker = self.world.closest(&ray, &mut ()).map(|hit| (hit.object, hit.t));
-        Shadow { ray: (&ray).into(), blocker, share: Color::splat(share) }
+        Shadow { ray: (&ray).into(), blocker, share: share.truncate() }
     }
-}
-
-fn shadow_ray(surface: &Surface, light: &LightSample) -> Ray64 {
-    // What stands exactly at the light does not block it.
-    to_light(surface, light.wi, light.reach * (1.0 - gamma(16)), None)
 }
 
 /// The power heuristic: the weight of a way of sampling with density `a`, where another one has density `b`.
@@ -363,17 +533,6 @@ fn power(a: f32, b: f32) -> f32 {
     }
     let ratio = b / a;
     1.0 / (1.0 + ratio * ratio)
-}
-
-/// What a witness is told of a choice of direction.
-fn bounce(shading: &Shading, sample: &BsdfSample, survival: f32) -> Bounce {
-    let lobe = shading.bsdf.lobes().nth(sample.lobe);
-    Bounce {
-        lobe: lobe.map_or("", |part| part.lobe.name()),
-        probability: lobe.map_or(1.0, |part| part.probability),
-        pdf: sample.pdf,
-        survival,
-    }
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@
 //! terms of the course.
 
 use super::account::{RayKind, Shadow, Struck, What, Witness};
-use super::media::{Media, Medium, Passage};
+use super::media::{Body, Media, Passage};
 use super::spawn::{from_surface, to_light};
 use crate::dialect::Compat;
 use crate::light::Illumination;
@@ -283,7 +283,7 @@ impl Whitted<'_> {
             (false, true) => (known, ior),
             (false, false) => (1.0, ior),
         };
-        Passage { here, there, behind: Media::only(Medium { object, ior: there, size: None }), hidden: false }
+        Passage { here, there, behind: Media::only(Body { object, ior: there, size: None }), hidden: false }
     }
 
     /// One secondary ray, weighed by a colour.

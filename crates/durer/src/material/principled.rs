@@ -46,6 +46,29 @@ described! {
         transmission_color: Vec3 = Vec3::ONE, optional, Rule::Any, ["transmissionColor" in set::DURER];
         /// How deep light goes until it has `transmissionColor`, in units of the world; 0: the surface tints it.
         transmission_depth: f32 = 0.0, optional, Rule::NonNegative, ["transmissionDepth" in set::DURER];
+        /// Colour of the light that a body scatters inside, per `transmissionDepth`; 0 0 0: it is clear.
+        transmission_scatter: Vec3 = Vec3::ZERO, optional, Rule::Any, ["transmissionScatter" in set::DURER];
+        /// Where that light goes: from -1 (back) over 0 (evenly) to 1 (onwards).
+        transmission_scatter_anisotropy: f32 = 0.0, optional, Rule::Between(-1.0, 1.0),
+            ["transmissionScatterAnisotropy" in set::DURER];
+        /// How much glass spreads colours, over what `transmissionDispersionAbbeNumber` says; 0: not at all. Only
+        /// `--color spectral` shows it.
+        transmission_dispersion_scale: f32 = 0.0, optional, Rule::Share, ["transmissionDispersionScale" in set::DURER];
+        /// Abbe number of the glass: the lower, the more it spreads colours; 64 is crown glass, 30 flint.
+        transmission_dispersion_abbe_number: f32 = 20.0, optional, Rule::Positive,
+            ["transmissionDispersionAbbeNumber" in set::DURER];
+        /// From 0 (matte) to 1 (light goes into the body, is scattered there and comes out elsewhere: marble, milk, skin).
+        subsurface_weight: f32 = 0.0, optional, Rule::Share, ["subsurfaceWeight" in set::DURER];
+        /// The colour that such a body shows.
+        subsurface_color: Vec3 = Vec3::splat(0.8), optional, Rule::Any, ["subsurfaceColor" in set::DURER];
+        /// How far light goes in it until it is scattered, on the mean, in units of the world.
+        subsurface_radius: f32 = 1.0, optional, Rule::Positive, ["subsurfaceRadius" in set::DURER];
+        /// What multiplies `subsurfaceRadius` for red, green and blue.
+        subsurface_radius_scale: Vec3 = Vec3::new(1.0, 0.5, 0.25), optional, Rule::Any,
+            ["subsurfaceRadiusScale" in set::DURER];
+        /// Where light goes that is scattered in it: from -1 (back) over 0 (evenly) to 1 (onwards).
+        subsurface_scatter_anisotropy: f32 = 0.0, optional, Rule::Between(-1.0, 1.0),
+            ["subsurfaceScatterAnisotropy" in set::DURER];
         /// Strength of the clear coat, from 0 to 1.
         coat_weight: f32 = 0.0, optional, Rule::Share, ["coatWeight" in set::DURER];
         /// Colour of what passes the coat down and up again at right angles.
@@ -74,5 +97,29 @@ described! {
         opacity: f32 = 1.0, optional, Rule::Share, ["opacity" in set::DURER];
         /// `thin`: a sheet without inside, through which light goes straight; `solid`: the skin of a body.
         walls: Walls = Walls::Solid, optional, Rule::Any, ["walls" in set::DURER];
+    }
+}
+
+impl PrincipledMaterial {
+    /// Whether light goes into the body, is scattered there, and comes out again.
+    pub fn has_subsurface(&self) -> bool {
+        self.subsurface_weight > 0.0 && self.walls == Walls::Solid
+    }
+
+    /// Whether colours are spread.
+    pub fn disperses(&self) -> bool {
+        self.transmission_weight > 0.0 && self.transmission_dispersion_scale > 0.0 && self.walls == Walls::Solid
+    }
+
+    /// The index of refraction at a wavelength in nanometres; `None` for all of them.
+    ///
+    /// Source: Cauchy's formula through the indices that Abbe's number is made of, at the lines C, d and F; OpenPBR.
+    pub fn ior_at(&self, nm: Option<f32>) -> f32 {
+        const LINES: [f32; 3] = [656.3, 587.6, 486.1];
+        let Some(nm) = nm.filter(|_| self.disperses()) else { return self.specular_ior };
+        let [c, d, f] = LINES.map(|line| 1.0 / (line * line));
+        let abbe = self.transmission_dispersion_abbe_number / self.transmission_dispersion_scale;
+        let slope = (self.specular_ior - 1.0) / (abbe * (f - c));
+        self.specular_ior + slope * (1.0 / (nm * nm) - d)
     }
 }

@@ -15,6 +15,7 @@ use crate::dialect::set;
 use crate::light::Light;
 use crate::material::{ColorNoise, PhongMaterial, PrincipledMaterial, Solid};
 use crate::math::Vec3;
+use crate::medium::Fog;
 use crate::shape::{HeightField, Primitive, Sphere, TriangleMesh, VoxelGrid};
 pub use assets::{Assets, Picture, PictureBytes};
 pub use matrix::MatrixOp;
@@ -66,6 +67,9 @@ pub struct Scene {
     pub camera: Option<Camera>,
     /// What is behind everything.
     pub background: Background,
+    /// What is in the air.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub fog: Option<Spanned<Fog>>,
     /// Lights; `None` where the file has no section for them.
     pub lights: Option<Vec<Spanned<Light>>>,
     /// Materials, by number.
@@ -85,7 +89,10 @@ impl Scene {
     pub fn is_physical(&self) -> bool {
         let layered = |material: &Spanned<Material>| matches!(material.value, Material::Principled(_));
         let background = &self.background;
-        background.environment.is_some() || background.sun.is_some() || self.materials.iter().any(layered)
+        background.environment.is_some()
+            || background.sun.is_some()
+            || self.fog.is_some()
+            || self.materials.iter().any(layered)
     }
 }
 

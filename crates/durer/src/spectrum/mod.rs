@@ -80,7 +80,7 @@ impl Lanes {
             Lanes::Waves(_) if color.x == color.y && color.y == color.z => Spectrum::splat(color.x),
             Lanes::Waves(waves) => {
                 let most = color.max_element().max(1.0);
-                most * upsample::smooth(color / most).at(waves.nm)
+                most * upsample::share(color / most, waves.nm)
             }
         }
     }
@@ -93,7 +93,7 @@ impl Lanes {
             Lanes::Waves(waves) => {
                 // At half of what can be reflected, spectra are smoother.
                 let most = 2.0 * color.max_element();
-                most * waves.white * upsample::smooth(color / most).at(waves.nm)
+                most * waves.white * upsample::share(color / most, waves.nm)
             }
         }
     }

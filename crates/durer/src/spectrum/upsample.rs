@@ -13,11 +13,11 @@ use std::sync::LazyLock;
 
 /// A share of light by wavelength, from 0 to 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Smooth([f32; 3]);
+struct Smooth([f32; 3]);
 
 impl Smooth {
     /// At four wavelengths in nanometres.
-    pub(super) fn at(&self, nm: Spectrum) -> Spectrum {
+    fn at(&self, nm: Spectrum) -> Spectrum {
         let [a, b, c] = self.0;
         let place = (nm - FIRST) / (LAST - FIRST);
         let x = (a * place + b) * place + c;
@@ -29,47 +29,48 @@ impl Smooth {
     }
 }
 
-/// Points of the grid along each axis.
-const SIDE: usize = 24;
+/// Points of the grid along the axes of the two lesser channels.
+const SIDE: usize = 20;
+
+/// Points along that of the greatest channel.
+const STRENGTHS: usize = 10;
 
 /// The three numbers, for each greatest channel, its strength, and the two others over it.
 struct Table(Vec<[f32; 3]>);
 
 static TABLE: LazyLock<Table> = LazyLock::new(Table::new);
 
-/// The spectrum of a colour from 0 to 1.
-pub(super) fn smooth(color: Color) -> Smooth {
-    TABLE.find(color)
+/// The share of light by wavelength of a colour from 0 to 1. Darker ones than 0.5 are as a stronger one of their hue, times less.
+pub(super) fn share(color: Color, nm: Spectrum) -> Spectrum {
+    let scale = (2.0 * color.max_element()).clamp(1e-12, 1.0);
+    scale * TABLE.find(color / scale).at(nm)
 }
 
-/// Strengths are closer together near black and white, where the numbers change most.
+/// From 0.5 to 1, closer together near white, where the numbers change most.
 fn strength(k: usize) -> f64 {
-    let step = |x: f64| x * x * (3.0 - 2.0 * x);
-    step(step(k as f64 / (SIDE - 1) as f64))
+    let rest = 1.0 - k as f64 / (STRENGTHS - 1) as f64;
+    1.0 - 0.5 * rest * rest
 }
 
-/// At the ends numbers would have no bounds.
-const NEARLY_BLACK: f64 = 1e-4;
+/// At 1 numbers would have no bounds.
+const NEARLY_WHITE: f64 = 1.0 - 1e-4;
 
 impl Table {
     fn new() -> Self {
         let fit = Fit::new();
-        let mut all = vec![[0.0; 3]; 3 * SIDE * SIDE * SIDE];
+        let mut all = vec![[0.0; 3]; 3 * STRENGTHS * SIDE * SIDE];
         for greatest in 0..3 {
             for (j, i) in (0..SIDE * SIDE).map(|n| (n / SIDE, n % SIDE)) {
                 let share = |n: usize| n as f64 / (SIDE - 1) as f64;
-                // From the middle of strengths to both ends: each fit begins where its neighbour ended.
-                let middle = SIDE / 3;
-                for ks in [(middle..SIDE).collect::<Vec<_>>(), (0..middle).rev().collect()] {
-                    let mut numbers = [0.0; 3];
-                    for k in ks {
-                        let most = strength(k).clamp(NEARLY_BLACK, 1.0 - NEARLY_BLACK);
-                        let mut color = [most; 3];
-                        color[(greatest + 1) % 3] = most * share(i);
-                        color[(greatest + 2) % 3] = most * share(j);
-                        numbers = fit.find(color, numbers);
-                        all[Self::place(greatest, k, j, i)] = numbers.map(|x| x as f32);
-                    }
+                // Each fit begins where its neighbour ended.
+                let mut numbers = [0.0; 3];
+                for k in 0..STRENGTHS {
+                    let most = strength(k).min(NEARLY_WHITE);
+                    let mut color = [most; 3];
+                    color[(greatest + 1) % 3] = most * share(i);
+                    color[(greatest + 2) % 3] = most * share(j);
+                    numbers = fit.find(color, numbers);
+                    all[Self::place(greatest, k, j, i)] = numbers.map(|x| x as f32);
                 }
             }
         }
@@ -77,7 +78,7 @@ impl Table {
     }
 
     fn place(greatest: usize, k: usize, j: usize, i: usize) -> usize {
-        ((greatest * SIDE + k) * SIDE + j) * SIDE + i
+        ((greatest * STRENGTHS + k) * SIDE + j) * SIDE + i
     }
 
     fn find(&self, color: Color) -> Smooth {
@@ -92,7 +93,7 @@ impl Table {
         let most = color[greatest].max(1e-12);
         let last = (SIDE - 1) as f32;
         let share = |n: usize| (color[(greatest + n) % 3] / most).clamp(0.0, 1.0) * last;
-        let k = (0..SIDE - 2).rev().find(|&k| strength(k) <= f64::from(most)).unwrap_or(0);
+        let k = (0..STRENGTHS - 1).rev().find(|&k| strength(k) <= f64::from(most)).unwrap_or(0);
         let (low, high) = (strength(k) as f32, strength(k + 1) as f32);
         let (x, y) = (share(1), share(2));
         let (i, j) = ((x as usize).min(SIDE - 2), (y as usize).min(SIDE - 2));
@@ -193,14 +194,14 @@ impl Fit {
     }
 }
 
-/// The colour of a spectrum under daylight.
+/// The colour of a share of light under daylight.
 #[cfg(test)]
-pub(super) fn color(spectrum: &Smooth) -> Color {
+pub(super) fn color_of(color: Color) -> Color {
     let weight = f64::from(OBSERVER.daylight);
     Color::from_array(OBSERVER.to_rgb.map(|m| {
         integral(|nm, [x, y, z, light]| {
             let [a, b, c] = m.map(f64::from);
-            weight * f64::from(spectrum.at(Spectrum::splat(nm)).x) * (a * x + b * y + c * z) * light
+            weight * f64::from(share(color, Spectrum::splat(nm)).x) * (a * x + b * y + c * z) * light
         }) as f32
     }))
 }

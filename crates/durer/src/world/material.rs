@@ -3,6 +3,7 @@
 use crate::bsdf::{Layers, Tables};
 use crate::material::{ColorNoise, PrincipledMaterial, Solid};
 use crate::math::Color;
+use crate::medium::Medium;
 use crate::world::Maps;
 use smallvec::SmallVec;
 use std::sync::Arc;
@@ -39,8 +40,10 @@ pub struct Principled {
     pub layers: Layers,
     /// What its boundaries give back.
     pub tables: Tables,
-    /// What it takes of light on its way through a body, per unit of the world and by colour.
-    pub absorption: Color,
+    /// What the body is filled with, if that absorbs or scatters light.
+    pub medium: Option<Medium>,
+    /// Whether the surface itself does nothing where what is around has the same index of refraction: a body of smoke.
+    pub interface: bool,
 }
 
 /// The light of a surface's own.

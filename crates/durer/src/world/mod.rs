@@ -15,6 +15,7 @@ use crate::dialect::{Compat, Rules};
 use crate::light::{Emitter as _, Illumination, Light, Profile};
 use crate::material::Pattern;
 use crate::math::{Aabb, Color, Ray64, Vec2, Vec3};
+use crate::medium::Medium;
 use crate::shape::{Crossing, Surface};
 use crate::source::Digest;
 use crate::texture::{CubeMap, Environment, Texture};
@@ -57,8 +58,12 @@ pub struct World {
     pub environment: Option<Environment>,
     /// What shines.
     pub emitters: Emitters,
+    /// What is in the air, if light loses something there.
+    pub fog: Option<Medium>,
     /// Whether some surface is there in part only.
     pub has_cutouts: bool,
+    /// Whether some body has no skin, so that light goes straight into it.
+    pub has_interfaces: bool,
     pub(crate) unbounded: Vec<u32>,
     pub(crate) accel: Accel,
 }

@@ -8,6 +8,7 @@ use crate::bsdf::lobe::glass::{Mirror, Refraction, Through};
 use crate::bsdf::{Bsdf, Frame, fresnel};
 use crate::material::principled::Walls;
 use crate::math::{Color, Vec3};
+use crate::medium::Medium;
 use crate::shape::Surface;
 use crate::spectrum::{Lanes, Spectrum};
 use crate::world::HighlightModel;
@@ -128,10 +129,13 @@ impl World {
     }
 
     /// The index of refraction of the body that a surface bounds, if light may go into it: that of the part that weighs most.
-    pub fn refracts(&self, hit: &Hit, surface: &Surface) -> Option<f32> {
+    pub fn refracts(&self, hit: &Hit, surface: &Surface, lanes: &Lanes) -> Option<f32> {
         let of = |phong: &Phong| match &phong.principled {
-            Some(own) => (own.written.transmission_weight > 0.0 && own.written.walls == Walls::Solid)
-                .then_some(own.written.specular_ior),
+            Some(own) => {
+                let m = &own.written;
+                let enters = m.transmission_weight > 0.0 || m.subsurface_weight > 0.0;
+                (enters && m.walls == Walls::Solid).then(|| m.ior_at(lanes.hero()))
+            }
             None => (phong.transparent != Color::ZERO).then_some(phong.ior),
         };
         let mut most = (0.0, None);
@@ -159,12 +163,50 @@ impl World {
             || self.objects.iter().any(clear)
     }
 
-    /// What the body of an object takes of light, per unit of the world.
-    pub fn absorption(&self, object: u32) -> Color {
+    /// What fills the body of an object, or the air, if light loses something there.
+    pub fn medium(&self, object: Option<u32>) -> Option<&Medium> {
+        let Some(object) = object else { return self.fog.as_ref() };
         match &self.materials[self.objects[object as usize].material as usize] {
-            Material::Phong(phong) => phong.principled.as_ref().map_or(Color::ZERO, |own| own.absorption),
-            Material::Solid(..) => Color::ZERO,
+            Material::Phong(phong) => phong.principled.as_ref()?.medium.as_ref(),
+            Material::Solid(..) => None,
         }
+    }
+
+    /// Whether light goes straight through a medium with a lamp behind it: through the air, and bodies without a skin.
+    pub fn is_open(&self, object: Option<u32>) -> bool {
+        object.is_none_or(|object| self.has_no_skin(self.objects[object as usize].material))
+    }
+
+    /// Whether a surface does nothing where the index of refraction is the same on both sides.
+    pub fn is_interface(&self, hit: &Hit) -> bool {
+        self.has_interfaces && self.has_no_skin(self.material(hit))
+    }
+
+    fn has_no_skin(&self, material: u32) -> bool {
+        matches!(&self.materials[material as usize],
+            Material::Phong(phong) if phong.principled.as_ref().is_some_and(|own| own.interface))
+    }
+
+    /// Whether some body has no skin.
+    pub(crate) fn finds_interfaces(&self) -> bool {
+        (0..self.materials.len() as u32).any(|material| self.has_no_skin(material))
+    }
+
+    /// Whether light may go into a thing at a hit: quickly known, for most materials.
+    pub fn may_enter(&self, hit: &Hit) -> bool {
+        match &self.materials[self.material(hit) as usize] {
+            Material::Phong(phong) => {
+                phong.transparent != Color::ZERO
+                    || phong.principled.as_ref().is_some_and(|own| own.written.has_subsurface())
+            }
+            Material::Solid(..) => true,
+        }
+    }
+
+    /// Whether colours are spread at a hit.
+    pub fn disperses(&self, hit: &Hit, surface: &Surface) -> bool {
+        let of = |phong: &Phong| phong.principled.as_ref().is_some_and(|own| own.written.disperses());
+        self.may_transmit(hit) && self.parts(hit, surface.position).iter().any(|part| of(part.phong))
     }
 }
 

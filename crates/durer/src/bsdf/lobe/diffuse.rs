@@ -60,3 +60,25 @@ impl Scatter for Diffuse {
         Some(Scattered { wi: warp::cosine_hemisphere(u), value: Spectrum::ONE })
     }
 }
+
+/// Light that leaves on the other side, the same in all directions.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DiffuseTransmission {
+    /// The share of light that goes through, by lane.
+    pub color: Spectrum,
+}
+
+impl Scatter for DiffuseTransmission {
+    fn eval(&self, _: Vec3, wi: Vec3) -> Spectrum {
+        self.color * (FRAC_1_PI * (-wi.z).max(0.0))
+    }
+
+    fn pdf(&self, _: Vec3, wi: Vec3) -> f32 {
+        FRAC_1_PI * (-wi.z).max(0.0)
+    }
+
+    fn sample(&self, _: Vec3, _: f32, u: Vec2) -> Option<Scattered> {
+        let above = warp::cosine_hemisphere(u);
+        Some(Scattered { wi: Vec3::new(above.x, above.y, -above.z), value: Spectrum::ONE })
+    }
+}

@@ -62,6 +62,12 @@ macro_rules! lobes {
         }
 
         impl Lobe {
+            /// Whether it scatters light from behind the surface into many directions.
+            pub fn passes_light(&self) -> bool {
+                matches!(self, Lobe::DiffuseTransmission(_) | Lobe::RoughGlass(_))
+                    || matches!(self, Lobe::Rough(rough) if rough.behind)
+            }
+
             /// Its name, for explanations.
             pub fn name(&self) -> &'static str {
                 match self { $(Lobe::$name(_) => stringify!($name),)+ }
@@ -73,6 +79,8 @@ macro_rules! lobes {
 lobes! {
     /// Matte: energy-preserving Oren-Nayar; Lambert where it is not rough.
     Diffuse(diffuse::Diffuse),
+    /// Matte, on the other side.
+    DiffuseTransmission(diffuse::DiffuseTransmission),
     /// The course's highlight.
     Blinn(blinn::Blinn),
     /// A rough mirror: metal, a coat, the skin of plastic.

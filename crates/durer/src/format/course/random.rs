@@ -205,6 +205,7 @@ impl Random {
         Scene {
             camera: (self.below(4) > 0).then(|| self.thing::<Camera>(0)),
             background: self.thing::<Background>(0),
+            fog: None,
             lights,
             materials,
             root: (nodes || self.below(8) > 0).then_some(Group { objects }),

@@ -9,6 +9,7 @@ use crate::dialect::{Dialect, DialectSet, set};
 use crate::light::Light;
 use crate::material::{ColorNoise, PhongMaterial, PrincipledMaterial, Solid};
 use crate::math::Vec3;
+use crate::medium::Fog;
 use crate::scene::{Background, Operation};
 use crate::shape::{HeightField, Primitive, TriangleMesh, VoxelGrid};
 
@@ -174,7 +175,8 @@ Group {
 ";
 
 /// Examples that say more than the defaults of a statement do.
-const EXAMPLES: [(&str, &str); 25] = [
+const EXAMPLES: [(&str, &str); 26] = [
+    ("Fog", "Fog { extinction 0.25 color 0.9 0.95 1 }"),
     ("Background", "Background { color 0.7 0.8 0.9 ambientLight 0.2 0.2 0.2 }"),
     ("DirectionalLight", "DirectionalLight { direction -1 -2 -0.7 color 0.9 0.85 0.7 }"),
     ("PointLight", "PointLight { position 1.6 1.8 1.4 color 3 2.8 2.4 falloff 0.4 }"),
@@ -278,6 +280,7 @@ const GRAMMAR: &[(&[Spelling], Chapter, &str, &str, &str)] = &[
 pub fn entries() -> Vec<Entry> {
     let mut all: Vec<Entry> = Vec::new();
     all.extend(of::<Background>(Chapter::Structure));
+    all.extend(of::<Fog>(Chapter::Structure));
     all.extend(of::<Camera>(Chapter::Cameras));
     all.extend(of::<Light>(Chapter::Lights));
     all.extend(of::<PhongMaterial>(Chapter::Materials));

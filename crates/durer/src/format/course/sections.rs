@@ -11,11 +11,12 @@ use crate::dialect::{Dialect, DialectSet, set};
 use crate::light::Light;
 use crate::material::presets;
 use crate::material::{ColorNoise, PhongMaterial, PrincipledMaterial, Solid};
+use crate::medium::Fog;
 use crate::scene::{Background, Group, Material, Node, Object, Operation, Spanned};
 use crate::shape::{HeightField, Primitive, Sphere, TriangleMesh, VoxelGrid};
 
 /// What stands at the top of a file beside the camera.
-const SECTIONS: [&str; 4] = ["Background", "Lights", "Materials", "Group"];
+const SECTIONS: [&str; 5] = ["Background", "Fog", "Lights", "Materials", "Group"];
 
 /// The camera that a word begins, where there are no nodes.
 pub(super) fn camera_of(word: &str) -> Option<Camera> {
@@ -50,6 +51,7 @@ impl Reader<'_, '_> {
         self.top(&known, |reader, word, span| {
             match word {
                 "Background" => reader.background(span),
+                "Fog" => reader.fog(span),
                 "Lights" => reader.lights(span),
                 "Materials" => reader.materials(span),
                 "Group" => reader.scene.root = Some(reader.group(span)),
@@ -104,6 +106,13 @@ impl Reader<'_, '_> {
         let mut background = Background::default();
         self.fields(&mut background, keyword, Order::Any, |_, _, _| false);
         self.scene.background = background;
+    }
+
+    fn fog(&mut self, keyword: Span) {
+        let mut fog = Fog::default();
+        self.check_keyword(&fog, keyword);
+        self.fields(&mut fog, keyword, Order::Any, |_, _, _| false);
+        self.scene.fog = Some(Spanned { value: fog, span: keyword });
     }
 
     /// Warns of a keyword that this dialect does not have.

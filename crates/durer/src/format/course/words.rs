@@ -5,6 +5,7 @@ use crate::describe::DescribedList;
 use crate::dialect::{DialectSet, set};
 use crate::light::Light;
 use crate::material::{ColorNoise, PhongMaterial, PrincipledMaterial, Solid};
+use crate::medium::Fog;
 use crate::scene::{Background, Operation};
 use crate::shape::{HeightField, Primitive, TriangleMesh, VoxelGrid};
 use std::collections::HashMap;
@@ -60,6 +61,7 @@ static WORDS: LazyLock<HashMap<&'static str, DialectSet>> = LazyLock::new(|| {
     list::<HeightField>(&mut words);
     list::<VoxelGrid>(&mut words);
     list::<Background>(&mut words);
+    list::<Fog>(&mut words);
     let operations = Operation::ALL.map(|(word, _)| (word, set::DURER));
     for (word, set) in GRAMMAR.into_iter().chain(operations) {
         *words.entry(word).or_insert(0) |= set;

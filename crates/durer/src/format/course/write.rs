@@ -74,6 +74,9 @@ impl Writer {
             self.thing(camera);
         }
         self.thing(&scene.background);
+        if let Some(fog) = &scene.fog {
+            self.thing(&fog.value);
+        }
         if let Some(lights) = &scene.lights {
             self.block("Lights", |w| {
                 w.line(format!("numLights {}", lights.len()));

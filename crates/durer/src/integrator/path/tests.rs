@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::compile::testing::read;
+use crate::math::fp;
 use crate::render::Job;
 
 /// The mean of many samples along a ray, and its standard error.

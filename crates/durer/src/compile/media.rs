@@ -1,0 +1,107 @@
+//! Media: what is inside of bodies, and in the air.
+
+use super::files::Loader;
+use crate::diag::{Diagnostic, Diagnostics};
+use crate::material::PrincipledMaterial;
+use crate::material::principled::Walls;
+use crate::math::{Aabb, Color, Vec3, fp};
+use crate::medium::{Fog, HenyeyGreenstein, Medium, Place};
+use crate::scene::Spanned;
+use std::sync::Arc;
+
+/// What fills a body of a material, if light loses something there.
+pub(super) fn inside(m: &PrincipledMaterial) -> Option<Medium> {
+    if m.walls == Walls::Thin {
+        return None;
+    }
+    if m.transmission_weight > 0.0 {
+        return transmission(m);
+    }
+    m.has_subsurface().then(|| subsurface(m))
+}
+
+/// Source: OpenPBR, *Translucent base*: with a colour T that is left after a depth, extinction is -ln T / depth, and
+/// scattering is the scattered colour over the depth.
+fn transmission(m: &PrincipledMaterial) -> Option<Medium> {
+    if m.transmission_depth <= 0.0 {
+        return None;
+    }
+    // Black would never be reached.
+    let extinction = m.transmission_color.map(|c| -fp::ln(c.clamp(1e-6, 1.0)) / m.transmission_depth);
+    let scattering = m.transmission_scatter.max(Vec3::ZERO) / m.transmission_depth;
+    // Absorption below 0 is raised for all colours, so that the hue stays.
+    let absorption = extinction - scattering;
+    let absorption = absorption - absorption.min_element().min(0.0);
+    let extinction = if scattering == Color::ZERO { extinction } else { absorption + scattering };
+    let phase = HenyeyGreenstein { anisotropy: m.transmission_scatter_anisotropy };
+    (extinction != Color::ZERO).then(|| medium(extinction, scattering, phase))
+}
+
+fn medium(extinction: Color, scattering: Color, phase: HenyeyGreenstein) -> Medium {
+    let share = |s: f32, all: f32| if all > 0.0 { s / all } else { 0.0 };
+    let albedo = Color::from_array(std::array::from_fn(|i| share(scattering[i], extinction[i])));
+    Medium { extinction, albedo, phase, place: None }
+}
+
+/// The medium whose half-space shows a colour.
+///
+/// Source: OpenPBR, *Subsurface*; the inversion after Kulla and Conty, *Revisiting Physically Based Shading at Imageworks*, 2017.
+fn subsurface(m: &PrincipledMaterial) -> Medium {
+    let g = m.subsurface_scatter_anisotropy;
+    let albedo = |color: f32| {
+        let c = color.clamp(0.0, 1.0);
+        let s = 4.097_12 + 4.208_63 * c - (9.592_17 + 41.680_8 * c + 17.712_6 * c * c).sqrt();
+        ((1.0 - s * s) / (1.0 - g * s * s)).clamp(0.0, 1.0)
+    };
+    let radius = (m.subsurface_radius * m.subsurface_radius_scale).max(Vec3::splat(1e-6));
+    Medium {
+        extinction: 1.0 / radius,
+        albedo: m.subsurface_color.map(albedo),
+        phase: HenyeyGreenstein { anisotropy: g },
+        place: None,
+    }
+}
+
+/// Whether a surface does nothing but bound a medium.
+pub(super) fn is_interface(m: &PrincipledMaterial) -> bool {
+    let tint = m.transmission_depth > 0.0 || m.transmission_color == Vec3::ONE;
+    m.walls == Walls::Solid
+        && m.specular_ior == 1.0
+        && m.transmission_weight == 1.0
+        && tint
+        && m.base_metalness == 0.0
+        && m.coat_weight == 0.0
+        && m.fuzz_weight == 0.0
+        && m.emission_luminance == 0.0
+}
+
+/// What is in the air.
+pub(super) fn fog(fog: &Spanned<Fog>, loader: &mut Loader, diagnostics: &mut Diagnostics) -> Option<Medium> {
+    let (written, span) = (&fog.value, fog.span);
+    let mut refuse = |message: &str| {
+        diagnostics.push(Diagnostic::error(message).code("bad-value").at(span));
+        None
+    };
+    let corners = match (written.min, written.max) {
+        (Some(min), Some(max)) if min.cmplt(max).all() => Some(Aabb { min, max }),
+        (Some(_), Some(_)) => {
+            return refuse("each coordinate of this fog's `max` must be greater than that of its `min`");
+        }
+        (None, None) => None,
+        _ => return refuse("a box of fog needs both `min` and `max`"),
+    };
+    let density = match &written.density {
+        Some(name) => Some(loader.density(name, diagnostics)?),
+        None => None,
+    };
+    let place = match (corners, density) {
+        (None, None) => None,
+        (Some(bounds), None) => Some(Place { bounds, density: None }),
+        (corners, Some((bounds, density))) => {
+            Some(Place { bounds: corners.unwrap_or(bounds), density: Some(Arc::new(density)) })
+        }
+    };
+    let albedo = written.color.clamp(Vec3::ZERO, Vec3::ONE);
+    let phase = HenyeyGreenstein { anisotropy: written.anisotropy };
+    Some(Medium { extinction: Color::splat(written.extinction), albedo, phase, place })
+}

@@ -1,0 +1,101 @@
+//! Volume files of Mitsuba: densities on a grid.
+//!
+//! Little-endian: `VOL`, the version (3), then as 32-bit numbers the type (1: `f32`), the counts along x, y and z, the channels
+//! (1), the six coordinates of the box, and the values, x running fastest. Source: Mitsuba 3's documentation, `gridvolume`.
+
+use crate::diag::{Diagnostic, Diagnostics, Span};
+use crate::math::{Aabb, Vec3};
+use crate::medium::DensityGrid;
+
+const HEADER: usize = 48;
+
+/// Reads a file of at most some bytes.
+pub fn read(bytes: &[u8], file: u32, memory: u64, diagnostics: &mut Diagnostics) -> Option<(Aabb, DensityGrid)> {
+    parse(bytes, memory)
+        .map_err(|(at, message)| {
+            let at = at.min(bytes.len()) as u32;
+            let span = Span { file, start: at, end: at };
+            diagnostics.push(Diagnostic::error(message).code("bad-file").at(span));
+        })
+        .ok()
+}
+
+fn parse(bytes: &[u8], memory: u64) -> Result<(Aabb, DensityGrid), (usize, String)> {
+    if !bytes.starts_with(b"VOL") || bytes.get(3) != Some(&3) {
+        return Err((0, "this is no volume file of Mitsuba: it should begin with `VOL` and the version 3".into()));
+    }
+    let word = |at: usize| -> Result<[u8; 4], (usize, String)> {
+        let found = bytes.get(at..at + 4).and_then(|four| four.try_into().ok());
+        found.ok_or_else(|| (at, format!("the file ends within its header of {HEADER} bytes")))
+    };
+    let whole = |at: usize| word(at).map(i32::from_le_bytes);
+    let real = |at: usize| word(at).map(f32::from_le_bytes);
+    if whole(4)? != 1 {
+        return Err((4, "only volumes of 32-bit floating point numbers can be read (type 1)".into()));
+    }
+    let counts = [whole(8)?, whole(12)?, whole(16)?];
+    if counts.iter().any(|&n| n < 1) {
+        let [x, y, z] = counts;
+        return Err((8, format!("a grid of {x} x {y} x {z} points has nothing in it")));
+    }
+    if whole(20)? != 1 {
+        return Err((20, format!("densities have one channel, not {}", whole(20)?)));
+    }
+    let min = Vec3::new(real(24)?, real(28)?, real(32)?);
+    let max = Vec3::new(real(36)?, real(40)?, real(44)?);
+    if !(min.is_finite() && max.is_finite() && min.cmplt(max).all()) {
+        return Err((24, "the box of this volume has no size".into()));
+    }
+    let wanted = counts.iter().fold(1_u64, |product, &n| product.saturating_mul(n as u64));
+    let there = (bytes.len() - HEADER) as u64 / 4;
+    if there < wanted {
+        return Err((bytes.len(), format!("the file ends after {there} of {wanted} densities")));
+    }
+    if wanted.saturating_mul(4) > memory {
+        return Err((8, format!("{wanted} densities are more than memory is allowed")));
+    }
+    let values = bytes[HEADER..].chunks_exact(4).take(wanted as usize);
+    let values: Vec<f32> = values.map(|four| f32::from_le_bytes([four[0], four[1], four[2], four[3]])).collect();
+    let bad = values.iter().position(|x| !x.is_finite() || *x < 0.0);
+    if let Some(bad) = bad {
+        return Err((HEADER + 4 * bad, format!("density {} is {}: it must be 0 or more", bad + 1, values[bad])));
+    }
+    let grid = DensityGrid::new(counts.map(|n| n as u32), values);
+    grid.map(|grid| (Aabb { min, max }, grid)).ok_or((HEADER, "the densities cannot be used".into()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A file of 2 x 1 x 1 densities.
+    fn file() -> Vec<u8> {
+        let mut bytes = b"VOL\x03".to_vec();
+        [1_i32, 2, 1, 1, 1].iter().for_each(|n| bytes.extend(n.to_le_bytes()));
+        [0.0_f32, 0.0, 0.0, 2.0, 1.0, 1.0, 0.5, 4.0].iter().for_each(|x| bytes.extend(x.to_le_bytes()));
+        bytes
+    }
+
+    #[test]
+    fn a_grid_is_read_and_broken_ones_are_refused_where_they_break() {
+        let (bounds, grid) = parse(&file(), 1 << 20).unwrap();
+        assert_eq!((bounds.max, grid.most()), (Vec3::new(2.0, 1.0, 1.0), 4.0));
+        assert_eq!(grid.at(&bounds, Vec3::new(0.5, 0.5, 0.5)), 0.5);
+        for length in 0..file().len() {
+            let (at, message) = parse(&file()[..length], 1 << 20).unwrap_err();
+            assert!(at <= length && !message.is_empty());
+        }
+        let changed = |at: usize, four: [u8; 4]| {
+            let mut bytes = file();
+            bytes[at..at + 4].copy_from_slice(&four);
+            parse(&bytes, 1 << 20).unwrap_err().0
+        };
+        assert_eq!(changed(8, (-1_i32).to_le_bytes()), 8);
+        assert_eq!(changed(20, 3_i32.to_le_bytes()), 20);
+        assert_eq!(changed(24, f32::NAN.to_le_bytes()), 24);
+        assert_eq!(changed(52, (-1.0_f32).to_le_bytes()), 52);
+        assert_eq!(parse(&file(), 7).unwrap_err().0, 8);
+        // More than any file has.
+        assert_eq!(changed(8, i32::MAX.to_le_bytes()), file().len());
+    }
+}

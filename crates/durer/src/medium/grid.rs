@@ -1,0 +1,53 @@
+//! Densities on a grid of points, as of smoke or a cloud.
+
+use crate::math::{Aabb, Vec3};
+
+/// How dense a medium is in a box.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DensityGrid {
+    /// Points along x, y and z; at least one each.
+    counts: [u32; 3],
+    /// x runs fastest.
+    values: Vec<f32>,
+    most: f32,
+}
+
+impl DensityGrid {
+    /// From values, x running fastest; `None` unless there are as many as counts say, none of them negative or without bounds.
+    pub fn new(counts: [u32; 3], values: Vec<f32>) -> Option<Self> {
+        let wanted = counts.iter().try_fold(1_usize, |product, &count| product.checked_mul(count as usize))?;
+        if wanted == 0 || wanted != values.len() || values.iter().any(|x| !x.is_finite() || *x < 0.0) {
+            return None;
+        }
+        let most = values.iter().copied().fold(0.0, f32::max);
+        Some(DensityGrid { counts, values, most })
+    }
+
+    /// The greatest value.
+    pub fn most(&self) -> f32 {
+        self.most
+    }
+
+    /// Bytes in memory.
+    pub fn bytes(&self) -> usize {
+        self.values.len() * size_of::<f32>()
+    }
+
+    /// The value at a point of the box that it fills: linear between the middles of its cells.
+    pub fn at(&self, bounds: &Aabb, point: Vec3) -> f32 {
+        let counts = Vec3::from_array(self.counts.map(|n| n as f32));
+        let place = (point - bounds.min) / (bounds.max - bounds.min) * counts - 0.5;
+        let place = place.max(Vec3::ZERO).min(counts - 1.0);
+        let low = place.floor();
+        let part = place - low;
+        let index = |axis: usize, up: usize| (low[axis] as usize + up).min(self.counts[axis] as usize - 1);
+        let value = |x: usize, y: usize, z: usize| {
+            let [columns, rows, _] = self.counts.map(|n| n as usize);
+            self.values[(index(2, z) * rows + index(1, y)) * columns + index(0, x)]
+        };
+        let mix = |a: f32, b: f32, part: f32| a + (b - a) * part;
+        let row = |y, z| mix(value(0, y, z), value(1, y, z), part.x);
+        let slice = |z| mix(row(0, z), row(1, z), part.y);
+        mix(slice(0), slice(1), part.z).max(0.0)
+    }
+}

@@ -1,0 +1,38 @@
+//! Into which directions a medium scatters.
+
+use crate::math::{Vec2, Vec3, fp};
+use std::f32::consts::{PI, TAU};
+
+/// Henyey and Greenstein's phase function.
+///
+/// Source: Henyey and Greenstein, *Diffuse radiation in the Galaxy*, 1941.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct HenyeyGreenstein {
+    /// The mean cosine between the directions before and after: from -1 (back) over 0 (evenly) to 1 (onwards).
+    pub anisotropy: f32,
+}
+
+impl HenyeyGreenstein {
+    /// The share of light that goes from one unit direction into another, per solid angle: its own density as well.
+    pub fn value(&self, before: Vec3, after: Vec3) -> f32 {
+        let g = self.anisotropy;
+        let below = 1.0 + g * g - 2.0 * g * before.dot(after);
+        (1.0 - g * g) / (4.0 * PI * below * below.max(0.0).sqrt()).max(1e-12)
+    }
+
+    /// The unit direction after scattering, by two numbers from 0 to 1.
+    pub fn sample(&self, before: Vec3, u: Vec2) -> Vec3 {
+        let g = self.anisotropy;
+        let cosine = if g.abs() < 1e-3 {
+            1.0 - 2.0 * u.x
+        } else {
+            let part = (1.0 - g * g) / (1.0 + g - 2.0 * g * u.x);
+            (1.0 + g * g - part * part) / (2.0 * g)
+        };
+        let cosine = cosine.clamp(-1.0, 1.0);
+        let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
+        let (a, b) = before.any_orthonormal_pair();
+        let turn = TAU * u.y;
+        (sine * fp::cos(turn) * a + sine * fp::sin(turn) * b + cosine * before).normalize_or(before)
+    }
+}
