@@ -113,7 +113,7 @@ pub static TOPICS: [Topic; 13] = [
                 perspective camera; other cameras have others.",
         equations: &["p(t) = o + t d", "d = D w + x u + y v,   D = 1 / tan(angle / 2)"],
         places: &[
-            at("crates/durer/src/math/ray.rs", "struct Ray"),
+            at("crates/durer-bvh/src/math/ray.rs", "struct Ray"),
             at("crates/durer/src/camera/perspective.rs", "fn ray"),
             at("crates/durer/src/camera/pose.rs", "struct Frame"),
             at("crates/durer/src/render/eye.rs", "fn center_ray"),
@@ -134,7 +134,7 @@ pub static TOPICS: [Topic; 13] = [
         places: &[
             at("crates/durer/src/shape/sphere.rs", "fn roots"),
             at("crates/durer/src/shape/plane.rs", "fn intersect"),
-            at("crates/durer/src/shape/watertight.rs", "fn intersect"),
+            at("crates/durer-bvh/src/watertight/mod.rs", "fn intersect"),
             at("crates/durer/src/world/mod.rs", "fn closest"),
             at("crates/durer/src/film/aov.rs", "fn depth_picture"),
         ],
@@ -237,7 +237,7 @@ pub static TOPICS: [Topic; 13] = [
         places: &[
             at("crates/durer/src/integrator/spawn.rs", "fn from_surface"),
             at("crates/durer/src/integrator/spawn.rs", "fn beside"),
-            at("crates/durer/src/math/mod.rs", "fn gamma"),
+            at("crates/durer-bvh/src/math/mod.rs", "fn gamma"),
             at("crates/durer/src/dialect.rs", "epsilon: Option<f32>"),
         ],
         shots: &[color("rays from the rounded point, t > 0", SPECKLED), color("rays that leave the surface", SHADOWS)],
@@ -299,8 +299,8 @@ pub static TOPICS: [Topic; 13] = [
                 is not seen while M only moves, turns and scales evenly.",
         equations: &["p = M p'", "wrong:   N = norm(M N')", "right:   N = norm(M⁻ᵀ N'),   for N·(M v) = N'·v = 0"],
         places: &[
-            at("crates/durer/src/math/affine.rs", "fn normal"),
-            at("crates/durer/src/math/affine.rs", "fn inverse_ray"),
+            at("crates/durer-bvh/src/math/affine.rs", "fn normal"),
+            at("crates/durer-bvh/src/math/affine.rs", "fn inverse_ray"),
             at("crates/durer/src/world/object.rs", "fn surface"),
             at("crates/durer/src/dialect.rs", "MovedNormals"),
         ],

@@ -18,7 +18,6 @@ mod tests;
 pub mod torus;
 pub mod triangle;
 pub mod voxels;
-pub mod watertight;
 
 use crate::described_list;
 use crate::math::{Aabb, Line, Ray, Vec2, Vec3, fp, gamma};
@@ -26,6 +25,7 @@ pub use cone::Cone;
 pub use cuboid::Cuboid;
 pub use cylinder::Cylinder;
 pub use disc::Disc;
+pub use durer_bvh::watertight;
 pub use ellipsoid::Ellipsoid;
 use glam::DVec3;
 pub use height_field::HeightField;

@@ -3,7 +3,6 @@
 mod inside;
 mod leaving;
 mod mesh_rules;
-mod watertight;
 
 use super::*;
 use crate::describe::DescribedList;

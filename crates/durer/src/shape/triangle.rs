@@ -1,6 +1,6 @@
 //! A single triangle.
 
-use super::watertight::Sheared;
+use super::watertight::{self, Sheared};
 use super::{Crossing, INSET, Shape, Surface, exactly};
 use crate::describe::Rule;
 use crate::described;
@@ -27,13 +27,19 @@ impl Triangle {
     }
 }
 
+impl From<watertight::Crossing> for Crossing {
+    fn from(watertight::Crossing { t, uv }: watertight::Crossing) -> Self {
+        Crossing { t, uv }
+    }
+}
+
 impl Shape for Triangle {
     fn bounds(&self) -> Option<Aabb> {
         Some(Aabb::around(self.corners()))
     }
 
     fn intersect(&self, ray: &Ray) -> Option<Crossing> {
-        Sheared::new(ray).intersect(self.corners(), ray.t_min, ray.t_max)
+        Sheared::new(ray).intersect(self.corners(), ray.t_min, ray.t_max).map(Crossing::from)
     }
 
     fn crossings(&self, line: &Line, offer: &mut impl FnMut(f64, Vec2)) {

@@ -220,9 +220,11 @@ impl Object {
             Geometry::Primitive(shape) => shape.intersect(&local),
             // Refused like by the tree: such a ray hits nothing.
             Geometry::Mesh(_) if !crate::bvh::is_sound(&local) => None,
-            Geometry::Mesh(tree) => {
-                tree.bvh.sheared(&local).intersect(tree.mesh.corners(part), local.t_min, local.t_max)
-            }
+            Geometry::Mesh(tree) => tree
+                .bvh
+                .sheared(&local)
+                .intersect(tree.mesh.corners(part), local.t_min, local.t_max)
+                .map(Crossing::from),
             Geometry::Solid(solid) => return solid.closest(ray, tally),
         };
         crossing.map(|crossing| (crossing, part))

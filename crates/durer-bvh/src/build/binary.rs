@@ -1,0 +1,281 @@
+//! A binary tree over references, from the top down by the surface area heuristic.
+
+use super::cut::{Bin, HALVING_DEPTH};
+use super::spatial::{FEWEST, Searches};
+use super::{Reference, Settings, area_scale, lane, lane_number};
+use crate::lanes::listed;
+use crate::math::{Aabb, Vec3};
+use glam::Vec4;
+use rayon::prelude::*;
+
+/// Subtrees of more references than this are built in parallel.
+const PARALLEL: u32 = 4096;
+
+/// A node. Nodes lie in depth-first order: the left child follows its parent, the right child what is below the left one, and behind
+/// that, where subtrees were built in parallel, room that is left over.
+#[derive(Clone, Copy, Debug)]
+pub struct Node {
+    /// With the number of references in the fourth lane, and whether it is a leaf.
+    pub min: Vec4,
+    /// With a leaf's first reference, or half of how far behind its parent the right child is.
+    pub max: Vec4,
+}
+
+const INNER: u32 = 2;
+const LEAF: u32 = 3;
+
+impl Node {
+    /// What room that is left over holds.
+    pub const NONE: Node = Node { min: Vec4::ZERO, max: Vec4::ZERO };
+
+    pub fn leaf(mut min: Vec4, mut max: Vec4, count: u32, first: u32) -> Self {
+        (min.w, max.w) = (lane(LEAF, count), lane(LEAF, first));
+        Node { min, max }
+    }
+
+    pub fn inner(mut min: Vec4, mut max: Vec4, count: u32, right: usize) -> Self {
+        debug_assert!(right.is_multiple_of(2));
+        (min.w, max.w) = (lane(INNER, count), lane(INNER, (right / 2) as u32));
+        Node { min, max }
+    }
+
+    /// Whether it is one, not [`Node::NONE`].
+    #[inline]
+    pub fn is_there(&self) -> bool {
+        self.count() > 0
+    }
+
+    #[inline]
+    pub fn is_leaf(&self) -> bool {
+        self.min.w.to_bits() >> 28 == LEAF
+    }
+
+    /// How many references are below it.
+    #[inline]
+    pub fn count(&self) -> usize {
+        lane_number(self.min.w) as usize
+    }
+
+    /// Where a leaf's references begin.
+    #[inline]
+    pub fn first(&self) -> usize {
+        lane_number(self.max.w) as usize
+    }
+
+    /// How far behind its parent the right child is.
+    #[inline]
+    pub fn right(&self) -> usize {
+        2 * lane_number(self.max.w) as usize
+    }
+
+    pub fn bounds(&self) -> Aabb {
+        Aabb { min: self.min.truncate(), max: self.max.truncate() }
+    }
+}
+
+/// The tree, the references of its leaves, and what sizes are multiplied by before areas are compared.
+pub struct Tree {
+    pub nodes: Vec<Node>,
+    /// Those that are in no leaf mean nothing.
+    pub references: Vec<Reference>,
+    pub scale: f32,
+    /// Whether things are in several leaves.
+    pub is_cut: bool,
+}
+
+/// Half the area of a box.
+#[inline]
+pub fn half_area(min: Vec4, max: Vec4, scale: f32) -> f32 {
+    let d = ((max - min) * scale).max(Vec4::ZERO);
+    d.x * d.y + d.y * d.z + d.z * d.x
+}
+
+pub struct Builder<'a> {
+    pub scale: f32,
+    /// Half the area of everything.
+    pub area: f32,
+    /// So many references may stay together.
+    whole: usize,
+    /// How many bins so many references are put into, at most.
+    pub bins: fn(usize) -> usize,
+    /// Where things are triangles that may be cut, their corners; else nothing.
+    pub corners: &'a [[Vec3; 3]],
+}
+
+/// What a subtree is built over.
+struct Room<'a> {
+    /// As many as there are, and room for those that cuts add.
+    references: &'a mut [Reference],
+    /// The place of the first among all.
+    first: usize,
+    searches: Searches,
+}
+
+/// How many references are below a node, and how many nodes from it on are taken.
+struct Counts {
+    references: u32,
+    nodes: usize,
+}
+
+/// Builds a tree over at least one reference; triangles whose corners are known may be cut.
+pub fn build(mut references: Vec<Reference>, settings: &Settings, corners: &[[Vec3; 3]]) -> Tree {
+    let all = Bin::of(&references);
+    let scale = area_scale(all.bounds());
+    let area = half_area(all.min, all.max, scale);
+    let builder = Builder { scale, area, whole: settings.whole, bins: settings.bins, corners };
+    references.par_extend(rayon::iter::repeat_n(references[0], settings.spare(references.len())));
+    let mut nodes = listed(2 * references.len() - 1, 0, |_| Node::NONE);
+    let room = Room { references: &mut references, first: 0, searches: Searches::default() };
+    let counts = builder.subtree(room, &mut nodes, &all, 0);
+    nodes.truncate(counts.nodes);
+    Tree { nodes, references, scale, is_cut: counts.references > all.count }
+}
+
+impl Room<'_> {
+    /// Where the room of the right one of two children begins, by how many references are in each.
+    ///
+    /// What there is to spare goes where more references are, but not where there are too few to be cut.
+    fn middle(&self, left: usize, right: usize) -> usize {
+        let spare = self.references.len() - left - right;
+        let for_left = match [left, right].map(|count| count > FEWEST) {
+            [true, true] => (spare as u64 * left as u64 / (left + right) as u64) as usize,
+            [true, false] => spare,
+            [false, _] => 0,
+        };
+        left + for_left
+    }
+}
+
+impl Builder<'_> {
+    /// Builds over the references that a room begins with. There must be twice as many nodes as it has references, less one.
+    fn subtree(&self, mut room: Room, nodes: &mut [Node], all: &Bin, depth: usize) -> Counts {
+        let (Bin { min, max, .. }, count) = (*all, all.count as usize);
+        let spare = room.references.len() - count;
+        let references = &mut room.references[..count];
+        if count == 1 || count <= self.whole && self.is_whole(references, all) {
+            nodes[0] = Node::leaf(min, max, all.count, room.first as u32);
+            return Counts { references: all.count, nodes: 1 };
+        }
+        let cut = self.cut(references, all, depth);
+        let parts = match depth < HALVING_DEPTH {
+            true => self.parts(references, spare, all, &cut, &mut room.searches),
+            false => None,
+        };
+        let (boxes, middle) = match parts {
+            Some([left, right]) => {
+                let middle = room.middle(left.len(), right.len());
+                room.references[..left.len()].copy_from_slice(&left);
+                room.references[middle..][..right.len()].copy_from_slice(&right);
+                ([Bin::of(&left), Bin::of(&right)], middle)
+            }
+            None => {
+                let (boxes, left) = self.divide(references, &cut);
+                let middle = room.middle(left, count - left);
+                if left < middle {
+                    room.references.copy_within(left..count, middle);
+                }
+                (boxes, middle)
+            }
+        };
+        let (here, below) = nodes.split_first_mut().expect("there is room for a node");
+        let (left, right) = room.references.split_at_mut(middle);
+        let [left_all, right_all] = &boxes;
+        let left = Room { references: left, ..room };
+        let right = Room { references: right, first: room.first + middle, ..room };
+        let build = |room, nodes: &mut _, all| self.subtree(room, nodes, all, depth + 1);
+        let [left, right] = if left_all.count + right_all.count > PARALLEL {
+            let nodes = 2 * middle - 1;
+            let (left_nodes, right_nodes) = below.split_at_mut(nodes);
+            let (left, right) =
+                rayon::join(|| build(left, left_nodes, left_all), || build(right, right_nodes, right_all));
+            [Counts { nodes, ..left }, right]
+        } else {
+            let left = build(left, below, left_all);
+            let right = build(right, &mut below[left.nodes..], right_all);
+            [left, right]
+        };
+        let references = left.references + right.references;
+        *here = Node::inner(min, max, references, 1 + left.nodes);
+        Counts { references, nodes: 1 + left.nodes + right.nodes }
+    }
+
+    /// Whether a few references are so near each other that boxes of their own would spare few tests.
+    fn is_whole(&self, references: &[Reference], all: &Bin) -> bool {
+        let areas = references.iter().map(|r| half_area(r.min, r.max, self.scale));
+        half_area(all.min, all.max, self.scale) <= 4.0 * areas.fold(f32::INFINITY, f32::min)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Preset, triangle_references};
+    use super::*;
+    use crate::math::random::Random;
+    use crate::node::MOST_ITEMS;
+    use crate::triangles::tests::bars;
+
+    /// Checks a tree over so many triangles, with room for so many references; gives how many slots hold nothing.
+    fn check(tree: &Tree, triangles: usize, room: usize) -> usize {
+        let (mut is_node, mut is_taken) = (vec![false; tree.nodes.len()], vec![false; room]);
+        let (mut is_met, mut stack) = (vec![false; triangles], vec![0]);
+        while let Some(i) = stack.pop() {
+            let node = tree.nodes[i];
+            assert!(node.is_there() && !std::mem::replace(&mut is_node[i], true));
+            if !node.is_leaf() {
+                let children = [i + 1, i + node.right()];
+                let [left, right] = children.map(|child| tree.nodes[child]);
+                let both = left.bounds().union(right.bounds());
+                assert_eq!(both.union(node.bounds()), node.bounds());
+                assert_eq!(node.count(), left.count() + right.count());
+                stack.extend(children);
+                continue;
+            }
+            let mut bounds = Aabb::EMPTY;
+            let places = node.first()..node.first() + node.count();
+            for (is_taken, r) in is_taken[places.clone()].iter_mut().zip(&tree.references[places]) {
+                assert!(!std::mem::replace(is_taken, true));
+                is_met[r.number() as usize] = true;
+                bounds = bounds.union(r.bounds());
+            }
+            assert_eq!(bounds, node.bounds());
+        }
+        assert!(is_met.iter().all(|met| *met));
+        let taken = is_taken.iter().filter(|taken| **taken).count();
+        assert_eq!(taken, tree.nodes[0].count());
+        assert_eq!(tree.is_cut, taken > triangles);
+        let nothing = tree.nodes.iter().zip(&is_node).filter(|(_, is_node)| !**is_node);
+        nothing.inspect(|(node, _)| assert!(!node.is_there())).count()
+    }
+
+    /// Every triangle is in leaves that share no references, nodes are where their parents say, and what is left over is empty: whether
+    /// cuts are as many as are of use or as there is room for, and whether subtrees are built side by side.
+    #[test]
+    fn leaves_share_nothing_and_hold_everything() {
+        let mut random = Random(11);
+        let (mut cut, mut with_gaps, mut limited) = (0, 0, 0);
+        for count in [1, 2, 5, 700, 4_096, 4_097, 20_000] {
+            let (vertices, triangles) = bars(&mut random, (count - count / 10) as u32, count / 10);
+            let corners: Vec<[Vec3; 3]> = triangles.iter().map(|t| t.map(|i| vertices[i as usize])).collect();
+            let taken = [0.0, 0.1, 2.0].map(|splits| {
+                let settings = Settings { splits, ..Settings::triangles(Preset::Best) };
+                let references = triangle_references(count, &settings, &|i| corners[i as usize]);
+                let tree = build(references, &settings, &corners);
+                with_gaps += usize::from(check(&tree, count, count + settings.spare(count)) > 0);
+                tree.nodes[0].count()
+            });
+            cut += usize::from(taken[2] > count);
+            limited += usize::from(taken[0] < taken[1] && taken[1] < taken[2]);
+        }
+        assert!(cut >= 4 && with_gaps >= 6 && limited >= 3, "{cut} {with_gaps} {limited}");
+    }
+
+    #[test]
+    fn a_node_holds_the_greatest_numbers() {
+        for number in [1, MOST_ITEMS] {
+            let leaf = Node::leaf(Vec4::ZERO, Vec4::ONE, number as u32, number as u32);
+            assert_eq!((leaf.is_leaf(), leaf.count(), leaf.first()), (true, number, number));
+            let inner = Node::inner(Vec4::ZERO, Vec4::ONE, number as u32, 2 * number);
+            assert_eq!((inner.is_leaf(), inner.count(), inner.right()), (false, number, 2 * number));
+        }
+    }
+}

@@ -1,0 +1,303 @@
+//! Improving a binary tree: subtrees are taken out and put where they enlarge boxes least.
+//!
+//! Source: Meister, Bittner, *Parallel Reinsertion for Bounding Volume Hierarchy Optimization*, Eurographics 2018.
+
+use super::LITTLE;
+use super::binary::{Node, Tree, half_area};
+use crate::DEEPEST;
+use crate::lanes::room;
+use rayon::prelude::*;
+
+/// In each pass this share of nodes are looked at. Where much can be spared, most of that is in few of them.
+const SHARE: f64 = 0.04;
+/// And so many times as many where what may be spared does not say where.
+const MOST_SHARES: usize = 3;
+/// A search for a better place ends after so many nodes.
+const PATIENCE: usize = 1 << 8;
+
+const NONE: u32 = u32::MAX;
+
+/// A tree with explicit links, and the sum of all areas.
+pub struct Linked {
+    nodes: Vec<Link>,
+    scale: f32,
+    area: f64,
+}
+
+#[derive(Clone, Copy)]
+struct Link {
+    node: Node,
+    area: f32,
+    parent: u32,
+    /// `NONE` in leaves.
+    children: [u32; 2],
+}
+
+/// A subtree, where it should go, and how much area that saves.
+#[derive(Clone, Copy)]
+struct Move {
+    gain: f32,
+    from: u32,
+    to: u32,
+}
+
+/// What moving a node may spare, and the node.
+type Candidate = (f32, u32);
+
+/// So many of some nodes, those of which most may be spared, and the others.
+fn greatest(nodes: &mut [Candidate], count: usize) -> (&[Candidate], &mut [Candidate]) {
+    let count = count.min(nodes.len());
+    if count < nodes.len() {
+        nodes.select_nth_unstable_by(count, |a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+    }
+    let (greatest, others) = nodes.split_at_mut(count);
+    (greatest, others)
+}
+
+impl Linked {
+    pub fn new(tree: &Tree) -> Self {
+        let scale = tree.scale;
+        let mut nodes: Vec<Link> = room(tree.nodes.len());
+        // Nodes follow each other in depth-first order: what comes is a child of the last one that has less than two.
+        let mut parents = Vec::new();
+        for &node in tree.nodes.iter().filter(|node| node.is_there()) {
+            let i = nodes.len() as u32;
+            let parent = parents.pop().unwrap_or(NONE);
+            if parent != NONE {
+                let children = &mut nodes[parent as usize].children;
+                children[usize::from(children[0] != NONE)] = i;
+            }
+            if !node.is_leaf() {
+                parents.extend([i, i]);
+            }
+            nodes.push(Link { node, area: half_area(node.min, node.max, scale), parent, children: [NONE; 2] });
+        }
+        let area = nodes.iter().map(|link| f64::from(link.area)).sum();
+        Linked { nodes, scale, area }
+    }
+
+    fn at(&self, i: u32) -> &Link {
+        &self.nodes[i as usize]
+    }
+
+    fn sibling(&self, i: u32) -> u32 {
+        let [a, b] = self.at(self.at(i).parent).children;
+        if a == i { b } else { a }
+    }
+
+    /// Looks for better places where most may be spared, and takes those that do not meddle with each other; gives the share of all areas
+    /// that this spares.
+    pub fn pass(&mut self) -> f64 {
+        // Taking a subtree out spares at least its parent's area, and putting it anywhere costs at least its own. Infinite areas have no
+        // difference.
+        let spared = |i: u32| ((self.at(self.at(i).parent).area - self.at(i).area).max(0.0), i);
+        // The root and its children stay.
+        let movable = |&i: &u32| i != 0 && self.at(i).parent != 0;
+        let mut candidates: Vec<Candidate> = (0..self.nodes.len() as u32).filter(movable).map(spared).collect();
+        let count = ((self.nodes.len() as f64 * SHARE) as usize).clamp(16, 1 << 24);
+        let (first, rest) = greatest(&mut candidates, count);
+        let (next, rest) = greatest(rest, count / 4);
+        let (mut moves, more) = (self.moves(first), self.moves(next));
+        let gain = |moves: &[Move]| moves.iter().map(|m| f64::from(m.gain)).sum::<f64>();
+        // Where what is found hardly becomes less with what may be spared, that does not say where to look, and more is looked at.
+        let is_even = 4.0 * gain(&more) >= (0.25 * gain(&moves)).max(LITTLE * self.area);
+        moves.extend(more);
+        if is_even {
+            moves.extend(self.moves(greatest(rest, MOST_SHARES * count).0));
+        }
+        moves.sort_unstable_by(|a, b| b.gain.total_cmp(&a.gain).then(a.from.cmp(&b.from)));
+        let mut touched = vec![false; self.nodes.len()];
+        let before = self.area;
+        for Move { from, to, .. } in moves {
+            let parent = self.at(from).parent;
+            let involved = [from, to, parent, self.sibling(from), self.at(to).parent, self.at(parent).parent];
+            if involved.iter().any(|&i| touched[i as usize]) || self.is_below(to, from) {
+                continue;
+            }
+            for i in involved {
+                touched[i as usize] = true;
+            }
+            self.apply(from, to);
+        }
+        (before - self.area) / before
+    }
+
+    /// Better places for some nodes.
+    fn moves(&self, candidates: &[Candidate]) -> Vec<Move> {
+        candidates.par_iter().with_min_len(64).filter_map(|&(_, from)| self.find(from)).collect()
+    }
+
+    /// Whether a node lies in a subtree, as it may after an earlier move of the same pass.
+    fn is_below(&self, mut i: u32, subtree: u32) -> bool {
+        while i != NONE && i != subtree {
+            i = self.at(i).parent;
+        }
+        i == subtree
+    }
+
+    /// The best place for a subtree, searched upwards from where it is, and from there down into the siblings.
+    fn find(&self, from: u32) -> Option<Move> {
+        let Link { node, area, parent, .. } = *self.at(from);
+        let merged = |other: &Link| half_area(node.min.min(other.node.min), node.max.max(other.node.max), self.scale);
+        let mut best = Move { gain: 0.0, from, to: NONE };
+        // Without the subtree its parent goes, and the boxes above shrink.
+        let mut saved = self.at(parent).area;
+        let mut pivot = parent;
+        let mut sibling = self.sibling(from);
+        let mut shrunk = (self.at(sibling).node.min, self.at(sibling).node.max);
+        let mut stack: Vec<(f32, u32)> = Vec::with_capacity(64);
+        let mut patience = PATIENCE;
+        loop {
+            stack.push((saved, sibling));
+            while let Some((saved, to)) = stack.pop() {
+                if saved - area <= best.gain || patience == 0 {
+                    continue;
+                }
+                patience -= 1;
+                let target = self.at(to);
+                let gain = saved - merged(target);
+                if gain > best.gain && to != self.sibling(from) {
+                    best = Move { gain, to, ..best };
+                }
+                if target.children[0] != NONE {
+                    let below = gain + target.area;
+                    stack.extend(target.children.map(|child| (below, child)));
+                }
+            }
+            if pivot != parent {
+                let link = self.at(sibling);
+                shrunk = (shrunk.0.min(link.node.min), shrunk.1.max(link.node.max));
+                saved += self.at(pivot).area - half_area(shrunk.0, shrunk.1, self.scale);
+            }
+            if self.at(pivot).parent == NONE {
+                break;
+            }
+            sibling = self.sibling(pivot);
+            pivot = self.at(pivot).parent;
+        }
+        (best.to != NONE).then_some(best)
+    }
+
+    /// Takes a subtree with its parent out, and puts the parent between a node and that node's parent.
+    fn apply(&mut self, from: u32, to: u32) {
+        let parent = self.at(from).parent;
+        let (sibling, above) = (self.sibling(from), self.at(parent).parent);
+        self.replace(above, parent, sibling);
+        self.refit(above);
+        let new_above = self.at(to).parent;
+        self.replace(new_above, to, parent);
+        self.nodes[parent as usize].children = [to, from];
+        self.nodes[to as usize].parent = parent;
+        self.fit(parent);
+        self.refit(new_above);
+    }
+
+    fn replace(&mut self, parent: u32, old: u32, new: u32) {
+        let children = &mut self.nodes[parent as usize].children;
+        let which = usize::from(children[1] == old);
+        children[which] = new;
+        self.nodes[new as usize].parent = parent;
+    }
+
+    /// Makes boxes fit again, from a node upwards to where nothing changes.
+    fn refit(&mut self, mut i: u32) {
+        while i != NONE && self.fit(i) {
+            i = self.at(i).parent;
+        }
+    }
+
+    /// Makes the box of a node fit its children; gives whether it is another one.
+    fn fit(&mut self, i: u32) -> bool {
+        let [a, b] = self.at(i).children.map(|child| self.at(child).node);
+        let node = Node::inner(a.min.min(b.min), a.max.max(b.max), 0, 0);
+        let area = half_area(node.min, node.max, self.scale);
+        let link = &mut self.nodes[i as usize];
+        let is_other = node.bounds() != link.node.bounds();
+        self.area += f64::from(area) - f64::from(link.area);
+        (link.node, link.area) = (node, area);
+        is_other
+    }
+
+    /// The nodes in depth-first order with their counts; `None` if the tree is too deep.
+    pub fn in_order(&self) -> Option<Vec<Node>> {
+        let mut nodes: Vec<Node> = room(self.nodes.len());
+        let mut stack = vec![(0, 1)];
+        while let Some((i, depth)) = stack.pop() {
+            if depth > DEEPEST {
+                return None;
+            }
+            let link = self.at(i);
+            nodes.push(link.node);
+            let [left, right] = link.children;
+            if left != NONE {
+                stack.extend([(right, depth + 1), (left, depth + 1)]);
+            }
+        }
+        // Children come after their parents, so counts are added from the end.
+        let mut below = vec![1_u32; nodes.len()];
+        for i in (0..nodes.len()).rev() {
+            let node = nodes[i];
+            if node.is_leaf() {
+                continue;
+            }
+            let [left, right] = [i + 1, i + 1 + below[i + 1] as usize];
+            let count = [left, right].map(|child| nodes[child].count() as u32);
+            below[i] = 1 + below[left] + below[right];
+            nodes[i] = Node::inner(node.min, node.max, count[0] + count[1], right - i);
+        }
+        Some(nodes)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Settings, binary, references};
+    use super::*;
+    use crate::math::Aabb;
+    use crate::math::random::Random;
+
+    /// After each pass boxes and areas are those of what is around their children, the same things are in leaves, and as much is spared
+    /// as is said.
+    #[test]
+    fn boxes_fit_after_each_pass() {
+        let mut random = Random(3);
+        for count in [5, 60, 3_000, 6_000] {
+            // Some are great and many are small, so that the first tree is not the best.
+            let square = |x: f32| x * x;
+            let boxes: Vec<Aabb> = (0..count)
+                .map(|_| {
+                    let (at, size) = (random.point(), 0.5 * square(square(square(random.unit()))));
+                    Aabb { min: at - size, max: at + size }
+                })
+                .collect();
+            // Where few stay together room is left over between subtrees that are built side by side.
+            let settings = Settings { whole: 3, ..Settings::THINGS };
+            let tree = binary::build(references(&boxes), &settings, &[]);
+            assert!((count > 4096) == tree.nodes.iter().any(|node| !node.is_there()));
+            let leaves = |nodes: &[Node]| {
+                let mut leaves: Vec<usize> = nodes.iter().filter(|node| node.is_leaf()).map(Node::first).collect();
+                leaves.sort_unstable();
+                leaves
+            };
+            let area = |node: &Node| half_area(node.min, node.max, tree.scale);
+            let sum = |nodes: &[Node]| nodes.iter().map(|node| f64::from(area(node))).sum::<f64>();
+            let first = sum(&tree.nodes);
+            let (mut work, mut before) = (Linked::new(&tree), first);
+            for _ in 0..4 {
+                let spared = work.pass();
+                assert!(work.nodes.iter().all(|link| link.area == area(&link.node)));
+                let nodes = work.in_order().expect("a shallow tree");
+                for (i, node) in nodes.iter().enumerate().filter(|(_, node)| !node.is_leaf()) {
+                    let [left, right] = [i + 1, i + node.right()].map(|child| nodes[child]);
+                    assert_eq!(node.bounds(), left.bounds().union(right.bounds()));
+                    assert_eq!(node.count(), left.count() + right.count());
+                }
+                assert_eq!(leaves(&nodes), leaves(&tree.nodes));
+                let now = sum(&nodes);
+                assert!((spared - (before - now) / before).abs() < 1e-9, "{spared} of {before}, {now}");
+                before = now;
+            }
+            assert!(count == 5 || before < 0.99 * first, "{count}: {first} to {before}");
+        }
+    }
+}

@@ -1,0 +1,372 @@
+//! Eight-wide nodes from a binary tree, at the least cost by the surface area heuristic.
+//!
+//! The cost of a subtree as a forest of at most i roots follows from those of its two children:
+//!
+//!   C(n, 1) = min(leaf(n), A(n) + min over k of C(l, k) + C(r, 8 - k)),
+//!   C(n, i) = min(C(n, i - 1), min over k of C(l, k) + C(r, i - k)).
+//!
+//! Source: Ylitie, Karras, Laine, *Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs*, HPG 2017.
+
+use super::Settings;
+use super::binary::{self, half_area};
+use crate::lanes::{WIDTH, listed, room};
+use crate::math::Aabb;
+use crate::node::{self, LEAF, LEAF_SIZE, Node};
+use glam::Vec3A;
+use rayon::prelude::*;
+
+/// Subtrees of more references than this are worked on in parallel.
+const PARALLEL: usize = 4096;
+
+/// What is cheapest for each node of a binary tree, and the cost of it all.
+pub struct Plans {
+    plans: Vec<Plan>,
+    pub cost: f32,
+}
+
+impl Plans {
+    pub fn new(nodes: &[binary::Node], scale: f32, settings: &Settings) -> Self {
+        let mut plans = listed(nodes.len(), 0, |_| Plan::default());
+        let cost = plan(nodes, &mut plans, scale, settings)[0];
+        Plans { plans, cost }
+    }
+}
+
+/// The nodes, and the things of their leaves.
+pub fn collapse(tree: &binary::Tree, plans: Plans) -> (Vec<Node>, Vec<u32>) {
+    let emitter = Emitter { tree, plans: plans.plans };
+    let mut seams = Seams::default();
+    emitter.seams(0, &mut seams);
+    let parts: Vec<Part> = seams.below.par_iter().map(|&i| emitter.part(i)).collect();
+    let count = seams.above + parts.iter().map(|part| part.nodes.len()).sum::<usize>();
+    let mut all = Part { nodes: room(count), order: room(emitter.node(0).count()) };
+    // A tree of one leaf still needs a node to hold it.
+    all.nodes.push(Node::EMPTY);
+    emitter.fill(&mut all, 0, 0, &mut parts.iter());
+    (all.nodes, all.order)
+}
+
+/// Costs of a subtree as a forest of at most 1, 2, ... 7 roots.
+type Costs = [f32; WIDTH - 1];
+
+/// What is cheapest: bit 0 says whether the subtree is a leaf as a whole, and three bits from 3 i on, how many of at most i roots
+/// are in the left child, 0 where fewer roots cost no more.
+#[derive(Clone, Copy, Default)]
+struct Plan(u32);
+
+impl Plan {
+    fn is_leaf(self) -> bool {
+        self.0 & 1 == 1
+    }
+
+    fn left(self, roots: usize) -> usize {
+        (self.0 >> (3 * roots) & 7) as usize
+    }
+
+    fn set_left(&mut self, roots: usize, left: usize) {
+        self.0 |= (left as u32) << (3 * roots);
+    }
+}
+
+/// Least costs of two children's forests with so many roots together, and how many of them are the left one's.
+#[inline(always)]
+fn shared(left: &Costs, right: &Costs, roots: usize) -> (f32, usize) {
+    let most = WIDTH - 1;
+    let mut best = (f32::INFINITY, 1);
+    for k in roots.saturating_sub(most).max(1)..=(roots - 1).min(most) {
+        let cost = left[k - 1] + right[roots - k - 1];
+        best = if cost < best.0 { (cost, k) } else { best };
+    }
+    best
+}
+
+/// Finds what is cheapest for all nodes of a subtree.
+fn plan(nodes: &[binary::Node], plans: &mut [Plan], scale: f32, settings: &Settings) -> Costs {
+    let node = &nodes[0];
+    let (area, count) = (half_area(node.min, node.max, scale), node.count());
+    let leaf = if count <= settings.leaf_size { area * (settings.leaf_cost)(count) } else { f32::INFINITY };
+    if node.is_leaf() {
+        plans[0] = Plan(1);
+        return [leaf; WIDTH - 1];
+    }
+    let (own, rest) = plans.split_first_mut().expect("there is a node");
+    let (left_plans, right_plans) = rest.split_at_mut(node.right() - 1);
+    let (left_nodes, right_nodes) = nodes[1..].split_at(node.right() - 1);
+    let (left, right) = if count > PARALLEL {
+        rayon::join(
+            || plan(left_nodes, left_plans, scale, settings),
+            || plan(right_nodes, right_plans, scale, settings),
+        )
+    } else {
+        (plan(left_nodes, left_plans, scale, settings), plan(right_nodes, right_plans, scale, settings))
+    };
+    // There are no more roots than references.
+    let most = count.min(WIDTH);
+    let (opened, k) = shared(&left, &right, most);
+    own.set_left(WIDTH, k);
+    let opened = area + opened;
+    // Where costs are no numbers, as with infinite areas, small subtrees are leaves.
+    let dearer = opened < leaf;
+    let is_leaf = count <= settings.leaf_size && !dearer;
+    own.0 |= u32::from(is_leaf);
+    let mut costs = [if is_leaf { leaf } else { opened }; WIDTH - 1];
+    for roots in 2..=most.min(WIDTH - 1) {
+        let (cost, k) = shared(&left, &right, roots);
+        if cost < costs[roots - 2] {
+            costs[roots - 1..].fill(cost);
+            own.set_left(roots, k);
+        }
+    }
+    costs
+}
+
+struct Emitter<'a> {
+    tree: &'a binary::Tree,
+    plans: Vec<Plan>,
+}
+
+/// A wide node, all nodes below it, and the things of their leaves; addresses and things count from 0.
+struct Part {
+    nodes: Vec<Node>,
+    order: Vec<u32>,
+}
+
+/// Binary nodes that become the children of a wide one.
+#[derive(Default)]
+struct Children {
+    list: [usize; WIDTH],
+    count: usize,
+}
+
+/// Where a tree comes apart into parts that are made side by side: binary nodes, and how many wide nodes are above them.
+#[derive(Default)]
+struct Seams {
+    above: usize,
+    below: Vec<usize>,
+}
+
+impl Emitter<'_> {
+    fn node(&self, i: usize) -> &binary::Node {
+        &self.tree.nodes[i]
+    }
+
+    /// The children of a node that is opened.
+    fn open(&self, i: usize) -> Children {
+        let mut children = Children::default();
+        match self.node(i).is_leaf() {
+            true => self.forest(i, 1, &mut children),
+            false => self.split(i, WIDTH, &mut children),
+        }
+        children
+    }
+
+    /// Adds a subtree's best forest of at most so many roots.
+    fn forest(&self, i: usize, mut roots: usize, children: &mut Children) {
+        while roots > 1 && self.plans[i].left(roots) == 0 {
+            roots -= 1;
+        }
+        if roots > 1 {
+            return self.split(i, roots, children);
+        }
+        children.list[children.count] = i;
+        children.count += 1;
+    }
+
+    /// Adds the forests of both children of a node.
+    fn split(&self, i: usize, roots: usize, children: &mut Children) {
+        let left = self.plans[i].left(roots);
+        self.forest(i + 1, left, children);
+        self.forest(i + self.node(i).right(), roots - left, children);
+    }
+
+    /// Finds, in the order of [`Emitter::fill`], nodes of so few references that what is below is not worth sharing.
+    fn seams(&self, i: usize, seams: &mut Seams) {
+        if self.node(i).count() <= PARALLEL {
+            return seams.below.push(i);
+        }
+        seams.above += 1;
+        let children = self.open(i);
+        let inner = children.list[..children.count].iter().filter(|&&i| !self.plans[i].is_leaf());
+        inner.for_each(|&i| self.seams(i, seams));
+    }
+
+    /// A node of the children of a binary one, and all below.
+    fn part(&self, i: usize) -> Part {
+        let count = self.node(i).count();
+        let mut part = Part { nodes: Vec::with_capacity(count / 16 + 1), order: Vec::with_capacity(count) };
+        part.nodes.push(Node::EMPTY);
+        self.fill(&mut part, 0, i, &mut [].iter());
+        part
+    }
+
+    /// Fills a node with the children of a binary one, and all below; where parts are ready, with those.
+    fn fill(&self, all: &mut Part, number: usize, i: usize, ready: &mut std::slice::Iter<Part>) {
+        if self.node(i).count() <= PARALLEL
+            && let Some(part) = ready.next()
+        {
+            return all.append(number, part);
+        }
+        let (first, inner) = self.wide(all, number, i);
+        for (offset, &i) in inner.list[..inner.count].iter().enumerate() {
+            self.fill(all, first + offset, i, ready);
+        }
+    }
+
+    /// Fills a node with the children of a binary one; gives where the inner ones of these are to be, and which they are.
+    ///
+    /// What a ray is likely to need together lies together: first the leaves of a node, then its inner children, side
+    /// by side, and then what is below each of them.
+    fn wide(&self, part: &mut Part, number: usize, i: usize) -> (usize, Children) {
+        let children = self.open(i);
+        let list = &children.list[..children.count];
+        let mut bounds = [Aabb::EMPTY; WIDTH];
+        bounds.iter_mut().zip(list).for_each(|(bounds, &i)| *bounds = self.node(i).bounds());
+        let (from_last, places) = places(&bounds[..list.len()]);
+        part.nodes[number].from_last = from_last;
+        let first = part.nodes.len();
+        let mut inner = Children::default();
+        for (k, &i) in list.iter().enumerate() {
+            let child = if self.plans[i].is_leaf() {
+                self.leaf(part, i)
+            } else {
+                inner.list[inner.count] = i;
+                inner.count += 1;
+                part.nodes[number].first = node::address(first);
+                node::address(first + inner.count - 1)
+            };
+            part.nodes[number].set(places[k], bounds[k], child);
+        }
+        part.nodes.resize(first + inner.count, Node::EMPTY);
+        (first, inner)
+    }
+
+    /// Writes a leaf of everything below a binary node.
+    fn leaf(&self, part: &mut Part, i: usize) -> u32 {
+        let (mut items, mut count) = ([0; LEAF_SIZE], 0);
+        let most = self.node(i).count();
+        for leaf in self.tree.nodes[i..].iter().filter(|node| node.is_leaf()) {
+            for r in &self.tree.references[leaf.first()..][..leaf.count()] {
+                items[count] = r.number();
+                count += 1;
+            }
+            if count == most {
+                break;
+            }
+        }
+        if self.tree.is_cut {
+            // Parts of a thing that was cut, when together again, count once.
+            items[..count].sort_unstable();
+            let mut different = 1;
+            for i in 1..count {
+                if items[i] != items[different - 1] {
+                    items[different] = items[i];
+                    different += 1;
+                }
+            }
+            count = different;
+        }
+        let first = part.order.len();
+        part.order.extend_from_slice(&items[..count]);
+        node::leaf(first, count)
+    }
+}
+
+impl Part {
+    /// Puts another part's first node to a place, and the others to the end.
+    fn append(&mut self, number: usize, other: &Part) {
+        // No address is too great if that of the last is not.
+        node::address(self.nodes.len() + other.nodes.len() - 2);
+        let (nodes, items) = (node::address(self.nodes.len() - 1), self.order.len() as u32);
+        let moved = |node: &Node| {
+            let mut moved = *node;
+            moved.first += nodes;
+            for (place, _, child) in node.children() {
+                moved.children[place] += if child & LEAF == 0 { nodes } else { items };
+            }
+            moved
+        };
+        let mut moved = other.nodes.iter().map(moved);
+        self.nodes[number] = moved.next().expect("a part begins with its node");
+        self.nodes.extend(moved);
+        self.order.extend_from_slice(&other.order);
+    }
+}
+
+/// What [`Node::from_last`] is where children rise along an axis, the first and the last with such areas.
+///
+/// If the nearest hit is wanted, they come from near to far. Where any will do, from far to near: a ray begins on a surface that it leaves,
+/// and what is near is that surface. But in a box at the far end that is small beside that at the near end a hit is less likely.
+fn from_last(axis: usize, [first, last]: [f32; 2]) -> [u32; 2] {
+    const NEGATIVE: [u32; 3] = [0b1010_1010, 0b1100_1100, 0b1111_0000];
+    const SMALL: f32 = 0.5;
+    let negative = NEGATIVE[axis];
+    let any = if last < SMALL * first { 0 } else { !negative } | if first < SMALL * last { negative } else { 0 };
+    [negative, any & 255]
+}
+
+/// A place for each of some children, and what [`Node::from_last`] then is.
+///
+/// They are in order along the axis along which they lie apart best: two that are apart are met in the right order by every ray; that they
+/// both are met is the likelier the greater they are.
+fn places(bounds: &[Aabb]) -> ([u32; 2], [usize; WIDTH]) {
+    let mut areas = [0.0; WIDTH];
+    areas.iter_mut().zip(bounds).for_each(|(area, bounds)| *area = bounds.half_area());
+    let greatest = areas.iter().copied().fold(f32::MIN_POSITIVE, f32::max);
+    let mut apart = Vec3A::ZERO;
+    for (i, a) in bounds.iter().enumerate() {
+        let (min, max, area) = (Vec3A::from(a.min), Vec3A::from(a.max), areas[i] / greatest);
+        for (b, other) in bounds[..i].iter().zip(areas) {
+            let are_apart = max.cmple(b.min.into()) | Vec3A::from(b.max).cmple(min);
+            apart += Vec3A::select(are_apart, Vec3A::splat(area * other / greatest), Vec3A::ZERO);
+        }
+    }
+    let axis = (1..3).fold(0, |best, axis| if apart[axis] > apart[best] { axis } else { best });
+    // Of those at the same place, in the order of their numbers.
+    let mut places = [0; WIDTH];
+    for (i, a) in bounds.iter().enumerate() {
+        let center = a.center()[axis];
+        for (j, b) in bounds[..i].iter().enumerate() {
+            let after = b.center()[axis].total_cmp(&center).is_gt();
+            places[if after { j } else { i }] += 1;
+        }
+    }
+    let ends = [0, bounds.len() - 1].map(|end| {
+        let child = places.iter().position(|place| *place == end);
+        areas[child.expect("each place is taken")]
+    });
+    (from_last(axis, ends), places)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Of two children that are apart along an axis, whichever comes first and whichever is greater, the nearer one is first if the
+    /// nearest hit is wanted; if any will do the farther one, unless it is less than half as large.
+    #[test]
+    fn children_come_in_the_order_that_rays_want() {
+        let child = |axis: usize, at: f32, size: f32| {
+            let (mut min, mut max) = ([0.0; 3], [size; 3]);
+            (min[axis], max[axis]) = (at, at + size);
+            Aabb { min: min.into(), max: max.into() }
+        };
+        // Sizes of the lower and of the upper one, and whether either is small beside the other.
+        let pairs =
+            [(1.0, 1.0, [false; 2]), (1.0, 0.9, [false; 2]), (0.5, 1.0, [true, false]), (1.0, 0.5, [false, true])];
+        for (axis, (lower, upper, small)) in (0..3).flat_map(|axis| pairs.map(|pair| (axis, pair))) {
+            for (swapped, octant) in [false, true].into_iter().flat_map(|swapped| (0..8).map(move |o| (swapped, o))) {
+                let mut bounds = [child(axis, -2.0, lower), child(axis, 2.0, upper)];
+                if swapped {
+                    bounds.reverse();
+                }
+                let (from_last, places) = places(&bounds);
+                assert_eq!(places[..2], if swapped { [1, 0] } else { [0, 1] });
+                let negative = octant >> axis & 1;
+                let far = 1 - negative;
+                let first = if small[far] { negative } else { far };
+                let expected = [negative, first].map(|first| first as u32);
+                assert_eq!(from_last.map(|octants| octants >> octant & 1), expected, "{axis} {lower} {upper} {octant}");
+            }
+        }
+    }
+}

@@ -1,0 +1,123 @@
+//! Which instructions are used: chosen once, by what the processor has and `DURER_SIMD`.
+
+use super::{Kernel, scalar};
+use std::fmt;
+use std::sync::OnceLock;
+
+/// A set of instructions for eight lanes. All give the same hits, bit for bit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Level {
+    /// Plain code, for any processor.
+    Scalar,
+    /// AVX2 and FMA, on x86-64.
+    Avx2,
+    /// AVX-512 F, VL and DQ beside them, on x86-64.
+    Avx512,
+    /// NEON, on 64-bit ARM.
+    Neon,
+}
+
+/// `DURER_SIMD` says something that this processor cannot do.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct UnknownLevel {
+    word: String,
+    known: String,
+}
+
+impl fmt::Display for UnknownLevel {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        write!(f, "DURER_SIMD is `{}`, but here it can be: {}", self.word, self.known)
+    }
+}
+
+impl std::error::Error for UnknownLevel {}
+
+impl Level {
+    const ALL: [(Level, &str); 4] =
+        [(Level::Scalar, "scalar"), (Level::Neon, "neon"), (Level::Avx2, "avx2"), (Level::Avx512, "avx512")];
+
+    /// The levels that this processor has, the plain one first and the best last.
+    pub fn available() -> impl Iterator<Item = Level> {
+        Self::ALL.into_iter().map(|(level, _)| level).filter(|level| level.is_available())
+    }
+
+    /// Its name, as `DURER_SIMD` takes it.
+    pub fn name(self) -> &'static str {
+        Self::ALL.iter().find(|(level, _)| *level == self).map_or("", |(_, name)| name)
+    }
+
+    /// The level that the variable `DURER_SIMD` names, or the best one where it is not set.
+    ///
+    /// # Errors
+    ///
+    /// If the variable names no level that this processor has.
+    pub fn from_environment() -> Result<Level, UnknownLevel> {
+        let word = std::env::var("DURER_SIMD").unwrap_or_default();
+        if word.is_empty() {
+            return Ok(Self::best());
+        }
+        let known = || Self::available().map(Level::name).collect::<Vec<_>>().join(", ");
+        Self::available().find(|level| level.name() == word).ok_or_else(|| UnknownLevel { word, known: known() })
+    }
+
+    /// As [`Level::from_environment`], looked up once; the best one where the variable is wrong.
+    pub fn chosen() -> Level {
+        static CHOSEN: OnceLock<Level> = OnceLock::new();
+        *CHOSEN.get_or_init(|| Self::from_environment().unwrap_or_else(|_| Self::best()))
+    }
+
+    fn best() -> Level {
+        Self::available().last().unwrap_or(Level::Scalar)
+    }
+
+    fn is_available(self) -> bool {
+        match self {
+            Level::Scalar => true,
+            #[cfg(target_arch = "x86_64")]
+            Level::Avx2 => super::avx2::is_available(),
+            #[cfg(target_arch = "x86_64")]
+            Level::Avx512 => super::avx512::is_available(),
+            #[cfg(target_arch = "aarch64")]
+            Level::Neon => true,
+            #[allow(unreachable_patterns)]
+            _ => false,
+        }
+    }
+}
+
+/// A level that the processor was found to have.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Available(Level);
+
+impl Available {
+    pub fn chosen() -> Self {
+        Available(Level::chosen())
+    }
+
+    /// The level; the plain one where the processor has not got it.
+    pub fn or_scalar(level: Level) -> Self {
+        Available(if level.is_available() { level } else { Level::Scalar })
+    }
+
+    /// Runs a kernel at this level.
+    #[inline(always)]
+    pub fn run<K: Kernel>(self, kernel: K) -> K::Output {
+        match self.0 {
+            // SAFETY: the processor has it, or there would be no such value.
+            #[cfg(target_arch = "x86_64")]
+            Level::Avx512 => unsafe { super::avx512::run(kernel) },
+            // SAFETY: as above.
+            #[cfg(target_arch = "x86_64")]
+            Level::Avx2 => unsafe { super::avx2::run(kernel) },
+            #[cfg(target_arch = "aarch64")]
+            Level::Neon => kernel.run(super::neon::Neon),
+            _ => plain(kernel),
+        }
+    }
+}
+
+/// Apart from its callers, whose stacks would be as high as this needs.
+#[inline(never)]
+fn plain<K: Kernel>(kernel: K) -> K::Output {
+    kernel.run(scalar::Scalar)
+}

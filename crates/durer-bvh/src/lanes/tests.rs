@@ -1,0 +1,177 @@
+//! All levels give the same bits, whatever the numbers.
+
+use super::*;
+use crate::math::random::{Random, rounds};
+use crate::watertight::turned_axes;
+
+/// Numbers on which arithmetic may stumble.
+const SPECIAL: [f32; 14] = [
+    0.0,
+    -0.0,
+    1.0,
+    -1.0,
+    f32::MIN_POSITIVE,
+    -1e-45,
+    1e-40,
+    f32::MAX,
+    f32::MIN,
+    f32::INFINITY,
+    f32::NEG_INFINITY,
+    f32::NAN,
+    16777217.0,
+    0.1,
+];
+
+fn number(random: &mut Random) -> f32 {
+    match random.below(4) {
+        0 => SPECIAL[random.below(SPECIAL.len())],
+        // No NaN is signaling: on ARM the compiler makes one instruction of `if a > b { a } else { b }`, which lets those pass.
+        1 => match f32::from_bits(random.bits() as u32) {
+            x if x.is_nan() => f32::NAN,
+            x => x,
+        },
+        _ => random.between(-2.0, 2.0),
+    }
+}
+
+/// Numbers for all lanes, and what is needed beside them.
+struct Input {
+    floats: [[f32; WIDTH]; 3],
+    rows: Rows,
+    stride: usize,
+    turn: Turn,
+    order: [u8; WIDTH],
+    count: u32,
+    mask: u32,
+}
+
+impl Input {
+    fn random(random: &mut Random) -> Self {
+        let mut eight = || std::array::from_fn(|_| number(random));
+        let floats = [eight(), eight(), eight()];
+        let rows = std::array::from_fn(|_| number(random));
+        let turn = turned_axes(random.below(3), random.below(2));
+        let order = std::array::from_fn(|_| random.below(WIDTH) as u8);
+        let (count, mask) = (random.below(WIDTH + 1) as u32, random.below(256) as u32);
+        Input { floats, rows, stride: 1 + random.below(WIDTH), turn, order, count, mask }
+    }
+}
+
+/// Everything that lanes do but [`Numbers::mul_add`], as bits; all that are no number as the same.
+struct Everything<'a>(&'a Input);
+
+/// Vectors that are looked at for each input: of arithmetic, in double precision, two halves joined, of comparison, a stack before and
+/// after, nine rows, and columns; and twice as wide ones.
+const OPERATIONS: usize = 12 + 3 * 7 + 2 + 9 + 5 + 2 + 9 + WIDTH + 2 * 11;
+
+impl Kernel for Everything<'_> {
+    type Output = Vec<u32>;
+
+    #[inline(always)]
+    fn run<L: Lanes>(self, lanes: L) -> Vec<u32> {
+        let Input { floats, rows, stride, turn, order, count, mask } = self.0;
+        let [a, b, c] = [lanes.load(&floats[0]), lanes.load(&floats[1]), lanes.load(&floats[2])];
+        let mut found = Vec::with_capacity(WIDTH * OPERATIONS + 16);
+        let number = |x: f32| if x.is_nan() { f32::NAN.to_bits() } else { x.to_bits() };
+        // Vectors come out through the stack.
+        let mut tell = |v: L::Floats, count: usize| {
+            let mut room = Room::new();
+            let mut stack = Stack::new(&mut room);
+            lanes.push(&mut stack, &[7; WIDTH], v, &[0, 1, 2, 3, 4, 5, 6, 7], count as u32);
+            let (_, near, height) = stack.all();
+            // SAFETY: everything below the height was written.
+            (0..height).for_each(|i| found.push(number(unsafe { *near.add(i) })));
+        };
+        tell(lanes.add(a, b), WIDTH);
+        tell(lanes.sub(a, b), WIDTH);
+        tell(lanes.mul(a, b), WIDTH);
+        tell(lanes.div(a, b), WIDTH);
+        tell(lanes.abs(a), WIDTH);
+        tell(lanes.min(a, c), WIDTH);
+        tell(lanes.max(a, c), WIDTH);
+        tell(lanes.sooner(a, c), WIDTH);
+        tell(lanes.later(a, c), WIDTH);
+        lanes.interval([[a, c], [b, a], [c, b]], [b, c]).into_iter().for_each(|end| tell(end, WIDTH));
+        for corner in lanes.corners(rows, Columns::new(turn, *stride)) {
+            corner.into_iter().for_each(|row| tell(row, *stride));
+        }
+        tell(lanes.select(*mask, a, b), WIDTH);
+        lanes.transpose([a, b, c, b, a, c, a, b]).into_iter().for_each(|row| tell(row, WIDTH));
+        found.extend(lanes.store(a).map(number));
+        found.extend(wide(lanes.wide(), floats, *mask).map(number));
+        let (p, q) = (lanes.doubles(a), lanes.doubles(c).mul(lanes.splat_double(0.1)));
+        let bits = |x: f64| if x.is_nan() { [0; 2] } else { [x.to_bits() as u32, (x.to_bits() >> 32) as u32] };
+        for doubles in [p, p.add(q), p.sub(q), p.mul(q), p.div(q), p.min(q), p.max(q)] {
+            let numbers = lanes.store_doubles(doubles);
+            found.extend(numbers.into_iter().flat_map(bits));
+            let again = lanes.load_doubles(&numbers).add(lanes.splat_double(numbers[0]));
+            found.extend(lanes.store(lanes.singles(again)).map(number));
+        }
+        found.extend(lanes.wide().store(lanes.join([a, b])).map(number));
+        let triple = |i: usize| lanes.triple(Vec3A::from_slice(&floats[i]));
+        let (p, q) = (triple(0), triple(1).mul(triple(2)));
+        for v in [p.add(q), p.sub(q), p.mul(q), p.div(q), p.min(q), p.max(q), p.cross(q)] {
+            let all = [v.z(), v.turned().z(), v.turned().turned().z(), v.sum(), v.dot(p)];
+            found.extend(all.into_iter().flat_map(bits));
+        }
+        let turned = lanes.turn(Vec3A::from_slice(&floats[0]), turn);
+        found.extend(turned.to_array().map(number));
+        found.extend([lanes.le(a, b), lanes.lt(a, b), lanes.le(b, a), lanes.lt(b, a)]);
+        // Which lane it is if none is met, nobody asks.
+        let (enter, leave) = (lanes.later(a, lanes.splat(0.0)), b);
+        let before = lanes.before(enter, leave);
+        let (met, nearest) = (lanes.signs(before), lanes.nearest(enter, before, &[10, 250, 12, 30, 14, 15, 201, 17]));
+        found.extend(if met == 0 { [0; 2] } else { [met, nearest] });
+        found.push(lanes.signs(a));
+        let mut room = Room::new();
+        let mut stack = Stack::new(&mut room);
+        let children = [10, 11, 12, 13, 14, 15, 16, 17];
+        lanes.push(&mut stack, &children, a, order, *count);
+        lanes.push(&mut stack, &children, b, order, WIDTH as u32 - count);
+        found.extend(std::iter::from_fn(|| stack.pop_near()).flat_map(|(child, near)| [child, number(near)]));
+        found
+    }
+}
+
+/// Everything that sixteen lanes do.
+#[inline(always)]
+fn wide<W: Wide>(lanes: W, [a, b, c]: &[[f32; WIDTH]; 3], mask: u32) -> [f32; 8 * WIDE + 6] {
+    let join =
+        |a: &[f32; WIDTH], b: &[f32; WIDTH]| std::array::from_fn(|i| if i < WIDTH { a[i] } else { b[i - WIDTH] });
+    let (a, b) = (lanes.load(&join(a, b)), lanes.load(&join(b, c)));
+    let vectors = [
+        lanes.add(a, b),
+        lanes.sub(a, b),
+        lanes.mul(a, b),
+        lanes.div(a, b),
+        lanes.abs(a),
+        lanes.min(a, b),
+        lanes.max(a, b),
+        lanes.select(mask | !mask << WIDTH, a, b),
+    ];
+    // Where it is no number, the second is taken.
+    let ordered = lanes.max(a, lanes.splat(f32::MIN));
+    let masks = [lanes.le(a, b), lanes.lt(a, b), lanes.le(b, a), lanes.lt(b, a)].map(|mask| mask as f32);
+    let [p, q, r, s] = masks;
+    // Zeroes of either sign are as great.
+    let others = [lanes.least(ordered) + 0.0, lanes.greatest(ordered) + 0.0, p, q, r, s];
+    let mut found = [0.0; 8 * WIDE + 6];
+    let all = vectors.into_iter().flat_map(|v| lanes.store(v)).chain(others);
+    found.iter_mut().zip(all).for_each(|(to, x)| *to = x);
+    found
+}
+
+/// 10^6 lanes; in the long run 10^9.
+#[test]
+fn every_level_gives_the_same_bits() {
+    let mut random = Random(31);
+    let inputs = rounds(1_000_000) / (WIDTH * OPERATIONS);
+    for round in 0..inputs {
+        let input = Input::random(&mut random);
+        let expected = Everything(&input).run(scalar::Scalar);
+        for level in Level::available() {
+            assert_eq!(Available::or_scalar(level).run(Everything(&input)), expected, "{round} {level:?}");
+        }
+    }
+    println!("{} lanes at {} levels", inputs * WIDTH * OPERATIONS, Level::available().count());
+}

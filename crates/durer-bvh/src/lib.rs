@@ -1,0 +1,98 @@
+//! Acceleration structures: which things a ray may meet, found without asking them all.
+//!
+//! They know boxes and numbers of things only; what a thing is, the caller's closure knows. A structure may
+//! offer a thing that the ray misses, never withhold one that it meets; so all of them find the same hit.
+
+mod boxes;
+mod build;
+mod grid;
+mod instances;
+mod lanes;
+pub mod math;
+mod node;
+mod traverse;
+mod triangles;
+pub mod watertight;
+
+pub use boxes::Bvh;
+pub use build::Preset;
+pub use grid::Grid;
+pub use instances::{Instance, InstanceHit, Instances};
+pub use lanes::{Level, UnknownLevel};
+pub use triangles::{NearestPoint, TriangleBvh, TriangleHit};
+
+/// Counts the work of rays. `()` counts nothing, at no cost.
+pub trait Tally {
+    /// A ray was traced.
+    fn ray(&mut self);
+    /// A node or cell was looked into.
+    fn node(&mut self);
+    /// A thing was tested against the ray.
+    fn test(&mut self);
+}
+
+impl Tally for () {
+    fn ray(&mut self) {}
+    fn node(&mut self) {}
+    fn test(&mut self) {}
+}
+
+impl<T: Tally> Tally for &mut T {
+    fn ray(&mut self) {
+        (**self).ray();
+    }
+    fn node(&mut self) {
+        (**self).node();
+    }
+    fn test(&mut self) {
+        (**self).test();
+    }
+}
+
+/// Counts rays alone.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Rays(pub u64);
+
+impl Tally for Rays {
+    fn ray(&mut self) {
+        self.0 += 1;
+    }
+    fn node(&mut self) {}
+    fn test(&mut self) {}
+}
+
+/// Numbers of rays traced, nodes visited and things tested.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Rays traced.
+    pub rays: u64,
+    /// Nodes or cells looked into.
+    pub nodes: u64,
+    /// Things tested against the ray.
+    pub tests: u64,
+}
+
+impl Tally for Counts {
+    fn ray(&mut self) {
+        self.rays += 1;
+    }
+    fn node(&mut self) {
+        self.nodes += 1;
+    }
+    fn test(&mut self) {
+        self.tests += 1;
+    }
+}
+
+/// What the other crates of the workspace need beside the public items; it may change with any version.
+#[doc(hidden)]
+pub mod internal {
+    pub use crate::math::random;
+    pub use crate::traverse::is_sound;
+}
+
+/// No leaf of a tree lies deeper than this: it bounds the stack of a walk.
+const DEEPEST: usize = 160;
+
+#[cfg(test)]
+mod tests;

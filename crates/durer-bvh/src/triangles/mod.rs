@@ -1,0 +1,199 @@
+//! A tree over the triangles of a mesh, with the triangles themselves: the kernel that rays spend their time in.
+
+mod build;
+mod fetch;
+mod leaf;
+mod nearest;
+mod packet;
+mod query;
+mod stream;
+
+use super::Tally;
+use super::lanes::{Available, Level, ROWS, Rows};
+use super::node::{self, Node};
+use crate::math::{Aabb, Ray, Vec2};
+use crate::watertight::Sheared;
+pub use nearest::NearestPoint;
+use query::{All, Any, Nearest, Query};
+use std::marker::PhantomData;
+
+/// Makes a number below 2^28 an `f32` of ordinary size: what is read past the end of a row is computed with, and tiny numbers are slow.
+const TAG: u32 = 1 << 30;
+
+/// The number of a triangle of a leaf, by its rows and the count of its triangles.
+#[inline(always)]
+fn number(rows: &[f32], count: usize, lane: usize) -> u32 {
+    rows[(ROWS - 1) * count + lane].to_bits() & !TAG
+}
+
+/// Where a ray meets a mesh.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TriangleHit {
+    /// Position along the ray, in units of the length of its direction.
+    pub t: f32,
+    /// The second and third barycentric coordinate: the point is (1 - u - v) a + u b + v c.
+    pub uv: Vec2,
+    /// Number of the triangle.
+    pub triangle: u32,
+}
+
+/// A bounding volume hierarchy over triangles, for use without any scene.
+///
+/// A ray counts as moved by an infinitesimal across itself, so that it crosses exactly one of the triangles around an
+/// edge or a vertex: no ray slips through a closed mesh, and [`TriangleBvh::count`] is exact. Triangles are met from both
+/// sides. Of hits at the same `t` the one of least number is the closest. All answers are the same, bit for bit, for
+/// all presets, SIMD levels, and numbers of threads.
+///
+/// A ray that is NaN or infinite, or without direction, hits nothing; directions need not be of length 1.
+///
+/// ```
+/// use durer_bvh::{Preset, TriangleBvh};
+/// use durer_bvh::math::{Ray, Vec3};
+///
+/// let vertices = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
+/// let triangles = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+/// let tree = TriangleBvh::build(&vertices, &triangles, Preset::default());
+/// let ray = Ray::new(Vec3::new(0.2, 0.2, -1.0), Vec3::Z);
+/// let hit = tree.closest(&ray).unwrap();
+/// assert_eq!((hit.t, hit.triangle), (1.0, 0));
+/// assert!(tree.occluded(&ray));
+/// assert_eq!(tree.count(&ray), 2);
+/// ```
+#[derive(Clone, Debug)]
+pub struct TriangleBvh {
+    nodes: Vec<Node>,
+    /// For each leaf [`ROWS`] rows, each of as many numbers as it has triangles: their corners by axis, and their numbers, as bits. A
+    /// leaf's room behind the last.
+    leaves: Vec<f32>,
+    bounds: Aabb,
+    /// The greatest coordinate, without signs.
+    reach: f32,
+    level: Available,
+    least_volume: f64,
+    /// Whether that is more than nothing.
+    blind: bool,
+}
+
+impl TriangleBvh {
+    /// The same tree with tests at another SIMD level; at the plain one where the processor has not got it.
+    pub fn at_level(self, level: Level) -> Self {
+        TriangleBvh { level: Available::or_scalar(level), ..self }
+    }
+
+    /// The same, blind to triangles for which |(b - a) x (c - a) · d| is less than this. Zero is
+    /// blind to none.
+    pub fn least_volume(self, least_volume: f64) -> Self {
+        TriangleBvh { least_volume, blind: least_volume != 0.0, ..self }
+    }
+
+    /// A ray prepared for single triangles, with the same blindness as the tree.
+    #[inline]
+    pub fn sheared(&self, ray: &Ray) -> Sheared {
+        Sheared::new(ray).least_volume(self.least_volume)
+    }
+
+    /// The first hit in the ray's open interval (`t_min`, `t_max`).
+    #[inline]
+    pub fn closest(&self, ray: &Ray) -> Option<TriangleHit> {
+        self.query::<_, Nearest>(ray, ())
+    }
+
+    /// As [`TriangleBvh::closest`], counting nodes and tests.
+    #[inline]
+    pub fn closest_counting<T: Tally>(&self, ray: &Ray, tally: &mut T) -> Option<TriangleHit> {
+        self.query::<_, Nearest>(ray, tally)
+    }
+
+    /// Whether anything is hit in the ray's open interval.
+    #[inline]
+    pub fn occluded(&self, ray: &Ray) -> bool {
+        self.query::<_, Any>(ray, ())
+    }
+
+    /// As [`TriangleBvh::occluded`], counting nodes and tests.
+    #[inline]
+    pub fn occluded_counting<T: Tally>(&self, ray: &Ray, tally: &mut T) -> bool {
+        self.query::<_, Any>(ray, tally)
+    }
+
+    /// All hits in the ray's open interval, by `t` and then by number of the triangle.
+    pub fn all_hits(&self, ray: &Ray) -> Vec<TriangleHit> {
+        self.all_hits_counting(ray, &mut ())
+    }
+
+    /// As [`TriangleBvh::all_hits`], counting nodes and tests.
+    pub fn all_hits_counting<T: Tally>(&self, ray: &Ray, tally: &mut T) -> Vec<TriangleHit> {
+        let mut all = self.query::<_, All>(ray, tally);
+        all.sort_unstable_by(|a, b| a.t.total_cmp(&b.t).then(a.triangle.cmp(&b.triangle)));
+        // A triangle that was cut is found in several leaves.
+        all.dedup_by_key(|hit| hit.triangle);
+        all
+    }
+
+    /// How many triangles the ray crosses in its open interval: odd from inside a closed mesh, even from outside.
+    pub fn count(&self, ray: &Ray) -> usize {
+        self.all_hits(ray).len()
+    }
+
+    /// The first hit of each ray, in order: as [`TriangleBvh::closest`] gives it, bit for bit, but faster. Of 64 rays in a row those
+    /// that go nearly the same way share their way through the tree, so neighbours should be neighbours in space, as the pixels of a
+    /// tile are; after rays that do not, up to 960 are not asked whether they do. In a large tree several of the others are on their way
+    /// at once, so that none waits for memory.
+    ///
+    /// # Panics
+    ///
+    /// If there are not as many places for hits as rays.
+    pub fn closest_batch(&self, rays: &[Ray], hits: &mut [Option<TriangleHit>]) {
+        assert_eq!(rays.len(), hits.len(), "a place for each hit");
+        let rest = self.packets::<false>(rays, |i, hit| hits[i] = hit);
+        self.each::<Nearest>(rays, &rest, |i, hit| hits[i] = hit);
+    }
+
+    /// For each ray, in order, whether anything is hit: as [`TriangleBvh::closest_batch`] goes about it.
+    ///
+    /// # Panics
+    ///
+    /// If there are not as many places for answers as rays.
+    pub fn occluded_batch(&self, rays: &[Ray], answers: &mut [bool]) {
+        assert_eq!(rays.len(), answers.len(), "a place for each answer");
+        let rest = self.packets::<true>(rays, |i, hit| answers[i] = hit.is_some());
+        self.each::<Any>(rays, &rest, |i, answer| answers[i] = answer);
+    }
+
+    /// The rows of a leaf, and the count of its triangles.
+    #[inline(always)]
+    fn rows(&self, leaf: u32) -> (&Rows, usize) {
+        let (first, count) = node::items(leaf);
+        match self.leaves[ROWS * first..].first_chunk() {
+            Some(rows) => (rows, count),
+            None => unreachable!("leaves have a leaf's room behind them"),
+        }
+    }
+
+    #[inline]
+    fn query<T: Tally, F: query::Found>(&self, ray: &Ray, tally: T) -> F::Answer {
+        match self.nodes.is_empty() {
+            true => F::Answer::default(),
+            false => self.level.run(Query::<_, F> { bvh: self, ray, tally, found: PhantomData }),
+        }
+    }
+
+    /// Bytes in memory.
+    pub fn bytes(&self) -> usize {
+        size_of_val(&*self.nodes) + size_of_val(&*self.leaves)
+    }
+
+    /// Cost of a random ray through the bounds by the surface area heuristic, in tests of a node, where a leaf costs as
+    /// much. Not a number where the bounds have no area.
+    pub fn cost(&self) -> f64 {
+        node::cost(&self.nodes, self.bounds)
+    }
+
+    /// The box around everything.
+    pub fn bounds(&self) -> Aabb {
+        self.bounds
+    }
+}
+
+#[cfg(test)]
+pub(super) mod tests;

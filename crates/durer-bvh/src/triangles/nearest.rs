@@ -1,0 +1,192 @@
+//! The point of a mesh that is nearest to another point.
+
+use super::{ROWS, Rows, TriangleBvh, number};
+use crate::lanes::WIDTH;
+use crate::math::Vec3;
+use crate::node::{self, LEAF, Node};
+use glam::DVec3;
+use smallvec::SmallVec;
+
+/// A point of a mesh, the nearest to another one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NearestPoint {
+    /// How far it is.
+    pub distance: f64,
+    /// Where it is.
+    pub point: DVec3,
+    /// Its second and third barycentric coordinate: it is (1 - u - v) a + u b + v c.
+    pub uv: [f64; 2],
+    /// Number of the triangle.
+    pub triangle: u32,
+}
+
+/// Boxes count as nearer by this share, which is far more than rounding: so all trees find the same triangle.
+const SLACK: f64 = 1.0 - 1e-12;
+
+impl TriangleBvh {
+    /// The point of all triangles that is nearest to another, if there is one no further away than `within`. Of triangles
+    /// that are equally near the one of least number counts. Computed in double precision; the answer is the same, bit for bit,
+    /// for all presets.
+    ///
+    /// ```
+    /// use durer_bvh::{Preset, TriangleBvh};
+    /// use durer_bvh::math::Vec3;
+    ///
+    /// let tree = TriangleBvh::build(&[Vec3::ZERO, Vec3::X, Vec3::Y], &[[0, 1, 2]], Preset::default());
+    /// let near = tree.nearest_point(Vec3::new(0.25, 0.5, 3.0), f64::INFINITY).unwrap();
+    /// assert_eq!((near.distance, near.uv), (3.0, [0.25, 0.5]));
+    /// assert_eq!(tree.nearest_point(Vec3::splat(9.0), 1.0), None);
+    /// ```
+    pub fn nearest_point(&self, point: Vec3, within: f64) -> Option<NearestPoint> {
+        let mut best = Best { squared: within * within, found: None };
+        if self.nodes.is_empty() || !point.is_finite() || within.is_nan() || within < 0.0 {
+            return None;
+        }
+        let point = point.as_dvec3();
+        let mut stack: SmallVec<[(f64, u32); 64]> = SmallVec::new();
+        stack.push((0.0, 0));
+        while let Some((squared, child)) = stack.pop() {
+            if squared > best.squared {
+                continue;
+            }
+            if child & LEAF == 0 {
+                let node = &self.nodes[node::number(child)];
+                let (squares, first) = (squares(node, point), stack.len());
+                let near = (0..WIDTH).filter(|&i| squares[i] <= best.squared && squares[i] < f64::INFINITY);
+                stack.extend(near.map(|i| (squares[i], node.children[i])));
+                // The nearest is next.
+                stack[first..].sort_unstable_by(|a, b| b.0.total_cmp(&a.0));
+            } else {
+                let (rows, count) = self.rows(child);
+                (0..count).for_each(|lane| best.offer(point, corners(rows, count, lane), number(rows, count, lane)));
+            }
+        }
+        best.found.map(|(point, uv, triangle)| NearestPoint { distance: best.squared.sqrt(), point, uv, triangle })
+    }
+}
+
+/// The squares of the distances of a node's boxes, rather too small; infinite where there is none.
+fn squares(node: &Node, point: DVec3) -> [f64; WIDTH] {
+    let mut squares = [0.0; WIDTH];
+    for (axis, [lower, upper]) in node.planes.iter().enumerate() {
+        for (square, (low, high)) in squares.iter_mut().zip(lower.iter().zip(upper)) {
+            let beside = (f64::from(*low) - point[axis]).max(point[axis] - f64::from(*high)).max(0.0);
+            *square += beside * beside;
+        }
+    }
+    squares.map(|square| square * SLACK)
+}
+
+fn corners(rows: &Rows, count: usize, lane: usize) -> [DVec3; 3] {
+    debug_assert!(lane < count && count * ROWS <= rows.len());
+    let at = |row: usize| f64::from(rows[row * count + lane]);
+    [0, 3, 6].map(|row| DVec3::new(at(row), at(row + 1), at(row + 2)))
+}
+
+/// What was found so far.
+struct Best {
+    squared: f64,
+    found: Option<(DVec3, [f64; 2], u32)>,
+}
+
+impl Best {
+    fn offer(&mut self, point: DVec3, corners: [DVec3; 3], triangle: u32) {
+        let (squared, nearest, uv) = nearest_of(point, corners);
+        // Corners that are no numbers make a distance that is none.
+        let is_first = self.found.is_none_or(|(.., known)| triangle < known);
+        if squared < self.squared || squared == self.squared && is_first {
+            *self = Best { squared, found: Some((nearest, uv, triangle)) };
+        }
+    }
+}
+
+/// The nearest point of a triangle: the square of its distance, the point, and its second and third barycentric coordinate.
+///
+/// The foot of the perpendicular, if it lies in the triangle, else the nearest point of an edge; so triangles without area
+/// are no exception.
+fn nearest_of(point: DVec3, [a, b, c]: [DVec3; 3]) -> (f64, DVec3, [f64; 2]) {
+    let (ab, ac, from) = (b - a, c - a, point - a);
+    let at = |[u, v]: [f64; 2]| {
+        let nearest = a + u * ab + v * ac;
+        ((point - nearest).length_squared(), nearest, [u, v])
+    };
+    let normal = ab.cross(ac);
+    let area = normal.length_squared();
+    let [u, v] = [from.cross(ac).dot(normal), ab.cross(from).dot(normal)];
+    if area > 0.0 && u >= 0.0 && v >= 0.0 && u + v <= area {
+        return at([u / area, v / area]);
+    }
+    // How far along an edge its nearest point is.
+    let along = |from: DVec3, edge: DVec3| match edge.length_squared() {
+        0.0 => 0.0,
+        square => (from.dot(edge) / square).clamp(0.0, 1.0),
+    };
+    let (s, t, r) = (along(from, ab), along(point - b, c - b), along(from, ac));
+    let edges = [at([s, 0.0]), at([1.0 - t, t]), at([0.0, r])];
+    let nearer = |x: (f64, _, _), y: (f64, _, _)| if y.0 < x.0 { y } else { x };
+    nearer(nearer(edges[0], edges[1]), edges[2])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Preset;
+    use crate::math::random::Random;
+    use crate::triangles::tests::{Mesh, bars, soup, torus};
+
+    fn brute_force((vertices, triangles): &Mesh, point: Vec3, within: f64) -> Option<NearestPoint> {
+        let mut best = Best { squared: within * within, found: None };
+        for (i, triangle) in triangles.iter().enumerate() {
+            best.offer(point.as_dvec3(), triangle.map(|i| vertices[i as usize].as_dvec3()), i as u32);
+        }
+        best.found.map(|(point, uv, triangle)| NearestPoint { distance: best.squared.sqrt(), point, uv, triangle })
+    }
+
+    #[test]
+    fn trees_find_what_brute_force_finds() {
+        let mut random = Random(31);
+        let flat: Vec<Vec3> = (0..90).map(|_| random.point()).collect();
+        let flat: Mesh = (flat, (0..90).map(|i| [i, (7 * i) % 90, i]).collect());
+        for mesh in [soup(&mut random, 800, 0.2), bars(&mut random, 300, 40), torus(30, 12), flat] {
+            for preset in Preset::NAMES {
+                let tree = TriangleBvh::build(&mesh.0, &mesh.1, preset.1);
+                for i in 0..300 {
+                    let corner = mesh.0[random.below(mesh.0.len())];
+                    let point = [corner, corner + 1e-3 * random.point(), 3.0 * random.point()][i % 3];
+                    let within = if i % 2 == 0 { f64::INFINITY } else { 0.2 };
+                    let (found, wanted) = (tree.nearest_point(point, within), brute_force(&mesh, point, within));
+                    assert_eq!(found, wanted, "{point} within {within}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn points_of_a_torus_are_as_far_as_its_formula_says() {
+        let (vertices, triangles) = torus(200, 100);
+        let tree = TriangleBvh::build(&vertices, &triangles, Preset::default());
+        let mut random = Random(32);
+        for _ in 0..500 {
+            let p = (1.5 * random.point()).as_dvec3();
+            let around = DVec3::new(p.x, p.z, 0.0).length() - 0.7;
+            let exact = (DVec3::new(around, p.y, 0.0).length() - 0.3).abs();
+            let near = tree.nearest_point(p.as_vec3(), f64::INFINITY).unwrap();
+            // The mesh lies within the torus by the sagitta of its edges: 1 - cos(pi / 100) of 0.3, and 1 - cos(pi / 200) of 1.
+            assert!((near.distance - exact).abs() < 3e-4, "{p}: {} {exact}", near.distance);
+            assert!((near.point.distance(p) - near.distance).abs() < 1e-6);
+        }
+    }
+
+    #[test]
+    fn what_is_no_place_is_near_nothing() {
+        let tree = TriangleBvh::build(&[Vec3::ZERO, Vec3::X, Vec3::Y], &[[0, 1, 2]], Preset::Fast);
+        for point in [Vec3::NAN, Vec3::INFINITY] {
+            assert_eq!(tree.nearest_point(point, f64::INFINITY), None);
+        }
+        assert_eq!(tree.nearest_point(Vec3::ZERO, f64::NAN), None);
+        assert_eq!(tree.nearest_point(Vec3::ZERO, 0.0).map(|near| near.distance), Some(0.0));
+        let holes = [Vec3::NAN, Vec3::X, Vec3::Y];
+        assert_eq!(TriangleBvh::build(&holes, &[[0, 1, 2]], Preset::Fast).nearest_point(Vec3::ZERO, 9.0), None);
+        assert_eq!(TriangleBvh::build(&[], &[], Preset::Fast).nearest_point(Vec3::ZERO, 9.0), None);
+    }
+}

@@ -1,0 +1,212 @@
+//! A packet among the triangles of a leaf.
+
+use super::{Meeting, Packet, RAYS};
+use crate::lanes::{Columns, Lanes, Numbers, WIDE, WIDTH, Wide};
+use crate::node;
+use crate::triangles::leaf::{Flat, by_corner, ends, from_origin};
+use crate::triangles::number;
+
+/// The triangles of a leaf, as they are or as seen from a point, by corner and axis.
+struct Corners([[[f32; WIDTH]; 3]; 3]);
+
+impl Corners {
+    #[inline(always)]
+    fn new<L: Lanes>(lanes: L, corners: [[L::Floats; 3]; 3]) -> Self {
+        macro_rules! stored {
+            ($corner:literal, $axis:literal) => {
+                lanes.store(corners[$corner][$axis])
+            };
+        }
+        Corners(by_corner!(stored))
+    }
+
+    /// Those of one triangle, in all lanes.
+    #[inline(always)]
+    fn triangle<N: Numbers>(&self, numbers: N, lane: usize) -> [[N::Floats; 3]; 3] {
+        macro_rules! one {
+            ($corner:literal, $axis:literal) => {
+                numbers.splat(self.0[$corner][$axis][lane])
+            };
+        }
+        by_corner!(one)
+    }
+}
+
+/// Triangles in the planes across rays: as they are, or as seen from the one `POINT` where all rays begin.
+#[inline(always)]
+fn flat<N: Numbers, const POINT: bool>(
+    numbers: N,
+    triangles: [[N::Floats; 3]; 3],
+    origin: [N::Floats; 3],
+    shear: [N::Floats; 2],
+) -> Flat<N> {
+    match POINT {
+        true => Flat::seen(numbers, triangles, shear),
+        false => Flat::new(numbers, triangles, origin, shear),
+    }
+}
+
+impl Packet<'_> {
+    /// Triangles as seen from where the rays begin, if all do at the same point.
+    #[inline(always)]
+    fn as_seen<L: Lanes>(&self, lanes: L, corners: [[L::Floats; 3]; 3]) -> [[L::Floats; 3]; 3] {
+        let [x, y, z] = self.axes.turned();
+        let [e, ..] = &self.sixteens;
+        from_origin(lanes, corners, lanes.splat3([e.origin[x][0], e.origin[y][0], e.origin[z][0]]))
+    }
+
+    /// Shows the triangles of a leaf to some rays: side by side are either those or these, whichever is less work.
+    #[inline(always)]
+    pub(super) fn leaf<L: Lanes, const ANY: bool>(&mut self, lanes: L, leaf: u32, rays: u64) {
+        let (_, count) = node::items(leaf);
+        let mut groups = 0;
+        for group in 0..self.groups {
+            groups += usize::from(rays >> (group * WIDE) & 0xffff != 0);
+        }
+        // Found by measurement: where few rays of a group are left, or triangles are many, rays go one by one.
+        let met = match 2 * (rays.count_ones() as usize) < groups * (count + 4) {
+            true if self.is_point => self.ray_by_ray::<L, ANY, true>(lanes, leaf, rays),
+            true => self.ray_by_ray::<L, ANY, false>(lanes, leaf, rays),
+            false if self.is_point => self.one_by_one::<L, ANY, true>(lanes, leaf, rays),
+            false => self.one_by_one::<L, ANY, false>(lanes, leaf, rays),
+        };
+        self.met |= met;
+        if ANY {
+            self.alive &= !met;
+        } else if met != 0 {
+            for group in 0..self.groups {
+                if met >> (group * WIDE) & 0xffff != 0 {
+                    self.sixteens[group].bound_last(lanes, &self.axes);
+                }
+            }
+            self.limit = self.last(lanes);
+        }
+    }
+
+    /// Sixteen rays at once with each triangle; gives the rays that met one. Where all begin in one `POINT`, it is known once for all how that
+    /// sees the triangles.
+    #[inline(always)]
+    fn one_by_one<L: Lanes, const ANY: bool, const POINT: bool>(&mut self, lanes: L, leaf: u32, rays: u64) -> u64 {
+        let wide = lanes.wide();
+        let (rows, count) = self.bvh.rows(leaf);
+        let [x, y, z] = self.axes.turned();
+        let columns = Columns::new(&self.axes.turn, count);
+        let triangles = lanes.corners(rows, columns);
+        let triangles = Corners::new(lanes, if POINT { self.as_seen(lanes, triangles) } else { triangles });
+        let mut all_met = 0;
+        // The number of each triangle's meeting, if there is one.
+        let mut meetings = [0; WIDTH];
+        for group in 0..self.groups {
+            let mut active = (rays >> (group * WIDE)) as u32 & 0xffff;
+            if active == 0 {
+                continue;
+            }
+            let e = &mut self.sixteens[group];
+            let origin = [wide.load(&e.origin[x]), wide.load(&e.origin[y]), wide.load(&e.origin[z])];
+            let shear = [wide.load(&e.shear[0]), wide.load(&e.shear[1])];
+            // First all tests, so that none waits for what another one finds.
+            let (mut masks, mut some) = ([[0; 2]; WIDTH], 0);
+            for (lane, masks) in masks.iter_mut().enumerate().take(count) {
+                let flat = flat::<_, POINT>(wide, triangles.triangle(wide, lane), origin, shear);
+                let candidates = !flat.missed(wide) & active;
+                *masks = [candidates, flat.crossed(wide)];
+                some |= u32::from(candidates != 0) << lane;
+            }
+            while some != 0 {
+                let lane = some.trailing_zeros() as usize & (WIDTH - 1);
+                some &= some - 1;
+                let [candidates, crossed] = masks[lane];
+                if candidates & active == 0 {
+                    continue;
+                }
+                let corners = columns.triangle(rows, lane);
+                let [a, b, c] = corners;
+                let z = wide.splat3([a.z, b.z, c.z]);
+                let z = [wide.sub(z[0], origin[2]), wide.sub(z[1], origin[2]), wide.sub(z[2], origin[2])];
+                let [lowest, highest] = ends(wide, z);
+                let beside = wide.lt(wide.load(&e.heights[1]), lowest) | wide.lt(highest, wide.load(&e.heights[0]));
+                let candidates = candidates & active & !beside;
+                let mut crossed = candidates & crossed;
+                let mut met = 0;
+                if ANY {
+                    // Where any hit will do, it need not be known where it is.
+                    met = crossed
+                        & wide.lt(wide.load(&e.heights[2]), lowest)
+                        & wide.lt(highest, wide.load(&e.heights[3]));
+                    crossed &= !met;
+                }
+                let unsure = candidates & !(crossed | met);
+                if unsure != 0 {
+                    crossed |= e.crossing(unsure, corners);
+                }
+                if crossed != 0 {
+                    let meeting = &mut meetings[lane];
+                    if *meeting == 0 {
+                        *meeting = self.meetings.len() as u32;
+                        self.meetings.push(Meeting::new(corners, number(rows, count, lane)));
+                    }
+                    met |= e.meet(lanes, &self.axes, &self.meetings, *meeting, crossed);
+                }
+                all_met |= u64::from(met) << (group * WIDE);
+                if ANY {
+                    active &= !met;
+                }
+            }
+        }
+        all_met
+    }
+
+    /// All triangles at once with each ray.
+    #[inline(always)]
+    fn ray_by_ray<L: Lanes, const ANY: bool, const POINT: bool>(&mut self, lanes: L, leaf: u32, rays: u64) -> u64 {
+        let (rows, count) = self.bvh.rows(leaf);
+        let [x, y, z] = self.axes.turned();
+        let columns = Columns::new(&self.axes.turn, count);
+        let triangles = lanes.corners(rows, columns);
+        let triangles = if POINT { self.as_seen(lanes, triangles) } else { triangles };
+        let (mut all_met, mut some) = (0, 0);
+        let mut masks = [[0u8; 2]; RAYS];
+        let mut left = rays;
+        while left != 0 {
+            let ray = left.trailing_zeros() as usize & (RAYS - 1);
+            left &= left - 1;
+            let (e, i) = (&self.sixteens[ray / WIDE], ray % WIDE);
+            let origin = lanes.splat3([e.origin[x][i], e.origin[y][i], e.origin[z][i]]);
+            let shear = [lanes.splat(e.shear[0][i]), lanes.splat(e.shear[1][i])];
+            let flat = flat::<_, POINT>(lanes, triangles, origin, shear);
+            let [lowest, highest] = flat.heights(lanes);
+            let beside =
+                lanes.lt(lanes.splat(e.heights[1][i]), lowest) | lanes.lt(highest, lanes.splat(e.heights[0][i]));
+            let candidates = !(flat.missed(lanes) | beside) & ((1 << count) - 1);
+            let crossed = flat.crossed(lanes);
+            masks[ray] = [candidates as u8, crossed as u8];
+            some |= u64::from(candidates != 0) << ray;
+            if ANY {
+                let inside =
+                    lanes.lt(lanes.splat(e.heights[2][i]), lowest) & lanes.lt(highest, lanes.splat(e.heights[3][i]));
+                all_met |= u64::from(candidates & crossed & inside != 0) << ray;
+            }
+        }
+        some &= !all_met;
+        while some != 0 {
+            let ray = some.trailing_zeros() as usize & (RAYS - 1);
+            some &= some - 1;
+            let (e, i) = (&mut self.sixteens[ray / WIDE], ray % WIDE);
+            let [mut candidates, crossed] = masks[ray].map(u32::from);
+            while candidates != 0 {
+                let lane = candidates.trailing_zeros() as usize;
+                candidates &= candidates - 1;
+                let corners = columns.triangle(rows, lane);
+                if crossed >> lane & 1 == 0 && e.crossing(1 << i, corners) == 0 {
+                    continue;
+                }
+                let meeting = Meeting::new(corners, number(rows, count, lane));
+                if e.meet_one(&self.axes, &self.meetings, &meeting, i) {
+                    self.meetings.push(meeting);
+                    all_met |= 1 << ray;
+                }
+            }
+        }
+        all_met
+    }
+}

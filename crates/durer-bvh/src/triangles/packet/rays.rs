@@ -1,0 +1,288 @@
+//! Rays side by side.
+
+use super::{Axes, Meeting};
+use crate::lanes::{Lanes, Numbers, WIDE, WIDTH, Wide};
+use crate::math::{Doubles, Ray, Vec3};
+use crate::traverse::{LONG, ORDINARY, PADDING};
+use crate::triangles::leaf::{across, from_origin};
+use crate::watertight::{Exact, Plane, Sheared, uv_across};
+use glam::Vec3A;
+
+/// A number for each of sixteen rays.
+pub type PerRay = [f32; WIDE];
+
+const ZERO: PerRay = [0.0; WIDE];
+
+/// Sixteen rays of one octant and one longest axis, prepared for boxes as in [`RayBox`](crate::traverse::RayBox), though
+/// with somewhat less padding, and for triangles as in [`Sheared`](crate::watertight::Sheared).
+#[derive(Clone, Copy)]
+#[repr(align(64))]
+pub struct Rays {
+    pub origin: [PerRay; 3],
+    pub dir: [PerRay; 3],
+    pub inverse: [PerRay; 3],
+    /// Origins, moved outwards by the padding of boxes.
+    pub near_from: [PerRay; 3],
+    pub far_from: [PerRay; 3],
+    /// The same, times the inverse of the direction, and negated.
+    pub near_origin: [PerRay; 3],
+    pub far_origin: [PerRay; 3],
+    pub shear: [PerRay; 2],
+    /// 1 over the component of the direction along the longest axis.
+    inverse_z: [[f64; WIDTH]; 2],
+    pub t_min: PerRay,
+    pub t_max: PerRay,
+    /// The same; after a hit, its t.
+    pub t_last: PerRay,
+    /// Heights lower than the first or above the second are outside the interval for sure; those above the third and below the
+    /// fourth are inside.
+    pub heights: [PerRay; 4],
+    /// Numbers of the meetings, as bits; 0 is none. Where any hit will do, they mean nothing.
+    meetings: PerRay,
+}
+
+impl Rays {
+    pub const EMPTY: Rays = Rays {
+        origin: [ZERO; 3],
+        dir: [ZERO; 3],
+        inverse: [ZERO; 3],
+        near_from: [ZERO; 3],
+        far_from: [ZERO; 3],
+        near_origin: [ZERO; 3],
+        far_origin: [ZERO; 3],
+        shear: [ZERO; 2],
+        inverse_z: [[0.0; WIDTH]; 2],
+        t_min: ZERO,
+        t_max: ZERO,
+        t_last: ZERO,
+        heights: [ZERO; 4],
+        meetings: ZERO,
+    };
+
+    /// Sets half of the rays, each given as origin, direction and interval.
+    #[inline(always)]
+    pub fn set<L: Lanes>(&mut self, lanes: L, first: usize, rays: [L::Floats; WIDTH]) {
+        let [x, y, z, u, v, w, t_min, t_max] = lanes.transpose(rays);
+        let [dx, dy, dz] = &mut self.dir;
+        let [ox, oy, oz] = &mut self.origin;
+        for (to, from) in
+            [(ox, x), (oy, y), (oz, z), (dx, u), (dy, v), (dz, w), (&mut self.t_min, t_min), (&mut self.t_last, t_max)]
+        {
+            to[first..first + WIDTH].copy_from_slice(&lanes.store(from));
+        }
+    }
+
+    /// By axis, a bit for each ray whose direction is negative there; and those of which the first, or the second component is the
+    /// longest.
+    #[inline(always)]
+    pub fn signs<L: Lanes>(&self, lanes: L) -> [u32; 5] {
+        let wide = lanes.wide();
+        let [x, y, z] = &self.dir;
+        let (x, y, z) = (wide.load(x), wide.load(y), wide.load(z));
+        let zero = wide.splat(0.0);
+        let negative = [wide.lt(x, zero), wide.lt(y, zero), wide.lt(z, zero)];
+        let (x, y, z) = (wide.abs(x), wide.abs(y), wide.abs(z));
+        let first = wide.lt(y, x) & wide.lt(z, x);
+        [negative[0], negative[1], negative[2], first, wide.lt(z, y) & !first]
+    }
+
+    /// Prepares the rays for a tree with no coordinates greater than `most`; gives those that are tame, a bit for each.
+    #[inline(always)]
+    pub fn prepare<L: Lanes>(&mut self, lanes: L, axes: &Axes, most: f32) -> u32 {
+        let wide = lanes.wide();
+        let (least, greatest) = (wide.splat(ORDINARY.start), wide.splat(ORDINARY.end));
+        let (mut far, mut above, mut long) = (wide.splat(0.0), u32::MAX, 0);
+        let mut tame = wide.lt(wide.load(&self.t_min), wide.load(&self.t_last));
+        for axis in 0..3 {
+            let (o, length) = (wide.abs(wide.load(&self.origin[axis])), wide.abs(wide.load(&self.dir[axis])));
+            tame &= wide.lt(o, greatest) & wide.lt(length, greatest);
+            above &= wide.lt(least, length);
+            long |= wide.le(wide.splat(LONG), length);
+            far = wide.max(far, o);
+        }
+        tame &= above | long;
+        let reach = wide.add(far, wide.splat(most));
+        tame &= wide.lt(least, reach) & wide.lt(reach, greatest);
+        let pad = wide.mul(wide.splat(PADDING), reach);
+        for axis in 0..3 {
+            let (o, length) = (wide.load(&self.origin[axis]), wide.abs(wide.load(&self.dir[axis])));
+            let sign = wide.splat(if axes.negative[axis] == 1 { -1.0 } else { 1.0 });
+            let outward = wide.mul(pad, sign);
+            let (near, far) = (wide.add(o, outward), wide.sub(o, outward));
+            let inverse = wide.div(sign, wide.max(length, least));
+            let zero = wide.splat(0.0);
+            self.inverse[axis] = wide.store(inverse);
+            self.near_from[axis] = wide.store(near);
+            self.far_from[axis] = wide.store(far);
+            self.near_origin[axis] = wide.store(wide.mul(wide.sub(zero, near), inverse));
+            self.far_origin[axis] = wide.store(wide.mul(wide.sub(zero, far), inverse));
+        }
+        let [x, y, z] = axes.turned();
+        let dz = wide.load(&self.dir[z]);
+        self.shear =
+            [wide.store(wide.div(wide.load(&self.dir[x]), dz)), wide.store(wide.div(wide.load(&self.dir[y]), dz))];
+        for (half, inverse) in self.inverse_z.iter_mut().enumerate() {
+            let dz = lanes.doubles(lanes.load(part(&self.dir[z], half)));
+            *inverse = lanes.store_doubles(lanes.splat_double(1.0).div(dz));
+        }
+        self.t_max = self.t_last;
+        self.meetings = ZERO;
+        self.bound(lanes, axes);
+        tame
+    }
+
+    /// Sets the bounds of heights.
+    #[inline(always)]
+    fn bound<L: Lanes>(&mut self, lanes: L, axes: &Axes) {
+        let wide = lanes.wide();
+        let dz = wide.load(&self.dir[axes.turned()[2]]);
+        let (near, far) = (wide.mul(wide.load(&self.t_min), dz), wide.mul(wide.load(&self.t_last), dz));
+        let (low, high) = if axes.is_down() { (far, near) } else { (near, far) };
+        let (low_slack, high_slack) = (slack(wide, low), slack(wide, high));
+        self.heights = [
+            wide.store(wide.sub(low, low_slack)),
+            wide.store(wide.add(high, high_slack)),
+            wide.store(wide.add(low, low_slack)),
+            wide.store(wide.sub(high, high_slack)),
+        ];
+    }
+
+    /// Sets that which bounds the last t, outside, after it has changed.
+    #[inline(always)]
+    pub fn bound_last<L: Lanes>(&mut self, lanes: L, axes: &Axes) {
+        let wide = lanes.wide();
+        let far = wide.mul(wide.load(&self.t_last), wide.load(&self.dir[axes.turned()[2]]));
+        match axes.is_down() {
+            true => self.heights[0] = wide.store(wide.sub(far, slack(wide, far))),
+            false => self.heights[1] = wide.store(wide.add(far, slack(wide, far))),
+        }
+    }
+
+    /// Takes note of a triangle that the lines of some rays cross, of those who meet it in their interval, and before others.
+    ///
+    /// It is the meeting of that `number`.
+    #[inline(always)]
+    pub fn meet<L: Lanes>(&mut self, lanes: L, axes: &Axes, meetings: &[Meeting], number: u32, crossed: u32) -> u32 {
+        let [x, y, z] = axes.turned();
+        let splat3 = |v: [f64; 3]| [lanes.splat_double(v[0]), lanes.splat_double(v[1]), lanes.splat_double(v[2])];
+        let Meeting { plane, triangle, .. } = &meetings[number as usize];
+        let [low, high] = plane.heights;
+        let plane = Plane {
+            normal: splat3(plane.normal),
+            corner: splat3(plane.corner),
+            heights: [lanes.splat_double(low), lanes.splat_double(high)],
+        };
+        let wide = lanes.wide();
+        let mut halves = [lanes.splat(0.0); 2];
+        for half in [0, 1] {
+            if crossed >> (WIDTH * half) & 255 == 0 {
+                continue;
+            }
+            macro_rules! turned {
+                ($v:expr) => {
+                    lanes.doubles3([
+                        lanes.load(part(&$v[x], half)),
+                        lanes.load(part(&$v[y], half)),
+                        lanes.load(part(&$v[z], half)),
+                    ])
+                };
+            }
+            let inverse = lanes.load_doubles(&self.inverse_z[half]);
+            let line = Exact::with_inverse(turned!(self.origin), turned!(self.dir), inverse);
+            halves[half] = lanes.singles(line.t(&plane)[0]);
+        }
+        let (t, t_last) = (lanes.join(halves), wide.load(&self.t_last));
+        // Also NaN is refused.
+        let within = crossed & wide.lt(wide.load(&self.t_min), t) & wide.lt(t, wide.load(&self.t_max));
+        let mut met = within & wide.lt(t, t_last);
+        let mut same = within & wide.le(t, t_last) & !met;
+        while same != 0 {
+            let i = same.trailing_zeros();
+            same &= same - 1;
+            met |= u32::from(*triangle < meetings[self.meetings[i as usize].to_bits() as usize].triangle) << i;
+        }
+        self.meetings = wide.store(wide.select(met, wide.splat(f32::from_bits(number)), wide.load(&self.meetings)));
+        self.t_last = wide.store(wide.select(met, t, t_last));
+        met
+    }
+
+    /// As [`Rays::meet`] for a single ray, and a meeting that would be the next.
+    #[inline(always)]
+    pub fn meet_one(&mut self, axes: &Axes, meetings: &[Meeting], next: &Meeting, lane: usize) -> bool {
+        let [x, y, z] = axes.turned();
+        let at = |v: &[PerRay; 3]| [v[x][lane], v[y][lane], v[z][lane]].map(f64::from);
+        let inverse = self.inverse_z[lane / WIDTH][lane % WIDTH];
+        let t = Exact::with_inverse(at(&self.origin), at(&self.dir), inverse).t(&next.plane)[0] as f32;
+        let (t_last, last) = (self.t_last[lane], &meetings[self.meetings[lane].to_bits() as usize]);
+        let within = t > self.t_min[lane] && t < self.t_max[lane];
+        let met = within && (t < t_last || t == t_last && next.triangle < last.triangle);
+        if met {
+            (self.t_last[lane], self.meetings[lane]) = (t, f32::from_bits(meetings.len() as u32));
+        }
+        met
+    }
+
+    /// Barycentric coordinates for half of the rays, each in the triangle that it met.
+    #[inline(always)]
+    pub fn uv<L: Lanes>(&self, lanes: L, axes: &Axes, half: usize, corners: [[L::Floats; 3]; 3]) -> [[f32; WIDTH]; 2] {
+        macro_rules! half {
+            ($v:expr) => {
+                lanes.load(part(&$v, half))
+            };
+        }
+        let [x, y, z] = axes.turned();
+        let origin = [half!(self.origin[x]), half!(self.origin[y]), half!(self.origin[z])];
+        let shear = [half!(self.shear[0]), half!(self.shear[1])];
+        let corners = from_origin(lanes, corners, origin);
+        macro_rules! flat {
+            ($corner:literal) => {{
+                let [x, y, _] = across(lanes, corners[$corner], shear);
+                [lanes.doubles(x), lanes.doubles(y)]
+            }};
+        }
+        let [u, v] = uv_across([flat!(0), flat!(1), flat!(2)]);
+        [lanes.store(lanes.singles(u)), lanes.store(lanes.singles(v))]
+    }
+
+    /// The numbers of the meetings of half of the rays, as bits.
+    #[inline(always)]
+    pub fn meetings(&self, half: usize) -> &[f32; WIDTH] {
+        part(&self.meetings, half)
+    }
+
+    /// Of some rays those that cross a turned triangle, by the test that is always sure.
+    #[cold]
+    #[inline(never)]
+    pub fn crossing(&self, mut rays: u32, corners: [Vec3A; 3]) -> u32 {
+        let mut crossing = 0;
+        while rays != 0 {
+            let ray = rays.trailing_zeros();
+            rays &= rays - 1;
+            crossing |= u32::from(Sheared::new(&self.ray(ray as usize)).crosses(corners)) << ray;
+        }
+        crossing
+    }
+
+    /// One of the rays.
+    pub fn ray(&self, lane: usize) -> Ray {
+        let at = |v: &[PerRay; 3]| Vec3::new(v[0][lane], v[1][lane], v[2][lane]);
+        Ray { origin: at(&self.origin), dir: at(&self.dir), t_min: self.t_min[lane], t_max: self.t_max[lane] }
+    }
+}
+
+/// The first or the second eight of the numbers.
+#[inline(always)]
+fn part(numbers: &PerRay, half: usize) -> &[f32; WIDTH] {
+    match numbers[WIDTH * half..].first_chunk() {
+        Some(half) => half,
+        None => unreachable!("sixteen are twice eight"),
+    }
+}
+
+/// By how much heights may be off by rounding.
+#[inline(always)]
+fn slack<W: Wide>(wide: W, height: W::Floats) -> W::Floats {
+    let slack = wide.add(wide.mul(wide.splat(8.0 * f32::EPSILON), wide.abs(height)), wide.splat(f32::MIN_POSITIVE));
+    // Infinity less infinity is no number.
+    wide.min(slack, wide.splat(f32::MAX))
+}

@@ -1,0 +1,246 @@
+//! The way of a packet through the tree.
+
+use super::{Packet, Rays};
+use crate::lanes::{Lanes, Numbers, WIDE, Wide};
+use crate::node::{self, LEAF, Node, PLACE};
+use crate::traverse::end_of;
+use crate::triangles::fetch::{AND_SIBLINGS, Places};
+
+/// A node or leaf that is still to be visited.
+#[derive(Clone, Copy)]
+pub struct Entry {
+    /// The rays that met its parent.
+    rays: u64,
+    child: u32,
+    /// Where its box is: the address of the node and the place among the eight, added.
+    box_at: u32,
+    near: f32,
+}
+
+/// Intervals around what nodes need of all rays.
+struct Beam<L: Lanes> {
+    inverse: [[L::Floats; 2]; 3],
+    near_from: [L::Floats; 3],
+    far_from: [L::Floats; 3],
+    t_min: L::Floats,
+    negative: [usize; 3],
+}
+
+impl<L: Lanes> Beam<L> {
+    /// The children of a node that any ray may meet, a bit for each, and where the first enters them.
+    ///
+    /// Roundings are monotonic, so no bound is passed by what a single ray has.
+    #[inline(always)]
+    fn meet(&self, lanes: L, node: &Node, limit: L::Floats) -> (u32, L::Floats) {
+        macro_rules! slab {
+            ($axis:literal, $side:expr, $from:ident, $end:ident) => {{
+                let plane = lanes.sub(lanes.load(&node.planes[$axis][$side & 1]), self.$from[$axis]);
+                let [low, high] = self.inverse[$axis];
+                lanes.$end(lanes.mul(plane, low), lanes.mul(plane, high))
+            }};
+        }
+        let [x, y, z] = self.negative;
+        let enter = lanes.max(slab!(0, x, near_from, min), slab!(1, y, near_from, min));
+        let enter = lanes.max(enter, lanes.max(slab!(2, z, near_from, min), self.t_min));
+        let leave = lanes.min(slab!(0, !x, far_from, max), slab!(1, !y, far_from, max));
+        let leave = lanes.min(leave, lanes.min(slab!(2, !z, far_from, max), limit));
+        (lanes.le(enter, leave), enter)
+    }
+
+    /// No ray enters anything before: 0, or, where rays begin behind their origins, where the first of the root's children is entered.
+    #[inline(always)]
+    fn start(&self, lanes: L, root: &Node, limit: f32) -> f32 {
+        if lanes.store(self.t_min)[0] >= 0.0 {
+            return 0.0;
+        }
+        let (met, enter) = self.meet(lanes, root, lanes.splat(limit));
+        let nowhere = f32::INFINITY;
+        lanes.store(lanes.select(met, enter, lanes.splat(nowhere))).into_iter().fold(nowhere, f32::min)
+    }
+}
+
+/// Of children that are met, a bit for each, the place of the one that is entered first, nothing being entered before `start`. (By the order
+/// of the node, which is along one axis, rays along another met what is far before what is near.)
+#[inline(always)]
+fn nearest<L: Lanes>(lanes: L, node: &Node, met: u32, enter: L::Floats, start: f32) -> u32 {
+    let nothing = lanes.splat(0.0);
+    let since = lanes.later(lanes.sub(enter, lanes.splat(start)), nothing);
+    let which = lanes.select(met, lanes.splat(f32::from_bits(u32::MAX)), nothing);
+    lanes.nearest(since, which, &node.codes) & PLACE
+}
+
+impl Packet<'_> {
+    #[inline(always)]
+    fn beam<L: Lanes>(&self, lanes: L) -> Beam<L> {
+        let nowhere = lanes.splat(0.0);
+        let wide = lanes.wide();
+        macro_rules! least {
+            ($($of:tt)*) => {
+                lanes.splat(end!(self, wide, min, least, $($of)*))
+            };
+        }
+        macro_rules! greatest {
+            ($($of:tt)*) => {
+                lanes.splat(end!(self, wide, max, greatest, $($of)*))
+            };
+        }
+        let mut beam = Beam {
+            inverse: [[nowhere; 2]; 3],
+            near_from: [nowhere; 3],
+            far_from: [nowhere; 3],
+            t_min: least!(t_min),
+            negative: self.axes.negative,
+        };
+        for axis in 0..3 {
+            beam.inverse[axis] = [least!(inverse[axis]), greatest!(inverse[axis])];
+            if self.is_point {
+                let Rays { near_from, far_from, .. } = &self.sixteens[0];
+                (beam.near_from[axis], beam.far_from[axis]) =
+                    (lanes.splat(near_from[axis][0]), lanes.splat(far_from[axis][0]));
+                continue;
+            }
+            (beam.near_from[axis], beam.far_from[axis]) = match self.axes.negative[axis] {
+                0 => (greatest!(near_from[axis]), least!(far_from[axis])),
+                _ => (least!(near_from[axis]), greatest!(far_from[axis])),
+            };
+        }
+        beam
+    }
+
+    /// The last t of any ray.
+    #[inline(always)]
+    pub(super) fn last<L: Lanes>(&self, lanes: L) -> f32 {
+        let wide = lanes.wide();
+        end!(self, wide, max, greatest, t_last)
+    }
+
+    /// Shows the triangles of all leaves that a ray may meet to those rays, roughly from near to far: of each node what is entered first, then
+    /// the others in its order. Where `ANY` hit will do, all are in the order of nodes for that.
+    #[inline(always)]
+    pub(super) fn walk<L: Lanes, const ANY: bool>(&mut self, lanes: L, stack: &mut Vec<Entry>) {
+        let bvh = self.bvh;
+        let (beam, places) = (self.beam(lanes), Places::new(bvh));
+        let [x, y, z] = self.axes.negative;
+        let octant = (x | y << 1 | z << 2) as u32;
+        self.limit = self.last(lanes);
+        stack.clear();
+        let start = beam.start(lanes, &bvh.nodes[0], self.limit);
+        let (mut child, mut rays) = (0, self.alive);
+        loop {
+            if child & LEAF == 0 {
+                let node = &bvh.nodes[node::number(child)];
+                let (met, enter) = beam.meet(lanes, node, lanes.splat(self.limit));
+                if met != 0 {
+                    let box_at = child;
+                    let from_last = node.order(ANY, octant) != 0;
+                    let next = match ANY {
+                        true => end_of(met, from_last),
+                        false => nearest(lanes, node, met, enter, start),
+                    };
+                    // What is visited last is pushed first.
+                    let (mut others, enter) = (met ^ 1 << next, lanes.store(enter));
+                    while others != 0 {
+                        let place = end_of(others, !from_last);
+                        others ^= 1 << place;
+                        let (child, near) = (node.children[place as usize], enter[place as usize]);
+                        places.fetch::<L, AND_SIBLINGS>(lanes, child);
+                        stack.push(Entry { rays, child, box_at: box_at + place, near });
+                    }
+                    let inside = self.inside(lanes, node, next as usize & 7, rays);
+                    if inside != 0 {
+                        rays = inside;
+                        child = node.children[next as usize & 7];
+                        continue;
+                    }
+                }
+            } else {
+                self.leaf::<L, ANY>(lanes, child, rays);
+                if ANY && self.alive == 0 {
+                    return;
+                }
+            }
+            loop {
+                let Some(entry) = stack.pop() else { return };
+                if entry.near > self.limit {
+                    continue;
+                }
+                rays = if ANY { entry.rays & self.alive } else { entry.rays };
+                rays = self.inside(lanes, &bvh.nodes[node::number(entry.box_at)], entry.box_at as usize & 7, rays);
+                if rays != 0 {
+                    child = entry.child;
+                    break;
+                }
+            }
+        }
+    }
+
+    /// Of some rays those that meet the box of a child.
+    #[inline(always)]
+    fn inside<L: Lanes>(&self, lanes: L, node: &Node, place: usize, rays: u64) -> u64 {
+        let wide = lanes.wide();
+        let [x, y, z] = self.axes.negative;
+        macro_rules! plane {
+            ($axis:literal, $side:expr) => {
+                wide.splat(node.planes[$axis][$side & 1][place])
+            };
+        }
+        let (near_x, near_y, near_z) = (plane!(0, x), plane!(1, y), plane!(2, z));
+        let (far_x, far_y, far_z) = (plane!(0, !x), plane!(1, !y), plane!(2, !z));
+        let mut inside = 0;
+        for (group, e) in self.sixteens.iter().enumerate() {
+            if rays >> (group * WIDE) & 0xffff == 0 {
+                continue;
+            }
+            macro_rules! slab {
+                ($axis:literal, $plane:ident, $origin:ident) => {
+                    wide.mul_add($plane, wide.load(&e.inverse[$axis]), wide.load(&e.$origin[$axis]))
+                };
+            }
+            let enter = wide.max(slab!(0, near_x, near_origin), slab!(1, near_y, near_origin));
+            let enter = wide.max(enter, wide.max(slab!(2, near_z, near_origin), wide.load(&e.t_min)));
+            let leave = wide.min(slab!(0, far_x, far_origin), slab!(1, far_y, far_origin));
+            let leave = wide.min(leave, wide.min(slab!(2, far_z, far_origin), wide.load(&e.t_last)));
+            inside |= u64::from(wide.le(enter, leave)) << (group * WIDE);
+        }
+        inside & rays
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lanes::{Available, Kernel, Level, WIDTH};
+    use crate::math::{Aabb, Vec3};
+
+    /// Where children of a node are entered, those of them that are met, and before which nothing is.
+    struct Asked<'a>(&'a Node, [f32; WIDTH], u32, f32);
+
+    impl Kernel for Asked<'_> {
+        type Output = u32;
+
+        #[inline(always)]
+        fn run<L: Lanes>(self, lanes: L) -> u32 {
+            nearest(lanes, self.0, self.2, lanes.load(&self.1), self.3)
+        }
+    }
+
+    #[test]
+    fn what_is_entered_first_is_next_behind_the_origin_too() {
+        let mut node = Node::EMPTY;
+        for place in 0..WIDTH {
+            node.set(place, Aabb::around([Vec3::ZERO]), node::leaf(place, 1));
+        }
+        let enter = [-1.0, -3.0, 0.5, -0.0, -8.0, 2.0, 1e30, -2.0];
+        let cases = [
+            (0b1111_1111, -8.0, 4),
+            (0b1110_1111, -8.0, 1),
+            (0b0110_1000, 0.0, 3),
+            (0b0110_0100, 0.0, 2),
+            (0b0100_0000, 0.0, 6),
+        ];
+        for (level, (met, start, expected)) in Level::available().flat_map(|level| cases.map(|case| (level, case))) {
+            let place = Available::or_scalar(level).run(Asked(&node, enter, met, start));
+            assert_eq!(place, expected, "{level:?} {met:b}");
+        }
+    }
+}

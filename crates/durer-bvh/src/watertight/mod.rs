@@ -1,0 +1,286 @@
+//! Ray against triangle, watertight: a ray never slips between two triangles that share an edge, and
+//! crosses exactly one of those around an edge or a vertex.
+//!
+//! The triangle is sheared so that the ray runs along one axis; what remains is whether a polygon's edges go
+//! round the origin of a plane. Corners shared by two triangles are rounded alike, and the sign of each edge
+//! function is exact, so two neighbours never disagree. Where an edge passes through the ray, the ray counts
+//! as moved by an infinitesimal (e, e^2) in the plane across it.
+//!
+//! Single precision says whether a triangle is crossed; where, double precision says. A ray that starts beside a
+//! triangle, off by no more than the rounding of its origin, is therefore on the right side of it.
+//!
+//! Sources: Woop, Benthin, Wald, *Watertight Ray/Triangle Intersection*, JCGT 2(1), 2013; the infinitesimal is
+//! Edelsbrunner and Mücke's *Simulation of Simplicity*, ACM TOG 9(1), 1990.
+
+use crate::math::{Doubles, Ray, Triple, Vec2, Vec3};
+use glam::Vec3A;
+
+#[cfg(test)]
+mod tests;
+
+/// Where a ray crosses a triangle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Crossing {
+    /// Position along the ray.
+    pub t: f32,
+    /// The second and third barycentric coordinate: the point is (1 - u - v) a + u b + v c.
+    pub uv: Vec2,
+}
+
+/// A ray prepared for many triangles.
+///
+/// It is turned: the longest component of its direction counts as the third axis, and the other two are in the order that keeps
+/// the sides of triangles. So are the corners that `Sheared::crosses` and others take.
+#[derive(Clone, Copy, Debug)]
+pub struct Sheared {
+    axes: &'static Turn,
+    origin: Vec3A,
+    dir: Vec3A,
+    /// The direction, of which the third component is 1.
+    shear: Vec3A,
+    least_volume: f64,
+}
+
+impl Sheared {
+    /// Prepares a ray. One without direction, or with an infinite one, hits nothing.
+    #[inline(always)]
+    pub fn new(ray: &Ray) -> Self {
+        let axes = turn(ray.dir.into());
+        let [origin, dir] = [ray.origin, ray.dir].map(|v| turned(axes, v.as_ref()));
+        let sheared = Self::turned(axes, origin, dir);
+        let shear = if sheared.dir.z.is_finite() { sheared.shear } else { Vec3A::NAN };
+        Sheared { shear, ..sheared }
+    }
+
+    /// A ray that has a finite direction, with its axes, by [`turn`], and turned already.
+    #[inline(always)]
+    pub(crate) fn turned(axes: &'static Turn, origin: Vec3A, dir: Vec3A) -> Self {
+        Sheared { axes, origin, dir, shear: dir / dir.z, least_volume: 0.0 }
+    }
+
+    /// Misses triangles for which |(b - a) x (c - a) · d| is less than this.
+    pub fn least_volume(self, least_volume: f64) -> Self {
+        Sheared { least_volume, ..self }
+    }
+
+    /// The crossing with a triangle in the open interval (`t_min`, `t_max`), from either side.
+    #[inline(always)]
+    pub fn intersect(&self, corners: [Vec3; 3], t_min: f32, t_max: f32) -> Option<Crossing> {
+        let corners = corners.map(|corner| turned(self.axes, corner.as_ref()));
+        if !self.crosses(corners) {
+            return None;
+        }
+        let t = self.t(corners)?;
+        // Refuses also NaN.
+        (t > t_min && t < t_max).then(|| Crossing { t, uv: self.uv(corners) })
+    }
+
+    /// Whether the line of the ray crosses a triangle, and does not just see it from its side.
+    pub(crate) fn crosses(&self, corners: [Vec3A; 3]) -> bool {
+        let flat @ [a, b, c] = self.flatten(corners);
+        let front = is_front(b, c);
+        if is_front(c, a) != front || is_front(a, b) != front {
+            return false;
+        }
+        let [a, b, c] = areas(flat.map(doubles));
+        let det = a + b + c;
+        det != 0.0 && !det.is_nan()
+    }
+
+    /// The second and third barycentric coordinate of the crossing with a triangle that is crossed.
+    #[inline(always)]
+    pub(crate) fn uv(&self, corners: [Vec3A; 3]) -> Vec2 {
+        let [u, v] = uv_across(self.flatten(corners).map(doubles));
+        Vec2::new(u as f32, v as f32)
+    }
+
+    #[inline(always)]
+    pub(crate) fn flatten(&self, [a, b, c]: [Vec3A; 3]) -> [Vec2; 3] {
+        [self.flat(a), self.flat(b), self.flat(c)]
+    }
+
+    /// A corner in the plane across the ray.
+    #[inline(always)]
+    fn flat(&self, corner: Vec3A) -> Vec2 {
+        let p = corner - self.origin;
+        let flat = p - self.shear * p.z;
+        Vec2::new(flat.x, flat.y)
+    }
+
+    /// Where the ray's line crosses a triangle that it crosses: within the triangle's bounds. It may be infinite.
+    #[inline(always)]
+    pub(crate) fn t(&self, corners: [Vec3A; 3]) -> Option<f32> {
+        let [t, volume] = Exact::single(self.origin, self.dir).t(&Plane::single(corners));
+        if volume.abs() < self.least_volume {
+            return None;
+        }
+        Some(t as f32)
+    }
+
+    /// The axes in the order of turned vectors.
+    pub(crate) fn axes(&self) -> &'static Turn {
+        self.axes
+    }
+
+    /// Origin and direction, turned.
+    pub(crate) fn ray(&self) -> (Vec3A, Vec3A) {
+        (self.origin, self.dir)
+    }
+
+    /// How far a corner moves across for each unit along the third axis.
+    pub(crate) fn shear(&self) -> Vec2 {
+        Vec2::new(self.shear.x, self.shear.y)
+    }
+}
+
+/// The plane of a turned triangle in double precision; or several side by side.
+#[derive(Clone, Copy)]
+pub(crate) struct Plane<V: Triple> {
+    pub normal: V,
+    pub corner: V,
+    /// The heights of the lowest and of the highest corner along the third axis.
+    pub heights: [V::Component; 2],
+}
+
+impl<V: Triple> Plane<V> {
+    #[inline(always)]
+    pub fn new([a, b, c]: [V; 3]) -> Self {
+        let (lowest, highest) = (a.min(b.min(c)), a.max(b.max(c)));
+        Plane { normal: b.sub(a).cross(c.sub(a)), corner: a, heights: [lowest.z(), highest.z()] }
+    }
+}
+
+impl Plane<[f64; 3]> {
+    #[inline(always)]
+    pub fn single(corners: [Vec3A; 3]) -> Self {
+        Plane::new(corners.map(|corner| corner.as_dvec3().to_array()))
+    }
+}
+
+/// The line of a turned ray in double precision; or several side by side. Nothing here branches.
+#[derive(Clone, Copy)]
+pub(crate) struct Exact<V: Triple> {
+    origin: V,
+    dir: V,
+    /// 1 over the last component of the direction.
+    inverse: V::Component,
+}
+
+impl Exact<[f64; 3]> {
+    #[inline(always)]
+    pub fn single(origin: Vec3A, dir: Vec3A) -> Self {
+        Exact::new(origin.as_dvec3().to_array(), dir.as_dvec3().to_array())
+    }
+}
+
+impl<V: Triple<Component = f64>> Exact<V> {
+    #[inline(always)]
+    pub fn new(origin: V, dir: V) -> Self {
+        Self::with_inverse(origin, dir, 1.0 / dir.z())
+    }
+}
+
+impl<V: Triple> Exact<V> {
+    /// `inverse` is 1 over the last component of the direction.
+    #[inline(always)]
+    pub fn with_inverse(origin: V, dir: V, inverse: V::Component) -> Self {
+        Exact { origin, dir, inverse }
+    }
+
+    /// Where it crosses a turned triangle that it crosses, and the volume |(b - a) x (c - a) · d| with its sign.
+    ///
+    /// That is where it meets the plane, but between the lowest and the highest corner: seen from nearly its side, the
+    /// triangle still bounds t, also where that is no number. Products are rounded monotonically, so the corners' distances are
+    /// between those of the lowest and of the highest.
+    #[inline(always)]
+    pub fn t(&self, plane: &Plane<V>) -> [V::Component; 2] {
+        let volume = plane.normal.dot(self.dir);
+        let z = self.origin.z();
+        let [p, q] = plane.heights;
+        let (p, q) = (p.sub(z).mul(self.inverse), q.sub(z).mul(self.inverse));
+        let t = plane.normal.dot(plane.corner.sub(self.origin)).div(volume);
+        [t.max(p.min(q)).min(p.max(q)), volume]
+    }
+}
+
+/// The second and third barycentric coordinate of the origin, by the corners in the plane across a ray that crosses the triangle; or
+/// those of several side by side.
+#[inline(always)]
+pub(crate) fn uv_across<D: Doubles>(flat: [[D; 2]; 3]) -> [D; 2] {
+    let [a, b, c] = areas(flat);
+    // None of the three is of another sign than the others, so their sum is as exact as they are.
+    let det = a.add(b).add(c);
+    [b.div(det), c.div(det)]
+}
+
+/// Which components of a vector are the first, second, and third of a turned one; the last is there to make a vector of four.
+pub(crate) type Turn = [u32; 4];
+
+/// The axes that turn a ray, by the longest component of its direction and whether that is negative (1) or not (0).
+#[inline(always)]
+pub(crate) const fn turned_axes(longest: usize, negative: usize) -> Turn {
+    const AXES: [[Turn; 2]; 4] =
+        [[[1, 2, 0, 0], [2, 1, 0, 0]], [[2, 0, 1, 0], [0, 2, 1, 0]], [[0, 1, 2, 0], [1, 0, 2, 0]], [[0; 4]; 2]];
+    // So masked, indices need not be tested.
+    AXES[longest & 3][negative & 1]
+}
+
+/// The axes that turn a ray with such a direction.
+#[inline(always)]
+pub(crate) fn turn(dir: Vec3A) -> &'static Turn {
+    let length = dir.abs();
+    let longest = length.cmpeq(Vec3A::splat(length.max_element())).bitmask();
+    &TURNED[longest as usize & 7][dir.is_negative_bitmask() as usize & 7]
+}
+
+/// The axes that turn a ray, by which components of its direction are longest (a bit for each; the last of them counts) and which are
+/// negative.
+static TURNED: [[Turn; 8]; 8] = {
+    let mut table = [[[0, 1, 2, 0]; 8]; 8];
+    let mut at = 8;
+    while at < 64 {
+        let (longest, signs) = ((at as u32 / 8).ilog2() as usize, at % 8);
+        table[at / 8][signs] = turned_axes(longest, signs >> longest & 1);
+        at += 1;
+    }
+    table
+};
+
+#[inline(always)]
+fn turned([x, y, z, _]: &Turn, v: &[f32; 3]) -> Vec3A {
+    Vec3A::new(v[*x as usize], v[*y as usize], v[*z as usize])
+}
+
+/// A point in the plane across a ray, in double precision.
+fn doubles(p: Vec2) -> [f64; 2] {
+    [f64::from(p.x), f64::from(p.y)]
+}
+
+/// Twice the areas of the triangles from the origin to the three edges: unnormalised barycentric coordinates.
+#[inline(always)]
+fn areas<D: Doubles>([a, b, c]: [[D; 2]; 3]) -> [D; 3] {
+    [edge(b, c), edge(c, a), edge(a, b)]
+}
+
+/// The edge function of the edge from `p` to `q` about the origin: a product of two `f32` is exact.
+#[inline(always)]
+fn edge<D: Doubles>(p: [D; 2], q: [D; 2]) -> D {
+    q[0].mul(p[1]).sub(q[1].mul(p[0]))
+}
+
+/// Whether the edge from `p` to `q` goes round the origin clockwise: the sign of the edge function, never zero.
+#[inline(always)]
+fn is_front(p: Vec2, q: Vec2) -> bool {
+    let value = q.x * p.y - q.y * p.x;
+    // Rounding is monotonic: the difference of two rounded products has the sign of the true one.
+    if value.abs() > 0.0 && value.abs() < f32::INFINITY { value > 0.0 } else { is_front_exact(p, q) }
+}
+
+/// As [`is_front`], where single precision sees zero or overflows.
+#[cold]
+fn is_front_exact(p: Vec2, q: Vec2) -> bool {
+    // Terms of the edge function about (e, e^2), in falling order: 1, e, e^2. Differences in double precision, for
+    // those of single precision may underflow.
+    let [p, q] = [doubles(p), doubles(q)];
+    [edge(p, q), q[1] - p[1], p[0] - q[0]].into_iter().find(|term| *term != 0.0).is_some_and(|term| term > 0.0)
+}
