@@ -170,7 +170,7 @@ fn world(case: &Case) -> Result<World> {
 fn measured(case: &Case, samples: u32) -> Result<(f64, f64)> {
     let world = world(case)?;
     let settings = Settings { bounces: case.bounces, ..Job::default().settings };
-    let path = Path { world: &world, settings, clamp: None, color: ColorMode::Rgb, cancel: None };
+    let path = Path { world: &world, settings, clamp: None, color: ColorMode::Rgb, photons: None, cancel: None };
     let (mut sum, mut squares) = (0.0, 0.0);
     for sample in 0..samples {
         let (point, normal) = case.at;

@@ -128,7 +128,7 @@ pub fn run(args: &MeasureArgs) -> Result<(), Failure> {
     let opened = open(&args.scene, &load_options(&args.reading), false, &mut Guard::default())?;
     let settings = Settings { bounces: args.bounces, ..Job::default().settings };
     let world: &World = &opened.world;
-    let path = Path { world, settings, clamp: None, color: args.color, cancel: None };
+    let path = Path { world, settings, clamp: None, color: args.color, photons: None, cancel: None };
     let rows: Vec<_> = threads::install(args.threads.map(usize::from), || {
         let one = |(number, &(point, normal)): (usize, &(Vec3, Vec3))| {
             measured(&path, point, normal, number as u32, args.seed, args.samples)

@@ -10,18 +10,25 @@ use durer::spectrum::ColorMode;
 /// What computes the light
 #[derive(Args)]
 pub struct MethodArgs {
-    /// What computes the light: whitted (local light, mirrors, glass), path (all light) or ao (how much of the sky is
-    /// free) [default: path for scenes with principled materials or an environment, else whitted]
+    /// What computes the light: whitted (local light, mirrors, glass), path (all light), photons (all light, with what
+    /// mirrors and glass throw on things by photons: caustics) or ao (how much of the sky is free) [default: path for scenes with principled materials or an environment, else whitted]
     #[arg(long, value_name = "METHOD", value_parser = PossibleValuesParser::new(Method::NAMES))]
     pub integrator: Option<String>,
-    /// With path: light that was scattered more than once is not brighter than this in a sample; takes away bright
+    /// With path and photons: light that was scattered more than once is not brighter than this in a sample; takes away bright
     /// specks, and light with them [default: no limit]
     #[arg(long, value_name = "RADIANCE")]
     pub clamp: Option<f32>,
-    /// With path: what light is made of: rgb, or spectral (four wavelengths at a time: coloured light on coloured things,
+    /// With path and photons: what light is made of: rgb, or spectral (four wavelengths at a time: coloured light on coloured things,
     /// prisms) [default: rgb]
     #[arg(long, value_name = "MODE", value_parser = color_mode())]
     pub color: Option<ColorMode>,
+    /// With photons: how many each sample sends out [default: 100000]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000_000))]
+    pub photons: Option<u32>,
+    /// With photons: how far the first sample looks for them, in units of the world; later ones look less far [default: a
+    /// twentieth of the radius of the smallest thing that mirrors or refracts]
+    #[arg(long, value_name = "DISTANCE")]
+    pub photon_radius: Option<f32>,
     /// With ao: how far things count, in units of the world [default: all count]
     #[arg(long, value_name = "DISTANCE")]
     pub ao_radius: Option<f32>,
@@ -36,25 +43,37 @@ pub fn color_mode() -> impl TypedValueParser<Value = ColorMode> {
 pub fn method(args: &MethodArgs, scene: &Scene) -> Result<Method, Failure> {
     let usual = if args.ao_radius.is_some() {
         "ao"
+    } else if args.photons.is_some() || args.photon_radius.is_some() {
+        "photons"
     } else if args.clamp.is_some() || args.color.is_some() || scene.is_physical() {
         "path"
     } else {
         "whitted"
     };
     let name = args.integrator.as_deref().unwrap_or(usual);
-    for (option, value, of) in [("--clamp", args.clamp, "path"), ("--ao-radius", args.ao_radius, "ao")] {
-        if value.is_some() && name != of {
+    let paths: &[&str] = &["path", "photons"];
+    let number = |value: Option<f32>| (value.is_some(), value.is_none_or(|value| value > 0.0));
+    for (option, (given, sound), of) in [
+        ("--clamp", number(args.clamp), paths),
+        ("--color", (args.color.is_some(), true), paths),
+        ("--photons", (args.photons.is_some(), true), &paths[1..]),
+        ("--photon-radius", number(args.photon_radius), &paths[1..]),
+        ("--ao-radius", number(args.ao_radius), &["ao"]),
+    ] {
+        if given && !of.contains(&name) {
             return Err(bad(format!("{option} makes no sense with --integrator {name}")));
         }
-        if value.is_some_and(|value| value.is_nan() || value <= 0.0) {
+        if !sound {
             return Err(bad(format!("{option} must be more than 0")));
         }
     }
-    if args.color.is_some() && name != "path" {
-        return Err(bad(format!("--color makes no sense with --integrator {name}")));
-    }
+    let (clamp, color) = (args.clamp, args.color.unwrap_or_default());
     Ok(match name {
-        "path" => Method::Path { clamp: args.clamp, color: args.color.unwrap_or_default() },
+        "path" => Method::Path { clamp, color },
+        "photons" => {
+            let count = args.photons.unwrap_or(Method::PHOTONS);
+            Method::Photons { clamp, color, count, radius: args.photon_radius }
+        }
         "ao" => Method::Ao { radius: args.ao_radius.unwrap_or(f32::INFINITY) },
         _ => Method::Whitted,
     })
@@ -67,12 +86,16 @@ pub fn spelled(method: Method, scene: &Scene) -> Vec<String> {
     if method.name() != usual {
         words.push(format!("--integrator {}", method.name()));
     }
+    if let Method::Path { clamp, color } | Method::Photons { clamp, color, .. } = method {
+        words.extend(clamp.map(|clamp| format!("--clamp {clamp}")));
+        if color != ColorMode::default() {
+            words.push(format!("--color {}", color.name()));
+        }
+    }
     match method {
-        Method::Path { clamp, color } => {
-            words.extend(clamp.map(|clamp| format!("--clamp {clamp}")));
-            if color != ColorMode::default() {
-                words.push(format!("--color {}", color.name()));
-            }
+        Method::Photons { count, radius, .. } => {
+            words.extend((count != Method::PHOTONS).then(|| format!("--photons {count}")));
+            words.extend(radius.map(|radius| format!("--photon-radius {radius}")));
         }
         Method::Ao { radius } if radius.is_finite() => words.push(format!("--ao-radius {radius}")),
         _ => {}

@@ -30,7 +30,7 @@ pub(super) const OF_LOCAL_LIGHT: &[&str] = &[
 
 /// Whether a scene's light is a path tracer's.
 pub(super) fn is_physical(scout: &Scout) -> bool {
-    matches!(scout.subject.job.method, Method::Path { .. })
+    matches!(scout.subject.job.method, Method::Path { .. } | Method::Photons { .. })
 }
 
 pub(super) fn no_emitter(scout: &Scout) -> Vec<Finding> {

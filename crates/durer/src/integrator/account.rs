@@ -197,6 +197,13 @@ pub enum What {
         /// The shadow ray; none where shadows are off.
         shadow: Option<Shadow>,
     },
+    /// The light of lamps over mirrors and glass, from photons nearby; the value says how much.
+    Photons {
+        /// How far away they are at most.
+        radius: f32,
+        /// How many there are.
+        photons: usize,
+    },
     /// The background or sky, where a ray hits nothing.
     Sky,
     /// Ambient light times the surface's colour, the value; the factor is share · ambient light.

@@ -13,8 +13,9 @@ use crate::spectrum::ColorMode;
 use crate::world::World;
 pub use account::{Account, Node, Witness};
 pub use ao::AmbientOcclusion;
-pub use path::Path;
+pub use path::{Path, Photons};
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 pub use whitted::{Settings, Whitted, refract};
 
@@ -32,6 +33,17 @@ pub enum Method {
         /// What colours are on the way.
         color: ColorMode,
     },
+    /// All light, and photons for what mirrors and glass throw on things.
+    Photons {
+        /// Light that was scattered more than once is not brighter than this.
+        clamp: Option<f32>,
+        /// What colours are on the way.
+        color: ColorMode,
+        /// How many photons each sample sends out.
+        count: u32,
+        /// How far the first sample looks for photons, in units of the world.
+        radius: Option<f32>,
+    },
     /// How much of the sky things leave free.
     Ao {
         /// How far things count.
@@ -44,14 +56,26 @@ impl Method {
     pub const PATH: Method = Method::Path { clamp: None, color: ColorMode::Rgb };
 
     /// Names on the command line.
-    pub const NAMES: [&'static str; 3] = ["whitted", "path", "ao"];
+    pub const NAMES: [&'static str; 4] = ["whitted", "path", "photons", "ao"];
+
+    /// Photons of a sample, where nothing else is wished.
+    pub const PHOTONS: u32 = 100_000;
 
     /// Its name.
     pub fn name(self) -> &'static str {
         match self {
             Method::Whitted => "whitted",
             Method::Path { .. } => "path",
+            Method::Photons { .. } => "photons",
             Method::Ao { .. } => "ao",
+        }
+    }
+
+    /// What colours are while light is transported.
+    pub fn color_mode(self) -> ColorMode {
+        match self {
+            Method::Path { color, .. } | Method::Photons { color, .. } => color,
+            Method::Whitted | Method::Ao { .. } => ColorMode::Rgb,
         }
     }
 
@@ -62,7 +86,7 @@ impl Method {
 }
 
 /// One of the integrators, over a world.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub enum Integrator<'w> {
     /// Whitted's.
     Whitted(Whitted<'w>),
@@ -74,11 +98,32 @@ pub enum Integrator<'w> {
 
 impl<'w> Integrator<'w> {
     /// Over a world. Once `cancel` is set, no more rays are traced, and what comes out means nothing.
-    pub fn new(world: &'w World, method: Method, settings: Settings, cancel: Option<&'w AtomicBool>) -> Self {
+    ///
+    /// Photons are random by the seed.
+    pub fn new(
+        world: &'w World,
+        method: Method,
+        settings: Settings,
+        seed: u64,
+        cancel: Option<&'w AtomicBool>,
+    ) -> Self {
         match method {
+            Method::Photons { clamp, color, count, radius } => {
+                let photons = Some(Arc::new(Photons::new(world, seed, count, radius)));
+                Integrator::Path(Path { world, settings, clamp, color, photons, cancel })
+            }
             Method::Whitted => Integrator::Whitted(Whitted { world, settings, cancel }),
-            Method::Path { clamp, color } => Integrator::Path(Path { world, settings, clamp, color, cancel }),
+            Method::Path { clamp, color } => {
+                Integrator::Path(Path { world, settings, clamp, color, photons: None, cancel })
+            }
             Method::Ao { radius } => Integrator::Ao(AmbientOcclusion { world, radius }),
+        }
+    }
+
+    /// Makes what the samples of some number need, by all threads, before they are taken.
+    pub fn prepare(&self, sample: u32) {
+        if let Integrator::Path(path @ Path { photons: Some(photons), .. }) = self {
+            photons.prepare(path, sample);
         }
     }
 

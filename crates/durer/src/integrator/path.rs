@@ -19,10 +19,12 @@ use crate::spectrum::{ColorMode, Lanes, Spectrum};
 use crate::world::emitters::LightSample;
 use crate::world::{Hit, Shading, World};
 use glam::DVec3;
+pub use photons::{PhotonMap, Photons};
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 /// The integrator over one world.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Path<'w> {
     /// What is seen.
     pub world: &'w World,
@@ -32,6 +34,8 @@ pub struct Path<'w> {
     pub clamp: Option<f32>,
     /// What colours are on the way.
     pub color: ColorMode,
+    /// What brings the light of lamps that mirrors and glass throw on things; without, paths find it by chance.
+    pub photons: Option<Arc<Photons>>,
     /// Once set, no more rays are traced, and what comes out means nothing.
     pub cancel: Option<&'w AtomicBool>,
 }
@@ -50,12 +54,13 @@ enum Use {
 const USES: u32 = 4;
 
 /// What is the same all along a path.
-#[derive(Clone, Copy)]
 struct Sample {
     /// Its random numbers.
     id: SampleId,
     /// What its light is made of.
     lanes: Lanes,
+    /// What mirrors and glass throw on things.
+    photons: Option<Arc<PhotonMap>>,
 }
 
 impl Sample {
@@ -75,13 +80,26 @@ struct State {
     depth: u32,
     /// Where it was scattered last, if lights can be found there in another way.
     from: Option<Scattered>,
+    /// Whether mirrors or glass come after a point that scatters into many directions: light that is seen over them there
+    /// is what photons bring.
+    behind_mirrors: bool,
+    /// Whether it was scattered into many directions.
+    broad: bool,
     /// Whether only the first lane still counts, since others would go other ways.
     alone: bool,
 }
 
 impl Default for State {
     fn default() -> Self {
-        State { media: Media::default(), throughput: Spectrum::ONE, depth: 0, from: None, alone: false }
+        State {
+            media: Media::default(),
+            throughput: Spectrum::ONE,
+            depth: 0,
+            from: None,
+            behind_mirrors: false,
+            broad: false,
+            alone: false,
+        }
     }
 }
 
@@ -209,18 +227,73 @@ impl Place<'_> {
     }
 }
 
+/// A surface that a ray met.
+struct Met {
+    ray: Ray64,
+    hit: Hit,
+    surface: Surface,
+    passage: Option<Passage>,
+}
+
+/// Where a ray's way ends.
+#[expect(clippy::large_enum_variant)]
+enum End {
+    /// Nowhere: what would come of it counts for too little.
+    Lost,
+    /// In the surroundings, in a direction.
+    Sky(Vec3),
+    /// In a medium in which lamps can be seen, along a unit direction.
+    Medium(DVec3, Vec3, HenyeyGreenstein),
+    /// On a surface.
+    Surface(Met),
+}
+
+impl Met {
+    /// Whether it is seen from the side that its normal does not point to.
+    fn inside(&self) -> bool {
+        self.ray.dir().dot(self.surface.n_geo) > 0.0
+    }
+
+    /// The index of refraction behind it over that before it.
+    fn eta(&self) -> f32 {
+        self.passage.as_ref().map_or(1.0, |passage| passage.there / passage.here)
+    }
+
+    /// How it scatters.
+    fn shading(&self, world: &World, lanes: &Lanes) -> Shading {
+        world.shading(self.ray.dir(), &self.hit, &self.surface, (self.inside(), self.eta()), lanes)
+    }
+}
+
+impl Chosen {
+    /// Whether light is refracted, so that radiance changes with the index.
+    fn is_bent(&self) -> bool {
+        self.lobe == "Refraction"
+    }
+}
+
 /// How often light is scattered in a body at most until it gets out.
 const MAX_WALK: u32 = 10_000;
 
 impl Path<'_> {
     /// The light that comes along a camera ray, by the random numbers of a sample.
     pub fn radiance<T: Witness>(&self, ray: &Ray, id: SampleId, tally: &mut T) -> Color {
-        let sample = Sample { id, lanes: Lanes::new(self.color, id.wavelength()) };
+        let sample = self.sample(id);
         tally.begin(|| What::Ray { from: RayKind::Camera, ray: ray.into(), weight: 1.0, hit: None, bounce: None });
         let (sum, scale) = self.trace(&ray.into(), State::default(), &sample, tally);
         let light = sum * scale;
         tally.end(Color::ONE, scale.truncate(), light.truncate());
         sample.lanes.color(light)
+    }
+
+    fn sample(&self, id: SampleId) -> Sample {
+        match &self.photons {
+            Some(photons) => {
+                let map = photons.map(self, id.sample);
+                Sample { id, lanes: *map.lanes(), photons: Some(map) }
+            }
+            None => Sample { id, lanes: Lanes::new(self.color, id.wavelength()), photons: None },
+        }
     }
 
     /// The irradiance at a point on the side of a unit normal, by the random numbers of a sample: pi times what a white matte
@@ -230,7 +303,7 @@ impl Path<'_> {
         let mut bsdf = Bsdf::default();
         bsdf.push(Diffuse { color: Spectrum::ONE, roughness: 0.0 }, Spectrum::ONE, 1.0);
         let shading = Shading { frame: Frame::around(normal), n_geo: normal, wo: Vec3::Z, bsdf };
-        let sample = Sample { id, lanes: Lanes::new(self.color, id.wavelength()) };
+        let sample = self.sample(id);
         let vertex = Vertex { place: Place::Surface(&surface, &shading, None), state: &State::default() };
         let light = self.direct(&vertex, &sample, tally) + self.indirect(&vertex, &sample, tally);
         std::f32::consts::PI * sample.lanes.color(light)
@@ -238,49 +311,71 @@ impl Path<'_> {
 
     /// The light along a ray: a sum, and what the way to it leaves of it.
     fn trace<T: Witness>(&self, ray: &Ray64, mut state: State, sample: &Sample, tally: &mut T) -> (Spectrum, Spectrum) {
+        let (end, scale) = self.fly(ray, &mut state, sample, tally);
+        let sum = match end {
+            End::Lost => Spectrum::ZERO,
+            End::Sky(dir) => {
+                let sky = sample.lanes.light(self.world.sky(dir));
+                let weight = self.weight(&state, |_| self.world.emitters.pdf_of_sky(self.world, dir));
+                tally.begin(|| What::Sky);
+                tally.end(Color::splat(weight), Color::ONE, sky.truncate());
+                weight * sky
+            }
+            End::Medium(point, dir, phase) => {
+                let place = Place::Medium(point, dir, phase);
+                self.scattered(&Vertex { place, state: &state }, sample, tally)
+            }
+            End::Surface(met) => self.met(&met, state, sample, tally),
+        };
+        (sum, scale)
+    }
+
+    /// Follows a ray to where something happens to its light, and says what the way there leaves of it.
+    fn fly<T: Witness>(&self, ray: &Ray64, state: &mut State, sample: &Sample, tally: &mut T) -> (End, Spectrum) {
         let mut ray = *ray;
         let mut rest = ray;
         let mut scale = Spectrum::ONE;
         let (mut walked, mut layers, mut scattered) = (0.0, 0, 0);
         let mut numbers = sample.id.stream(state.depth, 0);
+        let whole = state.throughput;
         loop {
             let hit = self.world.closest(&rest, tally);
             let stretch = ray.dir().length();
             let length = hit.map_or(f32::INFINITY, |hit| hit.t * stretch);
             if let Some(medium) = self.world.medium(state.media.object()) {
                 let way = Way { origin: ray.origin(), dir: ray.dir() / stretch, from: walked, to: length };
-                let weights = state.throughput * scale;
-                match medium.flight(&way, weights, &sample.lanes, &mut || numbers.number()) {
+                match medium.flight(&way, state.throughput, &sample.lanes, &mut || numbers.number()) {
                     Flight::Passed(left) => scale *= left,
                     Flight::Scattered(distance, left) => {
                         scale *= left;
+                        state.throughput = whole * scale;
                         // Never beyond what bounds it.
                         let distance = distance.min(length * (1.0 - gamma(16)));
                         let point = way.origin + f64::from(distance) * way.dir.as_dvec3();
                         if self.world.is_open(state.media.object()) {
-                            state.throughput *= scale;
-                            let place = Place::Medium(point, way.dir, medium.phase);
-                            return (self.scattered(&Vertex { place, state: &state }, sample, tally), scale);
+                            return (End::Medium(point, way.dir, medium.phase), scale);
                         }
                         // No lamp is seen from inside: the way is followed until it leads out.
                         scattered += 1;
                         let survival = match scattered {
                             0..16 => 1.0,
-                            _ => (state.throughput * scale).max_element().min(1.0),
+                            _ => state.throughput.max_element().min(1.0),
                         };
                         let cancelled = scattered % 256 == 0 && self.is_cancelled();
                         if scattered > MAX_WALK || cancelled || numbers.number() >= survival {
-                            return (Spectrum::ZERO, scale);
+                            return (End::Lost, scale);
                         }
                         scale /= survival;
                         let dir = medium.phase.sample(way.dir, numbers.pair());
                         ray = Ray64::new(point, dir, 0.0, f32::INFINITY);
                         (rest, walked, state.from) = (ray, 0.0, None);
+                        state.throughput = whole * scale;
                         continue;
                     }
                 }
+                state.throughput = whole * scale;
             }
-            let Some(hit) = hit else { break };
+            let Some(hit) = hit else { return (End::Sky(ray.dir()), scale) };
             walked = length;
             let surface = self.world.surface(&ray, &hit);
             if self.world.has_cutouts {
@@ -296,19 +391,9 @@ impl Path<'_> {
                 Some(passage) if self.is_nothing(&hit, &passage) => {
                     (state.media, rest.rounded.t_min) = (passage.behind, hit.t);
                 }
-                passage => {
-                    state.throughput *= scale;
-                    return (self.met(&ray, &hit, &surface, passage, state, sample, tally), scale);
-                }
+                passage => return (End::Surface(Met { ray, hit, surface, passage }), scale),
             }
         }
-        let sky = self.world.sky(ray.dir());
-        let weight =
-            state.from.map_or(1.0, |from| power(from.pdf, self.world.emitters.pdf_of_sky(self.world, ray.dir())));
-        let sky = sample.lanes.light(sky);
-        tally.begin(|| What::Sky);
-        tally.end(Color::splat(weight), Color::ONE, sky.truncate());
-        (weight * sky, scale)
     }
 
     fn is_cancelled(&self) -> bool {
@@ -331,26 +416,15 @@ impl Path<'_> {
     }
 
     /// The light that leaves a hit against the ray.
-    #[expect(clippy::too_many_arguments)]
-    fn met<T: Witness>(
-        &self,
-        ray: &Ray64,
-        hit: &Hit,
-        surface: &Surface,
-        passage: Option<Passage>,
-        mut state: State,
-        sample: &Sample,
-        tally: &mut T,
-    ) -> Spectrum {
-        let inside = ray.dir().dot(surface.n_geo) > 0.0;
-        let eta = passage.as_ref().map_or(1.0, |passage| passage.there / passage.here);
-        let shading = self.world.shading(ray.dir(), hit, surface, (inside, eta), &sample.lanes);
-        tally.hit(|| struck(self.world, ray, hit, surface, shading.frame.normal, inside, false));
+    fn met<T: Witness>(&self, met: &Met, mut state: State, sample: &Sample, tally: &mut T) -> Spectrum {
+        let Met { ray, hit, surface, .. } = met;
+        let shading = met.shading(self.world, &sample.lanes);
+        tally.hit(|| struck(self.world, ray, hit, surface, shading.frame.normal, met.inside(), false));
         let mut sum = Spectrum::ZERO;
-        let emitted = self.world.emission(hit, surface, inside);
+        let emitted = self.world.emission(hit, surface, met.inside());
         if emitted != Color::ZERO {
             let emitted = sample.lanes.light(emitted);
-            let weight = self.weight_of_hit(ray, hit, &state);
+            let weight = self.weight(&state, |from| self.pdf_of_hit(ray, hit, from));
             tally.begin(|| What::Emission { mis: weight });
             tally.end(Color::splat(weight), Color::ONE, emitted.truncate());
             sum += weight * emitted;
@@ -358,14 +432,19 @@ impl Path<'_> {
         if shading.bsdf.is_black() {
             return sum;
         }
-        let mut kept = Spectrum::ONE;
-        if !state.alone && sample.lanes.hero().is_some() && self.world.disperses(hit, surface) {
-            // The other wavelengths would be bent otherwise: the first stands for all.
-            kept = Spectrum::X * 4.0;
-            (state.throughput, state.alone) = (state.throughput * kept, true);
-        }
-        let place = Place::Surface(surface, &shading, passage.as_ref());
+        let kept = self.kept(met, &mut state, sample);
+        let place = Place::Surface(surface, &shading, met.passage.as_ref());
         sum + kept * self.scattered(&Vertex { place, state: &state }, sample, tally)
+    }
+
+    /// What is left of light where colours are spread: other wavelengths are bent otherwise, and the first stands for all.
+    fn kept(&self, met: &Met, state: &mut State, sample: &Sample) -> Spectrum {
+        if state.alone || sample.lanes.hero().is_none() || !self.world.disperses(&met.hit, &met.surface) {
+            return Spectrum::ONE;
+        }
+        let kept = Spectrum::X * 4.0;
+        (state.throughput, state.alone) = (state.throughput * kept, true);
+        kept
     }
 
     /// The light that a point scatters against the ray.
@@ -375,19 +454,25 @@ impl Path<'_> {
         }
         let mut sum = Spectrum::ZERO;
         if vertex.place.is_broad() {
-            sum += self.direct(vertex, sample, tally);
+            sum += self.direct(vertex, sample, tally) + self.caustic(vertex, sample, tally);
         }
         sum + self.indirect(vertex, sample, tally)
     }
 
-    /// How much a light counts that a ray met by its direction, where it could have been connected with too.
-    fn weight_of_hit(&self, ray: &Ray64, hit: &Hit, state: &State) -> f32 {
-        let Some(from) = state.from else { return 1.0 };
+    /// How much a light counts that a ray met by its direction, where it could have been found in another way too.
+    fn weight(&self, state: &State, pdf: impl Fn(&Scattered) -> f32) -> f32 {
+        match &state.from {
+            Some(from) => power(from.pdf, pdf(from)),
+            None if state.behind_mirrors && self.photons.is_some() => 0.0,
+            None => 1.0,
+        }
+    }
+
+    /// The density with which a light that a ray met would have been chosen.
+    fn pdf_of_hit(&self, ray: &Ray64, hit: &Hit, from: &Scattered) -> f32 {
         let way = ray.origin() + f64::from(hit.t) * ray.dir().as_dvec3() - from.point;
-        let distance = way.length();
-        let wi = ray.dir().normalize();
-        let pdf = self.world.emitters.pdf_of_hit(self.world, hit, from.point, from.n, wi, distance as f32);
-        power(from.pdf, pdf)
+        let (wi, distance) = (ray.dir().normalize(), way.length() as f32);
+        self.world.emitters.pdf_of_hit(self.world, hit, from.point, from.n, wi, distance)
     }
 
     /// The light of one light that is chosen.
@@ -423,6 +508,20 @@ impl Path<'_> {
         factor * radiance
     }
 
+    /// The light of lamps that mirrors and glass throw on a surface.
+    fn caustic<T: Witness>(&self, vertex: &Vertex, sample: &Sample, tally: &mut T) -> Spectrum {
+        let (Some(map), Place::Surface(surface, shading, _)) = (&sample.photons, &vertex.place) else {
+            return Spectrum::ZERO;
+        };
+        let most = self.settings.bounces - vertex.state.depth;
+        let (light, photons) = map.light(surface, shading, most);
+        if photons > 0 {
+            tally.begin(|| What::Photons { radius: map.radius(), photons });
+            tally.end(Color::ONE, Color::ONE, light.truncate());
+        }
+        light
+    }
+
     /// The light from a direction that is chosen.
     fn indirect<T: Witness>(&self, vertex: &Vertex, sample: &Sample, tally: &mut T) -> Spectrum {
         let Vertex { place, state } = vertex;
@@ -446,6 +545,8 @@ impl Path<'_> {
             depth: state.depth + 1,
             // Nothing can be connected with over a single direction.
             from: (!delta).then(|| Scattered { point: place.point(), n: place.normal(), pdf: chosen.pdf }),
+            behind_mirrors: delta && (state.broad || state.behind_mirrors),
+            broad: !delta || state.broad,
             alone: state.alone,
         };
         let ray = place.spawn(chosen.wi);
@@ -535,5 +636,6 @@ fn power(a: f32, b: f32) -> f32 {
     1.0 / (1.0 + ratio * ratio)
 }
 
+mod photons;
 #[cfg(test)]
 mod tests;

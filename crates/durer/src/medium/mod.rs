@@ -135,7 +135,8 @@ impl Medium {
         let albedo = lanes.reflectance(self.albedo);
         match self.density() {
             Some((grid, bounds)) => {
-                // Null collisions fill it up to its greatest density. Source: Woodcock and others, 1965.
+                // Null collisions fill it up to its greatest density, and lanes are weighed as they count by then. Sources:
+                // Woodcock and others, 1965; Kutz and others, *Spectral and Decomposition Tracking*, 2017.
                 let most = extinction.max_element() * grid.most();
                 let (mut at, mut left) = (from, Spectrum::ONE);
                 for _ in 0..MAX_STEPS {
@@ -144,7 +145,7 @@ impl Medium {
                         break;
                     }
                     let here = extinction * (grid.at(bounds, way.point(at)) / most);
-                    let real = here.max_element();
+                    let real = (shares(weights * left) * here).element_sum();
                     if numbers() < real {
                         return Flight::Scattered(at, left * albedo * here / real);
                     }
@@ -154,9 +155,7 @@ impl Medium {
             }
             None => {
                 // One lane chooses the distance; all are weighed by how likely any of them was to choose it.
-                let weights = weights.max(Spectrum::ZERO);
-                let sum = weights.element_sum();
-                let weights = if sum > 0.0 { weights / sum } else { Spectrum::splat(0.25) };
+                let weights = shares(weights);
                 let mut choice = numbers();
                 let lane = (0..3).find(|&lane| {
                     choice -= weights[lane];
@@ -174,6 +173,13 @@ impl Medium {
             }
         }
     }
+}
+
+/// How much each lane counts, of 1 in all.
+fn shares(weights: Spectrum) -> Spectrum {
+    let weights = weights.max(Spectrum::ZERO);
+    let sum = weights.element_sum();
+    if sum > 0.0 { weights / sum } else { Spectrum::splat(0.25) }
 }
 
 /// What a distance leaves of light: Beer's law.

@@ -14,6 +14,7 @@ use crate::film::aov::Aov;
 use crate::integrator::{Account, Integrator, Node};
 use crate::math::{Color, Ray, Vec2, Vec3};
 use crate::sampler::SampleId;
+use crate::spectrum::ColorMode;
 use crate::world::{Material, World};
 use serde::Serialize;
 use std::sync::atomic::AtomicBool;
@@ -93,8 +94,12 @@ impl Explanation {
 
 /// The tree of the light along any ray, by the random numbers of a sample.
 pub fn explain_ray(world: &World, job: &Job, ray: &Ray, id: SampleId) -> Option<Node> {
+    told(&Integrator::new(world, job.method, job.settings, job.seed, None), ray, id)
+}
+
+fn told(integrator: &Integrator, ray: &Ray, id: SampleId) -> Option<Node> {
     let mut account = Account::default();
-    Integrator::new(world, job.method, job.settings, None).radiance(ray, id, &mut account);
+    integrator.radiance(ray, id, &mut account);
     account.into_tree()
 }
 
@@ -102,16 +107,20 @@ pub fn explain_ray(world: &World, job: &Job, ray: &Ray, id: SampleId) -> Option<
 ///
 /// # Errors
 ///
-/// The pixel does not lie in the picture; [`RenderError`] where samples are counted until noise is low enough.
+/// The pixel does not lie in the picture; light is made of wavelengths; [`RenderError`] where samples are counted until noise is low enough.
 pub fn explain(world: &World, job: &Job, x: u32, y: u32) -> Result<Explanation, RenderError> {
     if x >= job.width || y >= job.height {
         return Err(RenderError::CropOutside(job.width, job.height));
     }
     let (stop, mut stale_texels) = (AtomicBool::new(false), None);
     let source = Samples::without_habits(world, job, &stop);
+    if job.method.color_mode() == ColorMode::Spectral {
+        return Err(RenderError::SpectralTerms);
+    }
+    let integrator = Integrator::new(world, job.method, job.settings, job.seed, None);
     let account = |of, sample, aim: Aim| {
         let id = SampleId::new(job.seed, of, sample);
-        let light = aim.ray.and_then(|ray| explain_ray(world, job, &ray, id));
+        let light = aim.ray.and_then(|ray| told(&integrator, &ray, id));
         SampleAccount { of, sample, place: aim.place, lens: aim.lens, weight: aim.weight, light }
     };
     let (mean, samples) = match job.sampling {

@@ -6,6 +6,7 @@ use super::{Crop, Job, Sampling, passes};
 use crate::film::aov::Look;
 use crate::film::{Film, Rejected};
 use crate::image::checked_count;
+use crate::integrator::Method;
 use crate::math::Vec3;
 use crate::source::Digest;
 use crate::world::World;
@@ -276,9 +277,12 @@ pub(super) fn film_of(part: Crop) -> Film {
     Film::window(part.left, part.top, part.width, part.height)
 }
 
-/// The ends of the passes of a shard.
+/// The ends of the passes of a shard. Photons are made anew for each sample, and so each is a pass.
 pub(super) fn pass_ends(job: &Job, shard: Shard) -> impl Iterator<Item = u32> {
     let samples = job.sampling.samples();
     let (from, to) = shard.range(samples);
-    passes::ends(samples).filter(move |&end| end > from && end < to).chain((to > from).then_some(to))
+    let singly = matches!(job.method, Method::Photons { .. }) && job.sampling.is_local();
+    let ends: Box<dyn Iterator<Item = u32>> =
+        if singly { Box::new(1..=samples) } else { Box::new(passes::ends(samples)) };
+    ends.filter(move |&end| end > from && end < to).chain((to > from).then_some(to))
 }

@@ -237,6 +237,9 @@ impl Work<'_> {
 
     /// Takes samples until each pixel that still needs some has as many as this.
     fn pass(&self, end: u32, alone: Alone) {
+        if !self.stop.load(Relaxed) {
+            self.samples.integrator.prepare(end - 1);
+        }
         let (part, gain) = (self.part, self.samples.gain());
         let open = |(index, block): (usize, &Sampled)| {
             let wanted = part.shard.has_block(index) && block.to < end && !part.is_done(index, block, gain);

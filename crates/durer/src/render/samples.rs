@@ -125,7 +125,7 @@ pub(super) struct Samples<'a> {
     job: &'a Job,
     raster: Raster,
     pub(super) whitted: Whitted<'a>,
-    integrator: Integrator<'a>,
+    pub(super) integrator: Integrator<'a>,
     warp: Option<FilterSampler>,
     /// What [`Compat::StaleTexels`] adds to each pixel of the whole picture.
     stale: Vec<Color>,
@@ -148,7 +148,7 @@ impl<'a> Samples<'a> {
             _ => None,
         };
         let whitted = Whitted { world, settings: job.settings, cancel: Some(stop) };
-        let integrator = Integrator::new(world, job.method, job.settings, Some(stop));
+        let integrator = Integrator::new(world, job.method, job.settings, job.seed, Some(stop));
         let raster = raster(world, job.width, job.height);
         Samples { world, job, raster, whitted, integrator, warp, stale: Vec::new(), stop }
     }

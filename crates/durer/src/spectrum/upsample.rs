@@ -30,7 +30,7 @@ impl Smooth {
 }
 
 /// Points of the grid along the axes of the two lesser channels.
-const SIDE: usize = 20;
+const SIDE: usize = 24;
 
 /// Points along that of the greatest channel.
 const STRENGTHS: usize = 10;
@@ -61,7 +61,11 @@ impl Table {
         let mut all = vec![[0.0; 3]; 3 * STRENGTHS * SIDE * SIDE];
         for greatest in 0..3 {
             for (j, i) in (0..SIDE * SIDE).map(|n| (n / SIDE, n % SIDE)) {
-                let share = |n: usize| n as f64 / (SIDE - 1) as f64;
+                // Closer together near pure colours.
+                let share = |n: usize| {
+                    let step = n as f64 / (SIDE - 1) as f64;
+                    step * step
+                };
                 // Each fit begins where its neighbour ended.
                 let mut numbers = [0.0; 3];
                 for k in 0..STRENGTHS {
@@ -92,12 +96,17 @@ impl Table {
         };
         let most = color[greatest].max(1e-12);
         let last = (SIDE - 1) as f32;
-        let share = |n: usize| (color[(greatest + n) % 3] / most).clamp(0.0, 1.0) * last;
+        let share = |n: usize| (color[(greatest + n) % 3] / most).clamp(0.0, 1.0).sqrt() * last;
         let k = (0..STRENGTHS - 1).rev().find(|&k| strength(k) <= f64::from(most)).unwrap_or(0);
         let (low, high) = (strength(k) as f32, strength(k + 1) as f32);
         let (x, y) = (share(1), share(2));
         let (i, j) = ((x as usize).min(SIDE - 2), (y as usize).min(SIDE - 2));
-        let parts = [x - i as f32, y - j as f32, ((most - low) / (high - low)).clamp(0.0, 1.0)];
+        // Linear in the share itself, between neighbours.
+        let part = |x: f32, i: usize| {
+            let i = i as f32;
+            ((x * x - i * i) / (2.0 * i + 1.0)).clamp(0.0, 1.0)
+        };
+        let parts = [part(x, i), part(y, j), ((most - low) / (high - low)).clamp(0.0, 1.0)];
         let mut sum = [0.0; 3];
         for corner in 0..8 {
             let [a, b, c] = [corner & 1, corner >> 1 & 1, corner >> 2];

@@ -59,6 +59,13 @@ impl Environment {
         })
     }
 
+    /// The mean over all directions, nearly.
+    pub fn mean(&self) -> Color {
+        // Weights are sums over nine texels, times the sine of the row.
+        let sum = self.columns[self.height - 1] / 9.0;
+        self.scale * (sum * PI / 2.0 / (self.width * self.height) as f32)
+    }
+
     /// Bytes in memory.
     pub fn bytes(&self) -> usize {
         self.texels.len() * size_of::<[f32; 4]>()

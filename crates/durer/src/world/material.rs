@@ -1,5 +1,6 @@
 //! Materials with the rules of their dialect worked in.
 
+use crate::bsdf::microfacet::Ggx;
 use crate::bsdf::{Layers, Tables};
 use crate::material::{ColorNoise, PrincipledMaterial, Solid};
 use crate::math::Color;
@@ -44,6 +45,16 @@ pub struct Principled {
     pub medium: Option<Medium>,
     /// Whether the surface itself does nothing where what is around has the same index of refraction: a body of smoke.
     pub interface: bool,
+}
+
+impl Principled {
+    /// Whether some of its layers mirror or refract into single directions. Roughness from pictures is not looked at.
+    pub fn has_single_directions(&self) -> bool {
+        let m = &self.written;
+        let smooth = |roughness: f32| Ggx::new(roughness, 0.0).is_smooth();
+        let skin = self.layers.roughness <= 0.0 || smooth(self.layers.roughness);
+        skin && !self.interface || m.coat_weight > 0.0 && smooth(m.coat_roughness)
+    }
 }
 
 /// The light of a surface's own.

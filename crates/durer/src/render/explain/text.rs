@@ -253,6 +253,10 @@ fn node_lines(node: &Node, names: &Names, depth: usize, telling: &Telling, at: C
                 }
             }
         }
+        What::Photons { radius, photons } => {
+            more.push(format!("{photons} photons at most {} away", number(*radius)));
+            format!("light that mirrors and glass throw here: {value}")
+        }
         What::Sky => "background".into(),
         What::Emission { mis } => format!("light of its own: {value}{}", weight_text(*mis)),
         What::Direct { light, to_light, distance, choice, pdf, bsdf, mis, shadow } => {

@@ -1,5 +1,6 @@
 //! What shines: surfaces with a light of their own, the scene's lights, and the surroundings; and how one of them is chosen.
 
+pub mod emission;
 pub mod shape;
 pub mod tree;
 

@@ -114,10 +114,7 @@ impl Form {
                 corner + u.x * e + u.y * f
             }
             Form::Ellipse([p, x, y], inner) => {
-                let d = warp::disc(u);
-                // The area of a ring grows with the square of its radius.
-                let square = inner * inner + (1.0 - inner * inner) * d.length_squared();
-                let d = if inner > 0.0 { d.normalize_or(Vec2::X) * square.sqrt() } else { d };
+                let d = in_ring(u, inner);
                 offset(p, from) + d.x * x + d.y * y
             }
             Form::Sphere(center, radius) => return cone(offset(center, from), radius, u),
@@ -148,11 +145,40 @@ impl Form {
         }
     }
 
+    /// A point chosen evenly over its area, its normal there, and the density per area.
+    pub fn point(&self, normal: Vec3, u: Vec2) -> Option<(DVec3, Vec3, f32)> {
+        let (point, normal) = match *self {
+            Form::Triangle([p, e, f]) => {
+                let b = warp::triangle(u);
+                (p.as_dvec3() + (b.y * e + b.z * f).as_dvec3(), normal)
+            }
+            Form::Parallelogram([p, e, f]) => (p.as_dvec3() + (u.x * e + u.y * f).as_dvec3(), normal),
+            Form::Ellipse([p, x, y], inner) => {
+                let d = in_ring(u, inner);
+                (p.as_dvec3() + (d.x * x + d.y * y).as_dvec3(), normal)
+            }
+            Form::Sphere(center, radius) => {
+                let n = warp::sphere(u);
+                (center.as_dvec3() + f64::from(radius) * n.as_dvec3(), n)
+            }
+        };
+        let density = 1.0 / self.area();
+        density.is_finite().then_some((point, normal, density))
+    }
+
     /// Bound on how far a chosen point may be beside the surface that rays meet.
     pub fn error(&self) -> f32 {
         let bounds = self.bounds();
         gamma(16) * bounds.min.abs().max(bounds.max.abs()).max_element()
     }
+}
+
+/// A point of the unit disc without its middle, evenly over the area.
+fn in_ring(u: Vec2, inner: f32) -> Vec2 {
+    let d = warp::disc(u);
+    // The area of a ring grows with the square of its radius.
+    let square = inner * inner + (1.0 - inner * inner) * d.length_squared();
+    if inner > 0.0 { d.normalize_or(Vec2::X) * square.sqrt() } else { d }
 }
 
 /// From one point to another.

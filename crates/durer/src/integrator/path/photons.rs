@@ -1,0 +1,253 @@
+//! Caustics: light of lamps that mirrors and glass throw on other things, by photons.
+//!
+//! Paths from the eye find such light by chance, or not at all. So photons are sent from the lamps to all that mirrors or
+//! refracts, followed over single directions, and kept on the first thing that scatters broadly. There the light is estimated
+//! from the photons nearby. Each sample of a pixel has photons of its own, and looks less far than the one before, so that
+//! the mean over samples comes to the truth.
+//!
+//! Sources: Hachisuka and Jensen, *Stochastic Progressive Photon Mapping*, 2009; the radius without statistics of pixels:
+//! Knaus and Zwicker, *Progressive Photon Mapping: A Probabilistic Approach*, 2011.
+
+use super::{End, Path, Place, State};
+use super::{Sample, USES};
+use crate::math::{Color, Vec3};
+use crate::sampler::{SampleId, sample_2d};
+use crate::shape::Surface;
+use crate::spectrum::{Lanes, Spectrum};
+use crate::world::emitters::emission::Beams;
+use crate::world::{Shading, World};
+use glam::DVec3;
+use rayon::prelude::*;
+use std::collections::VecDeque;
+use std::f32::consts::PI;
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// How the squares of radii shrink: the share of new photons that is kept. Source: Kaplanyan and Dachsbacher, *Adaptive
+/// Progressive Photon Mapping*, 2013: the error falls fastest at 2/3.
+const ALPHA: f64 = 2.0 / 3.0;
+
+/// Maps that are kept for when they are wanted again.
+const MAX_KEPT: usize = 32;
+
+/// All photons of a picture: a map for each sample of its pixels, made when it is wanted.
+#[derive(Debug)]
+pub struct Photons {
+    beams: Beams,
+    seed: u64,
+    count: u32,
+    /// The first radius.
+    radius: f32,
+    kept: Mutex<VecDeque<(u32, Arc<PhotonMap>)>>,
+}
+
+/// A photon where it came to rest.
+#[derive(Clone, Copy, Debug)]
+struct Photon {
+    position: Vec3,
+    /// Whence it came: a unit vector.
+    wi: Vec3,
+    power: Spectrum,
+    /// How often it was mirrored or refracted.
+    bounces: u32,
+}
+
+/// The photons of one sample, sorted by the cell that they are in.
+#[derive(Debug)]
+pub struct PhotonMap {
+    radius: f32,
+    lanes: Lanes,
+    /// Of each photon its cell; in order.
+    cells: Vec<u64>,
+    photons: Vec<Photon>,
+}
+
+impl Photons {
+    /// For a world: some photons for each sample. `radius` is how far the first sample looks, in units of the world; without, it is a
+    /// share of the smallest thing that throws light.
+    pub fn new(world: &World, seed: u64, count: u32, radius: Option<f32>) -> Self {
+        let beams = Beams::new(world);
+        let usual = 0.05 * beams.finest();
+        let radius = radius.unwrap_or(if usual.is_finite() { usual } else { 1.0 });
+        Photons { beams, seed, count, radius, kept: Mutex::default() }
+    }
+
+    /// How far a sample looks: r_(i+1)^2 = r_i^2 (i + alpha) / (i + 1).
+    fn radius(&self, sample: u32) -> f32 {
+        let square = (1..=sample).map(f64::from).fold(1.0, |square, i| square * (i + ALPHA) / (i + 1.0));
+        self.radius * square.sqrt() as f32
+    }
+
+    /// The photons of a sample.
+    pub(super) fn map(&self, path: &Path, sample: u32) -> Arc<PhotonMap> {
+        let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((_, map)) = kept.iter().find(|(number, _)| *number == sample) {
+            return map.clone();
+        }
+        // Whoever waits for the lock must not be given work that waits for it too: one thread makes it.
+        let map = Arc::new(self.make(path, sample, false));
+        Self::keep(&mut kept, sample, map.clone());
+        map
+    }
+
+    /// Makes the photons of a sample in advance, by all threads.
+    pub fn prepare(&self, path: &Path, sample: u32) {
+        let kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
+        if kept.iter().any(|(number, _)| *number == sample) {
+            return;
+        }
+        drop(kept);
+        let map = Arc::new(self.make(path, sample, true));
+        Self::keep(&mut self.kept.lock().unwrap_or_else(PoisonError::into_inner), sample, map);
+    }
+
+    fn keep(kept: &mut VecDeque<(u32, Arc<PhotonMap>)>, sample: u32, map: Arc<PhotonMap>) {
+        kept.push_back((sample, map));
+        if kept.len() > MAX_KEPT {
+            kept.pop_front();
+        }
+    }
+
+    fn make(&self, path: &Path, sample: u32, parallel: bool) -> PhotonMap {
+        // All photons of a sample have the same wavelengths, and those of its paths.
+        let lanes = Lanes::new(path.color, sample_2d(self.seed, 0, 0, sample, WAVELENGTHS).x);
+        let one = |number: u32| self.trace(path, sample, number, lanes);
+        let found: Vec<Photon> = match parallel {
+            true => (0..self.count).into_par_iter().flat_map_iter(one).collect(),
+            false => (0..self.count).flat_map(one).collect(),
+        };
+        PhotonMap::new(self.radius(sample), lanes, found)
+    }
+
+    /// Sends one photon out, and says where it came to rest.
+    fn trace(&self, path: &Path, pass: u32, number: u32, lanes: Lanes) -> Option<Photon> {
+        // The photons of a pass fill the lamps and directions evenly.
+        let id = SampleId::new(self.seed ^ OTHER_SEED, (pass, 0), number);
+        let [choices, place, direction] = [0, 1, 2].map(|dimension| id.pair(dimension));
+        let emitted = self.beams.emit(path.world, choices, place, direction)?;
+        let power = emitted.power / self.count as f32;
+        let sample = Sample { id: id.at(3), lanes, photons: None };
+        let mut state = State { throughput: Spectrum::ONE, ..State::default() };
+        let mut ray = emitted.ray;
+        let mut first = true;
+        loop {
+            let (end, _) = path.fly(&ray, &mut state, &sample, &mut ());
+            let End::Surface(met) = end else { return None };
+            if first {
+                // A light with a place is as strong as it is where the photon arrives.
+                let color = match emitted.light {
+                    Some(light) => {
+                        let seen = path.world.illuminate(light as usize, met.surface.point());
+                        PI * seen.color * seen.distance * seen.distance
+                    }
+                    None => Color::ONE,
+                };
+                state.throughput *= lanes.light(power * color);
+            }
+            let shading = met.shading(path.world, &lanes);
+            path.kept(&met, &mut state, &sample);
+            if !first && shading.bsdf.is_broad() {
+                let bounces = state.depth;
+                let wi = -ray.dir().normalize();
+                let photon = Photon { position: met.surface.position, wi, power: state.throughput, bounces };
+                return state.throughput.is_finite().then_some(photon);
+            }
+            let surface = &met.surface;
+            let at = Place::Surface(surface, &shading, met.passage.as_ref());
+            let numbers = id.at(3 + state.depth * USES);
+            let chosen = at.sample(numbers.pair(0).x, numbers.pair(1))?;
+            if chosen.pdf != 0.0 || state.depth > path.settings.bounces {
+                return None;
+            }
+            // Power is not denser where the index is higher, as radiance is.
+            let eta = met.eta();
+            let weight = chosen.weight * if chosen.is_bent() { eta * eta } else { 1.0 };
+            let survival = (state.throughput * weight).max_element() / state.throughput.max_element();
+            let survival = survival.clamp(0.0, 1.0);
+            if !(numbers.pair(2).x < survival) {
+                return None;
+            }
+            state = State {
+                media: at.media(&state, chosen.wi).clone(),
+                throughput: state.throughput * weight / survival,
+                depth: state.depth + 1,
+                alone: state.alone,
+                ..State::default()
+            };
+            ray = at.spawn(chosen.wi);
+            first = false;
+        }
+    }
+}
+
+/// Tells photons' random numbers from those of paths.
+const OTHER_SEED: u64 = 0x7068_6f74_6f6e_7321;
+
+/// The dimension of the wavelengths of a sample's photons.
+const WAVELENGTHS: u32 = 1 << 15;
+
+/// The number of a cell: 21 bits along each axis.
+fn cell_of(place: glam::I64Vec3) -> u64 {
+    let part = |x: i64| (x as u64) & 0x1f_ffff;
+    part(place.x) | part(place.y) << 21 | part(place.z) << 42
+}
+
+impl PhotonMap {
+    fn new(radius: f32, lanes: Lanes, found: Vec<Photon>) -> Self {
+        // Photons of a cell stay in the order in which they were sent, so that sums have the same bits.
+        let mut order: Vec<(u64, u32)> = found
+            .iter()
+            .enumerate()
+            .map(|(i, photon)| (cell_of(place(photon.position, radius, 0.0)), i as u32))
+            .collect();
+        order.sort_unstable();
+        let photons = order.iter().map(|&(_, i)| found[i as usize]).collect();
+        PhotonMap { radius, lanes, cells: order.into_iter().map(|(cell, _)| cell).collect(), photons }
+    }
+
+    /// How far it looks.
+    pub fn radius(&self) -> f32 {
+        self.radius
+    }
+
+    /// What its light is made of.
+    pub fn lanes(&self) -> &Lanes {
+        &self.lanes
+    }
+
+    /// The light that a surface scatters of the photons nearby, and how many those are. Photons that were mirrored more often than
+    /// `most` do not count.
+    pub fn light(&self, surface: &Surface, shading: &Shading, most: u32) -> (Spectrum, usize) {
+        let (mut sum, mut count) = (Spectrum::ZERO, 0);
+        let square = self.radius * self.radius;
+        // Cells are two radii wide: those half a cell around the point hold all that is within a radius.
+        let low = place(surface.position, self.radius, -0.5);
+        for corner in 0..8 {
+            let cell = cell_of(low + glam::I64Vec3::new(corner & 1, corner >> 1 & 1, corner >> 2));
+            let start = self.cells.partition_point(|&other| other < cell);
+            for (photon, _) in self.photons[start..].iter().zip(&self.cells[start..]).take_while(|pair| *pair.1 == cell)
+            {
+                let way = photon.position - surface.position;
+                let beside = way.dot(surface.n_geo);
+                let distance = way.length_squared();
+                // What lies on another surface does not count.
+                if distance >= square || beside * beside > 0.1 * square || photon.bounces > most {
+                    continue;
+                }
+                let cosine = shading.frame.normal.dot(photon.wi).abs();
+                let value = shading.eval(photon.wi);
+                if value == Spectrum::ZERO || cosine <= 1e-4 {
+                    continue;
+                }
+                count += 1;
+                // Epanechnikov's kernel in the plane.
+                let kernel = 2.0 / (PI * square) * (1.0 - distance / square);
+                sum += value * photon.power * (kernel / cosine);
+            }
+        }
+        (sum, count)
+    }
+}
+
+fn place(point: Vec3, radius: f32, shift: f64) -> glam::I64Vec3 {
+    (point.as_dvec3() / (2.0 * f64::from(radius)) + DVec3::splat(shift)).floor().as_i64vec3()
+}

@@ -1,0 +1,82 @@
+//! Photons beside paths and closed forms.
+
+use super::*;
+
+/// The mean over samples of a ray's light by photons, and its standard error.
+fn by_photons(world: &World, ray: Ray, (count, radius): (u32, f32), samples: u32) -> (f64, f64) {
+    let settings = Settings { bounces: 12, ..Job::default().settings };
+    let photons = Some(Arc::new(Photons::new(world, 3, count, Some(radius))));
+    let path = Path { world, settings, clamp: None, color: ColorMode::Rgb, photons, cancel: None };
+    let values: Vec<f64> = (0..samples)
+        .map(|sample| f64::from(path.radiance(&ray, SampleId::new(7, (3, 5), sample), &mut ()).x))
+        .collect();
+    let mean = values.iter().sum::<f64>() / f64::from(samples);
+    let variance = values.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>() / f64::from(samples);
+    (mean, (variance / f64::from(samples)).sqrt())
+}
+
+const GLASS: &str = "PrincipledMaterial { transmissionWeight 1 specularRoughness 0 }";
+
+#[test]
+fn light_through_a_slab_is_what_fresnel_leaves() {
+    // All reflections inside counted, T = (1 - F) / (1 + F) with F = 0.04: light that no path finds but by way of the floor.
+    let world = scene(
+        &format!("{MATTE} {GLASS}"),
+        "DirectionalLight { direction 0 -1 0 color 2 2 2 }",
+        "MaterialIndex 0 Plane { normal 0 1 0 offset 0 } MaterialIndex 1 Box { min -3 1 -3 max 3 1.2 3 }",
+    );
+    let below = Ray::new(Vec3::new(2.0, 0.9, 0.0), Vec3::new(-2.0, -0.9, 0.0).normalize());
+    let (mean, error) = by_photons(&world, below, (20_000, 0.3), 24);
+    // Some light comes over the floor around.
+    let expected = 0.5 * 2.0 * (1.0 - 0.04) / (1.0 + 0.04) + light(&world, below, 12, 1 << 14).0;
+    assert!((mean - expected).abs() < 3.0 * error + 0.003 * expected, "{mean} ± {error}, not {expected}");
+    let (without, _) = light(&world, below, 12, 256);
+    assert!(without < 0.1 * expected, "{without}");
+}
+
+#[test]
+fn photons_and_paths_agree_where_both_find_the_light() {
+    let lamp = "PrincipledMaterial { baseColor 0 0 0 specularWeight 0 emissionLuminance 6 }";
+    let world = scene(
+        &format!("{MATTE} {GLASS} {lamp}"),
+        "",
+        "MaterialIndex 0 Plane { normal 0 1 0 offset 0 } MaterialIndex 1 Sphere { center 0 1 0 radius 0.7 } \
+         MaterialIndex 2 Rectangle { corner -1 4 -1 edge0 2 0 0 edge1 0 0 2 }",
+    );
+    for place in [0.0, 0.25, 0.9] {
+        let ray = Ray::new(Vec3::new(place + 3.0, 0.4, 0.0), Vec3::new(-3.0, -0.4, 0.0).normalize());
+        let (a, ea) = light(&world, ray, 12, 1 << 16);
+        let (b, eb) = by_photons(&world, ray, (20_000, 0.1), 48);
+        // Within the kernel's radius light changes: one part in a hundred is allowed for that.
+        assert!((a - b).abs() < 3.5 * (ea * ea + eb * eb).sqrt() + 0.01 * a, "at {place}: {a} ± {ea}, {b} ± {eb}");
+    }
+}
+
+#[test]
+fn maps_are_the_same_however_they_are_made() {
+    let world = scene(
+        &format!("{MATTE} {GLASS}"),
+        "PointLight { position 0.5 4 0 color 9 9 9 falloff 1 }",
+        "MaterialIndex 0 Plane { normal 0 1 0 offset 0 } MaterialIndex 1 Sphere { center 0 1 0 radius 0.7 }",
+    );
+    let settings = Job::default().settings;
+    let ray = Ray::new(Vec3::new(3.0, 0.4, 0.0), Vec3::new(-3.0, -0.4, 0.0).normalize());
+    let made = |prepared: bool| {
+        let photons = Arc::new(Photons::new(&world, 3, 5_000, None));
+        let path = Path {
+            world: &world,
+            settings,
+            clamp: None,
+            color: ColorMode::Rgb,
+            photons: Some(photons.clone()),
+            cancel: None,
+        };
+        if prepared {
+            photons.prepare(&path, 2);
+        }
+        path.radiance(&ray, SampleId::new(7, (3, 5), 2), &mut ())
+    };
+    let (a, b) = (made(true), made(false));
+    assert!(a.x > 0.0);
+    assert_eq!(a, b);
+}
