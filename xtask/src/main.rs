@@ -8,6 +8,7 @@ mod explain;
 mod fuzz;
 mod long;
 mod manual;
+mod peers;
 mod solids;
 mod teach;
 mod torture;
@@ -50,6 +51,9 @@ const USAGE: &str = "Commands:
   cargo xtask teach [--compare | --check] [--only TEXT] [--keep FOLDER]
       Wrong pictures made by a tracer of its own, for `durer compare`, and broken scenes, for `durer check`: how many are told
       rightly, and how many wrongly?
+  cargo xtask peers [--python PROGRAM] [--samples 1024] [--only TEXT]
+      Equal scenes by us and by Mitsuba 3, compared pixel by pixel. Without --python, Mitsuba comes from the package index
+      into target/peers.
   cargo xtask validate [--samples N]
       Light against answers in closed form, and docs/validation.md.
   cargo xtask manual
@@ -76,6 +80,7 @@ fn main() -> anyhow::Result<ExitCode> {
         Some("long") => long::run(&arguments[1..]),
         Some("fuzz") => fuzz::run(&arguments[1..]),
         Some("validate") => validate::run(&arguments[1..]),
+        Some("peers") => peers::run(&arguments[1..]),
         Some("manual") => manual::run(),
         _ => {
             println!("{USAGE}");

@@ -139,6 +139,10 @@ pub struct RenderArgs {
     pub work: WorkArgs,
     #[command(flatten)]
     pub display: DisplayArgs,
+    /// Take the noise out of the colour picture, by what is known of each pixel's surface and of its noise; EXR keeps the picture
+    /// as it was rendered, beside a layer `denoised`, and --hash knows nothing of it
+    #[arg(long)]
+    pub denoise: bool,
     /// Print the hash of the film as the last line of standard output
     #[arg(long)]
     pub hash: bool,

@@ -90,6 +90,13 @@ pub fn run(command: &RenderCommand) -> Result<(), Failure> {
             let mut rendered = part.pictures().map_err(failure)?;
             diagrams::add(&args.view.show, args.view.zoom, &opened.world, &job, &control, &mut rendered)
                 .map_err(failure)?;
+            if args.denoise && job.color {
+                let clean = part.denoised(&opened.world, threads).map_err(failure)?;
+                for shown in rendered.pictures.iter_mut().filter(|layer| layer.name == "color") {
+                    shown.image = clean.image.clone();
+                }
+                rendered.layers.push(clean);
+            }
             output::save(&target.files(&rendered, args.display.display()?)?, args.quiet)?;
             keeper.done(&part, finished);
             if finished && !args.quiet {

@@ -100,4 +100,17 @@ fn broken_lamps_names_and_dark_scenes_are_told_of() {
     );
     let told = place.gives(1, "check turned.txt").out;
     assert!(told.contains("lamp-turned") && told.contains("exchange `edge0` and `edge1`"), "{told}");
+    place.put("milk.txt", LIT.replace("preset gold", "preset gold transmissionScatter 1 1 1"));
+    let told = place.gives(1, "check milk.txt").out;
+    assert!(told.contains("no-depth") && told.contains("transmissionDepth 1"), "{told}");
+    place.put(
+        "bulb.txt",
+        "PerspectiveCamera { center 0 1 8 direction 0 0 -1 up 0 1 0 angle 30 }\n\
+         Lights { PointLight { position 0 1 0 color 5 5 5 falloff 1 } }\n\
+         Materials { PrincipledMaterial { baseColor 0.5 0.5 0.5 } PrincipledMaterial { preset glass } }\n\
+         Group { MaterialIndex 0 Plane { normal 0 1 0 offset 0 } MaterialIndex 1 Sphere { center 0 1 0 radius 0.6 } }",
+    );
+    let told = place.gives(1, "check bulb.txt").out;
+    assert!(told.contains("lamp-in-glass") && told.contains("--integrator photons"), "{told}");
+    assert!(!place.gives(1, "check bulb.txt --integrator photons").out.contains("lamp-in-glass"));
 }

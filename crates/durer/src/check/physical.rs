@@ -1,10 +1,13 @@
-//! Under a path tracer: scenes in which nothing shines, and lamps that shine on nothing that is seen.
+//! Under a path tracer: scenes in which nothing shines, lamps that shine on nothing that is seen or are enclosed in glass, and
+//! words of media without effect.
 
 use super::finding::Finding;
 use super::scout::Scout;
 use crate::diag::Diagnostic;
 use crate::integrator::Method;
+use crate::light::Emitter as _;
 use crate::math::{Color, Vec3};
+use crate::scene::Material;
 use crate::world::emitters::Form;
 
 /// What is found of local light says nothing of paths.
@@ -82,6 +85,62 @@ pub(super) fn lamp_turned(scout: &Scout) -> Vec<Finding> {
             .effect("it lights nothing, and is seen black from behind")
             .help(format!("a surface shines to the side of its normal: {turn}, or give its material `walls thin`, with which both sides shine"));
         found.push(Finding::from(diagnostic));
+    }
+    found
+}
+
+/// Lamps without extent inside of glass: no path finds their light outside.
+pub(super) fn lamp_in_glass(scout: &Scout) -> Vec<Finding> {
+    let world = scout.world();
+    if !matches!(scout.subject.job.method, Method::Path { .. }) {
+        return Vec::new();
+    }
+    let lights = world.lights.iter().enumerate().filter_map(|(number, light)| Some((number, light.place()?.0)));
+    let enclosed = lights.filter_map(|(number, place)| {
+        let glass = world.glass_around(place).find(|&(_, ior)| ior != 1.0)?.0;
+        let message =
+            format!("light {number} is inside the {}: its light comes out by refraction alone", scout.object(glass));
+        let diagnostic = Diagnostic::warning(message)
+            .at(scout.object_span(glass))
+            .effect("paths do not find it: outside it is as if it were not there")
+            .help(
+                "take `--integrator photons`, or a material with `emissionLuminance` on a sphere instead of the light",
+            );
+        Some(Finding::from(diagnostic))
+    });
+    enclosed.collect()
+}
+
+/// What scatters inside of a body, or spreads colours, where that cannot be seen.
+pub(super) fn without_effect(scout: &Scout) -> Vec<Finding> {
+    if !is_physical(scout) {
+        return Vec::new();
+    }
+    let mut found = Vec::new();
+    for material in &scout.subject.scene.materials {
+        let Material::Principled(m) = &material.value else { continue };
+        let word = if m.transmission_scatter != Vec3::ZERO && m.transmission_depth == 0.0 {
+            Some((
+                "transmissionScatter",
+                "nothing is scattered inside: `transmissionDepth` is 0",
+                "write `transmissionDepth 1`, say: how deep light goes until it has `transmissionColor`",
+            ))
+        } else if m.transmission_scatter != Vec3::ZERO && m.transmission_weight == 0.0 {
+            Some((
+                "transmissionScatter",
+                "no light comes inside: `transmissionWeight` is 0",
+                "write `transmissionWeight 1`, or `subsurfaceWeight 1` for what is not clear",
+            ))
+        } else if m.subsurface_weight > 0.0 && m.transmission_weight == 1.0 {
+            Some(("subsurfaceWeight", "all light is refracted: `transmissionWeight` is 1", "leave one of them out"))
+        } else {
+            None
+        };
+        if let Some((word, effect, help)) = word {
+            let message = format!("`{word}` has no effect in this material");
+            let diagnostic = Diagnostic::warning(message).at(material.span).effect(effect).help(help);
+            found.push(Finding::from(diagnostic));
+        }
     }
     found
 }

@@ -59,6 +59,8 @@ checks! {
     "no-light": "no light", reported;
     "no-emitter": "a scene for paths in which nothing shines", physical::no_emitter;
     "lamp-turned": "a lamp that shines away from all that is seen", physical::lamp_turned;
+    "lamp-in-glass": "a lamp that paths do not find, since it is inside of glass", physical::lamp_in_glass;
+    "no-depth": "words of a medium that have no effect", physical::without_effect;
     "black-light": "a light without colour", reported;
     "light-divides": "a light that is divided by zero", lights::divides;
     "no-falloff": "a light without `falloff`, where the old program divides by it", reported;

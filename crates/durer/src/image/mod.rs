@@ -4,6 +4,7 @@
 //! [`FORMATS`] knows the file formats, [`read()`] reads them from memory, [`save()`] puts bytes into a file.
 
 pub mod compare;
+pub mod denoise;
 mod display;
 mod error;
 mod formats;

@@ -83,6 +83,8 @@ struct State {
     /// Whether mirrors or glass come after a point that scatters into many directions: light that is seen over them there
     /// is what photons bring.
     behind_mirrors: bool,
+    /// Whether the thing that it was last scattered by is one that photons are sent to.
+    by_target: bool,
     /// Whether it was scattered into many directions.
     broad: bool,
     /// Whether only the first lane still counts, since others would go other ways.
@@ -92,6 +94,7 @@ struct State {
 impl Default for State {
     fn default() -> Self {
         State {
+            by_target: false,
             media: Media::default(),
             throughput: Spectrum::ONE,
             depth: 0,
@@ -316,7 +319,8 @@ impl Path<'_> {
             End::Lost => Spectrum::ZERO,
             End::Sky(dir) => {
                 let sky = sample.lanes.light(self.world.sky(dir));
-                let weight = self.weight(&state, |_| self.world.emitters.pdf_of_sky(self.world, dir));
+                let carried = self.world.environment.is_some();
+                let weight = self.weight(&state, carried, |_| self.world.emitters.pdf_of_sky(self.world, dir));
                 tally.begin(|| What::Sky);
                 tally.end(Color::splat(weight), Color::ONE, sky.truncate());
                 weight * sky
@@ -424,7 +428,8 @@ impl Path<'_> {
         let emitted = self.world.emission(hit, surface, met.inside());
         if emitted != Color::ZERO {
             let emitted = sample.lanes.light(emitted);
-            let weight = self.weight(&state, |from| self.pdf_of_hit(ray, hit, from));
+            let carried = self.world.emitters.chooses(hit);
+            let weight = self.weight(&state, carried, |from| self.pdf_of_hit(ray, hit, from));
             tally.begin(|| What::Emission { mis: weight });
             tally.end(Color::splat(weight), Color::ONE, emitted.truncate());
             sum += weight * emitted;
@@ -433,6 +438,7 @@ impl Path<'_> {
             return sum;
         }
         let kept = self.kept(met, &mut state, sample);
+        state.by_target = self.photons.as_ref().is_some_and(|photons| photons.reaches(hit.object));
         let place = Place::Surface(surface, &shading, met.passage.as_ref());
         sum + kept * self.scattered(&Vertex { place, state: &state }, sample, tally)
     }
@@ -460,10 +466,11 @@ impl Path<'_> {
     }
 
     /// How much a light counts that a ray met by its direction, where it could have been found in another way too.
-    fn weight(&self, state: &State, pdf: impl Fn(&Scattered) -> f32) -> f32 {
+    /// `carried`: photons are sent from it.
+    fn weight(&self, state: &State, carried: bool, pdf: impl Fn(&Scattered) -> f32) -> f32 {
         match &state.from {
             Some(from) => power(from.pdf, pdf(from)),
-            None if state.behind_mirrors && self.photons.is_some() => 0.0,
+            None if carried && state.behind_mirrors && state.by_target => 0.0,
             None => 1.0,
         }
     }
@@ -546,6 +553,7 @@ impl Path<'_> {
             // Nothing can be connected with over a single direction.
             from: (!delta).then(|| Scattered { point: place.point(), n: place.normal(), pdf: chosen.pdf }),
             behind_mirrors: delta && (state.broad || state.behind_mirrors),
+            by_target: state.by_target,
             broad: !delta || state.broad,
             alone: state.alone,
         };

@@ -1,8 +1,7 @@
 //! Real materials by name.
 //!
 //! The figures are those of OpenPBR's own examples (Academy Software Foundation, *OpenPBR*, 2024), their colours converted from ACEScg to
-//! Rec.709 and kept within 0 to 1. Those that need what is not there yet (subsurface, thin films, scattering inside) are left out;
-//! glass is without its dispersion.
+//! Rec.709 and kept within 0 to 1. Those with thin films are left out: there are none yet. Lengths are in the examples' units; set `subsurfaceRadius` or `transmissionDepth` for the size of a thing.
 
 use super::PrincipledMaterial;
 use crate::describe::{Describe, Value};
@@ -44,7 +43,8 @@ pub const PRESETS: &[Preset] = &[
         ("specular_roughness", &[1.0])]),
     ("blood", &[
         ("specular_roughness", &[0.0]), ("specular_ior", &[1.35]), ("transmission_weight", &[1.0]),
-        ("transmission_color", &[0.644, 0.00299, 0.00506]), ("transmission_depth", &[0.08])]),
+        ("transmission_color", &[0.644, 0.00299, 0.00506]), ("transmission_depth", &[0.08]),
+        ("transmission_dispersion_scale", &[1.0]), ("transmission_dispersion_abbe_number", &[54.0])]),
     ("brass", &[
         ("base_color", &[0.913, 0.777, 0.424]), ("base_metalness", &[1.0]),
         ("specular_color", &[0.95, 0.978, 1.0]), ("specular_roughness", &[0.02])]),
@@ -60,6 +60,9 @@ pub const PRESETS: &[Preset] = &[
     ("charcoal", &[
         ("base_color", &[0.02, 0.02, 0.02]), ("base_diffuse_roughness", &[1.0]),
         ("specular_roughness", &[1.0])]),
+    ("chocolate", &[
+        ("specular_roughness", &[0.5]), ("subsurface_weight", &[1.0]),
+        ("subsurface_color", &[0.162, 0.092, 0.059]), ("subsurface_radius_scale", &[0.1, 0.05, 0.025])]),
     ("chromium", &[
         ("base_color", &[0.653, 0.684, 0.701]), ("base_metalness", &[1.0]),
         ("specular_color", &[0.687, 0.728, 0.798]), ("specular_roughness", &[0.02])]),
@@ -68,7 +71,8 @@ pub const PRESETS: &[Preset] = &[
         ("specular_color", &[0.727, 0.773, 0.822]), ("specular_roughness", &[0.02])]),
     ("coffee", &[
         ("specular_roughness", &[0.0]), ("specular_ior", &[1.34]), ("transmission_weight", &[1.0]),
-        ("transmission_color", &[0.447, 0.133, 0.0335]), ("transmission_depth", &[0.1])]),
+        ("transmission_color", &[0.447, 0.133, 0.0335]), ("transmission_depth", &[0.1]),
+        ("transmission_dispersion_scale", &[1.0]), ("transmission_dispersion_abbe_number", &[55.78])]),
     ("concrete", &[("base_color", &[0.51, 0.51, 0.51]), ("specular_roughness", &[0.5])]),
     ("cooking-oil", &[
         ("specular_roughness", &[0.0]), ("specular_ior", &[1.47]), ("transmission_weight", &[1.0]),
@@ -76,31 +80,43 @@ pub const PRESETS: &[Preset] = &[
     ("copper", &[
         ("base_color", &[0.938, 0.622, 0.523]), ("base_metalness", &[1.0]),
         ("specular_color", &[0.984, 0.947, 0.945]), ("specular_roughness", &[0.02])]),
-    ("diamond", &[("specular_roughness", &[0.0]), ("specular_ior", &[2.42]), ("transmission_weight", &[1.0])]),
+    ("diamond", &[("specular_roughness", &[0.0]), ("specular_ior", &[2.42]), ("transmission_weight", &[1.0]),
+        ("transmission_dispersion_scale", &[1.0]), ("transmission_dispersion_abbe_number", &[55.3])]),
     ("egg-shell", &[("base_color", &[0.61, 0.624, 0.631]), ("specular_roughness", &[0.8])]),
     ("eye-cornea", &[("specular_roughness", &[0.0]), ("specular_ior", &[1.38]), ("transmission_weight", &[1.0])]),
     ("eye-lens", &[("specular_roughness", &[0.0]), ("specular_ior", &[1.39]), ("transmission_weight", &[1.0])]),
+    ("eye-sclera", &[
+        ("specular_roughness", &[0.5]), ("specular_ior", &[1.4]), ("subsurface_weight", &[1.0]),
+        ("subsurface_color", &[0.652, 0.5, 0.394]), ("subsurface_radius_scale", &[0.482, 0.169, 0.109])]),
     ("gasoline", &[
         ("specular_roughness", &[0.0]), ("specular_ior", &[1.43]), ("transmission_weight", &[1.0]),
         ("transmission_color", &[1.0, 0.97, 0.618])]),
     ("germanium", &[
         ("base_color", &[0.5, 0.517, 0.466]), ("base_metalness", &[1.0]),
         ("specular_color", &[0.62, 0.653, 0.701]), ("specular_roughness", &[0.02])]),
-    ("glass", &[("specular_roughness", &[0.0]), ("specular_ior", &[1.52]), ("transmission_weight", &[1.0])]),
+    ("glass", &[("specular_roughness", &[0.0]), ("specular_ior", &[1.52]), ("transmission_weight", &[1.0]),
+        ("transmission_dispersion_scale", &[1.0]), ("transmission_dispersion_abbe_number", &[64.0])]),
     ("gold", &[
         ("base_color", &[1.0, 0.774, 0.307]), ("base_metalness", &[1.0]),
         ("specular_color", &[0.97, 1.0, 0.995]), ("specular_roughness", &[0.02])]),
     ("gray-card", &[("base_color", &[0.18, 0.18, 0.18]), ("specular_roughness", &[0.9])]),
+    ("honey-crystallized", &[
+        ("specular_roughness", &[0.2]), ("subsurface_weight", &[1.0]),
+        ("subsurface_color", &[0.449, 0.319, 0.011]), ("subsurface_radius_scale", &[0.2, 0.2, 0.2])]),
     ("honey-liquid", &[
         ("specular_roughness", &[0.0]), ("specular_ior", &[1.5]), ("transmission_weight", &[1.0]),
         ("transmission_color", &[0.831, 0.571, 0.0372])]),
-    ("ice", &[("specular_roughness", &[0.5]), ("specular_ior", &[1.31]), ("transmission_weight", &[1.0])]),
+    ("ice", &[("specular_roughness", &[0.5]), ("specular_ior", &[1.31]), ("transmission_weight", &[1.0]),
+        ("transmission_dispersion_scale", &[1.0]), ("transmission_dispersion_abbe_number", &[64.87])]),
     ("iridium", &[
         ("base_color", &[0.745, 0.734, 0.705]), ("base_metalness", &[1.0]),
         ("specular_color", &[0.757, 0.781, 0.81]), ("specular_roughness", &[0.02])]),
     ("iron", &[
         ("base_color", &[0.531, 0.513, 0.494]), ("base_metalness", &[1.0]),
         ("specular_color", &[0.764, 0.768, 0.801]), ("specular_roughness", &[0.02])]),
+    ("ketchup", &[
+        ("specular_roughness", &[0.1]), ("specular_ior", &[1.3]), ("subsurface_weight", &[1.0]),
+        ("subsurface_color", &[0.165, 0.006, 0.002]), ("subsurface_radius_scale", &[0.476, 0.058, 0.039])]),
     ("lcd-display-6500k", &[("emission_color", &[0.999, 0.943, 0.992]), ("emission_luminance", &[200.0])]),
     ("lead", &[
         ("base_color", &[0.624, 0.64, 0.693]), ("base_metalness", &[1.0]),
@@ -116,9 +132,15 @@ pub const PRESETS: &[Preset] = &[
     ("manganese", &[
         ("base_color", &[0.607, 0.591, 0.573]), ("base_metalness", &[1.0]),
         ("specular_color", &[0.796, 0.834, 0.888]), ("specular_roughness", &[0.02])]),
+    ("marble", &[
+        ("specular_roughness", &[0.0]), ("subsurface_weight", &[1.0]),
+        ("subsurface_color", &[0.83, 0.791, 0.753]), ("subsurface_radius_scale", &[0.851, 0.557, 0.395])]),
     ("mercury", &[
         ("base_color", &[0.782, 0.78, 0.779]), ("base_metalness", &[1.0]),
         ("specular_color", &[0.812, 0.852, 0.902]), ("specular_roughness", &[0.02])]),
+    ("milk", &[
+        ("specular_roughness", &[0.0]), ("specular_ior", &[1.35]), ("subsurface_weight", &[1.0]),
+        ("subsurface_color", &[0.815, 0.813, 0.682]), ("subsurface_radius_scale", &[1.842, 1.044, 0.35])]),
     ("molybdenum", &[
         ("base_color", &[0.589, 0.612, 0.594]), ("base_metalness", &[1.0]),
         ("specular_color", &[0.683, 0.696, 0.725]), ("specular_roughness", &[0.02])]),
@@ -129,9 +151,14 @@ pub const PRESETS: &[Preset] = &[
     ("palladium", &[
         ("base_color", &[0.735, 0.703, 0.663]), ("base_metalness", &[1.0]),
         ("specular_color", &[0.81, 0.836, 0.871]), ("specular_roughness", &[0.02])]),
+    ("petroleum", &[
+        ("specular_roughness", &[0.0]), ("subsurface_weight", &[1.0]),
+        ("subsurface_color", &[0.031, 0.027, 0.023]), ("subsurface_radius_scale", &[3.0, 1.0, 0.25])]),
     ("plastic-acrylic", &[
-        ("specular_roughness", &[0.0]), ("specular_ior", &[1.49]), ("transmission_weight", &[1.0])]),
-    ("plastic-pc", &[("specular_roughness", &[0.0]), ("specular_ior", &[1.58]), ("transmission_weight", &[1.0])]),
+        ("specular_roughness", &[0.0]), ("specular_ior", &[1.49]), ("transmission_weight", &[1.0]),
+        ("transmission_dispersion_scale", &[1.0]), ("transmission_dispersion_abbe_number", &[53.18])]),
+    ("plastic-pc", &[("specular_roughness", &[0.0]), ("specular_ior", &[1.58]), ("transmission_weight", &[1.0]),
+        ("transmission_dispersion_scale", &[1.0]), ("transmission_dispersion_abbe_number", &[27.86])]),
     ("plastic-pet", &[("specular_roughness", &[0.0]), ("specular_ior", &[1.57]), ("transmission_weight", &[1.0])]),
     ("plastic-polyurethane", &[
         ("specular_roughness", &[0.0]), ("specular_ior", &[1.6]), ("transmission_weight", &[1.0])]),
@@ -143,23 +170,47 @@ pub const PRESETS: &[Preset] = &[
     ("potassium", &[
         ("base_color", &[0.984, 0.956, 0.907]), ("base_metalness", &[1.0]),
         ("specular_color", &[1.0, 1.0, 1.0]), ("specular_roughness", &[0.02])]),
-    ("quartz", &[("specular_roughness", &[0.0]), ("specular_ior", &[1.54]), ("transmission_weight", &[1.0])]),
+    ("quartz", &[("specular_roughness", &[0.0]), ("specular_ior", &[1.54]), ("transmission_weight", &[1.0]),
+        ("transmission_dispersion_scale", &[1.0]), ("transmission_dispersion_abbe_number", &[67.82])]),
     ("rubidium", &[
         ("base_color", &[0.921, 0.859, 0.748]), ("base_metalness", &[1.0]),
         ("specular_color", &[1.0, 1.0, 1.0]), ("specular_roughness", &[0.02])]),
-    ("salt", &[("specular_roughness", &[0.2]), ("specular_ior", &[1.54]), ("transmission_weight", &[1.0])]),
+    ("salt", &[("specular_roughness", &[0.2]), ("specular_ior", &[1.54]), ("transmission_weight", &[1.0]),
+        ("transmission_dispersion_scale", &[1.0]), ("transmission_dispersion_abbe_number", &[42.89])]),
     ("sand", &[
         ("base_color", &[0.44, 0.386, 0.231]), ("base_diffuse_roughness", &[1.0]),
         ("specular_roughness", &[1.0])]),
     ("sapphire", &[
         ("specular_roughness", &[0.0]), ("specular_ior", &[1.77]), ("transmission_weight", &[1.0]),
-        ("transmission_color", &[0.67, 0.764, 0.855])]),
+        ("transmission_color", &[0.67, 0.764, 0.855]),
+        ("transmission_dispersion_scale", &[1.0]), ("transmission_dispersion_abbe_number", &[72.2])]),
     ("silicon", &[
         ("base_color", &[0.345, 0.369, 0.426]), ("base_metalness", &[1.0]),
         ("specular_color", &[0.72, 0.701, 0.664]), ("specular_roughness", &[0.02])]),
     ("silver", &[
         ("base_color", &[0.991, 0.985, 0.973]), ("base_metalness", &[1.0]),
         ("specular_color", &[0.995, 0.995, 0.998]), ("specular_roughness", &[0.02])]),
+    ("skin-i", &[
+        ("specular_roughness", &[0.5]), ("specular_ior", &[1.4]), ("subsurface_weight", &[1.0]),
+        ("subsurface_color", &[0.847, 0.639, 0.553]), ("subsurface_radius_scale", &[0.482, 0.169, 0.109])]),
+    ("skin-ii", &[
+        ("specular_roughness", &[0.5]), ("specular_ior", &[1.4]), ("subsurface_weight", &[1.0]),
+        ("subsurface_color", &[0.799, 0.485, 0.347]), ("subsurface_radius_scale", &[0.482, 0.169, 0.109])]),
+    ("skin-iii", &[
+        ("specular_roughness", &[0.5]), ("specular_ior", &[1.4]), ("subsurface_weight", &[1.0]),
+        ("subsurface_color", &[0.623, 0.433, 0.343]), ("subsurface_radius_scale", &[0.482, 0.169, 0.109])]),
+    ("skin-iv", &[
+        ("specular_roughness", &[0.5]), ("specular_ior", &[1.4]), ("subsurface_weight", &[1.0]),
+        ("subsurface_color", &[0.437, 0.227, 0.131]), ("subsurface_radius_scale", &[0.367, 0.137, 0.068])]),
+    ("skin-v", &[
+        ("specular_roughness", &[0.5]), ("specular_ior", &[1.4]), ("subsurface_weight", &[1.0]),
+        ("subsurface_color", &[0.282, 0.149, 0.079]), ("subsurface_radius_scale", &[0.367, 0.137, 0.068])]),
+    ("skin-vi", &[
+        ("specular_roughness", &[0.5]), ("specular_ior", &[1.4]), ("subsurface_weight", &[1.0]),
+        ("subsurface_color", &[0.09, 0.05, 0.02]), ("subsurface_radius_scale", &[0.367, 0.137, 0.068])]),
+    ("snow", &[
+        ("specular_roughness", &[0.5]), ("specular_ior", &[1.31]), ("subsurface_weight", &[1.0]),
+        ("subsurface_color", &[0.85, 0.85, 0.85]), ("subsurface_radius_scale", &[0.2, 0.2, 1.0])]),
     ("sodium", &[
         ("base_color", &[0.977, 0.961, 0.936]), ("base_metalness", &[1.0]),
         ("specular_color", &[0.998, 1.0, 1.0]), ("specular_roughness", &[0.02])]),
@@ -181,7 +232,8 @@ pub const PRESETS: &[Preset] = &[
         ("base_color", &[0.0771, 0.000494, 0.307]), ("base_diffuse_roughness", &[1.0]),
         ("specular_roughness", &[1.0]), ("fuzz_weight", &[0.5]), ("fuzz_color", &[0.351, 0.224, 0.498]),
         ("fuzz_roughness", &[0.5])]),
-    ("water", &[("specular_roughness", &[0.0]), ("specular_ior", &[1.33]), ("transmission_weight", &[1.0])]),
+    ("water", &[("specular_roughness", &[0.0]), ("specular_ior", &[1.33]), ("transmission_weight", &[1.0]),
+        ("transmission_dispersion_scale", &[1.0]), ("transmission_dispersion_abbe_number", &[55.78])]),
     ("whiteboard", &[("base_color", &[0.869, 0.867, 0.772]), ("specular_roughness", &[0.0])]),
     ("zinc", &[
         ("base_color", &[0.806, 0.844, 0.864]), ("base_metalness", &[1.0]),

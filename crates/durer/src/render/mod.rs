@@ -2,6 +2,7 @@
 
 mod blocks;
 mod control;
+mod denoised;
 mod error;
 pub mod explain;
 mod eye;

@@ -81,6 +81,20 @@ impl Part {
         pixels.into_iter().unzip()
     }
 
+    /// The colours, the coverage, and the variance of the luminance of each pixel.
+    pub(super) fn noisy(&self) -> (Vec<Color>, Vec<f32>, Vec<f32>) {
+        let state = self.state();
+        let (colors, coverage) = self.colors(&state);
+        let variance = self.summed(&state, |sums| Vec3::splat(sums.variance as f32));
+        // What has too few samples to know is as uncertain as it is bright.
+        let sure = |(value, color): (&(Vec3, Found), &Color)| match value.0.x.is_finite() {
+            true => value.0.x,
+            false => color.max_element() * color.max_element(),
+        };
+        let variance = variance.iter().zip(&colors).map(sure).collect();
+        (colors, coverage, variance)
+    }
+
     /// The values of a picture that comes from the samples.
     fn summed(&self, state: &State, value: fn(&Sums) -> Vec3) -> Vec<(Vec3, Found)> {
         let (gain, none) = (self.gain(), Sums { samples: 0, variance: f64::INFINITY });

@@ -3,7 +3,7 @@
 use super::{Geometry, Hit, Principled, World};
 use crate::bsdf::Layers;
 use crate::math::{Color, Vec2, Vec3};
-use crate::shape::Surface;
+use crate::shape::{Primitive, Surface};
 use crate::texture::Texture;
 
 /// The pictures of a material in layers, by their numbers in [`World::textures`].
@@ -88,5 +88,29 @@ impl World {
         let signed = |x: f32| 2.0 * x - 1.0;
         let (x, y) = (mapping.strength * signed(r), mapping.strength * signed(g));
         (x * tangent + y * bitangent + signed(b) * normal).try_normalize()
+    }
+
+    /// The direction of the world in which u grows at a hit: that of the texture coordinates of a mesh, the way around the axis of
+    /// what is round, the first edge of a rectangle; else the horizontal one.
+    pub(super) fn tangent(&self, hit: &Hit, surface: &Surface) -> Vec3 {
+        let object = &self.objects[hit.object as usize];
+        let to_world = object.to_world.as_ref();
+        let normal = to_world.map_or(surface.n_geo, |to_world| to_world.local_normal(surface.n_geo));
+        let point = to_world.map_or(surface.position, |to_world| to_world.inverse_point(surface.position));
+        let around = |axis: Vec3, center: Vec3| Some(axis.cross(point - center));
+        let own = match &object.geometry {
+            Geometry::Mesh(tree) => tree.mesh.tangents(hit.part, surface.barycentric, normal, false).map(|[u, _]| u),
+            Geometry::Primitive(Primitive::Sphere(s)) => around(Vec3::Y, s.center),
+            Geometry::Primitive(Primitive::Ellipsoid(s)) => around(Vec3::Y, s.center),
+            Geometry::Primitive(Primitive::Cylinder(s)) => around(s.top - s.base, s.base),
+            Geometry::Primitive(Primitive::Cone(s)) => around(s.top - s.base, s.base),
+            Geometry::Primitive(Primitive::Torus(s)) => around(s.axis, s.center),
+            Geometry::Primitive(Primitive::Disc(s)) => around(s.normal, s.center),
+            Geometry::Primitive(Primitive::Rectangle(s)) => Some(s.edge0),
+            _ => None,
+        };
+        let own = own.filter(|u| u.cross(normal).length_squared() > 1e-12 * u.length_squared());
+        let own = own.unwrap_or_else(|| Vec3::Y.cross(normal));
+        to_world.map_or(own, |to_world| to_world.vector(own))
     }
 }

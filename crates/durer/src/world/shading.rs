@@ -7,11 +7,12 @@ use crate::bsdf::lobe::diffuse::Diffuse;
 use crate::bsdf::lobe::glass::{Mirror, Refraction, Through};
 use crate::bsdf::{Bsdf, Frame, fresnel};
 use crate::material::principled::Walls;
-use crate::math::{Color, Vec3};
+use crate::math::{Color, Vec3, fp};
 use crate::medium::Medium;
 use crate::shape::Surface;
 use crate::spectrum::{Lanes, Spectrum};
 use crate::world::HighlightModel;
+use crate::world::Part;
 use crate::world::material::Emission;
 
 /// A surface point as it is seen from one direction.
@@ -71,7 +72,7 @@ impl World {
         let [n, n_geo] = [n_shade, surface.n_geo].map(|n| if inside { -n } else { n });
         // An interpolated normal may point away from the ray; the surface itself does not.
         let n = if dir.dot(n) < 0.0 { n.normalize_or(n_geo) } else { n_geo };
-        let frame = Frame::around(n);
+        let frame = self.frame(&parts, hit, surface, n);
         let wo = frame.to_local(-dir.normalize_or(-n));
         let wo = Vec3::new(wo.x, wo.y, wo.z.max(1e-6));
         let mut bsdf = Bsdf::default();
@@ -86,6 +87,18 @@ impl World {
             bsdf.extend(&own, part.share);
         }
         Shading { frame, n_geo, wo, bsdf }
+    }
+
+    /// The frame around a normal: along u, and turned from there, where a part's highlight is longer than wide.
+    fn frame(&self, parts: &[Part], hit: &Hit, surface: &Surface, n: Vec3) -> Frame {
+        let turned = parts.iter().find_map(|part| {
+            let own = part.phong.principled.as_ref().filter(|own| own.written.specular_anisotropy > 0.0)?;
+            Some(own.written.specular_rotation)
+        });
+        let Some(turn) = turned else { return Frame::around(n) };
+        let frame = Frame::along(n, self.tangent(hit, surface));
+        let (sin, cos) = fp::sin_cos_degrees(360.0 * f64::from(turn));
+        Frame::along(n, cos as f32 * frame.tangent + sin as f32 * frame.bitangent)
     }
 
     /// The light of a material's own, if points that shine can be chosen: the same everywhere.

@@ -71,6 +71,11 @@ impl Photons {
         Photons { beams, seed, count, radius, kept: Mutex::default() }
     }
 
+    /// Whether photons are sent to an object.
+    pub(super) fn reaches(&self, object: u32) -> bool {
+        self.beams.reaches(object)
+    }
+
     /// How far a sample looks: r_(i+1)^2 = r_i^2 (i + alpha) / (i + 1).
     fn radius(&self, sample: u32) -> f32 {
         let square = (1..=sample).map(f64::from).fold(1.0, |square, i| square * (i + ALPHA) / (i + 1.0));
@@ -133,6 +138,10 @@ impl Photons {
             let (end, _) = path.fly(&ray, &mut state, &sample, &mut ());
             let End::Surface(met) = end else { return None };
             if first {
+                // What photons meet on their way to something else, paths look for.
+                if !self.beams.reaches(met.hit.object) {
+                    return None;
+                }
                 // A light with a place is as strong as it is where the photon arrives.
                 let color = match emitted.light {
                     Some(light) => {

@@ -108,6 +108,14 @@ fn what_is_found_by_chance_and_what_is_connected_with_agree() {
     let ((a, ea), (b, eb)) = (light(&one, to_origin(), 2, 1 << 15), light(&other, to_origin(), 2, 1 << 15));
     assert!((a - b).abs() < 4.0 * (ea * ea + eb * eb).sqrt(), "{a} ± {ea}, {b} ± {eb}");
     assert!(ea < 0.5 * eb, "connecting has less noise: {ea} {eb}");
+    // A cylinder can be chosen, the same cut out of a longer one cannot.
+    let one = over_floor("", "Cylinder { base -0.4 1.2 0.3 top 0.3 2 0 radius 0.4 }");
+    let cut =
+        "Intersection { Cylinder { base -0.4 1.2 0.3 top 0.3 2 0 radius 0.4 } Sphere { center 0 1.6 0 radius 3 } }";
+    let other = over_floor("", cut);
+    let ((a, ea), (b, eb)) = (light(&one, to_origin(), 2, 1 << 15), light(&other, to_origin(), 2, 1 << 15));
+    assert!((a - b).abs() < 4.0 * (ea * ea + eb * eb).sqrt(), "{a} ± {ea}, {b} ± {eb}");
+    assert!(ea < 0.7 * eb, "connecting has less noise: {ea} {eb}");
 }
 
 #[test]

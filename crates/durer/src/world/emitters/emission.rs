@@ -16,6 +16,8 @@ pub struct Target {
     pub center: Vec3,
     /// Its radius.
     pub radius: f32,
+    /// The object that it is around.
+    pub object: u32,
 }
 
 /// What photons are sent from, and where.
@@ -98,9 +100,9 @@ impl Beams {
         }
     }
 
-    /// Whether there is anything to send.
-    pub fn is_empty(&self) -> bool {
-        self.lamps.is_empty()
+    /// Whether photons are sent to an object.
+    pub fn reaches(&self, object: u32) -> bool {
+        !self.lamps.is_empty() && self.targets.binary_search_by_key(&object, |target| target.object).is_ok()
     }
 
     /// The radius of the smallest target.
@@ -175,7 +177,7 @@ impl Beams {
     fn across(&self, dir: Vec3, target: usize, u: Vec2) -> (Ray64, f32) {
         let frame = Frame::around(dir);
         let disc = warp::disc(u);
-        let Target { center, radius } = self.targets[target];
+        let Target { center, radius, .. } = self.targets[target];
         let through = center + radius * (disc.x * frame.tangent + disc.y * frame.bitangent);
         let density = |target: &Target| {
             let beside = (target.center - through).reject_from_normalized(dir).length_squared();
@@ -194,10 +196,10 @@ fn strength(world: &World, light: u32) -> f32 {
     world.lights[light as usize].place().map_or(0.0, |(_, intensity)| intensity.max_element()).max(0.0)
 }
 
-/// Balls around all things that mirror or refract as single directions.
+/// Balls around all things with an end that mirror or refract as single directions, by number.
 fn targets(world: &World) -> Vec<Target> {
     let mut found = Vec::new();
-    for object in &world.objects {
+    for (number, object) in world.objects.iter().enumerate() {
         if !throws_light(world, object) {
             continue;
         }
@@ -208,13 +210,17 @@ fn targets(world: &World) -> Vec<Target> {
             _ => half.length(),
         };
         if radius > 0.0 && radius.is_finite() {
-            found.push(Target { center, radius: 1.001 * radius });
+            found.push(Target { center, radius: 1.001 * radius, object: number as u32 });
         }
     }
     found
 }
 
 fn throws_light(world: &World, object: &Object) -> bool {
+    // The parts of a solid have materials of their own.
+    if matches!(object.geometry, Geometry::Solid(_)) {
+        return true;
+    }
     match &world.materials[object.material as usize] {
         Material::Phong(phong) => match &phong.principled {
             Some(own) => own.has_single_directions(),

@@ -19,7 +19,7 @@ use tree::{Bounds, LightTree};
 pub struct AreaLight {
     /// Where it is.
     pub form: Form,
-    /// Its normal; zero for a sphere.
+    /// Its normal; zero for what has normals to all sides.
     pub normal: Vec3,
     /// Number of the object.
     pub object: u32,
@@ -145,6 +145,11 @@ impl Emitters {
         }
     }
 
+    /// Whether points of what was hit can be chosen, if it shines.
+    pub fn chooses(&self, hit: &Hit) -> bool {
+        self.first[hit.object as usize] != u32::MAX
+    }
+
     /// The density per solid angle with which [`Emitters::sample`] comes upon a hit of a surface that shines; 0 where it
     /// never does.
     pub fn pdf_of_hit(&self, world: &World, hit: &Hit, point: DVec3, n: Vec3, wi: Vec3, distance: f32) -> f32 {
@@ -196,8 +201,8 @@ impl AreaLight {
     }
 
     fn bounds(&self, radiance: f32) -> Bounds {
-        let round = matches!(self.form, Form::Sphere(..));
-        // What is seen of a sphere is a quarter of its surface.
+        let round = self.form.is_round();
+        // What is seen of what bulges is a quarter of its surface, on the mean.
         let area = self.form.area() * if round { 0.25 } else { 1.0 };
         let power = area * radiance;
         Bounds {

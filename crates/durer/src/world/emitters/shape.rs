@@ -19,6 +19,8 @@ pub enum Form {
     Ellipse([Vec3; 3], f32),
     /// A centre and a radius.
     Sphere(Vec3, f32),
+    /// The middle of one cap, the way to that of the other, and a radius.
+    Cylinder(Vec3, Vec3, f32),
 }
 
 /// A chosen point of an emitter, as seen from somewhere.
@@ -69,6 +71,19 @@ impl Form {
                         < 1e-5 * radius * radius;
                 return round.then(|| (Form::Sphere(point(sphere.center), radius), Vec3::ZERO));
             }
+            Geometry::Primitive(Primitive::Cylinder(cylinder)) => {
+                let way = cylinder.top - cylinder.base;
+                let frame = Frame::around(way.normalize_or(Vec3::Y));
+                let [x, y] = [frame.tangent, frame.bitangent].map(|axis| vector(cylinder.radius * axis));
+                let (way, radius) = (vector(way), x.length());
+                // Only what is still round and upright can be chosen.
+                let off = x.dot(y).abs()
+                    + way.normalize_or(Vec3::Y).dot(x).abs() * radius
+                    + way.normalize_or(Vec3::Y).dot(y).abs() * radius
+                    + (y.length() - radius).abs() * radius;
+                let round = off < 1e-5 * radius * radius && way != Vec3::ZERO;
+                return round.then(|| (Form::Cylinder(point(cylinder.base), way, radius), Vec3::ZERO));
+            }
             Geometry::Primitive(_) | Geometry::Solid(_) => return None,
         })
     }
@@ -80,7 +95,13 @@ impl Form {
             Form::Parallelogram([_, e, f]) => e.cross(*f).length(),
             Form::Ellipse([_, u, v], inner) => PI * u.cross(*v).length() * (1.0 - inner * inner),
             Form::Sphere(_, radius) => 4.0 * PI * radius * radius,
+            Form::Cylinder(_, way, radius) => 2.0 * PI * radius * (way.length() + radius),
         }
+    }
+
+    /// Whether it has normals to all sides.
+    pub fn is_round(&self) -> bool {
+        matches!(self, Form::Sphere(..) | Form::Cylinder(..))
     }
 
     /// The box around it.
@@ -93,6 +114,9 @@ impl Form {
                 Aabb { min: p - reach, max: p + reach }
             }
             Form::Sphere(center, radius) => Aabb { min: center - radius, max: center + radius },
+            Form::Cylinder(base, way, radius) => {
+                Aabb::around([base - radius, base + radius, base + way - radius, base + way + radius])
+            }
         }
     }
 
@@ -118,6 +142,17 @@ impl Form {
                 offset(p, from) + d.x * x + d.y * y
             }
             Form::Sphere(center, radius) => return cone(offset(center, from), radius, u),
+            Form::Cylinder(..) => {
+                let (point, normal, density) = self.point(normal, u)?;
+                let to = (point - from).as_vec3();
+                let distance = to.length();
+                let wi = to / distance;
+                let cosine = -wi.dot(normal);
+                let pdf = density * distance * distance / cosine.abs();
+                // The far side cannot be seen.
+                let seen = cosine > 0.0 && pdf.is_finite() && pdf > 0.0;
+                return seen.then_some(Place { wi, distance, cosine, pdf });
+            }
         };
         let distance = to.length();
         let wi = to / distance;
@@ -136,6 +171,10 @@ impl Form {
                     return distance * distance / (self.area() * sphere_cosine(to, wi, distance, radius));
                 }
                 1.0 / (2.0 * PI * one_minus_cosine(r2 / d2))
+            }
+            Form::Cylinder(base, way, radius) => {
+                let normal = outwards(distance * wi - offset(base, from), way, radius);
+                distance * distance / (wi.dot(normal).abs() * self.area())
             }
             Form::Parallelogram([p, e, f]) => match Window::new(offset(p, from), e, f) {
                 Some(window) => 1.0 / window.solid_angle as f32,
@@ -161,6 +200,25 @@ impl Form {
                 let n = warp::sphere(u);
                 (center.as_dvec3() + f64::from(radius) * n.as_dvec3(), n)
             }
+            Form::Cylinder(base, way, radius) => {
+                let height = way.length();
+                let axis = way / height;
+                let frame = Frame::around(axis);
+                // First the caps, then the side.
+                let caps = radius / (height + radius);
+                let (at, n) = if u.x < caps {
+                    let share = 2.0 * u.x / caps;
+                    let (top, share) = (share >= 1.0, share.fract());
+                    let d = warp::disc(Vec2::new(share, u.y)) * radius;
+                    let on = d.x * frame.tangent + d.y * frame.bitangent;
+                    if top { (way + on, axis) } else { (on, -axis) }
+                } else {
+                    let (sin, cos) = fp::sin_cos_degrees(360.0 * f64::from(u.y));
+                    let n = cos as f32 * frame.tangent + sin as f32 * frame.bitangent;
+                    ((u.x - caps) / (1.0 - caps) * way + radius * n, n)
+                };
+                (base.as_dvec3() + at.as_dvec3(), n)
+            }
         };
         let density = 1.0 / self.area();
         density.is_finite().then_some((point, normal, density))
@@ -171,6 +229,17 @@ impl Form {
         let bounds = self.bounds();
         gamma(16) * bounds.min.abs().max(bounds.max.abs()).max_element()
     }
+}
+
+/// The normal of a cylinder at a point of it, as seen from the middle of its base.
+fn outwards(point: Vec3, way: Vec3, radius: f32) -> Vec3 {
+    let height = way.length();
+    let axis = way / height;
+    let along = point.dot(axis);
+    let around = point - along * axis;
+    // Whichever face is nearest.
+    let (side, base, top) = ((around.length() - radius).abs(), along.abs(), (along - height).abs());
+    if side <= base.min(top) { around.normalize_or(axis) } else { axis }
 }
 
 /// A point of the unit disc without its middle, evenly over the area.

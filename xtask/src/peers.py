@@ -1,0 +1,279 @@
+"""Equal scenes by Dürer and by Mitsuba 3, compared pixel by pixel.
+
+    python peers.py DURER [--samples 1024] [--only TEXT]
+
+Each scene is rendered 32 times by both with different random numbers. For each channel of each pixel Welch's t says whether the
+means may be the same; with Sidak's correction for the number of pixels, at least 99.75 % of them must (the test of Mitsuba's own
+pictures). The means of the whole pictures must agree within 0.2 % and three standard errors.
+"""
+
+import argparse
+import pathlib
+import subprocess
+import tempfile
+
+import mitsuba as mi
+import numpy as np
+
+SIZE, RUNS = 32, 32
+T = None
+
+
+def words(values):
+    return " ".join(f"{v:g}" for v in values)
+
+
+def rgb(color):
+    return {"type": "rgb", "value": list(color)}
+
+
+class Scene:
+    """A scene for both: Mitsuba's dictionary, and the text of ours."""
+
+    def __init__(self, name, bounces=6, volumes=False, eye=(0, 0, 3.9), direction=(0, 0, -1), fov=39):
+        self.name, self.bounces = name, bounces
+        kind = "volpath" if volumes else "path"
+        target = [o + d for o, d in zip(eye, direction)]
+        self.theirs = {
+            "type": "scene",
+            "integrator": {"type": kind, "max_depth": bounces + 2, "rr_depth": 1000},
+            "sensor": {
+                "type": "perspective", "fov": fov, "fov_axis": "y",
+                "to_world": T().look_at(origin=list(eye), target=target, up=[0, 1, 0]),
+                "film": {"type": "hdrfilm", "width": SIZE, "height": SIZE, "rfilter": {"type": "box"}, "pixel_format": "rgb"},
+                "sampler": {"type": "independent"},
+            },
+        }
+        self.camera = f"PerspectiveCamera {{ center {words(eye)} direction {words(direction)} up 0 1 0 angle {fov} }}"
+        self.background, self.fog, self.lights, self.materials, self.objects = (0, 0, 0), "", [], [], []
+
+    def text(self):
+        lights = f"Lights {{ {' '.join(self.lights)} }}\n" if self.lights else ""
+        return (f"{self.camera}\nBackground {{ color {words(self.background)} }}\n{self.fog}\n{lights}"
+                f"Materials {{ {' '.join(self.materials)} }}\nGroup {{ {' '.join(self.objects)} }}\n")
+
+    def put(self, material, shape, theirs):
+        if material not in self.materials:
+            self.materials.append(material)
+        self.objects.append(f"MaterialIndex {self.materials.index(material)} {shape}")
+        self.theirs[f"o{len(self.objects)}"] = theirs
+
+    def rectangle(self, corner, e0, e1, surface, emitted=None):
+        material, bsdf = surface if emitted is None else (lamp(emitted), matte((0, 0, 0))[1])
+        c, a, b = (np.array(v, float) for v in (corner, e0, e1))
+        n = np.cross(a, b) / np.linalg.norm(np.cross(a, b))
+        m = np.eye(4)
+        m[:3, 0], m[:3, 1], m[:3, 2], m[:3, 3] = a / 2, b / 2, n, c + a / 2 + b / 2
+        theirs = {"type": "rectangle", "to_world": T(m.tolist()), "bsdf": bsdf}
+        if emitted is not None:
+            theirs["emitter"] = {"type": "area", "radiance": rgb(emitted)}
+        shape = f"Rectangle {{ corner {words(corner)} edge0 {words(e0)} edge1 {words(e1)} }}"
+        self.put(material, shape, theirs)
+
+    def sphere(self, center, radius, surface, emitted=None, medium=None):
+        material, bsdf = surface if emitted is None else (lamp(emitted), matte((0, 0, 0))[1])
+        theirs = {"type": "sphere", "center": list(center), "radius": radius, "bsdf": bsdf}
+        if emitted is not None:
+            theirs["emitter"] = {"type": "area", "radiance": rgb(emitted)}
+        if medium is not None:
+            theirs["interior"] = medium
+        self.put(material, f"Sphere {{ center {words(center)} radius {radius:g} }}", theirs)
+
+    def box(self, power=(12, 10, 8)):
+        """Five walls and a lamp below the ceiling."""
+        white, red, green = matte((0.7, 0.7, 0.7)), matte((0.6, 0.1, 0.1)), matte((0.1, 0.5, 0.1))
+        for corner, e0, e1, wall in [
+            ((-1, -1, -1), (0, 0, 2), (2, 0, 0), white), ((-1, 1, -1), (2, 0, 0), (0, 0, 2), white),
+            ((-1, -1, -1), (2, 0, 0), (0, 2, 0), white), ((-1, -1, -1), (0, 2, 0), (0, 0, 2), red),
+            ((1, -1, -1), (0, 0, 2), (0, 2, 0), green),
+        ]:
+            self.rectangle(corner, e0, e1, (wall[0], {"type": "twosided", "b": wall[1]}))
+        if power is not None:
+            self.rectangle((-0.35, 0.99, -0.35), (0.7, 0, 0), (0, 0, 0.7), None, power)
+        return self
+
+
+def matte(c):
+    return (f"PrincipledMaterial {{ baseColor {words(c)} specularWeight 0 }}", {"type": "diffuse", "reflectance": rgb(c)})
+
+
+def lamp(e):
+    return f"PrincipledMaterial {{ baseColor 0 0 0 specularWeight 0 emissionLuminance 1 emissionColor {words(e)} }}"
+
+
+def glass(ior=1.5, rest=""):
+    return (f"PrincipledMaterial {{ transmissionWeight 1 specularRoughness 0 specularIor {ior:g} {rest} }}",
+            {"type": "dielectric", "int_ior": ior, "ext_ior": 1.0} if ior != 1 else {"type": "null"})
+
+
+def medium(extinction, albedo, g=0.0):
+    """Ours and theirs. Extinction is per unit of length, the same for all colours."""
+    left = float(np.exp(-extinction))
+    scatter = [extinction * a for a in albedo]
+    ours = (f"transmissionDepth 1 transmissionColor {left:.8g} {left:.8g} {left:.8g} transmissionScatter {words(scatter)} "
+            f"transmissionScatterAnisotropy {g:g}")
+    theirs = {"type": "homogeneous", "sigma_t": extinction, "albedo": rgb(albedo), "phase": {"type": "hg", "g": g}}
+    return ours, theirs
+
+
+LEFT, RIGHT = ((-0.4, -0.55, 0.2), 0.45), ((0.45, -0.6, -0.3), 0.4)
+MIRROR = ("PrincipledMaterial { baseColor 1 1 1 baseMetalness 1 specularRoughness 0 }", {"type": "conductor", "material": "none"})
+
+
+def scenes():
+    def balls(name, a, b, bounces=12, **more):
+        s = Scene(name, bounces, **more).box()
+        s.sphere(*LEFT, a)
+        s.sphere(*RIGHT, b)
+        return s
+
+    yield balls("matte balls", matte((0.5, 0.5, 0.5)), matte((0.8, 0.6, 0.2)))
+    yield balls("direct light only", matte((0.5, 0.5, 0.5)), matte((0.8, 0.6, 0.2)), 0)
+    yield balls("one bounce", matte((0.5, 0.5, 0.5)), matte((0.8, 0.6, 0.2)), 1)
+    yield balls("glass and mirror", glass(), MIRROR)
+    yield balls("diamond and water", glass(2.4), glass(1.33))
+    rough = lambda r: (
+        (f"PrincipledMaterial {{ transmissionWeight 1 specularRoughness {r:g} }}",
+         {"type": "roughdielectric", "distribution": "ggx", "alpha": r * r, "int_ior": 1.5, "ext_ior": 1.0}),
+        (f"PrincipledMaterial {{ baseColor 1 1 1 baseMetalness 1 specularRoughness {r:g} }}",
+         {"type": "roughconductor", "distribution": "ggx", "alpha": r * r, "material": "none"}))
+    yield balls("a little rough glass and metal", *rough(0.2))
+    s = Scene("plastic and a pane", 12).box()
+    s.sphere(*LEFT, ("PrincipledMaterial { baseColor 0.2 0.5 0.8 specularRoughness 0 }",
+                     {"type": "plastic", "diffuse_reflectance": rgb((0.2, 0.5, 0.8)), "nonlinear": False, "int_ior": 1.5, "ext_ior": 1.0}))
+    s.rectangle((0, -1, 0.3), (0.8, 0, 0.1), (0, 1.2, 0), (
+        "PrincipledMaterial { transmissionWeight 1 specularRoughness 0 walls thin }", {"type": "thindielectric", "int_ior": 1.5, "ext_ior": 1.0}))
+    yield s
+
+    def outside(name, **more):
+        s = Scene(name, 12, eye=(0, 0.6, 4), direction=(0, -0.12, -1), fov=40, **more)
+        s.rectangle((-50, -0.6, 50), (100, 0, 0), (0, 0, -100), matte((0.5, 0.4, 0.3)))
+        s.sphere((-0.7, 0, 0), 0.6, matte((0.7, 0.7, 0.7)))
+        return s
+
+    def sky(s):
+        s.background = (0.4, 0.5, 0.7)
+        s.theirs["env"] = {"type": "constant", "radiance": rgb(s.background)}
+        return s
+
+    s = sky(outside("open sky and a lamp"))
+    s.sphere((0.7, 0, 0), 0.6, glass())
+    s.sphere((0, 3, 1), 0.8, None, (5, 4, 4))
+    yield s
+    s = outside("a point light")
+    # Ours is what a white surface shows: irradiance over pi.
+    s.lights.append("PointLight { position 1 3 2 color 6 5 4 attenuation 0 0 1 }")
+    s.theirs["l"] = {"type": "point", "position": [1, 3, 2], "intensity": rgb([np.pi * c for c in (6, 5, 4)])}
+    yield s
+    s = sky(outside("a far light"))
+    s.lights.append("DirectionalLight { direction -1 -2 -1 color 1 0.9 0.7 }")
+    s.theirs["l"] = {"type": "directional", "direction": [-1, -2, -1], "irradiance": rgb([np.pi * c for c in (1, 0.9, 0.7)])}
+    yield s
+    s = outside("fifty lamps")
+    turns = np.linspace(0, 2 * np.pi, 50, endpoint=False)
+    for i, turn in enumerate(turns):
+        center = (2 * np.cos(turn), 0.5 + 0.02 * i, 2 * np.sin(turn) - 0.5)
+        s.sphere(center, 0.05, None, (10 + i, 40 - i / 2, 20))
+    yield s
+
+    inside, theirs = medium(2.0, (0.0, 0.0, 0.0))
+    s = Scene("glass that absorbs", 12, volumes=True).box()
+    s.sphere(*LEFT, glass(1.5, inside), medium=theirs)
+    s.sphere(*RIGHT, matte((0.5, 0.5, 0.5)))
+    yield s
+    for name, ior, extinction, albedo, g in [
+        ("a cloud", 1.0, 3.0, (0.9, 0.8, 0.6), 0.0), ("a cloud that scatters onwards", 1.0, 5.0, (0.95, 0.95, 0.9), 0.7),
+    ]:
+        inside, theirs = medium(extinction, albedo, g)
+        s = sky(outside(name, volumes=True))
+        s.bounces, s.theirs["integrator"]["max_depth"] = 60, 62
+        s.sphere((0.7, 0, 0), 0.6, glass(ior, inside), medium=theirs)
+        s.sphere((0, 3, 1), 0.8, None, (5, 4, 4))
+        yield s
+    inside, theirs = medium(4.0, (0.9, 0.85, 0.7))
+    s = sky(outside("milky glass", volumes=True))
+    # The way inside is no bounce of ours: both go on until the light is out.
+    s.bounces, s.theirs["integrator"]["max_depth"] = 100, 400
+    s.sphere((0.7, 0, 0), 0.6, glass(1.5, inside), medium=theirs)
+    yield s
+    s = sky(Scene("fog in a box", 40, volumes=True, eye=(0, 0.3, 5)))
+    s.fog = "Fog { extinction 0.7 color 0.9 0.8 0.7 anisotropy 0.4 min -1 -1 -1 max 1 1 1 }"
+    _, theirs = medium(0.7, (0.9, 0.8, 0.7), 0.4)
+    s.theirs["fog"] = {"type": "cube", "bsdf": {"type": "null"}, "interior": theirs}
+    s.sphere((0, 0, 0), 0.5, matte((0.5, 0.5, 0.5)))
+    s.sphere((2, 3, 1), 0.8, None, (5, 4, 4))
+    yield s
+
+
+def pfm(path):
+    with open(path, "rb") as file:
+        file.readline()
+        width, height = map(int, file.readline().split())
+        file.readline()
+        return np.frombuffer(file.read(), "<f4").reshape(height, width, 3)[::-1].astype(float)
+
+
+def compare(program, scene, samples, folder):
+    source, picture = folder / "scene.txt", folder / "picture.pfm"
+    source.write_text(scene.text())
+    each = max(samples // RUNS, 1)
+    ours = []
+    for seed in range(RUNS):
+        subprocess.run([program, "render", source, "-o", picture, "--size", f"{SIZE}x{SIZE}", "--samples", str(each), "--filter", "box",
+                        "--integrator", "path", "--bounces", str(scene.bounces), "--seed", str(seed), "-q", "--restart"], check=True)
+        ours.append(pfm(picture))
+    loaded = mi.load_dict(scene.theirs)
+    theirs = [np.array(mi.render(loaded, spp=each, seed=seed)).astype(float) for seed in range(RUNS)]
+    ours, theirs = np.array(ours), np.array(theirs)
+    square = (ours.var(0, ddof=1) + theirs.var(0, ddof=1)) / RUNS
+    # Where nothing is random there is rounding.
+    t2 = (ours.mean(0) - theirs.mean(0)) ** 2 / np.maximum(square, (1e-4 * theirs.mean(0)) ** 2 + 1e-12)
+    freedom = 2 * (RUNS - 1)
+    # Student's t as a normal deviate: Wallace 1959.
+    z = np.sqrt(freedom * np.log1p(t2 / freedom)) * (8 * freedom + 1) / (8 * freedom + 3)
+    # Two-sided 1 - (1 - 0.01)^(1 / n) for n pixels: Sidak.
+    alpha = 1 - (1 - 0.01) ** (1 / SIZE**2)
+    limit = deviate(alpha / 2)
+    accepted = (z < limit).mean()
+    means = ours.mean((1, 2, 3)), theirs.mean((1, 2, 3))
+    ratio = means[0].mean() / means[1].mean()
+    error = np.sqrt((means[0].var(ddof=1) + means[1].var(ddof=1)) / RUNS) / means[1].mean()
+    good = accepted >= 0.9975 and abs(ratio - 1) <= max(0.002, 3 * error)
+    print(f"| {scene.name} | {scene.bounces} | {ratio:.5f} ± {error:.5f} | {100 * accepted:.2f} % | {'agrees' if good else 'DIFFERS'} |", flush=True)
+    return good
+
+
+def deviate(share):
+    """The normal deviate that is exceeded with a probability, by bisection."""
+    from math import erfc, sqrt
+    low, high = 0.0, 10.0
+    for _ in range(80):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if 0.5 * erfc(middle / sqrt(2)) > share else (low, middle)
+    return low
+
+
+def main():
+    arguments = argparse.ArgumentParser()
+    arguments.add_argument("program")
+    arguments.add_argument("--samples", type=int, default=1024)
+    arguments.add_argument("--only", default="")
+    given = arguments.parse_args()
+    variant = "llvm_ad_rgb" if "llvm_ad_rgb" in mi.variants() else "scalar_rgb"
+    try:
+        mi.set_variant(variant)
+        mi.load_dict({"type": "sphere"})
+    except Exception:
+        mi.set_variant("scalar_rgb")
+    global T
+    T = mi.ScalarTransform4f
+    print("| scene | bounces | mean, ours over theirs | pixel channels alike | |\n| --- | --- | --- | --- | --- |")
+    with tempfile.TemporaryDirectory() as folder:
+        chosen = [scene for scene in scenes() if given.only in scene.name]
+        good = [compare(given.program, scene, given.samples, pathlib.Path(folder)) for scene in chosen]
+    print(f"\n{sum(good)} of {len(good)} scenes agree; {given.samples} samples a pixel of each, Mitsuba {mi.__version__}, {mi.variant()}.")
+    raise SystemExit(0 if all(good) else 1)
+
+
+if __name__ == "__main__":
+    main()
