@@ -114,3 +114,67 @@ fn broken_lamps_names_and_dark_scenes_are_told_of() {
     assert!(told.contains("lamp-in-glass") && told.contains("--integrator photons"), "{told}");
     assert!(!place.gives(1, "check bulb.txt --integrator photons").out.contains("lamp-in-glass"));
 }
+
+/// A lamp over a floor, and a ball of glass between.
+const CAUSTIC: &str = "PerspectiveCamera { center 0 2 6 direction 0 -0.25 -1 up 0 1 0 angle 30 }
+Background { color 0 0 0 }
+Lights { PointLight { position 0.5 4 0 color 9 9 9 falloff 1 } }
+Materials {
+    PrincipledMaterial { baseColor 0.5 0.4 0.3 specularWeight 0 }
+    PrincipledMaterial { preset glass }
+}
+Group {
+    MaterialIndex 0 Plane { normal 0 1 0 offset 0 }
+    MaterialIndex 1 Sphere { center 0 1 0 radius 0.7 }
+}
+";
+
+#[test]
+fn photons_wavelengths_and_fog_have_the_same_bits_however_they_are_made() {
+    let place = Place::new();
+    place.put("scene.txt", CAUSTIC);
+    place.put("fog.txt", format!("Fog {{ extinction 0.2 color 0.9 0.8 0.7 min -3 0 -3 max 3 3 3 }}\n{CAUSTIC}"));
+    for (scene, options) in [
+        ("scene.txt", "--integrator photons --photons 500"),
+        ("scene.txt", "--integrator photons --photons 500 --color spectral"),
+        ("scene.txt", "--color spectral"),
+        ("fog.txt", "--integrator path"),
+    ] {
+        let told = place.gives(0, &format!("verify {scene} {options} --size 20x16 --samples 5 --trials 4"));
+        assert!(told.out.contains("same") || told.out.contains("one hash"), "{} {}", told.out, told.err);
+    }
+    // Photons bring light that paths do not.
+    let mean = |options: &str| {
+        place.gives(0, &format!("render scene.txt {options} --size 24x18 --samples 16 -o p.pfm -q --restart"));
+        let bytes = std::fs::read(place.path("p.pfm")).unwrap();
+        let floats = bytes[bytes.len() - 24 * 18 * 12..].chunks_exact(4);
+        floats.map(|four| f32::from_le_bytes(four.try_into().unwrap())).sum::<f32>() / (24.0 * 18.0 * 3.0)
+    };
+    let (paths, photons) = (mean("--integrator path"), mean("--integrator photons --photons 20000"));
+    assert!(photons > 1.01 * paths, "{paths} {photons}");
+}
+
+#[test]
+fn options_of_light_that_make_no_sense_are_refused_and_noise_is_taken_out_beside_the_work() {
+    let place = Place::new();
+    place.put("scene.txt", CAUSTIC);
+    for (options, word) in [
+        ("--integrator path --photons 9", "--photons makes no sense with --integrator path"),
+        ("--integrator whitted --color spectral", "--color makes no sense"),
+        ("--photon-radius 0", "--photon-radius must be more than 0"),
+    ] {
+        let told = place.gives(2, &format!("render scene.txt {options} -o p.png")).err;
+        assert!(told.contains(word), "{told}");
+    }
+    let told = place.gives(2, "explain scene.txt --pixel 3,3 --size 8x8 --samples 2 --color spectral").err;
+    assert!(told.contains("--color rgb"), "{told}");
+    let of = |options: &str| {
+        let told = place.gives(0, &format!("render scene.txt --size 24x18 --samples 16 --hash --restart -q {options}"));
+        (told.out, std::fs::read(place.path("p.png")).unwrap())
+    };
+    let (noisy, clean) = (of("-o p.png"), of("-o p.png --denoise"));
+    assert_eq!(noisy.0, clean.0);
+    assert_ne!(noisy.1, clean.1);
+    place.gives(0, "render scene.txt --size 24x18 --samples 4 -o p.exr --denoise -q");
+    assert!(String::from_utf8_lossy(&std::fs::read(place.path("p.exr")).unwrap()).contains("denoised"));
+}

@@ -6,6 +6,7 @@ use crate::dialect::Dialect;
 use crate::light::Light;
 use crate::material::{ColorNoise, PhongMaterial, PrincipledMaterial, Solid, is_material_index};
 use crate::math::Vec3;
+use crate::medium::Fog;
 use crate::scene::{Background, Group, Material, MatrixOp, Node, Object, Operation, Scene, Spanned};
 use crate::shape::{HeightField, Primitive, Sphere, TriangleMesh, VoxelGrid};
 
@@ -173,7 +174,9 @@ impl Random {
     /// A scene that the dialect's text can hold, as reading it would make it.
     pub fn scene(&mut self, dialect: Dialect) -> Scene {
         let nodes = dialect == Dialect::F23;
-        let spanned = |value| Spanned { value, span: Default::default() };
+        fn spanned<T>(value: T) -> Spanned<T> {
+            Spanned { value, span: Default::default() }
+        }
         let mut materials = Vec::new();
         for i in 0..self.below(6) {
             materials.push(spanned(if i > 0 && self.below(3) == 0 {
@@ -205,7 +208,7 @@ impl Random {
         Scene {
             camera: (self.below(4) > 0).then(|| self.thing::<Camera>(0)),
             background: self.thing::<Background>(0),
-            fog: None,
+            fog: (dialect == Dialect::Durer && self.below(3) == 0).then(|| spanned(self.thing::<Fog>(0))),
             lights,
             materials,
             root: (nodes || self.below(8) > 0).then_some(Group { objects }),
