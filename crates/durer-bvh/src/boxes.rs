@@ -1,11 +1,12 @@
 //! A tree over boxes of things that only the caller knows.
 
-use super::Tally;
 use super::build::{self, Settings};
 use super::lanes::{Available, Kernel, Lanes};
 use super::node::{self, Node};
 use super::traverse::{RayBox, Visitor, walk};
+use super::{Counts, Tally};
 use crate::math::{Aabb, Ray};
+use std::ops::Range;
 
 /// A bounding volume hierarchy of eight-wide nodes over numbered things.
 #[derive(Clone, Debug)]
@@ -51,25 +52,47 @@ impl Bvh {
     /// `test` gets the place of a thing in [`Bvh::order`] and the present `t_max`, and gives the new one: at
     /// most the old. Things whose boxes begin exactly at `t_max` are still offered. Minus infinity ends the walk.
     #[inline]
-    pub fn walk<T: Tally>(&self, ray: &Ray, tally: &mut T, test: impl FnMut(usize, f32, &mut T) -> f32) {
-        if self.nodes.is_empty() {
-            return;
+    pub fn walk<T: Tally>(&self, ray: &Ray, tally: &mut T, mut test: impl FnMut(usize, f32, &mut T) -> f32) {
+        let mut leaf = |things: Range<usize>, t_max| things.fold(t_max, |t_max, thing| test(thing, t_max, tally));
+        match T::COUNTS_WORK {
+            true => {
+                let nodes = self.walk_counting(ray, &mut leaf);
+                tally.work(nodes, 0);
+            }
+            false => self.walk_leaves(ray, &mut leaf),
         }
-        self.level.run(Walk { bvh: self, ray, things: Things { tally, test } });
+    }
+
+    /// As [`Bvh::walk`], leaf by leaf. Behind a pointer, so that it is compiled here, once, and not for each caller.
+    fn walk_leaves(&self, ray: &Ray, leaf: Leaf) {
+        self.level.run(Walk { bvh: self, ray, things: Things { tally: (), leaf } });
+    }
+
+    /// As [`Bvh::walk_leaves`]; gives the number of nodes that were visited.
+    fn walk_counting(&self, ray: &Ray, leaf: Leaf) -> u64 {
+        let mut counts = Counts::default();
+        self.level.run(Walk { bvh: self, ray, things: Things { tally: &mut counts, leaf } });
+        counts.nodes
     }
 }
 
-struct Walk<'a, T, F> {
+/// Gets the places of a leaf's things and `t_max`; gives the new one.
+type Leaf<'a> = &'a mut dyn FnMut(Range<usize>, f32) -> f32;
+
+struct Walk<'a, T> {
     bvh: &'a Bvh,
     ray: &'a Ray,
-    things: Things<'a, T, F>,
+    things: Things<'a, T>,
 }
 
-impl<T: Tally, F: FnMut(usize, f32, &mut T) -> f32> Kernel for Walk<'_, T, F> {
+impl<T: Tally> Kernel for Walk<'_, T> {
     type Output = ();
 
     #[inline(always)]
     fn run<L: Lanes>(mut self, lanes: L) {
+        if self.bvh.nodes.is_empty() {
+            return;
+        }
         let (nodes, reach, t_max) = (&self.bvh.nodes, self.bvh.bounds.reach(), self.ray.t_max);
         if let Some(boxes) = RayBox::new(self.ray, reach) {
             walk::<L, _, true>(lanes, nodes, &boxes, t_max, &mut self.things);
@@ -79,24 +102,24 @@ impl<T: Tally, F: FnMut(usize, f32, &mut T) -> f32> Kernel for Walk<'_, T, F> {
     }
 }
 
-struct Things<'a, T, F> {
-    tally: &'a mut T,
-    test: F,
+struct Things<'a, T> {
+    tally: T,
+    leaf: Leaf<'a>,
 }
 
-impl<T: Tally, F: FnMut(usize, f32, &mut T) -> f32> Visitor for Things<'_, T, F> {
+impl<T: Tally> Visitor for Things<'_, T> {
     type Tally = T;
 
     const ANY: bool = false;
 
     #[inline(always)]
     fn tally(&mut self) -> &mut T {
-        self.tally
+        &mut self.tally
     }
 
     #[inline(always)]
     fn leaf<L: Lanes, const TAME: bool>(&mut self, _: L, leaf: u32, t_max: f32) -> f32 {
         let (first, count) = node::items(leaf);
-        (first..first + count).fold(t_max, |t_max, item| (self.test)(item, t_max, self.tally))
+        (self.leaf)(first..first + count, t_max)
     }
 }

@@ -178,7 +178,7 @@ impl Grid {
     /// [`super::Bvh::walk`]. A thing in several cells is offered several times.
     pub fn walk<T: Tally>(&self, ray: &Ray, tally: &mut T, mut test: impl FnMut(usize, f32, &mut T) -> f32) {
         let mut offer = |items: &[u32], t_max: f32| {
-            tally.node();
+            tally.work(1, 0);
             items.iter().fold(t_max, |t_max, item| test(*item as usize, t_max, tally))
         };
         // Where rounding moves rays by more than the padding of cells, as from far away, neighbouring cells are visited too.
@@ -188,7 +188,7 @@ impl Grid {
         let slip = 16.0 * f32::EPSILON * reach[0].max(reach[1]);
         if slip > PAD * finest && is_sound(ray) {
             if !self.walk_wide(ray, slip.into(), &mut offer) {
-                tally.node();
+                tally.work(1, 0);
                 (0..self.things).fold(ray.t_max, |t_max, thing| test(thing, t_max, tally));
             }
             return;

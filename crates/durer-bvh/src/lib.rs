@@ -23,29 +23,28 @@ pub use triangles::{NearestPoint, TriangleBvh, TriangleHit};
 
 /// Counts the work of rays. `()` counts nothing, at no cost.
 pub trait Tally {
+    /// Whether nodes and tests are counted. Where not, the trees take the way that counts nothing.
+    const COUNTS_WORK: bool;
+
     /// A ray was traced.
-    fn ray(&mut self);
-    /// A node or cell was looked into.
-    fn node(&mut self);
-    /// A thing was tested against the ray.
-    fn test(&mut self);
+    fn ray(&mut self) {}
+
+    /// So many nodes or cells were visited, and so many things tested against the ray.
+    fn work(&mut self, _nodes: u64, _tests: u64) {}
 }
 
 impl Tally for () {
-    fn ray(&mut self) {}
-    fn node(&mut self) {}
-    fn test(&mut self) {}
+    const COUNTS_WORK: bool = false;
 }
 
 impl<T: Tally> Tally for &mut T {
+    const COUNTS_WORK: bool = T::COUNTS_WORK;
+
     fn ray(&mut self) {
         (**self).ray();
     }
-    fn node(&mut self) {
-        (**self).node();
-    }
-    fn test(&mut self) {
-        (**self).test();
+    fn work(&mut self, nodes: u64, tests: u64) {
+        (**self).work(nodes, tests);
     }
 }
 
@@ -54,11 +53,11 @@ impl<T: Tally> Tally for &mut T {
 pub struct Rays(pub u64);
 
 impl Tally for Rays {
+    const COUNTS_WORK: bool = false;
+
     fn ray(&mut self) {
         self.0 += 1;
     }
-    fn node(&mut self) {}
-    fn test(&mut self) {}
 }
 
 /// Numbers of rays traced, nodes visited and things tested.
@@ -73,14 +72,14 @@ pub struct Counts {
 }
 
 impl Tally for Counts {
+    const COUNTS_WORK: bool = true;
+
     fn ray(&mut self) {
         self.rays += 1;
     }
-    fn node(&mut self) {
-        self.nodes += 1;
-    }
-    fn test(&mut self) {
-        self.tests += 1;
+    fn work(&mut self, nodes: u64, tests: u64) {
+        self.nodes += nodes;
+        self.tests += tests;
     }
 }
 

@@ -154,7 +154,7 @@ pub(super) fn walk<L: Lanes, V: Visitor, const TAME: bool>(
             let leaf = if child & LEAF == 0 {
                 let mut address = child as usize;
                 loop {
-                    visitor.tally().node();
+                    visitor.tally().work(1, 0);
                     let met = meet::<L, TAME>(lanes, &slabs, address, limit);
                     if met.mask == 0 {
                         break 'visit;

@@ -8,9 +8,9 @@ mod packet;
 mod query;
 mod stream;
 
-use super::Tally;
 use super::lanes::{Available, Level, ROWS, Rows};
 use super::node::{self, Node};
+use super::{Counts, Tally};
 use crate::math::{Aabb, Ray, Vec2};
 use crate::watertight::Sheared;
 pub use nearest::NearestPoint;
@@ -35,6 +35,25 @@ pub struct TriangleHit {
     pub uv: Vec2,
     /// Number of the triangle.
     pub triangle: u32,
+}
+
+/// Asks without or with counting, as the tally wants it.
+#[inline(always)]
+fn counting<T: Tally, A>(tally: &mut T, plain: impl FnOnce() -> A, counted: impl FnOnce(&mut Counts) -> A) -> A {
+    if !T::COUNTS_WORK {
+        return plain();
+    }
+    let mut counts = Counts::default();
+    let answer = counted(&mut counts);
+    tally.work(counts.nodes, counts.tests);
+    answer
+}
+
+/// Hits by `t`, then by number of the triangle; each once, for a triangle that was cut is found in several leaves.
+fn in_order(mut all: Vec<TriangleHit>) -> Vec<TriangleHit> {
+    all.sort_unstable_by(|a, b| a.t.total_cmp(&b.t).then(a.triangle.cmp(&b.triangle)));
+    all.dedup_by_key(|hit| hit.triangle);
+    all
 }
 
 /// A bounding volume hierarchy over triangles, for use without any scene.
@@ -93,7 +112,6 @@ impl TriangleBvh {
     }
 
     /// The first hit in the ray's open interval (`t_min`, `t_max`).
-    #[inline]
     pub fn closest(&self, ray: &Ray) -> Option<TriangleHit> {
         self.query::<_, Nearest>(ray, ())
     }
@@ -101,11 +119,10 @@ impl TriangleBvh {
     /// As [`TriangleBvh::closest`], counting nodes and tests.
     #[inline]
     pub fn closest_counting<T: Tally>(&self, ray: &Ray, tally: &mut T) -> Option<TriangleHit> {
-        self.query::<_, Nearest>(ray, tally)
+        counting(tally, || self.closest(ray), |counts| self.closest_counted(ray, counts))
     }
 
     /// Whether anything is hit in the ray's open interval.
-    #[inline]
     pub fn occluded(&self, ray: &Ray) -> bool {
         self.query::<_, Any>(ray, ())
     }
@@ -113,21 +130,32 @@ impl TriangleBvh {
     /// As [`TriangleBvh::occluded`], counting nodes and tests.
     #[inline]
     pub fn occluded_counting<T: Tally>(&self, ray: &Ray, tally: &mut T) -> bool {
-        self.query::<_, Any>(ray, tally)
+        counting(tally, || self.occluded(ray), |counts| self.occluded_counted(ray, counts))
     }
 
     /// All hits in the ray's open interval, by `t` and then by number of the triangle.
     pub fn all_hits(&self, ray: &Ray) -> Vec<TriangleHit> {
-        self.all_hits_counting(ray, &mut ())
+        in_order(self.query::<_, All>(ray, ()))
     }
 
     /// As [`TriangleBvh::all_hits`], counting nodes and tests.
+    #[inline]
     pub fn all_hits_counting<T: Tally>(&self, ray: &Ray, tally: &mut T) -> Vec<TriangleHit> {
-        let mut all = self.query::<_, All>(ray, tally);
-        all.sort_unstable_by(|a, b| a.t.total_cmp(&b.t).then(a.triangle.cmp(&b.triangle)));
-        // A triangle that was cut is found in several leaves.
-        all.dedup_by_key(|hit| hit.triangle);
-        all
+        counting(tally, || self.all_hits(ray), |counts| self.all_hits_counted(ray, counts))
+    }
+
+    // Not generic, so that they are compiled here, once, and not for each tally of each caller.
+
+    fn closest_counted(&self, ray: &Ray, counts: &mut Counts) -> Option<TriangleHit> {
+        self.query::<_, Nearest>(ray, counts)
+    }
+
+    fn occluded_counted(&self, ray: &Ray, counts: &mut Counts) -> bool {
+        self.query::<_, Any>(ray, counts)
+    }
+
+    fn all_hits_counted(&self, ray: &Ray, counts: &mut Counts) -> Vec<TriangleHit> {
+        in_order(self.query::<_, All>(ray, counts))
     }
 
     /// How many triangles the ray crosses in its open interval: odd from inside a closed mesh, even from outside.

@@ -130,7 +130,7 @@ impl Object {
         let line = self.local_line(ray);
         match &self.geometry {
             Geometry::Primitive(shape) => {
-                tally.test();
+                tally.work(0, 1);
                 shape.crossings(&line, &mut |t, uv| offer(t, uv, 0));
             }
             Geometry::Mesh(tree) => tree.crossings(&line, tally, offer),
@@ -204,7 +204,7 @@ impl Object {
         };
         match &self.geometry {
             Geometry::Primitive(shape) => {
-                tally.test();
+                tally.work(0, 1);
                 shape.intersect(local).map(|crossing| (crossing, 0))
             }
             Geometry::Mesh(tree) => tree.closest(local, any, tally),
@@ -214,7 +214,7 @@ impl Object {
 
     /// The crossing with one part, tested directly, and its part; a solid is asked as a whole.
     pub(super) fn part<T: Tally>(&self, ray: &Ray64, part: u32, tally: &mut T) -> Option<(Crossing, u32)> {
-        tally.test();
+        tally.work(0, 1);
         let local = self.local_ray(ray);
         let crossing = match &self.geometry {
             Geometry::Primitive(shape) => shape.intersect(&local),
