@@ -2,7 +2,7 @@
 //!
 //! Source: Amanatides and Woo, *A Fast Voxel Traversal Algorithm for Ray Tracing*, Eurographics 1987.
 
-use super::Tally;
+use super::TraversalCounter;
 use super::traverse::is_sound;
 use crate::math::{Aabb, Ray, Vec3};
 
@@ -28,9 +28,9 @@ pub struct Grid {
 
 impl Grid {
     /// At most this many cells.
-    pub const MOST_CELLS: u64 = 1 << 26;
+    pub const MAX_CELLS: u64 = 1 << 26;
     /// At most this many entries in all cells' lists.
-    const MOST_ENTRIES: u64 = 1 << 28;
+    const MAX_ENTRIES: u64 = 1 << 28;
 
     /// Numbers of cells that suit so many things in such a box: about two cells a thing, nearly cubes.
     pub fn suitable(bounds: Aabb, things: usize) -> [u32; 3] {
@@ -45,7 +45,7 @@ impl Grid {
     /// Sorts the boxes of things 0, 1, 2, ... into the cells of a box. A thing is in a cell if their boxes overlap,
     /// and `overlaps` says so of the thing and the (slightly enlarged) cell.
     ///
-    /// `None` if there are no cells, or more than [`Grid::MOST_CELLS`], or too many things in too many of them.
+    /// `None` if there are no cells, or more than [`Grid::MAX_CELLS`], or too many things in too many of them.
     pub fn build(
         bounds: Aabb,
         counts: [u32; 3],
@@ -68,7 +68,7 @@ impl Grid {
         overlaps: impl Fn(usize, Aabb) -> bool,
     ) -> Option<Self> {
         let cells = counts.iter().try_fold(1u64, |n, &c| n.checked_mul(u64::from(c)))?;
-        if cells == 0 || cells > Grid::MOST_CELLS {
+        if cells == 0 || cells > Grid::MAX_CELLS {
             return None;
         }
         // A flat box is thickened, so that every cell has a volume; and all are padded against rounding.
@@ -83,7 +83,7 @@ impl Grid {
             things: boxes.len(),
         };
         let entries = boxes.iter().try_fold(0u64, |sum, b| sum.checked_add(grid.cells_of(b)))?;
-        if entries > Grid::MOST_ENTRIES {
+        if entries > Grid::MAX_ENTRIES {
             return None;
         }
         // First count what falls into each cell, then fill the lists.
@@ -128,7 +128,7 @@ impl Grid {
     }
 
     /// Bytes in memory.
-    pub fn bytes(&self) -> usize {
+    pub fn memory_usage(&self) -> usize {
         size_of_val(&*self.starts) + size_of_val(&*self.items)
     }
 
@@ -175,11 +175,16 @@ impl Grid {
     }
 
     /// Offers the things of every cell that the ray crosses before `t_max` to `test`, cell by cell; see
-    /// [`super::Bvh::walk`]. A thing in several cells is offered several times.
-    pub fn walk<T: Tally>(&self, ray: &Ray, tally: &mut T, mut test: impl FnMut(usize, f32, &mut T) -> f32) {
+    /// [`super::Bvh::traverse`]. A thing in several cells is offered several times.
+    pub fn traverse<T: TraversalCounter>(
+        &self,
+        ray: &Ray,
+        counter: &mut T,
+        mut test: impl FnMut(usize, f32, &mut T) -> f32,
+    ) {
         let mut offer = |items: &[u32], t_max: f32| {
-            tally.work(1, 0);
-            items.iter().fold(t_max, |t_max, item| test(*item as usize, t_max, tally))
+            counter.work(1, 0);
+            items.iter().fold(t_max, |t_max, item| test(*item as usize, t_max, counter))
         };
         // Where rounding moves rays by more than the padding of cells, as from far away, neighbouring cells are visited too.
         let reach = [self.bounds.min, self.bounds.max].map(|c| (ray.origin - c).abs().max(c.abs()).max_element());
@@ -188,8 +193,8 @@ impl Grid {
         let slip = 16.0 * f32::EPSILON * reach[0].max(reach[1]);
         if slip > PAD * finest && is_sound(ray) {
             if !self.walk_wide(ray, slip.into(), &mut offer) {
-                tally.work(1, 0);
-                (0..self.things).fold(ray.t_max, |t_max, thing| test(thing, t_max, tally));
+                counter.work(1, 0);
+                (0..self.things).fold(ray.t_max, |t_max, thing| test(thing, t_max, counter));
             }
             return;
         }

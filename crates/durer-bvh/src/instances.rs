@@ -1,6 +1,6 @@
 //! Trees of triangles, placed in space as often as wanted.
 
-use super::{Bvh, Tally, TriangleBvh};
+use super::{Bvh, TraversalCounter, TriangleBvh};
 use crate::math::{Aabb, Affine, Ray, Vec2};
 use std::sync::Arc;
 
@@ -40,30 +40,30 @@ impl InstanceHit {
 /// instance, and then of the least triangle, is the closest.
 ///
 /// ```
-/// use durer_bvh::{Instance, Instances, Preset, TriangleBvh};
+/// use durer_bvh::{Instance, InstanceBvh, BuildQuality, TriangleBvh};
 /// use durer_bvh::math::{Affine, Ray, Vec3};
 /// use glam::DAffine3;
 /// use std::sync::Arc;
 ///
 /// let corners = [Vec3::ZERO, Vec3::X, Vec3::Y];
-/// let tree = Arc::new(TriangleBvh::build(&corners, &[[0, 1, 2]], Preset::default()));
+/// let tree = Arc::new(TriangleBvh::build(&corners, &[[0, 1, 2]], BuildQuality::default()));
 /// let placed = [2.0, 5.0].map(|z| Instance {
 ///     tree: tree.clone(),
 ///     to_world: Affine::new(DAffine3::from_translation(glam::DVec3::new(0.0, 0.0, z))).unwrap(),
 /// });
-/// let scene = Instances::new(placed.into());
+/// let scene = InstanceBvh::new(placed.into());
 /// let ray = Ray::new(Vec3::new(0.2, 0.2, 0.0), Vec3::Z);
 /// let hit = scene.closest(&ray).unwrap();
 /// assert_eq!((hit.t, hit.instance, hit.triangle), (2.0, 0, 0));
-/// assert_eq!(scene.count(&ray), 2);
+/// assert_eq!(scene.hit_count(&ray), 2);
 /// ```
 #[derive(Clone, Debug)]
-pub struct Instances {
+pub struct InstanceBvh {
     placed: Vec<Instance>,
     bvh: Bvh,
 }
 
-impl Instances {
+impl InstanceBvh {
     /// Builds over instances 0, 1, 2, ...; less than 2^28.
     pub fn new(placed: Vec<Instance>) -> Self {
         let bounds = |instance: &Instance| match instance.tree.bounds() {
@@ -71,7 +71,7 @@ impl Instances {
             bounds => instance.to_world.bounds(bounds),
         };
         let boxes: Vec<Aabb> = placed.iter().map(bounds).collect();
-        Instances { placed, bvh: Bvh::build(&boxes) }
+        InstanceBvh { placed, bvh: Bvh::build(&boxes) }
     }
 
     /// The instances, by number.
@@ -89,11 +89,11 @@ impl Instances {
         self.closest_counting(ray, &mut ())
     }
 
-    /// As [`Instances::closest`], counting nodes and tests in both levels.
-    pub fn closest_counting<T: Tally>(&self, ray: &Ray, tally: &mut T) -> Option<InstanceHit> {
+    /// As [`InstanceBvh::closest`], counting nodes and tests in both levels.
+    pub fn closest_counting<T: TraversalCounter>(&self, ray: &Ray, counter: &mut T) -> Option<InstanceHit> {
         let (mut best, mut t_max): (Option<InstanceHit>, f32) = (None, ray.t_max);
-        self.walk(ray, tally, |instance, tree, local, tally| {
-            if let Some(hit) = tree.closest_counting(&Ray { t_max, ..local }, tally) {
+        self.traverse(ray, counter, |instance, tree, local, counter| {
+            if let Some(hit) = tree.closest_counting(&Ray { t_max, ..local }, counter) {
                 let hit = InstanceHit { t: hit.t, uv: hit.uv, instance, triangle: hit.triangle };
                 if best.is_none_or(|best| hit.key() < best.key()) {
                     best = Some(hit);
@@ -111,11 +111,11 @@ impl Instances {
         self.occluded_counting(ray, &mut ())
     }
 
-    /// As [`Instances::occluded`], counting nodes and tests in both levels.
-    pub fn occluded_counting<T: Tally>(&self, ray: &Ray, tally: &mut T) -> bool {
+    /// As [`InstanceBvh::occluded`], counting nodes and tests in both levels.
+    pub fn occluded_counting<T: TraversalCounter>(&self, ray: &Ray, counter: &mut T) -> bool {
         let mut occluded = false;
-        self.walk(ray, tally, |_, tree, local, tally| {
-            occluded |= tree.occluded_counting(&local, tally);
+        self.traverse(ray, counter, |_, tree, local, counter| {
+            occluded |= tree.occluded_counting(&local, counter);
             if occluded { f32::NEG_INFINITY } else { ray.t_max }
         });
         occluded
@@ -124,7 +124,7 @@ impl Instances {
     /// All hits in the ray's open interval, by `t`, then by number of the instance, then of the triangle.
     pub fn all_hits(&self, ray: &Ray) -> Vec<InstanceHit> {
         let mut all = Vec::new();
-        self.walk(ray, &mut (), |instance, tree, local, _| {
+        self.traverse(ray, &mut (), |instance, tree, local, _| {
             let hits = tree.all_hits(&local).into_iter();
             all.extend(hits.map(|hit| InstanceHit { t: hit.t, uv: hit.uv, instance, triangle: hit.triangle }));
             ray.t_max
@@ -134,34 +134,39 @@ impl Instances {
     }
 
     /// How many triangles the ray crosses in its open interval.
-    pub fn count(&self, ray: &Ray) -> usize {
+    pub fn hit_count(&self, ray: &Ray) -> usize {
         self.all_hits(ray).len()
     }
 
     /// Offers instances with the ray in their space, roughly from near to far; `ask` gives the new `t_max`.
     #[inline]
-    fn walk<T: Tally>(&self, ray: &Ray, tally: &mut T, mut ask: impl FnMut(u32, &TriangleBvh, Ray, &mut T) -> f32) {
-        self.bvh.walk(ray, tally, |item, _, tally| {
-            let number = self.bvh.order()[item];
+    fn traverse<T: TraversalCounter>(
+        &self,
+        ray: &Ray,
+        counter: &mut T,
+        mut ask: impl FnMut(u32, &TriangleBvh, Ray, &mut T) -> f32,
+    ) {
+        self.bvh.traverse(ray, counter, |item, _, counter| {
+            let number = self.bvh.primitive_indices()[item];
             let Instance { tree, to_world } = &self.placed[number as usize];
-            ask(number, tree, to_world.inverse_ray(ray), tally)
+            ask(number, tree, to_world.inverse_ray(ray), counter)
         });
     }
 
     /// Bytes in memory; trees that are placed several times count once.
-    pub fn bytes(&self) -> usize {
+    pub fn memory_usage(&self) -> usize {
         let mut trees: Vec<&Arc<TriangleBvh>> = self.placed.iter().map(|instance| &instance.tree).collect();
         trees.sort_by_key(|tree| Arc::as_ptr(tree));
         trees.dedup_by_key(|tree| Arc::as_ptr(tree));
-        let shared: usize = trees.iter().map(|tree| tree.bytes()).sum();
-        shared + self.bvh.bytes() + size_of_val(&*self.placed)
+        let shared: usize = trees.iter().map(|tree| tree.memory_usage()).sum();
+        shared + self.bvh.memory_usage() + size_of_val(&*self.placed)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Preset;
+    use crate::BuildQuality;
     use crate::math::Vec3;
     use crate::math::random::Random;
     use crate::triangles::tests::{bits, brute_force, ray, soup, torus};
@@ -184,12 +189,12 @@ mod tests {
     fn instances_are_met_as_their_triangles_are() {
         let mut random = Random(8);
         let meshes = [torus(16, 8), soup(&mut random, 200, 0.3)];
-        let trees = meshes.clone().map(|(v, t)| Arc::new(TriangleBvh::build(&v, &t, Preset::Balanced)));
+        let trees = meshes.clone().map(|(v, t)| Arc::new(TriangleBvh::build(&v, &t, BuildQuality::Balanced)));
         let mut placed: Vec<Instance> =
             (0..30).map(|i| Instance { tree: trees[i % 2].clone(), to_world: map(&mut random) }).collect();
         // The same thing at the same place: the first is the closest.
         placed.extend_from_within(..4);
-        let scene = Instances::new(placed);
+        let scene = InstanceBvh::new(placed);
         let mut met = 0;
         for _ in 0..2_000 {
             let ray = ray(&meshes[0], &mut random, 1.0, Vec3::ZERO);
@@ -206,25 +211,29 @@ mod tests {
             let expected: Vec<_> = expected.iter().map(|(i, hit)| (*i, bits(hit))).collect();
             assert_eq!(scene.all_hits(&ray).iter().map(plain).collect::<Vec<_>>(), expected, "{ray:?}");
             assert_eq!(scene.closest(&ray).as_ref().map(plain), expected.first().copied(), "{ray:?}");
-            assert_eq!((scene.occluded(&ray), scene.count(&ray)), (!expected.is_empty(), expected.len()), "{ray:?}");
+            assert_eq!(
+                (scene.occluded(&ray), scene.hit_count(&ray)),
+                (!expected.is_empty(), expected.len()),
+                "{ray:?}"
+            );
             met += usize::from(!expected.is_empty());
         }
         assert!(met > 500, "{met}");
-        assert!(scene.bytes() < 2 * (trees[0].bytes() + trees[1].bytes()));
+        assert!(scene.memory_usage() < 2 * (trees[0].memory_usage() + trees[1].memory_usage()));
     }
 
     #[test]
     fn nothing_is_met_where_nothing_is() {
-        let empty = Arc::new(TriangleBvh::build(&[], &[], Preset::Fast));
+        let empty = Arc::new(TriangleBvh::build(&[], &[], BuildQuality::Fast));
         let ray = Ray::new(Vec3::ZERO, Vec3::X);
         for count in [0, 3] {
             let placed = vec![Instance { tree: empty.clone(), to_world: Affine::IDENTITY }; count];
-            let scene = Instances::new(placed);
-            assert_eq!((scene.closest(&ray), scene.occluded(&ray), scene.count(&ray)), (None, false, 0));
+            let scene = InstanceBvh::new(placed);
+            assert_eq!((scene.closest(&ray), scene.occluded(&ray), scene.hit_count(&ray)), (None, false, 0));
             assert!(scene.bounds().is_empty());
         }
-        let triangle = TriangleBvh::build(&[Vec3::NEG_ONE, Vec3::X, Vec3::Y], &[[0, 1, 2]], Preset::Fast);
-        let scene = Instances::new(vec![Instance { tree: Arc::new(triangle), to_world: Affine::IDENTITY }]);
+        let triangle = TriangleBvh::build(&[Vec3::NEG_ONE, Vec3::X, Vec3::Y], &[[0, 1, 2]], BuildQuality::Fast);
+        let scene = InstanceBvh::new(vec![Instance { tree: Arc::new(triangle), to_world: Affine::IDENTITY }]);
         for dir in [Vec3::NAN, Vec3::ZERO, Vec3::INFINITY] {
             assert_eq!(scene.closest(&Ray::new(Vec3::Z, dir)), None);
         }

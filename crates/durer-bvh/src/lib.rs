@@ -15,14 +15,14 @@ mod triangles;
 pub mod watertight;
 
 pub use boxes::Bvh;
-pub use build::Preset;
+pub use build::BuildQuality;
 pub use grid::Grid;
-pub use instances::{Instance, InstanceHit, Instances};
-pub use lanes::{Level, UnknownLevel};
+pub use instances::{Instance, InstanceBvh, InstanceHit};
+pub use lanes::{SimdLevel, UnknownSimdLevel};
 pub use triangles::{NearestPoint, TriangleBvh, TriangleHit};
 
 /// Counts the work of rays. `()` counts nothing, at no cost.
-pub trait Tally {
+pub trait TraversalCounter {
     /// Whether nodes and tests are counted. Where not, the trees take the way that counts nothing.
     const COUNTS_WORK: bool;
 
@@ -33,11 +33,11 @@ pub trait Tally {
     fn work(&mut self, _nodes: u64, _tests: u64) {}
 }
 
-impl Tally for () {
+impl TraversalCounter for () {
     const COUNTS_WORK: bool = false;
 }
 
-impl<T: Tally> Tally for &mut T {
+impl<T: TraversalCounter> TraversalCounter for &mut T {
     const COUNTS_WORK: bool = T::COUNTS_WORK;
 
     fn ray(&mut self) {
@@ -50,9 +50,9 @@ impl<T: Tally> Tally for &mut T {
 
 /// Counts rays alone.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Rays(pub u64);
+pub struct RayCount(pub u64);
 
-impl Tally for Rays {
+impl TraversalCounter for RayCount {
     const COUNTS_WORK: bool = false;
 
     fn ray(&mut self) {
@@ -62,8 +62,8 @@ impl Tally for Rays {
 
 /// Numbers of rays traced, nodes visited and things tested.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Counts {
-    /// Rays traced.
+pub struct TraversalStats {
+    /// RayCount traced.
     pub rays: u64,
     /// Nodes or cells looked into.
     pub nodes: u64,
@@ -71,7 +71,7 @@ pub struct Counts {
     pub tests: u64,
 }
 
-impl Tally for Counts {
+impl TraversalCounter for TraversalStats {
     const COUNTS_WORK: bool = true;
 
     fn ray(&mut self) {
@@ -91,7 +91,7 @@ pub mod internal {
 }
 
 /// No leaf of a tree lies deeper than this: it bounds the stack of a walk.
-const DEEPEST: usize = 160;
+const MAX_DEPTH: usize = 160;
 
 #[cfg(test)]
 mod tests;

@@ -7,16 +7,16 @@ mod spatial;
 mod wide;
 
 use super::lanes::listed;
-use super::node::{MOST_ITEMS, Node};
+use super::node::{MAX_ITEMS, WideNode};
 use crate::math::{Aabb, Vec3};
 use glam::Vec4;
 use rayon::prelude::*;
 use reinsert::Linked;
-use wide::Plans;
+use wide::CollapsePlan;
 
 /// How much work goes into a tree.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Preset {
+pub enum BuildQuality {
     /// For things that are built anew often.
     Fast,
     /// For most uses.
@@ -26,21 +26,21 @@ pub enum Preset {
     Best,
 }
 
-impl Preset {
-    /// Every preset, with its name.
-    pub const NAMES: [(&'static str, Preset); 3] =
-        [("fast", Preset::Fast), ("balanced", Preset::Balanced), ("best", Preset::Best)];
+impl BuildQuality {
+    /// Every quality, with its name.
+    pub const NAMES: [(&'static str, BuildQuality); 3] =
+        [("fast", BuildQuality::Fast), ("balanced", BuildQuality::Balanced), ("best", BuildQuality::Best)];
 }
 
 /// No more subtrees are moved after a pass that spares less than this share of all boxes' areas.
-const LITTLE: f64 = 0.002;
+const MIN_GAIN: f64 = 0.002;
 
 /// What is better for two children may be worse for eight, most of all where things were cut. After so many passes this can be told.
-const TOLD: usize = 2;
+const TRUSTED_PASSES: usize = 2;
 
 /// What a tree is to be good for.
 #[derive(Clone, Debug)]
-pub(super) struct Settings {
+pub(super) struct BuildSettings {
     /// Cost of a leaf of so many things, in tests of a node.
     pub leaf_cost: fn(usize) -> f32,
     /// So few things stay together where they are near each other.
@@ -55,9 +55,9 @@ pub(super) struct Settings {
     pub splits: f32,
 }
 
-impl Settings {
+impl BuildSettings {
     /// For things whose tests cost as much as several nodes.
-    pub const THINGS: Settings = Settings {
+    pub const THINGS: BuildSettings = BuildSettings {
         leaf_cost: |count| 2.0 * count as f32,
         whole: 1,
         bins: |_| cut::BINS,
@@ -68,18 +68,18 @@ impl Settings {
 
     /// How many references cuts may add to so many.
     fn spare(&self, count: usize) -> usize {
-        ((count as f32 * self.splits) as usize).min(MOST_ITEMS - count)
+        ((count as f32 * self.splits) as usize).min(MAX_ITEMS - count)
     }
 
-    pub fn triangles(preset: Preset) -> Settings {
+    pub fn triangles(quality: BuildQuality) -> BuildSettings {
         // A leaf is tested at once, whatever it holds.
         let leaf_cost = |count| 1.2 + 0.05 * count as f32;
         let most = super::node::LEAF_SIZE;
-        let settings = Settings { leaf_cost, whole: most, leaf_size: most, ..Settings::THINGS };
-        match preset {
-            Preset::Fast => Settings { bins: |count| 4 + count / 16, reinsertions: 0, ..settings },
-            Preset::Balanced => settings,
-            Preset::Best => Settings { whole: 3, reinsertions: 4, splits: 0.5, ..settings },
+        let settings = BuildSettings { leaf_cost, whole: most, leaf_size: most, ..BuildSettings::THINGS };
+        match quality {
+            BuildQuality::Fast => BuildSettings { bins: |count| 4 + count / 16, reinsertions: 0, ..settings },
+            BuildQuality::Balanced => settings,
+            BuildQuality::Best => BuildSettings { whole: 3, reinsertions: 4, splits: 0.5, ..settings },
         }
     }
 }
@@ -123,7 +123,7 @@ fn lane_number(lane: f32) -> u32 {
 
 /// References to boxes 0, 1, 2, ... but for the empty ones.
 pub(super) fn references(boxes: &[Aabb]) -> Vec<Reference> {
-    assert!(boxes.len() <= MOST_ITEMS, "a tree holds less than 2^28 things");
+    assert!(boxes.len() <= MAX_ITEMS, "a tree holds less than 2^28 things");
     let full = boxes.iter().enumerate().filter(|(_, b)| !b.is_empty());
     full.map(|(i, b)| Reference::new(*b, i as u32)).collect()
 }
@@ -136,7 +136,7 @@ pub(super) fn is_finite(corners: &[Vec3; 3]) -> bool {
 /// References to triangles 0, 1, 2, ..., with room for those that cuts add; those with corners that are no finite points are left out.
 fn triangle_references(
     count: usize,
-    settings: &Settings,
+    settings: &BuildSettings,
     corners_of: &(impl Fn(u32) -> [Vec3; 3] + Sync),
 ) -> Vec<Reference> {
     let mut references = listed(count, settings.spare(count), |i| {
@@ -151,14 +151,14 @@ fn triangle_references(
 
 /// A finished tree.
 pub(super) struct Tree {
-    pub nodes: Vec<Node>,
+    pub nodes: Vec<WideNode>,
     /// Numbers of things by place.
     pub order: Vec<u32>,
     pub bounds: Aabb,
 }
 
 /// Builds a tree over boxes: a function of the references and settings alone.
-pub(super) fn build(references: Vec<Reference>, settings: &Settings) -> Tree {
+pub(super) fn build(references: Vec<Reference>, settings: &BuildSettings) -> Tree {
     build_of(references, settings, Vec::new())
 }
 
@@ -166,9 +166,9 @@ pub(super) fn build(references: Vec<Reference>, settings: &Settings) -> Tree {
 pub(super) fn build_triangles(
     count: usize,
     corners_of: &(impl Fn(u32) -> [Vec3; 3] + Sync),
-    settings: &Settings,
+    settings: &BuildSettings,
 ) -> Tree {
-    assert!(count <= MOST_ITEMS, "a tree holds less than 2^28 triangles");
+    assert!(count <= MAX_ITEMS, "a tree holds less than 2^28 triangles");
     if settings.splits == 0.0 {
         return build_of(triangle_references(count, settings, corners_of), settings, Vec::new());
     }
@@ -177,7 +177,7 @@ pub(super) fn build_triangles(
     build_of(triangle_references(count, settings, &|i| corners[i as usize]), settings, corners)
 }
 
-fn build_of(references: Vec<Reference>, settings: &Settings, corners: Vec<[Vec3; 3]>) -> Tree {
+fn build_of(references: Vec<Reference>, settings: &BuildSettings, corners: Vec<[Vec3; 3]>) -> Tree {
     if references.is_empty() {
         return Tree { nodes: Vec::new(), order: Vec::new(), bounds: Aabb::EMPTY };
     }
@@ -190,8 +190,8 @@ fn build_of(references: Vec<Reference>, settings: &Settings, corners: Vec<[Vec3;
 }
 
 /// Has a tree's subtrees moved to better places, as long as that pays; gives what is then cheapest for each node.
-fn improved(tree: &mut binary::Tree, settings: &Settings) -> Plans {
-    let mut plans = Plans::new(&tree.nodes, tree.scale, settings);
+fn improved(tree: &mut binary::Tree, settings: &BuildSettings) -> CollapsePlan {
+    let mut plans = CollapsePlan::new(&tree.nodes, tree.scale, settings);
     // With fewer nodes all are the root and its children, which stay.
     if settings.reinsertions == 0 || tree.nodes.len() < 5 {
         return plans;
@@ -199,10 +199,10 @@ fn improved(tree: &mut binary::Tree, settings: &Settings) -> Plans {
     let mut work = Linked::new(tree);
     for pass in 1..=settings.reinsertions {
         // Also where areas are no numbers nothing more is tried.
-        let goes_on = work.pass() >= LITTLE && pass < settings.reinsertions;
-        if !goes_on || pass == TOLD && tree.is_cut {
+        let goes_on = work.pass() >= MIN_GAIN && pass < settings.reinsertions;
+        if !goes_on || pass == TRUSTED_PASSES && tree.is_cut {
             let Some(nodes) = work.in_order() else { break };
-            let others = Plans::new(&nodes, tree.scale, settings);
+            let others = CollapsePlan::new(&nodes, tree.scale, settings);
             // At equal cost fewer triangles are tested.
             if others.cost <= 1.01 * plans.cost {
                 (tree.nodes, plans) = (nodes, others);

@@ -2,16 +2,16 @@
 //!
 //! Source: Meister, Bittner, *Parallel Reinsertion for Bounding Volume Hierarchy Optimization*, Eurographics 2018.
 
-use super::LITTLE;
-use super::binary::{Node, Tree, half_area};
-use crate::DEEPEST;
+use super::MIN_GAIN;
+use super::binary::{BinaryNode, Tree, half_area};
+use crate::MAX_DEPTH;
 use crate::lanes::room;
 use rayon::prelude::*;
 
 /// In each pass this share of nodes are looked at. Where much can be spared, most of that is in few of them.
 const SHARE: f64 = 0.04;
 /// And so many times as many where what may be spared does not say where.
-const MOST_SHARES: usize = 3;
+const MAX_SHARES: usize = 3;
 /// A search for a better place ends after so many nodes.
 const PATIENCE: usize = 1 << 8;
 
@@ -26,7 +26,7 @@ pub struct Linked {
 
 #[derive(Clone, Copy)]
 struct Link {
-    node: Node,
+    node: BinaryNode,
     area: f32,
     parent: u32,
     /// `NONE` in leaves.
@@ -100,10 +100,10 @@ impl Linked {
         let (mut moves, more) = (self.moves(first), self.moves(next));
         let gain = |moves: &[Move]| moves.iter().map(|m| f64::from(m.gain)).sum::<f64>();
         // Where what is found hardly becomes less with what may be spared, that does not say where to look, and more is looked at.
-        let is_even = 4.0 * gain(&more) >= (0.25 * gain(&moves)).max(LITTLE * self.area);
+        let is_even = 4.0 * gain(&more) >= (0.25 * gain(&moves)).max(MIN_GAIN * self.area);
         moves.extend(more);
         if is_even {
-            moves.extend(self.moves(greatest(rest, MOST_SHARES * count).0));
+            moves.extend(self.moves(greatest(rest, MAX_SHARES * count).0));
         }
         moves.sort_unstable_by(|a, b| b.gain.total_cmp(&a.gain).then(a.from.cmp(&b.from)));
         let mut touched = vec![false; self.nodes.len()];
@@ -209,7 +209,7 @@ impl Linked {
     /// Makes the box of a node fit its children; gives whether it is another one.
     fn fit(&mut self, i: u32) -> bool {
         let [a, b] = self.at(i).children.map(|child| self.at(child).node);
-        let node = Node::inner(a.min.min(b.min), a.max.max(b.max), 0, 0);
+        let node = BinaryNode::inner(a.min.min(b.min), a.max.max(b.max), 0, 0);
         let area = half_area(node.min, node.max, self.scale);
         let link = &mut self.nodes[i as usize];
         let is_other = node.bounds() != link.node.bounds();
@@ -219,11 +219,11 @@ impl Linked {
     }
 
     /// The nodes in depth-first order with their counts; `None` if the tree is too deep.
-    pub fn in_order(&self) -> Option<Vec<Node>> {
-        let mut nodes: Vec<Node> = room(self.nodes.len());
+    pub fn in_order(&self) -> Option<Vec<BinaryNode>> {
+        let mut nodes: Vec<BinaryNode> = room(self.nodes.len());
         let mut stack = vec![(0, 1)];
         while let Some((i, depth)) = stack.pop() {
-            if depth > DEEPEST {
+            if depth > MAX_DEPTH {
                 return None;
             }
             let link = self.at(i);
@@ -243,7 +243,7 @@ impl Linked {
             let [left, right] = [i + 1, i + 1 + below[i + 1] as usize];
             let count = [left, right].map(|child| nodes[child].count() as u32);
             below[i] = 1 + below[left] + below[right];
-            nodes[i] = Node::inner(node.min, node.max, count[0] + count[1], right - i);
+            nodes[i] = BinaryNode::inner(node.min, node.max, count[0] + count[1], right - i);
         }
         Some(nodes)
     }
@@ -251,7 +251,7 @@ impl Linked {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Settings, binary, references};
+    use super::super::{BuildSettings, binary, references};
     use super::*;
     use crate::math::Aabb;
     use crate::math::random::Random;
@@ -271,16 +271,17 @@ mod tests {
                 })
                 .collect();
             // Where few stay together room is left over between subtrees that are built side by side.
-            let settings = Settings { whole: 3, ..Settings::THINGS };
+            let settings = BuildSettings { whole: 3, ..BuildSettings::THINGS };
             let tree = binary::build(references(&boxes), &settings, &[]);
             assert!((count > 4096) == tree.nodes.iter().any(|node| !node.is_there()));
-            let leaves = |nodes: &[Node]| {
-                let mut leaves: Vec<usize> = nodes.iter().filter(|node| node.is_leaf()).map(Node::first).collect();
+            let leaves = |nodes: &[BinaryNode]| {
+                let mut leaves: Vec<usize> =
+                    nodes.iter().filter(|node| node.is_leaf()).map(BinaryNode::first).collect();
                 leaves.sort_unstable();
                 leaves
             };
-            let area = |node: &Node| half_area(node.min, node.max, tree.scale);
-            let sum = |nodes: &[Node]| nodes.iter().map(|node| f64::from(area(node))).sum::<f64>();
+            let area = |node: &BinaryNode| half_area(node.min, node.max, tree.scale);
+            let sum = |nodes: &[BinaryNode]| nodes.iter().map(|node| f64::from(area(node))).sum::<f64>();
             let first = sum(&tree.nodes);
             let (mut work, mut before) = (Linked::new(&tree), first);
             for _ in 0..4 {

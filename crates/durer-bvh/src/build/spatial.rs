@@ -13,13 +13,13 @@ use glam::{BVec4A, Vec4};
 /// Planes are tried where the overlap has at least this share of the node's area,
 const OVERLAP: f32 = 0.226;
 /// and this share of the area of everything,
-const LEAST: f32 = 1e-5;
+const MIN_SIZE: f32 = 1e-5;
 /// across axes along which the node is at least so long, as a share of its greatest length.
 const LENGTH: f32 = 0.3;
 /// They must cost less than this share of what the best two sets cost.
 const GAIN: f32 = 0.95;
 /// With so few references or fewer, cuts spare less than they cost.
-pub const FEWEST: usize = 330;
+pub const MIN_REFERENCES: usize = 330;
 /// After so many searches in vain, one below the other, one level is left out before the next, then two, up to four.
 const IN_VAIN: u32 = 3;
 
@@ -48,13 +48,13 @@ impl Builder<'_> {
         searches: &mut Searches,
     ) -> Option<[Vec<Reference>; 2]> {
         let count = references.len();
-        if count <= FEWEST || spare == 0 {
+        if count <= MIN_REFERENCES || spare == 0 {
             return None;
         }
         let [l, r] = cut.sides;
         let overlap = half_area(l.min.max(r.min), l.max.min(r.max), self.scale);
         let area = half_area(all.min, all.max, self.scale);
-        if overlap < (OVERLAP * area).max(LEAST * self.area) {
+        if overlap < (OVERLAP * area).max(MIN_SIZE * self.area) {
             return None;
         }
         if searches.pause > 0 {

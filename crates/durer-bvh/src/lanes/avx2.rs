@@ -124,11 +124,11 @@ macro_rules! order_of_eight {
             proven!([greater(z[0], enter), lesser(z[1], leave)])
         }
         #[inline(always)]
-        fn nearest(self, a: __m256, which: __m256, codes: &[u8; WIDTH]) -> u32 {
+        fn nearest(self, a: __m256, which: __m256, child_tags: &[u8; WIDTH]) -> u32 {
             proven! {
                 let (a, which) = (_mm256_castps_si256(a), _mm256_castps_si256(which));
-                let codes = _mm256_cvtepu8_epi32(_mm_loadl_epi64(codes.as_ptr().cast()));
-                let key = _mm256_or_si256(_mm256_and_si256(a, _mm256_set1_epi32(!255)), codes);
+                let child_tags = _mm256_cvtepu8_epi32(_mm_loadl_epi64(child_tags.as_ptr().cast()));
+                let key = _mm256_or_si256(_mm256_and_si256(a, _mm256_set1_epi32(!255)), child_tags);
                 $crate::lanes::avx2::least(_mm256_or_si256(key, _mm256_xor_si256(which, _mm256_set1_epi32(-1))))
             }
         }

@@ -1,6 +1,6 @@
 //! Eight numbers side by side, on whatever the processor offers: all the unsafe code of the library.
 //!
-//! [`Lanes`] is what the walk through a tree needs. Each level implements it once, and [`Level::run`] calls a [`Kernel`]
+//! [`Lanes`] is what the walk through a tree needs. Each level implements it once, and [`SimdLevel::run`] calls a [`Kernel`]
 //! with the one that was chosen. What decides a hit is add, subtract, multiply and compare only, never fused, so
 //! every level gives the same bits; [`Numbers::mul_add`] may be fused or not, and belongs to tests of boxes, which
 //! allow for either.
@@ -19,14 +19,14 @@ mod stack;
 mod wide;
 
 pub(super) use level::Available;
-pub use level::{Level, UnknownLevel};
+pub use level::{SimdLevel, UnknownSimdLevel};
 pub(super) use pages::{listed, room};
-pub(super) use stack::{Room, Stack};
+pub(super) use stack::{Stack, StackStorage};
 pub(super) use wide::{WIDE, Wide};
 
-use super::node::{self, Node};
+use super::node::{self, WideNode};
 use crate::math::{Doubles, Ray, Triple};
-use crate::watertight::Turn;
+use crate::watertight::AxisOrder;
 use glam::Vec3A;
 use std::mem::offset_of;
 
@@ -92,7 +92,7 @@ pub(super) trait Lanes: Numbers {
     fn triple(self, v: Vec3A) -> Self::Triple;
 
     /// A vector with its components in another order.
-    fn turn(self, v: Vec3A, axes: &Turn) -> Vec3A;
+    fn turn(self, v: Vec3A, axes: &AxisOrder) -> Vec3A;
 
     fn load(self, from: &[f32; WIDTH]) -> Self::Floats;
     /// The corners of the triangles of a leaf; only as many lanes as there are triangles mean anything.
@@ -116,7 +116,7 @@ pub(super) trait Lanes: Numbers {
     }
     /// Where `a`, of which nothing is negative, is least of the lanes that have all bits in `which`: `a` without its last eight bits, by
     /// which lanes are not compared, and with those of the lane's code instead. Something else if there are no such lanes.
-    fn nearest(self, a: Self::Floats, which: Self::Floats, codes: &[u8; WIDTH]) -> u32;
+    fn nearest(self, a: Self::Floats, which: Self::Floats, child_tags: &[u8; WIDTH]) -> u32;
     /// `a` in the lanes whose bits are set, `b` in others. Bits stay as they are.
     fn select(self, mask: u32, a: Self::Floats, b: Self::Floats) -> Self::Floats;
     /// Lane k of vector i becomes lane i of vector k.
@@ -138,7 +138,7 @@ pub const ROOM_OF_ROWS: usize = ROWS * WIDTH;
 
 /// The sides of boxes where a ray enters and where it leaves, in each of many nodes.
 pub(super) struct Sides<'a> {
-    nodes: &'a [Node],
+    nodes: &'a [WideNode],
     /// In the first node, by axis.
     near: [*const u8; 3],
     far: [*const u8; 3],
@@ -147,17 +147,17 @@ pub(super) struct Sides<'a> {
 impl<'a> Sides<'a> {
     /// For rays that are negative along the axes whose bits are set.
     #[inline(always)]
-    pub fn new(nodes: &'a [Node], negative: u32) -> Self {
-        assert!(nodes.len() <= node::MOST_NODES);
+    pub fn new(nodes: &'a [WideNode], negative: u32) -> Self {
+        assert!(nodes.len() <= node::MAX_NODES);
         const ROW: usize = size_of::<[f32; WIDTH]>();
-        let first = nodes.as_ptr().cast::<u8>().wrapping_add(offset_of!(Node, planes));
+        let first = nodes.as_ptr().cast::<u8>().wrapping_add(offset_of!(WideNode, planes));
         let side = |axis: usize, upper: u32| first.wrapping_add((2 * axis + upper as usize) * ROW);
         let [x, y, z] = [negative & 1, negative >> 1 & 1, negative >> 2 & 1];
         let (near, far) = ([side(0, x), side(1, y), side(2, z)], [side(0, x ^ 1), side(1, y ^ 1), side(2, z ^ 1)]);
         Sides { nodes, near, far }
     }
 
-    /// The node at an [`address`](node::address), which must be one of a node.
+    /// The node at an [`node_offset`](node::node_offset), which must be one of a node.
     #[inline(always)]
     pub fn at(&self, address: usize) -> At<'a, '_> {
         // Turned so, what is no multiple of a node's size is more than there can be.
@@ -171,7 +171,7 @@ impl<'a> Sides<'a> {
 pub(super) struct At<'a, 's> {
     sides: &'s Sides<'a>,
     offset: usize,
-    pub node: &'a Node,
+    pub node: &'a WideNode,
 }
 
 impl<'a> At<'a, '_> {
@@ -189,10 +189,10 @@ impl<'a> At<'a, '_> {
         unsafe { &*self.sides.far[axis].wrapping_add(self.offset).cast() }
     }
 
-    /// The node's [codes](Node::codes), found as soon as its sides, for they are waited for.
+    /// The node's [child_tags](WideNode::child_tags), found as soon as its sides, for they are waited for.
     #[inline(always)]
-    pub fn codes(&self) -> &'a [u8; WIDTH] {
-        let first = self.sides.nodes.as_ptr().cast::<u8>().wrapping_add(offset_of!(Node, codes));
+    pub fn child_tags(&self) -> &'a [u8; WIDTH] {
+        let first = self.sides.nodes.as_ptr().cast::<u8>().wrapping_add(offset_of!(WideNode, child_tags));
         // SAFETY: it is in the first node, and another node is so far behind that.
         unsafe { &*first.wrapping_add(self.offset).cast() }
     }
@@ -218,7 +218,7 @@ pub(super) struct Columns {
 impl Columns {
     /// Of so many triangles.
     #[inline(always)]
-    pub fn new(&[x, y, z, _]: &Turn, count: usize) -> Self {
+    pub fn new(&[x, y, z, _]: &AxisOrder, count: usize) -> Self {
         assert!(count <= WIDTH);
         // So masked, no row begins later than the last.
         Columns { starts: [x, y, z].map(|axis| (axis & 3) as usize * count), corner: 3 * count }

@@ -153,8 +153,8 @@ impl Lanes for Scalar {
         mask(|i| a[i].is_sign_negative())
     }
     #[inline(always)]
-    fn nearest(self, a: F, which: F, codes: &[u8; WIDTH]) -> u32 {
-        let key = |i: usize| a[i].to_bits() & !255 | u32::from(codes[i]) | !which[i].to_bits();
+    fn nearest(self, a: F, which: F, child_tags: &[u8; WIDTH]) -> u32 {
+        let key = |i: usize| a[i].to_bits() & !255 | u32::from(child_tags[i]) | !which[i].to_bits();
         (0..WIDTH).fold(u32::MAX, |least, i| least.min(key(i)))
     }
     #[inline(always)]

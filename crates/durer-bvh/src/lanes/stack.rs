@@ -3,32 +3,32 @@
 use super::WIDTH;
 use std::mem::MaybeUninit;
 
-/// As high as the stack of a tree of [`DEEPEST`](crate::DEEPEST) levels can get, and a vector's width more.
-const ROOM: usize = (WIDTH - 1) * crate::DEEPEST + 2 * WIDTH;
+/// As high as the stack of a tree of [`MAX_DEPTH`](crate::MAX_DEPTH) levels can get, and a vector's width more.
+const ROOM: usize = (WIDTH - 1) * crate::MAX_DEPTH + 2 * WIDTH;
 
 /// Where a stack lies. It costs nothing to make: what lies above the stack's height is never initialised.
-pub struct Room {
+pub struct StackStorage {
     children: MaybeUninit<[u32; ROOM]>,
     near: MaybeUninit<[f32; ROOM]>,
 }
 
-impl Room {
+impl StackStorage {
     #[inline(always)]
     pub fn new() -> Self {
-        Room { children: MaybeUninit::uninit(), near: MaybeUninit::uninit() }
+        StackStorage { children: MaybeUninit::uninit(), near: MaybeUninit::uninit() }
     }
 }
 
 /// A stack of nodes.
 pub struct Stack<'a> {
     // Apart from the height: a constant of both would be written out in full for every ray.
-    room: &'a mut Room,
+    room: &'a mut StackStorage,
     height: usize,
 }
 
 impl<'a> Stack<'a> {
     #[inline(always)]
-    pub fn new(room: &'a mut Room) -> Self {
+    pub fn new(room: &'a mut StackStorage) -> Self {
         Stack { room, height: 0 }
     }
 
@@ -77,7 +77,7 @@ impl<'a> Stack<'a> {
         unsafe { *self.room.children.as_ptr().cast::<u32>().add(self.height - usize::from(!wanted)) }
     }
 
-    /// Room for a whole vector on top, to be followed by [`Stack::grow`].
+    /// StackStorage for a whole vector on top, to be followed by [`Stack::grow`].
     #[inline(always)]
     pub(super) fn top(&mut self) -> (*mut u32, *mut f32) {
         assert!(self.height <= ROOM - WIDTH);

@@ -39,7 +39,7 @@ struct Input {
     floats: [[f32; WIDTH]; 3],
     rows: Rows,
     stride: usize,
-    turn: Turn,
+    turn: AxisOrder,
     order: [u8; WIDTH],
     count: u32,
     mask: u32,
@@ -75,7 +75,7 @@ impl Kernel for Everything<'_> {
         let number = |x: f32| if x.is_nan() { f32::NAN.to_bits() } else { x.to_bits() };
         // Vectors come out through the stack.
         let mut tell = |v: L::Floats, count: usize| {
-            let mut room = Room::new();
+            let mut room = StackStorage::new();
             let mut stack = Stack::new(&mut room);
             lanes.push(&mut stack, &[7; WIDTH], v, &[0, 1, 2, 3, 4, 5, 6, 7], count as u32);
             let (_, near, height) = stack.all();
@@ -123,7 +123,7 @@ impl Kernel for Everything<'_> {
         let (met, nearest) = (lanes.signs(before), lanes.nearest(enter, before, &[10, 250, 12, 30, 14, 15, 201, 17]));
         found.extend(if met == 0 { [0; 2] } else { [met, nearest] });
         found.push(lanes.signs(a));
-        let mut room = Room::new();
+        let mut room = StackStorage::new();
         let mut stack = Stack::new(&mut room);
         let children = [10, 11, 12, 13, 14, 15, 16, 17];
         lanes.push(&mut stack, &children, a, order, *count);
@@ -169,9 +169,9 @@ fn every_level_gives_the_same_bits() {
     for round in 0..inputs {
         let input = Input::random(&mut random);
         let expected = Everything(&input).run(scalar::Scalar);
-        for level in Level::available() {
+        for level in SimdLevel::available() {
             assert_eq!(Available::or_scalar(level).run(Everything(&input)), expected, "{round} {level:?}");
         }
     }
-    println!("{} lanes at {} levels", inputs * WIDTH * OPERATIONS, Level::available().count());
+    println!("{} lanes at {} levels", inputs * WIDTH * OPERATIONS, SimdLevel::available().count());
 }

@@ -1,7 +1,7 @@
 //! Making a tree of triangles, and making it fit again when vertices have moved.
 
 use super::{TAG, TriangleBvh, number};
-use crate::build::{self, Preset, Settings, is_finite};
+use crate::build::{self, BuildQuality, BuildSettings, is_finite};
 use crate::lanes::{Available, ROOM_OF_ROWS, ROWS, listed};
 use crate::math::{Aabb, Vec3};
 use crate::node;
@@ -19,16 +19,16 @@ impl TriangleBvh {
     /// # Panics
     ///
     /// If an index leads nowhere, or there are 2^28 triangles or more, or more than 2^26 nodes (of usual triangles there are 25 for a node).
-    pub fn build(vertices: &[Vec3], triangles: &[[u32; 3]], preset: Preset) -> Self {
+    pub fn build(vertices: &[Vec3], triangles: &[[u32; 3]], quality: BuildQuality) -> Self {
         // All of it on a thread of the pool: from outside, each step that is shared would be handed over and waited for.
         match triangles.len() > AT_ONCE {
-            true => rayon::scope(|_| Self::built(vertices, triangles, preset)),
-            false => Self::built(vertices, triangles, preset),
+            true => rayon::scope(|_| Self::built(vertices, triangles, quality)),
+            false => Self::built(vertices, triangles, quality),
         }
     }
 
-    fn built(vertices: &[Vec3], triangles: &[[u32; 3]], preset: Preset) -> Self {
-        let settings = Settings::triangles(preset);
+    fn built(vertices: &[Vec3], triangles: &[[u32; 3]], quality: BuildQuality) -> Self {
+        let settings = BuildSettings::triangles(quality);
         let corners_of = |number: u32| triangles[number as usize].map(|i| vertices[i as usize]);
         let tree = build::build_triangles(triangles.len(), &corners_of, &settings);
         let mut bvh = TriangleBvh {
@@ -38,7 +38,7 @@ impl TriangleBvh {
             reach: tree.bounds.reach(),
             level: Available::chosen(),
             least_volume: 0.0,
-            blind: false,
+            culls_slivers: false,
         };
         bvh.pack(Some(&tree.order), vertices, triangles);
         bvh

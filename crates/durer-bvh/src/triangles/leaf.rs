@@ -1,6 +1,6 @@
 //! Triangles and rays side by side: several triangles and a ray, or a triangle and several rays.
 //!
-//! The test is that of [`Sheared`](crate::watertight::Sheared), with the same roundings. Edge functions in single precision have the right signs
+//! The test is that of [`WatertightRay`](crate::watertight::WatertightRay), with the same roundings. Edge functions in single precision have the right signs
 //! wherever they are not zero, so nearly all triangles are refused or accepted by plain vector arithmetic; what is left is
 //! for the scalar test, which is exact. Where any triangle will do, it is enough that t lies between two bounds; where the
 //! nearest is wanted, double precision says where each is that is crossed.
@@ -38,7 +38,7 @@ pub struct Span<N: Numbers> {
 }
 
 impl<N: Numbers> Flat<N> {
-    /// From corners and origins that are turned as [`Sheared`](crate::watertight::Sheared) turns them.
+    /// From corners and origins that are turned as [`WatertightRay`](crate::watertight::WatertightRay) turns them.
     ///
     /// Roundings are the same as there, so signs of edge functions are exact where they are not zero.
     #[inline(always)]
@@ -84,7 +84,7 @@ impl<N: Numbers> Flat<N> {
     /// their heights, and H how far those lie apart. With e = 2^-23 a coordinate across is wrong by at most e (R + 2 Z), so an edge
     /// function by at most e (6 R^2 + 8 R Z). Errors of weights move the mean by their sum times H over the sum of weights, and twice
     /// that is a bound also where the sum of weights is uncertain itself, for then it exceeds H, and both the
-    /// mean and the `t` of [`Sheared`] lie between the heights of corners. What else is rounded adds less than 6 e Z, and a few of the
+    /// mean and the `t` of [`WatertightRay`] lie between the heights of corners. What else is rounded adds less than 6 e Z, and a few of the
     /// least numbers. `1 / dz` is `inverse_z`; the longest component dz of the direction must lie between 10^-15 and 10^15, and
     /// coordinates below 10^15.
     #[inline(always)]

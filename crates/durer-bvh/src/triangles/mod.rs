@@ -8,11 +8,11 @@ mod packet;
 mod query;
 mod stream;
 
-use super::lanes::{Available, Level, ROWS, Rows};
-use super::node::{self, Node};
-use super::{Counts, Tally};
+use super::lanes::{Available, ROWS, Rows, SimdLevel};
+use super::node::{self, WideNode};
+use super::{TraversalCounter, TraversalStats};
 use crate::math::{Aabb, Ray, Vec2};
-use crate::watertight::Sheared;
+use crate::watertight::WatertightRay;
 pub use nearest::NearestPoint;
 use query::{All, Any, Nearest, Query};
 use std::marker::PhantomData;
@@ -37,15 +37,19 @@ pub struct TriangleHit {
     pub triangle: u32,
 }
 
-/// Asks without or with counting, as the tally wants it.
+/// Asks without or with counting, as the counter wants it.
 #[inline(always)]
-fn counting<T: Tally, A>(tally: &mut T, plain: impl FnOnce() -> A, counted: impl FnOnce(&mut Counts) -> A) -> A {
+fn counting<T: TraversalCounter, A>(
+    counter: &mut T,
+    plain: impl FnOnce() -> A,
+    counted: impl FnOnce(&mut TraversalStats) -> A,
+) -> A {
     if !T::COUNTS_WORK {
         return plain();
     }
-    let mut counts = Counts::default();
+    let mut counts = TraversalStats::default();
     let answer = counted(&mut counts);
-    tally.work(counts.nodes, counts.tests);
+    counter.work(counts.nodes, counts.tests);
     answer
 }
 
@@ -59,28 +63,28 @@ fn in_order(mut all: Vec<TriangleHit>) -> Vec<TriangleHit> {
 /// A bounding volume hierarchy over triangles, for use without any scene.
 ///
 /// A ray counts as moved by an infinitesimal across itself, so that it crosses exactly one of the triangles around an
-/// edge or a vertex: no ray slips through a closed mesh, and [`TriangleBvh::count`] is exact. Triangles are met from both
+/// edge or a vertex: no ray slips through a closed mesh, and [`TriangleBvh::hit_count`] is exact. Triangles are met from both
 /// sides. Of hits at the same `t` the one of least number is the closest. All answers are the same, bit for bit, for
-/// all presets, SIMD levels, and numbers of threads.
+/// all qualities, SIMD levels, and numbers of threads.
 ///
 /// A ray that is NaN or infinite, or without direction, hits nothing; directions need not be of length 1.
 ///
 /// ```
-/// use durer_bvh::{Preset, TriangleBvh};
+/// use durer_bvh::{BuildQuality, TriangleBvh};
 /// use durer_bvh::math::{Ray, Vec3};
 ///
 /// let vertices = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
 /// let triangles = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
-/// let tree = TriangleBvh::build(&vertices, &triangles, Preset::default());
+/// let tree = TriangleBvh::build(&vertices, &triangles, BuildQuality::default());
 /// let ray = Ray::new(Vec3::new(0.2, 0.2, -1.0), Vec3::Z);
 /// let hit = tree.closest(&ray).unwrap();
 /// assert_eq!((hit.t, hit.triangle), (1.0, 0));
 /// assert!(tree.occluded(&ray));
-/// assert_eq!(tree.count(&ray), 2);
+/// assert_eq!(tree.hit_count(&ray), 2);
 /// ```
 #[derive(Clone, Debug)]
 pub struct TriangleBvh {
-    nodes: Vec<Node>,
+    nodes: Vec<WideNode>,
     /// For each leaf [`ROWS`] rows, each of as many numbers as it has triangles: their corners by axis, and their numbers, as bits. A
     /// leaf's room behind the last.
     leaves: Vec<f32>,
@@ -90,25 +94,25 @@ pub struct TriangleBvh {
     level: Available,
     least_volume: f64,
     /// Whether that is more than nothing.
-    blind: bool,
+    culls_slivers: bool,
 }
 
 impl TriangleBvh {
     /// The same tree with tests at another SIMD level; at the plain one where the processor has not got it.
-    pub fn at_level(self, level: Level) -> Self {
+    pub fn at_level(self, level: SimdLevel) -> Self {
         TriangleBvh { level: Available::or_scalar(level), ..self }
     }
 
-    /// The same, blind to triangles for which |(b - a) x (c - a) · d| is less than this. Zero is
-    /// blind to none.
+    /// The same, blind to slivers to triangles for which |(b - a) x (c - a) · d| is less than this. Zero is
+    /// blind to slivers to none.
     pub fn least_volume(self, least_volume: f64) -> Self {
-        TriangleBvh { least_volume, blind: least_volume != 0.0, ..self }
+        TriangleBvh { least_volume, culls_slivers: least_volume != 0.0, ..self }
     }
 
     /// A ray prepared for single triangles, with the same blindness as the tree.
     #[inline]
-    pub fn sheared(&self, ray: &Ray) -> Sheared {
-        Sheared::new(ray).least_volume(self.least_volume)
+    pub fn watertight_ray(&self, ray: &Ray) -> WatertightRay {
+        WatertightRay::new(ray).least_volume(self.least_volume)
     }
 
     /// The first hit in the ray's open interval (`t_min`, `t_max`).
@@ -118,8 +122,8 @@ impl TriangleBvh {
 
     /// As [`TriangleBvh::closest`], counting nodes and tests.
     #[inline]
-    pub fn closest_counting<T: Tally>(&self, ray: &Ray, tally: &mut T) -> Option<TriangleHit> {
-        counting(tally, || self.closest(ray), |counts| self.closest_counted(ray, counts))
+    pub fn closest_counting<T: TraversalCounter>(&self, ray: &Ray, counter: &mut T) -> Option<TriangleHit> {
+        counting(counter, || self.closest(ray), |counts| self.closest_counted(ray, counts))
     }
 
     /// Whether anything is hit in the ray's open interval.
@@ -129,8 +133,8 @@ impl TriangleBvh {
 
     /// As [`TriangleBvh::occluded`], counting nodes and tests.
     #[inline]
-    pub fn occluded_counting<T: Tally>(&self, ray: &Ray, tally: &mut T) -> bool {
-        counting(tally, || self.occluded(ray), |counts| self.occluded_counted(ray, counts))
+    pub fn occluded_counting<T: TraversalCounter>(&self, ray: &Ray, counter: &mut T) -> bool {
+        counting(counter, || self.occluded(ray), |counts| self.occluded_counted(ray, counts))
     }
 
     /// All hits in the ray's open interval, by `t` and then by number of the triangle.
@@ -140,26 +144,26 @@ impl TriangleBvh {
 
     /// As [`TriangleBvh::all_hits`], counting nodes and tests.
     #[inline]
-    pub fn all_hits_counting<T: Tally>(&self, ray: &Ray, tally: &mut T) -> Vec<TriangleHit> {
-        counting(tally, || self.all_hits(ray), |counts| self.all_hits_counted(ray, counts))
+    pub fn all_hits_counting<T: TraversalCounter>(&self, ray: &Ray, counter: &mut T) -> Vec<TriangleHit> {
+        counting(counter, || self.all_hits(ray), |counts| self.all_hits_counted(ray, counts))
     }
 
-    // Not generic, so that they are compiled here, once, and not for each tally of each caller.
+    // Not generic, so that they are compiled here, once, and not for each counter of each caller.
 
-    fn closest_counted(&self, ray: &Ray, counts: &mut Counts) -> Option<TriangleHit> {
+    fn closest_counted(&self, ray: &Ray, counts: &mut TraversalStats) -> Option<TriangleHit> {
         self.query::<_, Nearest>(ray, counts)
     }
 
-    fn occluded_counted(&self, ray: &Ray, counts: &mut Counts) -> bool {
+    fn occluded_counted(&self, ray: &Ray, counts: &mut TraversalStats) -> bool {
         self.query::<_, Any>(ray, counts)
     }
 
-    fn all_hits_counted(&self, ray: &Ray, counts: &mut Counts) -> Vec<TriangleHit> {
+    fn all_hits_counted(&self, ray: &Ray, counts: &mut TraversalStats) -> Vec<TriangleHit> {
         in_order(self.query::<_, All>(ray, counts))
     }
 
     /// How many triangles the ray crosses in its open interval: odd from inside a closed mesh, even from outside.
-    pub fn count(&self, ray: &Ray) -> usize {
+    pub fn hit_count(&self, ray: &Ray) -> usize {
         self.all_hits(ray).len()
     }
 
@@ -199,21 +203,21 @@ impl TriangleBvh {
     }
 
     #[inline]
-    fn query<T: Tally, F: query::Found>(&self, ray: &Ray, tally: T) -> F::Answer {
+    fn query<T: TraversalCounter, F: query::HitCollector>(&self, ray: &Ray, counter: T) -> F::Answer {
         match self.nodes.is_empty() {
             true => F::Answer::default(),
-            false => self.level.run(Query::<_, F> { bvh: self, ray, tally, found: PhantomData }),
+            false => self.level.run(Query::<_, F> { bvh: self, ray, counter, found: PhantomData }),
         }
     }
 
     /// Bytes in memory.
-    pub fn bytes(&self) -> usize {
+    pub fn memory_usage(&self) -> usize {
         size_of_val(&*self.nodes) + size_of_val(&*self.leaves)
     }
 
     /// Cost of a random ray through the bounds by the surface area heuristic, in tests of a node, where a leaf costs as
     /// much. Not a number where the bounds have no area.
-    pub fn cost(&self) -> f64 {
+    pub fn sah_cost(&self) -> f64 {
         node::cost(&self.nodes, self.bounds)
     }
 

@@ -30,10 +30,10 @@ pub struct Crossing {
 /// A ray prepared for many triangles.
 ///
 /// It is turned: the longest component of its direction counts as the third axis, and the other two are in the order that keeps
-/// the sides of triangles. So are the corners that `Sheared::crosses` and others take.
+/// the sides of triangles. So are the corners that `WatertightRay::crosses` and others take.
 #[derive(Clone, Copy, Debug)]
-pub struct Sheared {
-    axes: &'static Turn,
+pub struct WatertightRay {
+    axes: &'static AxisOrder,
     origin: Vec3A,
     dir: Vec3A,
     /// The direction, of which the third component is 1.
@@ -41,7 +41,7 @@ pub struct Sheared {
     least_volume: f64,
 }
 
-impl Sheared {
+impl WatertightRay {
     /// Prepares a ray. One without direction, or with an infinite one, hits nothing.
     #[inline(always)]
     pub fn new(ray: &Ray) -> Self {
@@ -49,18 +49,18 @@ impl Sheared {
         let [origin, dir] = [ray.origin, ray.dir].map(|v| turned(axes, v.as_ref()));
         let sheared = Self::turned(axes, origin, dir);
         let shear = if sheared.dir.z.is_finite() { sheared.shear } else { Vec3A::NAN };
-        Sheared { shear, ..sheared }
+        WatertightRay { shear, ..sheared }
     }
 
     /// A ray that has a finite direction, with its axes, by [`turn`], and turned already.
     #[inline(always)]
-    pub(crate) fn turned(axes: &'static Turn, origin: Vec3A, dir: Vec3A) -> Self {
-        Sheared { axes, origin, dir, shear: dir / dir.z, least_volume: 0.0 }
+    pub(crate) fn turned(axes: &'static AxisOrder, origin: Vec3A, dir: Vec3A) -> Self {
+        WatertightRay { axes, origin, dir, shear: dir / dir.z, least_volume: 0.0 }
     }
 
     /// Misses triangles for which |(b - a) x (c - a) · d| is less than this.
     pub fn least_volume(self, least_volume: f64) -> Self {
-        Sheared { least_volume, ..self }
+        WatertightRay { least_volume, ..self }
     }
 
     /// The crossing with a triangle in the open interval (`t_min`, `t_max`), from either side.
@@ -118,7 +118,7 @@ impl Sheared {
     }
 
     /// The axes in the order of turned vectors.
-    pub(crate) fn axes(&self) -> &'static Turn {
+    pub(crate) fn axes(&self) -> &'static AxisOrder {
         self.axes
     }
 
@@ -214,12 +214,12 @@ pub(crate) fn uv_across<D: Doubles>(flat: [[D; 2]; 3]) -> [D; 2] {
 }
 
 /// Which components of a vector are the first, second, and third of a turned one; the last is there to make a vector of four.
-pub(crate) type Turn = [u32; 4];
+pub(crate) type AxisOrder = [u32; 4];
 
 /// The axes that turn a ray, by the longest component of its direction and whether that is negative (1) or not (0).
 #[inline(always)]
-pub(crate) const fn turned_axes(longest: usize, negative: usize) -> Turn {
-    const AXES: [[Turn; 2]; 4] =
+pub(crate) const fn turned_axes(longest: usize, negative: usize) -> AxisOrder {
+    const AXES: [[AxisOrder; 2]; 4] =
         [[[1, 2, 0, 0], [2, 1, 0, 0]], [[2, 0, 1, 0], [0, 2, 1, 0]], [[0, 1, 2, 0], [1, 0, 2, 0]], [[0; 4]; 2]];
     // So masked, indices need not be tested.
     AXES[longest & 3][negative & 1]
@@ -227,7 +227,7 @@ pub(crate) const fn turned_axes(longest: usize, negative: usize) -> Turn {
 
 /// The axes that turn a ray with such a direction.
 #[inline(always)]
-pub(crate) fn turn(dir: Vec3A) -> &'static Turn {
+pub(crate) fn turn(dir: Vec3A) -> &'static AxisOrder {
     let length = dir.abs();
     let longest = length.cmpeq(Vec3A::splat(length.max_element())).bitmask();
     &TURNED[longest as usize & 7][dir.is_negative_bitmask() as usize & 7]
@@ -235,7 +235,7 @@ pub(crate) fn turn(dir: Vec3A) -> &'static Turn {
 
 /// The axes that turn a ray, by which components of its direction are longest (a bit for each; the last of them counts) and which are
 /// negative.
-static TURNED: [[Turn; 8]; 8] = {
+static TURNED: [[AxisOrder; 8]; 8] = {
     let mut table = [[[0, 1, 2, 0]; 8]; 8];
     let mut at = 8;
     while at < 64 {
@@ -247,7 +247,7 @@ static TURNED: [[Turn; 8]; 8] = {
 };
 
 #[inline(always)]
-fn turned([x, y, z, _]: &Turn, v: &[f32; 3]) -> Vec3A {
+fn turned([x, y, z, _]: &AxisOrder, v: &[f32; 3]) -> Vec3A {
     Vec3A::new(v[*x as usize], v[*y as usize], v[*z as usize])
 }
 

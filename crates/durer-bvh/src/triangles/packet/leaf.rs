@@ -145,7 +145,7 @@ impl Packet<'_> {
                         *meeting = self.meetings.len() as u32;
                         self.meetings.push(Meeting::new(corners, number(rows, count, lane)));
                     }
-                    met |= e.meet(lanes, &self.axes, &self.meetings, *meeting, crossed);
+                    met |= e.intersect_node(lanes, &self.axes, &self.meetings, *meeting, crossed);
                 }
                 all_met |= u64::from(met) << (group * WIDE);
                 if ANY {

@@ -107,7 +107,7 @@ impl AddAssign for Tried {
 /// Random rays about a mesh, all hits and the first.
 fn try_rays(name: &str, mesh: &Mesh, seed: u64, rays: usize) -> Tried {
     let (vertices, triangles) = mesh;
-    let tree = TriangleBvh::build(vertices, triangles, Preset::Best);
+    let tree = TriangleBvh::build(vertices, triangles, BuildQuality::Best);
     let bounds = tree.bounds();
     let (center, size) = (bounds.center(), bounds.size().max_element());
     let (mut random, mut tried) = (Random(seed), Tried::default());
@@ -140,7 +140,7 @@ fn double_precision_says_the_same() {
     let all = rounds(100_000);
     let mut cut = 0;
     for (number, (name, mesh)) in dozen().into_iter().enumerate() {
-        cut += usize::from(TriangleBvh::build(&mesh.0, &mesh.1, Preset::Best).items() > mesh.1.len());
+        cut += usize::from(TriangleBvh::build(&mesh.0, &mesh.1, BuildQuality::Best).items() > mesh.1.len());
         let part = |i: usize| try_rays(name, &mesh, (number << 32 | i) as u64, AT_ONCE);
         let tried = (0..all.div_ceil(AT_ONCE)).into_par_iter().map(part).reduce(Tried::default, |mut a, b| {
             a += b;
