@@ -184,10 +184,8 @@ fn instances(mesh: &Mesh, count: u32, options: &Options, embree: Option<&Arc<Emb
     println!("{} instances of {}: {} triangles", count, mesh.name, mesh.triangles.len());
     let places = places(mesh, count);
     let tree = Arc::new(TriangleBvh::build(&mesh.vertices, &mesh.triangles, options.preset));
-    let place = |place: &DAffine3| Instance {
-        tree: tree.clone(),
-        to_world: Affine::new(*place).expect("places can be inverted"),
-    };
+    let place =
+        |place: &DAffine3| Instance::new(tree.clone(), Affine::new(*place).expect("places can be inverted"));
     let clock = Instant::now();
     let ours = Placed(InstanceBvh::new(places.iter().map(place).collect()), mesh.triangles.len() as u32);
     let time = clock.elapsed().as_secs_f64();

@@ -1,25 +1,32 @@
-//! Acceleration structures: which things a ray may meet, found without asking them all.
+//! Ray queries on triangles and boxes: bounding volume hierarchies, and a uniform grid.
 //!
-//! They know boxes and numbers of things only; what a thing is, the caller's closure knows. A structure may
-//! offer a thing that the ray misses, never withhold one that it meets; so all of them find the same hit.
+//! [`Bvh`] and [`Grid`] know boxes and numbers of things only; what a thing is, the caller's
+//! closure knows. A structure may offer a thing that the ray misses, never withhold one that it
+//! meets; so all of them find the same hit. [`TriangleBvh`] has the triangles too.
+//!
+#![doc = include_str!("../README.md")]
 
 mod boxes;
 mod build;
+mod error;
 mod grid;
 mod instances;
 mod lanes;
 pub mod math;
 mod node;
+mod parallel;
 mod traverse;
 mod triangles;
 pub mod watertight;
 
 pub use boxes::Bvh;
 pub use build::BuildQuality;
+pub use error::{BuildError, LoadError};
+pub use glam;
 pub use grid::Grid;
 pub use instances::{Instance, InstanceBvh, InstanceHit};
 pub use lanes::{SimdLevel, UnknownSimdLevel};
-pub use triangles::{NearestPoint, TriangleBvh, TriangleHit};
+pub use triangles::{Facing, NearestPoint, TriangleBvh, TriangleHit};
 
 /// Counts the work of rays. `()` counts nothing, at no cost.
 pub trait TraversalCounter {

@@ -115,6 +115,29 @@ pub(super) fn items(leaf: u32) -> (usize, usize) {
     ((leaf & FIRST_MASK) as usize, ((leaf & !LEAF) >> COUNT_SHIFT) as usize + 1)
 }
 
+/// Makes boxes fit things that have moved, by the box around the things of a leaf.
+pub(super) fn refit(nodes: &mut [WideNode], leaf_bounds: impl Fn(u32) -> Aabb) {
+    // Children come after their parents, so boxes are right from the end.
+    for parent in (0..nodes.len()).rev() {
+        let children: Vec<(usize, Aabb, u32)> = nodes[parent].children().collect();
+        for (place, _, child) in children {
+            let bounds = match child & LEAF {
+                0 => nodes[number(child)].children().fold(Aabb::EMPTY, |b, (_, c, _)| b.union(c)),
+                _ => leaf_bounds(child),
+            };
+            // Where nothing can be hit for now, the old box keeps the place.
+            if !bounds.is_empty() {
+                nodes[parent].set(place, bounds, child);
+            }
+        }
+    }
+}
+
+/// The box around everything.
+pub(super) fn bounds(nodes: &[WideNode]) -> Aabb {
+    nodes.first().map_or(Aabb::EMPTY, |root| root.children().fold(Aabb::EMPTY, |b, c| b.union(c.1)))
+}
+
 /// Cost of a random ray through the bounds by the surface area heuristic, in tests of a node, where a leaf costs as much.
 pub(super) fn cost(nodes: &[WideNode], bounds: Aabb) -> f64 {
     let root = f64::from(bounds.half_area());

@@ -62,7 +62,7 @@ impl Target {
     fn occluded(&self, rays: &[Ray], answers: &mut [bool]) {
         match self {
             Target::Mesh(tree) => tree.occluded_batch(rays, answers),
-            Target::Placed(scene) => answers.iter_mut().zip(rays).for_each(|(to, ray)| *to = scene.occluded(ray)),
+            Target::Placed(scene) => scene.occluded_batch(rays, answers),
         }
     }
 
@@ -76,9 +76,9 @@ impl Target {
     fn contains(&self, point: Vec3) -> bool {
         match self {
             Target::Mesh(tree) => tree.hit_count(&outward(tree, point)) % 2 == 1,
-            Target::Placed(scene) => scene.instances().iter().any(|Instance { tree, to_world }| {
-                let ray = to_world.inverse_ray(Ray::new(point, Vec3::Z));
-                tree.hit_count(&ray) % 2 == 1
+            Target::Placed(scene) => scene.instances().iter().any(|instance| {
+                let ray = instance.to_world.inverse_ray(Ray::new(point, Vec3::Z));
+                instance.bvh.hit_count(&ray) % 2 == 1
             }),
         }
     }
@@ -138,7 +138,7 @@ impl Tree {
             let matrix3 = DMat3::from_cols(column(0), column(1), column(2));
             let singular = || PyValueError::new_err(format!("the matrix of object {i} cannot be inverted"));
             let to_world = Affine::new(DAffine3 { matrix3, translation: column(3) }).ok_or_else(singular)?;
-            placed.push(Instance { tree: tree.clone(), to_world });
+            placed.push(Instance::new(tree.clone(), to_world));
         }
         Ok(Tree(Target::Placed(InstanceBvh::new(placed))))
     }

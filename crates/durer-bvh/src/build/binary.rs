@@ -5,8 +5,8 @@ use super::spatial::{MIN_REFERENCES, Searches};
 use super::{BuildSettings, Reference, area_scale, lane, lane_number};
 use crate::lanes::listed;
 use crate::math::{Aabb, Vec3};
+use crate::parallel;
 use glam::Vec4;
-use rayon::prelude::*;
 
 /// Subtrees of more references than this are built in parallel.
 const PARALLEL: u32 = 4096;
@@ -123,7 +123,8 @@ pub fn build(mut references: Vec<Reference>, settings: &BuildSettings, corners: 
     let scale = area_scale(all.bounds());
     let area = half_area(all.min, all.max, scale);
     let builder = Builder { scale, area, whole: settings.whole, bins: settings.bins, corners };
-    references.par_extend(rayon::iter::repeat_n(references[0], settings.spare(references.len())));
+    let (first, spare) = (references[0], settings.spare(references.len()));
+    parallel::extend(&mut references, spare, 1, |_| first);
     let mut nodes = listed(2 * references.len() - 1, 0, |_| BinaryNode::NONE);
     let room = BuildRange { references: &mut references, first: 0, searches: Searches::default() };
     let counts = builder.subtree(room, &mut nodes, &all, 0);
@@ -187,7 +188,7 @@ impl Builder<'_> {
             let nodes = 2 * middle - 1;
             let (left_nodes, right_nodes) = below.split_at_mut(nodes);
             let (left, right) =
-                rayon::join(|| build(left, left_nodes, left_all), || build(right, right_nodes, right_all));
+                parallel::join(|| build(left, left_nodes, left_all), || build(right, right_nodes, right_all));
             [SubtreeSize { nodes, ..left }, right]
         } else {
             let left = build(left, below, left_all);

@@ -6,6 +6,7 @@
 use super::Reference;
 use super::binary::{Builder, half_area};
 use crate::math::Aabb;
+use crate::parallel;
 use glam::{IVec4, Mat4, Vec4};
 
 pub const BINS: usize = 16;
@@ -98,7 +99,7 @@ fn middles(references: &[Reference]) -> [Vec4; 2] {
 fn around_all(references: &[Reference], of: &(impl Fn(&Reference) -> [Vec4; 2] + Sync)) -> [Vec4; 2] {
     if references.len() > MIN_PARALLEL {
         let (a, b) = references.split_at(references.len() / 2);
-        let (a, b) = rayon::join(|| around_all(a, of), || around_all(b, of));
+        let (a, b) = parallel::join(|| around_all(a, of), || around_all(b, of));
         return [a[0].min(b[0]), a[1].max(b[1])];
     }
     let mut boxes = [[Vec4::INFINITY, Vec4::NEG_INFINITY]; 4];
@@ -152,7 +153,7 @@ impl Bins {
 fn filled<const N: usize>(references: &[Reference], grid: &Grid) -> [Bins; N] {
     if references.len() > MIN_PARALLEL {
         let (a, b) = references.split_at(references.len() / 2);
-        let (mut a, b) = rayon::join(|| filled::<N>(a, grid), || filled::<N>(b, grid));
+        let (mut a, b) = parallel::join(|| filled::<N>(a, grid), || filled::<N>(b, grid));
         a.iter_mut().zip(&b).for_each(|(a, b)| a.join(b));
         return a;
     }

@@ -9,8 +9,8 @@ mod wide;
 use super::lanes::listed;
 use super::node::{MAX_ITEMS, WideNode};
 use crate::math::{Aabb, Vec3};
+use crate::parallel;
 use glam::Vec4;
-use rayon::prelude::*;
 use reinsert::Linked;
 use wide::CollapsePlan;
 
@@ -143,7 +143,7 @@ fn triangle_references(
         let corners = corners_of(i as u32);
         Reference::new(if is_finite(&corners) { Aabb::around(corners) } else { Aabb::EMPTY }, i as u32)
     });
-    if references.par_iter().with_min_len(4096).any(|r| r.min.x > r.max.x) {
+    if parallel::any(&references, 4096, |r| r.min.x > r.max.x) {
         references.retain(|r| r.min.x <= r.max.x);
     }
     references

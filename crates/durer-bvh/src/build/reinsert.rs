@@ -6,7 +6,7 @@ use super::MIN_GAIN;
 use super::binary::{BinaryNode, Tree, half_area};
 use crate::MAX_DEPTH;
 use crate::lanes::room;
-use rayon::prelude::*;
+use crate::parallel;
 
 /// In each pass this share of nodes are looked at. Where much can be spared, most of that is in few of them.
 const SHARE: f64 = 0.04;
@@ -124,7 +124,7 @@ impl Linked {
 
     /// Better places for some nodes.
     fn moves(&self, candidates: &[Candidate]) -> Vec<Move> {
-        candidates.par_iter().with_min_len(64).filter_map(|&(_, from)| self.find(from)).collect()
+        parallel::filter_map(candidates, 64, |&(_, from)| self.find(from))
     }
 
     /// Whether a node lies in a subtree, as it may after an earlier move of the same pass.

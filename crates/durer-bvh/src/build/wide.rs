@@ -12,8 +12,8 @@ use super::binary::{self, half_area};
 use crate::lanes::{WIDTH, listed, room};
 use crate::math::Aabb;
 use crate::node::{self, LEAF, LEAF_SIZE, WideNode};
+use crate::parallel;
 use glam::Vec3A;
-use rayon::prelude::*;
 
 /// Subtrees of more references than this are worked on in parallel.
 const PARALLEL: usize = 4096;
@@ -37,7 +37,7 @@ pub fn collapse(tree: &binary::Tree, plans: CollapsePlan) -> (Vec<WideNode>, Vec
     let writer = NodeWriter { tree, plans: plans.plans };
     let mut cuts = CutPoints::default();
     writer.cuts(0, &mut cuts);
-    let subtrees: Vec<SubtreeNodes> = cuts.below.par_iter().map(|&i| writer.subtree(i)).collect();
+    let subtrees: Vec<SubtreeNodes> = parallel::map(&cuts.below, |&i| writer.subtree(i));
     let count = cuts.above + subtrees.iter().map(|subtree| subtree.nodes.len()).sum::<usize>();
     let mut all = SubtreeNodes { nodes: room(count), order: room(writer.node(0).count()) };
     // A tree of one leaf still needs a node to hold it.
@@ -93,7 +93,7 @@ fn plan(nodes: &[binary::BinaryNode], plans: &mut [Plan], scale: f32, settings: 
     let (left_plans, right_plans) = rest.split_at_mut(node.right() - 1);
     let (left_nodes, right_nodes) = nodes[1..].split_at(node.right() - 1);
     let (left, right) = if count > PARALLEL {
-        rayon::join(
+        parallel::join(
             || plan(left_nodes, left_plans, scale, settings),
             || plan(right_nodes, right_plans, scale, settings),
         )

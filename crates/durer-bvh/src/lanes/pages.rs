@@ -1,6 +1,6 @@
 //! Large pages of memory.
 
-use rayon::prelude::*;
+use crate::parallel;
 
 /// An empty list with room for so many things, on large pages.
 pub fn room<T>(count: usize) -> Vec<T> {
@@ -14,7 +14,7 @@ pub fn room<T>(count: usize) -> Vec<T> {
 pub fn listed<T: Send>(count: usize, more: usize, of: impl Fn(usize) -> T + Sync + Send) -> Vec<T> {
     const AT_ONCE: usize = 4096;
     let mut all = room(count + more);
-    all.par_extend((0..count).into_par_iter().with_min_len(AT_ONCE).map(of));
+    parallel::extend(&mut all, count, AT_ONCE, of);
     all
 }
 

@@ -24,3 +24,10 @@ pub const fn gamma(n: u32) -> f32 {
     let nu = n as f32 * UNIT_ROUNDOFF;
     nu / (1.0 - nu)
 }
+
+/// The unit normal (b - a) x (c - a) of a triangle; zero if it has no area.
+pub fn triangle_normal([a, b, c]: [Vec3; 3]) -> Vec3 {
+    // In double precision, where differences and products of single ones do not vanish.
+    let [a, b, c] = [a, b, c].map(Vec3::as_dvec3);
+    (b - a).cross(c - a).normalize_or_zero().as_vec3()
+}

@@ -6,16 +6,18 @@ mod leaf;
 mod nearest;
 mod packet;
 mod query;
+mod stored;
 mod stream;
 
 use super::lanes::{Available, ROWS, Rows, SimdLevel};
 use super::node::{self, WideNode};
 use super::{TraversalCounter, TraversalStats};
-use crate::math::{Aabb, Ray, Vec2};
+use crate::math::{self, Aabb, Ray, Vec2, Vec3};
 use crate::watertight::WatertightRay;
+use glam::Vec3A;
 pub use nearest::NearestPoint;
-use query::{All, Any, Nearest, Query};
-use std::marker::PhantomData;
+use query::{All, Any, Filter, Filtered, HitCollector, Nearest, Query};
+use std::sync::OnceLock;
 
 /// Makes a number below 2^28 an `f32` of ordinary size: what is read past the end of a row is computed with, and tiny numbers are slow.
 const TAG: u32 = 1 << 30;
@@ -95,6 +97,38 @@ pub struct TriangleBvh {
     least_volume: f64,
     /// Whether that is more than nothing.
     culls_slivers: bool,
+    /// How many triangles it was built over.
+    count: usize,
+    /// For each triangle a leaf that holds it, once that was asked for.
+    leaf_of: OnceLock<Vec<u32>>,
+}
+
+/// The side of a triangle that a ray meets.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Facing {
+    /// The side from which its corners go counter-clockwise: (b - a) x (c - a) points towards the
+    /// ray's origin.
+    Front,
+    /// The other.
+    Back,
+}
+
+impl Facing {
+    /// Of a triangle that is crossed, by the exact signs that say that it is: so along a ray the
+    /// sides of a closed mesh alternate.
+    #[inline]
+    fn of(ray: &WatertightRay, corners: [Vec3A; 3]) -> Self {
+        if ray.is_front(corners) { Facing::Front } else { Facing::Back }
+    }
+
+    /// The other side, if something is so.
+    pub(crate) fn turned_if(self, turned: bool) -> Self {
+        match (self, turned) {
+            (side, false) => side,
+            (Facing::Front, true) => Facing::Back,
+            (Facing::Back, true) => Facing::Front,
+        }
+    }
 }
 
 impl TriangleBvh {
@@ -137,6 +171,38 @@ impl TriangleBvh {
         counting(counter, || self.occluded(ray), |counts| self.occluded_counted(ray, counts))
     }
 
+    /// As [`TriangleBvh::closest`], of the hits that a filter lets pass: for textures with holes,
+    /// sides that are not seen, or triangles that are left out.
+    ///
+    /// The filter may be asked several times about a triangle, and about hits that are not the
+    /// first, in any order; so it should depend on its arguments alone.
+    ///
+    /// ```
+    /// use durer_bvh::math::{Ray, Vec3};
+    /// use durer_bvh::{BuildQuality, Facing, TriangleBvh};
+    ///
+    /// let vertices = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
+    /// let triangles = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+    /// let bvh = TriangleBvh::build(&vertices, &triangles, BuildQuality::default());
+    /// let ray = Ray::new(Vec3::new(0.2, 0.2, -1.0), Vec3::Z);
+    /// // The way out, for fronts are culled.
+    /// let hit = bvh.closest_where(&ray, |_, facing| facing == Facing::Back).unwrap();
+    /// assert_eq!(hit.triangle, 3);
+    /// ```
+    pub fn closest_where(
+        &self,
+        ray: &Ray,
+        mut filter: impl FnMut(&TriangleHit, Facing) -> bool,
+    ) -> Option<TriangleHit> {
+        self.closest_filtered(ray, &mut filter)
+    }
+
+    /// As [`TriangleBvh::occluded`], by the hits that a filter lets pass: see
+    /// [`TriangleBvh::closest_where`].
+    pub fn occluded_where(&self, ray: &Ray, mut filter: impl FnMut(&TriangleHit, Facing) -> bool) -> bool {
+        self.occluded_filtered(ray, &mut filter)
+    }
+
     /// All hits in the ray's open interval, by `t` and then by number of the triangle.
     pub fn all_hits(&self, ray: &Ray) -> Vec<TriangleHit> {
         in_order(self.query::<_, All>(ray, ()))
@@ -149,6 +215,14 @@ impl TriangleBvh {
     }
 
     // Not generic, so that they are compiled here, once, and not for each counter of each caller.
+
+    pub(crate) fn closest_filtered(&self, ray: &Ray, filter: Filter) -> Option<TriangleHit> {
+        self.query_with(ray, (), Filtered { inner: Nearest::default(), filter })
+    }
+
+    pub(crate) fn occluded_filtered(&self, ray: &Ray, filter: Filter) -> bool {
+        self.query_with(ray, (), Filtered { inner: Any, filter })
+    }
 
     fn closest_counted(&self, ray: &Ray, counts: &mut TraversalStats) -> Option<TriangleHit> {
         self.query::<_, Nearest>(ray, counts)
@@ -192,6 +266,22 @@ impl TriangleBvh {
         self.each::<Any>(rays, &rest, |i, answer| answers[i] = answer);
     }
 
+    /// How many triangles each ray crosses, in order: see [`TriangleBvh::hit_count`].
+    ///
+    /// # Panics
+    ///
+    /// If there are not as many places for counts as rays.
+    pub fn hit_count_batch(&self, rays: &[Ray], counts: &mut [u32]) {
+        assert_eq!(rays.len(), counts.len(), "a place for each count");
+        rays.iter().zip(counts).for_each(|(ray, count)| *count = self.hit_count(ray) as u32);
+    }
+
+    /// All hits of each ray, in order: `take` gets the ray's place in the batch, and its hits as
+    /// [`TriangleBvh::all_hits`] gives them.
+    pub fn all_hits_batch(&self, rays: &[Ray], mut take: impl FnMut(usize, &[TriangleHit])) {
+        rays.iter().enumerate().for_each(|(i, ray)| take(i, &self.all_hits(ray)));
+    }
+
     /// The rows of a leaf, and the count of its triangles.
     #[inline(always)]
     fn rows(&self, leaf: u32) -> (&Rows, usize) {
@@ -203,16 +293,61 @@ impl TriangleBvh {
     }
 
     #[inline]
-    fn query<T: TraversalCounter, F: query::HitCollector>(&self, ray: &Ray, counter: T) -> F::Answer {
+    fn query<T: TraversalCounter, F: HitCollector + Default>(&self, ray: &Ray, counter: T) -> F::Answer {
+        self.query_with(ray, counter, F::default())
+    }
+
+    #[inline]
+    fn query_with<T: TraversalCounter, F: HitCollector>(&self, ray: &Ray, counter: T, found: F) -> F::Answer {
         match self.nodes.is_empty() {
             true => F::Answer::default(),
-            false => self.level.run(Query::<_, F> { bvh: self, ray, counter, found: PhantomData }),
+            false => self.level.run(Query { bvh: self, ray, counter, found }),
         }
+    }
+
+    /// The corners of a triangle; `None` if there is no such triangle, or it has a corner that is
+    /// no finite point.
+    ///
+    /// The first call notes where each triangle lies, in four bytes for each.
+    pub fn corners(&self, triangle: u32) -> Option<[Vec3; 3]> {
+        let leaf_of = self.leaf_of.get_or_init(|| {
+            let mut leaf_of = vec![0; self.count];
+            for (_, _, leaf) in self.nodes.iter().flat_map(|node| node.children()) {
+                if leaf & node::LEAF != 0 {
+                    let (rows, count) = self.rows(leaf);
+                    (0..count).for_each(|lane| leaf_of[number(rows, count, lane) as usize] = leaf);
+                }
+            }
+            leaf_of
+        });
+        // A triangle that is in no leaf has 0, which is none.
+        let leaf = *leaf_of.get(triangle as usize).filter(|leaf| **leaf != 0)?;
+        let (rows, count) = self.rows(leaf);
+        let lane = (0..count).find(|lane| number(rows, count, *lane) == triangle)?;
+        let at = |row: usize| rows[row * count + lane];
+        let corners = [0, 3, 6].map(|row| Vec3::new(at(row), at(row + 1), at(row + 2)));
+        corners.iter().all(|corner| corner.is_finite()).then_some(corners)
+    }
+
+    /// The unit normal (b - a) x (c - a) of the triangle that was hit; zero if it has no area.
+    ///
+    /// ```
+    /// use durer_bvh::math::{Ray, Vec3};
+    /// use durer_bvh::{BuildQuality, TriangleBvh};
+    ///
+    /// let bvh = TriangleBvh::build(&[Vec3::ZERO, Vec3::X, Vec3::Y], &[[0, 1, 2]], BuildQuality::Fast);
+    /// let hit = bvh.closest(&Ray::new(Vec3::new(0.2, 0.2, 5.0), Vec3::NEG_Z)).unwrap();
+    /// assert_eq!(bvh.normal(&hit), Vec3::Z);
+    /// assert_eq!(bvh.corners(hit.triangle).unwrap()[1], Vec3::X);
+    /// ```
+    pub fn normal(&self, hit: &TriangleHit) -> Vec3 {
+        self.corners(hit.triangle).map_or(Vec3::ZERO, math::triangle_normal)
     }
 
     /// Bytes in memory.
     pub fn memory_usage(&self) -> usize {
-        size_of_val(&*self.nodes) + size_of_val(&*self.leaves)
+        let leaf_of = self.leaf_of.get().map_or(0, |leaf_of| size_of_val(&**leaf_of));
+        size_of_val(&*self.nodes) + size_of_val(&*self.leaves) + leaf_of
     }
 
     /// Cost of a random ray through the bounds by the surface area heuristic, in tests of a node, where a leaf costs as

@@ -5,7 +5,6 @@ use crate::lanes::WIDTH;
 use crate::math::Vec3;
 use crate::node::{self, LEAF, WideNode};
 use glam::DVec3;
-use smallvec::SmallVec;
 
 /// A point of a mesh, the nearest to another one.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,7 +42,7 @@ impl TriangleBvh {
             return None;
         }
         let point = point.as_dvec3();
-        let mut stack: SmallVec<[(f64, u32); 64]> = SmallVec::new();
+        let mut stack: Vec<(f64, u32)> = Vec::with_capacity(64);
         stack.push((0.0, 0));
         while let Some((squared, child)) = stack.pop() {
             if squared > best.squared {

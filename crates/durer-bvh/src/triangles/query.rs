@@ -2,21 +2,20 @@
 
 use super::fetch::{AND_SIBLINGS, Places};
 use super::leaf::Flat;
-use super::{TriangleBvh, TriangleHit, number};
+use super::{Facing, TriangleBvh, TriangleHit, number};
 use crate::TraversalCounter;
 use crate::lanes::{Columns, Kernel, Lanes, WIDTH};
 use crate::math::{Ray, Vec2};
 use crate::traverse::{FAST_RANGE, TraversalRay, Visitor, traverse};
 use crate::watertight::{Exact, Plane, WatertightRay, turn};
 use glam::Vec3A;
-use std::marker::PhantomData;
 
 /// A question, whose answer is an `F`.
 pub struct Query<'a, T, F> {
     pub bvh: &'a TriangleBvh,
     pub ray: &'a Ray,
     pub counter: T,
-    pub found: PhantomData<F>,
+    pub found: F,
 }
 
 /// A ray among triangles.
@@ -27,14 +26,15 @@ pub struct RayInTree<'a> {
 }
 
 /// An answer in the making.
-pub trait HitCollector: Default {
+pub trait HitCollector {
     type Answer: Default;
 
     /// Whether it is enough to know that something is hit.
     const ANY: bool;
 
-    /// Takes note of a hit, not after `t_max`; gives the new one.
-    fn met(&mut self, hit: TriangleHit, t_max: f32) -> f32;
+    /// Takes note of a hit, not after `t_max`; gives the new one. `facing` is asked for only by
+    /// those that want to know.
+    fn met(&mut self, hit: TriangleHit, t_max: f32, facing: impl FnOnce() -> Facing) -> f32;
 
     /// When the search has ended, and whether it was enough that something was hit.
     fn answer(&mut self, any: bool) -> Self::Answer;
@@ -61,7 +61,7 @@ impl HitCollector for Nearest {
     const ANY: bool = false;
 
     #[inline(always)]
-    fn met(&mut self, hit: TriangleHit, t_max: f32) -> f32 {
+    fn met(&mut self, hit: TriangleHit, t_max: f32, _: impl FnOnce() -> Facing) -> f32 {
         // What is the best before there is any has the greatest number.
         if hit.t < t_max || hit.triangle < self.best.triangle {
             self.best = hit;
@@ -85,7 +85,7 @@ impl HitCollector for Any {
     const ANY: bool = true;
 
     #[inline(always)]
-    fn met(&mut self, _: TriangleHit, _: f32) -> f32 {
+    fn met(&mut self, _: TriangleHit, _: f32, _: impl FnOnce() -> Facing) -> f32 {
         f32::NEG_INFINITY
     }
 
@@ -104,13 +104,41 @@ impl HitCollector for All {
 
     const ANY: bool = false;
 
-    fn met(&mut self, hit: TriangleHit, t_max: f32) -> f32 {
+    fn met(&mut self, hit: TriangleHit, t_max: f32, _: impl FnOnce() -> Facing) -> f32 {
         self.0.push(hit);
         t_max
     }
 
     fn answer(&mut self, _: bool) -> Vec<TriangleHit> {
         std::mem::take(&mut self.0)
+    }
+}
+
+/// Says whether a hit counts. It may be asked several times, and of hits that are not the first.
+pub type Filter<'a> = &'a mut dyn FnMut(&TriangleHit, Facing) -> bool;
+
+/// Hits that a filter lets pass.
+pub struct Filtered<'a, F> {
+    pub inner: F,
+    pub filter: Filter<'a>,
+}
+
+impl<F: HitCollector> HitCollector for Filtered<'_, F> {
+    type Answer = F::Answer;
+
+    // Not even where any hit will do is it enough to know that something is hit.
+    const ANY: bool = false;
+
+    fn met(&mut self, hit: TriangleHit, t_max: f32, facing: impl FnOnce() -> Facing) -> f32 {
+        let facing = facing();
+        match (self.filter)(&hit, facing) {
+            true => self.inner.met(hit, t_max, || facing),
+            false => t_max,
+        }
+    }
+
+    fn answer(&mut self, any: bool) -> F::Answer {
+        self.inner.answer(any)
     }
 }
 
@@ -146,8 +174,8 @@ impl<T: TraversalCounter, F: HitCollector> Kernel for Query<'_, T, F> {
 impl<T: TraversalCounter, F: HitCollector> Query<'_, T, F> {
     #[inline(always)]
     fn search<L: Lanes, const FAST: bool>(self, lanes: L, boxes: &TraversalRay) -> F::Answer {
-        let Query { bvh, ray, counter, .. } = self;
-        let mut leaves = Leaves::<_, F>::new(lanes, bvh, ray, boxes, counter);
+        let Query { bvh, ray, counter, found } = self;
+        let mut leaves = Leaves::new(lanes, bvh, ray, boxes, counter, found);
         let t_max = traverse::<L, _, FAST>(lanes, &bvh.nodes, boxes, ray.t_max, &mut leaves);
         leaves.answer(t_max)
     }
@@ -165,7 +193,14 @@ pub struct Leaves<'a, T, F> {
 
 impl<'a, T, F: HitCollector> Leaves<'a, T, F> {
     #[inline(always)]
-    pub fn new<L: Lanes>(lanes: L, bvh: &'a TriangleBvh, ray: &'a Ray, boxes: &TraversalRay, counter: T) -> Self {
+    pub fn new<L: Lanes>(
+        lanes: L,
+        bvh: &'a TriangleBvh,
+        ray: &'a Ray,
+        boxes: &TraversalRay,
+        counter: T,
+        found: F,
+    ) -> Self {
         let (origin, dir) = (Vec3A::from(ray.origin), Vec3A::from(ray.dir));
         let axes = turn(dir);
         let sheared = WatertightRay::turned(axes, lanes.turn(origin, axes), lanes.turn(dir, axes));
@@ -173,7 +208,7 @@ impl<'a, T, F: HitCollector> Leaves<'a, T, F> {
             ray_in_tree: RayInTree { bvh, ray, sheared },
             places: Places::new(bvh),
             counter,
-            found: F::default(),
+            found,
             side_by_side: boxes.moderate,
         }
     }
@@ -245,7 +280,7 @@ impl<T: TraversalCounter, F: HitCollector> Visitor for Leaves<'_, T, F> {
                 if self.ray_in_tree.is_wanted(t, t_max) {
                     let uv = sheared.uv([a, b, c]);
                     let hit = TriangleHit { t, uv, triangle: number(rows, count, lane) };
-                    t_max = self.found.met(hit, t_max);
+                    t_max = self.found.met(hit, t_max, || Facing::of(sheared, [a, b, c]));
                 }
             }
         }
@@ -266,7 +301,8 @@ impl<T: TraversalCounter, F: HitCollector> Leaves<'_, T, F> {
             if sheared.crosses(corners)
                 && let Some(t) = sheared.t(corners).filter(|t| self.ray_in_tree.is_wanted(*t, t_max))
             {
-                t_max = self.found.met(TriangleHit { t, uv: sheared.uv(corners), triangle }, t_max);
+                let hit = TriangleHit { t, uv: sheared.uv(corners), triangle };
+                t_max = self.found.met(hit, t_max, || Facing::of(&sheared, corners));
             }
         }
         t_max

@@ -24,7 +24,7 @@ const MAX_CACHED_BYTES: usize = 8 << 20;
 
 impl TriangleBvh {
     /// Answers a question for each of the rays with these numbers.
-    pub(super) fn each<F: HitCollector>(
+    pub(super) fn each<F: HitCollector + Default>(
         &self,
         rays: &[Ray],
         numbers: &[u32],
@@ -37,7 +37,12 @@ impl TriangleBvh {
     }
 
     /// As [`TriangleBvh::each`], several on their way at once.
-    pub(super) fn stream<F: HitCollector>(&self, rays: &[Ray], numbers: &[u32], answer: impl FnMut(usize, F::Answer)) {
+    pub(super) fn stream<F: HitCollector + Default>(
+        &self,
+        rays: &[Ray],
+        numbers: &[u32],
+        answer: impl FnMut(usize, F::Answer),
+    ) {
         self.level.run(Stream::<F, _> { bvh: self, rays, numbers: numbers.iter(), answer, found: PhantomData });
     }
 }
@@ -77,7 +82,7 @@ impl List {
     }
 }
 
-impl<'a, F: HitCollector, A: FnMut(usize, F::Answer)> Stream<'a, F, A> {
+impl<'a, F: HitCollector + Default, A: FnMut(usize, F::Answer)> Stream<'a, F, A> {
     /// Puts the next ray in a place, if there is one. Rays that are not traced here are answered at once.
     #[inline(always)]
     fn start<L: Lanes>(&mut self, lanes: L, flight: &mut InFlightRay<'a, F>, stack: &mut Stack) -> bool {
@@ -92,7 +97,7 @@ impl<'a, F: HitCollector, A: FnMut(usize, F::Answer)> Stream<'a, F, A> {
                 }
             }
             flight.number = number;
-            flight.leaves = Leaves::new(lanes, self.bvh, ray, &flight.boxes, ());
+            flight.leaves = Leaves::new(lanes, self.bvh, ray, &flight.boxes, (), F::default());
             (flight.t_max, flight.child) = (ray.t_max, 0);
             stack.clear();
             stack.push(END, f32::NEG_INFINITY);
@@ -115,7 +120,7 @@ fn step<L: Lanes, F: HitCollector>(lanes: L, nodes: &[WideNode], flight: &mut In
     flight.child = select_unpredictable(met.mask == 0, stack.pop_if(met.mask == 0), met.child(next & PLACE));
 }
 
-impl<'a, F: HitCollector, A: FnMut(usize, F::Answer)> Kernel for Stream<'a, F, A> {
+impl<'a, F: HitCollector + Default, A: FnMut(usize, F::Answer)> Kernel for Stream<'a, F, A> {
     type Output = ();
 
     #[inline(always)]
@@ -129,7 +134,7 @@ impl<'a, F: HitCollector, A: FnMut(usize, F::Answer)> Kernel for Stream<'a, F, A
         let place = |_| InFlightRay {
             number: 0,
             boxes,
-            leaves: Leaves::new(lanes, bvh, NOWHERE, &boxes, ()),
+            leaves: Leaves::new(lanes, bvh, NOWHERE, &boxes, (), F::default()),
             t_max: 0.0,
             child: END,
         };

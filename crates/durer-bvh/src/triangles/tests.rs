@@ -7,6 +7,7 @@ use crate::math::random::{Random, rounds};
 use crate::tests::codes_are_right;
 use crate::traverse::is_sound;
 
+mod queries;
 mod reference;
 
 pub type Mesh = (Vec<Vec3>, Vec<[u32; 3]>);

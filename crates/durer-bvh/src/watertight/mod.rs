@@ -87,6 +87,15 @@ impl WatertightRay {
         det != 0.0 && !det.is_nan()
     }
 
+    /// Whether a triangle that is crossed is met from its front, where its corners go
+    /// counter-clockwise.
+    pub(crate) fn is_front(&self, corners: [Vec3A; 3]) -> bool {
+        let [a, b, c] = areas(self.flatten(corners).map(doubles));
+        // Of one sign, as far as they have any; and the direction's longest component, along
+        // which the plane is seen, may be negative.
+        a + b + c > 0.0
+    }
+
     /// The second and third barycentric coordinate of the crossing with a triangle that is crossed.
     #[inline(always)]
     pub(crate) fn uv(&self, corners: [Vec3A; 3]) -> Vec2 {
