@@ -19,7 +19,8 @@ pub struct Bvh {
 }
 
 impl Bvh {
-    /// Builds over the boxes of things 0, 1, 2, ...; empty boxes are left out. Less than 2^28 things, in at most 2^26 nodes.
+    /// Builds over the boxes of things 0, 1, 2, ...; empty boxes are left out. Less than 2^28
+    /// things, in at most 2^26 nodes.
     ///
     /// The result is a function of the boxes alone: the same for any number of threads.
     pub fn build(boxes: &[Aabb]) -> Self {
@@ -65,8 +66,9 @@ impl Bvh {
 
     /// Offers every thing that the ray may meet before `t_max` to `test`, roughly from near to far.
     ///
-    /// `test` gets the place of a thing in [`Bvh::primitive_indices`] and the present `t_max`, and gives the new one: at
-    /// most the old. Things whose boxes begin exactly at `t_max` are still offered. Minus infinity ends the walk.
+    /// `test` gets the place of a thing in [`Bvh::primitive_indices`] and the present `t_max`, and
+    /// gives the new one: at most the old. Things whose boxes begin exactly at `t_max` are still
+    /// offered. Minus infinity ends the walk.
     #[inline]
     pub fn traverse<T: TraversalCounter>(
         &self,
@@ -84,7 +86,8 @@ impl Bvh {
         }
     }
 
-    /// As [`Bvh::traverse`], leaf by leaf. Behind a pointer, so that it is compiled here, once, and not for each caller.
+    /// As [`Bvh::traverse`], leaf by leaf. Behind a pointer, so that it is compiled here, once, and
+    /// not for each caller.
     fn walk_leaves(&self, ray: &Ray, leaf: Leaf) {
         self.level.run(Walk { bvh: self, ray, things: Things { counter: (), leaf } });
     }

@@ -1,6 +1,7 @@
 //! A uniform grid: space cut into equal cells, each with a list of what overlaps it.
 //!
-//! Source: Amanatides and Woo, *A Fast Voxel Traversal Algorithm for Ray Tracing*, Eurographics 1987.
+//! Source: Amanatides and Woo, *A Fast Voxel Traversal Algorithm for Ray Tracing*, Eurographics
+//! 1987.
 
 use super::TraversalCounter;
 use super::traverse::is_sound;
@@ -32,7 +33,8 @@ impl Grid {
     /// At most this many entries in all cells' lists.
     const MAX_ENTRIES: u64 = 1 << 28;
 
-    /// Numbers of cells that suit so many things in such a box: about two cells a thing, nearly cubes.
+    /// Numbers of cells that suit so many things in such a box: about two cells a thing, nearly
+    /// cubes.
     pub fn suitable(bounds: Aabb, things: usize) -> [u32; 3] {
         let size = bounds.size();
         let longest = size.max_element().max(f32::MIN_POSITIVE);
@@ -42,10 +44,11 @@ impl Grid {
         (size * cells_per_length).to_array().map(|n| (n as u32).clamp(1, 256))
     }
 
-    /// Sorts the boxes of things 0, 1, 2, ... into the cells of a box. A thing is in a cell if their boxes overlap,
-    /// and `overlaps` says so of the thing and the (slightly enlarged) cell.
+    /// Sorts the boxes of things 0, 1, 2, ... into the cells of a box. A thing is in a cell if
+    /// their boxes overlap, and `overlaps` says so of the thing and the (slightly enlarged) cell.
     ///
-    /// `None` if there are no cells, or more than [`Grid::MAX_CELLS`], or too many things in too many of them.
+    /// `None` if there are no cells, or more than [`Grid::MAX_CELLS`], or too many things in too
+    /// many of them.
     pub fn build(
         bounds: Aabb,
         counts: [u32; 3],
@@ -55,7 +58,8 @@ impl Grid {
         Self::build_padded(bounds, counts, PAD, boxes, overlaps)
     }
 
-    /// The same cells for a picture of them, with things only where they are or touch: rays may miss things in it.
+    /// The same cells for a picture of them, with things only where they are or touch: rays may
+    /// miss things in it.
     pub fn for_picture(&self, boxes: &[Aabb], overlaps: impl Fn(usize, Aabb) -> bool) -> Option<Self> {
         Self::build_padded(self.bounds, self.counts, PICTURE_PAD, boxes, overlaps)
     }
@@ -71,7 +75,8 @@ impl Grid {
         if cells == 0 || cells > Grid::MAX_CELLS {
             return None;
         }
-        // A flat box is thickened, so that every cell has a volume; and all are padded against rounding.
+        // A flat box is thickened, so that every cell has a volume; and all are padded against
+        // rounding.
         let pad = (1e-5 * bounds.size().max_element()).max(1e-5 * bounds.center().abs().max_element()).max(1e-30);
         let bounds = Aabb { min: bounds.min - pad, max: bounds.max + pad };
         let mut grid = Grid {
@@ -174,8 +179,8 @@ impl Grid {
         }
     }
 
-    /// Offers the things of every cell that the ray crosses before `t_max` to `test`, cell by cell; see
-    /// [`super::Bvh::traverse`]. A thing in several cells is offered several times.
+    /// Offers the things of every cell that the ray crosses before `t_max` to `test`, cell by cell;
+    /// see [`super::Bvh::traverse`]. A thing in several cells is offered several times.
     pub fn traverse<T: TraversalCounter>(
         &self,
         ray: &Ray,
@@ -186,7 +191,8 @@ impl Grid {
             counter.work(1, 0);
             items.iter().fold(t_max, |t_max, item| test(*item as usize, t_max, counter))
         };
-        // Where rounding moves rays by more than the padding of cells, as from far away, neighbouring cells are visited too.
+        // Where rounding moves rays by more than the padding of cells, as from far away,
+        // neighbouring cells are visited too.
         let reach = [self.bounds.min, self.bounds.max].map(|c| (ray.origin - c).abs().max(c.abs()).max_element());
         let cut = |axis: &usize| self.counts[*axis] > 1;
         let finest = (0..3).filter(cut).map(|axis| self.cell_size()[axis]).fold(f32::INFINITY, f32::min);
@@ -204,8 +210,8 @@ impl Grid {
         });
     }
 
-    /// Offers the things of all cells that are at most so far from a ray, layer by layer across the ray's main direction; `false`, and
-    /// none, where that is more work than to offer all things.
+    /// Offers the things of all cells that are at most so far from a ray, layer by layer across the
+    /// ray's main direction; `false`, and none, where that is more work than to offer all things.
     fn walk_wide(&self, ray: &Ray, slip: f64, offer: &mut impl FnMut(&[u32], f32) -> f32) -> bool {
         let (line, size, min) = (ray.line(), self.cell_size().as_dvec3(), self.bounds.min.as_dvec3());
         let main = line.dir.abs().max_position();
@@ -249,7 +255,8 @@ impl Grid {
         true
     }
 
-    /// Visits the cells along a ray in order. `visit` gets a cell and the present `t_max`, and gives the new one.
+    /// Visits the cells along a ray in order. `visit` gets a cell and the present `t_max`, and
+    /// gives the new one.
     pub fn walk_cells(&self, ray: &Ray, mut visit: impl FnMut(&Self, [u32; 3], f32) -> f32) {
         let Some((enter, leave)) = self.bounds.clip(ray.origin, ray.dir).filter(|_| is_sound(ray)) else { return };
         let (enter, leave) = (enter.max(ray.t_min), leave.min(ray.t_max));
@@ -258,7 +265,8 @@ impl Grid {
         }
         let mut cell = self.cell_of(ray.at(enter));
         let size = self.cell_size();
-        // For each axis: t of the next cell wall. Computed anew from the wall's number, so that errors do not add up.
+        // For each axis: t of the next cell wall. Computed anew from the wall's number, so that
+        // errors do not add up.
         let wall_t = |cell: [u32; 3], axis: usize| {
             if ray.dir[axis] == 0.0 {
                 return f32::INFINITY;
@@ -279,7 +287,8 @@ impl Grid {
             } else {
                 2
             };
-            // What lies in the padding of a cell's wall is in both cells: a hit before the wall ends the walk.
+            // What lies in the padding of a cell's wall is in both cells: a hit before the wall
+            // ends the walk.
             if next[axis] > t_max {
                 return;
             }

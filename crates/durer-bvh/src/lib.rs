@@ -90,7 +90,8 @@ impl TraversalCounter for TraversalStats {
     }
 }
 
-/// What the other crates of the workspace need beside the public items; it may change with any version.
+/// What the other crates of the workspace need beside the public items; it may change with any
+/// version.
 #[doc(hidden)]
 pub mod internal {
     pub use crate::math::random;

@@ -3,27 +3,35 @@
 use super::lanes::WIDTH;
 use crate::math::Aabb;
 
-/// Boxes of up to eight children, side by side. Those that are not there have empty boxes, which no ray meets.
+/// Boxes of up to eight children, side by side. Those that are not there have empty boxes, which no
+/// ray meets.
 ///
-/// Children lie in order along one axis, so that for a ray they are roughly from near to far, or from far to near.
+/// Children lie in order along one axis, so that for a ray they are roughly from near to far, or
+/// from far to near.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub(super) struct WideNode {
     /// By axis: lower sides, upper sides.
     pub planes: [[[f32; WIDTH]; 2]; 3],
-    /// An inner child's [`node_offset`]; or [`LEAF`], the count less one shifted by [`COUNT_SHIFT`], and the first item.
+    /// An inner child's [`node_offset`]; or [`LEAF`], the count less one shifted by
+    /// [`COUNT_SHIFT`], and the first item.
     pub children: [u32; WIDTH],
-    /// For each octant of directions, numbered by [`TraversalRay::negative`](super::traverse::TraversalRay::negative), a bit: whether rays take the
-    /// children from the last to the first. First for those that want the nearest, then for those to which any hit will do.
+    /// For each octant of directions, numbered by
+    /// [`TraversalRay::negative`](super::traverse::TraversalRay::negative), a bit: whether rays
+    /// take the children from the last to the first. First for those that want the nearest, then
+    /// for those to which any hit will do.
     pub from_last: [u32; 2],
-    /// The address of the first inner child, if there is one; the others lie behind it, in any order.
+    /// The address of the first inner child, if there is one; the others lie behind it, in any
+    /// order.
     pub first: u32,
-    /// What a ray must know of the child that is next: its place in the bits of [`PLACE`], and [`IS_LEAF`] or, in the bits of [`BEHIND`],
-    /// how far behind the first inner child it begins. So few bits that they take the place of the last ones of a distance.
+    /// What a ray must know of the child that is next: its place in the bits of [`PLACE`], and
+    /// [`IS_LEAF`] or, in the bits of [`BEHIND`], how far behind the first inner child it begins.
+    /// So few bits that they take the place of the last ones of a distance.
     pub child_tags: [u8; WIDTH],
 }
 
-/// As many bytes as lie between the orders in the walk's table, in which they are then found without arithmetic.
+/// As many bytes as lie between the orders in the walk's table, in which they are then found
+/// without arithmetic.
 pub(super) const FROM_LAST: u32 = size_of::<[[u8; WIDTH]; 1 << WIDTH]>() as u32;
 
 /// Of a [code](WideNode::child_tags) the child's place.
@@ -69,8 +77,8 @@ impl WideNode {
         Aabb { min: side(0), max: side(1) }
     }
 
-    /// [`FROM_LAST`] if rays of an octant take the children from the last to the first, else 0: those to which `any` hit will do, or the
-    /// others.
+    /// [`FROM_LAST`] if rays of an octant take the children from the last to the first, else 0:
+    /// those to which `any` hit will do, or the others.
     #[inline(always)]
     pub fn order(&self, any: bool, octant: u32) -> u32 {
         self.from_last[usize::from(any)] << (FROM_LAST.trailing_zeros() - (octant & 7)) & FROM_LAST
@@ -83,7 +91,8 @@ impl WideNode {
     }
 }
 
-/// Addresses of nodes are in units of so many bytes: the most that the processor multiplies an index by.
+/// Addresses of nodes are in units of so many bytes: the most that the processor multiplies an
+/// index by.
 pub(super) const UNIT: usize = 8;
 /// So many units are a node.
 pub(super) const UNITS: usize = size_of::<WideNode>() / UNIT;
@@ -91,8 +100,8 @@ pub(super) const UNITS: usize = size_of::<WideNode>() / UNIT;
 pub(super) const MAX_NODES: usize = LEAF as usize / UNITS;
 const _: () = assert!(UNITS.is_power_of_two() && MAX_NODES <= 1 << (32 - UNITS.trailing_zeros()));
 
-/// How far behind the first a node begins, in units of [`UNIT`] bytes. Memory is then found without arithmetic, for which every ray
-/// would wait at every node.
+/// How far behind the first a node begins, in units of [`UNIT`] bytes. Memory is then found without
+/// arithmetic, for which every ray would wait at every node.
 pub(super) fn node_offset(number: usize) -> u32 {
     assert!(number < MAX_NODES, "a tree has at most 2^26 nodes");
     (number * UNITS) as u32
@@ -138,7 +147,8 @@ pub(super) fn bounds(nodes: &[WideNode]) -> Aabb {
     nodes.first().map_or(Aabb::EMPTY, |root| root.children().fold(Aabb::EMPTY, |b, c| b.union(c.1)))
 }
 
-/// Cost of a random ray through the bounds by the surface area heuristic, in tests of a node, where a leaf costs as much.
+/// Cost of a random ray through the bounds by the surface area heuristic, in tests of a node, where
+/// a leaf costs as much.
 pub(super) fn cost(nodes: &[WideNode], bounds: Aabb) -> f64 {
     let root = f64::from(bounds.half_area());
     let children = nodes.iter().flat_map(|node| node.children());

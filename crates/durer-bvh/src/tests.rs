@@ -77,7 +77,8 @@ fn every_thing_is_offered_to_a_ray_through_its_box_whatever_the_boxes() {
         for round in 0..200 {
             let i = full[random.below(full.len())];
             let b = boxes[i as usize];
-            // A point of the box, on its border in two of three rounds; a ray there from somewhere near or far.
+            // A point of the box, on its border in two of three rounds; a ray there from somewhere
+            // near or far.
             let mix = |random: &mut Random| [random.unit(), 0.0, 1.0][random.below(3)];
             let w = Vec3::new(mix(&mut random), mix(&mut random), mix(&mut random));
             let target = b.min * (Vec3::ONE - w) + b.max * w;

@@ -1,12 +1,14 @@
-//! Walking a ray through the tree, nearest boxes first, or, where any hit will do, in the order that is likely to find one soon.
+//! Walking a ray through the tree, nearest boxes first, or, where any hit will do, in the order
+//! that is likely to find one soon.
 //!
-//! Of the children that the ray meets the one that is entered first is next, or, where any hit will do, the first in the order of the node;
-//! the others are pushed in the order of the node, by one store whatever their number, so that no branch depends on how many children are
-//! met. What lies beyond a hit is dropped when it is popped: that is guessed rightly more often than not, and the walk goes on before it
-//! is known where the hit is.
+//! Of the children that the ray meets the one that is entered first is next, or, where any hit will
+//! do, the first in the order of the node; the others are pushed in the order of the node, by one
+//! store whatever their number, so that no branch depends on how many children are met. What lies
+//! beyond a hit is dropped when it is popped: that is guessed rightly more often than not, and the
+//! walk goes on before it is known where the hit is.
 //!
-//! Source: Fuetterer, Lojewski, Pfreundt, Ebert, *Efficient Ray Tracing Kernels for Modern CPU Architectures*, JCGT
-//! 4(4), 2015.
+//! Source: Fuetterer, Lojewski, Pfreundt, Ebert, *Efficient Ray Tracing Kernels for Modern CPU
+//! Architectures*, JCGT 4(4), 2015.
 
 use super::TraversalCounter;
 use super::lanes::{Lanes, Sides, Stack, StackStorage, WIDTH};
@@ -15,10 +17,12 @@ use crate::math::{Ray, Vec3};
 use glam::{Vec3A, Vec3Swizzles, Vec4};
 use std::ops::Range;
 
-/// A ray prepared for boxes: conservative, so that rounding never loses a box that the exact ray meets.
+/// A ray prepared for boxes: conservative, so that rounding never loses a box that the exact ray
+/// meets.
 ///
-/// The near and far side of each slab are chosen by the sign of the direction. Each side is moved outwards by
-/// several roundings of the largest distance that occurs, which also covers the rounding of the triangle test.
+/// The near and far side of each slab are chosen by the sign of the direction. Each side is moved
+/// outwards by several roundings of the largest distance that occurs, which also covers the
+/// rounding of the triangle test.
 #[derive(Clone, Copy)]
 pub(super) struct TraversalRay {
     planes: Planes,
@@ -41,27 +45,30 @@ struct Planes {
 
 /// How far the sides of boxes are moved outwards, where numbers are no greater than 1.
 ///
-/// Of that, rounding takes less than 2.5 epsilon on either side: half of one each for the padded origin, the inverse, their product, and the
-/// distance, and less for what follows from these. So computed distances of a box that a ray meets lie before and behind the true ones by
-/// more than 5: a box begins before it ends, though it is flat, and before anything in it.
+/// Of that, rounding takes less than 2.5 epsilon on either side: half of one each for the padded
+/// origin, the inverse, their product, and the distance, and less for what follows from these. So
+/// computed distances of a box that a ray meets lie before and behind the true ones by more than 5:
+/// a box begins before it ends, though it is flat, and before anything in it.
 pub(super) const PADDING: f32 = 8.0 * f32::EPSILON;
 
 /// In this range squares neither overflow nor vanish.
 pub(super) const FAST_RANGE: Range<f32> = 1e-15..1e15;
 
-/// If a component of a direction is at least so long, others may be as small as they like: boxes see none that is less than what is
-/// [`FAST_RANGE`], so products of inverses and coordinates do not overflow. Within a tree that moves a ray by at most 10^-9 of its reach, a
-/// thousandth of the padding.
+/// If a component of a direction is at least so long, others may be as small as they like: boxes
+/// see none that is less than what is [`FAST_RANGE`], so products of inverses and coordinates do
+/// not overflow. Within a tree that moves a ray by at most 10^-9 of its reach, a thousandth of the
+/// padding.
 pub(super) const MIN_MAIN_COMPONENT: f32 = 1e-6;
 
 impl TraversalRay {
-    /// Prepares a fast ray for a tree with no coordinates greater than `most`: one for which nothing leaves the range of `f32` (zeros beside
-    /// a [`MIN_MAIN_COMPONENT`] component do not), and that begins no earlier than at its origin. So tests of boxes may be in a short form.
+    /// Prepares a fast ray for a tree with no coordinates greater than `most`: one for which
+    /// nothing leaves the range of `f32` (zeros beside a [`MIN_MAIN_COMPONENT`] component do not),
+    /// and that begins no earlier than at its origin. So tests of boxes may be in a short form.
     #[inline(always)]
     pub fn new(ray: &Ray, most: f32) -> Option<Self> {
         let (origin, dir) = (Vec3A::from(ray.origin), Vec3A::from(ray.dir));
-        // Coordinates themselves count too: a ray that was moved into object space is off by their rounding.
-        // As a sum, in each lane, it is also no number where any of them is none.
+        // Coordinates themselves count too: a ray that was moved into object space is off by their
+        // rounding. As a sum, in each lane, it is also no number where any of them is none.
         let from = origin.abs();
         let reach = (from + from.yzx()) + (from.zxy() + most);
         let size = dir.abs();
@@ -91,7 +98,8 @@ impl TraversalRay {
         }
         let reach = (ray.origin.abs().max_element() + most).min(f32::MAX);
         let length = ray.dir.abs();
-        // A direction with a power of two taken out, so that distances within the bounds are no extreme numbers.
+        // A direction with a power of two taken out, so that distances within the bounds are no
+        // extreme numbers.
         let scale = f32::from_bits(length.max_element().to_bits() & 0x7f80_0000).max(f32::MIN_POSITIVE);
         let dir = ray.dir / scale;
         // What moves the ray by much less than the padding counts as zero, and what has no inverse.
@@ -127,14 +135,16 @@ pub(super) trait Visitor {
     /// Has a child that is likely to be visited brought near.
     fn fetch<L: Lanes>(&self, _: L, _: u32) {}
 
-    /// Looks into a leaf, with a ray that is `FAST` or not; gives the new `t_max`, at most the old. Minus infinity ends the walk.
+    /// Looks into a leaf, with a ray that is `FAST` or not; gives the new `t_max`, at most the old.
+    /// Minus infinity ends the walk.
     fn leaf<L: Lanes, const FAST: bool>(&mut self, lanes: L, leaf: u32, t_max: f32) -> f32;
 }
 
-/// Shows every leaf that the ray may meet before `t_max` to the visitor, roughly from near to far if not [`ANY`](Visitor::ANY) hit will do.
+/// Shows every leaf that the ray may meet before `t_max` to the visitor, roughly from near to far
+/// if not [`ANY`](Visitor::ANY) hit will do.
 ///
-/// Gives `t_max` as it is in the end. Leaves whose boxes begin exactly at `t_max` are still shown. `FAST` says whether `boxes`
-/// are of [`TraversalRay::new`].
+/// Gives `t_max` as it is in the end. Leaves whose boxes begin exactly at `t_max` are still shown.
+/// `FAST` says whether `boxes` are of [`TraversalRay::new`].
 #[inline(always)]
 pub(super) fn traverse<L: Lanes, V: Visitor, const FAST: bool>(
     lanes: L,
@@ -217,17 +227,18 @@ enum Target {
 }
 
 impl<L: Lanes> NodeHits<'_, L> {
-    /// The [place](PLACE) of the child that is next, with more of its [code](WideNode::child_tags) if it was found by that.
+    /// The [place](PLACE) of the child that is next, with more of its [code](WideNode::child_tags)
+    /// if it was found by that.
     ///
-    /// It is the one that is entered first; but the `likely` one if `any` hit will do, which is known sooner, and of rays that are not fast,
-    /// whose distances cannot be compared as integers.
+    /// It is the one that is entered first; but the `likely` one if `any` hit will do, which is
+    /// known sooner, and of rays that are not fast, whose distances cannot be compared as integers.
     #[inline(always)]
     pub fn next<const FAST: bool>(&self, lanes: L, any: bool, likely: u32) -> u32 {
         if FAST && !any { lanes.nearest(self.enter, self.which, self.child_tags) } else { likely }
     }
 
-    /// Where that child is. A node next to be visited is found by its code, for which a ray waits at every node; leaves, that are as often
-    /// guessed as waited for, by their places.
+    /// Where that child is. A node next to be visited is found by its code, for which a ray waits
+    /// at every node; leaves, that are as often guessed as waited for, by their places.
     #[inline(always)]
     fn target<const FAST: bool>(&self, any: bool, next: u32) -> Target {
         if FAST && !any {
@@ -259,13 +270,15 @@ impl<L: Lanes> NodeHits<'_, L> {
     }
 }
 
-/// The first of some lanes, a bit for each, or the `last`; if there are none something beyond all lanes.
+/// The first of some lanes, a bit for each, or the `last`; if there are none something beyond all
+/// lanes.
 #[inline(always)]
 pub(super) fn end_of(lanes: u32, last: bool) -> u32 {
     if last { lanes.leading_zeros() ^ 31 } else { lanes.trailing_zeros() }
 }
 
-/// For each set of lanes the lanes in the order in which they are pushed, where the first are visited first and where the last are.
+/// For each set of lanes the lanes in the order in which they are pushed, where the first are
+/// visited first and where the last are.
 static PUSHED: [[[u8; WIDTH]; 256]; 2] = {
     let mut table = [[[0; WIDTH]; 256]; 2];
     let mut set = 0;
@@ -335,13 +348,15 @@ pub(super) fn intersect_node<'a, L: Lanes, const FAST: bool>(
     let (x, y, z) = (ends!(0), ends!(1), ends!(2));
     let (node, child_tags) = (at.node, at.child_tags());
     if FAST {
-        // Nothing is NaN, and no start is negative, so of ends as integers the right one is found, or one that is negative where nothing is
-        // met. Boxes that are met end after they begin, for they are padded.
+        // Nothing is NaN, and no start is negative, so of ends as integers the right one is found,
+        // or one that is negative where nothing is met. Boxes that are met end after they begin,
+        // for they are padded.
         let [enter, leave] = lanes.interval([x, y, z], [*t_min, limit]);
         let which = lanes.before(enter, leave);
         return NodeHits { node, child_tags, mask: lanes.signs(which), which, enter };
     }
-    // Zero times infinity is NaN, where a ray runs in a side of a box: such a side is left out, being the first argument.
+    // Zero times infinity is NaN, where a ray runs in a side of a box: such a side is left out,
+    // being the first argument.
     let enter = lanes.max(z[0], lanes.max(y[0], lanes.max(x[0], *t_min)));
     let leave = lanes.min(z[1], lanes.min(y[1], lanes.min(x[1], limit)));
     NodeHits { node, child_tags, mask: lanes.le(enter, leave), which: enter, enter }

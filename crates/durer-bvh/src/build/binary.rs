@@ -11,8 +11,9 @@ use glam::Vec4;
 /// Subtrees of more references than this are built in parallel.
 const PARALLEL: u32 = 4096;
 
-/// A node. Nodes lie in depth-first order: the left child follows its parent, the right child what is below the left one, and behind
-/// that, where subtrees were built in parallel, room that is left over.
+/// A node. Nodes lie in depth-first order: the left child follows its parent, the right child what
+/// is below the left one, and behind that, where subtrees were built in parallel, room that is left
+/// over.
 #[derive(Clone, Copy, Debug)]
 pub struct BinaryNode {
     /// With the number of references in the fourth lane, and whether it is a leaf.
@@ -73,7 +74,8 @@ impl BinaryNode {
     }
 }
 
-/// The tree, the references of its leaves, and what sizes are multiplied by before areas are compared.
+/// The tree, the references of its leaves, and what sizes are multiplied by before areas are
+/// compared.
 pub struct Tree {
     pub nodes: Vec<BinaryNode>,
     /// Those that are in no leaf mean nothing.
@@ -135,7 +137,8 @@ pub fn build(mut references: Vec<Reference>, settings: &BuildSettings, corners: 
 impl BuildRange<'_> {
     /// Where the room of the right one of two children begins, by how many references are in each.
     ///
-    /// What there is to spare goes where more references are, but not where there are too few to be cut.
+    /// What there is to spare goes where more references are, but not where there are too few to be
+    /// cut.
     fn middle(&self, left: usize, right: usize) -> usize {
         let spare = self.references.len() - left - right;
         let for_left = match [left, right].map(|count| count > MIN_REFERENCES) {
@@ -148,7 +151,8 @@ impl BuildRange<'_> {
 }
 
 impl Builder<'_> {
-    /// Builds over the references that a room begins with. There must be twice as many nodes as it has references, less one.
+    /// Builds over the references that a room begins with. There must be twice as many nodes as it
+    /// has references, less one.
     fn subtree(&self, mut room: BuildRange, nodes: &mut [BinaryNode], all: &Bin, depth: usize) -> SubtreeSize {
         let (Bin { min, max, .. }, count) = (*all, all.count as usize);
         let spare = room.references.len() - count;
@@ -200,7 +204,8 @@ impl Builder<'_> {
         SubtreeSize { references, nodes: 1 + left.nodes + right.nodes }
     }
 
-    /// Whether a few references are so near each other that boxes of their own would spare few tests.
+    /// Whether a few references are so near each other that boxes of their own would spare few
+    /// tests.
     fn is_whole(&self, references: &[Reference], all: &Bin) -> bool {
         let areas = references.iter().map(|r| half_area(r.min, r.max, self.scale));
         half_area(all.min, all.max, self.scale) <= 4.0 * areas.fold(f32::INFINITY, f32::min)
@@ -215,7 +220,8 @@ mod tests {
     use crate::node::MAX_ITEMS;
     use crate::triangles::tests::bars;
 
-    /// Checks a tree over so many triangles, with room for so many references; gives how many slots hold nothing.
+    /// Checks a tree over so many triangles, with room for so many references; gives how many slots
+    /// hold nothing.
     fn check(tree: &Tree, triangles: usize, room: usize) -> usize {
         let (mut is_node, mut is_taken) = (vec![false; tree.nodes.len()], vec![false; room]);
         let (mut is_met, mut stack) = (vec![false; triangles], vec![0]);
@@ -248,8 +254,9 @@ mod tests {
         nothing.inspect(|(node, _)| assert!(!node.is_there())).count()
     }
 
-    /// Every triangle is in leaves that share no references, nodes are where their parents say, and what is left over is empty: whether
-    /// cuts are as many as are of use or as there is room for, and whether subtrees are built side by side.
+    /// Every triangle is in leaves that share no references, nodes are where their parents say, and
+    /// what is left over is empty: whether cuts are as many as are of use or as there is room for,
+    /// and whether subtrees are built side by side.
     #[test]
     fn leaves_share_nothing_and_hold_everything() {
         let mut random = Random(11);

@@ -10,7 +10,8 @@ use crate::parallel;
 use glam::{IVec4, Mat4, Vec4};
 
 pub const BINS: usize = 16;
-/// Below this depth things are halved by number, which bounds the depth of all trees: 28 levels halve 2^28 things.
+/// Below this depth things are halved by number, which bounds the depth of all trees: 28 levels
+/// halve 2^28 things.
 pub const HALVING_DEPTH: usize = 60;
 /// More references than this are looked at in parallel.
 const MIN_PARALLEL: usize = 1 << 15;
@@ -95,7 +96,8 @@ fn middles(references: &[Reference]) -> [Vec4; 2] {
     around_all(references, &|r| [r.middle(); 2])
 }
 
-/// The box around what is known of each reference. Four grow in turn, for each step of one waits for that before.
+/// The box around what is known of each reference. Four grow in turn, for each step of one waits
+/// for that before.
 fn around_all(references: &[Reference], of: &(impl Fn(&Reference) -> [Vec4; 2] + Sync)) -> [Vec4; 2] {
     if references.len() > MIN_PARALLEL {
         let (a, b) = references.split_at(references.len() / 2);
@@ -167,7 +169,8 @@ fn filled<const N: usize>(references: &[Reference], grid: &Grid) -> [Bins; N] {
             bins.counts[axis] += 1;
         }
     };
-    // Neighbours in the list fall into the same bins, and would wait for each other; so do all where there is but one bin along an axis.
+    // Neighbours in the list fall into the same bins, and would wait for each other; so do all
+    // where there is but one bin along an axis.
     let (a, b) = references.split_at(references.len() / 2);
     if references.len() < MIN_FOR_MORE_BINS {
         for (a, b) in a.iter().zip(b) {
@@ -224,7 +227,8 @@ impl Builder<'_> {
     fn binned<const N: usize>(&self, references: &[Reference]) -> Option<Cut> {
         let grid = Grid::new(references, (self.bins)(references.len()).min(N));
         let bins = filled::<N>(references, &grid);
-        // Costs of everything right of each border, then the sum from the left, along all axes at once.
+        // Costs of everything right of each border, then the sum from the left, along all axes at
+        // once.
         let mut right_costs = [Vec4::ZERO; N];
         let mut right = Bins::EMPTY;
         for i in (1..grid.bins).rev() {
@@ -269,7 +273,8 @@ impl Builder<'_> {
         Cut { cost, sides: [sets[mask], sets[full - mask]], way: Split::Mask(mask) }
     }
 
-    /// Sorts references into the two sets of a cut; gives their boxes, and how many are in the first.
+    /// Sorts references into the two sets of a cut; gives their boxes, and how many are in the
+    /// first.
     pub fn divide(&self, references: &mut [Reference], cut: &Cut) -> ([Bin; 2], usize) {
         let [left, right] = cut.sides;
         match cut.way {

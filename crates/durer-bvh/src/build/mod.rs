@@ -35,7 +35,8 @@ impl BuildQuality {
 /// No more subtrees are moved after a pass that spares less than this share of all boxes' areas.
 const MIN_GAIN: f64 = 0.002;
 
-/// What is better for two children may be worse for eight, most of all where things were cut. After so many passes this can be told.
+/// What is better for two children may be worse for eight, most of all where things were cut. After
+/// so many passes this can be told.
 const TRUSTED_PASSES: usize = 2;
 
 /// What a tree is to be good for.
@@ -111,8 +112,8 @@ impl Reference {
     }
 }
 
-/// A number below 2^28 and a tag of 2 or 3 in the fourth lane of a vector: as a normal `f32`, which no arithmetic on the lane
-/// slows down.
+/// A number below 2^28 and a tag of 2 or 3 in the fourth lane of a vector: as a normal `f32`, which
+/// no arithmetic on the lane slows down.
 fn lane(tag: u32, number: u32) -> f32 {
     f32::from_bits(number | tag << 28)
 }
@@ -133,7 +134,8 @@ pub(super) fn is_finite(corners: &[Vec3; 3]) -> bool {
     corners.iter().all(|p| p.is_finite())
 }
 
-/// References to triangles 0, 1, 2, ..., with room for those that cuts add; those with corners that are no finite points are left out.
+/// References to triangles 0, 1, 2, ..., with room for those that cuts add; those with corners that
+/// are no finite points are left out.
 fn triangle_references(
     count: usize,
     settings: &BuildSettings,
@@ -189,7 +191,8 @@ fn build_of(references: Vec<Reference>, settings: &BuildSettings, corners: Vec<[
     Tree { nodes, order, bounds }
 }
 
-/// Has a tree's subtrees moved to better places, as long as that pays; gives what is then cheapest for each node.
+/// Has a tree's subtrees moved to better places, as long as that pays; gives what is then cheapest
+/// for each node.
 fn improved(tree: &mut binary::Tree, settings: &BuildSettings) -> CollapsePlan {
     let mut plans = CollapsePlan::new(&tree.nodes, tree.scale, settings);
     // With fewer nodes all are the root and its children, which stay.

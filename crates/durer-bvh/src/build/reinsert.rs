@@ -1,6 +1,7 @@
 //! Improving a binary tree: subtrees are taken out and put where they enlarge boxes least.
 //!
-//! Source: Meister, Bittner, *Parallel Reinsertion for Bounding Volume Hierarchy Optimization*, Eurographics 2018.
+//! Source: Meister, Bittner, *Parallel Reinsertion for Bounding Volume Hierarchy Optimization*,
+//! Eurographics 2018.
 
 use super::MIN_GAIN;
 use super::binary::{BinaryNode, Tree, half_area};
@@ -8,7 +9,8 @@ use crate::MAX_DEPTH;
 use crate::lanes::room;
 use crate::parallel;
 
-/// In each pass this share of nodes are looked at. Where much can be spared, most of that is in few of them.
+/// In each pass this share of nodes are looked at. Where much can be spared, most of that is in few
+/// of them.
 const SHARE: f64 = 0.04;
 /// And so many times as many where what may be spared does not say where.
 const MAX_SHARES: usize = 3;
@@ -58,7 +60,8 @@ impl Linked {
     pub fn new(tree: &Tree) -> Self {
         let scale = tree.scale;
         let mut nodes: Vec<Link> = room(tree.nodes.len());
-        // Nodes follow each other in depth-first order: what comes is a child of the last one that has less than two.
+        // Nodes follow each other in depth-first order: what comes is a child of the last one that
+        // has less than two.
         let mut parents = Vec::new();
         for &node in tree.nodes.iter().filter(|node| node.is_there()) {
             let i = nodes.len() as u32;
@@ -85,11 +88,11 @@ impl Linked {
         if a == i { b } else { a }
     }
 
-    /// Looks for better places where most may be spared, and takes those that do not meddle with each other; gives the share of all areas
-    /// that this spares.
+    /// Looks for better places where most may be spared, and takes those that do not meddle with
+    /// each other; gives the share of all areas that this spares.
     pub fn pass(&mut self) -> f64 {
-        // Taking a subtree out spares at least its parent's area, and putting it anywhere costs at least its own. Infinite areas have no
-        // difference.
+        // Taking a subtree out spares at least its parent's area, and putting it anywhere costs at
+        // least its own. Infinite areas have no difference.
         let spared = |i: u32| ((self.at(self.at(i).parent).area - self.at(i).area).max(0.0), i);
         // The root and its children stay.
         let movable = |&i: &u32| i != 0 && self.at(i).parent != 0;
@@ -99,7 +102,8 @@ impl Linked {
         let (next, rest) = greatest(rest, count / 4);
         let (mut moves, more) = (self.moves(first), self.moves(next));
         let gain = |moves: &[Move]| moves.iter().map(|m| f64::from(m.gain)).sum::<f64>();
-        // Where what is found hardly becomes less with what may be spared, that does not say where to look, and more is looked at.
+        // Where what is found hardly becomes less with what may be spared, that does not say where
+        // to look, and more is looked at.
         let is_even = 4.0 * gain(&more) >= (0.25 * gain(&moves)).max(MIN_GAIN * self.area);
         moves.extend(more);
         if is_even {
@@ -135,7 +139,8 @@ impl Linked {
         i == subtree
     }
 
-    /// The best place for a subtree, searched upwards from where it is, and from there down into the siblings.
+    /// The best place for a subtree, searched upwards from where it is, and from there down into
+    /// the siblings.
     fn find(&self, from: u32) -> Option<Move> {
         let Link { node, area, parent, .. } = *self.at(from);
         let merged = |other: &Link| half_area(node.min.min(other.node.min), node.max.max(other.node.max), self.scale);
@@ -178,7 +183,8 @@ impl Linked {
         (best.to != NONE).then_some(best)
     }
 
-    /// Takes a subtree with its parent out, and puts the parent between a node and that node's parent.
+    /// Takes a subtree with its parent out, and puts the parent between a node and that node's
+    /// parent.
     fn apply(&mut self, from: u32, to: u32) {
         let parent = self.at(from).parent;
         let (sibling, above) = (self.sibling(from), self.at(parent).parent);
@@ -256,8 +262,8 @@ mod tests {
     use crate::math::Aabb;
     use crate::math::random::Random;
 
-    /// After each pass boxes and areas are those of what is around their children, the same things are in leaves, and as much is spared
-    /// as is said.
+    /// After each pass boxes and areas are those of what is around their children, the same things
+    /// are in leaves, and as much is spared as is said.
     #[test]
     fn boxes_fit_after_each_pass() {
         let mut random = Random(3);
@@ -270,7 +276,8 @@ mod tests {
                     Aabb { min: at - size, max: at + size }
                 })
                 .collect();
-            // Where few stay together room is left over between subtrees that are built side by side.
+            // Where few stay together room is left over between subtrees that are built side by
+            // side.
             let settings = BuildSettings { whole: 3, ..BuildSettings::THINGS };
             let tree = binary::build(references(&boxes), &settings, &[]);
             assert!((count > 4096) == tree.nodes.iter().any(|node| !node.is_there()));

@@ -1,7 +1,8 @@
 //! Ways to cut the space of a node in two, where parts of a triangle then go to both sides.
 //!
-//! Where the cheapest division of references into two sets leaves boxes that overlap, planes are tried too; a plane cuts the
-//! triangles that it goes through, unless it is cheaper to leave one whole on one side.
+//! Where the cheapest division of references into two sets leaves boxes that overlap, planes are
+//! tried too; a plane cuts the triangles that it goes through, unless it is cheaper to leave one
+//! whole on one side.
 //! Source: Stich, Friedrich, Dietrich, *Spatial Splits in Bounding Volume Hierarchies*, HPG 2009.
 
 use super::Reference;
@@ -20,7 +21,8 @@ const LENGTH: f32 = 0.3;
 const GAIN: f32 = 0.95;
 /// With so few references or fewer, cuts spare less than they cost.
 pub const MIN_REFERENCES: usize = 330;
-/// After so many searches in vain, one below the other, one level is left out before the next, then two, up to four.
+/// After so many searches in vain, one below the other, one level is left out before the next, then
+/// two, up to four.
 const IN_VAIN: u32 = 3;
 
 /// What is known of searches for planes above a node.
@@ -38,7 +40,8 @@ struct Plane {
 }
 
 impl Builder<'_> {
-    /// The references on both sides of a plane, if that is better than a cut into two sets, and at most so many more.
+    /// The references on both sides of a plane, if that is better than a cut into two sets, and at
+    /// most so many more.
     pub fn parts(
         &self,
         references: &[Reference],
@@ -138,8 +141,8 @@ impl Builder<'_> {
         best
     }
 
-    /// The references on both sides of a plane. Those that it goes through are cut, unless the boxes that grow when one stays whole
-    /// cost less.
+    /// The references on both sides of a plane. Those that it goes through are cut, unless the
+    /// boxes that grow when one stays whole cost less.
     fn halves(&self, references: &[Reference], &Plane { axis, at, .. }: &Plane) -> [Vec<Reference>; 2] {
         let (mut left, mut right, mut through) = (Vec::new(), Vec::new(), Vec::new());
         for r in references {
@@ -212,8 +215,9 @@ impl<const AXIS: usize> Sorted<AXIS> {
         let (b, c) = sort(b, c);
         let (a, b) = sort(a, b);
         let most = a.abs().max(b.abs()).max(c.abs());
-        // A section is p + (q - p) t with t = (x - p) / (q - p) along the axis: an error of at most 5 units in the last place
-        // of q - p, twice the largest coordinate, and one of the sum; a unit is half of epsilon. The rest is for underflow.
+        // A section is p + (q - p) t with t = (x - p) / (q - p) along the axis: an error of at most
+        // 5 units in the last place of q - p, twice the largest coordinate, and one of the sum; a
+        // unit is half of epsilon. The rest is for underflow.
         Sorted { corners: [a, b, c], slack: 8.0 * f32::EPSILON * most + f32::MIN_POSITIVE }
     }
 
@@ -232,7 +236,8 @@ impl<const AXIS: usize> Sorted<AXIS> {
         Section { at, min: p.min(q) - self.slack, max: p.max(q) + self.slack }
     }
 
-    /// The box of what lies between two sections, within that of a reference; empty if nothing does.
+    /// The box of what lies between two sections, within that of a reference; empty if nothing
+    /// does.
     #[inline(always)]
     fn between(&self, from: &Section, to: &Section, r: &Reference) -> Reference {
         let middle = self.corners[1];
@@ -260,7 +265,8 @@ mod tests {
     use crate::math::Aabb;
     use crate::math::random::{Random, rounds};
 
-    /// Points of a triangle are in the box of the half on their side, whatever the triangle and its present box.
+    /// Points of a triangle are in the box of the half on their side, whatever the triangle and its
+    /// present box.
     fn check<const AXIS: usize>(random: &mut Random, corners: [Vec3; 3], within: Aabb) -> usize {
         let r = Reference::new(within, 7);
         let (low, high) = (within.min[AXIS], within.max[AXIS]);

@@ -5,7 +5,8 @@
 //!   C(n, 1) = min(leaf(n), A(n) + min over k of C(l, k) + C(r, 8 - k)),
 //!   C(n, i) = min(C(n, i - 1), min over k of C(l, k) + C(r, i - k)).
 //!
-//! Source: Ylitie, Karras, Laine, *Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs*, HPG 2017.
+//! Source: Ylitie, Karras, Laine, *Efficient Incoherent Ray Traversal on GPUs Through Compressed
+//! Wide BVHs*, HPG 2017.
 
 use super::BuildSettings;
 use super::binary::{self, half_area};
@@ -49,8 +50,8 @@ pub fn collapse(tree: &binary::Tree, plans: CollapsePlan) -> (Vec<WideNode>, Vec
 /// Costs of a subtree as a forest of at most 1, 2, ... 7 roots.
 type Costs = [f32; WIDTH - 1];
 
-/// What is cheapest: bit 0 says whether the subtree is a leaf as a whole, and three bits from 3 i on, how many of at most i roots
-/// are in the left child, 0 where fewer roots cost no more.
+/// What is cheapest: bit 0 says whether the subtree is a leaf as a whole, and three bits from 3 i
+/// on, how many of at most i roots are in the left child, 0 where fewer roots cost no more.
 #[derive(Clone, Copy, Default)]
 struct Plan(u32);
 
@@ -68,7 +69,8 @@ impl Plan {
     }
 }
 
-/// Least costs of two children's forests with so many roots together, and how many of them are the left one's.
+/// Least costs of two children's forests with so many roots together, and how many of them are the
+/// left one's.
 #[inline(always)]
 fn shared(left: &Costs, right: &Costs, roots: usize) -> (f32, usize) {
     let most = WIDTH - 1;
@@ -125,7 +127,8 @@ struct NodeWriter<'a> {
     plans: Vec<Plan>,
 }
 
-/// A wide node, all nodes below it, and the things of their leaves; addresses and things count from 0.
+/// A wide node, all nodes below it, and the things of their leaves; addresses and things count from
+/// 0.
 struct SubtreeNodes {
     nodes: Vec<WideNode>,
     order: Vec<u32>,
@@ -138,7 +141,8 @@ struct Children {
     count: usize,
 }
 
-/// Where a tree comes apart into subtrees that are made side by side: binary nodes, and how many wide nodes are above them.
+/// Where a tree comes apart into subtrees that are made side by side: binary nodes, and how many
+/// wide nodes are above them.
 #[derive(Default)]
 struct CutPoints {
     above: usize,
@@ -179,7 +183,8 @@ impl NodeWriter<'_> {
         self.forest(i + self.node(i).right(), roots - left, children);
     }
 
-    /// Finds, in the order of [`NodeWriter::fill`], nodes of so few references that what is below is not worth sharing.
+    /// Finds, in the order of [`NodeWriter::fill`], nodes of so few references that what is below
+    /// is not worth sharing.
     fn cuts(&self, i: usize, cuts: &mut CutPoints) {
         if self.node(i).count() <= PARALLEL {
             return cuts.below.push(i);
@@ -199,7 +204,8 @@ impl NodeWriter<'_> {
         subtree
     }
 
-    /// Fills a node with the children of a binary one, and all below; where subtrees are ready, with those.
+    /// Fills a node with the children of a binary one, and all below; where subtrees are ready,
+    /// with those.
     fn fill(&self, all: &mut SubtreeNodes, number: usize, i: usize, ready: &mut std::slice::Iter<SubtreeNodes>) {
         if self.node(i).count() <= PARALLEL
             && let Some(subtree) = ready.next()
@@ -212,10 +218,11 @@ impl NodeWriter<'_> {
         }
     }
 
-    /// Fills a node with the children of a binary one; gives where the inner ones of these are to be, and which they are.
+    /// Fills a node with the children of a binary one; gives where the inner ones of these are to
+    /// be, and which they are.
     ///
-    /// What a ray is likely to need together lies together: first the leaves of a node, then its inner children, side
-    /// by side, and then what is below each of them.
+    /// What a ray is likely to need together lies together: first the leaves of a node, then its
+    /// inner children, side by side, and then what is below each of them.
     fn wide(&self, subtree: &mut SubtreeNodes, number: usize, i: usize) -> (usize, Children) {
         let children = self.open(i);
         let list = &children.list[..children.count];
@@ -292,10 +299,12 @@ impl SubtreeNodes {
     }
 }
 
-/// What [`WideNode::from_last`] is where children rise along an axis, the first and the last with such areas.
+/// What [`WideNode::from_last`] is where children rise along an axis, the first and the last with
+/// such areas.
 ///
-/// If the nearest hit is wanted, they come from near to far. Where any will do, from far to near: a ray begins on a surface that it leaves,
-/// and what is near is that surface. But in a box at the far end that is small beside that at the near end a hit is less likely.
+/// If the nearest hit is wanted, they come from near to far. Where any will do, from far to near: a
+/// ray begins on a surface that it leaves, and what is near is that surface. But in a box at the
+/// far end that is small beside that at the near end a hit is less likely.
 fn from_last(axis: usize, [first, last]: [f32; 2]) -> [u32; 2] {
     const NEGATIVE: [u32; 3] = [0b1010_1010, 0b1100_1100, 0b1111_0000];
     const SMALL: f32 = 0.5;
@@ -306,8 +315,8 @@ fn from_last(axis: usize, [first, last]: [f32; 2]) -> [u32; 2] {
 
 /// A place for each of some children, and what [`WideNode::from_last`] then is.
 ///
-/// They are in order along the axis along which they lie apart best: two that are apart are met in the right order by every ray; that they
-/// both are met is the likelier the greater they are.
+/// They are in order along the axis along which they lie apart best: two that are apart are met in
+/// the right order by every ray; that they both are met is the likelier the greater they are.
 fn places(bounds: &[Aabb]) -> ([u32; 2], [usize; WIDTH]) {
     let mut areas = [0.0; WIDTH];
     areas.iter_mut().zip(bounds).for_each(|(area, bounds)| *area = bounds.half_area());
@@ -341,8 +350,9 @@ fn places(bounds: &[Aabb]) -> ([u32; 2], [usize; WIDTH]) {
 mod tests {
     use super::*;
 
-    /// Of two children that are apart along an axis, whichever comes first and whichever is greater, the nearer one is first if the
-    /// nearest hit is wanted; if any will do the farther one, unless it is less than half as large.
+    /// Of two children that are apart along an axis, whichever comes first and whichever is
+    /// greater, the nearer one is first if the nearest hit is wanted; if any will do the farther
+    /// one, unless it is less than half as large.
     #[test]
     fn children_come_in_the_order_that_rays_want() {
         let child = |axis: usize, at: f32, size: f32| {

@@ -30,7 +30,8 @@ pub unsafe fn run<K: Kernel>(kernel: K) -> K::Output {
 /// What an operation's safety rests on, said once.
 macro_rules! proven {
     ($($code:tt)*) => {
-        // SAFETY: a value of the type proves that the processor has the instructions; references are valid.
+        // SAFETY: a value of the type proves that the processor has the instructions; references
+        // are valid.
         unsafe { $($code)* }
     };
 }
@@ -157,7 +158,8 @@ pub(super) use order_of_eight;
 pub(super) fn corners(from: &super::Rows, super::Columns { starts, corner }: super::Columns) -> [[__m256; 3]; 3] {
     macro_rules! row {
         ($corner:literal, $k:literal) => {
-            // SAFETY: by `Columns::new` it begins in one of the first nine rows; the features are proven by the caller.
+            // SAFETY: by `Columns::new` it begins in one of the first nine rows; the features are
+            // proven by the caller.
             unsafe { _mm256_loadu_ps(from.as_ptr().add(starts[$k]).add($corner * corner)) }
         };
     }
@@ -174,7 +176,8 @@ pub(super) fn least(a: __m256i) -> u32 {
     }
 }
 
-/// An instruction as it stands, which the compiler takes for no other, and of which it changes no order.
+/// An instruction as it stands, which the compiler takes for no other, and of which it changes no
+/// order.
 macro_rules! literally {
     ($name:ident = $instruction:literal) => {
         /// # Safety
@@ -198,8 +201,9 @@ macro_rules! literally {
         }
     };
 }
-// Of signed integers. Of the intrinsics, the compiler compares what is last with what comes right before it first, and makes masks of
-// comparisons, which takes longer. (Where all are compared so, not the last only, vectors must be moved between registers.)
+// Of signed integers. Of the intrinsics, the compiler compares what is last with what comes right
+// before it first, and makes masks of comparisons, which takes longer. (Where all are compared so,
+// not the last only, vectors must be moved between registers.)
 literally!(greater = "vpmaxsd");
 literally!(lesser = "vpminsd");
 literally!(is_greater = "vpcmpgtd");

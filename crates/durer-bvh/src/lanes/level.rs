@@ -64,7 +64,8 @@ impl SimdLevel {
         Self::available().find(|level| level.name() == word).ok_or_else(|| UnknownSimdLevel { word, known: known() })
     }
 
-    /// As [`SimdLevel::from_environment`], looked up once; the best one where the variable is wrong.
+    /// As [`SimdLevel::from_environment`], looked up once; the best one where the variable is
+    /// wrong.
     pub fn chosen() -> SimdLevel {
         static CHOSEN: OnceLock<SimdLevel> = OnceLock::new();
         *CHOSEN.get_or_init(|| Self::from_environment().unwrap_or_else(|_| Self::best()))

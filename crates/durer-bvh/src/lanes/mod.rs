@@ -1,9 +1,10 @@
-//! Eight numbers side by side, on whatever the processor offers: all the unsafe code of the library.
+//! Eight numbers side by side, on whatever the processor offers: all the unsafe code of the
+//! library.
 //!
-//! [`Lanes`] is what the walk through a tree needs. Each level implements it once, and [`SimdLevel::run`] calls a [`Kernel`]
-//! with the one that was chosen. What decides a hit is add, subtract, multiply and compare only, never fused, so
-//! every level gives the same bits; [`Numbers::mul_add`] may be fused or not, and belongs to tests of boxes, which
-//! allow for either.
+//! [`Lanes`] is what the walk through a tree needs. Each level implements it once, and
+//! [`SimdLevel::run`] calls a [`Kernel`] with the one that was chosen. What decides a hit is add,
+//! subtract, multiply and compare only, never fused, so every level gives the same bits;
+//! [`Numbers::mul_add`] may be fused or not, and belongs to tests of boxes, which allow for either.
 #![allow(unsafe_code)]
 
 #[cfg(target_arch = "x86_64")]
@@ -95,27 +96,32 @@ pub(super) trait Lanes: Numbers {
     fn turn(self, v: Vec3A, axes: &AxisOrder) -> Vec3A;
 
     fn load(self, from: &[f32; WIDTH]) -> Self::Floats;
-    /// The corners of the triangles of a leaf; only as many lanes as there are triangles mean anything.
+    /// The corners of the triangles of a leaf; only as many lanes as there are triangles mean
+    /// anything.
     fn corners(self, from: &Rows, columns: Columns) -> [[Self::Floats; 3]; 3];
     fn store(self, a: Self::Floats) -> [f32; WIDTH];
-    /// The lesser of two numbers as signed integers have it: a negative one where either is negative, else as [`Numbers::min`].
+    /// The lesser of two numbers as signed integers have it: a negative one where either is
+    /// negative, else as [`Numbers::min`].
     fn sooner(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
-    /// The greater of two numbers as signed integers have it: where one of them at least is not negative as [`Numbers::max`].
+    /// The greater of two numbers as signed integers have it: where one of them at least is not
+    /// negative as [`Numbers::max`].
     fn later(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
     /// All bits of the lanes where a < b as signed integers have it, no bits of others.
     fn before(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
     /// A bit for each lane that has a sign.
     fn signs(self, a: Self::Floats) -> u32;
-    /// Where a ray is in slabs, each of which begins and ends somewhere, and in its own interval: the last beginning and the first end, as
-    /// [`Lanes::later`] and [`Lanes::sooner`] have them. What is read from memory last should be the last slab.
+    /// Where a ray is in slabs, each of which begins and ends somewhere, and in its own interval:
+    /// the last beginning and the first end, as [`Lanes::later`] and [`Lanes::sooner`] have them.
+    /// What is read from memory last should be the last slab.
     #[inline(always)]
     fn interval(self, [x, y, z]: [[Self::Floats; 2]; 3], within: [Self::Floats; 2]) -> [Self::Floats; 2] {
         let enter = self.later(z[0], self.later(y[0], self.later(x[0], within[0])));
         let leave = self.sooner(z[1], self.sooner(y[1], self.sooner(x[1], within[1])));
         [enter, leave]
     }
-    /// Where `a`, of which nothing is negative, is least of the lanes that have all bits in `which`: `a` without its last eight bits, by
-    /// which lanes are not compared, and with those of the lane's code instead. Something else if there are no such lanes.
+    /// Where `a`, of which nothing is negative, is least of the lanes that have all bits in
+    /// `which`: `a` without its last eight bits, by which lanes are not compared, and with those of
+    /// the lane's code instead. Something else if there are no such lanes.
     fn nearest(self, a: Self::Floats, which: Self::Floats, child_tags: &[u8; WIDTH]) -> u32;
     /// `a` in the lanes whose bits are set, `b` in others. Bits stay as they are.
     fn select(self, mask: u32, a: Self::Floats, b: Self::Floats) -> Self::Floats;
@@ -178,7 +184,8 @@ impl<'a> At<'a, '_> {
     /// Where a ray enters along an axis.
     #[inline(always)]
     pub fn near(&self, axis: usize) -> &'a [f32; WIDTH] {
-        // SAFETY: the row is in the first node, and by `Sides::at` another node is so far behind it.
+        // SAFETY: the row is in the first node, and by `Sides::at` another node is so far behind
+        // it.
         unsafe { &*self.sides.near[axis].wrapping_add(self.offset).cast() }
     }
 
@@ -189,7 +196,8 @@ impl<'a> At<'a, '_> {
         unsafe { &*self.sides.far[axis].wrapping_add(self.offset).cast() }
     }
 
-    /// The node's [child_tags](WideNode::child_tags), found as soon as its sides, for they are waited for.
+    /// The node's [child_tags](WideNode::child_tags), found as soon as its sides, for they are
+    /// waited for.
     #[inline(always)]
     pub fn child_tags(&self) -> &'a [u8; WIDTH] {
         let first = self.sides.nodes.as_ptr().cast::<u8>().wrapping_add(offset_of!(WideNode, child_tags));
@@ -229,7 +237,8 @@ impl Columns {
     pub fn triangle(self, from: &Rows, lane: usize) -> [Vec3A; 3] {
         assert!(lane < WIDTH);
         let Columns { starts: [x, y, z], corner } = self;
-        // SAFETY: by `new` and this the last is in one of the first ten rows of at most eight numbers.
+        // SAFETY: by `new` and this the last is in one of the first ten rows of at most eight
+        // numbers.
         let at = |place: usize| unsafe { *from.get_unchecked(place + lane) };
         let (b, c) = (corner, 2 * corner);
         [

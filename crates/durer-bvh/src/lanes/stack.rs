@@ -3,10 +3,12 @@
 use super::WIDTH;
 use std::mem::MaybeUninit;
 
-/// As high as the stack of a tree of [`MAX_DEPTH`](crate::MAX_DEPTH) levels can get, and a vector's width more.
+/// As high as the stack of a tree of [`MAX_DEPTH`](crate::MAX_DEPTH) levels can get, and a vector's
+/// width more.
 const ROOM: usize = (WIDTH - 1) * crate::MAX_DEPTH + 2 * WIDTH;
 
-/// Where a stack lies. It costs nothing to make: what lies above the stack's height is never initialised.
+/// Where a stack lies. It costs nothing to make: what lies above the stack's height is never
+/// initialised.
 pub struct StackStorage {
     children: MaybeUninit<[u32; ROOM]>,
     near: MaybeUninit<[f32; ROOM]>,
@@ -52,7 +54,8 @@ impl<'a> Stack<'a> {
         Some(unsafe { (*children.add(height), *near.add(height)) })
     }
 
-    /// The topmost child that is entered at `far` or before; it and those above are removed. There must be one.
+    /// The topmost child that is entered at `far` or before; it and those above are removed. There
+    /// must be one.
     #[inline(always)]
     pub fn pop_until(&mut self, far: f32) -> u32 {
         loop {

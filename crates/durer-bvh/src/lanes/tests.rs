@@ -25,7 +25,8 @@ const SPECIAL: [f32; 14] = [
 fn number(random: &mut Random) -> f32 {
     match random.below(4) {
         0 => SPECIAL[random.below(SPECIAL.len())],
-        // No NaN is signaling: on ARM the compiler makes one instruction of `if a > b { a } else { b }`, which lets those pass.
+        // No NaN is signaling: on ARM the compiler makes one instruction of `if a > b { a } else {
+        // b }`, which lets those pass.
         1 => match f32::from_bits(random.bits() as u32) {
             x if x.is_nan() => f32::NAN,
             x => x,
@@ -60,8 +61,8 @@ impl Input {
 /// Everything that lanes do but [`Numbers::mul_add`], as bits; all that are no number as the same.
 struct Everything<'a>(&'a Input);
 
-/// Vectors that are looked at for each input: of arithmetic, in double precision, two halves joined, of comparison, a stack before and
-/// after, nine rows, and columns; and twice as wide ones.
+/// Vectors that are looked at for each input: of arithmetic, in double precision, two halves
+/// joined, of comparison, a stack before and after, nine rows, and columns; and twice as wide ones.
 const OPERATIONS: usize = 12 + 3 * 7 + 2 + 9 + 5 + 2 + 9 + WIDTH + 2 * 11;
 
 impl Kernel for Everything<'_> {

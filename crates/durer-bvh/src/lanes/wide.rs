@@ -1,4 +1,5 @@
-//! Sixteen numbers side by side, for rays that go together: one vector of AVX-512, or two of eight lanes.
+//! Sixteen numbers side by side, for rays that go together: one vector of AVX-512, or two of eight
+//! lanes.
 
 use super::{Lanes, Numbers, WIDTH};
 

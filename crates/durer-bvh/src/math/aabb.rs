@@ -53,7 +53,8 @@ impl Aabb {
         0.5 * self.min + 0.5 * self.max
     }
 
-    /// Whether it lies so far from the origin for its size that single precision is coarse on it: by 256 times its size.
+    /// Whether it lies so far from the origin for its size that single precision is coarse on it:
+    /// by 256 times its size.
     pub fn is_far(self) -> bool {
         self.center().abs().max_element() > 256.0 * self.size().max_element()
     }
@@ -74,7 +75,8 @@ impl Aabb {
 
     /// The interval of `t` for which `origin + t * dir` lies in the closed box, if any.
     ///
-    /// Slabs are chosen by the sign of the direction; a ray that lies in a face of the box is inside.
+    /// Slabs are chosen by the sign of the direction; a ray that lies in a face of the box is
+    /// inside.
     pub fn clip(&self, origin: Vec3, dir: Vec3) -> Option<(f32, f32)> {
         let (mut enter, mut leave) = (f32::NEG_INFINITY, f32::INFINITY);
         for axis in 0..3 {

@@ -3,7 +3,8 @@ use glam::{DAffine3, DVec3};
 
 /// An invertible affine map between two spaces, with its inverse.
 ///
-/// Kept and applied in double precision, and rounded once: what is far away keeps its digits on the way back.
+/// Kept and applied in double precision, and rounded once: what is far away keeps its digits on the
+/// way back.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Affine {
     forward: DAffine3,
@@ -91,8 +92,9 @@ impl Affine {
 
     /// Bound on the absolute error of `point64(p)` when `p` itself is known to within `error`.
     ///
-    /// The roundings on the way forward and on a later way back are covered: of double precision in world space, where
-    /// 2^-40 leaves room for ill-conditioned maps, and of single precision in object space.
+    /// The roundings on the way forward and on a later way back are covered: of double precision in
+    /// world space, where 2^-40 leaves room for ill-conditioned maps, and of single precision in
+    /// object space.
     pub fn point_error(&self, p: Vec3, error: Vec3) -> Vec3 {
         const DOUBLE: f32 = 1.0 / (1u64 << 40) as f32;
         let far = self.forward.translation.abs().as_vec3() + self.spread(p.abs());

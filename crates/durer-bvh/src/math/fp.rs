@@ -1,7 +1,8 @@
 //! Pinned transcendental functions.
 //!
 //! The platform's libm rounds differently from system to system. All functions here are computed by
-//! the pure-Rust `libm`, so that a picture has the same bits everywhere. `clippy.toml` forbids the others.
+//! the pure-Rust `libm`, so that a picture has the same bits everywhere. `clippy.toml` forbids the
+//! others.
 
 /// Sine of an angle in radians.
 pub fn sin(x: f32) -> f32 {

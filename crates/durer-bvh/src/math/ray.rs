@@ -43,8 +43,8 @@ impl Ray {
 
 /// A ray whose origin is known in double precision.
 ///
-/// What the world is asked with: far from the origin of coordinates, single precision would move a secondary ray off the
-/// surface that it starts from, and through the wall beside it.
+/// What the world is asked with: far from the origin of coordinates, single precision would move a
+/// secondary ray off the surface that it starts from, and through the wall beside it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ray64 {
     /// The ray with its origin rounded to single precision.

@@ -1,4 +1,5 @@
-//! A tree over the triangles of a mesh, with the triangles themselves: the kernel that rays spend their time in.
+//! A tree over the triangles of a mesh, with the triangles themselves: the kernel that rays spend
+//! their time in.
 
 mod build;
 mod fetch;
@@ -19,7 +20,8 @@ pub use nearest::NearestPoint;
 use query::{All, Any, Filter, Filtered, HitCollector, Nearest, Query};
 use std::sync::OnceLock;
 
-/// Makes a number below 2^28 an `f32` of ordinary size: what is read past the end of a row is computed with, and tiny numbers are slow.
+/// Makes a number below 2^28 an `f32` of ordinary size: what is read past the end of a row is
+/// computed with, and tiny numbers are slow.
 const TAG: u32 = 1 << 30;
 
 /// The number of a triangle of a leaf, by its rows and the count of its triangles.
@@ -55,7 +57,8 @@ fn counting<T: TraversalCounter, A>(
     answer
 }
 
-/// Hits by `t`, then by number of the triangle; each once, for a triangle that was cut is found in several leaves.
+/// Hits by `t`, then by number of the triangle; each once, for a triangle that was cut is found in
+/// several leaves.
 fn in_order(mut all: Vec<TriangleHit>) -> Vec<TriangleHit> {
     all.sort_unstable_by(|a, b| a.t.total_cmp(&b.t).then(a.triangle.cmp(&b.triangle)));
     all.dedup_by_key(|hit| hit.triangle);
@@ -64,12 +67,14 @@ fn in_order(mut all: Vec<TriangleHit>) -> Vec<TriangleHit> {
 
 /// A bounding volume hierarchy over triangles, for use without any scene.
 ///
-/// A ray counts as moved by an infinitesimal across itself, so that it crosses exactly one of the triangles around an
-/// edge or a vertex: no ray slips through a closed mesh, and [`TriangleBvh::hit_count`] is exact. Triangles are met from both
-/// sides. Of hits at the same `t` the one of least number is the closest. All answers are the same, bit for bit, for
-/// all qualities, SIMD levels, and numbers of threads.
+/// A ray counts as moved by an infinitesimal across itself, so that it crosses exactly one of the
+/// triangles around an edge or a vertex: no ray slips through a closed mesh, and
+/// [`TriangleBvh::hit_count`] is exact. Triangles are met from both sides. Of hits at the same `t`
+/// the one of least number is the closest. All answers are the same, bit for bit, for all
+/// qualities, SIMD levels, and numbers of threads.
 ///
-/// A ray that is NaN or infinite, or without direction, hits nothing; directions need not be of length 1.
+/// A ray that is NaN or infinite, or without direction, hits nothing; directions need not be of
+/// length 1.
 ///
 /// ```
 /// use durer_bvh::{BuildQuality, TriangleBvh};
@@ -87,8 +92,8 @@ fn in_order(mut all: Vec<TriangleHit>) -> Vec<TriangleHit> {
 #[derive(Clone, Debug)]
 pub struct TriangleBvh {
     nodes: Vec<WideNode>,
-    /// For each leaf [`ROWS`] rows, each of as many numbers as it has triangles: their corners by axis, and their numbers, as bits. A
-    /// leaf's room behind the last.
+    /// For each leaf [`ROWS`] rows, each of as many numbers as it has triangles: their corners by
+    /// axis, and their numbers, as bits. A leaf's room behind the last.
     leaves: Vec<f32>,
     bounds: Aabb,
     /// The greatest coordinate, without signs.
@@ -132,13 +137,14 @@ impl Facing {
 }
 
 impl TriangleBvh {
-    /// The same tree with tests at another SIMD level; at the plain one where the processor has not got it.
+    /// The same tree with tests at another SIMD level; at the plain one where the processor has not
+    /// got it.
     pub fn at_level(self, level: SimdLevel) -> Self {
         TriangleBvh { level: Available::or_scalar(level), ..self }
     }
 
-    /// The same, blind to slivers to triangles for which |(b - a) x (c - a) · d| is less than this. Zero is
-    /// blind to slivers to none.
+    /// The same, blind to slivers to triangles for which |(b - a) x (c - a) · d| is less than this.
+    /// Zero is blind to slivers to none.
     pub fn least_volume(self, least_volume: f64) -> Self {
         TriangleBvh { least_volume, culls_slivers: least_volume != 0.0, ..self }
     }
@@ -236,15 +242,17 @@ impl TriangleBvh {
         in_order(self.query::<_, All>(ray, counts))
     }
 
-    /// How many triangles the ray crosses in its open interval: odd from inside a closed mesh, even from outside.
+    /// How many triangles the ray crosses in its open interval: odd from inside a closed mesh, even
+    /// from outside.
     pub fn hit_count(&self, ray: &Ray) -> usize {
         self.all_hits(ray).len()
     }
 
-    /// The first hit of each ray, in order: as [`TriangleBvh::closest`] gives it, bit for bit, but faster. Of 64 rays in a row those
-    /// that go nearly the same way share their way through the tree, so neighbours should be neighbours in space, as the pixels of a
-    /// tile are; after rays that do not, up to 960 are not asked whether they do. In a large tree several of the others are on their way
-    /// at once, so that none waits for memory.
+    /// The first hit of each ray, in order: as [`TriangleBvh::closest`] gives it, bit for bit, but
+    /// faster. Of 64 rays in a row those that go nearly the same way share their way through the
+    /// tree, so neighbours should be neighbours in space, as the pixels of a tile are; after rays
+    /// that do not, up to 960 are not asked whether they do. In a large tree several of the others
+    /// are on their way at once, so that none waits for memory.
     ///
     /// # Panics
     ///
@@ -255,7 +263,8 @@ impl TriangleBvh {
         self.each::<Nearest>(rays, &rest, |i, hit| hits[i] = hit);
     }
 
-    /// For each ray, in order, whether anything is hit: as [`TriangleBvh::closest_batch`] goes about it.
+    /// For each ray, in order, whether anything is hit: as [`TriangleBvh::closest_batch`] goes
+    /// about it.
     ///
     /// # Panics
     ///
@@ -350,8 +359,8 @@ impl TriangleBvh {
         size_of_val(&*self.nodes) + size_of_val(&*self.leaves) + leaf_of
     }
 
-    /// Cost of a random ray through the bounds by the surface area heuristic, in tests of a node, where a leaf costs as
-    /// much. Not a number where the bounds have no area.
+    /// Cost of a random ray through the bounds by the surface area heuristic, in tests of a node,
+    /// where a leaf costs as much. Not a number where the bounds have no area.
     pub fn sah_cost(&self) -> f64 {
         node::cost(&self.nodes, self.bounds)
     }

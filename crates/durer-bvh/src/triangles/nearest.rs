@@ -19,13 +19,14 @@ pub struct NearestPoint {
     pub triangle: u32,
 }
 
-/// Boxes count as nearer by this share, which is far more than rounding: so all trees find the same triangle.
+/// Boxes count as nearer by this share, which is far more than rounding: so all trees find the same
+/// triangle.
 const SLACK: f64 = 1.0 - 1e-12;
 
 impl TriangleBvh {
-    /// The point of all triangles that is nearest to another, if there is one no further away than `within`. Of triangles
-    /// that are equally near the one of least number counts. Computed in double precision; the answer is the same, bit for bit,
-    /// for all qualities.
+    /// The point of all triangles that is nearest to another, if there is one no further away than
+    /// `within`. Of triangles that are equally near the one of least number counts. Computed in
+    /// double precision; the answer is the same, bit for bit, for all qualities.
     ///
     /// ```
     /// use durer_bvh::{BuildQuality, TriangleBvh};
@@ -99,10 +100,11 @@ impl Best {
     }
 }
 
-/// The nearest point of a triangle: the square of its distance, the point, and its second and third barycentric coordinate.
+/// The nearest point of a triangle: the square of its distance, the point, and its second and third
+/// barycentric coordinate.
 ///
-/// The foot of the perpendicular, if it lies in the triangle, else the nearest point of an edge; so triangles without area
-/// are no exception.
+/// The foot of the perpendicular, if it lies in the triangle, else the nearest point of an edge; so
+/// triangles without area are no exception.
 fn nearest_of(point: DVec3, [a, b, c]: [DVec3; 3]) -> (f64, DVec3, [f64; 2]) {
     let (ab, ac, from) = (b - a, c - a, point - a);
     let at = |[u, v]: [f64; 2]| {
@@ -170,7 +172,8 @@ mod tests {
             let around = DVec3::new(p.x, p.z, 0.0).length() - 0.7;
             let exact = (DVec3::new(around, p.y, 0.0).length() - 0.3).abs();
             let near = tree.nearest_point(p.as_vec3(), f64::INFINITY).unwrap();
-            // The mesh lies within the torus by the sagitta of its edges: 1 - cos(pi / 100) of 0.3, and 1 - cos(pi / 200) of 1.
+            // The mesh lies within the torus by the sagitta of its edges: 1 - cos(pi / 100) of 0.3,
+            // and 1 - cos(pi / 200) of 1.
             assert!((near.distance - exact).abs() < 3e-4, "{p}: {} {exact}", near.distance);
             assert!((near.point.distance(p) - near.distance).abs() < 1e-6);
         }

@@ -267,7 +267,8 @@ impl<T: TraversalCounter, F: HitCollector> Visitor for Leaves<'_, T, F> {
             }
             unsure |= crossed & !(lanes.le(span.far, start) | lanes.le(end, span.near));
         } else {
-            // Hidden, or the compiler would prepare this for every ray, before it is known whether it comes to a leaf.
+            // Hidden, or the compiler would prepare this for every ray, before it is known whether
+            // it comes to a leaf.
             let sheared = std::hint::black_box(sheared);
             let (origin, dir) = sheared.ray();
             let line = Exact::new(lanes.triple(origin), lanes.triple(dir));

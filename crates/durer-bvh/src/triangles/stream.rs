@@ -1,8 +1,9 @@
 //! Many rays through one tree, each a step at a time.
 //!
-//! A ray alone waits: for a node from memory, for the result of a test, for the processor that guessed a branch wrongly. Here
-//! several are on their way, and while one waits the others go on. Rays at inner nodes and rays at leaves are on two lists, so what
-//! comes next is no branch: a step writes its ray to both lists, and one of the two gets longer.
+//! A ray alone waits: for a node from memory, for the result of a test, for the processor that
+//! guessed a branch wrongly. Here several are on their way, and while one waits the others go on.
+//! Rays at inner nodes and rays at leaves are on two lists, so what comes next is no branch: a step
+//! writes its ray to both lists, and one of the two gets longer.
 
 use super::TriangleBvh;
 use super::fetch::{ITSELF, Places};
@@ -83,7 +84,8 @@ impl List {
 }
 
 impl<'a, F: HitCollector + Default, A: FnMut(usize, F::Answer)> Stream<'a, F, A> {
-    /// Puts the next ray in a place, if there is one. Rays that are not traced here are answered at once.
+    /// Puts the next ray in a place, if there is one. Rays that are not traced here are answered at
+    /// once.
     #[inline(always)]
     fn start<L: Lanes>(&mut self, lanes: L, flight: &mut InFlightRay<'a, F>, stack: &mut Stack) -> bool {
         for &number in self.numbers.by_ref() {

@@ -106,7 +106,8 @@ fn scaled((vertices, triangles): &Mesh, scale: f32, offset: Vec3) -> Mesh {
     (vertices.iter().map(|v| scale * *v + offset).collect(), triangles.clone())
 }
 
-/// Rays of all kinds about a mesh: at vertices, edges and faces, along axes, short, long, and with special numbers.
+/// Rays of all kinds about a mesh: at vertices, edges and faces, along axes, short, long, and with
+/// special numbers.
 pub fn ray((vertices, triangles): &Mesh, random: &mut Random, scale: f32, offset: Vec3) -> Ray {
     let mut goal = offset + scale * random.point();
     if !triangles.is_empty() {
@@ -253,7 +254,8 @@ fn the_greatest_numbers_lead_to_triangles() {
     }
 }
 
-/// Neighbours in a picture, through a hole or side by side: at corners, edges and faces, often across octants, with some that are odd.
+/// Neighbours in a picture, through a hole or side by side: at corners, edges and faces, often
+/// across octants, with some that are odd.
 fn bundle(mesh: &Mesh, random: &mut Random, scale: f32, offset: Vec3) -> Vec<Ray> {
     let middle = ray(mesh, random, scale, offset);
     let count = 1 + random.below(150);
@@ -303,7 +305,8 @@ fn batches_answer_as_single_rays_do() {
                 }
                 let (mut hits, mut occluded) = (vec![None; rays.len()], vec![false; rays.len()]);
                 for tree in &trees {
-                    // In parts, for after rays that do not go together some are not asked whether they do.
+                    // In parts, for after rays that do not go together some are not asked whether
+                    // they do.
                     let part = [64, usize::MAX][round % 2];
                     rays.chunks(part).zip(hits.chunks_mut(part)).for_each(|(rays, to)| tree.closest_batch(rays, to));
                     rays.chunks(part)
@@ -366,7 +369,8 @@ fn rays_along_an_axis_go_together_and_meet_what_is_there() {
 
 #[test]
 fn zeros_of_either_sign_are_one_point_where_rays_begin() {
-    // About the origin, so that corners have zeros too, of either sign, and rays run through edges and vertices.
+    // About the origin, so that corners have zeros too, of either sign, and rays run through edges
+    // and vertices.
     let mut mesh = cube(8);
     for (i, at) in mesh.0.iter_mut().flat_map(|at| at.as_mut()).enumerate() {
         *at = if *at == 0.0 && i % 2 == 0 { -0.0 } else { *at };

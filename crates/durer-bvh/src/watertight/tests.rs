@@ -5,7 +5,8 @@ use crate::math::random::Random;
 
 type Triangles = Vec<[Vec3; 3]>;
 
-/// A grid over [0, 1]^2 that is closed by the map of its corners: neighbours get the same corner, bit for bit.
+/// A grid over [0, 1]^2 that is closed by the map of its corners: neighbours get the same corner,
+/// bit for bit.
 fn sheet(columns: usize, rows: usize, point: impl Fn(usize, usize) -> Vec3) -> Triangles {
     let mut triangles = Vec::new();
     for i in 0..columns {

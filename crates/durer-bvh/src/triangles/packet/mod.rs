@@ -1,14 +1,16 @@
 //! PacketRays that go nearly the same way, through one tree together.
 //!
-//! Up to 64 rays whose directions have the same signs and the same longest axis are a packet. A node is tested once for all of them, by
-//! interval arithmetic; what is left of its children is tested against the rays side by side when it is visited, and so is each
-//! triangle of a leaf. All tests of triangles are those of single rays, with the same roundings, so answers are the same.
+//! Up to 64 rays whose directions have the same signs and the same longest axis are a packet. A
+//! node is tested once for all of them, by interval arithmetic; what is left of its children is
+//! tested against the rays side by side when it is visited, and so is each triangle of a leaf. All
+//! tests of triangles are those of single rays, with the same roundings, so answers are the same.
 //!
-//! Sources: Wald, Slusallek, Benthin, Wagner, *Interactive Rendering with Coherent Ray Tracing*, Eurographics 2001; Boulos, Wald,
-//! Shirley, *Geometric and Arithmetic Culling Methods for Entire Ray Packets*, University of Utah 2006.
+//! Sources: Wald, Slusallek, Benthin, Wagner, *Interactive Rendering with Coherent Ray Tracing*,
+//! Eurographics 2001; Boulos, Wald, Shirley, *Geometric and Arithmetic Culling Methods for Entire
+//! Ray Packets*, University of Utah 2006.
 
-/// The least or greatest of what all rays of a packet have. (No closure would do: what is not inlined into a level's entry is compiled
-/// without its instructions.)
+/// The least or greatest of what all rays of a packet have. (No closure would do: what is not
+/// inlined into a level's entry is compiled without its instructions.)
 macro_rules! end {
     ($packet:expr, $wide:expr, $end:ident, $across:ident, $($of:tt)*) => {{
         let mut all = $wide.load(&$packet.sixteens[0].$($of)*);
@@ -35,7 +37,8 @@ use walk::Entry;
 const RAYS: usize = 64;
 /// So few are better off alone.
 const MIN_SIZE: usize = 16;
-/// After rays that do not go together so many windows of rays are left out at most, before it is tried again.
+/// After rays that do not go together so many windows of rays are left out at most, before it is
+/// tried again.
 const MAX_SKIPPED_WINDOWS: u32 = 15;
 /// As far apart directions of a packet may be across the longest axis, for one unit along it.
 const MAX_ANGLE: f32 = 0.5;
@@ -43,8 +46,8 @@ const MAX_ANGLE: f32 = 0.5;
 const MAX_START: f32 = 0.25;
 
 impl TriangleBvh {
-    /// Answers for rays that go together, and gives the numbers of the others. Where `ANY`, any hit will do, and only whether there
-    /// is one means anything.
+    /// Answers for rays that go together, and gives the numbers of the others. Where `ANY`, any hit
+    /// will do, and only whether there is one means anything.
     pub(super) fn packets<const ANY: bool>(
         &self,
         rays: &[Ray],
@@ -113,7 +116,8 @@ impl<A: FnMut(usize, Option<TriangleHit>), const ANY: bool> Kernel for Packets<'
             meetings: Vec::with_capacity(256),
         };
         let mut stack: Vec<Entry> = Vec::with_capacity(256);
-        // Where no rays go together, or none are fast, the next are likely to be alike: it is tried ever less often.
+        // Where no rays go together, or none are fast, the next are likely to be alike: it is tried
+        // ever less often.
         let (mut left_out, mut leave_out) = (0, 0);
         for (window, rays) in self.rays.chunks(RAYS).enumerate() {
             let first = (window * RAYS) as u32;
@@ -133,7 +137,8 @@ impl<A: FnMut(usize, Option<TriangleHit>), const ANY: bool> Kernel for Packets<'
                 lanes.prefetch(rays.as_ptr().wrapping_add(RAYS + 2 * line));
             }
             let signs = packet.signs(lanes);
-            // Usually all have the same key, and are where they should be; else those of each key are put together.
+            // Usually all have the same key, and are where they should be; else those of each key
+            // are put together.
             let mut left = all;
             while left != 0 {
                 let key = key_of(signs, left.trailing_zeros());
@@ -216,8 +221,8 @@ struct Packet<'a> {
 }
 
 impl Packet<'_> {
-    /// Takes the rays with the first numbers, and the last again where lanes are left. `in_order` are rays of which it is known that they
-    /// are the first.
+    /// Takes the rays with the first numbers, and the last again where lanes are left. `in_order`
+    /// are rays of which it is known that they are the first.
     #[inline(always)]
     fn load<L: Lanes>(&mut self, lanes: L, rays: &[Ray], count: usize, in_order: &[Ray]) {
         self.groups = count.div_ceil(WIDE);

@@ -13,8 +13,9 @@ pub type PerRay = [f32; WIDE];
 
 const ZERO: PerRay = [0.0; WIDE];
 
-/// Sixteen rays of one octant and one longest axis, prepared for boxes as in [`TraversalRay`](crate::traverse::TraversalRay), though
-/// with somewhat less padding, and for triangles as in [`WatertightRay`](crate::watertight::WatertightRay).
+/// Sixteen rays of one octant and one longest axis, prepared for boxes as in
+/// [`TraversalRay`](crate::traverse::TraversalRay), though with somewhat less padding, and for
+/// triangles as in [`WatertightRay`](crate::watertight::WatertightRay).
 #[derive(Clone, Copy)]
 #[repr(align(64))]
 pub struct PacketRays {
@@ -34,8 +35,8 @@ pub struct PacketRays {
     pub t_max: PerRay,
     /// The same; after a hit, its t.
     pub t_last: PerRay,
-    /// Heights lower than the first or above the second are outside the interval for sure; those above the third and below the
-    /// fourth are inside.
+    /// Heights lower than the first or above the second are outside the interval for sure; those
+    /// above the third and below the fourth are inside.
     pub heights: [PerRay; 4],
     /// Numbers of the meetings, as bits; 0 is none. Where any hit will do, they mean nothing.
     meetings: PerRay,
@@ -72,8 +73,8 @@ impl PacketRays {
         }
     }
 
-    /// By axis, a bit for each ray whose direction is negative there; and those of which the first, or the second component is the
-    /// longest.
+    /// By axis, a bit for each ray whose direction is negative there; and those of which the first,
+    /// or the second component is the longest.
     #[inline(always)]
     pub fn signs<L: Lanes>(&self, lanes: L) -> [u32; 5] {
         let wide = lanes.wide();
@@ -86,7 +87,8 @@ impl PacketRays {
         [negative[0], negative[1], negative[2], first, wide.lt(z, y) & !first]
     }
 
-    /// Prepares the rays for a tree with no coordinates greater than `most`; gives those that are fast, a bit for each.
+    /// Prepares the rays for a tree with no coordinates greater than `most`; gives those that are
+    /// fast, a bit for each.
     #[inline(always)]
     pub fn prepare<L: Lanes>(&mut self, lanes: L, axes: &Axes, most: f32) -> u32 {
         let wide = lanes.wide();
@@ -158,7 +160,8 @@ impl PacketRays {
         }
     }
 
-    /// Takes note of a triangle that the lines of some rays cross, of those who meet it in their interval, and before others.
+    /// Takes note of a triangle that the lines of some rays cross, of those who meet it in their
+    /// interval, and before others.
     ///
     /// It is the meeting of that `number`.
     #[inline(always)]

@@ -27,7 +27,8 @@ struct IntervalRay<L: Lanes> {
 }
 
 impl<L: Lanes> IntervalRay<L> {
-    /// The children of a node that any ray may meet, a bit for each, and where the first enters them.
+    /// The children of a node that any ray may meet, a bit for each, and where the first enters
+    /// them.
     ///
     /// Roundings are monotonic, so no bound is passed by what a single ray has.
     #[inline(always)]
@@ -47,7 +48,8 @@ impl<L: Lanes> IntervalRay<L> {
         (lanes.le(enter, leave), enter)
     }
 
-    /// No ray enters anything before: 0, or, where rays begin behind their origins, where the first of the root's children is entered.
+    /// No ray enters anything before: 0, or, where rays begin behind their origins, where the first
+    /// of the root's children is entered.
     #[inline(always)]
     fn start(&self, lanes: L, root: &WideNode, limit: f32) -> f32 {
         if lanes.store(self.t_min)[0] >= 0.0 {
@@ -59,8 +61,9 @@ impl<L: Lanes> IntervalRay<L> {
     }
 }
 
-/// Of children that are met, a bit for each, the place of the one that is entered first, nothing being entered before `start`. (By the order
-/// of the node, which is along one axis, rays along another met what is far before what is near.)
+/// Of children that are met, a bit for each, the place of the one that is entered first, nothing
+/// being entered before `start`. (By the order of the node, which is along one axis, rays along
+/// another met what is far before what is near.)
 #[inline(always)]
 fn nearest<L: Lanes>(lanes: L, node: &WideNode, met: u32, enter: L::Floats, start: f32) -> u32 {
     let nothing = lanes.splat(0.0);
@@ -114,8 +117,9 @@ impl Packet<'_> {
         end!(self, wide, max, greatest, t_last)
     }
 
-    /// Shows the triangles of all leaves that a ray may meet to those rays, roughly from near to far: of each node what is entered first, then
-    /// the others in its order. Where `ANY` hit will do, all are in the order of nodes for that.
+    /// Shows the triangles of all leaves that a ray may meet to those rays, roughly from near to
+    /// far: of each node what is entered first, then the others in its order. Where `ANY` hit will
+    /// do, all are in the order of nodes for that.
     #[inline(always)]
     pub(super) fn traverse<L: Lanes, const ANY: bool>(&mut self, lanes: L, stack: &mut Vec<Entry>) {
         let bvh = self.bvh;
@@ -212,7 +216,8 @@ mod tests {
     use crate::lanes::{Available, Kernel, SimdLevel, WIDTH};
     use crate::math::{Aabb, Vec3};
 
-    /// Where children of a node are entered, those of them that are met, and before which nothing is.
+    /// Where children of a node are entered, those of them that are met, and before which nothing
+    /// is.
     struct RayInTree<'a>(&'a WideNode, [f32; WIDTH], u32, f32);
 
     impl Kernel for RayInTree<'_> {

@@ -15,8 +15,9 @@ enum Verdict {
     Unsure,
 }
 
-/// Signs of the volumes that the ray spans with each edge. A corner may be off by the rounding of its distance from the origin in
-/// each coordinate, and so is a volume by that times the area of the ray and the other corner.
+/// Signs of the volumes that the ray spans with each edge. A corner may be off by the rounding of
+/// its distance from the origin in each coordinate, and so is a volume by that times the area of
+/// the ray and the other corner.
 fn verdict(corners: [Vec3; 3], ray: &Ray) -> Verdict {
     let (o, d) = (ray.origin.as_dvec3(), ray.dir.as_dvec3());
     let [a, b, c] = corners.map(|p| p.as_dvec3() - o);
@@ -40,7 +41,8 @@ fn verdict(corners: [Vec3; 3], ray: &Ray) -> Verdict {
     if sides.contains(&0.0) || !t.is_finite() || (t * d.length()).abs() < 1e-3 * reach {
         return Verdict::Unsure;
     }
-    // Rounded once to single precision; double precision loses what a ray along the surface makes of it.
+    // Rounded once to single precision; double precision loses what a ray along the surface makes
+    // of it.
     let loss = 1e-14 * n.length() * (reach + t.abs() * d.length()) / volume.abs();
     match t > 0.0 {
         true => Verdict::Crossed(t, t * f64::from(f32::EPSILON) + loss),
