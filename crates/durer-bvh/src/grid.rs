@@ -181,16 +181,26 @@ impl Grid {
 
     /// Offers the things of every cell that the ray crosses before `t_max` to `test`, cell by cell;
     /// see [`super::Bvh::traverse`]. A thing in several cells is offered several times.
+    #[inline]
     pub fn traverse<T: TraversalCounter>(
         &self,
         ray: &Ray,
         counter: &mut T,
         mut test: impl FnMut(usize, f32, &mut T) -> f32,
     ) {
-        let mut offer = |items: &[u32], t_max: f32| {
+        let is_done = self.offer_cells(ray, &mut |items, t_max| {
             counter.work(1, 0);
             items.iter().fold(t_max, |t_max, item| test(*item as usize, t_max, counter))
-        };
+        });
+        if !is_done {
+            counter.work(1, 0);
+            (0..self.things).fold(ray.t_max, |t_max, thing| test(thing, t_max, counter));
+        }
+    }
+
+    /// Offers the things of cells; `false`, and none, where all things should be offered. Behind a
+    /// pointer, so that it is compiled here, once, and not for each caller.
+    fn offer_cells(&self, ray: &Ray, offer: &mut dyn FnMut(&[u32], f32) -> f32) -> bool {
         // Where rounding moves rays by more than the padding of cells, as from far away,
         // neighbouring cells are visited too.
         let reach = [self.bounds.min, self.bounds.max].map(|c| (ray.origin - c).abs().max(c.abs()).max_element());
@@ -198,21 +208,18 @@ impl Grid {
         let finest = (0..3).filter(cut).map(|axis| self.cell_size()[axis]).fold(f32::INFINITY, f32::min);
         let slip = 16.0 * f32::EPSILON * reach[0].max(reach[1]);
         if slip > PAD * finest && is_sound(ray) {
-            if !self.walk_wide(ray, slip.into(), &mut offer) {
-                counter.work(1, 0);
-                (0..self.things).fold(ray.t_max, |t_max, thing| test(thing, t_max, counter));
-            }
-            return;
+            return self.walk_wide(ray, slip.into(), offer);
         }
         self.walk_cells(ray, |grid, cell, t_max| {
             let i = grid.number(cell);
             offer(&grid.items[grid.starts[i] as usize..grid.starts[i + 1] as usize], t_max)
         });
+        true
     }
 
     /// Offers the things of all cells that are at most so far from a ray, layer by layer across the
     /// ray's main direction; `false`, and none, where that is more work than to offer all things.
-    fn walk_wide(&self, ray: &Ray, slip: f64, offer: &mut impl FnMut(&[u32], f32) -> f32) -> bool {
+    fn walk_wide(&self, ray: &Ray, slip: f64, offer: &mut dyn FnMut(&[u32], f32) -> f32) -> bool {
         let (line, size, min) = (ray.line(), self.cell_size().as_dvec3(), self.bounds.min.as_dvec3());
         let main = line.dir.abs().max_position();
         let [a, b] = [(main + 1) % 3, (main + 2) % 3];

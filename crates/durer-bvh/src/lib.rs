@@ -98,8 +98,5 @@ pub mod internal {
     pub use crate::traverse::is_sound;
 }
 
-/// No leaf of a tree lies deeper than this: it bounds the stack of a walk.
-const MAX_DEPTH: usize = 160;
-
 #[cfg(test)]
 mod tests;

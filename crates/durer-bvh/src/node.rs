@@ -1,7 +1,12 @@
 //! The eight-wide node.
 
-use super::lanes::WIDTH;
 use crate::math::Aabb;
+
+/// So many children has a node, and so many lanes a vector.
+pub const WIDTH: usize = 8;
+
+/// No leaf of a tree lies deeper than this: it bounds the stack of a walk.
+pub(super) const MAX_DEPTH: usize = 160;
 
 /// Boxes of up to eight children, side by side. Those that are not there have empty boxes, which no
 /// ray meets.

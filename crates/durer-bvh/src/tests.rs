@@ -4,6 +4,7 @@ use super::traverse::{TraversalRay, is_sound};
 use super::*;
 use crate::math::random::Random;
 use crate::math::{Aabb, Ray, Vec3};
+use crate::node::MAX_DEPTH;
 
 fn cube(center: Vec3, half: f32) -> Aabb {
     Aabb { min: center - half, max: center + half }

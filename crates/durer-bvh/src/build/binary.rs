@@ -1,8 +1,10 @@
 //! A binary tree over references, from the top down by the surface area heuristic.
 
-use super::cut::{Bin, HALVING_DEPTH};
+use super::builder::{Bin, Builder, half_area};
+use super::cut::HALVING_DEPTH;
+use super::reference::{Reference, area_scale, lane, lane_number};
+use super::settings::BuildSettings;
 use super::spatial::{MIN_REFERENCES, Searches};
-use super::{BuildSettings, Reference, area_scale, lane, lane_number};
 use crate::lanes::listed;
 use crate::math::{Aabb, Vec3};
 use crate::parallel;
@@ -83,25 +85,6 @@ pub struct Tree {
     pub scale: f32,
     /// Whether things are in several leaves.
     pub is_cut: bool,
-}
-
-/// Half the area of a box.
-#[inline]
-pub fn half_area(min: Vec4, max: Vec4, scale: f32) -> f32 {
-    let d = ((max - min) * scale).max(Vec4::ZERO);
-    d.x * d.y + d.y * d.z + d.z * d.x
-}
-
-pub struct Builder<'a> {
-    pub scale: f32,
-    /// Half the area of everything.
-    pub area: f32,
-    /// So many references may stay together.
-    whole: usize,
-    /// How many bins so many references are put into, at most.
-    pub bins: fn(usize) -> usize,
-    /// Where things are triangles that may be cut, their corners; else nothing.
-    pub corners: &'a [[Vec3; 3]],
 }
 
 /// What a subtree is built over.

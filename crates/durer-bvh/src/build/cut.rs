@@ -3,64 +3,19 @@
 //! Many references are put into bins along each axis; of few, all divisions are tried.
 //! Source: Wald, *On fast Construction of SAH-based Bounding Volume Hierarchies*, IEEE RT 2007.
 
-use super::Reference;
-use super::binary::{Builder, half_area};
-use crate::math::Aabb;
+use super::builder::{Bin, Builder, MIN_PARALLEL, around_all};
+use super::reference::Reference;
+use super::settings::BINS;
 use crate::parallel;
 use glam::{IVec4, Mat4, Vec4};
 
-pub const BINS: usize = 16;
 /// Below this depth things are halved by number, which bounds the depth of all trees: 28 levels
 /// halve 2^28 things.
 pub const HALVING_DEPTH: usize = 60;
-/// More references than this are looked at in parallel.
-const MIN_PARALLEL: usize = 1 << 15;
 /// Of so few references all divisions are tried.
 const MAX_EXHAUSTIVE: usize = 4;
 /// So many are worth bins of their own for each half of them.
 const MIN_FOR_MORE_BINS: usize = 64;
-
-/// A box that grows, and how many references are in it.
-#[derive(Clone, Copy)]
-pub struct Bin {
-    pub min: Vec4,
-    pub max: Vec4,
-    pub count: u32,
-}
-
-impl Bin {
-    pub const EMPTY: Bin = Bin { min: Vec4::INFINITY, max: Vec4::NEG_INFINITY, count: 0 };
-
-    pub fn of(references: &[Reference]) -> Bin {
-        let [min, max] = around_all(references, &|r| [r.min, r.max]);
-        Bin { min, max, count: references.len() as u32 }
-    }
-
-    pub fn bounds(&self) -> Aabb {
-        Aabb { min: self.min.truncate(), max: self.max.truncate() }
-    }
-
-    #[inline]
-    pub fn with(self, r: &Reference) -> Bin {
-        Bin { count: self.count + 1, ..self.around(r) }
-    }
-
-    /// Grown, but not counted.
-    #[inline]
-    pub fn around(self, r: &Reference) -> Bin {
-        Bin { min: self.min.min(r.min), max: self.max.max(r.max), ..self }
-    }
-
-    #[inline]
-    pub fn union(self, other: Bin) -> Bin {
-        Bin { min: self.min.min(other.min), max: self.max.max(other.max), count: self.count + other.count }
-    }
-
-    #[inline]
-    pub fn cost(&self, scale: f32) -> f32 {
-        half_area(self.min, self.max, scale) * self.count as f32
-    }
-}
 
 /// Bins of equal width over the centres of references.
 #[derive(Clone, Copy)]
@@ -94,28 +49,6 @@ const FIRST: f32 = (1 << 23) as f32;
 /// The box around all [`Reference::middle`].
 fn middles(references: &[Reference]) -> [Vec4; 2] {
     around_all(references, &|r| [r.middle(); 2])
-}
-
-/// The box around what is known of each reference. Four grow in turn, for each step of one waits
-/// for that before.
-fn around_all(references: &[Reference], of: &(impl Fn(&Reference) -> [Vec4; 2] + Sync)) -> [Vec4; 2] {
-    if references.len() > MIN_PARALLEL {
-        let (a, b) = references.split_at(references.len() / 2);
-        let (a, b) = parallel::join(|| around_all(a, of), || around_all(b, of));
-        return [a[0].min(b[0]), a[1].max(b[1])];
-    }
-    let mut boxes = [[Vec4::INFINITY, Vec4::NEG_INFINITY]; 4];
-    let grow = |[min, max]: &mut [Vec4; 2], r: &Reference| {
-        let [low, high] = of(r);
-        (*min, *max) = (min.min(low), max.max(high));
-    };
-    let (fours, rest) = references.as_chunks::<4>();
-    for four in fours {
-        boxes.iter_mut().zip(four).for_each(|(all, r)| grow(all, r));
-    }
-    boxes.iter_mut().zip(rest).for_each(|(all, r)| grow(all, r));
-    let [a, b, c, d] = boxes;
-    [a[0].min(b[0]).min(c[0].min(d[0])), a[1].max(b[1]).max(c[1].max(d[1]))]
 }
 
 /// For each axis a box, and how many references are in it.

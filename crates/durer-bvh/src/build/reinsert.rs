@@ -3,10 +3,11 @@
 //! Source: Meister, Bittner, *Parallel Reinsertion for Bounding Volume Hierarchy Optimization*,
 //! Eurographics 2018.
 
-use super::MIN_GAIN;
-use super::binary::{BinaryNode, Tree, half_area};
-use crate::MAX_DEPTH;
+use super::binary::{BinaryNode, Tree};
+use super::builder::half_area;
+use super::settings::MIN_GAIN;
 use crate::lanes::room;
+use crate::node::MAX_DEPTH;
 use crate::parallel;
 
 /// In each pass this share of nodes are looked at. Where much can be spared, most of that is in few

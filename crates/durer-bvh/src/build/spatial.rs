@@ -5,9 +5,10 @@
 //! whole on one side.
 //! Source: Stich, Friedrich, Dietrich, *Spatial Splits in Bounding Volume Hierarchies*, HPG 2009.
 
-use super::Reference;
-use super::binary::{Builder, half_area};
-use super::cut::{BINS, Bin, Cut};
+use super::builder::{Bin, Builder, half_area};
+use super::cut::Cut;
+use super::reference::Reference;
+use super::settings::BINS;
 use crate::math::Vec3;
 use glam::{BVec4A, Vec4};
 

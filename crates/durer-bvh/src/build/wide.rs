@@ -8,8 +8,9 @@
 //! Source: Ylitie, Karras, Laine, *Efficient Incoherent Ray Traversal on GPUs Through Compressed
 //! Wide BVHs*, HPG 2017.
 
-use super::BuildSettings;
-use super::binary::{self, half_area};
+use super::binary;
+use super::builder::half_area;
+use super::settings::BuildSettings;
 use crate::lanes::{WIDTH, listed, room};
 use crate::math::Aabb;
 use crate::node::{self, LEAF, LEAF_SIZE, WideNode};

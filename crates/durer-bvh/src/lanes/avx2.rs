@@ -1,8 +1,10 @@
 //! AVX2 with FMA.
 
+use super::operations::{Kernel, Lanes, Numbers};
+use super::stack::Stack;
 use super::wide::Two;
-use super::{Kernel, Lanes, Numbers, Stack, WIDTH};
 use crate::math::Triple;
+use crate::node::WIDTH;
 use std::arch::asm;
 use std::arch::x86_64::*;
 
@@ -155,7 +157,10 @@ pub(super) use order_of_eight;
 
 /// Nine rows.
 #[inline(always)]
-pub(super) fn corners(from: &super::Rows, super::Columns { starts, corner }: super::Columns) -> [[__m256; 3]; 3] {
+pub(super) fn corners(
+    from: &super::operations::Rows,
+    super::operations::Columns { starts, corner }: super::operations::Columns,
+) -> [[__m256; 3]; 3] {
     macro_rules! row {
         ($corner:literal, $k:literal) => {
             // SAFETY: by `Columns::new` it begins in one of the first nine rows; the features are

@@ -1,6 +1,7 @@
 //! Which instructions are used: chosen once, by what the processor has and `DURER_SIMD`.
 
-use super::{Kernel, scalar};
+use super::operations::Kernel;
+use super::scalar;
 use std::fmt;
 use std::sync::OnceLock;
 

@@ -1,8 +1,10 @@
 //! NEON: eight lanes as two vectors of four.
 
+use super::operations::{Lanes, Numbers};
+use super::stack::Stack;
 use super::wide::Two;
-use super::{Lanes, Numbers, Stack, WIDTH};
 use crate::math::Doubles;
+use crate::node::WIDTH;
 use std::arch::aarch64::*;
 
 /// Every 64-bit ARM has NEON.
@@ -171,7 +173,11 @@ impl Lanes for Neon {
         proven!(Pair(vld1q_f32(from.as_ptr()), vld1q_f32(from.as_ptr().add(4))))
     }
     #[inline(always)]
-    fn corners(self, from: &super::Rows, super::Columns { starts, corner }: super::Columns) -> [[Pair; 3]; 3] {
+    fn corners(
+        self,
+        from: &super::operations::Rows,
+        super::operations::Columns { starts, corner }: super::operations::Columns,
+    ) -> [[Pair; 3]; 3] {
         std::array::from_fn(|k| {
             starts.map(|start| match from[k * corner + start..].first_chunk() {
                 Some(row) => self.load(row),

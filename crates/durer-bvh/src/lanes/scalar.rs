@@ -1,8 +1,10 @@
 //! Plain code.
 
+use super::operations::{Lanes, Numbers};
+use super::stack::Stack;
 use super::wide::Two;
-use super::{Lanes, Numbers, Stack, WIDTH};
 use crate::math::Doubles;
+use crate::node::WIDTH;
 use std::array::from_fn;
 
 #[derive(Clone, Copy)]
@@ -128,7 +130,11 @@ impl Lanes for Scalar {
         *from
     }
     #[inline(always)]
-    fn corners(self, from: &super::Rows, super::Columns { starts, corner }: super::Columns) -> [[F; 3]; 3] {
+    fn corners(
+        self,
+        from: &super::operations::Rows,
+        super::operations::Columns { starts, corner }: super::operations::Columns,
+    ) -> [[F; 3]; 3] {
         from_fn(|k| starts.map(|start| from_fn(|lane| from[k * corner + start + lane])))
     }
     #[inline(always)]

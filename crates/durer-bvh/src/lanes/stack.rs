@@ -1,11 +1,11 @@
 //! Nodes that are still to be visited, each with the distance at which the ray enters it.
 
-use super::WIDTH;
+use crate::node::{MAX_DEPTH, WIDTH};
 use std::mem::MaybeUninit;
 
-/// As high as the stack of a tree of [`MAX_DEPTH`](crate::MAX_DEPTH) levels can get, and a vector's
-/// width more.
-const ROOM: usize = (WIDTH - 1) * crate::MAX_DEPTH + 2 * WIDTH;
+/// As high as the stack of a tree of [`MAX_DEPTH`](crate::node::MAX_DEPTH) levels can get, and a
+/// vector's width more.
+const ROOM: usize = (WIDTH - 1) * MAX_DEPTH + 2 * WIDTH;
 
 /// Where a stack lies. It costs nothing to make: what lies above the stack's height is never
 /// initialised.

@@ -2,7 +2,10 @@
 
 use super::*;
 use crate::math::random::{Random, rounds};
+use crate::math::{Doubles, Triple};
+use crate::watertight::AxisOrder;
 use crate::watertight::turned_axes;
+use glam::Vec3A;
 
 /// Numbers on which arithmetic may stumble.
 const SPECIAL: [f32; 14] = [

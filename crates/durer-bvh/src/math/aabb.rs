@@ -1,4 +1,4 @@
-use super::Vec3;
+use glam::Vec3;
 
 /// An axis-aligned box. Empty when `min` exceeds `max` in any axis.
 #[derive(Clone, Copy, Debug, PartialEq)]

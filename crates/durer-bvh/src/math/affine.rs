@@ -1,5 +1,7 @@
-use super::{Aabb, Line, Ray, Ray64, Vec3, gamma};
-use glam::{DAffine3, DVec3};
+use super::aabb::Aabb;
+use super::ray::{Line, Ray, Ray64};
+use super::rounding::gamma;
+use glam::{DAffine3, DVec3, Vec3};
 
 /// An invertible affine map between two spaces, with its inverse.
 ///

@@ -1,7 +1,6 @@
 //! Random numbers for tests: the same in every run.
 
-use super::Vec3;
-use glam::{DAffine3, DMat3, DQuat};
+use glam::{DAffine3, DMat3, DQuat, Vec3};
 
 /// How often a test does something: as often as usual, times `DURER_ROUNDS` in the long runs of
 /// `cargo xtask long`.

@@ -1,5 +1,4 @@
-use super::Vec3;
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 
 /// A ray: the points `origin + t * dir` for `t` in the open interval (`t_min`, `t_max`).
 ///

@@ -1,6 +1,6 @@
 //! Making a tree of triangles, and making it fit again when vertices have moved.
 
-use super::{TAG, TriangleBvh, number};
+use super::tree::{TAG, TriangleBvh, number};
 use crate::BuildError;
 use crate::build::{self, BuildQuality, BuildSettings, is_finite};
 use crate::lanes::{Available, ROOM_OF_ROWS, ROWS, listed};
@@ -60,8 +60,8 @@ impl TriangleBvh {
     /// let positions = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0];
     /// let bvh = TriangleBvh::from_flat(&positions, &[0, 1, 2], BuildQuality::default()).unwrap();
     /// assert_eq!(bvh.triangle_count(), 1);
-    /// let error = TriangleBvh::from_flat(&positions, &[0, 1, 3], BuildQuality::default());
-    /// assert_eq!(error.unwrap_err(), BuildError::MissingVertex { triangle: 0, index: 3, vertices: 3 });
+    /// let error = TriangleBvh::from_flat(&positions, &[0, 1, 3], BuildQuality::default()).unwrap_err();
+    /// assert_eq!(error, BuildError::MissingVertex { triangle: 0, index: 3, vertices: 3 });
     /// ```
     pub fn from_flat(positions: &[f32], indices: &[u32], quality: BuildQuality) -> Result<Self, BuildError> {
         let (vertices, rest) = positions.as_chunks::<3>();

@@ -1,6 +1,6 @@
 //! Bringing nodes and leaves near before a ray comes to them.
 
-use super::TriangleBvh;
+use super::tree::TriangleBvh;
 use crate::lanes::{Lanes, ROWS};
 use crate::node;
 

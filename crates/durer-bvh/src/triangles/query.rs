@@ -2,7 +2,7 @@
 
 use super::fetch::{AND_SIBLINGS, Places};
 use super::leaf::Flat;
-use super::{Facing, TriangleBvh, TriangleHit, number};
+use super::tree::{Facing, TriangleBvh, TriangleHit, number};
 use crate::TraversalCounter;
 use crate::lanes::{Columns, Kernel, Lanes, WIDTH};
 use crate::math::{Ray, Vec2};

@@ -5,10 +5,10 @@
 //! rows of leaves; and a checksum of all that. Whoever reads trusts nothing: a tree that is
 //! accepted leads no ray out of memory, in no circle, and no deeper than a stack is high.
 
-use super::{TAG, TriangleBvh};
+use super::tree::{TAG, TriangleBvh};
+use crate::LoadError;
 use crate::lanes::{Available, ROOM_OF_ROWS, ROWS, WIDTH};
-use crate::node::{self, IS_LEAF, LEAF, UNITS, WideNode};
-use crate::{LoadError, MAX_DEPTH};
+use crate::node::{self, IS_LEAF, LEAF, MAX_DEPTH, UNITS, WideNode};
 use std::sync::OnceLock;
 
 const NAME: &[u8; 8] = b"durerbvh";
@@ -26,7 +26,8 @@ impl TriangleBvh {
     /// use durer_bvh::math::{Ray, Vec3};
     /// use durer_bvh::{BuildQuality, TriangleBvh};
     ///
-    /// let built = TriangleBvh::build(&[Vec3::ZERO, Vec3::X, Vec3::Y], &[[0, 1, 2]], BuildQuality::Best);
+    /// let corners = [Vec3::ZERO, Vec3::X, Vec3::Y];
+    /// let built = TriangleBvh::build(&corners, &[[0, 1, 2]], BuildQuality::Best);
     /// let loaded = TriangleBvh::from_bytes(&built.to_bytes()).unwrap();
     /// let ray = Ray::new(Vec3::new(0.2, 0.2, 1.0), Vec3::NEG_Z);
     /// assert_eq!(loaded.closest(&ray), built.closest(&ray));

@@ -5,9 +5,9 @@
 //! Rays at inner nodes and rays at leaves are on two lists, so what comes next is no branch: a step
 //! writes its ray to both lists, and one of the two gets longer.
 
-use super::TriangleBvh;
 use super::fetch::{ITSELF, Places};
 use super::query::{HitCollector, Leaves};
+use super::tree::TriangleBvh;
 use crate::lanes::{Kernel, Lanes, Stack, StackStorage};
 use crate::math::{Ray, Vec3};
 use crate::node::{LEAF, PLACE, WideNode};

@@ -2,8 +2,8 @@
 
 use super::*;
 use crate::BuildQuality;
-use crate::math::Vec3;
 use crate::math::random::{Random, rounds};
+use crate::math::{Vec2, Vec3};
 use crate::tests::codes_are_right;
 use crate::traverse::is_sound;
 

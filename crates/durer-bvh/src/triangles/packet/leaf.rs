@@ -1,6 +1,7 @@
 //! A packet among the triangles of a leaf.
 
-use super::{Meeting, Packet, RAYS};
+use super::bundle::{Packet, RAYS};
+use super::shared::Meeting;
 use crate::lanes::{Columns, Lanes, Numbers, WIDE, WIDTH, Wide};
 use crate::node;
 use crate::triangles::leaf::{Flat, by_corner, ends, from_origin};

@@ -21,20 +21,21 @@ macro_rules! end {
     }};
 }
 
+mod bundle;
 mod leaf;
 mod rays;
+mod shared;
 mod walk;
 
-use super::{TriangleBvh, TriangleHit};
+use super::tree::{TriangleBvh, TriangleHit};
 use crate::lanes::{Kernel, Lanes, Numbers, WIDE, WIDTH, Wide, numbers_of};
 use crate::math::{Ray, Vec2};
-use crate::watertight::{AxisOrder, Plane, turned_axes};
+use bundle::{Packet, RAYS};
 use glam::Vec3A;
 use rays::PacketRays;
+use shared::{Axes, Meeting};
 use walk::Entry;
 
-/// How many rays may be in a packet.
-const RAYS: usize = 64;
 /// So few are better off alone.
 const MIN_SIZE: usize = 16;
 /// After rays that do not go together so many windows of rays are left out at most, before it is
@@ -57,37 +58,6 @@ impl TriangleBvh {
             return (0..rays.len() as u32).collect();
         }
         self.level.run(Packets::<_, ANY> { bvh: self, rays, answer })
-    }
-}
-
-/// What the rays of a packet have in common.
-#[derive(Clone, Copy)]
-struct Axes {
-    /// As those of [`WatertightRay`](crate::watertight::WatertightRay).
-    turn: AxisOrder,
-    /// By axis: 1 where directions are negative, else 0.
-    negative: [usize; 3],
-}
-
-impl Axes {
-    /// A key is a longest axis and signs.
-    fn of_key(key: usize) -> Self {
-        let negative = [key & 1, key >> 1 & 1, key >> 2 & 1];
-        let longest = key >> 3;
-        Axes { turn: turned_axes(longest, negative[longest]), negative }
-    }
-
-    /// Which axes are the first, second, and third of turned vectors.
-    #[inline(always)]
-    fn turned(&self) -> [usize; 3] {
-        let [x, y, z, _] = self.turn;
-        [x as usize, y as usize, z as usize]
-    }
-
-    /// Whether directions are negative along their longest axis.
-    #[inline(always)]
-    fn is_down(&self) -> bool {
-        self.negative[self.turned()[2]] == 1
     }
 }
 
@@ -184,40 +154,6 @@ fn with_key([x, y, z, first, second]: [u64; 5], key: usize) -> u64 {
     let of = |set: u64, bit: usize| if key >> bit & 1 == 1 { set } else { !set };
     let longest = [first, second, !(first | second)][key >> 3];
     of(x, 0) & of(y, 1) & of(z, 2) & longest
-}
-
-/// A triangle that some ray met.
-struct Meeting {
-    /// Turned, as the rays are.
-    corners: [[f32; 3]; 3],
-    triangle: u32,
-    plane: Plane<[f64; 3]>,
-}
-
-impl Meeting {
-    #[inline(always)]
-    fn new(corners: [Vec3A; 3], triangle: u32) -> Self {
-        Meeting { corners: corners.map(|corner| corner.to_array()), triangle, plane: Plane::single(corners) }
-    }
-}
-
-struct Packet<'a> {
-    bvh: &'a TriangleBvh,
-    axes: Axes,
-    numbers: [u32; RAYS],
-    sixteens: [PacketRays; RAYS / WIDE],
-    /// How many of the sixteens hold rays.
-    groups: usize,
-    /// Whether all begin at the same point.
-    is_point: bool,
-    /// The rays that still search.
-    alive: u64,
-    /// Those that met anything.
-    met: u64,
-    /// None of them goes on beyond.
-    limit: f32,
-    /// The first stands for none.
-    meetings: Vec<Meeting>,
 }
 
 impl Packet<'_> {

@@ -1,6 +1,6 @@
 //! PacketRays side by side.
 
-use super::{Axes, Meeting};
+use super::shared::{Axes, Meeting};
 use crate::lanes::{Lanes, Numbers, WIDE, WIDTH, Wide};
 use crate::math::{Doubles, Ray, Vec3};
 use crate::traverse::{FAST_RANGE, MIN_MAIN_COMPONENT, PADDING};

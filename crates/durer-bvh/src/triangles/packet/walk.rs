@@ -1,6 +1,7 @@
 //! The way of a packet through the tree.
 
-use super::{Packet, PacketRays};
+use super::bundle::Packet;
+use super::rays::PacketRays;
 use crate::lanes::{Lanes, Numbers, WIDE, Wide};
 use crate::node::{self, LEAF, PLACE, WideNode};
 use crate::traverse::end_of;
