@@ -3,7 +3,7 @@
 use durer_bvh::math::{Ray, Vec3};
 use durer_bvh::{BuildQuality, TriangleBvh};
 
-pub fn main() {
+pub(crate) fn main() {
     // A cube from -1 to 1, each side as two triangles that look outwards.
     let corner = |i: u32| Vec3::from_array([0, 1, 2].map(|axis| if i >> axis & 1 == 1 { 1.0 } else { -1.0 }));
     let corners: Vec<Vec3> = (0..8).map(corner).collect();

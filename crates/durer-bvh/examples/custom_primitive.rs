@@ -41,7 +41,7 @@ fn closest(bvh: &Bvh, balls: &[Ball], ray: &Ray, stats: &mut TraversalStats) -> 
     best
 }
 
-pub fn main() {
+pub(crate) fn main() {
     let mut balls: Vec<Ball> = (0..1000)
         .map(|i| Ball { center: Vec3::new((i % 10) as f32, (i / 10 % 10) as f32, (i / 100) as f32), radius: 0.2 })
         .collect();

@@ -16,7 +16,7 @@ fn place(angle: f64) -> Affine {
         .expect("a rotation can be inverted")
 }
 
-pub fn main() {
+pub(crate) fn main() {
     let corners = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
     let faces = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
     let tetrahedron = Arc::new(TriangleBvh::build(&corners, &faces, BuildQuality::default()));

@@ -22,7 +22,7 @@ fn hills(cells: u32) -> (Vec<f32>, Vec<u32>) {
     (positions, indices)
 }
 
-pub fn main() -> Result<(), BuildError> {
+pub(crate) fn main() -> Result<(), BuildError> {
     let (positions, indices) = hills(100);
     let bvh = TriangleBvh::from_flat(&positions, &indices, BuildQuality::Best)?;
     println!("{} triangles in {} bytes", bvh.triangle_count(), bvh.memory_usage());

@@ -50,6 +50,7 @@ impl Bvh {
     }
 
     /// Numbers of the things in the order in which [`Bvh::traverse`] knows them.
+    #[inline]
     pub fn primitive_indices(&self) -> &[u32] {
         &self.order
     }

@@ -70,7 +70,7 @@ impl TraversalCounter for RayCount {
 /// Numbers of rays traced, nodes visited and things tested.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct TraversalStats {
-    /// RayCount traced.
+    /// Rays traced.
     pub rays: u64,
     /// Nodes or cells looked into.
     pub nodes: u64,

@@ -39,7 +39,7 @@ pub(super) struct WideNode {
 /// without arithmetic.
 pub(super) const FROM_LAST: u32 = size_of::<[[u8; WIDTH]; 1 << WIDTH]>() as u32;
 
-/// Of a [code](WideNode::child_tags) the child's place.
+/// Of a [tag](WideNode::child_tags) the child's place.
 pub(super) const PLACE: u32 = WIDTH as u32 - 1;
 /// Of a code whether the child is a leaf.
 pub(super) const IS_LEAF: u32 = 8;

@@ -227,7 +227,7 @@ enum Target {
 }
 
 impl<L: Lanes> NodeHits<'_, L> {
-    /// The [place](PLACE) of the child that is next, with more of its [code](WideNode::child_tags)
+    /// The [place](PLACE) of the child that is next, with more of its [tag](WideNode::child_tags)
     /// if it was found by that.
     ///
     /// It is the one that is entered first; but the `likely` one if `any` hit will do, which is

@@ -185,7 +185,7 @@ impl<'a> At<'a, '_> {
         unsafe { &*self.sides.far[axis].wrapping_add(self.offset).cast() }
     }
 
-    /// The node's [child_tags](WideNode::child_tags), found as soon as its sides, for they are
+    /// The node's [tags](WideNode::child_tags), found as soon as its sides, for they are
     /// waited for.
     #[inline(always)]
     pub fn child_tags(&self) -> &'a [u8; WIDTH] {

@@ -80,7 +80,7 @@ impl<'a> Stack<'a> {
         unsafe { *self.room.children.as_ptr().cast::<u32>().add(self.height - usize::from(!wanted)) }
     }
 
-    /// StackStorage for a whole vector on top, to be followed by [`Stack::grow`].
+    /// Room for a whole vector on top, to be followed by [`Stack::grow`].
     #[inline(always)]
     pub(super) fn top(&mut self) -> (*mut u32, *mut f32) {
         assert!(self.height <= ROOM - WIDTH);

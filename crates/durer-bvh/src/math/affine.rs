@@ -32,47 +32,56 @@ impl Affine {
     }
 
     /// Whether this map moves nothing.
+    #[inline]
     pub fn is_identity(&self) -> bool {
         *self == Affine::IDENTITY
     }
 
     /// Whether it makes left of right.
+    #[inline]
     pub fn mirrors(&self) -> bool {
         self.forward.matrix3.determinant() < 0.0
     }
 
     /// Maps a point forward.
+    #[inline]
     pub fn point(&self, p: Vec3) -> Vec3 {
         self.point64(p).as_vec3()
     }
 
     /// Maps a point forward, without rounding the image to single precision.
+    #[inline]
     pub fn point64(&self, p: Vec3) -> DVec3 {
         self.forward.transform_point3(p.as_dvec3())
     }
 
     /// Maps a point backward.
+    #[inline]
     pub fn inverse_point(&self, p: Vec3) -> Vec3 {
         self.inverse.transform_point3(p.as_dvec3()).as_vec3()
     }
 
     /// Maps a vector forward: moving changes nothing.
+    #[inline]
     pub fn vector(&self, v: Vec3) -> Vec3 {
         self.forward.transform_vector3(v.as_dvec3()).as_vec3()
     }
 
     /// Maps a unit normal forward, by the inverse transpose; of unit length again.
+    #[inline]
     pub fn normal(&self, n: Vec3) -> Vec3 {
         let image = self.inverse.matrix3.transpose() * n.as_dvec3();
         image.normalize_or(n.as_dvec3()).as_vec3()
     }
 
     /// The unit normal whose image by [`Affine::normal`] is this one.
+    #[inline]
     pub fn local_normal(&self, n: Vec3) -> Vec3 {
         (self.forward.matrix3.transpose() * n.as_dvec3()).normalize_or(n.as_dvec3()).as_vec3()
     }
 
     /// Maps a normal forward as [`Affine::normal`], but leaves it the length that comes of it.
+    #[inline]
     pub fn long_normal(&self, n: Vec3) -> Vec3 {
         (self.inverse.matrix3.transpose() * n.as_dvec3()).as_vec3()
     }
@@ -87,6 +96,7 @@ impl Affine {
     }
 
     /// Maps the line through a ray backward, in double precision. `t` keeps its meaning.
+    #[inline]
     pub fn inverse_line(&self, ray: &Ray64) -> Line {
         let Line { origin, dir } = ray.line();
         Line { origin: self.inverse.transform_point3(origin), dir: self.inverse.transform_vector3(dir) }
@@ -104,11 +114,13 @@ impl Affine {
     }
 
     /// Bounds on the components of the image of a vector that is known by such bounds.
+    #[inline]
     pub fn spread(&self, bound: Vec3) -> Vec3 {
         (self.forward.matrix3.abs() * bound.as_dvec3()).as_vec3()
     }
 
     /// As [`Affine::spread`], the other way.
+    #[inline]
     pub fn inverse_spread(&self, bound: Vec3) -> Vec3 {
         (self.inverse.matrix3.abs() * bound.as_dvec3()).as_vec3()
     }

@@ -17,6 +17,7 @@ pub use ray::{Line, Ray, Ray64};
 pub use rounding::{UNIT_ROUNDOFF, gamma};
 
 /// The unit normal (b - a) x (c - a) of a triangle; zero if it has no area.
+#[inline]
 pub fn triangle_normal([a, b, c]: [Vec3; 3]) -> Vec3 {
     // In double precision, where differences and products of single ones do not vanish.
     let [a, b, c] = [a, b, c].map(Vec3::as_dvec3);

@@ -21,7 +21,7 @@ use query::{All, Any, Filter, Filtered, HitCollector, Nearest, Query};
 use tree::number;
 pub use tree::{Facing, TriangleBvh, TriangleHit};
 
-/// Asks without or with counting, as the counter wants it.
+/// Asks with or without counting nodes and tests, as the counter wants it.
 #[inline(always)]
 fn counting<T: TraversalCounter, A>(
     counter: &mut T,
@@ -52,8 +52,8 @@ impl TriangleBvh {
         TriangleBvh { level: Available::or_scalar(level), ..self }
     }
 
-    /// The same, blind to slivers to triangles for which |(b - a) x (c - a) · d| is less than this.
-    /// Zero is blind to slivers to none.
+    /// The same, blind to triangles for which |(b - a) x (c - a) · d| is less than this.
+    /// Zero is blind to none.
     pub fn least_volume(self, least_volume: f64) -> Self {
         TriangleBvh { least_volume, culls_slivers: least_volume != 0.0, ..self }
     }

@@ -1,4 +1,4 @@
-//! PacketRays that go nearly the same way, through one tree together.
+//! Rays that go nearly the same way, through one tree together.
 //!
 //! Up to 64 rays whose directions have the same signs and the same longest axis are a packet. A
 //! node is tested once for all of them, by interval arithmetic; what is left of its children is

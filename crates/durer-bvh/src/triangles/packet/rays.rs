@@ -1,4 +1,4 @@
-//! PacketRays side by side.
+//! Rays side by side.
 
 use super::shared::{Axes, Meeting};
 use crate::lanes::{Lanes, Numbers, WIDE, WIDTH, Wide};

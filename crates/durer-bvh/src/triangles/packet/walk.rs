@@ -75,7 +75,7 @@ fn nearest<L: Lanes>(lanes: L, node: &WideNode, met: u32, enter: L::Floats, star
 
 impl Packet<'_> {
     #[inline(always)]
-    fn beam<L: Lanes>(&self, lanes: L) -> IntervalRay<L> {
+    fn interval_ray<L: Lanes>(&self, lanes: L) -> IntervalRay<L> {
         let nowhere = lanes.splat(0.0);
         let wide = lanes.wide();
         macro_rules! least {
@@ -88,7 +88,7 @@ impl Packet<'_> {
                 lanes.splat(end!(self, wide, max, greatest, $($of)*))
             };
         }
-        let mut beam = IntervalRay {
+        let mut intervals = IntervalRay {
             inverse: [[nowhere; 2]; 3],
             near_from: [nowhere; 3],
             far_from: [nowhere; 3],
@@ -96,19 +96,19 @@ impl Packet<'_> {
             negative: self.axes.negative,
         };
         for axis in 0..3 {
-            beam.inverse[axis] = [least!(inverse[axis]), greatest!(inverse[axis])];
+            intervals.inverse[axis] = [least!(inverse[axis]), greatest!(inverse[axis])];
             if self.is_point {
                 let PacketRays { near_from, far_from, .. } = &self.sixteens[0];
-                (beam.near_from[axis], beam.far_from[axis]) =
+                (intervals.near_from[axis], intervals.far_from[axis]) =
                     (lanes.splat(near_from[axis][0]), lanes.splat(far_from[axis][0]));
                 continue;
             }
-            (beam.near_from[axis], beam.far_from[axis]) = match self.axes.negative[axis] {
+            (intervals.near_from[axis], intervals.far_from[axis]) = match self.axes.negative[axis] {
                 0 => (greatest!(near_from[axis]), least!(far_from[axis])),
                 _ => (least!(near_from[axis]), greatest!(far_from[axis])),
             };
         }
-        beam
+        intervals
     }
 
     /// The last t of any ray.
@@ -124,17 +124,17 @@ impl Packet<'_> {
     #[inline(always)]
     pub(super) fn traverse<L: Lanes, const ANY: bool>(&mut self, lanes: L, stack: &mut Vec<Entry>) {
         let bvh = self.bvh;
-        let (beam, places) = (self.beam(lanes), Places::new(bvh));
+        let (intervals, places) = (self.interval_ray(lanes), Places::new(bvh));
         let [x, y, z] = self.axes.negative;
         let octant = (x | y << 1 | z << 2) as u32;
         self.limit = self.last(lanes);
         stack.clear();
-        let start = beam.start(lanes, &bvh.nodes[0], self.limit);
+        let start = intervals.start(lanes, &bvh.nodes[0], self.limit);
         let (mut child, mut rays) = (0, self.alive);
         loop {
             if child & LEAF == 0 {
                 let node = &bvh.nodes[node::number(child)];
-                let (met, enter) = beam.intersect_node(lanes, node, lanes.splat(self.limit));
+                let (met, enter) = intervals.intersect_node(lanes, node, lanes.splat(self.limit));
                 if met != 0 {
                     let box_at = child;
                     let from_last = node.order(ANY, octant) != 0;
@@ -219,9 +219,9 @@ mod tests {
 
     /// Where children of a node are entered, those of them that are met, and before which nothing
     /// is.
-    struct RayInTree<'a>(&'a WideNode, [f32; WIDTH], u32, f32);
+    struct Nearest<'a>(&'a WideNode, [f32; WIDTH], u32, f32);
 
-    impl Kernel for RayInTree<'_> {
+    impl Kernel for Nearest<'_> {
         type Output = u32;
 
         #[inline(always)]
@@ -246,7 +246,7 @@ mod tests {
         ];
         for (level, (met, start, expected)) in SimdLevel::available().flat_map(|level| cases.map(|case| (level, case)))
         {
-            let place = Available::or_scalar(level).run(RayInTree(&node, enter, met, start));
+            let place = Available::or_scalar(level).run(Nearest(&node, enter, met, start));
             assert_eq!(place, expected, "{level:?} {met:b}");
         }
     }
