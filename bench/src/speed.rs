@@ -5,7 +5,7 @@ use crate::embree::{Embree, Quality, Scene};
 use crate::peers::{BvhCrate, Obvhs, Parry};
 use crate::rays::{Case, Found, Mesh, cases};
 use anyhow::Result;
-use durer::bvh::{TraversalStats, Instance, InstanceHit, InstanceBvh, SimdLevel, BuildQuality, TriangleBvh};
+use durer::bvh::{BuildQuality, Instance, InstanceBvh, InstanceHit, SimdLevel, TraversalStats, TriangleBvh};
 use durer::math::{Affine, Ray, Vec3, fp};
 use durer::sampler::random_2d;
 use glam::{DAffine3, DMat3, DVec3};
@@ -184,8 +184,7 @@ fn instances(mesh: &Mesh, count: u32, options: &Options, embree: Option<&Arc<Emb
     println!("{} instances of {}: {} triangles", count, mesh.name, mesh.triangles.len());
     let places = places(mesh, count);
     let tree = Arc::new(TriangleBvh::build(&mesh.vertices, &mesh.triangles, options.preset));
-    let place =
-        |place: &DAffine3| Instance::new(tree.clone(), Affine::new(*place).expect("places can be inverted"));
+    let place = |place: &DAffine3| Instance::new(tree.clone(), Affine::new(*place).expect("places can be inverted"));
     let clock = Instant::now();
     let ours = Placed(InstanceBvh::new(places.iter().map(place).collect()), mesh.triangles.len() as u32);
     let time = clock.elapsed().as_secs_f64();
@@ -323,7 +322,7 @@ fn builds(mesh: &Mesh, embree: &Arc<Embree>, rounds: usize) -> [Scene; 2] {
     print!("  build     Embree medium {:.1} ms, {:.0} B", times[0], of(scenes[0].bytes));
     print!("; high {:.1} ms, {:.0} B", times[1], of(scenes[1].bytes));
     for ((name, _), (tree, time)) in BuildQuality::NAMES.iter().zip(trees.iter().zip(times.drain(2..))) {
-        print!("; ours {name} {time:.1} ms, {:.0} B, cost {:.1}", of(tree.bytes()), tree.cost());
+        print!("; ours {name} {time:.1} ms, {:.0} B, cost {:.1}", of(tree.memory_usage()), tree.sah_cost());
     }
     println!(" (bytes a triangle)");
     scenes

@@ -2,7 +2,7 @@
 
 use crate::rays::{Asked, JOB, Rays, point, points};
 use crate::work::{each, install};
-use durer::bvh::{Instance, InstanceHit, InstanceBvh, BuildQuality, TriangleBvh, TriangleHit};
+use durer::bvh::{BuildQuality, Instance, InstanceBvh, InstanceHit, TriangleBvh, TriangleHit};
 use durer::math::{Affine, Ray, Vec3};
 use glam::{DAffine3, DMat3, DVec3};
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray2};
