@@ -5,7 +5,7 @@ use crate::embree::{Embree, Quality};
 use crate::peers::{BvhCrate, Obvhs, Parry};
 use crate::rays::{Found, Mesh, cosine};
 use anyhow::Result;
-use durer::bvh::{Preset, TriangleBvh};
+use durer::bvh::{BuildQuality, TriangleBvh};
 use durer::math::{Ray, Vec3};
 use durer::sampler::random_2d;
 use rayon::prelude::*;
@@ -96,13 +96,13 @@ pub fn run(options: &Options, count: u32) -> Result<()> {
         let mesh = sphere(center, radius);
         println!("\nsphere of radius {radius} at {center}: {}", AIMS.join(", "));
         let show = |name: &str, lost: [usize; 4]| println!("  {name:<22}{:?}", lost);
-        let tree = TriangleBvh::build(&mesh.vertices, &mesh.triangles, Preset::Best);
+        let tree = TriangleBvh::build(&mesh.vertices, &mesh.triangles, BuildQuality::Best);
         let ours = |ray: &Ray| Found::from(tree.closest(ray));
         show("Dürer", lost(&mesh, (center, radius), count, ours));
         let wrong = [0, 1, 2, 3].map(|aim| {
             let is_wrong = |i: &u32| {
                 let (ray, inside) = ray(&mesh, center, radius, aim, *i);
-                tree.count(&ray) % 2 != usize::from(inside)
+                tree.hit_count(&ray) % 2 != usize::from(inside)
             };
             (0..count).into_par_iter().filter(is_wrong).count()
         });

@@ -38,7 +38,7 @@ Meshes are found in ../shared/meshes, or under DURER_CORPUS; Embree where DURER_
 pub struct Options {
     pub meshes: Vec<PathBuf>,
     pub cases: Vec<String>,
-    pub preset: durer::bvh::Preset,
+    pub preset: durer::bvh::BuildQuality,
     pub threads: usize,
     pub side: u32,
     pub rounds: usize,
@@ -57,7 +57,7 @@ impl Options {
 
 fn options(arguments: &[String]) -> Result<Options> {
     let (mut names, mut cases) = (Vec::new(), Vec::new());
-    let mut preset = durer::bvh::Preset::Best;
+    let mut preset = durer::bvh::BuildQuality::Best;
     let (mut threads, mut side, mut rounds, mut quick) = (1, None, None, false);
     let (mut peers, mut use_embree, mut edges, mut instances) = (true, true, None, None);
     let mut words = arguments.iter();
@@ -69,7 +69,7 @@ fn options(arguments: &[String]) -> Result<Options> {
             "--case" => cases.push(value()?.clone()),
             "--preset" => {
                 let name = value()?;
-                let found = durer::bvh::Preset::NAMES.iter().find(|(n, _)| n == name);
+                let found = durer::bvh::BuildQuality::NAMES.iter().find(|(n, _)| n == name);
                 preset = found.with_context(|| format!("no preset `{name}`"))?.1;
             }
             "--threads" => threads = value()?.parse::<usize>()?.clamp(1, 1024),
@@ -121,7 +121,7 @@ fn run() -> Result<()> {
         println!("{USAGE}");
         return Ok(());
     }
-    durer::bvh::Level::from_environment()?;
+    durer::bvh::SimdLevel::from_environment()?;
     let options = options(&arguments)?;
     rayon::ThreadPoolBuilder::new().num_threads(options.threads).build_global()?;
     match options.edges {

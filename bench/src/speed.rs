@@ -5,7 +5,7 @@ use crate::embree::{Embree, Quality, Scene};
 use crate::peers::{BvhCrate, Obvhs, Parry};
 use crate::rays::{Case, Found, Mesh, cases};
 use anyhow::Result;
-use durer::bvh::{Counts, Instance, InstanceHit, Instances, Level, Preset, TriangleBvh};
+use durer::bvh::{BuildQuality, Instance, InstanceBvh, InstanceHit, SimdLevel, TraversalStats, TriangleBvh};
 use durer::math::{Affine, Ray, Vec3, fp};
 use durer::sampler::random_2d;
 use glam::{DAffine3, DMat3, DVec3};
@@ -123,7 +123,7 @@ pub fn run(options: &Options) -> Result<()> {
         None => None,
     };
     let version = embree.as_ref().map_or("none".into(), |embree| embree.version());
-    println!("Embree {version}; Dürer's SIMD {}; threads {}", Level::chosen().name(), options.threads);
+    println!("Embree {version}; Dürer's SIMD {}; threads {}", SimdLevel::chosen().name(), options.threads);
     println!(
         "Millions of rays a second, medians of {} rounds; a ratio is Dürer's to the better of Embree's.\n",
         options.rounds
@@ -170,7 +170,7 @@ fn one_mesh(mesh: &Mesh, options: &Options, embree: Option<&Arc<Embree>>, ratios
             tracers.push(single!("bvh", bvh, case.any));
             tracers.push(single!("parry3d", parry, case.any));
         }
-        let count = |ray: &Ray, counts: &mut Counts| match case.any {
+        let count = |ray: &Ray, counts: &mut TraversalStats| match case.any {
             false => drop(ours.0.closest_counting(ray, counts)),
             true => drop(ours.0.occluded_counting(ray, counts)),
         };
@@ -184,12 +184,9 @@ fn instances(mesh: &Mesh, count: u32, options: &Options, embree: Option<&Arc<Emb
     println!("{} instances of {}: {} triangles", count, mesh.name, mesh.triangles.len());
     let places = places(mesh, count);
     let tree = Arc::new(TriangleBvh::build(&mesh.vertices, &mesh.triangles, options.preset));
-    let place = |place: &DAffine3| Instance {
-        tree: tree.clone(),
-        to_world: Affine::new(*place).expect("places can be inverted"),
-    };
+    let place = |place: &DAffine3| Instance::new(tree.clone(), Affine::new(*place).expect("places can be inverted"));
     let clock = Instant::now();
-    let ours = Placed(Instances::new(places.iter().map(place).collect()), mesh.triangles.len() as u32);
+    let ours = Placed(InstanceBvh::new(places.iter().map(place).collect()), mesh.triangles.len() as u32);
     let time = clock.elapsed().as_secs_f64();
     let theirs = embree.map(|embree| {
         let object = embree.build(mesh, Quality::High, false).0;
@@ -197,7 +194,7 @@ fn instances(mesh: &Mesh, count: u32, options: &Options, embree: Option<&Arc<Emb
         print!("  build     Embree {:.1} ms; ", 1e3 * seconds);
         (scene, object)
     });
-    println!("ours {:.1} ms, {} bytes with the mesh", 1e3 * time, ours.0.bytes());
+    println!("ours {:.1} ms, {} bytes with the mesh", 1e3 * time, ours.0.memory_usage());
     for case in cases(&flattened(mesh, &places), options.side, |ray| ours.closest(ray)) {
         if case.rays.is_empty() || !options.wants(&case) {
             continue;
@@ -206,7 +203,7 @@ fn instances(mesh: &Mesh, count: u32, options: &Options, embree: Option<&Arc<Emb
         if let Some((scene, _)) = &theirs {
             tracers.push(single!("Embree high", scene, case.any));
         }
-        let count = |ray: &Ray, counts: &mut Counts| match case.any {
+        let count = |ray: &Ray, counts: &mut TraversalStats| match case.any {
             false => drop(ours.0.closest_counting(ray, counts)),
             true => drop(ours.0.occluded_counting(ray, counts)),
         };
@@ -216,7 +213,7 @@ fn instances(mesh: &Mesh, count: u32, options: &Options, embree: Option<&Arc<Emb
 }
 
 /// Our instances, in the form of the others, and how many triangles each has.
-struct Placed(Instances, u32);
+struct Placed(InstanceBvh, u32);
 
 impl Placed {
     #[inline]
@@ -259,7 +256,7 @@ fn flattened(mesh: &Mesh, places: &[DAffine3]) -> Mesh {
 
 fn one_case(
     case: &Case,
-    count: &dyn Fn(&Ray, &mut Counts),
+    count: &dyn Fn(&Ray, &mut TraversalStats),
     tracers: &[Tracer],
     options: &Options,
     ratios: &mut Vec<f64>,
@@ -277,7 +274,7 @@ fn one_case(
     }
     let rates: Vec<f64> = seconds.iter_mut().map(|seconds| case.rays.len() as f64 / median(seconds) / 1e6).collect();
     let rate = |name: &str| tracers.iter().position(|t| t.name == name).map(|i| rates[i]);
-    let mut counts = Counts::default();
+    let mut counts = TraversalStats::default();
     case.rays.iter().for_each(|ray| count(ray, &mut counts));
     let per_ray = |n: u64| n as f64 / case.rays.len() as f64;
     print!("  {:<9}", case.name);
@@ -313,7 +310,7 @@ fn builds(mesh: &Mesh, embree: &Arc<Embree>, rounds: usize) -> [Scene; 2] {
         let (high, time) = embree.build(mesh, Quality::High, false);
         seconds[1].push(time);
         scenes = Some([medium, high]);
-        for (i, (_, preset)) in Preset::NAMES.into_iter().enumerate() {
+        for (i, (_, preset)) in BuildQuality::NAMES.into_iter().enumerate() {
             let clock = Instant::now();
             trees.push(TriangleBvh::build(&mesh.vertices, &mesh.triangles, preset));
             seconds[2 + i].push(clock.elapsed().as_secs_f64());
@@ -324,8 +321,8 @@ fn builds(mesh: &Mesh, embree: &Arc<Embree>, rounds: usize) -> [Scene; 2] {
     let mut times: Vec<f64> = seconds.iter_mut().map(|seconds| 1e3 * median(seconds)).collect();
     print!("  build     Embree medium {:.1} ms, {:.0} B", times[0], of(scenes[0].bytes));
     print!("; high {:.1} ms, {:.0} B", times[1], of(scenes[1].bytes));
-    for ((name, _), (tree, time)) in Preset::NAMES.iter().zip(trees.iter().zip(times.drain(2..))) {
-        print!("; ours {name} {time:.1} ms, {:.0} B, cost {:.1}", of(tree.bytes()), tree.cost());
+    for ((name, _), (tree, time)) in BuildQuality::NAMES.iter().zip(trees.iter().zip(times.drain(2..))) {
+        print!("; ours {name} {time:.1} ms, {:.0} B, cost {:.1}", of(tree.memory_usage()), tree.sah_cost());
     }
     println!(" (bytes a triangle)");
     scenes

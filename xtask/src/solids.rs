@@ -1,7 +1,7 @@
 //! Solids at full length: a million points against the Boolean of the parts, and the cost of rays.
 
 use anyhow::{Context, Result};
-use durer::bvh::{Counts, Tally};
+use durer::bvh::{TraversalCounter, TraversalStats};
 use durer::compile::{AccelKind, Resources, compile};
 use durer::diag::{Diagnostics, Files};
 use durer::dialect::Dialect;
@@ -45,7 +45,7 @@ pub fn run() -> Result<ExitCode> {
         }
         println!("{name}");
         for (time, (kind, world)) in least.iter().zip(&rows) {
-            let mut counts = Counts::default();
+            let mut counts = TraversalStats::default();
             let hits = (0..RAYS).filter(|&i| traced(world, i, &mut counts)).count();
             let ratio = time.as_secs_f64() / least[0].as_secs_f64();
             println!(
@@ -106,6 +106,6 @@ fn timed(world: &World) -> Duration {
     start.elapsed()
 }
 
-fn traced<T: Tally>(world: &World, i: u32, tally: &mut T) -> bool {
-    world.closest(&ray(i), tally).is_some()
+fn traced<T: TraversalCounter>(world: &World, i: u32, counter: &mut T) -> bool {
+    world.closest(&ray(i), counter).is_some()
 }

@@ -1,16 +1,17 @@
 //! A tree over boxes of things that only the caller knows.
 
-use super::Tally;
-use super::build::{self, Settings};
+use super::build::{self, BuildSettings};
 use super::lanes::{Available, Kernel, Lanes};
-use super::node::{self, Node};
-use super::traverse::{RayBox, Visitor, walk};
+use super::node::{self, WideNode};
+use super::traverse::{TraversalRay, Visitor, traverse};
+use super::{TraversalCounter, TraversalStats};
 use crate::math::{Aabb, Ray};
+use std::ops::Range;
 
 /// A bounding volume hierarchy of eight-wide nodes over numbered things.
 #[derive(Clone, Debug)]
 pub struct Bvh {
-    pub(super) nodes: Vec<Node>,
+    pub(super) nodes: Vec<WideNode>,
     /// Numbers of the things, in the order of the leaves.
     order: Vec<u32>,
     bounds: Aabb,
@@ -18,12 +19,29 @@ pub struct Bvh {
 }
 
 impl Bvh {
-    /// Builds over the boxes of things 0, 1, 2, ...; empty boxes are left out. Less than 2^28 things, in at most 2^26 nodes.
+    /// Builds over the boxes of things 0, 1, 2, ...; empty boxes are left out. Less than 2^28
+    /// things, in at most 2^26 nodes.
     ///
     /// The result is a function of the boxes alone: the same for any number of threads.
     pub fn build(boxes: &[Aabb]) -> Self {
-        let tree = build::build(build::references(boxes), &Settings::THINGS);
+        let tree = build::build(build::references(boxes), &BuildSettings::THINGS);
         Bvh { nodes: tree.nodes, order: tree.order, bounds: tree.bounds, level: Available::chosen() }
+    }
+
+    /// Makes the tree fit the same things with boxes that have changed. Much faster than building;
+    /// but the more they change, the slower rays become. A box that is empty keeps its old place
+    /// if nothing else is in its leaf; things whose boxes were empty when it was built stay out.
+    ///
+    /// # Panics
+    ///
+    /// If a thing of the tree has no box here.
+    pub fn refit(&mut self, boxes: &[Aabb]) {
+        node::refit(&mut self.nodes, |leaf| {
+            let (first, count) = node::items(leaf);
+            let things = self.order[first..first + count].iter();
+            things.fold(Aabb::EMPTY, |all, thing| all.union(boxes[*thing as usize]))
+        });
+        self.bounds = node::bounds(&self.nodes);
     }
 
     /// The box around everything.
@@ -31,72 +49,102 @@ impl Bvh {
         self.bounds
     }
 
-    /// Numbers of the things in the order in which [`Bvh::walk`] knows them.
-    pub fn order(&self) -> &[u32] {
+    /// Numbers of the things in the order in which [`Bvh::traverse`] knows them.
+    #[inline]
+    pub fn primitive_indices(&self) -> &[u32] {
         &self.order
     }
 
     /// Bytes in memory.
-    pub fn bytes(&self) -> usize {
+    pub fn memory_usage(&self) -> usize {
         size_of_val(&*self.nodes) + size_of_val(&*self.order)
     }
 
-    /// As [`TriangleBvh::cost`](super::TriangleBvh::cost).
-    pub fn cost(&self) -> f64 {
+    /// As [`TriangleBvh::sah_cost`](super::TriangleBvh::sah_cost).
+    pub fn sah_cost(&self) -> f64 {
         node::cost(&self.nodes, self.bounds)
     }
 
     /// Offers every thing that the ray may meet before `t_max` to `test`, roughly from near to far.
     ///
-    /// `test` gets the place of a thing in [`Bvh::order`] and the present `t_max`, and gives the new one: at
-    /// most the old. Things whose boxes begin exactly at `t_max` are still offered. Minus infinity ends the walk.
+    /// `test` gets the place of a thing in [`Bvh::primitive_indices`] and the present `t_max`, and
+    /// gives the new one: at most the old. Things whose boxes begin exactly at `t_max` are still
+    /// offered. Minus infinity ends the walk.
     #[inline]
-    pub fn walk<T: Tally>(&self, ray: &Ray, tally: &mut T, test: impl FnMut(usize, f32, &mut T) -> f32) {
-        if self.nodes.is_empty() {
-            return;
+    pub fn traverse<T: TraversalCounter>(
+        &self,
+        ray: &Ray,
+        counter: &mut T,
+        mut test: impl FnMut(usize, f32, &mut T) -> f32,
+    ) {
+        let mut leaf = |things: Range<usize>, t_max| things.fold(t_max, |t_max, thing| test(thing, t_max, counter));
+        match T::COUNTS_WORK {
+            true => {
+                let nodes = self.walk_counting(ray, &mut leaf);
+                counter.work(nodes, 0);
+            }
+            false => self.walk_leaves(ray, &mut leaf),
         }
-        self.level.run(Walk { bvh: self, ray, things: Things { tally, test } });
+    }
+
+    /// As [`Bvh::traverse`], leaf by leaf. Behind a pointer, so that it is compiled here, once, and
+    /// not for each caller.
+    fn walk_leaves(&self, ray: &Ray, leaf: Leaf) {
+        self.level.run(Walk { bvh: self, ray, things: Things { counter: (), leaf } });
+    }
+
+    /// As [`Bvh::walk_leaves`]; gives the number of nodes that were visited.
+    fn walk_counting(&self, ray: &Ray, leaf: Leaf) -> u64 {
+        let mut counts = TraversalStats::default();
+        self.level.run(Walk { bvh: self, ray, things: Things { counter: &mut counts, leaf } });
+        counts.nodes
     }
 }
 
-struct Walk<'a, T, F> {
+/// Gets the places of a leaf's things and `t_max`; gives the new one.
+type Leaf<'a> = &'a mut dyn FnMut(Range<usize>, f32) -> f32;
+
+struct Walk<'a, T> {
     bvh: &'a Bvh,
     ray: &'a Ray,
-    things: Things<'a, T, F>,
+    things: Things<'a, T>,
 }
 
-impl<T: Tally, F: FnMut(usize, f32, &mut T) -> f32> Kernel for Walk<'_, T, F> {
+impl<T: TraversalCounter> Kernel for Walk<'_, T> {
     type Output = ();
 
     #[inline(always)]
     fn run<L: Lanes>(mut self, lanes: L) {
+        if self.bvh.nodes.is_empty() {
+            return;
+        }
         let (nodes, reach, t_max) = (&self.bvh.nodes, self.bvh.bounds.reach(), self.ray.t_max);
-        if let Some(boxes) = RayBox::new(self.ray, reach) {
-            walk::<L, _, true>(lanes, nodes, &boxes, t_max, &mut self.things);
-        } else if let Some(boxes) = RayBox::wild(self.ray, reach) {
-            walk::<L, _, false>(lanes, nodes, &boxes, t_max, &mut self.things);
+        if let Some(boxes) = TraversalRay::new(self.ray, reach) {
+            traverse::<L, _, true>(lanes, nodes, &boxes, t_max, &mut self.things);
+        } else if let Some(boxes) = TraversalRay::robust(self.ray, reach) {
+            traverse::<L, _, false>(lanes, nodes, &boxes, t_max, &mut self.things);
         }
     }
 }
 
-struct Things<'a, T, F> {
-    tally: &'a mut T,
-    test: F,
+struct Things<'a, T> {
+    counter: T,
+    leaf: Leaf<'a>,
 }
 
-impl<T: Tally, F: FnMut(usize, f32, &mut T) -> f32> Visitor for Things<'_, T, F> {
-    type Tally = T;
+impl<T: TraversalCounter> Visitor for Things<'_, T> {
+    type TraversalCounter = T;
 
     const ANY: bool = false;
 
     #[inline(always)]
-    fn tally(&mut self) -> &mut T {
-        self.tally
+    fn counter(&mut self) -> &mut T {
+        &mut self.counter
     }
 
     #[inline(always)]
-    fn leaf<L: Lanes, const TAME: bool>(&mut self, _: L, leaf: u32, t_max: f32) -> f32 {
+    fn leaf<L: Lanes, const FAST: bool>(&mut self, _: L, leaf: u32, t_max: f32) -> f32 {
         let (first, count) = node::items(leaf);
-        (first..first + count).fold(t_max, |t_max, item| (self.test)(item, t_max, self.tally))
+        (self.leaf)(first..first + count, t_max)
     }
 }

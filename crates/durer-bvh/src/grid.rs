@@ -1,8 +1,9 @@
 //! A uniform grid: space cut into equal cells, each with a list of what overlaps it.
 //!
-//! Source: Amanatides and Woo, *A Fast Voxel Traversal Algorithm for Ray Tracing*, Eurographics 1987.
+//! Source: Amanatides and Woo, *A Fast Voxel Traversal Algorithm for Ray Tracing*, Eurographics
+//! 1987.
 
-use super::Tally;
+use super::TraversalCounter;
 use super::traverse::is_sound;
 use crate::math::{Aabb, Ray, Vec3};
 
@@ -28,11 +29,12 @@ pub struct Grid {
 
 impl Grid {
     /// At most this many cells.
-    pub const MOST_CELLS: u64 = 1 << 26;
+    pub const MAX_CELLS: u64 = 1 << 26;
     /// At most this many entries in all cells' lists.
-    const MOST_ENTRIES: u64 = 1 << 28;
+    const MAX_ENTRIES: u64 = 1 << 28;
 
-    /// Numbers of cells that suit so many things in such a box: about two cells a thing, nearly cubes.
+    /// Numbers of cells that suit so many things in such a box: about two cells a thing, nearly
+    /// cubes.
     pub fn suitable(bounds: Aabb, things: usize) -> [u32; 3] {
         let size = bounds.size();
         let longest = size.max_element().max(f32::MIN_POSITIVE);
@@ -42,10 +44,11 @@ impl Grid {
         (size * cells_per_length).to_array().map(|n| (n as u32).clamp(1, 256))
     }
 
-    /// Sorts the boxes of things 0, 1, 2, ... into the cells of a box. A thing is in a cell if their boxes overlap,
-    /// and `overlaps` says so of the thing and the (slightly enlarged) cell.
+    /// Sorts the boxes of things 0, 1, 2, ... into the cells of a box. A thing is in a cell if
+    /// their boxes overlap, and `overlaps` says so of the thing and the (slightly enlarged) cell.
     ///
-    /// `None` if there are no cells, or more than [`Grid::MOST_CELLS`], or too many things in too many of them.
+    /// `None` if there are no cells, or more than [`Grid::MAX_CELLS`], or too many things in too
+    /// many of them.
     pub fn build(
         bounds: Aabb,
         counts: [u32; 3],
@@ -55,7 +58,8 @@ impl Grid {
         Self::build_padded(bounds, counts, PAD, boxes, overlaps)
     }
 
-    /// The same cells for a picture of them, with things only where they are or touch: rays may miss things in it.
+    /// The same cells for a picture of them, with things only where they are or touch: rays may
+    /// miss things in it.
     pub fn for_picture(&self, boxes: &[Aabb], overlaps: impl Fn(usize, Aabb) -> bool) -> Option<Self> {
         Self::build_padded(self.bounds, self.counts, PICTURE_PAD, boxes, overlaps)
     }
@@ -68,10 +72,11 @@ impl Grid {
         overlaps: impl Fn(usize, Aabb) -> bool,
     ) -> Option<Self> {
         let cells = counts.iter().try_fold(1u64, |n, &c| n.checked_mul(u64::from(c)))?;
-        if cells == 0 || cells > Grid::MOST_CELLS {
+        if cells == 0 || cells > Grid::MAX_CELLS {
             return None;
         }
-        // A flat box is thickened, so that every cell has a volume; and all are padded against rounding.
+        // A flat box is thickened, so that every cell has a volume; and all are padded against
+        // rounding.
         let pad = (1e-5 * bounds.size().max_element()).max(1e-5 * bounds.center().abs().max_element()).max(1e-30);
         let bounds = Aabb { min: bounds.min - pad, max: bounds.max + pad };
         let mut grid = Grid {
@@ -83,7 +88,7 @@ impl Grid {
             things: boxes.len(),
         };
         let entries = boxes.iter().try_fold(0u64, |sum, b| sum.checked_add(grid.cells_of(b)))?;
-        if entries > Grid::MOST_ENTRIES {
+        if entries > Grid::MAX_ENTRIES {
             return None;
         }
         // First count what falls into each cell, then fill the lists.
@@ -128,7 +133,7 @@ impl Grid {
     }
 
     /// Bytes in memory.
-    pub fn bytes(&self) -> usize {
+    pub fn memory_usage(&self) -> usize {
         size_of_val(&*self.starts) + size_of_val(&*self.items)
     }
 
@@ -174,34 +179,47 @@ impl Grid {
         }
     }
 
-    /// Offers the things of every cell that the ray crosses before `t_max` to `test`, cell by cell; see
-    /// [`super::Bvh::walk`]. A thing in several cells is offered several times.
-    pub fn walk<T: Tally>(&self, ray: &Ray, tally: &mut T, mut test: impl FnMut(usize, f32, &mut T) -> f32) {
-        let mut offer = |items: &[u32], t_max: f32| {
-            tally.node();
-            items.iter().fold(t_max, |t_max, item| test(*item as usize, t_max, tally))
-        };
-        // Where rounding moves rays by more than the padding of cells, as from far away, neighbouring cells are visited too.
+    /// Offers the things of every cell that the ray crosses before `t_max` to `test`, cell by cell;
+    /// see [`super::Bvh::traverse`]. A thing in several cells is offered several times.
+    #[inline]
+    pub fn traverse<T: TraversalCounter>(
+        &self,
+        ray: &Ray,
+        counter: &mut T,
+        mut test: impl FnMut(usize, f32, &mut T) -> f32,
+    ) {
+        let is_done = self.offer_cells(ray, &mut |items, t_max| {
+            counter.work(1, 0);
+            items.iter().fold(t_max, |t_max, item| test(*item as usize, t_max, counter))
+        });
+        if !is_done {
+            counter.work(1, 0);
+            (0..self.things).fold(ray.t_max, |t_max, thing| test(thing, t_max, counter));
+        }
+    }
+
+    /// Offers the things of cells; `false`, and none, where all things should be offered. Behind a
+    /// pointer, so that it is compiled here, once, and not for each caller.
+    fn offer_cells(&self, ray: &Ray, offer: &mut dyn FnMut(&[u32], f32) -> f32) -> bool {
+        // Where rounding moves rays by more than the padding of cells, as from far away,
+        // neighbouring cells are visited too.
         let reach = [self.bounds.min, self.bounds.max].map(|c| (ray.origin - c).abs().max(c.abs()).max_element());
         let cut = |axis: &usize| self.counts[*axis] > 1;
         let finest = (0..3).filter(cut).map(|axis| self.cell_size()[axis]).fold(f32::INFINITY, f32::min);
         let slip = 16.0 * f32::EPSILON * reach[0].max(reach[1]);
         if slip > PAD * finest && is_sound(ray) {
-            if !self.walk_wide(ray, slip.into(), &mut offer) {
-                tally.node();
-                (0..self.things).fold(ray.t_max, |t_max, thing| test(thing, t_max, tally));
-            }
-            return;
+            return self.walk_wide(ray, slip.into(), offer);
         }
         self.walk_cells(ray, |grid, cell, t_max| {
             let i = grid.number(cell);
             offer(&grid.items[grid.starts[i] as usize..grid.starts[i + 1] as usize], t_max)
         });
+        true
     }
 
-    /// Offers the things of all cells that are at most so far from a ray, layer by layer across the ray's main direction; `false`, and
-    /// none, where that is more work than to offer all things.
-    fn walk_wide(&self, ray: &Ray, slip: f64, offer: &mut impl FnMut(&[u32], f32) -> f32) -> bool {
+    /// Offers the things of all cells that are at most so far from a ray, layer by layer across the
+    /// ray's main direction; `false`, and none, where that is more work than to offer all things.
+    fn walk_wide(&self, ray: &Ray, slip: f64, offer: &mut dyn FnMut(&[u32], f32) -> f32) -> bool {
         let (line, size, min) = (ray.line(), self.cell_size().as_dvec3(), self.bounds.min.as_dvec3());
         let main = line.dir.abs().max_position();
         let [a, b] = [(main + 1) % 3, (main + 2) % 3];
@@ -244,7 +262,8 @@ impl Grid {
         true
     }
 
-    /// Visits the cells along a ray in order. `visit` gets a cell and the present `t_max`, and gives the new one.
+    /// Visits the cells along a ray in order. `visit` gets a cell and the present `t_max`, and
+    /// gives the new one.
     pub fn walk_cells(&self, ray: &Ray, mut visit: impl FnMut(&Self, [u32; 3], f32) -> f32) {
         let Some((enter, leave)) = self.bounds.clip(ray.origin, ray.dir).filter(|_| is_sound(ray)) else { return };
         let (enter, leave) = (enter.max(ray.t_min), leave.min(ray.t_max));
@@ -253,7 +272,8 @@ impl Grid {
         }
         let mut cell = self.cell_of(ray.at(enter));
         let size = self.cell_size();
-        // For each axis: t of the next cell wall. Computed anew from the wall's number, so that errors do not add up.
+        // For each axis: t of the next cell wall. Computed anew from the wall's number, so that
+        // errors do not add up.
         let wall_t = |cell: [u32; 3], axis: usize| {
             if ray.dir[axis] == 0.0 {
                 return f32::INFINITY;
@@ -274,7 +294,8 @@ impl Grid {
             } else {
                 2
             };
-            // What lies in the padding of a cell's wall is in both cells: a hit before the wall ends the walk.
+            // What lies in the padding of a cell's wall is in both cells: a hit before the wall
+            // ends the walk.
             if next[axis] > t_max {
                 return;
             }

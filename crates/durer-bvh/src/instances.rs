@@ -1,16 +1,39 @@
 //! Trees of triangles, placed in space as often as wanted.
 
-use super::{Bvh, Tally, TriangleBvh};
-use crate::math::{Aabb, Affine, Ray, Vec2};
+use super::{Bvh, Facing, TraversalCounter, TriangleBvh, TriangleHit};
+use crate::math::{Aabb, Affine, Ray, Vec2, Vec3, triangle_normal};
 use std::sync::Arc;
 
 /// A tree of triangles, and where it is placed.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Instance {
     /// The triangles, in object space.
-    pub tree: Arc<TriangleBvh>,
-    /// The map from object space to world space: any that can be inverted, with shear and reflection too.
+    pub bvh: Arc<TriangleBvh>,
+    /// The map from object space to world space: any that can be inverted, with shear and
+    /// reflection too.
     pub to_world: Affine,
+    /// What it is, a bit for each kind: rays with a mask see instances that share a bit with it.
+    pub mask: u32,
+}
+
+impl Instance {
+    /// An instance that rays of every mask see.
+    pub fn new(bvh: Arc<TriangleBvh>, to_world: Affine) -> Self {
+        Instance { bvh, to_world, mask: u32::MAX }
+    }
+
+    /// The same with another mask.
+    pub fn with_mask(self, mask: u32) -> Self {
+        Instance { mask, ..self }
+    }
+
+    fn bounds(&self) -> Aabb {
+        match self.bvh.bounds() {
+            empty if empty.is_empty() => Aabb::EMPTY,
+            bounds => self.to_world.bounds(bounds),
+        }
+    }
 }
 
 /// Where a ray meets an instance.
@@ -27,6 +50,10 @@ pub struct InstanceHit {
 }
 
 impl InstanceHit {
+    fn new(instance: u32, TriangleHit { t, uv, triangle }: TriangleHit) -> Self {
+        InstanceHit { t, uv, instance, triangle }
+    }
+
     /// Hits are in this order.
     fn key(&self) -> (f32, u32, u32) {
         (self.t, self.instance, self.triangle)
@@ -35,48 +62,64 @@ impl InstanceHit {
 
 /// A tree over instances: each tree of triangles is in memory once, however often it is placed.
 ///
-/// A ray is moved into the space of an instance, in double precision, and rounded once; there it is asked as by
-/// [`TriangleBvh`], and so crosses exactly one of the triangles around an edge. Of hits at the same `t` the one of the least
-/// instance, and then of the least triangle, is the closest.
+/// A ray is moved into the space of an instance, in double precision, and rounded once; there it
+/// is traced as by [`TriangleBvh`], and so crosses exactly one of the triangles around an edge. Of
+/// hits at the same `t` the one of the least instance, and then of the least triangle, is the
+/// closest.
 ///
 /// ```
-/// use durer_bvh::{Instance, Instances, Preset, TriangleBvh};
+/// use durer_bvh::glam::{DAffine3, DVec3};
 /// use durer_bvh::math::{Affine, Ray, Vec3};
-/// use glam::DAffine3;
+/// use durer_bvh::{BuildQuality, Instance, InstanceBvh, TriangleBvh};
 /// use std::sync::Arc;
 ///
 /// let corners = [Vec3::ZERO, Vec3::X, Vec3::Y];
-/// let tree = Arc::new(TriangleBvh::build(&corners, &[[0, 1, 2]], Preset::default()));
-/// let placed = [2.0, 5.0].map(|z| Instance {
-///     tree: tree.clone(),
-///     to_world: Affine::new(DAffine3::from_translation(glam::DVec3::new(0.0, 0.0, z))).unwrap(),
-/// });
-/// let scene = Instances::new(placed.into());
+/// let bvh = Arc::new(TriangleBvh::build(&corners, &[[0, 1, 2]], BuildQuality::default()));
+/// let at = |z| Affine::new(DAffine3::from_translation(DVec3::new(0.0, 0.0, z))).unwrap();
+/// let instances = [2.0, 5.0].map(|z| Instance::new(bvh.clone(), at(z)));
+/// let mut scene = InstanceBvh::new(instances.into());
 /// let ray = Ray::new(Vec3::new(0.2, 0.2, 0.0), Vec3::Z);
 /// let hit = scene.closest(&ray).unwrap();
 /// assert_eq!((hit.t, hit.instance, hit.triangle), (2.0, 0, 0));
-/// assert_eq!(scene.count(&ray), 2);
+/// assert_eq!(scene.hit_count(&ray), 2);
+///
+/// // The first moves behind the second.
+/// scene.update([(0, at(9.0))]);
+/// assert_eq!(scene.closest(&ray).unwrap().t, 5.0);
 /// ```
 #[derive(Clone, Debug)]
-pub struct Instances {
-    placed: Vec<Instance>,
+pub struct InstanceBvh {
+    instances: Vec<Instance>,
     bvh: Bvh,
 }
 
-impl Instances {
+impl InstanceBvh {
     /// Builds over instances 0, 1, 2, ...; less than 2^28.
-    pub fn new(placed: Vec<Instance>) -> Self {
-        let bounds = |instance: &Instance| match instance.tree.bounds() {
-            empty if empty.is_empty() => Aabb::EMPTY,
-            bounds => instance.to_world.bounds(bounds),
-        };
-        let boxes: Vec<Aabb> = placed.iter().map(bounds).collect();
-        Instances { placed, bvh: Bvh::build(&boxes) }
+    pub fn new(instances: Vec<Instance>) -> Self {
+        let bvh = Self::build(&instances);
+        InstanceBvh { instances, bvh }
+    }
+
+    fn build(instances: &[Instance]) -> Bvh {
+        Bvh::build(&instances.iter().map(Instance::bounds).collect::<Vec<_>>())
+    }
+
+    /// Moves some instances, given by number. The tree over instances is built anew, which takes
+    /// much less time than those of triangles, and is as good as if nothing had ever moved.
+    ///
+    /// # Panics
+    ///
+    /// If there is no instance of a number.
+    pub fn update(&mut self, moved: impl IntoIterator<Item = (u32, Affine)>) {
+        for (number, to_world) in moved {
+            self.instances[number as usize].to_world = to_world;
+        }
+        self.bvh = Self::build(&self.instances);
     }
 
     /// The instances, by number.
-    pub fn placed(&self) -> &[Instance] {
-        &self.placed
+    pub fn instances(&self) -> &[Instance] {
+        &self.instances
     }
 
     /// The box around everything.
@@ -89,12 +132,46 @@ impl Instances {
         self.closest_counting(ray, &mut ())
     }
 
-    /// As [`Instances::closest`], counting nodes and tests in both levels.
-    pub fn closest_counting<T: Tally>(&self, ray: &Ray, tally: &mut T) -> Option<InstanceHit> {
+    /// As [`InstanceBvh::closest`], counting nodes and tests in both levels.
+    pub fn closest_counting<T: TraversalCounter>(&self, ray: &Ray, counter: &mut T) -> Option<InstanceHit> {
+        self.nearest(ray, u32::MAX, counter, |bvh, ray, _, counter| bvh.closest_counting(ray, counter))
+    }
+
+    /// As [`InstanceBvh::closest`], of the instances that share a bit with `mask`.
+    pub fn closest_masked(&self, ray: &Ray, mask: u32) -> Option<InstanceHit> {
+        self.nearest(ray, mask, &mut (), |bvh, ray, _, _| bvh.closest(ray))
+    }
+
+    /// As [`InstanceBvh::closest_masked`], of the hits that a filter lets pass: see
+    /// [`TriangleBvh::closest_where`]. Which side of a triangle is its front is decided in world
+    /// space, where a reflection has turned it.
+    pub fn closest_where(
+        &self,
+        ray: &Ray,
+        mask: u32,
+        mut filter: impl FnMut(&InstanceHit, Facing) -> bool,
+    ) -> Option<InstanceHit> {
+        self.nearest(ray, mask, &mut (), |bvh, local, number, _| {
+            let mirrors = self.instances[number as usize].to_world.mirrors();
+            bvh.closest_filtered(local, &mut |hit, facing| {
+                filter(&InstanceHit::new(number, *hit), facing.turned_if(mirrors))
+            })
+        })
+    }
+
+    /// The first hit of those that are found in each instance.
+    #[inline]
+    fn nearest<T: TraversalCounter>(
+        &self,
+        ray: &Ray,
+        mask: u32,
+        counter: &mut T,
+        mut closest: impl FnMut(&TriangleBvh, &Ray, u32, &mut T) -> Option<TriangleHit>,
+    ) -> Option<InstanceHit> {
         let (mut best, mut t_max): (Option<InstanceHit>, f32) = (None, ray.t_max);
-        self.walk(ray, tally, |instance, tree, local, tally| {
-            if let Some(hit) = tree.closest_counting(&Ray { t_max, ..local }, tally) {
-                let hit = InstanceHit { t: hit.t, uv: hit.uv, instance, triangle: hit.triangle };
+        self.traverse(ray, mask, counter, |number, bvh, local, counter| {
+            if let Some(hit) = closest(bvh, &Ray { t_max, ..local }, number, counter) {
+                let hit = InstanceHit::new(number, hit);
                 if best.is_none_or(|best| hit.key() < best.key()) {
                     best = Some(hit);
                     // One of a lesser number may still be met at the same place.
@@ -111,22 +188,49 @@ impl Instances {
         self.occluded_counting(ray, &mut ())
     }
 
-    /// As [`Instances::occluded`], counting nodes and tests in both levels.
-    pub fn occluded_counting<T: Tally>(&self, ray: &Ray, tally: &mut T) -> bool {
-        let mut occluded = false;
-        self.walk(ray, tally, |_, tree, local, tally| {
-            occluded |= tree.occluded_counting(&local, tally);
-            if occluded { f32::NEG_INFINITY } else { ray.t_max }
-        });
-        occluded
+    /// As [`InstanceBvh::occluded`], counting nodes and tests in both levels.
+    pub fn occluded_counting<T: TraversalCounter>(&self, ray: &Ray, counter: &mut T) -> bool {
+        self.any(ray, u32::MAX, counter, |bvh, ray, _, counter| bvh.occluded_counting(ray, counter))
     }
 
-    /// All hits in the ray's open interval, by `t`, then by number of the instance, then of the triangle.
+    /// As [`InstanceBvh::occluded`], by the instances that share a bit with `mask`.
+    pub fn occluded_masked(&self, ray: &Ray, mask: u32) -> bool {
+        self.any(ray, mask, &mut (), |bvh, ray, _, _| bvh.occluded(ray))
+    }
+
+    /// As [`InstanceBvh::occluded_masked`], by the hits that a filter lets pass: see
+    /// [`InstanceBvh::closest_where`].
+    pub fn occluded_where(&self, ray: &Ray, mask: u32, mut filter: impl FnMut(&InstanceHit, Facing) -> bool) -> bool {
+        self.any(ray, mask, &mut (), |bvh, local, number, _| {
+            let mirrors = self.instances[number as usize].to_world.mirrors();
+            bvh.occluded_filtered(local, &mut |hit, facing| {
+                filter(&InstanceHit::new(number, *hit), facing.turned_if(mirrors))
+            })
+        })
+    }
+
+    #[inline]
+    fn any<T: TraversalCounter>(
+        &self,
+        ray: &Ray,
+        mask: u32,
+        counter: &mut T,
+        mut occluded: impl FnMut(&TriangleBvh, &Ray, u32, &mut T) -> bool,
+    ) -> bool {
+        let mut found = false;
+        self.traverse(ray, mask, counter, |number, bvh, local, counter| {
+            found |= occluded(bvh, &local, number, counter);
+            if found { f32::NEG_INFINITY } else { ray.t_max }
+        });
+        found
+    }
+
+    /// All hits in the ray's open interval, by `t`, then by number of the instance, then of the
+    /// triangle.
     pub fn all_hits(&self, ray: &Ray) -> Vec<InstanceHit> {
         let mut all = Vec::new();
-        self.walk(ray, &mut (), |instance, tree, local, _| {
-            let hits = tree.all_hits(&local).into_iter();
-            all.extend(hits.map(|hit| InstanceHit { t: hit.t, uv: hit.uv, instance, triangle: hit.triangle }));
+        self.traverse(ray, u32::MAX, &mut (), |number, bvh, local, _| {
+            all.extend(bvh.all_hits(&local).into_iter().map(|hit| InstanceHit::new(number, hit)));
             ray.t_max
         });
         all.sort_by(|a, b| a.t.total_cmp(&b.t).then((a.instance, a.triangle).cmp(&(b.instance, b.triangle))));
@@ -134,34 +238,92 @@ impl Instances {
     }
 
     /// How many triangles the ray crosses in its open interval.
-    pub fn count(&self, ray: &Ray) -> usize {
+    pub fn hit_count(&self, ray: &Ray) -> usize {
         self.all_hits(ray).len()
     }
 
-    /// Offers instances with the ray in their space, roughly from near to far; `ask` gives the new `t_max`.
+    /// The first hit of each ray, in order, as [`InstanceBvh::closest`] gives it.
+    ///
+    /// # Panics
+    ///
+    /// If there are not as many places for hits as rays.
+    pub fn closest_batch(&self, rays: &[Ray], hits: &mut [Option<InstanceHit>]) {
+        assert_eq!(rays.len(), hits.len(), "a place for each hit");
+        rays.iter().zip(hits).for_each(|(ray, hit)| *hit = self.closest(ray));
+    }
+
+    /// For each ray, in order, whether anything is hit.
+    ///
+    /// # Panics
+    ///
+    /// If there are not as many places for answers as rays.
+    pub fn occluded_batch(&self, rays: &[Ray], answers: &mut [bool]) {
+        assert_eq!(rays.len(), answers.len(), "a place for each answer");
+        rays.iter().zip(answers).for_each(|(ray, answer)| *answer = self.occluded(ray));
+    }
+
+    /// How many triangles each ray crosses, in order.
+    ///
+    /// # Panics
+    ///
+    /// If there are not as many places for counts as rays.
+    pub fn hit_count_batch(&self, rays: &[Ray], counts: &mut [u32]) {
+        assert_eq!(rays.len(), counts.len(), "a place for each count");
+        rays.iter().zip(counts).for_each(|(ray, count)| *count = self.hit_count(ray) as u32);
+    }
+
+    /// All hits of each ray, in order: `take` gets the ray's place in the batch, and its hits as
+    /// [`InstanceBvh::all_hits`] gives them.
+    pub fn all_hits_batch(&self, rays: &[Ray], mut take: impl FnMut(usize, &[InstanceHit])) {
+        rays.iter().enumerate().for_each(|(i, ray)| take(i, &self.all_hits(ray)));
+    }
+
+    /// The corners in world space of a triangle that was hit; `None` if there is no such one.
+    pub fn corners(&self, hit: &InstanceHit) -> Option<[Vec3; 3]> {
+        let Instance { bvh, to_world, .. } = self.instances.get(hit.instance as usize)?;
+        Some(bvh.corners(hit.triangle)?.map(|corner| to_world.point(corner)))
+    }
+
+    /// The unit normal in world space of a triangle that was hit: (b - a) x (c - a) of its
+    /// corners there. Zero if it has no area.
+    pub fn normal(&self, hit: &InstanceHit) -> Vec3 {
+        self.corners(hit).map_or(Vec3::ZERO, triangle_normal)
+    }
+
+    /// Offers instances with the ray in their space, roughly from near to far; `ask` gives the new
+    /// `t_max`.
     #[inline]
-    fn walk<T: Tally>(&self, ray: &Ray, tally: &mut T, mut ask: impl FnMut(u32, &TriangleBvh, Ray, &mut T) -> f32) {
-        self.bvh.walk(ray, tally, |item, _, tally| {
-            let number = self.bvh.order()[item];
-            let Instance { tree, to_world } = &self.placed[number as usize];
-            ask(number, tree, to_world.inverse_ray(ray), tally)
+    fn traverse<T: TraversalCounter>(
+        &self,
+        ray: &Ray,
+        mask: u32,
+        counter: &mut T,
+        mut ask: impl FnMut(u32, &TriangleBvh, Ray, &mut T) -> f32,
+    ) {
+        self.bvh.traverse(ray, counter, |item, t_max, counter| {
+            let number = self.bvh.primitive_indices()[item];
+            let instance = &self.instances[number as usize];
+            match instance.mask & mask {
+                0 => t_max,
+                _ => ask(number, &instance.bvh, instance.to_world.inverse_ray(ray), counter),
+            }
         });
     }
 
     /// Bytes in memory; trees that are placed several times count once.
-    pub fn bytes(&self) -> usize {
-        let mut trees: Vec<&Arc<TriangleBvh>> = self.placed.iter().map(|instance| &instance.tree).collect();
+    pub fn memory_usage(&self) -> usize {
+        let mut trees: Vec<&Arc<TriangleBvh>> = self.instances.iter().map(|instance| &instance.bvh).collect();
         trees.sort_by_key(|tree| Arc::as_ptr(tree));
         trees.dedup_by_key(|tree| Arc::as_ptr(tree));
-        let shared: usize = trees.iter().map(|tree| tree.bytes()).sum();
-        shared + self.bvh.bytes() + size_of_val(&*self.placed)
+        let shared: usize = trees.iter().map(|tree| tree.memory_usage()).sum();
+        shared + self.bvh.memory_usage() + size_of_val(&*self.instances)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Preset;
+    use crate::BuildQuality;
     use crate::math::Vec3;
     use crate::math::random::Random;
     use crate::triangles::tests::{bits, brute_force, ray, soup, torus};
@@ -184,18 +346,18 @@ mod tests {
     fn instances_are_met_as_their_triangles_are() {
         let mut random = Random(8);
         let meshes = [torus(16, 8), soup(&mut random, 200, 0.3)];
-        let trees = meshes.clone().map(|(v, t)| Arc::new(TriangleBvh::build(&v, &t, Preset::Balanced)));
+        let trees = meshes.clone().map(|(v, t)| Arc::new(TriangleBvh::build(&v, &t, BuildQuality::Balanced)));
         let mut placed: Vec<Instance> =
-            (0..30).map(|i| Instance { tree: trees[i % 2].clone(), to_world: map(&mut random) }).collect();
+            (0..30).map(|i| Instance::new(trees[i % 2].clone(), map(&mut random))).collect();
         // The same thing at the same place: the first is the closest.
         placed.extend_from_within(..4);
-        let scene = Instances::new(placed);
+        let scene = InstanceBvh::new(placed);
         let mut met = 0;
         for _ in 0..2_000 {
             let ray = ray(&meshes[0], &mut random, 1.0, Vec3::ZERO);
-            let mut expected: Vec<(u32, _)> = (0..scene.placed.len())
+            let mut expected: Vec<(u32, _)> = (0..scene.instances.len())
                 .flat_map(|i| {
-                    let local = scene.placed[i].to_world.inverse_ray(&ray);
+                    let local = scene.instances[i].to_world.inverse_ray(&ray);
                     brute_force(&meshes[i % 30 % 2], &local).into_iter().map(move |hit| (i as u32, hit))
                 })
                 .collect();
@@ -206,27 +368,93 @@ mod tests {
             let expected: Vec<_> = expected.iter().map(|(i, hit)| (*i, bits(hit))).collect();
             assert_eq!(scene.all_hits(&ray).iter().map(plain).collect::<Vec<_>>(), expected, "{ray:?}");
             assert_eq!(scene.closest(&ray).as_ref().map(plain), expected.first().copied(), "{ray:?}");
-            assert_eq!((scene.occluded(&ray), scene.count(&ray)), (!expected.is_empty(), expected.len()), "{ray:?}");
+            assert_eq!(
+                (scene.occluded(&ray), scene.hit_count(&ray)),
+                (!expected.is_empty(), expected.len()),
+                "{ray:?}"
+            );
             met += usize::from(!expected.is_empty());
         }
         assert!(met > 500, "{met}");
-        assert!(scene.bytes() < 2 * (trees[0].bytes() + trees[1].bytes()));
+        assert!(scene.memory_usage() < 2 * (trees[0].memory_usage() + trees[1].memory_usage()));
     }
 
     #[test]
     fn nothing_is_met_where_nothing_is() {
-        let empty = Arc::new(TriangleBvh::build(&[], &[], Preset::Fast));
+        let empty = Arc::new(TriangleBvh::build(&[], &[], BuildQuality::Fast));
         let ray = Ray::new(Vec3::ZERO, Vec3::X);
         for count in [0, 3] {
-            let placed = vec![Instance { tree: empty.clone(), to_world: Affine::IDENTITY }; count];
-            let scene = Instances::new(placed);
-            assert_eq!((scene.closest(&ray), scene.occluded(&ray), scene.count(&ray)), (None, false, 0));
+            let placed = vec![Instance::new(empty.clone(), Affine::IDENTITY); count];
+            let scene = InstanceBvh::new(placed);
+            assert_eq!((scene.closest(&ray), scene.occluded(&ray), scene.hit_count(&ray)), (None, false, 0));
             assert!(scene.bounds().is_empty());
         }
-        let triangle = TriangleBvh::build(&[Vec3::NEG_ONE, Vec3::X, Vec3::Y], &[[0, 1, 2]], Preset::Fast);
-        let scene = Instances::new(vec![Instance { tree: Arc::new(triangle), to_world: Affine::IDENTITY }]);
+        let triangle = TriangleBvh::build(&[Vec3::NEG_ONE, Vec3::X, Vec3::Y], &[[0, 1, 2]], BuildQuality::Fast);
+        let scene = InstanceBvh::new(vec![Instance::new(Arc::new(triangle), Affine::IDENTITY)]);
         for dir in [Vec3::NAN, Vec3::ZERO, Vec3::INFINITY] {
             assert_eq!(scene.closest(&Ray::new(Vec3::Z, dir)), None);
         }
+    }
+
+    /// The scene as one mesh, and the numbers of instance and triangle of each of its triangles.
+    fn flattened(scene: &InstanceBvh, meshes: &[crate::triangles::tests::Mesh]) -> Vec<(u32, u32, [Vec3; 3])> {
+        let corners = |(i, instance): (usize, &Instance)| {
+            let (vertices, triangles) = meshes[i % meshes.len()].clone();
+            let to_world = instance.to_world;
+            triangles
+                .into_iter()
+                .enumerate()
+                .map(move |(k, t)| (i as u32, k as u32, t.map(|v| to_world.point(vertices[v as usize]))))
+                .collect::<Vec<_>>()
+        };
+        scene.instances().iter().enumerate().flat_map(corners).collect()
+    }
+
+    #[test]
+    fn masks_filters_sides_and_moves_are_obeyed() {
+        let mut random = Random(9);
+        let meshes = [torus(16, 8), soup(&mut random, 100, 0.3)];
+        let trees = meshes.clone().map(|(v, t)| Arc::new(TriangleBvh::build(&v, &t, BuildQuality::Balanced)));
+        let instances: Vec<Instance> =
+            (0..12).map(|i| Instance::new(trees[i % 2].clone(), map(&mut random)).with_mask(1 << (i % 3))).collect();
+        let mut scene = InstanceBvh::new(instances);
+        let mut met = 0;
+        for round in 0..400 {
+            if round % 50 == 25 {
+                let moved = map(&mut random);
+                scene.update([(round / 50, moved)]);
+                let anew = InstanceBvh::new(scene.instances().to_vec());
+                assert_eq!(format!("{:?}", scene.bvh), format!("{:?}", anew.bvh));
+            }
+            let ray = ray(&meshes[0], &mut random, 1.0, Vec3::ZERO);
+            let all = scene.all_hits(&ray);
+            for mask in [0, 1, 6, u32::MAX] {
+                let is_seen = |hit: &InstanceHit| scene.instances()[hit.instance as usize].mask & mask != 0;
+                let first = all.iter().find(|hit| is_seen(hit)).copied();
+                assert_eq!(scene.closest_masked(&ray, mask), first, "{ray:?}");
+                assert_eq!(scene.occluded_masked(&ray, mask), first.is_some());
+                let keep = |hit: &InstanceHit| !(hit.triangle + hit.instance).is_multiple_of(3);
+                let first = all.iter().find(|hit| is_seen(hit) && keep(hit)).copied();
+                assert_eq!(scene.closest_where(&ray, mask, |hit, _| keep(hit)), first, "{ray:?}");
+                assert_eq!(scene.occluded_where(&ray, mask, |hit, _| keep(hit)), first.is_some());
+                met += usize::from(first.is_some());
+            }
+            let flat = flattened(&scene, &meshes);
+            scene.occluded_where(&ray, u32::MAX, |hit, facing| {
+                let normal = scene.normal(hit);
+                let corners = flat.iter().find(|f| (f.0, f.1) == (hit.instance, hit.triangle)).unwrap().2;
+                assert_eq!(scene.corners(hit), Some(corners));
+                let cosine = normal.dot(ray.dir.normalize());
+                assert!(cosine.abs() < 1e-4 || (cosine < 0.0) == (facing == Facing::Front), "{hit:?} {ray:?}");
+                false
+            });
+            let (mut hits, mut occluded, mut counts) = ([None; 1], [false; 1], [0; 1]);
+            scene.closest_batch(&[ray], &mut hits);
+            scene.occluded_batch(&[ray], &mut occluded);
+            scene.hit_count_batch(&[ray], &mut counts);
+            assert_eq!((hits[0], occluded[0], counts[0] as usize), (scene.closest(&ray), !all.is_empty(), all.len()));
+            scene.all_hits_batch(&[ray], |_, hits| assert_eq!(hits, all));
+        }
+        assert!(met > 100, "{met}");
     }
 }

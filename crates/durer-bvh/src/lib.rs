@@ -1,69 +1,75 @@
-//! Acceleration structures: which things a ray may meet, found without asking them all.
+//! Ray queries on triangles and boxes: bounding volume hierarchies, and a uniform grid.
 //!
-//! They know boxes and numbers of things only; what a thing is, the caller's closure knows. A structure may
-//! offer a thing that the ray misses, never withhold one that it meets; so all of them find the same hit.
+//! [`Bvh`] and [`Grid`] know boxes and numbers of things only; what a thing is, the caller's
+//! closure knows. A structure may offer a thing that the ray misses, never withhold one that it
+//! meets; so all of them find the same hit. [`TriangleBvh`] has the triangles too.
+//!
+#![doc = include_str!("../README.md")]
 
 mod boxes;
 mod build;
+mod error;
 mod grid;
 mod instances;
 mod lanes;
 pub mod math;
 mod node;
+mod parallel;
 mod traverse;
 mod triangles;
 pub mod watertight;
 
 pub use boxes::Bvh;
-pub use build::Preset;
+pub use build::BuildQuality;
+pub use error::{BuildError, LoadError};
+pub use glam;
 pub use grid::Grid;
-pub use instances::{Instance, InstanceHit, Instances};
-pub use lanes::{Level, UnknownLevel};
-pub use triangles::{NearestPoint, TriangleBvh, TriangleHit};
+pub use instances::{Instance, InstanceBvh, InstanceHit};
+pub use lanes::{SimdLevel, UnknownSimdLevel};
+pub use triangles::{Facing, NearestPoint, TriangleBvh, TriangleHit};
 
 /// Counts the work of rays. `()` counts nothing, at no cost.
-pub trait Tally {
+pub trait TraversalCounter {
+    /// Whether nodes and tests are counted. Where not, the trees take the way that counts nothing.
+    const COUNTS_WORK: bool;
+
     /// A ray was traced.
-    fn ray(&mut self);
-    /// A node or cell was looked into.
-    fn node(&mut self);
-    /// A thing was tested against the ray.
-    fn test(&mut self);
-}
-
-impl Tally for () {
     fn ray(&mut self) {}
-    fn node(&mut self) {}
-    fn test(&mut self) {}
+
+    /// So many nodes or cells were visited, and so many things tested against the ray.
+    fn work(&mut self, _nodes: u64, _tests: u64) {}
 }
 
-impl<T: Tally> Tally for &mut T {
+impl TraversalCounter for () {
+    const COUNTS_WORK: bool = false;
+}
+
+impl<T: TraversalCounter> TraversalCounter for &mut T {
+    const COUNTS_WORK: bool = T::COUNTS_WORK;
+
     fn ray(&mut self) {
         (**self).ray();
     }
-    fn node(&mut self) {
-        (**self).node();
-    }
-    fn test(&mut self) {
-        (**self).test();
+    fn work(&mut self, nodes: u64, tests: u64) {
+        (**self).work(nodes, tests);
     }
 }
 
 /// Counts rays alone.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Rays(pub u64);
+pub struct RayCount(pub u64);
 
-impl Tally for Rays {
+impl TraversalCounter for RayCount {
+    const COUNTS_WORK: bool = false;
+
     fn ray(&mut self) {
         self.0 += 1;
     }
-    fn node(&mut self) {}
-    fn test(&mut self) {}
 }
 
 /// Numbers of rays traced, nodes visited and things tested.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Counts {
+pub struct TraversalStats {
     /// Rays traced.
     pub rays: u64,
     /// Nodes or cells looked into.
@@ -72,27 +78,25 @@ pub struct Counts {
     pub tests: u64,
 }
 
-impl Tally for Counts {
+impl TraversalCounter for TraversalStats {
+    const COUNTS_WORK: bool = true;
+
     fn ray(&mut self) {
         self.rays += 1;
     }
-    fn node(&mut self) {
-        self.nodes += 1;
-    }
-    fn test(&mut self) {
-        self.tests += 1;
+    fn work(&mut self, nodes: u64, tests: u64) {
+        self.nodes += nodes;
+        self.tests += tests;
     }
 }
 
-/// What the other crates of the workspace need beside the public items; it may change with any version.
+/// What the other crates of the workspace need beside the public items; it may change with any
+/// version.
 #[doc(hidden)]
 pub mod internal {
     pub use crate::math::random;
     pub use crate::traverse::is_sound;
 }
-
-/// No leaf of a tree lies deeper than this: it bounds the stack of a walk.
-const DEEPEST: usize = 160;
 
 #[cfg(test)]
 mod tests;

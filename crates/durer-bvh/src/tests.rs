@@ -1,9 +1,10 @@
 //! Trees and grids over boxes that are hard on them.
 
-use super::traverse::{RayBox, is_sound};
+use super::traverse::{TraversalRay, is_sound};
 use super::*;
 use crate::math::random::Random;
 use crate::math::{Aabb, Ray, Vec3};
+use crate::node::MAX_DEPTH;
 
 fn cube(center: Vec3, half: f32) -> Aabb {
     Aabb { min: center - half, max: center + half }
@@ -42,15 +43,15 @@ fn collections() -> Vec<(&'static str, Vec<Aabb>)> {
 }
 
 /// The longest way from the root to a leaf, in nodes.
-fn depth(nodes: &[node::Node], number: usize) -> usize {
+fn depth(nodes: &[node::WideNode], number: usize) -> usize {
     let inner = nodes[number].children().filter(|(_, _, child)| child & node::LEAF == 0);
     1 + inner.map(|(_, _, child)| depth(nodes, node::number(child))).max().unwrap_or(0)
 }
 
-/// The codes of a node's children say where they are, as its addresses do.
-pub fn codes_are_right(node: &node::Node) -> bool {
+/// The tags of a node's children say where they are, as its addresses do.
+pub fn codes_are_right(node: &node::WideNode) -> bool {
     node.children().all(|(place, _, child)| {
-        let code = u32::from(node.codes[place]);
+        let code = u32::from(node.child_tags[place]);
         let is_there = match child & node::LEAF {
             0 => code & node::IS_LEAF == 0 && node.first + (code & node::BEHIND) == child,
             _ => code & node::IS_LEAF != 0,
@@ -61,23 +62,24 @@ pub fn codes_are_right(node: &node::Node) -> bool {
 
 #[test]
 fn every_thing_is_offered_to_a_ray_through_its_box_whatever_the_boxes() {
-    let (mut random, mut tame) = (Random(2), 0);
+    let (mut random, mut fast) = (Random(2), 0);
     for (name, boxes) in collections() {
         let bvh = Bvh::build(&boxes);
-        let mut order = bvh.order().to_vec();
+        let mut order = bvh.primitive_indices().to_vec();
         order.sort_unstable();
         let full: Vec<u32> = (0..boxes.len() as u32).filter(|&i| !boxes[i as usize].is_empty()).collect();
         assert_eq!(order, full, "{name}");
         if full.is_empty() {
-            bvh.walk(&Ray::new(Vec3::ZERO, Vec3::X), &mut (), |_, _, _| panic!("nothing is there"));
+            bvh.traverse(&Ray::new(Vec3::ZERO, Vec3::X), &mut (), |_, _, _| panic!("nothing is there"));
             continue;
         }
-        assert!(depth(&bvh.nodes, 0) <= DEEPEST, "{name}: {}", depth(&bvh.nodes, 0));
+        assert!(depth(&bvh.nodes, 0) <= MAX_DEPTH, "{name}: {}", depth(&bvh.nodes, 0));
         assert!(bvh.nodes.iter().all(codes_are_right), "{name}");
         for round in 0..200 {
             let i = full[random.below(full.len())];
             let b = boxes[i as usize];
-            // A point of the box, on its border in two of three rounds; a ray there from somewhere near or far.
+            // A point of the box, on its border in two of three rounds; a ray there from somewhere
+            // near or far.
             let mix = |random: &mut Random| [random.unit(), 0.0, 1.0][random.below(3)];
             let w = Vec3::new(mix(&mut random), mix(&mut random), mix(&mut random));
             let target = b.min * (Vec3::ONE - w) + b.max * w;
@@ -95,16 +97,16 @@ fn every_thing_is_offered_to_a_ray_through_its_box_whatever_the_boxes() {
             if !is_sound(&ray) {
                 continue;
             }
-            tame += u32::from(RayBox::new(&ray, bvh.bounds().reach()).is_some());
+            fast += u32::from(TraversalRay::new(&ray, bvh.bounds().reach()).is_some());
             let mut offered = false;
-            bvh.walk(&ray, &mut (), |item, t_max, _| {
-                offered |= bvh.order()[item] == i;
+            bvh.traverse(&ray, &mut (), |item, t_max, _| {
+                offered |= bvh.primitive_indices()[item] == i;
                 t_max
             });
             assert!(offered, "{name}: {b:?} {ray:?}");
         }
     }
-    assert!(tame > 500, "{tame}");
+    assert!(fast > 500, "{fast}");
 }
 
 #[test]
@@ -124,14 +126,14 @@ fn boxes_that_begin_where_the_ray_ends_are_offered_and_an_ended_walk_stops() {
     let bvh = Bvh::build(&boxes);
     let ray = Ray::new(Vec3::X * -1.5, Vec3::X);
     let mut last = 0;
-    bvh.walk(&ray, &mut (), |item, t_max, _| {
-        last = last.max(bvh.order()[item]);
+    bvh.traverse(&ray, &mut (), |item, t_max, _| {
+        last = last.max(bvh.primitive_indices()[item]);
         t_max.min(11.0)
     });
     // t = 11 is x = 9.5, the last face of box 9 and the first of box 10.
     assert!(last >= 10, "{last}");
     let mut offered = 0;
-    bvh.walk(&ray, &mut (), |_, _, _| {
+    bvh.traverse(&ray, &mut (), |_, _, _| {
         offered += 1;
         f32::NEG_INFINITY
     });
@@ -177,7 +179,7 @@ fn grids_hold_everything_or_are_refused() {
                 continue;
             }
             let mut offered = false;
-            grid.walk(&ray, &mut (), |item, t_max, _| {
+            grid.traverse(&ray, &mut (), |item, t_max, _| {
                 offered |= item == i;
                 t_max
             });
@@ -211,24 +213,24 @@ fn grid_cells_are_visited_in_order_and_only_up_to_the_hit() {
 /// They are many: those of orthographic cameras, of voxels, towards a sun overhead.
 #[test]
 fn rays_with_zero_components_are_tame() {
-    let is_tame = |origin, dir| RayBox::new(&Ray::new(origin, dir), 3.0).is_some();
+    let is_fast = |origin, dir| TraversalRay::new(&Ray::new(origin, dir), 3.0).is_some();
     for (axis, least) in
         [0.0, -0.0, 1e-45, -1e-42, f32::MIN_POSITIVE, 1e-20].into_iter().flat_map(|x| (0..3).map(move |axis| (axis, x)))
     {
         for length in [1e-6, 1.0, -1.0, 1e14] {
             let mut dir = Vec3::splat(least);
             dir[axis] = length;
-            assert!(is_tame(Vec3::ONE, dir), "{dir}");
+            assert!(is_fast(Vec3::ONE, dir), "{dir}");
             dir[(axis + 1) % 3] = length;
-            assert!(is_tame(Vec3::ZERO, dir), "{dir}");
+            assert!(is_fast(Vec3::ZERO, dir), "{dir}");
         }
     }
-    assert!(is_tame(Vec3::ONE, Vec3::splat(1e-9)));
-    assert!(!is_tame(Vec3::ONE, Vec3::new(1e-9, 1e-9, 1e-20)));
+    assert!(is_fast(Vec3::ONE, Vec3::splat(1e-9)));
+    assert!(!is_fast(Vec3::ONE, Vec3::new(1e-9, 1e-9, 1e-20)));
     for extreme in [0.0, 1e-20, 1e20, f32::INFINITY, f32::NAN] {
-        assert!(!is_tame(Vec3::ONE, extreme * Vec3::X), "{extreme}");
-        assert_eq!(is_tame(Vec3::ONE, Vec3::new(0.0, extreme, 1.0)), extreme < 1.0, "{extreme}");
-        assert_eq!(is_tame(extreme * Vec3::ONE, Vec3::X), extreme < 1.0, "{extreme}");
+        assert!(!is_fast(Vec3::ONE, extreme * Vec3::X), "{extreme}");
+        assert_eq!(is_fast(Vec3::ONE, Vec3::new(0.0, extreme, 1.0)), extreme < 1.0, "{extreme}");
+        assert_eq!(is_fast(extreme * Vec3::ONE, Vec3::X), extreme < 1.0, "{extreme}");
     }
 }
 
@@ -246,7 +248,7 @@ fn a_far_ray_is_offered_little_and_all_that_it_may_touch() {
             let ray = Ray::new(target + distance * random.direction(), Vec3::ZERO);
             let ray = Ray { dir: target - ray.origin, ..ray };
             let mut found = vec![false; boxes.len()];
-            grid.walk(&ray, &mut (), |item, t_max, _| {
+            grid.traverse(&ray, &mut (), |item, t_max, _| {
                 offered += 1;
                 found[item] = true;
                 t_max

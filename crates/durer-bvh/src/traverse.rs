@@ -1,31 +1,35 @@
-//! Walking a ray through the tree, nearest boxes first, or, where any hit will do, in the order that is likely to find one soon.
+//! Walking a ray through the tree, nearest boxes first, or, where any hit will do, in the order
+//! that is likely to find one soon.
 //!
-//! Of the children that the ray meets the one that is entered first is next, or, where any hit will do, the first in the order of the node;
-//! the others are pushed in the order of the node, by one store whatever their number, so that no branch depends on how many children are
-//! met. What lies beyond a hit is dropped when it is popped: that is guessed rightly more often than not, and the walk goes on before it
-//! is known where the hit is.
+//! Of the children that the ray meets the one that is entered first is next, or, where any hit will
+//! do, the first in the order of the node; the others are pushed in the order of the node, by one
+//! store whatever their number, so that no branch depends on how many children are met. What lies
+//! beyond a hit is dropped when it is popped: that is guessed rightly more often than not, and the
+//! walk goes on before it is known where the hit is.
 //!
-//! Source: Fuetterer, Lojewski, Pfreundt, Ebert, *Efficient Ray Tracing Kernels for Modern CPU Architectures*, JCGT
-//! 4(4), 2015.
+//! Source: Fuetterer, Lojewski, Pfreundt, Ebert, *Efficient Ray Tracing Kernels for Modern CPU
+//! Architectures*, JCGT 4(4), 2015.
 
-use super::Tally;
-use super::lanes::{Lanes, Room, Sides, Stack, WIDTH};
-use super::node::{BEHIND, FROM_LAST, IS_LEAF, LEAF, Node, PLACE};
+use super::TraversalCounter;
+use super::lanes::{Lanes, Sides, Stack, StackStorage, WIDTH};
+use super::node::{BEHIND, FROM_LAST, IS_LEAF, LEAF, PLACE, WideNode};
 use crate::math::{Ray, Vec3};
 use glam::{Vec3A, Vec3Swizzles, Vec4};
 use std::ops::Range;
 
-/// A ray prepared for boxes: conservative, so that rounding never loses a box that the exact ray meets.
+/// A ray prepared for boxes: conservative, so that rounding never loses a box that the exact ray
+/// meets.
 ///
-/// The near and far side of each slab are chosen by the sign of the direction. Each side is moved outwards by
-/// several roundings of the largest distance that occurs, which also covers the rounding of the triangle test.
+/// The near and far side of each slab are chosen by the sign of the direction. Each side is moved
+/// outwards by several roundings of the largest distance that occurs, which also covers the
+/// rounding of the triangle test.
 #[derive(Clone, Copy)]
-pub(super) struct RayBox {
+pub(super) struct TraversalRay {
     planes: Planes,
     /// A bit for each axis along which the direction is negative.
     pub negative: u32,
     t_min: f32,
-    /// Distances of boxes are in these units; 1 where the ray is tame.
+    /// Distances of boxes are in these units; 1 where the ray is fast.
     scale: f32,
     /// Whether coordinates are so small that no test of a triangle overflows.
     pub moderate: bool,
@@ -41,37 +45,40 @@ struct Planes {
 
 /// How far the sides of boxes are moved outwards, where numbers are no greater than 1.
 ///
-/// Of that, rounding takes less than 2.5 epsilon on either side: half of one each for the padded origin, the inverse, their product, and the
-/// distance, and less for what follows from these. So computed distances of a box that a ray meets lie before and behind the true ones by
-/// more than 5: a box begins before it ends, though it is flat, and before anything in it.
+/// Of that, rounding takes less than 2.5 epsilon on either side: half of one each for the padded
+/// origin, the inverse, their product, and the distance, and less for what follows from these. So
+/// computed distances of a box that a ray meets lie before and behind the true ones by more than 5:
+/// a box begins before it ends, though it is flat, and before anything in it.
 pub(super) const PADDING: f32 = 8.0 * f32::EPSILON;
 
 /// In this range squares neither overflow nor vanish.
-pub(super) const ORDINARY: Range<f32> = 1e-15..1e15;
+pub(super) const FAST_RANGE: Range<f32> = 1e-15..1e15;
 
-/// If a component of a direction is at least so long, others may be as small as they like: boxes see none that is less than what is
-/// [`ORDINARY`], so products of inverses and coordinates do not overflow. Within a tree that moves a ray by at most 10^-9 of its reach, a
-/// thousandth of the padding.
-pub(super) const LONG: f32 = 1e-6;
+/// If a component of a direction is at least so long, others may be as small as they like: boxes
+/// see none that is less than what is [`FAST_RANGE`], so products of inverses and coordinates do
+/// not overflow. Within a tree that moves a ray by at most 10^-9 of its reach, a thousandth of the
+/// padding.
+pub(super) const MIN_MAIN_COMPONENT: f32 = 1e-6;
 
-impl RayBox {
-    /// Prepares a tame ray for a tree with no coordinates greater than `most`: one for which nothing leaves the range of `f32` (zeros beside
-    /// a [`LONG`] component do not), and that begins no earlier than at its origin. So tests of boxes may be in a short form.
+impl TraversalRay {
+    /// Prepares a fast ray for a tree with no coordinates greater than `most`: one for which
+    /// nothing leaves the range of `f32` (zeros beside a [`MIN_MAIN_COMPONENT`] component do not),
+    /// and that begins no earlier than at its origin. So tests of boxes may be in a short form.
     #[inline(always)]
     pub fn new(ray: &Ray, most: f32) -> Option<Self> {
         let (origin, dir) = (Vec3A::from(ray.origin), Vec3A::from(ray.dir));
-        // Coordinates themselves count too: a ray that was moved into object space is off by their rounding.
-        // As a sum, in each lane, it is also no number where any of them is none.
+        // Coordinates themselves count too: a ray that was moved into object space is off by their
+        // rounding. As a sum, in each lane, it is also no number where any of them is none.
         let from = origin.abs();
         let reach = (from + from.yzx()) + (from.zxy() + most);
         let size = dir.abs();
         let sizes = size.extend(reach.x);
-        let (above, below) = (sizes.cmpgt(Vec4::splat(ORDINARY.start)), sizes.cmplt(Vec4::splat(ORDINARY.end)));
-        let is_tame = below.all() && (above.all() || above.test(3) && size.max_element() >= LONG);
-        if !is_tame || !(0.0..ray.t_max).contains(&ray.t_min) {
+        let (above, below) = (sizes.cmpgt(Vec4::splat(FAST_RANGE.start)), sizes.cmplt(Vec4::splat(FAST_RANGE.end)));
+        let is_fast = below.all() && (above.all() || above.test(3) && size.max_element() >= MIN_MAIN_COMPONENT);
+        if !is_fast || !(0.0..ray.t_max).contains(&ray.t_min) {
             return None;
         }
-        let inverse = 1.0 / size.max(Vec3A::splat(ORDINARY.start)).copysign(dir);
+        let inverse = 1.0 / size.max(Vec3A::splat(FAST_RANGE.start)).copysign(dir);
         let outward = (PADDING * reach).copysign(dir);
         let planes = Planes {
             inverse: inverse.to_array(),
@@ -80,18 +87,19 @@ impl RayBox {
         };
         // Not the zero with a sign, for ends of intervals are compared as integers.
         let t_min = ray.t_min + 0.0;
-        Some(RayBox { planes, negative: dir.is_negative_bitmask(), t_min, scale: 1.0, moderate: true })
+        Some(TraversalRay { planes, negative: dir.is_negative_bitmask(), t_min, scale: 1.0, moderate: true })
     }
 
     /// Prepares any ray; `None` where it cannot hit anything.
     #[cold]
-    pub fn wild(ray: &Ray, most: f32) -> Option<Self> {
+    pub fn robust(ray: &Ray, most: f32) -> Option<Self> {
         if !is_sound(ray) {
             return None;
         }
         let reach = (ray.origin.abs().max_element() + most).min(f32::MAX);
         let length = ray.dir.abs();
-        // A direction with a power of two taken out, so that distances within the bounds are no extreme numbers.
+        // A direction with a power of two taken out, so that distances within the bounds are no
+        // extreme numbers.
         let scale = f32::from_bits(length.max_element().to_bits() & 0x7f80_0000).max(f32::MIN_POSITIVE);
         let dir = ray.dir / scale;
         // What moves the ray by much less than the padding counts as zero, and what has no inverse.
@@ -105,48 +113,50 @@ impl RayBox {
         };
         let negative = dir.is_negative_bitmask();
         let t_min = (ray.t_min * scale).next_down();
-        Some(RayBox { planes, negative, t_min, scale, moderate: reach < ORDINARY.end })
+        Some(TraversalRay { planes, negative, t_min, scale, moderate: reach < FAST_RANGE.end })
     }
 
     /// A distance along the ray, not too small, as boxes have it.
     #[inline(always)]
-    fn limit<const TAME: bool>(&self, t: f32) -> f32 {
-        if TAME { t } else { (t * self.scale).next_up() }
+    fn limit<const FAST: bool>(&self, t: f32) -> f32 {
+        if FAST { t } else { (t * self.scale).next_up() }
     }
 }
 
 /// What is done with the items of a tree.
 pub(super) trait Visitor {
-    type Tally: Tally;
+    type TraversalCounter: TraversalCounter;
 
     /// Whether any hit will do, so that children come in the order that is for that.
     const ANY: bool;
 
-    fn tally(&mut self) -> &mut Self::Tally;
+    fn counter(&mut self) -> &mut Self::TraversalCounter;
 
     /// Has a child that is likely to be visited brought near.
     fn fetch<L: Lanes>(&self, _: L, _: u32) {}
 
-    /// Looks into a leaf, with a ray that is `TAME` or not; gives the new `t_max`, at most the old. Minus infinity ends the walk.
-    fn leaf<L: Lanes, const TAME: bool>(&mut self, lanes: L, leaf: u32, t_max: f32) -> f32;
+    /// Looks into a leaf, with a ray that is `FAST` or not; gives the new `t_max`, at most the old.
+    /// Minus infinity ends the walk.
+    fn leaf<L: Lanes, const FAST: bool>(&mut self, lanes: L, leaf: u32, t_max: f32) -> f32;
 }
 
-/// Shows every leaf that the ray may meet before `t_max` to the visitor, roughly from near to far if not [`ANY`](Visitor::ANY) hit will do.
+/// Shows every leaf that the ray may meet before `t_max` to the visitor, roughly from near to far
+/// if not [`ANY`](Visitor::ANY) hit will do.
 ///
-/// Gives `t_max` as it is in the end. Leaves whose boxes begin exactly at `t_max` are still shown. `TAME` says whether `boxes`
-/// are of [`RayBox::new`].
+/// Gives `t_max` as it is in the end. Leaves whose boxes begin exactly at `t_max` are still shown.
+/// `FAST` says whether `boxes` are of [`TraversalRay::new`].
 #[inline(always)]
-pub(super) fn walk<L: Lanes, V: Visitor, const TAME: bool>(
+pub(super) fn traverse<L: Lanes, V: Visitor, const FAST: bool>(
     lanes: L,
-    nodes: &[Node],
-    boxes: &RayBox,
+    nodes: &[WideNode],
+    boxes: &TraversalRay,
     mut t_max: f32,
     visitor: &mut V,
 ) -> f32 {
     let slabs = Slabs::new(lanes, nodes, boxes);
-    let mut far = boxes.limit::<TAME>(t_max);
+    let mut far = boxes.limit::<FAST>(t_max);
     let mut limit = lanes.splat(far);
-    let mut room = Room::new();
+    let mut room = StackStorage::new();
     let mut stack = Stack::new(&mut room);
     let mut child = 0;
     loop {
@@ -154,18 +164,18 @@ pub(super) fn walk<L: Lanes, V: Visitor, const TAME: bool>(
             let leaf = if child & LEAF == 0 {
                 let mut address = child as usize;
                 loop {
-                    visitor.tally().node();
-                    let met = meet::<L, TAME>(lanes, &slabs, address, limit);
+                    visitor.counter().work(1, 0);
+                    let met = intersect_node::<L, FAST>(lanes, &slabs, address, limit);
                     if met.mask == 0 {
                         break 'visit;
                     }
                     // One child is next without a way through the stack.
                     let order = met.node.order(V::ANY, boxes.negative);
                     let likely = end_of(met.mask, order != 0);
-                    let next = met.next::<TAME>(lanes, V::ANY, likely);
+                    let next = met.next::<FAST>(lanes, V::ANY, likely);
                     visitor.fetch(lanes, met.child(likely));
                     met.push(lanes, &mut stack, next, order);
-                    match met.target::<TAME>(V::ANY, next) {
+                    match met.target::<FAST>(V::ANY, next) {
                         Target::Node(next) => address = next,
                         Target::Leaf(leaf) => break leaf,
                     }
@@ -173,13 +183,13 @@ pub(super) fn walk<L: Lanes, V: Visitor, const TAME: bool>(
             } else {
                 child
             };
-            let t = visitor.leaf::<L, TAME>(lanes, leaf, t_max);
+            let t = visitor.leaf::<L, FAST>(lanes, leaf, t_max);
             if t < t_max {
                 t_max = t;
                 if t == f32::NEG_INFINITY {
                     return t_max;
                 }
-                far = boxes.limit::<TAME>(t);
+                far = boxes.limit::<FAST>(t);
                 limit = lanes.splat(far);
             }
         }
@@ -198,12 +208,12 @@ pub(super) fn walk<L: Lanes, V: Visitor, const TAME: bool>(
 }
 
 /// The children of a node that a ray meets.
-pub(super) struct Met<'a, L: Lanes> {
-    pub node: &'a Node,
-    codes: &'a [u8; WIDTH],
+pub(super) struct NodeHits<'a, L: Lanes> {
+    pub node: &'a WideNode,
+    child_tags: &'a [u8; WIDTH],
     /// A bit for each.
     pub mask: u32,
-    /// All bits in the lane of each, if the ray is tame; of no meaning if it is not.
+    /// All bits in the lane of each, if the ray is fast; of no meaning if it is not.
     which: L::Floats,
     /// Where the ray enters them.
     enter: L::Floats,
@@ -216,21 +226,22 @@ enum Target {
     Leaf(u32),
 }
 
-impl<L: Lanes> Met<'_, L> {
-    /// The [place](PLACE) of the child that is next, with more of its [code](Node::codes) if it was found by that.
+impl<L: Lanes> NodeHits<'_, L> {
+    /// The [place](PLACE) of the child that is next, with more of its [tag](WideNode::child_tags)
+    /// if it was found by that.
     ///
-    /// It is the one that is entered first; but the `likely` one if `any` hit will do, which is known sooner, and of rays that are not tame,
-    /// whose distances cannot be compared as integers.
+    /// It is the one that is entered first; but the `likely` one if `any` hit will do, which is
+    /// known sooner, and of rays that are not fast, whose distances cannot be compared as integers.
     #[inline(always)]
-    pub fn next<const TAME: bool>(&self, lanes: L, any: bool, likely: u32) -> u32 {
-        if TAME && !any { lanes.nearest(self.enter, self.which, self.codes) } else { likely }
+    pub fn next<const FAST: bool>(&self, lanes: L, any: bool, likely: u32) -> u32 {
+        if FAST && !any { lanes.nearest(self.enter, self.which, self.child_tags) } else { likely }
     }
 
-    /// Where that child is. A node next to be visited is found by its code, for which a ray waits at every node; leaves, that are as often
-    /// guessed as waited for, by their places.
+    /// Where that child is. A node next to be visited is found by its code, for which a ray waits
+    /// at every node; leaves, that are as often guessed as waited for, by their places.
     #[inline(always)]
-    fn target<const TAME: bool>(&self, any: bool, next: u32) -> Target {
-        if TAME && !any {
+    fn target<const FAST: bool>(&self, any: bool, next: u32) -> Target {
+        if FAST && !any {
             if next & IS_LEAF == 0 {
                 return Target::Node(self.node.first as usize + (next & BEHIND) as usize);
             }
@@ -242,13 +253,13 @@ impl<L: Lanes> Met<'_, L> {
         }
     }
 
-    /// The child in a place, as [`Node::children`] have it.
+    /// The child in a place, as [`WideNode::children`] have it.
     #[inline(always)]
     pub fn child(&self, place: u32) -> u32 {
         self.node.children[place as usize]
     }
 
-    /// Pushes the others in the [order](Node::order) of the node, the first last.
+    /// Pushes the others in the [order](WideNode::order) of the node, the first last.
     #[inline(always)]
     pub fn push(&self, lanes: L, stack: &mut Stack, next: u32, order: u32) {
         let orders = &PUSHED[(order / FROM_LAST) as usize];
@@ -259,13 +270,15 @@ impl<L: Lanes> Met<'_, L> {
     }
 }
 
-/// The first of some lanes, a bit for each, or the `last`; if there are none something beyond all lanes.
+/// The first of some lanes, a bit for each, or the `last`; if there are none something beyond all
+/// lanes.
 #[inline(always)]
 pub(super) fn end_of(lanes: u32, last: bool) -> u32 {
     if last { lanes.leading_zeros() ^ 31 } else { lanes.trailing_zeros() }
 }
 
-/// For each set of lanes the lanes in the order in which they are pushed, where the first are visited first and where the last are.
+/// For each set of lanes the lanes in the order in which they are pushed, where the first are
+/// visited first and where the last are.
 static PUSHED: [[[u8; WIDTH]; 256]; 2] = {
     let mut table = [[[0; WIDTH]; 256]; 2];
     let mut set = 0;
@@ -297,7 +310,7 @@ pub(super) struct Slabs<'a, L: Lanes> {
 
 impl<'a, L: Lanes> Slabs<'a, L> {
     #[inline(always)]
-    pub fn new(lanes: L, nodes: &'a [Node], boxes: &RayBox) -> Self {
+    pub fn new(lanes: L, nodes: &'a [WideNode], boxes: &TraversalRay) -> Self {
         Slabs {
             inverse: lanes.splat3(boxes.planes.inverse),
             near_origin: lanes.splat3(boxes.planes.near_origin),
@@ -310,18 +323,18 @@ impl<'a, L: Lanes> Slabs<'a, L> {
 
 /// The node at an address, and those of its children that a ray meets before `limit`.
 #[inline(always)]
-pub(super) fn meet<'a, L: Lanes, const TAME: bool>(
+pub(super) fn intersect_node<'a, L: Lanes, const FAST: bool>(
     lanes: L,
     slabs: &Slabs<'a, L>,
     address: usize,
     limit: L::Floats,
-) -> Met<'a, L> {
+) -> NodeHits<'a, L> {
     let Slabs { inverse, near_origin, far_origin, t_min, sides } = slabs;
     let at = sides.at(address);
     macro_rules! slab {
         ($axis:literal, $side:ident, $origin:ident) => {{
             let plane = lanes.load(at.$side($axis));
-            match TAME {
+            match FAST {
                 true => lanes.mul_add(plane, inverse[$axis], $origin[$axis]),
                 false => lanes.mul(lanes.sub(plane, $origin[$axis]), inverse[$axis]),
             }
@@ -333,18 +346,20 @@ pub(super) fn meet<'a, L: Lanes, const TAME: bool>(
         };
     }
     let (x, y, z) = (ends!(0), ends!(1), ends!(2));
-    let (node, codes) = (at.node, at.codes());
-    if TAME {
-        // Nothing is NaN, and no start is negative, so of ends as integers the right one is found, or one that is negative where nothing is
-        // met. Boxes that are met end after they begin, for they are padded.
+    let (node, child_tags) = (at.node, at.child_tags());
+    if FAST {
+        // Nothing is NaN, and no start is negative, so of ends as integers the right one is found,
+        // or one that is negative where nothing is met. Boxes that are met end after they begin,
+        // for they are padded.
         let [enter, leave] = lanes.interval([x, y, z], [*t_min, limit]);
         let which = lanes.before(enter, leave);
-        return Met { node, codes, mask: lanes.signs(which), which, enter };
+        return NodeHits { node, child_tags, mask: lanes.signs(which), which, enter };
     }
-    // Zero times infinity is NaN, where a ray runs in a side of a box: such a side is left out, being the first argument.
+    // Zero times infinity is NaN, where a ray runs in a side of a box: such a side is left out,
+    // being the first argument.
     let enter = lanes.max(z[0], lanes.max(y[0], lanes.max(x[0], *t_min)));
     let leave = lanes.min(z[1], lanes.min(y[1], lanes.min(x[1], limit)));
-    Met { node, codes, mask: lanes.le(enter, leave), which: enter, enter }
+    NodeHits { node, child_tags, mask: lanes.le(enter, leave), which: enter, enter }
 }
 
 /// Whether a ray can hit anything: NaN and infinite ones, and those without direction, cannot.

@@ -5,7 +5,7 @@ use crate::args::InfoArgs;
 use crate::guard::Guard;
 use crate::open::{load_options, open};
 use crate::output::say;
-use durer::bvh::Counts;
+use durer::bvh::TraversalStats;
 use durer::camera::{Lens, Raster};
 use durer::describe::DescribedList;
 use durer::render::{center_ray, raster};
@@ -87,9 +87,9 @@ pub fn run(args: &InfoArgs) -> Result<(), Failure> {
 }
 
 /// What it takes to find what the camera sees, by a coarse picture.
-fn rays(world: &World) -> Counts {
+fn rays(world: &World) -> TraversalStats {
     const SIDE: u32 = 64;
-    let (raster, mut counts) = (raster(world, SIDE, SIDE), Counts::default());
+    let (raster, mut counts) = (raster(world, SIDE, SIDE), TraversalStats::default());
     let places = (0..SIDE * SIDE).map(|i| (i % SIDE, i / SIDE));
     for ray in places.filter_map(|place| center_ray(world, &raster, place)) {
         world.closest(&ray, &mut counts);
@@ -135,15 +135,15 @@ struct Counted {
 }
 
 impl Counted {
-    /// Counts a mesh; one that several objects share counts once.
+    /// TraversalStats a mesh; one that several objects share counts once.
     fn mesh(&mut self, tree: &Arc<MeshTree>, seen: &mut Vec<*const MeshTree>) {
         self.triangles += tree.mesh.len();
         if !seen.contains(&Arc::as_ptr(tree)) {
             seen.push(Arc::as_ptr(tree));
             self.distinct_triangles += tree.mesh.len();
             self.bytes += tree.bytes();
-            self.tree_bytes += tree.bvh.bytes();
-            self.costs += tree.bvh.cost() * tree.mesh.len() as f64;
+            self.tree_bytes += tree.bvh.memory_usage();
+            self.costs += tree.bvh.sah_cost() * tree.mesh.len() as f64;
         }
     }
 
@@ -184,10 +184,10 @@ impl Counted {
         count.bytes += count.picture_bytes + size_of_val(&*world.objects);
         count.bytes += match world.accel() {
             Accel::Bvh(bvh) => {
-                count.object_cost = Some(bvh.cost()).filter(|cost| cost.is_finite());
-                bvh.bytes()
+                count.object_cost = Some(bvh.sah_cost()).filter(|cost| cost.is_finite());
+                bvh.memory_usage()
             }
-            Accel::Grid { grid, parts } => grid.bytes() + size_of_val(&**parts),
+            Accel::Grid { grid, parts } => grid.memory_usage() + size_of_val(&**parts),
             Accel::None => 0,
         };
         count

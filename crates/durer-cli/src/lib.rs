@@ -49,7 +49,7 @@ const FOUND: u8 = 1;
 /// the process.
 pub fn run(words: Vec<OsString>) -> u8 {
     progress::hear_interrupts();
-    if let Err(error) = durer::bvh::Level::from_environment() {
+    if let Err(error) = durer::bvh::SimdLevel::from_environment() {
         return bad(error.to_string()).report();
     }
     durer::threads::prepare();

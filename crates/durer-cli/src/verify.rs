@@ -5,7 +5,7 @@ use crate::guard::Guard;
 use crate::open::{load_options, open};
 use crate::output::say;
 use crate::{Failure, bad, job, progress};
-use durer::bvh::Level;
+use durer::bvh::SimdLevel;
 use durer::compile::AccelKind;
 use durer::render::verify::{Way, WayError, compare};
 use durer::render::{Control, Part, RenderError};
@@ -23,8 +23,8 @@ const STRUCTURES: [(&str, AccelKind); 3] =
 /// where that variable is set, as it is for each process that this one starts, there are only those.
 fn simd_levels() -> Vec<&'static str> {
     match std::env::var_os("DURER_SIMD") {
-        Some(_) => vec![Level::chosen().name()],
-        None => Level::available().map(Level::name).collect(),
+        Some(_) => vec![SimdLevel::chosen().name()],
+        None => SimdLevel::available().map(SimdLevel::name).collect(),
     }
 }
 
@@ -78,7 +78,7 @@ pub fn run(args: &VerifyArgs) -> Result<(), Failure> {
     let plain: Part = made.map_err(crate::render::failure)?.map_err(|text| Failure::Other(anyhow::anyhow!(text)))?;
     let hash = plain.hash().to_string();
     let levels = simd_levels();
-    let others = levels.iter().filter(|level| **level != Level::chosen().name());
+    let others = levels.iter().filter(|level| **level != SimdLevel::chosen().name());
     if let Some(level) = others.into_iter().find(|level| hash_at(level).ok().as_ref() != Some(&hash)) {
         return Err(Failure::Other(anyhow::anyhow!("with DURER_SIMD={level} the film differs")));
     }

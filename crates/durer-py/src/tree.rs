@@ -2,7 +2,7 @@
 
 use crate::rays::{Asked, JOB, Rays, point, points};
 use crate::work::{each, install};
-use durer::bvh::{Instance, InstanceHit, Instances, Preset, TriangleBvh, TriangleHit};
+use durer::bvh::{BuildQuality, Instance, InstanceBvh, InstanceHit, TriangleBvh, TriangleHit};
 use durer::math::{Affine, Ray, Vec3};
 use glam::{DAffine3, DMat3, DVec3};
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray2};
@@ -16,7 +16,7 @@ pub struct Tree(Target);
 
 enum Target {
     Mesh(Arc<TriangleBvh>),
-    Placed(Instances),
+    Placed(InstanceBvh),
 }
 
 /// t, triangle, object, u and v.
@@ -62,7 +62,7 @@ impl Target {
     fn occluded(&self, rays: &[Ray], answers: &mut [bool]) {
         match self {
             Target::Mesh(tree) => tree.occluded_batch(rays, answers),
-            Target::Placed(scene) => answers.iter_mut().zip(rays).for_each(|(to, ray)| *to = scene.occluded(ray)),
+            Target::Placed(scene) => scene.occluded_batch(rays, answers),
         }
     }
 
@@ -75,10 +75,10 @@ impl Target {
 
     fn contains(&self, point: Vec3) -> bool {
         match self {
-            Target::Mesh(tree) => tree.count(&outward(tree, point)) % 2 == 1,
-            Target::Placed(scene) => scene.placed().iter().any(|Instance { tree, to_world }| {
-                let ray = to_world.inverse_ray(Ray::new(point, Vec3::Z));
-                tree.count(&ray) % 2 == 1
+            Target::Mesh(tree) => tree.hit_count(&outward(tree, point)) % 2 == 1,
+            Target::Placed(scene) => scene.instances().iter().any(|instance| {
+                let ray = instance.to_world.inverse_ray(Ray::new(point, Vec3::Z));
+                instance.bvh.hit_count(&ray) % 2 == 1
             }),
         }
     }
@@ -111,9 +111,9 @@ impl Tree {
         preset: &str,
         threads: Option<usize>,
     ) -> PyResult<Self> {
-        let names = || Preset::NAMES.map(|row| row.0).join("', '");
+        let names = || BuildQuality::NAMES.map(|row| row.0).join("', '");
         let wrong = || PyValueError::new_err(format!("preset must be '{}', but is '{preset}'", names()));
-        let preset = Preset::NAMES.iter().find(|row| row.0 == preset).ok_or_else(wrong)?.1;
+        let preset = BuildQuality::NAMES.iter().find(|row| row.0 == preset).ok_or_else(wrong)?.1;
         let vertices: Vec<Vec3> = points(&vertices)?.chunks_exact(3).map(Vec3::from_slice).collect();
         let faces: Vec<[u32; 3]> = faces.as_slice()?.as_chunks().0.to_vec();
         let out = |face: &[u32; 3]| face.iter().any(|&i| i as usize >= vertices.len());
@@ -138,9 +138,9 @@ impl Tree {
             let matrix3 = DMat3::from_cols(column(0), column(1), column(2));
             let singular = || PyValueError::new_err(format!("the matrix of object {i} cannot be inverted"));
             let to_world = Affine::new(DAffine3 { matrix3, translation: column(3) }).ok_or_else(singular)?;
-            placed.push(Instance { tree: tree.clone(), to_world });
+            placed.push(Instance::new(tree.clone(), to_world));
         }
-        Ok(Tree(Target::Placed(Instances::new(placed))))
+        Ok(Tree(Target::Placed(InstanceBvh::new(placed))))
     }
 
     /// The first hit of each ray.
@@ -293,8 +293,8 @@ impl Tree {
     /// Bytes in memory.
     fn bytes(&self) -> usize {
         match &self.0 {
-            Target::Mesh(tree) => tree.bytes(),
-            Target::Placed(scene) => scene.bytes(),
+            Target::Mesh(tree) => tree.memory_usage(),
+            Target::Placed(scene) => scene.memory_usage(),
         }
     }
 }

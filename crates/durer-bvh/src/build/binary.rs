@@ -1,20 +1,23 @@
 //! A binary tree over references, from the top down by the surface area heuristic.
 
-use super::cut::{Bin, HALVING_DEPTH};
-use super::spatial::{FEWEST, Searches};
-use super::{Reference, Settings, area_scale, lane, lane_number};
+use super::builder::{Bin, Builder, half_area};
+use super::cut::HALVING_DEPTH;
+use super::reference::{Reference, area_scale, lane, lane_number};
+use super::settings::BuildSettings;
+use super::spatial::{MIN_REFERENCES, Searches};
 use crate::lanes::listed;
 use crate::math::{Aabb, Vec3};
+use crate::parallel;
 use glam::Vec4;
-use rayon::prelude::*;
 
 /// Subtrees of more references than this are built in parallel.
 const PARALLEL: u32 = 4096;
 
-/// A node. Nodes lie in depth-first order: the left child follows its parent, the right child what is below the left one, and behind
-/// that, where subtrees were built in parallel, room that is left over.
+/// A node. Nodes lie in depth-first order: the left child follows its parent, the right child what
+/// is below the left one, and behind that, where subtrees were built in parallel, room that is left
+/// over.
 #[derive(Clone, Copy, Debug)]
-pub struct Node {
+pub struct BinaryNode {
     /// With the number of references in the fourth lane, and whether it is a leaf.
     pub min: Vec4,
     /// With a leaf's first reference, or half of how far behind its parent the right child is.
@@ -24,22 +27,22 @@ pub struct Node {
 const INNER: u32 = 2;
 const LEAF: u32 = 3;
 
-impl Node {
+impl BinaryNode {
     /// What room that is left over holds.
-    pub const NONE: Node = Node { min: Vec4::ZERO, max: Vec4::ZERO };
+    pub const NONE: BinaryNode = BinaryNode { min: Vec4::ZERO, max: Vec4::ZERO };
 
     pub fn leaf(mut min: Vec4, mut max: Vec4, count: u32, first: u32) -> Self {
         (min.w, max.w) = (lane(LEAF, count), lane(LEAF, first));
-        Node { min, max }
+        BinaryNode { min, max }
     }
 
     pub fn inner(mut min: Vec4, mut max: Vec4, count: u32, right: usize) -> Self {
         debug_assert!(right.is_multiple_of(2));
         (min.w, max.w) = (lane(INNER, count), lane(INNER, (right / 2) as u32));
-        Node { min, max }
+        BinaryNode { min, max }
     }
 
-    /// Whether it is one, not [`Node::NONE`].
+    /// Whether it is one, not [`BinaryNode::NONE`].
     #[inline]
     pub fn is_there(&self) -> bool {
         self.count() > 0
@@ -73,9 +76,10 @@ impl Node {
     }
 }
 
-/// The tree, the references of its leaves, and what sizes are multiplied by before areas are compared.
+/// The tree, the references of its leaves, and what sizes are multiplied by before areas are
+/// compared.
 pub struct Tree {
-    pub nodes: Vec<Node>,
+    pub nodes: Vec<BinaryNode>,
     /// Those that are in no leaf mean nothing.
     pub references: Vec<Reference>,
     pub scale: f32,
@@ -83,27 +87,8 @@ pub struct Tree {
     pub is_cut: bool,
 }
 
-/// Half the area of a box.
-#[inline]
-pub fn half_area(min: Vec4, max: Vec4, scale: f32) -> f32 {
-    let d = ((max - min) * scale).max(Vec4::ZERO);
-    d.x * d.y + d.y * d.z + d.z * d.x
-}
-
-pub struct Builder<'a> {
-    pub scale: f32,
-    /// Half the area of everything.
-    pub area: f32,
-    /// So many references may stay together.
-    whole: usize,
-    /// How many bins so many references are put into, at most.
-    pub bins: fn(usize) -> usize,
-    /// Where things are triangles that may be cut, their corners; else nothing.
-    pub corners: &'a [[Vec3; 3]],
-}
-
 /// What a subtree is built over.
-struct Room<'a> {
+struct BuildRange<'a> {
     /// As many as there are, and room for those that cuts add.
     references: &'a mut [Reference],
     /// The place of the first among all.
@@ -112,32 +97,34 @@ struct Room<'a> {
 }
 
 /// How many references are below a node, and how many nodes from it on are taken.
-struct Counts {
+struct SubtreeSize {
     references: u32,
     nodes: usize,
 }
 
 /// Builds a tree over at least one reference; triangles whose corners are known may be cut.
-pub fn build(mut references: Vec<Reference>, settings: &Settings, corners: &[[Vec3; 3]]) -> Tree {
+pub fn build(mut references: Vec<Reference>, settings: &BuildSettings, corners: &[[Vec3; 3]]) -> Tree {
     let all = Bin::of(&references);
     let scale = area_scale(all.bounds());
     let area = half_area(all.min, all.max, scale);
     let builder = Builder { scale, area, whole: settings.whole, bins: settings.bins, corners };
-    references.par_extend(rayon::iter::repeat_n(references[0], settings.spare(references.len())));
-    let mut nodes = listed(2 * references.len() - 1, 0, |_| Node::NONE);
-    let room = Room { references: &mut references, first: 0, searches: Searches::default() };
+    let (first, spare) = (references[0], settings.spare(references.len()));
+    parallel::extend(&mut references, spare, 1, |_| first);
+    let mut nodes = listed(2 * references.len() - 1, 0, |_| BinaryNode::NONE);
+    let room = BuildRange { references: &mut references, first: 0, searches: Searches::default() };
     let counts = builder.subtree(room, &mut nodes, &all, 0);
     nodes.truncate(counts.nodes);
     Tree { nodes, references, scale, is_cut: counts.references > all.count }
 }
 
-impl Room<'_> {
+impl BuildRange<'_> {
     /// Where the room of the right one of two children begins, by how many references are in each.
     ///
-    /// What there is to spare goes where more references are, but not where there are too few to be cut.
+    /// What there is to spare goes where more references are, but not where there are too few to be
+    /// cut.
     fn middle(&self, left: usize, right: usize) -> usize {
         let spare = self.references.len() - left - right;
-        let for_left = match [left, right].map(|count| count > FEWEST) {
+        let for_left = match [left, right].map(|count| count > MIN_REFERENCES) {
             [true, true] => (spare as u64 * left as u64 / (left + right) as u64) as usize,
             [true, false] => spare,
             [false, _] => 0,
@@ -147,14 +134,15 @@ impl Room<'_> {
 }
 
 impl Builder<'_> {
-    /// Builds over the references that a room begins with. There must be twice as many nodes as it has references, less one.
-    fn subtree(&self, mut room: Room, nodes: &mut [Node], all: &Bin, depth: usize) -> Counts {
+    /// Builds over the references that a room begins with. There must be twice as many nodes as it
+    /// has references, less one.
+    fn subtree(&self, mut room: BuildRange, nodes: &mut [BinaryNode], all: &Bin, depth: usize) -> SubtreeSize {
         let (Bin { min, max, .. }, count) = (*all, all.count as usize);
         let spare = room.references.len() - count;
         let references = &mut room.references[..count];
         if count == 1 || count <= self.whole && self.is_whole(references, all) {
-            nodes[0] = Node::leaf(min, max, all.count, room.first as u32);
-            return Counts { references: all.count, nodes: 1 };
+            nodes[0] = BinaryNode::leaf(min, max, all.count, room.first as u32);
+            return SubtreeSize { references: all.count, nodes: 1 };
         }
         let cut = self.cut(references, all, depth);
         let parts = match depth < HALVING_DEPTH {
@@ -180,26 +168,27 @@ impl Builder<'_> {
         let (here, below) = nodes.split_first_mut().expect("there is room for a node");
         let (left, right) = room.references.split_at_mut(middle);
         let [left_all, right_all] = &boxes;
-        let left = Room { references: left, ..room };
-        let right = Room { references: right, first: room.first + middle, ..room };
+        let left = BuildRange { references: left, ..room };
+        let right = BuildRange { references: right, first: room.first + middle, ..room };
         let build = |room, nodes: &mut _, all| self.subtree(room, nodes, all, depth + 1);
         let [left, right] = if left_all.count + right_all.count > PARALLEL {
             let nodes = 2 * middle - 1;
             let (left_nodes, right_nodes) = below.split_at_mut(nodes);
             let (left, right) =
-                rayon::join(|| build(left, left_nodes, left_all), || build(right, right_nodes, right_all));
-            [Counts { nodes, ..left }, right]
+                parallel::join(|| build(left, left_nodes, left_all), || build(right, right_nodes, right_all));
+            [SubtreeSize { nodes, ..left }, right]
         } else {
             let left = build(left, below, left_all);
             let right = build(right, &mut below[left.nodes..], right_all);
             [left, right]
         };
         let references = left.references + right.references;
-        *here = Node::inner(min, max, references, 1 + left.nodes);
-        Counts { references, nodes: 1 + left.nodes + right.nodes }
+        *here = BinaryNode::inner(min, max, references, 1 + left.nodes);
+        SubtreeSize { references, nodes: 1 + left.nodes + right.nodes }
     }
 
-    /// Whether a few references are so near each other that boxes of their own would spare few tests.
+    /// Whether a few references are so near each other that boxes of their own would spare few
+    /// tests.
     fn is_whole(&self, references: &[Reference], all: &Bin) -> bool {
         let areas = references.iter().map(|r| half_area(r.min, r.max, self.scale));
         half_area(all.min, all.max, self.scale) <= 4.0 * areas.fold(f32::INFINITY, f32::min)
@@ -208,13 +197,14 @@ impl Builder<'_> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Preset, triangle_references};
+    use super::super::{BuildQuality, triangle_references};
     use super::*;
     use crate::math::random::Random;
-    use crate::node::MOST_ITEMS;
+    use crate::node::MAX_ITEMS;
     use crate::triangles::tests::bars;
 
-    /// Checks a tree over so many triangles, with room for so many references; gives how many slots hold nothing.
+    /// Checks a tree over so many triangles, with room for so many references; gives how many slots
+    /// hold nothing.
     fn check(tree: &Tree, triangles: usize, room: usize) -> usize {
         let (mut is_node, mut is_taken) = (vec![false; tree.nodes.len()], vec![false; room]);
         let (mut is_met, mut stack) = (vec![false; triangles], vec![0]);
@@ -247,8 +237,9 @@ mod tests {
         nothing.inspect(|(node, _)| assert!(!node.is_there())).count()
     }
 
-    /// Every triangle is in leaves that share no references, nodes are where their parents say, and what is left over is empty: whether
-    /// cuts are as many as are of use or as there is room for, and whether subtrees are built side by side.
+    /// Every triangle is in leaves that share no references, nodes are where their parents say, and
+    /// what is left over is empty: whether cuts are as many as are of use or as there is room for,
+    /// and whether subtrees are built side by side.
     #[test]
     fn leaves_share_nothing_and_hold_everything() {
         let mut random = Random(11);
@@ -257,7 +248,7 @@ mod tests {
             let (vertices, triangles) = bars(&mut random, (count - count / 10) as u32, count / 10);
             let corners: Vec<[Vec3; 3]> = triangles.iter().map(|t| t.map(|i| vertices[i as usize])).collect();
             let taken = [0.0, 0.1, 2.0].map(|splits| {
-                let settings = Settings { splits, ..Settings::triangles(Preset::Best) };
+                let settings = BuildSettings { splits, ..BuildSettings::triangles(BuildQuality::Best) };
                 let references = triangle_references(count, &settings, &|i| corners[i as usize]);
                 let tree = build(references, &settings, &corners);
                 with_gaps += usize::from(check(&tree, count, count + settings.spare(count)) > 0);
@@ -271,10 +262,10 @@ mod tests {
 
     #[test]
     fn a_node_holds_the_greatest_numbers() {
-        for number in [1, MOST_ITEMS] {
-            let leaf = Node::leaf(Vec4::ZERO, Vec4::ONE, number as u32, number as u32);
+        for number in [1, MAX_ITEMS] {
+            let leaf = BinaryNode::leaf(Vec4::ZERO, Vec4::ONE, number as u32, number as u32);
             assert_eq!((leaf.is_leaf(), leaf.count(), leaf.first()), (true, number, number));
-            let inner = Node::inner(Vec4::ZERO, Vec4::ONE, number as u32, 2 * number);
+            let inner = BinaryNode::inner(Vec4::ZERO, Vec4::ONE, number as u32, 2 * number);
             assert_eq!((inner.is_leaf(), inner.count(), inner.right()), (false, number, 2 * number));
         }
     }

@@ -3,62 +3,19 @@
 //! Many references are put into bins along each axis; of few, all divisions are tried.
 //! Source: Wald, *On fast Construction of SAH-based Bounding Volume Hierarchies*, IEEE RT 2007.
 
-use super::Reference;
-use super::binary::{Builder, half_area};
-use crate::math::Aabb;
+use super::builder::{Bin, Builder, MIN_PARALLEL, around_all};
+use super::reference::Reference;
+use super::settings::BINS;
+use crate::parallel;
 use glam::{IVec4, Mat4, Vec4};
 
-pub const BINS: usize = 16;
-/// Below this depth things are halved by number, which bounds the depth of all trees: 28 levels halve 2^28 things.
+/// Below this depth things are halved by number, which bounds the depth of all trees: 28 levels
+/// halve 2^28 things.
 pub const HALVING_DEPTH: usize = 60;
-/// More references than this are looked at in parallel.
-const MANY: usize = 1 << 15;
 /// Of so few references all divisions are tried.
-const FEW: usize = 4;
+const MAX_EXHAUSTIVE: usize = 4;
 /// So many are worth bins of their own for each half of them.
-const SEVERAL: usize = 64;
-
-/// A box that grows, and how many references are in it.
-#[derive(Clone, Copy)]
-pub struct Bin {
-    pub min: Vec4,
-    pub max: Vec4,
-    pub count: u32,
-}
-
-impl Bin {
-    pub const EMPTY: Bin = Bin { min: Vec4::INFINITY, max: Vec4::NEG_INFINITY, count: 0 };
-
-    pub fn of(references: &[Reference]) -> Bin {
-        let [min, max] = around_all(references, &|r| [r.min, r.max]);
-        Bin { min, max, count: references.len() as u32 }
-    }
-
-    pub fn bounds(&self) -> Aabb {
-        Aabb { min: self.min.truncate(), max: self.max.truncate() }
-    }
-
-    #[inline]
-    pub fn with(self, r: &Reference) -> Bin {
-        Bin { count: self.count + 1, ..self.around(r) }
-    }
-
-    /// Grown, but not counted.
-    #[inline]
-    pub fn around(self, r: &Reference) -> Bin {
-        Bin { min: self.min.min(r.min), max: self.max.max(r.max), ..self }
-    }
-
-    #[inline]
-    pub fn union(self, other: Bin) -> Bin {
-        Bin { min: self.min.min(other.min), max: self.max.max(other.max), count: self.count + other.count }
-    }
-
-    #[inline]
-    pub fn cost(&self, scale: f32) -> f32 {
-        half_area(self.min, self.max, scale) * self.count as f32
-    }
-}
+const MIN_FOR_MORE_BINS: usize = 64;
 
 /// Bins of equal width over the centres of references.
 #[derive(Clone, Copy)]
@@ -92,27 +49,6 @@ const FIRST: f32 = (1 << 23) as f32;
 /// The box around all [`Reference::middle`].
 fn middles(references: &[Reference]) -> [Vec4; 2] {
     around_all(references, &|r| [r.middle(); 2])
-}
-
-/// The box around what is known of each reference. Four grow in turn, for each step of one waits for that before.
-fn around_all(references: &[Reference], of: &(impl Fn(&Reference) -> [Vec4; 2] + Sync)) -> [Vec4; 2] {
-    if references.len() > MANY {
-        let (a, b) = references.split_at(references.len() / 2);
-        let (a, b) = rayon::join(|| around_all(a, of), || around_all(b, of));
-        return [a[0].min(b[0]), a[1].max(b[1])];
-    }
-    let mut boxes = [[Vec4::INFINITY, Vec4::NEG_INFINITY]; 4];
-    let grow = |[min, max]: &mut [Vec4; 2], r: &Reference| {
-        let [low, high] = of(r);
-        (*min, *max) = (min.min(low), max.max(high));
-    };
-    let (fours, rest) = references.as_chunks::<4>();
-    for four in fours {
-        boxes.iter_mut().zip(four).for_each(|(all, r)| grow(all, r));
-    }
-    boxes.iter_mut().zip(rest).for_each(|(all, r)| grow(all, r));
-    let [a, b, c, d] = boxes;
-    [a[0].min(b[0]).min(c[0].min(d[0])), a[1].max(b[1]).max(c[1].max(d[1]))]
 }
 
 /// For each axis a box, and how many references are in it.
@@ -150,9 +86,9 @@ impl Bins {
 
 /// Puts references into bins.
 fn filled<const N: usize>(references: &[Reference], grid: &Grid) -> [Bins; N] {
-    if references.len() > MANY {
+    if references.len() > MIN_PARALLEL {
         let (a, b) = references.split_at(references.len() / 2);
-        let (mut a, b) = rayon::join(|| filled::<N>(a, grid), || filled::<N>(b, grid));
+        let (mut a, b) = parallel::join(|| filled::<N>(a, grid), || filled::<N>(b, grid));
         a.iter_mut().zip(&b).for_each(|(a, b)| a.join(b));
         return a;
     }
@@ -166,9 +102,10 @@ fn filled<const N: usize>(references: &[Reference], grid: &Grid) -> [Bins; N] {
             bins.counts[axis] += 1;
         }
     };
-    // Neighbours in the list fall into the same bins, and would wait for each other; so do all where there is but one bin along an axis.
+    // Neighbours in the list fall into the same bins, and would wait for each other; so do all
+    // where there is but one bin along an axis.
     let (a, b) = references.split_at(references.len() / 2);
-    if references.len() < SEVERAL {
+    if references.len() < MIN_FOR_MORE_BINS {
         for (a, b) in a.iter().zip(b) {
             add(&mut bins, a);
             add(&mut bins, b);
@@ -190,10 +127,10 @@ fn filled<const N: usize>(references: &[Reference], grid: &Grid) -> [Bins; N] {
 pub struct Cut {
     pub cost: f32,
     pub sides: [Bin; 2],
-    way: Way,
+    way: Split,
 }
 
-enum Way {
+enum Split {
     /// Those in bins before a border along an axis go to the left.
     Bins { grid: Grid, axis: usize, border: usize },
     /// Those with a bit in the mask go to the left.
@@ -206,11 +143,11 @@ impl Builder<'_> {
     /// The cheapest way to make two sets of references.
     pub fn cut(&self, references: &[Reference], all: &Bin, depth: usize) -> Cut {
         // Its two sides are not known yet, but within all.
-        let half = Cut { cost: all.cost(self.scale), sides: [*all; 2], way: Way::Half };
+        let half = Cut { cost: all.cost(self.scale), sides: [*all; 2], way: Split::Half };
         let count = references.len();
         if depth >= HALVING_DEPTH {
             half
-        } else if count <= FEW {
+        } else if count <= MAX_EXHAUSTIVE {
             self.few(references)
         } else if count <= 64 {
             self.binned::<8>(references).unwrap_or(half)
@@ -223,7 +160,8 @@ impl Builder<'_> {
     fn binned<const N: usize>(&self, references: &[Reference]) -> Option<Cut> {
         let grid = Grid::new(references, (self.bins)(references.len()).min(N));
         let bins = filled::<N>(references, &grid);
-        // Costs of everything right of each border, then the sum from the left, along all axes at once.
+        // Costs of everything right of each border, then the sum from the left, along all axes at
+        // once.
         let mut right_costs = [Vec4::ZERO; N];
         let mut right = Bins::EMPTY;
         for i in (1..grid.bins).rev() {
@@ -244,15 +182,15 @@ impl Builder<'_> {
         let (cost, border) = (costs[axis], borders[axis] as usize);
         let side = |bins: &[Bins]| bins.iter().fold(Bin::EMPTY, |all, bins| all.union(bins.get(axis)));
         let sides = [side(&bins[..border]), side(&bins[border..])];
-        (cost < f32::INFINITY).then_some(Cut { cost, sides, way: Way::Bins { grid, axis, border } })
+        (cost < f32::INFINITY).then_some(Cut { cost, sides, way: Split::Bins { grid, axis, border } })
     }
 
     /// The cheapest of all ways to divide a few references.
     fn few(&self, references: &[Reference]) -> Cut {
         let count = references.len();
         let full = (1 << count) - 1;
-        let mut sets = [Bin::EMPTY; 1 << FEW];
-        let mut costs = [0.0; 1 << FEW];
+        let mut sets = [Bin::EMPTY; 1 << MAX_EXHAUSTIVE];
+        let mut costs = [0.0; 1 << MAX_EXHAUSTIVE];
         for mask in 1..full {
             sets[mask] = sets[mask & (mask - 1)].with(&references[mask.trailing_zeros() as usize]);
             costs[mask] = sets[mask].cost(self.scale);
@@ -265,22 +203,23 @@ impl Builder<'_> {
             }
         }
         let (cost, mask) = best;
-        Cut { cost, sides: [sets[mask], sets[full - mask]], way: Way::Mask(mask) }
+        Cut { cost, sides: [sets[mask], sets[full - mask]], way: Split::Mask(mask) }
     }
 
-    /// Sorts references into the two sets of a cut; gives their boxes, and how many are in the first.
+    /// Sorts references into the two sets of a cut; gives their boxes, and how many are in the
+    /// first.
     pub fn divide(&self, references: &mut [Reference], cut: &Cut) -> ([Bin; 2], usize) {
         let [left, right] = cut.sides;
         match cut.way {
-            Way::Bins { grid, axis, border } => {
+            Split::Bins { grid, axis, border } => {
                 // Along the other axes nothing is before it.
                 let mut borders = Vec4::NEG_INFINITY;
                 borders[axis] = FIRST + border as f32;
                 partition(references, |r| grid.at(r).cmplt(borders).any());
             }
-            Way::Mask(mask) => {
+            Split::Mask(mask) => {
                 let mut places = [0, left.count as usize];
-                let mut sorted = [references[0]; FEW];
+                let mut sorted = [references[0]; MAX_EXHAUSTIVE];
                 for (i, r) in references.iter().enumerate() {
                     let side = 1 - (mask >> i & 1);
                     sorted[places[side]] = *r;
@@ -288,7 +227,7 @@ impl Builder<'_> {
                 }
                 references.copy_from_slice(&sorted[..references.len()]);
             }
-            Way::Half => {
+            Split::Half => {
                 let (left, right) = halve(references);
                 return ([Bin::of(left), Bin::of(right)], left.len());
             }

@@ -1,17 +1,20 @@
 //! Improving a binary tree: subtrees are taken out and put where they enlarge boxes least.
 //!
-//! Source: Meister, Bittner, *Parallel Reinsertion for Bounding Volume Hierarchy Optimization*, Eurographics 2018.
+//! Source: Meister, Bittner, *Parallel Reinsertion for Bounding Volume Hierarchy Optimization*,
+//! Eurographics 2018.
 
-use super::LITTLE;
-use super::binary::{Node, Tree, half_area};
-use crate::DEEPEST;
+use super::binary::{BinaryNode, Tree};
+use super::builder::half_area;
+use super::settings::MIN_GAIN;
 use crate::lanes::room;
-use rayon::prelude::*;
+use crate::node::MAX_DEPTH;
+use crate::parallel;
 
-/// In each pass this share of nodes are looked at. Where much can be spared, most of that is in few of them.
+/// In each pass this share of nodes are looked at. Where much can be spared, most of that is in few
+/// of them.
 const SHARE: f64 = 0.04;
 /// And so many times as many where what may be spared does not say where.
-const MOST_SHARES: usize = 3;
+const MAX_SHARES: usize = 3;
 /// A search for a better place ends after so many nodes.
 const PATIENCE: usize = 1 << 8;
 
@@ -26,7 +29,7 @@ pub struct Linked {
 
 #[derive(Clone, Copy)]
 struct Link {
-    node: Node,
+    node: BinaryNode,
     area: f32,
     parent: u32,
     /// `NONE` in leaves.
@@ -58,7 +61,8 @@ impl Linked {
     pub fn new(tree: &Tree) -> Self {
         let scale = tree.scale;
         let mut nodes: Vec<Link> = room(tree.nodes.len());
-        // Nodes follow each other in depth-first order: what comes is a child of the last one that has less than two.
+        // Nodes follow each other in depth-first order: what comes is a child of the last one that
+        // has less than two.
         let mut parents = Vec::new();
         for &node in tree.nodes.iter().filter(|node| node.is_there()) {
             let i = nodes.len() as u32;
@@ -85,11 +89,11 @@ impl Linked {
         if a == i { b } else { a }
     }
 
-    /// Looks for better places where most may be spared, and takes those that do not meddle with each other; gives the share of all areas
-    /// that this spares.
+    /// Looks for better places where most may be spared, and takes those that do not meddle with
+    /// each other; gives the share of all areas that this spares.
     pub fn pass(&mut self) -> f64 {
-        // Taking a subtree out spares at least its parent's area, and putting it anywhere costs at least its own. Infinite areas have no
-        // difference.
+        // Taking a subtree out spares at least its parent's area, and putting it anywhere costs at
+        // least its own. Infinite areas have no difference.
         let spared = |i: u32| ((self.at(self.at(i).parent).area - self.at(i).area).max(0.0), i);
         // The root and its children stay.
         let movable = |&i: &u32| i != 0 && self.at(i).parent != 0;
@@ -99,11 +103,12 @@ impl Linked {
         let (next, rest) = greatest(rest, count / 4);
         let (mut moves, more) = (self.moves(first), self.moves(next));
         let gain = |moves: &[Move]| moves.iter().map(|m| f64::from(m.gain)).sum::<f64>();
-        // Where what is found hardly becomes less with what may be spared, that does not say where to look, and more is looked at.
-        let is_even = 4.0 * gain(&more) >= (0.25 * gain(&moves)).max(LITTLE * self.area);
+        // Where what is found hardly becomes less with what may be spared, that does not say where
+        // to look, and more is looked at.
+        let is_even = 4.0 * gain(&more) >= (0.25 * gain(&moves)).max(MIN_GAIN * self.area);
         moves.extend(more);
         if is_even {
-            moves.extend(self.moves(greatest(rest, MOST_SHARES * count).0));
+            moves.extend(self.moves(greatest(rest, MAX_SHARES * count).0));
         }
         moves.sort_unstable_by(|a, b| b.gain.total_cmp(&a.gain).then(a.from.cmp(&b.from)));
         let mut touched = vec![false; self.nodes.len()];
@@ -124,7 +129,7 @@ impl Linked {
 
     /// Better places for some nodes.
     fn moves(&self, candidates: &[Candidate]) -> Vec<Move> {
-        candidates.par_iter().with_min_len(64).filter_map(|&(_, from)| self.find(from)).collect()
+        parallel::filter_map(candidates, 64, |&(_, from)| self.find(from))
     }
 
     /// Whether a node lies in a subtree, as it may after an earlier move of the same pass.
@@ -135,7 +140,8 @@ impl Linked {
         i == subtree
     }
 
-    /// The best place for a subtree, searched upwards from where it is, and from there down into the siblings.
+    /// The best place for a subtree, searched upwards from where it is, and from there down into
+    /// the siblings.
     fn find(&self, from: u32) -> Option<Move> {
         let Link { node, area, parent, .. } = *self.at(from);
         let merged = |other: &Link| half_area(node.min.min(other.node.min), node.max.max(other.node.max), self.scale);
@@ -178,7 +184,8 @@ impl Linked {
         (best.to != NONE).then_some(best)
     }
 
-    /// Takes a subtree with its parent out, and puts the parent between a node and that node's parent.
+    /// Takes a subtree with its parent out, and puts the parent between a node and that node's
+    /// parent.
     fn apply(&mut self, from: u32, to: u32) {
         let parent = self.at(from).parent;
         let (sibling, above) = (self.sibling(from), self.at(parent).parent);
@@ -209,7 +216,7 @@ impl Linked {
     /// Makes the box of a node fit its children; gives whether it is another one.
     fn fit(&mut self, i: u32) -> bool {
         let [a, b] = self.at(i).children.map(|child| self.at(child).node);
-        let node = Node::inner(a.min.min(b.min), a.max.max(b.max), 0, 0);
+        let node = BinaryNode::inner(a.min.min(b.min), a.max.max(b.max), 0, 0);
         let area = half_area(node.min, node.max, self.scale);
         let link = &mut self.nodes[i as usize];
         let is_other = node.bounds() != link.node.bounds();
@@ -219,11 +226,11 @@ impl Linked {
     }
 
     /// The nodes in depth-first order with their counts; `None` if the tree is too deep.
-    pub fn in_order(&self) -> Option<Vec<Node>> {
-        let mut nodes: Vec<Node> = room(self.nodes.len());
+    pub fn in_order(&self) -> Option<Vec<BinaryNode>> {
+        let mut nodes: Vec<BinaryNode> = room(self.nodes.len());
         let mut stack = vec![(0, 1)];
         while let Some((i, depth)) = stack.pop() {
-            if depth > DEEPEST {
+            if depth > MAX_DEPTH {
                 return None;
             }
             let link = self.at(i);
@@ -243,7 +250,7 @@ impl Linked {
             let [left, right] = [i + 1, i + 1 + below[i + 1] as usize];
             let count = [left, right].map(|child| nodes[child].count() as u32);
             below[i] = 1 + below[left] + below[right];
-            nodes[i] = Node::inner(node.min, node.max, count[0] + count[1], right - i);
+            nodes[i] = BinaryNode::inner(node.min, node.max, count[0] + count[1], right - i);
         }
         Some(nodes)
     }
@@ -251,13 +258,13 @@ impl Linked {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Settings, binary, references};
+    use super::super::{BuildSettings, binary, references};
     use super::*;
     use crate::math::Aabb;
     use crate::math::random::Random;
 
-    /// After each pass boxes and areas are those of what is around their children, the same things are in leaves, and as much is spared
-    /// as is said.
+    /// After each pass boxes and areas are those of what is around their children, the same things
+    /// are in leaves, and as much is spared as is said.
     #[test]
     fn boxes_fit_after_each_pass() {
         let mut random = Random(3);
@@ -270,17 +277,19 @@ mod tests {
                     Aabb { min: at - size, max: at + size }
                 })
                 .collect();
-            // Where few stay together room is left over between subtrees that are built side by side.
-            let settings = Settings { whole: 3, ..Settings::THINGS };
+            // Where few stay together room is left over between subtrees that are built side by
+            // side.
+            let settings = BuildSettings { whole: 3, ..BuildSettings::THINGS };
             let tree = binary::build(references(&boxes), &settings, &[]);
             assert!((count > 4096) == tree.nodes.iter().any(|node| !node.is_there()));
-            let leaves = |nodes: &[Node]| {
-                let mut leaves: Vec<usize> = nodes.iter().filter(|node| node.is_leaf()).map(Node::first).collect();
+            let leaves = |nodes: &[BinaryNode]| {
+                let mut leaves: Vec<usize> =
+                    nodes.iter().filter(|node| node.is_leaf()).map(BinaryNode::first).collect();
                 leaves.sort_unstable();
                 leaves
             };
-            let area = |node: &Node| half_area(node.min, node.max, tree.scale);
-            let sum = |nodes: &[Node]| nodes.iter().map(|node| f64::from(area(node))).sum::<f64>();
+            let area = |node: &BinaryNode| half_area(node.min, node.max, tree.scale);
+            let sum = |nodes: &[BinaryNode]| nodes.iter().map(|node| f64::from(area(node))).sum::<f64>();
             let first = sum(&tree.nodes);
             let (mut work, mut before) = (Linked::new(&tree), first);
             for _ in 0..4 {

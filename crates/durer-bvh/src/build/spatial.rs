@@ -1,26 +1,29 @@
 //! Ways to cut the space of a node in two, where parts of a triangle then go to both sides.
 //!
-//! Where the cheapest division of references into two sets leaves boxes that overlap, planes are tried too; a plane cuts the
-//! triangles that it goes through, unless it is cheaper to leave one whole on one side.
+//! Where the cheapest division of references into two sets leaves boxes that overlap, planes are
+//! tried too; a plane cuts the triangles that it goes through, unless it is cheaper to leave one
+//! whole on one side.
 //! Source: Stich, Friedrich, Dietrich, *Spatial Splits in Bounding Volume Hierarchies*, HPG 2009.
 
-use super::Reference;
-use super::binary::{Builder, half_area};
-use super::cut::{BINS, Bin, Cut};
+use super::builder::{Bin, Builder, half_area};
+use super::cut::Cut;
+use super::reference::Reference;
+use super::settings::BINS;
 use crate::math::Vec3;
 use glam::{BVec4A, Vec4};
 
 /// Planes are tried where the overlap has at least this share of the node's area,
 const OVERLAP: f32 = 0.226;
 /// and this share of the area of everything,
-const LEAST: f32 = 1e-5;
+const MIN_SIZE: f32 = 1e-5;
 /// across axes along which the node is at least so long, as a share of its greatest length.
 const LENGTH: f32 = 0.3;
 /// They must cost less than this share of what the best two sets cost.
 const GAIN: f32 = 0.95;
 /// With so few references or fewer, cuts spare less than they cost.
-pub const FEWEST: usize = 330;
-/// After so many searches in vain, one below the other, one level is left out before the next, then two, up to four.
+pub const MIN_REFERENCES: usize = 330;
+/// After so many searches in vain, one below the other, one level is left out before the next, then
+/// two, up to four.
 const IN_VAIN: u32 = 3;
 
 /// What is known of searches for planes above a node.
@@ -38,7 +41,8 @@ struct Plane {
 }
 
 impl Builder<'_> {
-    /// The references on both sides of a plane, if that is better than a cut into two sets, and at most so many more.
+    /// The references on both sides of a plane, if that is better than a cut into two sets, and at
+    /// most so many more.
     pub fn parts(
         &self,
         references: &[Reference],
@@ -48,13 +52,13 @@ impl Builder<'_> {
         searches: &mut Searches,
     ) -> Option<[Vec<Reference>; 2]> {
         let count = references.len();
-        if count <= FEWEST || spare == 0 {
+        if count <= MIN_REFERENCES || spare == 0 {
             return None;
         }
         let [l, r] = cut.sides;
         let overlap = half_area(l.min.max(r.min), l.max.min(r.max), self.scale);
         let area = half_area(all.min, all.max, self.scale);
-        if overlap < (OVERLAP * area).max(LEAST * self.area) {
+        if overlap < (OVERLAP * area).max(MIN_SIZE * self.area) {
             return None;
         }
         if searches.pause > 0 {
@@ -138,8 +142,8 @@ impl Builder<'_> {
         best
     }
 
-    /// The references on both sides of a plane. Those that it goes through are cut, unless the boxes that grow when one stays whole
-    /// cost less.
+    /// The references on both sides of a plane. Those that it goes through are cut, unless the
+    /// boxes that grow when one stays whole cost less.
     fn halves(&self, references: &[Reference], &Plane { axis, at, .. }: &Plane) -> [Vec<Reference>; 2] {
         let (mut left, mut right, mut through) = (Vec::new(), Vec::new(), Vec::new());
         for r in references {
@@ -212,8 +216,9 @@ impl<const AXIS: usize> Sorted<AXIS> {
         let (b, c) = sort(b, c);
         let (a, b) = sort(a, b);
         let most = a.abs().max(b.abs()).max(c.abs());
-        // A section is p + (q - p) t with t = (x - p) / (q - p) along the axis: an error of at most 5 units in the last place
-        // of q - p, twice the largest coordinate, and one of the sum; a unit is half of epsilon. The rest is for underflow.
+        // A section is p + (q - p) t with t = (x - p) / (q - p) along the axis: an error of at most
+        // 5 units in the last place of q - p, twice the largest coordinate, and one of the sum; a
+        // unit is half of epsilon. The rest is for underflow.
         Sorted { corners: [a, b, c], slack: 8.0 * f32::EPSILON * most + f32::MIN_POSITIVE }
     }
 
@@ -232,7 +237,8 @@ impl<const AXIS: usize> Sorted<AXIS> {
         Section { at, min: p.min(q) - self.slack, max: p.max(q) + self.slack }
     }
 
-    /// The box of what lies between two sections, within that of a reference; empty if nothing does.
+    /// The box of what lies between two sections, within that of a reference; empty if nothing
+    /// does.
     #[inline(always)]
     fn between(&self, from: &Section, to: &Section, r: &Reference) -> Reference {
         let middle = self.corners[1];
@@ -260,7 +266,8 @@ mod tests {
     use crate::math::Aabb;
     use crate::math::random::{Random, rounds};
 
-    /// Points of a triangle are in the box of the half on their side, whatever the triangle and its present box.
+    /// Points of a triangle are in the box of the half on their side, whatever the triangle and its
+    /// present box.
     fn check<const AXIS: usize>(random: &mut Random, corners: [Vec3; 3], within: Aabb) -> usize {
         let r = Reference::new(within, 7);
         let (low, high) = (within.min[AXIS], within.max[AXIS]);

@@ -5,52 +5,54 @@
 //!   C(n, 1) = min(leaf(n), A(n) + min over k of C(l, k) + C(r, 8 - k)),
 //!   C(n, i) = min(C(n, i - 1), min over k of C(l, k) + C(r, i - k)).
 //!
-//! Source: Ylitie, Karras, Laine, *Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs*, HPG 2017.
+//! Source: Ylitie, Karras, Laine, *Efficient Incoherent Ray Traversal on GPUs Through Compressed
+//! Wide BVHs*, HPG 2017.
 
-use super::Settings;
-use super::binary::{self, half_area};
+use super::binary;
+use super::builder::half_area;
+use super::settings::BuildSettings;
 use crate::lanes::{WIDTH, listed, room};
 use crate::math::Aabb;
-use crate::node::{self, LEAF, LEAF_SIZE, Node};
+use crate::node::{self, LEAF, LEAF_SIZE, WideNode};
+use crate::parallel;
 use glam::Vec3A;
-use rayon::prelude::*;
 
 /// Subtrees of more references than this are worked on in parallel.
 const PARALLEL: usize = 4096;
 
 /// What is cheapest for each node of a binary tree, and the cost of it all.
-pub struct Plans {
+pub struct CollapsePlan {
     plans: Vec<Plan>,
     pub cost: f32,
 }
 
-impl Plans {
-    pub fn new(nodes: &[binary::Node], scale: f32, settings: &Settings) -> Self {
+impl CollapsePlan {
+    pub fn new(nodes: &[binary::BinaryNode], scale: f32, settings: &BuildSettings) -> Self {
         let mut plans = listed(nodes.len(), 0, |_| Plan::default());
         let cost = plan(nodes, &mut plans, scale, settings)[0];
-        Plans { plans, cost }
+        CollapsePlan { plans, cost }
     }
 }
 
 /// The nodes, and the things of their leaves.
-pub fn collapse(tree: &binary::Tree, plans: Plans) -> (Vec<Node>, Vec<u32>) {
-    let emitter = Emitter { tree, plans: plans.plans };
-    let mut seams = Seams::default();
-    emitter.seams(0, &mut seams);
-    let parts: Vec<Part> = seams.below.par_iter().map(|&i| emitter.part(i)).collect();
-    let count = seams.above + parts.iter().map(|part| part.nodes.len()).sum::<usize>();
-    let mut all = Part { nodes: room(count), order: room(emitter.node(0).count()) };
+pub fn collapse(tree: &binary::Tree, plans: CollapsePlan) -> (Vec<WideNode>, Vec<u32>) {
+    let writer = NodeWriter { tree, plans: plans.plans };
+    let mut cuts = CutPoints::default();
+    writer.cuts(0, &mut cuts);
+    let subtrees: Vec<SubtreeNodes> = parallel::map(&cuts.below, |&i| writer.subtree(i));
+    let count = cuts.above + subtrees.iter().map(|subtree| subtree.nodes.len()).sum::<usize>();
+    let mut all = SubtreeNodes { nodes: room(count), order: room(writer.node(0).count()) };
     // A tree of one leaf still needs a node to hold it.
-    all.nodes.push(Node::EMPTY);
-    emitter.fill(&mut all, 0, 0, &mut parts.iter());
+    all.nodes.push(WideNode::EMPTY);
+    writer.fill(&mut all, 0, 0, &mut subtrees.iter());
     (all.nodes, all.order)
 }
 
 /// Costs of a subtree as a forest of at most 1, 2, ... 7 roots.
 type Costs = [f32; WIDTH - 1];
 
-/// What is cheapest: bit 0 says whether the subtree is a leaf as a whole, and three bits from 3 i on, how many of at most i roots
-/// are in the left child, 0 where fewer roots cost no more.
+/// What is cheapest: bit 0 says whether the subtree is a leaf as a whole, and three bits from 3 i
+/// on, how many of at most i roots are in the left child, 0 where fewer roots cost no more.
 #[derive(Clone, Copy, Default)]
 struct Plan(u32);
 
@@ -68,7 +70,8 @@ impl Plan {
     }
 }
 
-/// Least costs of two children's forests with so many roots together, and how many of them are the left one's.
+/// Least costs of two children's forests with so many roots together, and how many of them are the
+/// left one's.
 #[inline(always)]
 fn shared(left: &Costs, right: &Costs, roots: usize) -> (f32, usize) {
     let most = WIDTH - 1;
@@ -81,7 +84,7 @@ fn shared(left: &Costs, right: &Costs, roots: usize) -> (f32, usize) {
 }
 
 /// Finds what is cheapest for all nodes of a subtree.
-fn plan(nodes: &[binary::Node], plans: &mut [Plan], scale: f32, settings: &Settings) -> Costs {
+fn plan(nodes: &[binary::BinaryNode], plans: &mut [Plan], scale: f32, settings: &BuildSettings) -> Costs {
     let node = &nodes[0];
     let (area, count) = (half_area(node.min, node.max, scale), node.count());
     let leaf = if count <= settings.leaf_size { area * (settings.leaf_cost)(count) } else { f32::INFINITY };
@@ -93,7 +96,7 @@ fn plan(nodes: &[binary::Node], plans: &mut [Plan], scale: f32, settings: &Setti
     let (left_plans, right_plans) = rest.split_at_mut(node.right() - 1);
     let (left_nodes, right_nodes) = nodes[1..].split_at(node.right() - 1);
     let (left, right) = if count > PARALLEL {
-        rayon::join(
+        parallel::join(
             || plan(left_nodes, left_plans, scale, settings),
             || plan(right_nodes, right_plans, scale, settings),
         )
@@ -120,14 +123,15 @@ fn plan(nodes: &[binary::Node], plans: &mut [Plan], scale: f32, settings: &Setti
     costs
 }
 
-struct Emitter<'a> {
+struct NodeWriter<'a> {
     tree: &'a binary::Tree,
     plans: Vec<Plan>,
 }
 
-/// A wide node, all nodes below it, and the things of their leaves; addresses and things count from 0.
-struct Part {
-    nodes: Vec<Node>,
+/// A wide node, all nodes below it, and the things of their leaves; addresses and things count from
+/// 0.
+struct SubtreeNodes {
+    nodes: Vec<WideNode>,
     order: Vec<u32>,
 }
 
@@ -138,15 +142,16 @@ struct Children {
     count: usize,
 }
 
-/// Where a tree comes apart into parts that are made side by side: binary nodes, and how many wide nodes are above them.
+/// Where a tree comes apart into subtrees that are made side by side: binary nodes, and how many
+/// wide nodes are above them.
 #[derive(Default)]
-struct Seams {
+struct CutPoints {
     above: usize,
     below: Vec<usize>,
 }
 
-impl Emitter<'_> {
-    fn node(&self, i: usize) -> &binary::Node {
+impl NodeWriter<'_> {
+    fn node(&self, i: usize) -> &binary::BinaryNode {
         &self.tree.nodes[i]
     }
 
@@ -179,32 +184,34 @@ impl Emitter<'_> {
         self.forest(i + self.node(i).right(), roots - left, children);
     }
 
-    /// Finds, in the order of [`Emitter::fill`], nodes of so few references that what is below is not worth sharing.
-    fn seams(&self, i: usize, seams: &mut Seams) {
+    /// Finds, in the order of [`NodeWriter::fill`], nodes of so few references that what is below
+    /// is not worth sharing.
+    fn cuts(&self, i: usize, cuts: &mut CutPoints) {
         if self.node(i).count() <= PARALLEL {
-            return seams.below.push(i);
+            return cuts.below.push(i);
         }
-        seams.above += 1;
+        cuts.above += 1;
         let children = self.open(i);
         let inner = children.list[..children.count].iter().filter(|&&i| !self.plans[i].is_leaf());
-        inner.for_each(|&i| self.seams(i, seams));
+        inner.for_each(|&i| self.cuts(i, cuts));
     }
 
     /// A node of the children of a binary one, and all below.
-    fn part(&self, i: usize) -> Part {
+    fn subtree(&self, i: usize) -> SubtreeNodes {
         let count = self.node(i).count();
-        let mut part = Part { nodes: Vec::with_capacity(count / 16 + 1), order: Vec::with_capacity(count) };
-        part.nodes.push(Node::EMPTY);
-        self.fill(&mut part, 0, i, &mut [].iter());
-        part
+        let mut subtree = SubtreeNodes { nodes: Vec::with_capacity(count / 16 + 1), order: Vec::with_capacity(count) };
+        subtree.nodes.push(WideNode::EMPTY);
+        self.fill(&mut subtree, 0, i, &mut [].iter());
+        subtree
     }
 
-    /// Fills a node with the children of a binary one, and all below; where parts are ready, with those.
-    fn fill(&self, all: &mut Part, number: usize, i: usize, ready: &mut std::slice::Iter<Part>) {
+    /// Fills a node with the children of a binary one, and all below; where subtrees are ready,
+    /// with those.
+    fn fill(&self, all: &mut SubtreeNodes, number: usize, i: usize, ready: &mut std::slice::Iter<SubtreeNodes>) {
         if self.node(i).count() <= PARALLEL
-            && let Some(part) = ready.next()
+            && let Some(subtree) = ready.next()
         {
-            return all.append(number, part);
+            return all.append(number, subtree);
         }
         let (first, inner) = self.wide(all, number, i);
         for (offset, &i) in inner.list[..inner.count].iter().enumerate() {
@@ -212,36 +219,37 @@ impl Emitter<'_> {
         }
     }
 
-    /// Fills a node with the children of a binary one; gives where the inner ones of these are to be, and which they are.
+    /// Fills a node with the children of a binary one; gives where the inner ones of these are to
+    /// be, and which they are.
     ///
-    /// What a ray is likely to need together lies together: first the leaves of a node, then its inner children, side
-    /// by side, and then what is below each of them.
-    fn wide(&self, part: &mut Part, number: usize, i: usize) -> (usize, Children) {
+    /// What a ray is likely to need together lies together: first the leaves of a node, then its
+    /// inner children, side by side, and then what is below each of them.
+    fn wide(&self, subtree: &mut SubtreeNodes, number: usize, i: usize) -> (usize, Children) {
         let children = self.open(i);
         let list = &children.list[..children.count];
         let mut bounds = [Aabb::EMPTY; WIDTH];
         bounds.iter_mut().zip(list).for_each(|(bounds, &i)| *bounds = self.node(i).bounds());
         let (from_last, places) = places(&bounds[..list.len()]);
-        part.nodes[number].from_last = from_last;
-        let first = part.nodes.len();
+        subtree.nodes[number].from_last = from_last;
+        let first = subtree.nodes.len();
         let mut inner = Children::default();
         for (k, &i) in list.iter().enumerate() {
             let child = if self.plans[i].is_leaf() {
-                self.leaf(part, i)
+                self.leaf(subtree, i)
             } else {
                 inner.list[inner.count] = i;
                 inner.count += 1;
-                part.nodes[number].first = node::address(first);
-                node::address(first + inner.count - 1)
+                subtree.nodes[number].first = node::node_offset(first);
+                node::node_offset(first + inner.count - 1)
             };
-            part.nodes[number].set(places[k], bounds[k], child);
+            subtree.nodes[number].set(places[k], bounds[k], child);
         }
-        part.nodes.resize(first + inner.count, Node::EMPTY);
+        subtree.nodes.resize(first + inner.count, WideNode::EMPTY);
         (first, inner)
     }
 
     /// Writes a leaf of everything below a binary node.
-    fn leaf(&self, part: &mut Part, i: usize) -> u32 {
+    fn leaf(&self, subtree: &mut SubtreeNodes, i: usize) -> u32 {
         let (mut items, mut count) = ([0; LEAF_SIZE], 0);
         let most = self.node(i).count();
         for leaf in self.tree.nodes[i..].iter().filter(|node| node.is_leaf()) {
@@ -265,19 +273,19 @@ impl Emitter<'_> {
             }
             count = different;
         }
-        let first = part.order.len();
-        part.order.extend_from_slice(&items[..count]);
+        let first = subtree.order.len();
+        subtree.order.extend_from_slice(&items[..count]);
         node::leaf(first, count)
     }
 }
 
-impl Part {
-    /// Puts another part's first node to a place, and the others to the end.
-    fn append(&mut self, number: usize, other: &Part) {
+impl SubtreeNodes {
+    /// Puts another subtree's first node to a place, and the others to the end.
+    fn append(&mut self, number: usize, other: &SubtreeNodes) {
         // No address is too great if that of the last is not.
-        node::address(self.nodes.len() + other.nodes.len() - 2);
-        let (nodes, items) = (node::address(self.nodes.len() - 1), self.order.len() as u32);
-        let moved = |node: &Node| {
+        node::node_offset(self.nodes.len() + other.nodes.len() - 2);
+        let (nodes, items) = (node::node_offset(self.nodes.len() - 1), self.order.len() as u32);
+        let moved = |node: &WideNode| {
             let mut moved = *node;
             moved.first += nodes;
             for (place, _, child) in node.children() {
@@ -286,16 +294,18 @@ impl Part {
             moved
         };
         let mut moved = other.nodes.iter().map(moved);
-        self.nodes[number] = moved.next().expect("a part begins with its node");
+        self.nodes[number] = moved.next().expect("a subtree begins with its node");
         self.nodes.extend(moved);
         self.order.extend_from_slice(&other.order);
     }
 }
 
-/// What [`Node::from_last`] is where children rise along an axis, the first and the last with such areas.
+/// What [`WideNode::from_last`] is where children rise along an axis, the first and the last with
+/// such areas.
 ///
-/// If the nearest hit is wanted, they come from near to far. Where any will do, from far to near: a ray begins on a surface that it leaves,
-/// and what is near is that surface. But in a box at the far end that is small beside that at the near end a hit is less likely.
+/// If the nearest hit is wanted, they come from near to far. Where any will do, from far to near: a
+/// ray begins on a surface that it leaves, and what is near is that surface. But in a box at the
+/// far end that is small beside that at the near end a hit is less likely.
 fn from_last(axis: usize, [first, last]: [f32; 2]) -> [u32; 2] {
     const NEGATIVE: [u32; 3] = [0b1010_1010, 0b1100_1100, 0b1111_0000];
     const SMALL: f32 = 0.5;
@@ -304,10 +314,10 @@ fn from_last(axis: usize, [first, last]: [f32; 2]) -> [u32; 2] {
     [negative, any & 255]
 }
 
-/// A place for each of some children, and what [`Node::from_last`] then is.
+/// A place for each of some children, and what [`WideNode::from_last`] then is.
 ///
-/// They are in order along the axis along which they lie apart best: two that are apart are met in the right order by every ray; that they
-/// both are met is the likelier the greater they are.
+/// They are in order along the axis along which they lie apart best: two that are apart are met in
+/// the right order by every ray; that they both are met is the likelier the greater they are.
 fn places(bounds: &[Aabb]) -> ([u32; 2], [usize; WIDTH]) {
     let mut areas = [0.0; WIDTH];
     areas.iter_mut().zip(bounds).for_each(|(area, bounds)| *area = bounds.half_area());
@@ -341,8 +351,9 @@ fn places(bounds: &[Aabb]) -> ([u32; 2], [usize; WIDTH]) {
 mod tests {
     use super::*;
 
-    /// Of two children that are apart along an axis, whichever comes first and whichever is greater, the nearer one is first if the
-    /// nearest hit is wanted; if any will do the farther one, unless it is less than half as large.
+    /// Of two children that are apart along an axis, whichever comes first and whichever is
+    /// greater, the nearer one is first if the nearest hit is wanted; if any will do the farther
+    /// one, unless it is less than half as large.
     #[test]
     fn children_come_in_the_order_that_rays_want() {
         let child = |axis: usize, at: f32, size: f32| {

@@ -1,8 +1,10 @@
 //! AVX2 with FMA.
 
+use super::operations::{Kernel, Lanes, Numbers};
+use super::stack::Stack;
 use super::wide::Two;
-use super::{Kernel, Lanes, Numbers, Stack, WIDTH};
 use crate::math::Triple;
+use crate::node::WIDTH;
 use std::arch::asm;
 use std::arch::x86_64::*;
 
@@ -30,7 +32,8 @@ pub unsafe fn run<K: Kernel>(kernel: K) -> K::Output {
 /// What an operation's safety rests on, said once.
 macro_rules! proven {
     ($($code:tt)*) => {
-        // SAFETY: a value of the type proves that the processor has the instructions; references are valid.
+        // SAFETY: a value of the type proves that the processor has the instructions; references
+        // are valid.
         unsafe { $($code)* }
     };
 }
@@ -124,11 +127,11 @@ macro_rules! order_of_eight {
             proven!([greater(z[0], enter), lesser(z[1], leave)])
         }
         #[inline(always)]
-        fn nearest(self, a: __m256, which: __m256, codes: &[u8; WIDTH]) -> u32 {
+        fn nearest(self, a: __m256, which: __m256, child_tags: &[u8; WIDTH]) -> u32 {
             proven! {
                 let (a, which) = (_mm256_castps_si256(a), _mm256_castps_si256(which));
-                let codes = _mm256_cvtepu8_epi32(_mm_loadl_epi64(codes.as_ptr().cast()));
-                let key = _mm256_or_si256(_mm256_and_si256(a, _mm256_set1_epi32(!255)), codes);
+                let child_tags = _mm256_cvtepu8_epi32(_mm_loadl_epi64(child_tags.as_ptr().cast()));
+                let key = _mm256_or_si256(_mm256_and_si256(a, _mm256_set1_epi32(!255)), child_tags);
                 $crate::lanes::avx2::least(_mm256_or_si256(key, _mm256_xor_si256(which, _mm256_set1_epi32(-1))))
             }
         }
@@ -154,10 +157,14 @@ pub(super) use order_of_eight;
 
 /// Nine rows.
 #[inline(always)]
-pub(super) fn corners(from: &super::Rows, super::Columns { starts, corner }: super::Columns) -> [[__m256; 3]; 3] {
+pub(super) fn corners(
+    from: &super::operations::Rows,
+    super::operations::Columns { starts, corner }: super::operations::Columns,
+) -> [[__m256; 3]; 3] {
     macro_rules! row {
         ($corner:literal, $k:literal) => {
-            // SAFETY: by `Columns::new` it begins in one of the first nine rows; the features are proven by the caller.
+            // SAFETY: by `Columns::new` it begins in one of the first nine rows; the features are
+            // proven by the caller.
             unsafe { _mm256_loadu_ps(from.as_ptr().add(starts[$k]).add($corner * corner)) }
         };
     }
@@ -174,7 +181,8 @@ pub(super) fn least(a: __m256i) -> u32 {
     }
 }
 
-/// An instruction as it stands, which the compiler takes for no other, and of which it changes no order.
+/// An instruction as it stands, which the compiler takes for no other, and of which it changes no
+/// order.
 macro_rules! literally {
     ($name:ident = $instruction:literal) => {
         /// # Safety
@@ -198,8 +206,9 @@ macro_rules! literally {
         }
     };
 }
-// Of signed integers. Of the intrinsics, the compiler compares what is last with what comes right before it first, and makes masks of
-// comparisons, which takes longer. (Where all are compared so, not the last only, vectors must be moved between registers.)
+// Of signed integers. Of the intrinsics, the compiler compares what is last with what comes right
+// before it first, and makes masks of comparisons, which takes longer. (Where all are compared so,
+// not the last only, vectors must be moved between registers.)
 literally!(greater = "vpmaxsd");
 literally!(lesser = "vpminsd");
 literally!(is_greater = "vpcmpgtd");

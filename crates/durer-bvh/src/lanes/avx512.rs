@@ -1,7 +1,9 @@
 //! AVX-512 on eight lanes, with masks in registers of their own, and on sixteen.
 
 use super::avx2::{Four, arithmetic_of_eight, doubles, operations, order_of_eight, proven};
-use super::{Kernel, Lanes, Numbers, Stack, WIDE, WIDTH, Wide};
+use super::operations::{Kernel, Lanes, Numbers, WIDE, Wide};
+use super::stack::Stack;
+use crate::node::WIDTH;
 use std::arch::x86_64::*;
 
 /// Proof that the processor has AVX-512 F, VL and DQ beside what AVX2's level asks for.

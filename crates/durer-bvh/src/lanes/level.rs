@@ -1,12 +1,13 @@
 //! Which instructions are used: chosen once, by what the processor has and `DURER_SIMD`.
 
-use super::{Kernel, scalar};
+use super::operations::Kernel;
+use super::scalar;
 use std::fmt;
 use std::sync::OnceLock;
 
 /// A set of instructions for eight lanes. All give the same hits, bit for bit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Level {
+pub enum SimdLevel {
     /// Plain code, for any processor.
     Scalar,
     /// AVX2 and FMA, on x86-64.
@@ -19,25 +20,29 @@ pub enum Level {
 
 /// `DURER_SIMD` says something that this processor cannot do.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct UnknownLevel {
+pub struct UnknownSimdLevel {
     word: String,
     known: String,
 }
 
-impl fmt::Display for UnknownLevel {
+impl fmt::Display for UnknownSimdLevel {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         write!(f, "DURER_SIMD is `{}`, but here it can be: {}", self.word, self.known)
     }
 }
 
-impl std::error::Error for UnknownLevel {}
+impl std::error::Error for UnknownSimdLevel {}
 
-impl Level {
-    const ALL: [(Level, &str); 4] =
-        [(Level::Scalar, "scalar"), (Level::Neon, "neon"), (Level::Avx2, "avx2"), (Level::Avx512, "avx512")];
+impl SimdLevel {
+    const ALL: [(SimdLevel, &str); 4] = [
+        (SimdLevel::Scalar, "scalar"),
+        (SimdLevel::Neon, "neon"),
+        (SimdLevel::Avx2, "avx2"),
+        (SimdLevel::Avx512, "avx512"),
+    ];
 
     /// The levels that this processor has, the plain one first and the best last.
-    pub fn available() -> impl Iterator<Item = Level> {
+    pub fn available() -> impl Iterator<Item = SimdLevel> {
         Self::ALL.into_iter().map(|(level, _)| level).filter(|level| level.is_available())
     }
 
@@ -51,34 +56,35 @@ impl Level {
     /// # Errors
     ///
     /// If the variable names no level that this processor has.
-    pub fn from_environment() -> Result<Level, UnknownLevel> {
+    pub fn from_environment() -> Result<SimdLevel, UnknownSimdLevel> {
         let word = std::env::var("DURER_SIMD").unwrap_or_default();
         if word.is_empty() {
             return Ok(Self::best());
         }
-        let known = || Self::available().map(Level::name).collect::<Vec<_>>().join(", ");
-        Self::available().find(|level| level.name() == word).ok_or_else(|| UnknownLevel { word, known: known() })
+        let known = || Self::available().map(SimdLevel::name).collect::<Vec<_>>().join(", ");
+        Self::available().find(|level| level.name() == word).ok_or_else(|| UnknownSimdLevel { word, known: known() })
     }
 
-    /// As [`Level::from_environment`], looked up once; the best one where the variable is wrong.
-    pub fn chosen() -> Level {
-        static CHOSEN: OnceLock<Level> = OnceLock::new();
+    /// As [`SimdLevel::from_environment`], looked up once; the best one where the variable is
+    /// wrong.
+    pub fn chosen() -> SimdLevel {
+        static CHOSEN: OnceLock<SimdLevel> = OnceLock::new();
         *CHOSEN.get_or_init(|| Self::from_environment().unwrap_or_else(|_| Self::best()))
     }
 
-    fn best() -> Level {
-        Self::available().last().unwrap_or(Level::Scalar)
+    fn best() -> SimdLevel {
+        Self::available().last().unwrap_or(SimdLevel::Scalar)
     }
 
     fn is_available(self) -> bool {
         match self {
-            Level::Scalar => true,
+            SimdLevel::Scalar => true,
             #[cfg(target_arch = "x86_64")]
-            Level::Avx2 => super::avx2::is_available(),
+            SimdLevel::Avx2 => super::avx2::is_available(),
             #[cfg(target_arch = "x86_64")]
-            Level::Avx512 => super::avx512::is_available(),
+            SimdLevel::Avx512 => super::avx512::is_available(),
             #[cfg(target_arch = "aarch64")]
-            Level::Neon => true,
+            SimdLevel::Neon => true,
             #[allow(unreachable_patterns)]
             _ => false,
         }
@@ -87,16 +93,16 @@ impl Level {
 
 /// A level that the processor was found to have.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Available(Level);
+pub(crate) struct Available(SimdLevel);
 
 impl Available {
     pub fn chosen() -> Self {
-        Available(Level::chosen())
+        Available(SimdLevel::chosen())
     }
 
     /// The level; the plain one where the processor has not got it.
-    pub fn or_scalar(level: Level) -> Self {
-        Available(if level.is_available() { level } else { Level::Scalar })
+    pub fn or_scalar(level: SimdLevel) -> Self {
+        Available(if level.is_available() { level } else { SimdLevel::Scalar })
     }
 
     /// Runs a kernel at this level.
@@ -105,12 +111,12 @@ impl Available {
         match self.0 {
             // SAFETY: the processor has it, or there would be no such value.
             #[cfg(target_arch = "x86_64")]
-            Level::Avx512 => unsafe { super::avx512::run(kernel) },
+            SimdLevel::Avx512 => unsafe { super::avx512::run(kernel) },
             // SAFETY: as above.
             #[cfg(target_arch = "x86_64")]
-            Level::Avx2 => unsafe { super::avx2::run(kernel) },
+            SimdLevel::Avx2 => unsafe { super::avx2::run(kernel) },
             #[cfg(target_arch = "aarch64")]
-            Level::Neon => kernel.run(super::neon::Neon),
+            SimdLevel::Neon => kernel.run(super::neon::Neon),
             _ => plain(kernel),
         }
     }

@@ -1,8 +1,10 @@
 //! NEON: eight lanes as two vectors of four.
 
+use super::operations::{Lanes, Numbers};
+use super::stack::Stack;
 use super::wide::Two;
-use super::{Lanes, Numbers, Stack, WIDTH};
 use crate::math::Doubles;
+use crate::node::WIDTH;
 use std::arch::aarch64::*;
 
 /// Every 64-bit ARM has NEON.
@@ -171,7 +173,11 @@ impl Lanes for Neon {
         proven!(Pair(vld1q_f32(from.as_ptr()), vld1q_f32(from.as_ptr().add(4))))
     }
     #[inline(always)]
-    fn corners(self, from: &super::Rows, super::Columns { starts, corner }: super::Columns) -> [[Pair; 3]; 3] {
+    fn corners(
+        self,
+        from: &super::operations::Rows,
+        super::operations::Columns { starts, corner }: super::operations::Columns,
+    ) -> [[Pair; 3]; 3] {
         std::array::from_fn(|k| {
             starts.map(|start| match from[k * corner + start..].first_chunk() {
                 Some(row) => self.load(row),
@@ -215,15 +221,15 @@ impl Lanes for Neon {
         proven!(bits(vcltzq_s32(vreinterpretq_s32_f32(a.0)), vcltzq_s32(vreinterpretq_s32_f32(a.1))))
     }
     #[inline(always)]
-    fn nearest(self, a: Pair, which: Pair, codes: &[u8; WIDTH]) -> u32 {
+    fn nearest(self, a: Pair, which: Pair, child_tags: &[u8; WIDTH]) -> u32 {
         proven! {
-            let key = |a, which, codes| {
-                let key = vorrq_u32(vbicq_u32(vreinterpretq_u32_f32(a), vdupq_n_u32(255)), codes);
+            let key = |a, which, child_tags| {
+                let key = vorrq_u32(vbicq_u32(vreinterpretq_u32_f32(a), vdupq_n_u32(255)), child_tags);
                 vornq_u32(key, vreinterpretq_u32_f32(which))
             };
-            let codes = vmovl_u8(vld1_u8(codes.as_ptr()));
-            let low = key(a.0, which.0, vmovl_u16(vget_low_u16(codes)));
-            vminvq_u32(vminq_u32(low, key(a.1, which.1, vmovl_high_u16(codes))))
+            let child_tags = vmovl_u8(vld1_u8(child_tags.as_ptr()));
+            let low = key(a.0, which.0, vmovl_u16(vget_low_u16(child_tags)));
+            vminvq_u32(vminq_u32(low, key(a.1, which.1, vmovl_high_u16(child_tags))))
         }
     }
     #[inline(always)]

@@ -1,6 +1,6 @@
 //! Large pages of memory.
 
-use rayon::prelude::*;
+use crate::parallel;
 
 /// An empty list with room for so many things, on large pages.
 pub fn room<T>(count: usize) -> Vec<T> {
@@ -9,17 +9,17 @@ pub fn room<T>(count: usize) -> Vec<T> {
     room
 }
 
-/// A list of what belongs to 0, 1, 2, ..., on large pages, with room for so many more. All threads write it: to touch memory for the first
-/// time takes longer than to write to it.
+/// A list of what belongs to 0, 1, 2, ..., on large pages, with room for so many more. All threads
+/// write it: to touch memory for the first time takes longer than to write to it.
 pub fn listed<T: Send>(count: usize, more: usize, of: impl Fn(usize) -> T + Sync + Send) -> Vec<T> {
     const AT_ONCE: usize = 4096;
     let mut all = room(count + more);
-    all.par_extend((0..count).into_par_iter().with_min_len(AT_ONCE).map(of));
+    parallel::extend(&mut all, count, AT_ONCE, of);
     all
 }
 
-/// Asks the system to put room for so many things, in which nothing has been written yet, on large pages where it is large enough: a
-/// processor knows the places of only so many pages by heart.
+/// Asks the system to put room for so many things, in which nothing has been written yet, on large
+/// pages where it is large enough: a processor knows the places of only so many pages by heart.
 fn large_pages<T>(room: *const T, count: usize) {
     #[cfg(target_os = "linux")]
     {

@@ -1,8 +1,10 @@
 //! Plain code.
 
+use super::operations::{Lanes, Numbers};
+use super::stack::Stack;
 use super::wide::Two;
-use super::{Lanes, Numbers, Stack, WIDTH};
 use crate::math::Doubles;
+use crate::node::WIDTH;
 use std::array::from_fn;
 
 #[derive(Clone, Copy)]
@@ -128,7 +130,11 @@ impl Lanes for Scalar {
         *from
     }
     #[inline(always)]
-    fn corners(self, from: &super::Rows, super::Columns { starts, corner }: super::Columns) -> [[F; 3]; 3] {
+    fn corners(
+        self,
+        from: &super::operations::Rows,
+        super::operations::Columns { starts, corner }: super::operations::Columns,
+    ) -> [[F; 3]; 3] {
         from_fn(|k| starts.map(|start| from_fn(|lane| from[k * corner + start + lane])))
     }
     #[inline(always)]
@@ -153,8 +159,8 @@ impl Lanes for Scalar {
         mask(|i| a[i].is_sign_negative())
     }
     #[inline(always)]
-    fn nearest(self, a: F, which: F, codes: &[u8; WIDTH]) -> u32 {
-        let key = |i: usize| a[i].to_bits() & !255 | u32::from(codes[i]) | !which[i].to_bits();
+    fn nearest(self, a: F, which: F, child_tags: &[u8; WIDTH]) -> u32 {
+        let key = |i: usize| a[i].to_bits() & !255 | u32::from(child_tags[i]) | !which[i].to_bits();
         (0..WIDTH).fold(u32::MAX, |least, i| least.min(key(i)))
     }
     #[inline(always)]

@@ -1,34 +1,36 @@
 //! Nodes that are still to be visited, each with the distance at which the ray enters it.
 
-use super::WIDTH;
+use crate::node::{MAX_DEPTH, WIDTH};
 use std::mem::MaybeUninit;
 
-/// As high as the stack of a tree of [`DEEPEST`](crate::DEEPEST) levels can get, and a vector's width more.
-const ROOM: usize = (WIDTH - 1) * crate::DEEPEST + 2 * WIDTH;
+/// As high as the stack of a tree of [`MAX_DEPTH`](crate::node::MAX_DEPTH) levels can get, and a
+/// vector's width more.
+const ROOM: usize = (WIDTH - 1) * MAX_DEPTH + 2 * WIDTH;
 
-/// Where a stack lies. It costs nothing to make: what lies above the stack's height is never initialised.
-pub struct Room {
+/// Where a stack lies. It costs nothing to make: what lies above the stack's height is never
+/// initialised.
+pub struct StackStorage {
     children: MaybeUninit<[u32; ROOM]>,
     near: MaybeUninit<[f32; ROOM]>,
 }
 
-impl Room {
+impl StackStorage {
     #[inline(always)]
     pub fn new() -> Self {
-        Room { children: MaybeUninit::uninit(), near: MaybeUninit::uninit() }
+        StackStorage { children: MaybeUninit::uninit(), near: MaybeUninit::uninit() }
     }
 }
 
 /// A stack of nodes.
 pub struct Stack<'a> {
     // Apart from the height: a constant of both would be written out in full for every ray.
-    room: &'a mut Room,
+    room: &'a mut StackStorage,
     height: usize,
 }
 
 impl<'a> Stack<'a> {
     #[inline(always)]
-    pub fn new(room: &'a mut Room) -> Self {
+    pub fn new(room: &'a mut StackStorage) -> Self {
         Stack { room, height: 0 }
     }
 
@@ -52,7 +54,8 @@ impl<'a> Stack<'a> {
         Some(unsafe { (*children.add(height), *near.add(height)) })
     }
 
-    /// The topmost child that is entered at `far` or before; it and those above are removed. There must be one.
+    /// The topmost child that is entered at `far` or before; it and those above are removed. There
+    /// must be one.
     #[inline(always)]
     pub fn pop_until(&mut self, far: f32) -> u32 {
         loop {

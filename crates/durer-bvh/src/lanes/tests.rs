@@ -2,7 +2,10 @@
 
 use super::*;
 use crate::math::random::{Random, rounds};
+use crate::math::{Doubles, Triple};
+use crate::watertight::AxisOrder;
 use crate::watertight::turned_axes;
+use glam::Vec3A;
 
 /// Numbers on which arithmetic may stumble.
 const SPECIAL: [f32; 14] = [
@@ -25,7 +28,8 @@ const SPECIAL: [f32; 14] = [
 fn number(random: &mut Random) -> f32 {
     match random.below(4) {
         0 => SPECIAL[random.below(SPECIAL.len())],
-        // No NaN is signaling: on ARM the compiler makes one instruction of `if a > b { a } else { b }`, which lets those pass.
+        // No NaN is signaling: on ARM the compiler makes one instruction of `if a > b { a } else {
+        // b }`, which lets those pass.
         1 => match f32::from_bits(random.bits() as u32) {
             x if x.is_nan() => f32::NAN,
             x => x,
@@ -39,7 +43,7 @@ struct Input {
     floats: [[f32; WIDTH]; 3],
     rows: Rows,
     stride: usize,
-    turn: Turn,
+    turn: AxisOrder,
     order: [u8; WIDTH],
     count: u32,
     mask: u32,
@@ -60,8 +64,8 @@ impl Input {
 /// Everything that lanes do but [`Numbers::mul_add`], as bits; all that are no number as the same.
 struct Everything<'a>(&'a Input);
 
-/// Vectors that are looked at for each input: of arithmetic, in double precision, two halves joined, of comparison, a stack before and
-/// after, nine rows, and columns; and twice as wide ones.
+/// Vectors that are looked at for each input: of arithmetic, in double precision, two halves
+/// joined, of comparison, a stack before and after, nine rows, and columns; and twice as wide ones.
 const OPERATIONS: usize = 12 + 3 * 7 + 2 + 9 + 5 + 2 + 9 + WIDTH + 2 * 11;
 
 impl Kernel for Everything<'_> {
@@ -75,7 +79,7 @@ impl Kernel for Everything<'_> {
         let number = |x: f32| if x.is_nan() { f32::NAN.to_bits() } else { x.to_bits() };
         // Vectors come out through the stack.
         let mut tell = |v: L::Floats, count: usize| {
-            let mut room = Room::new();
+            let mut room = StackStorage::new();
             let mut stack = Stack::new(&mut room);
             lanes.push(&mut stack, &[7; WIDTH], v, &[0, 1, 2, 3, 4, 5, 6, 7], count as u32);
             let (_, near, height) = stack.all();
@@ -123,7 +127,7 @@ impl Kernel for Everything<'_> {
         let (met, nearest) = (lanes.signs(before), lanes.nearest(enter, before, &[10, 250, 12, 30, 14, 15, 201, 17]));
         found.extend(if met == 0 { [0; 2] } else { [met, nearest] });
         found.push(lanes.signs(a));
-        let mut room = Room::new();
+        let mut room = StackStorage::new();
         let mut stack = Stack::new(&mut room);
         let children = [10, 11, 12, 13, 14, 15, 16, 17];
         lanes.push(&mut stack, &children, a, order, *count);
@@ -169,9 +173,9 @@ fn every_level_gives_the_same_bits() {
     for round in 0..inputs {
         let input = Input::random(&mut random);
         let expected = Everything(&input).run(scalar::Scalar);
-        for level in Level::available() {
+        for level in SimdLevel::available() {
             assert_eq!(Available::or_scalar(level).run(Everything(&input)), expected, "{round} {level:?}");
         }
     }
-    println!("{} lanes at {} levels", inputs * WIDTH * OPERATIONS, Level::available().count());
+    println!("{} lanes at {} levels", inputs * WIDTH * OPERATIONS, SimdLevel::available().count());
 }

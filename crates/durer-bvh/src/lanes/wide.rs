@@ -1,21 +1,8 @@
-//! Sixteen numbers side by side, for rays that go together: one vector of AVX-512, or two of eight lanes.
+//! Sixteen numbers side by side, for rays that go together: one vector of AVX-512, or two of eight
+//! lanes.
 
-use super::{Lanes, Numbers, WIDTH};
-
-/// How many numbers lie side by side.
-pub const WIDE: usize = 2 * WIDTH;
-
-/// What can be done with sixteen numbers.
-pub(crate) trait Wide: Numbers {
-    fn load(self, from: &[f32; WIDE]) -> Self::Floats;
-    fn store(self, a: Self::Floats) -> [f32; WIDE];
-    /// `a` in the lanes whose bits are set, `b` in others. Bits stay as they are.
-    fn select(self, mask: u32, a: Self::Floats, b: Self::Floats) -> Self::Floats;
-    /// The least of all lanes, none of which is NaN.
-    fn least(self, a: Self::Floats) -> f32;
-    /// The greatest of all lanes, none of which is NaN.
-    fn greatest(self, a: Self::Floats) -> f32;
-}
+use super::operations::{Lanes, Numbers, WIDE, Wide};
+use crate::node::WIDTH;
 
 /// Two vectors of eight lanes.
 #[derive(Clone, Copy)]

@@ -1,4 +1,4 @@
-use super::Vec3;
+use glam::Vec3;
 
 /// An axis-aligned box. Empty when `min` exceeds `max` in any axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,46 +19,56 @@ impl Aabb {
     }
 
     /// The least box around this one and a point.
+    #[inline]
     pub fn with(self, point: Vec3) -> Self {
         Aabb { min: self.min.min(point), max: self.max.max(point) }
     }
 
     /// The least box around both.
+    #[inline]
     pub fn union(self, other: Aabb) -> Self {
         Aabb { min: self.min.min(other.min), max: self.max.max(other.max) }
     }
 
     /// The greatest coordinate of its corners, without signs.
+    #[inline]
     pub fn reach(&self) -> f32 {
         self.min.abs().max(self.max.abs()).max_element()
     }
 
     /// Whether a point lies in it or on its border.
+    #[inline]
     pub fn holds(&self, point: Vec3) -> bool {
         point.cmpge(self.min).all() && point.cmple(self.max).all()
     }
 
     /// Whether the box contains no point.
+    #[inline]
     pub fn is_empty(&self) -> bool {
         !self.min.cmple(self.max).all()
     }
 
     /// Edge lengths; zero for an empty box.
+    #[inline]
     pub fn size(&self) -> Vec3 {
         (self.max - self.min).max(Vec3::ZERO)
     }
 
     /// The middle.
+    #[inline]
     pub fn center(&self) -> Vec3 {
         0.5 * self.min + 0.5 * self.max
     }
 
-    /// Whether it lies so far from the origin for its size that single precision is coarse on it: by 256 times its size.
+    /// Whether it lies so far from the origin for its size that single precision is coarse on it:
+    /// by 256 times its size.
+    #[inline]
     pub fn is_far(self) -> bool {
         self.center().abs().max_element() > 256.0 * self.size().max_element()
     }
 
     /// Half the surface area: what the surface area heuristic compares.
+    #[inline]
     pub fn half_area(&self) -> f32 {
         let d = self.size();
         d.x * d.y + d.y * d.z + d.z * d.x
@@ -74,7 +84,8 @@ impl Aabb {
 
     /// The interval of `t` for which `origin + t * dir` lies in the closed box, if any.
     ///
-    /// Slabs are chosen by the sign of the direction; a ray that lies in a face of the box is inside.
+    /// Slabs are chosen by the sign of the direction; a ray that lies in a face of the box is
+    /// inside.
     pub fn clip(&self, origin: Vec3, dir: Vec3) -> Option<(f32, f32)> {
         let (mut enter, mut leave) = (f32::NEG_INFINITY, f32::INFINITY);
         for axis in 0..3 {

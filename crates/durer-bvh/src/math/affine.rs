@@ -1,9 +1,12 @@
-use super::{Aabb, Line, Ray, Ray64, Vec3, gamma};
-use glam::{DAffine3, DVec3};
+use super::aabb::Aabb;
+use super::ray::{Line, Ray, Ray64};
+use super::rounding::gamma;
+use glam::{DAffine3, DVec3, Vec3};
 
 /// An invertible affine map between two spaces, with its inverse.
 ///
-/// Kept and applied in double precision, and rounded once: what is far away keeps its digits on the way back.
+/// Kept and applied in double precision, and rounded once: what is far away keeps its digits on the
+/// way back.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Affine {
     forward: DAffine3,
@@ -29,47 +32,56 @@ impl Affine {
     }
 
     /// Whether this map moves nothing.
+    #[inline]
     pub fn is_identity(&self) -> bool {
         *self == Affine::IDENTITY
     }
 
     /// Whether it makes left of right.
+    #[inline]
     pub fn mirrors(&self) -> bool {
         self.forward.matrix3.determinant() < 0.0
     }
 
     /// Maps a point forward.
+    #[inline]
     pub fn point(&self, p: Vec3) -> Vec3 {
         self.point64(p).as_vec3()
     }
 
     /// Maps a point forward, without rounding the image to single precision.
+    #[inline]
     pub fn point64(&self, p: Vec3) -> DVec3 {
         self.forward.transform_point3(p.as_dvec3())
     }
 
     /// Maps a point backward.
+    #[inline]
     pub fn inverse_point(&self, p: Vec3) -> Vec3 {
         self.inverse.transform_point3(p.as_dvec3()).as_vec3()
     }
 
     /// Maps a vector forward: moving changes nothing.
+    #[inline]
     pub fn vector(&self, v: Vec3) -> Vec3 {
         self.forward.transform_vector3(v.as_dvec3()).as_vec3()
     }
 
     /// Maps a unit normal forward, by the inverse transpose; of unit length again.
+    #[inline]
     pub fn normal(&self, n: Vec3) -> Vec3 {
         let image = self.inverse.matrix3.transpose() * n.as_dvec3();
         image.normalize_or(n.as_dvec3()).as_vec3()
     }
 
     /// The unit normal whose image by [`Affine::normal`] is this one.
+    #[inline]
     pub fn local_normal(&self, n: Vec3) -> Vec3 {
         (self.forward.matrix3.transpose() * n.as_dvec3()).normalize_or(n.as_dvec3()).as_vec3()
     }
 
     /// Maps a normal forward as [`Affine::normal`], but leaves it the length that comes of it.
+    #[inline]
     pub fn long_normal(&self, n: Vec3) -> Vec3 {
         (self.inverse.matrix3.transpose() * n.as_dvec3()).as_vec3()
     }
@@ -84,6 +96,7 @@ impl Affine {
     }
 
     /// Maps the line through a ray backward, in double precision. `t` keeps its meaning.
+    #[inline]
     pub fn inverse_line(&self, ray: &Ray64) -> Line {
         let Line { origin, dir } = ray.line();
         Line { origin: self.inverse.transform_point3(origin), dir: self.inverse.transform_vector3(dir) }
@@ -91,8 +104,9 @@ impl Affine {
 
     /// Bound on the absolute error of `point64(p)` when `p` itself is known to within `error`.
     ///
-    /// The roundings on the way forward and on a later way back are covered: of double precision in world space, where
-    /// 2^-40 leaves room for ill-conditioned maps, and of single precision in object space.
+    /// The roundings on the way forward and on a later way back are covered: of double precision in
+    /// world space, where 2^-40 leaves room for ill-conditioned maps, and of single precision in
+    /// object space.
     pub fn point_error(&self, p: Vec3, error: Vec3) -> Vec3 {
         const DOUBLE: f32 = 1.0 / (1u64 << 40) as f32;
         let far = self.forward.translation.abs().as_vec3() + self.spread(p.abs());
@@ -100,11 +114,13 @@ impl Affine {
     }
 
     /// Bounds on the components of the image of a vector that is known by such bounds.
+    #[inline]
     pub fn spread(&self, bound: Vec3) -> Vec3 {
         (self.forward.matrix3.abs() * bound.as_dvec3()).as_vec3()
     }
 
     /// As [`Affine::spread`], the other way.
+    #[inline]
     pub fn inverse_spread(&self, bound: Vec3) -> Vec3 {
         (self.inverse.matrix3.abs() * bound.as_dvec3()).as_vec3()
     }

@@ -1,15 +1,16 @@
 //! Random numbers for tests: the same in every run.
 
-use super::Vec3;
-use glam::{DAffine3, DMat3, DQuat};
+use glam::{DAffine3, DMat3, DQuat, Vec3};
 
-/// How often a test does something: as often as usual, times `DURER_ROUNDS` in the long runs of `cargo xtask long`.
+/// How often a test does something: as often as usual, times `DURER_ROUNDS` in the long runs of
+/// `cargo xtask long`.
 pub fn rounds(usual: usize) -> usize {
     let times = std::env::var("DURER_ROUNDS").ok();
     usual * times.map_or(1, |times| times.parse::<usize>().expect("DURER_ROUNDS is a whole number"))
 }
 
-/// A generator. Source: Steele, Lea, Flood, *Fast Splittable Pseudorandom Number Generators*, OOPSLA 2014.
+/// A generator. Source: Steele, Lea, Flood, *Fast Splittable Pseudorandom Number Generators*,
+/// OOPSLA 2014.
 pub struct Random(pub u64);
 
 impl Random {
@@ -57,8 +58,8 @@ impl Random {
         DMat3::from_quat(DQuat::from_axis_angle(axis, f64::from(self.between(-3.1, 3.1))))
     }
 
-    /// A stretch along turned axes, by factors from 1/`stretch` to `stretch`, sometimes mirrored; then a move within
-    /// a cube of this half size.
+    /// A stretch along turned axes, by factors from 1/`stretch` to `stretch`, sometimes mirrored;
+    /// then a move within a cube of this half size.
     pub fn affine(&mut self, stretch: f32, distance: f32) -> DAffine3 {
         let mut factor = || {
             let sign = if self.bits() & 1 == 0 { 1.0 } else { -1.0 };

@@ -1,5 +1,4 @@
-use super::Vec3;
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 
 /// A ray: the points `origin + t * dir` for `t` in the open interval (`t_min`, `t_max`).
 ///
@@ -21,21 +20,25 @@ pub struct Ray {
 
 impl Ray {
     /// The half-line from `origin` along `dir`.
+    #[inline]
     pub const fn new(origin: Vec3, dir: Vec3) -> Self {
         Ray { origin, dir, t_min: 0.0, t_max: f32::INFINITY }
     }
 
     /// The point at `t`.
+    #[inline]
     pub fn at(&self, t: f32) -> Vec3 {
         self.origin + t * self.dir
     }
 
     /// Whether `t` lies in the open interval of this ray. False for NaN.
+    #[inline]
     pub fn contains(&self, t: f32) -> bool {
         t > self.t_min && t < self.t_max
     }
 
     /// The whole line through it, in double precision.
+    #[inline]
     pub fn line(&self) -> Line {
         Line { origin: self.origin.as_dvec3(), dir: self.dir.as_dvec3() }
     }
@@ -43,8 +46,8 @@ impl Ray {
 
 /// A ray whose origin is known in double precision.
 ///
-/// What the world is asked with: far from the origin of coordinates, single precision would move a secondary ray off the
-/// surface that it starts from, and through the wall beside it.
+/// What the world is asked with: far from the origin of coordinates, single precision would move a
+/// secondary ray off the surface that it starts from, and through the wall beside it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ray64 {
     /// The ray with its origin rounded to single precision.
@@ -55,6 +58,7 @@ pub struct Ray64 {
 
 impl Ray64 {
     /// The ray from `origin` along `dir` in an open interval of `t`.
+    #[inline]
     pub fn new(origin: DVec3, dir: Vec3, t_min: f32, t_max: f32) -> Self {
         let near = origin.as_vec3();
         let rest = (origin - near.as_dvec3()).as_vec3();
@@ -74,24 +78,28 @@ impl Ray64 {
     }
 
     /// The whole line through it.
+    #[inline]
     pub fn line(&self) -> Line {
         Line { origin: self.origin(), dir: self.rounded.dir.as_dvec3() }
     }
 }
 
 impl From<Ray> for Ray64 {
+    #[inline]
     fn from(rounded: Ray) -> Self {
         Ray64 { rounded, rest: Vec3::ZERO }
     }
 }
 
 impl From<&Ray> for Ray64 {
+    #[inline]
     fn from(ray: &Ray) -> Self {
         Ray64::from(*ray)
     }
 }
 
 impl From<&Ray64> for Ray64 {
+    #[inline]
     fn from(ray: &Ray64) -> Self {
         *ray
     }
@@ -108,16 +116,19 @@ pub struct Line {
 
 impl Line {
     /// The point at `t`.
+    #[inline]
     pub fn at(&self, t: f64) -> DVec3 {
         self.origin + t * self.dir
     }
 
     /// The `t` at which the line is nearest to a point.
+    #[inline]
     pub fn nearest(&self, point: DVec3) -> f64 {
         (point - self.origin).dot(self.dir) / self.dir.dot(self.dir)
     }
 
     /// Whether it can meet anything: all finite, with a direction.
+    #[inline]
     pub fn is_sound(&self) -> bool {
         self.origin.is_finite() && self.dir.is_finite() && self.dir != DVec3::ZERO
     }

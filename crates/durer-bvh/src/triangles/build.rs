@@ -1,34 +1,83 @@
 //! Making a tree of triangles, and making it fit again when vertices have moved.
 
-use super::{TAG, TriangleBvh, number};
-use crate::build::{self, Preset, Settings, is_finite};
+use super::tree::{TAG, TriangleBvh, number};
+use crate::BuildError;
+use crate::build::{self, BuildQuality, BuildSettings, is_finite};
 use crate::lanes::{Available, ROOM_OF_ROWS, ROWS, listed};
 use crate::math::{Aabb, Vec3};
-use crate::node;
-use rayon::prelude::*;
+use crate::{node, parallel};
+use std::sync::OnceLock;
 
 /// Rows of about so many triangles are written at once.
 const AT_ONCE: usize = 1024;
 
 impl TriangleBvh {
-    /// Builds over triangles given as three indices each. Those with a corner that is no finite point are never hit.
+    /// Builds over triangles given as three indices each. Those with a corner that is no finite
+    /// point are never hit.
     ///
-    /// The result is a function of the arguments alone. It takes about 50 bytes a triangle, up to 100 where they overlap much, and while it is
-    /// built up to 140 more, with `balanced` 200 and with `best` 340; the depth is bounded, whatever the triangles.
+    /// The result is a function of the arguments alone. It takes about 50 bytes a triangle, up to
+    /// 100 where they overlap much, and while it is built up to 140 more, with
+    /// [`BuildQuality::Balanced`] 200 and with [`BuildQuality::Best`] 340; the depth is bounded,
+    /// whatever the triangles.
     ///
     /// # Panics
     ///
-    /// If an index leads nowhere, or there are 2^28 triangles or more, or more than 2^26 nodes (of usual triangles there are 25 for a node).
-    pub fn build(vertices: &[Vec3], triangles: &[[u32; 3]], preset: Preset) -> Self {
-        // All of it on a thread of the pool: from outside, each step that is shared would be handed over and waited for.
-        match triangles.len() > AT_ONCE {
-            true => rayon::scope(|_| Self::built(vertices, triangles, preset)),
-            false => Self::built(vertices, triangles, preset),
-        }
+    /// Where [`TriangleBvh::try_build`] fails.
+    pub fn build(vertices: &[Vec3], triangles: &[[u32; 3]], quality: BuildQuality) -> Self {
+        Self::try_build(vertices, triangles, quality).unwrap_or_else(|error| panic!("{error}"))
     }
 
-    fn built(vertices: &[Vec3], triangles: &[[u32; 3]], preset: Preset) -> Self {
-        let settings = Settings::triangles(preset);
+    /// As [`TriangleBvh::build`].
+    ///
+    /// # Errors
+    ///
+    /// If an index names no vertex, or there are 2^28 triangles or more.
+    ///
+    /// # Panics
+    ///
+    /// If the tree has more than 2^26 nodes. Of usual triangles there are 25 for a node.
+    pub fn try_build(vertices: &[Vec3], triangles: &[[u32; 3]], quality: BuildQuality) -> Result<Self, BuildError> {
+        if triangles.len() > node::MAX_ITEMS {
+            return Err(BuildError::TooManyTriangles { triangles: triangles.len() });
+        }
+        check_indices(vertices, triangles)?;
+        Ok(match triangles.len() > AT_ONCE {
+            true => parallel::on_pool(|| Self::built(vertices, triangles, quality)),
+            false => Self::built(vertices, triangles, quality),
+        })
+    }
+
+    /// As [`TriangleBvh::try_build`], from flat lists: x, y and z of each vertex, and three
+    /// indices of each triangle.
+    ///
+    /// # Errors
+    ///
+    /// As there, and if a list's length is no multiple of three.
+    ///
+    /// ```
+    /// use durer_bvh::{BuildError, BuildQuality, TriangleBvh};
+    ///
+    /// let positions = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0];
+    /// let bvh = TriangleBvh::from_flat(&positions, &[0, 1, 2], BuildQuality::default()).unwrap();
+    /// assert_eq!(bvh.triangle_count(), 1);
+    /// let error = TriangleBvh::from_flat(&positions, &[0, 1, 3], BuildQuality::default()).unwrap_err();
+    /// assert_eq!(error, BuildError::MissingVertex { triangle: 0, index: 3, vertices: 3 });
+    /// ```
+    pub fn from_flat(positions: &[f32], indices: &[u32], quality: BuildQuality) -> Result<Self, BuildError> {
+        let (vertices, rest) = positions.as_chunks::<3>();
+        if !rest.is_empty() {
+            return Err(BuildError::NotInThrees { list: "positions", len: positions.len() });
+        }
+        let (triangles, rest) = indices.as_chunks::<3>();
+        if !rest.is_empty() {
+            return Err(BuildError::NotInThrees { list: "indices", len: indices.len() });
+        }
+        let vertices: Vec<Vec3> = vertices.iter().map(|v| Vec3::from_array(*v)).collect();
+        Self::try_build(&vertices, triangles, quality)
+    }
+
+    fn built(vertices: &[Vec3], triangles: &[[u32; 3]], quality: BuildQuality) -> Self {
+        let settings = BuildSettings::triangles(quality);
         let corners_of = |number: u32| triangles[number as usize].map(|i| vertices[i as usize]);
         let tree = build::build_triangles(triangles.len(), &corners_of, &settings);
         let mut bvh = TriangleBvh {
@@ -38,42 +87,51 @@ impl TriangleBvh {
             reach: tree.bounds.reach(),
             level: Available::chosen(),
             least_volume: 0.0,
-            blind: false,
+            culls_slivers: false,
+            count: triangles.len(),
+            leaf_of: OnceLock::new(),
         };
         bvh.pack(Some(&tree.order), vertices, triangles);
         bvh
     }
 
-    /// Makes the tree fit the same triangles with vertices that have moved. Much faster than building; but the
-    /// farther they move, the slower rays become.
+    /// Makes the tree fit the same triangles with vertices that have moved. Much faster than
+    /// building; but the farther they move, the slower rays become.
     ///
     /// # Panics
     ///
-    /// If an index leads nowhere, or a triangle of the tree is missing.
+    /// Where [`TriangleBvh::try_refit`] fails.
     pub fn refit(&mut self, vertices: &[Vec3], triangles: &[[u32; 3]]) {
-        let corners_of = |number: u32| triangles[number as usize].map(|i| vertices[i as usize]);
-        self.pack(None, vertices, triangles);
-        // Children come after their parents, so boxes are right from the end.
-        for parent in (0..self.nodes.len()).rev() {
-            let children: Vec<(usize, Aabb, u32)> = self.nodes[parent].children().collect();
-            for (place, _, child) in children {
-                let bounds = match child & node::LEAF {
-                    0 => self.nodes[node::number(child)].children().fold(Aabb::EMPTY, |b, (_, c, _)| b.union(c)),
-                    _ => {
-                        let (rows, count) = self.rows(child);
-                        let corners = (0..count).map(|lane| corners_of(number(rows, count, lane)));
-                        Aabb::around(corners.filter(is_finite).flatten())
-                    }
-                };
-                // Where nothing can be hit for now, the old box keeps the place.
-                if !bounds.is_empty() {
-                    self.nodes[parent].set(place, bounds, child);
-                }
-            }
+        self.try_refit(vertices, triangles).unwrap_or_else(|error| panic!("{error}"));
+    }
+
+    /// As [`TriangleBvh::refit`]. If it fails, the tree stays as it was.
+    ///
+    /// # Errors
+    ///
+    /// If an index names no vertex, or there are not as many triangles as the tree was built over.
+    pub fn try_refit(&mut self, vertices: &[Vec3], triangles: &[[u32; 3]]) -> Result<(), BuildError> {
+        if triangles.len() != self.count {
+            return Err(BuildError::OtherTriangles { built: self.count, given: triangles.len() });
         }
-        self.bounds =
-            self.nodes.first().map_or(Aabb::EMPTY, |root| root.children().fold(Aabb::EMPTY, |b, c| b.union(c.1)));
+        check_indices(vertices, triangles)?;
+        self.pack(None, vertices, triangles);
+        let mut nodes = std::mem::take(&mut self.nodes);
+        node::refit(&mut nodes, |leaf| {
+            let (rows, count) = self.rows(leaf);
+            let numbers = (0..count).map(|lane| number(rows, count, lane));
+            let corners = numbers.map(|number| triangles[number as usize].map(|i| vertices[i as usize]));
+            Aabb::around(corners.filter(is_finite).flatten())
+        });
+        self.bounds = node::bounds(&nodes);
         self.reach = self.bounds.reach();
+        self.nodes = nodes;
+        Ok(())
+    }
+
+    /// How many triangles it was built over.
+    pub fn triangle_count(&self) -> usize {
+        self.count
     }
 
     /// How many triangles all leaves have together: more than there are where some were cut.
@@ -104,7 +162,7 @@ impl TriangleBvh {
             parts.push((first, &counts[first..last], part));
             (first, rest) = (last, after);
         }
-        parts.into_par_iter().for_each(|(first, mut counts, mut part)| {
+        parallel::for_each(parts, |(first, mut counts, mut part)| {
             let numbers: Vec<u32> = match order {
                 Some(order) => order[first..first + counts.len()].to_vec(),
                 None => numbers(counts, part),
@@ -127,6 +185,19 @@ impl TriangleBvh {
             }
         });
     }
+}
+
+fn check_indices(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Result<(), BuildError> {
+    let is_wrong = |triangle: &[u32; 3]| triangle.iter().any(|i| *i as usize >= vertices.len());
+    // Nearly always all are right, so the first that is not is sought only if there is one.
+    if !parallel::any(triangles, 1 << 16, is_wrong) {
+        return Ok(());
+    }
+    let wrong = triangles.iter().enumerate().find_map(|(i, triangle)| {
+        let index = triangle.iter().copied().find(|i| *i as usize >= vertices.len())?;
+        Some(BuildError::MissingVertex { triangle: i, index, vertices: vertices.len() })
+    });
+    wrong.map_or(Ok(()), Err)
 }
 
 /// The numbers of all triangles of some leaves, by the rows and counts of these.

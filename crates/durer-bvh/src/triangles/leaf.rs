@@ -1,14 +1,15 @@
 //! Triangles and rays side by side: several triangles and a ray, or a triangle and several rays.
 //!
-//! The test is that of [`Sheared`](crate::watertight::Sheared), with the same roundings. Edge functions in single precision have the right signs
-//! wherever they are not zero, so nearly all triangles are refused or accepted by plain vector arithmetic; what is left is
-//! for the scalar test, which is exact. Where any triangle will do, it is enough that t lies between two bounds; where the
-//! nearest is wanted, double precision says where each is that is crossed.
+//! The test is that of [`WatertightRay`](crate::watertight::WatertightRay), with the same
+//! roundings. Edge functions in single precision have the right signs wherever they are not zero,
+//! so nearly all triangles are refused or accepted by plain vector arithmetic; what is left is for
+//! the scalar test, which is exact. Where any triangle will do, it is enough that t lies between
+//! two bounds; where the nearest is wanted, double precision says where each is that is crossed.
 
 use crate::lanes::Numbers;
 
-/// By corner and axis, as a macro makes each. (No closure would do: what is not inlined into a level's entry is compiled without its
-/// instructions.)
+/// By corner and axis, as a macro makes each. (No closure would do: what is not inlined into a
+/// level's entry is compiled without its instructions.)
 macro_rules! by_corner {
     ($make:ident) => {
         [
@@ -26,8 +27,8 @@ pub struct Flat<N: Numbers> {
     corners: [[N::Floats; 3]; 3],
     /// The edge functions of the edges opposite to the corners.
     edges: [N::Floats; 3],
-    /// The product of the least and the greatest of them: positive where all are of one sign, negative where they are not, and
-    /// zero where nothing is sure.
+    /// The product of the least and the greatest of them: positive where all are of one sign,
+    /// negative where they are not, and zero where nothing is sure.
     sign: N::Floats,
 }
 
@@ -38,9 +39,11 @@ pub struct Span<N: Numbers> {
 }
 
 impl<N: Numbers> Flat<N> {
-    /// From corners and origins that are turned as [`Sheared`](crate::watertight::Sheared) turns them.
+    /// From corners and origins that are turned as
+    /// [`WatertightRay`](crate::watertight::WatertightRay) turns them.
     ///
-    /// Roundings are the same as there, so signs of edge functions are exact where they are not zero.
+    /// Roundings are the same as there, so signs of edge functions are exact where they are not
+    /// zero.
     #[inline(always)]
     pub fn new(numbers: N, corners: [[N::Floats; 3]; 3], origin: [N::Floats; 3], shear: [N::Floats; 2]) -> Self {
         Flat::seen(numbers, from_origin(numbers, corners, origin), shear)
@@ -59,7 +62,8 @@ impl<N: Numbers> Flat<N> {
         Flat { corners, edges, sign }
     }
 
-    /// The signs of the edge functions say for sure that the line of the ray does not cross the triangle.
+    /// The signs of the edge functions say for sure that the line of the ray does not cross the
+    /// triangle.
     #[inline(always)]
     pub fn missed(&self, numbers: N) -> u32 {
         numbers.lt(self.sign, numbers.splat(0.0))
@@ -80,13 +84,15 @@ impl<N: Numbers> Flat<N> {
 
     /// Where those that are crossed for sure are.
     ///
-    /// The height z of the crossing is the mean of the corners' heights by the edge functions. Let R bound how far corners lie across, Z
-    /// their heights, and H how far those lie apart. With e = 2^-23 a coordinate across is wrong by at most e (R + 2 Z), so an edge
-    /// function by at most e (6 R^2 + 8 R Z). Errors of weights move the mean by their sum times H over the sum of weights, and twice
-    /// that is a bound also where the sum of weights is uncertain itself, for then it exceeds H, and both the
-    /// mean and the `t` of [`Sheared`] lie between the heights of corners. What else is rounded adds less than 6 e Z, and a few of the
-    /// least numbers. `1 / dz` is `inverse_z`; the longest component dz of the direction must lie between 10^-15 and 10^15, and
-    /// coordinates below 10^15.
+    /// The height z of the crossing is the mean of the corners' heights by the edge functions. Let
+    /// R bound how far corners lie across, Z their heights, and H how far those lie apart. With e =
+    /// 2^-23 a coordinate across is wrong by at most e (R + 2 Z), so an edge function by at most e
+    /// (6 R^2 + 8 R Z). Errors of weights move the mean by their sum times H over the sum of
+    /// weights, and twice that is a bound also where the sum of weights is uncertain itself, for
+    /// then it exceeds H, and both the mean and the `t` of [`WatertightRay`] lie between the
+    /// heights of corners. What else is rounded adds less than 6 e Z, and a few of the least
+    /// numbers. `1 / dz` is `inverse_z`; the longest component dz of the direction must lie between
+    /// 10^-15 and 10^15, and coordinates below 10^15.
     #[inline(always)]
     pub fn span(&self, numbers: N, inverse_z: f32) -> Span<N> {
         const E: f32 = f32::EPSILON;
@@ -128,7 +134,8 @@ pub fn from_origin<N: Numbers>(
     by_corner!(seen)
 }
 
-/// Where a point that is seen from the origin lies in the plane across the ray, and its height along the third axis.
+/// Where a point that is seen from the origin lies in the plane across the ray, and its height
+/// along the third axis.
 #[inline(always)]
 pub fn across<N: Numbers>(numbers: N, [x, y, z]: [N::Floats; 3], shear: [N::Floats; 2]) -> [N::Floats; 3] {
     [numbers.sub(x, numbers.mul(shear[0], z)), numbers.sub(y, numbers.mul(shear[1], z)), z]

@@ -1,4 +1,5 @@
-//! A tree over the triangles of a mesh, with the triangles themselves: the kernel that rays spend their time in.
+//! A tree over the triangles of a mesh, with the triangles themselves: the kernel that rays spend
+//! their time in.
 
 mod build;
 mod fetch;
@@ -6,139 +7,161 @@ mod leaf;
 mod nearest;
 mod packet;
 mod query;
+mod stored;
 mod stream;
+mod tree;
 
-use super::Tally;
-use super::lanes::{Available, Level, ROWS, Rows};
-use super::node::{self, Node};
-use crate::math::{Aabb, Ray, Vec2};
-use crate::watertight::Sheared;
+use super::lanes::{Available, SimdLevel};
+use super::node;
+use super::{TraversalCounter, TraversalStats};
+use crate::math::{self, Aabb, Ray, Vec3};
+use crate::watertight::WatertightRay;
 pub use nearest::NearestPoint;
-use query::{All, Any, Nearest, Query};
-use std::marker::PhantomData;
+use query::{All, Any, Filter, Filtered, HitCollector, Nearest, Query};
+use tree::number;
+pub use tree::{Facing, TriangleBvh, TriangleHit};
 
-/// Makes a number below 2^28 an `f32` of ordinary size: what is read past the end of a row is computed with, and tiny numbers are slow.
-const TAG: u32 = 1 << 30;
-
-/// The number of a triangle of a leaf, by its rows and the count of its triangles.
+/// Asks with or without counting nodes and tests, as the counter wants it.
 #[inline(always)]
-fn number(rows: &[f32], count: usize, lane: usize) -> u32 {
-    rows[(ROWS - 1) * count + lane].to_bits() & !TAG
+fn counting<T: TraversalCounter, A>(
+    counter: &mut T,
+    plain: impl FnOnce() -> A,
+    counted: impl FnOnce(&mut TraversalStats) -> A,
+) -> A {
+    if !T::COUNTS_WORK {
+        return plain();
+    }
+    let mut counts = TraversalStats::default();
+    let answer = counted(&mut counts);
+    counter.work(counts.nodes, counts.tests);
+    answer
 }
 
-/// Where a ray meets a mesh.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TriangleHit {
-    /// Position along the ray, in units of the length of its direction.
-    pub t: f32,
-    /// The second and third barycentric coordinate: the point is (1 - u - v) a + u b + v c.
-    pub uv: Vec2,
-    /// Number of the triangle.
-    pub triangle: u32,
-}
-
-/// A bounding volume hierarchy over triangles, for use without any scene.
-///
-/// A ray counts as moved by an infinitesimal across itself, so that it crosses exactly one of the triangles around an
-/// edge or a vertex: no ray slips through a closed mesh, and [`TriangleBvh::count`] is exact. Triangles are met from both
-/// sides. Of hits at the same `t` the one of least number is the closest. All answers are the same, bit for bit, for
-/// all presets, SIMD levels, and numbers of threads.
-///
-/// A ray that is NaN or infinite, or without direction, hits nothing; directions need not be of length 1.
-///
-/// ```
-/// use durer_bvh::{Preset, TriangleBvh};
-/// use durer_bvh::math::{Ray, Vec3};
-///
-/// let vertices = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
-/// let triangles = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
-/// let tree = TriangleBvh::build(&vertices, &triangles, Preset::default());
-/// let ray = Ray::new(Vec3::new(0.2, 0.2, -1.0), Vec3::Z);
-/// let hit = tree.closest(&ray).unwrap();
-/// assert_eq!((hit.t, hit.triangle), (1.0, 0));
-/// assert!(tree.occluded(&ray));
-/// assert_eq!(tree.count(&ray), 2);
-/// ```
-#[derive(Clone, Debug)]
-pub struct TriangleBvh {
-    nodes: Vec<Node>,
-    /// For each leaf [`ROWS`] rows, each of as many numbers as it has triangles: their corners by axis, and their numbers, as bits. A
-    /// leaf's room behind the last.
-    leaves: Vec<f32>,
-    bounds: Aabb,
-    /// The greatest coordinate, without signs.
-    reach: f32,
-    level: Available,
-    least_volume: f64,
-    /// Whether that is more than nothing.
-    blind: bool,
+/// Hits by `t`, then by number of the triangle; each once, for a triangle that was cut is found in
+/// several leaves.
+fn in_order(mut all: Vec<TriangleHit>) -> Vec<TriangleHit> {
+    all.sort_unstable_by(|a, b| a.t.total_cmp(&b.t).then(a.triangle.cmp(&b.triangle)));
+    all.dedup_by_key(|hit| hit.triangle);
+    all
 }
 
 impl TriangleBvh {
-    /// The same tree with tests at another SIMD level; at the plain one where the processor has not got it.
-    pub fn at_level(self, level: Level) -> Self {
+    /// The same tree with tests at another SIMD level; at the plain one where the processor has not
+    /// got it.
+    pub fn at_level(self, level: SimdLevel) -> Self {
         TriangleBvh { level: Available::or_scalar(level), ..self }
     }
 
-    /// The same, blind to triangles for which |(b - a) x (c - a) · d| is less than this. Zero is
-    /// blind to none.
+    /// The same, blind to triangles for which |(b - a) x (c - a) · d| is less than this.
+    /// Zero is blind to none.
     pub fn least_volume(self, least_volume: f64) -> Self {
-        TriangleBvh { least_volume, blind: least_volume != 0.0, ..self }
+        TriangleBvh { least_volume, culls_slivers: least_volume != 0.0, ..self }
     }
 
     /// A ray prepared for single triangles, with the same blindness as the tree.
     #[inline]
-    pub fn sheared(&self, ray: &Ray) -> Sheared {
-        Sheared::new(ray).least_volume(self.least_volume)
+    pub fn watertight_ray(&self, ray: &Ray) -> WatertightRay {
+        WatertightRay::new(ray).least_volume(self.least_volume)
     }
 
     /// The first hit in the ray's open interval (`t_min`, `t_max`).
-    #[inline]
     pub fn closest(&self, ray: &Ray) -> Option<TriangleHit> {
         self.query::<_, Nearest>(ray, ())
     }
 
     /// As [`TriangleBvh::closest`], counting nodes and tests.
     #[inline]
-    pub fn closest_counting<T: Tally>(&self, ray: &Ray, tally: &mut T) -> Option<TriangleHit> {
-        self.query::<_, Nearest>(ray, tally)
+    pub fn closest_counting<T: TraversalCounter>(&self, ray: &Ray, counter: &mut T) -> Option<TriangleHit> {
+        counting(counter, || self.closest(ray), |counts| self.closest_counted(ray, counts))
     }
 
     /// Whether anything is hit in the ray's open interval.
-    #[inline]
     pub fn occluded(&self, ray: &Ray) -> bool {
         self.query::<_, Any>(ray, ())
     }
 
     /// As [`TriangleBvh::occluded`], counting nodes and tests.
     #[inline]
-    pub fn occluded_counting<T: Tally>(&self, ray: &Ray, tally: &mut T) -> bool {
-        self.query::<_, Any>(ray, tally)
+    pub fn occluded_counting<T: TraversalCounter>(&self, ray: &Ray, counter: &mut T) -> bool {
+        counting(counter, || self.occluded(ray), |counts| self.occluded_counted(ray, counts))
+    }
+
+    /// As [`TriangleBvh::closest`], of the hits that a filter lets pass: for textures with holes,
+    /// sides that are not seen, or triangles that are left out.
+    ///
+    /// The filter may be asked several times about a triangle, and about hits that are not the
+    /// first, in any order; so it should depend on its arguments alone.
+    ///
+    /// ```
+    /// use durer_bvh::math::{Ray, Vec3};
+    /// use durer_bvh::{BuildQuality, Facing, TriangleBvh};
+    ///
+    /// let vertices = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
+    /// let triangles = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+    /// let bvh = TriangleBvh::build(&vertices, &triangles, BuildQuality::default());
+    /// let ray = Ray::new(Vec3::new(0.2, 0.2, -1.0), Vec3::Z);
+    /// // The way out, for fronts are culled.
+    /// let hit = bvh.closest_where(&ray, |_, facing| facing == Facing::Back).unwrap();
+    /// assert_eq!(hit.triangle, 3);
+    /// ```
+    pub fn closest_where(
+        &self,
+        ray: &Ray,
+        mut filter: impl FnMut(&TriangleHit, Facing) -> bool,
+    ) -> Option<TriangleHit> {
+        self.closest_filtered(ray, &mut filter)
+    }
+
+    /// As [`TriangleBvh::occluded`], by the hits that a filter lets pass: see
+    /// [`TriangleBvh::closest_where`].
+    pub fn occluded_where(&self, ray: &Ray, mut filter: impl FnMut(&TriangleHit, Facing) -> bool) -> bool {
+        self.occluded_filtered(ray, &mut filter)
     }
 
     /// All hits in the ray's open interval, by `t` and then by number of the triangle.
     pub fn all_hits(&self, ray: &Ray) -> Vec<TriangleHit> {
-        self.all_hits_counting(ray, &mut ())
+        in_order(self.query::<_, All>(ray, ()))
     }
 
     /// As [`TriangleBvh::all_hits`], counting nodes and tests.
-    pub fn all_hits_counting<T: Tally>(&self, ray: &Ray, tally: &mut T) -> Vec<TriangleHit> {
-        let mut all = self.query::<_, All>(ray, tally);
-        all.sort_unstable_by(|a, b| a.t.total_cmp(&b.t).then(a.triangle.cmp(&b.triangle)));
-        // A triangle that was cut is found in several leaves.
-        all.dedup_by_key(|hit| hit.triangle);
-        all
+    #[inline]
+    pub fn all_hits_counting<T: TraversalCounter>(&self, ray: &Ray, counter: &mut T) -> Vec<TriangleHit> {
+        counting(counter, || self.all_hits(ray), |counts| self.all_hits_counted(ray, counts))
     }
 
-    /// How many triangles the ray crosses in its open interval: odd from inside a closed mesh, even from outside.
-    pub fn count(&self, ray: &Ray) -> usize {
+    // Not generic, so that they are compiled here, once, and not for each counter of each caller.
+
+    pub(crate) fn closest_filtered(&self, ray: &Ray, filter: Filter) -> Option<TriangleHit> {
+        self.query_with(ray, (), Filtered { inner: Nearest::default(), filter })
+    }
+
+    pub(crate) fn occluded_filtered(&self, ray: &Ray, filter: Filter) -> bool {
+        self.query_with(ray, (), Filtered { inner: Any, filter })
+    }
+
+    fn closest_counted(&self, ray: &Ray, counts: &mut TraversalStats) -> Option<TriangleHit> {
+        self.query::<_, Nearest>(ray, counts)
+    }
+
+    fn occluded_counted(&self, ray: &Ray, counts: &mut TraversalStats) -> bool {
+        self.query::<_, Any>(ray, counts)
+    }
+
+    fn all_hits_counted(&self, ray: &Ray, counts: &mut TraversalStats) -> Vec<TriangleHit> {
+        in_order(self.query::<_, All>(ray, counts))
+    }
+
+    /// How many triangles the ray crosses in its open interval: odd from inside a closed mesh, even
+    /// from outside.
+    pub fn hit_count(&self, ray: &Ray) -> usize {
         self.all_hits(ray).len()
     }
 
-    /// The first hit of each ray, in order: as [`TriangleBvh::closest`] gives it, bit for bit, but faster. Of 64 rays in a row those
-    /// that go nearly the same way share their way through the tree, so neighbours should be neighbours in space, as the pixels of a
-    /// tile are; after rays that do not, up to 960 are not asked whether they do. In a large tree several of the others are on their way
-    /// at once, so that none waits for memory.
+    /// The first hit of each ray, in order: as [`TriangleBvh::closest`] gives it, bit for bit, but
+    /// faster. Of 64 rays in a row those that go nearly the same way share their way through the
+    /// tree, so neighbours should be neighbours in space, as the pixels of a tile are; after rays
+    /// that do not, up to 960 are not asked whether they do. In a large tree several of the others
+    /// are on their way at once, so that none waits for memory.
     ///
     /// # Panics
     ///
@@ -149,7 +172,8 @@ impl TriangleBvh {
         self.each::<Nearest>(rays, &rest, |i, hit| hits[i] = hit);
     }
 
-    /// For each ray, in order, whether anything is hit: as [`TriangleBvh::closest_batch`] goes about it.
+    /// For each ray, in order, whether anything is hit: as [`TriangleBvh::closest_batch`] goes
+    /// about it.
     ///
     /// # Panics
     ///
@@ -160,32 +184,84 @@ impl TriangleBvh {
         self.each::<Any>(rays, &rest, |i, answer| answers[i] = answer);
     }
 
-    /// The rows of a leaf, and the count of its triangles.
-    #[inline(always)]
-    fn rows(&self, leaf: u32) -> (&Rows, usize) {
-        let (first, count) = node::items(leaf);
-        match self.leaves[ROWS * first..].first_chunk() {
-            Some(rows) => (rows, count),
-            None => unreachable!("leaves have a leaf's room behind them"),
-        }
+    /// How many triangles each ray crosses, in order: see [`TriangleBvh::hit_count`].
+    ///
+    /// # Panics
+    ///
+    /// If there are not as many places for counts as rays.
+    pub fn hit_count_batch(&self, rays: &[Ray], counts: &mut [u32]) {
+        assert_eq!(rays.len(), counts.len(), "a place for each count");
+        rays.iter().zip(counts).for_each(|(ray, count)| *count = self.hit_count(ray) as u32);
+    }
+
+    /// All hits of each ray, in order: `take` gets the ray's place in the batch, and its hits as
+    /// [`TriangleBvh::all_hits`] gives them.
+    pub fn all_hits_batch(&self, rays: &[Ray], mut take: impl FnMut(usize, &[TriangleHit])) {
+        rays.iter().enumerate().for_each(|(i, ray)| take(i, &self.all_hits(ray)));
     }
 
     #[inline]
-    fn query<T: Tally, F: query::Found>(&self, ray: &Ray, tally: T) -> F::Answer {
+    fn query<T: TraversalCounter, F: HitCollector + Default>(&self, ray: &Ray, counter: T) -> F::Answer {
+        self.query_with(ray, counter, F::default())
+    }
+
+    #[inline]
+    fn query_with<T: TraversalCounter, F: HitCollector>(&self, ray: &Ray, counter: T, found: F) -> F::Answer {
         match self.nodes.is_empty() {
             true => F::Answer::default(),
-            false => self.level.run(Query::<_, F> { bvh: self, ray, tally, found: PhantomData }),
+            false => self.level.run(Query { bvh: self, ray, counter, found }),
         }
     }
 
-    /// Bytes in memory.
-    pub fn bytes(&self) -> usize {
-        size_of_val(&*self.nodes) + size_of_val(&*self.leaves)
+    /// The corners of a triangle; `None` if there is no such triangle, or it has a corner that is
+    /// no finite point.
+    ///
+    /// The first call notes where each triangle lies, in four bytes for each.
+    pub fn corners(&self, triangle: u32) -> Option<[Vec3; 3]> {
+        let leaf_of = self.leaf_of.get_or_init(|| {
+            let mut leaf_of = vec![0; self.count];
+            for (_, _, leaf) in self.nodes.iter().flat_map(|node| node.children()) {
+                if leaf & node::LEAF != 0 {
+                    let (rows, count) = self.rows(leaf);
+                    (0..count).for_each(|lane| leaf_of[number(rows, count, lane) as usize] = leaf);
+                }
+            }
+            leaf_of
+        });
+        // A triangle that is in no leaf has 0, which is none.
+        let leaf = *leaf_of.get(triangle as usize).filter(|leaf| **leaf != 0)?;
+        let (rows, count) = self.rows(leaf);
+        let lane = (0..count).find(|lane| number(rows, count, *lane) == triangle)?;
+        let at = |row: usize| rows[row * count + lane];
+        let corners = [0, 3, 6].map(|row| Vec3::new(at(row), at(row + 1), at(row + 2)));
+        corners.iter().all(|corner| corner.is_finite()).then_some(corners)
     }
 
-    /// Cost of a random ray through the bounds by the surface area heuristic, in tests of a node, where a leaf costs as
-    /// much. Not a number where the bounds have no area.
-    pub fn cost(&self) -> f64 {
+    /// The unit normal (b - a) x (c - a) of the triangle that was hit; zero if it has no area.
+    ///
+    /// ```
+    /// use durer_bvh::math::{Ray, Vec3};
+    /// use durer_bvh::{BuildQuality, TriangleBvh};
+    ///
+    /// let corners = [Vec3::ZERO, Vec3::X, Vec3::Y];
+    /// let bvh = TriangleBvh::build(&corners, &[[0, 1, 2]], BuildQuality::Fast);
+    /// let hit = bvh.closest(&Ray::new(Vec3::new(0.2, 0.2, 5.0), Vec3::NEG_Z)).unwrap();
+    /// assert_eq!(bvh.normal(&hit), Vec3::Z);
+    /// assert_eq!(bvh.corners(hit.triangle).unwrap()[1], Vec3::X);
+    /// ```
+    pub fn normal(&self, hit: &TriangleHit) -> Vec3 {
+        self.corners(hit.triangle).map_or(Vec3::ZERO, math::triangle_normal)
+    }
+
+    /// Bytes in memory.
+    pub fn memory_usage(&self) -> usize {
+        let leaf_of = self.leaf_of.get().map_or(0, |leaf_of| size_of_val(&**leaf_of));
+        size_of_val(&*self.nodes) + size_of_val(&*self.leaves) + leaf_of
+    }
+
+    /// Cost of a random ray through the bounds by the surface area heuristic, in tests of a node,
+    /// where a leaf costs as much. Not a number where the bounds have no area.
+    pub fn sah_cost(&self) -> f64 {
         node::cost(&self.nodes, self.bounds)
     }
 

@@ -1,11 +1,10 @@
 //! The point of a mesh that is nearest to another point.
 
-use super::{ROWS, Rows, TriangleBvh, number};
-use crate::lanes::WIDTH;
+use super::tree::{TriangleBvh, number};
+use crate::lanes::{ROWS, Rows, WIDTH};
 use crate::math::Vec3;
-use crate::node::{self, LEAF, Node};
+use crate::node::{self, LEAF, WideNode};
 use glam::DVec3;
-use smallvec::SmallVec;
 
 /// A point of a mesh, the nearest to another one.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,19 +19,20 @@ pub struct NearestPoint {
     pub triangle: u32,
 }
 
-/// Boxes count as nearer by this share, which is far more than rounding: so all trees find the same triangle.
+/// Boxes count as nearer by this share, which is far more than rounding: so all trees find the same
+/// triangle.
 const SLACK: f64 = 1.0 - 1e-12;
 
 impl TriangleBvh {
-    /// The point of all triangles that is nearest to another, if there is one no further away than `within`. Of triangles
-    /// that are equally near the one of least number counts. Computed in double precision; the answer is the same, bit for bit,
-    /// for all presets.
+    /// The point of all triangles that is nearest to another, if there is one no further away than
+    /// `within`. Of triangles that are equally near the one of least number counts. Computed in
+    /// double precision; the answer is the same, bit for bit, for all qualities.
     ///
     /// ```
-    /// use durer_bvh::{Preset, TriangleBvh};
+    /// use durer_bvh::{BuildQuality, TriangleBvh};
     /// use durer_bvh::math::Vec3;
     ///
-    /// let tree = TriangleBvh::build(&[Vec3::ZERO, Vec3::X, Vec3::Y], &[[0, 1, 2]], Preset::default());
+    /// let tree = TriangleBvh::build(&[Vec3::ZERO, Vec3::X, Vec3::Y], &[[0, 1, 2]], BuildQuality::Best);
     /// let near = tree.nearest_point(Vec3::new(0.25, 0.5, 3.0), f64::INFINITY).unwrap();
     /// assert_eq!((near.distance, near.uv), (3.0, [0.25, 0.5]));
     /// assert_eq!(tree.nearest_point(Vec3::splat(9.0), 1.0), None);
@@ -43,7 +43,7 @@ impl TriangleBvh {
             return None;
         }
         let point = point.as_dvec3();
-        let mut stack: SmallVec<[(f64, u32); 64]> = SmallVec::new();
+        let mut stack: Vec<(f64, u32)> = Vec::with_capacity(64);
         stack.push((0.0, 0));
         while let Some((squared, child)) = stack.pop() {
             if squared > best.squared {
@@ -66,7 +66,7 @@ impl TriangleBvh {
 }
 
 /// The squares of the distances of a node's boxes, rather too small; infinite where there is none.
-fn squares(node: &Node, point: DVec3) -> [f64; WIDTH] {
+fn squares(node: &WideNode, point: DVec3) -> [f64; WIDTH] {
     let mut squares = [0.0; WIDTH];
     for (axis, [lower, upper]) in node.planes.iter().enumerate() {
         for (square, (low, high)) in squares.iter_mut().zip(lower.iter().zip(upper)) {
@@ -100,10 +100,11 @@ impl Best {
     }
 }
 
-/// The nearest point of a triangle: the square of its distance, the point, and its second and third barycentric coordinate.
+/// The nearest point of a triangle: the square of its distance, the point, and its second and third
+/// barycentric coordinate.
 ///
-/// The foot of the perpendicular, if it lies in the triangle, else the nearest point of an edge; so triangles without area
-/// are no exception.
+/// The foot of the perpendicular, if it lies in the triangle, else the nearest point of an edge; so
+/// triangles without area are no exception.
 fn nearest_of(point: DVec3, [a, b, c]: [DVec3; 3]) -> (f64, DVec3, [f64; 2]) {
     let (ab, ac, from) = (b - a, c - a, point - a);
     let at = |[u, v]: [f64; 2]| {
@@ -130,7 +131,7 @@ fn nearest_of(point: DVec3, [a, b, c]: [DVec3; 3]) -> (f64, DVec3, [f64; 2]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Preset;
+    use crate::BuildQuality;
     use crate::math::random::Random;
     use crate::triangles::tests::{Mesh, bars, soup, torus};
 
@@ -148,8 +149,8 @@ mod tests {
         let flat: Vec<Vec3> = (0..90).map(|_| random.point()).collect();
         let flat: Mesh = (flat, (0..90).map(|i| [i, (7 * i) % 90, i]).collect());
         for mesh in [soup(&mut random, 800, 0.2), bars(&mut random, 300, 40), torus(30, 12), flat] {
-            for preset in Preset::NAMES {
-                let tree = TriangleBvh::build(&mesh.0, &mesh.1, preset.1);
+            for quality in BuildQuality::NAMES {
+                let tree = TriangleBvh::build(&mesh.0, &mesh.1, quality.1);
                 for i in 0..300 {
                     let corner = mesh.0[random.below(mesh.0.len())];
                     let point = [corner, corner + 1e-3 * random.point(), 3.0 * random.point()][i % 3];
@@ -164,14 +165,15 @@ mod tests {
     #[test]
     fn points_of_a_torus_are_as_far_as_its_formula_says() {
         let (vertices, triangles) = torus(200, 100);
-        let tree = TriangleBvh::build(&vertices, &triangles, Preset::default());
+        let tree = TriangleBvh::build(&vertices, &triangles, BuildQuality::default());
         let mut random = Random(32);
         for _ in 0..500 {
             let p = (1.5 * random.point()).as_dvec3();
             let around = DVec3::new(p.x, p.z, 0.0).length() - 0.7;
             let exact = (DVec3::new(around, p.y, 0.0).length() - 0.3).abs();
             let near = tree.nearest_point(p.as_vec3(), f64::INFINITY).unwrap();
-            // The mesh lies within the torus by the sagitta of its edges: 1 - cos(pi / 100) of 0.3, and 1 - cos(pi / 200) of 1.
+            // The mesh lies within the torus by the sagitta of its edges: 1 - cos(pi / 100) of 0.3,
+            // and 1 - cos(pi / 200) of 1.
             assert!((near.distance - exact).abs() < 3e-4, "{p}: {} {exact}", near.distance);
             assert!((near.point.distance(p) - near.distance).abs() < 1e-6);
         }
@@ -179,14 +181,14 @@ mod tests {
 
     #[test]
     fn what_is_no_place_is_near_nothing() {
-        let tree = TriangleBvh::build(&[Vec3::ZERO, Vec3::X, Vec3::Y], &[[0, 1, 2]], Preset::Fast);
+        let tree = TriangleBvh::build(&[Vec3::ZERO, Vec3::X, Vec3::Y], &[[0, 1, 2]], BuildQuality::Fast);
         for point in [Vec3::NAN, Vec3::INFINITY] {
             assert_eq!(tree.nearest_point(point, f64::INFINITY), None);
         }
         assert_eq!(tree.nearest_point(Vec3::ZERO, f64::NAN), None);
         assert_eq!(tree.nearest_point(Vec3::ZERO, 0.0).map(|near| near.distance), Some(0.0));
         let holes = [Vec3::NAN, Vec3::X, Vec3::Y];
-        assert_eq!(TriangleBvh::build(&holes, &[[0, 1, 2]], Preset::Fast).nearest_point(Vec3::ZERO, 9.0), None);
-        assert_eq!(TriangleBvh::build(&[], &[], Preset::Fast).nearest_point(Vec3::ZERO, 9.0), None);
+        assert_eq!(TriangleBvh::build(&holes, &[[0, 1, 2]], BuildQuality::Fast).nearest_point(Vec3::ZERO, 9.0), None);
+        assert_eq!(TriangleBvh::build(&[], &[], BuildQuality::Fast).nearest_point(Vec3::ZERO, 9.0), None);
     }
 }

@@ -2,39 +2,39 @@
 
 use super::fetch::{AND_SIBLINGS, Places};
 use super::leaf::Flat;
-use super::{TriangleBvh, TriangleHit, number};
-use crate::Tally;
+use super::tree::{Facing, TriangleBvh, TriangleHit, number};
+use crate::TraversalCounter;
 use crate::lanes::{Columns, Kernel, Lanes, WIDTH};
 use crate::math::{Ray, Vec2};
-use crate::traverse::{ORDINARY, RayBox, Visitor, walk};
-use crate::watertight::{Exact, Plane, Sheared, turn};
+use crate::traverse::{FAST_RANGE, TraversalRay, Visitor, traverse};
+use crate::watertight::{Exact, Plane, WatertightRay, turn};
 use glam::Vec3A;
-use std::marker::PhantomData;
 
 /// A question, whose answer is an `F`.
 pub struct Query<'a, T, F> {
     pub bvh: &'a TriangleBvh,
     pub ray: &'a Ray,
-    pub tally: T,
-    pub found: PhantomData<F>,
+    pub counter: T,
+    pub found: F,
 }
 
 /// A ray among triangles.
-pub struct Asked<'a> {
+pub struct RayInTree<'a> {
     bvh: &'a TriangleBvh,
     ray: &'a Ray,
-    sheared: Sheared,
+    sheared: WatertightRay,
 }
 
 /// An answer in the making.
-pub trait Found: Default {
+pub trait HitCollector {
     type Answer: Default;
 
     /// Whether it is enough to know that something is hit.
     const ANY: bool;
 
-    /// Takes note of a hit, not after `t_max`; gives the new one.
-    fn met(&mut self, hit: TriangleHit, t_max: f32) -> f32;
+    /// Takes note of a hit, not after `t_max`; gives the new one. `facing` is asked for only by
+    /// those that want to know.
+    fn met(&mut self, hit: TriangleHit, t_max: f32, facing: impl FnOnce() -> Facing) -> f32;
 
     /// When the search has ended, and whether it was enough that something was hit.
     fn answer(&mut self, any: bool) -> Self::Answer;
@@ -55,13 +55,13 @@ impl Default for Nearest {
     }
 }
 
-impl Found for Nearest {
+impl HitCollector for Nearest {
     type Answer = Option<TriangleHit>;
 
     const ANY: bool = false;
 
     #[inline(always)]
-    fn met(&mut self, hit: TriangleHit, t_max: f32) -> f32 {
+    fn met(&mut self, hit: TriangleHit, t_max: f32, _: impl FnOnce() -> Facing) -> f32 {
         // What is the best before there is any has the greatest number.
         if hit.t < t_max || hit.triangle < self.best.triangle {
             self.best = hit;
@@ -79,13 +79,13 @@ impl Found for Nearest {
 #[derive(Default)]
 pub struct Any;
 
-impl Found for Any {
+impl HitCollector for Any {
     type Answer = bool;
 
     const ANY: bool = true;
 
     #[inline(always)]
-    fn met(&mut self, _: TriangleHit, _: f32) -> f32 {
+    fn met(&mut self, _: TriangleHit, _: f32, _: impl FnOnce() -> Facing) -> f32 {
         f32::NEG_INFINITY
     }
 
@@ -99,12 +99,12 @@ impl Found for Any {
 #[derive(Default)]
 pub struct All(Vec<TriangleHit>);
 
-impl Found for All {
+impl HitCollector for All {
     type Answer = Vec<TriangleHit>;
 
     const ANY: bool = false;
 
-    fn met(&mut self, hit: TriangleHit, t_max: f32) -> f32 {
+    fn met(&mut self, hit: TriangleHit, t_max: f32, _: impl FnOnce() -> Facing) -> f32 {
         self.0.push(hit);
         t_max
     }
@@ -114,7 +114,35 @@ impl Found for All {
     }
 }
 
-impl Asked<'_> {
+/// Says whether a hit counts. It may be asked several times, and of hits that are not the first.
+pub type Filter<'a> = &'a mut dyn FnMut(&TriangleHit, Facing) -> bool;
+
+/// Hits that a filter lets pass.
+pub struct Filtered<'a, F> {
+    pub inner: F,
+    pub filter: Filter<'a>,
+}
+
+impl<F: HitCollector> HitCollector for Filtered<'_, F> {
+    type Answer = F::Answer;
+
+    // Not even where any hit will do is it enough to know that something is hit.
+    const ANY: bool = false;
+
+    fn met(&mut self, hit: TriangleHit, t_max: f32, facing: impl FnOnce() -> Facing) -> f32 {
+        let facing = facing();
+        match (self.filter)(&hit, facing) {
+            true => self.inner.met(hit, t_max, || facing),
+            false => t_max,
+        }
+    }
+
+    fn answer(&mut self, any: bool) -> F::Answer {
+        self.inner.answer(any)
+    }
+}
+
+impl RayInTree<'_> {
     /// The corners of a triangle, turned as the ray is, and its number.
     #[inline(always)]
     fn triangle(&self, leaf: u32, lane: usize) -> ([Vec3A; 3], u32) {
@@ -128,14 +156,14 @@ impl Asked<'_> {
     }
 }
 
-impl<T: Tally, F: Found> Kernel for Query<'_, T, F> {
+impl<T: TraversalCounter, F: HitCollector> Kernel for Query<'_, T, F> {
     type Output = F::Answer;
 
     #[inline(always)]
     fn run<L: Lanes>(self, lanes: L) -> F::Answer {
-        if let Some(boxes) = RayBox::new(self.ray, self.bvh.reach) {
+        if let Some(boxes) = TraversalRay::new(self.ray, self.bvh.reach) {
             self.search::<L, true>(lanes, &boxes)
-        } else if let Some(boxes) = RayBox::wild(self.ray, self.bvh.reach) {
+        } else if let Some(boxes) = TraversalRay::robust(self.ray, self.bvh.reach) {
             self.search::<L, false>(lanes, &boxes)
         } else {
             F::Answer::default()
@@ -143,37 +171,44 @@ impl<T: Tally, F: Found> Kernel for Query<'_, T, F> {
     }
 }
 
-impl<T: Tally, F: Found> Query<'_, T, F> {
+impl<T: TraversalCounter, F: HitCollector> Query<'_, T, F> {
     #[inline(always)]
-    fn search<L: Lanes, const TAME: bool>(self, lanes: L, boxes: &RayBox) -> F::Answer {
-        let Query { bvh, ray, tally, .. } = self;
-        let mut leaves = Leaves::<_, F>::new(lanes, bvh, ray, boxes, tally);
-        let t_max = walk::<L, _, TAME>(lanes, &bvh.nodes, boxes, ray.t_max, &mut leaves);
+    fn search<L: Lanes, const FAST: bool>(self, lanes: L, boxes: &TraversalRay) -> F::Answer {
+        let Query { bvh, ray, counter, found } = self;
+        let mut leaves = Leaves::new(lanes, bvh, ray, boxes, counter, found);
+        let t_max = traverse::<L, _, FAST>(lanes, &bvh.nodes, boxes, ray.t_max, &mut leaves);
         leaves.answer(t_max)
     }
 }
 
 /// A ray among the triangles of leaves.
 pub struct Leaves<'a, T, F> {
-    asked: Asked<'a>,
+    ray_in_tree: RayInTree<'a>,
     places: Places,
-    tally: T,
+    counter: T,
     found: F,
     /// Whether signs found side by side are within the range of numbers.
     side_by_side: bool,
 }
 
-impl<'a, T, F: Found> Leaves<'a, T, F> {
+impl<'a, T, F: HitCollector> Leaves<'a, T, F> {
     #[inline(always)]
-    pub fn new<L: Lanes>(lanes: L, bvh: &'a TriangleBvh, ray: &'a Ray, boxes: &RayBox, tally: T) -> Self {
+    pub fn new<L: Lanes>(
+        lanes: L,
+        bvh: &'a TriangleBvh,
+        ray: &'a Ray,
+        boxes: &TraversalRay,
+        counter: T,
+        found: F,
+    ) -> Self {
         let (origin, dir) = (Vec3A::from(ray.origin), Vec3A::from(ray.dir));
         let axes = turn(dir);
-        let sheared = Sheared::turned(axes, lanes.turn(origin, axes), lanes.turn(dir, axes));
+        let sheared = WatertightRay::turned(axes, lanes.turn(origin, axes), lanes.turn(dir, axes));
         Leaves {
-            asked: Asked { bvh, ray, sheared },
+            ray_in_tree: RayInTree { bvh, ray, sheared },
             places: Places::new(bvh),
-            tally,
-            found: F::default(),
+            counter,
+            found,
             side_by_side: boxes.moderate,
         }
     }
@@ -185,14 +220,14 @@ impl<'a, T, F: Found> Leaves<'a, T, F> {
     }
 }
 
-impl<T: Tally, F: Found> Visitor for Leaves<'_, T, F> {
-    type Tally = T;
+impl<T: TraversalCounter, F: HitCollector> Visitor for Leaves<'_, T, F> {
+    type TraversalCounter = T;
 
     const ANY: bool = F::ANY;
 
     #[inline(always)]
-    fn tally(&mut self) -> &mut T {
-        &mut self.tally
+    fn counter(&mut self) -> &mut T {
+        &mut self.counter
     }
 
     #[inline(always)]
@@ -201,13 +236,13 @@ impl<T: Tally, F: Found> Visitor for Leaves<'_, T, F> {
     }
 
     #[inline(always)]
-    fn leaf<L: Lanes, const TAME: bool>(&mut self, lanes: L, leaf: u32, mut t_max: f32) -> f32 {
-        let (rows, count) = self.asked.bvh.rows(leaf);
-        (0..count).for_each(|_| self.tally.test());
-        if !TAME && !self.side_by_side {
+    fn leaf<L: Lanes, const FAST: bool>(&mut self, lanes: L, leaf: u32, mut t_max: f32) -> f32 {
+        let (rows, count) = self.ray_in_tree.bvh.rows(leaf);
+        self.counter.work(0, count as u64);
+        if !FAST && !self.side_by_side {
             return self.one_by_one(leaf, (1 << count) - 1, t_max);
         }
-        let Asked { bvh, sheared, .. } = &self.asked;
+        let RayInTree { bvh, sheared, .. } = &self.ray_in_tree;
         let (origin, shear) = (lanes.splat3(sheared.ray().0.to_array()), sheared.shear());
         let columns = Columns::new(sheared.axes(), count);
         let corners = lanes.corners(rows, columns);
@@ -218,13 +253,13 @@ impl<T: Tally, F: Found> Visitor for Leaves<'_, T, F> {
             return t_max;
         }
         let crossed = flat.crossed(lanes) & there;
-        let is_bounded = TAME || ORDINARY.contains(&sheared.ray().1.z.abs());
-        if crossed == 0 || bvh.blind || F::ANY && !is_bounded {
+        let is_bounded = FAST || FAST_RANGE.contains(&sheared.ray().1.z.abs());
+        if crossed == 0 || bvh.culls_slivers || F::ANY && !is_bounded {
             return self.one_by_one(leaf, unsure, t_max);
         }
         unsure ^= crossed;
         if F::ANY {
-            let (start, end) = (lanes.splat(self.asked.ray.t_min), lanes.splat(self.asked.ray.t_max));
+            let (start, end) = (lanes.splat(self.ray_in_tree.ray.t_min), lanes.splat(self.ray_in_tree.ray.t_max));
             let span = flat.span(lanes, 1.0 / sheared.ray().1.z);
             // So asked, what is no number is unsure.
             if crossed & lanes.lt(start, span.near) & lanes.lt(span.far, end) != 0 {
@@ -232,7 +267,8 @@ impl<T: Tally, F: Found> Visitor for Leaves<'_, T, F> {
             }
             unsure |= crossed & !(lanes.le(span.far, start) | lanes.le(end, span.near));
         } else {
-            // Hidden, or the compiler would prepare this for every ray, before it is known whether it comes to a leaf.
+            // Hidden, or the compiler would prepare this for every ray, before it is known whether
+            // it comes to a leaf.
             let sheared = std::hint::black_box(sheared);
             let (origin, dir) = sheared.ray();
             let line = Exact::new(lanes.triple(origin), lanes.triple(dir));
@@ -242,10 +278,10 @@ impl<T: Tally, F: Found> Visitor for Leaves<'_, T, F> {
                 crossed &= crossed - 1;
                 let [a, b, c] = columns.triangle(rows, lane);
                 let t = line.t(&Plane::new([lanes.triple(a), lanes.triple(b), lanes.triple(c)]))[0] as f32;
-                if self.asked.is_wanted(t, t_max) {
+                if self.ray_in_tree.is_wanted(t, t_max) {
                     let uv = sheared.uv([a, b, c]);
                     let hit = TriangleHit { t, uv, triangle: number(rows, count, lane) };
-                    t_max = self.found.met(hit, t_max);
+                    t_max = self.found.met(hit, t_max, || Facing::of(sheared, [a, b, c]));
                 }
             }
         }
@@ -256,17 +292,18 @@ impl<T: Tally, F: Found> Visitor for Leaves<'_, T, F> {
     }
 }
 
-impl<T: Tally, F: Found> Leaves<'_, T, F> {
+impl<T: TraversalCounter, F: HitCollector> Leaves<'_, T, F> {
     /// Triangles in full.
     #[cold]
     fn one_by_one(&mut self, leaf: u32, which: u32, mut t_max: f32) -> f32 {
-        let sheared = self.asked.sheared.least_volume(self.asked.bvh.least_volume);
+        let sheared = self.ray_in_tree.sheared.least_volume(self.ray_in_tree.bvh.least_volume);
         for lane in (0..WIDTH).filter(|lane| which >> lane & 1 == 1) {
-            let (corners, triangle) = self.asked.triangle(leaf, lane);
+            let (corners, triangle) = self.ray_in_tree.triangle(leaf, lane);
             if sheared.crosses(corners)
-                && let Some(t) = sheared.t(corners).filter(|t| self.asked.is_wanted(*t, t_max))
+                && let Some(t) = sheared.t(corners).filter(|t| self.ray_in_tree.is_wanted(*t, t_max))
             {
-                t_max = self.found.met(TriangleHit { t, uv: sheared.uv(corners), triangle }, t_max);
+                let hit = TriangleHit { t, uv: sheared.uv(corners), triangle };
+                t_max = self.found.met(hit, t_max, || Facing::of(&sheared, corners));
             }
         }
         t_max

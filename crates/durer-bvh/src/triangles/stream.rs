@@ -1,38 +1,49 @@
 //! Many rays through one tree, each a step at a time.
 //!
-//! A ray alone waits: for a node from memory, for the result of a test, for the processor that guessed a branch wrongly. Here
-//! several are on their way, and while one waits the others go on. Rays at inner nodes and rays at leaves are on two lists, so what
-//! comes next is no branch: a step writes its ray to both lists, and one of the two gets longer.
+//! A ray alone waits: for a node from memory, for the result of a test, for the processor that
+//! guessed a branch wrongly. Here several are on their way, and while one waits the others go on.
+//! Rays at inner nodes and rays at leaves are on two lists, so what comes next is no branch: a step
+//! writes its ray to both lists, and one of the two gets longer.
 
-use super::TriangleBvh;
 use super::fetch::{ITSELF, Places};
-use super::query::{Found, Leaves};
-use crate::lanes::{Kernel, Lanes, Room, Stack};
+use super::query::{HitCollector, Leaves};
+use super::tree::TriangleBvh;
+use crate::lanes::{Kernel, Lanes, Stack, StackStorage};
 use crate::math::{Ray, Vec3};
-use crate::node::{LEAF, Node, PLACE};
-use crate::traverse::{RayBox, Slabs, Visitor, end_of, meet};
+use crate::node::{LEAF, PLACE, WideNode};
+use crate::traverse::{Slabs, TraversalRay, Visitor, end_of, intersect_node};
 use std::hint::select_unpredictable;
 use std::marker::PhantomData;
 
 /// How many rays are on their way at once.
-const FLYING: usize = 16;
+const IN_FLIGHT: usize = 16;
 /// At the bottom of each stack: no leaf has this number, for its items would be beyond the most.
 const END: u32 = u32::MAX;
 
 /// Of a tree of fewer bytes, most is near: there, rays are faster one by one.
-const NEAR: usize = 8 << 20;
+const MAX_CACHED_BYTES: usize = 8 << 20;
 
 impl TriangleBvh {
     /// Answers a question for each of the rays with these numbers.
-    pub(super) fn each<F: Found>(&self, rays: &[Ray], numbers: &[u32], mut answer: impl FnMut(usize, F::Answer)) {
-        match self.bytes() < NEAR {
+    pub(super) fn each<F: HitCollector + Default>(
+        &self,
+        rays: &[Ray],
+        numbers: &[u32],
+        mut answer: impl FnMut(usize, F::Answer),
+    ) {
+        match self.memory_usage() < MAX_CACHED_BYTES {
             true => numbers.iter().for_each(|&i| answer(i as usize, self.query::<_, F>(&rays[i as usize], ()))),
             false => self.stream::<F>(rays, numbers, answer),
         }
     }
 
     /// As [`TriangleBvh::each`], several on their way at once.
-    pub(super) fn stream<F: Found>(&self, rays: &[Ray], numbers: &[u32], answer: impl FnMut(usize, F::Answer)) {
+    pub(super) fn stream<F: HitCollector + Default>(
+        &self,
+        rays: &[Ray],
+        numbers: &[u32],
+        answer: impl FnMut(usize, F::Answer),
+    ) {
         self.level.run(Stream::<F, _> { bvh: self, rays, numbers: numbers.iter(), answer, found: PhantomData });
     }
 }
@@ -47,9 +58,9 @@ struct Stream<'a, F, A> {
 }
 
 /// A ray on its way.
-struct Flyer<'a, F> {
+struct InFlightRay<'a, F> {
     number: usize,
-    boxes: RayBox,
+    boxes: TraversalRay,
     leaves: Leaves<'a, (), F>,
     t_max: f32,
     child: u32,
@@ -57,12 +68,12 @@ struct Flyer<'a, F> {
 
 /// Numbers of rays.
 struct List {
-    numbers: [u8; 2 * FLYING],
+    numbers: [u8; 2 * IN_FLIGHT],
     len: usize,
 }
 
 impl List {
-    const EMPTY: List = List { numbers: [0; 2 * FLYING], len: 0 };
+    const EMPTY: List = List { numbers: [0; 2 * IN_FLIGHT], len: 0 };
 
     /// Adds a number if something is so.
     #[inline(always)]
@@ -72,23 +83,24 @@ impl List {
     }
 }
 
-impl<'a, F: Found, A: FnMut(usize, F::Answer)> Stream<'a, F, A> {
-    /// Puts the next ray in a place, if there is one. Rays that are not traced here are answered at once.
+impl<'a, F: HitCollector + Default, A: FnMut(usize, F::Answer)> Stream<'a, F, A> {
+    /// Puts the next ray in a place, if there is one. Rays that are not traced here are answered at
+    /// once.
     #[inline(always)]
-    fn start<L: Lanes>(&mut self, lanes: L, flyer: &mut Flyer<'a, F>, stack: &mut Stack) -> bool {
+    fn start<L: Lanes>(&mut self, lanes: L, flight: &mut InFlightRay<'a, F>, stack: &mut Stack) -> bool {
         for &number in self.numbers.by_ref() {
             let number = number as usize;
             let ray = &self.rays[number];
-            match RayBox::new(ray, self.bvh.reach) {
-                Some(boxes) if !self.bvh.nodes.is_empty() => flyer.boxes = boxes,
+            match TraversalRay::new(ray, self.bvh.reach) {
+                Some(boxes) if !self.bvh.nodes.is_empty() => flight.boxes = boxes,
                 _ => {
                     (self.answer)(number, self.bvh.query::<_, F>(ray, ()));
                     continue;
                 }
             }
-            flyer.number = number;
-            flyer.leaves = Leaves::new(lanes, self.bvh, ray, &flyer.boxes, ());
-            (flyer.t_max, flyer.child) = (ray.t_max, 0);
+            flight.number = number;
+            flight.leaves = Leaves::new(lanes, self.bvh, ray, &flight.boxes, (), F::default());
+            (flight.t_max, flight.child) = (ray.t_max, 0);
             stack.clear();
             stack.push(END, f32::NEG_INFINITY);
             Places::new(self.bvh).fetch::<L, ITSELF>(lanes, 0);
@@ -100,38 +112,38 @@ impl<'a, F: Found, A: FnMut(usize, F::Answer)> Stream<'a, F, A> {
 
 /// One node of a ray's way: its child is the next node or leaf.
 #[inline(always)]
-fn step<L: Lanes, F: Found>(lanes: L, nodes: &[Node], flyer: &mut Flyer<F>, stack: &mut Stack) {
-    let slabs = Slabs::new(lanes, nodes, &flyer.boxes);
-    let met = meet::<L, true>(lanes, &slabs, flyer.child as usize, lanes.splat(flyer.t_max));
-    let order = met.node.order(F::ANY, flyer.boxes.negative);
+fn step<L: Lanes, F: HitCollector>(lanes: L, nodes: &[WideNode], flight: &mut InFlightRay<F>, stack: &mut Stack) {
+    let slabs = Slabs::new(lanes, nodes, &flight.boxes);
+    let met = intersect_node::<L, true>(lanes, &slabs, flight.child as usize, lanes.splat(flight.t_max));
+    let order = met.node.order(F::ANY, flight.boxes.negative);
     let next = met.next::<true>(lanes, F::ANY, end_of(met.mask, order != 0));
     met.push(lanes, stack, next, order);
     // If nothing was met, nothing was pushed.
-    flyer.child = select_unpredictable(met.mask == 0, stack.pop_if(met.mask == 0), met.child(next & PLACE));
+    flight.child = select_unpredictable(met.mask == 0, stack.pop_if(met.mask == 0), met.child(next & PLACE));
 }
 
-impl<'a, F: Found, A: FnMut(usize, F::Answer)> Kernel for Stream<'a, F, A> {
+impl<'a, F: HitCollector + Default, A: FnMut(usize, F::Answer)> Kernel for Stream<'a, F, A> {
     type Output = ();
 
     #[inline(always)]
     fn run<L: Lanes>(mut self, lanes: L) {
         let bvh = self.bvh;
         let places = Places::new(bvh);
-        let mut rooms: Vec<Room> = (0..FLYING).map(|_| Room::new()).collect();
+        let mut rooms: Vec<StackStorage> = (0..IN_FLIGHT).map(|_| StackStorage::new()).collect();
         let mut stacks: Vec<Stack> = rooms.iter_mut().map(Stack::new).collect();
         const NOWHERE: &Ray = &Ray::new(Vec3::ZERO, Vec3::X);
-        let boxes = RayBox::wild(NOWHERE, bvh.reach).expect("a sound ray");
-        let place = |_| Flyer {
+        let boxes = TraversalRay::robust(NOWHERE, bvh.reach).expect("a sound ray");
+        let place = |_| InFlightRay {
             number: 0,
             boxes,
-            leaves: Leaves::new(lanes, bvh, NOWHERE, &boxes, ()),
+            leaves: Leaves::new(lanes, bvh, NOWHERE, &boxes, (), F::default()),
             t_max: 0.0,
             child: END,
         };
-        let mut flyers: Vec<Flyer<F>> = (0..FLYING).map(place).collect();
+        let mut flights: Vec<InFlightRay<F>> = (0..IN_FLIGHT).map(place).collect();
         let (mut inner, mut leaves) = (List::EMPTY, List::EMPTY);
-        for (number, (flyer, stack)) in flyers.iter_mut().zip(&mut stacks).enumerate() {
-            let started = self.start(lanes, flyer, stack);
+        for (number, (flight, stack)) in flights.iter_mut().zip(&mut stacks).enumerate() {
+            let started = self.start(lanes, flight, stack);
             inner.add(number as u8, started);
         }
         while inner.len + leaves.len > 0 {
@@ -139,11 +151,11 @@ impl<'a, F: Found, A: FnMut(usize, F::Answer)> Kernel for Stream<'a, F, A> {
             let before = std::mem::replace(&mut inner.len, 0);
             for k in 0..before {
                 let number = inner.numbers[k];
-                let (flyer, stack) = (&mut flyers[usize::from(number)], &mut stacks[usize::from(number)]);
-                step(lanes, &bvh.nodes, flyer, stack);
-                places.fetch::<L, ITSELF>(lanes, flyer.child);
-                inner.add(number, flyer.child & LEAF == 0);
-                leaves.add(number, flyer.child & LEAF != 0);
+                let (flight, stack) = (&mut flights[usize::from(number)], &mut stacks[usize::from(number)]);
+                step(lanes, &bvh.nodes, flight, stack);
+                places.fetch::<L, ITSELF>(lanes, flight.child);
+                inner.add(number, flight.child & LEAF == 0);
+                leaves.add(number, flight.child & LEAF != 0);
             }
             // Leaves once there are several.
             if inner.len >= leaves.len {
@@ -152,25 +164,25 @@ impl<'a, F: Found, A: FnMut(usize, F::Answer)> Kernel for Stream<'a, F, A> {
             let before = std::mem::replace(&mut leaves.len, 0);
             for k in 0..before {
                 let number = leaves.numbers[k];
-                let (flyer, stack) = (&mut flyers[usize::from(number)], &mut stacks[usize::from(number)]);
-                let mut over = flyer.child == END;
+                let (flight, stack) = (&mut flights[usize::from(number)], &mut stacks[usize::from(number)]);
+                let mut over = flight.child == END;
                 if !over {
-                    let t = flyer.leaves.leaf::<L, true>(lanes, flyer.child, flyer.t_max);
+                    let t = flight.leaves.leaf::<L, true>(lanes, flight.child, flight.t_max);
                     over = t == f32::NEG_INFINITY;
-                    flyer.t_max = t;
+                    flight.t_max = t;
                 }
                 if over {
-                    (self.answer)(flyer.number, flyer.leaves.answer(flyer.t_max));
-                    if !self.start(lanes, flyer, stack) {
+                    (self.answer)(flight.number, flight.leaves.answer(flight.t_max));
+                    if !self.start(lanes, flight, stack) {
                         // Its place stays empty.
                         continue;
                     }
                 } else {
-                    flyer.child = stack.pop_until(flyer.t_max);
-                    places.fetch::<L, ITSELF>(lanes, flyer.child);
+                    flight.child = stack.pop_until(flight.t_max);
+                    places.fetch::<L, ITSELF>(lanes, flight.child);
                 }
-                inner.add(number, flyer.child & LEAF == 0);
-                leaves.add(number, flyer.child & LEAF != 0);
+                inner.add(number, flight.child & LEAF == 0);
+                leaves.add(number, flight.child & LEAF != 0);
             }
         }
     }

@@ -1,12 +1,13 @@
-//! Trees of triangles against brute force, at every SIMD level and preset.
+//! Trees of triangles against brute force, at every SIMD level and quality.
 
 use super::*;
-use crate::Preset;
-use crate::math::Vec3;
+use crate::BuildQuality;
 use crate::math::random::{Random, rounds};
+use crate::math::{Vec2, Vec3};
 use crate::tests::codes_are_right;
 use crate::traverse::is_sound;
 
+mod queries;
 mod reference;
 
 pub type Mesh = (Vec<Vec3>, Vec<[u32; 3]>);
@@ -105,7 +106,8 @@ fn scaled((vertices, triangles): &Mesh, scale: f32, offset: Vec3) -> Mesh {
     (vertices.iter().map(|v| scale * *v + offset).collect(), triangles.clone())
 }
 
-/// Rays of all kinds about a mesh: at vertices, edges and faces, along axes, short, long, and with special numbers.
+/// Rays of all kinds about a mesh: at vertices, edges and faces, along axes, short, long, and with
+/// special numbers.
 pub fn ray((vertices, triangles): &Mesh, random: &mut Random, scale: f32, offset: Vec3) -> Ray {
     let mut goal = offset + scale * random.point();
     if !triangles.is_empty() {
@@ -132,7 +134,7 @@ pub fn brute_force((vertices, triangles): &Mesh, ray: &Ray) -> Vec<TriangleHit> 
     if !is_sound(ray) {
         return Vec::new();
     }
-    let sheared = Sheared::new(ray);
+    let sheared = WatertightRay::new(ray);
     let hit = |(i, t): (usize, &[u32; 3])| {
         let corners = t.map(|i| vertices[i as usize]);
         let crossing =
@@ -157,11 +159,11 @@ fn every_tree_at_every_level_finds_what_brute_force_finds() {
             [(1.0, Vec3::ZERO), (1.0, Vec3::new(1e4, -3e3, 7e4)), (1e-30, Vec3::ZERO), (1e30, Vec3::ZERO)]
         {
             let mesh = scaled(&mesh, scale, offset);
-            let trees: Vec<(String, TriangleBvh)> = Preset::NAMES
+            let trees: Vec<(String, TriangleBvh)> = BuildQuality::NAMES
                 .into_iter()
-                .flat_map(|(word, preset)| {
-                    let tree = TriangleBvh::build(&mesh.0, &mesh.1, preset);
-                    Level::available().map(move |level| (format!("{word} {level:?}"), tree.clone().at_level(level)))
+                .flat_map(|(word, quality)| {
+                    let tree = TriangleBvh::build(&mesh.0, &mesh.1, quality);
+                    SimdLevel::available().map(move |level| (format!("{word} {level:?}"), tree.clone().at_level(level)))
                 })
                 .collect();
             let rays = if mesh.1.len() > 5_000 { 20 } else { 120 };
@@ -192,15 +194,15 @@ fn a_closed_mesh_is_crossed_evenly_from_outside_and_oddly_from_inside() {
             let offset = (distance * random.direction()).round();
             let scale = if distance > 1e5 { 64.0 } else { 1.0 };
             let mesh = scaled(mesh, scale, offset);
-            let tree = TriangleBvh::build(&mesh.0, &mesh.1, Preset::Best);
+            let tree = TriangleBvh::build(&mesh.0, &mesh.1, BuildQuality::Best);
             for round in 0..rounds(2_000) {
                 let [a, b, c] = mesh.1[random.below(mesh.1.len())].map(|i| mesh.0[i as usize]);
                 let goal = [a, 0.5 * (a + b), a + random.unit() * (b - a), (a + b + c) / 3.0][round % 4];
                 let outside = offset + scale * [3.0, 1e3][round / 4 % 2] * random.direction();
-                assert!(tree.count(&Ray::new(outside, goal - outside)).is_multiple_of(2), "{outside} {goal}");
+                assert!(tree.hit_count(&Ray::new(outside, goal - outside)).is_multiple_of(2), "{outside} {goal}");
                 let start = scale * *inside + offset;
                 for dir in [goal - start, Vec3::AXES[round % 3], -Vec3::AXES[round % 3]] {
-                    assert!(tree.count(&Ray::new(start, dir)) % 2 == 1, "{start} {dir}");
+                    assert!(tree.hit_count(&Ray::new(start, dir)) % 2 == 1, "{start} {dir}");
                 }
                 counted += 4;
             }
@@ -213,8 +215,8 @@ fn a_closed_mesh_is_crossed_evenly_from_outside_and_oddly_from_inside() {
 fn a_refitted_tree_finds_what_brute_force_finds() {
     let mut random = Random(3);
     let mesh = torus(30, 15);
-    for preset in [Preset::Fast, Preset::Best] {
-        let mut tree = TriangleBvh::build(&mesh.0, &mesh.1, preset);
+    for quality in [BuildQuality::Fast, BuildQuality::Best] {
+        let mut tree = TriangleBvh::build(&mesh.0, &mesh.1, quality);
         for round in 1..6 {
             let bent = |v: &Vec3| *v + 0.1 * round as f32 * Vec3::new(v.y, v.z * v.x, -v.x) + Vec3::Y * round as f32;
             let mut moved: Mesh = (mesh.0.iter().map(bent).collect(), mesh.1.clone());
@@ -242,8 +244,8 @@ fn the_greatest_numbers_lead_to_triangles() {
     let mut random = Random(5);
     let mesh = torus(12, 6);
     let huge: Mesh = (mesh.0.iter().map(|v| *v / 1.5 * 3e38).collect(), mesh.1.clone());
-    for level in Level::available() {
-        let tree = TriangleBvh::build(&huge.0, &huge.1, Preset::Balanced).at_level(level);
+    for level in SimdLevel::available() {
+        let tree = TriangleBvh::build(&huge.0, &huge.1, BuildQuality::Balanced).at_level(level);
         for _ in 0..2_000 {
             let ray = Ray { t_max: f32::INFINITY, ..Ray::new(3e38 * random.point(), random.point()) };
             let all = tree.all_hits(&ray);
@@ -252,7 +254,8 @@ fn the_greatest_numbers_lead_to_triangles() {
     }
 }
 
-/// Neighbours in a picture, through a hole or side by side: at corners, edges and faces, often across octants, with some that are odd.
+/// Neighbours in a picture, through a hole or side by side: at corners, edges and faces, often
+/// across octants, with some that are odd.
 fn bundle(mesh: &Mesh, random: &mut Random, scale: f32, offset: Vec3) -> Vec<Ray> {
     let middle = ray(mesh, random, scale, offset);
     let count = 1 + random.below(150);
@@ -288,10 +291,11 @@ fn batches_answer_as_single_rays_do() {
     for (name, mesh) in hard() {
         for (scale, offset) in [(1.0, Vec3::ZERO), (1.0, Vec3::new(1e4, -3e3, 7e4)), (1e-30, Vec3::ZERO)] {
             let mesh = scaled(&mesh, scale, offset);
-            let tree = TriangleBvh::build(&mesh.0, &mesh.1, Preset::Best);
+            let tree = TriangleBvh::build(&mesh.0, &mesh.1, BuildQuality::Best);
             let size = f64::from(scale);
-            let blind = tree.clone().least_volume(0.01 * size * size * size);
-            let trees: Vec<_> = Level::available().map(|level| tree.clone().at_level(level)).chain([blind]).collect();
+            let culls_slivers = tree.clone().least_volume(0.01 * size * size * size);
+            let trees: Vec<_> =
+                SimdLevel::available().map(|level| tree.clone().at_level(level)).chain([culls_slivers]).collect();
             for round in 0..rounds(4) {
                 let mut rays: Vec<Ray> = (0..3).flat_map(|_| bundle(&mesh, &mut random, scale, offset)).collect();
                 // Where each meets very many, a few will do.
@@ -301,7 +305,8 @@ fn batches_answer_as_single_rays_do() {
                 }
                 let (mut hits, mut occluded) = (vec![None; rays.len()], vec![false; rays.len()]);
                 for tree in &trees {
-                    // In parts, for after rays that do not go together some are not asked whether they do.
+                    // In parts, for after rays that do not go together some are not asked whether
+                    // they do.
                     let part = [64, usize::MAX][round % 2];
                     rays.chunks(part).zip(hits.chunks_mut(part)).for_each(|(rays, to)| tree.closest_batch(rays, to));
                     rays.chunks(part)
@@ -328,8 +333,8 @@ fn batches_answer_as_single_rays_do() {
 #[test]
 fn rays_along_an_axis_go_together_and_meet_what_is_there() {
     let mesh = torus(40, 20);
-    let tree = TriangleBvh::build(&mesh.0, &mesh.1, Preset::Best);
-    let trees: Vec<_> = Level::available().map(|level| tree.clone().at_level(level)).collect();
+    let tree = TriangleBvh::build(&mesh.0, &mesh.1, BuildQuality::Best);
+    let trees: Vec<_> = SimdLevel::available().map(|level| tree.clone().at_level(level)).collect();
     let mut met = 0;
     for (k, corner) in mesh.0.iter().enumerate().step_by(11) {
         let (axis, small) = (k % 3, [0.0, -0.0, 1e-42][k / 3 % 3]);
@@ -354,7 +359,7 @@ fn rays_along_an_axis_go_together_and_meet_what_is_there() {
                 assert_eq!(hits[i].as_ref().map(bits), first, "{ray:?}");
                 assert_eq!(tree.closest(ray).as_ref().map(bits), first, "{ray:?}");
                 assert_eq!((occluded[i], tree.occluded(ray)), (first.is_some(), first.is_some()), "{ray:?}");
-                assert_eq!((tree.count(ray), expected.len() % 2), (expected.len(), 0), "{ray:?}");
+                assert_eq!((tree.hit_count(ray), expected.len() % 2), (expected.len(), 0), "{ray:?}");
                 met += usize::from(first.is_some());
             }
         }
@@ -364,12 +369,13 @@ fn rays_along_an_axis_go_together_and_meet_what_is_there() {
 
 #[test]
 fn zeros_of_either_sign_are_one_point_where_rays_begin() {
-    // About the origin, so that corners have zeros too, of either sign, and rays run through edges and vertices.
+    // About the origin, so that corners have zeros too, of either sign, and rays run through edges
+    // and vertices.
     let mut mesh = cube(8);
     for (i, at) in mesh.0.iter_mut().flat_map(|at| at.as_mut()).enumerate() {
         *at = if *at == 0.0 && i % 2 == 0 { -0.0 } else { *at };
     }
-    let tree = TriangleBvh::build(&mesh.0, &mesh.1, Preset::Best);
+    let tree = TriangleBvh::build(&mesh.0, &mesh.1, BuildQuality::Best);
     for octant in 0..24 {
         let signs = Vec3::from_array([0, 1, 2].map(|axis| [1.0, -1.0][octant >> axis & 1]));
         let rays: Vec<Ray> = (0..64)
@@ -380,7 +386,7 @@ fn zeros_of_either_sign_are_one_point_where_rays_begin() {
                 Ray::new(origin, dir * signs)
             })
             .collect();
-        for tree in Level::available().map(|level| tree.clone().at_level(level)) {
+        for tree in SimdLevel::available().map(|level| tree.clone().at_level(level)) {
             let (mut hits, mut occluded) = (vec![None; rays.len()], vec![false; rays.len()]);
             let alone = tree.packets::<false>(&rays, |i, hit| hits[i] = hit);
             assert_eq!(tree.packets::<true>(&rays, |i, hit| occluded[i] = hit.is_some()), alone);
@@ -398,28 +404,30 @@ fn zeros_of_either_sign_are_one_point_where_rays_begin() {
 fn a_tree_is_a_function_of_its_triangles() {
     // So many that every step has parts that run side by side.
     let (soup, bars) = (soup(&mut Random(5), 40_000, 0.05), bars(&mut Random(5), 20_000, 1_000));
-    for (mesh, (name, preset)) in [&soup, &bars].into_iter().flat_map(|mesh| Preset::NAMES.map(|named| (mesh, named))) {
+    for (mesh, (name, quality)) in
+        [&soup, &bars].into_iter().flat_map(|mesh| BuildQuality::NAMES.map(|named| (mesh, named)))
+    {
         let build = |threads: usize| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            let tree = pool.install(|| TriangleBvh::build(&mesh.0, &mesh.1, preset));
+            let tree = pool.install(|| TriangleBvh::build(&mesh.0, &mesh.1, quality));
             format!("{:?}{:?}", tree.nodes, tree.leaves)
         };
         assert!(build(1) == build(2), "{name}");
     }
-    assert!(TriangleBvh::build(&bars.0, &bars.1, Preset::Best).items() > bars.1.len(), "no part of a triangle");
+    assert!(TriangleBvh::build(&bars.0, &bars.1, BuildQuality::Best).items() > bars.1.len(), "no part of a triangle");
 }
 
 /// It arrives where the tree was asked for, whichever thread found it, and the next tree is built.
 #[test]
 fn an_index_that_leads_nowhere_panics() {
     let (vertices, mut triangles) = soup(&mut Random(3), 20_000, 0.1);
-    for preset in Preset::NAMES.map(|(_, preset)| preset) {
+    for quality in BuildQuality::NAMES.map(|(_, quality)| quality) {
         for place in [0, 10_000, 19_999] {
             let right = std::mem::replace(&mut triangles[place], [0, 1, 1 << 20]);
-            let build = || TriangleBvh::build(&vertices, &triangles, preset);
-            assert!(std::panic::catch_unwind(build).is_err(), "{preset:?} {place}");
+            let build = || TriangleBvh::build(&vertices, &triangles, quality);
+            assert!(std::panic::catch_unwind(build).is_err(), "{quality:?} {place}");
             triangles[place] = right;
         }
-        assert_eq!(TriangleBvh::build(&vertices, &triangles, preset).items(), triangles.len());
+        assert_eq!(TriangleBvh::build(&vertices, &triangles, quality).items(), triangles.len());
     }
 }

@@ -1,16 +1,17 @@
-//! Ray against triangle, watertight: a ray never slips between two triangles that share an edge, and
-//! crosses exactly one of those around an edge or a vertex.
+//! Ray against triangle, watertight: a ray never slips between two triangles that share an edge,
+//! and crosses exactly one of those around an edge or a vertex.
 //!
-//! The triangle is sheared so that the ray runs along one axis; what remains is whether a polygon's edges go
-//! round the origin of a plane. Corners shared by two triangles are rounded alike, and the sign of each edge
-//! function is exact, so two neighbours never disagree. Where an edge passes through the ray, the ray counts
-//! as moved by an infinitesimal (e, e^2) in the plane across it.
+//! The triangle is sheared so that the ray runs along one axis; what remains is whether a polygon's
+//! edges go round the origin of a plane. Corners shared by two triangles are rounded alike, and the
+//! sign of each edge function is exact, so two neighbours never disagree. Where an edge passes
+//! through the ray, the ray counts as moved by an infinitesimal (e, e^2) in the plane across it.
 //!
-//! Single precision says whether a triangle is crossed; where, double precision says. A ray that starts beside a
-//! triangle, off by no more than the rounding of its origin, is therefore on the right side of it.
+//! Single precision says whether a triangle is crossed; where, double precision says. A ray that
+//! starts beside a triangle, off by no more than the rounding of its origin, is therefore on the
+//! right side of it.
 //!
-//! Sources: Woop, Benthin, Wald, *Watertight Ray/Triangle Intersection*, JCGT 2(1), 2013; the infinitesimal is
-//! Edelsbrunner and Mücke's *Simulation of Simplicity*, ACM TOG 9(1), 1990.
+//! Sources: Woop, Benthin, Wald, *Watertight Ray/Triangle Intersection*, JCGT 2(1), 2013; the
+//! infinitesimal is Edelsbrunner and Mücke's *Simulation of Simplicity*, ACM TOG 9(1), 1990.
 
 use crate::math::{Doubles, Ray, Triple, Vec2, Vec3};
 use glam::Vec3A;
@@ -29,11 +30,12 @@ pub struct Crossing {
 
 /// A ray prepared for many triangles.
 ///
-/// It is turned: the longest component of its direction counts as the third axis, and the other two are in the order that keeps
-/// the sides of triangles. So are the corners that `Sheared::crosses` and others take.
+/// It is turned: the longest component of its direction counts as the third axis, and the other two
+/// are in the order that keeps the sides of triangles. So are the corners that
+/// `WatertightRay::crosses` and others take.
 #[derive(Clone, Copy, Debug)]
-pub struct Sheared {
-    axes: &'static Turn,
+pub struct WatertightRay {
+    axes: &'static AxisOrder,
     origin: Vec3A,
     dir: Vec3A,
     /// The direction, of which the third component is 1.
@@ -41,7 +43,7 @@ pub struct Sheared {
     least_volume: f64,
 }
 
-impl Sheared {
+impl WatertightRay {
     /// Prepares a ray. One without direction, or with an infinite one, hits nothing.
     #[inline(always)]
     pub fn new(ray: &Ray) -> Self {
@@ -49,18 +51,18 @@ impl Sheared {
         let [origin, dir] = [ray.origin, ray.dir].map(|v| turned(axes, v.as_ref()));
         let sheared = Self::turned(axes, origin, dir);
         let shear = if sheared.dir.z.is_finite() { sheared.shear } else { Vec3A::NAN };
-        Sheared { shear, ..sheared }
+        WatertightRay { shear, ..sheared }
     }
 
     /// A ray that has a finite direction, with its axes, by [`turn`], and turned already.
     #[inline(always)]
-    pub(crate) fn turned(axes: &'static Turn, origin: Vec3A, dir: Vec3A) -> Self {
-        Sheared { axes, origin, dir, shear: dir / dir.z, least_volume: 0.0 }
+    pub(crate) fn turned(axes: &'static AxisOrder, origin: Vec3A, dir: Vec3A) -> Self {
+        WatertightRay { axes, origin, dir, shear: dir / dir.z, least_volume: 0.0 }
     }
 
     /// Misses triangles for which |(b - a) x (c - a) · d| is less than this.
     pub fn least_volume(self, least_volume: f64) -> Self {
-        Sheared { least_volume, ..self }
+        WatertightRay { least_volume, ..self }
     }
 
     /// The crossing with a triangle in the open interval (`t_min`, `t_max`), from either side.
@@ -87,6 +89,15 @@ impl Sheared {
         det != 0.0 && !det.is_nan()
     }
 
+    /// Whether a triangle that is crossed is met from its front, where its corners go
+    /// counter-clockwise.
+    pub(crate) fn is_front(&self, corners: [Vec3A; 3]) -> bool {
+        let [a, b, c] = areas(self.flatten(corners).map(doubles));
+        // Of one sign, as far as they have any; and the direction's longest component, along
+        // which the plane is seen, may be negative.
+        a + b + c > 0.0
+    }
+
     /// The second and third barycentric coordinate of the crossing with a triangle that is crossed.
     #[inline(always)]
     pub(crate) fn uv(&self, corners: [Vec3A; 3]) -> Vec2 {
@@ -107,7 +118,8 @@ impl Sheared {
         Vec2::new(flat.x, flat.y)
     }
 
-    /// Where the ray's line crosses a triangle that it crosses: within the triangle's bounds. It may be infinite.
+    /// Where the ray's line crosses a triangle that it crosses: within the triangle's bounds. It
+    /// may be infinite.
     #[inline(always)]
     pub(crate) fn t(&self, corners: [Vec3A; 3]) -> Option<f32> {
         let [t, volume] = Exact::single(self.origin, self.dir).t(&Plane::single(corners));
@@ -118,7 +130,7 @@ impl Sheared {
     }
 
     /// The axes in the order of turned vectors.
-    pub(crate) fn axes(&self) -> &'static Turn {
+    pub(crate) fn axes(&self) -> &'static AxisOrder {
         self.axes
     }
 
@@ -187,11 +199,13 @@ impl<V: Triple> Exact<V> {
         Exact { origin, dir, inverse }
     }
 
-    /// Where it crosses a turned triangle that it crosses, and the volume |(b - a) x (c - a) · d| with its sign.
+    /// Where it crosses a turned triangle that it crosses, and the volume |(b - a) x (c - a) · d|
+    /// with its sign.
     ///
-    /// That is where it meets the plane, but between the lowest and the highest corner: seen from nearly its side, the
-    /// triangle still bounds t, also where that is no number. Products are rounded monotonically, so the corners' distances are
-    /// between those of the lowest and of the highest.
+    /// That is where it meets the plane, but between the lowest and the highest corner: seen from
+    /// nearly its side, the triangle still bounds t, also where that is no number. Products are
+    /// rounded monotonically, so the corners' distances are between those of the lowest and of the
+    /// highest.
     #[inline(always)]
     pub fn t(&self, plane: &Plane<V>) -> [V::Component; 2] {
         let volume = plane.normal.dot(self.dir);
@@ -203,8 +217,8 @@ impl<V: Triple> Exact<V> {
     }
 }
 
-/// The second and third barycentric coordinate of the origin, by the corners in the plane across a ray that crosses the triangle; or
-/// those of several side by side.
+/// The second and third barycentric coordinate of the origin, by the corners in the plane across a
+/// ray that crosses the triangle; or those of several side by side.
 #[inline(always)]
 pub(crate) fn uv_across<D: Doubles>(flat: [[D; 2]; 3]) -> [D; 2] {
     let [a, b, c] = areas(flat);
@@ -213,13 +227,15 @@ pub(crate) fn uv_across<D: Doubles>(flat: [[D; 2]; 3]) -> [D; 2] {
     [b.div(det), c.div(det)]
 }
 
-/// Which components of a vector are the first, second, and third of a turned one; the last is there to make a vector of four.
-pub(crate) type Turn = [u32; 4];
+/// Which components of a vector are the first, second, and third of a turned one; the last is there
+/// to make a vector of four.
+pub(crate) type AxisOrder = [u32; 4];
 
-/// The axes that turn a ray, by the longest component of its direction and whether that is negative (1) or not (0).
+/// The axes that turn a ray, by the longest component of its direction and whether that is negative
+/// (1) or not (0).
 #[inline(always)]
-pub(crate) const fn turned_axes(longest: usize, negative: usize) -> Turn {
-    const AXES: [[Turn; 2]; 4] =
+pub(crate) const fn turned_axes(longest: usize, negative: usize) -> AxisOrder {
+    const AXES: [[AxisOrder; 2]; 4] =
         [[[1, 2, 0, 0], [2, 1, 0, 0]], [[2, 0, 1, 0], [0, 2, 1, 0]], [[0, 1, 2, 0], [1, 0, 2, 0]], [[0; 4]; 2]];
     // So masked, indices need not be tested.
     AXES[longest & 3][negative & 1]
@@ -227,15 +243,15 @@ pub(crate) const fn turned_axes(longest: usize, negative: usize) -> Turn {
 
 /// The axes that turn a ray with such a direction.
 #[inline(always)]
-pub(crate) fn turn(dir: Vec3A) -> &'static Turn {
+pub(crate) fn turn(dir: Vec3A) -> &'static AxisOrder {
     let length = dir.abs();
     let longest = length.cmpeq(Vec3A::splat(length.max_element())).bitmask();
     &TURNED[longest as usize & 7][dir.is_negative_bitmask() as usize & 7]
 }
 
-/// The axes that turn a ray, by which components of its direction are longest (a bit for each; the last of them counts) and which are
-/// negative.
-static TURNED: [[Turn; 8]; 8] = {
+/// The axes that turn a ray, by which components of its direction are longest (a bit for each; the
+/// last of them counts) and which are negative.
+static TURNED: [[AxisOrder; 8]; 8] = {
     let mut table = [[[0, 1, 2, 0]; 8]; 8];
     let mut at = 8;
     while at < 64 {
@@ -247,7 +263,7 @@ static TURNED: [[Turn; 8]; 8] = {
 };
 
 #[inline(always)]
-fn turned([x, y, z, _]: &Turn, v: &[f32; 3]) -> Vec3A {
+fn turned([x, y, z, _]: &AxisOrder, v: &[f32; 3]) -> Vec3A {
     Vec3A::new(v[*x as usize], v[*y as usize], v[*z as usize])
 }
 
@@ -256,7 +272,8 @@ fn doubles(p: Vec2) -> [f64; 2] {
     [f64::from(p.x), f64::from(p.y)]
 }
 
-/// Twice the areas of the triangles from the origin to the three edges: unnormalised barycentric coordinates.
+/// Twice the areas of the triangles from the origin to the three edges: unnormalised barycentric
+/// coordinates.
 #[inline(always)]
 fn areas<D: Doubles>([a, b, c]: [[D; 2]; 3]) -> [D; 3] {
     [edge(b, c), edge(c, a), edge(a, b)]
@@ -268,7 +285,8 @@ fn edge<D: Doubles>(p: [D; 2], q: [D; 2]) -> D {
     q[0].mul(p[1]).sub(q[1].mul(p[0]))
 }
 
-/// Whether the edge from `p` to `q` goes round the origin clockwise: the sign of the edge function, never zero.
+/// Whether the edge from `p` to `q` goes round the origin clockwise: the sign of the edge function,
+/// never zero.
 #[inline(always)]
 fn is_front(p: Vec2, q: Vec2) -> bool {
     let value = q.x * p.y - q.y * p.x;
@@ -279,8 +297,8 @@ fn is_front(p: Vec2, q: Vec2) -> bool {
 /// As [`is_front`], where single precision sees zero or overflows.
 #[cold]
 fn is_front_exact(p: Vec2, q: Vec2) -> bool {
-    // Terms of the edge function about (e, e^2), in falling order: 1, e, e^2. Differences in double precision, for
-    // those of single precision may underflow.
+    // Terms of the edge function about (e, e^2), in falling order: 1, e, e^2. Differences in double
+    // precision, for those of single precision may underflow.
     let [p, q] = [doubles(p), doubles(q)];
     [edge(p, q), q[1] - p[1], p[0] - q[0]].into_iter().find(|term| *term != 0.0).is_some_and(|term| term > 0.0)
 }

@@ -5,7 +5,8 @@ use crate::math::random::Random;
 
 type Triangles = Vec<[Vec3; 3]>;
 
-/// A grid over [0, 1]^2 that is closed by the map of its corners: neighbours get the same corner, bit for bit.
+/// A grid over [0, 1]^2 that is closed by the map of its corners: neighbours get the same corner,
+/// bit for bit.
 fn sheet(columns: usize, rows: usize, point: impl Fn(usize, usize) -> Vec3) -> Triangles {
     let mut triangles = Vec::new();
     for i in 0..columns {
@@ -54,7 +55,7 @@ fn target(mesh: &Triangles, random: &mut Random) -> Vec3 {
 }
 
 fn crossed(mesh: &Triangles, ray: &Ray) -> usize {
-    let sheared = Sheared::new(ray);
+    let sheared = WatertightRay::new(ray);
     mesh.iter().filter(|corners| sheared.intersect(**corners, ray.t_min, ray.t_max).is_some()).count()
 }
 
@@ -126,7 +127,7 @@ fn triangles_of_all_sizes_are_met() {
         for _ in 0..50 {
             let from = size * Vec3::new(random.between(-1.0, 1.0), random.between(-1.0, 1.0), 2.0);
             let goal = size * Vec3::new(0.1, random.between(-0.5, 0.2), 0.05);
-            let crossing = Sheared::new(&Ray::new(from, goal - from)).intersect(corners, 0.0, f32::INFINITY);
+            let crossing = WatertightRay::new(&Ray::new(from, goal - from)).intersect(corners, 0.0, f32::INFINITY);
             let crossing = crossing.unwrap_or_else(|| panic!("{power}"));
             assert!((0.8..1.2).contains(&crossing.t), "{power} {crossing:?}");
             assert!(crossing.uv.min_element() > 0.0 && crossing.uv.element_sum() < 1.0, "{power} {crossing:?}");
@@ -138,6 +139,6 @@ fn triangles_of_all_sizes_are_met() {
 fn a_ray_in_the_plane_of_a_triangle_does_not_cross_it() {
     let corners = [Vec3::ZERO, Vec3::X, Vec3::Z];
     for ray in [Ray::new(Vec3::NEG_X, Vec3::X), Ray::new(Vec3::NEG_X, Vec3::new(1.0, 0.0, 0.1))] {
-        assert_eq!(Sheared::new(&ray).intersect(corners, f32::NEG_INFINITY, f32::INFINITY), None);
+        assert_eq!(WatertightRay::new(&ray).intersect(corners, f32::NEG_INFINITY, f32::INFINITY), None);
     }
 }

@@ -175,7 +175,7 @@ fn build_accel(world: &World, kind: AccelKind) -> Result<Accel, Box<Diagnostic>>
     let overlaps = |i: usize, cell: Aabb| world.objects[parts[i].0 as usize].overlaps(&cell);
     let grid = Grid::build(bounds, counts, &boxes, overlaps).ok_or_else(|| {
         let [x, y, z] = counts;
-        let most = Grid::MOST_CELLS;
+        let most = Grid::MAX_CELLS;
         let message = format!("a grid of {x} x {y} x {z} cells cannot be made");
         let help = format!("it must have 1 to {most} cells, and large objects must not lie in too many of them");
         Box::new(Diagnostic::error(message).help(help))

@@ -3,7 +3,7 @@
 //! Most of these pictures are made of one ray through each pixel's centre, some of the sums of the colour's samples. Files
 //! of floating point get the values as they are; eight-bit files get a picture of them between 0 and 1.
 
-use crate::bvh::Counts;
+use crate::bvh::TraversalStats;
 use crate::dialect::{Compat, CompatSet, DepthPicture, NormalsPicture, Rules};
 use crate::math::{Aabb, Color, Vec3};
 use crate::sampler::hash;
@@ -23,7 +23,7 @@ pub struct Seen {
     /// The diffuse colour hit.
     pub albedo: Color,
     /// The work for the pixel, with all secondary rays.
-    pub counts: Counts,
+    pub counts: TraversalStats,
 }
 
 impl Seen {
@@ -33,7 +33,7 @@ impl Seen {
         hit: None,
         material: 0,
         albedo: Vec3::ZERO,
-        counts: Counts { rays: 0, nodes: 0, tests: 0 },
+        counts: TraversalStats { rays: 0, nodes: 0, tests: 0 },
     };
 }
 

@@ -7,14 +7,14 @@
 //!
 //! in the arithmetic of the picture: see [`Node::sum`]. So the tree adds up to the colour, and not just nearly.
 
-use crate::bvh::{Counts, Rays, Tally};
+use crate::bvh::{RayCount, TraversalCounter, TraversalStats};
 use crate::math::{Color, Ray, Ray64, Vec2, Vec3};
 use crate::world::HighlightModel;
 use crate::world::emitters::LightId;
 use serde::Serialize;
 
 /// Hears what an integrator does. The closures are called only by those that listen.
-pub trait Witness: Tally {
+pub trait Witness: TraversalCounter {
     /// A term begins.
     fn begin(&mut self, _what: impl FnOnce() -> What) {}
     /// The ray of the term that was begun last hits something.
@@ -24,8 +24,8 @@ pub trait Witness: Tally {
 }
 
 impl Witness for () {}
-impl Witness for Rays {}
-impl Witness for Counts {}
+impl Witness for RayCount {}
+impl Witness for TraversalStats {}
 
 /// A term: what it is, how it counts, and of what it is made.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -284,10 +284,8 @@ impl Account {
     }
 }
 
-impl Tally for Account {
-    fn ray(&mut self) {}
-    fn node(&mut self) {}
-    fn test(&mut self) {}
+impl TraversalCounter for Account {
+    const COUNTS_WORK: bool = false;
 }
 
 impl Witness for Account {

@@ -237,7 +237,7 @@ pub static TOPICS: [Topic; 13] = [
         places: &[
             at("crates/durer/src/integrator/spawn.rs", "fn from_surface"),
             at("crates/durer/src/integrator/spawn.rs", "fn beside"),
-            at("crates/durer-bvh/src/math/mod.rs", "fn gamma"),
+            at("crates/durer-bvh/src/math/rounding.rs", "fn gamma"),
             at("crates/durer/src/dialect.rs", "epsilon: Option<f32>"),
         ],
         shots: &[color("rays from the rounded point, t > 0", SPECKLED), color("rays that leave the surface", SHADOWS)],

@@ -3,7 +3,7 @@
 use super::part::{Found, Traced};
 use super::samples::{At, Samples, Stopped};
 use super::{Crop, Job, center_ray, raster};
-use crate::bvh::{Counts, Rays};
+use crate::bvh::{RayCount, TraversalStats};
 use crate::film::aov::Seen;
 use crate::math::Vec3;
 use crate::world::World;
@@ -12,7 +12,7 @@ use crate::world::World;
 pub(super) fn trace(world: &World, job: &Job, samples: &Samples, rect: Crop, at: &At) -> Result<Traced, Stopped> {
     let raster = raster(world, job.width, job.height);
     let cost_wanted = job.aovs.iter().any(|aov| aov.name == "cost");
-    let mut rays = Rays::default();
+    let mut rays = RayCount::default();
     let mut seen = Vec::with_capacity(rect.pixels() as usize);
     for (x, y) in rect.places() {
         samples.check()?;
@@ -22,7 +22,7 @@ pub(super) fn trace(world: &World, job: &Job, samples: &Samples, rect: Crop, at:
             continue;
         };
         let hit = world.closest(&ray, &mut rays).map(|hit| (hit, world.surface(&ray, &hit)));
-        let mut counts = Counts::default();
+        let mut counts = TraversalStats::default();
         if cost_wanted {
             samples.whitted.radiance(&ray, &mut counts);
         }

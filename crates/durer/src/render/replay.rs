@@ -3,7 +3,7 @@
 use super::error::RenderError;
 use super::samples::{At, Samples};
 use super::{Control, Crop, Job, Part, Shard, rays};
-use crate::bvh::Rays;
+use crate::bvh::RayCount;
 use crate::math::Color;
 use crate::threads;
 use crate::world::World;
@@ -34,7 +34,7 @@ pub fn replay(
     let work = || {
         let (stop, at): (_, At) = (AtomicBool::new(false), Cell::new((x, y, sample)));
         let samples = Samples::new(world, job, &stop);
-        let (pixel, mut count) = (Crop::pixel((x, y)), Rays::default());
+        let (pixel, mut count) = (Crop::pixel((x, y)), RayCount::default());
         match sample {
             Some(sample) if job.sampling.is_local() => samples.sample(x, y, sample, &mut count).0,
             _ => {

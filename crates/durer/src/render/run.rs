@@ -4,7 +4,7 @@ use super::error::{Panicked, RenderError};
 use super::part::{Part, Sampled, Traced, film_of, pass_ends};
 use super::samples::{At, Samples, Stopped, kept_bytes};
 use super::{BLOCK, Control, Job, Rendered, Shard, rays};
-use crate::bvh::Rays;
+use crate::bvh::RayCount;
 use crate::film::aov::Look;
 use crate::threads;
 use crate::world::World;
@@ -261,7 +261,7 @@ impl Work<'_> {
             let rect = part.blocks.rect(index);
             let mut block = part.state().samples[index].clone();
             let film = block.film.get_or_insert_with(|| Box::new(film_of(rect)));
-            let mut rays = Rays::default();
+            let mut rays = RayCount::default();
             self.samples.add(film, rect, block.to..end, at, &mut rays)?;
             taken += rect.pixels() * u64::from(end - block.to);
             traced += rays.0;
@@ -280,7 +280,7 @@ impl Work<'_> {
         let rects: Vec<_> = tile.iter().map(|&index| blocks.rect(index)).collect();
         let around = rects.iter().skip(1).fold(rects[0], |a, b| a.around(*b));
         let at_once = around.pixels() == rects.iter().map(|rect| rect.pixels()).sum::<u64>();
-        let mut rays = Rays::default();
+        let mut rays = RayCount::default();
         let whole = if at_once { Some(self.samples.finished(around, at, &mut rays)?) } else { None };
         let mut made = Vec::with_capacity(tile.len());
         let mut before = 0;

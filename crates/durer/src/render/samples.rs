@@ -3,7 +3,7 @@
 use super::error::{MOST_KEPT, center};
 use super::sub_pixels::SubPixels;
 use super::{Control, Crop, Job, RenderError, Sampling, camera_ray, center_ray, raster};
-use crate::bvh::Rays;
+use crate::bvh::RayCount;
 use crate::camera::{Lens, Raster};
 use crate::dialect::Compat;
 use crate::film::course::{CourseFilter, StoredSample, StoredSamples};
@@ -40,7 +40,7 @@ pub fn sample_diagram(world: &World, job: &Job, control: &Control) -> Result<Sto
         return Err(RenderError::TooManySamples(count));
     }
     let work = || {
-        let (at, mut rays) = (Cell::new((0, 0, None)), Rays::default());
+        let (at, mut rays) = (Cell::new((0, 0, None)), RayCount::default());
         let source = Samples::new(world, job, &control.cancel);
         source.stored(&Show::default(), job.whole(), (sampler, samples), &at, |_, _| true, &mut rays)
     };
@@ -169,7 +169,7 @@ impl<'a> Samples<'a> {
         part: Crop,
         range: Range<u32>,
         at: &At,
-        rays: &mut Rays,
+        rays: &mut RayCount,
     ) -> Result<(), Stopped> {
         for (x, y) in part.places() {
             for sample in range.clone() {
@@ -184,7 +184,7 @@ impl<'a> Samples<'a> {
     }
 
     /// One sample of a pixel: its colour, if the camera sees anything there, and its weight.
-    pub(super) fn sample(&self, x: u32, y: u32, sample: u32, rays: &mut Rays) -> (Option<Color>, f32) {
+    pub(super) fn sample(&self, x: u32, y: u32, sample: u32, rays: &mut RayCount) -> (Option<Color>, f32) {
         let Aim { ray, weight, .. } = self.aim(x, y, sample);
         let id = SampleId::new(self.job.seed, (x, y), sample);
         let color = ray.map(|ray| self.integrator.radiance(&ray, id, rays));
@@ -238,17 +238,17 @@ impl<'a> Samples<'a> {
 
     /// The finished pixels of a part with their coverage, for samplings whose samples count for other pixels too. Samples around
     /// the part that are needed for it are taken for it alone.
-    pub(super) fn finished(&self, part: Crop, at: &At, rays: &mut Rays) -> Result<Vec<(Color, f32)>, Stopped> {
+    pub(super) fn finished(&self, part: Crop, at: &At, rays: &mut RayCount) -> Result<Vec<(Color, f32)>, Stopped> {
         let show = Show::default();
         let colors = self.shown(&show, part, at, rays)?;
         if !show.blind.get() {
             return Ok(colors.into_iter().map(|color| (color, 1.0)).collect());
         }
-        let mask = self.shown(&Show { mask: true, ..Show::default() }, part, at, &mut Rays::default())?;
+        let mask = self.shown(&Show { mask: true, ..Show::default() }, part, at, &mut RayCount::default())?;
         Ok(colors.into_iter().zip(mask).map(|(color, white)| (color, share(white))).collect())
     }
 
-    fn shown(&self, show: &Show, part: Crop, at: &At, rays: &mut Rays) -> Result<Vec<Color>, Stopped> {
+    fn shown(&self, show: &Show, part: Crop, at: &At, rays: &mut RayCount) -> Result<Vec<Color>, Stopped> {
         match self.job.sampling {
             Sampling::Course2004 { sampler, samples, filter: Some(filter) } => {
                 self.course_2004(show, part, (sampler, sampler.round_up(samples)), filter, at, rays)
@@ -259,7 +259,7 @@ impl<'a> Samples<'a> {
     }
 
     /// The colour of a sample that is kept.
-    fn kept(&self, show: &Show, aim: &Aim, id: SampleId, rays: &mut Rays) -> Color {
+    fn kept(&self, show: &Show, aim: &Aim, id: SampleId, rays: &mut RayCount) -> Color {
         show.blind.set(show.blind.get() || aim.ray.is_none());
         let light = |ray| if show.mask { Vec3::ONE } else { self.integrator.radiance(&ray, id, rays) };
         aim.ray.map_or(Vec3::ZERO, light)
@@ -272,7 +272,7 @@ impl<'a> Samples<'a> {
         sampling: (Sampler, u32),
         filter: CourseFilter,
         at: &At,
-        rays: &mut Rays,
+        rays: &mut RayCount,
     ) -> Result<Vec<Color>, Stopped> {
         let around = part.grown(filter.support(), self.job.whole());
         let stored = self.stored(show, around, sampling, at, |x, y| part.holds(x, y), rays)?;
@@ -288,14 +288,14 @@ impl<'a> Samples<'a> {
         sampling: (Sampler, u32),
         at: &At,
         counted: impl Fn(u32, u32) -> bool,
-        rays: &mut Rays,
+        rays: &mut RayCount,
     ) -> Result<StoredSamples, Stopped> {
         StoredSamples::try_take(part.width, part.height, sampling.1, |column, row, sample| {
             self.check()?;
             let (x, y) = (part.left + column, part.top + row);
             at.set((x, y, Some(sample)));
             let (aim, position) = self.aim_kept(sampling, x, y, sample);
-            let mut own = Rays::default();
+            let mut own = RayCount::default();
             let color = self.kept(show, &aim, SampleId::new(self.job.seed, (x, y), sample), &mut own);
             rays.0 += if counted(x, y) { own.0 } else { 0 };
             Ok(StoredSample { position, color })
@@ -309,7 +309,7 @@ impl<'a> Samples<'a> {
         part: Crop,
         (jitter, blurred): (bool, bool),
         at: &At,
-        rays: &mut Rays,
+        rays: &mut RayCount,
     ) -> Result<Vec<Color>, Stopped> {
         let grid = SubPixels::new(self.job, part, jitter, blurred);
         let raster = grid.raster(self.world);
@@ -318,7 +318,7 @@ impl<'a> Samples<'a> {
             self.check()?;
             let pixel = grid.pixel((x, y));
             at.set((pixel.0, pixel.1, None));
-            let mut own = Rays::default();
+            let mut own = RayCount::default();
             let id = SampleId::new(self.job.seed, pixel, grid.number((x, y)));
             pixels.push(self.kept(show, &self.aim_sub_pixel(&grid, &raster, (x, y)), id, &mut own));
             rays.0 += if grid.inner.holds(x, y) { own.0 } else { 0 };

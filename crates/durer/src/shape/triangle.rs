@@ -1,6 +1,6 @@
 //! A single triangle.
 
-use super::watertight::{self, Sheared};
+use super::watertight::{self, WatertightRay};
 use super::{Crossing, INSET, Shape, Surface, exactly};
 use crate::describe::Rule;
 use crate::described;
@@ -39,7 +39,7 @@ impl Shape for Triangle {
     }
 
     fn intersect(&self, ray: &Ray) -> Option<Crossing> {
-        Sheared::new(ray).intersect(self.corners(), ray.t_min, ray.t_max).map(Crossing::from)
+        WatertightRay::new(ray).intersect(self.corners(), ray.t_min, ray.t_max).map(Crossing::from)
     }
 
     fn crossings(&self, line: &Line, offer: &mut impl FnMut(f64, Vec2)) {

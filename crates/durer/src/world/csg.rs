@@ -15,7 +15,7 @@
 
 use super::solid::{Rule, Solid};
 use super::{Geometry, Object, Placing};
-use crate::bvh::{Bvh, Tally};
+use crate::bvh::{Bvh, TraversalCounter};
 use crate::math::{Aabb, Ray, Ray64, Vec2, Vec3};
 use crate::shape::{Crossing, Shape, Surface};
 use std::cell::RefCell;
@@ -193,7 +193,10 @@ impl Csg {
     /// Bytes in memory, meshes not counted.
     pub fn bytes(&self) -> usize {
         let lists = size_of_val(&*self.leaves) + size_of_val(&*self.joins) + size_of_val(&*self.start);
-        lists + size_of_val(&*self.unbounded) + size_of_val(&*self.bounded) + self.bvh.as_ref().map_or(0, Bvh::bytes)
+        lists
+            + size_of_val(&*self.unbounded)
+            + size_of_val(&*self.bounded)
+            + self.bvh.as_ref().map_or(0, Bvh::memory_usage)
     }
 
     fn leaf_of(&self, part: u32) -> usize {
@@ -219,16 +222,16 @@ impl Csg {
     }
 
     /// The first hit in the ray's interval, and its part.
-    pub(super) fn closest<T: Tally>(&self, ray: &Ray64, tally: &mut T) -> Option<(Crossing, u32)> {
+    pub(super) fn closest<T: TraversalCounter>(&self, ray: &Ray64, counter: &mut T) -> Option<(Crossing, u32)> {
         if !crate::bvh::is_sound(&ray.rounded) {
             return None;
         }
         SCRATCH.with_borrow_mut(|scratch| {
-            let complete = self.collect(ray, true, scratch, tally);
+            let complete = self.collect(ray, true, scratch, counter);
             let found = self.sweep(ray, scratch);
             // From inside of all that was merged, the way out may be farther than the next part's way in.
             if complete < f32::INFINITY && found.is_none_or(|(crossing, _)| crossing.t > complete) {
-                self.collect(ray, false, scratch, tally);
+                self.collect(ray, false, scratch, counter);
                 return self.sweep(ray, scratch);
             }
             found
@@ -239,16 +242,16 @@ impl Csg {
     ///
     /// Whoever comes from outside a merge is in it at the first way into a part: with `shrink`, parts beyond such a place
     /// may be left out. Gives up to where the crossings are complete: infinity, if they are.
-    fn collect<T: Tally>(&self, ray: &Ray64, shrink: bool, scratch: &mut Scratch, tally: &mut T) -> f32 {
+    fn collect<T: TraversalCounter>(&self, ray: &Ray64, shrink: bool, scratch: &mut Scratch, counter: &mut T) -> f32 {
         let Scratch { events, .. } = scratch;
         events.clear();
-        let take = |i: u32, events: &mut Vec<Event>, tally: &mut T| {
+        let take = |i: u32, events: &mut Vec<Event>, counter: &mut T| {
             let offer = &mut |t, uv, part| events.push(Event { t, leaf: i, part, uv });
-            self.leaves[i as usize].object.crossings(ray, tally, offer);
+            self.leaves[i as usize].object.crossings(ray, counter, offer);
         };
-        self.unbounded.iter().for_each(|&i| take(i, events, tally));
+        self.unbounded.iter().for_each(|&i| take(i, events, counter));
         let Some(bvh) = &self.bvh else {
-            self.bounded.iter().for_each(|&i| take(i, events, tally));
+            self.bounded.iter().for_each(|&i| take(i, events, counter));
             events.sort_unstable_by(order);
             return f32::INFINITY;
         };
@@ -258,9 +261,9 @@ impl Csg {
         let wide = Ray { t_min: ray.rounded.t_min - pad, t_max: ray.rounded.t_max + pad, ..ray.rounded };
         let shrink = shrink && self.joins[0].rule == Rule::Any;
         let mut complete = f32::INFINITY;
-        bvh.walk(&wide, tally, |item, t_max, tally| {
-            let (i, from) = (self.bounded[bvh.order()[item] as usize], events.len());
-            take(i, events, tally);
+        bvh.traverse(&wide, counter, |item, t_max, counter| {
+            let (i, from) = (self.bounded[bvh.primitive_indices()[item] as usize], events.len());
+            take(i, events, counter);
             if !shrink || self.leaves[i as usize].edge.join != 0 {
                 return t_max;
             }

@@ -9,7 +9,7 @@ mod object;
 pub mod shading;
 pub mod solid;
 
-use crate::bvh::{Bvh, Grid, Tally};
+use crate::bvh::{Bvh, Grid, TraversalCounter};
 use crate::camera::{Camera, Frame};
 use crate::dialect::{Compat, Rules};
 use crate::light::{Emitter as _, Illumination, Light, Profile};
@@ -107,8 +107,8 @@ impl Hit {
 
 impl World {
     /// The first hit in the ray's interval.
-    pub fn closest<T: Tally>(&self, ray: impl Into<Ray64>, tally: &mut T) -> Option<Hit> {
-        tally.ray();
+    pub fn closest<T: TraversalCounter>(&self, ray: impl Into<Ray64>, counter: &mut T) -> Option<Hit> {
+        counter.ray();
         let mut ray = ray.into();
         if !crate::bvh::is_sound(&ray.rounded) {
             return None;
@@ -125,24 +125,24 @@ impl World {
             }
         };
         for &object in &self.unbounded {
-            let found = self.objects[object as usize].closest(&ray, false, tally);
+            let found = self.objects[object as usize].closest(&ray, false, counter);
             offer(&mut best, &mut ray, object, found);
         }
         match &self.accel {
             Accel::Bvh(bvh) => {
                 let outer = ray.rounded;
-                bvh.walk(&outer, tally, |item, _, tally| {
-                    let object = bvh.order()[item];
-                    let found = self.objects[object as usize].closest(&ray, false, tally);
+                bvh.traverse(&outer, counter, |item, _, counter| {
+                    let object = bvh.primitive_indices()[item];
+                    let found = self.objects[object as usize].closest(&ray, false, counter);
                     offer(&mut best, &mut ray, object, found);
                     ray.rounded.t_max
                 });
             }
             Accel::Grid { grid, parts } => {
                 let outer = ray.rounded;
-                grid.walk(&outer, tally, |item, _, tally| {
+                grid.traverse(&outer, counter, |item, _, counter| {
                     let (object, part) = parts[item];
-                    let found = self.objects[object as usize].part(&ray, part, tally);
+                    let found = self.objects[object as usize].part(&ray, part, counter);
                     offer(&mut best, &mut ray, object, found);
                     ray.rounded.t_max
                 });
@@ -150,7 +150,7 @@ impl World {
             Accel::None => {
                 for (i, object) in self.objects.iter().enumerate().filter(|(_, o)| o.bounds().is_some()) {
                     for part in 0..object.parts() {
-                        let found = object.part(&ray, part, tally);
+                        let found = object.part(&ray, part, counter);
                         offer(&mut best, &mut ray, i as u32, found);
                     }
                 }
@@ -160,25 +160,25 @@ impl World {
     }
 
     /// Whether anything is hit in the ray's interval; the first thing found will do.
-    pub fn occluded<T: Tally>(&self, ray: impl Into<Ray64>, tally: &mut T) -> bool {
-        tally.ray();
+    pub fn occluded<T: TraversalCounter>(&self, ray: impl Into<Ray64>, counter: &mut T) -> bool {
+        counter.ray();
         let ray = &ray.into();
         let outer = &ray.rounded;
         if !crate::bvh::is_sound(outer) {
             return false;
         }
-        if self.unbounded.iter().any(|&i| self.objects[i as usize].closest(ray, true, tally).is_some()) {
+        if self.unbounded.iter().any(|&i| self.objects[i as usize].closest(ray, true, counter).is_some()) {
             return true;
         }
         let mut found = false;
         match &self.accel {
-            Accel::Bvh(bvh) => bvh.walk(outer, tally, |item, t_max, tally| {
-                found |= self.objects[bvh.order()[item] as usize].closest(ray, true, tally).is_some();
+            Accel::Bvh(bvh) => bvh.traverse(outer, counter, |item, t_max, counter| {
+                found |= self.objects[bvh.primitive_indices()[item] as usize].closest(ray, true, counter).is_some();
                 if found { f32::NEG_INFINITY } else { t_max }
             }),
-            Accel::Grid { grid, parts } => grid.walk(outer, tally, |item, t_max, tally| {
+            Accel::Grid { grid, parts } => grid.traverse(outer, counter, |item, t_max, counter| {
                 let (object, part) = parts[item];
-                found |= self.objects[object as usize].part(ray, part, tally).is_some();
+                found |= self.objects[object as usize].part(ray, part, counter).is_some();
                 if found { f32::NEG_INFINITY } else { t_max }
             }),
             Accel::None => {
@@ -186,7 +186,7 @@ impl World {
                     .objects
                     .iter()
                     .filter(|o| o.bounds().is_some())
-                    .any(|o| (0..o.parts()).any(|part| o.part(ray, part, tally).is_some()));
+                    .any(|o| (0..o.parts()).any(|part| o.part(ray, part, counter).is_some()));
             }
         }
         found

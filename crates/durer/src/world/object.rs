@@ -1,7 +1,7 @@
 //! The things in a world, and how a ray meets them.
 
 use super::csg::Csg;
-use crate::bvh::{Preset, Tally, TriangleBvh};
+use crate::bvh::{BuildQuality, TraversalCounter, TriangleBvh};
 use crate::dialect::MeshNormals;
 use crate::math::{Aabb, Affine, Line, Ray, Ray64, Vec2, Vec3};
 use crate::shape::{Crossing, Mesh, Primitive, Shape, Surface};
@@ -61,7 +61,7 @@ pub struct MeshTree {
 impl MeshTree {
     /// Builds the tree.
     pub fn new(mesh: Mesh) -> Self {
-        let bvh = TriangleBvh::build(mesh.positions(), mesh.triangles(), Preset::Balanced);
+        let bvh = TriangleBvh::build(mesh.positions(), mesh.triangles(), BuildQuality::Balanced);
         MeshTree { mesh, bvh, closed: OnceLock::new() }
     }
 
@@ -77,7 +77,7 @@ impl MeshTree {
 
     /// Bytes in memory.
     pub fn bytes(&self) -> usize {
-        self.mesh.bytes() + self.bvh.bytes()
+        self.mesh.bytes() + self.bvh.memory_usage()
     }
 
     /// Whether the mesh has an inside.
@@ -88,23 +88,28 @@ impl MeshTree {
     /// Offers every crossing of a line, with the number of its triangle, in any order.
     ///
     /// The line is taken from its place nearest to the mesh, so that only the mesh's own coordinates round.
-    pub(super) fn crossings<T: Tally>(&self, line: &Line, tally: &mut T, offer: &mut impl FnMut(f64, Vec2, u32)) {
+    pub(super) fn crossings<T: TraversalCounter>(
+        &self,
+        line: &Line,
+        counter: &mut T,
+        offer: &mut impl FnMut(f64, Vec2, u32),
+    ) {
         let shift = line.nearest(self.bvh.bounds().center().as_dvec3());
         let ray = Ray::new(line.at(shift).as_vec3(), line.dir.as_vec3());
         let ray = Ray { t_min: f32::NEG_INFINITY, ..ray };
-        for hit in self.bvh.all_hits_counting(&ray, tally) {
+        for hit in self.bvh.all_hits_counting(&ray, counter) {
             offer(f64::from(hit.t) + shift, hit.uv, hit.triangle);
         }
     }
 
     /// The first hit in the ray's interval; `any` ends at the first found.
     #[inline]
-    fn closest<T: Tally>(&self, ray: &Ray, any: bool, tally: &mut T) -> Option<(Crossing, u32)> {
+    fn closest<T: TraversalCounter>(&self, ray: &Ray, any: bool, counter: &mut T) -> Option<(Crossing, u32)> {
         if any {
-            let found = self.bvh.occluded_counting(ray, tally);
+            let found = self.bvh.occluded_counting(ray, counter);
             return found.then_some((Crossing { t: ray.t_min, uv: Vec2::ZERO }, 0));
         }
-        let hit = self.bvh.closest_counting(ray, tally)?;
+        let hit = self.bvh.closest_counting(ray, counter)?;
         Some((Crossing { t: hit.t, uv: hit.uv }, hit.triangle))
     }
 }
@@ -126,14 +131,19 @@ impl Object {
     }
 
     /// Offers every crossing of the line through a ray, with the number of its part, in any order.
-    pub(super) fn crossings<T: Tally>(&self, ray: &Ray64, tally: &mut T, offer: &mut impl FnMut(f64, Vec2, u32)) {
+    pub(super) fn crossings<T: TraversalCounter>(
+        &self,
+        ray: &Ray64,
+        counter: &mut T,
+        offer: &mut impl FnMut(f64, Vec2, u32),
+    ) {
         let line = self.local_line(ray);
         match &self.geometry {
             Geometry::Primitive(shape) => {
-                tally.test();
+                counter.work(0, 1);
                 shape.crossings(&line, &mut |t, uv| offer(t, uv, 0));
             }
-            Geometry::Mesh(tree) => tree.crossings(&line, tally, offer),
+            Geometry::Mesh(tree) => tree.crossings(&line, counter, offer),
             // Solids in solids are one tree.
             Geometry::Solid(_) => {}
         }
@@ -193,7 +203,12 @@ impl Object {
     }
 
     /// The object's first hit in the ray's interval.
-    pub(super) fn closest<T: Tally>(&self, ray: &Ray64, any: bool, tally: &mut T) -> Option<(Crossing, u32)> {
+    pub(super) fn closest<T: TraversalCounter>(
+        &self,
+        ray: &Ray64,
+        any: bool,
+        counter: &mut T,
+    ) -> Option<(Crossing, u32)> {
         let moved;
         let local = match &self.to_world {
             Some(to_world) => {
@@ -204,17 +219,17 @@ impl Object {
         };
         match &self.geometry {
             Geometry::Primitive(shape) => {
-                tally.test();
+                counter.work(0, 1);
                 shape.intersect(local).map(|crossing| (crossing, 0))
             }
-            Geometry::Mesh(tree) => tree.closest(local, any, tally),
-            Geometry::Solid(solid) => solid.closest(ray, tally),
+            Geometry::Mesh(tree) => tree.closest(local, any, counter),
+            Geometry::Solid(solid) => solid.closest(ray, counter),
         }
     }
 
     /// The crossing with one part, tested directly, and its part; a solid is asked as a whole.
-    pub(super) fn part<T: Tally>(&self, ray: &Ray64, part: u32, tally: &mut T) -> Option<(Crossing, u32)> {
-        tally.test();
+    pub(super) fn part<T: TraversalCounter>(&self, ray: &Ray64, part: u32, counter: &mut T) -> Option<(Crossing, u32)> {
+        counter.work(0, 1);
         let local = self.local_ray(ray);
         let crossing = match &self.geometry {
             Geometry::Primitive(shape) => shape.intersect(&local),
@@ -222,10 +237,10 @@ impl Object {
             Geometry::Mesh(_) if !crate::bvh::is_sound(&local) => None,
             Geometry::Mesh(tree) => tree
                 .bvh
-                .sheared(&local)
+                .watertight_ray(&local)
                 .intersect(tree.mesh.corners(part), local.t_min, local.t_max)
                 .map(Crossing::from),
-            Geometry::Solid(solid) => return solid.closest(ray, tally),
+            Geometry::Solid(solid) => return solid.closest(ray, counter),
         };
         crossing.map(|crossing| (crossing, part))
     }

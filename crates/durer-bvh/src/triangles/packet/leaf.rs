@@ -1,6 +1,7 @@
 //! A packet among the triangles of a leaf.
 
-use super::{Meeting, Packet, RAYS};
+use super::bundle::{Packet, RAYS};
+use super::shared::Meeting;
 use crate::lanes::{Columns, Lanes, Numbers, WIDE, WIDTH, Wide};
 use crate::node;
 use crate::triangles::leaf::{Flat, by_corner, ends, from_origin};
@@ -32,7 +33,8 @@ impl Corners {
     }
 }
 
-/// Triangles in the planes across rays: as they are, or as seen from the one `POINT` where all rays begin.
+/// Triangles in the planes across rays: as they are, or as seen from the one `POINT` where all rays
+/// begin.
 #[inline(always)]
 fn flat<N: Numbers, const POINT: bool>(
     numbers: N,
@@ -55,7 +57,8 @@ impl Packet<'_> {
         from_origin(lanes, corners, lanes.splat3([e.origin[x][0], e.origin[y][0], e.origin[z][0]]))
     }
 
-    /// Shows the triangles of a leaf to some rays: side by side are either those or these, whichever is less work.
+    /// Shows the triangles of a leaf to some rays: side by side are either those or these,
+    /// whichever is less work.
     #[inline(always)]
     pub(super) fn leaf<L: Lanes, const ANY: bool>(&mut self, lanes: L, leaf: u32, rays: u64) {
         let (_, count) = node::items(leaf);
@@ -63,7 +66,8 @@ impl Packet<'_> {
         for group in 0..self.groups {
             groups += usize::from(rays >> (group * WIDE) & 0xffff != 0);
         }
-        // Found by measurement: where few rays of a group are left, or triangles are many, rays go one by one.
+        // Found by measurement: where few rays of a group are left, or triangles are many, rays go
+        // one by one.
         let met = match 2 * (rays.count_ones() as usize) < groups * (count + 4) {
             true if self.is_point => self.ray_by_ray::<L, ANY, true>(lanes, leaf, rays),
             true => self.ray_by_ray::<L, ANY, false>(lanes, leaf, rays),
@@ -83,8 +87,8 @@ impl Packet<'_> {
         }
     }
 
-    /// Sixteen rays at once with each triangle; gives the rays that met one. Where all begin in one `POINT`, it is known once for all how that
-    /// sees the triangles.
+    /// Sixteen rays at once with each triangle; gives the rays that met one. Where all begin in one
+    /// `POINT`, it is known once for all how that sees the triangles.
     #[inline(always)]
     fn one_by_one<L: Lanes, const ANY: bool, const POINT: bool>(&mut self, lanes: L, leaf: u32, rays: u64) -> u64 {
         let wide = lanes.wide();
@@ -145,7 +149,7 @@ impl Packet<'_> {
                         *meeting = self.meetings.len() as u32;
                         self.meetings.push(Meeting::new(corners, number(rows, count, lane)));
                     }
-                    met |= e.meet(lanes, &self.axes, &self.meetings, *meeting, crossed);
+                    met |= e.intersect_node(lanes, &self.axes, &self.meetings, *meeting, crossed);
                 }
                 all_met |= u64::from(met) << (group * WIDE);
                 if ANY {

@@ -1,14 +1,16 @@
 //! Rays that go nearly the same way, through one tree together.
 //!
-//! Up to 64 rays whose directions have the same signs and the same longest axis are a packet. A node is tested once for all of them, by
-//! interval arithmetic; what is left of its children is tested against the rays side by side when it is visited, and so is each
-//! triangle of a leaf. All tests of triangles are those of single rays, with the same roundings, so answers are the same.
+//! Up to 64 rays whose directions have the same signs and the same longest axis are a packet. A
+//! node is tested once for all of them, by interval arithmetic; what is left of its children is
+//! tested against the rays side by side when it is visited, and so is each triangle of a leaf. All
+//! tests of triangles are those of single rays, with the same roundings, so answers are the same.
 //!
-//! Sources: Wald, Slusallek, Benthin, Wagner, *Interactive Rendering with Coherent Ray Tracing*, Eurographics 2001; Boulos, Wald,
-//! Shirley, *Geometric and Arithmetic Culling Methods for Entire Ray Packets*, University of Utah 2006.
+//! Sources: Wald, Slusallek, Benthin, Wagner, *Interactive Rendering with Coherent Ray Tracing*,
+//! Eurographics 2001; Boulos, Wald, Shirley, *Geometric and Arithmetic Culling Methods for Entire
+//! Ray Packets*, University of Utah 2006.
 
-/// The least or greatest of what all rays of a packet have. (No closure would do: what is not inlined into a level's entry is compiled
-/// without its instructions.)
+/// The least or greatest of what all rays of a packet have. (No closure would do: what is not
+/// inlined into a level's entry is compiled without its instructions.)
 macro_rules! end {
     ($packet:expr, $wide:expr, $end:ident, $across:ident, $($of:tt)*) => {{
         let mut all = $wide.load(&$packet.sixteens[0].$($of)*);
@@ -19,32 +21,34 @@ macro_rules! end {
     }};
 }
 
+mod bundle;
 mod leaf;
 mod rays;
+mod shared;
 mod walk;
 
-use super::{TriangleBvh, TriangleHit};
+use super::tree::{TriangleBvh, TriangleHit};
 use crate::lanes::{Kernel, Lanes, Numbers, WIDE, WIDTH, Wide, numbers_of};
 use crate::math::{Ray, Vec2};
-use crate::watertight::{Plane, Turn, turned_axes};
+use bundle::{Packet, RAYS};
 use glam::Vec3A;
-use rays::Rays;
+use rays::PacketRays;
+use shared::{Axes, Meeting};
 use walk::Entry;
 
-/// How many rays may be in a packet.
-const RAYS: usize = 64;
 /// So few are better off alone.
-const LEAST: usize = 16;
-/// After rays that do not go together so many windows of rays are left out at most, before it is tried again.
-const MOST_LEFT_OUT: u32 = 15;
+const MIN_SIZE: usize = 16;
+/// After rays that do not go together so many windows of rays are left out at most, before it is
+/// tried again.
+const MAX_SKIPPED_WINDOWS: u32 = 15;
 /// As far apart directions of a packet may be across the longest axis, for one unit along it.
-const WIDEST_ANGLE: f32 = 0.5;
+const MAX_ANGLE: f32 = 0.5;
 /// As far apart origins may be, where the longest side of the tree's bounds is 1.
-const WIDEST_START: f32 = 0.25;
+const MAX_START: f32 = 0.25;
 
 impl TriangleBvh {
-    /// Answers for rays that go together, and gives the numbers of the others. Where `ANY`, any hit will do, and only whether there
-    /// is one means anything.
+    /// Answers for rays that go together, and gives the numbers of the others. Where `ANY`, any hit
+    /// will do, and only whether there is one means anything.
     pub(super) fn packets<const ANY: bool>(
         &self,
         rays: &[Ray],
@@ -54,37 +58,6 @@ impl TriangleBvh {
             return (0..rays.len() as u32).collect();
         }
         self.level.run(Packets::<_, ANY> { bvh: self, rays, answer })
-    }
-}
-
-/// What the rays of a packet have in common.
-#[derive(Clone, Copy)]
-struct Axes {
-    /// As those of [`Sheared`](crate::watertight::Sheared).
-    turn: Turn,
-    /// By axis: 1 where directions are negative, else 0.
-    negative: [usize; 3],
-}
-
-impl Axes {
-    /// A key is a longest axis and signs.
-    fn of_key(key: usize) -> Self {
-        let negative = [key & 1, key >> 1 & 1, key >> 2 & 1];
-        let longest = key >> 3;
-        Axes { turn: turned_axes(longest, negative[longest]), negative }
-    }
-
-    /// Which axes are the first, second, and third of turned vectors.
-    #[inline(always)]
-    fn turned(&self) -> [usize; 3] {
-        let [x, y, z, _] = self.turn;
-        [x as usize, y as usize, z as usize]
-    }
-
-    /// Whether directions are negative along their longest axis.
-    #[inline(always)]
-    fn is_down(&self) -> bool {
-        self.negative[self.turned()[2]] == 1
     }
 }
 
@@ -104,7 +77,7 @@ impl<A: FnMut(usize, Option<TriangleHit>), const ANY: bool> Kernel for Packets<'
             bvh: self.bvh,
             axes: Axes::of_key(0),
             numbers: [0; RAYS],
-            sixteens: [Rays::EMPTY; RAYS / WIDE],
+            sixteens: [PacketRays::EMPTY; RAYS / WIDE],
             groups: 0,
             is_point: false,
             alive: 0,
@@ -113,7 +86,8 @@ impl<A: FnMut(usize, Option<TriangleHit>), const ANY: bool> Kernel for Packets<'
             meetings: Vec::with_capacity(256),
         };
         let mut stack: Vec<Entry> = Vec::with_capacity(256);
-        // Where no rays go together, or none are tame, the next are likely to be alike: it is tried ever less often.
+        // Where no rays go together, or none are fast, the next are likely to be alike: it is tried
+        // ever less often.
         let (mut left_out, mut leave_out) = (0, 0);
         for (window, rays) in self.rays.chunks(RAYS).enumerate() {
             let first = (window * RAYS) as u32;
@@ -133,7 +107,8 @@ impl<A: FnMut(usize, Option<TriangleHit>), const ANY: bool> Kernel for Packets<'
                 lanes.prefetch(rays.as_ptr().wrapping_add(RAYS + 2 * line));
             }
             let signs = packet.signs(lanes);
-            // Usually all have the same key, and are where they should be; else those of each key are put together.
+            // Usually all have the same key, and are where they should be; else those of each key
+            // are put together.
             let mut left = all;
             while left != 0 {
                 let key = key_of(signs, left.trailing_zeros());
@@ -145,27 +120,27 @@ impl<A: FnMut(usize, Option<TriangleHit>), const ANY: bool> Kernel for Packets<'
                         *number = first + members.trailing_zeros();
                         members &= members - 1;
                     }
-                    if count >= LEAST {
+                    if count >= MIN_SIZE {
                         packet.load(lanes, self.rays, count, &[]);
                     }
                 }
-                if count < LEAST || !packet.prepare(lanes, key, count) {
+                if count < MIN_SIZE || !packet.prepare(lanes, key, count) {
                     rest.extend_from_slice(&packet.numbers[..count]);
                     continue;
                 }
                 packet.meetings.clear();
                 packet.meetings.push(Meeting::new([Vec3A::ZERO; 3], u32::MAX));
-                packet.walk::<L, ANY>(lanes, &mut stack);
+                packet.traverse::<L, ANY>(lanes, &mut stack);
                 packet.answer::<L, ANY>(lanes, count, &mut self.answer);
             }
-            left_out = if rest.len() < before + rays.len() { 0 } else { MOST_LEFT_OUT.min(2 * left_out + 1) };
+            left_out = if rest.len() < before + rays.len() { 0 } else { MAX_SKIPPED_WINDOWS.min(2 * left_out + 1) };
             leave_out = left_out;
         }
         rest
     }
 }
 
-/// The key of a ray, by what [`Rays::signs`] says of all.
+/// The key of a ray, by what [`PacketRays::signs`] says of all.
 #[inline(always)]
 fn key_of([x, y, z, first, second]: [u64; 5], ray: u32) -> usize {
     let of = |set: u64| (set >> ray & 1) as usize;
@@ -181,43 +156,9 @@ fn with_key([x, y, z, first, second]: [u64; 5], key: usize) -> u64 {
     of(x, 0) & of(y, 1) & of(z, 2) & longest
 }
 
-/// A triangle that some ray met.
-struct Meeting {
-    /// Turned, as the rays are.
-    corners: [[f32; 3]; 3],
-    triangle: u32,
-    plane: Plane<[f64; 3]>,
-}
-
-impl Meeting {
-    #[inline(always)]
-    fn new(corners: [Vec3A; 3], triangle: u32) -> Self {
-        Meeting { corners: corners.map(|corner| corner.to_array()), triangle, plane: Plane::single(corners) }
-    }
-}
-
-struct Packet<'a> {
-    bvh: &'a TriangleBvh,
-    axes: Axes,
-    numbers: [u32; RAYS],
-    sixteens: [Rays; RAYS / WIDE],
-    /// How many of the sixteens hold rays.
-    groups: usize,
-    /// Whether all begin at the same point.
-    is_point: bool,
-    /// The rays that still search.
-    alive: u64,
-    /// Those that met anything.
-    met: u64,
-    /// None of them goes on beyond.
-    limit: f32,
-    /// The first stands for none.
-    meetings: Vec<Meeting>,
-}
-
 impl Packet<'_> {
-    /// Takes the rays with the first numbers, and the last again where lanes are left. `in_order` are rays of which it is known that they
-    /// are the first.
+    /// Takes the rays with the first numbers, and the last again where lanes are left. `in_order`
+    /// are rays of which it is known that they are the first.
     #[inline(always)]
     fn load<L: Lanes>(&mut self, lanes: L, rays: &[Ray], count: usize, in_order: &[Ray]) {
         self.groups = count.div_ceil(WIDE);
@@ -239,7 +180,7 @@ impl Packet<'_> {
         }
     }
 
-    /// As [`Rays::signs`], for all.
+    /// As [`PacketRays::signs`], for all.
     #[inline(always)]
     fn signs<L: Lanes>(&self, lanes: L) -> [u64; 5] {
         let mut signs = [0; 5];
@@ -257,8 +198,8 @@ impl Packet<'_> {
         self.axes = Axes::of_key(key);
         (self.alive, self.met) = (0, 0);
         for group in 0..self.groups {
-            let tame = self.sixteens[group].prepare(lanes, &self.axes, self.bvh.reach);
-            self.alive |= u64::from(tame) << (group * WIDE);
+            let fast = self.sixteens[group].prepare(lanes, &self.axes, self.bvh.reach);
+            self.alive |= u64::from(fast) << (group * WIDE);
         }
         let all = u64::MAX >> (RAYS - count);
         self.alive &= all;
@@ -275,8 +216,8 @@ impl Packet<'_> {
                 end!(self, wide, max, greatest, $($of)*) - end!(self, wide, min, least, $($of)*)
             };
         }
-        let apart = WIDEST_START * self.bvh.bounds.size().max_element();
-        extent!(shear[0]).max(extent!(shear[1])) <= WIDEST_ANGLE
+        let apart = MAX_START * self.bvh.bounds.size().max_element();
+        extent!(shear[0]).max(extent!(shear[1])) <= MAX_ANGLE
             && (self.is_point || extent!(origin[0]).max(extent!(origin[1])).max(extent!(origin[2])) <= apart)
     }
 

@@ -1,11 +1,11 @@
 //! Rays side by side.
 
-use super::{Axes, Meeting};
+use super::shared::{Axes, Meeting};
 use crate::lanes::{Lanes, Numbers, WIDE, WIDTH, Wide};
 use crate::math::{Doubles, Ray, Vec3};
-use crate::traverse::{LONG, ORDINARY, PADDING};
+use crate::traverse::{FAST_RANGE, MIN_MAIN_COMPONENT, PADDING};
 use crate::triangles::leaf::{across, from_origin};
-use crate::watertight::{Exact, Plane, Sheared, uv_across};
+use crate::watertight::{Exact, Plane, WatertightRay, uv_across};
 use glam::Vec3A;
 
 /// A number for each of sixteen rays.
@@ -13,11 +13,12 @@ pub type PerRay = [f32; WIDE];
 
 const ZERO: PerRay = [0.0; WIDE];
 
-/// Sixteen rays of one octant and one longest axis, prepared for boxes as in [`RayBox`](crate::traverse::RayBox), though
-/// with somewhat less padding, and for triangles as in [`Sheared`](crate::watertight::Sheared).
+/// Sixteen rays of one octant and one longest axis, prepared for boxes as in
+/// [`TraversalRay`](crate::traverse::TraversalRay), though with somewhat less padding, and for
+/// triangles as in [`WatertightRay`](crate::watertight::WatertightRay).
 #[derive(Clone, Copy)]
 #[repr(align(64))]
-pub struct Rays {
+pub struct PacketRays {
     pub origin: [PerRay; 3],
     pub dir: [PerRay; 3],
     pub inverse: [PerRay; 3],
@@ -34,15 +35,15 @@ pub struct Rays {
     pub t_max: PerRay,
     /// The same; after a hit, its t.
     pub t_last: PerRay,
-    /// Heights lower than the first or above the second are outside the interval for sure; those above the third and below the
-    /// fourth are inside.
+    /// Heights lower than the first or above the second are outside the interval for sure; those
+    /// above the third and below the fourth are inside.
     pub heights: [PerRay; 4],
     /// Numbers of the meetings, as bits; 0 is none. Where any hit will do, they mean nothing.
     meetings: PerRay,
 }
 
-impl Rays {
-    pub const EMPTY: Rays = Rays {
+impl PacketRays {
+    pub const EMPTY: PacketRays = PacketRays {
         origin: [ZERO; 3],
         dir: [ZERO; 3],
         inverse: [ZERO; 3],
@@ -72,8 +73,8 @@ impl Rays {
         }
     }
 
-    /// By axis, a bit for each ray whose direction is negative there; and those of which the first, or the second component is the
-    /// longest.
+    /// By axis, a bit for each ray whose direction is negative there; and those of which the first,
+    /// or the second component is the longest.
     #[inline(always)]
     pub fn signs<L: Lanes>(&self, lanes: L) -> [u32; 5] {
         let wide = lanes.wide();
@@ -86,23 +87,24 @@ impl Rays {
         [negative[0], negative[1], negative[2], first, wide.lt(z, y) & !first]
     }
 
-    /// Prepares the rays for a tree with no coordinates greater than `most`; gives those that are tame, a bit for each.
+    /// Prepares the rays for a tree with no coordinates greater than `most`; gives those that are
+    /// fast, a bit for each.
     #[inline(always)]
     pub fn prepare<L: Lanes>(&mut self, lanes: L, axes: &Axes, most: f32) -> u32 {
         let wide = lanes.wide();
-        let (least, greatest) = (wide.splat(ORDINARY.start), wide.splat(ORDINARY.end));
+        let (least, greatest) = (wide.splat(FAST_RANGE.start), wide.splat(FAST_RANGE.end));
         let (mut far, mut above, mut long) = (wide.splat(0.0), u32::MAX, 0);
-        let mut tame = wide.lt(wide.load(&self.t_min), wide.load(&self.t_last));
+        let mut fast = wide.lt(wide.load(&self.t_min), wide.load(&self.t_last));
         for axis in 0..3 {
             let (o, length) = (wide.abs(wide.load(&self.origin[axis])), wide.abs(wide.load(&self.dir[axis])));
-            tame &= wide.lt(o, greatest) & wide.lt(length, greatest);
+            fast &= wide.lt(o, greatest) & wide.lt(length, greatest);
             above &= wide.lt(least, length);
-            long |= wide.le(wide.splat(LONG), length);
+            long |= wide.le(wide.splat(MIN_MAIN_COMPONENT), length);
             far = wide.max(far, o);
         }
-        tame &= above | long;
+        fast &= above | long;
         let reach = wide.add(far, wide.splat(most));
-        tame &= wide.lt(least, reach) & wide.lt(reach, greatest);
+        fast &= wide.lt(least, reach) & wide.lt(reach, greatest);
         let pad = wide.mul(wide.splat(PADDING), reach);
         for axis in 0..3 {
             let (o, length) = (wide.load(&self.origin[axis]), wide.abs(wide.load(&self.dir[axis])));
@@ -128,7 +130,7 @@ impl Rays {
         self.t_max = self.t_last;
         self.meetings = ZERO;
         self.bound(lanes, axes);
-        tame
+        fast
     }
 
     /// Sets the bounds of heights.
@@ -158,11 +160,19 @@ impl Rays {
         }
     }
 
-    /// Takes note of a triangle that the lines of some rays cross, of those who meet it in their interval, and before others.
+    /// Takes note of a triangle that the lines of some rays cross, of those who meet it in their
+    /// interval, and before others.
     ///
     /// It is the meeting of that `number`.
     #[inline(always)]
-    pub fn meet<L: Lanes>(&mut self, lanes: L, axes: &Axes, meetings: &[Meeting], number: u32, crossed: u32) -> u32 {
+    pub fn intersect_node<L: Lanes>(
+        &mut self,
+        lanes: L,
+        axes: &Axes,
+        meetings: &[Meeting],
+        number: u32,
+        crossed: u32,
+    ) -> u32 {
         let [x, y, z] = axes.turned();
         let splat3 = |v: [f64; 3]| [lanes.splat_double(v[0]), lanes.splat_double(v[1]), lanes.splat_double(v[2])];
         let Meeting { plane, triangle, .. } = &meetings[number as usize];
@@ -206,7 +216,7 @@ impl Rays {
         met
     }
 
-    /// As [`Rays::meet`] for a single ray, and a meeting that would be the next.
+    /// As [`PacketRays::intersect_node`] for a single ray, and a meeting that would be the next.
     #[inline(always)]
     pub fn meet_one(&mut self, axes: &Axes, meetings: &[Meeting], next: &Meeting, lane: usize) -> bool {
         let [x, y, z] = axes.turned();
@@ -258,7 +268,7 @@ impl Rays {
         while rays != 0 {
             let ray = rays.trailing_zeros();
             rays &= rays - 1;
-            crossing |= u32::from(Sheared::new(&self.ray(ray as usize)).crosses(corners)) << ray;
+            crossing |= u32::from(WatertightRay::new(&self.ray(ray as usize)).crosses(corners)) << ray;
         }
         crossing
     }

@@ -1,8 +1,9 @@
 //! The way of a packet through the tree.
 
-use super::{Packet, Rays};
+use super::bundle::Packet;
+use super::rays::PacketRays;
 use crate::lanes::{Lanes, Numbers, WIDE, Wide};
-use crate::node::{self, LEAF, Node, PLACE};
+use crate::node::{self, LEAF, PLACE, WideNode};
 use crate::traverse::end_of;
 use crate::triangles::fetch::{AND_SIBLINGS, Places};
 
@@ -18,7 +19,7 @@ pub struct Entry {
 }
 
 /// Intervals around what nodes need of all rays.
-struct Beam<L: Lanes> {
+struct IntervalRay<L: Lanes> {
     inverse: [[L::Floats; 2]; 3],
     near_from: [L::Floats; 3],
     far_from: [L::Floats; 3],
@@ -26,12 +27,13 @@ struct Beam<L: Lanes> {
     negative: [usize; 3],
 }
 
-impl<L: Lanes> Beam<L> {
-    /// The children of a node that any ray may meet, a bit for each, and where the first enters them.
+impl<L: Lanes> IntervalRay<L> {
+    /// The children of a node that any ray may meet, a bit for each, and where the first enters
+    /// them.
     ///
     /// Roundings are monotonic, so no bound is passed by what a single ray has.
     #[inline(always)]
-    fn meet(&self, lanes: L, node: &Node, limit: L::Floats) -> (u32, L::Floats) {
+    fn intersect_node(&self, lanes: L, node: &WideNode, limit: L::Floats) -> (u32, L::Floats) {
         macro_rules! slab {
             ($axis:literal, $side:expr, $from:ident, $end:ident) => {{
                 let plane = lanes.sub(lanes.load(&node.planes[$axis][$side & 1]), self.$from[$axis]);
@@ -47,31 +49,33 @@ impl<L: Lanes> Beam<L> {
         (lanes.le(enter, leave), enter)
     }
 
-    /// No ray enters anything before: 0, or, where rays begin behind their origins, where the first of the root's children is entered.
+    /// No ray enters anything before: 0, or, where rays begin behind their origins, where the first
+    /// of the root's children is entered.
     #[inline(always)]
-    fn start(&self, lanes: L, root: &Node, limit: f32) -> f32 {
+    fn start(&self, lanes: L, root: &WideNode, limit: f32) -> f32 {
         if lanes.store(self.t_min)[0] >= 0.0 {
             return 0.0;
         }
-        let (met, enter) = self.meet(lanes, root, lanes.splat(limit));
+        let (met, enter) = self.intersect_node(lanes, root, lanes.splat(limit));
         let nowhere = f32::INFINITY;
         lanes.store(lanes.select(met, enter, lanes.splat(nowhere))).into_iter().fold(nowhere, f32::min)
     }
 }
 
-/// Of children that are met, a bit for each, the place of the one that is entered first, nothing being entered before `start`. (By the order
-/// of the node, which is along one axis, rays along another met what is far before what is near.)
+/// Of children that are met, a bit for each, the place of the one that is entered first, nothing
+/// being entered before `start`. (By the order of the node, which is along one axis, rays along
+/// another met what is far before what is near.)
 #[inline(always)]
-fn nearest<L: Lanes>(lanes: L, node: &Node, met: u32, enter: L::Floats, start: f32) -> u32 {
+fn nearest<L: Lanes>(lanes: L, node: &WideNode, met: u32, enter: L::Floats, start: f32) -> u32 {
     let nothing = lanes.splat(0.0);
     let since = lanes.later(lanes.sub(enter, lanes.splat(start)), nothing);
     let which = lanes.select(met, lanes.splat(f32::from_bits(u32::MAX)), nothing);
-    lanes.nearest(since, which, &node.codes) & PLACE
+    lanes.nearest(since, which, &node.child_tags) & PLACE
 }
 
 impl Packet<'_> {
     #[inline(always)]
-    fn beam<L: Lanes>(&self, lanes: L) -> Beam<L> {
+    fn interval_ray<L: Lanes>(&self, lanes: L) -> IntervalRay<L> {
         let nowhere = lanes.splat(0.0);
         let wide = lanes.wide();
         macro_rules! least {
@@ -84,7 +88,7 @@ impl Packet<'_> {
                 lanes.splat(end!(self, wide, max, greatest, $($of)*))
             };
         }
-        let mut beam = Beam {
+        let mut intervals = IntervalRay {
             inverse: [[nowhere; 2]; 3],
             near_from: [nowhere; 3],
             far_from: [nowhere; 3],
@@ -92,19 +96,19 @@ impl Packet<'_> {
             negative: self.axes.negative,
         };
         for axis in 0..3 {
-            beam.inverse[axis] = [least!(inverse[axis]), greatest!(inverse[axis])];
+            intervals.inverse[axis] = [least!(inverse[axis]), greatest!(inverse[axis])];
             if self.is_point {
-                let Rays { near_from, far_from, .. } = &self.sixteens[0];
-                (beam.near_from[axis], beam.far_from[axis]) =
+                let PacketRays { near_from, far_from, .. } = &self.sixteens[0];
+                (intervals.near_from[axis], intervals.far_from[axis]) =
                     (lanes.splat(near_from[axis][0]), lanes.splat(far_from[axis][0]));
                 continue;
             }
-            (beam.near_from[axis], beam.far_from[axis]) = match self.axes.negative[axis] {
+            (intervals.near_from[axis], intervals.far_from[axis]) = match self.axes.negative[axis] {
                 0 => (greatest!(near_from[axis]), least!(far_from[axis])),
                 _ => (least!(near_from[axis]), greatest!(far_from[axis])),
             };
         }
-        beam
+        intervals
     }
 
     /// The last t of any ray.
@@ -114,22 +118,23 @@ impl Packet<'_> {
         end!(self, wide, max, greatest, t_last)
     }
 
-    /// Shows the triangles of all leaves that a ray may meet to those rays, roughly from near to far: of each node what is entered first, then
-    /// the others in its order. Where `ANY` hit will do, all are in the order of nodes for that.
+    /// Shows the triangles of all leaves that a ray may meet to those rays, roughly from near to
+    /// far: of each node what is entered first, then the others in its order. Where `ANY` hit will
+    /// do, all are in the order of nodes for that.
     #[inline(always)]
-    pub(super) fn walk<L: Lanes, const ANY: bool>(&mut self, lanes: L, stack: &mut Vec<Entry>) {
+    pub(super) fn traverse<L: Lanes, const ANY: bool>(&mut self, lanes: L, stack: &mut Vec<Entry>) {
         let bvh = self.bvh;
-        let (beam, places) = (self.beam(lanes), Places::new(bvh));
+        let (intervals, places) = (self.interval_ray(lanes), Places::new(bvh));
         let [x, y, z] = self.axes.negative;
         let octant = (x | y << 1 | z << 2) as u32;
         self.limit = self.last(lanes);
         stack.clear();
-        let start = beam.start(lanes, &bvh.nodes[0], self.limit);
+        let start = intervals.start(lanes, &bvh.nodes[0], self.limit);
         let (mut child, mut rays) = (0, self.alive);
         loop {
             if child & LEAF == 0 {
                 let node = &bvh.nodes[node::number(child)];
-                let (met, enter) = beam.meet(lanes, node, lanes.splat(self.limit));
+                let (met, enter) = intervals.intersect_node(lanes, node, lanes.splat(self.limit));
                 if met != 0 {
                     let box_at = child;
                     let from_last = node.order(ANY, octant) != 0;
@@ -176,7 +181,7 @@ impl Packet<'_> {
 
     /// Of some rays those that meet the box of a child.
     #[inline(always)]
-    fn inside<L: Lanes>(&self, lanes: L, node: &Node, place: usize, rays: u64) -> u64 {
+    fn inside<L: Lanes>(&self, lanes: L, node: &WideNode, place: usize, rays: u64) -> u64 {
         let wide = lanes.wide();
         let [x, y, z] = self.axes.negative;
         macro_rules! plane {
@@ -209,13 +214,14 @@ impl Packet<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lanes::{Available, Kernel, Level, WIDTH};
+    use crate::lanes::{Available, Kernel, SimdLevel, WIDTH};
     use crate::math::{Aabb, Vec3};
 
-    /// Where children of a node are entered, those of them that are met, and before which nothing is.
-    struct Asked<'a>(&'a Node, [f32; WIDTH], u32, f32);
+    /// Where children of a node are entered, those of them that are met, and before which nothing
+    /// is.
+    struct Nearest<'a>(&'a WideNode, [f32; WIDTH], u32, f32);
 
-    impl Kernel for Asked<'_> {
+    impl Kernel for Nearest<'_> {
         type Output = u32;
 
         #[inline(always)]
@@ -226,7 +232,7 @@ mod tests {
 
     #[test]
     fn what_is_entered_first_is_next_behind_the_origin_too() {
-        let mut node = Node::EMPTY;
+        let mut node = WideNode::EMPTY;
         for place in 0..WIDTH {
             node.set(place, Aabb::around([Vec3::ZERO]), node::leaf(place, 1));
         }
@@ -238,8 +244,9 @@ mod tests {
             (0b0110_0100, 0.0, 2),
             (0b0100_0000, 0.0, 6),
         ];
-        for (level, (met, start, expected)) in Level::available().flat_map(|level| cases.map(|case| (level, case))) {
-            let place = Available::or_scalar(level).run(Asked(&node, enter, met, start));
+        for (level, (met, start, expected)) in SimdLevel::available().flat_map(|level| cases.map(|case| (level, case)))
+        {
+            let place = Available::or_scalar(level).run(Nearest(&node, enter, met, start));
             assert_eq!(place, expected, "{level:?} {met:b}");
         }
     }

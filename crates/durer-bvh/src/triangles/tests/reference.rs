@@ -15,8 +15,9 @@ enum Verdict {
     Unsure,
 }
 
-/// Signs of the volumes that the ray spans with each edge. A corner may be off by the rounding of its distance from the origin in
-/// each coordinate, and so is a volume by that times the area of the ray and the other corner.
+/// Signs of the volumes that the ray spans with each edge. A corner may be off by the rounding of
+/// its distance from the origin in each coordinate, and so is a volume by that times the area of
+/// the ray and the other corner.
 fn verdict(corners: [Vec3; 3], ray: &Ray) -> Verdict {
     let (o, d) = (ray.origin.as_dvec3(), ray.dir.as_dvec3());
     let [a, b, c] = corners.map(|p| p.as_dvec3() - o);
@@ -40,7 +41,8 @@ fn verdict(corners: [Vec3; 3], ray: &Ray) -> Verdict {
     if sides.contains(&0.0) || !t.is_finite() || (t * d.length()).abs() < 1e-3 * reach {
         return Verdict::Unsure;
     }
-    // Rounded once to single precision; double precision loses what a ray along the surface makes of it.
+    // Rounded once to single precision; double precision loses what a ray along the surface makes
+    // of it.
     let loss = 1e-14 * n.length() * (reach + t.abs() * d.length()) / volume.abs();
     match t > 0.0 {
         true => Verdict::Crossed(t, t * f64::from(f32::EPSILON) + loss),
@@ -107,7 +109,7 @@ impl AddAssign for Tried {
 /// Random rays about a mesh, all hits and the first.
 fn try_rays(name: &str, mesh: &Mesh, seed: u64, rays: usize) -> Tried {
     let (vertices, triangles) = mesh;
-    let tree = TriangleBvh::build(vertices, triangles, Preset::Best);
+    let tree = TriangleBvh::build(vertices, triangles, BuildQuality::Best);
     let bounds = tree.bounds();
     let (center, size) = (bounds.center(), bounds.size().max_element());
     let (mut random, mut tried) = (Random(seed), Tried::default());
@@ -140,7 +142,7 @@ fn double_precision_says_the_same() {
     let all = rounds(100_000);
     let mut cut = 0;
     for (number, (name, mesh)) in dozen().into_iter().enumerate() {
-        cut += usize::from(TriangleBvh::build(&mesh.0, &mesh.1, Preset::Best).items() > mesh.1.len());
+        cut += usize::from(TriangleBvh::build(&mesh.0, &mesh.1, BuildQuality::Best).items() > mesh.1.len());
         let part = |i: usize| try_rays(name, &mesh, (number << 32 | i) as u64, AT_ONCE);
         let tried = (0..all.div_ceil(AT_ONCE)).into_par_iter().map(part).reduce(Tried::default, |mut a, b| {
             a += b;

@@ -284,7 +284,7 @@ fn an_account_adds_up_to_the_light_that_is_found_without_it() {
             for _ in 0..60 {
                 let forward = world.frame.forward + 0.3 * random.direction();
                 let ray = Ray::new(world.frame.eye, forward.normalize());
-                let (mut account, mut counts) = (Account::default(), crate::bvh::Counts::default());
+                let (mut account, mut counts) = (Account::default(), crate::bvh::TraversalStats::default());
                 let color = whitted.radiance(&ray, &mut account);
                 assert_eq!(color, whitted.radiance(&ray, &mut counts));
                 let tree = account.into_tree().unwrap();

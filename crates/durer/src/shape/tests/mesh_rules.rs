@@ -186,7 +186,7 @@ fn a_triangle_without_area_has_a_unit_normal_and_is_met_by_no_ray() {
             let surface = mesh.surface(part, &Crossing { t: 1.0, uv: Vec2::splat(0.3) });
             assert!(surface.n_geo.is_normalized() && surface.n_shade.is_normalized(), "{rule:?} {surface:?}");
             let ray = Ray::new(Vec3::new(0.5, 1.0, 0.0), Vec3::NEG_Y);
-            let sheared = super::super::watertight::Sheared::new(&ray);
+            let sheared = super::super::watertight::WatertightRay::new(&ray);
             assert_eq!(sheared.intersect(mesh.corners(part), 0.0, f32::INFINITY), None);
         }
     }

@@ -1,0 +1,92 @@
+//! What all ways to divide references share: boxes that grow, and what is known of the whole build.
+
+use super::reference::Reference;
+use crate::math::{Aabb, Vec3};
+use crate::parallel;
+use glam::Vec4;
+
+/// More references than this are looked at in parallel.
+pub const MIN_PARALLEL: usize = 1 << 15;
+
+/// Half the area of a box.
+#[inline]
+pub fn half_area(min: Vec4, max: Vec4, scale: f32) -> f32 {
+    let d = ((max - min) * scale).max(Vec4::ZERO);
+    d.x * d.y + d.y * d.z + d.z * d.x
+}
+
+pub struct Builder<'a> {
+    pub scale: f32,
+    /// Half the area of everything.
+    pub area: f32,
+    /// So many references may stay together.
+    pub whole: usize,
+    /// How many bins so many references are put into, at most.
+    pub bins: fn(usize) -> usize,
+    /// Where things are triangles that may be cut, their corners; else nothing.
+    pub corners: &'a [[Vec3; 3]],
+}
+
+/// A box that grows, and how many references are in it.
+#[derive(Clone, Copy)]
+pub struct Bin {
+    pub min: Vec4,
+    pub max: Vec4,
+    pub count: u32,
+}
+
+impl Bin {
+    pub const EMPTY: Bin = Bin { min: Vec4::INFINITY, max: Vec4::NEG_INFINITY, count: 0 };
+
+    pub fn of(references: &[Reference]) -> Bin {
+        let [min, max] = around_all(references, &|r| [r.min, r.max]);
+        Bin { min, max, count: references.len() as u32 }
+    }
+
+    pub fn bounds(&self) -> Aabb {
+        Aabb { min: self.min.truncate(), max: self.max.truncate() }
+    }
+
+    #[inline]
+    pub fn with(self, r: &Reference) -> Bin {
+        Bin { count: self.count + 1, ..self.around(r) }
+    }
+
+    /// Grown, but not counted.
+    #[inline]
+    pub fn around(self, r: &Reference) -> Bin {
+        Bin { min: self.min.min(r.min), max: self.max.max(r.max), ..self }
+    }
+
+    #[inline]
+    pub fn union(self, other: Bin) -> Bin {
+        Bin { min: self.min.min(other.min), max: self.max.max(other.max), count: self.count + other.count }
+    }
+
+    #[inline]
+    pub fn cost(&self, scale: f32) -> f32 {
+        half_area(self.min, self.max, scale) * self.count as f32
+    }
+}
+
+/// The box around what is known of each reference. Four grow in turn, for each step of one waits
+/// for that before.
+pub fn around_all(references: &[Reference], of: &(impl Fn(&Reference) -> [Vec4; 2] + Sync)) -> [Vec4; 2] {
+    if references.len() > MIN_PARALLEL {
+        let (a, b) = references.split_at(references.len() / 2);
+        let (a, b) = parallel::join(|| around_all(a, of), || around_all(b, of));
+        return [a[0].min(b[0]), a[1].max(b[1])];
+    }
+    let mut boxes = [[Vec4::INFINITY, Vec4::NEG_INFINITY]; 4];
+    let grow = |[min, max]: &mut [Vec4; 2], r: &Reference| {
+        let [low, high] = of(r);
+        (*min, *max) = (min.min(low), max.max(high));
+    };
+    let (fours, rest) = references.as_chunks::<4>();
+    for four in fours {
+        boxes.iter_mut().zip(four).for_each(|(all, r)| grow(all, r));
+    }
+    boxes.iter_mut().zip(rest).for_each(|(all, r)| grow(all, r));
+    let [a, b, c, d] = boxes;
+    [a[0].min(b[0]).min(c[0].min(d[0])), a[1].max(b[1]).max(c[1].max(d[1]))]
+}

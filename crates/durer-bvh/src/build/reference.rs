@@ -1,0 +1,82 @@
+//! References to things: boxes with numbers, of which trees are built.
+
+use super::settings::BuildSettings;
+use crate::lanes::listed;
+use crate::math::{Aabb, Vec3};
+use crate::node::MAX_ITEMS;
+use crate::parallel;
+use glam::Vec4;
+
+/// A box of a thing or of a part of it, and the thing's number.
+#[derive(Clone, Copy, Debug)]
+pub struct Reference {
+    pub min: Vec4,
+    pub max: Vec4,
+}
+
+impl Reference {
+    pub fn new(bounds: Aabb, number: u32) -> Self {
+        Reference { min: bounds.min.extend(lane(3, number)), max: bounds.max.extend(0.0) }
+    }
+
+    pub fn number(&self) -> u32 {
+        lane_number(self.min.w)
+    }
+
+    pub fn bounds(&self) -> Aabb {
+        Aabb { min: self.min.truncate(), max: self.max.truncate() }
+    }
+
+    /// Twice the centre.
+    #[inline]
+    pub fn middle(&self) -> Vec4 {
+        self.min + self.max
+    }
+}
+
+/// A number below 2^28 and a tag of 2 or 3 in the fourth lane of a vector: as a normal `f32`, which
+/// no arithmetic on the lane slows down.
+pub fn lane(tag: u32, number: u32) -> f32 {
+    f32::from_bits(number | tag << 28)
+}
+
+pub fn lane_number(lane: f32) -> u32 {
+    lane.to_bits() & !(3 << 28)
+}
+
+/// References to boxes 0, 1, 2, ... but for the empty ones.
+pub fn references(boxes: &[Aabb]) -> Vec<Reference> {
+    assert!(boxes.len() <= MAX_ITEMS, "a tree holds less than 2^28 things");
+    let full = boxes.iter().enumerate().filter(|(_, b)| !b.is_empty());
+    full.map(|(i, b)| Reference::new(*b, i as u32)).collect()
+}
+
+/// Whether a triangle can be hit.
+pub fn is_finite(corners: &[Vec3; 3]) -> bool {
+    corners.iter().all(|p| p.is_finite())
+}
+
+/// References to triangles 0, 1, 2, ..., with room for those that cuts add; those with corners that
+/// are no finite points are left out.
+pub fn triangle_references(
+    count: usize,
+    settings: &BuildSettings,
+    corners_of: &(impl Fn(u32) -> [Vec3; 3] + Sync),
+) -> Vec<Reference> {
+    let mut references = listed(count, settings.spare(count), |i| {
+        let corners = corners_of(i as u32);
+        Reference::new(if is_finite(&corners) { Aabb::around(corners) } else { Aabb::EMPTY }, i as u32)
+    });
+    if parallel::any(&references, 4096, |r| r.min.x > r.max.x) {
+        references.retain(|r| r.min.x <= r.max.x);
+    }
+    references
+}
+
+/// A power of two that brings sizes near 1, so that areas neither overflow nor vanish.
+pub fn area_scale(bounds: Aabb) -> f32 {
+    let size = (bounds.max * 0.5 - bounds.min * 0.5).max_element();
+    let exponent = size.to_bits() >> 23 & 0xff;
+    // 2^-e for a size of about 2^e, itself kept in range.
+    f32::from_bits((254 - exponent.clamp(1, 253)) << 23)
+}

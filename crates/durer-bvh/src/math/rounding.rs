@@ -1,0 +1,12 @@
+//! Bounds on the rounding of single precision.
+
+/// Half the distance from 1 to the next `f32`: the relative error of one rounding.
+pub const UNIT_ROUNDOFF: f32 = f32::EPSILON * 0.5;
+
+/// Bound on the relative error of `n` rounded operations in sequence.
+///
+/// Source: Higham, *Accuracy and Stability of Numerical Algorithms*, section 3.1.
+pub const fn gamma(n: u32) -> f32 {
+    let nu = n as f32 * UNIT_ROUNDOFF;
+    nu / (1.0 - nu)
+}

@@ -1,0 +1,317 @@
+//! Trees as bytes, to be kept in files.
+//!
+//! All numbers are little-endian. A head: eight bytes of name, the version, and as `u64` how many
+//! triangles, nodes and items there are, then the least volume; the nodes, field by field; the
+//! rows of leaves; and a checksum of all that. Whoever reads trusts nothing: a tree that is
+//! accepted leads no ray out of memory, in no circle, and no deeper than a stack is high.
+
+use super::tree::{TAG, TriangleBvh};
+use crate::LoadError;
+use crate::lanes::{Available, ROOM_OF_ROWS, ROWS, WIDTH};
+use crate::node::{self, IS_LEAF, LEAF, MAX_DEPTH, UNITS, WideNode};
+use std::sync::OnceLock;
+
+const NAME: &[u8; 8] = b"durerbvh";
+const VERSION: u32 = 1;
+const HEAD: usize = 8 + 4 + 3 * 8 + 8;
+/// Bytes of a node: planes, children, orders, first, tags.
+const NODE: usize = 4 * (6 * WIDTH + WIDTH + 2 + 1) + WIDTH;
+const CHECKSUM: usize = 8;
+
+impl TriangleBvh {
+    /// The tree as bytes, the same on every machine, from which [`TriangleBvh::from_bytes`] makes
+    /// it again. The SIMD level is not kept.
+    ///
+    /// ```
+    /// use durer_bvh::math::{Ray, Vec3};
+    /// use durer_bvh::{BuildQuality, TriangleBvh};
+    ///
+    /// let corners = [Vec3::ZERO, Vec3::X, Vec3::Y];
+    /// let built = TriangleBvh::build(&corners, &[[0, 1, 2]], BuildQuality::Best);
+    /// let loaded = TriangleBvh::from_bytes(&built.to_bytes()).unwrap();
+    /// let ray = Ray::new(Vec3::new(0.2, 0.2, 1.0), Vec3::NEG_Z);
+    /// assert_eq!(loaded.closest(&ray), built.closest(&ray));
+    /// ```
+    pub fn to_bytes(&self) -> Vec<u8> {
+        let items = self.items();
+        let mut to = Vec::with_capacity(HEAD + NODE * self.nodes.len() + 4 * ROWS * items + CHECKSUM);
+        to.extend(NAME);
+        to.extend(VERSION.to_le_bytes());
+        for count in [self.count, self.nodes.len(), items] {
+            to.extend((count as u64).to_le_bytes());
+        }
+        to.extend(self.least_volume.to_le_bytes());
+        for WideNode { planes, children, from_last, first, child_tags } in &self.nodes {
+            planes.as_flattened().as_flattened().iter().for_each(|x| to.extend(x.to_le_bytes()));
+            children.iter().chain(from_last).chain([first]).for_each(|x| to.extend(x.to_le_bytes()));
+            to.extend(child_tags);
+        }
+        self.leaves[..ROWS * items].iter().for_each(|x| to.extend(x.to_bits().to_le_bytes()));
+        to.extend(checksum(&to).to_le_bytes());
+        to
+    }
+
+    /// The tree that [`TriangleBvh::to_bytes`] made bytes of.
+    ///
+    /// Bytes from anywhere do no harm: they are refused, or make a tree that answers, though not
+    /// rightly if somebody meant it to be wrong.
+    ///
+    /// # Errors
+    ///
+    /// If they are not such bytes, of another version, too few or too many, or damaged.
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self, LoadError> {
+        let Some((head, rest)) = bytes.split_at_checked(HEAD).filter(|(head, _)| head.starts_with(NAME)) else {
+            return Err(LoadError::NotATree);
+        };
+        let mut head = Reader(&head[NAME.len()..]);
+        let version = head.u32();
+        if version != VERSION {
+            return Err(LoadError::Version(version));
+        }
+        let [count, nodes, items] = [(); 3].map(|()| head.u64());
+        let least_volume = f64::from_bits(head.u64());
+        if count > node::MAX_ITEMS as u64 || items > node::MAX_ITEMS as u64 || nodes > node::MAX_NODES as u64 {
+            return Err(LoadError::Invalid("it is too large"));
+        }
+        let [count, nodes, items] = [count, nodes, items].map(|count| count as usize);
+        let expected = (HEAD + CHECKSUM) as u64 + (NODE * nodes) as u64 + (4 * ROWS * items) as u64;
+        if expected != bytes.len() as u64 {
+            return Err(LoadError::Length { expected, found: bytes.len() });
+        }
+        let (all, sum) = bytes.split_at(bytes.len() - CHECKSUM);
+        if Reader(sum).u64() != checksum(all) {
+            return Err(LoadError::Damaged);
+        }
+        if !(0.0..f64::INFINITY).contains(&least_volume) {
+            return Err(LoadError::Invalid("its least volume is no size"));
+        }
+        let mut from = Reader(rest);
+        let nodes: Vec<WideNode> = (0..nodes).map(|_| from.node()).collect();
+        let mut leaves: Vec<f32> = (0..ROWS * items).map(|_| f32::from_bits(from.u32())).collect();
+        leaves.resize(ROWS * items + ROOM_OF_ROWS, 0.0);
+        check(&nodes, &leaves, items, count).map_err(LoadError::Invalid)?;
+        let bounds = node::bounds(&nodes);
+        Ok(TriangleBvh {
+            nodes,
+            leaves,
+            bounds,
+            reach: bounds.reach(),
+            level: Available::chosen(),
+            least_volume,
+            culls_slivers: least_volume != 0.0,
+            count,
+            leaf_of: OnceLock::new(),
+        })
+    }
+}
+
+/// Takes numbers from bytes, of which there must be enough.
+struct Reader<'a>(&'a [u8]);
+
+impl Reader<'_> {
+    fn take<const N: usize>(&mut self) -> [u8; N] {
+        let (taken, rest) = self.0.split_first_chunk().expect("the length was compared");
+        self.0 = rest;
+        *taken
+    }
+
+    fn u32(&mut self) -> u32 {
+        u32::from_le_bytes(self.take())
+    }
+
+    fn u64(&mut self) -> u64 {
+        u64::from_le_bytes(self.take())
+    }
+
+    fn node(&mut self) -> WideNode {
+        WideNode {
+            planes: [(); 3].map(|()| [(); 2].map(|()| [(); WIDTH].map(|()| f32::from_bits(self.u32())))),
+            children: [(); WIDTH].map(|()| self.u32()),
+            from_last: [(); 2].map(|()| self.u32()),
+            first: self.u32(),
+            child_tags: self.take(),
+        }
+    }
+}
+
+/// Whether nodes are a tree whose leaves have all items, each once, and these are triangles.
+fn check(nodes: &[WideNode], leaves: &[f32], items: usize, count: usize) -> Result<(), &'static str> {
+    if nodes.is_empty() != (items == 0) {
+        return Err("nodes and leaves do not go together");
+    }
+    // How deep each node is, once its parent is known; the first has none.
+    let mut depths = vec![None; nodes.len()];
+    depths.iter_mut().take(1).for_each(|depth| *depth = Some(0));
+    let mut is_taken = vec![false; items];
+    for (i, node) in nodes.iter().enumerate() {
+        let depth: usize = depths[i].ok_or("a node has no parent before it")?;
+        if depth >= MAX_DEPTH {
+            return Err("it is too deep");
+        }
+        for place in 0..WIDTH {
+            let (bounds, child, tag) = (node.bounds(place), node.children[place], node.child_tags[place]);
+            if bounds == crate::math::Aabb::EMPTY {
+                continue;
+            }
+            if !(bounds.min.is_finite() && bounds.max.is_finite()) || bounds.is_empty() {
+                return Err("a box is none");
+            }
+            let rest = if child & LEAF == 0 { child.wrapping_sub(node.first) } else { IS_LEAF };
+            if rest != IS_LEAF && rest & !node::BEHIND != 0 || u32::from(tag) != place as u32 | rest {
+                return Err("a node does not know its children");
+            }
+            if child & LEAF == 0 {
+                let number = node::number(child);
+                if !(child as usize).is_multiple_of(UNITS) || number <= i || number >= nodes.len() {
+                    return Err("a child is no node behind its parent");
+                }
+                if depths[number].replace(depth + 1).is_some() {
+                    return Err("a node has two parents");
+                }
+            } else {
+                let (first, size) = node::items(child);
+                let places = is_taken.get_mut(first..first + size).ok_or("a leaf is beyond the last")?;
+                if places.iter_mut().any(|is_taken| std::mem::replace(is_taken, true)) {
+                    return Err("two leaves have the same triangles");
+                }
+                check_leaf(&leaves[ROWS * first..ROWS * (first + size)], size, count)?;
+            }
+        }
+    }
+    if is_taken.contains(&false) { Err("triangles are in no leaf") } else { Ok(()) }
+}
+
+/// Whether the rows of a leaf are triangles of which there are so many.
+fn check_leaf(rows: &[f32], size: usize, count: usize) -> Result<(), &'static str> {
+    let (corners, numbers) = rows.split_at((ROWS - 1) * size);
+    if corners.iter().any(|x| x.is_infinite()) {
+        return Err("a corner is infinite");
+    }
+    match numbers.iter().all(|number| ((number.to_bits() ^ TAG) as usize) < count) {
+        true => Ok(()),
+        false => Err("a leaf has a triangle of no number"),
+    }
+}
+
+/// A sum against damage, not against ill will: steps as of the hash FNV-1a of Fowler, Noll and Vo,
+/// but with words of eight bytes, turned, and with the length at the end.
+fn checksum(bytes: &[u8]) -> u64 {
+    let step = |sum: u64, word: u64| (sum ^ word).wrapping_mul(0x0000_0100_0000_01b3).rotate_left(23);
+    let (words, rest) = bytes.as_chunks::<8>();
+    let sum = words.iter().fold(0xcbf2_9ce4_8422_2325, |sum, word| step(sum, u64::from_le_bytes(*word)));
+    step(rest.iter().fold(sum, |sum, byte| step(sum, (*byte).into())), bytes.len() as u64)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::BuildQuality;
+    use crate::math::random::{Random, rounds};
+    use crate::math::{Ray, Vec3};
+    use crate::triangles::tests::{Mesh, bars, bits, ray, soup, torus};
+
+    fn meshes(random: &mut Random) -> Vec<Mesh> {
+        let mut holes = soup(random, 40, 0.3);
+        holes.0[7] = Vec3::NAN;
+        vec![torus(20, 10), bars(random, 60, 10), soup(random, 3, 0.5), holes, Default::default()]
+    }
+
+    #[test]
+    fn what_is_saved_is_loaded() {
+        let mut random = Random(41);
+        for mesh in meshes(&mut random) {
+            for (_, quality) in BuildQuality::NAMES {
+                let mut built = TriangleBvh::build(&mesh.0, &mesh.1, quality);
+                let bytes = built.to_bytes();
+                let mut loaded = TriangleBvh::from_bytes(&bytes).unwrap();
+                assert_eq!(loaded.to_bytes(), bytes);
+                let same = |built: &TriangleBvh, loaded: &TriangleBvh, random: &mut Random| {
+                    for _ in 0..50 {
+                        let ray = ray(&mesh, random, 1.0, Vec3::ZERO);
+                        let hits = [built, loaded].map(|bvh| bvh.all_hits(&ray).iter().map(bits).collect::<Vec<_>>());
+                        assert_eq!(hits[0], hits[1]);
+                        assert_eq!(built.closest(&ray).as_ref().map(bits), loaded.closest(&ray).as_ref().map(bits));
+                    }
+                };
+                same(&built, &loaded, &mut random);
+                let moved: Vec<Vec3> = mesh.0.iter().map(|v| *v + 0.1 * random.point()).collect();
+                built.refit(&moved, &mesh.1);
+                loaded.refit(&moved, &mesh.1);
+                same(&built, &loaded, &mut random);
+            }
+        }
+    }
+
+    /// Bytes with a checksum that is right again.
+    fn summed(mut bytes: Vec<u8>) -> Vec<u8> {
+        let end = bytes.len() - CHECKSUM;
+        let sum = checksum(&bytes[..end]);
+        bytes[end..].copy_from_slice(&sum.to_le_bytes());
+        bytes
+    }
+
+    #[test]
+    fn hostile_bytes_are_refused_or_make_a_tree_that_answers() {
+        let mut random = Random(42);
+        let (mut refused, mut made) = (0, 0);
+        for mesh in meshes(&mut random) {
+            let bytes = TriangleBvh::build(&mesh.0, &mesh.1, BuildQuality::Best).to_bytes();
+            for _ in 0..rounds(1_500) {
+                let mut bytes = bytes.clone();
+                for _ in 0..1 + random.below(3) {
+                    // Mostly in the head and the nodes; whole words too, and words from elsewhere.
+                    let end = [HEAD, HEAD + NODE, bytes.len() - CHECKSUM][random.below(3)].min(bytes.len() - CHECKSUM);
+                    let at = random.below(end / 4) * 4;
+                    let from = random.below((bytes.len() - CHECKSUM) / 4) * 4;
+                    match random.below(4) {
+                        0 => bytes[at + random.below(4)] ^= 1 << random.below(8),
+                        1 => bytes[at..at + 4].copy_from_slice(&(random.bits() as u32).to_le_bytes()),
+                        2 => bytes.copy_within(from..from + 4, at),
+                        _ => bytes[at..at + 4]
+                            .copy_from_slice(&[f32::NAN, -0.0, 1e38, 1e-42][random.below(4)].to_le_bytes()),
+                    }
+                }
+                match TriangleBvh::from_bytes(&summed(bytes)) {
+                    Err(_) => refused += 1,
+                    Ok(mut bvh) => {
+                        made += 1;
+                        let rays: Vec<Ray> = (0..20).map(|_| ray(&mesh, &mut random, 1.0, Vec3::ZERO)).collect();
+                        let (mut hits, mut occluded) = (vec![None; 20], vec![false; 20]);
+                        bvh.closest_batch(&rays, &mut hits);
+                        bvh.occluded_batch(&rays, &mut occluded);
+                        for ray in &rays {
+                            let hit = bvh.closest(ray);
+                            assert!(hit.is_none_or(|hit| (hit.triangle as usize) < bvh.triangle_count()));
+                            _ = (bvh.occluded(ray), bvh.all_hits(ray), hit.map(|hit| bvh.normal(&hit)));
+                            _ = bvh.nearest_point(ray.origin, f64::INFINITY);
+                        }
+                        _ = bvh.try_refit(&mesh.0, &mesh.1);
+                    }
+                }
+            }
+        }
+        assert!(refused > 1_000 && made > 500, "{refused} {made}");
+    }
+
+    #[test]
+    fn what_is_wrong_is_said() {
+        let bvh = TriangleBvh::build(&[Vec3::ZERO, Vec3::X, Vec3::Y], &[[0, 1, 2]], BuildQuality::Fast);
+        let bytes = bvh.to_bytes();
+        let with = |at: usize, byte: u8| {
+            let mut bytes = bytes.clone();
+            bytes[at] = byte;
+            bytes
+        };
+        let error = |bytes: &[u8]| TriangleBvh::from_bytes(bytes).unwrap_err();
+        assert_eq!(error(b""), LoadError::NotATree);
+        assert_eq!(error(&with(0, b'D')), LoadError::NotATree);
+        assert_eq!(error(&with(8, 9)), LoadError::Version(9));
+        assert_eq!(error(&with(HEAD + 3, 0x55)), LoadError::Damaged);
+        let expected = bytes.len() as u64;
+        for len in HEAD..bytes.len() {
+            assert_eq!(error(&bytes[..len]), LoadError::Length { expected, found: len });
+        }
+        assert!(matches!(error(&summed(with(12 + 7, 1))), LoadError::Invalid(_)));
+        assert!((0..bytes.len()).all(|at| TriangleBvh::from_bytes(&with(at, !bytes[at])).is_err()));
+    }
+}

@@ -1,0 +1,47 @@
+//! The examples do what they say: each asserts it.
+
+macro_rules! examples {
+    ($($name:ident: $file:literal)*) => {$(
+        #[allow(dead_code)]
+        #[path = $file]
+        mod $name;
+
+        #[test]
+        fn $name() {
+            Ended::ended($name::main());
+        }
+    )*};
+}
+
+/// What a `main` may give.
+trait Ended {
+    fn ended(self);
+}
+
+impl Ended for () {
+    fn ended(self) {}
+}
+
+impl<E: std::fmt::Debug> Ended for Result<(), E> {
+    fn ended(self) {
+        self.unwrap();
+    }
+}
+
+examples! {
+    ray_query: "../examples/ray_query.rs"
+    instances: "../examples/instances.rs"
+    closest_point: "../examples/closest_point.rs"
+    custom_primitive: "../examples/custom_primitive.rs"
+}
+
+#[test]
+fn trees_go_between_threads() {
+    fn is_shared<T: Send + Sync + Clone + std::fmt::Debug>() {}
+    is_shared::<durer_bvh::TriangleBvh>();
+    is_shared::<durer_bvh::InstanceBvh>();
+    is_shared::<durer_bvh::Bvh>();
+    is_shared::<durer_bvh::Grid>();
+    is_shared::<durer_bvh::BuildError>();
+    is_shared::<durer_bvh::LoadError>();
+}
