@@ -4,6 +4,7 @@ use super::lexer::{Found, Lexer, Token};
 use super::said::{Said, meant};
 use super::spectrum::{Space, Spectrum};
 use crate::diag::{Diagnostic, Span};
+use crate::format::report::counted;
 use crate::format::scene::Input;
 use crate::math::{Vec2, Vec3};
 use std::cell::{Cell, RefCell};
@@ -57,12 +58,14 @@ pub(super) enum Values {
 }
 
 impl Values {
-    fn name(&self) -> &'static str {
-        match self {
-            Values::Numbers(_) => "numbers",
-            Values::Texts(_) => "strings",
-            Values::Bools(_) => "truth values",
-        }
+    /// How many of what they are.
+    fn counted(&self) -> String {
+        let (one, many) = match self {
+            Values::Numbers(_) => ("number", "numbers"),
+            Values::Texts(_) => ("string", "strings"),
+            Values::Bools(_) => ("truth value", "truth values"),
+        };
+        counted(self.len(), one, many)
     }
 
     fn len(&self) -> usize {
@@ -269,7 +272,7 @@ fn fits(kind: Kind, name: &str, values: &Values, at: Span, said: &Said) -> bool 
     let complain = |wanted: &str| {
         let found = match values.len() {
             0 => "nothing".to_string(),
-            count => format!("{count} {}", values.name()),
+            _ => values.counted(),
         };
         said.bad(at, format!("`{name}` needs {wanted}, found {found}"));
         false

@@ -19,7 +19,7 @@ use std::rc::Rc;
 use std::sync::Arc;
 
 /// Objects of a scene, those of instances counted each time.
-const MOST_OBJECTS: usize = 1 << 22;
+const MOST_OBJECTS: usize = 1 << 20;
 
 /// What `AttributeBegin` keeps.
 #[derive(Clone, Default)]
