@@ -91,7 +91,7 @@ impl Reader<'_> {
             None => usual,
         };
         let (width, height) = (side("xresolution", SIZE.0), side("yresolution", SIZE.1));
-        if u64::from(width) * u64::from(height) > MAX_PIXELS as u64 {
+        if u64::from(width) * u64::from(height) > MAX_PIXELS {
             params.said.bad(film.at, format!("{width} x {height} pixels are too many"));
         }
         if let Some(sensor) = params.text("sensor").filter(|sensor| *sensor != "cie1931") {

@@ -82,7 +82,8 @@ pub(super) const LIGHT: usize = 1;
 pub(super) const MATERIAL: usize = 2;
 pub(super) const TEXTURE: usize = 4;
 
-/// Files in files, and scopes in scopes.
+/// Files that are included, files in files, and scopes in scopes.
+const MOST_FILES: usize = 1 << 16;
 const DEEPEST_FILES: usize = 64;
 const DEEPEST_SCOPES: usize = 1 << 12;
 
@@ -411,6 +412,10 @@ impl Reader<'_> {
             let error = Diagnostic::error(format!("`{name}` includes itself")).code("bad-value").at(at);
             let own = open.at.start == 0 && open.at.end == 0;
             return self.said.push(if own { error } else { error.related(open.at, "it is asked for here first") });
+        }
+        self.included += 1;
+        if self.included > MOST_FILES {
+            return self.said.bad(at, format!("more than {MOST_FILES} files are too many"));
         }
         if self.texts.len() >= DEEPEST_FILES {
             return self.said.bad(at, format!("files include each other more than {DEEPEST_FILES} deep"));

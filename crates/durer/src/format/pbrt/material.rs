@@ -21,8 +21,14 @@ use std::rc::Rc;
 /// A material as written.
 pub(super) enum Made {
     Layers(Box<PrincipledMaterial>, Span),
-    /// Two others, by number, the share of the first, and how deep that goes.
-    Mix([usize; 2], f32, u32, Span),
+    /// Two others, by number, and the share of the first.
+    Mix {
+        parts: [usize; 2],
+        share: f32,
+        depth: u32,
+        pictured: bool,
+        at: Span,
+    },
     /// What is not there at all.
     Nothing,
 }
@@ -61,6 +67,19 @@ impl Made {
     /// What shapes have that nothing is said of.
     pub fn usual() -> Made {
         Made::Layers(Box::new(matte(Vec3::splat(0.5))), Span::default())
+    }
+
+    /// How deep it is mixed of others.
+    fn depth(&self) -> u32 {
+        if let Made::Mix { depth, .. } = self { *depth } else { 0 }
+    }
+
+    fn is_pictured(&self) -> bool {
+        match self {
+            Made::Layers(layers, _) => layers.base_color_texture.is_some() || layers.normal_texture.is_some(),
+            Made::Mix { pictured, .. } => *pictured,
+            Made::Nothing => false,
+        }
     }
 }
 
@@ -300,13 +319,20 @@ impl Reader<'_> {
             self.said.bad_with(param.values_at, format!("there is no material `{missing}` before this"), help);
             return Made::Nothing;
         };
-        let depth = |number: usize| if let Made::Mix(_, _, depth, _) = self.materials[number] { depth } else { 0 };
-        let depth = 1 + depth(a).max(depth(b));
+        let [first, second] = [a, b].map(|number| &self.materials[number]);
+        let depth = 1 + first.depth().max(second.depth());
+        let pictured = first.is_pictured() || second.is_pictured();
         if depth > DEEPEST {
             self.said.bad(at, format!("materials are mixed more than {DEEPEST} deep"));
             return Made::Nothing;
         }
-        Made::Mix([a, b], share, depth, at)
+        Made::Mix { parts: [a, b], share, depth, pictured, at }
+    }
+
+    /// Whether pictures lie on what is written now.
+    pub fn is_pictured(&self) -> bool {
+        let light = self.state.area.as_ref().is_some_and(|light| light.picture.is_some());
+        light || self.materials[self.state.material].is_pictured()
     }
 
     /// The number in the scene of a material that shines with a radiance and is there in part; `None` for what is not there.
@@ -338,7 +364,7 @@ impl Reader<'_> {
                 }
                 Some(self.scene_material(Material::Principled(m), at))
             }
-            Made::Mix([a, b], share, _, at) => {
+            Made::Mix { parts: [a, b], share, at, .. } => {
                 let (a, b, share, at) = (*a, *b, *share, *at);
                 match (self.number(a, light, opacity), self.number(b, light, opacity)) {
                     (Some(material1), Some(material2)) => {

@@ -240,7 +240,7 @@ fn values(text: &mut Lexer, head: Span, said: &Said) -> Option<(Values, Span)> {
         said.bad(at, "numbers, strings and truth values cannot be mixed");
         return None;
     }
-    sound.then(|| match (texts.is_empty(), bools.is_empty()) {
+    sound.then_some(match (texts.is_empty(), bools.is_empty()) {
         (false, _) => (Values::Texts(texts), at),
         (_, false) => (Values::Bools(bools), at),
         _ => (Values::Numbers(numbers), at),
@@ -295,7 +295,7 @@ fn fits(kind: Kind, name: &str, values: &Values, at: Span, said: &Said) -> bool 
         (Kind::Triple, _) if !rows(3) => complain("a multiple of three numbers"),
         (Kind::Rgb, _) if !rows(3) || values.len() == 0 => complain("three numbers"),
         (Kind::Integer, Values::Numbers(all)) => {
-            let whole = all.iter().all(|x| x.fract() == 0.0 && x.abs() < 2f64.powi(31));
+            let whole = all.iter().all(|x| x.fract() == 0.0 && x.abs() < f64::from(i32::MAX));
             whole || complain("whole numbers of 32 bits")
         }
         (Kind::Float | Kind::Integer | Kind::Blackbody, Values::Texts(_) | Values::Bools(_)) => complain("numbers"),

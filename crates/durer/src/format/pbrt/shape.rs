@@ -9,7 +9,7 @@ use crate::diag::Span;
 use crate::math::{Color, Vec3};
 use crate::scene::{MatrixOp, Node, Object};
 use crate::shape::{Disc, MeshData, Sphere};
-use glam::{DAffine3, DMat4, DVec3};
+use glam::{DAffine3, DMat3, DMat4, DVec3};
 use std::f32::consts::PI;
 use std::rc::Rc;
 use std::sync::Arc;
@@ -136,8 +136,13 @@ impl Reader<'_> {
         if flipped && self.state.area.as_ref().is_some_and(|light| !light.two_sided) {
             self.said.once(params.at, "a sphere turned inside out has no counterpart: it shines outwards");
         }
-        let world = radius * (map.matrix3.determinant().abs() as f32).cbrt();
+        let world = radius * map.transform_vector3(DVec3::X).length() as f32;
         let (center, map) = match map.matrix3 == DAffine3::IDENTITY.matrix3 {
+            // pbrt's poles are on z, and u begins at x; ours are on y, and u = 1/2 is at -z.
+            _ if self.is_pictured() => {
+                let turned = DMat3::from_cols(DVec3::NEG_Y, DVec3::Z, DVec3::X);
+                (Vec3::ZERO, map * DAffine3::from_mat3(turned))
+            }
             true => (map.translation.as_vec3(), DAffine3::IDENTITY),
             false => (Vec3::ZERO, map),
         };

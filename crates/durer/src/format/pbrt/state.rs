@@ -81,6 +81,8 @@ pub(super) struct Reader<'a> {
     /// The object that is being defined.
     pub defining: Option<(String, Group)>,
     pub count: usize,
+    /// Files that were included.
+    pub included: usize,
     pub camera: Option<Asked>,
     pub film: Option<Asked>,
     /// The first directive that needs a world, if there was none yet.
@@ -110,6 +112,7 @@ impl<'a> Reader<'a> {
             objects: BTreeMap::new(),
             defining: None,
             count: 0,
+            included: 0,
             camera: None,
             film: None,
             early: None,

@@ -9,6 +9,7 @@ use crate::diag::{Diagnostic, Span};
 use crate::image::{self, Depth, Encoded, Image, Layer, WriteOptions};
 use crate::math::{Color, Vec3};
 use crate::scene::{Picture, PictureBytes};
+use crate::source::Digest;
 use crate::texture::{Mapping, Wrap};
 use std::rc::Rc;
 
@@ -173,14 +174,11 @@ impl Reader<'_> {
 
     /// A name for a picture.
     pub fn asset(&mut self, picture: Picture, span: Span) -> FileName {
-        let (PictureBytes::File(path) | PictureBytes::Here(path, _)) = picture.bytes.clone();
-        let pictures = &mut self.scene.assets.pictures;
-        let known = pictures.iter().find(|(_, known)| **known == picture).map(|(name, _)| name.clone());
-        let path = known.unwrap_or_else(|| {
-            let path = format!("{path}#{}", pictures.len());
-            pictures.insert(path.clone(), picture);
-            path
-        });
+        let (PictureBytes::File(path) | PictureBytes::Here(path, _)) = &picture.bytes;
+        // The same picture may lie otherwise on other surfaces.
+        let mapping = Digest::of(format!("{:?}", picture.mapping).as_bytes()).to_string();
+        let path = format!("{path}#{}", &mapping[..12]);
+        self.scene.assets.pictures.entry(path.clone()).or_insert(picture);
         FileName { path, span }
     }
 

@@ -366,3 +366,26 @@ fn textures_lie_as_pbrt_has_them() {
     close(seen(check, Vec2::new(0.3, 0.8)), Vec3::X);
     close(seen(check, Vec2::new(0.6, 0.8)), Vec3::Z);
 }
+
+#[test]
+fn pictures_lie_on_spheres_as_pbrt_has_them() {
+    // Four columns: the quarters of u, which begins at +x and grows towards +y; v grows from -z to +z.
+    let picture: &[u8] =
+        b"P6 4 2 255\n\x00\x00\x00\x00\x00\x33\x00\x00\x66\x00\x00\x99\xff\x00\x00\xff\x00\x33\xff\x00\x66\xff\x00\x99";
+    let folder = folder(&[("t.ppm", picture)]);
+    let text = "Camera \"perspective\" WorldBegin Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"t.ppm\"\n\
+                \"string filter\" \"point\" Material \"diffuse\" \"texture reflectance\" \"t\"\n\
+                Translate 1 2 3 Shape \"sphere\" \"float radius\" 2";
+    let world = world(folder.path().join("a.pbrt").to_str().unwrap(), text);
+    for (x, y, column) in [(1.0, 0.7, 0), (-0.6, 1.0, 1), (-1.0, -0.2, 2), (0.3, -1.0, 3)] {
+        for z in [-0.5, 0.5] {
+            let dir = Vec3::new(x, y, z).normalize();
+            let ray = crate::math::Ray::new(Vec3::new(1.0, 2.0, 3.0) + 5.0 * dir, -dir);
+            let hit = world.closest(&ray, &mut ()).unwrap();
+            let surface = world.surface(&ray, &hit);
+            let color = world.shading(-dir, &hit, &surface, false, 1.0).eval(dir) * std::f32::consts::PI;
+            let blue = crate::image::decode_srgb(0x33 * column);
+            close(color, Vec3::new(if z < 0.0 { 1.0 } else { 0.0 }, 0.0, blue));
+        }
+    }
+}
