@@ -1,5 +1,5 @@
-//! Benedikt Bitterli's scenes, read from pbrt's files, beside the pictures that his own renderer, Tungsten, made of them: the
-//! table in docs/models.md.
+//! Benedikt Bitterli's scenes, read from pbrt's files, beside the pictures that his own renderer,
+//! Tungsten, made of them: the table in docs/models.md.
 
 use anyhow::{Context, Result, bail};
 use durer::diag::{Diagnostics, Files, Severity};
@@ -22,7 +22,8 @@ const STEP: u32 = 4;
 const MOST_OFF: f64 = 0.02;
 const MOST_FLIP: f64 = 0.08;
 
-/// Scenes whose file asks for fewer bounces than Tungsten took: how often light is scattered after the first time.
+/// Scenes whose file asks for fewer bounces than Tungsten took: how often light is scattered after
+/// the first time.
 const BOUNCES: [(&str, u32); 1] = [("cornell-box", 64)];
 
 /// What is known of why a picture is not Tungsten's.

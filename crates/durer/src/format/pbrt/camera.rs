@@ -11,7 +11,8 @@ use glam::{DAffine3, DVec2, DVec3};
 /// The size of a film that does not say it.
 const SIZE: (u32, u32) = (1280, 720);
 
-/// A camera in the world: its place and axes, to the right, upwards and forwards, as long as a unit of its own.
+/// A camera in the world: its place and axes, to the right, upwards and forwards, as long as a unit
+/// of its own.
 struct Placed {
     center: DVec3,
     axes: [DVec3; 3],
@@ -139,7 +140,8 @@ impl Reader<'_> {
         }
     }
 
-    /// Half the larger side, and by how much of that the middle lies aside; complains of pixels that are not square.
+    /// Half the larger side, and by how much of that the middle lies aside; complains of pixels
+    /// that are not square.
     fn larger(&self, window: &Window, (width, height): (u32, u32), params: &Params) -> (f64, DVec2) {
         let (x, y) = (window.half.x / f64::from(width), window.half.y / f64::from(height));
         if (x / y - 1.0).abs() > 2e-3 {

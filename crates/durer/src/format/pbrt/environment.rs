@@ -1,4 +1,5 @@
-//! Light from infinitely far away: even, or pictures of all directions, which become one picture of longitude and latitude.
+//! Light from infinitely far away: even, or pictures of all directions, which become one picture of
+//! longitude and latitude.
 
 use super::state::Reader;
 use crate::describe::FileName;
@@ -142,9 +143,11 @@ impl Source {
     }
 }
 
-/// The place of a unit vector in the square onto which the sphere is laid with all areas in proportion.
+/// The place of a unit vector in the square onto which the sphere is laid with all areas in
+/// proportion.
 ///
-/// Source: Petrik Clarberg, *Fast Equal-Area Mapping of the (Hemi)Sphere using SIMD*, Journal of Graphics Tools 13(3), 2008.
+/// Source: Petrik Clarberg, *Fast Equal-Area Mapping of the (Hemi)Sphere using SIMD*, Journal of
+/// Graphics Tools 13(3), 2008.
 pub(super) fn equal_area(dir: Vec3) -> Vec2 {
     let Vec3 { x, y, z } = dir.abs();
     let radius = (1.0 - z).max(0.0).sqrt();

@@ -95,7 +95,8 @@ impl Lexer {
         Some(Found { token, at: self.span(start, self.at) })
     }
 
-    /// A string in quotes, whose place is without them. One that does not end in its line is an error.
+    /// A string in quotes, whose place is without them. One that does not end in its line is an
+    /// error.
     fn text(&mut self, start: usize, said: &Said) -> Found {
         let mut text = Vec::new();
         self.at = start + 1;

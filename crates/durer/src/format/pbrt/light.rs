@@ -1,7 +1,8 @@
-//! Lights: at points, far away, and of surfaces. Their units are those of radiance; a pixel of value 1 shows radiance 1.
+//! Lights: at points, far away, and of surfaces. Their units are those of radiance; a pixel of
+//! value 1 shows radiance 1.
 //!
-//! Source of all meanings: *Physically Based Rendering*, 4th edition, chapter 12. What is given as a spectrum has luminance 1
-//! times `scale`; `power` is luminous flux.
+//! Source of all meanings: *Physically Based Rendering*, 4th edition, chapter 12. What is given as
+//! a spectrum has luminance 1 times `scale`; `power` is luminous flux.
 
 use super::directives::LIGHT;
 use super::environment::Infinite;

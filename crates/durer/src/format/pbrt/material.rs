@@ -1,7 +1,8 @@
 //! Materials, in the words of OpenPBR.
 //!
-//! Source of all meanings: *Physically Based Rendering*, 4th edition, chapters 9, 10 and 14. A coat over a matte base is a coat that
-//! darkens it; a metal is its reflectance at 0 and at 82 degrees; GGX's alpha is the square of our roughness.
+//! Source of all meanings: *Physically Based Rendering*, 4th edition, chapters 9, 10 and 14. A coat
+//! over a matte base is a coat that darkens it; a metal is its reflectance at 0 and at 82 degrees;
+//! GGX's alpha is the square of our roughness.
 
 use super::directives::MATERIAL;
 use super::light::AreaLight;
@@ -335,7 +336,8 @@ impl Reader<'_> {
         light || self.materials[self.state.material].is_pictured()
     }
 
-    /// The number in the scene of a material that shines with a radiance and is there in part; `None` for what is not there.
+    /// The number in the scene of a material that shines with a radiance and is there in part;
+    /// `None` for what is not there.
     pub fn number(&mut self, made: usize, light: Option<(&AreaLight, Color)>, opacity: f32) -> Option<u32> {
         let key = (
             made,

@@ -14,8 +14,8 @@ use crate::source::SourceError;
 const SIDES: u32 = 128;
 const PATCH: u32 = 8;
 
-/// Makes all triangles face the side of their normals, or without such the side to which they go round; the other side where the
-/// surface is reversed.
+/// Makes all triangles face the side of their normals, or without such the side to which they go
+/// round; the other side where the surface is reversed.
 fn oriented(mut data: MeshData, reversed: bool) -> MeshData {
     if reversed {
         data.normals.iter_mut().for_each(|n| *n = -*n);
@@ -102,7 +102,8 @@ pub(super) fn triangles(params: &Params, reversed: bool) -> Option<MeshData> {
     Some(oriented(data, reversed))
 }
 
-/// A `bilinearmesh`: patches of four corners, (0, 0), (1, 0), (0, 1) and (1, 1). What is not flat becomes a grid.
+/// A `bilinearmesh`: patches of four corners, (0, 0), (1, 0), (0, 1) and (1, 1). What is not flat
+/// becomes a grid.
 pub(super) fn bilinear(params: &Params, reversed: bool) -> Option<MeshData> {
     params.left_out(&["emissionfilename"], "the patch shines evenly");
     let Written { positions, normals, uvs, faces } = written(params, 4, &[0, 1, 2, 3])?;

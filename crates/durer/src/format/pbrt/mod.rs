@@ -1,7 +1,8 @@
 //! Scenes of pbrt-v4: the whole language, and what of it has a counterpart here.
 //!
-//! Sources: *Input File Format*, pbrt.org/fileformat-v4; Pharr, Jakob and Humphreys, *Physically Based Rendering*, 4th edition,
-//! 2023. A text changes a state, and what is written then (a shape, a light) takes the state as it is.
+//! Sources: *Input File Format*, pbrt.org/fileformat-v4; Pharr, Jakob and Humphreys, *Physically
+//! Based Rendering*, 4th edition, 2023. A text changes a state, and what is written then (a shape,
+//! a light) takes the state as it is.
 
 mod camera;
 mod directives;
@@ -31,7 +32,8 @@ use lexer::{Lexer, Token};
 use said::Said;
 use state::Reader;
 
-/// Whether a file begins with a directive that only pbrt has. `Transform` and `Material` begin texts of the course's too.
+/// Whether a file begins with a directive that only pbrt has. `Transform` and `Material` begin
+/// texts of the course's too.
 pub(super) fn recognise(bytes: &[u8]) -> bool {
     let head = &bytes[..bytes.len().min(1 << 12)];
     let (mut text, said) = (Lexer::new(head.into(), 0), Said::default());

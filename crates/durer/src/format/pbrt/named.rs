@@ -8,7 +8,8 @@ use glam::DVec3;
 const FIRST: f32 = 380.0;
 const STEP: f32 = 10.0;
 
-/// The CIE 1931 standard observer's x, y and z, and the illuminant D65. Source: CIE 015:2018, tables 1 and 6.
+/// The CIE 1931 standard observer's x, y and z, and the illuminant D65. Source: CIE 015:2018,
+/// tables 1 and 6.
 #[rustfmt::skip]
 const ROWS: [[f32; 4]; 41] = [
     [0.001368, 0.000039, 0.00645, 49.9755], [0.004243, 0.00012, 0.02005, 54.6482], [0.01431, 0.000396, 0.06785, 82.7549],
@@ -38,10 +39,12 @@ pub(super) fn daylight(nm: f32) -> f32 {
     ROWS[(((nm - FIRST) / STEP) as usize).min(ROWS.len() - 1)][3]
 }
 
-/// Indices of metals, for red, green and blue: such that what is reflected at 0 and at 82 degrees has the colour that the
-/// spectrum's reflectance has under D65, to 0.002; red of gold, which linear sRGB cannot hold, to 0.03.
+/// Indices of metals, for red, green and blue: such that what is reflected at 0 and at 82 degrees
+/// has the colour that the spectrum's reflectance has under D65, to 0.002; red of gold, which
+/// linear sRGB cannot hold, to 0.03.
 ///
-/// Source of the spectra: Palik, *Handbook of Optical Constants of Solids*, 1985, and the SOPRA collection, as pbrt-v4 has them.
+/// Source of the spectra: Palik, *Handbook of Optical Constants of Solids*, 1985, and the SOPRA
+/// collection, as pbrt-v4 has them.
 const METALS: [(&str, [f32; 3], [f32; 3]); 7] = [
     ("Ag", [0.13, 0.124, 0.152], [4.1206, 3.3342, 2.4194]),
     ("Al", [1.432, 0.93, 0.592], [7.7499, 6.6079, 5.3675]),
@@ -66,7 +69,8 @@ const GLASSES: [(&str, f32); 10] = [
     ("SF11", 1.78472),
 ];
 
-/// Chromaticities of standard illuminants. Sources: CIE 015:2018, tables 3 and 8 to 10; SMPTE ST 2065-1.
+/// Chromaticities of standard illuminants. Sources: CIE 015:2018, tables 3 and 8 to 10; SMPTE ST
+/// 2065-1.
 const ILLUMINANTS: [(&str, [f64; 2]); 16] = [
     ("stdillum-A", [0.4476, 0.4074]),
     ("stdillum-D50", [0.3457, 0.3585]),

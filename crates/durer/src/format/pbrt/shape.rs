@@ -205,7 +205,8 @@ impl Reader<'_> {
     }
 }
 
-/// The radiance of a shape that shines. A power is that of each of its lights: of each triangle of a mesh.
+/// The radiance of a shape that shines. A power is that of each of its lights: of each triangle of
+/// a mesh.
 fn radiance(light: &super::light::AreaLight, made: &Made) -> Color {
     let Some(power) = light.power else { return light.radiance };
     let sides = if light.two_sided { 2.0 } else { 1.0 };

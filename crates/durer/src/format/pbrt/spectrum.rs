@@ -112,7 +112,8 @@ impl Spectrum {
         }
     }
 
-    /// The colour of a light. A spectrum has luminance 1, whatever its numbers, as pbrt has it; a colour is itself.
+    /// The colour of a light. A spectrum has luminance 1, whatever its numbers, as pbrt has it; a
+    /// colour is itself.
     pub fn light(&self) -> Color {
         match self {
             Spectrum::Rgb(color) | Spectrum::Illuminant(color) => *color,
@@ -157,7 +158,8 @@ impl Spectrum {
     }
 }
 
-/// The colour under daylight of what reflects a share of each wavelength; where all is reflected, it is 1 1 1.
+/// The colour under daylight of what reflects a share of each wavelength; where all is reflected,
+/// it is 1 1 1.
 fn under_daylight(share: impl Fn(f32) -> f32) -> Color {
     let lit = |share: &dyn Fn(f32) -> f32| SRGB * named::sum(|nm| f64::from(share(nm) * named::daylight(nm)));
     (lit(&share) / lit(&|_| 1.0)).as_vec3()

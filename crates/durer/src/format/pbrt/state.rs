@@ -134,7 +134,8 @@ impl<'a> Reader<'a> {
         Params::new(asked.list.clone(), &[], asked.at, (self.input, self.said), asked.space)
     }
 
-    /// From the coordinates of what is written now to the world. What moves stands as when the shutter opens.
+    /// From the coordinates of what is written now to the world. What moves stands as when the
+    /// shutter opens.
     pub fn map(&self, at: Span) -> DAffine3 {
         if self.state.transforms.moves() {
             self.said.once(at, "motion has no counterpart: all stands as when the shutter opens");

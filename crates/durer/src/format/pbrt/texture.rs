@@ -164,7 +164,8 @@ impl Reader<'_> {
         }
     }
 
-    /// A parameter that is a colour or a picture: the colour that multiplies, and the picture's name.
+    /// A parameter that is a colour or a picture: the colour that multiplies, and the picture's
+    /// name.
     pub fn colored(&mut self, params: &Params, name: &'static str, usual: f32) -> (Color, Option<FileName>) {
         match self.pattern(params, name, true, Vec3::splat(usual)) {
             Texture::Even(color) => (color, None),
@@ -265,7 +266,8 @@ impl Reader<'_> {
     /// Two fields and two more, as a picture of four texels.
     fn checkerboard(&self, even: Color, odd: Color, params: &Params) -> Texture {
         let mut mapping = self.mapping(params);
-        // A texel is a unit of the surface's coordinates; their origin is the lower left corner of an even one.
+        // A texel is a unit of the surface's coordinates; their origin is the lower left corner of
+        // an even one.
         let [[su, _, du], [_, sv, _]] = mapping.transform;
         let dv = params.float("vdelta").unwrap_or(0.0);
         mapping.transform = [[0.5 * su, 0.0, 0.5 * du], [0.0, 0.5 * sv, 1.0 - 0.5 * sv - 0.5 * dv]];

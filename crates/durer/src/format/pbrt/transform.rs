@@ -7,8 +7,8 @@ use crate::diag::{Diagnostic, Span};
 use crate::math::fp;
 use glam::{DAffine3, DMat3, DMat4, DVec3};
 
-/// From the coordinates of what follows to the world, or of the camera's directives from the world to the camera: when the
-/// shutter opens and when it closes.
+/// From the coordinates of what follows to the world, or of the camera's directives from the world
+/// to the camera: when the shutter opens and when it closes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Transforms {
     pub maps: [DAffine3; 2],
@@ -102,7 +102,8 @@ pub(super) fn rotation([degrees, x, y, z]: [f64; 4]) -> Option<DAffine3> {
     Some(DAffine3::from_mat3(DMat3::from_cols(column(DVec3::X), column(DVec3::Y), column(DVec3::Z))))
 }
 
-/// From the world to a camera at a place that looks at another along its z; x is to the right, in coordinates of the left hand.
+/// From the world to a camera at a place that looks at another along its z; x is to the right, in
+/// coordinates of the left hand.
 ///
 /// Source: *Physically Based Rendering*, 4th edition, section 3.9.7.
 pub(super) fn look_at([ex, ey, ez, lx, ly, lz, ux, uy, uz]: [f64; 9]) -> Option<DAffine3> {

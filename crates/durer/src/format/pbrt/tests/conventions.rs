@@ -43,7 +43,8 @@ fn cameras_look_where_pbrt_s_do() {
     // Without a transform pbrt looks along +z, with +x to the right: coordinates of the left hand.
     let scene = camera("Camera \"perspective\" \"float fov\" 90", [200, 100]);
     close(ray(&scene, 0.0, 0.0).1, Vec3::Z);
-    // The field of view is that of the shorter side: half a unit of the larger one is 45 degrees up.
+    // The field of view is that of the shorter side: half a unit of the larger one is 45 degrees
+    // up.
     close(ray(&scene, 0.0, 0.5).1, Vec3::new(0.0, 1.0, 1.0).normalize());
     close(ray(&scene, 1.0, 0.0).1, Vec3::new(2.0, 0.0, 1.0).normalize());
     let tall = camera("Camera \"perspective\" \"float fov\" 90", [100, 200]);
@@ -231,7 +232,8 @@ fn spectra_become_colours() {
     assert!((white.x - white.y).abs() < 0.002 * white.y && (white.z - white.y).abs() < 0.002 * white.y, "{white}");
     let even = Spectrum::Curve(vec![[300.0, 0.4], [900.0, 0.4]]);
     assert!((even.albedo() - Vec3::splat(0.4)).length() < 1e-5);
-    // Lights have luminance 1: the colour of 6504 K is nearly white, that of 2856 K as CIE's illuminant A.
+    // Lights have luminance 1: the colour of 6504 K is nearly white, that of 2856 K as CIE's
+    // illuminant A.
     let luminance = Vec3::new(0.2126729, 0.7151522, 0.072175);
     for light in [Spectrum::Blackbody(2856.0), Spectrum::Blackbody(6504.0), even.clone()] {
         assert!((light.light().dot(luminance) - 1.0).abs() < 1e-3, "{:?}", light.light());
@@ -369,7 +371,8 @@ fn textures_lie_as_pbrt_has_them() {
 
 #[test]
 fn pictures_lie_on_spheres_as_pbrt_has_them() {
-    // Four columns: the quarters of u, which begins at +x and grows towards +y; v grows from -z to +z.
+    // Four columns: the quarters of u, which begins at +x and grows towards +y; v grows from -z to
+    // +z.
     let picture: &[u8] =
         b"P6 4 2 255\n\x00\x00\x00\x00\x00\x33\x00\x00\x66\x00\x00\x99\xff\x00\x00\xff\x00\x33\xff\x00\x66\xff\x00\x99";
     let folder = folder(&[("t.ppm", picture)]);
