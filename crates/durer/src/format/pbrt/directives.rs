@@ -466,6 +466,7 @@ impl Reader<'_> {
             let error = Diagnostic::error("this is not closed").code("unclosed").at(at);
             self.said.push(error.help(format!("a `{end}` is missing")));
         }
+        self.join_bodies();
         self.frame();
         self.surround();
         if self.scene.root.is_none() && !self.said.has_errors() {

@@ -392,3 +392,29 @@ fn pictures_lie_on_spheres_as_pbrt_has_them() {
         }
     }
 }
+
+#[test]
+fn a_body_of_several_meshes_is_one_piece_of_glass() {
+    // A cube about the origin: its lid is a mesh of its own, mirrored.
+    let side = |turn: &str| {
+        format!(
+            "AttributeBegin {turn} Translate 0 0 1 Shape \"trianglemesh\" \"integer indices\" [ 0 1 2 0 2 3 ]\n\
+             \"point3 P\" [ -1 -1 0 1 -1 0 1 1 0 -1 1 0 ] AttributeEnd\n"
+        )
+    };
+    let turns = ["", "Rotate 90 0 1 0", "Rotate 180 0 1 0", "Rotate 270 0 1 0", "Rotate 90 1 0 0"];
+    let lid = side("Scale -1 1 1 Rotate -90 1 0 0");
+    let sides: String = turns.iter().map(|turn| side(turn)).collect();
+    let text = format!("Camera \"perspective\" WorldBegin Material \"dielectric\" {sides}{lid}");
+    let scene = clean(&text);
+    assert_eq!((scene.root.unwrap().objects.len(), scene.assets.meshes.len()), (1, 1));
+    let world = world("a.pbrt", &text);
+    let mut random = Random(2);
+    for _ in 0..200 {
+        let dir = random.direction();
+        let ray = crate::math::Ray::new(5.0 * dir, -dir);
+        let hit = world.closest(&ray, &mut ()).unwrap();
+        let surface = world.surface(&ray, &hit);
+        assert!(surface.n_geo.dot(dir) > 0.0, "{dir} {}", surface.n_geo);
+    }
+}
