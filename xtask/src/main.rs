@@ -1,6 +1,7 @@
 //! Commands for those who build Dürer.
 
 mod bench_rays;
+mod bitterli;
 mod build;
 mod cost;
 mod course;
@@ -56,6 +57,9 @@ const USAGE: &str = "Commands:
       into target/peers.
   cargo xtask validate [--samples N]
       Light against answers in closed form, and docs/validation.md.
+  cargo xtask bitterli [--samples 256] [--only TEXT] [--keep FOLDER]
+      Bitterli's scenes from pbrt's files beside Tungsten's pictures of them, and the table in docs/models.md. --keep: leave both
+      pictures there.
   cargo xtask manual
       Write the reference of the language, docs/language and its pictures, and the grammar for editors.
 The course is found in ../shared, or where DURER_CORPUS says.";
@@ -74,6 +78,7 @@ fn main() -> anyhow::Result<ExitCode> {
         Some("verify") => verify::run(&arguments[1..]),
         Some("explain") => explain::run(&arguments[1..]),
         Some("torture") => torture::run(&arguments[1..]),
+        Some("bitterli") => bitterli::run(&arguments[1..]),
         Some("cost") => cost::run(&arguments[1..]),
         Some("solids") => solids::run(),
         Some("teach") => teach::run(&arguments[1..]),

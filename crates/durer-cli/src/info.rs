@@ -46,7 +46,8 @@ pub fn run(args: &InfoArgs) -> Result<(), Failure> {
     let camera = &world.camera;
     let (name, rest) = (camera.keyword(dialect), fields(camera, &["center", "direction"]));
     say(&format!("camera     {name} at {}, looking along {}: {rest}", pose.center, pose.direction));
-    let (width, height) = Raster::natural_size(camera.proportions(), loaded.rules.size);
+    let natural = || Raster::natural_size(camera.proportions(), loaded.rules.size);
+    let (width, height) = loaded.scene.wishes.size.unwrap_or_else(natural);
     say(&format!("picture    {width}x{height} where no size is asked for"));
     for light in &world.lights {
         say(&format!("light      {}: {}", light.keyword(dialect), fields(light, &[])));

@@ -10,7 +10,7 @@ use durer::dialect::{Compat, Dialect};
 use durer::film::Filter;
 use durer::film::aov::Aov;
 use durer::film::course::CourseFilter;
-use durer::integrator::Settings;
+use durer::integrator::{Method, Settings};
 use durer::render::{Crop, Job, Sampling};
 use durer::sampler::Sampler;
 use durer::world::World;
@@ -46,14 +46,16 @@ pub fn job(args: &JobArgs, view: Option<&ViewArgs>, loaded: &Loaded, timed: bool
     let asked = loaded.guess.is_none() && loaded.dialect != Dialect::Durer;
     let camera = loaded.scene.camera.as_ref();
     let proportions = camera.and_then(|camera| camera.proportions());
-    let (width, height) = args.size.unwrap_or_else(|| Raster::natural_size(proportions, rules.size));
+    let wishes = loaded.scene.wishes;
+    let (width, height) = args.size.or(wishes.size).unwrap_or_else(|| Raster::natural_size(proportions, rules.size));
     // A blur needs more samples than an edge.
     let method = method::method(&args.method, &loaded.scene)?;
     let plenty = if camera.is_some_and(|camera| camera.has_aperture()) || method.is_random() { 64 } else { 16 };
+    let plenty = wishes.samples.unwrap_or(plenty);
     if method.is_random() && (args.jitter || args.blur) {
         return Err(bad(format!("--jitter and --blur make no sense with --integrator {}", method.name())));
     }
-    let bounces = if method.name() == "path" { PATH_BOUNCES } else { rules.bounces };
+    let bounces = usual_bounces(method, loaded);
     let shown = view.map_or(&[][..], |view| &view.show);
     let depth_range = args.depth_range.as_ref().map(|range| (range[0], range[1]));
     if depth_range.is_some_and(|(min, max)| !(min.is_finite() && max.is_finite() && min != max)) {
@@ -80,6 +82,14 @@ pub fn job(args: &JobArgs, view: Option<&ViewArgs>, loaded: &Loaded, timed: bool
         aovs: shown.iter().filter_map(|name| Aov::from_name(name)).collect(),
         depth_range,
     })
+}
+
+/// How often light is scattered, or reflected, after the first time, unless asked otherwise.
+fn usual_bounces(method: Method, loaded: &Loaded) -> u32 {
+    match method.name() {
+        "path" => loaded.scene.wishes.bounces.unwrap_or(PATH_BOUNCES),
+        _ => loaded.rules.bounces,
+    }
 }
 
 /// Warns of a picture that its camera does not fill, or whose lens stays unused.
@@ -159,7 +169,7 @@ pub fn spelled(reading: &SceneArgs, job: &Job, loaded: &Loaded) -> String {
     }
     let (settings, rules) = (&job.settings, &loaded.rules);
     method::spelled(job.method, &loaded.scene).into_iter().for_each(&mut add);
-    let bounces = if job.method.name() == "path" { PATH_BOUNCES } else { rules.bounces };
+    let bounces = usual_bounces(job.method, loaded);
     if settings.bounces != bounces {
         add(format!("--bounces {}", settings.bounces));
     }

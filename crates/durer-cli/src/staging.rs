@@ -3,7 +3,7 @@
 use clap::{Args, ValueEnum};
 use durer::scene::{Axis, Staging, Studio, View};
 
-/// How a model (glTF, OBJ, PLY, STL) becomes a scene; nothing of it concerns files that are scenes
+/// How a model (glTF, pbrt, OBJ, PLY, STL) becomes a scene; nothing of it concerns files that are scenes
 #[derive(Args)]
 #[command(next_help_heading = "Models")]
 pub struct StagingArgs {

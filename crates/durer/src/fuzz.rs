@@ -16,6 +16,7 @@ use crate::math::Vec3;
 use crate::render::{Control, Job, Part, PartError, Shard, Stop};
 use crate::scene::Staging;
 use crate::source::{Digest, Source};
+use std::cell::RefCell;
 use std::path::PathBuf;
 use std::sync::{Arc, OnceLock};
 
@@ -76,9 +77,10 @@ pub fn model(data: &[u8], name: &str) {
     let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
     let bytes = data.into();
     let file = files.add(name, Arc::clone(&bytes));
+    let files = RefCell::new(files);
     let source = Source::folder(folder());
     for staging in [Staging::default(), Staging { at: Some(0.5), ..Staging::default() }] {
-        let input = Input { bytes: &bytes, file, name, source: &source, staging: &staging };
+        let input = Input { bytes: &bytes, file, files: &files, name, source: &source, staging: &staging };
         let Some(format) = find_scene_format(data, name) else { return };
         let Some(scene) = read_model(format, &input, &mut diagnostics) else { continue };
         assert!(scene.camera.is_some());
@@ -195,7 +197,7 @@ fn seeds_hold() {
                 "part" => part(&data),
                 "ways" => ways(&data),
                 "obj" | "ply" | "stl" => mesh(&data, &format!("x.{name}")),
-                "gltf" => model(&data, "x.gltf"),
+                "gltf" | "pbrt" => model(&data, &format!("x.{name}")),
                 _ => picture(&data, &format!("x.{name}")),
             }
         }

@@ -6,10 +6,10 @@ use crate::dialect::{Compat, Dialect, PathBase, Rules};
 use crate::format::course::{self, Guess, Hint, ReadOptions};
 use crate::format::scene::{Input, find_scene_format, read_model};
 use crate::scene::{Scene, Staging};
-use crate::source::{Source, SourceError};
+use crate::source::{Source, SourceError, is_packed, unpacked};
 use crate::threads;
 use crate::world::World;
-use std::io::Read;
+use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -105,15 +105,20 @@ pub fn load_text(
     let mut name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let mut bytes = bytes;
     if is_packed(&bytes) {
-        bytes = unpacked(&bytes, budget(options), diagnostics)?;
+        let refuse = |problem| diagnostics.push(Diagnostic::error(problem).code("bad-file"));
+        bytes = unpacked(&bytes, budget(options)).map_err(refuse).ok()?;
         name.truncate(name.strip_suffix(".gz").map_or(name.len(), str::len));
     }
     let file = files.add(path.display().to_string(), bytes.clone());
     if let Some(format) = find_scene_format(&bytes, &name).filter(|_| options.dialect.is_none() && !options.course) {
         let dialect = Dialect::Durer;
         let source = source.budget(budget(options));
-        let input = Input { bytes: &bytes, file, name: &name, source: &source, staging: &options.staging };
-        let scene = read_model(format, &input, diagnostics)?;
+        let known = RefCell::new(std::mem::take(files));
+        let staging = &options.staging;
+        let input = Input { bytes: &bytes, file, files: &known, name: &name, source: &source, staging };
+        let scene = read_model(format, &input, diagnostics);
+        *files = known.into_inner();
+        let scene = scene?;
         return Some(Loaded { scene, rules: dialect.rules().clone(), dialect, guess: None, source });
     }
     let mut guess = None;
@@ -151,36 +156,6 @@ pub fn load_text(
         diagnostics.push(guess.note());
     }
     scene.map(|scene| Loaded { scene, rules, dialect, guess, source })
-}
-
-/// Whether bytes are packed by gzip.
-fn is_packed(bytes: &[u8]) -> bool {
-    bytes.starts_with(b"\x1f\x8b")
-}
-
-/// What is packed by gzip, if it is no more than may be read: the packed file tells its size in its last four bytes, and more
-/// than that is not unpacked.
-fn unpacked(bytes: &[u8], budget: u64, diagnostics: &mut Diagnostics) -> Option<Arc<[u8]>> {
-    // Deflate packs at most 1032 bytes into one.
-    let declared = bytes.last_chunk().map_or(0, |size| u64::from(u32::from_le_bytes(*size)));
-    let refuse = |message: String| Diagnostic::error(message).code("bad-file");
-    if declared > budget || declared > 1032 * bytes.len() as u64 {
-        diagnostics.push(refuse(format!("the packed file would have {declared} bytes: that is too large")));
-        return None;
-    }
-    let mut all = Vec::new();
-    let mut decoder = flate2::read::GzDecoder::new(bytes).take(declared + 1);
-    match decoder.read_to_end(&mut all) {
-        Ok(_) if all.len() as u64 == declared => Some(all.into()),
-        Ok(_) => {
-            diagnostics.push(refuse("the packed file is not as large as it says".into()));
-            None
-        }
-        Err(error) => {
-            diagnostics.push(refuse(format!("the file cannot be unpacked: {error}")));
-            None
-        }
-    }
 }
 
 /// Bytes that may be read.

@@ -237,6 +237,22 @@ impl Source {
         self.given.contains_key(name) || self.find(name).is_ok()
     }
 
+    /// Reads a file by the name that a scene gives it; what is packed by gzip is unpacked, if the packed file's size in its last four
+    /// bytes is one that may still be read.
+    pub fn read_unpacked(&self, name: &str) -> Result<Arc<[u8]>, SourceError> {
+        let bytes = self.read(name)?;
+        if !is_packed(&bytes) {
+            return Ok(bytes);
+        }
+        let left = self.already().left;
+        let all = unpacked(&bytes, left).map_err(|problem| {
+            let error = std::io::Error::new(std::io::ErrorKind::InvalidData, problem);
+            SourceError::Io { name: name.into(), error }
+        })?;
+        self.already().left = left - all.len() as u64;
+        Ok(all)
+    }
+
     /// Reads a file by the name that a scene gives it.
     pub fn read(&self, name: &str) -> Result<Arc<[u8]>, SourceError> {
         if let Some(bytes) = self.given.get(name) {
@@ -313,6 +329,31 @@ impl Source {
         }
         self.already().left = left - bytes.len() as u64;
         Ok(bytes.into())
+    }
+}
+
+/// Whether bytes are packed by gzip.
+pub fn is_packed(bytes: &[u8]) -> bool {
+    bytes.starts_with(b"\x1f\x8b")
+}
+
+/// What is packed by gzip, if it is no more than may be read: the packed file tells its size in its last four bytes, and more
+/// than that is not unpacked.
+///
+/// # Errors
+/// Why it is not unpacked.
+pub fn unpacked(bytes: &[u8], budget: u64) -> Result<Arc<[u8]>, String> {
+    // Deflate packs at most 1032 bytes into one.
+    let declared = bytes.last_chunk().map_or(0, |size| u64::from(u32::from_le_bytes(*size)));
+    if declared > budget || declared > 1032 * bytes.len() as u64 {
+        return Err(format!("the packed file would have {declared} bytes: that is too large"));
+    }
+    let mut all = Vec::new();
+    let mut decoder = flate2::read::GzDecoder::new(bytes).take(declared + 1);
+    match decoder.read_to_end(&mut all) {
+        Ok(_) if all.len() as u64 == declared => Ok(all.into()),
+        Ok(_) => Err("the packed file is not as large as it says".into()),
+        Err(error) => Err(format!("the file cannot be unpacked: {error}")),
     }
 }
 

@@ -8,7 +8,7 @@
 
 use super::eyes::EyeCircle;
 use super::sheet::Sheet;
-use super::{CameraSample, Eyes, Frame, Lens, Pose};
+use super::{CameraSample, Eyes, Frame, Handedness, Lens, Pose};
 use crate::describe::Rule;
 use crate::described;
 use crate::dialect::set;
@@ -32,6 +32,8 @@ described! {
         eyes: Eyes = Eyes::Middle, optional, Rule::Any, ["eyes" in set::DURER];
         /// Distance between the eyes.
         separation: f32 = 0.065, optional, Rule::NonNegative, ["separation" in set::DURER];
+        /// Which side of the picture is right: `left` makes a mirror image, as in coordinates of the left hand.
+        handedness: Handedness = Handedness::Right, optional, Rule::Any, ["handedness" in set::DURER];
     }
 }
 
@@ -61,11 +63,12 @@ impl Lens for EquirectangularCamera {
         let angles = place - 0.5 * self.one();
         let (eye, level) = self.circle(view.side).tangent(angles.x);
         let (sin, cos) = fp::sin_cos_f64(angles.y);
-        Some(frame.ray(eye, cos * level + sin * DVec3::Y))
+        let turned = |v: DVec3| self.handedness.turned(v);
+        Some(frame.ray(turned(eye), turned(cos * level + sin * DVec3::Y)))
     }
 
     fn project(&self, frame: &Frame, world: Vec3, _: Vec2, found: &mut dyn FnMut(Vec2)) {
-        let (one, p) = (self.one(), frame.camera_from_world(world));
+        let (one, p) = (self.one(), self.handedness.turned(frame.camera_from_world(world)));
         for view in self.eyes.views(one) {
             let Some((heading, distance)) = self.circle(view.side).heading(p) else { continue };
             let place = DVec2::new(heading, fp::atan2_f64(p.y, distance)) + 0.5 * one;

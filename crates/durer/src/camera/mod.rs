@@ -4,6 +4,7 @@
 mod aperture;
 mod central;
 mod eyes;
+mod handedness;
 mod pose;
 pub mod raster;
 mod sheet;
@@ -26,11 +27,14 @@ pub mod thin_lens;
 
 use crate::described_list;
 use crate::math::{Ray, Vec2, Vec3};
+pub use equirectangular::EquirectangularCamera;
 pub use eyes::Eyes;
+pub use handedness::Handedness;
 pub use orthographic::OrthographicCamera;
 pub use perspective::PerspectiveCamera;
 pub use pose::{Frame, Pose};
 pub use raster::Raster;
+pub use thin_lens::ThinLensCamera;
 
 described_list! {
     /// A camera.

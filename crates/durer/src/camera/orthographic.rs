@@ -2,7 +2,7 @@
 //!
 //! origin = center + x size/2 right + y size/2 up.
 
-use super::{CameraSample, Frame, Lens, Pose};
+use super::{CameraSample, Frame, Handedness, Lens, Pose};
 use crate::describe::Rule;
 use crate::described;
 use crate::dialect::set;
@@ -20,6 +20,8 @@ described! {
         up: Vec3 = Vec3::Y, required, Rule::NonZero, ["up" in set::ALL];
         /// Length of the picture's larger side.
         size: f32 = 2.0, required, Rule::Positive, ["size" in set::ALL];
+        /// Which side of the picture is right: `left` makes a mirror image, as in coordinates of the left hand.
+        handedness: Handedness = Handedness::Right, optional, Rule::Any, ["handedness" in set::DURER];
     }
 }
 
@@ -31,12 +33,13 @@ impl Lens for OrthographicCamera {
     /// The ray runs both ways: things behind `center` are seen as well, at negative `t`.
     fn ray(&self, frame: &Frame, sample: &CameraSample) -> Option<Ray> {
         let (point, half) = (sample.point, 0.5 * self.size);
-        let origin = frame.eye + point.x * half * frame.right + point.y * half * frame.up;
+        let x = self.handedness.sign() as f32 * point.x;
+        let origin = frame.eye + x * half * frame.right + point.y * half * frame.up;
         Some(Ray { t_min: f32::NEG_INFINITY, ..Ray::new(origin, frame.forward) })
     }
 
     fn project(&self, frame: &Frame, world: Vec3, _: Vec2, found: &mut dyn FnMut(Vec2)) {
-        let p = frame.camera_from_world(world);
+        let p = self.handedness.turned(frame.camera_from_world(world));
         found((DVec2::new(p.x, p.y) / (0.5 * f64::from(self.size))).as_vec2());
     }
 

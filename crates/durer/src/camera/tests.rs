@@ -116,6 +116,7 @@ fn parallel_rays_start_on_the_picture_and_run_both_ways() {
         direction: Vec3::X * 2.0,
         up: Vec3::new(1.0, 1.0, 0.0),
         size: 5.0,
+        ..OrthographicCamera::default()
     };
     let frame = Frame::new(camera.pose(), &rules(&[]));
     // right = x cross y = z; up = y.

@@ -12,7 +12,7 @@
 //! Camera Model for Synthetic Image Generation*, SIGGRAPH 1981, for the circle of confusion.
 
 use super::perspective::half_width;
-use super::{CameraSample, Frame, Lens, Pose, aperture};
+use super::{CameraSample, Frame, Handedness, Lens, Pose, aperture};
 use crate::describe::Rule;
 use crate::described;
 use crate::dialect::set;
@@ -42,6 +42,8 @@ described! {
         shift_right: f32 = 0.0, optional, Rule::Any, ["shiftRight" in set::DURER];
         /// What is seen moves upwards by this part of half the larger side.
         shift_up: f32 = 0.0, optional, Rule::Any, ["shiftUp" in set::DURER];
+        /// Which side of the picture is right: `left` makes a mirror image, as in coordinates of the left hand.
+        handedness: Handedness = Handedness::Right, optional, Rule::Any, ["handedness" in set::DURER];
     }
 }
 
@@ -80,12 +82,12 @@ impl Lens for ThinLensCamera {
 
     fn ray(&self, frame: &Frame, sample: &CameraSample) -> Option<Ray> {
         let (origin, dir) = self.line(sample);
-        Some(frame.ray(origin, dir))
+        Some(frame.ray(self.handedness.turned(origin), self.handedness.turned(dir)))
     }
 
     fn project(&self, frame: &Frame, world: Vec3, lens: Vec2, found: &mut dyn FnMut(Vec2)) {
         let (lens, focus, width) = self.parts(lens);
-        let p = frame.camera_from_world(world);
+        let p = self.handedness.turned(frame.camera_from_world(world));
         if p.z > 0.0 {
             let target = lens + (p.truncate() - lens) * (focus / p.z);
             found((target / width - self.shift()).as_vec2());

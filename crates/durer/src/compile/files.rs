@@ -268,7 +268,10 @@ impl<'r> Loader<'r> {
             let (turn, scale) = written.environment_placing();
             return Environment::new(SKY_WIDTH, SKY_WIDTH / 2, sky.picture(SKY_WIDTH, SKY_WIDTH / 2), turn, scale);
         };
-        let bytes = self.read(name, "environment", diagnostics)?;
+        let bytes = match self.assets.pictures.get(&name.path).map(|picture| &picture.bytes) {
+            Some(PictureBytes::Here(_, bytes)) => bytes.clone(),
+            _ => self.read(name, "environment", diagnostics)?,
+        };
         let encoded = used(name, &name.path, Encoded::open(&bytes, &name.path), diagnostics)?;
         let picture = encoded.read(self.resources.memory, image::decode_srgb);
         let picture = used(name, &name.path, picture, diagnostics)?;

@@ -8,6 +8,7 @@ mod gltf;
 pub mod ies;
 mod number;
 pub mod obj;
+mod pbrt;
 mod ply;
 mod polygon;
 mod report;

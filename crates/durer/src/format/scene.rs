@@ -1,11 +1,12 @@
 //! Readers of whole scenes: one row of [`SCENE_FORMATS`] each. What is a mesh alone is a scene of one mesh.
 
-use super::{MESH_FORMATS, extension, gltf, obj, read_mesh};
+use super::{MESH_FORMATS, extension, gltf, obj, pbrt, read_mesh};
 use crate::describe::FileName;
-use crate::diag::{Diagnostics, Span};
+use crate::diag::{Diagnostics, Files, Span};
 use crate::scene::{Axis, Group, Node, Object, Scene, Staging};
 use crate::shape::{MeshData, TriangleMesh};
 use crate::source::Source;
+use std::cell::RefCell;
 use std::sync::Arc;
 
 /// A format of files that hold scenes, or models that become scenes.
@@ -20,6 +21,8 @@ pub struct SceneFormat {
     pub read: fn(&Input, &mut Diagnostics) -> Option<Scene>,
     /// What is up in most models of this format.
     pub up: Axis,
+    /// Whether what has a camera is a whole scene, to which no light is added.
+    pub whole: bool,
 }
 
 /// The formats of models, in the order in which content is tried. What is none of them is in the course's language.
@@ -30,6 +33,15 @@ pub const SCENE_FORMATS: &[SceneFormat] = &[
         recognise: gltf::recognise,
         read: gltf::read,
         up: Axis::Y,
+        whole: false,
+    },
+    SceneFormat {
+        name: "pbrt",
+        extensions: &["pbrt"],
+        recognise: pbrt::recognise,
+        read: pbrt::read,
+        up: Axis::Y,
+        whole: true,
     },
     SceneFormat {
         name: MESH_FORMATS[0].name,
@@ -37,6 +49,7 @@ pub const SCENE_FORMATS: &[SceneFormat] = &[
         recognise: MESH_FORMATS[0].recognise,
         read: one_mesh,
         up: MESH_FORMATS[0].up,
+        whole: false,
     },
     SceneFormat {
         name: MESH_FORMATS[1].name,
@@ -45,6 +58,7 @@ pub const SCENE_FORMATS: &[SceneFormat] = &[
         recognise: |_| false,
         read: obj::scene::read,
         up: MESH_FORMATS[1].up,
+        whole: false,
     },
     SceneFormat {
         name: MESH_FORMATS[2].name,
@@ -52,6 +66,7 @@ pub const SCENE_FORMATS: &[SceneFormat] = &[
         recognise: MESH_FORMATS[2].recognise,
         read: one_mesh,
         up: MESH_FORMATS[2].up,
+        whole: false,
     },
 ];
 
@@ -59,8 +74,10 @@ pub const SCENE_FORMATS: &[SceneFormat] = &[
 pub struct Input<'a> {
     /// Its bytes.
     pub bytes: &'a Arc<[u8]>,
-    /// Its number in [`Files`](crate::diag::Files), for spans.
+    /// Its number in `files`, for spans.
     pub file: u32,
+    /// The texts that were read, to which a reader adds those of further files.
+    pub files: &'a RefCell<Files>,
     /// Its last name, with ending.
     pub name: &'a str,
     /// Reads the files that it names.
@@ -80,7 +97,7 @@ pub fn find_scene_format(bytes: &[u8], name: &str) -> Option<&'static SceneForma
 /// Reads a model as a scene, and adds the camera, light and material that it lacks.
 pub fn read_model(format: &SceneFormat, input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
     let mut scene = (format.read)(input, diagnostics)?;
-    input.staging.complete(&mut scene, format.up);
+    input.staging.complete(&mut scene, format.up, format.whole);
     Some(scene)
 }
 

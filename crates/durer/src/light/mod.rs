@@ -13,7 +13,7 @@ pub use directional::DirectionalLight;
 use glam::DVec3;
 pub use photometric::{PhotometricLight, Profile};
 pub use point::PointLight;
-pub use spot::SpotLight;
+pub use spot::{Fade, SpotLight};
 
 described_list! {
     /// A light.

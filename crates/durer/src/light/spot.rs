@@ -2,10 +2,16 @@
 
 use super::{Emitter, Illumination};
 use crate::describe::Rule;
-use crate::described;
 use crate::dialect::{Rules, set};
 use crate::math::{Color, Vec3, fp};
+use crate::{described, described_words};
 use glam::DVec3;
+
+described_words! {
+    /// How a cone fades between `innerAngle` and `angle`, by the share s of the cosine's way: s^2, as glTF has it, or
+    /// s^2 (3 - 2 s), as pbrt has it.
+    Fade { Squared = "squared", Smooth = "smooth" }
+}
 
 described! {
     /// Light that comes from one point into a cone, and fades with the square of the distance.
@@ -20,6 +26,8 @@ described! {
         angle: f32 = 45.0, optional, Rule::UpTo(180.0), ["angle" in set::DURER];
         /// Degrees from the middle to where it begins to fade; not more than `angle`.
         inner_angle: f32 = 0.0, optional, Rule::NonNegative, ["innerAngle" in set::DURER];
+        /// How it fades between the two, by the share s of the cosine's way: `squared` is s^2, `smooth` s^2 (3 - 2 s).
+        fade: Fade = Fade::Squared, optional, Rule::Any, ["fade" in set::DURER];
     }
 }
 
@@ -31,12 +39,19 @@ impl Emitter for SpotLight {
         let cosine = |degrees: f32| fp::sin_cos_degrees(f64::from(degrees)).1 as f32;
         let (outer, inner) = (cosine(self.angle), cosine(self.inner_angle.min(self.angle)));
         let seen = -to_light.dot(self.direction.normalize_or(Vec3::NEG_Y));
-        // As glTF has it: KHR_lights_punctual. A cone without a soft edge ends at once.
+        // A cone without a soft edge ends at once.
         let share = match inner > outer {
             true => ((seen - outer) / (inner - outer)).clamp(0.0, 1.0),
             false => f32::from(seen >= outer),
         };
-        Illumination { to_light, distance, color: self.color * (share * share / (distance * distance)) }
+        // Sources: KHR_lights_punctual; *Physically Based Rendering*, 4th edition, section 12.2.1.
+        let share = share
+            * share
+            * match self.fade {
+                Fade::Squared => 1.0,
+                Fade::Smooth => 3.0 - 2.0 * share,
+            };
+        Illumination { to_light, distance, color: self.color * (share / (distance * distance)) }
     }
 
     fn resolved(&self, _rules: &Rules) -> Self {

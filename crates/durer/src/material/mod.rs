@@ -3,6 +3,7 @@
 
 pub mod checkerboard;
 pub mod marble;
+pub mod mix;
 pub mod phong;
 pub mod presets;
 pub mod principled;
@@ -22,6 +23,7 @@ described_list! {
         Noise(solid_noise::SolidNoise),
         Marble(marble::Marble),
         Wood(wood::Wood),
+        Mix(mix::Mix),
     }
 }
 
@@ -46,7 +48,7 @@ macro_rules! delegate {
         }
     };
 }
-delegate!(Checkerboard, Noise, Marble, Wood);
+delegate!(Checkerboard, Noise, Marble, Wood, Mix);
 
 /// The most octaves that noise may have: beyond, they are finer than numbers can tell.
 pub const MOST_OCTAVES: u32 = 32;

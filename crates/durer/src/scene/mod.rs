@@ -60,6 +60,23 @@ impl Background {
     }
 }
 
+/// What a file asks of its picture; options say otherwise.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Wishes {
+    /// Its columns and rows.
+    pub size: Option<(u32, u32)>,
+    /// Samples a pixel.
+    pub samples: Option<u32>,
+    /// How often paths are scattered after the first time.
+    pub bounces: Option<u32>,
+}
+
+impl Wishes {
+    fn are_none(&self) -> bool {
+        *self == Wishes::default()
+    }
+}
+
 /// A whole scene.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Scene {
@@ -79,6 +96,9 @@ pub struct Scene {
     /// Meshes and pictures that are in no files of their own.
     #[serde(skip_serializing_if = "Assets::is_empty", skip_deserializing)]
     pub assets: Assets,
+    /// What the file asks of its picture.
+    #[serde(default, skip_serializing_if = "Wishes::are_none")]
+    pub wishes: Wishes,
     /// Where the camera is written.
     #[serde(skip)]
     pub camera_span: Span,

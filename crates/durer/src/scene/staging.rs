@@ -90,15 +90,17 @@ const ANGLE: f32 = 30.0;
 const FILLED: f64 = 0.86;
 
 impl Staging {
-    /// Adds what a scene lacks. `up` is the axis that is up in most models of its format.
-    pub fn complete(&self, scene: &mut Scene, up: Axis) {
+    /// Adds what a scene lacks. `up` is the axis that is up in most models of its format; `dark` says that what has a camera and
+    /// no lights is meant so: its surfaces shine, or it is dark.
+    pub fn complete(&self, scene: &mut Scene, up: Axis, dark: bool) {
         let sides = Sides::new(self.up.unwrap_or(up));
         let framed = scene.camera.is_none() || self.view.is_some();
+        let lit = (dark && scene.camera.is_some()) || scene.lights.as_ref().is_some_and(|lights| !lights.is_empty());
         if framed {
             scene.camera = Some(self.camera(scene, &sides, self.view.unwrap_or_default()));
         }
         give_material(scene);
-        if scene.lights.as_ref().is_none_or(Vec::is_empty) || self.studio.is_some() {
+        if !lit || self.studio.is_some() {
             self.light(scene, &sides, self.studio.unwrap_or_default(), framed);
         }
     }
@@ -130,7 +132,8 @@ impl Staging {
         let [half_x, half_y] = seen.half_sizes();
         let size = (2.0 * (half_x / wide).max(half_y / high) / FILLED) as f32;
         let size = if size > 0.0 { size } else { 2.0 };
-        OrthographicCamera { center: place(seen.before(f64::from(size))), direction, up, size }.into()
+        let center = place(seen.before(f64::from(size)));
+        OrthographicCamera { center, direction, up, size, ..Default::default() }.into()
     }
 
     /// Adds light, and with a camera of ours a ground.

@@ -206,6 +206,7 @@ impl Random {
         let mut current = None;
         let objects = (0..self.below(5)).map(|_| self.object(0, materials.len(), &mut current, true)).collect();
         Scene {
+            wishes: Default::default(),
             camera: (self.below(4) > 0).then(|| self.thing::<Camera>(0)),
             background: self.thing::<Background>(0),
             fog: (dialect == Dialect::Durer && self.below(3) == 0).then(|| spanned(self.thing::<Fog>(0))),

@@ -252,6 +252,7 @@ impl Reader<'_, '_> {
                 "Noise",
                 "Marble",
                 "Wood",
+                "Mix",
                 "numMaterials",
             ];
             self.unknown(word, span, "among materials", &known);

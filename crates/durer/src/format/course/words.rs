@@ -98,7 +98,7 @@ pub(super) fn begins_block(word: &str) -> bool {
 pub(super) fn home_of(word: &str) -> Option<&'static str> {
     Some(match word {
         "TriangleMesh" | "HeightField" | "Grid" | "Transform" | "MaterialIndex" | "Group" => "Group",
-        "PhongMaterial" | "PrincipledMaterial" | "Material" | "Checkerboard" | "Marble" | "Wood" => "Materials",
+        "PhongMaterial" | "PrincipledMaterial" | "Material" | "Checkerboard" | "Marble" | "Wood" | "Mix" => "Materials",
         "PointLight" | "DirectionalLight" => "Lights",
         "Translate" | "Scale" | "UniformScale" | "XRotate" | "YRotate" | "ZRotate" | "Rotate" | "Matrix"
         | "Matrix4f" | "translate" | "scale" | "x_rotate" | "y_rotate" | "z_rotate" => "Transform",

@@ -126,7 +126,9 @@ impl Model<'_> {
                 let angle = (2.0 * fp::atan_f64(half)).to_degrees() as f32;
                 PerspectiveCamera { center, direction, up, angle: angle.min(179.9) }.into()
             }
-            Seen::Orthographic(half) => OrthographicCamera { center, direction, up, size: 2.0 * half * wide }.into(),
+            Seen::Orthographic(half) => {
+                OrthographicCamera { center, direction, up, size: 2.0 * half * wide, ..Default::default() }.into()
+            }
         })
     }
 
@@ -141,7 +143,7 @@ impl Model<'_> {
             (true, _) => DirectionalLight { direction, color, spread: None }.into(),
             (false, Some([inner_angle, angle])) => {
                 let angle = angle.clamp(1e-3, 180.0);
-                SpotLight { position, direction, color, angle, inner_angle }.into()
+                SpotLight { position, direction, color, angle, inner_angle, ..SpotLight::default() }.into()
             }
             (false, None) => PointLight { position, color, attenuation: Some(Vec3::Z), falloff: None }.into(),
         };

@@ -15,7 +15,8 @@ fn read(bytes: &[u8], folder: &Path, name: &str, at: Option<f32>) -> (Option<Sce
     let file = files.add(name, std::sync::Arc::clone(&bytes));
     let source = Source::folder(folder);
     let staging = Staging { at, ..Staging::default() };
-    let input = Input { bytes: &bytes, file, name, source: &source, staging: &staging };
+    let files = std::cell::RefCell::new(files);
+    let input = Input { bytes: &bytes, file, files: &files, name, source: &source, staging: &staging };
     let format = find_scene_format(&bytes, name).expect("it is known");
     let scene = read_model(format, &input, &mut diagnostics);
     for span in diagnostics.iter().filter_map(|finding| finding.span) {

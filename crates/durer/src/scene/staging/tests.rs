@@ -26,7 +26,7 @@ fn scene(corners: Vec<Vec3>) -> Scene {
 }
 
 fn staged(mut scene: Scene, staging: &Staging) -> Scene {
-    staging.complete(&mut scene, Axis::Y);
+    staging.complete(&mut scene, Axis::Y, false);
     scene
 }
 

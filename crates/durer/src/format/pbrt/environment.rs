@@ -1,0 +1,188 @@
+//! Light from infinitely far away: even, or pictures of all directions, which become one picture of
+//! longitude and latitude.
+
+use super::state::Reader;
+use crate::describe::FileName;
+use crate::diag::{Diagnostic, Span};
+use crate::image::{self, Encoded, Image, Layer, WriteOptions};
+use crate::math::{Color, Vec2, Vec3, fp};
+use crate::scene::{Picture, PictureBytes};
+use crate::texture::Mapping;
+use glam::{DAffine3, DVec3};
+use rayon::prelude::*;
+use std::f32::consts::{FRAC_2_PI, PI, TAU};
+
+/// A light that is infinitely far away.
+pub(super) enum Infinite {
+    /// The same from everywhere.
+    Even(Color),
+    Picture {
+        name: String,
+        at: Span,
+        scale: f32,
+        /// From the world's directions to the picture's.
+        to_light: DAffine3,
+        /// The illuminance that its upper half is to have.
+        illuminance: Option<f32>,
+    },
+}
+
+/// Bytes that decoding one picture may take, and rows of the picture that is made.
+const MEMORY: u64 = 1 << 31;
+const MOST_ROWS: u32 = 2048;
+/// Places along each side of a texel that are looked up.
+const PLACES: u32 = 3;
+
+/// A picture with what turns and scales it.
+struct Source {
+    image: Image,
+    to_light: DAffine3,
+    scale: f32,
+}
+
+impl Reader<'_> {
+    /// Puts what is infinitely far away behind the scene.
+    pub fn surround(&mut self) {
+        let mut even = Color::ZERO;
+        let mut sources = Vec::new();
+        let mut first = None;
+        for infinite in std::mem::take(&mut self.infinite) {
+            match infinite {
+                Infinite::Even(color) => even += color,
+                Infinite::Picture { name, at, scale, to_light, illuminance } => {
+                    let Some(image) = self.environment(&name, at) else { continue };
+                    let scale = scale * illuminance.map_or(1.0, |wanted| wanted / upper_illuminance(&image));
+                    first.get_or_insert((name, at));
+                    sources.push(Source { image, to_light, scale: if scale.is_finite() { scale } else { 0.0 } });
+                }
+            }
+        }
+        (self.scene.background.color, self.scene.background.ambient_light) = (even, Color::ZERO);
+        let Some((name, at)) = first else { return };
+        let rows = sources.iter().map(|source| source.image.height).max().unwrap_or(1).min(MOST_ROWS);
+        let Ok(whole) = Image::from_pixels(2 * rows, rows, joined(&sources, even, rows)) else { return };
+        let mut bytes = Vec::new();
+        let written = image::format_for("a.pfm")
+            .and_then(|format| format.write(&[Layer::data("", whole)], &WriteOptions::default(), &mut bytes));
+        if written.is_err() {
+            return self.said.bad(at, "the picture around the scene cannot be made");
+        }
+        let path = format!("{name}#environment.pfm");
+        let bytes = PictureBytes::Here(path.clone(), bytes.into());
+        self.scene.assets.pictures.insert(path.clone(), Picture { bytes, mapping: Mapping::default() });
+        self.scene.background.environment = Some(FileName { path, span: at });
+    }
+
+    /// A square picture of equal areas.
+    fn environment(&self, name: &str, at: Span) -> Option<Image> {
+        let refuse = |message: String, code| self.said.push(Diagnostic::error(message).code(code).at(at));
+        let bytes = match self.input.source.read(name) {
+            Ok(bytes) => bytes,
+            Err(error) => {
+                refuse(error.to_string(), "missing-file");
+                return None;
+            }
+        };
+        let read = Encoded::open(&bytes, name).and_then(|encoded| encoded.read(MEMORY, image::decode_srgb));
+        match read {
+            Ok(picture) if picture.width == picture.height => Some(picture),
+            Ok(picture) if picture.width == 2 * picture.height => {
+                let what = "this picture is twice as wide as high: it is taken for longitude and latitude, as pbrt-v3 has them, \
+                            z upwards";
+                self.said.other(at, what);
+                Some(picture)
+            }
+            Ok(Image { width, height, .. }) => {
+                let message = format!("{width} x {height} pixels are no picture of all directions: it must be square");
+                self.said.bad_with(at, message, Some("pbrt's `imgtool makeequiarea` makes such a picture".into()));
+                None
+            }
+            Err(error) => {
+                refuse(format!("the picture `{name}` cannot be used: {error}"), "bad-file");
+                None
+            }
+        }
+    }
+}
+
+/// The picture of all directions as [`Environment`](crate::texture::Environment) has them.
+fn joined(sources: &[Source], even: Color, rows: u32) -> Vec<Color> {
+    let columns = 2 * rows;
+    let texel = |i: u32| {
+        let (x, y) = (i % columns, i / columns);
+        let mut sum = Color::ZERO;
+        for place in 0..PLACES * PLACES {
+            let offset = |k: u32| (k as f32 + 0.5) / PLACES as f32;
+            let (u, v) = (x as f32 + offset(place % PLACES), y as f32 + offset(place / PLACES));
+            let angle = TAU * (u / columns as f32 - 0.5);
+            let (sin, cos) = (fp::sin(PI * v / rows as f32), fp::cos(PI * v / rows as f32));
+            let dir = Vec3::new(sin * fp::sin(angle), cos, -sin * fp::cos(angle)).as_dvec3();
+            sum += sources.iter().map(|source| source.at(dir)).sum::<Color>();
+        }
+        even + sum / (PLACES * PLACES) as f32
+    };
+    (0..columns * rows).into_par_iter().map(texel).collect()
+}
+
+impl Source {
+    /// The light from a direction of the world: of the nearest texel, as pbrt has it.
+    fn at(&self, dir: DVec3) -> Color {
+        let dir = self.to_light.transform_vector3(dir).normalize_or(DVec3::Z).as_vec3();
+        let (width, height) = (self.image.width, self.image.height);
+        let place = match width == height {
+            true => equal_area(dir),
+            false => {
+                let u = fp::atan2(dir.y, dir.x) / TAU;
+                Vec2::new(u - u.floor(), fp::atan2((dir.x * dir.x + dir.y * dir.y).sqrt(), dir.z) / PI)
+            }
+        };
+        let texel = |share: f32, count: u32| ((share * count as f32) as u32).min(count - 1);
+        let light = self.image.get(texel(place.x, width), texel(place.y, height)).unwrap_or_default();
+        let light = if light.is_finite() { light.max(Color::ZERO) } else { Color::ZERO };
+        self.scale * light
+    }
+}
+
+/// The place of a unit vector in the square onto which the sphere is laid with all areas in
+/// proportion.
+///
+/// Source: Petrik Clarberg, *Fast Equal-Area Mapping of the (Hemi)Sphere using SIMD*, Journal of
+/// Graphics Tools 13(3), 2008.
+pub(super) fn equal_area(dir: Vec3) -> Vec2 {
+    let Vec3 { x, y, z } = dir.abs();
+    let radius = (1.0 - z).max(0.0).sqrt();
+    // The share of the quarter turn from x to y.
+    let turn = if x == 0.0 && y == 0.0 { 0.0 } else { FRAC_2_PI * fp::atan2(y, x) };
+    let upper = Vec2::new(radius * (1.0 - turn), radius * turn);
+    let place = if dir.z < 0.0 { Vec2::new(1.0 - upper.y, 1.0 - upper.x) } else { upper };
+    0.5 * (Vec2::new(place.x.copysign(dir.x), place.y.copysign(dir.y)) + 1.0)
+}
+
+/// The unit vector of a place in that square.
+pub(super) fn of_equal_area(place: Vec2) -> Vec3 {
+    let place = 2.0 * place - 1.0;
+    let across = place.abs();
+    let distance = 1.0 - (across.x + across.y);
+    let radius = 1.0 - distance.abs();
+    let turn = if radius == 0.0 { 1.0 } else { (across.y - across.x) / radius + 1.0 } * 0.25 * PI;
+    let flat = radius * (2.0 - radius * radius).max(0.0).sqrt();
+    let z = (1.0 - radius * radius).copysign(distance);
+    Vec3::new((fp::cos(turn) * flat).copysign(place.x), (fp::sin(turn) * flat).copysign(place.y), z)
+}
+
+/// The illuminance that the upper half of a picture (z > 0) makes from above.
+fn upper_illuminance(image: &Image) -> f32 {
+    let mut sum = 0.0_f64;
+    let (width, height) = (image.width, image.height);
+    for (i, light) in image.pixels.iter().enumerate() {
+        let (x, y) = ((i as u32 % width) as f32 + 0.5, (i as u32 / width) as f32 + 0.5);
+        let place = Vec2::new(x / width as f32, y / height as f32);
+        let (cosine, size) = match width == height {
+            true => (of_equal_area(place).z, 4.0 * PI),
+            false => (fp::cos(PI * place.y), 2.0 * PI * PI * fp::sin(PI * place.y)),
+        };
+        let luminance = light.dot(Vec3::new(0.2126, 0.7152, 0.0722));
+        sum += f64::from(luminance * cosine.max(0.0) * size);
+    }
+    (sum / f64::from(width * height)) as f32
+}

@@ -1,0 +1,155 @@
+//! Lights: at points, far away, and of surfaces. Their units are those of radiance; a pixel of
+//! value 1 shows radiance 1.
+//!
+//! Source of all meanings: *Physically Based Rendering*, 4th edition, chapter 12. What is given as
+//! a spectrum has luminance 1 times `scale`; `power` is luminous flux.
+
+use super::directives::LIGHT;
+use super::environment::Infinite;
+use super::params::{Param, Params};
+use super::said::meant;
+use super::state::Reader;
+use crate::diag::Span;
+use crate::light::{DirectionalLight, Fade, Light, PointLight, SpotLight};
+use crate::math::{Color, Vec3, fp};
+use crate::scene::Spanned;
+use glam::DVec3;
+use std::f32::consts::PI;
+use std::rc::Rc;
+
+/// The light of a surface.
+#[derive(Debug)]
+pub(super) struct AreaLight {
+    /// Its radiance where no power is given; else the colour of its power.
+    pub radiance: Color,
+    /// Flux of each shape or triangle.
+    pub power: Option<f32>,
+    pub two_sided: bool,
+    /// The name of a picture that multiplies it.
+    pub picture: Option<String>,
+    pub at: Span,
+}
+
+/// The colour of a light by one of its parameters, with `scale`.
+fn color(params: &Params, name: &'static str) -> Color {
+    let color = params.spectrum(name).map_or(Vec3::ONE, |spectrum| spectrum.light());
+    color * params.float("scale").unwrap_or(1.0).max(0.0)
+}
+
+impl Reader<'_> {
+    pub fn light(&mut self, kind: &str, at: Span, list: Vec<Rc<Param>>) {
+        let params = self.params(list, Some(LIGHT), at);
+        let (map, exposure) = (self.map(at), self.exposure());
+        let end = |name: &'static str, usual: DVec3| params.triple(name).map_or(usual, |p| p.as_dvec3());
+        let (from, to) = (end("from", DVec3::ZERO), end("to", DVec3::Z));
+        let place = map.transform_point3(from).as_vec3();
+        let direction = map.transform_vector3(to - from);
+        let aimed = || {
+            let direction = direction.try_normalize();
+            if direction.is_none() {
+                params.said.bad(params.place("to"), "a light must not be aimed at where it is");
+            }
+            direction.unwrap_or(DVec3::Z).as_vec3()
+        };
+        let power = params.float("power").filter(|power| *power > 0.0);
+        // A light's colour is what a white matte surface shows: illuminance over pi.
+        let value: Light = match kind {
+            "point" | "goniometric" => {
+                if kind == "goniometric" {
+                    self.said.other(at, "a light by a picture of directions has no counterpart: it shines evenly");
+                    params.known(&["filename"]);
+                }
+                let strength = power.map_or(1.0, |power| power / (4.0 * PI));
+                let color = color(&params, "I") * (strength * exposure / PI);
+                PointLight { position: place, color, attenuation: Some(Vec3::Z), falloff: None }.into()
+            }
+            "spot" | "projection" => {
+                let mut cone =
+                    [params.float("coneangle").unwrap_or(30.0), params.float("conedeltaangle").unwrap_or(5.0)];
+                if kind == "projection" {
+                    self.said
+                        .other(at, "a projector has no counterpart: a spot as wide as its picture is high is taken");
+                    params.known(&["filename"]);
+                    cone = [0.5 * params.float("fov").unwrap_or(90.0), 0.0];
+                }
+                if !(cone[0] > 0.0 && cone[0] <= 180.0) {
+                    self.said.bad(params.place("coneangle"), "`coneangle` must be more than 0 and at most 180 degrees");
+                }
+                let [outer, inner] = [cone[0], (cone[0] - cone[1]).max(0.0)];
+                let cosine = |degrees: f32| fp::sin_cos_degrees(f64::from(degrees)).1 as f32;
+                // Half of what is between the two cones.
+                let solid_angle = PI * (2.0 - cosine(inner) - cosine(outer));
+                let strength = power.map_or(1.0, |power| power / solid_angle);
+                let color = color(&params, "I") * (strength * exposure / PI);
+                SpotLight {
+                    position: place,
+                    direction: aimed(),
+                    color,
+                    angle: outer.clamp(1e-3, 180.0),
+                    inner_angle: inner,
+                    fade: Fade::Smooth,
+                }
+                .into()
+            }
+            "distant" => {
+                let strength = params.float("illuminance").filter(|e| *e > 0.0).unwrap_or(1.0);
+                let color = color(&params, "L") * (strength * exposure / PI);
+                DirectionalLight { direction: aimed(), color, spread: None }.into()
+            }
+            "infinite" => {
+                self.infinite_light(&params, exposure);
+                return params.finish("this light");
+            }
+            other => {
+                let known = ["point", "distant", "spot", "goniometric", "projection", "infinite"];
+                return self.said.bad_with(at, format!("there is no light `{other}`"), meant(other, known));
+            }
+        };
+        params.known(&["from", "to", "scale", "power"]);
+        params.finish("this light");
+        self.scene.lights.get_or_insert_default().push(Spanned { value, span: at });
+    }
+
+    fn infinite_light(&mut self, params: &Params, exposure: f32) {
+        let illuminance = params.float("illuminance").filter(|e| *e > 0.0);
+        params.left_out(&["portal"], "light is looked for all around");
+        let infinite = match params.text("filename") {
+            Some(name) => {
+                let at = params.get("filename").map_or(params.at, |param| param.values_at);
+                let scale = params.float("scale").unwrap_or(1.0).max(0.0) * exposure;
+                let to_light = self.map(params.at).inverse();
+                Infinite::Picture { name: name.to_string(), at, scale, to_light, illuminance }
+            }
+            None => Infinite::Even(color(params, "L") * (exposure * illuminance.map_or(1.0, |e| e / PI))),
+        };
+        params.known(&["from", "to", "power", "scale"]);
+        self.infinite.push(infinite);
+    }
+
+    pub fn area_light(&mut self, kind: &str, at: Span, list: Vec<Rc<Param>>) {
+        if kind != "diffuse" {
+            return self.said.bad_with(
+                at,
+                format!("there is no light of surfaces `{kind}`"),
+                Some("there is `diffuse`".into()),
+            );
+        }
+        let params = self.params(list, Some(LIGHT), at);
+        let picture = params.text("filename").map(str::to_string);
+        if picture.is_some() && params.get("L").is_some() {
+            self.said.bad(params.place("filename"), "a light has either `L` or `filename`");
+        }
+        let light = AreaLight {
+            radiance: color(&params, "L") * self.exposure(),
+            power: params.float("power").filter(|power| *power > 0.0),
+            two_sided: params.truth("twosided").unwrap_or(false),
+            picture,
+            at,
+        };
+        params.finish("this light");
+        if light.radiance == Vec3::ZERO {
+            self.said.push(crate::diag::Diagnostic::note("this light is black").code("black-light").at(at));
+        }
+        self.state.area = Some(Rc::new(light));
+    }
+}

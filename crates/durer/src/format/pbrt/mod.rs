@@ -1,0 +1,62 @@
+//! Scenes of pbrt-v4: the whole language, and what of it has a counterpart here.
+//!
+//! Sources: *Input File Format*, pbrt.org/fileformat-v4; Pharr, Jakob and Humphreys, *Physically
+//! Based Rendering*, 4th edition, 2023. A text changes a state, and what is written then (a shape,
+//! a light) takes the state as it is.
+
+mod body;
+mod camera;
+mod directives;
+mod environment;
+mod lexer;
+mod light;
+mod material;
+mod mesh;
+mod named;
+mod params;
+mod said;
+mod shape;
+mod spectrum;
+mod state;
+mod texture;
+mod transform;
+
+#[cfg(test)]
+mod tests;
+
+use super::scene::Input;
+use super::too_large;
+use crate::diag::{Diagnostic, Diagnostics};
+use crate::scene::Scene;
+use directives::DIRECTIVES;
+use lexer::{Lexer, Token};
+use said::Said;
+use state::Reader;
+
+/// Whether a file begins with a directive that only pbrt has. `Transform` and `Material` begin
+/// texts of the course's too.
+pub(super) fn recognise(bytes: &[u8]) -> bool {
+    let head = &bytes[..bytes.len().min(1 << 12)];
+    let (mut text, said) = (Lexer::new(head.into(), 0), Said::default());
+    let is_text = |token: Option<&Token>| matches!(token, Some(Token::Text(_)));
+    let Some(first) = text.next(&said).filter(|found| found.token == Token::Word) else { return false };
+    let word = text.word(first.at).to_string();
+    match DIRECTIVES.iter().find(|row| row.0 == word) {
+        Some((_, true)) => is_text(text.peek(&said).map(|found| &found.token)),
+        Some(_) => matches!(word.as_str(), "LookAt" | "WorldBegin" | "AttributeBegin" | "ReverseOrientation"),
+        None => false,
+    }
+}
+
+/// Reads a file; see [`read_model`](super::scene::read_model).
+pub(super) fn read(input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
+    if let Some(error) = too_large(input.bytes.len() as u64, input.name) {
+        diagnostics.push(Diagnostic { message: error.message.replace("mesh file", "scene"), help: None, ..error });
+        return None;
+    }
+    let said = Said::default();
+    let scene = Reader::new(input, &said).read();
+    let sound = !said.has_errors() && !diagnostics.has_errors();
+    diagnostics.extend(said.finish());
+    sound.then_some(scene)
+}

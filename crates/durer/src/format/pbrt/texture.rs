@@ -1,0 +1,292 @@
+//! Textures: one value everywhere, or a picture.
+
+use super::directives::TEXTURE;
+use super::params::{Kind, Param, Params};
+use super::said::meant;
+use super::state::Reader;
+use crate::describe::FileName;
+use crate::diag::{Diagnostic, Span};
+use crate::image::{self, Depth, Encoded, Image, Layer, WriteOptions};
+use crate::math::{Color, Vec3};
+use crate::scene::{Picture, PictureBytes};
+use crate::source::Digest;
+use crate::texture::{Mapping, Wrap};
+use std::rc::Rc;
+
+/// Bytes that decoding one picture may take.
+const MEMORY: u64 = 1 << 31;
+
+/// What a texture is here.
+#[derive(Clone)]
+pub(super) enum Texture {
+    Even(Color),
+    /// A picture, and what multiplies it.
+    Picture(Picture, Color),
+}
+
+impl Texture {
+    fn scaled(self, by: Color) -> Texture {
+        match self {
+            Texture::Even(color) => Texture::Even(color * by),
+            Texture::Picture(picture, scale) => Texture::Picture(picture, scale * by),
+        }
+    }
+
+    fn even(&self) -> Option<Color> {
+        if let Texture::Even(color) = self { Some(*color) } else { None }
+    }
+}
+
+impl Reader<'_> {
+    pub fn texture(
+        &mut self,
+        name: String,
+        (kind, kind_at): (&str, Span),
+        (class, at): (&str, Span),
+        list: Vec<Rc<Param>>,
+    ) {
+        if kind != "float" && kind != "spectrum" {
+            let help = meant(kind, ["float", "spectrum"]);
+            return self.said.bad_with(kind_at, format!("textures are `float` or `spectrum`, not `{kind}`"), help);
+        }
+        let params = self.params(list, Some(TEXTURE), at);
+        let (is_color, said) = (kind == "spectrum", self.said);
+        let instead = |what: &str| said.once(at, format!("the texture `{class}` has no counterpart: {what}"));
+        let of = |name: &'static str, usual: f32| self.pattern(&params, name, is_color, Vec3::splat(usual));
+        let both = |texture: &Texture, other: &Texture, share: f32| match (texture.even(), other.even()) {
+            (Some(a), Some(b)) => Some(Texture::Even(a.lerp(b, share))),
+            _ => None,
+        };
+        let made = match class {
+            "constant" => of("value", 1.0),
+            "scale" => {
+                let scale = self.pattern(&params, "scale", false, Vec3::ONE);
+                match (of("tex", 1.0), scale) {
+                    (texture, Texture::Even(by)) => texture.scaled(by),
+                    (Texture::Even(by), texture) => texture.scaled(by),
+                    (texture, _) => {
+                        instead("of two pictures the first is shown");
+                        texture
+                    }
+                }
+            }
+            "mix" | "directionmix" => {
+                let (first, second) = (of("tex1", 0.0), of("tex2", 1.0));
+                let amount = self.pattern(&params, "amount", false, Vec3::splat(0.5)).even().map(|c| c.x);
+                params.known(&["dir"]);
+                both(&first, &second, amount.unwrap_or(0.5)).unwrap_or_else(|| {
+                    instead("pictures are not mixed, the first is shown");
+                    if first.even().is_some() { second } else { first }
+                })
+            }
+            "imagemap" => self.imagemap(&params, is_color).unwrap_or(Texture::Even(Vec3::splat(0.5))),
+            "checkerboard" => {
+                let (odd, even) = (of("tex2", 0.0), of("tex1", 1.0));
+                match (even.even(), odd.even(), params.whole("dimension").unwrap_or(2)) {
+                    (Some(a), Some(b), 2) => self.checkerboard(a, b, &params),
+                    _ => {
+                        instead("the mean of its two sides is taken");
+                        both(&even, &odd, 0.5).unwrap_or(even)
+                    }
+                }
+            }
+            "bilerp" => {
+                instead("the mean of its corners is taken");
+                let corners = [of("v00", 0.0), of("v01", 1.0), of("v10", 0.0), of("v11", 1.0)];
+                Texture::Even(corners.iter().filter_map(Texture::even).sum::<Color>() / 4.0)
+            }
+            "dots" => {
+                instead("its outside is taken");
+                params.known(&["inside"]);
+                of("outside", 0.0)
+            }
+            "fbm" | "wrinkled" | "windy" | "marble" | "ptex" => {
+                instead("a middle value is taken");
+                params.known(&["octaves", "roughness", "scale", "variation", "filename", "encoding"]);
+                Texture::Even(Vec3::splat(0.5))
+            }
+            other => {
+                let known = [
+                    "bilerp",
+                    "checkerboard",
+                    "constant",
+                    "directionmix",
+                    "dots",
+                    "fbm",
+                    "imagemap",
+                    "marble",
+                    "mix",
+                    "ptex",
+                    "scale",
+                    "windy",
+                    "wrinkled",
+                ];
+                return self.said.bad_with(at, format!("there is no texture `{other}`"), meant(other, known));
+            }
+        };
+        params.known(&["mapping", "uscale", "vscale", "udelta", "vdelta", "v1", "v2"]);
+        params.finish("this texture");
+        self.textures.insert((is_color, name), made);
+    }
+
+    /// A parameter that may be a texture.
+    pub fn pattern(&self, params: &Params, name: &'static str, is_color: bool, usual: Color) -> Texture {
+        let Some(param) = params.get(name) else { return Texture::Even(usual) };
+        if param.kind == Kind::Texture {
+            if let Some(texture) = self.textures.get(&(is_color, param.text().to_string())) {
+                return texture.clone();
+            }
+            let known = self.textures.keys().filter(|key| key.0 == is_color).map(|key| key.1.as_str());
+            let what = if is_color { "spectrum" } else { "float" };
+            let message = format!("there is no texture `{}` of type `{what}`", param.text());
+            self.said.bad_with(param.values_at, message, meant(param.text(), known));
+            return Texture::Even(usual);
+        }
+        Texture::Even(match is_color {
+            true => params.spectrum(name).map_or(usual, |spectrum| spectrum.albedo()),
+            false => params.float(name).map_or(usual, Vec3::splat),
+        })
+    }
+
+    /// A number that may be a texture: of a picture the mean is taken.
+    pub fn value(&self, params: &Params, name: &'static str, usual: f32) -> f32 {
+        match self.pattern(params, name, false, Vec3::splat(usual)) {
+            Texture::Even(color) => color.x,
+            Texture::Picture(picture, scale) => {
+                let at = params.place(name);
+                self.said.once(at, format!("`{name}` by a picture has no counterpart: its mean is taken"));
+                let mean = match &picture.bytes {
+                    PictureBytes::File(path) => self.picture(path, at).map(|image| mean(&image)),
+                    PictureBytes::Here(path, bytes) => image::read(bytes, path).ok().map(|image| mean(&image)),
+                };
+                mean.map_or(usual, |mean| mean * scale.x)
+            }
+        }
+    }
+
+    /// A parameter that is a colour or a picture: the colour that multiplies, and the picture's
+    /// name.
+    pub fn colored(&mut self, params: &Params, name: &'static str, usual: f32) -> (Color, Option<FileName>) {
+        match self.pattern(params, name, true, Vec3::splat(usual)) {
+            Texture::Even(color) => (color, None),
+            Texture::Picture(picture, scale) => (scale, Some(self.asset(picture, params.place(name)))),
+        }
+    }
+
+    /// A name for a picture.
+    pub fn asset(&mut self, picture: Picture, span: Span) -> FileName {
+        let (PictureBytes::File(path) | PictureBytes::Here(path, _)) = &picture.bytes;
+        // The same picture may lie otherwise on other surfaces.
+        let mapping = Digest::of(format!("{:?}", picture.mapping).as_bytes()).to_string();
+        let path = format!("{path}#{}", &mapping[..12]);
+        self.scene.assets.pictures.entry(path.clone()).or_insert(picture);
+        FileName { path, span }
+    }
+
+    /// A file as a picture of eight bits, which other formats become.
+    pub fn eight_bits(&self, name: &str, at: Span) -> Option<PictureBytes> {
+        let bytes = self.bytes(name, at)?;
+        match Encoded::open(&bytes, name) {
+            Ok(encoded) if encoded.depth() != Depth::Float => Some(PictureBytes::File(name.to_string())),
+            Ok(_) => {
+                let image = self.picture(name, at)?;
+                let mut eight = Vec::new();
+                let format = image::format_for("a.png").ok()?;
+                format.write(&[Layer::color("", image)], &WriteOptions::default(), &mut eight).ok()?;
+                Some(PictureBytes::Here(format!("{name}#8.png"), eight.into()))
+            }
+            Err(error) => {
+                let message = format!("the picture `{name}` cannot be used: {error}");
+                self.said.push(Diagnostic::error(message).code("bad-file").at(at));
+                None
+            }
+        }
+    }
+
+    fn bytes(&self, name: &str, at: Span) -> Option<std::sync::Arc<[u8]>> {
+        let bytes = self.input.source.read(name);
+        bytes.map_err(|error| self.said.push(Diagnostic::error(error.to_string()).code("missing-file").at(at))).ok()
+    }
+
+    fn picture(&self, name: &str, at: Span) -> Option<Image> {
+        let bytes = self.bytes(name, at)?;
+        let read = Encoded::open(&bytes, name).and_then(|encoded| encoded.read(MEMORY, image::decode_srgb));
+        let complain = |error| {
+            let message = format!("the picture `{name}` cannot be used: {error}");
+            self.said.push(Diagnostic::error(message).code("bad-file").at(at));
+        };
+        read.map_err(complain).ok()
+    }
+
+    fn imagemap(&self, params: &Params, is_color: bool) -> Option<Texture> {
+        let Some(name) = params.text("filename") else {
+            self.said.bad(params.at, "an `imagemap` needs a `filename`");
+            return None;
+        };
+        let at = params.get("filename").map_or(params.at, |param| param.values_at);
+        let mut mapping = self.mapping(params);
+        match params.text("wrap").unwrap_or("repeat") {
+            "repeat" => {}
+            "clamp" => mapping.wrap = [Wrap::Clamp; 2],
+            "black" => {
+                self.said.once(params.place("wrap"), "the wrapping `black` has no counterpart: `clamp` is taken");
+                mapping.wrap = [Wrap::Clamp; 2];
+            }
+            other => {
+                let help = meant(other, ["repeat", "clamp", "black"]);
+                self.said.bad_with(params.place("wrap"), format!("there is no wrapping `{other}`"), help);
+            }
+        }
+        mapping.nearest = params.text("filter") == Some("point");
+        if params.text("encoding").is_some_and(|encoding| encoding != "sRGB") && is_color {
+            self.said
+                .once(params.place("encoding"), "an encoding other than `sRGB` has no counterpart: `sRGB` is taken");
+        }
+        if params.truth("invert") == Some(true) {
+            self.said.once(params.place("invert"), "inverted pictures have no counterpart: it is shown as it is");
+        }
+        params.known(&["maxanisotropy", "trilinear"]);
+        let scale = Vec3::splat(params.float("scale").unwrap_or(1.0));
+        let bytes = self.eight_bits(name, at)?;
+        Some(Texture::Picture(Picture { bytes, mapping }, scale))
+    }
+
+    fn mapping(&self, params: &Params) -> Mapping {
+        if let Some(other) = params.text("mapping").filter(|mapping| *mapping != "uv") {
+            let what = format!("the mapping `{other}` has no counterpart: the surface's own coordinates are taken");
+            self.said.once(params.place("mapping"), what);
+        }
+        let number = |name: &'static str, usual: f32| params.float(name).unwrap_or(usual);
+        let (su, sv) = (number("uscale", 1.0), number("vscale", 1.0));
+        let (du, dv) = (number("udelta", 0.0), number("vdelta", 0.0));
+        // Both have v upwards; a picture's rows go down.
+        Mapping { transform: [[su, 0.0, du], [0.0, sv, 1.0 - sv - dv]], ..Mapping::default() }
+    }
+
+    /// Two fields and two more, as a picture of four texels.
+    fn checkerboard(&self, even: Color, odd: Color, params: &Params) -> Texture {
+        let mut mapping = self.mapping(params);
+        // A texel is a unit of the surface's coordinates; their origin is the lower left corner of
+        // an even one.
+        let [[su, _, du], [_, sv, _]] = mapping.transform;
+        let dv = params.float("vdelta").unwrap_or(0.0);
+        mapping.transform = [[0.5 * su, 0.0, 0.5 * du], [0.0, 0.5 * sv, 1.0 - 0.5 * sv - 0.5 * dv]];
+        mapping.nearest = true;
+        let most = even.max(odd).max_element().max(1.0);
+        let pixels = [odd, even, even, odd].map(|color| color / most);
+        let Ok(image) = Image::from_pixels(2, 2, pixels.to_vec()) else { return Texture::Even(0.5 * (even + odd)) };
+        let mut bytes = Vec::new();
+        let written = image::format_for("a.png")
+            .and_then(|format| format.write(&[Layer::color("", image)], &WriteOptions::default(), &mut bytes));
+        if written.is_err() {
+            return Texture::Even(0.5 * (even + odd));
+        }
+        let name = format!("checkerboard-{even}-{odd}.png");
+        Texture::Picture(Picture { bytes: PictureBytes::Here(name, bytes.into()), mapping }, Vec3::splat(most))
+    }
+}
+
+fn mean(image: &Image) -> f32 {
+    let sum: f64 = image.pixels.iter().map(|p| f64::from((p.x + p.y + p.z) / 3.0)).sum();
+    (sum / image.pixels.len().max(1) as f64) as f32
+}

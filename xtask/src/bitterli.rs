@@ -1,0 +1,167 @@
+//! Benedikt Bitterli's scenes, read from pbrt's files, beside the pictures that his own renderer,
+//! Tungsten, made of them: the table in docs/models.md.
+
+use anyhow::{Context, Result, bail};
+use durer::diag::{Diagnostics, Files, Severity};
+use durer::film::Filter;
+use durer::image::compare::{Options, Picture, Scale, compare};
+use durer::image::{Image, Layer, WriteOptions, format_for, read, save};
+use durer::integrator::Method;
+use durer::math::Vec3;
+use durer::render::{Control, Job, Part, Sampling, Shard};
+use durer::{LoadOptions, load};
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+/// Samples of a pixel, unless asked otherwise; a pixel is 4 x 4 of the reference's.
+const SAMPLES: u32 = 256;
+const STEP: u32 = 4;
+
+/// How far the mean may be off, and FLIP after equal exposure.
+const MOST_OFF: f64 = 0.02;
+const MOST_FLIP: f64 = 0.08;
+
+/// Scenes whose file asks for other depths than Tungsten took: how often light is scattered after
+/// the first time. Without any, walls and floor of veach-mis agree to a thousandth.
+const BOUNCES: [(&str, u32); 2] = [("cornell-box", 62), ("veach-mis", 0)];
+
+/// What is known of why a picture is not Tungsten's.
+const CAUSES: [(&str, &str); 3] = [
+    ("coffee", "coats: they take the mean loss of light that enters them, whatever its direction"),
+    (
+        "veach-mis",
+        "the four metals: Tungsten's highlights are narrower than GGX's of the alpha that is written; all else agrees",
+    ),
+    ("water-caustic", "the lamp is too small to be met by chance: its caustics need photons"),
+];
+
+const BEGIN: &str = "<!-- made by cargo xtask bitterli -->\n";
+const END: &str = "<!-- end -->\n";
+
+/// A scene beside its reference.
+struct Row {
+    name: String,
+    size: (u32, u32),
+    /// Ratio of mean luminances, and its inverse applied, FLIP and HDR-FLIP.
+    ratio: f64,
+    flip: f64,
+    hdr_flip: f64,
+    bounces: u32,
+}
+
+pub fn run(arguments: &[String]) -> Result<ExitCode> {
+    let samples = crate::value(arguments, "--samples").map_or(Ok(SAMPLES), |number| number.parse())?;
+    let (only, keep) = (crate::value(arguments, "--only"), crate::value(arguments, "--keep").map(PathBuf::from));
+    let folder = crate::corpus().join("samples/pbrt/bitterli");
+    let Ok(entries) = std::fs::read_dir(&folder) else {
+        println!("skipped: there is no {}", folder.display());
+        return Ok(ExitCode::SUCCESS);
+    };
+    let mut scenes: Vec<PathBuf> = entries.map(|entry| Ok(entry?.path())).collect::<Result<_>>()?;
+    scenes.retain(|path| path.join("scene-v4.pbrt").is_file() && path.join("TungstenRender.exr").is_file());
+    scenes.retain(|path| only.is_none_or(|only| path.to_string_lossy().contains(only.as_str())));
+    scenes.sort();
+    if scenes.is_empty() {
+        bail!("there are no such scenes in {}", folder.display());
+    }
+    let mut table = String::from(
+        "| scene | pixels | bounces | mean luminance | FLIP | HDR-FLIP | |\n| --- | --- | ---: | ---: | ---: | ---: | --- |\n",
+    );
+    for scene in &scenes {
+        let row = compared(scene, samples, keep.as_deref())?;
+        let cause = CAUSES.iter().find(|known| known.0 == row.name).map_or("", |known| known.1);
+        let met = (row.ratio - 1.0).abs() <= MOST_OFF && row.flip <= MOST_FLIP;
+        let line = format!(
+            "| {} | {} x {} | {} | {:+.2} % | {:.3} | {:.3} | {}{cause} |",
+            row.name,
+            row.size.0,
+            row.size.1,
+            row.bounces,
+            100.0 * (row.ratio - 1.0),
+            row.flip,
+            row.hdr_flip,
+            if met { "" } else { "off: " },
+        );
+        println!("{line}");
+        writeln!(table, "{line}")?;
+    }
+    if only.is_none() {
+        let page = crate::root()?.join("docs/models.md");
+        let text = std::fs::read_to_string(&page)?;
+        let (before, rest) =
+            text.split_once(BEGIN).context("docs/models.md has lost the mark of the table's beginning")?;
+        let (_, after) = rest.split_once(END).context("docs/models.md has lost the mark of the table's end")?;
+        std::fs::write(&page, format!("{before}{BEGIN}\n{table}\n{END}{after}"))?;
+        println!("wrote {}", page.display());
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn compared(folder: &Path, samples: u32, keep: Option<&Path>) -> Result<Row> {
+    let name = folder.file_name().context("a name")?.to_string_lossy().into_owned();
+    let path = folder.join("TungstenRender.exr");
+    let reference = smaller(&read(&std::fs::read(&path)?, "a.exr")?)?;
+    let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
+    let options = LoadOptions::default();
+    let loaded = load(&folder.join("scene-v4.pbrt"), &options, &mut files, &mut diagnostics)?;
+    let loaded = loaded.with_context(|| format!("{name} is not read: {diagnostics:?}"))?;
+    let world = loaded.compile(&options, &mut files, &mut diagnostics);
+    let world = world.with_context(|| format!("{name} is no world: {diagnostics:?}"))?;
+    for finding in diagnostics.iter().filter(|finding| finding.severity == Severity::Warning) {
+        println!("{name}: {}", finding.message);
+    }
+    let known = BOUNCES.iter().find(|row| row.0 == name).map(|row| row.1);
+    let bounces = known.or(loaded.scene.wishes.bounces).unwrap_or(16);
+    let usual = Job::default();
+    let job = Job {
+        width: reference.width,
+        height: reference.height,
+        sampling: Sampling::Filtered { samples, filter: Filter::Box { radius: 0.5 } },
+        method: Method::PATH,
+        settings: durer::integrator::Settings { bounces, ..usual.settings },
+        ..usual
+    };
+    let part = Part::new(&world, &job, Shard::WHOLE)?;
+    part.render(&world, &Control::default(), &mut |_, _| {})?;
+    let rendered = part.pictures()?;
+    let ours = &rendered.layers.first().context("a picture")?.image;
+    let ratio = mean(ours) / mean(&reference);
+    let equal = Image { pixels: ours.pixels.iter().map(|&p| p / ratio as f32).collect(), ..ours.clone() };
+    let measured = compare(&light(&reference), &light(&equal), &Options::default())?.measures;
+    if let Some(keep) = keep {
+        std::fs::create_dir_all(keep)?;
+        for (kind, image) in [("ours", ours), ("tungsten", &reference)] {
+            for ending in ["png", "exr"] {
+                let place = keep.join(format!("{name}-{kind}.{ending}"));
+                let mut bytes = Vec::new();
+                format_for(&place)?.write(&[Layer::color("", image.clone())], &WriteOptions::default(), &mut bytes)?;
+                save(&place, &bytes)?;
+            }
+        }
+    }
+    let (flip, hdr_flip) = (measured.flip, measured.hdr_flip.unwrap_or(f64::NAN));
+    Ok(Row { name, size: (reference.width, reference.height), ratio, flip, hdr_flip, bounces })
+}
+
+/// A picture of light.
+fn light(image: &Image) -> Picture {
+    Picture { image: image.clone(), scale: Scale::Linear }
+}
+
+/// The mean of the luminance.
+fn mean(image: &Image) -> f64 {
+    let luminance = |p: &Vec3| f64::from(p.dot(Vec3::new(0.2126, 0.7152, 0.0722)));
+    image.pixels.iter().map(luminance).sum::<f64>() / image.pixels.len() as f64
+}
+
+/// Squares of pixels as one.
+fn smaller(image: &Image) -> Result<Image> {
+    let (width, height) = (image.width / STEP, image.height / STEP);
+    let pixel = |x: u32, y: u32| {
+        let all = (0..STEP * STEP).filter_map(|i| image.get(STEP * x + i % STEP, STEP * y + i / STEP));
+        all.sum::<Vec3>() / (STEP * STEP) as f32
+    };
+    let pixels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).map(|(x, y)| pixel(x, y)).collect();
+    Ok(Image::from_pixels(width, height, pixels)?)
+}
