@@ -7,11 +7,11 @@
 use super::Settings;
 use super::account::{Bounce, RayKind, Shadow, What, Witness};
 use super::media::{Media, Passage};
-use super::spawn::{from_surface, to_light};
+use super::spawn::from_surface;
 use super::whitted::struck;
 use crate::bsdf::lobe::diffuse::Diffuse;
 use crate::bsdf::{Bsdf, Frame};
-use crate::math::{Color, Ray, Ray64, Vec2, Vec3, gamma};
+use crate::math::{Color, Ray, Ray64, Vec3, gamma};
 use crate::medium::{Flight, HenyeyGreenstein, Way};
 use crate::sampler::SampleId;
 use crate::shape::Surface;
@@ -22,6 +22,7 @@ use glam::DVec3;
 pub use photons::{PhotonMap, Photons};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+use vertex::{Met, Place, Scattered, Vertex};
 
 /// The integrator over one world.
 #[derive(Clone, Debug)]
@@ -106,138 +107,6 @@ impl Default for State {
     }
 }
 
-/// A point from which lights were connected with.
-#[derive(Clone, Copy)]
-struct Scattered {
-    point: DVec3,
-    /// The normal; zero in a medium.
-    n: Vec3,
-    /// The density with which the direction was chosen.
-    pdf: f32,
-}
-
-/// A point on the way of a path.
-struct Vertex<'a> {
-    place: Place<'a>,
-    state: &'a State,
-}
-
-/// What scatters light there.
-enum Place<'a> {
-    /// A surface, and how light goes through it if it does.
-    Surface(&'a Surface, &'a Shading, Option<&'a Passage>),
-    /// A medium, along a unit direction.
-    Medium(DVec3, Vec3, HenyeyGreenstein),
-}
-
-/// A direction that was chosen.
-struct Chosen {
-    wi: Vec3,
-    weight: Spectrum,
-    /// 0 for a single direction.
-    pdf: f32,
-    /// Whether it leads behind the surface.
-    passes: bool,
-    lobe: &'static str,
-    probability: f32,
-}
-
-impl Place<'_> {
-    fn point(&self) -> DVec3 {
-        match self {
-            Place::Surface(surface, ..) => surface.point(),
-            Place::Medium(point, ..) => *point,
-        }
-    }
-
-    /// The normal that lights are chosen for; zero where light comes from all sides.
-    fn normal(&self) -> Vec3 {
-        match self {
-            Place::Surface(_, shading, _) if !shading.bsdf.passes_light() => shading.frame.normal,
-            _ => Vec3::ZERO,
-        }
-    }
-
-    /// Whether lights can be connected with.
-    fn is_broad(&self) -> bool {
-        match self {
-            Place::Surface(_, shading, _) => shading.bsdf.is_broad(),
-            Place::Medium(..) => true,
-        }
-    }
-
-    /// The value, times the cosine of a surface.
-    fn eval(&self, wi: Vec3) -> Spectrum {
-        match self {
-            Place::Surface(_, shading, _) => shading.eval(wi),
-            Place::Medium(_, dir, phase) => Spectrum::splat(phase.value(*dir, wi)),
-        }
-    }
-
-    fn pdf(&self, wi: Vec3) -> f32 {
-        match self {
-            Place::Surface(_, shading, _) => shading.pdf(wi),
-            Place::Medium(_, dir, phase) => phase.value(*dir, wi),
-        }
-    }
-
-    fn sample(&self, choice: f32, u: Vec2) -> Option<Chosen> {
-        match self {
-            Place::Surface(_, shading, _) => {
-                let chosen = shading.bsdf.sample(shading.wo, choice, u)?;
-                let wi = shading.frame.to_world(chosen.wi);
-                let passes = chosen.wi.z < 0.0;
-                if passes != (wi.dot(shading.n_geo) < 0.0) {
-                    return None;
-                }
-                let lobe = shading.bsdf.lobes().nth(chosen.lobe)?;
-                let (name, probability) = (lobe.lobe.name(), lobe.probability);
-                Some(Chosen { wi, weight: chosen.weight, pdf: chosen.pdf, passes, lobe: name, probability })
-            }
-            Place::Medium(_, dir, phase) => {
-                let wi = phase.sample(*dir, u);
-                let pdf = phase.value(*dir, wi);
-                let lobe = "HenyeyGreenstein";
-                Some(Chosen { wi, weight: Spectrum::ONE, pdf, passes: false, lobe, probability: 1.0 })
-            }
-        }
-    }
-
-    /// A ray from there.
-    fn spawn(&self, wi: Vec3) -> Ray64 {
-        match self {
-            Place::Surface(surface, ..) => from_surface(surface, wi, f32::INFINITY, None),
-            Place::Medium(point, ..) => Ray64::new(*point, wi, 0.0, f32::INFINITY),
-        }
-    }
-
-    /// The ray to a light.
-    fn shadow_ray(&self, light: &LightSample) -> Ray64 {
-        // What stands exactly at the light does not block it.
-        let reach = light.reach * (1.0 - gamma(16));
-        match self {
-            Place::Surface(surface, ..) => to_light(surface, light.wi, reach, None),
-            Place::Medium(point, ..) => Ray64::new(*point, light.wi, 0.0, reach),
-        }
-    }
-
-    /// What a ray from there runs in.
-    fn media<'a>(&'a self, state: &'a State, wi: Vec3) -> &'a Media {
-        match self {
-            Place::Surface(_, shading, Some(passage)) if wi.dot(shading.n_geo) < 0.0 => &passage.behind,
-            _ => &state.media,
-        }
-    }
-}
-
-/// A surface that a ray met.
-struct Met {
-    ray: Ray64,
-    hit: Hit,
-    surface: Surface,
-    passage: Option<Passage>,
-}
-
 /// Where a ray's way ends.
 #[expect(clippy::large_enum_variant)]
 enum End {
@@ -249,30 +118,6 @@ enum End {
     Medium(DVec3, Vec3, HenyeyGreenstein),
     /// On a surface.
     Surface(Met),
-}
-
-impl Met {
-    /// Whether it is seen from the side that its normal does not point to.
-    fn inside(&self) -> bool {
-        self.ray.dir().dot(self.surface.n_geo) > 0.0
-    }
-
-    /// The index of refraction behind it over that before it.
-    fn eta(&self) -> f32 {
-        self.passage.as_ref().map_or(1.0, |passage| passage.there / passage.here)
-    }
-
-    /// How it scatters.
-    fn shading(&self, world: &World, lanes: &Lanes) -> Shading {
-        world.shading(self.ray.dir(), &self.hit, &self.surface, (self.inside(), self.eta()), lanes)
-    }
-}
-
-impl Chosen {
-    /// Whether light is refracted, so that radiance changes with the index.
-    fn is_bent(&self) -> bool {
-        self.lobe == "Refraction"
-    }
 }
 
 /// How often light is scattered in a body at most until it gets out.
@@ -647,3 +492,4 @@ fn power(a: f32, b: f32) -> f32 {
 mod photons;
 #[cfg(test)]
 mod tests;
+mod vertex;

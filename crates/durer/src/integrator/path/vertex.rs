@@ -1,0 +1,168 @@
+//! The points of a path: surfaces and places in a medium, and what may happen to light there.
+
+use super::State;
+use crate::integrator::media::{Media, Passage};
+use crate::integrator::spawn::{from_surface, to_light};
+use crate::math::{Ray64, Vec2, Vec3, gamma};
+use crate::medium::HenyeyGreenstein;
+use crate::shape::Surface;
+use crate::spectrum::{Lanes, Spectrum};
+use crate::world::emitters::LightSample;
+use crate::world::{Hit, Shading, World};
+use glam::DVec3;
+
+/// A point from which lights were connected with.
+#[derive(Clone, Copy)]
+pub(super) struct Scattered {
+    pub(super) point: DVec3,
+    /// The normal; zero in a medium.
+    pub(super) n: Vec3,
+    /// The density with which the direction was chosen.
+    pub(super) pdf: f32,
+}
+
+/// A point on the way of a path.
+pub(super) struct Vertex<'a> {
+    pub(super) place: Place<'a>,
+    pub(super) state: &'a State,
+}
+
+/// What scatters light there.
+pub(super) enum Place<'a> {
+    /// A surface, and how light goes through it if it does.
+    Surface(&'a Surface, &'a Shading, Option<&'a Passage>),
+    /// A medium, along a unit direction.
+    Medium(DVec3, Vec3, HenyeyGreenstein),
+}
+
+/// A direction that was chosen.
+pub(super) struct Chosen {
+    pub(super) wi: Vec3,
+    pub(super) weight: Spectrum,
+    /// 0 for a single direction.
+    pub(super) pdf: f32,
+    /// Whether it leads behind the surface.
+    pub(super) passes: bool,
+    pub(super) lobe: &'static str,
+    pub(super) probability: f32,
+}
+
+impl Place<'_> {
+    pub(super) fn point(&self) -> DVec3 {
+        match self {
+            Place::Surface(surface, ..) => surface.point(),
+            Place::Medium(point, ..) => *point,
+        }
+    }
+
+    /// The normal that lights are chosen for; zero where light comes from all sides.
+    pub(super) fn normal(&self) -> Vec3 {
+        match self {
+            Place::Surface(_, shading, _) if !shading.bsdf.passes_light() => shading.frame.normal,
+            _ => Vec3::ZERO,
+        }
+    }
+
+    /// Whether lights can be connected with.
+    pub(super) fn is_broad(&self) -> bool {
+        match self {
+            Place::Surface(_, shading, _) => shading.bsdf.is_broad(),
+            Place::Medium(..) => true,
+        }
+    }
+
+    /// The value, times the cosine of a surface.
+    pub(super) fn eval(&self, wi: Vec3) -> Spectrum {
+        match self {
+            Place::Surface(_, shading, _) => shading.eval(wi),
+            Place::Medium(_, dir, phase) => Spectrum::splat(phase.value(*dir, wi)),
+        }
+    }
+
+    pub(super) fn pdf(&self, wi: Vec3) -> f32 {
+        match self {
+            Place::Surface(_, shading, _) => shading.pdf(wi),
+            Place::Medium(_, dir, phase) => phase.value(*dir, wi),
+        }
+    }
+
+    pub(super) fn sample(&self, choice: f32, u: Vec2) -> Option<Chosen> {
+        match self {
+            Place::Surface(_, shading, _) => {
+                let chosen = shading.bsdf.sample(shading.wo, choice, u)?;
+                let wi = shading.frame.to_world(chosen.wi);
+                let passes = chosen.wi.z < 0.0;
+                if passes != (wi.dot(shading.n_geo) < 0.0) {
+                    return None;
+                }
+                let lobe = shading.bsdf.lobes().nth(chosen.lobe)?;
+                let (name, probability) = (lobe.lobe.name(), lobe.probability);
+                Some(Chosen { wi, weight: chosen.weight, pdf: chosen.pdf, passes, lobe: name, probability })
+            }
+            Place::Medium(_, dir, phase) => {
+                let wi = phase.sample(*dir, u);
+                let pdf = phase.value(*dir, wi);
+                let lobe = "HenyeyGreenstein";
+                Some(Chosen { wi, weight: Spectrum::ONE, pdf, passes: false, lobe, probability: 1.0 })
+            }
+        }
+    }
+
+    /// A ray from there.
+    pub(super) fn spawn(&self, wi: Vec3) -> Ray64 {
+        match self {
+            Place::Surface(surface, ..) => from_surface(surface, wi, f32::INFINITY, None),
+            Place::Medium(point, ..) => Ray64::new(*point, wi, 0.0, f32::INFINITY),
+        }
+    }
+
+    /// The ray to a light.
+    pub(super) fn shadow_ray(&self, light: &LightSample) -> Ray64 {
+        // What stands exactly at the light does not block it.
+        let reach = light.reach * (1.0 - gamma(16));
+        match self {
+            Place::Surface(surface, ..) => to_light(surface, light.wi, reach, None),
+            Place::Medium(point, ..) => Ray64::new(*point, light.wi, 0.0, reach),
+        }
+    }
+
+    /// What a ray from there runs in.
+    pub(super) fn media<'a>(&'a self, state: &'a State, wi: Vec3) -> &'a Media {
+        match self {
+            Place::Surface(_, shading, Some(passage)) if wi.dot(shading.n_geo) < 0.0 => &passage.behind,
+            _ => &state.media,
+        }
+    }
+}
+
+/// A surface that a ray met.
+pub(super) struct Met {
+    pub(super) ray: Ray64,
+    pub(super) hit: Hit,
+    pub(super) surface: Surface,
+    pub(super) passage: Option<Passage>,
+}
+
+impl Met {
+    /// Whether it is seen from the side that its normal does not point to.
+    pub(super) fn inside(&self) -> bool {
+        self.ray.dir().dot(self.surface.n_geo) > 0.0
+    }
+
+    /// The index of refraction behind it over that before it.
+    pub(super) fn eta(&self) -> f32 {
+        self.passage.as_ref().map_or(1.0, |passage| passage.there / passage.here)
+    }
+
+    /// How it scatters.
+    pub(super) fn shading(&self, world: &World, lanes: &Lanes) -> Shading {
+        world.shading(self.ray.dir(), &self.hit, &self.surface, (self.inside(), self.eta()), lanes)
+    }
+}
+
+impl Chosen {
+    /// Whether light is refracted, so that radiance changes with the index.
+    pub(super) fn is_bent(&self) -> bool {
+        self.lobe == "Refraction"
+    }
+}
