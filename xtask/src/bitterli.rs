@@ -65,8 +65,10 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
     if scenes.is_empty() {
         bail!("there are no such scenes in {}", folder.display());
     }
-    let mut table = String::from(
-        "| scene | pixels | bounces | mean luminance | FLIP | HDR-FLIP | |\n| --- | --- | ---: | ---: | ---: | ---: | --- |\n",
+    let mut table = format!(
+        "{samples} samples a pixel.\n\n\
+         | scene | pixels | bounces | mean luminance | FLIP | HDR-FLIP | |\n\
+         | --- | --- | ---: | ---: | ---: | ---: | --- |\n",
     );
     for scene in &scenes {
         let row = compared(scene, samples, keep.as_deref())?;
