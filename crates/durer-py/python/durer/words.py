@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from .things import Camera, Light, Material, Shape, Thing
 
-__all__ = ["Background", "Box", "CaveCamera", "Checkerboard", "Cone", "CubeMapCamera", "Cylinder", "CylindricalCamera", "DirectionalLight", "Disc", "Ellipsoid", "EquirectangularCamera", "FisheyeCamera", "HeightField", "Marble", "MultipleCenterCamera", "Noise", "OmnimaxCamera", "OrthographicCamera", "ParabolicCamera", "PerspectiveCamera", "PhongMaterial", "PhotometricLight", "PinholeCamera", "Plane", "PointLight", "PrincipledMaterial", "ProjectiveCamera", "PushBroomCamera", "Quadric", "Rectangle", "Sphere", "SpotLight", "StereoCamera", "ThinLensCamera", "Torus", "Triangle", "TriangleMesh", "Wood"]
+__all__ = ["Background", "Box", "CaveCamera", "Checkerboard", "Cone", "CubeMapCamera", "Cylinder", "CylindricalCamera", "DirectionalLight", "Disc", "Ellipsoid", "EquirectangularCamera", "FisheyeCamera", "HeightField", "Marble", "Mix", "MultipleCenterCamera", "Noise", "OmnimaxCamera", "OrthographicCamera", "ParabolicCamera", "PerspectiveCamera", "PhongMaterial", "PhotometricLight", "PinholeCamera", "Plane", "PointLight", "PrincipledMaterial", "ProjectiveCamera", "PushBroomCamera", "Quadric", "Rectangle", "Sphere", "SpotLight", "StereoCamera", "ThinLensCamera", "Torus", "Triangle", "TriangleMesh", "Wood"]
 
 
 class Background(Thing):
@@ -94,6 +94,8 @@ class OrthographicCamera(Camera):
     up: three numbers, not 0 0 0; must be given. What is up in the picture; need not be perpendicular.
 
     size: number, more than 0; must be given. Length of the picture's larger side.
+
+    handedness: `right`, `left`; right where it is not given. Which side of the picture is right: `left` makes a mirror image, as in coordinates of the left hand.
     """
 
     def __init__(
@@ -103,12 +105,14 @@ class OrthographicCamera(Camera):
         direction: npt.ArrayLike,
         up: npt.ArrayLike,
         size: float,
+        handedness: Optional[Literal["right", "left"]] = None,
     ) -> None:
         super().__init__("OrthographicCamera", [
             ("center", center),
             ("direction", direction),
             ("up", up),
             ("size", size),
+            ("handedness", handedness),
         ])
 
 
@@ -170,6 +174,8 @@ class ThinLensCamera(Camera):
     shift_right: number; 0 where it is not given. What is seen moves to the right by this part of half the larger side.
 
     shift_up: number; 0 where it is not given. What is seen moves upwards by this part of half the larger side.
+
+    handedness: `right`, `left`; right where it is not given. Which side of the picture is right: `left` makes a mirror image, as in coordinates of the left hand.
     """
 
     def __init__(
@@ -185,6 +191,7 @@ class ThinLensCamera(Camera):
         blade_angle: Optional[float] = None,
         shift_right: Optional[float] = None,
         shift_up: Optional[float] = None,
+        handedness: Optional[Literal["right", "left"]] = None,
     ) -> None:
         super().__init__("ThinLensCamera", [
             ("center", center),
@@ -197,6 +204,7 @@ class ThinLensCamera(Camera):
             ("bladeAngle", blade_angle),
             ("shiftRight", shift_right),
             ("shiftUp", shift_up),
+            ("handedness", handedness),
         ])
 
 
@@ -368,6 +376,8 @@ class EquirectangularCamera(Camera):
     eyes: `middle`, `left`, `right`, `sideBySide`, `topBottom`; middle where it is not given. Which eye's picture, or how both are laid out.
 
     separation: number, 0 or more; 0.065 where it is not given. Distance between the eyes.
+
+    handedness: `right`, `left`; right where it is not given. Which side of the picture is right: `left` makes a mirror image, as in coordinates of the left hand.
     """
 
     def __init__(
@@ -380,6 +390,7 @@ class EquirectangularCamera(Camera):
         vertical_angle: Optional[float] = None,
         eyes: Optional[Literal["middle", "left", "right", "sideBySide", "topBottom"]] = None,
         separation: Optional[float] = None,
+        handedness: Optional[Literal["right", "left"]] = None,
     ) -> None:
         super().__init__("EquirectangularCamera", [
             ("center", center),
@@ -389,6 +400,7 @@ class EquirectangularCamera(Camera):
             ("verticalAngle", vertical_angle),
             ("eyes", eyes),
             ("separation", separation),
+            ("handedness", handedness),
         ])
 
 
@@ -668,6 +680,8 @@ class SpotLight(Light):
     angle: number, more than 0, at most 180; 45 where it is not given. Degrees from the middle to where the cone ends.
 
     inner_angle: number, 0 or more; 0 where it is not given. Degrees from the middle to where it begins to fade; not more than `angle`.
+
+    fade: `squared`, `smooth`; squared where it is not given. How it fades between the two, by the share s of the cosine's way: `squared` is s^2, `smooth` s^2 (3 - 2 s).
     """
 
     def __init__(
@@ -678,6 +692,7 @@ class SpotLight(Light):
         color: npt.ArrayLike,
         angle: Optional[float] = None,
         inner_angle: Optional[float] = None,
+        fade: Optional[Literal["squared", "smooth"]] = None,
     ) -> None:
         super().__init__("SpotLight", [
             ("position", position),
@@ -685,6 +700,7 @@ class SpotLight(Light):
             ("color", color),
             ("angle", angle),
             ("innerAngle", inner_angle),
+            ("fade", fade),
         ])
 
 
@@ -1005,6 +1021,30 @@ class Wood(Material):
             ("octaves", octaves),
             ("frequency", frequency),
             ("amplitude", amplitude),
+        ])
+
+
+class Mix(Material):
+    """Two materials in the same proportion everywhere: each scatters its share of the light.
+
+    material1: whole number; must be given. The first material.
+
+    material2: whole number; must be given. The other.
+
+    share: number, from 0 to 1; 0.5 where it is not given. The share of the first, from 0 to 1.
+    """
+
+    def __init__(
+        self,
+        *,
+        material1: Union[int, Material],
+        material2: Union[int, Material],
+        share: Optional[float] = None,
+    ) -> None:
+        super().__init__("Mix", [
+            ("materialIndex", material1),
+            ("materialIndex", material2),
+            ("share", share),
         ])
 
 
