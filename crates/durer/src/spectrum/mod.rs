@@ -130,7 +130,7 @@ impl Waves {
     /// Wavelengths chosen about as often as the eye needs them, at equal steps of the number they are chosen by.
     fn new(u: f32) -> Self {
         let nm = Spectrum::from_array([0.0, 0.25, 0.5, 0.75].map(|step| wavelength((u + step).fract())));
-        let at = |column: usize| nm.map(|nm| row(nm)[column]);
+        let at = |column: usize| nm.map(|nm| observer_and_daylight(nm)[column]);
         let [x, y, z] = [at(0), at(1), at(2)];
         let weight = 0.25 / nm.map(density);
         let observer = OBSERVER.to_rgb.map(|[a, b, c]| (a * x + b * y + c * z) * weight);
@@ -155,8 +155,8 @@ fn density(nm: f32) -> f32 {
     0.003_939_804_2 / (cosh * cosh)
 }
 
-/// The observer's row of a wavelength: x, y, z and daylight.
-fn row(nm: f32) -> [f32; 4] {
+/// What the CIE's standard observer of 1931 sees at a wavelength in nanometres, x, y and z, and the illuminant D65 there.
+pub fn observer_and_daylight(nm: f32) -> [f32; 4] {
     let place = ((nm - FIRST) / STEP).clamp(0.0, (OBSERVER_AND_DAYLIGHT.len() - 1) as f32);
     let i = (place as usize).min(OBSERVER_AND_DAYLIGHT.len() - 2);
     let [a, b] = [OBSERVER_AND_DAYLIGHT[i], OBSERVER_AND_DAYLIGHT[i + 1]];
@@ -183,7 +183,7 @@ const FROM_XYZ: [[f64; 3]; 3] = [
 /// The integral over wavelengths of a function of nanometres and of the observer's row, by Simpson's rule between rows: exact
 /// for products of two of its numbers.
 fn integral(value: impl Fn(f32, [f64; 4]) -> f64) -> f64 {
-    let at = |nm: f32| value(nm, row(nm).map(f64::from));
+    let at = |nm: f32| value(nm, observer_and_daylight(nm).map(f64::from));
     let starts = (0..OBSERVER_AND_DAYLIGHT.len() - 1).map(|i| FIRST + STEP * i as f32);
     let simpson = |a: f32| at(a) + 4.0 * at(a + 0.5 * STEP) + at(a + STEP);
     starts.map(simpson).sum::<f64>() * f64::from(STEP) / 6.0

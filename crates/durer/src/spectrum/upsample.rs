@@ -139,7 +139,7 @@ impl Fit {
                 2.0
             } * 2.5
                 / 3.0;
-            let [x, y, z, light] = super::row(nm).map(f64::from);
+            let [x, y, z, light] = super::observer_and_daylight(nm).map(f64::from);
             let scale = weight * light * f64::from(OBSERVER.daylight);
             let rgb = OBSERVER.to_rgb.map(|m| {
                 let [a, b, c] = m.map(f64::from);
