@@ -80,6 +80,7 @@ const TARGETS: [&str; 5] = ["shape", "light", "material", "medium", "texture"];
 pub(super) const SHAPE: usize = 0;
 pub(super) const LIGHT: usize = 1;
 pub(super) const MATERIAL: usize = 2;
+pub(super) const MEDIUM: usize = 3;
 pub(super) const TEXTURE: usize = 4;
 
 /// Files that are included, files in files, and scopes in scopes.
@@ -283,6 +284,7 @@ impl Reader<'_> {
                 let maps = self.state.transforms.maps.map(|map| map.inverse());
                 self.systems.insert("camera".into(), maps);
                 self.camera = Some(keep(self, list));
+                self.fog(at);
             }
             "Film" => self.film = Some(keep(self, list)),
             "Integrator" | "SurfaceIntegrator" => self.integrator(&keep(self, list)),
@@ -291,11 +293,7 @@ impl Reader<'_> {
             "AreaLightSource" => self.area_light(&name, at, list),
             "Material" => self.state.material = self.material(&name, at, list),
             "MakeNamedMaterial" => self.make_named_material(name, at, list),
-            "MakeNamedMedium" => {
-                let what = "participating media are left out: light goes through them as if they were not there";
-                self.said.once(at, what);
-                self.media.push(name);
-            }
+            "MakeNamedMedium" => self.make_named_medium(name, at, list),
             "Shape" => self.shape(&name, at, list),
             // What finds hits and how pixels are weighed is ours.
             _ => {}

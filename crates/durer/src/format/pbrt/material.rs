@@ -6,6 +6,7 @@
 
 use super::directives::MATERIAL;
 use super::light::AreaLight;
+use super::medium::Medium;
 use super::params::{Kind, Param, Params};
 use super::said::meant;
 use super::spectrum::{Spectrum, metal};
@@ -181,20 +182,48 @@ impl Reader<'_> {
                 m.walls = if kind == "thindielectric" { Walls::Thin } else { Walls::Solid };
             }
             "diffusetransmission" => {
-                let (color, picture) = self.colored(params, "reflectance", 0.25);
                 let scale = params.float("scale").unwrap_or(1.0);
-                m = PrincipledMaterial { base_color_texture: picture, ..matte((color * scale).min(Vec3::ONE)) };
-                params.known(&["transmittance"]);
-                self.said.once(at, "light that is scattered through a surface has no counterpart: none goes through");
+                let [reflected, through] = ["reflectance", "transmittance"].map(|name| {
+                    let (color, picture) = self.colored(params, name, 0.25);
+                    if picture.is_some() {
+                        let what = "light that is scattered through a surface by a picture has no counterpart: one colour is taken";
+                        self.said.once(params.place(name), what);
+                    }
+                    scale * color
+                });
+                // A sheet divides what it scatters by one number for all colours.
+                let sum = |color: Color| color.element_sum().max(1e-6);
+                m = PrincipledMaterial {
+                    subsurface_weight: 1.0,
+                    subsurface_color: (reflected + through).min(Vec3::ONE),
+                    subsurface_scatter_anisotropy: ((sum(through) - sum(reflected)) / (sum(through) + sum(reflected)))
+                        .clamp(-0.999, 0.999),
+                    walls: Walls::Thin,
+                    ..matte(Vec3::ZERO)
+                };
             }
             "subsurface" => {
-                let (color, picture) = self.colored(params, "reflectance", 0.8);
-                m = PrincipledMaterial { base_color_texture: picture, ..matte(color) };
                 let alphas = self.alphas(params, ROUGHNESS, remapped);
-                m.coat_ior = self.index(params, "eta", 1.33);
-                self.coat(&mut m, alphas, params);
-                params.known(&["name", "sigma_a", "sigma_s", "mfp", "g", "scale"]);
-                self.said.once(at, "scattering below the surface has no counterpart: a coated matte surface is taken");
+                [m.specular_roughness, m.specular_anisotropy, m.specular_rotation] = rough(alphas);
+                m.specular_ior = self.index(params, "eta", 1.33);
+                params.left_out(&["name"], "the coefficients count");
+                if params.get("reflectance").is_some() {
+                    let (color, picture) = self.colored(params, "reflectance", 1.0);
+                    if picture.is_some() {
+                        let what = "what is scattered below a surface has one colour: that of the picture is left out";
+                        self.said.once(params.place("reflectance"), what);
+                    }
+                    let path = params.spectrum("mfp").map_or(Vec3::ONE, |spectrum| spectrum.coefficient());
+                    m.subsurface_weight = 1.0;
+                    m.subsurface_color = color.min(Vec3::ONE);
+                    m.subsurface_radius = params.float("scale").unwrap_or(1.0).max(1e-6);
+                    m.subsurface_radius_scale = path.max(Vec3::splat(1e-6));
+                    m.subsurface_scatter_anisotropy = params.float("g").unwrap_or(0.0).clamp(-0.99, 0.99);
+                } else {
+                    // The skin refracts, and what is inside scatters.
+                    m.transmission_weight = 1.0;
+                    Medium::of(params).fill(&mut m);
+                }
             }
             "measured" => {
                 params.known(&["filename"]);

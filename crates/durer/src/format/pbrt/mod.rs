@@ -11,6 +11,7 @@ mod environment;
 mod lexer;
 mod light;
 mod material;
+mod medium;
 mod mesh;
 mod named;
 mod params;

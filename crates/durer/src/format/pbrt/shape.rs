@@ -94,8 +94,9 @@ impl Reader<'_> {
             }
             !inside
         });
+        let material = self.filled();
         let radiance = light.as_ref().map(|light| (&**light, radiance(light, &made)));
-        let Some(material) = self.number(self.state.material, radiance, opacity) else {
+        let Some(material) = self.number(material, radiance, opacity) else {
             if light.is_some() {
                 self.said.once(at, "what is not there (`interface`) does not shine");
             }

@@ -112,6 +112,14 @@ impl Spectrum {
         }
     }
 
+    /// What has no bounds, as a coefficient of a medium: red, green and blue of it.
+    pub fn coefficient(&self) -> Color {
+        match self {
+            Spectrum::Rgb(color) => color.max(Vec3::ZERO),
+            _ => under_daylight(|nm| self.at(nm)).max(Vec3::ZERO),
+        }
+    }
+
     /// The colour of a light. A spectrum has luminance 1, whatever its numbers, as pbrt has it; a
     /// colour is itself.
     pub fn light(&self) -> Color {

@@ -4,6 +4,7 @@ use super::environment::Infinite;
 use super::lexer::Lexer;
 use super::light::AreaLight;
 use super::material::Made;
+use super::medium::Medium;
 use super::params::{Param, Params};
 use super::said::Said;
 use super::spectrum::Space;
@@ -29,6 +30,9 @@ pub(super) struct State {
     /// Number of the current material.
     pub material: usize,
     pub area: Option<Rc<AreaLight>>,
+    /// Names of the media inside and outside of shapes.
+    pub inside: Option<String>,
+    pub outside: Option<String>,
     /// What `Attribute` gives shapes, lights, materials, media and textures.
     pub given: [Vec<Rc<Param>>; 5],
     pub space: Space,
@@ -76,7 +80,10 @@ pub(super) struct Reader<'a> {
     /// Numbers in the scene of materials as shapes need them.
     pub numbers: BTreeMap<(usize, String), Option<u32>>,
     pub textures: BTreeMap<(bool, String), Texture>,
-    pub media: Vec<String>,
+    /// Media by name; `None`: one without counterpart.
+    pub media: BTreeMap<String, Option<Medium>>,
+    /// Numbers of materials with what is inside.
+    pub filled: BTreeMap<(usize, String), usize>,
     pub objects: BTreeMap<String, Rc<Group>>,
     /// The object that is being defined.
     pub defining: Option<(String, Group)>,
@@ -108,7 +115,8 @@ impl<'a> Reader<'a> {
             named_materials: BTreeMap::new(),
             numbers: BTreeMap::new(),
             textures: BTreeMap::new(),
-            media: Vec::new(),
+            media: BTreeMap::new(),
+            filled: BTreeMap::new(),
             objects: BTreeMap::new(),
             defining: None,
             count: 0,
@@ -160,15 +168,5 @@ impl<'a> Reader<'a> {
             return false;
         }
         true
-    }
-}
-
-impl Reader<'_> {
-    /// What is inside and outside of shapes: it must have been made.
-    pub fn medium_interface(&self, names: &[String], at: Span) {
-        for name in names.iter().filter(|name| !name.is_empty() && !self.media.contains(name)) {
-            let help = super::said::meant(name, self.media.iter().map(String::as_str));
-            self.said.bad_with(at, format!("there is no medium `{name}`"), help);
-        }
     }
 }

@@ -10,7 +10,7 @@ use crate::dialect::Dialect;
 use crate::integrator::{Path as Paths, Settings};
 use crate::light::Light;
 use crate::math::random::Random;
-use crate::math::{Vec2, Vec3};
+use crate::math::{Vec2, Vec3, fp};
 use crate::render::Job;
 use crate::sampler::SampleId;
 use crate::spectrum::{ColorMode, Lanes};
@@ -419,4 +419,49 @@ fn a_body_of_several_meshes_is_one_piece_of_glass() {
         let surface = world.surface(&ray, &hit);
         assert!(surface.n_geo.dot(dir) > 0.0, "{dir} {}", surface.n_geo);
     }
+}
+
+#[test]
+fn media_fill_shapes_and_surround_the_camera() {
+    let smoke = "MakeNamedMedium \"smoke\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [ 0.5 0.25 1 ] \
+                 \"rgb sigma_s\" [ 0 0 0 ] \"float scale\" 0.5";
+    // Through the middle of a ball of radius 1 without a skin e^(-2 sigma) is left.
+    let text = format!(
+        "Camera \"perspective\" WorldBegin {smoke} LightSource \"infinite\" \"rgb L\" [ 1 1 1 ]\n\
+         AttributeBegin MediumInterface \"smoke\" \"\" Material \"interface\" Translate 0 0 5 Shape \"sphere\" AttributeEnd\n\
+         Translate 9 0 5 Material \"interface\" Shape \"sphere\""
+    );
+    let inside = world("smoke.pbrt", &text);
+    assert_eq!(inside.objects.len(), 1);
+    let settings = Settings { bounces: 4, ..Job::default().settings };
+    let through = |world: &World| {
+        let paths = Paths { world, settings, clamp: None, color: ColorMode::Rgb, photons: None, cancel: None };
+        let ray = crate::math::Ray::new(Vec3::ZERO, Vec3::Z);
+        paths.radiance(&ray, SampleId::new(0, (3, 5), 7), &mut ())
+    };
+    close(through(&inside), Vec3::new(-0.5, -0.25, -1.0).map(fp::exp));
+    // Around the camera it is fog; of colours that it thins otherwise the strongest counts.
+    let text = format!("{smoke} MediumInterface \"\" \"smoke\" Camera \"perspective\" WorldBegin Shape \"sphere\"");
+    let fog = world("fog.pbrt", &text).fog.unwrap();
+    close(fog.extinction, Vec3::splat(0.5));
+    assert!(fog.place.is_none() && !fog.scatters());
+    // The defaults of a body below a skin, and a sheet that scatters to both sides.
+    let text = "Camera \"perspective\" WorldBegin Material \"subsurface\" Shape \"sphere\"\n\
+                Material \"diffusetransmission\" \"rgb reflectance\" [ 0.3 0.3 0.3 ] \"rgb transmittance\" [ 0.1 0.1 0.1 ] \
+                Shape \"sphere\"";
+    let world = world("skin.pbrt", text);
+    let medium = |object: u32| world.medium(Some(object)).map(|medium| (medium.extinction, medium.albedo));
+    let (extinction, albedo) = medium(0).unwrap();
+    close(extinction, Vec3::new(2.5511, 3.2124, 3.784));
+    close(albedo * extinction, Vec3::new(2.55, 3.21, 3.77));
+    assert!(medium(1).is_none());
+    let sheet = world.materials.iter().find_map(|material| match material {
+        crate::world::Material::Phong(phong) => {
+            phong.principled.as_ref().filter(|own| own.written.subsurface_weight > 0.0)
+        }
+        crate::world::Material::Solid(..) => None,
+    });
+    let sheet = &sheet.unwrap().written;
+    close(sheet.subsurface_color, Vec3::splat(0.4));
+    assert!((sheet.subsurface_scatter_anisotropy + 0.5).abs() < 1e-6);
 }

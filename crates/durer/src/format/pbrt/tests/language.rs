@@ -117,7 +117,7 @@ fn errors_name_their_place_and_what_may_be_meant() {
 #[test]
 fn what_has_no_counterpart_is_told_once_and_what_is_taken_instead() {
     let text = "Integrator \"bdpt\" Camera \"perspective\"\nWorldBegin\n\
-                MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" MediumInterface \"\" \"fog\"\n\
+                MakeNamedMedium \"fog\" \"string type\" \"cloud\" MediumInterface \"\" \"fog\"\n\
                 Shape \"curve\" Shape \"curve\" Shape \"sphere\" \"float zmax\" 0.5 \"float radiu\" 2\n\
                 Material \"hair\" Shape \"sphere\"";
     let (scene, told) = read(text);
@@ -126,7 +126,7 @@ fn what_has_no_counterpart_is_told_once_and_what_is_taken_instead() {
         told,
         [
             "scene.pbrt:1:13 note the integrator `bdpt` has no counterpart: paths from the camera are followed",
-            "scene.pbrt:3:18 warning participating media are left out: light goes through them as if they were not there",
+            "scene.pbrt:3:18 warning media that are not the same everywhere have no counterpart: light goes through them as if they were not there",
             "scene.pbrt:4:8 warning curves have no counterpart: they are left out",
             "scene.pbrt:4:36 warning parts of round shapes have no counterpart: the whole is shown",
             "scene.pbrt:4:62 warning the shape `sphere` has no parameter `radiu`: it is left out (did you mean `radius`?)",

@@ -1,0 +1,145 @@
+//! Media: what is inside of shapes, and around the camera.
+//!
+//! Source of meanings and of the default coefficients: *Physically Based Rendering*, 4th edition, chapter 11. Coefficients
+//! are per unit of the world.
+
+use super::material::Made;
+use super::params::{Param, Params};
+use super::said::meant;
+use super::state::Reader;
+use crate::diag::Span;
+use crate::material::PrincipledMaterial;
+use crate::material::principled::Walls;
+use crate::math::{Color, Vec3, fp};
+use crate::medium::Fog;
+use crate::scene::Spanned;
+use std::rc::Rc;
+
+/// What absorbs and scatters light, the same everywhere.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Medium {
+    pub absorption: Color,
+    pub scattering: Color,
+    /// The mean cosine of scattering.
+    pub anisotropy: f32,
+}
+
+impl Medium {
+    /// By the parameters `sigma_a`, `sigma_s`, `g` and `scale`.
+    pub fn of(params: &Params) -> Medium {
+        let scale = params.float("scale").unwrap_or(1.0).max(0.0);
+        let coefficient = |name, usual: [f32; 3]| {
+            let given = params.spectrum(name).map(|spectrum| spectrum.coefficient());
+            scale * given.unwrap_or(Vec3::from_array(usual))
+        };
+        params.left_out(
+            &["preset", "Le", "Lescale", "Le_scale"],
+            "the medium is as its coefficients say, and does not shine",
+        );
+        Medium {
+            absorption: coefficient("sigma_a", [0.0011, 0.0024, 0.014]),
+            scattering: coefficient("sigma_s", [2.55, 3.21, 3.77]),
+            anisotropy: params.float("g").unwrap_or(0.0).clamp(-0.99, 0.99),
+        }
+    }
+
+    fn extinction(&self) -> Color {
+        self.absorption + self.scattering
+    }
+
+    /// Fills what light goes into.
+    pub fn fill(&self, m: &mut PrincipledMaterial) {
+        let most = self.extinction().max_element();
+        if most <= 0.0 {
+            return;
+        }
+        let depth = 1.0 / most;
+        m.transmission_depth = depth;
+        m.transmission_color = self.extinction().map(|sigma| fp::exp(-sigma * depth));
+        m.transmission_scatter = depth * self.scattering;
+        m.transmission_scatter_anisotropy = self.anisotropy;
+    }
+}
+
+impl Reader<'_> {
+    pub fn make_named_medium(&mut self, name: String, at: Span, list: Vec<Rc<Param>>) {
+        let params = self.params(list, Some(super::directives::MEDIUM), at);
+        let kind = params.text("type").unwrap_or("homogeneous").to_string();
+        let medium = match kind.as_str() {
+            "homogeneous" => {
+                let medium = Medium::of(&params);
+                params.finish(&format!("the medium `{name}`"));
+                Some(medium)
+            }
+            "uniformgrid" | "rgbgrid" | "cloud" | "nanovdb" => {
+                let what = "media that are not the same everywhere have no counterpart: light goes through them as if they were not there";
+                self.said.once(at, what);
+                None
+            }
+            other => {
+                let help = meant(other, ["homogeneous", "uniformgrid", "rgbgrid", "cloud", "nanovdb"]);
+                return self.said.bad_with(at, format!("there is no medium of type `{other}`"), help);
+            }
+        };
+        if self.media.insert(name.clone(), medium).is_some() {
+            self.said.bad(at, format!("there is a medium `{name}` already"));
+        }
+    }
+
+    /// What is inside and outside of shapes: it must have been made.
+    pub fn medium_interface(&mut self, names: &[String; 2], at: Span) {
+        for name in names.iter().filter(|name| !name.is_empty() && !self.media.contains_key(*name)) {
+            let help = meant(name, self.media.keys().map(String::as_str));
+            self.said.bad_with(at, format!("there is no medium `{name}`"), help);
+        }
+        let [inside, outside] = names.clone().map(|name| (!name.is_empty()).then_some(name));
+        (self.state.inside, self.state.outside) = (inside, outside);
+    }
+
+    /// The number of the current material with what is inside of the shape.
+    pub fn filled(&mut self) -> usize {
+        let plain = self.state.material;
+        let Some(name) = self.state.inside.clone() else { return plain };
+        let Some(Some(medium)) = self.media.get(&name).copied() else { return plain };
+        if let Some(known) = self.filled.get(&(plain, name.clone())) {
+            return *known;
+        }
+        let made = match &self.materials[plain] {
+            Made::Nothing => {
+                let mut m =
+                    PrincipledMaterial { specular_ior: 1.0, transmission_weight: 1.0, ..PrincipledMaterial::default() };
+                medium.fill(&mut m);
+                Made::Layers(Box::new(m), Span::default())
+            }
+            Made::Layers(layers, at) if layers.transmission_weight > 0.0 && layers.walls == Walls::Solid => {
+                let mut m = layers.clone();
+                medium.fill(&mut m);
+                Made::Layers(m, *at)
+            }
+            // Nothing gets into the others.
+            _ => return plain,
+        };
+        self.materials.push(made);
+        let number = self.materials.len() - 1;
+        self.filled.insert((plain, name), number);
+        number
+    }
+
+    /// What the camera is in, as fog.
+    pub fn fog(&mut self, at: Span) {
+        let Some(Some(medium)) = self.state.outside.as_ref().and_then(|name| self.media.get(name)).copied() else {
+            return;
+        };
+        let extinction = medium.extinction();
+        let most = extinction.max_element();
+        if most <= 0.0 {
+            return;
+        }
+        if extinction.min_element() < 0.99 * most {
+            self.said.once(at, "what is around the camera thins all colours alike: the strongest counts");
+        }
+        let (color, anisotropy) = (medium.scattering / most, medium.anisotropy);
+        let fog = Fog { extinction: most, color, anisotropy, ..Fog::default() };
+        self.scene.fog = Some(Spanned { value: fog, span: at });
+    }
+}
