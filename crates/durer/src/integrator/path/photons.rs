@@ -169,7 +169,7 @@ impl Photons {
             }
             // Power is not denser where the index is higher, as radiance is.
             let eta = met.eta();
-            let weight = chosen.weight * if chosen.is_bent() { eta * eta } else { 1.0 };
+            let weight = chosen.weight * if chosen.bent { eta * eta } else { 1.0 };
             let survival = (state.throughput * weight).max_element() / state.throughput.max_element();
             let survival = survival.clamp(0.0, 1.0);
             if !(numbers.pair(2).x < survival) {

@@ -1,6 +1,7 @@
 //! The points of a path: surfaces and places in a medium, and what may happen to light there.
 
 use super::State;
+use crate::bsdf::Lobe;
 use crate::integrator::media::{Media, Passage};
 use crate::integrator::spawn::{from_surface, to_light};
 use crate::math::{Ray64, Vec2, Vec3, gamma};
@@ -43,6 +44,8 @@ pub(super) struct Chosen {
     pub(super) pdf: f32,
     /// Whether it leads behind the surface.
     pub(super) passes: bool,
+    /// Whether light is refracted, so that radiance changes with the index.
+    pub(super) bent: bool,
     pub(super) lobe: &'static str,
     pub(super) probability: f32,
 }
@@ -96,14 +99,15 @@ impl Place<'_> {
                     return None;
                 }
                 let lobe = shading.bsdf.lobes().nth(chosen.lobe)?;
-                let (name, probability) = (lobe.lobe.name(), lobe.probability);
-                Some(Chosen { wi, weight: chosen.weight, pdf: chosen.pdf, passes, lobe: name, probability })
+                let bent = matches!(lobe.lobe, Lobe::Refraction(_));
+                let (lobe, probability) = (lobe.lobe.name(), lobe.probability);
+                Some(Chosen { wi, weight: chosen.weight, pdf: chosen.pdf, passes, bent, lobe, probability })
             }
             Place::Medium(_, dir, phase) => {
                 let wi = phase.sample(*dir, u);
                 let pdf = phase.value(*dir, wi);
                 let lobe = "HenyeyGreenstein";
-                Some(Chosen { wi, weight: Spectrum::ONE, pdf, passes: false, lobe, probability: 1.0 })
+                Some(Chosen { wi, weight: Spectrum::ONE, pdf, passes: false, bent: false, lobe, probability: 1.0 })
             }
         }
     }
@@ -157,12 +161,5 @@ impl Met {
     /// How it scatters.
     pub(super) fn shading(&self, world: &World, lanes: &Lanes) -> Shading {
         world.shading(self.ray.dir(), &self.hit, &self.surface, (self.inside(), self.eta()), lanes)
-    }
-}
-
-impl Chosen {
-    /// Whether light is refracted, so that radiance changes with the index.
-    pub(super) fn is_bent(&self) -> bool {
-        self.lobe == "Refraction"
     }
 }
