@@ -166,7 +166,9 @@ fn all_colors(scout: &Scout) -> Vec<Named> {
         let fades = matches!(light, Light::Point(point) if point.attenuation.is_some());
         let arrives = scout.seen().filter_map(|(_, seen)| seen.by(number)).map(|lit| lit.arrives.max_element());
         let too_much = arrives.fold(0.0, f32::max) > 20.0;
-        let most = if fades && !too_much { f32::INFINITY } else { 20.0 };
+        // Under paths light is in units of its own, and the exposure makes a picture of it.
+        let free = fades && !too_much || super::physical::is_physical(scout);
+        let most = if free { f32::INFINITY } else { 20.0 };
         colors.push(Named {
             color: super::lights::color(light),
             block: written.span,
@@ -212,7 +214,7 @@ pub(super) fn too_large(scout: &Scout) -> Vec<Finding> {
     for (color, fields) in
         [(background.color, ["color", "color"]), (background.ambient_light, ["ambientLight", "ambient_light"])]
     {
-        if color.max_element() > 2.0 {
+        if color.max_element() > 2.0 && !super::physical::is_physical(scout) {
             let block = background_span(scout);
             say(color, block.and_then(|block| scout.value(block, &fields)), block);
         }
