@@ -47,7 +47,8 @@ impl Reader<'_, '_> {
         let dialect = self.options.dialect;
         let kinds = Camera::kinds();
         let cameras = kinds.iter().filter(|c| dialect == Dialect::Durer || c.keywords()[0].1 != set::DURER);
-        let known: Vec<&str> = cameras.map(|camera| camera.keywords()[0].0).chain(SECTIONS).collect();
+        let sections = SECTIONS.into_iter().filter(|word| dialect == Dialect::Durer || *word != "Fog");
+        let known: Vec<&str> = cameras.map(|camera| camera.keywords()[0].0).chain(sections).collect();
         self.top(&known, |reader, word, span| {
             match word {
                 "Background" => reader.background(span),

@@ -6,6 +6,7 @@ use crate::describe::{DescribedList, Kind, Rule, Value};
 use crate::light::Light;
 use crate::material::{ColorNoise, PhongMaterial, PrincipledMaterial, Solid};
 use crate::math::Vec3;
+use crate::medium::Fog;
 use crate::scene::{Background, Material, MatrixOp, Node, Object};
 use crate::shape::{HeightField, Primitive, TriangleMesh};
 
@@ -19,7 +20,7 @@ fn sample(kind: Kind, rule: Rule) -> (String, Value) {
             let numbers: Vec<String> = rows.iter().flatten().map(f32::to_string).collect();
             return (format!("{{ {} }}", numbers.join(" ")), Value::Rows(rows));
         }
-        Kind::Float if rule == Rule::Share => ("0.125", Value::Float(0.125)),
+        Kind::Float if matches!(rule, Rule::Share | Rule::Between(..)) => ("0.125", Value::Float(0.125)),
         Kind::Float => ("12.5", Value::Float(12.5)),
         // A solid of two materials before it.
         Kind::Int if rule == Rule::Any => ("1", Value::Int(1)),
@@ -58,6 +59,7 @@ fn every_word<T: DescribedList + PartialEq + std::fmt::Debug>(
 fn every_keyword_and_field_is_read_in_every_dialect_that_has_it() {
     every_word::<Camera>(|_, text| text.into(), |scene| scene.camera.unwrap());
     every_word::<Background>(|_, text| text.into(), |scene| scene.background);
+    every_word::<Fog>(|_, text| text.into(), |scene| scene.fog.unwrap().value);
     every_word::<Light>(|_, text| format!("Lights {{ numLights 1 {text} }}"), |s| s.lights.unwrap()[0].value.clone());
     let materials = |text: &str| format!("Materials {{ numMaterials 3 Material {{ }} Material {{ }} {text} }}");
     every_word::<Solid>(
