@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from .things import Camera, Light, Material, Shape, Thing
 
-__all__ = ["Background", "Box", "CaveCamera", "Checkerboard", "Cone", "CubeMapCamera", "Cylinder", "CylindricalCamera", "DirectionalLight", "Disc", "Ellipsoid", "EquirectangularCamera", "FisheyeCamera", "HeightField", "Marble", "Mix", "MultipleCenterCamera", "Noise", "OmnimaxCamera", "OrthographicCamera", "ParabolicCamera", "PerspectiveCamera", "PhongMaterial", "PhotometricLight", "PinholeCamera", "Plane", "PointLight", "PrincipledMaterial", "ProjectiveCamera", "PushBroomCamera", "Quadric", "Rectangle", "Sphere", "SpotLight", "StereoCamera", "ThinLensCamera", "Torus", "Triangle", "TriangleMesh", "Wood"]
+__all__ = ["Background", "Box", "CaveCamera", "Checkerboard", "Cone", "CubeMapCamera", "Cylinder", "CylindricalCamera", "DirectionalLight", "Disc", "Ellipsoid", "EquirectangularCamera", "FisheyeCamera", "Fog", "HeightField", "Marble", "Mix", "MultipleCenterCamera", "Noise", "OmnimaxCamera", "OrthographicCamera", "ParabolicCamera", "PerspectiveCamera", "PhongMaterial", "PhotometricLight", "PinholeCamera", "Plane", "PointLight", "PrincipledMaterial", "ProjectiveCamera", "PushBroomCamera", "Quadric", "Rectangle", "Sphere", "SpotLight", "StereoCamera", "ThinLensCamera", "Torus", "Triangle", "TriangleMesh", "Wood"]
 
 
 class Background(Thing):
@@ -53,6 +53,42 @@ class Background(Thing):
             ("turbidity", turbidity),
             ("environmentRotation", environment_rotation),
             ("environmentScale", environment_scale),
+        ])
+
+
+class Fog(Thing):
+    """What is in the air: fog, smoke, dust. Light of lamps and of the sky is scattered and absorbed in it. It is not in bodies of glass, and Whitted's light does not see it.
+
+    extinction: number, more than 0; 0.1 where it is not given. How dense it is: of light that goes straight on, a share of e^(-extinction · distance) is left.
+
+    color: three numbers; 1 1 1 where it is not given. The share of light that is scattered, and not absorbed, where it meets the fog; from 0 to 1.
+
+    anisotropy: number, more than -1, less than 1; 0 where it is not given. Where light goes that is scattered: from -1 (back) over 0 (evenly) to 1 (onwards).
+
+    min: three numbers. A corner of the box that the fog is in; without, it is everywhere.
+
+    max: three numbers. The corner across.
+
+    density: path. A file of densities (Mitsuba's `.vol`) that fill the box and multiply `extinction`; without a box, that of the file.
+    """
+
+    def __init__(
+        self,
+        *,
+        extinction: Optional[float] = None,
+        color: Optional[npt.ArrayLike] = None,
+        anisotropy: Optional[float] = None,
+        min: Optional[npt.ArrayLike] = None,
+        max: Optional[npt.ArrayLike] = None,
+        density: Optional[str] = None,
+    ) -> None:
+        super().__init__("Fog", [
+            ("extinction", extinction),
+            ("color", color),
+            ("anisotropy", anisotropy),
+            ("min", min),
+            ("max", max),
+            ("density", density),
         ])
 
 
@@ -821,6 +857,24 @@ class PrincipledMaterial(Material):
 
     transmission_depth: number, 0 or more; 0 where it is not given. How deep light goes until it has `transmissionColor`, in units of the world; 0: the surface tints it.
 
+    transmission_scatter: three numbers; 0 0 0 where it is not given. Colour of the light that a body scatters inside, per `transmissionDepth`; 0 0 0: it is clear.
+
+    transmission_scatter_anisotropy: number, more than -1, less than 1; 0 where it is not given. Where that light goes: from -1 (back) over 0 (evenly) to 1 (onwards).
+
+    transmission_dispersion_scale: number, from 0 to 1; 0 where it is not given. How much glass spreads colours, over what `transmissionDispersionAbbeNumber` says; 0: not at all. Only `--color spectral` shows it.
+
+    transmission_dispersion_abbe_number: number, more than 0; 20 where it is not given. Abbe number of the glass: the lower, the more it spreads colours; 64 is crown glass, 30 flint.
+
+    subsurface_weight: number, from 0 to 1; 0 where it is not given. From 0 (matte) to 1 (light goes into the body, is scattered there and comes out elsewhere: marble, milk, skin).
+
+    subsurface_color: three numbers; 0.8 0.8 0.8 where it is not given. The colour that such a body shows.
+
+    subsurface_radius: number, more than 0; 1 where it is not given. How far light goes in it until it is scattered, on the mean, in units of the world.
+
+    subsurface_radius_scale: three numbers; 1 0.5 0.25 where it is not given. What multiplies `subsurfaceRadius` for red, green and blue.
+
+    subsurface_scatter_anisotropy: number, more than -1, less than 1; 0 where it is not given. Where light goes that is scattered in it: from -1 (back) over 0 (evenly) to 1 (onwards).
+
     coat_weight: number, from 0 to 1; 0 where it is not given. Strength of the clear coat, from 0 to 1.
 
     coat_color: three numbers; 1 1 1 where it is not given. Colour of what passes the coat down and up again at right angles.
@@ -868,6 +922,15 @@ class PrincipledMaterial(Material):
         transmission_weight: Optional[float] = None,
         transmission_color: Optional[npt.ArrayLike] = None,
         transmission_depth: Optional[float] = None,
+        transmission_scatter: Optional[npt.ArrayLike] = None,
+        transmission_scatter_anisotropy: Optional[float] = None,
+        transmission_dispersion_scale: Optional[float] = None,
+        transmission_dispersion_abbe_number: Optional[float] = None,
+        subsurface_weight: Optional[float] = None,
+        subsurface_color: Optional[npt.ArrayLike] = None,
+        subsurface_radius: Optional[float] = None,
+        subsurface_radius_scale: Optional[npt.ArrayLike] = None,
+        subsurface_scatter_anisotropy: Optional[float] = None,
         coat_weight: Optional[float] = None,
         coat_color: Optional[npt.ArrayLike] = None,
         coat_roughness: Optional[float] = None,
@@ -899,6 +962,15 @@ class PrincipledMaterial(Material):
             ("transmissionWeight", transmission_weight),
             ("transmissionColor", transmission_color),
             ("transmissionDepth", transmission_depth),
+            ("transmissionScatter", transmission_scatter),
+            ("transmissionScatterAnisotropy", transmission_scatter_anisotropy),
+            ("transmissionDispersionScale", transmission_dispersion_scale),
+            ("transmissionDispersionAbbeNumber", transmission_dispersion_abbe_number),
+            ("subsurfaceWeight", subsurface_weight),
+            ("subsurfaceColor", subsurface_color),
+            ("subsurfaceRadius", subsurface_radius),
+            ("subsurfaceRadiusScale", subsurface_radius_scale),
+            ("subsurfaceScatterAnisotropy", subsurface_scatter_anisotropy),
             ("coatWeight", coat_weight),
             ("coatColor", coat_color),
             ("coatRoughness", coat_roughness),

@@ -126,7 +126,7 @@ mod tests {
         for i in 0..width * height {
             let (x, y) = ((i % width) as f32, (i / width) as f32);
             let left = x < 24.0;
-            let albedo = if left && (x as u32 / 4 + y as u32 / 4) % 2 == 0 { 0.3 } else { 0.8 };
+            let albedo = if left && (x as u32 / 4 + y as u32 / 4).is_multiple_of(2) { 0.3 } else { 0.8 };
             let light = if left { 1.0 } else { 0.3 + 0.02 * x };
             truth.push(Color::splat(albedo * light));
             let off = (0..12).map(|_| random.between(0.0, 1.0)).sum::<f32>() - 6.0;

@@ -152,7 +152,7 @@ fn wavelength(u: f32) -> f32 {
 fn density(nm: f32) -> f32 {
     let x = fp::exp(0.0072 * (nm - 538.0));
     let cosh = 0.5 * (x + 1.0 / x);
-    0.003_939_804_2 / (cosh * cosh)
+    0.003_939_804 / (cosh * cosh)
 }
 
 /// What the CIE's standard observer of 1931 sees at a wavelength in nanometres, x, y and z, and the illuminant D65 there.

@@ -172,7 +172,7 @@ impl Photons {
             let weight = chosen.weight * if chosen.bent { eta * eta } else { 1.0 };
             let survival = (state.throughput * weight).max_element() / state.throughput.max_element();
             let survival = survival.clamp(0.0, 1.0);
-            if !(numbers.pair(2).x < survival) {
+            if numbers.pair(2).x >= survival || survival.is_nan() {
                 return None;
             }
             state = State {
