@@ -121,7 +121,7 @@ fn points_come_back_from_the_world() {
         while checked < enough {
             tried += 1;
             // A random camera may have hardly an inverse anywhere: a long way driven, and a view so narrow that nothing moves in it.
-            if tried > 2 * POINTS {
+            if skipped - before.1 > POINTS || tried > 100 * POINTS {
                 (checked, skipped) = before;
                 hopeless += 1;
                 return;
