@@ -136,7 +136,7 @@ struct Counted {
 }
 
 impl Counted {
-    /// TraversalStats a mesh; one that several objects share counts once.
+    /// Counts a mesh; one that several objects share counts once.
     fn mesh(&mut self, tree: &Arc<MeshTree>, seen: &mut Vec<*const MeshTree>) {
         self.triangles += tree.mesh.len();
         if !seen.contains(&Arc::as_ptr(tree)) {

@@ -111,7 +111,7 @@ pub(super) fn lamp_in_glass(scout: &Scout) -> Vec<Finding> {
     enclosed.collect()
 }
 
-/// What scatters inside of a body, or spreads colours, where that cannot be seen.
+/// Words of scattering inside of a body that change nothing.
 pub(super) fn without_effect(scout: &Scout) -> Vec<Finding> {
     if !is_physical(scout) {
         return Vec::new();

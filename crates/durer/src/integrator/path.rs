@@ -412,7 +412,10 @@ impl Path<'_> {
             ray: (&ray).into(),
             weight: below.throughput.max_element(),
             hit: None,
-            bounce: Some(Bounce { lobe: chosen.lobe, probability: chosen.probability, pdf: chosen.pdf, survival }),
+            bounce: Some({
+                let (lobe, probability) = place.lobe(chosen.lobe);
+                Bounce { lobe, probability, pdf: chosen.pdf, survival }
+            }),
         });
         let indirect = state.depth > 0;
         let (sum, scale) = self.trace(&ray, below, sample, tally);
@@ -436,7 +439,7 @@ impl Path<'_> {
             return Spectrum::ONE;
         }
         let Vertex { place, state } = vertex;
-        let mut media = place.media(state, light.wi).clone();
+        let media = place.media(state, light.wi);
         let mut ray = place.shadow_ray(light);
         let mut share = Spectrum::ONE;
         let mut numbers = sample.id.stream(state.depth, 1);
@@ -450,9 +453,10 @@ impl Path<'_> {
         if !self.world.has_cutouts && !self.world.has_interfaces {
             return match self.world.occluded(&ray, tally) {
                 true => Spectrum::ZERO,
-                false => pass(&media, &ray, ray.rounded.t_max),
+                false => pass(media, &ray, ray.rounded.t_max),
             };
         }
+        let mut media = media.clone();
         // A thing with many layers is followed only so far.
         for _ in 0..64 {
             let Some(hit) = self.world.closest(&ray, tally) else {

@@ -76,20 +76,8 @@ impl Medium {
     /// The part of a way that lies in it.
     fn clipped(&self, way: &Way) -> Option<(f32, f32)> {
         let Some(place) = &self.place else { return Some((way.from, way.to)) };
-        let origin = way.origin.as_vec3();
-        let (mut from, mut to) = (way.from, way.to);
-        for axis in 0..3 {
-            let (a, b) = (place.bounds.min[axis] - origin[axis], place.bounds.max[axis] - origin[axis]);
-            let d = way.dir[axis];
-            if d == 0.0 {
-                if a > 0.0 || b < 0.0 {
-                    return None;
-                }
-                continue;
-            }
-            let (near, far) = if d > 0.0 { (a / d, b / d) } else { (b / d, a / d) };
-            (from, to) = (from.max(near), to.min(far));
-        }
+        let (enter, leave) = place.bounds.clip(way.origin.as_vec3(), way.dir)?;
+        let (from, to) = (way.from.max(enter), way.to.min(leave));
         (from < to).then_some((from, to))
     }
 
@@ -108,10 +96,8 @@ impl Medium {
         let most = extinction.max_element() * grid.most();
         let (mut at, mut left) = (from, Spectrum::ONE);
         for _ in 0..MAX_STEPS {
-            at += -fp::ln(1.0 - numbers()) / most;
-            if at >= to || at.is_nan() {
-                break;
-            }
+            let Some(next) = collision(at, to, most, numbers) else { break };
+            at = next;
             left *= Spectrum::ONE - extinction * (grid.at(bounds, way.point(at)) / most);
             // What hardly counts ends at random, and the rest makes up for it.
             if left.max_element() < 0.1 {
@@ -140,10 +126,8 @@ impl Medium {
                 let most = extinction.max_element() * grid.most();
                 let (mut at, mut left) = (from, Spectrum::ONE);
                 for _ in 0..MAX_STEPS {
-                    at += -fp::ln(1.0 - numbers()) / most;
-                    if at >= to || at.is_nan() {
-                        break;
-                    }
+                    let Some(next) = collision(at, to, most, numbers) else { break };
+                    at = next;
                     let here = extinction * (grid.at(bounds, way.point(at)) / most);
                     let real = (shares(weights * left) * here).element_sum();
                     if numbers() < real {
@@ -173,6 +157,12 @@ impl Medium {
             }
         }
     }
+}
+
+/// Where light next meets something on its way, were the medium as dense as at its densest everywhere.
+fn collision(at: f32, to: f32, most: f32, numbers: &mut dyn FnMut() -> f32) -> Option<f32> {
+    let next = at - fp::ln(1.0 - numbers()) / most;
+    (next < to).then_some(next)
 }
 
 /// How much each lane counts, of 1 in all.

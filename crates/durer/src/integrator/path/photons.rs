@@ -11,7 +11,7 @@
 use super::{End, Path, Place, State};
 use super::{Sample, USES};
 use crate::math::{Color, Vec3};
-use crate::sampler::{SampleId, sample_2d};
+use crate::sampler::SampleId;
 use crate::shape::Surface;
 use crate::spectrum::{Lanes, Spectrum};
 use crate::world::emitters::emission::Beams;
@@ -114,7 +114,7 @@ impl Photons {
 
     fn make(&self, path: &Path, sample: u32, parallel: bool) -> PhotonMap {
         // All photons of a sample have the same wavelengths, and those of its paths.
-        let lanes = Lanes::new(path.color, sample_2d(self.seed, 0, 0, sample, WAVELENGTHS).x);
+        let lanes = Lanes::new(path.color, SampleId::new(self.seed, (0, 0), sample).wavelength());
         let one = |number: u32| self.trace(path, sample, number, lanes);
         let found: Vec<Photon> = match parallel {
             true => (0..self.count).into_par_iter().flat_map_iter(one).collect(),
@@ -131,7 +131,7 @@ impl Photons {
         let emitted = self.beams.emit(path.world, choices, place, direction)?;
         let power = emitted.power / self.count as f32;
         let sample = Sample { id: id.at(3), lanes, photons: None };
-        let mut state = State { throughput: Spectrum::ONE, ..State::default() };
+        let mut state = State::default();
         let mut ray = emitted.ray;
         let mut first = true;
         loop {
@@ -169,7 +169,7 @@ impl Photons {
             }
             // Power is not denser where the index is higher, as radiance is.
             let eta = met.eta();
-            let weight = chosen.weight * if chosen.bent { eta * eta } else { 1.0 };
+            let weight = chosen.weight * if at.bends(chosen.lobe) { eta * eta } else { 1.0 };
             let survival = (state.throughput * weight).max_element() / state.throughput.max_element();
             let survival = survival.clamp(0.0, 1.0);
             if numbers.pair(2).x >= survival || survival.is_nan() {
@@ -190,9 +190,6 @@ impl Photons {
 
 /// Tells photons' random numbers from those of paths.
 const OTHER_SEED: u64 = 0x7068_6f74_6f6e_7321;
-
-/// The dimension of the wavelengths of a sample's photons.
-const WAVELENGTHS: u32 = 1 << 15;
 
 /// The number of a cell: 21 bits along each axis.
 fn cell_of(place: glam::I64Vec3) -> u64 {

@@ -44,10 +44,8 @@ pub(super) struct Chosen {
     pub(super) pdf: f32,
     /// Whether it leads behind the surface.
     pub(super) passes: bool,
-    /// Whether light is refracted, so that radiance changes with the index.
-    pub(super) bent: bool,
-    pub(super) lobe: &'static str,
-    pub(super) probability: f32,
+    /// The number of the lobe that chose it.
+    pub(super) lobe: usize,
 }
 
 impl Place<'_> {
@@ -98,17 +96,33 @@ impl Place<'_> {
                 if passes != (wi.dot(shading.n_geo) < 0.0) {
                     return None;
                 }
-                let lobe = shading.bsdf.lobes().nth(chosen.lobe)?;
-                let bent = matches!(lobe.lobe, Lobe::Refraction(_));
-                let (lobe, probability) = (lobe.lobe.name(), lobe.probability);
-                Some(Chosen { wi, weight: chosen.weight, pdf: chosen.pdf, passes, bent, lobe, probability })
+                Some(Chosen { wi, weight: chosen.weight, pdf: chosen.pdf, passes, lobe: chosen.lobe })
             }
             Place::Medium(_, dir, phase) => {
                 let wi = phase.sample(*dir, u);
-                let pdf = phase.value(*dir, wi);
-                let lobe = "HenyeyGreenstein";
-                Some(Chosen { wi, weight: Spectrum::ONE, pdf, passes: false, bent: false, lobe, probability: 1.0 })
+                Some(Chosen { wi, weight: Spectrum::ONE, pdf: phase.value(*dir, wi), passes: false, lobe: 0 })
             }
+        }
+    }
+
+    /// The name of a lobe, by number, and the probability that it is chosen.
+    pub(super) fn lobe(&self, number: usize) -> (&'static str, f32) {
+        match self {
+            Place::Surface(_, shading, _) => {
+                let lobe = shading.bsdf.lobes().nth(number);
+                lobe.map_or(("", 1.0), |part| (part.lobe.name(), part.probability))
+            }
+            Place::Medium(..) => ("HenyeyGreenstein", 1.0),
+        }
+    }
+
+    /// Whether a lobe, by number, refracts, so that radiance changes with the index.
+    pub(super) fn bends(&self, number: usize) -> bool {
+        match self {
+            Place::Surface(_, shading, _) => {
+                shading.bsdf.lobes().nth(number).is_some_and(|part| matches!(part.lobe, Lobe::Refraction(_)))
+            }
+            Place::Medium(..) => false,
         }
     }
 

@@ -60,7 +60,7 @@ impl Beams {
     pub fn new(world: &World) -> Self {
         let targets = targets(world);
         let all = world.objects.iter().filter_map(Object::bounds).reduce(Aabb::union);
-        let reach = all.map_or(0.0, |all| (all.max - all.min).length());
+        let reach = all.map_or(0.0, |all| all.size().length());
         let mut beams = Beams { targets, reach, ..Beams::default() };
         if beams.targets.is_empty() {
             return beams;
@@ -204,7 +204,7 @@ fn targets(world: &World) -> Vec<Target> {
             continue;
         }
         let Some(bounds) = object.bounds() else { continue };
-        let (center, half) = (0.5 * (bounds.min + bounds.max), 0.5 * (bounds.max - bounds.min));
+        let (center, half) = (bounds.center(), 0.5 * bounds.size());
         let radius = match &object.geometry {
             Geometry::Primitive(Primitive::Sphere(_)) => half.max_element(),
             _ => half.length(),
