@@ -146,6 +146,9 @@ pub struct RenderArgs {
     /// Print the hash of the film as the last line of standard output
     #[arg(long)]
     pub hash: bool,
+    /// Tell on standard error what the time went into, which rays there were, and how much of the time they took
+    #[arg(long)]
+    pub stats: bool,
     /// Say nothing but errors
     #[arg(short, long)]
     pub quiet: bool,

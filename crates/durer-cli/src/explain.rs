@@ -81,7 +81,7 @@ fn picture(args: &ExplainArgs, opened: &Opened, job: &Job) -> Result<Image, Fail
     let control = Arc::new(Control { threads: args.render.work.threads.map(usize::from), ..Control::default() });
     let render = || durer::render::render(&opened.world, &job, &control);
     let mut rendered = progress::watch(&control, args.render.quiet, render).map_err(failure)?;
-    Ok(rendered.layers.swap_remove(0).image)
+    Ok(std::sync::Arc::unwrap_or_clone(rendered.layers.swap_remove(0).image))
 }
 
 fn subject(args: &ExplainArgs, opened: &Opened, job: &Job, picture: Option<&Image>) -> Result<Subject, Failure> {

@@ -28,6 +28,7 @@ mod progress;
 mod render;
 mod report;
 mod staging;
+mod stats;
 mod verify;
 mod words;
 

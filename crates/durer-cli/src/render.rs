@@ -5,6 +5,7 @@ use crate::guard::Guard;
 use crate::keep::Keeper;
 use crate::open::{load_options, read};
 use crate::output::{Target, lengthened, say};
+use crate::stats::Stages;
 use crate::{Failure, bad, check, diagrams, job, output, progress, report};
 use durer::diag::Diagnostic;
 use durer::image::checked_count;
@@ -36,7 +37,9 @@ pub fn run(command: &RenderCommand) -> Result<(), Failure> {
     let threads = args.work.threads.map(usize::from);
     (options.accel, options.threads) = (job::accel(&args.job)?, threads);
     options.staging.aspect = job::aspect(&args.job);
+    let mut stages = Stages::begin();
     let scene = read(&args.scene, &options, args.quiet, &mut guard)?;
+    stages.ends("reading");
     let job = job::job(&args.job, Some(&args.view), &scene.loaded, args.work.time.is_some())?;
     // A size that no picture has is refused as such, whatever the memory.
     checked_count(job.width, job.height).map_err(|error| bad(error.to_string()))?;
@@ -49,6 +52,7 @@ pub fn run(command: &RenderCommand) -> Result<(), Failure> {
         return Err(failure(RenderError::Memory { needed, allowed }));
     }
     let opened = scene.compile(&options, &mut guard)?;
+    stages.ends("meshes, pictures and trees");
     if !args.quiet {
         job::warn(&job, &opened.world);
     }
@@ -77,6 +81,7 @@ pub fn run(command: &RenderCommand) -> Result<(), Failure> {
         part.render(&opened.world, &control, &mut |part, moment| keeper.watch(part, moment))
     })
     .map_err(failure)?;
+    stages.ends("rendering");
     rejected(&part.statistics(), args.quiet);
     let finished = match &stop {
         Stop::Finished => true,
@@ -106,6 +111,10 @@ pub fn run(command: &RenderCommand) -> Result<(), Failure> {
     }
     if !finished && !args.quiet {
         report::complain(&format!("note: the time was over after {} samples", part.statistics().samples));
+    }
+    stages.ends("writing");
+    if args.stats {
+        stages.tell(&opened.world, &part)?;
     }
     if args.hash {
         say(&part.hash().to_string());

@@ -182,14 +182,31 @@ fn grid_side(samples: u32) -> u32 {
 /// Each first 2^k samples of a dimension, and each aligned block of as many, have one point in every elementary
 /// interval of area 2^-k. Points of different pixels or different dimensions are independent.
 pub fn sample_2d(seed: u64, x: u32, y: u32, sample: u32, dimension: u32) -> Vec2 {
-    // One hash gives the shuffle its key and another the two scrambles.
-    let shuffle = hash(seed, x, y, 0, dimension) as u32;
-    let scramble = hash(seed, x, y, 1, dimension);
-    let index = nested_uniform_scramble(sample, shuffle);
-    Vec2::new(
-        unit(nested_uniform_scramble(index.reverse_bits(), scramble as u32)),
-        unit(nested_uniform_scramble(sobol_second(index), (scramble >> 32) as u32)),
-    )
+    Sequence::new(seed, x, y, dimension).point(sample)
+}
+
+/// The points of one dimension of a pixel, with what they have in common worked out once.
+#[derive(Clone, Copy, Debug)]
+pub struct Sequence {
+    shuffle: u32,
+    scramble: u64,
+}
+
+impl Sequence {
+    /// The points whose numbers [`sample_2d`] gives one by one.
+    pub fn new(seed: u64, x: u32, y: u32, dimension: u32) -> Self {
+        // One hash gives the shuffle its key and another the two scrambles.
+        Sequence { shuffle: hash(seed, x, y, 0, dimension) as u32, scramble: hash(seed, x, y, 1, dimension) }
+    }
+
+    /// The point of a sample.
+    pub fn point(&self, sample: u32) -> Vec2 {
+        let index = nested_uniform_scramble(sample, self.shuffle);
+        Vec2::new(
+            unit(nested_uniform_scramble(index.reverse_bits(), self.scramble as u32)),
+            unit(nested_uniform_scramble(sobol_second(index), (self.scramble >> 32) as u32)),
+        )
+    }
 }
 
 /// A uniform point in [0,1)^2, independent of every other.

@@ -58,7 +58,7 @@ pub fn run(args: &PlaceArgs) -> Result<(), Failure> {
     let control = Arc::new(Control { threads, memory: options.memory, ..Control::default() });
     let color = |world: &World| -> Result<Vec<Vec3>, Failure> {
         let rendered = progress::watch(&control, args.quiet, || render(world, &job, &control)).map_err(failure)?;
-        Ok(rendered.layers.into_iter().next().map(|layer| layer.image.pixels).unwrap_or_default())
+        Ok(rendered.layers.into_iter().next().map(|layer| layer.image.pixels.clone()).unwrap_or_default())
     };
     let colors = color(&with.world)?;
     let covered = coverage(&with.world, &job, &stand_in, &control, args.quiet)?;

@@ -59,7 +59,7 @@ fn random_camera(kind: &Camera, random: &mut Random) -> Camera {
 }
 
 fn frame(camera: &Camera) -> Frame {
-    Frame::new(camera.pose(), Dialect::Durer.rules())
+    Frame::of(camera, Dialect::Durer.rules())
 }
 
 /// A sample anywhere in the natural picture, and its ray.

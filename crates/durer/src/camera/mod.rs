@@ -89,6 +89,11 @@ pub trait Lens {
         None
     }
 
+    /// Half the width of what is seen at distance 1; 1 where rays need no such number.
+    fn half_width(&self) -> f64 {
+        1.0
+    }
+
     /// Whether rays through one point of the picture differ by the point of the lens.
     fn has_aperture(&self) -> bool {
         false
@@ -145,6 +150,10 @@ impl Lens for Camera {
 
     fn proportions(&self) -> Option<Vec2> {
         each_camera!(self, c => c.proportions())
+    }
+
+    fn half_width(&self) -> f64 {
+        each_camera!(self, c => c.half_width())
     }
 
     fn has_aperture(&self) -> bool {

@@ -37,8 +37,12 @@ impl Lens for PerspectiveCamera {
         Pose { center: self.center, direction: self.direction, up: self.up }
     }
 
+    fn half_width(&self) -> f64 {
+        half_width(self.angle)
+    }
+
     fn ray(&self, frame: &Frame, sample: &CameraSample) -> Option<Ray> {
-        let (point, half) = (sample.point, half_width(self.angle) as f32);
+        let (point, half) = (sample.point, frame.half_width as f32);
         let dir = match frame.screen_point {
             false => frame.forward / half + point.x * frame.right + point.y * frame.up,
             true => {
@@ -54,12 +58,12 @@ impl Lens for PerspectiveCamera {
     fn project(&self, frame: &Frame, world: Vec3, _: Vec2, found: &mut dyn FnMut(Vec2)) {
         let p = frame.camera_from_world(world);
         if p.z > 0.0 {
-            found((DVec2::new(p.x, p.y) / (p.z * half_width(self.angle))).as_vec2());
+            found((DVec2::new(p.x, p.y) / (p.z * frame.half_width)).as_vec2());
         }
     }
 
     fn footprint(&self, frame: &Frame, sample: &CameraSample, t: f32) -> f32 {
-        let distance = 1.0 / half_width(self.angle);
+        let distance = 1.0 / frame.half_width;
         let [u, v, w] = [frame.right, frame.up, frame.forward].map(|axis| axis.as_dvec3());
         let point = sample.point.as_dvec2();
         let length = (distance * w + point.x * u + point.y * v).length();

@@ -35,9 +35,9 @@ described! {
 
 impl PinholeCamera {
     /// The point of the hole, the film's distance, and half the film's width, in the camera's space.
-    fn parts(&self, lens: Vec2) -> (DVec2, f64, f64) {
+    fn parts(&self, frame: &Frame, lens: Vec2) -> (DVec2, f64, f64) {
         let film = f64::from(self.film_distance);
-        (0.5 * f64::from(self.hole) * aperture::sample(lens, 0, 0.0), film, film * half_width(self.angle))
+        (0.5 * f64::from(self.hole) * aperture::sample(lens, 0, 0.0), film, film * frame.half_width)
     }
 }
 
@@ -46,25 +46,29 @@ impl Lens for PinholeCamera {
         Pose { center: self.center, direction: self.direction, up: self.up }
     }
 
+    fn half_width(&self) -> f64 {
+        half_width(self.angle)
+    }
+
     fn has_aperture(&self) -> bool {
         self.hole > 0.0
     }
 
     fn ray(&self, frame: &Frame, sample: &CameraSample) -> Option<Ray> {
-        let (hole, film, width) = self.parts(sample.lens);
+        let (hole, film, width) = self.parts(frame, sample.lens);
         Some(frame.ray(hole.extend(0.0), (hole + width * sample.point.as_dvec2()).extend(film)))
     }
 
     fn project(&self, frame: &Frame, world: Vec3, lens: Vec2, found: &mut dyn FnMut(Vec2)) {
-        let (hole, film, width) = self.parts(lens);
+        let (hole, film, width) = self.parts(frame, lens);
         let p = frame.camera_from_world(world);
         if p.z > 0.0 {
             found((((p.truncate() - hole) * (film / p.z) - hole) / width).as_vec2());
         }
     }
 
-    fn footprint(&self, _: &Frame, sample: &CameraSample, t: f32) -> f32 {
-        let (hole, film, width) = self.parts(sample.lens);
+    fn footprint(&self, frame: &Frame, sample: &CameraSample, t: f32) -> f32 {
+        let (hole, film, width) = self.parts(frame, sample.lens);
         let dir: DVec3 = (hole + width * sample.point.as_dvec2()).extend(film);
         (f64::from(t * t) * film * width * width / (dir.length_squared() * dir.length())) as f32
     }

@@ -1,5 +1,6 @@
 //! Where a camera stands and how it is turned.
 
+use super::Lens;
 use crate::dialect::{Compat, Rules};
 use crate::math::{Ray, Vec3};
 use glam::{DMat3, DVec3};
@@ -31,6 +32,8 @@ pub struct Frame {
     pub up: Vec3,
     /// Whether rays are aimed at rounded points of the world, as [`Compat::ScreenPoint`] says.
     pub screen_point: bool,
+    /// The camera's [`Lens::half_width`], worked out once.
+    pub half_width: f64,
 }
 
 /// A vector's direction, each component divided by the length (glam multiplies by its reciprocal, which rounds once more).
@@ -46,8 +49,13 @@ fn scaled_or(v: Vec3, fallback: Vec3) -> Vec3 {
 }
 
 impl Frame {
+    /// The axes of a camera, and what all its rays need of its angle.
+    pub fn of(camera: &impl Lens, rules: &Rules) -> Self {
+        Frame { half_width: camera.half_width(), ..Frame::new(camera.pose(), rules) }
+    }
+
     /// The axes of a pose: right = norm(direction x up), up = right x direction.
-    pub fn new(pose: Pose, rules: &Rules) -> Self {
+    pub(super) fn new(pose: Pose, rules: &Rules) -> Self {
         let screen_point = rules.has(Compat::ScreenPoint);
         let unit = if screen_point { scaled_or } else { unit_or };
         let forward = unit(pose.direction, Vec3::NEG_Z);
@@ -60,7 +68,7 @@ impl Frame {
             let up = right.cross(forward);
             if screen_point { scaled_or(up, up) } else { up }
         };
-        Frame { eye: pose.center, forward, right, up, screen_point }
+        Frame { eye: pose.center, forward, right, up, screen_point, half_width: 1.0 }
     }
 
     /// The axes as columns, in double precision: from the camera's space to the world's.

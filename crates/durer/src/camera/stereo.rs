@@ -74,15 +74,15 @@ impl StereoCamera {
     }
 
     /// The units of the window at distance 1 that a unit of one eye's sheet is.
-    fn scale(&self) -> f64 {
-        half_width(self.angle) / (0.5 * self.one().max_element())
+    fn scale(&self, frame: &Frame) -> f64 {
+        frame.half_width / (0.5 * self.one().max_element())
     }
 
     /// The eye, and the direction from it in its own axes.
-    fn line(&self, sample: &CameraSample) -> Option<(Eye, DVec3)> {
+    fn line(&self, frame: &Frame, sample: &CameraSample) -> Option<(Eye, DVec3)> {
         let (view, place) = self.eyes.view(self.one(), sample.point.as_dvec2(), sample.pixel.as_dvec2())?;
         let eye = self.eye(view.side);
-        let dir = ((place - 0.5 * self.one()) * self.scale() + eye.shear).extend(1.0);
+        let dir = ((place - 0.5 * self.one()) * self.scale(frame) + eye.shear).extend(1.0);
         Some((eye, dir))
     }
 }
@@ -92,12 +92,16 @@ impl Lens for StereoCamera {
         Pose { center: self.center, direction: self.direction, up: self.up }
     }
 
+    fn half_width(&self) -> f64 {
+        half_width(self.angle)
+    }
+
     fn proportions(&self) -> Option<Vec2> {
         self.eyes.sheet(self.one()).proportions()
     }
 
     fn ray(&self, frame: &Frame, sample: &CameraSample) -> Option<Ray> {
-        let (eye, dir) = self.line(sample)?;
+        let (eye, dir) = self.line(frame, sample)?;
         Some(frame.ray(eye.at, eye.axes * dir))
     }
 
@@ -106,16 +110,16 @@ impl Lens for StereoCamera {
         for view in self.eyes.views(one) {
             let eye = self.eye(view.side);
             let p = eye.axes.transpose() * (p - eye.at);
-            let place = (p.truncate() / p.z - eye.shear) / self.scale() + 0.5 * one;
+            let place = (p.truncate() / p.z - eye.shear) / self.scale(frame) + 0.5 * one;
             if p.z > 0.0 && Sheet(one).contains(place) {
                 found(self.eyes.point(one, view, place).as_vec2());
             }
         }
     }
 
-    fn footprint(&self, _: &Frame, sample: &CameraSample, t: f32) -> f32 {
-        let Some((_, dir)) = self.line(sample) else { return 0.0 };
-        let unit = self.scale() * self.eyes.sheet(self.one()).unit();
+    fn footprint(&self, frame: &Frame, sample: &CameraSample, t: f32) -> f32 {
+        let Some((_, dir)) = self.line(frame, sample) else { return 0.0 };
+        let unit = self.scale(frame) * self.eyes.sheet(self.one()).unit();
         (f64::from(t * t) * unit * unit / (dir.length_squared() * dir.length())) as f32
     }
 }

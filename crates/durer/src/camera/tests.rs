@@ -95,7 +95,7 @@ fn a_frame_is_right_handed_unless_up_is_used_as_written() {
 #[test]
 fn the_pinhole_sees_its_angle_across_the_square() {
     let camera = PerspectiveCamera { center: Vec3::Y, angle: 90.0, ..PerspectiveCamera::default() };
-    let frame = Frame::new(camera.pose(), &rules(&[]));
+    let frame = Frame::of(&camera, &rules(&[]));
     let ray = |x, y| camera.ray(&frame, &CameraSample::at(Vec2::new(x, y))).unwrap();
     close(ray(0.0, 0.0).dir, Vec3::NEG_Z);
     close(ray(1.0, 0.0).dir, Vec3::new(1.0, 0.0, -1.0).normalize());
@@ -118,7 +118,7 @@ fn parallel_rays_start_on_the_picture_and_run_both_ways() {
         size: 5.0,
         ..OrthographicCamera::default()
     };
-    let frame = Frame::new(camera.pose(), &rules(&[]));
+    let frame = Frame::of(&camera, &rules(&[]));
     // right = x cross y = z; up = y.
     let ray = camera.ray(&frame, &CameraSample::at(Vec2::new(1.0, -0.5))).unwrap();
     close(ray.origin, Vec3::new(1.0, 2.0 - 1.25, 3.0 + 2.5));

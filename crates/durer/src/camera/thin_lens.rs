@@ -53,15 +53,15 @@ impl ThinLensCamera {
     }
 
     /// The point of the lens, the distance of focus, and half the width of what is seen there.
-    fn parts(&self, lens: Vec2) -> (DVec2, f64, f64) {
+    fn parts(&self, frame: &Frame, lens: Vec2) -> (DVec2, f64, f64) {
         let focus = f64::from(self.focus_distance);
         let opening = aperture::sample(lens, self.blades, self.blade_angle);
-        (0.5 * f64::from(self.aperture) * opening, focus, focus * half_width(self.angle))
+        (0.5 * f64::from(self.aperture) * opening, focus, focus * frame.half_width)
     }
 
     /// Origin and direction in the camera's space.
-    fn line(&self, sample: &CameraSample) -> (DVec3, DVec3) {
-        let (lens, focus, width) = self.parts(sample.lens);
+    fn line(&self, frame: &Frame, sample: &CameraSample) -> (DVec3, DVec3) {
+        let (lens, focus, width) = self.parts(frame, sample.lens);
         let target = width * (sample.point.as_dvec2() + self.shift());
         (lens.extend(0.0), (target - lens).extend(focus))
     }
@@ -70,6 +70,10 @@ impl ThinLensCamera {
 impl Lens for ThinLensCamera {
     fn pose(&self) -> Pose {
         Pose { center: self.center, direction: self.direction, up: self.up }
+    }
+
+    fn half_width(&self) -> f64 {
+        half_width(self.angle)
     }
 
     fn has_aperture(&self) -> bool {
@@ -81,12 +85,12 @@ impl Lens for ThinLensCamera {
     }
 
     fn ray(&self, frame: &Frame, sample: &CameraSample) -> Option<Ray> {
-        let (origin, dir) = self.line(sample);
+        let (origin, dir) = self.line(frame, sample);
         Some(frame.ray(self.handedness.turned(origin), self.handedness.turned(dir)))
     }
 
     fn project(&self, frame: &Frame, world: Vec3, lens: Vec2, found: &mut dyn FnMut(Vec2)) {
-        let (lens, focus, width) = self.parts(lens);
+        let (lens, focus, width) = self.parts(frame, lens);
         let p = self.handedness.turned(frame.camera_from_world(world));
         if p.z > 0.0 {
             let target = lens + (p.truncate() - lens) * (focus / p.z);
@@ -94,9 +98,9 @@ impl Lens for ThinLensCamera {
         }
     }
 
-    fn footprint(&self, _: &Frame, sample: &CameraSample, t: f32) -> f32 {
-        let (_, focus, width) = self.parts(sample.lens);
-        let (_, dir) = self.line(sample);
+    fn footprint(&self, frame: &Frame, sample: &CameraSample, t: f32) -> f32 {
+        let (_, focus, width) = self.parts(frame, sample.lens);
+        let (_, dir) = self.line(frame, sample);
         (f64::from(t * t) * focus * width * width / (dir.length_squared() * dir.length())) as f32
     }
 }

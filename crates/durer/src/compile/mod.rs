@@ -109,7 +109,7 @@ pub fn compile(
         return None;
     }
     let mut world = World {
-        frame: Frame::new(camera.pose(), rules),
+        frame: Frame::of(&camera, rules),
         camera,
         background: scene.background.color,
         cube_map,
@@ -122,7 +122,7 @@ pub fn compile(
         objects,
         rules: rules.clone(),
         digest,
-        unbounded: Vec::new(),
+        loose: Vec::new(),
         accel: Accel::None,
         emitters: Emitters::default(),
         fog,
@@ -141,18 +141,24 @@ pub fn compile(
 
 /// Makes the structure over a world's objects: at first, and anew after they were moved.
 pub(crate) fn rebuild(world: &mut World, kind: AccelKind) -> Result<(), Box<Diagnostic>> {
-    world.unbounded =
-        (0..world.objects.len() as u32).filter(|&i| world.objects[i as usize].bounds().is_none()).collect();
+    let is_bounded = |object: &Object| object.bounds().is_some();
+    let few = kind == AccelKind::Bvh && world.objects.iter().filter(|object| is_bounded(object)).count() <= FEW;
+    let is_loose = |&i: &u32| few || !is_bounded(&world.objects[i as usize]);
+    world.loose = (0..world.objects.len() as u32).filter(is_loose).collect();
     world.accel = build_accel(world, kind)?;
     Ok(())
 }
+
+/// So many objects are tested one after the other: a tree over them would cost more than it saves.
+const FEW: usize = 2;
 
 fn build_accel(world: &World, kind: AccelKind) -> Result<Accel, Box<Diagnostic>> {
     let cells = match kind {
         AccelKind::None => return Ok(Accel::None),
         AccelKind::Bvh => {
-            // An unbounded object has an empty box here, and is left out.
-            let boxes: Vec<Aabb> = world.objects.iter().map(|o| o.bounds().unwrap_or(Aabb::EMPTY)).collect();
+            // What has an empty box here is left out.
+            let mut boxes: Vec<Aabb> = world.objects.iter().map(|o| o.bounds().unwrap_or(Aabb::EMPTY)).collect();
+            world.loose.iter().for_each(|&i| boxes[i as usize] = Aabb::EMPTY);
             return Ok(Accel::Bvh(Bvh::build(&boxes)));
         }
         AccelKind::Grid(cells) => cells,

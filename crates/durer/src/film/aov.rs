@@ -166,7 +166,7 @@ pub static AOVS: [Aov; 12] = [
     Aov {
         name: "uv",
         doc: "texture coordinates in red and green, 0 where there are none; as a picture, their fraction",
-        value: Value::Ray(|seen| of_surface(seen, |s| s.uv.unwrap_or_default().extend(0.0))),
+        value: Value::Ray(|seen| of_surface(seen, |s| s.uv.get().unwrap_or_default().extend(0.0))),
         picture: |uv, _, _| uv - uv.floor(),
         relative: false,
     },

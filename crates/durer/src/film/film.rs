@@ -20,25 +20,25 @@ pub struct Film {
     top: u32,
     width: u32,
     height: u32,
-    pixels: Vec<Pixel>,
+    pub(super) pixels: Vec<Pixel>,
     rejected: u64,
     first_rejected: Vec<Rejected>,
 }
 
 /// Sums of one pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-struct Pixel {
+pub(super) struct Pixel {
     /// Weighted colour, in units of 2^-48.
-    color: [i128; 3],
+    pub(super) color: [i128; 3],
     /// Squares of luminances, in units of 2^-56.
-    squares: i128,
+    pub(super) squares: i128,
     /// Luminances, not weighted, in units of 2^-28.
-    luminance: i64,
+    pub(super) luminance: i64,
     /// Weight, in units of 2^-24.
-    weight: i64,
+    pub(super) weight: i64,
     /// The part of that weight whose samples saw something, in the same units.
-    covered: i64,
-    samples: u64,
+    pub(super) covered: i64,
+    pub(super) samples: u64,
 }
 
 impl Pixel {
@@ -95,7 +95,7 @@ impl Pixel {
 const SMALL_COLOR: f32 = 8.0;
 
 const COLOR_SCALE: f64 = (1_u64 << 48) as f64;
-const WEIGHT_SCALE: f64 = (1_u64 << 24) as f64;
+pub(super) const WEIGHT_SCALE: f64 = (1_u64 << 24) as f64;
 const GREATEST_COLOR: f64 = (1_u64 << 44) as f64;
 const GREATEST_WEIGHT: f64 = (1_u64 << 10) as f64;
 const LUMINANCE_SCALE: f64 = (1_u64 << 28) as f64;
@@ -304,9 +304,6 @@ impl Film {
     pub fn first_rejected(&self) -> &[Rejected] {
         &self.first_rejected
     }
-
-    /// Bytes that a pixel takes in memory.
-    pub const PIXEL_BYTES: usize = size_of::<Pixel>();
 
     fn pixel(&self, x: u32, y: u32) -> &Pixel {
         &self.pixels[self.index(x, y).expect("the pixel lies in the film's window")]

@@ -131,38 +131,51 @@ impl Filter {
 
 /// Draws offsets in proportion to a filter's absolute value.
 ///
-/// Along an axis the filter is tabulated at `BINS + 1` knots from the centre to the radius and taken as linear between them.
+/// Along an axis the filter's integral is inverted once, at `SHARES + 1` knots; between two knots all distances are equally
+/// likely. So each share of the filter lies where it belongs, and an offset is off by less than the width of its share: on
+/// average by less than a thousandth of the radius (a test).
 #[derive(Clone, Debug)]
 pub struct FilterSampler {
     filter: Filter,
-    /// Absolute weight at each knot, and its integral (trapezoids, in bins) from the centre up to there.
-    knots: Vec<(f64, f64)>,
-    /// For each of `BINS` equal shares of the whole integral, the first knot whose integral is above the share's beginning.
-    guide: Vec<u16>,
+    /// The distances within which 0, 1, 2, ... of `SHARES` equal shares of the absolute filter lie.
+    knots: Vec<f32>,
     /// Integral of the absolute filter over that of the filter: how much a sample must count.
     gain: f32,
 }
 
+const SHARES: usize = 2048;
+
+/// Steps from the centre to the radius in which the filter is integrated, as linear in each.
 const BINS: usize = 1024;
 
 impl FilterSampler {
     fn new(filter: Filter) -> Self {
         let value = |i: usize| f64::from(filter.profile(filter.radius() * (i as f32 / BINS as f32)));
-        let (mut absolute, mut signed) = (0.0, 0.0);
-        let mut knots = vec![(value(0).abs(), 0.0)];
-        for i in 1..=BINS {
-            absolute += 0.5 * (value(i - 1).abs() + value(i).abs());
-            signed += 0.5 * (value(i - 1) + value(i));
-            knots.push((value(i).abs(), absolute));
-        }
+        let values: Vec<f64> = (0..=BINS).map(value).collect();
+        let trapezoid = |a: f64, b: f64| 0.5 * (a + b);
+        let signed: f64 = values.windows(2).map(|pair| trapezoid(pair[0], pair[1])).sum();
+        // The integral of the absolute filter from the centre up to each bin's end.
+        let parts = values.windows(2).map(|pair| trapezoid(pair[0].abs(), pair[1].abs()));
+        let integral: Vec<f64> = std::iter::once(0.0)
+            .chain(parts.scan(0.0, |sum, part| {
+                *sum += part;
+                Some(*sum)
+            }))
+            .collect();
+        let absolute = integral[BINS];
         // A filter that is nowhere positive is no filter: it is sampled as a box would be, at no gain.
         let gain = if signed > 0.0 { (absolute / signed) * (absolute / signed) } else { 1.0 };
-        let above = |share: usize| {
-            let least = share as f64 / BINS as f64 * absolute;
-            knots.partition_point(|&(_, integral)| integral <= least) as u16
+        let distance = |share: usize| {
+            let target = share as f64 / SHARES as f64 * absolute;
+            let bin = (integral.partition_point(|&sum| sum <= target)).clamp(1, BINS) - 1;
+            let (start, end) = (values[bin].abs(), values[bin + 1].abs());
+            // In the bin: start * t + (end - start) * t^2 / 2 = rest, solved without cancellation.
+            let rest = target - integral[bin];
+            let root = (start * start + 2.0 * (end - start) * rest).max(0.0).sqrt();
+            let t = if rest > 0.0 { (2.0 * rest / (start + root)).min(1.0) } else { 0.0 };
+            ((bin as f64 + t) / BINS as f64 * f64::from(filter.radius())) as f32
         };
-        let guide = (0..BINS).map(above).collect();
-        FilterSampler { filter, knots, guide, gain: gain as f32 }
+        FilterSampler { filter, knots: (0..=SHARES).map(distance).collect(), gain: gain as f32 }
     }
 
     /// The size of a sample's weight: 1 for filters without negative lobes, more for others.
@@ -186,27 +199,12 @@ impl FilterSampler {
         (offset, weight)
     }
 
-    /// The bin in which the integral reaches a share of the whole: mostly the one that the guide names, or the next.
-    fn bin(&self, share: f64) -> usize {
-        let target = share * self.knots[BINS].1;
-        let mut above = usize::from(self.guide[((share * BINS as f64) as usize).min(BINS - 1)]);
-        while above <= BINS && self.knots[above].1 <= target {
-            above += 1;
-        }
-        above.clamp(1, BINS)
-    }
-
-    /// Inverts the integral of the absolute filter from the centre outwards, on the side that `u` lies on.
+    /// The distance from the centre for a share of the filter, on the side that `u` lies on.
     fn warp(&self, u: f32) -> f32 {
-        let v = 2.0 * f64::from(u) - 1.0;
-        let target = v.abs() * self.knots[BINS].1;
-        let above = self.bin(v.abs());
-        let ((start, before), (end, _)) = (self.knots[above - 1], self.knots[above]);
-        // In the bin: start * t + (end - start) * t^2 / 2 = rest, solved without cancellation.
-        let rest = target - before;
-        let root = (start * start + 2.0 * (end - start) * rest).max(0.0).sqrt();
-        let t = if rest > 0.0 { (2.0 * rest / (start + root)).min(1.0) } else { 0.0 };
-        let distance = ((above - 1) as f64 + t) / BINS as f64 * f64::from(self.filter.radius());
-        (if v < 0.0 { -distance } else { distance }) as f32
+        let v = 2.0 * u - 1.0;
+        let place = v.abs() * SHARES as f32;
+        let share = (place as usize).min(SHARES - 1);
+        let (near, far) = (self.knots[share], self.knots[share + 1]);
+        (near + (place - share as f32) * (far - near)).copysign(v)
     }
 }

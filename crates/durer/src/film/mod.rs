@@ -9,6 +9,8 @@ pub mod diagram;
 #[expect(clippy::module_inception, reason = "the film is what this room is about")]
 mod film;
 mod filter;
+mod packed;
 
 pub use film::{Film, Rejected, WrongWindow, luminance};
 pub use filter::{Filter, FilterSampler};
+pub use packed::Packed;

@@ -10,7 +10,7 @@ fn sample() -> Image {
 }
 
 fn written(format: &Format, kind: LayerKind, transfer: Transfer, image: &Image) -> Vec<u8> {
-    let layer = Layer { name: "beauty".into(), image: image.clone(), kind, coverage: None };
+    let layer = Layer { name: "beauty".into(), image: image.clone().into(), kind, coverage: None };
     let mut out = Vec::new();
     format.write(&[layer], &WriteOptions { display: transfer.into(), ..WriteOptions::default() }, &mut out).unwrap();
     out

@@ -26,6 +26,7 @@ pub use save::{Destination, SaveError, save, save_all};
 pub use transfer::{Transfer, decode_linear, decode_srgb};
 
 use crate::math::{Color, Vec3};
+use std::sync::Arc;
 
 /// A picture of linear floating-point pixels.
 #[derive(Clone, Debug, PartialEq)]
@@ -65,8 +66,8 @@ pub enum LayerKind {
 pub struct Layer {
     /// Name, used for the channels of formats that hold several layers.
     pub name: String,
-    /// The pixels.
-    pub image: Image,
+    /// The pixels, which several layers may share.
+    pub image: Arc<Image>,
     /// What they mean.
     pub kind: LayerKind,
     /// The share of each pixel, from 0 to 1, that the camera sees at all; `None`: all of each. Colours are those over
@@ -122,12 +123,12 @@ impl Image {
 impl Layer {
     /// A layer of light.
     pub fn color(name: impl Into<String>, image: Image) -> Layer {
-        Layer { name: name.into(), image, kind: LayerKind::Color, coverage: None }
+        Layer { name: name.into(), image: Arc::new(image), kind: LayerKind::Color, coverage: None }
     }
 
     /// A layer of other numbers.
     pub fn data(name: impl Into<String>, image: Image) -> Layer {
-        Layer { name: name.into(), image, kind: LayerKind::Data, coverage: None }
+        Layer { name: name.into(), image: Arc::new(image), kind: LayerKind::Data, coverage: None }
     }
 
     /// The same layer with the share of each pixel that is seen.

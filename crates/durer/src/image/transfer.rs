@@ -1,6 +1,7 @@
 //! From linear floating point to eight bits, and back.
 
 use crate::math::{Vec3, fp};
+use std::sync::LazyLock;
 
 /// How a linear value becomes eight bits.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -35,7 +36,7 @@ impl Transfer {
     /// Eight bits for a linear value, clamped to 0..=255. NaN becomes 0.
     pub fn encode(self, value: f32) -> u8 {
         match self {
-            Transfer::Srgb => round(srgb_from_linear(value)),
+            Transfer::Srgb => SRGB.encode(value),
             Transfer::Linear => round(value),
             Transfer::Course => truncate(value),
         }
@@ -44,6 +45,44 @@ impl Transfer {
     /// Eight bits for each channel.
     pub fn encode_pixel(self, pixel: Vec3) -> [u8; 3] {
         pixel.to_array().map(|value| self.encode(value))
+    }
+}
+
+/// sRGB in eight bits, looked up.
+static SRGB: LazyLock<SrgbTable> = LazyLock::new(SrgbTable::new);
+
+/// Linear values from which on each of the 256 steps of the sRGB curve holds.
+struct SrgbTable {
+    /// The least value of each step, and infinity behind the last.
+    least: [f32; 257],
+    /// The step at the beginning of each of [`CELLS`] equal parts of 0 to 1. No part has more than one end of a step.
+    guide: [u8; CELLS + 1],
+}
+
+/// The curve is steepest at black: 255 * 12.92 steps for a value of 1.
+const CELLS: usize = 4096;
+
+impl SrgbTable {
+    fn new() -> Self {
+        let curve = |value: f32| round(srgb_from_linear(value));
+        let mut least = [f32::INFINITY; 257];
+        for (step, least) in least.iter_mut().enumerate().take(256) {
+            // Positive numbers are ordered as their bits are, and the curve never falls.
+            let (mut low, mut high) = (0, 1.0_f32.to_bits());
+            while low < high {
+                let middle = low.midpoint(high);
+                if usize::from(curve(f32::from_bits(middle))) >= step { high = middle } else { low = middle + 1 }
+            }
+            *least = f32::from_bits(low);
+        }
+        SrgbTable { least, guide: std::array::from_fn(|cell| curve(cell as f32 / CELLS as f32)) }
+    }
+
+    fn encode(&self, value: f32) -> u8 {
+        // What is no number is black, as below.
+        let value = value.max(0.0).min(1.0);
+        let step = usize::from(self.guide[(value * CELLS as f32) as usize]);
+        (step + usize::from(value >= self.least[step + 1])) as u8
     }
 }
 
@@ -113,6 +152,19 @@ mod tests {
         for value in 0..=255 {
             assert_eq!(Transfer::Srgb.encode(decode_srgb(value)), value);
             assert_eq!(Transfer::Linear.encode(decode_linear(value)), value);
+        }
+    }
+
+    #[test]
+    fn the_table_is_the_curve() {
+        let ends = SRGB.least.iter().flat_map(|least| [least.next_down(), *least, least.next_up()]);
+        let cells = (0..=CELLS).flat_map(|cell| {
+            let start = cell as f32 / CELLS as f32;
+            [start.next_down(), start, start.next_up()]
+        });
+        let others = (0..200_000).map(|i| i as f32 * 6e-6 - 0.1).chain([f32::NAN, f32::NEG_INFINITY, 1e30]);
+        for value in ends.chain(cells).chain(others) {
+            assert_eq!(Transfer::Srgb.encode(value), round(srgb_from_linear(value)), "{value}");
         }
     }
 

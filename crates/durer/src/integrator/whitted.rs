@@ -336,7 +336,7 @@ pub(super) fn struck(
         n,
         from_behind,
         black,
-        uv: surface.uv,
+        uv: surface.uv.get(),
         barycentric: surface.barycentric,
         local: object.own_ray(ray).as_ref().map(Into::into),
         material: world.material(hit),

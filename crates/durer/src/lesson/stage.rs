@@ -18,6 +18,7 @@ use crate::render::{Control, Job, RenderError, Sampling, center_ray, raster, ren
 use crate::scene::Scene;
 use crate::source::Source;
 use crate::world::{Material, World};
+use std::sync::Arc;
 
 /// A scene of ours in which every step can be seen, and the name of its file.
 pub const OWN_SCENE: &str = include_str!("scene.txt");
@@ -120,7 +121,10 @@ impl Stage {
                     job.depth_range = depth_range(&rendered.layers[0].image);
                     rendered = render(&self.world, &job, control)?;
                 }
-                Shown { layer: rendered.pictures.swap_remove(0), values: rendered.layers.swap_remove(0).image }
+                Shown {
+                    layer: rendered.pictures.swap_remove(0),
+                    values: Arc::unwrap_or_clone(rendered.layers.swap_remove(0).image),
+                }
             }
         };
         // Those that are long past do not come again.

@@ -63,7 +63,7 @@ impl<'s> Variant<'s> {
 
     /// Makes the camera's axes anew, by the rules.
     pub fn reframe(&mut self) {
-        self.world.frame = Frame::new(self.world.camera.pose(), &self.world.rules);
+        self.world.frame = Frame::of(&self.world.camera, &self.world.rules);
     }
 
     /// The field of view of a perspective camera, in degrees.

@@ -3,6 +3,7 @@
 use super::blocks::{Shard, ShardBy};
 use super::part::{Part, Sampled};
 use super::saved::PartError;
+use crate::film::Packed;
 use std::fmt::Write;
 
 /// Why parts do not make a picture. Parts are told by their names.
@@ -88,11 +89,12 @@ fn merge_samples(parts: &[(String, Part)], whole: &Part, missing: &mut String) -
             }
             next = piece.to;
             merged.rays += piece.rays;
-            match (&mut merged.film, piece.film) {
-                (Some(film), Some(other)) => {
-                    film.merge(&other).expect("a block of the same picture has the same pixels")
+            match (merged.film(rect), piece.film(rect)) {
+                (Some(mut film), Some(other)) => {
+                    film.merge(&other).expect("a block of the same picture has the same pixels");
+                    merged.film = Some(Packed::new(film));
                 }
-                (film, other) => *film = other,
+                _ => merged.film = piece.film,
             }
             merged.to = next;
         }

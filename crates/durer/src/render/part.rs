@@ -4,7 +4,7 @@ use super::blocks::{Blocks, Shard, ShardBy};
 use super::error::RenderError;
 use super::{Crop, Job, Sampling, passes};
 use crate::film::aov::Look;
-use crate::film::{Film, Rejected};
+use crate::film::{Film, Packed, Rejected};
 use crate::image::checked_count;
 use crate::integrator::Method;
 use crate::math::Vec3;
@@ -45,7 +45,14 @@ pub(super) struct Sampled {
     /// Rays traced for them.
     pub(super) rays: u64,
     /// Their sums, if there are any.
-    pub(super) film: Option<Box<Film>>,
+    pub(super) film: Option<Packed>,
+}
+
+impl Sampled {
+    /// The sums of a block of these pixels, if there are any.
+    pub(super) fn film(&self, Crop { left, top, width, height }: Crop) -> Option<Film> {
+        self.film.as_ref().map(|film| film.film([left, top, width, height]))
+    }
 }
 
 /// What the rays through the centres of a block's pixels saw.
@@ -139,8 +146,9 @@ impl Part {
     /// Whether a block has all samples that it will get, given the size of the samples' weights.
     pub(super) fn is_done(&self, index: usize, block: &Sampled, gain: f32) -> bool {
         let end = self.shard.range(self.job.sampling.samples()).1;
-        let enough = |film: &Film| self.job.is_done(film, self.blocks.rect(index), block.to, gain);
-        block.to >= end || block.film.as_deref().is_some_and(enough)
+        let rect = self.blocks.rect(index);
+        let enough = |film: Film| self.job.is_done(&film, rect, block.to, gain);
+        block.to >= end || self.job.noise.is_some() && block.film(rect).is_some_and(enough)
     }
 
     /// The size of the samples' weights.
@@ -191,7 +199,7 @@ impl Part {
         for (index, block) in state.samples.iter().enumerate() {
             let taken = self.blocks.rect(index).pixels() * u64::from(block.to - block.from);
             statistics.rays += block.rays;
-            if let Some(film) = &block.film {
+            if let Some(film) = block.film(self.blocks.rect(index)) {
                 statistics.samples += taken.saturating_sub(film.rejected());
                 statistics.rejected = statistics.rejected.saturating_add(film.rejected());
                 statistics.first_rejected.extend(film.first_rejected());
@@ -209,10 +217,8 @@ impl Part {
         let (state, mut bytes) = (self.state(), Vec::new());
         let mut hasher = blake3::Hasher::new();
         for (index, block) in state.samples.iter().enumerate() {
-            match &block.film {
-                Some(film) => film.write(&mut bytes),
-                None => film_of(self.blocks.rect(index)).write(&mut bytes),
-            }
+            let rect = self.blocks.rect(index);
+            block.film(rect).unwrap_or_else(|| film_of(rect)).write(&mut bytes);
             hasher.update(&bytes);
             bytes.clear();
         }
@@ -231,7 +237,7 @@ impl Part {
     pub fn bytes_needed(job: &Job, shard: Shard) -> u64 {
         let share = if shard.by == ShardBy::Tiles { u64::from(shard.count) } else { 1 };
         let (pixels, rays) = (job.window().pixels(), job.ray_window().pixels());
-        let sums = if job.wants_samples() { pixels * Film::PIXEL_BYTES as u64 } else { 0 };
+        let sums = if job.wants_samples() { pixels * Packed::pixel_bytes(job.sampling.samples()) } else { 0 };
         let values = rays * (12 * job.ray_aovs().count() as u64 + 1);
         // Each picture twice, in floating point and for eight bits, and once more in its file.
         let pictures = 3 * 12 * pixels * (job.aovs.len() as u64 + u64::from(job.color));

@@ -76,9 +76,12 @@ impl Part {
 
     /// Colours and coverage; what is not made yet is transparent.
     fn colors(&self, state: &State) -> (Vec<Color>, Vec<f32>) {
-        let mut pixels = vec![(Color::ZERO, 0.0); self.job.window().pixels() as usize];
-        self.each_sampled(state, |index, film, x, y| pixels[index] = (film.resolve(x, y), film.coverage(x, y)));
-        pixels.into_iter().unzip()
+        let count = self.job.window().pixels() as usize;
+        let (mut colors, mut coverage) = (vec![Color::ZERO; count], vec![0.0; count]);
+        self.each_sampled(state, |index, film, x, y| {
+            (colors[index], coverage[index]) = (film.resolve(x, y), film.coverage(x, y));
+        });
+        (colors, coverage)
     }
 
     /// The colours, the coverage, and the variance of the luminance of each pixel.
@@ -109,9 +112,10 @@ impl Part {
     fn each_sampled(&self, state: &State, mut visit: impl FnMut(usize, &Film, u32, u32)) {
         let window = self.job.window();
         for (index, block) in state.samples.iter().enumerate() {
-            let Some(film) = &block.film else { continue };
-            for (x, y) in self.blocks.rect(index).places() {
-                visit(place(window, x, y), film, x, y);
+            let rect = self.blocks.rect(index);
+            let Some(film) = block.film(rect) else { continue };
+            for (x, y) in rect.places() {
+                visit(place(window, x, y), &film, x, y);
             }
         }
     }

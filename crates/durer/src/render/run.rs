@@ -5,6 +5,7 @@ use super::part::{Part, Sampled, Traced, film_of, pass_ends};
 use super::samples::{At, Samples, Stopped, kept_bytes};
 use super::{BLOCK, Control, Job, Rendered, Shard, rays};
 use crate::bvh::RayCount;
+use crate::film::Packed;
 use crate::film::aov::Look;
 use crate::threads;
 use crate::world::World;
@@ -260,13 +261,13 @@ impl Work<'_> {
         for &index in tile {
             let rect = part.blocks.rect(index);
             let mut block = part.state().samples[index].clone();
-            let film = block.film.get_or_insert_with(|| Box::new(film_of(rect)));
+            let mut film = block.film(rect).unwrap_or_else(|| film_of(rect));
             let mut rays = RayCount::default();
-            self.samples.add(film, rect, block.to..end, at, &mut rays)?;
+            self.samples.add(&mut film, rect, block.to..end, at, &mut rays)?;
             taken += rect.pixels() * u64::from(end - block.to);
             traced += rays.0;
             block.rays += rays.0;
-            block.to = end;
+            (block.to, block.film) = (end, Some(Packed::new(film)));
             made.push(block);
         }
         self.keep(tile, made, taken, traced);
@@ -294,7 +295,7 @@ impl Work<'_> {
             };
             let mut film = film_of(*rect);
             rect.places().zip(own).for_each(|((x, y), seen)| film.add_covering(x, y, 0, seen, 1.0));
-            made.push(Sampled { from: 0, to: 1, rays: rays.0 - before, film: Some(Box::new(film)) });
+            made.push(Sampled { from: 0, to: 1, rays: rays.0 - before, film: Some(Packed::new(film)) });
             before = rays.0;
         }
         self.keep(tile, made, around.pixels(), rays.0);

@@ -4,13 +4,13 @@ use super::error::{MOST_KEPT, center};
 use super::sub_pixels::SubPixels;
 use super::{Control, Crop, Job, RenderError, Sampling, camera_ray, center_ray, raster};
 use crate::bvh::RayCount;
-use crate::camera::{Lens, Raster};
+use crate::camera::{CameraSample, Lens, Raster};
 use crate::dialect::Compat;
 use crate::film::course::{CourseFilter, StoredSample, StoredSamples};
 use crate::film::{Film, FilterSampler};
 use crate::integrator::{Integrator, Whitted};
 use crate::math::{Color, Ray, Vec2, Vec3};
-use crate::sampler::{SampleId, Sampler};
+use crate::sampler::{LENS_DIMENSION, PIXEL_DIMENSION, SampleId, Sampler, Sequence};
 use crate::threads;
 use crate::world::{Material, World};
 use std::cell::Cell;
@@ -119,6 +119,18 @@ pub(super) struct Aim {
     pub(super) ray: Option<Ray>,
 }
 
+/// What the samples of a pixel have in common.
+struct Pixel {
+    x: u32,
+    y: u32,
+    /// Its middle, in pixels from the upper left corner, and on the square that the camera covers.
+    center: Vec2,
+    point: Vec2,
+    /// Where in the pixel Sobol's samples lie, and where in the lens, if that has an extent.
+    positions: Sequence,
+    lenses: Option<Sequence>,
+}
+
 /// Takes the samples of a job.
 pub(super) struct Samples<'a> {
     world: &'a World,
@@ -127,6 +139,7 @@ pub(super) struct Samples<'a> {
     pub(super) whitted: Whitted<'a>,
     pub(super) integrator: Integrator<'a>,
     warp: Option<FilterSampler>,
+    has_aperture: bool,
     /// What [`Compat::StaleTexels`] adds to each pixel of the whole picture.
     stale: Vec<Color>,
     stop: &'a AtomicBool,
@@ -150,7 +163,8 @@ impl<'a> Samples<'a> {
         let whitted = Whitted { world, settings: job.settings, cancel: Some(stop) };
         let integrator = Integrator::new(world, job.method, job.settings, job.seed, Some(stop));
         let raster = raster(world, job.width, job.height);
-        Samples { world, job, raster, whitted, integrator, warp, stale: Vec::new(), stop }
+        let has_aperture = world.camera.has_aperture();
+        Samples { world, job, raster, whitted, integrator, warp, has_aperture, stale: Vec::new(), stop }
     }
 
     /// The size of a sample's weight.
@@ -172,10 +186,11 @@ impl<'a> Samples<'a> {
         rays: &mut RayCount,
     ) -> Result<(), Stopped> {
         for (x, y) in part.places() {
+            let pixel = self.pixel(x, y);
             for sample in range.clone() {
                 self.check()?;
                 at.set((x, y, Some(sample)));
-                let (color, weight) = self.sample(x, y, sample, rays);
+                let (color, weight) = self.sample_of(&pixel, sample, rays);
                 film.add_if_seen(x, y, sample, color, weight);
             }
         }
@@ -185,7 +200,12 @@ impl<'a> Samples<'a> {
 
     /// One sample of a pixel: its colour, if the camera sees anything there, and its weight.
     pub(super) fn sample(&self, x: u32, y: u32, sample: u32, rays: &mut RayCount) -> (Option<Color>, f32) {
-        let Aim { ray, weight, .. } = self.aim(x, y, sample);
+        self.sample_of(&self.pixel(x, y), sample, rays)
+    }
+
+    fn sample_of(&self, pixel: &Pixel, sample: u32, rays: &mut RayCount) -> (Option<Color>, f32) {
+        let Aim { ray, weight, .. } = self.aim_in(pixel, sample);
+        let Pixel { x, y, .. } = *pixel;
         let id = SampleId::new(self.job.seed, (x, y), sample);
         let color = ray.map(|ray| self.integrator.radiance(&ray, id, rays));
         match self.stale.get((y * self.job.width + x) as usize) {
@@ -194,22 +214,40 @@ impl<'a> Samples<'a> {
         }
     }
 
+    /// What the samples of a pixel have in common.
+    fn pixel(&self, x: u32, y: u32) -> Pixel {
+        let (seed, center) = (self.job.seed, center(x, y));
+        Pixel {
+            x,
+            y,
+            center,
+            point: self.raster.point(center),
+            positions: Sequence::new(seed, x, y, PIXEL_DIMENSION),
+            lenses: self.has_aperture.then(|| Sequence::new(seed, x, y, LENS_DIMENSION)),
+        }
+    }
+
     /// Where a sample of a pixel goes, for samplings whose samples count for their own pixel alone.
     pub(super) fn aim(&self, x: u32, y: u32, sample: u32) -> Aim {
-        let job = self.job;
-        let (place, lens, weight) = match (job.sampling, &self.warp) {
-            (Sampling::Filtered { samples, .. }, Some(warp)) => {
-                let position = Sampler::Sobol.pixel_position(job.seed, x, y, sample, samples);
-                let (offset, weight) = warp.sample(position);
-                (center(x, y) + offset, self.lens(Sampler::Sobol, x, y, sample), weight)
+        self.aim_in(&self.pixel(x, y), sample)
+    }
+
+    fn aim_in(&self, pixel: &Pixel, sample: u32) -> Aim {
+        let middle = Vec2::splat(0.5);
+        let (place, lens, weight) = match (self.job.sampling, &self.warp) {
+            (Sampling::Filtered { .. }, Some(warp)) => {
+                let (offset, weight) = warp.sample(pixel.positions.point(sample));
+                let lens = pixel.lenses.map_or(middle, |lenses| lenses.point(sample));
+                (pixel.center + offset, lens, weight)
             }
             (Sampling::Course2004 { sampler, samples, .. }, _) => {
-                return self.aim_kept((sampler, sampler.round_up(samples)), x, y, sample).0;
+                return self.aim_kept((sampler, sampler.round_up(samples)), pixel.x, pixel.y, sample).0;
             }
             // One ray through the middles of pixel and lens.
-            _ => (center(x, y), Vec2::splat(0.5), 1.0),
+            _ => (pixel.center, middle, 1.0),
         };
-        Aim { place, lens, weight, ray: camera_ray(self.world, &self.raster, (x, y), place, lens) }
+        let at = CameraSample { point: self.raster.point(place), pixel: pixel.point, lens };
+        Aim { place, lens, weight, ray: self.world.camera.ray(&self.world.frame, &at) }
     }
 
     /// Where a sample goes that keeps its place in its pixel, which comes with it. It counts for more pixels than one, as a
@@ -230,7 +268,7 @@ impl<'a> Samples<'a> {
 
     /// Where in the lens a sample lies. A lens without extent needs no numbers.
     fn lens(&self, sampler: Sampler, x: u32, y: u32, sample: u32) -> Vec2 {
-        match self.world.camera.has_aperture() {
+        match self.has_aperture {
             true => sampler.lens_position(self.job.seed, x, y, sample),
             false => Vec2::splat(0.5),
         }

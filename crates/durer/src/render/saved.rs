@@ -17,6 +17,7 @@
 
 use super::part::{Found, Part, Sampled, Traced, film_of, job_text};
 use super::{Job, RenderError, Shard};
+use crate::film::Packed;
 use crate::film::bytes::{Bytes, put};
 use crate::math::Vec3;
 use crate::source::Digest;
@@ -75,7 +76,7 @@ impl Part {
         put_text(&mut out, &serde_json::to_string(&self.look).unwrap_or_default());
         let state = self.state();
         for (index, block) in state.samples.iter().enumerate() {
-            if let Some(film) = &block.film {
+            if let Some(film) = block.film(self.blocks.rect(index)) {
                 put(&mut out, index as u128 + 1);
                 [block.from.into(), block.to.into(), u128::from(block.rays)]
                     .iter()
@@ -144,7 +145,7 @@ impl Part {
                 return None;
             }
             let film = film_of(self.blocks.rect(number - 1)).read(&mut rest, to - from)?;
-            *block = Sampled { from, to, rays, film: Some(Box::new(film)) };
+            *block = Sampled { from, to, rays, film: Some(Packed::new(film)) };
         }
         let pictures = self.job.ray_aovs().count();
         while let number @ 1.. = rest.whole::<usize>()? {

@@ -1,12 +1,12 @@
 //! The cylinder between two points, with its caps.
 
 use super::chord::Chord;
-use super::{Crossing, INSET, Shape, Surface, disc_reach, exactly, inset, padded, turn};
+use super::{Crossing, INSET, Shape, Surface, Uv, disc_reach, exactly, inset, padded};
 use crate::describe::Rule;
 use crate::described;
 use crate::dialect::set;
 use crate::math::{Aabb, Line, Vec2, Vec3, gamma};
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 described! {
     /// A cylinder with caps, round about the line between two points.
@@ -67,9 +67,9 @@ impl Axis {
     }
 
     /// Texture coordinates: the angle about the axis, and `v`.
-    pub(super) fn uv(&self, around: DVec3, v: f64) -> Vec2 {
+    pub(super) fn uv(&self, around: DVec3, v: f64) -> Uv {
         let (x, z) = self.dir.any_orthonormal_pair();
-        Vec2::new(turn(around.dot(x), around.dot(z)), v.clamp(0.0, 1.0) as f32)
+        Uv::Turned(DVec2::new(around.dot(x), around.dot(z)).as_vec2(), v.clamp(0.0, 1.0) as f32)
     }
 
     /// The surface of a cap of a radius: a plane across the axis.

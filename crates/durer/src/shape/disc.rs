@@ -1,11 +1,11 @@
 //! The disc, whole or with a hole.
 
-use super::{Crossing, Shape, Surface, disc_reach, padded, turn};
+use super::{Crossing, Shape, Surface, Uv, disc_reach, padded};
 use crate::describe::Rule;
 use crate::described;
 use crate::dialect::set;
 use crate::math::{Aabb, Line, Vec2, Vec3};
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 described! {
     /// A flat disc.
@@ -53,7 +53,7 @@ impl Shape for Disc {
         let q = (q - n.dot(q) * n).clamp_length_max(radius);
         let (x, z) = n.any_orthonormal_pair();
         let floor = 1e-14 * (center.abs().max_element() + radius);
-        let uv = Vec2::new(turn(q.dot(x), q.dot(z)), (q.length() / radius) as f32);
+        let uv = Uv::Turned(DVec2::new(q.dot(x), q.dot(z)).as_vec2(), (q.length() / radius) as f32);
         Surface::new(center + q, n, floor as f32, uv)
     }
 

@@ -301,7 +301,18 @@ impl Mesh {
         // Normals in the file say which side is out, whatever way the corners go round.
         let n_geo = if n_geo.dot(n_shade) < 0.0 { -n_geo } else { n_geo };
         let color = self.color(part, barycentric).unwrap_or([1.0; 4]);
-        Surface { position, rest: Vec3::ZERO, error, curvature: 0.0, n_geo, n_shade, uv, barycentric, lifts, color }
+        Surface {
+            position,
+            rest: Vec3::ZERO,
+            error,
+            curvature: 0.0,
+            n_geo,
+            n_shade,
+            uv: uv.into(),
+            barycentric,
+            lifts,
+            color,
+        }
     }
 }
 

@@ -17,6 +17,7 @@ pub mod sphere;
 mod tests;
 pub mod torus;
 pub mod triangle;
+pub mod uv;
 pub mod voxels;
 
 use crate::described_list;
@@ -36,6 +37,7 @@ pub use rectangle::Rectangle;
 pub use sphere::Sphere;
 pub use torus::Torus;
 pub use triangle::Triangle;
+pub use uv::Uv;
 pub use voxels::VoxelGrid;
 
 described_list! {
@@ -80,8 +82,8 @@ pub struct Surface {
     pub n_geo: Vec3,
     /// Unit normal for shading: interpolated on smooth meshes.
     pub n_shade: Vec3,
-    /// Texture coordinates; `None` where the shape has none.
-    pub uv: Option<Vec2>,
+    /// Texture coordinates.
+    pub uv: Uv,
     /// Barycentric coordinates; of use on triangles.
     pub barycentric: Vec3,
     /// From the point to the bent surface that a flat triangle stands for: where it is seen from the side of `n_shade`,
@@ -94,7 +96,7 @@ pub struct Surface {
 impl Surface {
     /// The surface at a point that is placed on it in double precision, so that it is known to its rounding and to
     /// `floor`; flat unless a curvature is set.
-    fn new(point: DVec3, normal: DVec3, floor: f32, uv: Vec2) -> Self {
+    fn new(point: DVec3, normal: DVec3, floor: f32, uv: impl Into<Uv>) -> Self {
         let position = point.as_vec3();
         let n = normal.normalize_or(DVec3::Y).as_vec3();
         let error = gamma(2) * position.abs() + floor;
@@ -105,7 +107,7 @@ impl Surface {
             curvature: 0.0,
             n_geo: n,
             n_shade: n,
-            uv: Some(uv),
+            uv: uv.into(),
             barycentric: Vec3::ZERO,
             lifts: [Vec3::ZERO; 2],
             color: [1.0; 4],

@@ -84,6 +84,7 @@ fn creased(data: &MeshData, degrees: f32) -> Normals {
         let (e, f) = (edge(k + 1), edge(k + 2));
         fp::atan2(e.cross(f).length(), e.dot(f))
     };
+    let angles: Vec<f32> = (0..corners.len() as u32).map(angle).collect();
     let mut normals = Vec::with_capacity(corners.len());
     let mut indices = Vec::with_capacity(data.triangles.len());
     for (i, triangle) in data.triangles.iter().enumerate() {
@@ -94,7 +95,7 @@ fn creased(data: &MeshData, degrees: f32) -> Normals {
                 faces[i]
             } else {
                 let near = around.iter().filter(|&&c| faces[c as usize / 3].dot(faces[i]) >= least_cosine);
-                near.map(|&c| angle(c) * faces[c as usize / 3]).sum()
+                near.map(|&c| angles[c as usize] * faces[c as usize / 3]).sum()
             };
             normals.push(sum.normalize_or(faces[i]));
         }

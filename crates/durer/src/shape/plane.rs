@@ -1,6 +1,6 @@
 //! The plane normal · p = offset, without end.
 
-use super::{Crossing, Shape, Surface};
+use super::{Crossing, Shape, Surface, Uv};
 use crate::describe::Rule;
 use crate::described;
 use crate::dialect::set;
@@ -54,7 +54,6 @@ impl Shape for Plane {
         let on = p - n * ((n.dot(p) - f64::from(self.offset)) / n.dot(n));
         let position = on.as_vec3();
         let normal = n.normalize_or(DVec3::Y).as_vec3();
-        let (tangent, bitangent) = normal.any_orthonormal_pair();
         Surface {
             position,
             rest: Vec3::ZERO,
@@ -62,7 +61,7 @@ impl Shape for Plane {
             curvature: 0.0,
             n_geo: normal,
             n_shade: normal,
-            uv: Some(Vec2::new(tangent.dot(position), bitangent.dot(position))),
+            uv: Uv::Sheet(normal, position),
             barycentric: Vec3::ZERO,
             lifts: [Vec3::ZERO; 2],
             color: [1.0; 4],

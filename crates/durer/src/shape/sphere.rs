@@ -1,10 +1,10 @@
 //! The sphere |p - center|^2 = radius^2.
 
-use super::{Crossing, Shape, Surface};
+use super::{Crossing, Shape, Surface, Uv};
 use crate::describe::Rule;
 use crate::described;
 use crate::dialect::set;
-use crate::math::{Aabb, Line, Ray, Vec2, Vec3, fp, gamma};
+use crate::math::{Aabb, Line, Ray, Vec2, Vec3, gamma};
 use glam::DVec3;
 
 described! {
@@ -81,10 +81,6 @@ impl Shape for Sphere {
         // Placed back onto the sphere, the point is as exact as its coordinates can be.
         let position = self.center + self.radius * normal;
         let error = gamma(3) * (self.center.abs() + self.radius * normal.abs());
-        // Longitude from -z over +x, latitude from the south pole up.
-        let u = fp::atan2(normal.x, -normal.z) / std::f32::consts::TAU + 0.5;
-        let v = fp::asin(normal.y.clamp(-1.0, 1.0)) / std::f32::consts::PI + 0.5;
-        let uv = Some(Vec2::new(u, v));
         Surface {
             position,
             rest: Vec3::ZERO,
@@ -92,7 +88,7 @@ impl Shape for Sphere {
             curvature: 1.0 / self.radius,
             n_geo: normal,
             n_shade: normal,
-            uv,
+            uv: Uv::Globe(normal),
             barycentric: Vec3::ZERO,
             lifts: [Vec3::ZERO; 2],
             color: [1.0; 4],

@@ -287,7 +287,7 @@ fn the_surface_is_on_the_shape_within_its_error_and_in_its_bounds() {
             let bend = f64::from(surface.curvature * size);
             let slack = 1e-6 + (1e-5 * bend) * (1e-5 * bend) + 2e-7 * (1.0 + bend) * f64::from(1.0 + away / size);
             assert!((gradient - n).length() < slack, "{shape:?} {surface:?} {gradient}");
-            let uv = surface.uv.unwrap();
+            let uv = surface.uv.get().unwrap();
             // Only planes and triangles have coordinates of another range.
             let range = matches!(shape, Primitive::Plane(_)) || (uv.cmpge(Vec2::ZERO) & uv.cmple(Vec2::ONE)).all();
             assert!(uv.is_finite() && range, "{shape:?} {uv}");

@@ -1,7 +1,7 @@
 //! A single triangle.
 
 use super::watertight::{self, WatertightRay};
-use super::{Crossing, INSET, Shape, Surface, exactly};
+use super::{Crossing, INSET, Shape, Surface, Uv, exactly};
 use crate::describe::Rule;
 use crate::described;
 use crate::dialect::set;
@@ -68,7 +68,7 @@ impl Shape for Triangle {
             curvature: 0.0,
             n_geo,
             n_shade: n_geo,
-            uv: Some(crossing.uv),
+            uv: Uv::At(crossing.uv),
             barycentric,
             lifts: [Vec3::ZERO; 2],
             color: [1.0; 4],

@@ -64,7 +64,7 @@ impl World {
         match (texture.mapping().is_some_and(|mapping| mapping.second), &self.objects[hit.object as usize].geometry) {
             (true, Geometry::Mesh(tree)) => tree.mesh.second_uv(hit.part, surface.barycentric),
             (true, _) => None,
-            (false, _) => surface.uv,
+            (false, _) => surface.uv.get(),
         }
     }
 

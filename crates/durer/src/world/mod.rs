@@ -64,7 +64,8 @@ pub struct World {
     pub has_cutouts: bool,
     /// Whether some body has no skin, so that light goes straight into it.
     pub has_interfaces: bool,
-    pub(crate) unbounded: Vec<u32>,
+    /// What stands outside the structure: objects without end, and all where they are so few that no tree pays.
+    pub(crate) loose: Vec<u32>,
     pub(crate) accel: Accel,
 }
 
@@ -124,7 +125,7 @@ impl World {
                 }
             }
         };
-        for &object in &self.unbounded {
+        for &object in &self.loose {
             let found = self.objects[object as usize].closest(&ray, false, counter);
             offer(&mut best, &mut ray, object, found);
         }
@@ -167,7 +168,7 @@ impl World {
         if !crate::bvh::is_sound(outer) {
             return false;
         }
-        if self.unbounded.iter().any(|&i| self.objects[i as usize].closest(ray, true, counter).is_some()) {
+        if self.loose.iter().any(|&i| self.objects[i as usize].closest(ray, true, counter).is_some()) {
             return true;
         }
         let mut found = false;

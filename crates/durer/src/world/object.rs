@@ -4,7 +4,7 @@ use super::csg::Csg;
 use crate::bvh::{BuildQuality, TraversalCounter, TriangleBvh};
 use crate::dialect::MeshNormals;
 use crate::math::{Aabb, Affine, Line, Ray, Ray64, Vec2, Vec3};
-use crate::shape::{Crossing, Mesh, Primitive, Shape, Surface};
+use crate::shape::{Crossing, Mesh, Primitive, Shape, Surface, Uv};
 use glam::DVec3;
 use std::sync::{Arc, OnceLock};
 
@@ -180,7 +180,7 @@ impl Object {
                 position: ray.rounded.at(crossing.t),
                 n_geo,
                 n_shade: self.normal_length * n_shade,
-                uv: surface.uv.filter(|_| !untextured),
+                uv: if untextured { Uv::None } else { surface.uv },
                 ..surface
             };
         }

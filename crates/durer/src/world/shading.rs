@@ -46,7 +46,7 @@ impl Shading {
 impl World {
     /// Noise, else texture, else the diffuse colour; or the diffuse colour times texture and vertices' colours.
     pub fn diffuse_color(&self, phong: &Phong, surface: &Surface) -> Color {
-        let texture = phong.texture.zip(surface.uv).map(|(i, uv)| self.textures[i as usize].at(uv));
+        let texture = phong.texture.and_then(|i| Some(self.textures[i as usize].at(surface.uv.get()?)));
         if phong.tinted {
             let [r, g, b, _] = surface.color;
             return phong.diffuse * Color::new(r, g, b) * texture.unwrap_or(Color::ONE);

@@ -14,7 +14,7 @@ use std::f64::consts::PI;
 
 /// The ray of a camera in our own dialect.
 pub fn ray(camera: &impl Lens, sample: CameraSample) -> Option<Ray> {
-    camera.ray(&Frame::new(camera.pose(), &rules(&[])), &sample)
+    camera.ray(&Frame::of(camera, &rules(&[])), &sample)
 }
 
 /// What a point of the picture sees, x to the right, y up, -z ahead where nothing else is said.
@@ -25,7 +25,7 @@ fn dir(camera: &impl Lens, x: f32, y: f32) -> Vec3 {
 /// The solid angle of a whole picture, by the middle of each of 480 x 480 cells.
 fn solid_angle(camera: &impl Lens) -> f64 {
     const CELLS: u32 = 480;
-    let frame = Frame::new(camera.pose(), &rules(&[]));
+    let frame = Frame::of(camera, &rules(&[]));
     let side = 2.0 / f64::from(CELLS);
     let at = |i: u32| (-1.0 + side * (f64::from(i) + 0.5)) as f32;
     let cells = (0..CELLS * CELLS).map(|i| CameraSample::at(Vec2::new(at(i % CELLS), at(i / CELLS))));
@@ -205,7 +205,7 @@ fn a_closed_path_is_smooth_where_it_closes_and_sees_all_sides() {
     let mut path: Vec<[f32; 6]> = (0..12).map(row).collect();
     path.push(path[0]);
     let camera = MultipleCenterCamera { path, aspect: 2.0, ..MultipleCenterCamera::default() };
-    let frame = Frame::new(camera.pose(), &rules(&[]));
+    let frame = Frame::of(&camera, &rules(&[]));
     let at = |x: f32| CameraSample::at(Vec2::new(x, 0.0));
     close(ray(&camera, at(1.0)).unwrap().origin, ray(&camera, at(-1.0)).unwrap().origin);
     // The footprint holds the path's slope.

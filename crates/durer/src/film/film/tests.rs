@@ -1,4 +1,5 @@
 use super::*;
+use crate::film::Packed;
 use proptest::prelude::*;
 
 #[derive(Clone, Copy, Debug)]
@@ -27,6 +28,24 @@ fn samples() -> impl Strategy<Value = Vec<Sample>> {
 }
 
 proptest! {
+    #[test]
+    fn packed_films_are_the_same(samples in samples()) {
+        // With all samples, with those that are usual, and with one in each pixel.
+        let usual = samples.iter().copied().filter(|s| s.3.is_finite() && s.2 % 4 != 3);
+        let usual: Vec<Sample> = usual.map(|s| Sample(s.0, s.1, s.2, s.3.clamp(Vec3::splat(-7.0), Vec3::splat(7.0)), 1.0)).collect();
+        let single: Vec<Sample> = (0..6).zip(&usual).map(|(i, &Sample(_, _, s, color, weight))| Sample(i % 3, i / 3, s, color, weight)).collect();
+        for (samples, count) in [(&samples, 50), (&usual, 120), (&single, 1)] {
+            let film = film(samples);
+            let packed = Packed::new(film.clone());
+            prop_assert_eq!(&packed.film([0, 0, 3, 2]), &film);
+            match (samples.len(), count) {
+                (6, 1) => prop_assert!(matches!(packed, Packed::Single(..))),
+                (_, 120) => prop_assert!(matches!(packed, Packed::Small(..) | Packed::Single(..))),
+                _ => {}
+            }
+        }
+    }
+
     #[test]
     fn order_and_grouping_change_nothing(
         (given, shuffled) in samples().prop_flat_map(|s| (Just(s.clone()), Just(s).prop_shuffle())),

@@ -53,15 +53,20 @@ fn offsets_follow_the_filter() {
 }
 
 #[test]
-fn the_guide_leads_to_the_bin_that_a_search_finds() {
+fn offsets_are_off_by_less_than_a_thousandth_of_the_radius() {
+    const STEPS: usize = 1 << 16;
     for filter in sizes() {
         let sampler = filter.sampler();
-        let total = sampler.knots[BINS].1;
-        for i in 0..100_000 {
-            let v = f64::from(i as f32 / 100_000.0);
-            let found = sampler.knots.partition_point(|&(_, integral)| integral <= v * total).clamp(1, BINS);
-            assert_eq!(sampler.bin(v), found, "{filter:?} {v}");
+        let at = |step: usize| (step as f32 + 0.5) / STEPS as f32 * filter.radius();
+        let total: f64 = (0..STEPS).map(|step| f64::from(filter.profile(at(step)).abs())).sum();
+        let (mut integral, mut off, mut weight) = (0.0, 0.0, 0.0);
+        for step in 0..STEPS {
+            let here = f64::from(filter.profile(at(step)).abs());
+            let share = (integral + 0.5 * here) / total;
+            off += here * f64::from((sampler.warp((0.5 + 0.5 * share) as f32) - at(step)).abs());
+            (integral, weight) = (integral + here, weight + here);
         }
+        assert!(off / weight < 1e-3 * f64::from(filter.radius()), "{filter:?}: {}", off / weight);
     }
 }
 
@@ -108,7 +113,11 @@ fn warps_are_exact_where_they_can_be() {
         let u = i as f32 / 1000.0;
         assert!((boxed.warp(u) - (u - 0.5)).abs() < 1e-7);
         let exact = if u < 0.5 { (2.0 * u).sqrt() - 1.0 } else { 1.0 - (2.0 - 2.0 * u).sqrt() };
-        assert!((tent.warp(u) - exact).abs() < 2e-6, "{u}");
+        // The last share is as wide as the root of it.
+        assert!(
+            (tent.warp(u) - exact).abs() < 0.006 && (exact.abs() > 0.9 || (tent.warp(u) - exact).abs() < 2e-6),
+            "{u}"
+        );
         assert!(tent.warp(u) <= tent.warp(u + 1e-3));
     }
 }

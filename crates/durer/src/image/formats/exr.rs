@@ -175,7 +175,7 @@ mod tests {
 
     fn layer(name: &str, kind: LayerKind, value: f32) -> Layer {
         let pixels = (0..6).map(|i| Vec3::new(value, i as f32, -value)).collect();
-        Layer { name: name.into(), image: Image { width: 3, height: 2, pixels }, kind, coverage: None }
+        Layer { name: name.into(), image: Image { width: 3, height: 2, pixels }.into(), kind, coverage: None }
     }
 
     #[test]
@@ -187,7 +187,7 @@ mod tests {
         ];
         let mut out = Vec::new();
         FORMAT.write(&layers, &WriteOptions::default(), &mut out).unwrap();
-        assert_eq!(crate::image::read(&out, "").unwrap(), layers[1].image);
+        assert_eq!(crate::image::read(&out, "").unwrap(), *layers[1].image);
 
         let file = tempfile::NamedTempFile::new().unwrap();
         std::fs::write(file.path(), &out).unwrap();

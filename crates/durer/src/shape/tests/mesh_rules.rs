@@ -162,14 +162,14 @@ fn a_files_normals_and_coordinates_are_interpolated() {
     let seen = surface(&data, MeshNormals::Flat, true);
     assert_eq!(seen.barycentric, Vec3::new(0.25, 0.25, 0.5));
     assert_eq!(seen.position, Vec3::new(0.25, 0.5, 0.0));
-    assert_eq!(seen.uv, Some(Vec2::new(0.5, 1.5)));
+    assert_eq!(seen.uv.get(), Some(Vec2::new(0.5, 1.5)));
     assert!((seen.n_shade - Vec3::new(0.25, 2.5, 0.5).normalize()).length() < 1e-6);
     assert_eq!(surface(&data, MeshNormals::Flat, false).n_shade, Vec3::Z);
     // A triangle that lacks one is given normals by the rule, and has no coordinates.
     data.triangle_normals[0][1] = NO_INDEX;
     data.triangle_uvs[0][1] = NO_INDEX;
     let seen = surface(&data, MeshNormals::SmoothByArea, true);
-    assert_eq!((seen.n_shade, seen.uv), (Vec3::Z, None));
+    assert_eq!((seen.n_shade, seen.uv.get()), (Vec3::Z, None));
     assert_eq!(surface(&data, MeshNormals::Flat, true).n_shade, Vec3::Z);
 }
 

@@ -1,0 +1,98 @@
+//! Sums at rest, in as few bytes as they need: a picture's memory is mostly this.
+
+use super::film::{Film, Pixel, WEIGHT_SCALE};
+
+/// A film that nothing is added to for a while. It is the same film: what comes out is what went in.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Packed {
+    /// Each pixel has one sample of weight 1, which saw something: its colour, and its luminance.
+    Single(Box<[[i64; 3]]>, Box<[i32]>),
+    /// Sums of 64 bits are enough, and all samples saw something.
+    Small(Box<[Small]>),
+    /// All that a film can hold.
+    Whole(Box<Film>),
+}
+
+/// The sums of [`Pixel`], as far as they are not known otherwise.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Small {
+    color: [i64; 3],
+    squares: i64,
+    luminance: i64,
+    weight: i64,
+    samples: u32,
+}
+
+impl Small {
+    fn of(pixel: &Pixel) -> Option<Self> {
+        let [r, g, b] = pixel.color;
+        (pixel.covered == pixel.weight).then_some(())?;
+        Some(Small {
+            color: [r.try_into().ok()?, g.try_into().ok()?, b.try_into().ok()?],
+            squares: pixel.squares.try_into().ok()?,
+            luminance: pixel.luminance,
+            weight: pixel.weight,
+            samples: pixel.samples.try_into().ok()?,
+        })
+    }
+
+    fn pixel(&self) -> Pixel {
+        Pixel {
+            color: self.color.map(i128::from),
+            squares: self.squares.into(),
+            luminance: self.luminance,
+            weight: self.weight,
+            covered: self.weight,
+            samples: self.samples.into(),
+        }
+    }
+
+    /// Its luminance in few bits, if it is of one sample of weight 1.
+    fn single(&self) -> Option<i32> {
+        let is_single = self.samples == 1
+            && self.weight == WEIGHT_SCALE as i64
+            && i128::from(self.squares) == i128::from(self.luminance) * i128::from(self.luminance);
+        is_single.then(|| self.luminance.try_into().ok()).flatten()
+    }
+
+    fn of_single((&color, &luminance): (&[i64; 3], &i32)) -> Self {
+        let luminance = i64::from(luminance);
+        Small { color, squares: luminance * luminance, luminance, weight: WEIGHT_SCALE as i64, samples: 1 }
+    }
+}
+
+impl Packed {
+    /// A film, packed.
+    pub fn new(film: Film) -> Self {
+        let small: Option<Box<[Small]>> = match film.rejected() {
+            0 => film.pixels.iter().map(Small::of).collect(),
+            _ => None,
+        };
+        let Some(small) = small else { return Packed::Whole(Box::new(film)) };
+        match small.iter().map(Small::single).collect() {
+            Some(luminances) => Packed::Single(small.iter().map(|pixel| pixel.color).collect(), luminances),
+            None => Packed::Small(small),
+        }
+    }
+
+    /// The film, whose window is given again: its left and upper edge, its width and height.
+    pub fn film(&self, [left, top, width, height]: [u32; 4]) -> Film {
+        let film = |pixels: Vec<Pixel>| {
+            let mut film = Film::window(left, top, width, height);
+            film.pixels = pixels;
+            film
+        };
+        match self {
+            Packed::Single(colors, luminances) => {
+                film(colors.iter().zip(luminances).map(|one| Small::of_single(one).pixel()).collect())
+            }
+            Packed::Small(pixels) => film(pixels.iter().map(Small::pixel).collect()),
+            Packed::Whole(film) => Film::clone(film),
+        }
+    }
+
+    /// Bytes that a pixel of so many samples takes, where light is not stronger than usual.
+    pub fn pixel_bytes(samples: u32) -> u64 {
+        (if samples == 1 { size_of::<[i64; 3]>() + size_of::<i32>() } else { size_of::<Small>() }) as u64
+    }
+}

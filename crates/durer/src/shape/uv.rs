@@ -1,0 +1,52 @@
+//! Texture coordinates that are worked out when somebody asks: most surfaces have no picture.
+
+use super::turn;
+use crate::math::{Vec2, Vec3, fp};
+
+/// Where a point lies in a picture on the surface.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Uv {
+    /// The shape has no such coordinates.
+    #[default]
+    None,
+    /// Known.
+    At(Vec2),
+    /// The angle of a point of a plane, counted as by [`turn`], and what goes along the axis.
+    Turned(Vec2, f32),
+    /// Longitude from -z over +x, and latitude from the south pole up, of a unit vector.
+    Globe(Vec3),
+    /// Along two axes of a plane, by its unit normal and the point.
+    Sheet(Vec3, Vec3),
+}
+
+impl Uv {
+    /// The coordinates, if there are any.
+    pub fn get(self) -> Option<Vec2> {
+        use std::f32::consts::{PI, TAU};
+        Some(match self {
+            Uv::None => return None,
+            Uv::At(uv) => uv,
+            Uv::Turned(around, v) => Vec2::new(turn(around.x.into(), around.y.into()), v),
+            Uv::Globe(n) => {
+                let (around, up) = (fp::atan2(n.x, -n.z), fp::asin(n.y.clamp(-1.0, 1.0)));
+                Vec2::new(around / TAU + 0.5, up / PI + 0.5)
+            }
+            Uv::Sheet(normal, point) => {
+                let (tangent, bitangent) = normal.any_orthonormal_pair();
+                Vec2::new(tangent.dot(point), bitangent.dot(point))
+            }
+        })
+    }
+}
+
+impl From<Vec2> for Uv {
+    fn from(uv: Vec2) -> Self {
+        Uv::At(uv)
+    }
+}
+
+impl From<Option<Vec2>> for Uv {
+    fn from(uv: Option<Vec2>) -> Self {
+        uv.map_or(Uv::None, Uv::At)
+    }
+}
