@@ -17,6 +17,7 @@ import struct
 import subprocess
 import sys
 import tempfile
+import time
 import zlib
 
 
@@ -193,16 +194,25 @@ def glass_balls(_):
 SCENES = [sphere, whitted, hall, dragon, gear, height_field, glass_balls]
 
 
-def run(command, folder):
-    """CPU seconds, wall seconds and peak bytes of a command."""
-    start = os.times().elapsed
-    process = subprocess.Popen([str(c) for c in command], cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
-    errors = process.stderr.read().decode(errors="replace")
-    _, status, used = os.wait4(process.pid, 0)
-    process.returncode = status
-    if status != 0:
-        sys.exit(f"{' '.join(map(str, command))} failed:\n{errors[-2000:]}")
-    return used.ru_utime + used.ru_stime, os.times().elapsed - start, used.ru_maxrss * 1024
+def run(command, folder, peak=False):
+    """CPU seconds, wall seconds and, if wanted, peak bytes of a command."""
+    start, most = os.times().elapsed, 0
+    with open(folder / "errors.txt", "w+b") as errors:
+        process = subprocess.Popen([str(c) for c in command], cwd=folder, stdout=subprocess.DEVNULL, stderr=errors)
+        # What wait4 tells of memory counts this program's own, before the other one began.
+        while peak and (os.waitid(os.P_PID, process.pid, os.WEXITED | os.WNOHANG | os.WNOWAIT)) is None:
+            try:
+                status = pathlib.Path(f"/proc/{process.pid}/status").read_text()
+                most = max([most] + [1024 * int(line.split()[1]) for line in status.split("\n") if line.startswith("VmHWM")])
+            except OSError:
+                pass
+            time.sleep(0.002)
+        _, status, used = os.wait4(process.pid, 0)
+        process.returncode = status
+        if status != 0:
+            errors.seek(0)
+            sys.exit(f"{' '.join(map(str, command))} failed:\n{errors.read().decode(errors='replace')[-2000:]}")
+    return used.ru_utime + used.ru_stime, os.times().elapsed - start, most
 
 
 def ours(durer, s, side, samples, threads, picture):
@@ -269,8 +279,8 @@ def main():
             for _ in range(given.runs):
                 a.append(run(ours(durer, s, given.side, 16, given.threads, "a.png"), folder))
                 b.append(run(theirs(4 * given.side, given.threads, "b.png"), folder))
-            memory = (run(ours(durer, s, 2 * given.side, 1, given.threads, "a.png"), folder)[2],
-                      run(theirs(2 * given.side, given.threads, "b.png"), folder)[2])
+            memory = (run(ours(durer, s, 2 * given.side, 1, given.threads, "a.png"), folder, True)[2],
+                      run(theirs(2 * given.side, given.threads, "b.png"), folder, True)[2])
             ratio = median([x[0] / y[0] for x, y in zip(a, b)])
             logs.append(math.log(ratio))
             cpu, wall = [[median([r[i] for r in runs]) for runs in (a, b)] for i in (0, 1)]

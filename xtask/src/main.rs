@@ -1,5 +1,6 @@
 //! Commands for those who build Dürer.
 
+mod bench_pictures;
 mod bench_rays;
 mod bitterli;
 mod build;
@@ -43,6 +44,8 @@ const USAGE: &str = "Commands:
       The very same rays through Dürer, Embree 4, obvhs, bvh and parry3d; --help says more.
   cargo xtask bench-rays --edges N [--threads N]
       How many of N rays each of them loses at the vertices and edges of a closed mesh.
+  cargo xtask bench-pictures [--runs 3] [--threads 2] [--side 512] [--only TEXT]
+      The same scenes by us and by POV-Ray 3.7 (Debian's `povray`), in turns: time, memory, and whether both show the same.
   cargo xtask long [--only TEXT] [--times N]
       Tests of the suite with many more numbers: rays against a reference in double precision, rays at edges, rays that
       leave surfaces, bits of all SIMD levels.
@@ -74,6 +77,7 @@ fn main() -> anyhow::Result<ExitCode> {
             println!("{USAGE}");
             Ok(ExitCode::SUCCESS)
         }
+        Some("bench-pictures") => bench_pictures::run(&arguments[1..]),
         Some("course") => course::run(&arguments[1..]),
         Some("verify") => verify::run(&arguments[1..]),
         Some("explain") => explain::run(&arguments[1..]),

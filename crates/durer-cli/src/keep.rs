@@ -234,7 +234,7 @@ fn save_part(place: &Destination, part: &Part) -> Result<(), String> {
     if !place.is_stream() {
         check_is_part(place.path())?;
     }
-    save_all(&[(place, part.write())]).map_err(|error| error.to_string())
+    save_all(&[(place, part)]).map_err(|error| error.to_string())
 }
 
 /// Reads a part from a file.

@@ -14,6 +14,7 @@ mod guard;
 mod info;
 mod job;
 mod keep;
+mod large;
 mod lesson;
 mod manual;
 mod measure;

@@ -44,6 +44,14 @@ impl Target {
         Ok(Target { format, files: files.collect::<Result<_, Failure>>()? })
     }
 
+    /// The file and its format, where all pictures go into one.
+    pub fn single(&self) -> Option<(&Destination, &'static Format)> {
+        match &self.files[..] {
+            [(None, place)] => Some((place, self.format)),
+            _ => None,
+        }
+    }
+
     /// Whether pictures of this size fit into the files.
     pub fn check_size(&self, width: u32, height: u32) -> Result<(), Failure> {
         self.format.check_size(width, height).map_err(|error| bad(error.to_string()))

@@ -6,10 +6,10 @@ use crate::keep::Keeper;
 use crate::open::{load_options, read};
 use crate::output::{Target, lengthened, say};
 use crate::stats::Stages;
-use crate::{Failure, bad, check, diagrams, job, output, progress, report};
+use crate::{Failure, bad, check, diagrams, job, large, output, progress, report};
 use durer::diag::Diagnostic;
 use durer::image::checked_count;
-use durer::render::{Control, Job, Panicked, Part, RenderError, Shard, ShardBy, Statistics, Stop, replay};
+use durer::render::{Bands, Control, Job, Panicked, Part, RenderError, Shard, ShardBy, Statistics, Stop, replay};
 use durer::world::World;
 use std::path::Path;
 use std::sync::Arc;
@@ -41,12 +41,19 @@ pub fn run(command: &RenderCommand) -> Result<(), Failure> {
     let scene = read(&args.scene, &options, args.quiet, &mut guard)?;
     stages.ends("reading");
     let job = job::job(&args.job, Some(&args.view), &scene.loaded, args.work.time.is_some())?;
-    // A size that no picture has is refused as such, whatever the memory.
-    checked_count(job.width, job.height).map_err(|error| bad(error.to_string()))?;
     let window = job.window();
-    target.as_ref().map_or(Ok(()), |target| target.check_size(window.width, window.height))?;
+    let mut needed = Part::bytes_needed(&job, shard);
+    let bands = match &target {
+        Some(target) if large::is_large(&job, needed, memory) => Some(large::bands(args, &job, target, memory)?),
+        target => {
+            // A size that no picture has is refused as such, whatever the memory.
+            checked_count(window.width, window.height).map_err(|error| bad(error.to_string()))?;
+            target.as_ref().map_or(Ok(()), |target| target.check_size(window.width, window.height))?;
+            None
+        }
+    };
     // What the film takes is not there for the scene.
-    let needed = Part::bytes_needed(&job, shard);
+    needed = bands.as_ref().map_or(needed, Bands::bytes_needed);
     options.memory = memory.map(|memory| memory.saturating_sub(needed));
     if let Some(allowed) = memory.filter(|&memory| needed > memory) {
         return Err(failure(RenderError::Memory { needed, allowed }));
@@ -62,8 +69,12 @@ pub fn run(command: &RenderCommand) -> Result<(), Failure> {
         time: args.work.time,
         save_every: Some(args.work.checkpoint_every),
         memory,
+        goes_on: bands.is_some(),
         ..Control::default()
     });
+    if let (Some(bands), Some(target)) = (&bands, &target) {
+        return large::render(bands, &opened.world, &control, target, args);
+    }
     let keeper = match (command.pixel, keeper) {
         (None, Some(keeper)) => keeper,
         (pixel, _) => {

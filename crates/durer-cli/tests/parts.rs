@@ -98,7 +98,21 @@ fn rules_of_stopping_and_limits() {
     assert!(ran.err.contains("the time was over after"), "{}", ran.err);
     assert_eq!((place.image8("v.png").width, place.image8("t.png").width), (64, 64));
     assert!(!place.path("t.png.part").exists(), "what nobody wanted is not left");
-    place.refused(2, "render scene.txt --size 4000x4000 --memory 100M", &["needs about", "100 MiB", "--memory"]);
+    let large = "render scene.txt --size 4000x4000 --memory 100M";
+    place.refused(2, &format!("{large} -o p.exr"), &["bands of rows", "OpenEXR needs all rows at once"]);
+    place.refused(2, &format!("{large} -o p.png --show color,depth"), &["bands of rows", "other pictures"]);
+    place.refused(2, &format!("{large} -o p.png --preview q.png"), &["bands of rows", "--preview"]);
+    place.refused(2, &format!("{large} -o p.part --shard 1/2"), &["needs about", "100 MiB", "--memory"]);
+    place.refused(2, "render scene.txt --size 4294967295x4 --memory 100M", &["needs about", "100 MiB", "--memory"]);
+    // A picture in bands, and at once.
+    let size = "--size 700x500 --samples 2 --hash";
+    let [bands, whole] = ["--memory 12M", ""].map(|memory| {
+        let name = if memory.is_empty() { "w.ppm" } else { "b.ppm" };
+        let ran = place.gives(0, &format!("render scene.txt {size} {memory} -o {name}"));
+        assert!(ran.out.contains(&format!("wrote {name}")), "{}", ran.out);
+        (place.bytes(name), ran.out.lines().last().map(String::from))
+    });
+    assert!(bands == whole, "{:?} {:?}", bands.1, whole.1);
     place.refused(2, "render scene.txt --memory 5Q", &["8G"]);
     place.refused(2, "render scene.txt --noise 0", &["more than 0"]);
     place.refused(2, "render scene.txt --noise 0.1 --sampler jittered", &["sobol or random"]);

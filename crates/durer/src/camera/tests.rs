@@ -103,6 +103,7 @@ fn the_pinhole_sees_its_angle_across_the_square() {
     assert_eq!((ray(0.3, 0.4).origin, ray(0.3, 0.4).t_min), (Vec3::Y, 0.0));
     for angle in [1.0f32, 30.0, 120.0, 179.0] {
         let camera = PerspectiveCamera { angle, ..camera.clone() };
+        let frame = Frame::of(&camera, &rules(&[]));
         let dir = |x| camera.ray(&frame, &CameraSample::at(x)).unwrap().dir;
         let cosine = dir(Vec2::X).dot(dir(Vec2::NEG_X));
         assert!((f64::from(cosine) - libm::cos(f64::from(angle).to_radians())).abs() < 1e-6, "{angle}");

@@ -17,7 +17,8 @@ pub enum Packed {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Small {
     color: [i64; 3],
-    squares: i64,
+    /// In two words, so that nothing lies empty.
+    squares: [u64; 2],
     luminance: i64,
     weight: i64,
     samples: u32,
@@ -29,17 +30,22 @@ impl Small {
         (pixel.covered == pixel.weight).then_some(())?;
         Some(Small {
             color: [r.try_into().ok()?, g.try_into().ok()?, b.try_into().ok()?],
-            squares: pixel.squares.try_into().ok()?,
+            squares: words(pixel.squares),
             luminance: pixel.luminance,
             weight: pixel.weight,
             samples: pixel.samples.try_into().ok()?,
         })
     }
 
+    fn squares(&self) -> i128 {
+        let [low, high] = self.squares.map(u128::from);
+        (high << 64 | low) as i128
+    }
+
     fn pixel(&self) -> Pixel {
         Pixel {
             color: self.color.map(i128::from),
-            squares: self.squares.into(),
+            squares: self.squares(),
             luminance: self.luminance,
             weight: self.weight,
             covered: self.weight,
@@ -51,14 +57,25 @@ impl Small {
     fn single(&self) -> Option<i32> {
         let is_single = self.samples == 1
             && self.weight == WEIGHT_SCALE as i64
-            && i128::from(self.squares) == i128::from(self.luminance) * i128::from(self.luminance);
+            && self.squares() == i128::from(self.luminance) * i128::from(self.luminance);
         is_single.then(|| self.luminance.try_into().ok()).flatten()
     }
 
     fn of_single((&color, &luminance): (&[i64; 3], &i32)) -> Self {
         let luminance = i64::from(luminance);
-        Small { color, squares: luminance * luminance, luminance, weight: WEIGHT_SCALE as i64, samples: 1 }
+        Small {
+            color,
+            squares: words((luminance * luminance).into()),
+            luminance,
+            weight: WEIGHT_SCALE as i64,
+            samples: 1,
+        }
     }
+}
+
+/// The lower and the upper half.
+fn words(number: i128) -> [u64; 2] {
+    [number as u64, (number >> 64) as u64]
 }
 
 impl Packed {

@@ -10,13 +10,15 @@ mod jpeg;
 mod pfm;
 mod png;
 mod ppm;
+mod rows;
 mod tga;
 mod webp;
+
+pub use rows::{RowFormat, RowWriter, Strip};
 
 use super::limits;
 use super::{Display, Image, Image8, ImageError, Layer, LayerKind, Transfer};
 use crate::diag;
-use crate::math::Vec3;
 use std::panic::UnwindSafe;
 use std::path::Path;
 
@@ -88,6 +90,8 @@ pub struct Format {
     /// Reads a picture whose size was found possible.
     decode: fn(&[u8]) -> Result<Raster, ImageError>,
     encode: Encode,
+    /// How it is written row by row, if it can be.
+    pub rows: Option<&'static RowFormat>,
 }
 
 impl Format {
@@ -97,6 +101,14 @@ impl Format {
     /// [`ImageError::Size`] and [`ImageError::Unsupported`].
     pub fn check_size(&self, width: u32, height: u32) -> Result<(), ImageError> {
         limits::checked_count(width, height)?;
+        self.check_sides(width, height)
+    }
+
+    /// The same for a picture that is written row by row, and so may be larger than any in memory.
+    ///
+    /// # Errors
+    /// [`ImageError::Unsupported`].
+    pub fn check_sides(&self, width: u32, height: u32) -> Result<(), ImageError> {
         match width.max(height) <= self.most_side {
             true => Ok(()),
             false => Err(ImageError::unsupported(self.name, format!("a side above {}", self.most_side))),
@@ -185,22 +197,18 @@ fn display(layer: &Layer, options: &WriteOptions) -> Display {
 }
 
 /// The bytes of an eight-bit picture with alpha: red, green, blue and alpha, the top row first; `None` where it is opaque.
-///
-/// Here colours are those of what is seen alone, without the share of it (straight alpha).
 fn eight_bit_alpha(layer: &Layer, options: &WriteOptions) -> Option<Vec<u8>> {
-    let (display, coverage) = (display(layer, options), layer.coverage.as_ref()?);
-    let pixel = |(&pixel, &share): (&Vec3, &f32)| {
-        let alone = if share > 0.0 { pixel / share } else { Vec3::ZERO };
-        let [r, g, b] = display.encode_pixel(alone);
-        [r, g, b, Transfer::Linear.encode(share)]
-    };
-    Some(layer.image.pixels.iter().zip(coverage).flat_map(pixel).collect())
+    let mut bytes = Vec::with_capacity(4 * layer.image.pixels.len());
+    Strip::of(layer, options).eight_bit(&layer.image.pixels, layer.coverage.as_ref()?, |rgba| bytes.extend(rgba));
+    Some(bytes)
 }
 
 /// The bytes of an eight-bit picture: red, green and blue, the top row first.
 fn eight_bit(layer: &Layer, options: &WriteOptions) -> Vec<u8> {
-    let display = display(layer, options);
-    layer.image.pixels.iter().flat_map(|&pixel| display.encode_pixel(pixel)).collect()
+    let mut bytes = Vec::with_capacity(3 * layer.image.pixels.len());
+    let strip = Strip { alpha: false, ..Strip::of(layer, options) };
+    strip.eight_bit(&layer.image.pixels, &[], |[r, g, b, _]| bytes.extend([r, g, b]));
+    bytes
 }
 
 #[cfg(test)]

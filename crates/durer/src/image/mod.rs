@@ -19,10 +19,10 @@ mod conformance;
 
 pub use display::{Display, Tone};
 pub use error::ImageError;
-pub use formats::{Depth, FORMATS, Format, WriteOptions, format_for};
+pub use formats::{Depth, FORMATS, Format, RowFormat, RowWriter, Strip, WriteOptions, format_for};
 pub use limits::{MAX_PIXELS, checked_count, pixel_limit};
 pub use read::{Encoded, read, read_srgb, read8};
-pub use save::{Destination, SaveError, save, save_all};
+pub use save::{Content, Destination, SaveError, save, save_all};
 pub use transfer::{Transfer, decode_linear, decode_srgb};
 
 use crate::math::{Color, Vec3};

@@ -91,6 +91,21 @@ impl Destination {
     }
 }
 
+/// What can be put into a file: bytes, or what becomes bytes while it is written.
+pub trait Content {
+    /// Writes all of it.
+    ///
+    /// # Errors
+    /// Those of `out`.
+    fn write_to(&self, out: &mut dyn Write) -> io::Result<()>;
+}
+
+impl<B: AsRef<[u8]>> Content for B {
+    fn write_to(&self, out: &mut dyn Write) -> io::Result<()> {
+        out.write_all(self.as_ref())
+    }
+}
+
 /// Puts bytes into a file, wholly or not at all. Devices and pipes are written to directly.
 ///
 /// # Errors
@@ -99,19 +114,19 @@ pub fn save(path: impl AsRef<Path>, bytes: &[u8]) -> Result<(), SaveError> {
     save_all(&[(&Destination::new(path.as_ref())?, bytes)])
 }
 
-/// Puts bytes into several files: all are written beside their targets before the first is renamed.
+/// Puts contents into several files: all are written beside their targets before the first is renamed.
 ///
 /// # Errors
 /// [`SaveError`]. Unless a rename itself fails, which takes a change of the folders meanwhile, no file is changed.
-pub fn save_all<B: AsRef<[u8]>>(files: &[(&Destination, B)]) -> Result<(), SaveError> {
+pub fn save_all<C: Content>(files: &[(&Destination, C)]) -> Result<(), SaveError> {
     let mut staged = Vec::with_capacity(files.len());
-    for (place, bytes) in files.iter().filter(|file| !file.0.is_stream()) {
-        staged.push(stage(place.path(), bytes.as_ref())?);
+    for (place, content) in files.iter().filter(|file| !file.0.is_stream()) {
+        staged.push(stage(place.path(), content)?);
     }
     // What cannot be renamed cannot be undone either: it comes when the files are safe on the disk.
-    for (place, bytes) in files {
+    for (place, content) in files {
         if let Some(mut stream) = place.stream.as_ref() {
-            stream.write_all(bytes.as_ref()).map_err(|error| SaveError::Io { path: place.path.clone(), error })?;
+            content.write_to(&mut stream).map_err(|error| SaveError::Io { path: place.path.clone(), error })?;
         }
     }
     for (temporary, target) in staged {
@@ -188,7 +203,7 @@ fn open_stream(path: &Path) -> Result<File, SaveError> {
 }
 
 /// Writes the temporary file for a target.
-fn stage(path: &Path, bytes: &[u8]) -> Result<(Temporary, PathBuf), SaveError> {
+fn stage(path: &Path, content: &impl Content) -> Result<(Temporary, PathBuf), SaveError> {
     let io = |error| SaveError::Io { path: path.into(), error };
     // What was a file may be something else by now.
     let (target, old) = resolve(path)?.ok_or_else(|| SaveError::NotAFile { path: path.into() })?;
@@ -196,7 +211,7 @@ fn stage(path: &Path, bytes: &[u8]) -> Result<(Temporary, PathBuf), SaveError> {
     if let Some(old) = old {
         temporary.file().set_permissions(old.permissions()).map_err(io)?;
     }
-    temporary.file().write_all(bytes).map_err(io)?;
+    content.write_to(&mut temporary.file()).map_err(io)?;
     temporary.file().sync_all().map_err(io)?;
     Ok((temporary, target))
 }

@@ -15,6 +15,9 @@ use serde::Serialize;
 
 /// Hears what an integrator does. The closures are called only by those that listen.
 pub trait Witness: TraversalCounter {
+    /// Whether it wants to be told of terms that come to nothing too.
+    const LISTENS: bool = false;
+
     /// A term begins.
     fn begin(&mut self, _what: impl FnOnce() -> What) {}
     /// The ray of the term that was begun last hits something.
@@ -289,6 +292,8 @@ impl TraversalCounter for Account {
 }
 
 impl Witness for Account {
+    const LISTENS: bool = true;
+
     fn begin(&mut self, what: impl FnOnce() -> What) {
         let node = Node { what: what(), factor: Color::ONE, scale: Color::ONE, value: Color::ZERO, terms: Vec::new() };
         self.open.push(node);

@@ -116,8 +116,20 @@ impl Whitted<'_> {
             }
             for number in 0..self.world.lights.len() {
                 let seen = self.world.illuminate(number, surface.point());
+                let lit = parts.iter().zip(&diffuse);
+                let scattered = |tally: &mut T, (part, &diffuse): (&Part, &Color)| {
+                    direct(part.phong, diffuse, n, ray.dir(), &seen, tally)
+                };
+                // Where nothing of a light would be scattered, nobody asks whether it arrives.
+                let known: SmallVec<[Color; 2]> = match T::LISTENS {
+                    true => SmallVec::new(),
+                    false => lit.clone().map(|part| scattered(tally, part)).collect(),
+                };
+                if !T::LISTENS && known.iter().all(|&color| color == Color::ZERO) {
+                    continue;
+                }
                 let visible = self.visible(surface, &seen, tally);
-                for (part, &diffuse) in parts.iter().zip(&diffuse) {
+                for (i, (part, diffuse)) in lit.enumerate() {
                     let share = part.share;
                     tally.begin(|| {
                         let shadow = self.settings.shadows.then(|| self.shadow(surface, &seen, visible));
@@ -127,7 +139,7 @@ impl Whitted<'_> {
                     // In the dark nothing is computed.
                     let direct = match visible == Color::ZERO {
                         true => Color::ZERO,
-                        false => direct(part.phong, diffuse, n, ray.dir(), &seen, tally),
+                        false => known.get(i).copied().unwrap_or_else(|| scattered(tally, (part, diffuse))),
                     };
                     tally.end(share * visible, seen.color, direct);
                     color += share * visible * direct;

@@ -27,4 +27,6 @@ pub struct Control {
     pub done: AtomicU64,
     /// Rays traced so far.
     pub rays: AtomicU64,
+    /// Whether `all` is that of several renders, which count on with `done`.
+    pub goes_on: bool,
 }

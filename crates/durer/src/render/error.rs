@@ -31,6 +31,9 @@ pub enum RenderError {
     /// The work cannot be split so.
     #[error("{0}")]
     Shard(String),
+    /// It is too large to be made at once, and cannot be made in bands.
+    #[error("a picture of this size is made in bands of rows, which this one cannot be: {0}")]
+    Bands(String),
     /// It would take too much memory.
     #[error("rendering needs about {} of memory, and the limit is {}", at_least(*.needed), at_most(*.allowed))]
     Memory {

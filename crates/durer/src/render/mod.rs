@@ -1,5 +1,6 @@
 //! From a world and a job to pictures.
 
+mod bands;
 mod blocks;
 mod control;
 mod denoised;
@@ -23,6 +24,7 @@ mod sub_pixels;
 mod tests;
 pub mod verify;
 
+pub use bands::{Bands, BandsError};
 pub use blocks::{BLOCK, Blocks, Shard, ShardBy};
 pub use control::Control;
 pub use error::{Panicked, RenderError};

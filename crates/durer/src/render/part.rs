@@ -91,6 +91,18 @@ pub struct Statistics {
     pub first_rejected: Vec<Rejected>,
 }
 
+impl Statistics {
+    /// Counts what another part of the same picture counted.
+    pub(super) fn add(&mut self, other: Statistics) {
+        self.samples += other.samples;
+        self.rays += other.rays;
+        self.rejected = self.rejected.saturating_add(other.rejected);
+        self.first_rejected.extend(other.first_rejected);
+        self.first_rejected.sort();
+        self.first_rejected.truncate(16);
+    }
+}
+
 impl Part {
     /// A part of a picture of a world of which nothing is made yet.
     ///
@@ -107,8 +119,8 @@ impl Part {
         if !inside(window.left, window.width, job.width) || !inside(window.top, window.height, job.height) {
             return Err(RenderError::CropOutside(job.width, job.height));
         }
-        // Refuses pictures too large before anything is computed.
-        checked_count(job.width, job.height)?;
+        // Refuses what is too large before anything is computed. Of a larger picture a part may be made.
+        checked_count(window.width, window.height)?;
         let (blocks, ray_blocks) = (Blocks::new(window), Blocks::new(job.ray_window()));
         check_shard(&job, shard, blocks.count())?;
         let from = shard.range(job.sampling.samples()).0;
@@ -214,8 +226,14 @@ impl Part {
     /// The hash of the film: of all sums and values of its window. The same picture has the same hash, however it was made; what
     /// it cost is not among it.
     pub fn hash(&self) -> Digest {
-        let (state, mut bytes) = (self.state(), Vec::new());
         let mut hasher = blake3::Hasher::new();
+        self.hash_into(&mut hasher);
+        Digest(hasher.finalize().into())
+    }
+
+    /// Goes on with the hash of a picture of which this is the next part, whole rows of blocks.
+    pub(super) fn hash_into(&self, hasher: &mut blake3::Hasher) {
+        let (state, mut bytes) = (self.state(), Vec::new());
         for (index, block) in state.samples.iter().enumerate() {
             let rect = self.blocks.rect(index);
             block.film(rect).unwrap_or_else(|| film_of(rect)).write(&mut bytes);
@@ -230,7 +248,6 @@ impl Part {
                 hasher.update(&value.to_bits().to_le_bytes());
             }
         }
-        Digest(hasher.finalize().into())
     }
 
     /// Bytes of memory that it takes when all is made, with the pictures made of it.
@@ -239,8 +256,8 @@ impl Part {
         let (pixels, rays) = (job.window().pixels(), job.ray_window().pixels());
         let sums = if job.wants_samples() { pixels * Packed::pixel_bytes(job.sampling.samples()) } else { 0 };
         let values = rays * (12 * job.ray_aovs().count() as u64 + 1);
-        // Each picture twice, in floating point and for eight bits, and once more in its file.
-        let pictures = 3 * 12 * pixels * (job.aovs.len() as u64 + u64::from(job.color));
+        // Numbers and coverage, eight bits, and the file; other pictures than the colours have both values and colours.
+        let pictures = pixels * (24 * u64::from(job.color) + 40 * job.aovs.len() as u64);
         (sums + values) / share + pictures
     }
 }

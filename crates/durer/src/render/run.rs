@@ -94,8 +94,12 @@ impl Part {
         }
         let (start, stop) = (Instant::now(), AtomicBool::new(control.cancel.load(Relaxed)));
         let (all, done) = self.work();
-        control.all.store(all, Relaxed);
-        control.done.store(done, Relaxed);
+        if control.goes_on {
+            control.done.fetch_add(done, Relaxed);
+        } else {
+            control.all.store(all, Relaxed);
+            control.done.store(done, Relaxed);
+        }
         let work = Work {
             part: self,
             world,

@@ -208,7 +208,7 @@ impl<'a> Samples<'a> {
         let Pixel { x, y, .. } = *pixel;
         let id = SampleId::new(self.job.seed, (x, y), sample);
         let color = ray.map(|ray| self.integrator.radiance(&ray, id, rays));
-        match self.stale.get((y * self.job.width + x) as usize) {
+        match self.stale.get(y as usize * self.job.width as usize + x as usize) {
             Some(&stale) => (color.map(|color| color + stale), weight),
             None => (color, weight),
         }
@@ -382,7 +382,7 @@ impl<'a> Samples<'a> {
             let Material::Phong(phong) = &world.materials[material as usize] else { continue };
             let texel = world.diffuse_color(phong, &world.surface(&ray, &hit));
             let before = last[material as usize].replace(texel).unwrap_or(phong.diffuse);
-            differences[(y * job.width + x) as usize] = world.ambient * (before - texel);
+            differences[y as usize * job.width as usize + x as usize] = world.ambient * (before - texel);
         }
         differences
     }

@@ -19,8 +19,11 @@ use super::part::{Found, Part, Sampled, Traced, film_of, job_text};
 use super::{Job, RenderError, Shard};
 use crate::film::Packed;
 use crate::film::bytes::{Bytes, put};
+use crate::image::Content;
 use crate::math::Vec3;
 use crate::source::Digest;
+use std::io::{self, Write};
+use std::ops::Range;
 
 const FORMAT: u32 = 1;
 const VERSION: &str = env!("CARGO_PKG_VERSION");
@@ -61,12 +64,56 @@ fn text<'a>(bytes: &mut Bytes<'a>) -> Option<&'a str> {
     std::str::from_utf8(bytes.take(length)?).ok()
 }
 
+/// Blocks that are written at once: what works meanwhile waits for no more.
+const CHUNK: usize = 256;
+
+impl Content for Part {
+    /// Its bytes, made a few at a time: a second copy of all of them would need as much memory again.
+    fn write_to(&self, out: &mut dyn Write) -> io::Result<()> {
+        let (mut hasher, mut bytes) = (blake3::Hasher::new(), self.head());
+        let mut flush = |bytes: &mut Vec<u8>| {
+            hasher.update(bytes);
+            out.write_all(bytes)?;
+            bytes.clear();
+            io::Result::Ok(())
+        };
+        // One after the other: both at once would wait for each other.
+        let samples = self.state().samples.len();
+        let rays = self.state().rays.len();
+        let chunks = |count: usize| (0..count).step_by(CHUNK).map(move |start| start..count.min(start + CHUNK));
+        for blocks in chunks(samples) {
+            self.put_samples(blocks, &mut bytes);
+            flush(&mut bytes)?;
+        }
+        put(&mut bytes, 0);
+        for blocks in chunks(rays) {
+            self.put_rays(blocks, &mut bytes);
+            flush(&mut bytes)?;
+        }
+        put(&mut bytes, 0);
+        flush(&mut bytes)?;
+        out.write_all(hasher.finalize().as_bytes())
+    }
+}
+
+impl Content for &Part {
+    fn write_to(&self, out: &mut dyn Write) -> io::Result<()> {
+        Part::write_to(self, out)
+    }
+}
+
 impl Part {
     /// How files of parts begin.
     pub const MAGIC: &[u8; 8] = b"DURERPRT";
 
     /// Its bytes, as they are saved. The same work gives the same bytes.
     pub fn write(&self) -> Vec<u8> {
+        let mut out = Vec::new();
+        self.write_to(&mut out).expect("there is always room in memory");
+        out
+    }
+
+    fn head(&self) -> Vec<u8> {
         let mut out = Part::MAGIC.to_vec();
         put(&mut out, FORMAT.into());
         put_text(&mut out, VERSION);
@@ -74,29 +121,35 @@ impl Part {
         put_text(&mut out, &job_text(&self.job));
         put_text(&mut out, &serde_json::to_string(&self.shard).unwrap_or_default());
         put_text(&mut out, &serde_json::to_string(&self.look).unwrap_or_default());
+        out
+    }
+
+    /// The samples of some blocks.
+    fn put_samples(&self, blocks: Range<usize>, out: &mut Vec<u8>) {
         let state = self.state();
-        for (index, block) in state.samples.iter().enumerate() {
+        for index in blocks {
+            let block = &state.samples[index];
             if let Some(film) = block.film(self.blocks.rect(index)) {
-                put(&mut out, index as u128 + 1);
+                put(out, index as u128 + 1);
                 [block.from.into(), block.to.into(), u128::from(block.rays)]
                     .iter()
-                    .for_each(|&number| put(&mut out, number));
-                film.write(&mut out);
+                    .for_each(|&number| put(out, number));
+                film.write(out);
             }
         }
-        put(&mut out, 0);
-        for (index, block) in state.rays.iter().enumerate() {
-            if let Some(block) = block {
-                put(&mut out, index as u128 + 1);
-                put(&mut out, block.rays.into());
+    }
+
+    /// What the rays through the centres of some blocks' pixels saw.
+    fn put_rays(&self, blocks: Range<usize>, out: &mut Vec<u8>) {
+        let state = self.state();
+        for index in blocks {
+            if let Some(block) = &state.rays[index] {
+                put(out, index as u128 + 1);
+                put(out, block.rays.into());
                 out.extend(block.found.iter().map(|&found| found as u8));
                 out.extend(block.values.iter().flat_map(|v| v.to_array()).flat_map(f32::to_le_bytes));
             }
         }
-        put(&mut out, 0);
-        let digest = Digest::of(&out);
-        out.extend(digest.0);
-        out
     }
 
     /// Reads a part.

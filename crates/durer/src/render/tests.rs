@@ -6,7 +6,7 @@ use crate::compile::testing;
 use crate::film::Filter;
 use crate::film::aov::{AOVS, Aov};
 use crate::film::course::CourseFilter;
-use crate::image::Depth;
+use crate::image::{Depth, FORMATS, WriteOptions, read};
 use crate::math::Vec3;
 use crate::sampler::Sampler;
 use crate::source::Digest;
@@ -346,4 +346,36 @@ fn files_tell_the_job_and_the_scene() {
     for told in [world.digest.to_string(), serde_json::to_string(&small()).unwrap(), "\"samples\":1073".into()] {
         assert!(bytes.windows(told.len()).any(|window| window == told.as_bytes()), "{told}");
     }
+}
+
+#[test]
+fn a_picture_made_in_bands_is_the_same() {
+    let world = world();
+    let crop = Some(Crop { left: 5, top: 3, width: 20, height: 24 });
+    for job in [Job { sampling: filtered(3), ..small() }, Job { sampling: filtered(3), crop, ..small() }, small()] {
+        let window = job.window();
+        let one = Part::bytes_needed(&Job { crop: Some(Crop { height: 1, ..window }), ..job.clone() }, Shard::WHOLE);
+        let whole = all(&world, &job);
+        let layer = whole.pictures().unwrap().pictures;
+        // Two rows of blocks, and all at once.
+        for memory in [16 * one, u64::MAX] {
+            let bands = Bands::new(&job, memory).unwrap();
+            for format in FORMATS.iter().filter(|format| format.rows.is_some()) {
+                let (mut in_bands, mut at_once) = (Vec::new(), Vec::new());
+                let options = WriteOptions::default();
+                let made = bands.write(&world, &Control::default(), format, &options, &mut in_bands).unwrap();
+                format.write(&layer, &options, &mut at_once).unwrap();
+                let name = format!("x.{}", format.extensions[0]);
+                // PNG packs otherwise.
+                assert_eq!(read(&in_bands, &name).unwrap(), read(&at_once, &name).unwrap(), "{name} {memory}");
+                assert!(format.name == "PNG" || in_bands == at_once, "{name} {memory}");
+                assert_eq!(made.0, whole.statistics());
+                let bottom_up = format.rows.unwrap().bottom_up;
+                assert_eq!(made.1, (!bottom_up).then(|| whole.hash()), "{name} {memory}");
+            }
+        }
+        assert!(matches!(Bands::new(&job, 7 * one), Err(RenderError::Memory { .. })));
+    }
+    let depth = Job { aovs: AOVS.iter().filter(|aov| aov.name == "depth").collect(), ..small() };
+    assert!(matches!(Bands::new(&depth, u64::MAX), Err(RenderError::Bands(_))));
 }

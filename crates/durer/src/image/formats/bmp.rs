@@ -15,6 +15,7 @@ pub const FORMAT: Format = Format {
     head: |bytes| Ok(codec::head(&codec::decoder(NAME, ImageFormat::Bmp, bytes)?)),
     decode: |bytes| codec::raster(NAME, codec::decoder(NAME, ImageFormat::Bmp, bytes)?),
     encode,
+    rows: None,
 };
 
 fn encode(layers: &[Layer], options: &WriteOptions, out: &mut Vec<u8>) -> Result<(), ImageError> {

@@ -28,6 +28,7 @@ pub const FORMAT: Format = Format {
     head,
     decode,
     encode,
+    rows: None,
 };
 
 /// Blocks of 16 rows, deflated: without loss, and read by everything.

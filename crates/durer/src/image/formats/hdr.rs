@@ -2,7 +2,7 @@
 //!
 //! Source: Ward, *Real Pixels*, Graphics Gems II, and Radiance's `color.c`.
 
-use super::{Depth, Format, ImageError, Layer, WriteOptions, codec};
+use super::{Depth, Format, ImageError, RowFormat, Strip, codec, rows};
 use crate::math::Vec3;
 use ::image::codecs::hdr::HdrDecoder;
 
@@ -17,7 +17,8 @@ pub const FORMAT: Format = Format {
     begins: |bytes| bytes.starts_with(b"#?RADIANCE") || bytes.starts_with(b"#?RGBE"),
     head: |bytes| Ok(codec::head(&decoder(bytes)?)),
     decode: |bytes| codec::raster(NAME, decoder(bytes)?),
-    encode,
+    encode: |layers, options, out| rows::encode(&ROWS, layers, options, out),
+    rows: Some(&ROWS),
 };
 
 /// Rows of these lengths are packed; others are written pixel by pixel.
@@ -33,25 +34,25 @@ fn decoder(bytes: &[u8]) -> Result<HdrDecoder<&[u8]>, ImageError> {
     HdrDecoder::new_nonstrict(bytes).map_err(|error| ImageError::malformed(NAME, error))
 }
 
-fn encode(layers: &[Layer], _: &WriteOptions, out: &mut Vec<u8>) -> Result<(), ImageError> {
-    for Layer { image, .. } in layers {
-        let (width, height) = (image.width, image.height);
-        out.extend(format!("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y {height} +X {width}\n").as_bytes());
-        for row in image.pixels.chunks_exact(width as usize) {
-            let row: Vec<[u8; 4]> = row.iter().map(|&pixel| rgbe(pixel)).collect();
-            if !PACKED_WIDTHS.contains(&width) {
-                out.extend(row.as_flattened());
-                continue;
-            }
-            out.extend([2, 2, (width >> 8) as u8, width as u8]);
-            for channel in 0..4 {
-                let bytes: Vec<u8> = row.iter().map(|pixel| pixel[channel]).collect();
-                pack(&bytes, out);
-            }
+static ROWS: RowFormat = RowFormat {
+    bottom_up: false,
+    head: |Strip { width, height, .. }| {
+        Ok(format!("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y {height} +X {width}\n").into_bytes())
+    },
+    row: |strip, pixels, _, out| {
+        let row: Vec<[u8; 4]> = pixels.iter().map(|&pixel| rgbe(pixel)).collect();
+        if !PACKED_WIDTHS.contains(&strip.width) {
+            out.extend(row.as_flattened());
+            return;
         }
-    }
-    Ok(())
-}
+        out.extend([2, 2, (strip.width >> 8) as u8, strip.width as u8]);
+        for channel in 0..4 {
+            let bytes: Vec<u8> = row.iter().map(|pixel| pixel[channel]).collect();
+            pack(&bytes, out);
+        }
+    },
+    png: false,
+};
 
 /// Shared-exponent form: channel = mantissa / 256 * 2^(exponent - 128), the greatest mantissa at least 128.
 ///

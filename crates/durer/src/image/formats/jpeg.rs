@@ -19,4 +19,5 @@ pub const FORMAT: Format = Format {
     },
     decode: |bytes| codec::raster(NAME, codec::decoder(NAME, ImageFormat::Jpeg, bytes)?),
     encode: |_, _, _| Err(ImageError::unsupported(NAME, "writing: choose PNG")),
+    rows: None,
 };

@@ -1,7 +1,7 @@
 //! Portable float map: red, green and blue as 32-bit floats, little endian, bottom row first.
 
 use super::limits::room_for;
-use super::{Depth, Format, Head, Image, ImageError, Layer, Raster, WriteOptions};
+use super::{Depth, Format, Head, Image, ImageError, Raster, RowFormat, rows};
 use crate::math::Vec3;
 
 const NAME: &str = "PFM";
@@ -15,19 +15,16 @@ pub const FORMAT: Format = Format {
     begins: |bytes| matches!(bytes, [b'P', b'F' | b'f', space, ..] if space.is_ascii_whitespace()),
     head,
     decode,
-    encode,
+    encode: |layers, options, out| rows::encode(&ROWS, layers, options, out),
+    rows: Some(&ROWS),
 };
 
-fn encode(layers: &[Layer], _: &WriteOptions, out: &mut Vec<u8>) -> Result<(), ImageError> {
-    for Layer { image, .. } in layers {
-        // The sign of the scale tells the order of the bytes.
-        out.extend(format!("PF\n{} {}\n-1.0\n", image.width, image.height).as_bytes());
-        for row in image.pixels.chunks_exact(image.width as usize).rev() {
-            out.extend(row.iter().flat_map(|pixel| pixel.to_array()).flat_map(f32::to_le_bytes));
-        }
-    }
-    Ok(())
-}
+static ROWS: RowFormat = RowFormat {
+    bottom_up: true,
+    head: |strip| Ok(format!("PF\n{} {}\n-1.0\n", strip.width, strip.height).into_bytes()),
+    row: |_, pixels, _, out| out.extend(pixels.iter().flat_map(Vec3::to_array).flat_map(f32::to_le_bytes)),
+    png: false,
+};
 
 /// What the head says, and the bytes behind it.
 struct Opened<'a> {
@@ -89,6 +86,7 @@ fn next_word<'a>(rest: &mut &'a [u8]) -> Option<&'a [u8]> {
 mod tests {
     use super::*;
     use crate::image::read;
+    use crate::image::{Layer, WriteOptions};
 
     #[test]
     fn the_bottom_row_comes_first() {

@@ -1,6 +1,8 @@
 //! Portable Network Graphics: eight bits a channel, lossless; with alpha where the camera does not see everything.
 
-use super::{Depth, Format, Head, ImageError, Layer, Raster, WriteOptions, codec, eight_bit, eight_bit_alpha};
+use super::{
+    Depth, Format, Head, ImageError, Layer, Raster, RowFormat, WriteOptions, codec, eight_bit, eight_bit_alpha,
+};
 use ::image::{ExtendedColorType, ImageFormat, codecs::png::PngEncoder};
 use std::borrow::Cow;
 
@@ -17,6 +19,7 @@ pub const FORMAT: Format = Format {
     head,
     decode,
     encode,
+    rows: Some(&ROWS),
 };
 
 /// The size and kind of pixels, from the first chunk. What is wrong with the rest is found when it is decoded.
@@ -62,6 +65,17 @@ fn essence(bytes: &[u8]) -> Cow<'_, [u8]> {
         false => Cow::Owned(std::iter::once(MARK).chain(chunks(bytes).filter(needed)).flatten().copied().collect()),
     }
 }
+
+/// For pictures that are too large for memory. The library packs rows that come one by one less quickly.
+static ROWS: RowFormat = RowFormat {
+    bottom_up: false,
+    head: |_| Ok(Vec::new()),
+    row: |strip, pixels, coverage, out| {
+        let channels = if strip.alpha { 4 } else { 3 };
+        strip.eight_bit(pixels, coverage, |rgba| out.extend(&rgba[..channels]));
+    },
+    png: true,
+};
 
 fn encode(layers: &[Layer], options: &WriteOptions, out: &mut Vec<u8>) -> Result<(), ImageError> {
     layers.iter().try_for_each(|layer| {

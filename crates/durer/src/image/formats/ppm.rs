@@ -1,6 +1,6 @@
 //! Netpbm: written as binary P6, read as any of P1 to P7.
 
-use super::{Depth, Format, ImageError, Layer, WriteOptions, codec, eight_bit};
+use super::{Depth, Format, RowFormat, Strip, codec, rows};
 use ::image::ImageFormat;
 
 const NAME: &str = "PPM";
@@ -15,16 +15,19 @@ pub const FORMAT: Format = Format {
     // Samples are scaled from the file's value of white to 255, or to 65535 if that is greater than 255.
     head: |bytes| Ok(codec::head(&codec::decoder(NAME, ImageFormat::Pnm, bytes)?)),
     decode: |bytes| codec::raster(NAME, codec::decoder(NAME, ImageFormat::Pnm, bytes)?),
-    encode,
+    encode: |layers, options, out| rows::encode(&ROWS, layers, options, out),
+    rows: Some(&ROWS),
 };
 
-fn encode(layers: &[Layer], options: &WriteOptions, out: &mut Vec<u8>) -> Result<(), ImageError> {
-    for layer in layers {
-        out.extend(format!("P6\n{} {}\n255\n", layer.image.width, layer.image.height).as_bytes());
-        out.extend(eight_bit(layer, options));
-    }
-    Ok(())
-}
+static ROWS: RowFormat = RowFormat {
+    bottom_up: false,
+    head: |strip| Ok(format!("P6\n{} {}\n255\n", strip.width, strip.height).into_bytes()),
+    row: |strip, pixels, coverage, out| {
+        // There is no place for alpha.
+        Strip { alpha: false, ..*strip }.eight_bit(pixels, coverage, |[r, g, b, _]| out.extend([r, g, b]));
+    },
+    png: false,
+};
 
 #[cfg(test)]
 mod tests {

@@ -1,7 +1,7 @@
 //! Truevision Targa: uncompressed true colour of 24 bits, bottom row first, as the course's programs wrote it; of 32 bits
 //! with alpha where the camera does not see everything.
 
-use super::{Depth, Format, Head, ImageError, Layer, WriteOptions, codec, eight_bit, eight_bit_alpha};
+use super::{Depth, Format, Head, ImageError, RowFormat, codec, rows};
 use ::image::ImageFormat;
 
 const NAME: &str = "TGA";
@@ -20,38 +20,34 @@ pub const FORMAT: Format = Format {
         Ok(Head { bytes_per_pixel: head.bytes_per_pixel + 2, ..head })
     },
     decode: |bytes| codec::raster(NAME, codec::decoder(NAME, ImageFormat::Tga, bytes)?),
-    encode,
+    encode: |layers, options, out| rows::encode(&ROWS, layers, options, out),
+    rows: Some(&ROWS),
 };
 
 /// Image type: true colour, not compressed.
 const TRUE_COLOR: u8 = 2;
 
-fn encode(layers: &[Layer], options: &WriteOptions, out: &mut Vec<u8>) -> Result<(), ImageError> {
-    for layer in layers {
+static ROWS: RowFormat = RowFormat {
+    bottom_up: true,
+    head: |strip| {
         let side = |side: u32| u16::try_from(side).map_err(|_| ImageError::unsupported(NAME, "a side above 65535"));
-        let [w0, w1] = side(layer.image.width)?.to_le_bytes();
-        let [h0, h1] = side(layer.image.height)?.to_le_bytes();
+        let ([w0, w1], [h0, h1]) = (side(strip.width)?.to_le_bytes(), side(strip.height)?.to_le_bytes());
+        let (bits, alpha_bits) = if strip.alpha { (32, 8) } else { (24, 0) };
         // No identification, no palette, origin at the lower left.
-        let (bits, alpha_bits) = if layer.coverage.is_some() { (32, 8) } else { (24, 0) };
-        out.extend([0, 0, TRUE_COLOR, 0, 0, 0, 0, 0, 0, 0, 0, 0, w0, w1, h0, h1, bits, alpha_bits]);
-        if let Some(rgba) = eight_bit_alpha(layer, options) {
-            for row in rgba.chunks_exact(layer.image.width as usize * 4).rev() {
-                out.extend(row.as_chunks::<4>().0.iter().flat_map(|&[r, g, b, a]| [b, g, r, a]));
-            }
-            continue;
-        }
-        let rgb = eight_bit(layer, options);
-        for row in rgb.chunks_exact(layer.image.width as usize * 3).rev() {
-            out.extend(row.as_chunks::<3>().0.iter().flat_map(|&[r, g, b]| [b, g, r]));
-        }
-    }
-    Ok(())
-}
+        Ok(vec![0, 0, TRUE_COLOR, 0, 0, 0, 0, 0, 0, 0, 0, 0, w0, w1, h0, h1, bits, alpha_bits])
+    },
+    row: |strip, pixels, coverage, out| {
+        let channels = if strip.alpha { 4 } else { 3 };
+        strip.eight_bit(pixels, coverage, |[r, g, b, a]| out.extend(&[b, g, r, a][..channels]));
+    },
+    png: false,
+};
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::image::Image;
+    use crate::image::{Layer, WriteOptions};
     use crate::math::Vec3;
 
     #[test]

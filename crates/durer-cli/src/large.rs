@@ -1,0 +1,104 @@
+//! Pictures larger than memory: rendered while they are written.
+
+use crate::args::RenderArgs;
+use crate::output::{Target, say};
+use crate::render::{failure, rejected};
+use crate::{Failure, bad, progress};
+use durer::image::{Content, Format, MAX_PIXELS, WriteOptions, save_all};
+use durer::render::{Bands, BandsError, Control, Job, RenderError, Statistics};
+use durer::source::Digest;
+use durer::world::World;
+use std::cell::RefCell;
+use std::io::{self, Write};
+use std::sync::Arc;
+
+/// Whether a picture is larger than memory or than any that is made at once.
+pub fn is_large(job: &Job, needed: u64, memory: Option<u64>) -> bool {
+    job.window().pixels() > MAX_PIXELS || memory.is_some_and(|memory| needed > memory)
+}
+
+/// How a large picture is made, or why it cannot be.
+pub fn bands(args: &RenderArgs, job: &Job, target: &Target, memory: Option<u64>) -> Result<Bands, Failure> {
+    let refuse = |why: &str| Err(failure(RenderError::Bands(why.into())));
+    let (work, window) = (&args.work, job.window());
+    let Some((_, format)) = target.single() else { return refuse("it has other pictures than the colours") };
+    if format.rows.is_none() {
+        return refuse(&format!("{} needs all rows at once; take PNG, TGA, PPM, PFM or HDR", format.name));
+    }
+    format.check_sides(window.width, window.height).map_err(|error| bad(error.to_string()))?;
+    for (given, option) in [
+        (work.resume || work.restart || work.checkpoint.is_some(), "saved work"),
+        (work.preview.is_some(), "--preview"),
+        (work.time.is_some(), "--time"),
+        (args.denoise, "--denoise"),
+        (args.stats, "--stats"),
+    ] {
+        if given {
+            return refuse(&format!("{option} needs all of it in memory"));
+        }
+    }
+    // What the scene takes is not known yet: half is left for it.
+    Bands::new(job, memory.map_or(u64::MAX, |memory| memory / 2)).map_err(|error| match (error, memory) {
+        (RenderError::Memory { needed, .. }, Some(allowed)) => {
+            failure(RenderError::Memory { needed: 2 * needed, allowed })
+        }
+        (error, _) => failure(error),
+    })
+}
+
+/// The picture, which is made when it is written.
+struct Large<'a> {
+    bands: &'a Bands,
+    world: &'a World,
+    control: &'a Control,
+    format: &'a Format,
+    options: WriteOptions<'a>,
+    /// What came of it.
+    made: RefCell<Option<Result<(Statistics, Option<Digest>), BandsError>>>,
+}
+
+impl Content for &Large<'_> {
+    fn write_to(&self, out: &mut dyn Write) -> io::Result<()> {
+        let mut out = io::BufWriter::new(out);
+        let made = self.bands.write(self.world, self.control, self.format, &self.options, &mut out);
+        let made = made.and_then(|made| Ok(out.flush().map(|()| made)?));
+        let result = if made.is_ok() { Ok(()) } else { Err(io::Error::other("the picture was not made")) };
+        *self.made.borrow_mut() = Some(made);
+        result
+    }
+}
+
+/// Renders and writes it.
+pub fn render(
+    bands: &Bands,
+    world: &World,
+    control: &Arc<Control>,
+    target: &Target,
+    args: &RenderArgs,
+) -> Result<(), Failure> {
+    let Some((place, format)) = target.single() else { return Ok(()) };
+    let options = WriteOptions { display: args.display.display()?, attributes: &[] };
+    let large = Large { bands, world, control, format, options, made: RefCell::new(None) };
+    let saved = progress::watch(control, args.quiet, || Ok(save_all(&[(place, &large)]))).map_err(failure)?;
+    let (statistics, hash) = match large.made.take() {
+        Some(Err(BandsError::Render(error))) => return Err(failure(error)),
+        Some(Err(BandsError::Image(error))) => return Err(bad(error.to_string())),
+        Some(Err(BandsError::Io(error))) => {
+            return Err(Failure::Other(anyhow::anyhow!("cannot write `{}`: {error}", place.path().display())));
+        }
+        Some(Ok(made)) => saved.map(|()| made)?,
+        None => return Ok(saved?),
+    };
+    if !args.quiet && !place.is_stream() {
+        say(&format!("wrote {}", place.path().display()));
+    }
+    rejected(&statistics, args.quiet);
+    match hash {
+        Some(hash) if args.hash => say(&hash.to_string()),
+        None if args.hash => {
+            return Err(bad("--hash: the lowest row of this format comes first; take PNG, PPM or HDR"));
+        }
+        _ => {}
+    }
+    Ok(())
+}

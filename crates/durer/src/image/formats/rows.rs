@@ -1,0 +1,126 @@
+//! Formats that are written row by row, so that no picture is too large for them.
+
+use super::{Display, Format, ImageError, Layer, Transfer, WriteOptions};
+use crate::math::Vec3;
+use std::io::{self, Write};
+
+/// How a format writes rows.
+#[derive(Debug)]
+pub struct RowFormat {
+    /// Whether the lowest row comes first.
+    pub bottom_up: bool,
+    /// What stands before the rows.
+    pub(super) head: fn(&Strip) -> Result<Vec<u8>, ImageError>,
+    /// Appends the bytes of a row.
+    pub(super) row: fn(&Strip, &[Vec3], &[f32], &mut Vec<u8>),
+    /// Whether all that is packed by PNG's own rules, its head with it.
+    pub(super) png: bool,
+}
+
+/// What all rows of a picture have in common.
+#[derive(Clone, Copy, Debug)]
+pub struct Strip {
+    /// Pixels in a row.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+    /// Whether what the camera does not see is told beside the colours, in formats that can.
+    pub alpha: bool,
+    /// What makes eight bits of a colour.
+    pub display: Display,
+}
+
+impl Strip {
+    /// Of a layer, as a format shows it.
+    pub(super) fn of(layer: &Layer, options: &WriteOptions) -> Self {
+        let alpha = layer.coverage.is_some();
+        Strip { width: layer.image.width, height: layer.image.height, alpha, display: super::display(layer, options) }
+    }
+
+    /// Offers the eight-bit numbers of each pixel of a row: red, green, blue and opacity. Where there is one, colours are those of
+    /// what is seen alone, without the share of it (straight alpha).
+    pub(super) fn eight_bit(&self, pixels: &[Vec3], coverage: &[f32], mut offer: impl FnMut([u8; 4])) {
+        for (i, &pixel) in pixels.iter().enumerate() {
+            let (alone, opacity) = match coverage.get(i).filter(|_| self.alpha) {
+                Some(&share) if share > 0.0 => (pixel / share, Transfer::Linear.encode(share)),
+                Some(_) => (Vec3::ZERO, 0),
+                None => (pixel, 255),
+            };
+            let [r, g, b] = self.display.encode_pixel(alone);
+            offer([r, g, b, opacity]);
+        }
+    }
+}
+
+/// A picture that is being written row by row.
+pub struct RowWriter<'w> {
+    format: &'static RowFormat,
+    strip: Strip,
+    out: &'w mut dyn Write,
+    bytes: Vec<u8>,
+}
+
+impl Format {
+    /// Writes a picture whose rows come one after the other, the lowest first where [`RowFormat::bottom_up`] says so.
+    ///
+    /// # Errors
+    /// Those of `rows` and of the file, and [`ImageError::Unsupported`] for formats that are not written so, and for sizes that
+    /// they cannot hold.
+    pub fn write_rows<T, E: From<ImageError> + From<io::Error>>(
+        &self,
+        strip: Strip,
+        out: &mut dyn Write,
+        rows: impl FnOnce(&mut RowWriter) -> Result<T, E>,
+    ) -> Result<T, E> {
+        let format = self.rows.ok_or_else(|| ImageError::unsupported(self.name, "writing row by row"))?;
+        let head = (format.head)(&strip)?;
+        if !format.png {
+            out.write_all(&head)?;
+            return rows(&mut RowWriter { format, strip, out, bytes: Vec::new() });
+        }
+        let mut encoder = png::Encoder::new(out, strip.width, strip.height);
+        encoder.set_color(if strip.alpha { png::ColorType::Rgba } else { png::ColorType::Rgb });
+        encoder.set_depth(png::BitDepth::Eight);
+        encoder.set_compression(png::Compression::Fast);
+        let mut file = encoder.write_header().map_err(io::Error::from)?;
+        let mut packed = file.stream_writer().map_err(io::Error::from)?;
+        let made = rows(&mut RowWriter { format, strip, out: &mut packed, bytes: Vec::new() })?;
+        packed.finish().map_err(io::Error::from)?;
+        file.finish().map_err(io::Error::from)?;
+        Ok(made)
+    }
+}
+
+impl RowWriter<'_> {
+    /// The next row. `coverage` is the share of each pixel that is seen; empty where all is.
+    ///
+    /// # Errors
+    /// Those of the file.
+    pub fn row(&mut self, pixels: &[Vec3], coverage: &[f32]) -> io::Result<()> {
+        self.bytes.clear();
+        (self.format.row)(&self.strip, pixels, coverage, &mut self.bytes);
+        self.out.write_all(&self.bytes)
+    }
+}
+
+/// A picture in memory, by its rows.
+pub(super) fn encode(
+    rows: &'static RowFormat,
+    layers: &[Layer],
+    options: &WriteOptions,
+    out: &mut Vec<u8>,
+) -> Result<(), ImageError> {
+    for layer in layers {
+        let strip = Strip::of(layer, options);
+        out.extend((rows.head)(&strip)?);
+        let width = strip.width as usize;
+        let row = |y: usize| {
+            let range = y * width..(y + 1) * width;
+            let coverage = layer.coverage.as_ref().map_or(&[][..], |coverage| &coverage[range.clone()]);
+            (rows.row)(&strip, &layer.image.pixels[range], coverage, out);
+        };
+        let count = strip.height as usize;
+        if rows.bottom_up { (0..count).rev().for_each(row) } else { (0..count).for_each(row) }
+    }
+    Ok(())
+}

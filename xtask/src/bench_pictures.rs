@@ -1,0 +1,12 @@
+//! Whole pictures beside POV-Ray: `bench_pictures.py` says which and how.
+
+use anyhow::Result;
+use std::process::{Command, ExitCode};
+
+pub fn run(arguments: &[String]) -> Result<ExitCode> {
+    let program = crate::build::durer()?;
+    let script = crate::root()?.join("xtask/src/bench_pictures.py");
+    let dragon = crate::corpus().join("meshes/dragon.ply");
+    let status = Command::new("python3").arg(script).arg(program).arg(dragon).args(arguments).status()?;
+    Ok(if status.success() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+}
