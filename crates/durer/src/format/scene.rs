@@ -1,12 +1,16 @@
 //! Readers of whole scenes: one row of [`SCENE_FORMATS`] each. What is a mesh alone is a scene of one mesh.
 
-use super::{MESH_FORMATS, extension, gltf, obj, pbrt, read_mesh};
+use super::{MESH_FORMATS, extension, gltf, obj, pbrt, radiance, read_mesh};
 use crate::describe::FileName;
-use crate::diag::{Diagnostics, Files, Span};
-use crate::scene::{Axis, Group, Node, Object, Scene, Staging};
+use crate::diag::{Diagnostic, Diagnostics, Files, Span};
+use crate::light::Light;
+use crate::math::Vec3;
+use crate::scene::{Axis, Background, Group, Node, Object, Picture, PictureBytes, Scene, Spanned, Staging};
 use crate::shape::{MeshData, TriangleMesh};
+use crate::texture::Mapping;
 use crate::source::Source;
 use std::cell::RefCell;
+use std::path::PathBuf;
 use std::sync::Arc;
 
 /// A format of files that hold scenes, or models that become scenes.
@@ -41,6 +45,15 @@ pub const SCENE_FORMATS: &[SceneFormat] = &[
         recognise: pbrt::recognise,
         read: pbrt::read,
         up: Axis::Y,
+        whole: true,
+    },
+    SceneFormat {
+        name: "Radiance",
+        extensions: &["rad", "rif"],
+        // Its first word could be anything: only the name tells.
+        recognise: |_| false,
+        read: radiance::read,
+        up: Axis::Z,
         whole: true,
     },
     SceneFormat {
@@ -97,6 +110,31 @@ pub fn find_scene_format(bytes: &[u8], name: &str) -> Option<&'static SceneForma
 /// Reads a model as a scene, and adds the camera, light and material that it lacks.
 pub fn read_model(format: &SceneFormat, input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
     let mut scene = (format.read)(input, diagnostics)?;
+    let named = |path: &Option<PathBuf>, diagnostics: &mut Diagnostics| -> Result<Option<(String, Arc<[u8]>)>, ()> {
+        let Some(path) = path else { return Ok(None) };
+        let name = path.display().to_string();
+        match input.source.read_path(path, &name) {
+            Ok(bytes) => {
+                input.source.remember(&name, &bytes);
+                Ok(Some((name, bytes)))
+            }
+            Err(error) => {
+                diagnostics.push(Diagnostic::error(error.to_string()).code("missing-file"));
+                Err(())
+            }
+        }
+    };
+    if let Some((name, bytes)) = named(&input.staging.view_file, diagnostics).ok()? {
+        let found = radiance::look(&mut scene, input, (&name, &bytes));
+        let sound = !found.has_errors();
+        diagnostics.extend(found);
+        if !sound {
+            return None;
+        }
+    }
+    if let Some((name, bytes)) = named(&input.staging.environment, diagnostics).ok()? {
+        scene.surround(name, bytes);
+    }
     input.staging.complete(&mut scene, format.up, format.whole);
     Some(scene)
 }
@@ -112,6 +150,19 @@ fn one_mesh(input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
 }
 
 impl Scene {
+    /// Puts a picture of all directions around the scene, instead of all light that is far away.
+    fn surround(&mut self, name: String, bytes: Arc<[u8]>) {
+        let picture = Picture { bytes: PictureBytes::Here(name.clone(), bytes), mapping: Mapping::default() };
+        self.assets.pictures.insert(name.clone(), picture);
+        self.background = Background {
+            environment: Some(FileName { path: name, span: Span::default() }),
+            color: Vec3::ZERO,
+            ..Background::default()
+        };
+        let near = |light: &Spanned<Light>| !matches!(light.value, Light::Directional(_));
+        self.lights.get_or_insert_default().retain(near);
+    }
+
     /// Adds a mesh in memory by a name that no other has, and gives what shows it.
     pub(super) fn add_mesh(&mut self, name: &str, data: Arc<MeshData>, span: Span) -> Node {
         self.assets.meshes.insert(name.to_string(), data);

@@ -9,6 +9,7 @@ use crate::material::PrincipledMaterial;
 use crate::math::Vec3;
 use crate::shape::plane::Plane;
 use glam::DVec3;
+use std::path::PathBuf;
 
 /// An axis of space.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -62,6 +63,10 @@ pub struct Staging {
     pub camera: Option<String>,
     /// The moment of its animation, in seconds; `None`: as it stands without.
     pub at: Option<f32>,
+    /// A file of Radiance's views, whose last is the camera.
+    pub view_file: Option<PathBuf>,
+    /// A picture of all directions that lights the model instead of a studio.
+    pub environment: Option<PathBuf>,
     /// The picture's width over its height, for a camera that sees just the whole; `None`: 1.
     pub aspect: Option<f32>,
 }
@@ -91,16 +96,17 @@ const FILLED: f64 = 0.86;
 
 impl Staging {
     /// Adds what a scene lacks. `up` is the axis that is up in most models of its format; `dark` says that what has a camera and
-    /// no lights is meant so: its surfaces shine, or it is dark.
+    /// no lights is meant so, and that what shines needs no other light.
     pub fn complete(&self, scene: &mut Scene, up: Axis, dark: bool) {
         let sides = Sides::new(self.up.unwrap_or(up));
         let framed = scene.camera.is_none() || self.view.is_some();
-        let lit = (dark && scene.camera.is_some()) || scene.lights.as_ref().is_some_and(|lights| !lights.is_empty());
+        let lit = (dark && (scene.camera.is_some() || scene.shines())) || scene.lights.as_ref().is_some_and(|lights| !lights.is_empty());
         if framed {
             scene.camera = Some(self.camera(scene, &sides, self.view.unwrap_or_default()));
         }
         give_material(scene);
-        if !lit || self.studio.is_some() {
+        let surrounded = self.environment.is_some() && self.studio.is_none();
+        if (!lit && !surrounded) || self.studio.is_some() {
             self.light(scene, &sides, self.studio.unwrap_or_default(), framed);
         }
     }

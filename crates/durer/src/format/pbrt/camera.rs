@@ -1,7 +1,7 @@
 //! Film, camera, sampler and integrator: what the picture is.
 
 use super::params::Params;
-use super::said::meant;
+use crate::format::said::meant;
 use super::state::{Asked, Reader};
 use crate::camera::{Camera, EquirectangularCamera, Handedness, OrthographicCamera, PerspectiveCamera, ThinLensCamera};
 use crate::image::MAX_PIXELS;

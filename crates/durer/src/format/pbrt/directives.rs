@@ -2,7 +2,7 @@
 
 use super::lexer::{Lexer, Token};
 use super::params::read as read_params;
-use super::said::meant;
+use crate::format::said::meant;
 use super::spectrum::Space;
 use super::state::{Asked, Open, Reader, Scope};
 use super::transform::{look_at, matrix, numbers, rotation, sound};

@@ -1,6 +1,6 @@
 //! Words of a text: directives, numbers, strings in quotes, brackets. `#` begins a comment.
 
-use super::said::Said;
+use crate::format::said::Said;
 use crate::diag::{Diagnostic, Span};
 use crate::format::report::shown;
 use std::sync::Arc;

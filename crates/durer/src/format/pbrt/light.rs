@@ -7,7 +7,7 @@
 use super::directives::LIGHT;
 use super::environment::Infinite;
 use super::params::{Param, Params};
-use super::said::meant;
+use crate::format::said::meant;
 use super::state::Reader;
 use crate::diag::Span;
 use crate::light::{DirectionalLight, Fade, Light, PointLight, SpotLight};

@@ -8,7 +8,7 @@ use super::directives::MATERIAL;
 use super::light::AreaLight;
 use super::medium::Medium;
 use super::params::{Kind, Param, Params};
-use super::said::meant;
+use crate::format::said::meant;
 use super::spectrum::{Spectrum, metal};
 use super::state::Reader;
 use crate::diag::Span;

@@ -5,7 +5,7 @@
 
 use super::material::Made;
 use super::params::{Param, Params};
-use super::said::meant;
+use crate::format::said::meant;
 use super::state::Reader;
 use crate::diag::Span;
 use crate::material::PrincipledMaterial;

@@ -1,7 +1,7 @@
 //! Meshes: in the text, or in files of PLY.
 
 use super::params::Params;
-use super::said::Said;
+use crate::format::said::Said;
 use crate::diag::{Diagnostic, Diagnostics, Span};
 use crate::format::read_mesh;
 use crate::format::scene::Input;

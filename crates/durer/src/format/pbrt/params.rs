@@ -1,7 +1,7 @@
 //! Lists of parameters: `"float radius" [ 2 ]`.
 
 use super::lexer::{Found, Lexer, Token};
-use super::said::{Said, meant};
+use crate::format::said::{Said, meant};
 use super::spectrum::{Space, Spectrum};
 use crate::diag::{Diagnostic, Span};
 use crate::format::report::counted;

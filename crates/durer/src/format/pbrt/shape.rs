@@ -3,7 +3,7 @@
 use super::directives::SHAPE;
 use super::mesh;
 use super::params::{Kind, Param, Params};
-use super::said::meant;
+use crate::format::said::meant;
 use super::state::Reader;
 use crate::diag::Span;
 use crate::math::{Color, Vec3};

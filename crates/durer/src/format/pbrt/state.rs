@@ -6,7 +6,7 @@ use super::light::AreaLight;
 use super::material::Made;
 use super::medium::Medium;
 use super::params::{Param, Params};
-use super::said::Said;
+use crate::format::said::Said;
 use super::spectrum::Space;
 use super::texture::Texture;
 use super::transform::Transforms;

@@ -2,7 +2,7 @@
 
 use super::directives::TEXTURE;
 use super::params::{Kind, Param, Params};
-use super::said::meant;
+use crate::format::said::meant;
 use super::state::Reader;
 use crate::describe::FileName;
 use crate::diag::{Diagnostic, Span};
