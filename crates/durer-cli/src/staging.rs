@@ -26,6 +26,12 @@ pub struct StagingArgs {
     /// Name or number of the model's camera that is wanted [default: the first]
     #[arg(long, value_name = "NAME")]
     pub camera: Option<String>,
+    /// Move the model's own camera to where it sees all of it, in the direction in which it looks
+    #[arg(long, conflicts_with = "view")]
+    pub fit: bool,
+    /// Degrees by which the model is turned about what is up
+    #[arg(skip)]
+    pub turned: Option<f32>,
     /// Moment of the model's animation, in seconds [default: as it stands without]
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     pub at: Option<f32>,
@@ -92,6 +98,8 @@ impl StagingArgs {
             }),
             camera: self.camera.clone(),
             at: self.at,
+            fit: self.fit,
+            turned: self.turned,
             view_file: self.view_file.clone(),
             environment: self.environment.clone(),
             aspect: None,

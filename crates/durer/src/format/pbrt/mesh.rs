@@ -1,9 +1,9 @@
 //! Meshes: in the text, or in files of PLY.
 
 use super::params::Params;
-use crate::format::said::Said;
 use crate::diag::{Diagnostic, Diagnostics, Span};
 use crate::format::read_mesh;
+use crate::format::said::Said;
 use crate::format::scene::Input;
 use crate::math::{Vec2, Vec3, fp};
 use crate::shape::MeshData;

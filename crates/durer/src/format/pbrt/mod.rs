@@ -24,13 +24,13 @@ mod transform;
 #[cfg(test)]
 mod tests;
 
+use super::said::Said;
 use super::scene::Input;
 use super::too_large;
 use crate::diag::{Diagnostic, Diagnostics};
 use crate::scene::Scene;
 use directives::DIRECTIVES;
 use lexer::{Lexer, Token};
-use super::said::Said;
 use state::Reader;
 
 /// Whether a file begins with a directive that only pbrt has. `Transform` and `Material` begin

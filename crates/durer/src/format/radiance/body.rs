@@ -90,6 +90,12 @@ impl Body {
         }
     }
 
+    /// The corners of the box around it.
+    pub fn bounds(&self) -> [Vec3; 2] {
+        let all = || self.data.positions.iter().copied();
+        [all().fold(Vec3::INFINITY, Vec3::min), all().fold(Vec3::NEG_INFINITY, Vec3::max)]
+    }
+
     /// All of it.
     pub fn finish(mut self) -> MeshData {
         if self.data.normals.is_empty() {

@@ -144,7 +144,9 @@ fn genbox(reader: &Reader, name: &Word, args: &[Word]) -> Option<Facets> {
             "-i" => inward = true,
             "-o" => {}
             "-b" | "-r" | "-n" => {
-                reader.said.once(option.at, "bevelled and rounded edges of `genbox` have no counterpart: they are sharp");
+                reader
+                    .said
+                    .once(option.at, "bevelled and rounded edges of `genbox` have no counterpart: they are sharp");
                 rest = rest.get(1..).unwrap_or_default();
             }
             "-s" => {}
@@ -154,9 +156,14 @@ fn genbox(reader: &Reader, name: &Word, args: &[Word]) -> Option<Facets> {
             }
         }
     }
-    let corner = |i: usize| DVec3::new(size[0] * f64::from(i as u8 & 1), size[1] * f64::from((i as u8 >> 1) & 1), size[2] * f64::from((i as u8 >> 2) & 1));
-    const SIDES: [[usize; 4]; 6] =
-        [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let corner = |i: usize| {
+        DVec3::new(
+            size[0] * f64::from(i as u8 & 1),
+            size[1] * f64::from((i as u8 >> 1) & 1),
+            size[2] * f64::from((i as u8 >> 2) & 1),
+        )
+    };
+    const SIDES: [[usize; 4]; 6] = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
     let negative = size.iter().filter(|x| **x < 0.0).count() % 2 == 1;
     Some(SIDES.iter().map(|side| turned(side.map(corner).to_vec(), inward != negative)).collect())
 }

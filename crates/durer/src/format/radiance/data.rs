@@ -40,7 +40,10 @@ impl Table {
             let places = count.count(said)?;
             total = total.saturating_mul(places);
             if places == 0 || total > bytes.len() {
-                said.bad(count.at, format!("the file has not so many numbers as {places} values of this coordinate need"));
+                said.bad(
+                    count.at,
+                    format!("the file has not so many numbers as {places} values of this coordinate need"),
+                );
                 return None;
             }
             axes.push(match from == to {
@@ -73,7 +76,13 @@ impl Table {
         let at = |degrees: f64| -> f64 {
             let after = angles.iter().position(|angle| *angle >= degrees);
             match after {
-                Some(0) => if degrees >= angles[0] - 1e-9 { means[0] } else { 0.0 },
+                Some(0) => {
+                    if degrees >= angles[0] - 1e-9 {
+                        means[0]
+                    } else {
+                        0.0
+                    }
+                }
                 Some(i) => {
                     let share = (degrees - angles[i - 1]) / (angles[i] - angles[i - 1]);
                     means[i - 1] + share * (means[i] - means[i - 1])

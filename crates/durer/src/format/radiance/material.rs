@@ -10,6 +10,7 @@ use crate::diag::Span;
 use crate::material::PrincipledMaterial;
 use crate::material::principled::Walls;
 use crate::math::{Color, Vec3, fp};
+use crate::medium::Fog;
 use crate::scene::{Material, Spanned};
 use std::rc::Rc;
 
@@ -27,9 +28,18 @@ pub(super) struct Made {
 pub(super) enum Kind {
     Plain,
     /// The skin of a body; `outside`: the material of what is inside of a surface turned inside out.
-    Glass { outside: Option<u32> },
-    Shining { radiance: Color },
-    Spot { radiance: Color, direction: Vec3, degrees: f32, at: Span },
+    Glass {
+        outside: Option<u32>,
+    },
+    Shining {
+        radiance: Color,
+    },
+    Spot {
+        radiance: Color,
+        direction: Vec3,
+        degrees: f32,
+        at: Span,
+    },
 }
 
 impl Made {
@@ -274,15 +284,21 @@ impl Reader<'_> {
             return Made::nothing();
         }
         let albedo = if thing.numbers.len() >= 6 { thing.color(3).min(Vec3::ONE) } else { Vec3::ZERO };
+        let anisotropy = thing.number(6).unwrap_or(0.0).clamp(-0.99, 0.99);
         let depth = 1.0 / most;
         let m = PrincipledMaterial {
             transmission_depth: depth,
             transmission_color: extinction.map(|sigma| fp::exp(-sigma * depth)),
             transmission_scatter: depth * albedo * extinction,
-            transmission_scatter_anisotropy: thing.number(6).unwrap_or(0.0).clamp(-0.99, 0.99),
+            transmission_scatter_anisotropy: anisotropy,
             ..body(Vec3::ONE, 1.0)
         };
-        let number = Some(self.add_material(m, thing.at()));
+        let number = self.add_material(m, thing.at());
+        // What is in the air thins light by its brightness.
+        let mean = extinction.dot(Vec3::new(0.2126, 0.7152, 0.0722));
+        let color = (albedo * extinction / mean).min(Vec3::ONE);
+        self.mists.insert(number, Fog { extinction: mean, color, anisotropy, ..Fog::default() });
+        let number = Some(number);
         Made { number, kind: Kind::Glass { outside: None }, ..Made::nothing() }
     }
 }

@@ -25,7 +25,10 @@ impl Reader<'_> {
                 0.0
             }
             _ => {
-                self.said.once(at, format!("`{kind}` has no counterpart: both modifiers are mixed half and half everywhere"));
+                self.said.once(
+                    at,
+                    format!("`{kind}` has no counterpart: both modifiers are mixed half and half everywhere"),
+                );
                 0.5
             }
         };

@@ -47,7 +47,9 @@ impl Reader<'_> {
                 None => Vec3::ONE,
             },
             "brightdata" => Vec3::splat(self.mean_of_data(thing, text(0), thing.texts.get(1))),
-            "colordata" => Vec3::from_array([0, 1, 2].map(|i| self.mean_of_data(thing, text(i), thing.texts.get(3 + i)))),
+            "colordata" => {
+                Vec3::from_array([0, 1, 2].map(|i| self.mean_of_data(thing, text(i), thing.texts.get(3 + i))))
+            }
             _ => Vec3::ONE,
         };
         (tint, None)

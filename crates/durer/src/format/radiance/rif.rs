@@ -10,9 +10,32 @@ use crate::math::fp;
 
 /// The variables of `rad`; three letters of a name do.
 const VARIABLES: [&str; 26] = [
-    "objects", "scene", "materials", "illum", "mkillum", "render", "oconv", "pfilt", "view", "ZONE", "QUALITY", "OCTREE",
-    "PICTURE", "AMBFILE", "OPTFILE", "EXPOSURE", "RESOLUTION", "UP", "INDIRECT", "DETAIL", "VARIABILITY", "PENUMBRAS",
-    "RAWFILE", "ZFILE", "REPORT", "rpict",
+    "objects",
+    "scene",
+    "materials",
+    "illum",
+    "mkillum",
+    "render",
+    "oconv",
+    "pfilt",
+    "view",
+    "ZONE",
+    "QUALITY",
+    "OCTREE",
+    "PICTURE",
+    "AMBFILE",
+    "OPTFILE",
+    "EXPOSURE",
+    "RESOLUTION",
+    "UP",
+    "INDIRECT",
+    "DETAIL",
+    "VARIABILITY",
+    "PENUMBRAS",
+    "RAWFILE",
+    "ZFILE",
+    "REPORT",
+    "rpict",
 ];
 /// Variables that change no light.
 const MORE: [&str; 8] = ["PGMAP", "PCMAP", "mkpmap", "rvu", "rtrace", "rpiece", "EYESEP", "MATERIAL"];
@@ -45,6 +68,12 @@ impl Reader<'_> {
             let help = "octrees are not read: `scene = FILE.rad` names what one is made of";
             self.said.bad_with(at, "this file names no scene", Some(help.into()));
         }
+        let options = settings.iter().filter(|setting| setting.name == "render").flat_map(|setting| &setting.values);
+        for option in options.filter(|option| option.text == "-bv-") {
+            let what =
+                "surfaces that are not seen from behind (-bv-) have no counterpart: they are seen from both sides";
+            self.said.once(option.at, what);
+        }
         let last = |name: &str| settings.iter().rfind(|setting| setting.name == name).and_then(|s| s.values.first());
         let larger = last("RESOLUTION").and_then(|word| word.text.parse().ok()).filter(|r| (1..=1 << 16).contains(r));
         let exposure = last("EXPOSURE").cloned();
@@ -62,7 +91,8 @@ impl Reader<'_> {
                 let named = (0..views.len()).find(|&i| name(i).is_some_and(|word| word.text == *wanted));
                 let found = named.or_else(|| wanted.parse().ok().filter(|i| *i < views.len()));
                 if found.is_none() {
-                    let known: Vec<&str> = (0..views.len()).filter_map(|i| name(i).map(|word| word.text.as_str())).collect();
+                    let known: Vec<&str> =
+                        (0..views.len()).filter_map(|i| name(i).map(|word| word.text.as_str())).collect();
                     let help = match meant(wanted, known.iter().copied()) {
                         Some(meant) => meant,
                         None if known.is_empty() => "the file names no views".into(),

@@ -36,7 +36,10 @@ impl Sky {
             3 => Cover::Uniform,
             4 => Cover::Intermediate,
             _ => {
-                said.bad(thing.at(), "the first number of a sky is 1 (clear), 2 (overcast), 3 (uniform) or 4 (intermediate)");
+                said.bad(
+                    thing.at(),
+                    "the first number of a sky is 1 (clear), 2 (overcast), 3 (uniform) or 4 (intermediate)",
+                );
                 return None;
             }
         };
@@ -76,7 +79,8 @@ impl Sky {
                 let eta = fp::asin(height);
                 let sun = (self.sun.z as f32).clamp(-1.0, 1.0);
                 let zenith_angle = fp::atan2((1.0 - sun * sun).sqrt(), sun);
-                let shape = (1.35 * fp::sin(5.631 - 3.59 * eta) + 3.12) * fp::sin(4.396 - 2.6 * zenith_angle) + 6.37 - eta;
+                let shape =
+                    (1.35 * fp::sin(5.631 - 3.59 * eta) + 3.12) * fp::sin(4.396 - 2.6 * zenith_angle) + 6.37 - eta;
                 let fall = fp::exp(angle * -0.563 * ((2.629 - eta) * (1.562 - zenith_angle) + 0.812));
                 self.zenith / self.factor * shape / 2.326 * fall
             }

@@ -6,11 +6,13 @@ use super::command;
 use super::material::Made;
 use super::source::Distant;
 use super::words::{Start, Word, Words};
+use crate::camera::Lens;
 use crate::diag::{Diagnostic, Span};
 use crate::format::polygon::Cutter;
 use crate::format::said::{Said, meant};
 use crate::format::scene::Input;
-use crate::scene::{Group, Node, Object, Scene};
+use crate::medium::Fog;
+use crate::scene::{Group, Node, Object, Scene, Spanned};
 use crate::source::SourceError;
 use glam::DAffine3;
 use std::collections::BTreeMap;
@@ -50,14 +52,47 @@ pub(super) struct Modifier {
 
 /// What is not a surface.
 pub(super) const MATERIALS: [&str; 27] = [
-    "plastic", "metal", "trans", "plastic2", "metal2", "trans2", "dielectric", "interface", "glass", "mirror", "light", "glow",
-    "spotlight", "illum", "antimatter", "mist", "prism1", "prism2", "plasfunc", "metfunc", "transfunc", "plasdata", "metdata",
-    "transdata", "BRTDfunc", "BSDF", "ashik2",
+    "plastic",
+    "metal",
+    "trans",
+    "plastic2",
+    "metal2",
+    "trans2",
+    "dielectric",
+    "interface",
+    "glass",
+    "mirror",
+    "light",
+    "glow",
+    "spotlight",
+    "illum",
+    "antimatter",
+    "mist",
+    "prism1",
+    "prism2",
+    "plasfunc",
+    "metfunc",
+    "transfunc",
+    "plasdata",
+    "metdata",
+    "transdata",
+    "BRTDfunc",
+    "BSDF",
+    "ashik2",
 ];
 /// Materials of programs later than the manual, or without a counterpart that differs.
 pub(super) const OTHERS: [&str; 2] = ["aBSDF", "WGMDfunc"];
 pub(super) const PATTERNS: [&str; 10] = [
-    "colorfunc", "brightfunc", "colordata", "brightdata", "colorpict", "colortext", "brighttext", "texfunc", "texdata", "spectrum",
+    "colorfunc",
+    "brightfunc",
+    "colordata",
+    "brightdata",
+    "colorpict",
+    "colortext",
+    "brighttext",
+    "texfunc",
+    "texdata",
+    "spectrum",
 ];
 pub(super) const MIXTURES: [&str; 4] = ["mixfunc", "mixdata", "mixpict", "mixtext"];
 pub(super) const SURFACES: [&str; 11] =
@@ -71,6 +106,8 @@ pub(super) struct Reader<'a> {
     pub names: BTreeMap<String, usize>,
     /// By the number of the material: surfaces that are one mesh.
     pub bodies: BTreeMap<u32, Body>,
+    /// By the number of the material: what is in the air there.
+    pub mists: BTreeMap<u32, Fog>,
     pub distant: Vec<Distant>,
     pub cutter: Cutter,
     pub scene: Scene,
@@ -86,6 +123,7 @@ impl<'a> Reader<'a> {
             modifiers: Vec::new(),
             names: BTreeMap::new(),
             bodies: BTreeMap::new(),
+            mists: BTreeMap::new(),
             distant: Vec::new(),
             cutter: Cutter::new(input.bytes.len()),
             scene: Scene { root: Some(Group::default()), ..Scene::default() },
@@ -141,7 +179,8 @@ impl<'a> Reader<'a> {
                     ),
                     _ => None,
                 };
-                self.said.push(Diagnostic { help, ..Diagnostic::error(error.to_string()).code("missing-file").at(name.at) });
+                self.said
+                    .push(Diagnostic { help, ..Diagnostic::error(error.to_string()).code("missing-file").at(name.at) });
                 None
             }
         }
@@ -221,7 +260,8 @@ impl<'a> Reader<'a> {
         let before = self.count;
         self.count = self.count.saturating_add(more);
         if before <= MOST_THINGS && self.count > MOST_THINGS {
-            self.said.bad(at, format!("more than {MOST_THINGS} corners and shapes, those of arrays counted, are too many"));
+            self.said
+                .bad(at, format!("more than {MOST_THINGS} corners and shapes, those of arrays counted, are too many"));
         }
         self.count <= MOST_THINGS
     }
@@ -232,8 +272,25 @@ impl<'a> Reader<'a> {
         self.scene.root.get_or_insert_default().objects.push(object);
     }
 
+    /// Makes the mist that the camera is in what is in the air: no ray would know that it begins in a body.
+    fn step_into_mist(&mut self) {
+        let Some(eye) = self.scene.camera.as_ref().map(|camera| camera.pose().center) else { return };
+        for (number, fog) in std::mem::take(&mut self.mists) {
+            let Some(body) = self.bodies.get(&number) else { continue };
+            let [min, max] = body.bounds();
+            if self.scene.fog.is_some() || eye.cmplt(min).any() || eye.cmpgt(max).any() {
+                continue;
+            }
+            let span = body.at;
+            self.said.once(span, "the mist that the camera is in fills its box, and thins all colours alike");
+            self.bodies.remove(&number);
+            self.scene.fog = Some(Spanned { value: Fog { min: Some(min), max: Some(max), ..fog }, span });
+        }
+    }
+
     /// All that was read.
     pub fn finish(mut self) -> Scene {
+        self.step_into_mist();
         for (material, body) in std::mem::take(&mut self.bodies) {
             let (name, span) = (format!("{}#{material}", self.input.name), body.at);
             let node = self.scene.add_mesh(&name, Arc::new(body.finish()), span);

@@ -25,8 +25,12 @@ impl Reader<'_> {
             "instance" | "mesh" => {
                 let name = thing.texts.first().map_or(String::new(), Word::shown);
                 let help = match thing.kind.text.as_str() {
-                    "mesh" => "a mesh of Radiance's own is not read: write the OBJ that it was made of as polygons, by `obj2rad`",
-                    _ => "octrees are not read: write `!xform OPTIONS FILE.rad` with the file that the octree was made of",
+                    "mesh" => {
+                        "a mesh of Radiance's own is not read: write the OBJ that it was made of as polygons, by `obj2rad`"
+                    }
+                    _ => {
+                        "octrees are not read: write `!xform OPTIONS FILE.rad` with the file that the octree was made of"
+                    }
                 };
                 let message = format!("{name} is left out: {help}");
                 self.said.once(at, message);

@@ -132,7 +132,8 @@ impl View {
         };
         let above = if self.kind == 'c' { 179.9 } else { most };
         if !(across > 0.0 && across <= most && upwards > 0.0 && upwards <= above) {
-            return said.bad(self.at, "a view's sizes (-vh, -vv) must be above 0 and below those that its type can have");
+            return said
+                .bad(self.at, "a view's sizes (-vh, -vv) must be above 0 and below those that its type can have");
         }
         if self.direction.cross(self.up).try_normalize().is_none() {
             return said.bad(self.at, "what is up in a view (-vu) must not be its direction (-vd)");
@@ -168,9 +169,8 @@ impl View {
             'l' => {
                 let forward = self.direction.normalize();
                 let aside = forward.cross(self.up).normalize();
-                let moved = self.point
-                    + self.shift[0] * across * aside
-                    + self.shift[1] * upwards * aside.cross(forward);
+                let moved =
+                    self.point + self.shift[0] * across * aside + self.shift[1] * upwards * aside.cross(forward);
                 OrthographicCamera {
                     center: moved.as_vec3(),
                     direction,

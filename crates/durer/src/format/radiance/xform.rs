@@ -71,8 +71,7 @@ impl Transform {
                 if rest.is_empty() {
                     said.bad(option.at, format!("{} needs a number", option.shown()));
                 }
-                let times =
-                    if option.text == "-i" { Times::Just(count as i32) } else { Times::Array(count) };
+                let times = if option.text == "-i" { Times::Just(count as i32) } else { Times::Array(count) };
                 self.parts.push((times, DAffine3::IDENTITY));
                 (1, None)
             }
