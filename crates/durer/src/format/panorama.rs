@@ -34,6 +34,14 @@ pub(super) fn surround(
     true
 }
 
+/// What a picture of longitude and latitude has in a direction, y upwards: the nearest texel's.
+pub(super) fn looked_up(picture: &Image, dir: DVec3) -> Color {
+    let dir = dir.as_vec3();
+    let (u, v) = (fp::atan2(dir.x, -dir.z) / TAU + 0.5, fp::atan2((dir.x * dir.x + dir.z * dir.z).sqrt(), dir.y) / PI);
+    let texel = |share: f32, count: u32| ((share * count as f32) as u32).min(count.saturating_sub(1));
+    picture.get(texel(u, picture.width), texel(v, picture.height)).unwrap_or_default()
+}
+
 /// The light of all directions, as [`Environment`](crate::texture::Environment) has them.
 fn pixels(light: impl Fn(DVec3) -> Color + Sync, rows: u32) -> Vec<Color> {
     let columns = 2 * rows;
@@ -50,4 +58,19 @@ fn pixels(light: impl Fn(DVec3) -> Color + Sync, rows: u32) -> Vec<Color> {
         sum / (PLACES * PLACES) as f32
     };
     (0..columns * rows).into_par_iter().map(texel).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_looked_up_is_what_was_put_there() {
+        let light = |dir: DVec3| dir.as_vec3() + 1.5;
+        let picture = Image::from_pixels(256, 128, pixels(light, 128)).unwrap();
+        for dir in [DVec3::X, DVec3::NEG_X, DVec3::Z, DVec3::NEG_Z, DVec3::Y, DVec3::new(0.48, -0.6, 0.64)] {
+            let found = looked_up(&picture, dir);
+            assert!((found - light(dir)).length() < 0.05, "{dir}: {found}");
+        }
+    }
 }

@@ -1,14 +1,17 @@
 //! Readers of whole scenes: one row of [`SCENE_FORMATS`] each. What is a mesh alone is a scene of one mesh.
 
-use super::{MESH_FORMATS, extension, gltf, obj, pbrt, radiance, read_mesh};
+use super::{MESH_FORMATS, extension, gltf, obj, panorama, pbrt, radiance, read_mesh};
 use crate::describe::FileName;
 use crate::diag::{Diagnostic, Diagnostics, Files, Span};
+use crate::image::{self, Encoded};
 use crate::light::Light;
 use crate::math::Vec3;
+use crate::scene::staging::Sides;
 use crate::scene::{Axis, Background, Group, Node, Object, Picture, PictureBytes, Scene, Spanned, Staging};
 use crate::shape::{MeshData, TriangleMesh};
 use crate::source::Source;
 use crate::texture::Mapping;
+use glam::DVec3;
 use std::cell::RefCell;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -83,6 +86,10 @@ pub const SCENE_FORMATS: &[SceneFormat] = &[
     },
 ];
 
+/// Bytes that decoding a picture may take, and rows of one that is turned.
+const MEMORY: u64 = 1 << 31;
+const MOST_ROWS: u32 = 2048;
+
 /// A file that is to become a scene.
 pub struct Input<'a> {
     /// Its bytes.
@@ -133,7 +140,7 @@ pub fn read_model(format: &SceneFormat, input: &Input, diagnostics: &mut Diagnos
         }
     }
     if let Some((name, bytes)) = named(&input.staging.environment, diagnostics).ok()? {
-        scene.surround(name, bytes);
+        scene.surround(&name, bytes, input.staging.up.unwrap_or(format.up));
     }
     input.staging.complete(&mut scene, format.up, format.whole);
     Some(scene)
@@ -150,17 +157,24 @@ fn one_mesh(input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
 }
 
 impl Scene {
-    /// Puts a picture of all directions around the scene, instead of all light that is far away.
-    fn surround(&mut self, name: String, bytes: Arc<[u8]>) {
-        let picture = Picture { bytes: PictureBytes::Here(name.clone(), bytes), mapping: Mapping::default() };
-        self.assets.pictures.insert(name.clone(), picture);
-        self.background = Background {
-            environment: Some(FileName { path: name, span: Span::default() }),
-            color: Vec3::ZERO,
-            ..Background::default()
-        };
+    /// Puts a picture of all directions around the scene, instead of all light that is far away. Its upper border is up.
+    fn surround(&mut self, name: &str, bytes: Arc<[u8]>, up: Axis) {
+        self.background = Background { color: Vec3::ZERO, ..Background::default() };
         let near = |light: &Spanned<Light>| !matches!(light.value, Light::Directional(_));
         self.lights.get_or_insert_default().retain(near);
+        let decoded = || Encoded::open(&bytes, name).and_then(|encoded| encoded.read(MEMORY, image::decode_srgb));
+        let sides = Sides::new(up);
+        let turned = |dir: DVec3| DVec3::new(dir.dot(sides.right), dir.dot(sides.up), dir.dot(sides.front));
+        // What cannot be read is told when the scene is compiled.
+        if let Some(picture) = (up != Axis::Y).then(decoded).and_then(Result::ok) {
+            let light = |dir: DVec3| panorama::looked_up(&picture, turned(dir));
+            if panorama::surround(self, (name, Span::default()), picture.height.min(MOST_ROWS), light) {
+                return;
+            }
+        }
+        let picture = Picture { bytes: PictureBytes::Here(name.to_string(), bytes), mapping: Mapping::default() };
+        self.assets.pictures.insert(name.to_string(), picture);
+        self.background.environment = Some(FileName { path: name.to_string(), span: Span::default() });
     }
 
     /// Adds a mesh in memory by a name that no other has, and gives what shows it.

@@ -77,14 +77,18 @@ pub struct Staging {
 }
 
 /// Three axes of a model as people see it: what is to its right, up, and in front of it.
-struct Sides {
-    right: DVec3,
-    up: DVec3,
-    front: DVec3,
+pub struct Sides {
+    /// To the right of somebody who stands before it.
+    pub right: DVec3,
+    /// Upwards.
+    pub up: DVec3,
+    /// To where it looks.
+    pub front: DVec3,
 }
 
 impl Sides {
-    fn new(up: Axis) -> Self {
+    /// For an axis that is up.
+    pub fn new(up: Axis) -> Self {
         let (right, up) = match up {
             Axis::X => (DVec3::NEG_Y, DVec3::X),
             Axis::Y => (DVec3::X, DVec3::Y),
