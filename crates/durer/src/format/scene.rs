@@ -9,11 +9,11 @@ use crate::math::Vec3;
 use crate::scene::staging::Sides;
 use crate::scene::{Axis, Background, Group, Node, Object, Picture, PictureBytes, Scene, Spanned, Staging};
 use crate::shape::{MeshData, TriangleMesh};
-use crate::source::Source;
+use crate::source::{Source, SourceError};
 use crate::texture::Mapping;
 use glam::DVec3;
 use std::cell::RefCell;
-use std::path::PathBuf;
+use std::path::Path;
 use std::sync::Arc;
 
 /// A format of files that hold scenes, or models that become scenes.
@@ -117,21 +117,8 @@ pub fn find_scene_format(bytes: &[u8], name: &str) -> Option<&'static SceneForma
 /// Reads a model as a scene, and adds the camera, light and material that it lacks.
 pub fn read_model(format: &SceneFormat, input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
     let mut scene = (format.read)(input, diagnostics)?;
-    let named = |path: &Option<PathBuf>, diagnostics: &mut Diagnostics| -> Result<Option<(String, Arc<[u8]>)>, ()> {
-        let Some(path) = path else { return Ok(None) };
-        let name = path.display().to_string();
-        match input.source.read_path(path, &name) {
-            Ok(bytes) => {
-                input.source.remember(&name, &bytes);
-                Ok(Some((name, bytes)))
-            }
-            Err(error) => {
-                diagnostics.push(Diagnostic::error(error.to_string()).code("missing-file"));
-                Err(())
-            }
-        }
-    };
-    if let Some((name, bytes)) = named(&input.staging.view_file, diagnostics).ok()? {
+    if let Some(path) = &input.staging.view_file {
+        let (name, bytes) = named(input, path, diagnostics)?;
         let found = radiance::look(&mut scene, input, (&name, &bytes));
         let sound = !found.has_errors();
         diagnostics.extend(found);
@@ -139,11 +126,22 @@ pub fn read_model(format: &SceneFormat, input: &Input, diagnostics: &mut Diagnos
             return None;
         }
     }
-    if let Some((name, bytes)) = named(&input.staging.environment, diagnostics).ok()? {
+    if let Some(path) = &input.staging.environment {
+        let (name, bytes) = named(input, path, diagnostics)?;
         scene.surround(&name, bytes, input.staging.up.unwrap_or(format.up));
     }
     input.staging.complete(&mut scene, format.up, format.whole);
     Some(scene)
+}
+
+/// A file that an option names, wherever it is, with its name.
+fn named(input: &Input, path: &Path, diagnostics: &mut Diagnostics) -> Option<(String, Arc<[u8]>)> {
+    let name = path.display().to_string();
+    let read = input.source.read_path(path, &name);
+    let refuse = |error: SourceError| diagnostics.push(Diagnostic::error(error.to_string()).code("missing-file"));
+    let bytes = read.map_err(refuse).ok()?;
+    input.source.remember(&name, &bytes);
+    Some((name, bytes))
 }
 
 /// A scene of one mesh without a material.

@@ -148,11 +148,9 @@ impl Splicer<'_, '_, '_> {
         for token in written {
             match token.kind {
                 TokenKind::Open => open.push(token.span),
-                TokenKind::Close => {
-                    if open.pop().is_none() {
-                        wrong = Some((token.span, "this `}` closes nothing in its file"));
-                        break;
-                    }
+                TokenKind::Close if open.pop().is_none() => {
+                    wrong = Some((token.span, "this `}` closes nothing in its file"));
+                    break;
                 }
                 _ => {}
             }

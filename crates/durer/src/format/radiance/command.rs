@@ -234,9 +234,7 @@ fn genprism(reader: &mut Reader, name: &Word, args: &[Word]) -> Option<Facets> {
         facets.push(turned(base.clone(), inward));
         facets.push(turned(base.iter().map(|p| *p + along).collect(), !inward));
     }
-    for i in 0..base.len() - usize::from(!closed) {
-        let side = vec![base[i], base[i] + along, next(i) + along, next(i)];
-        facets.push(turned(side, inward));
-    }
+    let sides = base.iter().zip(base.iter().cycle().skip(1)).take(base.len() - usize::from(!closed));
+    facets.extend(sides.map(|(&a, &b)| turned(vec![a, a + along, b + along, b], inward)));
     Some(facets)
 }

@@ -76,13 +76,8 @@ impl Table {
         let at = |degrees: f64| -> f64 {
             let after = angles.iter().position(|angle| *angle >= degrees);
             match after {
-                Some(0) => {
-                    if degrees >= angles[0] - 1e-9 {
-                        means[0]
-                    } else {
-                        0.0
-                    }
-                }
+                Some(0) if degrees < angles[0] - 1e-9 => 0.0,
+                Some(0) => means[0],
                 Some(i) => {
                     let share = (degrees - angles[i - 1]) / (angles[i] - angles[i - 1]);
                     means[i - 1] + share * (means[i] - means[i - 1])

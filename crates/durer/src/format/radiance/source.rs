@@ -15,7 +15,7 @@ use std::f32::consts::PI;
 /// Degrees across which what is far away counts as a direction, as the sun does.
 const SMALL: f32 = 5.0;
 /// Rows of the picture around the scene.
-const ROWS: u32 = 512;
+const ROWS: u32 = 256;
 
 /// A cone of directions, and the light that comes from them.
 pub(super) struct Distant {

@@ -61,7 +61,7 @@ impl Reader<'_> {
                 self.add(Node::Primitive(sphere.into()), number, at);
             }
             "polygon" => {
-                if thing.numbers.len() < 9 || thing.numbers.len() % 3 != 0 {
+                if thing.numbers.len() < 9 || !thing.numbers.len().is_multiple_of(3) {
                     let message = format!(
                         "a polygon has three numbers for each of at least 3 corners, and here are {} numbers",
                         thing.numbers.len()
