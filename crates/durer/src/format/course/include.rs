@@ -105,14 +105,7 @@ impl Splicer<'_, '_, '_> {
         let (number, bytes) = match (self.open)(&name) {
             Opened::Text(number, bytes) => (number, bytes),
             Opened::Failed(error) => {
-                let help = match &error {
-                    SourceError::Missing { near: Some(near), .. } => Some(format!("did you mean `{near}`?")),
-                    SourceError::Outside { .. } => Some(
-                        "a scene may only name files in and below its own folder, unless `--allow-outside` is given"
-                            .into(),
-                    ),
-                    _ => None,
-                };
+                let help = error.help();
                 let error = Diagnostic::error(error.to_string()).code("missing-file").at(at);
                 self.diagnostics.push(Diagnostic { help, ..error });
                 return Vec::new();

@@ -1,6 +1,7 @@
 //! Names: of materials, and of objects that are defined once and used many times.
 
 use super::lexer::TokenKind;
+use super::nodes::paint;
 use super::reader::Reader;
 use super::words::dialects_of;
 use crate::diag::{Diagnostic, Span, did_you_mean};
@@ -155,16 +156,5 @@ fn count(object: &Object) -> usize {
         Node::Transform(_, inner) => count(inner),
         Node::Solid(_, parts) => all(parts),
         _ => 0,
-    }
-}
-
-/// Gives a material to all that has none.
-fn paint(object: &mut Object, material: u32) {
-    object.material.get_or_insert(material);
-    match &mut object.node {
-        Node::Group(group) => group.objects.iter_mut().for_each(|object| paint(object, material)),
-        Node::Transform(_, inner) => paint(inner, material),
-        Node::Solid(_, parts) => parts.iter_mut().for_each(|part| paint(part, material)),
-        _ => {}
     }
 }

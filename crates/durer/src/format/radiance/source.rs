@@ -17,6 +17,9 @@ const SMALL: f32 = 5.0;
 /// Rows of the picture around the scene.
 const ROWS: u32 = 256;
 
+/// Spots that stand for a surface.
+const SPOTS: u32 = 24;
+
 /// A cone of directions, and the light that comes from them.
 pub(super) struct Distant {
     direction: DVec3,
@@ -62,21 +65,27 @@ impl Reader<'_> {
         self.scene.lights.get_or_insert_default().push(Spanned { value, span });
     }
 
-    /// A spot at the middle of a surface.
+    /// Spots all over a disc with the area of a surface: light that goes one way only has no counterpart that is a surface.
     pub fn spot(&mut self, made: &Made, (area, center, normal): (f64, DVec3, Option<DVec3>), span: Span) {
         let Kind::Spot { radiance, direction, degrees, at } = made.kind else { return };
-        self.said.once(at, "a spotlight shines from the middle of its surface, which is not shown");
-        let cosine = normal.map_or(1.0, |normal| normal.dot(direction.as_dvec3()).max(0.0));
-        let color = radiance * (area * cosine) as f32 / PI;
-        let light = SpotLight {
-            position: center.as_vec3(),
-            direction,
-            color,
-            angle: degrees.min(180.0),
-            inner_angle: degrees.min(180.0),
-            fade: Fade::Squared,
-        };
-        self.light(light.into(), span);
+        self.said.once(at, format!("a spotlight is {SPOTS} spots, and its surface is not shown"));
+        let axis = direction.as_dvec3();
+        let cosine = normal.map_or(1.0, |normal| normal.dot(axis).max(0.0));
+        let (x, y) = normal.unwrap_or(axis).any_orthonormal_pair();
+        for i in 0..SPOTS {
+            // Vogel's spiral: as many spots in equal areas.
+            let radius = (area / f64::from(PI) * (f64::from(i) + 0.5) / f64::from(SPOTS)).sqrt();
+            let (sin, cos) = fp::sin_cos_degrees(137.507_764 * f64::from(i));
+            let light = SpotLight {
+                position: (center + radius * (cos * x + sin * y)).as_vec3(),
+                direction,
+                color: radiance * (area * cosine) as f32 / (PI * SPOTS as f32),
+                angle: degrees.min(180.0),
+                inner_angle: degrees.min(180.0),
+                fade: Fade::Squared,
+            };
+            self.light(light.into(), span);
+        }
     }
 
     /// Puts what is infinitely far away around the scene.

@@ -13,7 +13,6 @@ use crate::format::said::{Said, meant};
 use crate::format::scene::Input;
 use crate::medium::Fog;
 use crate::scene::{Group, Node, Object, Scene, Spanned};
-use crate::source::SourceError;
 use glam::DAffine3;
 use std::collections::BTreeMap;
 use std::rc::Rc;
@@ -171,14 +170,7 @@ impl<'a> Reader<'a> {
                 Some((bytes, file))
             }
             Err(error) => {
-                let help = match &error {
-                    SourceError::Missing { near: Some(near), .. } => Some(format!("did you mean `{near}`?")),
-                    SourceError::Outside { .. } => Some(
-                        "a scene may only name files in and below its own folder, unless `--allow-outside` is given"
-                            .into(),
-                    ),
-                    _ => None,
-                };
+                let help = error.help();
                 self.said
                     .push(Diagnostic { help, ..Diagnostic::error(error.to_string()).code("missing-file").at(name.at) });
                 None

@@ -60,8 +60,8 @@ fn lights_have_the_radiance_that_is_written() {
     let found = f64::from(shown(overcast, Vec3::ZERO, Vec3::Z).x);
     assert!((found / 7.0 - 1.0).abs() < 0.03, "{found}");
     // A spot as seen from its axis: L A / d², over pi; beside its cone nothing.
-    let spot = "void spotlight l 0 0 7 6 6 6 30 0 0 -1\nl ring r 0 0 8 0 0 3 0 0 -1 0 .5";
-    lit(spot, Vec3::ZERO, Vec3::Z, 6.0 * 0.25 / 9.0);
+    let spot = "void spotlight l 0 0 7 6 6 6 30 0 0 -1\nl ring r 0 0 8 0 0 3 0 0 -1 0 .1";
+    lit(spot, Vec3::ZERO, Vec3::Z, 6.0 * 0.01 / 9.0);
     assert_eq!(shown(spot, Vec3::new(1.0, 0.0, 0.0), Vec3::Z), Vec3::ZERO);
 }
 
