@@ -95,6 +95,8 @@ pub struct SceneArgs {
 #[command(after_help = "Examples:
   durer render scene.txt -o picture.png
   durer render model.glb -o picture.png --view iso --studio sun
+  durer render model.glb -o frame.png --turntable 36
+  durer render scene.txt -o picture.png --watch
   durer render scene.txt -o picture.exr --size 1920x1080 --samples 64
   durer render scene.txt -o picture.exr --noise 0.01 --time 10m --preview preview.png
   durer render scene.txt -o picture.exr --samples 256 --resume
@@ -103,7 +105,7 @@ pub struct SceneArgs {
   durer render scene.txt -o picture.png --dialect f04 --shadows --bounces 4 --transfer course
   durer render scene.txt -o dots.png --show samples --size 9x9 --sampler jittered --samples 9
 
-A scene is a file of the course's language or a model: glTF, GLB, PLY, OBJ, STL. A model without camera and light is seen whole, in a studio.
+A scene is a file of the course's language or a model: glTF, GLB, pbrt, Radiance, PLY, OBJ, STL. A model without camera and light is seen whole, in a studio.
 
 The extension of PICTURE says the format: png, tga, bmp, ppm, pfm, exr, hdr. Several pictures go into one EXR file
 as layers, or into files of their own: picture.depth.png and so on.
@@ -113,6 +115,9 @@ Work that takes long is saved every now and then into PICTURE.part, which --resu
 pub struct RenderCommand {
     #[command(flatten)]
     pub render: RenderArgs,
+    /// Pictures of a model from so many sides all around it: picture.000.png and so on
+    #[arg(long, value_name = "FRAMES", conflicts_with_all = ["watch", "camera", "view_file"], value_parser = clap::value_parser!(u16).range(1..=9999))]
+    pub turntable: Option<u16>,
     /// Print what one pixel sees, and write nothing
     #[arg(long, value_name = "X,Y", value_parser = pixel)]
     pub pixel: Option<(u32, u32)>,
@@ -143,6 +148,9 @@ pub struct RenderArgs {
     /// as it was rendered, beside a layer `denoised`, and --hash knows nothing of it
     #[arg(long)]
     pub denoise: bool,
+    /// Render again whenever the scene, a mesh or a picture of it is saved; the picture grows as it is made, and Ctrl-C ends
+    #[arg(long, conflicts_with_all = ["pixel", "shard", "checkpoint", "resume", "restart", "preview"])]
+    pub watch: bool,
     /// Print the hash of the film as the last line of standard output
     #[arg(long)]
     pub hash: bool,

@@ -61,6 +61,9 @@ impl Keeper {
             Some(place) if !place.is_stream() => what_was_saved(args, place.path())?,
             _ => None,
         };
+        // Who watches sees the picture while it is made.
+        let growing = args.watch && !output.starts_with("/dev") && args.view.show == ["color"];
+        let growing = growing.then(|| Ok::<_, Failure>((Destination::new(output)?, format(output)?))).transpose()?;
         let preview = work.preview.as_ref().map(|path| {
             // The name first: it may be wrong altogether.
             let format = format(path)?;
@@ -73,7 +76,7 @@ impl Keeper {
             resume: work.resume,
             restart: work.restart,
             quiet: args.quiet,
-            preview: preview.transpose()?,
+            preview: preview.transpose()?.or(growing),
             display: args.display.display()?,
             start: Instant::now(),
             short: SHORT.min(work.checkpoint_every),

@@ -30,7 +30,9 @@ mod render;
 mod report;
 mod staging;
 mod stats;
+mod turntable;
 mod verify;
+mod watching;
 mod words;
 
 use args::{Cli, Command};
@@ -66,7 +68,7 @@ pub fn run(words: Vec<OsString>) -> u8 {
             .collect::<Result<_, _>>()
             .and_then(|arguments| course::run(arguments, Some(program))),
         None => match Cli::parse_from(words).command {
-            Command::Render(args) => render::run(&args),
+            Command::Render(args) => render::run(*args),
             Command::Farm(args) => farm::run(&args),
             Command::Merge(args) => merge::run(&args),
             Command::Verify(args) => verify::run(&args),

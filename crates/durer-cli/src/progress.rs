@@ -12,6 +12,8 @@ use std::time::{Duration, Instant};
 enum Phase {
     /// Nothing is written yet: it ends the program.
     Harmless,
+    /// All is done that can be: it ends the program.
+    Idle,
     /// It cancels; a second one ends the program.
     Rendering(Arc<Control>),
     /// It waits until the files are whole; a second one ends the program. Says whether there was a first.
@@ -48,6 +50,7 @@ fn interrupt(signal: u8) {
     match &mut *phase {
         Phase::Rendering(control) if !control.cancel.swap(true, Relaxed) => {}
         Phase::Saving(asked @ false) => *asked = true,
+        Phase::Idle => std::process::exit(0),
         phase => {
             let what = if matches!(phase, Phase::Harmless) { "nothing was written" } else { "not all was saved" };
             std::process::exit(i32::from(Failure::Interrupted(what.into()).report()))
@@ -89,6 +92,16 @@ fn ignored_signals() -> u64 {
 #[cfg(not(unix))]
 pub fn hear_interrupts() {
     let _ = ctrlc::set_handler(|| interrupt(2));
+}
+
+/// Nothing is to be done until somebody does something.
+pub fn idle() {
+    *locked(&PHASE) = Phase::Idle;
+}
+
+/// Work begins again.
+pub fn busy() {
+    *locked(&PHASE) = Phase::Harmless;
 }
 
 /// Files are about to be saved.

@@ -6,22 +6,71 @@ use crate::keep::Keeper;
 use crate::open::{load_options, read};
 use crate::output::{Target, lengthened, say};
 use crate::stats::Stages;
-use crate::{Failure, bad, check, diagrams, job, large, output, progress, report};
+use crate::{Failure, bad, check, diagrams, job, large, output, progress, report, turntable, watching};
 use durer::diag::Diagnostic;
 use durer::image::checked_count;
 use durer::render::{Bands, Control, Job, Panicked, Part, RenderError, Shard, ShardBy, Statistics, Stop, replay};
 use durer::world::World;
-use std::path::Path;
-use std::sync::Arc;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+use std::sync::{Arc, Mutex};
 
-pub fn run(command: &RenderCommand) -> Result<(), Failure> {
+/// What somebody who waits for files to be saved knows of a render, and can do to it.
+#[derive(Default)]
+pub struct Watched {
+    /// Files that the scene is made of, beside its own.
+    pub files: Mutex<Vec<PathBuf>>,
+    /// Whether a file was saved since.
+    pub stale: AtomicBool,
+    control: Mutex<Option<Arc<Control>>>,
+}
+
+impl Watched {
+    /// Stops the render.
+    pub fn cancel(&self) {
+        self.stale.store(true, Relaxed);
+        if let Ok(Some(control)) = self.control.lock().as_deref() {
+            control.cancel.store(true, Relaxed);
+        }
+    }
+
+    /// A render begins.
+    fn begins(&self, control: &Arc<Control>) {
+        if let Ok(mut place) = self.control.lock() {
+            *place = Some(Arc::clone(control));
+        }
+        if self.stale.load(Relaxed) {
+            control.cancel.store(true, Relaxed);
+        }
+    }
+}
+
+pub fn run(mut command: RenderCommand) -> Result<(), Failure> {
+    match (command.turntable, command.render.watch) {
+        (Some(frames), _) => turntable::run(&mut command, frames),
+        (None, true) => {
+            // Each picture begins anew.
+            command.render.work.no_checkpoint = true;
+            watching::run(&command)
+        }
+        (None, false) => once(&command, &Watched::default()),
+    }
+}
+
+/// The picture that is written.
+pub fn output_of(args: &RenderArgs) -> PathBuf {
+    let default_name = || lengthened(Path::new(args.scene.file_stem().unwrap_or_default()), ".png");
+    args.output.clone().unwrap_or_else(default_name)
+}
+
+/// Renders a scene.
+pub fn once(command: &RenderCommand, watched: &Watched) -> Result<(), Failure> {
     let args = &command.render;
     let shard = match args.work.shard {
         Some(shard) if args.work.shard_by == "samples" => Shard { by: ShardBy::Samples, ..shard },
         shard => shard.unwrap_or(Shard::WHOLE),
     };
-    let default_name = || lengthened(Path::new(args.scene.file_stem().unwrap_or_default()), ".png");
-    let output = args.output.clone().unwrap_or_else(default_name);
+    let output = output_of(args);
     // What is known to prevent writing is better known before the work.
     let mut guard = Guard::default();
     let (target, keeper) = match (command.pixel, args.work.shard) {
@@ -60,6 +109,9 @@ pub fn run(command: &RenderCommand) -> Result<(), Failure> {
     }
     let opened = scene.compile(&options, &mut guard)?;
     stages.ends("meshes, pictures and trees");
+    if let Ok(mut files) = watched.files.lock() {
+        *files = opened.loaded.files();
+    }
     if !args.quiet {
         job::warn(&job, &opened.world);
     }
@@ -72,6 +124,7 @@ pub fn run(command: &RenderCommand) -> Result<(), Failure> {
         goes_on: bands.is_some(),
         ..Control::default()
     });
+    watched.begins(&control);
     if let (Some(bands), Some(target)) = (&bands, &target) {
         return large::render(bands, &opened.world, &control, target, args);
     }
@@ -97,6 +150,7 @@ pub fn run(command: &RenderCommand) -> Result<(), Failure> {
     let finished = match &stop {
         Stop::Finished => true,
         Stop::OutOfTime => part.is_finished(),
+        Stop::Cancelled if watched.stale.load(Relaxed) => return Err(Failure::Interrupted(String::new())),
         Stop::Cancelled => return Err(stopped(args, &part, &keeper, target.as_ref())),
         Stop::Panicked(panicked) => return Err(keeper.after_panic(&part, panicked, &replaying(panicked))),
     };

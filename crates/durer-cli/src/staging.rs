@@ -2,12 +2,13 @@
 
 use clap::{Args, ValueEnum};
 use durer::scene::{Axis, Staging, Studio, View};
+use std::path::PathBuf;
 
-/// How a model (glTF, pbrt, OBJ, PLY, STL) becomes a scene; nothing of it concerns files that are scenes
+/// How a model (glTF, pbrt, Radiance, OBJ, PLY, STL) becomes a scene; nothing of it concerns files that are scenes
 #[derive(Args)]
 #[command(next_help_heading = "Models")]
 pub struct StagingArgs {
-    /// What is up in a model [default: y; z for STL]
+    /// What is up in a model [default: y; z for Radiance and STL]
     #[arg(long, value_name = "AXIS", value_enum)]
     pub up: Option<Up>,
     /// Whence a model is seen that has no camera, or instead of by its own [default: three-quarter]
@@ -16,9 +17,21 @@ pub struct StagingArgs {
     /// Light for a model that has none, or instead of its own [default: soft]
     #[arg(long, value_name = "LIGHT", value_enum)]
     pub studio: Option<Light>,
+    /// A picture of all directions (.hdr, .exr) that lights the model, instead of its own sky or of a studio
+    #[arg(long, value_name = "FILE")]
+    pub environment: Option<PathBuf>,
+    /// A file of Radiance's views (.vf), whose last is the camera
+    #[arg(long, value_name = "FILE", conflicts_with = "view")]
+    pub view_file: Option<PathBuf>,
     /// Name or number of the model's camera that is wanted [default: the first]
     #[arg(long, value_name = "NAME")]
     pub camera: Option<String>,
+    /// Move the model's own camera to where it sees all of it, in the direction in which it looks
+    #[arg(long, conflicts_with = "view")]
+    pub fit: bool,
+    /// Degrees by which the model is turned about what is up
+    #[arg(skip)]
+    pub turned: Option<f32>,
     /// Moment of the model's animation, in seconds [default: as it stands without]
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     pub at: Option<f32>,
@@ -85,6 +98,10 @@ impl StagingArgs {
             }),
             camera: self.camera.clone(),
             at: self.at,
+            fit: self.fit,
+            turned: self.turned,
+            view_file: self.view_file.clone(),
+            environment: self.environment.clone(),
             aspect: None,
         }
     }

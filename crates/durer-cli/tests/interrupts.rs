@@ -133,3 +133,39 @@ fn a_bar_is_shown_on_a_terminal_only() {
         .interrupted("render scene.txt --size 1000x1000 --samples 100 --restart -o p.png", Duration::from_millis(1500));
     assert!(!ran.err.contains("rays/s"), "{}", ran.err);
 }
+
+#[test]
+fn whoever_watches_sees_what_is_saved_and_ends_by_ctrl_c() {
+    let place = Place::new();
+    let scene = std::fs::read_to_string(place.path("scene.txt")).unwrap();
+    let mut child = place
+        .command("render scene.txt -o a.png --watch --size 16x16 --samples 2")
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let wait = |what: &dyn Fn() -> bool| {
+        let start = std::time::Instant::now();
+        while !what() {
+            assert!(start.elapsed() < Duration::from_secs(60), "nothing comes");
+            std::thread::sleep(Duration::from_millis(20));
+        }
+    };
+    let picture = || std::fs::read(place.path("a.png")).unwrap_or_default();
+    wait(&|| !picture().is_empty());
+    let mut before = picture();
+    // What is wrong is waited for to be mended.
+    for text in [scene.replace("0.8 0.3 0.2", "0.1 0.3 0.9"), scene.replace("radius 1", "radius x"), scene.clone()] {
+        std::thread::sleep(Duration::from_millis(400));
+        place.put("scene.txt", &text);
+        match text.contains("radius x") {
+            true => std::thread::sleep(Duration::from_millis(400)),
+            false => wait(&|| !picture().is_empty() && picture() != before),
+        }
+        before = picture();
+    }
+    std::thread::sleep(Duration::from_millis(400));
+    Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+    let status = child.wait().unwrap();
+    assert_eq!(status.code(), Some(0));
+    assert!(!place.path("a.png.part").exists());
+}

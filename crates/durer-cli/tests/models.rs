@@ -45,3 +45,59 @@ fn what_is_wrong_with_a_model_is_said_at_line_and_column() {
     place.refused(2, "render a.gltf -o a.png", &["UNRESOLVED_REFERENCE", "/nodes/0/mesh", "a.gltf:2:23"]);
     assert!(!place.path("a.png").exists());
 }
+
+const RAD: &str = "void plastic grey 0 0 5 .5 .5 .5 0 0\nvoid light lamp 0 0 3 9 9 9\ngrey polygon floor 0 0 12 -4 -4 0 4 -4 0 4 4 0 -4 4 0\n\
+    lamp sphere bulb 0 0 4 0 0 3 .5\n!genbox grey box 1 1 1 | xform -t 1 0 0\n";
+
+#[test]
+fn radiance_is_rendered_by_its_views() {
+    let place = Place::new();
+    place.put("a.rad", RAD);
+    place.put(
+        "a.rif",
+        "scene = a.rad\nRES = 24\nview = one -vp 0 -9 3 -vd 0 9 -2 -vh 40 -vv 30\nview = two -vp 3 -9 3 -vd 0 9 -2\n",
+    );
+    place.put("a.vf", "VIEW= -vp 0 -9 3 -vd 0 9 -2 -vh 40 -vv 30\n");
+    let hash = |what: &str| place.gives(0, &format!("render {what} -o a.png --samples 2 --hash -q")).out;
+    let usual = hash("a.rif");
+    assert_eq!(hash("a.rif --camera one"), usual);
+    assert_eq!(hash("a.rad --view-file a.vf --size 24x17"), hash("a.rif --size 24x17"));
+    assert_ne!(hash("a.rif --camera two"), usual);
+    place.refused(2, "render a.rif -o a.png --camera three", &["there is no view `three`"]);
+    place.refused(2, "render a.rad -o a.png --view-file none.vf", &["none.vf"]);
+    place.put("b.rad", "void plastic grey 0 0 5 .5 .5 x 0 0\n!genrev a b 1 2 3\n");
+    place.refused(2, "render b.rad -o a.png", &["b.rad:1:31", "`x` is not a number"]);
+}
+
+#[test]
+fn a_turntable_goes_around_and_fit_moves_the_camera() {
+    let place = Place::new();
+    place.put("a.stl", STL);
+    place.gives(0, &format!("render a.stl -o a.png {SMALL} --turntable 4"));
+    let frame = |i: u32| std::fs::read(place.path(&format!("a.00{i}.png"))).unwrap();
+    assert!(frame(0) != frame(1) && frame(1) != frame(2) && frame(2) != frame(3));
+    assert!(!place.path("a.004.png").exists() && !place.path("a.png").exists());
+    place.refused(2, "render a.stl -o a.png --turntable 0", &["--turntable"]);
+    place.refused(2, "render a.stl -o a.png --turntable 4 --preview b.png", &["--turntable makes many pictures"]);
+    // A camera that looks past the model sees it then.
+    place.put("a.rad", RAD);
+    place.put("a.vf", "VIEW= -vp 0 -900 900 -vd 0 -1 -.1 -vh 40 -vv 30\n");
+    let hash =
+        |more: &str| place.gives(0, &format!("render a.rad -o a.png {SMALL} --hash -q --view-file a.vf {more}")).out;
+    assert_ne!(hash("--fit"), hash(""));
+}
+
+#[test]
+fn an_environment_lights_a_model() {
+    let place = Place::new();
+    place.put("a.stl", STL);
+    let view = "EquirectangularCamera { center 0 0 0 direction 0 0 -1 up 0 1 0 } Background { color 2 3 4 }";
+    place.put("sky.txt", format!("{view} Lights {{ }} Materials {{ PhongMaterial {{ diffuseColor 0 0 0 }} }} Group {{ MaterialIndex 0 Plane {{ normal 0 1 0 offset -1 }} }}"));
+    place.gives(0, "render sky.txt -o sky.hdr --size 64x32 --samples 1 -q");
+    let hash = |more: &str| place.gives(0, &format!("render a.stl -o a.png {SMALL} --hash -q {more}")).out;
+    assert_ne!(hash("--environment sky.hdr"), hash(""));
+    // Light from above is not light from the side.
+    assert_ne!(hash("--environment sky.hdr --up y"), hash("--environment sky.hdr --up z"));
+    place.refused(2, "render a.stl -o a.png --environment none.hdr", &["none.hdr"]);
+    place.refused(2, "render a.stl -o a.png --environment scene.txt", &["scene.txt"]);
+}

@@ -28,8 +28,11 @@ impl PartialEq for Span {
 }
 
 impl Span {
-    /// From the start of this span to the end of another in the same file.
+    /// From the start of this span to the end of another in the same file; this span, if that is in another.
     pub fn to(self, end: Span) -> Span {
+        if end.file != self.file {
+            return self;
+        }
         Span { end: end.end.max(self.start), ..self }
     }
 }
@@ -221,6 +224,14 @@ impl Files {
     pub fn add(&mut self, name: impl Into<String>, bytes: Arc<[u8]>) -> u32 {
         self.files.push((name.into(), bytes));
         (self.files.len() - 1) as u32
+    }
+
+    /// The number of a file of this name and these bytes, which is added if it is not there.
+    pub fn add_once(&mut self, name: &str, bytes: &Arc<[u8]>) -> u32 {
+        match self.files.iter().position(|(known, content)| known == name && content == bytes) {
+            Some(number) => number as u32,
+            None => self.add(name, bytes.clone()),
+        }
     }
 
     /// The name under which a file was read.

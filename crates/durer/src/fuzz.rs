@@ -197,7 +197,7 @@ fn seeds_hold() {
                 "part" => part(&data),
                 "ways" => ways(&data),
                 "obj" | "ply" | "stl" => mesh(&data, &format!("x.{name}")),
-                "gltf" | "pbrt" => model(&data, &format!("x.{name}")),
+                "gltf" | "pbrt" | "rad" => model(&data, &format!("x.{name}")),
                 _ => picture(&data, &format!("x.{name}")),
             }
         }

@@ -117,6 +117,20 @@ pub enum SourceError {
     },
 }
 
+impl SourceError {
+    /// What may have been meant, or what to do.
+    pub fn help(&self) -> Option<String> {
+        match self {
+            SourceError::Missing { near: Some(near), .. } => Some(format!("did you mean `{near}`?")),
+            SourceError::Outside { .. } => {
+                let only = "a scene may only name files in and below its own folder, unless `--allow-outside` is given";
+                Some(only.into())
+            }
+            _ => None,
+        }
+    }
+}
+
 /// Where the files of a scene are, and how much may be read of them.
 #[derive(Debug)]
 pub struct Source {

@@ -8,10 +8,13 @@ mod gltf;
 pub mod ies;
 mod number;
 pub mod obj;
+mod panorama;
 mod pbrt;
 mod ply;
 mod polygon;
+mod radiance;
 mod report;
+mod said;
 pub mod scene;
 mod stl;
 pub mod vol;
@@ -145,5 +148,7 @@ fn unknown_format(name: &str) -> Diagnostic {
     })
 }
 
+#[cfg(test)]
+mod testing;
 #[cfg(test)]
 mod tests;

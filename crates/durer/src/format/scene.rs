@@ -1,12 +1,19 @@
 //! Readers of whole scenes: one row of [`SCENE_FORMATS`] each. What is a mesh alone is a scene of one mesh.
 
-use super::{MESH_FORMATS, extension, gltf, obj, pbrt, read_mesh};
+use super::{MESH_FORMATS, extension, gltf, obj, panorama, pbrt, radiance, read_mesh};
 use crate::describe::FileName;
-use crate::diag::{Diagnostics, Files, Span};
-use crate::scene::{Axis, Group, Node, Object, Scene, Staging};
+use crate::diag::{Diagnostic, Diagnostics, Files, Span};
+use crate::image::{self, Encoded};
+use crate::light::Light;
+use crate::math::Vec3;
+use crate::scene::staging::Sides;
+use crate::scene::{Axis, Background, Group, Node, Object, Picture, PictureBytes, Scene, Spanned, Staging};
 use crate::shape::{MeshData, TriangleMesh};
-use crate::source::Source;
+use crate::source::{Source, SourceError};
+use crate::texture::Mapping;
+use glam::DVec3;
 use std::cell::RefCell;
+use std::path::Path;
 use std::sync::Arc;
 
 /// A format of files that hold scenes, or models that become scenes.
@@ -44,6 +51,15 @@ pub const SCENE_FORMATS: &[SceneFormat] = &[
         whole: true,
     },
     SceneFormat {
+        name: "Radiance",
+        extensions: &["rad", "rif"],
+        // Its first word could be anything: only the name tells.
+        recognise: |_| false,
+        read: radiance::read,
+        up: Axis::Z,
+        whole: true,
+    },
+    SceneFormat {
         name: MESH_FORMATS[0].name,
         extensions: MESH_FORMATS[0].extensions,
         recognise: MESH_FORMATS[0].recognise,
@@ -69,6 +85,10 @@ pub const SCENE_FORMATS: &[SceneFormat] = &[
         whole: false,
     },
 ];
+
+/// Bytes that decoding a picture may take, and rows of one that is turned.
+const MEMORY: u64 = 1 << 31;
+const MOST_ROWS: u32 = 2048;
 
 /// A file that is to become a scene.
 pub struct Input<'a> {
@@ -97,8 +117,31 @@ pub fn find_scene_format(bytes: &[u8], name: &str) -> Option<&'static SceneForma
 /// Reads a model as a scene, and adds the camera, light and material that it lacks.
 pub fn read_model(format: &SceneFormat, input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
     let mut scene = (format.read)(input, diagnostics)?;
+    if let Some(path) = &input.staging.view_file {
+        let (name, bytes) = named(input, path, diagnostics)?;
+        let found = radiance::look(&mut scene, input, (&name, &bytes));
+        let sound = !found.has_errors();
+        diagnostics.extend(found);
+        if !sound {
+            return None;
+        }
+    }
+    if let Some(path) = &input.staging.environment {
+        let (name, bytes) = named(input, path, diagnostics)?;
+        scene.surround(&name, bytes, input.staging.up.unwrap_or(format.up));
+    }
     input.staging.complete(&mut scene, format.up, format.whole);
     Some(scene)
+}
+
+/// A file that an option names, wherever it is, with its name.
+fn named(input: &Input, path: &Path, diagnostics: &mut Diagnostics) -> Option<(String, Arc<[u8]>)> {
+    let name = path.display().to_string();
+    let read = input.source.read_path(path, &name);
+    let refuse = |error: SourceError| diagnostics.push(Diagnostic::error(error.to_string()).code("missing-file"));
+    let bytes = read.map_err(refuse).ok()?;
+    input.source.remember(&name, &bytes);
+    Some((name, bytes))
 }
 
 /// A scene of one mesh without a material.
@@ -112,6 +155,26 @@ fn one_mesh(input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
 }
 
 impl Scene {
+    /// Puts a picture of all directions around the scene, instead of all light that is far away. Its upper border is up.
+    fn surround(&mut self, name: &str, bytes: Arc<[u8]>, up: Axis) {
+        self.background = Background { color: Vec3::ZERO, ..Background::default() };
+        let near = |light: &Spanned<Light>| !matches!(light.value, Light::Directional(_));
+        self.lights.get_or_insert_default().retain(near);
+        let decoded = || Encoded::open(&bytes, name).and_then(|encoded| encoded.read(MEMORY, image::decode_srgb));
+        let sides = Sides::new(up);
+        let turned = |dir: DVec3| DVec3::new(dir.dot(sides.right), dir.dot(sides.up), dir.dot(sides.front));
+        // What cannot be read is told when the scene is compiled.
+        if let Some(picture) = (up != Axis::Y).then(decoded).and_then(Result::ok) {
+            let light = |dir: DVec3| panorama::looked_up(&picture, turned(dir));
+            if panorama::surround(self, (name, Span::default()), picture.height.min(MOST_ROWS), light) {
+                return;
+            }
+        }
+        let picture = Picture { bytes: PictureBytes::Here(name.to_string(), bytes), mapping: Mapping::default() };
+        self.assets.pictures.insert(name.to_string(), picture);
+        self.background.environment = Some(FileName { path: name.to_string(), span: Span::default() });
+    }
+
     /// Adds a mesh in memory by a name that no other has, and gives what shows it.
     pub(super) fn add_mesh(&mut self, name: &str, data: Arc<MeshData>, span: Span) -> Node {
         self.assets.meshes.insert(name.to_string(), data);

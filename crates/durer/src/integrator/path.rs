@@ -471,7 +471,7 @@ impl Path<'_> {
             if share == Spectrum::ZERO {
                 break;
             }
-            ray = from_surface(&blocker, light.wi, ray.rounded.t_max - hit.t, None);
+            ray = from_surface(&blocker, ray.dir(), ray.rounded.t_max - hit.t, None);
         }
         Spectrum::ZERO
     }

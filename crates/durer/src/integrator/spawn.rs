@@ -36,6 +36,18 @@ pub fn to_light(surface: &Surface, dir: Vec3, distance: f32, epsilon: Option<f32
     Ray64::new(beside(surface, lift, side), dir, 0.0, distance - lift.dot(dir))
 }
 
+/// A ray from a surface to a point of a light that has an extent. From a bent surface it is aimed anew: a parallel one would end
+/// beside that point, and behind the light where that is inclined.
+pub fn to_point(surface: &Surface, dir: Vec3, distance: f32) -> Ray64 {
+    let ray = to_light(surface, dir, distance, None);
+    if surface.lifts == [Vec3::ZERO; 2] || !distance.is_finite() {
+        return ray;
+    }
+    let way = surface.point() + f64::from(distance) * dir.as_dvec3() - ray.origin();
+    let length = way.length();
+    Ray64::new(ray.origin(), (way / length).as_vec3(), 0.0, length as f32 * (1.0 - gamma(4)))
+}
+
 /// The surface's point, lifted, and beside it on the side to which a unit normal points, farther off than its error.
 ///
 /// Source: *Physically Based Rendering*, 4th edition, section 6.8.6.

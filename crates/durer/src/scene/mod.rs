@@ -116,6 +116,17 @@ impl Scene {
     }
 }
 
+impl Scene {
+    /// Whether a surface or what is around it shines.
+    pub fn shines(&self) -> bool {
+        let shines = |material: &Spanned<Material>| match &material.value {
+            Material::Principled(layers) => layers.emission_luminance > 0.0,
+            _ => false,
+        };
+        self.background.environment.is_some() || self.background.sun.is_some() || self.materials.iter().any(shines)
+    }
+}
+
 /// A thing and where it is written.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Spanned<T> {

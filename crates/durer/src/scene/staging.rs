@@ -2,13 +2,14 @@
 
 use super::extent::points;
 use super::{Group, Material, Node, Object, Scene, Spanned};
-use crate::camera::{Camera, OrthographicCamera, PerspectiveCamera};
+use crate::camera::{Camera, Lens, OrthographicCamera, PerspectiveCamera};
 use crate::diag::Span;
 use crate::light::{DirectionalLight, Light};
 use crate::material::PrincipledMaterial;
-use crate::math::Vec3;
+use crate::math::{Vec3, fp};
 use crate::shape::plane::Plane;
-use glam::DVec3;
+use glam::{DMat3, DVec3};
+use std::path::PathBuf;
 
 /// An axis of space.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -62,19 +63,32 @@ pub struct Staging {
     pub camera: Option<String>,
     /// The moment of its animation, in seconds; `None`: as it stands without.
     pub at: Option<f32>,
+    /// A file of Radiance's views, whose last is the camera.
+    pub view_file: Option<PathBuf>,
+    /// A picture of all directions that lights the model instead of a studio.
+    pub environment: Option<PathBuf>,
+    /// Whether its own camera is moved to where it sees all of the model.
+    pub fit: bool,
+    /// Degrees by which the camera goes around the model, counter-clockwise from above, as far away as all of it is seen from
+    /// everywhere; `None`: no picture of many.
+    pub turned: Option<f32>,
     /// The picture's width over its height, for a camera that sees just the whole; `None`: 1.
     pub aspect: Option<f32>,
 }
 
 /// Three axes of a model as people see it: what is to its right, up, and in front of it.
-struct Sides {
-    right: DVec3,
-    up: DVec3,
-    front: DVec3,
+pub struct Sides {
+    /// To the right of somebody who stands before it.
+    pub right: DVec3,
+    /// Upwards.
+    pub up: DVec3,
+    /// To where it looks.
+    pub front: DVec3,
 }
 
 impl Sides {
-    fn new(up: Axis) -> Self {
+    /// For an axis that is up.
+    pub fn new(up: Axis) -> Self {
         let (right, up) = match up {
             Axis::X => (DVec3::NEG_Y, DVec3::X),
             Axis::Y => (DVec3::X, DVec3::Y),
@@ -86,21 +100,28 @@ impl Sides {
 
 /// Field of view across the larger side of the picture, in degrees.
 const ANGLE: f32 = 30.0;
+/// Places of a turning model that are looked at.
+const PLACES: u32 = 48;
 /// Share of the picture's width or height that a model fills.
 const FILLED: f64 = 0.86;
 
 impl Staging {
     /// Adds what a scene lacks. `up` is the axis that is up in most models of its format; `dark` says that what has a camera and
-    /// no lights is meant so: its surfaces shine, or it is dark.
+    /// no lights is meant so, and that what shines needs no other light.
     pub fn complete(&self, scene: &mut Scene, up: Axis, dark: bool) {
         let sides = Sides::new(self.up.unwrap_or(up));
-        let framed = scene.camera.is_none() || self.view.is_some();
-        let lit = (dark && scene.camera.is_some()) || scene.lights.as_ref().is_some_and(|lights| !lights.is_empty());
+        let framed = scene.camera.is_none() || self.view.is_some() || self.turned.is_some();
+        let lit = (dark && (scene.camera.is_some() || scene.shines()))
+            || scene.lights.as_ref().is_some_and(|lights| !lights.is_empty());
         if framed {
             scene.camera = Some(self.camera(scene, &sides, self.view.unwrap_or_default()));
+        } else if let (Some(pose), true) = (scene.camera.as_ref().map(Lens::pose), self.fit) {
+            let [forward, up] = [pose.direction, pose.up].map(|v| v.as_dvec3().normalize_or(sides.up));
+            scene.camera = Some(self.framed(scene, &sides, (-forward, up), true));
         }
         give_material(scene);
-        if !lit || self.studio.is_some() {
+        let surrounded = self.environment.is_some() && self.studio.is_none();
+        if (!lit && !surrounded) || self.studio.is_some() {
             self.light(scene, &sides, self.studio.unwrap_or_default(), framed);
         }
     }
@@ -116,17 +137,34 @@ impl Staging {
             View::Top => (up, -front),
             View::Iso => (front + right + up, up),
         };
+        self.framed(scene, sides, (back, above), view == View::ThreeQuarter)
+    }
+
+    /// The same that looks from some side.
+    fn framed(&self, scene: &Scene, sides: &Sides, (back, above): (DVec3, DVec3), perspective: bool) -> Camera {
         let forward = -back.normalize();
-        let across = forward.cross(above).normalize();
+        let across = forward.cross(above).try_normalize().unwrap_or_else(|| forward.any_orthonormal_vector());
         let upwards = across.cross(forward);
         let aspect = f64::from(self.aspect.unwrap_or(1.0)).clamp(1e-3, 1e3);
         // Half the width and height of the picture, the larger side from -1 to 1.
         let (wide, high) = (aspect.min(1.0), (1.0 / aspect).min(1.0));
         let mut seen = Seen::new(half_angle() * FILLED * wide, half_angle() * FILLED * high);
-        points(scene, &mut |p| seen.add(p.dot(across), p.dot(upwards), p.dot(forward)));
-        let (direction, up) = (forward.as_vec3(), above.as_vec3());
-        let place = |[x, y, z]: [f64; 3]| (x * across + y * upwards + z * forward).as_vec3();
-        if view == View::ThreeQuarter {
+        let mut add = |p: DVec3| seen.add(p.dot(across), p.dot(upwards), p.dot(forward));
+        let axis = self.turned.map(|_| axis(scene, sides));
+        match axis {
+            None => points(scene, &mut add),
+            // What it is in all its places.
+            Some(axis) => points(scene, &mut |p| {
+                (0..PLACES)
+                    .for_each(|i| add(axis + turn(sides.up, 360.0 * f64::from(i) / f64::from(PLACES)) * (p - axis)));
+            }),
+        }
+        let turned = turn(sides.up, f64::from(self.turned.unwrap_or(0.0)));
+        let (direction, up) = ((turned * forward).as_vec3(), (turned * above).as_vec3());
+        let middle = axis.unwrap_or_default();
+        let place =
+            |[x, y, z]: [f64; 3]| (middle + turned * (x * across + y * upwards + z * forward - middle)).as_vec3();
+        if perspective {
             return PerspectiveCamera { center: place(seen.eye()), direction, up, angle: ANGLE }.into();
         }
         let [half_x, half_y] = seen.half_sizes();
@@ -199,6 +237,22 @@ impl Scene {
         self.materials.push(Spanned { value: material, span: Span::default() });
         (self.materials.len() - 1) as u32
     }
+}
+
+/// A point of the axis about which a model turns: in the middle of its box.
+fn axis(scene: &Scene, sides: &Sides) -> DVec3 {
+    let (mut least, mut most) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    points(scene, &mut |p| (least, most) = (least.min(p), most.max(p)));
+    let middle = 0.5 * (least + most);
+    if middle.is_finite() { middle.reject_from(sides.up) } else { DVec3::ZERO }
+}
+
+/// A turn of some degrees about an axis.
+fn turn(axis: DVec3, degrees: f64) -> DMat3 {
+    let (sin, cos) = fp::sin_cos_degrees(degrees);
+    let (x, y, z) = (axis.x, axis.y, axis.z);
+    let cross = DMat3::from_cols(DVec3::new(0.0, z, -y), DVec3::new(-z, 0.0, x), DVec3::new(y, -x, 0.0));
+    DMat3::IDENTITY + cross * sin + cross * cross * (1.0 - cos)
 }
 
 /// Half the field of view at distance 1.

@@ -96,7 +96,7 @@ pub struct Surface {
 impl Surface {
     /// The surface at a point that is placed on it in double precision, so that it is known to its rounding and to
     /// `floor`; flat unless a curvature is set.
-    fn new(point: DVec3, normal: DVec3, floor: f32, uv: impl Into<Uv>) -> Self {
+    pub(crate) fn new(point: DVec3, normal: DVec3, floor: f32, uv: impl Into<Uv>) -> Self {
         let position = point.as_vec3();
         let n = normal.normalize_or(DVec3::Y).as_vec3();
         let error = gamma(2) * position.abs() + floor;

@@ -169,6 +169,7 @@ impl Reader<'_, '_> {
         let start = self.peek().map_or(keyword, |t| t.span);
         let value = match field.kind {
             Kind::Float => Value::Float(self.number(word, 1, 1)?),
+            Kind::Int if word == "materialIndex" => Value::Int(self.material_number(word)?),
             Kind::Int => Value::Int(self.whole(word)?),
             Kind::Vec3 => Value::Vec3(self.vec3(word)?),
             Kind::Path => {

@@ -75,7 +75,8 @@ pub fn guess(bytes: &[u8], file: u32, hints: &[Hint], exists: &dyn Fn(&str) -> b
     let has_section = (0..tokens.len()).any(|i| text(i) == "Materials");
     for (i, token) in tokens.iter().enumerate() {
         let word = text(i);
-        let braced = tokens.get(i + 1).is_some_and(|t| t.kind == TokenKind::Open);
+        let at = |i: usize| tokens.get(i).map(|token| token.kind);
+        let (braced, named) = (at(i + 1) == Some(TokenKind::Open), at(i + 1) == Some(TokenKind::Word));
         let (keep, why) = if token.kind != TokenKind::Word {
             continue;
         } else if braced && matches!(&*word, "Translate" | "Scale" | "XRotate" | "YRotate" | "ZRotate") {
@@ -86,6 +87,14 @@ pub fn guess(bytes: &[u8], file: u32, hints: &[Hint], exists: &dyn Fn(&str) -> b
             (set::F16, "its cube map is of PNG files".into())
         } else if word == "cubeMap" && exists(&format!("{}/left.bmp", text(i + 1))) {
             (set::F12A5, "its cube map is of BMP files".into())
+        } else if named && matches!(&*word, "include" | "define" | "use") {
+            (set::DURER, format!("`{word}` is a word of ours"))
+        } else if named
+            && at(i + 2) == Some(TokenKind::Open)
+            && word.ends_with("Material")
+            && dialects_of(&text(i + 1)).is_none()
+        {
+            (set::DURER, "only ours has names for materials".into())
         } else if let Some(set) = dialects_of(&word).filter(|set| match *set {
             set::F23 => is_telling(&word),
             // Ours alone: `top` or `min` may be anybody's file name.

@@ -2,8 +2,10 @@
 
 mod fields;
 pub mod guess;
+mod include;
 mod lexer;
 mod meant;
+mod named;
 mod nodes;
 pub mod place;
 #[cfg(any(test, fuzzing))]
@@ -20,6 +22,7 @@ use crate::diag::{Diagnostic, Diagnostics, Span};
 use crate::dialect::{CompatSet, Dialect};
 use crate::scene::Scene;
 pub use guess::{Guess, Hint, guess};
+pub use include::Opened;
 pub use write::write;
 
 /// How a scene file is to be read.
@@ -34,8 +37,19 @@ pub struct ReadOptions {
     pub compat: CompatSet,
 }
 
-/// Reads a scene. All errors are collected; with any, there is no scene.
+/// Reads a scene that includes no files. All errors are collected; with any, there is no scene.
 pub fn read(bytes: &[u8], file: u32, options: ReadOptions, diagnostics: &mut Diagnostics) -> Option<Scene> {
+    read_with(bytes, file, options, &|_| Opened::Nowhere, diagnostics)
+}
+
+/// Reads a scene; `open` finds the files that it includes.
+pub fn read_with(
+    bytes: &[u8],
+    file: u32,
+    options: ReadOptions,
+    open: &dyn Fn(&str) -> Opened,
+    diagnostics: &mut Diagnostics,
+) -> Option<Scene> {
     if bytes.len() >= u32::MAX as usize {
         diagnostics.push(Diagnostic::error("a scene file must be smaller than 4 GiB"));
         return None;
@@ -45,7 +59,7 @@ pub fn read(bytes: &[u8], file: u32, options: ReadOptions, diagnostics: &mut Dia
         return None;
     }
     let mut own = Diagnostics::default();
-    let mut reader = reader::Reader::new(bytes, file, options, &mut own);
+    let mut reader = reader::Reader::new(bytes, file, options, open, &mut own);
     match options.dialect {
         Dialect::F23 => reader.nodes_file(),
         _ => reader.scene_file(),

@@ -305,8 +305,8 @@ impl Inside {
     }
 }
 
-/// Gives a node's material to what has none of its own: it may be written after the objects.
-fn paint(object: &mut Object, material: u32) {
+/// Gives a material to what has none of its own.
+pub(super) fn paint(object: &mut Object, material: u32) {
     object.material.get_or_insert(material);
     match &mut object.node {
         Node::Group(group) => group.objects.iter_mut().for_each(|object| paint(object, material)),

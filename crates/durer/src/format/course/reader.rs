@@ -1,7 +1,9 @@
 //! A file being read: its tokens, and how reading goes on after a mistake.
 
 use super::ReadOptions;
+use super::include::{Opened, Splicer, Texts};
 use super::lexer::{Token, TokenKind, tokens};
+use super::named::Named;
 use super::words::{begins_block, dialects_of, home_of};
 use crate::diag::{Diagnostic, Diagnostics, Span};
 use crate::dialect::{Dialect, DialectSet};
@@ -13,10 +15,9 @@ const DEEPEST: usize = 200;
 
 /// A file being read.
 pub(super) struct Reader<'a, 'd> {
-    bytes: &'a [u8],
+    texts: Texts<'a>,
     tokens: Vec<Token>,
     pub at: usize,
-    file: u32,
     pub options: ReadOptions,
     pub diagnostics: &'d mut Diagnostics,
     pub scene: Scene,
@@ -32,17 +33,29 @@ pub(super) struct Reader<'a, 'd> {
     pub material: Option<u32>,
     /// Every `MaterialIndex`, to be checked when all materials are known.
     pub material_uses: Vec<(u32, Span)>,
+    /// Materials and objects with names.
+    pub named: Named,
 }
 
 impl<'a, 'd> Reader<'a, 'd> {
-    pub(super) fn new(bytes: &'a [u8], file: u32, options: ReadOptions, diagnostics: &'d mut Diagnostics) -> Self {
-        let all = tokens(bytes, file);
+    pub(super) fn new(
+        bytes: &'a [u8],
+        file: u32,
+        options: ReadOptions,
+        open: &dyn Fn(&str) -> Opened,
+        diagnostics: &'d mut Diagnostics,
+    ) -> Self {
+        let (mut all, mut texts) = (tokens(bytes, file), Texts::new(bytes, file));
+        if options.dialect == Dialect::Durer {
+            let stack = Vec::new();
+            let mut splicer = Splicer { open, texts: &mut texts, diagnostics, stack, files: 0, words: 0 };
+            all = splicer.splice(all);
+        }
         let (comments, tokens): (Vec<Token>, Vec<Token>) = all.into_iter().partition(|t| t.kind == TokenKind::Comment);
         let mut reader = Reader {
-            bytes,
+            texts,
             tokens,
             at: 0,
-            file,
             options,
             diagnostics,
             scene: Scene::default(),
@@ -53,6 +66,7 @@ impl<'a, 'd> Reader<'a, 'd> {
             stopped: false,
             material: None,
             material_uses: Vec::new(),
+            named: Named::default(),
         };
         reader.check_form(&comments);
         reader
@@ -61,7 +75,7 @@ impl<'a, 'd> Reader<'a, 'd> {
     /// Complains of comments and of missing blanks where the old programs did.
     fn check_form(&mut self, comments: &[Token]) {
         if !self.options.strict {
-            let slashes = comments.iter().find(|c| self.bytes[c.span.start as usize] == b'/');
+            let slashes = comments.iter().find(|c| self.texts.at(c.span).starts_with(b"/"));
             if let Some(comment) = slashes {
                 let message = "comments begin with `#`; this one is passed over all the same";
                 let slashes = Span { end: comment.span.start + 2, ..comment.span };
@@ -143,12 +157,11 @@ impl<'a, 'd> Reader<'a, 'd> {
     }
 
     pub(super) fn end_span(&self) -> Span {
-        let end = self.bytes.len() as u32;
-        Span { file: self.file, start: end, end }
+        self.texts.end()
     }
 
     pub(super) fn text(&self, span: Span) -> String {
-        String::from_utf8_lossy(&self.bytes[span.start as usize..span.end as usize]).into_owned()
+        String::from_utf8_lossy(self.texts.at(span)).into_owned()
     }
 
     /// How many errors there are: a block is checked as a whole only if none was found in it.

@@ -30,15 +30,15 @@ pub(super) fn is_section(word: &str) -> bool {
 
 /// What stands in a group: [`OBJECTS`] of them are objects.
 #[rustfmt::skip]
-pub(super) const IN_GROUP: [&str; OBJECTS + 3] = [
-    "Group", "Transform", "Sphere", "Plane", "Triangle", "TriangleMesh",
+pub(super) const IN_GROUP: [&str; OBJECTS + 4] = [
+    "Group", "Transform", "use", "Sphere", "Plane", "Triangle", "TriangleMesh",
     "Box", "Cylinder", "Cone", "Torus", "Ellipsoid", "Quadric", "Disc", "Rectangle", "HeightField",
     "Union", "Merge", "Intersection", "Difference", "Xor",
-    "MaterialIndex", "numObjects", "Grid",
+    "MaterialIndex", "numObjects", "Grid", "define",
 ];
 
 /// How many words of [`IN_GROUP`] begin an object that is proposed in a transform.
-pub(super) const OBJECTS: usize = 20;
+pub(super) const OBJECTS: usize = 21;
 
 impl Reader<'_, '_> {
     /// The whole file.
@@ -56,6 +56,7 @@ impl Reader<'_, '_> {
                 "Lights" => reader.lights(span),
                 "Materials" => reader.materials(span),
                 "Group" => reader.scene.root = Some(reader.group(span)),
+                "define" => reader.define(span),
                 _ => match camera_of(word) {
                     Some(camera) => reader.camera(camera, span),
                     None => return false,
@@ -81,7 +82,7 @@ impl Reader<'_, '_> {
                 self.error(error.help("is there a `}` too many before it?"));
             } else if !section(self, &word, span) {
                 self.unknown(&word, span, "at the top of a scene", known);
-            } else {
+            } else if word != "define" {
                 // A scene has one camera, whatever its kind.
                 let kind = if word.ends_with("Camera") { "Camera".to_string() } else { word.clone() };
                 if let Some((_, first)) = seen.iter().find(|(earlier, _)| *earlier == kind) {
@@ -203,8 +204,13 @@ impl Reader<'_, '_> {
             self.error(Diagnostic::error("`Materials` must come before `Group`").at(keyword));
         }
         self.scene.materials.clear();
+        self.named.clear_materials();
         self.counted(keyword, "numMaterials", |reader, word, span| {
+            let name = reader.material_name();
             let Some(value) = reader.material(word, span) else { return false };
+            if let Some(name) = name {
+                reader.name_material(name);
+            }
             reader.scene.materials.push(Spanned { value, span });
             true
         });
@@ -305,13 +311,17 @@ impl Reader<'_, '_> {
         self.counted(keyword, "numObjects", |reader, word, span| {
             match word {
                 "MaterialIndex" => {
-                    match reader.whole(word) {
+                    match reader.material_number(word) {
                         Some(index) => {
                             reader.material = Some(index);
                             reader.material_uses.push((index, span.to(reader.last_span())));
                         }
                         None => reader.skip_values(),
                     }
+                    false
+                }
+                "define" => {
+                    reader.define(span);
                     false
                 }
                 // 2003 writes materials where they are used.
@@ -361,6 +371,8 @@ impl Reader<'_, '_> {
             Some(Node::Group(self.group(span)))
         } else if word == "Transform" {
             self.transform(span)
+        } else if word == "use" {
+            self.used(span)
         } else if let Some(operation) = Operation::from_keyword(word) {
             self.foreign(word, span, set::DURER);
             Some(Node::Solid(operation, self.group(span).objects))

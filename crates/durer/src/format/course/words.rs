@@ -12,7 +12,10 @@ use std::collections::HashMap;
 use std::sync::LazyLock;
 
 /// Words of the grammar itself, which belong to no described thing.
-const GRAMMAR: [(&str, DialectSet); 33] = [
+const GRAMMAR: [(&str, DialectSet); 36] = [
+    ("include", set::DURER),
+    ("define", set::DURER),
+    ("use", set::DURER),
     ("preset", set::DURER),
     ("Lights", set::CLASSIC),
     ("Materials", set::ALL),
@@ -97,7 +100,7 @@ pub(super) fn begins_block(word: &str) -> bool {
 /// The block in which something belongs that stands in a wrong place.
 pub(super) fn home_of(word: &str) -> Option<&'static str> {
     Some(match word {
-        "TriangleMesh" | "HeightField" | "Grid" | "Transform" | "MaterialIndex" | "Group" => "Group",
+        "TriangleMesh" | "HeightField" | "Grid" | "Transform" | "MaterialIndex" | "Group" | "use" | "define" => "Group",
         "PhongMaterial" | "PrincipledMaterial" | "Material" | "Checkerboard" | "Marble" | "Wood" | "Mix" => "Materials",
         "PointLight" | "DirectionalLight" => "Lights",
         "Translate" | "Scale" | "UniformScale" | "XRotate" | "YRotate" | "ZRotate" | "Rotate" | "Matrix"

@@ -1,9 +1,9 @@
 //! Film, camera, sampler and integrator: what the picture is.
 
 use super::params::Params;
-use super::said::meant;
 use super::state::{Asked, Reader};
 use crate::camera::{Camera, EquirectangularCamera, Handedness, OrthographicCamera, PerspectiveCamera, ThinLensCamera};
+use crate::format::said::meant;
 use crate::image::MAX_PIXELS;
 use crate::math::fp;
 use glam::{DAffine3, DVec2, DVec3};

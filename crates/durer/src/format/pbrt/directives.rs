@@ -2,11 +2,11 @@
 
 use super::lexer::{Lexer, Token};
 use super::params::read as read_params;
-use super::said::meant;
 use super::spectrum::Space;
 use super::state::{Asked, Open, Reader, Scope};
 use super::transform::{look_at, matrix, numbers, rotation, sound};
 use crate::diag::{Diagnostic, Span};
+use crate::format::said::meant;
 use crate::scene::{Node, Object, Scene};
 use crate::source::SourceError;
 use glam::{DAffine3, DVec3};

@@ -2,14 +2,11 @@
 //! longitude and latitude.
 
 use super::state::Reader;
-use crate::describe::FileName;
 use crate::diag::{Diagnostic, Span};
-use crate::image::{self, Encoded, Image, Layer, WriteOptions};
+use crate::format::panorama;
+use crate::image::{self, Encoded, Image};
 use crate::math::{Color, Vec2, Vec3, fp};
-use crate::scene::{Picture, PictureBytes};
-use crate::texture::Mapping;
 use glam::{DAffine3, DVec3};
-use rayon::prelude::*;
 use std::f32::consts::{FRAC_2_PI, PI, TAU};
 
 /// A light that is infinitely far away.
@@ -30,8 +27,6 @@ pub(super) enum Infinite {
 /// Bytes that decoding one picture may take, and rows of the picture that is made.
 const MEMORY: u64 = 1 << 31;
 const MOST_ROWS: u32 = 2048;
-/// Places along each side of a texel that are looked up.
-const PLACES: u32 = 3;
 
 /// A picture with what turns and scales it.
 struct Source {
@@ -60,17 +55,10 @@ impl Reader<'_> {
         (self.scene.background.color, self.scene.background.ambient_light) = (even, Color::ZERO);
         let Some((name, at)) = first else { return };
         let rows = sources.iter().map(|source| source.image.height).max().unwrap_or(1).min(MOST_ROWS);
-        let Ok(whole) = Image::from_pixels(2 * rows, rows, joined(&sources, even, rows)) else { return };
-        let mut bytes = Vec::new();
-        let written = image::format_for("a.pfm")
-            .and_then(|format| format.write(&[Layer::data("", whole)], &WriteOptions::default(), &mut bytes));
-        if written.is_err() {
-            return self.said.bad(at, "the picture around the scene cannot be made");
+        let light = |dir: DVec3| even + sources.iter().map(|source| source.at(dir)).sum::<Color>();
+        if !panorama::surround(&mut self.scene, (&name, at), rows, light) {
+            self.said.bad(at, "the picture around the scene cannot be made");
         }
-        let path = format!("{name}#environment.pfm");
-        let bytes = PictureBytes::Here(path.clone(), bytes.into());
-        self.scene.assets.pictures.insert(path.clone(), Picture { bytes, mapping: Mapping::default() });
-        self.scene.background.environment = Some(FileName { path, span: at });
     }
 
     /// A square picture of equal areas.
@@ -103,25 +91,6 @@ impl Reader<'_> {
             }
         }
     }
-}
-
-/// The picture of all directions as [`Environment`](crate::texture::Environment) has them.
-fn joined(sources: &[Source], even: Color, rows: u32) -> Vec<Color> {
-    let columns = 2 * rows;
-    let texel = |i: u32| {
-        let (x, y) = (i % columns, i / columns);
-        let mut sum = Color::ZERO;
-        for place in 0..PLACES * PLACES {
-            let offset = |k: u32| (k as f32 + 0.5) / PLACES as f32;
-            let (u, v) = (x as f32 + offset(place % PLACES), y as f32 + offset(place / PLACES));
-            let angle = TAU * (u / columns as f32 - 0.5);
-            let (sin, cos) = (fp::sin(PI * v / rows as f32), fp::cos(PI * v / rows as f32));
-            let dir = Vec3::new(sin * fp::sin(angle), cos, -sin * fp::cos(angle)).as_dvec3();
-            sum += sources.iter().map(|source| source.at(dir)).sum::<Color>();
-        }
-        even + sum / (PLACES * PLACES) as f32
-    };
-    (0..columns * rows).into_par_iter().map(texel).collect()
 }
 
 impl Source {

@@ -1,8 +1,8 @@
 //! Words of a text: directives, numbers, strings in quotes, brackets. `#` begins a comment.
 
-use super::said::Said;
 use crate::diag::{Diagnostic, Span};
 use crate::format::report::shown;
+use crate::format::said::Said;
 use std::sync::Arc;
 
 /// A word.

@@ -7,9 +7,9 @@
 use super::directives::LIGHT;
 use super::environment::Infinite;
 use super::params::{Param, Params};
-use super::said::meant;
 use super::state::Reader;
 use crate::diag::Span;
+use crate::format::said::meant;
 use crate::light::{DirectionalLight, Fade, Light, PointLight, SpotLight};
 use crate::math::{Color, Vec3, fp};
 use crate::scene::Spanned;

@@ -5,9 +5,9 @@
 
 use super::material::Made;
 use super::params::{Param, Params};
-use super::said::meant;
 use super::state::Reader;
 use crate::diag::Span;
+use crate::format::said::meant;
 use crate::material::PrincipledMaterial;
 use crate::material::principled::Walls;
 use crate::math::{Color, Vec3, fp};

@@ -1,14 +1,13 @@
 //! Meshes: in the text, or in files of PLY.
 
 use super::params::Params;
-use super::said::Said;
 use crate::diag::{Diagnostic, Diagnostics, Span};
 use crate::format::read_mesh;
+use crate::format::said::Said;
 use crate::format::scene::Input;
 use crate::math::{Vec2, Vec3, fp};
 use crate::shape::MeshData;
 use crate::shape::mesh::NO_INDEX;
-use crate::source::SourceError;
 
 /// Sides of a cylinder, and of a patch that is not flat.
 const SIDES: u32 = 128;
@@ -170,13 +169,7 @@ pub(super) fn file(input: &Input, said: &Said, name: &str, at: Span, reversed: b
     let bytes = match input.source.read_unpacked(name) {
         Ok(bytes) => bytes,
         Err(error) => {
-            let help = match &error {
-                SourceError::Missing { near: Some(near), .. } => Some(format!("did you mean `{near}`?")),
-                SourceError::Outside { .. } => Some(
-                    "a scene may only name files in and below its own folder, unless `--allow-outside` is given".into(),
-                ),
-                _ => None,
-            };
+            let help = error.help();
             let missing = Diagnostic::error(format!("the mesh cannot be had: {error}")).code("missing-file").at(at);
             said.push(Diagnostic { help, ..missing });
             return None;

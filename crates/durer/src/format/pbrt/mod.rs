@@ -15,7 +15,6 @@ mod medium;
 mod mesh;
 mod named;
 mod params;
-mod said;
 mod shape;
 mod spectrum;
 mod state;
@@ -25,13 +24,13 @@ mod transform;
 #[cfg(test)]
 mod tests;
 
+use super::said::Said;
 use super::scene::Input;
 use super::too_large;
 use crate::diag::{Diagnostic, Diagnostics};
 use crate::scene::Scene;
 use directives::DIRECTIVES;
 use lexer::{Lexer, Token};
-use said::Said;
 use state::Reader;
 
 /// Whether a file begins with a directive that only pbrt has. `Transform` and `Material` begin

@@ -1,10 +1,10 @@
 //! Lists of parameters: `"float radius" [ 2 ]`.
 
 use super::lexer::{Found, Lexer, Token};
-use super::said::{Said, meant};
 use super::spectrum::{Space, Spectrum};
 use crate::diag::{Diagnostic, Span};
 use crate::format::report::counted;
+use crate::format::said::{Said, meant};
 use crate::format::scene::Input;
 use crate::math::{Vec2, Vec3};
 use std::cell::{Cell, RefCell};

@@ -3,9 +3,9 @@
 use super::directives::SHAPE;
 use super::mesh;
 use super::params::{Kind, Param, Params};
-use super::said::meant;
 use super::state::Reader;
 use crate::diag::Span;
+use crate::format::said::meant;
 use crate::math::{Color, Vec3};
 use crate::scene::{MatrixOp, Node, Object};
 use crate::shape::{Disc, MeshData, Sphere};

@@ -2,9 +2,9 @@
 
 use super::named;
 use super::params::{Kind, Param, Params, Values};
-use super::said::meant;
 use crate::diag::{Diagnostic, Span};
 use crate::format::number::parse_f32;
+use crate::format::said::meant;
 use crate::math::{Color, Vec3, fp};
 use glam::{DMat3, DVec3};
 

@@ -2,10 +2,10 @@
 
 use super::directives::TEXTURE;
 use super::params::{Kind, Param, Params};
-use super::said::meant;
 use super::state::Reader;
 use crate::describe::FileName;
 use crate::diag::{Diagnostic, Span};
+use crate::format::said::meant;
 use crate::image::{self, Depth, Encoded, Image, Layer, WriteOptions};
 use crate::math::{Color, Vec3};
 use crate::scene::{Picture, PictureBytes};

@@ -2,8 +2,8 @@
 
 use super::lexer::{Lexer, Token};
 use super::params::number;
-use super::said::Said;
 use crate::diag::{Diagnostic, Span};
+use crate::format::said::Said;
 use crate::math::fp;
 use glam::{DAffine3, DMat3, DMat4, DVec3};
 

@@ -3,7 +3,7 @@
 use super::State;
 use crate::bsdf::Lobe;
 use crate::integrator::media::{Media, Passage};
-use crate::integrator::spawn::{from_surface, to_light};
+use crate::integrator::spawn::{from_surface, to_point};
 use crate::math::{Ray64, Vec2, Vec3, gamma};
 use crate::medium::HenyeyGreenstein;
 use crate::shape::Surface;
@@ -139,7 +139,7 @@ impl Place<'_> {
         // What stands exactly at the light does not block it.
         let reach = light.reach * (1.0 - gamma(16));
         match self {
-            Place::Surface(surface, ..) => to_light(surface, light.wi, reach, None),
+            Place::Surface(surface, ..) => to_point(surface, light.wi, reach),
             Place::Medium(point, ..) => Ray64::new(*point, light.wi, 0.0, reach),
         }
     }

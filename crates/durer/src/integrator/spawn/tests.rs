@@ -125,3 +125,18 @@ fn no_light_comes_into_a_closed_room_however_far_it_is_from_the_origin() {
     }
     assert_eq!(all, 0, "leaks:\n{table}");
 }
+
+#[test]
+fn shadow_rays_of_bent_surfaces_end_at_the_light() {
+    let mut surface = Surface::new(glam::DVec3::new(0.1, 0.2, 0.3), glam::DVec3::Y, 1e-7, crate::math::Vec2::ZERO);
+    surface.lifts = [Vec3::new(0.01, 0.05, -0.02), Vec3::ZERO];
+    let to = Vec3::new(2.0, 3.0, 1.0);
+    let ray = to_point(&surface, to.normalize(), to.length());
+    let end = ray.origin() + f64::from(ray.rounded.t_max) * ray.dir().as_dvec3();
+    assert!((end - surface.point() - to.as_dvec3()).length() < 1e-5, "{end}");
+    // A parallel one ends elsewhere, and one without end stays parallel.
+    let parallel = to_light(&surface, to.normalize(), to.length(), None);
+    let end = parallel.origin() + f64::from(parallel.rounded.t_max) * parallel.dir().as_dvec3();
+    assert!((end - surface.point() - to.as_dvec3()).length() > 0.01);
+    assert_eq!(to_point(&surface, Vec3::Y, f32::INFINITY).dir(), Vec3::Y);
+}

@@ -6,6 +6,7 @@ mod forms;
 mod limits;
 mod malformed;
 mod mistakes;
+mod named;
 mod round_trip;
 
 use super::*;

@@ -6,13 +6,13 @@ use std::collections::BTreeSet;
 
 /// Findings, and what was said already.
 #[derive(Default)]
-pub(super) struct Said {
+pub(in crate::format) struct Said {
     found: RefCell<Diagnostics>,
     once: RefCell<BTreeSet<String>>,
 }
 
-/// The code of what is not rendered as pbrt does.
-pub(super) const NO_COUNTERPART: &str = "NO_COUNTERPART";
+/// The code of what is not rendered as its format has it.
+pub(in crate::format) const NO_COUNTERPART: &str = "NO_COUNTERPART";
 
 impl Said {
     /// Adds a finding.
@@ -35,7 +35,7 @@ impl Said {
         self.push(Diagnostic { help, ..Diagnostic::error(message).code("bad-value").at(at) });
     }
 
-    /// What is not rendered as pbrt does, and what is taken instead.
+    /// What is not rendered as the format has it, and what is taken instead.
     pub fn other(&self, at: Span, message: impl Into<String>) {
         self.push(Diagnostic::warning(message).code(NO_COUNTERPART).at(at));
     }
@@ -65,6 +65,6 @@ impl Said {
 }
 
 /// Help that names a word like the one that is written.
-pub(super) fn meant<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> Option<String> {
+pub(in crate::format) fn meant<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> Option<String> {
     crate::diag::did_you_mean(word, known).map(|meant| format!("did you mean `{meant}`?"))
 }

@@ -1,0 +1,112 @@
+//! `--watch`: renders again whenever a file of the scene is saved.
+
+use crate::args::RenderCommand;
+use crate::render::{self, Watched};
+use crate::{Failure, progress, report};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::Ordering::Relaxed;
+use std::sync::mpsc::{self, RecvTimeoutError};
+use std::time::{Duration, SystemTime};
+
+/// How often files are looked at, and how long they must stay as they are: programs save in several steps.
+const PAUSE: Duration = Duration::from_millis(50);
+
+/// What tells of each file that it was saved: when, its size, and which file it is.
+type Stamp = Vec<Option<(SystemTime, u64, u64)>>;
+
+fn stamp(files: &[PathBuf]) -> Stamp {
+    let of = |path: &PathBuf| {
+        let metadata = std::fs::metadata(path).ok()?;
+        Some((metadata.modified().ok()?, metadata.len(), number(&metadata)))
+    };
+    files.iter().map(of).collect()
+}
+
+/// The number of a file in its file system: one that takes the place of another has another.
+#[cfg(unix)]
+fn number(metadata: &std::fs::Metadata) -> u64 {
+    std::os::unix::fs::MetadataExt::ino(metadata)
+}
+
+#[cfg(not(unix))]
+fn number(_: &std::fs::Metadata) -> u64 {
+    0
+}
+
+/// Renders until Ctrl-C: what is wrong with the scene is told, and waited for to be mended.
+pub fn run(command: &RenderCommand) -> Result<(), Failure> {
+    let named = [&command.render.reading.staging.view_file, &command.render.reading.staging.environment];
+    let always: Vec<PathBuf> =
+        [Some(command.render.scene.clone())].into_iter().chain(named.map(Clone::clone)).flatten().collect();
+    let mut files = always.clone();
+    loop {
+        let before = stamp(&files);
+        let watched = Watched::default();
+        let result = while_watching(&files, &before, &watched, || render::once(command, &watched));
+        let stale = watched.stale.load(Relaxed);
+        match result {
+            Ok(()) => {}
+            Err(Failure::Interrupted(_)) if stale => {}
+            // Only what is wrong with files can be mended in them.
+            Err(failure @ Failure::Input(_)) => {
+                failure.report();
+            }
+            Err(failure) => return Err(failure),
+        }
+        // Files of a scene that could not be read stay watched.
+        let found = watched.files.into_inner().unwrap_or_default();
+        let before = match found.is_empty() {
+            true => before,
+            false => {
+                let known = |path: &Path| files.iter().position(|file| file == path).map(|i| before[i]);
+                let next: Vec<PathBuf> = always.iter().chain(&found).cloned().collect();
+                let fresh = stamp(&next);
+                let before = next.iter().zip(&fresh).map(|(path, now)| known(path).unwrap_or(*now)).collect();
+                files = next;
+                before
+            }
+        };
+        if !command.render.quiet {
+            report::complain(&format!("watching {}; Ctrl-C ends", report::counted(files.len(), "file")));
+        }
+        progress::idle();
+        while stamp(&files) == before {
+            std::thread::sleep(PAUSE);
+        }
+        settle(&files);
+        progress::busy();
+    }
+}
+
+/// Waits until files stay as they are, but not for ever.
+fn settle(files: &[PathBuf]) {
+    let mut last = stamp(files);
+    for _ in 0..40 {
+        std::thread::sleep(PAUSE);
+        let now = stamp(files);
+        if now == last && now.iter().all(Option::is_some) {
+            return;
+        }
+        last = now;
+    }
+}
+
+/// Does some work, which is told to stop as soon as a file is saved.
+fn while_watching<R>(files: &[PathBuf], before: &Stamp, watched: &Watched, work: impl FnOnce() -> R) -> R {
+    let (finished, wait) = mpsc::channel::<()>();
+    std::thread::scope(|scope| {
+        let look = move || {
+            while wait.recv_timeout(PAUSE) == Err(RecvTimeoutError::Timeout) {
+                if stamp(files) != *before {
+                    watched.cancel();
+                    return;
+                }
+            }
+        };
+        // Without a thread for it, the work is done to its end.
+        let _ = std::thread::Builder::new().spawn_scoped(scope, look);
+        let result = work();
+        drop(finished);
+        result
+    })
+}

@@ -1,0 +1,314 @@
+//! Materials, in the words of OpenPBR.
+//!
+//! Sources: the reference manual; Ward, *Measuring and Modeling Anisotropic Reflection*, SIGGRAPH 1992, whose roughness is the
+//! mean slope of the surface, as GGX's alpha; alpha is the square of our roughness.
+
+use super::args::Thing;
+use super::sky::Sky;
+use super::state::{MIXTURES, PATTERNS, Reader};
+use crate::diag::Span;
+use crate::material::PrincipledMaterial;
+use crate::material::principled::Walls;
+use crate::math::{Color, Vec3, fp};
+use crate::medium::Fog;
+use crate::scene::{Material, Spanned};
+use std::rc::Rc;
+
+/// What a modifier became.
+pub(super) struct Made {
+    /// The number of the material in the scene; `None`: nothing is there.
+    pub number: Option<u32>,
+    pub kind: Kind,
+    /// What a pattern multiplies, everywhere alike.
+    pub tint: Color,
+    pub sky: Option<Sky>,
+}
+
+/// What matters of a material to surfaces.
+pub(super) enum Kind {
+    Plain,
+    /// The skin of a body; `outside`: the material of what is inside of a surface turned inside out.
+    Glass {
+        outside: Option<u32>,
+    },
+    Shining {
+        radiance: Color,
+    },
+    Spot {
+        radiance: Color,
+        direction: Vec3,
+        degrees: f32,
+        at: Span,
+    },
+}
+
+impl Made {
+    pub fn nothing() -> Made {
+        Made { number: None, kind: Kind::Plain, tint: Vec3::ONE, sky: None }
+    }
+
+    pub fn is_glass(&self) -> bool {
+        matches!(self.kind, Kind::Glass { .. })
+    }
+}
+
+/// Matte, without a boundary.
+fn matte(base_color: Color) -> PrincipledMaterial {
+    let base_color = base_color.min(Vec3::ONE);
+    PrincipledMaterial { base_color, specular_weight: 0.0, specular_roughness: 1.0, ..PrincipledMaterial::default() }
+}
+
+/// Our roughness and anisotropy by Ward's along u and v.
+fn rough(m: &mut PrincipledMaterial, [u, v]: [f32; 2]) {
+    let [u, v] = [u, v].map(|alpha| alpha.clamp(0.0, 1.0));
+    m.specular_roughness = (0.5 * (u * u + v * v)).sqrt().sqrt();
+    m.specular_anisotropy = if u == v { 0.0 } else { 1.0 - u.min(v) / u.max(v) };
+    m.specular_rotation = if v > u { 0.25 } else { 0.0 };
+}
+
+/// Plastic: a matte base below what reflects a share of all light.
+fn plastic(color: Color, specular: f32, roughness: [f32; 2]) -> PrincipledMaterial {
+    let mut m = matte(color);
+    if specular > 0.0 {
+        let root = specular.min(0.9).sqrt();
+        (m.specular_weight, m.specular_ior) = (1.0, (1.0 + root) / (1.0 - root));
+        rough(&mut m, roughness);
+    }
+    m
+}
+
+/// Metal: the share that it reflects is the same in all directions.
+fn metal(color: Color, specular: f32, roughness: [f32; 2]) -> PrincipledMaterial {
+    let color = color.min(Vec3::ONE);
+    // The share at 82 degrees that Schlick's rule would have.
+    let schlick = color + (Vec3::ONE - color) * fp::pow(6.0 / 7.0, 5.0);
+    let specular_color = color / schlick.max(Vec3::splat(1e-6));
+    let mut m = PrincipledMaterial { base_metalness: specular.min(1.0), specular_color, ..matte(color) };
+    if specular > 0.0 {
+        m.specular_weight = 1.0;
+    }
+    rough(&mut m, roughness);
+    m
+}
+
+/// A sheet through which light comes scattered and straight.
+fn trans(color: Color, [specular, transmitted, straight]: [f32; 3], roughness: [f32; 2]) -> PrincipledMaterial {
+    let [transmitted, straight] = [transmitted, straight].map(|share| share.clamp(0.0, 1.0));
+    let through = transmitted * straight;
+    let (back, forth) = (1.0 - transmitted, transmitted * (1.0 - straight));
+    PrincipledMaterial {
+        transmission_weight: through,
+        transmission_color: color,
+        subsurface_weight: 1.0,
+        subsurface_color: color,
+        subsurface_scatter_anisotropy: ((forth - back) / (forth + back).max(1e-6)).clamp(-0.999, 0.999),
+        walls: Walls::Thin,
+        ..plastic(color, specular, roughness)
+    }
+}
+
+/// A body with an index, of which a share of light is left at depth 1.
+fn body(left: Color, index: f32) -> PrincipledMaterial {
+    let m = PrincipledMaterial {
+        transmission_weight: 1.0,
+        specular_ior: index,
+        specular_roughness: 0.0,
+        ..PrincipledMaterial::default()
+    };
+    match left.min_element() >= 1.0 {
+        true => m,
+        false => PrincipledMaterial {
+            transmission_color: left.clamp(Vec3::splat(1e-6), Vec3::ONE),
+            transmission_depth: 1.0,
+            ..m
+        },
+    }
+}
+
+/// What shines and is black else.
+fn shining(radiance: Color) -> PrincipledMaterial {
+    let most = radiance.max_element();
+    let emission_color = if most > 0.0 { radiance / most } else { Vec3::ONE };
+    PrincipledMaterial { emission_luminance: most, emission_color, ..matte(Vec3::ZERO) }
+}
+
+impl Reader<'_> {
+    /// What a modifier becomes.
+    pub fn made(&mut self, number: usize) -> Rc<Made> {
+        if let Some(made) = &self.modifiers[number].made {
+            return made.clone();
+        }
+        let (thing, parent) = (self.modifiers[number].thing.clone(), self.modifiers[number].parent);
+        let above = parent.map_or(Rc::new(Made::nothing()), |parent| self.made(parent));
+        let kind = thing.kind.text.as_str();
+        let made = if PATTERNS.contains(&kind) {
+            let (tint, sky) = self.pattern(&thing);
+            Made { tint: above.tint * tint, sky: sky.or(above.sky.clone()), ..Made::nothing() }
+        } else if MIXTURES.contains(&kind) {
+            self.mixture(number, &thing)
+        } else {
+            self.material(number, &thing, &above)
+        };
+        let made = Rc::new(made);
+        self.modifiers[number].made = Some(made.clone());
+        made
+    }
+
+    pub fn add_material(&mut self, m: PrincipledMaterial, at: Span) -> u32 {
+        self.scene.materials.push(Spanned { value: Material::Principled(Box::new(m)), span: at });
+        (self.scene.materials.len() - 1) as u32
+    }
+
+    fn material(&mut self, number: usize, thing: &Thing, above: &Made) -> Made {
+        let (kind, at, said) = (thing.kind.text.as_str(), thing.at(), self.said);
+        let counts: &[usize] = match kind {
+            "plastic" | "metal" | "dielectric" => &[5],
+            "plastic2" | "metal2" => &[6],
+            "trans" => &[7],
+            "trans2" | "interface" | "ashik2" => &[8],
+            "glass" => &[3, 4],
+            "mirror" | "light" | "illum" => &[3],
+            "glow" => &[4],
+            "spotlight" => &[7],
+            "mist" => &[0, 3, 6, 7],
+            _ => &[],
+        };
+        if !counts.is_empty() && !thing.has(counts, said) {
+            return Made::nothing();
+        }
+        let value = |i: usize| thing.number(i).unwrap_or(0.0).max(0.0);
+        let both = |i: usize| [value(i); 2];
+        let color = thing.color(0) * above.tint;
+        let instead = |what: &str| said.once(at, format!("`{kind}` has no counterpart: {what}"));
+        let m = match kind {
+            "plastic" => plastic(color, value(3), both(4)),
+            "metal" => metal(color, value(3), both(4)),
+            "trans" => trans(color, [value(3), value(5), value(6)], both(4)),
+            "plastic2" => plastic(color, value(3), [value(4), value(5)]),
+            "metal2" => metal(color, value(3), [value(4), value(5)]),
+            "trans2" => trans(color, [value(3), value(6), value(7)], [value(4), value(5)]),
+            "ashik2" => {
+                // A power of the cosine of the half vector is a slope of the root of 2 / (power + 2).
+                let slope = |power: f32| (2.0 / (power + 2.0)).sqrt();
+                let specular = thing.color(3);
+                plastic(color, specular.element_sum() / 3.0, [slope(value(6)), slope(value(7))])
+            }
+            "plasfunc" | "plasdata" => {
+                instead("plastic of that colour and share, of roughness 0.1, is taken");
+                plastic(color, value(3), [0.1; 2])
+            }
+            "metfunc" | "metdata" => {
+                instead("metal of that colour and share, of roughness 0.1, is taken");
+                metal(color, value(3), [0.1; 2])
+            }
+            "transfunc" | "transdata" => {
+                instead("a sheet of that colour and shares (`trans`), of roughness 0.1, is taken");
+                trans(color, [value(3), value(4), value(5)], [0.1; 2])
+            }
+            "BRTDfunc" => {
+                instead("the matte colour of its front is taken");
+                matte(color)
+            }
+            "BSDF" | "aBSDF" | "WGMDfunc" => {
+                instead("matte grey is taken");
+                matte(Vec3::splat(0.5) * above.tint)
+            }
+            "prism1" | "prism2" => {
+                instead("a clear sheet that does not turn light is taken");
+                sheet(Vec3::ONE, 1.0)
+            }
+            "mirror" => metal(color, 1.0, [0.0; 2]),
+            "glass" => sheet(color, thing.number(3).unwrap_or(1.52)),
+            "dielectric" => {
+                if thing.number(4) != Some(0.0) {
+                    said.once(at, "Hartmann's constant has no counterpart: colours are not spread");
+                }
+                let inside = self.add_material(body(color, value(3)), at);
+                let bubble = self.add_material(body(Vec3::ONE, 1.0), at);
+                return Made { number: Some(inside), kind: Kind::Glass { outside: Some(bubble) }, ..Made::nothing() };
+            }
+            "interface" => {
+                let inside = self.add_material(body(color, value(3)), at);
+                let outside = self.add_material(body(thing.color(4), value(7)), at);
+                return Made { number: Some(inside), kind: Kind::Glass { outside: Some(outside) }, ..Made::nothing() };
+            }
+            "mist" => return self.mist(thing),
+            "antimatter" => {
+                instead("it cuts nothing away, and is not shown");
+                return Made::nothing();
+            }
+            "illum" if thing.texts.first().is_some_and(|name| name.text != "void") => {
+                instead("what it stands for is taken: light comes through that by itself");
+                let other = self.modifiers[number].others[0];
+                return match other {
+                    Some(other) => {
+                        let made = self.made(other);
+                        Made { number: made.number, ..Made::nothing() }
+                    }
+                    None => Made::nothing(),
+                };
+            }
+            "light" | "glow" | "illum" => {
+                if kind == "illum" {
+                    instead("its light is taken, and it is seen");
+                }
+                if kind == "glow" && thing.number(3).is_some_and(|reach| reach != 0.0) {
+                    said.once(at, "the reach of a `glow` has no counterpart: it lights what is around it, however far");
+                }
+                let number = Some(self.add_material(shining(color), at));
+                let kind = Kind::Shining { radiance: color };
+                return Made { number, kind, tint: Vec3::ONE, sky: above.sky.clone() };
+            }
+            "spotlight" => {
+                let direction = self.modifiers[number].map.transform_vector3(thing.point(4)).normalize_or_zero();
+                if direction == glam::DVec3::ZERO {
+                    said.bad(at, "a spotlight needs a direction");
+                }
+                let degrees = 0.5 * value(3).clamp(0.01, 360.0);
+                let kind = Kind::Spot { radiance: color, direction: direction.as_vec3(), degrees, at };
+                return Made { kind, ..Made::nothing() };
+            }
+            _ => matte(color),
+        };
+        if matches!(kind, "plastic2" | "metal2" | "trans2" | "ashik2") && m.specular_anisotropy > 0.0 {
+            said.once(at, "highlights are longer along the surface's own directions, not along those that are written");
+        }
+        Made { number: Some(self.add_material(m, at)), ..Made::nothing() }
+    }
+
+    /// Mist in a body: it does not bend light.
+    fn mist(&mut self, thing: &Thing) -> Made {
+        let extinction = thing.color(0);
+        let most = extinction.max_element();
+        if thing.numbers.is_empty() || most <= 0.0 {
+            return Made::nothing();
+        }
+        let albedo = if thing.numbers.len() >= 6 { thing.color(3).min(Vec3::ONE) } else { Vec3::ZERO };
+        let anisotropy = thing.number(6).unwrap_or(0.0).clamp(-0.99, 0.99);
+        let depth = 1.0 / most;
+        let m = PrincipledMaterial {
+            transmission_depth: depth,
+            transmission_color: extinction.map(|sigma| fp::exp(-sigma * depth)),
+            transmission_scatter: depth * albedo * extinction,
+            transmission_scatter_anisotropy: anisotropy,
+            ..body(Vec3::ONE, 1.0)
+        };
+        let number = self.add_material(m, thing.at());
+        // What is in the air thins light by its brightness.
+        let mean = extinction.dot(Vec3::new(0.2126, 0.7152, 0.0722));
+        let color = (albedo * extinction / mean).min(Vec3::ONE);
+        self.mists.insert(number, Fog { extinction: mean, color, anisotropy, ..Fog::default() });
+        let number = Some(number);
+        Made { number, kind: Kind::Glass { outside: None }, ..Made::nothing() }
+    }
+}
+
+/// A pane: what it does not absorb goes straight through, or is reflected.
+fn sheet(left: Color, index: f32) -> PrincipledMaterial {
+    PrincipledMaterial {
+        transmission_color: left.min(Vec3::ONE),
+        walls: Walls::Thin,
+        transmission_depth: 0.0,
+        ..body(Vec3::ONE, index)
+    }
+}

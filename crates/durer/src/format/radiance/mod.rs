@@ -1,0 +1,58 @@
+//! Scenes of Radiance: `.rad` (geometry and materials), `.rif` (which files, seen from where), `.vf` (views).
+//!
+//! Sources: *The RADIANCE 5.4 Synthetic Imaging System*, reference manual; the manual pages of xform, genbox, genprism, rad and
+//! rpict. A pixel of value 1 shows radiance 1 W/(sr m²), as in Radiance's own pictures; times 179 that is luminance in cd/m².
+
+mod args;
+mod body;
+mod command;
+mod data;
+mod material;
+mod mixture;
+mod pattern;
+mod rif;
+mod sky;
+mod source;
+mod state;
+mod surface;
+mod view;
+mod words;
+mod xform;
+
+#[cfg(test)]
+mod tests;
+
+use super::said::Said;
+use super::scene::Input;
+use super::too_large;
+use crate::diag::{Diagnostic, Diagnostics};
+use crate::scene::Scene;
+use state::{Place, Reader};
+
+/// Reads a file; see [`read_model`](super::scene::read_model).
+pub(super) fn read(input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
+    if let Some(error) = too_large(input.bytes.len() as u64, input.name) {
+        diagnostics.push(Diagnostic { message: error.message.replace("mesh file", "scene"), help: None, ..error });
+        return None;
+    }
+    let said = Said::default();
+    let mut reader = Reader::new(input, &said);
+    match input.name.to_lowercase().ends_with(".rif") {
+        true => reader.rif(),
+        false => reader.text(input.bytes, input.file, &Place::default()),
+    }
+    let scene = reader.finish();
+    let sound = !said.has_errors() && !diagnostics.has_errors();
+    diagnostics.extend(said.finish());
+    sound.then_some(scene)
+}
+
+/// Gives a scene the camera of a file of views: its last.
+pub(super) fn look(scene: &mut Scene, input: &Input, (name, bytes): (&str, &std::sync::Arc<[u8]>)) -> Diagnostics {
+    let said = Said::default();
+    let file = input.files.borrow_mut().add(name, bytes.clone());
+    if let Some(view) = view::of_file(bytes, file, &said) {
+        view.place(scene, view::USUAL_SIZE, &said);
+    }
+    said.finish()
+}

@@ -1,0 +1,108 @@
+//! Patterns and textures: each becomes one colour everywhere, the mean where that can be had.
+
+use super::args::Thing;
+use super::data::Table;
+use super::sky::Sky;
+use super::state::Reader;
+use super::words::Word;
+use crate::format::number::parse_f32;
+use crate::image::{self, Encoded};
+use crate::math::{Color, Vec3};
+
+/// Bytes that decoding one picture may take.
+const MEMORY: u64 = 1 << 30;
+
+impl Reader<'_> {
+    /// The colour that a pattern multiplies everywhere, and the sky that it is.
+    pub fn pattern(&self, thing: &Thing) -> (Color, Option<Sky>) {
+        let (at, kind, said) = (thing.at(), thing.kind.text.as_str(), self.said);
+        let text = |i: usize| thing.texts.get(i).map_or("", |word| word.text.as_str());
+        let literal = |i: usize| parse_f32(text(i).as_bytes()).ok().map(|x| x.max(0.0));
+        let tint = match kind {
+            "texfunc" | "texdata" => {
+                said.once(at, "bumps by functions have no counterpart: the surface stays as it is");
+                Vec3::ONE
+            }
+            "brightfunc" if text(0) == "skybr" => {
+                let sky = Sky::of(thing, said);
+                return (Vec3::ONE, sky);
+            }
+            "brightfunc" if literal(0).is_some() => Vec3::splat(literal(0).unwrap_or(1.0)),
+            "colorfunc" if (0..3).all(|i| literal(i).is_some()) => {
+                Vec3::from_array([0, 1, 2].map(|i| literal(i).unwrap_or(1.0)))
+            }
+            "brightfunc" | "colorfunc" | "spectrum" => {
+                said.once(at, format!("patterns by functions (`{kind}`) have no counterpart: the pattern is left out"));
+                Vec3::ONE
+            }
+            "brighttext" | "colortext" => {
+                said.once(at, "letters have no counterpart: what is around them is taken");
+                background(thing)
+            }
+            "colorpict" => match thing.texts.get(3).and_then(|name| self.mean_of_picture(name)) {
+                Some(mean) => {
+                    said.once(at, "pictures on surfaces have no counterpart: the mean colour is taken");
+                    mean
+                }
+                None => Vec3::ONE,
+            },
+            "brightdata" => Vec3::splat(self.mean_of_data(thing, text(0), thing.texts.get(1))),
+            "colordata" => {
+                Vec3::from_array([0, 1, 2].map(|i| self.mean_of_data(thing, text(i), thing.texts.get(3 + i))))
+            }
+            _ => Vec3::ONE,
+        };
+        (tint, None)
+    }
+
+    /// The mean of a table, or of the light that it spreads over directions.
+    fn mean_of_data(&self, thing: &Thing, function: &str, name: Option<&Word>) -> f32 {
+        let Some(name) = name else {
+            self.said.bad(thing.at(), "a pattern of data needs a function, a file and coordinates");
+            return 1.0;
+        };
+        let Some((bytes, file)) = self.open(name) else { return 1.0 };
+        let Some(table) = Table::read(&bytes, file, self.said) else { return 1.0 };
+        let angles: Vec<&str> = thing.texts.iter().skip(3).map(|word| word.text.as_str()).collect();
+        let lamp = angles.iter().any(|name| name.starts_with("src_"));
+        let scale = thing.number(0).filter(|_| lamp).unwrap_or(1.0).max(0.0);
+        match lamp {
+            true => {
+                let what = "the directions of a lamp have no counterpart: it shines evenly, with the same flux";
+                self.said.once(thing.at(), what);
+                scale * table.flux(function.starts_with("flat"))
+            }
+            false => {
+                self.said.once(thing.at(), "patterns of data have no counterpart: the mean is taken");
+                table.mean()
+            }
+        }
+    }
+
+    /// The mean colour of a picture.
+    fn mean_of_picture(&self, name: &Word) -> Option<Color> {
+        let (bytes, _) = self.open(name)?;
+        // Radiance's pictures have names without a rule; their content tells.
+        let hint = if bytes.starts_with(b"#?") { "picture.hdr" } else { name.text.as_str() };
+        let read = Encoded::open(&bytes, hint).and_then(|encoded| encoded.read(MEMORY, image::decode_srgb));
+        match read {
+            Ok(picture) => {
+                let sum: glam::DVec3 = picture.pixels.iter().filter(|p| p.is_finite()).map(|p| p.as_dvec3()).sum();
+                Some((sum / picture.pixels.len().max(1) as f64).as_vec3())
+            }
+            Err(error) => {
+                self.said.bad(name.at, format!("the picture {} cannot be used: {error}", name.shown()));
+                None
+            }
+        }
+    }
+}
+
+/// The colour around letters: nine numbers say where they are, then theirs and that of the rest, then distances.
+fn background(thing: &Thing) -> Color {
+    match thing.kind.text.as_str() {
+        "brighttext" => Vec3::splat(thing.number(10).unwrap_or(1.0).max(0.0)),
+        _ if thing.numbers.len() >= 15 => thing.color(12),
+        _ => Vec3::ONE,
+    }
+}

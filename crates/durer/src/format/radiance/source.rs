@@ -1,0 +1,104 @@
+//! Light from infinitely far away, and spots.
+
+use super::args::Thing;
+use super::material::{Kind, Made};
+use super::sky::Sky;
+use super::state::{Place, Reader};
+use crate::diag::Span;
+use crate::format::panorama;
+use crate::light::{DirectionalLight, Fade, Light, SpotLight};
+use crate::math::{Color, Vec3, fp};
+use crate::scene::Spanned;
+use glam::DVec3;
+use std::f32::consts::PI;
+
+/// Degrees across which what is far away counts as a direction, as the sun does.
+const SMALL: f32 = 5.0;
+/// Rows of the picture around the scene.
+const ROWS: u32 = 256;
+
+/// Spots that stand for a surface.
+const SPOTS: u32 = 24;
+
+/// A cone of directions, and the light that comes from them.
+pub(super) struct Distant {
+    direction: DVec3,
+    cosine: f64,
+    radiance: Color,
+    sky: Option<Sky>,
+    at: Span,
+}
+
+impl Reader<'_> {
+    pub fn source(&mut self, thing: &Thing, modifier: Option<usize>, place: &Place) {
+        let at = thing.at();
+        if !thing.has(&[4], self.said) {
+            return;
+        }
+        let direction = place.map.transform_vector3(thing.point(0)).normalize_or_zero();
+        let degrees = thing.numbers[3].abs() as f32;
+        if direction == DVec3::ZERO || degrees == 0.0 || degrees > 360.0 {
+            return self.said.bad(at, "a source needs a direction and an angle of more than 0 and at most 360 degrees");
+        }
+        let Some(made) = modifier.map(|modifier| self.made(modifier)) else { return };
+        let (radiance, sky) = match &made.kind {
+            Kind::Shining { radiance } => (*radiance, made.sky.clone()),
+            Kind::Spot { radiance, .. } => {
+                self.said.once(at, "a source that is a spot shines everywhere");
+                (*radiance, None)
+            }
+            _ => return self.said.once(at, "a source that does not shine is not shown"),
+        };
+        let cosine = fp::sin_cos_degrees(0.5 * f64::from(degrees)).1;
+        if degrees <= SMALL && sky.is_none() {
+            // What a white matte surface shows that faces it.
+            let color = radiance * (2.0 * (1.0 - cosine)) as f32;
+            let spread = Some(0.5 * degrees);
+            let light = DirectionalLight { direction: -direction.as_vec3(), color, spread };
+            self.light(light.into(), at);
+            return;
+        }
+        self.distant.push(Distant { direction, cosine, radiance, sky, at });
+    }
+
+    fn light(&mut self, value: Light, span: Span) {
+        self.scene.lights.get_or_insert_default().push(Spanned { value, span });
+    }
+
+    /// Spots all over a disc with the area of a surface: light that goes one way only has no counterpart that is a surface.
+    pub fn spot(&mut self, made: &Made, (area, center, normal): (f64, DVec3, Option<DVec3>), span: Span) {
+        let Kind::Spot { radiance, direction, degrees, at } = made.kind else { return };
+        self.said.once(at, format!("a spotlight is {SPOTS} spots, and its surface is not shown"));
+        let axis = direction.as_dvec3();
+        let cosine = normal.map_or(1.0, |normal| normal.dot(axis).max(0.0));
+        let (x, y) = normal.unwrap_or(axis).any_orthonormal_pair();
+        for i in 0..SPOTS {
+            // Vogel's spiral: as many spots in equal areas.
+            let radius = (area / f64::from(PI) * (f64::from(i) + 0.5) / f64::from(SPOTS)).sqrt();
+            let (sin, cos) = fp::sin_cos_degrees(137.507_764 * f64::from(i));
+            let light = SpotLight {
+                position: (center + radius * (cos * x + sin * y)).as_vec3(),
+                direction,
+                color: radiance * (area * cosine) as f32 / (PI * SPOTS as f32),
+                angle: degrees.min(180.0),
+                inner_angle: degrees.min(180.0),
+                fade: Fade::Squared,
+            };
+            self.light(light.into(), span);
+        }
+    }
+
+    /// Puts what is infinitely far away around the scene.
+    pub fn surround(&mut self) {
+        (self.scene.background.color, self.scene.background.ambient_light) = (Vec3::ZERO, Vec3::ZERO);
+        let Some(at) = self.distant.first().map(|distant| distant.at) else { return };
+        let distant = std::mem::take(&mut self.distant);
+        let light = |dir: DVec3| {
+            let seen = distant.iter().find(|distant| dir.dot(distant.direction) >= distant.cosine);
+            seen.map_or(Vec3::ZERO, |seen| seen.radiance * seen.sky.as_ref().map_or(1.0, |sky| sky.at(dir)))
+        };
+        if !panorama::surround(&mut self.scene, (self.input.name, at), ROWS, light) {
+            self.said.bad(at, "the picture around the scene cannot be made");
+        }
+    }
+}
