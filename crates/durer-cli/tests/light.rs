@@ -44,6 +44,28 @@ fn a_measured_lamp_gives_its_illuminance() {
 }
 
 #[test]
+fn photons_measure_what_glass_lets_through() {
+    let place = Place::new();
+    let scene = "PerspectiveCamera { center 0 2 6 direction 0 -0.3 -1 up 0 1 0 angle 40 } Background { color 0 0 0 }
+Lights { PointLight { position 0 2 0 color 31.830989 31.830989 31.830989 attenuation 0 0 1 } }
+Materials { PrincipledMaterial { baseColor 0 0 0 specularWeight 0 } PrincipledMaterial { transmissionWeight 1 specularRoughness 0 } }
+Group { MaterialIndex 0 Plane { normal 0 1 0 offset 0 } MaterialIndex 1 Box { min -1 1 -1 max 1 1.002 1 } }";
+    place.put("pane.txt", scene);
+    let lux = |options: &str| {
+        let ran = place.gives(0, &format!("measure pane.txt --at 0,0,0 {options}"));
+        let row: Vec<f64> = ran.out.lines().nth(1).unwrap().split(',').map(|word| word.parse().unwrap()).collect();
+        (row[6], row[7])
+    };
+    // 100 cd from 2 m: 25 lux without the pane; of its two faces each reflects 0.04: T = (1 - F) / (1 + F).
+    let (mean, error) = lux("--integrator photons --samples 32 --photons 20000 --photon-radius 0.2");
+    let expected = 25.0 * 0.96 / 1.04;
+    assert!((mean - expected).abs() < 3.0 * error + 0.02 * expected, "{mean} ± {error}, not {expected}");
+    // Paths alone do not find a lamp without extent behind glass.
+    assert_eq!(lux("--samples 32").0, 0.0);
+    assert!(place.gives(2, "measure pane.txt --at 0,0,0 --integrator ao").err.contains("path, or photons"));
+}
+
+#[test]
 fn paths_have_the_same_bits_in_every_way_and_sum_in_explanations() {
     let place = lit();
     let hash = |options: &str| {

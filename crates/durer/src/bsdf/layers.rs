@@ -14,7 +14,7 @@ use super::{Bsdf, fresnel};
 use crate::material::PrincipledMaterial;
 use crate::material::principled::Walls;
 use crate::math::{Color, Vec3, fp};
-use crate::spectrum::{Lanes, Spectrum};
+use crate::spectrum::{Curve, Lanes, Spectrum};
 use std::sync::Arc;
 
 /// What of a principled material may differ from point to point.
@@ -48,11 +48,13 @@ pub struct Tables {
     glass: Arc<Dielectric>,
     /// The coat's boundary.
     coat: Arc<Dielectric>,
+    /// The base colour as it was measured.
+    measured: Option<Arc<Curve>>,
 }
 
 impl Tables {
-    /// For a material. `known` has what was worked out before.
-    pub fn new(material: &PrincipledMaterial, known: &mut Vec<Arc<Dielectric>>) -> Self {
+    /// For a material whose base may have been measured. `known` has what was worked out before.
+    pub fn new(material: &PrincipledMaterial, measured: Option<Arc<Curve>>, known: &mut Vec<Arc<Dielectric>>) -> Self {
         let mut of = |ior: f32| {
             let found = known.iter().find(|tables| tables.ior == ior).cloned();
             found.unwrap_or_else(|| {
@@ -63,6 +65,7 @@ impl Tables {
         Tables {
             opaque: of(opaque_ior(material)),
             glass: of(material.specular_ior),
+            measured,
             coat: of(if material.coat_weight > 0.0 { material.coat_ior } else { material.specular_ior }),
         }
     }
@@ -106,7 +109,10 @@ pub fn scattering(material: &PrincipledMaterial, layers: &Layers, tables: &Table
         view,
         metalness: layers.metalness,
         roughness: layers.roughness,
-        base: view.lanes.reflectance(layers.base_color),
+        base: match &tables.measured {
+            Some(curve) => view.lanes.measured(layers.base_color, curve),
+            None => view.lanes.reflectance(layers.base_color),
+        },
         specular: view.lanes.reflectance(material.specular_color),
     };
     stack.scattering()

@@ -8,6 +8,7 @@ pub mod fresnel;
 pub mod layers;
 pub mod lobe;
 pub mod microfacet;
+pub mod proof;
 #[cfg(test)]
 mod tests;
 pub mod warp;
