@@ -197,13 +197,13 @@ fn skies() -> Vec<Case> {
     let window = [Vec3::new(2.0, 1.0, -0.8), Vec3::new(0.0, 1.2, 0.0), Vec3::new(0.0, 0.0, 1.6)];
     let open =
         |name, formula, sky: &str, answer| Case { background: sky.into(), ..case(name, formula, floor(), answer) };
-    let behind = |name, formula, sky: &str, opening, answer| Case {
+    let behind = |name, formula, sky: &str, opening: [Vec3; 3], answer| {
         // A lid over what is behind a window.
-        group: format!(
-            "MaterialIndex 0 {} Rectangle {{ corner -999 2.5 -999 edge0 1001 0 0 edge1 0 0 1998 }}",
-            around(opening)
-        ),
-        ..open(name, formula, sky, answer)
+        let lid = match opening[0] == window[0] {
+            true => "Rectangle { corner -999 2.5 -999 edge0 1001 0 0 edge1 0 0 1998 }",
+            false => "",
+        };
+        Case { group: format!("MaterialIndex 0 {} {lid}", around(opening)), ..open(name, formula, sky, answer) }
     };
     let mut all = vec![
         open("Open field under an even sky of 1000 cd/m²", "E = π L", EVEN, PI * 1000.0),
@@ -316,7 +316,7 @@ fn reflections() -> Vec<Case> {
         Case {
             background: EVEN.into(),
             group: format!(
-                "MaterialIndex 0 {} Rectangle {{ corner -2 0 -2 edge0 4 0 0 edge1 0 3.01 0 }} Rectangle {{ corner -2 0 2 edge0 4 0 0 edge1 0 3.01 0 }} \
+                "MaterialIndex 0 {} Rectangle {{ corner -2 0 -2 edge0 4 0 0 edge1 0 0 4 }} Rectangle {{ corner -2 0 -2 edge0 4 0 0 edge1 0 3.01 0 }} Rectangle {{ corner -2 0 2 edge0 4 0 0 edge1 0 3.01 0 }} \
                  Rectangle {{ corner -2 0 -2 edge0 0 0 4 edge1 0 3.01 0 }} Rectangle {{ corner 2 0 -2 edge0 0 0 4 edge1 0 3.01 0 }}",
                 around(roof)
             ),

@@ -4,6 +4,7 @@
 //! which they are seen. OpenPBR calls that albedo scaling. It keeps energy, but the whole is not reciprocal.
 
 use super::albedo::{self, Dielectric};
+use super::film::{self, Film};
 use super::lobe::diffuse::{Diffuse, DiffuseTransmission};
 use super::lobe::fuzz::Fuzz;
 use super::lobe::glass::{Mirror, Refraction, Through};
@@ -147,8 +148,8 @@ impl Stack<'_> {
         let mut roughness = self.roughness;
         if m.coat_weight > 0.0 && !view.inside {
             let weight = m.coat_weight;
-            let given = self.boundary(&mut bsdf, &self.tables.coat, m.coat_roughness, weight * below);
-            below *= 1.0 - weight * given;
+            let given = self.boundary(&mut bsdf, &self.tables.coat, m.coat_roughness, weight * below, None);
+            below *= Spectrum::ONE - weight * given;
             below *= Spectrum::ONE.lerp(self.coat(mu), weight);
             let fourth = |r: f32| r * r * r * r;
             let both = (fourth(roughness) + 2.0 * fourth(m.coat_roughness)).min(1.0);
@@ -170,9 +171,10 @@ impl Stack<'_> {
                 bsdf.push(DiffuseTransmission { color: Spectrum::ONE }, opaque, opaque.max_element());
                 return bsdf;
             }
-            let given = self.boundary(&mut bsdf, &self.tables.opaque, roughness, opaque * self.specular);
+            let film = self.film(self.tables.opaque.ior);
+            let given = self.boundary(&mut bsdf, &self.tables.opaque, roughness, opaque * self.specular, film);
             let diffuse = Diffuse { color: self.base, roughness: m.base_diffuse_roughness };
-            let weight = opaque * (1.0 - given);
+            let weight = opaque * (Spectrum::ONE - given);
             let matte = weight * (1.0 - m.subsurface_weight);
             bsdf.push(diffuse, matte, (matte * self.base).max_element());
             self.subsurface(&mut bsdf, weight * m.subsurface_weight);
@@ -196,17 +198,38 @@ impl Stack<'_> {
         bsdf.push(DiffuseTransmission { color }, weight * onwards, share * onwards);
     }
 
+    /// The film on a dielectric of an index, if there is one.
+    fn film(&self, eta: f32) -> Option<Film> {
+        let m = self.material;
+        // A sheet is looked at from outside on both sides.
+        let before = if self.view.inside && m.walls == Walls::Solid { m.specular_ior } else { 1.0 };
+        let ior = m.thin_film_ior / before;
+        (m.thin_film_weight > 0.0)
+            .then(|| Film::on_dielectric(self.view.lanes, m.thin_film_thickness, ior, eta, m.thin_film_weight))
+    }
+
     /// The reflection of a boundary of dielectrics seen from outside; returns its albedo.
-    fn boundary(&self, bsdf: &mut Bsdf, tables: &Dielectric, roughness: f32, weight: Spectrum) -> f32 {
+    fn boundary(
+        &self,
+        bsdf: &mut Bsdf,
+        tables: &Dielectric,
+        roughness: f32,
+        weight: Spectrum,
+        film: Option<Film>,
+    ) -> Spectrum {
         let (ggx, mu) = (Ggx::new(roughness, 0.0), self.view.wo.z);
         if ggx.is_smooth() {
-            let given = fresnel::dielectric(mu, tables.ior);
-            bsdf.push(Mirror, weight * given, weight.max_element() * given);
+            let plain = || Spectrum::splat(fresnel::dielectric(mu, tables.ior));
+            let given = film.map_or_else(plain, |film| film.reflected(mu));
+            bsdf.push(Mirror, weight * given, (weight * given).max_element());
             return given;
         }
-        let given = tables.reflected(false, mu, roughness);
-        let rough = Rough { ggx: ggx.clamped(), facet: Facet::Dielectric(tables.ior), behind: false };
-        bsdf.push(rough, weight * tables.gain(false, mu, roughness), weight.max_element() * given);
+        let (facet, given) = match film {
+            Some(film) => (Facet::Film(film), albedo::film(&film, mu, roughness)),
+            None => (Facet::Dielectric(tables.ior), Spectrum::splat(tables.reflected(false, mu, roughness))),
+        };
+        let rough = Rough { ggx: ggx.clamped(), facet, behind: false };
+        bsdf.push(rough, weight * tables.gain(false, mu, roughness), (weight * given).max_element());
         given
     }
 
@@ -232,7 +255,21 @@ impl Stack<'_> {
         let (m, mu) = (self.material, self.view.wo.z);
         let f82 = fresnel::F82::new(self.base, self.specular);
         let ggx = Ggx::new(roughness, m.specular_anisotropy);
-        let weight = weight * m.specular_weight.min(1.0);
+        let mut weight = weight * m.specular_weight.min(1.0);
+        if m.thin_film_weight > 0.0 {
+            let film = Film::on_metal(self.view.lanes, m.thin_film_thickness, m.thin_film_ior, self.base);
+            let covered = m.thin_film_weight * weight;
+            weight *= 1.0 - m.thin_film_weight;
+            if ggx.is_smooth() {
+                let reflected = covered * film.reflected(mu);
+                bsdf.push(Mirror, reflected, reflected.max_element());
+            } else {
+                let (given, color) = (albedo::ggx(mu, roughness), albedo::film(&film, mu, roughness));
+                let again = Spectrum::ONE + color * ((1.0 - given) / given);
+                let rough = Rough { ggx: ggx.clamped(), facet: Facet::Film(film), behind: false };
+                bsdf.push(rough, covered * again, (covered * color).max_element());
+            }
+        }
         if ggx.is_smooth() {
             let reflected = weight * f82.at(mu);
             return bsdf.push(Mirror, reflected, reflected.max_element());
@@ -251,17 +288,30 @@ impl Stack<'_> {
             true => Spectrum::ONE,
             false => self.view.lanes.reflectance(m.transmission_color),
         };
-        if eta == 1.0 {
+        let film = self.film(eta);
+        if eta == 1.0 && film.is_none() {
             return bsdf.push(Through, weight * tint, weight.max_element());
         }
         let ggx = Ggx::new(roughness, m.specular_anisotropy);
-        if ggx.is_smooth() {
-            let reflected = fresnel::dielectric(wo.z, eta);
-            bsdf.push(Mirror, weight * self.specular * reflected, weight.max_element() * reflected);
-            bsdf.push(Refraction { eta }, weight * tint * (1.0 - reflected), weight.max_element() * (1.0 - reflected));
-            return;
+        let plain = fresnel::dielectric(wo.z, eta);
+        let reflected = film.map_or(Spectrum::splat(plain), |film| film.reflected(wo.z));
+        // Rough glass without a change of index scatters nothing either.
+        if ggx.is_smooth() || eta == 1.0 {
+            let (up, down) = (weight * reflected, weight * (Spectrum::ONE - reflected));
+            bsdf.push(Mirror, self.specular * up, up.max_element());
+            return match eta == 1.0 {
+                true => bsdf.push(Through, tint * down, down.max_element()),
+                false => bsdf.push(Refraction { eta }, tint * down, down.max_element()),
+            };
         }
-        let rough = RoughGlass { ggx: ggx.clamped(), eta, reflected: self.specular, transmitted: tint };
+        // Facets have the film's colour as it is seen from here.
+        let part = |with: Spectrum, without: f32| if without > 0.0 { with / without } else { Spectrum::ONE };
+        let rough = RoughGlass {
+            ggx: ggx.clamped(),
+            eta,
+            reflected: self.specular * part(reflected, plain),
+            transmitted: tint * part(Spectrum::ONE - reflected, 1.0 - plain),
+        };
         bsdf.push(rough, weight * self.tables.glass.gain(inside, wo.z, roughness), weight.max_element());
     }
 
@@ -269,12 +319,18 @@ impl Stack<'_> {
     fn sheet(&self, bsdf: &mut Bsdf, roughness: f32, weight: Spectrum) {
         let (m, wo) = (self.material, self.view.wo);
         let (eta, ggx) = (m.specular_ior, Ggx::new(roughness, m.specular_anisotropy));
-        let reflected = fresnel::slab(wo.z, eta);
-        let (up, down) = (weight * self.specular, weight * self.view.lanes.reflectance(m.transmission_color));
-        let shares = (weight.max_element() * reflected, weight.max_element() * (1.0 - reflected));
-        if ggx.is_smooth() {
+        let plain = fresnel::slab(wo.z, eta);
+        // A film is on one of its faces.
+        let film = self.film(eta).map(|film| film::sheet(film.reflected(wo.z), fresnel::dielectric(wo.z, eta)));
+        let reflected = film.unwrap_or(Spectrum::splat(plain));
+        let (mut up, mut down) = (weight * self.specular, weight * self.view.lanes.reflectance(m.transmission_color));
+        let shares = ((weight * reflected).max_element(), (weight * (Spectrum::ONE - reflected)).max_element());
+        if ggx.is_smooth() || film.is_some() && plain == 0.0 {
             bsdf.push(Mirror, up * reflected, shares.0);
-            return bsdf.push(Through, down * (1.0 - reflected), shares.1);
+            return bsdf.push(Through, down * (Spectrum::ONE - reflected), shares.1);
+        }
+        if film.is_some() {
+            (up, down) = (up * reflected / plain, down * (Spectrum::ONE - reflected) / (1.0 - plain));
         }
         let gain = 1.0 / albedo::ggx(wo.z, roughness);
         let rough = |facet, behind| Rough { ggx: ggx.clamped(), facet, behind };

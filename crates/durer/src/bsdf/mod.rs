@@ -3,6 +3,7 @@
 //! Directions are local to the point's [`Frame`] and point away from the surface. The side from which it is seen is above.
 
 pub mod albedo;
+pub mod film;
 mod frame;
 pub mod fresnel;
 pub mod layers;

@@ -140,6 +140,21 @@ pub fn lossless() -> Vec<(&'static str, PrincipledMaterial)> {
         ("coat on matte", PrincipledMaterial { coat_weight: 1.0, coat_roughness: 0.3, ..white() }),
         ("coat on metal", PrincipledMaterial { coat_weight: 0.7, base_metalness: 1.0, ..white() }),
         ("fuzz", PrincipledMaterial { fuzz_weight: 1.0, ..white() }),
+        ("film on a matte base", PrincipledMaterial { thin_film_weight: 1.0, ..white() }),
+        (
+            "soap film",
+            PrincipledMaterial {
+                specular_ior: 1.0,
+                thin_film_weight: 1.0,
+                transmission_weight: 1.0,
+                walls: Walls::Thin,
+                ..white()
+            },
+        ),
+        (
+            "film on glass",
+            PrincipledMaterial { thin_film_weight: 0.8, thin_film_ior: 1.9, transmission_weight: 1.0, ..white() },
+        ),
         ("half metal", PrincipledMaterial { base_metalness: 0.5, ..white() }),
     ]
 }

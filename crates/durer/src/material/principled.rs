@@ -88,6 +88,12 @@ described! {
         fuzz_color: Vec3 = Vec3::ONE, optional, Rule::Any, ["fuzzColor" in set::DURER];
         /// How rough the fuzz is, from 0 to 1.
         fuzz_roughness: f32 = 0.5, optional, Rule::Share, ["fuzzRoughness" in set::DURER];
+        /// How much of the surface below the coat has a thin film on it, from 0 to 1: soap, oil, tempered steel, the layers of a pearl.
+        thin_film_weight: f32 = 0.0, optional, Rule::Share, ["thinFilmWeight" in set::DURER];
+        /// How thick the film is, in micrometres.
+        thin_film_thickness: f32 = 0.5, optional, Rule::NonNegative, ["thinFilmThickness" in set::DURER];
+        /// Index of refraction of the film.
+        thin_film_ior: f32 = 1.4, optional, Rule::Positive, ["thinFilmIor" in set::DURER];
         /// How bright the surface shines, in cd/m^2; a pixel of value 1 shows 1 cd/m^2.
         emission_luminance: f32 = 0.0, optional, Rule::NonNegative, ["emissionLuminance" in set::DURER];
         /// Colour of its own light, which multiplies `emissionLuminance`.

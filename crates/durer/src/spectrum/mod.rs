@@ -7,6 +7,7 @@
 
 pub mod curve;
 pub mod illuminants;
+mod interference;
 mod tables;
 #[cfg(test)]
 mod tests;
@@ -14,6 +15,7 @@ mod upsample;
 
 use crate::math::{Color, fp};
 pub use curve::Curve;
+pub use interference::interference;
 use serde::{Deserialize, Serialize};
 use std::sync::LazyLock;
 use tables::{FIRST, LAST, OBSERVER_AND_DAYLIGHT, STEP};
