@@ -2,14 +2,12 @@
 
 use super::Table;
 use super::cases::{Case, What, cases};
-use anyhow::{Context, Result};
-use durer::diag::{Diagnostics, Files};
+use anyhow::Result;
 use durer::integrator::{Path, Settings, Transport};
 use durer::math::Ray;
 use durer::render::Job;
 use durer::sampler::{SampleId, random_2d};
 use durer::world::World;
-use durer::{LoadOptions, load_text};
 
 /// A world of a scene in the words of ours.
 pub fn world(name: &str, background: &str, materials: &str, lights: &str, group: &str) -> Result<World> {
@@ -17,13 +15,7 @@ pub fn world(name: &str, background: &str, materials: &str, lights: &str, group:
         "PerspectiveCamera {{ center 0 1 9 direction 0 0 -1 up 0 1 0 angle 30 }}\nBackground {{ color 0 0 0 {background} }}\n\
          Lights {{ {lights} }}\nMaterials {{ {materials} }}\nGroup {{ {group} }}\n"
     );
-    let options = LoadOptions::default();
-    let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
-    let path = std::path::Path::new("validation.txt");
-    let loaded = load_text(path, text.as_bytes().into(), &options, &mut files, &mut diagnostics);
-    loaded
-        .and_then(|loaded| loaded.compile(&options, &mut files, &mut diagnostics))
-        .with_context(|| format!("{name}: {diagnostics:?}\n{text}"))
+    crate::world(name, &text)
 }
 
 /// One sample of what a case asks for.

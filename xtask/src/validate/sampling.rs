@@ -108,11 +108,14 @@ fn of_lights(world: &World, cells: Cells) -> Verdict {
     let pdf = |wi: Vec3| {
         let dir = back(wi);
         let mut ray = Ray64::new(point, dir, 0.0, f32::INFINITY);
-        let mut sum = 0.0;
-        // Lamps behind others are chosen too.
-        for _ in 0..8 {
+        let (mut sum, mut met) = (0.0, Vec::new());
+        // Lamps behind others are chosen too, but never their own far sides.
+        for _ in 0..16 {
             let Some(hit) = world.closest(&ray, &mut ()) else { break };
-            sum += world.emitters.pdf_of_hit(world, &hit, point, n, dir, hit.t);
+            if !met.contains(&hit.object) {
+                sum += world.emitters.pdf_of_hit(world, &hit, point, n, dir, hit.t);
+                met.push(hit.object);
+            }
             ray.rounded.t_min = hit.t;
         }
         sum

@@ -65,9 +65,11 @@ fn grey_is_the_same_at_every_wavelength_and_lanes_of_colours_are_colours() {
     assert!(ColorMode::NAMES.iter().all(|name| ColorMode::from_name(name).unwrap().name() == *name));
 }
 
-/// Chromaticities by the observer.
+/// Chromaticities by sums over every 5 nm, as the CIE has them.
 fn chromaticity(curve: &Curve) -> [f64; 2] {
-    let sums = [0, 1, 2].map(|i| integral(|nm, here| here[i] * f64::from(curve.at(nm))));
+    let rows = || (0..95).map(|i| FIRST + STEP * i as f32);
+    let here = |nm: f32, i: usize| f64::from(observer_and_daylight(nm)[i] * curve.at(nm));
+    let sums = [0, 1, 2].map(|i| rows().map(|nm| here(nm, i)).sum::<f64>());
     let all: f64 = sums.iter().sum();
     [sums[0] / all, sums[1] / all]
 }
