@@ -201,9 +201,8 @@ impl Stack<'_> {
     /// The film on a dielectric of an index, if there is one.
     fn film(&self, eta: f32) -> Option<Film> {
         let m = self.material;
-        // A sheet is looked at from outside on both sides.
-        let before = if self.view.inside && m.walls == Walls::Solid { m.specular_ior } else { 1.0 };
-        let ior = m.thin_film_ior / before;
+        // Outside is air; from inside the body is before the film.
+        let ior = m.thin_film_ior * eta.min(1.0);
         (m.thin_film_weight > 0.0)
             .then(|| Film::on_dielectric(self.view.lanes, m.thin_film_thickness, ior, eta, m.thin_film_weight))
     }

@@ -10,7 +10,9 @@ const MOST_ROWS: usize = 100_000;
 
 /// Reads wavelengths, ascending, and the values of a column: the first, or that of a name.
 pub fn read(bytes: &[u8], column: Option<&str>, file: u32, diagnostics: &mut Diagnostics) -> Option<Vec<[f32; 2]>> {
-    parse(&String::from_utf8_lossy(bytes), column)
+    std::str::from_utf8(bytes)
+        .map_err(|error| (error.valid_up_to()..error.valid_up_to() + 1, "a spectrum is text".to_string()))
+        .and_then(|text| parse(text, column))
         .map_err(|(at, message)| {
             let span = Span { file, start: at.start as u32, end: at.end as u32 };
             diagnostics.push(Diagnostic::error(message).code("bad-file").at(span));
@@ -54,7 +56,7 @@ fn parse(text: &str, column: Option<&str>) -> Result<Vec<[f32; 2]>, Wrong> {
         rows.push([nm, value]);
     }
     if rows.len() < 2 {
-        return Err((0..text.len().min(1), "a spectrum has two rows or more of a wavelength and a value".into()));
+        return Err((0..0, "a spectrum has two rows or more of a wavelength and a value".into()));
     }
     Ok(rows)
 }
@@ -72,10 +74,17 @@ mod tests {
     }
 
     #[test]
+    fn bytes_that_are_no_text_are_refused() {
+        let mut diagnostics = Diagnostics::default();
+        assert!(read(b"400 1\n500 \xff\n", None, 0, &mut diagnostics).is_none());
+        assert!(diagnostics.has_errors());
+    }
+
+    #[test]
     fn what_is_wrong_is_told_with_its_place() {
         for (text, column, place, words) in [
             ("", None, 0..0, "two rows"),
-            ("400 1\n", None, 0..1, "two rows"),
+            ("400 1\n", None, 0..0, "two rows"),
             ("nm a\n400 1\n500 2", Some("b"), 0..4, "there are a"),
             ("400 1\n500 2", Some("b"), 0..5, "no row of names"),
             ("400 1\n300 2\n", None, 6..11, "ascend"),
