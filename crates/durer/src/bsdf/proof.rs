@@ -140,32 +140,37 @@ pub fn lossless() -> Vec<(&'static str, PrincipledMaterial)> {
         ("coat on matte", PrincipledMaterial { coat_weight: 1.0, coat_roughness: 0.3, ..white() }),
         ("coat on metal", PrincipledMaterial { coat_weight: 0.7, base_metalness: 1.0, ..white() }),
         ("fuzz", PrincipledMaterial { fuzz_weight: 1.0, ..white() }),
-        ("film on a matte base", PrincipledMaterial { thin_film_weight: 1.0, ..white() }),
-        (
-            "soap film",
-            PrincipledMaterial {
-                specular_ior: 1.0,
-                thin_film_weight: 1.0,
-                transmission_weight: 1.0,
-                walls: Walls::Thin,
-                ..white()
-            },
-        ),
-        (
-            "film on glass",
-            PrincipledMaterial { thin_film_weight: 0.8, thin_film_ior: 1.9, transmission_weight: 1.0, ..white() },
-        ),
         ("half metal", PrincipledMaterial { base_metalness: 0.5, ..white() }),
     ]
 }
 
-/// What a material gives back of even light from all around, and the standard error of that. What goes into glass counts by its flux:
-/// its radiance is denser by the square of the index.
-pub fn furnace(material: &PrincipledMaterial, roughness: f32, cosine: f32, samples: u32) -> (f64, f64) {
-    let tables = Tables::new(material, None, &mut Vec::new());
-    let layers = Layers { roughness, ..Layers::of(material) };
-    let wo = warp::polar(cosine, 0.0);
-    given(&seen(material, &layers, &tables, wo), wo, samples)
+/// Materials with films that absorb nothing, with names. Of rough ones what they give back in all is known nearly.
+pub fn filmed() -> Vec<(&'static str, PrincipledMaterial)> {
+    let film = || PrincipledMaterial { base_color: Vec3::ONE, thin_film_weight: 1.0, ..Default::default() };
+    let bubble = PrincipledMaterial { specular_ior: 1.0, transmission_weight: 1.0, walls: Walls::Thin, ..film() };
+    let glass = PrincipledMaterial { thin_film_weight: 0.8, thin_film_ior: 1.9, transmission_weight: 1.0, ..film() };
+    vec![("film on a matte base", film()), ("soap film", bubble), ("film on glass", glass)]
+}
+
+/// A material in even light from all around.
+pub struct Furnace<'a> {
+    material: &'a PrincipledMaterial,
+    tables: Tables,
+}
+
+impl<'a> Furnace<'a> {
+    /// With a material in it.
+    pub fn new(material: &'a PrincipledMaterial) -> Self {
+        Furnace { material, tables: Tables::new(material, None, &mut Vec::new()) }
+    }
+
+    /// What it gives back, with a roughness and seen at a cosine, and the standard error of that. What goes into glass counts by
+    /// its flux: its radiance is denser by the square of the index.
+    pub fn gives(&self, roughness: f32, cosine: f32, samples: u32) -> (f64, f64) {
+        let layers = Layers { roughness, ..Layers::of(self.material) };
+        let wo = warp::polar(cosine, 0.0);
+        given(&seen(self.material, &layers, &self.tables, wo), wo, samples)
+    }
 }
 
 /// A material from outside.
@@ -174,7 +179,7 @@ pub(super) fn seen(material: &PrincipledMaterial, layers: &Layers, tables: &Tabl
     layers::scattering(material, layers, tables, view)
 }
 
-/// The same of lobes.
+/// What lobes give back.
 pub(super) fn given(bsdf: &Bsdf, wo: Vec3, samples: u32) -> (f64, f64) {
     let eta = bsdf.lobes().find_map(|part| match part.lobe {
         Lobe::RoughGlass(glass) => Some(glass.eta),
