@@ -4,7 +4,6 @@
 //! so that a surface that absorbs nothing stays white. Source: Turquin, *Practical multiple scattering compensation for
 //! microfacet models*, 2019.
 
-use super::film::Film;
 use super::fresnel;
 use super::lobe::fuzz;
 use super::microfacet::Ggx;
@@ -130,8 +129,9 @@ impl Dielectric {
     }
 }
 
-/// What a rough boundary with a film gives back, of what is not lost: by few points, since films are too many for tables.
-pub fn film(film: &Film, cosine: f32, roughness: f32) -> Spectrum {
+/// The mean over the facets of a rough surface that are seen, of what each does at a cosine: by few points, where there are too many
+/// kinds of surfaces for tables.
+pub fn over_facets(cosine: f32, roughness: f32, value: impl Fn(f32) -> Spectrum) -> Spectrum {
     const FEW: usize = 16;
     let (ggx, wo) = (isotropic(roughness), direction(cosine));
     let (mut sum, mut all) = (Spectrum::ZERO, 0.0);
@@ -139,9 +139,9 @@ pub fn film(film: &Film, cosine: f32, roughness: f32) -> Spectrum {
         let h = ggx.sample_visible(wo, u);
         let wi = 2.0 * wo.dot(h) * h - wo;
         let visible = if wi.z > 0.0 { ggx.masking_shadowing(wo, wi) } else { 0.0 };
-        (sum, all) = (sum + visible * film.reflected(wo.dot(h).max(0.0)), all + visible);
+        (sum, all) = (sum + visible * value(wo.dot(h).max(0.0)), all + visible);
     }
-    if all > 0.0 { sum / all } else { film.reflected(cosine) }
+    if all > 0.0 { sum / all } else { value(cosine) }
 }
 
 /// One facet's part in what is reflected, or in all that goes on.

@@ -89,6 +89,11 @@ fn mix(a: f32, b: f32, share: f32) -> f32 {
     a + share * (b - a)
 }
 
+/// Shares over others; all where there are none.
+fn parts(shares: Spectrum, of: Spectrum) -> Spectrum {
+    Spectrum::select(of.cmpgt(Spectrum::splat(1e-6)), shares / of, Spectrum::ONE)
+}
+
 /// How a point of a principled material is seen.
 #[derive(Clone, Copy, Debug)]
 pub struct View<'a> {
@@ -224,7 +229,7 @@ impl Stack<'_> {
             return given;
         }
         let (facet, given) = match film {
-            Some(film) => (Facet::Film(film), albedo::film(&film, mu, roughness)),
+            Some(film) => (Facet::Film(film), albedo::over_facets(mu, roughness, |cosine| film.reflected(cosine))),
             None => (Facet::Dielectric(tables.ior), Spectrum::splat(tables.reflected(false, mu, roughness))),
         };
         let rough = Rough { ggx: ggx.clamped(), facet, behind: false };
@@ -263,7 +268,8 @@ impl Stack<'_> {
                 let reflected = covered * film.reflected(mu);
                 bsdf.push(Mirror, reflected, reflected.max_element());
             } else {
-                let (given, color) = (albedo::ggx(mu, roughness), albedo::film(&film, mu, roughness));
+                let (given, color) =
+                    (albedo::ggx(mu, roughness), albedo::over_facets(mu, roughness, |cosine| film.reflected(cosine)));
                 let again = Spectrum::ONE + color * ((1.0 - given) / given);
                 let rough = Rough { ggx: ggx.clamped(), facet: Facet::Film(film), behind: false };
                 bsdf.push(rough, covered * again, (covered * color).max_element());
@@ -303,14 +309,15 @@ impl Stack<'_> {
                 false => bsdf.push(Refraction { eta }, tint * down, down.max_element()),
             };
         }
-        // Facets have the film's colour as it is seen from here.
-        let part = |with: Spectrum, without: f32| if without > 0.0 { with / without } else { Spectrum::ONE };
-        let rough = RoughGlass {
-            ggx: ggx.clamped(),
-            eta,
-            reflected: self.specular * part(reflected, plain),
-            transmitted: tint * part(Spectrum::ONE - reflected, 1.0 - plain),
-        };
+        let (mut up, mut down) = (self.specular, tint);
+        if let Some(film) = film {
+            // The film's colour is the same for all facets, such that nothing is lost.
+            let mean = |value: &dyn Fn(f32) -> Spectrum| albedo::over_facets(wo.z, roughness, value);
+            let with = mean(&|cosine| film.reflected(cosine));
+            let without = mean(&|cosine| Spectrum::splat(fresnel::dielectric(cosine, eta)));
+            (up, down) = (up * with / without, down * parts(Spectrum::ONE - with, Spectrum::ONE - without));
+        }
+        let rough = RoughGlass { ggx: ggx.clamped(), eta, reflected: up, transmitted: down };
         bsdf.push(rough, weight * self.tables.glass.gain(inside, wo.z, roughness), weight.max_element());
     }
 
@@ -320,16 +327,20 @@ impl Stack<'_> {
         let (eta, ggx) = (m.specular_ior, Ggx::new(roughness, m.specular_anisotropy));
         let plain = fresnel::slab(wo.z, eta);
         // A film is on one of its faces.
-        let film = self.film(eta).map(|film| film::sheet(film.reflected(wo.z), fresnel::dielectric(wo.z, eta)));
-        let reflected = film.unwrap_or(Spectrum::splat(plain));
+        let film = self.film(eta);
+        let covered = film.map(|film| film::sheet(film.reflected(wo.z), fresnel::dielectric(wo.z, eta)));
+        let reflected = covered.unwrap_or(Spectrum::splat(plain));
         let (mut up, mut down) = (weight * self.specular, weight * self.view.lanes.reflectance(m.transmission_color));
         let shares = ((weight * reflected).max_element(), (weight * (Spectrum::ONE - reflected)).max_element());
-        if ggx.is_smooth() || film.is_some() && plain == 0.0 {
+        if ggx.is_smooth() || film.is_some() && eta == 1.0 {
             bsdf.push(Mirror, up * reflected, shares.0);
             return bsdf.push(Through, down * (Spectrum::ONE - reflected), shares.1);
         }
-        if film.is_some() {
-            (up, down) = (up * reflected / plain, down * (Spectrum::ONE - reflected) / (1.0 - plain));
+        if let Some(film) = film {
+            let mean = |value: &dyn Fn(f32) -> Spectrum| albedo::over_facets(wo.z, roughness, value);
+            let with = mean(&|cosine| film::sheet(film.reflected(cosine), fresnel::dielectric(cosine, eta)));
+            let without = mean(&|cosine| Spectrum::splat(fresnel::slab(cosine, eta)));
+            (up, down) = (up * with / without, down * parts(Spectrum::ONE - with, Spectrum::ONE - without));
         }
         let gain = 1.0 / albedo::ggx(wo.z, roughness);
         let rough = |facet, behind| Rough { ggx: ggx.clamped(), facet, behind };
