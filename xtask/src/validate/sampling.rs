@@ -36,12 +36,12 @@ pub fn furnaces(table: &mut Table) {
     }
 }
 
-/// Lamps of every form, seen from the origin, with an upward normal.
-const LAMPS: [(&str, &str); 7] = [
+/// Lamps seen from the origin. Cylinders are not among them: at their silhouette the density has no bound, and the sums over cells are not
+/// near enough; tests hold them against what is found by chance.
+const LAMPS: [(&str, &str); 6] = [
     ("sphere", "Sphere { center 0.5 2 1 radius 0.7 }"),
     ("disc", "Disc { center 0 2 0.5 normal 0.3 -1 0 radius 1.5 }"),
     ("rectangle", "Rectangle { corner -1 2 0 edge0 3 0 0 edge1 0 0 1 }"),
-    ("cylinder", "Cylinder { base -1 2 0 top 1.5 1.5 0.5 radius 0.5 }"),
     ("triangle", "Triangle { vertex0 -1 2 -1 vertex1 2 2 -1 vertex2 2 1.5 2 }"),
     (
         "five in the tree",
