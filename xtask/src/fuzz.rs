@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
 /// The targets, and the endings of files that they can begin with.
-const TARGETS: [(&str, &[&str]); 13] = [
+const TARGETS: [(&str, &[&str]); 14] = [
     ("scene", &["txt"]),
     ("obj", &["obj"]),
     ("ply", &["ply"]),
@@ -18,6 +18,7 @@ const TARGETS: [(&str, &[&str]); 13] = [
     ("pfm", &["pfm"]),
     ("exr", &["exr"]),
     ("hdr", &["hdr"]),
+    ("curve", &["csv"]),
     ("ies", &["ies"]),
     ("part", &[]),
     ("ways", &[]),

@@ -8,6 +8,7 @@ mod cost;
 mod course;
 mod explain;
 mod fuzz;
+mod lamps;
 mod long;
 mod manual;
 mod peers;
@@ -18,6 +19,9 @@ mod validate;
 mod verify;
 
 use anyhow::Context;
+use durer::diag::{Diagnostics, Files};
+use durer::world::World;
+use durer::{LoadOptions, load_text};
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -59,7 +63,9 @@ const USAGE: &str = "Commands:
       Equal scenes by us and by Mitsuba 3, compared pixel by pixel. Without --python, Mitsuba comes from the package index
       into target/peers.
   cargo xtask validate [--samples N]
-      Light against answers in closed form, and docs/validation.md.
+      Light against answers in closed form, white furnaces, directions against their densities, and docs/validation.md.
+  cargo xtask lamps
+      What a hundred thousand lamps cost beside ten, at equal error.
   cargo xtask bitterli [--samples 256] [--only TEXT] [--keep FOLDER]
       Bitterli's scenes from pbrt's files beside Tungsten's pictures of them, and the table in docs/models.md. --keep: leave both
       pictures there.
@@ -89,6 +95,7 @@ fn main() -> anyhow::Result<ExitCode> {
         Some("long") => long::run(&arguments[1..]),
         Some("fuzz") => fuzz::run(&arguments[1..]),
         Some("validate") => validate::run(&arguments[1..]),
+        Some("lamps") => lamps::run(),
         Some("peers") => peers::run(&arguments[1..]),
         Some("manual") => manual::run(),
         _ => {
@@ -96,6 +103,15 @@ fn main() -> anyhow::Result<ExitCode> {
             Ok(ExitCode::from(2))
         }
     }
+}
+
+/// The world of a scene in our language.
+fn world(name: &str, text: &str) -> anyhow::Result<World> {
+    let options = LoadOptions::default();
+    let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
+    let loaded = load_text(Path::new(name), text.as_bytes().into(), &options, &mut files, &mut diagnostics);
+    let world = loaded.and_then(|loaded| loaded.compile(&options, &mut files, &mut diagnostics));
+    world.with_context(|| format!("{name}: {diagnostics:?}"))
 }
 
 /// What follows an option.

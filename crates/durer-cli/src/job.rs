@@ -86,9 +86,9 @@ pub fn job(args: &JobArgs, view: Option<&ViewArgs>, loaded: &Loaded, timed: bool
 
 /// How often light is scattered, or reflected, after the first time, unless asked otherwise.
 fn usual_bounces(method: Method, loaded: &Loaded) -> u32 {
-    match method.name() {
-        "path" => loaded.scene.wishes.bounces.unwrap_or(PATH_BOUNCES),
-        _ => loaded.rules.bounces,
+    match method.transport() {
+        Some(_) => loaded.scene.wishes.bounces.unwrap_or(PATH_BOUNCES),
+        None => loaded.rules.bounces,
     }
 }
 

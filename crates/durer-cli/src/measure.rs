@@ -2,18 +2,16 @@
 
 use crate::args::SceneArgs;
 use crate::guard::Guard;
-use crate::method::color_mode;
+use crate::method::{self, MethodArgs};
 use crate::open::{load_options, open};
 use crate::output::say;
 use crate::{Failure, bad, job};
 use clap::Args;
-use durer::integrator::{Path, Settings};
+use durer::integrator::{Integrator, Settings};
 use durer::math::{Color, Vec3};
 use durer::render::Job;
 use durer::sampler::SampleId;
-use durer::spectrum::ColorMode;
 use durer::threads;
-use durer::world::World;
 use rayon::prelude::*;
 use std::path::PathBuf;
 
@@ -23,6 +21,7 @@ use std::path::PathBuf;
   durer measure room.txt --at 0,0.8,0
   durer measure room.txt --at 0,0.8,0 --at 1,0.8,0 --normal 0,1,0 --samples 16384
   durer measure room.txt --grid 0,0.8,0:4,0,0:0,0,6:8x12 > desk.csv
+  durer measure lens.txt --at 0,0,0 --integrator photons --samples 64
 
 A grid is a corner, two edges from it and numbers of points: the points are the middles of its cells. Unless --normal says otherwise
 it measures what falls from above; an upright grid has the normal of its second edge times its first.
@@ -49,9 +48,8 @@ pub struct MeasureArgs {
     /// How often light may be scattered before it arrives
     #[arg(long, default_value_t = job::PATH_BOUNCES, value_parser = clap::value_parser!(u32).range(0..=256))]
     pub bounces: u32,
-    /// What light is made of: rgb or spectral
-    #[arg(long, value_name = "MODE", default_value = "rgb", value_parser = color_mode())]
-    pub color: ColorMode,
+    #[command(flatten)]
+    pub method: MethodArgs,
     /// Samples of each point
     #[arg(long, default_value_t = 4096, value_parser = clap::value_parser!(u32).range(1..=1 << 24))]
     pub samples: u32,
@@ -95,19 +93,29 @@ impl Grid {
     }
 }
 
-/// The mean of some samples, and its standard error.
-fn measured(path: &Path, point: Vec3, normal: Vec3, number: u32, seed: u64, samples: u32) -> (Color, f64, f64) {
-    let (mut sum, mut bright, mut squares) = ([0.0_f64; 3], 0.0, 0.0);
-    for sample in 0..samples {
-        let light = path.irradiance(point.as_dvec3(), normal, SampleId::new(seed, (number, 0), sample), &mut ());
+/// What was measured at a point so far.
+#[derive(Clone, Default)]
+struct Sums {
+    light: [f64; 3],
+    bright: f64,
+    squares: f64,
+}
+
+impl Sums {
+    fn add(&mut self, light: Color) {
         let brightness = f64::from(light.dot(Color::new(0.2126, 0.7152, 0.0722)));
-        sum = std::array::from_fn(|i| sum[i] + f64::from(light[i]));
-        (bright, squares) = (bright + brightness, squares + brightness * brightness);
+        self.light = std::array::from_fn(|i| self.light[i] + f64::from(light[i]));
+        self.bright += brightness;
+        self.squares += brightness * brightness;
     }
-    let n = f64::from(samples);
-    let mean = bright / n;
-    let error = ((squares / n - mean * mean).max(0.0) / n).sqrt();
-    (Color::from(sum.map(|sum| (sum / n) as f32)), mean, error)
+
+    /// The mean by colour, that of the brightness, and its standard error.
+    fn mean(&self, samples: u32) -> ([f64; 3], f64, f64) {
+        let n = f64::from(samples);
+        let mean = self.bright / n;
+        let error = ((self.squares / n - mean * mean).max(0.0) / n).sqrt();
+        (self.light.map(|sum| sum / n), mean, error)
+    }
 }
 
 pub fn run(args: &MeasureArgs) -> Result<(), Failure> {
@@ -127,17 +135,33 @@ pub fn run(args: &MeasureArgs) -> Result<(), Failure> {
     }
     let opened = open(&args.scene, &load_options(&args.reading), false, &mut Guard::default())?;
     let settings = Settings { bounces: args.bounces, ..Job::default().settings };
-    let world: &World = &opened.world;
-    let path = Path { world, settings, clamp: None, color: args.color, photons: None, cancel: None };
-    let rows: Vec<_> = threads::install(args.threads.map(usize::from), || {
-        let one = |(number, &(point, normal)): (usize, &(Vec3, Vec3))| {
-            measured(&path, point, normal, number as u32, args.seed, args.samples)
-        };
-        places.par_iter().enumerate().map(one).collect()
+    let mut wishes = args.method.clone();
+    let photons = wishes.photons.is_some() || wishes.photon_radius.is_some();
+    wishes.integrator.get_or_insert_with(|| if photons { "photons" } else { "path" }.into());
+    let method = method::method(&wishes, &opened.loaded.scene)?;
+    let integrator = Integrator::new(&opened.world, method, settings, args.seed, None);
+    let Integrator::Path(path) = &integrator else {
+        return Err(bad("illuminances are measured by paths: --integrator path, or photons"));
+    };
+    let mut sums = vec![Sums::default(); places.len()];
+    // Photons are made for one sample after the other.
+    let step = if path.photons.is_some() { 1 } else { args.samples };
+    threads::install(args.threads.map(usize::from), || {
+        for first in (0..args.samples).step_by(step as usize) {
+            integrator.prepare(first);
+            sums.par_iter_mut().zip(&places).enumerate().for_each(|(number, (sums, &(point, normal)))| {
+                for sample in first..first + step {
+                    let id = SampleId::new(args.seed, (number as u32, 0), sample);
+                    sums.add(path.irradiance(point.as_dvec3(), normal, id, &mut ()));
+                }
+            });
+        }
     });
     say("x,y,z,nx,ny,nz,illuminance,illuminance_error,irradiance_r,irradiance_g,irradiance_b");
-    for ((point, normal), (light, mean, error)) in places.iter().zip(rows) {
-        let [p, n, c] = [*point, *normal, light].map(|v| format!("{},{},{}", v.x, v.y, v.z));
+    for ((point, normal), sums) in places.iter().zip(sums) {
+        let (light, mean, error) = sums.mean(args.samples);
+        let [p, n, c] =
+            [*point, *normal, Color::from(light.map(|x| x as f32))].map(|v| format!("{},{},{}", v.x, v.y, v.z));
         say(&format!("{p},{n},{mean:.6},{error:.6},{c}"));
     }
     Ok(())

@@ -3,12 +3,12 @@
 use crate::{Failure, bad};
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use durer::integrator::Method;
+use durer::integrator::{Method, Transport};
 use durer::scene::Scene;
 use durer::spectrum::ColorMode;
 
 /// What computes the light
-#[derive(Args)]
+#[derive(Args, Clone)]
 pub struct MethodArgs {
     /// What computes the light: whitted (local light, mirrors, glass), path (all light), photons (all light, with what
     /// mirrors and glass throw on things by photons: caustics) or ao (how much of the sky is free) [default: path for scenes with principled materials or an environment, else whitted]
@@ -67,12 +67,12 @@ pub fn method(args: &MethodArgs, scene: &Scene) -> Result<Method, Failure> {
             return Err(bad(format!("{option} must be more than 0")));
         }
     }
-    let (clamp, color) = (args.clamp, args.color.unwrap_or_default());
+    let transport = Transport { clamp: args.clamp, color: args.color.unwrap_or_default() };
     Ok(match name {
-        "path" => Method::Path { clamp, color },
+        "path" => Method::Path(transport),
         "photons" => {
             let count = args.photons.unwrap_or(Method::PHOTONS);
-            Method::Photons { clamp, color, count, radius: args.photon_radius }
+            Method::Photons { transport, count, radius: args.photon_radius }
         }
         "ao" => Method::Ao { radius: args.ao_radius.unwrap_or(f32::INFINITY) },
         _ => Method::Whitted,
@@ -86,7 +86,7 @@ pub fn spelled(method: Method, scene: &Scene) -> Vec<String> {
     if method.name() != usual {
         words.push(format!("--integrator {}", method.name()));
     }
-    if let Method::Path { clamp, color } | Method::Photons { clamp, color, .. } = method {
+    if let Some(Transport { clamp, color }) = method.transport() {
         words.extend(clamp.map(|clamp| format!("--clamp {clamp}")));
         if color != ColorMode::default() {
             words.push(format!("--color {}", color.name()));

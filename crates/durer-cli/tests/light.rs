@@ -44,6 +44,28 @@ fn a_measured_lamp_gives_its_illuminance() {
 }
 
 #[test]
+fn photons_measure_what_glass_lets_through() {
+    let place = Place::new();
+    let scene = "PerspectiveCamera { center 0 2 6 direction 0 -0.3 -1 up 0 1 0 angle 40 } Background { color 0 0 0 }
+Lights { PointLight { position 0 2 0 color 31.830989 31.830989 31.830989 attenuation 0 0 1 } }
+Materials { PrincipledMaterial { baseColor 0 0 0 specularWeight 0 } PrincipledMaterial { transmissionWeight 1 specularRoughness 0 } }
+Group { MaterialIndex 0 Plane { normal 0 1 0 offset 0 } MaterialIndex 1 Box { min -1 1 -1 max 1 1.002 1 } }";
+    place.put("pane.txt", scene);
+    let lux = |options: &str| {
+        let ran = place.gives(0, &format!("measure pane.txt --at 0,0,0 {options}"));
+        let row: Vec<f64> = ran.out.lines().nth(1).unwrap().split(',').map(|word| word.parse().unwrap()).collect();
+        (row[6], row[7])
+    };
+    // 100 cd from 2 m: 25 lux without the pane; of its two faces each reflects 0.04: T = (1 - F) / (1 + F).
+    let (mean, error) = lux("--integrator photons --samples 32 --photons 20000 --photon-radius 0.2");
+    let expected = 25.0 * 0.96 / 1.04;
+    assert!((mean - expected).abs() < 3.0 * error + 0.02 * expected, "{mean} ± {error}, not {expected}");
+    // Paths alone do not find a lamp without extent behind glass.
+    assert_eq!(lux("--samples 32").0, 0.0);
+    assert!(place.gives(2, "measure pane.txt --at 0,0,0 --integrator ao").err.contains("path, or photons"));
+}
+
+#[test]
 fn paths_have_the_same_bits_in_every_way_and_sum_in_explanations() {
     let place = lit();
     let hash = |options: &str| {
@@ -177,4 +199,49 @@ fn options_of_light_that_make_no_sense_are_refused_and_noise_is_taken_out_beside
     assert_ne!(noisy.1, clean.1);
     place.gives(0, "render scene.txt --size 24x18 --samples 4 -o p.exr --denoise -q");
     assert!(String::from_utf8_lossy(&std::fs::read(place.path("p.exr")).unwrap()).contains("denoised"));
+}
+
+#[test]
+fn spectra_stand_beside_the_scene_and_lamps_have_names() {
+    let place = Place::new();
+    let scene = |base: &str, lamp: &str, sky: &str| {
+        format!(
+            "PerspectiveCamera {{ center 0 1 6 direction 0 0 -1 up 0 1 0 angle 40 }} Background {{ color 0 0 0 {sky} }}
+Materials {{ PrincipledMaterial {{ {base} specularWeight 0 }}
+  PrincipledMaterial {{ baseColor 0 0 0 specularWeight 0 emissionLuminance 100 {lamp} }} }}
+Group {{ MaterialIndex 0 Plane {{ normal 0 1 0 offset 0 }} MaterialIndex 1 Disc {{ center 0 2 0 normal 0 -1 0 radius 1 }} }}"
+        )
+    };
+    let write = |base, lamp, sky| place.put("s.txt", scene(base, lamp, sky));
+    place.put("paints.csv", "nm,grey,red\n400,0.5,0.1\n580,0.5,0.1\n600,0.5,0.8\n");
+    place.put("lamp.csv", "400 0\n700 3\n");
+    // However it is coloured, it is as bright: E = pi L r^2 / (r^2 + d^2).
+    for lamp in
+        ["", "emissionSpectrum A", "emissionSpectrum F11", "emissionSpectrum 2700K", "emissionSpectrum lamp.csv"]
+    {
+        write("baseSpectrum paints.csv:red", lamp, "");
+        for color in ["rgb", "spectral"] {
+            let measure = format!("measure s.txt --at 0,0,0 --samples 4096 --bounces 0 --color {color}");
+            let row = place.gives(0, &measure).out.lines().nth(1).unwrap().to_string();
+            let lux: f64 = row.split(',').nth(6).unwrap().parse().unwrap();
+            assert!((lux / (20.0 * std::f64::consts::PI) - 1.0).abs() < 0.01, "{lamp} {color}: {row}");
+        }
+    }
+    let render = "render s.txt -o p.png --size 8x8 --samples 1 -q";
+    for (base, lamp, sky, words) in [
+        ("baseSpectrum paints.csv:blue", "", "", "there are grey, red"),
+        ("baseSpectrum none.csv", "", "", "none.csv"),
+        ("baseSpectrum lamp.csv", "", "", "shares go from 0 to 1"),
+        ("", "emissionSpectrum warm", "", "known are A, D50"),
+        ("", "", "cieSky 12", "write `sun x y z`"),
+        ("", "", "cieSky 17", "from 1 to 16"),
+    ] {
+        write(base, lamp, sky);
+        place.refused(2, render, &[words]);
+    }
+    place.put("paints.csv", "nm,grey\n400,0.5\n390,0.5\n");
+    write("baseSpectrum paints.csv", "", "");
+    place.refused(2, render, &["paints.csv:3:1", "ascend"]);
+    write("", "", "cieSky 16 zenithLuminance 1");
+    place.gives(0, render);
 }

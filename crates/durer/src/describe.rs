@@ -72,6 +72,8 @@ pub enum Rule {
     Share,
     /// At most this whole number.
     AtMost(u32),
+    /// A whole number from 1 to this.
+    Numbered(u32),
     /// At least so many rows, and at most so many.
     Rows(usize, usize),
     /// A vector of whole numbers from 1 to this.
@@ -100,6 +102,7 @@ impl Rule {
             {
                 Some(format!("must be whole numbers from 1 to {most}"))
             }
+            (Rule::Numbered(last), Value::Int(i)) if *i < 1 || *i > last => Some(format!("must be from 1 to {last}")),
             (Rule::AtMost(most), Value::Int(i)) if *i > most => Some(format!("must be at most {most}")),
             (Rule::Rows(least, most), Value::Rows(rows)) if rows.len() < least || rows.len() > most => {
                 let wanted = if least == most { least.to_string() } else { format!("{least} to {most}") };

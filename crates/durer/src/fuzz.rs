@@ -9,13 +9,14 @@ use crate::diag::{Diagnostics, Files};
 use crate::dialect::Dialect;
 use crate::format::course::{ReadOptions, guess, random::Random, read, write};
 use crate::format::scene::{Input, find_scene_format, read_model};
-use crate::format::{ies, read_mesh};
+use crate::format::{curve, ies, read_mesh};
 use crate::image::{Encoded, ImageError, decode_linear};
 use crate::integrator::{Method, Settings};
 use crate::math::Vec3;
 use crate::render::{Control, Job, Part, PartError, Shard, Stop};
 use crate::scene::Staging;
 use crate::source::{Digest, Source};
+use crate::spectrum::Curve;
 use std::cell::RefCell;
 use std::path::PathBuf;
 use std::sync::{Arc, OnceLock};
@@ -69,6 +70,20 @@ pub fn profile(data: &[u8]) {
         }
     } else {
         assert!(diagnostics.has_errors());
+    }
+}
+
+/// Bytes as a spectrum: what is read ascends, and is a lamp or black.
+pub fn curve(data: &[u8]) {
+    let mut files = Files::default();
+    let file = files.add("x.csv", data.into());
+    let mut diagnostics = Diagnostics::default();
+    let Some(rows) = curve::read(data, None, file, &mut diagnostics) else {
+        return assert!(diagnostics.has_errors());
+    };
+    assert!(rows.len() > 1 && rows.is_sorted_by(|a, b| a[0] < b[0]));
+    if let Some(lamp) = Curve::light(rows) {
+        assert!(lamp.color().is_finite() && !lamp.at(550.0).is_nan());
     }
 }
 
@@ -193,6 +208,7 @@ fn seeds_hold() {
             let data = std::fs::read(&seed).unwrap();
             match name.as_str() {
                 "scene" => scene(&data),
+                "curve" => curve(&data),
                 "ies" => profile(&data),
                 "part" => part(&data),
                 "ways" => ways(&data),

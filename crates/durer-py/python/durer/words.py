@@ -27,6 +27,12 @@ class Background(Thing):
 
     turbidity: number, more than 0. How hazy the air is: from 2 (clear) over 3 (a usual day, where nothing is written) to 10.
 
+    cie_sky: whole number, from 1 to 16. Number of a standard sky of the CIE, 1 to 16 (1 overcast, 5 even, 12 clear, 16 the traditional overcast sky): it lights the scene, in cd/m^2, without the sun itself, whose place `sun` says for all but 1, 3, 5 and 16.
+
+    zenith_luminance: number, more than 0. How bright that sky is at the zenith, in cd/m^2; 10000 where nothing is written.
+
+    ground_reflectance: number, from 0 to 1. What share of that sky's light the ground below gives back; 0.2 where nothing is written.
+
     environment_rotation: number. How far the environment is turned about y, in degrees.
 
     environment_scale: three numbers. What multiplies the environment.
@@ -41,6 +47,9 @@ class Background(Thing):
         environment: Optional[str] = None,
         sun: Optional[npt.ArrayLike] = None,
         turbidity: Optional[float] = None,
+        cie_sky: Optional[Union[int, Material]] = None,
+        zenith_luminance: Optional[float] = None,
+        ground_reflectance: Optional[float] = None,
         environment_rotation: Optional[float] = None,
         environment_scale: Optional[npt.ArrayLike] = None,
     ) -> None:
@@ -51,6 +60,9 @@ class Background(Thing):
             ("environment", environment),
             ("sun", sun),
             ("turbidity", turbidity),
+            ("cieSky", cie_sky),
+            ("zenithLuminance", zenith_luminance),
+            ("groundReflectance", ground_reflectance),
             ("environmentRotation", environment_rotation),
             ("environmentScale", environment_scale),
         ])
@@ -831,6 +843,8 @@ class PrincipledMaterial(Material):
 
     base_color: three numbers; 0.8 0.8 0.8 where it is not given. Share of light that the matte base scatters, and what a metal reflects at right angles; from 0 to 1.
 
+    base_spectrum: path. A file with a measured reflectance, which stands in place of `baseColor`: rows of nanometres and shares from 0 to 1; with several columns `file.csv:name` is one of them. `--color spectral` has it by wavelength, else its colour in daylight counts.
+
     base_color_texture: path. A picture that multiplies `baseColor`; its values are read as sRGB, and its alpha multiplies `opacity`.
 
     base_diffuse_roughness: number, from 0 to 1; 0 where it is not given. How rough the matte base is, from 0 (Lambert) to 1.
@@ -891,9 +905,17 @@ class PrincipledMaterial(Material):
 
     fuzz_roughness: number, from 0 to 1; 0.5 where it is not given. How rough the fuzz is, from 0 to 1.
 
+    thin_film_weight: number, from 0 to 1; 0 where it is not given. How much of the surface below the coat has a thin film on it, from 0 to 1: soap, oil, tempered steel, the layers of a pearl.
+
+    thin_film_thickness: number, 0 or more; 0.5 where it is not given. How thick the film is, in micrometres.
+
+    thin_film_ior: number, more than 0; 1.4 where it is not given. Index of refraction of the film.
+
     emission_luminance: number, 0 or more; 0 where it is not given. How bright the surface shines, in cd/m^2; a pixel of value 1 shows 1 cd/m^2.
 
     emission_color: three numbers; 1 1 1 where it is not given. Colour of its own light, which multiplies `emissionLuminance`.
+
+    emission_spectrum: path. The spectrum of its own light, which `emissionColor` multiplies: an illuminant (A, D50, D55, D65, D75, E, F2, F7, F11), a black body (`2700K`), or a file as for `baseSpectrum`, in any unit. `emissionLuminance` still says how bright it is.
 
     emission_texture: path. A picture that multiplies `emissionColor`; its values are read as sRGB.
 
@@ -909,6 +931,7 @@ class PrincipledMaterial(Material):
         *,
         base_weight: Optional[float] = None,
         base_color: Optional[npt.ArrayLike] = None,
+        base_spectrum: Optional[str] = None,
         base_color_texture: Optional[str] = None,
         base_diffuse_roughness: Optional[float] = None,
         base_metalness: Optional[float] = None,
@@ -939,8 +962,12 @@ class PrincipledMaterial(Material):
         fuzz_weight: Optional[float] = None,
         fuzz_color: Optional[npt.ArrayLike] = None,
         fuzz_roughness: Optional[float] = None,
+        thin_film_weight: Optional[float] = None,
+        thin_film_thickness: Optional[float] = None,
+        thin_film_ior: Optional[float] = None,
         emission_luminance: Optional[float] = None,
         emission_color: Optional[npt.ArrayLike] = None,
+        emission_spectrum: Optional[str] = None,
         emission_texture: Optional[str] = None,
         normal_texture: Optional[str] = None,
         opacity: Optional[float] = None,
@@ -949,6 +976,7 @@ class PrincipledMaterial(Material):
         super().__init__("PrincipledMaterial", [
             ("baseWeight", base_weight),
             ("baseColor", base_color),
+            ("baseSpectrum", base_spectrum),
             ("baseColorTexture", base_color_texture),
             ("baseDiffuseRoughness", base_diffuse_roughness),
             ("baseMetalness", base_metalness),
@@ -979,8 +1007,12 @@ class PrincipledMaterial(Material):
             ("fuzzWeight", fuzz_weight),
             ("fuzzColor", fuzz_color),
             ("fuzzRoughness", fuzz_roughness),
+            ("thinFilmWeight", thin_film_weight),
+            ("thinFilmThickness", thin_film_thickness),
+            ("thinFilmIor", thin_film_ior),
             ("emissionLuminance", emission_luminance),
             ("emissionColor", emission_color),
+            ("emissionSpectrum", emission_spectrum),
             ("emissionTexture", emission_texture),
             ("normalTexture", normal_texture),
             ("opacity", opacity),

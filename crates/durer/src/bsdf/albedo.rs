@@ -8,24 +8,26 @@ use super::fresnel;
 use super::lobe::fuzz;
 use super::microfacet::Ggx;
 use crate::math::{Vec2, Vec3};
+use crate::spectrum::Spectrum;
+use rayon::prelude::*;
 use std::sync::LazyLock;
 
 /// Rows and columns of a table.
 const SIZE: usize = 32;
 
 /// Points of each integral.
-const POINTS: u32 = 512;
+const POINTS: u32 = 1024;
 
 /// A function of a cosine and a roughness, both from 0 to 1.
 #[derive(Clone, Debug, PartialEq)]
 struct Table(Vec<f32>);
 
 impl Table {
-    fn new(value: impl Fn(f32, f32) -> f32) -> Self {
+    fn new(value: impl Fn(f32, f32) -> f32 + Sync) -> Self {
         let step = |i: usize| i as f32 / (SIZE - 1) as f32;
         // Cosines are closer together towards grazing directions, where the functions change most.
-        let places = (0..SIZE * SIZE).map(|i| (step(i % SIZE) * step(i % SIZE), step(i / SIZE)));
-        Table(places.map(|(cosine, roughness)| value(cosine.max(1e-4), roughness)).collect())
+        let entry = |i: usize| value((step(i % SIZE) * step(i % SIZE)).max(1e-4), step(i / SIZE));
+        Table((0..SIZE * SIZE).into_par_iter().map(entry).collect())
     }
 
     /// Linear between the entries.
@@ -125,6 +127,21 @@ impl Dielectric {
     pub fn gain(&self, inside: bool, cosine: f32, roughness: f32) -> f32 {
         1.0 / self.tables[usize::from(inside)][1].at(cosine, roughness)
     }
+}
+
+/// The mean over the facets of a rough surface that are seen, of what each does at a cosine: by few points, where there are too many
+/// kinds of surfaces for tables.
+pub fn over_facets(cosine: f32, roughness: f32, value: impl Fn(f32) -> Spectrum) -> Spectrum {
+    const FEW: usize = 16;
+    let (ggx, wo) = (isotropic(roughness), direction(cosine));
+    let (mut sum, mut all) = (Spectrum::ZERO, 0.0);
+    for u in points().take(FEW) {
+        let h = ggx.sample_visible(wo, u);
+        let wi = 2.0 * wo.dot(h) * h - wo;
+        let visible = if wi.z > 0.0 { ggx.masking_shadowing(wo, wi) } else { 0.0 };
+        (sum, all) = (sum + visible * value(wo.dot(h).max(0.0)), all + visible);
+    }
+    if all > 0.0 { sum / all } else { value(cosine) }
 }
 
 /// One facet's part in what is reflected, or in all that goes on.

@@ -4,6 +4,7 @@
 //! which they are seen. OpenPBR calls that albedo scaling. It keeps energy, but the whole is not reciprocal.
 
 use super::albedo::{self, Dielectric};
+use super::film::{self, Film};
 use super::lobe::diffuse::{Diffuse, DiffuseTransmission};
 use super::lobe::fuzz::Fuzz;
 use super::lobe::glass::{Mirror, Refraction, Through};
@@ -14,7 +15,7 @@ use super::{Bsdf, fresnel};
 use crate::material::PrincipledMaterial;
 use crate::material::principled::Walls;
 use crate::math::{Color, Vec3, fp};
-use crate::spectrum::{Lanes, Spectrum};
+use crate::spectrum::{Curve, Lanes, Spectrum};
 use std::sync::Arc;
 
 /// What of a principled material may differ from point to point.
@@ -48,11 +49,13 @@ pub struct Tables {
     glass: Arc<Dielectric>,
     /// The coat's boundary.
     coat: Arc<Dielectric>,
+    /// The base colour as it was measured.
+    measured: Option<Arc<Curve>>,
 }
 
 impl Tables {
-    /// For a material. `known` has what was worked out before.
-    pub fn new(material: &PrincipledMaterial, known: &mut Vec<Arc<Dielectric>>) -> Self {
+    /// For a material whose base may have been measured. `known` has what was worked out before.
+    pub fn new(material: &PrincipledMaterial, measured: Option<Arc<Curve>>, known: &mut Vec<Arc<Dielectric>>) -> Self {
         let mut of = |ior: f32| {
             let found = known.iter().find(|tables| tables.ior == ior).cloned();
             found.unwrap_or_else(|| {
@@ -63,6 +66,7 @@ impl Tables {
         Tables {
             opaque: of(opaque_ior(material)),
             glass: of(material.specular_ior),
+            measured,
             coat: of(if material.coat_weight > 0.0 { material.coat_ior } else { material.specular_ior }),
         }
     }
@@ -83,6 +87,11 @@ fn power(base: Spectrum, exponent: f32) -> Spectrum {
 
 fn mix(a: f32, b: f32, share: f32) -> f32 {
     a + share * (b - a)
+}
+
+/// Shares over others; all where there are none.
+fn parts(shares: Spectrum, of: Spectrum) -> Spectrum {
+    Spectrum::select(of.cmpgt(Spectrum::splat(1e-6)), shares / of, Spectrum::ONE)
 }
 
 /// How a point of a principled material is seen.
@@ -106,7 +115,10 @@ pub fn scattering(material: &PrincipledMaterial, layers: &Layers, tables: &Table
         view,
         metalness: layers.metalness,
         roughness: layers.roughness,
-        base: view.lanes.reflectance(layers.base_color),
+        base: match &tables.measured {
+            Some(curve) => view.lanes.measured(layers.base_color, curve),
+            None => view.lanes.reflectance(layers.base_color),
+        },
         specular: view.lanes.reflectance(material.specular_color),
     };
     stack.scattering()
@@ -141,8 +153,8 @@ impl Stack<'_> {
         let mut roughness = self.roughness;
         if m.coat_weight > 0.0 && !view.inside {
             let weight = m.coat_weight;
-            let given = self.boundary(&mut bsdf, &self.tables.coat, m.coat_roughness, weight * below);
-            below *= 1.0 - weight * given;
+            let given = self.boundary(&mut bsdf, &self.tables.coat, m.coat_roughness, weight * below, None);
+            below *= Spectrum::ONE - weight * given;
             below *= Spectrum::ONE.lerp(self.coat(mu), weight);
             let fourth = |r: f32| r * r * r * r;
             let both = (fourth(roughness) + 2.0 * fourth(m.coat_roughness)).min(1.0);
@@ -164,9 +176,10 @@ impl Stack<'_> {
                 bsdf.push(DiffuseTransmission { color: Spectrum::ONE }, opaque, opaque.max_element());
                 return bsdf;
             }
-            let given = self.boundary(&mut bsdf, &self.tables.opaque, roughness, opaque * self.specular);
+            let film = self.film(self.tables.opaque.ior);
+            let given = self.boundary(&mut bsdf, &self.tables.opaque, roughness, opaque * self.specular, film);
             let diffuse = Diffuse { color: self.base, roughness: m.base_diffuse_roughness };
-            let weight = opaque * (1.0 - given);
+            let weight = opaque * (Spectrum::ONE - given);
             let matte = weight * (1.0 - m.subsurface_weight);
             bsdf.push(diffuse, matte, (matte * self.base).max_element());
             self.subsurface(&mut bsdf, weight * m.subsurface_weight);
@@ -190,17 +203,37 @@ impl Stack<'_> {
         bsdf.push(DiffuseTransmission { color }, weight * onwards, share * onwards);
     }
 
+    /// The film on a dielectric of an index, if there is one.
+    fn film(&self, eta: f32) -> Option<Film> {
+        let m = self.material;
+        // Outside is air; from inside the body is before the film.
+        let ior = m.thin_film_ior * eta.min(1.0);
+        (m.thin_film_weight > 0.0)
+            .then(|| Film::on_dielectric(self.view.lanes, m.thin_film_thickness, ior, eta, m.thin_film_weight))
+    }
+
     /// The reflection of a boundary of dielectrics seen from outside; returns its albedo.
-    fn boundary(&self, bsdf: &mut Bsdf, tables: &Dielectric, roughness: f32, weight: Spectrum) -> f32 {
+    fn boundary(
+        &self,
+        bsdf: &mut Bsdf,
+        tables: &Dielectric,
+        roughness: f32,
+        weight: Spectrum,
+        film: Option<Film>,
+    ) -> Spectrum {
         let (ggx, mu) = (Ggx::new(roughness, 0.0), self.view.wo.z);
         if ggx.is_smooth() {
-            let given = fresnel::dielectric(mu, tables.ior);
-            bsdf.push(Mirror, weight * given, weight.max_element() * given);
+            let plain = || Spectrum::splat(fresnel::dielectric(mu, tables.ior));
+            let given = film.map_or_else(plain, |film| film.reflected(mu));
+            bsdf.push(Mirror, weight * given, (weight * given).max_element());
             return given;
         }
-        let given = tables.reflected(false, mu, roughness);
-        let rough = Rough { ggx: ggx.clamped(), facet: Facet::Dielectric(tables.ior), behind: false };
-        bsdf.push(rough, weight * tables.gain(false, mu, roughness), weight.max_element() * given);
+        let (facet, given) = match film {
+            Some(film) => (Facet::Film(film), albedo::over_facets(mu, roughness, |cosine| film.reflected(cosine))),
+            None => (Facet::Dielectric(tables.ior), Spectrum::splat(tables.reflected(false, mu, roughness))),
+        };
+        let rough = Rough { ggx: ggx.clamped(), facet, behind: false };
+        bsdf.push(rough, weight * tables.gain(false, mu, roughness), (weight * given).max_element());
         given
     }
 
@@ -226,7 +259,22 @@ impl Stack<'_> {
         let (m, mu) = (self.material, self.view.wo.z);
         let f82 = fresnel::F82::new(self.base, self.specular);
         let ggx = Ggx::new(roughness, m.specular_anisotropy);
-        let weight = weight * m.specular_weight.min(1.0);
+        let mut weight = weight * m.specular_weight.min(1.0);
+        if m.thin_film_weight > 0.0 {
+            let film = Film::on_metal(self.view.lanes, m.thin_film_thickness, m.thin_film_ior, self.base);
+            let covered = m.thin_film_weight * weight;
+            weight *= 1.0 - m.thin_film_weight;
+            if ggx.is_smooth() {
+                let reflected = covered * film.reflected(mu);
+                bsdf.push(Mirror, reflected, reflected.max_element());
+            } else {
+                let (given, color) =
+                    (albedo::ggx(mu, roughness), albedo::over_facets(mu, roughness, |cosine| film.reflected(cosine)));
+                let again = Spectrum::ONE + color * ((1.0 - given) / given);
+                let rough = Rough { ggx: ggx.clamped(), facet: Facet::Film(film), behind: false };
+                bsdf.push(rough, covered * again, (covered * color).max_element());
+            }
+        }
         if ggx.is_smooth() {
             let reflected = weight * f82.at(mu);
             return bsdf.push(Mirror, reflected, reflected.max_element());
@@ -245,17 +293,31 @@ impl Stack<'_> {
             true => Spectrum::ONE,
             false => self.view.lanes.reflectance(m.transmission_color),
         };
-        if eta == 1.0 {
+        let film = self.film(eta);
+        if eta == 1.0 && film.is_none() {
             return bsdf.push(Through, weight * tint, weight.max_element());
         }
         let ggx = Ggx::new(roughness, m.specular_anisotropy);
-        if ggx.is_smooth() {
-            let reflected = fresnel::dielectric(wo.z, eta);
-            bsdf.push(Mirror, weight * self.specular * reflected, weight.max_element() * reflected);
-            bsdf.push(Refraction { eta }, weight * tint * (1.0 - reflected), weight.max_element() * (1.0 - reflected));
-            return;
+        let plain = fresnel::dielectric(wo.z, eta);
+        let reflected = film.map_or(Spectrum::splat(plain), |film| film.reflected(wo.z));
+        // Rough glass without a change of index scatters nothing either.
+        if ggx.is_smooth() || eta == 1.0 {
+            let (up, down) = (weight * reflected, weight * (Spectrum::ONE - reflected));
+            bsdf.push(Mirror, self.specular * up, up.max_element());
+            return match eta == 1.0 {
+                true => bsdf.push(Through, tint * down, down.max_element()),
+                false => bsdf.push(Refraction { eta }, tint * down, down.max_element()),
+            };
         }
-        let rough = RoughGlass { ggx: ggx.clamped(), eta, reflected: self.specular, transmitted: tint };
+        let (mut up, mut down) = (self.specular, tint);
+        if let Some(film) = film {
+            // The film's colour is the same for all facets, such that nothing is lost.
+            let mean = |value: &dyn Fn(f32) -> Spectrum| albedo::over_facets(wo.z, roughness, value);
+            let with = mean(&|cosine| film.reflected(cosine));
+            let without = mean(&|cosine| Spectrum::splat(fresnel::dielectric(cosine, eta)));
+            (up, down) = (up * with / without, down * parts(Spectrum::ONE - with, Spectrum::ONE - without));
+        }
+        let rough = RoughGlass { ggx: ggx.clamped(), eta, reflected: up, transmitted: down };
         bsdf.push(rough, weight * self.tables.glass.gain(inside, wo.z, roughness), weight.max_element());
     }
 
@@ -263,12 +325,22 @@ impl Stack<'_> {
     fn sheet(&self, bsdf: &mut Bsdf, roughness: f32, weight: Spectrum) {
         let (m, wo) = (self.material, self.view.wo);
         let (eta, ggx) = (m.specular_ior, Ggx::new(roughness, m.specular_anisotropy));
-        let reflected = fresnel::slab(wo.z, eta);
-        let (up, down) = (weight * self.specular, weight * self.view.lanes.reflectance(m.transmission_color));
-        let shares = (weight.max_element() * reflected, weight.max_element() * (1.0 - reflected));
-        if ggx.is_smooth() {
+        let plain = fresnel::slab(wo.z, eta);
+        // A film is on one of its faces.
+        let film = self.film(eta);
+        let covered = film.map(|film| film::sheet(film.reflected(wo.z), fresnel::dielectric(wo.z, eta)));
+        let reflected = covered.unwrap_or(Spectrum::splat(plain));
+        let (mut up, mut down) = (weight * self.specular, weight * self.view.lanes.reflectance(m.transmission_color));
+        let shares = ((weight * reflected).max_element(), (weight * (Spectrum::ONE - reflected)).max_element());
+        if ggx.is_smooth() || film.is_some() && eta == 1.0 {
             bsdf.push(Mirror, up * reflected, shares.0);
-            return bsdf.push(Through, down * (1.0 - reflected), shares.1);
+            return bsdf.push(Through, down * (Spectrum::ONE - reflected), shares.1);
+        }
+        if let Some(film) = film {
+            let mean = |value: &dyn Fn(f32) -> Spectrum| albedo::over_facets(wo.z, roughness, value);
+            let with = mean(&|cosine| film::sheet(film.reflected(cosine), fresnel::dielectric(cosine, eta)));
+            let without = mean(&|cosine| Spectrum::splat(fresnel::slab(cosine, eta)));
+            (up, down) = (up * with / without, down * parts(Spectrum::ONE - with, Spectrum::ONE - without));
         }
         let gain = 1.0 / albedo::ggx(wo.z, roughness);
         let rough = |facet, behind| Rough { ggx: ggx.clamped(), facet, behind };

@@ -3,11 +3,13 @@
 //! Directions are local to the point's [`Frame`] and point away from the surface. The side from which it is seen is above.
 
 pub mod albedo;
+pub mod film;
 mod frame;
 pub mod fresnel;
 pub mod layers;
 pub mod lobe;
 pub mod microfacet;
+pub mod proof;
 #[cfg(test)]
 mod tests;
 pub mod warp;

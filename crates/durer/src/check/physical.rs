@@ -33,7 +33,7 @@ pub(super) const OF_LOCAL_LIGHT: &[&str] = &[
 
 /// Whether a scene's light is a path tracer's.
 pub(super) fn is_physical(scout: &Scout) -> bool {
-    matches!(scout.subject.job.method, Method::Path { .. } | Method::Photons { .. })
+    scout.subject.job.method.transport().is_some()
 }
 
 pub(super) fn no_emitter(scout: &Scout) -> Vec<Finding> {
@@ -92,7 +92,7 @@ pub(super) fn lamp_turned(scout: &Scout) -> Vec<Finding> {
 /// Lamps without extent inside of glass: no path finds their light outside.
 pub(super) fn lamp_in_glass(scout: &Scout) -> Vec<Finding> {
     let world = scout.world();
-    if !matches!(scout.subject.job.method, Method::Path { .. }) {
+    if !matches!(scout.subject.job.method, Method::Path(_)) {
         return Vec::new();
     }
     let lights = world.lights.iter().enumerate().filter_map(|(number, light)| Some((number, light.place()?.0)));

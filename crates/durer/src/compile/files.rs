@@ -13,7 +13,8 @@ use crate::medium::DensityGrid;
 use crate::scene::{Assets, Background, PictureBytes};
 use crate::shape::{HeightField, Mesh, MeshData};
 use crate::source::SourceError;
-use crate::texture::{CubeMap, Environment, Mapping, Sky, Texture};
+use crate::spectrum::{Curve, illuminants};
+use crate::texture::{CieSky, CubeMap, Environment, Mapping, Sky, Texture, sky};
 use crate::world::{Maps, MeshTree};
 use rayon::prelude::*;
 use std::collections::HashMap;
@@ -25,7 +26,7 @@ use std::sync::Arc;
 const TREE_BYTES: u64 = 200;
 const TRIANGLE_BYTES: u64 = TREE_BYTES + size_of::<[[u32; 3]; 2]>() as u64;
 
-/// Columns of the picture of a clear sky.
+/// Columns of the picture of a sky.
 const SKY_WIDTH: u32 = 512;
 
 /// What the eight bits of a picture mean.
@@ -261,12 +262,66 @@ impl<'r> Loader<'r> {
         self.charge(name, grid.bytes() as u64, diagnostics).then_some((bounds, grid))
     }
 
+    /// A measured reflectance.
+    pub(super) fn reflectance(&mut self, name: &FileName, diagnostics: &mut Diagnostics) -> Option<Arc<Curve>> {
+        let rows = self.curve(name, diagnostics)?;
+        if let Some([nm, share]) = rows.iter().find(|row| row[1] > 1.0) {
+            let message = format!("at {nm} nm this thing would give back {share} of the light: shares go from 0 to 1");
+            diagnostics.push(Diagnostic::error(message).code("bad-file").at(name.span));
+            return None;
+        }
+        Curve::reflectance(rows).map(Arc::new)
+    }
+
+    /// The spectrum of a lamp: an illuminant by its name, else a file.
+    pub(super) fn illuminant(&mut self, name: &FileName, diagnostics: &mut Diagnostics) -> Option<Arc<Curve>> {
+        if let Some(known) = illuminants::illuminant(&name.path) {
+            return Some(Arc::new(known));
+        }
+        if !name.path.contains('.') {
+            let message = format!("there is no illuminant `{}`", name.path);
+            let names = illuminants::NAMES;
+            let help = format!("known are {names}, black bodies from 1000K to 20000K, and files by their path");
+            diagnostics.push(Diagnostic::error(message).code("bad-file").at(name.span).help(help));
+            return None;
+        }
+        let lamp = Curve::light(self.curve(name, diagnostics)?);
+        if lamp.is_none() {
+            let message = format!("the lamp of `{}` is black", name.path);
+            diagnostics.push(Diagnostic::error(message).code("bad-file").at(name.span));
+        }
+        lamp.map(Arc::new)
+    }
+
+    /// The rows of a file's only spectrum, or of the one that is named after a colon.
+    fn curve(&mut self, name: &FileName, diagnostics: &mut Diagnostics) -> Option<Vec<[f32; 2]>> {
+        let (path, column) = match name.path.rsplit_once(':') {
+            Some((path, column)) if !column.contains(['/', '\\']) => (path, Some(column)),
+            _ => (&name.path[..], None),
+        };
+        let file = FileName { path: path.into(), span: name.span };
+        let read = |bytes: &[u8], file: u32, own: &mut Diagnostics| format::curve::read(bytes, column, file, own);
+        self.parsed(&file, "spectrum", diagnostics, read)
+    }
+
     /// The picture around a scene.
     pub(super) fn environment(&mut self, written: &Background, diagnostics: &mut Diagnostics) -> Option<Environment> {
         let Some(name) = written.environment.as_ref() else {
-            let sky = Sky::new(written.sun?, written.turbidity());
+            if written.cie_sky.is_some_and(CieSky::wants_sun) && written.sun.is_none() {
+                let message = "this `cieSky` is brightest about the sun, and no `sun` says where that is";
+                let help = "write `sun x y z`, the way to it with y upwards; 1, 3, 5 and 16 need none";
+                diagnostics.push(Diagnostic::error(message).help(help));
+                return None;
+            }
+            let picture = match written.cie_sky() {
+                Some(sky) => sky::picture(SKY_WIDTH, SKY_WIDTH / 2, |dir| sky.at(dir)),
+                None => {
+                    let clear = Sky::new(written.sun?, written.turbidity());
+                    sky::picture(SKY_WIDTH, SKY_WIDTH / 2, |dir| clear.at(dir))
+                }
+            };
             let (turn, scale) = written.environment_placing();
-            return Environment::new(SKY_WIDTH, SKY_WIDTH / 2, sky.picture(SKY_WIDTH, SKY_WIDTH / 2), turn, scale);
+            return Environment::new(SKY_WIDTH, SKY_WIDTH / 2, picture, turn, scale);
         };
         let bytes = match self.assets.pictures.get(&name.path).map(|picture| &picture.bytes) {
             Some(PictureBytes::Here(_, bytes)) => bytes.clone(),

@@ -2,7 +2,6 @@
 
 use super::files::Loader;
 use super::media;
-use crate::bsdf::albedo::Dielectric;
 use crate::bsdf::{Layers, Tables};
 use crate::diag::{Diagnostic, Diagnostics};
 use crate::dialect::{Compat, Highlight, Rules, Secondary};
@@ -10,7 +9,7 @@ use crate::material::principled::Walls;
 use crate::material::{ColorNoise, Pattern, PhongMaterial, PrincipledMaterial};
 use crate::math::Color;
 use crate::scene::{self, MatrixOp, Scene};
-use crate::world::{Emission, HighlightModel, Maps, Material, Phong, Principled};
+use crate::world::{Emission, HighlightModel, Material, Phong, Principled};
 use std::sync::Arc;
 
 pub(super) fn compile(
@@ -29,14 +28,27 @@ pub(super) fn compile(
         }
         scene::Material::Principled(layers) => {
             let maps = loader.maps(layers, diagnostics);
-            let radiance = layers.emission_luminance * layers.emission_color;
+            let measured = layers.base_spectrum.as_ref().and_then(|name| loader.reflectance(name, diagnostics));
+            let illuminant = layers.emission_spectrum.as_ref().and_then(|name| loader.illuminant(name, diagnostics));
+            let base_color = measured.as_ref().map_or(layers.base_color, |curve| curve.color());
+            let layers = &PrincipledMaterial { base_color, ..(**layers).clone() };
+            let shown = illuminant.as_ref().map_or(Color::ONE, |curve| curve.color());
+            let radiance = layers.emission_luminance * layers.emission_color * shown;
             let textured = maps.emission.is_some();
             let emission = Emission { radiance, textured, two_sided: layers.walls == Walls::Thin };
             Material::Phong(Phong {
                 texture: maps.base_color,
                 tinted: true,
                 emission: (radiance.max_element() > 0.0).then_some(emission),
-                principled: Some(principled(layers, maps, &mut tables)),
+                principled: Some(Arc::new(Principled {
+                    written: layers.clone(),
+                    maps,
+                    layers: Layers::of(layers),
+                    tables: Tables::new(layers, measured, &mut tables),
+                    illuminant,
+                    medium: media::inside(layers),
+                    interface: media::is_interface(layers),
+                })),
                 ..plain(layers)
             })
         }
@@ -97,17 +109,6 @@ fn phong_of(m: &PhongMaterial, noise: Option<ColorNoise>, texture: Option<u32>, 
         principled: None,
         emission: None,
     }
-}
-
-fn principled(m: &PrincipledMaterial, maps: Maps, tables: &mut Vec<Arc<Dielectric>>) -> Arc<Principled> {
-    Arc::new(Principled {
-        written: m.clone(),
-        maps,
-        layers: Layers::of(m),
-        tables: Tables::new(m, tables),
-        medium: media::inside(m),
-        interface: media::is_interface(m),
-    })
 }
 
 /// What Whitted's light makes of layers: the matte base, a highlight as wide as GGX's, metals that are mirrors, and glass.

@@ -200,7 +200,8 @@ fn check_camera(scene: &Scene, pose: crate::camera::Pose, diagnostics: &mut Diag
 
 /// The sun that goes with a clear sky.
 fn sun(background: &scene::Background) -> Option<Light> {
-    let way = background.sun?;
+    // Of the standard skies it is written where the sun is, but what they give is the sky's light alone.
+    let way = background.sun.filter(|_| background.cie_sky.is_none())?;
     let sky = Sky::new(way, background.turbidity());
     let (turn, scale) = background.environment_placing();
     let (sin, cos) = fp::sin_cos_degrees(f64::from(-turn));

@@ -4,6 +4,7 @@
 //! promises, refuse numbers that are not finite and indices that lead nowhere, and collect errors with their places.
 
 pub mod course;
+pub mod curve;
 mod gltf;
 pub mod ies;
 mod number;

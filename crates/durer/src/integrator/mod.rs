@@ -27,18 +27,12 @@ pub enum Method {
     #[default]
     Whitted,
     /// All light.
-    Path {
-        /// Light that was scattered more than once is not brighter than this.
-        clamp: Option<f32>,
-        /// What colours are on the way.
-        color: ColorMode,
-    },
+    Path(Transport),
     /// All light, and photons for what mirrors and glass throw on things.
     Photons {
-        /// Light that was scattered more than once is not brighter than this.
-        clamp: Option<f32>,
-        /// What colours are on the way.
-        color: ColorMode,
+        /// As for paths alone.
+        #[serde(flatten)]
+        transport: Transport,
         /// How many photons each sample sends out.
         count: u32,
         /// How far the first sample looks for photons, in units of the world.
@@ -51,9 +45,18 @@ pub enum Method {
     },
 }
 
+/// What all that follows paths of light knows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Transport {
+    /// Light that was scattered more than once is not brighter than this. It removes bright specks, and light with them.
+    pub clamp: Option<f32>,
+    /// What colours are on the way.
+    pub color: ColorMode,
+}
+
 impl Method {
     /// All light, as it is without wishes.
-    pub const PATH: Method = Method::Path { clamp: None, color: ColorMode::Rgb };
+    pub const PATH: Method = Method::Path(Transport { clamp: None, color: ColorMode::Rgb });
 
     /// Names on the command line.
     pub const NAMES: [&'static str; 4] = ["whitted", "path", "photons", "ao"];
@@ -65,18 +68,23 @@ impl Method {
     pub fn name(self) -> &'static str {
         match self {
             Method::Whitted => "whitted",
-            Method::Path { .. } => "path",
+            Method::Path(_) => "path",
             Method::Photons { .. } => "photons",
             Method::Ao { .. } => "ao",
         }
     }
 
+    /// How light is carried along paths, by methods that follow it over any number of surfaces.
+    pub fn transport(self) -> Option<Transport> {
+        match self {
+            Method::Path(transport) | Method::Photons { transport, .. } => Some(transport),
+            Method::Whitted | Method::Ao { .. } => None,
+        }
+    }
+
     /// What colours are while light is transported.
     pub fn color_mode(self) -> ColorMode {
-        match self {
-            Method::Path { color, .. } | Method::Photons { color, .. } => color,
-            Method::Whitted | Method::Ao { .. } => ColorMode::Rgb,
-        }
+        self.transport().unwrap_or_default().color
     }
 
     /// Whether a ray's light depends on random numbers, so that a pixel needs many.
@@ -108,13 +116,11 @@ impl<'w> Integrator<'w> {
         cancel: Option<&'w AtomicBool>,
     ) -> Self {
         match method {
-            Method::Photons { clamp, color, count, radius } => {
-                let photons = Some(Arc::new(Photons::new(world, seed, count, radius)));
-                Integrator::Path(Path { world, settings, clamp, color, photons, cancel })
-            }
             Method::Whitted => Integrator::Whitted(Whitted { world, settings, cancel }),
-            Method::Path { clamp, color } => {
-                Integrator::Path(Path { world, settings, clamp, color, photons: None, cancel })
+            Method::Path(transport) => Integrator::Path(Path { cancel, ..Path::new(world, settings, transport) }),
+            Method::Photons { transport, count, radius } => {
+                let photons = Some(Arc::new(Photons::new(world, seed, count, radius)));
+                Integrator::Path(Path { photons, cancel, ..Path::new(world, settings, transport) })
             }
             Method::Ao { radius } => Integrator::Ao(AmbientOcclusion { world, radius }),
         }

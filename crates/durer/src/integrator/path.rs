@@ -4,18 +4,18 @@
 //! light, they are weighed by how well they find it (Veach, *Robust Monte Carlo Methods for Light Transport Simulation*, 1997,
 //! chapter 9: the power heuristic). Long paths end at random, in proportion to what they are worth.
 
-use super::Settings;
 use super::account::{Bounce, RayKind, Shadow, What, Witness};
 use super::media::{Media, Passage};
 use super::spawn::from_surface;
 use super::whitted::struck;
+use super::{Settings, Transport};
 use crate::bsdf::lobe::diffuse::Diffuse;
 use crate::bsdf::{Bsdf, Frame};
 use crate::math::{Color, Ray, Ray64, Vec3, gamma};
 use crate::medium::{Flight, HenyeyGreenstein, Way};
 use crate::sampler::SampleId;
 use crate::shape::Surface;
-use crate::spectrum::{ColorMode, Lanes, Spectrum};
+use crate::spectrum::{Lanes, Spectrum};
 use crate::world::emitters::LightSample;
 use crate::world::{Hit, Shading, World};
 use glam::DVec3;
@@ -31,10 +31,8 @@ pub struct Path<'w> {
     pub world: &'w World,
     /// How often light may be scattered after the first time, and whether it is blocked.
     pub settings: Settings,
-    /// Light that was scattered more than once is not brighter than this. It removes bright specks, and light with them.
-    pub clamp: Option<f32>,
-    /// What colours are on the way.
-    pub color: ColorMode,
+    /// How light is carried.
+    pub transport: Transport,
     /// What brings the light of lamps that mirrors and glass throw on things; without, paths find it by chance.
     pub photons: Option<Arc<Photons>>,
     /// Once set, no more rays are traced, and what comes out means nothing.
@@ -123,7 +121,12 @@ enum End {
 /// How often light is scattered in a body at most until it gets out.
 const MAX_WALK: u32 = 10_000;
 
-impl Path<'_> {
+impl<'w> Path<'w> {
+    /// Without photons, and never cancelled.
+    pub fn new(world: &'w World, settings: Settings, transport: Transport) -> Self {
+        Path { world, settings, transport, photons: None, cancel: None }
+    }
+
     /// The light that comes along a camera ray, by the random numbers of a sample.
     pub fn radiance<T: Witness>(&self, ray: &Ray, id: SampleId, tally: &mut T) -> Color {
         let sample = self.sample(id);
@@ -140,7 +143,7 @@ impl Path<'_> {
                 let map = photons.map(self, id.sample);
                 Sample { id, lanes: *map.lanes(), photons: Some(map) }
             }
-            None => Sample { id, lanes: Lanes::new(self.color, id.wavelength()), photons: None },
+            None => Sample { id, lanes: Lanes::new(self.transport.color, id.wavelength()), photons: None },
         }
     }
 
@@ -153,7 +156,8 @@ impl Path<'_> {
         let shading = Shading { frame: Frame::around(normal), n_geo: normal, wo: Vec3::Z, bsdf };
         let sample = self.sample(id);
         let vertex = Vertex { place: Place::Surface(&surface, &shading, None), state: &State::default() };
-        let light = self.direct(&vertex, &sample, tally) + self.indirect(&vertex, &sample, tally);
+        let near = self.direct(&vertex, &sample, tally) + self.caustic(&vertex, &sample, tally);
+        let light = near + self.indirect(&vertex, &sample, tally);
         std::f32::consts::PI * sample.lanes.color(light)
     }
 
@@ -251,9 +255,6 @@ impl Path<'_> {
 
     /// How light goes through a hit of a body that lets it in.
     fn passage(&self, ray: &Ray64, hit: &Hit, surface: &Surface, media: &Media, lanes: &Lanes) -> Option<Passage> {
-        if !self.world.may_enter(hit) {
-            return None;
-        }
         let ior = self.world.refracts(hit, surface, lanes)?;
         let leaving = ray.dir().dot(surface.n_geo) > 0.0;
         Some(media.nested_passage(self.world, ray, (hit.object, ior), leaving))
@@ -272,7 +273,7 @@ impl Path<'_> {
         let mut sum = Spectrum::ZERO;
         let emitted = self.world.emission(hit, surface, met.inside());
         if emitted != Color::ZERO {
-            let emitted = sample.lanes.light(emitted);
+            let emitted = self.world.light(&sample.lanes, emitted, Some(self.world.material(hit)));
             let carried = self.world.emitters.chooses(hit);
             let weight = self.weight(&state, carried, |from| self.pdf_of_hit(ray, hit, from));
             tally.begin(|| What::Emission { mis: weight });
@@ -355,7 +356,8 @@ impl Path<'_> {
             mis: weight,
             shadow: self.settings.shadows.then(|| self.shadow(place, &light, visible)),
         });
-        let radiance = sample.lanes.light(light.radiance);
+        let material = light.light.object().map(|object| world.objects[object as usize].material);
+        let radiance = world.light(&sample.lanes, light.radiance, material);
         tally.end(factor.truncate(), Color::ONE, radiance.truncate());
         factor * radiance
     }
@@ -427,7 +429,7 @@ impl Path<'_> {
 
     /// What is left of light that is too bright.
     fn clamped(&self, arriving: Spectrum, indirect: bool) -> f32 {
-        match self.clamp {
+        match self.transport.clamp {
             Some(most) if indirect && arriving.max_element() > most => most / arriving.max_element(),
             _ => 1.0,
         }

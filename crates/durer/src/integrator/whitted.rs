@@ -266,13 +266,13 @@ impl Whitted<'_> {
 
     /// How light that may go through at a hit does; `None` where none may.
     pub(crate) fn passage(&self, ray: &Ray64, hit: &Hit, media: &Media) -> Option<Passage> {
-        let surface = self.world.may_transmit(hit).then(|| self.world.surface(ray, hit))?;
+        let surface = self.world.may_enter(hit).then(|| self.world.surface(ray, hit))?;
         self.passage_at(ray, hit, &surface, media)
     }
 
     /// The same where the surface at the hit is known.
     fn passage_at(&self, ray: &Ray64, hit: &Hit, surface: &Surface, media: &Media) -> Option<Passage> {
-        if !self.world.may_transmit(hit) {
+        if !self.world.may_enter(hit) {
             return None;
         }
         let blend = Blend::of(&self.world.parts(hit, surface.position));

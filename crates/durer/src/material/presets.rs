@@ -1,7 +1,7 @@
 //! Real materials by name.
 //!
 //! The figures are those of OpenPBR's own examples (Academy Software Foundation, *OpenPBR*, 2024), their colours converted from ACEScg to
-//! Rec.709 and kept within 0 to 1. Those with thin films are left out: there are none yet. Lengths are in the examples' units; set `subsurfaceRadius` or `transmissionDepth` for the size of a thing.
+//! Rec.709 and kept within 0 to 1. Lengths are in the examples' units; set `subsurfaceRadius` or `transmissionDepth` for the size of a thing.
 
 use super::PrincipledMaterial;
 use crate::describe::{Describe, Value};
@@ -151,6 +151,10 @@ pub const PRESETS: &[Preset] = &[
     ("palladium", &[
         ("base_color", &[0.735, 0.703, 0.663]), ("base_metalness", &[1.0]),
         ("specular_color", &[0.81, 0.836, 0.871]), ("specular_roughness", &[0.02])]),
+    ("pearl", &[
+        ("subsurface_weight", &[1.0]), ("subsurface_color", &[0.799, 0.75, 0.701]),
+        ("subsurface_radius_scale", &[0.3, 0.5, 0.3]), ("coat_weight", &[1.0]), ("coat_roughness", &[0.15]),
+        ("coat_ior", &[1.68]), ("thin_film_weight", &[1.0]), ("thin_film_thickness", &[0.4]), ("thin_film_ior", &[2.0])]),
     ("petroleum", &[
         ("specular_roughness", &[0.0]), ("subsurface_weight", &[1.0]),
         ("subsurface_color", &[0.031, 0.027, 0.023]), ("subsurface_radius_scale", &[3.0, 1.0, 0.25])]),
@@ -211,6 +215,9 @@ pub const PRESETS: &[Preset] = &[
     ("snow", &[
         ("specular_roughness", &[0.5]), ("specular_ior", &[1.31]), ("subsurface_weight", &[1.0]),
         ("subsurface_color", &[0.85, 0.85, 0.85]), ("subsurface_radius_scale", &[0.2, 0.2, 1.0])]),
+    ("soap-bubble", &[
+        ("specular_roughness", &[0.0]), ("specular_ior", &[1.0]), ("transmission_weight", &[1.0]),
+        ("thin_film_weight", &[1.0]), ("thin_film_thickness", &[0.5]), ("thin_film_ior", &[1.4])]),
     ("sodium", &[
         ("base_color", &[0.977, 0.961, 0.936]), ("base_metalness", &[1.0]),
         ("specular_color", &[0.998, 1.0, 1.0]), ("specular_roughness", &[0.02])]),

@@ -19,6 +19,9 @@ described! {
         base_weight: f32 = 1.0, optional, Rule::Share, ["baseWeight" in set::DURER];
         /// Share of light that the matte base scatters, and what a metal reflects at right angles; from 0 to 1.
         base_color: Vec3 = Vec3::splat(0.8), optional, Rule::Any, ["baseColor" in set::DURER];
+        /// A file with a measured reflectance, which stands in place of `baseColor`: rows of nanometres and shares from 0 to 1; with
+        /// several columns `file.csv:name` is one of them. `--color spectral` has it by wavelength, else its colour in daylight counts.
+        base_spectrum: Option<FileName> = None, optional, Rule::Any, ["baseSpectrum" in set::DURER];
         /// A picture that multiplies `baseColor`; its values are read as sRGB, and its alpha multiplies `opacity`.
         base_color_texture: Option<FileName> = None, optional, Rule::Any, ["baseColorTexture" in set::DURER];
         /// How rough the matte base is, from 0 (Lambert) to 1.
@@ -85,10 +88,19 @@ described! {
         fuzz_color: Vec3 = Vec3::ONE, optional, Rule::Any, ["fuzzColor" in set::DURER];
         /// How rough the fuzz is, from 0 to 1.
         fuzz_roughness: f32 = 0.5, optional, Rule::Share, ["fuzzRoughness" in set::DURER];
+        /// How much of the surface below the coat has a thin film on it, from 0 to 1: soap, oil, tempered steel, the layers of a pearl.
+        thin_film_weight: f32 = 0.0, optional, Rule::Share, ["thinFilmWeight" in set::DURER];
+        /// How thick the film is, in micrometres.
+        thin_film_thickness: f32 = 0.5, optional, Rule::NonNegative, ["thinFilmThickness" in set::DURER];
+        /// Index of refraction of the film.
+        thin_film_ior: f32 = 1.4, optional, Rule::Positive, ["thinFilmIor" in set::DURER];
         /// How bright the surface shines, in cd/m^2; a pixel of value 1 shows 1 cd/m^2.
         emission_luminance: f32 = 0.0, optional, Rule::NonNegative, ["emissionLuminance" in set::DURER];
         /// Colour of its own light, which multiplies `emissionLuminance`.
         emission_color: Vec3 = Vec3::ONE, optional, Rule::Any, ["emissionColor" in set::DURER];
+        /// The spectrum of its own light, which `emissionColor` multiplies: an illuminant (A, D50, D55, D65, D75, E, F2, F7, F11), a
+        /// black body (`2700K`), or a file as for `baseSpectrum`, in any unit. `emissionLuminance` still says how bright it is.
+        emission_spectrum: Option<FileName> = None, optional, Rule::Any, ["emissionSpectrum" in set::DURER];
         /// A picture that multiplies `emissionColor`; its values are read as sRGB.
         emission_texture: Option<FileName> = None, optional, Rule::Any, ["emissionTexture" in set::DURER];
         /// A picture of normals in tangent space, as glTF has it: red and green point along u and v, blue outwards.

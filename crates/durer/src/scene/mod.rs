@@ -17,6 +17,8 @@ use crate::material::{ColorNoise, PhongMaterial, PrincipledMaterial, Solid};
 use crate::math::Vec3;
 use crate::medium::Fog;
 use crate::shape::{HeightField, Primitive, Sphere, TriangleMesh, VoxelGrid};
+use crate::texture::CieSky;
+use crate::texture::cie_sky::OVERCAST;
 pub use assets::{Assets, Picture, PictureBytes};
 pub use matrix::MatrixOp;
 use serde::{Deserialize, Serialize};
@@ -41,6 +43,13 @@ described! {
         sun: Option<Vec3> = None, optional, Rule::NonZero, ["sun" in set::DURER];
         /// How hazy the air is: from 2 (clear) over 3 (a usual day, where nothing is written) to 10.
         turbidity: Option<f32> = None, optional, Rule::Positive, ["turbidity" in set::DURER];
+        /// Number of a standard sky of the CIE, 1 to 16 (1 overcast, 5 even, 12 clear, 16 the traditional overcast sky): it lights the
+        /// scene, in cd/m^2, without the sun itself, whose place `sun` says for all but 1, 3, 5 and 16.
+        cie_sky: Option<u32> = None, optional, Rule::Numbered(OVERCAST), ["cieSky" in set::DURER];
+        /// How bright that sky is at the zenith, in cd/m^2; 10000 where nothing is written.
+        zenith_luminance: Option<f32> = None, optional, Rule::Positive, ["zenithLuminance" in set::DURER];
+        /// What share of that sky's light the ground below gives back; 0.2 where nothing is written.
+        ground_reflectance: Option<f32> = None, optional, Rule::Share, ["groundReflectance" in set::DURER];
         /// How far the environment is turned about y, in degrees.
         environment_rotation: Option<f32> = None, optional, Rule::Any, ["environmentRotation" in set::DURER];
         /// What multiplies the environment.
@@ -52,6 +61,12 @@ impl Background {
     /// How hazy the air is.
     pub fn turbidity(&self) -> f32 {
         self.turbidity.unwrap_or(3.0)
+    }
+
+    /// The standard sky, if one is asked for.
+    pub fn cie_sky(&self) -> Option<CieSky> {
+        let (zenith, ground) = (self.zenith_luminance.unwrap_or(10_000.0), self.ground_reflectance.unwrap_or(0.2));
+        self.cie_sky.map(|number| CieSky::new(number, self.sun.unwrap_or(Vec3::Y), zenith, ground))
     }
 
     /// How far the environment is turned about y, in degrees, and what multiplies it.
@@ -111,6 +126,7 @@ impl Scene {
         let background = &self.background;
         background.environment.is_some()
             || background.sun.is_some()
+            || background.cie_sky.is_some()
             || self.fog.is_some()
             || self.materials.iter().any(layered)
     }

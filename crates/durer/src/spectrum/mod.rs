@@ -5,12 +5,17 @@
 //!
 //! Source of four wavelengths on one path: Wilkie and others, *Hero Wavelength Spectral Sampling*, EGSR 2014.
 
+pub mod curve;
+pub mod illuminants;
+mod interference;
 mod tables;
 #[cfg(test)]
 mod tests;
 mod upsample;
 
 use crate::math::{Color, fp};
+pub use curve::Curve;
+pub use interference::interference;
 use serde::{Deserialize, Serialize};
 use std::sync::LazyLock;
 use tables::{FIRST, LAST, OBSERVER_AND_DAYLIGHT, STEP};

@@ -64,3 +64,61 @@ fn grey_is_the_same_at_every_wavelength_and_lanes_of_colours_are_colours() {
     assert_eq!((Lanes::Rgb.color(spectrum), spectrum.w, spectrum.max_element()), (color, 0.7, 2.0));
     assert!(ColorMode::NAMES.iter().all(|name| ColorMode::from_name(name).unwrap().name() == *name));
 }
+
+/// Chromaticities by sums over every 5 nm, as the CIE has them.
+fn chromaticity(curve: &Curve) -> [f64; 2] {
+    let rows = || (0..95).map(|i| FIRST + STEP * i as f32);
+    let here = |nm: f32, i: usize| f64::from(observer_and_daylight(nm)[i] * curve.at(nm));
+    let sums = [0, 1, 2].map(|i| rows().map(|nm| here(nm, i)).sum::<f64>());
+    let all: f64 = sums.iter().sum();
+    [sums[0] / all, sums[1] / all]
+}
+
+#[test]
+fn illuminants_have_their_published_chromaticities() {
+    // CIE 015:2018, tables 3 and 10.3: for the observer of 1931.
+    for (name, x, y) in [
+        ("A", 0.44758, 0.40745),
+        ("D50", 0.34567, 0.35851),
+        ("D55", 0.33243, 0.34744),
+        ("D65", 0.31272, 0.32903),
+        ("D75", 0.29903, 0.31488),
+        ("E", 0.33333, 0.33333),
+        ("F2", 0.3721, 0.3751),
+        ("F7", 0.3129, 0.3292),
+        ("F11", 0.3805, 0.3769),
+    ] {
+        let curve = illuminants::illuminant(name).unwrap();
+        let [a, b] = chromaticity(&curve);
+        assert!((a - x).abs() < 3e-4 && (b - y).abs() < 3e-4, "{name}: {a} {b}, not {x} {y}");
+        assert!((curve.color().dot(Color::new(0.2126, 0.7152, 0.0722)) - 1.0).abs() < 1e-3, "{name}");
+    }
+    // Daylight by its parts is the table that is white here.
+    let d65 = illuminants::illuminant("D65").unwrap();
+    assert!((d65.color() - Color::ONE).abs().max_element() < 2e-3, "{}", d65.color());
+    // 2856 K with today's constant is what A was defined to be.
+    let [a, b] = chromaticity(&illuminants::illuminant("2856K").unwrap());
+    assert!((a - 0.44758).abs() < 3e-4 && (b - 0.40745).abs() < 3e-4, "{a} {b}");
+    assert!(["D", "F99", "100K", "K", "warm"].iter().all(|name| illuminants::illuminant(name).is_none()));
+}
+
+#[test]
+fn measured_things_have_the_colour_of_their_product() {
+    // Something that passes light beyond 560 nm only, under a bulb: what is seen is the integral of both, which no colours give.
+    let steep = Curve::reflectance(vec![[400.0, 0.05], [550.0, 0.05], [570.0, 0.9], [700.0, 0.9]]).unwrap();
+    let bulb = illuminants::illuminant("A").unwrap();
+    let exact = Color::from(OBSERVER.to_rgb.map(|row| {
+        let [a, b, c] = row.map(f64::from);
+        integral(|nm, [x, y, z, _]| (a * x + b * y + c * z) * f64::from(steep.at(nm) * bulb.at(nm))) as f32
+    }));
+    let n = 4096;
+    let lanes = (0..n).map(|i| Lanes::new(ColorMode::Spectral, (i as f32 + 0.5) / n as f32));
+    let seen = lanes.map(|lanes| {
+        lanes.color(lanes.measured(steep.color(), &steep) * lanes.measured(2.0 * bulb.color(), &bulb)).as_dvec3()
+    });
+    let seen = seen.sum::<glam::DVec3>().as_vec3() / n as f32;
+    assert!((seen - 2.0 * exact).abs().max_element() < 3e-3, "{seen}, not {}", 2.0 * exact);
+    let product = 2.0 * steep.color() * bulb.color();
+    assert!((seen - product).abs().max_element() > 0.05, "colours would do: {seen} {product}");
+    assert_eq!(Lanes::Rgb.measured(steep.color(), &steep).truncate(), steep.color());
+}

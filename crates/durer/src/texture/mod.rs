@@ -1,11 +1,13 @@
 //! Pictures on surfaces and around the scene.
 
+pub mod cie_sky;
 pub mod cube_map;
 pub mod environment;
 pub mod mapping;
 pub mod sky;
 
 use crate::math::{Color, Vec2};
+pub use cie_sky::CieSky;
 pub use cube_map::CubeMap;
 pub use environment::Environment;
 pub use mapping::{Mapping, Wrap};

@@ -71,18 +71,6 @@ impl Sky {
         linear(bright.max(0.0), x, y)
     }
 
-    /// A picture of all directions: the middle towards -z, y upwards.
-    pub fn picture(&self, width: u32, height: u32) -> Vec<Color> {
-        let pixel = |i: u32| {
-            let place =
-                (Vec2::new((i % width) as f32, (i / width) as f32) + 0.5) / Vec2::new(width as f32, height as f32);
-            let (sin, cos) = fp::sin_cos_degrees(180.0 * f64::from(place.y));
-            let (sin_turn, cos_turn) = fp::sin_cos_degrees(360.0 * f64::from(place.x - 0.5));
-            self.at(Vec3::new((sin * sin_turn) as f32, cos as f32, (-sin * cos_turn) as f32))
-        };
-        (0..width * height).map(pixel).collect()
-    }
-
     /// The illuminance of the sun on a surface that faces it, in lux, by colour.
     ///
     /// Rayleigh's and the aerosol's part of the attenuation, at the wavelengths of red, green and blue.
@@ -96,6 +84,17 @@ impl Sky {
         };
         SUN_OUTSIDE * Vec3::new(through(0.61), through(0.55), through(0.465))
     }
+}
+
+/// A picture of the light from all directions: the middle towards -z, y upwards.
+pub fn picture(width: u32, height: u32, at: impl Fn(Vec3) -> Color) -> Vec<Color> {
+    let pixel = |i: u32| {
+        let place = (Vec2::new((i % width) as f32, (i / width) as f32) + 0.5) / Vec2::new(width as f32, height as f32);
+        let (sin, cos) = fp::sin_cos_degrees(180.0 * f64::from(place.y));
+        let (sin_turn, cos_turn) = fp::sin_cos_degrees(360.0 * f64::from(place.x - 0.5));
+        at(Vec3::new((sin * sin_turn) as f32, cos as f32, (-sin * cos_turn) as f32))
+    };
+    (0..width * height).map(pixel).collect()
 }
 
 fn angle(cosine: f32) -> f32 {
@@ -168,7 +167,7 @@ mod tests {
         for height in [0.0, 1.0, 10.0, 45.0, 90.0] {
             for turbidity in [2.0, 4.0, 9.0] {
                 let sky = sky(height, turbidity);
-                let picture = sky.picture(64, 32);
+                let picture = picture(64, 32, |dir| sky.at(dir));
                 assert!(picture.iter().all(|color| color.is_finite() && color.min_element() >= 0.0));
                 let away = sky.at(Vec3::new(-0.8, 0.6, 0.0));
                 assert!(brightness(sky.at(sky.sun)) > brightness(away), "{height} {turbidity}");

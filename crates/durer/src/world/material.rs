@@ -5,6 +5,7 @@ use crate::bsdf::{Layers, Tables};
 use crate::material::{ColorNoise, PrincipledMaterial, Solid};
 use crate::math::Color;
 use crate::medium::Medium;
+use crate::spectrum::Curve;
 use crate::world::Maps;
 use smallvec::SmallVec;
 use std::sync::Arc;
@@ -41,6 +42,8 @@ pub struct Principled {
     pub layers: Layers,
     /// What its boundaries give back.
     pub tables: Tables,
+    /// The spectrum of its own light.
+    pub illuminant: Option<Arc<Curve>>,
     /// What the body is filled with, if that absorbs or scatters light.
     pub medium: Option<Medium>,
     /// Whether the surface itself does nothing where what is around has the same index of refraction: a body of smoke.

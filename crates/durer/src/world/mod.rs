@@ -217,14 +217,6 @@ impl World {
         }
     }
 
-    /// Whether light may go through at a hit: quickly known, for most materials.
-    pub fn may_transmit(&self, hit: &Hit) -> bool {
-        match &self.materials[self.material(hit) as usize] {
-            Material::Phong(phong) => phong.transparent != Color::ZERO,
-            Material::Solid(..) => true,
-        }
-    }
-
     /// The closed things of glass that a point is inside, with their indices of refraction.
     pub fn glass_around(&self, point: Vec3) -> impl Iterator<Item = (u32, f32)> {
         self.objects.iter().enumerate().filter_map(move |(number, object)| {

@@ -123,6 +123,15 @@ impl World {
         parts.iter().filter_map(|part| own(part.phong).map(|light| part.share * light)).sum()
     }
 
+    /// Light of a colour that a material sends, or lights and the surroundings where there is none.
+    pub fn light(&self, lanes: &Lanes, color: Color, material: Option<u32>) -> Spectrum {
+        let curve = material.and_then(|material| match &self.materials[material as usize] {
+            Material::Phong(phong) => phong.principled.as_ref()?.illuminant.as_ref(),
+            Material::Solid(..) => None,
+        });
+        curve.map_or_else(|| lanes.light(color), |curve| lanes.measured(color, curve))
+    }
+
     /// Whether a material has a light of its own.
     pub fn may_shine(&self, material: u32) -> bool {
         matches!(&self.materials[material as usize], Material::Phong(phong) if phong.emission.is_some())
@@ -151,6 +160,9 @@ impl World {
             }
             None => (phong.transparent != Color::ZERO).then_some(phong.ior),
         };
+        if !self.may_enter(hit) {
+            return None;
+        }
         let mut most = (0.0, None);
         for part in self.parts(hit, surface.position) {
             let ior = of(part.phong);
@@ -219,7 +231,7 @@ impl World {
     /// Whether colours are spread at a hit.
     pub fn disperses(&self, hit: &Hit, surface: &Surface) -> bool {
         let of = |phong: &Phong| phong.principled.as_ref().is_some_and(|own| own.written.disperses());
-        self.may_transmit(hit) && self.parts(hit, surface.position).iter().any(|part| of(part.phong))
+        self.may_enter(hit) && self.parts(hit, surface.position).iter().any(|part| of(part.phong))
     }
 }
 

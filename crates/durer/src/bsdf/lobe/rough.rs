@@ -1,6 +1,7 @@
 //! Rough mirrors: GGX with the reflectance of a metal or of a dielectric.
 
 use super::{Scatter, Scattered};
+use crate::bsdf::film::Film;
 use crate::bsdf::fresnel::{self, F82};
 use crate::bsdf::microfacet::Ggx;
 use crate::math::{Vec2, Vec3};
@@ -17,6 +18,8 @@ pub enum Facet {
     Slab(f32),
     /// All that a thin sheet does not reflect.
     BehindSlab(f32),
+    /// As what has a film on it.
+    Film(Film),
 }
 
 impl Facet {
@@ -26,6 +29,7 @@ impl Facet {
             Facet::Metal(f82) => f82.at(cosine),
             Facet::Dielectric(eta) => Spectrum::splat(fresnel::dielectric(cosine, eta)),
             Facet::Slab(eta) => Spectrum::splat(fresnel::slab(cosine, eta)),
+            Facet::Film(film) => film.reflected(cosine),
             Facet::BehindSlab(eta) => Spectrum::splat(1.0 - fresnel::slab(cosine, eta)),
         }
     }

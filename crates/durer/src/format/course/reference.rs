@@ -397,6 +397,7 @@ fn value_of(kind: Kind, rule: Rule) -> String {
         Rule::Share => "from 0 to 1".into(),
         Rule::UpTo(high) => format!("more than 0, at most {high}"),
         Rule::AtMost(most) => format!("at most {most}"),
+        Rule::Numbered(last) => format!("from 1 to {last}"),
         Rule::Rows(least, most) if least == most => format!("{least} of them"),
         Rule::Rows(least, most) => format!("{least} to {most} of them"),
         Rule::Counts(most) => format!("whole, 1 to {most}"),

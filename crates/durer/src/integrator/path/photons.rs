@@ -37,8 +37,11 @@ pub struct Photons {
     count: u32,
     /// The first radius.
     radius: f32,
-    kept: Mutex<VecDeque<(u32, Arc<PhotonMap>)>>,
+    kept: Mutex<Kept>,
 }
+
+/// Maps and the samples that they are of, the oldest first.
+type Kept = VecDeque<(u32, Arc<PhotonMap>)>;
 
 /// A photon where it came to rest.
 #[derive(Clone, Copy, Debug)]
@@ -85,36 +88,35 @@ impl Photons {
     /// The photons of a sample.
     pub(super) fn map(&self, path: &Path, sample: u32) -> Arc<PhotonMap> {
         let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some((_, map)) = kept.iter().find(|(number, _)| *number == sample) {
-            return map.clone();
-        }
         // Whoever waits for the lock must not be given work that waits for it too: one thread makes it.
-        let map = Arc::new(self.make(path, sample, false));
-        Self::keep(&mut kept, sample, map.clone());
-        map
+        Self::found(&kept, sample).unwrap_or_else(|| Self::keep(&mut kept, sample, self.make(path, sample, false)))
     }
 
     /// Makes the photons of a sample in advance, by all threads.
     pub fn prepare(&self, path: &Path, sample: u32) {
-        let kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
-        if kept.iter().any(|(number, _)| *number == sample) {
-            return;
+        let lock = || self.kept.lock().unwrap_or_else(PoisonError::into_inner);
+        if Self::found(&lock(), sample).is_none() {
+            let map = self.make(path, sample, true);
+            Self::keep(&mut lock(), sample, map);
         }
-        drop(kept);
-        let map = Arc::new(self.make(path, sample, true));
-        Self::keep(&mut self.kept.lock().unwrap_or_else(PoisonError::into_inner), sample, map);
     }
 
-    fn keep(kept: &mut VecDeque<(u32, Arc<PhotonMap>)>, sample: u32, map: Arc<PhotonMap>) {
-        kept.push_back((sample, map));
+    fn found(kept: &Kept, sample: u32) -> Option<Arc<PhotonMap>> {
+        kept.iter().find(|(number, _)| *number == sample).map(|(_, map)| map.clone())
+    }
+
+    fn keep(kept: &mut Kept, sample: u32, map: PhotonMap) -> Arc<PhotonMap> {
+        let map = Arc::new(map);
+        kept.push_back((sample, map.clone()));
         if kept.len() > MAX_KEPT {
             kept.pop_front();
         }
+        map
     }
 
     fn make(&self, path: &Path, sample: u32, parallel: bool) -> PhotonMap {
         // All photons of a sample have the same wavelengths, and those of its paths.
-        let lanes = Lanes::new(path.color, SampleId::new(self.seed, (0, 0), sample).wavelength());
+        let lanes = Lanes::new(path.transport.color, SampleId::new(self.seed, (0, 0), sample).wavelength());
         let one = |number: u32| self.trace(path, sample, number, lanes);
         let found: Vec<Photon> = match parallel {
             true => (0..self.count).into_par_iter().flat_map_iter(one).collect(),
@@ -150,7 +152,7 @@ impl Photons {
                     }
                     None => Color::ONE,
                 };
-                state.throughput *= lanes.light(power * color);
+                state.throughput *= path.world.light(&lanes, power * color, emitted.material);
             }
             let shading = met.shading(path.world, &lanes);
             path.kept(&met, &mut state, &sample);

@@ -11,7 +11,7 @@ mod media;
 /// The mean of many samples along a ray, and its standard error.
 fn light(world: &World, ray: Ray, bounces: u32, samples: u32) -> (f64, f64) {
     let settings = Settings { bounces, ..Job::default().settings };
-    let path = Path { world, settings, clamp: None, color: ColorMode::Rgb, photons: None, cancel: None };
+    let path = Path::new(world, settings, Transport::default());
     let (mut sum, mut squares) = (0.0, 0.0);
     for sample in 0..samples {
         let value = f64::from(path.radiance(&ray, SampleId::new(7, (3, 5), sample), &mut ()).x);
@@ -223,7 +223,7 @@ fn what_a_path_tells_sums_to_its_light() {
         "Sphere { center 0 3 0 radius 0.5 } MaterialIndex 0 Sphere { center 1 0.5 0 radius 0.5 }",
     );
     let settings = Settings { bounces: 6, ..Job::default().settings };
-    let path = Path { world: &world, settings, clamp: Some(0.2), color: ColorMode::Rgb, photons: None, cancel: None };
+    let path = Path::new(&world, settings, Transport { clamp: Some(0.2), ..Transport::default() });
     for sample in 0..200 {
         let id = SampleId::new(1, (0, 0), sample);
         let mut account = super::super::Account::default();

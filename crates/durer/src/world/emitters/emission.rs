@@ -53,6 +53,8 @@ pub struct Emitted {
     pub power: Color,
     /// The light with a place that it comes from, by number: its strength where the photon arrives is not known yet.
     pub light: Option<u32>,
+    /// The material that it comes from, by number.
+    pub material: Option<u32>,
 }
 
 impl Beams {
@@ -131,24 +133,29 @@ impl Beams {
                 // Beside its own surface.
                 let side = if cosine < 0.0 { -normal } else { normal };
                 let origin = point + f64::from(4.0 * area.form.error()) * side.as_dvec3();
-                Some(Emitted { ray: Ray64::new(origin, dir, 0.0, f32::INFINITY), power, light: None })
+                Some(Emitted {
+                    ray: Ray64::new(origin, dir, 0.0, f32::INFINITY),
+                    power,
+                    light: None,
+                    material: Some(material),
+                })
             }
             Lamp::Near(light) => {
                 let origin = world.illuminate(light as usize, DVec3::ZERO);
                 let point = f64::from(origin.distance) * origin.to_light.as_dvec3();
                 let (dir, pdf) = self.towards(point, target, direction)?;
                 let ray = Ray64::new(point, dir, 0.0, f32::INFINITY);
-                Some(Emitted { ray, power: Color::splat(1.0 / (pdf * choice)), light: Some(light) })
+                Some(Emitted { ray, power: Color::splat(1.0 / (pdf * choice)), light: Some(light), material: None })
             }
             Lamp::Far(light) => {
                 let sample = super::spread(world, light, of_light(world, light, DVec3::ZERO, 1.0), place);
                 let (ray, density) = self.across(-sample.wi, target, direction);
-                Some(Emitted { ray, power: sample.radiance / (density * choice), light: None })
+                Some(Emitted { ray, power: sample.radiance / (density * choice), light: None, material: None })
             }
             Lamp::Sky => {
                 let (wi, radiance, pdf) = world.environment.as_ref()?.sample(place)?;
                 let (ray, density) = self.across(-wi, target, direction);
-                Some(Emitted { ray, power: radiance / (density * pdf * choice), light: None })
+                Some(Emitted { ray, power: radiance / (density * pdf * choice), light: None, material: None })
             }
         }
     }

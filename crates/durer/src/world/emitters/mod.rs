@@ -61,6 +61,16 @@ pub enum LightId {
     Environment,
 }
 
+impl LightId {
+    /// Number of the object whose surface shines.
+    pub fn object(self) -> Option<u32> {
+        match self {
+            LightId::Surface(object, _) => Some(object),
+            LightId::Light(_) | LightId::Environment => None,
+        }
+    }
+}
+
 /// A light that was chosen, as seen from a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LightSample {

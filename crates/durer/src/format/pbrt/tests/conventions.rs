@@ -7,13 +7,13 @@ use crate::camera::{CameraSample, Frame, Lens};
 use crate::compile::testing;
 use crate::diag::Diagnostic;
 use crate::dialect::Dialect;
-use crate::integrator::{Path as Paths, Settings};
+use crate::integrator::{Path as Paths, Settings, Transport};
 use crate::light::Light;
 use crate::math::random::Random;
 use crate::math::{Vec2, Vec3, fp};
 use crate::render::Job;
 use crate::sampler::SampleId;
-use crate::spectrum::{ColorMode, Lanes};
+use crate::spectrum::Lanes;
 use crate::world::World;
 
 /// The ray of a scene's camera through a point of the picture, -1 to 1 across its larger side.
@@ -90,7 +90,7 @@ fn lenses_and_other_cameras() {
 /// The light that a point gets from above, by one sample.
 fn irradiance(world: &World, point: Vec3) -> Vec3 {
     let settings = Settings { bounces: 0, ..Job::default().settings };
-    let paths = Paths { world, settings, clamp: None, color: ColorMode::Rgb, photons: None, cancel: None };
+    let paths = Paths::new(world, settings, Transport::default());
     paths.irradiance(point.as_dvec3(), Vec3::Y, SampleId::new(0, (3, 5), 7), &mut ())
 }
 
@@ -435,7 +435,7 @@ fn media_fill_shapes_and_surround_the_camera() {
     assert_eq!(inside.objects.len(), 1);
     let settings = Settings { bounces: 4, ..Job::default().settings };
     let through = |world: &World| {
-        let paths = Paths { world, settings, clamp: None, color: ColorMode::Rgb, photons: None, cancel: None };
+        let paths = Paths::new(world, settings, Transport::default());
         let ray = crate::math::Ray::new(Vec3::ZERO, Vec3::Z);
         paths.radiance(&ray, SampleId::new(0, (3, 5), 7), &mut ())
     };

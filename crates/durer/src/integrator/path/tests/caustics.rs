@@ -6,7 +6,7 @@ use super::*;
 fn by_photons(world: &World, ray: Ray, (count, radius): (u32, f32), samples: u32) -> (f64, f64) {
     let settings = Settings { bounces: 12, ..Job::default().settings };
     let photons = Some(Arc::new(Photons::new(world, 3, count, Some(radius))));
-    let path = Path { world, settings, clamp: None, color: ColorMode::Rgb, photons, cancel: None };
+    let path = Path { photons, ..Path::new(world, settings, Transport::default()) };
     let values: Vec<f64> = (0..samples)
         .map(|sample| f64::from(path.radiance(&ray, SampleId::new(7, (3, 5), sample), &mut ()).x))
         .collect();
@@ -63,14 +63,7 @@ fn maps_are_the_same_however_they_are_made() {
     let ray = Ray::new(Vec3::new(3.0, 0.4, 0.0), Vec3::new(-3.0, -0.4, 0.0).normalize());
     let made = |prepared: bool| {
         let photons = Arc::new(Photons::new(&world, 3, 5_000, None));
-        let path = Path {
-            world: &world,
-            settings,
-            clamp: None,
-            color: ColorMode::Rgb,
-            photons: Some(photons.clone()),
-            cancel: None,
-        };
+        let path = Path { photons: Some(photons.clone()), ..Path::new(&world, settings, Transport::default()) };
         if prepared {
             photons.prepare(&path, 2);
         }

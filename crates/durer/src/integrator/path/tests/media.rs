@@ -1,6 +1,7 @@
 //! Light in fog and inside of bodies.
 
 use super::*;
+use crate::spectrum::ColorMode;
 
 /// A uniform surrounding of radiance 1 that can be chosen as a light.
 const SHELL: &str = "PrincipledMaterial { baseColor 0 0 0 specularWeight 0 emissionLuminance 1 walls thin }";
@@ -78,7 +79,7 @@ fn fog_is_connected_with_through_bodies_without_a_skin() {
 fn grey_is_grey_in_wavelengths_too_and_colours_are_near() {
     let world = over_floor("", "Sphere { center 0 3 0 radius 0.5 }");
     let settings = Settings { bounces: 2, ..Job::default().settings };
-    let path = |color| Path { world: &world, settings, clamp: None, color, photons: None, cancel: None };
+    let path = |color| Path::new(&world, settings, Transport { clamp: None, color });
     let samples = 1 << 14;
     let mean = |color| {
         let path = path(color);

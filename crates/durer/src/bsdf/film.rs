@@ -1,0 +1,253 @@
+//! Thin films: soap, oil on water, tempered steel. Light that is reflected above and below them interferes.
+//!
+//! Sources: Airy's sum of all reflections in a film (Born and Wolf, *Principles of Optics*, section 7.6); its orders one by one for
+//! colours: Belcour and Barla, *A Practical Extension to Microfacet Theory for the Modeling of Varying Iridescence*, SIGGRAPH 2017.
+
+use super::fresnel;
+use crate::math::{Vec2, fp};
+use crate::spectrum::{Lanes, Spectrum, interference};
+use std::f32::consts::TAU;
+
+/// A film on something, seen from what is before it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Film {
+    /// The wavelengths of the lanes in nanometres; 0 where they are colours.
+    nm: Spectrum,
+    /// Of a dielectric its index over that before the film; of a metal what it reflects at right angles.
+    below: Spectrum,
+    metal: bool,
+    /// In nanometres.
+    thickness: f32,
+    /// The film's index over that before it.
+    ior: f32,
+    /// How much of the surface it covers.
+    weight: f32,
+}
+
+/// How near a metal's index is to the least that its reflectance allows: so near are those of gold, copper, silver and aluminium.
+///
+/// Source of the formulas: Gulbrandsen, *Artist Friendly Metallic Fresnel*, JCGT 3(4), 2014.
+const METALLIC: f32 = 0.985;
+
+/// The orders of interference that are summed for colours at most; what later ones add is below what eight bits show.
+const ORDERS: i32 = 12;
+
+impl Film {
+    /// On a dielectric; indices are over that of what is before the film. `micrometres` is how thick it is.
+    pub fn on_dielectric(lanes: &Lanes, micrometres: f32, ior: f32, eta: f32, weight: f32) -> Self {
+        let below = Spectrum::splat(eta);
+        Film { nm: wavelengths(lanes), below, metal: false, thickness: 1_000.0 * micrometres, ior, weight }
+    }
+
+    /// On a metal that reflects some light at right angles.
+    pub fn on_metal(lanes: &Lanes, micrometres: f32, ior: f32, reflected: Spectrum) -> Self {
+        let below = reflected.clamp(Spectrum::splat(0.01), Spectrum::splat(0.999));
+        Film { nm: wavelengths(lanes), below, metal: true, thickness: 1_000.0 * micrometres, ior, weight: 1.0 }
+    }
+
+    /// The share of unpolarised light that is reflected at a cosine from 0 to 1. Seen from inside (an index below 1), as much as from
+    /// outside along the same way.
+    pub fn reflected(&self, cosine: f32) -> Spectrum {
+        if self.metal {
+            return self.covered(cosine);
+        }
+        let eta = self.below.x;
+        let plain = fresnel::dielectric(cosine, eta);
+        if plain >= 1.0 {
+            return Spectrum::ONE;
+        }
+        let covered = match eta < 1.0 {
+            true => {
+                let outside = (1.0 - (1.0 - cosine * cosine) / (eta * eta)).max(0.0).sqrt();
+                Film { below: Spectrum::splat(1.0 / eta), ior: self.ior / eta, ..*self }.covered(outside)
+            }
+            false => self.covered(cosine),
+        };
+        Spectrum::splat(plain).lerp(covered, self.weight)
+    }
+
+    fn covered(&self, cosine: f32) -> Spectrum {
+        let sine2 = (1.0 - cosine * cosine).max(0.0);
+        let inside2 = 1.0 - sine2 / (self.ior * self.ior);
+        if inside2 <= 0.0 {
+            return Spectrum::ONE;
+        }
+        let inside = inside2.sqrt();
+        let shift = 2.0 * self.ior * self.thickness * inside;
+        let boundaries = [
+            (cosine - self.ior * inside) / (cosine + self.ior * inside),
+            (self.ior * cosine - inside) / (self.ior * cosine + inside),
+        ];
+        let mut sum = Spectrum::ZERO;
+        for lane in 0..4 {
+            // The fourth of colours is green again.
+            let below = self.behind(lane, sine2, inside);
+            for (first, second) in boundaries.into_iter().zip(below) {
+                sum[lane] += match self.nm.x > 0.0 {
+                    true => airy(first, second, TAU * shift / self.nm[lane]),
+                    false => by_orders(first, second, shift, [0, 1, 2, 1][lane]),
+                };
+            }
+        }
+        (0.5 * sum).clamp(Spectrum::ZERO, Spectrum::ONE)
+    }
+
+    /// The amplitudes that the lower boundary reflects, across the plane of incidence and in it.
+    fn behind(&self, lane: usize, sine2: f32, inside: f32) -> [Vec2; 2] {
+        let index = match self.metal {
+            true => metal_index(self.below[lane]),
+            false => Vec2::new(self.below[lane], 0.0),
+        };
+        // The complex cosine behind: its square is 1 - sin^2 / n^2.
+        let square = times(index, index);
+        let cosine = root(Vec2::X - over(Vec2::new(sine2, 0.0), square));
+        let film = self.ior;
+        let (n_cos, own) = (times(index, cosine), Vec2::new(film * inside, 0.0));
+        let (cross, film_cos) = (inside * index, film * cosine);
+        [over(own - n_cos, own + n_cos), over(cross - film_cos, cross + film_cos)]
+    }
+}
+
+fn wavelengths(lanes: &Lanes) -> Spectrum {
+    match lanes {
+        Lanes::Rgb => Spectrum::ZERO,
+        Lanes::Waves(waves) => waves.nm,
+    }
+}
+
+/// Real and imaginary index of a metal that reflects a share `r` at right angles.
+fn metal_index(r: f32) -> Vec2 {
+    let root = r.sqrt();
+    let n = METALLIC * (1.0 - r) / (1.0 + r) + (1.0 - METALLIC) * (1.0 + root) / (1.0 - root);
+    let k2 = (r * (n + 1.0) * (n + 1.0) - (n - 1.0) * (n - 1.0)) / (1.0 - r);
+    Vec2::new(n, k2.max(0.0).sqrt())
+}
+
+/// |(a + b z) / (1 + a b z)|^2, where z is a wave with a phase.
+fn airy(first: f32, second: Vec2, phase: f32) -> f32 {
+    let z = times(second, Vec2::new(fp::cos(phase), fp::sin(phase)));
+    let above = Vec2::new(first, 0.0) + z;
+    let below = Vec2::X + first * z;
+    above.length_squared() / below.length_squared()
+}
+
+/// The mean of [`airy`] over what a channel sees of daylight: its Fourier series in the phase, each order as daylight has it.
+fn by_orders(first: f32, second: Vec2, shift: f32, channel: usize) -> f32 {
+    let (r1, r2) = (first * first, second.length_squared());
+    let through = 1.0 - r1;
+    let again = through * through * r2 / (1.0 - r1 * r2).max(1e-6);
+    let mut sum = r1 + again;
+    // Each order is the one before times this.
+    let step = -first * second;
+    let mut order = step;
+    for number in 1..=ORDERS {
+        let strength = 2.0 * (again - through);
+        if (strength * order).length_squared() < 1e-8 {
+            break;
+        }
+        sum += strength * times(order, interference(number as f32 * shift)[channel]).x;
+        order = times(order, step);
+    }
+    sum
+}
+
+fn times(a: Vec2, b: Vec2) -> Vec2 {
+    Vec2::new(a.x * b.x - a.y * b.y, a.x * b.y + a.y * b.x)
+}
+
+fn over(a: Vec2, b: Vec2) -> Vec2 {
+    times(a, Vec2::new(b.x, -b.y)) / b.length_squared()
+}
+
+/// The square root in the upper half of the plane.
+fn root(a: Vec2) -> Vec2 {
+    let length = a.length();
+    let real = (0.5 * (length + a.x)).max(0.0).sqrt();
+    let imaginary = (0.5 * (length - a.x)).max(0.0).sqrt();
+    Vec2::new(if a.y < 0.0 { -real } else { real }, imaginary)
+}
+
+/// What a sheet reflects of which one face has a film: with all ways to and fro between its faces.
+pub fn sheet(film: Spectrum, other: f32) -> Spectrum {
+    let through = Spectrum::ONE - film;
+    film + through * through * other / (Spectrum::ONE - film * other).max(Spectrum::splat(1e-6))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::spectrum::ColorMode;
+
+    fn waves(u: f32) -> Lanes {
+        Lanes::new(ColorMode::Spectral, u)
+    }
+
+    #[test]
+    fn films_of_no_thickness_or_no_index_are_not_there() {
+        for lanes in [Lanes::Rgb, waves(0.3)] {
+            for cosine in [1.0, 0.8, 0.4, 0.1] {
+                let plain = fresnel::dielectric(cosine, 1.5);
+                let thin = Film::on_dielectric(&lanes, 0.0, 1.3, 1.5, 1.0).reflected(cosine);
+                let same = Film::on_dielectric(&lanes, 0.4, 1.5, 1.5, 1.0).reflected(cosine);
+                let none = Film::on_dielectric(&lanes, 0.4, 1.3, 1.5, 0.0).reflected(cosine);
+                for found in [thin, same, none] {
+                    assert!((found - plain).abs().max_element() < 1e-3, "{lanes:?} {cosine}: {found} {plain}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_quarter_wave_of_the_right_index_reflects_nothing() {
+        // An index of the root of the glass's, a quarter of the wavelength thick.
+        let lanes = waves(0.4);
+        let nm = lanes.hero().unwrap();
+        let ior = 1.52_f32.sqrt();
+        let film = Film::on_dielectric(&lanes, nm / (4.0 * ior) / 1_000.0, ior, 1.52, 1.0);
+        assert!(film.reflected(1.0).x < 1e-6, "{}", film.reflected(1.0));
+        // Half a wave is as if it were not there.
+        let film = Film::on_dielectric(&lanes, nm / (2.0 * ior) / 1_000.0, ior, 1.52, 1.0);
+        assert!((film.reflected(1.0).x - fresnel::dielectric(1.0, 1.52)).abs() < 1e-5);
+    }
+
+    #[test]
+    fn colours_are_the_means_of_wavelengths() {
+        let n = 8192;
+        for (thickness, ior, metal) in [(0.1, 1.33, false), (0.35, 1.33, false), (1.2, 1.6, false), (0.3, 2.2, true)] {
+            for cosine in [1.0, 0.6, 0.2] {
+                let film = |lanes: &Lanes| match metal {
+                    true => Film::on_metal(lanes, thickness, ior, Spectrum::splat(0.85)),
+                    false => Film::on_dielectric(lanes, thickness, ior, 1.0, 1.0),
+                };
+                let lanes = (0..n).map(|i| waves((i as f32 + 0.5) / n as f32));
+                let seen = lanes.map(|lanes| {
+                    let white = lanes.light(crate::math::Color::ONE);
+                    lanes.color(film(&lanes).reflected(cosine) * white).as_dvec3()
+                });
+                let seen = seen.sum::<glam::DVec3>().as_vec3() / n as f32;
+                let colour = film(&Lanes::Rgb).reflected(cosine).truncate();
+                let seen = seen.clamp(crate::math::Color::ZERO, crate::math::Color::ONE);
+                let off = (seen - colour).abs().max_element();
+                assert!(off < 0.004, "{thickness} {ior} {metal} {cosine}: {seen} {colour}");
+            }
+        }
+    }
+
+    #[test]
+    fn nothing_is_lost_or_won_and_both_sides_agree() {
+        for u in [0.1, 0.5, 0.8] {
+            for cosine in [0.95_f32, 0.5, 0.15] {
+                let (out, eta) = (Film::on_dielectric(&waves(u), 0.4, 1.9, 1.5, 1.0), 1.0 / 1.5);
+                let behind = (1.0 - (1.0 - cosine * cosine) / 2.25).sqrt();
+                let back = Film::on_dielectric(&waves(u), 0.4, 1.9 / 1.5, eta, 1.0);
+                let (there, here) = (out.reflected(cosine), back.reflected(behind));
+                assert!((there - here).abs().max_element() < 1e-4, "{cosine}: {there} {here}");
+                assert!(there.min_element() >= 0.0 && there.max_element() <= 1.0);
+            }
+        }
+        let total = Film::on_dielectric(&waves(0.5), 0.4, 1.3 / 1.5, 1.0 / 1.5, 1.0).reflected(0.2);
+        assert_eq!(total, Spectrum::ONE);
+        assert!((sheet(Spectrum::splat(0.04), 0.04) - 0.08 / 1.04).abs().max_element() < 1e-6);
+        assert!((metal_index(0.848).x - 0.41).abs() < 0.1 && metal_index(0.848).y > 2.0, "{}", metal_index(0.848));
+    }
+}

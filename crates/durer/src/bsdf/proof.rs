@@ -1,0 +1,202 @@
+//! Proofs by numbers: whether directions are sampled as their density says, and whether what absorbs nothing is white in even
+//! light. Tests use them with few samples, `cargo xtask validate` with many.
+
+use super::lobe::blinn::Blinn;
+use super::lobe::diffuse::{Diffuse, DiffuseTransmission};
+use super::lobe::fuzz::Fuzz;
+use super::lobe::rough::{Facet, Rough};
+use super::lobe::rough_glass::RoughGlass;
+use super::microfacet::Ggx;
+use super::{Bsdf, BsdfSample, Layers, Lobe, Scatter, Tables, fresnel, layers, warp};
+use crate::material::PrincipledMaterial;
+use crate::material::principled::Walls;
+use crate::math::{Vec2, Vec3, fp};
+use crate::sampler;
+use crate::spectrum::{Lanes, Spectrum};
+use std::f64::consts::{PI, TAU};
+
+/// Cells of equal solid angle, and how many samples are sorted into them.
+#[derive(Clone, Copy, Debug)]
+pub struct Cells {
+    /// Bands from pole to pole.
+    pub rows: usize,
+    /// Cells around.
+    pub columns: usize,
+    /// Samples.
+    pub samples: u32,
+    /// The density is asked for at so many points along each side of a cell.
+    pub fine: usize,
+}
+
+/// What came of comparing samples with a density.
+#[derive(Clone, Copy, Debug)]
+pub struct Verdict {
+    /// Chi-square as a deviate of the normal distribution.
+    pub deviate: f64,
+    /// The density over all directions: 1, less what is not sampled.
+    pub density: f64,
+}
+
+impl Cells {
+    fn cell(&self, wi: Vec3) -> usize {
+        let turn = (fp::atan2_f64(f64::from(wi.y), f64::from(wi.x)) / TAU).rem_euclid(1.0);
+        let row = ((0.5 * (1.0 - f64::from(wi.z)) * self.rows as f64) as usize).min(self.rows - 1);
+        row * self.columns + ((turn * self.columns as f64) as usize).min(self.columns - 1)
+    }
+
+    /// How many samples should fall into a cell.
+    fn expected(&self, cell: usize, pdf: &impl Fn(Vec3) -> f32) -> f64 {
+        let fine = self.fine;
+        let point = |i: usize| {
+            let row = (cell / self.columns) as f64 + ((i / fine) as f64 + 0.5) / fine as f64;
+            let column = (cell % self.columns) as f64 + ((i % fine) as f64 + 0.5) / fine as f64;
+            warp::polar((1.0 - 2.0 * row / self.rows as f64) as f32, (column / self.columns as f64) as f32)
+        };
+        let mean = (0..fine * fine).map(|i| f64::from(pdf(point(i)))).sum::<f64>() / (fine * fine) as f64;
+        mean * 4.0 * PI / (self.rows * self.columns) as f64 * f64::from(self.samples)
+    }
+
+    /// Samples, by three numbers from 0 to 1, against their density. Other seeds have other samples.
+    pub fn compare(&self, seed: u64, sample: impl Fn(f32, Vec2) -> Option<Vec3>, pdf: impl Fn(Vec3) -> f32) -> Verdict {
+        let all = self.rows * self.columns;
+        let mut counts = vec![0.0_f64; all + 1];
+        for i in 0..self.samples {
+            let [choice, u] = [0, 1].map(|dimension| sampler::random_2d(seed, 0, 0, i, dimension));
+            counts[sample(choice.x, u).map_or(all, |wi| self.cell(wi))] += 1.0;
+        }
+        let mut expected: Vec<f64> = (0..all).map(|cell| self.expected(cell, &pdf)).collect();
+        let density = expected.iter().sum::<f64>() / f64::from(self.samples);
+        // What was not sampled is what is left of 1.
+        expected.push((f64::from(self.samples) * (1.0 - density)).max(0.0));
+        let mut cells: Vec<(f64, f64)> = expected.into_iter().zip(counts).collect();
+        cells.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let (mut chi2, mut freedom, mut pooled) = (0.0, -1.0, (0.0, 0.0));
+        for (expected, count) in cells {
+            pooled = (pooled.0 + expected, pooled.1 + count);
+            if pooled.0 >= 20.0 {
+                chi2 += (pooled.1 - pooled.0) * (pooled.1 - pooled.0) / pooled.0;
+                freedom += 1.0;
+                pooled = (0.0, 0.0);
+            }
+        }
+        Verdict { deviate: deviate(chi2, freedom), density }
+    }
+
+    /// A lobe seen from one direction.
+    pub fn lobe(&self, seed: u64, lobe: Lobe, wo: Vec3) -> Verdict {
+        let sample = |choice, u| lobe.sample(wo, choice, u).map(|scattered| scattered.wi);
+        self.compare(seed, sample, |wi| lobe.pdf(wo, wi))
+    }
+}
+
+/// The upper share of a chi-square distribution, as a normal deviate.
+///
+/// Source: Wilson and Hilferty, *The Distribution of Chi-Square*, 1931.
+fn deviate(chi2: f64, freedom: f64) -> f64 {
+    let spread = 2.0 / (9.0 * freedom);
+    let third = f64::from(fp::pow((chi2 / freedom) as f32, 1.0 / 3.0));
+    (third - (1.0 - spread)) / spread.sqrt()
+}
+
+/// One of each lobe that scatters into many directions, with names.
+pub fn broad() -> Vec<(&'static str, Lobe)> {
+    let rough = |roughness, anisotropy, facet, behind| {
+        Lobe::from(Rough { ggx: Ggx::new(roughness, anisotropy).clamped(), facet, behind })
+    };
+    let glass = |roughness, eta| {
+        Lobe::from(RoughGlass {
+            ggx: Ggx::new(roughness, 0.0).clamped(),
+            eta,
+            reflected: Spectrum::ONE,
+            transmitted: Spectrum::ONE,
+        })
+    };
+    vec![
+        ("Lambert", Diffuse { color: Spectrum::ONE, roughness: 0.0 }.into()),
+        ("rough matte", Diffuse { color: Spectrum::ONE, roughness: 1.0 }.into()),
+        ("matte, other side", DiffuseTransmission { color: Spectrum::ONE }.into()),
+        ("Blinn", Blinn { color: Spectrum::ONE, exponent: 30.0, phong: false }.into()),
+        ("Phong", Blinn { color: Spectrum::ONE, exponent: 12.0, phong: true }.into()),
+        ("fuzz", Fuzz { roughness: 0.4 }.into()),
+        ("rough metal", rough(0.5, 0.0, Facet::Metal(fresnel::F82::WHITE), false)),
+        ("brushed metal", rough(0.7, 0.6, Facet::Metal(fresnel::F82::WHITE), false)),
+        ("very rough plastic", rough(1.0, 0.0, Facet::Dielectric(1.5), false)),
+        ("rough pane, front", rough(0.6, 0.0, Facet::Slab(1.5), false)),
+        ("rough pane, back", rough(0.6, 0.0, Facet::BehindSlab(1.5), true)),
+        ("rough glass", glass(0.5, 1.5)),
+        ("rough glass from inside", glass(0.6, 1.0 / 1.5)),
+    ]
+}
+
+/// Materials that absorb nothing, with names.
+pub fn lossless() -> Vec<(&'static str, PrincipledMaterial)> {
+    let white = || PrincipledMaterial { base_color: Vec3::ONE, ..Default::default() };
+    vec![
+        ("matte under a boundary", white()),
+        ("rough matte", PrincipledMaterial { base_diffuse_roughness: 1.0, ..white() }),
+        ("metal", PrincipledMaterial { base_metalness: 1.0, ..white() }),
+        ("glass", PrincipledMaterial { transmission_weight: 1.0, ..white() }),
+        ("thin glass", PrincipledMaterial { transmission_weight: 1.0, walls: Walls::Thin, ..white() }),
+        ("coat on matte", PrincipledMaterial { coat_weight: 1.0, coat_roughness: 0.3, ..white() }),
+        ("coat on metal", PrincipledMaterial { coat_weight: 0.7, base_metalness: 1.0, ..white() }),
+        ("fuzz", PrincipledMaterial { fuzz_weight: 1.0, ..white() }),
+        ("half metal", PrincipledMaterial { base_metalness: 0.5, ..white() }),
+    ]
+}
+
+/// Materials with films that absorb nothing, with names. Of rough ones what they give back in all is known nearly.
+pub fn filmed() -> Vec<(&'static str, PrincipledMaterial)> {
+    let film = || PrincipledMaterial { base_color: Vec3::ONE, thin_film_weight: 1.0, ..Default::default() };
+    let bubble = PrincipledMaterial { specular_ior: 1.0, transmission_weight: 1.0, walls: Walls::Thin, ..film() };
+    let glass = PrincipledMaterial { thin_film_weight: 0.8, thin_film_ior: 1.9, transmission_weight: 1.0, ..film() };
+    vec![("film on a matte base", film()), ("soap film", bubble), ("film on glass", glass)]
+}
+
+/// A material in even light from all around.
+pub struct Furnace<'a> {
+    material: &'a PrincipledMaterial,
+    tables: Tables,
+}
+
+impl<'a> Furnace<'a> {
+    /// With a material in it.
+    pub fn new(material: &'a PrincipledMaterial) -> Self {
+        Furnace { material, tables: Tables::new(material, None, &mut Vec::new()) }
+    }
+
+    /// What it gives back, with a roughness and seen at a cosine, and the standard error of that. What goes into glass counts by
+    /// its flux: its radiance is denser by the square of the index.
+    pub fn gives(&self, roughness: f32, cosine: f32, samples: u32) -> (f64, f64) {
+        let layers = Layers { roughness, ..Layers::of(self.material) };
+        let wo = warp::polar(cosine, 0.0);
+        given(&seen(self.material, &layers, &self.tables, wo), wo, samples)
+    }
+}
+
+/// A material from outside.
+pub(super) fn seen(material: &PrincipledMaterial, layers: &Layers, tables: &Tables, wo: Vec3) -> Bsdf {
+    let view = layers::View { lanes: &Lanes::Rgb, wo, inside: false, eta: material.specular_ior };
+    layers::scattering(material, layers, tables, view)
+}
+
+/// What lobes give back.
+pub(super) fn given(bsdf: &Bsdf, wo: Vec3, samples: u32) -> (f64, f64) {
+    let eta = bsdf.lobes().find_map(|part| match part.lobe {
+        Lobe::RoughGlass(glass) => Some(glass.eta),
+        Lobe::Refraction(glass) => Some(glass.eta),
+        _ => None,
+    });
+    let denser = eta.map_or(1.0, |eta| eta * eta);
+    let flux = |s: BsdfSample| f64::from(s.weight.x * if s.wi.z < 0.0 { denser } else { 1.0 });
+    let mut sums = (0.0, 0.0);
+    for i in 0..samples {
+        let u = sampler::sample_2d(1, 0, 0, i, 3);
+        let choice = sampler::sample_2d(1, 0, 0, i, 2).x;
+        let weight = bsdf.sample(wo, choice, u).map_or(0.0, flux);
+        sums = (sums.0 + weight, sums.1 + weight * weight);
+    }
+    let n = f64::from(samples);
+    let mean = sums.0 / n;
+    // Points that are even have less error than this, and never more by much.
+    (mean, ((sums.1 / n - mean * mean).max(0.0) / n).sqrt())
+}

@@ -1,0 +1,78 @@
+//! Spectra that were measured: values at wavelengths.
+
+use super::{Lanes, OBSERVER, Spectrum, integral};
+use crate::math::Color;
+
+/// What a thing gives back of light, or the light of a lamp, by wavelength.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Curve {
+    /// Wavelengths in nanometres, ascending, and values.
+    rows: Vec<[f32; 2]>,
+    /// What red, green and blue it amounts to; none below 0.
+    color: Color,
+}
+
+impl Curve {
+    /// Shares of light that a thing gives back, by ascending wavelength; its colour is that under daylight. `None` without rows.
+    pub fn reflectance(rows: Vec<[f32; 2]>) -> Option<Self> {
+        rows.first()?;
+        let color = seen(&rows, |[_, _, _, light]| f64::from(OBSERVER.daylight) * light);
+        Some(Curve { rows, color })
+    }
+
+    /// The light of a lamp, of any strength: it is made as bright as 1. `None` without light.
+    pub fn light(mut rows: Vec<[f32; 2]>) -> Option<Self> {
+        let bright = integral(|nm, [_, y, _, _]| y * f64::from(at(&rows, nm))) as f32;
+        rows.iter_mut().for_each(|row| row[1] /= bright);
+        let color = seen(&rows, |_| 1.0);
+        (bright > 0.0 && bright.is_finite()).then_some(Curve { rows, color })
+    }
+
+    /// Its colour: of a thing that under daylight, of a lamp that of its light when it is as bright as 1.
+    pub fn color(&self) -> Color {
+        self.color
+    }
+
+    /// The value at a wavelength in nanometres; beyond the first and last row that of the row.
+    pub fn at(&self, nm: f32) -> f32 {
+        at(&self.rows, nm)
+    }
+}
+
+impl Lanes {
+    /// What a measured thing gives back, or a lamp sends, whose colour came to `color`: the curve, times what made that colour
+    /// of the curve's own.
+    pub fn measured(&self, color: Color, curve: &Curve) -> Spectrum {
+        let Lanes::Waves(waves) = self else { return color.extend(color.y) };
+        let known = curve.color.cmpgt(Color::splat(1e-6));
+        let ratio = Color::select(known, color / curve.color, Color::ZERO);
+        // Of a channel that the curve lacks nothing can be told.
+        let ratio = Color::select(known, ratio, Color::splat(ratio.max_element()));
+        // Rounding must not make grey coloured.
+        let even = ratio.max_element() - ratio.min_element() <= 1e-5 * ratio.max_element();
+        let tint = if even { Spectrum::splat(ratio.max_element()) } else { self.coefficient(ratio) };
+        tint * waves.nm.map(|nm| curve.at(nm))
+    }
+}
+
+fn at(rows: &[[f32; 2]], nm: f32) -> f32 {
+    let next = rows.partition_point(|row| row[0] <= nm);
+    match (next.checked_sub(1).map(|i| rows[i]), rows.get(next)) {
+        (Some([a, low]), Some(&[b, high])) => low + (high - low) * ((nm - a) / (b - a)),
+        (Some(row), None) => row[1],
+        (None, Some(row)) => row[1],
+        (None, None) => 0.0,
+    }
+}
+
+/// The colour of rows times a light, as the observer sees it.
+fn seen(rows: &[[f32; 2]], light: impl Fn([f64; 4]) -> f64) -> Color {
+    let channel = |[a, b, c]: [f32; 3]| {
+        let [a, b, c] = [a, b, c].map(f64::from);
+        integral(|nm, here| {
+            let [x, y, z, _] = here;
+            (a * x + b * y + c * z) * f64::from(at(rows, nm)) * light(here)
+        })
+    };
+    Color::from(OBSERVER.to_rgb.map(|row| channel(row) as f32)).max(Color::ZERO)
+}

@@ -1,0 +1,429 @@
+//! Scenes whose light is known.
+
+use durer::math::{Vec3, fp};
+use durer::texture::CieSky;
+use std::f64::consts::PI;
+
+/// A case whose answer is known.
+pub struct Case {
+    pub name: &'static str,
+    pub formula: &'static str,
+    /// Words of the background.
+    pub background: String,
+    pub materials: String,
+    pub lights: String,
+    pub group: String,
+    pub what: What,
+    pub bounces: u32,
+    pub answer: f64,
+}
+
+/// What is measured.
+pub enum What {
+    /// At a point, on the side of a normal.
+    Illuminance(Vec3, Vec3),
+    /// From a point in a direction.
+    Luminance(Vec3, Vec3),
+    /// On parallelograms (corner, edges), on the side of the edges' cross product.
+    Flux(Vec<[Vec3; 3]>),
+}
+
+impl What {
+    pub fn unit(&self) -> &'static str {
+        match self {
+            What::Illuminance(..) => "lx",
+            What::Luminance(..) => "cd/m²",
+            What::Flux(_) => "lm",
+        }
+    }
+}
+
+const MATTE: &str = "PrincipledMaterial { baseColor 0.5 0.5 0.5 specularWeight 0 }";
+const BLACK: &str = "PrincipledMaterial { baseColor 0 0 0 specularWeight 0 }";
+const LAMP: &str = "PrincipledMaterial { baseColor 0 0 0 specularWeight 0 emissionLuminance 1000 }";
+const GLASS: &str = "PrincipledMaterial { transmissionWeight 1 specularRoughness 0 }";
+/// A light's colour is illuminance over pi.
+const CANDELAS_100: &str = "color 31.830989 31.830989 31.830989 attenuation 0 0 1";
+/// 1000 lux from straight above.
+const SUN: &str = "DirectionalLight { direction 0 -1 0 color 318.30989 318.30989 318.30989 }";
+/// A sky of the same brightness everywhere, also below the horizon.
+const EVEN: &str = "color 1000 1000 1000";
+
+/// The share of a floor element's view that a parallel rectangle takes with a corner over it; its sides over its distance.
+fn parallel(x: f64, y: f64) -> f64 {
+    let (p, q) = ((1.0 + x * x).sqrt(), (1.0 + y * y).sqrt());
+    (x / p * fp::atan_f64(y / p) + y / q * fp::atan_f64(x / q)) / (2.0 * PI)
+}
+
+/// The same of a rectangle at right angles to the element: the element is over a corner of it, its normal along the sides of
+/// length `a`; `b` is the other side and `c` the distance.
+fn upright(a: f64, b: f64, c: f64) -> f64 {
+    let far = (a * a + c * c).sqrt();
+    (fp::atan_f64(b / c) - c / far * fp::atan_f64(b / far)) / (2.0 * PI)
+}
+
+fn cos3(h: f64, x: f64) -> f64 {
+    h / ((h * h + x * x) * (h * h + x * x).sqrt())
+}
+
+/// The share of unpolarised light that a boundary reflects, by Fresnel's equations.
+fn fresnel(cosine: f64, eta: f64) -> f64 {
+    let behind = (1.0 - (1.0 - cosine * cosine) / (eta * eta)).sqrt();
+    let parallel = (eta * cosine - behind) / (eta * cosine + behind);
+    let across = (cosine - eta * behind) / (cosine + eta * behind);
+    0.5 * (parallel * parallel + across * across)
+}
+
+/// What a pane lets through at a cosine: all ways to and fro, each of which loses a share `1 - kept`.
+fn pane(cosine: f64, kept: f64) -> f64 {
+    let r = fresnel(cosine, 1.5);
+    (1.0 - r) * (1.0 - r) * kept / (1.0 - r * r * kept * kept)
+}
+
+/// The illuminance at the origin, on the side of `n`, of a sky seen through an opening, by the midpoint rule over 2000 x 2000 pieces.
+fn through(opening: [Vec3; 3], n: Vec3, sky: impl Fn(Vec3) -> f64) -> f64 {
+    const STEPS: u32 = 2_000;
+    let [corner, a, b] = opening.map(|v| v.as_dvec3());
+    let across = a.cross(b);
+    let mut sum = 0.0;
+    for i in 0..STEPS * STEPS {
+        let share = |i: u32| (f64::from(i) + 0.5) / f64::from(STEPS);
+        let place = corner + share(i % STEPS) * a + share(i / STEPS) * b;
+        let (square, dir) = (place.length_squared(), place.normalize());
+        sum += sky(dir.as_vec3()) * dir.dot(n.as_dvec3()).max(0.0) * dir.dot(across).abs() / square;
+    }
+    sum / f64::from(STEPS * STEPS)
+}
+
+/// A plate of which a rectangle is open, written as four rectangles: in the plane of two axes through a point.
+fn around(opening: [Vec3; 3]) -> String {
+    let [corner, a, b] = opening;
+    const FAR: f32 = 999.0;
+    let (u, v) = (a.normalize(), b.normalize());
+    let piece = |corner: Vec3, a: Vec3, b: Vec3| {
+        let [c, a, b] = [corner, a, b].map(|v| format!("{} {} {}", v.x, v.y, v.z));
+        format!("Rectangle {{ corner {c} edge0 {a} edge1 {b} }} ")
+    };
+    let low = corner - FAR * u - FAR * v;
+    piece(low, FAR * u, 2.0 * FAR * v)
+        + &piece(corner + a - FAR * v, FAR * u, 2.0 * FAR * v)
+        + &piece(corner - FAR * v, a, FAR * v)
+        + &piece(corner + b, a, FAR * v)
+}
+
+fn case(name: &'static str, formula: &'static str, what: What, answer: f64) -> Case {
+    let none = String::new;
+    let materials = BLACK.into();
+    Case { name, formula, background: none(), materials, lights: none(), group: none(), what, bounces: 0, answer }
+}
+
+fn floor() -> What {
+    What::Illuminance(Vec3::ZERO, Vec3::Y)
+}
+
+/// The six inner sides of a cube of 4 m about the origin, with normals inwards.
+fn inside_of_cube() -> Vec<[Vec3; 3]> {
+    let side = |n: Vec3| {
+        let u = n.any_orthonormal_vector().abs().round();
+        let v = n.cross(u);
+        [-1.999 * n - 2.0 * u - 2.0 * v, 4.0 * u, 4.0 * v]
+    };
+    [Vec3::X, Vec3::Y, Vec3::Z].iter().flat_map(|&n| [side(n), side(-n)]).collect()
+}
+
+pub fn cases() -> Vec<Case> {
+    let mut all = lamps();
+    all.extend(skies());
+    all.extend(reflections());
+    all.extend(panes());
+    all
+}
+
+fn lamps() -> Vec<Case> {
+    let lamp = |name, formula, form: &str, answer| Case {
+        materials: LAMP.into(),
+        group: format!("MaterialIndex 0 {form}"),
+        ..case(name, formula, floor(), answer)
+    };
+    vec![
+        Case {
+            lights: format!("PointLight {{ position 1.5 2 0 {CANDELAS_100} }}"),
+            ..case(
+                "[5.2] Point source of 100 cd, 2 m high, 1.5 m aside",
+                "E = I cos³θ / h²",
+                floor(),
+                100.0 * cos3(2.0, 1.5),
+            )
+        },
+        lamp(
+            "[5.3] Disc of 1000 cd/m², radius 1.5 m, 2 m overhead",
+            "E = π L r² / (r² + d²)",
+            "Disc { center 0 2 0 normal 0 -1 0 radius 1.5 }",
+            PI * 1000.0 * 2.25 / 6.25,
+        ),
+        lamp(
+            "Sphere of 1000 cd/m², radius 0.5 m, 3 m overhead",
+            "E = π L (r / d)²",
+            "Sphere { center 0 3 0 radius 0.5 }",
+            PI * 1000.0 / 36.0,
+        ),
+        lamp(
+            "[5.3] Panel of 1000 cd/m², 3 m x 1 m, 2 m overhead, corner over the point",
+            "Howell C-11",
+            "Rectangle { corner 0 2 0 edge0 3 0 0 edge1 0 0 1 }",
+            PI * 1000.0 * parallel(1.5, 0.5),
+        ),
+        lamp(
+            "The same of two triangles",
+            "Lambert 1760: any polygon",
+            "Triangle { vertex0 0 2 0 vertex1 3 2 0 vertex2 3 2 1 } Triangle { vertex0 0 2 0 vertex1 3 2 1 vertex2 0 2 1 }",
+            PI * 1000.0 * parallel(1.5, 0.5),
+        ),
+        Case {
+            what: What::Illuminance(Vec3::new(0.0, 0.7, 0.0), Vec3::X),
+            ..lamp(
+                "[5.3] Panel of 1000 cd/m², 2 m x 1.5 m, on the floor before a wall, 0.7 m above its corner",
+                "Howell C-12",
+                "Rectangle { corner 0 0 0 edge0 0 0 1.5 edge1 2 0 0 }",
+                PI * 1000.0 * upright(2.0, 1.5, 0.7),
+            )
+        },
+    ]
+}
+
+fn skies() -> Vec<Case> {
+    let roof = [Vec3::new(0.0, 2.0, 0.0), Vec3::new(3.0, 0.0, 0.0), Vec3::new(0.0, 0.0, 1.0)];
+    // A window on the side of x, its sill 1 m over the point.
+    let window = [Vec3::new(2.0, 1.0, -0.8), Vec3::new(0.0, 1.2, 0.0), Vec3::new(0.0, 0.0, 1.6)];
+    let open =
+        |name, formula, sky: &str, answer| Case { background: sky.into(), ..case(name, formula, floor(), answer) };
+    let behind = |name, formula, sky: &str, opening: [Vec3; 3], answer| {
+        // A lid over what is behind a window.
+        let lid = match opening[0] == window[0] {
+            true => "Rectangle { corner -999 2.5 -999 edge0 1001 0 0 edge1 0 0 1998 }",
+            false => "",
+        };
+        Case { group: format!("MaterialIndex 0 {} {lid}", around(opening)), ..open(name, formula, sky, answer) }
+    };
+    let mut all = vec![
+        open("Open field under an even sky of 1000 cd/m²", "E = π L", EVEN, PI * 1000.0),
+        open(
+            "Open field under the CIE's overcast sky of 9000 cd/m² at the zenith",
+            "E = 7 π Lz / 9",
+            "cieSky 16 zenithLuminance 9000 groundReflectance 0",
+            7_000.0 * PI,
+        ),
+        Case {
+            what: What::Illuminance(Vec3::new(0.0, 0.5, 0.0), Vec3::X),
+            ..open(
+                "Wall under the same sky, no ground",
+                "E = Lz (π/6 + 4/9): the cosine integrated over half the sky",
+                "cieSky 16 zenithLuminance 9000 groundReflectance 0",
+                9_000.0 * (PI / 6.0 + 4.0 / 9.0),
+            )
+        },
+        Case {
+            what: What::Illuminance(Vec3::ZERO, Vec3::X),
+            group:
+                "MaterialIndex 0 Transform { UniformScale 1000 Disc { center 0 -0.000001 0 normal 0 -1 0 radius 1 } }"
+                    .into(),
+            ..open("Wall before a dark field, even sky of 1000 cd/m²", "E = π L / 2", EVEN, PI * 500.0)
+        },
+        behind(
+            "[5.9] Open roof light of 3 m x 1 m, 2 m overhead, even sky",
+            "E = π L F, Howell C-11",
+            EVEN,
+            roof,
+            PI * 1000.0 * parallel(1.5, 0.5),
+        ),
+        behind(
+            "[5.11] Open window of 1.6 m x 1.2 m, 2 m away, sill 1 m up, even sky",
+            "E = π L F, Howell C-12",
+            EVEN,
+            window,
+            2.0 * PI * 1000.0 * (upright(2.2, 0.8, 2.0) - upright(1.0, 0.8, 2.0)),
+        ),
+    ];
+    for (name, sky, number) in [
+        ("[5.9] The roof light, CIE sky 1, overcast", "cieSky 1", 1),
+        ("[5.9] The roof light, CIE sky 7, partly cloudy", "cieSky 7 sun 1 1 0.5", 7),
+        ("[5.9] The roof light, CIE sky 12, clear", "cieSky 12 sun 1 1 0.5", 12),
+        ("[5.9] The roof light, CIE sky 16, overcast", "cieSky 16", 16),
+    ] {
+        let known = CieSky::new(number, Vec3::new(1.0, 1.0, 0.5), 10_000.0, 0.2);
+        let answer = through(roof, Vec3::Y, |dir| f64::from(known.luminance(dir)));
+        all.push(behind(name, "E = ∫ L cosθ dω, by quadrature", sky, roof, answer));
+    }
+    for (name, sky, number) in [
+        ("[5.11] The window, CIE sky 5, even above ground", "cieSky 5", 5),
+        ("[5.11] The window, CIE sky 12, clear", "cieSky 12 sun 1 1 0.5", 12),
+        ("[5.11] The window, CIE sky 16, overcast", "cieSky 16", 16),
+    ] {
+        let known = CieSky::new(number, Vec3::new(1.0, 1.0, 0.5), 10_000.0, 0.2);
+        let answer = through(window, Vec3::Y, |dir| f64::from(known.luminance(dir)));
+        all.push(behind(name, "E = ∫ L cosθ dω, by quadrature", sky, window, answer));
+    }
+    // What juts out over the window hides what is seen above the line over its edge; a screen before it what is below.
+    let hidden = |low: f32, high: f32| {
+        let part = [Vec3::new(2.0, low, -0.8), Vec3::new(0.0, high - low, 0.0), Vec3::new(0.0, 0.0, 1.6)];
+        let known = CieSky::new(16, Vec3::Y, 10_000.0, 0.2);
+        through(part, Vec3::Y, |dir| f64::from(known.luminance(dir)))
+    };
+    let masked = |name, plate: &str, answer| {
+        let mut one = behind(name, "E = ∫ L cosθ dω over what is left, by quadrature", "cieSky 16", window, answer);
+        one.group += plate;
+        one
+    };
+    all.push(masked(
+        "[5.13] The window under a canopy that juts out 1 m, overcast",
+        "Rectangle { corner 2.001 2.4 -999 edge0 0.999 0 0 edge1 0 0 1998 }",
+        // The canopy's edge is seen at y = 2.4 at x = 3: at 1.6 in the window.
+        hidden(1.0, 1.6),
+    ));
+    all.push(masked(
+        "[5.14] The window before a dark wall 4 m away and 3.2 m high, overcast",
+        "Rectangle { corner 4 0 -999 edge0 0 3.2 0 edge1 0 0 1998 }",
+        // The top is seen at y = 3.2 at x = 4: at 1.6 in the window.
+        hidden(1.6, 2.2),
+    ));
+    all
+}
+
+fn reflections() -> Vec<Case> {
+    let matte = |what, lights: &str, group: &str, bounces, name, formula, answer| Case {
+        materials: format!("{MATTE} {BLACK}"),
+        lights: lights.into(),
+        group: format!("MaterialIndex 0 {group}"),
+        bounces,
+        ..case(name, formula, what, answer)
+    };
+    let lamp = |position: &str| format!("PointLight {{ position {position} {CANDELAS_100} }}");
+    let patch = "Rectangle { corner 0 0 0 edge0 0 0 1.5 edge1 2 0 0 }";
+    let flux = 400.0 * PI;
+    // A dark box with an opening in its ceiling: what comes in arrives.
+    let (a, b) = (Vec3::new(4.0, 0.0, 0.0), Vec3::new(0.0, 0.0, 4.0));
+    let up = Vec3::new(0.0, 3.0, 0.0);
+    let (low, far) = (Vec3::new(-2.0, 0.001, -2.0), Vec3::new(2.0, 0.001, 2.0));
+    let inside = vec![
+        [low, b, a],
+        [low + 0.001 * Vec3::X, up, b],
+        [low + 0.001 * Vec3::Z, a, up],
+        [far - 0.001 * Vec3::X, up, -b],
+        [far - 0.001 * Vec3::Z, -a, up],
+    ];
+    let roof = [Vec3::new(-1.0, 3.0, -0.5), Vec3::new(2.0, 0.0, 0.0), Vec3::new(0.0, 0.0, 1.0)];
+    vec![
+        Case {
+            background: EVEN.into(),
+            group: format!(
+                "MaterialIndex 0 {} Rectangle {{ corner -2 0 -2 edge0 4 0 0 edge1 0 0 4 }} Rectangle {{ corner -2 0 -2 edge0 4 0 0 edge1 0 3.01 0 }} Rectangle {{ corner -2 0 2 edge0 4 0 0 edge1 0 3.01 0 }} \
+                 Rectangle {{ corner -2 0 -2 edge0 0 0 4 edge1 0 3.01 0 }} Rectangle {{ corner 2 0 -2 edge0 0 0 4 edge1 0 3.01 0 }}",
+                around(roof)
+            ),
+            ..case(
+                "[5.4] Light that enters a dark room of 4 m x 4 m x 3 m by a roof light of 2 m², even sky",
+                "Φ = π L A: what comes in arrives on walls and floor",
+                What::Flux(inside),
+                PI * 1000.0 * 2.0,
+            )
+        },
+        matte(
+            What::Illuminance(Vec3::new(0.0, 0.7, 0.0), Vec3::X),
+            SUN,
+            patch,
+            1,
+            "[5.6] Wall beside a matte floor of 2 m x 1.5 m, ρ 0.5, in 1000 lx from above",
+            "E = ρ E₀ F, Howell C-12",
+            500.0 * upright(2.0, 1.5, 0.7),
+        ),
+        matte(
+            What::Illuminance(Vec3::new(0.0, 2.0, 0.0), Vec3::NEG_Y),
+            SUN,
+            patch,
+            1,
+            "[5.6] Ceiling 2 m over the corner of the same floor",
+            "E = ρ E₀ F, Howell C-11",
+            500.0 * parallel(1.0, 0.75),
+        ),
+        matte(
+            What::Illuminance(Vec3::new(0.0, 2.0, 0.0), Vec3::NEG_Y),
+            SUN,
+            &format!("{patch} MaterialIndex 1 Rectangle {{ corner 1 0 -5 edge0 0 1 0 edge1 0 0 10 }}"),
+            1,
+            "[5.7] The same behind a dark screen across the floor's middle, 1 m high",
+            "E = ρ E₀ F of the half that is seen",
+            500.0 * parallel(0.5, 0.75),
+        ),
+        matte(
+            What::Illuminance(Vec3::new(0.0, 0.0, -1.999), Vec3::Z),
+            &lamp("0 0 0"),
+            "Sphere { center 0 0 0 radius 2 }",
+            60,
+            "[5.8] Integrating sphere, radius 2 m, ρ 0.5, a source of 100 cd in the middle",
+            "E = I/r² + Φ/S · ρ/(1 − ρ)",
+            100.0 / (1.999 * 1.999) + flux / (16.0 * PI),
+        ),
+        matte(
+            What::Flux(inside_of_cube()),
+            &lamp("0.3 0.5 -0.4"),
+            "Box { min -2 -2 -2 max 2 2 2 }",
+            60,
+            "[5.8] All light inside a cube of 4 m, ρ 0.5, a source of 100 cd",
+            "Φ = 4π I / (1 − ρ)",
+            flux / 0.5,
+        ),
+    ]
+}
+
+fn panes() -> Vec<Case> {
+    let ball = "Difference { Sphere { center 0 0 0 radius 1 } Sphere { center 0 0 0 radius 0.9 } }";
+    let mut all = vec![Case {
+        background: EVEN.into(),
+        materials: GLASS.into(),
+        group: format!("MaterialIndex 0 {ball}"),
+        bounces: 60,
+        ..case(
+            "In a hollow glass ball under an even sky all around",
+            "E = π L: glass that absorbs nothing is not there",
+            floor(),
+            PI * 1000.0,
+        )
+    }];
+    // A lamp far beyond the pane, black elsewhere.
+    let lamp = |sine: f64, cosine: f64| {
+        let (x, y) = (20.0 * sine, 20.0 * cosine);
+        let (nx, ny) = (-sine, -cosine);
+        format!(
+            "MaterialIndex 1 Disc {{ center {x} {y} 0 normal {nx} {ny} 0 radius 3 }} MaterialIndex 0 Box {{ min -99 1 -99 max 99 1.006 99 }}"
+        )
+    };
+    for (name, degrees, absorbed) in [
+        ("[5.5] Through a pane of clear glass, n 1.5, straight on", 0.0, false),
+        ("[5.5] The same at 40°", 40.0, false),
+        ("[5.5] The same at 60°", 60.0, false),
+        ("[5.5] The same at 80°", 80.0, false),
+        ("[5.5] Through tinted glass that leaves half at right angles, at 60°", 60.0, true),
+    ] {
+        let (sine, cosine) = fp::sin_cos_degrees(degrees);
+        let inside = (1.0 - sine * sine / 2.25).sqrt();
+        let (tint, kept) = match absorbed {
+            true => (
+                "transmissionColor 0.5 0.5 0.5 transmissionDepth 0.006",
+                f64::from(fp::pow(0.5, (1.0 / inside) as f32)),
+            ),
+            false => ("", 1.0),
+        };
+        all.push(Case {
+            materials: format!("PrincipledMaterial {{ transmissionWeight 1 specularRoughness 0 {tint} }} {LAMP}"),
+            group: lamp(sine, cosine),
+            bounces: 60,
+            ..case(
+                name,
+                "T = (1 − F)² τ / (1 − F² τ²), Fresnel and Beer",
+                What::Luminance(Vec3::ZERO, Vec3::new(sine as f32, cosine as f32, 0.0)),
+                1000.0 * pane(cosine, kept),
+            )
+        });
+    }
+    all
+}
