@@ -40,7 +40,7 @@ pub fn bands(args: &RenderArgs, job: &Job, target: &Target, memory: Option<u64>)
     // What the scene takes is not known yet: half is left for it.
     Bands::new(job, memory.map_or(u64::MAX, |memory| memory / 2)).map_err(|error| match (error, memory) {
         (RenderError::Memory { needed, .. }, Some(allowed)) => {
-            failure(RenderError::Memory { needed: 2 * needed, allowed })
+            failure(RenderError::Memory { needed: needed.saturating_mul(2), allowed })
         }
         (error, _) => failure(error),
     })

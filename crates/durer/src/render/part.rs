@@ -254,11 +254,12 @@ impl Part {
     pub fn bytes_needed(job: &Job, shard: Shard) -> u64 {
         let share = if shard.by == ShardBy::Tiles { u64::from(shard.count) } else { 1 };
         let (pixels, rays) = (job.window().pixels(), job.ray_window().pixels());
-        let sums = if job.wants_samples() { pixels * Packed::pixel_bytes(job.sampling.samples()) } else { 0 };
-        let values = rays * (12 * job.ray_aovs().count() as u64 + 1);
+        let sums = if job.wants_samples() { Packed::pixel_bytes(job.sampling.samples()) } else { 0 };
+        let values = 12 * job.ray_aovs().count() as u64 + 1;
         // Numbers and coverage, eight bits, and the file; other pictures than the colours have both values and colours.
-        let pictures = pixels * (24 * u64::from(job.color) + 40 * job.aovs.len() as u64);
-        (sums + values) / share + pictures
+        let pictures = 24 * u64::from(job.color) + 40 * job.aovs.len() as u64;
+        let kept = pixels.saturating_mul(sums).saturating_add(rays.saturating_mul(values));
+        (kept / share).saturating_add(pixels.saturating_mul(pictures))
     }
 }
 
