@@ -46,6 +46,9 @@ pub fn bands(args: &RenderArgs, job: &Job, target: &Target, memory: Option<u64>)
     })
 }
 
+/// What was counted and the hash, or why there is no picture.
+type Made = Result<(Statistics, Option<Digest>), BandsError>;
+
 /// The picture, which is made when it is written.
 struct Large<'a> {
     bands: &'a Bands,
@@ -54,7 +57,7 @@ struct Large<'a> {
     format: &'a Format,
     options: WriteOptions<'a>,
     /// What came of it.
-    made: RefCell<Option<Result<(Statistics, Option<Digest>), BandsError>>>,
+    made: RefCell<Option<Made>>,
 }
 
 impl Content for &Large<'_> {

@@ -79,8 +79,8 @@ impl SrgbTable {
     }
 
     fn encode(&self, value: f32) -> u8 {
-        // What is no number is black, as below.
-        let value = value.max(0.0).min(1.0);
+        // What is no number stays that, and begins at the first step.
+        let value = value.clamp(0.0, 1.0);
         let step = usize::from(self.guide[(value * CELLS as f32) as usize]);
         (step + usize::from(value >= self.least[step + 1])) as u8
     }
