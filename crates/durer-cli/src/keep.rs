@@ -32,6 +32,8 @@ pub struct Keeper {
     display: Display,
     start: Instant,
     short: Duration,
+    /// Whether what is saved there is this work, as far as it was then.
+    is_ours: Cell<bool>,
     /// How long saving took the last time.
     saving: Cell<Option<Duration>>,
     /// Whether it was said that saving does not work.
@@ -80,6 +82,7 @@ impl Keeper {
             display: args.display.display()?,
             start: Instant::now(),
             short: SHORT.min(work.checkpoint_every),
+            is_ours: Cell::new(false),
             saving: Cell::new(None),
             complained: Cell::new(false),
         })
@@ -103,9 +106,10 @@ impl Keeper {
         let due = self.start.elapsed() >= self.short && self.is_worth_saving(part);
         if let Some(place) = self.place.as_ref().filter(|place| due && !place.is_stream()) {
             let before = Instant::now();
-            if let Err(error) = save_part(place, part) {
+            match save_part(place, part) {
+                Ok(()) => self.is_ours.set(true),
                 // The picture may still be saved somewhere else.
-                self.complain(&error);
+                Err(error) => self.complain(&error),
             }
             self.saving.set(Some(before.elapsed()));
         }
@@ -152,7 +156,10 @@ impl Keeper {
             if let Err(error) = save_part(place, part) {
                 self.complain(&error);
             }
-        } else if self.restart || read_part(place.path()).is_ok_and(|old| part.same_work(&old).is_ok()) {
+        } else if self.restart
+            || self.is_ours.get()
+            || read_part(place.path()).is_ok_and(|old| part.same_work(&old).is_ok())
+        {
             // Only what is of this picture, or was to be thrown away; if it cannot be removed, it is only in the way.
             let _ = std::fs::remove_file(place.path());
         }

@@ -11,7 +11,7 @@ pub enum Uv {
     None,
     /// Known.
     At(Vec2),
-    /// The angle of a point of a plane, counted as by [`turn`], and what goes along the axis.
+    /// The angle of a point of a plane, counted from -x, and what goes along the axis.
     Turned(Vec2, f32),
     /// Longitude from -z over +x, and latitude from the south pole up, of a unit vector.
     Globe(Vec3),
