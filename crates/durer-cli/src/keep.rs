@@ -2,7 +2,7 @@
 
 use crate::args::RenderArgs;
 use crate::guard::Guard;
-use crate::output::{encode, format, lengthened, say};
+use crate::output::{encode, format, lengthened, wrote};
 use crate::{Failure, bad, progress, report};
 use durer::image::{Destination, Display, Format, save_all};
 use durer::render::{Moment, Panicked, Part, PartError};
@@ -143,9 +143,7 @@ impl Keeper {
         let Some(place) = &self.place else { return Ok(()) };
         progress::saving();
         save_part(place, part).map_err(|error| Failure::Other(anyhow::anyhow!(error)))?;
-        if !self.quiet && !place.is_stream() {
-            say(&format!("wrote {}", place.path().display()));
-        }
+        wrote(place, self.quiet);
         Ok(())
     }
 

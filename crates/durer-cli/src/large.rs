@@ -1,7 +1,7 @@
 //! Pictures larger than memory: rendered while they are written.
 
 use crate::args::RenderArgs;
-use crate::output::{Target, say};
+use crate::output::{Target, say, wrote};
 use crate::render::{failure, rejected};
 use crate::{Failure, bad, progress};
 use durer::image::{Content, Format, MAX_PIXELS, WriteOptions, save_all};
@@ -92,9 +92,7 @@ pub fn render(
         Some(Ok(made)) => saved.map(|()| made)?,
         None => return Ok(saved?),
     };
-    if !args.quiet && !place.is_stream() {
-        say(&format!("wrote {}", place.path().display()));
-    }
+    wrote(place, args.quiet);
     rejected(&statistics, args.quiet);
     match hash {
         Some(hash) if args.hash => say(&hash.to_string()),

@@ -95,11 +95,15 @@ pub fn save_silently(files: &[(&Destination, Vec<u8>)]) -> Result<(), Failure> {
 /// Saves all files or none, and says so.
 pub fn save(files: &[(&Destination, Vec<u8>)], quiet: bool) -> Result<(), Failure> {
     save_silently(files)?;
-    // Nothing is said of devices: standard output may be one, and the picture in it.
-    for (place, _) in files.iter().filter(|(place, _)| !quiet && !place.is_stream()) {
+    files.iter().for_each(|(place, _)| wrote(place, quiet));
+    Ok(())
+}
+
+/// Says what was written. Nothing is said of devices: standard output may be one, and the picture in it.
+pub fn wrote(place: &Destination, quiet: bool) {
+    if !quiet && !place.is_stream() {
         say(&format!("wrote {}", place.path().display()));
     }
-    Ok(())
 }
 
 /// Whether the program was started without a standard output.

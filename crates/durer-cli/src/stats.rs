@@ -2,6 +2,7 @@
 
 use crate::Failure;
 use crate::render::failure;
+use crate::report::complain;
 use durer::render::{Part, Profile, profile};
 use durer::world::World;
 use std::time::{Duration, Instant};
@@ -29,25 +30,25 @@ impl Stages {
 
     /// Tells of all stages, and of the rays of a part.
     pub fn tell(&self, world: &World, part: &Part) -> Result<(), Failure> {
-        eprintln!("time");
+        complain("time");
         for (name, time) in &self.done {
-            eprintln!("  {:>9.1} ms  {name}", time.as_secs_f64() * 1e3);
+            complain(&format!("  {:>9.1} ms  {name}", time.as_secs_f64() * 1e3));
         }
         let statistics = part.statistics();
         let rendering =
             self.done.iter().find(|(name, _)| *name == "rendering").map_or(0.0, |(_, time)| time.as_secs_f64());
-        eprintln!("rays");
-        eprintln!("  {:>12}  in all, of {} samples", statistics.rays, statistics.samples);
-        eprintln!("  {:>12.2}  million a second", statistics.rays as f64 / rendering.max(1e-9) / 1e6);
+        complain("rays");
+        complain(&format!("  {:>12}  in all, of {} samples", statistics.rays, statistics.samples));
+        complain(&format!("  {:>12.2}  million a second", statistics.rays as f64 / rendering.max(1e-9) / 1e6));
         if let Some(Profile { samples, rays, time, kernel }) = profile(world, part.job(), SAMPLES).map_err(failure)? {
-            eprintln!("of {samples} samples taken again by one thread");
+            complain(&format!("of {samples} samples taken again by one thread"));
             for (name, count) in rays.iter().filter(|(_, count)| *count > 0) {
-                eprintln!("  {count:>12}  {name} rays");
+                complain(&format!("  {count:>12}  {name} rays"));
             }
             let per_sample = time.as_secs_f64() * 1e9 / samples.max(1) as f64;
-            eprintln!("  {per_sample:>12.0}  ns a sample");
+            complain(&format!("  {per_sample:>12.0}  ns a sample"));
             let share = 100.0 * kernel.as_secs_f64() / time.as_secs_f64().max(1e-9);
-            eprintln!("  {share:>12.0}  % of that in finding what rays hit");
+            complain(&format!("  {share:>12.0}  % of that in finding what rays hit"));
         }
         Ok(())
     }

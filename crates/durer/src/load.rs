@@ -3,7 +3,7 @@
 use crate::compile::{AccelKind, Resources, compile};
 use crate::diag::{Diagnostic, Diagnostics, Files, Severity};
 use crate::dialect::{Compat, Dialect, PathBase, Rules};
-use crate::format::course::{self, Guess, Hint, Opened, ReadOptions};
+use crate::format::course::{self, Guess, Hint, ReadOptions};
 use crate::format::scene::{Input, find_scene_format, read_model};
 use crate::scene::{Scene, Staging};
 use crate::source::{Source, SourceError, is_packed, unpacked};
@@ -148,11 +148,7 @@ pub fn load_text(
     source = source.budget(budget(options));
     let read = ReadOptions { dialect, strict: options.strict, compat: rules.compat };
     let known = RefCell::new(std::mem::take(files));
-    let open = |name: &str| match source.read(name) {
-        Ok(bytes) => Opened::Text(known.borrow_mut().add_once(name, &bytes), bytes),
-        Err(error) => Opened::Failed(error),
-    };
-    let scene = course::read_with(&bytes, file, read, &open, diagnostics);
+    let scene = course::read_with(&bytes, file, read, &course::below(&source, &known), diagnostics);
     *files = known.into_inner();
     if let (Some(_), Some(dialect), false, false) = (&scene, options.dialect, options.strict, options.course) {
         diagnostics.extend(portability(&bytes, file, dialect, diagnostics));

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::dialect::Dialect;
-use crate::format::course::{self, Opened, ReadOptions};
+use crate::format::course::{self, ReadOptions};
 use crate::shape::Primitive;
 use crate::world::World;
 use glam::DAffine3;
@@ -17,11 +17,7 @@ pub fn try_read(text: &str, rules: &Rules, accel: AccelKind, folder: &Path) -> (
     let options = ReadOptions { dialect: Dialect::Durer, strict: false, compat: 0 };
     let source = Source::folder(folder);
     let included = RefCell::new(std::mem::take(&mut files));
-    let open = |name: &str| match source.read(name) {
-        Ok(bytes) => Opened::Text(included.borrow_mut().add_once(name, &bytes), bytes),
-        Err(error) => Opened::Failed(error),
-    };
-    let scene = course::read_with(text.as_bytes(), file, options, &open, &mut diagnostics);
+    let scene = course::read_with(text.as_bytes(), file, options, &course::below(&source, &included), &mut diagnostics);
     files = included.into_inner();
     let resources = Resources { source: &source, files: &mut files, sky_optional: false, memory: u64::MAX };
     let world = scene.and_then(|scene| compile(&scene, rules, accel, resources, &mut diagnostics));

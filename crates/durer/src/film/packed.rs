@@ -108,6 +108,14 @@ impl Packed {
         }
     }
 
+    /// The film itself, where samples were left out: others pack.
+    pub fn with_rejected(&self) -> Option<&Film> {
+        match self {
+            Packed::Whole(film) => Some(film),
+            Packed::Single(..) | Packed::Small(_) => None,
+        }
+    }
+
     /// Bytes that a pixel of so many samples takes, where light is not stronger than usual.
     pub fn pixel_bytes(samples: u32) -> u64 {
         (if samples == 1 { size_of::<[i64; 3]>() + size_of::<i32>() } else { size_of::<Small>() }) as u64

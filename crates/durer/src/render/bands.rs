@@ -115,14 +115,7 @@ impl Bands {
                 statistics.add(part.statistics());
                 let rendered = part.pictures()?;
                 let Some(layer) = rendered.pictures.first() else { continue };
-                let width = crop.width as usize;
-                let mut row = |y: usize| {
-                    let range = y * width..(y + 1) * width;
-                    let coverage = layer.coverage.as_ref().map_or(&[][..], |coverage| &coverage[range.clone()]);
-                    rows.row(&layer.image.pixels[range], coverage)
-                };
-                let count = crop.height as usize;
-                if bottom_up { (0..count).rev().try_for_each(&mut row) } else { (0..count).try_for_each(&mut row) }?;
+                layer.try_rows(bottom_up, |pixels, coverage| rows.row(pixels, coverage))?;
             }
             Ok((statistics, (!bottom_up).then(|| Digest(hasher.finalize().into()))))
         })

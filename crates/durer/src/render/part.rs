@@ -211,11 +211,14 @@ impl Part {
         for (index, block) in state.samples.iter().enumerate() {
             let taken = self.blocks.rect(index).pixels() * u64::from(block.to - block.from);
             statistics.rays += block.rays;
-            if let Some(film) = block.film(self.blocks.rect(index)) {
-                statistics.samples += taken.saturating_sub(film.rejected());
-                statistics.rejected = statistics.rejected.saturating_add(film.rejected());
-                statistics.first_rejected.extend(film.first_rejected());
-            }
+            let Some(film) = &block.film else { continue };
+            let Some(film) = film.with_rejected() else {
+                statistics.samples += taken;
+                continue;
+            };
+            statistics.samples += taken.saturating_sub(film.rejected());
+            statistics.rejected = statistics.rejected.saturating_add(film.rejected());
+            statistics.first_rejected.extend(film.first_rejected());
         }
         statistics.rays += state.rays.iter().flatten().map(|block| block.rays).sum::<u64>();
         statistics.first_rejected.sort();

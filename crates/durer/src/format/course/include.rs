@@ -1,8 +1,9 @@
 //! `include FILE`: the text of another file in place of these two words.
 
 use super::lexer::{Token, TokenKind, tokens};
-use crate::diag::{Diagnostic, Diagnostics, Span};
-use crate::source::SourceError;
+use crate::diag::{Diagnostic, Diagnostics, Files, Span};
+use crate::source::{Source, SourceError};
+use std::cell::RefCell;
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -20,6 +21,14 @@ pub enum Opened {
     Failed(SourceError),
     /// The scene is in no folder.
     Nowhere,
+}
+
+/// Finds what is included below a folder, and numbers it.
+pub fn below<'a>(source: &'a Source, files: &'a RefCell<Files>) -> impl Fn(&str) -> Opened + 'a {
+    move |name| match source.read(name) {
+        Ok(bytes) => Opened::Text(files.borrow_mut().add_once(name, &bytes), bytes),
+        Err(error) => Opened::Failed(error),
+    }
 }
 
 /// The texts of a scene: its own, and those that it includes.

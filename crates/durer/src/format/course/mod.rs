@@ -22,7 +22,7 @@ use crate::diag::{Diagnostic, Diagnostics, Span};
 use crate::dialect::{CompatSet, Dialect};
 use crate::scene::Scene;
 pub use guess::{Guess, Hint, guess};
-pub use include::Opened;
+pub use include::{Opened, below};
 pub use write::write;
 
 /// How a scene file is to be read.

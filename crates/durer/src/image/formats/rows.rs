@@ -113,14 +113,10 @@ pub(super) fn encode(
     for layer in layers {
         let strip = Strip::of(layer, options);
         out.extend((rows.head)(&strip)?);
-        let width = strip.width as usize;
-        let row = |y: usize| {
-            let range = y * width..(y + 1) * width;
-            let coverage = layer.coverage.as_ref().map_or(&[][..], |coverage| &coverage[range.clone()]);
-            (rows.row)(&strip, &layer.image.pixels[range], coverage, out);
-        };
-        let count = strip.height as usize;
-        if rows.bottom_up { (0..count).rev().for_each(row) } else { (0..count).for_each(row) }
+        layer.try_rows(rows.bottom_up, |pixels, coverage| {
+            (rows.row)(&strip, pixels, coverage, out);
+            Ok(())
+        })?;
     }
     Ok(())
 }
