@@ -12,33 +12,11 @@ use super::lobe::rough::{Facet, Rough};
 use super::lobe::rough_glass::RoughGlass;
 use super::microfacet::Ggx;
 use super::{Bsdf, fresnel};
-use crate::material::PrincipledMaterial;
 use crate::material::principled::Walls;
-use crate::math::{Color, Vec3, fp};
+use crate::material::{Parameters, PrincipledMaterial};
+use crate::math::{Vec3, fp};
 use crate::spectrum::{Curve, Lanes, Spectrum};
 use std::sync::Arc;
-
-/// What of a principled material may differ from point to point.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Layers {
-    /// The colour of the base.
-    pub base_color: Color,
-    /// From 0 (glass or matte) to 1 (metal).
-    pub metalness: f32,
-    /// From 0 (a mirror) to 1.
-    pub roughness: f32,
-}
-
-impl Layers {
-    /// The same everywhere.
-    pub fn of(material: &PrincipledMaterial) -> Self {
-        Layers {
-            base_color: material.base_weight * material.base_color,
-            metalness: material.base_metalness,
-            roughness: material.specular_roughness,
-        }
-    }
-}
 
 /// What is worked out once for each material.
 #[derive(Clone, Debug, PartialEq)]
@@ -108,37 +86,32 @@ pub struct View<'a> {
 }
 
 /// The lobes of what is there of a material.
-pub fn scattering(material: &PrincipledMaterial, layers: &Layers, tables: &Tables, view: View) -> Bsdf {
+pub fn scattering(here: &Parameters, tables: &Tables, view: View) -> Bsdf {
     let stack = Stack {
-        material,
+        here,
         tables,
         view,
-        metalness: layers.metalness,
-        roughness: layers.roughness,
         base: match &tables.measured {
-            Some(curve) => view.lanes.measured(layers.base_color, curve),
-            None => view.lanes.reflectance(layers.base_color),
+            Some(curve) => view.lanes.measured(here.base_color, curve),
+            None => view.lanes.reflectance(here.base_color),
         },
-        specular: view.lanes.reflectance(material.specular_color),
+        specular: view.lanes.reflectance(here.specular_color),
     };
     stack.scattering()
 }
 
 /// The layers of a point.
 struct Stack<'a> {
-    material: &'a PrincipledMaterial,
+    here: &'a Parameters,
     tables: &'a Tables,
     view: View<'a>,
-    metalness: f32,
-    /// Of what is below the coat, as its own.
-    roughness: f32,
     base: Spectrum,
     specular: Spectrum,
 }
 
 impl Stack<'_> {
     fn scattering(&self) -> Bsdf {
-        let (m, view) = (self.material, self.view);
+        let (m, view) = (self.here, self.view);
         let mut bsdf = Bsdf::default();
         let mu = view.wo.z;
         let mut below = Spectrum::ONE;
@@ -150,7 +123,7 @@ impl Stack<'_> {
             bsdf.push(Fuzz { roughness }, below * scale * view.lanes.reflectance(m.fuzz_color), scale * given);
             below *= 1.0 - scale * given;
         }
-        let mut roughness = self.roughness;
+        let mut roughness = self.here.specular_roughness;
         if m.coat_weight > 0.0 && !view.inside {
             let weight = m.coat_weight;
             let given = self.boundary(&mut bsdf, &self.tables.coat, m.coat_roughness, weight * below, None);
@@ -160,8 +133,8 @@ impl Stack<'_> {
             let both = (fourth(roughness) + 2.0 * fourth(m.coat_roughness)).min(1.0);
             roughness = mix(roughness, both.sqrt().sqrt(), weight);
         }
-        self.metal(&mut bsdf, roughness, below * self.metalness);
-        let dielectric = below * (1.0 - self.metalness);
+        self.metal(&mut bsdf, roughness, below * self.here.base_metalness);
+        let dielectric = below * (1.0 - self.here.base_metalness);
         let through = dielectric * m.transmission_weight;
         if through.max_element() > 0.0 {
             match m.walls {
@@ -171,15 +144,16 @@ impl Stack<'_> {
         }
         let opaque = dielectric * (1.0 - m.transmission_weight);
         if opaque.max_element() > 0.0 {
-            if view.inside && m.has_subsurface() && m.transmission_weight == 0.0 {
+            if view.inside && m.has_body && m.transmission_weight == 0.0 {
                 // Light that was scattered inside leaves in all directions.
                 bsdf.push(DiffuseTransmission { color: Spectrum::ONE }, opaque, opaque.max_element());
                 return bsdf;
             }
             let film = self.film(self.tables.opaque.ior);
-            let given = self.boundary(&mut bsdf, &self.tables.opaque, roughness, opaque * self.specular, film);
+            let specular = m.reflection * self.specular;
+            let given = self.boundary(&mut bsdf, &self.tables.opaque, roughness, opaque * specular, film);
             let diffuse = Diffuse { color: self.base, roughness: m.base_diffuse_roughness };
-            let weight = opaque * (Spectrum::ONE - given);
+            let weight = opaque * (Spectrum::ONE - m.reflection * given);
             let matte = weight * (1.0 - m.subsurface_weight);
             bsdf.push(diffuse, matte, (matte * self.base).max_element());
             self.subsurface(&mut bsdf, weight * m.subsurface_weight);
@@ -192,9 +166,12 @@ impl Stack<'_> {
         if weight.max_element() <= 0.0 {
             return;
         }
-        let m = self.material;
-        if m.has_subsurface() {
-            return bsdf.push(DiffuseTransmission { color: Spectrum::ONE }, weight, weight.max_element());
+        let m = self.here;
+        if m.has_body {
+            let entering =
+                if m.entering == Vec3::ONE { Spectrum::ONE } else { self.view.lanes.reflectance(m.entering) };
+            let share = (weight * entering).max_element();
+            return bsdf.push(DiffuseTransmission { color: entering }, weight, share);
         }
         let color = self.view.lanes.reflectance(m.subsurface_color);
         let onwards = 0.5 * (1.0 + m.subsurface_scatter_anisotropy);
@@ -205,7 +182,7 @@ impl Stack<'_> {
 
     /// The film on a dielectric of an index, if there is one.
     fn film(&self, eta: f32) -> Option<Film> {
-        let m = self.material;
+        let m = self.here;
         // Outside is air; from inside the body is before the film.
         let ior = m.thin_film_ior * eta.min(1.0);
         (m.thin_film_weight > 0.0)
@@ -239,14 +216,14 @@ impl Stack<'_> {
 
     /// What a coat takes of the light on its way down and up, and what it throws back down.
     fn coat(&self, mu: f32) -> Spectrum {
-        let m = self.material;
+        let m = self.here;
         let eta = m.coat_ior;
         let inside = (1.0 - (1.0 - mu * mu) / (eta * eta)).max(0.01).sqrt();
         // Down at right angles, on the mean; up as it is seen.
         let tint = power(self.view.lanes.reflectance(m.coat_color), 0.5 + 0.5 / inside);
-        let roughness = mix(1.0, self.roughness, self.metalness);
+        let roughness = mix(1.0, self.here.specular_roughness, self.here.base_metalness);
         let thrown_back = mix(fresnel::dielectric(mu, eta), fresnel::diffuse(1.0 / eta), roughness);
-        let base = self.base.lerp(Spectrum::ONE, (1.0 - self.metalness) * m.transmission_weight);
+        let base = self.base.lerp(Spectrum::ONE, (1.0 - self.here.base_metalness) * m.transmission_weight);
         let base = base.clamp(Spectrum::ZERO, Spectrum::ONE);
         let darker = (1.0 - thrown_back) / (Spectrum::ONE - base * thrown_back);
         tint * Spectrum::ONE.lerp(darker, m.coat_darkening)
@@ -256,10 +233,10 @@ impl Stack<'_> {
         if weight.max_element() <= 0.0 {
             return;
         }
-        let (m, mu) = (self.material, self.view.wo.z);
+        let (m, mu) = (self.here, self.view.wo.z);
         let f82 = fresnel::F82::new(self.base, self.specular);
         let ggx = Ggx::new(roughness, m.specular_anisotropy);
-        let mut weight = weight * m.specular_weight.min(1.0);
+        let mut weight = weight * m.specular_weight.min(1.0) * m.reflection;
         if m.thin_film_weight > 0.0 {
             let film = Film::on_metal(self.view.lanes, m.thin_film_thickness, m.thin_film_ior, self.base);
             let covered = m.thin_film_weight * weight;
@@ -287,7 +264,7 @@ impl Stack<'_> {
     }
 
     fn glass(&self, bsdf: &mut Bsdf, roughness: f32, weight: Spectrum) {
-        let (m, View { wo, inside, eta, .. }) = (self.material, self.view);
+        let (m, View { wo, inside, eta, .. }) = (self.here, self.view);
         // With a depth the body has the colour, and not its skin.
         let tint = match m.transmission_depth > 0.0 {
             true => Spectrum::ONE,
@@ -323,7 +300,7 @@ impl Stack<'_> {
 
     /// A thin sheet: light is reflected to and fro in it, and leaves it in the direction in which it came.
     fn sheet(&self, bsdf: &mut Bsdf, roughness: f32, weight: Spectrum) {
-        let (m, wo) = (self.material, self.view.wo);
+        let (m, wo) = (self.here, self.view.wo);
         let (eta, ggx) = (m.specular_ior, Ggx::new(roughness, m.specular_anisotropy));
         let plain = fresnel::slab(wo.z, eta);
         // A film is on one of its faces.

@@ -17,7 +17,7 @@ pub mod warp;
 use crate::math::{Vec2, Vec3};
 use crate::spectrum::Spectrum;
 pub use frame::Frame;
-pub use layers::{Layers, Tables};
+pub use layers::Tables;
 pub use lobe::{Lobe, Scatter};
 use smallvec::SmallVec;
 

@@ -7,9 +7,9 @@ use super::lobe::fuzz::Fuzz;
 use super::lobe::rough::{Facet, Rough};
 use super::lobe::rough_glass::RoughGlass;
 use super::microfacet::Ggx;
-use super::{Bsdf, BsdfSample, Layers, Lobe, Scatter, Tables, fresnel, layers, warp};
-use crate::material::PrincipledMaterial;
+use super::{Bsdf, BsdfSample, Lobe, Scatter, Tables, fresnel, layers, warp};
 use crate::material::principled::Walls;
+use crate::material::{Parameters, PrincipledMaterial};
 use crate::math::{Vec2, Vec3, fp};
 use crate::sampler;
 use crate::spectrum::{Lanes, Spectrum};
@@ -167,16 +167,16 @@ impl<'a> Furnace<'a> {
     /// What it gives back, with a roughness and seen at a cosine, and the standard error of that. What goes into glass counts by
     /// its flux: its radiance is denser by the square of the index.
     pub fn gives(&self, roughness: f32, cosine: f32, samples: u32) -> (f64, f64) {
-        let layers = Layers { roughness, ..Layers::of(self.material) };
+        let here = Parameters { specular_roughness: roughness, ..Parameters::of(self.material) };
         let wo = warp::polar(cosine, 0.0);
-        given(&seen(self.material, &layers, &self.tables, wo), wo, samples)
+        given(&seen(&here, &self.tables, wo), wo, samples)
     }
 }
 
 /// A material from outside.
-pub(super) fn seen(material: &PrincipledMaterial, layers: &Layers, tables: &Tables, wo: Vec3) -> Bsdf {
-    let view = layers::View { lanes: &Lanes::Rgb, wo, inside: false, eta: material.specular_ior };
-    layers::scattering(material, layers, tables, view)
+pub(super) fn seen(here: &Parameters, tables: &Tables, wo: Vec3) -> Bsdf {
+    let view = layers::View { lanes: &Lanes::Rgb, wo, inside: false, eta: here.specular_ior };
+    layers::scattering(here, tables, view)
 }
 
 /// What lobes give back.

@@ -3,7 +3,7 @@
 use super::lobe::blinn::Blinn;
 use super::proof::{Cells, Furnace, broad, filmed, given, lossless, seen};
 use super::*;
-use crate::material::PrincipledMaterial;
+use crate::material::{Parameters, PrincipledMaterial};
 use crate::math::random::Random;
 
 #[test]
@@ -75,7 +75,7 @@ fn nothing_gives_back_more_than_it_gets() {
         };
         let tables = TABLES.get_or_init(|| Tables::new(&material, None, &mut Vec::new()));
         let wo = warp::polar(share().max(0.02), share());
-        let bsdf = seen(&material, &Layers::of(&material), tables, wo);
+        let bsdf = seen(&Parameters::of(&material), tables, wo);
         let (mean, error) = given(&bsdf, wo, 1 << 12);
         assert!(mean < 1.01 + 4.0 * error, "{round}: {mean} ± {error} from {material:?} at {wo}");
     }

@@ -7,15 +7,16 @@ use crate::dialect::{Compat, Rules};
 use crate::format;
 use crate::image::{self, Encoded, ImageError};
 use crate::light::{Emitter as _, Light, Profile};
-use crate::material::PrincipledMaterial;
+use crate::material::parameters::{Change, TEXTURED};
+use crate::material::{Parameters, PrincipledMaterial};
 use crate::math::Aabb;
 use crate::medium::DensityGrid;
 use crate::scene::{Assets, Background, PictureBytes};
 use crate::shape::{HeightField, Mesh, MeshData};
 use crate::source::SourceError;
 use crate::spectrum::{Curve, illuminants};
-use crate::texture::{CieSky, CubeMap, Environment, Mapping, Sky, Texture, sky};
-use crate::world::{Maps, MeshTree};
+use crate::texture::{Channel, CieSky, CubeMap, Environment, Mapping, Sky, Texture, sky};
+use crate::world::{Map, Maps, MeshTree};
 use rayon::prelude::*;
 use std::collections::HashMap;
 use std::path::PathBuf;
@@ -186,9 +187,13 @@ impl<'r> Loader<'r> {
             return *known;
         }
         let asset = self.assets.pictures.get(&name.path);
-        let mapping = asset.map_or_else(Mapping::default, |picture| picture.mapping);
-        let bytes = asset.map(|picture| picture.bytes.clone());
-        let texture = self.picture(name, bytes.unwrap_or(PictureBytes::File(name.path.clone())), encoding, diagnostics);
+        let mut mapping = asset.map_or_else(Mapping::default, |picture| picture.mapping);
+        let bytes = asset.map(|picture| picture.bytes.clone()).unwrap_or_else(|| {
+            let word = name.path.rsplit_once(':').and_then(|(path, word)| Some((path, Channel::from_word(word)?)));
+            mapping.channel = word.map(|(_, channel)| channel);
+            PictureBytes::File(word.map_or(name.path.as_str(), |(path, _)| path).into())
+        });
+        let texture = self.picture(name, bytes, encoding, diagnostics);
         let number = texture.map(|texture| {
             self.textures.push(texture.mapped(mapping));
             (self.textures.len() - 1) as u32
@@ -199,14 +204,35 @@ impl<'r> Loader<'r> {
 
     /// The textures of a material in layers; what is wrong with one is said, and the material goes without it.
     pub(super) fn maps(&mut self, layers: &PrincipledMaterial, diagnostics: &mut Diagnostics) -> Maps {
-        let mut one =
-            |name: &Option<FileName>, encoding| name.as_ref().and_then(|name| self.map(name, encoding, diagnostics));
-        Maps {
-            base_color: one(&layers.base_color_texture, Encoding::Srgb),
-            metallic_roughness: one(&layers.metallic_roughness_texture, Encoding::Linear),
-            emission: one(&layers.emission_texture, Encoding::Srgb),
-            normal: one(&layers.normal_texture, Encoding::Linear),
+        let mut one = |name: Option<&FileName>, encoding| name.and_then(|name| self.map(name, encoding, diagnostics));
+        let mut maps = Maps {
+            base_color: one(layers.base_color_texture.as_ref(), Encoding::Srgb),
+            emission: one(layers.emission_texture.as_ref(), Encoding::Srgb),
+            opacity: one(layers.opacity_texture.as_ref(), Encoding::Linear),
+            normal: one(layers.normal_texture.as_ref(), Encoding::Linear),
+            bump: one(layers.bump_texture.as_ref(), Encoding::Linear),
+            bump_height: layers.bump_height,
+            parameters: Vec::new(),
+        };
+        for row in TEXTURED {
+            let encoding = match row.change {
+                Change::Number(_) => Encoding::Linear,
+                Change::Color(_) => Encoding::Srgb,
+            };
+            if let Some(texture) = one((row.picture)(layers), encoding) {
+                maps.parameters.push(Map { change: row.change, texture, channel: None });
+            }
         }
+        if let Some(texture) = one(layers.metallic_roughness_texture.as_ref(), Encoding::Linear) {
+            let change = |change: fn(&mut Parameters, f32), channel| Map {
+                change: Change::Number(change),
+                texture,
+                channel: Some(channel),
+            };
+            maps.parameters.push(change(|p, by| p.specular_roughness *= by, Channel::Green));
+            maps.parameters.push(change(|p, by| p.base_metalness *= by, Channel::Blue));
+        }
+        maps
     }
 
     /// A picture, decoded once whatever number of textures shows it.

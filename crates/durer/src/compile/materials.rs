@@ -2,11 +2,11 @@
 
 use super::files::Loader;
 use super::media;
-use crate::bsdf::{Layers, Tables};
+use crate::bsdf::Tables;
 use crate::diag::{Diagnostic, Diagnostics};
 use crate::dialect::{Compat, Highlight, Rules, Secondary};
 use crate::material::principled::Walls;
-use crate::material::{ColorNoise, Pattern, PhongMaterial, PrincipledMaterial};
+use crate::material::{ColorNoise, Parameters, Pattern, PhongMaterial, PrincipledMaterial};
 use crate::math::Color;
 use crate::scene::{self, MatrixOp, Scene};
 use crate::world::{Emission, HighlightModel, Material, Phong, Principled};
@@ -43,7 +43,7 @@ pub(super) fn compile(
                 principled: Some(Arc::new(Principled {
                     written: layers.clone(),
                     maps,
-                    layers: Layers::of(layers),
+                    parameters: Parameters::of(layers),
                     tables: Tables::new(layers, measured, &mut tables),
                     illuminant,
                     medium: media::inside(layers),

@@ -1,11 +1,13 @@
 //! Models as scenes: what is read of them, what is refused, and where.
 
 use super::*;
+use crate::describe::FileName;
 use crate::diag::Diagnostic;
 use crate::material::PrincipledMaterial;
 use crate::math::{Vec3, fp};
 use crate::scene::{Material, Node, Studio, View};
 use crate::source::Digest;
+use crate::texture::Channel;
 use std::fs;
 
 /// Loads a file of a folder; findings as `code: message`.
@@ -247,10 +249,10 @@ fn materials_of_gltf_are_told_in_openpbr_s_words() {
         "KHR_materials_sheen": { "sheenColorFactor": [0.5, 0.25, 0] },
         "KHR_materials_transmission": { "transmissionFactor": 0.75 },
         "KHR_materials_volume": { "thicknessFactor": 1, "attenuationDistance": 2, "attenuationColor": [0, 1, 0] },
-        "KHR_materials_iridescence": {} } }, {}], "meshes""#;
+        "KHR_materials_subsurface": {} } }, {}], "meshes""#;
     let folder = changed("\"meshes\"", material);
     let (scene, found) = read(folder.path(), "a.gltf", &LoadOptions::default());
-    assert_eq!(found, ["KHR_materials_iridescence: iridescence is left out"]);
+    assert_eq!(found, ["KHR_materials_subsurface: scattering below the surface is left out"]);
     let scene = scene.unwrap();
     let m = principled(&scene, 0);
     assert_eq!((m.base_color, m.base_metalness, m.specular_roughness), (Vec3::new(0.5, 0.25, 1.0), 0.25, 0.75));
@@ -323,4 +325,28 @@ fn obj_is_parted_by_material_and_reads_mtl() {
     assert_eq!(picture.mapping.transform, [[2.0, 0.0, 0.5], [0.0, 3.0, -2.25]]);
     let glass = principled(&scene, 1);
     assert_eq!((glass.transmission_weight, glass.specular_ior, glass.emission_luminance), (0.75, 1.25, 4.0));
+}
+
+#[test]
+fn pictures_of_mtl_change_their_parameters() {
+    let folder = tempfile::tempdir().unwrap();
+    let put = |name: &str, bytes: &[u8]| fs::write(folder.path().join(name), bytes).unwrap();
+    put("m.obj", b"mtllib m.mtl\nv 0 0 0\nv 3 0 0\nv 3 4 0\nusemtl a\nf 1 2 3\nusemtl b\nf 3 2 1\n");
+    let maps =
+        "map_Ks p.ppm\nmap_Pr -imfchan g p.ppm\nmap_Pm -mm 0.25 0.5 p.ppm\nmap_Pc p.ppm\nmap_d p.ppm\nmap_Ke p.ppm\n";
+    put("m.mtl", format!("newmtl a\n{maps}map_bump -bm 3 p.ppm\nnewmtl b\nbump p_normal.ppm\n").as_bytes());
+    put("p.ppm", b"P6 1 1 255\n\xff\xff\xff");
+    put("p_normal.ppm", b"P6 1 1 255\n\x80\x80\xff");
+    let (scene, found) = read(folder.path(), "m.obj", &LoadOptions::default());
+    let scene = scene.unwrap_or_else(|| panic!("{found:?}"));
+    let (m, other) = (principled(&scene, 0), principled(&scene, 1));
+    let mapping = |name: &Option<FileName>| scene.assets.pictures[&name.as_ref().unwrap().path].mapping;
+    assert_eq!(mapping(&m.specular_roughness_texture).channel, Some(Channel::Green));
+    assert_eq!(mapping(&m.base_metalness_texture).range, [0.25, 0.75]);
+    assert!(m.specular_color_texture.is_some() && m.opacity_texture.is_some() && m.emission_texture.is_some());
+    // What has a picture and no number is that of the picture.
+    assert_eq!((m.specular_roughness, m.base_metalness, m.coat_weight, m.emission_luminance), (1.0, 1.0, 1.0, 1.0));
+    // A bump map's height is in sizes of the model, here 5.
+    assert!(m.bump_texture.is_some() && (m.bump_height - 3.0 * 0.002 * 5.0).abs() < 1e-6, "{}", m.bump_height);
+    assert!(other.bump_texture.is_none() && other.normal_texture.is_some());
 }

@@ -4,6 +4,7 @@
 pub mod checkerboard;
 pub mod marble;
 pub mod mix;
+pub mod parameters;
 pub mod phong;
 pub mod presets;
 pub mod principled;
@@ -13,6 +14,7 @@ pub mod wood;
 use crate::describe::Field;
 use crate::described_list;
 use crate::math::Vec3;
+pub use parameters::Parameters;
 pub use phong::{ColorNoise, PhongMaterial};
 pub use principled::PrincipledMaterial;
 

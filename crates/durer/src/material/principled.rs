@@ -2,6 +2,7 @@
 //!
 //! Source: *OpenPBR Surface specification*, version 1.1, Academy Software Foundation, 2024.
 
+use super::parameters::TEXTURED;
 use crate::describe::{FileName, Rule};
 use crate::dialect::set;
 use crate::math::Vec3;
@@ -17,6 +18,8 @@ described! {
     PrincipledMaterial ["PrincipledMaterial" in set::DURER] {
         /// Strength of the base, from 0 to 1: of the matte colour and of the metal's.
         base_weight: f32 = 1.0, optional, Rule::Share, ["baseWeight" in set::DURER];
+        /// A picture that multiplies `baseWeight`. Of a picture that multiplies a number, red counts, or the channel after a colon: `file.png:g`.
+        base_weight_texture: Option<FileName> = None, optional, Rule::Any, ["baseWeightTexture" in set::DURER];
         /// Share of light that the matte base scatters, and what a metal reflects at right angles; from 0 to 1.
         base_color: Vec3 = Vec3::splat(0.8), optional, Rule::Any, ["baseColor" in set::DURER];
         /// A file with a measured reflectance, which stands in place of `baseColor`: rows of nanometres and shares from 0 to 1; with
@@ -26,27 +29,51 @@ described! {
         base_color_texture: Option<FileName> = None, optional, Rule::Any, ["baseColorTexture" in set::DURER];
         /// How rough the matte base is, from 0 (Lambert) to 1.
         base_diffuse_roughness: f32 = 0.0, optional, Rule::Share, ["baseDiffuseRoughness" in set::DURER];
+        /// A picture that multiplies `baseDiffuseRoughness`.
+        base_diffuse_roughness_texture: Option<FileName> = None, optional, Rule::Any,
+            ["baseDiffuseRoughnessTexture" in set::DURER];
         /// From 0 (glass or matte) to 1 (metal).
         base_metalness: f32 = 0.0, optional, Rule::Share, ["baseMetalness" in set::DURER];
+        /// A picture that multiplies `baseMetalness`.
+        base_metalness_texture: Option<FileName> = None, optional, Rule::Any, ["baseMetalnessTexture" in set::DURER];
         /// Strength of the reflection, from 0 to 1 or more: it scales what reflects at right angles.
         specular_weight: f32 = 1.0, optional, Rule::NonNegative, ["specularWeight" in set::DURER];
+        /// A picture that multiplies the whole reflection, at all angles alike.
+        specular_weight_texture: Option<FileName> = None, optional, Rule::Any, ["specularWeightTexture" in set::DURER];
         /// Tint of the reflection; on metal the colour near grazing angles.
         specular_color: Vec3 = Vec3::ONE, optional, Rule::Any, ["specularColor" in set::DURER];
+        /// A picture that multiplies `specularColor`; its values are read as sRGB.
+        specular_color_texture: Option<FileName> = None, optional, Rule::Any, ["specularColorTexture" in set::DURER];
         /// How rough the surface is, from 0 (a mirror) to 1; its square is GGX's alpha.
         specular_roughness: f32 = 0.3, optional, Rule::Share, ["specularRoughness" in set::DURER];
+        /// A picture that multiplies `specularRoughness`.
+        specular_roughness_texture: Option<FileName> = None, optional, Rule::Any,
+            ["specularRoughnessTexture" in set::DURER];
         /// A picture whose green multiplies `specularRoughness` and whose blue multiplies `baseMetalness`.
         metallic_roughness_texture: Option<FileName> = None, optional, Rule::Any,
             ["metallicRoughnessTexture" in set::DURER];
         /// How much longer than wide the highlight is, from 0 (round) to 1.
         specular_anisotropy: f32 = 0.0, optional, Rule::Share, ["specularAnisotropy" in set::DURER];
+        /// A picture that multiplies `specularAnisotropy`.
+        specular_anisotropy_texture: Option<FileName> = None, optional, Rule::Any,
+            ["specularAnisotropyTexture" in set::DURER];
         /// Turns the highlight about the normal, in whole turns, from the direction in which u grows.
         specular_rotation: f32 = 0.0, optional, Rule::Any, ["specularRotation" in set::DURER];
+        /// A picture that is added to `specularRotation`, in whole turns; `file.png:angle` has it as a direction in red and green.
+        specular_rotation_texture: Option<FileName> = None, optional, Rule::Any,
+            ["specularRotationTexture" in set::DURER];
         /// Index of refraction inside.
         specular_ior: f32 = 1.5, optional, Rule::Positive, ["specularIor" in set::DURER];
         /// From 0 (matte) to 1 (glass).
         transmission_weight: f32 = 0.0, optional, Rule::Share, ["transmissionWeight" in set::DURER];
+        /// A picture that multiplies `transmissionWeight`.
+        transmission_weight_texture: Option<FileName> = None, optional, Rule::Any,
+            ["transmissionWeightTexture" in set::DURER];
         /// Colour of light that went `transmissionDepth` deep; where that is 0, of all that passes the surface.
         transmission_color: Vec3 = Vec3::ONE, optional, Rule::Any, ["transmissionColor" in set::DURER];
+        /// A picture that multiplies `transmissionColor` where `transmissionDepth` is 0; its values are read as sRGB.
+        transmission_color_texture: Option<FileName> = None, optional, Rule::Any,
+            ["transmissionColorTexture" in set::DURER];
         /// How deep light goes until it has `transmissionColor`, in units of the world; 0: the surface tints it.
         transmission_depth: f32 = 0.0, optional, Rule::NonNegative, ["transmissionDepth" in set::DURER];
         /// Colour of the light that a body scatters inside, per `transmissionDepth`; 0 0 0: it is clear.
@@ -62,8 +89,13 @@ described! {
             ["transmissionDispersionAbbeNumber" in set::DURER];
         /// From 0 (matte) to 1 (light goes into the body, is scattered there and comes out elsewhere: marble, milk, skin).
         subsurface_weight: f32 = 0.0, optional, Rule::Share, ["subsurfaceWeight" in set::DURER];
+        /// A picture that multiplies `subsurfaceWeight`.
+        subsurface_weight_texture: Option<FileName> = None, optional, Rule::Any,
+            ["subsurfaceWeightTexture" in set::DURER];
         /// The colour that such a body shows.
         subsurface_color: Vec3 = Vec3::splat(0.8), optional, Rule::Any, ["subsurfaceColor" in set::DURER];
+        /// A picture that multiplies `subsurfaceColor` where light enters; its values are read as sRGB.
+        subsurface_color_texture: Option<FileName> = None, optional, Rule::Any, ["subsurfaceColorTexture" in set::DURER];
         /// How far light goes in it until it is scattered, on the mean, in units of the world.
         subsurface_radius: f32 = 1.0, optional, Rule::Positive, ["subsurfaceRadius" in set::DURER];
         /// What multiplies `subsurfaceRadius` for red, green and blue.
@@ -74,24 +106,43 @@ described! {
             ["subsurfaceScatterAnisotropy" in set::DURER];
         /// Strength of the clear coat, from 0 to 1.
         coat_weight: f32 = 0.0, optional, Rule::Share, ["coatWeight" in set::DURER];
+        /// A picture that multiplies `coatWeight`.
+        coat_weight_texture: Option<FileName> = None, optional, Rule::Any, ["coatWeightTexture" in set::DURER];
         /// Colour of what passes the coat down and up again at right angles.
         coat_color: Vec3 = Vec3::ONE, optional, Rule::Any, ["coatColor" in set::DURER];
+        /// A picture that multiplies `coatColor`; its values are read as sRGB.
+        coat_color_texture: Option<FileName> = None, optional, Rule::Any, ["coatColorTexture" in set::DURER];
         /// How rough the coat is, from 0 to 1.
         coat_roughness: f32 = 0.0, optional, Rule::Share, ["coatRoughness" in set::DURER];
+        /// A picture that multiplies `coatRoughness`.
+        coat_roughness_texture: Option<FileName> = None, optional, Rule::Any, ["coatRoughnessTexture" in set::DURER];
         /// Index of refraction of the coat.
         coat_ior: f32 = 1.6, optional, Rule::Positive, ["coatIor" in set::DURER];
         /// How much a coat darkens what it covers by reflecting light back down, from 0 to 1 (as physics has it).
         coat_darkening: f32 = 1.0, optional, Rule::Share, ["coatDarkening" in set::DURER];
+        /// A picture that multiplies `coatDarkening`.
+        coat_darkening_texture: Option<FileName> = None, optional, Rule::Any, ["coatDarkeningTexture" in set::DURER];
         /// Strength of the fuzz on top, as of velvet or dust, from 0 to 1.
         fuzz_weight: f32 = 0.0, optional, Rule::Share, ["fuzzWeight" in set::DURER];
+        /// A picture that multiplies `fuzzWeight`.
+        fuzz_weight_texture: Option<FileName> = None, optional, Rule::Any, ["fuzzWeightTexture" in set::DURER];
         /// Colour of the fuzz.
         fuzz_color: Vec3 = Vec3::ONE, optional, Rule::Any, ["fuzzColor" in set::DURER];
+        /// A picture that multiplies `fuzzColor`; its values are read as sRGB.
+        fuzz_color_texture: Option<FileName> = None, optional, Rule::Any, ["fuzzColorTexture" in set::DURER];
         /// How rough the fuzz is, from 0 to 1.
         fuzz_roughness: f32 = 0.5, optional, Rule::Share, ["fuzzRoughness" in set::DURER];
+        /// A picture that multiplies `fuzzRoughness`.
+        fuzz_roughness_texture: Option<FileName> = None, optional, Rule::Any, ["fuzzRoughnessTexture" in set::DURER];
         /// How much of the surface below the coat has a thin film on it, from 0 to 1: soap, oil, tempered steel, the layers of a pearl.
         thin_film_weight: f32 = 0.0, optional, Rule::Share, ["thinFilmWeight" in set::DURER];
+        /// A picture that multiplies `thinFilmWeight`.
+        thin_film_weight_texture: Option<FileName> = None, optional, Rule::Any, ["thinFilmWeightTexture" in set::DURER];
         /// How thick the film is, in micrometres.
         thin_film_thickness: f32 = 0.5, optional, Rule::NonNegative, ["thinFilmThickness" in set::DURER];
+        /// A picture that multiplies `thinFilmThickness`.
+        thin_film_thickness_texture: Option<FileName> = None, optional, Rule::Any,
+            ["thinFilmThicknessTexture" in set::DURER];
         /// Index of refraction of the film.
         thin_film_ior: f32 = 1.4, optional, Rule::Positive, ["thinFilmIor" in set::DURER];
         /// How bright the surface shines, in cd/m^2; a pixel of value 1 shows 1 cd/m^2.
@@ -105,8 +156,14 @@ described! {
         emission_texture: Option<FileName> = None, optional, Rule::Any, ["emissionTexture" in set::DURER];
         /// A picture of normals in tangent space, as glTF has it: red and green point along u and v, blue outwards.
         normal_texture: Option<FileName> = None, optional, Rule::Any, ["normalTexture" in set::DURER];
+        /// A picture of heights, which bends the normals as if the surface rose where it is bright: a bump map.
+        bump_texture: Option<FileName> = None, optional, Rule::Any, ["bumpTexture" in set::DURER];
+        /// How far its white lies above its black, in units of the world; negative where white lies deep.
+        bump_height: f32 = 0.01, optional, Rule::Any, ["bumpHeight" in set::DURER];
         /// Share of the surface that is there, from 0 to 1: the rest lets light through as if nothing were there.
         opacity: f32 = 1.0, optional, Rule::Share, ["opacity" in set::DURER];
+        /// A picture that multiplies `opacity`: its alpha where it has one, else red.
+        opacity_texture: Option<FileName> = None, optional, Rule::Any, ["opacityTexture" in set::DURER];
         /// `thin`: a sheet without inside, through which light goes straight; `solid`: the skin of a body.
         walls: Walls = Walls::Solid, optional, Rule::Any, ["walls" in set::DURER];
     }
@@ -116,6 +173,14 @@ impl PrincipledMaterial {
     /// Whether light goes into the body, is scattered there, and comes out again.
     pub fn has_subsurface(&self) -> bool {
         self.subsurface_weight > 0.0 && self.walls == Walls::Solid
+    }
+
+    /// Whether some picture lies on it.
+    pub fn has_pictures(&self) -> bool {
+        let others = [&self.emission_texture, &self.normal_texture, &self.bump_texture, &self.opacity_texture];
+        TEXTURED.iter().any(|row| (row.picture)(self).is_some())
+            || others.iter().any(|picture| picture.is_some())
+            || self.metallic_roughness_texture.is_some()
     }
 
     /// Whether colours are spread.

@@ -273,6 +273,11 @@ impl Mesh {
             let tangent = barycentric.x * a + barycentric.y * b + barycentric.z * c;
             return Some([tangent, corners[0][3] * normal.cross(tangent)]);
         }
+        self.derivatives(part, second)
+    }
+
+    /// How a point of a triangle moves as its texture coordinates grow by 1.
+    pub fn derivatives(&self, part: u32, second: bool) -> Option<[Vec3; 2]> {
         let [a, b, c] = match second {
             true => attribute(&self.data.triangles, &self.data.second_uvs, part)?,
             false => attribute(&self.data.triangle_uvs, &self.data.uvs, part)?,

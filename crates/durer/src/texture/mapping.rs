@@ -1,6 +1,6 @@
 //! How a picture lies on a surface, as glTF has it: wrapping, filtering, a transform of the coordinates.
 
-use crate::math::Vec2;
+use crate::math::{Vec2, fp};
 use serde::{Deserialize, Serialize};
 
 /// What is beyond a picture's border.
@@ -13,6 +13,46 @@ pub enum Wrap {
     Mirror,
     /// The border's texels without end.
     Clamp,
+}
+
+/// What of a picture's texel is a number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Channel {
+    /// Red.
+    Red,
+    /// Green.
+    Green,
+    /// Blue.
+    Blue,
+    /// Opacity.
+    Alpha,
+    /// The angle, in turns, of the direction whose parts are red and green, 1/2 being 0.
+    Angle,
+}
+
+impl Channel {
+    /// By the letter or word that stands for it after the colon of `file.png:g`.
+    pub fn from_word(word: &str) -> Option<Self> {
+        Some(match word {
+            "r" => Channel::Red,
+            "g" => Channel::Green,
+            "b" => Channel::Blue,
+            "a" => Channel::Alpha,
+            "angle" => Channel::Angle,
+            _ => return None,
+        })
+    }
+
+    /// The number.
+    pub fn of(self, [r, g, b, a]: [f32; 4]) -> f32 {
+        match self {
+            Channel::Red => r,
+            Channel::Green => g,
+            Channel::Blue => b,
+            Channel::Alpha => a,
+            Channel::Angle => fp::atan2(2.0 * g - 1.0, 2.0 * r - 1.0) / std::f32::consts::TAU,
+        }
+    }
 }
 
 /// How a picture lies on a surface.
@@ -30,6 +70,10 @@ pub struct Mapping {
     pub cutoff: Option<f32>,
     /// How far the normals of a normal map lean, times; 1 as written.
     pub strength: f32,
+    /// What counts where a number is wanted; `None`: red, or of opacity what there is.
+    pub channel: Option<Channel>,
+    /// What a texel's 0 and 1 stand for, where the picture changes a parameter.
+    pub range: [f32; 2],
 }
 
 impl Default for Mapping {
@@ -41,6 +85,8 @@ impl Default for Mapping {
             transform: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
             cutoff: None,
             strength: 1.0,
+            channel: None,
+            range: [0.0, 1.0],
         }
     }
 }

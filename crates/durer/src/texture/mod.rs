@@ -10,7 +10,7 @@ use crate::math::{Color, Vec2};
 pub use cie_sky::CieSky;
 pub use cube_map::CubeMap;
 pub use environment::Environment;
-pub use mapping::{Mapping, Wrap};
+pub use mapping::{Channel, Mapping, Wrap};
 pub use sky::Sky;
 use std::sync::Arc;
 
@@ -76,7 +76,26 @@ impl Texture {
 
     /// Colour and opacity at (u, v), with v upwards, as its mapping says. Bilinear mixing is of linear values.
     pub fn texel(&self, mapping: &Mapping, uv: Vec2) -> [f32; 4] {
+        self.texel_at(mapping, mapping.place(uv))
+    }
+
+    /// How the red of a place changes with u and v.
+    pub fn slope(&self, mapping: &Mapping, uv: Vec2) -> Vec2 {
         let place = mapping.place(uv);
+        // As far as a texel is wide: less would tell where texels lie, and no more of the picture.
+        let step = Vec2::new(1.0 / self.width as f32, 1.0 / self.height as f32);
+        let along = |way: Vec2| {
+            let [after, before] = [place + 0.5 * way, place - 0.5 * way].map(|at| self.texel_at(mapping, at)[0]);
+            after - before
+        };
+        let (x, y) = (along(Vec2::new(step.x, 0.0)) / step.x, along(Vec2::new(0.0, step.y)) / step.y);
+        let [[a, b, _], [c, d, _]] = mapping.transform;
+        // The surface's v goes up, the picture's down.
+        Vec2::new(a * x + c * y, -(b * x + d * y))
+    }
+
+    /// The same at a place of the picture, in its widths from the left and heights from the top.
+    fn texel_at(&self, mapping: &Mapping, place: Vec2) -> [f32; 4] {
         let (x, y) = (f64::from(place.x) * f64::from(self.width), f64::from(place.y) * f64::from(self.height));
         let texel = |i: i64, j: i64| {
             let (i, j) = (mapping.wrap[0].index(i, self.width), mapping.wrap[1].index(j, self.height));

@@ -1,40 +1,85 @@
 //! What the pictures on a surface and the colours of its vertices make of a material in layers.
 
 use super::{Geometry, Hit, Principled, World};
-use crate::bsdf::Layers;
-use crate::math::{Color, Vec2, Vec3};
-use crate::shape::{Primitive, Surface};
-use crate::texture::Texture;
+use crate::material::Parameters;
+use crate::material::parameters::Change;
+use crate::math::{Color, Ray, Vec2, Vec3};
+use crate::shape::{Primitive, Shape, Surface};
+use crate::texture::{Channel, Texture};
+use std::borrow::Cow;
 
 /// The pictures of a material in layers, by their numbers in [`World::textures`].
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Maps {
-    /// Multiplies the base colour; its alpha multiplies the opacity.
+    /// Its alpha multiplies the opacity.
     pub base_color: Option<u32>,
-    /// Green multiplies the roughness, blue the metalness.
-    pub metallic_roughness: Option<u32>,
     /// Multiplies the colour of emission.
     pub emission: Option<u32>,
+    /// Multiplies the opacity.
+    pub opacity: Option<u32>,
     /// Normals in tangent space.
     pub normal: Option<u32>,
+    /// Heights.
+    pub bump: Option<u32>,
+    /// How far their 1 lies above their 0, in units of the world.
+    pub bump_height: f32,
+    /// What changes parameters.
+    pub parameters: Vec<Map>,
+}
+
+/// A picture that changes a parameter.
+#[derive(Clone, Copy, Debug)]
+pub struct Map {
+    /// What it does.
+    pub change: Change,
+    /// Its number.
+    pub texture: u32,
+    /// What counts of it where a number is wanted; `None`: what its mapping says, or red.
+    pub channel: Option<Channel>,
+}
+
+impl PartialEq for Map {
+    fn eq(&self, other: &Self) -> bool {
+        let (own, others) = (&self.change, &other.change);
+        let same = match (own, others) {
+            (Change::Number(a), Change::Number(b)) => std::ptr::fn_addr_eq(*a, *b),
+            (Change::Color(a), Change::Color(b)) => std::ptr::fn_addr_eq(*a, *b),
+            _ => false,
+        };
+        same && (self.texture, self.channel) == (other.texture, other.channel)
+    }
 }
 
 impl World {
-    /// What of a material in layers differs from point to point.
+    /// The parameters of a material in layers at a hit.
     ///
-    /// `surface` is the [surface](World::surface) at that hit. Where it has no texture coordinates, pictures are left out.
-    pub fn layers_at(&self, own: &Principled, hit: &Hit, surface: &Surface) -> Layers {
-        let mut here = own.layers;
+    /// `surface` is the [surface](World::surface) there. Where it has no texture coordinates, pictures are left out.
+    pub fn parameters_at<'a>(&self, own: &'a Principled, hit: &Hit, surface: &Surface) -> Cow<'a, Parameters> {
         let [r, g, b, _] = surface.color;
+        if own.maps.parameters.is_empty() && [r, g, b] == [1.0; 3] {
+            return Cow::Borrowed(&own.parameters);
+        }
+        let mut here = own.parameters;
         here.base_color *= Vec3::new(r, g, b);
-        if let Some([r, g, b, _]) = self.texel(own.maps.base_color, hit, surface) {
-            here.base_color *= Vec3::new(r, g, b);
+        // Pictures that change several parameters are looked up once.
+        let mut last: Option<(u32, [f32; 4])> = None;
+        for map in &own.maps.parameters {
+            let known = last.filter(|(number, _)| *number == map.texture).map(|(_, texel)| texel);
+            let Some(texel) = known.or_else(|| self.texel(Some(map.texture), hit, surface)) else { continue };
+            last = Some((map.texture, texel));
+            let mapping = self.textures[map.texture as usize].mapping().copied().unwrap_or_default();
+            let channel = map.channel.or(mapping.channel).unwrap_or(Channel::Red);
+            let [low, high] = mapping.range;
+            let ranged = |x: f32| if [low, high] == [0.0, 1.0] { x } else { low + x * (high - low) };
+            match map.change {
+                Change::Number(change) => change(&mut here, ranged(channel.of(texel))),
+                Change::Color(change) => {
+                    let [r, g, b, _] = texel;
+                    change(&mut here, Vec3::new(r, g, b).map(ranged));
+                }
+            }
         }
-        if let Some([_, roughness, metalness, _]) = self.texel(own.maps.metallic_roughness, hit, surface) {
-            here.roughness *= roughness;
-            here.metalness *= metalness;
-        }
-        here
+        Cow::Owned(here)
     }
 
     /// What a picture makes of a surface's own light.
@@ -45,12 +90,20 @@ impl World {
     /// The share of a surface that is there, by number, vertices and picture.
     pub(super) fn opacity_at(&self, own: &Principled, hit: &Hit, surface: &Surface) -> f32 {
         let alpha = self.texel(own.maps.base_color, hit, surface).map_or(1.0, |texel| texel[3]);
-        own.written.opacity * surface.color[3] * alpha
+        let share = own.maps.opacity.and_then(|map| {
+            let texture = &self.textures[map as usize];
+            let usual = if texture.has_alpha() { Channel::Alpha } else { Channel::Red };
+            let channel = texture.mapping().and_then(|mapping| mapping.channel).unwrap_or(usual);
+            Some(channel.of(self.texel(Some(map), hit, surface)?))
+        });
+        own.written.opacity * surface.color[3] * alpha * share.unwrap_or(1.0)
     }
 
     /// Whether a material in layers may be there in part only. Vertices may say so of any.
     pub(super) fn is_cutout(&self, own: &Principled) -> bool {
-        own.written.opacity < 1.0 || own.maps.base_color.is_some_and(|map| self.textures[map as usize].has_alpha())
+        own.written.opacity < 1.0
+            || own.maps.opacity.is_some()
+            || own.maps.base_color.is_some_and(|map| self.textures[map as usize].has_alpha())
     }
 
     fn texel(&self, map: Option<u32>, hit: &Hit, surface: &Surface) -> Option<[f32; 4]> {
@@ -68,18 +121,28 @@ impl World {
         }
     }
 
-    /// The normal that a normal map says: x along the direction in which the picture's u grows, y along its v upwards.
-    pub(super) fn mapped_normal(&self, map: Option<u32>, hit: &Hit, surface: &Surface) -> Option<Vec3> {
-        let texture = &self.textures[map? as usize];
+    /// The normal that a bump map and then a normal map make of that for shading; `None` where there are none.
+    pub(super) fn mapped_normal(&self, maps: &Maps, hit: &Hit, surface: &Surface) -> Option<Vec3> {
+        let bumped = maps.bump.and_then(|map| self.bumped(map, maps.bump_height, hit, surface));
+        let normal = bumped.unwrap_or(surface.n_shade);
+        maps.normal.and_then(|map| self.leaning(map, hit, surface, normal)).or(bumped)
+    }
+
+    /// The normal that a picture of normals says: x along the direction in which the picture's u grows, y along its v upwards.
+    fn leaning(&self, map: u32, hit: &Hit, surface: &Surface, normal: Vec3) -> Option<Vec3> {
+        let texture = &self.textures[map as usize];
         let mapping = texture.mapping().copied().unwrap_or_default();
         let object = &self.objects[hit.object as usize];
-        let Geometry::Mesh(tree) = &object.geometry else { return None };
         let [r, g, b, _] = texture.texel(&mapping, self.coordinates(texture, hit, surface)?);
-        // The tangents of the file are given about the object's own normal.
-        let normal = surface.n_shade;
-        let own = object.to_world.as_ref().map_or(normal, |to_world| to_world.local_normal(normal));
-        let grow = tree.mesh.tangents(hit.part, surface.barycentric, own, mapping.second)?;
-        let grow = grow.map(|v| object.to_world.as_ref().map_or(v, |to_world| to_world.vector(v)));
+        let grow = match &object.geometry {
+            Geometry::Mesh(tree) => {
+                // The tangents of the file are given about the object's own normal.
+                let own = object.to_world.as_ref().map_or(normal, |to_world| to_world.local_normal(normal));
+                let grow = tree.mesh.tangents(hit.part, surface.barycentric, own, mapping.second)?;
+                grow.map(|v| object.to_world.as_ref().map_or(v, |to_world| to_world.vector(v)))
+            }
+            _ => self.derivatives(hit, surface, mapping.second)?,
+        };
         let [u, v] = mapping.directions(grow);
         let tangent = u.reject_from_normalized(normal).try_normalize()?;
         // Perpendicular, on the side to which v grows.
@@ -88,6 +151,53 @@ impl World {
         let signed = |x: f32| 2.0 * x - 1.0;
         let (x, y) = (mapping.strength * signed(r), mapping.strength * signed(g));
         (x * tangent + y * bitangent + signed(b) * normal).try_normalize()
+    }
+
+    /// The normal of the surface raised by a picture of heights.
+    ///
+    /// Source: James Blinn, *Simulation of Wrinkled Surfaces*, SIGGRAPH 1978, with the gradient of the height along the surface.
+    fn bumped(&self, map: u32, height: f32, hit: &Hit, surface: &Surface) -> Option<Vec3> {
+        let texture = &self.textures[map as usize];
+        let mapping = texture.mapping().copied().unwrap_or_default();
+        let slope = height * texture.slope(&mapping, self.coordinates(texture, hit, surface)?);
+        let [u, v] = dual(self.derivatives(hit, surface, mapping.second)?)?;
+        (surface.n_shade - slope.x * u - slope.y * v).try_normalize()
+    }
+
+    /// How a point of the world moves as its texture coordinates grow by 1: those of the file on a mesh, else by what they are
+    /// beside the point.
+    fn derivatives(&self, hit: &Hit, surface: &Surface, second: bool) -> Option<[Vec3; 2]> {
+        let object = &self.objects[hit.object as usize];
+        let to_world = object.to_world.as_ref();
+        let moved = |v: Vec3| to_world.map_or(v, |to_world| to_world.vector(v));
+        let shape = match &object.geometry {
+            Geometry::Mesh(tree) => return Some(tree.mesh.derivatives(hit.part, second)?.map(moved)),
+            Geometry::Primitive(shape) => shape,
+            Geometry::Solid(_) => return None,
+        };
+        let point = to_world.map_or(surface.position, |to_world| to_world.inverse_point(surface.position));
+        let normal = to_world.map_or(surface.n_geo, |to_world| to_world.local_normal(surface.n_geo));
+        let size = shape.bounds().map_or(1.0_f32.max(point.length()), |bounds| bounds.size().max_element());
+        let step = 1e-3 * size;
+        let here = surface.uv.get()?;
+        // What the shape says where a ray against the normal meets it beside the point.
+        let beside = |way: Vec3| {
+            let mut ray = Ray::new(point + step * (way + normal), -normal);
+            ray.t_max = 2.0 * step;
+            let crossing = shape.intersect(&ray)?;
+            let uv = shape.surface(ray.at(crossing.t).as_dvec3(), &crossing).uv.get()?;
+            // Around a closed shape 1 is 0 again.
+            let around = |x: f32| if x.abs() > 0.5 { x - x.round() } else { x };
+            Some(Vec2::new(around(uv.x - here.x), around(uv.y - here.y)) / step)
+        };
+        let (a, b) = normal.any_orthonormal_pair();
+        let along = |way: Vec3| match (beside(way), beside(-way)) {
+            (Some(after), Some(before)) => Some(0.5 * (after - before)),
+            (after, before) => after.or(before.map(|before| -before)),
+        };
+        let (along_a, along_b) = (along(a)?, along(b)?);
+        let [a, b] = dual([moved(a), moved(b)])?;
+        dual([along_a.x * a + along_b.x * b, along_a.y * a + along_b.y * b])
     }
 
     /// The direction of the world in which u grows at a hit: that of the texture coordinates of a mesh, the way around the axis of
@@ -114,3 +224,14 @@ impl World {
         to_world.map_or(own, |to_world| to_world.vector(own))
     }
 }
+
+/// Two vectors in the same plane, each at right angles to one of two, whose product with the other is 1: gradients from
+/// derivatives, and the other way round.
+fn dual([u, v]: [Vec3; 2]) -> Option<[Vec3; 2]> {
+    let normal = u.cross(v);
+    let duals = [v.cross(normal), normal.cross(u)].map(|dual| dual / normal.length_squared());
+    duals.iter().all(|dual| dual.is_finite()).then_some(duals)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,8 +1,8 @@
 //! Materials with the rules of their dialect worked in.
 
+use crate::bsdf::Tables;
 use crate::bsdf::microfacet::Ggx;
-use crate::bsdf::{Layers, Tables};
-use crate::material::{ColorNoise, PrincipledMaterial, Solid};
+use crate::material::{ColorNoise, Parameters, PrincipledMaterial, Solid};
 use crate::math::Color;
 use crate::medium::Medium;
 use crate::spectrum::Curve;
@@ -39,7 +39,7 @@ pub struct Principled {
     /// Its pictures.
     pub maps: Maps,
     /// The same everywhere, where no picture says otherwise.
-    pub layers: Layers,
+    pub parameters: Parameters,
     /// What its boundaries give back.
     pub tables: Tables,
     /// The spectrum of its own light.
@@ -55,7 +55,7 @@ impl Principled {
     pub fn has_single_directions(&self) -> bool {
         let m = &self.written;
         let smooth = |roughness: f32| Ggx::new(roughness, 0.0).is_smooth();
-        let skin = self.layers.roughness <= 0.0 || smooth(self.layers.roughness);
+        let skin = self.parameters.specular_roughness <= 0.0 || smooth(self.parameters.specular_roughness);
         skin && !self.interface || m.coat_weight > 0.0 && smooth(m.coat_roughness)
     }
 }

@@ -21,7 +21,7 @@ use crate::source::Digest;
 use crate::texture::{CubeMap, Environment, Texture};
 pub use emitters::Emitters;
 use glam::DVec3;
-pub use maps::Maps;
+pub use maps::{Map, Maps};
 pub use material::{Emission, HighlightModel, Material, Part, Parts, Phong, Principled};
 pub use object::{Geometry, MeshTree, Object, Placing};
 pub use shading::Shading;

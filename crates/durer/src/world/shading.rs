@@ -6,14 +6,15 @@ use crate::bsdf::lobe::blinn::Blinn;
 use crate::bsdf::lobe::diffuse::Diffuse;
 use crate::bsdf::lobe::glass::{Mirror, Refraction, Through};
 use crate::bsdf::{Bsdf, Frame, fresnel};
+use crate::material::Parameters;
 use crate::material::principled::Walls;
 use crate::math::{Color, Vec3, fp};
 use crate::medium::Medium;
 use crate::shape::Surface;
 use crate::spectrum::{Lanes, Spectrum};
 use crate::world::HighlightModel;
-use crate::world::Part;
 use crate::world::material::Emission;
+use smallvec::SmallVec;
 
 /// A surface point as it is seen from one direction.
 #[derive(Clone, Debug)]
@@ -66,22 +67,24 @@ impl World {
         lanes: &Lanes,
     ) -> Shading {
         let parts = self.parts(hit, surface.position);
-        // The first normal map of a mixture counts for all of it.
-        let map = parts.iter().find_map(|part| part.phong.principled.as_ref()?.maps.normal);
-        let n_shade = self.mapped_normal(map, hit, surface).unwrap_or(surface.n_shade);
+        // The first of a mixture that bends normals counts for all of it.
+        let mut maps = parts.iter().filter_map(|part| Some(&part.phong.principled.as_ref()?.maps));
+        let maps = maps.find(|maps| maps.normal.is_some() || maps.bump.is_some());
+        let n_shade = maps.and_then(|maps| self.mapped_normal(maps, hit, surface)).unwrap_or(surface.n_shade);
         let [n, n_geo] = [n_shade, surface.n_geo].map(|n| if inside { -n } else { n });
         // An interpolated normal may point away from the ray; the surface itself does not.
         let n = if dir.dot(n) < 0.0 { n.normalize_or(n_geo) } else { n_geo };
-        let frame = self.frame(&parts, hit, surface, n);
+        let here: SmallVec<[_; 2]> = parts
+            .iter()
+            .map(|part| part.phong.principled.as_ref().map(|own| (own, self.parameters_at(own, hit, surface))))
+            .collect();
+        let frame = self.frame(here.iter().flatten().map(|(_, here)| here.as_ref()), hit, surface, n);
         let wo = frame.to_local(-dir.normalize_or(-n));
         let wo = Vec3::new(wo.x, wo.y, wo.z.max(1e-6));
         let mut bsdf = Bsdf::default();
-        for part in parts {
-            let own = match &part.phong.principled {
-                Some(own) => {
-                    let layers = self.layers_at(own, hit, surface);
-                    layers::scattering(&own.written, &layers, &own.tables, View { lanes, wo, inside, eta })
-                }
+        for (part, here) in parts.iter().zip(&here) {
+            let own = match here {
+                Some((own, here)) => layers::scattering(here, &own.tables, View { lanes, wo, inside, eta }),
                 None => phong_lobes(part.phong, self.diffuse_color(part.phong, surface), wo, eta, lanes),
             };
             bsdf.extend(&own, part.share);
@@ -89,15 +92,17 @@ impl World {
         Shading { frame, n_geo, wo, bsdf }
     }
 
-    /// The frame around a normal: along u, and turned from there, where a part's highlight is longer than wide.
-    fn frame(&self, parts: &[Part], hit: &Hit, surface: &Surface, n: Vec3) -> Frame {
-        let turned = parts.iter().find_map(|part| {
-            let own = part.phong.principled.as_ref().filter(|own| own.written.specular_anisotropy > 0.0)?;
-            Some(own.written.specular_rotation)
-        });
-        let Some(turn) = turned else { return Frame::around(n) };
+    /// The frame around a normal: along u, and turned from there, where the highlight of a part is longer than wide.
+    fn frame<'a>(
+        &self,
+        mut parts: impl Iterator<Item = &'a Parameters>,
+        hit: &Hit,
+        surface: &Surface,
+        n: Vec3,
+    ) -> Frame {
+        let Some(long) = parts.find(|here| here.specular_anisotropy > 0.0) else { return Frame::around(n) };
         let frame = Frame::along(n, self.tangent(hit, surface));
-        let (sin, cos) = fp::sin_cos_degrees(360.0 * f64::from(turn));
+        let (sin, cos) = fp::sin_cos_degrees(360.0 * f64::from(long.specular_rotation));
         Frame::along(n, cos as f32 * frame.tangent + sin as f32 * frame.bitangent)
     }
 

@@ -5,27 +5,22 @@
 
 use super::Model;
 use super::json::At;
+use crate::describe::FileName;
 use crate::material::PrincipledMaterial;
 use crate::material::principled::Walls;
 use crate::math::Vec3;
+use crate::texture::{Channel, Mapping};
 use std::f32::consts::TAU;
 
 /// What of KHR materials has no counterpart, and what is seen instead.
-const WITHOUT_COUNTERPART: [(&str, &str); 4] = [
-    ("KHR_materials_iridescence", "iridescence is left out"),
-    ("KHR_materials_dispersion", "dispersion is left out: all colours bend alike"),
-    ("KHR_materials_diffuse_transmission", "diffuse transmission is left out: the surface lets no light through"),
-    ("KHR_materials_subsurface", "scattering below the surface is left out"),
-];
+const WITHOUT_COUNTERPART: [(&str, &str); 1] =
+    [("KHR_materials_subsurface", "scattering below the surface is left out")];
 
-/// Textures of extensions that are not read, by extension.
-const TEXTURES: [(&str, &[&str]); 6] = [
-    ("KHR_materials_specular", &["specularTexture", "specularColorTexture"]),
-    ("KHR_materials_transmission", &["transmissionTexture"]),
-    ("KHR_materials_volume", &["thicknessTexture"]),
-    ("KHR_materials_clearcoat", &["clearcoatTexture", "clearcoatRoughnessTexture", "clearcoatNormalTexture"]),
-    ("KHR_materials_sheen", &["sheenColorTexture", "sheenRoughnessTexture"]),
-    ("KHR_materials_anisotropy", &["anisotropyTexture"]),
+/// Textures of extensions that have no counterpart, by extension, and what is seen instead.
+const TEXTURES: [(&str, &str, &str); 3] = [
+    ("KHR_materials_volume", "thicknessTexture", "light goes as far as the body is thick"),
+    ("KHR_materials_clearcoat", "clearcoatNormalTexture", "the coat lies as its base does"),
+    ("KHR_materials_diffuse_transmission", "diffuseTransmissionTexture", "only its factor counts"),
 ];
 
 /// How alpha is meant.
@@ -127,19 +122,27 @@ impl Model<'_> {
             (m.base_color, m.base_metalness, m.specular_weight, m.specular_color) = (specular, 1.0, 1.0, Vec3::ONE);
         }
         self.base(m, old.get("diffuseTexture"), factor[3], alpha, cutoff);
-        if let Some(texture) = old.get("specularGlossinessTexture") {
-            texture.warning("NO_COUNTERPART", "this texture has no counterpart: only the factors count");
+        let Some(texture) = old.get("specularGlossinessTexture") else { return };
+        let color = self.texture_as(&texture, ":color", |_| ());
+        match m.base_metalness > 0.0 {
+            true => m.base_color_texture = color,
+            false => m.specular_color_texture = color,
         }
+        // Roughness is what glossiness times alpha leaves of 1: the picture multiplies a roughness of 1.
+        let glossiness = 1.0 - m.specular_roughness;
+        m.specular_roughness = 1.0;
+        m.specular_roughness_texture = self.number(&texture, Channel::Alpha, [1.0, 1.0 - glossiness]);
     }
 
     fn extended(&self, m: &mut PrincipledMaterial, extensions: &At) {
-        for (name, textures) in TEXTURES {
+        for (name, key, instead) in TEXTURES {
             let Some(extension) = extensions.get(name) else { continue };
-            for texture in textures.iter().filter_map(|key| extension.get(key)) {
-                texture
-                    .warning("NO_COUNTERPART", format!("this texture of {name} is left out: only its factor counts"));
+            if let Some(texture) = extension.get(key) {
+                texture.warning("NO_COUNTERPART", format!("this texture of {name} is left out: {instead}"));
             }
         }
+        let number = |at: &At, key, channel| self.number(&at.get(key)?, channel, [0.0, 1.0]);
+        let picture = |at: &At, key| self.texture(&at.get(key)?, |_| ());
         for (name, message) in WITHOUT_COUNTERPART {
             if extensions.get(name).is_some() {
                 self.once(name, message);
@@ -155,11 +158,15 @@ impl Model<'_> {
         if let Some(e) = extensions.get("KHR_materials_specular") {
             m.specular_weight = share(&e, "specularFactor", 1.0);
             m.specular_color = e.get("specularColorFactor").and_then(|factor| color(&factor)).unwrap_or(Vec3::ONE);
+            m.specular_weight_texture = number(&e, "specularTexture", Channel::Alpha);
+            m.specular_color_texture = picture(&e, "specularColorTexture");
         }
         if let Some(e) = extensions.get("KHR_materials_transmission") {
             m.transmission_weight = share(&e, "transmissionFactor", 0.0);
             // Light that passes takes on the base colour.
             m.transmission_color = m.base_color;
+            m.transmission_color_texture = m.base_color_texture.clone();
+            m.transmission_weight_texture = number(&e, "transmissionTexture", Channel::Red);
             m.walls = Walls::Thin;
         }
         if let Some(e) = extensions.get("KHR_materials_volume") {
@@ -177,6 +184,8 @@ impl Model<'_> {
             m.coat_weight = share(&e, "clearcoatFactor", 0.0);
             m.coat_roughness = share(&e, "clearcoatRoughnessFactor", 0.0);
             (m.coat_ior, m.coat_darkening) = (1.5, 0.0);
+            m.coat_weight_texture = number(&e, "clearcoatTexture", Channel::Red);
+            m.coat_roughness_texture = number(&e, "clearcoatRoughnessTexture", Channel::Green);
         }
         if let Some(e) = extensions.get("KHR_materials_sheen") {
             let tint = e.get("sheenColorFactor").and_then(|factor| color(&factor)).unwrap_or(Vec3::ZERO);
@@ -184,11 +193,37 @@ impl Model<'_> {
             m.fuzz_weight = most.clamp(0.0, 1.0);
             m.fuzz_color = if most > 0.0 { tint / most } else { Vec3::ONE };
             m.fuzz_roughness = share(&e, "sheenRoughnessFactor", 0.0);
+            m.fuzz_color_texture = picture(&e, "sheenColorTexture");
+            m.fuzz_roughness_texture = number(&e, "sheenRoughnessTexture", Channel::Alpha);
         }
         if let Some(e) = extensions.get("KHR_materials_anisotropy") {
             m.specular_anisotropy = share(&e, "anisotropyStrength", 0.0);
             let turn = e.get("anisotropyRotation").and_then(|turn| turn.number()).unwrap_or(0.0);
             m.specular_rotation = turn / TAU;
+            m.specular_anisotropy_texture = number(&e, "anisotropyTexture", Channel::Blue);
+            m.specular_rotation_texture = number(&e, "anisotropyTexture", Channel::Angle);
+        }
+        if let Some(e) = extensions.get("KHR_materials_iridescence") {
+            let at_least = |key, or, least: f32| e.get(key).and_then(|x| x.within(least..)).unwrap_or(or);
+            m.thin_film_weight = share(&e, "iridescenceFactor", 0.0);
+            m.thin_film_weight_texture = number(&e, "iridescenceTexture", Channel::Red);
+            m.thin_film_ior = at_least("iridescenceIor", 1.3, 1.0);
+            // Nanometres there, micrometres here; without a picture the greatest thickness counts.
+            let [thin, thick] = [("iridescenceThicknessMinimum", 100.0), ("iridescenceThicknessMaximum", 400.0)]
+                .map(|(key, or)| at_least(key, or, 0.0));
+            m.thin_film_thickness = 1e-3 * thick;
+            let texture = e.get("iridescenceThicknessTexture").filter(|_| thick > 0.0);
+            m.thin_film_thickness_texture =
+                texture.and_then(|texture| self.number(&texture, Channel::Green, [thin / thick, 1.0]));
+        }
+        if let Some(e) = extensions.get("KHR_materials_dispersion") {
+            // Abbe's number is 20 over that, as ours over its scale.
+            let dispersion = e.get("dispersion").and_then(|x| x.within(0.0..)).unwrap_or(0.0);
+            m.transmission_dispersion_scale = dispersion.min(1.0);
+            m.transmission_dispersion_abbe_number = 20.0 / dispersion.max(1.0);
+        }
+        if let Some(e) = extensions.get("KHR_materials_diffuse_transmission") {
+            self.let_through(m, &e);
         }
         if extensions.get("KHR_materials_unlit").is_some() {
             // What is not lit shines by itself.
@@ -196,6 +231,30 @@ impl Model<'_> {
             m.emission_texture = m.base_color_texture.clone();
             (m.emission_luminance, m.base_weight, m.specular_weight, m.base_metalness) = (1.0, 0.0, 0.0, 0.0);
         }
+    }
+}
+
+impl Model<'_> {
+    /// KHR_materials_diffuse_transmission: a share of the matte light comes out behind a sheet, in a colour of its own.
+    fn let_through(&self, m: &mut PrincipledMaterial, e: &At) {
+        let through = share(e, "diffuseTransmissionFactor", 0.0);
+        if through == 0.0 || m.walls == Walls::Solid && m.transmission_weight > 0.0 {
+            return;
+        }
+        // What comes out behind is all that is scattered into the sheet; what stays in front is the matte base.
+        m.walls = Walls::Thin;
+        m.subsurface_weight = through;
+        m.subsurface_scatter_anisotropy = 1.0 - f32::EPSILON;
+        m.subsurface_color = e.get("diffuseTransmissionColorFactor").and_then(|x| color(&x)).unwrap_or(Vec3::ONE);
+        let picture = e.get("diffuseTransmissionColorTexture");
+        m.subsurface_color_texture = picture.and_then(|texture| self.texture(&texture, |_| ()));
+    }
+
+    /// A picture whose channel changes a number; its 0 and 1 stand for these.
+    fn number(&self, texture: &At, channel: Channel, range: [f32; 2]) -> Option<FileName> {
+        let change = |mapping: &mut Mapping| (mapping.channel, mapping.range) = (Some(channel), range);
+        // The same picture may change several numbers.
+        self.texture_as(texture, &format!(":{channel:?}"), change)
     }
 }
 

@@ -1,11 +1,13 @@
 //! glTF files against what the Khronos validator says of them, the numbers of accessors, and damage of all kinds.
 
+use crate::describe::FileName;
 use crate::diag::{Diagnostics, Files, Severity};
 use crate::format::scene::{Input, find_scene_format, read_model};
 use crate::math::{Vec2, Vec3};
-use crate::scene::{Scene, Staging};
+use crate::scene::{Material, Scene, Staging};
 use crate::shape::MeshData;
 use crate::source::Source;
+use crate::texture::Channel;
 use std::path::{Path, PathBuf};
 
 /// Reads bytes as a file of a folder; findings as severity, code and message.
@@ -218,6 +220,55 @@ fn fans_and_lists_without_indices() {
     let text = document(views, &accessors, r#""attributes":{"POSITION":0},"mode":1"#, &bytes);
     let (scene, findings) = read(text.as_bytes(), Path::new("."), "a.gltf", None);
     assert!(scene.is_some() && findings[0].1.contains("points and lines"), "{findings:?}");
+}
+
+#[test]
+fn textures_of_extensions_change_their_parameters() {
+    let bytes: Vec<u8> = (0..9).flat_map(|i| (i as f32).to_le_bytes()).collect();
+    let views = r#"{"buffer":0,"byteLength":36}"#;
+    let accessors = format!(r#"{{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3",{BOUNDS}}}"#);
+    let text = document(views, &accessors, r#""attributes":{"POSITION":0},"material":0"#, &bytes);
+    let t = r#"{"index":0}"#;
+    let extensions = format!(
+        r#""KHR_materials_specular":{{"specularTexture":{t},"specularColorTexture":{t}}},
+           "KHR_materials_transmission":{{"transmissionFactor":1,"transmissionTexture":{t}}},
+           "KHR_materials_clearcoat":{{"clearcoatFactor":1,"clearcoatTexture":{t},"clearcoatRoughnessTexture":{t}}},
+           "KHR_materials_sheen":{{"sheenColorTexture":{t},"sheenRoughnessTexture":{t}}},
+           "KHR_materials_anisotropy":{{"anisotropyStrength":0.5,"anisotropyRotation":1.570796,"anisotropyTexture":{t}}},
+           "KHR_materials_iridescence":{{"iridescenceFactor":0.75,"iridescenceIor":1.25,"iridescenceThicknessMinimum":200,
+             "iridescenceThicknessMaximum":800,"iridescenceTexture":{t},"iridescenceThicknessTexture":{t}}},
+           "KHR_materials_dispersion":{{"dispersion":0.5}}"#
+    );
+    let text = text.replace(
+        r#""nodes":[{"mesh":0}]"#,
+        &format!(
+            r#""images":[{{"uri":"a.png"}}],"textures":[{{"source":0}}],"materials":[{{"extensions":{{{extensions}}}}}],
+               "nodes":[{{"mesh":0}}]"#
+        ),
+    );
+    let (scene, findings) = read(text.as_bytes(), Path::new("."), "a.gltf", None);
+    let scene = scene.unwrap_or_else(|| panic!("{findings:?}"));
+    let Material::Principled(m) = &scene.materials[0].value else { panic!() };
+    let mapping = |name: &Option<FileName>| scene.assets.pictures[&name.as_ref().unwrap().path].mapping;
+    let number = |name| (mapping(name).channel.unwrap(), mapping(name).range);
+    let plain = |channel| (channel, [0.0, 1.0]);
+    for (name, expected) in [
+        (&m.specular_weight_texture, plain(Channel::Alpha)),
+        (&m.transmission_weight_texture, plain(Channel::Red)),
+        (&m.coat_weight_texture, plain(Channel::Red)),
+        (&m.coat_roughness_texture, plain(Channel::Green)),
+        (&m.fuzz_roughness_texture, plain(Channel::Alpha)),
+        (&m.specular_anisotropy_texture, plain(Channel::Blue)),
+        (&m.specular_rotation_texture, plain(Channel::Angle)),
+        (&m.thin_film_weight_texture, plain(Channel::Red)),
+        (&m.thin_film_thickness_texture, (Channel::Green, [0.25, 1.0])),
+    ] {
+        assert_eq!(number(name), expected, "{name:?}");
+    }
+    assert!(mapping(&m.specular_color_texture).channel.is_none() && mapping(&m.fuzz_color_texture).channel.is_none());
+    assert_eq!((m.thin_film_weight, m.thin_film_thickness, m.thin_film_ior), (0.75, 0.8, 1.25));
+    assert_eq!((m.transmission_dispersion_scale, m.transmission_dispersion_abbe_number), (0.5, 20.0));
+    assert!((m.specular_rotation - 0.25).abs() < 1e-4);
 }
 
 #[test]

@@ -65,6 +65,11 @@ impl Model<'_> {
 
     /// Reads a `textureInfo`: gives the name of the asset that it becomes, with changes to its mapping.
     pub(super) fn texture(&self, at: &At, change: impl FnOnce(&mut Mapping)) -> Option<FileName> {
+        self.texture_as(at, "", change)
+    }
+
+    /// The same by a name of its own, where a texture is there for several things.
+    pub(super) fn texture_as(&self, at: &At, role: &str, change: impl FnOnce(&mut Mapping)) -> Option<FileName> {
         at.object()?;
         let number = at.need("index")?.index(self.textures.len())?;
         let (image, mut mapping) = self.textures[number].clone()?;
@@ -81,7 +86,7 @@ impl Model<'_> {
         }
         mapping.second = set == 1;
         change(&mut mapping);
-        let path = format!("{}#{}", self.input.name, at.pointer());
+        let path = format!("{}#{}{role}", self.input.name, at.pointer());
         if let PictureBytes::File(name) = &image
             && let Some(name) = name.strip_prefix(KTX)
         {

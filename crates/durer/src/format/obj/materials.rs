@@ -13,7 +13,7 @@ use crate::format::scene::Input;
 use crate::material::PrincipledMaterial;
 use crate::math::Vec3;
 use crate::scene::{Picture, PictureBytes};
-use crate::texture::{Mapping, Wrap};
+use crate::texture::{Channel, Mapping, Wrap};
 use std::collections::BTreeMap;
 use std::ops::Range;
 
@@ -51,6 +51,26 @@ pub(super) fn read_files(
     }
 }
 
+/// Words for pictures of parameters, and where they go. What has no number of its own beside them counts as 1.
+type Field = fn(&mut PrincipledMaterial) -> &mut Option<FileName>;
+const MAPS: [(&str, Field); 12] = [
+    ("map_ks", |m| &mut m.specular_color_texture),
+    ("map_ke", |m| &mut m.emission_texture),
+    ("map_pr", |m| &mut m.specular_roughness_texture),
+    ("map_pm", |m| &mut m.base_metalness_texture),
+    ("map_ps", |m| &mut m.fuzz_weight_texture),
+    ("map_pc", |m| &mut m.coat_weight_texture),
+    ("map_pcr", |m| &mut m.coat_roughness_texture),
+    ("map_d", |m| &mut m.opacity_texture),
+    ("norm", |m| &mut m.normal_texture),
+    ("map_kn", |m| &mut m.normal_texture),
+    ("bump", |m| &mut m.bump_texture),
+    ("map_bump", |m| &mut m.bump_texture),
+];
+
+/// How high the white of a bump map lies that is `-bm 1`, in sizes of the model: its own unit is not defined.
+const BUMP: f32 = 0.002;
+
 /// What a material's words say, before they are brought together.
 #[derive(Default)]
 struct Written {
@@ -71,8 +91,8 @@ struct Written {
     diffuse_map: Option<FileName>,
     /// Whether a picture was named, there or not.
     pictured: bool,
-    emission_map: Option<FileName>,
-    normal_map: Option<FileName>,
+    /// Its other pictures, and no more.
+    pictures: PrincipledMaterial,
 }
 
 struct Reader<'a, 'i> {
@@ -164,11 +184,25 @@ impl<'a, 'i> Reader<'a, 'i> {
                 m.pictured = true;
                 m.diffuse_map = self.map(word, rest, m, diagnostics);
             }
-            "map_ke" => m.emission_map = self.map(word, rest, m, diagnostics),
-            "norm" | "map_kn" => m.normal_map = self.map(word, rest, m, diagnostics),
             // Light from everywhere and its maps are computed here.
             "ka" | "map_ka" | "map_aat" => {}
-            _ => *self.left_out.entry(word.to_string()).or_default() += 1,
+            lower => match MAPS.iter().find(|row| row.0 == lower) {
+                Some((_, field)) => {
+                    let picture = self.map(word, rest, m, diagnostics);
+                    let mut field = *field;
+                    if lower.ends_with("bump") {
+                        let strength = rest.iter().position(|word| word == "-bm").and_then(|at| rest.get(at + 1));
+                        let strength = strength.and_then(|text| parse_f32(text.as_bytes()).ok());
+                        m.pictures.bump_height = BUMP * strength.unwrap_or(1.0);
+                        // Many programs write pictures of normals where heights belong.
+                        if names_normals(rest) {
+                            field = |m| &mut m.normal_texture;
+                        }
+                    }
+                    *field(&mut m.pictures) = picture;
+                }
+                None => *self.left_out.entry(word.to_string()).or_default() += 1,
+            },
         }
         Ok(())
     }
@@ -195,8 +229,21 @@ impl<'a, 'i> Reader<'a, 'i> {
                     }
                     1
                 }
-                "-mm" => 2,
-                // -blendu, -blendv, -boost, -bm, -cc, -imfchan, -texres, -type, -colorspace.
+                "-mm" => {
+                    if let [base, gain, ..] = numbers[..] {
+                        mapping.range = [base, base + gain];
+                    }
+                    2
+                }
+                "-imfchan" => {
+                    mapping.channel = rest.get(at).and_then(|word| match word.as_str() {
+                        "m" => Some(Channel::Alpha),
+                        // Luminance and depth: of grey pictures any channel.
+                        word => Channel::from_word(word),
+                    });
+                    1
+                }
+                // -blendu, -blendv, -boost, -bm, -cc, -texres, -type, -colorspace.
                 _ => 1,
             };
         }
@@ -220,23 +267,25 @@ impl<'a, 'i> Reader<'a, 'i> {
 
     /// Brings the words together. A material that is there keeps its place: the first of a name counts.
     fn finish(&mut self, w: Written) {
-        let mut m =
-            PrincipledMaterial { base_color: w.diffuse.unwrap_or(Vec3::splat(0.8)), ..PrincipledMaterial::default() };
+        let mut m = PrincipledMaterial { base_color: w.diffuse.unwrap_or(Vec3::splat(0.8)), ..w.pictures };
         m.base_color_texture = w.diffuse_map;
         // Black under a picture is what programs write that mean the picture alone.
         if w.pictured && m.base_color == Vec3::ZERO {
             m.base_color = Vec3::ONE;
         }
         let model = w.model.unwrap_or(2.0) as i32;
-        let specular = w.specular.unwrap_or(Vec3::ZERO);
+        let pictured = |picture: &Option<FileName>| if picture.is_some() { 1.0 } else { 0.0 };
+        let specular = w.specular.unwrap_or(Vec3::splat(pictured(&m.specular_color_texture)));
         // A highlight as wide as Blinn's of the exponent: alpha^2 = 2 / (n + 2); roughness^2 = alpha.
         let exponent = w.exponent.unwrap_or(if specular == Vec3::ZERO { 0.0 } else { 50.0 }).max(0.0);
-        m.specular_roughness = w.roughness.unwrap_or((2.0 / (exponent + 2.0)).sqrt().sqrt()).clamp(0.0, 1.0);
-        let physical = w.roughness.is_some() || w.metalness.is_some();
+        let rough = m.specular_roughness_texture.is_some();
+        let by_exponent = if rough { 1.0 } else { (2.0 / (exponent + 2.0)).sqrt().sqrt() };
+        m.specular_roughness = w.roughness.unwrap_or(by_exponent).clamp(0.0, 1.0);
+        let physical = rough || w.roughness.is_some() || w.metalness.is_some() || m.base_metalness_texture.is_some();
         if !physical {
             m.specular_weight = if model == 0 || model == 1 { 0.0 } else { specular.max_element().min(1.0) };
         }
-        m.base_metalness = w.metalness.unwrap_or(0.0).clamp(0.0, 1.0);
+        m.base_metalness = w.metalness.unwrap_or(pictured(&m.base_metalness_texture)).clamp(0.0, 1.0);
         // Models 3 and 8 mirror: what is black and mirrors is metal.
         if matches!(model, 3 | 8) && m.base_color.max_element() < 0.05 && specular != Vec3::ZERO {
             (m.base_color, m.base_metalness, m.specular_weight) = (specular.min(Vec3::ONE), 1.0, 1.0);
@@ -251,17 +300,22 @@ impl<'a, 'i> Reader<'a, 'i> {
             }
             _ => m.opacity = opacity,
         }
-        let emission = w.emission.unwrap_or(Vec3::ZERO);
+        let emission = w.emission.unwrap_or(Vec3::splat(pictured(&m.emission_texture)));
         if emission != Vec3::ZERO {
             m.emission_luminance = emission.max_element();
             m.emission_color = emission / emission.max_element();
-            m.emission_texture = w.emission_map;
         }
-        m.normal_texture = w.normal_map;
-        m.fuzz_weight = w.sheen.unwrap_or(0.0).clamp(0.0, 1.0);
-        m.coat_weight = w.coat.unwrap_or(0.0).clamp(0.0, 1.0);
-        m.coat_roughness = w.coat_roughness.unwrap_or(0.0).clamp(0.0, 1.0);
+        m.fuzz_weight = w.sheen.unwrap_or(pictured(&m.fuzz_weight_texture)).clamp(0.0, 1.0);
+        m.coat_weight = w.coat.unwrap_or(pictured(&m.coat_weight_texture)).clamp(0.0, 1.0);
+        m.coat_roughness = w.coat_roughness.unwrap_or(pictured(&m.coat_roughness_texture)).clamp(0.0, 1.0);
         m.specular_anisotropy = w.anisotropy.unwrap_or(0.0).clamp(0.0, 1.0);
         self.library.materials.entry(w.name).or_insert(m);
     }
+}
+
+/// Whether the name of a picture, the last of a statement's words, says that it has normals.
+fn names_normals(rest: &[String]) -> bool {
+    let name = rest.last().map(|name| name.to_lowercase()).unwrap_or_default();
+    let stem = name.rsplit_once('.').map_or(name.as_str(), |(stem, _)| stem);
+    ["normal", "_nrm", "_ddn", "_norm"].iter().any(|word| stem.contains(word)) || stem.ends_with("_n")
 }

@@ -9,6 +9,7 @@ use crate::diag::{Diagnostic, Diagnostics, Span, did_you_mean};
 use crate::format::report::shown;
 use crate::format::scene::Input;
 use crate::format::too_large;
+use crate::math::Aabb;
 use crate::scene::{Group, Material, Object, Scene};
 use crate::shape::MeshData;
 use crate::shape::mesh::NO_INDEX;
@@ -33,6 +34,10 @@ pub(in crate::format) fn read(input: &Input, diagnostics: &mut Diagnostics) -> O
             materials::read_files(input, &names, span(&names), &mut library, diagnostics);
         }
         words.skip_rest();
+    }
+    let size = Aabb::around(data.positions.iter().copied()).size().length();
+    for material in library.materials.values_mut().filter(|material| material.bump_texture.is_some()) {
+        material.bump_height *= size;
     }
     let mut scene = Scene::default();
     scene.assets.pictures = std::mem::take(&mut library.pictures);

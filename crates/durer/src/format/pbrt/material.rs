@@ -10,6 +10,7 @@ use super::medium::Medium;
 use super::params::{Kind, Param, Params};
 use super::spectrum::{Spectrum, metal};
 use super::state::Reader;
+use crate::describe::FileName;
 use crate::diag::Span;
 use crate::format::said::meant;
 use crate::material::mix::Mix;
@@ -78,7 +79,7 @@ impl Made {
 
     fn is_pictured(&self) -> bool {
         match self {
-            Made::Layers(layers, _) => layers.base_color_texture.is_some() || layers.normal_texture.is_some(),
+            Made::Layers(layers, _) => layers.has_pictures(),
             Made::Mix { pictured, .. } => *pictured,
             Made::Nothing => false,
         }
@@ -107,6 +108,21 @@ impl Reader<'_> {
             let written = self.value(params, name, usual).max(0.0);
             if remapped { written.sqrt() } else { written }
         })
+    }
+
+    /// The roughness of a picture of GGX's alpha, and what alpha it multiplies: that of the picture, or of the numbers.
+    fn roughness(&mut self, params: &Params, names: [&'static str; 3], remapped: bool) -> (Option<FileName>, [f32; 2]) {
+        let each = names[1..].iter().any(|name| params.get(name).is_some());
+        let fourth = |x: f32| x.max(0.0).sqrt().sqrt();
+        let picture = if each {
+            None
+        } else {
+            self.changed(params, names[0], |x| if remapped { fourth(x) } else { x.max(0.0).sqrt() })
+        };
+        match picture {
+            Some(picture) => (Some(picture), [1.0; 2]),
+            None => (None, self.alphas(params, names, remapped)),
+        }
     }
 
     /// The number of a material.
@@ -153,19 +169,22 @@ impl Reader<'_> {
             "coateddiffuse" => {
                 let (color, picture) = self.colored(params, "reflectance", 0.5);
                 m = PrincipledMaterial { base_color_texture: picture, ..matte(color) };
-                let alphas = self.alphas(params, ROUGHNESS, remapped);
+                let alphas;
+                (m.coat_roughness_texture, alphas) = self.roughness(params, ROUGHNESS, remapped);
                 m.coat_ior = self.index(params, "eta", 1.5);
                 self.coat(&mut m, alphas, params);
             }
             "conductor" => {
-                let alphas = self.alphas(params, ROUGHNESS, remapped);
+                let alphas;
+                (m.specular_roughness_texture, alphas) = self.roughness(params, ROUGHNESS, remapped);
                 self.conductor(&mut m, params, ["eta", "k", "reflectance"], alphas, 1.0);
             }
             "coatedconductor" => {
                 let interface = ["interface.roughness", "interface.uroughness", "interface.vroughness"];
                 let conductor = ["conductor.roughness", "conductor.uroughness", "conductor.vroughness"];
-                let (above, below) =
-                    (self.alphas(params, interface, remapped), self.alphas(params, conductor, remapped));
+                let (above, below);
+                (m.coat_roughness_texture, above) = self.roughness(params, interface, remapped);
+                (m.specular_roughness_texture, below) = self.roughness(params, conductor, remapped);
                 m.coat_ior = self.index(params, "interface.eta", 1.5);
                 let ior = m.coat_ior;
                 self.conductor(&mut m, params, ["conductor.eta", "conductor.k", "reflectance"], below, ior);
@@ -174,10 +193,10 @@ impl Reader<'_> {
             "dielectric" | "thindielectric" => {
                 m.transmission_weight = 1.0;
                 m.specular_ior = self.index(params, "eta", 1.5);
-                let alphas = match kind {
-                    "dielectric" => self.alphas(params, ROUGHNESS, remapped),
-                    _ => [0.0; 2],
-                };
+                let mut alphas = [0.0; 2];
+                if kind == "dielectric" {
+                    (m.specular_roughness_texture, alphas) = self.roughness(params, ROUGHNESS, remapped);
+                }
                 [m.specular_roughness, m.specular_anisotropy, m.specular_rotation] = rough(alphas);
                 m.walls = if kind == "thindielectric" { Walls::Thin } else { Walls::Solid };
             }
@@ -203,16 +222,14 @@ impl Reader<'_> {
                 };
             }
             "subsurface" => {
-                let alphas = self.alphas(params, ROUGHNESS, remapped);
+                let alphas;
+                (m.specular_roughness_texture, alphas) = self.roughness(params, ROUGHNESS, remapped);
                 [m.specular_roughness, m.specular_anisotropy, m.specular_rotation] = rough(alphas);
                 m.specular_ior = self.index(params, "eta", 1.33);
                 params.left_out(&["name"], "the coefficients count");
                 if params.get("reflectance").is_some() {
                     let (color, picture) = self.colored(params, "reflectance", 1.0);
-                    if picture.is_some() {
-                        let what = "what is scattered below a surface has one colour: that of the picture is left out";
-                        self.said.once(params.place("reflectance"), what);
-                    }
+                    m.subsurface_color_texture = picture;
                     let path = params.spectrum("mfp").map_or(Vec3::ONE, |spectrum| spectrum.coefficient());
                     m.subsurface_weight = 1.0;
                     m.subsurface_color = color.min(Vec3::ONE);
@@ -265,7 +282,11 @@ impl Reader<'_> {
                 m.normal_texture = Some(self.asset(Picture { bytes, mapping: Mapping::default() }, place));
             }
         }
-        params.left_out(&["displacement"], "the surface stays as it is");
+        if let super::texture::Texture::Picture(picture, scale) =
+            self.pattern(params, "displacement", false, Vec3::ZERO)
+        {
+            (m.bump_texture, m.bump_height) = (Some(self.asset(picture, params.place("displacement"))), scale.x);
+        }
         Made::Layers(Box::new(m), at)
     }
 
@@ -294,7 +315,7 @@ impl Reader<'_> {
     }
 
     fn conductor(
-        &self,
+        &mut self,
         m: &mut PrincipledMaterial,
         params: &Params,
         [eta, k, reflectance]: [&'static str; 3],
@@ -309,10 +330,12 @@ impl Reader<'_> {
                 }
                 let share = match self.pattern(params, reflectance, true, Vec3::splat(0.5)) {
                     super::texture::Texture::Even(color) => color,
-                    super::texture::Texture::Picture(..) => {
-                        self.said
-                            .once(param.at, "a metal's reflectance by a picture has no counterpart: white is taken");
-                        Vec3::splat(0.9)
+                    super::texture::Texture::Picture(picture, scale) => {
+                        // What it reflects at right angles is the picture's; grazing light has no colour of its own.
+                        m.base_color_texture = Some(self.asset(picture, param.at));
+                        (m.base_metalness, m.base_color) = (1.0, scale);
+                        [m.specular_roughness, m.specular_anisotropy, m.specular_rotation] = rough(alphas);
+                        return;
                     }
                 };
                 // Such a k, with an index of 1, reflects that share at right angles.

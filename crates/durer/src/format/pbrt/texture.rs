@@ -6,7 +6,7 @@ use super::state::Reader;
 use crate::describe::FileName;
 use crate::diag::{Diagnostic, Span};
 use crate::format::said::meant;
-use crate::image::{self, Depth, Encoded, Image, Layer, WriteOptions};
+use crate::image::{self, Depth, Encoded, Image, Layer, Transfer, WriteOptions};
 use crate::math::{Color, Vec3};
 use crate::scene::{Picture, PictureBytes};
 use crate::source::Digest;
@@ -162,6 +162,25 @@ impl Reader<'_> {
                 mean.map_or(usual, |mean| mean * scale.x)
             }
         }
+    }
+
+    /// A picture that a number is, with its values made others; `None` where it is no picture.
+    pub fn changed(&mut self, params: &Params, name: &'static str, change: impl Fn(f32) -> f32) -> Option<FileName> {
+        let Texture::Picture(picture, scale) = self.pattern(params, name, false, Vec3::ZERO) else { return None };
+        let at = params.place(name);
+        let image = match &picture.bytes {
+            PictureBytes::File(path) => self.picture(path, at)?,
+            PictureBytes::Here(path, bytes) => image::read_srgb(bytes, path).ok()?,
+        };
+        let texel = |p: &Vec3| Vec3::splat(change((p.x + p.y + p.z) / 3.0 * scale.x).clamp(0.0, 1.0));
+        let image = Image::from_pixels(image.width, image.height, image.pixels.iter().map(texel).collect()).ok()?;
+        // Numbers have no curve.
+        let options = WriteOptions { display: Transfer::Linear.into(), ..WriteOptions::default() };
+        let mut bytes = Vec::new();
+        image::format_for("a.png").ok()?.write(&[Layer::color("", image)], &options, &mut bytes).ok()?;
+        let (PictureBytes::File(path) | PictureBytes::Here(path, _)) = &picture.bytes;
+        let bytes = PictureBytes::Here(format!("{path}#{name}.png"), bytes.into());
+        Some(self.asset(Picture { bytes, mapping: picture.mapping }, at))
     }
 
     /// A parameter that is a colour or a picture: the colour that multiplies, and the picture's

@@ -1,7 +1,8 @@
 //! A tree over emitters, to choose one of many by what it may bring to a point.
 //!
 //! Source: Conty Estévez and Kulla, *Importance Sampling of Many Lights with Adaptive Tree Splitting*, HPG 2018, with the bounds
-//! of *Physically Based Rendering*, 4th edition, section 12.6.3.
+//! of *Physically Based Rendering*, 4th edition, section 12.6.3. Nodes have eight children, which are weighed together: fewer steps,
+//! and each choice is among smaller groups.
 
 use crate::math::{Aabb, Vec3, fp};
 use std::f32::consts::PI;
@@ -35,49 +36,10 @@ impl Bounds {
             two_sided: self.two_sided || other.two_sided,
         }
     }
-
-    /// An estimate of what they bring to a point with a normal; more than zero wherever they bring any light.
-    fn importance(&self, p: Vec3, n: Vec3) -> f32 {
-        let middle = self.bounds.center();
-        let half = 0.5 * self.bounds.size();
-        let radius2 = half.length_squared();
-        let offset = p - middle;
-        let distance2 = offset.length_squared();
-        // From inside and nearby distance says little.
-        let spread = distance2.max(radius2.sqrt() * 0.5).max(f32::MIN_POSITIVE);
-        let from_light = offset.normalize_or(Vec3::Z);
-        let cosine = self.axis.dot(from_light);
-        let cosine = if self.two_sided { cosine.abs() } else { cosine };
-        let sine = sine_of(cosine);
-        let (cos_bounds, sin_bounds) = match distance2 <= radius2 {
-            true => (-1.0, 0.0),
-            false => {
-                let sine2 = radius2 / distance2;
-                ((1.0 - sine2).sqrt(), sine2.sqrt())
-            }
-        };
-        // The least angle to a normal, and from that to the point, over all that the bounds hold.
-        let (cos_x, sin_x) = minus((cosine, sine), (self.cos_normals, sine_of(self.cos_normals)));
-        let (cos_least, _) = minus((cos_x, sin_x), (cos_bounds, sin_bounds));
-        if cos_least <= self.cos_emission {
-            return 0.0;
-        }
-        let mut importance = self.power * cos_least / spread;
-        if n != Vec3::ZERO {
-            let cos_arriving = from_light.dot(n).abs();
-            importance *= minus((cos_arriving, sine_of(cos_arriving)), (cos_bounds, sin_bounds)).0.max(0.0);
-        }
-        importance.max(0.0)
-    }
 }
 
 fn sine_of(cosine: f32) -> f32 {
     (1.0 - cosine * cosine).max(0.0).sqrt()
-}
-
-/// Cosine and sine of the difference of two angles, not less than 0.
-fn minus((cos_a, sin_a): (f32, f32), (cos_b, sin_b): (f32, f32)) -> (f32, f32) {
-    if cos_a > cos_b { (1.0, 0.0) } else { (cos_a * cos_b + sin_a * sin_b, sin_a * cos_b - cos_a * sin_b) }
 }
 
 fn angle(cosine: f32) -> f32 {
@@ -100,21 +62,110 @@ fn cone_union((a, cos_a): (Vec3, f32), (b, cos_b): (Vec3, f32)) -> (Vec3, f32) {
     (axis.normalize_or(a), fp::cos(wide))
 }
 
-/// A node: its children follow each other from `first` on, or it is the emitter `first`.
-#[derive(Clone, Copy, Debug)]
+/// Children of a node.
+const WIDTH: usize = 8;
+
+/// A node: what its children hold, each number for all of them, so that they are weighed in lanes.
+#[derive(Clone, Debug)]
 struct Node {
-    bounds: Bounds,
-    first: u32,
-    parent: u32,
-    is_leaf: bool,
+    middle: [[f32; WIDTH]; 3],
+    /// The square of the radius around the middle, and the least square of a distance that counts.
+    radius2: [f32; WIDTH],
+    near2: [f32; WIDTH],
+    /// 0 where there is no child.
+    power: [f32; WIDTH],
+    axis: [[f32; WIDTH]; 3],
+    cos_normals: [f32; WIDTH],
+    sin_normals: [f32; WIDTH],
+    cos_emission: [f32; WIDTH],
+    /// Whether they shine to both sides.
+    two_sided: [bool; WIDTH],
+    children: [Child; WIDTH],
+    /// The node above, and which of its children this is.
+    parent: (u32, u8),
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Child {
+    None,
+    Node(u32),
+    Emitter(u32),
+}
+
+impl Node {
+    fn new(parent: (u32, u8), held: &[Bounds]) -> Self {
+        let of = |number: &dyn Fn(&Bounds) -> f32| std::array::from_fn(|i| held.get(i).map_or(0.0, number));
+        let radius2 = |b: &Bounds| (0.5 * b.bounds.size()).length_squared();
+        Node {
+            middle: [0, 1, 2].map(|axis| of(&|b| b.bounds.center()[axis])),
+            radius2: of(&radius2),
+            // From inside and nearby distance says little.
+            near2: of(&|b| (0.5 * radius2(b).sqrt()).max(f32::MIN_POSITIVE)),
+            power: of(&|b| b.power),
+            axis: [0, 1, 2].map(|axis| of(&|b| b.axis[axis])),
+            cos_normals: of(&|b| b.cos_normals),
+            sin_normals: of(&|b| sine_of(b.cos_normals)),
+            cos_emission: of(&|b| b.cos_emission),
+            two_sided: std::array::from_fn(|i| held.get(i).is_some_and(|b| b.two_sided)),
+            children: [Child::None; WIDTH],
+            parent,
+        }
+    }
+
+    /// Estimates of what each child brings to a point with a normal; more than zero wherever one brings any light.
+    ///
+    /// No branches: all children are weighed at once. What is computed is the same whatever a lane is.
+    fn importances(&self, p: Vec3, n: Vec3) -> [f32; WIDTH] {
+        let faces = n != Vec3::ZERO;
+        let mut importances = [0.0; WIDTH];
+        for (i, importance) in importances.iter_mut().enumerate() {
+            let (x, y, z) = (p.x - self.middle[0][i], p.y - self.middle[1][i], p.z - self.middle[2][i]);
+            let distance2 = x * x + y * y + z * z;
+            let inverse = if distance2 > 0.0 { 1.0 / distance2.sqrt() } else { 0.0 };
+            let (x, y, z) = (x * inverse, y * inverse, z * inverse);
+            let cosine = self.axis[0][i] * x + self.axis[1][i] * y + self.axis[2][i] * z;
+            let cosine = if self.two_sided[i] { cosine.abs() } else { cosine };
+            let inside = distance2 <= self.radius2[i];
+            let sine2 = if inside { 0.0 } else { self.radius2[i] / distance2 };
+            let bounds = (if inside { -1.0 } else { (1.0 - sine2).sqrt() }, sine2.sqrt());
+            // The least angle to a normal, and from that to the point, over all that the bounds hold.
+            let least = minus((cosine, sine_of(cosine)), (self.cos_normals[i], self.sin_normals[i]));
+            let (cos_least, _) = minus(least, bounds);
+            let arriving = (n.x * x + n.y * y + n.z * z).abs();
+            let (cos_arriving, _) = minus((arriving, sine_of(arriving)), bounds);
+            let cos_arriving = if faces { cos_arriving.max(0.0) } else { 1.0 };
+            let value = self.power[i] * cos_least / distance2.max(self.near2[i]) * cos_arriving;
+            *importance = if cos_least <= self.cos_emission[i] { 0.0 } else { value.max(0.0) };
+        }
+        importances
+    }
+
+    /// The probabilities of its children; `None` where none brings any light.
+    fn shares(&self, p: Vec3, n: Vec3) -> Option<[f32; WIDTH]> {
+        let importances = self.importances(p, n);
+        let sum: f32 = importances.iter().sum();
+        (sum > 0.0 && sum.is_finite()).then(|| importances.map(|importance| importance / sum))
+    }
+}
+
+/// Cosine and sine of the difference of two angles, not less than 0.
+fn minus((cos_a, sin_a): (f32, f32), (cos_b, sin_b): (f32, f32)) -> (f32, f32) {
+    if cos_a > cos_b { (1.0, 0.0) } else { (cos_a * cos_b + sin_a * sin_b, sin_a * cos_b - cos_a * sin_b) }
 }
 
 /// The tree.
 #[derive(Clone, Debug, Default)]
 pub struct LightTree {
     nodes: Vec<Node>,
-    /// The node of each emitter; `u32::MAX` where it has no power.
-    leaves: Vec<u32>,
+    /// The node that holds each emitter, and which of its children it is; `None` where it has no power.
+    leaves: Vec<Option<(u32, u8)>>,
+}
+
+/// A node of the tree of two children that is built first: they follow each other from `first` on, or it is the emitter `first`.
+struct Half {
+    bounds: Bounds,
+    first: usize,
+    is_leaf: bool,
 }
 
 const BUCKETS: usize = 12;
@@ -122,31 +173,38 @@ const BUCKETS: usize = 12;
 impl LightTree {
     /// Over emitters; those without power are never chosen.
     pub fn new(emitters: &[Bounds]) -> Self {
-        let mut order: Vec<u32> = (0..emitters.len() as u32).filter(|&i| emitters[i as usize].power > 0.0).collect();
-        let mut tree = LightTree { nodes: Vec::new(), leaves: vec![u32::MAX; emitters.len()] };
-        if order.is_empty() {
-            return tree;
-        }
-        tree.nodes.push(Node { bounds: emitters[order[0] as usize], first: 0, parent: 0, is_leaf: true });
-        let mut open = vec![(0_usize, 0_usize, order.len())];
-        while let Some((node, start, end)) = open.pop() {
-            let range = &mut order[start..end];
-            let whole = range.iter().map(|&i| emitters[i as usize]).reduce(|a, b| a.union(&b));
-            let Some(whole) = whole else { continue };
-            tree.nodes[node].bounds = whole;
-            if let [one] = *range {
-                tree.nodes[node].first = one;
-                tree.leaves[one as usize] = node as u32;
-                continue;
+        let mut tree = LightTree { nodes: Vec::new(), leaves: vec![None; emitters.len()] };
+        let halves = halved(emitters);
+        let Some(root) = halves.first() else { return tree };
+        let mut open = vec![(if root.is_leaf { vec![0] } else { vec![root.first, root.first + 1] }, (0, 0))];
+        while let Some((mut held, parent)) = open.pop() {
+            // The largest are opened until there is no more room.
+            while held.len() < WIDTH {
+                let inner = (0..held.len()).filter(|&i| !halves[held[i]].is_leaf);
+                let largest = inner.max_by(|&a, &b| {
+                    let [a, b] = [a, b].map(|i| cost(&halves[held[i]].bounds));
+                    a.total_cmp(&b)
+                });
+                let Some(i) = largest else { break };
+                let first = halves[held[i]].first;
+                held.splice(i..=i, [first, first + 1]);
             }
-            let middle = start + split(emitters, range, &whole);
-            let first = tree.nodes.len();
-            (tree.nodes[node].first, tree.nodes[node].is_leaf) = (first as u32, false);
-            for _ in 0..2 {
-                tree.nodes.push(Node { bounds: whole, first: 0, parent: node as u32, is_leaf: true });
+            let number = tree.nodes.len() as u32;
+            let bounds: Vec<Bounds> = held.iter().map(|&half| halves[half].bounds).collect();
+            let mut node = Node::new(parent, &bounds);
+            for (slot, half) in (0..).zip(held.iter().map(|&half| &halves[half])) {
+                if half.is_leaf {
+                    node.children[usize::from(slot)] = Child::Emitter(half.first as u32);
+                    tree.leaves[half.first] = Some((number, slot));
+                } else {
+                    open.push((vec![half.first, half.first + 1], (number, slot)));
+                }
             }
-            open.push((first + 1, middle, end));
-            open.push((first, start, middle));
+            if number > 0 {
+                let (above, slot) = node.parent;
+                tree.nodes[above as usize].children[usize::from(slot)] = Child::Node(number);
+            }
+            tree.nodes.push(node);
         }
         tree
     }
@@ -159,39 +217,68 @@ impl LightTree {
     /// Chooses an emitter for a point with a normal (zero: any) by a number from 0 to 1; with its probability.
     pub fn sample(&self, p: Vec3, n: Vec3, u: f32) -> Option<(u32, f32)> {
         let (mut node, mut rest, mut probability) = (self.nodes.first()?, u, 1.0);
-        while !node.is_leaf {
-            let first = self.first_share(node, p, n)?;
-            let children = [&self.nodes[node.first as usize], &self.nodes[node.first as usize + 1]];
-            let (share, child) = if rest < first { (first, 0) } else { (1.0 - first, 1) };
-            rest = if child == 0 { rest / first } else { (rest - first) / (1.0 - first) };
-            rest = rest.clamp(0.0, 1.0 - f32::EPSILON * 0.5);
-            (node, probability) = (children[child], probability * share);
+        loop {
+            let shares = node.shares(p, n)?;
+            // The last that has a share takes what rounding leaves.
+            let last = shares.iter().rposition(|&share| share > 0.0)?;
+            let (mut slot, mut before) = (0, 0.0);
+            while slot < last && (shares[slot] == 0.0 || rest >= before + shares[slot]) {
+                before += shares[slot];
+                slot += 1;
+            }
+            rest = ((rest - before) / shares[slot]).clamp(0.0, 1.0 - f32::EPSILON * 0.5);
+            probability *= shares[slot];
+            match node.children[slot] {
+                Child::Node(next) => node = &self.nodes[next as usize],
+                Child::Emitter(emitter) => return Some((emitter, probability)),
+                Child::None => return None,
+            }
         }
-        Some((node.first, probability))
     }
 
     /// The probability with which [`LightTree::sample`] chooses an emitter.
     pub fn probability(&self, p: Vec3, n: Vec3, emitter: u32) -> f32 {
-        let mut place = match self.leaves.get(emitter as usize) {
-            Some(&place) if place != u32::MAX => place,
-            _ => return 0.0,
-        };
+        let Some((mut place, mut slot)) = self.leaves.get(emitter as usize).copied().flatten() else { return 0.0 };
         let mut probability = 1.0;
-        while place != 0 {
-            let parent = &self.nodes[self.nodes[place as usize].parent as usize];
-            let Some(first) = self.first_share(parent, p, n) else { return 0.0 };
-            probability *= if place == parent.first { first } else { 1.0 - first };
-            place = self.nodes[place as usize].parent;
+        loop {
+            let node = &self.nodes[place as usize];
+            let Some(shares) = node.shares(p, n) else { return 0.0 };
+            probability *= shares[usize::from(slot)];
+            if place == 0 || probability == 0.0 {
+                return probability;
+            }
+            (place, slot) = node.parent;
         }
-        probability
     }
+}
 
-    /// The share of a node's first child; `None` where neither brings any light.
-    fn first_share(&self, node: &Node, p: Vec3, n: Vec3) -> Option<f32> {
-        let [a, b] = [node.first, node.first + 1].map(|i| self.nodes[i as usize].bounds.importance(p, n));
-        let sum = a + b;
-        (sum > 0.0 && sum.is_finite()).then(|| a / sum)
+/// A tree of two children a node.
+fn halved(emitters: &[Bounds]) -> Vec<Half> {
+    let mut order: Vec<u32> = (0..emitters.len() as u32).filter(|&i| emitters[i as usize].power > 0.0).collect();
+    if order.is_empty() {
+        return Vec::new();
     }
+    let mut halves = vec![Half { bounds: emitters[order[0] as usize], first: 0, is_leaf: true }];
+    let mut open = vec![(0_usize, 0_usize, order.len())];
+    while let Some((node, start, end)) = open.pop() {
+        let range = &mut order[start..end];
+        let whole = range.iter().map(|&i| emitters[i as usize]).reduce(|a, b| a.union(&b));
+        let Some(whole) = whole else { continue };
+        halves[node].bounds = whole;
+        if let [one] = *range {
+            halves[node].first = one as usize;
+            continue;
+        }
+        let middle = start + split(emitters, range, &whole);
+        let first = halves.len();
+        (halves[node].first, halves[node].is_leaf) = (first, false);
+        for _ in 0..2 {
+            halves.push(Half { bounds: whole, first: 0, is_leaf: true });
+        }
+        open.push((first + 1, middle, end));
+        open.push((first, start, middle));
+    }
+    halves
 }
 
 /// Divides emitters so that both sides are small, weak and point one way; returns how many come first.

@@ -396,6 +396,24 @@ fn pictures_lie_on_spheres_as_pbrt_has_them() {
 }
 
 #[test]
+fn roughness_and_heights_come_from_pictures() {
+    let folder = folder(&[("t.ppm", b"P6 1 1 255\n\x80\x80\x80")]);
+    let text = "Camera \"perspective\" WorldBegin Texture \"t\" \"float\" \"imagemap\" \"string filename\" \"t.ppm\" \"float scale\" 0.5\n\
+                Material \"conductor\" \"texture roughness\" \"t\" \"texture displacement\" \"t\"\n\
+                Translate 0 0 5 Shape \"sphere\"";
+    let world = world(folder.path().join("a.pbrt").to_str().unwrap(), text);
+    let ray = crate::math::Ray::new(Vec3::ZERO, Vec3::Z);
+    let hit = world.closest(&ray, &mut ()).unwrap();
+    let crate::world::Material::Phong(phong) = &world.materials[world.material(&hit) as usize] else { panic!() };
+    let own = phong.principled.as_ref().unwrap();
+    // pbrt takes the root of what is written for alpha, whose root is our roughness.
+    let expected = (0.5 * crate::image::decode_srgb(128)).sqrt().sqrt();
+    let found = world.parameters_at(own, &hit, &world.surface(&ray, &hit)).specular_roughness;
+    assert!((found - expected).abs() < 2.0 / 255.0, "{found} {expected}");
+    assert_eq!((own.maps.bump.is_some(), own.maps.bump_height), (true, 0.5));
+}
+
+#[test]
 fn a_body_of_several_meshes_is_one_piece_of_glass() {
     // A cube about the origin: its lid is a mesh of its own, mirrored.
     let side = |turn: &str| {

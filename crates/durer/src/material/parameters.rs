@@ -1,0 +1,112 @@
+//! The numbers of a material in layers at one point, and which of them pictures change.
+
+use super::PrincipledMaterial;
+use super::principled::Walls;
+use crate::describe::FileName;
+use crate::math::Vec3;
+
+macro_rules! parameters {
+    ($($field:ident: $type:ty,)+) => {
+        /// The numbers of a [`PrincipledMaterial`] that say how light is scattered at a point, by the same names.
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        pub struct Parameters {
+            $(#[doc = concat!("As [`PrincipledMaterial::", stringify!($field), "`].")] pub $field: $type,)+
+            /// What multiplies the reflection of an opaque base or a metal, at all angles.
+            pub reflection: f32,
+            /// What multiplies the light that enters a body in which it is scattered.
+            pub entering: Vec3,
+            /// Whether there is a body in which light is scattered, be its share here none.
+            pub has_body: bool,
+        }
+
+        impl Parameters {
+            /// As written, without pictures; `base_color` times `base_weight`.
+            pub fn of(m: &PrincipledMaterial) -> Self {
+                let has_body = m.has_subsurface();
+                let written = Parameters { $($field: m.$field,)+ reflection: 1.0, entering: Vec3::ONE, has_body };
+                Parameters { base_color: m.base_weight * m.base_color, ..written }
+            }
+        }
+    };
+}
+
+parameters! {
+    base_color: Vec3,
+    base_diffuse_roughness: f32,
+    base_metalness: f32,
+    specular_weight: f32,
+    specular_color: Vec3,
+    specular_roughness: f32,
+    specular_anisotropy: f32,
+    specular_rotation: f32,
+    specular_ior: f32,
+    transmission_weight: f32,
+    transmission_color: Vec3,
+    transmission_depth: f32,
+    subsurface_weight: f32,
+    subsurface_color: Vec3,
+    subsurface_scatter_anisotropy: f32,
+    coat_weight: f32,
+    coat_color: Vec3,
+    coat_roughness: f32,
+    coat_ior: f32,
+    coat_darkening: f32,
+    fuzz_weight: f32,
+    fuzz_color: Vec3,
+    fuzz_roughness: f32,
+    thin_film_weight: f32,
+    thin_film_thickness: f32,
+    thin_film_ior: f32,
+    walls: Walls,
+}
+
+/// What a picture does with a parameter.
+#[derive(Clone, Copy, Debug)]
+pub enum Change {
+    /// By one of its channels.
+    Number(fn(&mut Parameters, f32)),
+    /// By its colour.
+    Color(fn(&mut Parameters, Vec3)),
+}
+
+/// A field for a picture, and what that does.
+#[derive(Clone, Copy, Debug)]
+pub struct Textured {
+    /// The picture of a material.
+    pub picture: fn(&PrincipledMaterial) -> Option<&FileName>,
+    /// What it does.
+    pub change: Change,
+}
+
+macro_rules! textured {
+    ($($field:ident $kind:ident $change:expr;)+) => {
+        /// All parameters that pictures change, but for what shines, is opaque or bends normals.
+        pub const TEXTURED: &[Textured] =
+            &[$(Textured { picture: |m| m.$field.as_ref(), change: Change::$kind($change) },)+];
+    };
+}
+
+textured! {
+    base_color_texture Color |p, by| p.base_color *= by;
+    base_weight_texture Number |p, by| p.base_color *= by;
+    base_diffuse_roughness_texture Number |p, by| p.base_diffuse_roughness *= by;
+    base_metalness_texture Number |p, by| p.base_metalness *= by;
+    specular_weight_texture Number |p, by| p.reflection *= by;
+    specular_color_texture Color |p, by| p.specular_color *= by;
+    specular_roughness_texture Number |p, by| p.specular_roughness *= by;
+    specular_anisotropy_texture Number |p, by| p.specular_anisotropy *= by;
+    specular_rotation_texture Number |p, by| p.specular_rotation += by;
+    transmission_weight_texture Number |p, by| p.transmission_weight *= by;
+    transmission_color_texture Color |p, by| p.transmission_color *= by;
+    subsurface_weight_texture Number |p, by| p.subsurface_weight *= by;
+    subsurface_color_texture Color |p, by| (p.subsurface_color, p.entering) = (p.subsurface_color * by, p.entering * by);
+    coat_weight_texture Number |p, by| p.coat_weight *= by;
+    coat_color_texture Color |p, by| p.coat_color *= by;
+    coat_roughness_texture Number |p, by| p.coat_roughness *= by;
+    coat_darkening_texture Number |p, by| p.coat_darkening *= by;
+    fuzz_weight_texture Number |p, by| p.fuzz_weight *= by;
+    fuzz_color_texture Color |p, by| p.fuzz_color *= by;
+    fuzz_roughness_texture Number |p, by| p.fuzz_roughness *= by;
+    thin_film_weight_texture Number |p, by| p.thin_film_weight *= by;
+    thin_film_thickness_texture Number |p, by| p.thin_film_thickness *= by;
+}
