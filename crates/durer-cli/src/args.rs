@@ -102,6 +102,7 @@ pub struct SceneArgs {
   durer render scene.txt -o picture.exr --samples 256 --resume
   durer render scene.txt -o three.part --shard 3/16
   durer render scene.txt -o picture.png --show color,depth,normals --depth-range 9 10
+  durer render room.txt -o room.png --show luminance,illuminance --light-range 10 100000 --light-log
   durer render scene.txt -o picture.png --dialect f04 --shadows --bounces 4 --transfer course
   durer render scene.txt -o dots.png --show samples --size 9x9 --sampler jittered --samples 9
 
@@ -185,6 +186,12 @@ pub struct JobArgs {
     /// Depths shown as the two ends of grey [default: those in the picture]
     #[arg(long, num_args = 2, value_names = ["MIN", "MAX"], allow_negative_numbers = true)]
     pub depth_range: Option<Vec<f32>>,
+    /// Luminance or illuminance shown as the first and the last false colour [default: 0 and what 98 % of the picture stay below]
+    #[arg(long, num_args = 2, value_names = ["LOW", "HIGH"], allow_negative_numbers = true)]
+    pub light_range: Option<Vec<f32>>,
+    /// False colours of light by equal ratios; --light-range begins above 0
+    #[arg(long, requires = "light_range")]
+    pub light_log: bool,
     #[command(flatten)]
     pub method: MethodArgs,
     /// Levels of mirrored and transmitted rays; of paths, how often light is scattered after the first time [default: 8, of
@@ -358,7 +365,7 @@ pub struct ExplainArgs {
     /// The brightest pixel of the picture
     #[arg(long, conflicts_with = "worst")]
     pub brightest: bool,
-    /// The pixel least like those around it: fireflies, specks
+    /// The pixel least like those around it; of paths, the one to which a single sample adds most
     #[arg(long)]
     pub worst: bool,
     /// Leave out terms that are a smaller share of the pixel, in percent

@@ -51,7 +51,10 @@ pub fn run(args: &ExplainArgs) -> Result<(), Failure> {
     let names = Names { files: &opened.files, scene: &opened.loaded.scene, world: &opened.world };
     // All trees of a pixel would hide each other.
     let sample = match &subject {
-        Subject::Pixel(pixel) => args.sample.map_or_else(|| pixel.heaviest(), |sample| sample as usize),
+        Subject::Pixel(pixel) => args.sample.map_or_else(
+            || pixel.brightest().filter(|_| args.worst).map_or_else(|| pixel.heaviest(), |(sample, _)| sample),
+            |sample| sample as usize,
+        ),
         Subject::Ray(_) => 0,
     };
     if let (Some(place), Some(picture)) = (&page_file, &picture) {
@@ -72,6 +75,11 @@ pub fn run(args: &ExplainArgs) -> Result<(), Failure> {
     };
     let colored = std::io::stdout().is_terminal() && std::env::var_os("NO_COLOR").is_none();
     lines.iter().for_each(|line| say(&shown(line, colored, transfer)));
+    if let Subject::Pixel(pixel) = &subject
+        && job.method.is_random()
+    {
+        pixel.firefly().iter().for_each(|sentence| say(&format!("  {sentence}")));
+    }
     Ok(())
 }
 
@@ -98,6 +106,9 @@ fn subject(args: &ExplainArgs, opened: &Opened, job: &Job, picture: Option<&Imag
         }
         (None, Some(pixel), _) => pixel,
         (None, None, Some(picture)) if args.brightest => most(picture, |x, y| luminance(at(picture, x, y))),
+        (None, None, Some(picture)) if job.method.is_random() => {
+            return worst(opened, job, picture).map(Subject::Pixel);
+        }
         (None, None, Some(picture)) => most(picture, |x, y| oddness(picture, x, y)),
         (None, None, None) => return Err(bad("say which pixel: --pixel X,Y, --brightest, --worst, or --ray")),
     };
@@ -112,6 +123,26 @@ fn subject(args: &ExplainArgs, opened: &Opened, job: &Job, picture: Option<&Imag
         return Err(bad(format!("there is no sample {sample}: the pixel's are numbered from 0 to {last}")));
     }
     Ok(Subject::Pixel(explanation))
+}
+
+/// The pixel to which one sample adds most, among those that differ most from their neighbours: the brightest firefly.
+fn worst(opened: &Opened, job: &Job, picture: &Image) -> Result<Explanation, Failure> {
+    const CANDIDATES: usize = 256;
+    let places = (0..picture.height).flat_map(|y| (0..picture.width).map(move |x| (x, y)));
+    let mut odd: Vec<(f64, (u32, u32))> = places.map(|(x, y)| (oddness(picture, x, y), (x, y))).collect();
+    odd.sort_by(|a, b| b.0.total_cmp(&a.0));
+    odd.truncate(CANDIDATES);
+    let mut best: Option<(f64, Explanation)> = None;
+    for (_, (x, y)) in odd {
+        let explanation = deep(|| explain(&opened.world, job, x, y))?.map_err(failure)?;
+        // A lamp's own border is bright, and no firefly.
+        let standing_out = if explanation.outlier().is_some() { 1.0 } else { 1e-6 };
+        let adds = explanation.brightest().map_or(0.0, |(_, adds)| standing_out * adds);
+        if best.as_ref().is_none_or(|(most, _)| adds > *most) {
+            best = Some((adds, explanation));
+        }
+    }
+    best.map(|(_, explanation)| explanation).ok_or_else(|| bad("the picture has no pixel"))
 }
 
 /// Runs work whose recursion is as deep as the bounces.

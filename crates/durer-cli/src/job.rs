@@ -10,6 +10,7 @@ use durer::dialect::{Compat, Dialect};
 use durer::film::Filter;
 use durer::film::aov::Aov;
 use durer::film::course::CourseFilter;
+use durer::film::false_color::LightScale;
 use durer::integrator::{Method, Settings};
 use durer::render::{Crop, Job, Sampling};
 use durer::sampler::Sampler;
@@ -61,6 +62,19 @@ pub fn job(args: &JobArgs, view: Option<&ViewArgs>, loaded: &Loaded, timed: bool
     if depth_range.is_some_and(|(min, max)| !(min.is_finite() && max.is_finite() && min != max)) {
         return Err(bad("--depth-range needs two different numbers"));
     }
+    let light_scale = match args.light_range.as_deref() {
+        Some(&[low, high]) => {
+            let least = if args.light_log { f32::MIN_POSITIVE } else { 0.0 };
+            if !(low >= least && high > low && high.is_finite()) {
+                return Err(bad(match args.light_log {
+                    true => "--light-range needs two numbers above 0 with --light-log, the second greater",
+                    false => "--light-range needs two numbers from 0 on, the second greater",
+                }));
+            }
+            Some(LightScale { low, high, logarithmic: args.light_log })
+        }
+        _ => None,
+    };
     Ok(Job {
         width,
         height,
@@ -81,6 +95,7 @@ pub fn job(args: &JobArgs, view: Option<&ViewArgs>, loaded: &Loaded, timed: bool
         color: view.is_none() || shown.iter().any(|show| show == "color"),
         aovs: shown.iter().filter_map(|name| Aov::from_name(name)).collect(),
         depth_range,
+        light_scale,
     })
 }
 

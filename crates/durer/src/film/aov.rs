@@ -3,6 +3,7 @@
 //! Most of these pictures are made of one ray through each pixel's centre, some of the sums of the colour's samples. Files
 //! of floating point get the values as they are; eight-bit files get a picture of them between 0 and 1.
 
+use super::false_color::LightScale;
 use crate::bvh::TraversalStats;
 use crate::dialect::{Compat, CompatSet, DepthPicture, NormalsPicture, Rules};
 use crate::math::{Aabb, Color, Vec3};
@@ -24,6 +25,8 @@ pub struct Seen {
     pub albedo: Color,
     /// The work for the pixel, with all secondary rays.
     pub counts: TraversalStats,
+    /// The light that arrives at the surface, in lux where the scene's light is in cd/m^2; 0 unless it is asked for.
+    pub illuminance: f32,
 }
 
 impl Seen {
@@ -34,6 +37,7 @@ impl Seen {
         material: 0,
         albedo: Vec3::ZERO,
         counts: TraversalStats { rays: 0, nodes: 0, tests: 0 },
+        illuminance: 0.0,
     };
 }
 
@@ -44,6 +48,8 @@ pub struct Sums {
     pub samples: u64,
     /// Estimated variance of their mean luminance.
     pub variance: f64,
+    /// Luminance of their mean.
+    pub luminance: f64,
 }
 
 /// Those rules of a scene's dialect that say how values are shown.
@@ -76,6 +82,8 @@ pub struct Display {
     pub look: Look,
     /// Depths that become black and white; `None`: least and greatest of the picture.
     pub depth_range: Option<(f32, f32)>,
+    /// What false colours stand for.
+    pub light_scale: LightScale,
     /// The box of all values where something was hit.
     pub hits: Aabb,
     /// The box of all values.
@@ -104,6 +112,8 @@ pub struct Aov {
     pub picture: fn(Vec3, bool, &Display) -> Color,
     /// Whether that colour depends on the values of other pixels too.
     pub relative: bool,
+    /// The unit of values in false colours, whose scale is drawn beside them.
+    pub unit: Option<&'static str>,
 }
 
 impl Aov {
@@ -129,13 +139,14 @@ pub fn fill_from_last_hit(pixels: &mut [Color], hits: &[bool], width: usize) {
 }
 
 /// All kinds of picture beside colour.
-pub static AOVS: [Aov; 12] = [
+pub static AOVS: [Aov; 14] = [
     Aov {
         name: "depth",
         doc: "t of the first hit: the distance, for cameras; infinite where nothing is hit",
         value: Value::Ray(|seen| Vec3::splat(seen.hit.map_or(f32::INFINITY, |(hit, _)| hit.t))),
         picture: depth_picture,
         relative: true,
+        unit: None,
     },
     Aov {
         name: "normals",
@@ -144,6 +155,7 @@ pub static AOVS: [Aov; 12] = [
         picture: normal_picture,
         // Where nothing is hit, one habit shows the normal hit last.
         relative: true,
+        unit: None,
     },
     Aov {
         name: "geometric-normals",
@@ -151,6 +163,7 @@ pub static AOVS: [Aov; 12] = [
         value: Value::Ray(|seen| of_surface(seen, |s| s.n_geo)),
         picture: normal_picture,
         relative: false,
+        unit: None,
     },
     Aov {
         name: "position",
@@ -162,6 +175,7 @@ pub static AOVS: [Aov; 12] = [
             if hit { Vec3::new(one(0), one(1), one(2)) } else { Vec3::ZERO }
         },
         relative: true,
+        unit: None,
     },
     Aov {
         name: "uv",
@@ -169,6 +183,7 @@ pub static AOVS: [Aov; 12] = [
         value: Value::Ray(|seen| of_surface(seen, |s| s.uv.get().unwrap_or_default().extend(0.0))),
         picture: |uv, _, _| uv - uv.floor(),
         relative: false,
+        unit: None,
     },
     Aov {
         name: "barycentric",
@@ -176,6 +191,7 @@ pub static AOVS: [Aov; 12] = [
         value: Value::Ray(|seen| of_surface(seen, |s| s.barycentric)),
         picture: |b, _, _| b,
         relative: false,
+        unit: None,
     },
     Aov {
         name: "albedo",
@@ -183,6 +199,7 @@ pub static AOVS: [Aov; 12] = [
         value: Value::Ray(|seen| seen.albedo),
         picture: |albedo, _, _| albedo,
         relative: false,
+        unit: None,
     },
     Aov {
         name: "object",
@@ -190,6 +207,7 @@ pub static AOVS: [Aov; 12] = [
         value: Value::Ray(|seen| Vec3::splat(seen.hit.map_or(-1.0, |(hit, _)| hit.object as f32))),
         picture: |id, hit, _| if hit { id_color(id.x) } else { Vec3::ZERO },
         relative: false,
+        unit: None,
     },
     Aov {
         name: "material",
@@ -197,6 +215,23 @@ pub static AOVS: [Aov; 12] = [
         value: Value::Ray(|seen| Vec3::splat(if seen.hit.is_some() { seen.material as f32 } else { -1.0 })),
         picture: |id, hit, _| if hit { id_color(id.x) } else { Vec3::ZERO },
         relative: false,
+        unit: None,
+    },
+    Aov {
+        name: "luminance",
+        doc: "luminance of the colour, in cd/m^2 where the scene's light is; as a picture, false colours with their scale",
+        value: Value::Sums(|sums| Vec3::splat(sums.luminance as f32)),
+        picture: light_picture,
+        relative: true,
+        unit: Some("cd/m2"),
+    },
+    Aov {
+        name: "illuminance",
+        doc: "light that arrives at the surface, in lux where the scene's light is in cd/m^2, by paths; false colours with their scale",
+        value: Value::Ray(|seen| Vec3::splat(seen.illuminance)),
+        picture: |value, hit, display| if hit { light_picture(value, hit, display) } else { Vec3::ZERO },
+        relative: true,
+        unit: Some("lux"),
     },
     Aov {
         name: "sample-count",
@@ -204,6 +239,7 @@ pub static AOVS: [Aov; 12] = [
         value: Value::Sums(|sums| Vec3::splat(sums.samples as f32)),
         picture: heat_picture,
         relative: true,
+        unit: None,
     },
     Aov {
         name: "variance",
@@ -211,6 +247,7 @@ pub static AOVS: [Aov; 12] = [
         value: Value::Sums(|sums| Vec3::splat(sums.variance as f32)),
         picture: |variance, _, _| heat(variance.x.sqrt() * 10.0),
         relative: false,
+        unit: None,
     },
     Aov {
         name: "cost",
@@ -218,6 +255,7 @@ pub static AOVS: [Aov; 12] = [
         value: Value::Ray(|seen| Vec3::splat((seen.counts.nodes + seen.counts.tests) as f32)),
         picture: heat_picture,
         relative: true,
+        unit: None,
     },
 ];
 
@@ -226,6 +264,10 @@ fn normal_picture(n: Vec3, _: bool, display: &Display) -> Color {
         NormalsPicture::Abs => n.abs(),
         NormalsPicture::Half => (n + 1.0) * 0.5,
     }
+}
+
+fn light_picture(value: Vec3, _: bool, display: &Display) -> Color {
+    display.light_scale.color(value.x)
 }
 
 fn heat_picture(value: Vec3, _: bool, display: &Display) -> Color {

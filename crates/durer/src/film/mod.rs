@@ -6,6 +6,7 @@ pub mod aov;
 pub mod bytes;
 pub mod course;
 pub mod diagram;
+pub mod false_color;
 #[expect(clippy::module_inception, reason = "the film is what this room is about")]
 mod film;
 mod filter;

@@ -150,12 +150,17 @@ impl<'w> Path<'w> {
     /// The irradiance at a point on the side of a unit normal, by the random numbers of a sample: pi times what a white matte
     /// surface shows there.
     pub fn irradiance<T: Witness>(&self, point: DVec3, normal: Vec3, id: SampleId, tally: &mut T) -> Color {
-        let surface = Surface::around(point, normal);
+        self.irradiance_on(&Surface::around(point, normal), normal, id, tally)
+    }
+
+    /// The same at a point of a surface, on the side of a normal for shading.
+    pub fn irradiance_on<T: Witness>(&self, surface: &Surface, normal: Vec3, id: SampleId, tally: &mut T) -> Color {
         let mut bsdf = Bsdf::default();
         bsdf.push(Diffuse { color: Spectrum::ONE, roughness: 0.0 }, Spectrum::ONE, 1.0);
-        let shading = Shading { frame: Frame::around(normal), n_geo: normal, wo: Vec3::Z, bsdf };
+        let n_geo = if surface.n_geo.dot(normal) < 0.0 { -surface.n_geo } else { surface.n_geo };
+        let shading = Shading { frame: Frame::around(normal), n_geo, wo: Vec3::Z, bsdf };
         let sample = self.sample(id);
-        let vertex = Vertex { place: Place::Surface(&surface, &shading, None), state: &State::default() };
+        let vertex = Vertex { place: Place::Surface(surface, &shading, None), state: &State::default() };
         let near = self.direct(&vertex, &sample, tally) + self.caustic(&vertex, &sample, tally);
         let light = near + self.indirect(&vertex, &sample, tally);
         std::f32::consts::PI * sample.lanes.color(light)

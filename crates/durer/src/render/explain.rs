@@ -2,6 +2,7 @@
 
 pub mod check;
 mod course;
+mod firefly;
 mod text;
 
 use super::samples::{Aim, Samples};

@@ -4,6 +4,7 @@ use super::passes;
 use crate::film::Filter;
 use crate::film::aov::{Aov, Value};
 use crate::film::course::CourseFilter;
+use crate::film::false_color::LightScale;
 use crate::integrator::{Method, Settings};
 use crate::sampler::Sampler;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
@@ -141,6 +142,9 @@ pub struct Job {
     pub aovs: Vec<&'static Aov>,
     /// Depths shown as black and white; `None`: least and greatest of the picture.
     pub depth_range: Option<(f32, f32)>,
+    /// What the false colours of light stand for; `None`: 0 and what nearly all of the picture stays below.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub light_scale: Option<LightScale>,
 }
 
 fn aov_names<S: Serializer>(aovs: &[&'static Aov], serializer: S) -> Result<S::Ok, S::Error> {
@@ -177,6 +181,7 @@ impl Default for Job {
             color: true,
             aovs: Vec::new(),
             depth_range: None,
+            light_scale: None,
         }
     }
 }

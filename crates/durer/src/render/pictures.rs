@@ -4,8 +4,9 @@ use super::error::RenderError;
 use super::part::{Found, Part, State, Statistics, job_text};
 use super::{Blocks, Crop};
 use crate::dialect::Compat;
-use crate::film::Film;
 use crate::film::aov::{Aov, Display, Sums, Value, fill_from_last_hit};
+use crate::film::false_color::LightScale;
+use crate::film::{Film, luminance};
 use crate::image::{Image, Layer};
 use crate::math::{Aabb, Color, Vec3};
 
@@ -100,10 +101,12 @@ impl Part {
 
     /// The values of a picture that comes from the samples.
     fn summed(&self, state: &State, value: fn(&Sums) -> Vec3) -> Vec<(Vec3, Found)> {
-        let (gain, none) = (self.gain(), Sums { samples: 0, variance: f64::INFINITY });
+        let (gain, none) = (self.gain(), Sums { samples: 0, variance: f64::INFINITY, luminance: 0.0 });
         let mut pixels = vec![(value(&none), Found::Blind); self.job.window().pixels() as usize];
         self.each_sampled(state, |index, film, x, y| {
-            let sums = Sums { samples: film.samples(x, y), variance: film.variance(x, y, gain) };
+            let [r, g, b] = film.resolve(x, y).to_array().map(f64::from);
+            let luminance = luminance([r, g, b]);
+            let sums = Sums { samples: film.samples(x, y), variance: film.variance(x, y, gain), luminance };
             pixels[index] = (value(&sums), Found::Hit);
         });
         pixels
@@ -136,9 +139,11 @@ impl Part {
 
     /// Values as colours.
     fn shown(&self, aov: &Aov, values: &[(Vec3, Found)]) -> Vec<Color> {
+        let light = aov.unit.map_or(&[][..], |_| values);
         let display = Display {
             look: self.look,
             depth_range: self.job.depth_range,
+            light_scale: self.job.light_scale.unwrap_or_else(|| LightScale::over(light.iter().map(|value| value.0.x))),
             hits: Aabb::around(values.iter().filter(|value| value.1 == Found::Hit).map(|value| value.0)),
             all: Aabb::around(values.iter().map(|value| value.0)),
         };
@@ -150,6 +155,13 @@ impl Part {
         if aov.name == "normals" && self.look.has(Compat::StaleNormals) {
             let hits: Vec<bool> = values.iter().map(|value| value.1 == Found::Hit).collect();
             fill_from_last_hit(&mut picture, &hits, self.job.ray_window().width as usize);
+        }
+        if let Some(unit) = aov.unit {
+            let window = match aov.value {
+                Value::Ray(_) => self.job.ray_window(),
+                Value::Sums(_) => self.job.window(),
+            };
+            display.light_scale.draw(&mut picture, window.width as usize, unit);
         }
         picture
     }

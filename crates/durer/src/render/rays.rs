@@ -5,13 +5,18 @@ use super::samples::{At, Samples, Stopped};
 use super::{Crop, Job, center_ray, raster};
 use crate::bvh::{RayCount, TraversalStats};
 use crate::film::aov::Seen;
+use crate::film::luminance;
+use crate::integrator::Path;
 use crate::math::Vec3;
+use crate::sampler::SampleId;
 use crate::world::World;
 
 /// Traces the rays of a block.
 pub(super) fn trace(world: &World, job: &Job, samples: &Samples, rect: Crop, at: &At) -> Result<Traced, Stopped> {
     let raster = raster(world, job.width, job.height);
-    let cost_wanted = job.aovs.iter().any(|aov| aov.name == "cost");
+    let wanted = |name: &str| job.aovs.iter().any(|aov| aov.name == name);
+    let (cost_wanted, illuminance_wanted) = (wanted("cost"), wanted("illuminance"));
+    let path = Path::new(world, job.settings, job.method.transport().unwrap_or_default());
     let mut rays = RayCount::default();
     let mut seen = Vec::with_capacity(rect.pixels() as usize);
     for (x, y) in rect.places() {
@@ -28,8 +33,21 @@ pub(super) fn trace(world: &World, job: &Job, samples: &Samples, rect: Crop, at:
         }
         let material = hit.map_or(0, |(hit, _)| world.material(&hit));
         let albedo = hit.map_or(Vec3::ZERO, |(hit, surface)| samples.whitted.albedo(&hit, &surface));
+        let illuminance = match &hit {
+            Some((_, surface)) if illuminance_wanted => {
+                // On the side that is seen.
+                let side = if ray.dir.dot(surface.n_geo) > 0.0 { -surface.n_shade } else { surface.n_shade };
+                let (mut sum, count) = (Vec3::ZERO, job.sampling.samples().max(1));
+                for sample in 0..count {
+                    samples.check()?;
+                    sum += path.irradiance_on(surface, side, SampleId::new(job.seed, (x, y), sample), &mut rays);
+                }
+                (luminance(sum.to_array().map(f64::from)) / f64::from(count)) as f32
+            }
+            _ => 0.0,
+        };
         rays.0 += counts.rays;
-        seen.push(Seen { covered: true, hit, material, albedo, counts });
+        seen.push(Seen { covered: true, hit, material, albedo, counts, illuminance });
     }
     samples.check()?;
     // What is no number is shown as nothing.

@@ -149,8 +149,12 @@ impl Reader<'_, '_> {
         let help = self.advice(word, known()).unwrap_or_else(|| {
             let mut words: Vec<&str> = fields.iter().filter_map(|f| f.spelling(self.options.dialect)).collect();
             words.dedup();
+            // A list of seventy words is no help.
+            let many = words.len() > 24;
+            words.retain(|word| !many || !word.ends_with("Texture"));
             match after_path {
                 true => "a path ends at the first blank".into(),
+                false if many => format!("its fields are {}; for most there is a `...Texture` too", words.join(", ")),
                 false => format!("its fields are {}", words.join(", ")),
             }
         });

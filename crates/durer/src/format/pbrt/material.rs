@@ -36,6 +36,13 @@ pub(super) enum Made {
     Nothing,
 }
 
+/// How much of a shape is there: everywhere, or by a picture.
+#[derive(Debug)]
+pub(super) struct Opacity {
+    pub share: f32,
+    pub picture: Option<FileName>,
+}
+
 /// Mixes in mixes.
 const DEEPEST: u32 = 32;
 
@@ -390,19 +397,19 @@ impl Reader<'_> {
 
     /// The number in the scene of a material that shines with a radiance and is there in part;
     /// `None` for what is not there.
-    pub fn number(&mut self, made: usize, light: Option<(&AreaLight, Color)>, opacity: f32) -> Option<u32> {
+    pub fn number(&mut self, made: usize, light: Option<(&AreaLight, Color)>, opacity: &Opacity) -> Option<u32> {
         let key = (
             made,
             match light {
                 Some((light, color)) => {
                     format!(
-                        "{opacity} {:?} {} {:?}",
+                        "{opacity:?} {:?} {} {:?}",
                         color.to_array().map(f32::to_bits),
                         light.two_sided,
                         light.picture
                     )
                 }
-                None => format!("{opacity}"),
+                None => format!("{opacity:?}"),
             },
         );
         if let Some(known) = self.numbers.get(&key) {
@@ -412,7 +419,8 @@ impl Reader<'_> {
             Made::Nothing => None,
             Made::Layers(layers, at) => {
                 let (mut m, at) = (layers.clone(), *at);
-                m.opacity = opacity.clamp(0.0, 1.0);
+                m.opacity = opacity.share.clamp(0.0, 1.0);
+                m.opacity_texture = opacity.picture.clone();
                 if let Some((light, color)) = light {
                     self.shine(&mut m, light, color);
                 }

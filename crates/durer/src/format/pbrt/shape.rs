@@ -1,6 +1,7 @@
 //! Shapes.
 
 use super::directives::SHAPE;
+use super::material::Opacity;
 use super::mesh;
 use super::params::{Kind, Param, Params};
 use super::state::Reader;
@@ -80,12 +81,12 @@ impl Reader<'_> {
         params.known(&["alpha"]);
         params.finish(&format!("the shape `{kind}`"));
         if let Some(made) = made {
-            self.show(made, opacity, at);
+            self.show(made, &opacity, at);
         }
     }
 
     /// Gives a shape its material and light, and puts it in its place.
-    fn show(&mut self, made: Made, opacity: f32, at: Span) {
+    fn show(&mut self, made: Made, opacity: &Opacity, at: Span) {
         let light = self.state.area.clone();
         let light = light.filter(|light| {
             let inside = self.defining.is_some();
@@ -108,19 +109,11 @@ impl Reader<'_> {
         }
     }
 
-    fn opacity(&self, params: &Params) -> f32 {
-        let by_picture = params.get("alpha").is_some_and(|param| {
-            param.kind == Kind::Texture
-                && matches!(
-                    self.textures.get(&(false, param.text().to_string())),
-                    Some(super::texture::Texture::Picture(..))
-                )
-        });
-        if by_picture {
-            self.said.once(params.place("alpha"), "holes by a picture have no counterpart: the shape is whole");
-            return 1.0;
+    fn opacity(&mut self, params: &Params) -> Opacity {
+        match self.changed(params, "alpha", |share| share) {
+            Some(picture) => Opacity { share: 1.0, picture: Some(picture) },
+            None => Opacity { share: self.value(params, "alpha", 1.0), picture: None },
         }
-        self.value(params, "alpha", 1.0)
     }
 
     /// Says that a part of a round shape is not drawn alone.
@@ -140,7 +133,7 @@ impl Reader<'_> {
         let world = radius * map.transform_vector3(DVec3::X).length() as f32;
         let (center, map) = match map.matrix3 == DAffine3::IDENTITY.matrix3 {
             // pbrt's poles are on z, and u begins at x; ours are on y, and u = 1/2 is at -z.
-            _ if self.is_pictured() => {
+            _ if self.is_pictured() || params.get("alpha").is_some_and(|param| param.kind == Kind::Texture) => {
                 let turned = DMat3::from_cols(DVec3::NEG_Y, DVec3::Z, DVec3::X);
                 (Vec3::ZERO, map * DAffine3::from_mat3(turned))
             }

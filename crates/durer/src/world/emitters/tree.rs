@@ -5,6 +5,7 @@
 //! and each choice is among smaller groups.
 
 use crate::math::{Aabb, Vec3, fp};
+use glam::Vec4;
 use std::f32::consts::PI;
 
 /// Where some emitters are, how strong they are, and where they shine.
@@ -65,21 +66,24 @@ fn cone_union((a, cos_a): (Vec3, f32), (b, cos_b): (Vec3, f32)) -> (Vec3, f32) {
 /// Children of a node.
 const WIDTH: usize = 8;
 
+/// One number for each child, four and four.
+type Eight = [Vec4; 2];
+
 /// A node: what its children hold, each number for all of them, so that they are weighed in lanes.
 #[derive(Clone, Debug)]
 struct Node {
-    middle: [[f32; WIDTH]; 3],
+    middle: [Eight; 3],
     /// The square of the radius around the middle, and the least square of a distance that counts.
-    radius2: [f32; WIDTH],
-    near2: [f32; WIDTH],
+    radius2: Eight,
+    near2: Eight,
     /// 0 where there is no child.
-    power: [f32; WIDTH],
-    axis: [[f32; WIDTH]; 3],
-    cos_normals: [f32; WIDTH],
-    sin_normals: [f32; WIDTH],
-    cos_emission: [f32; WIDTH],
-    /// Whether they shine to both sides.
-    two_sided: [bool; WIDTH],
+    power: Eight,
+    axis: [Eight; 3],
+    cos_normals: Eight,
+    sin_normals: Eight,
+    cos_emission: Eight,
+    /// 1 where they shine to both sides, else 0.
+    two_sided: Eight,
     children: [Child; WIDTH],
     /// The node above, and which of its children this is.
     parent: (u32, u8),
@@ -94,7 +98,10 @@ enum Child {
 
 impl Node {
     fn new(parent: (u32, u8), held: &[Bounds]) -> Self {
-        let of = |number: &dyn Fn(&Bounds) -> f32| std::array::from_fn(|i| held.get(i).map_or(0.0, number));
+        let of = |number: &dyn Fn(&Bounds) -> f32| {
+            let lanes: [f32; WIDTH] = std::array::from_fn(|i| held.get(i).map_or(0.0, number));
+            [Vec4::from_slice(&lanes[..4]), Vec4::from_slice(&lanes[4..])]
+        };
         let radius2 = |b: &Bounds| (0.5 * b.bounds.size()).length_squared();
         Node {
             middle: [0, 1, 2].map(|axis| of(&|b| b.bounds.center()[axis])),
@@ -106,51 +113,61 @@ impl Node {
             cos_normals: of(&|b| b.cos_normals),
             sin_normals: of(&|b| sine_of(b.cos_normals)),
             cos_emission: of(&|b| b.cos_emission),
-            two_sided: std::array::from_fn(|i| held.get(i).is_some_and(|b| b.two_sided)),
+            two_sided: of(&|b| f32::from(b.two_sided)),
             children: [Child::None; WIDTH],
             parent,
         }
     }
 
-    /// Estimates of what each child brings to a point with a normal; more than zero wherever one brings any light.
-    ///
-    /// No branches: all children are weighed at once. What is computed is the same whatever a lane is.
-    fn importances(&self, p: Vec3, n: Vec3) -> [f32; WIDTH] {
-        let faces = n != Vec3::ZERO;
-        let mut importances = [0.0; WIDTH];
-        for (i, importance) in importances.iter_mut().enumerate() {
-            let (x, y, z) = (p.x - self.middle[0][i], p.y - self.middle[1][i], p.z - self.middle[2][i]);
-            let distance2 = x * x + y * y + z * z;
-            let inverse = if distance2 > 0.0 { 1.0 / distance2.sqrt() } else { 0.0 };
-            let (x, y, z) = (x * inverse, y * inverse, z * inverse);
-            let cosine = self.axis[0][i] * x + self.axis[1][i] * y + self.axis[2][i] * z;
-            let cosine = if self.two_sided[i] { cosine.abs() } else { cosine };
-            let inside = distance2 <= self.radius2[i];
-            let sine2 = if inside { 0.0 } else { self.radius2[i] / distance2 };
-            let bounds = (if inside { -1.0 } else { (1.0 - sine2).sqrt() }, sine2.sqrt());
-            // The least angle to a normal, and from that to the point, over all that the bounds hold.
-            let least = minus((cosine, sine_of(cosine)), (self.cos_normals[i], self.sin_normals[i]));
-            let (cos_least, _) = minus(least, bounds);
-            let arriving = (n.x * x + n.y * y + n.z * z).abs();
-            let (cos_arriving, _) = minus((arriving, sine_of(arriving)), bounds);
-            let cos_arriving = if faces { cos_arriving.max(0.0) } else { 1.0 };
-            let value = self.power[i] * cos_least / distance2.max(self.near2[i]) * cos_arriving;
-            *importance = if cos_least <= self.cos_emission[i] { 0.0 } else { value.max(0.0) };
+    /// Estimates of what four children bring to a point with a normal; more than zero wherever one brings any light.
+    fn importances(&self, half: usize, p: Vec3, n: Vec3) -> Vec4 {
+        let (one, zero) = (Vec4::ONE, Vec4::ZERO);
+        let [x, y, z] = [0, 1, 2].map(|axis| Vec4::splat(p[axis]) - self.middle[axis][half]);
+        let distance2 = x * x + y * y + z * z;
+        let inverse = Vec4::select(distance2.cmpgt(zero), one / root(distance2), zero);
+        let [x, y, z] = [x, y, z].map(|offset| offset * inverse);
+        let dot = |[a, b, c]: [Vec4; 3]| a * x + b * y + c * z;
+        let cosine = dot(self.axis.map(|axis| axis[half]));
+        let cosine = Vec4::select(self.two_sided[half].cmpgt(zero), cosine.abs(), cosine);
+        let inside = distance2.cmple(self.radius2[half]);
+        let sine2 = Vec4::select(inside, zero, self.radius2[half] / distance2);
+        let bounds = (Vec4::select(inside, -one, root(one - sine2)), root(sine2));
+        // The least angle to a normal, and from that to the point, over all that the bounds hold.
+        let least = minus((cosine, sine(cosine)), (self.cos_normals[half], self.sin_normals[half]));
+        let (cos_least, _) = minus(least, bounds);
+        let mut importance = self.power[half] * cos_least / distance2.max(self.near2[half]);
+        if n != Vec3::ZERO {
+            let arriving = dot(n.to_array().map(Vec4::splat)).abs();
+            let (cos_arriving, _) = minus((arriving, sine(arriving)), bounds);
+            importance *= cos_arriving.max(zero);
         }
-        importances
+        Vec4::select(cos_least.cmple(self.cos_emission[half]), zero, importance.max(zero))
     }
 
     /// The probabilities of its children; `None` where none brings any light.
     fn shares(&self, p: Vec3, n: Vec3) -> Option<[f32; WIDTH]> {
-        let importances = self.importances(p, n);
-        let sum: f32 = importances.iter().sum();
-        (sum > 0.0 && sum.is_finite()).then(|| importances.map(|importance| importance / sum))
+        let importances = [0, 1].map(|half| self.importances(half, p, n));
+        let sum = (importances[0] + importances[1]).element_sum();
+        (sum > 0.0 && sum.is_finite()).then(|| {
+            let [low, high] = importances.map(|four| (four / sum).to_array());
+            std::array::from_fn(|i| if i < 4 { low[i] } else { high[i - 4] })
+        })
     }
 }
 
+fn root(x: Vec4) -> Vec4 {
+    x.map(f32::sqrt)
+}
+
+fn sine(cosine: Vec4) -> Vec4 {
+    root((Vec4::ONE - cosine * cosine).max(Vec4::ZERO))
+}
+
 /// Cosine and sine of the difference of two angles, not less than 0.
-fn minus((cos_a, sin_a): (f32, f32), (cos_b, sin_b): (f32, f32)) -> (f32, f32) {
-    if cos_a > cos_b { (1.0, 0.0) } else { (cos_a * cos_b + sin_a * sin_b, sin_a * cos_b - cos_a * sin_b) }
+fn minus((cos_a, sin_a): (Vec4, Vec4), (cos_b, sin_b): (Vec4, Vec4)) -> (Vec4, Vec4) {
+    let less = cos_a.cmpgt(cos_b);
+    let difference = (cos_a * cos_b + sin_a * sin_b, sin_a * cos_b - cos_a * sin_b);
+    (Vec4::select(less, Vec4::ONE, difference.0), Vec4::select(less, Vec4::ZERO, difference.1))
 }
 
 /// The tree.

@@ -1,0 +1,111 @@
+//! Why one sample is far brighter than its pixel's others: the way of its brightest term, and what was seldom chosen on it.
+
+use super::Explanation;
+use super::text::number;
+use crate::film::luminance;
+use crate::integrator::Node;
+use crate::integrator::account::What;
+use crate::math::Color;
+
+fn bright(color: Color) -> f64 {
+    luminance(color.to_array().map(f64::from))
+}
+
+impl Explanation {
+    /// The sample that adds most light, and what it adds to the pixel's luminance; `None` where no light comes at all.
+    pub fn brightest(&self) -> Option<(usize, f64)> {
+        let all: f64 = self.samples.iter().map(|s| f64::from(s.weight)).sum();
+        let adds = |i: usize| {
+            let s = &self.samples[i];
+            let light = s.light.as_ref().map_or(0.0, |light| bright(light.contribution()));
+            f64::from(s.weight) * light / all
+        };
+        let best = (0..self.samples.len()).max_by(|&a, &b| adds(a).total_cmp(&adds(b)).then(b.cmp(&a)))?;
+        (adds(best) > 0.0).then(|| (best, adds(best)))
+    }
+
+    /// The sample that stands out from the others, and its share of the pixel's luminance.
+    pub fn outlier(&self) -> Option<(usize, f64)> {
+        // What adds no more than this, or than four times what is even, is as the others are.
+        let usual = (4.0 / self.samples.len() as f64).clamp(0.2, 0.9);
+        let (number, adds) = self.brightest()?;
+        let share = adds / bright(self.color);
+        (self.samples.len() > 1 && share >= usual).then_some((number, share))
+    }
+
+    /// What made that sample so bright, in sentences; none where none stands out.
+    pub fn firefly(&self) -> Vec<String> {
+        let Some((number, share)) = self.outlier() else { return Vec::new() };
+        let mut said = vec![format!("sample {number} alone is {:.0} % of the pixel", 100.0 * share)];
+        said.extend(self.samples[number].light.iter().flat_map(cause));
+        said.push(
+            "more samples make such pixels rarer and no darker; `--clamp 10` cuts them off, and some light with them"
+                .into(),
+        );
+        said
+    }
+}
+
+/// Follows the brightest terms to where the light comes from.
+fn cause(light: &Node) -> Vec<String> {
+    let (mut node, mut chosen) = (light, Vec::new());
+    loop {
+        if let What::Ray { bounce: Some(bounce), .. } = &node.what {
+            chosen.push(bounce);
+        }
+        let next = node.terms.iter().max_by(|a, b| bright(a.contribution()).total_cmp(&bright(b.contribution())));
+        match next.filter(|next| bright(next.contribution()) > 0.0) {
+            Some(next) => node = next,
+            None => break,
+        }
+    }
+    let way = chosen.iter().map(|bounce| bounce.lobe).collect::<Vec<_>>().join(", then ");
+    // Single directions have no density.
+    let single = chosen.last().is_some_and(|last| last.pdf == 0.0);
+    let seldom = chosen.iter().filter(|bounce| bounce.pdf > 0.0).min_by(|a, b| a.pdf.total_cmp(&b.pdf));
+    let told = |what: &str| match chosen.is_empty() {
+        true => format!("{what} is seen directly"),
+        false => format!("{what} was met by chance after {way}"),
+    };
+    let mut said = Vec::new();
+    match &node.what {
+        What::Emission { .. } | What::Sky if single && seldom.is_some() => {
+            let what = if matches!(node.what, What::Sky) { "the sky" } else { "a lamp" };
+            said.push(told(what));
+            said.push(
+                "lamps are not connected with through mirrors and glass, so such light is found seldom and counts much: \
+                 `--integrator photons` finds it from the lamp's side"
+                    .into(),
+            );
+        }
+        What::Emission { mis } => {
+            said.push(told("a lamp"));
+            said.push(format!(
+                "its weight beside being connected with is {}: connections find that light more seldom still",
+                number(*mis)
+            ));
+        }
+        What::Sky => said.push(told("the sky")),
+        What::Direct { choice, pdf, mis, .. } => {
+            let way = if chosen.is_empty() { "at the first hit".into() } else { format!("after {way}") };
+            said.push(format!(
+                "a lamp was connected with {way}, chosen with probability {} and density {} /sr (MIS weight {})",
+                number(*choice),
+                number(*pdf),
+                number(*mis)
+            ));
+            if *choice < 0.1 {
+                said.push("the tree of lamps thought little of it: that probability divides its light".into());
+            }
+        }
+        _ => {}
+    }
+    if let Some(seldom) = seldom.filter(|seldom| seldom.pdf < 0.05) {
+        said.push(format!(
+            "the direction chosen by {} had a density of only {} /sr, which divides all light from there",
+            seldom.lobe,
+            number(seldom.pdf)
+        ));
+    }
+    said
+}
