@@ -841,6 +841,8 @@ class PrincipledMaterial(Material):
 
     base_weight: number, from 0 to 1; 1 where it is not given. Strength of the base, from 0 to 1: of the matte colour and of the metal's.
 
+    base_weight_texture: path. A picture that multiplies `baseWeight`. Of a picture that multiplies a number, red counts, or the channel after a colon: `file.png:g`.
+
     base_color: three numbers; 0.8 0.8 0.8 where it is not given. Share of light that the matte base scatters, and what a metal reflects at right angles; from 0 to 1.
 
     base_spectrum: path. A file with a measured reflectance, which stands in place of `baseColor`: rows of nanometres and shares from 0 to 1; with several columns `file.csv:name` is one of them. `--color spectral` has it by wavelength, else its colour in daylight counts.
@@ -849,25 +851,43 @@ class PrincipledMaterial(Material):
 
     base_diffuse_roughness: number, from 0 to 1; 0 where it is not given. How rough the matte base is, from 0 (Lambert) to 1.
 
+    base_diffuse_roughness_texture: path. A picture that multiplies `baseDiffuseRoughness`.
+
     base_metalness: number, from 0 to 1; 0 where it is not given. From 0 (glass or matte) to 1 (metal).
+
+    base_metalness_texture: path. A picture that multiplies `baseMetalness`.
 
     specular_weight: number, 0 or more; 1 where it is not given. Strength of the reflection, from 0 to 1 or more: it scales what reflects at right angles.
 
+    specular_weight_texture: path. A picture that multiplies the whole reflection, at all angles alike.
+
     specular_color: three numbers; 1 1 1 where it is not given. Tint of the reflection; on metal the colour near grazing angles.
 
+    specular_color_texture: path. A picture that multiplies `specularColor`; its values are read as sRGB.
+
     specular_roughness: number, from 0 to 1; 0.3 where it is not given. How rough the surface is, from 0 (a mirror) to 1; its square is GGX's alpha.
+
+    specular_roughness_texture: path. A picture that multiplies `specularRoughness`.
 
     metallic_roughness_texture: path. A picture whose green multiplies `specularRoughness` and whose blue multiplies `baseMetalness`.
 
     specular_anisotropy: number, from 0 to 1; 0 where it is not given. How much longer than wide the highlight is, from 0 (round) to 1.
 
+    specular_anisotropy_texture: path. A picture that multiplies `specularAnisotropy`.
+
     specular_rotation: number; 0 where it is not given. Turns the highlight about the normal, in whole turns, from the direction in which u grows.
+
+    specular_rotation_texture: path. A picture that is added to `specularRotation`, in whole turns; `file.png:angle` has it as a direction in red and green.
 
     specular_ior: number, more than 0; 1.5 where it is not given. Index of refraction inside.
 
     transmission_weight: number, from 0 to 1; 0 where it is not given. From 0 (matte) to 1 (glass).
 
+    transmission_weight_texture: path. A picture that multiplies `transmissionWeight`.
+
     transmission_color: three numbers; 1 1 1 where it is not given. Colour of light that went `transmissionDepth` deep; where that is 0, of all that passes the surface.
+
+    transmission_color_texture: path. A picture that multiplies `transmissionColor` where `transmissionDepth` is 0; its values are read as sRGB.
 
     transmission_depth: number, 0 or more; 0 where it is not given. How deep light goes until it has `transmissionColor`, in units of the world; 0: the surface tints it.
 
@@ -881,7 +901,11 @@ class PrincipledMaterial(Material):
 
     subsurface_weight: number, from 0 to 1; 0 where it is not given. From 0 (matte) to 1 (light goes into the body, is scattered there and comes out elsewhere: marble, milk, skin).
 
+    subsurface_weight_texture: path. A picture that multiplies `subsurfaceWeight`.
+
     subsurface_color: three numbers; 0.8 0.8 0.8 where it is not given. The colour that such a body shows.
+
+    subsurface_color_texture: path. A picture that multiplies `subsurfaceColor` where light enters; its values are read as sRGB.
 
     subsurface_radius: number, more than 0; 1 where it is not given. How far light goes in it until it is scattered, on the mean, in units of the world.
 
@@ -891,23 +915,41 @@ class PrincipledMaterial(Material):
 
     coat_weight: number, from 0 to 1; 0 where it is not given. Strength of the clear coat, from 0 to 1.
 
+    coat_weight_texture: path. A picture that multiplies `coatWeight`.
+
     coat_color: three numbers; 1 1 1 where it is not given. Colour of what passes the coat down and up again at right angles.
 
+    coat_color_texture: path. A picture that multiplies `coatColor`; its values are read as sRGB.
+
     coat_roughness: number, from 0 to 1; 0 where it is not given. How rough the coat is, from 0 to 1.
+
+    coat_roughness_texture: path. A picture that multiplies `coatRoughness`.
 
     coat_ior: number, more than 0; 1.6 where it is not given. Index of refraction of the coat.
 
     coat_darkening: number, from 0 to 1; 1 where it is not given. How much a coat darkens what it covers by reflecting light back down, from 0 to 1 (as physics has it).
 
+    coat_darkening_texture: path. A picture that multiplies `coatDarkening`.
+
     fuzz_weight: number, from 0 to 1; 0 where it is not given. Strength of the fuzz on top, as of velvet or dust, from 0 to 1.
+
+    fuzz_weight_texture: path. A picture that multiplies `fuzzWeight`.
 
     fuzz_color: three numbers; 1 1 1 where it is not given. Colour of the fuzz.
 
+    fuzz_color_texture: path. A picture that multiplies `fuzzColor`; its values are read as sRGB.
+
     fuzz_roughness: number, from 0 to 1; 0.5 where it is not given. How rough the fuzz is, from 0 to 1.
+
+    fuzz_roughness_texture: path. A picture that multiplies `fuzzRoughness`.
 
     thin_film_weight: number, from 0 to 1; 0 where it is not given. How much of the surface below the coat has a thin film on it, from 0 to 1: soap, oil, tempered steel, the layers of a pearl.
 
+    thin_film_weight_texture: path. A picture that multiplies `thinFilmWeight`.
+
     thin_film_thickness: number, 0 or more; 0.5 where it is not given. How thick the film is, in micrometres.
+
+    thin_film_thickness_texture: path. A picture that multiplies `thinFilmThickness`.
 
     thin_film_ior: number, more than 0; 1.4 where it is not given. Index of refraction of the film.
 
@@ -921,7 +963,13 @@ class PrincipledMaterial(Material):
 
     normal_texture: path. A picture of normals in tangent space, as glTF has it: red and green point along u and v, blue outwards.
 
+    bump_texture: path. A picture of heights, which bends the normals as if the surface rose where it is bright: a bump map.
+
+    bump_height: number; 0.01 where it is not given. How far its white lies above its black, in units of the world; negative where white lies deep.
+
     opacity: number, from 0 to 1; 1 where it is not given. Share of the surface that is there, from 0 to 1: the rest lets light through as if nothing were there.
+
+    opacity_texture: path. A picture that multiplies `opacity`: its alpha where it has one, else red.
 
     walls: `solid`, `thin`; solid where it is not given. `thin`: a sheet without inside, through which light goes straight; `solid`: the skin of a body.
     """
@@ -930,92 +978,140 @@ class PrincipledMaterial(Material):
         self,
         *,
         base_weight: Optional[float] = None,
+        base_weight_texture: Optional[str] = None,
         base_color: Optional[npt.ArrayLike] = None,
         base_spectrum: Optional[str] = None,
         base_color_texture: Optional[str] = None,
         base_diffuse_roughness: Optional[float] = None,
+        base_diffuse_roughness_texture: Optional[str] = None,
         base_metalness: Optional[float] = None,
+        base_metalness_texture: Optional[str] = None,
         specular_weight: Optional[float] = None,
+        specular_weight_texture: Optional[str] = None,
         specular_color: Optional[npt.ArrayLike] = None,
+        specular_color_texture: Optional[str] = None,
         specular_roughness: Optional[float] = None,
+        specular_roughness_texture: Optional[str] = None,
         metallic_roughness_texture: Optional[str] = None,
         specular_anisotropy: Optional[float] = None,
+        specular_anisotropy_texture: Optional[str] = None,
         specular_rotation: Optional[float] = None,
+        specular_rotation_texture: Optional[str] = None,
         specular_ior: Optional[float] = None,
         transmission_weight: Optional[float] = None,
+        transmission_weight_texture: Optional[str] = None,
         transmission_color: Optional[npt.ArrayLike] = None,
+        transmission_color_texture: Optional[str] = None,
         transmission_depth: Optional[float] = None,
         transmission_scatter: Optional[npt.ArrayLike] = None,
         transmission_scatter_anisotropy: Optional[float] = None,
         transmission_dispersion_scale: Optional[float] = None,
         transmission_dispersion_abbe_number: Optional[float] = None,
         subsurface_weight: Optional[float] = None,
+        subsurface_weight_texture: Optional[str] = None,
         subsurface_color: Optional[npt.ArrayLike] = None,
+        subsurface_color_texture: Optional[str] = None,
         subsurface_radius: Optional[float] = None,
         subsurface_radius_scale: Optional[npt.ArrayLike] = None,
         subsurface_scatter_anisotropy: Optional[float] = None,
         coat_weight: Optional[float] = None,
+        coat_weight_texture: Optional[str] = None,
         coat_color: Optional[npt.ArrayLike] = None,
+        coat_color_texture: Optional[str] = None,
         coat_roughness: Optional[float] = None,
+        coat_roughness_texture: Optional[str] = None,
         coat_ior: Optional[float] = None,
         coat_darkening: Optional[float] = None,
+        coat_darkening_texture: Optional[str] = None,
         fuzz_weight: Optional[float] = None,
+        fuzz_weight_texture: Optional[str] = None,
         fuzz_color: Optional[npt.ArrayLike] = None,
+        fuzz_color_texture: Optional[str] = None,
         fuzz_roughness: Optional[float] = None,
+        fuzz_roughness_texture: Optional[str] = None,
         thin_film_weight: Optional[float] = None,
+        thin_film_weight_texture: Optional[str] = None,
         thin_film_thickness: Optional[float] = None,
+        thin_film_thickness_texture: Optional[str] = None,
         thin_film_ior: Optional[float] = None,
         emission_luminance: Optional[float] = None,
         emission_color: Optional[npt.ArrayLike] = None,
         emission_spectrum: Optional[str] = None,
         emission_texture: Optional[str] = None,
         normal_texture: Optional[str] = None,
+        bump_texture: Optional[str] = None,
+        bump_height: Optional[float] = None,
         opacity: Optional[float] = None,
+        opacity_texture: Optional[str] = None,
         walls: Optional[Literal["solid", "thin"]] = None,
     ) -> None:
         super().__init__("PrincipledMaterial", [
             ("baseWeight", base_weight),
+            ("baseWeightTexture", base_weight_texture),
             ("baseColor", base_color),
             ("baseSpectrum", base_spectrum),
             ("baseColorTexture", base_color_texture),
             ("baseDiffuseRoughness", base_diffuse_roughness),
+            ("baseDiffuseRoughnessTexture", base_diffuse_roughness_texture),
             ("baseMetalness", base_metalness),
+            ("baseMetalnessTexture", base_metalness_texture),
             ("specularWeight", specular_weight),
+            ("specularWeightTexture", specular_weight_texture),
             ("specularColor", specular_color),
+            ("specularColorTexture", specular_color_texture),
             ("specularRoughness", specular_roughness),
+            ("specularRoughnessTexture", specular_roughness_texture),
             ("metallicRoughnessTexture", metallic_roughness_texture),
             ("specularAnisotropy", specular_anisotropy),
+            ("specularAnisotropyTexture", specular_anisotropy_texture),
             ("specularRotation", specular_rotation),
+            ("specularRotationTexture", specular_rotation_texture),
             ("specularIor", specular_ior),
             ("transmissionWeight", transmission_weight),
+            ("transmissionWeightTexture", transmission_weight_texture),
             ("transmissionColor", transmission_color),
+            ("transmissionColorTexture", transmission_color_texture),
             ("transmissionDepth", transmission_depth),
             ("transmissionScatter", transmission_scatter),
             ("transmissionScatterAnisotropy", transmission_scatter_anisotropy),
             ("transmissionDispersionScale", transmission_dispersion_scale),
             ("transmissionDispersionAbbeNumber", transmission_dispersion_abbe_number),
             ("subsurfaceWeight", subsurface_weight),
+            ("subsurfaceWeightTexture", subsurface_weight_texture),
             ("subsurfaceColor", subsurface_color),
+            ("subsurfaceColorTexture", subsurface_color_texture),
             ("subsurfaceRadius", subsurface_radius),
             ("subsurfaceRadiusScale", subsurface_radius_scale),
             ("subsurfaceScatterAnisotropy", subsurface_scatter_anisotropy),
             ("coatWeight", coat_weight),
+            ("coatWeightTexture", coat_weight_texture),
             ("coatColor", coat_color),
+            ("coatColorTexture", coat_color_texture),
             ("coatRoughness", coat_roughness),
+            ("coatRoughnessTexture", coat_roughness_texture),
             ("coatIor", coat_ior),
             ("coatDarkening", coat_darkening),
+            ("coatDarkeningTexture", coat_darkening_texture),
             ("fuzzWeight", fuzz_weight),
+            ("fuzzWeightTexture", fuzz_weight_texture),
             ("fuzzColor", fuzz_color),
+            ("fuzzColorTexture", fuzz_color_texture),
             ("fuzzRoughness", fuzz_roughness),
+            ("fuzzRoughnessTexture", fuzz_roughness_texture),
             ("thinFilmWeight", thin_film_weight),
+            ("thinFilmWeightTexture", thin_film_weight_texture),
             ("thinFilmThickness", thin_film_thickness),
+            ("thinFilmThicknessTexture", thin_film_thickness_texture),
             ("thinFilmIor", thin_film_ior),
             ("emissionLuminance", emission_luminance),
             ("emissionColor", emission_color),
             ("emissionSpectrum", emission_spectrum),
             ("emissionTexture", emission_texture),
             ("normalTexture", normal_texture),
+            ("bumpTexture", bump_texture),
+            ("bumpHeight", bump_height),
             ("opacity", opacity),
+            ("opacityTexture", opacity_texture),
             ("walls", walls),
         ])
 

@@ -9,6 +9,7 @@ use crate::film::false_color::LightScale;
 use crate::film::{Film, luminance};
 use crate::image::{Image, Layer};
 use crate::math::{Aabb, Color, Vec3};
+use std::sync::Arc;
 
 /// Pictures and what was counted on the way.
 #[derive(Debug)]
@@ -49,7 +50,7 @@ impl Part {
                 Value::Ray(_) => self.traced(&state, rays.next().unwrap_or_default()),
                 Value::Sums(value) => self.summed(&state, value),
             };
-            let pictures = self.shown(aov, &values);
+            let (pictures, scale) = self.shown(aov, &values);
             let (values, found): (Vec<Vec3>, Vec<Found>) = values.into_iter().unzip();
             let coverage: Vec<f32> = found.iter().map(|found| f32::from(u8::from(*found != Found::Blind))).collect();
             let from = if matches!(aov.value, Value::Ray(_)) { job.ray_window() } else { window };
@@ -59,7 +60,12 @@ impl Part {
                 Ok(Layer::data(aov.name, image).with_coverage(coverage.clone()))
             };
             rendered.layers.push(layer(values)?);
-            rendered.pictures.push(layer(pictures)?);
+            let mut shown = layer(pictures)?;
+            if let Some(unit) = aov.unit {
+                let width = window.width as usize;
+                scale.draw(&mut Arc::make_mut(&mut shown.image).pixels, width, unit);
+            }
+            rendered.pictures.push(shown);
         }
         Ok(rendered)
     }
@@ -137,8 +143,8 @@ impl Part {
         pixels
     }
 
-    /// Values as colours.
-    fn shown(&self, aov: &Aov, values: &[(Vec3, Found)]) -> Vec<Color> {
+    /// Values as colours, and what false colours stand for.
+    fn shown(&self, aov: &Aov, values: &[(Vec3, Found)]) -> (Vec<Color>, LightScale) {
         let light = aov.unit.map_or(&[][..], |_| values);
         let display = Display {
             look: self.look,
@@ -156,14 +162,7 @@ impl Part {
             let hits: Vec<bool> = values.iter().map(|value| value.1 == Found::Hit).collect();
             fill_from_last_hit(&mut picture, &hits, self.job.ray_window().width as usize);
         }
-        if let Some(unit) = aov.unit {
-            let window = match aov.value {
-                Value::Ray(_) => self.job.ray_window(),
-                Value::Sums(_) => self.job.window(),
-            };
-            display.light_scale.draw(&mut picture, window.width as usize, unit);
-        }
-        picture
+        (picture, display.light_scale)
     }
 }
 
