@@ -7,8 +7,8 @@ use crate::dialect::{Compat, Rules};
 use crate::format;
 use crate::image::{self, Encoded, ImageError};
 use crate::light::{Emitter as _, Light, Profile};
+use crate::material::PrincipledMaterial;
 use crate::material::parameters::{Change, TEXTURED};
-use crate::material::{Parameters, PrincipledMaterial};
 use crate::math::Aabb;
 use crate::medium::DensityGrid;
 use crate::scene::{Assets, Background, PictureBytes};
@@ -214,23 +214,24 @@ impl<'r> Loader<'r> {
             bump_height: layers.bump_height,
             parameters: Vec::new(),
         };
-        for row in TEXTURED {
-            let encoding = match row.change {
+        for (row, textured) in TEXTURED.iter().enumerate() {
+            let encoding = match textured.change {
                 Change::Number(_) => Encoding::Linear,
                 Change::Color(_) => Encoding::Srgb,
             };
-            if let Some(texture) = one((row.picture)(layers), encoding) {
-                maps.parameters.push(Map { change: row.change, texture, channel: None });
+            if let Some(texture) = one((textured.picture)(layers), encoding) {
+                maps.parameters.push(Map { row, texture, channel: None });
             }
         }
         if let Some(texture) = one(layers.metallic_roughness_texture.as_ref(), Encoding::Linear) {
-            let change = |change: fn(&mut Parameters, f32), channel| Map {
-                change: Change::Number(change),
-                texture,
-                channel: Some(channel),
-            };
-            maps.parameters.push(change(|p, by| p.specular_roughness *= by, Channel::Green));
-            maps.parameters.push(change(|p, by| p.base_metalness *= by, Channel::Blue));
+            for (row, textured) in TEXTURED.iter().enumerate() {
+                let channel = match textured.field {
+                    "specular_roughness_texture" => Channel::Green,
+                    "base_metalness_texture" => Channel::Blue,
+                    _ => continue,
+                };
+                maps.parameters.push(Map { row, texture, channel: Some(channel) });
+            }
         }
         maps
     }

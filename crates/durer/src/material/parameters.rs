@@ -60,6 +60,39 @@ parameters! {
     walls: Walls,
 }
 
+impl Parameters {
+    /// The same with shares from 0 to 1 and colours not below 0, whatever pictures made of them.
+    pub fn within_bounds(mut self) -> Self {
+        let shares = [
+            &mut self.base_diffuse_roughness,
+            &mut self.base_metalness,
+            &mut self.specular_roughness,
+            &mut self.specular_anisotropy,
+            &mut self.transmission_weight,
+            &mut self.subsurface_weight,
+            &mut self.coat_weight,
+            &mut self.coat_roughness,
+            &mut self.coat_darkening,
+            &mut self.fuzz_weight,
+            &mut self.fuzz_roughness,
+            &mut self.thin_film_weight,
+            &mut self.reflection,
+        ];
+        shares.into_iter().for_each(|share| *share = share.clamp(0.0, 1.0));
+        let colors = [
+            &mut self.base_color,
+            &mut self.specular_color,
+            &mut self.transmission_color,
+            &mut self.subsurface_color,
+            &mut self.coat_color,
+            &mut self.fuzz_color,
+            &mut self.entering,
+        ];
+        colors.into_iter().for_each(|color| *color = color.max(Vec3::ZERO));
+        self
+    }
+}
+
 /// What a picture does with a parameter.
 #[derive(Clone, Copy, Debug)]
 pub enum Change {
@@ -72,6 +105,8 @@ pub enum Change {
 /// A field for a picture, and what that does.
 #[derive(Clone, Copy, Debug)]
 pub struct Textured {
+    /// Its name.
+    pub field: &'static str,
     /// The picture of a material.
     pub picture: fn(&PrincipledMaterial) -> Option<&FileName>,
     /// What it does.
@@ -82,7 +117,11 @@ macro_rules! textured {
     ($($field:ident $kind:ident $change:expr;)+) => {
         /// All parameters that pictures change, but for what shines, is opaque or bends normals.
         pub const TEXTURED: &[Textured] =
-            &[$(Textured { picture: |m| m.$field.as_ref(), change: Change::$kind($change) },)+];
+            &[$(Textured {
+                field: stringify!($field),
+                picture: |m| m.$field.as_ref(),
+                change: Change::$kind($change),
+            },)+];
     };
 }
 

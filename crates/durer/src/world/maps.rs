@@ -2,7 +2,7 @@
 
 use super::{Geometry, Hit, Principled, World};
 use crate::material::Parameters;
-use crate::material::parameters::Change;
+use crate::material::parameters::{Change, TEXTURED};
 use crate::math::{Color, Ray, Vec2, Vec3};
 use crate::shape::{Primitive, Shape, Surface};
 use crate::texture::{Channel, Texture};
@@ -28,26 +28,14 @@ pub struct Maps {
 }
 
 /// A picture that changes a parameter.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Map {
-    /// What it does.
-    pub change: Change,
+    /// What it does: the number of a row of [`TEXTURED`].
+    pub row: usize,
     /// Its number.
     pub texture: u32,
     /// What counts of it where a number is wanted; `None`: what its mapping says, or red.
     pub channel: Option<Channel>,
-}
-
-impl PartialEq for Map {
-    fn eq(&self, other: &Self) -> bool {
-        let (own, others) = (&self.change, &other.change);
-        let same = match (own, others) {
-            (Change::Number(a), Change::Number(b)) => std::ptr::fn_addr_eq(*a, *b),
-            (Change::Color(a), Change::Color(b)) => std::ptr::fn_addr_eq(*a, *b),
-            _ => false,
-        };
-        same && (self.texture, self.channel) == (other.texture, other.channel)
-    }
 }
 
 impl World {
@@ -71,7 +59,7 @@ impl World {
             let channel = map.channel.or(mapping.channel).unwrap_or(Channel::Red);
             let [low, high] = mapping.range;
             let ranged = |x: f32| if [low, high] == [0.0, 1.0] { x } else { low + x * (high - low) };
-            match map.change {
+            match TEXTURED[map.row].change {
                 Change::Number(change) => change(&mut here, ranged(channel.of(texel))),
                 Change::Color(change) => {
                     let [r, g, b, _] = texel;
@@ -79,7 +67,7 @@ impl World {
                 }
             }
         }
-        Cow::Owned(here)
+        Cow::Owned(if own.maps.parameters.is_empty() { here } else { here.within_bounds() })
     }
 
     /// What a picture makes of a surface's own light.
