@@ -213,7 +213,7 @@ fn seeds_hold() {
                 "part" => part(&data),
                 "ways" => ways(&data),
                 "obj" | "ply" | "stl" => mesh(&data, &format!("x.{name}")),
-                "gltf" | "pbrt" | "rad" => model(&data, &format!("x.{name}")),
+                "gltf" | "pbrt" | "rad" | "xml" | "3mf" => model(&data, &format!("x.{name}")),
                 _ => picture(&data, &format!("x.{name}")),
             }
         }
