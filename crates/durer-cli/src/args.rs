@@ -477,10 +477,10 @@ pub struct InfoArgs {
     pub json: bool,
 }
 
-/// Write a scene anew, in its own or another dialect, or its meshes as PLY, OBJ or STL
+/// Write a scene anew: in its own or another dialect, as glTF, or its meshes as PLY, OBJ or STL
 #[derive(Args)]
 #[command(
-    after_help = "Examples:\n  durer convert scene.txt -o scene_durer.txt --to durer\n  durer convert model.glb -o model.stl"
+    after_help = "Examples:\n  durer convert scene.txt -o scene_durer.txt --to durer\n  durer convert model.glb -o model.stl\n  durer convert scene.pbrt -o scene.glb"
 )]
 pub struct ConvertArgs {
     /// The scene file

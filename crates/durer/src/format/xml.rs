@@ -251,7 +251,7 @@ mod tests {
         let (all, error) =
             told("\u{feff}<?xml version='1.0'?>\n<!-- a --><s:a x='1'>\n text <b m:y = \"&lt;2&#65;\" z=''/></s:a>\n");
         assert_eq!(error, None);
-        assert_eq!(all, ["a@36 x=1@43", "b@54 y=<2A@63 z=@76", "/", "/"]);
+        assert_eq!(all, ["a@36 x=1@43", "b@54 y=<2A@63 z=@78", "/", "/"]);
     }
 
     #[test]

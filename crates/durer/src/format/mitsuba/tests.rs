@@ -65,56 +65,87 @@ fn variables_includes_and_names_of_old() {
 
 #[test]
 fn what_is_wrong_is_told_at_its_place() {
-    for (inner, expected) in [
-        ("<shape type='sphere'><float name='radius' value='x'/></shape>", "1:47 error expected a number, found `x`"),
-        ("<shape type='sphere'><float name='radius' value='-1'/></shape>", "1:47 error `radius` must be more than 0"),
-        ("<shape type='sphere'><float name='radius' value='$a'/></shape>", "1:47 error `$a` stands for nothing (write"),
+    // What stands at the place, in the last of its occurrences, and what is told there.
+    for (inner, there, expected) in [
+        ("<shape type='sphere'><float name='radius' value='x'/></shape>", "x'/>", "error expected a number, found `x`"),
+        ("<shape type='sphere'><float name='radius' value='-1'/></shape>", "-1", "error `radius` must be more than 0"),
+        (
+            "<shape type='sphere'><float name='radius' value='$a'/></shape>",
+            "$a",
+            "error `$a` stands for nothing (write",
+        ),
         (
             "<shape type='spher'/>",
-            "1:21 warning the shape `spher` has no counterpart: it is left out (did you mean `sphere`?)",
+            "spher",
+            "warning the shape `spher` has no counterpart: it is left out (did you mean `sphere`?)",
         ),
-        ("<shape/>", "1:9 error `<shape>` needs `type=\"...\"`"),
-        ("<shap type='sphere'/>", "1:9 error Mitsuba knows no `<shap>` (did you mean `shape`?)"),
-        ("<shape type='sphere'><ref id='m'/></shape>", "1:38 error there is nothing with the id `m`"),
+        ("<shape/>", "shape", "error `<shape>` needs `type=\"...\"`"),
+        ("<shap type='sphere'/>", "shap", "error Mitsuba knows no `<shap>` (did you mean `shape`?)"),
+        ("<shape type='sphere'><ref id='m'/></shape>", "m'/>", "error there is nothing with the id `m`"),
         (
-            "<shape type='sphere'><float name='radus' value='1'/></shape>",
-            "1:56 warning the shape `sphere` has no `radus`: it is left out (did you mean `radius`?)",
+            "<shape type='sphere'><float name='radus' value='2'/></shape>",
+            "2'/>",
+            "warning the shape `sphere` has no `radus`: it is left out (did you mean `radius`?)",
         ),
         (
             "<shape type='sphere'><bsdf type='hair'/></shape>",
-            "1:41 warning the material `hair` has no counterpart: matte grey is taken",
+            "hair",
+            "warning the material `hair` has no counterpart: matte grey is taken",
         ),
         (
-            "<shape type='sphere'><float name='a' value='1'/><float name='a' value='1'/></shape>",
-            "1:74 error `a` is given twice",
+            "<shape type='sphere'><float name='a' value='1'/><float name='a' value='2'/></shape>",
+            "2'/>",
+            "error `a` is given twice",
         ),
-        ("<bsdf type='diffuse' id='a'/><bsdf type='diffuse' id='a'/>", "1:62 error the id `a` is given twice"),
-        ("<shape type='serialized'/>", "1:21 error meshes of `serialized` are not read (open the scene"),
-        ("<shape type='ply'><string name='filename' value='none.ply'/></shape>", "1:57 error the mesh cannot be had"),
-        ("<shape type='ply'><string name='filename' value='../x.ply'/></shape>", "1:57 error the mesh cannot be had"),
-        ("<include filename='scene.xml'/>", "1:27 error `scene.xml` includes itself"),
-        ("<sensor type='perspective'><float name='fov' value='200'/></sensor>", "1:61 error a field of view"),
-        ("<sensor type='fisheye'/>", "1:22 warning the sensor `fisheye` has no counterpart"),
-        ("<emitter type='constant'/><emitter type='constant'/>", "1:49 error a scene has one light"),
+        ("<bsdf type='diffuse' id='a'/><bsdf type='diffuse' id='a'/>", "a'/>", "error the id `a` is given twice"),
+        ("<shape type='serialized'/>", "serialized", "error meshes of `serialized` are not read (open the scene"),
+        (
+            "<shape type='ply'><string name='filename' value='none.ply'/></shape>",
+            "none.ply",
+            "error the mesh cannot be had",
+        ),
+        (
+            "<shape type='ply'><string name='filename' value='../x.ply'/></shape>",
+            "../x.ply",
+            "error the mesh cannot be had",
+        ),
+        ("<include filename='scene.xml'/>", "scene.xml", "error `scene.xml` includes itself"),
+        (
+            "<sensor type='perspective'><float name='fov' value='200'/></sensor>",
+            "200",
+            "error a field of view must be more than 0",
+        ),
+        ("<sensor type='fisheye'/>", "fisheye", "warning the sensor `fisheye` has no counterpart"),
+        (
+            "<emitter type='constant'/><emitter type='constant'/>",
+            "constant",
+            "error a scene has one light that is infinitely far away",
+        ),
         (
             "<shape type='sphere'><transform name='to_world'><scale value='0'/></transform></shape>",
-            "1:57 error after this the transform is not invertible",
+            "scale",
+            "error after this the transform is not invertible",
         ),
         (
             "<shape type='sphere'><transform name='to_world'><turn/></transform></shape>",
-            "1:57 error a transform has no `<turn>`",
+            "turn",
+            "error a transform has no `<turn>`",
         ),
         (
             "<shape type='sphere'><bsdf type='conductor'><string name='material' value='Gold'/></bsdf></shape>",
-            "1:83 error there is no metal `Gold`",
+            "Gold",
+            "error there is no metal `Gold`",
         ),
         (
             "<shape type='sphere'><bsdf type='roughplastic'><string name='distribution' value='beckmann'/></bsdf></shape>",
+            "beckmann",
             "warning the distribution `beckmann` has no counterpart",
         ),
     ] {
-        let (_, told) = read(&format!("<scene>{inner}</scene>"));
-        assert!(told.iter().any(|line| line.contains(expected)), "{inner}: {told:#?}");
+        let text = format!("<scene>{inner}</scene>");
+        let (_, told) = read(&text);
+        let expected = format!("scene.xml:1:{} {expected}", 1 + text.rfind(there).unwrap());
+        assert!(told.iter().any(|line| line.starts_with(&expected)), "{expected}: {told:#?}");
     }
 }
 

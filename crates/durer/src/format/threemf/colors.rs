@@ -166,7 +166,7 @@ impl Parser<'_, '_> {
     /// Several properties over each other, the last on top.
     fn several(&mut self, tag: &Tag) -> Result<Option<Group>, Broken> {
         let pids = self.list(tag, "pids");
-        if let Some(missing) = pids.iter().find(|pid| self.model.count(**pid).is_none()) {
+        if let Some(missing) = pids.iter().find(|pid| !self.model.properties.contains_key(pid)) {
             self.said.bad(tag.at, format!("there is no list of properties {missing} before this"));
         }
         if pids

@@ -120,9 +120,15 @@ impl<'x> Parser<'_, 'x> {
                     built = Some(part.at);
                     self.build()?;
                 }
+                "model" => {
+                    self.said.bad(part.at, "a file has one model: this is a second");
+                    return Err(Broken);
+                }
                 _ => self.skip()?,
             }
         }
+        // Nothing may come after the model.
+        self.next()?;
         if built.is_none() {
             self.said.bad(tag.at, "a model needs a `<build>`, which says what is shown");
         }

@@ -93,7 +93,7 @@ fn cameras_and_lights_come_back() {
 fn what_gltf_has_no_words_for_is_told_once() {
     let before = scene(&format!(
         "{HEAD} Background {{ sun 0 1 1 }} Materials {{ numMaterials 1 PrincipledMaterial {{ subsurfaceWeight 1 }} }}
-         Group {{ numObjects 3 MaterialIndex 0 Torus {{ center 0 0 0 axis 0 1 0 radius 2 tubeRadius 0.5 }} Torus {{ center 0 0 0 axis 0 1 0 radius 2 tubeRadius 0.5 }}
+         Group {{ numObjects 3 MaterialIndex 0 Torus {{ center 0 0 0 axis 0 1 0 majorRadius 2 minorRadius 0.5 }} Torus {{ center 0 0 0 axis 0 1 0 majorRadius 2 minorRadius 0.5 }}
          Sphere {{ center 0 0 0 radius 1 }} }}"
     ));
     let (after, told) = again(&before, "a.gltf");
