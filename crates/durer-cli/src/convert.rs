@@ -36,7 +36,7 @@ pub fn run(args: &ConvertArgs) -> Result<(), Failure> {
     if as_scene.is_some() {
         let mut found = Diagnostics::default();
         let bytes = loaded.write(&name, &mut found);
-        report::print(&files, &found, true);
+        report::print(&files, &found, false);
         return output::save(&[(&place, bytes.unwrap_or_default())], false);
     }
     if let Some(format) = as_mesh {

@@ -86,11 +86,11 @@ fn local(name: &str) -> &str {
 
 impl<'a> Xml<'a> {
     /// A text in UTF-8.
-    pub fn new(bytes: &'a [u8], file: u32) -> Result<Self, Diagnostic> {
+    pub fn new(bytes: &'a [u8], file: u32) -> Result<Self, Box<Diagnostic>> {
         let span = |start: usize, end: usize| Span { file, start: start as u32, end: end as u32 };
         if bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]) {
             let error = Diagnostic::error("the text is in UTF-16").help("save it in UTF-8");
-            return Err(error.code("bad-file").at(span(0, 2)));
+            return Err(error.code("bad-file").at(span(0, 2)).into());
         }
         let text = std::str::from_utf8(bytes).map_err(|error| {
             let at = error.valid_up_to();
@@ -119,7 +119,7 @@ impl<'a> Xml<'a> {
     }
 
     /// The next piece.
-    pub fn next(&mut self) -> Result<Piece<'a>, Diagnostic> {
+    pub fn next(&mut self) -> Result<Piece<'a>, Box<Diagnostic>> {
         if std::mem::take(&mut self.empty) {
             self.open.pop();
             return Ok(Piece::Close);
@@ -128,7 +128,7 @@ impl<'a> Xml<'a> {
             let start = self.reader.buffer_position() as usize;
             let event = match self.reader.read_event() {
                 Ok(event) => event,
-                Err(error) => return Err(self.broken(&error)),
+                Err(error) => return Err(self.broken(&error).into()),
             };
             let end = self.reader.buffer_position() as usize;
             match event {
@@ -144,12 +144,12 @@ impl<'a> Xml<'a> {
                 events::Event::DocType(_) => {
                     let what = "declarations of a type of document (`<!DOCTYPE`) are not read";
                     let help = "take it out, and write what its entities stand for";
-                    return Err(self.wrong(self.span(start, end), what).help(help));
+                    return Err(self.wrong(self.span(start, end), what).help(help).into());
                 }
                 events::Event::Eof => {
                     return match self.open.last() {
-                        Some(open) => Err(self.wrong(*open, "this element is not closed").code("unclosed")),
-                        None if !self.begun => Err(self.wrong(self.span(0, 0), "the file has no elements")),
+                        Some(open) => Err(self.wrong(*open, "this element is not closed").code("unclosed").into()),
+                        None if !self.begun => Err(self.wrong(self.span(0, 0), "the file has no elements").into()),
                         None => Ok(Piece::End),
                     };
                 }
@@ -160,15 +160,15 @@ impl<'a> Xml<'a> {
     }
 
     /// An element from between its angle brackets.
-    fn tag(&mut self, start: usize, end: usize) -> Result<Tag<'a>, Diagnostic> {
+    fn tag(&mut self, start: usize, end: usize) -> Result<Tag<'a>, Box<Diagnostic>> {
         let inner = self.text.get(start..end).unwrap_or_default();
         let whole = inner.find(|c: char| c.is_ascii_whitespace()).map_or(inner, |length| &inner[..length]);
         let at = self.place(whole);
         if self.begun && self.open.is_empty() {
-            return Err(self.wrong(at, "a file has one element that holds all others: this is a second"));
+            return Err(self.wrong(at, "a file has one element that holds all others: this is a second").into());
         }
         if self.open.len() >= DEEPEST {
-            return Err(self.wrong(at, format!("elements are nested more than {DEEPEST} deep")));
+            return Err(self.wrong(at, format!("elements are nested more than {DEEPEST} deep")).into());
         }
         self.begun = true;
         self.open.push(at);

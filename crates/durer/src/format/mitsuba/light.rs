@@ -62,7 +62,7 @@ impl Reader<'_> {
                 if inner_angle < angle {
                     said.once(plugin.at, "a spot fades by the cosine here, and not by the angle, towards its border");
                 }
-                if !(angle < 180.0) {
+                if angle >= 180.0 {
                     said.bad(plugin.place("cutoff_angle"), "`cutoff_angle` must be less than 180 degrees");
                 }
                 if plugin.get("texture").is_some() {

@@ -123,8 +123,8 @@ impl<'a> Loader<'a> {
     fn file(&mut self, bytes: &Arc<[u8]>, file: u32, name: String, scene: &mut Plugin) -> Result<(), Broken> {
         self.open.push(name);
         let said = self.said;
-        let broken = |error: Diagnostic| {
-            said.push(error);
+        let broken = |error: Box<Diagnostic>| {
+            said.push(*error);
             Broken
         };
         let mut xml = Xml::new(bytes, file).map_err(broken)?;
@@ -151,7 +151,7 @@ impl<'a> Loader<'a> {
             }
             Ok(_) => Ok(None),
             Err(error) => {
-                self.said.push(error);
+                self.said.push(*error);
                 Err(Broken)
             }
         }

@@ -62,7 +62,7 @@ pub(super) fn read(package: &mut Package, name: &str, at: Span, said: &Said) -> 
     let xml = match Xml::new(&bytes, file) {
         Ok(xml) => xml,
         Err(error) => {
-            said.push(error);
+            said.push(*error);
             return None;
         }
     };
@@ -79,7 +79,7 @@ impl<'x> Parser<'_, 'x> {
             Ok(Piece::Open(tag)) => Ok(Some(tag)),
             Ok(_) => Ok(None),
             Err(error) => {
-                self.said.push(error);
+                self.said.push(*error);
                 Err(Broken)
             }
         }

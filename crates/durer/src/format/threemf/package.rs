@@ -43,7 +43,7 @@ impl<'a> Package<'a> {
             let mut xml = match Xml::new(&bytes, file) {
                 Ok(xml) => xml,
                 Err(error) => {
-                    self.said.push(error);
+                    self.said.push(*error);
                     return None;
                 }
             };
@@ -60,7 +60,7 @@ impl<'a> Package<'a> {
                     Ok(Piece::End) => break,
                     Ok(_) => {}
                     Err(error) => {
-                        self.said.push(error);
+                        self.said.push(*error);
                         broken = true;
                         break;
                     }
