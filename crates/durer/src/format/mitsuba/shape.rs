@@ -8,26 +8,17 @@ use super::state::{Key, Reader};
 use crate::diag::{Diagnostic, Span};
 use crate::format::pbrt::medium::Medium;
 use crate::format::pbrt::mesh::{oriented, written_in_file};
+use crate::format::pbrt::shape::placed;
 use crate::format::said::meant;
 use crate::math::Vec3;
-use crate::scene::{Group, MatrixOp, Node, Object};
+use crate::scene::{Group, Node, Object};
 use crate::shape::{Disc, MeshData, Sphere};
-use glam::{DAffine3, DMat3, DMat4, DQuat, DVec3};
+use glam::{DAffine3, DMat3, DQuat, DVec3};
 use std::rc::Rc;
 use std::sync::Arc;
 
 const KNOWN: [&str; 10] =
     ["sphere", "disk", "rectangle", "cube", "cylinder", "obj", "ply", "shapegroup", "instance", "merge"];
-
-/// An object in its place.
-fn placed(map: DAffine3, inner: Object) -> Object {
-    if map == DAffine3::IDENTITY {
-        return inner;
-    }
-    let matrix = DMat4::from(map).transpose().to_cols_array().map(|x| x as f32);
-    let (material, span) = (inner.material, inner.span);
-    Object { node: Node::Transform(vec![MatrixOp::Matrix(matrix)], Box::new(inner)), material, span }
-}
 
 impl Reader<'_> {
     /// Adds what a plugin shows.

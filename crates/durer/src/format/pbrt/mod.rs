@@ -15,7 +15,7 @@ pub(super) mod medium;
 pub(super) mod mesh;
 mod named;
 mod params;
-mod shape;
+pub(super) mod shape;
 pub(super) mod spectrum;
 mod state;
 mod texture;

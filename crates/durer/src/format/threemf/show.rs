@@ -5,15 +5,16 @@ use super::mesh::Mesh;
 use super::model::{self, Model, Object, Place};
 use super::package::Package;
 use crate::diag::Span;
+use crate::format::pbrt::shape::placed;
 use crate::format::pictures::asset;
 use crate::format::said::{Said, meant};
 use crate::format::sticks::{ball, stick};
 use crate::material::PrincipledMaterial;
 use crate::math::{Vec2, Vec3};
-use crate::scene::{self, Material, MatrixOp, Node, Picture, PictureBytes, Scene};
+use crate::scene::{self, Material, Node, Picture, PictureBytes, Scene};
 use crate::shape::MeshData;
 use crate::texture::{Mapping, Wrap};
-use glam::{DAffine3, DMat4};
+use glam::DAffine3;
 use std::collections::BTreeMap;
 use std::rc::Rc;
 use std::sync::Arc;
@@ -61,10 +62,6 @@ pub(super) fn scene(package: Package, said: &Said) -> Option<Scene> {
     Some(show.scene)
 }
 
-fn matrix(map: DAffine3) -> MatrixOp {
-    MatrixOp::Matrix(DMat4::from(map).transpose().to_cols_array().map(|x| x as f32))
-}
-
 impl Show<'_> {
     fn model(&mut self, part: &str, at: Span) -> Option<Rc<Model>> {
         if let Some(known) = self.models.get(part) {
@@ -92,16 +89,9 @@ impl Show<'_> {
                 return objects;
             }
             let inner = scene::Object { node: Node::Group((*group).clone()), material: None, span: place.at };
-            objects.push(match place.map == DAffine3::IDENTITY {
-                true => inner,
-                false => {
-                    // Places are in the unit of the part that says them.
-                    let unit = self.models[part].as_ref().map_or(1.0, |model| model.unit);
-                    let map = DAffine3 { translation: unit * place.map.translation, ..place.map };
-                    let node = Node::Transform(vec![matrix(map)], Box::new(inner));
-                    scene::Object { node, material: None, span: place.at }
-                }
-            });
+            // Places are in the unit of the part that says them.
+            let unit = self.models.get(part).and_then(Option::as_ref).map_or(1.0, |model| model.unit);
+            objects.push(placed(DAffine3 { translation: unit * place.map.translation, ..place.map }, inner));
         }
         objects
     }
@@ -274,19 +264,5 @@ impl Skin {
         }
         data.flat = true;
         data
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use glam::DVec3;
-
-    #[test]
-    fn rows_of_a_place_are_axes() {
-        let map = DAffine3::from_cols_array(&[0.0, 1.0, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 5.0, 6.0, 7.0]);
-        assert_eq!(map.transform_point3(DVec3::X), DVec3::new(5.0, 7.0, 7.0));
-        let MatrixOp::Matrix(rows) = matrix(map) else { panic!() };
-        assert_eq!(rows[..4], [0.0, -1.0, 0.0, 5.0]);
     }
 }
