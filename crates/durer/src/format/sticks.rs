@@ -21,8 +21,8 @@ pub(super) fn ball(center: Vec3, radius: f32) -> Node {
 /// Sides of a stick of triangles.
 const SIDES: u32 = 6;
 /// The thickness of lines without one, as a share of the size of what they belong to, and of points.
-const LINE: f32 = 0.002;
-const POINT: f32 = 0.004;
+const LINE: f32 = 0.006;
+const POINT: f32 = 0.015;
 
 /// What has lines between vertices, and vertices alone, as thin sticks and small balls of triangles. Vertices keep their colours and
 /// coordinates.
