@@ -87,7 +87,7 @@ fn mitsuba_is_rendered_by_its_sensors_and_becomes_gltf() {
     place.gives(0, "convert a.xml -o a.glb");
     assert!(place.gives(0, "info a.glb").out.contains("in meshes"));
     place.put("b.xml", XML.replace("'40'", "'wide'"));
-    place.refused(2, "render b.xml -o b.png", &["b.xml:1:88", "expected a number, found `wide`"]);
+    place.refused(2, "render b.xml -o b.png", &["b.xml:1:85", "expected a number, found `wide`"]);
 }
 
 #[test]
