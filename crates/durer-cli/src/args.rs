@@ -106,7 +106,7 @@ pub struct SceneArgs {
   durer render scene.txt -o picture.png --dialect f04 --shadows --bounces 4 --transfer course
   durer render scene.txt -o dots.png --show samples --size 9x9 --sampler jittered --samples 9
 
-A scene is a file of the course's language or a model: glTF, GLB, pbrt, Radiance, PLY, OBJ, STL. A model without camera and light is seen whole, in a studio.
+A scene is a file of the course's language or a model: glTF, GLB, pbrt, Mitsuba, Radiance, 3MF, PLY, OBJ, STL. A model without camera and light is seen whole, in a studio.
 
 The extension of PICTURE says the format: png, tga, bmp, ppm, pfm, exr, hdr. Several pictures go into one EXR file
 as layers, or into files of their own: picture.depth.png and so on.
@@ -484,10 +484,10 @@ pub struct InfoArgs {
     pub json: bool,
 }
 
-/// Write a scene anew, in its own or another dialect, or its meshes as PLY, OBJ or STL
+/// Write a scene anew: in its own or another dialect, as glTF, or its meshes as PLY, OBJ or STL
 #[derive(Args)]
 #[command(
-    after_help = "Examples:\n  durer convert scene.txt -o scene_durer.txt --to durer\n  durer convert model.glb -o model.stl"
+    after_help = "Examples:\n  durer convert scene.txt -o scene_durer.txt --to durer\n  durer convert model.glb -o model.stl\n  durer convert scene.pbrt -o scene.glb"
 )]
 pub struct ConvertArgs {
     /// The scene file

@@ -8,7 +8,7 @@ use crate::{Failure, bad, output, report};
 use durer::diag::{Diagnostic, Diagnostics, Files};
 use durer::dialect::Dialect;
 use durer::format::course::write;
-use durer::format::{MESH_FORMATS, mesh_format_for};
+use durer::format::{MESH_FORMATS, mesh_format_for, scene_format_for};
 use durer::load;
 use durer::scene::Studio;
 
@@ -23,11 +23,21 @@ pub fn run(args: &ConvertArgs) -> Result<(), Failure> {
         // A ground is no part of a model.
         options.staging.studio = Some(Studio::None);
     }
+    let name = args.output.to_string_lossy();
+    let as_scene = scene_format_for(&name).filter(|format| format.write.is_some() && args.to.is_none());
+    // What a model lacks, options of rendering add later.
+    options.staging.bare = as_scene.is_some();
     let loaded = load(&args.scene, &options, &mut files, &mut diagnostics).map_err(report::unreadable)?;
     report::print(&files, &diagnostics, false);
     let loaded = loaded.ok_or(Failure::Input(None))?;
     if let Some(guess) = &loaded.guess {
         report::note(&guess.note());
+    }
+    if as_scene.is_some() {
+        let mut found = Diagnostics::default();
+        let bytes = loaded.write(&name, &mut found);
+        report::print(&files, &found, false);
+        return output::save(&[(&place, bytes.unwrap_or_default())], false);
     }
     if let Some(format) = as_mesh {
         let mut found = Diagnostics::default();
@@ -43,6 +53,7 @@ pub fn run(args: &ConvertArgs) -> Result<(), Failure> {
     }
     if !loaded.scene.assets.is_empty() {
         let endings: Vec<String> = MESH_FORMATS.iter().map(|format| format!(".{}", format.extensions[0])).collect();
+        let endings = [".glb".into(), ".gltf".into()].into_iter().chain(endings).collect::<Vec<String>>();
         let message = "the scene language has no words for the meshes of a model: choose a name that ends in";
         return Err(bad(format!("{message} {}", endings.join(", "))));
     }

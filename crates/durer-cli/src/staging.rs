@@ -100,6 +100,7 @@ impl StagingArgs {
             at: self.at,
             fit: self.fit,
             turned: self.turned,
+            bare: false,
             view_file: self.view_file.clone(),
             environment: self.environment.clone(),
             aspect: None,

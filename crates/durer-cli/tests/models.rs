@@ -29,7 +29,7 @@ fn a_model_is_rendered_from_all_sides_in_any_light() {
 fn a_model_is_converted_and_is_no_scene_in_words() {
     let place = Place::new();
     place.put("a.stl", STL);
-    for name in ["b.ply", "b.obj", "b.stl"] {
+    for name in ["b.ply", "b.obj", "b.stl", "b.glb", "b.gltf"] {
         place.gives(0, &format!("convert a.stl -o {name}"));
         assert!(place.gives(0, &format!("info {name}")).out.contains("2 in meshes"), "{name}");
     }
@@ -67,6 +67,27 @@ fn radiance_is_rendered_by_its_views() {
     place.refused(2, "render a.rad -o a.png --view-file none.vf", &["none.vf"]);
     place.put("b.rad", "void plastic grey 0 0 5 .5 .5 x 0 0\n!genrev a b 1 2 3\n");
     place.refused(2, "render b.rad -o a.png", &["b.rad:1:31", "`x` is not a number"]);
+}
+
+const XML: &str = "<scene version='3.0.0'><sensor type='perspective' id='one'><float name='fov' value='40'/><transform name='to_world'>\
+    <lookat origin='0,0,5' target='0,0,0' up='0,1,0'/></transform><film type='hdrfilm'><integer name='width' value='24'/>\
+    <integer name='height' value='16'/></film></sensor><sensor type='perspective' id='two'><float name='fov' value='70'/><transform name='to_world'>\
+    <lookat origin='0,0,5' target='0,0,0' up='0,1,0'/></transform></sensor><shape type='sphere'><bsdf type='diffuse'/></shape>\
+    <emitter type='point'><point name='position' x='3' y='3' z='5'/></emitter></scene>";
+
+#[test]
+fn mitsuba_is_rendered_by_its_sensors_and_becomes_gltf() {
+    let place = Place::new();
+    place.put("a.xml", XML);
+    let hash = |what: &str| place.gives(0, &format!("render {what} -o a.png --samples 2 --hash -q")).out;
+    let usual = hash("a.xml");
+    assert_eq!(hash("a.xml --camera one"), usual);
+    assert_ne!(hash("a.xml --camera two --size 24x16"), usual);
+    place.refused(2, "render a.xml -o a.png --camera three", &["there is no sensor `three`"]);
+    place.gives(0, "convert a.xml -o a.glb");
+    assert!(place.gives(0, "info a.glb").out.contains("in meshes"));
+    place.put("b.xml", XML.replace("'40'", "'wide'"));
+    place.refused(2, "render b.xml -o b.png", &["b.xml:1:85", "expected a number, found `wide`"]);
 }
 
 #[test]

@@ -213,7 +213,8 @@ fn seeds_hold() {
                 "part" => part(&data),
                 "ways" => ways(&data),
                 "obj" | "ply" | "stl" => mesh(&data, &format!("x.{name}")),
-                "gltf" | "pbrt" | "rad" => model(&data, &format!("x.{name}")),
+                "gltf" | "pbrt" | "rad" | "xml" => model(&data, &format!("x.{name}")),
+                "threemf" => model(&data, "x.3mf"),
                 _ => picture(&data, &format!("x.{name}")),
             }
         }

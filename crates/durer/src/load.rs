@@ -4,7 +4,7 @@ use crate::compile::{AccelKind, Resources, compile};
 use crate::diag::{Diagnostic, Diagnostics, Files, Severity};
 use crate::dialect::{Compat, Dialect, PathBase, Rules};
 use crate::format::course::{self, Guess, Hint, ReadOptions};
-use crate::format::scene::{Input, find_scene_format, read_model};
+use crate::format::scene::{Input, Output, find_scene_format, read_model, scene_format_for};
 use crate::scene::{Scene, Staging};
 use crate::source::{Source, SourceError, is_packed, unpacked};
 use crate::threads;
@@ -186,6 +186,13 @@ impl Loaded {
     /// Where the files are that were read for it, the scene's own not among them. All are known when it is compiled.
     pub fn files(&self) -> Vec<PathBuf> {
         self.source.paths()
+    }
+
+    /// Writes the scene as a model in another format, if that format is written; what it has no words for is warned of.
+    pub fn write(&self, name: &str, diagnostics: &mut Diagnostics) -> Option<Vec<u8>> {
+        let write = scene_format_for(name)?.write?;
+        let output = Output { name, source: &self.source, normals: self.rules.mesh_normals };
+        Some(write(&self.scene, &output, diagnostics))
     }
 
     /// Compiles the scene. `None` after errors, which are in `diagnostics`.

@@ -7,24 +7,30 @@ pub mod course;
 pub mod curve;
 mod gltf;
 pub mod ies;
+mod mitsuba;
 mod number;
 pub mod obj;
 mod panorama;
 mod pbrt;
+mod pictures;
 mod ply;
 mod polygon;
 mod radiance;
 mod report;
 mod said;
 pub mod scene;
+mod sticks;
 mod stl;
+mod threemf;
 pub mod vol;
+mod xml;
+mod zip;
 
 use crate::diag::{Diagnostic, Diagnostics, did_you_mean};
 use crate::dialect::CompatSet;
 use crate::scene::Axis;
 use crate::shape::mesh::MeshData;
-pub use scene::{SCENE_FORMATS, SceneFormat};
+pub use scene::{SCENE_FORMATS, SceneFormat, scene_format_for};
 use std::borrow::Cow;
 
 /// A format of mesh files.

@@ -1,8 +1,9 @@
 //! Readers of whole scenes: one row of [`SCENE_FORMATS`] each. What is a mesh alone is a scene of one mesh.
 
-use super::{MESH_FORMATS, extension, gltf, obj, panorama, pbrt, radiance, read_mesh};
+use super::{MESH_FORMATS, extension, gltf, mitsuba, obj, panorama, pbrt, radiance, read_mesh, threemf};
 use crate::describe::FileName;
 use crate::diag::{Diagnostic, Diagnostics, Files, Span};
+use crate::dialect::MeshNormals;
 use crate::image::{self, Encoded};
 use crate::light::Light;
 use crate::math::Vec3;
@@ -26,10 +27,25 @@ pub struct SceneFormat {
     pub recognise: fn(&[u8]) -> bool,
     /// Reads a file. Errors go into the collection, and then there is no scene.
     pub read: fn(&Input, &mut Diagnostics) -> Option<Scene>,
+    /// Writes a scene; what the format has no words for is warned of. `None`: it is read only.
+    pub write: Option<WriteScene>,
     /// What is up in most models of this format.
     pub up: Axis,
     /// Whether what has a camera is a whole scene, to which no light is added.
     pub whole: bool,
+}
+
+/// Writes a scene.
+pub type WriteScene = fn(&Scene, &Output, &mut Diagnostics) -> Vec<u8>;
+
+/// What a writer needs beside the scene.
+pub struct Output<'a> {
+    /// The name of the file, with ending.
+    pub name: &'a str,
+    /// Reads the files that the scene names.
+    pub source: &'a Source,
+    /// How triangles without normals are meant.
+    pub normals: MeshNormals,
 }
 
 /// The formats of models, in the order in which content is tried. What is none of them is in the course's language.
@@ -39,6 +55,7 @@ pub const SCENE_FORMATS: &[SceneFormat] = &[
         extensions: &["gltf", "glb"],
         recognise: gltf::recognise,
         read: gltf::read,
+        write: Some(gltf::write),
         up: Axis::Y,
         whole: false,
     },
@@ -47,8 +64,27 @@ pub const SCENE_FORMATS: &[SceneFormat] = &[
         extensions: &["pbrt"],
         recognise: pbrt::recognise,
         read: pbrt::read,
+        write: None,
         up: Axis::Y,
         whole: true,
+    },
+    SceneFormat {
+        name: "Mitsuba",
+        extensions: &["xml"],
+        recognise: mitsuba::recognise,
+        read: mitsuba::read,
+        write: None,
+        up: Axis::Y,
+        whole: true,
+    },
+    SceneFormat {
+        name: "3MF",
+        extensions: &["3mf"],
+        recognise: threemf::recognise,
+        read: threemf::read,
+        write: None,
+        up: Axis::Z,
+        whole: false,
     },
     SceneFormat {
         name: "Radiance",
@@ -56,6 +92,7 @@ pub const SCENE_FORMATS: &[SceneFormat] = &[
         // Its first word could be anything: only the name tells.
         recognise: |_| false,
         read: radiance::read,
+        write: None,
         up: Axis::Z,
         whole: true,
     },
@@ -64,6 +101,7 @@ pub const SCENE_FORMATS: &[SceneFormat] = &[
         extensions: MESH_FORMATS[0].extensions,
         recognise: MESH_FORMATS[0].recognise,
         read: one_mesh,
+        write: None,
         up: MESH_FORMATS[0].up,
         whole: false,
     },
@@ -73,6 +111,7 @@ pub const SCENE_FORMATS: &[SceneFormat] = &[
         // Its first word could be anything: only the name tells.
         recognise: |_| false,
         read: obj::scene::read,
+        write: None,
         up: MESH_FORMATS[1].up,
         whole: false,
     },
@@ -81,6 +120,7 @@ pub const SCENE_FORMATS: &[SceneFormat] = &[
         extensions: MESH_FORMATS[2].extensions,
         recognise: MESH_FORMATS[2].recognise,
         read: one_mesh,
+        write: None,
         up: MESH_FORMATS[2].up,
         whole: false,
     },
@@ -106,12 +146,16 @@ pub struct Input<'a> {
     pub staging: &'a Staging,
 }
 
+/// The format of scenes that the ending of a name says.
+pub fn scene_format_for(name: &str) -> Option<&'static SceneFormat> {
+    let extension = extension(name);
+    SCENE_FORMATS.iter().find(|format| format.extensions.contains(&extension.as_str()))
+}
+
 /// The format of a file that is a model: by its content, or failing that by its name. `None`: it is text of the course's
 /// language, or nothing that is known.
 pub fn find_scene_format(bytes: &[u8], name: &str) -> Option<&'static SceneFormat> {
-    let extension = extension(name);
-    let by_name = SCENE_FORMATS.iter().find(|format| format.extensions.contains(&extension.as_str()));
-    by_name.or_else(|| SCENE_FORMATS.iter().find(|format| (format.recognise)(bytes)))
+    scene_format_for(name).or_else(|| SCENE_FORMATS.iter().find(|format| (format.recognise)(bytes)))
 }
 
 /// Reads a model as a scene, and adds the camera, light and material that it lacks.
@@ -130,7 +174,9 @@ pub fn read_model(format: &SceneFormat, input: &Input, diagnostics: &mut Diagnos
         let (name, bytes) = named(input, path, diagnostics)?;
         scene.surround(&name, bytes, input.staging.up.unwrap_or(format.up));
     }
-    input.staging.complete(&mut scene, format.up, format.whole);
+    if !input.staging.bare {
+        input.staging.complete(&mut scene, format.up, format.whole);
+    }
     Some(scene)
 }
 

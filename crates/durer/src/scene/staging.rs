@@ -72,6 +72,8 @@ pub struct Staging {
     /// Degrees by which the camera goes around the model, counter-clockwise from above, as far away as all of it is seen from
     /// everywhere; `None`: no picture of many.
     pub turned: Option<f32>,
+    /// Whether nothing is added, and nothing replaced: the scene is to be written in another format.
+    pub bare: bool,
     /// The picture's width over its height, for a camera that sees just the whole; `None`: 1.
     pub aspect: Option<f32>,
 }

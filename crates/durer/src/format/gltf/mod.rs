@@ -14,6 +14,7 @@ mod material;
 mod nodes;
 mod primitive;
 mod texture;
+mod write;
 
 use super::report::Report;
 use super::scene::Input;
@@ -33,6 +34,7 @@ use primitive::Primitives;
 use serde_json::Value;
 use std::cell::{Cell, RefCell};
 use std::collections::{BTreeMap, BTreeSet};
+pub(super) use write::write;
 
 /// Extensions that a file may require: what is left out of them is warned of.
 const KNOWN: [&str; 22] = [

@@ -4,6 +4,7 @@ use super::Model;
 use super::accessor::{Accessor, Component};
 use super::deform::Pose;
 use super::json::At;
+use crate::format::sticks::thickened;
 use crate::math::{Vec2, Vec3};
 use crate::shape::MeshData;
 use std::sync::Arc;
@@ -23,6 +24,10 @@ pub(super) struct Primitive {
 }
 
 /// Primitive modes of the specification, chapter 3.7.2.1.
+const POINTS: u64 = 0;
+const LINES: u64 = 1;
+const LINE_LOOP: u64 = 2;
+const LINE_STRIP: u64 = 3;
 const TRIANGLES: u64 = 4;
 const STRIP: u64 = 5;
 const FAN: u64 = 6;
@@ -124,16 +129,37 @@ impl Model<'_> {
             // Every other triangle of a strip turns the other way round.
             STRIP => order.windows(3).enumerate().map(|(i, t)| [t[0], t[1 + i % 2], t[2 - i % 2]]).collect(),
             FAN => order.windows(2).skip(1).map(|t| [order[0], t[0], t[1]]).collect(),
-            _ => {
-                self.once("points-and-lines", "points and lines have no surface and are left out");
-                return None;
-            }
+            _ => return self.thickened(&data, mode, &order, material, at),
         };
         // Strips are joined by triangles without area.
         data.triangles.retain(|[a, b, c]| a != b && b != c && c != a);
         compact(&mut data, pose.is_some());
         index(&mut data, has_normals);
         Some(Primitive { data: Arc::new(data), material, has_normals, pose: pose.map(Arc::new) })
+    }
+
+    /// Points and lines, which have no surface, as small balls and thin sticks.
+    fn thickened(
+        &self,
+        data: &MeshData,
+        mode: u64,
+        order: &[u32],
+        material: Option<u32>,
+        at: &At,
+    ) -> Option<Primitive> {
+        self.once("points-and-lines", "points and lines have no surface: small balls and thin sticks are shown");
+        // Each becomes a dozen vertices.
+        self.charge(order.len(), 12 * 64, at)?;
+        let strip = || order.windows(2).map(|pair| [pair[0], pair[1]]);
+        let lines: Vec<[u32; 2]> = match mode {
+            LINES => order.as_chunks::<2>().0.to_vec(),
+            LINE_STRIP => strip().collect(),
+            LINE_LOOP => strip().chain(order.last().zip(order.first()).map(|(last, first)| [*last, *first])).collect(),
+            _ => Vec::new(),
+        };
+        let points = if mode == POINTS { order } else { &[] };
+        let data = Arc::new(thickened(data, &lines, points));
+        Some(Primitive { data, material, has_normals: true, pose: None })
     }
 
     /// Reads an attribute beside the position.

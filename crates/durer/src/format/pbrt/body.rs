@@ -4,10 +4,9 @@
 //! objects that it is in, so what bounds one body must be one object: open meshes of the same glass
 //! are joined.
 
-use super::state::Reader;
 use crate::dialect::MeshNormals;
 use crate::material::principled::Walls;
-use crate::scene::{Group, Material, MatrixOp, Node, Object};
+use crate::scene::{Group, Material, MatrixOp, Node, Object, Scene};
 use crate::shape::mesh::NO_INDEX;
 use crate::shape::{Mesh, MeshData};
 use glam::{DAffine3, DVec3};
@@ -62,53 +61,51 @@ fn append(body: &mut MeshData, data: &MeshData, map: DAffine3) {
     body.flat = true;
 }
 
-impl Reader<'_> {
-    /// Joins the open meshes of each glass.
-    pub fn join_bodies(&mut self) {
-        let Some(root) = &mut self.scene.root else { return };
-        let materials = &self.scene.materials;
-        let is_glass = |number: u32| match materials.get(number as usize).map(|m| &m.value) {
-            Some(Material::Principled(m)) => m.transmission_weight > 0.0 && m.walls == Walls::Solid,
-            _ => false,
-        };
-        let meshes = &mut self.scene.assets.meshes;
-        let mut skins: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
-        for (i, object) in root.objects.iter().enumerate() {
-            let Some(material) = object.material.filter(|&number| is_glass(number)) else { continue };
-            let Some(data) = mesh_of(object).and_then(|(name, _)| meshes.get(name)) else { continue };
-            let mesh = Mesh::new(MeshData::clone(data), MeshNormals::Flat, true);
-            if mesh.open_edge().is_some() {
-                skins.entry(material).or_default().push(i);
-            }
+/// Joins the open meshes of each glass of a scene whose file has a name.
+pub(in crate::format) fn join_bodies(scene: &mut Scene, name: &str) {
+    let Some(root) = &mut scene.root else { return };
+    let materials = &scene.materials;
+    let is_glass = |number: u32| match materials.get(number as usize).map(|m| &m.value) {
+        Some(Material::Principled(m)) => m.transmission_weight > 0.0 && m.walls == Walls::Solid,
+        _ => false,
+    };
+    let meshes = &mut scene.assets.meshes;
+    let mut skins: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
+    for (i, object) in root.objects.iter().enumerate() {
+        let Some(material) = object.material.filter(|&number| is_glass(number)) else { continue };
+        let Some(data) = mesh_of(object).and_then(|(name, _)| meshes.get(name)) else { continue };
+        let mesh = Mesh::new(MeshData::clone(data), MeshNormals::Flat, true);
+        if mesh.open_edge().is_some() {
+            skins.entry(material).or_default().push(i);
         }
-        let mut gone: BTreeSet<usize> = BTreeSet::new();
-        for (material, skin) in skins.into_iter().filter(|(_, skin)| skin.len() > 1) {
-            let mut body = MeshData::default();
-            for &i in &skin {
-                if let Some((name, map)) = mesh_of(&root.objects[i])
-                    && let Some(data) = meshes.get(name)
-                {
-                    append(&mut body, data, map);
-                }
-            }
-            let span = root.objects[skin[0]].span;
-            let name = format!("{}#body{material}", self.input.name);
-            meshes.insert(name.clone(), Arc::new(body));
-            let path = crate::describe::FileName { path: name, span };
-            let node = Node::Mesh(crate::shape::TriangleMesh { obj_file: path });
-            root.objects[skin[0]] = Object { node, material: Some(material), span };
-            gone.extend(&skin[1..]);
-        }
-        if gone.is_empty() {
-            return;
-        }
-        let mut number = 0;
-        root.objects.retain(|_| {
-            number += 1;
-            !gone.contains(&(number - 1))
-        });
-        let mut names = BTreeSet::new();
-        used(root, &mut names);
-        meshes.retain(|name, _| names.contains(name));
     }
+    let mut gone: BTreeSet<usize> = BTreeSet::new();
+    for (material, skin) in skins.into_iter().filter(|(_, skin)| skin.len() > 1) {
+        let mut body = MeshData::default();
+        for &i in &skin {
+            if let Some((name, map)) = mesh_of(&root.objects[i])
+                && let Some(data) = meshes.get(name)
+            {
+                append(&mut body, data, map);
+            }
+        }
+        let span = root.objects[skin[0]].span;
+        let name = format!("{}#body{material}", name);
+        meshes.insert(name.clone(), Arc::new(body));
+        let path = crate::describe::FileName { path: name, span };
+        let node = Node::Mesh(crate::shape::TriangleMesh { obj_file: path });
+        root.objects[skin[0]] = Object { node, material: Some(material), span };
+        gone.extend(&skin[1..]);
+    }
+    if gone.is_empty() {
+        return;
+    }
+    let mut number = 0;
+    root.objects.retain(|_| {
+        number += 1;
+        !gone.contains(&(number - 1))
+    });
+    let mut names = BTreeSet::new();
+    used(root, &mut names);
+    meshes.retain(|name, _| names.contains(name));
 }

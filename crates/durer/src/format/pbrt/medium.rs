@@ -7,7 +7,7 @@ use super::material::Made;
 use super::params::{Param, Params};
 use super::state::Reader;
 use crate::diag::Span;
-use crate::format::said::meant;
+use crate::format::said::{Said, meant};
 use crate::material::PrincipledMaterial;
 use crate::material::principled::Walls;
 use crate::math::{Color, Vec3, fp};
@@ -17,7 +17,7 @@ use std::rc::Rc;
 
 /// What absorbs and scatters light, the same everywhere.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Medium {
+pub(in crate::format) struct Medium {
     pub absorption: Color,
     pub scattering: Color,
     /// The mean cosine of scattering.
@@ -26,7 +26,7 @@ pub(super) struct Medium {
 
 impl Medium {
     /// By the parameters `sigma_a`, `sigma_s`, `g` and `scale`.
-    pub fn of(params: &Params) -> Medium {
+    pub(super) fn of(params: &Params) -> Medium {
         let scale = params.float("scale").unwrap_or(1.0).max(0.0);
         let coefficient = |name, usual: [f32; 3]| {
             let given = params.spectrum(name).map(|spectrum| spectrum.coefficient());
@@ -58,6 +58,20 @@ impl Medium {
         m.transmission_color = self.extinction().map(|sigma| fp::exp(-sigma * depth));
         m.transmission_scatter = depth * self.scattering;
         m.transmission_scatter_anisotropy = self.anisotropy;
+    }
+
+    /// The same around a camera; `None` for what is clear.
+    pub fn fog(&self, at: Span, said: &Said) -> Option<Spanned<Fog>> {
+        let extinction = self.extinction();
+        let most = extinction.max_element();
+        if most <= 0.0 {
+            return None;
+        }
+        if extinction.min_element() < 0.99 * most {
+            said.once(at, "what is around the camera thins all colours alike: the strongest counts");
+        }
+        let (color, anisotropy) = (self.scattering / most, self.anisotropy);
+        Some(Spanned { value: Fog { extinction: most, color, anisotropy, ..Fog::default() }, span: at })
     }
 }
 
@@ -130,16 +144,8 @@ impl Reader<'_> {
         let Some(Some(medium)) = self.state.outside.as_ref().and_then(|name| self.media.get(name)).copied() else {
             return;
         };
-        let extinction = medium.extinction();
-        let most = extinction.max_element();
-        if most <= 0.0 {
-            return;
+        if let Some(fog) = medium.fog(at, self.said) {
+            self.scene.fog = Some(fog);
         }
-        if extinction.min_element() < 0.99 * most {
-            self.said.once(at, "what is around the camera thins all colours alike: the strongest counts");
-        }
-        let (color, anisotropy) = (medium.scattering / most, medium.anisotropy);
-        let fog = Fog { extinction: most, color, anisotropy, ..Fog::default() };
-        self.scene.fog = Some(Spanned { value: fog, span: at });
     }
 }

@@ -15,7 +15,7 @@ const PATCH: u32 = 8;
 
 /// Makes all triangles face the side of their normals, or without such the side to which they go
 /// round; the other side where the surface is reversed.
-fn oriented(mut data: MeshData, reversed: bool) -> MeshData {
+pub(in crate::format) fn oriented(mut data: MeshData, reversed: bool) -> MeshData {
     if reversed {
         data.normals.iter_mut().for_each(|n| *n = -*n);
     }
@@ -145,12 +145,17 @@ pub(super) fn cylinder(params: &Params, reversed: bool) -> Option<MeshData> {
     let radius = params.positive("radius").unwrap_or(1.0);
     let (low, high) = (params.float("zmin").unwrap_or(-1.0), params.float("zmax").unwrap_or(1.0));
     let degrees = params.float("phimax").unwrap_or(360.0).clamp(1e-3, 360.0);
+    Some(oriented(tube(radius, [low.min(high), low.max(high)], degrees), reversed))
+}
+
+/// A tube about z, or a part of one.
+pub(in crate::format) fn tube(radius: f32, [low, high]: [f32; 2], degrees: f32) -> MeshData {
     let mut data = MeshData::default();
     for i in 0..=SIDES {
         let share = i as f32 / SIDES as f32;
         let (sin, cos) = fp::sin_cos_degrees(f64::from(degrees * share));
         let normal = Vec3::new(cos as f32, sin as f32, 0.0);
-        for (z, v) in [(low.min(high), 0.0), (low.max(high), 1.0)] {
+        for (z, v) in [(low, 0.0), (high, 1.0)] {
             data.positions.push(radius * normal + z * Vec3::Z);
             data.normals.push(normal);
             data.uvs.push(Vec2::new(share, v));
@@ -161,11 +166,16 @@ pub(super) fn cylinder(params: &Params, reversed: bool) -> Option<MeshData> {
         }
     }
     (data.triangle_uvs, data.triangle_normals) = (data.triangles.clone(), data.triangles.clone());
-    Some(oriented(data, reversed))
+    data
 }
 
 /// A mesh in a file of PLY, packed or not.
 pub(super) fn file(input: &Input, said: &Said, name: &str, at: Span, reversed: bool) -> Option<MeshData> {
+    written_in_file(input, said, name, at).map(|data| oriented(data, reversed))
+}
+
+/// A mesh as it is in a file of any format, packed or not.
+pub(in crate::format) fn written_in_file(input: &Input, said: &Said, name: &str, at: Span) -> Option<MeshData> {
     let bytes = match input.source.read_unpacked(name) {
         Ok(bytes) => bytes,
         Err(error) => {
@@ -184,5 +194,5 @@ pub(super) fn file(input: &Input, said: &Said, name: &str, at: Span, reversed: b
         said.push(Diagnostic::error(message).code("bad-file").at(at).label("asked for here"));
     }
     said.extend(own);
-    data.map(|data| oriented(data, reversed))
+    data
 }

@@ -4,19 +4,19 @@
 //! Based Rendering*, 4th edition, 2023. A text changes a state, and what is written then (a shape,
 //! a light) takes the state as it is.
 
-mod body;
+pub(super) mod body;
 mod camera;
 mod directives;
 mod environment;
 mod lexer;
 mod light;
 mod material;
-mod medium;
-mod mesh;
+pub(super) mod medium;
+pub(super) mod mesh;
 mod named;
 mod params;
-mod shape;
-mod spectrum;
+pub(super) mod shape;
+pub(super) mod spectrum;
 mod state;
 mod texture;
 mod transform;

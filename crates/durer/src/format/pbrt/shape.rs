@@ -26,7 +26,7 @@ struct Made {
 }
 
 /// An object in its place.
-pub(super) fn placed(map: DAffine3, inner: Object) -> Object {
+pub(in crate::format) fn placed(map: DAffine3, inner: Object) -> Object {
     if map == DAffine3::IDENTITY {
         return inner;
     }

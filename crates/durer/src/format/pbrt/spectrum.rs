@@ -10,7 +10,7 @@ use glam::{DMat3, DVec3};
 
 /// A colour or a spectrum.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Spectrum {
+pub(in crate::format) enum Spectrum {
     /// Red, green and blue of linear sRGB; what is white is 1 in any space of colours.
     Rgb(Color),
     /// Wavelengths in nanometres, rising, and values.
@@ -84,7 +84,7 @@ impl Space {
 
 impl Spectrum {
     /// The spectrum of a parameter.
-    pub fn of(param: &Param, params: &Params) -> Option<Spectrum> {
+    pub(super) fn of(param: &Param, params: &Params) -> Option<Spectrum> {
         let said = params.said;
         match (param.kind, &param.values) {
             (Kind::Rgb, _) => Some(Spectrum::Rgb(params.space.color(*param.triples().first()?).max(Vec3::ZERO))),
@@ -173,8 +173,14 @@ fn under_daylight(share: impl Fn(f32) -> f32) -> Color {
     (lit(&share) / lit(&|_| 1.0)).as_vec3()
 }
 
+/// The colour of a light by its radiance at each wavelength in nanometres; 1 everywhere has luminance 1.
+pub(in crate::format) fn radiance(light: impl Fn(f32) -> f32) -> Color {
+    let color = SRGB * named::sum(|nm| f64::from(light(nm))) / named::sum(|_| 1.0).y;
+    if color.is_finite() { color.as_vec3().max(Vec3::ZERO) } else { Vec3::ZERO }
+}
+
 /// What a metal reflects at right angles and at cosine 1/7, seen from within something of an index.
-pub(super) fn metal(eta: &Spectrum, k: &Spectrum, outside: f32) -> [Color; 2] {
+pub(in crate::format) fn metal(eta: &Spectrum, k: &Spectrum, outside: f32) -> [Color; 2] {
     [1.0, 1.0 / 7.0].map(|cosine| match (eta, k) {
         (Spectrum::Rgb(n), Spectrum::Rgb(k)) => {
             Vec3::from_array(std::array::from_fn(|i| conductor(cosine, n[i] / outside, k[i] / outside)))

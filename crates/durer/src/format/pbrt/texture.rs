@@ -4,17 +4,13 @@ use super::directives::TEXTURE;
 use super::params::{Kind, Param, Params};
 use super::state::Reader;
 use crate::describe::FileName;
-use crate::diag::{Diagnostic, Span};
+use crate::diag::Span;
+use crate::format::pictures::{self, Pictures};
 use crate::format::said::meant;
-use crate::image::{self, Depth, Encoded, Image, Layer, Transfer, WriteOptions};
 use crate::math::{Color, Vec3};
 use crate::scene::{Picture, PictureBytes};
-use crate::source::Digest;
 use crate::texture::{Mapping, Wrap};
 use std::rc::Rc;
-
-/// Bytes that decoding one picture may take.
-const MEMORY: u64 = 1 << 31;
 
 /// What a texture is here.
 #[derive(Clone)]
@@ -155,10 +151,7 @@ impl Reader<'_> {
             Texture::Picture(picture, scale) => {
                 let at = params.place(name);
                 self.said.once(at, format!("`{name}` by a picture has no counterpart: its mean is taken"));
-                let mean = match &picture.bytes {
-                    PictureBytes::File(path) => self.picture(path, at).map(|image| mean(&image)),
-                    PictureBytes::Here(path, bytes) => image::read(bytes, path).ok().map(|image| mean(&image)),
-                };
+                let mean = self.pictures().mean(&picture, at);
                 mean.map_or(usual, |mean| mean * scale.x)
             }
         }
@@ -168,19 +161,8 @@ impl Reader<'_> {
     pub fn changed(&mut self, params: &Params, name: &'static str, change: impl Fn(f32) -> f32) -> Option<FileName> {
         let Texture::Picture(picture, scale) = self.pattern(params, name, false, Vec3::ZERO) else { return None };
         let at = params.place(name);
-        let image = match &picture.bytes {
-            PictureBytes::File(path) => self.picture(path, at)?,
-            PictureBytes::Here(path, bytes) => image::read_srgb(bytes, path).ok()?,
-        };
-        let texel = |p: &Vec3| Vec3::splat(change((p.x + p.y + p.z) / 3.0 * scale.x).clamp(0.0, 1.0));
-        let image = Image::from_pixels(image.width, image.height, image.pixels.iter().map(texel).collect()).ok()?;
-        // Numbers have no curve.
-        let options = WriteOptions { display: Transfer::Linear.into(), ..WriteOptions::default() };
-        let mut bytes = Vec::new();
-        image::format_for("a.png").ok()?.write(&[Layer::color("", image)], &options, &mut bytes).ok()?;
-        let (PictureBytes::File(path) | PictureBytes::Here(path, _)) = &picture.bytes;
-        let bytes = PictureBytes::Here(format!("{path}#{name}.png"), bytes.into());
-        Some(self.asset(Picture { bytes, mapping: picture.mapping }, at))
+        let picture = self.pictures().changed(&picture, at, |x| change(scale.x * x))?;
+        Some(self.asset(picture, at))
     }
 
     /// A parameter that is a colour or a picture: the colour that multiplies, and the picture's
@@ -194,47 +176,16 @@ impl Reader<'_> {
 
     /// A name for a picture.
     pub fn asset(&mut self, picture: Picture, span: Span) -> FileName {
-        let (PictureBytes::File(path) | PictureBytes::Here(path, _)) = &picture.bytes;
-        // The same picture may lie otherwise on other surfaces.
-        let mapping = Digest::of(format!("{:?}", picture.mapping).as_bytes()).to_string();
-        let path = format!("{path}#{}", &mapping[..12]);
-        self.scene.assets.pictures.entry(path.clone()).or_insert(picture);
-        FileName { path, span }
+        pictures::asset(&mut self.scene, picture, span)
+    }
+
+    fn pictures(&self) -> Pictures<'_> {
+        Pictures { input: self.input, said: self.said }
     }
 
     /// A file as a picture of eight bits, which other formats become.
     pub fn eight_bits(&self, name: &str, at: Span) -> Option<PictureBytes> {
-        let bytes = self.bytes(name, at)?;
-        match Encoded::open(&bytes, name) {
-            Ok(encoded) if encoded.depth() != Depth::Float => Some(PictureBytes::File(name.to_string())),
-            Ok(_) => {
-                let image = self.picture(name, at)?;
-                let mut eight = Vec::new();
-                let format = image::format_for("a.png").ok()?;
-                format.write(&[Layer::color("", image)], &WriteOptions::default(), &mut eight).ok()?;
-                Some(PictureBytes::Here(format!("{name}#8.png"), eight.into()))
-            }
-            Err(error) => {
-                let message = format!("the picture `{name}` cannot be used: {error}");
-                self.said.push(Diagnostic::error(message).code("bad-file").at(at));
-                None
-            }
-        }
-    }
-
-    fn bytes(&self, name: &str, at: Span) -> Option<std::sync::Arc<[u8]>> {
-        let bytes = self.input.source.read(name);
-        bytes.map_err(|error| self.said.push(Diagnostic::error(error.to_string()).code("missing-file").at(at))).ok()
-    }
-
-    fn picture(&self, name: &str, at: Span) -> Option<Image> {
-        let bytes = self.bytes(name, at)?;
-        let read = Encoded::open(&bytes, name).and_then(|encoded| encoded.read(MEMORY, image::decode_srgb));
-        let complain = |error| {
-            let message = format!("the picture `{name}` cannot be used: {error}");
-            self.said.push(Diagnostic::error(message).code("bad-file").at(at));
-        };
-        read.map_err(complain).ok()
+        self.pictures().eight_bits(name, at)
     }
 
     fn imagemap(&self, params: &Params, is_color: bool) -> Option<Texture> {
@@ -291,21 +242,9 @@ impl Reader<'_> {
         let dv = params.float("vdelta").unwrap_or(0.0);
         mapping.transform = [[0.5 * su, 0.0, 0.5 * du], [0.0, 0.5 * sv, 1.0 - 0.5 * sv - 0.5 * dv]];
         mapping.nearest = true;
-        let most = even.max(odd).max_element().max(1.0);
-        let pixels = [odd, even, even, odd].map(|color| color / most);
-        let Ok(image) = Image::from_pixels(2, 2, pixels.to_vec()) else { return Texture::Even(0.5 * (even + odd)) };
-        let mut bytes = Vec::new();
-        let written = image::format_for("a.png")
-            .and_then(|format| format.write(&[Layer::color("", image)], &WriteOptions::default(), &mut bytes));
-        if written.is_err() {
-            return Texture::Even(0.5 * (even + odd));
+        match pictures::checkerboard(odd, even) {
+            Some((bytes, most)) => Texture::Picture(Picture { bytes, mapping }, Vec3::splat(most)),
+            None => Texture::Even(0.5 * (even + odd)),
         }
-        let name = format!("checkerboard-{even}-{odd}.png");
-        Texture::Picture(Picture { bytes: PictureBytes::Here(name, bytes.into()), mapping }, Vec3::splat(most))
     }
-}
-
-fn mean(image: &Image) -> f32 {
-    let sum: f64 = image.pixels.iter().map(|p| f64::from((p.x + p.y + p.z) / 3.0)).sum();
-    (sum / image.pixels.len().max(1) as f64) as f32
 }

@@ -11,8 +11,11 @@ use std::path::Path;
 
 const FOLDER: &str = "maps";
 
+/// A picture's name, its side, and its texels by column and row.
+type Drawn<'a> = (&'a str, u32, &'a dyn Fn(u32, u32) -> [u8; 3]);
+
 /// A folder with pictures in the PPM format: each texel of one of them is `texel(x, y)`.
-fn folder(name: &str, pictures: &[(&str, u32, &dyn Fn(u32, u32) -> [u8; 3])]) -> tempfile::TempDir {
+fn folder(name: &str, pictures: &[Drawn]) -> tempfile::TempDir {
     let folder = tempfile::Builder::new().prefix(&format!("{FOLDER}-{name}")).tempdir().unwrap();
     for (name, side, texel) in pictures {
         let mut bytes = format!("P6 {side} {side} 255\n").into_bytes();
@@ -34,7 +37,7 @@ fn compiled(materials: &[String], objects: &str, folder: &Path) -> World {
         "PerspectiveCamera {{ center 0 0 9 direction 0 0 -1 up 0 1 0 angle 40 }} Background {{ color 1 1 1 }}\n\
          Materials {{ {materials} }}\nGroup {{ MaterialIndex 0 {objects} }}\n"
     );
-    let (world, diagnostics) = testing::try_read(&text, &Dialect::Durer.rules(), AccelKind::Bvh, folder);
+    let (world, diagnostics) = testing::try_read(&text, Dialect::Durer.rules(), AccelKind::Bvh, folder);
     assert_eq!(diagnostics.iter().count(), 0, "{diagnostics:?}");
     world.unwrap()
 }

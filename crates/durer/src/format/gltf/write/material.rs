@@ -1,0 +1,208 @@
+//! Materials: the words of OpenPBR as metallic-roughness and KHR extensions, the other way round than they are read.
+
+use super::Writer;
+use crate::material::parameters::TEXTURED;
+use crate::material::principled::Walls;
+use crate::material::{Pattern, PhongMaterial, PrincipledMaterial};
+use crate::math::{Vec3, fp};
+use crate::scene::Material;
+use serde_json::{Map, Value, json};
+use std::f32::consts::TAU;
+
+impl Writer<'_> {
+    /// The number of a material of the scene. `holes`: colours of vertices let through what is behind them.
+    pub(super) fn material(&mut self, number: u32, holes: bool) -> Option<usize> {
+        if let Some(known) = self.materials.get(&number) {
+            return *known;
+        }
+        let scene = self.scene;
+        let made = match &scene.materials.get(number as usize)?.value {
+            Material::Principled(layers) => Some(self.layers(layers, holes)),
+            Material::Phong(phong, noise) => {
+                if noise.is_some() {
+                    self.left_out("glTF has no noise: the material's own colour is written");
+                }
+                Some(self.layers(&alike(phong), holes))
+            }
+            Material::Solid(solid, _) => {
+                self.left_out("glTF has no patterns of two materials: the first is written");
+                let first = solid.materials()[0];
+                // Patterns are made of earlier materials.
+                if first < number { self.material(first, holes) } else { None }
+                    .and_then(|at| self.lists.get("materials")?.get(at).cloned())
+            }
+        };
+        let made = made.map(|material| self.add("materials", material));
+        self.materials.insert(number, made);
+        made
+    }
+
+    fn layers(&mut self, m: &PrincipledMaterial, holes: bool) -> Value {
+        let mut material = json!({ "doubleSided": true });
+        let mut extensions = Map::new();
+        let solid = m.walls == Walls::Solid;
+        let unlit = m.emission_luminance == 1.0 && m.base_weight == 0.0 && m.specular_weight == 0.0;
+        let clear = m.transmission_weight > 0.0;
+        // What passes a surface has the base colour.
+        let tinted = clear && m.transmission_depth == 0.0;
+        let base = match (unlit, tinted) {
+            (true, _) => m.emission_color,
+            (false, true) if m.transmission_weight >= 0.5 => m.transmission_color,
+            _ => m.base_weight * m.base_color,
+        };
+        let [r, g, b] = base.clamp(Vec3::ZERO, Vec3::ONE).to_array();
+        let mut pbr = json!({
+            "baseColorFactor": [r, g, b, m.opacity], "metallicFactor": m.base_metalness, "roughnessFactor": m.specular_roughness,
+        });
+        let mut blended = holes || m.opacity < 1.0;
+        if let Some((info, mapping)) = self.texture(&m.base_color_texture) {
+            pbr["baseColorTexture"] = info;
+            match mapping.cutoff {
+                None => blended = true,
+                Some(cutoff) if cutoff > 0.0 => {
+                    material["alphaMode"] = "MASK".into();
+                    material["alphaCutoff"] = cutoff.into();
+                }
+                Some(_) => {}
+            }
+        }
+        if blended && material.get("alphaMode").is_none() {
+            material["alphaMode"] = "BLEND".into();
+        }
+        if let Some((info, _)) = self.texture(&m.metallic_roughness_texture) {
+            pbr["metallicRoughnessTexture"] = info;
+        }
+        material["pbrMetallicRoughness"] = pbr;
+        if let Some((mut info, mapping)) = self.texture(&m.normal_texture) {
+            info["scale"] = mapping.strength.into();
+            material["normalTexture"] = info;
+        }
+        let mut extend = |name: &'static str, value: Value| extensions.insert(name.into(), value);
+        if unlit {
+            extend("KHR_materials_unlit", json!({}));
+        } else if m.emission_luminance > 0.0 {
+            let most = m.emission_color.max_element().max(1.0);
+            let strength = m.emission_luminance * most;
+            material["emissiveFactor"] = json!((m.emission_color / most).max(Vec3::ZERO).to_array());
+            if strength != 1.0 {
+                extend("KHR_materials_emissive_strength", json!({ "emissiveStrength": strength }));
+            }
+        }
+        if m.specular_ior != 1.5 {
+            extend("KHR_materials_ior", json!({ "ior": m.specular_ior.max(1.0) }));
+        }
+        if m.specular_weight != 1.0 || m.specular_color != Vec3::ONE {
+            // A weight above 1 goes into the colour, which has no bound.
+            let weight = m.specular_weight.min(1.0);
+            let color = m.specular_color * (m.specular_weight / weight.max(1e-6)).max(1.0);
+            let value = json!({ "specularFactor": weight, "specularColorFactor": color.to_array() });
+            extend("KHR_materials_specular", value);
+        }
+        if clear {
+            extend("KHR_materials_transmission", json!({ "transmissionFactor": m.transmission_weight }));
+            if solid {
+                let mut volume = json!({ "thicknessFactor": 1.0 });
+                if m.transmission_depth > 0.0 {
+                    volume["attenuationDistance"] = m.transmission_depth.into();
+                    volume["attenuationColor"] = json!(m.transmission_color.to_array());
+                }
+                extend("KHR_materials_volume", volume);
+            }
+        }
+        if m.disperses() {
+            // Source: KHR_materials_dispersion: 20 over Abbe's number.
+            let dispersion = 20.0 * m.transmission_dispersion_scale / m.transmission_dispersion_abbe_number;
+            extend("KHR_materials_dispersion", json!({ "dispersion": dispersion }));
+        }
+        if m.coat_weight > 0.0 {
+            let coat = json!({ "clearcoatFactor": m.coat_weight, "clearcoatRoughnessFactor": m.coat_roughness });
+            extend("KHR_materials_clearcoat", coat);
+        }
+        if m.fuzz_weight > 0.0 {
+            let color = (m.fuzz_weight * m.fuzz_color).clamp(Vec3::ZERO, Vec3::ONE);
+            let fuzz = json!({ "sheenColorFactor": color.to_array(), "sheenRoughnessFactor": m.fuzz_roughness });
+            extend("KHR_materials_sheen", fuzz);
+        }
+        if m.specular_anisotropy > 0.0 {
+            let turn = m.specular_rotation * TAU;
+            let value = json!({ "anisotropyStrength": m.specular_anisotropy, "anisotropyRotation": turn });
+            extend("KHR_materials_anisotropy", value);
+        }
+        if m.thin_film_weight > 0.0 {
+            // In nanometres.
+            let thickness = 1000.0 * m.thin_film_thickness;
+            let film = json!({
+                "iridescenceFactor": m.thin_film_weight, "iridescenceIor": m.thin_film_ior,
+                "iridescenceThicknessMinimum": thickness, "iridescenceThicknessMaximum": thickness,
+            });
+            extend("KHR_materials_iridescence", film);
+        }
+        if TEXTURED.iter().any(|row| row.field != "base_color_texture" && (row.picture)(m).is_some())
+            || m.bump_texture.is_some()
+            || m.opacity_texture.is_some()
+        {
+            self.left_out("of pictures of parameters only those of the base colour, `metallicRoughnessTexture`, normals and emission are written");
+        }
+        if m.subsurface_weight > 0.0 || (clear && m.transmission_scatter != Vec3::ZERO) {
+            self.left_out("glTF has no light that is scattered below the surface: it is left out");
+        }
+        if !unlit
+            && m.emission_luminance > 0.0
+            && let Some((info, _)) = self.texture(&m.emission_texture)
+        {
+            material["emissiveTexture"] = info;
+        }
+        if !extensions.is_empty() {
+            self.extensions.extend(EXTENSIONS.iter().filter(|name| extensions.contains_key(**name)));
+            material["extensions"] = extensions.into();
+        }
+        material
+    }
+}
+
+/// What is written of materials.
+const EXTENSIONS: [&str; 12] = [
+    "KHR_materials_anisotropy",
+    "KHR_materials_clearcoat",
+    "KHR_materials_dispersion",
+    "KHR_materials_emissive_strength",
+    "KHR_materials_ior",
+    "KHR_materials_iridescence",
+    "KHR_materials_sheen",
+    "KHR_materials_specular",
+    "KHR_materials_transmission",
+    "KHR_materials_unlit",
+    "KHR_materials_volume",
+    "KHR_lights_punctual",
+];
+
+/// Layers that look like the course's material: a highlight's sharpness is a roughness, strong mirrors are metals, what lets
+/// light through is glass.
+fn alike(phong: &PhongMaterial) -> PrincipledMaterial {
+    let diffuse = phong.diffuse_color.unwrap_or(Vec3::ONE);
+    let sharp = phong.exponent.or(phong.shininess).filter(|_| phong.specular_color != Vec3::ZERO);
+    // Source: Walter and others, *Microfacet Models for Refraction through Rough Surfaces*, 2007: alpha² = 2 / (n + 2).
+    let roughness = sharp.map_or(1.0, |sharp| fp::pow(2.0 / (sharp + 2.0), 0.25));
+    let mut m = PrincipledMaterial {
+        base_color: diffuse,
+        base_color_texture: phong.texture.clone(),
+        specular_roughness: roughness,
+        specular_weight: if sharp.is_some() || phong.reflective_color != Vec3::ZERO { 1.0 } else { 0.0 },
+        ..PrincipledMaterial::default()
+    };
+    let mirror = phong.reflective_color.max_element();
+    if mirror > 0.0 {
+        m.specular_roughness = 0.0;
+        if mirror > diffuse.max_element() {
+            (m.base_metalness, m.base_color) = (1.0, phong.reflective_color);
+        }
+    }
+    let glass = phong.refraction_index.filter(|index| *index > 0.0);
+    if glass.is_some() || phong.transparent_color != Vec3::ZERO {
+        m.specular_ior = glass.or(phong.index_of_refraction).unwrap_or(1.5);
+        let through = if glass.is_some() { Vec3::ONE } else { phong.transparent_color };
+        m.transmission_weight = through.max_element().min(1.0);
+        (m.transmission_color, m.base_metalness, m.specular_roughness) = (through, 0.0, 0.0);
+    }
+    m
+}

@@ -1,0 +1,354 @@
+//! Materials, in the words of OpenPBR.
+//!
+//! Source of all meanings: *Mitsuba 3 documentation*, "BSDFs". GGX's alpha is the square of our roughness.
+
+use super::metals;
+use super::plugin::{Plugin, Value};
+use super::state::{Key, Reader};
+use super::texture::Texture;
+use crate::diag::{Diagnostic, Span};
+use crate::format::pbrt::medium::Medium;
+use crate::format::pbrt::spectrum::{Spectrum, metal};
+use crate::format::pictures::asset;
+use crate::format::said::meant;
+use crate::material::mix::Mix;
+use crate::material::principled::Walls;
+use crate::material::{PrincipledMaterial, Solid};
+use crate::math::{Color, Vec3, fp};
+use crate::scene::{Material, Picture, Spanned};
+use std::rc::Rc;
+
+/// What shines: its radiance, and a picture that multiplies it.
+pub(super) struct Shine {
+    pub color: Color,
+    pub picture: Option<Picture>,
+    pub at: Span,
+    pub key: Key,
+}
+
+/// A material as written.
+pub(super) enum Made {
+    Layers(Box<PrincipledMaterial>),
+    /// Two others, and the share of the first.
+    Mix(Rc<Made>, Rc<Made>, f32),
+    /// What is not there at all.
+    Nothing,
+}
+
+const KNOWN: [&str; 17] = [
+    "diffuse",
+    "dielectric",
+    "thindielectric",
+    "roughdielectric",
+    "conductor",
+    "roughconductor",
+    "plastic",
+    "roughplastic",
+    "principled",
+    "principledthin",
+    "twosided",
+    "mask",
+    "null",
+    "blendbsdf",
+    "bumpmap",
+    "normalmap",
+    "mixturebsdf",
+];
+
+/// Matte, without a boundary.
+pub(super) fn matte(base_color: Color) -> PrincipledMaterial {
+    PrincipledMaterial { base_color, specular_weight: 0.0, specular_roughness: 1.0, ..PrincipledMaterial::default() }
+}
+
+impl Made {
+    /// What shapes have that nothing is said of.
+    pub fn usual() -> Made {
+        Made::Layers(Box::new(matte(Vec3::splat(0.5))))
+    }
+
+    /// The same with all layers changed.
+    fn changed(&self, change: &impl Fn(&mut PrincipledMaterial)) -> Made {
+        match self {
+            Made::Layers(layers) => {
+                let mut layers = layers.clone();
+                change(&mut layers);
+                Made::Layers(layers)
+            }
+            Made::Mix(a, b, share) => Made::Mix(a.changed(change).into(), b.changed(change).into(), *share),
+            Made::Nothing => Made::Nothing,
+        }
+    }
+}
+
+impl Reader<'_> {
+    /// The material of a plugin.
+    pub fn material(&mut self, plugin: &Rc<Plugin>, depth: u32) -> Rc<Made> {
+        if let Some(known) = self.materials.get(&plugin.key()) {
+            return known.clone();
+        }
+        if self.too_deep(depth, plugin.at) {
+            return Rc::new(Made::usual());
+        }
+        let made = self.made(plugin, depth);
+        plugin.finish(self.said);
+        self.materials.insert(plugin.key(), made.clone());
+        made
+    }
+
+    fn made(&mut self, plugin: &Rc<Plugin>, depth: u32) -> Rc<Made> {
+        let mut m = PrincipledMaterial::default();
+        match plugin.kind.as_str() {
+            "diffuse" | "roughdiffuse" => {
+                let (color, picture) = self.colored(plugin, "reflectance", 0.5);
+                m = PrincipledMaterial { base_color_texture: picture, ..matte(color) };
+                plugin.left_out(self.said, &["alpha", "use_fast_approx"], "the surface is Lambert's");
+            }
+            "dielectric" | "roughdielectric" | "thindielectric" => self.glass(plugin, &mut m),
+            "conductor" | "roughconductor" => self.conductor(plugin, &mut m),
+            "plastic" | "roughplastic" => self.plastic(plugin, &mut m),
+            "principled" | "principledthin" => m = self.principled(plugin),
+            "null" => return Rc::new(Made::Nothing),
+            "twosided" => {
+                let parts = self.parts(plugin, Some("bsdf"));
+                if let Some((other, _)) = parts.get(1) {
+                    self.said.once(other.at, "another material on the back has no counterpart: both sides are alike");
+                }
+                return self.inner(plugin, depth);
+            }
+            "mask" => {
+                let opacity = self.value(plugin, "opacity", 0.5).clamp(0.0, 1.0);
+                return Rc::new(self.inner(plugin, depth).changed(&|m| m.opacity *= opacity));
+            }
+            "bumpmap" => {
+                self.parts(plugin, Some("texture"));
+                plugin.left_out(self.said, &["scale"], "the surface stays smooth");
+                self.said.once(plugin.at, "a `bumpmap` has no counterpart: the surface stays smooth");
+                return self.inner(plugin, depth);
+            }
+            "normalmap" => return self.normal_map(plugin, depth),
+            "blendbsdf" => {
+                let share = 1.0 - self.value(plugin, "weight", 0.5).clamp(0.0, 1.0);
+                let parts = self.parts(plugin, Some("bsdf"));
+                let [(_, a), (_, b)] = parts.as_slice() else {
+                    self.said.bad(plugin.at, format!("a `blendbsdf` is of two materials, not of {}", parts.len()));
+                    return Rc::new(Made::usual());
+                };
+                let (a, b) = (self.material(a, depth + 1), self.material(b, depth + 1));
+                return Rc::new(Made::Mix(a, b, share));
+            }
+            other => {
+                let message = format!("the material `{other}` has no counterpart: matte grey is taken");
+                let warning = Diagnostic::warning(message).code("NO_COUNTERPART").at(plugin.at);
+                self.said.push(Diagnostic { help: meant(other, KNOWN), ..warning });
+                // What it holds was not looked at.
+                plugin.properties.iter().for_each(|property| property.used.set(true));
+                return Rc::new(Made::usual());
+            }
+        }
+        Rc::new(Made::Layers(Box::new(m)))
+    }
+
+    /// The material that another holds.
+    fn inner(&mut self, plugin: &Plugin, depth: u32) -> Rc<Made> {
+        match self.parts(plugin, Some("bsdf")).first() {
+            Some((_, part)) => self.material(part, depth + 1),
+            None => {
+                self.said.bad(plugin.at, format!("a `{}` needs a material inside", plugin.kind));
+                Rc::new(Made::usual())
+            }
+        }
+    }
+
+    fn normal_map(&mut self, plugin: &Plugin, depth: u32) -> Rc<Made> {
+        let inner = self.inner(plugin, depth);
+        let texture = self.parts(plugin, Some("texture")).into_iter().next();
+        let Some((property, texture)) = texture.filter(|(_, texture)| texture.kind == "bitmap") else {
+            self.said.once(plugin.at, "a `normalmap` needs a `bitmap`: the surface stays smooth");
+            return inner;
+        };
+        let picture = self.bitmap(&texture);
+        texture.finish(self.said);
+        let Some(picture) = picture else { return inner };
+        let name = asset(&mut self.scene, picture, property.at);
+        Rc::new(inner.changed(&|m| m.normal_texture = Some(name.clone())))
+    }
+
+    /// An index of refraction: a number or a name.
+    fn index(&self, plugin: &Plugin, name: &'static str, usual: f32) -> f32 {
+        let Some(property) = plugin.get(name) else { return usual };
+        if let Value::Text(text) = &property.value {
+            return metals::clear(text).unwrap_or_else(|| {
+                let help = meant(text, metals::clear_names());
+                self.said.bad_with(property.at, format!("there is no material `{text}` with an index"), help);
+                usual
+            });
+        }
+        plugin.positive(self.said, name).unwrap_or(usual)
+    }
+
+    /// The index inside over the index outside.
+    fn relative_index(&self, plugin: &Plugin, usual: f32) -> f32 {
+        self.index(plugin, "int_ior", usual) / self.index(plugin, "ext_ior", 1.000277)
+    }
+
+    /// GGX's alpha along both directions as ours: roughness, anisotropy and turn.
+    fn roughness(&self, plugin: &Plugin, m: &mut PrincipledMaterial) {
+        if !plugin.kind.starts_with("rough") {
+            m.specular_roughness = 0.0;
+            return;
+        }
+        let both = self.value(plugin, "alpha", 0.1);
+        let [u, v] = ["alpha_u", "alpha_v"].map(|name| self.value(plugin, name, both).clamp(0.0, 1.0));
+        let mean = (0.5 * (u * u + v * v)).sqrt();
+        m.specular_roughness = mean.sqrt();
+        if u != v {
+            m.specular_anisotropy = 1.0 - u.min(v) / u.max(v);
+            m.specular_rotation = if v > u { 0.25 } else { 0.0 };
+        }
+        let distribution = plugin.text(self.said, "distribution").unwrap_or("beckmann".into());
+        match distribution.as_str() {
+            "ggx" => {}
+            "beckmann" | "phong" | "as" => {
+                let what =
+                    format!("the distribution `{distribution}` has no counterpart: GGX of the same alpha is taken");
+                self.said.once(plugin.place("distribution"), what);
+            }
+            other => {
+                let help = meant(other, ["beckmann", "ggx"]);
+                self.said.bad_with(plugin.place("distribution"), format!("there is no distribution `{other}`"), help);
+            }
+        }
+        plugin.known(&["sample_visible"]);
+    }
+
+    /// What a reflection is multiplied by.
+    fn tint(&self, plugin: &Plugin) -> Color {
+        self.color(plugin, "specular_reflectance", Vec3::ONE).clamp(Vec3::ZERO, Vec3::ONE)
+    }
+
+    fn glass(&mut self, plugin: &Plugin, m: &mut PrincipledMaterial) {
+        m.transmission_weight = 1.0;
+        m.specular_ior = self.relative_index(plugin, 1.5046);
+        m.specular_color = self.tint(plugin);
+        m.transmission_color = self.color(plugin, "specular_transmittance", Vec3::ONE).clamp(Vec3::ZERO, Vec3::ONE);
+        m.walls = if plugin.kind == "thindielectric" { Walls::Thin } else { Walls::Solid };
+        self.roughness(plugin, m);
+    }
+
+    fn conductor(&mut self, plugin: &Plugin, m: &mut PrincipledMaterial) {
+        let name = plugin.text(self.said, "material").unwrap_or("none".into());
+        let by_numbers = ["eta", "k"].iter().any(|name| plugin.get(name).is_some());
+        if by_numbers && plugin.get("material").is_some() {
+            self.said.bad(plugin.place("material"), "a metal has either `material` or `eta` and `k`");
+        }
+        let [f0, f82] = if !by_numbers && name == "none" {
+            [Vec3::ONE; 2]
+        } else {
+            let named = metals::metal(&name).unwrap_or_else(|| {
+                if !by_numbers {
+                    let help = meant(&name, metals::metal_names());
+                    self.said.bad_with(plugin.place("material"), format!("there is no metal `{name}`"), help);
+                }
+                [[0.0; 3], [1.0; 3]]
+            });
+            let [eta, k] = [("eta", named[0]), ("k", named[1])]
+                .map(|(name, usual)| Spectrum::Rgb(self.color(plugin, name, Vec3::from_array(usual))));
+            metal(&eta, &k, self.index(plugin, "ext_eta", 1.0))
+        };
+        const REST: f32 = 6.0 / 7.0;
+        let schlick = f0 + (Vec3::ONE - f0) * fp::pow(REST, 5.0);
+        (m.base_metalness, m.specular_color) = (1.0, f82 / schlick.max(Vec3::splat(1e-6)));
+        let (tint, picture) = self.colored(plugin, "specular_reflectance", 1.0);
+        (m.base_color, m.base_color_texture) = (f0 * tint, picture);
+        self.roughness(plugin, m);
+    }
+
+    fn plastic(&mut self, plugin: &Plugin, m: &mut PrincipledMaterial) {
+        (m.base_color, m.base_color_texture) = self.colored(plugin, "diffuse_reflectance", 0.5);
+        let index = self.relative_index(plugin, 1.49);
+        let tint = self.tint(plugin);
+        self.roughness(plugin, m);
+        if plugin.truth(self.said, "nonlinear").unwrap_or(false) {
+            // Light that goes to and fro below the skin is a coat's darkening.
+            (m.coat_weight, m.coat_ior, m.coat_roughness) = (1.0, index, m.specular_roughness);
+            m.specular_weight = 0.0;
+            if tint != Vec3::ONE {
+                self.said
+                    .once(plugin.place("specular_reflectance"), "what a coat reflects has no colour: white is taken");
+            }
+        } else {
+            (m.specular_ior, m.specular_color) = (index, tint);
+        }
+        if let Texture::Even(color) = self.texture(plugin, "specular_transmittance", Vec3::ONE) {
+            m.base_color *= color;
+        }
+    }
+
+    /// The number in the scene of a material with a light and something inside; `None` for what is not there.
+    pub fn number(
+        &mut self,
+        bsdf: Option<&Rc<Plugin>>,
+        shine: Option<&Shine>,
+        inside: Option<(Medium, Key)>,
+        at: Span,
+    ) -> Option<u32> {
+        let key = [bsdf.map(|bsdf| bsdf.key()), shine.map(|shine| shine.key), inside.map(|inside| inside.1)];
+        if let Some(known) = self.numbers.get(&key) {
+            return *known;
+        }
+        let mut made = bsdf.map_or_else(|| Rc::new(Made::usual()), |bsdf| self.material(bsdf, 0));
+        if let Some((medium, _)) = inside {
+            made = Rc::new(filled(&made, &medium));
+        }
+        let number = self.numbered(&made, shine, bsdf.map_or(at, |bsdf| bsdf.at));
+        self.numbers.insert(key, number);
+        number
+    }
+
+    fn numbered(&mut self, made: &Made, shine: Option<&Shine>, at: Span) -> Option<u32> {
+        let material = match made {
+            Made::Nothing => return None,
+            Made::Layers(layers) => {
+                let mut layers = layers.clone();
+                let most = shine.map_or(0.0, |shine| shine.color.max_element());
+                if let Some(shine) = shine.filter(|_| most > 0.0) {
+                    (layers.emission_luminance, layers.emission_color) = (most, shine.color / most);
+                    if let Some(picture) = &shine.picture {
+                        layers.emission_texture = Some(asset(&mut self.scene, picture.clone(), shine.at));
+                    }
+                }
+                Material::Principled(layers)
+            }
+            Made::Mix(a, b, share) => match (self.numbered(a, shine, at), self.numbered(b, shine, at)) {
+                (Some(material1), Some(material2)) => {
+                    Material::Solid(Solid::from(Mix { material1, material2, share: *share }), Vec::new())
+                }
+                (Some(only), None) | (None, Some(only)) => {
+                    self.said.once(at, "a blend with what is not there has no counterpart: the other counts alone");
+                    return Some(only);
+                }
+                (None, None) => return None,
+            },
+        };
+        self.scene.materials.push(Spanned { value: material, span: at });
+        Some((self.scene.materials.len() - 1) as u32)
+    }
+}
+
+/// A material with something inside.
+fn filled(made: &Made, medium: &Medium) -> Made {
+    match made {
+        Made::Nothing => {
+            let mut m =
+                PrincipledMaterial { specular_ior: 1.0, transmission_weight: 1.0, ..PrincipledMaterial::default() };
+            medium.fill(&mut m);
+            Made::Layers(Box::new(m))
+        }
+        // Nothing gets into what is not clear.
+        _ => made.changed(&|m| {
+            if m.transmission_weight > 0.0 && m.walls == Walls::Solid {
+                medium.fill(m);
+            }
+        }),
+    }
+}

@@ -1,0 +1,261 @@
+//! Shapes.
+//!
+//! Source of all meanings: *Mitsuba 3 documentation*, "Shapes".
+
+use super::plugin::Plugin;
+use super::solid;
+use super::state::{Key, Reader};
+use crate::diag::{Diagnostic, Span};
+use crate::format::pbrt::medium::Medium;
+use crate::format::pbrt::mesh::{oriented, written_in_file};
+use crate::format::pbrt::shape::placed;
+use crate::format::said::meant;
+use crate::math::Vec3;
+use crate::scene::{Group, Node, Object};
+use crate::shape::{Disc, MeshData, Sphere};
+use glam::{DAffine3, DMat3, DQuat, DVec3};
+use std::rc::Rc;
+use std::sync::Arc;
+
+const KNOWN: [&str; 10] =
+    ["sphere", "disk", "rectangle", "cube", "cylinder", "obj", "ply", "shapegroup", "instance", "merge"];
+
+impl Reader<'_> {
+    /// Adds what a plugin shows.
+    pub fn shape(&mut self, plugin: &Rc<Plugin>, objects: &mut Vec<Object>, depth: u32) {
+        if self.too_deep(depth, plugin.at) {
+            return;
+        }
+        let (said, at) = (self.said, plugin.at);
+        let map = plugin.map(said, "to_world");
+        let found = match plugin.kind.as_str() {
+            // What a group holds is shown by instances.
+            "shapegroup" => return,
+            "instance" => self.instance(plugin, map, objects, depth),
+            "merge" => {
+                for (_, part) in self.parts(plugin, Some("shape")) {
+                    self.shape(&part, objects, depth + 1);
+                }
+                None
+            }
+            "sphere" => self.sphere(plugin, map),
+            "disk" => self.disk(plugin, map),
+            "rectangle" => self.mesh(plugin, "rectangle", map, || Some(solid::rectangle())),
+            "cube" => self.mesh(plugin, "cube", map, || Some(solid::cube())),
+            "cylinder" => self.cylinder(plugin, map),
+            "obj" | "ply" => self.file(plugin, map),
+            "serialized" => {
+                let help = "open the scene in Mitsuba and write its meshes by `mesh.write_ply(\"a.ply\")`";
+                let error = Diagnostic::error("meshes of `serialized` are not read").code("bad-value").at(at);
+                return said.push(error.help(help));
+            }
+            other => {
+                let message = format!("the shape `{other}` has no counterpart: it is left out");
+                let warning = Diagnostic::warning(message).code("NO_COUNTERPART").at(at);
+                return said.push(Diagnostic { help: meant(other, KNOWN), ..warning });
+            }
+        };
+        if let Some((node, map)) = found {
+            let inside = self.inside(plugin);
+            let shine = self.parts(plugin, Some("emitter")).into_iter().next();
+            let shine = shine.and_then(|(_, emitter)| self.area_light(&emitter));
+            let material = self.parts(plugin, Some("bsdf")).into_iter().next().map(|(_, bsdf)| bsdf);
+            match self.number(material.as_ref(), shine.as_ref(), inside, at) {
+                Some(number) => {
+                    let inner = Object { node, material: Some(number), span: at };
+                    self.add(objects, placed(map, inner));
+                }
+                None if shine.is_some() => said.once(at, "what is not there (`null`) does not shine"),
+                None => {}
+            }
+        }
+        plugin.known(&["flip_normals"]);
+        plugin.finish(said);
+    }
+
+    fn instance(
+        &mut self,
+        plugin: &Rc<Plugin>,
+        map: DAffine3,
+        objects: &mut Vec<Object>,
+        depth: u32,
+    ) -> Option<(Node, DAffine3)> {
+        let groups = self.parts(plugin, Some("shape"));
+        let Some((property, group)) = groups.into_iter().find(|(_, group)| group.kind == "shapegroup") else {
+            self.said.bad(plugin.at, "an `instance` needs a `shapegroup`");
+            return None;
+        };
+        let (group, count) = match self.groups.get(&group.key()) {
+            Some(known) => known.clone(),
+            None => {
+                let (mut inner, before) = (Vec::new(), self.count);
+                for (_, part) in self.parts(&group, Some("shape")) {
+                    self.shape(&part, &mut inner, depth + 1);
+                }
+                let made = (Rc::new(Group { objects: inner }), self.count - before);
+                self.groups.insert(group.key(), made.clone());
+                made
+            }
+        };
+        if self.room_for(count, property.at) {
+            let inner = Object { node: Node::Group((*group).clone()), material: None, span: plugin.at };
+            objects.push(placed(map, inner));
+        }
+        None
+    }
+
+    /// What is inside of a shape.
+    fn inside(&mut self, plugin: &Plugin) -> Option<(Medium, Key)> {
+        let media = self.parts(plugin, Some("medium"));
+        // What is outside of a shape is inside of another, or around the camera.
+        let (_, medium) = media.into_iter().find(|(property, _)| property.name == "interior")?;
+        self.medium(&medium)
+    }
+
+    /// A medium that is the same everywhere.
+    pub fn medium(&mut self, plugin: &Rc<Plugin>) -> Option<(Medium, Key)> {
+        let said = self.said;
+        if plugin.kind != "homogeneous" {
+            let what = format!("the medium `{}` has no counterpart: light goes through it freely", plugin.kind);
+            said.once(plugin.at, what);
+            return None;
+        }
+        let scale = plugin.number(said, "scale").unwrap_or(1.0).max(0.0);
+        let color = |name, usual| self.color(plugin, name, usual).max(Vec3::ZERO);
+        let (absorption, scattering) = match plugin.get("sigma_s").is_some() || plugin.get("sigma_a").is_some() {
+            // Of Mitsuba 0.6.
+            true => (color("sigma_a", Vec3::ZERO), color("sigma_s", Vec3::ZERO)),
+            false => {
+                let extinction = color("sigma_t", Vec3::ONE);
+                let albedo = color("albedo", Vec3::splat(0.75)).min(Vec3::ONE);
+                (extinction * (Vec3::ONE - albedo), extinction * albedo)
+            }
+        };
+        let mut anisotropy = 0.0;
+        for (_, phase) in self.parts(plugin, Some("phase")) {
+            match phase.kind.as_str() {
+                "isotropic" => {}
+                "hg" => anisotropy = phase.number(said, "g").unwrap_or(0.8).clamp(-0.99, 0.99),
+                other => said
+                    .once(phase.at, format!("the phase function `{other}` has no counterpart: light goes evenly on")),
+            }
+        }
+        plugin.known(&["sample_emitters", "has_spectral_extinction"]);
+        plugin.finish(said);
+        Some((Medium { absorption: scale * absorption, scattering: scale * scattering, anisotropy }, plugin.key()))
+    }
+
+    /// Whether a picture lies on a shape.
+    fn is_pictured(&self, plugin: &Plugin, depth: u32) -> bool {
+        let parts = plugin.properties.iter().filter_map(|property| self.part(property));
+        depth < super::state::DEEPEST
+            && parts.into_iter().any(|part| match part.class.as_str() {
+                "texture" => matches!(part.kind.as_str(), "bitmap" | "checkerboard"),
+                "bsdf" | "emitter" => self.is_pictured(&part, depth + 1),
+                _ => false,
+            })
+    }
+
+    fn is_flipped(&self, plugin: &Plugin) -> bool {
+        plugin.truth(self.said, "flip_normals").unwrap_or(false)
+    }
+
+    fn sphere(&self, plugin: &Plugin, map: DAffine3) -> Option<(Node, DAffine3)> {
+        let radius = plugin.positive(self.said, "radius").unwrap_or(1.0);
+        let center = plugin.vector(self.said, "center").unwrap_or(DVec3::ZERO);
+        if self.is_flipped(plugin) && !self.parts(plugin, Some("emitter")).is_empty() {
+            let what = "a sphere turned inside out has no counterpart: it shines outwards";
+            self.said.once(plugin.place("flip_normals"), what);
+        }
+        let map = map * DAffine3::from_translation(center);
+        let (center, map) = match self.is_pictured(plugin, 0) {
+            // Mitsuba's poles are on z, and u begins at x; ours are on y, and u = 1/2 is at -z.
+            true => {
+                let turned = DMat3::from_cols(DVec3::NEG_Y, DVec3::Z, DVec3::X);
+                (Vec3::ZERO, map * DAffine3::from_mat3(turned))
+            }
+            false if map.matrix3 == DMat3::IDENTITY => (map.translation.as_vec3(), DAffine3::IDENTITY),
+            false => (Vec3::ZERO, map),
+        };
+        Some((Node::Primitive(Sphere { center, radius }.into()), map))
+    }
+
+    fn disk(&self, plugin: &Plugin, map: DAffine3) -> Option<(Node, DAffine3)> {
+        if self.is_pictured(plugin, 0) {
+            self.said.once(plugin.at, "a picture on a `disk` is turned: its coordinates begin elsewhere");
+        }
+        let normal = if self.is_flipped(plugin) { Vec3::NEG_Z } else { Vec3::Z };
+        let disc = Disc { center: Vec3::ZERO, normal, radius: 1.0, inner_radius: 0.0 };
+        Some((Node::Primitive(disc.into()), map))
+    }
+
+    fn cylinder(&mut self, plugin: &Plugin, map: DAffine3) -> Option<(Node, DAffine3)> {
+        let said = self.said;
+        let end = |name, usual| plugin.vector(said, name).unwrap_or(usual);
+        let ends = [end("p0", DVec3::ZERO), end("p1", DVec3::Z)];
+        let radius = plugin.positive(said, "radius").unwrap_or(1.0);
+        let along = ends[1] - ends[0];
+        if along == DVec3::ZERO {
+            said.bad(plugin.place("p1"), "the ends of a cylinder must not be the same point");
+            return None;
+        }
+        let turn = DMat3::from_quat(DQuat::from_rotation_arc(DVec3::Z, along.normalize()));
+        let axes = turn * DMat3::from_diagonal(DVec3::new(1.0, 1.0, along.length()));
+        let map = map * DAffine3 { matrix3: axes, translation: ends[0] };
+        self.mesh(plugin, &format!("cylinder-{radius}"), map, || Some(solid::cylinder(radius)))
+    }
+
+    fn file(&mut self, plugin: &Plugin, map: DAffine3) -> Option<(Node, DAffine3)> {
+        let said = self.said;
+        let Some(name) = plugin.text(said, "filename") else {
+            said.bad(plugin.at, format!("the shape `{}` needs a `filename`", plugin.kind));
+            return None;
+        };
+        let at: Span = plugin.place("filename");
+        let path = self.loader.path(&name);
+        let flat = plugin.truth(said, "face_normals").unwrap_or(false);
+        let is_obj = plugin.kind == "obj";
+        // Mitsuba turns the coordinates of OBJ over, which have v upwards as ours, and leaves those of PLY.
+        let over = plugin.truth(said, "flip_tex_coords").unwrap_or(is_obj);
+        let mirrored = map.matrix3.determinant() < 0.0;
+        let input = self.input;
+        let turns = [(flat, "#flat"), (mirrored, "#mirrored"), (over != is_obj, "#turned")];
+        let key = turns.iter().filter(|turn| turn.0).fold(path.clone(), |key, turn| key + turn.1);
+        self.mesh(plugin, &key, map, || {
+            let mut data = written_in_file(input, said, &path, at)?;
+            if flat {
+                (data.normals, data.triangle_normals) = (Vec::new(), Vec::new());
+            }
+            // The sides of faces without normals are told by their corners in the world.
+            if mirrored && data.triangle_normals.is_empty() {
+                data = oriented(data, true);
+            }
+            data.flat = flat;
+            Some(if over { solid::turned_over(data) } else { data })
+        })
+    }
+
+    /// A mesh with v downwards, in its place.
+    fn mesh(
+        &mut self,
+        plugin: &Plugin,
+        name: &str,
+        map: DAffine3,
+        make: impl FnOnce() -> Option<MeshData>,
+    ) -> Option<(Node, DAffine3)> {
+        let flipped = self.is_flipped(plugin);
+        let name = format!("{name}{}", if flipped { "#flipped" } else { "" });
+        let data = match self.meshes.get(&name) {
+            Some(known) => known.clone(),
+            None => {
+                let data = make().filter(|data| !data.triangles.is_empty()).map(|data| {
+                    let flat = data.flat;
+                    Arc::new(MeshData { flat, ..oriented(solid::turned_over(data), flipped) })
+                });
+                self.meshes.insert(name.clone(), data.clone());
+                data
+            }
+        };
+        Some((self.scene.add_mesh(&name, data?, plugin.at), map))
+    }
+}

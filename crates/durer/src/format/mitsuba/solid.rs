@@ -1,0 +1,57 @@
+//! Shapes that are meshes here.
+
+use crate::format::pbrt::mesh::tube;
+use crate::math::{Vec2, Vec3};
+use crate::shape::MeshData;
+
+/// Corners of the faces of a cube, each with its normal; the texture's four corners lie on them in the order of [`AROUND`].
+const FACES: [([[f32; 3]; 4], [f32; 3]); 6] = [
+    ([[1.0, -1.0, -1.0], [1.0, -1.0, 1.0], [-1.0, -1.0, 1.0], [-1.0, -1.0, -1.0]], [0.0, -1.0, 0.0]),
+    ([[1.0, 1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, 1.0, 1.0], [1.0, 1.0, 1.0]], [0.0, 1.0, 0.0]),
+    ([[1.0, -1.0, -1.0], [1.0, 1.0, -1.0], [1.0, 1.0, 1.0], [1.0, -1.0, 1.0]], [1.0, 0.0, 0.0]),
+    ([[1.0, -1.0, 1.0], [1.0, 1.0, 1.0], [-1.0, 1.0, 1.0], [-1.0, -1.0, 1.0]], [0.0, 0.0, 1.0]),
+    ([[-1.0, -1.0, 1.0], [-1.0, 1.0, 1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, -1.0]], [-1.0, 0.0, 0.0]),
+    ([[1.0, 1.0, -1.0], [1.0, -1.0, -1.0], [-1.0, -1.0, -1.0], [-1.0, 1.0, -1.0]], [0.0, 0.0, -1.0]),
+];
+const AROUND: [[f32; 2]; 4] = [[0.0, 1.0], [1.0, 1.0], [1.0, 0.0], [0.0, 0.0]];
+
+/// A cube from -1 to 1, with v downwards.
+pub(super) fn cube() -> MeshData {
+    let mut data = MeshData { flat: true, ..MeshData::default() };
+    for (corners, normal) in FACES {
+        let p = data.positions.len() as u32;
+        data.positions.extend(corners.map(Vec3::from_array));
+        data.normals.extend([Vec3::from_array(normal); 4]);
+        data.uvs.extend(AROUND.map(Vec2::from_array));
+        data.triangles.extend([[p, p + 1, p + 2], [p, p + 2, p + 3]]);
+    }
+    (data.triangle_uvs, data.triangle_normals) = (data.triangles.clone(), data.triangles.clone());
+    data
+}
+
+/// A square from -1 to 1 that faces z, with v downwards.
+pub(super) fn rectangle() -> MeshData {
+    let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(Vec2::from_array);
+    let triangles = vec![[0, 1, 2], [0, 2, 3]];
+    MeshData {
+        positions: corners.map(|p| p.extend(0.0)).to_vec(),
+        uvs: corners.map(|p| 0.5 * (p + 1.0)).to_vec(),
+        normals: vec![Vec3::Z; 4],
+        triangle_uvs: triangles.clone(),
+        triangle_normals: triangles.clone(),
+        triangles,
+        flat: true,
+        ..MeshData::default()
+    }
+}
+
+/// A tube about z of length 1, with v downwards.
+pub(super) fn cylinder(radius: f32) -> MeshData {
+    tube(radius, [0.0, 1.0], 360.0)
+}
+
+/// The same with v upwards, as ours has it.
+pub(super) fn turned_over(mut data: MeshData) -> MeshData {
+    data.uvs.iter_mut().chain(&mut data.second_uvs).for_each(|uv| uv.y = 1.0 - uv.y);
+    data
+}

@@ -1,0 +1,148 @@
+//! From plugins to a scene.
+
+use super::light::Infinite;
+use super::load::Loader;
+use super::material::Made;
+use super::plugin::{Plugin, Property, Value};
+use crate::diag::{Diagnostic, Span};
+use crate::format::pbrt::body::join_bodies;
+use crate::format::pictures::Pictures;
+use crate::format::said::{Said, meant};
+use crate::format::scene::Input;
+use crate::scene::{Group, Object, Scene};
+use crate::shape::MeshData;
+use std::collections::BTreeMap;
+use std::rc::Rc;
+use std::sync::Arc;
+
+/// Objects of a scene, those of instances counted each time.
+const MOST_OBJECTS: usize = 1 << 20;
+/// Plugins in plugins, those counted to which others refer.
+pub(super) const DEEPEST: u32 = 32;
+
+/// Where a plugin is written.
+pub(super) type Key = (u32, u32);
+
+/// A file on its way to a scene.
+pub(super) struct Reader<'a> {
+    pub input: &'a Input<'a>,
+    pub said: &'a Said,
+    pub loader: Loader<'a>,
+    /// Materials by their plugins.
+    pub materials: BTreeMap<Key, Rc<Made>>,
+    /// Numbers in the scene of materials with a light, with something inside.
+    pub numbers: BTreeMap<[Option<Key>; 3], Option<u32>>,
+    /// Meshes of files, by name and how they are turned.
+    pub meshes: BTreeMap<String, Option<Arc<MeshData>>>,
+    /// What shape groups hold, and how many objects that is.
+    pub groups: BTreeMap<Key, (Rc<Group>, usize)>,
+    pub count: usize,
+    pub infinite: Option<Infinite>,
+    pub scene: Scene,
+}
+
+impl<'a> Reader<'a> {
+    pub fn new(input: &'a Input<'a>, said: &'a Said, loader: Loader<'a>) -> Self {
+        Reader {
+            input,
+            said,
+            loader,
+            materials: BTreeMap::new(),
+            numbers: BTreeMap::new(),
+            meshes: BTreeMap::new(),
+            groups: BTreeMap::new(),
+            count: 0,
+            infinite: None,
+            scene: Scene::default(),
+        }
+    }
+
+    /// The scene of its plugins.
+    pub fn read(mut self, all: &Plugin) -> Scene {
+        let mut sensors = Vec::new();
+        for (property, plugin) in self.parts(all, None) {
+            if self.said.is_full() {
+                break;
+            }
+            property.used.set(true);
+            match plugin.class.as_str() {
+                "shape" => {
+                    let mut objects = Vec::new();
+                    self.shape(&plugin, &mut objects, 0);
+                    self.scene.root.get_or_insert_default().objects.extend(objects);
+                }
+                "emitter" => self.emitter(&plugin),
+                "sensor" => sensors.push(plugin),
+                "integrator" => self.integrator(&plugin, 0),
+                // What nothing refers to has no place: it is not looked at.
+                _ => {}
+            }
+        }
+        self.camera(&sensors);
+        self.surround();
+        join_bodies(&mut self.scene, self.input.name);
+        if self.scene.root.is_none() && !self.said.has_errors() {
+            let at = Span { end: all.at.start, ..all.at };
+            let warning = Diagnostic::warning("the file has no shapes that can be shown");
+            self.said.push(warning.code("no-objects").at(at));
+        }
+        self.scene
+    }
+
+    pub fn pictures(&self) -> Pictures<'a> {
+        Pictures { input: self.input, said: self.said }
+    }
+
+    /// The plugins inside another, of a class or of all, in their order.
+    pub fn parts<'p>(&self, plugin: &'p Plugin, class: Option<&str>) -> Vec<(&'p Property, Rc<Plugin>)> {
+        let found = plugin.properties.iter().filter_map(|property| {
+            let part = self.part(property)?;
+            class.is_none_or(|class| part.class == class).then_some((property, part))
+        });
+        found.inspect(|(property, _)| property.used.set(true)).collect()
+    }
+
+    /// The plugin of a property.
+    pub fn part(&self, property: &Property) -> Option<Rc<Plugin>> {
+        match &property.value {
+            Value::Plugin(plugin) => Some(plugin.clone()),
+            Value::Ref(id) => {
+                let found = self.loader.plugins.get(id).cloned();
+                if found.is_none() {
+                    let help = meant(id, self.loader.plugins.keys().map(String::as_str));
+                    let message = format!("there is nothing with the id `{id}`");
+                    if !property.used.replace(true) {
+                        self.said.bad_with(property.at, message, help);
+                    }
+                }
+                found
+            }
+            _ => None,
+        }
+    }
+
+    /// Whether this is too deep: plugins may refer to each other in a circle.
+    pub fn too_deep(&self, depth: u32, at: Span) -> bool {
+        if depth > DEEPEST {
+            self.said.bad(at, format!("plugins are nested more than {DEEPEST} deep: does one refer to itself?"));
+        }
+        depth > DEEPEST
+    }
+
+    /// Whether so many objects more are allowed.
+    pub fn room_for(&mut self, more: usize, at: Span) -> bool {
+        let before = self.count;
+        self.count = self.count.saturating_add(more);
+        if before <= MOST_OBJECTS && self.count > MOST_OBJECTS {
+            self.said.bad(at, format!("more than {MOST_OBJECTS} objects, those of instances counted, are too many"));
+        }
+        self.count <= MOST_OBJECTS
+    }
+
+    /// Adds an object to others.
+    pub fn add(&mut self, objects: &mut Vec<Object>, object: Object) {
+        if self.room_for(1, object.span) {
+            objects.push(object);
+        }
+    }
+}

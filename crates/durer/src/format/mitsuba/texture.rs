@@ -1,0 +1,147 @@
+//! Textures: one value everywhere, or a picture.
+
+use super::plugin::Plugin;
+use super::state::Reader;
+use crate::describe::FileName;
+use crate::diag::Span;
+use crate::format::pictures::{asset, checkerboard};
+use crate::format::said::meant;
+use crate::math::{Color, Vec3};
+use crate::scene::Picture;
+use crate::texture::{Mapping, Wrap};
+use glam::DAffine3;
+
+/// What a texture is here.
+#[derive(Clone)]
+pub(super) enum Texture {
+    Even(Color),
+    /// A picture, and what multiplies it.
+    Picture(Picture, Color),
+}
+
+impl Reader<'_> {
+    /// A property that may be a texture.
+    pub fn texture(&self, plugin: &Plugin, name: &'static str, usual: Color) -> Texture {
+        let Some(property) = plugin.get(name) else { return Texture::Even(usual) };
+        if let Some(color) = self.reflectance(property) {
+            return Texture::Even(color);
+        }
+        let Some(texture) = self.part(property) else {
+            if !matches!(property.value, super::plugin::Value::Ref(_)) {
+                self.said.bad(property.at, format!("`{name}` must be a colour or a texture"));
+            }
+            return Texture::Even(usual);
+        };
+        let made = match texture.kind.as_str() {
+            "bitmap" => self.bitmap(&texture).map(|picture| Texture::Picture(picture, Vec3::ONE)),
+            "checkerboard" => Some(self.checkerboard(&texture)),
+            // Colours of vertices multiply what a material says.
+            "mesh_attribute" if texture.text(self.said, "name").is_some_and(|name| name == "vertex_color") => {
+                texture.known(&["scale"]);
+                Some(Texture::Even(Vec3::ONE))
+            }
+            other => {
+                let message = format!("the texture `{other}` has no counterpart: a middle value is taken");
+                let known = ["bitmap", "checkerboard", "mesh_attribute"];
+                let warning = crate::diag::Diagnostic::warning(message).code("NO_COUNTERPART").at(texture.at);
+                self.said.push(crate::diag::Diagnostic { help: meant(other, known), ..warning });
+                return Texture::Even(usual);
+            }
+        };
+        texture.finish(self.said);
+        made.unwrap_or(Texture::Even(usual))
+    }
+
+    /// A colour, and the picture that it multiplies.
+    pub fn colored(&mut self, plugin: &Plugin, name: &'static str, usual: f32) -> (Color, Option<FileName>) {
+        match self.texture(plugin, name, Vec3::splat(usual)) {
+            Texture::Even(color) => (color.max(Vec3::ZERO), None),
+            Texture::Picture(picture, scale) => (scale, Some(asset(&mut self.scene, picture, plugin.place(name)))),
+        }
+    }
+
+    /// A number that may be a texture: of a picture the mean is taken.
+    pub fn value(&self, plugin: &Plugin, name: &'static str, usual: f32) -> f32 {
+        let color = self.color(plugin, name, Vec3::splat(usual));
+        color.dot(Vec3::new(0.2126, 0.7152, 0.0722))
+    }
+
+    /// A colour that may be a texture: of a picture the mean is taken.
+    pub fn color(&self, plugin: &Plugin, name: &'static str, usual: Color) -> Color {
+        match self.texture(plugin, name, usual) {
+            Texture::Even(color) => color,
+            Texture::Picture(picture, scale) => {
+                let at = plugin.place(name);
+                self.said.once(at, format!("`{name}` by a picture has no counterpart: its mean is taken"));
+                self.pictures().mean(&picture, at).map_or(usual, |mean| mean * scale)
+            }
+        }
+    }
+
+    /// The picture of a texture `bitmap`.
+    pub fn bitmap(&self, texture: &Plugin) -> Option<Picture> {
+        let said = self.said;
+        let Some(name) = texture.text(said, "filename") else {
+            said.bad(texture.at, "a `bitmap` needs a `filename`");
+            return None;
+        };
+        let mut mapping = self.mapping(texture);
+        let word = |name, usual: &str| texture.text(said, name).unwrap_or(usual.into());
+        mapping.wrap = match word("wrap_mode", "repeat").as_str() {
+            "repeat" => [Wrap::Repeat; 2],
+            "mirror" => [Wrap::Mirror; 2],
+            "clamp" => [Wrap::Clamp; 2],
+            other => {
+                let help = meant(other, ["repeat", "mirror", "clamp"]);
+                said.bad_with(texture.place("wrap_mode"), format!("there is no wrapping `{other}`"), help);
+                return None;
+            }
+        };
+        mapping.nearest = match word("filter_type", "bilinear").as_str() {
+            // Mitsuba 0.6 has the last two.
+            "bilinear" | "ewa" | "trilinear" => false,
+            "nearest" => true,
+            other => {
+                let help = meant(other, ["bilinear", "nearest"]);
+                said.bad_with(texture.place("filter_type"), format!("there is no filter `{other}`"), help);
+                return None;
+            }
+        };
+        texture.known(&["raw", "accel", "format"]);
+        let bytes = self.pictures().eight_bits(&self.loader.path(&name), texture.place("filename"))?;
+        Some(Picture { bytes, mapping })
+    }
+
+    /// How a texture lies: Mitsuba's coordinates of pictures go down from the upper border, as ours do.
+    fn mapping(&self, texture: &Plugin) -> Mapping {
+        let said = self.said;
+        let mut map = texture.map(said, "to_uv");
+        let old = |name, usual: f32| f64::from(texture.number(said, name).unwrap_or(usual));
+        // Of Mitsuba 0.6.
+        let scale = glam::DVec3::new(old("uscale", 1.0), old("vscale", 1.0), 1.0);
+        map *= DAffine3::from_scale(scale);
+        map.translation += glam::DVec3::new(old("uoffset", 0.0), old("voffset", 0.0), 0.0);
+        let [x, y, t] = [map.matrix3.x_axis, map.matrix3.y_axis, map.translation].map(|v| v.as_vec3());
+        Mapping { transform: [[x.x, y.x, t.x], [x.y, y.y, t.y]], ..Mapping::default() }
+    }
+
+    /// Fields of half a unit, as a picture of four texels.
+    fn checkerboard(&self, texture: &Plugin) -> Texture {
+        let mapping = Mapping { nearest: true, ..self.mapping(texture) };
+        let [one, other] = [("color0", 0.4), ("color1", 0.2)].map(|(name, usual)| {
+            let made = self.texture(texture, name, Vec3::splat(usual));
+            if matches!(made, Texture::Picture(..)) {
+                let at: Span = texture.place(name);
+                self.said.once(at, "a picture in a field has no counterpart: the field has one colour");
+            }
+            match made {
+                Texture::Even(color) => color,
+                Texture::Picture(..) => Vec3::splat(usual),
+            }
+        });
+        match checkerboard(one, other) {
+            Some((bytes, most)) => Texture::Picture(Picture { bytes, mapping }, Vec3::splat(most)),
+            None => Texture::Even(0.5 * (one + other)),
+        }
+    }
+}

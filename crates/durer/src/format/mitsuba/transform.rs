@@ -1,0 +1,84 @@
+//! Transforms: what is written first acts first.
+
+use super::load::{Broken, Loader, numbers};
+use crate::format::said::meant;
+use crate::format::xml::{Tag, Xml};
+use crate::scene::MatrixOp;
+use glam::{DAffine3, DMat3, DMat4, DVec3};
+
+const KNOWN: [&str; 6] = ["translate", "rotate", "scale", "matrix", "lookat", "lookAt"];
+
+/// The map of a `<transform>`.
+pub(super) fn read(loader: &mut Loader, xml: &mut Xml, _: &Tag) -> Result<DAffine3, Broken> {
+    let mut map = DAffine3::IDENTITY;
+    while let Some(tag) = loader.next_leaf(xml)? {
+        let Some(step) = step(loader, &tag) else { continue };
+        map = step * map;
+        let finite = |map: &DAffine3| map.to_cols_array().iter().all(|x| (*x as f32).is_finite());
+        if !finite(&map) || map.matrix3.determinant() == 0.0 || !finite(&map.inverse()) {
+            loader.bad(tag.at, "after this the transform is not invertible", None);
+            map = DAffine3::IDENTITY;
+        }
+    }
+    Ok(map)
+}
+
+fn step(loader: &Loader, tag: &Tag) -> Option<DAffine3> {
+    match tag.name {
+        "translate" => loader.triple(tag, 0.0).map(DAffine3::from_translation),
+        "scale" => {
+            // One number is for all three.
+            let one = tag.get("value").and_then(|value| numbers(&loader.substituted(value)));
+            match one.as_deref() {
+                Some(&[one]) => Some(DAffine3::from_scale(DVec3::splat(one))),
+                _ => loader.triple(tag, 1.0).map(DAffine3::from_scale),
+            }
+        }
+        "rotate" => {
+            let [angle] = loader.numbers(&loader.attribute(tag, "angle")?)?;
+            let axis = loader.triple(tag, 0.0)?;
+            if axis == DVec3::ZERO {
+                loader.bad(tag.at, "a rotation needs an axis, `x=\"1\"` say", None);
+                return None;
+            }
+            Some(MatrixOp::Rotate(axis.normalize().as_vec3(), angle as f32).matrix())
+        }
+        "matrix" => {
+            let given = loader.attribute(tag, "value")?;
+            match numbers(&given.0).as_deref() {
+                Some(nine) if nine.len() == 9 => Some(DAffine3::from_mat3(DMat3::from_cols_slice(nine).transpose())),
+                Some(all) if all.len() == 16 => {
+                    if all[12..] != [0.0, 0.0, 0.0, 1.0] {
+                        loader.bad(given.1, "the last row of a matrix must be 0 0 0 1", None);
+                        return None;
+                    }
+                    Some(DAffine3::from_mat4(DMat4::from_cols_slice(all).transpose()))
+                }
+                _ => {
+                    loader.bad(given.1, "a matrix needs 16 numbers, or 9", None);
+                    None
+                }
+            }
+        }
+        "lookat" | "lookAt" => {
+            let point = |name| loader.numbers::<3>(&loader.attribute(tag, name)?).map(DVec3::from_array);
+            let (origin, target) = (point("origin")?, point("target")?);
+            let forward = (target - origin).try_normalize();
+            let up = match tag.get("up") {
+                Some(_) => point("up")?,
+                None => forward.unwrap_or(DVec3::Z).any_orthogonal_vector(),
+            };
+            let left = forward.and_then(|forward| up.cross(forward).try_normalize());
+            let (Some(forward), Some(left)) = (forward, left) else {
+                loader.bad(tag.at, "`origin`, `target` and `up` must not lie on a line", None);
+                return None;
+            };
+            let axes = DMat3::from_cols(left, forward.cross(left), forward);
+            Some(DAffine3 { matrix3: axes, translation: origin })
+        }
+        other => {
+            loader.bad(tag.at, format!("a transform has no `<{other}>`"), meant(other, KNOWN));
+            None
+        }
+    }
+}

@@ -1,0 +1,111 @@
+//! Pictures that materials name, for readers of whole scenes.
+
+use super::said::Said;
+use super::scene::Input;
+use crate::describe::FileName;
+use crate::diag::{Diagnostic, Span};
+use crate::image::{self, Depth, Encoded, Image, Layer, Transfer, WriteOptions};
+use crate::math::Color;
+use crate::scene::{Picture, PictureBytes, Scene};
+use crate::source::Digest;
+use std::sync::Arc;
+
+/// Bytes that decoding one picture may take.
+const MEMORY: u64 = 1 << 31;
+
+/// Finds pictures beside a scene, and tells what is wrong with them.
+#[derive(Clone, Copy)]
+pub(super) struct Pictures<'a> {
+    pub input: &'a Input<'a>,
+    pub said: &'a Said,
+}
+
+impl Pictures<'_> {
+    /// The bytes of a file.
+    pub fn bytes(&self, name: &str, at: Span) -> Option<Arc<[u8]>> {
+        let bytes = self.input.source.read(name);
+        bytes.map_err(|error| self.said.push(Diagnostic::error(error.to_string()).code("missing-file").at(at))).ok()
+    }
+
+    /// A file as a picture.
+    pub fn image(&self, name: &str, at: Span) -> Option<Image> {
+        let bytes = self.bytes(name, at)?;
+        let read = Encoded::open(&bytes, name).and_then(|encoded| encoded.read(MEMORY, image::decode_srgb));
+        read.map_err(|error| self.complain(name, at, &error)).ok()
+    }
+
+    /// A file as a picture of eight bits, which other formats become.
+    pub fn eight_bits(&self, name: &str, at: Span) -> Option<PictureBytes> {
+        let bytes = self.bytes(name, at)?;
+        match Encoded::open(&bytes, name) {
+            Ok(encoded) if encoded.depth() != Depth::Float => Some(PictureBytes::File(name.to_string())),
+            Ok(_) => {
+                let eight = as_png(self.image(name, at)?, Transfer::Srgb)?;
+                Some(PictureBytes::Here(format!("{name}#8.png"), eight))
+            }
+            Err(error) => {
+                self.complain(name, at, &error);
+                None
+            }
+        }
+    }
+
+    /// The mean of all values of a picture.
+    pub fn mean(&self, picture: &Picture, at: Span) -> Option<f32> {
+        match &picture.bytes {
+            PictureBytes::File(path) => self.image(path, at).map(|image| mean(&image)),
+            PictureBytes::Here(path, bytes) => image::read(bytes, path).ok().map(|image| mean(&image)),
+        }
+    }
+
+    /// A picture of numbers, made of another by what its texels' means become. Numbers have no curve.
+    pub fn changed(&self, picture: &Picture, at: Span, change: impl Fn(f32) -> f32) -> Option<Picture> {
+        let (path, image) = match &picture.bytes {
+            PictureBytes::File(path) => (path, self.image(path, at)?),
+            PictureBytes::Here(path, bytes) => (path, image::read_srgb(bytes, path).ok()?),
+        };
+        let texel = |p: &Color| Color::splat(change((p.x + p.y + p.z) / 3.0).clamp(0.0, 1.0));
+        let image = Image::from_pixels(image.width, image.height, image.pixels.iter().map(texel).collect()).ok()?;
+        let bytes = as_png(image, Transfer::Linear)?;
+        let path = format!("{path}#{}.png", &Digest::of(&bytes).to_string()[..12]);
+        Some(Picture { bytes: PictureBytes::Here(path, bytes), mapping: picture.mapping })
+    }
+
+    fn complain(&self, name: &str, at: Span, error: &dyn std::fmt::Display) {
+        let message = format!("the picture `{name}` cannot be used: {error}");
+        self.said.push(Diagnostic::error(message).code("bad-file").at(at));
+    }
+}
+
+/// A name for a picture of a scene.
+pub(super) fn asset(scene: &mut Scene, picture: Picture, span: Span) -> FileName {
+    let (PictureBytes::File(path) | PictureBytes::Here(path, _)) = &picture.bytes;
+    // The same picture may lie otherwise on other surfaces.
+    let mapping = Digest::of(format!("{:?}", picture.mapping).as_bytes()).to_string();
+    let path = format!("{path}#{}", &mapping[..12]);
+    scene.assets.pictures.entry(path.clone()).or_insert(picture);
+    FileName { path, span }
+}
+
+/// A picture of four texels: one colour at the upper left and the lower right, another at the other two. Also what its values
+/// are to be multiplied by.
+pub(super) fn checkerboard(one: Color, other: Color) -> Option<(PictureBytes, f32)> {
+    let most = one.max(other).max_element().max(1.0);
+    let pixels = [one, other, other, one].map(|color| color / most);
+    let bytes = as_png(Image::from_pixels(2, 2, pixels.to_vec()).ok()?, Transfer::Srgb)?;
+    Some((PictureBytes::Here(format!("checkerboard-{other}-{one}.png"), bytes), most))
+}
+
+/// A picture as the bytes of a PNG of eight bits.
+pub(super) fn as_png(image: Image, transfer: Transfer) -> Option<Arc<[u8]>> {
+    let mut bytes = Vec::new();
+    let format = image::format_for("a.png").ok()?;
+    let options = WriteOptions { display: transfer.into(), ..WriteOptions::default() };
+    format.write(&[Layer::color("", image)], &options, &mut bytes).ok()?;
+    Some(bytes.into())
+}
+
+fn mean(image: &Image) -> f32 {
+    let sum: f64 = image.pixels.iter().map(|p| f64::from((p.x + p.y + p.z) / 3.0)).sum();
+    (sum / image.pixels.len().max(1) as f64) as f32
+}

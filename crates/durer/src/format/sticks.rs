@@ -1,0 +1,99 @@
+//! What has no surface as something that is seen: lines as sticks, points as balls.
+
+use crate::math::{Vec3, fp};
+use crate::scene::Node;
+use crate::shape::{Cone, Cylinder, MeshData, Sphere};
+
+/// A stick from a point to another with a radius at each; `None` where they are the same.
+pub(super) fn stick(from: Vec3, to: Vec3, [first, last]: [f32; 2]) -> Option<Node> {
+    let shape = match first == last {
+        true => Cylinder { base: from, top: to, radius: first }.into(),
+        false => Cone { base: from, top: to, base_radius: first, top_radius: last }.into(),
+    };
+    (from != to).then_some(Node::Primitive(shape))
+}
+
+/// A ball about a point.
+pub(super) fn ball(center: Vec3, radius: f32) -> Node {
+    Node::Primitive(Sphere { center, radius }.into())
+}
+
+/// Sides of a stick of triangles.
+const SIDES: u32 = 6;
+/// The thickness of lines without one, as a share of the size of what they belong to, and of points.
+const LINE: f32 = 0.006;
+const POINT: f32 = 0.015;
+
+/// What has lines between vertices, and vertices alone, as thin sticks and small balls of triangles. Vertices keep their colours and
+/// coordinates.
+pub(super) fn thickened(data: &MeshData, lines: &[[u32; 2]], points: &[u32]) -> MeshData {
+    let used = || lines.iter().flatten().chain(points).map(|&i| data.positions[i as usize]);
+    let low = used().reduce(Vec3::min).unwrap_or_default();
+    let size = (used().reduce(Vec3::max).unwrap_or_default() - low).length();
+    let size = if size > 0.0 && size.is_finite() { size } else { 1.0 };
+    let mut made = MeshData::default();
+    for &[a, b] in lines {
+        let ends = [a, b].map(|i| data.positions[i as usize]);
+        let Some(along) = (ends[1] - ends[0]).try_normalize() else { continue };
+        let (x, y) = along.any_orthonormal_pair();
+        let first = made.positions.len() as u32;
+        for (vertex, end) in [a, b].into_iter().zip(ends) {
+            for k in 0..SIDES {
+                let (sin, cos) = fp::sin_cos_degrees(360.0 * f64::from(k) / f64::from(SIDES));
+                let normal = cos as f32 * x + sin as f32 * y;
+                made.push(data, vertex, end + LINE * size * normal, normal);
+            }
+        }
+        for k in 0..SIDES {
+            let (this, next) = (first + k, first + (k + 1) % SIDES);
+            made.triangles.extend([[this, next, next + SIDES], [this, next + SIDES, this + SIDES]]);
+        }
+    }
+    for &vertex in points {
+        // An octahedron with the normals of a ball.
+        let first = made.positions.len() as u32;
+        for normal in [Vec3::X, Vec3::NEG_X, Vec3::Y, Vec3::NEG_Y, Vec3::Z, Vec3::NEG_Z] {
+            made.push(data, vertex, data.positions[vertex as usize] + POINT * size * normal, normal);
+        }
+        for (x, y, z) in [(0, 2, 4), (2, 1, 4), (1, 3, 4), (3, 0, 4), (2, 0, 5), (1, 2, 5), (3, 1, 5), (0, 3, 5)] {
+            made.triangles.push([x, y, z].map(|k| first + k));
+        }
+    }
+    made.triangle_normals = made.triangles.clone();
+    if !made.uvs.is_empty() {
+        made.triangle_uvs = made.triangles.clone();
+    }
+    made
+}
+
+impl MeshData {
+    /// Adds a vertex with what another has beside its position and normal.
+    fn push(&mut self, other: &MeshData, vertex: u32, position: Vec3, normal: Vec3) {
+        self.positions.push(position);
+        self.normals.push(normal);
+        self.colors.extend(other.colors.get(vertex as usize));
+        self.uvs.extend(other.uvs.get(vertex as usize));
+        self.second_uvs.extend(other.second_uvs.get(vertex as usize));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_thickened_faces_outwards_and_keeps_colours() {
+        let positions = vec![Vec3::ZERO, Vec3::X, Vec3::Y];
+        let colors = vec![[1.0, 0.0, 0.0, 1.0], [0.0, 1.0, 0.0, 1.0], [0.0, 0.0, 1.0, 1.0]];
+        let data = MeshData { positions, colors, ..MeshData::default() };
+        let made = thickened(&data, &[[0, 1]], &[2]);
+        assert_eq!((made.triangles.len(), made.colors.len()), (2 * SIDES as usize + 8, made.positions.len()));
+        for triangle in &made.triangles {
+            let [a, b, c] = triangle.map(|i| made.positions[i as usize]);
+            let outwards: Vec3 = triangle.iter().map(|&i| made.normals[i as usize]).sum();
+            assert!((b - a).cross(c - a).dot(outwards) > 0.0, "{triangle:?}");
+        }
+        assert_eq!(made.colors[made.positions.len() - 1], data.colors[2]);
+        assert!(thickened(&data, &[[1, 1]], &[]).triangles.is_empty());
+    }
+}

@@ -1,0 +1,89 @@
+//! Archives of zip, part by part. What a part says that it unpacks to is checked before memory is taken for it.
+
+use flate2::read::DeflateDecoder;
+use rawzip::{CompressionMethod, ZipArchive, ZipArchiveEntryWayfinder};
+use std::collections::BTreeMap;
+use std::io::Read;
+
+/// Parts of an archive.
+const MOST_PARTS: usize = 1 << 16;
+/// Bytes that may come of one byte of the archive, and of the smallest archive. Text of models is packed to a tenth, and
+/// seldom to a fiftieth.
+const MOST_TIMES: u64 = 200;
+const FREE: u64 = 1 << 24;
+
+/// An archive in memory.
+pub(super) struct Zip<'a> {
+    bytes: &'a [u8],
+    /// By name: where a part is, how it is packed, and to how many bytes it unpacks.
+    parts: BTreeMap<String, (ZipArchiveEntryWayfinder, CompressionMethod, u64)>,
+    /// Bytes that may still be unpacked.
+    left: u64,
+}
+
+/// Whether bytes begin as an archive does.
+pub(super) fn recognise(bytes: &[u8]) -> bool {
+    bytes.starts_with(b"PK\x03\x04")
+}
+
+impl<'a> Zip<'a> {
+    /// The list of an archive's parts.
+    pub fn open(bytes: &'a [u8]) -> Result<Self, String> {
+        let archive = ZipArchive::from_slice(bytes).map_err(|error| error.to_string())?;
+        let mut parts = BTreeMap::new();
+        let mut entries = archive.entries();
+        while let Some(entry) = entries.next_entry().map_err(|error| error.to_string())? {
+            let Ok(name) = std::str::from_utf8(entry.file_path().as_bytes()).map(str::to_string) else { continue };
+            if parts.len() >= MOST_PARTS {
+                return Err(format!("more than {MOST_PARTS} parts are too many"));
+            }
+            let part = (entry.wayfinder(), entry.compression_method(), entry.uncompressed_size_hint());
+            if parts.insert(name.clone(), part).is_some() {
+                return Err(format!("there are two parts `{name}`"));
+            }
+        }
+        Ok(Zip { bytes, parts, left: FREE + MOST_TIMES * bytes.len() as u64 })
+    }
+
+    /// The names of all parts.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        self.parts.keys().map(String::as_str)
+    }
+
+    /// A part; `None` where there is none of the name.
+    pub fn part(&mut self, name: &str) -> Option<Result<Vec<u8>, String>> {
+        let (place, method, size) = *self.parts.get(name)?;
+        Some(self.unpacked(place, method, size))
+    }
+
+    fn unpacked(
+        &mut self,
+        place: ZipArchiveEntryWayfinder,
+        method: CompressionMethod,
+        size: u64,
+    ) -> Result<Vec<u8>, String> {
+        if size > self.left {
+            return Err(format!(
+                "it unpacks to {size} bytes, and all of an archive to no more than {MOST_TIMES} times its own"
+            ));
+        }
+        self.left -= size;
+        let archive = ZipArchive::from_slice(self.bytes).map_err(|error| error.to_string())?;
+        let entry = archive.get_entry(place).map_err(|error| error.to_string())?;
+        let mut bytes = Vec::new();
+        // The verifier compares size and checksum at the end, so one byte too many is enough to see.
+        let read = match method {
+            CompressionMethod::STORE => entry.verifying_reader(entry.data()).take(size + 1).read_to_end(&mut bytes),
+            CompressionMethod::DEFLATE => {
+                let inflated = DeflateDecoder::new(entry.data());
+                entry.verifying_reader(inflated).take(size + 1).read_to_end(&mut bytes)
+            }
+            _ => return Err("it is packed in another way than by deflate".into()),
+        };
+        read.map_err(|error| error.to_string())?;
+        if bytes.len() as u64 != size {
+            return Err(format!("it should unpack to {size} bytes, and does not"));
+        }
+        Ok(bytes)
+    }
+}

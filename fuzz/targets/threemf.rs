@@ -1,0 +1,4 @@
+//! Any bytes as a model for printing.
+#![no_main]
+
+libfuzzer_sys::fuzz_target!(|data: &[u8]| durer::fuzz::model(data, "x.3mf"));
