@@ -442,6 +442,9 @@ pub struct CheckArgs {
     pub view: ViewArgs,
     #[command(flatten)]
     pub job: JobArgs,
+    /// The stops by which the picture is made brighter, as `render --exposure` has it: they decide what is too bright or too dark
+    #[arg(long, value_name = "EV", default_value_t = 0.0, allow_negative_numbers = true)]
+    pub exposure: f32,
     /// Write the scene anew, with all changed that is mechanical
     #[arg(long)]
     pub fix: bool,

@@ -5,6 +5,7 @@ mod json;
 mod mend;
 
 use crate::args::CheckArgs;
+use crate::display::factor;
 use crate::guard::Guard;
 use crate::job::{accel, aspect, job};
 use crate::open::load_options;
@@ -79,6 +80,9 @@ fn one(path: &Path, args: &CheckArgs) -> Result<(Checked, Vec<mend::Change>), Fa
     let bytes = bytes.map_err(report::unreadable)?;
     let mut checked = look(path, bytes.clone(), args)?;
     let mut changes = Vec::new();
+    if !args.fix {
+        mend::withdraw(&mut checked, &bytes, args)?;
+    }
     if args.fix {
         let mut guard = Guard::default();
         let place = match &args.output {
@@ -118,8 +122,9 @@ fn look(path: &Path, bytes: Arc<[u8]>, args: &CheckArgs) -> Result<Checked, Fail
     let findings = match (&loaded, &world) {
         (Some(loaded), Some(world)) => {
             let job = job(&args.job, Some(&args.view), loaded, false)?;
+            let exposure = factor(args.exposure)?;
             let (scene, dialect, files) = (&loaded.scene, loaded.dialect, &files);
-            check(&Subject { scene, world, dialect, files, job: &job, rejected: None }, &diagnostics)
+            check(&Subject { scene, world, dialect, files, job: &job, exposure, rejected: None }, &diagnostics)
         }
         _ => reported(&diagnostics),
     };

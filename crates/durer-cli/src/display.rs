@@ -19,13 +19,18 @@ pub struct DisplayArgs {
     pub tone: String,
 }
 
+/// What stops multiply light by.
+pub fn factor(stops: f32) -> Result<f32, Failure> {
+    if !(stops.is_finite() && stops.abs() <= 60.0) {
+        return Err(bad("--exposure must be between -60 and 60"));
+    }
+    Ok(durer::math::fp::pow(2.0, stops))
+}
+
 impl DisplayArgs {
     /// What the options say.
     pub fn display(&self) -> Result<Display, Failure> {
-        if !(self.exposure.is_finite() && self.exposure.abs() <= 60.0) {
-            return Err(bad("--exposure must be between -60 and 60"));
-        }
-        let exposure = durer::math::fp::pow(2.0, self.exposure);
+        let exposure = factor(self.exposure)?;
         Ok(Display { exposure, tone: Tone::from_name(&self.tone).unwrap_or_default(), transfer: self.transfer() })
     }
 

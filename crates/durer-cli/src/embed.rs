@@ -120,7 +120,7 @@ fn option(arg: &clap::Arg) -> Option<OptionStatement> {
 /// What is odd about a scene, as `durer check --json` lists it.
 pub fn findings(loaded: &Loaded, world: &World, files: &Files, read: &Diagnostics, job: &Job) -> Value {
     let (scene, dialect) = (&loaded.scene, loaded.dialect);
-    let found = find(&Subject { scene, world, dialect, files, job, rejected: None }, read);
+    let found = find(&Subject { scene, world, dialect, files, job, exposure: 1.0, rejected: None }, read);
     json!(found.iter().map(|finding| check::finding(finding, files)).collect::<Vec<_>>())
 }
 

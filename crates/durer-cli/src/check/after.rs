@@ -44,7 +44,8 @@ fn depths(opened: &Opened, job: &Job, pictures: &[Layer], statistics: &Statistic
 fn tell(opened: &Opened, job: &Job, statistics: &Statistics, what: &str) {
     let rejected = statistics.first_rejected.first().map(|first| (first.x, first.y, first.sample));
     let (loaded, files) = (&opened.loaded, &opened.files);
-    let subject = Subject { scene: &loaded.scene, world: &opened.world, dialect: loaded.dialect, files, job, rejected };
+    let (scene, world, dialect) = (&loaded.scene, &opened.world, loaded.dialect);
+    let subject = Subject { scene, world, dialect, files, job, exposure: 1.0, rejected };
     let found = check(&subject, &opened.diagnostics);
     let told: Vec<_> = found.iter().filter(|f| f.is_serious()).take(MOST).map(|finding| &finding.diagnostic).collect();
     report::complain(&match told.is_empty() {

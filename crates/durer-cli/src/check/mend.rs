@@ -55,6 +55,27 @@ pub fn mend(checked: &mut Checked, mut text: Arc<[u8]>, args: &CheckArgs) -> Res
     Ok((text, changes))
 }
 
+/// So many findings' edits are tried before they are offered.
+const MOST_TRIED: usize = 8;
+
+/// Takes back the offers of edits that would not be kept.
+pub fn withdraw(checked: &mut Checked, text: &[u8], args: &CheckArgs) -> Result<(), Failure> {
+    let offered = |finding: &&Finding| !finding.diagnostic.fix.is_empty();
+    let mut kept = Vec::new();
+    for finding in checked.findings.iter().filter(offered).take(MOST_TRIED) {
+        let repaired = apply(text, 0, std::slice::from_ref(finding));
+        kept.push(match repaired.mended.is_empty() {
+            true => false,
+            false => is_better(checked, &look(&checked.path, repaired.bytes.into(), args)?, finding),
+        });
+    }
+    let offers = checked.findings.iter_mut().filter(|finding| !finding.diagnostic.fix.is_empty());
+    for (finding, _) in offers.zip(kept).filter(|(_, kept)| !kept) {
+        finding.diagnostic.fix.clear();
+    }
+    Ok(())
+}
+
 /// Whether a finding is gone, and nothing worse has come: no error, and nothing that stands before it in the order of causes.
 fn is_better(before: &Checked, after: &Checked, finding: &Finding) -> bool {
     let code = finding.diagnostic.code;

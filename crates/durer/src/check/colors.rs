@@ -4,12 +4,12 @@ use super::MOST_SOUGHT;
 use super::finding::{Finding, counted, percent, vector};
 use super::scout::Scout;
 use crate::diag::{Diagnostic, Severity, Span};
-use crate::dialect::{Dialect, Secondary};
+use crate::dialect::{Compat, Dialect, Secondary};
 use crate::light::Light;
 use crate::material::Pattern;
 use crate::math::Color;
 use crate::scene::{Material as Written, Spanned};
-use crate::world::{Material, Phong};
+use crate::world::{Geometry, Material, Phong};
 
 /// Colours that differ by less look alike.
 const ALIKE: f32 = 2.0 / 255.0;
@@ -63,6 +63,9 @@ fn is_black(phong: &Phong) -> bool {
 
 /// Materials that give back no light at all.
 pub(super) fn black(scout: &Scout) -> Vec<Finding> {
+    if super::physical::is_physical(scout) {
+        return super::layers::black(scout);
+    }
     let all = scout.seen().count();
     let whole = all_black(scout);
     // A part of a pattern may be black, unless all of it is.
@@ -115,8 +118,9 @@ pub(super) fn no_bounces(scout: &Scout) -> Vec<Finding> {
         .effect(if diffuse < 0.15 { "it is black, or nearly so" } else { "only its own colour is seen" })
         .help(help);
     // Where that year's program makes none unless it is asked, nobody has left them out.
-    let usual = none && scout.world().rules.bounces == 0;
     let seen: usize = all.iter().map(|(i, ..)| rays(scout, *i)).sum();
+    let black: usize = all.iter().filter(|(.., phong)| phong.diffuse.max_element() < 0.1).map(|(i, ..)| rays(scout, *i)).sum();
+    let usual = none && scout.world().rules.bounces == 0 && black * 10 < scout.seen().count();
     let whole = !usual && seen * 2 > scout.seen().count();
     let finding = Finding::from(if usual { Diagnostic { severity: Severity::Note, ..diagnostic } } else { diagnostic });
     vec![finding.whole(whole)]
@@ -124,15 +128,49 @@ pub(super) fn no_bounces(scout: &Scout) -> Vec<Finding> {
 
 /// Glass of an index that no glass has.
 pub(super) fn odd_index(scout: &Scout) -> Vec<Finding> {
-    let odd = |phong: &Phong| phong.transparent.max_element() > 0.0 && !(0.9..=4.0).contains(&phong.ior);
-    let Some((i, written, phong)) = phongs(scout).find(|(i, _, phong)| odd(phong) && rays(scout, *i) > 0) else {
-        return Vec::new();
-    };
-    let index = super::finding::number(phong.ior);
-    let diagnostic = Diagnostic::warning(format!("material {i} has an index of refraction of {index}"))
-        .effect("light is bent as by nothing that there is, and hardly gets through")
-        .help("water has 1.33, glass 1.5, diamond 2.4; it is the index inside, with 1 outside");
-    vec![Finding::from(scout.at_value(diagnostic, written.span, &["indexOfRefraction", "refractionIndex"]))]
+    let mut found = super::layers::odd_index(scout);
+    let fields = ["indexOfRefraction", "refractionIndex"];
+    for (i, written, phong) in phongs(scout).filter(|(i, ..)| rays(scout, *i) > 0).take(MOST_SOUGHT) {
+        let Written::Phong(own, _) = &written.value else { continue };
+        if phong.transparent.max_element() <= 0.0 {
+            continue;
+        }
+        let given = own.index_of_refraction.or(own.refraction_index);
+        let index = super::finding::number(given.unwrap_or(phong.ior));
+        let seen_itself = phong.diffuse + phong.reflective;
+        let diagnostic = Diagnostic::warning(format!("material {i} has an index of refraction of {index}"));
+        let diagnostic = match given {
+            _ if phong.ior > 4.0 || phong.ior < 0.5 => diagnostic
+                .effect("light is bent as by nothing that there is, and hardly gets through")
+                .help("water has 1.33, glass 1.5, diamond 2.4; it is the index inside, with 1 outside"),
+            Some(_) if phong.ior < 0.95 => diagnostic
+                .effect("light is bent the wrong way, as in a bubble of air in glass")
+                .help(format!(
+                    "it is the index inside, with 1 outside: 1 / {index} is {}; water has 1.33, glass 1.5",
+                    super::finding::number(1.0 / phong.ior)
+                )),
+            Some(_) if (phong.ior - 1.0).abs() < 1e-3 => {
+                let unseen = phong.fresnel || seen_itself.max_element() < 0.1 && phong.transparent.min_element() > 0.9;
+                let severity = if unseen { Severity::Warning } else { Severity::Note };
+                Diagnostic { severity, ..diagnostic }
+                    .effect(match unseen {
+                        true => "light goes straight through and nothing is mirrored: it is hardly seen",
+                        false => "light goes straight through, and is not bent",
+                    })
+                    .help("water has 1.33, glass 1.5, diamond 2.4")
+            }
+            // Coloured foil is made so.
+            None if phong.ior == 1.0 && !phong.fresnel => Diagnostic::note(format!(
+                "material {i} lets light through and has no `{}`",
+                if scout.world().rules.secondary == Secondary::Colors { fields[0] } else { fields[1] }
+            ))
+            .effect("light goes straight through, as through foil, and is not bent")
+            .help("glass has 1.5, water 1.33"),
+            _ => continue,
+        };
+        found.push(Finding::from(scout.at_value(diagnostic, written.span, &fields)));
+    }
+    found
 }
 
 /// A colour in the scene, where it is, and what it is called.
@@ -163,11 +201,13 @@ fn all_colors(scout: &Scout) -> Vec<Named> {
     for (number, (written, light)) in scout.subject.scene.lights.iter().flatten().zip(&scout.world().lights).enumerate()
     {
         // A light that fades may be as strong as it must, so that not too much of it arrives.
-        let fades = matches!(light, Light::Point(point) if point.attenuation.is_some());
+        let fades = !matches!(light, Light::Directional(_)) && !matches!(light, Light::Point(point) if point.attenuation.is_none());
+        // Of lamps in candela nobody expects 1.
+        let candela = matches!(light, Light::Spot(_) | Light::Photometric(_));
         let arrives = scout.seen().filter_map(|(_, seen)| seen.by(number)).map(|lit| lit.arrives.max_element());
         let too_much = arrives.fold(0.0, f32::max) > 20.0;
         // Under paths light is in units of its own, and the exposure makes a picture of it.
-        let free = fades && !too_much || super::physical::is_physical(scout);
+        let free = candela || fades && !too_much || super::physical::is_physical(scout);
         let most = if free { f32::INFINITY } else { 20.0 };
         colors.push(Named {
             color: super::lights::color(light),
@@ -186,6 +226,8 @@ pub(super) fn too_large(scout: &Scout) -> Vec<Finding> {
         // Only whole numbers of which some are large are meant as 255ths.
         let whole = color.to_array().iter().all(|c| c.fract() == 0.0);
         let bytes = whole && (20.0..=255.0).contains(&color.max_element());
+        // Tens up to a hundred may be percent as well.
+        let percent = bytes && color.max_element() <= 100.0 && color.to_array().iter().all(|c| c % 5.0 == 0.0);
         let mended = if bytes { color / 255.0 } else { color / color.max_element() };
         let far = color.max_element() > 2.0;
         let message = format!("the colour {} is {}beyond 1", vector(color), if far { "far " } else { "" });
@@ -195,12 +237,17 @@ pub(super) fn too_large(scout: &Scout) -> Vec<Finding> {
                 false => "more light comes back than arrives: bright parts are cut off, and lose their shading",
             })
             .help(match bytes {
+                true if percent => format!(
+                    "colours go from 0 to 1: `{}` if this is in percent, `{}` if it is of 255",
+                    vector(color / 100.0),
+                    vector(mended)
+                ),
                 true => format!("colours go from 0 to 1, not to 255: `{}`", vector(mended)),
                 false => format!("colours go from 0 to 1: `{}`, say", vector(mended)),
             });
         let diagnostic = match place {
             // What was meant by any other number nobody knows.
-            Some(place) if bytes => diagnostic.at(place).fix(place, vector(mended)),
+            Some(place) if bytes && !percent => diagnostic.at(place).fix(place, vector(mended)),
             Some(place) => diagnostic.at(place),
             None => Diagnostic { span: block, ..diagnostic },
         };
@@ -247,8 +294,11 @@ pub(super) fn gives_too_much(scout: &Scout) -> Option<Diagnostic> {
 
 /// Glass whose colour keeps all light in, where that colour weighs what it mirrors and lets through.
 pub(super) fn dull_glass(scout: &Scout) -> Vec<Finding> {
+    if super::physical::is_physical(scout) {
+        return super::layers::dull_glass(scout);
+    }
     if scout.world().rules.secondary != Secondary::SpecularFresnel {
-        return Vec::new();
+        return dull_by_color(scout);
     }
     let dull = |(i, written, _): &(u32, &Spanned<Written>, &Phong)| match &written.value {
         Written::Phong(phong, _) => {
@@ -263,6 +313,26 @@ pub(super) fn dull_glass(scout: &Scout) -> Vec<Finding> {
             .effect("this year's program weighs what glass mirrors and lets through by `specularColor`, which is black")
             .help("write `specularColor 1 1 1` for clear glass");
         Finding::from(scout.at_value(diagnostic, written.span, &["specularColor", "refractionIndex"]))
+    };
+    phongs(scout).filter(dull).take(MOST_SOUGHT).map(say).collect()
+}
+
+/// Glass with an index and no colour of what goes through.
+fn dull_by_color(scout: &Scout) -> Vec<Finding> {
+    let dull = |(i, written, phong): &(u32, &Spanned<Written>, &Phong)| match &written.value {
+        Written::Phong(own, _) => {
+            let index = own.index_of_refraction.or(own.refraction_index).unwrap_or(1.0);
+            let opaque = own.transparent_color == Color::ZERO && !phong.fresnel;
+            let dark = phong.diffuse.max_element() < 0.15 && phong.texture.is_none() && phong.noise.is_none();
+            opaque && dark && !(0.999..=1.001).contains(&index) && own.refraction_index != Some(0.0) && rays(scout, *i) > 0
+        }
+        _ => false,
+    };
+    let say = |(i, written, _): (u32, &Spanned<Written>, &Phong)| {
+        let diagnostic = Diagnostic::warning(format!("material {i} has the index of glass, and lets nothing through"))
+            .effect("its `transparentColor` is black: what is made of it is dark, and nothing is seen through it")
+            .help("`transparentColor` is the share of light that goes through: `0.9 0.9 0.9` is clear");
+        Finding::from(scout.at_value(diagnostic, written.span, &["transparentColor", "indexOfRefraction"]))
     };
     phongs(scout).filter(dull).take(MOST_SOUGHT).map(say).collect()
 }
@@ -319,6 +389,7 @@ pub(super) fn camouflaged(scout: &Scout) -> Vec<Finding> {
 
 /// Textures on things without texture coordinates.
 pub(super) fn no_coordinates(scout: &Scout) -> Vec<Finding> {
+    let meshes_only = scout.world().rules.has(Compat::MeshTextures);
     let textured = phongs(scout).filter(|(_, _, phong)| phong.texture.is_some());
     let mut found = Vec::new();
     for (i, written, _) in textured {
@@ -329,7 +400,11 @@ pub(super) fn no_coordinates(scout: &Scout) -> Vec<Finding> {
                 Diagnostic::warning(format!("material {i} has a texture, but the {name} has no coordinates for it"))
                     .related(scout.object_span(seen.object), "this has the material")
                     .effect("the texture is not seen; `diffuseColor` is")
-                    .help("the mesh file needs `vt` lines, and faces as `f 1/1 2/2 3/3`");
+                    .help(match (&scout.world().objects[seen.object as usize].geometry, meshes_only) {
+                    (Geometry::Mesh(_), _) => "the mesh file needs `vt` lines, and faces as `f 1/1 2/2 3/3`",
+                    (_, true) => "this year's program shows textures on meshes alone: take a `TriangleMesh` with `vt` lines",
+                    (_, false) => "take a shape that has coordinates, or a `TriangleMesh` with `vt` lines",
+                });
             found.push(Finding::from(scout.at_value(diagnostic, written.span, &["texture"])));
         }
     }
@@ -342,7 +417,7 @@ pub(super) fn unused(scout: &Scout) -> Vec<Finding> {
     let mut used = vec![false; world.materials.len()];
     for object in &world.objects {
         match &object.geometry {
-            crate::world::Geometry::Solid(solid) => solid.parts().for_each(|part| used[part.material as usize] = true),
+            Geometry::Solid(solid) => solid.parts().for_each(|part| used[part.material as usize] = true),
             _ => used[object.material as usize] = true,
         }
     }

@@ -2,9 +2,12 @@
 
 use super::finding::{Finding, number, percent, vector};
 use super::lights::{VISIBLE, color, place};
-use super::scout::Scout;
+use super::scout::{Probe, Scout, Seen};
 use crate::diag::{Diagnostic, Severity};
-use crate::math::Color;
+use crate::integrator::{Integrator, Method};
+use crate::math::{Color, fp};
+use crate::sampler::SampleId;
+use rayon::prelude::*;
 
 /// Values beyond this are cut in eight bits; beyond the other, much of their shading is lost.
 const BEYOND: f32 = 1.0 + VISIBLE;
@@ -13,8 +16,85 @@ const FAR_BEYOND: f32 = 1.25;
 const MOST_CUT: f32 = 0.4;
 const MOST_FAR: f32 = 0.2;
 
+/// Of a path tracer's picture, so many pixels are looked at, by so many samples each.
+const MOST_PIXELS: usize = 300;
+const SAMPLES: u32 = 16;
+/// What is darker shows nothing.
+const DARK: f32 = 0.02;
+/// Where more than this share is white, nothing is seen for light.
+const MOST_WHITE: f32 = 0.5;
+
+/// What [`Scout::light`] keeps.
+pub(super) fn light(scout: &Scout) -> Vec<Color> {
+    let exposure = scout.subject.exposure;
+    let Some(transport) = scout.subject.job.method.transport() else {
+        return scout.probes.iter().map(|probe| exposure * probe.color).collect();
+    };
+    let job = scout.subject.job;
+    let integrator = Integrator::new(scout.world(), Method::Path(transport), job.settings, job.seed, None);
+    let step = scout.probes.len().div_ceil(MOST_PIXELS).max(1);
+    // Not one in each row: that would be the same column each time.
+    let chosen: Vec<&Probe> = scout.probes.iter().step_by(if step % 2 == 0 { step + 1 } else { step }).collect();
+    let mean = |probe: &&Probe| {
+        let sample = |i: u32| integrator.radiance(&probe.ray, SampleId::new(job.seed, probe.pixel, i), &mut ());
+        let all = (0..SAMPLES).map(sample).filter(|color| color.is_finite());
+        exposure * all.sum::<Color>() / SAMPLES as f32
+    };
+    chosen.par_iter().map(mean).collect()
+}
+
+/// A factor of light in stops.
+fn stops_of(factor: f32) -> f32 {
+    fp::ln(factor) / std::f32::consts::LN_2
+}
+
+/// The brightest that is seen, but for one bright speck.
+fn brightest(scout: &Scout) -> f32 {
+    let mut values: Vec<f32> = scout.light().iter().map(|color| color.max_element()).collect();
+    values.sort_by(f32::total_cmp);
+    values.len().checked_sub(2).map_or(0.0, |at| values[at])
+}
+
+/// Whether a path tracer's picture is black, or nearly so.
+pub(super) fn is_dark(scout: &Scout) -> bool {
+    super::physical::is_physical(scout) && !scout.light().is_empty() && brightest(scout) < DARK
+}
+
+/// A picture in units of its own that eight bits show as white: of a path tracer, or with a sky in cd/m^2.
+fn white(scout: &Scout) -> Vec<Finding> {
+    let shown = scout.light();
+    let white = shown.iter().filter(|color| color.min_element() > 1.1).count();
+    if white as f32 <= MOST_WHITE * shown.len() as f32 {
+        return Vec::new();
+    }
+    let mut values: Vec<f32> = shown.iter().map(|color| color.max_element()).collect();
+    values.sort_by(f32::total_cmp);
+    let middle = values[values.len() / 2];
+    let stops = stops_of(0.5 / middle).round();
+    let factor = number(0.5 / middle);
+    let diagnostic = Diagnostic::warning(format!("there is too much light: half of the picture is brighter than {}", number(middle)))
+        .effect(format!("{} of the picture is white", percent(white, shown.len())));
+    let background = &scout.subject.scene.background;
+    let sky = background.sun.is_some() || background.cie_sky.is_some();
+    let lamp = super::lamps::brightest(scout).filter(|_| !sky);
+    let exposure = number(stops + stops_of(scout.subject.exposure));
+    let help = match sky {
+        true => format!("this sky is in cd/m^2, as outdoors: its pictures need `--exposure {exposure}`"),
+        false => format!("light is in cd/m^2: ask for `--exposure {exposure}`, or multiply what shines by {factor}"),
+    };
+    let diagnostic = diagnostic.help(help);
+    let diagnostic = match lamp {
+        Some((place, value)) => diagnostic.at(place).fix(place, number(value * 0.5 / middle)),
+        None => Diagnostic { span: super::colors::background_span(scout), ..diagnostic },
+    };
+    vec![Finding::from(diagnostic).whole(true)]
+}
+
 /// Values beyond 1 in a picture of eight bits.
 pub(super) fn too_bright(scout: &Scout) -> Vec<Finding> {
+    if super::physical::is_physical(scout) || scout.world().environment.is_some() {
+        return white(scout);
+    }
     let lit: Vec<Color> = scout.seen().map(|(probe, _)| probe.color).filter(|color| color.is_finite()).collect();
     let far = lit.iter().filter(|color| color.max_element() > FAR_BEYOND).count();
     let cut = lit.iter().filter(|color| color.max_element() > BEYOND).count();
@@ -40,7 +120,10 @@ pub(super) fn too_bright(scout: &Scout) -> Vec<Finding> {
                 "multiply the colours of the lights by {}, or write a picture that keeps them (.exr, .hdr)",
                 number(factor)
             ));
-    if let Some(cause) = super::colors::gives_too_much(scout) {
+    // Where the lamps alone are too much, no material is to blame.
+    let local = |seen: &Seen| (seen.ambient + seen.lit.iter().map(|lit| lit.adds).sum::<Color>()).max_element();
+    let by_lamps = scout.seen().filter(|(_, seen)| local(seen) > FAR_BEYOND).count();
+    if let Some(cause) = super::colors::gives_too_much(scout).filter(|_| by_lamps * 2 < far) {
         let severity = if over(far, MOST_FAR) { Severity::Warning } else { Severity::Note };
         let diagnostic = Diagnostic { severity, effect: diagnostic.effect, ..cause };
         return vec![Finding::from(diagnostic).whole(cut * 2 > lit.len())];
@@ -60,8 +143,8 @@ pub(super) fn too_bright(scout: &Scout) -> Vec<Finding> {
 /// A picture of one colour.
 pub(super) fn one_color(scout: &Scout) -> Vec<Finding> {
     let shown = |color: Color| color.clamp(Color::ZERO, Color::ONE);
-    let mut colors = scout.probes.iter().map(|probe| shown(probe.color));
-    let Some(first) = colors.next().filter(|_| scout.probes.len() > 4) else { return Vec::new() };
+    let mut colors = scout.light().iter().map(|color| shown(*color));
+    let Some(first) = colors.next().filter(|_| scout.light().len() > 4) else { return Vec::new() };
     if !colors.all(|color| (color - first).abs().max_element() < VISIBLE) {
         return Vec::new();
     }
@@ -81,6 +164,9 @@ pub(super) fn one_color(scout: &Scout) -> Vec<Finding> {
 
 /// A picture that is nearly black where it is not background.
 pub(super) fn too_dark(scout: &Scout) -> Vec<Finding> {
+    if super::physical::is_physical(scout) {
+        return dark_paths(scout);
+    }
     let most = scout.seen().map(|(probe, _)| probe.color.max_element()).fold(0.0, f32::max);
     let lights = &scout.world().lights;
     if scout.seen().next().is_none() || most > 0.06 || lights.is_empty() {
@@ -92,6 +178,33 @@ pub(super) fn too_dark(scout: &Scout) -> Vec<Finding> {
     let diagnostic = match place(scout, 0) {
         Some(span) => scout.at_value(diagnostic, span, &["color"]),
         None => diagnostic,
+    };
+    vec![Finding::from(diagnostic).last()]
+}
+
+/// The same of a path tracer's picture.
+fn dark_paths(scout: &Scout) -> Vec<Finding> {
+    if !is_dark(scout) {
+        return Vec::new();
+    }
+    let most = brightest(scout);
+    let message = match most < 1e-6 {
+        true => "the whole picture is black: no light finds its way to the camera".to_string(),
+        false => format!("the brightest thing in the picture is {} only", number(most)),
+    };
+    let factor = 0.6 / most.max(1e-9);
+    let diagnostic = Diagnostic::warning(message).effect("all that is seen is black, or nearly so");
+    let lamp = super::lamps::brightest(scout).filter(|_| most > 1e-6);
+    let diagnostic = match lamp {
+        Some((place, value)) => {
+            let stops = number(stops_of(factor).round() + stops_of(scout.subject.exposure));
+            let text = number(value * factor);
+            diagnostic.at(place).fix(place, text.clone()).help(format!(
+                "it takes about {} times as much light: write `{text}`, say, or ask for `--exposure {stops}`",
+                number(factor)
+            ))
+        }
+        None => diagnostic.help("is a lamp enclosed, turned away, or too weak? Does fog swallow its light?"),
     };
     vec![Finding::from(diagnostic).last()]
 }

@@ -1,7 +1,8 @@
 //! Sizes: things too small or too large to be seen, and fields of view to match.
 
 use super::MOST_SOUGHT;
-use super::finding::{Finding, counted, number, vector};
+use super::finding::{Finding, number};
+use super::lights::Verdict;
 use super::scout::Scout;
 use super::sight::Sight;
 use super::view::pixels;
@@ -9,14 +10,14 @@ use crate::camera::{Camera, Lens};
 use crate::diag::{Diagnostic, Span};
 use crate::math::{Aabb, fp};
 use crate::scene::{MatrixOp, Node, Object};
-use crate::world::Material;
+use crate::shape::Primitive;
+use crate::world::Geometry;
 
 /// What spans fewer pixels cannot be recognised.
 const FEWEST_PIXELS: f32 = 6.0;
-/// Of more objects, some may be out of sight.
-const FEW_OBJECTS: usize = 8;
-/// Beyond this ratio of sizes something is out of scale.
+/// Beyond this ratio of sizes something is out of scale; and beyond this one, where it spoils the picture.
 const OUT_OF_SCALE: f32 = 3e3;
+const HARMFUL: f32 = 100.0;
 
 /// Sizes of things that single precision can place beside others.
 const ABSURD: std::ops::Range<f32> = 1e-9..1e9;
@@ -104,6 +105,19 @@ pub(super) fn too_narrow(scout: &Scout) -> Vec<Finding> {
     }
 }
 
+/// Whether a large object spoils the picture: it is not seen, though it reaches over all, or others are not seen for it.
+fn is_harm(scout: &Scout, object: u32) -> bool {
+    let sights = scout.sights();
+    let hides = sights.contains(&Sight::Hidden(object));
+    let keeps_light = scout.verdicts().contains(&Verdict::Blocked(object));
+    let ball = matches!(&scout.world().objects[object as usize].geometry, Geometry::Primitive(Primitive::Sphere(_)));
+    match sights[object as usize] {
+        // What of a ball is too high or too large, its place tells.
+        Sight::Seen => (hides || keeps_light) && !ball,
+        _ => hides || keeps_light || !ball,
+    }
+}
+
 /// Objects far larger or smaller than most.
 pub(super) fn out_of_scale(scout: &Scout) -> Vec<Finding> {
     let world = scout.world();
@@ -145,7 +159,12 @@ pub(super) fn out_of_scale(scout: &Scout) -> Vec<Finding> {
     for &(object, size) in &sizes {
         let ratio = if size > middle { size / middle } else { middle / size };
         // Of two, either may be wrong: the small one is not seen, the large one hides.
-        if ratio < OUT_OF_SCALE || found.len() >= MOST_SOUGHT {
+        let spoils = size > middle && is_harm(scout, object);
+        if found.len() >= MOST_SOUGHT || ratio < if spoils { HARMFUL } else { OUT_OF_SCALE } {
+            continue;
+        }
+        // The ground may well be part of a huge ball, and the sky another.
+        if size > middle && !spoils {
             continue;
         }
         let word = if size > middle { "larger" } else { "smaller" };
@@ -156,87 +175,22 @@ pub(super) fn out_of_scale(scout: &Scout) -> Vec<Finding> {
         ))
         .at(scout.object_span(object))
         .effect(match scout.sights()[object as usize] {
-            Sight::Seen if size > middle => "it may hide or hold the others",
+            Sight::Seen if size > middle => "it hides or holds the others",
             Sight::Seen => "hardly a pixel shows it",
+            _ if size > middle => "it reaches over all, and what of it would be seen is not in the picture",
             _ => "it is not seen",
         })
-        .help(format!("its largest side is {}; look at its size and the `Scale` around it", number(size)));
+        .help(format!(
+            "its largest side is {}, that of most things {}: is it in another unit, as millimetres? Look at its size and the \
+             `{}` around it",
+            number(size),
+            number(middle),
+            scout.word("Scale", "scale")
+        ));
         let shown = scout.seen().filter(|(_, seen)| seen.object == object).count();
         found.push(Finding::from(diagnostic).whole(shown * 2 > scout.probes.len()));
     }
     found
-}
-
-/// Objects of which nothing is in the picture.
-pub(super) fn unseen(scout: &Scout) -> Vec<Finding> {
-    let sights = scout.sights();
-    // In a large scene something is always beside the picture or behind something.
-    let mut found = far_away(scout);
-    let missing = sights.iter().filter(|sight| matches!(sight, Sight::Outside | Sight::Hidden(_))).count();
-    if sights.len() > FEW_OBJECTS && missing * 3 < sights.len() {
-        return found;
-    }
-    let out: Vec<u32> = (0..sights.len() as u32).filter(|&i| sights[i as usize] == Sight::Outside).collect();
-    let hidden: Vec<(u32, u32)> = (0..sights.len() as u32)
-        .filter_map(|i| match sights[i as usize] {
-            // What is behind glass, or in a mirror's sight, is seen.
-            Sight::Hidden(by) if !is_glass(scout, by) && found.is_empty() => Some((i, by)),
-            _ => None,
-        })
-        .collect();
-    if let Some(&first) = out.first().filter(|_| found.is_empty()) {
-        let message = match out.len() {
-            1 => format!("the {} is not in the picture", scout.object(first)),
-            n => format!(
-                "{} are not in the picture; the first is the {}",
-                counted(n, "object", "objects"),
-                scout.object(first)
-            ),
-        };
-        let diagnostic = Diagnostic::note(message)
-            .at(scout.object_span(first))
-            .effect("the camera does not look where it is")
-            .help("look at its place and the transforms around it");
-        found.push(Finding::from(diagnostic));
-    }
-    if let Some(&(first, by)) = hidden.first() {
-        let more =
-            if hidden.len() == 1 { String::new() } else { format!("; {} more are hidden too", hidden.len() - 1) };
-        let diagnostic =
-            Diagnostic::note(format!("the {} is hidden by the {}{more}", scout.object(first), scout.object(by)))
-                .at(scout.object_span(first))
-                .related(scout.object_span(by), "in front of it, or around it")
-                .effect("nothing of it is seen")
-                .help("is it inside the other, or on the wrong side of it?");
-        found.push(Finding::from(diagnostic));
-    }
-    found
-}
-
-/// Whether light goes through an object.
-fn is_glass(scout: &Scout, object: u32) -> bool {
-    let world = scout.world();
-    let phong =
-        |material: &Material| matches!(material, Material::Phong(phong) if phong.transparent.max_element() > 0.0);
-    world.materials.get(world.objects[object as usize].material as usize).is_some_and(phong)
-}
-
-/// Objects far from all that is seen: thrown away by a transform, say.
-fn far_away(scout: &Scout) -> Vec<Finding> {
-    let both = || scout.world().objects.iter().zip(scout.sights()).enumerate();
-    let seen = both().filter(|(_, (_, sight))| **sight == Sight::Seen).filter_map(|(_, (object, _))| object.bounds());
-    let core = seen.fold(Aabb::EMPTY, Aabb::union);
-    let far = |bounds: Aabb| (bounds.center() - core.center()).length() > 10.0 * core.size().length();
-    let out = |sight: &Sight| matches!(sight, Sight::Outside | Sight::Hidden(_));
-    let lost = both().find(|(_, (object, sight))| out(sight) && object.bounds().is_some_and(far));
-    let Some((number, (object, _))) = lost.filter(|_| !core.is_empty()) else { return Vec::new() };
-    let place = object.bounds().map_or_else(String::new, |bounds| vector(bounds.center()));
-    let diagnostic =
-        Diagnostic::warning(format!("the {} is far from everything else, at {place}", scout.object(number as u32)))
-            .at(object.span)
-            .effect("it is not seen")
-            .help("look at its place and the transforms around it");
-    vec![Finding::from(diagnostic)]
 }
 
 /// Rotations by less than a turn in radians, which are fractions of pi.

@@ -1,15 +1,15 @@
 //! What each light does to what is seen, and why it does nothing.
 
-use super::finding::{Finding, number, percent, vector};
+use super::finding::{Finding, percent, vector};
 use super::scout::{Lit, Scout};
 use super::solid::around;
 use crate::camera::Lens;
 use crate::diag::{Diagnostic, Severity, Span};
-use crate::dialect::Dialect;
 use crate::format::course::place::{block, section};
 use crate::light::{Emitter, Light, PointLight};
 use crate::math::{Color, Ray, Vec3};
 use crate::scene::Spanned;
+use crate::world::Material;
 
 /// What adds less than this to a colour is not seen in eight bits.
 pub(super) const VISIBLE: f32 = 1.0 / 512.0;
@@ -20,6 +20,9 @@ const SHARE: f32 = 0.002;
 
 /// Where more of what faces a light than this is in shadow, the light is kept off.
 const MOST_BLOCKED: f32 = 0.95;
+
+/// Where all that arrives of all lights is less than this, nobody sees that there are any.
+const MOST_WEAK: f32 = 0.06;
 
 /// What a light does to what is seen.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,6 +39,8 @@ pub(super) enum Verdict {
     Blocked(u32),
     /// What is seen faces away from it.
     Behind,
+    /// Its beam does not go to what is seen.
+    Missing,
     /// At most so much of it arrives.
     Faint(f32),
     /// What it shines on has none of its colours.
@@ -45,7 +50,47 @@ pub(super) enum Verdict {
 /// The verdict on each light of the world.
 pub(super) fn verdicts(scout: &Scout) -> Vec<Verdict> {
     let judged = |light| if light < MOST_JUDGED { verdict(scout, light) } else { Verdict::Works };
-    (0..scout.world().lights.len()).map(judged).collect()
+    let mut verdicts: Vec<Verdict> = (0..scout.world().lights.len()).map(judged).collect();
+    if let Some(most) = weak_together(scout, &verdicts) {
+        verdicts.iter_mut().for_each(|verdict| *verdict = Verdict::Faint(most));
+    }
+    if cancelled_together(scout, &verdicts) {
+        verdicts.iter_mut().for_each(|verdict| *verdict = Verdict::Cancelled);
+    }
+    verdicts
+}
+
+/// What arrives of a few lights that work, where all of them together hardly count.
+fn weak_together(scout: &Scout, verdicts: &[Verdict]) -> Option<f32> {
+    if verdicts.is_empty() || verdicts.len() > 3 || verdicts.iter().any(|verdict| *verdict != Verdict::Works) {
+        return None;
+    }
+    let most = |of: fn(&Lit) -> Color| {
+        let sums = scout.seen().map(|(_, seen)| seen.lit.iter().map(of).sum::<Color>().max_element());
+        sums.fold(0.0, f32::max)
+    };
+    let (arrives, adds) = (most(|lit| lit.arrives), most(|lit| lit.adds));
+    (arrives > 0.0 && arrives < MOST_WEAK && adds < MOST_WEAK).then_some(arrives)
+}
+
+/// Whether what all lights together shine on has none of their colours, on nearly all that they reach.
+fn cancelled_together(scout: &Scout, verdicts: &[Verdict]) -> bool {
+    let materials = &scout.world().materials;
+    if !verdicts.contains(&Verdict::Works) || verdicts.iter().any(|v| !matches!(v, Verdict::Works | Verdict::Cancelled)) {
+        return false;
+    }
+    let (mut reached, mut lost) = (0, 0);
+    for (_, seen) in scout.seen() {
+        let Some(Material::Phong(phong)) = materials.get(seen.material as usize) else { return false };
+        let lit = seen.lit.iter().filter(|lit| lit.cosine > 0.05 && lit.blocker.is_none());
+        let arrives: Color = lit.map(|lit| lit.arrives).sum();
+        if arrives.max_element() < 0.1 || phong.diffuse.max_element() < 0.1 || phong.texture.is_some() {
+            continue;
+        }
+        reached += 1;
+        lost += usize::from((arrives * phong.diffuse).max_element() < VISIBLE);
+    }
+    reached > 20 && lost * 10 > reached * 8
 }
 
 fn verdict(scout: &Scout, number: usize) -> Verdict {
@@ -58,6 +103,9 @@ fn verdict(scout: &Scout, number: usize) -> Verdict {
         |lit: &&Lit| !lit.arrives.is_finite() || lit.arrives.min_element() < 0.0 && color(light).min_element() >= 0.0;
     if divisor(light) == Some(Vec3::ZERO) || all.iter().any(odd) {
         return Verdict::Divides;
+    }
+    if scout.aims()[number].is_some() {
+        return Verdict::Missing;
     }
     let visible = all.iter().filter(|lit| lit.adds.abs().max_element() > VISIBLE).count();
     // A few lights are each meant to be seen.
@@ -122,7 +170,7 @@ pub(super) fn color(light: &Light) -> Color {
 }
 
 /// What the light of a point is divided by: its three factors.
-fn divisor(light: &Light) -> Option<Vec3> {
+pub(super) fn divisor(light: &Light) -> Option<Vec3> {
     match light {
         Light::Point(PointLight { attenuation, .. }) => *attenuation,
         _ => None,
@@ -130,7 +178,7 @@ fn divisor(light: &Light) -> Option<Vec3> {
 }
 
 /// A light as it is written.
-fn written<'s>(scout: &Scout<'s>, light: usize) -> Option<&'s Spanned<Light>> {
+pub(super) fn written<'s>(scout: &Scout<'s>, light: usize) -> Option<&'s Spanned<Light>> {
     scout.subject.scene.lights.as_ref()?.get(light)
 }
 
@@ -146,7 +194,7 @@ pub(super) fn all_fail(scout: &Scout) -> bool {
 }
 
 /// A warning about a light that adds nothing.
-fn useless(scout: &Scout, light: usize, message: String) -> Option<(Diagnostic, Span)> {
+pub(super) fn useless(scout: &Scout, light: usize, message: String) -> Option<(Diagnostic, Span)> {
     let span = place(scout, light)?;
     let effect = match (all_fail(scout), scout.world().ambient.max_element() > VISIBLE) {
         (true, false) => "no light reaches what is seen: all surfaces are black",
@@ -157,7 +205,7 @@ fn useless(scout: &Scout, light: usize, message: String) -> Option<(Diagnostic, 
 }
 
 /// The findings of one kind, each made of a light's number and its verdict.
-fn each(scout: &Scout, find: impl Fn(usize, Verdict) -> Option<Diagnostic>) -> Vec<Finding> {
+pub(super) fn each(scout: &Scout, find: impl Fn(usize, Verdict) -> Option<Diagnostic>) -> Vec<Finding> {
     let whole = all_fail(scout);
     let verdicts = scout.verdicts().iter().enumerate();
     verdicts.filter_map(|(light, verdict)| Some(Finding::from(find(light, *verdict)?).whole(whole))).collect()
@@ -230,7 +278,7 @@ const NEARLY_ALL_DARK: f32 = 0.25;
 /// Lights that do reach something, but little, since most of what is seen faces away from them.
 fn mostly_dark(scout: &Scout) -> Vec<Finding> {
     let working: Vec<usize> = (0..scout.verdicts().len()).filter(|&i| scout.verdicts()[i] == Verdict::Works).collect();
-    let (mut all, mut reached, mut away) = (0, 0, 0);
+    let (mut all, mut reached, mut away, mut grazed) = (0, 0, 0, 0);
     let bright = |lit: &Lit| lit.adds.abs().max_element() > VISIBLE;
     // A back that is not shaded as a front is no light's fault.
     let shaded = scout.subject.job.settings.shade_back;
@@ -238,6 +286,7 @@ fn mostly_dark(scout: &Scout) -> Vec<Finding> {
         all += 1;
         reached += usize::from(seen.lit.iter().any(&bright));
         away += usize::from(seen.lit.iter().all(|lit| lit.cosine <= 1e-3));
+        grazed += usize::from(seen.lit.iter().all(|lit| lit.cosine <= 1e-3) && seen.lit.iter().any(is_grazing));
     }
     // What is black of itself, or in shadow, tells nothing of where the lights are.
     let reaches = reached as f32 > MOSTLY_DARK * all as f32;
@@ -245,6 +294,9 @@ fn mostly_dark(scout: &Scout) -> Vec<Finding> {
         return Vec::new();
     }
     let Some(span) = place(scout, working[0]) else { return Vec::new() };
+    if grazed * 2 > away {
+        return grazing(scout, &working).into_iter().map(|diagnostic| Finding::from(diagnostic).whole(true)).collect();
+    }
     let which = if working.len() == 1 { "this light" } else { "the lights" };
     let message = format!("{} of what is seen faces away from {which}", percent(away, all));
     let mut diagnostic = Diagnostic::warning(message)
@@ -275,6 +327,48 @@ fn mostly_dark(scout: &Scout) -> Vec<Finding> {
     vec![Finding::from(diagnostic).whole((reached as f32) < NEARLY_ALL_DARK * all as f32)]
 }
 
+fn is_grazing(lit: &Lit) -> bool {
+    lit.cosine.abs() <= 1e-3
+}
+
+/// The first of some lights, which only goes along what is seen.
+fn grazing(scout: &Scout, lights: &[usize]) -> Option<Diagnostic> {
+    let light = *lights.iter().find(|light| {
+        let all = scout.seen().filter_map(|(_, seen)| seen.by(**light));
+        let (grazed, count) = all.fold((0, 0), |(grazed, count), lit| (grazed + usize::from(is_grazing(lit)), count + 1));
+        grazed * 4 > count
+    })?;
+    let (diagnostic, span) = useless(scout, light, "this light only grazes what is seen: N · L is 0 there".into())?;
+    let objects: Vec<u32> =
+        scout.seen().filter(|(_, seen)| seen.by(light).is_some_and(is_grazing)).map(|(_, seen)| seen.object).collect();
+    let surface = most_common(&objects)?;
+    let diagnostic = diagnostic.related(scout.object_span(surface), "it goes along this");
+    let (probe, _) = scout.seen().find(|(_, seen)| seen.object == surface && seen.by(light).is_some_and(is_grazing))?;
+    let hit = scout.world().closest(&probe.ray, &mut ())?;
+    let n = scout.world().surface(&probe.ray, &hit).n_geo;
+    let n = if probe.ray.dir.dot(n) > 0.0 { -n } else { n };
+    match &written(scout, light)?.value {
+        Light::Directional(lamp) => {
+            let tilted = vector(lamp.direction - 0.7 * lamp.direction.length() * n);
+            let value = scout.value(span, &["direction"]);
+            let help = format!("`direction` is where light goes: `direction {tilted}` falls on the surface");
+            Some(scout.at_value(diagnostic.fix_at(value, tilted), span, &["direction"]).help(help))
+        }
+        lamp => {
+            let place = lamp.place().map(|(place, _)| place);
+            let from = match lamp {
+                Light::Point(point) => point.position,
+                _ => place?,
+            };
+            let eye = scout.world().camera.pose().center;
+            let raised = vector(from + 0.5 * (eye - from).length().max(1e-3) * n);
+            let value = scout.value(span, &["position"]);
+            let help = format!("the light lies in the plane of that surface: raise it, to `position {raised}`, say");
+            Some(scout.at_value(diagnostic.fix_at(value, raised), span, &["position"]).help(help))
+        }
+    }
+}
+
 pub(super) fn behind(scout: &Scout) -> Vec<Finding> {
     let mut found = mostly_dark(scout);
     found.extend(each(scout, |light, verdict| {
@@ -285,10 +379,7 @@ pub(super) fn behind(scout: &Scout) -> Vec<Finding> {
         let away = lit.iter().filter(|lit| lit.cosine <= 1e-3).count();
         let turned = lit.iter().filter(|lit| lit.cosine < -1e-3).count();
         if turned * 2 < away {
-            let message = "this light only grazes what is seen".to_string();
-            let (diagnostic, span) = useless(scout, light, message)?;
-            let diagnostic = scout.at_value(diagnostic, span, &["direction", "position"]);
-            return Some(diagnostic.help("turn it so that it shines on the surface, and not along it"));
+            return grazing(scout, &[light]);
         }
         let message = format!("this light is behind what is seen: {} of it faces away", percent(away, lit.len()));
         let (diagnostic, span) = useless(scout, light, message)?;
@@ -313,53 +404,6 @@ pub(super) fn behind(scout: &Scout) -> Vec<Finding> {
     found
 }
 
-pub(super) fn faint(scout: &Scout) -> Vec<Finding> {
-    each(scout, |light, verdict| {
-        let Verdict::Faint(most) = verdict else { return None };
-        let message = format!("this light fades to {} before it arrives", number(most));
-        let (diagnostic, span) = useless(scout, light, message)?;
-        let factor = 0.8 / most.max(1e-30);
-        let written = &written(scout, light)?.value;
-        let Light::Point(point) = written else {
-            let color = color(written) * factor;
-            let help = format!("it is {} times too weak: `color {}`, say", number(factor), vector(color));
-            return Some(scout.at_value(diagnostic, span, &["color"]).help(help));
-        };
-        // What fades it is wrong, or else its colour.
-        let value = scout.value(span, &["attenuation", "falloff"]);
-        let (value, text, field) = match (value, point.falloff, point.attenuation) {
-            (Some(value), Some(falloff), _) => (value, number(falloff / factor), scout.text(before(scout, value))),
-            (Some(value), None, Some(a)) => {
-                // The constant keeps a light bright near by: it only grows to what it should have been.
-                let scaled = a / factor;
-                (value, vector(Vec3::new(scaled.x.max(a.x.min(1.0)), scaled.y, scaled.z)), "attenuation".into())
-            }
-            // The dialect fades light by itself, unless something else is written.
-            _ => match (scout.value(span, &["color"])?, divisor(&scout.world().lights[light])) {
-                (color, Some(a)) if scout.subject.dialect == Dialect::F23 => {
-                    let after = Span { start: color.end, ..color };
-                    let text = format!(" attenuation {}", number(a.z / factor));
-                    let help =
-                        format!("without `attenuation` it is {} here: write `{}`, say", number(a.z), text.trim());
-                    return Some(diagnostic.at(color).fix(after, text).help(help));
-                }
-                (color, _) => (color, vector(point.color * factor), "color".into()),
-            },
-        };
-        let help = format!("it is about {} times too weak: `{field} {text}`, say", number(factor));
-        Some(diagnostic.at(value).fix(value, text).help(help))
-    })
-}
-
-/// The word before a value.
-fn before(scout: &Scout, value: Span) -> Span {
-    let bytes = scout.subject.files.bytes(value.file).unwrap_or_default();
-    let head = &bytes[..value.start as usize];
-    let end = head.iter().rposition(|b| !b.is_ascii_whitespace()).map_or(0, |at| at + 1);
-    let start = head[..end].iter().rposition(u8::is_ascii_whitespace).map_or(0, |at| at + 1);
-    Span { file: value.file, start: start as u32, end: end as u32 }
-}
-
 pub(super) fn cancelled(scout: &Scout) -> Vec<Finding> {
     each(scout, |light, verdict| {
         if verdict != Verdict::Cancelled || super::colors::all_black(scout) {
@@ -376,52 +420,6 @@ pub(super) fn cancelled(scout: &Scout) -> Vec<Finding> {
         };
         Some(scout.at_value(diagnostic, span, &["color"]).help(help))
     })
-}
-
-pub(super) fn divides(scout: &Scout) -> Vec<Finding> {
-    let found = scout.verdicts().iter().enumerate().filter(|(_, verdict)| **verdict == Verdict::Divides);
-    found
-        .filter_map(|(light, _)| {
-            let span = place(scout, light)?;
-            let divisor = divisor(&scout.world().lights[light]).unwrap_or_default();
-            let zero = divisor == Vec3::ZERO;
-            let message = match zero {
-                true => match scout.value(span, &["attenuation", "falloff"]) {
-                    Some(value) => {
-                        format!(
-                            "this light divides by zero: its {} is {}",
-                            scout.text(before(scout, value)),
-                            scout.text(value)
-                        )
-                    }
-                    None => "this light divides by zero: nothing is written of how it fades".to_string(),
-                },
-                false => format!("this light is divided by numbers that are not above zero: {}", vector(divisor)),
-            };
-            let value = scout.value(span, &["attenuation", "falloff"]);
-            let diagnostic = Diagnostic::warning(message)
-                .effect(match zero {
-                    true => "what it shines on is no number, and is left out of the picture: black, or specks",
-                    false => "it takes light away, or what it shines on is no number: black",
-                })
-                .help(match scout.value(span, &["falloff"]) {
-                    Some(_) => "write a `falloff` above 0, as `falloff 0.05`",
-                    None if scout.subject.dialect == Dialect::F23 => {
-                        "write an `attenuation` above 0, as `attenuation 0.05`"
-                    }
-                    None if scout.subject.dialect == Dialect::F16 => "write a `falloff`, as `falloff 0.05`",
-                    None => "`attenuation 1 0 0` is light that does not fade",
-                });
-            let triple = written(scout, light).is_some_and(
-                |l| matches!(&l.value, Light::Point(point) if point.attenuation.is_some() && point.falloff.is_none()),
-            );
-            let diagnostic = match value {
-                Some(value) if triple => diagnostic.fix(value, "1 0 0").at(value),
-                _ => diagnostic.at(value.unwrap_or(span)),
-            };
-            Some(Finding::from(diagnostic).whole(true))
-        })
-        .collect()
 }
 
 /// Lights that are written twice.

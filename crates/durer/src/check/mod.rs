@@ -4,15 +4,24 @@
 //! [`CHECKS`] look at that, at the meshes and at the description. Every finding has a code that does not change, a place, an
 //! effect on the picture, a proposed change and, where that is mechanical, the edit of the scene's text.
 
+mod air;
+mod beams;
 mod colors;
 mod exposure;
 mod extent;
+mod faces;
 mod facing;
+mod fading;
 mod finding;
+mod lamps;
+mod layers;
+mod lens;
 mod lights;
 mod mesh;
+mod names;
 mod numbers;
 mod objects;
+mod patterns;
 mod physical;
 pub mod picture;
 mod repair;
@@ -22,6 +31,7 @@ mod solid;
 mod table;
 #[cfg(test)]
 mod tests;
+mod unseen;
 mod view;
 mod words;
 mod year;
@@ -54,6 +64,22 @@ const CONSEQUENCES: &[(&str, &[&str])] = &[
     ("squashed", &["all-missed"]),
     ("degenerate-triangle", &["all-missed", "unseen"]),
     ("black-material", &["too-dark"]),
+    ("far-origin", &["unseen", "tiny", "hidden-behind", "all-missed", "degenerate-triangle", "squashed", "odd-normals", "degenerate-mesh"]),
+    ("out-of-scale", &["unseen", "light-blocked", "tiny"]),
+    ("camera-inside", &["seen-from-behind", "light-inside", "light-behind", "unseen"]),
+    ("camera-away", &["light-cancelled", "light-behind", "light-blocked", "light-faint", "pattern-scale", "edge-on"]),
+    ("thick-fog", &["too-dark", "lamp-turned", "lamp-blocked"]),
+    ("wide-aperture", &["out-of-focus"]),
+    ("eyes-apart", &["unseen", "camera-away"]),
+    ("lamp-turned", &["too-dark", "lamp-blocked"]),
+    ("lamp-blocked", &["unseen"]),
+    ("light-near", &["too-dark", "too-bright", "light-faint"]),
+    ("unused-define", &["unused-material"]),
+    ("same-parts", &["pattern-scale"]),
+    ("same-place", &["unseen"]),
+    ("too-small", &["tiny", "pattern-scale"]),
+    ("tiny", &["unseen"]),
+    ("epsilon", &["tiny"]),
 ];
 
 /// All findings about a scene that was read and compiled, those of its reader among them; the causes first.
@@ -61,8 +87,7 @@ pub fn check(subject: &Subject, diagnostics: &Diagnostics) -> Vec<Finding> {
     let scout = Scout::new(subject);
     let mut found: Vec<Finding> = diagnostics.iter().cloned().map(Finding::from).collect();
     found.iter_mut().for_each(|finding| words::complete(&scout, finding));
-    let local = |code: &&str| physical::OF_LOCAL_LIGHT.contains(code) && physical::is_physical(&scout);
-    for check in CHECKS.iter().filter(|check| !local(&check.code)) {
+    for check in CHECKS.iter().filter(|check| !physical::is_beside_the_point(&scout, check.code)) {
         let of_kind = (check.find)(&scout).into_iter();
         found.extend(of_kind.map(|finding| Finding { diagnostic: finding.diagnostic.code(check.code), ..finding }));
     }

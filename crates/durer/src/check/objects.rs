@@ -91,7 +91,7 @@ pub(super) fn squashed(scout: &Scout) -> Vec<Finding> {
 }
 
 /// Whether two objects have the same surface.
-fn same(a: &Object, b: &Object) -> bool {
+pub(super) fn same(a: &Object, b: &Object) -> bool {
     let placed = a.to_world == b.to_world;
     placed
         && match (&a.geometry, &b.geometry) {
@@ -116,6 +116,7 @@ pub(super) fn twice(scout: &Scout) -> Vec<Finding> {
     let mut places: HashMap<[u32; 6], Vec<usize>> = HashMap::new();
     let mut found = Vec::new();
     found.extend(in_plane(scout));
+    found.extend(super::faces::twice(scout));
     for (i, object) in objects.iter().enumerate() {
         // What has no end is at one place with all others that have none.
         let key = object.bounds().map_or([0; 6], |b| {
@@ -171,7 +172,7 @@ fn in_plane(scout: &Scout) -> Vec<Finding> {
     found
 }
 
-fn pair(scout: &Scout, first: usize, second: usize) -> Finding {
+pub(super) fn pair(scout: &Scout, first: usize, second: usize) -> Finding {
     let objects = &scout.world().objects;
     let [a, b]: [Span; 2] = [objects[first].span, objects[second].span];
     let alike = objects[first].material == objects[second].material;

@@ -8,10 +8,10 @@ use crate::integrator::Method;
 use crate::light::Emitter as _;
 use crate::math::{Color, Vec3};
 use crate::scene::Material;
-use crate::world::emitters::Form;
+use crate::world::Material as Compiled;
 
 /// What is found of local light says nothing of paths.
-pub(super) const OF_LOCAL_LIGHT: &[&str] = &[
+const OF_LOCAL_LIGHT: &[&str] = &[
     "light-divides",
     "light-inside",
     "light-blocked",
@@ -20,16 +20,20 @@ pub(super) const OF_LOCAL_LIGHT: &[&str] = &[
     "full-ambient",
     "pow-zero",
     "no-exponent",
-    "black-material",
     "light-cancelled",
     "no-bounces",
-    "dull-glass",
     "same-color",
     "seen-from-behind",
-    "too-bright",
-    "too-dark",
-    "one-color",
 ];
+
+/// What says why a path tracer's picture is black, where it is.
+const OF_DARKNESS: &[&str] = &["light-inside", "light-blocked", "light-behind", "light-faint"];
+
+/// Whether a finding means nothing here, since it is about local light.
+pub(super) fn is_beside_the_point(scout: &Scout, code: &str) -> bool {
+    let says_why = || OF_DARKNESS.contains(&code) && super::exposure::is_dark(scout);
+    is_physical(scout) && OF_LOCAL_LIGHT.contains(&code) && !says_why()
+}
 
 /// Whether a scene's light is a path tracer's.
 pub(super) fn is_physical(scout: &Scout) -> bool {
@@ -39,7 +43,14 @@ pub(super) fn is_physical(scout: &Scout) -> bool {
 pub(super) fn no_emitter(scout: &Scout) -> Vec<Finding> {
     let world = scout.world();
     let dark_sky = world.environment.is_none() && world.cube_map.is_none() && world.background == Color::ZERO;
-    let shines = (0..world.materials.len() as u32).any(|material| world.may_shine(material));
+    let radiance = |material: &Compiled| match material {
+        Compiled::Phong(phong) => phong.emission.as_ref().map(|emission| emission.radiance),
+        Compiled::Solid(..) => None,
+    };
+    let of = |material: u32| world.materials.get(material as usize).and_then(radiance).unwrap_or_default();
+    let shines = world.objects.iter().any(|object| of(object.material) != Color::ZERO)
+        || world.objects.iter().any(|object| matches!(world.materials.get(object.material as usize), Some(Compiled::Solid(..))))
+            && world.materials.iter().any(|material| radiance(material).is_some());
     if !is_physical(scout)
         || !dark_sky
         || shines
@@ -47,46 +58,32 @@ pub(super) fn no_emitter(scout: &Scout) -> Vec<Finding> {
     {
         return Vec::new();
     }
+    // Something was meant to shine.
+    let lamp = scout.subject.scene.materials.iter().enumerate().find(|(_, material)| match &material.value {
+        Material::Principled(layers) => layers.emission_luminance > 0.0,
+        _ => false,
+    });
+    if let Some((number, material)) = lamp {
+        let black = of(number as u32) == Color::ZERO;
+        let message = match black {
+            true => format!("nothing shines: the `emissionColor` of material {number} is black"),
+            false => format!("nothing shines: material {number} does, but nothing is made of it"),
+        };
+        let diagnostic = Diagnostic::warning(message).effect("the picture is black").help(match black {
+            true => "it multiplies `emissionLuminance`: `emissionColor 1 1 1` is white light",
+            false => "is a `MaterialIndex` wrong? They count from 0",
+        });
+        let diagnostic = scout.at_value(diagnostic, material.span, &["emissionColor", "emissionLuminance"]);
+        return vec![Finding::from(diagnostic).whole(true)];
+    }
+    let ambient = match world.ambient == Color::ZERO {
+        true => "",
+        false => "; `ambientLight` means nothing to paths",
+    };
     let diagnostic = Diagnostic::warning("nothing shines in this scene: no light, no material with `emissionLuminance`, and the background is black")
         .effect("the picture is black")
-        .help("give a material `emissionLuminance 10`, add a light, or write `Background { color 1 1 1 }`: what is all around is light too");
+        .help(format!("give a material `emissionLuminance 10`, add a light, or write `Background {{ color 1 1 1 }}`: what is all around is light too{ambient}"));
     vec![Finding::from(diagnostic).whole(true)]
-}
-
-pub(super) fn lamp_turned(scout: &Scout) -> Vec<Finding> {
-    let world = scout.world();
-    let mut found = Vec::new();
-    if !is_physical(scout) {
-        return found;
-    }
-    let places: Vec<Vec3> = scout.seen().map(|(probe, seen)| probe.ray.at(seen.t)).collect();
-    for (number, object) in world.objects.iter().enumerate().filter(|(_, object)| object.parts() == 1) {
-        let Some(false) = world.shines_to_both_sides(object.material) else { continue };
-        let Some((form, normal)) = Form::of(object, 0).filter(|(_, normal)| *normal != Vec3::ZERO) else { continue };
-        let middle = form.bounds().center();
-        let reach = form.bounds().size().length();
-        let own = |p: &&Vec3| (**p - middle).dot(normal).abs() > 1e-4 * reach;
-        let (lit, all) = places
-            .iter()
-            .filter(own)
-            .fold((0, 0), |(lit, all), p| (lit + usize::from((*p - middle).dot(normal) > 0.0), all + 1));
-        if all == 0 || lit > 0 {
-            continue;
-        }
-        let number = number as u32;
-        let message = format!("the {} shines away from all that is seen", scout.object(number));
-        let turn = match form {
-            Form::Triangle(_) => "exchange two of its corners",
-            Form::Parallelogram(_) => "exchange `edge0` and `edge1`",
-            _ => "turn its `normal`",
-        };
-        let diagnostic = Diagnostic::warning(message)
-            .at(scout.object_span(number))
-            .effect("it lights nothing, and is seen black from behind")
-            .help(format!("a surface shines to the side of its normal: {turn}, or give its material `walls thin`, with which both sides shine"));
-        found.push(Finding::from(diagnostic));
-    }
-    found
 }
 
 /// Lamps without extent inside of glass: no path finds their light outside.

@@ -1,5 +1,6 @@
 //! A coarse look at the picture: a grid of camera rays, and all that made the light of each.
 
+use super::beams::Aim;
 use super::lights::Verdict;
 use super::mesh::MeshFile;
 use super::sight::Sight;
@@ -39,6 +40,8 @@ pub struct Subject<'a> {
     pub files: &'a Files,
     /// The picture that is to be made of it.
     pub job: &'a Job,
+    /// What multiplies its colours before they are shown.
+    pub exposure: f32,
     /// A sample of that picture that is known not to be a finite number: column, row, number.
     pub rejected: Option<(u32, u32, u32)>,
 }
@@ -89,6 +92,8 @@ pub struct Scout<'a> {
     pub(super) probes: Vec<Probe>,
     sights: OnceLock<Vec<Sight>>,
     verdicts: OnceLock<Vec<Verdict>>,
+    aims: OnceLock<Vec<Option<Aim>>>,
+    light: OnceLock<Vec<Color>>,
     meshes: OnceLock<Vec<MeshFile<'a>>>,
     material_rays: OnceLock<Vec<usize>>,
 }
@@ -130,6 +135,8 @@ impl<'a> Scout<'a> {
             probes,
             sights: OnceLock::new(),
             verdicts: OnceLock::new(),
+            aims: OnceLock::new(),
+            light: OnceLock::new(),
             meshes: OnceLock::new(),
             material_rays: OnceLock::new(),
         }
@@ -152,6 +159,17 @@ impl<'a> Scout<'a> {
     /// What each light does to what is seen.
     pub(super) fn verdicts(&self) -> &[Verdict] {
         self.verdicts.get_or_init(|| super::lights::verdicts(self))
+    }
+
+    /// Which lights have beams that miss what is seen.
+    pub(super) fn aims(&self) -> &[Option<Aim>] {
+        let lights = 0..self.world().lights.len();
+        self.aims.get_or_init(|| lights.map(|light| super::beams::aim(self, light)).collect())
+    }
+
+    /// The colours of the picture, exposed: of all rays, or under a path tracer of a part of them, each the mean of a few samples.
+    pub(super) fn light(&self) -> &[Color] {
+        self.light.get_or_init(|| super::exposure::light(self))
     }
 
     /// Its mesh files.

@@ -68,7 +68,7 @@ pub(super) fn corner(scout: &Scout) -> Vec2 {
 }
 
 /// Points of an object in the world: corners of triangles and their middles, else a grid through its box.
-fn points(object: &Object) -> Vec<Vec3> {
+pub(super) fn points(object: &Object) -> Vec<Vec3> {
     let to_world = |p: Vec3| object.world_point(p);
     match &object.geometry {
         Geometry::Primitive(Primitive::Triangle(triangle)) => within(triangle.corners()).map(to_world).to_vec(),

@@ -2,7 +2,10 @@
 
 use super::finding::Finding;
 use super::scout::Scout;
-use super::{colors, exposure, extent, facing, lights, mesh, numbers, objects, physical, view, year};
+use super::{
+    air, beams, colors, exposure, extent, facing, fading, lamps, layers, lens, lights, mesh, names, numbers, objects, patterns,
+    physical, unseen, view, year,
+};
 
 /// One kind of finding.
 #[derive(Clone, Copy, Debug)]
@@ -42,14 +45,19 @@ checks! {
     "open-solid": "a part of a solid that is not closed", reported;
     "no-objects": "nothing to be seen", view::no_objects;
     // Where the camera is.
+    "far-origin": "a scene so far from the origin that numbers have no digits left for its shapes", lens::far_origin;
+    "epsilon": "a scene smaller than the distance at which this year's program lets shadow rays begin", lens::below_epsilon;
     "camera-inside": "the camera is inside an object", view::inside;
     "camera-away": "the camera looks past everything", view::away;
     "too-small": "all things together are too small in the picture", extent::too_small;
     "too-narrow": "the picture shows a tiny part of the scene", extent::too_narrow;
     "empty-solid": "a solid of which nothing is left", objects::empty_solid;
-    "out-of-focus": "a lens that is sharp where nothing is", view::out_of_focus;
-    "hidden-behind": "one object hides all others", view::hidden;
+    "wide-aperture": "an opening that no lens has", lens::wide_aperture;
+    "out-of-focus": "a lens that is sharp where nothing is", lens::out_of_focus;
+    "eyes-apart": "two eyes too far from each other", lens::eyes_apart;
+    "hidden-behind": "one object hides all others, or most of the picture", view::hidden_behind;
     "below-plane": "a plane between the camera and all other things", view::below_plane;
+    "edge-on": "a plane that is seen from its edge", lens::edge_on;
     "long-up": "a camera's `up` that is used as it is, and not of length 1", year::long_up;
     "stretched": "a picture that is not square, under a program that stretches it", year::stretched;
     "plane-normal": "a plane whose normal is not of length 1", year::plane_normal;
@@ -58,24 +66,33 @@ checks! {
     // Light.
     "no-light": "no light", reported;
     "no-emitter": "a scene for paths in which nothing shines", physical::no_emitter;
-    "lamp-turned": "a lamp that shines away from all that is seen", physical::lamp_turned;
-    "lamp-in-glass": "a lamp that paths do not find, since it is inside of glass", physical::lamp_in_glass;
+    "thick-fog": "fog that keeps all light off", air::thick_fog;
+    "lamp-turned": "a lamp that shines away from all that is seen", lamps::turned;
+    "lamp-blocked": "a lamp whose light something keeps off all that is seen", lamps::blocked;
+    "lamp-in-glass": "a lamp that paths hardly find, since it is inside of glass", lamps::in_glass;
     "no-depth": "words of a medium that have no effect", physical::without_effect;
     "black-light": "a light without colour", reported;
-    "light-divides": "a light that is divided by zero", lights::divides;
+    "light-divides": "a light that is divided by zero", fading::divides;
     "no-falloff": "a light without `falloff`, where the old program divides by it", reported;
+    "light-away": "a spotlight or measured lamp that shines past all that is seen", beams::away;
+    "light-narrow": "a spotlight whose cone holds next to nothing", beams::narrow;
+    "light-near": "a light just above a surface, of which it lights a spot", beams::near;
     "light-inside": "a light inside an object", lights::inside;
     "light-blocked": "a light that an object keeps off all that is seen", lights::blocked;
     "light-behind": "a light that all that is seen faces away from", lights::behind;
-    "light-faint": "a light that fades before it arrives", lights::faint;
+    "light-faint": "a light that fades before it arrives", fading::faint;
+    "inner-angle": "a spotlight whose inner cone is wider than the outer", beams::inner_angle;
     // Colours.
     "color-range": "a colour beyond 1", colors::too_large;
     "full-ambient": "ambient light that leaves nothing to the lamps", year::full_ambient;
     "pow-zero": "a highlight of shininess 0, which is everywhere", year::pow_zero;
     "no-exponent": "a highlight's colour without an exponent", year::no_exponent;
+    "tiny-highlight": "a highlight smaller than a pixel", year::tiny_highlight;
     "same-parts": "a pattern of two equal parts", year::same_parts;
+    "pattern-scale": "a pattern of which one part alone is seen, or that is finer than a pixel", patterns::scale;
     "material-index": "a `MaterialIndex` without a material", reported;
     "no-material": "objects before any `MaterialIndex`", reported;
+    "not-there": "a material of opacity 0", layers::not_there;
     "black-material": "a material that gives back no light", colors::black;
     "light-cancelled": "a light of which the materials give back nothing", lights::cancelled;
     "negative-color": "a colour below zero", colors::negative;
@@ -90,6 +107,8 @@ checks! {
     "winding": "triangles of a mesh that wind the other way than their neighbours", mesh::winding;
     "inside-out": "a closed mesh whose normals point inwards", mesh::inside_out;
     "odd-normals": "normals of a mesh file that contradict its faces, are missing or have no length", mesh::given_normals;
+    "misread-mesh": "a mesh file of which the year's program loses a line, or that it gives other normals", mesh::misread;
+    "flat-field": "a landscape without heights", unseen::flat_field;
     "degenerate-mesh": "triangles of a mesh without area", mesh::degenerate;
     "degenerate-triangle": "a triangle without area", objects::degenerate;
     "mesh-quads": "faces that this year's program cannot read", year::quads;
@@ -111,7 +130,9 @@ checks! {
     "foreign-word": "a word of another year", reported;
     "portability": "what the year's own program would refuse", reported;
     "comment": "a comment that does not begin with `#`", reported;
-    "unseen": "objects that are not in the picture, or hidden", extent::unseen;
+    "tiny": "an object smaller than a pixel", unseen::tiny;
+    "unseen": "objects that are not in the picture, or hidden", unseen::unseen;
+    "unused-define": "something that is defined and never used", names::unused_define;
     "unused-material": "a material that nothing is made of", colors::unused;
     "mesh-file": "something in a mesh file that was passed over", reported;
 }

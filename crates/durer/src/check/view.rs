@@ -2,7 +2,7 @@
 
 use super::finding::{Finding, number, percent, vector};
 use super::lights::{Verdict, all_fail};
-use super::scout::{Probe, Scout, Seen};
+use super::scout::Scout;
 use super::sight::{Sight, corner};
 use super::solid::around;
 use crate::camera::{Camera, Lens};
@@ -11,11 +11,8 @@ use crate::math::{Aabb, Ray, Vec2, Vec3, fp};
 use crate::shape::Primitive;
 use crate::world::{Geometry, Object};
 
-/// Where every point becomes a disc of so large a share of the picture, nothing is sharp.
-const MOST_BLUR: f32 = 0.08;
-
 /// Whether the camera's rays all start at its place and go one way: those that run both ways see what is behind as well.
-fn has_eye(scout: &Scout) -> bool {
+pub(super) fn has_eye(scout: &Scout) -> bool {
     !matches!(scout.world().camera, Camera::Orthographic(_) | Camera::PushBroom(_) | Camera::MultipleCenter(_))
 }
 
@@ -36,13 +33,16 @@ pub(super) fn inside(scout: &Scout) -> Vec<Finding> {
         return Vec::new();
     }
     let pose = scout.world().camera.pose();
-    let rays = scout.probes.len();
+    let (rays, physical) = (scout.probes.len(), super::physical::is_physical(scout));
     let mut found = Vec::new();
     for object in around(scout.world(), pose.center) {
         let own = scout.seen().filter(|(_, seen)| seen.object == object).count();
         // A room has things in it, and light.
-        let dark = all_fail(scout) && scout.verdicts().contains(&Verdict::Blocked(object));
-        if own * 100 < rays * 99 && !dark {
+        let dark = !physical && all_fail(scout) && scout.verdicts().contains(&Verdict::Blocked(object));
+        // Walls that are seen from behind where backs are not shaded are no room's.
+        let backs = scout.seen().filter(|(_, seen)| seen.object == object && seen.from_behind).count();
+        let walls = !physical && !scout.subject.job.settings.shade_back && backs * 10 > rays * 3;
+        if own * 100 < rays * 99 && !dark && !walls {
             continue;
         }
         let Some(bounds) = scout.world().objects[object as usize].bounds() else { continue };
@@ -52,6 +52,7 @@ pub(super) fn inside(scout: &Scout) -> Vec<Finding> {
             .label("this place is inside it")
             .related(scout.object_span(object), "around the camera")
             .effect(match dark {
+                _ if walls && own * 100 < rays * 99 => "its walls are seen from behind: no light falls on that side",
                 true => "it keeps the light out; all that is seen is in its shadow",
                 false => "all that is seen is the inside of it",
             })
@@ -73,7 +74,7 @@ fn leave(bounds: Aabb, from: Vec3, direction: Vec3) -> Vec3 {
 }
 
 /// What the camera should see: the box around all that has an end, else the nearest place of a plane.
-fn target(scout: &Scout) -> Option<Aabb> {
+pub(super) fn target(scout: &Scout) -> Option<Aabb> {
     let (world, eye) = (scout.world(), scout.world().camera.pose().center);
     let bounds = world.bounds();
     if !bounds.is_empty() {
@@ -122,6 +123,13 @@ pub(super) fn away(scout: &Scout) -> Vec<Finding> {
     if aims(scout, center) || behind {
         return Vec::new();
     }
+    // A picture that is far too small looks past things too.
+    if aims_widely(scout, center) && !super::extent::too_narrow(scout).is_empty() {
+        return Vec::new();
+    }
+    if let Some(diagnostic) = super::lens::shifted(scout, center) {
+        return vec![Finding::from(diagnostic).whole(true)];
+    }
     let hits = scout.seen().count();
     let effect = match hits {
         0 => "every ray misses; the whole picture is background".to_string(),
@@ -151,6 +159,20 @@ pub(super) fn away(scout: &Scout) -> Vec<Finding> {
         None => diagnostic.help(help).at(span),
     };
     vec![Finding::from(diagnostic).whole(true)]
+}
+
+/// Whether a camera of usual width would see a place.
+fn aims_widely(scout: &Scout, place: Vec3) -> bool {
+    let world = scout.world();
+    let to = place - world.camera.pose().center;
+    match &world.camera {
+        Camera::Perspective(_) => degrees(world.camera.pose().direction, to) < 20.0,
+        Camera::Orthographic(_) => {
+            let across = to - to.dot(world.frame.forward) * world.frame.forward;
+            across.length() < 0.7 * world.bounds().size().max_element()
+        }
+        _ => false,
+    }
 }
 
 /// A vector of the camera is to be another.
@@ -242,33 +264,10 @@ pub(super) fn pixels(scout: &Scout, bounds: Aabb) -> Option<f32> {
     Some((max - min).max_element() / (2.0 * corner(scout).max_element()) * job.width.max(job.height) as f32)
 }
 
-/// A lens that blurs all that is seen.
-pub(super) fn out_of_focus(scout: &Scout) -> Vec<Finding> {
-    let Camera::ThinLens(camera) = &scout.world().camera else { return Vec::new() };
-    let forward = scout.world().frame.forward;
-    let depth = |(probe, seen): (&Probe, &Seen)| seen.t * probe.ray.dir.dot(forward);
-    let depths: Vec<f32> = scout.seen().map(depth).filter(|z| *z > 0.0).collect();
-    // The disc that a point becomes, as a share of the picture's larger side.
-    let (sine, cosine) = fp::sin_cos_degrees(f64::from(0.5 * camera.angle));
-    let width = 2.0 * (sine / cosine) as f32;
-    let blur = |z: f32| camera.aperture * (z - camera.focus_distance).abs() / (camera.focus_distance * z * width);
-    let least = depths.iter().map(|&z| blur(z)).fold(f32::INFINITY, f32::min);
-    if depths.is_empty() || least < MOST_BLUR {
-        return Vec::new();
-    }
-    let mut sorted = depths;
-    sorted.sort_by(f32::total_cmp);
-    let middle = number(sorted[sorted.len() / 2]);
-    let message = format!(
-        "nothing is sharp: the lens is sharp at {}, and all that is seen is {} and more away",
-        number(camera.focus_distance),
-        number(sorted[0])
-    );
-    let diagnostic = Diagnostic::warning(message)
-        .effect(format!("every point is a disc of at least {:.0} % of the picture's width", 100.0 * least))
-        .help(format!("`focusDistance {middle}` is where most things are; a smaller `aperture` blurs less"));
-    let span = scout.subject.scene.camera_span;
-    vec![Finding::from(scout.at_value(diagnostic, span, &["focusDistance", "aperture"])).whole(true)]
+/// One thing is in front of all others, or of nearly all.
+pub(super) fn hidden_behind(scout: &Scout) -> Vec<Finding> {
+    let found = hidden(scout);
+    if found.is_empty() { super::unseen::in_the_way(scout) } else { found }
 }
 
 /// One thing is in front of all others.

@@ -4,6 +4,7 @@ use super::finding::{Finding, vector};
 use super::scout::Scout;
 use crate::camera::Lens;
 use crate::diag::{Severity, Span};
+use crate::dialect::Dialect;
 use crate::format::course::place;
 use crate::math::Vec3;
 use crate::scene::Material;
@@ -24,11 +25,25 @@ pub(super) fn complete(scout: &Scout, finding: &mut Finding) {
             }
         }
         "no-falloff" => finding.whole = true,
+        "empty-solid" => {
+            finding.diagnostic.effect.get_or_insert("it is not seen".into());
+            finding.diagnostic.help.get_or_insert("move its parts into one another: an intersection is what all have in common".into());
+        }
+        "foreign-word" => foreign_in_nodes(scout, finding),
         "up-parallel" => up_parallel(scout, finding),
         "material-index" => material_index(scout, finding),
         "no-material" => no_material(scout, finding),
-        "foreign-word" | "mesh-file" | "comment" => finding.diagnostic.severity = Severity::Note,
+        "mesh-file" | "comment" => finding.diagnostic.severity = Severity::Note,
         _ => {}
+    }
+}
+
+/// What other years write in a thing, the year of nodes writes around it.
+fn foreign_in_nodes(scout: &Scout, finding: &mut Finding) {
+    finding.diagnostic.severity = Severity::Note;
+    let word = finding.diagnostic.span.map(|span| scout.text(span)).unwrap_or_default();
+    if scout.subject.dialect == Dialect::F23 && finding.diagnostic.help.is_none() && ["center", "position"].contains(&word.as_str()) {
+        finding.diagnostic.help = Some("the `Node` around it moves it: `Node { Transform { translate 1 2 3 } ... }`".into());
     }
 }
 
@@ -49,7 +64,13 @@ fn no_light(scout: &Scout, finding: &mut Finding) {
     finding.whole = true;
     finding.diagnostic.effect = Some("every surface has one flat colour; no shading and no shadow is seen".into());
     finding.diagnostic.help = Some(
-        "add some, as in `Lights { numLights 1 DirectionalLight { direction -1 -2 -1 color 0.9 0.9 0.9 } }`".into(),
+        match scout.subject.dialect {
+            Dialect::F23 => {
+                "add a node, as in `Node { Component<Light> { type directional direction -1 -2 -1 color 0.9 0.9 0.9 } }`"
+            }
+            _ => "add some, as in `Lights { numLights 1 DirectionalLight { direction -1 -2 -1 color 0.9 0.9 0.9 } }`",
+        }
+        .into(),
     );
 }
 

@@ -57,6 +57,31 @@ pub(super) fn pow_zero(scout: &Scout) -> Vec<Finding> {
     seen(scout).filter(|(.., phong)| chalk(phong)).map(say).take(MOST_SOUGHT).collect()
 }
 
+/// Exponents beyond this make highlights smaller than a pixel.
+const SHARPEST: f32 = 2e4;
+
+/// Highlights smaller than a pixel.
+pub(super) fn tiny_highlight(scout: &Scout) -> Vec<Finding> {
+    if scout.world().rules.highlight == Highlight::None || super::physical::is_physical(scout) {
+        return Vec::new();
+    }
+    let say = |(i, written, phong): (usize, &Spanned<Written>, &PhongMaterial)| {
+        let (word, exponent) = match (phong.exponent, phong.shininess) {
+            (Some(exponent), _) => ("exponent", exponent),
+            (None, shininess) => ("shininess", shininess?),
+        };
+        if exponent <= SHARPEST || phong.specular_color.max_element() < 0.02 {
+            return None;
+        }
+        let diagnostic = Diagnostic::warning(format!("the `{word}` of material {i} is {}", number(exponent)))
+            .effect("its highlight is smaller than a pixel: it is not seen")
+            .help(format!("20 is that of plastic, 200 that of polished metal: `{word} 100`, say"));
+        let value = scout.value(written.span, &[word]);
+        Some(Finding::from(scout.at_value(diagnostic.fix_at(value, "100"), written.span, &[word])))
+    };
+    seen(scout).filter_map(say).take(MOST_SOUGHT).collect()
+}
+
 /// A highlight's colour without its exponent, which is 1 then.
 pub(super) fn no_exponent(scout: &Scout) -> Vec<Finding> {
     if !matches!(scout.world().rules.highlight, Highlight::Blinn | Highlight::ByKeyword) {
@@ -140,6 +165,14 @@ pub(super) fn same_parts(scout: &Scout) -> Vec<Finding> {
     use crate::material::Pattern;
     let materials = &scout.subject.scene.materials;
     let say = |(i, material): (usize, &Spanned<Written>)| {
+        if let Written::Phong(_, Some(noise)) = &material.value {
+            return (noise.color1 == noise.color2 && scout.material_rays()[i] > 0).then(|| {
+                let diagnostic = Diagnostic::warning(format!("both colours of this noise are {}", vector(noise.color1)))
+                    .effect("no pattern is seen: it is of one colour")
+                    .help("give its two `color` two different colours");
+                Finding::from(diagnostic.at(material.span))
+            });
+        }
         let Written::Solid(solid, _) = &material.value else { return None };
         let [first, second] = solid.materials();
         let of = |index: u32| materials.get(index as usize).map(|part| &part.value);

@@ -365,8 +365,11 @@ struct Bars {
 }
 
 impl Bars {
-    const SINGLE: Bars = Bars { explained: 0.96, matched: 0.9 };
-    const PAIR: Bars = Bars { explained: 0.97, matched: 0.95 };
+    // The right name leaves nothing but what rounding makes of edges; what leaves more is another mistake.
+    const SINGLE: Bars = Bars { explained: 0.985, matched: 0.9 };
+    const PAIR: Bars = Bars { explained: 0.985, matched: 0.95 };
+    /// With a number that was fitted.
+    const FITTED: Bars = Bars { explained: 0.995, matched: 0.97 };
     /// No more is sought.
     const CLEAR: Bars = Bars { explained: 0.995, matched: 0.98 };
     /// As good as can be.
@@ -382,7 +385,11 @@ impl Bars {
 fn decided(mut trials: Vec<Trial>, pixels: &Pixels, bars: &Bars) -> Vec<Named> {
     sort(&mut trials);
     trials.dedup_by(|a, b| a.mistakes.len() == b.mistakes.len() && same(&a.mistakes, &b.mistakes));
-    let Some(best) = trials.iter().find(|trial| bars.passes(&trial.fit)) else { return Vec::new() };
+    let passes = |trial: &Trial| {
+        let is_fitted = trial.mistakes.iter().any(|(mistake, value)| mistake.is_fitted(*value));
+        if is_fitted { Bars::FITTED.passes(&trial.fit) } else { bars.passes(&trial.fit) }
+    };
+    let Some(best) = trials.iter().find(|trial| passes(trial)) else { return Vec::new() };
     let total = difference(&pixels.reference, &pixels.test);
     let equal = |other: &Trial| {
         differing(&best.made, &other.made) * 2000 <= pixels.places.len()
@@ -399,7 +406,7 @@ fn decided(mut trials: Vec<Trial>, pixels: &Pixels, bars: &Bars) -> Vec<Named> {
             && !one_kind(&other.mistakes, &best.mistakes)
     };
     let rivals: Vec<&Trial> = trials.iter().filter(rival).collect();
-    if rivals.len() > 2 || rivals.iter().any(|rival| !bars.passes(&rival.fit)) {
+    if rivals.len() > 2 || rivals.iter().any(|rival| !passes(rival)) {
         return Vec::new();
     }
     let mut named: Vec<Named> = Vec::new();
@@ -408,6 +415,11 @@ fn decided(mut trials: Vec<Trial>, pixels: &Pixels, bars: &Bars) -> Vec<Named> {
         if !named.iter().any(|named| one_kind(&named.mistakes, &trial.mistakes)) {
             named.push(trial.named());
         }
+    }
+    // What needs a number to fit it is no mistake where another needs none.
+    let plain = |named: &Named| !named.mistakes.iter().any(|(mistake, value)| mistake.is_fitted(*value));
+    if named.iter().any(plain) {
+        named.retain(plain);
     }
     named
 }

@@ -60,6 +60,14 @@ pub enum Cosine {
     One,
     /// No diffuse term.
     None,
+    /// max(0, N·L)².
+    Squared,
+    /// (N·L + 1) / 2.
+    Half,
+    /// 1 where N·L > 0.
+    Step,
+    /// max(0, N·L) / π.
+    OverPi,
 }
 
 /// The vector between light and eye of Blinn's highlights.
@@ -102,6 +110,22 @@ pub enum Fading {
     Linear,
     /// Divided by d².
     Square,
+    /// Divided by the root of the scene's polynomial.
+    Root,
+}
+
+/// Where point lights are taken to be.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum PointLamp {
+    /// L = norm(position - p).
+    #[default]
+    Right,
+    /// L = norm(p - position).
+    Negated,
+    /// L = norm(position).
+    Position,
+    /// L = norm(-position).
+    MinusPosition,
 }
 
 /// The direction of a mirrored ray.
@@ -132,6 +156,8 @@ pub enum Glass {
     Straight,
     /// With the outward normal also where the ray leaves.
     Outward,
+    /// With the root added that should be taken away.
+    RootAdded,
 }
 
 /// How the divisor of glass is found.
@@ -148,6 +174,8 @@ pub enum Fresnel {
     Share(f32),
     /// What should be mirrored is transmitted, and the other way.
     Exchanged,
+    /// Schlick's formula with the angle of the incoming ray also where it leaves glass.
+    Incoming,
 }
 
 /// What a light is as a thing in space.
@@ -161,6 +189,8 @@ pub struct Lamps {
     pub long_points: bool,
     /// How light fades.
     pub fading: Fading,
+    /// Where point lights are.
+    pub points: PointLamp,
 }
 
 /// What highlights do.
@@ -176,6 +206,24 @@ pub struct Highlights {
     pub half: Half,
     /// The direction to the eye has the wrong sign.
     pub eye_negated: bool,
+    /// They do not have the light's colour.
+    pub lightless: bool,
+    /// The base of the power has lost its sign.
+    pub two_sided: bool,
+    /// Blinn's model too shows them where N·L <= 0.
+    pub everywhere: bool,
+}
+
+/// Where shadow rays go.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ShadowWay {
+    /// To the light.
+    #[default]
+    Light,
+    /// Away from it.
+    Away,
+    /// Along the normal.
+    Normal,
 }
 
 /// What shadow rays do.
@@ -191,6 +239,14 @@ pub struct Shadows {
     pub left: f32,
     /// Where one light is blocked, those after it are too.
     pub later_too: bool,
+    /// Where any light is blocked, there is no ambient light.
+    pub ambient_of_any: bool,
+    /// Only the light of this number casts shadows, if given.
+    pub only_light: Option<usize>,
+    /// Things that let light through cast none.
+    pub no_glass: bool,
+    /// Where they go.
+    pub way: ShadowWay,
     /// Where one light is blocked, there is no light at all; with `true`, mirrored and transmitted light neither.
     pub black: Option<bool>,
 }
@@ -214,6 +270,8 @@ pub struct Bounces {
     pub fresnel: Fresnel,
     /// Local light counts for what the mirror's colour leaves of it.
     pub mixed: bool,
+    /// Mirrored light is times the diffuse colour.
+    pub times_diffuse: bool,
     /// Mirrors have no local light.
     pub instead: bool,
     /// They are traced once for each light.
@@ -339,6 +397,14 @@ pub enum Output {
     CurveMore(f32),
     /// c / (1 + c).
     Toned,
+    /// Times this.
+    Times(f32),
+    /// 1 - c.
+    Negative,
+    /// Grey: 0 the mean of the channels, 1 and 2 as television weighs them, 3 the greatest, 4 red, 5 green, 6 blue.
+    Grey(u32),
+    /// In so many steps.
+    Steps(u32),
     /// Values to the power of this; without the curve of sRGB, or its inverse, for 0.
     CurveLess(f32),
 }
@@ -358,6 +424,10 @@ pub struct Turn {
     pub moved: (i32, i32),
     /// What nothing is moved to is black, and does not repeat the border.
     pub black_border: bool,
+    /// What leaves the picture comes in on the other side.
+    pub rolled: bool,
+    /// Two by two pixels are one.
+    pub halved: bool,
 }
 
 impl Turn {
@@ -372,7 +442,11 @@ impl Turn {
         let x = if self.columns_back { width - 1 - x } else { x };
         let y = if self.rows_back { height - 1 - y } else { y };
         let (x, y) = if self.exchange && width == height { (y, x) } else { (x, y) };
-        let from = |at: u32, by: i32, size: u32| at.saturating_add_signed(-by).min(size - 1);
+        let from = |at: u32, by: i32, size: u32| match self.rolled {
+            true => (i64::from(at) - i64::from(by)).rem_euclid(i64::from(size)) as u32,
+            false => at.saturating_add_signed(-by).min(size - 1),
+        };
+        let (x, y) = if self.halved { (x & !1, y & !1) } else { (x, y) };
         (from(x, self.moved.0, width), from(y, self.moved.1, height))
     }
 }

@@ -74,7 +74,17 @@ impl View<'_> {
         // Values beyond all measure are white, whatever an old program's whole numbers made of them.
         let light = if light.is_finite() { light.min(Color::splat(1e6)) } else { light };
         let light = if output == Output::Toned { light.map(|v| v / (1.0 + v.max(0.0))) } else { light };
-        let light = if output == Output::Scaled && self.brightest > 1.0 { light / self.brightest } else { light };
+        let light = match output {
+            Output::Scaled => light / self.brightest,
+            Output::Times(factor) => light * factor,
+            Output::Negative => Color::ONE - light.clamp(Color::ZERO, Color::ONE),
+            Output::Grey(how) => Color::splat(grey(how, light.clamp(Color::ZERO, Color::ONE))),
+            Output::Steps(steps) => {
+                let n = steps as f32;
+                light.map(|v| (v.clamp(0.0, 1.0) * n).floor().min(n - 1.0) / (n - 1.0).max(1.0))
+            }
+            _ => light,
+        };
         if self.scale == Scale::Linear {
             return light;
         }
@@ -102,5 +112,16 @@ impl View<'_> {
             }
             _ => eight(transfer, light),
         }
+    }
+}
+
+/// A colour as grey.
+fn grey(how: u32, color: Color) -> f32 {
+    match how {
+        0 => (color.x + color.y + color.z) / 3.0,
+        1 => color.dot(Vec3::new(0.299, 0.587, 0.114)),
+        2 => color.dot(Vec3::new(0.2126, 0.7152, 0.0722)),
+        3 => color.max_element(),
+        channel => color[(channel as usize - 4).min(2)],
     }
 }

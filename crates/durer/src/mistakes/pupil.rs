@@ -3,7 +3,9 @@
 //! It is apart from [`Whitted`], so that what renders pictures asks for no mistakes. Without any it gives the same colours,
 //! to the bit: a test holds the two together.
 
-use super::habits::{Ambient, Cosine, Fading, Fresnel, Glass, Habits, Half, Mirror, Normals, Pick, Sum};
+use super::habits::{
+    Ambient, Cosine, Fading, Fresnel, Glass, Habits, Half, Mirror, Normals, Pick, PointLamp, ShadowWay, Sum,
+};
 use crate::dialect::Compat;
 use crate::integrator::media::Media;
 use crate::integrator::media::Passage;
@@ -180,9 +182,10 @@ impl<'w> Pupil<'w> {
                 }
             }
             let mut any = world.lights.is_empty();
-            for light in &world.lights {
+            for (number, light) in world.lights.iter().enumerate() {
                 let seen = self.illuminated(light, surface.point());
-                let visible = self.visible(&surface, &seen, path.first);
+                let casts = habits.shadows.only_light.is_none_or(|only| only == number);
+                let visible = if casts { self.visible(&surface, &seen, path.first) } else { Color::ONE };
                 let visible = if habits.shadows.later_too && blocked { Color::ZERO } else { visible };
                 blocked |= visible == Color::ZERO;
                 let visible = visible.max(Color::splat(habits.shadows.left));
@@ -201,7 +204,7 @@ impl<'w> Pupil<'w> {
                     color = color.clamp(Color::ZERO, Color::ONE);
                 }
             }
-            if habits.shadows.ambient_too && !any {
+            if habits.shadows.ambient_too && !any || habits.shadows.ambient_of_any && blocked {
                 color -= ambient_seen;
             }
         }
@@ -245,6 +248,16 @@ impl<'w> Pupil<'w> {
                     }
                     Fading::Linear => seen.color = point.color / d,
                     Fading::Square => seen.color = point.color / (d * d),
+                    Fading::Root => {
+                        let a = point.attenuation.unwrap_or(Vec3::X);
+                        seen.color = point.color / (a.x + a.y * d + a.z * d * d).sqrt();
+                    }
+                }
+                match self.habits.lamps.points {
+                    PointLamp::Right => {}
+                    PointLamp::Negated => seen.to_light = -seen.to_light,
+                    PointLamp::Position => seen.to_light = point.position.normalize_or(seen.to_light),
+                    PointLamp::MinusPosition => seen.to_light = -point.position.normalize_or(seen.to_light),
                 }
             }
         }
@@ -272,6 +285,10 @@ impl<'w> Pupil<'w> {
             Cosine::Signed => cosine,
             Cosine::One => 1.0,
             Cosine::None => 0.0,
+            Cosine::Squared => cosine.max(0.0) * cosine.max(0.0),
+            Cosine::Half => 0.5 * cosine + 0.5,
+            Cosine::Step => f32::from(cosine > 0.0),
+            Cosine::OverPi => cosine.max(0.0) / std::f32::consts::PI,
         };
         let mut color = factor * diffuse;
         if let Some((specular, exponent, model)) = phong.highlight {
@@ -281,16 +298,20 @@ impl<'w> Pupil<'w> {
                 Half::Mean => 0.5 * sum,
             };
             let base = match model {
-                HighlightModel::Blinn => (cosine > 0.0).then(|| n.dot(half(lamp - view))),
+                HighlightModel::Blinn => (cosine > 0.0 || habits.everywhere).then(|| n.dot(half(lamp - view))),
                 HighlightModel::Phong { behind } => (behind || cosine > 0.0).then(|| reflect(view, n).dot(lamp)),
             };
             if let Some(base) = base {
-                let mut strength = fp::pow(base.max(0.0), exponent);
+                let base = if habits.two_sided { base.abs() } else { base.max(0.0) };
+                let mut strength = fp::pow(base, exponent);
                 if habits.times_cosine {
                     strength *= cosine.max(0.0);
                 }
                 let specular = if habits.bare { Color::ONE } else { specular };
                 let specular = if habits.times_diffuse { specular * diffuse } else { specular };
+                if habits.lightless {
+                    return color * seen.color + strength * specular;
+                }
                 color += strength * specular;
             }
         }
@@ -311,7 +332,15 @@ impl<'w> Pupil<'w> {
             (false, false) => seen.distance * (1.0 - gamma(16)),
         };
         let epsilon = habits.epsilon.or(rules.epsilon);
-        let mut ray = to_light(surface, seen.to_light, reach, epsilon);
+        let way = match habits.way {
+            ShadowWay::Light => seen.to_light,
+            ShadowWay::Away => -seen.to_light,
+            ShadowWay::Normal => surface.n_shade,
+        };
+        let mut ray = to_light(surface, way, reach, epsilon);
+        if habits.no_glass {
+            return self.visible_through_glass(ray, epsilon);
+        }
         if rules.has(Compat::ShadowFronts) {
             let nearest = self.closest(&ray).map(|(hit, _)| self.world.surface(&ray, &hit));
             let blocked = nearest.is_some_and(|blocker| blocker.n_shade.dot(ray.dir()) <= 0.0);
@@ -334,6 +363,20 @@ impl<'w> Pupil<'w> {
         Color::ZERO
     }
 
+    /// Whether only things that let light through are in the way.
+    fn visible_through_glass(&self, mut ray: Ray64, epsilon: Option<f32>) -> Color {
+        for _ in 0..64 {
+            let Some((hit, _)) = self.closest(&ray) else { return Color::ONE };
+            let blocker = self.world.surface(&ray, &hit);
+            let parts = self.world.parts(&hit, blocker.position);
+            if parts.iter().all(|part| part.phong.transparent == Color::ZERO) {
+                return Color::ZERO;
+            }
+            ray = from_surface(&blocker, ray.dir(), ray.rounded.t_max - hit.t, epsilon);
+        }
+        Color::ZERO
+    }
+
     /// Mirrored and transmitted light.
     fn secondary(&self, (ray, hit): (&Ray64, &Hit), surface: &Surface, parts: &[Part], path: Path) -> Color {
         let habits = self.habits.bounces;
@@ -346,7 +389,7 @@ impl<'w> Pupil<'w> {
         let n = if ray.dir().dot(n) < 0.0 { n } else { n_geo };
         let Passage { here, there, behind, .. } = self.right.passage(ray, hit, &path.media).unwrap_or_default();
         let eta = match habits.glass {
-            Glass::Right | Glass::Straight | Glass::Outward => here / there,
+            Glass::Right | Glass::Straight | Glass::Outward | Glass::RootAdded => here / there,
             Glass::Inverted => there / here,
             Glass::NotSwapped => 1.0 / ior,
         };
@@ -363,6 +406,7 @@ impl<'w> Pupil<'w> {
         let transmitted = match (transparent == Color::ZERO, habits.glass) {
             (true, _) => None,
             (false, Glass::Straight) => Some(ray.dir()),
+            (false, Glass::RootAdded) => refract(ray.dir(), n, eta).map(|t| t - 2.0 * t.dot(n) * n),
             (false, Glass::Outward) if leaving => refract(ray.dir(), n, eta).map(|t| t - 2.0 * t.dot(n) * n),
             (false, _) => refract(ray.dir(), n, eta),
         };
@@ -372,6 +416,11 @@ impl<'w> Pupil<'w> {
             let schlick = |t| match habits.fresnel {
                 Fresnel::Constant => ratio * ratio,
                 Fresnel::Share(share) => share,
+                Fresnel::Incoming => {
+                    let rest = 1.0 - ray.dir().dot(n).abs();
+                    let r0 = ratio * ratio;
+                    r0 + (1.0 - r0) * rest * rest * rest * rest * rest
+                }
                 _ => {
                     let zero = leaving && self.world.rules.has(Compat::ExitR0);
                     fresnel_share(ray.dir(), n, t, (here, there), zero)
@@ -386,6 +435,10 @@ impl<'w> Pupil<'w> {
         if self.settings.reflection && !habits.no_mirror {
             let full = habits.mirror_in_full && reflective != Color::ZERO;
             let weight = if full { Color::ONE } else { reflective };
+            let weight = match habits.times_diffuse {
+                true => weight * parts.iter().map(|p| p.share * self.world.diffuse_color(p.phong, surface)).sum::<Color>(),
+                false => weight,
+            };
             color += self.bounce(surface, mirrored, weight, path.clone());
         }
         if let Some(transmitted) = transmitted.filter(|_| self.settings.refraction && !habits.no_glass) {

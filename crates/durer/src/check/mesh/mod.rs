@@ -8,6 +8,7 @@ use super::scout::Scout;
 use crate::camera::Lens;
 use crate::describe::FileName;
 use crate::diag::{Diagnostic, Diagnostics, Span};
+use crate::dialect::Compat;
 use crate::format::read_mesh;
 use crate::math::Aabb;
 use crate::scene::{Group, Node, Object};
@@ -263,6 +264,60 @@ pub(super) fn large_faces<'s>(scout: &Scout<'s>) -> Vec<(&'s str, usize, usize, 
     scout.meshes().iter().filter_map(one).collect()
 }
 
+/// Mesh files of which the year's program loses the last line, or gives normals to other vertices than the file says.
+pub(super) fn misread(scout: &Scout) -> Vec<Finding> {
+    let rules = &scout.world().rules;
+    let mut found = Vec::new();
+    for mesh in scout.meshes() {
+        let Some(bytes) = scout.subject.files.bytes(mesh.file).filter(|_| mesh.name.path.ends_with(".obj")) else { continue };
+        let last = bytes.rsplit(|b| *b == b'\n').next().unwrap_or_default();
+        if rules.has(Compat::LostLastLine) && (last.starts_with(b"f ") || last.starts_with(b"v ")) {
+            let start = (bytes.len() - last.len()) as u32;
+            let span = Span { file: mesh.file, start, end: bytes.len() as u32 };
+            let end = Span { start: span.end, ..span };
+            let diagnostic = Diagnostic::warning(format!("the last line of `{}` has no end", mesh.name.path))
+                .at(span)
+                .related(mesh.name.span, "the mesh is shown here")
+                .effect("this year's program loses that line: a face is missing, and there is a hole")
+                .help("end the file with an end of line")
+                .fix(end, "\n");
+            found.push(Finding::from(diagnostic));
+        }
+        if rules.has(Compat::NormalsByVertex)
+            && let Some(span) = other_normal(bytes, mesh.file)
+        {
+            let diagnostic = Diagnostic::warning(format!("faces of `{}` give corners normals of other numbers than their vertices", mesh.name.path))
+                .at(span)
+                .label("the first of them")
+                .related(mesh.name.span, "the mesh is shown here")
+                .effect("this year's program takes normal i for vertex i, whatever faces say: the shading is wrong")
+                .help("write one `vn` for each `v`, in the same order, and faces as `f 1//1 2//2 3//3`; or leave the `vn` out");
+            found.push(Finding::from(diagnostic));
+        }
+    }
+    found
+}
+
+/// The first corner of a face whose normal has another number than its vertex.
+fn other_normal(bytes: &[u8], file: u32) -> Option<Span> {
+    let mut start = 0;
+    for line in bytes.split_inclusive(|b| *b == b'\n') {
+        if line.starts_with(b"f ") {
+            let text = String::from_utf8_lossy(line);
+            let odd = |corner: &str| {
+                let mut parts = corner.split('/');
+                matches!((parts.next(), parts.nth(1)), (Some(v), Some(n)) if !n.is_empty() && v != n)
+            };
+            if text.split_ascii_whitespace().skip(1).any(odd) {
+                let end = start + line.trim_ascii_end().len();
+                return Some(Span { file, start: start as u32, end: end as u32 });
+            }
+        }
+        start += line.len();
+    }
+    None
+}
+
 /// Triangles that wind the other way than their neighbours.
 pub(super) fn winding(scout: &Scout) -> Vec<Finding> {
     let mut found = Vec::new();
@@ -290,13 +345,22 @@ pub(super) fn inside_out(scout: &Scout) -> Vec<Finding> {
         scout.meshes().iter().filter(|mesh| mesh.is_inside_out() && !mesh.is_room(scout) && !mesh.is_hollow(scout))
     {
         let by_file = mesh.given.is_some();
+        let seen = scout.seen().filter(|(_, seen)| mesh.objects.iter().any(|o| scout.object_span(seen.object).start == o.span.start));
+        let most = seen.count() * 2 > scout.seen().count();
         let diagnostic = Diagnostic::warning(format!("the normals of `{}` point inwards", mesh.name.path))
             .at(mesh.name.span)
             .effect("a tracer that does not turn them shades it as from inside, black; as glass it bends light the wrong way")
             .help(if by_file { "turn its `vn` vectors round" } else { "let its faces go round counter-clockwise, seen from outside" });
-        found.push(Finding::from(diagnostic));
+        found.push(Finding::from(diagnostic).whole(most));
     }
     found
+}
+
+/// Whether an object shows a mesh that is inside out, which is told of as such.
+pub(super) fn shows_inside_out(scout: &Scout, object: u32) -> bool {
+    let span = scout.object_span(object);
+    let turned = scout.meshes().iter().filter(|mesh| mesh.is_inside_out() && !mesh.is_room(scout) && !mesh.is_hollow(scout));
+    turned.into_iter().any(|mesh| mesh.objects.iter().any(|own| own.span.start == span.start))
 }
 
 /// Normals in a file that contradict its faces, are missing on some, or are no directions.

@@ -228,4 +228,68 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "R0 = 0 on the way out",
         |v, _| v.toggle(crate::dialect::Compat::ExitR0),
     ),
+    row(
+        "mirror-diffuse",
+        "reflection",
+        "mirrored light is multiplied with the diffuse colour too",
+        "color += kr * trace(p, R)",
+        "color += kd * kr * trace(p, R), or kd * (local + kr * trace(p, R))",
+        |v, _| v.habits.bounces.times_diffuse = true,
+    ),
+    row(
+        "mirror-squared",
+        "reflection",
+        "the mirror's colour counts twice",
+        "color += kr * trace(p, R)",
+        "color += kr * kr * trace(p, R)",
+        |v, _| v.phongs(|phong| phong.reflective *= phong.reflective),
+    ),
+    row(
+        "glass-squared",
+        "refraction",
+        "the glass's colour counts twice",
+        "color += kt * trace(p, T)",
+        "color += kt * kt * trace(p, T)",
+        |v, _| v.phongs(|phong| phong.transparent *= phong.transparent),
+    ),
+    row(
+        "fresnel-incoming",
+        "fresnel",
+        "Schlick's formula takes the angle of the incoming ray also where that leaves the glass",
+        "c = cosine on the side of air",
+        "c = dot(-d, N) always",
+        |v, _| v.habits.bounces.fresnel = Fresnel::Incoming,
+    ),
+    row(
+        "root-added",
+        "refraction",
+        "the root of Snell's law has the wrong sign",
+        "T = eta d + (eta c - sqrt(1 - eta^2 (1 - c^2))) N",
+        "T = eta d + (eta c + sqrt(1 - eta^2 (1 - c^2))) N",
+        |v, _| v.habits.bounces.glass = Glass::RootAdded,
+    ),
+    row(
+        "mirror-factor",
+        "reflection",
+        "mirrored light counts {} times",
+        "color += kr * trace(p, R)",
+        "color += {} * kr * trace(p, R)",
+        |v, factor| v.phongs(|phong| phong.reflective *= factor),
+    )
+    .with(Values::Numbers(&[0.5, 2.0])),
+    row(
+        "index-of-all",
+        "refraction",
+        "the index of refraction is {}, whatever the scene says",
+        "the material's index",
+        "{}",
+        |v, index| {
+            v.phongs(|phong| {
+                if phong.transparent != crate::math::Color::ZERO && phong.ior != 1.0 {
+                    phong.ior = index;
+                }
+            });
+        },
+    )
+    .with(Values::Numbers(&[1.33, 1.5, 2.0])),
 ];

@@ -173,6 +173,23 @@ pub(super) const MISTAKES: &[Mistake] = &[
             (v.world.frame.right, v.world.frame.up) = (right, right.cross(frame.forward));
         },
     ),
+    row(
+        "angle-without-tangent",
+        "rays",
+        "half the width of the picture is half the angle, not its tangent",
+        "tan(angle / 2)",
+        "angle / 2, in radians",
+        |v, _| scale(v, |angle| (0.5 * angle.to_radians()) / tan(0.5 * angle)),
+    ),
+    row(
+        "width",
+        "rays",
+        "the picture shows {} times as much to each side as it should",
+        "x from -tan(angle / 2) to tan(angle / 2)",
+        "another angle, or a wrong factor",
+        |v, factor| v.aim.scale *= factor,
+    )
+    .with(Values::Numbers(&[0.8, 1.2, 1.5])),
 ];
 
 fn tan(degrees: f32) -> f32 {

@@ -3,7 +3,7 @@
 use super::{Mistake, Values, row};
 use crate::light::Light;
 use crate::math::{Color, Vec3};
-use crate::mistakes::habits::{Ambient, Cosine, Fading, Half, Sum};
+use crate::mistakes::habits::{Ambient, Cosine, Fading, Half, PointLamp, ShadowWay, Sum};
 use crate::world::HighlightModel;
 
 pub(super) const MISTAKES: &[Mistake] = &[
@@ -102,7 +102,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "highlights-added",
         "specular",
-        "there are highlights, which this year's program does not have (of form {}: 0 R.L, 1 R.L where N.L > 0, 2 N.H)",
+        "there are highlights, which this year's program does not have ({by R.L|by R.L, where N.L > 0|by N.H})",
         "(nothing)",
         "color += ks * pow(max(0, R.L), s) * I",
         |v, model| v.add_highlights(model),
@@ -380,7 +380,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "shadows-black",
         "shadows",
-        "where one light is blocked, all light is missing, the ambient light too ({}: 0 but what mirrors and glass bring, 1 all)",
+        "where one light is blocked, all light is missing, the ambient light too{, but not what mirrors and glass bring|, and what mirrors and glass bring}",
         "if (occluded) continue",
         "if (occluded) return black",
         |v, all| v.habits.shadows.black = Some(all > 0.0),
@@ -447,6 +447,181 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "color = min(1, local) + kr * trace(R)",
         |v, _| v.habits.sum = Sum::ClampedLocal,
     ),
+    row(
+        "cosine-squared",
+        "diffuse",
+        "N.L is squared in the diffuse term",
+        "color += kd * max(0, N.L) * I",
+        "color += kd * pow(max(0, N.L), 2) * I",
+        |v, _| v.habits.cosine = Cosine::Squared,
+    ),
+    row(
+        "cosine-half",
+        "diffuse",
+        "the diffuse term goes around to the dark side: (N.L + 1) / 2",
+        "color += kd * max(0, N.L) * I",
+        "color += kd * (0.5 * N.L + 0.5) * I",
+        |v, _| v.habits.cosine = Cosine::Half,
+    ),
+    row(
+        "cosine-step",
+        "diffuse",
+        "the diffuse term is all or nothing: 1 where N.L > 0",
+        "color += kd * max(0, N.L) * I",
+        "if (N.L > 0) color += kd * I",
+        |v, _| v.habits.cosine = Cosine::Step,
+    ),
+    row(
+        "diffuse-over-pi",
+        "diffuse",
+        "the diffuse term is divided by pi, which this year's light is not",
+        "color += kd * max(0, N.L) * I",
+        "color += kd / pi * max(0, N.L) * I",
+        |v, _| v.habits.cosine = Cosine::OverPi,
+    ),
+    row(
+        "highlight-two-sided",
+        "specular",
+        "the highlights have lost the sign of their base: there is one on the other side too",
+        "pow(max(0, base), s)",
+        "pow(abs(base), s)",
+        |v, _| v.habits.highlights.two_sided = true,
+    ),
+    row(
+        "highlight-lightless",
+        "specular",
+        "the highlights are not multiplied with the light's colour",
+        "color += ks * pow(base, s) * I",
+        "color += ks * pow(base, s)",
+        |v, _| v.habits.highlights.lightless = true,
+    ),
+    row(
+        "highlight-white",
+        "specular",
+        "the specular colour is ignored: what has one has white highlights",
+        "ks * pow(base, s) * I, ks * trace(R)",
+        "pow(base, s) * I, trace(R)",
+        |v, _| {
+            v.phongs(|phong| {
+                if let Some((color, ..)) = &mut phong.highlight {
+                    *color = Color::ONE;
+                }
+            });
+        },
+    ),
+    row(
+        "specular-white",
+        "specular",
+        "the specular colour is ignored, in highlights and in mirrors: both are white",
+        "ks * pow(base, s) * I + ks * trace(R)",
+        "pow(base, s) * I + trace(R)",
+        |v, _| {
+            v.phongs(|phong| {
+                if let Some((color, ..)) = &mut phong.highlight {
+                    *color = Color::ONE;
+                }
+                if phong.reflective != Color::ZERO {
+                    phong.reflective = Color::ONE;
+                }
+            });
+        },
+    ),
+    row(
+        "highlight-everywhere",
+        "specular",
+        "there are highlights on surfaces that face away from the light",
+        "if (dot(N, L) > 0) color += ks * pow(max(0, N.H), s) * I",
+        "color += ks * pow(max(0, N.H), s) * I",
+        |v, _| v.habits.highlights.everywhere = true,
+    ),
+    row(
+        "point-light-negated",
+        "diffuse",
+        "the direction to point lights has the wrong sign",
+        "L = normalize(position - p)",
+        "L = normalize(p - position)",
+        |v, _| v.habits.lamps.points = PointLamp::Negated,
+    ),
+    row(
+        "point-light-position",
+        "diffuse",
+        "the position of point lights is taken as a direction{|, and negated}",
+        "L = normalize(position - p)",
+        "L = normalize(position)",
+        |v, sign| v.habits.lamps.points = if sign == 0.0 { PointLamp::Position } else { PointLamp::MinusPosition },
+    )
+    .with(Values::Only(&[0.0, 1.0])),
+    row(
+        "falloff-root",
+        "diffuse",
+        "light is divided by the root of its falloff",
+        "I = color / (a0 + a1 d + a2 d^2)",
+        "I = color / sqrt(a0 + a1 d + a2 d^2)",
+        |v, _| v.habits.lamps.fading = Fading::Root,
+    ),
+    row(
+        "shadows-ambient-any",
+        "shadows",
+        "where any light is blocked the ambient light is missing too",
+        "color = ambient * kd; if (!occluded) color += ...",
+        "if (occluded) the ambient light is taken away, or never added",
+        |v, _| v.habits.shadows.ambient_of_any = true,
+    ),
+    row(
+        "shadows-of-one-light",
+        "shadows",
+        "only light {} (counted from 0) casts shadows",
+        "for each light if (occluded) continue",
+        "a shadow ray for light {} alone",
+        |v, light| {
+            if v.world.lights.len() > 1 {
+                v.habits.shadows.only_light = Some(light as usize);
+            }
+        },
+    )
+    .with(Values::Lights),
+    row(
+        "shadows-away",
+        "shadows",
+        "shadow rays go away from the light",
+        "Ray(p, L)",
+        "Ray(p, -L)",
+        |v, _| v.habits.shadows.way = ShadowWay::Away,
+    ),
+    row(
+        "shadows-along-normal",
+        "shadows",
+        "shadow rays go along the normal, not to the light",
+        "Ray(p, L)",
+        "Ray(p, N)",
+        |v, _| v.habits.shadows.way = ShadowWay::Normal,
+    ),
+    row(
+        "shadows-not-of-glass",
+        "shadows",
+        "things that let light through cast no shadow",
+        "occluded by any hit",
+        "occluded by hits that are not transparent",
+        |v, _| v.habits.shadows.no_glass = true,
+    ),
+    row(
+        "ambient-factor",
+        "diffuse",
+        "the ambient light counts {} times",
+        "color = ambient * kd",
+        "color = {} * ambient * kd",
+        |v, factor| v.world.ambient *= factor,
+    )
+    .with(Values::Numbers(&[0.5, 2.0])),
+    row(
+        "diffuse-factor",
+        "diffuse",
+        "the lights count {} times",
+        "color += (kd * N.L + ks * ...) * I",
+        "color += {} * (kd * N.L + ks * ...) * I",
+        |v, factor| recolor(v.world.lights.iter_mut(), |color| color * factor),
+    )
+    .with(Values::Numbers(&[0.5, 0.8, 2.0])),
 ];
 
 fn recolor<'l>(lights: impl Iterator<Item = &'l mut Light>, change: impl Fn(Color) -> Color) {

@@ -13,7 +13,7 @@ use super::Variant;
 pub struct Mistake {
     /// Its keyword.
     pub name: &'static str,
-    /// What the program does, without a full stop; `{}` stands for the value.
+    /// What the program does, without a full stop; `{}` stands for the value, and `{a|b|c}` for what that chooses, from 0.
     pub words: &'static str,
     /// How the code should be.
     pub right: &'static str,
@@ -79,8 +79,20 @@ impl Mistake {
         Mistake { values, ..self }
     }
 
+    /// Whether a value lies between those with which it is tried.
+    pub fn is_fitted(&self, value: f32) -> bool {
+        matches!(self.values, Values::Numbers(numbers) if !numbers.contains(&value))
+    }
+
     /// Its words for a value.
     pub fn told(&self, value: f32) -> String {
-        self.words.replace("{}", &format!("{}", (f64::from(value) * 1000.0).round() / 1000.0))
+        let chosen = match (self.words.find('{'), self.words.find('}')) {
+            (Some(start), Some(end)) if self.words[start..end].contains('|') => {
+                let choice = self.words[start + 1..end].split('|').nth(value as usize).unwrap_or_default();
+                format!("{}{choice}{}", &self.words[..start], &self.words[end + 1..])
+            }
+            _ => self.words.to_string(),
+        };
+        chosen.replace("{}", &format!("{}", (f64::from(value) * 1000.0).round() / 1000.0))
     }
 }

@@ -3,8 +3,16 @@
 use super::{Mistake, Values, row};
 use crate::mistakes::habits::{Output, Turn};
 
-const STRAIGHT: Turn =
-    Turn { exchange: false, columns_back: false, rows_back: false, bgr: false, moved: (0, 0), black_border: false };
+const STRAIGHT: Turn = Turn {
+    exchange: false,
+    columns_back: false,
+    rows_back: false,
+    bgr: false,
+    moved: (0, 0),
+    black_border: false,
+    rolled: false,
+    halved: false,
+};
 
 /// Usual exponents; 0 is the curve of sRGB itself.
 const POWERS: Values = Values::Only(&[0.0, 2.2, 2.0, 1.8, 2.4]);
@@ -53,15 +61,15 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "shifted",
         "rays",
-        "the picture is moved by one pixel ({}: 0 up, 1 down, 2 left, 3 right; 4 to 7 the same, repeating the border)",
+        "the picture is moved by one pixel {up|down|to the left|to the right|up, repeating the border|down, repeating the border|to the left, repeating the border|to the right, repeating the border|up, and around|down, and around|to the left, and around|to the right, and around}",
         "rows and columns from 0",
         "rows or columns from 1",
         |v, way| {
             const WAYS: [(i32, i32); 4] = [(0, -1), (0, 1), (-1, 0), (1, 0)];
-            v.turn = Turn { moved: WAYS[way as usize % 4], black_border: way < 4.0, ..STRAIGHT };
+            v.turn = Turn { moved: WAYS[way as usize % 4], black_border: way < 4.0, rolled: way >= 8.0, ..STRAIGHT };
         },
     )
-    .with(Values::Only(&[0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0])),
+    .with(Values::Only(&[0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0, 11.0])),
     row("tone-mapped", "flat", "light is compressed, not cut off at 1", "min(1, c)", "c / (1 + c)", |v, _| {
         v.output = Output::Toned
     }),
@@ -107,4 +115,45 @@ pub(super) const MISTAKES: &[Mistake] = &[
         |v, power| v.output = Output::CurveLess(power),
     )
     .with(POWERS),
+    row(
+        "halved",
+        "rays",
+        "the picture has half the resolution, doubled",
+        "one ray for each pixel",
+        "one ray for two by two pixels",
+        |v, _| {
+            v.turn = Turn { halved: true, ..STRAIGHT };
+            v.aim.place = crate::math::Vec2::ONE;
+        },
+    ),
+    row("negative", "flat", "the picture is a negative: dark for bright", "c", "1 - c", |v, _| {
+        v.output = Output::Negative;
+    }),
+    row(
+        "grey",
+        "flat",
+        "the picture has no colours{|||| but red| but green| but blue}",
+        "three channels",
+        "one, three times",
+        |v, how| v.output = Output::Grey(how as u32),
+    )
+    .with(Values::Only(&[0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0])),
+    row(
+        "steps",
+        "flat",
+        "there are only {} steps of each colour",
+        "256 steps",
+        "{} steps",
+        |v, steps| v.output = Output::Steps(steps as u32),
+    )
+    .with(Values::Only(&[2.0, 3.0, 4.0, 8.0, 16.0, 32.0, 64.0])),
+    row(
+        "picture-factor",
+        "flat",
+        "the whole picture is {} times as bright as it should be",
+        "c * 255",
+        "{} * c * 255",
+        |v, factor| v.output = Output::Times(factor),
+    )
+    .with(Values::Numbers(&[0.5, 0.75, 1.3, 2.0])),
 ];

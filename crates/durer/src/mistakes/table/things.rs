@@ -61,7 +61,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "normals-smooth",
         "normals",
-        "flat meshes are shaded smooth, their corners' normals weighted by {} (0 the areas around, 1 each face alike)",
+        "flat meshes are shaded smooth, their corners' normals weighted {by the areas around|by each face alike}",
         "N = normalize(cross(b - a, c - a))",
         "N = normalize(a Na + b Nb + c Nc)",
         |v, weight| {
@@ -95,7 +95,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "normals-exchanged",
         "normals",
-        "the weights of smooth normals belong to other corners (order {})",
+        "the weights of smooth normals belong to other corners: {a b c|b c a|c a b|b a c|a c b|c b a} for a b c",
         "N = (1 - b - c) Na + b Nb + c Nc",
         "the weights or the normals in another order",
         |v, order| v.habits.mixed_otherwise = order as usize,
@@ -112,7 +112,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "other-material",
         "flat",
-        "things have the material after their own, or before it ({}: 0 after, 1 before, 2 after, but the last its own)",
+        "things have the material {after their own|before their own|after their own, but the last its own}",
         "materials[index], index from 0",
         "materials[index + 1], or - 1",
         |v, which| {
@@ -314,7 +314,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "thing-missing",
         "distance",
-        "a kind of thing is missing: {} (0 spheres, 1 planes, 2 triangles, 3 meshes)",
+        "all {spheres|planes|triangles|meshes} are missing",
         "every kind has an intersect(...)",
         "one that always returns false",
         |v, kind| {
@@ -329,7 +329,63 @@ pub(super) const MISTAKES: &[Mistake] = &[
         },
     )
     .with(Values::Only(&[0.0, 1.0, 2.0, 3.0])),
+    row(
+        "translations-ignored",
+        "transforms",
+        "translations have no effect",
+        "M = T * R * S",
+        "M without T",
+        |v, _| v.place(|ops, compat| without(ops, compat, |op| matches!(op, MatrixOp::Translate(_)))),
+    ),
+    row(
+        "scales-ignored",
+        "transforms",
+        "scales have no effect",
+        "M = T * R * S",
+        "M without S",
+        |v, _| {
+            v.place(|ops, compat| {
+                without(ops, compat, |op| matches!(op, MatrixOp::Scale(_) | MatrixOp::UniformScale(_)))
+            });
+        },
+    ),
+    row(
+        "rotations-ignored",
+        "transforms",
+        "rotations have no effect",
+        "M = T * R * S",
+        "M without R",
+        |v, _| {
+            v.place(|ops, compat| {
+                without(ops, compat, |op| {
+                    matches!(
+                        op,
+                        MatrixOp::XRotate(_) | MatrixOp::YRotate(_) | MatrixOp::ZRotate(_) | MatrixOp::Rotate(..)
+                    )
+                })
+            });
+        },
+    ),
+    row(
+        "one-material",
+        "flat",
+        "all things have the {first|last} material",
+        "materials[index]",
+        "materials[0], or the one read last",
+        |v, last| {
+            let count = v.world.materials.len().max(1) as u32;
+            let all = if last == 0.0 { 0 } else { count - 1 };
+            v.world.objects.iter_mut().for_each(|object| object.material = all);
+        },
+    )
+    .with(Values::Only(&[0.0, 1.0])),
 ];
+
+/// The product without some of its matrices.
+fn without(ops: &[MatrixOp], compat: CompatSet, left_out: fn(&MatrixOp) -> bool) -> DAffine3 {
+    let kept: Vec<MatrixOp> = ops.iter().filter(|op| !left_out(op)).copied().collect();
+    MatrixOp::product(&kept, compat)
+}
 
 /// The product with other angles of rotation.
 fn turned(ops: &[MatrixOp], compat: CompatSet, change: fn(f32) -> f32) -> DAffine3 {

@@ -1,0 +1,208 @@
+//! Lights with a beam: spotlights and measured lamps that shine past all that is seen.
+
+use super::MOST_SOUGHT;
+use super::finding::{Finding, number, percent, vector};
+use super::lights::{all_fail, useless, written};
+use super::scout::{Probe, Scout, Seen};
+use crate::diag::Diagnostic;
+use crate::light::{Emitter as _, Light};
+use crate::math::{Vec3, fp};
+use crate::scene::Spanned;
+use crate::world::World;
+
+/// A beam that holds a smaller share of what is seen holds nothing of it.
+const NOTHING: f32 = 0.005;
+/// And one that may be in radians may hold a little more.
+const LITTLE: f32 = 0.03;
+/// Beyond this share of its strongest light a point is in the beam.
+const IN_BEAM: f32 = 0.02;
+/// Narrower cones than this, in degrees, are a pencil's.
+const PENCIL: f32 = 3.2;
+
+/// Where a beam goes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Aim {
+    /// Past all that is seen.
+    Away,
+    /// At what is seen, but of that it holds next to nothing.
+    Narrow,
+}
+
+/// What a light makes at a point of the most that it could make at that distance.
+fn share(world: &World, light: usize, point: Vec3) -> f32 {
+    let lamp = &world.lights[light];
+    let Some((place, strongest)) = lamp.place() else { return 1.0 };
+    let most = world.profiles.get(light).and_then(Option::as_ref).map_or(1.0, |profile| profile.most());
+    let full = most * strongest.max_element() / (point - place).length_squared().max(f32::MIN_POSITIVE);
+    world.illuminate(light, point.as_dvec3()).color.max_element() / full.max(f32::MIN_POSITIVE)
+}
+
+fn places(scout: &Scout) -> Vec<Vec3> {
+    scout.seen().map(|(probe, seen): (&Probe, &Seen)| probe.ray.at(seen.t)).collect()
+}
+
+fn within(scout: &Scout, light: usize, places: &[Vec3]) -> f32 {
+    let held = places.iter().filter(|place| share(scout.world(), light, **place) > IN_BEAM).count();
+    held as f32 / places.len().max(1) as f32
+}
+
+/// Where the beam of a light goes, if it has one and misses what is seen.
+pub(super) fn aim(scout: &Scout, light: usize) -> Option<Aim> {
+    let angle = match &scout.world().lights[light] {
+        Light::Spot(spot) => spot.angle,
+        Light::Photometric(_) => 90.0,
+        Light::Directional(_) | Light::Point(_) => return None,
+    };
+    let places = places(scout);
+    let held = within(scout, light, &places);
+    if places.is_empty() || held > if angle <= PENCIL { LITTLE } else { NOTHING } {
+        return None;
+    }
+    Some(if angle <= PENCIL && at_something(scout, light) { Aim::Narrow } else { Aim::Away })
+}
+
+/// Whether the middle of a beam meets the scene.
+fn at_something(scout: &Scout, light: usize) -> bool {
+    let Light::Spot(spot) = &scout.world().lights[light] else { return false };
+    let ray = crate::math::Ray::new(spot.position, spot.direction.normalize_or(Vec3::NEG_Y));
+    scout.world().closest(&ray, &mut ()).is_some()
+}
+
+/// Beams that miss what is seen.
+pub(super) fn away(scout: &Scout) -> Vec<Finding> {
+    missing(scout, Aim::Away, |diagnostic, light| {
+        let place = light.value.place().map_or(Vec3::ZERO, |(place, _)| place);
+        let all = places(scout);
+        let middle = all.iter().sum::<Vec3>() / all.len().max(1) as f32;
+        let (word, direction) = match &light.value {
+            Light::Spot(spot) => ("this spotlight", spot.direction),
+            Light::Photometric(lamp) => ("this measured lamp", lamp.direction),
+            _ => return diagnostic,
+        };
+        // Turned round it is most often what was meant.
+        let turned = -direction.normalize_or(Vec3::NEG_Y);
+        let to = (middle - place).normalize_or(Vec3::NEG_Y);
+        let aimed = if turned.dot(to) > 0.7 { -direction } else { middle - place };
+        let text = vector(aimed);
+        let help = format!("`direction` is where its light goes: `direction {text}` goes to the middle of what is seen");
+        let diagnostic = Diagnostic { message: format!("{word} shines past all that is seen"), ..diagnostic };
+        match scout.value(light.span, &["direction"]) {
+            Some(value) => diagnostic.at(value).help(help).fix(value, text),
+            // What is not written is straight down.
+            None => diagnostic.help(help),
+        }
+    })
+}
+
+/// Cones that hold next to nothing of what is seen.
+pub(super) fn narrow(scout: &Scout) -> Vec<Finding> {
+    missing(scout, Aim::Narrow, |diagnostic, light| {
+        let Light::Spot(spot) = &light.value else { return diagnostic };
+        let degrees = number(spot.angle.to_degrees().round().clamp(1.0, 180.0));
+        let message = format!("the cone of this spotlight is {} degrees wide only", number(spot.angle));
+        let diagnostic = Diagnostic { message, ..diagnostic };
+        let help = format!("`angle` is in degrees, from the middle to the edge: write `angle {degrees}`, say");
+        let Some(value) = scout.value(light.span, &["angle"]) else { return diagnostic.help(help) };
+        let mut diagnostic = diagnostic.at(value).help(help).fix(value, degrees);
+        if let Some(inner) = scout.value(light.span, &["innerAngle"]).filter(|_| spot.inner_angle <= spot.angle) {
+            diagnostic = diagnostic.fix(inner, number(spot.inner_angle.to_degrees().round()));
+        }
+        diagnostic
+    })
+}
+
+fn missing(
+    scout: &Scout,
+    wanted: Aim,
+    say: impl Fn(Diagnostic, &Spanned<Light>) -> Diagnostic,
+) -> Vec<Finding> {
+    let lights = scout.world().lights.len().min(MOST_SOUGHT);
+    let mut found = Vec::new();
+    for number in (0..lights).filter(|&light| scout.aims()[light] == Some(wanted)) {
+        let (Some(light), Some((diagnostic, span))) = (written(scout, number), useless(scout, number, String::new()))
+        else {
+            continue;
+        };
+        let held = percent((1e4 * within(scout, number, &places(scout))) as usize, 10_000);
+        let mut diagnostic = say(diagnostic.at(span), light);
+        if wanted == Aim::Narrow {
+            diagnostic = diagnostic.label(format!("{held} of what is seen is in its cone"));
+        }
+        found.push(Finding::from(diagnostic).whole(all_fail(scout)));
+    }
+    found
+}
+
+/// Spotlights whose inner cone is wider than the outer one.
+pub(super) fn inner_angle(scout: &Scout) -> Vec<Finding> {
+    let lights = scout.subject.scene.lights.iter().flatten();
+    let say = |light: &Spanned<Light>| {
+        let Light::Spot(spot) = &light.value else { return None };
+        if spot.inner_angle <= spot.angle {
+            return None;
+        }
+        let (angle, inner) = (number(spot.angle), number(spot.inner_angle));
+        let diagnostic = Diagnostic::warning(format!("the `innerAngle` of {inner} is more than the `angle` of {angle}"))
+            .effect(format!("the cone ends at {angle} degrees, at once and not softly"))
+            .help(format!("light fades between the two: `angle {inner} innerAngle {angle}`"));
+        Some(Finding::from(
+            match (scout.value(light.span, &["angle"]), scout.value(light.span, &["innerAngle"])) {
+                (Some(a), Some(b)) => diagnostic.at(b).fix(a, inner).fix(b, angle),
+                _ => diagnostic.at(light.span),
+            },
+        ))
+    };
+    lights.filter_map(say).take(MOST_SOUGHT).collect()
+}
+
+/// Lights so near to a surface that they light a spot of it, and little else: how near, and which.
+fn touching(scout: &Scout, light: usize) -> Option<(f32, u32)> {
+    let Light::Point(point) = &scout.world().lights[light] else { return None };
+    point.attenuation.filter(|a| a.z > 0.0 || a.y > 0.0)?;
+    let world = scout.world();
+    let steps = (0..26).map(|i| {
+        let (sin, cos) = fp::sin_cos_degrees(f64::from(i) * 137.508);
+        let z = 1.0 - 2.0 * (f64::from(i) + 0.5) / 26.0;
+        let r = (1.0 - z * z).sqrt();
+        Vec3::new((r * cos) as f32, (r * sin) as f32, z as f32)
+    });
+    let axes = [Vec3::X, Vec3::NEG_X, Vec3::Y, Vec3::NEG_Y, Vec3::Z, Vec3::NEG_Z];
+    let rays = axes.into_iter().chain(steps).map(|dir| crate::math::Ray::new(point.position, dir));
+    let hits = rays.filter_map(|ray| world.closest(&ray, &mut ()));
+    hits.map(|hit| (hit.t, hit.object)).min_by(|a, b| a.0.total_cmp(&b.0))
+}
+
+/// Fading lights just above a surface.
+pub(super) fn near(scout: &Scout) -> Vec<Finding> {
+    let places = places(scout);
+    let mut found = Vec::new();
+    for light in 0..scout.world().lights.len().min(super::MOST_ALIKE) {
+        let Some((near, object)) = touching(scout, light) else { continue };
+        let Some((lamp, Light::Point(point))) = written(scout, light).map(|lamp| (lamp, &lamp.value)) else { continue };
+        let mut away: Vec<f32> = places.iter().map(|place| (*place - point.position).length()).collect();
+        away.sort_by(f32::total_cmp);
+        let lit: Vec<f32> =
+            scout.seen().filter_map(|(_, seen)| seen.by(light)).map(|lit| lit.adds.max_element()).collect();
+        let bright = lit.iter().filter(|adds| **adds > 0.04).count();
+        // Light along a large surface is what is lost: things that stand for lamps are small.
+        let along: Vec<f32> = scout
+            .seen()
+            .filter(|(_, seen)| seen.object == object)
+            .filter_map(|(_, seen)| Some(seen.by(light)?.cosine))
+            .collect();
+        let grazing = along.iter().filter(|cosine| cosine.abs() < 0.15).count() * 10 > along.len() * 7;
+        let large = along.len() * 4 > scout.seen().count();
+        if away.is_empty() || !grazing || !large || near > 0.03 * away[away.len() / 2] || bright * 5 > lit.len() {
+            continue;
+        }
+        let middle = away[away.len() / 2];
+        let diagnostic =
+            Diagnostic::warning(format!("this light is {} from the {}", number(near), scout.object(object)))
+                .related(scout.object_span(object), "so near")
+                .effect("one bright spot is below it, and hardly anything else is lit")
+                .help(format!("what is seen is {} from it on the mean: move it away from there", number(middle)));
+        let only = scout.world().lights.len() == 1;
+        found.push(Finding::from(scout.at_value(diagnostic, lamp.span, &["position"])).whole(only));
+    }
+    found
+}

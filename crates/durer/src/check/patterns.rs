@@ -1,0 +1,105 @@
+//! Patterns of which nothing is seen: of one part, or finer than a pixel.
+
+use super::finding::{Finding, percent};
+use super::scout::Scout;
+use super::MOST_SOUGHT;
+use crate::diag::Diagnostic;
+use crate::material::{ColorNoise, Pattern, Solid};
+use crate::math::Vec3;
+use crate::scene::Material as Written;
+use crate::world::{Material, World};
+
+/// Steps within a pixel in which a pattern is looked at.
+const STEPS: u32 = 24;
+/// So many changes within a pixel are noise.
+const MOST_CHANGES: usize = 3;
+/// Fewer places tell nothing.
+const FEWEST: usize = 20;
+
+/// What is looked at of a pattern: its share of the first part at a place of the world.
+enum Look<'w> {
+    Solid(&'w Solid, &'w glam::DAffine3),
+    Noise(&'w ColorNoise),
+}
+
+impl Look<'_> {
+    fn of(world: &World, material: u32) -> Option<Look<'_>> {
+        match world.materials.get(material as usize)? {
+            Material::Solid(Solid::Mix(_), _) => None,
+            Material::Solid(solid, to_pattern) => Some(Look::Solid(solid, to_pattern)),
+            Material::Phong(phong) => phong.noise.as_ref().map(Look::Noise),
+        }
+    }
+
+    fn at(&self, place: Vec3) -> f32 {
+        match self {
+            Look::Solid(solid, to_pattern) => solid.weight(to_pattern.transform_point3(place.as_dvec3()).as_vec3()),
+            Look::Noise(noise) => {
+                let range = noise.color1 - noise.color2;
+                let most = range.abs().max_element().max(1e-6);
+                (noise.color(place) - noise.color2).abs().max_element() / most
+            }
+        }
+    }
+}
+
+/// Patterns of which the picture shows one part, or only noise.
+pub(super) fn scale(scout: &Scout) -> Vec<Finding> {
+    let world = scout.world();
+    let mut found = Vec::new();
+    for (number, written) in scout.subject.scene.materials.iter().enumerate().take(MOST_SOUGHT) {
+        let Some(look) = Look::of(world, number as u32) else { continue };
+        // Its own hits alone: a pattern inside of another is seen in part.
+        let places: Vec<(Vec3, f32)> = scout
+            .seen()
+            .filter(|(_, seen)| seen.material as usize == number)
+            .map(|(probe, seen)| (probe.ray.at(seen.t), seen.t * probe.ray.dir.length()))
+            .collect();
+        if places.len() < FEWEST {
+            continue;
+        }
+        let shares: Vec<f32> = places.iter().map(|(place, _)| look.at(*place)).collect();
+        let (least, most) = shares.iter().fold((f32::MAX, f32::MIN), |(a, b), s| (a.min(*s), b.max(*s)));
+        let width = pixel(scout);
+        let across = [Vec3::new(0.8, 0.36, 0.48), Vec3::new(-0.48, 0.8, 0.36)];
+        let noisy = |&(place, away): &(Vec3, f32)| {
+            across.iter().all(|way| {
+                let step = |i: u32| look.at(place + *way * (width * away * i as f32 / STEPS as f32)) > 0.5;
+                (1..STEPS).filter(|&i| step(i) != step(i - 1)).count() > MOST_CHANGES
+            })
+        };
+        let fine = places.iter().filter(|place| noisy(place)).count();
+        let (message, effect, help) = if most - least < 1e-3 {
+            (
+                "only one part of this pattern is in the picture".to_string(),
+                "no pattern is seen: it is of one colour",
+                match &written.value {
+                    Written::Solid(Solid::Checkerboard(_), _) => {
+                        "its cells are larger than all that is seen: look at the `Scale` of its `Transform`"
+                    }
+                    _ => "look at its `frequency`, `amplitude` and `Transform`",
+                },
+            )
+        } else if fine * 10 > places.len() * 9 {
+            (
+                "this pattern is finer than a pixel".to_string(),
+                "it is noise, or of one colour on the mean",
+                "look at the `Scale` of its `Transform`, or its `frequency`: sizes are in units of the scene",
+            )
+        } else {
+            continue;
+        };
+        let mut diagnostic = Diagnostic::warning(message).at(written.span).effect(effect).help(help);
+        diagnostic = diagnostic.label(format!("on {} of what is seen", percent(places.len(), scout.seen().count())));
+        found.push(Finding::from(diagnostic));
+    }
+    found
+}
+
+/// About how wide a pixel is at distance 1.
+fn pixel(scout: &Scout) -> f32 {
+    let [a, b] = [0, scout.probes.len() - 1].map(|i| &scout.probes[i]);
+    let (p, q) = (a.pixel, b.pixel);
+    let apart = (p.0.abs_diff(q.0).pow(2) + p.1.abs_diff(q.1).pow(2)) as f32;
+    (a.ray.dir.normalize_or_zero() - b.ray.dir.normalize_or_zero()).length() / apart.sqrt().max(1.0)
+}

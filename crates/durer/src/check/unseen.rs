@@ -1,0 +1,228 @@
+//! What is not in the picture: beside it, hidden, far away, too small, or flat.
+
+use super::MOST_SOUGHT;
+use super::finding::{Finding, counted, number, vector};
+use super::scout::Scout;
+use super::sight::Sight;
+use super::view::pixels;
+use crate::camera::Lens;
+use crate::diag::{Diagnostic, Severity};
+use crate::math::{Aabb, Vec3};
+use crate::scene::Node;
+use crate::shape::Primitive;
+use crate::world::{Geometry, Material, Object};
+
+/// Of more objects, some may be out of sight.
+const FEW_OBJECTS: usize = 8;
+
+/// Objects of which nothing is in the picture.
+pub(super) fn unseen(scout: &Scout) -> Vec<Finding> {
+    let sights = scout.sights();
+    let nothing: Vec<u32> = nothing_of(scout);
+    // In a large scene something is always beside the picture or behind something.
+    let mut found = far_away(scout);
+    let missing = sights.iter().filter(|sight| matches!(sight, Sight::Outside | Sight::Hidden(_))).count();
+    if sights.len() > FEW_OBJECTS && missing * 3 < sights.len() {
+        return found;
+    }
+    let all = (0..sights.len() as u32).filter(|i| !nothing.contains(i));
+    let out: Vec<u32> = all.clone().filter(|&i| sights[i as usize] == Sight::Outside).collect();
+    let hidden: Vec<(u32, u32)> = all
+        .filter_map(|i| match sights[i as usize] {
+            // What is behind glass, or in a mirror's sight, is seen.
+            Sight::Hidden(by) if !is_glass(scout, by) && found.is_empty() => Some((i, by)),
+            _ => None,
+        })
+        // Two at one place are told of as that.
+        .filter(|&(i, by)| !super::objects::same(&scout.world().objects[i as usize], &scout.world().objects[by as usize]))
+        .collect();
+    // Where most of a small scene is lost, that is no chance.
+    let bounded = scout.world().objects.iter().filter(|object| object.bounds().is_some()).count();
+    let most = |lost: usize| lost >= 2 && lost * 2 >= bounded && sights.len() <= FEW_OBJECTS;
+    let severity = |lost: usize| if most(lost) { Severity::Warning } else { Severity::Note };
+    if let Some(&first) = out.first().filter(|_| found.is_empty()) {
+        let message = match out.len() {
+            1 => format!("the {} is not in the picture", scout.object(first)),
+            n => format!(
+                "{} are not in the picture; the first is the {}",
+                counted(n, "object", "objects"),
+                scout.object(first)
+            ),
+        };
+        // What is out of the picture may stand there for its shadow, or its light.
+        let diagnostic = Diagnostic::note(message)
+            .at(scout.object_span(first))
+            .effect("the camera does not look where it is")
+            .help("look at its place and the transforms around it");
+        found.push(Finding::from(diagnostic));
+    }
+    if let Some(&(first, by)) = hidden.first() {
+        let more =
+            if hidden.len() == 1 { String::new() } else { format!("; {} more are hidden too", hidden.len() - 1) };
+        let inside = holds(scout, by, first);
+        let (a, b) = (scout.object(first), scout.object(by));
+        let message = match inside {
+            true => format!("the {a} is inside the {b}{more}"),
+            false => format!("the {a} is hidden by the {b}{more}"),
+        };
+        let help = match &scout.world().objects[by as usize].geometry {
+            Geometry::Primitive(Primitive::Plane(_)) => {
+                "it is behind the plane, which stands where p · normal = offset: is the sign of `offset` right?"
+            }
+            _ if inside => "move it out, or make the other smaller, or move that",
+            _ => "is it on the wrong side of the other, or the other in the way?",
+        };
+        let diagnostic = Diagnostic { severity: severity(hidden.len()), ..Diagnostic::note(message) }
+            .at(scout.object_span(first))
+            .related(scout.object_span(by), if inside { "around it" } else { "in front of it" })
+            .effect("nothing of it is seen")
+            .help(help);
+        found.push(Finding::from(diagnostic));
+    }
+    found
+}
+
+/// Things of which there is nothing: solids that are empty, triangles and meshes without area.
+fn nothing_of(scout: &Scout) -> Vec<u32> {
+    let mut nothing = super::objects::empty_solids(scout);
+    let flat = |[a, b, c]: [Vec3; 3]| (b - a).cross(c - a).length_squared() == 0.0;
+    let without = scout.world().objects.iter().enumerate().filter(|(i, object)| {
+        scout.sights()[*i] != Sight::Seen
+            && match &object.geometry {
+                Geometry::Primitive(Primitive::Triangle(triangle)) => flat(triangle.corners()),
+                Geometry::Mesh(tree) => (0..tree.mesh.len().min(1000)).all(|i| flat(tree.mesh.corners(i as u32))),
+                _ => false,
+            }
+    });
+    nothing.extend(without.map(|(i, _)| i as u32));
+    nothing
+}
+
+/// Whether one object is wholly inside another, as far as its middle tells.
+fn holds(scout: &Scout, outer: u32, inner: u32) -> bool {
+    let middle = scout.world().objects[inner as usize].bounds().map(|bounds| bounds.center());
+    middle.is_some_and(|middle| super::solid::around(scout.world(), middle).contains(&outer))
+}
+
+/// Things smaller than a pixel.
+pub(super) fn tiny(scout: &Scout) -> Vec<Finding> {
+    let objects = &scout.world().objects;
+    let small = |(index, object): (usize, &Object)| {
+        let bounds = object.bounds().filter(|bounds| !bounds.is_empty())?;
+        let size = pixels(scout, bounds).filter(|size| *size < 1.5)?;
+        let looked = super::sight::rays_to(scout, bounds.center());
+        (!looked.is_empty() && scout.sights()[index] != Sight::Outside).then_some((index as u32, size, bounds))
+    };
+    let all: Vec<_> = objects.iter().enumerate().take(MOST_SOUGHT).filter_map(small).collect();
+    // A swarm of tiny things is one; and all that is tiny together is told of together.
+    if objects.len() > FEW_OBJECTS || all.len() * 2 > objects.len() || scout.seen().next().is_none() {
+        return Vec::new();
+    }
+    let say = |(index, size, bounds): (u32, f32, Aabb)| {
+        let diagnostic = Diagnostic::warning(format!("the {} is {} pixels wide", scout.object(index), number(size)))
+            .at(scout.object_span(index))
+            .effect("nothing of it is seen, or a speck")
+            .help(format!(
+                "its largest side is {}: look at its size and the `{}` around it",
+                number(bounds.size().max_element()),
+                scout.word("Scale", "scale")
+            ));
+        Finding::from(diagnostic)
+    };
+    all.into_iter().map(say).collect()
+}
+
+/// One thing just before the camera that covers most of the picture and others with it.
+pub(super) fn in_the_way(scout: &Scout) -> Vec<Finding> {
+    let objects = &scout.world().objects;
+    let mut counts = vec![0; objects.len()];
+    let mut nearest = vec![f32::INFINITY; objects.len()];
+    for (probe, seen) in scout.seen() {
+        counts[seen.object as usize] += 1;
+        nearest[seen.object as usize] = nearest[seen.object as usize].min(seen.t * probe.ray.dir.length());
+    }
+    let Some(front) = (0..objects.len()).max_by_key(|&i| counts[i]) else { return Vec::new() };
+    if counts[front] * 10 < scout.probes.len() * 5 || is_glass(scout, front as u32) || !super::view::hidden(scout).is_empty() {
+        return Vec::new();
+    }
+    let Some(bounds) = objects[front].bounds() else { return Vec::new() };
+    // A room or a table holds the others; what is in the way is far before them, and hides nearly all of them.
+    let eye = scout.world().camera.pose().center;
+    let others: Vec<usize> = (0..objects.len()).filter(|&i| i != front && objects[i].bounds().is_some()).collect();
+    let away = |i: &usize| objects[*i].bounds().map_or(f32::INFINITY, |own| (own.center() - eye).length());
+    let nearest_other = others.iter().map(away).fold(f32::INFINITY, f32::min);
+    if others.is_empty() || objects.len() > FEW_OBJECTS || nearest[front] > 0.4 * nearest_other {
+        return Vec::new();
+    }
+    let (mut looked, mut covered) = (0, 0);
+    for &other in &others {
+        let rays = super::sight::points(&objects[other]).into_iter().flat_map(|point| super::sight::rays_to(scout, point));
+        for hit in rays.filter_map(|ray| scout.world().closest(&ray, &mut ())) {
+            looked += usize::from(hit.object as usize == other || hit.object as usize == front);
+            covered += usize::from(hit.object as usize == front);
+        }
+    }
+    if looked == 0 || covered * 10 < looked * 7 || bounds.holds(eye) {
+        return Vec::new();
+    }
+    let diagnostic = Diagnostic::warning(format!("the {} covers most of the picture", scout.object(front as u32)))
+        .at(scout.object_span(front as u32))
+        .label(format!("{} of it", super::finding::percent(counts[front], scout.probes.len())))
+        .effect(format!("of the others, next to nothing is seen: it covers {} of them", super::finding::percent(covered, looked)))
+        .help(format!("it is {} before the camera: move it away or make it smaller, or go back", number(nearest[front])));
+    vec![Finding::from(diagnostic).whole(true)]
+}
+
+/// Landscapes without heights.
+pub(super) fn flat_field(scout: &Scout) -> Vec<Finding> {
+    let mut found = Vec::new();
+    let mut all: Vec<&crate::scene::Object> = scout.subject.scene.root.iter().flat_map(|root| &root.objects).collect();
+    while let Some(object) = all.pop().filter(|_| found.len() < MOST_SOUGHT) {
+        match &object.node {
+            Node::Group(group) => all.extend(&group.objects),
+            Node::Transform(_, inner) => all.push(inner),
+            Node::Solid(_, parts) => all.extend(parts),
+            Node::HeightField(field) => {
+                let size = field.max - field.min;
+                let wide = size.x.max(size.z);
+                if size.y > 0.002 * wide {
+                    continue;
+                }
+                let max = vector(Vec3::new(field.max.x, field.min.y + 0.2 * wide, field.max.z));
+                let diagnostic = Diagnostic::warning(format!("this landscape is {} wide and {} high", number(wide), number(size.y)))
+                    .effect("it is flat: nothing is seen of its hills")
+                    .help(format!("heights go from `min` to `max` along y: `max {max}`, say"));
+                let diagnostic = diagnostic.fix_at(scout.value(object.span, &["max"]), max);
+                found.push(Finding::from(scout.at_value(diagnostic, object.span, &["max"])));
+            }
+            _ => {}
+        }
+    }
+    found
+}
+
+/// Whether light goes through an object.
+fn is_glass(scout: &Scout, object: u32) -> bool {
+    let world = scout.world();
+    let phong =
+        |material: &Material| matches!(material, Material::Phong(phong) if phong.transparent.max_element() > 0.0);
+    world.materials.get(world.objects[object as usize].material as usize).is_some_and(phong)
+}
+
+/// Objects far from all that is seen: thrown away by a transform, say.
+fn far_away(scout: &Scout) -> Vec<Finding> {
+    let both = || scout.world().objects.iter().zip(scout.sights()).enumerate();
+    let seen = both().filter(|(_, (_, sight))| **sight == Sight::Seen).filter_map(|(_, (object, _))| object.bounds());
+    let core = seen.fold(Aabb::EMPTY, Aabb::union);
+    let far = |bounds: Aabb| (bounds.center() - core.center()).length() > 10.0 * core.size().length();
+    let out = |sight: &Sight| matches!(sight, Sight::Outside | Sight::Hidden(_));
+    let lost = both().find(|(_, (object, sight))| out(sight) && object.bounds().is_some_and(far));
+    let Some((index, (object, _))) = lost.filter(|_| !core.is_empty()) else { return Vec::new() };
+    let place = object.bounds().map_or_else(String::new, |bounds| vector(bounds.center()));
+    let diagnostic =
+        Diagnostic::warning(format!("the {} is far from everything else, at {place}", scout.object(index as u32)))
+            .at(object.span)
+            .effect("it is not seen")
+            .help("look at its place and the transforms around it");
+    vec![Finding::from(diagnostic)]
+}
