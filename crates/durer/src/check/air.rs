@@ -36,14 +36,15 @@ pub(super) fn thick_fog(scout: &Scout) -> Vec<Finding> {
     if even && !ways.is_empty() && swallowed * 20 > scout.seen().count() * 19 {
         let middle = ways[ways.len() / 2];
         let some = number(0.5 / middle);
-        let diagnostic = Diagnostic::warning(format!("this fog lets nothing through: its extinction is {}", number(extinction)))
-            .effect(format!(
-                "of light that goes straight on, a hundredth is left after {}; what is seen is {} away",
-                number(4.6 / extinction),
-                number(middle)
-            ))
-            .label(format!("hides {} of what is seen", percent(swallowed, scout.seen().count())))
-            .help(format!("`extinction` is per unit of the scene: `extinction {some}`, say"));
+        let diagnostic =
+            Diagnostic::warning(format!("this fog lets nothing through: its extinction is {}", number(extinction)))
+                .effect(format!(
+                    "of light that goes straight on, a hundredth is left after {}; what is seen is {} away",
+                    number(4.6 / extinction),
+                    number(middle)
+                ))
+                .label(format!("hides {} of what is seen", percent(swallowed, scout.seen().count())))
+                .help(format!("`extinction` is per unit of the scene: `extinction {some}`, say"));
         let value = scout.value(span, &["extinction"]);
         let diagnostic = diagnostic.fix_at(value, some);
         found.push(Finding::from(scout.at_value(diagnostic, span, &["extinction"])).whole(true));

@@ -84,7 +84,8 @@ pub(super) fn away(scout: &Scout) -> Vec<Finding> {
         let to = (middle - place).normalize_or(Vec3::NEG_Y);
         let aimed = if turned.dot(to) > 0.7 { -direction } else { middle - place };
         let text = vector(aimed);
-        let help = format!("`direction` is where its light goes: `direction {text}` goes to the middle of what is seen");
+        let help =
+            format!("`direction` is where its light goes: `direction {text}` goes to the middle of what is seen");
         let diagnostic = Diagnostic { message: format!("{word} shines past all that is seen"), ..diagnostic };
         match scout.value(light.span, &["direction"]) {
             Some(value) => diagnostic.at(value).help(help).fix(value, text),
@@ -111,11 +112,7 @@ pub(super) fn narrow(scout: &Scout) -> Vec<Finding> {
     })
 }
 
-fn missing(
-    scout: &Scout,
-    wanted: Aim,
-    say: impl Fn(Diagnostic, &Spanned<Light>) -> Diagnostic,
-) -> Vec<Finding> {
+fn missing(scout: &Scout, wanted: Aim, say: impl Fn(Diagnostic, &Spanned<Light>) -> Diagnostic) -> Vec<Finding> {
     let lights = scout.world().lights.len().min(MOST_SOUGHT);
     let mut found = Vec::new();
     for number in (0..lights).filter(|&light| scout.aims()[light] == Some(wanted)) {
@@ -142,15 +139,14 @@ pub(super) fn inner_angle(scout: &Scout) -> Vec<Finding> {
             return None;
         }
         let (angle, inner) = (number(spot.angle), number(spot.inner_angle));
-        let diagnostic = Diagnostic::warning(format!("the `innerAngle` of {inner} is more than the `angle` of {angle}"))
-            .effect(format!("the cone ends at {angle} degrees, at once and not softly"))
-            .help(format!("light fades between the two: `angle {inner} innerAngle {angle}`"));
-        Some(Finding::from(
-            match (scout.value(light.span, &["angle"]), scout.value(light.span, &["innerAngle"])) {
-                (Some(a), Some(b)) => diagnostic.at(b).fix(a, inner).fix(b, angle),
-                _ => diagnostic.at(light.span),
-            },
-        ))
+        let diagnostic =
+            Diagnostic::warning(format!("the `innerAngle` of {inner} is more than the `angle` of {angle}"))
+                .effect(format!("the cone ends at {angle} degrees, at once and not softly"))
+                .help(format!("light fades between the two: `angle {inner} innerAngle {angle}`"));
+        Some(Finding::from(match (scout.value(light.span, &["angle"]), scout.value(light.span, &["innerAngle"])) {
+            (Some(a), Some(b)) => diagnostic.at(b).fix(a, inner).fix(b, angle),
+            _ => diagnostic.at(light.span),
+        }))
     };
     lights.filter_map(say).take(MOST_SOUGHT).collect()
 }

@@ -119,7 +119,8 @@ pub(super) fn no_bounces(scout: &Scout) -> Vec<Finding> {
         .help(help);
     // Where that year's program makes none unless it is asked, nobody has left them out.
     let seen: usize = all.iter().map(|(i, ..)| rays(scout, *i)).sum();
-    let black: usize = all.iter().filter(|(.., phong)| phong.diffuse.max_element() < 0.1).map(|(i, ..)| rays(scout, *i)).sum();
+    let black: usize =
+        all.iter().filter(|(.., phong)| phong.diffuse.max_element() < 0.1).map(|(i, ..)| rays(scout, *i)).sum();
     let usual = none && scout.world().rules.bounces == 0 && black * 10 < scout.seen().count();
     let whole = !usual && seen * 2 > scout.seen().count();
     let finding = Finding::from(if usual { Diagnostic { severity: Severity::Note, ..diagnostic } } else { diagnostic });
@@ -143,12 +144,12 @@ pub(super) fn odd_index(scout: &Scout) -> Vec<Finding> {
             _ if phong.ior > 4.0 || phong.ior < 0.5 => diagnostic
                 .effect("light is bent as by nothing that there is, and hardly gets through")
                 .help("water has 1.33, glass 1.5, diamond 2.4; it is the index inside, with 1 outside"),
-            Some(_) if phong.ior < 0.95 => diagnostic
-                .effect("light is bent the wrong way, as in a bubble of air in glass")
-                .help(format!(
+            Some(_) if phong.ior < 0.95 => {
+                diagnostic.effect("light is bent the wrong way, as in a bubble of air in glass").help(format!(
                     "it is the index inside, with 1 outside: 1 / {index} is {}; water has 1.33, glass 1.5",
                     super::finding::number(1.0 / phong.ior)
-                )),
+                ))
+            }
             Some(_) if (phong.ior - 1.0).abs() < 1e-3 => {
                 let unseen = phong.fresnel || seen_itself.max_element() < 0.1 && phong.transparent.min_element() > 0.9;
                 let severity = if unseen { Severity::Warning } else { Severity::Note };
@@ -201,7 +202,8 @@ fn all_colors(scout: &Scout) -> Vec<Named> {
     for (number, (written, light)) in scout.subject.scene.lights.iter().flatten().zip(&scout.world().lights).enumerate()
     {
         // A light that fades may be as strong as it must, so that not too much of it arrives.
-        let fades = !matches!(light, Light::Directional(_)) && !matches!(light, Light::Point(point) if point.attenuation.is_none());
+        let fades = !matches!(light, Light::Directional(_))
+            && !matches!(light, Light::Point(point) if point.attenuation.is_none());
         // Of lamps in candela nobody expects 1.
         let candela = matches!(light, Light::Spot(_) | Light::Photometric(_));
         let arrives = scout.seen().filter_map(|(_, seen)| seen.by(number)).map(|lit| lit.arrives.max_element());
@@ -324,7 +326,11 @@ fn dull_by_color(scout: &Scout) -> Vec<Finding> {
             let index = own.index_of_refraction.or(own.refraction_index).unwrap_or(1.0);
             let opaque = own.transparent_color == Color::ZERO && !phong.fresnel;
             let dark = phong.diffuse.max_element() < 0.15 && phong.texture.is_none() && phong.noise.is_none();
-            opaque && dark && !(0.999..=1.001).contains(&index) && own.refraction_index != Some(0.0) && rays(scout, *i) > 0
+            opaque
+                && dark
+                && !(0.999..=1.001).contains(&index)
+                && own.refraction_index != Some(0.0)
+                && rays(scout, *i) > 0
         }
         _ => false,
     };
@@ -401,10 +407,12 @@ pub(super) fn no_coordinates(scout: &Scout) -> Vec<Finding> {
                     .related(scout.object_span(seen.object), "this has the material")
                     .effect("the texture is not seen; `diffuseColor` is")
                     .help(match (&scout.world().objects[seen.object as usize].geometry, meshes_only) {
-                    (Geometry::Mesh(_), _) => "the mesh file needs `vt` lines, and faces as `f 1/1 2/2 3/3`",
-                    (_, true) => "this year's program shows textures on meshes alone: take a `TriangleMesh` with `vt` lines",
-                    (_, false) => "take a shape that has coordinates, or a `TriangleMesh` with `vt` lines",
-                });
+                        (Geometry::Mesh(_), _) => "the mesh file needs `vt` lines, and faces as `f 1/1 2/2 3/3`",
+                        (_, true) => {
+                            "this year's program shows textures on meshes alone: take a `TriangleMesh` with `vt` lines"
+                        }
+                        (_, false) => "take a shape that has coordinates, or a `TriangleMesh` with `vt` lines",
+                    });
             found.push(Finding::from(scout.at_value(diagnostic, written.span, &["texture"])));
         }
     }

@@ -34,7 +34,7 @@ pub(super) fn light(scout: &Scout) -> Vec<Color> {
     let integrator = Integrator::new(scout.world(), Method::Path(transport), job.settings, job.seed, None);
     let step = scout.probes.len().div_ceil(MOST_PIXELS).max(1);
     // Not one in each row: that would be the same column each time.
-    let chosen: Vec<&Probe> = scout.probes.iter().step_by(if step % 2 == 0 { step + 1 } else { step }).collect();
+    let chosen: Vec<&Probe> = scout.probes.iter().step_by(if step.is_multiple_of(2) { step + 1 } else { step }).collect();
     let mean = |probe: &&Probe| {
         let sample = |i: u32| integrator.radiance(&probe.ray, SampleId::new(job.seed, probe.pixel, i), &mut ());
         let all = (0..SAMPLES).map(sample).filter(|color| color.is_finite());
@@ -72,8 +72,11 @@ fn white(scout: &Scout) -> Vec<Finding> {
     let middle = values[values.len() / 2];
     let stops = stops_of(0.5 / middle).round();
     let factor = number(0.5 / middle);
-    let diagnostic = Diagnostic::warning(format!("there is too much light: half of the picture is brighter than {}", number(middle)))
-        .effect(format!("{} of the picture is white", percent(white, shown.len())));
+    let diagnostic = Diagnostic::warning(format!(
+        "there is too much light: half of the picture is brighter than {}",
+        number(middle)
+    ))
+    .effect(format!("{} of the picture is white", percent(white, shown.len())));
     let background = &scout.subject.scene.background;
     let sky = background.sun.is_some() || background.cie_sky.is_some();
     let lamp = super::lamps::brightest(scout).filter(|_| !sky);

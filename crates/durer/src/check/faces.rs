@@ -68,7 +68,9 @@ fn meet(a: &Face, b: &Face) -> bool {
         (0..count).any(|i| {
             let side = one.corners[(i + 1) % count] - one.corners[i];
             let out = side.cross(n).normalize_or_zero();
-            let reach = |face: &Face| face.corners.iter().map(|p| out.dot(*p)).fold((f32::MAX, f32::MIN), |(a, b), x| (a.min(x), b.max(x)));
+            let reach = |face: &Face| {
+                face.corners.iter().map(|p| out.dot(*p)).fold((f32::MAX, f32::MIN), |(a, b), x| (a.min(x), b.max(x)))
+            };
             let ((a0, a1), (b0, b1)) = (reach(one), reach(other));
             a1.min(b1) - a0.max(b0) < 1e-3 * size
         })

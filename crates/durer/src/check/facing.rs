@@ -51,7 +51,9 @@ pub(super) fn from_behind(scout: &Scout) -> Vec<Finding> {
     if !super::view::hidden(scout).is_empty() {
         return Vec::new();
     }
-    let turned_away = (0..count).filter(|&i| seen[i] > 0 && backs[i] == seen[i] && (!shaded || is_flat(i)) && !super::mesh::shows_inside_out(scout, i as u32));
+    let turned_away = (0..count).filter(|&i| {
+        seen[i] > 0 && backs[i] == seen[i] && (!shaded || is_flat(i)) && !super::mesh::shows_inside_out(scout, i as u32)
+    });
     let say = |i: usize| {
         let message = format!("the {} is seen from behind", scout.object(i as u32));
         if shaded {

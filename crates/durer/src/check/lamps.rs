@@ -93,8 +93,10 @@ fn given(scout: &Scout, lamp: u32) -> Option<(Given, bool)> {
         for u in ON_LAMP {
             let (point, normal) = match &object.geometry {
                 Geometry::Primitive(Primitive::Plane(plane)) => {
-                    let n = object.to_world.as_ref().map_or(plane.normal, |m| m.normal(plane.normal)).normalize_or(Vec3::Y);
-                    let on = object.world_point(plane.normal * (plane.offset / plane.normal.length_squared().max(1e-12)));
+                    let n =
+                        object.to_world.as_ref().map_or(plane.normal, |m| m.normal(plane.normal)).normalize_or(Vec3::Y);
+                    let on =
+                        object.world_point(plane.normal * (plane.offset / plane.normal.length_squared().max(1e-12)));
                     (*place - (*place - on).dot(n) * n, n)
                 }
                 _ if object.parts() == 1 => {
@@ -176,9 +178,9 @@ fn turned_round(scout: &Scout, diagnostic: Diagnostic, number: u32) -> Diagnosti
             diagnostic.fix_at(value("normal"), super::finding::vector(-disc.normal))
         }
         Geometry::Primitive(Primitive::Plane(plane)) => match (value("normal"), value("offset")) {
-            (Some(n), Some(d)) => diagnostic
-                .fix(n, super::finding::vector(-plane.normal))
-                .fix(d, super::finding::number(-plane.offset)),
+            (Some(n), Some(d)) => {
+                diagnostic.fix(n, super::finding::vector(-plane.normal)).fix(d, super::finding::number(-plane.offset))
+            }
             _ => diagnostic,
         },
         _ => diagnostic,
@@ -200,11 +202,18 @@ pub(super) fn blocked(scout: &Scout) -> Vec<Finding> {
         }
         let whole = super::exposure::is_dark(scout) || lamps.len() == 1 && scout.world().lights.is_empty();
         let name = scout.object(number);
-        let diagnostic = Diagnostic::warning(format!("the {name} shines, but the {} keeps its light off all that is seen", scout.object(blocker)))
-            .at(scout.object_span(number))
-            .related(scout.object_span(blocker), "in the way")
-            .effect(if super::exposure::is_dark(scout) { "the picture is black" } else { "no light of it comes straight to what is seen" })
-            .help("is it on the wrong side, or inside? Move the lamp to the side that is seen");
+        let diagnostic = Diagnostic::warning(format!(
+            "the {name} shines, but the {} keeps its light off all that is seen",
+            scout.object(blocker)
+        ))
+        .at(scout.object_span(number))
+        .related(scout.object_span(blocker), "in the way")
+        .effect(if super::exposure::is_dark(scout) {
+            "the picture is black"
+        } else {
+            "no light of it comes straight to what is seen"
+        })
+        .help("is it on the wrong side, or inside? Move the lamp to the side that is seen");
         // Light may well come round corners, where it does.
         let dark = super::exposure::is_dark(scout);
         let severity = if dark { Severity::Warning } else { Severity::Note };
@@ -222,18 +231,21 @@ pub(super) fn in_glass(scout: &Scout) -> Vec<Finding> {
     let around = |place: Vec3, own: Option<u32>| {
         let bodies = world.objects.iter().enumerate().map(|(number, _)| number as u32).filter(|n| Some(*n) != own);
         bodies.take(500).find(|&number| {
-            let Some(Material::Phong(phong)) = world.materials.get(world.objects[number as usize].material as usize) else {
+            let Some(Material::Phong(phong)) = world.materials.get(world.objects[number as usize].material as usize)
+            else {
                 return false;
             };
             let skin = phong.principled.as_ref().is_none_or(|layers| !layers.interface);
-            skin && phong.transparent.max_element() > 0.0 && phong.ior != 1.0 && world.objects[number as usize].contains(place)
+            skin && phong.transparent.max_element() > 0.0
+                && phong.ior != 1.0
+                && world.objects[number as usize].contains(place)
         })
     };
     let mut found = super::physical::lamp_in_glass(scout);
     for (number, _) in shining(scout) {
         let Some(middle) = world.objects[number as usize].bounds().map(|bounds| bounds.center()) else { continue };
         let Some(glass) = around(middle, Some(number)) else { continue };
-        if !given(scout, number).is_none_or(|(given, _)| given.glass * 2 > given.rays) {
+        if given(scout, number).is_some_and(|(given, _)| given.glass * 2 <= given.rays) {
             continue;
         }
         let message = format!("the {} shines inside of the {}", scout.object(number), scout.object(glass));

@@ -39,7 +39,8 @@ pub(super) fn black(scout: &Scout) -> Vec<Finding> {
         }
         let base = m.base_weight * m.base_color.max_element();
         let textured = m.base_color_texture.is_some() || m.base_spectrum.is_some();
-        let skin = m.specular_weight * m.specular_color.max_element() > BLACK || m.coat_weight > 0.0 || m.fuzz_weight > 0.0;
+        let skin =
+            m.specular_weight * m.specular_color.max_element() > BLACK || m.coat_weight > 0.0 || m.fuzz_weight > 0.0;
         let word = if m.emission_luminance > 0.0 || m.thin_film_weight > 0.0 {
             return None;
         } else if m.base_metalness > 0.9 {
@@ -92,7 +93,13 @@ pub(super) fn dull_glass(scout: &Scout) -> Vec<Finding> {
                     number_word(thick)
                 );
                 let help = format!("`transmissionDepth` is in units of the scene: `transmissionDepth {depth}`, say");
-                (diagnostic.effect(effect).help(help).fix_at(scout.value(written.span, &["transmissionDepth"]), depth), "transmissionDepth")
+                (
+                    diagnostic
+                        .effect(effect)
+                        .help(help)
+                        .fix_at(scout.value(written.span, &["transmissionDepth"]), depth),
+                    "transmissionDepth",
+                )
             })?
         };
         Some(Finding::from(scout.at_value(diagnostic, written.span, &[word])))
@@ -104,7 +111,8 @@ pub(super) fn dull_glass(scout: &Scout) -> Vec<Finding> {
 pub(super) fn odd_index(scout: &Scout) -> Vec<Finding> {
     let say = |(number, written, m): (usize, &Spanned<Written>, &PrincipledMaterial)| {
         let clear = m.transmission_color.min_element() >= 0.99 && m.transmission_scatter.max_element() == 0.0;
-        let plain = m.coat_weight == 0.0 && m.fuzz_weight == 0.0 && m.emission_luminance == 0.0 && m.thin_film_weight == 0.0;
+        let plain =
+            m.coat_weight == 0.0 && m.fuzz_weight == 0.0 && m.emission_luminance == 0.0 && m.thin_film_weight == 0.0;
         if m.transmission_weight < 0.5 || m.walls == Walls::Thin {
             return None;
         }

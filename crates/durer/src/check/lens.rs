@@ -63,9 +63,16 @@ pub(super) fn wide_aperture(scout: &Scout) -> Vec<Finding> {
     let mut sizes: Vec<f32> = all.iter().map(|(blur, _)| *blur).collect();
     sizes.sort_by(f32::total_cmp);
     let usual = number(0.02 * camera.focus_distance);
-    let message = format!("the `aperture` is {}, and the lens is sharp at {}", number(camera.aperture), number(camera.focus_distance));
+    let message = format!(
+        "the `aperture` is {}, and the lens is sharp at {}",
+        number(camera.aperture),
+        number(camera.focus_distance)
+    );
     let diagnostic = Diagnostic::warning(message)
-        .effect(format!("a point becomes a disc of {:.0} % of the picture's width: all is a blur", 100.0 * sizes[sizes.len() / 2]))
+        .effect(format!(
+            "a point becomes a disc of {:.0} % of the picture's width: all is a blur",
+            100.0 * sizes[sizes.len() / 2]
+        ))
         .help(format!(
             "it is the diameter of the opening in units of the scene, and no f-number: the focal length over that. \
              `aperture {usual}`, say"
@@ -80,15 +87,19 @@ pub(super) fn shifted(scout: &Scout, middle: Vec3) -> Option<Diagnostic> {
     let Camera::ThinLens(camera) = &scout.world().camera else { return None };
     let span = scout.subject.scene.camera_span;
     let fields = [("shiftRight", camera.shift_right), ("shiftUp", camera.shift_up)];
-    let (word, shift) = fields.into_iter().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs())).filter(|(_, s)| s.abs() > 0.5)?;
+    let (word, shift) =
+        fields.into_iter().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs())).filter(|(_, s)| s.abs() > 0.5)?;
     let to = middle - camera.center;
     let forward = to.dot(scout.world().frame.forward);
     let (sine, cosine) = fp::sin_cos_degrees(f64::from(0.5 * camera.angle));
     let across = (to - forward * scout.world().frame.forward).length() / forward.max(1e-6);
     (forward > 0.0 && across < (sine / cosine) as f32).then(|| {
-        let diagnostic = Diagnostic::warning(format!("the film is shifted past everything: `{word} {}`", number(shift)))
-            .effect("what the lens looks at is beside the picture")
-            .help("it is a part of half the picture's larger side: 1 moves the middle to the edge; write 0, or 0.3, say");
+        let diagnostic = Diagnostic::warning(format!(
+            "the film is shifted past everything: `{word} {}`",
+            number(shift)
+        ))
+        .effect("what the lens looks at is beside the picture")
+        .help("it is a part of half the picture's larger side: 1 moves the middle to the edge; write 0, or 0.3, say");
         let value = scout.value(span, &[word]);
         scout.at_value(diagnostic.fix_at(value, "0"), span, &[word])
     })
@@ -119,12 +130,16 @@ pub(super) fn eyes_apart(scout: &Scout) -> Vec<Finding> {
     }
     let millimetres = (50.0..=80.0).contains(&separation);
     let usual = number(if millimetres { separation / 1000.0 } else { middle / 30.0 });
-    let diagnostic = Diagnostic::warning(format!("the eyes are {} apart, and look at what is {} away", number(separation), number(middle)))
-        .effect("each sees something else: no two pictures of it make one")
-        .help(format!(
-            "`separation` is in units of the scene{}; a 30th of the distance is usual: `separation {usual}`, say",
-            if millimetres { ", and this looks like millimetres" } else { "" }
-        ));
+    let diagnostic = Diagnostic::warning(format!(
+        "the eyes are {} apart, and look at what is {} away",
+        number(separation),
+        number(middle)
+    ))
+    .effect("each sees something else: no two pictures of it make one")
+    .help(format!(
+        "`separation` is in units of the scene{}; a 30th of the distance is usual: `separation {usual}`, say",
+        if millimetres { ", and this looks like millimetres" } else { "" }
+    ));
     let diagnostic = diagnostic.fix_at(scout.value(span, &["separation"]), usual);
     vec![Finding::from(scout.at_value(diagnostic, span, &["separation"])).whole(true)]
 }
@@ -142,7 +157,8 @@ pub(super) fn edge_on(scout: &Scout) -> Vec<Finding> {
     let mut found = Vec::new();
     for (number, object) in world.objects.iter().enumerate().take(super::MOST_SOUGHT) {
         let Geometry::Primitive(Primitive::Plane(plane)) = &object.geometry else { continue };
-        let on = object.world_point(plane.normal * (plane.offset / plane.normal.length_squared().max(f32::MIN_POSITIVE)));
+        let on =
+            object.world_point(plane.normal * (plane.offset / plane.normal.length_squared().max(f32::MIN_POSITIVE)));
         let n = object.to_world.as_ref().map_or(plane.normal, |m| m.normal(plane.normal)).normalize_or(Vec3::Y);
         let off = (eye - on).dot(n);
         let edge = if orthographic { forward.dot(n).abs() < 1e-5 } else { off.abs() < 1e-5 * size };
@@ -173,7 +189,9 @@ pub(super) fn edge_on(scout: &Scout) -> Vec<Finding> {
 /// A scene so far from the origin that numbers have no digits left for its shapes.
 pub(super) fn far_origin(scout: &Scout) -> Vec<Finding> {
     let world = scout.world();
-    let sized = |b: Aabb| (!b.is_empty() && b.size().is_finite()).then(|| (b.center().abs().max_element(), b.size().max_element()));
+    let sized = |b: Aabb| {
+        (!b.is_empty() && b.size().is_finite()).then(|| (b.center().abs().max_element(), b.size().max_element()))
+    };
     let all: Vec<(f32, f32)> = world.objects.iter().filter_map(|object| sized(object.bounds()?)).collect();
     let eye = world.camera.pose().center.abs().max_element();
     // Both the camera and most things: what stands far away alone is something else.
@@ -189,9 +207,16 @@ pub(super) fn far_origin(scout: &Scout) -> Vec<Finding> {
     if !lost(eye, size.max(1e-6)) {
         return Vec::new();
     }
-    let diagnostic = Diagnostic::warning(format!("the scene lies {} from the origin, and its things are {} wide", number(far), number(size)))
-        .effect(format!("numbers of that size have steps of {}: shapes are rounded away, and surfaces are rough", number(far * f32::EPSILON)))
-        .help("take the same number off all coordinates, the camera's too, so that the scene lies about the origin");
+    let diagnostic = Diagnostic::warning(format!(
+        "the scene lies {} from the origin, and its things are {} wide",
+        number(far),
+        number(size)
+    ))
+    .effect(format!(
+        "numbers of that size have steps of {}: shapes are rounded away, and surfaces are rough",
+        number(far * f32::EPSILON)
+    ))
+    .help("take the same number off all coordinates, the camera's too, so that the scene lies about the origin");
     vec![Finding::from(scout.at_value(diagnostic, scout.subject.scene.camera_span, &["center"])).whole(true)]
 }
 
@@ -200,8 +225,12 @@ pub(super) fn below_epsilon(scout: &Scout) -> Vec<Finding> {
     let world = scout.world();
     let Some(epsilon) = world.rules.epsilon else { return Vec::new() };
     let settings = &scout.subject.job.settings;
-    let mut sizes: Vec<f32> =
-        world.objects.iter().filter_map(|object| Some(object.bounds()?.size().max_element())).filter(|size| *size > 0.0).collect();
+    let mut sizes: Vec<f32> = world
+        .objects
+        .iter()
+        .filter_map(|object| Some(object.bounds()?.size().max_element()))
+        .filter(|size| *size > 0.0)
+        .collect();
     sizes.sort_by(f32::total_cmp);
     let Some(&middle) = sizes.get(sizes.len() / 2) else { return Vec::new() };
     if middle > 10.0 * epsilon || !settings.shadows && settings.bounces == 0 {

@@ -76,7 +76,8 @@ fn weak_together(scout: &Scout, verdicts: &[Verdict]) -> Option<f32> {
 /// Whether what all lights together shine on has none of their colours, on nearly all that they reach.
 fn cancelled_together(scout: &Scout, verdicts: &[Verdict]) -> bool {
     let materials = &scout.world().materials;
-    if !verdicts.contains(&Verdict::Works) || verdicts.iter().any(|v| !matches!(v, Verdict::Works | Verdict::Cancelled)) {
+    if !verdicts.contains(&Verdict::Works) || verdicts.iter().any(|v| !matches!(v, Verdict::Works | Verdict::Cancelled))
+    {
         return false;
     }
     let (mut reached, mut lost) = (0, 0);
@@ -335,7 +336,8 @@ fn is_grazing(lit: &Lit) -> bool {
 fn grazing(scout: &Scout, lights: &[usize]) -> Option<Diagnostic> {
     let light = *lights.iter().find(|light| {
         let all = scout.seen().filter_map(|(_, seen)| seen.by(**light));
-        let (grazed, count) = all.fold((0, 0), |(grazed, count), lit| (grazed + usize::from(is_grazing(lit)), count + 1));
+        let (grazed, count) =
+            all.fold((0, 0), |(grazed, count), lit| (grazed + usize::from(is_grazing(lit)), count + 1));
         grazed * 4 > count
     })?;
     let (diagnostic, span) = useless(scout, light, "this light only grazes what is seen: N · L is 0 there".into())?;

@@ -11,8 +11,7 @@ pub(super) fn unused_define(scout: &Scout) -> Vec<Finding> {
     let file = scout.subject.scene.camera_span.file;
     let Some(bytes) = scout.subject.files.bytes(file) else { return Vec::new() };
     let files = (0..).map_while(|i| scout.subject.files.bytes(i).map(|bytes| (i, bytes)));
-    let used: Vec<String> =
-        files.flat_map(|(i, bytes)| values(bytes, i, "use")).map(|span| scout.text(span)).collect();
+    let used: Vec<String> = files.flat_map(|(i, bytes)| values(bytes, i, "use")).map(|span| scout.text(span)).collect();
     let defined = values(bytes, file, "define");
     let unused: Vec<&Span> = defined.iter().filter(|span| !used.contains(&scout.text(**span))).collect();
     let say = |span: &&Span| {

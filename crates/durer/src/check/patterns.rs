@@ -1,8 +1,8 @@
 //! Patterns of which nothing is seen: of one part, or finer than a pixel.
 
+use super::MOST_SOUGHT;
 use super::finding::{Finding, percent};
 use super::scout::Scout;
-use super::MOST_SOUGHT;
 use crate::diag::Diagnostic;
 use crate::material::{ColorNoise, Pattern, Solid};
 use crate::math::Vec3;

@@ -49,7 +49,10 @@ pub(super) fn no_emitter(scout: &Scout) -> Vec<Finding> {
     };
     let of = |material: u32| world.materials.get(material as usize).and_then(radiance).unwrap_or_default();
     let shines = world.objects.iter().any(|object| of(object.material) != Color::ZERO)
-        || world.objects.iter().any(|object| matches!(world.materials.get(object.material as usize), Some(Compiled::Solid(..))))
+        || world
+            .objects
+            .iter()
+            .any(|object| matches!(world.materials.get(object.material as usize), Some(Compiled::Solid(..))))
             && world.materials.iter().any(|material| radiance(material).is_some());
     if !is_physical(scout)
         || !dark_sky

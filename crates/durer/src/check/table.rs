@@ -3,8 +3,8 @@
 use super::finding::Finding;
 use super::scout::Scout;
 use super::{
-    air, beams, colors, exposure, extent, facing, fading, lamps, layers, lens, lights, mesh, names, numbers, objects, patterns,
-    physical, unseen, view, year,
+    air, beams, colors, exposure, extent, facing, fading, lamps, layers, lens, lights, mesh, names, numbers, objects,
+    patterns, physical, unseen, view, year,
 };
 
 /// One kind of finding.

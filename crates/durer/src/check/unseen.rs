@@ -34,7 +34,9 @@ pub(super) fn unseen(scout: &Scout) -> Vec<Finding> {
             _ => None,
         })
         // Two at one place are told of as that.
-        .filter(|&(i, by)| !super::objects::same(&scout.world().objects[i as usize], &scout.world().objects[by as usize]))
+        .filter(|&(i, by)| {
+            !super::objects::same(&scout.world().objects[i as usize], &scout.world().objects[by as usize])
+        })
         .collect();
     // Where most of a small scene is lost, that is no chance.
     let bounded = scout.world().objects.iter().filter(|object| object.bounds().is_some()).count();
@@ -142,7 +144,10 @@ pub(super) fn in_the_way(scout: &Scout) -> Vec<Finding> {
         nearest[seen.object as usize] = nearest[seen.object as usize].min(seen.t * probe.ray.dir.length());
     }
     let Some(front) = (0..objects.len()).max_by_key(|&i| counts[i]) else { return Vec::new() };
-    if counts[front] * 10 < scout.probes.len() * 5 || is_glass(scout, front as u32) || !super::view::hidden(scout).is_empty() {
+    if counts[front] * 10 < scout.probes.len() * 5
+        || is_glass(scout, front as u32)
+        || !super::view::hidden(scout).is_empty()
+    {
         return Vec::new();
     }
     let Some(bounds) = objects[front].bounds() else { return Vec::new() };
@@ -156,7 +161,8 @@ pub(super) fn in_the_way(scout: &Scout) -> Vec<Finding> {
     }
     let (mut looked, mut covered) = (0, 0);
     for &other in &others {
-        let rays = super::sight::points(&objects[other]).into_iter().flat_map(|point| super::sight::rays_to(scout, point));
+        let rays =
+            super::sight::points(&objects[other]).into_iter().flat_map(|point| super::sight::rays_to(scout, point));
         for hit in rays.filter_map(|ray| scout.world().closest(&ray, &mut ())) {
             looked += usize::from(hit.object as usize == other || hit.object as usize == front);
             covered += usize::from(hit.object as usize == front);
@@ -168,8 +174,14 @@ pub(super) fn in_the_way(scout: &Scout) -> Vec<Finding> {
     let diagnostic = Diagnostic::warning(format!("the {} covers most of the picture", scout.object(front as u32)))
         .at(scout.object_span(front as u32))
         .label(format!("{} of it", super::finding::percent(counts[front], scout.probes.len())))
-        .effect(format!("of the others, next to nothing is seen: it covers {} of them", super::finding::percent(covered, looked)))
-        .help(format!("it is {} before the camera: move it away or make it smaller, or go back", number(nearest[front])));
+        .effect(format!(
+            "of the others, next to nothing is seen: it covers {} of them",
+            super::finding::percent(covered, looked)
+        ))
+        .help(format!(
+            "it is {} before the camera: move it away or make it smaller, or go back",
+            number(nearest[front])
+        ));
     vec![Finding::from(diagnostic).whole(true)]
 }
 
@@ -189,9 +201,10 @@ pub(super) fn flat_field(scout: &Scout) -> Vec<Finding> {
                     continue;
                 }
                 let max = vector(Vec3::new(field.max.x, field.min.y + 0.2 * wide, field.max.z));
-                let diagnostic = Diagnostic::warning(format!("this landscape is {} wide and {} high", number(wide), number(size.y)))
-                    .effect("it is flat: nothing is seen of its hills")
-                    .help(format!("heights go from `min` to `max` along y: `max {max}`, say"));
+                let diagnostic =
+                    Diagnostic::warning(format!("this landscape is {} wide and {} high", number(wide), number(size.y)))
+                        .effect("it is flat: nothing is seen of its hills")
+                        .help(format!("heights go from `min` to `max` along y: `max {max}`, say"));
                 let diagnostic = diagnostic.fix_at(scout.value(object.span, &["max"]), max);
                 found.push(Finding::from(scout.at_value(diagnostic, object.span, &["max"])));
             }

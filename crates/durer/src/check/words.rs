@@ -27,7 +27,10 @@ pub(super) fn complete(scout: &Scout, finding: &mut Finding) {
         "no-falloff" => finding.whole = true,
         "empty-solid" => {
             finding.diagnostic.effect.get_or_insert("it is not seen".into());
-            finding.diagnostic.help.get_or_insert("move its parts into one another: an intersection is what all have in common".into());
+            finding
+                .diagnostic
+                .help
+                .get_or_insert("move its parts into one another: an intersection is what all have in common".into());
         }
         "foreign-word" => foreign_in_nodes(scout, finding),
         "up-parallel" => up_parallel(scout, finding),
@@ -42,8 +45,12 @@ pub(super) fn complete(scout: &Scout, finding: &mut Finding) {
 fn foreign_in_nodes(scout: &Scout, finding: &mut Finding) {
     finding.diagnostic.severity = Severity::Note;
     let word = finding.diagnostic.span.map(|span| scout.text(span)).unwrap_or_default();
-    if scout.subject.dialect == Dialect::F23 && finding.diagnostic.help.is_none() && ["center", "position"].contains(&word.as_str()) {
-        finding.diagnostic.help = Some("the `Node` around it moves it: `Node { Transform { translate 1 2 3 } ... }`".into());
+    if scout.subject.dialect == Dialect::F23
+        && finding.diagnostic.help.is_none()
+        && ["center", "position"].contains(&word.as_str())
+    {
+        finding.diagnostic.help =
+            Some("the `Node` around it moves it: `Node { Transform { translate 1 2 3 } ... }`".into());
     }
 }
 

@@ -167,9 +167,10 @@ pub(super) fn same_parts(scout: &Scout) -> Vec<Finding> {
     let say = |(i, material): (usize, &Spanned<Written>)| {
         if let Written::Phong(_, Some(noise)) = &material.value {
             return (noise.color1 == noise.color2 && scout.material_rays()[i] > 0).then(|| {
-                let diagnostic = Diagnostic::warning(format!("both colours of this noise are {}", vector(noise.color1)))
-                    .effect("no pattern is seen: it is of one colour")
-                    .help("give its two `color` two different colours");
+                let diagnostic =
+                    Diagnostic::warning(format!("both colours of this noise are {}", vector(noise.color1)))
+                        .effect("no pattern is seen: it is of one colour")
+                        .help("give its two `color` two different colours");
                 Finding::from(diagnostic.at(material.span))
             });
         }

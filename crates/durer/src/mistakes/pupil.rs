@@ -436,7 +436,9 @@ impl<'w> Pupil<'w> {
             let full = habits.mirror_in_full && reflective != Color::ZERO;
             let weight = if full { Color::ONE } else { reflective };
             let weight = match habits.times_diffuse {
-                true => weight * parts.iter().map(|p| p.share * self.world.diffuse_color(p.phong, surface)).sum::<Color>(),
+                true => {
+                    weight * parts.iter().map(|p| p.share * self.world.diffuse_color(p.phong, surface)).sum::<Color>()
+                }
                 false => weight,
             };
             color += self.bounce(surface, mirrored, weight, path.clone());

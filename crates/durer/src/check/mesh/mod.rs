@@ -269,7 +269,9 @@ pub(super) fn misread(scout: &Scout) -> Vec<Finding> {
     let rules = &scout.world().rules;
     let mut found = Vec::new();
     for mesh in scout.meshes() {
-        let Some(bytes) = scout.subject.files.bytes(mesh.file).filter(|_| mesh.name.path.ends_with(".obj")) else { continue };
+        let Some(bytes) = scout.subject.files.bytes(mesh.file).filter(|_| mesh.name.path.ends_with(".obj")) else {
+            continue;
+        };
         let last = bytes.rsplit(|b| *b == b'\n').next().unwrap_or_default();
         if rules.has(Compat::LostLastLine) && (last.starts_with(b"f ") || last.starts_with(b"v ")) {
             let start = (bytes.len() - last.len()) as u32;
@@ -345,7 +347,9 @@ pub(super) fn inside_out(scout: &Scout) -> Vec<Finding> {
         scout.meshes().iter().filter(|mesh| mesh.is_inside_out() && !mesh.is_room(scout) && !mesh.is_hollow(scout))
     {
         let by_file = mesh.given.is_some();
-        let seen = scout.seen().filter(|(_, seen)| mesh.objects.iter().any(|o| scout.object_span(seen.object).start == o.span.start));
+        let seen = scout
+            .seen()
+            .filter(|(_, seen)| mesh.objects.iter().any(|o| scout.object_span(seen.object).start == o.span.start));
         let most = seen.count() * 2 > scout.seen().count();
         let diagnostic = Diagnostic::warning(format!("the normals of `{}` point inwards", mesh.name.path))
             .at(mesh.name.span)
@@ -359,7 +363,8 @@ pub(super) fn inside_out(scout: &Scout) -> Vec<Finding> {
 /// Whether an object shows a mesh that is inside out, which is told of as such.
 pub(super) fn shows_inside_out(scout: &Scout, object: u32) -> bool {
     let span = scout.object_span(object);
-    let turned = scout.meshes().iter().filter(|mesh| mesh.is_inside_out() && !mesh.is_room(scout) && !mesh.is_hollow(scout));
+    let turned =
+        scout.meshes().iter().filter(|mesh| mesh.is_inside_out() && !mesh.is_room(scout) && !mesh.is_hollow(scout));
     turned.into_iter().any(|mesh| mesh.objects.iter().any(|own| own.span.start == span.start))
 }
 

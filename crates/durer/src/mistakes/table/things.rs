@@ -329,43 +329,19 @@ pub(super) const MISTAKES: &[Mistake] = &[
         },
     )
     .with(Values::Only(&[0.0, 1.0, 2.0, 3.0])),
-    row(
-        "translations-ignored",
-        "transforms",
-        "translations have no effect",
-        "M = T * R * S",
-        "M without T",
-        |v, _| v.place(|ops, compat| without(ops, compat, |op| matches!(op, MatrixOp::Translate(_)))),
-    ),
-    row(
-        "scales-ignored",
-        "transforms",
-        "scales have no effect",
-        "M = T * R * S",
-        "M without S",
-        |v, _| {
-            v.place(|ops, compat| {
-                without(ops, compat, |op| matches!(op, MatrixOp::Scale(_) | MatrixOp::UniformScale(_)))
-            });
-        },
-    ),
-    row(
-        "rotations-ignored",
-        "transforms",
-        "rotations have no effect",
-        "M = T * R * S",
-        "M without R",
-        |v, _| {
-            v.place(|ops, compat| {
-                without(ops, compat, |op| {
-                    matches!(
-                        op,
-                        MatrixOp::XRotate(_) | MatrixOp::YRotate(_) | MatrixOp::ZRotate(_) | MatrixOp::Rotate(..)
-                    )
-                })
-            });
-        },
-    ),
+    row("translations-ignored", "transforms", "translations have no effect", "M = T * R * S", "M without T", |v, _| {
+        v.place(|ops, compat| without(ops, compat, |op| matches!(op, MatrixOp::Translate(_))))
+    }),
+    row("scales-ignored", "transforms", "scales have no effect", "M = T * R * S", "M without S", |v, _| {
+        v.place(|ops, compat| without(ops, compat, |op| matches!(op, MatrixOp::Scale(_) | MatrixOp::UniformScale(_))));
+    }),
+    row("rotations-ignored", "transforms", "rotations have no effect", "M = T * R * S", "M without R", |v, _| {
+        v.place(|ops, compat| {
+            without(ops, compat, |op| {
+                matches!(op, MatrixOp::XRotate(_) | MatrixOp::YRotate(_) | MatrixOp::ZRotate(_) | MatrixOp::Rotate(..))
+            })
+        });
+    }),
     row(
         "one-material",
         "flat",
