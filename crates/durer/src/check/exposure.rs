@@ -34,7 +34,8 @@ pub(super) fn light(scout: &Scout) -> Vec<Color> {
     let integrator = Integrator::new(scout.world(), Method::Path(transport), job.settings, job.seed, None);
     let step = scout.probes.len().div_ceil(MOST_PIXELS).max(1);
     // Not one in each row: that would be the same column each time.
-    let chosen: Vec<&Probe> = scout.probes.iter().step_by(if step.is_multiple_of(2) { step + 1 } else { step }).collect();
+    let chosen: Vec<&Probe> =
+        scout.probes.iter().step_by(if step.is_multiple_of(2) { step + 1 } else { step }).collect();
     let mean = |probe: &&Probe| {
         let sample = |i: u32| integrator.radiance(&probe.ray, SampleId::new(job.seed, probe.pixel, i), &mut ());
         let all = (0..SAMPLES).map(sample).filter(|color| color.is_finite());

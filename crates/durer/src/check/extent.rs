@@ -114,7 +114,7 @@ fn is_harm(scout: &Scout, object: u32) -> bool {
     match sights[object as usize] {
         // What of a ball is too high or too large, its place tells.
         Sight::Seen => (hides || keeps_light) && !ball,
-        _ => hides || keeps_light || !ball,
+        _ => true,
     }
 }
 

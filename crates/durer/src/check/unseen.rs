@@ -74,7 +74,10 @@ pub(super) fn unseen(scout: &Scout) -> Vec<Finding> {
             _ if inside => "move it out, or make the other smaller, or move that",
             _ => "is it on the wrong side of the other, or the other in the way?",
         };
-        let diagnostic = Diagnostic { severity: severity(hidden.len()), ..Diagnostic::note(message) }
+        // What a thing merely stands behind may be meant.
+        let plane = matches!(&scout.world().objects[by as usize].geometry, Geometry::Primitive(Primitive::Plane(_)));
+        let severity = if plane || inside { severity(hidden.len()) } else { Severity::Note };
+        let diagnostic = Diagnostic { severity, ..Diagnostic::note(message) }
             .at(scout.object_span(first))
             .related(scout.object_span(by), if inside { "around it" } else { "in front of it" })
             .effect("nothing of it is seen")
@@ -171,7 +174,7 @@ pub(super) fn in_the_way(scout: &Scout) -> Vec<Finding> {
     if looked == 0 || covered * 10 < looked * 7 || bounds.holds(eye) {
         return Vec::new();
     }
-    let diagnostic = Diagnostic::warning(format!("the {} covers most of the picture", scout.object(front as u32)))
+    let diagnostic = Diagnostic::note(format!("the {} covers most of the picture", scout.object(front as u32)))
         .at(scout.object_span(front as u32))
         .label(format!("{} of it", super::finding::percent(counts[front], scout.probes.len())))
         .effect(format!(

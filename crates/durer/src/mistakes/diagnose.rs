@@ -369,7 +369,7 @@ impl Bars {
     const SINGLE: Bars = Bars { explained: 0.985, matched: 0.9 };
     const PAIR: Bars = Bars { explained: 0.985, matched: 0.95 };
     /// With a number that was fitted.
-    const FITTED: Bars = Bars { explained: 0.995, matched: 0.97 };
+    const FITTED: Bars = Bars { explained: 0.999, matched: 0.97 };
     /// No more is sought.
     const CLEAR: Bars = Bars { explained: 0.995, matched: 0.98 };
     /// As good as can be.
