@@ -15,10 +15,11 @@ const ODD: [(&str, &str, &str); 3] = [
 ];
 
 /// Notes about the course's scenes: true, and harmless.
-const NOTES: [(&str, usize, &str); 6] = [
+const NOTES: [(&str, usize, &str); 7] = [
     ("degenerate-mesh", 6, "vases and teapots have triangles without area at their poles"),
     ("light-behind", 1, "`scene3_10_exponent_variations_back` is lit from the back, as its name says"),
     ("no-light", 7, "the first assignment has no lights yet"),
+    ("odd-index", 1, "`scene4_07_transparent_sphere_1.0` has glass of index 1, as its name says"),
     ("seen-from-behind", 1, "a triangle of `scene2_07_sphere_triangles` is turned"),
     ("too-bright", 2, "two scenes are a tenth too bright"),
     ("unused-material", 2, "two scenes have a material too many"),
