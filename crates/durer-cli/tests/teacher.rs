@@ -94,7 +94,8 @@ const CASES: &[Case] = &[
         "f04",
         "--bounces 3",
         &[(RIGHT, "Transform { Translate -240 -198 -1791 Sphere { center 0 0 0 radius 1 } }")],
-        "unseen",
+        // A thing narrower than two pixels: why it is not seen.
+        "tiny",
     ),
     ("f04", "--bounces 3 --show depth --depth-range 12 6", &[], "depth-range"),
     (
@@ -109,7 +110,7 @@ const CASES: &[Case] = &[
         &[(LEFT, "Difference { Sphere { center -1.2 1 0 radius 1 } Sphere { center -1.2 1 0 radius 1.5 } }")],
         "empty-solid",
     ),
-    ("durer", "", &[("PerspectiveCamera {", "ThinLensCamera { aperture 2")], "out-of-focus"),
+    ("durer", "", &[("PerspectiveCamera {", "ThinLensCamera { aperture 2")], "wide-aperture"),
 ];
 
 const LEFT: &str = "Sphere { center -1.2 1 0 radius 1 }";
