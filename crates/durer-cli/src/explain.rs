@@ -10,6 +10,7 @@ use crate::open::{Opened, load_options, open};
 use crate::output::say;
 use crate::render::failure;
 use crate::{Failure, bad, output, progress};
+use durer::film::luminance_of;
 use durer::image::{Image, Transfer};
 use durer::integrator::Node;
 use durer::integrator::account::What;
@@ -51,10 +52,11 @@ pub fn run(args: &ExplainArgs) -> Result<(), Failure> {
     let names = Names { files: &opened.files, scene: &opened.loaded.scene, world: &opened.world };
     // All trees of a pixel would hide each other.
     let sample = match &subject {
-        Subject::Pixel(pixel) => args.sample.map_or_else(
-            || pixel.brightest().filter(|_| args.worst).map_or_else(|| pixel.heaviest(), |(sample, _)| sample),
-            |sample| sample as usize,
-        ),
+        Subject::Pixel(pixel) => match (args.sample, args.worst) {
+            (Some(sample), _) => sample as usize,
+            (None, true) => pixel.brightest().map_or_else(|| pixel.heaviest(), |(sample, _)| sample),
+            (None, false) => pixel.heaviest(),
+        },
         Subject::Ray(_) => 0,
     };
     if let (Some(place), Some(picture)) = (&page_file, &picture) {
@@ -105,7 +107,7 @@ fn subject(args: &ExplainArgs, opened: &Opened, job: &Job, picture: Option<&Imag
             return light.map(Subject::Ray).ok_or_else(|| bad("nothing is known of this ray"));
         }
         (None, Some(pixel), _) => pixel,
-        (None, None, Some(picture)) if args.brightest => most(picture, |x, y| luminance(at(picture, x, y))),
+        (None, None, Some(picture)) if args.brightest => most(picture, |x, y| luminance_of(at(picture, x, y))),
         (None, None, Some(picture)) if job.method.is_random() => {
             return worst(opened, job, picture).map(Subject::Pixel);
         }
@@ -163,20 +165,16 @@ fn at(picture: &Image, x: u32, y: u32) -> Color {
     picture.get(x, y).unwrap_or(Vec3::ZERO)
 }
 
-fn luminance(color: Color) -> f64 {
-    durer::film::luminance(color.to_array().map(f64::from))
-}
-
 /// How far a pixel's luminance is from the middle one of those around it.
 fn oddness(picture: &Image, x: u32, y: u32) -> f64 {
     let mut around: Vec<f64> = (0..9)
         .filter(|&i| i != 4)
         .filter_map(|i| picture.get((x + i % 3).checked_sub(1)?, (y + i / 3).checked_sub(1)?))
-        .map(luminance)
+        .map(luminance_of)
         .collect();
     around.sort_by(f64::total_cmp);
     let middle = around.get(around.len() / 2).copied().unwrap_or(0.0);
-    (luminance(at(picture, x, y)) - middle).abs()
+    (luminance_of(at(picture, x, y)) - middle).abs()
 }
 
 /// The first pixel of the greatest value in reading order.

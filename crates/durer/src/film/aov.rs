@@ -4,6 +4,7 @@
 //! of floating point get the values as they are; eight-bit files get a picture of them between 0 and 1.
 
 use super::false_color::LightScale;
+use super::{Film, luminance_of};
 use crate::bvh::TraversalStats;
 use crate::dialect::{Compat, CompatSet, DepthPicture, NormalsPicture, Rules};
 use crate::math::{Aabb, Color, Vec3};
@@ -41,15 +42,30 @@ impl Seen {
     };
 }
 
-/// What is known of a pixel from the samples of its colour.
+/// What is known of a pixel from the samples of its colour: worked out where it is asked for.
 #[derive(Clone, Copy, Debug)]
-pub struct Sums {
+pub struct Sums<'a> {
+    /// The pixel in its film; none where nothing is made of it.
+    pub pixel: Option<(&'a Film, u32, u32)>,
+    /// The size of the samples' weights where their mean is 1, as [`Film::variance`] takes it.
+    pub gain: f32,
+}
+
+impl Sums<'_> {
     /// How many there are.
-    pub samples: u64,
+    pub fn samples(&self) -> u64 {
+        self.pixel.map_or(0, |(film, x, y)| film.samples(x, y))
+    }
+
     /// Estimated variance of their mean luminance.
-    pub variance: f64,
+    pub fn variance(&self) -> f64 {
+        self.pixel.map_or(f64::INFINITY, |(film, x, y)| film.variance(x, y, self.gain))
+    }
+
     /// Luminance of their mean.
-    pub luminance: f64,
+    pub fn luminance(&self) -> f64 {
+        self.pixel.map_or(0.0, |(film, x, y)| luminance_of(film.resolve(x, y)))
+    }
 }
 
 /// Those rules of a scene's dialect that say how values are shown.
@@ -220,7 +236,7 @@ pub static AOVS: [Aov; 14] = [
     Aov {
         name: "luminance",
         doc: "luminance of the colour, in cd/m^2 where the scene's light is; as a picture, false colours with their scale",
-        value: Value::Sums(|sums| Vec3::splat(sums.luminance as f32)),
+        value: Value::Sums(|sums| Vec3::splat(sums.luminance() as f32)),
         picture: light_picture,
         relative: true,
         unit: Some("cd/m2"),
@@ -236,7 +252,7 @@ pub static AOVS: [Aov; 14] = [
     Aov {
         name: "sample-count",
         doc: "how many samples the colour is the mean of; as a picture, a heat map",
-        value: Value::Sums(|sums| Vec3::splat(sums.samples as f32)),
+        value: Value::Sums(|sums| Vec3::splat(sums.samples() as f32)),
         picture: heat_picture,
         relative: true,
         unit: None,
@@ -244,7 +260,7 @@ pub static AOVS: [Aov; 14] = [
     Aov {
         name: "variance",
         doc: "estimated variance of the mean luminance, infinite for one sample; as a picture, a heat map of its root up to 0.1",
-        value: Value::Sums(|sums| Vec3::splat(sums.variance as f32)),
+        value: Value::Sums(|sums| Vec3::splat(sums.variance() as f32)),
         picture: |variance, _, _| heat(variance.x.sqrt() * 10.0),
         relative: false,
         unit: None,

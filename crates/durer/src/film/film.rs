@@ -320,6 +320,11 @@ pub fn luminance([r, g, b]: [f64; 3]) -> f64 {
     LUMINANCE[0] * r + LUMINANCE[1] * g + LUMINANCE[2] * b
 }
 
+/// The same of a colour in single precision.
+pub fn luminance_of(color: Color) -> f64 {
+    luminance(color.to_array().map(f64::from))
+}
+
 /// The nearest whole number, ties to even, of a number below 2^51 in size.
 ///
 /// A sum with 3 * 2^51 has no bits below 1 left, so it is rounded, and its bits count on from those of 3 * 2^51 by one for each

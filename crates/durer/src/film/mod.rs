@@ -12,6 +12,6 @@ mod film;
 mod filter;
 mod packed;
 
-pub use film::{Film, Rejected, WrongWindow, luminance};
+pub use film::{Film, Rejected, WrongWindow, luminance, luminance_of};
 pub use filter::{Filter, FilterSampler};
 pub use packed::Packed;

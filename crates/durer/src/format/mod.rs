@@ -3,6 +3,7 @@
 //! The files come from anywhere. Readers allocate in proportion to the bytes that are there, never to what a file
 //! promises, refuse numbers that are not finite and indices that lead nowhere, and collect errors with their places.
 
+mod bodies;
 pub mod course;
 pub mod curve;
 mod gltf;

@@ -11,7 +11,7 @@ use crate::source::Digest;
 use std::sync::Arc;
 
 /// Bytes that decoding one picture may take.
-const MEMORY: u64 = 1 << 31;
+pub(super) const MEMORY: u64 = 1 << 31;
 
 /// Finds pictures beside a scene, and tells what is wrong with them.
 #[derive(Clone, Copy)]

@@ -1,7 +1,7 @@
 //! In which order samples are taken, and when there are enough.
 
 use super::Crop;
-use crate::film::{Film, luminance};
+use crate::film::{Film, luminance_of};
 
 /// Samples before which nothing is decided about a block.
 pub const LEAST: u32 = 16;
@@ -26,7 +26,7 @@ pub fn ends(samples: u32) -> impl Iterator<Item = u32> {
 /// Illumination*, WSCG 2010. All is computed from exact sums in a fixed order.
 pub fn error(film: &Film, rect: Crop, gain: f32) -> f64 {
     let square = |(x, y)| {
-        let luminance = luminance(film.resolve(x, y).to_array().map(f64::from)).max(1.0 / 256.0);
+        let luminance = luminance_of(film.resolve(x, y)).max(1.0 / 256.0);
         film.variance(x, y, gain) / (4.0 * luminance)
     };
     (rect.places().map(square).sum::<f64>() / rect.pixels() as f64).sqrt()

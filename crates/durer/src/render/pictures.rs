@@ -4,9 +4,9 @@ use super::error::RenderError;
 use super::part::{Found, Part, State, Statistics, job_text};
 use super::{Blocks, Crop};
 use crate::dialect::Compat;
+use crate::film::Film;
 use crate::film::aov::{Aov, Display, Sums, Value, fill_from_last_hit};
 use crate::film::false_color::LightScale;
-use crate::film::{Film, luminance};
 use crate::image::{Image, Layer};
 use crate::math::{Aabb, Color, Vec3};
 use std::sync::Arc;
@@ -95,7 +95,7 @@ impl Part {
     pub(super) fn noisy(&self) -> (Vec<Color>, Vec<f32>, Vec<f32>) {
         let state = self.state();
         let (colors, coverage) = self.colors(&state);
-        let variance = self.summed(&state, |sums| Vec3::splat(sums.variance as f32));
+        let variance = self.summed(&state, |sums| Vec3::splat(sums.variance() as f32));
         // What has too few samples to know is as uncertain as it is bright.
         let sure = |(value, color): (&(Vec3, Found), &Color)| match value.0.x.is_finite() {
             true => value.0.x,
@@ -107,12 +107,11 @@ impl Part {
 
     /// The values of a picture that comes from the samples.
     fn summed(&self, state: &State, value: fn(&Sums) -> Vec3) -> Vec<(Vec3, Found)> {
-        let (gain, none) = (self.gain(), Sums { samples: 0, variance: f64::INFINITY, luminance: 0.0 });
-        let mut pixels = vec![(value(&none), Found::Blind); self.job.window().pixels() as usize];
+        let gain = self.gain();
+        let none = value(&Sums { pixel: None, gain });
+        let mut pixels = vec![(none, Found::Blind); self.job.window().pixels() as usize];
         self.each_sampled(state, |index, film, x, y| {
-            let [r, g, b] = film.resolve(x, y).to_array().map(f64::from);
-            let luminance = luminance([r, g, b]);
-            let sums = Sums { samples: film.samples(x, y), variance: film.variance(x, y, gain), luminance };
+            let sums = Sums { pixel: Some((film, x, y)), gain };
             pixels[index] = (value(&sums), Found::Hit);
         });
         pixels

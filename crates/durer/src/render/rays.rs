@@ -5,7 +5,7 @@ use super::samples::{At, Samples, Stopped};
 use super::{Crop, Job, center_ray, raster};
 use crate::bvh::{RayCount, TraversalStats};
 use crate::film::aov::Seen;
-use crate::film::luminance;
+use crate::film::luminance_of;
 use crate::integrator::Path;
 use crate::math::Vec3;
 use crate::sampler::SampleId;
@@ -42,7 +42,7 @@ pub(super) fn trace(world: &World, job: &Job, samples: &Samples, rect: Crop, at:
                     samples.check()?;
                     sum += path.irradiance_on(surface, side, SampleId::new(job.seed, (x, y), sample), &mut rays);
                 }
-                (luminance(sum.to_array().map(f64::from)) / f64::from(count)) as f32
+                (luminance_of(sum) / f64::from(count)) as f32
             }
             _ => 0.0,
         };

@@ -5,7 +5,7 @@ use super::load::Loader;
 use super::material::Made;
 use super::plugin::{Plugin, Property, Value};
 use crate::diag::{Diagnostic, Span};
-use crate::format::pbrt::body::join_bodies;
+use crate::format::bodies::join_bodies;
 use crate::format::pictures::Pictures;
 use crate::format::said::{Said, meant};
 use crate::format::scene::Input;

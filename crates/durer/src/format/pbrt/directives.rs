@@ -464,7 +464,7 @@ impl Reader<'_> {
             let error = Diagnostic::error("this is not closed").code("unclosed").at(at);
             self.said.push(error.help(format!("a `{end}` is missing")));
         }
-        super::body::join_bodies(&mut self.scene, self.input.name);
+        crate::format::bodies::join_bodies(&mut self.scene, self.input.name);
         self.frame();
         self.surround();
         if self.scene.root.is_none() && !self.said.has_errors() {

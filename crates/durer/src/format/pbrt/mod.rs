@@ -4,7 +4,6 @@
 //! Based Rendering*, 4th edition, 2023. A text changes a state, and what is written then (a shape,
 //! a light) takes the state as it is.
 
-pub(super) mod body;
 mod camera;
 mod directives;
 mod environment;

@@ -2,14 +2,9 @@
 
 use super::Explanation;
 use super::text::number;
-use crate::film::luminance;
+use crate::film::luminance_of;
 use crate::integrator::Node;
 use crate::integrator::account::What;
-use crate::math::Color;
-
-fn bright(color: Color) -> f64 {
-    luminance(color.to_array().map(f64::from))
-}
 
 impl Explanation {
     /// The sample that adds most light, and what it adds to the pixel's luminance; `None` where no light comes at all.
@@ -17,7 +12,7 @@ impl Explanation {
         let all: f64 = self.samples.iter().map(|s| f64::from(s.weight)).sum();
         let adds = |i: usize| {
             let s = &self.samples[i];
-            let light = s.light.as_ref().map_or(0.0, |light| bright(light.contribution()));
+            let light = s.light.as_ref().map_or(0.0, |light| luminance_of(light.contribution()));
             f64::from(s.weight) * light / all
         };
         let best = (0..self.samples.len()).max_by(|&a, &b| adds(a).total_cmp(&adds(b)).then(b.cmp(&a)))?;
@@ -29,7 +24,7 @@ impl Explanation {
         // What adds no more than this, or than four times what is even, is as the others are.
         let usual = (4.0 / self.samples.len() as f64).clamp(0.2, 0.9);
         let (number, adds) = self.brightest()?;
-        let share = adds / bright(self.color);
+        let share = adds / luminance_of(self.color);
         (self.samples.len() > 1 && share >= usual).then_some((number, share))
     }
 
@@ -53,8 +48,9 @@ fn cause(light: &Node) -> Vec<String> {
         if let What::Ray { bounce: Some(bounce), .. } = &node.what {
             chosen.push(bounce);
         }
-        let next = node.terms.iter().max_by(|a, b| bright(a.contribution()).total_cmp(&bright(b.contribution())));
-        match next.filter(|next| bright(next.contribution()) > 0.0) {
+        let next =
+            node.terms.iter().max_by(|a, b| luminance_of(a.contribution()).total_cmp(&luminance_of(b.contribution())));
+        match next.filter(|next| luminance_of(next.contribution()) > 0.0) {
             Some(next) => node = next,
             None => break,
         }

@@ -2,15 +2,12 @@
 
 use super::Writer;
 use crate::describe::FileName;
-use crate::format::pictures::as_png;
+use crate::format::pictures::{MEMORY, as_png};
 use crate::image::{self, Encoded, Transfer};
 use crate::scene::{Picture, PictureBytes};
 use crate::texture::{Mapping, Wrap};
 use serde_json::{Value, json};
 use std::sync::Arc;
-
-/// Bytes that decoding one picture may take.
-const MEMORY: u64 = 1 << 31;
 
 impl Writer<'_> {
     /// A `textureInfo` of a picture that a material names; also how it lies.

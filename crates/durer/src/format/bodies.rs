@@ -1,6 +1,6 @@
 //! Bodies of glass whose skin is written as several meshes.
 //!
-//! pbrt tells by the side of a surface alone whether a ray goes in or out. Here a ray knows the
+//! pbrt and Mitsuba tell by the side of a surface alone whether a ray goes in or out. Here a ray knows the
 //! objects that it is in, so what bounds one body must be one object: open meshes of the same glass
 //! are joined.
 
@@ -62,7 +62,7 @@ fn append(body: &mut MeshData, data: &MeshData, map: DAffine3) {
 }
 
 /// Joins the open meshes of each glass of a scene whose file has a name.
-pub(in crate::format) fn join_bodies(scene: &mut Scene, name: &str) {
+pub(super) fn join_bodies(scene: &mut Scene, name: &str) {
     let Some(root) = &mut scene.root else { return };
     let materials = &scene.materials;
     let is_glass = |number: u32| match materials.get(number as usize).map(|m| &m.value) {
