@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{Place, browser};
+use common::{Place, browser, corpus};
 use durer::image::read8;
 use durer_photo::format::{projective_camera, read};
 use durer_photo::geometry::align::cameras as aligned;
@@ -16,6 +16,9 @@ const SIZE: [u32; 2] = [400, 300];
 const FOCAL: f64 = 410.0;
 /// How long the scene is.
 const LENGTH: f64 = 8.0;
+
+/// Photographs that Dürer took.
+const PHOTOGRAPHS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes/photographs");
 
 /// Boxes and walls of noise in even light.
 const SCENE: &str = "
@@ -83,6 +86,8 @@ fn photographs_of_a_known_scene_give_its_cameras() {
         "another true",
         "point in several true, told true",
         "all: 20 photographs, ",
+        "all inside true",
+        "one plane true",
         "turned true",
     ];
     browser::sees(&place, "tour.html", include_str!("common/walk.js"), &walked);
@@ -125,7 +130,7 @@ fn what_is_no_set_of_photographs_is_refused() {
     place.put("photos/b.jpg", "no picture");
     refused(&["b.jpg: this is neither a JPEG nor a PNG"]);
     // A decoder would fill up with grey what is missing.
-    let jpeg = std::fs::read(concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes/photographs/0.jpg")).unwrap();
+    let jpeg = std::fs::read(Path::new(PHOTOGRAPHS).join("0.jpg")).unwrap();
     place.put("photos/b.jpg", &jpeg[..jpeg.len() / 2]);
     refused(&["b.jpg: cannot be read as a picture: the JPEG is cut off"]);
     std::fs::remove_file(place.path("photos/b.jpg")).unwrap();
@@ -187,13 +192,60 @@ fn broken_files_are_refused_at_their_place() {
             "photo camera p.png --points p.points -o c.txt",
             &["lie in a plane: DLT has no unique answer"],
         ),
-        ("p.points", "0 0 0 1\n", "photo camera p.png --points p.points -o c.txt", &["p.points:2:1"]),
+        (
+            "p.points",
+            "0 0 0 1\n",
+            "photo camera p.png --points p.points -o c.txt",
+            &["p.points:1:8: the row ends where"],
+        ),
+        (
+            "p.points",
+            "0 0 0 1 2 3\n",
+            "photo camera p.png --points p.points -o c.txt",
+            &["p.points:1:11: the row should end"],
+        ),
+        (
+            "p.points",
+            "0 0 O 1 2\n",
+            "photo camera p.png --points p.points -o c.txt",
+            &["1:5: `O` is not one of X Y Z u v"],
+        ),
+        (
+            "b.out",
+            "1 0\n700 0 0 9 9 9 0 1 0 0 0 1 0 0 0\n",
+            "photo convert b.out -o c.ply",
+            &["b.out:2:9", "no rotation"],
+        ),
+        ("b.out", "1 0\n-700 0 0\n", "photo convert b.out -o c.ply", &["b.out:2:1", "must be positive"]),
+        ("b.txt", "1 0 0\n0 0 0 0 0 0 0 0 0\n", "photo solve b.txt -o c.ply", &["b.txt:2:1", "focal length"]),
         ("p.lines", "x 1 2 3 4\nq 1 2 3 4\n", "photo camera p.png --lines p.lines -o c.txt", &["p.lines:2:1"]),
         ("p.fspy", "fspy\u{9}\0\0\0", "photo camera p.fspy -o c.txt", &["version is 9"]),
     ] {
         place.put(file, content);
         place.refused(2, command, words);
     }
+    // Whose pixels count from the bottom gets no camera, though one might see a few of them.
+    let ours = |name: &str| std::fs::read(Path::new(PHOTOGRAPHS).join(name)).unwrap();
+    place.put("2.jpg", ours("2.jpg"));
+    let points = String::from_utf8(ours("2.points")).unwrap();
+    let turned = |row: &str| {
+        let (row, v) = row.rsplit_once(' ').unwrap();
+        format!("{row} {}\n", 240.0 - v.parse::<f64>().unwrap())
+    };
+    let rows = points.lines().filter(|row| !row.starts_with('#'));
+    place.put("turned.points", rows.map(turned).collect::<String>());
+    place.refused(
+        2,
+        "photo camera 2.jpg --points turned.points -o c.txt",
+        &["fewer than two thirds", "v from the top"],
+    );
+    std::fs::create_dir(place.path("twice")).unwrap();
+    place.put("twice/cameras.txt", "1 SIMPLE_PINHOLE 9 9 5 4 4\n1 SIMPLE_PINHOLE 9 9 5 4 4\n");
+    place.put("twice/images.txt", "");
+    place.put("twice/points3D.txt", "");
+    place.refused(2, "photo convert twice -o c.ply", &["twice/cameras.txt:2:", "the id 1 was there before"]);
+    place.put("twice/cameras.txt", "1 SIMPLE_PINHOLE 9 9 5 4 4 7\n");
+    place.refused(2, "photo convert twice -o c.ply", &["twice/cameras.txt:1:28: the row should end here"]);
     place.refused(2, "photo camera p.png", &["--points FILE or --lines FILE"]);
     place.refused(2, "photo solve b.txt -o b.txt", &["is read in this run"]);
 }
@@ -208,7 +260,7 @@ fn square() -> Vec<u8> {
 #[test]
 fn things_are_placed_in_a_photograph_with_their_shadows() {
     let place = Place::new();
-    let ours = |name: &str| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/photographs").join(name);
+    let ours = |name: &str| Path::new(PHOTOGRAPHS).join(name);
     for name in ["placed.txt", "2.jpg"] {
         place.put(name, std::fs::read(ours(name)).unwrap());
     }
@@ -241,5 +293,33 @@ fn things_are_placed_in_a_photograph_with_their_shadows() {
         place.put("square.png", square());
         place.refused(2, &format!("photo place {options} -o no.png"), &[words]);
         assert!(!place.path("no.png").exists());
+    }
+}
+
+#[test]
+fn a_thing_sits_in_a_photograph_of_others() {
+    let Some(course) = corpus() else { return };
+    let picture = course.with_file_name("samples/photos/bundler-kermit/kermit001.jpg");
+    if !picture.is_file() {
+        return println!("skipped: there is no {}", picture.display());
+    }
+    let place = Place::new();
+    place.put("plate.jpg", std::fs::read(&picture).unwrap());
+    let scene = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes/chair.txt");
+    place.gives(0, &format!("photo place {scene} --backplate plate.jpg -o placed.png --samples 4 -q"));
+    let placed = read8(&place.bytes("placed.png"), "placed.png").unwrap();
+    let plate = image::open(picture).unwrap().into_rgb8();
+    let luma = |left: u32, top: u32, width: u32, height: u32| {
+        let pixels = (top..top + height).flat_map(|y| (left..left + width).map(move |x| (x, y)));
+        pixels.fold([0_u32; 2], |[now, before], (x, y)| {
+            let sum = |p: [u8; 3]| p.iter().map(|c| u32::from(*c)).sum::<u32>();
+            [now + sum(placed.pixels[(y * placed.width + x) as usize]), before + sum(plate.get_pixel(x, y).0)]
+        })
+    };
+    // The books stay as they are; left of the solid and of the ball, where the foot's shadow lies too, the seat is darker.
+    let [now, before] = luma(120, 140, 220, 230);
+    assert!(now.abs_diff(before) * 100 < before, "{now} {before}");
+    for [now, before] in [luma(466, 442, 8, 6), luma(518, 444, 4, 6)] {
+        assert!(now * 10 < before * 8 && now * 4 > before, "{now} {before}");
     }
 }

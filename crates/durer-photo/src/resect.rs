@@ -93,10 +93,14 @@ pub fn camera(pairs: &[Pair], known: &Known) -> Result<Resection, Error> {
             best = Some(found);
         }
     }
-    let best = best.filter(|best| best.inliers.len() >= least.max(pairs.len() / 2));
-    let best = best.ok_or_else(|| {
+    // A few points of many agree with some camera by chance.
+    let enough = |best: &Resection| best.inliers.len() >= least.max((2 * pairs.len()).div_ceil(3));
+    let best = best.filter(enough).ok_or_else(|| {
         let limit = known.threshold;
-        Error::new(format!("no camera sees these points at these pixels: fewer than half agree within {limit} pixels"))
+        Error::new(format!(
+            "no camera sees these points at these pixels: fewer than two thirds agree within {limit} pixels. X Y Z are right-handed; \
+             u counts from the left, and v from the top"
+        ))
     })?;
     if best.conditioning < CONDITIONED {
         return Err(Error::new(

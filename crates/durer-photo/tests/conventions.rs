@@ -1,7 +1,7 @@
 //! What the table of conventions says, by hand: one camera that sees one point, written as each format has it.
 
 use durer_photo::Reconstruction;
-use durer_photo::format::{CONVENTIONS, Output, read};
+use durer_photo::format::{CONVENTIONS, Output, read, read_control};
 use nalgebra::{Matrix3, Vector2, Vector3};
 use std::path::Path;
 use tempfile::TempDir;
@@ -171,4 +171,21 @@ fn what_is_packed_is_unpacked() {
         let error = read(&place.path().join(name)).unwrap_err().to_string();
         assert!(error.contains(name) && error.contains("cannot be unpacked"), "{error}");
     }
+}
+
+#[test]
+fn what_is_wrong_with_a_row_is_told_at_its_place() {
+    let told = |text: &str| read_control("c", text.as_bytes(), &["a.jpg", "b.jpg"]).err().unwrap().to_string();
+    for (text, wanted) in [
+        ("0 0 0 a.jpg 1 2\n0 0 nan b.jpg 1 2\n", "c:2:5: `nan` is not one of X Y Z"),
+        ("0 0 0 a.jpg 1\n1 0 0 b.jpg 1 2\n", "c:1:14: the row ends where one of u v should follow"),
+        ("0 0\n0 0 0\n", "c:1:4: the row ends where one of X Y Z should follow"),
+        ("0 0 0 a.jpg 1 2 c.jpg 3 4\n", "c:1:17: there is no photograph `c.jpg`"),
+        ("0 0 0 a.jpg 1 2 a.jpg 3 4\n", "c:1:17: this row names twice the photograph `a.jpg`"),
+    ] {
+        assert!(told(text).starts_with(wanted), "{text}: {}", told(text));
+    }
+    let read = read_control("c", b"# X Y Z\n1 2 3 b.jpg 4 5 a.jpg 6 7\r\n\n0 0 0\n", &["a.jpg", "b.jpg"]).unwrap();
+    assert_eq!(read.iter().map(|point| point.1.len()).collect::<Vec<_>>(), [2, 0]);
+    assert_eq!((read[0].0.z, read[0].1[0].view, read[0].1[1].pixel.y), (3.0, 1, 7.0));
 }

@@ -7,7 +7,7 @@ use crate::output::say;
 use crate::report::complain;
 use crate::{Failure, progress};
 use durer_photo::adjust::{self, Loss, adjust_watched, covariance};
-use durer_photo::format::read_control;
+use durer_photo::format::{Control, read_control};
 use durer_photo::geometry::align::to_control;
 use durer_photo::matching::{FORMAT, Matches};
 use durer_photo::solve::{Options, solve};
@@ -21,13 +21,21 @@ pub fn run(args: &SolveArgs) -> Result<(), Failure> {
     let file = args.file.to_string_lossy();
     // What is of ours says so in its first line.
     let head = String::from_utf8_lossy(&content[..content.len().min(80)]).into_owned();
-    let mut all = match head.contains("\"format\"") && head.contains(FORMAT) {
-        true => incremental(args, &Matches::from_json(&file, &content).map_err(wrong)?)?,
-        false => adjusted(args, &mut guard)?,
+    let (mut all, control) = match head.contains("\"format\"") && head.contains(FORMAT) {
+        true => {
+            let matches = Matches::from_json(&file, &content).map_err(wrong)?;
+            let names: Vec<&str> = matches.pictures.iter().map(|picture| &*picture.name).collect();
+            let control = control(args, &names, &mut guard)?;
+            (incremental(args, &matches)?, control)
+        }
+        false => {
+            let all = given(args, &mut guard)?;
+            let names: Vec<&str> = all.views.iter().map(|view| &*view.name).collect();
+            let control = control(args, &names, &mut guard)?;
+            (adjusted(args, all)?, control)
+        }
     };
-    if let Some(path) = &args.control {
-        let content = bytes(path, &mut guard)?;
-        let control = read_control(&path.to_string_lossy(), &content, &all).map_err(wrong)?;
+    if let Some(control) = control {
         let (similarity, left) = to_control(&all, &control).map_err(wrong)?;
         similarity.apply_to(&mut all);
         let worst = left.iter().fold(0.0_f64, |m, d| m.max(*d));
@@ -51,6 +59,12 @@ fn lens_line(all: &Reconstruction, number: usize, lens: &Lens) -> String {
     let views = all.views.iter().filter(|view| view.lens == number && view.pose.is_some()).count();
     let (f, [k1, k2]) = (lens.focal, lens.radial);
     format!("lens {}: focal length {f:.3} pixels, k1 {k1:.6}, k2 {k2:.6}; {views} photographs", number + 1)
+}
+
+/// The control points, before all else: who mistyped a row need not wait.
+fn control(args: &SolveArgs, names: &[&str], guard: &mut Guard) -> Result<Option<Vec<Control>>, Failure> {
+    let Some(path) = &args.control else { return Ok(None) };
+    read_control(&path.to_string_lossy(), &bytes(path, guard)?, names).map(Some).map_err(wrong)
 }
 
 /// From tracks.
@@ -80,13 +94,18 @@ fn incremental(args: &SolveArgs, matches: &Matches) -> Result<Reconstruction, Fa
     Ok(solved.all)
 }
 
-/// What has cameras already.
-fn adjusted(args: &SolveArgs, guard: &mut Guard) -> Result<Reconstruction, Failure> {
+/// What has cameras already, as it is in the file.
+fn given(args: &SolveArgs, guard: &mut Guard) -> Result<Reconstruction, Failure> {
     let mut all = read(&args.file, args.pictures.as_deref(), guard)?;
     if args.own_lenses {
         all.lenses = all.views.iter().map(|view| all.lenses[view.lens]).collect();
         all.views.iter_mut().enumerate().for_each(|(i, view)| view.lens = i);
     }
+    Ok(all)
+}
+
+/// Adjusts it.
+fn adjusted(args: &SolveArgs, mut all: Reconstruction) -> Result<Reconstruction, Failure> {
     let before = all.fit();
     if before.observations == 0 {
         return Err(crate::bad(format!(

@@ -26,6 +26,11 @@ const button = name => [...moves.children].find(child => child.textContent === n
   await wait();
   see(`point in several ${chosen.size > 1}, told ${word.textContent.includes(`is in ${chosen.size} photographs`)}`);
   await go("all", () => button("all of it").click());
+  const inside = photographs.filter(p => { const [x, y, z] = pixel(p.center); return z > 0 && x > 0 && y > 0 && x < canvas.width && y < canvas.height; });
+  see(`all inside ${inside.length === photographs.length}`);
+  // While one photograph fades into another, both are on one plane.
+  const [[p, q, r, s], others] = shared(photographs[3], photographs[4]), across = unit(cross(minus(q, p), minus(s, p)));
+  see(`one plane ${[r, ...others].every(corner => Math.abs(dot(minus(corner, p), across)) < 1e-6 * reach)}`);
   const before = eye.center.join();
   mouse(canvas, "pointerdown", 0.5, 0.5); mouse(canvas, "pointermove", 0.6, 0.5); mouse(canvas, "pointerup", 0.6, 0.5);
   see(`turned ${before !== eye.center.join()}`);

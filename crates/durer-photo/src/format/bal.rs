@@ -23,7 +23,11 @@ pub fn read(file: &str, bytes: &[u8]) -> Result<Reconstruction, Error> {
     }
     let mut all = Reconstruction::default();
     for number in 0..cameras {
+        let start = words.next_place();
         let [rx, ry, rz, x, y, z, focal, k1, k2] = words.numbers("a camera's nine parameters")?;
+        if focal == 0.0 {
+            return Err(Error::at(file, start, "this camera's focal length, its seventh parameter, is 0"));
+        }
         let rotation = rotation_of(&Vector3::new(rx, ry, rz));
         let pose = opposite(&Pose { rotation, translation: Vector3::new(x, y, z) });
         all.lenses.push(Lens { radial: [k1, k2], ..Lens::new([0, 0], focal) });

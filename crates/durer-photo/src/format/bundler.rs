@@ -2,7 +2,7 @@
 //!
 //! Source: Snavely, *Bundler v0.4 User's Manual*, 2010, "Output format and scene representation".
 
-use super::{Words, joined, opposite};
+use super::{Words, is_rotation, joined, opposite};
 use crate::{Error, Lens, Observation, Point, Pose, Reconstruction, View};
 use nalgebra::{Matrix3, Vector2, Vector3};
 use std::fmt::Write;
@@ -18,8 +18,16 @@ pub fn read(file: &str, bytes: &[u8]) -> Result<Reconstruction, Error> {
     let points = words.count("the number of points", 20)?;
     let mut all = Reconstruction::default();
     for number in 0..cameras {
+        let start = words.next_place();
         let [focal, k1, k2] = words.numbers("focal length and distortion")?;
+        if focal < 0.0 {
+            return Err(Error::at(file, start, "a focal length must be positive, or 0 for a camera that nobody knows"));
+        }
+        let start = words.next_place();
         let rotation = Matrix3::from_row_slice(&words.numbers::<9>("the rotation")?);
+        if focal > 0.0 && !is_rotation(&rotation) {
+            return Err(Error::at(file, start, "these nine numbers are no rotation"));
+        }
         let translation = Vector3::from(words.numbers::<3>("the translation")?);
         let pose = (focal != 0.0).then(|| opposite(&Pose { rotation, translation }));
         all.lenses.push(Lens { radial: [k1, k2], ..Lens::new([0, 0], focal) });

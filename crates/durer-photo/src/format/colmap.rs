@@ -7,6 +7,7 @@ use crate::model::rotation_of_quaternion;
 use crate::{Error, Lens, Observation, Point, Pose, Reconstruction, View};
 use nalgebra::{Vector2, Vector3};
 use std::collections::BTreeMap;
+use std::fmt::Display;
 
 /// A camera model that is read: its name, its number in binary files, and how many parameters it has.
 pub const MODELS: [(&str, i32, usize); 5] =
@@ -63,6 +64,14 @@ pub struct Tables {
     pub cameras: BTreeMap<u32, Lens>,
     pub images: BTreeMap<u32, Image>,
     pub points: BTreeMap<u64, Row>,
+}
+
+/// Puts in what has an id of its own.
+pub fn once<Id: Ord + Copy + Display, T>(into: &mut BTreeMap<Id, T>, id: Id, row: T) -> Result<(), String> {
+    match into.insert(id, row) {
+        None => Ok(()),
+        Some(_) => Err(format!("the id {id} was there before")),
+    }
 }
 
 impl Tables {

@@ -1,6 +1,6 @@
 //! COLMAP's three tables as binary files: little-endian.
 
-use super::colmap::{Image, MODELS, Row, Tables, error, features, lens, parameters};
+use super::colmap::{Image, MODELS, Row, Tables, error, features, lens, once, parameters};
 use crate::model::quaternion_of;
 use crate::{Error, Reconstruction};
 
@@ -78,7 +78,8 @@ pub fn read(folder: &str, [cameras, images, points]: [(&str, &[u8]); 3]) -> Resu
         let model = model.ok_or_else(|| bytes.error(format!("the camera model {number} is not supported")))?;
         let size = [bytes.u64()?, bytes.u64()?].map(|side| side.min(u64::from(u32::MAX)) as u32);
         let numbers = (0..MODELS[model].2).map(|_| bytes.f64()).collect::<Result<Vec<_>, _>>()?;
-        tables.cameras.insert(id, lens(model, size, &numbers).map_err(|why| bytes.error(why))?);
+        let lens = lens(model, size, &numbers).map_err(|why| bytes.error(why))?;
+        once(&mut tables.cameras, id, lens).map_err(|why| bytes.error(why))?;
     }
     bytes.end()?;
     let mut bytes = Bytes::new(images.0, images.1);
@@ -98,7 +99,8 @@ pub fn read(folder: &str, [cameras, images, points]: [(&str, &[u8]); 3]) -> Resu
             bytes.u64()?;
         }
         let name = String::from_utf8_lossy(&name).into_owned();
-        tables.images.insert(id, Image { quaternion, translation, camera, name, features: list });
+        let image = Image { quaternion, translation, camera, name, features: list };
+        once(&mut tables.images, id, image).map_err(|why| bytes.error(why))?;
     }
     bytes.end()?;
     let mut bytes = Bytes::new(points.0, points.1);
@@ -110,7 +112,7 @@ pub fn read(folder: &str, [cameras, images, points]: [(&str, &[u8]); 3]) -> Resu
         for _ in 0..bytes.count(8)? {
             track.push((bytes.u32()?, bytes.u32()? as usize));
         }
-        tables.points.insert(id, Row { position, color, track });
+        once(&mut tables.points, id, Row { position, color, track }).map_err(|why| bytes.error(why))?;
     }
     bytes.end()?;
     tables.into_reconstruction(folder)

@@ -1,6 +1,6 @@
 //! COLMAP's three tables as text.
 
-use super::colmap::{Image, MODELS, Row, Tables, error, features, lens, parameters};
+use super::colmap::{Image, MODELS, Row, Tables, error, features, lens, once, parameters};
 use super::{Words, joined};
 use crate::model::quaternion_of;
 use crate::{Error, Reconstruction};
@@ -9,7 +9,7 @@ use std::fmt::Write;
 /// Reads the contents of cameras.txt, images.txt and points3D.txt, each with its name.
 pub fn read(folder: &str, [cameras, images, points]: [(&str, &[u8]); 3]) -> Result<Reconstruction, Error> {
     let mut tables = Tables::default();
-    let mut words = Words::new(cameras.0, cameras.1)?;
+    let mut words = Words::in_rows(cameras.0, cameras.1)?;
     while words.next_line('#') {
         let id = words.parse("a camera's id")?;
         let (name, place) = words.word("a camera's model")?;
@@ -21,9 +21,10 @@ pub fn read(folder: &str, [cameras, images, points]: [(&str, &[u8]); 3]) -> Resu
         let size = [words.parse("a width")?, words.parse("a height")?];
         let numbers = (0..MODELS[model].2).map(|_| words.number("a parameter")).collect::<Result<Vec<_>, _>>()?;
         let lens = lens(model, size, &numbers).map_err(|why| Error::at(cameras.0, place, why))?;
-        tables.cameras.insert(id, lens);
+        words.end_of_row("a camera's id, model, width, height and parameters")?;
+        once(&mut tables.cameras, id, lens).map_err(|why| words.error(why))?;
     }
-    let mut words = Words::new(images.0, images.1)?;
+    let mut words = Words::in_rows(images.0, images.1)?;
     while words.next_line('#') {
         let id = words.parse("an image's id")?;
         let (quaternion, translation) = (words.numbers("a quaternion")?, words.numbers("a translation")?);
@@ -37,9 +38,10 @@ pub fn read(folder: &str, [cameras, images, points]: [(&str, &[u8]); 3]) -> Resu
             list.push(words.numbers("a feature's place")?);
             words.parse::<i64>("a point's id")?;
         }
-        tables.images.insert(id, Image { quaternion, translation, camera, name, features: list });
+        let image = Image { quaternion, translation, camera, name, features: list };
+        once(&mut tables.images, id, image).map_err(|why| words.error(why))?;
     }
-    let mut words = Words::new(points.0, points.1)?;
+    let mut words = Words::in_rows(points.0, points.1)?;
     while words.next_line('#') {
         let id = words.parse("a point's id")?;
         let position = words.numbers("a position")?;
@@ -52,7 +54,7 @@ pub fn read(folder: &str, [cameras, images, points]: [(&str, &[u8]); 3]) -> Resu
         while !words.is_at_end_of_line() {
             track.push((words.parse("an image's id")?, words.parse("a feature's number")?));
         }
-        tables.points.insert(id, Row { position, color, track });
+        once(&mut tables.points, id, Row { position, color, track }).map_err(|why| words.error(why))?;
     }
     tables.into_reconstruction(folder)
 }

@@ -110,6 +110,11 @@ fn opposite(pose: &Pose) -> Pose {
     Pose { rotation: turn * pose.rotation, translation: turn * pose.translation }
 }
 
+/// Whether a matrix is a rotation, but for what was lost with digits.
+fn is_rotation(matrix: &Matrix3<f64>) -> bool {
+    (matrix * matrix.transpose() - Matrix3::identity()).norm() < 1e-3 && matrix.determinant() > 0.0
+}
+
 fn joined<T: Display>(values: impl IntoIterator<Item = T>) -> String {
     text::joined(values)
 }

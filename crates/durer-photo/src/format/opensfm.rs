@@ -56,6 +56,9 @@ pub fn read(file: &str, json: &[u8], tracks: Option<(&str, &[u8])>) -> Result<Re
             return Err(Error::of(file, why));
         }
         let size = [camera.width, camera.height];
+        if size.contains(&0) || !(camera.focal.is_finite() && camera.focal > 0.0) {
+            return Err(Error::of(file, format!("camera `{name}` has no width, height or focal length that could be")));
+        }
         let focal = camera.focal * f64::from(size[0].max(size[1]));
         lens_of.insert(name, all.lenses.len());
         all.lenses.push(Lens { radial: [camera.k1, camera.k2], ..Lens::new(size, focal) });

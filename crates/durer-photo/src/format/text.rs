@@ -13,6 +13,8 @@ pub struct Words<'t> {
     line: usize,
     /// Where the line begins.
     start: usize,
+    /// Whether what belongs together is in one line.
+    rows: bool,
 }
 
 impl<'t> Words<'t> {
@@ -24,11 +26,22 @@ impl<'t> Words<'t> {
             let column = 1 + before.len() - before.iter().rposition(|b| *b == b'\n').map_or(0, |i| i + 1);
             Error::at(file, (line, column), "this is not text")
         })?;
-        Ok(Words { file, text, at: 0, line: 1, start: 0 })
+        Ok(Words { file, text, at: 0, line: 1, start: 0, rows: false })
+    }
+
+    /// The words of a file in which each line is a row: nothing that a row lacks is taken from the next one.
+    pub fn in_rows(file: &'t str, bytes: &'t [u8]) -> Result<Self, Error> {
+        Ok(Words { rows: true, ..Words::new(file, bytes)? })
     }
 
     fn place(&self) -> (usize, usize) {
         (self.line, 1 + self.text[self.start..self.at].chars().count())
+    }
+
+    /// Line and column at which the next word begins.
+    pub fn next_place(&mut self) -> (usize, usize) {
+        self.advance(true);
+        self.place()
     }
 
     /// An error where the next word begins.
@@ -92,8 +105,9 @@ impl<'t> Words<'t> {
 
     /// The next word, and where it stands.
     pub fn word(&mut self, what: &str) -> Result<(&'t str, (usize, usize)), Error> {
-        if !self.advance(true) {
-            return Err(self.error(format!("the file ends where {what} should follow")));
+        if !self.advance(!self.rows) {
+            let end = if self.rows { "row" } else { "file" };
+            return Err(self.error(format!("the {end} ends where {what} should follow")));
         }
         let place = self.place();
         let word = self.text[self.at..].split_ascii_whitespace().next().unwrap_or_default();
@@ -140,6 +154,14 @@ impl<'t> Words<'t> {
         let (word, place) = self.word(what)?;
         let index: Option<usize> = word.parse().ok().filter(|index| *index < end);
         index.ok_or_else(|| Error::at(self.file, place, format!("`{word}` is not {what}: there are {end}, from 0")))
+    }
+
+    /// Refuses words that are left in this row.
+    pub fn end_of_row(&mut self, row: &str) -> Result<(), Error> {
+        match self.is_at_end_of_line() {
+            true => Ok(()),
+            false => Err(self.error(format!("the row should end here: it is {row}"))),
+        }
     }
 
     /// Refuses words that are left.

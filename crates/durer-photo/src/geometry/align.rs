@@ -110,11 +110,14 @@ pub fn to_control(
             to.push(*position);
         }
     }
+    let count = from.len();
+    if count < 3 {
+        return Err(crate::Error::new(format!(
+            "control needs three points or more, each seen by two photographs whose place is known: {count} are"
+        )));
+    }
     let found = similarity(&from, &to).ok_or_else(|| {
-        let count = from.len();
-        crate::Error::new(format!(
-            "control needs three points or more, not in a line, each seen by two photographs whose place is known: {count} are"
-        ))
+        crate::Error::new("the control points lie in a line: how all is turned about it has no unique answer")
     })?;
     let left = from.iter().zip(&to).map(|(a, b)| (found.apply(a) - b).norm()).collect();
     Ok((found, left))
