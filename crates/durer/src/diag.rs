@@ -180,6 +180,19 @@ impl Diagnostics {
         }
     }
 
+    /// Adds a finding once for all places: where it is there in the same words, that one is said to be so again, and takes the
+    /// edits. Tells whether it was new.
+    pub fn push_once(&mut self, diagnostic: Diagnostic) -> bool {
+        let is_same = |known: &&mut Diagnostic| known.code == diagnostic.code && known.message == diagnostic.message;
+        let Some(known) = self.list.iter_mut().find(is_same) else {
+            self.push(diagnostic);
+            return true;
+        };
+        known.fix.extend(diagnostic.fix);
+        known.label = "here, and again further on".into();
+        false
+    }
+
     /// Adds all findings of another collection.
     pub fn extend(&mut self, other: Diagnostics) {
         let errors = other.list.iter().filter(|d| d.severity == Severity::Error).count();

@@ -34,9 +34,9 @@ pub fn lines(diagnosis: &Diagnosis) -> Vec<String> {
         (1000.0 * first.explained + 1e-6).floor() / 10.0
     )];
     for (mistake, value) in &first.mistakes {
-        let with = |text: &str| text.replace("{}", &value.to_string());
-        lines.push(format!("  should be:  {}", with(mistake.right)));
-        lines.push(format!("  may be:     {}", with(mistake.wrong)));
+        let [right, wrong] = mistake.forms(*value, diagnosis.rules.as_ref());
+        lines.push(format!("  should be:  {right}"));
+        lines.push(format!("  may be:     {wrong}"));
         lines.push(format!("  see the step `{}` of `durer lesson`", mistake.step));
     }
     lines.extend(
@@ -55,9 +55,10 @@ pub fn words(named: &Named) -> String {
 pub fn json(diagnosis: &Diagnosis) -> Value {
     let one = |named: &Named| {
         let mistake = |(mistake, value): &(&durer::mistakes::Mistake, f32)| {
+            let [right, wrong] = mistake.forms(*value, diagnosis.rules.as_ref());
             json!({
                 "name": mistake.name, "words": mistake.told(*value), "value": value,
-                "right": mistake.right, "wrong": mistake.wrong, "step": mistake.step,
+                "right": right, "wrong": wrong, "step": mistake.step,
             })
         };
         json!({

@@ -85,6 +85,10 @@ pub fn causes(found: &Comparison) -> Vec<String> {
     let line = |(i, finding): (usize, &Finding)| {
         let percent = (1000.0 * finding.explained + 1e-6).floor() / 10.0;
         match i {
+            // Where it is tells nothing of why.
+            0 if finding.kind.ends_with("-parts") => {
+                format!("{} ({percent:.1} % of the squared difference lie there)", finding.words)
+            }
             0 => format!("{}: explains {percent:.1} % of the squared difference", finding.words),
             _ => format!("and {}: together {percent:.1} %", finding.words),
         }

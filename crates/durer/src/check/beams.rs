@@ -72,7 +72,10 @@ fn at_something(scout: &Scout, light: usize) -> bool {
 pub(super) fn away(scout: &Scout) -> Vec<Finding> {
     missing(scout, Aim::Away, |diagnostic, light| {
         let place = light.value.place().map_or(Vec3::ZERO, |(place, _)| place);
-        let all = places(scout);
+        // Of a plane the horizon is seen as well: things tell where to shine.
+        let things = scout.seen().filter(|(_, seen)| scout.world().objects[seen.object as usize].bounds().is_some());
+        let things: Vec<Vec3> = things.map(|(probe, seen)| probe.ray.at(seen.t)).collect();
+        let all = if things.is_empty() { places(scout) } else { things };
         let middle = all.iter().sum::<Vec3>() / all.len().max(1) as f32;
         let (word, direction) = match &light.value {
             Light::Spot(spot) => ("this spotlight", spot.direction),

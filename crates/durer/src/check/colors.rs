@@ -11,8 +11,13 @@ use crate::math::Color;
 use crate::scene::{Material as Written, Spanned};
 use crate::world::{Geometry, Material, Phong};
 
+/// What gives back less of all light looks black.
+const BLACK: f32 = 0.01;
 /// Colours that differ by less look alike.
 const ALIKE: f32 = 2.0 / 255.0;
+
+/// So many rays must have met a thing of the background's colour.
+const FEWEST_LOST: usize = 6;
 
 /// The Phong materials as written and as they are used, with their numbers.
 fn phongs<'s>(scout: &'s Scout) -> impl Iterator<Item = (u32, &'s Spanned<Written>, &'s Phong)> {
@@ -58,7 +63,10 @@ pub(super) fn all_black(scout: &Scout) -> bool {
 
 fn is_black(phong: &Phong) -> bool {
     let shown = phong.reflective + phong.transparent + phong.highlight.map_or(Color::ZERO, |h| h.0);
-    phong.diffuse == Color::ZERO && phong.texture.is_none() && phong.noise.is_none() && shown == Color::ZERO
+    phong.diffuse.max_element() < BLACK
+        && phong.texture.is_none()
+        && phong.noise.is_none()
+        && shown.max_element() < BLACK
 }
 
 /// Materials that give back no light at all.
@@ -96,7 +104,9 @@ pub(super) fn no_bounces(scout: &Scout) -> Vec<Finding> {
     let meant = |phong: &Phong| phong.fresnel || !shared || phong.diffuse.max_element() < 0.15;
     let all: Vec<_> =
         phongs(scout).filter(|(i, _, phong)| bounces(phong) && meant(phong) && rays(scout, *i) > 0).collect();
-    let Some((i, written, phong)) = all.iter().find(|(.., phong)| none || cut(phong)) else { return Vec::new() };
+    let Some((i, written, phong)) = all.iter().find(|(.., phong)| none || cut(phong)) else {
+        return switched_off(scout, &all);
+    };
     let diffuse = phong.diffuse.max_element();
     let what = if phong.transparent == Color::ZERO { "mirrors" } else { "lets light through" };
     let (message, help) = match none {
@@ -125,6 +135,35 @@ pub(super) fn no_bounces(scout: &Scout) -> Vec<Finding> {
     let whole = !usual && seen * 2 > scout.seen().count();
     let finding = Finding::from(if usual { Diagnostic { severity: Severity::Note, ..diagnostic } } else { diagnostic });
     vec![finding.whole(whole)]
+}
+
+/// Mirrors and glass whose rays the options leave out, or let end inside.
+fn switched_off(scout: &Scout, all: &[(u32, &Spanned<Written>, &Phong)]) -> Vec<Finding> {
+    let settings = &scout.subject.job.settings;
+    let dark = |phong: &Phong| phong.diffuse.max_element() < 0.15;
+    let is_glass = |phong: &Phong| phong.transparent != Color::ZERO;
+    let say = |(i, written, phong): &(u32, &Spanned<Written>, &Phong)| {
+        let (message, help) = match is_glass(phong) {
+            false if !settings.reflection => {
+                (format!("material {i} mirrors, but mirrored rays are left out"), "leave `--no-reflection` away")
+            }
+            true if !settings.refraction => (
+                format!("material {i} lets light through, but refracted rays are left out"),
+                "leave `--no-refraction` away",
+            ),
+            // Light goes in by one bounce and out by another.
+            true if settings.bounces == 1 && phong.ior != 1.0 && dark(phong) => (
+                format!(
+                    "material {i} is of glass, but there is 1 level of secondary rays: light does not come out again"
+                ),
+                "ask for more: `--bounces 4` (in the course's programs `-bounces 4`)",
+            ),
+            _ => return None,
+        };
+        let effect = if dark(phong) { "it is black, or nearly so" } else { "only its own colour is seen" };
+        Some(Finding::from(Diagnostic::warning(message).at(written.span).effect(effect).help(help)))
+    };
+    all.iter().filter_map(say).take(1).collect()
 }
 
 /// Glass of an index that no glass has.
@@ -363,7 +402,13 @@ pub(super) fn negative(scout: &Scout) -> Vec<Finding> {
         };
         Finding::from(diagnostic)
     };
-    all_colors(scout).into_iter().filter(below).take(MOST_SOUGHT).map(say).collect()
+    let background = &scout.subject.scene.background;
+    let own = |color: Color, field: &'static str, nodes: &'static str| {
+        Some(Named { color, block: background_span(scout)?, fields: [field, nodes], most: 1.0 })
+    };
+    let own = [own(background.color, "color", "color"), own(background.ambient_light, "ambientLight", "ambient_light")];
+    let all = all_colors(scout).into_iter().chain(own.into_iter().flatten());
+    all.filter(below).take(MOST_SOUGHT).map(say).collect()
 }
 
 /// Things that have the colour of what is behind them.
@@ -376,7 +421,7 @@ pub(super) fn camouflaged(scout: &Scout) -> Vec<Finding> {
     let alike = |color: Color| (shown(color) - shown(world.background)).abs().max_element() < ALIKE;
     let mut seen = scout.seen().peekable();
     if seen.peek().is_none() || !seen.all(|(probe, _)| alike(probe.color)) {
-        return Vec::new();
+        return lost_in_background(scout, &alike);
     }
     let black = shown(world.background).max_element() < ALIKE;
     let diagnostic = Diagnostic::warning("all that is seen has the colour of the background");
@@ -391,6 +436,34 @@ pub(super) fn camouflaged(scout: &Scout) -> Vec<Finding> {
     let finding = Finding::from(diagnostic);
     // Where no light arrives, that is the cause, and this comes of it.
     vec![if black { finding.last() } else { finding.whole(true) }]
+}
+
+/// Things of which all that is seen has the background's colour, exactly: others are seen.
+fn lost_in_background(scout: &Scout, alike: &dyn Fn(Color) -> bool) -> Vec<Finding> {
+    let world = scout.world();
+    if world.background.max_element() < 0.02 || super::physical::is_physical(scout) {
+        return Vec::new();
+    }
+    let say = |(number, object): (usize, &crate::world::Object)| {
+        let mut own = scout.seen().filter(|(_, seen)| seen.object as usize == number).peekable();
+        // What mirrors the background is meant to show it.
+        let Material::Phong(phong) = world.materials.get(object.material as usize)? else { return None };
+        let own_color = phong.reflective == Color::ZERO && phong.transparent == Color::ZERO && phong.texture.is_none();
+        own.peek()?;
+        let count = scout.seen().filter(|(_, seen)| seen.object as usize == number).count();
+        if !own_color || count < FEWEST_LOST || !own.all(|(probe, _)| alike(probe.color)) {
+            return None;
+        }
+        let written = scout.subject.scene.materials.get(object.material as usize)?;
+        let diagnostic =
+            Diagnostic::warning(format!("the {} has the colour of the background", scout.object(number as u32)))
+                .at(scout.object_span(number as u32))
+                .related(written.span, "its material")
+                .effect("it cannot be told from it")
+                .help("take another `color` for the background, or for the material");
+        Some(Finding::from(diagnostic))
+    };
+    world.objects.iter().enumerate().filter_map(say).take(super::MOST_ALIKE).collect()
 }
 
 /// Textures on things without texture coordinates.

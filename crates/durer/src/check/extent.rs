@@ -18,6 +18,8 @@ const FEWEST_PIXELS: f32 = 6.0;
 /// Beyond this ratio of sizes something is out of scale; and beyond this one, where it spoils the picture.
 const OUT_OF_SCALE: f32 = 3e3;
 const HARMFUL: f32 = 100.0;
+/// And beyond this, where the camera is in it as well.
+const SWALLOWING: f32 = 20.0;
 
 /// Sizes of things that single precision can place beside others.
 const ABSURD: std::ops::Range<f32> = 1e-9..1e9;
@@ -111,11 +113,23 @@ fn is_harm(scout: &Scout, object: u32) -> bool {
     let hides = sights.contains(&Sight::Hidden(object));
     let keeps_light = scout.verdicts().contains(&Verdict::Blocked(object));
     let ball = matches!(&scout.world().objects[object as usize].geometry, Geometry::Primitive(Primitive::Sphere(_)));
+    // What the camera is in, and which leaves no light or no other thing to be seen, is no sky.
+    if swallows(scout, object) {
+        return true;
+    }
     match sights[object as usize] {
         // What of a ball is too high or too large, its place tells.
-        Sight::Seen => (hides || keeps_light) && !ball,
+        Sight::Seen => hides && keeps_light || (hides || keeps_light) && !ball,
         _ => true,
     }
+}
+
+/// Whether the camera is in an object that keeps light off or hides others.
+fn swallows(scout: &Scout, object: u32) -> bool {
+    let eye = scout.world().camera.pose().center;
+    let keeps_light = [Verdict::Blocked(object), Verdict::Inside(object)].iter().any(|v| scout.verdicts().contains(v));
+    let harms = keeps_light || scout.sights().contains(&Sight::Hidden(object));
+    harms && super::solid::around(scout.world(), eye).contains(&object)
 }
 
 /// Objects far larger or smaller than most.
@@ -160,7 +174,16 @@ pub(super) fn out_of_scale(scout: &Scout) -> Vec<Finding> {
         let ratio = if size > middle { size / middle } else { middle / size };
         // Of two, either may be wrong: the small one is not seen, the large one hides.
         let spoils = size > middle && is_harm(scout, object);
-        if found.len() >= MOST_SOUGHT || ratio < if spoils { HARMFUL } else { OUT_OF_SCALE } {
+        if found.len() >= MOST_SOUGHT
+            || ratio
+                < if !spoils {
+                    OUT_OF_SCALE
+                } else if swallows(scout, object) {
+                    SWALLOWING
+                } else {
+                    HARMFUL
+                }
+        {
             continue;
         }
         // The ground may well be part of a huge ball, and the sky another.

@@ -15,6 +15,8 @@ const MOST_BLUR: f32 = 0.08;
 const SHARP: f32 = 0.02;
 /// No lens is wider than this share of the distance at which it is sharp.
 const WIDEST: f32 = 0.4;
+/// And few are wider than this share.
+const FITTING: f32 = 0.12;
 /// Eyes that are further apart than this share of what they look at see different things.
 const FURTHEST: f32 = 0.5;
 
@@ -57,7 +59,11 @@ pub(super) fn wide_aperture(scout: &Scout) -> Vec<Finding> {
     let Camera::ThinLens(camera) = &scout.world().camera else { return Vec::new() };
     let all = blurs(scout, camera);
     let sharp = all.iter().filter(|(blur, _)| *blur < SHARP).count();
-    if all.is_empty() || camera.aperture < WIDEST * camera.focus_distance || sharp * 10 > all.len() {
+    // An opening that would do where most things are is sharp at the wrong place.
+    let mut depths: Vec<f32> = all.iter().map(|(_, depth)| *depth).collect();
+    depths.sort_by(f32::total_cmp);
+    let fits = depths.get(depths.len() / 2).is_some_and(|middle| camera.aperture < FITTING * middle);
+    if all.is_empty() || camera.aperture < WIDEST * camera.focus_distance || sharp * 10 > all.len() || fits {
         return Vec::new();
     }
     let mut sizes: Vec<f32> = all.iter().map(|(blur, _)| *blur).collect();

@@ -20,6 +20,8 @@ const SHARE: f32 = 0.002;
 
 /// Where more of what faces a light than this is in shadow, the light is kept off.
 const MOST_BLOCKED: f32 = 0.95;
+/// A roof over all things keeps light off so large a share of what faces it.
+const ROOFED: f32 = 0.6;
 
 /// Where all that arrives of all lights is less than this, nobody sees that there are any.
 const MOST_WEAK: f32 = 0.06;
@@ -115,7 +117,8 @@ fn verdict(scout: &Scout, number: usize) -> Verdict {
     if scout.world().lights.len() <= 3 && most > VISIBLE && most < 6.0 * VISIBLE && arrives < 12.0 * VISIBLE {
         return Verdict::Faint(arrives);
     }
-    if all.is_empty() || visible as f32 > SHARE * all.len() as f32 && !nearly_blocked(&all) {
+    let is_blocked = nearly_blocked(&all) || roofed(scout, number);
+    if all.is_empty() || visible as f32 > SHARE * all.len() as f32 && !is_blocked {
         return Verdict::Works;
     }
     if let Light::Point(point) = light
@@ -126,11 +129,24 @@ fn verdict(scout: &Scout, number: usize) -> Verdict {
     }
     let facing: Vec<&&Lit> = all.iter().filter(|lit| lit.cosine > 1e-3).collect();
     let blocked: Vec<u32> = facing.iter().filter_map(|lit| lit.blocker).collect();
-    if facing.len() - blocked.len() > all.len() / 50 && !nearly_blocked(&all) {
+    if facing.len() - blocked.len() > all.len() / 50 && !is_blocked {
         let most = facing.iter().map(|lit| lit.arrives.abs().max_element()).fold(0.0, f32::max);
-        return if most < 4.0 * VISIBLE { Verdict::Faint(most) } else { Verdict::Cancelled };
+        // What lies nearly along the light is dark whatever its colour.
+        let lit = facing.iter().filter(|lit| lit.blocker.is_none() && lit.cosine > GRAZING);
+        let (full, lost) = lit
+            .filter(|lit| lit.arrives.abs().max_element() > 4.0 * VISIBLE)
+            .fold((0, 0), |(n, lost), lit| (n + 1, lost + usize::from(lit.adds.abs().max_element() <= VISIBLE)));
+        return match most < 4.0 * VISIBLE {
+            true => Verdict::Faint(most),
+            false if full > 4 && lost * 10 > full * 9 => Verdict::Cancelled,
+            false if full > 0 => Verdict::Works,
+            false => Verdict::Behind,
+        };
     }
-    match most_common(&blocked).filter(|_| blocked.len() * 5 > all.len()).or_else(|| behind_plane(scout, light)) {
+    match main_blocker(scout, number, &blocked)
+        .filter(|_| blocked.len() * 5 > all.len())
+        .or_else(|| behind_plane(scout, light))
+    {
         Some(object) => Verdict::Blocked(object),
         None => Verdict::Behind,
     }
@@ -141,6 +157,42 @@ fn nearly_blocked(all: &[&Lit]) -> bool {
     let facing: Vec<&&Lit> = all.iter().filter(|lit| lit.cosine > 1e-3).collect();
     let blocked = facing.iter().filter(|lit| lit.blocker.is_some()).count();
     blocked as f32 > MOST_BLOCKED * facing.len() as f32 && facing.len() * 5 > all.len()
+}
+
+/// Whether one thing keeps a light off all others that have an end and face it, and off most of the rest.
+fn roofed(scout: &Scout, light: usize) -> bool {
+    let objects = &scout.world().objects;
+    let facing = || {
+        let all = scout.seen().filter_map(|(_, seen)| Some((seen.object, seen.by(light)?)));
+        all.filter(|(_, lit)| lit.cosine > GRAZING)
+    };
+    let blockers: Vec<u32> = facing().filter_map(|(_, lit)| lit.blocker).collect();
+    let Some(roof) = most_common(&blockers) else { return false };
+    let under = |(_, lit): &(u32, &Lit)| lit.blocker.is_some();
+    let things = || facing().filter(|(object, _)| *object != roof && objects[*object as usize].bounds().is_some());
+    let (count, covered) = (things().count(), things().filter(under).count());
+    let (all, dark) = (facing().count(), facing().filter(|(_, lit)| lit.blocker == Some(roof)).count());
+    count > 20 && covered as f32 > MOST_BLOCKED * count as f32 && dark as f32 > ROOFED * all as f32
+}
+
+/// Of some objects the one that is in the way of a light at the most places; each may be in the way of another.
+fn main_blocker(scout: &Scout, light: usize, blocked: &[u32]) -> Option<u32> {
+    let (common, lamp) = (most_common(blocked)?, &scout.world().lights[light]);
+    let places = scout.seen().filter(|(_, seen)| seen.by(light).is_some_and(|lit| lit.blocker.is_some()));
+    let mut all = Vec::new();
+    for (probe, seen) in places.step_by((blocked.len() / 60).max(1)) {
+        let place = probe.ray.at(seen.t).as_dvec3();
+        let seen = lamp.illuminate(place);
+        let reach = if seen.distance.is_finite() { seen.distance } else { f32::INFINITY };
+        let ray = Ray { t_min: 1e-3, t_max: 0.999 * reach, ..Ray::new(place.as_vec3(), seen.to_light) };
+        let mut hit: Vec<u32> = scout.world().all_hits(&ray).take(16).map(|hit| hit.object).collect();
+        hit.sort_unstable();
+        hit.dedup();
+        all.extend(hit);
+    }
+    let count = |object: u32| all.iter().filter(|other| **other == object).count();
+    // What is hit first most often is told of, unless something else is in the way at more places.
+    most_common(&all).filter(|other| count(*other) * 10 > count(common) * 11).or(Some(common))
 }
 
 /// The seen plane that is between the camera and a light, if one is first of all.
@@ -271,23 +323,41 @@ pub(super) fn blocked(scout: &Scout) -> Vec<Finding> {
 
 /// Where lights together reach a smaller share of what is seen, most of it is in the dark.
 const MOSTLY_DARK: f32 = 0.33;
+/// Where less than this share of the strongest light arrives of one, it is there to brighten shadows.
+const WEAK: f32 = 0.15;
+/// Below this cosine light hardly falls on a surface, but goes along it.
+const GRAZING: f32 = 0.08;
 /// Where they reach less than this, only a rim is lit.
 const RIM: f32 = 0.2;
 /// And here nearly all.
 const NEARLY_ALL_DARK: f32 = 0.25;
 
+/// The lights that work, without those of which far less arrives than of the strongest.
+fn main_lights(scout: &Scout) -> Vec<usize> {
+    let strength = |light: usize| {
+        let arrives = scout.seen().filter_map(|(_, seen)| Some(seen.by(light)?.arrives.max_element()));
+        arrives.filter(|light| light.is_finite()).fold(0.0, f32::max)
+    };
+    let working = (0..scout.verdicts().len()).filter(|&light| scout.verdicts()[light] == Verdict::Works);
+    let all: Vec<(usize, f32)> = working.take(MOST_JUDGED).map(|light| (light, strength(light))).collect();
+    let most = all.iter().map(|(_, strength)| *strength).fold(0.0, f32::max);
+    all.into_iter().filter(|(_, strength)| *strength >= WEAK * most).map(|(light, _)| light).collect()
+}
+
 /// Lights that do reach something, but little, since most of what is seen faces away from them.
 fn mostly_dark(scout: &Scout) -> Vec<Finding> {
-    let working: Vec<usize> = (0..scout.verdicts().len()).filter(|&i| scout.verdicts()[i] == Verdict::Works).collect();
+    let working = main_lights(scout);
     let (mut all, mut reached, mut away, mut grazed) = (0, 0, 0, 0);
-    let bright = |lit: &Lit| lit.adds.abs().max_element() > VISIBLE;
+    let is_main = |lit: &&Lit| working.contains(&lit.light);
+    let bright = |lit: &Lit| is_main(&lit) && lit.cosine > GRAZING && lit.adds.abs().max_element() > VISIBLE;
     // A back that is not shaded as a front is no light's fault.
     let shaded = scout.subject.job.settings.shade_back;
     for (_, seen) in scout.seen().filter(|(_, seen)| shaded || !seen.from_behind) {
         all += 1;
         reached += usize::from(seen.lit.iter().any(&bright));
-        away += usize::from(seen.lit.iter().all(|lit| lit.cosine <= 1e-3));
-        grazed += usize::from(seen.lit.iter().all(|lit| lit.cosine <= 1e-3) && seen.lit.iter().any(is_grazing));
+        let faces_away = seen.lit.iter().filter(is_main).all(|lit| lit.cosine <= GRAZING);
+        away += usize::from(faces_away);
+        grazed += usize::from(faces_away && seen.lit.iter().filter(is_main).any(is_grazing));
     }
     // What is black of itself, or in shadow, tells nothing of where the lights are.
     let reaches = reached as f32 > MOSTLY_DARK * all as f32;
@@ -371,8 +441,27 @@ fn grazing(scout: &Scout, lights: &[usize]) -> Option<Diagnostic> {
     }
 }
 
+/// Lights that lie in a plane that is seen, or go exactly along it: it gets nothing of them.
+fn along_plane(scout: &Scout) -> Vec<Finding> {
+    let flat = |object: u32| scout.world().objects[object as usize].bounds().is_none();
+    let is_along = |light: &usize| {
+        let all = scout.seen().filter(|(_, seen)| flat(seen.object)).filter_map(|(_, seen)| seen.by(*light));
+        let (count, along) = all.fold((0, 0), |(n, along), lit| (n + 1, along + usize::from(is_grazing(lit))));
+        count * 5 > scout.seen().count() && along * 10 > count * 9
+    };
+    main_lights(scout)
+        .into_iter()
+        .filter(is_along)
+        .filter_map(|light| grazing(scout, &[light]))
+        .map(Finding::from)
+        .collect()
+}
+
 pub(super) fn behind(scout: &Scout) -> Vec<Finding> {
     let mut found = mostly_dark(scout);
+    if found.is_empty() {
+        found = along_plane(scout);
+    }
     found.extend(each(scout, |light, verdict| {
         if verdict != Verdict::Behind {
             return None;

@@ -1,11 +1,10 @@
 //! Samples that are no finite numbers, and where that begins.
 
-use super::finding::{Finding, vector};
+use super::finding::Finding;
 use super::scout::Scout;
 use crate::diag::{Diagnostic, Span};
 use crate::integrator::Node;
-use crate::integrator::account::What;
-use crate::math::Color;
+use crate::integrator::account::{TermValue, What};
 use crate::render::explain::{explain, explain_ray};
 use crate::sampler::SampleId;
 
@@ -32,7 +31,7 @@ pub(super) fn not_finite(scout: &Scout) -> Vec<Finding> {
     let mut steps = Vec::new();
     let mut place = None;
     if let Some(tree) = &tree {
-        path(scout, tree, &mut steps, &mut place);
+        path(scout, &tree.root, &mut steps, &mut place);
     }
     let share = match bad {
         0 => "such samples are left out: specks, or black".to_string(),
@@ -57,15 +56,12 @@ fn path(scout: &Scout, node: &Node, steps: &mut Vec<String>, place: &mut Option<
         What::Ray { hit: None, .. } => steps.push("a ray that hits nothing".into()),
         What::Light { light, distance, .. } => {
             *place = super::lights::place(scout, *light).or(*place);
-            let arrives = if node.scale.is_finite() {
-                String::new()
-            } else {
-                format!(", of which {} arrives", shown(node.scale))
-            };
+            let arrives =
+                if finite(node.scale) { String::new() } else { format!(", of which {} arrives", shown(node.scale)) };
             steps.push(format!("{}, {distance} away{arrives}", names.light(*light)));
         }
         What::Ambient { .. } => {
-            steps.push(format!("ambient light {} times colour {}", vector(node.factor), shown(node.value)))
+            steps.push(format!("ambient light {} times colour {}", shown(node.factor), shown(node.value)))
         }
         What::Highlight { base, exponent, .. } => steps.push(format!("highlight {base} to the power of {exponent}")),
         What::Diffuse { cosine } => steps.push(format!("diffuse light, N·L = {cosine}, colour {}", shown(node.value))),
@@ -74,11 +70,15 @@ fn path(scout: &Scout, node: &Node, steps: &mut Vec<String>, place: &mut Option<
         }
         _ => {}
     }
-    if let Some(next) = node.terms.iter().find(|term| !term.contribution().is_finite()) {
+    if let Some(next) = node.terms.iter().find(|term| !finite(term.contribution())) {
         path(scout, next, steps, place);
     }
 }
 
-fn shown(color: Color) -> String {
-    format!("{} {} {}", color.x, color.y, color.z)
+fn finite(value: TermValue) -> bool {
+    value.numbers().iter().all(|x| x.is_finite())
+}
+
+fn shown(value: TermValue) -> String {
+    value.numbers().iter().map(f32::to_string).collect::<Vec<_>>().join(" ")
 }

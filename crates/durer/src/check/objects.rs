@@ -12,7 +12,7 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 /// A box thinner than this share of its sides was squashed.
-const SQUASHED: f32 = 1e-5;
+const SQUASHED: f32 = 1e-4;
 
 /// Triangles of the scene file without area.
 pub(super) fn degenerate(scout: &Scout) -> Vec<Finding> {

@@ -1,18 +1,21 @@
 //! Patterns of which nothing is seen: of one part, or finer than a pixel.
 
 use super::MOST_SOUGHT;
-use super::finding::{Finding, percent};
+use super::finding::{Finding, number, percent};
 use super::scout::Scout;
 use crate::diag::Diagnostic;
 use crate::material::{ColorNoise, Pattern, Solid};
 use crate::math::Vec3;
 use crate::scene::Material as Written;
-use crate::world::{Material, World};
+use crate::world::{Geometry, Material, MeshTree, World};
+use std::sync::Arc;
 
 /// Steps within a pixel in which a pattern is looked at.
 const STEPS: u32 = 24;
 /// So many changes within a pixel are noise.
 const MOST_CHANGES: usize = 3;
+/// Cells this many times wider than all things together make no pattern.
+const COARSEST: f32 = 3.0;
 /// Fewer places tell nothing.
 const FEWEST: usize = 20;
 
@@ -25,7 +28,6 @@ enum Look<'w> {
 impl Look<'_> {
     fn of(world: &World, material: u32) -> Option<Look<'_>> {
         match world.materials.get(material as usize)? {
-            Material::Solid(Solid::Mix(_), _) => None,
             Material::Solid(solid, to_pattern) => Some(Look::Solid(solid, to_pattern)),
             Material::Phong(phong) => phong.noise.as_ref().map(Look::Noise),
         }
@@ -69,7 +71,11 @@ pub(super) fn scale(scout: &Scout) -> Vec<Finding> {
             })
         };
         let fine = places.iter().filter(|place| noisy(place)).count();
-        let (message, effect, help) = if most - least < 1e-3 {
+        let (message, effect, help) = if let Some((message, help)) = without_change(scout, &look, &written.value) {
+            (message, "no pattern is seen: it is of one colour, or of few large patches", help)
+        } else if matches!(look, Look::Solid(Solid::Mix(_), _)) {
+            continue;
+        } else if most - least < 1e-3 {
             (
                 "only one part of this pattern is in the picture".to_string(),
                 "no pattern is seen: it is of one colour",
@@ -92,6 +98,60 @@ pub(super) fn scale(scout: &Scout) -> Vec<Finding> {
         let mut diagnostic = Diagnostic::warning(message).at(written.span).effect(effect).help(help);
         diagnostic = diagnostic.label(format!("on {} of what is seen", percent(places.len(), scout.seen().count())));
         found.push(Finding::from(diagnostic));
+    }
+    found
+}
+
+/// Why a pattern cannot be seen as one, if what is written tells.
+fn without_change(scout: &Scout, look: &Look, written: &Written) -> Option<(String, &'static str)> {
+    let Look::Solid(solid, to_pattern) = look else { return None };
+    if let Solid::Mix(mix) = solid {
+        let message = format!("the `share` of this mix is {}", number(mix.share));
+        let help = "the other has no part in it: a `share` between 0 and 1 shows both";
+        return (mix.share <= 0.0 || mix.share >= 1.0).then_some((message, help));
+    }
+    if !matches!(solid, Solid::Checkerboard(_)) || !matches!(written, Written::Solid(..)) {
+        return None;
+    }
+    let cell = to_pattern.inverse().matrix3;
+    let cell = cell.x_axis.length().min(cell.y_axis.length()).min(cell.z_axis.length()) as f32;
+    // What has no end is as large as the rest, or as the camera is far from it.
+    let size = match scout.world().bounds() {
+        bounds if bounds.is_empty() => return None,
+        bounds => bounds.size().max_element(),
+    };
+    let message =
+        format!("the cells of this pattern are {} wide, and all things together {}", number(cell), number(size));
+    let help = "its cells are larger than all that is seen: look at the `Scale` of its `Transform`";
+    (cell > COARSEST * size).then_some((message, help))
+}
+
+/// Textures of which one colour alone is seen: the picture has no other, or all corners of a mesh lie at one place of it.
+pub(super) fn flat_texture(scout: &Scout) -> Vec<Finding> {
+    let world = scout.world();
+    let mut found = Vec::new();
+    for (number, written) in scout.subject.scene.materials.iter().enumerate().take(MOST_SOUGHT) {
+        let Some(Material::Phong(phong)) = world.materials.get(number) else { continue };
+        let Some(texture) = phong.texture.and_then(|texture| world.textures.get(texture as usize)) else { continue };
+        let own = || world.objects.iter().filter(|object| object.material as usize == number);
+        let still = |mesh: &Arc<MeshTree>| {
+            let data = mesh.mesh.data();
+            !data.uvs.is_empty() && data.uvs.iter().all(|uv| (*uv - data.uvs[0]).abs().max_element() < 1e-6)
+        };
+        let one_place = own().find(|object| matches!(&object.geometry, Geometry::Mesh(mesh) if still(mesh)));
+        let (message, help) = if scout.material_rays()[number] == 0 {
+            continue;
+        } else if texture.is_flat() {
+            (format!("the texture of material {number} is of one colour"), "is it the right picture?")
+        } else if let Some(object) = one_place {
+            let name = scout.text(object.span);
+            let message = format!("all corners of the `{name}` lie at one place of its texture");
+            (message, "the `vt` lines of its file are all the same: export its texture coordinates")
+        } else {
+            continue;
+        };
+        let diagnostic = Diagnostic::warning(message).effect("nothing of a picture is seen on it").help(help);
+        found.push(Finding::from(scout.at_value(diagnostic, written.span, &["texture"])));
     }
     found
 }

@@ -34,9 +34,10 @@ impl Oddity {
     }
 }
 
-/// What is wrong with a picture of colours, if anything. It looks no further than it must: a sound picture takes a few pixels.
-pub fn oddity(picture: &Image, statistics: &Statistics) -> Option<Oddity> {
-    let shown = |color: &Color| color.clamp(Color::ZERO, Color::ONE);
+/// What is wrong with a picture of colours, if anything, seen through an exposure: the factor by which its light is multiplied.
+/// It looks no further than it must: a sound picture takes a few pixels.
+pub fn oddity(picture: &Image, exposure: f32, statistics: &Statistics) -> Option<Oddity> {
+    let shown = |color: &Color| (exposure * *color).clamp(Color::ZERO, Color::ONE);
     let first = shown(picture.pixels.first()?);
     let differs = |pixel: &&Color| (shown(pixel) - first).abs().max_element() > 0.5 / 255.0;
     if picture.pixels.len() > 1 && picture.pixels.iter().find(differs).is_none() {
@@ -45,7 +46,7 @@ pub fn oddity(picture: &Image, statistics: &Statistics) -> Option<Oddity> {
     if statistics.rejected as f64 > MOST_REJECTED * (statistics.samples + statistics.rejected) as f64 {
         return Some(Oddity::NotFinite);
     }
-    let cut = picture.pixels.iter().filter(|pixel| pixel.min_element() > 1.001).count();
+    let cut = picture.pixels.iter().filter(|pixel| exposure * pixel.min_element() > 1.001).count();
     (cut as f32 > MOST_WHITE * picture.pixels.len() as f32).then_some(Oddity::White)
 }
 
@@ -59,7 +60,7 @@ mod tests {
 
     #[test]
     fn odd_pictures_are_told_from_sound_ones() {
-        let judged = |pixels: &[f32]| oddity(&picture(pixels), &Statistics::default());
+        let judged = |pixels: &[f32]| oddity(&picture(pixels), 1.0, &Statistics::default());
         assert_eq!(judged(&[0.0; 9]), Some(Oddity::Black));
         assert_eq!(judged(&[0.3; 9]), Some(Oddity::OneColor));
         assert_eq!(judged(&[1.5, 2.0, 9.0]), Some(Oddity::OneColor));
@@ -67,7 +68,11 @@ mod tests {
         assert_eq!(judged(&[0.0, 0.5, 1.0]), None);
         // Light that just reaches white is not cut.
         assert_eq!(judged(&[1.0, 1.0, 0.1]), None);
+        // Daylight in cd/m^2 is white as it is, and sound through an exposure.
+        let day = picture(&[900.0, 2000.0, 7000.0]);
+        assert_eq!(oddity(&day, 1.0, &Statistics::default()), Some(Oddity::OneColor));
+        assert_eq!(oddity(&day, 1e-4, &Statistics::default()), None);
         let lost = Statistics { samples: 90, rejected: 10, ..Statistics::default() };
-        assert_eq!(oddity(&picture(&[0.0, 0.5]), &lost), Some(Oddity::NotFinite));
+        assert_eq!(oddity(&picture(&[0.0, 0.5]), 1.0, &lost), Some(Oddity::NotFinite));
     }
 }

@@ -9,7 +9,7 @@ use crate::diag::{Diagnostic, Files, Span};
 use crate::dialect::Dialect;
 use crate::format::course::place;
 use crate::integrator::account::What;
-use crate::integrator::{Method, Node, Settings};
+use crate::integrator::{Method, Settings, Tree};
 use crate::math::{Color, Ray};
 use crate::render::explain::{Names, explain_ray};
 use crate::render::{Job, center_ray, raster};
@@ -233,9 +233,9 @@ impl Seen {
 }
 
 impl Probe {
-    fn of(pixel: (u32, u32), ray: Ray, light: &Node) -> Self {
-        let mut probe = Probe { pixel, ray, color: light.value, seen: None };
-        let What::Ray { hit: Some(hit), .. } = &light.what else { return probe };
+    fn of(pixel: (u32, u32), ray: Ray, tree: &Tree) -> Self {
+        let mut probe = Probe { pixel, ray, color: tree.color(tree.root.value), seen: None };
+        let What::Ray { hit: Some(hit), .. } = &tree.root.what else { return probe };
         let mut seen = Seen {
             object: hit.object,
             material: hit.material,
@@ -246,23 +246,19 @@ impl Probe {
             ambient: Color::ZERO,
             lit: Vec::new(),
         };
-        for term in &light.terms {
+        for term in &tree.root.terms {
             match &term.what {
-                What::Ambient { .. } => seen.ambient += term.contribution(),
+                What::Ambient { .. } => seen.ambient += tree.color(term.contribution()),
                 // A surface of several materials has a term for each.
                 What::Light { light, to_light, shadow, .. } => {
-                    let adds = term.contribution();
+                    let adds = tree.color(term.contribution());
                     match seen.lit.last_mut().filter(|lit| lit.light == *light) {
                         Some(lit) => lit.adds += adds,
                         None => seen.lit.push(Lit {
                             light: *light,
                             cosine: hit.n.dot(*to_light),
-                            arrives: term.scale,
-                            blocker: shadow
-                                .as_ref()
-                                .filter(|s| s.share == Color::ZERO)
-                                .and_then(|s| s.blocker)
-                                .map(|b| b.0),
+                            arrives: tree.color(term.scale),
+                            blocker: shadow.as_ref().filter(|s| s.share.is(0.0)).and_then(|s| s.blocker).map(|b| b.0),
                             adds,
                         }),
                     }

@@ -4,7 +4,7 @@ use super::finding::Finding;
 use super::scout::Scout;
 use super::{
     air, beams, colors, exposure, extent, facing, fading, lamps, layers, lens, lights, mesh, names, numbers, objects,
-    patterns, physical, unseen, view, year,
+    patterns, physical, solid, unseen, view, year,
 };
 
 /// One kind of finding.
@@ -47,22 +47,25 @@ checks! {
     // Where the camera is.
     "far-origin": "a scene so far from the origin that numbers have no digits left for its shapes", lens::far_origin;
     "epsilon": "a scene smaller than the distance at which this year's program lets shadow rays begin", lens::below_epsilon;
+    "up-parallel": "the camera's `up` is parallel to its `direction`", reported;
     "camera-inside": "the camera is inside an object", view::inside;
     "camera-away": "the camera looks past everything", view::away;
     "too-small": "all things together are too small in the picture", extent::too_small;
     "too-narrow": "the picture shows a tiny part of the scene", extent::too_narrow;
     "empty-solid": "a solid of which nothing is left", objects::empty_solid;
+    "idle-part": "a part of a solid that changes nothing", solid::idle_part;
     "wide-aperture": "an opening that no lens has", lens::wide_aperture;
     "out-of-focus": "a lens that is sharp where nothing is", lens::out_of_focus;
     "eyes-apart": "two eyes too far from each other", lens::eyes_apart;
     "hidden-behind": "one object hides all others, or most of the picture", view::hidden_behind;
     "below-plane": "a plane between the camera and all other things", view::below_plane;
+    "plane-through": "a plane that passes through the middle of most things", view::plane_through;
+    "upside-down": "a camera whose `up` points into the ground", view::upside_down;
     "edge-on": "a plane that is seen from its edge", lens::edge_on;
     "long-up": "a camera's `up` that is used as it is, and not of length 1", year::long_up;
     "stretched": "a picture that is not square, under a program that stretches it", year::stretched;
     "plane-normal": "a plane whose normal is not of length 1", year::plane_normal;
     "out-of-scale": "an object far larger or smaller than most", extent::out_of_scale;
-    "up-parallel": "the camera's `up` is parallel to its `direction`", reported;
     // Light.
     "no-light": "no light", reported;
     "no-emitter": "a scene for paths in which nothing shines", physical::no_emitter;
@@ -85,7 +88,7 @@ checks! {
     // Colours.
     "color-range": "a colour beyond 1", colors::too_large;
     "full-ambient": "ambient light that leaves nothing to the lamps", year::full_ambient;
-    "pow-zero": "a highlight of shininess 0, which is everywhere", year::pow_zero;
+    "pow-zero": "a highlight of an exponent of 0, or nearly so, which is everywhere", year::pow_zero;
     "no-exponent": "a highlight's colour without an exponent", year::no_exponent;
     "tiny-highlight": "a highlight smaller than a pixel", year::tiny_highlight;
     "same-parts": "a pattern of two equal parts", year::same_parts;
@@ -101,6 +104,7 @@ checks! {
     "odd-index": "glass of an index that no glass has", colors::odd_index;
     "same-color": "things of the colour of the background", colors::camouflaged;
     "no-coordinates": "a texture on a thing without texture coordinates", colors::no_coordinates;
+    "flat-texture": "a texture of which one colour alone is seen", patterns::flat_texture;
     // Shapes and meshes.
     "seen-from-behind": "a surface seen from behind, which is not shaded", facing::from_behind;
     "turned-triangle": "triangles that face the other way than their neighbours", facing::turned_triangles;

@@ -6,7 +6,7 @@ use super::scout::Scout;
 use super::sight::Sight;
 use super::view::pixels;
 use crate::camera::Lens;
-use crate::diag::{Diagnostic, Severity};
+use crate::diag::{Diagnostic, Severity, Span};
 use crate::math::{Aabb, Vec3};
 use crate::scene::Node;
 use crate::shape::Primitive;
@@ -82,9 +82,40 @@ pub(super) fn unseen(scout: &Scout) -> Vec<Finding> {
             .related(scout.object_span(by), if inside { "around it" } else { "in front of it" })
             .effect("nothing of it is seen")
             .help(help);
+        let diagnostic = match mirrored(scout, first) {
+            Some((place, text)) => diagnostic
+                .at(place)
+                .help(format!(
+                    "a scale below zero, `{text}`, turns it inside out through its origin: take the sign away"
+                ))
+                .fix(place, text.replace('-', "")),
+            None => diagnostic,
+        };
         found.push(Finding::from(diagnostic));
     }
     found
+}
+
+/// The number of a scale below zero around a thing, and where it is written.
+fn mirrored(scout: &Scout, number: u32) -> Option<(Span, String)> {
+    let object = &scout.world().objects[number as usize];
+    object.to_world.as_ref().filter(|to_world| {
+        to_world.vector(Vec3::X).cross(to_world.vector(Vec3::Y)).dot(to_world.vector(Vec3::Z)) < 0.0
+    })?;
+    let mut all: Vec<(&crate::scene::Object, Option<Span>)> =
+        scout.subject.scene.root.iter().flat_map(|root| &root.objects).map(|object| (object, None)).collect();
+    while let Some((inner, around)) = all.pop() {
+        if inner.span.start == object.span.start && inner.span.file == object.span.file {
+            let value = scout.value(around?, &["UniformScale", "Scale", "scale"])?;
+            return Some((value, scout.text(value)));
+        }
+        match &inner.node {
+            Node::Group(group) => all.extend(group.objects.iter().map(|object| (object, around))),
+            Node::Transform(_, within) => all.push((within, Some(inner.span))),
+            _ => {}
+        }
+    }
+    None
 }
 
 /// Things of which there is nothing: solids that are empty, triangles and meshes without area.
@@ -114,7 +145,9 @@ pub(super) fn tiny(scout: &Scout) -> Vec<Finding> {
     let objects = &scout.world().objects;
     let small = |(index, object): (usize, &Object)| {
         let bounds = object.bounds().filter(|bounds| !bounds.is_empty())?;
-        let size = pixels(scout, bounds).filter(|size| *size < 1.5)?;
+        // Nobody makes a mesh of many triangles to be a dot.
+        let least = if matches!(&object.geometry, Geometry::Mesh(tree) if tree.mesh.len() > 50) { 6.0 } else { 1.5 };
+        let size = pixels(scout, bounds).filter(|size| *size < least)?;
         let looked = super::sight::rays_to(scout, bounds.center());
         (!looked.is_empty() && scout.sights()[index] != Sight::Outside).then_some((index as u32, size, bounds))
     };

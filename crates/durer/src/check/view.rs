@@ -7,9 +7,9 @@ use super::sight::{Sight, corner};
 use super::solid::around;
 use crate::camera::{Camera, Lens};
 use crate::diag::{Diagnostic, Span};
-use crate::math::{Aabb, Ray, Vec2, Vec3, fp};
+use crate::math::{Aabb, Color, Ray, Vec2, Vec3, fp};
 use crate::shape::Primitive;
-use crate::world::{Geometry, Object};
+use crate::world::{Geometry, Material, Object};
 
 /// Whether the camera's rays all start at its place and go one way: those that run both ways see what is behind as well.
 pub(super) fn has_eye(scout: &Scout) -> bool {
@@ -344,6 +344,17 @@ pub(super) fn below_plane(scout: &Scout) -> Vec<Finding> {
     let lid = ceiling(scout) == Some(front);
     let what =
         if lid { "everything, the camera too, is below the" } else { "all other things are on the far side of the" };
+    if let Some(raised) = raised(scout, front).filter(|_| !lid) {
+        let pose = scout.world().camera.pose();
+        let diagnostic = Diagnostic::warning(format!("the camera is below the {}", scout.object(front)))
+            .related(scout.object_span(front), "the other things stand on it")
+            .effect("nothing but the plane and the background is seen")
+            .help(format!("move it to the side of the things: `center {}`, say", vector(raised)));
+        let span = scout.subject.scene.camera_span;
+        let value = scout.value(span, &["center"]).filter(|_| raised != pose.center);
+        let diagnostic = scout.at_value(diagnostic.fix_at(value, vector(raised)), span, &["center"]);
+        return vec![Finding::from(diagnostic).whole(true)];
+    }
     let diagnostic = Diagnostic::warning(format!("{what} {}", scout.object(front)))
         .at(scout.object_span(front))
         .effect(match lid {
@@ -356,6 +367,86 @@ pub(super) fn below_plane(scout: &Scout) -> Vec<Finding> {
         None => diagnostic,
     };
     vec![Finding::from(diagnostic).whole(true)]
+}
+
+/// Where the camera would be as far above a plane as it is below, if all things stand on it.
+fn raised(scout: &Scout, object: u32) -> Option<Vec3> {
+    let (n, d) = ground(scout, object)?;
+    let eye = scout.world().camera.pose().center;
+    let height = |p: Vec3| p.dot(n) - d;
+    let things: Vec<[Vec3; 8]> = scout.world().objects.iter().filter_map(|o| Some(o.bounds()?.corners())).collect();
+    let size = scout.world().bounds().size().max_element();
+    let lowest = things.iter().flatten().map(|p| height(*p)).fold(f32::INFINITY, f32::min);
+    (lowest > -0.05 * size && lowest < 0.05 * size && height(eye) < 0.0).then(|| eye - 2.0 * height(eye) * n)
+}
+
+/// The normal and offset of a plane in the world.
+fn ground(scout: &Scout, object: u32) -> Option<(Vec3, f32)> {
+    let object = &scout.world().objects[object as usize];
+    let Geometry::Primitive(Primitive::Plane(plane)) = &object.geometry else { return None };
+    let on = object.world_point(plane.normal * (plane.offset / plane.normal.length_squared().max(f32::MIN_POSITIVE)));
+    let n = object.to_world.as_ref().map_or(plane.normal, |m| m.normal(plane.normal)).normalize_or(Vec3::Y);
+    Some((n, on.dot(n)))
+}
+
+/// Planes that pass through the middle of most things: a floor with another axis for its normal, say.
+pub(super) fn plane_through(scout: &Scout) -> Vec<Finding> {
+    let world = scout.world();
+    let boxes: Vec<[Vec3; 8]> =
+        world.objects.iter().filter_map(|o| Some(o.bounds()?.corners())).take(super::MOST_SOUGHT).collect();
+    let through = |&number: &u32| {
+        let Some((n, d)) = ground(scout, number) else { return false };
+        let clear = match world.materials.get(world.objects[number as usize].material as usize) {
+            Some(Material::Phong(phong)) => phong.transparent != Color::ZERO,
+            _ => false,
+        };
+        let is_cut = |corners: &&[Vec3; 8]| {
+            let reach =
+                corners.iter().map(|p| p.dot(n) - d).fold((f32::MAX, f32::MIN), |(a, b), x| (a.min(x), b.max(x)));
+            reach.0 < -0.25 * (reach.1 - reach.0) && reach.1 > 0.25 * (reach.1 - reach.0)
+        };
+        let cut = boxes.iter().filter(is_cut).count();
+        !clear && cut >= 2 && cut * 3 >= boxes.len() * 2
+    };
+    let say = |number: u32| {
+        let diagnostic =
+            Diagnostic::warning(format!("the {} passes through the middle of most things", scout.object(number)))
+                .at(scout.object_span(number))
+                .effect("only what is before it is seen of them")
+                .help(
+                    "a floor lies below things: which axis is up? Look at its `normal` and `offset`, and what turns it",
+                );
+        Finding::from(diagnostic)
+    };
+    (0..world.objects.len() as u32).filter(through).take(2).map(say).collect()
+}
+
+/// A camera whose `up` points into the ground on which all things stand.
+pub(super) fn upside_down(scout: &Scout) -> Vec<Finding> {
+    let world = scout.world();
+    let (eye, things) = (world.camera.pose().center, world.bounds());
+    let mut planes = (0..world.objects.len() as u32).filter_map(|i| Some((i, ground(scout, i)?)));
+    let (Some((number, (n, d))), None) = (planes.next(), planes.next()) else { return Vec::new() };
+    let n = if eye.dot(n) < d { -n } else { n };
+    let d = if eye.dot(n) < d { -d } else { d };
+    let height = |p: &Vec3| p.dot(n) - d;
+    let size = things.size().max_element();
+    let stand = !things.is_empty() && things.corners().iter().all(|p| height(p) > -0.1 * size);
+    let pose = world.camera.pose();
+    let seen = scout.seen().any(|(_, seen)| seen.object == number);
+    // A ceiling from which things hang is as good as a ground; that things stand on it tells which it is.
+    let lowest = things.corners().iter().map(height).fold(f32::INFINITY, f32::min);
+    if !stand || !seen || lowest > 0.3 * size || world.frame.up.dot(n) > -0.3 || pose.up.dot(n) > 0.1 {
+        return Vec::new();
+    }
+    let turned = vector(if pose.up.dot(n) < -0.5 { -pose.up } else { n });
+    let span = scout.subject.scene.camera_span;
+    let diagnostic = Diagnostic::warning("the picture is upside down: the camera's `up` points into the ground")
+        .related(scout.object_span(number), "the ground")
+        .effect("things hang from it")
+        .help(format!("`up` is where the upper edge of the picture is: `up {turned}`"))
+        .fix_at(scout.value(span, &["up"]), turned);
+    vec![Finding::from(scout.at_value(diagnostic, span, &["up"]))]
 }
 
 /// The only plane, if it faces up and all things and the camera are below it.

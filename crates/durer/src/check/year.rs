@@ -12,6 +12,8 @@ use crate::scene::{Material as Written, Spanned};
 
 /// Lengths of a camera's `up` that nobody sees in the picture.
 const UNIT: std::ops::RangeInclusive<f32> = 0.9..=1.1;
+/// Cosines between `up` and `direction` beyond which the picture is seen to be skewed.
+const SKEW: f32 = 0.7;
 /// Sides of a picture that differ by less look equal.
 const SQUARE: f32 = 1.05;
 
@@ -29,7 +31,7 @@ fn seen<'s>(scout: &Scout<'s>) -> impl Iterator<Item = (usize, &'s Spanned<Writt
 pub(super) fn pow_zero(scout: &Scout) -> Vec<Finding> {
     let rules = &scout.world().rules;
     if rules.highlight != Highlight::Phong || !rules.has(Compat::PowZero) {
-        return Vec::new();
+        return blunt(scout);
     }
     let all = scout.seen().count();
     let chalk = |phong: &PhongMaterial| {
@@ -54,11 +56,41 @@ pub(super) fn pow_zero(scout: &Scout) -> Vec<Finding> {
         };
         Finding::from(diagnostic).whole(count * 2 > all)
     };
-    seen(scout).filter(|(.., phong)| chalk(phong)).map(say).take(MOST_SOUGHT).collect()
+    let found: Vec<Finding> = seen(scout).filter(|(.., phong)| chalk(phong)).map(say).take(MOST_SOUGHT).collect();
+    if found.is_empty() { blunt(scout) } else { found }
+}
+
+/// The exponent of a material's highlight, and the word for it that is written.
+fn sharpness(phong: &PhongMaterial) -> Option<(&'static str, f32)> {
+    match (phong.exponent, phong.shininess) {
+        (Some(exponent), _) => Some(("exponent", exponent)),
+        (None, shininess) => Some(("shininess", shininess?)),
+    }
+}
+
+/// Highlights so blunt that they are everywhere, as of an exponent of 0 or of one over what was meant.
+fn blunt(scout: &Scout) -> Vec<Finding> {
+    if scout.world().rules.highlight == Highlight::None || super::physical::is_physical(scout) {
+        return Vec::new();
+    }
+    let say = |(i, written, phong): (usize, &Spanned<Written>, &PhongMaterial)| {
+        let (word, exponent) = sharpness(phong)?;
+        if exponent >= BLUNT || phong.specular_color.max_element() < 0.02 || phong.refraction_index.is_some() {
+            return None;
+        }
+        let diagnostic = Diagnostic::warning(format!("the `{word}` of material {i} is {}", number(exponent)))
+            .effect("its highlight is nearly everywhere, as on chalk")
+            .help(format!("the higher, the sharper: 20 is that of plastic: `{word} 20`, say"));
+        let value = scout.value(written.span, &[word]);
+        Some(Finding::from(scout.at_value(diagnostic.fix_at(value, "20"), written.span, &[word])))
+    };
+    seen(scout).filter_map(say).take(MOST_SOUGHT).collect()
 }
 
 /// Exponents beyond this make highlights smaller than a pixel.
 const SHARPEST: f32 = 2e4;
+/// And below this, what is no highlight any more.
+const BLUNT: f32 = 0.7;
 
 /// Highlights smaller than a pixel.
 pub(super) fn tiny_highlight(scout: &Scout) -> Vec<Finding> {
@@ -66,10 +98,7 @@ pub(super) fn tiny_highlight(scout: &Scout) -> Vec<Finding> {
         return Vec::new();
     }
     let say = |(i, written, phong): (usize, &Spanned<Written>, &PhongMaterial)| {
-        let (word, exponent) = match (phong.exponent, phong.shininess) {
-            (Some(exponent), _) => ("exponent", exponent),
-            (None, shininess) => ("shininess", shininess?),
-        };
+        let (word, exponent) = sharpness(phong)?;
         if exponent <= SHARPEST || phong.specular_color.max_element() < 0.02 {
             return None;
         }
@@ -107,8 +136,11 @@ pub(super) fn no_exponent(scout: &Scout) -> Vec<Finding> {
 pub(super) fn long_up(scout: &Scout) -> Vec<Finding> {
     let up = scout.world().camera.pose().up;
     let length = up.length();
-    if !scout.world().rules.has(Compat::RawUp) || UNIT.contains(&length) {
+    if !scout.world().rules.has(Compat::RawUp) {
         return Vec::new();
+    }
+    if UNIT.contains(&length) {
+        return skew_up(scout).into_iter().collect();
     }
     let (how, word) = if length > 1.0 { (length, "flattened") } else { (1.0 / length, "stretched upwards") };
     let unit = vector(up / length);
@@ -122,6 +154,25 @@ pub(super) fn long_up(scout: &Scout) -> Vec<Finding> {
         None => diagnostic.at(span),
     };
     vec![Finding::from(diagnostic).whole(true)]
+}
+
+/// The same with an `up` far from being at right angles to `direction`.
+fn skew_up(scout: &Scout) -> Option<Finding> {
+    let pose = scout.world().camera.pose();
+    let (up, forward) = (pose.up.normalize_or_zero(), pose.direction.normalize_or_zero());
+    let off = up.dot(forward);
+    if off.abs() < SKEW || off.abs() > 0.999 {
+        return None;
+    }
+    let right = (up - off * forward).normalize_or_zero();
+    let text = vector(right);
+    let diagnostic =
+        Diagnostic::warning("the camera's `up` is not at right angles to its `direction`, and is used as it is")
+            .effect(format!("the picture is skewed, and {} times too flat", number(1.0 / (1.0 - off * off).sqrt())))
+            .help(format!("at right angles it is `up {text}`"));
+    let span = scout.subject.scene.camera_span;
+    let value = scout.value(span, &["up"]);
+    Some(Finding::from(scout.at_value(diagnostic.fix_at(value, text), span, &["up"])).whole(true))
 }
 
 /// A picture that is not square, under a program that stretches it.

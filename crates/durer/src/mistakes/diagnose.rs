@@ -5,6 +5,7 @@ use super::pictures::View;
 use super::search::{Fit, difference, differing, fit, sampled};
 use super::table::{MISTAKES, Mistake, Values};
 use super::{Variant, speckles};
+use crate::dialect::Rules;
 use crate::image::Transfer;
 use crate::image::compare::{Picture, Scale};
 use crate::math::Vec3;
@@ -12,19 +13,31 @@ use crate::render::Job;
 use crate::scene::Scene;
 use crate::world::World;
 use rayon::prelude::*;
+use std::collections::BTreeSet;
 
-/// Pixels at which all mistakes are tried, pairs of them, and those that are left over.
+/// Pixels at which all mistakes are tried, and those that are left over.
+const FEW: usize = 400;
 const COARSE: usize = 1600;
-const COARSER: usize = 300;
 const FULL: usize = 16_000;
+/// Pixels at which pairs are tried first, and how many pairs are tried at the next number of pixels each time.
+const FEWEST: usize = 72;
+const KEPT: [usize; 3] = [200, 30, 8];
+/// So many mistakes are tried at more pixels than a few.
+const MOST_SINGLES: usize = 60;
 /// Larger pictures are not looked at as a whole.
 const WHOLE: usize = 160_000;
 /// So many of the best are looked at closely, and paired with all others.
 const BEST: usize = 12;
+/// What explains less than this at some pixels is not tried at all of them, beside so many of the best.
+const CLOSE: f64 = 0.8;
+const CLOSEST: usize = 5;
 /// Where the scene's own picture differs from the reference at a larger share of the pixels, nothing is said.
 const MOST_OFF: f64 = 0.25;
+/// Half a step of eight bits, and how many pixels must be rounded otherwise.
+const HALF: f32 = 0.5 / 255.0;
+const FEWEST_ROUNDED: usize = 30;
 /// The largest number of pairs that are tried.
-const MOST_PAIRS: usize = 1000;
+const MOST_PAIRS: usize = 3000;
 
 /// Two pictures, and the scene of which the reference was made.
 #[derive(Clone, Copy, Debug)]
@@ -63,6 +76,8 @@ pub struct Diagnosis {
     pub named: Vec<Named>,
     /// What came nearest, whether it is named or not.
     pub tried: Vec<Named>,
+    /// The rules of the scene, in whose formulas mistakes are told.
+    pub rules: Option<Rules>,
 }
 
 impl Diagnosis {
@@ -139,9 +154,17 @@ fn prepared<'a>(question: &Question<'a>) -> (Vec<Vec3>, View<'a>, Variant<'a>) {
 
 /// Tries all mistakes. `told` hears how far the work is, from 0 to 1.
 pub fn diagnose(question: &Question, told: &(dyn Fn(f64) + Sync)) -> Diagnosis {
+    Diagnosis { rules: Some(question.world.rules.clone()), ..all_tried(question, told) }
+}
+
+fn all_tried(question: &Question, told: &(dyn Fn(f64) + Sync)) -> Diagnosis {
     let (width, height) = (question.job.width, question.job.height);
     let (reference, view, base) = prepared(question);
     let test = values(question.test, view.scale, question.transfer);
+    // A picture of one colour is explained by anything that leaves none.
+    if test.iter().all(|pixel| *pixel == test[0]) {
+        return Diagnosis { off: off(question), ..Diagnosis::default() };
+    }
     let mut search = Search { question, view, base };
 
     let pixels = |search: &Search, most: usize| -> Pixels {
@@ -162,8 +185,11 @@ pub fn diagnose(question: &Question, told: &(dyn Fn(f64) + Sync)) -> Diagnosis {
     full.keep(&steady);
     let off = differing(&full.base, &full.reference) as f64 / full.base.len().max(1) as f64;
     told(0.1);
-    if off > MOST_OFF || difference(&full.reference, &full.test) == 0.0 {
+    if off > MOST_OFF {
         return Diagnosis { off, ..Diagnosis::default() };
+    }
+    if difference(&full.reference, &full.test) == 0.0 {
+        return Diagnosis { off, named: search.rounding(&full).into_iter().collect(), ..Diagnosis::default() };
     }
     let few = |most: usize| {
         let mut pixels = pixels(&search, most);
@@ -171,32 +197,37 @@ pub fn diagnose(question: &Question, told: &(dyn Fn(f64) + Sync)) -> Diagnosis {
         pixels.keep(&steady);
         pixels
     };
-    let coarse = few(COARSE);
-    let mut singles = search.trials(search.singles(), &coarse);
+    let (some, coarse) = (few(FEW), few(COARSE));
+    let mut singles = search.trials(search.singles(), &some);
     // What changes nothing in this scene explains nothing.
-    singles.retain(|trial| differing(&trial.made, &coarse.base) > 0);
-    sort(&mut singles);
+    singles.retain(|trial| differing(&trial.made, &some.base) > 0);
+    told(0.2);
+    let mut better = search.trials(best(&mut singles, MOST_SINGLES), &coarse);
+    sort(&mut better);
     told(0.3);
-    let mut close: Vec<Vec<(&'static Mistake, f32)>> =
-        singles.iter().take(BEST).map(|trial| search.refined(trial, &coarse)).collect();
-    close.extend(best_matched(&singles).map(|trial| trial.mistakes.clone()));
-    let trials = search.trials(close, &full);
+    let refined = better.iter().take(BEST).map(|trial| search.refined(trial, &some, &coarse));
+    let close = refined.chain(best_matched(&better).map(|trial| trial.mistakes.clone())).collect();
+    let mut close = search.trials(close, &coarse);
+    sort(&mut close);
+    close.dedup_by(|a, b| same(&a.mistakes, &b.mistakes));
+    let close = close.into_iter().enumerate().filter(|(i, trial)| *i < CLOSEST || trial.fit.explained > CLOSE);
+    let trials = search.trials(close.map(|(_, trial)| trial.mistakes).collect(), &full);
     told(0.5);
     let tried = tried(&trials);
     let single = decided(trials, &full, &Bars::SINGLE);
     if single.first().is_some_and(|named| Bars::CLEAR.passes(&named.fit())) {
-        return Diagnosis { off, named: single, tried };
+        return Diagnosis { off, named: single, tried, rules: None };
     }
     if let Some(share) = search.acne(&all, &reference, &test) {
-        return Diagnosis { off, named: vec![share], tried };
+        return Diagnosis { off, named: vec![share], tried, rules: None };
     }
     told(0.6);
-    let (pairs, tried_pairs) = search.pairs(&singles, [&few(COARSER), &coarse, &full]);
+    let (pairs, tried_pairs) = search.pairs(&better, &singles, [&few(FEWEST), &some, &coarse, &full]);
     told(1.0);
     // Two mistakes explain more than one; they must explain far more.
     let rest = |named: &[Named]| named.first().map_or(1.0, |named| 1.0 - named.explained);
     let named = if rest(&pairs) < 0.35 * rest(&single) { pairs } else { single };
-    Diagnosis { off, named, tried: [tried, tried_pairs].concat() }
+    Diagnosis { off, named, tried: [tried, tried_pairs].concat(), rules: None }
 }
 
 /// What was tried at all pixels, the best first.
@@ -210,7 +241,7 @@ fn tried(trials: &[Trial]) -> Vec<Named> {
 /// The share of the reference's pixels that the scene with the options of the question makes otherwise: looked at in some.
 pub fn off(question: &Question) -> f64 {
     let (reference, view, base) = prepared(question);
-    let places = sampled(question.job.width, &reference, &reference, 3 * COARSER);
+    let places = sampled(question.job.width, &reference, &reference, 2 * FEW);
     let width = question.job.width;
     let chosen: Vec<(u32, u32)> = places.iter().map(|&i| (i as u32 % width, i as u32 / width)).collect();
     let of: Vec<Vec3> = places.iter().map(|&i| reference[i]).collect();
@@ -268,16 +299,17 @@ impl<'a> Search<'a> {
         Trial { mistakes, made, fit }
     }
 
-    /// The mistakes of a trial with the value at which it fits best.
-    fn refined(&self, trial: &Trial, pixels: &Pixels) -> Vec<(&'static Mistake, f32)> {
+    /// The mistakes of a trial with the value at which it fits best: sought at few pixels, and rounded if more allow it.
+    fn refined(&self, trial: &Trial, few: &Pixels, more: &Pixels) -> Vec<(&'static Mistake, f32)> {
         let [(mistake, value)] = trial.mistakes[..] else { return trial.mistakes.clone() };
         if !matches!(mistake.values, Values::Numbers(_)) || trial.fit.explained > 0.999 {
             return trial.mistakes.clone();
         }
-        let (mut best, mut at, mut step) = (trial.fit.explained, value, 1.5_f32);
+        let explained = |value: f32, pixels: &Pixels| self.trial(vec![(mistake, value)], pixels).fit.explained;
+        let (mut best, mut at, mut step) = (explained(value, few), value, 1.5_f32);
         for _ in 0..7 {
             for tried in [at / step, at * step] {
-                let explained = self.trial(vec![(mistake, tried)], pixels).fit.explained;
+                let explained = explained(tried, few);
                 if explained > best {
                     (best, at) = (explained, tried);
                 }
@@ -286,36 +318,33 @@ impl<'a> Search<'a> {
         }
         // A round number that fits as well is meant.
         let round = (at * 20.0).round() / 20.0;
-        let fits = |tried| self.trial(vec![(mistake, tried)], pixels).fit.explained >= best - 0.002;
+        let fits = |tried| explained(tried, more) >= explained(at, more) - 0.002;
         vec![(mistake, if round > 0.0 && fits(round) { round } else { at })]
     }
 
-    /// Pairs of the best with all others: at few pixels, then at more, then at all.
-    fn pairs(&self, singles: &[Trial], [coarser, coarse, full]: [&Pixels; 3]) -> (Vec<Named>, Vec<Named>) {
-        let mut first: Vec<&Trial> = singles.iter().take(BEST).chain(best_matched(singles)).collect();
+    /// Pairs of the best with all others: at a few pixels, then the best of them at more, and so on.
+    fn pairs(&self, best_of: &[Trial], singles: &[Trial], rounds: [&Pixels; 4]) -> (Vec<Named>, Vec<Named>) {
+        let mut first: Vec<&Trial> = best_of.iter().take(BEST).chain(best_matched(best_of)).collect();
         first.dedup_by_key(|trial| trial.mistakes[0].0.name);
+        let mut known = BTreeSet::new();
         let mut pairs: Vec<Vec<(&'static Mistake, f32)>> = Vec::new();
         for a in first {
             for b in singles {
                 let (a, b) = (a.mistakes[0], b.mistakes[0]);
-                let known = |pair: &Vec<(&Mistake, f32)>| {
-                    pair.iter().any(|p| p.0.name == a.0.name && p.1 == a.1)
-                        && pair.iter().any(|p| p.0.name == b.0.name && p.1 == b.1)
-                };
+                let key = |one: (&Mistake, f32)| (one.0.name, one.1.to_bits());
+                let pair = (key(a).min(key(b)), key(a).max(key(b)));
                 // What hangs on rounding goes with anything, and explains nothing.
                 let shaky = a.0.step == "epsilon" || b.0.step == "epsilon";
-                if a.0.name != b.0.name && !shaky && !pairs.iter().any(known) {
+                if a.0.name != b.0.name && !shaky && known.insert(pair) {
                     pairs.push(vec![a, b]);
                 }
             }
         }
         pairs.truncate(MOST_PAIRS);
-        let best = |mut trials: Vec<Trial>, count: usize| -> Vec<Vec<(&'static Mistake, f32)>> {
-            sort(&mut trials);
-            trials.into_iter().take(count).map(|trial| trial.mistakes).collect()
-        };
-        let pairs = best(self.trials(pairs, coarser), 40);
-        let pairs = best(self.trials(pairs, coarse), 10);
+        let full = rounds[3];
+        for (pixels, kept) in rounds.into_iter().zip(KEPT) {
+            pairs = best(&mut self.trials(pairs, pixels), kept);
+        }
         let alone = |mistakes: &[(&'static Mistake, f32)]| {
             let of = |one: &(&'static Mistake, f32)| self.trial(vec![*one], full).fit.explained;
             mistakes.iter().map(of).fold(f64::NEG_INFINITY, f64::max)
@@ -328,20 +357,48 @@ impl<'a> Search<'a> {
         (named, tried)
     }
 
+    /// Whether values that differ by one of 255 are those that are rounded otherwise.
+    fn rounding(&self, pixels: &Pixels) -> Option<Named> {
+        let mistake = super::table::of_name("other-rounding")?;
+        let made = self.trial(vec![(mistake, 0.0)], pixels).made;
+        let differs = |a: &Vec3, b: &Vec3| (*a - *b).abs().max_element() > HALF;
+        let (mut either, mut agree) = (0_usize, 0_usize);
+        for ((r, t), m) in pixels.reference.iter().zip(&pixels.test).zip(&made) {
+            if differs(r, t) || differs(r, m) {
+                either += 1;
+                agree += usize::from(!differs(t, m));
+            }
+        }
+        let share = agree as f64 / either.max(1) as f64;
+        let told = self.view.scale == Scale::Display && agree >= FEWEST_ROUNDED && share > Bars::FITTED.matched;
+        told.then(|| Named { mistakes: vec![(mistake, 0.0)], explained: share, matched: share })
+    }
+
     /// Whether rays hit the surface that they leave.
     fn acne(&self, all: &[(u32, u32)], reference: &[Vec3], test: &[Vec3]) -> Option<Named> {
         let lights = self.base.world.lights.len();
         if all.len() > WHOLE || !(1..=4).contains(&lights) || !self.base.settings.shadows {
             return None;
         }
-        let dark = |off: u32| {
+        let width = self.question.job.width as usize;
+        let differ = speckles::speckled(reference, test, width)?;
+        let places: Vec<(u32, u32)> = differ.iter().map(|&i| all[i]).collect();
+        // Where mirrored rays begin in their own surface, they bring nothing, or what is there once more.
+        let bounces = if self.base.settings.bounces > 0 { 3 } else { 1 };
+        let dark = |of: u32| {
+            let (off, way) = (of / bounces, of % bounces);
             let mut variant = self.base.clone();
+            match way {
+                0 => {}
+                1 => variant.settings.bounces = 0,
+                _ => variant.habits.bounces.epsilon = Some(-1e-3),
+            }
             variant.world.lights =
                 (0..lights).filter(|i| off >> i & 1 == 0).map(|i| variant.world.lights[i].clone()).collect();
-            self.view.picture(&variant, all)
+            self.view.picture(&variant, &places)
         };
-        let shadowed: Vec<Vec<Vec3>> = (1..1_u32 << lights).map(dark).collect();
-        let share = speckles::explained(reference, test, &shadowed, self.question.job.width as usize)?;
+        let shadowed: Vec<Vec<Vec3>> = (1..bounces << lights).map(dark).collect();
+        let share = speckles::share(test, &differ, &shadowed)?;
         let mistake = super::table::of_name("epsilon-0")?;
         Some(Named { mistakes: vec![(mistake, 0.0)], explained: share, matched: share })
     }
@@ -349,6 +406,14 @@ impl<'a> Search<'a> {
 
 fn sort(trials: &mut [Trial]) {
     trials.sort_by(|a, b| b.fit.explained.total_cmp(&a.fit.explained));
+}
+
+/// The mistakes of the best trials: three in four by the squared difference, one by the pixels that agree.
+fn best(trials: &mut [Trial], count: usize) -> Vec<Vec<(&'static Mistake, f32)>> {
+    sort(trials);
+    let (first, others) = trials.split_at_mut(trials.len().min(count - count / 4));
+    others.sort_by(|a, b| b.fit.matched.total_cmp(&a.fit.matched));
+    first.iter().chain(others.iter().take(count / 4)).map(|trial| trial.mistakes.clone()).collect()
 }
 
 /// Those that agree at most pixels: a few that are far off spoil the squared difference.

@@ -1,6 +1,6 @@
 //! What a pupil's tracer does otherwise than it should.
 
-use crate::math::Vec2;
+use crate::math::{Color, Vec2};
 
 /// Which of the hits along a ray is taken.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -18,6 +18,12 @@ pub enum Pick {
     FirstWritten,
     /// The nearest, but of spheres the far side.
     FarSpheres,
+    /// As the farthest object, and of meshes the farthest triangle.
+    FarthestTriangle,
+    /// As what is written last, and of meshes the last triangle.
+    LastTriangle,
+    /// The nearest, but spheres are not hit from inside.
+    NearRoots,
 }
 
 /// How normals of transformed things come to the world.
@@ -112,6 +118,8 @@ pub enum Fading {
     Square,
     /// Divided by the root of the scene's polynomial.
     Root,
+    /// Divided by the scene's polynomial of d².
+    SquaredTwice,
 }
 
 /// Where point lights are taken to be.
@@ -126,6 +134,8 @@ pub enum PointLamp {
     Position,
     /// L = norm(-position).
     MinusPosition,
+    /// L = norm(position), and d = |position|.
+    PositionAlone,
 }
 
 /// The direction of a mirrored ray.
@@ -158,6 +168,8 @@ pub enum Glass {
     Outward,
     /// With the root added that should be taken away.
     RootAdded,
+    /// With each index in place of the other, in Fresnel's law too.
+    Exchanged,
 }
 
 /// How the divisor of glass is found.
@@ -176,6 +188,10 @@ pub enum Fresnel {
     Exchanged,
     /// Schlick's formula with the angle of the incoming ray also where it leaves glass.
     Incoming,
+    /// Schlick's formula with an R0 that is not squared.
+    Unsquared,
+    /// Schlick's formula with another power than 5.
+    Power(f32),
 }
 
 /// What a light is as a thing in space.
@@ -208,6 +224,8 @@ pub struct Highlights {
     pub eye_negated: bool,
     /// They do not have the light's colour.
     pub lightless: bool,
+    /// By what they are multiplied, if given.
+    pub factor: Option<f32>,
     /// The base of the power has lost its sign.
     pub two_sided: bool,
     /// Blinn's model too shows them where N·L <= 0.
@@ -247,6 +265,12 @@ pub struct Shadows {
     pub no_glass: bool,
     /// Where they go.
     pub way: ShadowWay,
+    /// Light counts where they hit something.
+    pub inverted: bool,
+    /// Those to directional lights end at distance 1.
+    pub short: bool,
+    /// Highlights are there in shadow too.
+    pub highlights_left: bool,
     /// Where one light is blocked, there is no light at all; with `true`, mirrored and transmitted light neither.
     pub black: Option<bool>,
 }
@@ -311,6 +335,14 @@ pub struct Habits {
     pub ambient: Ambient,
     /// The diffuse term.
     pub cosine: Cosine,
+    /// It has not the surface's colour.
+    pub plain_diffuse: bool,
+    /// It has not the light's colour.
+    pub diffuse_lightless: bool,
+    /// By what it is multiplied, if given.
+    pub diffuse_factor: Option<f32>,
+    /// What rays of the camera bring that hit nothing, if given, and whether others do too.
+    pub sky: Option<(Color, bool)>,
     /// Lights.
     pub lamps: Lamps,
     /// Highlights.

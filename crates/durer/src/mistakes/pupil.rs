@@ -60,7 +60,11 @@ impl<'w> Pupil<'w> {
                 _ => return self.shade(ray, &hit, t, path),
             }
         }
-        if self.habits.bounces.black_sky && !path.first { Color::ZERO } else { self.world.sky(ray.dir()) }
+        match self.habits.sky.filter(|(_, all)| path.first || *all) {
+            Some((color, _)) => color,
+            None if self.habits.bounces.black_sky && !path.first => Color::ZERO,
+            None => self.world.sky(ray.dir()),
+        }
     }
 
     /// The hit, and the `t` at which the pupil takes it to be.
@@ -83,6 +87,9 @@ impl<'w> Pupil<'w> {
             Pick::FarthestObject => self.world.hits_of_each(ray).max_by(|a, b| a.t.total_cmp(&b.t)),
             Pick::LastWritten => self.world.hits_of_each(ray).max_by_key(|hit| hit.object),
             Pick::FirstWritten => self.world.hits_of_each(ray).min_by_key(|hit| hit.object),
+            Pick::FarthestTriangle => self.faces(ray).max_by(|a, b| a.t.total_cmp(&b.t)),
+            Pick::LastTriangle => self.faces(ray).max_by_key(|hit| (hit.object, hit.part)),
+            Pick::NearRoots => self.world.all_hits(ray).find(|hit| !self.leaves_sphere(ray, hit)),
             Pick::FarSpheres => {
                 let far = |hit: Hit| {
                     let object = &self.world.objects[hit.object as usize].geometry;
@@ -98,6 +105,24 @@ impl<'w> Pupil<'w> {
         hit.map(|hit| (hit, hit.t))
     }
 
+    /// The nearest hit of each object, and of meshes all.
+    fn faces<'r>(&'r self, ray: &'r Ray64) -> impl Iterator<Item = Hit> + 'r {
+        let mut known = SmallVec::<[u32; 16]>::new();
+        self.world.all_hits(ray).filter(move |hit| {
+            let is_mesh = matches!(self.world.objects[hit.object as usize].geometry, Geometry::Mesh(_));
+            let is_new = !known.contains(&hit.object);
+            known.push(hit.object);
+            is_mesh || is_new
+        })
+    }
+
+    /// Whether a ray comes from inside of a sphere that it hits.
+    fn leaves_sphere(&self, ray: &Ray64, hit: &Hit) -> bool {
+        let object = &self.world.objects[hit.object as usize].geometry;
+        matches!(object, Geometry::Primitive(Primitive::Sphere(_)))
+            && self.world.surface(ray, hit).n_geo.dot(ray.dir()) > 0.0
+    }
+
     /// The length of the way to a hit in the object's own space.
     fn own_t(&self, ray: &Ray64, hit: &Hit) -> f32 {
         let to_world = self.world.objects[hit.object as usize].to_world.as_ref();
@@ -105,7 +130,7 @@ impl<'w> Pupil<'w> {
     }
 
     fn occluded(&self, ray: &Ray64) -> bool {
-        if self.habits.local_unit {
+        if self.habits.local_unit || self.habits.pick == Pick::NearRoots {
             return self.closest(ray).is_some();
         }
         let mut ray = *ray;
@@ -189,15 +214,19 @@ impl<'w> Pupil<'w> {
                 let visible = if habits.shadows.later_too && blocked { Color::ZERO } else { visible };
                 blocked |= visible == Color::ZERO;
                 let visible = visible.max(Color::splat(habits.shadows.left));
+                let visible = if habits.shadows.inverted { Color::ONE - visible } else { visible };
                 any |= visible != Color::ZERO;
                 let replaced = habits.sum == Sum::LastSeen && visible != Color::ZERO;
                 if habits.sum == Sum::LastOnly || replaced {
                     color = ambient_seen;
                 }
                 for (part, &diffuse) in parts.iter().zip(&diffuse) {
+                    let direct = |diffuse| self.direct(part.phong, diffuse, n, ray.dir(), light, &seen);
                     if visible != Color::ZERO {
-                        let direct = self.direct(part.phong, diffuse, n, ray.dir(), light, &seen);
-                        color += part.share * visible * direct;
+                        color += part.share * visible * direct(diffuse);
+                    }
+                    if habits.shadows.highlights_left && visible != Color::ONE {
+                        color += part.share * (Color::ONE - visible) * direct(Color::ZERO);
                     }
                 }
                 if habits.sum == Sum::ClampedEach {
@@ -248,6 +277,10 @@ impl<'w> Pupil<'w> {
                     }
                     Fading::Linear => seen.color = point.color / d,
                     Fading::Square => seen.color = point.color / (d * d),
+                    Fading::SquaredTwice => {
+                        let a = point.attenuation.unwrap_or(Vec3::X);
+                        seen.color = point.color / (a.x + a.y * d * d + a.z * d * d * d * d);
+                    }
                     Fading::Root => {
                         let a = point.attenuation.unwrap_or(Vec3::X);
                         seen.color = point.color / (a.x + a.y * d + a.z * d * d).sqrt();
@@ -257,6 +290,11 @@ impl<'w> Pupil<'w> {
                     PointLamp::Right => {}
                     PointLamp::Negated => seen.to_light = -seen.to_light,
                     PointLamp::Position => seen.to_light = point.position.normalize_or(seen.to_light),
+                    PointLamp::PositionAlone => {
+                        let (a, d) = (point.attenuation.unwrap_or(Vec3::X), point.position.length());
+                        seen.to_light = point.position.normalize_or(seen.to_light);
+                        (seen.color, seen.distance) = (point.color / (a.x + a.y * d + a.z * d * d), d);
+                    }
                     PointLamp::MinusPosition => seen.to_light = -point.position.normalize_or(seen.to_light),
                 }
             }
@@ -290,7 +328,13 @@ impl<'w> Pupil<'w> {
             Cosine::Step => f32::from(cosine > 0.0),
             Cosine::OverPi => cosine.max(0.0) / std::f32::consts::PI,
         };
-        let mut color = factor * diffuse;
+        let factor = factor * self.habits.diffuse_factor.unwrap_or(1.0);
+        let plain = self.habits.plain_diffuse && diffuse != Color::ZERO;
+        let mut color = factor * if plain { Color::ONE } else { diffuse };
+        if self.habits.diffuse_lightless {
+            // What is divided here is multiplied again below.
+            color /= seen.color.max(Color::splat(1e-6));
+        }
         if let Some((specular, exponent, model)) = phong.highlight {
             let half = |sum: Vec3| match habits.half {
                 Half::Unit => sum.normalize_or_zero(),
@@ -307,6 +351,7 @@ impl<'w> Pupil<'w> {
                 if habits.times_cosine {
                     strength *= cosine.max(0.0);
                 }
+                strength *= habits.factor.unwrap_or(1.0);
                 let specular = if habits.bare { Color::ONE } else { specular };
                 let specular = if habits.times_diffuse { specular * diffuse } else { specular };
                 if habits.lightless {
@@ -331,6 +376,7 @@ impl<'w> Pupil<'w> {
             (false, true) => seen.distance,
             (false, false) => seen.distance * (1.0 - gamma(16)),
         };
+        let reach = if habits.short && seen.distance.is_infinite() { 1.0 } else { reach };
         let epsilon = habits.epsilon.or(rules.epsilon);
         let way = match habits.way {
             ShadowWay::Light => seen.to_light,
@@ -390,7 +436,7 @@ impl<'w> Pupil<'w> {
         let Passage { here, there, behind, .. } = self.right.passage(ray, hit, &path.media).unwrap_or_default();
         let eta = match habits.glass {
             Glass::Right | Glass::Straight | Glass::Outward | Glass::RootAdded => here / there,
-            Glass::Inverted => there / here,
+            Glass::Inverted | Glass::Exchanged => there / here,
             Glass::NotSwapped => 1.0 / ior,
         };
         let mirrored = match habits.mirror {
@@ -416,6 +462,13 @@ impl<'w> Pupil<'w> {
             let schlick = |t| match habits.fresnel {
                 Fresnel::Constant => ratio * ratio,
                 Fresnel::Share(share) => share,
+                Fresnel::Unsquared | Fresnel::Power(_) => {
+                    let slow = if there < here { t } else { ray.dir() };
+                    let rest = 1.0 - slow.dot(n).abs();
+                    let r0 = if habits.fresnel == Fresnel::Unsquared { ratio.abs() } else { ratio * ratio };
+                    let power = if let Fresnel::Power(power) = habits.fresnel { power } else { 5.0 };
+                    r0 + (1.0 - r0) * fp::pow(rest.max(0.0), power)
+                }
                 Fresnel::Incoming => {
                     let rest = 1.0 - ray.dir().dot(n).abs();
                     let r0 = ratio * ratio;
@@ -423,7 +476,8 @@ impl<'w> Pupil<'w> {
                 }
                 _ => {
                     let zero = leaving && self.world.rules.has(Compat::ExitR0);
-                    fresnel_share(ray.dir(), n, t, (here, there), zero)
+                    let indices = if habits.glass == Glass::Exchanged { (there, here) } else { (here, there) };
+                    fresnel_share(ray.dir(), n, t, indices, zero)
                 }
             };
             let r = transmitted.map_or(1.0, schlick);

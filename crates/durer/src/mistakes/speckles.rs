@@ -4,22 +4,17 @@ use super::search::SEEN;
 use crate::math::Vec3;
 
 /// How many of the speckles must be of the kind.
-const MOST: f64 = 0.97;
+const MOST: f64 = 0.94;
 /// Of neighbours where there are speckles, so many must be without, at least; and as many more as there are at the border of
 /// some regions of so many pixels: 2.3 / √count for one disc.
 const BROKEN: f64 = 0.06;
 const BORDERS: f64 = 4.0;
 
-/// Whether a picture shows what a reference shows, but for pixels that are as dark as in the full shadow of some lights; not
-/// whole regions of them, but speckles. `shadowed` are the pictures in which one or more lights are off, `size` the picture's.
-///
-/// Gives the share of the pixels that differ which are of this kind.
-pub(super) fn explained(reference: &[Vec3], test: &[Vec3], shadowed: &[Vec<Vec3>], width: usize) -> Option<f64> {
+/// The pixels in which two pictures differ, if they are speckles and not regions.
+pub(super) fn speckled(reference: &[Vec3], test: &[Vec3], width: usize) -> Option<Vec<usize>> {
     let differs = |i: usize| (reference[i] - test[i]).abs().max_element() > SEEN;
     let all: Vec<bool> = (0..reference.len()).map(differs).collect();
-    let count = all.iter().filter(|differs| **differs).count();
-    let alike = |i: &usize| shadowed.iter().any(|dark| (dark[*i] - test[*i]).abs().max_element() <= SEEN);
-    let of_kind = (0..reference.len()).filter(|i| all[*i]).filter(alike).count();
+    let differ: Vec<usize> = (0..all.len()).filter(|i| all[*i]).collect();
     // A region has a border; speckles are nothing but borders.
     let (mut pairs, mut broken) = (0_usize, 0_usize);
     for i in 0..reference.len() {
@@ -32,7 +27,16 @@ pub(super) fn explained(reference: &[Vec3], test: &[Vec3], shadowed: &[Vec<Vec3>
             }
         }
     }
-    let share = of_kind as f64 / count.max(1) as f64;
-    let speckled = broken as f64 > (BROKEN + BORDERS / (count.max(1) as f64).sqrt()) * pairs as f64;
-    (count * 500 > reference.len() && share >= MOST && speckled).then_some(share)
+    let speckled = broken as f64 > (BROKEN + BORDERS / (differ.len().max(1) as f64).sqrt()) * pairs as f64;
+    (differ.len() * 500 > reference.len() && speckled).then_some(differ)
+}
+
+/// The share of the pixels that differ which are as dark as in the full shadow of some lights, if nearly all are. `shadowed` are
+/// these pixels of the pictures in which one or more lights are off.
+pub(super) fn share(test: &[Vec3], differ: &[usize], shadowed: &[Vec<Vec3>]) -> Option<f64> {
+    let alike =
+        |(at, &i): (usize, &usize)| shadowed.iter().any(|dark| (dark[at] - test[i]).abs().max_element() <= SEEN);
+    let of_kind = differ.iter().enumerate().filter(|of| alike(*of)).count();
+    let share = of_kind as f64 / differ.len().max(1) as f64;
+    (share >= MOST).then_some(share)
 }

@@ -1,5 +1,6 @@
 //! The pupil without mistakes, and the table.
 
+use super::pictures::View;
 use super::table::MISTAKES;
 use super::{Diagnosis, Pupil, Question, Variant, diagnose};
 use crate::compile::{AccelKind, Resources, compile};
@@ -32,10 +33,14 @@ Group { numObjects 4
 ";
 
 fn world(rules: &Rules) -> (Scene, World) {
+    world_of(SCENE, rules)
+}
+
+fn world_of(text: &str, rules: &Rules) -> (Scene, World) {
     let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
-    let file = files.add("scene.txt", SCENE.as_bytes().into());
+    let file = files.add("scene.txt", text.as_bytes().into());
     let options = ReadOptions { dialect: Dialect::Durer, strict: false, compat: 0 };
-    let scene = course::read(SCENE.as_bytes(), file, options, &mut diagnostics).unwrap();
+    let scene = course::read(text.as_bytes(), file, options, &mut diagnostics).unwrap();
     let source = Source::folder(".");
     let resources = Resources { source: &source, files: &mut files, sky_optional: false, memory: u64::MAX };
     let world = compile(&scene, rules, AccelKind::Bvh, resources, &mut diagnostics).unwrap();
@@ -79,29 +84,28 @@ fn every_row_has_a_name_of_its_own_and_a_step_of_the_lesson() {
     }
 }
 
-/// The picture of a variant, as eight bits have it.
-fn picture(variant: &Variant, job: &Job) -> Picture {
-    let raster = variant.raster(job.width, job.height);
-    let pupil = Pupil::new(&variant.world, variant.settings, &variant.habits);
-    let pixel = |(x, y): (u32, u32)| {
-        let middle = crate::math::Vec2::new(x as f32, y as f32) + 0.5;
-        let ray = variant.ray(&raster, (x, y), middle, crate::math::Vec2::splat(0.5)).unwrap();
-        Transfer::Course.encode_pixel(pupil.radiance(&ray)).map(crate::image::decode_linear).into()
-    };
-    let pixels = job.whole().places().map(pixel).collect();
-    Picture { image: Image::from_pixels(job.width, job.height, pixels).unwrap(), scale: Scale::Display }
+/// The picture of a variant, as eight bits have it, and the brightest of its light.
+fn picture(variant: &Variant, job: &Job, brightest: f32) -> (Picture, f32) {
+    let places: Vec<(u32, u32)> = job.whole().places().collect();
+    let view = View { job, scale: Scale::Display, transfer: Transfer::Course, brightest };
+    let brightest = view.light(variant, &places).iter().map(|light| light.max_element()).fold(0.0, f32::max);
+    let image = Image::from_pixels(job.width, job.height, view.picture(variant, &places)).unwrap();
+    (Picture { image, scale: Scale::Display }, brightest)
 }
 
 fn found(names: &[(&str, f32)]) -> Diagnosis {
-    let rules = Dialect::F04.rules();
-    let (scene, world) = world(rules);
-    let job = job();
+    found_in(SCENE, job(), names)
+}
+
+fn found_in(text: &str, job: Job, names: &[(&str, f32)]) -> Diagnosis {
+    let (scene, world) = world_of(text, Dialect::F04.rules());
     let right = Variant::new(&scene, world, job.settings);
     let mut wrong = right.clone();
     for (name, value) in names {
         (super::of_name(name).unwrap().make)(&mut wrong, *value);
     }
-    let (reference, test) = (picture(&right, &job), picture(&wrong, &job));
+    let (reference, brightest) = picture(&right, &job, 1.0);
+    let (test, _) = picture(&wrong, &job, brightest);
     let transfer = Transfer::Course;
     let question =
         Question { scene: &scene, world: &right.world, job: &job, transfer, reference: &reference, test: &test };
@@ -125,13 +129,94 @@ fn mistakes_are_named_alone_and_in_pairs() {
     assert_eq!(names, BTreeSet::from(["no-ambient", "no-shadows"]));
 }
 
+/// The mistakes that everybody makes, each with its value.
+const USUAL: [(&str, f32); 49] = [
+    ("no-ambient", 0.0),
+    ("no-diffuse", 0.0),
+    ("no-highlights", 0.0),
+    ("no-shadows", 0.0),
+    ("no-reflection", 0.0),
+    ("no-refraction", 0.0),
+    ("light-missing", 1.0),
+    ("exponent", 2.0),
+    ("exponent", 0.5),
+    ("exponent", 4.0),
+    ("other-model", 0.0),
+    ("highlight-cosine", 0.0),
+    ("highlight-diffuse", 0.0),
+    ("half-sum", 0.0),
+    ("no-falloff", 0.0),
+    ("falloff-1-over-d", 0.0),
+    ("falloff-1-over-d2", 0.0),
+    ("falloff-multiplied", 0.0),
+    ("bounce-less", 0.0),
+    ("light-negated", 0.0),
+    ("light-long", 0.0),
+    ("two-sided", 0.0),
+    ("not-clamped-below", 0.0),
+    ("ambient-each-light", 0.0),
+    ("ambient-bare", 0.0),
+    ("clamped-each-light", 0.0),
+    ("mirror-in-full", 0.0),
+    ("glass-in-full", 0.0),
+    ("mirror-negated", 0.0),
+    ("index-inverted", 0.0),
+    ("exit-not-swapped", 0.0),
+    ("not-bent", 0.0),
+    ("normals-local", 0.0),
+    ("normals-moved", 0.0),
+    ("normals-long", 0.0),
+    ("local-direction-unit", 0.0),
+    ("matrices-reversed", 0.0),
+    ("rotation-radians", 0.0),
+    ("rotation-negated", 0.0),
+    ("angle-not-halved", 0.0),
+    ("up-not-orthogonal", 0.0),
+    ("farthest-object", 0.0),
+    ("plane-negated", 0.0),
+    ("hits-behind", 0.0),
+    ("pixel-corner", 0.0),
+    ("mirrored", 0.0),
+    ("upside-down", 0.0),
+    ("bgr", 0.0),
+    ("wrapped", 0.0),
+];
+
+#[test]
+fn each_usual_mistake_is_named() {
+    let mut wrong = Vec::new();
+    let mut judge = |text: &str, job: Job, name: &str, value: f32| {
+        let named = found_in(text, job, &[(name, value)]).named;
+        if !named.iter().any(|n| n.mistakes.len() == 1 && n.mistakes[0].0.name == name) {
+            let said: Vec<Vec<_>> =
+                named.iter().map(|n| n.mistakes.iter().map(|m| (m.0.name, m.1)).collect()).collect();
+            wrong.push(format!("{name} {value}: {said:?}"));
+        }
+    };
+    // Bright enough for what is clamped, and with little glass, so that every term is seen.
+    let bright = SCENE.replace("0.6 0.5 0.5", "1.1 1.0 1.0");
+    for (name, value) in USUAL {
+        judge(&bright, job(), name, value);
+    }
+    let ceiling = SCENE.replace("numObjects 4", "numObjects 5 MaterialIndex 0 Plane { normal 0 -1 0 offset -5 }");
+    judge(&ceiling, job(), "shadows-endless", 0.0);
+    let wide = Job { width: 60, height: 36, ..job() };
+    judge(SCENE, wide.clone(), "aspect-other-axis", 0.0);
+    judge(SCENE, wide, "aspect-smaller-side", 0.0);
+    let level = SCENE.replace("PerspectiveCamera", "OrthographicCamera").replace("angle 40", "size 6");
+    judge(&level, job(), "size", 2.0);
+    judge(SCENE, job(), "scaled-to-maximum", 0.0);
+    judge(SCENE, job(), "other-rounding", 0.0);
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
 /// A picture of something else is no mistake of this scene, and a reference of something else is said to be so.
 #[test]
 fn what_is_no_mistake_is_not_named() {
     let (scene, world) = world(Dialect::F04.rules());
     let job = job();
     let right = Variant::new(&scene, world, job.settings);
-    let reference = picture(&right, &job);
+    let (reference, _) = picture(&right, &job, 1.0);
     let mut other = reference.clone();
     for (i, pixel) in other.image.pixels.iter_mut().enumerate() {
         *pixel = crate::math::Vec3::splat((i * 7919 % 251) as f32 / 255.0);

@@ -298,6 +298,7 @@ impl Reader<'_, '_> {
             Ok(_) if numeric => {
                 let span = self.advance();
                 let error = Diagnostic::error(format!("{} is too large a number", shown(text.as_bytes()))).at(span);
+                let error = error.code("bad-value");
                 self.error(error.help("numbers must be within about ±3.4e38"));
                 None
             }
@@ -377,8 +378,23 @@ fn number_help(text: &str) -> Option<(String, Option<String>)> {
         Some(("numbers stand alone, with blanks between them: `1 0.5 0`".into(), clear))
     } else if text.starts_with("0x") || text.starts_with("0X") {
         Some(("numbers are written in decimal".into(), None))
+    } else if text == "=" || text == ":" {
+        let help = format!("nothing stands between a word and its value but blanks: leave the `{text}` out");
+        Some((help, Some(String::new())))
+    } else if is_number(&text.replace(['O', 'o'], "0")) && text.contains(['O', 'o']) {
+        Some(("this has the letter O where a zero is meant".into(), Some(text.replace(['O', 'o'], "0"))))
     } else {
-        None
+        let number = text.trim_end_matches(|c: char| c.is_alphabetic() || c == '°' || c == '%');
+        let unit = &text[number.len()..];
+        let help = || match unit {
+            "rad" => "angles are in degrees, without a unit".into(),
+            "deg" | "°" => "angles are in degrees: they need no unit".into(),
+            _ => format!("numbers have no units: leave `{unit}` out"),
+        };
+        let same = ["deg", "°", "px", "m"].contains(&unit);
+        // An exponent without its number is no unit.
+        let is_unit = !unit.is_empty() && !unit.eq_ignore_ascii_case("e");
+        (is_number(number) && is_unit).then(|| (help(), same.then(|| number.to_string())))
     }
 }
 

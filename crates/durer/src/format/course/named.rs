@@ -7,7 +7,7 @@ use super::words::dialects_of;
 use crate::diag::{Diagnostic, Span, did_you_mean};
 use crate::dialect::set;
 use crate::scene::{Group, Node, Object};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Objects of a scene that uses defined ones, each counted as often as it is there.
 const MOST_OBJECTS: usize = 1 << 20;
@@ -17,6 +17,8 @@ const MOST_OBJECTS: usize = 1 << 20;
 pub(super) struct Named {
     materials: BTreeMap<String, u32>,
     objects: BTreeMap<String, (Object, usize, Span)>,
+    /// Names whose object is wrong, of which that is told.
+    broken: BTreeSet<String>,
     /// Objects that are there by `use`.
     used: usize,
 }
@@ -63,7 +65,7 @@ impl Reader<'_, '_> {
             let near = did_you_mean(&name, self.named.materials.keys().map(String::as_str)).map(str::to_string);
             let error =
                 Diagnostic::error(format!("there is no material `{name}` before this")).code("unknown-word").at(span);
-            self.error(match near {
+            self.error_once(match near {
                 Some(near) => error.help(format!("did you mean `{near}`?")).fix(span, near),
                 None => error.help("a material has its name before its block, as in `PhongMaterial gold { ... }`"),
             });
@@ -107,7 +109,10 @@ impl Reader<'_, '_> {
         self.material = outer;
         // What is used in it counts where it is used itself.
         self.named.used = used;
-        let Some(object) = object.filter(|_| sound) else { return };
+        let Some(object) = object.filter(|_| sound) else {
+            self.named.broken.insert(name);
+            return;
+        };
         if let Some((_, _, first)) = self.named.objects.get(&name) {
             let error = Diagnostic::error(format!("`{name}` is defined already")).code("repeated").at(span);
             let error = error.related(*first, "the first is here");
@@ -121,11 +126,15 @@ impl Reader<'_, '_> {
     pub(super) fn used(&mut self, keyword: Span) -> Option<Node> {
         self.foreign("use", keyword, set::DURER);
         let (name, span) = self.name_after("use")?;
+        if self.named.broken.contains(&name) {
+            self.repeated += 1;
+            return None;
+        }
         let Some((object, count, _)) = self.named.objects.get(&name) else {
             let near = did_you_mean(&name, self.named.objects.keys().map(String::as_str)).map(str::to_string);
             let error =
                 Diagnostic::error(format!("nothing is defined as `{name}` before this")).code("unknown-word").at(span);
-            self.error(match near {
+            self.error_once(match near {
                 Some(near) => error.help(format!("did you mean `{near}`?")).fix(span, near),
                 None => error.help("write `define NAME` and an object first, outside of what uses it"),
             });

@@ -35,6 +35,8 @@ pub(super) struct Reader<'a, 'd> {
     pub material_uses: Vec<(u32, Span)>,
     /// Materials and objects with names.
     pub named: Named,
+    /// Errors that were told once for several places.
+    pub repeated: usize,
 }
 
 impl<'a, 'd> Reader<'a, 'd> {
@@ -67,6 +69,7 @@ impl<'a, 'd> Reader<'a, 'd> {
             material: None,
             material_uses: Vec::new(),
             named: Named::default(),
+            repeated: 0,
         };
         reader.check_form(&comments);
         reader
@@ -166,7 +169,18 @@ impl<'a, 'd> Reader<'a, 'd> {
 
     /// How many errors there are: a block is checked as a whole only if none was found in it.
     pub(super) fn errors(&self) -> usize {
-        self.diagnostics.error_count()
+        self.diagnostics.error_count() + self.repeated
+    }
+
+    /// Reports an error about a name, which may stand at many places, once.
+    pub(super) fn error_once(&mut self, error: Diagnostic) {
+        let known = self.diagnostics.error_count();
+        if !self.stopped && !self.diagnostics.push_once(error) {
+            self.repeated += 1;
+        }
+        if self.diagnostics.error_count() > known && self.diagnostics.is_full() {
+            self.stop();
+        }
     }
 
     /// Reports an error, unless the rest of the file was given up; after too many, it is.

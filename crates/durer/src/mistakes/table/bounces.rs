@@ -33,19 +33,21 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "bounce-less",
         "reflection",
-        "there is one level of secondary rays less than asked for",
+        "there {is one level|are two levels} of secondary rays less than asked for",
         "trace(ray, bounces), and again while bounces > 0",
-        "trace(ray, bounces), and again while bounces > 1",
-        |v, _| v.settings.bounces = v.settings.bounces.saturating_sub(1),
-    ),
+        "trace(ray, bounces), and again while bounces > {1|2}",
+        |v, more| v.settings.bounces = v.settings.bounces.saturating_sub(1 + more as u32),
+    )
+    .with(Values::Only(&[0.0, 1.0])),
     row(
         "bounce-more",
         "reflection",
-        "there is one level of secondary rays more than asked for",
+        "there {is one level|are two levels} of secondary rays more than asked for",
         "trace(ray, bounces), and again while bounces > 0",
-        "trace(ray, bounces), and again while bounces >= 0",
-        |v, _| v.settings.bounces += 1,
-    ),
+        "trace(ray, bounces), and again while bounces >= {0|-1}",
+        |v, more| v.settings.bounces += 1 + more as u32,
+    )
+    .with(Values::Only(&[0.0, 1.0])),
     row(
         "mirror-in-full",
         "reflection",
@@ -292,4 +294,40 @@ pub(super) const MISTAKES: &[Mistake] = &[
         },
     )
     .with(Values::Numbers(&[1.33, 1.5, 2.0])),
+    row(
+        "indices-exchanged",
+        "refraction",
+        "the two indices of refraction are exchanged, and with them which angle Schlick's formula takes",
+        "n1 outside, n2 inside; the other way on leaving",
+        "n1 inside, n2 outside",
+        |v, _| v.habits.bounces.glass = Glass::Exchanged,
+    ),
+    row(
+        "fresnel-not-squared",
+        "fresnel",
+        "R0 of Schlick's formula is not squared",
+        "R0 = ((n2 - n1) / (n2 + n1))^2",
+        "R0 = |n2 - n1| / (n2 + n1)",
+        |v, _| v.habits.bounces.fresnel = Fresnel::Unsquared,
+    ),
+    row(
+        "fresnel-power",
+        "fresnel",
+        "Schlick's formula has the power {}, not 5",
+        "R = R0 + (1 - R0) (1 - c)^5",
+        "R = R0 + (1 - R0) (1 - c)^{}",
+        |v, power| v.habits.bounces.fresnel = Fresnel::Power(power),
+    )
+    .with(Values::Only(&[1.0, 2.0, 3.0, 4.0, 6.0])),
+    row(
+        "epsilon-negative",
+        "epsilon",
+        "secondary and shadow rays begin behind the surface that they leave: the epsilon has the wrong sign",
+        "t_min = epsilon",
+        "t_min = -epsilon",
+        |v, _| {
+            v.habits.shadows.epsilon = Some(-1e-3);
+            v.habits.bounces.epsilon = Some(-1e-3);
+        },
+    ),
 ];

@@ -137,18 +137,19 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "right-not-unit",
         "rays",
-        "the camera's right is not normalised",
+        "the camera's right is not normalised{|, and its up is}",
         "u = normalize(cross(w, up))",
         "u = cross(w, up)",
-        |v, _| {
+        |v, how| {
             let raw = v.world.frame.forward.cross(v.world.camera.pose().up);
             let perpendicular = (v.world.frame.up.dot(v.world.frame.forward)).abs() < 1e-5;
             v.world.frame.right = raw;
-            if perpendicular {
+            if perpendicular && how == 0.0 {
                 v.world.frame.up = raw.cross(v.world.frame.forward);
             }
         },
-    ),
+    )
+    .with(Values::Only(&[0.0, 1.0])),
     row(
         "direction-not-unit",
         "rays",
@@ -176,11 +177,21 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "angle-without-tangent",
         "rays",
-        "half the width of the picture is half the angle, not its tangent",
+        "half the width of the picture is half the angle{|'s sine}, not its tangent",
         "tan(angle / 2)",
-        "angle / 2, in radians",
-        |v, _| scale(v, |angle| (0.5 * angle.to_radians()) / tan(0.5 * angle)),
-    ),
+        "{angle / 2, in radians|sin(angle / 2)}",
+        |v, sine| {
+            scale(v, |angle| {
+                let half = if sine > 0.0 {
+                    fp::sin_cos_degrees(f64::from(0.5 * angle)).0 as f32
+                } else {
+                    0.5 * angle.to_radians()
+                };
+                half / tan(0.5 * angle)
+            })
+        },
+    )
+    .with(Values::Only(&[0.0, 1.0])),
     row(
         "width",
         "rays",

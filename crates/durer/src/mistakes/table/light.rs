@@ -1,10 +1,9 @@
-//! Mistakes of local light: ambient, diffuse, highlights, lamps, shadows, sums.
+//! Mistakes of local light: ambient, diffuse, lamps, sums.
 
 use super::{Mistake, Values, row};
 use crate::light::Light;
 use crate::math::{Color, Vec3};
-use crate::mistakes::habits::{Ambient, Cosine, Fading, Half, PointLamp, ShadowWay, Sum};
-use crate::world::HighlightModel;
+use crate::mistakes::habits::{Ambient, Cosine, Fading, PointLamp, Sum};
 
 pub(super) const MISTAKES: &[Mistake] = &[
     row(
@@ -74,14 +73,24 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "white-diffuse",
         "diffuse",
-        "the diffuse term has not the surface's colour",
+        "the {diffuse term has|diffuse and ambient terms have} not the surface's colour",
         "color += kd * max(0, N.L) * I",
         "color += max(0, N.L) * I",
-        |v, _| {
-            v.phongs(|phong| {
-                (phong.diffuse, phong.texture, phong.noise) = (Color::ONE, None, None);
-            });
+        |v, which| {
+            v.habits.plain_diffuse = true;
+            if which > 0.0 {
+                v.phongs(|phong| (phong.diffuse, phong.texture, phong.noise) = (Color::ONE, None, None));
+            }
         },
+    )
+    .with(Values::Only(&[0.0, 1.0])),
+    row(
+        "diffuse-lightless",
+        "diffuse",
+        "the diffuse term is not multiplied with the light's colour",
+        "color += kd * max(0, N.L) * I",
+        "color += kd * max(0, N.L)",
+        |v, _| v.habits.diffuse_lightless = true,
     ),
     row(
         "no-texture",
@@ -92,116 +101,17 @@ pub(super) const MISTAKES: &[Mistake] = &[
         |v, _| v.phongs(|phong| (phong.texture, phong.noise) = (None, None)),
     ),
     row(
-        "no-highlights",
-        "specular",
-        "the highlights (the specular term) are missing",
-        "color += ks * pow(max(0, N.H), s) * I",
-        "(nothing)",
-        |v, _| v.phongs(|phong| phong.highlight = None),
-    ),
-    row(
-        "highlights-added",
-        "specular",
-        "there are highlights, which this year's program does not have ({by R.L|by R.L, where N.L > 0|by N.H})",
-        "(nothing)",
-        "color += ks * pow(max(0, R.L), s) * I",
-        |v, model| v.add_highlights(model),
-    )
-    .with(Values::Only(&[0.0, 1.0, 2.0])),
-    row(
-        "exponent",
-        "specular",
-        "the highlights' exponent is {} times what it should be",
-        "pow(base, s)",
-        "pow(base, {} * s)",
-        |v, factor| {
-            v.phongs(|phong| {
-                if let Some((_, exponent, _)) = &mut phong.highlight {
-                    *exponent *= factor;
-                }
-            });
+        "background",
+        "flat",
+        "{rays of the camera that hit|rays that hit|rays of the camera that hit|rays that hit} nothing are {black|black|white|white}, not of the background's colour",
+        "if (!hit) return background",
+        "if (!hit) return {0|0|1|1}",
+        |v, how| {
+            let color = if how < 2.0 { Color::ZERO } else { Color::ONE };
+            v.habits.sky = Some((color, how % 2.0 > 0.0));
         },
     )
-    .with(Values::Numbers(&[2.0, 0.5, 4.0, 0.25, 8.0, 0.125])),
-    row(
-        "exponent-one",
-        "specular",
-        "the highlights have no exponent",
-        "pow(max(0, base), s)",
-        "max(0, base)",
-        |v, _| {
-            v.phongs(|phong| {
-                if let Some((_, exponent, _)) = &mut phong.highlight {
-                    *exponent = 1.0;
-                }
-            });
-        },
-    ),
-    row(
-        "other-model",
-        "specular",
-        "the highlights are of the other model: Phong's (R.L) for Blinn's (N.H), or the other way",
-        "the year's: max(0, dot(N, norm(L + V))) or max(0, dot(R, L))",
-        "the other",
-        |v, _| v.other_highlights(),
-    ),
-    row(
-        "highlight-cosine",
-        "specular",
-        "the highlights are multiplied with N.L",
-        "color += ks * pow(base, s) * I",
-        "color += ks * pow(base, s) * max(0, N.L) * I",
-        |v, _| v.habits.highlights.times_cosine = true,
-    ),
-    row(
-        "highlight-diffuse",
-        "specular",
-        "the highlights are multiplied with the diffuse colour",
-        "color += (kd * N.L + ks * pow(base, s)) * I",
-        "color += kd * (N.L + ks * pow(base, s)) * I",
-        |v, _| v.habits.highlights.times_diffuse = true,
-    ),
-    row(
-        "highlight-bare",
-        "specular",
-        "the highlights have not the specular colour: they are white, or the light's",
-        "ks * pow(base, s) * I",
-        "pow(base, s) * I",
-        |v, _| {
-            v.highlights_everywhere();
-            v.habits.highlights.bare = true;
-        },
-    ),
-    row(
-        "half-sum",
-        "specular",
-        "the half vector H of the highlights is not normalised",
-        "H = normalize(L + V)",
-        "H = L + V",
-        |v, _| v.habits.highlights.half = Half::Sum,
-    ),
-    row(
-        "half-mean",
-        "specular",
-        "the half vector H of the highlights is halved instead of normalised",
-        "H = normalize(L + V)",
-        "H = (L + V) / 2",
-        |v, _| v.habits.highlights.half = Half::Mean,
-    ),
-    row(
-        "highlight-behind",
-        "specular",
-        "highlights on surfaces that face away from the light are shown where the year has none, or left out where it has them",
-        "as the year has it: with or without `if (dot(N, L) > 0)`",
-        "the other way",
-        |v, _| {
-            v.phongs(|phong| {
-                if let Some((_, _, HighlightModel::Phong { behind })) = &mut phong.highlight {
-                    *behind = !*behind;
-                }
-            });
-        },
-    ),
+    .with(Values::Only(&[0.0, 1.0, 2.0, 3.0])),
     row(
         "light-missing",
         "diffuse",
@@ -239,11 +149,15 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "white-lights",
         "diffuse",
-        "the colour of the lights is not used",
+        "{the colour of the lights is not used|lights shine in the grey of their colours}",
         "color += (kd * N.L + ...) * I",
-        "color += kd * N.L + ...",
-        |v, _| recolor(v.world.lights.iter_mut(), |_| Color::ONE),
-    ),
+        "color += (kd * N.L + ...) * {1|(I.r + I.g + I.b) / 3}",
+        |v, grey| {
+            let of = |color: Color| if grey > 0.0 { Color::splat(color.element_sum() / 3.0) } else { Color::ONE };
+            recolor(v.world.lights.iter_mut(), of);
+        },
+    )
+    .with(Values::Only(&[0.0, 1.0])),
     row(
         "light-negated",
         "diffuse",
@@ -251,6 +165,14 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "L = normalize(-direction)",
         "L = normalize(direction)",
         |v, _| v.habits.lamps.negated = true,
+    ),
+    row(
+        "point-light-negated",
+        "diffuse",
+        "the direction to point lights has the wrong sign",
+        "L = normalize(position - p)",
+        "L = normalize(p - position)",
+        |v, _| v.habits.lamps.points = PointLamp::Negated,
     ),
     row(
         "light-long",
@@ -342,59 +264,6 @@ pub(super) const MISTAKES: &[Mistake] = &[
             points(v.world.lights.iter_mut(), |a| a.map(|a| Vec3::new(a.z, a.y, a.x)));
         },
     ),
-    row("no-shadows", "shadows", "there are no shadows", "if (occluded(p, L, d)) continue", "(nothing)", |v, _| {
-        v.settings.shadows = false
-    }),
-    row(
-        "shadows-added",
-        "shadows",
-        "there are shadows, which this picture should not have",
-        "(nothing, without -shadows)",
-        "if (occluded(p, L, d)) continue",
-        |v, _| v.settings.shadows = true,
-    ),
-    row(
-        "shadows-endless",
-        "shadows",
-        "shadow rays do not end at the light: what is behind it blocks it too",
-        "occluded if hit at eps < t < distance to the light",
-        "occluded if hit at t > eps",
-        |v, _| v.habits.shadows.endless = true,
-    ),
-    row(
-        "shadows-ambient",
-        "shadows",
-        "in shadow the ambient light is missing too",
-        "color = ambient * kd; if (!occluded) color += ...",
-        "if (!occluded) color += ambient * kd + ...",
-        |v, _| v.habits.shadows.ambient_too = true,
-    ),
-    row(
-        "shadows-later",
-        "shadows",
-        "where one light is blocked, all lights after it are missing too",
-        "if (occluded) continue",
-        "if (occluded) break",
-        |v, _| v.habits.shadows.later_too = true,
-    ),
-    row(
-        "shadows-black",
-        "shadows",
-        "where one light is blocked, all light is missing, the ambient light too{, but not what mirrors and glass bring|, and what mirrors and glass bring}",
-        "if (occluded) continue",
-        "if (occluded) return black",
-        |v, all| v.habits.shadows.black = Some(all > 0.0),
-    )
-    .with(Values::Only(&[0.0, 1.0])),
-    row(
-        "shadows-weak",
-        "shadows",
-        "in its shadow a light still counts for {} of what it gives",
-        "if (occluded) continue",
-        "if (occluded) I *= {}",
-        |v, left| v.habits.shadows.left = left,
-    )
-    .with(Values::Numbers(&[0.5, 0.2])),
     row(
         "lights-mean",
         "diffuse",
@@ -407,29 +276,12 @@ pub(super) const MISTAKES: &[Mistake] = &[
         },
     ),
     row(
-        "eye-negated",
-        "specular",
-        "the direction to the eye has the wrong sign in the highlights",
-        "V = -d: H = normalize(L - d), R.L with R = d - 2 (d.N) N",
-        "V = d: H = normalize(L + d), R = 2 (d.N) N - d",
-        |v, _| v.habits.highlights.eye_negated = true,
-    ),
-    row(
-        "shadows-epsilon",
-        "epsilon",
-        "the epsilon of shadow rays is far too large: {}",
-        "occluded if hit at t > 1e-4",
-        "occluded if hit at t > {}",
-        |v, epsilon| v.habits.shadows.epsilon = Some(epsilon),
-    )
-    .with(Values::Numbers(&[0.1, 0.5, 0.02, 1.0, 2.0])),
-    row(
-        "shadows-transparent",
-        "shadows",
-        "things of glass cast coloured shadows, or full ones where they should not",
-        "as asked for",
-        "the other way",
-        |v, _| v.settings.transparent_shadows = !v.settings.transparent_shadows,
+        "clamped-before-bounces",
+        "reflection",
+        "the local colour is clamped to 1 before mirrored and transmitted light is added",
+        "clamp once when the pixel is written",
+        "color = min(1, local) + kr * trace(R)",
+        |v, _| v.habits.sum = Sum::ClampedLocal,
     ),
     row(
         "clamped-each-light",
@@ -438,14 +290,6 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "sum all, clamp once when the pixel is written",
         "for each light color = min(1, color + ...)",
         |v, _| v.habits.sum = Sum::ClampedEach,
-    ),
-    row(
-        "clamped-before-bounces",
-        "reflection",
-        "the local colour is clamped to 1 before mirrored and transmitted light is added",
-        "clamp once when the pixel is written",
-        "color = min(1, local) + kr * trace(R)",
-        |v, _| v.habits.sum = Sum::ClampedLocal,
     ),
     row(
         "cosine-squared",
@@ -480,77 +324,17 @@ pub(super) const MISTAKES: &[Mistake] = &[
         |v, _| v.habits.cosine = Cosine::OverPi,
     ),
     row(
-        "highlight-two-sided",
-        "specular",
-        "the highlights have lost the sign of their base: there is one on the other side too",
-        "pow(max(0, base), s)",
-        "pow(abs(base), s)",
-        |v, _| v.habits.highlights.two_sided = true,
-    ),
-    row(
-        "highlight-lightless",
-        "specular",
-        "the highlights are not multiplied with the light's colour",
-        "color += ks * pow(base, s) * I",
-        "color += ks * pow(base, s)",
-        |v, _| v.habits.highlights.lightless = true,
-    ),
-    row(
-        "highlight-white",
-        "specular",
-        "the specular colour is ignored: what has one has white highlights",
-        "ks * pow(base, s) * I, ks * trace(R)",
-        "pow(base, s) * I, trace(R)",
-        |v, _| {
-            v.phongs(|phong| {
-                if let Some((color, ..)) = &mut phong.highlight {
-                    *color = Color::ONE;
-                }
-            });
-        },
-    ),
-    row(
-        "specular-white",
-        "specular",
-        "the specular colour is ignored, in highlights and in mirrors: both are white",
-        "ks * pow(base, s) * I + ks * trace(R)",
-        "pow(base, s) * I + trace(R)",
-        |v, _| {
-            v.phongs(|phong| {
-                if let Some((color, ..)) = &mut phong.highlight {
-                    *color = Color::ONE;
-                }
-                if phong.reflective != Color::ZERO {
-                    phong.reflective = Color::ONE;
-                }
-            });
-        },
-    ),
-    row(
-        "highlight-everywhere",
-        "specular",
-        "there are highlights on surfaces that face away from the light",
-        "if (dot(N, L) > 0) color += ks * pow(max(0, N.H), s) * I",
-        "color += ks * pow(max(0, N.H), s) * I",
-        |v, _| v.habits.highlights.everywhere = true,
-    ),
-    row(
-        "point-light-negated",
-        "diffuse",
-        "the direction to point lights has the wrong sign",
-        "L = normalize(position - p)",
-        "L = normalize(p - position)",
-        |v, _| v.habits.lamps.points = PointLamp::Negated,
-    ),
-    row(
         "point-light-position",
         "diffuse",
-        "the position of point lights is taken as a direction{|, and negated}",
+        "the position of point lights is taken as a direction{|, and negated|, and its length as the distance}",
         "L = normalize(position - p)",
-        "L = normalize(position)",
-        |v, sign| v.habits.lamps.points = if sign == 0.0 { PointLamp::Position } else { PointLamp::MinusPosition },
+        "L = normalize({position|-position|position}){||, d = length(position)}",
+        |v, how| {
+            v.habits.lamps.points =
+                [PointLamp::Position, PointLamp::MinusPosition, PointLamp::PositionAlone][(how as usize).min(2)];
+        },
     )
-    .with(Values::Only(&[0.0, 1.0])),
+    .with(Values::Only(&[0.0, 1.0, 2.0])),
     row(
         "falloff-root",
         "diffuse",
@@ -560,49 +344,12 @@ pub(super) const MISTAKES: &[Mistake] = &[
         |v, _| v.habits.lamps.fading = Fading::Root,
     ),
     row(
-        "shadows-ambient-any",
-        "shadows",
-        "where any light is blocked the ambient light is missing too",
-        "color = ambient * kd; if (!occluded) color += ...",
-        "if (occluded) the ambient light is taken away, or never added",
-        |v, _| v.habits.shadows.ambient_of_any = true,
-    ),
-    row(
-        "shadows-of-one-light",
-        "shadows",
-        "only light {} (counted from 0) casts shadows",
-        "for each light if (occluded) continue",
-        "a shadow ray for light {} alone",
-        |v, light| {
-            if v.world.lights.len() > 1 {
-                v.habits.shadows.only_light = Some(light as usize);
-            }
-        },
-    )
-    .with(Values::Lights),
-    row(
-        "shadows-away",
-        "shadows",
-        "shadow rays go away from the light",
-        "Ray(p, L)",
-        "Ray(p, -L)",
-        |v, _| v.habits.shadows.way = ShadowWay::Away,
-    ),
-    row(
-        "shadows-along-normal",
-        "shadows",
-        "shadow rays go along the normal, not to the light",
-        "Ray(p, L)",
-        "Ray(p, N)",
-        |v, _| v.habits.shadows.way = ShadowWay::Normal,
-    ),
-    row(
-        "shadows-not-of-glass",
-        "shadows",
-        "things that let light through cast no shadow",
-        "occluded by any hit",
-        "occluded by hits that are not transparent",
-        |v, _| v.habits.shadows.no_glass = true,
+        "falloff-squared-twice",
+        "diffuse",
+        "the distance is squared twice before light is divided by it",
+        "I = color / (a0 + a1 d + a2 d^2)",
+        "d = dot(v, v), I = color / (a0 + a1 d + a2 d^2)",
+        |v, _| v.habits.lamps.fading = Fading::SquaredTwice,
     ),
     row(
         "ambient-factor",
@@ -612,7 +359,16 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "color = {} * ambient * kd",
         |v, factor| v.world.ambient *= factor,
     )
-    .with(Values::Numbers(&[0.5, 2.0])),
+    .with(Values::Numbers(&[0.1, 0.5, 2.0])),
+    row(
+        "diffuse-term-factor",
+        "diffuse",
+        "the diffuse term counts {} times",
+        "color += kd * max(0, N.L) * I",
+        "color += {} * kd * max(0, N.L) * I",
+        |v, factor| v.habits.diffuse_factor = Some(factor),
+    )
+    .with(Values::Numbers(&[0.5, 0.9, 2.0])),
     row(
         "diffuse-factor",
         "diffuse",

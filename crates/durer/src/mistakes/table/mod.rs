@@ -2,11 +2,14 @@
 
 mod bounces;
 mod camera;
+mod highlights;
 mod light;
 mod output;
+mod shadows;
 mod things;
 
 use super::Variant;
+use crate::dialect::{Falloff, Highlight, Rules};
 
 /// A usual mistake.
 #[derive(Clone, Copy, Debug)]
@@ -53,8 +56,15 @@ impl Values {
 }
 
 /// All families.
-pub const MISTAKES: [&[Mistake]; 5] =
-    [light::MISTAKES, bounces::MISTAKES, things::MISTAKES, camera::MISTAKES, output::MISTAKES];
+pub const MISTAKES: [&[Mistake]; 7] = [
+    light::MISTAKES,
+    highlights::MISTAKES,
+    shadows::MISTAKES,
+    bounces::MISTAKES,
+    things::MISTAKES,
+    camera::MISTAKES,
+    output::MISTAKES,
+];
 
 /// The mistake of a name.
 pub fn of_name(name: &str) -> Option<&'static Mistake> {
@@ -86,13 +96,36 @@ impl Mistake {
 
     /// Its words for a value.
     pub fn told(&self, value: f32) -> String {
-        let chosen = match (self.words.find('{'), self.words.find('}')) {
-            (Some(start), Some(end)) if self.words[start..end].contains('|') => {
-                let choice = self.words[start + 1..end].split('|').nth(value as usize).unwrap_or_default();
-                format!("{}{choice}{}", &self.words[..start], &self.words[end + 1..])
-            }
-            _ => self.words.to_string(),
-        };
-        chosen.replace("{}", &format!("{}", (f64::from(value) * 1000.0).round() / 1000.0))
+        filled(self.words, value)
     }
+
+    /// How the code should be, and how it probably is, in the formulas of a year's rules.
+    pub fn forms(&self, value: f32, rules: Option<&Rules>) -> [String; 2] {
+        let fading = match rules.map(|rules| rules.falloff) {
+            Some(Falloff::OnePlus) => "1 + f d^2",
+            Some(Falloff::Bare(_)) => "f d^2",
+            Some(Falloff::None) | None => "a0 + a1 d + a2 d^2",
+        };
+        let is_phong = rules.is_some_and(|rules| rules.highlight == Highlight::Phong);
+        let base = if is_phong { "R.L" } else { "N.H" };
+        [self.right, self.wrong]
+            .map(|form| filled(form, value).replace("a0 + a1 d + a2 d^2", fading).replace("N.H", base))
+    }
+}
+
+/// Words with a value in them, and of each `{a|b|c}` what that chooses.
+fn filled(words: &str, value: f32) -> String {
+    let mut text = String::new();
+    let mut rest = words;
+    while let Some((before, after)) = rest.split_once('{') {
+        let (inner, after) = after.split_once('}').unwrap_or((after, ""));
+        text += before;
+        match inner {
+            "" => text += &format!("{}", (f64::from(value) * 1000.0).round() / 1000.0),
+            _ if inner.contains('|') => text += inner.split('|').nth(value as usize).unwrap_or_default(),
+            _ => text += &format!("{{{inner}}}"),
+        }
+        rest = after;
+    }
+    text + rest
 }

@@ -112,7 +112,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "other-material",
         "flat",
-        "things have the material {after their own|before their own|after their own, but the last its own}",
+        "things have the material {after their own|before their own|after their own, but the last its own|before their own, but the first its own}",
         "materials[index], index from 0",
         "materials[index + 1], or - 1",
         |v, which| {
@@ -121,12 +121,13 @@ pub(super) const MISTAKES: &[Mistake] = &[
                 object.material = match which as u32 {
                     0 => (object.material + 1) % count,
                     1 => (object.material + count - 1) % count,
-                    _ => (object.material + 1).min(count - 1),
+                    2 => (object.material + 1).min(count - 1),
+                    _ => object.material.saturating_sub(1),
                 };
             }
         },
     )
-    .with(Values::Only(&[0.0, 1.0, 2.0])),
+    .with(Values::Only(&[0.0, 1.0, 2.0, 3.0])),
     row(
         "far-spheres",
         "distance",
@@ -264,13 +265,21 @@ pub(super) const MISTAKES: &[Mistake] = &[
             });
         },
     ),
-    row("center-ignored", "distance", "the centre of spheres is ignored", "o - center", "o", |v, _| {
-        v.objects(|geometry| {
-            if let Geometry::Primitive(Primitive::Sphere(sphere)) = geometry {
-                sphere.center = crate::math::Vec3::ZERO;
-            }
-        });
-    }),
+    row(
+        "center-ignored",
+        "distance",
+        "the centre of spheres {is ignored|has the wrong sign}",
+        "o - center",
+        "o{| + center}",
+        |v, sign| {
+            v.objects(|geometry| {
+                if let Geometry::Primitive(Primitive::Sphere(sphere)) = geometry {
+                    sphere.center *= -sign;
+                }
+            });
+        },
+    )
+    .with(Values::Only(&[0.0, 1.0])),
     row(
         "farthest-object",
         "distance",
@@ -278,6 +287,30 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "if (t < best) best = t",
         "if (t > best) best = t",
         |v, _| v.habits.pick = Pick::FarthestObject,
+    ),
+    row(
+        "farthest-triangle",
+        "distance",
+        "the farthest thing is seen, and of meshes the farthest triangle",
+        "if (t < best) best = t",
+        "if (t > best) best = t",
+        |v, _| v.habits.pick = Pick::FarthestTriangle,
+    ),
+    row(
+        "last-triangle",
+        "distance",
+        "what is written last hides all others, and of meshes the last triangle",
+        "if (t < best) best = t",
+        "if (hit) best = t",
+        |v, _| v.habits.pick = Pick::LastTriangle,
+    ),
+    row(
+        "near-roots",
+        "distance",
+        "of spheres the nearer root alone is looked at: rays that begin inside do not hit them",
+        "t = the least root > t_min",
+        "t = the lesser root, or nothing",
+        |v, _| v.habits.pick = Pick::NearRoots,
     ),
     row(
         "last-hit",

@@ -14,6 +14,8 @@ type Decode = fn(Vec3) -> Vec3;
 const SEEN: f32 = 1.5 / 255.0;
 /// An edge is where neighbours differ by more than this.
 const EDGE: f32 = 0.08;
+/// So much of the difference at edges must be of colours that are there.
+const MIXED: f64 = 0.95;
 /// Squared steps between neighbours of a smoothed picture are less than this share of the other's: of an edge at a place in
 /// the pixel that may be any, two thirds are expected.
 const SMOOTHER: f64 = 0.85;
@@ -133,16 +135,40 @@ fn edges(reference: &View, test: &View, samples: &[Sample]) -> Option<Finding> {
         at_edges.iter().map(steps).sum()
     };
     let (own, others) = (roughness(test), roughness(reference));
+    // Of an edge that is sampled otherwise, one side gains what the other loses; of one that is moved it need not.
+    let (sum, all) = at_edges.iter().fold((0.0, 0.0), |(sum, all), s| {
+        let by = (s.test - s.reference).element_sum();
+        (sum + by, all + by.abs())
+    });
+    let is_even = sum.abs() < 0.6 * all;
     let cause = if others < SMOOTHER * own {
-        "the reference is smoothed there, it is not (samples without effect, no filter)".into()
+        is_even.then(|| "the reference is smoothed there, it is not (samples without effect, no filter)".into())
     } else if own < SMOOTHER * others {
-        "it is smoothed there, the reference is not (more samples, a filter)".into()
+        is_even.then(|| "it is smoothed there, the reference is not (more samples, a filter)".into())
     } else {
-        flow::cause(reference, &at_edges)
-            .unwrap_or_else(|| "samples lie at other places in the pixels, or are averaged otherwise".into())
-    };
+        let elsewhere =
+            || is_even.then(|| "samples lie at other places in the pixels, or are averaged otherwise".into());
+        flow::cause(reference, &at_edges).or_else(elsewhere)
+    }?;
     let words = format!("it differs only at edges ({:.1} % of the picture): {cause}", 100.0 * share);
-    (share < 0.4 && has_equal_sides(reference, test, &at_edges)).then_some(Finding { kind: "edges", words, explained })
+    let is_mixed = mixed(reference, test, &at_edges) > MIXED;
+    (share < 0.4 && is_mixed && has_equal_sides(reference, test, &at_edges)).then_some(Finding {
+        kind: "edges",
+        words,
+        explained,
+    })
+}
+
+/// The share of the squared difference in pixels that show nothing but what is beside them: other samples of a pixel see what its
+/// neighbours see, other shading does not.
+fn mixed(reference: &View, test: &View, at_edges: &[Sample]) -> f64 {
+    let between = |value: Vec3, picture: &View, s: &Sample| {
+        let around = (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| picture.at(s.x + dx, s.y + dy)));
+        let (low, high) = around.fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(l, h), p| (l.min(p), h.max(p)));
+        value.cmpge(low - SEEN).all() && value.cmple(high + SEEN).all()
+    };
+    let is_between = |s: &&Sample| between(s.test, reference, s) || between(s.reference, test, s);
+    difference(&at_edges.iter().filter(is_between).copied().collect::<Vec<_>>()) / difference(at_edges).max(1e-12)
 }
 
 /// Whether there are equal parts on both sides of the edges that differ: a thing so thin that all of it is edge tells nothing.

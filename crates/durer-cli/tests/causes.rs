@@ -1,0 +1,152 @@
+//! `durer check`, cause by cause: the smallest change of a sound scene that makes it, and the nearest that does not.
+
+mod common;
+
+use common::Place;
+use serde_json::Value;
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+
+const CAUSES: &str = include_str!("causes.txt");
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Kind {
+    /// A base, or nearly a cause: no warning.
+    Sound,
+    /// The finding of this code stands first.
+    Broken,
+}
+
+/// A scene, with the words of its line.
+struct Case {
+    line: String,
+    kind: Kind,
+    code: String,
+    options: Vec<String>,
+    text: String,
+}
+
+/// Options beside others: the last of two that are given twice is meant.
+fn joined(options: &str, more: &str) -> Vec<String> {
+    let mut all: Vec<String> = options.split_whitespace().map(String::from).collect();
+    for word in more.split_whitespace().filter(|word| word.starts_with("--")) {
+        if let Some(at) = all.iter().position(|old| old == word) {
+            all.drain(at..at + 2);
+        }
+    }
+    all.extend(more.split_whitespace().map(String::from));
+    all
+}
+
+fn cases() -> Vec<Case> {
+    let mut cases: Vec<Case> = Vec::new();
+    let (mut options, mut text, mut base) = ("", String::new(), "");
+    let mut is_told = true;
+    for line in CAUSES.lines() {
+        let kind = if line.starts_with("near ") { Kind::Sound } else { Kind::Broken };
+        if let Some(rest) = line.strip_prefix("base ") {
+            (base, options) = rest.split_once(' ').unwrap_or((rest, ""));
+            (text, is_told) = (String::new(), false);
+        } else if let Some(rest) = line.strip_prefix("case ").or(line.strip_prefix("near ")) {
+            if !std::mem::replace(&mut is_told, true) {
+                let (line, code, options) = (format!("base {base}"), String::new(), joined(options, ""));
+                cases.push(Case { line, kind: Kind::Sound, code, options, text: text.clone() });
+            }
+            let mut parts = rest.split(" | ");
+            let code = parts.next().unwrap().to_string();
+            let (mut changed, mut more) = (text.clone(), "");
+            for part in parts {
+                if let Some(options) = part.strip_prefix('+') {
+                    more = options;
+                    continue;
+                }
+                let (old, new) = part.split_once(" =>").unwrap_or_else(|| panic!("{line}"));
+                assert!(changed.contains(old), "`{old}` is not in the scene `{base}`");
+                changed = changed.replacen(old, &new.trim_start().replace("\\n", "\n"), 1);
+            }
+            cases.push(Case { line: line.into(), kind, code, options: joined(options, more), text: changed });
+        } else if !line.starts_with('#') && !base.is_empty() {
+            text += line;
+            text += "\n";
+        }
+    }
+    cases
+}
+
+/// A cube of faces with four corners, the same of triangles, and a picture of hills.
+fn put_files(place: &Place) {
+    let corners = "v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1\n";
+    let faces = [[1, 4, 3, 2], [5, 6, 7, 8], [1, 2, 6, 5], [2, 3, 7, 6], [3, 4, 8, 7], [4, 1, 5, 8]];
+    let quads: String = faces.iter().map(|[a, b, c, d]| format!("f {a} {b} {c} {d}\n")).collect();
+    let halves: String = faces.iter().map(|[a, b, c, d]| format!("f {a} {b} {c}\nf {a} {c} {d}\n")).collect();
+    place.put("quads.obj", format!("{corners}{quads}"));
+    place.put("box.obj", format!("{corners}{halves}"));
+    place.put("bad.obj", format!("{corners}f 1 2 19\n"));
+    let sheet =
+        |uvs: &str| format!("v -2 0.2 0\nv -0.4 0.2 0\nv -0.4 1.8 0\nv -2 1.8 0\n{uvs}f 1/1 2/2 3/3\nf 1/1 3/3 4/4\n");
+    place.put("sheet.obj", sheet("vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"));
+    place.put("point.obj", sheet(&"vt 0 0\n".repeat(4)));
+    place.put("grey.ppm", "P3\n2 1\n255\n99 99 99 99 99 99\n");
+    place.put("two.ppm", "P3\n2 1\n255\n99 99 99 200 20 20\n");
+    let hills: Vec<String> = (0..256).map(|i| ((i % 16) * (i / 16) % 50 * 5).to_string()).collect();
+    place.put("hills.pgm", format!("P2\n16 16\n255\n{}\n", hills.join("\n")));
+}
+
+#[test]
+fn each_cause_is_told_first_and_its_neighbour_is_sound() {
+    let place = Place::new();
+    put_files(&place);
+    let cases = cases();
+    let (mut wrong, mut told) = (Vec::new(), BTreeSet::new());
+    // Those with the same options in one run.
+    let mut of_options: BTreeMap<String, Vec<usize>> = BTreeMap::new();
+    for (number, case) in cases.iter().enumerate() {
+        place.put(&format!("{number}.txt"), &case.text);
+        of_options.entry(case.options.join(" ")).or_default().push(number);
+    }
+    let mut found: BTreeMap<usize, Value> = BTreeMap::new();
+    for (options, numbers) in of_options {
+        let names: String = numbers.iter().map(|number| format!("{number}.txt ")).collect();
+        let ran = place.run(&format!("check {names} --json {options}"));
+        let json: Value =
+            serde_json::from_str(&ran.out).unwrap_or_else(|error| panic!("{options}: {error}\n{}", ran.err));
+        found.extend(numbers.into_iter().zip(json["scenes"].as_array().unwrap().iter().cloned()));
+    }
+    for (number, case) in cases.iter().enumerate() {
+        let findings = found[&number]["findings"].as_array().unwrap();
+        let codes: Vec<&str> = findings.iter().map(|finding| finding["code"].as_str().unwrap()).collect();
+        let is_right = match case.kind {
+            Kind::Sound => findings.iter().all(|finding| finding["severity"] == "note"),
+            Kind::Broken => codes.first() == Some(&case.code.as_str()),
+        };
+        if !is_right {
+            wrong.push(format!("{}: {codes:?}", case.line));
+        }
+        told.extend((case.kind == Kind::Broken).then_some(case.code.as_str()));
+    }
+    assert!(wrong.is_empty(), "{} of {}:\n{}", wrong.len(), cases.len(), wrong.join("\n"));
+    assert!(cases.len() > 100 && told.len() > 50, "{} cases of {} causes", cases.len(), told.len());
+}
+
+/// Of every code there is a scene: here, or in a file of its own.
+#[test]
+fn every_cause_has_its_scene() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/broken");
+    let files = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap());
+    let of_files = files.filter_map(|name| Some(name.split_once('.')?.0.to_string()));
+    let shown: BTreeSet<String> = cases().into_iter().map(|case| case.code).chain(of_files).collect();
+    let list = Place::new().gives(0, "check --codes").out;
+    let listed = list.lines().map(|line| line.split(' ').next().unwrap());
+    let without: Vec<&str> = listed.filter(|code| !shown.contains(*code)).collect();
+    assert_eq!(without, WITHOUT.map(|(code, _)| code));
+}
+
+/// Codes of which no scene can be written, or that others than `check` tell.
+const WITHOUT: [(&str, &str); 6] = [
+    ("misread-mesh", "the files are those of the course"),
+    ("not-finite", "what makes no numbers is told as that"),
+    ("all-missed", "as far as is known, something says why"),
+    ("one-color", "as far as is known, something says why"),
+    ("dialect", "it goes with others"),
+    ("mesh-file", "the readers of models tell it"),
+];

@@ -1,0 +1,146 @@
+//! Mistakes of shadows.
+
+use super::{Mistake, Values, row};
+use crate::mistakes::habits::ShadowWay;
+
+pub(super) const MISTAKES: &[Mistake] = &[
+    row("no-shadows", "shadows", "there are no shadows", "if (occluded(p, L, d)) continue", "(nothing)", |v, _| {
+        v.settings.shadows = false
+    }),
+    row(
+        "shadows-added",
+        "shadows",
+        "there are shadows, which this picture should not have",
+        "(nothing, without -shadows)",
+        "if (occluded(p, L, d)) continue",
+        |v, _| v.settings.shadows = true,
+    ),
+    row(
+        "shadows-endless",
+        "shadows",
+        "shadow rays do not end at the light: what is behind it blocks it too",
+        "occluded if hit at eps < t < distance to the light",
+        "occluded if hit at t > eps",
+        |v, _| v.habits.shadows.endless = true,
+    ),
+    row(
+        "shadows-ambient",
+        "shadows",
+        "in shadow the ambient light is missing too",
+        "color = ambient * kd; if (!occluded) color += ...",
+        "if (!occluded) color += ambient * kd + ...",
+        |v, _| v.habits.shadows.ambient_too = true,
+    ),
+    row(
+        "shadows-later",
+        "shadows",
+        "where one light is blocked, all lights after it are missing too",
+        "if (occluded) continue",
+        "if (occluded) break",
+        |v, _| v.habits.shadows.later_too = true,
+    ),
+    row(
+        "shadows-black",
+        "shadows",
+        "where one light is blocked, all light is missing, the ambient light too{, but not what mirrors and glass bring|, and what mirrors and glass bring}",
+        "if (occluded) continue",
+        "if (occluded) return black",
+        |v, all| v.habits.shadows.black = Some(all > 0.0),
+    )
+    .with(Values::Only(&[0.0, 1.0])),
+    row(
+        "shadows-weak",
+        "shadows",
+        "in its shadow a light still counts for {} of what it gives",
+        "if (occluded) continue",
+        "if (occluded) I *= {}",
+        |v, left| v.habits.shadows.left = left,
+    )
+    .with(Values::Numbers(&[0.5, 0.2])),
+    row(
+        "shadows-transparent",
+        "shadows",
+        "things of glass cast coloured shadows, or full ones where they should not",
+        "as asked for",
+        "the other way",
+        |v, _| v.settings.transparent_shadows = !v.settings.transparent_shadows,
+    ),
+    row(
+        "shadows-ambient-any",
+        "shadows",
+        "where any light is blocked the ambient light is missing too",
+        "color = ambient * kd; if (!occluded) color += ...",
+        "if (occluded) the ambient light is taken away, or never added",
+        |v, _| v.habits.shadows.ambient_of_any = true,
+    ),
+    row(
+        "shadows-of-one-light",
+        "shadows",
+        "only light {} (counted from 0) casts shadows",
+        "for each light if (occluded) continue",
+        "a shadow ray for light {} alone",
+        |v, light| {
+            if v.world.lights.len() > 1 {
+                v.habits.shadows.only_light = Some(light as usize);
+            }
+        },
+    )
+    .with(Values::Lights),
+    row(
+        "shadows-away",
+        "shadows",
+        "shadow rays go away from the light",
+        "Ray(p, L)",
+        "Ray(p, -L)",
+        |v, _| v.habits.shadows.way = ShadowWay::Away,
+    ),
+    row(
+        "shadows-along-normal",
+        "shadows",
+        "shadow rays go along the normal, not to the light",
+        "Ray(p, L)",
+        "Ray(p, N)",
+        |v, _| v.habits.shadows.way = ShadowWay::Normal,
+    ),
+    row(
+        "shadows-not-of-glass",
+        "shadows",
+        "things that let light through cast no shadow",
+        "occluded by any hit",
+        "occluded by hits that are not transparent",
+        |v, _| v.habits.shadows.no_glass = true,
+    ),
+    row(
+        "shadows-inverted",
+        "shadows",
+        "light counts where it is blocked, and not where it arrives",
+        "if (!occluded) color += ...",
+        "if (occluded) color += ...",
+        |v, _| v.habits.shadows.inverted = true,
+    ),
+    row(
+        "shadows-short",
+        "shadows",
+        "shadow rays to directional lights end at distance 1",
+        "directional: t_max = infinity",
+        "t_max = length(L) = 1",
+        |v, _| v.habits.shadows.short = true,
+    ),
+    row(
+        "shadows-highlights",
+        "shadows",
+        "highlights are there in shadow too",
+        "if (!occluded) color += diffuse + specular",
+        "color += specular; if (!occluded) color += diffuse",
+        |v, _| v.habits.shadows.highlights_left = true,
+    ),
+    row(
+        "shadows-epsilon",
+        "epsilon",
+        "the epsilon of shadow rays is far too large: {}",
+        "occluded if hit at t > 1e-4",
+        "occluded if hit at t > {}",
+        |v, epsilon| v.habits.shadows.epsilon = Some(epsilon),
+    )
+    .with(Values::Numbers(&[0.1, 0.5, 0.02, 1.0, 2.0])),
+];
