@@ -12,8 +12,8 @@ use crate::render::failure;
 use crate::{Failure, bad, output, progress};
 use durer::film::luminance_of;
 use durer::image::{Image, Transfer};
-use durer::integrator::Node;
 use durer::integrator::account::What;
+use durer::integrator::{Node, Tree};
 use durer::math::{Color, Ray, Vec3};
 use durer::render::explain::{Explanation, Line, Names, Telling, explain, explain_ray, number, ray_text};
 use durer::render::{Control, Job};
@@ -28,7 +28,7 @@ const VERSION: u32 = 1;
 /// What is explained.
 pub enum Subject {
     Pixel(Explanation),
-    Ray(Node),
+    Ray(Box<Tree>),
 }
 
 pub fn run(args: &ExplainArgs) -> Result<(), Failure> {
@@ -104,7 +104,7 @@ fn subject(args: &ExplainArgs, opened: &Opened, job: &Job, picture: Option<&Imag
             }
             let world = &opened.world;
             let light = deep(|| explain_ray(world, job, &ray, SampleId::new(job.seed, (0, 0), 0)))?;
-            return light.map(Subject::Ray).ok_or_else(|| bad("nothing is known of this ray"));
+            return light.map(|light| Subject::Ray(light.into())).ok_or_else(|| bad("nothing is known of this ray"));
         }
         (None, Some(pixel), _) => pixel,
         (None, None, Some(picture)) if args.brightest => most(picture, |x, y| luminance_of(at(picture, x, y))),
@@ -205,16 +205,18 @@ pub fn shown(line: &Line, colored: bool, transfer: Transfer) -> String {
     let indent = "  ".repeat(line.depth);
     let text = match line.adds {
         Some(adds) if line.depth > 0 => {
-            let [x, y, z] = adds.to_array().map(number);
-            let [r, g, b] = transfer.encode_pixel(adds);
-            format!("+ ({x}, {y}, {z})  [{}, alone {r} {g} {b}]  {}", percent(line.share), line.text)
+            let numbers: Vec<_> = adds.numbers().iter().map(|x| number(*x)).collect();
+            let [r, g, b] = transfer.encode_pixel(line.color);
+            format!("+ ({})  [{}, alone {r} {g} {b}]  {}", numbers.join(", "), percent(line.share), line.text)
         }
         _ => line.text.clone(),
     };
     match (colored, line.adds) {
         (false, _) => format!("{indent}{text}"),
         // Terms that add nothing, and what is only told of a term, stand back.
-        (true, None | Some(Color::ZERO)) if line.depth > 0 => format!("{indent}\x1b[2m{text}\x1b[0m"),
+        (true, adds) if line.depth > 0 && adds.is_none_or(|adds| adds.is(0.0)) => {
+            format!("{indent}\x1b[2m{text}\x1b[0m")
+        }
         (true, _) => format!("{indent}\x1b[1m{text}\x1b[0m"),
     }
 }
@@ -234,9 +236,9 @@ pub fn json(subject: &Subject, names: &Names) -> serde_json::Value {
         _ => {}
     };
     match subject {
-        Subject::Ray(light) => visit(light, &mut note),
+        Subject::Ray(light) => visit(&light.root, &mut note),
         Subject::Pixel(pixel) => {
-            pixel.samples.iter().filter_map(|s| s.light.as_ref()).for_each(|light| visit(light, &mut note));
+            pixel.samples.iter().filter_map(|s| s.light.as_ref()).for_each(|light| visit(&light.root, &mut note));
         }
     }
     let objects: serde_json::Map<_, _> = objects.into_iter().map(|i| (i.to_string(), names.object(i).into())).collect();

@@ -167,10 +167,11 @@ pub fn once(command: &RenderCommand, watched: &Watched) -> Result<(), Failure> {
                 }
                 rendered.layers.push(clean);
             }
-            output::save(&target.files(&rendered, args.display.display()?)?, args.quiet)?;
+            let display = args.display.display()?;
+            output::save(&target.files(&rendered, display)?, args.quiet)?;
             keeper.done(&part, finished);
             if finished && !args.quiet {
-                check::after_render(&opened, &job, &rendered.pictures, &rendered.statistics);
+                check::after_render(&opened, &job, &rendered.pictures, &rendered.statistics, display);
             }
         }
     }

@@ -188,8 +188,13 @@ fn options_of_light_that_make_no_sense_are_refused_and_noise_is_taken_out_beside
         let told = place.gives(2, &format!("render scene.txt {options} -o p.png")).err;
         assert!(told.contains(word), "{told}");
     }
-    let told = place.gives(2, "explain scene.txt --pixel 3,3 --size 8x8 --samples 2 --color spectral").err;
-    assert!(told.contains("--color rgb"), "{told}");
+    let explain = "explain scene.txt --pixel 3,3 --size 8x8 --samples 2 --color spectral";
+    let told = place.gives(0, explain).out;
+    assert!(told.contains(" nm; the eye makes of it") && told.contains("red: ("), "{told}");
+    let told: serde_json::Value = serde_json::from_str(&place.gives(0, &format!("{explain} --json")).out).unwrap();
+    let light = &told["pixel"]["samples"][0]["light"];
+    let (value, observer) = (light["value"].as_array().unwrap(), light["waves"]["observer"].as_array().unwrap());
+    assert_eq!((value.len(), observer.len(), light["waves"]["nm"].as_array().unwrap().len()), (4, 3, 4), "{light}");
     let of = |options: &str| {
         let told = place.gives(0, &format!("render scene.txt --size 24x18 --samples 16 --hash --restart -q {options}"));
         (told.out, std::fs::read(place.path("p.png")).unwrap())
@@ -226,6 +231,33 @@ Group {{ MaterialIndex 0 Plane {{ normal 0 1 0 offset 0 }} MaterialIndex 1 Disc 
             let lux: f64 = row.split(',').nth(6).unwrap().parse().unwrap();
             assert!((lux / (20.0 * std::f64::consts::PI) - 1.0).abs() < 0.01, "{lamp} {color}: {row}");
         }
+    }
+    // A small lamp and lights without extent, as strong and of the same spectrum, show a paint in the same colour.
+    let shown = |lights: &str, things: &str| -> Vec<f64> {
+        place.put(
+            "t.txt",
+            format!(
+                "PerspectiveCamera {{ center 0 1 6 direction 0 -1 -6 up 0 1 0 angle 0.1 }} Background {{ color 0 0 0 }}
+Lights {{ {lights} }} Materials {{ PrincipledMaterial {{ baseSpectrum paints.csv:red specularWeight 0 }}
+  PrincipledMaterial {{ baseColor 0 0 0 specularWeight 0 emissionLuminance 100 emissionSpectrum lamp.csv }} }}
+Group {{ MaterialIndex 0 Plane {{ normal 0 1 0 offset 0 }} MaterialIndex 1 {things} }}"
+            ),
+        );
+        let explain = "explain t.txt --pixel 0,0 --size 1x1 --samples 512 --bounces 0 --color spectral --json";
+        let told: serde_json::Value = serde_json::from_str(&place.gives(0, explain).out).unwrap();
+        told["pixel"]["color"].as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).collect()
+    };
+    let wanted = shown("", "Disc { center 0 2 0 normal 0 -1 0 radius 0.02 }");
+    assert!(wanted[0] > 3.0 * wanted[1], "{wanted:?}");
+    let color = "color 0.04 0.04 0.04 spectrum lamp.csv";
+    for light in [
+        format!("PointLight {{ position 0 2 0 {color} attenuation 0 0 1 }}"),
+        format!("SpotLight {{ position 0 2 0 direction 0 -1 0 angle 30 innerAngle 20 {color} }}"),
+        "DirectionalLight { direction 0 -1 0 color 0.01 0.01 0.01 spectrum lamp.csv }".into(),
+    ] {
+        let found = shown(&light, "");
+        let near = |(a, b): (&f64, &f64)| (a - b).abs() < 0.01 * wanted[0];
+        assert!(found.iter().zip(&wanted).all(near), "{light}: {found:?}, and not {wanted:?}");
     }
     let render = "render s.txt -o p.png --size 8x8 --samples 1 -q";
     for (base, lamp, sky, words) in [

@@ -672,6 +672,8 @@ class DirectionalLight(Light):
     color: three numbers; must be given. Its colour and strength.
 
     spread: number, 0 or more. Half the angle in which it is seen, in degrees, for soft shadows under a path tracer: 0.27 for the sun.
+
+    spectrum: path. Its measured spectrum, which `color` multiplies: a file (`lamp.csv`, `lamps.csv:column`) or the name of an illuminant (A, D65, F2, 2700K). Under `--color spectral` it is carried as such, else as its colour.
     """
 
     def __init__(
@@ -680,11 +682,13 @@ class DirectionalLight(Light):
         direction: npt.ArrayLike,
         color: npt.ArrayLike,
         spread: Optional[float] = None,
+        spectrum: Optional[str] = None,
     ) -> None:
         super().__init__("DirectionalLight", [
             ("direction", direction),
             ("color", color),
             ("spread", spread),
+            ("spectrum", spectrum),
         ])
 
 
@@ -698,6 +702,8 @@ class PointLight(Light):
     attenuation: three numbers. How it fades: the divisor's constant, its factor of distance and its factor of distance squared.
 
     falloff: number, 0 or more. How it fades: the divisor's factor of distance squared; what is added to it depends on the dialect.
+
+    spectrum: path. Its measured spectrum, which `color` multiplies: a file (`lamp.csv`, `lamps.csv:column`) or the name of an illuminant (A, D65, F2, 2700K). Under `--color spectral` it is carried as such, else as its colour.
     """
 
     def __init__(
@@ -707,12 +713,14 @@ class PointLight(Light):
         color: npt.ArrayLike,
         attenuation: Optional[npt.ArrayLike] = None,
         falloff: Optional[float] = None,
+        spectrum: Optional[str] = None,
     ) -> None:
         super().__init__("PointLight", [
             ("position", position),
             ("color", color),
             ("attenuation", attenuation),
             ("falloff", falloff),
+            ("spectrum", spectrum),
         ])
 
 
@@ -730,6 +738,8 @@ class SpotLight(Light):
     inner_angle: number, 0 or more; 0 where it is not given. Degrees from the middle to where it begins to fade; not more than `angle`.
 
     fade: `squared`, `smooth`; squared where it is not given. How it fades between the two, by the share s of the cosine's way: `squared` is s^2, `smooth` s^2 (3 - 2 s).
+
+    spectrum: path. Its measured spectrum, which `color` multiplies: a file (`lamp.csv`, `lamps.csv:column`) or the name of an illuminant (A, D65, F2, 2700K). Under `--color spectral` it is carried as such, else as its colour.
     """
 
     def __init__(
@@ -741,6 +751,7 @@ class SpotLight(Light):
         angle: Optional[float] = None,
         inner_angle: Optional[float] = None,
         fade: Optional[Literal["squared", "smooth"]] = None,
+        spectrum: Optional[str] = None,
     ) -> None:
         super().__init__("SpotLight", [
             ("position", position),
@@ -749,6 +760,7 @@ class SpotLight(Light):
             ("angle", angle),
             ("innerAngle", inner_angle),
             ("fade", fade),
+            ("spectrum", spectrum),
         ])
 
 
@@ -764,6 +776,8 @@ class PhotometricLight(Light):
     front: three numbers, not 0 0 0; 1 0 0 where it is not given. Where its horizontal angle 0 points; made perpendicular to `direction`.
 
     color: three numbers; 1 1 1 where it is not given. What multiplies what was measured, by colour.
+
+    spectrum: path. Its measured spectrum, which `color` multiplies: a file (`lamp.csv`, `lamps.csv:column`) or the name of an illuminant (A, D65, F2, 2700K). Under `--color spectral` it is carried as such, else as its colour.
     """
 
     def __init__(
@@ -774,6 +788,7 @@ class PhotometricLight(Light):
         direction: Optional[npt.ArrayLike] = None,
         front: Optional[npt.ArrayLike] = None,
         color: Optional[npt.ArrayLike] = None,
+        spectrum: Optional[str] = None,
     ) -> None:
         super().__init__("PhotometricLight", [
             ("position", position),
@@ -781,6 +796,7 @@ class PhotometricLight(Light):
             ("direction", direction),
             ("front", front),
             ("color", color),
+            ("spectrum", spectrum),
         ])
 
 

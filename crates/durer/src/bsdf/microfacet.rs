@@ -28,6 +28,14 @@ impl Ggx {
         Ggx { alpha: Vec2::new(ax.min(1.0), rest * ax) }
     }
 
+    /// The roughness, the anisotropy and the turn, in turns, that stand for an alpha along u and along v.
+    pub fn parameters(alpha: [f32; 2]) -> [f32; 3] {
+        let [u, v] = alpha.map(|alpha| alpha.clamp(0.0, 1.0));
+        let mean = (0.5 * (u * u + v * v)).sqrt();
+        let rest = if u == v { 1.0 } else { u.min(v) / u.max(v) };
+        [mean.sqrt(), 1.0 - rest, if v > u { 0.25 } else { 0.0 }]
+    }
+
     /// Whether it is a mirror, as far as numbers can tell.
     pub fn is_smooth(&self) -> bool {
         self.alpha.max_element() < SMOOTH
@@ -51,9 +59,9 @@ impl Ggx {
         if slope == 0.0 {
             return 0.0;
         }
-        // (sqrt(1 + s) - 1) / 2, without cancellation.
+        // (sqrt(1 + s) - 1) / 2, without cancellation. Along the surface all is hidden.
         let s = slope / z2;
-        0.5 * s / ((1.0 + s).sqrt() + 1.0)
+        if s.is_finite() { 0.5 * s / ((1.0 + s).sqrt() + 1.0) } else { f32::INFINITY }
     }
 
     /// The share of normals that is seen from a direction.

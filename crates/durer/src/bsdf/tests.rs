@@ -33,6 +33,21 @@ fn reflecting_lobes_are_the_same_both_ways() {
     }
 }
 
+#[test]
+fn lobes_have_values_along_the_surface_too() {
+    let heights = [0.0, -0.0, 1e-38, -1e-38, 1e-30, -1e-30, 1e-12, -1e-12, 1e-6, -1e-6];
+    let nearly_flat = |z: f32, turn: f32| warp::polar(0.0, turn).with_z(z);
+    for (name, lobe) in broad() {
+        for wo in [nearly_flat(1e-6, 0.0), warp::polar(0.3, 0.0), Vec3::Z] {
+            for (z, turn) in heights.iter().flat_map(|&z| [0.0, 0.2, 0.5].map(|turn| (z, turn))) {
+                let wi = nearly_flat(z, turn);
+                let (value, density) = (lobe.eval(wo, wi), lobe.pdf(wo, wi));
+                assert!(value.is_finite() && density.is_finite(), "{name}, {wo} {wi}: {value} {density}");
+            }
+        }
+    }
+}
+
 /// How far from white materials are at most, over roughness and angle, beyond three standard errors.
 fn assert_white(materials: Vec<(&str, PrincipledMaterial)>, roughnesses: &[f32], most: f64) {
     for (name, material) in materials {

@@ -99,6 +99,12 @@ pub fn compile(
     let fog = scene.fog.as_ref().and_then(|fog| media::fog(fog, &mut loader, &mut own));
     let (mut lights, ambient) = lights(scene, rules, &mut own);
     lights.extend(sun(&scene.background));
+    let mut measured = |light: &mut Light| {
+        let curve = light.spectrum().and_then(|name| loader.illuminant(name, &mut own))?;
+        light.tint(curve.color());
+        Some(curve)
+    };
+    let illuminants = lights.iter_mut().map(&mut measured).collect();
     let profiles = lights.iter().map(|light| loader.profile(light, &mut own)).collect();
     // Numbers that JSON cannot tell apart, those that are not finite, are in no scene and no rules.
     let digest = loader.resources.source.digest(&serde_json::to_vec(&(scene, rules)).unwrap_or_default());
@@ -116,6 +122,7 @@ pub fn compile(
         environment,
         ambient,
         profiles,
+        illuminants,
         lights,
         materials: compiled,
         textures,
@@ -209,7 +216,7 @@ fn sun(background: &scene::Background) -> Option<Light> {
     let way = Vec3::new(cos * way.x + sin * way.z, way.y.max(0.0), cos * way.z - sin * way.x);
     // A light's colour is what a white matte surface shows: illuminance over pi.
     let color = scale * sky.sun() / std::f32::consts::PI;
-    Some(DirectionalLight { direction: -way, color, spread: Some(SUN_RADIUS) }.into())
+    Some(DirectionalLight { direction: -way, color, spread: Some(SUN_RADIUS), spectrum: None }.into())
 }
 
 /// The lights, and the ambient light that goes with them.

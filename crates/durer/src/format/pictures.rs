@@ -29,8 +29,12 @@ impl Pictures<'_> {
 
     /// A file as a picture.
     pub fn image(&self, name: &str, at: Span) -> Option<Image> {
+        self.decoded(name, at, image::decode_srgb)
+    }
+
+    fn decoded(&self, name: &str, at: Span, decode: fn(u8) -> f32) -> Option<Image> {
         let bytes = self.bytes(name, at)?;
-        let read = Encoded::open(&bytes, name).and_then(|encoded| encoded.read(MEMORY, image::decode_srgb));
+        let read = Encoded::open(&bytes, name).and_then(|encoded| encoded.read(MEMORY, decode));
         read.map_err(|error| self.complain(name, at, &error)).ok()
     }
 
@@ -58,11 +62,18 @@ impl Pictures<'_> {
         }
     }
 
-    /// A picture of numbers, made of another by what its texels' means become. Numbers have no curve.
-    pub fn changed(&self, picture: &Picture, at: Span, change: impl Fn(f32) -> f32) -> Option<Picture> {
+    /// A picture of numbers, made of another by what its texels' means become; `decode` is the other's curve. Numbers have
+    /// none.
+    pub fn changed(
+        &self,
+        picture: &Picture,
+        at: Span,
+        decode: fn(u8) -> f32,
+        change: impl Fn(f32) -> f32,
+    ) -> Option<Picture> {
         let (path, image) = match &picture.bytes {
-            PictureBytes::File(path) => (path, self.image(path, at)?),
-            PictureBytes::Here(path, bytes) => (path, image::read_srgb(bytes, path).ok()?),
+            PictureBytes::File(path) => (path, self.decoded(path, at, decode)?),
+            PictureBytes::Here(path, bytes) => (path, Encoded::open(bytes, path).ok()?.read(MEMORY, decode).ok()?),
         };
         let texel = |p: &Color| Color::splat(change((p.x + p.y + p.z) / 3.0).clamp(0.0, 1.0));
         let image = Image::from_pixels(image.width, image.height, image.pixels.iter().map(texel).collect()).ok()?;

@@ -5,10 +5,12 @@
 //!
 //! value = scale · (sum of the children's factor · value, in order),
 //!
-//! in the arithmetic of the picture: see [`Node::sum`]. So the tree adds up to the colour, and not just nearly.
+//! in the arithmetic of the picture: see [`Node::sum`]. So the tree adds up to the colour, and not just nearly. Where light is
+//! made of wavelengths, terms are the light at those of the sample, and [`Tree::sum`] is the colour that the eye makes of it.
 
 use crate::bvh::{RayCount, TraversalCounter, TraversalStats};
 use crate::math::{Color, Ray, Ray64, Vec2, Vec3};
+use crate::spectrum::{Lanes, Spectrum};
 use crate::world::HighlightModel;
 use crate::world::emitters::LightId;
 use serde::Serialize;
@@ -18,17 +20,111 @@ pub trait Witness: TraversalCounter {
     /// Whether it wants to be told of terms that come to nothing too.
     const LISTENS: bool = false;
 
+    /// What the lanes of all terms are; where it is not told, they are colours.
+    fn lanes(&mut self, _lanes: &Lanes) {}
     /// A term begins.
     fn begin(&mut self, _what: impl FnOnce() -> What) {}
     /// The ray of the term that was begun last hits something.
     fn hit(&mut self, _hit: impl FnOnce() -> Struck) {}
     /// The term that was begun last is done.
-    fn end(&mut self, _factor: Color, _scale: Color, _value: Color) {}
+    fn end(&mut self, _factor: impl Into<TermValue>, _scale: impl Into<TermValue>, _value: impl Into<TermValue>) {}
 }
 
 impl Witness for () {}
 impl Witness for RayCount {}
 impl Witness for TraversalStats {}
+
+/// What a term is: a colour, or light at four wavelengths.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum TermValue {
+    /// Red, green and blue.
+    Color(Color),
+    /// At the wavelengths of the sample.
+    Waves(Spectrum),
+}
+
+impl From<Color> for TermValue {
+    fn from(color: Color) -> Self {
+        TermValue::Color(color)
+    }
+}
+
+impl TermValue {
+    /// Light in the lanes of a path.
+    pub fn of(lanes: &Lanes, light: Spectrum) -> Self {
+        match lanes {
+            Lanes::Rgb => TermValue::Color(light.truncate()),
+            Lanes::Waves(_) => TermValue::Waves(light),
+        }
+    }
+
+    /// As the lanes of a path have it.
+    pub fn spectrum(self) -> Spectrum {
+        match self {
+            TermValue::Color(color) => color.extend(color.y),
+            TermValue::Waves(light) => light,
+        }
+    }
+
+    /// Its numbers, by lane.
+    pub fn numbers(&self) -> &[f32] {
+        match self {
+            TermValue::Color(color) => color.as_ref(),
+            TermValue::Waves(light) => light.as_ref(),
+        }
+    }
+
+    /// Whether all of it is this number.
+    pub fn is(&self, number: f32) -> bool {
+        self.numbers().iter().all(|x| *x == number)
+    }
+
+    fn with(self, other: TermValue, apply: impl FnOnce(Spectrum, Spectrum) -> Spectrum) -> Self {
+        let both = apply(self.spectrum(), other.spectrum());
+        match (self, other) {
+            (TermValue::Color(_), TermValue::Color(_)) => TermValue::Color(both.truncate()),
+            _ => TermValue::Waves(both),
+        }
+    }
+}
+
+impl std::ops::Mul for TermValue {
+    type Output = TermValue;
+    fn mul(self, other: TermValue) -> TermValue {
+        self.with(other, |a, b| a * b)
+    }
+}
+
+impl std::ops::Add for TermValue {
+    type Output = TermValue;
+    fn add(self, other: TermValue) -> TermValue {
+        self.with(other, |a, b| a + b)
+    }
+}
+
+/// All light along a ray.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Tree {
+    /// The term that all others belong to.
+    #[serde(flatten)]
+    pub root: Node,
+    /// What its terms are; in JSON only if they are light at wavelengths.
+    #[serde(rename = "waves", skip_serializing_if = "Lanes::is_rgb")]
+    pub lanes: Lanes,
+}
+
+impl Tree {
+    /// The colour that a term is.
+    pub fn color(&self, light: TermValue) -> Color {
+        self.lanes.color(light.spectrum())
+    }
+
+    /// The ray's colour, computed anew from the terms.
+    pub fn sum(&self) -> Color {
+        self.color(self.root.sum())
+    }
+}
 
 /// A term: what it is, how it counts, and of what it is made.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -36,31 +132,28 @@ pub struct Node {
     /// What it is.
     pub what: What,
     /// What it is multiplied by in the node above.
-    pub factor: Color,
+    pub factor: TermValue,
     /// What the sum of the terms below is multiplied by.
-    pub scale: Color,
+    pub scale: TermValue,
     /// What comes of it.
-    pub value: Color,
+    pub value: TermValue,
     /// The terms that it is the sum of, in the order of addition; none where `what` itself says how it is computed.
     pub terms: Vec<Node>,
 }
 
 impl Node {
     /// What the node adds to the one above.
-    pub fn contribution(&self) -> Color {
+    pub fn contribution(&self) -> TermValue {
         self.factor * self.value
     }
 
     /// The sum that `value` is, computed anew from the terms; `value` itself where there are none.
-    pub fn sum(&self) -> Color {
+    pub fn sum(&self) -> TermValue {
         if self.terms.is_empty() {
             return self.value;
         }
-        let mut sum = Color::ZERO;
-        for term in &self.terms {
-            sum += term.contribution();
-        }
-        sum * self.scale
+        let none = TermValue::Color(Color::ZERO);
+        self.terms.iter().fold(none, |sum, term| sum + term.contribution()) * self.scale
     }
 }
 
@@ -155,7 +248,7 @@ pub struct Shadow {
     /// Number of the first object on it and the `t` of its hit; none where the light is free.
     pub blocker: Option<(u32, f32)>,
     /// The share of the light that comes through.
-    pub share: Color,
+    pub share: TermValue,
 }
 
 /// One kind of term.
@@ -194,7 +287,7 @@ pub enum What {
         /// The density per solid angle of the direction; 0 for a light without extent, whose density counts as 1.
         pdf: f32,
         /// The surface's value times the cosine.
-        bsdf: Color,
+        bsdf: TermValue,
         /// Its weight beside that of being met by chance, by multiple importance sampling.
         mis: f32,
         /// The shadow ray; none where shadows are off.
@@ -206,6 +299,11 @@ pub enum What {
         radius: f32,
         /// How many there are.
         photons: usize,
+    },
+    /// What glass scatters that spreads colours: the other wavelengths go elsewhere, and the first counts for all four, by the factor.
+    OneWavelength {
+        /// That wavelength in nanometres.
+        nm: f32,
     },
     /// The background or sky, where a ray hits nothing.
     Sky,
@@ -278,12 +376,14 @@ pub struct Account {
     open: Vec<Node>,
     /// The term that all others belong to.
     done: Option<Node>,
+    lanes: Lanes,
 }
 
 impl Account {
     /// The tree; `None` if nothing was told.
-    pub fn into_tree(self) -> Option<Node> {
-        self.done
+    pub fn into_tree(self) -> Option<Tree> {
+        let lanes = self.lanes;
+        self.done.map(|root| Tree { root, lanes })
     }
 }
 
@@ -294,8 +394,13 @@ impl TraversalCounter for Account {
 impl Witness for Account {
     const LISTENS: bool = true;
 
+    fn lanes(&mut self, lanes: &Lanes) {
+        self.lanes = *lanes;
+    }
+
     fn begin(&mut self, what: impl FnOnce() -> What) {
-        let node = Node { what: what(), factor: Color::ONE, scale: Color::ONE, value: Color::ZERO, terms: Vec::new() };
+        let [one, zero] = [Color::ONE, Color::ZERO].map(TermValue::Color);
+        let node = Node { what: what(), factor: one, scale: one, value: zero, terms: Vec::new() };
         self.open.push(node);
     }
 
@@ -305,9 +410,9 @@ impl Witness for Account {
         }
     }
 
-    fn end(&mut self, factor: Color, scale: Color, value: Color) {
+    fn end(&mut self, factor: impl Into<TermValue>, scale: impl Into<TermValue>, value: impl Into<TermValue>) {
         let Some(node) = self.open.pop() else { return };
-        let node = Node { factor, scale, value, ..node };
+        let node = Node { factor: factor.into(), scale: scale.into(), value: value.into(), ..node };
         match self.open.last_mut() {
             Some(above) => above.terms.push(node),
             None => self.done = Some(node),

@@ -11,7 +11,7 @@ use crate::math::{Color, Ray};
 use crate::sampler::SampleId;
 use crate::spectrum::ColorMode;
 use crate::world::World;
-pub use account::{Account, Node, Witness};
+pub use account::{Account, Node, Tree, Witness};
 pub use ao::AmbientOcclusion;
 pub use path::{Path, Photons};
 use serde::{Deserialize, Serialize};

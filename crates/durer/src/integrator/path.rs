@@ -4,7 +4,7 @@
 //! light, they are weighed by how well they find it (Veach, *Robust Monte Carlo Methods for Light Transport Simulation*, 1997,
 //! chapter 9: the power heuristic). Long paths end at random, in proportion to what they are worth.
 
-use super::account::{Bounce, RayKind, Shadow, What, Witness};
+use super::account::{Bounce, RayKind, Shadow, TermValue, What, Witness};
 use super::media::{Media, Passage};
 use super::spawn::from_surface;
 use super::whitted::struck;
@@ -66,6 +66,11 @@ impl Sample {
     /// The random numbers of a bounce.
     fn bounce(&self, depth: u32) -> SampleId {
         self.id.at(depth * USES)
+    }
+
+    /// Light, as a witness is told of it.
+    fn told(&self, light: Spectrum) -> TermValue {
+        TermValue::of(&self.lanes, light)
     }
 }
 
@@ -130,10 +135,11 @@ impl<'w> Path<'w> {
     /// The light that comes along a camera ray, by the random numbers of a sample.
     pub fn radiance<T: Witness>(&self, ray: &Ray, id: SampleId, tally: &mut T) -> Color {
         let sample = self.sample(id);
+        tally.lanes(&sample.lanes);
         tally.begin(|| What::Ray { from: RayKind::Camera, ray: ray.into(), weight: 1.0, hit: None, bounce: None });
         let (sum, scale) = self.trace(&ray.into(), State::default(), &sample, tally);
         let light = sum * scale;
-        tally.end(Color::ONE, scale.truncate(), light.truncate());
+        tally.end(sample.told(Spectrum::ONE), sample.told(scale), sample.told(light));
         sample.lanes.color(light)
     }
 
@@ -176,12 +182,12 @@ impl<'w> Path<'w> {
                 let carried = self.world.environment.is_some();
                 let weight = self.weight(&state, carried, |_| self.world.emitters.pdf_of_sky(self.world, dir));
                 tally.begin(|| What::Sky);
-                tally.end(Color::splat(weight), Color::ONE, sky.truncate());
+                tally.end(sample.told(Spectrum::splat(weight)), sample.told(Spectrum::ONE), sample.told(sky));
                 weight * sky
             }
             End::Medium(point, dir, phase) => {
                 let place = Place::Medium(point, dir, phase);
-                self.scattered(&Vertex { place, state: &state }, sample, tally)
+                self.scattered(Spectrum::ZERO, &Vertex { place, state: &state }, sample, tally)
             }
             End::Surface(met) => self.met(&met, state, sample, tally),
         };
@@ -278,11 +284,11 @@ impl<'w> Path<'w> {
         let mut sum = Spectrum::ZERO;
         let emitted = self.world.emission(hit, surface, met.inside());
         if emitted != Color::ZERO {
-            let emitted = self.world.light(&sample.lanes, emitted, Some(self.world.material(hit)));
+            let emitted = sample.lanes.light_of(emitted, self.world.own_illuminant(self.world.material(hit)));
             let carried = self.world.emitters.chooses(hit);
             let weight = self.weight(&state, carried, |from| self.pdf_of_hit(ray, hit, from));
             tally.begin(|| What::Emission { mis: weight });
-            tally.end(Color::splat(weight), Color::ONE, emitted.truncate());
+            tally.end(sample.told(Spectrum::splat(weight)), sample.told(Spectrum::ONE), sample.told(emitted));
             sum += weight * emitted;
         }
         if shading.bsdf.is_black() {
@@ -291,27 +297,32 @@ impl<'w> Path<'w> {
         let kept = self.kept(met, &mut state, sample);
         state.by_target = self.photons.as_ref().is_some_and(|photons| photons.reaches(hit.object));
         let place = Place::Surface(surface, &shading, met.passage.as_ref());
-        sum + kept * self.scattered(&Vertex { place, state: &state }, sample, tally)
+        let vertex = Vertex { place, state: &state };
+        let Some((nm, kept)) = kept else { return self.scattered(sum, &vertex, sample, tally) };
+        tally.begin(|| What::OneWavelength { nm });
+        let light = self.scattered(Spectrum::ZERO, &vertex, sample, tally);
+        tally.end(sample.told(kept), sample.told(Spectrum::ONE), sample.told(light));
+        sum + kept * light
     }
 
-    /// What is left of light where colours are spread: other wavelengths are bent otherwise, and the first stands for all.
-    fn kept(&self, met: &Met, state: &mut State, sample: &Sample) -> Spectrum {
-        if state.alone || sample.lanes.hero().is_none() || !self.world.disperses(&met.hit, &met.surface) {
-            return Spectrum::ONE;
-        }
+    /// The wavelength that is left where colours are spread, and what is left of light: other wavelengths are bent otherwise, and the
+    /// first stands for all.
+    fn kept(&self, met: &Met, state: &mut State, sample: &Sample) -> Option<(f32, Spectrum)> {
+        let nm = sample.lanes.hero().filter(|_| !state.alone && self.world.disperses(&met.hit, &met.surface))?;
         let kept = Spectrum::X * 4.0;
         (state.throughput, state.alone) = (state.throughput * kept, true);
-        kept
+        Some((nm, kept))
     }
 
-    /// The light that a point scatters against the ray.
-    fn scattered<T: Witness>(&self, vertex: &Vertex, sample: &Sample, tally: &mut T) -> Spectrum {
+    /// A sum and the light that a point scatters against the ray, added in the order in which a witness hears of it.
+    fn scattered<T: Witness>(&self, sum: Spectrum, vertex: &Vertex, sample: &Sample, tally: &mut T) -> Spectrum {
         if vertex.state.depth > self.settings.bounces || self.is_cancelled() {
-            return Spectrum::ZERO;
+            return sum;
         }
-        let mut sum = Spectrum::ZERO;
+        let mut sum = sum;
         if vertex.place.is_broad() {
-            sum += self.direct(vertex, sample, tally) + self.caustic(vertex, sample, tally);
+            sum += self.direct(vertex, sample, tally);
+            sum += self.caustic(vertex, sample, tally);
         }
         sum + self.indirect(vertex, sample, tally)
     }
@@ -357,13 +368,12 @@ impl<'w> Path<'w> {
             distance: light.reach,
             choice: light.choice,
             pdf: light.pdf,
-            bsdf: value.truncate(),
+            bsdf: sample.told(value),
             mis: weight,
-            shadow: self.settings.shadows.then(|| self.shadow(place, &light, visible)),
+            shadow: self.settings.shadows.then(|| self.shadow(place, &light, sample.told(visible))),
         });
-        let material = light.light.object().map(|object| world.objects[object as usize].material);
-        let radiance = world.light(&sample.lanes, light.radiance, material);
-        tally.end(factor.truncate(), Color::ONE, radiance.truncate());
+        let radiance = sample.lanes.light_of(light.radiance, world.illuminant(light.light));
+        tally.end(sample.told(factor), sample.told(Spectrum::ONE), sample.told(radiance));
         factor * radiance
     }
 
@@ -376,7 +386,7 @@ impl<'w> Path<'w> {
         let (light, photons) = map.light(surface, shading, most);
         if photons > 0 {
             tally.begin(|| What::Photons { radius: map.radius(), photons });
-            tally.end(Color::ONE, Color::ONE, light.truncate());
+            tally.end(sample.told(Spectrum::ONE), sample.told(Spectrum::ONE), sample.told(light));
         }
         light
     }
@@ -428,7 +438,7 @@ impl<'w> Path<'w> {
         let (sum, scale) = self.trace(&ray, below, sample, tally);
         let scale = scale * self.clamped(sum * scale * weight * state.throughput, indirect);
         let light = sum * scale;
-        tally.end(weight.truncate(), scale.truncate(), light.truncate());
+        tally.end(sample.told(weight), sample.told(scale), sample.told(light));
         weight * light
     }
 
@@ -484,10 +494,10 @@ impl<'w> Path<'w> {
     }
 
     /// What a witness is told of a shadow ray.
-    fn shadow(&self, place: &Place, light: &LightSample, share: Spectrum) -> Shadow {
+    fn shadow(&self, place: &Place, light: &LightSample, share: TermValue) -> Shadow {
         let ray = place.shadow_ray(light);
         let blocker = self.world.closest(&ray, &mut ()).map(|hit| (hit.object, hit.t));
-        Shadow { ray: (&ray).into(), blocker, share: share.truncate() }
+        Shadow { ray: (&ray).into(), blocker, share }
     }
 }
 

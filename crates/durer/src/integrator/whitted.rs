@@ -160,7 +160,7 @@ impl Whitted<'_> {
     fn shadow(&self, surface: &Surface, seen: &Illumination, share: Color) -> Shadow {
         let ray = self.shadow_ray(surface, seen);
         let blocker = self.world.closest(&ray, &mut ()).map(|hit| (hit.object, hit.t));
-        Shadow { ray: (&ray).into(), blocker, share }
+        Shadow { ray: (&ray).into(), blocker, share: share.into() }
     }
 
     fn shadow_ray(&self, surface: &Surface, seen: &Illumination) -> Ray64 {

@@ -94,6 +94,18 @@ macro_rules! delegate {
                 match self { $(Light::$variant(l) => l.place(),)+ }
             }
         }
+
+        impl Light {
+            /// Multiplies its colour.
+            pub fn tint(&mut self, by: Color) {
+                match self { $(Light::$variant(l) => l.color *= by,)+ }
+            }
+
+            /// Its spectrum, if that was measured.
+            pub fn spectrum(&self) -> Option<&FileName> {
+                match self { $(Light::$variant(l) => l.spectrum.as_ref(),)+ }
+            }
+        }
     };
 }
 delegate!(Directional, Point, Spot, Photometric);

@@ -1,7 +1,7 @@
 //! A light at a point that shines into a cone.
 
 use super::{Emitter, Illumination};
-use crate::describe::Rule;
+use crate::describe::{FileName, Rule};
 use crate::dialect::{Rules, set};
 use crate::math::{Color, Vec3, fp};
 use crate::{described, described_words};
@@ -28,6 +28,9 @@ described! {
         inner_angle: f32 = 0.0, optional, Rule::NonNegative, ["innerAngle" in set::DURER];
         /// How it fades between the two, by the share s of the cosine's way: `squared` is s^2, `smooth` s^2 (3 - 2 s).
         fade: Fade = Fade::Squared, optional, Rule::Any, ["fade" in set::DURER];
+        /// Its measured spectrum, which `color` multiplies: a file (`lamp.csv`, `lamps.csv:column`) or the name of an illuminant
+        /// (A, D65, F2, 2700K). Under `--color spectral` it is carried as such, else as its colour.
+        spectrum: Option<FileName> = None, optional, Rule::Any, ["spectrum" in set::DURER];
     }
 }
 

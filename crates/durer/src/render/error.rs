@@ -22,9 +22,6 @@ pub enum RenderError {
     /// A diagram of samples keeps them, and has not the memory for so many.
     #[error("a diagram keeps all samples, and {0} are too many: at most {MOST_KEPT}")]
     TooManySamples(u64),
-    /// Terms of a sum are colours.
-    #[error("light made of wavelengths cannot be explained: take --color rgb")]
-    SpectralTerms,
     /// A diagram cannot be made as asked for.
     #[error("{0}")]
     Diagram(String),

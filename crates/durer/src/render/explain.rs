@@ -12,10 +12,9 @@ use crate::camera::Raster;
 use crate::dialect::Compat;
 use crate::film::Film;
 use crate::film::aov::Aov;
-use crate::integrator::{Account, Integrator, Node};
+use crate::integrator::{Account, Integrator, Tree};
 use crate::math::{Color, Ray, Vec2, Vec3};
 use crate::sampler::SampleId;
-use crate::spectrum::ColorMode;
 use crate::world::{Material, World};
 use serde::Serialize;
 use std::sync::atomic::AtomicBool;
@@ -66,7 +65,7 @@ pub struct SampleAccount {
     /// Its weight in the pixel, not divided by the sum of all.
     pub weight: f32,
     /// The tree of its light; `null` in JSON where the camera sees nothing.
-    pub light: Option<Node>,
+    pub light: Option<Tree>,
 }
 
 impl Explanation {
@@ -94,11 +93,11 @@ impl Explanation {
 }
 
 /// The tree of the light along any ray, by the random numbers of a sample.
-pub fn explain_ray(world: &World, job: &Job, ray: &Ray, id: SampleId) -> Option<Node> {
+pub fn explain_ray(world: &World, job: &Job, ray: &Ray, id: SampleId) -> Option<Tree> {
     told(&Integrator::new(world, job.method, job.settings, job.seed, None), ray, id)
 }
 
-fn told(integrator: &Integrator, ray: &Ray, id: SampleId) -> Option<Node> {
+fn told(integrator: &Integrator, ray: &Ray, id: SampleId) -> Option<Tree> {
     let mut account = Account::default();
     integrator.radiance(ray, id, &mut account);
     account.into_tree()
@@ -108,16 +107,13 @@ fn told(integrator: &Integrator, ray: &Ray, id: SampleId) -> Option<Node> {
 ///
 /// # Errors
 ///
-/// The pixel does not lie in the picture; light is made of wavelengths; [`RenderError`] where samples are counted until noise is low enough.
+/// The pixel does not lie in the picture; [`RenderError`] where samples are counted until noise is low enough.
 pub fn explain(world: &World, job: &Job, x: u32, y: u32) -> Result<Explanation, RenderError> {
     if x >= job.width || y >= job.height {
         return Err(RenderError::CropOutside(job.width, job.height));
     }
     let (stop, mut stale_texels) = (AtomicBool::new(false), None);
     let source = Samples::without_habits(world, job, &stop);
-    if job.method.color_mode() == ColorMode::Spectral {
-        return Err(RenderError::SpectralTerms);
-    }
     let integrator = Integrator::new(world, job.method, job.settings, job.seed, None);
     let account = |of, sample, aim: Aim| {
         let id = SampleId::new(job.seed, of, sample);

@@ -12,6 +12,11 @@ pub fn points(scene: &Scene, found: &mut dyn FnMut(DVec3)) {
     }
 }
 
+/// The same of one object, in its own space.
+pub fn of(scene: &Scene, object: &Object, found: &mut dyn FnMut(DVec3)) {
+    visit(scene, object, DAffine3::IDENTITY, found);
+}
+
 fn visit(scene: &Scene, object: &Object, to_world: DAffine3, found: &mut dyn FnMut(DVec3)) {
     let mut offer = |p: Vec3| found(to_world.transform_point3(p.as_dvec3()));
     match &object.node {

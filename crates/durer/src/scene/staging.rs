@@ -189,7 +189,7 @@ impl Staging {
         let right = forward.cross(sides.up);
         let from = |x: f64, y: f64, z: f64| -(x * right + y * sides.up - z * forward).normalize().as_vec3();
         let light = |direction: Vec3, color: Vec3| Spanned {
-            value: Light::from(DirectionalLight { direction, color, spread: None }),
+            value: Light::from(DirectionalLight { direction, color, ..DirectionalLight::default() }),
             span: Span::default(),
         };
         let (lights, ambient, sky, ground) = match studio {

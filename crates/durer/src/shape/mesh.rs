@@ -271,7 +271,9 @@ impl Mesh {
         if let Some(corners) = attribute(&self.data.triangles, &self.data.tangents, part).filter(|_| !second) {
             let [a, b, c] = corners.map(|[x, y, z, _]| Vec3::new(x, y, z));
             let tangent = barycentric.x * a + barycentric.y * b + barycentric.z * c;
-            return Some([tangent, corners[0][3] * normal.cross(tangent)]);
+            if tangent != Vec3::ZERO {
+                return Some([tangent, corners[0][3] * normal.cross(tangent)]);
+            }
         }
         self.derivatives(part, second)
     }

@@ -13,6 +13,7 @@ pub mod plane;
 pub mod quadric;
 pub mod rectangle;
 pub mod sphere;
+mod tangents;
 #[cfg(test)]
 mod tests;
 pub mod torus;

@@ -3,6 +3,7 @@
 mod inside;
 mod leaving;
 mod mesh_rules;
+mod tangents;
 
 use super::*;
 use crate::describe::DescribedList;

@@ -50,20 +50,23 @@ impl ColorMode {
 }
 
 /// What the four lanes of one path mean.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[serde(untagged)]
 pub enum Lanes {
     /// Red, green, blue, green.
+    #[default]
     Rgb,
     /// Light at four wavelengths.
     Waves(Waves),
 }
 
 /// Four wavelengths, and what is known there.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Waves {
     /// The wavelengths in nanometres; the first is the hero.
     pub nm: Spectrum,
     /// The light whose colour is white, 1 1 1: D65.
+    #[serde(skip)]
     white: Spectrum,
     /// What red, green and blue take of each wavelength, over 4 times its density.
     observer: [Spectrum; 3],
@@ -103,6 +106,11 @@ impl Lanes {
         }
     }
 
+    /// Light of a colour: with the spectrum that was measured, or a smooth one.
+    pub fn light_of(&self, color: Color, measured: Option<&Curve>) -> Spectrum {
+        measured.map_or_else(|| self.light(color), |curve| self.measured(color, curve))
+    }
+
     /// What something without bounds is, such as how much a medium absorbs: smooth, and grey where the colour is.
     pub fn coefficient(&self, color: Color) -> Spectrum {
         match self {
@@ -122,6 +130,11 @@ impl Lanes {
         }
     }
 
+    /// Whether they are colours.
+    pub fn is_rgb(&self) -> bool {
+        matches!(self, Lanes::Rgb)
+    }
+
     /// The wavelength of the first lane in nanometres; `None` for colours.
     pub fn hero(&self) -> Option<f32> {
         match self {
@@ -132,6 +145,11 @@ impl Lanes {
 }
 
 impl Waves {
+    /// What red, green and blue take of each wavelength.
+    pub fn observer(&self) -> &[Spectrum; 3] {
+        &self.observer
+    }
+
     /// Wavelengths chosen about as often as the eye needs them, at equal steps of the number they are chosen by.
     fn new(u: f32) -> Self {
         let nm = Spectrum::from_array([0.0, 0.25, 0.5, 0.75].map(|step| wavelength((u + step).fract())));

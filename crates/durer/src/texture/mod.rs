@@ -64,6 +64,11 @@ impl Texture {
         Texture { alpha: alpha.map(Into::into), ..self }
     }
 
+    /// Whether all texels are the same.
+    pub fn is_flat(&self) -> bool {
+        self.texels.iter().all(|texel| *texel == self.texels[0])
+    }
+
     /// The same texels, shared, lying otherwise on surfaces.
     pub fn mapped(&self, mapping: Mapping) -> Self {
         Texture { mapping: Some(mapping), ..self.clone() }

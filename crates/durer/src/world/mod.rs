@@ -18,6 +18,7 @@ use crate::math::{Aabb, Color, Ray64, Vec2, Vec3};
 use crate::medium::Medium;
 use crate::shape::{Crossing, Surface};
 use crate::source::Digest;
+use crate::spectrum::Curve;
 use crate::texture::{CubeMap, Environment, Texture};
 pub use emitters::Emitters;
 use glam::DVec3;
@@ -44,6 +45,8 @@ pub struct World {
     pub lights: Vec<Light>,
     /// How strong each light shines in each direction, where that was measured; by number, those behind the last have none.
     pub profiles: Vec<Option<Arc<Profile>>>,
+    /// The measured spectrum of each light, if it has one; by number, those behind the last have none.
+    pub illuminants: Vec<Option<Arc<Curve>>>,
     /// Materials, by number.
     pub materials: Vec<Material>,
     /// Decoded pictures, by number.

@@ -11,8 +11,9 @@ use crate::material::principled::Walls;
 use crate::math::{Color, Vec3, fp};
 use crate::medium::Medium;
 use crate::shape::Surface;
-use crate::spectrum::{Lanes, Spectrum};
+use crate::spectrum::{Curve, Lanes, Spectrum};
 use crate::world::HighlightModel;
+use crate::world::emitters::LightId;
 use crate::world::material::Emission;
 use smallvec::SmallVec;
 
@@ -128,13 +129,21 @@ impl World {
         parts.iter().filter_map(|part| own(part.phong).map(|light| part.share * light)).sum()
     }
 
-    /// Light of a colour that a material sends, or lights and the surroundings where there is none.
-    pub fn light(&self, lanes: &Lanes, color: Color, material: Option<u32>) -> Spectrum {
-        let curve = material.and_then(|material| match &self.materials[material as usize] {
-            Material::Phong(phong) => phong.principled.as_ref()?.illuminant.as_ref(),
+    /// The measured spectrum of what shines, if it has one.
+    pub fn illuminant(&self, light: LightId) -> Option<&Curve> {
+        match light {
+            LightId::Light(number) => self.illuminants.get(number as usize)?.as_deref(),
+            LightId::Surface(object, _) => self.own_illuminant(self.objects[object as usize].material),
+            LightId::Environment => None,
+        }
+    }
+
+    /// The measured spectrum of a material's own light, if it has one.
+    pub fn own_illuminant(&self, material: u32) -> Option<&Curve> {
+        match &self.materials[material as usize] {
+            Material::Phong(phong) => phong.principled.as_ref()?.illuminant.as_deref(),
             Material::Solid(..) => None,
-        });
-        curve.map_or_else(|| lanes.light(color), |curve| lanes.measured(color, curve))
+        }
     }
 
     /// Whether a material has a light of its own.

@@ -140,12 +140,12 @@ impl Model<'_> {
         let direction = map.transform_vector3(DVec3::NEG_Z).normalize_or(DVec3::NEG_Z).as_vec3();
         let position = map.translation.as_vec3();
         let value: Light = match (is_directional, cone) {
-            (true, _) => DirectionalLight { direction, color, spread: None }.into(),
+            (true, _) => DirectionalLight { direction, color, ..DirectionalLight::default() }.into(),
             (false, Some([inner_angle, angle])) => {
                 let angle = angle.clamp(1e-3, 180.0);
                 SpotLight { position, direction, color, angle, inner_angle, ..SpotLight::default() }.into()
             }
-            (false, None) => PointLight { position, color, attenuation: Some(Vec3::Z), falloff: None }.into(),
+            (false, None) => PointLight { position, color, attenuation: Some(Vec3::Z), ..PointLight::default() }.into(),
         };
         scene.lights.get_or_insert_default().push(Spanned { value, span: self.findings.span("/nodes") });
     }

@@ -5,7 +5,7 @@
 use super::Model;
 use super::accessor::Component;
 use super::json::At;
-use super::primitive::{Primitive, index};
+use super::primitive::{Primitive, copy, index};
 use crate::math::Vec3;
 use crate::shape::MeshData;
 use glam::{DAffine3, DMat4, DVec3};
@@ -126,6 +126,16 @@ impl Pose {
     /// Whether weights of targets, or bones, move anything.
     pub fn moves(&self, weights: &[f32], skinned: bool) -> bool {
         skinned && !self.joints.is_empty() || weights.iter().zip(&self.targets).any(|(weight, _)| *weight != 0.0)
+    }
+
+    /// Moves further vertices as those whose copies they are.
+    pub fn copy(&mut self, originals: &[u32]) {
+        copy(&mut self.joints, originals);
+        copy(&mut self.weights, originals);
+        for target in &mut self.targets {
+            copy(&mut target.positions, originals);
+            copy(&mut target.normals, originals);
+        }
     }
 
     /// The primitive's mesh with its vertices moved.

@@ -31,6 +31,12 @@ enum Alpha {
     Blend,
 }
 
+/// Whether a material looks otherwise where its surface is turned about its normal.
+pub(super) fn needs_tangents(at: &At) -> bool {
+    let anisotropic = |e: At| e.get("KHR_materials_anisotropy").is_some();
+    at.get("normalTexture").is_some() || at.get("extensions").is_some_and(anisotropic)
+}
+
 impl Model<'_> {
     pub(super) fn materials(&self, root: &At) -> Vec<PrincipledMaterial> {
         let Some(materials) = root.get("materials") else { return Vec::new() };

@@ -79,6 +79,8 @@ struct Model<'a> {
     material_count: usize,
     /// Whether each material lets what is behind it be seen by its alpha.
     blends: Vec<bool>,
+    /// Whether each material wants to know how its surface moves as u grows.
+    leans: Vec<bool>,
     /// Number of the material for what has colours and no material.
     white: Option<u32>,
     meshes: Vec<Primitives>,
@@ -140,6 +142,7 @@ fn scene(input: &Input, parts: Parts, root: At) -> Option<Scene> {
         pictures: RefCell::default(),
         material_count: 0,
         blends: Vec::new(),
+        leans: Vec::new(),
         white: None,
         meshes: Vec::new(),
         weights: Vec::new(),
@@ -162,10 +165,12 @@ fn scene(input: &Input, parts: Parts, root: At) -> Option<Scene> {
     model.material_count = materials.len();
     model.white = Some(materials.len() as u32);
     let alpha = |at: &At| at.get("alphaMode").and_then(|mode| mode.value.as_str()).is_some_and(|mode| mode != "OPAQUE");
-    model.blends = match root.get("materials") {
-        Some(materials) => materials.items().map(|material| alpha(&material)).collect(),
+    let of_materials = |what: &dyn Fn(&At) -> bool| match root.get("materials") {
+        Some(materials) => materials.items().map(|material| what(&material)).collect(),
         None => Vec::new(),
     };
+    model.blends = of_materials(&alpha);
+    model.leans = of_materials(&material::needs_tangents);
     model.meshes = model.meshes(&root);
     model.weights = match root.get("meshes") {
         Some(meshes) => meshes.items().map(|mesh| mesh.list("weights", |w| w.number().unwrap_or(0.0))).collect(),

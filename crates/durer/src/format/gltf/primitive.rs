@@ -122,7 +122,7 @@ impl Model<'_> {
         if material.is_none_or(|material| !self.blends[material as usize]) {
             data.colors.iter_mut().for_each(|color| color[3] = 1.0);
         }
-        let pose = self.pose(at, &attributes, count);
+        let mut pose = self.pose(at, &attributes, count);
         let order = self.order(at, count)?;
         data.triangles = match mode {
             TRIANGLES => order.as_chunks::<3>().0.to_vec(),
@@ -135,6 +135,13 @@ impl Model<'_> {
         data.triangles.retain(|[a, b, c]| a != b && b != c && c != a);
         compact(&mut data, pose.is_some());
         index(&mut data, has_normals);
+        if data.tangents.is_empty() && material.is_some_and(|material| self.leans[material as usize]) {
+            let originals = data.make_tangents();
+            copy(&mut data.normals, &originals);
+            copy(&mut data.uvs, &originals);
+            index(&mut data, has_normals);
+            pose.iter_mut().for_each(|pose| pose.copy(&originals));
+        }
         Some(Primitive { data: Arc::new(data), material, has_normals, pose: pose.map(Arc::new) })
     }
 
@@ -254,6 +261,13 @@ fn compact(data: &mut MeshData, keep: bool) {
     thin(&mut data.colors, &numbers);
     thin(&mut data.tangents, &numbers);
     data.triangles.iter_mut().flatten().for_each(|i| *i = numbers[*i as usize]);
+}
+
+/// Adds copies of some values, where there are any.
+pub(super) fn copy<T: Copy>(values: &mut Vec<T>, originals: &[u32]) {
+    if !values.is_empty() {
+        values.extend(originals.iter().map(|&i| values[i as usize]).collect::<Vec<_>>());
+    }
 }
 
 /// Gives triangles the normals and coordinates of their vertices; where the file has no normals, triangles are flat.

@@ -54,7 +54,8 @@ impl Reader<'_> {
         let value: Light = match plugin.kind.as_str() {
             "point" => {
                 let color = self.strength(plugin, "intensity") / PI;
-                PointLight { position: place("position"), color, attenuation: Some(Vec3::Z), falloff: None }.into()
+                PointLight { position: place("position"), color, attenuation: Some(Vec3::Z), ..PointLight::default() }
+                    .into()
             }
             "spot" => {
                 let angle = plugin.positive(said, "cutoff_angle").unwrap_or(20.0);
@@ -70,7 +71,7 @@ impl Reader<'_> {
                 }
                 let (color, direction) = (self.strength(plugin, "intensity") / PI, along(DVec3::Z));
                 let position = place("");
-                SpotLight { position, direction, color, angle, inner_angle, fade: Fade::Smooth }.into()
+                SpotLight { position, direction, color, angle, inner_angle, fade: Fade::Smooth, spectrum: None }.into()
             }
             "projector" => {
                 said.once(plugin.at, "a projector has no counterpart: it is left out");
@@ -83,7 +84,7 @@ impl Reader<'_> {
                     said.bad(plugin.place("direction"), "a direction must have a length");
                 }
                 let color = self.strength(plugin, "irradiance") / PI;
-                DirectionalLight { direction, color, spread: None }.into()
+                DirectionalLight { direction, color, ..DirectionalLight::default() }.into()
             }
             "constant" => {
                 let color = self.strength(plugin, "radiance");
@@ -134,7 +135,7 @@ impl Reader<'_> {
             true => (self.strength(plugin, "radiance"), None),
             false => match self.texture(plugin, "radiance", Vec3::ONE) {
                 Texture::Even(color) => (color, None),
-                Texture::Picture(picture, scale) => (scale, Some(picture)),
+                Texture::Picture(picture, scale, _) => (scale, Some(picture)),
             },
         };
         plugin.known(&["sampling_weight"]);

@@ -6,6 +6,7 @@ use super::metals;
 use super::plugin::{Plugin, Value};
 use super::state::{Key, Reader};
 use super::texture::Texture;
+use crate::bsdf::microfacet::Ggx;
 use crate::diag::{Diagnostic, Span};
 use crate::format::pbrt::medium::Medium;
 use crate::format::pbrt::spectrum::{Spectrum, metal};
@@ -116,15 +117,15 @@ impl Reader<'_> {
                 return self.inner(plugin, depth);
             }
             "mask" => {
-                let opacity = self.value(plugin, "opacity", 0.5).clamp(0.0, 1.0);
-                return Rc::new(self.inner(plugin, depth).changed(&|m| m.opacity *= opacity));
+                let (opacity, picture) = self.pictured(plugin, "opacity", 0.5, |x| x.clamp(0.0, 1.0));
+                return Rc::new(self.inner(plugin, depth).changed(&|m| {
+                    m.opacity *= opacity;
+                    if picture.is_some() {
+                        m.opacity_texture = picture.clone();
+                    }
+                }));
             }
-            "bumpmap" => {
-                self.parts(plugin, Some("texture"));
-                plugin.left_out(self.said, &["scale"], "the surface stays smooth");
-                self.said.once(plugin.at, "a `bumpmap` has no counterpart: the surface stays smooth");
-                return self.inner(plugin, depth);
-            }
+            "bumpmap" => return self.bump_map(plugin, depth),
             "normalmap" => return self.normal_map(plugin, depth),
             "blendbsdf" => {
                 let share = 1.0 - self.value(plugin, "weight", 0.5).clamp(0.0, 1.0);
@@ -157,6 +158,21 @@ impl Reader<'_> {
                 Rc::new(Made::usual())
             }
         }
+    }
+
+    /// A material whose surface rises where a picture is bright, by so much as `scale` says.
+    fn bump_map(&mut self, plugin: &Plugin, depth: u32) -> Rc<Made> {
+        let inner = self.inner(plugin, depth);
+        let height = plugin.number(self.said, "scale").unwrap_or(1.0);
+        let Some((property, _)) = self.parts(plugin, Some("texture")).into_iter().next() else {
+            self.said.once(plugin.at, "a `bumpmap` needs a texture: the surface stays smooth");
+            return inner;
+        };
+        let picture = self.numbers(property, |x| x);
+        if picture.is_none() {
+            self.said.once(property.at, "a `bumpmap` needs a picture: the surface stays smooth");
+        }
+        Rc::new(inner.changed(&|m| (m.bump_texture, m.bump_height) = (picture.clone(), height)))
     }
 
     fn normal_map(&mut self, plugin: &Plugin, depth: u32) -> Rc<Made> {
@@ -192,18 +208,18 @@ impl Reader<'_> {
     }
 
     /// GGX's alpha along both directions as ours: roughness, anisotropy and turn.
-    fn roughness(&self, plugin: &Plugin, m: &mut PrincipledMaterial) {
+    fn roughness(&mut self, plugin: &Plugin, m: &mut PrincipledMaterial) {
         if !plugin.kind.starts_with("rough") {
             m.specular_roughness = 0.0;
             return;
         }
-        let both = self.value(plugin, "alpha", 0.1);
-        let [u, v] = ["alpha_u", "alpha_v"].map(|name| self.value(plugin, name, both).clamp(0.0, 1.0));
-        let mean = (0.5 * (u * u + v * v)).sqrt();
-        m.specular_roughness = mean.sqrt();
-        if u != v {
-            m.specular_anisotropy = 1.0 - u.min(v) / u.max(v);
-            m.specular_rotation = if v > u { 0.25 } else { 0.0 };
+        let apart = ["alpha_u", "alpha_v"].iter().any(|name| plugin.get(name).is_some());
+        if apart {
+            let alphas = ["alpha_u", "alpha_v"].map(|name| self.value(plugin, name, 0.1));
+            [m.specular_roughness, m.specular_anisotropy, m.specular_rotation] = Ggx::parameters(alphas);
+        } else {
+            let root = |alpha: f32| alpha.clamp(0.0, 1.0).sqrt();
+            (m.specular_roughness, m.specular_roughness_texture) = self.pictured(plugin, "alpha", 0.1, root);
         }
         let distribution = plugin.text(self.said, "distribution").unwrap_or("beckmann".into());
         match distribution.as_str() {
@@ -222,15 +238,17 @@ impl Reader<'_> {
     }
 
     /// What a reflection is multiplied by.
-    fn tint(&self, plugin: &Plugin) -> Color {
-        self.color(plugin, "specular_reflectance", Vec3::ONE).clamp(Vec3::ZERO, Vec3::ONE)
+    fn tint(&mut self, plugin: &Plugin, m: &mut PrincipledMaterial) {
+        (m.specular_color, m.specular_color_texture) = self.colored(plugin, "specular_reflectance", 1.0);
+        m.specular_color = m.specular_color.min(Vec3::ONE);
     }
 
     fn glass(&mut self, plugin: &Plugin, m: &mut PrincipledMaterial) {
         m.transmission_weight = 1.0;
         m.specular_ior = self.relative_index(plugin, 1.5046);
-        m.specular_color = self.tint(plugin);
-        m.transmission_color = self.color(plugin, "specular_transmittance", Vec3::ONE).clamp(Vec3::ZERO, Vec3::ONE);
+        self.tint(plugin, m);
+        (m.transmission_color, m.transmission_color_texture) = self.colored(plugin, "specular_transmittance", 1.0);
+        m.transmission_color = m.transmission_color.min(Vec3::ONE);
         m.walls = if plugin.kind == "thindielectric" { Walls::Thin } else { Walls::Solid };
         self.roughness(plugin, m);
     }
@@ -266,18 +284,19 @@ impl Reader<'_> {
     fn plastic(&mut self, plugin: &Plugin, m: &mut PrincipledMaterial) {
         (m.base_color, m.base_color_texture) = self.colored(plugin, "diffuse_reflectance", 0.5);
         let index = self.relative_index(plugin, 1.49);
-        let tint = self.tint(plugin);
+        self.tint(plugin, m);
         self.roughness(plugin, m);
         if plugin.truth(self.said, "nonlinear").unwrap_or(false) {
             // Light that goes to and fro below the skin is a coat's darkening.
             (m.coat_weight, m.coat_ior, m.coat_roughness) = (1.0, index, m.specular_roughness);
+            m.coat_roughness_texture = m.specular_roughness_texture.take();
             m.specular_weight = 0.0;
-            if tint != Vec3::ONE {
+            if m.specular_color != Vec3::ONE || m.specular_color_texture.take().is_some() {
                 self.said
                     .once(plugin.place("specular_reflectance"), "what a coat reflects has no colour: white is taken");
             }
         } else {
-            (m.specular_ior, m.specular_color) = (index, tint);
+            m.specular_ior = index;
         }
         if let Texture::Even(color) = self.texture(plugin, "specular_transmittance", Vec3::ONE) {
             m.base_color *= color;

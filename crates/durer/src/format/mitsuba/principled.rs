@@ -14,8 +14,10 @@ impl Reader<'_> {
     pub fn principled(&mut self, plugin: &Plugin) -> PrincipledMaterial {
         let thin = plugin.kind == "principledthin";
         let (base_color, base_color_texture) = self.colored(plugin, "base_color", 0.5);
+        let whole = |x: f32| x.clamp(0.0, 1.0);
+        let (roughness, roughness_texture) = self.pictured(plugin, "roughness", 0.5, whole);
+        let (metalness, metalness_texture) = self.pictured(plugin, "metallic", 0.0, whole);
         let share = |name, usual: f32| self.value(plugin, name, usual).clamp(0.0, 1.0);
-        let roughness = share("roughness", 0.5);
         // Disney's alpha is the square of the roughness, stretched by the aspect.
         let aspect = (1.0 - 0.9 * share("anisotropic", 0.0)).sqrt();
         let [u, v] = [roughness * roughness / aspect, roughness * roughness * aspect];
@@ -34,11 +36,14 @@ impl Reader<'_> {
         let m = PrincipledMaterial {
             base_color,
             base_color_texture,
-            base_metalness: if thin { 0.0 } else { share("metallic", 0.0) },
+            base_metalness: if thin { 0.0 } else { metalness },
+            base_metalness_texture: metalness_texture.filter(|_| !thin),
             base_diffuse_roughness: roughness,
+            base_diffuse_roughness_texture: roughness_texture.clone(),
             specular_ior: ior.max(1e-3),
             specular_color: tinted(share("spec_tint", 0.0)),
             specular_roughness: (0.5 * (u * u + v * v)).sqrt().min(1.0).sqrt(),
+            specular_roughness_texture: roughness_texture,
             specular_anisotropy: 1.0 - v / u.max(1e-12),
             transmission_weight: clear,
             // Disney's glass takes the root of the colour at each of two surfaces.

@@ -1,11 +1,12 @@
 //! Textures: one value everywhere, or a picture.
 
-use super::plugin::Plugin;
+use super::plugin::{Plugin, Property};
 use super::state::Reader;
 use crate::describe::FileName;
 use crate::diag::Span;
 use crate::format::pictures::{asset, checkerboard};
 use crate::format::said::meant;
+use crate::image::{decode_linear, decode_srgb};
 use crate::math::{Color, Vec3};
 use crate::scene::Picture;
 use crate::texture::{Mapping, Wrap};
@@ -15,25 +16,31 @@ use glam::DAffine3;
 #[derive(Clone)]
 pub(super) enum Texture {
     Even(Color),
-    /// A picture, and what multiplies it.
-    Picture(Picture, Color),
+    /// A picture, what multiplies it, and whether its bytes are numbers without a curve.
+    Picture(Picture, Color, bool),
 }
 
 impl Reader<'_> {
     /// A property that may be a texture.
     pub fn texture(&self, plugin: &Plugin, name: &'static str, usual: Color) -> Texture {
-        let Some(property) = plugin.get(name) else { return Texture::Even(usual) };
+        plugin.get(name).map_or(Texture::Even(usual), |property| self.texture_of(property, usual))
+    }
+
+    fn texture_of(&self, property: &Property, usual: Color) -> Texture {
         if let Some(color) = self.reflectance(property) {
             return Texture::Even(color);
         }
         let Some(texture) = self.part(property) else {
             if !matches!(property.value, super::plugin::Value::Ref(_)) {
-                self.said.bad(property.at, format!("`{name}` must be a colour or a texture"));
+                self.said.bad(property.at, format!("`{}` must be a colour or a texture", property.name));
             }
             return Texture::Even(usual);
         };
         let made = match texture.kind.as_str() {
-            "bitmap" => self.bitmap(&texture).map(|picture| Texture::Picture(picture, Vec3::ONE)),
+            "bitmap" => {
+                let raw = texture.truth(self.said, "raw").unwrap_or(false);
+                self.bitmap(&texture).map(|picture| Texture::Picture(picture, Vec3::ONE, raw))
+            }
             "checkerboard" => Some(self.checkerboard(&texture)),
             // Colours of vertices multiply what a material says.
             "mesh_attribute" if texture.text(self.said, "name").is_some_and(|name| name == "vertex_color") => {
@@ -56,8 +63,30 @@ impl Reader<'_> {
     pub fn colored(&mut self, plugin: &Plugin, name: &'static str, usual: f32) -> (Color, Option<FileName>) {
         match self.texture(plugin, name, Vec3::splat(usual)) {
             Texture::Even(color) => (color.max(Vec3::ZERO), None),
-            Texture::Picture(picture, scale) => (scale, Some(asset(&mut self.scene, picture, plugin.place(name)))),
+            Texture::Picture(picture, scale, _) => (scale, Some(asset(&mut self.scene, picture, plugin.place(name)))),
         }
+    }
+
+    /// A number that may be a texture: what a change makes of the number, or 1 and what it makes of the picture.
+    pub fn pictured(
+        &mut self,
+        plugin: &Plugin,
+        name: &'static str,
+        usual: f32,
+        change: impl Fn(f32) -> f32,
+    ) -> (f32, Option<FileName>) {
+        match plugin.get(name).and_then(|property| self.numbers(property, &change)) {
+            Some(picture) => (1.0, Some(picture)),
+            None => (change(self.value(plugin, name, usual)), None),
+        }
+    }
+
+    /// What a change makes of the numbers of a picture; `None` of what is no picture.
+    pub fn numbers(&mut self, property: &Property, change: impl Fn(f32) -> f32) -> Option<FileName> {
+        let Texture::Picture(picture, scale, raw) = self.texture_of(property, Vec3::ZERO) else { return None };
+        let decode = if raw { decode_linear } else { decode_srgb };
+        let picture = self.pictures().changed(&picture, property.at, decode, |x| change(scale.x * x))?;
+        Some(asset(&mut self.scene, picture, property.at))
     }
 
     /// A number that may be a texture: of a picture the mean is taken.
@@ -70,7 +99,7 @@ impl Reader<'_> {
     pub fn color(&self, plugin: &Plugin, name: &'static str, usual: Color) -> Color {
         match self.texture(plugin, name, usual) {
             Texture::Even(color) => color,
-            Texture::Picture(picture, scale) => {
+            Texture::Picture(picture, scale, _) => {
                 let at = plugin.place(name);
                 self.said.once(at, format!("`{name}` by a picture has no counterpart: its mean is taken"));
                 self.pictures().mean(&picture, at).map_or(usual, |mean| mean * scale)
@@ -140,7 +169,7 @@ impl Reader<'_> {
             }
         });
         match checkerboard(one, other) {
-            Some((bytes, most)) => Texture::Picture(Picture { bytes, mapping }, Vec3::splat(most)),
+            Some((bytes, most)) => Texture::Picture(Picture { bytes, mapping }, Vec3::splat(most), false),
             None => Texture::Even(0.5 * (one + other)),
         }
     }

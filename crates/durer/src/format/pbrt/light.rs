@@ -61,7 +61,7 @@ impl Reader<'_> {
                 }
                 let strength = power.map_or(1.0, |power| power / (4.0 * PI));
                 let color = color(&params, "I") * (strength * exposure / PI);
-                PointLight { position: place, color, attenuation: Some(Vec3::Z), falloff: None }.into()
+                PointLight { position: place, color, attenuation: Some(Vec3::Z), ..PointLight::default() }.into()
             }
             "spot" | "projection" => {
                 let mut cone =
@@ -88,13 +88,14 @@ impl Reader<'_> {
                     angle: outer.clamp(1e-3, 180.0),
                     inner_angle: inner,
                     fade: Fade::Smooth,
+                    spectrum: None,
                 }
                 .into()
             }
             "distant" => {
                 let strength = params.float("illuminance").filter(|e| *e > 0.0).unwrap_or(1.0);
                 let color = color(&params, "L") * (strength * exposure / PI);
-                DirectionalLight { direction: aimed(), color, spread: None }.into()
+                DirectionalLight { direction: aimed(), color, ..DirectionalLight::default() }.into()
             }
             "infinite" => {
                 self.infinite_light(&params, exposure);

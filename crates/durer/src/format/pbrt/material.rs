@@ -10,6 +10,7 @@ use super::medium::Medium;
 use super::params::{Kind, Param, Params};
 use super::spectrum::{Spectrum, metal};
 use super::state::Reader;
+use crate::bsdf::microfacet::Ggx;
 use crate::describe::FileName;
 use crate::diag::Span;
 use crate::format::said::meant;
@@ -96,14 +97,6 @@ impl Made {
 /// Matte, without a boundary.
 fn matte(base_color: Color) -> PrincipledMaterial {
     PrincipledMaterial { base_color, specular_weight: 0.0, specular_roughness: 1.0, ..PrincipledMaterial::default() }
-}
-
-/// Roughness, anisotropy and turn from GGX's alpha along both directions.
-pub(super) fn rough([u, v]: [f32; 2]) -> [f32; 3] {
-    let [u, v] = [u, v].map(|alpha| alpha.clamp(0.0, 1.0));
-    let mean = (0.5 * (u * u + v * v)).sqrt();
-    let rest = if u == v { 1.0 } else { u.min(v) / u.max(v) };
-    [mean.sqrt(), 1.0 - rest, if v > u { 0.25 } else { 0.0 }]
 }
 
 impl Reader<'_> {
@@ -204,7 +197,7 @@ impl Reader<'_> {
                 if kind == "dielectric" {
                     (m.specular_roughness_texture, alphas) = self.roughness(params, ROUGHNESS, remapped);
                 }
-                [m.specular_roughness, m.specular_anisotropy, m.specular_rotation] = rough(alphas);
+                [m.specular_roughness, m.specular_anisotropy, m.specular_rotation] = Ggx::parameters(alphas);
                 m.walls = if kind == "thindielectric" { Walls::Thin } else { Walls::Solid };
             }
             "diffusetransmission" => {
@@ -231,7 +224,7 @@ impl Reader<'_> {
             "subsurface" => {
                 let alphas;
                 (m.specular_roughness_texture, alphas) = self.roughness(params, ROUGHNESS, remapped);
-                [m.specular_roughness, m.specular_anisotropy, m.specular_rotation] = rough(alphas);
+                [m.specular_roughness, m.specular_anisotropy, m.specular_rotation] = Ggx::parameters(alphas);
                 m.specular_ior = self.index(params, "eta", 1.33);
                 params.left_out(&["name"], "the coefficients count");
                 if params.get("reflectance").is_some() {
@@ -341,7 +334,7 @@ impl Reader<'_> {
                         // What it reflects at right angles is the picture's; grazing light has no colour of its own.
                         m.base_color_texture = Some(self.asset(picture, param.at));
                         (m.base_metalness, m.base_color) = (1.0, scale);
-                        [m.specular_roughness, m.specular_anisotropy, m.specular_rotation] = rough(alphas);
+                        [m.specular_roughness, m.specular_anisotropy, m.specular_rotation] = Ggx::parameters(alphas);
                         return;
                     }
                 };
@@ -358,7 +351,7 @@ impl Reader<'_> {
         const REST: f32 = 6.0 / 7.0;
         let schlick = f0 + (Vec3::ONE - f0) * fp::pow(REST, 5.0);
         (m.base_metalness, m.base_color, m.specular_color) = (1.0, f0, f82 / schlick.max(Vec3::splat(1e-6)));
-        [m.specular_roughness, m.specular_anisotropy, m.specular_rotation] = rough(alphas);
+        [m.specular_roughness, m.specular_anisotropy, m.specular_rotation] = Ggx::parameters(alphas);
     }
 
     fn mixed(&self, params: &Params, at: Span) -> Made {

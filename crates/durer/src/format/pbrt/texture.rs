@@ -7,6 +7,7 @@ use crate::describe::FileName;
 use crate::diag::Span;
 use crate::format::pictures::{self, Pictures};
 use crate::format::said::meant;
+use crate::image::decode_srgb;
 use crate::math::{Color, Vec3};
 use crate::scene::{Picture, PictureBytes};
 use crate::texture::{Mapping, Wrap};
@@ -161,7 +162,7 @@ impl Reader<'_> {
     pub fn changed(&mut self, params: &Params, name: &'static str, change: impl Fn(f32) -> f32) -> Option<FileName> {
         let Texture::Picture(picture, scale) = self.pattern(params, name, false, Vec3::ZERO) else { return None };
         let at = params.place(name);
-        let picture = self.pictures().changed(&picture, at, |x| change(scale.x * x))?;
+        let picture = self.pictures().changed(&picture, at, decode_srgb, |x| change(scale.x * x))?;
         Some(self.asset(picture, at))
     }
 

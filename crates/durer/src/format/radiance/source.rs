@@ -54,7 +54,7 @@ impl Reader<'_> {
             // What a white matte surface shows that faces it.
             let color = radiance * (2.0 * (1.0 - cosine)) as f32;
             let spread = Some(0.5 * degrees);
-            let light = DirectionalLight { direction: -direction.as_vec3(), color, spread };
+            let light = DirectionalLight { direction: -direction.as_vec3(), color, spread, spectrum: None };
             self.light(light.into(), at);
             return;
         }
@@ -83,6 +83,7 @@ impl Reader<'_> {
                 angle: degrees.min(180.0),
                 inner_angle: degrees.min(180.0),
                 fade: Fade::Squared,
+                spectrum: None,
             };
             self.light(light.into(), span);
         }

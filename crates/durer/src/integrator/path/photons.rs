@@ -14,6 +14,7 @@ use crate::math::{Color, Vec3};
 use crate::sampler::SampleId;
 use crate::shape::Surface;
 use crate::spectrum::{Lanes, Spectrum};
+use crate::world::emitters::LightId;
 use crate::world::emitters::emission::Beams;
 use crate::world::{Shading, World};
 use glam::DVec3;
@@ -152,7 +153,9 @@ impl Photons {
                     }
                     None => Color::ONE,
                 };
-                state.throughput *= path.world.light(&lanes, power * color, emitted.material);
+                let of_light = emitted.light.and_then(|light| path.world.illuminant(LightId::Light(light)));
+                let of_material = || emitted.material.and_then(|material| path.world.own_illuminant(material));
+                state.throughput *= lanes.light_of(power * color, of_light.or_else(of_material));
             }
             let shading = met.shading(path.world, &lanes);
             path.kept(&met, &mut state, &sample);

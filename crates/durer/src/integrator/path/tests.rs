@@ -4,6 +4,7 @@ use super::*;
 use crate::compile::testing::read;
 use crate::math::fp;
 use crate::render::Job;
+use crate::spectrum::ColorMode;
 
 mod caustics;
 mod media;
@@ -223,17 +224,19 @@ fn what_a_path_tells_sums_to_its_light() {
         "Sphere { center 0 3 0 radius 0.5 } MaterialIndex 0 Sphere { center 1 0.5 0 radius 0.5 }",
     );
     let settings = Settings { bounces: 6, ..Job::default().settings };
-    let path = Path::new(&world, settings, Transport { clamp: Some(0.2), ..Transport::default() });
-    for sample in 0..200 {
+    for (sample, color) in (0..200).zip([ColorMode::Rgb, ColorMode::Spectral].into_iter().cycle()) {
+        let path = Path::new(&world, settings, Transport { clamp: Some(0.2), color });
         let id = SampleId::new(1, (0, 0), sample);
         let mut account = super::super::Account::default();
-        let color = path.radiance(&to_origin(), id, &mut account);
+        let seen = path.radiance(&to_origin(), id, &mut account);
         let tree = account.into_tree().unwrap();
-        assert_eq!((tree.value, path.radiance(&to_origin(), id, &mut ())), (color, color));
+        assert_eq!((tree.sum(), path.radiance(&to_origin(), id, &mut ())), (seen, seen));
         fn check(node: &super::super::Node) {
             assert_eq!(node.sum(), node.value, "{:?}", node.what);
             node.terms.iter().for_each(check);
         }
-        check(&tree);
+        check(&tree.root);
+        let lanes = if color == ColorMode::Rgb { 3 } else { 4 };
+        assert_eq!(tree.root.value.numbers().len(), lanes);
     }
 }

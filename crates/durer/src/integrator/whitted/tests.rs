@@ -288,9 +288,9 @@ fn an_account_adds_up_to_the_light_that_is_found_without_it() {
                 let color = whitted.radiance(&ray, &mut account);
                 assert_eq!(color, whitted.radiance(&ray, &mut counts));
                 let tree = account.into_tree().unwrap();
-                assert_eq!(tree.value, color);
-                adds_up(&tree);
-                count(&tree, &mut kinds);
+                assert_eq!(tree.sum(), color);
+                adds_up(&tree.root);
+                count(&tree.root, &mut kinds);
             }
         }
     }

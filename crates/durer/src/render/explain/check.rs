@@ -70,9 +70,9 @@ fn difference(explanation: &Explanation, stored: Color) -> Option<String> {
     if bits(color) != bits(explanation.color) || coverage != explanation.coverage {
         return Some(format!("the terms sum to {color}, and the explanation says {}", explanation.color));
     }
-    let trees = explanation.samples.iter().filter_map(|sample| sample.light.as_ref());
+    let trees = explanation.samples.iter().filter_map(|sample| sample.light.as_ref().map(|light| &light.root));
     let odd = trees.filter_map(uneven).next()?;
-    Some(format!("the terms below sum to {}: {odd:?}", odd.sum()))
+    Some(format!("the terms below sum to {:?}: {odd:?}", odd.sum()))
 }
 
 /// The first node of a tree whose value is not the sum of its terms.

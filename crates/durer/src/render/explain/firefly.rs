@@ -3,8 +3,8 @@
 use super::Explanation;
 use super::text::number;
 use crate::film::luminance_of;
-use crate::integrator::Node;
 use crate::integrator::account::What;
+use crate::integrator::{Node, Tree};
 
 impl Explanation {
     /// The sample that adds most light, and what it adds to the pixel's luminance; `None` where no light comes at all.
@@ -12,7 +12,7 @@ impl Explanation {
         let all: f64 = self.samples.iter().map(|s| f64::from(s.weight)).sum();
         let adds = |i: usize| {
             let s = &self.samples[i];
-            let light = s.light.as_ref().map_or(0.0, |light| luminance_of(light.contribution()));
+            let light = s.light.as_ref().map_or(0.0, |light| luminance_of(light.sum()));
             f64::from(s.weight) * light / all
         };
         let best = (0..self.samples.len()).max_by(|&a, &b| adds(a).total_cmp(&adds(b)).then(b.cmp(&a)))?;
@@ -42,15 +42,15 @@ impl Explanation {
 }
 
 /// Follows the brightest terms to where the light comes from.
-fn cause(light: &Node) -> Vec<String> {
-    let (mut node, mut chosen) = (light, Vec::new());
+fn cause(light: &Tree) -> Vec<String> {
+    let (mut node, mut chosen) = (&light.root, Vec::new());
+    let adds = |node: &Node| luminance_of(light.color(node.contribution()));
     loop {
         if let What::Ray { bounce: Some(bounce), .. } = &node.what {
             chosen.push(bounce);
         }
-        let next =
-            node.terms.iter().max_by(|a, b| luminance_of(a.contribution()).total_cmp(&luminance_of(b.contribution())));
-        match next.filter(|next| luminance_of(next.contribution()) > 0.0) {
+        let next = node.terms.iter().max_by(|a, b| adds(a).total_cmp(&adds(b)));
+        match next.filter(|next| adds(next) > 0.0) {
             Some(next) => node = next,
             None => break,
         }

@@ -3,7 +3,8 @@
 use super::*;
 use crate::compile::{AccelKind, testing};
 use crate::dialect::Dialect;
-use crate::integrator::{Method, Settings};
+use crate::integrator::{Method, Settings, Transport};
+use crate::spectrum::ColorMode;
 use std::path::Path;
 
 #[test]
@@ -29,7 +30,8 @@ fn explanations_sum_to_the_pixels_of_all_our_scenes() {
         };
         // The scenes that paths were made for, and some others.
         let paths = text.contains("PrincipledMaterial") || i % 5 == 0;
-        let method = if paths { Method::PATH } else { Method::Whitted };
+        let color = [ColorMode::Rgb, ColorMode::Spectral][i % 2];
+        let method = if paths { Method::Path(Transport { color, clamp: None }) } else { Method::Whitted };
         let job = Job { width: 20, height: 18, seed: 5, settings, method, ..Job::default() };
         let differences = check::check(&world, &job, 6, i as u64).unwrap();
         assert!(differences.is_empty(), "{}: {differences:?}", scene.display());
@@ -60,5 +62,5 @@ fn the_brightest_sample_below_glass_is_said_to_be_a_caustic() {
     // The brightest sample adds no more than the pixel has.
     let (number, most) = worst.brightest().unwrap();
     let light = worst.samples[number].light.as_ref().unwrap();
-    assert!(most > 0.0 && light.contribution().max_element() > 0.0);
+    assert!(most > 0.0 && light.sum().max_element() > 0.0);
 }

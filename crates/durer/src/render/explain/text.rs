@@ -5,10 +5,11 @@ use crate::describe::DescribedList;
 use crate::diag::{Files, Span};
 use crate::dialect::Compat;
 use crate::image::Transfer;
-use crate::integrator::Node;
-use crate::integrator::account::{Bounce, Line as RayLine, RayKind, Shadow, Struck, What};
+use crate::integrator::account::{Bounce, Line as RayLine, RayKind, Shadow, Struck, TermValue, What};
+use crate::integrator::{Node, Tree};
 use crate::math::{Color, Vec3, reflect};
 use crate::scene::Scene;
+use crate::spectrum::{Lanes, Spectrum};
 use crate::world::emitters::LightId;
 use crate::world::{Material, World};
 
@@ -29,7 +30,9 @@ pub struct Line {
     /// How deep it is indented.
     pub depth: usize,
     /// What the term adds to the one above; `None` on lines that only tell more of the line before.
-    pub adds: Option<Color>,
+    pub adds: Option<TermValue>,
+    /// The colour of what it adds.
+    pub color: Color,
     /// The share of the whole that it is, from 0 to 1, by its brightness.
     pub share: f32,
     /// The line.
@@ -47,6 +50,13 @@ pub struct Telling {
     pub transfer: Transfer,
 }
 
+impl Line {
+    /// One that adds nothing.
+    fn plain(depth: usize, text: String) -> Self {
+        Line { depth, adds: None, color: Color::ZERO, share: 0.0, text }
+    }
+}
+
 impl Default for Telling {
     /// Everything.
     fn default() -> Self {
@@ -56,9 +66,11 @@ impl Default for Telling {
 
 /// What is known where a term stands.
 #[derive(Clone, Copy)]
-struct Context {
+struct Context<'a> {
+    /// All of which it is a part.
+    tree: &'a Tree,
     /// What its contribution is multiplied by in the whole.
-    gain: Color,
+    gain: TermValue,
     /// The brightness of the whole.
     whole: f32,
     /// The ray, the normal and the way to the light that it belongs to.
@@ -151,7 +163,7 @@ impl Explanation {
     /// The explanation in lines: the pixel, its samples, and the tree of one of them, by its place in the list.
     pub fn lines(&self, names: &Names, wanted: usize, telling: &Telling) -> Vec<Line> {
         let mut lines = Vec::new();
-        let mut say = |depth, text: String| lines.push(Line { depth, adds: None, share: 0.0, text });
+        let mut say = |depth, text: String| lines.push(Line::plain(depth, text));
         let [r, g, b] = telling.transfer.encode_pixel(self.color);
         let curve = telling.transfer.name();
         say(0, format!("pixel {},{} = {}, in eight bits {r} {g} {b} ({curve})", self.x, self.y, rgb(self.color)));
@@ -179,7 +191,7 @@ impl Explanation {
             0 => {}
             left => {
                 let text = format!("{left} samples more have no weight here");
-                lines.push(Line { depth: 1, adds: None, share: 0.0, text });
+                lines.push(Line::plain(1, text));
             }
         }
         lines
@@ -197,31 +209,44 @@ impl Explanation {
 
 fn sample_lines(sample: &SampleAccount, name: String, names: &Names, whole: Option<&Telling>, lines: &mut Vec<Line>) {
     let SampleAccount { place, weight, light, .. } = sample;
-    let seen = light.as_ref().map_or("the camera sees nothing here".into(), |light| rgb(light.value));
+    let seen = light.as_ref().map_or("the camera sees nothing here".into(), |light| rgb(light.sum()));
     let text = format!("{name} at {}, {}, weight {}: {seen}", place.x, place.y, number(*weight));
-    lines.push(Line { depth: 1, adds: None, share: 0.0, text });
+    lines.push(Line::plain(1, text));
     if let (Some(light), Some(telling)) = (light, whole) {
-        node_lines(light, names, 2, telling, Context::of(light), lines);
+        tree_lines(light, names, 2, telling, lines);
     }
 }
 
 /// The lines of a tree.
-pub fn ray_text(light: &Node, names: &Names, telling: &Telling) -> Vec<Line> {
+pub fn ray_text(light: &Tree, names: &Names, telling: &Telling) -> Vec<Line> {
     let mut lines = Vec::new();
-    node_lines(light, names, 0, telling, Context::of(light), &mut lines);
+    tree_lines(light, names, 0, telling, &mut lines);
     lines
 }
 
-impl Context {
-    fn of(light: &Node) -> Self {
+fn tree_lines(tree: &Tree, names: &Names, depth: usize, telling: &Telling, lines: &mut Vec<Line>) {
+    if let Lanes::Waves(waves) = &tree.lanes {
+        let told = |numbers: Spectrum| numbers.to_array().map(number).join(", ");
+        let text = format!("light at {} nm; the eye makes of it", told(waves.nm));
+        lines.push(Line::plain(depth, text));
+        for (name, observer) in ["red", "green", "blue"].into_iter().zip(waves.observer()) {
+            lines.push(Line::plain(depth + 1, format!("{name}: ({}) · light", told(*observer))));
+        }
+    }
+    node_lines(&tree.root, names, depth, telling, Context::of(tree), lines);
+}
+
+impl<'a> Context<'a> {
+    fn of(tree: &'a Tree) -> Self {
         let (dir, n, to_light) = (Vec3::ZERO, Vec3::ZERO, Vec3::ZERO);
-        let whole = brightness(light.contribution()).max(f32::MIN_POSITIVE);
-        Context { gain: Color::ONE, whole, dir, n, to_light, material: None, fresnel: None }
+        let whole = brightness(tree.color(tree.root.contribution())).max(f32::MIN_POSITIVE);
+        let gain = TermValue::Color(Color::ONE);
+        Context { tree, gain, whole, dir, n, to_light, material: None, fresnel: None }
     }
 }
 
 fn node_lines(node: &Node, names: &Names, depth: usize, telling: &Telling, at: Context, lines: &mut Vec<Line>) {
-    let (factor, value) = (rgb(node.factor), rgb(node.value));
+    let (factor, value) = (numbers(node.factor), numbers(node.value));
     let mut more = Vec::new();
     let mut below = Context { gain: at.gain * node.factor * node.scale, ..at };
     let text = match &node.what {
@@ -257,13 +282,16 @@ fn node_lines(node: &Node, names: &Names, depth: usize, telling: &Telling, at: C
             more.push(format!("{photons} photons at most {} away", number(*radius)));
             format!("light that mirrors and glass throw here: {value}")
         }
+        What::OneWavelength { nm } => {
+            format!("colours are spread: {} nm alone goes on, and counts for all four: {factor} · {value}", number(*nm))
+        }
         What::Sky => "background".into(),
         What::Emission { mis } => format!("light of its own: {value}{}", weight_text(*mis)),
         What::Direct { light, to_light, distance, choice, pdf, bsdf, mis, shadow } => {
             more.push(format!("L = {}, {} away", vector(*to_light), number(*distance)));
             more.push(format!(
                 "surface: value · cos = {}; chosen with probability {}{}",
-                rgb(*bsdf),
+                numbers(*bsdf),
                 number(*choice),
                 if *pdf > 0.0 { format!(" and density {} /sr", number(*pdf)) } else { String::new() }
             ));
@@ -275,10 +303,15 @@ fn node_lines(node: &Node, names: &Names, depth: usize, telling: &Telling, at: C
         }
         What::Light { light, to_light, distance, share, shadow } => {
             below.to_light = *to_light;
-            more.push(format!("L = {}, {} away; {} arrives", vector(*to_light), number(*distance), rgb(node.scale)));
+            more.push(format!(
+                "L = {}, {} away; {} arrives",
+                vector(*to_light),
+                number(*distance),
+                numbers(node.scale)
+            ));
             more.extend(shadow.iter().map(|shadow| shadow_line(shadow, names)));
-            let through = if node.factor == Color::ONE { String::new() } else { format!("{factor} · ") };
-            let sum = if node.terms.is_empty() { value } else { format!("(sum below) · {}", rgb(node.scale)) };
+            let through = if node.factor.is(1.0) { String::new() } else { format!("{factor} · ") };
+            let sum = if node.terms.is_empty() { value } else { format!("(sum below) · {}", numbers(node.scale)) };
             format!("{}{}: {through}{sum}", names.short_light(*light), share_text(*share))
         }
         What::Diffuse { cosine } => format!("diffuse: max(0, N·L = {}) · {value}", number(*cosine)),
@@ -287,7 +320,7 @@ fn node_lines(node: &Node, names: &Names, depth: usize, telling: &Telling, at: C
                 "N·H" => format!("H = norm(L + V) = {}", vector((at.to_light - at.dir).normalize_or_zero())),
                 _ => format!("R = d - 2 (d·N) N = {}", vector(reflect(at.dir, at.n))),
             });
-            let (base, exponent, strength) = (number(*base), number(*exponent), number(node.factor.x));
+            let (base, exponent, strength) = (number(*base), number(*exponent), number(node.factor.numbers()[0]));
             format!("highlight: max(0, {model} = {base})^{exponent} = {strength} · {value}")
         }
         What::Secondary { here, there, fresnel, total } => {
@@ -310,9 +343,10 @@ fn node_lines(node: &Node, names: &Names, depth: usize, telling: &Telling, at: C
         What::Spent => "mirrored and transmitted light is left out: no more levels are wanted (--bounces)".into(),
     };
     let contribution = node.contribution();
-    let of_whole = |node: &Node, gain: Color| brightness(gain * node.contribution()) / at.whole;
-    lines.push(Line { depth, adds: Some(contribution), share: of_whole(node, at.gain), text });
-    let mut tell = |text: String| lines.push(Line { depth: depth + 1, adds: None, share: 0.0, text });
+    let of_whole = |node: &Node, gain| brightness(at.tree.color(gain * node.contribution())) / at.whole;
+    let color = at.tree.color(contribution);
+    lines.push(Line { depth, adds: Some(contribution), color, share: of_whole(node, at.gain), text });
+    let mut tell = |text: String| lines.push(Line::plain(depth + 1, text));
     more.into_iter().for_each(&mut tell);
     if depth >= telling.deepest && !node.terms.is_empty() {
         return tell(format!("{} below (--depth)", terms(node.terms.len())));
@@ -324,7 +358,7 @@ fn node_lines(node: &Node, names: &Names, depth: usize, telling: &Telling, at: C
     }
     if left > 0 {
         let text = format!("{} of less than {} % each (--min)", terms(left), number(100.0 * telling.least));
-        lines.push(Line { depth: depth + 1, adds: None, share: 0.0, text });
+        lines.push(Line::plain(depth + 1, text));
     }
 }
 
@@ -356,7 +390,7 @@ fn split(node: &Node, from: &str, at: &Context, names: &Names) -> String {
         (Some(r), Some(Material::Phong(phong))) => {
             format!("colour {} · (1 - {})", rgb(phong.transparent), number(r))
         }
-        _ => rgb(node.factor),
+        _ => numbers(node.factor),
     }
 }
 
@@ -394,14 +428,14 @@ fn shadow_line(shadow: &Shadow, names: &Names) -> String {
     let Some((object, t)) = shadow.blocker else { return "the shadow ray is free".into() };
     let (object, t) = (names.short_object(object), number(t));
     match shadow.share {
-        Color::ZERO => format!("in the shadow of {object}, {t} away"),
-        Color::ONE if names.world.rules.has(Compat::ShadowFronts) => {
+        share if share.is(0.0) => format!("in the shadow of {object}, {t} away"),
+        share if share.is(1.0) && names.world.rules.has(Compat::ShadowFronts) => {
             format!(
                 "{object} stands {t} away, but does not block it: its back is turned to the ray (habit `shadow-fronts`)"
             )
         }
-        Color::ONE => format!("{object} stands {t} away, but does not block it: it lets all light through"),
-        share => format!("through {object}, {t} away, comes {}", rgb(share)),
+        share if share.is(1.0) => format!("{object} stands {t} away, but does not block it: it lets all light through"),
+        share => format!("through {object}, {t} away, comes {}", numbers(share)),
     }
 }
 
@@ -425,6 +459,10 @@ pub fn number(x: f32) -> String {
     let rounded: f64 = format!("{x:.3e}").parse().unwrap_or(f64::from(x));
     let size = rounded.abs();
     if (1e-4..1e7).contains(&size) { rounded.to_string() } else { format!("{rounded:e}") }
+}
+
+fn numbers(value: TermValue) -> String {
+    format!("({})", value.numbers().iter().map(|x| number(*x)).collect::<Vec<_>>().join(", "))
 }
 
 fn rgb(color: Color) -> String {

@@ -2,10 +2,11 @@
 
 use super::{clean, material, objects, read};
 use crate::camera::{Camera, Handedness};
+use crate::describe::FileName;
 use crate::light::Light;
 use crate::material::PrincipledMaterial;
 use crate::math::{Vec2, Vec3, fp};
-use crate::scene::{Material, Scene};
+use crate::scene::{Material, PictureBytes, Scene};
 
 fn layers(bsdf: &str) -> PrincipledMaterial {
     let scene = clean(&format!("<shape type='sphere'>{bsdf}</shape>"));
@@ -119,6 +120,45 @@ fn materials_have_their_indices_and_alphas() {
         <bsdf type='conductor'/></bsdf></shape>",
     );
     assert!(format!("{:?}", material(&scene)).contains("share: 0.75"));
+}
+
+#[test]
+fn pictures_say_numbers_too() {
+    let fields = |name: &str, one: f32, other: f32| {
+        format!(
+            "<texture name='{name}' type='checkerboard'><rgb name='color0' value='{one}'/>\
+             <rgb name='color1' value='{other}'/></texture>"
+        )
+    };
+    // The values of a picture that a material names: numbers without a curve.
+    let check = |bsdf: &str, get: &dyn Fn(&PrincipledMaterial) -> Option<&FileName>, wanted: [f32; 2]| {
+        let scene = clean(&format!("<shape type='sphere'>{bsdf}</shape>"));
+        let Material::Principled(layers) = material(&scene) else { panic!("{bsdf}") };
+        let name = get(layers).unwrap_or_else(|| panic!("{bsdf} has a picture"));
+        let PictureBytes::Here(path, bytes) = &scene.assets.pictures[&name.path].bytes else { panic!() };
+        let image = crate::image::read(bytes, path).unwrap();
+        for (pixel, wanted) in image.pixels.iter().zip(wanted) {
+            // Fields have eight bits, and so has what is made of them.
+            assert!((pixel.x - wanted).abs() < 1.5 / 255.0, "{bsdf}: {} and not {wanted}", pixel.x);
+        }
+        (**layers).clone()
+    };
+    // The root of alpha is our roughness.
+    let (ggx, alpha) = ("<string name='distribution' value='ggx'/>", fields("alpha", 0.04, 0.25));
+    let metal = format!("<bsdf type='roughconductor'>{ggx}{alpha}</bsdf>");
+    let metal = check(&metal, &|m| m.specular_roughness_texture.as_ref(), [0.2, 0.5]);
+    assert_eq!(metal.specular_roughness, 1.0);
+    let inner = "<bsdf type='diffuse'/>";
+    let mask = format!("<bsdf type='mask'>{}{inner}</bsdf>", fields("opacity", 0.0, 1.0));
+    check(&mask, &|m| m.opacity_texture.as_ref(), [0.0, 1.0]);
+    let bump =
+        format!("<bsdf type='bumpmap'>{}<float name='scale' value='.3'/>{inner}</bsdf>", fields("arbitrary", 0.5, 0.9));
+    assert_eq!(check(&bump, &|m| m.bump_texture.as_ref(), [0.5, 0.9]).bump_height, 0.3);
+    let parts = fields("roughness", 0.3, 0.6) + &fields("metallic", 0.0, 0.7);
+    let disney = format!("<bsdf type='principled'>{parts}</bsdf>");
+    check(&disney, &|m| m.base_metalness_texture.as_ref(), [0.0, 0.7]);
+    let disney = check(&disney, &|m| m.specular_roughness_texture.as_ref(), [0.3, 0.6]);
+    assert!((disney.specular_roughness - 1.0).abs() < 1e-6 && disney.base_metalness == 1.0);
 }
 
 /// The only mesh of a scene.

@@ -1,8 +1,8 @@
 use super::super::environment::{equal_area, of_equal_area};
-use super::super::material::rough;
 use super::super::named;
 use super::super::spectrum::{Space, Spectrum, conductor, metal};
 use super::*;
+use crate::bsdf::microfacet::Ggx;
 use crate::camera::{CameraSample, Frame, Lens};
 use crate::compile::testing;
 use crate::diag::Diagnostic;
@@ -218,7 +218,7 @@ fn alphas_become_roughness_and_come_back() {
     let mut random = Random(4);
     for _ in 0..200 {
         let [u, v] = [random.between(0.001, 1.0), random.between(0.001, 1.0)];
-        let [roughness, anisotropy, turn] = rough([u, v]);
+        let [roughness, anisotropy, turn] = Ggx::parameters([u, v]);
         let rest = 1.0 - anisotropy;
         let along = roughness * roughness * (2.0 / (1.0 + rest * rest)).sqrt();
         let (a, b) = if turn == 0.0 { (along, rest * along) } else { (rest * along, along) };

@@ -31,7 +31,7 @@ fn along(world: &World, origin: [f32; 3], sine: f32) -> Vec<f32> {
     let mut account = Account::default();
     Whitted { world, settings, cancel: None }.radiance(&ray, &mut account);
     let mut found = Vec::new();
-    transmitted(&account.into_tree().unwrap(), &mut found);
+    transmitted(&account.into_tree().unwrap().root, &mut found);
     // Rounded to thousandths.
     found.iter().map(|dir| (1e3 * sine / dir.x).round() / 1e3).collect()
 }
