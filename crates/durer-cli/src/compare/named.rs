@@ -34,7 +34,7 @@ pub fn lines(diagnosis: &Diagnosis) -> Vec<String> {
         (1000.0 * first.explained + 1e-6).floor() / 10.0
     )];
     for (mistake, value) in &first.mistakes {
-        let [right, wrong] = mistake.forms(*value, diagnosis.rules.as_ref());
+        let [right, wrong] = mistake.forms(*value, &diagnosis.formulas);
         lines.push(format!("  should be:  {right}"));
         lines.push(format!("  may be:     {wrong}"));
         lines.push(format!("  see the step `{}` of `durer lesson`", mistake.step));
@@ -55,7 +55,7 @@ pub fn words(named: &Named) -> String {
 pub fn json(diagnosis: &Diagnosis) -> Value {
     let one = |named: &Named| {
         let mistake = |(mistake, value): &(&durer::mistakes::Mistake, f32)| {
-            let [right, wrong] = mistake.forms(*value, diagnosis.rules.as_ref());
+            let [right, wrong] = mistake.forms(*value, &diagnosis.formulas);
             json!({
                 "name": mistake.name, "words": mistake.told(*value), "value": value,
                 "right": right, "wrong": wrong, "step": mistake.step,

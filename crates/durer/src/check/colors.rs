@@ -172,6 +172,13 @@ pub(super) fn odd_index(scout: &Scout) -> Vec<Finding> {
     let fields = ["indexOfRefraction", "refractionIndex"];
     for (i, written, phong) in phongs(scout).filter(|(i, ..)| rays(scout, *i) > 0).take(MOST_SOUGHT) {
         let Written::Phong(own, _) = &written.value else { continue };
+        let mirrors = phong.reflective.max_element() > 0.5 && phong.diffuse.max_element() < 0.15;
+        if own.refraction_index == Some(0.0) && mirrors && scout.value(written.span, &["refractionIndex"]).is_some() {
+            let diagnostic = Diagnostic::warning(format!("material {i} has an index of refraction of 0"))
+                .effect("this year's program takes that for no glass: it is a mirror, and lets nothing through")
+                .help("glass has 1.5, water 1.33; for a mirror leave `refractionIndex` away");
+            found.push(Finding::from(scout.at_value(diagnostic, written.span, &fields)));
+        }
         if phong.transparent.max_element() <= 0.0 {
             continue;
         }
@@ -228,7 +235,7 @@ fn all_colors(scout: &Scout) -> Vec<Named> {
         let Written::Phong(phong, _) = &written.value else { continue };
         // A surface gives back no more than it gets; a highlight may be as strong as it looks well.
         // What is hardly seen may stand for a lamp.
-        let small = rays(scout, i) * 12 < scout.probes.len();
+        let small = rays(scout, i) * 25 < scout.probes.len();
         let named = |color, fields, most: f32| {
             let most = if small { most.max(15.0) } else { most };
             Named { color, block: written.span, fields, most }

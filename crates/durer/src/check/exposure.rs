@@ -158,6 +158,10 @@ pub(super) fn one_color(scout: &Scout) -> Vec<Finding> {
         _ => format!("of the one colour {}", vector(first)),
     };
     let empty = scout.seen().next().is_none();
+    // What is too small for the grid of rays is there all the same.
+    if empty && scout.sights().contains(&super::sight::Sight::Seen) {
+        return Vec::new();
+    }
     let diagnostic = Diagnostic::warning(format!("the whole picture is {name}"));
     let diagnostic = match empty {
         true => diagnostic.effect("every ray misses: it is the background"),

@@ -31,20 +31,23 @@ pub(super) fn too_small(scout: &Scout) -> Vec<Finding> {
         return Vec::new();
     };
     let empty = scout.seen().next().is_none();
-    if size >= FEWEST_PIXELS || !empty && !scout.sights().contains(&Sight::Seen) {
+    // Who takes so wide a field of view wants to see much, not a few small things in its middle.
+    let wide = matches!(&scout.world().camera, Camera::Perspective(camera) if camera.angle > 90.0);
+    let fewest = if wide { (0.08 * scout.larger()).max(FEWEST_PIXELS) } else { FEWEST_PIXELS };
+    if size >= fewest || !empty && !scout.sights().contains(&Sight::Seen) {
         return Vec::new();
     }
     let (span, larger) = (scout.subject.scene.camera_span, scout.larger());
     let wanted = 0.6 * larger / size.max(1e-6);
     let diagnostic =
         Diagnostic::warning(format!("all things together are {} pixels wide in a picture of {larger}", number(size)))
-            .effect(if empty {
+            .effect(if empty && size < FEWEST_PIXELS {
                 "every ray misses them; the whole picture is background"
             } else {
                 "next to nothing is seen of them"
             });
     let (diagnostic, field) = match &scout.world().camera {
-        Camera::Perspective(camera) if camera.angle > 100.0 => {
+        Camera::Perspective(camera) if camera.angle > 90.0 => {
             (diagnostic.help("take a smaller field of view, 40 degrees, say, or go nearer"), "angle")
         }
         Camera::Orthographic(camera) => {
@@ -66,9 +69,12 @@ pub(super) fn too_narrow(scout: &Scout) -> Vec<Finding> {
     let (bounds, span, larger) = (scout.world().bounds(), scout.subject.scene.camera_span, scout.larger());
     // What is seen whole is not seen too near.
     let seen = scout.world().objects.iter().zip(scout.sights()).filter(|(_, sight)| **sight == Sight::Seen);
-    let mut sizes = seen.filter_map(|(object, _)| pixels(scout, object.bounds()?));
-    if bounds.is_empty() || sizes.any(|size| size < 3.0 * larger) {
+    let sizes: Vec<f32> = seen.filter_map(|(object, _)| pixels(scout, object.bounds()?)).collect();
+    if bounds.is_empty() {
         return Vec::new();
+    }
+    if sizes.iter().any(|size| *size < 3.0 * larger) {
+        return one_fills(scout, &sizes).into_iter().collect();
     }
     let radians = |angle: f32| angle <= std::f32::consts::PI;
     match &scout.world().camera {
@@ -105,6 +111,30 @@ pub(super) fn too_narrow(scout: &Scout) -> Vec<Finding> {
         }
         _ => Vec::new(),
     }
+}
+
+/// A narrow field of view that one thing fills, and most others are beside it.
+fn one_fills(scout: &Scout, sizes: &[f32]) -> Option<Finding> {
+    let Camera::Perspective(camera) = &scout.world().camera else { return None };
+    let sights = scout.sights().iter().zip(&scout.world().objects);
+    let out = sights.filter(|(sight, object)| **sight == Sight::Outside && object.bounds().is_some()).count();
+    let [size] = sizes else { return None };
+    if camera.angle > 12.0 || *size < 1.2 * scout.larger() || out < 2 {
+        return None;
+    }
+    let diagnostic = Diagnostic::warning(format!("the field of view is {} degrees only", number(camera.angle)))
+        .effect(format!("one thing fills the picture, and {out} are beside it"))
+        .help("30 to 60 degrees are usual: is a digit missing?");
+    let span = scout.subject.scene.camera_span;
+    Some(Finding::from(scout.at_value(diagnostic, span, &["angle", "fov"])).whole(true))
+}
+
+/// How many times larger an object is than the largest other one, if that is far.
+pub(super) fn times_larger(scout: &Scout, object: u32) -> Option<f32> {
+    let size = |i: usize| Some(scout.world().objects[i].bounds()?.size().max_element());
+    let others = (0..scout.world().objects.len()).filter(|&i| i != object as usize).filter_map(size);
+    let times = size(object as usize)? / others.fold(0.0, f32::max);
+    (times > SWALLOWING && times.is_finite()).then_some(times)
 }
 
 /// Whether a large object spoils the picture: it is not seen, though it reaches over all, or others are not seen for it.

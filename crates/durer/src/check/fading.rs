@@ -11,7 +11,10 @@ use crate::math::Vec3;
 pub(super) fn faint(scout: &Scout) -> Vec<Finding> {
     each(scout, |light, verdict| {
         let Verdict::Faint(most) = verdict else { return None };
-        let message = format!("this light fades to {} before it arrives", number(most));
+        let message = match written(scout, light)?.value {
+            Light::Directional(_) => format!("this light adds {} at most", number(most)),
+            _ => format!("this light fades to {} before it arrives", number(most)),
+        };
         let (diagnostic, span) = useless(scout, light, message)?;
         let factor = 0.8 / most.max(1e-30);
         let written = &written(scout, light)?.value;

@@ -1,7 +1,7 @@
 //! What each light does to what is seen, and why it does nothing.
 
 use super::finding::{Finding, percent, vector};
-use super::scout::{Lit, Scout};
+use super::scout::{Lit, Scout, Seen};
 use super::solid::around;
 use crate::camera::Lens;
 use crate::diag::{Diagnostic, Severity, Span};
@@ -98,7 +98,13 @@ fn cancelled_together(scout: &Scout, verdicts: &[Verdict]) -> bool {
 
 fn verdict(scout: &Scout, number: usize) -> Verdict {
     let light = &scout.world().lights[number];
-    let all: Vec<&Lit> = scout.seen().filter_map(|(_, seen)| seen.by(number)).collect();
+    // Clear glass shows what is behind it, not the light that falls on it.
+    let clear = |seen: &Seen| match &scout.world().materials[seen.material as usize] {
+        Material::Phong(phong) => phong.transparent.min_element() > 0.5 && phong.diffuse.max_element() < 0.1,
+        Material::Solid(..) => false,
+    };
+    let lit = scout.seen().filter(|(_, seen)| !clear(seen));
+    let all: Vec<&Lit> = lit.filter_map(|(_, seen)| seen.by(number)).collect();
     if color(light) == Color::ZERO {
         return Verdict::Black;
     }

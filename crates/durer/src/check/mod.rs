@@ -24,6 +24,7 @@ mod objects;
 mod patterns;
 mod physical;
 pub mod picture;
+mod places;
 mod repair;
 mod scout;
 mod sight;
@@ -60,9 +61,8 @@ const CONSEQUENCES: &[(&str, &[&str])] = &[
     ("light-twice", &["too-bright"]),
     ("light-divides", &["not-finite"]),
     ("no-falloff", &["not-finite", "light-divides"]),
-    ("up-parallel", &["camera-away"]),
     ("below-plane", &["unseen", "seen-from-behind", "light-cancelled", "light-behind"]),
-    ("squashed", &["all-missed"]),
+    ("squashed", &["all-missed", "too-small", "tiny", "out-of-scale", "empty-solid"]),
     ("degenerate-triangle", &["all-missed", "unseen", "same-place"]),
     ("dull-glass", &["black-material"]),
     ("black-material", &["too-dark"]),
@@ -90,8 +90,9 @@ const CONSEQUENCES: &[(&str, &[&str])] = &[
     ("lamp-blocked", &["unseen"]),
     ("light-near", &["too-dark", "too-bright", "light-faint"]),
     ("unused-define", &["unused-material"]),
-    ("plane-normal", &["plane-through"]),
+    ("plane-normal", &["plane-through", "too-bright"]),
     ("same-parts", &["pattern-scale"]),
+    ("empty-solid", &["one-color"]),
     ("same-place", &["unseen"]),
     ("too-small", &["tiny", "pattern-scale", "light-behind", "light-cancelled"]),
     ("tiny", &["unseen"]),

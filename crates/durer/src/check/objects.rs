@@ -6,6 +6,7 @@ use super::scout::Scout;
 use super::sight::Sight;
 use crate::diag::{Diagnostic, Span};
 use crate::math::{Ray, Vec3};
+use crate::scene::{MatrixOp, Node, Object as Written};
 use crate::shape::{Plane, Primitive};
 use crate::world::{Geometry, Object};
 use std::collections::HashMap;
@@ -87,7 +88,35 @@ pub(super) fn squashed(scout: &Scout) -> Vec<Finding> {
             .help("look at the `Scale` and `UniformScale` around it");
         found.push(Finding::from(diagnostic));
     }
+    found.extend(
+        scout.subject.scene.root.iter().flat_map(|root| &root.objects).flat_map(|object| squashed_parts(object, false)),
+    );
     found
+}
+
+/// Parts of solids that a scale of theirs makes next to nothing.
+fn squashed_parts(object: &Written, within: bool) -> Vec<Finding> {
+    let least = |op: &MatrixOp| match op {
+        MatrixOp::UniformScale(s) => s.abs(),
+        MatrixOp::Scale(v) => v.abs().min_element(),
+        _ => 1.0,
+    };
+    match &object.node {
+        Node::Group(group) => group.objects.iter().flat_map(|inner| squashed_parts(inner, within)).collect(),
+        Node::Solid(_, parts) => parts.iter().flat_map(|part| squashed_parts(part, true)).collect(),
+        Node::Transform(ops, inner) => {
+            let mut found = squashed_parts(inner, within);
+            if within && ops.iter().map(least).product::<f32>() < SQUASHED {
+                let diagnostic = Diagnostic::warning("a scale makes this part of a solid next to nothing")
+                    .at(object.span)
+                    .effect("what is left of the solid is not seen, or the part changes nothing")
+                    .help("look at the `Scale` and `UniformScale` in it");
+                found.push(Finding::from(diagnostic));
+            }
+            found
+        }
+        _ => Vec::new(),
+    }
 }
 
 /// Whether two objects have the same surface.

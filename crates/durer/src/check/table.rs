@@ -47,9 +47,9 @@ checks! {
     // Where the camera is.
     "far-origin": "a scene so far from the origin that numbers have no digits left for its shapes", lens::far_origin;
     "epsilon": "a scene smaller than the distance at which this year's program lets shadow rays begin", lens::below_epsilon;
-    "up-parallel": "the camera's `up` is parallel to its `direction`", reported;
     "camera-inside": "the camera is inside an object", view::inside;
     "camera-away": "the camera looks past everything", view::away;
+    "up-parallel": "the camera's `up` is parallel to its `direction`", reported;
     "too-small": "all things together are too small in the picture", extent::too_small;
     "too-narrow": "the picture shows a tiny part of the scene", extent::too_narrow;
     "empty-solid": "a solid of which nothing is left", objects::empty_solid;

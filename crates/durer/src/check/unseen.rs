@@ -51,8 +51,13 @@ pub(super) fn unseen(scout: &Scout) -> Vec<Finding> {
                 scout.object(first)
             ),
         };
-        // What is out of the picture may stand there for its shadow, or its light.
-        let diagnostic = Diagnostic::note(message)
+        // What is out of the picture may stand there for its shadow, or its light; not if next to nothing is left.
+        let own = |(_, seen): &(_, &crate::check::scout::Seen)| {
+            scout.world().objects[seen.object as usize].bounds().is_some()
+        };
+        let left = scout.seen().filter(own).count() * 50;
+        let severity = if left < scout.probes.len() { severity(out.len()) } else { Severity::Note };
+        let diagnostic = Diagnostic { severity, ..Diagnostic::note(message) }
             .at(scout.object_span(first))
             .effect("the camera does not look where it is")
             .help("look at its place and the transforms around it");
@@ -251,7 +256,7 @@ pub(super) fn flat_field(scout: &Scout) -> Vec<Finding> {
 }
 
 /// Whether light goes through an object.
-fn is_glass(scout: &Scout, object: u32) -> bool {
+pub(super) fn is_glass(scout: &Scout, object: u32) -> bool {
     let world = scout.world();
     let phong =
         |material: &Material| matches!(material, Material::Phong(phong) if phong.transparent.max_element() > 0.0);

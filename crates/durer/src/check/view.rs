@@ -8,6 +8,7 @@ use super::solid::around;
 use crate::camera::{Camera, Lens};
 use crate::diag::{Diagnostic, Span};
 use crate::math::{Aabb, Color, Ray, Vec2, Vec3, fp};
+use crate::scene::{Group, Node};
 use crate::shape::Primitive;
 use crate::world::{Geometry, Material, Object};
 
@@ -18,9 +19,10 @@ pub(super) fn has_eye(scout: &Scout) -> bool {
 
 /// A scene in which nothing is.
 pub(super) fn no_objects(scout: &Scout) -> Vec<Finding> {
-    let Some(_) = scout.subject.scene.root.as_ref().filter(|_| scout.world().objects.is_empty()) else {
-        return Vec::new();
-    };
+    // Solids of which nothing is left are told of as that.
+    let solid = |object: &Node| matches!(object, Node::Solid(..));
+    let empty = |root: &&Group| scout.world().objects.is_empty() && !root.objects.iter().any(|o| solid(&o.node));
+    let Some(_) = scout.subject.scene.root.as_ref().filter(empty) else { return Vec::new() };
     let diagnostic = Diagnostic::warning("the scene has no objects: its group is empty")
         .effect("every ray misses; the whole picture is background")
         .help("write some into the `Group`");
@@ -41,7 +43,7 @@ pub(super) fn inside(scout: &Scout) -> Vec<Finding> {
         let dark = !physical && all_fail(scout) && scout.verdicts().contains(&Verdict::Blocked(object));
         // Walls that are seen from behind where backs are not shaded are no room's.
         let backs = scout.seen().filter(|(_, seen)| seen.object == object && seen.from_behind).count();
-        let walls = !physical && !scout.subject.job.settings.shade_back && backs * 10 > rays * 3;
+        let walls = !physical && !scout.subject.job.settings.shade_back && backs * 50 > rays;
         if own * 100 < rays * 99 && !dark && !walls {
             continue;
         }
@@ -56,10 +58,17 @@ pub(super) fn inside(scout: &Scout) -> Vec<Finding> {
                 true => "it keeps the light out; all that is seen is in its shadow",
                 false => "all that is seen is the inside of it",
             })
-            .help(format!(
-                "move the camera out of it: against its direction it is outside at `center {}`",
-                vector(outside)
-            ));
+            .help(match super::extent::times_larger(scout, object) {
+                Some(times) => format!(
+                    "it is {} times larger than what else there is: make it smaller, or move the camera out, to `center {}`",
+                    number(times),
+                    vector(outside)
+                ),
+                None => format!(
+                    "move the camera out of it: against its direction it is outside at `center {}`",
+                    vector(outside)
+                ),
+            });
         let diagnostic = scout.at_value(diagnostic, scout.subject.scene.camera_span, &["center"]);
         found.push(Finding::from(diagnostic).whole(true));
     }
@@ -148,15 +157,24 @@ pub(super) fn away(scout: &Scout) -> Vec<Finding> {
     }
     let to = center - pose.center;
     let angle = degrees(pose.direction, to);
+    // With an `up` that says nothing the picture may be turned any way; far from its middle that does not matter.
+    let turned = pose.up.normalize_or_zero().cross(pose.direction.normalize_or_zero()).length() < 1e-3;
+    if turned && angle < 60.0 {
+        return Vec::new();
+    }
     diagnostic.message += &format!(": the middle of the scene lies {angle:.0} degrees off its direction");
-    let mut help = format!("{}turn it: `direction {}`", nearest(scout), vector(to));
+    let moved = super::places::moved(scout);
+    let first = moved.as_ref().map_or_else(|| nearest(scout), |(_, words)| words.clone() + "; or ");
+    let mut help = format!("{first}turn it: `direction {}`", vector(to));
     let as_point = pose.direction - pose.center;
     if degrees(as_point, to) < 20.0 && angle > 20.0 {
         help += "; `direction` is a direction, not the point to look at";
     }
-    let diagnostic = match scout.value(span, &["direction"]) {
-        Some(_) => mended(scout, diagnostic.help(help), "direction", to),
-        None => diagnostic.help(help).at(span),
+    let diagnostic = match (moved, scout.value(span, &["direction"])) {
+        // Which of the two is wrong nobody knows.
+        (Some((place, _)), _) => diagnostic.help(help).at(place).related(span, "the camera"),
+        (None, Some(_)) => mended(scout, diagnostic.help(help), "direction", to),
+        (None, None) => diagnostic.help(help).at(span),
     };
     vec![Finding::from(diagnostic).whole(true)]
 }
@@ -185,7 +203,7 @@ fn mended(scout: &Scout, diagnostic: Diagnostic, field: &str, value: Vec3) -> Di
 }
 
 /// Whether the camera sees a place, if nothing is in front of it.
-fn aims(scout: &Scout, place: Vec3) -> bool {
+pub(super) fn aims(scout: &Scout, place: Vec3) -> bool {
     !super::sight::rays_to(scout, place).is_empty()
 }
 
@@ -233,7 +251,9 @@ pub(super) fn missed(scout: &Scout) -> Vec<Finding> {
     if scout.seen().next().is_some() || world.objects.is_empty() {
         return Vec::new();
     }
-    let Some(bounds) = target(scout).filter(|bounds| aims(scout, bounds.center())) else { return Vec::new() };
+    // What is too small for the grid of rays is no hole.
+    let hit = scout.sights().contains(&Sight::Seen);
+    let Some(bounds) = target(scout).filter(|bounds| !hit && aims(scout, bounds.center())) else { return Vec::new() };
     let mut diagnostic = Diagnostic::warning("every ray misses, though the camera looks at the middle of the scene")
         .effect("the whole picture is background")
         .at(scout.subject.scene.camera_span);
@@ -287,14 +307,21 @@ pub(super) fn hidden(scout: &Scout) -> Vec<Finding> {
     let covered = scout.seen().count();
     let is_plane = scout.world().objects[front as usize].bounds().is_none();
     // A thing may well stand behind another; behind a plane without end, nothing is ever seen.
-    if hidden == 0 || others > 0 || !is_plane && covered * 2 < scout.probes.len() {
+    let few = !is_plane && covered * 2 < scout.probes.len();
+    if hidden == 0 || others > 0 || few || super::unseen::is_glass(scout, front) {
         return Vec::new();
     }
     let name = scout.object(front);
     let behind = scout.seen().all(|(_, seen)| seen.from_behind);
+    // Rays without a beginning see what is behind the camera too.
+    let backwards = !has_eye(scout) && scout.seen().all(|(_, seen)| seen.t < 0.0);
     // Whoever looks at its back may be on the wrong side of it himself.
     let turned = (is_plane && !behind).then(|| offset_turned(scout, front)).flatten();
     let help = match (is_plane, behind) {
+        _ if backwards => {
+            "it is behind the camera's `center`, but this camera's rays have no beginning and see what is behind it first: move \
+             it away, or turn its `offset`"
+        }
         _ if is_plane && turned.is_none() && !behind => {
             "the camera and the things behind the plane are on different sides of it: move one of them"
         }
@@ -326,7 +353,9 @@ pub(super) fn below_plane(scout: &Scout) -> Vec<Finding> {
         |(i, (object, _)): &(usize, (&Object, &Sight))| object.bounds().is_some() && !empty.contains(&(*i as u32));
     for (_, (object, sight)) in objects.iter().zip(scout.sights()).enumerate().filter(there) {
         let by = match sight {
-            Sight::Hidden(by) => Some(*by).filter(|by| objects[*by as usize].bounds().is_none()),
+            Sight::Hidden(by) => {
+                Some(*by).filter(|by| objects[*by as usize].bounds().is_none() && !super::unseen::is_glass(scout, *by))
+            }
             Sight::Outside if has_eye(scout) => plane_before(scout, object),
             _ => None,
         };
@@ -427,8 +456,12 @@ pub(super) fn upside_down(scout: &Scout) -> Vec<Finding> {
     let (eye, things) = (world.camera.pose().center, world.bounds());
     let mut planes = (0..world.objects.len() as u32).filter_map(|i| Some((i, ground(scout, i)?)));
     let (Some((number, (n, d))), None) = (planes.next(), planes.next()) else { return Vec::new() };
-    let n = if eye.dot(n) < d { -n } else { n };
-    let d = if eye.dot(n) < d { -d } else { d };
+    // Who is on the wrong side of the ground is told that.
+    let middle = things.center().dot(n) > d;
+    let (n, d) = if eye.dot(n) < d { (-n, -d) } else { (n, d) };
+    if !things.is_empty() && middle != (things.center().dot(n) > d) && !hidden(scout).is_empty() {
+        return Vec::new();
+    }
     let height = |p: &Vec3| p.dot(n) - d;
     let size = things.size().max_element();
     let stand = !things.is_empty() && things.corners().iter().all(|p| height(p) > -0.1 * size);

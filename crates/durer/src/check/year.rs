@@ -13,7 +13,7 @@ use crate::scene::{Material as Written, Spanned};
 /// Lengths of a camera's `up` that nobody sees in the picture.
 const UNIT: std::ops::RangeInclusive<f32> = 0.9..=1.1;
 /// Cosines between `up` and `direction` beyond which the picture is seen to be skewed.
-const SKEW: f32 = 0.7;
+const SKEW: f32 = 0.6;
 /// Sides of a picture that differ by less look equal.
 const SQUARE: f32 = 1.05;
 
@@ -136,8 +136,9 @@ pub(super) fn no_exponent(scout: &Scout) -> Vec<Finding> {
 pub(super) fn long_up(scout: &Scout) -> Vec<Finding> {
     let up = scout.world().camera.pose().up;
     let length = up.length();
-    if !scout.world().rules.has(Compat::RawUp) {
-        return Vec::new();
+    let rules = &scout.world().rules;
+    if !rules.has(Compat::RawUp) {
+        return skew_up(scout).filter(|_| rules.has(Compat::SkewUp)).into_iter().collect();
     }
     if UNIT.contains(&length) {
         return skew_up(scout).into_iter().collect();

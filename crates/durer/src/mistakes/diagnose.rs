@@ -3,9 +3,8 @@
 use super::habits::Turn;
 use super::pictures::View;
 use super::search::{Fit, difference, differing, fit, sampled};
-use super::table::{MISTAKES, Mistake, Values};
+use super::table::{Formulas, MISTAKES, Mistake, Values};
 use super::{Variant, speckles};
-use crate::dialect::Rules;
 use crate::image::Transfer;
 use crate::image::compare::{Picture, Scale};
 use crate::math::Vec3;
@@ -76,8 +75,8 @@ pub struct Diagnosis {
     pub named: Vec<Named>,
     /// What came nearest, whether it is named or not.
     pub tried: Vec<Named>,
-    /// The rules of the scene, in whose formulas mistakes are told.
-    pub rules: Option<Rules>,
+    /// The formulas in which mistakes are told.
+    pub formulas: Formulas,
 }
 
 impl Diagnosis {
@@ -154,7 +153,7 @@ fn prepared<'a>(question: &Question<'a>) -> (Vec<Vec3>, View<'a>, Variant<'a>) {
 
 /// Tries all mistakes. `told` hears how far the work is, from 0 to 1.
 pub fn diagnose(question: &Question, told: &(dyn Fn(f64) + Sync)) -> Diagnosis {
-    Diagnosis { rules: Some(question.world.rules.clone()), ..all_tried(question, told) }
+    Diagnosis { formulas: Formulas::of(question.scene, &question.world.rules), ..all_tried(question, told) }
 }
 
 fn all_tried(question: &Question, told: &(dyn Fn(f64) + Sync)) -> Diagnosis {
@@ -216,10 +215,10 @@ fn all_tried(question: &Question, told: &(dyn Fn(f64) + Sync)) -> Diagnosis {
     let tried = tried(&trials);
     let single = decided(trials, &full, &Bars::SINGLE);
     if single.first().is_some_and(|named| Bars::CLEAR.passes(&named.fit())) {
-        return Diagnosis { off, named: single, tried, rules: None };
+        return Diagnosis { off, named: single, tried, ..Diagnosis::default() };
     }
     if let Some(share) = search.acne(&all, &reference, &test) {
-        return Diagnosis { off, named: vec![share], tried, rules: None };
+        return Diagnosis { off, named: vec![share], tried, ..Diagnosis::default() };
     }
     told(0.6);
     let (pairs, tried_pairs) = search.pairs(&better, &singles, [&few(FEWEST), &some, &coarse, &full]);
@@ -227,7 +226,7 @@ fn all_tried(question: &Question, told: &(dyn Fn(f64) + Sync)) -> Diagnosis {
     // Two mistakes explain more than one; they must explain far more.
     let rest = |named: &[Named]| named.first().map_or(1.0, |named| 1.0 - named.explained);
     let named = if rest(&pairs) < 0.35 * rest(&single) { pairs } else { single };
-    Diagnosis { off, named, tried: [tried, tried_pairs].concat(), rules: None }
+    Diagnosis { off, named, tried: [tried, tried_pairs].concat(), ..Diagnosis::default() }
 }
 
 /// What was tried at all pixels, the best first.

@@ -88,6 +88,15 @@ pub enum Half {
     Mean,
 }
 
+/// Rays for which hits behind their origin count.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Behind {
+    /// All.
+    All,
+    /// Those of the camera.
+    Camera,
+}
+
 /// How what the lights give is added.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Sum {
@@ -96,6 +105,8 @@ pub enum Sum {
     Right,
     /// Clamped to 1 after each light.
     ClampedEach,
+    /// What each light gives is clamped to 1 by itself.
+    ClampedLight,
     /// Clamped to 1 before mirrored and transmitted light is added.
     ClampedLocal,
     /// Each light replaces those before it.
@@ -313,8 +324,10 @@ pub struct Bounces {
 pub struct Habits {
     /// Which hit is taken.
     pub pick: Pick,
-    /// Hits behind the ray's origin count.
-    pub behind: bool,
+    /// Hits behind the ray's origin count: for camera rays, or for all.
+    pub behind: Option<Behind>,
+    /// The colour that each ray brings back is clamped to 1.
+    pub clamped_rays: bool,
     /// Directions are normalised in object space, so that `t` is another there.
     pub local_unit: bool,
     /// Normals of transformed things.
@@ -327,6 +340,8 @@ pub struct Habits {
     pub triangles_turned: bool,
     /// Normals of spheres point inwards.
     pub spheres_turned: bool,
+    /// Those of planes do.
+    pub planes_turned: bool,
     /// Which normals of a triangle's corners its three weights belong to; 0 is right.
     pub mixed_otherwise: usize,
     /// Shaded normals always face the eye.

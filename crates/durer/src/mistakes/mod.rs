@@ -18,5 +18,5 @@ mod tests;
 
 pub use diagnose::{Diagnosis, Named, Question, diagnose, off};
 pub use pupil::Pupil;
-pub use table::{MISTAKES, Mistake, Values, of_name};
+pub use table::{Formulas, MISTAKES, Mistake, Values, of_name};
 pub use variant::Variant;

@@ -4,7 +4,7 @@
 //! to the bit: a test holds the two together.
 
 use super::habits::{
-    Ambient, Cosine, Fading, Fresnel, Glass, Habits, Half, Mirror, Normals, Pick, PointLamp, ShadowWay, Sum,
+    Ambient, Behind, Cosine, Fading, Fresnel, Glass, Habits, Half, Mirror, Normals, Pick, PointLamp, ShadowWay, Sum,
 };
 use crate::dialect::Compat;
 use crate::integrator::media::Media;
@@ -53,10 +53,16 @@ impl<'w> Pupil<'w> {
         let mut rest = *ray;
         // Some habits find the same hidden surface again.
         for _ in 0..64 {
-            let Some((hit, t)) = self.closest(&rest) else { break };
+            let behind = self.habits.behind.is_some_and(|rays| rays == Behind::All || path.first);
+            let from = if behind { f32::NEG_INFINITY } else { rest.rounded.t_min };
+            let reaching = Ray64 { rounded: Ray { t_min: from, ..rest.rounded }, ..rest };
+            let Some((hit, t)) = self.closest(&reaching) else { break };
             let official = self.world.rules.is_official();
             match if official { None } else { self.right.passage(ray, &hit, &path.media) } {
                 Some(Passage { hidden: true, behind, .. }) => (path.media, rest.rounded.t_min) = (behind, hit.t),
+                _ if self.habits.clamped_rays => {
+                    return self.shade(ray, &hit, t, path).clamp(Color::ZERO, Color::ONE);
+                }
                 _ => return self.shade(ray, &hit, t, path),
             }
         }
@@ -69,11 +75,6 @@ impl<'w> Pupil<'w> {
 
     /// The hit, and the `t` at which the pupil takes it to be.
     fn closest(&self, ray: &Ray64) -> Option<(Hit, f32)> {
-        let mut ray = *ray;
-        if self.habits.behind {
-            ray.rounded.t_min = f32::NEG_INFINITY;
-        }
-        let ray = &ray;
         if self.habits.local_unit {
             let mut whole = *ray;
             whole.rounded.t_max = f32::INFINITY;
@@ -134,7 +135,7 @@ impl<'w> Pupil<'w> {
             return self.closest(ray).is_some();
         }
         let mut ray = *ray;
-        if self.habits.behind {
+        if self.habits.behind == Some(Behind::All) {
             ray.rounded.t_min = f32::NEG_INFINITY;
         }
         self.world.occluded(&ray, &mut ())
@@ -176,7 +177,8 @@ impl<'w> Pupil<'w> {
         }
         let triangle = matches!(object.geometry, Geometry::Mesh(_) | Geometry::Primitive(Primitive::Triangle(_)));
         let sphere = matches!(object.geometry, Geometry::Primitive(Primitive::Sphere(_)));
-        if habits.triangles_turned && triangle || habits.spheres_turned && sphere {
+        let plane = matches!(object.geometry, Geometry::Primitive(Primitive::Plane(_)));
+        if habits.triangles_turned && triangle || habits.spheres_turned && sphere || habits.planes_turned && plane {
             (surface.n_shade, surface.n_geo) = (-surface.n_shade, -surface.n_geo);
         }
         surface
@@ -223,7 +225,9 @@ impl<'w> Pupil<'w> {
                 for (part, &diffuse) in parts.iter().zip(&diffuse) {
                     let direct = |diffuse| self.direct(part.phong, diffuse, n, ray.dir(), light, &seen);
                     if visible != Color::ZERO {
-                        color += part.share * visible * direct(diffuse);
+                        let light = part.share * visible * direct(diffuse);
+                        let alone = habits.sum == Sum::ClampedLight;
+                        color += if alone { light.clamp(Color::ZERO, Color::ONE) } else { light };
                     }
                     if habits.shadows.highlights_left && visible != Color::ONE {
                         color += part.share * (Color::ONE - visible) * direct(Color::ZERO);

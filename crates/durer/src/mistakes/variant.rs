@@ -5,6 +5,7 @@ use crate::camera::{Camera, CameraSample, Frame, Lens, Raster};
 use crate::compile::{self, AccelKind};
 use crate::dialect::{Compat, CompatSet, Highlight};
 use crate::integrator::Settings;
+use crate::light::Light;
 use crate::material::PhongMaterial;
 use crate::math::{Affine, Color, Ray, Vec2};
 use crate::render::raster;
@@ -33,6 +34,12 @@ pub struct Variant<'s> {
     pub turn: Turn,
 }
 
+/// Whether some light of a scene is written with the three factors of an attenuation.
+pub fn three_factors(scene: &Scene) -> bool {
+    let factors = |light: &Light| matches!(light, Light::Point(p) if p.attenuation.is_some() && p.falloff.is_none());
+    scene.lights.iter().flatten().any(|light| factors(&light.value))
+}
+
 /// How the matrices of a transform become one.
 pub type Product = fn(&[MatrixOp], CompatSet) -> DAffine3;
 
@@ -54,6 +61,11 @@ impl<'s> Variant<'s> {
     /// The pixels of a picture of some size.
     pub fn raster(&self, width: u32, height: u32) -> Raster {
         raster(&self.world, width, height)
+    }
+
+    /// Whether some light is written with the three factors of an attenuation.
+    pub fn has_three_factors(&self) -> bool {
+        three_factors(self.scene)
     }
 
     /// Turns a habit of the rules round.

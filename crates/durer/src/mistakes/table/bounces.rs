@@ -1,6 +1,7 @@
 //! Mistakes of mirrors and glass.
 
 use super::{Mistake, Values, row};
+use crate::math::Color;
 use crate::mistakes::habits::{Fresnel, Glass, Mirror};
 
 pub(super) const MISTAKES: &[Mistake] = &[
@@ -238,6 +239,38 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "color += kd * kr * trace(p, R), or kd * (local + kr * trace(p, R))",
         |v, _| v.habits.bounces.times_diffuse = true,
     ),
+    row(
+        "secondary-diffuse",
+        "reflection",
+        "{mirrors|glass|both} weigh{s|s|} their light by the diffuse colour, not by the specular one",
+        "color += ks * trace(...)",
+        "color += kd * trace(...)",
+        |v, which| {
+            v.phongs(|phong| {
+                let weight =
+                    |own: &mut Color, here: bool| *own = if here && *own != Color::ZERO { phong.diffuse } else { *own };
+                weight(&mut phong.reflective, which != 1.0);
+                weight(&mut phong.transparent, which != 0.0);
+            });
+        },
+    )
+    .with(Values::Only(&[0.0, 1.0, 2.0])),
+    row(
+        "glass-white",
+        "refraction",
+        "{what glass lets through is|what glass lets through and mirrors is} not multiplied with its colour",
+        "color += kt * trace(p, T)",
+        "color += trace(p, T)",
+        |v, which| {
+            v.phongs(|phong| {
+                if phong.transparent != Color::ZERO {
+                    phong.transparent = Color::ONE;
+                    phong.reflective = if which == 0.0 { phong.reflective } else { Color::ONE };
+                }
+            });
+        },
+    )
+    .with(Values::Only(&[0.0, 1.0])),
     row(
         "mirror-squared",
         "reflection",

@@ -261,9 +261,33 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "color / (a0 + a1 d + a2 d^2)",
         "color / (a2 + a1 d + a0 d^2)",
         |v, _| {
-            points(v.world.lights.iter_mut(), |a| a.map(|a| Vec3::new(a.z, a.y, a.x)));
+            if v.has_three_factors() {
+                points(v.world.lights.iter_mut(), |a| a.map(|a| Vec3::new(a.z, a.y, a.x)));
+            }
         },
     ),
+    row(
+        "attenuation-factors",
+        "diffuse",
+        "of the three factors of the attenuation {the linear and the square one are exchanged|the constant one is taken as 1|the square one alone counts|the linear one is left out|the square one is left out|the linear one alone counts}",
+        "I = color / (a0 + a1 d + a2 d^2)",
+        "I = color / ({a0 + a2 d + a1 d^2|1 + a1 d + a2 d^2|a2 d^2|a0 + a2 d^2|a0 + a1 d|a1 d})",
+        |v, how| {
+            let change: fn(Vec3) -> Vec3 = match how as u32 {
+                0 => |a| Vec3::new(a.x, a.z, a.y),
+                1 => |a| Vec3::new(1.0, a.y, a.z),
+                2 => |a| Vec3::new(0.0, 0.0, a.z),
+                3 => |a| Vec3::new(a.x, 0.0, a.z),
+                4 => |a| Vec3::new(a.x, a.y, 0.0),
+                _ => |a| Vec3::new(0.0, a.y, 0.0),
+            };
+            // A single factor has rows of its own.
+            if v.has_three_factors() {
+                points(v.world.lights.iter_mut(), |a| a.map(change));
+            }
+        },
+    )
+    .with(Values::Only(&[0.0, 1.0, 2.0, 3.0, 4.0, 5.0])),
     row(
         "lights-mean",
         "diffuse",
@@ -282,6 +306,22 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "clamp once when the pixel is written",
         "color = min(1, local) + kr * trace(R)",
         |v, _| v.habits.sum = Sum::ClampedLocal,
+    ),
+    row(
+        "clamped-light",
+        "diffuse",
+        "what each light gives is clamped to 1 by itself",
+        "sum all, clamp once when the pixel is written",
+        "for each light color += min(1, ...)",
+        |v, _| v.habits.sum = Sum::ClampedLight,
+    ),
+    row(
+        "clamped-rays",
+        "reflection",
+        "the colour that each ray brings back is clamped to 1",
+        "clamp once when the pixel is written",
+        "trace(ray) returns min(1, color)",
+        |v, _| v.habits.clamped_rays = true,
     ),
     row(
         "clamped-each-light",

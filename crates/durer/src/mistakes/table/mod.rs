@@ -9,7 +9,9 @@ mod shadows;
 mod things;
 
 use super::Variant;
+use super::variant::three_factors;
 use crate::dialect::{Falloff, Highlight, Rules};
+use crate::scene::Scene;
 
 /// A usual mistake.
 #[derive(Clone, Copy, Debug)]
@@ -99,17 +101,39 @@ impl Mistake {
         filled(self.words, value)
     }
 
-    /// How the code should be, and how it probably is, in the formulas of a year's rules.
-    pub fn forms(&self, value: f32, rules: Option<&Rules>) -> [String; 2] {
-        let fading = match rules.map(|rules| rules.falloff) {
-            Some(Falloff::OnePlus) => "1 + f d^2",
-            Some(Falloff::Bare(_)) => "f d^2",
-            Some(Falloff::None) | None => "a0 + a1 d + a2 d^2",
+    /// How the code should be, and how it probably is, in a scene's formulas.
+    pub fn forms(&self, value: f32, formulas: &Formulas) -> [String; 2] {
+        let said = |form| filled(form, value).replace(ATTENUATION, formulas.fading).replace("N.H", formulas.highlight);
+        [self.right, self.wrong].map(said)
+    }
+}
+
+/// What a light is divided by, with all that it can be.
+const ATTENUATION: &str = "a0 + a1 d + a2 d^2";
+
+/// The formulas of a scene and its year, in whose words mistakes are told.
+#[derive(Clone, Copy, Debug)]
+pub struct Formulas {
+    fading: &'static str,
+    highlight: &'static str,
+}
+
+impl Default for Formulas {
+    fn default() -> Self {
+        Formulas { fading: ATTENUATION, highlight: "N.H" }
+    }
+}
+
+impl Formulas {
+    /// Of a scene by its rules.
+    pub fn of(scene: &Scene, rules: &Rules) -> Self {
+        let fading = match rules.falloff {
+            _ if three_factors(scene) => ATTENUATION,
+            Falloff::OnePlus => "1 + f d^2",
+            Falloff::Bare(_) => "f d^2",
+            Falloff::None => ATTENUATION,
         };
-        let is_phong = rules.is_some_and(|rules| rules.highlight == Highlight::Phong);
-        let base = if is_phong { "R.L" } else { "N.H" };
-        [self.right, self.wrong]
-            .map(|form| filled(form, value).replace("a0 + a1 d + a2 d^2", fading).replace("N.H", base))
+        Formulas { fading, highlight: if rules.highlight == Highlight::Phong { "R.L" } else { "N.H" } }
     }
 }
 

@@ -3,17 +3,6 @@
 use super::{Mistake, Values, row};
 use crate::mistakes::habits::{Output, Turn};
 
-const STRAIGHT: Turn = Turn {
-    exchange: false,
-    columns_back: false,
-    rows_back: false,
-    bgr: false,
-    moved: (0, 0),
-    black_border: false,
-    rolled: false,
-    halved: false,
-};
-
 /// Usual exponents; 0 is the curve of sRGB itself.
 const POWERS: Values = Values::Only(&[0.0, 2.2, 2.0, 1.8, 2.4]);
 
@@ -24,7 +13,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "the picture is mirrored left to right",
         "u = cross(w, up), x from left to right",
         "u = cross(up, w), or x from right to left",
-        |v, _| v.turn = Turn { columns_back: true, ..STRAIGHT },
+        |v, _| v.turn.columns_back ^= true,
     ),
     row(
         "upside-down",
@@ -32,7 +21,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "the picture is upside down",
         "rows counted from the top where y points up",
         "row 0 written as the lowest, or read so",
-        |v, _| v.turn = Turn { rows_back: true, ..STRAIGHT },
+        |v, _| v.turn.rows_back ^= true,
     ),
     row(
         "turned",
@@ -40,7 +29,10 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "the picture is turned by 180 degrees",
         "d = D w + x u + y v",
         "d = D w - x u - y v",
-        |v, _| v.turn = Turn { columns_back: true, rows_back: true, ..STRAIGHT },
+        |v, _| {
+            v.turn.columns_back ^= true;
+            v.turn.rows_back ^= true;
+        },
     ),
     row(
         "transposed",
@@ -48,7 +40,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "columns and rows are exchanged",
         "pixel(i, j): i the column, j the row",
         "pixel(j, i)",
-        |v, _| v.turn = Turn { exchange: true, ..STRAIGHT },
+        |v, _| v.turn.exchange = true,
     ),
     row(
         "bgr",
@@ -56,7 +48,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "red and blue are exchanged",
         "red, green, blue in the order of the format",
         "blue, green, red",
-        |v, _| v.turn = Turn { bgr: true, ..STRAIGHT },
+        |v, _| v.turn.bgr = true,
     ),
     row(
         "shifted",
@@ -66,7 +58,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "rows or columns from 1",
         |v, way| {
             const WAYS: [(i32, i32); 4] = [(0, -1), (0, 1), (-1, 0), (1, 0)];
-            v.turn = Turn { moved: WAYS[way as usize % 4], black_border: way < 4.0, rolled: way >= 8.0, ..STRAIGHT };
+            v.turn = Turn { moved: WAYS[way as usize % 4], black_border: way < 4.0, rolled: way >= 8.0, ..v.turn };
         },
     )
     .with(Values::Only(&[0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0, 11.0])),
@@ -109,9 +101,9 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "curve-less",
         "flat",
-        "the curve of sRGB (gamma) is undone once more than it should be",
-        "value = c * 255",
-        "value = pow(c, 2.2) * 255",
+        "the curve of sRGB (gamma) is applied once less than it should be, or undone",
+        "value = srgb(c) * 255 where the reference has the curve, else c * 255",
+        "one curve less: value = c * 255, or pow(c, 2.2) * 255",
         |v, power| v.output = Output::CurveLess(power),
     )
     .with(POWERS),
@@ -122,7 +114,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "one ray for each pixel",
         "one ray for two by two pixels",
         |v, _| {
-            v.turn = Turn { halved: true, ..STRAIGHT };
+            v.turn.halved = true;
             v.aim.place = crate::math::Vec2::ONE;
         },
     ),

@@ -2,7 +2,7 @@
 
 use super::{Mistake, Values, row};
 use crate::dialect::{Compat, CompatSet, MeshNormals};
-use crate::mistakes::habits::{Normals, Pick};
+use crate::mistakes::habits::{Behind, Normals, Pick};
 use crate::scene::MatrixOp;
 use crate::shape::Primitive;
 use crate::world::Geometry;
@@ -91,6 +91,14 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "N = normalize(p - center)",
         "N = normalize(center - p)",
         |v, _| v.habits.spheres_turned = true,
+    ),
+    row(
+        "planes-turned",
+        "normals",
+        "the normals of planes point to the other side",
+        "N = normalize(normal)",
+        "N = -normalize(normal)",
+        |v, _| v.habits.planes_turned = true,
     ),
     row(
         "normals-exchanged",
@@ -339,11 +347,12 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "hits-behind",
         "distance",
-        "hits behind the ray's origin count: t_min is ignored",
+        "hits behind the ray's origin count: t_min is ignored{| for the camera's rays}",
         "t > t_min && t < best",
         "t < best",
-        |v, _| v.habits.behind = true,
-    ),
+        |v, rays| v.habits.behind = Some([Behind::All, Behind::Camera][(rays as usize).min(1)]),
+    )
+    .with(Values::Only(&[0.0, 1.0])),
     row(
         "thing-missing",
         "distance",
