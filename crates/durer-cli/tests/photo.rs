@@ -76,6 +76,16 @@ fn photographs_of_a_known_scene_give_its_cameras() {
     println!("{}", solved.out);
     place.gives(0, "photo explain solved --camera 03.png");
     place.gives(0, "photo explain bundle.out --point 3");
+    for (file, there) in [("points.ply", "0 of 0"), ("scene.gltf", "20 of 20")] {
+        let points = solved.out.split("; ").nth(1).and_then(|rest| rest.split('\n').next()).unwrap();
+        assert_eq!(
+            place.gives(0, &format!("photo convert {file}")).out,
+            format!("{there} photographs have a place; {points}\n")
+        );
+    }
+    place.refused(2, "photo convert matches.json", &["these are matches, which have no cameras yet"]);
+    place.refused(2, "photo solve scene.gltf -o no.out", &["there is nothing to adjust"]);
+    place.refused(2, "photo tour points.ply --pictures photos -o no.html", &["nobody knows where any photograph"]);
     place.gives(0, "photo tour solved --pictures photos -o tour.html --side 64 -q");
     let walked = [
         "20 photographs, ",
@@ -100,6 +110,19 @@ fn photographs_of_a_known_scene_give_its_cameras() {
     assert!(far <= 0.001 * LENGTH, "{far}");
     assert!(angle <= 0.05, "{angle}");
     assert!(focal <= 0.002, "{focal}");
+}
+
+#[test]
+fn threads_change_no_bit() {
+    let place = Place::new();
+    for threads in [1, 2, 5] {
+        place.gives(0, &format!("photo match {PHOTOGRAPHS} -o {threads}.json --features 800 --threads {threads} -q"));
+        place.gives(0, &format!("photo solve {threads}.json -o {threads}.out --threads {threads} -q"));
+    }
+    assert_eq!(place.bytes("1.json"), place.bytes("2.json"));
+    assert_eq!(place.bytes("1.json"), place.bytes("5.json"));
+    assert_eq!(place.bytes("1.out"), place.bytes("2.out"));
+    assert_eq!(place.bytes("1.out"), place.bytes("5.out"));
 }
 
 /// A picture of noise as PNG, which is another one for each seed.
