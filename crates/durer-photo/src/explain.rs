@@ -103,6 +103,10 @@ pub fn camera(all: &Reconstruction, view: usize) -> Result<String, Error> {
         }
         squares.push((residual.norm_squared(), i));
     }
+    if squares.is_empty() {
+        text.push_str("nothing tells which points it sees\n");
+        return Ok(text);
+    }
     let count = squares.len();
     let rms = (squares.iter().map(|s| s.0).sum::<f64>() / count.max(1) as f64).sqrt();
     let _ = writeln!(text, "\n{} equations of {count} points; rms {rms:.3} pixels", 2 * count);
