@@ -95,7 +95,7 @@ class _Frame:
 
 
 def _asked(world: World, words: Optional[Sequence[str]], options: dict[str, Any]) -> list[str]:
-    return [*world._reading, *(words or []), *world._all(options)[len(world._reading) :]]
+    return [*world._all(options), *(words or [])]
 
 
 def render(
