@@ -40,9 +40,11 @@ impl Memory {
         };
         let mut system = System::new();
         system.refresh_memory();
+        // Where there is no /proc nothing is known, and control groups must not be asked for.
+        let machine = Some(system.total_memory()).filter(|&bytes| bytes > 0)?;
         let of_group = system.cgroup_limits().map(|limits| limits.total_memory).filter(|&bytes| bytes > 0);
-        let all = of_group.unwrap_or(u64::MAX).min(system.total_memory());
-        (all > 0).then_some((all as f64 * percent / 100.0) as u64)
+        let all = of_group.unwrap_or(machine).min(machine);
+        Some((all as f64 * percent / 100.0) as u64)
     }
 }
 

@@ -76,6 +76,22 @@ fn photographs_of_a_known_scene_give_its_cameras() {
     println!("{}", solved.out);
     place.gives(0, "photo explain solved --camera 03.png");
     place.gives(0, "photo explain bundle.out --point 3");
+    for (file, there) in [("points.ply", "0 of 0"), ("scene.gltf", "20 of 20")] {
+        let points = solved.out.split("; ").nth(1).and_then(|rest| rest.split('\n').next()).unwrap();
+        assert_eq!(
+            place.gives(0, &format!("photo convert {file}")).out,
+            format!("{there} photographs have a place; {points}\n")
+        );
+    }
+    assert!(
+        place.gives(0, "photo explain scene.gltf --camera 03.png").out.contains("nothing tells which points it sees")
+    );
+    assert!(
+        place.gives(0, "photo explain points.ply --point 3").out.contains("nothing tells which photographs see it")
+    );
+    place.refused(2, "photo convert matches.json", &["these are matches, which have no cameras yet"]);
+    place.refused(2, "photo solve scene.gltf -o no.out", &["there is nothing to adjust"]);
+    place.refused(2, "photo tour points.ply --pictures photos -o no.html", &["nobody knows where any photograph"]);
     place.gives(0, "photo tour solved --pictures photos -o tour.html --side 64 -q");
     let walked = [
         "20 photographs, ",
@@ -100,6 +116,64 @@ fn photographs_of_a_known_scene_give_its_cameras() {
     assert!(far <= 0.001 * LENGTH, "{far}");
     assert!(angle <= 0.05, "{angle}");
     assert!(focal <= 0.002, "{focal}");
+}
+
+#[test]
+fn threads_change_no_bit() {
+    let place = Place::new();
+    for threads in [1, 2, 5] {
+        place.gives(0, &format!("photo match {PHOTOGRAPHS} -o {threads}.json --features 800 --threads {threads} -q"));
+        place.gives(0, &format!("photo solve {threads}.json -o {threads}.out --threads {threads} -q"));
+    }
+    assert_eq!(place.bytes("1.json"), place.bytes("2.json"));
+    assert_eq!(place.bytes("1.json"), place.bytes("5.json"));
+    assert_eq!(place.bytes("1.out"), place.bytes("2.out"));
+    assert_eq!(place.bytes("1.out"), place.bytes("5.out"));
+}
+
+/// A JPEG with EXIF that tells of a focal length in millimetres and of so many pixels an inch of the sensor.
+fn with_exif(jpeg: &[u8], millimetres: [u32; 2], pixels: [u32; 2]) -> Vec<u8> {
+    let entry = |tag: u16, kind: u16, value: u32| {
+        [&tag.to_be_bytes()[..], &kind.to_be_bytes(), &1_u32.to_be_bytes(), &value.to_be_bytes()].concat()
+    };
+    let end = vec![0; 4];
+    let first = [vec![0, 1], entry(0x8769, 4, 26), end.clone()].concat();
+    let second = [vec![0, 2], entry(0x920a, 5, 56), entry(0xa20e, 5, 64), end].concat();
+    let numbers = [millimetres, pixels].concat().into_iter().flat_map(u32::to_be_bytes).collect();
+    let tiff = [b"MM\0*\0\0\0\x08".to_vec(), first, second, numbers].concat();
+    let length = (tiff.len() as u16 + 8).to_be_bytes();
+    [&jpeg[..2], &[0xff, 0xe1], &length, b"Exif\0\0", &tiff, &jpeg[2..]].concat()
+}
+
+#[test]
+fn exif_that_cannot_be_true_is_told_and_what_may_be_is_corrected() {
+    let place = Place::new();
+    std::fs::create_dir(place.path("photos")).unwrap();
+    let photographs = (0..6).map(|i| (i, std::fs::read(Path::new(PHOTOGRAPHS).join(format!("{i}.jpg"))).unwrap()));
+    for (i, jpeg) in photographs {
+        // 330 pixels are true, and 660 may be; one is of a lens longer than any, one is divided by zero.
+        let (millimetres, pixels) = match i {
+            0 => ([5, 1], [1_000_000_000, 1]),
+            1 => ([5, 0], [1000, 1]),
+            _ => ([254, 10], [660, 1]),
+        };
+        place.put(&format!("photos/{i}.jpg"), with_exif(&jpeg, millimetres, pixels));
+    }
+    let matched = place.gives(0, "photo match photos -o m.json --features 1500 --field 60");
+    assert!(matched.err.contains("warning: 0.jpg: EXIF's focal length, 196850394 pixels by 5 mm"), "{}", matched.err);
+    assert!(
+        !matched.err.contains("1.jpg") && matched.out.contains("1.jpg: 320x240, 1500 salient points, focal length 277")
+    );
+    assert!(
+        matched.out.contains("2.jpg: 320x240, 1500 salient points, focal length 660 (EXIF: 25.4 mm"),
+        "{}",
+        matched.out
+    );
+    let solved = place.gives(0, "photo solve m.json -o m.out");
+    assert!(solved.err.contains("EXIF says 660: EXIF is wrong"), "{}", solved.err);
+    for lens in read(&place.path("m.out")).unwrap().lenses {
+        assert!((lens.focal - 330.0).abs() < 5.0, "{lens:?}");
+    }
 }
 
 /// A picture of noise as PNG, which is another one for each seed.

@@ -14,13 +14,15 @@ pub fn point(all: &Reconstruction, number: usize) -> Result<String, Error> {
     let p = point.position;
     let angle = all.angle(point).to_degrees();
     let mut text = format!("point {number} at ({:.6}, {:.6}, {:.6}), colour {:?}\n", p.x, p.y, p.z, point.color);
-    let _ = writeln!(
-        text,
-        "seen in {} photographs; the widest angle between two rays is {angle:.2} degrees",
-        point.track.len()
-    );
-    if angle < 1.0 {
-        text.push_str("the rays are nearly parallel: how far away it is, is not determined well\n");
+    match point.track.len() {
+        0 => text.push_str("nothing tells which photographs see it\n"),
+        count => {
+            let _ =
+                writeln!(text, "seen in {count} photographs; the widest angle between two rays is {angle:.2} degrees");
+            if angle < 1.0 {
+                text.push_str("the rays are nearly parallel: how far away it is, is not determined well\n");
+            }
+        }
     }
     for seen in &point.track {
         let view = &all.views[seen.view];
@@ -100,6 +102,10 @@ pub fn camera(all: &Reconstruction, view: usize) -> Result<String, Error> {
             }
         }
         squares.push((residual.norm_squared(), i));
+    }
+    if squares.is_empty() {
+        text.push_str("nothing tells which points it sees\n");
+        return Ok(text);
     }
     let count = squares.len();
     let rms = (squares.iter().map(|s| s.0).sum::<f64>() / count.max(1) as f64).sqrt();

@@ -1,7 +1,8 @@
 //! What the table of conventions says, by hand: one camera that sees one point, written as each format has it.
 
-use durer_photo::Reconstruction;
 use durer_photo::format::{CONVENTIONS, Output, read, read_control};
+use durer_photo::matching::FORMAT;
+use durer_photo::{Reconstruction, View};
 use nalgebra::{Matrix3, Vector2, Vector3};
 use std::path::Path;
 use tempfile::TempDir;
@@ -28,6 +29,22 @@ fn files() -> Vec<Case> {
     let images = format!("1 {HALF} 0 0 {HALF} 0.5 1 5 1 a.jpg\n{} {} 1\n", PIXEL[0], PIXEL[1]);
     let fspy = r#"{"principalPoint": {"x": 0, "y": 0}, "imageWidth": 640, "imageHeight": 480, "relativeFocalLength": 1.5625,
         "viewTransform": {"rows": [[0, -1, 0, 0.5], [-1, 0, 0, -1], [0, 0, -1, -5], [0, 0, 0, 1]]}}"#;
+    let ply = "ply\nformat ascii 1.0\ncomment cameras at the end: 1\nelement vertex 2\nproperty double x\nproperty double y\nproperty double z\n\
+        property uchar red\nproperty uchar green\nproperty uchar blue\nend_header\n1 2 3 10 20 30\n-1 0.5 -5 255 0 0\n";
+    // A camera within a node that is moved, turned by a half turn about x and twice as large; and 1, 2, 3 as floats, 10, 20, 30 as bytes.
+    let data = "AACAPwAAAEAAAEBAChQe/w==";
+    let gltf = format!(
+        r#"{{"asset": {{"version": "2.0"}}, "nodes": [
+            {{"name": "a.jpg", "camera": 0, "translation": [-1.5, -0.25, 2.5], "rotation": [0, 0, {HALF}, {HALF}]}},
+            {{"children": [0], "translation": [2, 0, 0], "rotation": [1, 0, 0, 0], "scale": [2, 2, 2]}}, {{"mesh": 0}}],
+        "cameras": [{{"type": "perspective", "perspective": {{"yfov": 0.8950399503143397, "aspectRatio": 1.3333333333333333}},
+            "extras": {{"lens": {{"width": 640, "height": 480, "center": [320, 240], "radial": [0.1, 0]}}}}}}],
+        "meshes": [{{"primitives": [{{"mode": 0, "attributes": {{"POSITION": 0, "COLOR_0": 1}}}}]}}],
+        "accessors": [{{"bufferView": 0, "componentType": 5126, "count": 1, "type": "VEC3"}},
+            {{"bufferView": 0, "byteOffset": 12, "componentType": 5121, "normalized": true, "count": 1, "type": "VEC4"}}],
+        "bufferViews": [{{"buffer": 0, "byteLength": 16}}],
+        "buffers": [{{"byteLength": 16, "uri": "data:application/octet-stream;base64,{data}"}}]}}"#
+    );
     let doubles = |values: &[f64]| values.iter().flat_map(|value| value.to_le_bytes()).collect::<Vec<u8>>();
     let longs = |values: &[u64]| values.iter().flat_map(|value| value.to_le_bytes()).collect::<Vec<u8>>();
     let ints = |values: &[u32]| values.iter().flat_map(|value| value.to_le_bytes()).collect::<Vec<u8>>();
@@ -66,26 +83,39 @@ fn files() -> Vec<Case> {
             vec![("reconstruction.json", opensfm.into()), ("tracks.csv", tracks.into())],
         ),
         ("fSpy", "camera.json", vec![("camera.json", fspy.into())]),
+        ("PLY", "points.ply", vec![("points.ply", ply.into())]),
+        ("glTF", "cameras.gltf", vec![("cameras.gltf", gltf.into())]),
     ]
 }
 
 /// Whether it is the camera and the point of the hand's calculation.
 #[track_caller]
 fn is_as_meant(all: &Reconstruction, name: &str) {
-    let view = &all.views[0];
+    assert_eq!(all.views.len(), usize::from(name != "PLY"), "{name}");
+    all.views.iter().for_each(|view| view_is_as_meant(all, view, name));
+    for point in &all.points {
+        assert!((point.position - Vector3::new(1.0, 2.0, 3.0)).norm() < 1e-12, "{name}");
+        assert_eq!(point.color, if name == "BAL" { [128; 3] } else { [10, 20, 30] }, "{name}");
+        assert_eq!(point.track.len(), usize::from(!["PLY", "glTF"].contains(&name)), "{name}");
+        for seen in &point.track {
+            assert!((seen.pixel - Vector2::from(PIXEL)).norm() < 1e-9, "{name}: {}", seen.pixel);
+            assert!(all.residual(&point.position, seen).unwrap().norm() < 1e-9, "{name}");
+        }
+    }
+    assert_eq!(all.points.len(), usize::from(name != "fSpy"), "{name}");
+}
+
+fn view_is_as_meant(all: &Reconstruction, view: &View, name: &str) {
     let (lens, pose) = (&all.lenses[view.lens], view.pose.unwrap());
     assert!((pose.center() - Vector3::from(CENTER)).norm() < 1e-12, "{name}: {}", pose.center());
     let rotation = Matrix3::new(0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0);
     assert!((pose.rotation - rotation).norm() < 1e-12, "{name}: {}", pose.rotation);
     let radial = if name == "fSpy" { 0.0 } else { 0.1 };
-    assert_eq!((lens.focal, lens.center, lens.radial), (500.0, [320.0, 240.0], [radial, 0.0]), "{name}");
-    for point in &all.points {
-        assert!((point.position - Vector3::new(1.0, 2.0, 3.0)).norm() < 1e-12, "{name}");
-        let seen = &point.track[0];
-        assert!((seen.pixel - Vector2::from(PIXEL)).norm() < 1e-9, "{name}: {}", seen.pixel);
-        assert!(all.residual(&point.position, seen).unwrap().norm() < 1e-9, "{name}");
-    }
-    assert_eq!(all.points.len(), usize::from(name != "fSpy"), "{name}");
+    assert!((lens.focal - 500.0).abs() < 1e-9, "{name}: {}", lens.focal);
+    assert_eq!((lens.aspect, lens.center, lens.radial), (1.0, [320.0, 240.0], [radial, 0.0]), "{name}");
+    // By whatever way it is written, the camera sees the point at the pixel that was worked out by hand.
+    let pixel = lens.project(&pose.apply(&Vector3::new(1.0, 2.0, 3.0)));
+    assert!(name == "fSpy" || (pixel - Vector2::from(PIXEL)).norm() < 1e-9, "{name}: {pixel}");
 }
 
 fn put(folder: &Path, name: &str, bytes: &[u8]) {
@@ -96,7 +126,9 @@ fn put(folder: &Path, name: &str, bytes: &[u8]) {
 
 fn told(path: &Path) -> Reconstruction {
     let mut all = read(path).unwrap();
-    all.set_picture(0, "a.jpg", [640, 480]);
+    if !all.views.is_empty() {
+        all.set_picture(0, "a.jpg", [640, 480]);
+    }
     all
 }
 
@@ -124,7 +156,7 @@ fn every_format_means_what_the_table_says() {
 }
 
 #[test]
-fn what_is_only_written_means_what_the_table_says() {
+fn what_is_written_for_other_programs_means_what_the_table_says() {
     let place = TempDir::new().unwrap();
     let (_, path, files) = files().remove(2);
     files.iter().for_each(|(file, bytes)| put(place.path(), file, bytes));
@@ -147,11 +179,154 @@ fn what_is_only_written_means_what_the_table_says() {
     assert!((perspective["aspectRatio"].as_f64().unwrap() - 4.0 / 3.0).abs() < 1e-12);
     assert_eq!(numbers(&gltf["accessors"][0]["min"]), [1.0, 2.0, 3.0]);
     let ply = Output::Ply.write(&all).unwrap().remove(0);
+    let head =
+        "ply\nformat binary_little_endian 1.0\ncomment cameras at the end: 1\nelement vertex 2\nproperty float x\n";
+    assert!(ply.starts_with(head.as_bytes()));
     let body = ply.windows(11).position(|text| text == b"end_header\n").unwrap() + 11;
     let row = |place: [f64; 3], color: [u8; 3]| {
         place.iter().flat_map(|value| (*value as f32).to_le_bytes()).chain(color).collect::<Vec<u8>>()
     };
     assert_eq!(ply[body..], [row([1.0, 2.0, 3.0], [10, 20, 30]), row(CENTER, [255, 0, 0])].concat());
+}
+
+/// A cloud of two points as PLY, for each way of writing its numbers.
+fn clouds() -> Vec<(&'static str, Vec<u8>)> {
+    let head = |format: &str, shade: &str| {
+        format!(
+            "ply\r\nformat {format} 1.0\ncomment by hand\nobj_info none\nelement vertex 2\nproperty short label\n\
+            property float x\nproperty float32 y\nproperty double z\nproperty {shade} red\nproperty {shade} green\n\
+            property {shade} blue\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
+        )
+    };
+    let rows = [(-7_i16, 0.5_f32, -1.0_f32, 0.25_f64), (8, 3.0, 4.0, 1e9)];
+    let shades = [[0_u16, 65535, 32896], [257, 514, 771]];
+    let text = "-7 0.5 -1 0.25 0 1 0.502\n\n8 3 4 1e9 0.00392 0.00784 0.01176\n3 0 1 2\n".to_string();
+    let mut all = vec![("ascii", (head("ascii", "float") + &text).into_bytes())];
+    for (format, big) in [("binary_little_endian", false), ("binary_big_endian", true)] {
+        let mut bytes = head(format, "ushort").into_bytes();
+        let mut put = |little: &[u8]| match big {
+            true => bytes.extend(little.iter().rev()),
+            false => bytes.extend(little),
+        };
+        for ((label, x, y, z), shades) in rows.iter().zip(shades) {
+            put(&label.to_le_bytes());
+            [x, y].iter().for_each(|value| put(&value.to_le_bytes()));
+            put(&z.to_le_bytes());
+            shades.iter().for_each(|shade| put(&shade.to_le_bytes()));
+        }
+        bytes.extend([3, 0, 0, 0]);
+        all.push((format, bytes));
+    }
+    all
+}
+
+#[test]
+fn clouds_are_read_however_their_numbers_are_written() {
+    let place = TempDir::new().unwrap();
+    for (format, bytes) in clouds() {
+        put(place.path(), "cloud.ply", &bytes);
+        let all = read(&place.path().join("cloud.ply")).unwrap();
+        let rows: Vec<_> = all.points.iter().map(|point| (<[f64; 3]>::from(point.position), point.color)).collect();
+        assert_eq!(rows, [([0.5, -1.0, 0.25], [0, 255, 128]), ([3.0, 4.0, 1e9], [1, 2, 3])], "{format}");
+        // What is cut off within the points is refused.
+        for cut in 0..bytes.len() - 11 {
+            put(place.path(), "cloud.ply", &bytes[..cut]);
+            assert!(
+                format == "ascii" && cut > bytes.len() - 30 || read(&place.path().join("cloud.ply")).is_err(),
+                "{cut}"
+            );
+        }
+    }
+}
+
+#[test]
+fn what_is_wrong_in_a_cloud_or_in_a_gltf_file_is_told() {
+    let place = TempDir::new().unwrap();
+    let told = |name: &str, text: &str| {
+        put(place.path(), name, text.as_bytes());
+        let error = read(&place.path().join(name)).unwrap_err().to_string();
+        error.strip_prefix(&*place.path().join(name).to_string_lossy()).unwrap().to_string()
+    };
+    let cloud = "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nend_header\n1 2 3\n";
+    for (old, new, wanted) in [
+        ("ply", "plx", ": this is not a PLY file"),
+        ("end_header", "comment end_header", ": this is not a PLY file"),
+        ("ascii", "utf8", ":2:1: `utf8` is not a format of PLY's"),
+        ("vertex 1", "vertex 99999999999", ":3:16: the file is too short for 99999999999 points: 6 bytes follow"),
+        ("vertex 1", "vertex -1", ":3:16: `-1` is not a number of points"),
+        ("vertex 1", "vertices 1", ":3:1: the points, `vertex`, should come before `vertices`"),
+        ("float z", "float w", ":3:16: these points have no x, y and z"),
+        ("float z", "list uchar int z", ":6:10: `list` is not the type of a number"),
+        ("1 2 3", "1 2", ":8:4: the row ends where z should follow"),
+        ("1 2 3", "1 2 x", ":8:5: `x` is not z, a number"),
+        ("1 2 3", "1 2 3 4", ":8:7: the row should end here: it is a point's"),
+        ("property float x\nproperty float y\nproperty float z\n", "", ": there are no points in this file"),
+    ] {
+        let error = told("c.ply", &cloud.replace(old, new));
+        assert!(error.starts_with(wanted), "{new}: {error}");
+    }
+    let (_, _, files) = files().pop().unwrap();
+    let gltf = String::from_utf8(files[0].1.clone()).unwrap();
+    for (old, new, wanted) in [
+        ("\"children\": [0]", "\"children\": [1]", ": some nodes are their own ancestors"),
+        ("\"children\": [0]", "\"children\": [0, 0]", ": node 0 has two parents"),
+        ("\"children\": [0]", "\"children\": [9]", ": there is no node 9"),
+        ("\"camera\": 0", "\"camera\": 1", ": node 0: there is no camera 1"),
+        ("\"mesh\": 0", "\"mesh\": 1", ": node 2: there is no mesh 1"),
+        ("[2, 2, 2]", "[2, 2, -2]", ": node 0: a camera cannot be scaled to nothing, or mirrored"),
+        ("0.8950399503143397", "4", ": camera 0: its `yfov` or its `aspectRatio` cannot be"),
+        ("\"width\": 640", "\"width\": 0", ": camera 0: its `extras.lens` tells of photographs without pixels"),
+        ("\"width\": 640, ", "", ": camera 0: its `extras.lens`: missing field `width`"),
+        (
+            "\"count\": 1, \"type\": \"VEC3\"",
+            "\"count\": 2, \"type\": \"VEC3\"",
+            ": accessor 0: its bytes are not all there",
+        ),
+        ("\"byteLength\": 16}],", "\"byteLength\": 17}],", ": accessor 0: its bytes are not all there"),
+        ("data:application", "points.bin?", ": accessor 0: its bytes are in another file"),
+        ("AACAPw", "AACA/w", ": accessor 0: some of it is not a number"),
+        ("{\"asset\"", "glTF", ": this binary glTF file is cut off"),
+    ] {
+        let text = gltf.replace(old, new);
+        assert_ne!(text, gltf, "{old}");
+        let error = told("c.gltf", &text);
+        assert!(error.starts_with(wanted), "{new}: {error}");
+    }
+    assert!(told("c.gltf", &gltf.replace("\"nodes\": [", "\"nodes\": 3, [")).starts_with(":1:"));
+    assert!(told("m.json", &format!("{{\"format\": \"{FORMAT}\",")).starts_with(": these are matches"));
+}
+
+#[test]
+fn binary_gltf_is_read_and_cameras_of_other_programs_have_a_thousand_rows() {
+    let place = TempDir::new().unwrap();
+    let json = r#"{"nodes": [{"camera": 0, "matrix": [1,0,0,0, 0,1,0,0, 0,0,1,0, 1,2,3,1]}, {"camera": 0}, {"mesh": 0}, {"mesh": 1}],
+        "cameras": [{"name": "Camera", "type": "perspective", "perspective": {"yfov": 1.5707963267948966, "aspectRatio": 1.5}}],
+        "meshes": [{"primitives": [{"mode": 0, "attributes": {"POSITION": 0}}]}, {"primitives": [{"attributes": {"POSITION": 9}}]}],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 2, "type": "VEC3"}],
+        "bufferViews": [{"buffer": 0, "byteOffset": 4, "byteLength": 28, "byteStride": 16}], "buffers": [{"byteLength": 32}]}  "#;
+    let json = format!("{json:<0$}", json.len().next_multiple_of(4));
+    let numbers = [9.0_f32, 1.0, 2.0, 3.0, 9.0, 4.0, 5.0, 6.0];
+    let binary: Vec<u8> = numbers.iter().flat_map(|value| value.to_le_bytes()).collect();
+    let chunk = |kind: &[u8], bytes: &[u8]| [&(bytes.len() as u32).to_le_bytes()[..], kind, bytes].concat();
+    let chunks = [chunk(b"JSON", json.as_bytes()), chunk(b"BIN\0", &binary)].concat();
+    let head = [&b"glTF"[..], &2_u32.to_le_bytes(), &(12 + chunks.len() as u32).to_le_bytes()].concat();
+    put(place.path(), "c.glb", &[head, chunks].concat());
+    let all = read(&place.path().join("c.glb")).unwrap();
+    // Both have one lens, of a right angle from top to bottom.
+    assert_eq!((all.lenses.len(), all.views.len(), all.lenses[0].size), (1, 2, [1500, 1000]));
+    assert!((all.lenses[0].focal - 500.0).abs() < 1e-9 && all.views[0].name == "Camera");
+    let centers: Vec<_> = all.views.iter().map(|view| view.pose.unwrap().center()).collect();
+    assert_eq!(centers, [Vector3::new(1.0, 2.0, 3.0), Vector3::zeros()]);
+    // It looks along -z: what is there and to the right, and higher, is right of the middle and above it.
+    let pixel = all.lenses[0].project(&all.views[1].pose.unwrap().apply(&Vector3::new(1.0, 0.5, -2.0)));
+    assert!((pixel - Vector2::new(1000.0, 375.0)).norm() < 1e-9, "{pixel}");
+    let positions: Vec<[f64; 3]> = all.points.iter().map(|point| point.position.into()).collect();
+    assert_eq!(positions, [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]]);
+    let bytes = std::fs::read(place.path().join("c.glb")).unwrap();
+    for cut in 4..bytes.len() {
+        put(place.path(), "c.glb", &bytes[..cut]);
+        assert!(read(&place.path().join("c.glb")).is_err(), "{cut}");
+    }
 }
 
 #[test]
@@ -166,7 +341,7 @@ fn what_is_packed_is_unpacked() {
     bz2.write_all(plain).unwrap();
     for (name, bytes) in [("p.txt.gz", gz.finish().unwrap()), ("p.txt.bz2", bz2.finish().unwrap())] {
         put(place.path(), name, &bytes);
-        is_as_meant(&told(&place.path().join(name)), name);
+        is_as_meant(&told(&place.path().join(name)), "BAL");
         put(place.path(), name, &bytes[..bytes.len() / 2]);
         let error = read(&place.path().join(name)).unwrap_err().to_string();
         assert!(error.contains(name) && error.contains("cannot be unpacked"), "{error}");

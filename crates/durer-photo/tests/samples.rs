@@ -105,6 +105,32 @@ fn every_format_gives_back_what_it_was_given() {
     }
 }
 
+/// glTF has no tracks, and places in single precision; PLY has no cameras.
+#[test]
+fn gltf_gives_back_cameras_and_ply_gives_back_points() {
+    let Some(folder) = samples() else { return };
+    let berlin = read(&folder.join("opensfm-berlin/reconstruction_example.json")).unwrap();
+    let place = tempfile::tempdir().unwrap();
+    let again = |name: &str| {
+        let path = place.path().join(name);
+        std::fs::write(&path, &Output::of(&path, false).unwrap().write(&berlin).unwrap()[0]).unwrap();
+        read(&path).unwrap()
+    };
+    let (gltf, ply) = (again("a.gltf"), again("a.ply"));
+    assert_eq!((gltf.views.len(), gltf.registered(), gltf.lenses[0].size, ply.views.len()), (3, 3, [3264, 2448], 0));
+    for all in [&gltf, &ply] {
+        assert_eq!(all.points.len(), berlin.points.len());
+        for (ours, theirs) in all.points.iter().zip(&berlin.points) {
+            assert_eq!(ours.color, theirs.color);
+            assert_eq!(ours.position, theirs.position.map(|value| f64::from(value as f32)));
+        }
+    }
+    // With what is in the glTF file, lens and pose, all is seen where it was.
+    let mut seen = berlin.clone();
+    (seen.lenses, seen.views) = (gltf.lenses, gltf.views);
+    near(seen.fit().cost, berlin.fit().cost, 1e-6);
+}
+
 /// The cameras and points of photographs of a folder.
 fn solved(folder: &Path, names: &[String]) -> Reconstruction {
     let options = matching::Options { features: 1500, ..Default::default() };

@@ -28,6 +28,27 @@ def test_open3d_calls_answer():
     near = scene.compute_closest_points(points)
     assert near["geometry_ids"].tolist()[2] == 1 and np.allclose(near["points"][2], [3.5, 0.5, 1])
     inner, outer = [[10, 0, 4], [0, 10, 3], [0, 0, 1]], np.eye(4)
+    # The shapes of rays are those of answers, and all hits are told in a row.
+    many = np.broadcast_to(rays, (2, 4, 3, 6)).copy()
+    assert {name: answer.shape[3:] for name, answer in scene.cast_rays(many).items() if answer.shape[:3] == (2, 4, 3)} == {
+        "t_hit": (), "geometry_ids": (), "primitive_ids": (), "primitive_uvs": (2,), "primitive_normals": (3,)
+    }  # fmt: skip
+    listed = scene.list_intersections(many)
+    assert listed["ray_splits"].shape == (25,) and listed["primitive_uvs"].shape == (8 * 6, 2)
+
+    class Tensor:
+        def __init__(self, values):
+            self.values = values
+
+        def numpy(self):
+            return self.values
+
+    class Theirs:
+        vertex = type("Vertex", (), {"positions": Tensor(CUBE)})
+        triangle = type("Triangle", (), {"indices": Tensor(CUBE_FACES)})
+
+    own = durer.open3d.RaycastingScene()
+    assert own.add_triangles(Theirs()) == 0 and own.count_intersections(rays).tolist() == [2, 0, 0]
     made = scene.create_rays_pinhole(inner, outer, 8, 6)
     assert made.shape == (6, 8, 6) and np.allclose(made[0, 0, 3:], [-0.35, -0.25, 1])
 
@@ -40,6 +61,12 @@ def test_embreex_calls_answer():
     assert scene.run(o, d, query="OCCLUDED").tolist() == [0, -1]
     assert scene.run(o, d, query="DISTANCE").tolist() == [1, np.float32(1e37)]
     assert set(scene.run(o, d, output=True)) == {"u", "v", "Ng", "tfar", "primID", "geomID"}
+    # Rays that meet nothing end where they should, and have nothing of the surface.
+    told = scene.run(o, d, output=True, dists=100)
+    assert told["tfar"].tolist() == [1, 100] and told["primID"][1] == told["geomID"][1] == -1
+    assert told["u"][1] == told["v"][1] == 0 and told["Ng"].tolist() == [[-1, 0, 0], [0, 0, 0]]
+    assert scene.run(o, d, query="DISTANCE", dists=np.float32([0.5, 3])).tolist() == [0.5, 3]
+    durer.embreex.EmbreeScene(durer.embreex.EmbreeDevice())
     with pytest.raises(ValueError, match="query type"):
         scene.run(o, d, query="X")
 

@@ -15,8 +15,8 @@ JOB = {"size": (160, 120), "samples": 16}
 WORDS = ["--size", "160x120", "--samples", "16"]
 
 
-@pytest.mark.parametrize("killed", [0, 2])
-def test_dask_makes_the_same_bits_whoever_dies(scenes, killed):
+@pytest.mark.parametrize(("killed", "after"), [(0, 0), (2, 3), (1, 63)])
+def test_dask_makes_the_same_bits_whoever_dies(scenes, killed, after):
     distributed = pytest.importorskip("distributed")
     import durer.farm
 
@@ -27,7 +27,7 @@ def test_dask_makes_the_same_bits_whoever_dies(scenes, killed):
 
         def watch(done, total):
             nonlocal left
-            if left and done > 3:
+            if left and done > after:
                 left -= 1
                 workers = [w.process.process for w in cluster.workers.values() if w.process and w.process.process.is_alive()]
                 random_.choice(workers).kill()
@@ -50,6 +50,18 @@ def test_frames_come_in_order_with_the_bits_of_one_machine():
     with cluster, distributed.Client(cluster) as client:
         found = [p.hash for p in durer.farm.frames(map(frame, range(5)), client=client, ahead=2, size=(40, 30), samples=4)]
     assert found == [frame(i).render(size=(40, 30), samples=4).hash for i in range(5)] and len(set(found)) == 5
+
+
+def test_runs_one_after_the_other_have_nothing_to_do_with_each_other(scenes):
+    distributed = pytest.importorskip("distributed")
+    import durer.farm
+
+    job = {"size": (48, 32), "samples": 4}
+    wanted = durer.load(scenes / "whitted.txt").render(**job).hash
+    cluster = distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None)
+    with cluster, distributed.Client(cluster) as client:
+        for shards in (12, 7, 12, 12, 5):
+            assert durer.farm.render(scenes / "whitted.txt", client=client, shards=shards, **job).hash == wanted
 
 
 @pytest.mark.parametrize("engine", ["slurm", "k8s", "openjd", "dask"])

@@ -206,3 +206,17 @@ def test_rays_meet_what_pictures_show() -> None:
     one = world.closest(np.random.default_rng(1).normal(size=(5000, 3)) * 4, [0, -1, 0.1], threads=1)
     two = world.closest(np.random.default_rng(1).normal(size=(5000, 3)) * 4, [0, -1, 0.1], threads=2)
     assert all(np.array_equal(getattr(one, n), getattr(two, n), equal_nan=True) for n in ("t", "object", "point", "shading_normal"))
+
+
+def test_how_a_model_becomes_a_scene_is_said_when_it_is_read(tmp_path):
+    (tmp_path / "m.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n")
+    size, usual = (32, 24), durer.load(tmp_path / "m.obj").render(size=(32, 24), samples=1).hash
+    for options, words in [({}, []), ({"view": "front"}, ["--view", "front"]), ({"up": "z", "studio": "sun"}, ["--up", "z", "--studio", "sun"])]:
+        done = command("render", tmp_path / "m.obj", "-o", tmp_path / "m.png", "--size", "32x24", "--samples", 1, "--hash", *words)
+        assert done.returncode == 0, done.stderr
+        world = durer.load(tmp_path / "m.obj", size=size, **options)
+        found = world.render(samples=1).hash
+        assert found in done.stdout and found != usual and world.render(samples=1, size=size).hash == found
+        assert world.render(samples=1, size=(8, 8))["color"].shape == (8, 8, 3)
+    with pytest.raises(TypeError, match="no option view"):
+        durer.load(tmp_path / "m.obj").render(view="front")

@@ -1,7 +1,7 @@
 //! The command line of `durer photo`.
 
 use crate::args::{JobArgs, SceneArgs};
-use clap::{Args, Subcommand};
+use clap::{ArgGroup, Args, Subcommand};
 use std::path::PathBuf;
 
 /// From photographs of a scene to cameras and points, and a way to walk among them
@@ -206,6 +206,7 @@ pub struct PlaceArgs {
 
 /// Say why a camera or a point is where it is: rays, equations with numbers, residuals
 #[derive(Args)]
+#[command(group(ArgGroup::new("asked").required(true)))]
 #[command(after_help = "Examples:
   durer photo explain solved/ --point 12
   durer photo explain solved/ --camera IMG_1.jpg")]
@@ -213,10 +214,10 @@ pub struct ExplainArgs {
     /// Cameras and points
     pub file: PathBuf,
     /// A point, by its number from 0
-    #[arg(long, value_name = "NUMBER", required_unless_present = "camera")]
+    #[arg(long, value_name = "NUMBER", group = "asked")]
     pub point: Option<usize>,
     /// A photograph, by its name or number from 0
-    #[arg(long, value_name = "NAME", conflicts_with = "point")]
+    #[arg(long, value_name = "NAME", group = "asked")]
     pub camera: Option<String>,
     /// The folder of photographs, where the file does not know their sizes
     #[arg(long, value_name = "FOLDER")]
@@ -229,8 +230,10 @@ pub struct ExplainArgs {
   durer photo convert bundle.out --pictures photos/ -o colmap/ --binary
   durer photo convert colmap/ -o scene.gltf -o points.ply
   durer photo convert problem.txt
+  durer photo convert cloud.ply -o cloud.gltf
 
-Without -o it only says what is in the file, and how well it fits.")]
+Without -o it only says what is in the file, and how well it fits. PLY has points alone, and of glTF (.gltf, .glb) cameras and points
+are read: neither tells which photographs see a point.")]
 pub struct ConvertArgs {
     /// Cameras and points
     pub file: PathBuf,

@@ -7,9 +7,9 @@ use crate::output::say;
 use crate::report::complain;
 use crate::{Failure, progress};
 use durer_photo::adjust::{self, Loss, adjust_watched, covariance};
-use durer_photo::format::{Control, read_control};
+use durer_photo::format::{Control, is_matches, read_control};
 use durer_photo::geometry::align::to_control;
-use durer_photo::matching::{FORMAT, Matches};
+use durer_photo::matching::Matches;
 use durer_photo::solve::{Options, solve};
 use durer_photo::{Lens, Reconstruction};
 
@@ -19,9 +19,7 @@ pub fn run(args: &SolveArgs) -> Result<(), Failure> {
     let is_file = !args.file.is_dir();
     let content = if is_file { bytes(&args.file, &mut guard)? } else { Vec::new() };
     let file = args.file.to_string_lossy();
-    // What is of ours says so in its first line.
-    let head = String::from_utf8_lossy(&content[..content.len().min(80)]).into_owned();
-    let (mut all, control) = match head.contains("\"format\"") && head.contains(FORMAT) {
+    let (mut all, control) = match is_matches(&content) {
         true => {
             let matches = Matches::from_json(&file, &content).map_err(wrong)?;
             let names: Vec<&str> = matches.pictures.iter().map(|picture| &*picture.name).collect();

@@ -1,27 +1,309 @@
-//! glTF 2.0: cameras as nodes, points as a mesh of points, in one file.
+//! glTF 2.0: cameras as nodes, points as a mesh of points, in one file; read as JSON (`.gltf`) or binary (`.glb`).
 //!
-//! glTF's cameras look down -z with y up, have no distortion, and their middle is the principal point: what a lens has beyond
-//! that is not written. The world is turned upside down by no one: y of the world stays y.
+//! glTF's cameras look down -z with y up, have no distortion, and their middle is the principal point. What a lens has beyond that,
+//! and the size of its photographs, is written as `extras` that other programs pass over; where these are not there, photographs
+//! are taken to have 1000 rows. The world is turned upside down by no one: y of the world stays y.
 //!
-//! Source: Khronos, *glTF 2.0 Specification*, sections 3.10 and 5.12.
+//! Source: Khronos, *glTF 2.0 Specification*, sections 3.6, 3.10, 4.4 and 5.12.
 
 use super::opposite;
-use crate::model::quaternion_of;
-use crate::{Error, Reconstruction};
+use crate::model::{nearest_rotation, quaternion_of, rotation_of_quaternion};
+use crate::{Error, Lens, Point, Pose, Reconstruction, View};
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use nalgebra::{Matrix3, Matrix4, Vector3};
+use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
-/// Base 64 (RFC 4648).
-pub(super) fn base64(bytes: &[u8]) -> String {
-    const SIGNS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    let mut text = String::new();
-    for chunk in bytes.chunks(3) {
-        let bits = (0..3).fold(0, |bits, i| bits << 8 | u32::from(*chunk.get(i).unwrap_or(&0)));
-        for i in 0..4 {
-            let sign = SIGNS[(bits >> (18 - 6 * i)) as usize & 63];
-            text.push(if i <= chunk.len() { char::from(sign) } else { '=' });
+/// The rows of a photograph whose size nobody tells.
+const ROWS: f64 = 1000.0;
+
+#[derive(Default, Deserialize)]
+#[serde(rename_all = "camelCase", default)]
+struct File {
+    nodes: Vec<Node>,
+    cameras: Vec<Camera>,
+    meshes: Vec<Mesh>,
+    accessors: Vec<Accessor>,
+    buffer_views: Vec<BufferView>,
+    buffers: Vec<Buffer>,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(default)]
+struct Node {
+    name: Option<String>,
+    children: Vec<usize>,
+    camera: Option<usize>,
+    mesh: Option<usize>,
+    matrix: Option<[f64; 16]>,
+    translation: Option<[f64; 3]>,
+    rotation: Option<[f64; 4]>,
+    scale: Option<[f64; 3]>,
+}
+
+#[derive(Deserialize)]
+struct Camera {
+    name: Option<String>,
+    perspective: Option<Perspective>,
+    #[serde(default)]
+    extras: Value,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+struct Perspective {
+    yfov: f64,
+    aspect_ratio: Option<f64>,
+}
+
+/// What [`Lens`] has beyond a field of view.
+#[derive(Serialize, Deserialize)]
+struct Extras {
+    width: u32,
+    height: u32,
+    center: [f64; 2],
+    radial: [f64; 2],
+}
+
+#[derive(Deserialize)]
+struct Mesh {
+    primitives: Vec<Primitive>,
+}
+
+#[derive(Deserialize)]
+struct Primitive {
+    attributes: Attributes,
+    /// 0 for points; triangles are usual.
+    mode: Option<u32>,
+}
+
+#[derive(Deserialize)]
+struct Attributes {
+    #[serde(rename = "POSITION")]
+    position: Option<usize>,
+    #[serde(rename = "COLOR_0")]
+    color: Option<usize>,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+struct Accessor {
+    buffer_view: Option<usize>,
+    #[serde(default)]
+    byte_offset: usize,
+    component_type: u32,
+    count: usize,
+    #[serde(rename = "type")]
+    shape: String,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+struct BufferView {
+    buffer: usize,
+    #[serde(default)]
+    byte_offset: usize,
+    byte_length: usize,
+    byte_stride: Option<usize>,
+}
+
+#[derive(Deserialize)]
+struct Buffer {
+    uri: Option<String>,
+}
+
+/// Reads cameras and points; what else is in the file is passed over. Nothing tells which photographs see a point.
+pub fn read(name: &str, bytes: &[u8]) -> Result<Reconstruction, Error> {
+    let fail = |why: String| Error::of(name, why);
+    let (json, binary) =
+        chunks(bytes).ok_or_else(|| fail("this binary glTF file is cut off, or not of version 2".into()))?;
+    let file: File = serde_json::from_slice(json)
+        .map_err(|error| Error::at(name, (error.line(), error.column()), format!("glTF's JSON: {error}")))?;
+    let mut all = Reconstruction::default();
+    let mut buffers = vec![None; file.buffers.len()];
+    for (i, world) in placed(&file).map_err(fail)? {
+        let node = &file.nodes[i];
+        if let Some(number) = node.camera {
+            let camera =
+                file.cameras.get(number).ok_or_else(|| fail(format!("node {i}: there is no camera {number}")))?;
+            // Those without perspective have no place from which rays go out.
+            let Some(perspective) = &camera.perspective else { continue };
+            let lens = lens(perspective, &camera.extras).map_err(|why| fail(format!("camera {number}: {why}")))?;
+            let pose = pose(&world)
+                .ok_or_else(|| fail(format!("node {i}: a camera cannot be scaled to nothing, or mirrored")))?;
+            let named = node.name.as_ref().or(camera.name.as_ref());
+            let name = named.cloned().unwrap_or_else(|| all.views.len().to_string());
+            let known = all.lenses.iter().position(|known| *known == lens);
+            all.views.push(View { name, lens: known.unwrap_or(all.lenses.len()), pose: Some(pose) });
+            all.lenses.extend(known.is_none().then_some(lens));
+        }
+        let mesh = node
+            .mesh
+            .map(|number| file.meshes.get(number).ok_or_else(|| fail(format!("node {i}: there is no mesh {number}"))));
+        for primitive in mesh.transpose()?.iter().flat_map(|mesh| &mesh.primitives).filter(|one| one.mode == Some(0)) {
+            let mut column = |number| column(&file, &mut buffers, binary, number).map_err(fail);
+            let Some(positions) = primitive.attributes.position.map(&mut column).transpose()? else { continue };
+            let colors = primitive.attributes.color.map(&mut column).transpose()?;
+            if colors.as_ref().is_some_and(|colors| colors.len() != positions.len()) {
+                return Err(fail(format!("node {i}: there is not one colour for each point")));
+            }
+            // One mesh may stand in many places.
+            if all.points.len() + positions.len() > bytes.len() {
+                return Err(fail(
+                    "there are more points than the file has bytes: the same ones, in too many places".into(),
+                ));
+            }
+            for (k, place) in positions.iter().enumerate() {
+                let position = (world * place.insert_row(3, 1.0)).xyz();
+                let shade = |value: f64| (255.0 * value).round().clamp(0.0, 255.0) as u8;
+                let color = colors.as_ref().map_or([128; 3], |colors| colors[k].map(shade).into());
+                all.points.push(Point { position, color, track: Vec::new() });
+            }
         }
     }
-    text
+    Ok(all)
+}
+
+/// The JSON of a file, and the bytes that a binary file has behind it.
+fn chunks(bytes: &[u8]) -> Option<(&[u8], &[u8])> {
+    if !bytes.starts_with(b"glTF") {
+        return Some((bytes, &[]));
+    }
+    let number = |at: usize| Some(u32::from_le_bytes(bytes.get(at..at + 4)?.try_into().ok()?) as usize);
+    let json = bytes.get(20..)?.get(..number(12)?).filter(|_| number(4) == Some(2))?;
+    let next = 20 + json.len();
+    let binary = match number(next) {
+        Some(length) => bytes.get(next + 8..)?.get(..length)?,
+        None => &[],
+    };
+    Some((json, binary))
+}
+
+/// All nodes with their places in the world, each after its parent.
+fn placed(file: &File) -> Result<Vec<(usize, Matrix4<f64>)>, String> {
+    let count = file.nodes.len();
+    let mut is_child = vec![false; count];
+    for child in file.nodes.iter().flat_map(|node| &node.children) {
+        match is_child.get_mut(*child) {
+            None => return Err(format!("there is no node {child}")),
+            Some(true) => return Err(format!("node {child} has two parents")),
+            Some(known) => *known = true,
+        }
+    }
+    let mut all: Vec<_> = (0..count).filter(|i| !is_child[*i]).map(|i| (i, local(&file.nodes[i]))).collect();
+    let mut next = 0;
+    while let Some((parent, world)) = all.get(next).copied() {
+        all.extend(file.nodes[parent].children.iter().map(|child| (*child, world * local(&file.nodes[*child]))));
+        next += 1;
+    }
+    // Nobody comes to nodes that are their own ancestors.
+    if all.len() == count { Ok(all) } else { Err("some nodes are their own ancestors".into()) }
+}
+
+/// A node's place in its parent.
+fn local(node: &Node) -> Matrix4<f64> {
+    if let Some(matrix) = node.matrix {
+        return Matrix4::from_column_slice(&matrix);
+    }
+    let [x, y, z, w] = node.rotation.unwrap_or([0.0, 0.0, 0.0, 1.0]);
+    let scale = Matrix3::from_diagonal(&node.scale.unwrap_or([1.0; 3]).into());
+    let mut matrix = (rotation_of_quaternion([w, x, y, z]) * scale).to_homogeneous();
+    matrix.fixed_view_mut::<3, 1>(0, 3).copy_from(&Vector3::from(node.translation.unwrap_or_default()));
+    matrix
+}
+
+/// The pose of a camera by its place in the world. A scale changes no camera.
+fn pose(world: &Matrix4<f64>) -> Option<Pose> {
+    let axes = world.fixed_view::<3, 3>(0, 0).into_owned();
+    let is_turn = axes.determinant() > 0.0 && world.iter().all(|value| value.is_finite());
+    let center = world.fixed_view::<3, 1>(0, 3).into_owned();
+    is_turn.then(|| opposite(&Pose::at(&center, nearest_rotation(&axes).transpose())))
+}
+
+fn lens(perspective: &Perspective, extras: &Value) -> Result<Lens, String> {
+    let half = libm::tan(perspective.yfov / 2.0);
+    let ratio = perspective.aspect_ratio.unwrap_or(1.0);
+    if !(0.0..std::f64::consts::PI).contains(&perspective.yfov) || half <= 0.0 || !(ratio.is_finite() && ratio > 0.0) {
+        return Err("its `yfov` or its `aspectRatio` cannot be".into());
+    }
+    let beyond = match &extras["lens"] {
+        Value::Null => None,
+        lens => Some(Extras::deserialize(lens).map_err(|error| format!("its `extras.lens`: {error}"))?),
+    };
+    let Some(beyond) = beyond else {
+        let size = [(ROWS * ratio).round().clamp(1.0, 1e6), ROWS];
+        return Ok(Lens::new(size.map(|side| side as u32), ROWS / (2.0 * half)));
+    };
+    let vertical = f64::from(beyond.height) / (2.0 * half);
+    let aspect = ratio * f64::from(beyond.height) / f64::from(beyond.width);
+    // Square pixels are such exactly, but for what was lost with digits.
+    let aspect = if (aspect - 1.0).abs() < 1e-12 { 1.0 } else { aspect };
+    let size = [beyond.width, beyond.height];
+    if size.contains(&0) {
+        return Err("its `extras.lens` tells of photographs without pixels".into());
+    }
+    Ok(Lens { size, focal: vertical / aspect, aspect, center: beyond.center, radial: beyond.radial })
+}
+
+/// An attribute of points: three numbers of each; whole numbers are shares of the largest one.
+fn column(
+    file: &File,
+    buffers: &mut [Option<Vec<u8>>],
+    binary: &[u8],
+    number: usize,
+) -> Result<Vec<Vector3<f64>>, String> {
+    let fail = |why: &str| format!("accessor {number}: {why}");
+    let accessor = file.accessors.get(number).ok_or_else(|| fail("it is not there"))?;
+    let width = match &*accessor.shape {
+        "VEC3" => 3,
+        "VEC4" => 4,
+        _ => return Err(fail("places and colours should have three numbers, or four")),
+    };
+    let size = match accessor.component_type {
+        5121 => 1,
+        5123 => 2,
+        5126 => 4,
+        _ => return Err(fail("this type of numbers is not one of glTF's places and colours")),
+    };
+    let view =
+        accessor.buffer_view.and_then(|view| file.buffer_views.get(view)).ok_or_else(|| fail("it has no bytes"))?;
+    let buffer = file.buffers.get(view.buffer).ok_or_else(|| fail("it has no buffer"))?;
+    let bytes = match &buffer.uri {
+        None => binary,
+        Some(uri) => {
+            let packed = uri.split_once(";base64,").filter(|(kind, _)| kind.starts_with("data:"));
+            let packed =
+                packed.ok_or_else(|| fail("its bytes are in another file; only those of one file are read"))?.1;
+            if buffers[view.buffer].is_none() {
+                buffers[view.buffer] = Some(STANDARD.decode(packed).map_err(|error| fail(&error.to_string()))?);
+            }
+            buffers[view.buffer].as_deref().unwrap_or_default()
+        }
+    };
+    let short = || fail("its bytes are not all there");
+    let bytes = bytes.get(view.byte_offset..).and_then(|bytes| bytes.get(..view.byte_length)).ok_or_else(short)?;
+    let bytes = bytes.get(accessor.byte_offset..).ok_or_else(short)?;
+    let stride = view.byte_stride.unwrap_or(width * size).max(1);
+    // So no more memory is taken than there are bytes.
+    if accessor.count > bytes.len() {
+        return Err(short());
+    }
+    let mut rows = Vec::new();
+    for row in 0..accessor.count {
+        let row = row.checked_mul(stride).and_then(|start| bytes.get(start..)?.get(..3 * size)).ok_or_else(short)?;
+        let value = |i: usize| match row[i * size..(i + 1) * size] {
+            [a] => f64::from(a) / 255.0,
+            [a, b] => f64::from(u16::from_le_bytes([a, b])) / 65535.0,
+            [a, b, c, d] => f64::from(f32::from_le_bytes([a, b, c, d])),
+            _ => f64::NAN,
+        };
+        rows.push(Vector3::from_fn(|i, _| value(i)));
+    }
+    match rows.iter().flatten().all(|value| value.is_finite()) {
+        true => Ok(rows),
+        false => Err(fail("some of it is not a number")),
+    }
 }
 
 /// Writes cameras and points.
@@ -41,7 +323,9 @@ pub fn write(all: &Reconstruction) -> Result<Vec<u8>, Error> {
             "name": view.name, "camera": cameras.len(), "translation": pose.center().as_slice(),
             "rotation": rotation(&opposite(pose)),
         }));
-        cameras.push(json!({"name": view.name, "type": "perspective", "perspective": perspective}));
+        let ([width, height], center, radial) = (lens.size, lens.center, lens.radial);
+        let extras = json!({"lens": Extras { width, height, center, radial }});
+        cameras.push(json!({"name": view.name, "type": "perspective", "perspective": perspective, "extras": extras}));
     }
     let mut gltf = json!({"asset": {"version": "2.0", "generator": "durer photo"}, "scene": 0});
     let mut put = |name: &str, value: Value| gltf[name] = value;
@@ -71,7 +355,7 @@ pub fn write(all: &Reconstruction) -> Result<Vec<u8>, Error> {
                 {"buffer": 0, "byteOffset": positions, "byteLength": colors},
             ]),
         );
-        let uri = format!("data:application/octet-stream;base64,{}", base64(&bytes));
+        let uri = format!("data:application/octet-stream;base64,{}", STANDARD.encode(&bytes));
         put("buffers", json!([{"byteLength": bytes.len(), "uri": uri}]));
     }
     put("scenes", json!([{"nodes": (0..nodes.len()).collect::<Vec<_>>()}]));
@@ -83,7 +367,7 @@ pub fn write(all: &Reconstruction) -> Result<Vec<u8>, Error> {
 }
 
 /// glTF's quaternion (x, y, z, w) from the camera's frame to the world.
-fn rotation(pose: &crate::Pose) -> [f64; 4] {
+fn rotation(pose: &Pose) -> [f64; 4] {
     let [w, x, y, z] = quaternion_of(&pose.rotation.transpose());
     [x, y, z, w]
 }

@@ -90,16 +90,16 @@ pub const CONVENTIONS: [Convention; 9] = {
             "longer side from -1 to 1, y up; lines from 0 to 1, y down",
             "f / half the longer side, cx, cy",
         ]),
-        row(["PLY", "`.ply`", "out", "none", "none", "points and camera centres", "none", "none"]),
+        row(["PLY", "`.ply`", "in, out", "none", "none", "points, then camera centres", "none", "none"]),
         row([
             "glTF",
-            "`.gltf`",
-            "out",
+            "`.gltf`, `.glb` (in)",
+            "in, out",
             UP,
             "quaternion x y z w, camera to world",
             "camera centre",
             "none",
-            "vertical field of view",
+            "vertical field of view; size, cx, cy, k1, k2 as `extras`",
         ]),
     ]
 };
@@ -168,6 +168,11 @@ pub fn read(path: &Path) -> Result<Reconstruction, Error> {
     match packed::plain(path).extension().and_then(|end| end.to_str()) {
         Some("out") => bundler::read(&file, &content),
         Some("txt") => bal::read(&file, &content),
+        Some("ply") => ply::read(&file, &content),
+        Some("gltf" | "glb") => gltf::read(&file, &content),
+        Some("json") if is_matches(&content) => {
+            Err(Error::of(&file, "these are matches, which have no cameras yet: `durer photo solve` finds them"))
+        }
         Some("json") if content.trim_ascii_start().starts_with(b"{") => fspy::read_camera(&file, &content),
         Some("json") => {
             let tracks = tracks_of(path).map(|path| Ok((path.to_string_lossy().into_owned(), bytes(&path)?)));
@@ -176,9 +181,15 @@ pub fn read(path: &Path) -> Result<Reconstruction, Error> {
         }
         _ => Err(Error::of(
             &file,
-            "the name should end in .out (Bundler), .txt (BAL) or .json (OpenSfM, fSpy), or be COLMAP's folder",
+            "the name should end in .out (Bundler), .txt (BAL), .json (OpenSfM, fSpy), .gltf, .glb or .ply, or be COLMAP's folder",
         )),
     }
+}
+
+/// Whether a file is what [`Matches::to_json`](crate::matching::Matches::to_json) writes: it says so in its first line.
+pub fn is_matches(content: &[u8]) -> bool {
+    let head = String::from_utf8_lossy(&content[..content.len().min(80)]);
+    head.contains("\"format\"") && head.contains(crate::matching::FORMAT)
 }
 
 /// A way to write cameras and points.

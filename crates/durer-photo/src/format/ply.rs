@@ -1,18 +1,197 @@
-//! Points with colours as PLY, binary and little-endian.
+//! Points with colours as PLY. What is written is binary and little-endian; text and big-endian files are read too.
+//!
+//! The places of cameras are written as red points, for programs that show points; a comment says how many of the last points they
+//! are, so that they are not taken for points of the scene when the file is read.
 //!
 //! Source: Turk, *The PLY Polygon File Format*, 1994.
 
-use crate::Reconstruction;
+use super::Words;
+use super::colmap_binary::Bytes;
+use crate::{Error, Point, Reconstruction};
+use nalgebra::Vector3;
+
+/// The comment before the number of camera places.
+const CAMERAS: &str = "cameras at the end:";
+
+/// Types of numbers: both names, and how many bytes one takes.
+const KINDS: [(&str, &str, usize); 8] = [
+    ("char", "int8", 1),
+    ("uchar", "uint8", 1),
+    ("short", "int16", 2),
+    ("ushort", "uint16", 2),
+    ("int", "int32", 4),
+    ("uint", "uint32", 4),
+    ("float", "float32", 4),
+    ("double", "float64", 8),
+];
+
+/// How the rows of numbers are written.
+#[derive(Clone, Copy, PartialEq)]
+enum Encoding {
+    Text,
+    Little,
+    Big,
+}
+
+/// What stands before the rows.
+struct Head {
+    encoding: Encoding,
+    /// How many points there are, and where that is said.
+    count: usize,
+    place: (usize, usize),
+    /// How many of the last points are places of cameras.
+    cameras: usize,
+    /// Name and type (a row of [`KINDS`]) of each number in a row.
+    properties: Vec<(String, usize)>,
+}
+
+/// Reads points. Nothing tells which photographs see them; where there are no colours, they are grey.
+pub fn read(file: &str, bytes: &[u8]) -> Result<Reconstruction, Error> {
+    let is_end = |line: &&[u8]| line.trim_ascii_end() == b"end_header";
+    let lines = bytes.split_inclusive(|byte| *byte == b'\n').filter(|_| bytes.starts_with(b"ply"));
+    let mut length = 0;
+    let end = lines.inspect(|line| length += line.len()).find(is_end);
+    end.ok_or_else(|| Error::of(file, "this is not a PLY file: it should go from `ply` to `end_header`, and on"))?;
+    let head = head(file, &bytes[..length])?;
+    let (size, rest) = (head.properties.iter().map(|(_, kind)| KINDS[*kind].2).sum::<usize>(), bytes.len() - length);
+    // A number in text takes two bytes or more, with what parts it from the next.
+    let row = if head.encoding == Encoding::Text { 2 * head.properties.len() } else { size };
+    if head.count > rest / row + 1 {
+        let why = format!("the file is too short for {} points: {rest} bytes follow the header", head.count);
+        return Err(Error::at(file, head.place, why));
+    }
+    let of = |name: &str| head.properties.iter().position(|property| property.0 == name);
+    let (Some(x), Some(y), Some(z)) = (of("x"), of("y"), of("z")) else {
+        return Err(Error::at(file, head.place, "these points have no x, y and z"));
+    };
+    // Colours are whole numbers up to 255 or 65535, or else from 0 to 1.
+    let shade = |i: usize| match KINDS[head.properties[i].1].0 {
+        "float" | "double" => (i, 255.0),
+        "ushort" => (i, 255.0 / 65535.0),
+        _ => (i, 1.0),
+    };
+    let shades = of("red").zip(of("green")).zip(of("blue")).map(|((r, g), b)| [r, g, b].map(shade));
+    let mut all = Reconstruction::default();
+    let mut add = |row: &[f64]| {
+        let color = shades.map(|all| all.map(|(i, scale)| (row[i] * scale).round().clamp(0.0, 255.0) as u8));
+        let position = Vector3::new(row[x], row[y], row[z]);
+        all.points.push(Point { position, color: color.unwrap_or([128; 3]), track: Vec::new() });
+    };
+    let mut row = vec![0.0; head.properties.len()];
+    if head.encoding == Encoding::Text {
+        let mut words = Words::in_rows(file, bytes)?;
+        while words.rest_of_line() != "end_header" {
+            words.skip_line_end();
+        }
+        for _ in 0..head.count {
+            words.next_place();
+            for (value, (name, _)) in row.iter_mut().zip(&head.properties) {
+                *value = words.number(name)?;
+            }
+            words.end_of_row("a point's")?;
+            add(&row);
+        }
+    } else {
+        let mut body = Bytes::new(file, bytes);
+        body.take(length)?;
+        for _ in 0..head.count {
+            for (value, (name, kind)) in row.iter_mut().zip(&head.properties) {
+                *value = number(*kind, body.take(KINDS[*kind].2)?, head.encoding);
+                if !value.is_finite() {
+                    return Err(body.error(format!("{value} is not {name}, a number")));
+                }
+            }
+            add(&row);
+        }
+    }
+    all.points.truncate(head.count - head.cameras);
+    Ok(all)
+}
+
+fn head(file: &str, text: &[u8]) -> Result<Head, Error> {
+    let mut words = Words::in_rows(file, text)?;
+    let mut head = Head { encoding: Encoding::Text, count: 0, place: (1, 1), cameras: 0, properties: Vec::new() };
+    let (mut has_points, mut is_theirs) = (false, false);
+    words.rest_of_line();
+    while !words.is_at_end() {
+        let (word, place) = words.word("a line of the header")?;
+        let fail = |why: String| Err(Error::at(file, place, why));
+        match word {
+            "end_header" => break,
+            "format" => {
+                head.encoding = match words.word("ascii or binary")?.0 {
+                    "ascii" => Encoding::Text,
+                    "binary_little_endian" => Encoding::Little,
+                    "binary_big_endian" => Encoding::Big,
+                    other => return fail(format!("`{other}` is not a format of PLY's")),
+                }
+            }
+            "comment" => {
+                let cameras = words.rest_of_line().strip_prefix(CAMERAS);
+                head.cameras = cameras.and_then(|count| count.trim().parse().ok()).unwrap_or(head.cameras);
+            }
+            "element" => {
+                let name = words.word("an element's name")?.0;
+                if name == "vertex" && !has_points {
+                    head.place = words.next_place();
+                    head.count = words.parse("a number of points")?;
+                } else if !has_points {
+                    return fail(format!("the points, `vertex`, should come before `{name}`"));
+                }
+                is_theirs = !has_points;
+                has_points = true;
+            }
+            "property" if is_theirs => {
+                let (kind, place) = words.word("a type")?;
+                let number = KINDS.iter().position(|(old, new, _)| [old, new].contains(&&kind));
+                let Some(number) = number else {
+                    return Err(Error::at(file, place, format!("`{kind}` is not the type of a number")));
+                };
+                head.properties.push((words.word("a property's name")?.0.to_string(), number));
+            }
+            "property" | "obj_info" => {}
+            other => return fail(format!("`{other}` is not a word of PLY's header")),
+        }
+        words.rest_of_line();
+    }
+    if head.properties.is_empty() {
+        return Err(Error::of(file, "there are no points in this file: it has no element `vertex` with properties"));
+    }
+    head.cameras = head.cameras.min(head.count);
+    Ok(head)
+}
+
+/// A number of a type, by its row in [`KINDS`].
+fn number(kind: usize, bytes: &[u8], encoding: Encoding) -> f64 {
+    let mut all = [0; 8];
+    all[..bytes.len()].copy_from_slice(bytes);
+    if encoding == Encoding::Big {
+        all[..bytes.len()].reverse();
+    }
+    let [a, b, c, d, ..] = all;
+    match KINDS[kind].0 {
+        "char" => f64::from(a as i8),
+        "uchar" => f64::from(a),
+        "short" => f64::from(i16::from_le_bytes([a, b])),
+        "ushort" => f64::from(u16::from_le_bytes([a, b])),
+        "int" => f64::from(i32::from_le_bytes([a, b, c, d])),
+        "uint" => f64::from(u32::from_le_bytes([a, b, c, d])),
+        "float" => f64::from(f32::from_le_bytes([a, b, c, d])),
+        _ => f64::from_le_bytes(all),
+    }
+}
 
 /// The points, then the places of the cameras in red.
 pub fn write(all: &Reconstruction) -> Vec<u8> {
     let cameras = all.views.iter().filter_map(|view| Some((view.pose.as_ref()?.center(), [255, 0, 0])));
     let rows: Vec<_> = all.points.iter().map(|point| (point.position, point.color)).chain(cameras).collect();
-    let mut bytes = format!("ply\nformat binary_little_endian 1.0\nelement vertex {}\n", rows.len()).into_bytes();
+    let cameras = rows.len() - all.points.len();
+    let mut head = format!("ply\nformat binary_little_endian 1.0\ncomment {CAMERAS} {cameras}\n");
+    head += &format!("element vertex {}\n", rows.len());
     for (kind, names) in [("float", ["x", "y", "z"]), ("uchar", ["red", "green", "blue"])] {
-        names.iter().for_each(|name| bytes.extend(format!("property {kind} {name}\n").bytes()));
+        names.iter().for_each(|name| head += &format!("property {kind} {name}\n"));
     }
-    bytes.extend(b"end_header\n");
+    let mut bytes = (head + "end_header\n").into_bytes();
     for (position, color) in rows {
         position.iter().for_each(|value| bytes.extend((*value as f32).to_le_bytes()));
         bytes.extend(color);

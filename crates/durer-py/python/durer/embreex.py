@@ -1,4 +1,5 @@
-"""The calls of `embreex`, answered by Dürer: `EmbreeScene`, `TriangleMesh`, `scene.run`."""
+"""The calls of `embreex`, answered by Dürer: `EmbreeDevice`, `EmbreeScene`, `TriangleMesh`, `scene.run`. Normals, `Ng`, have length 1
+here."""
 
 from __future__ import annotations
 
@@ -10,10 +11,15 @@ import numpy.typing as npt
 from .rays import Mesh, Scene, _Rays
 
 
-class EmbreeScene:
-    """Meshes that `TriangleMesh` puts into it. The tree is built when it is asked first."""
+class EmbreeDevice:
+    """What Embree needs; here it does nothing."""
 
-    def __init__(self, robust: bool = False) -> None:
+
+class EmbreeScene:
+    """Meshes that `TriangleMesh` puts into it. The tree is built when it is asked first. `device` and `robust` are taken and not
+    needed."""
+
+    def __init__(self, device: Optional[EmbreeDevice] = None, robust: bool = False) -> None:
         self.meshes: list[Mesh] = []
         self._built: Optional[_Rays] = None
 
@@ -26,19 +32,21 @@ class EmbreeScene:
         output: Any = None,
     ) -> Any:
         """`INTERSECT` gives the triangle of each ray, -1 where there is none; `OCCLUDED` 0 where something is met, else -1;
-        `DISTANCE` how far it is, 1e37 where nothing is. `dists` are the ends of rays; with `output` a dictionary tells all."""
+        `DISTANCE` how far it is, and where nothing is the ray's end. `dists` are the ends of rays, 1e37 by default; with `output` a
+        dictionary tells all: zeros where nothing is met."""
         if self._built is None:
             self._built = self.meshes[0] if len(self.meshes) == 1 else Scene(self.meshes)
-        far: npt.ArrayLike = np.inf if dists is None else dists
+        far: npt.ArrayLike = np.float32(1e37) if dists is None else dists
         if query not in ("INTERSECT", "OCCLUDED", "DISTANCE"):
             raise ValueError(f"Embree ray query type {query} not recognized.\nAccepted types are (INTERSECT,OCCLUDED,DISTANCE)")
         if query == "OCCLUDED":
             return np.where(self._built.occluded(vec_origins, vec_directions, t_max=far), 0, -1).astype(np.int32)
         hits = self._built.closest(vec_origins, vec_directions, t_max=far)
-        distance = np.where(hits.hit, hits.t, np.float32(1e37))
+        distance = np.where(hits.hit, hits.t, np.asarray(far, np.float32))
         if output:
-            u, v = hits.uv[..., 0], hits.uv[..., 1]
-            return {"u": u, "v": v, "Ng": hits.normal, "tfar": distance, "primID": hits.triangle, "geomID": hits.object}
+            uv, normal = (np.where(hits.hit[..., None], values, np.float32(0)) for values in (hits.uv, hits.normal))
+            u, v = uv[..., 0], uv[..., 1]
+            return {"u": u, "v": v, "Ng": normal, "tfar": distance, "primID": hits.triangle, "geomID": hits.object}
         return hits.triangle if query == "INTERSECT" else distance
 
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import functools
 import tempfile
+import uuid
+import warnings
 from collections import deque
 from pathlib import Path
 from typing import Any, Iterable, Iterator, Optional, Sequence, Union
@@ -51,20 +53,30 @@ def _whole(names: Sequence[str], contents: Sequence[bytes], reading: tuple[str, 
     return shard(tuple(zip(names, contents)), reading, words, index, count)
 
 
+def _given(content: bytes) -> bytes:
+    """A file, as a task."""
+    return content
+
+
 class _Frame:
     """A picture whose shards are with the workers."""
 
     def __init__(
-        self, world: World, client: Any, shards: int, asked: Sequence[str], sent: dict[bytes, Any], number: int
+        self, world: World, client: Any, shards: int, asked: Sequence[str], sent: dict[bytes, Any]
     ) -> None:
         # What is wrong with the options is better known before anything is sent.
         world._world.part([*asked, "--shard", f"1/{shards}"])
         files = _files(world)
-        for content in files.values():
-            if content not in sent:
-                sent[content] = client.scatter(content, broadcast=True, hash=True)
-        contents = [sent[content] for content in files.values()]
-        name = f"durer-{world.digest[:12]}-{hash_of(asked)}-{number}"
+        # Files are tasks that give them, not scattered data: of these Dask keeps one copy, and it is lost with the worker that has it.
+        # They are held until the end: who dies with shards that were done already leaves them to others, who need the files.
+        with warnings.catch_warnings():
+            warnings.filterwarnings("ignore", "Sending large graph")
+            for content in files.values():
+                if content not in sent:
+                    sent[content] = client.submit(_given, content, key=f"durer-file-{uuid.uuid4().hex}")
+        self.contents = contents = [sent[content] for content in files.values()]
+        # Names are this run's own: what an earlier one, of other shards perhaps, has under way or is about to forget is none of it.
+        name = f"durer-{world.digest[:12]}-{uuid.uuid4().hex[:12]}"
         self.client = client
         self.futures = [
             client.submit(
@@ -83,7 +95,7 @@ class _Frame:
 
 
 def _asked(world: World, words: Optional[Sequence[str]], options: dict[str, Any]) -> list[str]:
-    return [*world._reading, *(words or []), *world._all(options)[len(world._reading) :]]
+    return [*world._all(options), *(words or [])]
 
 
 def render(
@@ -104,7 +116,7 @@ def render(
     from distributed import as_completed
 
     world = scene if isinstance(scene, World) else load(scene)
-    frame = _Frame(world, client, shards, _asked(world, words, options), {}, 0)
+    frame = _Frame(world, client, shards, _asked(world, words, options), {})
     shown = watch(progress)
     try:
         for done, _ in enumerate(as_completed(frame.futures), 1):  # type: ignore[no-untyped-call, unused-ignore]
@@ -124,9 +136,9 @@ def frames(
     waiting: deque[_Frame] = deque()
     sent: dict[bytes, Any] = {}
     try:
-        for number, scene in enumerate(scenes):
+        for scene in scenes:
             world = scene if isinstance(scene, World) else load(scene)
-            waiting.append(_Frame(world, client, shards, _asked(world, None, options), sent, number))
+            waiting.append(_Frame(world, client, shards, _asked(world, None, options), sent))
             if len(waiting) >= ahead:
                 yield waiting.popleft().pictures()
         while waiting:
@@ -134,10 +146,3 @@ def frames(
     finally:
         for frame in waiting:
             frame.cancel()
-
-
-def hash_of(words: Sequence[str]) -> str:
-    """A name for options, the same in all processes."""
-    import hashlib
-
-    return hashlib.sha256("\0".join(words).encode()).hexdigest()[:12]

@@ -17,14 +17,20 @@ class RaycastingScene:
 
     INVALID_ID = 0xFFFF_FFFF
 
-    def __init__(self, nthreads: int = 0) -> None:
+    def __init__(self, nthreads: int = 0, device: Any = None) -> None:
         self._threads = nthreads or None
         self._meshes: list[Mesh] = []
         self._scene: Optional[Scene] = None
 
-    def add_triangles(self, vertex_positions: npt.ArrayLike, triangle_indices: npt.ArrayLike) -> int:
-        """Adds a mesh and gives its number."""
-        self._meshes.append(Mesh(vertex_positions, triangle_indices))
+    def add_triangles(self, vertex_positions: Any, triangle_indices: Optional[npt.ArrayLike] = None) -> int:
+        """Adds a mesh, which may be one of Open3D's own, and gives its number."""
+        faces: Any = triangle_indices
+        if faces is None:
+            vertex_positions, faces = (
+                part.numpy() if hasattr(part, "numpy") else part
+                for part in (vertex_positions.vertex.positions, vertex_positions.triangle.indices)
+            )
+        self._meshes.append(Mesh(vertex_positions, faces))
         self._scene = None
         return len(self._meshes) - 1
 

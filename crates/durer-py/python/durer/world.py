@@ -29,8 +29,11 @@ _SHELL = {
     "output", "pixel", "sample", "hash", "quiet", "resume", "restart", "checkpoint", "checkpoint-every", "no-checkpoint",
     "preview", "transfer", "zoom", "help", "version",
 }  # fmt: skip
-#: Those that say how a scene is read.
-_READING = {"dialect", "compat", "strict", "allow-outside", "assets", "memory", "accel", "grid"}
+#: Those that say how a scene is read, and how a model becomes one.
+_READING = {
+    "dialect", "compat", "strict", "allow-outside", "assets", "memory", "accel", "grid",
+    "up", "view", "studio", "environment", "view-file", "camera", "fit", "at",
+}  # fmt: skip
 #: Kinds of picture whose three channels are one number.
 _SINGLE = {"depth", "object", "material", "sample-count", "variance", "cost"}
 
@@ -42,7 +45,7 @@ def _words(options: Mapping[str, Any], reading: bool) -> list[str]:
     words: list[str] = []
     for name, value in options.items():
         option = name.replace("_", "-")
-        if option not in _OPTIONS or (option in _READING) != reading:
+        if option not in _OPTIONS or (option in _READING) != reading and (option, reading) != ("size", True):
             known = [n.replace("-", "_") for n in _OPTIONS if (n in _READING) == reading]
             near = difflib.get_close_matches(name, known, 1)
             hint = f"did you mean {near[0]}?" if near else f"there are {', '.join(known)}"
@@ -260,7 +263,9 @@ class World:
     @classmethod
     def load(cls, path: PathLike, **reading: Any) -> World:
         """Reads any scene that the command reads; options are those of `durer render` about reading: dialect, compat, strict,
-        allow_outside, assets, memory. Raises SceneError with file, line and column."""
+        allow_outside, assets, memory, and of models up, view, studio, environment, view_file, camera, fit, at. What a model's own
+        picture shows depends on its `size`, which is given here then, and is that of `render` too. Raises SceneError with file, line and
+        column."""
         world = cls.__new__(cls)
         world._load(Path(path), None, [], reading)
         return world
@@ -271,6 +276,13 @@ class World:
         world = cls.__new__(cls)
         world._load(Path(folder) / "scene.txt", text.encode(), [], reading)
         return world
+
+    def rewritten(self, text: str) -> World:
+        """A world of another text in the place of this one's: in the same folder, with the same meshes, read in the same way."""
+        other = World.__new__(World)
+        other.path, other._text, other._given, other._reading = self.path, text.encode(), self._given, self._reading
+        other._world = _durer.World(other.path, other._text, other._given, other._reading)
+        return other
 
     @property
     def text(self) -> str:
@@ -316,7 +328,11 @@ class World:
         return Part(self._world.part(self._all(options)))
 
     def _all(self, options: Mapping[str, Any]) -> list[str]:
-        return self._reading + _words(options, False)
+        reading = self._reading
+        if "--size" in reading and options.get("size") is not None:
+            at = reading.index("--size")
+            reading = reading[:at] + reading[at + 2 :]
+        return reading + _words(options, False)
 
     def render(
         self,

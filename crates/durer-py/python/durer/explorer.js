@@ -1,0 +1,80 @@
+// The page's side of `durer.widget.Explorer`: shows its picture, and tells it of drags, turns of the wheel, keys and clicks.
+const element = (name, inside, text) => {
+  const made = document.createElement(name);
+  if (text !== undefined) made.textContent = text;
+  inside.append(made);
+  return made;
+};
+
+// A node of the explanation: its colour as a screen shows it, what it is, and its terms below.
+const branch = (node, inside, open) => {
+  const leaf = !node.terms.length;
+  const box = element(leaf ? "div" : "details", inside), head = leaf ? box : element("summary", box);
+  box.open = open;
+  const chip = element("span", head);
+  chip.className = "durer-chip";
+  chip.style.background = node.color;
+  element("span", head, node.text);
+  box.classList.add("durer-node");
+  node.terms.forEach(term => branch(term, box, open && node.terms.length < 4));
+};
+
+function render({ model, el }) {
+  el.classList.add("durer");
+  const image = element("img", el), word = element("p", el), tree = element("div", el);
+  Object.assign(image, { tabIndex: 0, draggable: false, alt: "the scene: drag or use the arrow keys to go around it, plus and minus to come nearer, click a pixel to explain it" });
+  word.setAttribute("role", "status");
+  const draw = () => {
+    URL.revokeObjectURL(image.src);
+    image.src = URL.createObjectURL(new Blob([model.get("picture")], { type: "image/png" }));
+  };
+  const tell = () => {
+    const told = model.get("told");
+    tree.replaceChildren();
+    word.textContent = model.get("word");
+    if (told.terms) branch(told, tree, true);
+  };
+  // One wish is under way at a time; what comes meanwhile is added up.
+  let busy = false, turn = [0, 0], nearer = 1, ask = null;
+  const send = () => {
+    if (busy || (!turn[0] && !turn[1] && nearer === 1 && !ask)) return;
+    busy = true;
+    model.send({ turn, nearer, ask });
+    turn = [0, 0]; nearer = 1; ask = null;
+  };
+  const made = () => { busy = false; send(); };
+  const drag = (x, y) => { turn = [turn[0] + x, turn[1] + y]; send(); };
+  let held = null;
+  image.addEventListener("pointerdown", e => { held = { x: e.clientX, y: e.clientY, far: 0 }; image.setPointerCapture(e.pointerId); });
+  image.addEventListener("pointermove", e => {
+    if (!held) return;
+    const x = e.clientX - held.x, y = e.clientY - held.y;
+    held.far += Math.abs(x) + Math.abs(y);
+    if (held.far < 4) return;
+    [held.x, held.y] = [e.clientX, e.clientY];
+    drag(x / image.clientWidth, y / image.clientWidth);
+  });
+  image.addEventListener("pointerup", e => {
+    const box = image.getBoundingClientRect();
+    if (held && held.far < 4) { ask = [(e.clientX - box.left) / box.width, (e.clientY - box.top) / box.height]; send(); }
+    held = null;
+  });
+  image.addEventListener("wheel", e => { e.preventDefault(); nearer *= Math.exp(e.deltaY / 800); send(); }, { passive: false });
+  image.addEventListener("keydown", e => {
+    const keys = { ArrowLeft: [-0.05, 0], ArrowRight: [0.05, 0], ArrowUp: [0, -0.05], ArrowDown: [0, 0.05] };
+    if (keys[e.key]) { e.preventDefault(); drag(...keys[e.key]); }
+    if (e.key === "+" || e.key === "-") { nearer *= e.key === "+" ? 0.9 : 1.1; send(); }
+  });
+  model.on("change:picture", draw);
+  model.on("change:told", tell);
+  model.on("change:word", tell);
+  model.on("change:made", made);
+  draw();
+  tell();
+  return () => {
+    URL.revokeObjectURL(image.src);
+    model.off("change:picture", draw); model.off("change:told", tell); model.off("change:word", tell); model.off("change:made", made);
+  };
+}
+
+export default { render };
