@@ -81,6 +81,10 @@ fn put_files(place: &Place) {
     let halves: String = faces.iter().map(|[a, b, c, d]| format!("f {a} {b} {c}\nf {a} {c} {d}\n")).collect();
     place.put("quads.obj", format!("{corners}{quads}"));
     place.put("box.obj", format!("{corners}{halves}"));
+    // Without its lid.
+    let cup: String =
+        halves.lines().enumerate().filter(|(i, _)| i / 2 != 4).map(|(_, face)| format!("{face}\n")).collect();
+    place.put("cup.obj", format!("{corners}{cup}"));
     place.put("bad.obj", format!("{corners}f 1 2 19\n"));
     let sheet =
         |uvs: &str| format!("v -2 0.2 0\nv -0.4 0.2 0\nv -0.4 1.8 0\nv -2 1.8 0\n{uvs}f 1/1 2/2 3/3\nf 1/1 3/3 4/4\n");

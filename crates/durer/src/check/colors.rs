@@ -172,10 +172,10 @@ pub(super) fn odd_index(scout: &Scout) -> Vec<Finding> {
     let fields = ["indexOfRefraction", "refractionIndex"];
     for (i, written, phong) in phongs(scout).filter(|(i, ..)| rays(scout, *i) > 0).take(MOST_SOUGHT) {
         let Written::Phong(own, _) = &written.value else { continue };
-        let mirrors = phong.reflective.max_element() > 0.5 && phong.diffuse.max_element() < 0.15;
-        if own.refraction_index == Some(0.0) && mirrors && scout.value(written.span, &["refractionIndex"]).is_some() {
+        let dark = phong.diffuse.max_element() < 0.3 && phong.texture.is_none();
+        if own.refraction_index == Some(0.0) && dark && scout.value(written.span, &["refractionIndex"]).is_some() {
             let diagnostic = Diagnostic::warning(format!("material {i} has an index of refraction of 0"))
-                .effect("this year's program takes that for no glass: it is a mirror, and lets nothing through")
+                .effect("this year's program takes that for no glass: it lets nothing through, and mirrors by its `specularColor`")
                 .help("glass has 1.5, water 1.33; for a mirror leave `refractionIndex` away");
             found.push(Finding::from(scout.at_value(diagnostic, written.span, &fields)));
         }
@@ -231,9 +231,9 @@ struct Named {
 
 fn all_colors(scout: &Scout) -> Vec<Named> {
     let mut colors = Vec::new();
-    for (i, written, _) in phongs(scout) {
+    for (i, written, used) in phongs(scout) {
         let Written::Phong(phong, _) = &written.value else { continue };
-        // A surface gives back no more than it gets; a highlight may be as strong as it looks well.
+        // A surface gives back no more than it gets.
         // What is hardly seen may stand for a lamp.
         let small = rays(scout, i) * 25 < scout.probes.len();
         let named = |color, fields, most: f32| {
@@ -241,9 +241,12 @@ fn all_colors(scout: &Scout) -> Vec<Named> {
             Named { color, block: written.span, fields, most }
         };
         colors.extend(phong.diffuse_color.map(|color| named(color, ["diffuseColor", "diffuse"], 1.001)));
-        colors.push(named(phong.specular_color, ["specularColor", "specular"], 5.0));
-        colors.push(named(phong.reflective_color, ["reflectiveColor", "reflectiveColor"], 1.001));
-        colors.push(named(phong.transparent_color, ["transparentColor", "transparentColor"], 1.001));
+        let all = |color, fields, most: f32| Named { color, block: written.span, fields, most };
+        // A highlight may be a little stronger than white; a mirror gives back no more than it gets.
+        let mirrors = used.reflective != Color::ZERO && phong.reflective_color == Color::ZERO;
+        colors.push(all(phong.specular_color, ["specularColor", "specular"], if mirrors { 1.05 } else { 1.6 }));
+        colors.push(all(phong.reflective_color, ["reflectiveColor", "reflectiveColor"], 1.001));
+        colors.push(all(phong.transparent_color, ["transparentColor", "transparentColor"], 1.001));
     }
     for (number, (written, light)) in scout.subject.scene.lights.iter().flatten().zip(&scout.world().lights).enumerate()
     {

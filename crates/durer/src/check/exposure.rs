@@ -134,6 +134,16 @@ pub(super) fn too_bright(scout: &Scout) -> Vec<Finding> {
     }
     for (i, light) in world.lights.iter().enumerate() {
         let Some(span) = place(scout, i) else { continue };
+        // A light that nearly does not fade is not too bright of itself.
+        let faded = scout.value(span, &["attenuation", "falloff"]).filter(|_| factor < 0.1 && most > 10.0);
+        if let (Some(value), Some(a)) = (faded, super::lights::divisor(light)) {
+            let single = scout.text(value).split_whitespace().count() == 1;
+            let text = if single { number(a.z / factor) } else { vector(a / factor) };
+            let diagnostic =
+                diagnostic.help(format!("it fades too little: `{text}`, say, for `{}`", scout.text(value)));
+            let diagnostic = diagnostic.at(value).label("this light arrives that strong").fix(value, text);
+            return vec![Finding::from(diagnostic).whole(cut * 2 > lit.len())];
+        }
         let value = scout.value(span, &["color"]);
         diagnostic = diagnostic.fix_at(value, vector(color(light) * factor));
         diagnostic.span = diagnostic.span.or(value).or(Some(span));

@@ -32,8 +32,13 @@ pub(super) fn too_small(scout: &Scout) -> Vec<Finding> {
     };
     let empty = scout.seen().next().is_none();
     // Who takes so wide a field of view wants to see much, not a few small things in its middle.
-    let wide = matches!(&scout.world().camera, Camera::Perspective(camera) if camera.angle > 90.0);
-    let fewest = if wide { (0.08 * scout.larger()).max(FEWEST_PIXELS) } else { FEWEST_PIXELS };
+    let share = match &scout.world().camera {
+        Camera::Perspective(camera) if camera.angle > 120.0 => 0.12,
+        Camera::Perspective(camera) if camera.angle > 90.0 => 0.08,
+        Camera::Orthographic(_) => 0.12,
+        _ => 0.0,
+    };
+    let fewest = (share * scout.larger()).max(FEWEST_PIXELS);
     if size >= fewest || !empty && !scout.sights().contains(&Sight::Seen) {
         return Vec::new();
     }
@@ -118,12 +123,15 @@ fn one_fills(scout: &Scout, sizes: &[f32]) -> Option<Finding> {
     let Camera::Perspective(camera) = &scout.world().camera else { return None };
     let sights = scout.sights().iter().zip(&scout.world().objects);
     let out = sights.filter(|(sight, object)| **sight == Sight::Outside && object.bounds().is_some()).count();
-    let [size] = sizes else { return None };
-    if camera.angle > 12.0 || *size < 1.2 * scout.larger() || out < 2 {
+    let filled = sizes.iter().all(|size| *size > 0.9 * scout.larger());
+    if camera.angle > 12.0 || sizes.is_empty() || !filled || out < 2 || out < sizes.len() {
         return None;
     }
     let diagnostic = Diagnostic::warning(format!("the field of view is {} degrees only", number(camera.angle)))
-        .effect(format!("one thing fills the picture, and {out} are beside it"))
+        .effect(match sizes.len() {
+            1 => format!("one thing fills the picture, and {out} are beside it"),
+            n => format!("{n} things fill the picture, and {out} are beside it"),
+        })
         .help("30 to 60 degrees are usual: is a digit missing?");
     let span = scout.subject.scene.camera_span;
     Some(Finding::from(scout.at_value(diagnostic, span, &["angle", "fov"])).whole(true))

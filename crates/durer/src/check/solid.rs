@@ -4,7 +4,7 @@ use super::MOST_SOUGHT;
 use super::finding::Finding;
 use super::scout::Scout;
 use crate::diag::Diagnostic;
-use crate::math::{Aabb, Ray, Vec3};
+use crate::math::{Aabb, Ray, Ray64, Vec3};
 use crate::scene::{Node, Operation, extent};
 use crate::world::World;
 
@@ -28,16 +28,15 @@ pub(super) fn around(world: &World, point: Vec3) -> Vec<u32> {
         if inside.is_empty() {
             break;
         }
-        let mut crossings = vec![0_usize; inside.len()];
-        for hit in world.all_hits(&Ray::new(point, direction)) {
-            if let Some(at) = inside.iter().position(|object| *object == hit.object) {
-                crossings[at] += 1;
-            }
-        }
-        let mut at = 0;
-        inside.retain(|_| {
-            at += 1;
-            crossings[at - 1] % 2 == 1
+        // Each by itself: where two surfaces lie in one another, one of them alone is met by a ray.
+        inside.retain(|&object| {
+            let mut rest = Ray64::from(Ray::new(point, direction));
+            let crossings = std::iter::from_fn(|| {
+                let t = world.hit_of(object, &rest)?.t;
+                rest.rounded.t_min = t;
+                Some(t)
+            });
+            crossings.count() % 2 == 1
         });
     }
     inside

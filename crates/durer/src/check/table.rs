@@ -113,6 +113,7 @@ checks! {
     "odd-normals": "normals of a mesh file that contradict its faces, are missing or have no length", mesh::given_normals;
     "misread-mesh": "a mesh file of which the year's program loses a line, or that it gives other normals", mesh::misread;
     "flat-field": "a landscape without heights", unseen::flat_field;
+    "open-mesh": "a mesh with holes through which its inside is seen", mesh::holes;
     "degenerate-mesh": "triangles of a mesh without area", mesh::degenerate;
     "degenerate-triangle": "a triangle without area", objects::degenerate;
     "mesh-quads": "faces that this year's program cannot read", year::quads;

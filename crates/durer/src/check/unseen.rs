@@ -158,7 +158,8 @@ pub(super) fn tiny(scout: &Scout) -> Vec<Finding> {
     };
     let all: Vec<_> = objects.iter().enumerate().take(MOST_SOUGHT).filter_map(small).collect();
     // A swarm of tiny things is one; and all that is tiny together is told of together.
-    if objects.len() > FEW_OBJECTS || all.len() * 2 > objects.len() || scout.seen().next().is_none() {
+    let bounded = objects.iter().filter(|object| object.bounds().is_some()).count();
+    if objects.len() > FEW_OBJECTS || all.len() == bounded || scout.seen().next().is_none() {
         return Vec::new();
     }
     let say = |(index, size, bounds): (u32, f32, Aabb)| {

@@ -6,7 +6,7 @@ use super::scout::Scout;
 use super::sight::{Sight, corner};
 use super::solid::around;
 use crate::camera::{Camera, Lens};
-use crate::diag::{Diagnostic, Span};
+use crate::diag::{Diagnostic, Severity, Span};
 use crate::math::{Aabb, Color, Ray, Vec2, Vec3, fp};
 use crate::scene::{Group, Node};
 use crate::shape::Primitive;
@@ -438,13 +438,14 @@ pub(super) fn plane_through(scout: &Scout) -> Vec<Finding> {
         !clear && cut >= 2 && cut * 3 >= boxes.len() * 2
     };
     let say = |number: u32| {
-        let diagnostic =
-            Diagnostic::warning(format!("the {} passes through the middle of most things", scout.object(number)))
-                .at(scout.object_span(number))
-                .effect("only what is before it is seen of them")
-                .help(
-                    "a floor lies below things: which axis is up? Look at its `normal` and `offset`, and what turns it",
-                );
+        // Things may well be sunk into a floor.
+        let floor = ground(scout, number).is_some_and(|(n, _)| n.dot(world.frame.up).abs() > 0.8);
+        let severity = if floor { Severity::Note } else { Severity::Warning };
+        let message = format!("the {} passes through the middle of most things", scout.object(number));
+        let diagnostic = Diagnostic { severity, ..Diagnostic::warning(message) }
+            .at(scout.object_span(number))
+            .effect("only what is before it is seen of them")
+            .help("a floor lies below things: which axis is up? Look at its `normal` and `offset`, and what turns it");
         Finding::from(diagnostic)
     };
     (0..world.objects.len() as u32).filter(through).take(2).map(say).collect()

@@ -272,17 +272,22 @@ pub(super) fn plane_normal(scout: &Scout) -> Vec<Finding> {
     let say = |object: &Object| {
         let Geometry::Primitive(Primitive::Plane(plane)) = &object.geometry else { return None };
         let length = plane.normal.length();
-        if (0.98..=1.02).contains(&length) || plane.offset == 0.0 {
+        let rules = &scout.world().rules;
+        let counts = rules.has(Compat::RawNormals) && !rules.has(Compat::UnitLight);
+        if (0.98..=1.02).contains(&length) || plane.offset == 0.0 && !counts {
             return None;
         }
         let unit = vector(plane.normal / length);
         let diagnostic = Diagnostic::warning(format!("the normal of this plane has the length {}", number(length)))
-            .effect(format!(
-                "the plane stands where p · normal = offset: {} from the origin, not {}",
-                number(plane.offset.abs() / length),
-                number(plane.offset.abs())
-            ))
-            .help(match scout.world().rules.has(Compat::RawNormals) {
+            .effect(match plane.offset == 0.0 {
+                true => format!("this year's program takes it as it is: light counts {} times", number(length)),
+                false => format!(
+                    "the plane stands where p · normal = offset: {} from the origin, not {}",
+                    number(plane.offset.abs() / length),
+                    number(plane.offset.abs())
+                ),
+            })
+            .help(match counts {
                 true => format!("give it the length 1: `normal {unit}`; light counts {} times here", number(length)),
                 false => format!("give it the length 1: `normal {unit}`"),
             });

@@ -105,8 +105,8 @@ impl Whitted<'_> {
         let mut color = Color::ZERO;
         if !black {
             // A texture or noise is looked up once for all lights.
-            let diffuse: SmallVec<[Color; 2]> =
-                parts.iter().map(|p| self.world.diffuse_color(p.phong, surface)).collect();
+            let mut diffuse = SmallVec::<[Color; 2]>::new();
+            parts.iter().for_each(|part| diffuse.push(self.world.diffuse_color(part.phong, surface)));
             for (part, &diffuse) in parts.iter().zip(&diffuse) {
                 let met = part.phong.ambient.unwrap_or(diffuse);
                 let ambient = part.share * self.world.ambient;
@@ -121,12 +121,12 @@ impl Whitted<'_> {
                     direct(part.phong, diffuse, n, ray.dir(), &seen, tally)
                 };
                 // Where nothing of a light would be scattered, nobody asks whether it arrives.
-                let known: SmallVec<[Color; 2]> = match T::LISTENS {
-                    true => SmallVec::new(),
-                    false => lit.clone().map(|part| scattered(tally, part)).collect(),
-                };
-                if !T::LISTENS && known.iter().all(|&color| color == Color::ZERO) {
-                    continue;
+                let mut known = SmallVec::<[Color; 2]>::new();
+                if !T::LISTENS {
+                    lit.clone().for_each(|part| known.push(scattered(tally, part)));
+                    if known.iter().all(|&color| color == Color::ZERO) {
+                        continue;
+                    }
                 }
                 let visible = self.visible(surface, &seen, tally);
                 for (i, (part, diffuse)) in lit.enumerate() {

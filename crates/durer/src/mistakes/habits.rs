@@ -210,6 +210,8 @@ pub enum Fresnel {
 pub struct Lamps {
     /// L of directional lights is the direction as written, not its negative.
     pub negated: bool,
+    /// L of all lights has the wrong sign, for shadow rays too.
+    pub all_negated: bool,
     /// L of directional lights has the length that is written.
     pub long: bool,
     /// L of point lights has the length of the distance.

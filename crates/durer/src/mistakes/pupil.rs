@@ -268,6 +268,9 @@ impl<'w> Pupil<'w> {
     /// What arrives of a light, as the pupil reckons it.
     fn illuminated(&self, light: &Light, point: DVec3) -> Illumination {
         let mut seen = light.illuminate(point);
+        if self.habits.lamps.all_negated {
+            seen.to_light = -seen.to_light;
+        }
         match light {
             Light::Directional(_) if self.habits.lamps.negated => seen.to_light = -seen.to_light,
             Light::Directional(_) | Light::Spot(_) | Light::Photometric(_) => {}

@@ -253,11 +253,14 @@ impl World {
     /// The nearest hit of each object in the ray's interval, in the order in which they are written.
     pub fn hits_of_each(&self, ray: impl Into<Ray64>) -> impl Iterator<Item = Hit> {
         let ray = ray.into();
+        (0..self.objects.len() as u32).filter_map(move |object| self.hit_of(object, &ray))
+    }
+
+    /// The nearest hit of one object, whatever is before it.
+    pub fn hit_of(&self, object: u32, ray: &Ray64) -> Option<Hit> {
         let sound = crate::bvh::is_sound(&ray.rounded);
-        self.objects.iter().enumerate().filter(move |_| sound).filter_map(move |(object, geometry)| {
-            let (crossing, part) = geometry.closest(&ray, false, &mut ())?;
-            Some(Hit { t: crossing.t, uv: crossing.uv, object: object as u32, part })
-        })
+        let (crossing, part) = self.objects[object as usize].closest(ray, false, &mut ()).filter(|_| sound)?;
+        Some(Hit { t: crossing.t, uv: crossing.uv, object, part })
     }
 
     /// The light of a lamp, by number, that arrives at a point if nothing is in the way.

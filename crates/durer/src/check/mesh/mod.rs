@@ -197,6 +197,28 @@ pub(super) fn open_glass(scout: &Scout) -> Vec<Finding> {
     found
 }
 
+/// Opaque meshes with holes through which their inside is seen.
+pub(super) fn holes(scout: &Scout) -> Vec<Finding> {
+    let mut found = Vec::new();
+    for mesh in scout.meshes().iter().filter(|mesh| mesh.glass(scout).is_none() && mesh.topology.open > 0) {
+        let own = |object: u32| mesh.objects.iter().any(|o| o.span == scout.object_span(object));
+        let seen = scout.seen().filter(|(_, seen)| own(seen.object));
+        let (all, backs) = seen.fold((0, 0), |(all, backs), (_, s)| (all + 1, backs + usize::from(s.from_behind)));
+        // A sheet is seen from one side, or nearly so.
+        if backs * 50 < all || backs * 10 > all * 7 || all == 0 {
+            continue;
+        }
+        let edges = counted(mesh.topology.open, "edge", "edges");
+        let message = format!("`{}` has holes: {edges} with one triangle only", mesh.name.path);
+        let diagnostic = Diagnostic::note(message)
+            .at(mesh.name.span)
+            .effect("its inside is seen through them, from behind")
+            .help("are faces missing in the file?");
+        found.push(Finding::from(diagnostic));
+    }
+    found
+}
+
 /// Flat things of glass: what has no inside.
 pub(super) fn flat_glass(scout: &Scout) -> Vec<Finding> {
     use crate::shape::Primitive;

@@ -159,6 +159,14 @@ pub(super) const MISTAKES: &[Mistake] = &[
     )
     .with(Values::Only(&[0.0, 1.0])),
     row(
+        "lights-negated",
+        "diffuse",
+        "the direction to every light has the wrong sign, and shadow rays go the same way",
+        "L = normalize(position - p), or normalize(-direction)",
+        "L = normalize(p - position), or normalize(direction)",
+        |v, _| v.habits.lamps.all_negated = true,
+    ),
+    row(
         "light-negated",
         "diffuse",
         "directional lights shine from where they should shine to: L is the direction itself",
