@@ -221,7 +221,7 @@ fn errors_of_gltf_name_the_place_and_what_is_wrong() {
         ("\"POSITION\": 0", "\"POSITION\": 7", "UNRESOLVED_REFERENCE: /meshes/0/primitives/0/attributes/POSITION"),
         ("\"mesh\": 0 }", "\"mesh\": 0, \"children\": [0] }", "NODE_LOOP: /nodes/0"),
         ("\"byteLength\": 48 }", "\"byteLength\": 480 }", "BUFFER_VIEW_TOO_LONG: /bufferViews/0/byteLength"),
-        ("\"asset\"", "\"extensionsRequired\": [\"KHR_draco_mesh_compression\"], \"asset\"", "UNSUPPORTED_EXTENSION"),
+        ("\"asset\"", "\"extensionsRequired\": [\"KHR_texture_basisu\"], \"asset\"", "UNSUPPORTED_EXTENSION"),
         ("[0] }]", "[0] }", "INVALID_JSON"),
     ] {
         // Zeroes without a buffer are bounded too.

@@ -76,21 +76,7 @@ impl Model<'_> {
 
     fn primitive(&self, at: &At) -> Option<Primitive> {
         at.object()?;
-        if let Some(extensions) = at.get("extensions") {
-            if extensions.get("KHR_draco_mesh_compression").is_some() {
-                let message = "the triangles are compressed by Draco (KHR_draco_mesh_compression), which is not read: \
-                               convert the file with `gltf-transform copy`";
-                at.error("UNSUPPORTED_EXTENSION", message);
-                return None;
-            }
-            if extensions.get("KHR_materials_variants").is_some() {
-                self.once("KHR_materials_variants", "variants of materials are left out: the first look is shown");
-            }
-        }
-        let material = match at.get("material") {
-            Some(material) => Some(material.index(self.material_count)? as u32),
-            None => None,
-        };
+        let material = self.material_of(at)?;
         let mode = at.get("mode").map_or(Some(TRIANGLES), |mode| mode.whole(0..=6))?;
         let attributes = at.need("attributes")?;
         if attributes.object()?.is_empty() {
