@@ -39,6 +39,9 @@ enum Encoding {
     Linear,
 }
 
+/// A picture's name, and what its values mean.
+type PictureKey = (String, Encoding);
+
 pub(super) struct Loader<'r> {
     pub(super) resources: Resources<'r>,
     rules: Rules,
@@ -47,11 +50,11 @@ pub(super) struct Loader<'r> {
     meshes: HashMap<String, Option<Arc<MeshTree>>>,
     texture_numbers: HashMap<String, Option<u32>>,
     /// Numbers of the textures of materials in layers, by the picture's name and the curve of its values.
-    map_numbers: HashMap<(String, Encoding), Option<u32>>,
+    map_numbers: HashMap<PictureKey, Option<u32>>,
     /// What was decoded for those, by the name of the file or the bytes' place in memory.
-    decoded: HashMap<(String, Encoding), Option<Texture>>,
+    decoded: HashMap<PictureKey, Option<Texture>>,
     /// What was decoded before somebody asked for it.
-    ahead: HashMap<(String, Encoding), Texture>,
+    ahead: HashMap<PictureKey, Texture>,
     pub(super) textures: Vec<Texture>,
 }
 
@@ -213,7 +216,7 @@ impl<'r> Loader<'r> {
     /// had are left to whoever asks for them, and has a place to complain at.
     pub(super) fn decode_ahead<'m>(&mut self, materials: impl Iterator<Item = &'m PrincipledMaterial>) {
         let mut left = self.resources.memory;
-        let mut packed: Vec<((String, Encoding), Arc<[u8]>)> = Vec::new();
+        let mut packed: Vec<(PictureKey, Arc<[u8]>)> = Vec::new();
         for (name, encoding) in materials.flat_map(pictures) {
             let (bytes, _) = self.found(name);
             let (path, bytes) = match bytes {

@@ -42,7 +42,7 @@ impl Model<'_> {
         ];
         let filter = at.get("filter").map_or(Some(Filter::None), |filter| filter.word(&filters))?;
         let strides_fit = match (mode, filter) {
-            (Mode::Attributes, Filter::None | Filter::Exponential) => stride % 4 == 0,
+            (Mode::Attributes, Filter::None | Filter::Exponential) => stride.is_multiple_of(4),
             (Mode::Attributes, Filter::Octahedral) => stride == 4 || stride == 8,
             (Mode::Attributes, Filter::Quaternion) => stride == 8,
             (_, filter) => (stride == 2 || stride == 4) && filter == Filter::None,
@@ -351,7 +351,7 @@ mod tests {
     fn elements_follow_the_baseline() {
         // Two elements of four bytes: the first is the baseline plus (1, 0, 0, 0), the second that plus (-1, 0, 0, 5).
         let mut packed = vec![0xa0];
-        packed.extend([1, 0b10_01_0000, 0, 0, 0]); // byte 0: two bits, 2 = +1 and 1 = -1
+        packed.extend([1, 0b1001_0000, 0, 0, 0]); // byte 0: two bits, 2 = +1 and 1 = -1
         packed.extend([0, 0]);
         packed.extend([3]);
         packed.extend([0, 10].into_iter().chain([0; 14]));
@@ -379,7 +379,7 @@ mod tests {
         assert_eq!(quaternion([0, 0, 0, 32767 & !3 | 2]), [0, 0, 32767, 0]);
         for i in 0..200i16 {
             let q = quaternion([i * 83 - 9000, 7000 - i * 31, i * 5, 32764 | (i & 3)]);
-            let length = q.map(|x| (f64::from(x) / 32767.0).powi(2)).iter().sum::<f64>();
+            let length = q.map(|x| f64::from(x) / 32767.0).iter().map(|x| x * x).sum::<f64>();
             assert!((length - 1.0).abs() < 2e-4, "{q:?}");
         }
     }

@@ -70,15 +70,13 @@ impl Rows<'_> {
         let blocks = all.par_chunks_mut(BLOCK).zip(self.bytes.par_chunks(BLOCK * self.size));
         let sound = blocks.map(|(block, bytes)| {
             let rows = Rows { bytes, ..*self };
-            let mut sound = rows.whole(count, |_, length| length == 3);
-            for k in 0..3 {
-                let place = (corners, first + k * corners.size());
-                sound &= rows.whole(place, |i, corner| {
+            let mut corner = |k: usize| {
+                rows.whole((corners, first + k * corners.size()), |i, corner| {
                     block[i][k] = corner as u32;
                     (0..vertices as i64).contains(&corner)
-                });
-            }
-            sound
+                })
+            };
+            rows.whole(count, |_, length| length == 3) && (0..3).all(&mut corner)
         });
         sound.all(|sound| sound).then_some(all)
     }
