@@ -1,5 +1,6 @@
 //! Commands for those who build Dürer.
 
+mod bench_files;
 mod bench_pictures;
 mod bench_rays;
 mod bitterli;
@@ -12,6 +13,7 @@ mod lamps;
 mod long;
 mod manual;
 mod peers;
+mod sheet;
 mod solids;
 mod teach;
 mod torture;
@@ -50,6 +52,8 @@ const USAGE: &str = "Commands:
       How many of N rays each of them loses at the vertices and edges of a closed mesh.
   cargo xtask bench-pictures [--runs 3] [--threads 2] [--side 512] [--only TEXT]
       The same scenes by us and by POV-Ray 3.7 (Debian's `povray`), in turns: time, memory, and whether both show the same.
+  cargo xtask bench-files [--triangles 8] [--runs 3]
+      How fast meshes are read beside tobj, ply-rs-bw and gltf, on the same files: so many million triangles, in text a tenth.
   cargo xtask long [--only TEXT] [--times N]
       Tests of the suite with many more numbers: rays against a reference in double precision, rays at edges, rays that
       leave surfaces, bits of all SIMD levels.
@@ -69,6 +73,8 @@ const USAGE: &str = "Commands:
   cargo xtask bitterli [--samples 256] [--only TEXT] [--keep FOLDER]
       Bitterli's scenes from pbrt's files beside Tungsten's pictures of them, and the table in docs/models.md. --keep: leave both
       pictures there.
+  cargo xtask sheet [--samples 32] [--front] [--only TEXT] [--keep FOLDER]
+      The sample models, rendered without any option, or from the front, beside the pictures that came with them, as sheets.
   cargo xtask manual
       Write the reference of the language, docs/language and its pictures, and the grammar for editors.
 The course is found in ../shared, or where DURER_CORPUS says.";
@@ -83,12 +89,14 @@ fn main() -> anyhow::Result<ExitCode> {
             println!("{USAGE}");
             Ok(ExitCode::SUCCESS)
         }
+        Some("bench-files") => bench_files::run(&arguments[1..]),
         Some("bench-pictures") => bench_pictures::run(&arguments[1..]),
         Some("course") => course::run(&arguments[1..]),
         Some("verify") => verify::run(&arguments[1..]),
         Some("explain") => explain::run(&arguments[1..]),
         Some("torture") => torture::run(&arguments[1..]),
         Some("bitterli") => bitterli::run(&arguments[1..]),
+        Some("sheet") => sheet::run(&arguments[1..]),
         Some("cost") => cost::run(&arguments[1..]),
         Some("solids") => solids::run(),
         Some("teach") => teach::run(&arguments[1..]),

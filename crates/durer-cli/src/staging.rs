@@ -26,6 +26,9 @@ pub struct StagingArgs {
     /// Name or number of the model's camera that is wanted [default: the first]
     #[arg(long, value_name = "NAME")]
     pub camera: Option<String>,
+    /// Name or number of the look that is wanted of a glTF file with several [default: its own materials]
+    #[arg(long, value_name = "NAME")]
+    pub variant: Option<String>,
     /// Move the model's own camera to where it sees all of it, in the direction in which it looks
     #[arg(long, conflicts_with = "view")]
     pub fit: bool,
@@ -97,6 +100,7 @@ impl StagingArgs {
                 Light::Sun => Studio::Sun,
             }),
             camera: self.camera.clone(),
+            variant: self.variant.clone(),
             at: self.at,
             fit: self.fit,
             turned: self.turned,

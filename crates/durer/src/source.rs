@@ -18,7 +18,11 @@ pub struct Digest(pub [u8; 32]);
 impl Digest {
     /// The hash of some bytes.
     pub fn of(bytes: &[u8]) -> Self {
-        Digest(blake3::hash(bytes).into())
+        // Below this, threads cost more than they bring.
+        match bytes.len() < 1 << 20 {
+            true => Digest(blake3::hash(bytes).into()),
+            false => Digest(blake3::Hasher::new().update_rayon(bytes).finalize().into()),
+        }
     }
 
     /// A hash of numbers, to be made one by one.

@@ -8,7 +8,7 @@ use crate::format;
 use crate::image::{self, Encoded, ImageError};
 use crate::light::{Emitter as _, Light, Profile};
 use crate::material::PrincipledMaterial;
-use crate::material::parameters::{Change, TEXTURED};
+use crate::material::parameters::{Change, TEXTURED, Textured};
 use crate::math::Aabb;
 use crate::medium::DensityGrid;
 use crate::scene::{Assets, Background, PictureBytes};
@@ -39,6 +39,9 @@ enum Encoding {
     Linear,
 }
 
+/// A picture's name, and what its values mean.
+type PictureKey = (String, Encoding);
+
 pub(super) struct Loader<'r> {
     pub(super) resources: Resources<'r>,
     rules: Rules,
@@ -47,9 +50,11 @@ pub(super) struct Loader<'r> {
     meshes: HashMap<String, Option<Arc<MeshTree>>>,
     texture_numbers: HashMap<String, Option<u32>>,
     /// Numbers of the textures of materials in layers, by the picture's name and the curve of its values.
-    map_numbers: HashMap<(String, Encoding), Option<u32>>,
+    map_numbers: HashMap<PictureKey, Option<u32>>,
     /// What was decoded for those, by the name of the file or the bytes' place in memory.
-    decoded: HashMap<(String, Encoding), Option<Texture>>,
+    decoded: HashMap<PictureKey, Option<Texture>>,
+    /// What was decoded before somebody asked for it.
+    ahead: HashMap<PictureKey, Texture>,
     pub(super) textures: Vec<Texture>,
 }
 
@@ -63,6 +68,7 @@ impl<'r> Loader<'r> {
             texture_numbers: HashMap::new(),
             map_numbers: HashMap::new(),
             decoded: HashMap::new(),
+            ahead: HashMap::new(),
             textures: Vec::new(),
         }
     }
@@ -186,13 +192,7 @@ impl<'r> Loader<'r> {
         if let Some(known) = self.map_numbers.get(&key) {
             return *known;
         }
-        let asset = self.assets.pictures.get(&name.path);
-        let mut mapping = asset.map_or_else(Mapping::default, |picture| picture.mapping);
-        let bytes = asset.map(|picture| picture.bytes.clone()).unwrap_or_else(|| {
-            let word = name.path.rsplit_once(':').and_then(|(path, word)| Some((path, Channel::from_word(word)?)));
-            mapping.channel = word.map(|(_, channel)| channel);
-            PictureBytes::File(word.map_or(name.path.as_str(), |(path, _)| path).into())
-        });
+        let (bytes, mapping) = self.found(name);
         let texture = self.picture(name, bytes, encoding, diagnostics);
         let number = texture.map(|texture| {
             self.textures.push(texture.mapped(mapping));
@@ -200,6 +200,49 @@ impl<'r> Loader<'r> {
         });
         self.map_numbers.insert(key, number);
         number
+    }
+
+    /// Where the bytes of a picture are, and how it lies.
+    fn found(&self, name: &FileName) -> (PictureBytes, Mapping) {
+        if let Some(asset) = self.assets.pictures.get(&name.path) {
+            return (asset.bytes.clone(), asset.mapping);
+        }
+        let word = name.path.rsplit_once(':').and_then(|(path, word)| Some((path, Channel::from_word(word)?)));
+        let mapping = Mapping { channel: word.map(|(_, channel)| channel), ..Mapping::default() };
+        (PictureBytes::File(word.map_or(name.path.as_str(), |(path, _)| path).into()), mapping)
+    }
+
+    /// Decodes the pictures of materials side by side, as far as memory has room for all of them together. Those that cannot be
+    /// had are left to whoever asks for them, and has a place to complain at.
+    pub(super) fn decode_ahead<'m>(&mut self, materials: impl Iterator<Item = &'m PrincipledMaterial>) {
+        let mut left = self.resources.memory;
+        let mut packed: Vec<(PictureKey, Arc<[u8]>)> = Vec::new();
+        for (name, encoding) in materials.flat_map(pictures) {
+            let (bytes, _) = self.found(name);
+            let (path, bytes) = match bytes {
+                PictureBytes::Here(path, bytes) => (path, Some(bytes)),
+                PictureBytes::File(path) if packed.iter().any(|(known, _)| known.0 == path && known.1 == encoding) => {
+                    (path, None)
+                }
+                PictureBytes::File(path) => (path.clone(), self.resources.source.read(&path).ok()),
+            };
+            let key = (path, encoding);
+            let Some(bytes) = bytes.filter(|_| packed.iter().all(|(known, _)| *known != key)) else { continue };
+            let needed = Encoded::open(&bytes, &key.0).map_or(0, |encoded| encoded.needed8());
+            let Some(rest) = left.checked_sub(needed) else { break };
+            left = rest;
+            packed.push((key, bytes));
+        }
+        if packed.len() < 2 {
+            return;
+        }
+        let memory = self.resources.memory;
+        let decoded = packed.into_par_iter().filter_map(|(key, bytes)| {
+            let name = FileName { path: key.0.clone(), span: Default::default() };
+            let texture = decode(&name, &key.0, &bytes, key.1 == Encoding::Srgb, memory, &mut Diagnostics::default())?;
+            Some((key, texture))
+        });
+        self.ahead = decoded.collect();
     }
 
     /// The textures of a material in layers; what is wrong with one is said, and the material goes without it.
@@ -215,11 +258,7 @@ impl<'r> Loader<'r> {
             parameters: Vec::new(),
         };
         for (row, textured) in TEXTURED.iter().enumerate() {
-            let encoding = match textured.change {
-                Change::Number(_) => Encoding::Linear,
-                Change::Color(_) => Encoding::Srgb,
-            };
-            if let Some(texture) = one((textured.picture)(layers), encoding) {
+            if let Some(texture) = one((textured.picture)(layers), textured.encoding()) {
                 maps.parameters.push(Map { row, texture, channel: None });
             }
         }
@@ -250,6 +289,11 @@ impl<'r> Loader<'r> {
         let key = (path.clone(), encoding);
         if let Some(known) = self.decoded.get(&key) {
             return known.clone();
+        }
+        if let Some(texture) = self.ahead.remove(&key) {
+            let texture = Some(texture).filter(|texture| self.charge(name, texture.bytes() as u64, diagnostics));
+            self.decoded.insert(key, texture.clone());
+            return texture;
         }
         let bytes = match bytes {
             PictureBytes::Here(_, bytes) => Some(bytes),
@@ -442,6 +486,29 @@ impl<'r> Loader<'r> {
             _ => diagnostic,
         });
         None
+    }
+}
+
+/// The pictures of a material in layers.
+fn pictures(layers: &PrincipledMaterial) -> impl Iterator<Item = (&FileName, Encoding)> {
+    let own = [
+        (layers.emission_texture.as_ref(), Encoding::Srgb),
+        (layers.opacity_texture.as_ref(), Encoding::Linear),
+        (layers.normal_texture.as_ref(), Encoding::Linear),
+        (layers.bump_texture.as_ref(), Encoding::Linear),
+        (layers.metallic_roughness_texture.as_ref(), Encoding::Linear),
+    ];
+    let parameters = TEXTURED.iter().map(|textured| ((textured.picture)(layers), textured.encoding()));
+    own.into_iter().chain(parameters).filter_map(|(name, encoding)| Some((name?, encoding)))
+}
+
+impl Textured {
+    /// Colours are shown, numbers are not.
+    fn encoding(&self) -> Encoding {
+        match self.change {
+            Change::Number(_) => Encoding::Linear,
+            Change::Color(_) => Encoding::Srgb,
+        }
     }
 }
 

@@ -19,6 +19,10 @@ pub(super) fn compile(
     diagnostics: &mut Diagnostics,
 ) -> Vec<Material> {
     check_solids(scene, diagnostics);
+    loader.decode_ahead(scene.materials.iter().filter_map(|material| match &material.value {
+        scene::Material::Principled(layers) => Some(&**layers),
+        _ => None,
+    }));
     // Boundaries of the same index share their tables.
     let mut tables = Vec::new();
     let mut one = |material: &scene::Spanned<scene::Material>| match &material.value {

@@ -14,6 +14,9 @@ pub(super) enum NumberError {
 
 /// Reads a word as a number, correctly rounded.
 pub(super) fn parse_f32(word: &[u8]) -> Result<f32, NumberError> {
+    if let Some(value) = quickly(word) {
+        return Ok(value);
+    }
     let parsed = std::str::from_utf8(word).ok().and_then(|text| text.parse::<f32>().ok());
     match parsed {
         Some(value) if value.is_finite() => Ok(value),
@@ -21,6 +24,59 @@ pub(super) fn parse_f32(word: &[u8]) -> Result<f32, NumberError> {
         None if is_c_not_finite(word) => Err(NumberError::NotFinite),
         None => Err(NumberError::Malformed),
     }
+}
+
+/// Powers of ten that double precision holds exactly.
+const TENS: [f64; 23] = [
+    1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20,
+    1e21, 1e22,
+];
+
+/// The number of a word of few digits; `None` for others, and where it could be rounded in another way than the best.
+///
+/// Source: Clinger, *How to read floating point numbers accurately*, 1990: digits below 2^53 times or over an exact power of
+/// ten are rounded once. Rounding that to single precision errs only where it lies halfway between two such numbers.
+fn quickly(word: &[u8]) -> Option<f32> {
+    let (negative, mut rest) = match word {
+        [b'-', rest @ ..] => (true, rest),
+        [b'+', rest @ ..] => (false, rest),
+        rest => (false, rest),
+    };
+    let (mut digits, mut count, mut scale) = (0u64, 0, 0i32);
+    let mut is_fraction = false;
+    while let [byte, after @ ..] = rest {
+        match byte {
+            b'0'..=b'9' => {
+                digits = digits.wrapping_mul(10).wrapping_add(u64::from(byte - b'0'));
+                count += 1;
+                scale -= i32::from(is_fraction);
+            }
+            b'.' if !is_fraction => is_fraction = true,
+            b'e' | b'E' => {
+                let (sign, power) = match after {
+                    [b'-', power @ ..] => (-1, power),
+                    [b'+', power @ ..] => (1, power),
+                    power => (1, power),
+                };
+                if !(1..=3).contains(&power.len()) || !power.iter().all(u8::is_ascii_digit) {
+                    return None;
+                }
+                scale += sign * power.iter().fold(0, |n, digit| 10 * n + i32::from(digit - b'0'));
+                break;
+            }
+            _ => return None,
+        }
+        rest = after;
+    }
+    if count == 0 || count > 15 {
+        return None;
+    }
+    let power = *TENS.get(scale.unsigned_abs() as usize)?;
+    let double = if scale < 0 { digits as f64 / power } else { digits as f64 * power };
+    let is_halfway = double.to_bits() & 0x1fff_ffff == 0x1000_0000;
+    let is_usual = double == 0.0 || (1e-30..1e30).contains(&double);
+    let value = double as f32;
+    (is_usual && !is_halfway).then_some(if negative { -value } else { value })
 }
 
 /// Whether a word is a not-finite number as C libraries print it: `-nan(ind)`, `1.#QNAN`, `-1.#IND00`.
@@ -87,6 +143,39 @@ mod tests {
             assert_eq!(parse_f32(word.as_bytes()), Err(NumberError::Malformed), "{word}");
         }
         assert_eq!(parse_f32(b"\xff1"), Err(NumberError::Malformed));
+    }
+
+    #[test]
+    fn few_digits_are_rounded_as_many_are() {
+        let mut state = 1u64;
+        let mut random = |below: u64| {
+            state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+            (state >> 20) % below
+        };
+        let mut quick = 0;
+        for i in 0..200_000u64 {
+            let digits = random(10u64.pow(1 + (i % 17) as u32));
+            let mut word = digits.to_string();
+            word.insert(random(word.len() as u64 + 1) as usize, '.');
+            match random(4) {
+                0 => word += &format!("e{}", random(60) as i64 - 30),
+                1 => word.insert(0, '-'),
+                _ => {}
+            }
+            let found = quickly(word.as_bytes());
+            quick += usize::from(found.is_some());
+            if let Some(found) = found {
+                assert_eq!(found.to_bits(), word.parse::<f32>().unwrap().to_bits(), "{word}");
+            }
+        }
+        assert!(quick > 120_000, "{quick}");
+        // Halfway between two numbers of single precision, and a little above: only the first is not settled at once.
+        assert_eq!(quickly(b"16777217"), None);
+        assert_eq!(quickly(b"16777217.5"), Some(16777218.0));
+        assert_eq!(quickly(b"-0.0").map(f32::to_bits), Some((-0.0f32).to_bits()));
+        for word in [&b""[..], b".", b"-", b"1e", b"1e+", b"1..2", b"1e5.0", b"inf", b"0x1"] {
+            assert_eq!(quickly(word), None);
+        }
     }
 
     #[test]

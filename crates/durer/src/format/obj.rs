@@ -1,7 +1,7 @@
 //! Wavefront `.obj`: the polygons of it, without curves and surfaces; `scene.rs` adds the materials of `.mtl` files.
 //!
 //! The file is read twice: positions, texture coordinates and normals first, then the faces, which may refer to
-//! vertices further down. So nothing but the mesh itself is kept.
+//! vertices further down. So nothing but the mesh itself is kept. Both times its parts are read side by side.
 
 mod faces;
 pub mod habits;
@@ -15,6 +15,7 @@ use super::report::{Report, counted, shown};
 use crate::diag::{Diagnostics, did_you_mean};
 use crate::math::{Vec2, Vec3};
 use crate::shape::mesh::MeshData;
+use rayon::prelude::*;
 use std::ops::Range;
 use words::Words;
 pub(super) use write::write;
@@ -92,9 +93,10 @@ fn read_with(bytes: &[u8], file: u32, switches: &mut Vec<Switch>, diagnostics: &
         report.error(0..2, "this file is UTF-16, two bytes a letter: save it as UTF-8 or ASCII text");
         return report.finish(diagnostics, mesh);
     }
-    read_vertices(bytes, &mut mesh, &mut report);
+    let parts = words::parts(bytes);
+    let counts = read_vertices(bytes, &parts, &mut mesh, &mut report);
     if !report.is_full() {
-        faces::read_faces(bytes, &mut mesh, switches, &mut report);
+        faces::read_faces(bytes, &parts, &counts, &mut mesh, switches, &mut report);
     }
     if mesh.triangles.is_empty() && !report.has_errors() {
         report.warning(bytes.len()..bytes.len(), "the mesh has no triangles");
@@ -102,39 +104,48 @@ fn read_with(bytes: &[u8], file: u32, switches: &mut Vec<Switch>, diagnostics: &
     report.finish(diagnostics, mesh)
 }
 
-/// Reads positions, texture coordinates and normals, and looks at the first word of everything else.
-fn read_vertices(bytes: &[u8], mesh: &mut MeshData, report: &mut Report) {
-    let mut words = Words::new(bytes);
+/// What a part of a file has of vertices.
+struct Vertices {
+    mesh: MeshData,
+    /// The first statement that is not understood, and how many are.
+    unknown: Option<(Range<usize>, usize)>,
+    report: Report,
+}
+
+/// How many positions, texture coordinates and normals there are.
+type Counts = [usize; 3];
+
+fn counts(mesh: &MeshData) -> Counts {
+    [mesh.positions.len(), mesh.uvs.len(), mesh.normals.len()]
+}
+
+/// Reads positions, texture coordinates and normals, and looks at the first word of everything else. Gives how many there are
+/// before each part.
+fn read_vertices(bytes: &[u8], parts: &[Range<usize>], mesh: &mut MeshData, report: &mut Report) -> Vec<Counts> {
+    let read = |part: &Range<usize>| vertices(bytes, part.clone(), report.part());
+    let read: Vec<Vertices> = parts.par_iter().map(read).collect();
+    let total = |count: fn(&MeshData) -> usize| read.iter().map(|part| count(&part.mesh)).sum();
+    mesh.positions.reserve_exact(total(|mesh| mesh.positions.len()));
+    mesh.uvs.reserve_exact(total(|mesh| mesh.uvs.len()));
+    mesh.normals.reserve_exact(total(|mesh| mesh.normals.len()));
+    let mut before = Vec::with_capacity(parts.len());
     let mut unknown: Option<(Range<usize>, usize)> = None;
-    while let Some(keyword) = words.next_statement() {
-        match statement(&bytes[keyword.clone()]) {
-            Some(Statement::Position) => {
-                let ([x, y, z, r, g, b], count) = numbers(bytes, keyword, 3, 3, &mut words, report);
-                mesh.positions.push(Vec3::new(x, y, z));
-                // After the place a vertex may have a weight, or a colour.
-                if count == 6 {
-                    mesh.colors.resize(mesh.positions.len() - 1, [1.0; 4]);
-                    let [r, g, b] = [r, g, b].map(decode);
-                    mesh.colors.push([r, g, b, 1.0]);
-                }
-            }
-            Some(Statement::Uv) => {
-                let ([u, v], _) = numbers(bytes, keyword, 1, 2, &mut words, report);
-                mesh.uvs.push(Vec2::new(u, v));
-            }
-            Some(Statement::Normal) => {
-                let ([x, y, z], _) = numbers(bytes, keyword, 3, 3, &mut words, report);
-                mesh.normals.push(Vec3::new(x, y, z));
-            }
-            Some(_) => _ = words.skip_rest(),
-            None => {
-                unknown.get_or_insert((keyword, 0)).1 += 1;
-                words.skip_rest();
-            }
+    for part in read {
+        before.push(counts(mesh));
+        if !part.mesh.colors.is_empty() {
+            mesh.colors.resize(mesh.positions.len(), [1.0; 4]);
+            mesh.colors.extend(part.mesh.colors);
         }
-        if report.is_full() {
-            return;
+        mesh.positions.extend(part.mesh.positions);
+        mesh.uvs.extend(part.mesh.uvs);
+        mesh.normals.extend(part.mesh.normals);
+        report.join(part.report);
+        if let Some((first, count)) = part.unknown {
+            unknown.get_or_insert((first, 0)).1 += count;
         }
+    }
+    if report.is_full() {
+        return before;
     }
     if !mesh.colors.is_empty() {
         mesh.colors.resize(mesh.positions.len(), [1.0; 4]);
@@ -146,6 +157,47 @@ fn read_vertices(bytes: &[u8], mesh: &mut MeshData, report: &mut Report) {
         let message = format!("{statements} not understood and left out; the first is {}", shown(word));
         report.warning(first, message).help = meant.map(|name| format!("did you mean `{name}`?"));
     }
+    before
+}
+
+/// The same of one part.
+fn vertices(bytes: &[u8], part: Range<usize>, mut report: Report) -> Vertices {
+    let (mut mesh, mut unknown) = (MeshData::default(), None::<(Range<usize>, usize)>);
+    let mut words = Words::within(bytes, part);
+    while let Some(keyword) = words.next_statement() {
+        match statement(&bytes[keyword.clone()]) {
+            Some(Statement::Position) => {
+                let ([x, y, z, r, g, b], count) = numbers(bytes, keyword, 3, 3, &mut words, &mut report);
+                mesh.positions.push(Vec3::new(x, y, z));
+                // After the place a vertex may have a weight, or a colour.
+                if count == 6 {
+                    mesh.colors.resize(mesh.positions.len() - 1, [1.0; 4]);
+                    let [r, g, b] = [r, g, b].map(decode);
+                    mesh.colors.push([r, g, b, 1.0]);
+                }
+            }
+            Some(Statement::Uv) => {
+                let ([u, v], _) = numbers(bytes, keyword, 1, 2, &mut words, &mut report);
+                mesh.uvs.push(Vec2::new(u, v));
+            }
+            Some(Statement::Normal) => {
+                let ([x, y, z], _) = numbers(bytes, keyword, 3, 3, &mut words, &mut report);
+                mesh.normals.push(Vec3::new(x, y, z));
+            }
+            Some(_) => words.skip(),
+            None => {
+                unknown.get_or_insert((keyword, 0)).1 += 1;
+                words.skip();
+            }
+        }
+        if report.is_full() {
+            break;
+        }
+    }
+    if !mesh.colors.is_empty() {
+        mesh.colors.resize(mesh.positions.len(), [1.0; 4]);
+    }
+    Vertices { mesh, unknown, report }
 }
 
 /// A colour's value as programs write it: by sRGB's curve, from 0 to 1. What is no such number is white.

@@ -1,6 +1,7 @@
 //! Stanford `.ply`: text and binary, in either byte order, with whatever elements and properties.
 
 mod body;
+mod fixed;
 mod header;
 mod rows;
 mod values;

@@ -21,6 +21,22 @@ impl Report {
         Report { file, found: Vec::new(), errors: 0, room }
     }
 
+    /// An empty report on a part of the same file, to be joined to this one.
+    pub fn part(&self) -> Report {
+        Report { file: self.file, found: Vec::new(), errors: 0, room: self.room.saturating_sub(self.errors) }
+    }
+
+    /// Adds what was found in the next part, as far as there is room for errors: as if the parts were one.
+    pub fn join(&mut self, part: Report) {
+        for diagnostic in part.found {
+            if self.is_full() {
+                return;
+            }
+            self.errors += usize::from(diagnostic.severity == Severity::Error);
+            self.found.push(diagnostic);
+        }
+    }
+
     /// Adds an error at a range of bytes; what it returns takes a label or help.
     pub fn error(&mut self, at: Range<usize>, message: impl Into<String>) -> &mut Diagnostic {
         self.add(at, Diagnostic::error(message))

@@ -217,17 +217,17 @@ fn errors_of_gltf_name_the_place_and_what_is_wrong() {
     for (from, to, wanted) in [
         ("\"version\": \"2.0\"", "\"version\": \"1.0\"", "UNKNOWN_ASSET_MAJOR_VERSION: /asset/version"),
         ("\"count\": 12", "\"count\": 1000000000", "ACCESSOR_TOO_LONG: /accessors/1"),
-        ("\"bufferView\": 1, ", "", "VALUE_NOT_IN_RANGE"),
+        ("\"bufferView\": 1, ", "", "too-large: /meshes/0/primitives/0/indices"),
         ("\"POSITION\": 0", "\"POSITION\": 7", "UNRESOLVED_REFERENCE: /meshes/0/primitives/0/attributes/POSITION"),
         ("\"mesh\": 0 }", "\"mesh\": 0, \"children\": [0] }", "NODE_LOOP: /nodes/0"),
         ("\"byteLength\": 48 }", "\"byteLength\": 480 }", "BUFFER_VIEW_TOO_LONG: /bufferViews/0/byteLength"),
-        ("\"asset\"", "\"extensionsRequired\": [\"KHR_draco_mesh_compression\"], \"asset\"", "UNSUPPORTED_EXTENSION"),
+        ("\"asset\"", "\"extensionsRequired\": [\"KHR_texture_basisu\"], \"asset\"", "UNSUPPORTED_EXTENSION"),
         ("[0] }]", "[0] }", "INVALID_JSON"),
     ] {
         // Zeroes without a buffer are bounded too.
         let to = if to.is_empty() { "\"normalized\": false, " } else { to };
         let folder = match wanted {
-            "VALUE_NOT_IN_RANGE" => {
+            "too-large: /meshes/0/primitives/0/indices" => {
                 let text = GLTF.replace(from, "").replace("\"count\": 12", "\"count\": 1000000000");
                 let folder = tetrahedra();
                 fs::write(folder.path().join("a.gltf"), text).unwrap();

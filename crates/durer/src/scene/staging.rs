@@ -61,6 +61,8 @@ pub struct Staging {
     pub studio: Option<Studio>,
     /// The name of the camera of the file that is wanted; `None`: the first.
     pub camera: Option<String>,
+    /// The name of the look that is wanted of a glTF file with several (KHR_materials_variants); `None`: its own materials.
+    pub variant: Option<String>,
     /// The moment of its animation, in seconds; `None`: as it stands without.
     pub at: Option<f32>,
     /// A file of Radiance's views, whose last is the camera.

@@ -8,8 +8,11 @@ use base64::Engine;
 use base64::alphabet::STANDARD;
 use base64::engine::general_purpose::{GeneralPurpose, NO_PAD};
 use base64::engine::{DecodePaddingMode, GeneralPurposeConfig};
+use serde_json::Value;
 use std::ops::Range;
 use std::sync::Arc;
+
+const MESHOPT: &str = "EXT_meshopt_compression";
 
 /// Some of the bytes in memory.
 #[derive(Clone)]
@@ -23,7 +26,12 @@ impl Slice {
         &self.bytes[self.range.clone()]
     }
 
-    fn part(&self, range: Range<usize>) -> Option<Slice> {
+    /// All of some bytes.
+    pub fn whole(bytes: Arc<[u8]>) -> Self {
+        Slice { range: 0..bytes.len(), bytes }
+    }
+
+    pub fn part(&self, range: Range<usize>) -> Option<Slice> {
         let (start, end) = (self.range.start.checked_add(range.start)?, self.range.start.checked_add(range.end)?);
         (start <= end && end <= self.range.end).then(|| Slice { bytes: self.bytes.clone(), range: start..end })
     }
@@ -124,7 +132,9 @@ impl Model<'_> {
     fn buffer(&self, number: usize, at: &At) -> Option<Buffer> {
         at.object()?;
         let length = at.need("byteLength")?.whole(1..)? as usize;
-        Some(Buffer { length, slice: self.data(number, length, at) })
+        // What stands there only for those who do not read compressed views.
+        let is_fallback = compression(at).is_some_and(|packed| packed["fallback"] == true);
+        Some(Buffer { length, slice: if is_fallback { None } else { self.data(number, length, at) } })
     }
 
     /// The bytes of a buffer.
@@ -209,7 +219,15 @@ impl Model<'_> {
             let message = format!("{length} bytes from {offset} on do not fit into a buffer of {bytes}");
             at.get("byteLength").unwrap_or(*at).error("BUFFER_VIEW_TOO_LONG", message);
         }
-        let slice = buffer.slice.as_ref().and_then(|slice| slice.part(offset..end?));
+        let slice = match compression(at) {
+            Some(_) => self.unpacked(&at.get("extensions")?.get(MESHOPT)?, length),
+            None => buffer.slice.as_ref().and_then(|slice| slice.part(offset..end?)),
+        };
         end.map(|_| View { length, slice, stride })
     }
+}
+
+/// How a buffer or view is compressed, if it is.
+fn compression<'a>(at: &At<'a>) -> Option<&'a Value> {
+    at.value.get("extensions")?.get(MESHOPT)
 }

@@ -107,6 +107,10 @@ impl<'a> At<'a> {
         self.findings.say(Diagnostic::warning, code, &self.pointer(), message.as_ref());
     }
 
+    pub fn note(&self, code: &'static str, message: impl AsRef<str>) {
+        self.findings.say(Diagnostic::note, code, &self.pointer(), message.as_ref());
+    }
+
     /// A property of this object, if it is there.
     pub fn get(&'a self, key: &'a str) -> Option<At<'a>> {
         let value = self.value.as_object()?.get(key)?;

@@ -9,11 +9,14 @@ mod buffers;
 mod camera;
 mod container;
 mod deform;
+mod draco;
 mod json;
 mod material;
+mod meshopt;
 mod nodes;
 mod primitive;
 mod texture;
+mod variants;
 mod write;
 
 use super::report::Report;
@@ -37,9 +40,11 @@ use std::collections::{BTreeMap, BTreeSet};
 pub(super) use write::write;
 
 /// Extensions that a file may require: what is left out of them is warned of.
-const KNOWN: [&str; 22] = [
+const KNOWN: [&str; 24] = [
     "EXT_mesh_gpu_instancing",
+    "EXT_meshopt_compression",
     "EXT_texture_webp",
+    "KHR_draco_mesh_compression",
     "KHR_lights_punctual",
     "KHR_materials_anisotropy",
     "KHR_materials_clearcoat",
@@ -77,6 +82,8 @@ struct Model<'a> {
     /// The pictures that materials show, by name.
     pictures: RefCell<BTreeMap<String, Picture>>,
     material_count: usize,
+    /// The look that is shown, where the file has several.
+    variant: Option<usize>,
     /// Whether each material lets what is behind it be seen by its alpha.
     blends: Vec<bool>,
     /// Whether each material wants to know how its surface moves as u grows.
@@ -141,6 +148,7 @@ fn scene(input: &Input, parts: Parts, root: At) -> Option<Scene> {
         textures: Vec::new(),
         pictures: RefCell::default(),
         material_count: 0,
+        variant: None,
         blends: Vec::new(),
         leans: Vec::new(),
         white: None,
@@ -159,10 +167,12 @@ fn scene(input: &Input, parts: Parts, root: At) -> Option<Scene> {
     model.left.set((256 << 20) + 64 * bytes);
     model.views = model.views(&root);
     model.accessors = model.accessors(&root);
+    model.unpack_primitives(&root);
     model.images = model.images(&root);
     model.textures = model.textures(&root);
     let materials = model.materials(&root);
     model.material_count = materials.len();
+    model.variant = model.chosen_variant(&root);
     model.white = Some(materials.len() as u32);
     let alpha = |at: &At| at.get("alphaMode").and_then(|mode| mode.value.as_str()).is_some_and(|mode| mode != "OPAQUE");
     let of_materials = |what: &dyn Fn(&At) -> bool| match root.get("materials") {
@@ -240,7 +250,7 @@ fn required(root: &At) -> bool {
             quantized |= name == "KHR_mesh_quantization";
             if key == "extensionsRequired" && !KNOWN.contains(&name.as_str()) {
                 let tool = match name.as_str() {
-                    "KHR_draco_mesh_compression" | "EXT_meshopt_compression" | "KHR_meshopt_compression" => {
+                    "KHR_meshopt_compression" => {
                         ": convert the file with `gltf-transform copy`, which takes the compression out"
                     }
                     "KHR_texture_basisu" => ": convert its pictures to PNG with `ktx extract`",

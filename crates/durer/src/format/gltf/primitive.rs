@@ -7,6 +7,7 @@ use super::json::At;
 use crate::format::sticks::thickened;
 use crate::math::{Vec2, Vec3};
 use crate::shape::MeshData;
+use rayon::prelude::*;
 use std::sync::Arc;
 
 /// A mesh: what each of its primitives is.
@@ -76,21 +77,7 @@ impl Model<'_> {
 
     fn primitive(&self, at: &At) -> Option<Primitive> {
         at.object()?;
-        if let Some(extensions) = at.get("extensions") {
-            if extensions.get("KHR_draco_mesh_compression").is_some() {
-                let message = "the triangles are compressed by Draco (KHR_draco_mesh_compression), which is not read: \
-                               convert the file with `gltf-transform copy`";
-                at.error("UNSUPPORTED_EXTENSION", message);
-                return None;
-            }
-            if extensions.get("KHR_materials_variants").is_some() {
-                self.once("KHR_materials_variants", "variants of materials are left out: the first look is shown");
-            }
-        }
-        let material = match at.get("material") {
-            Some(material) => Some(material.index(self.material_count)? as u32),
-            None => None,
-        };
+        let material = self.material_of(at)?;
         let mode = at.get("mode").map_or(Some(TRIANGLES), |mode| mode.whole(0..=6))?;
         let attributes = at.need("attributes")?;
         if attributes.object()?.is_empty() {
@@ -125,7 +112,7 @@ impl Model<'_> {
         let mut pose = self.pose(at, &attributes, count);
         let order = self.order(at, count)?;
         data.triangles = match mode {
-            TRIANGLES => order.as_chunks::<3>().0.to_vec(),
+            TRIANGLES => order.as_chunks::<3>().0.par_iter().copied().collect(),
             // Every other triangle of a strip turns the other way round.
             STRIP => order.windows(3).enumerate().map(|(i, t)| [t[0], t[1 + i % 2], t[2 - i % 2]]).collect(),
             FAN => order.windows(2).skip(1).map(|t| [order[0], t[0], t[1]]).collect(),
@@ -223,12 +210,14 @@ impl Model<'_> {
         self.charge(accessor.count, 4, &indices)?;
         let order = accessor.wholes();
         let most = u32::MAX >> (32 - 8 * accessor.component.size());
-        if order.contains(&most) {
+        let greatest = order.par_iter().copied().max().unwrap_or(0);
+        if greatest == most {
             let message = format!("index {most} would begin the primitive anew, and must not be used");
             indices.error("ACCESSOR_INDEX_PRIMITIVE_RESTART", message);
             return None;
         }
-        if let Some(wrong) = order.iter().find(|&&i| i as usize >= count) {
+        if greatest as usize >= count {
+            let wrong = order.iter().find(|&&i| i as usize >= count).unwrap_or(&greatest);
             indices.error("ACCESSOR_INDEX_OOB", format!("index {wrong} is out of range: there are {count} vertices"));
             return None;
         }
@@ -239,13 +228,17 @@ impl Model<'_> {
 /// Leaves out vertices that no triangle uses: files share one list of vertices among many primitives.
 fn compact(data: &mut MeshData, keep: bool) {
     const UNUSED: u32 = u32::MAX;
-    let mut numbers = vec![UNUSED; data.positions.len()];
-    for &i in data.triangles.iter().flatten() {
-        numbers[i as usize] = 0;
-    }
-    if keep || !numbers.contains(&UNUSED) {
+    if keep {
         return;
     }
+    let mut is_used = vec![false; data.positions.len()];
+    for &i in data.triangles.iter().flatten() {
+        is_used[i as usize] = true;
+    }
+    if !is_used.contains(&false) {
+        return;
+    }
+    let mut numbers: Vec<u32> = is_used.iter().map(|used| if *used { 0 } else { UNUSED }).collect();
     let mut next = 0;
     for number in numbers.iter_mut().filter(|number| **number != UNUSED) {
         (*number, next) = (next, next + 1);

@@ -1,10 +1,12 @@
 //! The faces of a Wavefront file, once all of its vertices are known.
 
-use super::{Statement, Switch, statement, words::Words};
+use super::{Counts, Statement, Switch, counts, statement, words::Words};
 use crate::format::number::parse_integer;
 use crate::format::polygon::Cutter;
 use crate::format::report::{Report, counted, shown};
+use crate::math::Vec3;
 use crate::shape::mesh::{MeshData, NO_INDEX};
+use rayon::prelude::*;
 use std::ops::Range;
 
 /// What a corner refers to: a position, a texture coordinate and a normal.
@@ -14,41 +16,91 @@ type Corner = [u32; 3];
 const KINDS: [(&str, &str, &str); 3] =
     [("vertex", "vertices", "v"), ("texture coordinate", "texture coordinates", "vt"), ("normal", "normals", "vn")];
 
-/// Reads the faces and cuts them into triangles. Repeated corners are kept: they do no harm.
-pub(super) fn read_faces(bytes: &[u8], mesh: &mut MeshData, switches: &mut Vec<Switch>, report: &mut Report) {
-    let mut reader = FaceReader {
-        bytes,
-        total: [mesh.positions.len(), mesh.uvs.len(), mesh.normals.len()],
-        so_far: [0; 3],
-        corners: Vec::new(),
-        cutter: Cutter::new(bytes.len()),
-        degenerate: None,
-    };
-    let mut words = Words::new(bytes);
-    while let Some(keyword) = words.next_statement() {
-        match statement(&bytes[keyword.clone()]) {
-            Some(Statement::Position) => reader.so_far[0] += 1,
-            Some(Statement::Uv) => reader.so_far[1] += 1,
-            Some(Statement::Normal) => reader.so_far[2] += 1,
-            Some(Statement::Face) => reader.face(keyword, &mut words, mesh, report),
-            Some(Statement::Material) => switches.push((mesh.triangles.len(), rest_of(&mut words, keyword.end))),
-            Some(Statement::Library | Statement::Ignored) | None => {}
+/// What a part of a file has of faces.
+struct Faces {
+    mesh: MeshData,
+    switches: Vec<Switch>,
+    /// The first face that names a vertex twice, and how many do.
+    degenerate: Option<(Range<usize>, usize)>,
+    report: Report,
+}
+
+/// Reads the faces and cuts them into triangles. Repeated corners are kept: they do no harm. `before` has how many vertices of
+/// each kind there are before each part.
+pub(super) fn read_faces(
+    bytes: &[u8],
+    parts: &[Range<usize>],
+    before: &[Counts],
+    mesh: &mut MeshData,
+    switches: &mut Vec<Switch>,
+    report: &mut Report,
+) {
+    let read = |(part, so_far): (&Range<usize>, &Counts)| faces(bytes, part.clone(), *so_far, mesh, report.part());
+    let read: Vec<Faces> = parts.par_iter().zip(before).map(read).collect();
+    mesh.triangles.reserve_exact(read.iter().map(|part| part.mesh.triangles.len()).sum());
+    let mut degenerate: Option<(Range<usize>, usize)> = None;
+    for part in read {
+        let first = mesh.triangles.len();
+        mesh.triangles.extend(part.mesh.triangles);
+        // From the first triangle that has texture coordinates or normals on, all have entries; so must those before.
+        for (all, own) in
+            [(&mut mesh.triangle_uvs, part.mesh.triangle_uvs), (&mut mesh.triangle_normals, part.mesh.triangle_normals)]
+        {
+            if !own.is_empty() {
+                all.resize(first, [NO_INDEX; 3]);
+                all.extend(own);
+            }
         }
-        words.skip_rest();
+        switches.extend(part.switches.into_iter().map(|(triangle, at)| (first + triangle, at)));
+        report.join(part.report);
+        if let Some((first, count)) = part.degenerate {
+            degenerate.get_or_insert((first, 0)).1 += count;
+        }
         if report.is_full() {
             return;
         }
     }
-    // From the first triangle that has texture coordinates or normals on, all have entries; so must those before.
     for list in [&mut mesh.triangle_uvs, &mut mesh.triangle_normals] {
         if !list.is_empty() {
             list.resize(mesh.triangles.len(), [NO_INDEX; 3]);
         }
     }
-    if let Some((first, count)) = reader.degenerate {
+    if let Some((first, count)) = degenerate {
         let verb = if count == 1 { "names" } else { "name" };
         report.note(first, format!("{} {verb} a vertex twice; the first is here", counted(count, "face", "faces")));
     }
+}
+
+/// The same of one part.
+fn faces(bytes: &[u8], part: Range<usize>, so_far: Counts, whole: &MeshData, report: Report) -> Faces {
+    let mut reader = FaceReader {
+        bytes,
+        total: counts(whole),
+        so_far,
+        positions: &whole.positions,
+        corners: Vec::new(),
+        cutter: Cutter::new(part.len()),
+        found: Faces { mesh: MeshData::default(), switches: Vec::new(), degenerate: None, report },
+    };
+    let mut words = Words::within(bytes, part);
+    while let Some(keyword) = words.next_statement() {
+        match statement(&bytes[keyword.clone()]) {
+            Some(Statement::Position) => reader.so_far[0] += 1,
+            Some(Statement::Uv) => reader.so_far[1] += 1,
+            Some(Statement::Normal) => reader.so_far[2] += 1,
+            Some(Statement::Face) => reader.face(keyword, &mut words),
+            Some(Statement::Material) => {
+                let name = rest_of(&mut words, keyword.end);
+                reader.found.switches.push((reader.found.mesh.triangles.len(), name));
+            }
+            Some(Statement::Library | Statement::Ignored) | None => {}
+        }
+        words.skip();
+        if reader.found.report.is_full() {
+            break;
+        }
+    }
+    reader.found
 }
 
 /// The rest of a statement as one range, for names may have blanks.
@@ -62,17 +114,17 @@ pub(super) fn rest_of(words: &mut Words, end: usize) -> Range<usize> {
 struct FaceReader<'a> {
     bytes: &'a [u8],
     /// How many vertices, texture coordinates and normals the file has.
-    total: [usize; 3],
+    total: Counts,
     /// How many of them come before this statement.
-    so_far: [usize; 3],
+    so_far: Counts,
+    positions: &'a [Vec3],
     corners: Vec<Corner>,
     cutter: Cutter,
-    /// The first face that names a vertex twice, and how many do.
-    degenerate: Option<(Range<usize>, usize)>,
+    found: Faces,
 }
 
 impl FaceReader<'_> {
-    fn face(&mut self, keyword: Range<usize>, words: &mut Words, mesh: &mut MeshData, report: &mut Report) {
+    fn face(&mut self, keyword: Range<usize>, words: &mut Words) {
         self.corners.clear();
         let mut all_good = true;
         let mut written = 0;
@@ -80,23 +132,23 @@ impl FaceReader<'_> {
         while let Some(word) = words.next_word() {
             place.end = word.end;
             written += 1;
-            match self.corner(word, report) {
+            match self.corner(word) {
                 Some(corner) => self.corners.push(corner),
-                None if report.is_full() => return,
+                None if self.found.report.is_full() => return,
                 None => all_good = false,
             }
         }
         if written < 3 {
             let message = format!("a face needs at least 3 corners, found {written}");
-            report.error(place, message).help = (written == 2).then(|| "a line is an `l` statement".into());
+            self.found.report.error(place, message).help = (written == 2).then(|| "a line is an `l` statement".into());
         } else if all_good {
             self.note_degenerate(&place);
-            self.cut(place, mesh, report);
+            self.cut(place);
         }
     }
 
     /// Reads `a`, `a/t`, `a//n` or `a/t/n`.
-    fn corner(&self, word: Range<usize>, report: &mut Report) -> Option<Corner> {
+    fn corner(&mut self, word: Range<usize>) -> Option<Corner> {
         let mut corner = [NO_INDEX; 3];
         let mut start = word.start;
         for (part, slot) in corner.iter_mut().enumerate() {
@@ -104,7 +156,7 @@ impl FaceReader<'_> {
             let end = start + rest.iter().position(|&byte| byte == b'/').unwrap_or(rest.len());
             // All but the position may be left empty.
             if end > start || part == 0 {
-                *slot = self.index(start..end, part, report)?;
+                *slot = self.index(start..end, part)?;
             }
             if end == word.end {
                 return Some(corner);
@@ -112,13 +164,14 @@ impl FaceReader<'_> {
             start = end + 1;
         }
         let message = format!("a corner has at most 3 indices, found {}", shown(&self.bytes[word.clone()]));
-        report.error(word, message).help =
+        self.found.report.error(word, message).help =
             Some("a corner is `vertex`, `vertex/texture`, `vertex//normal` or `vertex/texture/normal`".into());
         None
     }
 
     /// Reads an index, counted from 1 or, negative, back from the last statement of its kind.
-    fn index(&self, at: Range<usize>, part: usize, report: &mut Report) -> Option<u32> {
+    fn index(&mut self, at: Range<usize>, part: usize) -> Option<u32> {
+        let report = &mut self.found.report;
         let (one, many, keyword) = KINDS[part];
         let total = self.total[part];
         let text = &self.bytes[at.clone()];
@@ -153,13 +206,13 @@ impl FaceReader<'_> {
         let last = self.corners.len() - 1;
         let repeats = |i: usize| self.corners[i][0] == self.corners[if i == last { 0 } else { i + 1 }][0];
         if (0..=last).any(repeats) {
-            self.degenerate.get_or_insert((place.clone(), 0)).1 += 1;
+            self.found.degenerate.get_or_insert((place.clone(), 0)).1 += 1;
         }
     }
 
-    fn cut(&mut self, place: Range<usize>, mesh: &mut MeshData, report: &mut Report) {
-        let MeshData { positions, triangles, triangle_uvs, triangle_normals, .. } = mesh;
-        let corners = &self.corners;
+    fn cut(&mut self, place: Range<usize>) {
+        let MeshData { triangles, triangle_uvs, triangle_normals, .. } = &mut self.found.mesh;
+        let (positions, corners) = (self.positions, &self.corners);
         let position = |i: usize| positions[corners[i][0] as usize];
         let cut = self.cutter.cut(corners.len(), position, |triangle| {
             let indices = |part: usize| triangle.map(|i| corners[i][part]);
@@ -169,8 +222,10 @@ impl FaceReader<'_> {
             push_optional(triangle_normals, before, indices(2));
         });
         if cut.is_err() {
-            report.error(place, format!("this face of {} corners is too crooked to be cut", corners.len())).help =
-                Some("cut it into triangles in a modelling program".into());
+            self.found
+                .report
+                .error(place, format!("this face of {} corners is too crooked to be cut", corners.len()))
+                .help = Some("cut it into triangles in a modelling program".into());
         }
     }
 }

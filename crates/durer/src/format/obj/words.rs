@@ -19,6 +19,12 @@ impl<'a> Words<'a> {
         Words { bytes, at: if bytes.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 } }
     }
 
+    /// Those of a part of a file that [`parts`] gave; places are still those in the file.
+    pub fn within(bytes: &'a [u8], part: Range<usize>) -> Self {
+        let whole = Words::new(&bytes[..part.end]);
+        Words { at: whole.at.max(part.start), ..whole }
+    }
+
     /// Goes to the next statement and returns its first word, or `None` at the end of the file.
     pub fn next_statement(&mut self) -> Option<Range<usize>> {
         loop {
@@ -49,6 +55,10 @@ impl<'a> Words<'a> {
         }
         let start = self.at;
         while let Some(&byte) = self.bytes.get(self.at) {
+            if byte > b' ' && byte != b'#' && byte != b'\\' {
+                self.at += 1;
+                continue;
+            }
             let ends = match byte {
                 b' ' | b'\t' | 0x0b | 0x0c | b'\n' | b'\r' => true,
                 b'\\' => self.continuation() > 0,
@@ -69,6 +79,16 @@ impl<'a> Words<'a> {
         std::iter::from_fn(|| self.next_word()).last().map(|word| word.end)
     }
 
+    /// Skips what is left of this statement.
+    pub fn skip(&mut self) {
+        let rest = &self.bytes[self.at.min(self.bytes.len())..];
+        match rest.iter().position(|byte| matches!(byte, b'\n' | b'\r' | b'\\')) {
+            Some(length) if rest[length] == b'\\' => _ = self.skip_rest(),
+            Some(length) => self.at += length,
+            None => self.at = self.bytes.len(),
+        }
+    }
+
     /// How many bytes the backslash and the end of line here take; 0 where they are no continuation.
     fn continuation(&self) -> usize {
         match self.bytes[self.at..] {
@@ -78,4 +98,25 @@ impl<'a> Words<'a> {
             _ => 0,
         }
     }
+}
+
+/// Cuts a file into parts of about a megabyte that end where statements do. Where they end does not depend on the machine.
+pub(super) fn parts(bytes: &[u8]) -> Vec<Range<usize>> {
+    const SIZE: usize = 1 << 20;
+    let mut all = Vec::new();
+    let mut start = 0;
+    while start < bytes.len() {
+        let mut end = (start + SIZE).min(bytes.len());
+        while end < bytes.len() {
+            let line = bytes[end..].iter().position(|&byte| byte == b'\n');
+            end = line.map_or(bytes.len(), |line| end + line + 1);
+            let before = bytes[..end].strip_suffix(b"\n").unwrap_or(bytes);
+            if !before.strip_suffix(b"\r").unwrap_or(before).ends_with(b"\\") {
+                break;
+            }
+        }
+        all.push(start..end);
+        start = end;
+    }
+    all
 }

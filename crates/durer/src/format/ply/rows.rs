@@ -68,6 +68,9 @@ impl<V: Values> Body<'_, '_, V> {
 
     pub(super) fn read_vertices(&mut self, element: &Element) -> Result<(), Stop> {
         let columns = self.columns(element)?;
+        if self.fixed_vertices(element, &columns).is_some() {
+            return Ok(());
+        }
         let has = |range: std::ops::Range<usize>| range.clone().all(|column| columns.contains(&Some(column)));
         let (has_normals, has_uvs, has_colors) = (has(3..6), has(6..8), has(8..11));
         // Whole numbers are shares of the greatest of their type.
@@ -119,6 +122,9 @@ impl<V: Values> Body<'_, '_, V> {
         }
         let strips = &self.bytes[element.name.clone()] == b"tristrips";
         let list = self.corner_list(element)?;
+        if !strips && self.fixed_faces(element, list).is_some() {
+            return Ok(());
+        }
         if !strips {
             let likely = self.likely_rows(element);
             self.mesh.triangles.reserve(likely);

@@ -15,6 +15,8 @@ pub(super) enum ValueError {
 
 /// A position in the rows.
 pub(super) trait Values: Clone {
+    /// Whether numbers are bytes with the greatest first; `None`: they are text.
+    const BIG_ENDIAN: Option<bool>;
     /// The bytes of the value that was read last, or of nothing at the end of the file.
     fn last(&self) -> Range<usize>;
     /// At most this many values of a type can still follow.
@@ -55,6 +57,8 @@ impl<'a> AsciiValues<'a> {
 }
 
 impl Values for AsciiValues<'_> {
+    const BIG_ENDIAN: Option<bool> = None;
+
     fn last(&self) -> Range<usize> {
         self.start..self.end
     }
@@ -125,6 +129,8 @@ impl<'a, const BIG_ENDIAN: bool> BinaryValues<'a, BIG_ENDIAN> {
 }
 
 impl<const BIG_ENDIAN: bool> Values for BinaryValues<'_, BIG_ENDIAN> {
+    const BIG_ENDIAN: Option<bool> = Some(BIG_ENDIAN);
+
     fn last(&self) -> Range<usize> {
         self.start..self.end
     }

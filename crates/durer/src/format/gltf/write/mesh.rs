@@ -50,7 +50,9 @@ impl Writer<'_> {
         attributes["POSITION"] = self.floats(&positions, 3, true).into();
         if !data.triangle_normals.is_empty() {
             let normal = |v: &[u32; 3]| data.normals.get(v[2] as usize).copied().unwrap_or(Vec3::Z);
-            let normals = list(&|v| normal(v).normalize_or(Vec3::Z).to_array().into());
+            // What is as good as of length 1 stays as it is, so that it is read again as it was.
+            let unit = |n: Vec3| if (n.length() - 1.0).abs() < 1e-3 { n } else { n.normalize_or(Vec3::Z) };
+            let normals = list(&|v| unit(normal(v)).to_array().into());
             attributes["NORMAL"] = self.floats(&normals, 3, false).into();
         }
         if !data.triangle_uvs.is_empty() {
