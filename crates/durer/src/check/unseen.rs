@@ -33,6 +33,8 @@ pub(super) fn unseen(scout: &Scout) -> Vec<Finding> {
             Sight::Hidden(by) if !is_glass(scout, by) && found.is_empty() => Some((i, by)),
             _ => None,
         })
+        // A triangle behind another is the far side of what they are parts of.
+        .filter(|&(i, by)| ![i, by].iter().all(|&object| is_triangle(scout, object)))
         // Two at one place are told of as that.
         .filter(|&(i, by)| {
             !super::objects::same(&scout.world().objects[i as usize], &scout.world().objects[by as usize])
@@ -81,7 +83,8 @@ pub(super) fn unseen(scout: &Scout) -> Vec<Finding> {
         };
         // What a thing merely stands behind may be meant.
         let plane = matches!(&scout.world().objects[by as usize].geometry, Geometry::Primitive(Primitive::Plane(_)));
-        let severity = if plane || inside { severity(hidden.len()) } else { Severity::Note };
+        let one = hidden.iter().all(|(_, other)| *other == by);
+        let severity = if plane || inside || one { severity(hidden.len()) } else { Severity::Note };
         let diagnostic = Diagnostic { severity, ..Diagnostic::note(message) }
             .at(scout.object_span(first))
             .related(scout.object_span(by), if inside { "around it" } else { "in front of it" })
@@ -254,6 +257,10 @@ pub(super) fn flat_field(scout: &Scout) -> Vec<Finding> {
         }
     }
     found
+}
+
+fn is_triangle(scout: &Scout, object: u32) -> bool {
+    matches!(scout.world().objects[object as usize].geometry, Geometry::Primitive(Primitive::Triangle(_)))
 }
 
 /// Whether light goes through an object.

@@ -201,7 +201,7 @@ pub(super) fn open_glass(scout: &Scout) -> Vec<Finding> {
 pub(super) fn holes(scout: &Scout) -> Vec<Finding> {
     let mut found = Vec::new();
     for mesh in scout.meshes().iter().filter(|mesh| mesh.glass(scout).is_none() && mesh.topology.open > 0) {
-        let own = |object: u32| mesh.objects.iter().any(|o| o.span == scout.object_span(object));
+        let own = |object: u32| mesh.objects.iter().any(|o| o.span.start == scout.object_span(object).start);
         let seen = scout.seen().filter(|(_, seen)| own(seen.object));
         let (all, backs) = seen.fold((0, 0), |(all, backs), (_, s)| (all + 1, backs + usize::from(s.from_behind)));
         // A sheet is seen from one side, or nearly so.
