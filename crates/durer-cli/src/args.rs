@@ -538,7 +538,7 @@ pub struct CompareArgs {
     /// The share of pixels, in percent, that may differ by more
     #[arg(long, value_name = "PERCENT", default_value_t = 0.0, value_parser = percent, allow_negative_numbers = true)]
     pub allow: f64,
-    /// How light becomes eight bits where the other picture has those
+    /// How light becomes eight bits where the other picture has those: as when the reference was made
     #[arg(long, default_value = "srgb", value_parser = PossibleValuesParser::new(Transfer::ALL.map(Transfer::name)))]
     pub transfer: String,
     /// Everything as JSON

@@ -988,6 +988,8 @@ class PrincipledMaterial(Material):
     opacity_texture: path. A picture that multiplies `opacity`: its alpha where it has one, else red.
 
     walls: `solid`, `thin`; solid where it is not given. `thin`: a sheet without inside, through which light goes straight; `solid`: the skin of a body.
+
+    backs: `shown`, `hidden`; shown where it is not given. `hidden`: a camera looks through faces that are turned away from it, and light does not; `shown`: both sides are seen.
     """
 
     def __init__(
@@ -1060,6 +1062,7 @@ class PrincipledMaterial(Material):
         opacity: Optional[float] = None,
         opacity_texture: Optional[str] = None,
         walls: Optional[Literal["solid", "thin"]] = None,
+        backs: Optional[Literal["shown", "hidden"]] = None,
     ) -> None:
         super().__init__("PrincipledMaterial", [
             ("baseWeight", base_weight),
@@ -1129,6 +1132,7 @@ class PrincipledMaterial(Material):
             ("opacity", opacity),
             ("opacityTexture", opacity_texture),
             ("walls", walls),
+            ("backs", backs),
         ])
 
 

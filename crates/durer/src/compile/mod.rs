@@ -134,9 +134,11 @@ pub fn compile(
         emitters: Emitters::default(),
         fog,
         has_cutouts: false,
+        hides_backs: false,
         has_interfaces: false,
     };
     world.has_cutouts = world.finds_cutouts();
+    world.hides_backs = world.finds_hidden_backs();
     world.has_interfaces = world.finds_interfaces();
     world.emitters = Emitters::new(&world);
     if let Err(error) = rebuild(&mut world, accel) {

@@ -242,6 +242,10 @@ impl<'w> Path<'w> {
             let Some(hit) = hit else { return (End::Sky(ray.dir()), scale) };
             walked = length;
             let surface = self.world.surface(&ray, &hit);
+            if self.world.hides_backs && state.depth == 0 && self.world.is_hidden(&ray, &hit, &surface) {
+                rest.rounded.t_min = hit.t;
+                continue;
+            }
             if self.world.has_cutouts {
                 let opacity = self.world.opacity(&hit, &surface);
                 layers += 1;

@@ -13,6 +13,11 @@ described_words! {
     Walls { Solid = "solid", Thin = "thin" }
 }
 
+described_words! {
+    /// Whether a camera sees faces that are turned away from it.
+    Backs { Shown = "shown", Hidden = "hidden" }
+}
+
 described! {
     /// A material of layers: fuzz on a coat on metal, glass or matte. Names and meanings are those of OpenPBR Surface.
     PrincipledMaterial ["PrincipledMaterial" in set::DURER] {
@@ -166,6 +171,8 @@ described! {
         opacity_texture: Option<FileName> = None, optional, Rule::Any, ["opacityTexture" in set::DURER];
         /// `thin`: a sheet without inside, through which light goes straight; `solid`: the skin of a body.
         walls: Walls = Walls::Solid, optional, Rule::Any, ["walls" in set::DURER];
+        /// `hidden`: a camera looks through faces that are turned away from it, and light does not; `shown`: both sides are seen.
+        backs: Backs = Backs::Shown, optional, Rule::Any, ["backs" in set::DURER];
     }
 }
 

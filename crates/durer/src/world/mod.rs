@@ -65,6 +65,8 @@ pub struct World {
     pub fog: Option<Medium>,
     /// Whether some surface is there in part only.
     pub has_cutouts: bool,
+    /// Whether cameras look through the backs of some faces.
+    pub hides_backs: bool,
     /// Whether some body has no skin, so that light goes straight into it.
     pub has_interfaces: bool,
     /// What stands outside the structure: objects without end, and all where they are so few that no tree pays.

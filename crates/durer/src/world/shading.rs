@@ -7,8 +7,8 @@ use crate::bsdf::lobe::diffuse::Diffuse;
 use crate::bsdf::lobe::glass::{Mirror, Refraction, Through};
 use crate::bsdf::{Bsdf, Frame, fresnel};
 use crate::material::Parameters;
-use crate::material::principled::Walls;
-use crate::math::{Color, Vec3, fp};
+use crate::material::principled::{Backs, Walls};
+use crate::math::{Color, Ray64, Vec3, fp};
 use crate::medium::Medium;
 use crate::shape::Surface;
 use crate::spectrum::{Curve, Lanes, Spectrum};
@@ -191,6 +191,17 @@ impl World {
         self.parts(hit, surface.position).iter().map(|part| part.share * own(part.phong)).sum()
     }
 
+    /// Whether a camera looks through a face, for it sees its back.
+    pub fn is_hidden(&self, ray: &Ray64, hit: &Hit, surface: &Surface) -> bool {
+        ray.dir().dot(surface.n_geo) > 0.0
+            && self.parts(hit, surface.position).iter().all(|part| hides_backs(part.phong))
+    }
+
+    /// Whether there are such faces.
+    pub(crate) fn finds_hidden_backs(&self) -> bool {
+        self.materials.iter().any(|material| matches!(material, Material::Phong(phong) if hides_backs(phong)))
+    }
+
     /// Whether some material is there in part only.
     pub(crate) fn finds_cutouts(&self) -> bool {
         let own = |phong: &Phong| phong.principled.as_ref().is_some_and(|own| self.is_cutout(own));
@@ -275,4 +286,9 @@ fn phong_lobes(phong: &Phong, color: Color, wo: Vec3, eta: f32, lanes: &Lanes) -
         false => bsdf.push(Refraction { eta }, through, through.max_element()),
     }
     bsdf
+}
+
+/// Whether cameras look through the backs of what is of a material.
+fn hides_backs(phong: &Phong) -> bool {
+    phong.principled.as_ref().is_some_and(|own| own.written.backs == Backs::Hidden)
 }

@@ -7,7 +7,7 @@ use super::Model;
 use super::json::At;
 use crate::describe::FileName;
 use crate::material::PrincipledMaterial;
-use crate::material::principled::Walls;
+use crate::material::principled::{Backs, Walls};
 use crate::math::Vec3;
 use crate::texture::{Channel, Mapping};
 use std::f32::consts::TAU;
@@ -81,6 +81,11 @@ impl Model<'_> {
         }
         if let Some(extensions) = &extensions {
             self.extended(&mut m, extensions);
+        }
+        // Of glass both sides of the skin are seen.
+        let both = at.get("doubleSided").and_then(|both| both.boolean()).unwrap_or(false);
+        if !both && m.transmission_weight == 0.0 {
+            m.backs = Backs::Hidden;
         }
         m
     }

@@ -2,7 +2,7 @@
 
 use super::Writer;
 use crate::material::parameters::TEXTURED;
-use crate::material::principled::Walls;
+use crate::material::principled::{Backs, Walls};
 use crate::material::{Pattern, PhongMaterial, PrincipledMaterial};
 use crate::math::{Vec3, fp};
 use crate::scene::Material;
@@ -38,7 +38,7 @@ impl Writer<'_> {
     }
 
     fn layers(&mut self, m: &PrincipledMaterial, holes: bool) -> Value {
-        let mut material = json!({ "doubleSided": true });
+        let mut material = json!({ "doubleSided": m.backs == Backs::Shown });
         let mut extensions = Map::new();
         let solid = m.walls == Walls::Solid;
         let unlit = m.emission_luminance == 1.0 && m.base_weight == 0.0 && m.specular_weight == 0.0;
