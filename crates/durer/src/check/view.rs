@@ -457,12 +457,7 @@ pub(super) fn upside_down(scout: &Scout) -> Vec<Finding> {
     let (eye, things) = (world.camera.pose().center, world.bounds());
     let mut planes = (0..world.objects.len() as u32).filter_map(|i| Some((i, ground(scout, i)?)));
     let (Some((number, (n, d))), None) = (planes.next(), planes.next()) else { return Vec::new() };
-    // Who is on the wrong side of the ground is told that.
-    let middle = things.center().dot(n) > d;
     let (n, d) = if eye.dot(n) < d { (-n, -d) } else { (n, d) };
-    if !things.is_empty() && middle != (things.center().dot(n) > d) && !hidden(scout).is_empty() {
-        return Vec::new();
-    }
     let height = |p: &Vec3| p.dot(n) - d;
     let size = things.size().max_element();
     let stand = !things.is_empty() && things.corners().iter().all(|p| height(p) > -0.1 * size);

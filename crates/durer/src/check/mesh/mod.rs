@@ -126,8 +126,12 @@ impl MeshFile<'_> {
 
     /// Its objects as they are placed in the world.
     fn placed<'w>(&self, scout: &Scout<'w>) -> impl Iterator<Item = &'w Placed> {
-        let own = |object: &&Placed| self.objects.iter().any(|o| o.span.start == object.span.start);
-        scout.world().objects.iter().filter(own)
+        scout.world().objects.iter().filter(|object| self.is_shown_at(object.span))
+    }
+
+    /// Whether what is written at a place shows it.
+    fn is_shown_at(&self, place: Span) -> bool {
+        self.objects.iter().any(|object| object.span.start == place.start)
     }
 
     /// Whether the camera is in it, as in a room: its walls face inwards by right.
@@ -201,8 +205,7 @@ pub(super) fn open_glass(scout: &Scout) -> Vec<Finding> {
 pub(super) fn holes(scout: &Scout) -> Vec<Finding> {
     let mut found = Vec::new();
     for mesh in scout.meshes().iter().filter(|mesh| mesh.glass(scout).is_none() && mesh.topology.open > 0) {
-        let own = |object: u32| mesh.objects.iter().any(|o| o.span.start == scout.object_span(object).start);
-        let seen = scout.seen().filter(|(_, seen)| own(seen.object));
+        let seen = scout.seen().filter(|(_, seen)| mesh.is_shown_at(scout.object_span(seen.object)));
         let (all, backs) = seen.fold((0, 0), |(all, backs), (_, s)| (all + 1, backs + usize::from(s.from_behind)));
         // A sheet is seen from one side, or nearly so.
         if backs * 50 < all || backs * 10 > all * 7 || all == 0 {

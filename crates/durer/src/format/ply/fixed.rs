@@ -19,6 +19,20 @@ struct Rows<'a> {
     big_endian: bool,
 }
 
+/// Goes along a column of numbers of a type; whether all are found good.
+macro_rules! column {
+    ($rows:expr, $at:expr, $number:ty, |$i:ident, $value:ident| $is_good:expr) => {{
+        let (rows, mut good) = ($rows, true);
+        for ($i, row) in rows.bytes.chunks_exact(rows.size).enumerate() {
+            let Some(&bytes) = row[$at..].first_chunk() else { return false };
+            let $value =
+                if rows.big_endian { <$number>::from_be_bytes(bytes) } else { <$number>::from_le_bytes(bytes) };
+            good &= $is_good;
+        }
+        good
+    }};
+}
+
 /// The type of a number, and where in its row it is.
 type Place = (Scalar, usize);
 
@@ -37,18 +51,13 @@ impl Rows<'_> {
     /// Hands on one number of each row; whether all are finite.
     fn each(&self, (scalar, at): Place, mut put: impl FnMut(usize, f32)) -> bool {
         macro_rules! read {
-            ($number:ty) => {{
-                let mut sound = true;
-                for (i, row) in self.bytes.chunks_exact(self.size).enumerate() {
-                    let Some(&bytes) = row[at..].first_chunk() else { return false };
-                    let number =
-                        if self.big_endian { <$number>::from_be_bytes(bytes) } else { <$number>::from_le_bytes(bytes) };
+            ($number:ty) => {
+                column!(self, at, $number, |i, number| {
                     let value = number as f32;
-                    sound &= value.is_finite();
                     put(i, value);
-                }
-                sound
-            }};
+                    value.is_finite()
+                })
+            };
         }
         match scalar {
             Scalar::I8 => read!(i8),
@@ -84,16 +93,9 @@ impl Rows<'_> {
     /// Hands on one whole number of each row; whether all are found good.
     fn whole(&self, (scalar, at): Place, mut is_good: impl FnMut(usize, i64) -> bool) -> bool {
         macro_rules! read {
-            ($number:ty) => {{
-                let mut good = true;
-                for (i, row) in self.bytes.chunks_exact(self.size).enumerate() {
-                    let Some(&bytes) = row[at..].first_chunk() else { return false };
-                    let number =
-                        if self.big_endian { <$number>::from_be_bytes(bytes) } else { <$number>::from_le_bytes(bytes) };
-                    good &= is_good(i, number.into());
-                }
-                good
-            }};
+            ($number:ty) => {
+                column!(self, at, $number, |i, number| is_good(i, number.into()))
+            };
         }
         match scalar {
             Scalar::I8 => read!(i8),
