@@ -20,6 +20,7 @@ const USAGE: &str =
   --threads N        so many threads trace and build [1]
   --side N           primary rays: N x N, a multiple of 8 [512; quick 256]
   --edges N          no speed: how many of N rays are lost at vertices, edges and centroids of a closed mesh
+  --arrays FOLDER    no others: the rate of our batches alone, for arrays as crates/durer-py/bench/rays.py writes them
   --instances N      N instances of each mesh, against Embree's
   --rounds N         rounds, of which medians are taken [9; quick 5]
   --no-peers         Embree only
@@ -44,6 +45,7 @@ pub struct Options {
     pub rounds: usize,
     pub edges: Option<u32>,
     pub instances: Option<u32>,
+    pub arrays: Option<PathBuf>,
     pub peers: bool,
     pub embree: Option<PathBuf>,
 }
@@ -59,7 +61,7 @@ fn options(arguments: &[String]) -> Result<Options> {
     let (mut names, mut cases) = (Vec::new(), Vec::new());
     let mut preset = durer::bvh::BuildQuality::Best;
     let (mut threads, mut side, mut rounds, mut quick) = (1, None, None, false);
-    let (mut peers, mut use_embree, mut edges, mut instances) = (true, true, None, None);
+    let (mut peers, mut use_embree, mut edges, mut instances, mut arrays) = (true, true, None, None, None);
     let mut words = arguments.iter();
     while let Some(word) = words.next() {
         let mut value = || words.next().with_context(|| format!("`{word}` needs a value"));
@@ -77,6 +79,7 @@ fn options(arguments: &[String]) -> Result<Options> {
             "--rounds" => rounds = Some(value()?.parse::<usize>()?.max(1)),
             "--edges" => edges = Some(value()?.parse::<u32>()?),
             "--instances" => instances = Some(value()?.parse::<u32>()?.clamp(1, 4096)),
+            "--arrays" => arrays = Some(PathBuf::from(value()?)),
             "--no-peers" => peers = false,
             "--no-embree" => use_embree = false,
             _ => bail!("`{word}` is no option\n\n{USAGE}"),
@@ -90,6 +93,7 @@ fn options(arguments: &[String]) -> Result<Options> {
         true => PathBuf::from(name),
         false => corpus.join("meshes").join(name).with_extension("ply"),
     };
+    let embree = if use_embree && arrays.is_none() { Some(embree::find()?) } else { None };
     Ok(Options {
         meshes: names.iter().map(path).collect(),
         cases,
@@ -99,8 +103,9 @@ fn options(arguments: &[String]) -> Result<Options> {
         rounds: rounds.unwrap_or(if quick { 5 } else { 9 }),
         edges,
         instances,
+        arrays,
         peers,
-        embree: if use_embree { Some(embree::find()?) } else { None },
+        embree,
     })
 }
 
@@ -124,8 +129,9 @@ fn run() -> Result<()> {
     durer::bvh::SimdLevel::from_environment()?;
     let options = options(&arguments)?;
     rayon::ThreadPoolBuilder::new().num_threads(options.threads).build_global()?;
-    match options.edges {
-        Some(count) => edges::run(&options, count),
-        None => speed::run(&options),
+    match (options.edges, &options.arrays) {
+        (Some(count), _) => edges::run(&options, count),
+        (None, Some(folder)) => speed::arrays(folder, &options),
+        (None, None) => speed::run(&options),
     }
 }

@@ -4,11 +4,12 @@ use crate::Options;
 use crate::embree::{Embree, Quality, Scene};
 use crate::peers::{BvhCrate, Obvhs, Parry};
 use crate::rays::{Case, Found, Mesh, cases};
-use anyhow::Result;
+use anyhow::{Context, Result};
 use durer::bvh::{BuildQuality, Instance, InstanceBvh, InstanceHit, SimdLevel, TraversalStats, TriangleBvh};
 use durer::math::{Affine, Ray, Vec3, fp};
 use durer::sampler::random_2d;
 use glam::{DAffine3, DMat3, DVec3};
+use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
@@ -143,6 +144,30 @@ pub fn run(options: &Options) -> Result<()> {
         println!("least ratio of {} cases of single rays: {least:.2}", ratios.len());
         println!("geometric mean of the ratios of single rays: {mean:.3}");
     }
+    Ok(())
+}
+
+/// Numbers as they lie in a file.
+fn numbers<T>(path: &Path, number: impl Fn([u8; 4]) -> T) -> Result<Vec<T>> {
+    let bytes = std::fs::read(path).with_context(|| path.display().to_string())?;
+    Ok(bytes.as_chunks().0.iter().map(|&bytes| number(bytes)).collect())
+}
+
+/// Millions of rays a second through our batches, of a mesh and rays that another program wrote: what its own way to them costs.
+pub fn arrays(folder: &Path, options: &Options) -> Result<()> {
+    let floats = |name: &str| numbers(&folder.join(name), f32::from_le_bytes);
+    let points =
+        |name: &str| Ok::<_, anyhow::Error>(floats(name)?.chunks_exact(3).map(Vec3::from_slice).collect::<Vec<_>>());
+    let faces = numbers(&folder.join("faces.u32"), u32::from_le_bytes)?;
+    let tree = TriangleBvh::try_build(&points("vertices.f32")?, faces.as_chunks().0, options.preset)?;
+    let rays: Vec<Ray> =
+        points("origins.f32")?.into_iter().zip(points("directions.f32")?).map(|(o, d)| Ray::new(o, d)).collect();
+    let ours = Ours(tree);
+    let trace = |rays: &[Ray], found: &mut [Found]| ours.batch(rays, found, false);
+    let tracer = Tracer { name: "Dürer batch", trace: Box::new(trace) };
+    let mut found = vec![Found::NONE; rays.len()];
+    let mut times: Vec<f64> = (0..options.rounds).map(|_| time(&tracer, &rays, &mut found, options.threads)).collect();
+    println!("{:.2}", rays.len() as f64 / median(&mut times) / 1e6);
     Ok(())
 }
 

@@ -1,6 +1,7 @@
 //! The command line.
 
 use crate::display::DisplayArgs;
+use crate::frames::FramesArgs;
 use crate::memory::Memory;
 use crate::method::MethodArgs;
 use crate::staging::StagingArgs;
@@ -96,6 +97,7 @@ pub struct SceneArgs {
   durer render scene.txt -o picture.png
   durer render model.glb -o picture.png --view iso --studio sun
   durer render model.glb -o frame.png --turntable 36
+  durer render walk.%04d.txt -o walk.png --frames 1-100
   durer render scene.txt -o picture.png --watch
   durer render scene.txt -o picture.exr --size 1920x1080 --samples 64
   durer render scene.txt -o picture.exr --noise 0.01 --time 10m --preview preview.png
@@ -116,9 +118,8 @@ Work that takes long is saved every now and then into PICTURE.part, which --resu
 pub struct RenderCommand {
     #[command(flatten)]
     pub render: RenderArgs,
-    /// Pictures of a model from so many sides all around it: picture.000.png and so on
-    #[arg(long, value_name = "FRAMES", conflicts_with_all = ["watch", "camera", "view_file"], value_parser = clap::value_parser!(u16).range(1..=9999))]
-    pub turntable: Option<u16>,
+    #[command(flatten)]
+    pub frames: FramesArgs,
     /// Print what one pixel sees, and write nothing
     #[arg(long, value_name = "X,Y", value_parser = pixel)]
     pub pixel: Option<(u32, u32)>,

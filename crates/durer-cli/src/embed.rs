@@ -27,6 +27,9 @@ impl Asked {
         let words =
             ["durer", "render", "scene", "--output", "picture.png"].into_iter().chain(words.iter().map(String::as_str));
         match Cli::try_parse_from(words).map(|cli| cli.command) {
+            Ok(Command::Render(command)) if command.frames.is_asked() => {
+                Err("--frames and --turntable make many pictures, and here one is made".into())
+            }
             Ok(Command::Render(command)) => Ok(Asked(command.render)),
             Ok(_) => Err("these are not the options of a render".into()),
             Err(error) => Err(plain(&error.render().to_string())),

@@ -1,6 +1,7 @@
 //! `durer farm`: a job for an engine that is there already, over `--shard` and `durer merge`.
 
 use crate::embed::Asked;
+use crate::frames::{self, Frames, FramesArgs, Moves};
 use crate::output::say;
 use crate::{Failure, bad};
 use clap::Args;
@@ -18,6 +19,7 @@ const DASK: &str = include_str!("farm/dask.py");
   durer farm scene.txt --template k8s --shards 16 > job.yaml && kubectl apply -f job.yaml
   durer farm scene.txt --template openjd > job.yaml && openjd check job.yaml
   durer farm scene.txt --template dask > render.py && python render.py
+  durer farm walk.glb --template slurm --frames 0-239 --fps 24 --samples 64 > job.sh && sbatch job.sh
 
 Each shard is `durer render --shard`, and may be done again on another machine; `durer merge` gives the bytes of one run. The
 options of the render stand after those of the farm; they are checked here.")]
@@ -27,9 +29,11 @@ pub struct FarmArgs {
     /// For which engine
     #[arg(long, value_parser = ["slurm", "k8s", "openjd", "dask"])]
     pub template: String,
-    /// How many parts
-    #[arg(long, default_value_t = 16, value_parser = clap::value_parser!(u32).range(1..=65535))]
-    pub shards: u32,
+    /// How many parts each picture has [default: 16; 1 with --frames]
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=65535))]
+    pub shards: Option<u32>,
+    #[command(flatten)]
+    pub frames: FramesArgs,
     /// The picture to write in the end [default: the scene's name with .exr]
     #[arg(short, long, value_name = "PICTURE")]
     pub output: Option<PathBuf>,
@@ -44,8 +48,11 @@ pub fn run(args: &FarmArgs) -> Result<(), Failure> {
     let text =
         |path: &std::path::Path| path.to_str().map(String::from).ok_or_else(|| bad(format!("{path:?} is not UTF-8")));
     let scene = text(&args.scene)?;
+    let names: Vec<&str> = std::iter::once(&scene).chain(&args.options).map(String::as_str).collect();
+    let frames = args.frames.asked(&args.scene, &names)?;
     let stem = args.scene.file_stem().and_then(|stem| stem.to_str()).unwrap_or("picture").to_string();
     let output = args.output.as_deref().map_or_else(|| Ok(format!("{stem}.exr")), text)?;
+    let output = if frames.is_some() { frames::pattern(&output) } else { output };
     let quoted =
         |word: &str| shlex::try_quote(word).map(String::from).map_err(|_| bad(format!("{word:?} cannot be quoted")));
     let options = args.options.iter().map(|word| quoted(word)).collect::<Result<Vec<_>, _>>()?.join(" ");
@@ -58,10 +65,28 @@ pub fn run(args: &FarmArgs) -> Result<(), Failure> {
         "openjd" => OPENJD,
         _ => DASK,
     };
-    let filled = template
+    let shards = args.shards.unwrap_or(if frames.is_some() { 1 } else { 16 });
+    let (numbers, moves) = frames.unwrap_or((Frames { first: 0, last: 0, step: 1 }, Moves::Names));
+    let Some(tasks) = numbers.count().checked_mul(shards) else {
+        return Err(bad(format!("{} frames of {shards} shards are too many tasks", numbers.count())));
+    };
+    // What a frame is, in the words of the command and of the language.
+    let (moving, words) = match moves {
+        Moves::Turntable(count) => {
+            (format!("--turntable {count} "), format!(r#", "--turned", str(360 * frame / {count})"#))
+        }
+        Moves::Time(rate) => (format!("--fps {rate} "), format!(r#", "--at", str(frame / {rate:?})"#)),
+        Moves::Names => (String::new(), String::new()),
+    };
+    let filled = chosen(template, frames.is_some())
         .replace("@NAME@", &name)
-        .replace("@SHARDS@", &args.shards.to_string())
-        .replace("@LAST@", &(args.shards - 1).to_string())
+        .replace("@SHARDS@", &shards.to_string())
+        .replace("@TASKS@", &tasks.to_string())
+        .replace("@FIRST@", &numbers.first.to_string())
+        .replace("@LAST@", &numbers.last.to_string())
+        .replace("@STEP@", &numbers.step.to_string())
+        .replace("@MOVING@", &moving)
+        .replace("@MOVING_WORDS@", &words)
         .replace("@SCENE@", &quoted(&scene)?)
         .replace("@OUTPUT@", &quoted(&output)?)
         .replace("@OPTIONS@", &options)
@@ -70,4 +95,16 @@ pub fn run(args: &FarmArgs) -> Result<(), Failure> {
         .replace("@WORDS_JSON@", &serde_json::json!(args.options).to_string());
     say(filled.trim_end());
     Ok(())
+}
+
+/// A template without the lines that belong to the other kind of job: those that begin with `@frames` are there where there are
+/// frames, those that begin with `@still` where there is one picture.
+fn chosen(template: &str, frames: bool) -> String {
+    let (here, there) = if frames { ("@frames", "@still") } else { ("@still", "@frames") };
+    let lines = template.lines().filter(|line| !line.starts_with(there));
+    lines
+        .map(|line| {
+            line.strip_prefix(here).map_or(line, |rest| rest.strip_prefix(' ').unwrap_or(rest)).to_string() + "\n"
+        })
+        .collect()
 }

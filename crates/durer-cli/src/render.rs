@@ -6,7 +6,7 @@ use crate::keep::Keeper;
 use crate::open::{load_options, read};
 use crate::output::{Target, lengthened, say};
 use crate::stats::Stages;
-use crate::{Failure, bad, check, diagrams, job, large, output, progress, report, turntable, watching};
+use crate::{Failure, bad, check, diagrams, frames, job, large, output, progress, report, watching};
 use durer::diag::Diagnostic;
 use durer::image::checked_count;
 use durer::render::{Bands, Control, Job, Panicked, Part, RenderError, Shard, ShardBy, Statistics, Stop, replay};
@@ -46,8 +46,11 @@ impl Watched {
 }
 
 pub fn run(mut command: RenderCommand) -> Result<(), Failure> {
-    match (command.turntable, command.render.watch) {
-        (Some(frames), _) => turntable::run(&mut command, frames),
+    let (args, staging) = (&command.render, &command.render.reading.staging);
+    let view = staging.view_file.as_deref().unwrap_or(Path::new("")).to_string_lossy();
+    let names = [&args.scene.to_string_lossy(), staging.camera.as_deref().unwrap_or_default(), &view];
+    match (command.frames.asked(&args.scene, &names)?, args.watch) {
+        (Some((frames, moves)), _) => frames::run(&mut command, frames, moves),
         (None, true) => {
             // Each picture begins anew.
             command.render.work.no_checkpoint = true;

@@ -32,8 +32,8 @@ pub struct StagingArgs {
     /// Move the model's own camera to where it sees all of it, in the direction in which it looks
     #[arg(long, conflicts_with = "view")]
     pub fit: bool,
-    /// Degrees by which the model is turned about what is up
-    #[arg(skip)]
+    /// Degrees by which whence the model is seen lies further around it
+    #[arg(long, value_name = "DEGREES", value_parser = degrees, allow_negative_numbers = true)]
     pub turned: Option<f32>,
     /// Moment of the model's animation, in seconds [default: as it stands without]
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
@@ -72,10 +72,13 @@ pub enum Light {
 }
 
 fn seconds(text: &str) -> Result<f32, String> {
-    text.parse()
-        .ok()
-        .filter(|&at: &f32| at.is_finite() && at >= 0.0)
-        .ok_or("expected a number of seconds, 0 or more".into())
+    let at = text.parse().ok().filter(|&at: &f64| at.is_finite() && at >= 0.0);
+    at.map(|at| at as f32).ok_or("expected a number of seconds, 0 or more".into())
+}
+
+fn degrees(text: &str) -> Result<f32, String> {
+    let turned = text.parse().ok().filter(|turned: &f64| turned.is_finite());
+    turned.map(|turned| turned as f32).ok_or("expected a number of degrees".into())
 }
 
 impl StagingArgs {

@@ -90,16 +90,56 @@ fn mitsuba_is_rendered_by_its_sensors_and_becomes_gltf() {
     place.refused(2, "render b.xml -o b.png", &["b.xml:1:85", "expected a number, found `wide`"]);
 }
 
+const COURSE: &str = "PerspectiveCamera { center 0 0 5 direction 0 0 -1 up 0 1 0 angle 40 }
+    Lights { DirectionalLight { direction 0 0 -1 color 1 1 1 } }";
+
+#[test]
+fn frames_are_moments_cameras_and_files() {
+    let place = Place::new();
+    place.put("a.stl", STL);
+    let hash = |words: &str| place.gives(0, &format!("render {words} {SMALL} --hash -q")).out;
+    // A frame of a turntable is the same alone, and the view that `--turned` gives.
+    let all = hash("a.stl -o a.png --turntable 3");
+    let alone: String = (0..3).map(|i| hash(&format!("a.stl -o a.png --turntable 3 --frames {i}"))).collect();
+    let turned: String = [0, 120, 240].map(|angle| hash(&format!("a.stl -o a.png --turned {angle}"))).concat();
+    assert!(all == alone && all == turned, "{all} {alone} {turned}");
+    // Numbers take the place of %d in scenes and cameras.
+    for (i, diffuse) in [(8, "1 0 0"), (9, "0 1 0"), (10, "0 0 1")] {
+        let material = format!("Materials {{ PhongMaterial {{ diffuseColor {diffuse} }} }}");
+        let text = format!("{COURSE} {material} Group {{ MaterialIndex 0 Sphere {{ center 0 0 0 radius 1 }} }}");
+        place.put(&format!("walk.{i:02}.txt"), text);
+    }
+    let frames = hash("walk.%02d.txt -o w.%d.png --frames 8-10");
+    let singly: String = (8..11).map(|i| hash(&format!("walk.{i:02}.txt -o a.png"))).collect();
+    assert!(frames == singly && place.path("w.10.png").exists() && !place.path("w.11.png").exists());
+    place.put("a.xml", XML);
+    assert_eq!(
+        hash("a.xml -o a.png --camera %d --frames 0-1"),
+        hash("a.xml -o a.png --camera 0") + &hash("a.xml -o a.png --camera 1")
+    );
+    // Shards of frames, as farms make them.
+    for shard in [1, 2] {
+        hash(&format!("walk.%02d.txt --frames 8-9 --shard {shard}/2 -o %d.{shard}.part"));
+    }
+    assert_eq!(place.gives(0, "merge 9.1.part 9.2.part -o b.png --hash -q").out, hash("walk.09.txt -o a.png"));
+    place.refused(2, "render walk.08.txt --frames 1-3", &["nothing would move"]);
+    place.refused(2, "render walk.%02d.txt --frames 3-1", &["expected frames as 7, 1-100 or 0-90:10"]);
+    place.refused(2, "render walk.%02d.txt --frames 8-9 --watch", &["many pictures are made"]);
+    place.refused(2, "render a.stl --turntable 4 --turned 3", &["--turned say whence"]);
+    place.refused(2, "render a.stl --fps 4", &["--frames"]);
+    assert!(place.gives(2, "render walk.%02d.txt --frames 10-11 -q").err.contains("walk.11.txt"));
+}
+
 #[test]
 fn a_turntable_goes_around_and_fit_moves_the_camera() {
     let place = Place::new();
     place.put("a.stl", STL);
     place.gives(0, &format!("render a.stl -o a.png {SMALL} --turntable 4"));
-    let frame = |i: u32| std::fs::read(place.path(&format!("a.00{i}.png"))).unwrap();
+    let frame = |i: u32| std::fs::read(place.path(&format!("a.000{i}.png"))).unwrap();
     assert!(frame(0) != frame(1) && frame(1) != frame(2) && frame(2) != frame(3));
-    assert!(!place.path("a.004.png").exists() && !place.path("a.png").exists());
+    assert!(!place.path("a.0004.png").exists() && !place.path("a.png").exists());
     place.refused(2, "render a.stl -o a.png --turntable 0", &["--turntable"]);
-    place.refused(2, "render a.stl -o a.png --turntable 4 --preview b.png", &["--turntable makes many pictures"]);
+    place.refused(2, "render a.stl -o a.png --turntable 4 --preview b.png", &["many pictures are made"]);
     // A camera that looks past the model sees it then.
     place.put("a.rad", RAD);
     place.put("a.vf", "VIEW= -vp 0 -900 900 -vd 0 -1 -.1 -vh 40 -vv 30\n");

@@ -1,10 +1,16 @@
 """Rays a second from Python: Dürer beside embreex, trimesh, Open3D and Mitsuba, each that is installed, in one run with the same rays.
 
     python crates/durer-py/bench/rays.py [mesh.ply] [millions of rays]
+
+With cargo, also the same rays through the kernel from Rust, without Python.
 """
 
+import shutil
+import subprocess
 import sys
+import tempfile
 import time
+from pathlib import Path
 
 import numpy as np
 
@@ -88,6 +94,18 @@ def rivals(v: np.ndarray, f: np.ndarray) -> dict:
     return found
 
 
+def rust(v: np.ndarray, f: np.ndarray, o: np.ndarray, d: np.ndarray, threads: int) -> float:
+    """Millions of rays a second through the kernel's batches, called from Rust."""
+    with tempfile.TemporaryDirectory() as folder:
+        arrays = {"vertices.f32": v.astype("<f4"), "faces.u32": f.astype("<u4"), "origins.f32": o, "directions.f32": d}
+        for name, array in arrays.items():
+            (Path(folder) / name).write_bytes(np.ascontiguousarray(array).tobytes())
+        manifest = Path(__file__).parents[3] / "bench/Cargo.toml"
+        words = ["cargo", "run", "--release", "--quiet", "--manifest-path", str(manifest), "--"]
+        done = subprocess.run([*words, "--arrays", folder, "--threads", str(threads)], capture_output=True, text=True, check=True)
+        return float(done.stdout)
+
+
 def main() -> None:
     count = int(1e6 * float(sys.argv[2] if len(sys.argv) > 2 else 1))
     if len(sys.argv) > 1:
@@ -110,6 +128,9 @@ def main() -> None:
         ours = np.median(times["durer, 1 thread"])
         for name, taken in times.items():
             print(f"{kind:8} {name:22} {len(o) / np.median(taken) / 1e6:8.2f}   ours, 1 thread: {np.median(taken) / ours:.2f} times")
+        for threads in (1, 2) if shutil.which("cargo") else ():
+            rate, taken = rust(v, f, o, d, threads), np.median(times[f"durer, {threads} thread{'s' * (threads > 1)}"])
+            print(f"{kind:8} from Rust, {threads} threads    {rate:8.2f}   ours from Python: {len(o) / taken / 1e6 / rate:.2f} of it")
 
 
 if __name__ == "__main__":

@@ -71,6 +71,30 @@ def test_embreex_calls_answer():
         scene.run(o, d, query="X")
 
 
+def test_elements_are_closed_and_seen_from_outside():
+    square = np.float32([[1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 0]])
+    cube = np.concatenate([square, square + np.float32([0, 0, 1])])
+    for corners, volume in ((np.eye(4, 3, -1, dtype="f4"), 1 / 6), (cube, 1)):
+        scene = durer.embreex.EmbreeScene()
+        durer.embreex.ElementMesh(scene, corners, np.arange(len(corners))[None])
+        (mesh,) = scene.meshes
+        a, b, c = (mesh.vertices[mesh.faces[:, i]].astype(float) for i in range(3))
+        # By the divergence theorem, which counts faces that are seen from inside as negative.
+        assert mesh.is_closed and np.isclose((a * np.cross(b, c)).sum() / 6, volume)
+    with pytest.raises(NotImplementedError, match="4 or 8 corners"):
+        durer.embreex.ElementMesh(scene, cube, [[0, 1, 2]])
+
+
+def test_rooms_are_there_when_they_are_asked_for():
+    import subprocess
+    import sys
+
+    words = "import durer; durer.farm.render, durer.vision.Camera, durer.embreex.EmbreeScene; assert 'farm' in dir(durer)"
+    subprocess.run([sys.executable, "-c", words], check=True)
+    with pytest.raises(AttributeError, match="no attribute 'farms'"):
+        durer.farms
+
+
 def test_trimesh_takes_our_rays():
     trimesh = pytest.importorskip("trimesh")
     mesh = trimesh.Trimesh(*sphere())
@@ -79,6 +103,9 @@ def test_trimesh_takes_our_rays():
     o, d = 3 * directions(400, 21), directions(400, 22)
     d[:200] = -o[:200] + 0.3 * directions(200, 23)
     assert (ours.intersects_any(o, d) == theirs.intersects_any(o, d)).all()
+    # However long directions are.
+    for scale in (1e-300, 1e-20, 1e20, 1e300):
+        assert (ours.intersects_first(o, scale * d) == ours.intersects_first(o, d)).all()
     assert (ours.intersects_first(o, d) == theirs.intersects_first(o, d)).all()
     for many in (True, False):
         a, b = ours.intersects_location(o, d, many), theirs.intersects_location(o, d, multiple_hits=many)

@@ -1,5 +1,6 @@
 """Farms: Dask with workers that are killed, and the templates of `durer farm`."""
 
+import os
 import random
 import shutil
 import subprocess
@@ -76,6 +77,66 @@ def test_templates_are_whole(engine, scenes):
         pytest.importorskip("yaml").safe_load(done.stdout)
 
 
+def program(folder):
+    """A folder with the command `durer`, for templates that call it."""
+    (folder / "bin").mkdir()
+    there = folder / "bin/durer"
+    there.write_text(f'#!/bin/sh\nexec "{sys.executable}" -m durer "$@"\n')
+    there.chmod(0o755)
+    return {**os.environ, "PATH": f"{folder / 'bin'}:{os.environ['PATH']}"}
+
+
+WALK = """PerspectiveCamera {{ center {0} 0 5 direction 0 0 -1 up 0 1 0 angle 40 }}
+Lights {{ DirectionalLight {{ direction 0 0 -1 color 1 1 1 }} }}
+Materials {{ PhongMaterial {{ diffuseColor 0.2 0.4 0.8 }} }}
+Group {{ MaterialIndex 0 Sphere {{ center 0 0 0 radius 1 }} }}
+"""
+
+
+@pytest.mark.parametrize("engine", ["slurm", "k8s", "openjd", "dask"])
+def test_frames_are_what_the_command_makes(engine, tmp_path):
+    """The jobs of templates, run as their engines would: each task by its number, then what merges."""
+    for frame in (3, 5, 7):
+        (tmp_path / f"walk.{frame:02}.txt").write_text(WALK.format((frame - 5) / 4))
+    words = ["--size", "48x32", "--samples", "4"]
+    job = command("farm", "walk.%02d.txt", "--template", engine, "--frames", "3-7:2", "--shards", "2", *words, cwd=tmp_path)
+    assert job.returncode == 0, job.stderr
+    environment = program(tmp_path)
+
+    def run(*words, **more):
+        done = subprocess.run(words, capture_output=True, text=True, cwd=tmp_path, env={**environment, **more})
+        assert done.returncode == 0, done.stdout + done.stderr
+        return done.stdout
+
+    if engine == "slurm":
+        for task in range(1, 7):
+            run("bash", "-c", job.stdout, SLURM_ARRAY_TASK_ID=str(task))
+    if engine == "k8s":
+        (container,) = pytest.importorskip("yaml").safe_load(job.stdout)["spec"]["template"]["spec"]["containers"]
+        for task in range(6):
+            run(*container["command"], *container["args"], JOB_COMPLETION_INDEX=str(task))
+    if engine in ("slurm", "k8s"):
+        # What the comment says is to be done then.
+        merge = [line.removeprefix("#") for line in job.stdout.splitlines() if line.startswith("#   ")]
+        assert len(merge) == 3
+        run("bash", "-c", "\n".join(merge))
+    if engine == "openjd":
+        openjd = Path(sys.executable).with_name("openjd")
+        if not openjd.exists():
+            pytest.skip("openjd is not installed")
+        (tmp_path / "job.yaml").write_text(job.stdout)
+        run(openjd, "check", "job.yaml")
+        run(openjd, "run", "job.yaml", "-p", f"Folder={tmp_path}")
+    if engine == "dask":
+        pytest.importorskip("distributed")
+        (tmp_path / "job.py").write_text(job.stdout)
+        run(sys.executable, "job.py")
+    for frame in (3, 5, 7):
+        run("durer", "render", f"walk.{frame:02}.txt", "-o", "whole.exr", *words)
+        whole, made = (durer.read(tmp_path / name)[0] for name in ("whole.exr", f"walk.{frame:02}.exr"))
+        assert (whole == made).all() and whole.shape == (32, 48, 3)
+
+
 def test_wrong_options_make_no_template(scenes):
     done = command("farm", scenes / "whitted.txt", "--template", "slurm", "--samples", 0)
     assert done.returncode == 2 and "samples" in done.stderr and not done.stdout
@@ -88,13 +149,7 @@ def test_openjd_checks_and_runs(scenes, tmp_path):
     shutil.copytree(scenes, tmp_path / "work")
     job = command("farm", "whitted.txt", "--template", "openjd", "--shards", 3, "-o", "a.exr", *WORDS, cwd=tmp_path / "work")
     (tmp_path / "job.yaml").write_text(job.stdout)
-    (tmp_path / "bin").mkdir()
-    program = tmp_path / "bin/durer"
-    program.write_text(f'#!/bin/sh\nexec "{sys.executable}" -m durer "$@"\n')
-    program.chmod(0o755)
-    import os
-
-    environment = {**os.environ, "PATH": f"{tmp_path / 'bin'}:{os.environ['PATH']}"}
+    environment = program(tmp_path)
     checked = subprocess.run([openjd, "check", tmp_path / "job.yaml"], capture_output=True, text=True)
     assert checked.returncode == 0, checked.stdout + checked.stderr
     words = [openjd, "run", tmp_path / "job.yaml", "-p", f"Folder={tmp_path / 'work'}"]

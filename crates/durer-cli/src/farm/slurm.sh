@@ -1,12 +1,22 @@
 #!/bin/bash
 #SBATCH --job-name=@NAME@
-#SBATCH --array=1-@SHARDS@
+#SBATCH --array=1-@TASKS@
 #SBATCH --output=@NAME@-%A_%a.log
 #SBATCH --requeue
-# One shard of @SHARDS@. A task that is done again goes on with what it saved.
-# When all have ended:  durer merge shards/@NAME@/*.part -o @OUTPUT@ --hash
+@still # One shard of @SHARDS@. A task that is done again goes on with what it saved.
+@still # When all have ended:  durer merge shards/@NAME@/*.part -o @OUTPUT@ --hash
+@frames # One shard of @SHARDS@ of one frame of @FIRST@-@LAST@:@STEP@. A task that is done again goes on with what it saved.
+@frames # When all have ended:
+@frames #   for frame in $(seq @FIRST@ @STEP@ @LAST@); do
+@frames #       durer merge shards/@NAME@/"$frame".*.part -o "$(printf @OUTPUT@ "$frame")"
+@frames #   done
 set -euo pipefail
 mkdir -p shards/@NAME@
-durer render @SCENE@ @OPTIONS@ \
-    --shard "$SLURM_ARRAY_TASK_ID/@SHARDS@" --output "shards/@NAME@/$SLURM_ARRAY_TASK_ID.part" \
+@still shard=$SLURM_ARRAY_TASK_ID
+@still durer render @SCENE@ @OPTIONS@ \
+@still     --shard "$shard/@SHARDS@" --output "shards/@NAME@/$shard.part" \
+@frames frame=$((@FIRST@ + @STEP@ * ((SLURM_ARRAY_TASK_ID - 1) / @SHARDS@)))
+@frames shard=$(((SLURM_ARRAY_TASK_ID - 1) % @SHARDS@ + 1))
+@frames durer render @SCENE@ @OPTIONS@ --frames "$frame" @MOVING@\
+@frames     --shard "$shard/@SHARDS@" --output "shards/@NAME@/%d.$shard.part" \
     --threads "${SLURM_CPUS_PER_TASK:-1}" --resume --quiet

@@ -9,6 +9,9 @@
     pictures["color"]
 """
 
+import importlib
+from typing import Any
+
 from . import words
 from ._durer import RenderError, SceneError, __version__
 from .pictures import compare, read
@@ -22,3 +25,16 @@ __all__ = [
     "Part", "Pictures", "RenderError", "Scene", "SceneError", "Surfaces", "Thing", "Union", "World", "Xor", "__version__", "check", "compare",
     "kinds", "load", "options", "read", *words.__all__,
 ]  # fmt: skip
+
+#: Rooms that need other packages, or that not everybody needs: imported when they are first asked for.
+_LATER = ("embreex", "farm", "open3d", "trimesh", "vision", "widget")
+
+
+def __getattr__(name: str) -> Any:
+    if name in _LATER:
+        return importlib.import_module(f".{name}", __name__)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return sorted([*globals(), *_LATER])

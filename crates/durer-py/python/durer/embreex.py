@@ -1,4 +1,4 @@
-"""The calls of `embreex`, answered by Dürer: `EmbreeDevice`, `EmbreeScene`, `TriangleMesh`, `scene.run`. Normals, `Ng`, have length 1
+"""The calls of `embreex`, answered by Dürer: `EmbreeDevice`, `EmbreeScene`, `TriangleMesh`, `ElementMesh`, `scene.run`. Normals, `Ng`, have length 1
 here."""
 
 from __future__ import annotations
@@ -58,3 +58,24 @@ class TriangleMesh:
         faces = np.arange(3 * len(places)).reshape(-1, 3) if indices is None else np.asarray(indices)
         scene.meshes.append(Mesh(places.reshape(-1, 3), faces))
         scene._built = None
+
+
+# The faces of elements, their corners as they are seen from outside, counterclockwise; those of hexahedra in two triangles. Corners of
+# hexahedra are numbered as in T. Tautges, "Canonical numbering systems for finite-element codes", 2010.
+_TETRAHEDRON = ((0, 1, 3), (2, 3, 1), (0, 3, 2), (0, 2, 1))
+_HEXAHEDRON = (
+    (0, 2, 1), (0, 3, 2), (4, 5, 6), (4, 6, 7), (0, 1, 5), (0, 5, 4),
+    (1, 2, 6), (1, 6, 5), (0, 7, 3), (0, 4, 7), (3, 6, 2), (3, 7, 6),
+)  # fmt: skip
+
+
+class ElementMesh:
+    """Puts the faces of tetrahedra (indices of shape (n, 4)) or hexahedra ((n, 8)) into a scene: 4 or 12 triangles for each."""
+
+    def __init__(self, scene: EmbreeScene, vertices: npt.ArrayLike, indices: npt.ArrayLike) -> None:
+        elements = np.asarray(indices)
+        corners = elements.shape[1] if elements.ndim == 2 else 0
+        if corners not in (4, 8):
+            raise NotImplementedError(f"elements have 4 or 8 corners, but the indices have the shape {elements.shape}")
+        faces = elements[:, np.array(_TETRAHEDRON if corners == 4 else _HEXAHEDRON)]
+        TriangleMesh(scene, vertices, faces.reshape(-1, 3))

@@ -94,10 +94,6 @@ class _Frame:
         self.client.cancel([future for future in self.futures if not future.done()])
 
 
-def _asked(world: World, words: Optional[Sequence[str]], options: dict[str, Any]) -> list[str]:
-    return [*world._all(options), *(words or [])]
-
-
 def render(
     scene: Union[World, PathLike],
     *,
@@ -110,13 +106,17 @@ def render(
     """Renders a scene with the workers of a `distributed.Client`, and merges: the same bits and hash as one machine.
 
     The scene's files are sent once to each worker. A worker that dies costs its shards only, which others make again; workers that come
-    meanwhile take part. Options are those of `World.render`, or its `words` as on the command line. A worker with another version
-    of durer is refused by the merge.
+    meanwhile take part. Options are those of `World.render`, or `words` as on the command line, for a scene's file those of reading it
+    too. A worker with another version of durer is refused by the merge.
     """
     from distributed import as_completed
 
-    world = scene if isinstance(scene, World) else load(scene)
-    frame = _Frame(world, client, shards, _asked(world, words, options), {})
+    if isinstance(scene, World):
+        world, asked = scene, [*scene._all(options), *(words or [])]
+    else:
+        world = load(scene, words=words)
+        asked = world._all(options)
+    frame = _Frame(world, client, shards, asked, {})
     shown = watch(progress)
     try:
         for done, _ in enumerate(as_completed(frame.futures), 1):  # type: ignore[no-untyped-call, unused-ignore]
@@ -138,7 +138,7 @@ def frames(
     try:
         for scene in scenes:
             world = scene if isinstance(scene, World) else load(scene)
-            waiting.append(_Frame(world, client, shards, _asked(world, None, options), sent))
+            waiting.append(_Frame(world, client, shards, world._all(options), sent))
             if len(waiting) >= ahead:
                 yield waiting.popleft().pictures()
         while waiting:

@@ -13,6 +13,7 @@ from typing import Any, Optional
 import numpy as np
 import numpy.typing as npt
 
+from ._arrays import Floats
 from .rays import Mesh
 
 _Ints = npt.NDArray[np.int64]
@@ -38,14 +39,17 @@ class RayMeshIntersector:
             self._known = (now, Mesh(vertices - middle, np.asarray(self.mesh.faces)), middle)
         return self._known[1:]
 
-    def _rays(self, origins: npt.ArrayLike, directions: npt.ArrayLike) -> tuple[Mesh, _Doubles, _Doubles, _Doubles]:
+    def _rays(self, origins: npt.ArrayLike, directions: npt.ArrayLike) -> tuple[Mesh, Floats, Floats]:
         tree, middle = self._tree()
-        starts, ways = np.array(origins, np.float64), np.array(directions, np.float64)
+        starts, ways = np.asarray(origins, np.float64), np.asarray(directions, np.float64)
         if starts.shape != ways.shape:
             raise ValueError(f"ray origins and directions must have one shape, but have {starts.shape} and {ways.shape}")
-        length = np.linalg.norm(ways, axis=-1, keepdims=True)
-        ways = np.divide(ways, length, out=np.zeros_like(ways), where=length > 0)
-        return tree, starts - middle, ways, middle
+        square = np.einsum("...i,...i->...", ways, ways)
+        # Directions that single precision would take for none, or for endless.
+        if bool(((square < 1e-30) | (square > 1e30)).any()):
+            largest = np.abs(ways).max(-1, keepdims=True)
+            ways = np.divide(ways, largest, out=np.zeros_like(ways), where=largest > 0)
+        return tree, (starts - middle).astype(np.float32), ways.astype(np.float32)
 
     def intersects_location(
         self, ray_origins: npt.ArrayLike, ray_directions: npt.ArrayLike, multiple_hits: bool = True
@@ -63,7 +67,7 @@ class RayMeshIntersector:
         return_locations: bool = False,
     ) -> Any:
         """Triangles of hits, the ray of each, and, if wanted, their places: first hits alone, or of each ray `max_hits` at most."""
-        tree, origins, ways, middle = self._rays(ray_origins, ray_directions)
+        tree, origins, ways = self._rays(ray_origins, ray_directions)
         if multiple_hits:
             hits = tree.all_hits(origins, ways)
             number = np.arange(len(hits)) - np.repeat(hits.offsets[:-1], hits.count.reshape(-1))
@@ -82,12 +86,12 @@ class RayMeshIntersector:
 
     def intersects_first(self, ray_origins: npt.ArrayLike, ray_directions: npt.ArrayLike) -> _Ints:
         """The first triangle of each ray, -1 where there is none."""
-        tree, origins, ways, _ = self._rays(ray_origins, ray_directions)
+        tree, origins, ways = self._rays(ray_origins, ray_directions)
         return tree.closest(origins, ways).triangle.astype(np.int64)
 
     def intersects_any(self, ray_origins: npt.ArrayLike, ray_directions: npt.ArrayLike) -> npt.NDArray[np.bool_]:
         """Whether each ray meets anything."""
-        tree, origins, ways, _ = self._rays(ray_origins, ray_directions)
+        tree, origins, ways = self._rays(ray_origins, ray_directions)
         return tree.occluded(origins, ways)
 
     def contains_points(self, points: npt.ArrayLike) -> npt.NDArray[np.bool_]:

@@ -9,7 +9,7 @@ import os
 import time
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, AsyncIterator, Callable, Iterable, Mapping, Optional, TypeAlias, Union
+from typing import Any, AsyncIterator, Callable, Iterable, Mapping, Optional, Sequence, TypeAlias, Union
 
 import numpy as np
 import numpy.typing as npt
@@ -27,12 +27,12 @@ PathLike: TypeAlias = Union[str, "os.PathLike[str]"]
 #: Options of the command that say where things are written, which here the caller does.
 _SHELL = {
     "output", "pixel", "sample", "hash", "quiet", "resume", "restart", "checkpoint", "checkpoint-every", "no-checkpoint",
-    "preview", "transfer", "zoom", "help", "version",
+    "preview", "transfer", "zoom", "help", "version", "watch", "stats", "denoise", "frames", "fps", "turntable",
 }  # fmt: skip
 #: Those that say how a scene is read, and how a model becomes one.
 _READING = {
     "dialect", "compat", "strict", "allow-outside", "assets", "memory", "accel", "grid",
-    "up", "view", "studio", "environment", "view-file", "camera", "fit", "at",
+    "up", "view", "studio", "environment", "view-file", "camera", "fit", "at", "variant", "turned",
 }  # fmt: skip
 #: Kinds of picture whose three channels are one number.
 _SINGLE = {"depth", "object", "material", "sample-count", "variance", "cost"}
@@ -256,18 +256,26 @@ class World:
         given = [(f"mesh{i}.ply", ply(mesh)) for i, mesh in enumerate(writer.meshes)]
         self._load(Path(folder) / "scene.txt", ("\n".join(parts) + "\n").encode(), given, {"dialect": "durer", **reading})
 
-    def _load(self, path: Path, text: Optional[bytes], given: list[tuple[str, bytes]], reading: Mapping[str, Any]) -> None:
-        self.path, self._text, self._given, self._reading = path, text, given, _words(reading, True)
+    def _load(
+        self,
+        path: Path,
+        text: Optional[bytes],
+        given: list[tuple[str, bytes]],
+        reading: Mapping[str, Any],
+        words: Optional[Sequence[str]] = None,
+    ) -> None:
+        self.path, self._text, self._given, self._reading = path, text, given, [*_words(reading, True), *(words or [])]
         self._world = _durer.World(path, text, given, self._reading)
 
     @classmethod
-    def load(cls, path: PathLike, **reading: Any) -> World:
+    def load(cls, path: PathLike, *, words: Optional[Sequence[str]] = None, **reading: Any) -> World:
         """Reads any scene that the command reads; options are those of `durer render` about reading: dialect, compat, strict,
         allow_outside, assets, memory, and of models up, view, studio, environment, view_file, camera, fit, at. What a model's own
-        picture shows depends on its `size`, which is given here then, and is that of `render` too. Raises SceneError with file, line and
-        column."""
+        picture shows depends on its `size`, which is given here then, and is that of `render` too. `words` are options as they stand
+        after `durer render SCENE`, those of renders among them, which hold for all that is made of the world. Raises SceneError with
+        file, line and column."""
         world = cls.__new__(cls)
-        world._load(Path(path), None, [], reading)
+        world._load(Path(path), None, [], reading, words)
         return world
 
     @classmethod
@@ -444,9 +452,9 @@ class World:
         return f"<World {self.path.name}, dialect {self.dialect}>"
 
 
-def load(path: PathLike, **reading: Any) -> World:
+def load(path: PathLike, *, words: Optional[Sequence[str]] = None, **reading: Any) -> World:
     """Reads any scene that the command reads: see `World.load`."""
-    return World.load(path, **reading)
+    return World.load(path, words=words, **reading)
 
 
 def check(path: PathLike, **options: Any) -> list[dict[str, Any]]:

@@ -1,0 +1,190 @@
+//! `--frames` and `--turntable`: the pictures of an animation, each into a file of its own.
+
+use crate::args::RenderCommand;
+use crate::render::{self, Watched};
+use crate::{Failure, bad};
+use clap::Args;
+use std::path::{Path, PathBuf};
+
+/// Which pictures of an animation are made, and what moves in them
+#[derive(Args, Clone)]
+#[command(next_help_heading = "Animation")]
+pub struct FramesArgs {
+    /// Frames of an animation, picture.0007.png and so on: 7, 1-100, or 0-90:10 for each tenth. The number takes the place of %d,
+    /// or %04d, in SCENE, PICTURE, --camera and --view-file; where none of these but PICTURE has it, the frame is a moment of
+    /// the model's animation
+    #[arg(long, value_name = "FRAMES")]
+    pub frames: Option<Frames>,
+    /// Frames in a second of the model's animation
+    #[arg(long, value_name = "NUMBER", default_value_t = 24.0, requires = "frames", value_parser = rate)]
+    pub fps: f64,
+    /// Go around the model once in so many frames; without --frames, all of these
+    #[arg(long, value_name = "NUMBER", value_parser = clap::value_parser!(u16).range(1..=9999))]
+    pub turntable: Option<u16>,
+}
+
+/// Numbers from the first to the last, in steps.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Frames {
+    pub first: u32,
+    pub last: u32,
+    pub step: u32,
+}
+
+impl std::str::FromStr for Frames {
+    type Err = &'static str;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        let number = |text: &str| text.parse().ok().filter(|&number| number <= MOST).ok_or(WANTED);
+        let (range, step) = text.split_once(':').map_or((text, Ok(1)), |(range, step)| (range, number(step)));
+        let (first, last) = range.split_once('-').unwrap_or((range, range));
+        let frames = Frames { first: number(first)?, last: number(last)?, step: step? };
+        if frames.step == 0 || frames.last < frames.first { Err(WANTED) } else { Ok(frames) }
+    }
+}
+
+const MOST: u32 = 9_999_999;
+const WANTED: &str = "expected frames as 7, 1-100 or 0-90:10, of numbers from 0 to 9999999 that go up";
+
+impl Frames {
+    pub fn numbers(self) -> impl Iterator<Item = u32> {
+        (self.first..=self.last).step_by(self.step as usize)
+    }
+
+    pub fn count(self) -> u32 {
+        (self.last - self.first) / self.step + 1
+    }
+}
+
+/// Frames a second: a number above 0.
+fn rate(text: &str) -> Result<f64, String> {
+    let rate = text.parse().ok().filter(|&rate: &f64| rate.is_finite() && rate > 0.0);
+    rate.ok_or("expected a number above 0".into())
+}
+
+/// What moves from frame to frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Moves {
+    /// The way around the model, of so many frames.
+    Turntable(u16),
+    /// Numbers in the place of `%d`.
+    Names,
+    /// The model's animation, of so many frames a second.
+    Time(f64),
+}
+
+impl FramesArgs {
+    /// Whether there is to be more than one picture.
+    pub fn is_asked(&self) -> bool {
+        self.frames.is_some() || self.turntable.is_some()
+    }
+
+    /// The frames that are asked for, if any, and what moves. `names` are those that may have a place for a number.
+    ///
+    /// # Errors
+    /// Nothing would move.
+    pub fn asked(&self, scene: &Path, names: &[&str]) -> Result<Option<(Frames, Moves)>, Failure> {
+        let all = |count: u16| Frames { first: 0, last: u32::from(count) - 1, step: 1 };
+        let Some(frames) = self.frames.or(self.turntable.map(all)) else { return Ok(None) };
+        let extension = scene.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+        let moves = match self.turntable {
+            Some(count) => Moves::Turntable(count),
+            None if names.iter().any(|name| place(name).is_some()) => Moves::Names,
+            None if ["gltf", "glb"].contains(&extension.as_str()) => Moves::Time(self.fps),
+            None => {
+                return Err(bad(
+                    "--frames: nothing would move. Put %d into the name of the scene, --camera or --view-file, \
+                                give --turntable, or render a glTF file, whose animation moves",
+                ));
+            }
+        };
+        Ok(Some((frames, moves)))
+    }
+}
+
+/// Where a name has `%d` or `%04d`: from, to, and how many digits.
+fn place(name: &str) -> Option<(usize, usize, usize)> {
+    name.match_indices('%').find_map(|(from, _)| {
+        let digits: String = name[from + 1..].chars().take_while(char::is_ascii_digit).collect();
+        let to = from + 1 + digits.len();
+        let known = digits.is_empty() || (digits.starts_with('0') && digits.len() <= 2);
+        (known && name[to..].starts_with('d')).then(|| (from, to + 1, digits.parse().unwrap_or(0)))
+    })
+}
+
+/// A name with a frame's number in all its places.
+pub fn numbered(name: &str, frame: u32) -> String {
+    match place(name) {
+        Some((from, to, digits)) => format!("{}{frame:0digits$}{}", &name[..from], numbered(&name[to..], frame)),
+        None => name.into(),
+    }
+}
+
+/// The pattern of the files of all frames: `picture.png` becomes `picture.%04d.png`.
+pub fn pattern(path: &str) -> String {
+    if place(path).is_some() {
+        return path.into();
+    }
+    let extension = Path::new(path).extension().unwrap_or_default().to_string_lossy();
+    Path::new(path).with_extension(format!("%04d.{extension}")).to_string_lossy().into_owned()
+}
+
+/// Renders the frames one after the other.
+pub fn run(command: &mut RenderCommand, frames: Frames, moves: Moves) -> Result<(), Failure> {
+    let args = &command.render;
+    if args.work.checkpoint.is_some() || args.work.preview.is_some() || args.watch || command.pixel.is_some() {
+        return Err(bad("many pictures are made: --checkpoint, --preview, --watch and --pixel are about one"));
+    }
+    let staging = &args.reading.staging;
+    let own = staging.camera.is_some() || staging.view_file.is_some() || staging.turned.is_some();
+    if matches!(moves, Moves::Turntable(_)) && own {
+        return Err(bad("--turntable goes around the model: --camera, --view-file and --turned say whence it is seen"));
+    }
+    if matches!(moves, Moves::Time(_)) && staging.at.is_some() {
+        return Err(bad("--frames are moments of the animation: --at is one"));
+    }
+    let utf8 = |path: &Path| path.to_str().map(String::from).ok_or_else(|| bad(format!("{path:?} is not UTF-8")));
+    let (scene, output) = (utf8(&args.scene)?, pattern(&utf8(&render::output_of(args))?));
+    let (camera, view_file) = (staging.camera.clone(), staging.view_file.as_deref().map(utf8).transpose()?);
+    for frame in frames.numbers() {
+        let args = &mut command.render;
+        (args.scene, args.output) = (numbered(&scene, frame).into(), Some(numbered(&output, frame).into()));
+        let staging = &mut args.reading.staging;
+        staging.camera = camera.as_deref().map(|name| numbered(name, frame));
+        staging.view_file = view_file.as_deref().map(|name| PathBuf::from(numbered(name, frame)));
+        match moves {
+            Moves::Turntable(count) => staging.turned = Some((360.0 * f64::from(frame) / f64::from(count)) as f32),
+            Moves::Time(rate) => staging.at = Some((f64::from(frame) / rate) as f32),
+            Moves::Names => {}
+        }
+        render::once(command, &Watched::default())?;
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn frames_are_read() {
+        let read = |text: &str| text.parse::<Frames>().map(|frames| frames.numbers().collect::<Vec<_>>());
+        assert_eq!(read("7"), Ok(vec![7]));
+        assert_eq!(read("1-4"), Ok(vec![1, 2, 3, 4]));
+        assert_eq!(read("0-90:40"), Ok(vec![0, 40, 80]));
+        assert_eq!("0-90:40".parse::<Frames>().unwrap().count(), 3);
+        for wrong in ["", "-3", "4-1", "1-4:0", "1-", "1-4:", "a", "1,2", "1-4-5", "10000000", "99999999999"] {
+            assert_eq!(read(wrong), Err(WANTED), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn numbers_take_their_places() {
+        assert_eq!(numbered("a.%04d.txt", 7), "a.0007.txt");
+        assert_eq!(numbered("%d/%03d", 12345), "12345/12345");
+        assert_eq!(numbered("100%.txt", 1), "100%.txt");
+        assert_eq!(numbered("%4d %x é%d", 2), "%4d %x é2");
+        assert_eq!(pattern("out/a.png"), "out/a.%04d.png");
+        assert_eq!(pattern("out/%d.png"), "out/%d.png");
+    }
+}
