@@ -1,5 +1,6 @@
 //! Commands for those who build Dürer.
 
+mod additions;
 mod bench_files;
 mod bench_pictures;
 mod bench_rays;
@@ -54,6 +55,9 @@ const USAGE: &str = "Commands:
       The same scenes by us and by POV-Ray 3.7 (Debian's `povray`), in turns: time, memory, and whether both show the same.
   cargo xtask bench-files [--triangles 8] [--runs 3]
       How fast meshes are read beside tobj, ply-rs-bw and gltf, on the same files: so many million triangles, in text a tenth.
+  cargo xtask additions [--only TEXT]
+      Add a new primitive, camera, light, material, lobe, integrator, format of scenes, meshes and pictures, and a kind of picture
+      to a copy of the sources, build it, and use them: how many lists does each stand in?
   cargo xtask long [--only TEXT] [--times N]
       Tests of the suite with many more numbers: rays against a reference in double precision, rays at edges, rays that
       leave surfaces, bits of all SIMD levels.
@@ -89,6 +93,7 @@ fn main() -> anyhow::Result<ExitCode> {
             println!("{USAGE}");
             Ok(ExitCode::SUCCESS)
         }
+        Some("additions") => additions::run(&arguments[1..]),
         Some("bench-files") => bench_files::run(&arguments[1..]),
         Some("bench-pictures") => bench_pictures::run(&arguments[1..]),
         Some("course") => course::run(&arguments[1..]),

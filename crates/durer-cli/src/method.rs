@@ -12,7 +12,7 @@ use durer::spectrum::ColorMode;
 pub struct MethodArgs {
     /// What computes the light: whitted (local light, mirrors, glass), path (all light), photons (all light, with what
     /// mirrors and glass throw on things by photons: caustics) or ao (how much of the sky is free) [default: path for scenes with principled materials or an environment, else whitted]
-    #[arg(long, value_name = "METHOD", value_parser = PossibleValuesParser::new(Method::NAMES))]
+    #[arg(long, value_name = "METHOD", value_parser = PossibleValuesParser::new(Method::NAMES.iter()))]
     pub integrator: Option<String>,
     /// With path and photons: light that was scattered more than once is not brighter than this in a sample; takes away bright
     /// specks, and light with them [default: no limit]

@@ -289,9 +289,13 @@ macro_rules! described {
 }
 
 /// A closed list of described things: an `enum` with one variant each, which delegates to it.
+///
+/// After `=>` stands a macro that takes the variants' names, and makes what else the enum delegates.
 #[macro_export]
 macro_rules! described_list {
-    ($(#[doc = $doc:literal])+ $name:ident { $($variant:ident($type:ty),)+ }) => {
+    ($(#[doc = $doc:literal])+ $name:ident => $delegate:ident { $($variant:ident($type:ty),)+ }) => {
+        $delegate!($($variant),+);
+
         $(#[doc = $doc])+
         #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
         pub enum $name { $(#[doc = concat!("A `", stringify!($variant), "`.")] $variant($type),)+ }

@@ -1,6 +1,6 @@
 //! What a scene looks like in lines, to be drawn in space.
 
-use durer::light::Light;
+use durer::light::{Emitter, Light};
 use durer::math::{Aabb, Vec3};
 use durer::shape::Primitive;
 use durer::world::{Geometry, Object, World};
@@ -23,14 +23,11 @@ pub fn outlines(world: &World) -> Vec<Vec<Vec3>> {
 pub fn lights(world: &World) -> Vec<Value> {
     let bounds = world.bounds().union(Aabb::around([world.frame.eye]));
     let reach = 0.6 * bounds.size().length();
-    let one = |(i, light): (usize, &Light)| match light {
-        Light::Point(light) => json!({ "at": light.position, "name": format!("light {i}") }),
-        Light::Photometric(light) => json!({ "at": light.position, "name": format!("light {i}") }),
-        Light::Spot(light) => json!({ "at": light.position, "name": format!("light {i}") }),
-        Light::Directional(light) => {
-            let at = bounds.center() - reach * light.direction.normalize_or_zero();
-            json!({ "at": at, "name": format!("from light {i}") })
-        }
+    let one = |(i, light): (usize, &Light)| {
+        let seen = light.illuminate(bounds.center().as_dvec3());
+        let far = seen.distance.is_infinite();
+        let at = bounds.center() + if far { reach } else { seen.distance } * seen.to_light;
+        json!({ "at": at, "name": format!("{} {i}", if far { "from light" } else { "light" }) })
     };
     world.lights.iter().enumerate().take(16).map(one).collect()
 }

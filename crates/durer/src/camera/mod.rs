@@ -36,9 +36,40 @@ pub use pose::{Frame, Pose};
 pub use raster::Raster;
 pub use thin_lens::ThinLensCamera;
 
+macro_rules! delegate {
+    ($($variant:ident),+) => {
+        impl Lens for Camera {
+            fn pose(&self) -> Pose {
+                match self { $(Camera::$variant(c) => c.pose(),)+ }
+            }
+            fn proportions(&self) -> Option<Vec2> {
+                match self { $(Camera::$variant(c) => c.proportions(),)+ }
+            }
+            fn half_width(&self) -> f64 {
+                match self { $(Camera::$variant(c) => c.half_width(),)+ }
+            }
+            fn has_aperture(&self) -> bool {
+                match self { $(Camera::$variant(c) => c.has_aperture(),)+ }
+            }
+            fn problem(&self) -> Option<String> {
+                match self { $(Camera::$variant(c) => c.problem(),)+ }
+            }
+            fn ray(&self, frame: &Frame, sample: &CameraSample) -> Option<Ray> {
+                match self { $(Camera::$variant(c) => c.ray(frame, sample),)+ }
+            }
+            fn project(&self, frame: &Frame, world: Vec3, lens: Vec2, found: &mut dyn FnMut(Vec2)) {
+                match self { $(Camera::$variant(c) => c.project(frame, world, lens, found),)+ }
+            }
+            fn footprint(&self, frame: &Frame, sample: &CameraSample, t: f32) -> f32 {
+                match self { $(Camera::$variant(c) => c.footprint(frame, sample, t),)+ }
+            }
+        }
+    };
+}
+
 described_list! {
     /// A camera.
-    Camera {
+    Camera => delegate {
         Perspective(perspective::PerspectiveCamera),
         Orthographic(orthographic::OrthographicCamera),
         Pinhole(pinhole::PinholeCamera),
@@ -118,63 +149,6 @@ pub trait Lens {
     /// one eye it is t² times the solid angle per area of the picture; where they are parallel it is constant. Undefined
     /// where there is no ray.
     fn footprint(&self, frame: &Frame, sample: &CameraSample, t: f32) -> f32;
-}
-
-/// Calls a method of whichever camera it is.
-macro_rules! each_camera {
-    ($self:ident, $c:ident => $call:expr) => {
-        match $self {
-            Camera::Perspective($c) => $call,
-            Camera::Orthographic($c) => $call,
-            Camera::Pinhole($c) => $call,
-            Camera::ThinLens($c) => $call,
-            Camera::Stereo($c) => $call,
-            Camera::Fisheye($c) => $call,
-            Camera::Omnimax($c) => $call,
-            Camera::Parabolic($c) => $call,
-            Camera::Equirectangular($c) => $call,
-            Camera::Cylindrical($c) => $call,
-            Camera::CubeMap($c) => $call,
-            Camera::Cave($c) => $call,
-            Camera::PushBroom($c) => $call,
-            Camera::MultipleCenter($c) => $call,
-            Camera::Projective($c) => $call,
-        }
-    };
-}
-
-impl Lens for Camera {
-    fn pose(&self) -> Pose {
-        each_camera!(self, c => c.pose())
-    }
-
-    fn proportions(&self) -> Option<Vec2> {
-        each_camera!(self, c => c.proportions())
-    }
-
-    fn half_width(&self) -> f64 {
-        each_camera!(self, c => c.half_width())
-    }
-
-    fn has_aperture(&self) -> bool {
-        each_camera!(self, c => c.has_aperture())
-    }
-
-    fn problem(&self) -> Option<String> {
-        each_camera!(self, c => c.problem())
-    }
-
-    fn ray(&self, frame: &Frame, sample: &CameraSample) -> Option<Ray> {
-        each_camera!(self, c => c.ray(frame, sample))
-    }
-
-    fn project(&self, frame: &Frame, world: Vec3, lens: Vec2, found: &mut dyn FnMut(Vec2)) {
-        each_camera!(self, c => c.project(frame, world, lens, found));
-    }
-
-    fn footprint(&self, frame: &Frame, sample: &CameraSample, t: f32) -> f32 {
-        each_camera!(self, c => c.footprint(frame, sample, t))
-    }
 }
 
 #[cfg(test)]

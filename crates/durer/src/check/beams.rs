@@ -51,7 +51,7 @@ pub(super) fn aim(scout: &Scout, light: usize) -> Option<Aim> {
     let angle = match &scout.world().lights[light] {
         Light::Spot(spot) => spot.angle,
         Light::Photometric(_) => 90.0,
-        Light::Directional(_) | Light::Point(_) => return None,
+        _ => return None,
     };
     let places = places(scout);
     let held = within(scout, light, &places);

@@ -312,16 +312,12 @@ pub(super) fn blocked(scout: &Scout) -> Vec<Finding> {
         let message = format!("the {name} keeps this light off all that is seen");
         let (diagnostic, _) = useless(scout, light, message)?;
         let help = match (scout.world().objects[object as usize].bounds(), &scout.world().lights[light]) {
-            (None, Light::Point(_) | Light::Spot(_) | Light::Photometric(_)) => {
-                "the light is behind the plane: move it to the other side"
-            }
             (None, Light::Directional(_)) => {
                 "the light comes from behind the plane: turn its `direction`, which is where light goes"
             }
+            (None, _) => "the light is behind the plane: move it to the other side",
             (Some(_), Light::Directional(_)) => "turn the light, or move what is in its way",
-            (Some(_), Light::Point(_) | Light::Spot(_) | Light::Photometric(_)) => {
-                "move the light, or what is in its way"
-            }
+            (Some(_), _) => "move the light, or what is in its way",
         };
         Some(diagnostic.related(scout.object_span(object), "in the way").help(help))
     })
@@ -489,7 +485,7 @@ pub(super) fn behind(scout: &Scout) -> Vec<Finding> {
                 let fixed = diagnostic.fix_at(scout.value(span, &["direction"]), turned);
                 scout.at_value(fixed, span, &["direction"]).help(help)
             }
-            Light::Point(_) | Light::Spot(_) | Light::Photometric(_) => {
+            _ => {
                 let eye = scout.world().camera.pose().center;
                 let help = format!("move it to the camera's side: the camera is at {}", vector(eye));
                 scout.at_value(diagnostic, span, &["position"]).help(help)

@@ -101,7 +101,7 @@ pub fn compile(
     lights.extend(sun(&scene.background));
     let mut measured = |light: &mut Light| {
         let curve = light.spectrum().and_then(|name| loader.illuminant(name, &mut own))?;
-        light.tint(curve.color());
+        light.recolor(|color| color * curve.color());
         Some(curve)
     };
     let illuminants = lights.iter_mut().map(&mut measured).collect();

@@ -155,7 +155,7 @@ pub fn fill_from_last_hit(pixels: &mut [Color], hits: &[bool], width: usize) {
 }
 
 /// All kinds of picture beside colour.
-pub static AOVS: [Aov; 14] = [
+pub static AOVS: &[Aov] = &[
     Aov {
         name: "depth",
         doc: "t of the first hit: the distance, for cameras; infinite where nothing is hit",

@@ -53,35 +53,7 @@ pub struct MeshFormat {
 }
 
 /// The formats of mesh files, in the order in which they are tried on a file of unknown ending.
-pub const MESH_FORMATS: &[MeshFormat] = &[
-    MeshFormat {
-        name: "PLY",
-        extensions: &["ply"],
-        recognise: ply::recognise,
-        read: ply::read,
-        known: as_it_is,
-        write: ply::write,
-        up: Axis::Y,
-    },
-    MeshFormat {
-        name: "Wavefront OBJ",
-        extensions: &["obj"],
-        recognise: obj::recognise,
-        read: obj::read,
-        known: obj::habits::known,
-        write: obj::write,
-        up: Axis::Y,
-    },
-    MeshFormat {
-        name: "STL",
-        extensions: &["stl"],
-        recognise: stl::recognise,
-        read: stl::read,
-        known: as_it_is,
-        write: stl::write,
-        up: Axis::Z,
-    },
-];
+pub const MESH_FORMATS: &[MeshFormat] = &[ply::FORMAT, obj::FORMAT, stl::FORMAT];
 
 /// No old program read the format.
 fn as_it_is(bytes: &[u8], _: CompatSet) -> Cow<'_, [u8]> {

@@ -10,15 +10,17 @@ pub(super) mod scene;
 mod words;
 mod write;
 
+use super::MeshFormat;
 use super::number::{NumberError, parse_f32, report_number};
 use super::report::{Report, counted, shown};
 use crate::diag::{Diagnostics, did_you_mean};
 use crate::math::{Vec2, Vec3};
+use crate::scene::Axis;
 use crate::shape::mesh::MeshData;
 use rayon::prelude::*;
 use std::ops::Range;
 use words::Words;
-pub(super) use write::write;
+use write::write;
 
 /// What a statement is to us, by its first word.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -71,14 +73,25 @@ fn statement(word: &[u8]) -> Option<Statement> {
     }
 }
 
+/// The format of meshes.
+pub(super) const FORMAT: MeshFormat = MeshFormat {
+    name: "Wavefront OBJ",
+    extensions: &["obj"],
+    recognise,
+    read,
+    known: habits::known,
+    write,
+    up: Axis::Y,
+};
+
 /// Whether the first statement is one of this format, and not merely a word that could be anything.
-pub(super) fn recognise(bytes: &[u8]) -> bool {
+fn recognise(bytes: &[u8]) -> bool {
     let head = &bytes[..bytes.len().min(1 << 16)];
     Words::new(head).next_statement().is_some_and(|word| statement(&head[word]).is_some())
 }
 
 /// Reads a file; see [`read_mesh`](super::read_mesh).
-pub(super) fn read(bytes: &[u8], file: u32, diagnostics: &mut Diagnostics) -> Option<MeshData> {
+fn read(bytes: &[u8], file: u32, diagnostics: &mut Diagnostics) -> Option<MeshData> {
     read_with(bytes, file, &mut Vec::new(), diagnostics)
 }
 

@@ -8,20 +8,26 @@ mod values;
 mod write;
 
 use super::report::Report;
+use super::{MeshFormat, as_it_is};
 use crate::diag::Diagnostics;
+use crate::scene::Axis;
 use crate::shape::mesh::MeshData;
 use body::Body;
 use header::{Encoding, read_header};
 use values::{AsciiValues, BinaryValues};
-pub(super) use write::write;
+use write::write;
+
+/// The format of meshes.
+pub(super) const FORMAT: MeshFormat =
+    MeshFormat { name: "PLY", extensions: &["ply"], recognise, read, known: as_it_is, write, up: Axis::Y };
 
 /// Whether a file begins as files of this format do.
-pub(super) fn recognise(bytes: &[u8]) -> bool {
+fn recognise(bytes: &[u8]) -> bool {
     matches!(bytes, [b'p', b'l', b'y', b'\n' | b'\r', ..])
 }
 
 /// Reads a file; see [`read_mesh`](super::read_mesh).
-pub(super) fn read(bytes: &[u8], file: u32, diagnostics: &mut Diagnostics) -> Option<MeshData> {
+fn read(bytes: &[u8], file: u32, diagnostics: &mut Diagnostics) -> Option<MeshData> {
     let mut report = Report::new(file, diagnostics);
     let mesh = read_reporting(bytes, &mut report).unwrap_or_default();
     if mesh.triangles.is_empty() && !report.has_errors() {

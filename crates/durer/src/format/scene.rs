@@ -1,6 +1,6 @@
 //! Readers of whole scenes: one row of [`SCENE_FORMATS`] each. What is a mesh alone is a scene of one mesh.
 
-use super::{MESH_FORMATS, extension, gltf, mitsuba, obj, panorama, pbrt, radiance, read_mesh, threemf};
+use super::{MeshFormat, extension, gltf, mitsuba, obj, panorama, pbrt, ply, radiance, read_mesh, stl, threemf};
 use crate::describe::FileName;
 use crate::diag::{Diagnostic, Diagnostics, Files, Span};
 use crate::dialect::MeshNormals;
@@ -50,81 +50,21 @@ pub struct Output<'a> {
 
 /// The formats of models, in the order in which content is tried. What is none of them is in the course's language.
 pub const SCENE_FORMATS: &[SceneFormat] = &[
-    SceneFormat {
-        name: "glTF",
-        extensions: &["gltf", "glb"],
-        recognise: gltf::recognise,
-        read: gltf::read,
-        write: Some(gltf::write),
-        up: Axis::Y,
-        whole: false,
-    },
-    SceneFormat {
-        name: "pbrt",
-        extensions: &["pbrt"],
-        recognise: pbrt::recognise,
-        read: pbrt::read,
-        write: None,
-        up: Axis::Y,
-        whole: true,
-    },
-    SceneFormat {
-        name: "Mitsuba",
-        extensions: &["xml"],
-        recognise: mitsuba::recognise,
-        read: mitsuba::read,
-        write: None,
-        up: Axis::Y,
-        whole: true,
-    },
-    SceneFormat {
-        name: "3MF",
-        extensions: &["3mf"],
-        recognise: threemf::recognise,
-        read: threemf::read,
-        write: None,
-        up: Axis::Z,
-        whole: false,
-    },
-    SceneFormat {
-        name: "Radiance",
-        extensions: &["rad", "rif"],
-        // Its first word could be anything: only the name tells.
-        recognise: |_| false,
-        read: radiance::read,
-        write: None,
-        up: Axis::Z,
-        whole: true,
-    },
-    SceneFormat {
-        name: MESH_FORMATS[0].name,
-        extensions: MESH_FORMATS[0].extensions,
-        recognise: MESH_FORMATS[0].recognise,
-        read: one_mesh,
-        write: None,
-        up: MESH_FORMATS[0].up,
-        whole: false,
-    },
-    SceneFormat {
-        name: MESH_FORMATS[1].name,
-        extensions: MESH_FORMATS[1].extensions,
-        // Its first word could be anything: only the name tells.
-        recognise: |_| false,
-        read: obj::scene::read,
-        write: None,
-        up: MESH_FORMATS[1].up,
-        whole: false,
-    },
-    SceneFormat {
-        name: MESH_FORMATS[2].name,
-        extensions: MESH_FORMATS[2].extensions,
-        recognise: MESH_FORMATS[2].recognise,
-        read: one_mesh,
-        write: None,
-        up: MESH_FORMATS[2].up,
-        whole: false,
-    },
+    gltf::FORMAT,
+    pbrt::FORMAT,
+    mitsuba::FORMAT,
+    threemf::FORMAT,
+    radiance::FORMAT,
+    alone(&ply::FORMAT),
+    obj::scene::FORMAT,
+    alone(&stl::FORMAT),
 ];
+
+/// A mesh that is a whole model.
+const fn alone(format: &MeshFormat) -> SceneFormat {
+    let MeshFormat { name, extensions, recognise, up, .. } = *format;
+    SceneFormat { name, extensions, recognise, read: one_mesh, write: None, up, whole: false }
+}
 
 /// Bytes that decoding a picture may take, and rows of one that is turned.
 const MEMORY: u64 = 1 << 31;

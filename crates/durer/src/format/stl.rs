@@ -7,19 +7,25 @@ mod text;
 mod write;
 
 use super::report::{Report, counted};
+use super::{MeshFormat, as_it_is};
 use crate::diag::Diagnostics;
 use crate::math::Vec3;
+use crate::scene::Axis;
 use crate::shape::mesh::{MeshData, place_key};
 use std::collections::HashMap;
-pub(super) use write::write;
+use write::write;
 
 /// Bytes before the facets of a binary file: a free text, and how many there are.
 const HEAD: usize = 84;
 /// Bytes of a facet: its normal, three corners, two bytes of anything.
 const FACET: usize = 50;
 
+/// The format of meshes.
+pub(super) const FORMAT: MeshFormat =
+    MeshFormat { name: "STL", extensions: &["stl"], recognise, read, known: as_it_is, write, up: Axis::Z };
+
 /// Whether a file begins as files of this format do.
-pub(super) fn recognise(bytes: &[u8]) -> bool {
+fn recognise(bytes: &[u8]) -> bool {
     is_text(bytes) || promised(bytes).is_some_and(|count| count > 0 && size_of_facets(count) == bytes.len() as u64)
 }
 
@@ -44,7 +50,7 @@ fn size_of_facets(count: u32) -> u64 {
 }
 
 /// Reads a file; see [`read_mesh`](super::read_mesh).
-pub(super) fn read(bytes: &[u8], file: u32, diagnostics: &mut Diagnostics) -> Option<MeshData> {
+fn read(bytes: &[u8], file: u32, diagnostics: &mut Diagnostics) -> Option<MeshData> {
     let mut report = Report::new(file, diagnostics);
     let mut mesh = Builder::default();
     match is_text(bytes) {

@@ -23,7 +23,7 @@ fn name(format: &Format) -> String {
 #[test]
 fn what_is_written_is_read_back() {
     let image = sample();
-    for format in &FORMATS {
+    for format in FORMATS {
         for (kind, transfer) in
             [LayerKind::Color, LayerKind::Data].into_iter().flat_map(|k| Transfer::ALL.map(|t| (k, t)))
         {
@@ -56,7 +56,7 @@ fn odd_sizes_and_odd_values_are_written() {
     for (width, height) in [(1, 1), (1, 6), (6, 1), (2, 3), (3, 700), (700, 3)] {
         let pixels = (0..width * height).map(|i| Vec3::splat(odd[i as usize % 6])).collect();
         let image = Image::from_pixels(width, height, pixels).unwrap();
-        for format in &FORMATS {
+        for format in FORMATS {
             let back = read(&written(format, LayerKind::Color, Transfer::Srgb, &image), &name(format)).unwrap();
             assert_eq!((back.width, back.height), (width, height), "{}", format.name);
         }
@@ -67,7 +67,7 @@ fn odd_sizes_and_odd_values_are_written() {
 fn alpha_is_written_where_a_format_has_it_and_black_elsewhere() {
     let image = Image::from_pixels(2, 1, vec![Vec3::splat(0.25), Vec3::ZERO]).unwrap();
     let layer = Layer::data("x", image).with_coverage(vec![0.5, 0.0]);
-    for format in &FORMATS {
+    for format in FORMATS {
         let mut out = Vec::new();
         format.write(std::slice::from_ref(&layer), &WriteOptions::default(), &mut out).unwrap();
         let back = read(&out, &name(format)).unwrap();
@@ -87,7 +87,7 @@ fn layers_that_do_not_fit_are_refused() {
     let options = WriteOptions::default();
     let small = Image::new(1, 1, Vec3::ZERO).unwrap();
     let broken = Image { width: 7, height: 7, pixels: Vec::new() };
-    for format in &FORMATS {
+    for format in FORMATS {
         let write = |layers: &[Layer]| format.write(layers, &options, &mut Vec::new());
         assert_eq!(write(&[]), Err(ImageError::NoLayer));
         assert_eq!(write(&[Layer::color("", broken.clone())]), Err(ImageError::Size { width: 7, height: 7 }));
@@ -100,7 +100,7 @@ fn layers_that_do_not_fit_are_refused() {
 
 #[test]
 fn no_prefix_is_a_picture() {
-    for format in &FORMATS {
+    for format in FORMATS {
         let bytes = written(format, LayerKind::Color, Transfer::Linear, &sample());
         for end in 0..bytes.len() {
             // The last bytes of a PNG, its end mark, may be missing.

@@ -23,11 +23,11 @@ use std::panic::UnwindSafe;
 use std::path::Path;
 
 /// Every format that is known, in the order in which content is tried.
-pub static FORMATS: [Format; 7] =
-    [png::FORMAT, tga::FORMAT, bmp::FORMAT, ppm::FORMAT, pfm::FORMAT, exr::FORMAT, hdr::FORMAT];
+pub static FORMATS: &[Format] =
+    &[png::FORMAT, tga::FORMAT, bmp::FORMAT, ppm::FORMAT, pfm::FORMAT, exr::FORMAT, hdr::FORMAT];
 
 /// Formats that are read and not written.
-static READ_ONLY: [Format; 2] = [jpeg::FORMAT, webp::FORMAT];
+static READ_ONLY: &[Format] = &[jpeg::FORMAT, webp::FORMAT];
 
 /// What a file holds for each channel of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -170,7 +170,7 @@ pub fn format_for(path: impl AsRef<Path>) -> Result<&'static Format, ImageError>
 
 /// The format of a file's content, or failing that, of its name.
 pub(super) fn recognise(bytes: &[u8], name: &str) -> Result<&'static Format, ImageError> {
-    let all = || FORMATS.iter().chain(&READ_ONLY);
+    let all = || FORMATS.iter().chain(READ_ONLY);
     let by_content = all().find(|format| (format.begins)(bytes));
     let by_name = || all().find(|format| format.has_extension(name));
     by_content.or_else(by_name).ok_or_else(|| ImageError::Unrecognised { name: name.into() })

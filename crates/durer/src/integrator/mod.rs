@@ -59,7 +59,7 @@ impl Method {
     pub const PATH: Method = Method::Path(Transport { clamp: None, color: ColorMode::Rgb });
 
     /// Names on the command line.
-    pub const NAMES: [&'static str; 4] = ["whitted", "path", "photons", "ao"];
+    pub const NAMES: &'static [&'static str] = &["whitted", "path", "photons", "ao"];
 
     /// Photons of a sample, where nothing else is wished.
     pub const PHOTONS: u32 = 100_000;

@@ -15,9 +15,49 @@ pub use photometric::{PhotometricLight, Profile};
 pub use point::PointLight;
 pub use spot::{Fade, SpotLight};
 
+macro_rules! delegate {
+    ($($variant:ident),+) => {
+        impl Emitter for Light {
+            fn illuminate(&self, point: DVec3) -> Illumination {
+                match self { $(Light::$variant(l) => l.illuminate(point),)+ }
+            }
+            fn resolved(&self, rules: &Rules) -> Self {
+                match self { $(Light::$variant(l) => l.resolved(rules).into(),)+ }
+            }
+            fn color(&self) -> Color {
+                match self { $(Light::$variant(l) => l.color,)+ }
+            }
+            fn spread(&self) -> f32 {
+                match self { $(Light::$variant(l) => l.spread(),)+ }
+            }
+            fn profile(&self) -> Option<&FileName> {
+                match self { $(Light::$variant(l) => l.profile(),)+ }
+            }
+            fn in_profile(&self, dir: Vec3) -> Vec3 {
+                match self { $(Light::$variant(l) => l.in_profile(dir),)+ }
+            }
+            fn place(&self) -> Option<(Vec3, Color)> {
+                match self { $(Light::$variant(l) => l.place(),)+ }
+            }
+        }
+
+        impl Light {
+            /// Changes its colour.
+            pub fn recolor(&mut self, change: impl Fn(Color) -> Color) {
+                match self { $(Light::$variant(l) => l.color = change(l.color),)+ }
+            }
+
+            /// Its spectrum, if that was measured.
+            pub fn spectrum(&self) -> Option<&FileName> {
+                match self { $(Light::$variant(l) => l.spectrum.as_ref(),)+ }
+            }
+        }
+    };
+}
+
 described_list! {
     /// A light.
-    Light {
+    Light => delegate {
         Directional(directional::DirectionalLight),
         Point(point::PointLight),
         Spot(spot::SpotLight),
@@ -68,47 +108,6 @@ pub trait Emitter {
         dir
     }
 }
-
-macro_rules! delegate {
-    ($($variant:ident),+) => {
-        impl Emitter for Light {
-            fn illuminate(&self, point: DVec3) -> Illumination {
-                match self { $(Light::$variant(l) => l.illuminate(point),)+ }
-            }
-            fn resolved(&self, rules: &Rules) -> Self {
-                match self { $(Light::$variant(l) => l.resolved(rules).into(),)+ }
-            }
-            fn color(&self) -> Color {
-                match self { $(Light::$variant(l) => l.color,)+ }
-            }
-            fn spread(&self) -> f32 {
-                match self { $(Light::$variant(l) => l.spread(),)+ }
-            }
-            fn profile(&self) -> Option<&FileName> {
-                match self { $(Light::$variant(l) => l.profile(),)+ }
-            }
-            fn in_profile(&self, dir: Vec3) -> Vec3 {
-                match self { $(Light::$variant(l) => l.in_profile(dir),)+ }
-            }
-            fn place(&self) -> Option<(Vec3, Color)> {
-                match self { $(Light::$variant(l) => l.place(),)+ }
-            }
-        }
-
-        impl Light {
-            /// Multiplies its colour.
-            pub fn tint(&mut self, by: Color) {
-                match self { $(Light::$variant(l) => l.color *= by,)+ }
-            }
-
-            /// Its spectrum, if that was measured.
-            pub fn spectrum(&self) -> Option<&FileName> {
-                match self { $(Light::$variant(l) => l.spectrum.as_ref(),)+ }
-            }
-        }
-    };
-}
-delegate!(Directional, Point, Spot, Photometric);
 
 #[cfg(test)]
 mod tests;

@@ -18,9 +18,22 @@ pub use parameters::Parameters;
 pub use phong::{ColorNoise, PhongMaterial};
 pub use principled::PrincipledMaterial;
 
+macro_rules! delegate {
+    ($($variant:ident),+) => {
+        impl Pattern for Solid {
+            fn weight(&self, q: Vec3) -> f32 {
+                match self { $(Solid::$variant(s) => s.weight(q),)+ }
+            }
+            fn materials(&self) -> [u32; 2] {
+                match self { $(Solid::$variant(s) => s.materials(),)+ }
+            }
+        }
+    };
+}
+
 described_list! {
     /// A material made of two earlier ones, mixed by a pattern in space.
-    Solid {
+    Solid => delegate {
         Checkerboard(checkerboard::Checkerboard),
         Noise(solid_noise::SolidNoise),
         Marble(marble::Marble),
@@ -37,20 +50,6 @@ pub trait Pattern {
     /// Numbers of the two materials.
     fn materials(&self) -> [u32; 2];
 }
-
-macro_rules! delegate {
-    ($($variant:ident),+) => {
-        impl Pattern for Solid {
-            fn weight(&self, q: Vec3) -> f32 {
-                match self { $(Solid::$variant(s) => s.weight(q),)+ }
-            }
-            fn materials(&self) -> [u32; 2] {
-                match self { $(Solid::$variant(s) => s.materials(),)+ }
-            }
-        }
-    };
-}
-delegate!(Checkerboard, Noise, Marble, Wood, Mix);
 
 /// The most octaves that noise may have: beyond, they are finer than numbers can tell.
 pub const MOST_OCTAVES: u32 = 32;

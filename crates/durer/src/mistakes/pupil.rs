@@ -273,7 +273,6 @@ impl<'w> Pupil<'w> {
         }
         match light {
             Light::Directional(_) if self.habits.lamps.negated => seen.to_light = -seen.to_light,
-            Light::Directional(_) | Light::Spot(_) | Light::Photometric(_) => {}
             Light::Point(point) => {
                 let d = seen.distance;
                 match self.habits.lamps.fading {
@@ -305,6 +304,7 @@ impl<'w> Pupil<'w> {
                     PointLamp::MinusPosition => seen.to_light = -point.position.normalize_or(seen.to_light),
                 }
             }
+            _ => {}
         }
         seen
     }

@@ -41,9 +41,43 @@ pub use triangle::Triangle;
 pub use uv::Uv;
 pub use voxels::VoxelGrid;
 
+macro_rules! delegate {
+    ($($variant:ident),+) => {
+        impl Shape for Primitive {
+            fn bounds(&self) -> Option<Aabb> {
+                match self { $(Primitive::$variant(s) => s.bounds(),)+ }
+            }
+            fn overlaps(&self, cell: &Aabb) -> bool {
+                match self { $(Primitive::$variant(s) => s.overlaps(cell),)+ }
+            }
+            fn intersect(&self, ray: &Ray) -> Option<Crossing> {
+                match self { $(Primitive::$variant(s) => s.intersect(ray),)+ }
+            }
+            fn crossings(&self, line: &Line, offer: &mut impl FnMut(f64, Vec2)) {
+                match self { $(Primitive::$variant(s) => s.crossings(line, offer),)+ }
+            }
+            fn surface(&self, point: DVec3, crossing: &Crossing) -> Surface {
+                match self { $(Primitive::$variant(s) => s.surface(point, crossing),)+ }
+            }
+            fn inside(&self, point: DVec3) -> Option<bool> {
+                match self { $(Primitive::$variant(s) => s.inside(point),)+ }
+            }
+            fn starts_inside(&self, line: &Line) -> bool {
+                match self { $(Primitive::$variant(s) => s.starts_inside(line),)+ }
+            }
+            fn centered(&self) -> Option<(Self, Vec3)> {
+                match self { $(Primitive::$variant(s) => s.centered().map(|(s, moved)| (s.into(), moved)),)+ }
+            }
+            fn flaw(&self) -> Option<&'static str> {
+                match self { $(Primitive::$variant(s) => s.flaw(),)+ }
+            }
+        }
+    };
+}
+
 described_list! {
     /// A shape that is given in the scene file itself.
-    Primitive {
+    Primitive => delegate {
         Sphere(sphere::Sphere),
         Plane(plane::Plane),
         Triangle(triangle::Triangle),
@@ -226,38 +260,3 @@ fn padded(min: DVec3, max: DVec3) -> Aabb {
 fn disc_reach(normal: DVec3) -> DVec3 {
     (DVec3::ONE - normal * normal).max(DVec3::ZERO).map(f64::sqrt)
 }
-
-macro_rules! delegate {
-    ($($variant:ident),+) => {
-        impl Shape for Primitive {
-            fn bounds(&self) -> Option<Aabb> {
-                match self { $(Primitive::$variant(s) => s.bounds(),)+ }
-            }
-            fn overlaps(&self, cell: &Aabb) -> bool {
-                match self { $(Primitive::$variant(s) => s.overlaps(cell),)+ }
-            }
-            fn intersect(&self, ray: &Ray) -> Option<Crossing> {
-                match self { $(Primitive::$variant(s) => s.intersect(ray),)+ }
-            }
-            fn crossings(&self, line: &Line, offer: &mut impl FnMut(f64, Vec2)) {
-                match self { $(Primitive::$variant(s) => s.crossings(line, offer),)+ }
-            }
-            fn surface(&self, point: DVec3, crossing: &Crossing) -> Surface {
-                match self { $(Primitive::$variant(s) => s.surface(point, crossing),)+ }
-            }
-            fn inside(&self, point: DVec3) -> Option<bool> {
-                match self { $(Primitive::$variant(s) => s.inside(point),)+ }
-            }
-            fn starts_inside(&self, line: &Line) -> bool {
-                match self { $(Primitive::$variant(s) => s.starts_inside(line),)+ }
-            }
-            fn centered(&self) -> Option<(Self, Vec3)> {
-                match self { $(Primitive::$variant(s) => s.centered().map(|(s, moved)| (s.into(), moved)),)+ }
-            }
-            fn flaw(&self) -> Option<&'static str> {
-                match self { $(Primitive::$variant(s) => s.flaw(),)+ }
-            }
-        }
-    };
-}
-delegate!(Sphere, Plane, Triangle, Cuboid, Cylinder, Cone, Torus, Ellipsoid, Quadric, Disc, Rectangle);

@@ -20,24 +20,23 @@ mod variants;
 mod write;
 
 use super::report::Report;
-use super::scene::Input;
+use super::scene::{Input, SceneFormat};
 use crate::diag::{Diagnostic, Diagnostics};
 use crate::material::PrincipledMaterial;
 use crate::math::Vec3;
-use crate::scene::{Material, Picture, PictureBytes, Scene, Spanned};
+use crate::scene::{Axis, Material, Picture, PictureBytes, Scene, Spanned};
 use crate::texture::Mapping;
 use accessor::Accessor;
 use buffers::{Buffer, View};
 use camera::{CameraData, LightData};
-pub(super) use container::recognise;
-use container::{Parts, open};
+use container::{Parts, open, recognise};
 use deform::Skin;
 use json::{At, Findings};
 use primitive::Primitives;
 use serde_json::Value;
 use std::cell::{Cell, RefCell};
 use std::collections::{BTreeMap, BTreeSet};
-pub(super) use write::write;
+use write::write;
 
 /// Extensions that a file may require: what is left out of them is warned of.
 const KNOWN: [&str; 24] = [
@@ -102,8 +101,19 @@ struct Model<'a> {
     said: RefCell<BTreeSet<&'static str>>,
 }
 
+/// The format of scenes.
+pub(super) const FORMAT: SceneFormat = SceneFormat {
+    name: "glTF",
+    extensions: &["gltf", "glb"],
+    recognise,
+    read,
+    write: Some(write),
+    up: Axis::Y,
+    whole: false,
+};
+
 /// Reads a file; see [`read_model`](super::scene::read_model).
-pub(super) fn read(input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
+fn read(input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
     let mut report = Report::new(input.file, diagnostics);
     let Some(parts) = open(input.bytes, input.name, &mut report) else {
         report.finish(diagnostics, ());

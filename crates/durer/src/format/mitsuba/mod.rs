@@ -21,20 +21,24 @@ mod transform;
 mod tests;
 
 use super::said::Said;
-use super::scene::Input;
+use super::scene::{Input, SceneFormat};
 use super::{too_large, xml};
 use crate::diag::{Diagnostic, Diagnostics};
-use crate::scene::Scene;
+use crate::scene::{Axis, Scene};
 use load::Loader;
 use state::Reader;
 
+/// The format of scenes.
+pub(super) const FORMAT: SceneFormat =
+    SceneFormat { name: "Mitsuba", extensions: &["xml"], recognise, read, write: None, up: Axis::Y, whole: true };
+
 /// Whether a file begins as Mitsuba's do.
-pub(super) fn recognise(bytes: &[u8]) -> bool {
+fn recognise(bytes: &[u8]) -> bool {
     xml::begins_with(bytes, &["scene"])
 }
 
 /// Reads a file; see [`read_model`](super::scene::read_model).
-pub(super) fn read(input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
+fn read(input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
     if let Some(error) = too_large(input.bytes.len() as u64, input.name) {
         diagnostics.push(Diagnostic { message: error.message.replace("mesh file", "scene"), help: None, ..error });
         return None;

@@ -7,7 +7,7 @@ use super::{Statement, Switch, read_with, statement};
 use crate::describe::FileName;
 use crate::diag::{Diagnostic, Diagnostics, Span, did_you_mean};
 use crate::format::report::shown;
-use crate::format::scene::Input;
+use crate::format::scene::{Input, SceneFormat};
 use crate::format::too_large;
 use crate::math::Aabb;
 use crate::scene::{Group, Material, Object, Scene};
@@ -17,8 +17,20 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::Arc;
 
+/// The format of scenes.
+pub(in crate::format) const FORMAT: SceneFormat = SceneFormat {
+    name: super::FORMAT.name,
+    extensions: super::FORMAT.extensions,
+    // Its first word could be anything: only the name tells.
+    recognise: |_| false,
+    read,
+    write: None,
+    up: super::FORMAT.up,
+    whole: false,
+};
+
 /// Reads a file; see [`read_model`](crate::format::scene::read_model).
-pub(in crate::format) fn read(input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
+fn read(input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
     if let Some(error) = too_large(input.bytes.len() as u64, input.name) {
         diagnostics.push(error);
         return None;

@@ -24,17 +24,21 @@ mod transform;
 mod tests;
 
 use super::said::Said;
-use super::scene::Input;
+use super::scene::{Input, SceneFormat};
 use super::too_large;
 use crate::diag::{Diagnostic, Diagnostics};
-use crate::scene::Scene;
+use crate::scene::{Axis, Scene};
 use directives::DIRECTIVES;
 use lexer::{Lexer, Token};
 use state::Reader;
 
+/// The format of scenes.
+pub(super) const FORMAT: SceneFormat =
+    SceneFormat { name: "pbrt", extensions: &["pbrt"], recognise, read, write: None, up: Axis::Y, whole: true };
+
 /// Whether a file begins with a directive that only pbrt has. `Transform` and `Material` begin
 /// texts of the course's too.
-pub(super) fn recognise(bytes: &[u8]) -> bool {
+fn recognise(bytes: &[u8]) -> bool {
     let head = &bytes[..bytes.len().min(1 << 12)];
     let (mut text, said) = (Lexer::new(head.into(), 0), Said::default());
     let is_text = |token: Option<&Token>| matches!(token, Some(Token::Text(_)));
@@ -48,7 +52,7 @@ pub(super) fn recognise(bytes: &[u8]) -> bool {
 }
 
 /// Reads a file; see [`read_model`](super::scene::read_model).
-pub(super) fn read(input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
+fn read(input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
     if let Some(error) = too_large(input.bytes.len() as u64, input.name) {
         diagnostics.push(Diagnostic { message: error.message.replace("mesh file", "scene"), help: None, ..error });
         return None;

@@ -23,14 +23,26 @@ mod xform;
 mod tests;
 
 use super::said::Said;
-use super::scene::Input;
+use super::scene::{Input, SceneFormat};
 use super::too_large;
 use crate::diag::{Diagnostic, Diagnostics};
-use crate::scene::Scene;
+use crate::scene::{Axis, Scene};
 use state::{Place, Reader};
 
+/// The format of scenes.
+pub(super) const FORMAT: SceneFormat = SceneFormat {
+    name: "Radiance",
+    extensions: &["rad", "rif"],
+    // Its first word could be anything: only the name tells.
+    recognise: |_| false,
+    read,
+    write: None,
+    up: Axis::Z,
+    whole: true,
+};
+
 /// Reads a file; see [`read_model`](super::scene::read_model).
-pub(super) fn read(input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
+fn read(input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
     if let Some(error) = too_large(input.bytes.len() as u64, input.name) {
         diagnostics.push(Diagnostic { message: error.message.replace("mesh file", "scene"), help: None, ..error });
         return None;

@@ -13,18 +13,22 @@ mod show;
 mod tests;
 
 use super::said::Said;
-use super::scene::Input;
+use super::scene::{Input, SceneFormat};
 use super::{too_large, zip};
 use crate::diag::Diagnostics;
-use crate::scene::Scene;
+use crate::scene::{Axis, Scene};
+
+/// The format of scenes.
+pub(super) const FORMAT: SceneFormat =
+    SceneFormat { name: "3MF", extensions: &["3mf"], recognise, read, write: None, up: Axis::Z, whole: false };
 
 /// Whether bytes are an archive: no other format that is read is one.
-pub(super) fn recognise(bytes: &[u8]) -> bool {
+fn recognise(bytes: &[u8]) -> bool {
     zip::recognise(bytes)
 }
 
 /// Reads a file; see [`read_model`](super::scene::read_model).
-pub(super) fn read(input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
+fn read(input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
     if let Some(error) = too_large(input.bytes.len() as u64, input.name) {
         diagnostics.push(error);
         return None;

@@ -429,12 +429,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
 ];
 
 fn recolor<'l>(lights: impl Iterator<Item = &'l mut Light>, change: impl Fn(Color) -> Color) {
-    lights.for_each(|light| match light {
-        Light::Directional(light) => light.color = change(light.color),
-        Light::Point(light) => light.color = change(light.color),
-        Light::Spot(light) => light.color = change(light.color),
-        Light::Photometric(light) => light.color = change(light.color),
-    });
+    lights.for_each(|light| light.recolor(&change));
 }
 
 /// Changes the three factors of the point lights' attenuation.

@@ -219,8 +219,8 @@ impl Writer<'_> {
                 let cone = json!({ "innerConeAngle": inner, "outerConeAngle": outer });
                 (json!({ "type": "spot", "spot": cone }), spot.position, spot.direction)
             }
-            Light::Photometric(_) => {
-                self.left_out("measured lamps have no counterpart in glTF");
+            _ => {
+                self.left_out("lights of this kind have no counterpart in glTF");
                 return None;
             }
         };

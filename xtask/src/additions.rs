@@ -1,0 +1,226 @@
+//! `cargo xtask additions`: how much a new thing of each kind takes. It is added to a copy of the sources, which is built and used.
+
+use crate::root;
+use anyhow::{Context, Result, bail, ensure};
+use std::path::Path;
+use std::process::{Command, ExitCode};
+
+/// A new thing: what it is, its file and the content of that, and what lists need: into which file, before which text, and what.
+struct Addition {
+    kind: &'static str,
+    file: &'static str,
+    content: &'static str,
+    words: &'static [(&'static str, &'static str, &'static str)],
+}
+
+const SHAPES: &str = "durer/src/shape/mod.rs";
+const CAMERAS: &str = "durer/src/camera/mod.rs";
+const LIGHTS: &str = "durer/src/light/mod.rs";
+const MATERIALS: &str = "durer/src/material/mod.rs";
+const LOBES: &str = "durer/src/bsdf/lobe/mod.rs";
+const INTEGRATORS: &str = "durer/src/integrator/mod.rs";
+const METHODS: &str = "durer-cli/src/method.rs";
+const PICTURES: &str = "durer/src/image/formats.rs";
+const FORMATS: &str = "durer/src/format/mod.rs";
+const SCENES: &str = "durer/src/format/scene.rs";
+const AOVS: &str = "durer/src/film/aov.rs";
+
+const ADDITIONS: &[Addition] = &[
+    Addition {
+        kind: "primitive",
+        file: "durer/src/shape/octahedron.rs",
+        content: include_str!("additions/octahedron.rs"),
+        words: &[
+            (SHAPES, "pub mod plane;", "pub mod octahedron;\n"),
+            (SHAPES, "Plane(plane::Plane),", "Octahedron(octahedron::Octahedron),\n        "),
+        ],
+    },
+    Addition {
+        kind: "camera",
+        file: "durer/src/camera/oblique.rs",
+        content: include_str!("additions/oblique.rs"),
+        words: &[
+            (CAMERAS, "pub mod omnimax;", "pub mod oblique;\n"),
+            (CAMERAS, "Orthographic(orthographic::OrthographicCamera),", "Oblique(oblique::ObliqueCamera),\n        "),
+        ],
+    },
+    Addition {
+        kind: "light",
+        file: "durer/src/light/glow.rs",
+        content: include_str!("additions/glow.rs"),
+        words: &[
+            (LIGHTS, "pub mod photometric;", "pub mod glow;\n"),
+            (LIGHTS, "Point(point::PointLight),", "Glow(glow::GlowLight),\n        "),
+        ],
+    },
+    Addition {
+        kind: "material",
+        file: "durer/src/material/stripes.rs",
+        content: include_str!("additions/stripes.rs"),
+        words: &[
+            (MATERIALS, "pub mod wood;", "pub mod stripes;\n"),
+            (MATERIALS, "Noise(solid_noise::SolidNoise),", "Stripes(stripes::Stripes),\n        "),
+        ],
+    },
+    Addition {
+        kind: "lobe",
+        file: "durer/src/bsdf/lobe/retro.rs",
+        content: include_str!("additions/retro.rs"),
+        words: &[
+            (LOBES, "pub mod rough;", "pub mod retro;\n"),
+            (LOBES, "/// A perfect mirror.", "/// A perfect retroreflector.\n    Retro(retro::Retro),\n    "),
+        ],
+    },
+    Addition {
+        kind: "integrator",
+        file: "durer/src/integrator/hits.rs",
+        content: include_str!("additions/hits.rs"),
+        words: &[
+            (INTEGRATORS, "pub mod media;", "pub mod hits;\n"),
+            (INTEGRATORS, "    /// All light.\n    Path(Transport),", "    /// Where anything is.\n    Hits,\n"),
+            (INTEGRATORS, "\"whitted\", \"path\"", "\"hits\", "),
+            (INTEGRATORS, "            Method::Path(_) => \"path\"", "            Method::Hits => \"hits\",\n"),
+            (INTEGRATORS, "Method::Whitted | Method::Ao { .. } => None", "Method::Hits => None,\n            "),
+            (INTEGRATORS, "    /// A path tracer.\n", "    /// Where anything is.\n    Hits(hits::Hits<'w>),\n"),
+            (
+                INTEGRATORS,
+                "            Method::Path(transport) => Integrator",
+                "            Method::Hits => Integrator::Hits(hits::Hits { world }),\n",
+            ),
+            (
+                INTEGRATORS,
+                "            Integrator::Path(path) => path",
+                "            Integrator::Hits(hits) => hits.radiance(ray, tally),\n",
+            ),
+            (METHODS, "        \"path\" => Method::Path(transport),", "        \"hits\" => Method::Hits,\n"),
+        ],
+    },
+    Addition {
+        kind: "scene format",
+        file: "durer/src/format/balls.rs",
+        content: include_str!("additions/balls.rs"),
+        words: &[
+            (FORMATS, "mod bodies;", "mod balls;\n"),
+            (SCENES, "    gltf::FORMAT,", "    balls::FORMAT,\n"),
+            (SCENES, "gltf, mitsuba", "balls, "),
+        ],
+    },
+    Addition {
+        kind: "mesh format",
+        file: "durer/src/format/corners.rs",
+        content: include_str!("additions/corners.rs"),
+        words: &[
+            (FORMATS, "pub mod course;", "mod corners;\n"),
+            (FORMATS, "stl::FORMAT]", "corners::FORMAT, "),
+            (SCENES, "    alone(&stl::FORMAT),", "    alone(&corners::FORMAT),\n"),
+            (SCENES, "extension, ", "corners, "),
+        ],
+    },
+    Addition {
+        kind: "picture format",
+        file: "durer/src/image/formats/farbfeld.rs",
+        content: include_str!("additions/farbfeld.rs"),
+        words: &[(PICTURES, "mod hdr;", "mod farbfeld;\n"), (PICTURES, "exr::FORMAT, ", "farbfeld::FORMAT, ")],
+    },
+    Addition {
+        kind: "kind of picture",
+        file: "durer/src/film/aov/heights.rs",
+        content: include_str!("additions/heights.rs"),
+        words: &[
+            (AOVS, "/// All kinds of picture beside colour.", "mod heights;\n\n"),
+            (AOVS, "    Aov {\n        name: \"normals\"", "    heights::AOV,\n"),
+        ],
+    },
+];
+
+/// A scene of the new things.
+const SCENE: &str = "ObliqueCamera { center 0 0 5 direction 0 0 -1 up 0 1 0 size 4 slant 0.3 }
+Lights { GlowLight { position 2 3 4 color 1 1 1 } }
+Materials {
+    PhongMaterial { diffuseColor 0.8 0.2 0.1 }
+    PhongMaterial { diffuseColor 0.1 0.3 0.8 }
+    Stripes { materialIndex 0 materialIndex 1 height 0.25 }
+}
+Group { MaterialIndex 2 Octahedron { center 0 0 0 radius 1.5 } }
+";
+
+pub fn run(arguments: &[String]) -> Result<ExitCode> {
+    let only = match arguments {
+        [] => "",
+        [option, text] if option == "--only" => text,
+        _ => bail!("cargo xtask additions [--only TEXT]"),
+    };
+    let root = root()?;
+    let copy = root.join("target/additions");
+    let _ = std::fs::remove_dir_all(&copy);
+    std::fs::create_dir_all(&copy)?;
+    let files = Command::new("git")
+        .args(["ls-files", "-co", "--exclude-standard", "crates", "xtask", "Cargo.toml", "Cargo.lock"])
+        .current_dir(&root)
+        .output()?;
+    for name in String::from_utf8(files.stdout)?.lines().filter(|name| root.join(name).is_file()) {
+        let to = copy.join(name);
+        std::fs::create_dir_all(to.parent().context("a file lies in a folder")?)?;
+        std::fs::copy(root.join(name), to)?;
+    }
+    let chosen: Vec<&Addition> = ADDITIONS.iter().filter(|addition| addition.kind.contains(only)).collect();
+    for addition in &chosen {
+        add(&copy.join("crates"), addition).with_context(|| format!("a new {}", addition.kind))?;
+    }
+    let build = Command::new(crate::cargo())
+        .args(["build", "--quiet", "-p", "durer-cli"])
+        .env("CARGO_TARGET_DIR", root.join("target"))
+        .current_dir(&copy)
+        .status()?;
+    ensure!(build.success(), "with the new things the sources do not build");
+    println!("{:16} {:>6} {:>6}", "a new", "places", "lines");
+    for addition in &chosen {
+        let lines: usize = addition
+            .words
+            .iter()
+            .map(|word| word.2.trim_end().lines().filter(|l| !l.trim().starts_with("///")).count())
+            .sum();
+        println!("{:16} {:6} {lines:6}", addition.kind, addition.words.len());
+    }
+    if only.is_empty() {
+        used(&root.join("target/debug/durer"), &copy)?;
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Adds a thing to a copy of the crates.
+fn add(crates: &Path, addition: &Addition) -> Result<()> {
+    let file = crates.join(addition.file);
+    ensure!(!file.exists(), "{} is there already", addition.file);
+    std::fs::create_dir_all(file.parent().context("a file lies in a folder")?)?;
+    std::fs::write(file, addition.content)?;
+    for (list, before, words) in addition.words {
+        let path = crates.join(list);
+        let text = std::fs::read_to_string(&path)?;
+        ensure!(text.matches(before).count() == 1, "{list} has not one place `{before}`");
+        std::fs::write(path, text.replace(before, &format!("{words}{before}")))?;
+    }
+    Ok(())
+}
+
+/// Uses them all.
+fn used(durer: &Path, folder: &Path) -> Result<()> {
+    std::fs::write(folder.join("scene.txt"), SCENE)?;
+    std::fs::write(folder.join("a.balls"), "0 0 0 1\n2 0 0 0.5\n")?;
+    std::fs::write(folder.join("a.tri"), "0 0 0 1 0 0 0 1 0\n")?;
+    for words in [
+        "render scene.txt -o a.ff --size 48x48 --show color,heights",
+        "render scene.txt -o b.png --size 48x48 --integrator hits",
+        "render a.balls -o c.png --size 48x32",
+        "convert a.tri -o a.ply",
+        "convert a.ply -o b.tri",
+        "render a.tri -o d.png --size 48x32",
+        "words Octahedron",
+        "compare a.color.ff a.color.ff",
+    ] {
+        let done = Command::new(durer).args(words.split(' ')).current_dir(folder).output()?;
+        ensure!(done.status.success(), "durer {words}: {}", String::from_utf8_lossy(&done.stderr));
+        println!("durer {words}");
+    }
+    Ok(())
+}

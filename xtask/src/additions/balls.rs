@@ -1,0 +1,32 @@
+//! `.balls`: four numbers a line, the middle and the radius of a ball.
+
+use super::scene::{Input, SceneFormat};
+use crate::diag::{Diagnostic, Diagnostics, Span};
+use crate::math::Vec3;
+use crate::scene::{Axis, Group, Node, Object, Scene};
+use crate::shape::Sphere;
+
+pub(super) const FORMAT: SceneFormat = SceneFormat {
+    name: "Balls",
+    extensions: &["balls"],
+    recognise: |_| false,
+    read,
+    write: None,
+    up: Axis::Y,
+    whole: false,
+};
+
+fn read(input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
+    let text = String::from_utf8_lossy(input.bytes);
+    let numbers: Option<Vec<f32>> = text.split_whitespace().map(|word| word.parse().ok()).collect();
+    let Some(numbers) = numbers.filter(|numbers| numbers.len().is_multiple_of(4)) else {
+        diagnostics.push(Diagnostic::error("expected four numbers a line").at(Span { file: input.file, ..Span::default() }));
+        return None;
+    };
+    let ball = |ball: &[f32]| Object {
+        node: Node::Primitive(Sphere { center: Vec3::from_slice(ball), radius: ball[3] }.into()),
+        material: None,
+        span: Span::default(),
+    };
+    Some(Scene { root: Some(Group { objects: numbers.chunks_exact(4).map(ball).collect() }), ..Scene::default() })
+}

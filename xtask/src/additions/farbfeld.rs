@@ -1,0 +1,44 @@
+//! farbfeld: eight letters, two sizes, sixteen bits a channel. Source: farbfeld(5), suckless.org.
+
+use super::{Depth, Format, Head, Raster};
+use crate::image::{Image, ImageError};
+use crate::math::Vec3;
+
+const NAME: &str = "farbfeld";
+
+fn sizes(bytes: &[u8]) -> Result<[u32; 2], ImageError> {
+    let side = |at: usize| bytes.get(at..at + 4).and_then(|four| four.try_into().ok()).map(u32::from_be_bytes);
+    side(8).zip(side(12)).map(|(width, height)| [width, height]).ok_or_else(|| ImageError::malformed(NAME, "it is too short"))
+}
+
+pub const FORMAT: Format = Format {
+    name: NAME,
+    extensions: &["ff"],
+    depth: Depth::Float,
+    layers: false,
+    most_side: u32::MAX,
+    begins: |bytes| bytes.starts_with(b"farbfeld"),
+    head: |bytes| {
+        let [width, height] = sizes(bytes)?.map(u64::from);
+        Ok(Head { width, height, eight: false, bytes_per_pixel: 12, spare: 0 })
+    },
+    decode: |bytes| {
+        let [width, height] = sizes(bytes)?;
+        let channel = |pixel: &[u8], i: usize| f32::from(u16::from_be_bytes([pixel[2 * i], pixel[2 * i + 1]])) / 65535.0;
+        let pixels = bytes[16..].chunks_exact(8).map(|pixel| Vec3::new(channel(pixel, 0), channel(pixel, 1), channel(pixel, 2)));
+        Ok(Raster::Float(Image::from_pixels(width, height, pixels.collect())?))
+    },
+    encode: |layers, _, out| {
+        let image = &layers[0].image;
+        out.extend(b"farbfeld");
+        out.extend(image.width.to_be_bytes());
+        out.extend(image.height.to_be_bytes());
+        for pixel in &image.pixels {
+            for channel in pixel.extend(1.0).to_array() {
+                out.extend(((65535.0 * channel.clamp(0.0, 1.0)).round() as u16).to_be_bytes());
+            }
+        }
+        Ok(())
+    },
+    rows: None,
+};

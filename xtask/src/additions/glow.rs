@@ -1,0 +1,35 @@
+//! A light at a point that does not fade.
+
+use super::{Emitter, Illumination};
+use crate::describe::{FileName, Rule};
+use crate::described;
+use crate::dialect::{Rules, set};
+use crate::math::{Color, Vec3};
+use glam::DVec3;
+
+described! {
+    /// Light from one point, as strong at any distance.
+    GlowLight ["GlowLight" in set::DURER] {
+        /// Where it is.
+        position: Vec3 = Vec3::ZERO, required, Rule::Any, ["position" in set::DURER];
+        /// Its colour and strength.
+        color: Vec3 = Vec3::ONE, required, Rule::Any, ["color" in set::DURER];
+        /// Its measured spectrum, which `color` multiplies.
+        spectrum: Option<FileName> = None, optional, Rule::Any, ["spectrum" in set::DURER];
+    }
+}
+
+impl Emitter for GlowLight {
+    fn illuminate(&self, point: DVec3) -> Illumination {
+        let offset = (self.position.as_dvec3() - point).as_vec3();
+        Illumination { to_light: offset.normalize_or(Vec3::Y), distance: offset.length(), color: self.color }
+    }
+
+    fn resolved(&self, _: &Rules) -> Self {
+        self.clone()
+    }
+
+    fn color(&self) -> Color {
+        self.color
+    }
+}

@@ -1,0 +1,49 @@
+//! An oblique camera: parallel rays that are not perpendicular to the picture, as in a cabinet projection.
+
+use super::{CameraSample, Frame, Lens, Pose};
+use crate::describe::Rule;
+use crate::described;
+use crate::dialect::set;
+use crate::math::{Ray, Vec2, Vec3};
+use glam::DVec2;
+
+described! {
+    /// A camera whose rays are parallel, and aslant.
+    ObliqueCamera ["ObliqueCamera" in set::DURER] {
+        /// The middle of the picture.
+        center: Vec3 = Vec3::ZERO, required, Rule::Any, ["center" in set::DURER];
+        /// Where the picture faces; of any length.
+        direction: Vec3 = Vec3::NEG_Z, required, Rule::NonZero, ["direction" in set::DURER];
+        /// What is up in the picture.
+        up: Vec3 = Vec3::Y, required, Rule::NonZero, ["up" in set::DURER];
+        /// Length of the picture's larger side.
+        size: f32 = 2.0, required, Rule::Positive, ["size" in set::DURER];
+        /// How far rays go to the left and down on their way of length 1 into the picture.
+        slant: f32 = 0.5, optional, Rule::Any, ["slant" in set::DURER];
+    }
+}
+
+impl Lens for ObliqueCamera {
+    fn pose(&self) -> Pose {
+        Pose { center: self.center, direction: self.direction, up: self.up }
+    }
+
+    fn ray(&self, frame: &Frame, sample: &CameraSample) -> Option<Ray> {
+        let half = 0.5 * self.size;
+        let origin = frame.eye + sample.point.x * half * frame.right + sample.point.y * half * frame.up;
+        let dir = frame.forward - self.slant * (frame.right + frame.up);
+        Some(Ray::new(origin, dir.normalize()))
+    }
+
+    fn project(&self, frame: &Frame, world: Vec3, _: Vec2, found: &mut dyn FnMut(Vec2)) {
+        let p = frame.camera_from_world(world);
+        let moved = DVec2::new(p.x, p.y) + f64::from(self.slant) * p.z.abs();
+        found((moved / (0.5 * f64::from(self.size))).as_vec2());
+    }
+
+    fn footprint(&self, frame: &Frame, _: &CameraSample, _: f32) -> f32 {
+        let half = 0.5 * f64::from(self.size);
+        let slant = f64::from(self.slant);
+        (half * half * frame.volume() / (1.0 + 2.0 * slant * slant).sqrt()) as f32
+    }
+}

@@ -1,0 +1,27 @@
+//! Light that goes back whence it came, as from a cat's eye.
+
+use super::{Scatter, Scattered};
+use crate::math::{Vec2, Vec3};
+use crate::spectrum::Spectrum;
+
+/// A perfect retroreflector; what it reflects is its weight.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Retro;
+
+impl Scatter for Retro {
+    fn eval(&self, _: Vec3, _: Vec3) -> Spectrum {
+        Spectrum::ZERO
+    }
+
+    fn pdf(&self, _: Vec3, _: Vec3) -> f32 {
+        0.0
+    }
+
+    fn sample(&self, wo: Vec3, _: f32, _: Vec2) -> Option<Scattered> {
+        Some(Scattered { wi: wo, value: Spectrum::ONE })
+    }
+
+    fn is_delta(&self) -> bool {
+        true
+    }
+}

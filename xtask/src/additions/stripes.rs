@@ -1,0 +1,29 @@
+//! Stripes of two materials in turn.
+
+use super::Pattern;
+use crate::describe::Rule;
+use crate::described;
+use crate::dialect::set;
+use crate::math::Vec3;
+
+described! {
+    /// Layers of two materials in turn, across the y axis.
+    Stripes ["Stripes" in set::DURER] {
+        /// The material of even layers.
+        material1: u32 = 0, required, Rule::Any, ["materialIndex" in set::DURER];
+        /// That of odd layers.
+        material2: u32 = 0, required, Rule::Any, ["materialIndex" in set::DURER];
+        /// How high a layer is.
+        height: f32 = 1.0, optional, Rule::Positive, ["height" in set::DURER];
+    }
+}
+
+impl Pattern for Stripes {
+    fn weight(&self, q: Vec3) -> f32 {
+        if (q.y / self.height).floor().rem_euclid(2.0) == 0.0 { 1.0 } else { 0.0 }
+    }
+
+    fn materials(&self) -> [u32; 2] {
+        [self.material1, self.material2]
+    }
+}
