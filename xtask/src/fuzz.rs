@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
 /// The targets, and the endings of files that they can begin with.
-const TARGETS: [(&str, &[&str]); 14] = [
+const TARGETS: [(&str, &[&str]); 22] = [
     ("scene", &["txt"]),
     ("obj", &["obj"]),
     ("ply", &["ply"]),
@@ -18,6 +18,15 @@ const TARGETS: [(&str, &[&str]); 14] = [
     ("pfm", &["pfm"]),
     ("exr", &["exr"]),
     ("hdr", &["hdr"]),
+    ("ktx2", &["ktx2"]),
+    ("stl", &["stl"]),
+    // Draco and meshopt are in it.
+    ("gltf", &["gltf", "glb"]),
+    ("json", &["json"]),
+    ("pbrt", &["pbrt"]),
+    ("rad", &["rad"]),
+    ("threemf", &["3mf"]),
+    ("xml", &["xml"]),
     ("curve", &["csv"]),
     ("ies", &["ies"]),
     ("part", &[]),

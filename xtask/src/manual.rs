@@ -57,6 +57,7 @@ fn picture_name(entry: &Entry) -> String {
 fn pages() -> Vec<(PathBuf, String)> {
     let folder = docs().join("language");
     let mut pages = vec![(folder.join("index.md"), index()), (docs().join("editors/durer.tmLanguage.json"), grammar())];
+    pages.push((folder.join("scene.schema.json"), format!("{:#}\n", durer::format::json::schema::schema())));
     pages.push((docs().join("../crates/durer-py/python/durer/words.py"), python::words()));
     pages.extend(Chapter::ALL.map(|chapter| (folder.join(file_name(chapter)), page(chapter))));
     pages
@@ -75,7 +76,8 @@ fn index() -> String {
          0 Sphere {{ center 0 0.5 0 radius 1 }} }}\n```\n\nComments begin with `#`. Lengths are in the units of the scene, \
          angles in degrees, colours linear Rec.709 from 0 to 1 (and beyond). Words of the course's own years are marked with \
          their dialects; `durer dialects` explains these, `durer words WORD` tells what is here in a terminal. \
-         `docs/editors/durer.tmLanguage.json` is a TextMate grammar that editors colour scenes with.\n"
+         `docs/editors/durer.tmLanguage.json` is a TextMate grammar that editors colour scenes with.\n\nThe same can be said \
+         [as JSON](json.md).\n"
     );
     for chapter in Chapter::ALL {
         let words: Vec<String> = entries()

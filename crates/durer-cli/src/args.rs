@@ -483,15 +483,15 @@ pub struct InfoArgs {
     pub scene: PathBuf,
     #[command(flatten)]
     pub reading: SceneArgs,
-    /// As JSON, with the whole scene description
+    /// As JSON, with the scene as `durer convert` writes it
     #[arg(long)]
     pub json: bool,
 }
 
-/// Write a scene anew: in its own or another dialect, as glTF, or its meshes as PLY, OBJ or STL
+/// Write a scene anew: in its own or another dialect, as JSON, as glTF, or its meshes as PLY, OBJ or STL
 #[derive(Args)]
 #[command(
-    after_help = "Examples:\n  durer convert scene.txt -o scene_durer.txt --to durer\n  durer convert model.glb -o model.stl\n  durer convert scene.pbrt -o scene.glb"
+    after_help = "Examples:\n  durer convert scene.txt -o scene_durer.txt --to durer\n  durer convert scene.txt -o scene.json\n  durer convert model.glb -o model.stl\n  durer convert scene.pbrt -o scene.glb"
 )]
 pub struct ConvertArgs {
     /// The scene file

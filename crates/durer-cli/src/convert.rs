@@ -8,7 +8,7 @@ use crate::{Failure, bad, output, report};
 use durer::diag::{Diagnostic, Diagnostics, Files};
 use durer::dialect::Dialect;
 use durer::format::course::write;
-use durer::format::{MESH_FORMATS, mesh_format_for, scene_format_for};
+use durer::format::{MESH_FORMATS, json, mesh_format_for, scene_format_for};
 use durer::load;
 use durer::scene::Studio;
 
@@ -18,12 +18,13 @@ pub fn run(args: &ConvertArgs) -> Result<(), Failure> {
     let place = guard.writes("--output", &args.output)?;
     let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
     let mut options = load_options(&args.reading);
-    let as_mesh = mesh_format_for(&args.output.to_string_lossy()).filter(|_| args.to.is_none());
+    let name = args.output.to_string_lossy();
+    let as_json = name.to_lowercase().ends_with(".json");
+    let as_mesh = mesh_format_for(&name).filter(|_| args.to.is_none());
     if as_mesh.is_some() {
         // A ground is no part of a model.
         options.staging.studio = Some(Studio::None);
     }
-    let name = args.output.to_string_lossy();
     let as_scene = scene_format_for(&name).filter(|format| format.write.is_some() && args.to.is_none());
     // What a model lacks, options of rendering add later.
     options.staging.bare = as_scene.is_some();
@@ -54,9 +55,11 @@ pub fn run(args: &ConvertArgs) -> Result<(), Failure> {
     if !loaded.scene.assets.is_empty() {
         let endings: Vec<String> = MESH_FORMATS.iter().map(|format| format!(".{}", format.extensions[0])).collect();
         let endings = [".glb".into(), ".gltf".into()].into_iter().chain(endings).collect::<Vec<String>>();
-        let message = "the scene language has no words for the meshes of a model: choose a name that ends in";
+        let message =
+            "the scene language, also as JSON, has no words for the meshes of a model: choose a name that ends in";
         return Err(bad(format!("{message} {}", endings.join(", "))));
     }
     let dialect = args.to.as_deref().and_then(Dialect::from_name).unwrap_or(loaded.dialect);
-    output::save(&[(&place, write(&loaded.scene, dialect).into_bytes())], false)
+    let text = if as_json { json::write(&loaded.scene, dialect) } else { write(&loaded.scene, dialect) };
+    output::save(&[(&place, text.into_bytes())], false)
 }

@@ -21,6 +21,7 @@ pub fn run(args: &InfoArgs) -> Result<(), Failure> {
     let rays = rays(world);
     let per_ray = |count: u64| (rays.rays > 0).then(|| count as f64 / rays.rays as f64);
     if args.json {
+        let scene: serde_json::Value = serde_json::from_str(&durer::format::json::write(&loaded.scene, dialect))?;
         let value = serde_json::json!({
             "dialect": dialect.name(),
             "objects": world.objects.len(),
@@ -34,7 +35,7 @@ pub fn run(args: &InfoArgs) -> Result<(), Failure> {
             "object_tree_cost": count.object_cost,
             "nodes_per_ray": per_ray(rays.nodes),
             "tests_per_ray": per_ray(rays.tests),
-            "scene": loaded.scene,
+            "scene": scene,
         });
         say(&serde_json::to_string_pretty(&value)?);
         return Ok(());

@@ -7,6 +7,7 @@ use crate::open::{load_options, read};
 use crate::output::{Target, lengthened, say};
 use crate::stats::Stages;
 use crate::{Failure, bad, check, diagrams, frames, job, large, output, progress, report, watching};
+use durer::compile::Kept;
 use durer::diag::Diagnostic;
 use durer::image::checked_count;
 use durer::render::{Bands, Control, Job, Panicked, Part, RenderError, Shard, ShardBy, Statistics, Stop, replay};
@@ -22,10 +23,17 @@ pub struct Watched {
     pub files: Mutex<Vec<PathBuf>>,
     /// Whether a file was saved since.
     pub stale: AtomicBool,
+    /// What was made of its files before.
+    pub kept: Option<Arc<Kept>>,
     control: Mutex<Option<Arc<Control>>>,
 }
 
 impl Watched {
+    /// Of a scene whose files are kept from one picture to the next.
+    pub fn keeping(kept: &Arc<Kept>) -> Self {
+        Watched { kept: Some(Arc::clone(kept)), ..Watched::default() }
+    }
+
     /// Stops the render.
     pub fn cancel(&self) {
         self.stale.store(true, Relaxed);
@@ -89,6 +97,7 @@ pub fn once(command: &RenderCommand, watched: &Watched) -> Result<(), Failure> {
     let threads = args.work.threads.map(usize::from);
     (options.accel, options.threads) = (job::accel(&args.job)?, threads);
     options.staging.aspect = job::aspect(&args.job);
+    options.kept = watched.kept.clone();
     let mut stages = Stages::begin();
     let scene = read(&args.scene, &options, args.quiet, &mut guard)?;
     stages.ends("reading");

@@ -3,34 +3,20 @@
 use crate::args::RenderCommand;
 use crate::render::{self, Watched};
 use crate::{Failure, progress, report};
+use durer::compile::Kept;
+use durer::source::Stamp;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::sync::atomic::Ordering::Relaxed;
 use std::sync::mpsc::{self, RecvTimeoutError};
-use std::time::{Duration, SystemTime};
+use std::time::Duration;
 
 /// How often files are looked at, and how long they must stay as they are: programs save in several steps.
 const PAUSE: Duration = Duration::from_millis(50);
 
-/// What tells of each file that it was saved: when, its size, and which file it is.
-type Stamp = Vec<Option<(SystemTime, u64, u64)>>;
-
-fn stamp(files: &[PathBuf]) -> Stamp {
-    let of = |path: &PathBuf| {
-        let metadata = std::fs::metadata(path).ok()?;
-        Some((metadata.modified().ok()?, metadata.len(), number(&metadata)))
-    };
-    files.iter().map(of).collect()
-}
-
-/// The number of a file in its file system: one that takes the place of another has another.
-#[cfg(unix)]
-fn number(metadata: &std::fs::Metadata) -> u64 {
-    std::os::unix::fs::MetadataExt::ino(metadata)
-}
-
-#[cfg(not(unix))]
-fn number(_: &std::fs::Metadata) -> u64 {
-    0
+/// The files as they are.
+fn stamp(files: &[PathBuf]) -> Vec<Option<Stamp>> {
+    files.iter().map(|path| Stamp::of(path)).collect()
 }
 
 /// Renders until Ctrl-C: what is wrong with the scene is told, and waited for to be mended.
@@ -39,9 +25,10 @@ pub fn run(command: &RenderCommand) -> Result<(), Failure> {
     let always: Vec<PathBuf> =
         [Some(command.render.scene.clone())].into_iter().chain(named.map(Clone::clone)).flatten().collect();
     let mut files = always.clone();
+    let kept = Arc::new(Kept::default());
     loop {
         let before = stamp(&files);
-        let watched = Watched::default();
+        let watched = Watched::keeping(&kept);
         let result = while_watching(&files, &before, &watched, || render::once(command, &watched));
         let stale = watched.stale.load(Relaxed);
         match result {
@@ -58,16 +45,22 @@ pub fn run(command: &RenderCommand) -> Result<(), Failure> {
         let before = match found.is_empty() {
             true => before,
             false => {
-                let known = |path: &Path| files.iter().position(|file| file == path).map(|i| before[i]);
+                let known = |path: &Path| files.iter().position(|file| file == path).map(|i| before[i].clone());
                 let next: Vec<PathBuf> = always.iter().chain(&found).cloned().collect();
                 let fresh = stamp(&next);
-                let before = next.iter().zip(&fresh).map(|(path, now)| known(path).unwrap_or(*now)).collect();
+                let before =
+                    next.iter().zip(&fresh).map(|(path, now)| known(path).unwrap_or_else(|| now.clone())).collect();
                 files = next;
                 before
             }
         };
         if !command.render.quiet {
-            report::complain(&format!("watching {}; Ctrl-C ends", report::counted(files.len(), "file")));
+            let count = report::counted(files.len(), "file");
+            let reused = match kept.reuse().reused {
+                0 => String::new(),
+                n => format!(" ({n} of its meshes and pictures were kept)"),
+            };
+            report::complain(&format!("watching {count}{reused}; Ctrl-C ends"));
         }
         progress::idle();
         while stamp(&files) == before {
@@ -92,12 +85,12 @@ fn settle(files: &[PathBuf]) {
 }
 
 /// Does some work, which is told to stop as soon as a file is saved.
-fn while_watching<R>(files: &[PathBuf], before: &Stamp, watched: &Watched, work: impl FnOnce() -> R) -> R {
+fn while_watching<R>(files: &[PathBuf], before: &[Option<Stamp>], watched: &Watched, work: impl FnOnce() -> R) -> R {
     let (finished, wait) = mpsc::channel::<()>();
     std::thread::scope(|scope| {
         let look = move || {
             while wait.recv_timeout(PAUSE) == Err(RecvTimeoutError::Timeout) {
-                if stamp(files) != *before {
+                if stamp(files) != before {
                     watched.cancel();
                     return;
                 }

@@ -76,7 +76,7 @@ fn a_seed_changes_random_pictures_only() {
 fn every_format_is_written_and_read_back() {
     let place = Place::new();
     let mut eight_bit = Vec::new();
-    for format in &durer::image::FORMATS {
+    for format in durer::image::FORMATS {
         for extension in format.extensions {
             let name = format!("picture.{extension}");
             let ran = place.gives(0, &format!("render scene.txt --size 13x7 -o {name}"));

@@ -109,8 +109,8 @@ impl World {
     }
 
     /// The description as JSON.
-    fn description(&self) -> PyResult<String> {
-        serde_json::to_string(&self.loaded.scene).map_err(failed)
+    fn description(&self) -> String {
+        durer::format::json::write(&self.loaded.scene, self.loaded.dialect)
     }
 
     /// A part of a picture of which nothing is made yet.

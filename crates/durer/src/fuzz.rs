@@ -5,9 +5,10 @@
 
 use crate::LoadOptions;
 use crate::compile::AccelKind;
-use crate::diag::{Diagnostics, Files};
+use crate::diag::{Diagnostics, Files, Span};
 use crate::dialect::Dialect;
 use crate::format::course::{ReadOptions, guess, random::Random, read, write};
+use crate::format::json::{self, Document};
 use crate::format::scene::{Input, find_scene_format, read_model};
 use crate::format::{curve, ies, read_mesh};
 use crate::image::{Encoded, ImageError, decode_linear};
@@ -44,6 +45,24 @@ pub fn scene(data: &[u8]) {
                 write(&scene, dialect);
             }
         }
+    }
+}
+
+/// Bytes as a scene in JSON: what is read is written, and read again as the same.
+pub fn json(data: &[u8]) {
+    let read = |data: &[u8]| {
+        let mut diagnostics = Diagnostics::default();
+        let document = Document::open(data, 0, &diagnostics);
+        let (dialect, scene) = (document.dialect(), document.scene(&mut diagnostics));
+        let within = |span: Span| span.start <= span.end && span.end as usize <= data.len();
+        assert!(diagnostics.iter().filter_map(|diagnostic| diagnostic.span).all(within));
+        assert!(scene.is_some() != diagnostics.has_errors());
+        scene.map(|scene| (scene, dialect))
+    };
+    if let Some((scene, dialect)) = read(data) {
+        write(&scene, dialect);
+        let text = json::write(&scene, dialect);
+        assert!(read(text.as_bytes()) == Some((scene, dialect)), "{text}");
     }
 }
 
@@ -208,6 +227,7 @@ fn seeds_hold() {
             let data = std::fs::read(&seed).unwrap();
             match name.as_str() {
                 "scene" => scene(&data),
+                "json" => json(&data),
                 "curve" => curve(&data),
                 "ies" => profile(&data),
                 "part" => part(&data),

@@ -23,6 +23,7 @@ pub mod material;
 pub mod math;
 pub mod medium;
 pub mod mistakes;
+pub mod panics;
 pub mod render;
 pub mod sampler;
 pub mod scene;

@@ -1,9 +1,10 @@
 //! From a file's path to a world: format, dialect, rules, files.
 
-use crate::compile::{AccelKind, Resources, compile};
+use crate::compile::{AccelKind, Kept, Resources, compile};
 use crate::diag::{Diagnostic, Diagnostics, Files, Severity};
 use crate::dialect::{Compat, Dialect, PathBase, Rules};
 use crate::format::course::{self, Guess, Hint, ReadOptions};
+use crate::format::json;
 use crate::format::scene::{Input, Output, find_scene_format, read_model, scene_format_for};
 use crate::scene::{Scene, Staging};
 use crate::source::{Source, SourceError, is_packed, unpacked};
@@ -41,6 +42,8 @@ pub struct LoadOptions {
     pub threads: Option<usize>,
     /// Bytes that the world may take; `None`: any number.
     pub memory: Option<u64>,
+    /// Meshes and pictures of the same scene as it was before: what did not change is neither read nor built again.
+    pub kept: Option<Arc<Kept>>,
 }
 
 /// A scene that was read.
@@ -110,7 +113,9 @@ pub fn load_text(
         name.truncate(name.strip_suffix(".gz").map_or(name.len(), str::len));
     }
     let file = files.add(path.display().to_string(), bytes.clone());
-    if let Some(format) = find_scene_format(&bytes, &name).filter(|_| options.dialect.is_none() && !options.course) {
+    let json = json::recognise(&bytes, &name).then(|| json::Document::open(&bytes, file, diagnostics));
+    let is_model = json.is_none() && options.dialect.is_none() && !options.course;
+    if let Some(format) = find_scene_format(&bytes, &name).filter(|_| is_model) {
         let dialect = Dialect::Durer;
         let source = source.budget(budget(options));
         let known = RefCell::new(std::mem::take(files));
@@ -123,7 +128,11 @@ pub fn load_text(
     }
     let mut guess = None;
     let dialect = options.dialect.unwrap_or_else(|| {
-        let found = course::guess(&bytes, file, &options.hints, &|name| source.contains(name));
+        let found = match &json {
+            // Nobody asked for it; the scene says it.
+            Some(json) => Guess { dialect: json.dialect(), reasons: Vec::new(), others: Vec::new() },
+            None => course::guess(&bytes, file, &options.hints, &|name| source.contains(name)),
+        };
         guess.insert(found).dialect
     });
     let mut rules = dialect.rules().clone();
@@ -147,6 +156,9 @@ pub fn load_text(
     }
     source = source.budget(budget(options));
     let read = ReadOptions { dialect, strict: options.strict, compat: rules.compat };
+    if let Some(json) = json {
+        return json.scene(diagnostics).map(|scene| Loaded { scene, rules, dialect, guess, source });
+    }
     let known = RefCell::new(std::mem::take(files));
     let scene = course::read_with(&bytes, file, read, &course::below(&source, &known), diagnostics);
     *files = known.into_inner();
@@ -198,7 +210,13 @@ impl Loaded {
     /// Compiles the scene. `None` after errors, which are in `diagnostics`.
     pub fn compile(&self, options: &LoadOptions, files: &mut Files, diagnostics: &mut Diagnostics) -> Option<World> {
         let memory = options.memory.unwrap_or(u64::MAX);
-        let resources = Resources { source: &self.source, files, sky_optional: options.course, memory };
+        let resources = Resources {
+            source: &self.source,
+            files,
+            sky_optional: options.course,
+            memory,
+            kept: options.kept.as_deref(),
+        };
         let work = || compile(&self.scene, &self.rules, options.accel, resources, diagnostics);
         match options.threads {
             Some(_) => threads::install(options.threads, work),
@@ -207,6 +225,8 @@ impl Loaded {
     }
 }
 
+#[cfg(test)]
+mod kept_tests;
 #[cfg(test)]
 mod model_tests;
 #[cfg(test)]

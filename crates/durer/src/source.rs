@@ -10,6 +10,7 @@ use std::fs;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::SystemTime;
 
 /// A BLAKE3 hash; shown as 64 hexadecimal digits.
 #[derive(Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
@@ -135,6 +136,28 @@ impl SourceError {
     }
 }
 
+/// A file, and what tells whether it was saved since: when that was, its size, and its number in its file system, for one that takes the
+/// place of another has another.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub struct Stamp {
+    path: PathBuf,
+    modified: SystemTime,
+    size: u64,
+    number: u64,
+}
+
+impl Stamp {
+    /// That of a path; `None` where there is nothing.
+    pub fn of(path: &Path) -> Option<Self> {
+        let metadata = fs::metadata(path).ok()?;
+        #[cfg(unix)]
+        let number = std::os::unix::fs::MetadataExt::ino(&metadata);
+        #[cfg(not(unix))]
+        let number = 0;
+        Some(Stamp { path: path.into(), modified: metadata.modified().ok()?, size: metadata.len(), number })
+    }
+}
+
 /// Where the files of a scene are, and how much may be read of them.
 #[derive(Debug)]
 pub struct Source {
@@ -248,6 +271,26 @@ impl Source {
     pub fn remember(&self, name: &str, bytes: &[u8]) {
         let digest = Digest::of(bytes);
         self.already().files.insert(name.into(), digest);
+    }
+
+    /// The file that a scene means by a name, as it is now; `None` where it is in no folder or may not be read.
+    pub fn stamp(&self, name: &str) -> Option<Stamp> {
+        if self.given.contains_key(name) {
+            return None;
+        }
+        Stamp::of(&self.find(name).ok()?)
+    }
+
+    /// The hash of what was read by a name.
+    pub fn digest_of(&self, name: &str) -> Option<Digest> {
+        self.already().files.get(name).copied()
+    }
+
+    /// Counts a file among those that were read by a name, though it was read earlier and is as it was.
+    pub fn remember_unread(&self, name: &str, stamp: &Stamp, digest: Digest) {
+        let mut already = self.already();
+        already.files.insert(name.into(), digest);
+        already.paths.push(stamp.path.clone());
     }
 
     /// Whether there is a file of that name, which may be read.

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 /// The rooms by floor, as ARCHITECTURE.md draws them.
 const FLOORS: [&[&str]; 10] = [
-    &["math", "diag", "dialect", "threads"],
+    &["math", "diag", "dialect", "panics", "threads"],
     &["sampler", "source", "describe", "spectrum"],
     &["image"],
     &["shape", "camera", "light", "material", "texture", "medium"],

@@ -3,11 +3,12 @@
 use durer::compile::AccelKind;
 use durer::diag::{Diagnostics, Files};
 use durer::dialect::Dialect;
+use durer::format::{course, json};
 use durer::integrator::{Method, Settings};
 use durer::math::Vec3;
-use durer::render::{Control, Job, render};
+use durer::render::{Control, Job, Part, Shard, render};
 use durer::world::World;
-use durer::{LoadOptions, Loaded, load};
+use durer::{LoadOptions, Loaded, load, load_text};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -112,5 +113,30 @@ fn scenes_are_told_of_and_shown() {
     for picture in pictures {
         let shown = gallery.contains(&format!("(gallery/{picture}.png"));
         assert!(shown, "{picture}.png is not shown in docs/gallery.md");
+    }
+}
+
+#[test]
+fn scenes_are_the_same_as_json_and_in_the_words_that_come_of_it() {
+    for name in scenes() {
+        let (loaded, world) = opened(&name, AccelKind::Bvh);
+        let text = json::write(&loaded.scene, loaded.dialect);
+        let (mut files, mut found) = (Files::default(), Diagnostics::default());
+        let (path, bytes) = (root().join("scenes/scene.json"), text.as_bytes().into());
+        let again = load_text(&path, bytes, &LoadOptions::default(), &mut files, &mut found).unwrap();
+        // To the bit: equality takes 0 and -0 for one.
+        let bits = |loaded: &Loaded| serde_json::to_string(&loaded.scene).unwrap();
+        assert!(again.scene == loaded.scene && bits(&again) == bits(&loaded), "{name}");
+        assert!(again.rules == loaded.rules && found.iter().count() == 0, "{name}");
+        let words = |loaded: &Loaded| course::write(&loaded.scene, loaded.dialect);
+        assert_eq!(words(&again), words(&loaded), "{name}");
+        let again = again.compile(&LoadOptions::default(), &mut files, &mut found).unwrap();
+        let job = Job { width: 8, height: 6, method: method(&loaded), ..Job::default() };
+        let hash = |world: &World| {
+            let part = Part::new(world, &job, Shard::WHOLE).unwrap();
+            part.render(world, &Control::default(), &mut |_, _| {}).unwrap();
+            part.hash()
+        };
+        assert_eq!(hash(&again), hash(&world), "{name}");
     }
 }

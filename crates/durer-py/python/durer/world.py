@@ -327,7 +327,7 @@ class World:
 
     @property
     def description(self) -> dict[str, Any]:
-        """The scene as data."""
+        """The scene as data, as `durer convert` writes it as JSON."""
         scene: dict[str, Any] = json.loads(self._world.description())
         return scene
 

@@ -1,22 +1,22 @@
 //! The files that a scene names: each is read and decoded once.
 
 use super::Resources;
+use super::kept::Origin;
+use super::pictures::{Encoding, decode};
 use crate::describe::FileName;
 use crate::diag::{Diagnostic, Diagnostics, Severity, at_least, at_most};
 use crate::dialect::{Compat, Rules};
 use crate::format;
 use crate::image::{self, Encoded, ImageError};
 use crate::light::{Emitter as _, Light, Profile};
-use crate::material::PrincipledMaterial;
-use crate::material::parameters::{Change, TEXTURED, Textured};
 use crate::math::Aabb;
 use crate::medium::DensityGrid;
 use crate::scene::{Assets, Background, PictureBytes};
 use crate::shape::{HeightField, Mesh, MeshData};
-use crate::source::SourceError;
+use crate::source::{Digest, SourceError};
 use crate::spectrum::{Curve, illuminants};
-use crate::texture::{Channel, CieSky, CubeMap, Environment, Mapping, Sky, Texture, sky};
-use crate::world::{Map, Maps, MeshTree};
+use crate::texture::{CieSky, CubeMap, Environment, Sky, Texture, sky};
+use crate::world::MeshTree;
 use rayon::prelude::*;
 use std::collections::HashMap;
 use std::path::PathBuf;
@@ -30,31 +30,22 @@ const TRIANGLE_BYTES: u64 = TREE_BYTES + size_of::<[[u32; 3]; 2]>() as u64;
 /// Columns of the picture of a sky.
 const SKY_WIDTH: u32 = 512;
 
-/// What the eight bits of a picture mean.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-enum Encoding {
-    /// Colours, by sRGB's curve.
-    Srgb,
-    /// Other numbers, from 0 to 1.
-    Linear,
-}
-
 /// A picture's name, and what its values mean.
-type PictureKey = (String, Encoding);
+pub(super) type PictureKey = (String, Encoding);
 
 pub(super) struct Loader<'r> {
     pub(super) resources: Resources<'r>,
     rules: Rules,
-    assets: &'r Assets,
+    pub(super) assets: &'r Assets,
     /// By path; `None` for files that could not be read, which are complained of once.
     meshes: HashMap<String, Option<Arc<MeshTree>>>,
     texture_numbers: HashMap<String, Option<u32>>,
     /// Numbers of the textures of materials in layers, by the picture's name and the curve of its values.
-    map_numbers: HashMap<PictureKey, Option<u32>>,
-    /// What was decoded for those, by the name of the file or the bytes' place in memory.
-    decoded: HashMap<PictureKey, Option<Texture>>,
+    pub(super) map_numbers: HashMap<PictureKey, Option<u32>>,
+    /// What was decoded, by the name of the file or the bytes' place in memory.
+    pub(super) decoded: HashMap<PictureKey, Option<Texture>>,
     /// What was decoded before somebody asked for it.
-    ahead: HashMap<PictureKey, Texture>,
+    pub(super) ahead: HashMap<PictureKey, Texture>,
     pub(super) textures: Vec<Texture>,
 }
 
@@ -78,7 +69,19 @@ impl<'r> Loader<'r> {
         if let Some(known) = self.meshes.get(&name.path) {
             return known.clone();
         }
-        let mesh = match self.assets.meshes.get(&name.path) {
+        let asset = self.assets.meshes.get(&name.path);
+        let origin = self.origin(&name.path, || asset.map(|data| data.digest()));
+        let known = origin.as_ref().and_then(|origin| self.resources.kept?.mesh(origin));
+        if let Some(known) = known {
+            self.remember(&name.path, origin.as_ref(), known.digest);
+            let mesh = &known.thing.mesh;
+            let needed = mesh.bytes() as u64 + TREE_BYTES * mesh.triangles().len() as u64;
+            let tree = self.charge(name, needed, diagnostics).then_some(known.thing);
+            self.meshes.insert(name.path.clone(), tree.clone());
+            return tree;
+        }
+        let said = diagnostics.iter().count();
+        let mesh = match asset {
             Some(data) => Some(MeshData::clone(data)),
             None => self.mesh_file(name, diagnostics),
         };
@@ -97,8 +100,27 @@ impl<'r> Loader<'r> {
             let least_volume = if self.rules.has(Compat::ThinTriangles) { 1e-6 } else { 0.0 };
             Arc::new(MeshTree::new(mesh).least_volume(least_volume))
         });
+        // What there is to say of a file is said each time.
+        if let (Some(kept), Some(origin), Some(tree), true) =
+            (self.resources.kept, origin, &tree, diagnostics.iter().count() == said)
+        {
+            kept.keep_mesh(origin, tree, self.resources.source.digest_of(&name.path));
+        }
         self.meshes.insert(name.path.clone(), tree.clone());
         tree
+    }
+
+    /// What something is made of, if what is made is to be kept: a thing in memory by its hash, else a file.
+    pub(super) fn origin(&self, path: &str, memory: impl FnOnce() -> Option<Digest>) -> Option<Origin> {
+        self.resources.kept?;
+        memory().map(Origin::Memory).or_else(|| self.resources.source.stamp(path).map(Origin::File))
+    }
+
+    /// Counts a file among those that were read, which was read earlier.
+    pub(super) fn remember(&self, path: &str, origin: Option<&Origin>, digest: Option<Digest>) {
+        if let (Some(Origin::File(stamp)), Some(digest)) = (origin, digest) {
+            self.resources.source.remember_unread(path, stamp, digest);
+        }
     }
 
     /// What a mesh file holds.
@@ -174,136 +196,14 @@ impl<'r> Loader<'r> {
         if let Some(known) = self.texture_numbers.get(&name.path) {
             return *known;
         }
-        let bytes = self.read(name, "texture", diagnostics);
-        let (srgb, memory) = (self.rules.srgb_textures, self.resources.memory);
-        let texture = bytes.and_then(|bytes| decode(name, &name.path, &bytes, srgb, memory, diagnostics));
-        let texture = texture.filter(|texture| self.charge(name, texture.bytes() as u64, diagnostics));
+        let encoding = if self.rules.srgb_textures { Encoding::Srgb } else { Encoding::Linear };
+        let texture = self.picture(name, PictureBytes::File(name.path.clone()), encoding, diagnostics);
         let number = texture.map(|texture| {
             self.textures.push(texture);
             (self.textures.len() - 1) as u32
         });
         self.texture_numbers.insert(name.path.clone(), number);
         number
-    }
-
-    /// The number of a texture of a material in layers: an asset's, or a file's that repeats without end.
-    fn map(&mut self, name: &FileName, encoding: Encoding, diagnostics: &mut Diagnostics) -> Option<u32> {
-        let key = (name.path.clone(), encoding);
-        if let Some(known) = self.map_numbers.get(&key) {
-            return *known;
-        }
-        let (bytes, mapping) = self.found(name);
-        let texture = self.picture(name, bytes, encoding, diagnostics);
-        let number = texture.map(|texture| {
-            self.textures.push(texture.mapped(mapping));
-            (self.textures.len() - 1) as u32
-        });
-        self.map_numbers.insert(key, number);
-        number
-    }
-
-    /// Where the bytes of a picture are, and how it lies.
-    fn found(&self, name: &FileName) -> (PictureBytes, Mapping) {
-        if let Some(asset) = self.assets.pictures.get(&name.path) {
-            return (asset.bytes.clone(), asset.mapping);
-        }
-        let word = name.path.rsplit_once(':').and_then(|(path, word)| Some((path, Channel::from_word(word)?)));
-        let mapping = Mapping { channel: word.map(|(_, channel)| channel), ..Mapping::default() };
-        (PictureBytes::File(word.map_or(name.path.as_str(), |(path, _)| path).into()), mapping)
-    }
-
-    /// Decodes the pictures of materials side by side, as far as memory has room for all of them together. Those that cannot be
-    /// had are left to whoever asks for them, and has a place to complain at.
-    pub(super) fn decode_ahead<'m>(&mut self, materials: impl Iterator<Item = &'m PrincipledMaterial>) {
-        let mut left = self.resources.memory;
-        let mut packed: Vec<(PictureKey, Arc<[u8]>)> = Vec::new();
-        for (name, encoding) in materials.flat_map(pictures) {
-            let (bytes, _) = self.found(name);
-            let (path, bytes) = match bytes {
-                PictureBytes::Here(path, bytes) => (path, Some(bytes)),
-                PictureBytes::File(path) if packed.iter().any(|(known, _)| known.0 == path && known.1 == encoding) => {
-                    (path, None)
-                }
-                PictureBytes::File(path) => (path.clone(), self.resources.source.read(&path).ok()),
-            };
-            let key = (path, encoding);
-            let Some(bytes) = bytes.filter(|_| packed.iter().all(|(known, _)| *known != key)) else { continue };
-            let needed = Encoded::open(&bytes, &key.0).map_or(0, |encoded| encoded.needed8());
-            let Some(rest) = left.checked_sub(needed) else { break };
-            left = rest;
-            packed.push((key, bytes));
-        }
-        if packed.len() < 2 {
-            return;
-        }
-        let memory = self.resources.memory;
-        let decoded = packed.into_par_iter().filter_map(|(key, bytes)| {
-            let name = FileName { path: key.0.clone(), span: Default::default() };
-            let texture = decode(&name, &key.0, &bytes, key.1 == Encoding::Srgb, memory, &mut Diagnostics::default())?;
-            Some((key, texture))
-        });
-        self.ahead = decoded.collect();
-    }
-
-    /// The textures of a material in layers; what is wrong with one is said, and the material goes without it.
-    pub(super) fn maps(&mut self, layers: &PrincipledMaterial, diagnostics: &mut Diagnostics) -> Maps {
-        let mut one = |name: Option<&FileName>, encoding| name.and_then(|name| self.map(name, encoding, diagnostics));
-        let mut maps = Maps {
-            base_color: one(layers.base_color_texture.as_ref(), Encoding::Srgb),
-            emission: one(layers.emission_texture.as_ref(), Encoding::Srgb),
-            opacity: one(layers.opacity_texture.as_ref(), Encoding::Linear),
-            normal: one(layers.normal_texture.as_ref(), Encoding::Linear),
-            bump: one(layers.bump_texture.as_ref(), Encoding::Linear),
-            bump_height: layers.bump_height,
-            parameters: Vec::new(),
-        };
-        for (row, textured) in TEXTURED.iter().enumerate() {
-            if let Some(texture) = one((textured.picture)(layers), textured.encoding()) {
-                maps.parameters.push(Map { row, texture, channel: None });
-            }
-        }
-        if let Some(texture) = one(layers.metallic_roughness_texture.as_ref(), Encoding::Linear) {
-            for (row, textured) in TEXTURED.iter().enumerate() {
-                let channel = match textured.field {
-                    "specular_roughness_texture" => Channel::Green,
-                    "base_metalness_texture" => Channel::Blue,
-                    _ => continue,
-                };
-                maps.parameters.push(Map { row, texture, channel: Some(channel) });
-            }
-        }
-        maps
-    }
-
-    /// A picture, decoded once whatever number of textures shows it.
-    fn picture(
-        &mut self,
-        name: &FileName,
-        bytes: PictureBytes,
-        encoding: Encoding,
-        diagnostics: &mut Diagnostics,
-    ) -> Option<Texture> {
-        let path = match &bytes {
-            PictureBytes::File(path) | PictureBytes::Here(path, _) => path.clone(),
-        };
-        let key = (path.clone(), encoding);
-        if let Some(known) = self.decoded.get(&key) {
-            return known.clone();
-        }
-        if let Some(texture) = self.ahead.remove(&key) {
-            let texture = Some(texture).filter(|texture| self.charge(name, texture.bytes() as u64, diagnostics));
-            self.decoded.insert(key, texture.clone());
-            return texture;
-        }
-        let bytes = match bytes {
-            PictureBytes::Here(_, bytes) => Some(bytes),
-            PictureBytes::File(path) => self.read(&FileName { path, span: name.span }, "texture", diagnostics),
-        };
-        let (srgb, memory) = (encoding == Encoding::Srgb, self.resources.memory);
-        let texture = bytes.and_then(|bytes| decode(name, &path, &bytes, srgb, memory, diagnostics));
-        let texture = texture.filter(|texture| self.charge(name, texture.bytes() as u64, diagnostics));
-        self.decoded.insert(key, texture.clone());
-        texture
     }
 
     /// The cube map of a folder; where it may be missing, that is a warning.
@@ -448,7 +348,7 @@ impl<'r> Loader<'r> {
     }
 
     /// Takes memory from what is left; says so where there is too little.
-    fn charge(&mut self, name: &FileName, needed: u64, diagnostics: &mut Diagnostics) -> bool {
+    pub(super) fn charge(&mut self, name: &FileName, needed: u64, diagnostics: &mut Diagnostics) -> bool {
         let left = self.resources.memory;
         self.resources.memory = left.saturating_sub(needed);
         if needed > left {
@@ -460,7 +360,7 @@ impl<'r> Loader<'r> {
     }
 
     /// Reads a file; what goes wrong is said at the place that names it.
-    fn read(&self, name: &FileName, what: &str, diagnostics: &mut Diagnostics) -> Option<Arc<[u8]>> {
+    pub(super) fn read(&self, name: &FileName, what: &str, diagnostics: &mut Diagnostics) -> Option<Arc<[u8]>> {
         // Nobody would read of a file that is missing too.
         if diagnostics.is_full() {
             return None;
@@ -489,29 +389,6 @@ impl<'r> Loader<'r> {
     }
 }
 
-/// The pictures of a material in layers.
-fn pictures(layers: &PrincipledMaterial) -> impl Iterator<Item = (&FileName, Encoding)> {
-    let own = [
-        (layers.emission_texture.as_ref(), Encoding::Srgb),
-        (layers.opacity_texture.as_ref(), Encoding::Linear),
-        (layers.normal_texture.as_ref(), Encoding::Linear),
-        (layers.bump_texture.as_ref(), Encoding::Linear),
-        (layers.metallic_roughness_texture.as_ref(), Encoding::Linear),
-    ];
-    let parameters = TEXTURED.iter().map(|textured| ((textured.picture)(layers), textured.encoding()));
-    own.into_iter().chain(parameters).filter_map(|(name, encoding)| Some((name?, encoding)))
-}
-
-impl Textured {
-    /// Colours are shown, numbers are not.
-    fn encoding(&self) -> Encoding {
-        match self.change {
-            Change::Number(_) => Encoding::Linear,
-            Change::Color(_) => Encoding::Srgb,
-        }
-    }
-}
-
 /// Where a file was looked for, and a file there that has nearly its name.
 fn missing_help(tried: &[PathBuf], near: Option<&str>) -> String {
     let shown: Vec<String> = tried.iter().map(|path| path.display().to_string()).collect();
@@ -521,24 +398,13 @@ fn missing_help(tried: &[PathBuf], near: Option<&str>) -> String {
     }
 }
 
-/// The texture of a picture, decoded within some bytes of memory.
-fn decode(
+/// What came of reading a picture; an error is said at the place that names it.
+pub(super) fn used<T>(
     name: &FileName,
     path: &str,
-    bytes: &[u8],
-    srgb: bool,
-    memory: u64,
+    read: Result<T, ImageError>,
     diagnostics: &mut Diagnostics,
-) -> Option<Texture> {
-    let picture = Encoded::open(bytes, path).and_then(|encoded| encoded.read_eight(memory));
-    let picture = used(name, path, picture, diagnostics)?;
-    let texture = Texture::new(picture.width, picture.height, picture.pixels)?;
-    let texture = texture.with_alpha(Some(picture.alpha));
-    Some(if srgb { texture.decoded(image::decode_srgb) } else { texture })
-}
-
-/// What came of reading a picture; an error is said at the place that names it.
-fn used<T>(name: &FileName, path: &str, read: Result<T, ImageError>, diagnostics: &mut Diagnostics) -> Option<T> {
+) -> Option<T> {
     let refuse = |error: ImageError| {
         let message = format!("the picture `{path}` cannot be used: {error}");
         let diagnostic = Diagnostic::error(message).code("bad-file").at(name.span);

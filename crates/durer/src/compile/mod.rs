@@ -1,8 +1,10 @@
 //! From the description to the world. The description ends here.
 
 mod files;
+mod kept;
 mod materials;
 mod media;
+mod pictures;
 mod solids;
 #[cfg(test)]
 pub(crate) mod testing;
@@ -21,6 +23,7 @@ use crate::texture::Sky;
 use crate::texture::sky::SUN_RADIUS;
 use crate::world::{Accel, Emitters, Geometry, MeshTree, Object, Phong, World};
 use glam::DAffine3;
+pub use kept::{Kept, Reuse};
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -46,6 +49,8 @@ pub struct Resources<'a> {
     pub sky_optional: bool,
     /// Bytes that meshes and pictures may take.
     pub memory: u64,
+    /// What was made of the same files before, and is kept again.
+    pub kept: Option<&'a Kept>,
 }
 
 /// Turns a scene into a world. Errors and warnings are collected; with an error, there is no world.
@@ -57,6 +62,10 @@ pub fn compile(
     diagnostics: &mut Diagnostics,
 ) -> Option<World> {
     let mut own = Diagnostics::default();
+    let kept = resources.kept;
+    if let Some(kept) = kept {
+        kept.begin(rules);
+    }
     let mut loader = files::Loader::new(resources, rules, &scene.assets);
     let Some(camera) = scene.camera.clone() else {
         diagnostics.push(Diagnostic::error("the scene has no camera").code("no-camera").help(match is_nodes(rules) {
@@ -113,6 +122,9 @@ pub fn compile(
     diagnostics.extend(own);
     if failed {
         return None;
+    }
+    if let Some(kept) = kept {
+        kept.finish();
     }
     let mut world = World {
         frame: Frame::of(&camera, rules),

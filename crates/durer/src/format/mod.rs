@@ -8,6 +8,7 @@ pub mod course;
 pub mod curve;
 mod gltf;
 pub mod ies;
+pub mod json;
 mod mitsuba;
 mod number;
 pub mod obj;

@@ -7,6 +7,7 @@ mod codec;
 mod exr;
 mod hdr;
 mod jpeg;
+mod ktx2;
 mod pfm;
 mod png;
 mod ppm;
@@ -19,7 +20,7 @@ pub use rows::{RowFormat, RowWriter, Strip};
 use super::limits;
 use super::{Display, Image, Image8, ImageError, Layer, LayerKind, Transfer};
 use crate::diag;
-use std::panic::UnwindSafe;
+use crate::panics::caught;
 use std::path::Path;
 
 /// Every format that is known, in the order in which content is tried.
@@ -27,7 +28,7 @@ pub static FORMATS: &[Format] =
     &[png::FORMAT, tga::FORMAT, bmp::FORMAT, ppm::FORMAT, pfm::FORMAT, exr::FORMAT, hdr::FORMAT];
 
 /// Formats that are read and not written.
-static READ_ONLY: &[Format] = &[jpeg::FORMAT, webp::FORMAT];
+static READ_ONLY: &[Format] = &[jpeg::FORMAT, webp::FORMAT, ktx2::FORMAT];
 
 /// What a file holds for each channel of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -59,12 +60,14 @@ pub(super) struct Head {
     pub spare: u64,
 }
 
-/// What a reader found in a file.
-pub(super) enum Raster {
+/// What a file holds.
+pub enum Raster {
     /// Eight bits a channel.
     Eight(Image8),
-    /// Anything else.
-    Float(Image),
+    /// Sixteen bits a channel, from 0 to 1: a curve says what they mean. The opacity of each pixel, if the file has it.
+    Sixteen(Image, Vec<f32>),
+    /// Numbers as they are, with opacity.
+    Float(Image, Vec<f32>),
 }
 
 /// Appends layers that were checked to fit the format.
@@ -146,8 +149,8 @@ impl Format {
     }
 
     /// Most decoders are other people's code. Should one of them panic, this is one more malformed file.
-    fn caught<T>(&self, work: impl FnOnce() -> Result<T, ImageError> + UnwindSafe) -> Result<T, ImageError> {
-        std::panic::catch_unwind(work).unwrap_or_else(|_| Err(ImageError::malformed(self.name, "its decoder failed")))
+    fn caught<T>(&self, work: impl FnOnce() -> Result<T, ImageError>) -> Result<T, ImageError> {
+        caught(work).unwrap_or_else(|| Err(ImageError::malformed(self.name, "its decoder failed")))
     }
 
     fn has_extension(&self, path: &str) -> bool {

@@ -36,7 +36,7 @@ impl<'a> Encoded<'a> {
         self.format.depth
     }
 
-    /// Bytes of memory that reading it as an eight-bit picture takes; those of its file are not among them.
+    /// Bytes of memory that reading it as it is takes; those of its file are not among them.
     pub fn needed8(&self) -> u64 {
         (self.count as u64).saturating_mul(self.head.bytes_per_pixel).saturating_add(self.head.spare)
     }
@@ -57,21 +57,16 @@ impl<'a> Encoded<'a> {
         }
         match self.decode(self.needed8(), memory)? {
             Raster::Eight(image) => Ok(image),
-            Raster::Float(_) => Err(ImageError::NotEightBit),
+            Raster::Sixteen(..) | Raster::Float(..) => Err(ImageError::NotEightBit),
         }
     }
 
-    /// Its values in eight bits: those of sixteen are rounded. Numbers of floating-point formats have no eight bits.
+    /// Its values as they stand in the file.
     ///
     /// # Errors
-    /// Those of [`Encoded::read8`].
-    pub fn read_eight(&self, memory: u64) -> Result<Image8, ImageError> {
-        if self.head.eight || self.format.depth == Depth::Float {
-            return self.read8(memory);
-        }
-        let Image { width, height, pixels } = self.read(memory, decode_linear)?;
-        let eight = |pixel: Vec3| pixel.to_array().map(|value| (value * 255.0 + 0.5) as u8);
-        Ok(Image8 { width, height, pixels: pixels.into_iter().map(eight).collect(), alpha: Vec::new() })
+    /// [`ImageError::Memory`] where it needs more bytes than allowed, and those of [`Encoded::open`].
+    pub fn read_raster(&self, memory: u64) -> Result<Raster, ImageError> {
+        self.decode(self.needed8(), memory)
     }
 
     /// Its pixels, with a meaning for each of the values of eight bits. Numbers of floating-point formats come as they are.
@@ -80,7 +75,7 @@ impl<'a> Encoded<'a> {
     /// Those of [`Encoded::read8`].
     pub fn read(&self, memory: u64, decode: fn(u8) -> f32) -> Result<Image, ImageError> {
         Ok(match self.decode(self.needed(), memory)? {
-            Raster::Float(image) => image,
+            Raster::Sixteen(image, _) | Raster::Float(image, _) => image,
             Raster::Eight(Image8 { width, height, pixels, .. }) => {
                 let table: [f32; 256] = std::array::from_fn(|value| decode(value as u8));
                 let mut all = Vec::new();

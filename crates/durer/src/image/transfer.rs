@@ -112,7 +112,11 @@ pub fn decode_linear(value: u8) -> f32 {
 
 /// The linear value of an eight-bit sRGB value: the inverse curve of IEC 61966-2-1.
 pub fn decode_srgb(value: u8) -> f32 {
-    let value = decode_linear(value);
+    linear_from_srgb(decode_linear(value))
+}
+
+/// The same for values from 0 to 1.
+pub fn linear_from_srgb(value: f32) -> f32 {
     if value <= 0.04045 { value / 12.92 } else { fp::pow((value + 0.055) / 1.055, 2.4) }
 }
 

@@ -19,33 +19,74 @@ use std::sync::Arc;
 pub struct Texture {
     width: u32,
     height: u32,
-    /// Eight bits a channel, row 0 on top.
-    texels: Arc<[[u8; 3]]>,
-    /// What each of the 256 values means.
-    values: Box<[f32; 256]>,
-    /// Opacity of each texel in 255ths, where not all are opaque.
-    alpha: Option<Arc<[u8]>>,
+    texels: Texels,
+    /// Opacity of each texel, where not all are opaque.
+    alpha: Option<Opacity>,
     mapping: Option<Mapping>,
+}
+
+/// Red, green and blue, row 0 on top.
+#[derive(Clone, Debug, PartialEq)]
+enum Texels {
+    /// Eight bits a channel, and what each of the 256 values means.
+    Eight(Arc<[[u8; 3]]>, Box<[f32; 256]>),
+    /// The numbers themselves.
+    Float(Arc<[Color]>),
+}
+
+#[derive(Clone, Debug, PartialEq)]
+enum Opacity {
+    /// In 255ths.
+    Eight(Arc<[u8]>),
+    /// From 0 to 1.
+    Float(Arc<[f32]>),
 }
 
 impl Texture {
     /// From texels, row 0 on top. `None` unless there are width times height of them, and at least one.
     pub fn new(width: u32, height: u32, texels: Vec<[u8; 3]>) -> Option<Self> {
-        let count = (width as usize).checked_mul(height as usize)?;
         let values = Box::new(std::array::from_fn(|i| i as f32 / 255.0));
-        (count > 0 && texels.len() == count).then_some(Texture {
-            width,
-            height,
-            texels: texels.into(),
-            values,
-            alpha: None,
-            mapping: None,
-        })
+        Texture::of(width, height, texels.len(), || Texels::Eight(texels.into(), values))
     }
 
-    /// The same texels, with other meanings of the 256 values.
+    /// The same from numbers of single precision.
+    pub fn from_floats(width: u32, height: u32, texels: Vec<Color>) -> Option<Self> {
+        Texture::of(width, height, texels.len(), || Texels::Float(texels.into()))
+    }
+
+    fn of(width: u32, height: u32, count: usize, texels: impl FnOnce() -> Texels) -> Option<Self> {
+        let fits = (width as usize).checked_mul(height as usize).is_some_and(|wanted| wanted == count && count > 0);
+        fits.then(|| Texture { width, height, texels: texels(), alpha: None, mapping: None })
+    }
+
+    /// The same texels, with other meanings of the 256 values of eight bits.
     pub fn decoded(self, decode: impl Fn(u8) -> f32) -> Self {
-        Texture { values: Box::new(std::array::from_fn(|i| decode(i as u8))), ..self }
+        let texels = match self.texels {
+            Texels::Eight(texels, _) => Texels::Eight(texels, Box::new(std::array::from_fn(|i| decode(i as u8)))),
+            floats => floats,
+        };
+        Texture { texels, ..self }
+    }
+
+    fn count(&self) -> usize {
+        self.width as usize * self.height as usize
+    }
+
+    /// The colour of a texel.
+    fn color(&self, at: usize) -> [f32; 3] {
+        match &self.texels {
+            Texels::Eight(texels, values) => texels[at].map(|c| values[usize::from(c)]),
+            Texels::Float(texels) => texels[at].to_array(),
+        }
+    }
+
+    /// The opacity of a texel.
+    fn opacity(&self, at: usize) -> f32 {
+        match &self.alpha {
+            None => 1.0,
+            Some(Opacity::Eight(alpha)) => f32::from(alpha[at]) / 255.0,
+            Some(Opacity::Float(alpha)) => alpha[at],
+        }
     }
 
     /// Whether it is not opaque everywhere.
@@ -55,18 +96,36 @@ impl Texture {
 
     /// Bytes in memory.
     pub fn bytes(&self) -> usize {
-        self.texels.len() * 3 + self.alpha.as_ref().map_or(0, |alpha| alpha.len())
+        let texel = match &self.texels {
+            Texels::Eight(..) => size_of::<[u8; 3]>(),
+            Texels::Float(_) => size_of::<Color>(),
+        };
+        let opacity = match &self.alpha {
+            None => 0,
+            Some(Opacity::Eight(_)) => size_of::<u8>(),
+            Some(Opacity::Float(_)) => size_of::<f32>(),
+        };
+        self.count() * (texel + opacity)
     }
 
     /// The same with an opacity for each texel; opaque where there are not as many.
     pub fn with_alpha(self, alpha: Option<Vec<u8>>) -> Self {
-        let alpha = alpha.filter(|alpha| alpha.len() == self.texels.len() && alpha.iter().any(|&a| a < 255));
-        Texture { alpha: alpha.map(Into::into), ..self }
+        let alpha = alpha.filter(|alpha| alpha.len() == self.count() && alpha.iter().any(|&a| a < 255));
+        Texture { alpha: alpha.map(|alpha| Opacity::Eight(alpha.into())), ..self }
+    }
+
+    /// The same with opacities of single precision.
+    pub fn with_opacity(self, alpha: Vec<f32>) -> Self {
+        let is_given = alpha.len() == self.count() && alpha.iter().any(|&a| a < 1.0);
+        Texture { alpha: is_given.then(|| Opacity::Float(alpha.into())), ..self }
     }
 
     /// Whether all texels are the same.
     pub fn is_flat(&self) -> bool {
-        self.texels.iter().all(|texel| *texel == self.texels[0])
+        match &self.texels {
+            Texels::Eight(texels, _) => texels.iter().all(|texel| *texel == texels[0]),
+            Texels::Float(texels) => texels.iter().all(|texel| *texel == texels[0]),
+        }
     }
 
     /// The same texels, shared, lying otherwise on surfaces.
@@ -105,8 +164,8 @@ impl Texture {
         let texel = |i: i64, j: i64| {
             let (i, j) = (mapping.wrap[0].index(i, self.width), mapping.wrap[1].index(j, self.height));
             let at = j as usize * self.width as usize + i as usize;
-            let [r, g, b] = self.texels[at].map(|c| self.values[usize::from(c)]);
-            [r, g, b, self.alpha.as_ref().map_or(1.0, |alpha| f32::from(alpha[at]) / 255.0)]
+            let [r, g, b] = self.color(at);
+            [r, g, b, self.opacity(at)]
         };
         if mapping.nearest {
             return mapping.cut(texel(x.floor() as i64, y.floor() as i64));
@@ -140,7 +199,7 @@ impl Texture {
         let texel = |dx: f32, dy: f32| {
             let i = ((left + dx) as u32).min(self.width - 1);
             let j = ((top + dy) as u32).min(self.height - 1);
-            Color::from(self.texels[j as usize * self.width as usize + i as usize].map(|c| self.values[usize::from(c)]))
+            Color::from(self.color(j as usize * self.width as usize + i as usize))
         };
         (1.0 - b) * ((1.0 - a) * texel(0.0, 0.0) + a * texel(1.0, 0.0))
             + b * ((1.0 - a) * texel(0.0, 1.0) + a * texel(1.0, 1.0))

@@ -58,6 +58,12 @@ pub(super) fn tokens(bytes: &[u8], file: u32) -> Vec<Token> {
     tokens
 }
 
+/// Whether a text is one word, as paths are.
+pub(in crate::format) fn is_word(text: &str) -> bool {
+    let whole = |token: &Token| token.kind == TokenKind::Word && token.span.end as usize == text.len();
+    matches!(tokens(text.as_bytes(), 0).as_slice(), [token] if whole(token) && token.span.start == 0)
+}
+
 fn is_blank(b: u8) -> bool {
     b.is_ascii_whitespace() || b == 0x0b || b == 0
 }

@@ -23,6 +23,8 @@ use crate::dialect::{CompatSet, Dialect};
 use crate::scene::Scene;
 pub use guess::{Guess, Hint, guess};
 pub use include::{Opened, below};
+pub(super) use lexer::is_word;
+pub(super) use transform::{flat, senseless};
 pub use write::write;
 
 /// How a scene file is to be read.

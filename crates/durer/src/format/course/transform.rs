@@ -69,15 +69,8 @@ impl Reader<'_, '_> {
 
     /// Complains of a matrix that flattens space, by its own.
     pub(super) fn check_flat(&mut self, op: Option<MatrixOp>, span: Span) {
-        let flat = match op {
-            Some(MatrixOp::Scale(v)) => v.to_array().contains(&0.0),
-            Some(MatrixOp::UniformScale(s)) => s == 0.0,
-            _ => false,
-        };
-        if flat {
-            let message = "a scale by 0 flattens space, which cannot be undone";
-            let error = Diagnostic::error(message).code("flat-transform").at(span.to(self.last_span()));
-            self.error(error.help("what should keep its size along an axis has a scale of 1 there"));
+        if let Some(error) = op.and_then(flat) {
+            self.error(error.at(span.to(self.last_span())));
         }
     }
 
@@ -201,8 +194,19 @@ impl Reader<'_, '_> {
     }
 }
 
+/// What is wrong with a matrix that moves objects and flattens space.
+pub(in crate::format) fn flat(op: MatrixOp) -> Option<Diagnostic> {
+    let flat = match op {
+        MatrixOp::Scale(v) => v.to_array().contains(&0.0),
+        MatrixOp::UniformScale(s) => s == 0.0,
+        _ => false,
+    };
+    let error = Diagnostic::error("a scale by 0 flattens space, which cannot be undone").code("flat-transform");
+    flat.then(|| error.help("what should keep its size along an axis has a scale of 1 there"))
+}
+
 /// What is wrong with a matrix that has all its numbers.
-fn senseless(op: MatrixOp) -> Option<Diagnostic> {
+pub(in crate::format) fn senseless(op: MatrixOp) -> Option<Diagnostic> {
     match op {
         MatrixOp::Rotate(axis, _) if axis == Vec3::ZERO => {
             Some(Diagnostic::error("an axis of 0 0 0 points nowhere").help("write the axis first, then the angle"))

@@ -137,7 +137,11 @@ impl Writer {
             Node::Group(group) => self.group(group),
             Node::Transform(ops, inner) => self.block("Transform", |w| {
                 ops.iter().for_each(|op| w.matrix(op));
-                w.object(inner);
+                match inner.material == object.material {
+                    true => w.object(inner),
+                    // A transform has no word for a material: a group in it does.
+                    false => w.group(&Group { objects: vec![Object::clone(inner)] }),
+                }
             }),
             Node::Primitive(shape) => self.thing(shape),
             Node::Mesh(mesh) => self.thing(mesh),

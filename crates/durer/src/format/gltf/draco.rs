@@ -7,8 +7,8 @@ use super::Model;
 use super::accessor::Component;
 use super::buffers::{Slice, View};
 use super::json::At;
+use crate::panics::caught;
 use draco_core::{DataType, DecodeLimits, DecoderBuffer, Mesh, MeshDecoder, PointAttribute, PointIndex};
-use std::panic::{AssertUnwindSafe, catch_unwind};
 
 const DRACO: &str = "KHR_draco_mesh_compression";
 
@@ -95,11 +95,11 @@ fn decoded(bytes: &[u8], left: u64) -> Result<Mesh, String> {
         let mut buffer = DecoderBuffer::new(bytes).with_limits(limits);
         MeshDecoder::new().decode(&mut buffer, &mut mesh).map(|()| mesh)
     };
-    match catch_unwind(AssertUnwindSafe(decode)) {
-        Ok(Ok(mesh)) if mesh.num_points() <= u32::MAX as usize => Ok(mesh),
-        Ok(Ok(_)) => Err("too many points".into()),
-        Ok(Err(error)) => Err(error.to_string()),
-        Err(_) => Err("their decoder failed".into()),
+    match caught(decode) {
+        Some(Ok(mesh)) if mesh.num_points() <= u32::MAX as usize => Ok(mesh),
+        Some(Ok(_)) => Err("too many points".into()),
+        Some(Err(error)) => Err(error.to_string()),
+        None => Err("their decoder failed".into()),
     }
 }
 

@@ -58,9 +58,7 @@ impl Model<'_> {
                 PictureBytes::Here(name, found.slice?.bytes().into())
             }
         };
-        let (PictureBytes::File(name) | PictureBytes::Here(name, _)) = &found;
-        let is_ktx = kind == Some("image/ktx2") || name.to_lowercase().ends_with(".ktx2");
-        Some(if is_ktx { PictureBytes::File(format!("{KTX}{name}")) } else { found })
+        Some(found)
     }
 
     /// Reads a `textureInfo`: gives the name of the asset that it becomes, with changes to its mapping.
@@ -87,16 +85,6 @@ impl Model<'_> {
         mapping.second = set == 1;
         change(&mut mapping);
         let path = format!("{}#{}{role}", self.input.name, at.pointer());
-        if let PictureBytes::File(name) = &image
-            && let Some(name) = name.strip_prefix(KTX)
-        {
-            let message = format!(
-                "the picture {name} is KTX2 (KHR_texture_basisu), which is not read: convert it to PNG with `ktx extract` \
-                 or the file with `gltf-transform`"
-            );
-            at.error("UNSUPPORTED_EXTENSION", message);
-            return None;
-        }
         self.pictures.borrow_mut().insert(path.clone(), Picture { bytes: image, mapping });
         Some(FileName { path, span: at.span() })
     }
@@ -141,9 +129,6 @@ impl Model<'_> {
         Mapping { wrap: [mode("wrapS"), mode("wrapT")], nearest, ..Mapping::default() }
     }
 }
-
-/// Before the names of pictures that cannot be read.
-const KTX: &str = "\0ktx2:";
 
 /// The matrix of KHR_texture_transform: offset, rotation and scale.
 ///

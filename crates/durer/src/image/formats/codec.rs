@@ -29,13 +29,13 @@ pub fn head(decoder: &impl ImageDecoder) -> Head {
         bytes_per_pixel: match (color, eight) {
             (ColorType::Rgb8, _) => stored,
             (_, true) => stored + size_of::<[u8; 3]>() as u64 + u64::from(color.has_alpha()),
-            (_, false) => stored + size_of::<Vec3>() as u64,
+            (_, false) => stored + size_of::<[f32; 4]>() as u64,
         },
         spare: 0,
     }
 }
 
-/// Decodes the pixels: grey becomes three equal channels, alpha of eight bits is kept apart and other alpha dropped, sixteen bits become 0 to 1.
+/// Decodes the pixels: grey becomes three equal channels, alpha is kept apart, sixteen bits become 0 to 1.
 pub fn raster(name: &'static str, decoder: impl ImageDecoder) -> Result<Raster, ImageError> {
     let ((width, height), color) = (decoder.dimensions(), decoder.color_type());
     let count = width as usize * height as usize;
@@ -59,23 +59,23 @@ pub fn raster(name: &'static str, decoder: impl ImageDecoder) -> Result<Raster, 
             };
             Raster::Eight(Image8 { width, height, pixels: filled(count, pixels.map(eight))?, alpha })
         }
-        ColorType::L16 | ColorType::La16 => {
-            float_raster(width, height, pixels.map(|pixel| Vec3::splat(sixteen(pixel))))?
-        }
-        ColorType::Rgb16 | ColorType::Rgba16 => {
-            let pixel = |p: &[u8]| Vec3::new(sixteen(p), sixteen(&p[2..]), sixteen(&p[4..]));
-            float_raster(width, height, pixels.map(pixel))?
+        ColorType::L16 | ColorType::La16 | ColorType::Rgb16 | ColorType::Rgba16 => {
+            let alpha = match color.has_alpha() {
+                true => filled(count, pixels.clone().map(|pixel| sixteen(&pixel[pixel.len() - 2..])))?,
+                false => Vec::new(),
+            };
+            let pixel = |p: &[u8]| match p.len() < 6 {
+                true => Vec3::splat(sixteen(p)),
+                false => Vec3::new(sixteen(p), sixteen(&p[2..]), sixteen(&p[4..])),
+            };
+            Raster::Sixteen(Image { width, height, pixels: filled(count, pixels.map(pixel))? }, alpha)
         }
         ColorType::Rgb32F | ColorType::Rgba32F => {
             let pixel = |p: &[u8]| Vec3::new(float(p), float(&p[4..]), float(&p[8..]));
-            float_raster(width, height, pixels.map(pixel))?
+            Raster::Float(Image { width, height, pixels: filled(count, pixels.map(pixel))? }, Vec::new())
         }
         _ => return Err(ImageError::unsupported(name, format!("pixels of the kind {color:?}"))),
     })
-}
-
-fn float_raster(width: u32, height: u32, pixels: impl ExactSizeIterator<Item = Vec3>) -> Result<Raster, ImageError> {
-    Ok(Raster::Float(Image { width, height, pixels: filled(pixels.len(), pixels)? }))
 }
 
 fn filled<T>(count: usize, items: impl Iterator<Item = T>) -> Result<Vec<T>, ImageError> {

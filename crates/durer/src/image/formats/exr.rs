@@ -156,7 +156,7 @@ fn decode(bytes: &[u8]) -> Result<Raster, ImageError> {
         let reader = channels.collect_pixels(|_, _| room.take(), place).first_valid_layer().all_attributes();
         reader.non_parallel().from_buffered(Cursor::new(bytes)).map_err(malformed)?.layer_data.channel_data.pixels
     };
-    Ok(Raster::Float(Image { width: width as u32, height: height as u32, pixels: picture }))
+    Ok(Raster::Float(Image { width: width as u32, height: height as u32, pixels: picture }, Vec::new()))
 }
 
 fn put(pixels: &mut [Vec3], width: usize, Vec2(x, y): Vec2<usize>, color: Vec3) {

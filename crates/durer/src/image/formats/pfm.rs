@@ -71,7 +71,7 @@ fn decode(bytes: &[u8]) -> Result<Raster, ImageError> {
     let mut pixels = room_for(count, Vec3::ZERO)?;
     let rows = samples.chunks_exact(width as usize * channels).rev();
     pixels.iter_mut().zip(rows.flat_map(|row| row.chunks_exact(channels))).for_each(|(to, pixel)| *to = color(pixel));
-    Ok(Raster::Float(Image { width, height, pixels }))
+    Ok(Raster::Float(Image { width, height, pixels }, Vec::new()))
 }
 
 /// The next word of the header; exactly one white space after it is skipped, for then the samples may begin.

@@ -36,7 +36,8 @@ fn head(bytes: &[u8]) -> Result<Head, ImageError> {
         (true, 3) => 3,
         (true, 2 | 4) => stored + 4,
         (true, _) => stored + 3,
-        (false, _) => 2 * stored + 12,
+        // The pixels and their opacity, of four bytes a number.
+        (false, _) => 2 * stored + 16,
     };
     Ok(Head { width, height, eight, bytes_per_pixel, spare: bytes.len() as u64 })
 }

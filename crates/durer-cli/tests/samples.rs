@@ -1,0 +1,225 @@
+//! What goes through several formats stays the same picture, and the Khronos sample models show what their cards promise.
+
+mod common;
+
+use common::{Place, corpus};
+use durer::diag::{Diagnostics, Files};
+use durer::image::Image8;
+use durer::{LoadOptions, load};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+const SMALL: &str = "--size 16x16 --samples 2 --quiet --hash";
+
+/// The hash of a small picture.
+#[track_caller]
+fn hash(place: &Place, scene: impl AsRef<Path>, more: &str) -> String {
+    place.gives(0, &format!("render {} -o x.png {SMALL} {more}", scene.as_ref().display())).out
+}
+
+/// Files with such endings in a folder and below it, in order. Arguments are parted at blanks here.
+fn below(folder: &Path, endings: &[&str], found: &mut Vec<PathBuf>) {
+    let Ok(entries) = std::fs::read_dir(folder) else { return };
+    let mut paths: Vec<PathBuf> = entries.map(|entry| entry.unwrap().path()).collect();
+    paths.sort();
+    for path in paths {
+        if path.is_dir() {
+            below(&path, endings, found);
+        } else if !path.to_string_lossy().contains(' ')
+            && path.extension().is_some_and(|ending| endings.iter().any(|wanted| ending == *wanted))
+        {
+            found.push(path);
+        }
+    }
+}
+
+/// The first file of a sample model of Khronos, if the samples are here.
+fn khronos(name: &str) -> Option<PathBuf> {
+    let folder = corpus()?.parent()?.join("samples/gltf/khronos").join(name);
+    let mut found = Vec::new();
+    below(&folder, &["glb", "gltf"], &mut found);
+    if found.is_empty() {
+        println!("skipped: there is no {}", folder.display());
+    }
+    found.into_iter().next()
+}
+
+/// How many scenes of each dialect of the corpus.
+const SCENES: usize = 3;
+
+#[test]
+fn scenes_of_the_course_come_back_from_our_own_words_and_from_json() {
+    let Some(folder) = corpus() else { return };
+    let mut all = Vec::new();
+    below(&folder, &["txt"], &mut all);
+    let mut tried = BTreeMap::new();
+    let place = Place::new();
+    for path in all {
+        // Whether it is a scene, and of which dialect.
+        let options = LoadOptions::default();
+        let read = load(&path, &options, &mut Files::default(), &mut Diagnostics::default()).unwrap();
+        let Some(dialect) = read.and_then(|loaded| Some(loaded.guess.as_ref()?.dialect.name())) else { continue };
+        let count = tried.entry(dialect).or_insert(0);
+        *count += 1;
+        if *count > SCENES {
+            continue;
+        }
+        let files = format!("--assets {}", path.parent().unwrap().display());
+        let shown = path.display().to_string();
+        place.gives(0, &format!("convert {shown} -o ours.txt --to durer {files}"));
+        place.gives(0, &format!("convert ours.txt -o back.txt --dialect durer --to {dialect} {files}"));
+        // With all habits of the year's program.
+        let asked = format!("{files} --dialect {dialect}");
+        assert_eq!(hash(&place, "back.txt", &asked), hash(&place, &path, &asked), "{shown}");
+        // JSON says whose words it has: in the words of another year they may mean something else.
+        place.gives(0, &format!("convert {shown} -o scene.json {files}"));
+        place.gives(0, &format!("convert scene.json -o back.txt --to {dialect} {files}"));
+        let usual = hash(&place, &path, &files);
+        assert_eq!(hash(&place, "scene.json", &files), usual, "{shown}");
+        assert_eq!(hash(&place, "back.txt", &asked), hash(&place, &path, &asked), "{shown}");
+    }
+    assert!(tried.len() >= 5, "{tried:?}");
+}
+
+/// Sample models that are written as glTF again, and why their picture is another then, if it is.
+const WRITTEN: [(&str, Option<&str>); 16] = [
+    ("AlphaBlendModeTest", None),
+    ("AnimatedMorphCube", None),
+    ("BoxInterleaved", None),
+    ("BoxTextured", None),
+    ("BoxVertexColors", None),
+    ("Cameras", None),
+    ("MultiUVTest", None),
+    ("NegativeScaleTest", None),
+    ("SimpleInstancing", None),
+    ("SimpleSkin", None),
+    ("SimpleSparseAccessor", None),
+    ("TextureSettingsTest", None),
+    ("TextureTransformTest", None),
+    ("UnlitTest", None),
+    ("SpecularTest", Some("pictures of `specular` are not written")),
+    ("TransmissionTest", Some("pictures of `transmission` are not written")),
+];
+
+#[test]
+fn gltf_written_anew_makes_the_same_picture() {
+    let place = Place::new();
+    for (name, differs) in WRITTEN {
+        let Some(path) = khronos(name) else { continue };
+        let told = place.gives(0, &format!("convert {} -o a.glb", path.display())).err;
+        place.gives(0, "convert a.glb -o b.gltf");
+        let (first, again) = (hash(&place, "a.glb", ""), hash(&place, "b.gltf", ""));
+        assert_eq!(first, again, "{name}");
+        let usual = hash(&place, &path, "");
+        assert_eq!(first != usual, differs.is_some(), "{name}");
+        // What is lost is told.
+        assert_eq!(told.contains("NO_COUNTERPART"), differs.is_some(), "{name}: {told}");
+    }
+}
+
+#[test]
+fn a_mesh_is_the_same_in_all_formats_that_carry_the_same() {
+    let place = Place::new();
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/meshes");
+    // PLY and STL are written without normals: where a mesh has its own, it is another then.
+    for (mesh, its_own) in [("durer-solid.obj", false), ("knot.ply", true)] {
+        let path = folder.join(mesh);
+        let usual = hash(&place, &path, "--up y");
+        for (name, has_normals) in
+            [("a.obj", true), ("a.glb", true), ("a.gltf", true), ("a.ply", false), ("a.stl", false)]
+        {
+            place.gives(0, &format!("convert {} -o {name}", path.display()));
+            let same = hash(&place, name, "--up y") == usual;
+            assert_eq!(same, has_normals || !its_own, "{mesh} as {name}");
+        }
+        // Without normals they are the same again.
+        assert_eq!(hash(&place, "a.ply", "--up y"), hash(&place, "a.stl", "--up y"), "{mesh}");
+    }
+}
+
+/// Rows and columns of the cards' pictures.
+const SIDE: usize = 200;
+
+/// What is wanted around a place of a card.
+#[derive(Clone, Copy, Debug)]
+enum Mark {
+    /// A green tick, and no red cross.
+    Tick,
+    /// One colour, up to a little noise.
+    Color([u8; 3]),
+    /// The same as there.
+    As(usize, usize),
+}
+
+/// The cards, and what is to be seen on them from the front at pixels of their pictures.
+///
+/// Three cells are not here, those that lie behind a hidden back: the single-sided one, and those for backs. They are in the shadow of
+/// what the camera looks through.
+const CARDS: &[(&str, &[(usize, usize, Mark)])] = &[
+    (
+        "TextureSettingsTest",
+        &[
+            (107, 65, Mark::Tick),
+            (107, 83, Mark::Tick),
+            (107, 100, Mark::Tick),
+            (107, 117, Mark::Tick),
+            (107, 134, Mark::Tick),
+            (107, 152, Mark::Tick),
+            (107, 169, Mark::Tick),
+        ],
+    ),
+    ("NegativeScaleTest", &[(100, 55, Mark::Tick), (100, 73, Mark::Tick)]),
+    // The arrows of transformed coordinates point to the ticks.
+    ("TextureTransformTest", &[(36, 153, Mark::Tick), (101, 128, Mark::Tick), (154, 141, Mark::Tick)]),
+    ("TextureLinearInterpolationTest", &[(57, 143, Mark::Tick), (143, 143, Mark::Tick), (143, 143, Mark::As(57, 143))]),
+    ("UnlitTest", &[(53, 100, Mark::Color([255, 127, 0])), (147, 100, Mark::Color([0, 127, 255]))]),
+    (
+        "VertexColorTest",
+        &[
+            (53, 71, Mark::As(53, 147)),
+            (100, 71, Mark::As(100, 147)),
+            (147, 71, Mark::As(147, 147)),
+            (100, 71, Mark::Tick),
+        ],
+    ),
+];
+
+/// The pixels around a place.
+fn around(picture: &Image8, (x, y): (usize, usize)) -> impl Iterator<Item = [f64; 3]> {
+    const REACH: usize = 7;
+    let rows = y - REACH..=y + REACH;
+    rows.flat_map(move |y| (x - REACH..=x + REACH).map(move |x| picture.pixels[y * SIDE + x].map(f64::from)))
+}
+
+fn mean(picture: &Image8, place: (usize, usize)) -> [f64; 3] {
+    let (sum, count) = around(picture, place)
+        .fold(([0.0; 3], 0.0), |(sum, count), pixel| (std::array::from_fn(|i| sum[i] + pixel[i]), count + 1.0));
+    sum.map(|sum| sum / count)
+}
+
+#[test]
+fn test_cards_show_ticks_and_no_crosses() {
+    let place = Place::new();
+    for (name, marks) in CARDS {
+        let Some(path) = khronos(name) else { continue };
+        let options = format!("--view front --studio none --size {SIDE}x{SIDE} --samples 4 -q");
+        place.gives(0, &format!("render {} -o card.png {options}", path.display()));
+        let picture = place.image8("card.png");
+        for &(x, y, mark) in *marks {
+            let here = mean(&picture, (x, y));
+            let near = |other: [f64; 3]| here.iter().zip(other).all(|(a, b)| (a - b).abs() < 16.0);
+            let share = |is: fn([f64; 3]) -> bool| {
+                let all = around(&picture, (x, y)).count() as f64;
+                around(&picture, (x, y)).filter(|pixel| is(*pixel)).count() as f64 / all
+            };
+            let green = share(|[r, g, b]| g > 1.4 * r && g > 1.4 * b);
+            let red = share(|[r, g, b]| r > 1.6 * g && r > 1.6 * b);
+            let holds = match mark {
+                Mark::Tick => green > 0.05 && red < 0.01,
+                Mark::Color(color) => near(color.map(f64::from)),
+                Mark::As(x, y) => near(mean(&picture, (x, y))),
+            };
+            assert!(holds, "{name} at {x} {y}: {mark:?}, but {here:?} on average, {green} green, {red} red");
+        }
+    }
+}

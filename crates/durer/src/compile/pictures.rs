@@ -1,0 +1,225 @@
+//! Pictures that materials name: each is decoded once, whatever number of textures shows it.
+
+use super::files::{Loader, PictureKey, used};
+use super::kept::Origin;
+use crate::describe::FileName;
+use crate::diag::{Diagnostic, Diagnostics};
+use crate::image::{self, Encoded, Raster};
+use crate::material::PrincipledMaterial;
+use crate::material::parameters::{Change, TEXTURED, Textured};
+use crate::math::Vec3;
+use crate::scene::PictureBytes;
+use crate::source::Digest;
+use crate::texture::{Channel, Mapping, Texture};
+use crate::world::{Map, Maps};
+use rayon::prelude::*;
+use std::sync::Arc;
+
+/// What the eight bits of a picture mean.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) enum Encoding {
+    /// Colours, by sRGB's curve.
+    Srgb,
+    /// Other numbers, from 0 to 1.
+    Linear,
+}
+
+impl Loader<'_> {
+    /// The number of a texture of a material in layers: an asset's, or a file's that repeats without end.
+    fn map(&mut self, name: &FileName, encoding: Encoding, diagnostics: &mut Diagnostics) -> Option<u32> {
+        let key = (name.path.clone(), encoding);
+        if let Some(known) = self.map_numbers.get(&key) {
+            return *known;
+        }
+        let (bytes, mapping) = self.found(name);
+        let texture = self.picture(name, bytes, encoding, diagnostics);
+        let number = texture.map(|texture| {
+            self.textures.push(texture.mapped(mapping));
+            (self.textures.len() - 1) as u32
+        });
+        self.map_numbers.insert(key, number);
+        number
+    }
+
+    /// Where the bytes of a picture are, and how it lies.
+    fn found(&self, name: &FileName) -> (PictureBytes, Mapping) {
+        if let Some(asset) = self.assets.pictures.get(&name.path) {
+            return (asset.bytes.clone(), asset.mapping);
+        }
+        let word = name.path.rsplit_once(':').and_then(|(path, word)| Some((path, Channel::from_word(word)?)));
+        let mapping = Mapping { channel: word.map(|(_, channel)| channel), ..Mapping::default() };
+        (PictureBytes::File(word.map_or(name.path.as_str(), |(path, _)| path).into()), mapping)
+    }
+
+    /// Decodes the pictures of materials side by side, as far as memory has room for all of them together. Those that cannot be
+    /// had are left to whoever asks for them, and has a place to complain at.
+    pub(super) fn decode_ahead<'m>(&mut self, materials: impl Iterator<Item = &'m PrincipledMaterial>) {
+        let mut left = self.resources.memory;
+        let mut packed: Vec<(PictureKey, Arc<[u8]>)> = Vec::new();
+        for (name, encoding) in materials.flat_map(pictures) {
+            let (bytes, _) = self.found(name);
+            let origin = self.picture_origin(&bytes);
+            if origin.and_then(|origin| self.resources.kept?.picture(&origin, encoding)).is_some() {
+                continue;
+            }
+            let (path, bytes) = match bytes {
+                PictureBytes::Here(path, bytes) => (path, Some(bytes)),
+                PictureBytes::File(path) if packed.iter().any(|(known, _)| known.0 == path && known.1 == encoding) => {
+                    (path, None)
+                }
+                PictureBytes::File(path) => (path.clone(), self.resources.source.read(&path).ok()),
+            };
+            let key = (path, encoding);
+            let Some(bytes) = bytes.filter(|_| packed.iter().all(|(known, _)| *known != key)) else { continue };
+            let needed = Encoded::open(&bytes, &key.0).map_or(0, |encoded| encoded.needed8());
+            let Some(rest) = left.checked_sub(needed) else { break };
+            left = rest;
+            packed.push((key, bytes));
+        }
+        if packed.len() < 2 {
+            return;
+        }
+        let memory = self.resources.memory;
+        let decoded = packed.into_par_iter().filter_map(|(key, bytes)| {
+            let name = FileName { path: key.0.clone(), span: Default::default() };
+            let texture = decode(&name, &key.0, &bytes, key.1 == Encoding::Srgb, memory, &mut Diagnostics::default())?;
+            Some((key, texture))
+        });
+        self.ahead = decoded.collect();
+    }
+
+    /// The textures of a material in layers; what is wrong with one is said, and the material goes without it.
+    pub(super) fn maps(&mut self, layers: &PrincipledMaterial, diagnostics: &mut Diagnostics) -> Maps {
+        let mut one = |name: Option<&FileName>, encoding| name.and_then(|name| self.map(name, encoding, diagnostics));
+        let mut maps = Maps {
+            base_color: one(layers.base_color_texture.as_ref(), Encoding::Srgb),
+            emission: one(layers.emission_texture.as_ref(), Encoding::Srgb),
+            opacity: one(layers.opacity_texture.as_ref(), Encoding::Linear),
+            normal: one(layers.normal_texture.as_ref(), Encoding::Linear),
+            bump: one(layers.bump_texture.as_ref(), Encoding::Linear),
+            bump_height: layers.bump_height,
+            parameters: Vec::new(),
+        };
+        for (row, textured) in TEXTURED.iter().enumerate() {
+            if let Some(texture) = one((textured.picture)(layers), textured.encoding()) {
+                maps.parameters.push(Map { row, texture, channel: None });
+            }
+        }
+        if let Some(texture) = one(layers.metallic_roughness_texture.as_ref(), Encoding::Linear) {
+            for (row, textured) in TEXTURED.iter().enumerate() {
+                let channel = match textured.field {
+                    "specular_roughness_texture" => Channel::Green,
+                    "base_metalness_texture" => Channel::Blue,
+                    _ => continue,
+                };
+                maps.parameters.push(Map { row, texture, channel: Some(channel) });
+            }
+        }
+        maps
+    }
+
+    /// A picture, decoded once whatever number of textures shows it.
+    pub(super) fn picture(
+        &mut self,
+        name: &FileName,
+        bytes: PictureBytes,
+        encoding: Encoding,
+        diagnostics: &mut Diagnostics,
+    ) -> Option<Texture> {
+        let path = match &bytes {
+            PictureBytes::File(path) | PictureBytes::Here(path, _) => path.clone(),
+        };
+        let key = (path.clone(), encoding);
+        if let Some(known) = self.decoded.get(&key) {
+            return known.clone();
+        }
+        let origin = self.picture_origin(&bytes);
+        if let Some(known) = origin.as_ref().and_then(|origin| self.resources.kept?.picture(origin, encoding)) {
+            self.remember(&path, origin.as_ref(), known.digest);
+            let texture = Some(known.thing).filter(|texture| self.charge(name, texture.bytes() as u64, diagnostics));
+            self.decoded.insert(key, texture.clone());
+            return texture;
+        }
+        let texture = match self.ahead.remove(&key) {
+            Some(texture) => Some(texture),
+            None => {
+                let bytes = match bytes {
+                    PictureBytes::Here(_, bytes) => Some(bytes),
+                    PictureBytes::File(path) => self.read(&FileName { path, span: name.span }, "texture", diagnostics),
+                };
+                let (srgb, memory) = (encoding == Encoding::Srgb, self.resources.memory);
+                bytes.and_then(|bytes| decode(name, &path, &bytes, srgb, memory, diagnostics))
+            }
+        };
+        let texture = texture.filter(|texture| self.charge(name, texture.bytes() as u64, diagnostics));
+        if let (Some(kept), Some(origin), Some(texture)) = (self.resources.kept, origin, &texture) {
+            kept.keep_picture(origin, encoding, texture, self.resources.source.digest_of(&path));
+        }
+        self.decoded.insert(key, texture.clone());
+        texture
+    }
+
+    /// What a picture is made of, if it is to be kept.
+    fn picture_origin(&self, bytes: &PictureBytes) -> Option<Origin> {
+        match bytes {
+            PictureBytes::File(path) => self.origin(path, || None),
+            PictureBytes::Here(path, bytes) => self.origin(path, || Some(Digest::of(bytes))),
+        }
+    }
+}
+
+/// The pictures of a material in layers.
+fn pictures(layers: &PrincipledMaterial) -> impl Iterator<Item = (&FileName, Encoding)> {
+    let own = [
+        (layers.emission_texture.as_ref(), Encoding::Srgb),
+        (layers.opacity_texture.as_ref(), Encoding::Linear),
+        (layers.normal_texture.as_ref(), Encoding::Linear),
+        (layers.bump_texture.as_ref(), Encoding::Linear),
+        (layers.metallic_roughness_texture.as_ref(), Encoding::Linear),
+    ];
+    let parameters = TEXTURED.iter().map(|textured| ((textured.picture)(layers), textured.encoding()));
+    own.into_iter().chain(parameters).filter_map(|(name, encoding)| Some((name?, encoding)))
+}
+
+impl Textured {
+    /// Colours are shown, numbers are not.
+    fn encoding(&self) -> Encoding {
+        match self.change {
+            Change::Number(_) => Encoding::Linear,
+            Change::Color(_) => Encoding::Srgb,
+        }
+    }
+}
+
+/// The texture of a picture, decoded within some bytes of memory: eight bits stay eight, finer ones become numbers.
+pub(super) fn decode(
+    name: &FileName,
+    path: &str,
+    bytes: &[u8],
+    srgb: bool,
+    memory: u64,
+    diagnostics: &mut Diagnostics,
+) -> Option<Texture> {
+    let raster = Encoded::open(bytes, path).and_then(|encoded| encoded.read_raster(memory));
+    match used(name, path, raster, diagnostics)? {
+        Raster::Eight(picture) => {
+            let texture = Texture::new(picture.width, picture.height, picture.pixels)?.with_alpha(Some(picture.alpha));
+            Some(if srgb { texture.decoded(image::decode_srgb) } else { texture })
+        }
+        Raster::Sixteen(mut picture, alpha) => {
+            if srgb {
+                let linear = |pixel: Vec3| Vec3::from(pixel.to_array().map(image::linear_from_srgb));
+                picture.pixels.iter_mut().for_each(|pixel| *pixel = linear(*pixel));
+            }
+            Some(Texture::from_floats(picture.width, picture.height, picture.pixels)?.with_opacity(alpha))
+        }
+        Raster::Float(picture, alpha) => {
+            if picture.first_non_finite().is_some() || alpha.iter().any(|a| !a.is_finite()) {
+                let message = format!("the picture `{path}` has values that are no numbers");
+                diagnostics.push(Diagnostic::error(message).code("bad-file").at(name.span));
+                return None;
+            }
+            Some(Texture::from_floats(picture.width, picture.height, picture.pixels)?.with_opacity(alpha))
+        }
+    }
+}

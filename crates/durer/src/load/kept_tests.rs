@@ -1,0 +1,116 @@
+//! What did not change from one picture to the next is neither read nor built again.
+
+use super::*;
+use crate::compile::Reuse;
+use crate::source::Digest;
+use std::collections::BTreeSet;
+use std::fs;
+use std::time::SystemTime;
+
+const SCENE: &str = "PerspectiveCamera { center 0 0 5 direction 0 0 -1 up 0 1 0 angle 40 }
+Lights { PointLight { position 0 0 5 color 1 1 1 } }
+Materials { PhongMaterial { diffuseColor 1 1 1 texture a.ppm } PrincipledMaterial { baseColorTexture b.ppm } }
+Group { MaterialIndex 0 TriangleMesh { obj_file a.obj } MaterialIndex 1 TriangleMesh { obj_file b.obj } }";
+const MESH: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n";
+
+/// A folder with a scene in it, and what is kept of it.
+struct Place {
+    folder: tempfile::TempDir,
+    kept: Option<Arc<Kept>>,
+}
+
+impl Place {
+    fn new() -> Self {
+        let place = Place { folder: tempfile::tempdir().unwrap(), kept: Some(Arc::default()) };
+        place.put("scene.txt", SCENE.as_bytes());
+        ["a.obj", "b.obj"].iter().for_each(|name| place.put(name, MESH.as_bytes()));
+        ["a.ppm", "b.ppm"].iter().for_each(|name| place.put(name, b"P6 1 1 255\n\x01\x02\x03"));
+        place
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    fn put(&self, name: &str, content: &[u8]) {
+        fs::write(self.path(name), content).unwrap();
+    }
+
+    /// Writes a file that looks as it did: of the same size, and as old.
+    fn replace(&self, name: &str, content: &[u8]) {
+        let old = fs::metadata(self.path(name)).unwrap();
+        assert_eq!(old.len(), content.len() as u64);
+        self.put(name, content);
+        self.date(name, old.modified().unwrap());
+    }
+
+    fn date(&self, name: &str, when: SystemTime) {
+        fs::File::options().write(true).open(self.path(name)).unwrap().set_modified(when).unwrap();
+    }
+
+    /// The hash of all that a scene is made of, and the files that it names; `None` after errors.
+    fn world(&self, scene: &str, kept: bool) -> Option<(Digest, BTreeSet<PathBuf>)> {
+        let options = LoadOptions { kept: self.kept.clone().filter(|_| kept), dialect: None, ..LoadOptions::default() };
+        let (mut files, mut found) = (Files::default(), Diagnostics::default());
+        let loaded = load(&self.path(scene), &options, &mut files, &mut found).unwrap()?;
+        let world = loaded.compile(&options, &mut files, &mut found)?;
+        Some((world.digest, loaded.files().into_iter().collect()))
+    }
+
+    /// The same of a scene that is watched: it is what it is without that.
+    #[track_caller]
+    fn watched(&self, scene: &str) -> (usize, usize) {
+        assert_eq!(self.world(scene, true).unwrap(), self.world(scene, false).unwrap());
+        self.reuse()
+    }
+
+    fn reuse(&self) -> (usize, usize) {
+        let Reuse { made, reused } = self.kept.as_ref().unwrap().reuse();
+        (made, reused)
+    }
+}
+
+#[test]
+fn what_did_not_change_is_not_read_again() {
+    let place = Place::new();
+    assert_eq!(place.watched("scene.txt"), (4, 0));
+    place.put("scene.txt", SCENE.replace("color 1 1 1 }", "color 1 0 0 }").as_bytes());
+    assert_eq!(place.watched("scene.txt"), (0, 4));
+    // What another program made of a mesh is not even looked at, as long as it seems to be as it was.
+    place.replace("a.obj", "x".repeat(MESH.len()).as_bytes());
+    assert!(place.world("scene.txt", true).is_some() && place.reuse() == (0, 4));
+    assert!(place.world("scene.txt", false).is_none());
+    place.replace("a.obj", MESH.as_bytes());
+    // Another size, and another time.
+    place.put("b.obj", [MESH, MESH].concat().as_bytes());
+    place.date("b.ppm", SystemTime::UNIX_EPOCH);
+    assert_eq!(place.watched("scene.txt"), (2, 2));
+    assert_eq!(place.watched("scene.txt"), (0, 4));
+}
+
+#[test]
+fn after_errors_all_is_there_still_and_what_is_gone_is_let_go() {
+    let place = Place::new();
+    assert_eq!(place.watched("scene.txt"), (4, 0));
+    place.put("scene.txt", SCENE.replace("b.obj", "c.obj").as_bytes());
+    assert!(place.world("scene.txt", true).is_none());
+    place.put("scene.txt", SCENE.as_bytes());
+    assert_eq!(place.watched("scene.txt"), (0, 4));
+    place.put("scene.txt", SCENE.replace("b.obj", "a.obj").replace("texture a.ppm", "").as_bytes());
+    assert_eq!(place.watched("scene.txt"), (0, 2));
+    place.put("scene.txt", SCENE.as_bytes());
+    assert_eq!(place.watched("scene.txt"), (2, 2));
+}
+
+#[test]
+fn meshes_and_pictures_of_models_are_known_by_what_they_hold() {
+    let place = Place::new();
+    place.put("a.mtl", b"newmtl m\nmap_Kd a.ppm\n");
+    let model = |more: &str| place.put("m.obj", format!("{more}mtllib a.mtl\nusemtl m\n{MESH}").as_bytes());
+    model("");
+    assert_eq!(place.watched("m.obj"), (2, 0));
+    model("# the same\n");
+    assert_eq!(place.watched("m.obj"), (0, 2));
+    place.put("m.obj", format!("mtllib a.mtl\nusemtl m\n{}", MESH.replace("v 1 0 0", "v 2 0 0")).as_bytes());
+    assert_eq!(place.watched("m.obj"), (1, 1));
+}
