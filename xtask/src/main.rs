@@ -70,6 +70,8 @@ const USAGE: &str = "Commands:
   cargo xtask peers [--python PROGRAM] [--samples 1024] [--only TEXT]
       Equal scenes by us and by Mitsuba 3, compared pixel by pixel. Without --python, Mitsuba comes from the package index
       into target/peers.
+  cargo xtask peers --time [--python PROGRAM] [--side 256] [--samples 64] [--runs 5] [--threads 2] [--only TEXT]
+      Time of the processor until the noise is equal, ours and Mitsuba's (llvm_ad_rgb), in turns.
   cargo xtask validate [--samples N]
       Light against answers in closed form, white furnaces, directions against their densities, and docs/validation.md.
   cargo xtask lamps

@@ -1,4 +1,4 @@
-//! Equal scenes by Dürer and Mitsuba 3: `peers.py` says which and how they are compared.
+//! Equal scenes by Dürer and Mitsuba 3: `peers.py` says which and how they are compared, `peers_time.py` how their times are.
 
 use anyhow::{Context, Result, bail};
 use std::path::{Path, PathBuf};
@@ -8,10 +8,11 @@ use std::process::{Command, ExitCode};
 const MITSUBA: &str = "mitsuba==3.9.1";
 
 pub fn run(arguments: &[String]) -> Result<ExitCode> {
-    let (mut python, mut rest) = (None, Vec::new());
+    let (mut python, mut time, mut rest) = (None, false, Vec::new());
     let mut given = arguments.iter();
     while let Some(argument) = given.next() {
         match argument.as_str() {
+            "--time" => time = true,
             "--python" => python = Some(PathBuf::from(given.next().context("--python PROGRAM")?)),
             _ => rest.push(argument),
         }
@@ -22,7 +23,12 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
         None => environment(&root.join("target/peers"))?,
     };
     let program = crate::build::durer()?;
-    let status = Command::new(python).arg(root.join("xtask/src/peers.py")).arg(program).args(rest).status()?;
+    let mut command = Command::new(python);
+    match time {
+        true => command.arg(root.join("xtask/src/peers_time.py")).arg(program).arg(crate::corpus().join("meshes")),
+        false => command.arg(root.join("xtask/src/peers.py")).arg(program),
+    };
+    let status = command.args(rest).status()?;
     Ok(if status.success() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 

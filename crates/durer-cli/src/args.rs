@@ -1,5 +1,6 @@
 //! The command line.
 
+use crate::denoise::Denoiser;
 use crate::display::DisplayArgs;
 use crate::frames::FramesArgs;
 use crate::memory::Memory;
@@ -147,9 +148,10 @@ pub struct RenderArgs {
     #[command(flatten)]
     pub display: DisplayArgs,
     /// Take the noise out of the colour picture, by what is known of each pixel's surface and of its noise; EXR keeps the picture
-    /// as it was rendered, beside a layer `denoised`, and --hash knows nothing of it
-    #[arg(long)]
-    pub denoise: bool,
+    /// as it was rendered, beside a layer `denoised`, and --hash knows nothing of it. By Open Image Denoise (oidn) where that is found, else by our
+    /// own (own)
+    #[arg(long, value_name = "BY", num_args = 0..=1, require_equals = true, default_missing_value = "auto", value_parser = Denoiser::parser())]
+    pub denoise: Option<Denoiser>,
     /// Render again whenever the scene, a mesh or a picture of it is saved; the picture grows as it is made, and Ctrl-C ends
     #[arg(long, conflicts_with_all = ["pixel", "shard", "checkpoint", "resume", "restart", "preview"])]
     pub watch: bool,
@@ -170,7 +172,8 @@ pub struct ViewArgs {
     /// Make only a part of the picture
     #[arg(long, value_name = "LEFT,TOP,WIDTHxHEIGHT", value_parser = crop)]
     pub crop: Option<(u32, u32, u32, u32)>,
-    /// What to show; several are joined by commas
+    /// What to show; several are joined by commas. With paths and photons, `error` is how far the luminance may be from the truth, noise and the bias of
+    /// photons together, with 90 % confidence
     #[arg(long, value_delimiter = ',', default_value = "color", value_parser = PossibleValuesParser::new(shows()))]
     pub show: Vec<String>,
     /// Pixels for a pixel in the pictures `samples` and `filter`
@@ -389,11 +392,14 @@ pub struct ExplainArgs {
   durer lesson scene.txt -o lesson/
   durer lesson scene.txt -o lesson/ --size 400x300 --samples 64
   durer lesson scene.txt -o lesson/ --dialect f04 --shadows --bounces 4 --transfer course
+  durer lesson scenes/plates.txt -o lesson/ --samples 32
 
 FOLDER gets a page for a browser, index.html, which needs nothing else, and the same as lesson.md with its pictures as
 files. A folder that is there already keeps its other files; what an earlier lesson wrote is replaced.
-Give the options with which the picture is rendered: the last step is that picture. Without --size its longer side has
-256 pixels. A step of which nothing is seen in the scene is shown in a small scene of ours, and says so.")]
+Give the options with which the picture is rendered: with Whitted's light the last step is that picture. Without --size its
+longer side has 256 pixels. A step of which nothing is seen in the scene is shown in a small scene of ours, and says so.
+With --integrator path or photons, which some scenes have by themselves, the lesson goes on with soft shadows, bounces, lamps
+found in two ways, caustics and spectra, as far as the scene has them.")]
 pub struct LessonArgs {
     /// The scene file
     pub scene: PathBuf,
@@ -560,8 +566,11 @@ pub struct CompareArgs {
 /// Pictures that show not the scene but how it is sampled.
 pub const DIAGRAMS: [&str; 2] = ["samples", "filter"];
 
+/// The picture of how far pixels may be from the truth, which is made beside the work.
+pub const ERROR: &str = "error";
+
 fn shows() -> Vec<&'static str> {
-    std::iter::once("color").chain(AOVS.iter().map(|aov| aov.name)).chain(DIAGRAMS).collect()
+    std::iter::once("color").chain(AOVS.iter().map(|aov| aov.name)).chain([ERROR]).chain(DIAGRAMS).collect()
 }
 
 fn compat(text: &str) -> Result<(Compat, bool), String> {

@@ -4,7 +4,9 @@ use crate::args::RenderCommand;
 use crate::render::{self, Watched};
 use crate::{Failure, bad};
 use clap::Args;
+use durer::compile::Kept;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// Which pictures of an animation are made, and what moves in them
 #[derive(Args, Clone)]
@@ -146,6 +148,8 @@ pub fn run(command: &mut RenderCommand, frames: Frames, moves: Moves) -> Result<
     let utf8 = |path: &Path| path.to_str().map(String::from).ok_or_else(|| bad(format!("{path:?} is not UTF-8")));
     let (scene, output) = (utf8(&args.scene)?, pattern(&utf8(&render::output_of(args))?));
     let (camera, view_file) = (staging.camera.clone(), staging.view_file.as_deref().map(utf8).transpose()?);
+    // Meshes and pictures that frames share are read once.
+    let kept = Arc::new(Kept::default());
     for frame in frames.numbers() {
         let args = &mut command.render;
         (args.scene, args.output) = (numbered(&scene, frame).into(), Some(numbered(&output, frame).into()));
@@ -157,7 +161,7 @@ pub fn run(command: &mut RenderCommand, frames: Frames, moves: Moves) -> Result<
             Moves::Time(rate) => staging.at = Some((f64::from(frame) / rate) as f32),
             Moves::Names => {}
         }
-        render::once(command, &Watched::default())?;
+        render::once(command, &Watched::keeping(&kept))?;
     }
     Ok(())
 }

@@ -30,7 +30,7 @@ pub fn bands(args: &RenderArgs, job: &Job, target: &Target, memory: Option<u64>)
         (work.resume || work.restart || work.checkpoint.is_some(), "saved work"),
         (work.preview.is_some(), "--preview"),
         (work.time.is_some(), "--time"),
-        (args.denoise, "--denoise"),
+        (args.denoise.is_some(), "--denoise"),
         (args.stats, "--stats"),
     ] {
         if given {

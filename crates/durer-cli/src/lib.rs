@@ -5,6 +5,7 @@ mod check;
 mod compare;
 mod convert;
 mod course;
+mod denoise;
 mod diagrams;
 mod display;
 pub mod embed;

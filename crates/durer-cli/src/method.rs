@@ -3,7 +3,7 @@
 use crate::{Failure, bad};
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use durer::integrator::{Method, Transport};
+use durer::integrator::{Direct, Method, Transport};
 use durer::scene::Scene;
 use durer::spectrum::ColorMode;
 
@@ -22,6 +22,10 @@ pub struct MethodArgs {
     /// prisms) [default: rgb]
     #[arg(long, value_name = "MODE", value_parser = color_mode())]
     pub color: Option<ColorMode>,
+    /// With path and photons: how light straight from lamps is found: both (by points of lamps and by the directions in which surfaces
+    /// scatter, weighed), lights or bsdf (one of these alone: the same mean and more noise, to see what each is good for) [default: both]
+    #[arg(long, value_name = "WAY", value_parser = direct())]
+    pub direct: Option<Direct>,
     /// With photons: how many each sample sends out [default: 100000]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000_000))]
     pub photons: Option<u32>,
@@ -39,13 +43,17 @@ pub fn color_mode() -> impl TypedValueParser<Value = ColorMode> {
     PossibleValuesParser::new(ColorMode::NAMES).map(|name| ColorMode::from_name(&name).unwrap_or_default())
 }
 
+fn direct() -> impl TypedValueParser<Value = Direct> {
+    PossibleValuesParser::new(Direct::NAMES).map(|name| Direct::from_name(&name).unwrap_or_default())
+}
+
 /// The method that the options ask for, or that the scene needs.
 pub fn method(args: &MethodArgs, scene: &Scene) -> Result<Method, Failure> {
     let usual = if args.ao_radius.is_some() {
         "ao"
     } else if args.photons.is_some() || args.photon_radius.is_some() {
         "photons"
-    } else if args.clamp.is_some() || args.color.is_some() || scene.is_physical() {
+    } else if args.clamp.is_some() || args.color.is_some() || args.direct.is_some() || scene.is_physical() {
         "path"
     } else {
         "whitted"
@@ -56,6 +64,7 @@ pub fn method(args: &MethodArgs, scene: &Scene) -> Result<Method, Failure> {
     for (option, (given, sound), of) in [
         ("--clamp", number(args.clamp), paths),
         ("--color", (args.color.is_some(), true), paths),
+        ("--direct", (args.direct.is_some(), true), paths),
         ("--photons", (args.photons.is_some(), true), &paths[1..]),
         ("--photon-radius", number(args.photon_radius), &paths[1..]),
         ("--ao-radius", number(args.ao_radius), &["ao"]),
@@ -67,12 +76,13 @@ pub fn method(args: &MethodArgs, scene: &Scene) -> Result<Method, Failure> {
             return Err(bad(format!("{option} must be more than 0")));
         }
     }
-    let transport = Transport { clamp: args.clamp, color: args.color.unwrap_or_default() };
+    let transport =
+        Transport { clamp: args.clamp, color: args.color.unwrap_or_default(), direct: args.direct.unwrap_or_default() };
     Ok(match name {
         "path" => Method::Path(transport),
         "photons" => {
             let count = args.photons.unwrap_or(Method::PHOTONS);
-            Method::Photons { transport, count, radius: args.photon_radius }
+            Method::Photons { transport, count, radius: args.photon_radius, corrected: false }
         }
         "ao" => Method::Ao { radius: args.ao_radius.unwrap_or(f32::INFINITY) },
         _ => Method::Whitted,
@@ -86,10 +96,13 @@ pub fn spelled(method: Method, scene: &Scene) -> Vec<String> {
     if method.name() != usual {
         words.push(format!("--integrator {}", method.name()));
     }
-    if let Some(Transport { clamp, color }) = method.transport() {
+    if let Some(Transport { clamp, color, direct }) = method.transport() {
         words.extend(clamp.map(|clamp| format!("--clamp {clamp}")));
         if color != ColorMode::default() {
             words.push(format!("--color {}", color.name()));
+        }
+        if direct != Direct::default() {
+            words.push(format!("--direct {}", direct.name()));
         }
     }
     match method {

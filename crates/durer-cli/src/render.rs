@@ -1,6 +1,6 @@
 //! `durer render`.
 
-use crate::args::{DIAGRAMS, RenderArgs, RenderCommand};
+use crate::args::{DIAGRAMS, ERROR, RenderArgs, RenderCommand};
 use crate::guard::Guard;
 use crate::keep::Keeper;
 use crate::open::{load_options, read};
@@ -146,6 +146,12 @@ pub fn once(command: &RenderCommand, watched: &Watched) -> Result<(), Failure> {
             return print_pixel(&opened.world, &job, &control, pixel.unwrap_or_default(), command.sample);
         }
     };
+    let shows_error = args.view.show.iter().any(|show| show == ERROR);
+    if shows_error && (target.is_none() || job.method.transport().is_none()) {
+        return Err(bad(
+            "--show error is of whole pictures by path and photons: leave out --shard, or see --integrator",
+        ));
+    }
     if args.view.show.iter().any(|show| DIAGRAMS.contains(&show.as_str())) {
         if target.is_none() {
             return Err(bad("a diagram is not split into parts: leave it out, or --shard"));
@@ -172,8 +178,14 @@ pub fn once(command: &RenderCommand, watched: &Watched) -> Result<(), Failure> {
             let mut rendered = part.pictures().map_err(failure)?;
             diagrams::add(&args.view.show, args.view.zoom, &opened.world, &job, &control, &mut rendered)
                 .map_err(failure)?;
-            if args.denoise && job.color {
-                let clean = part.denoised(&opened.world, threads).map_err(failure)?;
+            if shows_error {
+                let [values, shown] = part.error(&opened.world, threads).map_err(failure)?;
+                rendered.layers.push(values);
+                rendered.pictures.push(shown);
+            }
+            if let (Some(denoiser), true) = (args.denoise, job.color) {
+                let noisy = part.noisy(&opened.world, threads).map_err(failure)?;
+                let clean = denoiser.clean(noisy, threads, args.quiet)?;
                 for shown in rendered.pictures.iter_mut().filter(|layer| layer.name == "color") {
                     shown.image = clean.image.clone();
                 }

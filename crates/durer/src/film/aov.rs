@@ -325,7 +325,7 @@ fn id_color(id: f32) -> Color {
 }
 
 /// Black, blue, red, yellow, white as x goes from 0 to 1.
-fn heat(x: f32) -> Color {
+pub(crate) fn heat(x: f32) -> Color {
     const STEPS: [Vec3; 5] =
         [Vec3::ZERO, Vec3::new(0.1, 0.1, 0.8), Vec3::new(0.9, 0.1, 0.1), Vec3::new(1.0, 0.9, 0.1), Vec3::ONE];
     let place = x.clamp(0.0, 1.0) * 4.0;

@@ -37,6 +37,9 @@ pub enum Method {
         count: u32,
         /// How far the first sample looks for photons, in units of the world.
         radius: Option<f32>,
+        /// Whether their bias is taken out to second order, with more noise: see [`Photons::corrected`].
+        #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+        corrected: bool,
     },
     /// How much of the sky things leave free.
     Ao {
@@ -52,11 +55,57 @@ pub struct Transport {
     pub clamp: Option<f32>,
     /// What colours are on the way.
     pub color: ColorMode,
+    /// How light straight from lamps is found.
+    #[serde(default, skip_serializing_if = "Direct::is_both")]
+    pub direct: Direct,
+}
+
+/// How paths find light that comes straight from lamps and surroundings with an extent. All but [`Direct::Middle`] have the same
+/// mean; they differ in noise.
+///
+/// Source: Veach, *Robust Monte Carlo Methods for Light Transport Simulation*, 1997, chapter 9.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Direct {
+    /// Points of lights and directions of the surface are chosen; what both can find is weighed by the power heuristic.
+    #[default]
+    Both,
+    /// Points of lights alone; a direction counts only where it meets what is never chosen.
+    Lights,
+    /// Directions alone; points only of lights that no direction meets.
+    Bsdf,
+    /// As [`Direct::Lights`], but always the same point of a surface that shines, the middle of a sphere, disc or rectangle. Shadows are hard: wrong, and
+    /// for lessons alone.
+    Middle,
+}
+
+impl Direct {
+    /// Names on the command line.
+    pub const NAMES: [&'static str; 3] = ["both", "lights", "bsdf"];
+
+    /// The one of a name.
+    pub fn from_name(name: &str) -> Option<Self> {
+        [Direct::Both, Direct::Lights, Direct::Bsdf].into_iter().find(|direct| direct.name() == name)
+    }
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Direct::Both => "both",
+            Direct::Lights => "lights",
+            Direct::Bsdf => "bsdf",
+            Direct::Middle => "middle",
+        }
+    }
+
+    fn is_both(&self) -> bool {
+        *self == Direct::Both
+    }
 }
 
 impl Method {
     /// All light, as it is without wishes.
-    pub const PATH: Method = Method::Path(Transport { clamp: None, color: ColorMode::Rgb });
+    pub const PATH: Method = Method::Path(Transport { clamp: None, color: ColorMode::Rgb, direct: Direct::Both });
 
     /// Names on the command line.
     pub const NAMES: &'static [&'static str] = &["whitted", "path", "photons", "ao"];
@@ -118,8 +167,9 @@ impl<'w> Integrator<'w> {
         match method {
             Method::Whitted => Integrator::Whitted(Whitted { world, settings, cancel }),
             Method::Path(transport) => Integrator::Path(Path { cancel, ..Path::new(world, settings, transport) }),
-            Method::Photons { transport, count, radius } => {
-                let photons = Some(Arc::new(Photons::new(world, seed, count, radius)));
+            Method::Photons { transport, count, radius, corrected } => {
+                let photons = Photons::new(world, seed, count, radius);
+                let photons = Some(Arc::new(if corrected { photons.corrected() } else { photons }));
                 Integrator::Path(Path { photons, cancel, ..Path::new(world, settings, transport) })
             }
             Method::Ao { radius } => Integrator::Ao(AmbientOcclusion { world, radius }),

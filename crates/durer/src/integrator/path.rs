@@ -4,9 +4,8 @@
 //! light, they are weighed by how well they find it (Veach, *Robust Monte Carlo Methods for Light Transport Simulation*, 1997,
 //! chapter 9: the power heuristic). Long paths end at random, in proportion to what they are worth.
 
-use super::account::{Bounce, RayKind, Shadow, TermValue, What, Witness};
+use super::account::{Bounce, RayKind, TermValue, What, Witness};
 use super::media::{Media, Passage};
-use super::spawn::from_surface;
 use super::whitted::struck;
 use super::{Settings, Transport};
 use crate::bsdf::lobe::diffuse::Diffuse;
@@ -16,7 +15,6 @@ use crate::medium::{Flight, HenyeyGreenstein, Way};
 use crate::sampler::SampleId;
 use crate::shape::Surface;
 use crate::spectrum::{Lanes, Spectrum};
-use crate::world::emitters::LightSample;
 use crate::world::{Hit, Shading, World};
 use glam::DVec3;
 pub use photons::{PhotonMap, Photons};
@@ -89,7 +87,7 @@ struct State {
     behind_mirrors: bool,
     /// Whether the thing that it was last scattered by is one that photons are sent to.
     by_target: bool,
-    /// Whether it was scattered into many directions.
+    /// Whether a surface scattered it into many directions, and nothing but single directions came after.
     broad: bool,
     /// Whether only the first lane still counts, since others would go other ways.
     alone: bool,
@@ -331,56 +329,6 @@ impl<'w> Path<'w> {
         sum + self.indirect(vertex, sample, tally)
     }
 
-    /// How much a light counts that a ray met by its direction, where it could have been found in another way too.
-    /// `carried`: photons are sent from it.
-    fn weight(&self, state: &State, carried: bool, pdf: impl Fn(&Scattered) -> f32) -> f32 {
-        match &state.from {
-            Some(from) => power(from.pdf, pdf(from)),
-            None if carried && state.behind_mirrors && state.by_target => 0.0,
-            None => 1.0,
-        }
-    }
-
-    /// The density with which a light that a ray met would have been chosen.
-    fn pdf_of_hit(&self, ray: &Ray64, hit: &Hit, from: &Scattered) -> f32 {
-        let way = ray.origin() + f64::from(hit.t) * ray.dir().as_dvec3() - from.point;
-        let (wi, distance) = (ray.dir().normalize(), way.length() as f32);
-        self.world.emitters.pdf_of_hit(self.world, hit, from.point, from.n, wi, distance)
-    }
-
-    /// The light of one light that is chosen.
-    fn direct<T: Witness>(&self, vertex: &Vertex, sample: &Sample, tally: &mut T) -> Spectrum {
-        let (world, place) = (self.world, &vertex.place);
-        let id = sample.bounce(vertex.state.depth);
-        let (choice, u) = (id.pair(Use::Light as u32).x, id.pair(Use::PlaceOnLight as u32));
-        let chosen = world.emitters.sample(world, place.point(), place.normal(), choice, u);
-        let Some(light) = chosen else { return Spectrum::ZERO };
-        let value = place.eval(light.wi);
-        if value == Spectrum::ZERO || light.radiance == Color::ZERO {
-            return Spectrum::ZERO;
-        }
-        let (weight, density) = match light.pdf > 0.0 {
-            true => (power(light.choice * light.pdf, place.pdf(light.wi)), light.choice * light.pdf),
-            // Directions never meet a light without extent.
-            false => (1.0, light.choice),
-        };
-        let visible = self.visible(vertex, &light, sample, tally);
-        let factor = value * (weight / density) * visible;
-        tally.begin(|| What::Direct {
-            light: light.light,
-            to_light: light.wi,
-            distance: light.reach,
-            choice: light.choice,
-            pdf: light.pdf,
-            bsdf: sample.told(value),
-            mis: weight,
-            shadow: self.settings.shadows.then(|| self.shadow(place, &light, sample.told(visible))),
-        });
-        let radiance = sample.lanes.light_of(light.radiance, world.illuminant(light.light));
-        tally.end(sample.told(factor), sample.told(Spectrum::ONE), sample.told(radiance));
-        factor * radiance
-    }
-
     /// The light of lamps that mirrors and glass throw on a surface.
     fn caustic<T: Witness>(&self, vertex: &Vertex, sample: &Sample, tally: &mut T) -> Spectrum {
         let (Some(map), Place::Surface(surface, shading, _)) = (&sample.photons, &vertex.place) else {
@@ -420,7 +368,8 @@ impl<'w> Path<'w> {
             from: (!delta).then(|| Scattered { point: place.point(), n: place.normal(), pdf: chosen.pdf }),
             behind_mirrors: delta && (state.broad || state.behind_mirrors),
             by_target: state.by_target,
-            broad: !delta || state.broad,
+            // No photons are kept in fog: light that it scatters comes by paths.
+            broad: if delta { state.broad } else { matches!(place, Place::Surface(..)) },
             alone: state.alone,
         };
         let ray = place.spawn(chosen.wi);
@@ -453,67 +402,9 @@ impl<'w> Path<'w> {
             _ => 1.0,
         }
     }
-
-    /// The share of a light that arrives.
-    fn visible<T: Witness>(&self, vertex: &Vertex, light: &LightSample, sample: &Sample, tally: &mut T) -> Spectrum {
-        if !self.settings.shadows {
-            return Spectrum::ONE;
-        }
-        let Vertex { place, state } = vertex;
-        let media = place.media(state, light.wi);
-        let mut ray = place.shadow_ray(light);
-        let mut share = Spectrum::ONE;
-        let mut numbers = sample.id.stream(state.depth, 1);
-        let mut pass = |media: &Media, ray: &Ray64, to: f32| match self.world.medium(media.object()) {
-            Some(medium) => {
-                let way = Way { origin: ray.origin(), dir: light.wi, from: 0.0, to };
-                medium.transmittance(&way, &sample.lanes, &mut || numbers.number())
-            }
-            None => Spectrum::ONE,
-        };
-        if !self.world.has_cutouts && !self.world.has_interfaces {
-            return match self.world.occluded(&ray, tally) {
-                true => Spectrum::ZERO,
-                false => pass(media, &ray, ray.rounded.t_max),
-            };
-        }
-        let mut media = media.clone();
-        // A thing with many layers is followed only so far.
-        for _ in 0..64 {
-            let Some(hit) = self.world.closest(&ray, tally) else {
-                return share * pass(&media, &ray, ray.rounded.t_max);
-            };
-            share *= pass(&media, &ray, hit.t);
-            let blocker = self.world.surface(&ray, &hit);
-            match self.passage(&ray, &hit, &blocker, &media, &sample.lanes) {
-                Some(passage) if self.is_nothing(&hit, &passage) => media = passage.behind,
-                _ => share *= 1.0 - self.world.opacity(&hit, &blocker),
-            }
-            if share == Spectrum::ZERO {
-                break;
-            }
-            ray = from_surface(&blocker, ray.dir(), ray.rounded.t_max - hit.t, None);
-        }
-        Spectrum::ZERO
-    }
-
-    /// What a witness is told of a shadow ray.
-    fn shadow(&self, place: &Place, light: &LightSample, share: TermValue) -> Shadow {
-        let ray = place.shadow_ray(light);
-        let blocker = self.world.closest(&ray, &mut ()).map(|hit| (hit.object, hit.t));
-        Shadow { ray: (&ray).into(), blocker, share }
-    }
 }
 
-/// The power heuristic: the weight of a way of sampling with density `a`, where another one has density `b`.
-fn power(a: f32, b: f32) -> f32 {
-    if b == 0.0 {
-        return 1.0;
-    }
-    let ratio = b / a;
-    1.0 / (1.0 + ratio * ratio)
-}
-
+mod direct;
 mod photons;
 #[cfg(test)]
 mod tests;

@@ -1,7 +1,8 @@
 //! A scene in the order of the lecture: each step's pictures, its equation, and what it changes.
 //!
 //! The steps are one table, [`TOPICS`]; [`Teacher`] makes the pictures of one after the other. A step that changes nothing
-//! in a scene is shown in a small scene of ours instead.
+//! in a scene is shown in a small scene of ours instead. Steps of light that paths follow are shown of scenes whose pictures are
+//! made by paths, as far as those can show them.
 
 mod change;
 mod plan;
@@ -16,7 +17,7 @@ use crate::render::{Control, RenderError};
 pub use change::Change;
 use stage::Shown;
 pub use stage::{OWN_SCENE, OWN_SCENE_NAME, Stage};
-pub use topics::{Glass, Look, Place, Shot, TOPICS, Topic};
+pub use topics::{Carriage, Glass, Look, Place, Shot, TOPICS, Topic};
 
 /// A picture and what it shows.
 #[derive(Clone, Debug)]
@@ -67,11 +68,18 @@ impl Teacher {
         Teacher { stages: [stage, ours], transfer }
     }
 
-    /// The steps of a topic, at least one. Later steps of one topic that change nothing are left out.
+    /// The steps of a topic: at least one, but for a topic of paths, which has none where the scene cannot show it. Later steps of one topic
+    /// that change nothing are left out.
     ///
     /// # Errors
     /// [`RenderError`].
     pub fn steps(&mut self, topic: &'static Topic, control: &Control) -> Result<Vec<Step>, RenderError> {
+        if topic.is_of_paths() {
+            let stage = &mut self.stages[0];
+            let shown =
+                if stage.has_paths() { steps(topic, stage, self.transfer, false, control)? } else { Vec::new() };
+            return Ok(marked(shown, topic.lacking));
+        }
         let lacking = self.stages[0].year_lacks(topic.name).unwrap_or(topic.lacking);
         for (ours, stage) in [false, true].into_iter().zip(&mut self.stages) {
             let steps = steps(topic, stage, self.transfer, ours, control)?;
@@ -128,10 +136,23 @@ fn steps(
                 }
                 continue;
             }
-            let words = change.words(stage);
+            let words = change.words(stage) + &noise(before, &shown);
             steps.push(step(Some(one(before, before_shot)), Some(change), words));
         }
         last = Some((shot, shown));
     }
     Ok(steps)
+}
+
+/// What two pictures of light at random have of noise, in a sentence.
+fn noise(before: &Shown, after: &Shown) -> String {
+    let share = |noise: f64| format!("{:.1} %", 100.0 * noise);
+    match (before.noise, after.noise) {
+        (Some(before), Some(after)) => format!(
+            " Its noise (the mean of the pixels' standard errors) is {} of the mean luminance; before it was {}.",
+            share(after),
+            share(before)
+        ),
+        _ => String::new(),
+    }
 }

@@ -1,15 +1,15 @@
 //! A scene that can be shown with parts of its light left out, and with usual mistakes.
 
-use super::topics::{Glass, Look, Shot};
+use super::topics::{Carriage, Glass, Look, Shot};
 use crate::camera::Raster;
 use crate::compile::{AccelKind, Resources, compile};
 use crate::diag::{Diagnostics, Files};
 use crate::dialect::{Dialect, Highlight, Rules, Secondary};
-use crate::film::Filter;
 use crate::film::aov::Aov;
+use crate::film::{Filter, luminance_of};
 use crate::format::course::{self, ReadOptions};
 use crate::image::{Image, Layer};
-use crate::integrator::Settings;
+use crate::integrator::{Method, Settings, Transport};
 use crate::light::Light;
 use crate::math::{Color, Vec3};
 use crate::mistakes::{Variant, of_name};
@@ -36,6 +36,8 @@ const KEPT: usize = 4;
 pub(super) struct Shown {
     pub(super) layer: Layer,
     pub(super) values: Image,
+    /// Of light at random, the error of its pixels as a share of its luminance.
+    pub(super) noise: Option<f64>,
 }
 
 /// A scene, its world, and the job whose picture the lesson ends with.
@@ -113,18 +115,23 @@ impl Stage {
             Some("rays") => self.directions()?,
             value => {
                 self.arrange(&shot.look);
-                let aovs: Vec<_> = value.and_then(Aov::from_name).into_iter().collect();
+                let color = value.is_none();
+                let noise = shot.look.paths.map(|_| "variance");
+                let aovs: Vec<_> = value.into_iter().chain(noise).filter_map(Aov::from_name).collect();
                 let settings = self.settings(&shot.look);
                 let sampling = self.sampling(&shot.look);
-                let mut job = Job { color: aovs.is_empty(), aovs, settings, sampling, ..self.job.clone() };
+                let method = self.method(&shot.look);
+                let mut job = Job { color, aovs, settings, sampling, method, ..self.job.clone() };
                 let mut rendered = render(&self.world, &job, control)?;
                 if value == Some("depth") && job.depth_range.is_none() {
                     job.depth_range = depth_range(&rendered.layers[0].image);
                     rendered = render(&self.world, &job, control)?;
                 }
+                let noise = noise.and_then(|_| noise_of(&rendered.layers[0].image, &rendered.layers[1].image));
                 Shown {
                     layer: rendered.pictures.swap_remove(0),
                     values: Arc::unwrap_or_clone(rendered.layers.swap_remove(0).image),
+                    noise,
                 }
             }
         };
@@ -158,6 +165,9 @@ impl Stage {
             if phong.fresnel && look.glass != Glass::Fresnel {
                 (phong.fresnel, phong.reflective) = (false, Color::ZERO);
             }
+            if let (Some(own), Some(Carriage { disperses: false, .. })) = (&mut phong.principled, look.paths) {
+                Arc::make_mut(own).written.transmission_dispersion_scale = 0.0;
+            }
         }
     }
 
@@ -169,6 +179,25 @@ impl Stage {
             refraction: all.refraction && look.glass != Glass::None,
             ..all
         }
+    }
+
+    /// Whitted's light, or paths with what the picture's own have.
+    fn method(&self, look: &Look) -> Method {
+        let Some(carriage) = look.paths else { return Method::Whitted };
+        let own = self.job.method.transport().unwrap_or_default();
+        let transport = Transport { direct: carriage.direct, color: carriage.color, ..own };
+        match (carriage.photons, self.job.method) {
+            (false, _) => Method::Path(transport),
+            (true, Method::Photons { count, radius, .. }) => {
+                Method::Photons { transport, count, radius, corrected: false }
+            }
+            (true, _) => Method::Photons { transport, count: Method::PHOTONS, radius: None, corrected: false },
+        }
+    }
+
+    /// Whether the picture is made by paths.
+    pub(super) fn has_paths(&self) -> bool {
+        self.job.method.transport().is_some()
     }
 
     fn sampling(&self, look: &Look) -> Sampling {
@@ -188,7 +217,7 @@ impl Stage {
         let pixels = rays.iter().map(|dir| dir.map_or(Vec3::ZERO, |dir| 0.5 * (dir + 1.0))).collect();
         let values = rays.iter().map(|dir| dir.unwrap_or(Vec3::ZERO)).collect();
         let layer = Layer::data("rays", Image::from_pixels(width, height, pixels)?).with_coverage(coverage);
-        Ok(Shown { layer, values: Image::from_pixels(width, height, values)? })
+        Ok(Shown { layer, values: Image::from_pixels(width, height, values)?, noise: None })
     }
 
     /// What a picture shows that is compared with no other, in a sentence; `None` if it shows nothing.
@@ -261,6 +290,14 @@ fn depth_range(depths: &Image) -> Option<(f32, f32)> {
     let (least, most) = (*depths.first()?, *depths.last()?);
     let end = most.min(least + 3.0 * (depths[depths.len() / 2] - least));
     (end > least).then_some((least, end))
+}
+
+/// The mean of the pixels' standard errors as a share of their mean luminance, by the variances of their means. Nothing counts as brighter than white, or the edges of
+/// lamps would be all of it. `None` where nothing shines.
+fn noise_of(colors: &Image, variances: &Image) -> Option<f64> {
+    let light: f64 = colors.pixels.iter().map(|color| luminance_of(*color).min(1.0)).sum();
+    let errors: f64 = variances.pixels.iter().map(|variance| f64::from(variance.x).sqrt().min(1.0)).sum();
+    Some(errors / light).filter(|noise| noise.is_finite())
 }
 
 /// A part of some pixels for people.

@@ -4,6 +4,7 @@ use super::*;
 use crate::compile::AccelKind;
 use crate::dialect::{Compat, Dialect};
 use crate::film::Filter;
+use crate::integrator::{Method, Transport};
 use crate::math::{Ray, Vec3};
 use crate::render::{Job, Sampling, render};
 use crate::{LoadOptions, load};
@@ -30,7 +31,7 @@ fn lesson(stage: Stage) -> Vec<Step> {
 #[test]
 fn our_own_scene_shows_every_topic() {
     let mut ours = Stage::ours((64, 48));
-    for topic in &TOPICS {
+    for topic in TOPICS.iter().filter(|topic| !topic.is_of_paths()) {
         let steps = steps(topic, &mut ours, Transfer::Srgb, true, &Control::default()).unwrap();
         // Mirrors are seen in mirrors, and those in mirrors again.
         let least = if topic.name == "reflection" { 3 } else { 1 };
@@ -65,6 +66,48 @@ fn what_a_scene_cannot_show_is_shown_in_ours() {
     assert_eq!(ours("whitted.txt"), ["transforms"]);
     let transforms = ours("transforms.txt");
     assert!(!transforms.contains(&"transforms") && transforms.contains(&"refraction"), "{transforms:?}");
+}
+
+/// The steps of paths of a scene, in small pictures.
+fn of_paths(scene: &str) -> Vec<Step> {
+    let mut stage = stage(scene, 40);
+    let transport = Transport::default();
+    stage.job.method = Method::Photons { transport, count: 20_000, radius: Some(0.1), corrected: false };
+    stage.job.sampling = Sampling::Filtered { samples: 8, filter: Filter::default() };
+    let mut teacher = Teacher::new(stage, Transfer::Srgb);
+    let topics = TOPICS.iter().filter(|topic| topic.is_of_paths());
+    topics.flat_map(|topic| teacher.steps(topic, &Control::default()).unwrap()).collect()
+}
+
+#[test]
+fn each_step_of_paths_is_seen_in_a_scene_of_ours_and_only_where_it_is() {
+    let names = |steps: &[Step]| {
+        let mut names: Vec<&str> = steps.iter().map(|step| step.topic.name).collect();
+        names.dedup();
+        names
+    };
+    let cornell = of_paths("cornell-box.txt");
+    assert_eq!(names(&cornell), ["soft-shadows", "bounces", "mis"]);
+    assert!(cornell.iter().all(|step| !step.ours && step.words.contains("Its noise")));
+    // A bounce more only adds light.
+    let bounces = cornell.iter().filter(|step| step.topic.name == "bounces").map(|step| step.change.as_ref().unwrap());
+    assert!(bounces.clone().count() >= 3 && bounces.clone().all(|change| change.lighter == change.changed));
+    assert_eq!(names(&of_paths("caustic.txt")), ["soft-shadows", "bounces", "mis", "caustic"]);
+    // Sunlight has no extent that could be seen.
+    assert_eq!(names(&of_paths("prism.txt")).last(), Some(&"spectrum"));
+    // Whitted's light has none of these steps.
+    assert!(lesson(stage("whitted.txt", 24)).iter().all(|step| !step.topic.is_of_paths()));
+}
+
+#[test]
+fn points_and_directions_weighed_have_less_noise_than_either() {
+    let mut plates = stage("plates.txt", 48);
+    (plates.job.method, plates.job.sampling) =
+        (Method::PATH, Sampling::Filtered { samples: 16, filter: Filter::default() });
+    let topic = TOPICS.iter().find(|topic| topic.name == "mis").unwrap();
+    let noise: Vec<f64> =
+        topic.shots.iter().map(|shot| plates.show(shot, &Control::default()).unwrap().noise.unwrap()).collect();
+    assert!(noise[2] < 0.98 * noise[0] && noise[2] < 0.5 * noise[1], "{noise:?}");
 }
 
 #[test]

@@ -1,4 +1,8 @@
-//! The steps of the lecture as a table: what each shows, its equation, and where that is in the source.
+//! The steps of the lecture as a table: what each shows, its equation, and where that is in the source. After them come those of
+//! light that is followed by paths.
+
+use crate::integrator::Direct;
+use crate::spectrum::ColorMode;
 
 /// How much of the light is computed, and which mistakes are made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -17,6 +21,21 @@ pub struct Look {
     pub mistake: Option<&'static str>,
     /// Whether a pixel has more than one sample.
     pub sampled: bool,
+    /// How paths carry light; without, light is Whitted's.
+    pub paths: Option<Carriage>,
+}
+
+/// How paths carry light.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Carriage {
+    /// How light straight from lamps is found.
+    pub direct: Direct,
+    /// Whether photons bring what mirrors and glass throw on things.
+    pub photons: bool,
+    /// What light is made of.
+    pub color: ColorMode,
+    /// Whether glass bends wavelengths as it does, and not all alike.
+    pub disperses: bool,
 }
 
 /// What glass does.
@@ -69,6 +88,13 @@ pub struct Topic {
     pub lacking: &'static str,
 }
 
+impl Topic {
+    /// Whether it is about light that paths follow: such steps are shown of scenes whose pictures are made by paths, and of no other.
+    pub fn is_of_paths(&self) -> bool {
+        self.shots.iter().any(|shot| shot.look.paths.is_some())
+    }
+}
+
 const fn at(file: &'static str, symbol: &'static str) -> Place {
     Place { file, symbol }
 }
@@ -89,6 +115,7 @@ const FLAT: Look = Look {
     glass: Glass::None,
     mistake: None,
     sampled: false,
+    paths: None,
 };
 const DIFFUSE: Look = Look { lights: true, ..FLAT };
 const SPECULAR: Look = Look { highlights: true, ..DIFFUSE };
@@ -103,8 +130,19 @@ const FRESNEL: Look = Look { glass: Glass::Fresnel, ..GLASS };
 const MOVED: Look = Look { mistake: Some("normals-moved"), ..FRESNEL };
 const SAMPLED: Look = Look { sampled: true, ..FRESNEL };
 
+/// Light by paths, which always takes many samples.
+const fn paths(bounces: u32, carriage: Carriage) -> Look {
+    Look { bounces, sampled: true, paths: Some(carriage), ..FRESNEL }
+}
+const BOTH: Carriage = Carriage { direct: Direct::Both, photons: false, color: ColorMode::Rgb, disperses: true };
+const fn straight(direct: Direct) -> Look {
+    paths(0, Carriage { direct, ..BOTH })
+}
+const PHOTONS: Carriage = Carriage { photons: true, ..BOTH };
+const SPECTRAL: Carriage = Carriage { color: ColorMode::Spectral, ..PHOTONS };
+
 /// All topics, in the order of the lecture.
-pub static TOPICS: [Topic; 13] = [
+pub static TOPICS: [Topic; 18] = [
     Topic {
         name: "rays",
         title: "Rays",
@@ -322,5 +360,101 @@ pub static TOPICS: [Topic; 13] = [
         ],
         shots: &[color("one ray a pixel", FRESNEL), color("many rays a pixel", SAMPLED)],
         lacking: "its picture is the same with more rays",
+    },
+    Topic {
+        name: "soft-shadows",
+        title: "Soft shadows",
+        words: "A lamp has some size, and where a part of it is seen there is half a shadow. So each ray to a lamp goes to another of \
+                its points, chosen at random; the mean over many is the light of the part that is seen (Cook, Porter and \
+                Carpenter, 1984). Before that all rays go to its middle, and shadows have hard edges.",
+        equations: &["L = ∫ f V(p, q) L_e cos θ cos θ_q / |p - q|² dq", "one sample:   f V L_e cos θ / p_l(ω)"],
+        places: &[
+            at("crates/durer/src/integrator/path/direct.rs", "fn direct"),
+            at("crates/durer/src/integrator/path/direct.rs", "fn visible"),
+            at("crates/durer/src/world/emitters/shape.rs", "fn sample"),
+        ],
+        shots: &[
+            color("rays to the middle of each lamp", straight(Direct::Middle)),
+            color("rays to points of it at random", straight(Direct::Lights)),
+        ],
+        lacking: "it has no surface that shines and throws shadows",
+    },
+    Topic {
+        name: "bounces",
+        title: "One bounce more",
+        words: "What a lamp lights is a lamp in turn. The light that a surface scatters comes from all directions, and from each of \
+                them it is the same question once more (Kajiya, 1986). One direction is chosen at random, as the surface \
+                scatters, and followed. Colours go from wall to wall, and no shadow is quite black.",
+        equations: &["L_o = L_e + ∫ f L_i cos θ dω", "one sample:   L_e + f L_i cos θ / p_b(ω)"],
+        places: &[
+            at("crates/durer/src/integrator/path.rs", "fn trace"),
+            at("crates/durer/src/integrator/path.rs", "fn scattered"),
+            at("crates/durer/src/integrator/path.rs", "fn indirect"),
+        ],
+        shots: &[
+            color("light straight from lamps", paths(0, BOTH)),
+            color("1 bounce more", paths(1, BOTH)),
+            color("2 bounces more", paths(2, BOTH)),
+            color("all bounces", paths(u32::MAX, BOTH)),
+        ],
+        lacking: "no light goes from thing to thing in it, or no bounces are wanted",
+    },
+    Topic {
+        name: "mis",
+        title: "Two ways to one light",
+        words: "A lamp can be found by choosing a point of it, or by following a direction in which the surface scatters. The first is \
+                good at small lamps and rough surfaces, the second at large lamps in smooth ones. Each alone has the right \
+                mean; where it is bad, it has much noise. Weighed by how often each finds that very light, their sum is good at \
+                both: multiple importance sampling (Veach, 1997).",
+        equations: &[
+            "points:   f V L_e cos θ / p_l(ω)",
+            "directions:   f L_e cos θ / p_b(ω)",
+            "both:   w_l times the first + w_b times the second,   w_l = p_l² / (p_l² + p_b²),   w_b = 1 - w_l",
+        ],
+        places: &[
+            at("crates/durer/src/integrator/path/direct.rs", "fn power"),
+            at("crates/durer/src/integrator/path/direct.rs", "fn of_light"),
+            at("crates/durer/src/integrator/path/direct.rs", "fn of_direction"),
+        ],
+        shots: &[
+            color("points of lamps alone", straight(Direct::Lights)),
+            color("directions alone", straight(Direct::Bsdf)),
+            color("both, weighed", straight(Direct::Both)),
+        ],
+        lacking: "nothing of some size shines in it",
+    },
+    Topic {
+        name: "caustic",
+        title: "Caustics",
+        words: "Mirrors and glass throw light on other things. A path from the eye comes through the glass to the lamp by chance only: \
+                bright specks, or no light at all. Photons go the other way, from the lamp through the glass, and stay where they \
+                come to rest; how dense they are there is the light (Jensen, 1996; Hachisuka and Jensen, 2009).",
+        equations: &[
+            "L = Σ f Φ_i k(|p - p_i| / r) / r²,   k(x) = 2 (1 - x²) / π",
+            "each sample looks less far:   r_(i+1)² = r_i² (i + 2/3) / (i + 1)",
+        ],
+        places: &[
+            at("crates/durer/src/integrator/path/photons.rs", "fn trace"),
+            at("crates/durer/src/integrator/path/photons.rs", "fn light"),
+            at("crates/durer/src/integrator/path/photons.rs", "fn radius"),
+        ],
+        shots: &[color("paths alone", paths(u32::MAX, BOTH)), color("paths and photons", paths(u32::MAX, PHOTONS))],
+        lacking: "nothing in it mirrors or refracts light of a lamp onto other things",
+    },
+    Topic {
+        name: "spectrum",
+        title: "A spectrum",
+        words: "Glass bends blue light more than red. A path that has wavelengths knows how each is bent, and from there on keeps one; what the \
+                eye makes of a wavelength is its colour. Before that the glass has one index for all of them.",
+        equations: &["n(λ) = A + B / λ²", "Abbe's number:   V = (n_d - 1) / (n_F - n_C)"],
+        places: &[
+            at("crates/durer/src/material/principled.rs", "fn ior_at"),
+            at("crates/durer/src/integrator/path.rs", "fn kept"),
+        ],
+        shots: &[
+            color("one index for all wavelengths", paths(u32::MAX, Carriage { disperses: false, ..SPECTRAL })),
+            color("each wavelength has its own", paths(u32::MAX, SPECTRAL)),
+        ],
+        lacking: "none of its glass has a `transmissionDispersionScale`",
     },
 ];

@@ -5,13 +5,14 @@ mod course;
 mod firefly;
 mod text;
 
+use super::confidence::{ErrorBound, corrected};
 use super::samples::{Aim, Samples};
 pub use super::sub_pixels::SubPixels;
 use super::{Blocks, Control, Crop, Job, RenderError, Sampling, center_ray, raster, render};
 use crate::camera::Raster;
 use crate::dialect::Compat;
 use crate::film::Film;
-use crate::film::aov::Aov;
+use crate::film::aov::{Aov, Sums};
 use crate::integrator::{Account, Integrator, Tree};
 use crate::math::{Color, Ray, Vec2, Vec3};
 use crate::sampler::SampleId;
@@ -37,6 +38,8 @@ pub struct Explanation {
     pub samples: Vec<SampleAccount>,
     /// What an old program's habit `stale-texels` adds to the colour.
     pub stale_texels: Option<Color>,
+    /// How far it may be from the truth, where paths make it of more samples than one.
+    pub error: Option<ErrorBound>,
 }
 
 /// How samples become a pixel.
@@ -136,9 +139,33 @@ pub fn explain(world: &World, job: &Job, x: u32, y: u32) -> Result<Explanation, 
     if job.sampling == Sampling::Center && world.rules.has(Compat::StaleTexels) {
         stale_texels = stale_texel(world, job, &raster(world, job.width, job.height), (x, y));
     }
-    let mut explanation = Explanation { x, y, color: Vec3::ZERO, coverage: 1.0, mean, samples, stale_texels };
+    let mut explanation =
+        Explanation { x, y, color: Vec3::ZERO, coverage: 1.0, mean, samples, stale_texels, error: None };
     (explanation.color, explanation.coverage) = explanation.sum();
+    if explanation.mean == Mean::Own && explanation.samples.len() > 1 && job.method.transport().is_some() {
+        explanation.error = Some(error(world, job, &source, &explanation));
+    }
     Ok(explanation)
+}
+
+/// How far a pixel may be from the truth: from its samples, and for photons from the same samples without their bias.
+fn error(world: &World, job: &Job, source: &Samples, explanation: &Explanation) -> ErrorBound {
+    let Explanation { x, y, ref samples, .. } = *explanation;
+    let film = |color: &dyn Fn(&SampleAccount) -> Option<Color>| {
+        let mut film = Film::window(x, y, 1, 1);
+        samples.iter().for_each(|s| film.add_if_seen(x, y, s.sample, color(s), s.weight));
+        film
+    };
+    let own = film(&|s| s.light.as_ref().map(Tree::sum));
+    let twin = corrected(job.method).map(|method| {
+        let integrator = Integrator::new(world, method, job.settings, job.seed, None);
+        film(&|s| {
+            let ray = source.aim(x, y, s.sample).ray?;
+            Some(integrator.radiance(&ray, SampleId::new(job.seed, (x, y), s.sample), &mut ()))
+        })
+    });
+    let sums = |film| Sums { pixel: Some((film, x, y)), gain: source.gain() };
+    ErrorBound::new(&sums(&own), &sums(twin.as_ref().unwrap_or(&own)))
 }
 
 /// How many samples a pixel has: where noise decides, as many as its block needs.

@@ -2,6 +2,7 @@
 
 mod bands;
 mod blocks;
+mod confidence;
 mod control;
 mod denoised;
 mod error;
@@ -26,7 +27,9 @@ pub mod verify;
 
 pub use bands::{Bands, BandsError};
 pub use blocks::{BLOCK, Blocks, Shard, ShardBy};
+pub use confidence::{CONFIDENCE, ErrorBound};
 pub use control::Control;
+pub use denoised::Noisy;
 pub use error::{Panicked, RenderError};
 pub use eye::{camera_ray, center_ray, raster};
 pub use grid::grid_picture;

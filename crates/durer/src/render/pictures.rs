@@ -92,7 +92,7 @@ impl Part {
     }
 
     /// The colours, the coverage, and the variance of the luminance of each pixel.
-    pub(super) fn noisy(&self) -> (Vec<Color>, Vec<f32>, Vec<f32>) {
+    pub(super) fn colors_and_variance(&self) -> (Vec<Color>, Vec<f32>, Vec<f32>) {
         let state = self.state();
         let (colors, coverage) = self.colors(&state);
         let variance = self.summed(&state, |sums| Vec3::splat(sums.variance() as f32));
@@ -166,7 +166,7 @@ impl Part {
 }
 
 /// The index of a pixel in a window.
-fn place(window: Crop, x: u32, y: u32) -> usize {
+pub(super) fn place(window: Crop, x: u32, y: u32) -> usize {
     (y - window.top) as usize * window.width as usize + (x - window.left) as usize
 }
 

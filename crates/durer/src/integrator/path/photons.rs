@@ -38,6 +38,8 @@ pub struct Photons {
     count: u32,
     /// The first radius.
     radius: f32,
+    /// Whether the bias of looking at photons nearby is taken out, to second order.
+    corrected: bool,
     kept: Mutex<Kept>,
 }
 
@@ -59,6 +61,7 @@ struct Photon {
 #[derive(Debug)]
 pub struct PhotonMap {
     radius: f32,
+    corrected: bool,
     lanes: Lanes,
     /// Of each photon its cell; in order.
     cells: Vec<u64>,
@@ -72,7 +75,13 @@ impl Photons {
         let beams = Beams::new(world);
         let usual = 0.05 * beams.finest();
         let radius = radius.unwrap_or(if usual.is_finite() { usual } else { 1.0 });
-        Photons { beams, seed, count, radius, kept: Mutex::default() }
+        Photons { beams, seed, count, radius, corrected: false, kept: Mutex::default() }
+    }
+
+    /// The same photons, and light of them without the bias that looking at a whole neighbourhood has, to second order in the radius; it has
+    /// more noise. What is without and what is with it differ by an estimate of the bias.
+    pub fn corrected(self) -> Self {
+        Photons { corrected: true, ..self }
     }
 
     /// Whether photons are sent to an object.
@@ -123,7 +132,7 @@ impl Photons {
             true => (0..self.count).into_par_iter().flat_map_iter(one).collect(),
             false => (0..self.count).flat_map(one).collect(),
         };
-        PhotonMap::new(self.radius(sample), lanes, found)
+        PhotonMap { corrected: self.corrected, ..PhotonMap::new(self.radius(sample), lanes, found) }
     }
 
     /// Sends one photon out, and says where it came to rest.
@@ -212,7 +221,8 @@ impl PhotonMap {
             .collect();
         order.sort_unstable();
         let photons = order.iter().map(|&(_, i)| found[i as usize]).collect();
-        PhotonMap { radius, lanes, cells: order.into_iter().map(|(cell, _)| cell).collect(), photons }
+        let cells = order.into_iter().map(|(cell, _)| cell).collect();
+        PhotonMap { radius, corrected: false, lanes, cells, photons }
     }
 
     /// How far it looks.
@@ -241,7 +251,7 @@ impl PhotonMap {
                 let beside = way.dot(surface.n_geo);
                 let distance = way.length_squared();
                 // What lies on another surface does not count.
-                if distance >= square || beside * beside > 0.1 * square || photon.bounces > most {
+                if distance >= square || beside * beside > FLATNESS * square || photon.bounces > most {
                     continue;
                 }
                 let cosine = shading.frame.normal.dot(photon.wi).abs();
@@ -250,13 +260,35 @@ impl PhotonMap {
                     continue;
                 }
                 count += 1;
-                // Epanechnikov's kernel in the plane.
-                let kernel = 2.0 / (PI * square) * (1.0 - distance / square);
-                sum += value * photon.power * (kernel / cosine);
+                sum += value * photon.power * (self.kernel(distance, beside * beside) / cosine);
             }
         }
         (sum, count)
     }
+}
+
+impl PhotonMap {
+    /// How much a photon counts, by the squares of its distance and of how far it lies beside the surface.
+    ///
+    /// The mean of light over a kernel of radius r is off by r^2 times something, to second order: half as much with a kernel of half
+    /// the square. Twice that one less the whole one is corrected (Richardson's extrapolation).
+    fn kernel(&self, distance: f32, beside: f32) -> f32 {
+        let square = self.radius * self.radius;
+        let (whole, half) = (epanechnikov(square, distance), 0.5 * square);
+        match self.corrected {
+            false => whole,
+            true if distance < half && beside <= FLATNESS * half => 2.0 * epanechnikov(half, distance) - whole,
+            true => -whole,
+        }
+    }
+}
+
+/// What lies further beside a surface than this share of the squared radius, squared, is on another surface.
+const FLATNESS: f32 = 0.1;
+
+/// Epanechnikov's kernel in the plane, by the squares of radius and distance.
+fn epanechnikov(square: f32, distance: f32) -> f32 {
+    2.0 / (PI * square) * (1.0 - distance / square)
 }
 
 fn place(point: Vec3, radius: f32, shift: f64) -> glam::I64Vec3 {

@@ -1,6 +1,6 @@
 //! An explanation in words and numbers, line by line.
 
-use super::{Explanation, Mean, SampleAccount};
+use super::{ErrorBound, Explanation, Mean, SampleAccount};
 use crate::describe::DescribedList;
 use crate::diag::{Files, Span};
 use crate::dialect::Compat;
@@ -179,6 +179,16 @@ impl Explanation {
                 Mean::SubPixels(_) => ": sub-pixels, blurred and averaged as in 2012".into(),
             };
             say(1, format!("the mean of {all} samples by weight{of}; the weights sum to {}", sum as f32));
+        }
+        if let Some(error) = &self.error {
+            let ErrorBound { luminance, bias, standard_error, bound } = *error;
+            let [luminance, bias, standard_error, bound] =
+                [luminance, bias, standard_error, bound].map(|value| number(value as f32));
+            let parts = match error.bias {
+                0.0 => format!("standard error {standard_error}"),
+                _ => format!("bias of photons {bias}, standard error {standard_error}"),
+            };
+            say(1, format!("luminance {luminance}, with 90 % confidence at most {bound} from the truth: {parts}"));
         }
         if let Some(stale) = self.stale_texels {
             say(1, format!("and {} by the habit `stale-texels`", rgb(stale)));

@@ -155,6 +155,16 @@ impl Emitters {
         }
     }
 
+    /// The numbers with which [`Emitters::sample`] chooses the middle of a surface, as it is seen; of a triangle and a cylinder they choose
+    /// some point, always the same. `None` for what is no surface.
+    pub fn middle(&self, light: LightId) -> Option<Vec2> {
+        let source = self.first[light.object()? as usize] as usize;
+        match self.sources.get(source)? {
+            Source::Area(area) if matches!(area.form, Form::Sphere(..)) => Some(Vec2::ZERO),
+            _ => Some(Vec2::splat(0.5)),
+        }
+    }
+
     /// Whether points of what was hit can be chosen, if it shines.
     pub fn chooses(&self, hit: &Hit) -> bool {
         self.first[hit.object as usize] != u32::MAX

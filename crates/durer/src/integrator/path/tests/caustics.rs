@@ -53,6 +53,34 @@ fn photons_and_paths_agree_where_both_find_the_light() {
 }
 
 #[test]
+fn fog_and_rough_glass_bring_the_same_light_with_photons_and_without() {
+    // All light comes out of a ball of glass with a lamp in it. Photons bring what single directions throw on surfaces; light that fog or
+    // rough glass scatters after that stays with paths. Nothing is counted twice, and nothing is left out.
+    let lamp = "PrincipledMaterial { baseColor 0 0 0 specularWeight 0 emissionLuminance 6 }";
+    let rough = "PrincipledMaterial { transmissionWeight 1 specularRoughness 0.4 }";
+    let things = "MaterialIndex 0 Plane { normal 0 1 0 offset 0 } MaterialIndex 1 Sphere { center 0 1 0 radius 0.6 } \
+        MaterialIndex 2 Sphere { center 0 1 0 radius 0.35 }";
+    let ball = "MaterialIndex 3 Sphere { center 1 0.45 0 radius 0.4 }";
+    let fog = "Fog { extinction 0.4 color 0.95 0.95 0.95 min -3 0 -3 max 3 4 3 }";
+    // To the floor, below the ball, and through the air.
+    let floor = (Vec3::new(3.0, 0.5, 3.0), Vec3::new(0.7, 0.0, 0.2));
+    let above = (Vec3::new(1.2, 0.6, 4.0), Vec3::new(1.2, 0.6, -4.0));
+    for (air, more, (from, to)) in [(fog, "", floor), (fog, "", above), ("", ball, floor), (fog, ball, floor)] {
+        let world = read(&format!(
+            "{air} PerspectiveCamera {{ center 0 0 5 direction 0 0 -1 up 0 1 0 angle 30 }} Background {{ color 0 0 0 }}
+             Materials {{ {MATTE} {GLASS} {lamp} {rough} }} Group {{ {things} {more} }}"
+        ));
+        let ray = Ray::new(from, (to - from).normalize());
+        let (a, ea) = light(&world, ray, 12, 1 << 15);
+        let (b, eb) = by_photons(&world, ray, (100, 0.2), 1 << 13);
+        let error = (ea * ea + eb * eb).sqrt();
+        // One part in a hundred is allowed for the kernel's radius; the errors are small enough to see light that is lost or counted twice.
+        let near = (a - b).abs() < 3.5 * error + 0.01 * a && error < 0.15 * a;
+        assert!(near, "{air} {more}: {a} ± {ea}, {b} ± {eb}");
+    }
+}
+
+#[test]
 fn maps_are_the_same_however_they_are_made() {
     let world = scene(
         &format!("{MATTE} {GLASS}"),

@@ -79,7 +79,7 @@ fn fog_is_connected_with_through_bodies_without_a_skin() {
 fn grey_is_grey_in_wavelengths_too_and_colours_are_near() {
     let world = over_floor("", "Sphere { center 0 3 0 radius 0.5 }");
     let settings = Settings { bounces: 2, ..Job::default().settings };
-    let path = |color| Path::new(&world, settings, Transport { clamp: None, color });
+    let path = |color| Path::new(&world, settings, Transport { color, ..Transport::default() });
     let samples = 1 << 14;
     let mean = |color| {
         let path = path(color);

@@ -1,0 +1,119 @@
+//! Open Image Denoise 2, loaded when it is asked for: the few functions of its C interface that one picture needs.
+//!
+//! Source: the documentation at <https://www.openimagedenoise.org>. Its pictures differ from machine to machine in their last bits.
+
+#![expect(unsafe_code, reason = "a library of C is called")]
+
+use durer::image::Image;
+use durer::math::Vec3;
+use durer::render::Noisy;
+use libloading::{Library, Symbol};
+use std::ffi::{CStr, c_char, c_int, c_void};
+use std::path::{Path, PathBuf};
+use std::ptr::null;
+
+/// Where the library is looked for first: its folder, or the one above `lib`.
+const FOLDER: &str = "OIDN_DIR";
+
+/// The file's name.
+const NAME: &str = if cfg!(windows) {
+    "OpenImageDenoise.dll"
+} else if cfg!(target_os = "macos") {
+    "libOpenImageDenoise.2.dylib"
+} else {
+    "libOpenImageDenoise.so.2"
+};
+
+/// `OIDN_DEVICE_TYPE_CPU` and `OIDN_FORMAT_FLOAT3`.
+const CPU: c_int = 1;
+const FLOAT3: c_int = 3;
+
+type Object = *mut c_void;
+
+/// The picture without its noise, or why there is none.
+pub fn denoise(noisy: &Noisy, threads: Option<usize>) -> Result<Image, String> {
+    let library = load()?;
+    let (width, height) = (noisy.picture.width as usize, noisy.picture.height as usize);
+    let count = noisy.picture.pixels.len();
+    if [&noisy.albedo, &noisy.normal].iter().any(|guide| guide.len() != count) || count != width * height {
+        return Err("the picture lacks its guides".into());
+    }
+    // The library wants colours between 0 and 1 of surfaces, and nothing that is not finite.
+    let albedo: Vec<Vec3> = noisy.albedo.iter().map(|albedo| albedo.clamp(Vec3::ZERO, Vec3::ONE)).collect();
+    let mut clean = vec![Vec3::ZERO; count];
+    // SAFETY: names and types are those of oidn.h of version 2. `Vec3` is three floats without a gap. All four pictures have
+    // width * height of them and live until the filter is released, and the output is read only after it was executed.
+    unsafe {
+        let new_device: Symbol<unsafe extern "C" fn(c_int) -> Object> = symbol(&library, c"oidnNewDevice")?;
+        let set_device: Symbol<unsafe extern "C" fn(Object, *const c_char, c_int)> =
+            symbol(&library, c"oidnSetDeviceInt")?;
+        let commit_device: Symbol<unsafe extern "C" fn(Object)> = symbol(&library, c"oidnCommitDevice")?;
+        let error: Symbol<unsafe extern "C" fn(Object, *mut *const c_char) -> c_int> =
+            symbol(&library, c"oidnGetDeviceError")?;
+        let release_device: Symbol<unsafe extern "C" fn(Object)> = symbol(&library, c"oidnReleaseDevice")?;
+        let new_filter: Symbol<unsafe extern "C" fn(Object, *const c_char) -> Object> =
+            symbol(&library, c"oidnNewFilter")?;
+        type SetImage =
+            unsafe extern "C" fn(Object, *const c_char, *mut c_void, c_int, usize, usize, usize, usize, usize);
+        let set_image: Symbol<SetImage> = symbol(&library, c"oidnSetSharedFilterImage")?;
+        let set_filter: Symbol<unsafe extern "C" fn(Object, *const c_char, bool)> =
+            symbol(&library, c"oidnSetFilterBool")?;
+        let commit_filter: Symbol<unsafe extern "C" fn(Object)> = symbol(&library, c"oidnCommitFilter")?;
+        let execute: Symbol<unsafe extern "C" fn(Object)> = symbol(&library, c"oidnExecuteFilter")?;
+        let release_filter: Symbol<unsafe extern "C" fn(Object)> = symbol(&library, c"oidnReleaseFilter")?;
+
+        let device = new_device(CPU);
+        if device.is_null() {
+            return Err("Open Image Denoise finds no processor that it can use".into());
+        }
+        if let Some(threads) = threads.and_then(|threads| c_int::try_from(threads).ok()) {
+            set_device(device, c"numThreads".as_ptr(), threads);
+        }
+        commit_device(device);
+        let filter = new_filter(device, c"RT".as_ptr());
+        if !filter.is_null() {
+            // What is only read is given as what may be written: C knows one pointer for both.
+            for (name, pixels) in [
+                (c"color", noisy.picture.pixels.as_ptr().cast_mut()),
+                (c"albedo", albedo.as_ptr().cast_mut()),
+                (c"normal", noisy.normal.as_ptr().cast_mut()),
+                (c"output", clean.as_mut_ptr()),
+            ] {
+                set_image(filter, name.as_ptr(), pixels.cast(), FLOAT3, width, height, 0, 0, 0);
+            }
+            set_filter(filter, c"hdr".as_ptr(), true);
+            commit_filter(filter);
+            execute(filter);
+            release_filter(filter);
+        }
+        let mut message = null();
+        let code = error(device, &mut message);
+        let told = match message.is_null() {
+            true => String::new(),
+            false => CStr::from_ptr(message).to_string_lossy().into_owned(),
+        };
+        release_device(device);
+        if filter.is_null() || code != 0 {
+            return Err(format!("Open Image Denoise failed: {told}"));
+        }
+    }
+    Image::from_pixels(noisy.picture.width, noisy.picture.height, clean).map_err(|error| error.to_string())
+}
+
+/// A function of the library.
+///
+/// # Safety
+/// The type must be that of the function.
+unsafe fn symbol<'l, T>(library: &'l Library, name: &CStr) -> Result<Symbol<'l, T>, String> {
+    // SAFETY: whoever calls knows the function's type.
+    unsafe { library.get(name.to_bytes_with_nul()) }
+        .map_err(|_| format!("this Open Image Denoise is not of version 2: it has no {}", name.to_string_lossy()))
+}
+
+fn load() -> Result<Library, String> {
+    let folder = std::env::var_os(FOLDER).map(PathBuf::from);
+    let folders = folder.iter().flat_map(|folder| [folder.join(NAME), folder.join("lib").join(NAME)]);
+    let file = folders.into_iter().find(|file| file.is_file()).unwrap_or_else(|| Path::new(NAME).to_path_buf());
+    // SAFETY: what loading it starts is the library's own, which the user has put there or the system has.
+    unsafe { Library::new(&file) }.map_err(|_| "Open Image Denoise is not found".into())
+}

@@ -1,0 +1,97 @@
+//! Paths from the command line: how far pixels may be from the truth, ways to one light, denoisers.
+
+mod common;
+
+use common::Place;
+
+/// A lamp over a floor, and a ball of glass between.
+const GLASS: &str = "PerspectiveCamera { center 0 2 6 direction 0 -0.25 -1 up 0 1 0 angle 30 }
+Background { color 0.1 0.1 0.1 }
+Materials {
+    PrincipledMaterial { baseColor 0.5 0.4 0.3 specularWeight 0 }
+    PrincipledMaterial { preset glass }
+    PrincipledMaterial { baseColor 0 0 0 specularWeight 0 emissionLuminance 20 }
+}
+Group {
+    MaterialIndex 0 Plane { normal 0 1 0 offset 0 }
+    MaterialIndex 1 Sphere { center 0 1 0 radius 0.7 }
+    MaterialIndex 2 Sphere { center 1 3 0 radius 0.3 }
+}
+";
+
+fn place() -> Place {
+    let place = Place::new();
+    place.put("glass.txt", GLASS);
+    place
+}
+
+#[test]
+fn errors_are_shown_beside_the_work() {
+    let place = place();
+    let render = "render glass.txt --integrator photons --photons 500 --size 16x12 --samples 8 --hash -q --restart";
+    let plain = place.gives(0, &format!("{render} -o p.png")).out;
+    let shown = place.gives(0, &format!("{render} --show color,error -o p.exr")).out;
+    assert_eq!(plain, shown);
+    assert!(String::from_utf8_lossy(&place.bytes("p.exr")).contains("error.R"));
+    place.gives(0, &format!("{render} --show error -o e.pfm"));
+    let errors = place.image("e.pfm");
+    assert!(errors.pixels.iter().all(|error| error.x.is_finite() && error.x >= 0.0));
+    // It is what an explanation tells of a pixel.
+    let explain = "explain glass.txt --integrator photons --photons 500 --size 16x12 --samples 8 --pixel 8,8";
+    let told: serde_json::Value = serde_json::from_str(&place.gives(0, &format!("{explain} --json")).out).unwrap();
+    let bound = told["pixel"]["error"]["bound"].as_f64().unwrap();
+    assert_eq!(errors.get(8, 8).unwrap().x, bound as f32);
+    let text = place.gives(0, explain).out;
+    assert!(text.contains("with 90 % confidence at most"), "{text}");
+    place.refused(2, "render glass.txt --integrator whitted --show error -o p.png", &["--show error"]);
+    place.refused(2, "render glass.txt --show error --shard 1/2 -o p.part", &["--show error"]);
+    let noise = "render glass.txt --integrator photons --photons 500 --size 16x12 --noise 0.05 --show error -o n.pfm";
+    place.refused(2, noise, &["--samples"]);
+}
+
+#[test]
+fn ways_to_one_light_differ_in_noise_alone() {
+    let place = place();
+    let render = |way: &str| {
+        let options = format!("--size 16x12 --samples 64 --seed {} --direct {way} -q", way.len());
+        place.gives(0, &format!("render glass.txt {options} --show luminance,variance -o {way}.pfm"));
+        let mean = |name: &str| {
+            let pixels = place.image(name).pixels;
+            pixels.iter().map(|pixel| f64::from(pixel.x)).sum::<f64>() / pixels.len() as f64
+        };
+        // The mean of all pixels, and its variance.
+        (mean(&format!("{way}.luminance.pfm")), mean(&format!("{way}.variance.pfm")) / (16.0 * 12.0))
+    };
+    let (both, lights, bsdf) = (render("both"), render("lights"), render("bsdf"));
+    for half in [lights, bsdf] {
+        let error = (both.1 + half.1).sqrt();
+        assert!((both.0 - half.0).abs() < 3.5 * error && both.0 != half.0, "{both:?} {half:?}");
+    }
+    place.refused(2, "render glass.txt --integrator ao --direct bsdf -o p.png", &["--direct makes no sense"]);
+    place.refused(2, "render glass.txt --direct middle -o p.png", &["both"]);
+}
+
+#[test]
+fn denoisers_are_chosen_and_where_to_get_one_is_told() {
+    let place = place();
+    // A file of the library's name that is none.
+    for name in ["libOpenImageDenoise.so.2", "libOpenImageDenoise.2.dylib", "OpenImageDenoise.dll"] {
+        place.put(name, "no library");
+    }
+    let run = |options: &str| {
+        let mut command =
+            place.command(&format!("render glass.txt --size 16x12 --samples 4 --hash --restart {options}"));
+        let done = command.env("OIDN_DIR", place.path("")).output().unwrap();
+        (done.status.code(), String::from_utf8(done.stdout).unwrap(), String::from_utf8(done.stderr).unwrap())
+    };
+    let (code, _, told) = run("--denoise=oidn -o p.png");
+    assert!(code == Some(2) && told.contains("pip install pyoidn") && told.contains("OIDN_DIR"), "{told}");
+    let (_, auto, told) = run("--denoise -o auto.png");
+    assert!(told.contains("our own denoiser") && told.contains("pip install pyoidn"), "{told}");
+    let (code, own, told) = run("--denoise=own -o own.png");
+    assert!(code == Some(0) && !told.contains("pyoidn"), "{told}");
+    assert_eq!(place.bytes("auto.png"), place.bytes("own.png"));
+    let hash = |out: &str| out.lines().last().unwrap().to_string();
+    assert_eq!(hash(&auto), hash(&own));
+    assert_eq!(run("--denoise=else -o p.png").0, Some(2));
+}

@@ -1,0 +1,157 @@
+//! Light that comes straight from lamps and surroundings: it is found by choosing points of lights, and by the directions in
+//! which a surface scatters; what both can find is weighed.
+//!
+//! Source: Veach, *Robust Monte Carlo Methods for Light Transport Simulation*, 1997, chapter 9.
+
+use super::{Path, Place, Sample, Scattered, State, Use, Vertex};
+use crate::integrator::Direct;
+use crate::integrator::account::{Shadow, TermValue, What, Witness};
+use crate::integrator::media::Media;
+use crate::integrator::spawn::from_surface;
+use crate::math::{Color, Ray64};
+use crate::medium::Way;
+use crate::spectrum::Spectrum;
+use crate::world::Hit;
+use crate::world::emitters::LightSample;
+
+impl Path<'_> {
+    /// How much a light counts that a ray met by its direction, where it could have been found in another way too.
+    /// `carried`: photons are sent from it.
+    pub(super) fn weight(&self, state: &State, carried: bool, pdf: impl Fn(&Scattered) -> f32) -> f32 {
+        match &state.from {
+            Some(from) => self.transport.direct.of_direction(from.pdf, pdf(from)),
+            None if carried && state.behind_mirrors && state.by_target => 0.0,
+            None => 1.0,
+        }
+    }
+
+    /// The density with which a light that a ray met would have been chosen.
+    pub(super) fn pdf_of_hit(&self, ray: &Ray64, hit: &Hit, from: &Scattered) -> f32 {
+        let way = ray.origin() + f64::from(hit.t) * ray.dir().as_dvec3() - from.point;
+        let (wi, distance) = (ray.dir().normalize(), way.length() as f32);
+        self.world.emitters.pdf_of_hit(self.world, hit, from.point, from.n, wi, distance)
+    }
+
+    /// The light of one light that is chosen.
+    pub(super) fn direct<T: Witness>(&self, vertex: &Vertex, sample: &Sample, tally: &mut T) -> Spectrum {
+        let (world, place) = (self.world, &vertex.place);
+        let id = sample.bounce(vertex.state.depth);
+        let (choice, u) = (id.pair(Use::Light as u32).x, id.pair(Use::PlaceOnLight as u32));
+        let choose = |u| world.emitters.sample(world, place.point(), place.normal(), choice, u);
+        let chosen = match (choose(u), self.transport.direct) {
+            (Some(any), Direct::Middle) => choose(world.emitters.middle(any.light).unwrap_or(u)),
+            (chosen, _) => chosen,
+        };
+        let Some(light) = chosen else { return Spectrum::ZERO };
+        let value = place.eval(light.wi);
+        if value == Spectrum::ZERO || light.radiance == Color::ZERO {
+            return Spectrum::ZERO;
+        }
+        let (weight, density) = match light.pdf > 0.0 {
+            true => {
+                let density = light.choice * light.pdf;
+                (self.transport.direct.of_light(density, place.pdf(light.wi)), density)
+            }
+            // Directions never meet a light without extent.
+            false => (1.0, light.choice),
+        };
+        if weight == 0.0 {
+            return Spectrum::ZERO;
+        }
+        let visible = self.visible(vertex, &light, sample, tally);
+        let factor = value * (weight / density) * visible;
+        tally.begin(|| What::Direct {
+            light: light.light,
+            to_light: light.wi,
+            distance: light.reach,
+            choice: light.choice,
+            pdf: light.pdf,
+            bsdf: sample.told(value),
+            mis: weight,
+            shadow: self.settings.shadows.then(|| self.shadow(place, &light, sample.told(visible))),
+        });
+        let radiance = sample.lanes.light_of(light.radiance, world.illuminant(light.light));
+        tally.end(sample.told(factor), sample.told(Spectrum::ONE), sample.told(radiance));
+        factor * radiance
+    }
+
+    /// The share of a light that arrives.
+    fn visible<T: Witness>(&self, vertex: &Vertex, light: &LightSample, sample: &Sample, tally: &mut T) -> Spectrum {
+        if !self.settings.shadows {
+            return Spectrum::ONE;
+        }
+        let Vertex { place, state } = vertex;
+        let media = place.media(state, light.wi);
+        let mut ray = place.shadow_ray(light);
+        let mut share = Spectrum::ONE;
+        let mut numbers = sample.id.stream(state.depth, 1);
+        let mut pass = |media: &Media, ray: &Ray64, to: f32| match self.world.medium(media.object()) {
+            Some(medium) => {
+                let way = Way { origin: ray.origin(), dir: light.wi, from: 0.0, to };
+                medium.transmittance(&way, &sample.lanes, &mut || numbers.number())
+            }
+            None => Spectrum::ONE,
+        };
+        if !self.world.has_cutouts && !self.world.has_interfaces {
+            return match self.world.occluded(&ray, tally) {
+                true => Spectrum::ZERO,
+                false => pass(media, &ray, ray.rounded.t_max),
+            };
+        }
+        let mut media = media.clone();
+        // A thing with many layers is followed only so far.
+        for _ in 0..64 {
+            let Some(hit) = self.world.closest(&ray, tally) else {
+                return share * pass(&media, &ray, ray.rounded.t_max);
+            };
+            share *= pass(&media, &ray, hit.t);
+            let blocker = self.world.surface(&ray, &hit);
+            match self.passage(&ray, &hit, &blocker, &media, &sample.lanes) {
+                Some(passage) if self.is_nothing(&hit, &passage) => media = passage.behind,
+                _ => share *= 1.0 - self.world.opacity(&hit, &blocker),
+            }
+            if share == Spectrum::ZERO {
+                break;
+            }
+            ray = from_surface(&blocker, ray.dir(), ray.rounded.t_max - hit.t, None);
+        }
+        Spectrum::ZERO
+    }
+
+    /// What a witness is told of a shadow ray.
+    fn shadow(&self, place: &Place, light: &LightSample, share: TermValue) -> Shadow {
+        let ray = place.shadow_ray(light);
+        let blocker = self.world.closest(&ray, &mut ()).map(|hit| (hit.object, hit.t));
+        Shadow { ray: (&ray).into(), blocker, share }
+    }
+}
+
+impl Direct {
+    /// The weight of a light that was chosen with density `light`, where its direction has density `direction`.
+    fn of_light(self, light: f32, direction: f32) -> f32 {
+        match self {
+            Direct::Both => power(light, direction),
+            Direct::Lights | Direct::Middle => 1.0,
+            // What no direction meets is left to points.
+            Direct::Bsdf => f32::from(u8::from(direction == 0.0)),
+        }
+    }
+
+    /// The weight of a light that was met by a direction of density `direction`, where it is chosen with density `light`.
+    fn of_direction(self, direction: f32, light: f32) -> f32 {
+        match self {
+            Direct::Both => power(direction, light),
+            Direct::Lights | Direct::Middle => f32::from(u8::from(light == 0.0)),
+            Direct::Bsdf => 1.0,
+        }
+    }
+}
+
+/// The power heuristic: the weight of a way of sampling with density `a`, where another one has density `b`.
+fn power(a: f32, b: f32) -> f32 {
+    if b == 0.0 {
+        return 1.0;
+    }
+    let ratio = b / a;
+    1.0 / (1.0 + ratio * ratio)
+}

@@ -1,0 +1,187 @@
+"""Time to equal noise: Dürer and Mitsuba 3 (`llvm_ad_rgb`) on equal scenes.
+
+    python peers_time.py DURER MESHES [--side 256] [--samples 64] [--runs 5] [--threads 2] [--only TEXT]
+
+Each renders each scene in turns, with the same camera, filter, depth and number of samples, by different random numbers. Of n pictures
+of one program the mean square error is the mean over pairs of half their squared difference: no reference is needed, and none can favour one. It falls
+as one over the time, so the time to equal error goes as time times error. Time is the processor's, of all threads: ours less that of a
+picture of one sample, which reads and builds; theirs after a first picture, which compiles. Figures are of the least time of the runs.
+"""
+
+import argparse
+import glob
+import itertools
+import os
+import pathlib
+import resource
+import shutil
+import subprocess
+import tempfile
+import time
+
+# Dr.Jit looks for an LLVM. That of the compiler for Rust will do, and knows processors that a system's older one does not.
+if "DRJIT_LIBLLVM_PATH" not in os.environ:
+    home = subprocess.run(["rustc", "--print", "sysroot"], capture_output=True, text=True).stdout.strip()
+    os.environ.update({"DRJIT_LIBLLVM_PATH": found for found in glob.glob(f"{home}/lib/libLLVM.so*")[:1]})
+
+import drjit as dr
+import mitsuba as mi
+import numpy as np
+import peers
+from peers import Scene, lamp, matte, pfm, rgb
+
+
+def read_ply(path):
+    with open(path, "rb") as file:
+        head = b""
+        while not head.endswith(b"end_header\n"):
+            head += file.readline()
+        count = int(head.split(b"vertex ")[1].split()[0])
+        return np.frombuffer(file.read(12 * count), "<f4").reshape(-1, 3)
+
+
+def write_ply(path, corners):
+    """A mesh of triangles that share nothing."""
+    faces = np.arange(3 * len(corners), dtype="<i4").reshape(-1, 3)
+    rows = np.zeros(len(corners), dtype=[("n", "u1"), ("i", "<i4", 3)])
+    rows["n"], rows["i"] = 3, faces
+    with open(path, "wb") as file:
+        file.write(f"ply\nformat binary_little_endian 1.0\nelement vertex {faces.size}\nproperty float x\nproperty float y\n"
+                   f"property float z\nelement face {len(faces)}\nproperty list uchar int vertex_indices\nend_header\n".encode())
+        file.write(corners.reshape(-1, 3).astype("<f4").tobytes() + rows.tobytes())
+
+
+def write_pfm(path, pixels):
+    with open(path, "wb") as file:
+        file.write(f"PF\n{pixels.shape[1]} {pixels.shape[0]}\n-1\n".encode() + pixels[::-1].astype("<f4").tobytes())
+
+
+def mesh(scene, path, surface, emitted=None):
+    material, bsdf = surface if emitted is None else (lamp(emitted), matte((0, 0, 0))[1])
+    theirs = {"type": "ply", "filename": str(path), "face_normals": True, "bsdf": bsdf if emitted else {"type": "twosided", "b": bsdf}}
+    if emitted is not None:
+        theirs["emitter"] = {"type": "area", "radiance": rgb(emitted)}
+    scene.put(material, f"TriangleMesh {{ obj_file {path.name} }}", theirs)
+
+
+def scenes(meshes, folder):
+    cornell = Scene("Cornell box", 8).box()
+    cornell.sphere((-0.4, -0.55, 0.2), 0.45, matte((0.5, 0.5, 0.5)))
+    cornell.sphere((0.45, -0.6, -0.3), 0.4, matte((0.8, 0.6, 0.2)))
+    yield cornell
+
+    # A dim sky with a bright patch, the middle of ours towards -z, that of theirs towards +z.
+    sky = np.full((128, 256, 3), (0.3, 0.4, 0.6))
+    sky[20:30, 40:56] = (60, 50, 40)
+    write_pfm(folder / "sky.pfm", sky)
+    write_pfm(folder / "turned.pfm", np.roll(sky, 128, axis=1))
+    corners = read_ply(meshes / "dragon.ply")
+    (low, high) = corners.min(0), corners.max(0)
+    middle, size = (low + high) / 2, np.linalg.norm(high - low)
+    eye = middle + size * np.array((0.3, 0.2, 0.9))
+    dragon = Scene("glossy dragon under an environment", 8, eye=eye, direction=middle - eye, fov=50)
+    shutil.copy(meshes / "dragon.ply", folder)
+    roughness = 0.3
+    mesh(dragon, folder / "dragon.ply", (
+        f"PrincipledMaterial {{ baseColor 1 1 1 baseMetalness 1 specularRoughness {roughness} }}",
+        {"type": "roughconductor", "distribution": "ggx", "alpha": roughness**2, "material": "none"}))
+    dragon.rectangle((-50, low[1], 50), (100, 0, 0), (0, 0, -100), matte((0.4, 0.4, 0.4)))
+    dragon.environment = "environment sky.pfm"
+    dragon.theirs["env"] = {"type": "envmap", "filename": str(folder / "turned.pfm")}
+    yield dragon
+
+    for name in ("kitchen", "hall"):
+        corners = read_ply(meshes / f"{name}.ply")
+        (low, high) = corners.min(0), corners.max(0)
+        size, forward = high - low, np.array((0.8, -0.1, 0.59))
+        eye = (low + high) / 2 - 0.15 * size * forward
+        room = Scene(f"{name} with lamps", 8, eye=eye, direction=forward, fov=70)
+        shutil.copy(meshes / f"{name}.ply", folder)
+        mesh(room, folder / f"{name}.ply", matte((0.6, 0.6, 0.6)))
+        for x, z in itertools.product((0.35, 0.65), (0.4, 0.6)):
+            corner = low + size * np.array((x, 0.75, z))
+            room.rectangle(corner, (0.08 * size[0], 0, 0), (0, 0, 0.05 * size[2]), None, (20, 18, 15))
+        yield room
+
+    random = np.random.default_rng(1)
+    count = 100_000
+    centers = random.uniform((-8, 0.3, -8), (8, 2, 8), (count, 3))
+    # They face down.
+    corner = 0.004 * np.array(((0, 0, 0), (1, 0, 0), (0, 0, 1)))
+    write_ply(folder / "lamps.ply", centers[:, None, :] + corner)
+    many = Scene("100,000 small lamps", 8, eye=(0, 1.2, 9), direction=(0, -0.15, -1), fov=50)
+    many.rectangle((-50, 0, 50), (100, 0, 0), (0, 0, -100), matte((0.5, 0.4, 0.3)))
+    mesh(many, folder / "lamps.ply", None, (300, 250, 200))
+    for x in range(-3, 4):
+        many.sphere((2 * x, 0.5, 2 * (x % 3)), 0.5, matte((0.6, 0.6, 0.6)))
+    yield many
+
+
+def error(pictures):
+    """The mean square error of one picture, from pairs."""
+    return np.mean([((a - b) ** 2).mean() / 2 for a, b in itertools.combinations(pictures, 2)])
+
+
+def spent(work):
+    """What work gives, and the processor's time for it, in this program and in those that it starts."""
+    def now():
+        return time.process_time() + sum(resource.getrusage(resource.RUSAGE_CHILDREN)[:2])
+    start = now()
+    return work(), now() - start
+
+
+def race(given, scene, folder):
+    source, picture = folder / "scene.txt", folder / "picture.pfm"
+    text = scene.text()
+    environment = getattr(scene, "environment", None)
+    source.write_text(text.replace("Background { color", f"Background {{ {environment} color") if environment else text)
+    side = given.side
+
+    def ours(samples, seed):
+        subprocess.run([given.program, "render", source, "-o", picture, "--size", f"{side}x{side}", "--samples", str(samples), "--filter", "box",
+                        "--integrator", "path", "--bounces", str(scene.bounces), "--seed", str(seed), "--threads", str(given.threads),
+                        "-q", "--restart"], check=True)
+        return pfm(picture)
+
+    scene.theirs["sensor"]["film"].update(width=side, height=side)
+    loaded = mi.load_dict(scene.theirs)
+    theirs = lambda samples, seed: np.array(mi.render(loaded, spp=samples, seed=seed)).astype(float)
+    theirs(given.samples, 1000)
+    start = min(spent(lambda: ours(1, 0))[1] for _ in range(2))
+    made = {ours: [], theirs: []}
+    for seed in range(given.runs):
+        for program in made:
+            made[program].append(spent(lambda: program(given.samples, seed)))
+    pictures, times = [[run[0] for run in made[p]] for p in made], [min(run[1] for run in made[p]) for p in made]
+    times[0] -= start
+    errors = [error(p) for p in pictures]
+    means = [np.mean(p) for p in pictures]
+    ratio = times[0] * errors[0] / (times[1] * errors[1])
+    root = [np.sqrt(e) / means[1] for e in errors]
+    print(f"| {scene.name} | {times[0]:.2f} s | {times[1]:.2f} s | {100 * root[0]:.2f} % | {100 * root[1]:.2f} % | {means[0] / means[1]:.4f} "
+          f"| **{ratio:.2f}** |", flush=True)
+
+
+def main():
+    arguments = argparse.ArgumentParser()
+    arguments.add_argument("program")
+    arguments.add_argument("meshes", type=pathlib.Path)
+    for name, value in [("side", 256), ("samples", 64), ("runs", 5), ("threads", 2)]:
+        arguments.add_argument(f"--{name}", type=int, default=value)
+    arguments.add_argument("--only", default="")
+    given = arguments.parse_args()
+    mi.set_variant("llvm_ad_rgb")
+    dr.set_thread_count(given.threads)
+    peers.T = mi.ScalarTransform4f
+    print(f"{given.side} x {given.side} pixels, {given.samples} samples, {given.threads} threads each, {given.runs} runs in turns, Mitsuba {mi.__version__}\n\n"
+          "| scene | ours | Mitsuba | our error | its error | mean, ours over its | time to equal error, ours over its |\n"
+          "| --- | --- | --- | --- | --- | --- | --- |")
+    with tempfile.TemporaryDirectory() as folder:
+        folder = pathlib.Path(folder)
+        for scene in scenes(given.meshes, folder):
+            if given.only in scene.name:
+                race(given, scene, folder)
+
+
+if __name__ == "__main__":
+    main()
