@@ -11,7 +11,9 @@ use std::sync::atomic::Ordering::Relaxed;
 use std::sync::mpsc::{self, RecvTimeoutError};
 use std::time::Duration;
 
-/// How often files are looked at, and how long they must stay as they are: programs save in several steps.
+/// How often files are looked at: who saves one waits for the picture.
+const LOOK: Duration = Duration::from_millis(10);
+/// How long they must stay as they are: programs save in several steps.
 const PAUSE: Duration = Duration::from_millis(50);
 
 /// The files as they are.
@@ -64,7 +66,7 @@ pub fn run(command: &RenderCommand) -> Result<(), Failure> {
         }
         progress::idle();
         while stamp(&files) == before {
-            std::thread::sleep(PAUSE);
+            std::thread::sleep(LOOK);
         }
         settle(&files);
         progress::busy();

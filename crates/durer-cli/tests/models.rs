@@ -162,3 +162,21 @@ fn an_environment_lights_a_model() {
     place.refused(2, "render a.stl -o a.png --environment none.hdr", &["none.hdr"]);
     place.refused(2, "render a.stl -o a.png --environment scene.txt", &["scene.txt"]);
 }
+
+#[test]
+fn json_is_a_scene_for_every_command() {
+    let place = Place::new();
+    place.gives(0, "convert scene.txt -o a.json");
+    let hash = |name: &str| place.gives(0, &format!("render {name} -o a.png {SMALL} --hash -q")).out;
+    assert_eq!(hash("a.json"), hash("scene.txt"));
+    let said = |name: &str| place.run(&format!("check {name}")).out.replace(name, "");
+    assert_eq!(said("a.json").lines().count(), said("scene.txt").lines().count());
+    assert!(place.gives(0, "info a.json").out.contains("Sphere"));
+    place.gives(0, "explain a.json --pixel 256,256");
+    let text = "{\"type\": \"Scene\",\n \"camera\": {\"type\": \"PerspectiveCamra\"}}";
+    place.put("b.json", text);
+    place.refused(2, "render b.json -o b.png", &["b.json:2:21", "did you mean `PerspectiveCamera`?"]);
+    // What no name tells is told by the beginning.
+    place.put("b", text);
+    place.refused(2, "render b -o b.png", &["b:2:21"]);
+}

@@ -230,4 +230,6 @@ mod kept_tests;
 #[cfg(test)]
 mod model_tests;
 #[cfg(test)]
+mod picture_tests;
+#[cfg(test)]
 mod tests;

@@ -66,7 +66,9 @@ impl<'a> Encoded<'a> {
     /// # Errors
     /// [`ImageError::Memory`] where it needs more bytes than allowed, and those of [`Encoded::open`].
     pub fn read_raster(&self, memory: u64) -> Result<Raster, ImageError> {
-        self.decode(self.needed8(), memory)
+        // Numbers are copied once to where they stay.
+        let copy = if self.head.eight { 0 } else { self.count * size_of::<[f32; 4]>() };
+        self.decode(self.needed8().saturating_add(copy as u64), memory)
     }
 
     /// Its pixels, with a meaning for each of the values of eight bits. Numbers of floating-point formats come as they are.

@@ -34,9 +34,9 @@ const MATRICES: [(&str, MatrixOp); 8] = {
     ]
 };
 
-/// Whether a file is a scene as JSON: by its name, or else by its beginning, which no text of the language has.
+/// Whether a file is a scene as JSON, by its name or its beginning, which no text of the language has. glTF is JSON too, and is none.
 pub fn recognise(bytes: &[u8], name: &str) -> bool {
     let head = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes).trim_ascii_start();
-    super::extension(name) == EXTENSION
-        || head.starts_with(b"{") && super::scene::find_scene_format(bytes, name).is_none()
+    let is_json = super::extension(name) == EXTENSION || head.starts_with(b"{");
+    is_json && super::scene::find_scene_format(bytes, name).is_none()
 }

@@ -187,7 +187,9 @@ impl Reader<'_> {
                     self.error(node.at.clone(), "bad-value", message, Some(help));
                     return None;
                 }
-                describe::Value::Path(FileName { path: path.to_string(), span: self.span(&node.at) })
+                // Without its quotes, so that another path may be put in its place.
+                let span = self.span(&(node.at.start + 1..node.at.end - 1));
+                describe::Value::Path(FileName { path: path.to_string(), span })
             }
             Kind::Word(words) => describe::Value::Word(self.one_of(node, name, words)?.to_string()),
             Kind::Rows(width) => describe::Value::Rows(self.rows(node, name, width)?),

@@ -331,13 +331,11 @@ mod tests {
 
     #[test]
     fn halves_are_exact() {
-        for (bits, value) in [
-            (0x3c00, 1.0),
-            (0xc000, -2.0),
-            (0x0001, 2f32.powi(-24)),
-            (0x7bff, 65504.0),
-            (0x03ff, 1023.0 * 2f32.powi(-24)),
-        ] {
+        /// 2 to the power of -24.
+        const LEAST: f32 = 1.0 / 16_777_216.0;
+        for (bits, value) in
+            [(0x3c00, 1.0), (0xc000, -2.0), (0x0001, LEAST), (0x7bff, 65504.0), (0x03ff, 1023.0 * LEAST)]
+        {
             assert_eq!(half(bits), value);
         }
         assert!(half(0x7c00).is_infinite() && half(0x7e00).is_nan());
