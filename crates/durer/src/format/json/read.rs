@@ -102,7 +102,7 @@ impl Reader<'_> {
         for (index, at) in std::mem::take(&mut self.uses) {
             if index as usize >= count {
                 let has = counted(count, "material", "materials");
-                let said = self.report.warning(at, format!("material {index} does not exist: there is {has}"));
+                let said = self.report.warning(at, format!("material {index} does not exist: the scene has {has}"));
                 said.code = "material-index";
                 said.help = Some("objects that use it are drawn in plain grey".into());
             }

@@ -162,7 +162,7 @@ fn errors_are_few_and_nesting_is_bounded() {
     assert!(nested(1000).1[0].contains("values are nested deeper than 640"));
     // A material that is not there is told, and the scene is read.
     let (scene, said) = read(&SMALL.replace("\"material\": 2", "\"material\": 3"));
-    assert!(scene.is_some() && said[0].contains("material 3 does not exist: there is 3 materials"), "{said:?}");
+    assert!(scene.is_some() && said[0].contains("material 3 does not exist: the scene has 3 materials"), "{said:?}");
 }
 
 /// Whether a value is as a schema says: as much of JSON Schema as ours uses.
