@@ -152,8 +152,8 @@ pub struct RenderArgs {
     #[command(flatten)]
     pub display: DisplayArgs,
     /// Take the noise out of the colour picture, by what is known of each pixel's surface and of its noise; EXR keeps the picture
-    /// as it was rendered, beside a layer `denoised`, and --hash knows nothing of it. By Open Image Denoise (oidn) where that is found, else by our
-    /// own (own)
+    /// as it was rendered, beside a layer `denoised`, and --hash knows nothing of it. By Open Image Denoise (oidn) where that
+    /// is found, else by our own (own)
     #[arg(long, value_name = "BY", num_args = 0..=1, require_equals = true, default_missing_value = "auto", value_parser = Denoiser::parser())]
     pub denoise: Option<Denoiser>,
     /// Render again whenever the scene, a mesh or a picture of it is saved; the picture grows as it is made, and Ctrl-C ends
@@ -176,8 +176,8 @@ pub struct ViewArgs {
     /// Make only a part of the picture
     #[arg(long, value_name = "LEFT,TOP,WIDTHxHEIGHT", value_parser = crop)]
     pub crop: Option<(u32, u32, u32, u32)>,
-    /// What to show; several are joined by commas. With paths and photons, `error` is how far the luminance may be from the truth, noise and the bias of
-    /// photons together, with 90 % confidence
+    /// What to show; several are joined by commas. With paths and photons, `error` is how far the luminance may be from the
+    /// truth, noise and the bias of photons together, with 90 % confidence
     #[arg(long, value_delimiter = ',', default_value = "color", value_parser = PossibleValuesParser::new(shows()))]
     pub show: Vec<String>,
     /// Pixels for a pixel in the pictures `samples` and `filter`

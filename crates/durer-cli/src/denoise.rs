@@ -53,5 +53,5 @@ impl Denoiser {
 }
 
 /// How the library is got.
-const HOW: &str = "`pip install pyoidn` brings Open Image Denoise: set OIDN_DIR to the folder `pyoidn/oidn` that it makes, or to any other that has \
-                   the library, and say `--denoise=own` to be asked no more";
+const HOW: &str = "`pip install pyoidn` brings Open Image Denoise: set OIDN_DIR to the folder `pyoidn/oidn` that it makes, \
+                   or to any other that has the library; `--denoise=own` asks for none";

@@ -1,6 +1,7 @@
 //! Open Image Denoise 2, loaded when it is asked for: the few functions of its C interface that one picture needs.
 //!
-//! Source: the documentation at <https://www.openimagedenoise.org>. Its pictures differ from machine to machine in their last bits.
+//! Source: the documentation at <https://www.openimagedenoise.org>. Its pictures differ from machine to machine in
+//! their last bits.
 
 #![expect(unsafe_code, reason = "a library of C is called")]
 

@@ -60,8 +60,8 @@ pub struct Transport {
     pub direct: Direct,
 }
 
-/// How paths find light that comes straight from lamps and surroundings with an extent. All but [`Direct::Middle`] have the same
-/// mean; they differ in noise.
+/// How paths find light that comes straight from lamps and surroundings with an extent. All but [`Direct::Middle`]
+/// have the same mean; they differ in noise.
 ///
 /// Source: Veach, *Robust Monte Carlo Methods for Light Transport Simulation*, 1997, chapter 9.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -74,8 +74,8 @@ pub enum Direct {
     Lights,
     /// Directions alone; points only of lights that no direction meets.
     Bsdf,
-    /// As [`Direct::Lights`], but always the same point of a surface that shines, the middle of a sphere, disc or rectangle. Shadows are hard: wrong, and
-    /// for lessons alone.
+    /// As [`Direct::Lights`], but always the same point of a surface that shines, the middle of a sphere, disc or
+    /// rectangle. Shadows are hard: wrong, and for lessons alone.
     Middle,
 }
 

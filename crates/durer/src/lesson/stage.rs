@@ -292,8 +292,8 @@ fn depth_range(depths: &Image) -> Option<(f32, f32)> {
     (end > least).then_some((least, end))
 }
 
-/// The mean of the pixels' standard errors as a share of their mean luminance, by the variances of their means. Nothing counts as brighter than white, or the edges of
-/// lamps would be all of it. `None` where nothing shines.
+/// The mean of the pixels' standard errors as a share of their mean luminance, by the variances of their means.
+/// Nothing counts as brighter than white, or the edges of lamps would be all of it. `None` where nothing shines.
 fn noise_of(colors: &Image, variances: &Image) -> Option<f64> {
     let light: f64 = colors.pixels.iter().map(|color| luminance_of(*color).min(1.0)).sum();
     let errors: f64 = variances.pixels.iter().map(|variance| f64::from(variance.x).sqrt().min(1.0)).sum();

@@ -1,14 +1,15 @@
 //! How far a pixel may be from the truth, noise and bias together.
 //!
-//! Of n samples the mean has a standard error. Photons have a bias besides: light is the mean of a neighbourhood. The same photons
-//! with a kernel that is right to second order (see [`crate::integrator::Photons::corrected`]) tell it. With mean M, corrected mean C and the
-//! standard error s of C, the truth lies within t s of C with some confidence, where t is Student's quantile of n - 1 degrees of
-//! freedom; so it is at most |M - C| + t s away from M.
+//! Of n samples the mean has a standard error. Photons have a bias besides: light is the mean of a neighbourhood. The
+//! same photons with a kernel that is right to second order (see [`crate::integrator::Photons::corrected`]) tell it.
+//! With mean M, corrected mean C and the standard error s of C, the truth lies within t s of C with some confidence,
+//! where t is Student's quantile of n - 1 degrees of freedom; so it is at most |M - C| + t s away from M.
 //!
-//! Source: Hachisuka, Jarosz and Jensen, *A Progressive Error Estimation Framework for Photon Density Estimation*, 2010. There the bias comes of
-//! derivatives of a smooth kernel, here of two kernels over the same photons; with radii that are the same for all pixels (Knaus and
-//! Zwicker 2011) it is an ordinary mean over samples. As there, light is taken to be smooth within the radius: at the sharp edge of a caustic about
-//! six tenths of the bias are found.
+//! Source: Hachisuka, Jarosz and Jensen, *A Progressive Error Estimation Framework for Photon Density Estimation*,
+//! 2010. There the bias comes of derivatives of a smooth kernel, here of two kernels over the same photons; with
+//! radii that are the same for all pixels (Knaus and Zwicker 2011) it is an ordinary mean over samples. As there,
+//! light is taken to be smooth within the radius: at the sharp edge of a caustic about six tenths of the bias are
+//! found.
 
 use super::part::Part;
 use super::pictures::place;
@@ -53,16 +54,23 @@ impl ErrorBound {
     }
 }
 
-/// The quantile of Student's distribution that is passed with probability (1 - [`CONFIDENCE`]) / 2; infinite without degrees of freedom.
+/// The quantile of Student's distribution that is passed with probability (1 - [`CONFIDENCE`]) / 2; infinite without
+/// degrees of freedom.
 ///
-/// Source: Abramowitz and Stegun, *Handbook of Mathematical Functions*, 26.7.5. It is 5 % too small for one degree of freedom, and right to 0.3 % from two on.
+/// Source: Abramowitz and Stegun, *Handbook of Mathematical Functions*, 26.7.5. It is 5 % too small for one degree of
+/// freedom, and right to 0.3 % from two on.
 fn student(freedom: f64) -> f64 {
     if freedom < 1.0 {
         return f64::INFINITY;
     }
     // The normal distribution's quantile of 0.95.
     let z = 1.644_853_626_951_472_7_f64;
-    let powers = [z, z.powi(3), z.powi(5), z.powi(7), z.powi(9)];
+    let (square, mut power) = (z * z, z);
+    // z and its odd powers up to the ninth.
+    let powers = [1.0, square, square, square, square].map(|factor| {
+        power *= factor;
+        power
+    });
     let term = |factors: [f64; 5], divisor: f64| -> f64 {
         factors.iter().zip(powers).map(|(factor, power)| factor * power).sum::<f64>() / divisor
     };
@@ -87,11 +95,13 @@ pub(super) fn corrected(method: Method) -> Option<Method> {
 }
 
 impl Part {
-    /// How far each pixel's luminance may be from the truth, with a confidence of [`CONFIDENCE`]: the values, and a heat map of them up to 0.1. It
-    /// is made beside the work, whose sums and hash it leaves alone. Photons are followed a second time for it.
+    /// How far each pixel's luminance may be from the truth, with a confidence of [`CONFIDENCE`]: the values, and a
+    /// heat map of them up to 0.1. It is made beside the work, whose sums and hash it leaves alone. Photons are
+    /// followed a second time for it.
     ///
     /// # Errors
-    /// [`RenderError`], as for the picture itself; [`RenderError::Diagram`] for photons whose pixels have samples as noise or time allows.
+    /// [`RenderError`], as for the picture itself; [`RenderError::Diagram`] for photons whose pixels have samples as
+    /// noise or time allows.
     pub fn error(&self, world: &World, threads: Option<usize>) -> Result<[Layer; 2], RenderError> {
         let made = |job: Job| -> Result<Part, RenderError> {
             let part = Part::new(world, &job, Shard::WHOLE)?;

@@ -29,7 +29,8 @@ pub struct Noisy {
 }
 
 impl Part {
-    /// The colour picture of what is there, with its guides by one ray a pixel. It is made beside the work, whose sums and hash it leaves alone.
+    /// The colour picture of what is there, with its guides by one ray a pixel. It is made beside the work, whose
+    /// sums and hash it leaves alone.
     ///
     /// # Errors
     /// [`RenderError`], as for a picture of one ray a pixel.

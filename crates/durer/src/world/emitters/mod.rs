@@ -155,8 +155,8 @@ impl Emitters {
         }
     }
 
-    /// The numbers with which [`Emitters::sample`] chooses the middle of a surface, as it is seen; of a triangle and a cylinder they choose
-    /// some point, always the same. `None` for what is no surface.
+    /// The numbers with which [`Emitters::sample`] chooses the middle of a surface, as it is seen; of a triangle and
+    /// a cylinder they choose some point, always the same. `None` for what is no surface.
     pub fn middle(&self, light: LightId) -> Option<Vec2> {
         let source = self.first[light.object()? as usize] as usize;
         match self.sources.get(source)? {
