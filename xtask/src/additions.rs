@@ -1,11 +1,13 @@
-//! `cargo xtask additions`: how much a new thing of each kind takes. It is added to a copy of the sources, which is built and used.
+//! `cargo xtask additions`: how much a new thing of each kind takes. It is added to a copy of the
+//! sources, which is built and used.
 
 use crate::root;
 use anyhow::{Context, Result, bail, ensure};
 use std::path::Path;
 use std::process::{Command, ExitCode};
 
-/// A new thing: what it is, its file and the content of that, and what lists need: into which file, before which text, and what.
+/// A new thing: what it is, its file and the content of that, and what lists need: into which file,
+/// before which text, and what.
 struct Addition {
     kind: &'static str,
     file: &'static str,

@@ -1,4 +1,5 @@
-//! What determinism costs: exact sums beside floating point, threads, and how soon a render ends that is cancelled.
+//! What determinism costs: exact sums beside floating point, threads, and how soon a render ends
+//! that is cancelled.
 
 use anyhow::{Result, bail};
 use durer::compile::AccelKind;
@@ -76,8 +77,8 @@ impl Plain {
     }
 }
 
-/// The time of the same samples added exactly, and added as `f32`: of each row the least of several in turns, for what disturbs a
-/// measurement lasts longer than a row.
+/// The time of the same samples added exactly, and added as `f32`: of each row the least of several
+/// in turns, for what disturbs a measurement lasts longer than a row.
 fn film(world: &World) -> [Duration; 2] {
     let job = Job { width: SIDE, height: SIDE, ..Job::default() };
     let whitted = Whitted { world, settings: job.settings, cancel: None };
@@ -123,8 +124,8 @@ fn large() -> Job {
     Job { width: 800, height: 600, sampling, ..Job::default() }
 }
 
-/// The least time of several of a render in one thread, of one in two, and of two at once in one thread each: what the machine's
-/// processors can do together, which may be two halves of one.
+/// The least time of several of a render in one thread, of one in two, and of two at once in one
+/// thread each: what the machine's processors can do together, which may be two halves of one.
 fn threaded(world: &World) -> [Duration; 3] {
     let render = |threads| {
         let control = Control { threads: Some(threads), ..Control::default() };

@@ -41,7 +41,8 @@ enum Verdict {
 /// A row that does not agree, and why.
 struct Reason {
     picture: &'static str,
-    /// Up to which share of pixels, in percent, the cause explains the difference; more is another one.
+    /// Up to which share of pixels, in percent, the cause explains the difference; more is another
+    /// one.
     most: f64,
     words: &'static str,
 }
@@ -248,7 +249,8 @@ impl Bench {
         let own_spread = mean_of(&own);
         let spread_deviation = (own.iter().map(|s| square(s - own_spread)).sum::<f64>() / (n - 1.0)).sqrt();
         let spread_difference = reference_spread - own_spread;
-        // Four deviations of chance, and what truncation to whole grey levels may add: none of it on most pixels.
+        // Four deviations of chance, and what truncation to whole grey levels may add: none of it on most
+        // pixels.
         let chance = 4.0 * (1.0 + 1.0 / n).sqrt();
         let mean_equal = mean_difference.abs() <= chance * deviation + 0.1;
         let spread_equal = spread_difference.abs() <= chance * spread_deviation + 0.1;
@@ -332,7 +334,8 @@ fn difference(a: &Image8, b: &Image8) -> (f64, u8) {
     (100.0 * beyond as f64 / differences.len().max(1) as f64, differences.into_iter().max().unwrap_or(0))
 }
 
-/// Whether the same pixels show something other than the background, which is the commonest colour on the border.
+/// Whether the same pixels show something other than the background, which is the commonest colour
+/// on the border.
 fn compare_silhouettes(ours: &Image8, reference: &Image8, largest: u8) -> Finding {
     let background = |image: &Image8| {
         let (w, h) = (image.width as usize, image.height as usize);

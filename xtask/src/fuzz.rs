@@ -33,7 +33,8 @@ const TARGETS: [(&str, &[&str]); 22] = [
     ("ways", &[]),
 ];
 
-/// Inputs are at most so many bytes, a run takes at most so many MiB of memory, an input so many seconds.
+/// Inputs are at most so many bytes, a run takes at most so many MiB of memory, an input so many
+/// seconds.
 const MOST_BYTES: u64 = 16 << 10;
 const MOST_MEMORY: u32 = 2048;
 const MOST_SECONDS: u32 = 20;
@@ -107,7 +108,8 @@ fn is_clean(fuzz: &Path, scratch: &Path, name: &str, endings: &[&str], minutes: 
 /// What the processes that this one waited for took of processors, where Linux tells.
 fn hours_of_children() -> Option<f64> {
     let stat = std::fs::read_to_string("/proc/self/stat").ok()?;
-    // The name in parentheses may hold spaces. What follows are the fields from the third; 16 and 17 are in 1/100 s.
+    // The name in parentheses may hold spaces. What follows are the fields from the third; 16 and 17
+    // are in 1/100 s.
     let fields: Vec<&str> = stat.rsplit_once(')')?.1.split_whitespace().collect();
     let ticks = |number: usize| fields.get(number - 3)?.parse::<f64>().ok();
     Some((ticks(16)? + ticks(17)?) / 100.0 / 3600.0)
@@ -139,7 +141,8 @@ fn what_is_missing() -> Result<()> {
     Ok(())
 }
 
-/// Copies small files that targets can begin with, of the repository's scenes and of the corpus where it is.
+/// Copies small files that targets can begin with, of the repository's scenes and of the corpus
+/// where it is.
 fn collect_seeds(folder: &Path, endings: &[&str]) -> Result<()> {
     std::fs::create_dir_all(folder).with_context(|| format!("cannot make {}", folder.display()))?;
     let mut found = Vec::new();

@@ -17,7 +17,8 @@ const MOST: f64 = 2.0;
 const SIDE: u32 = 24;
 const SAMPLES: u32 = 64;
 
-/// A hall of 20 m x 20 m with columns and some small lamps that face down at many heights: together as bright as ten of 1000 cd/m^2.
+/// A hall of 20 m x 20 m with columns and some small lamps that face down at many heights: together
+/// as bright as ten of 1000 cd/m^2.
 fn hall(lamps: u32) -> Result<World> {
     let bright = 1_000.0 * 10.0 / f64::from(lamps);
     let mut text = format!(

@@ -1,4 +1,5 @@
-//! `cargo xtask manual`: the language's reference as pages with pictures, and a grammar for editors, from what the code states.
+//! `cargo xtask manual`: the language's reference as pages with pictures, and a grammar for
+//! editors, from what the code states.
 
 mod python;
 

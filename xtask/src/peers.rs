@@ -1,4 +1,5 @@
-//! Equal scenes by Dürer and Mitsuba 3: `peers.py` says which and how they are compared, `peers_time.py` how their times are.
+//! Equal scenes by Dürer and Mitsuba 3: `peers.py` says which and how they are compared,
+//! `peers_time.py` how their times are.
 
 use anyhow::{Context, Result, bail};
 use std::path::{Path, PathBuf};

@@ -1,4 +1,5 @@
-//! Contact sheets: models as they are rendered without being asked anything, beside the pictures that came with them.
+//! Contact sheets: models as they are rendered without being asked anything, beside the pictures
+//! that came with them.
 
 use anyhow::{Context, Result, bail};
 use durer::diag::{Diagnostics, Files};
@@ -101,7 +102,8 @@ fn rendered(path: &Path, samples: u32, front: bool) -> Result<Image> {
     Ok(Image::clone(&part.pictures()?.layers.first().context("a picture")?.image))
 }
 
-/// A picture of any size as one of ours: each pixel the mean of what it covers, on grey where there is nothing.
+/// A picture of any size as one of ours: each pixel the mean of what it covers, on grey where there
+/// is nothing.
 fn within(image: &Image) -> Result<Image> {
     let scale = image.width.max(image.height) as f32 / SIDE as f32;
     let (left, top) =

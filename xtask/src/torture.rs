@@ -1,4 +1,5 @@
-//! Programs that are killed while they work and save, disks that are full, folders that must not be written.
+//! Programs that are killed while they work and save, disks that are full, folders that must not be
+//! written.
 
 use crate::build::durer;
 use anyhow::{Context, Result, bail, ensure};
@@ -60,7 +61,8 @@ fn last_line(output: &Output) -> String {
     String::from_utf8_lossy(&output.stdout).lines().last().unwrap_or_default().to_string()
 }
 
-/// Kills the program at random times until it was killed often enough; it must end with the film that it would have had.
+/// Kills the program at random times until it was killed often enough; it must end with the film
+/// that it would have had.
 fn kills(bench: &Bench, kills: u64, seed: u64) -> Result<()> {
     let (calm, wild) = (bench.place("calm")?.join("p.exr"), bench.place("wild")?.join("p.exr"));
     let start = Instant::now();
@@ -107,7 +109,8 @@ fn kills(bench: &Bench, kills: u64, seed: u64) -> Result<()> {
     Ok(())
 }
 
-/// Every writer against a disk that is full after so many bytes, and against one that cannot be written.
+/// Every writer against a disk that is full after so many bytes, and against one that cannot be
+/// written.
 fn full_disks(bench: &Bench, offsets: u64) -> Result<()> {
     let mut writers: Vec<(String, String)> =
         FORMATS.iter().map(|format| (format!("p.{}", format.extensions[0]), "--size 48x36".into())).collect();

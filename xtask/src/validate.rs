@@ -1,4 +1,5 @@
-//! Light against answers that are known, as tables that a lighting engineer can read: docs/validation.md.
+//! Light against answers that are known, as tables that a lighting engineer can read:
+//! docs/validation.md.
 
 mod cases;
 mod measure;

@@ -3,7 +3,6 @@
 //! [`Bvh`] and [`Grid`] know boxes and numbers of things only; what a thing is, the caller's
 //! closure knows. A structure may offer a thing that the ray misses, never withhold one that it
 //! meets; so all of them find the same hit. [`TriangleBvh`] has the triangles too.
-//!
 #![doc = include_str!("../README.md")]
 
 mod boxes;

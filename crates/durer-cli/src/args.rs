@@ -52,14 +52,15 @@ pub enum Command {
     Convert(ConvertArgs),
     Compare(Box<CompareArgs>),
     Photo(crate::photo::PhotoArgs),
-    /// List the dialects of the scene language, and the old programs' habits that can be had by name
+    /// List the dialects of the scene language, and the old programs' habits that can be had by
+    /// name
     #[command(after_help = "Example:\n  durer dialects")]
     Dialects,
     /// Look up a word of the scene language: what it takes, in which dialects, with an example
     #[command(
         after_help = "Examples:\n  durer words\n  durer words PhongMaterial\n  durer words falloff --dialect f16"
     )]
-    Words(WordsArgs),
+    Words(crate::words::WordsArgs),
     /// Print shell completions to standard output
     #[command(after_help = "Example:\n  durer completions bash > ~/.local/share/bash-completion/completions/durer")]
     Completions {
@@ -89,7 +90,8 @@ pub struct SceneArgs {
     /// Look for missing meshes and pictures in this folder too
     #[arg(long, value_name = "FOLDER")]
     pub assets: Vec<PathBuf>,
-    /// Refuse what needs more memory: bytes as in 512M or 8G, or a share of the machine's or control group's
+    /// Refuse what needs more memory: bytes as in 512M or 8G, or a share of the machine's or
+    /// control group's
     #[arg(long, default_value = "80%", value_name = "SIZE", value_parser = Memory::parse)]
     pub memory: Memory,
     #[command(flatten)]
@@ -151,18 +153,21 @@ pub struct RenderArgs {
     pub work: WorkArgs,
     #[command(flatten)]
     pub display: DisplayArgs,
-    /// Take the noise out of the colour picture, by what is known of each pixel's surface and of its noise; EXR keeps the picture
-    /// as it was rendered, beside a layer `denoised`, and --hash knows nothing of it. By Open Image Denoise (oidn) where that
-    /// is found, else by our own (own)
+    /// Take the noise out of the colour picture, by what is known of each pixel's surface and of
+    /// its noise; EXR keeps the picture as it was rendered, beside a layer `denoised`, and
+    /// --hash knows nothing of it. By Open Image Denoise (oidn) where that is found, else by
+    /// our own (own)
     #[arg(long, value_name = "BY", num_args = 0..=1, require_equals = true, default_missing_value = "auto", value_parser = Denoiser::parser())]
     pub denoise: Option<Denoiser>,
-    /// Render again whenever the scene, a mesh or a picture of it is saved; the picture grows as it is made, and Ctrl-C ends
+    /// Render again whenever the scene, a mesh or a picture of it is saved; the picture grows as it
+    /// is made, and Ctrl-C ends
     #[arg(long, conflicts_with_all = ["pixel", "shard", "checkpoint", "resume", "restart", "preview"])]
     pub watch: bool,
     /// Print the hash of the film as the last line of standard output
     #[arg(long)]
     pub hash: bool,
-    /// Tell on standard error what the time went into, which rays there were, and how much of the time they took
+    /// Tell on standard error what the time went into, which rays there were, and how much of the
+    /// time they took
     #[arg(long)]
     pub stats: bool,
     /// Say nothing but errors
@@ -176,8 +181,9 @@ pub struct ViewArgs {
     /// Make only a part of the picture
     #[arg(long, value_name = "LEFT,TOP,WIDTHxHEIGHT", value_parser = crop)]
     pub crop: Option<(u32, u32, u32, u32)>,
-    /// What to show; several are joined by commas. With paths and photons, `error` is how far the luminance may be from the
-    /// truth, noise and the bias of photons together, with 90 % confidence
+    /// What to show; several are joined by commas. With paths and photons, `error` is how far the
+    /// luminance may be from the truth, noise and the bias of photons together, with 90 %
+    /// confidence
     #[arg(long, value_delimiter = ',', default_value = "color", value_parser = PossibleValuesParser::new(shows()))]
     pub show: Vec<String>,
     /// Pixels for a pixel in the pictures `samples` and `filter`
@@ -194,7 +200,8 @@ pub struct JobArgs {
     /// Depths shown as the two ends of grey [default: those in the picture]
     #[arg(long, num_args = 2, value_names = ["MIN", "MAX"], allow_negative_numbers = true)]
     pub depth_range: Option<Vec<f32>>,
-    /// Luminance or illuminance shown as the first and the last false colour [default: 0 and what 98 % of the picture stay below]
+    /// Luminance or illuminance shown as the first and the last false colour [default: 0 and what
+    /// 98 % of the picture stay below]
     #[arg(long, num_args = 2, value_names = ["LOW", "HIGH"], allow_negative_numbers = true)]
     pub light_range: Option<Vec<f32>>,
     /// False colours of light by equal ratios; --light-range begins above 0
@@ -202,8 +209,8 @@ pub struct JobArgs {
     pub light_log: bool,
     #[command(flatten)]
     pub method: MethodArgs,
-    /// Levels of mirrored and transmitted rays; of paths, how often light is scattered after the first time [default: 8, of
-    /// paths 16; with --dialect, that year's]
+    /// Levels of mirrored and transmitted rays; of paths, how often light is scattered after the
+    /// first time [default: 8, of paths 16; with --dialect, that year's]
     #[arg(long, value_parser = clap::value_parser!(u32).range(0..=256))]
     pub bounces: Option<u32>,
     /// Whether things cast shadows [default: on; with --dialect, off]
@@ -225,8 +232,8 @@ pub struct JobArgs {
     #[arg(long, allow_negative_numbers = true, value_parser = weight)]
     pub weight: Option<f32>,
 
-    /// Samples a pixel; 1 is the pixel's centre [default: 16, or 64 through a lens or a hole; with --dialect, 1; with --time,
-    /// no end; with --noise, 4096]
+    /// Samples a pixel; 1 is the pixel's centre [default: 16, or 64 through a lens or a hole; with
+    /// --dialect, 1; with --time, no end; with --noise, 4096]
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..=1 << 20))]
     pub samples: Option<u32>,
     /// Where samples lie; all but sobol are the course's, with its filters
@@ -244,7 +251,8 @@ pub struct JobArgs {
     /// Blur by five taps, as in 2012
     #[arg(long, conflicts_with_all = ["samples", "sampler", "filter"])]
     pub blur: bool,
-    /// Stop where the estimated error of what is seen is below this; 0.01 is a hundredth of the way from black to white
+    /// Stop where the estimated error of what is seen is below this; 0.01 is a hundredth of the way
+    /// from black to white
     #[arg(long, value_name = "ERROR", value_parser = noise)]
     pub noise: Option<f32>,
     /// Seed of the random numbers
@@ -364,7 +372,8 @@ pub struct ExplainArgs {
     /// The pixel, counted from 0 at the upper left corner
     #[arg(long, value_name = "X,Y", value_parser = pixel, conflicts_with_all = ["ray", "brightest", "worst"])]
     pub pixel: Option<(u32, u32)>,
-    /// The sample whose tree is shown, by its place in the list [default: the first of those that count most]
+    /// The sample whose tree is shown, by its place in the list [default: the first of those that
+    /// count most]
     #[arg(long, value_name = "N")]
     pub sample: Option<u32>,
     /// Any ray instead of a pixel's: origin and direction
@@ -390,7 +399,8 @@ pub struct ExplainArgs {
     pub html: Option<PathBuf>,
 }
 
-/// Show a scene in the order of the lecture: rays, distance, normals, light by light, with equations and mistakes
+/// Show a scene in the order of the lecture: rays, distance, normals, light by light, with
+/// equations and mistakes
 #[derive(Args)]
 #[command(after_help = "Examples:
   durer lesson scene.txt -o lesson/
@@ -453,7 +463,8 @@ pub struct CheckArgs {
     pub view: ViewArgs,
     #[command(flatten)]
     pub job: JobArgs,
-    /// The stops by which the picture is made brighter, as `render --exposure` has it: they decide what is too bright or too dark
+    /// The stops by which the picture is made brighter, as `render --exposure` has it: they decide
+    /// what is too bright or too dark
     #[arg(long, value_name = "EV", default_value_t = 0.0, allow_negative_numbers = true)]
     pub exposure: f32,
     /// Write the scene anew, with all changed that is mechanical
@@ -498,7 +509,8 @@ pub struct InfoArgs {
     pub json: bool,
 }
 
-/// Write a scene anew: in its own or another dialect, as JSON, as glTF, or its meshes as PLY, OBJ or STL
+/// Write a scene anew: in its own or another dialect, as JSON, as glTF, or its meshes as PLY, OBJ
+/// or STL
 #[derive(Args)]
 #[command(
     after_help = "Examples:\n  durer convert scene.txt -o scene_durer.txt --to durer\n  durer convert scene.txt -o scene.json\n  durer convert model.glb -o model.stl\n  durer convert scene.pbrt -o scene.glb"
@@ -549,14 +561,16 @@ pub struct CompareArgs {
     /// The share of pixels, in percent, that may differ by more
     #[arg(long, value_name = "PERCENT", default_value_t = 0.0, value_parser = percent, allow_negative_numbers = true)]
     pub allow: f64,
-    /// How light becomes eight bits where the other picture has those: as when the reference was made
+    /// How light becomes eight bits where the other picture has those: as when the reference was
+    /// made
     #[arg(long, default_value = "srgb", value_parser = PossibleValuesParser::new(Transfer::ALL.map(Transfer::name)))]
     pub transfer: String,
     /// Everything as JSON
     #[arg(long)]
     pub json: bool,
-    /// The scene of the pictures, or a folder of scenes of their names: the usual mistakes are tried on it, and the one that makes
-    /// the picture is named. Give the options that made the reference as well
+    /// The scene of the pictures, or a folder of scenes of their names: the usual mistakes are
+    /// tried on it, and the one that makes the picture is named. Give the options that made the
+    /// reference as well
     #[arg(long, value_name = "SCENE")]
     pub scene: Option<PathBuf>,
     #[command(flatten)]
@@ -575,14 +589,4 @@ pub const ERROR: &str = "error";
 
 fn shows() -> Vec<&'static str> {
     std::iter::once("color").chain(AOVS.iter().map(|aov| aov.name)).chain([ERROR]).chain(DIAGRAMS).collect()
-}
-
-/// What `durer words` takes.
-#[derive(clap::Args)]
-pub struct WordsArgs {
-    /// The word; without one, all that begin something are listed
-    pub word: Option<String>,
-    /// Only what this dialect has
-    #[arg(long)]
-    pub dialect: Option<String>,
 }

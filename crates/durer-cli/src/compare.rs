@@ -74,7 +74,8 @@ pub fn numbers(found: &Comparison) -> serde_json::Value {
     text::numbers(found, &[])
 }
 
-/// Compares, prints, writes; all failures are those of the input's exit code, for 1 says that pictures differ.
+/// Compares, prints, writes; all failures are those of the input's exit code, for 1 says that
+/// pictures differ.
 pub fn run(args: &CompareArgs) -> Result<(), Failure> {
     work(args).map_err(|failure| match failure {
         Failure::Other(error) => Failure::Input(Some(error.to_string())),
@@ -183,7 +184,8 @@ fn one(pair: Pair, options: &Options, memory: u64, page: bool) -> Compared {
     }
 }
 
-/// Reads two pictures of one size. That they have one, and can be compared within the memory, is known before anything is decoded.
+/// Reads two pictures of one size. That they have one, and can be compared within the memory, is
+/// known before anything is decoded.
 fn read_both(paths: [&Path; 2], memory: u64) -> Result<[Picture; 2], String> {
     let [a, b] = paths.map(|path| {
         let unreadable = |error: String| format!("cannot read `{}`: {error}", path.display());

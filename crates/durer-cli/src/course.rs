@@ -146,8 +146,8 @@ impl Outputs {
     }
 }
 
-/// The format of a name. TGA for names without an extension, as the old programs have it; the one of 2012, where it is asked
-/// for, writes TGA into whatever is not named .bmp.
+/// The format of a name. TGA for names without an extension, as the old programs have it; the one
+/// of 2012, where it is asked for, writes TGA into whatever is not named .bmp.
 fn course_format(name: &str, asked: Option<Dialect>) -> Result<&'static Format, Failure> {
     let nameless = Path::new(name).extension().is_none();
     let is_tga = nameless || asked == Some(Dialect::F12a4) && !name.ends_with(".bmp");

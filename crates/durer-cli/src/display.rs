@@ -8,7 +8,8 @@ use durer::image::{Display, Tone, Transfer};
 /// How colours become eight bits; floating point formats keep them as they are
 #[derive(Args)]
 pub struct DisplayArgs {
-    /// How colours become eight bits: sRGB's curve, none, or none and truncated as the course has it
+    /// How colours become eight bits: sRGB's curve, none, or none and truncated as the course has
+    /// it
     #[arg(long, default_value = "srgb", value_parser = PossibleValuesParser::new(Transfer::ALL.map(Transfer::name)))]
     pub transfer: String,
     /// Makes pictures of eight bits brighter by so many stops: each doubles the light

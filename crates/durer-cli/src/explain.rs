@@ -127,7 +127,8 @@ fn subject(args: &ExplainArgs, opened: &Opened, job: &Job, picture: Option<&Imag
     Ok(Subject::Pixel(explanation))
 }
 
-/// The pixel to which one sample adds most, among those that differ most from their neighbours: the brightest firefly.
+/// The pixel to which one sample adds most, among those that differ most from their neighbours: the
+/// brightest firefly.
 fn worst(opened: &Opened, job: &Job, picture: &Image) -> Result<Explanation, Failure> {
     const CANDIDATES: usize = 256;
     let places = (0..picture.height).flat_map(|y| (0..picture.width).map(move |x| (x, y)));

@@ -97,8 +97,9 @@ pub fn run(args: &FarmArgs) -> Result<(), Failure> {
     Ok(())
 }
 
-/// A template without the lines that belong to the other kind of job: those that begin with `@frames` are there where there are
-/// frames, those that begin with `@still` where there is one picture.
+/// A template without the lines that belong to the other kind of job: those that begin with
+/// `@frames` are there where there are frames, those that begin with `@still` where there is one
+/// picture.
 fn chosen(template: &str, frames: bool) -> String {
     let (here, there) = if frames { ("@frames", "@still") } else { ("@still", "@frames") };
     let lines = template.lines().filter(|line| !line.starts_with(there));

@@ -12,9 +12,9 @@ use std::sync::Arc;
 #[derive(Args, Clone)]
 #[command(next_help_heading = "Animation")]
 pub struct FramesArgs {
-    /// Frames of an animation, picture.0007.png and so on: 7, 1-100, or 0-90:10 for each tenth. The number takes the place of %d,
-    /// or %04d, in SCENE, PICTURE, --camera and --view-file; where none of these but PICTURE has it, the frame is a moment of
-    /// the model's animation
+    /// Frames of an animation, picture.0007.png and so on: 7, 1-100, or 0-90:10 for each tenth. The
+    /// number takes the place of %d, or %04d, in SCENE, PICTURE, --camera and --view-file;
+    /// where none of these but PICTURE has it, the frame is a moment of the model's animation
     #[arg(long, value_name = "FRAMES")]
     pub frames: Option<Frames>,
     /// Frames in a second of the model's animation
@@ -81,7 +81,8 @@ impl FramesArgs {
         self.frames.is_some() || self.turntable.is_some()
     }
 
-    /// The frames that are asked for, if any, and what moves. `names` are those that may have a place for a number.
+    /// The frames that are asked for, if any, and what moves. `names` are those that may have a
+    /// place for a number.
     ///
     /// # Errors
     /// Nothing would move.

@@ -1,7 +1,8 @@
 //! What a run reads and what it writes: no file is both, and none is written twice.
 //!
-//! Whoever opens a file for the user tells it here, and only what was allowed here is written ([`crate::output`] takes nothing
-//! else). It makes no difference by which name, link or detour a file is named.
+//! Whoever opens a file for the user tells it here, and only what was allowed here is written
+//! ([`crate::output`] takes nothing else). It makes no difference by which name, link or detour a
+//! file is named.
 
 use crate::{Failure, bad};
 use durer::image::Destination;
@@ -68,8 +69,8 @@ impl Guard {
         Ok(())
     }
 
-    /// A file is to be written, as the option `what` says: refuses what cannot be written, what is read, and what is written
-    /// already.
+    /// A file is to be written, as the option `what` says: refuses what cannot be written, what is
+    /// read, and what is written already.
     pub fn writes(&mut self, what: &'static str, path: &Path) -> Result<Destination, Failure> {
         self.claim(what, path)?;
         let own = ["/dev/stdout", "/dev/fd/1", "/proc/self/fd/1"].iter().any(|own| path == Path::new(own));

@@ -40,7 +40,8 @@ pub fn aspect(args: &JobArgs) -> Option<f32> {
     args.size.map(|(width, height)| width as f32 / height.max(1) as f32)
 }
 
-/// The job that the options ask for, the colour of the whole picture without a view; `timed` if time decides when it ends.
+/// The job that the options ask for, the colour of the whole picture without a view; `timed` if
+/// time decides when it ends.
 pub fn job(args: &JobArgs, view: Option<&ViewArgs>, loaded: &Loaded, timed: bool) -> Result<Job, Failure> {
     let rules = &loaded.rules;
     // Ours is a dialect like others to ask for, but not an old program.
@@ -162,7 +163,8 @@ fn sampling(args: &JobArgs, asked: bool, timed: bool, plenty: u32) -> Result<Sam
     Ok(Sampling::Course2004 { sampler, samples, filter })
 }
 
-/// The options that make a job of a scene, but for its size: those that are not what the scene has by itself.
+/// The options that make a job of a scene, but for its size: those that are not what the scene has
+/// by itself.
 pub fn spelled(reading: &SceneArgs, job: &Job, loaded: &Loaded) -> String {
     let asked = loaded.guess.is_none();
     let mut words: Vec<String> = Vec::new();

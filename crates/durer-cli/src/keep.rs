@@ -11,7 +11,8 @@ use std::cell::Cell;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-/// Work that takes less than this is not saved before it is done, unless somebody wants it more often.
+/// Work that takes less than this is not saved before it is done, unless somebody wants it more
+/// often.
 const SHORT: Duration = Duration::from_secs(1);
 
 /// Bytes of work that are taken to be saved in a second, as long as none were.
@@ -41,7 +42,8 @@ pub struct Keeper {
 }
 
 impl Keeper {
-    /// Says now what is known to prevent saving. Nothing that is saved is thrown away unless `--restart` says so.
+    /// Says now what is known to prevent saving. Nothing that is saved is thrown away unless
+    /// `--restart` says so.
     pub fn new(args: &RenderArgs, output: &Path, guard: &mut Guard) -> Result<Self, Failure> {
         let work = &args.work;
         let (path, option) = match (&work.checkpoint, work.shard) {
@@ -158,7 +160,8 @@ impl Keeper {
             || self.is_ours.get()
             || read_part(place.path()).is_ok_and(|old| part.same_work(&old).is_ok())
         {
-            // Only what is of this picture, or was to be thrown away; if it cannot be removed, it is only in the way.
+            // Only what is of this picture, or was to be thrown away; if it cannot be removed, it is only in
+            // the way.
             let _ = std::fs::remove_file(place.path());
         }
     }
@@ -185,8 +188,8 @@ impl Keeper {
     }
 }
 
-/// What was saved in a file and is to be gone on with. Refuses to replace what is no part at all, and without `--resume` or
-/// `--restart` what is not finished.
+/// What was saved in a file and is to be gone on with. Refuses to replace what is no part at all,
+/// and without `--resume` or `--restart` what is not finished.
 fn what_was_saved(args: &RenderArgs, path: &Path) -> Result<Option<Box<Part>>, Failure> {
     let name = path.display();
     if !path.exists() {
@@ -205,7 +208,8 @@ fn what_was_saved(args: &RenderArgs, path: &Path) -> Result<Option<Box<Part>>, F
         (Ok(Err(error)), false) => return Err(bad(format!("`{name}` was saved before, and {error}; {restart}"))),
         (Err(failure), _) => return Err(failure),
     };
-    // A shard is what is wanted, as a picture is. Beside a picture there is a part only as long as there is no picture of it.
+    // A shard is what is wanted, as a picture is. Beside a picture there is a part only as long as
+    // there is no picture of it.
     if work.shard.is_some() && part.is_finished() {
         return Ok(None);
     }
@@ -218,7 +222,8 @@ fn percent(part: &Part) -> u64 {
     100 * done / all.max(1)
 }
 
-/// Whether a file may be replaced by a part: one that is there already, if it is one itself or empty.
+/// Whether a file may be replaced by a part: one that is there already, if it is one itself or
+/// empty.
 fn check_is_part(path: &Path) -> Result<(), String> {
     use std::io::Read;
     let mut start = Vec::new();

@@ -1,4 +1,5 @@
-//! The `durer` command: a thin shell over the library; and, for other programs, its options ([`embed`]).
+//! The `durer` command: a thin shell over the library; and, for other programs, its options
+//! ([`embed`]).
 
 mod args;
 mod check;
@@ -45,13 +46,14 @@ use std::path::Path;
 const BAD_INPUT: u8 = 2;
 /// Exit code after anything else that failed.
 const OTHER_FAILURE: u8 = 1;
-/// Exit code of `durer compare` after pictures that differ: as of `cmp` and `diff`, whose 2 says that something is wrong.
+/// Exit code of `durer compare` after pictures that differ: as of `cmp` and `diff`, whose 2 says
+/// that something is wrong.
 const DIFFERENT: u8 = 1;
 /// Exit code of `durer check` after findings.
 const FOUND: u8 = 1;
 
-/// Does what a command line says, whose first word is the name of the program; gives the exit code. It hears signals, and may end
-/// the process.
+/// Does what a command line says, whose first word is the name of the program; gives the exit code.
+/// It hears signals, and may end the process.
 pub fn run(words: Vec<OsString>) -> u8 {
     progress::hear_interrupts();
     if let Err(error) = durer::bvh::SimdLevel::from_environment() {

@@ -10,27 +10,31 @@ use durer::spectrum::ColorMode;
 /// What computes the light
 #[derive(Args, Clone)]
 pub struct MethodArgs {
-    /// What computes the light: whitted (local light, mirrors, glass), path (all light), photons (all light, with what
-    /// mirrors and glass throw on things by photons: caustics) or ao (how much of the sky is free) [default: path for scenes with principled materials or an environment, else whitted]
+    /// What computes the light: whitted (local light, mirrors, glass), path (all light), photons
+    /// (all light, with what mirrors and glass throw on things by photons: caustics) or ao (how
+    /// much of the sky is free) [default: path for scenes with principled materials or an
+    /// environment, else whitted]
     #[arg(long, value_name = "METHOD", value_parser = PossibleValuesParser::new(Method::NAMES.iter()))]
     pub integrator: Option<String>,
-    /// With path and photons: light that was scattered more than once is not brighter than this in a sample; takes away bright
-    /// specks, and light with them [default: no limit]
+    /// With path and photons: light that was scattered more than once is not brighter than this in
+    /// a sample; takes away bright specks, and light with them [default: no limit]
     #[arg(long, value_name = "RADIANCE")]
     pub clamp: Option<f32>,
-    /// With path and photons: what light is made of: rgb, or spectral (four wavelengths at a time: coloured light on coloured things,
-    /// prisms) [default: rgb]
+    /// With path and photons: what light is made of: rgb, or spectral (four wavelengths at a time:
+    /// coloured light on coloured things, prisms) [default: rgb]
     #[arg(long, value_name = "MODE", value_parser = color_mode())]
     pub color: Option<ColorMode>,
-    /// With path and photons: how light straight from lamps is found: both (by points of lamps and by the directions in which surfaces
-    /// scatter, weighed), lights or bsdf (one of these alone: the same mean and more noise, to see what each is good for) [default: both]
+    /// With path and photons: how light straight from lamps is found: both (by points of lamps and
+    /// by the directions in which surfaces scatter, weighed), lights or bsdf (one of these
+    /// alone: the same mean and more noise, to see what each is good for) [default: both]
     #[arg(long, value_name = "WAY", value_parser = direct())]
     pub direct: Option<Direct>,
     /// With photons: how many each sample sends out [default: 100000]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000_000))]
     pub photons: Option<u32>,
-    /// With photons: how far the first sample looks for them, in units of the world; later ones look less far [default: a
-    /// twentieth of the radius of the smallest thing that mirrors or refracts]
+    /// With photons: how far the first sample looks for them, in units of the world; later ones
+    /// look less far [default: a twentieth of the radius of the smallest thing that mirrors or
+    /// refracts]
     #[arg(long, value_name = "DISTANCE")]
     pub photon_radius: Option<f32>,
     /// With ao: how far things count, in units of the world [default: all count]

@@ -25,12 +25,14 @@ fn layers<'r>(rendered: &'r Rendered, format: &Format) -> &'r [Layer] {
 /// Where the pictures of a render go.
 pub struct Target {
     format: &'static Format,
-    /// The file of each, by its name; without a name, that of all. Diagrams go into files of their own: their sizes differ.
+    /// The file of each, by its name; without a name, that of all. Diagrams go into files of their
+    /// own: their sizes differ.
     files: Vec<(Option<String>, Destination)>,
 }
 
 impl Target {
-    /// For the named pictures; says now what is known to prevent writing them, which is better than after the work.
+    /// For the named pictures; says now what is known to prevent writing them, which is better than
+    /// after the work.
     pub fn new(path: &Path, names: &[&str], guard: &mut Guard) -> Result<Self, Failure> {
         let format = format(path)?;
         let diagram = names.iter().any(|name| DIAGRAMS.contains(name));
@@ -99,7 +101,8 @@ pub fn save(files: &[(&Destination, Vec<u8>)], quiet: bool) -> Result<(), Failur
     Ok(())
 }
 
-/// Says what was written. Nothing is said of devices: standard output may be one, and the picture in it.
+/// Says what was written. Nothing is said of devices: standard output may be one, and the picture
+/// in it.
 pub fn wrote(place: &Destination, quiet: bool) {
     if !quiet && !place.is_stream() {
         say(&format!("wrote {}", place.path().display()));
@@ -109,8 +112,8 @@ pub fn wrote(place: &Destination, quiet: bool) {
 /// Whether the program was started without a standard output.
 static CLOSED: AtomicBool = AtomicBool::new(false);
 
-/// Finds that out. It has to be before the standard library begins, which then puts the device in its place that swallows
-/// everything.
+/// Finds that out. It has to be before the standard library begins, which then puts the device in
+/// its place that swallows everything.
 #[cfg(unix)]
 #[ctor::ctor(unsafe)]
 fn look_at_standard_output() {

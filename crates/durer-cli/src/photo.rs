@@ -78,7 +78,8 @@ fn name(path: &Path) -> String {
     path.file_name().unwrap_or_default().to_string_lossy().into_owned()
 }
 
-/// Cameras and points of a file. Where that has no names and sizes of photographs, they are those of a folder, in order.
+/// Cameras and points of a file. Where that has no names and sizes of photographs, they are those
+/// of a folder, in order.
 fn read(file: &Path, pictures: Option<&Path>, guard: &mut Guard) -> Result<Reconstruction, Failure> {
     inputs(file).iter().try_for_each(|path| guard.reads(path))?;
     let mut all = durer_photo::format::read(file).map_err(wrong)?;
@@ -119,7 +120,8 @@ struct Results {
 }
 
 impl Results {
-    /// Says now what is known to prevent writing. Folders are made when there is something to put into them.
+    /// Says now what is known to prevent writing. Folders are made when there is something to put
+    /// into them.
     fn new(args: &ResultArgs, guard: &mut Guard) -> Result<Self, Failure> {
         let mut results = Results { outputs: Vec::new(), folders: Vec::new(), files: Vec::new() };
         for path in &args.output {

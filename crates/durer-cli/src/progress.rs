@@ -16,11 +16,13 @@ enum Phase {
     Idle,
     /// It cancels; a second one ends the program.
     Rendering(Arc<Control>),
-    /// It waits until the files are whole; a second one ends the program. Says whether there was a first.
+    /// It waits until the files are whole; a second one ends the program. Says whether there was a
+    /// first.
     Saving(bool),
 }
 
-/// Some programs send a signal twice, to the program and to its group: what comes so soon after another is the same one.
+/// Some programs send a signal twice, to the program and to its group: what comes so soon after
+/// another is the same one.
 const SAME: Duration = Duration::from_millis(500);
 
 /// Whoever changes it holds it, so that nothing begins to be saved while the program ends.
@@ -87,8 +89,8 @@ fn ignored_signals() -> u64 {
     mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).unwrap_or(0)
 }
 
-/// Hears Ctrl-C, Ctrl-Break and the other events of the console. After a closed window the system ends the program whatever it
-/// does: what is left then was saved before.
+/// Hears Ctrl-C, Ctrl-Break and the other events of the console. After a closed window the system
+/// ends the program whatever it does: what is left then was saved before.
 #[cfg(not(unix))]
 pub fn hear_interrupts() {
     let _ = ctrlc::set_handler(|| interrupt(2));
@@ -150,7 +152,8 @@ fn with_bar<T>(control: &Control, render: impl FnOnce() -> Result<T, RenderError
     })
 }
 
-/// Works through a list one by one, with a line that tells how far it is where that takes long (on a terminal).
+/// Works through a list one by one, with a line that tells how far it is where that takes long (on
+/// a terminal).
 pub fn each<T, R>(names: &[String], items: Vec<T>, quiet: bool, mut work: impl FnMut(T) -> R) -> Vec<R> {
     let bar = ProgressBar::with_draw_target(Some(items.len() as u64), ProgressDrawTarget::hidden());
     let style = ProgressStyle::with_template("{bar:40} {pos} of {len}  {elapsed}  {msg}");

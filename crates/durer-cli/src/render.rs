@@ -221,7 +221,8 @@ fn shows(args: &RenderArgs) -> Result<Vec<&str>, Failure> {
     }
 }
 
-/// After Ctrl-C: what is there is saved. A picture is only written if none of its pixels is empty: it may replace a better one.
+/// After Ctrl-C: what is there is saved. A picture is only written if none of its pixels is empty:
+/// it may replace a better one.
 fn stopped(args: &RenderArgs, part: &Part, keeper: &Keeper, target: Option<&Target>) -> Failure {
     let mut written = keeper.after_interrupt(part);
     if let Some(target) = target.filter(|_| part.is_whole()) {

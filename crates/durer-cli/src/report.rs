@@ -68,8 +68,8 @@ fn spans(diagnostic: &Diagnostic) -> impl Iterator<Item = Span> {
     diagnostic.span.into_iter().chain(diagnostic.related.iter().map(|r| r.0))
 }
 
-/// A file's bytes as text of the same length: places stay where they are, whatever the bytes. Nothing in it can steer
-/// a terminal.
+/// A file's bytes as text of the same length: places stay where they are, whatever the bytes.
+/// Nothing in it can steer a terminal.
 fn text(bytes: &[u8]) -> String {
     let harmless = |c: char| match c {
         '\n' | '\t' => c.to_string(),
@@ -83,7 +83,8 @@ fn text(bytes: &[u8]) -> String {
     }
 }
 
-/// Files of which only what is around a place is shown: everything may stand in one line of many megabytes.
+/// Files of which only what is around a place is shown: everything may stand in one line of many
+/// megabytes.
 struct Excerpt<'f> {
     files: &'f SimpleFiles<String, String>,
     around: Option<Span>,
@@ -125,7 +126,8 @@ impl<'f> files::Files<'f> for Excerpt<'_> {
     }
 }
 
-/// Whether a second place is shown with a first: in one long line, only what is around the first is.
+/// Whether a second place is shown with a first: in one long line, only what is around the first
+/// is.
 fn fits(first: Option<Span>, second: Span, files: &Files) -> bool {
     let Some(first) = first.filter(|first| first.file == second.file) else { return true };
     let between = first.start.min(second.start) as usize..first.end.max(second.end) as usize;

@@ -4,7 +4,8 @@ use clap::{Args, ValueEnum};
 use durer::scene::{Axis, Staging, Studio, View};
 use std::path::PathBuf;
 
-/// How a model (glTF, pbrt, Radiance, OBJ, PLY, STL) becomes a scene; nothing of it concerns files that are scenes
+/// How a model (glTF, pbrt, Radiance, OBJ, PLY, STL) becomes a scene; nothing of it concerns files
+/// that are scenes
 #[derive(Args)]
 #[command(next_help_heading = "Models")]
 pub struct StagingArgs {
@@ -17,7 +18,8 @@ pub struct StagingArgs {
     /// Light for a model that has none, or instead of its own [default: soft]
     #[arg(long, value_name = "LIGHT", value_enum)]
     pub studio: Option<Light>,
-    /// A picture of all directions (.hdr, .exr) that lights the model, instead of its own sky or of a studio
+    /// A picture of all directions (.hdr, .exr) that lights the model, instead of its own sky or of
+    /// a studio
     #[arg(long, value_name = "FILE")]
     pub environment: Option<PathBuf>,
     /// A file of Radiance's views (.vf), whose last is the camera
@@ -26,7 +28,8 @@ pub struct StagingArgs {
     /// Name or number of the model's camera that is wanted [default: the first]
     #[arg(long, value_name = "NAME")]
     pub camera: Option<String>,
-    /// Name or number of the look that is wanted of a glTF file with several [default: its own materials]
+    /// Name or number of the look that is wanted of a glTF file with several [default: its own
+    /// materials]
     #[arg(long, value_name = "NAME")]
     pub variant: Option<String>,
     /// Move the model's own camera to where it sees all of it, in the direction in which it looks

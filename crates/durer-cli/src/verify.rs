@@ -19,8 +19,9 @@ use std::sync::atomic::Ordering::Relaxed;
 const STRUCTURES: [(&str, AccelKind); 3] =
     [("bvh", AccelKind::Bvh), ("grid", AccelKind::Grid(None)), ("none", AccelKind::None)];
 
-/// The processor's instructions that can be had, as `DURER_SIMD` takes them. Which are used is decided once for a whole process;
-/// where that variable is set, as it is for each process that this one starts, there are only those.
+/// The processor's instructions that can be had, as `DURER_SIMD` takes them. Which are used is
+/// decided once for a whole process; where that variable is set, as it is for each process that
+/// this one starts, there are only those.
 fn simd_levels() -> Vec<&'static str> {
     match std::env::var_os("DURER_SIMD") {
         Some(_) => vec![SimdLevel::chosen().name()],

@@ -1,11 +1,20 @@
 //! `durer words`: the language's reference in the terminal.
 
-use crate::args::WordsArgs;
 use crate::output::say;
 use crate::{Failure, bad};
 use durer::diag::did_you_mean;
 use durer::dialect::Dialect;
 use durer::format::course::reference::{Chapter, Entry, FieldEntry, all_words, dialect_names, entries};
+
+/// What `durer words` takes.
+#[derive(clap::Args)]
+pub struct WordsArgs {
+    /// The word; without one, all that begin something are listed
+    pub word: Option<String>,
+    /// Only what this dialect has
+    #[arg(long)]
+    pub dialect: Option<String>,
+}
 
 pub fn run(args: &WordsArgs) -> Result<(), Failure> {
     let dialect = args.dialect.as_deref().map(named).transpose()?;

@@ -12,7 +12,8 @@ fn seen_by(camera: &str) -> String {
 
 const POSE: &str = "center 0 1 8 direction 0 -0.1 -1 up 0 1 0";
 
-/// Bytes of an uncompressed Targa picture: bits a pixel, and its pixels with alpha, the bottom row first.
+/// Bytes of an uncompressed Targa picture: bits a pixel, and its pixels with alpha, the bottom row
+/// first.
 fn targa(place: &Place, name: &str) -> (u8, Vec<[u8; 4]>) {
     let bytes = place.bytes(name);
     let (head, rest) = bytes.split_at(18);

@@ -1,4 +1,5 @@
-//! `durer check`, cause by cause: the smallest change of a sound scene that makes it, and the nearest that does not.
+//! `durer check`, cause by cause: the smallest change of a sound scene that makes it, and the
+//! nearest that does not.
 
 mod common;
 

@@ -236,7 +236,8 @@ fn mistakes_in_real_pictures_are_named() {
     }
 }
 
-/// Rays through the borders of pixels instead of their middles: the mistake that is made most often.
+/// Rays through the borders of pixels instead of their middles: the mistake that is made most
+/// often.
 #[test]
 fn border_pixels_and_missing_shadows_are_recognised() {
     let place = Place::new();

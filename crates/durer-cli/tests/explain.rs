@@ -101,7 +101,8 @@ fn the_formulas_have_all_their_factors() {
     assert!(String::from_utf8(place.bytes("linear.html")).unwrap().contains("\"transfer\":\"linear\""));
 }
 
-/// Small and deep terms are left out, and said to be; nothing has a minus before 0 or more than four digits.
+/// Small and deep terms are left out, and said to be; nothing has a minus before 0 or more than
+/// four digits.
 #[test]
 fn the_text_can_be_read() {
     let place = Place::new();

@@ -1,4 +1,5 @@
-//! docs/lecture.md and the lesson's steps: what they say of the source is there, and pictures are what their commands make.
+//! docs/lecture.md and the lesson's steps: what they say of the source is there, and pictures are
+//! what their commands make.
 
 mod common;
 

@@ -34,7 +34,8 @@ fn a_measured_lamp_gives_its_illuminance() {
         ran.out.lines().skip(1).map(|row| row.split(',').map(|word| word.parse().unwrap()).collect()).collect();
     assert!(ran.out.starts_with("x,y,z,nx,ny,nz,illuminance,illuminance_error,"));
     assert!((rows[0][6] - 250.0).abs() < 0.1, "{rows:?}");
-    // At (-0.5, 0, 0.5), 19.4712 degrees from straight down: candela are linear between 0 and 30 degrees.
+    // At (-0.5, 0, 0.5), 19.4712 degrees from straight down: candela are linear between 0 and 30
+    // degrees.
     let candela = 1000.0 - (1000.0 - 866.025) * 19.4712 / 30.0;
     let expected = candela * (4.0_f64 / 4.5).sqrt() / 4.5;
     assert!((rows[1][6] / expected - 1.0).abs() < 1e-4 && rows[1][4] == 1.0, "{rows:?}");
@@ -56,7 +57,8 @@ Group { MaterialIndex 0 Plane { normal 0 1 0 offset 0 } MaterialIndex 1 Box { mi
         let row: Vec<f64> = ran.out.lines().nth(1).unwrap().split(',').map(|word| word.parse().unwrap()).collect();
         (row[6], row[7])
     };
-    // 100 cd from 2 m: 25 lux without the pane; of its two faces each reflects 0.04: T = (1 - F) / (1 + F).
+    // 100 cd from 2 m: 25 lux without the pane; of its two faces each reflects 0.04: T = (1 - F) / (1 +
+    // F).
     let (mean, error) = lux("--integrator photons --samples 32 --photons 20000 --photon-radius 0.2");
     let expected = 25.0 * 0.96 / 1.04;
     assert!((mean - expected).abs() < 3.0 * error + 0.02 * expected, "{mean} ± {error}, not {expected}");
@@ -232,7 +234,8 @@ Group {{ MaterialIndex 0 Plane {{ normal 0 1 0 offset 0 }} MaterialIndex 1 Disc 
             assert!((lux / (20.0 * std::f64::consts::PI) - 1.0).abs() < 0.01, "{lamp} {color}: {row}");
         }
     }
-    // A small lamp and lights without extent, as strong and of the same spectrum, show a paint in the same colour.
+    // A small lamp and lights without extent, as strong and of the same spectrum, show a paint in the
+    // same colour.
     let shown = |lights: &str, things: &str| -> Vec<f64> {
         place.put(
             "t.txt",

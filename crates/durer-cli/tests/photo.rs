@@ -1,4 +1,5 @@
-//! `durer photo`: photographs that Dürer takes itself, of which all is known, and what is no photograph.
+//! `durer photo`: photographs that Dürer takes itself, of which all is known, and what is no
+//! photograph.
 
 mod common;
 
@@ -48,7 +49,8 @@ fn cameras() -> Vec<Pose> {
     (0..20).map(camera).collect()
 }
 
-/// How far a solution is from the truth, after one similarity: the farthest camera's place, and the largest angle in degrees.
+/// How far a solution is from the truth, after one similarity: the farthest camera's place, and the
+/// largest angle in degrees.
 fn differences(all: &Reconstruction, truth: &[Pose]) -> (f64, f64) {
     let found: Vec<Pose> = all.views.iter().map(|view| view.pose.unwrap()).collect();
     let there = aligned(&found, truth).unwrap();
@@ -131,7 +133,8 @@ fn threads_change_no_bit() {
     assert_eq!(place.bytes("1.out"), place.bytes("5.out"));
 }
 
-/// A JPEG with EXIF that tells of a focal length in millimetres and of so many pixels an inch of the sensor.
+/// A JPEG with EXIF that tells of a focal length in millimetres and of so many pixels an inch of
+/// the sensor.
 fn with_exif(jpeg: &[u8], millimetres: [u32; 2], pixels: [u32; 2]) -> Vec<u8> {
     let entry = |tag: u16, kind: u16, value: u32| {
         [&tag.to_be_bytes()[..], &kind.to_be_bytes(), &1_u32.to_be_bytes(), &value.to_be_bytes()].concat()
@@ -390,7 +393,8 @@ fn a_thing_sits_in_a_photograph_of_others() {
             [now + sum(placed.pixels[(y * placed.width + x) as usize]), before + sum(plate.get_pixel(x, y).0)]
         })
     };
-    // The books stay as they are; left of the solid and of the ball, where the foot's shadow lies too, the seat is darker.
+    // The books stay as they are; left of the solid and of the ball, where the foot's shadow lies too,
+    // the seat is darker.
     let [now, before] = luma(120, 140, 220, 230);
     assert!(now.abs_diff(before) * 100 < before, "{now} {before}");
     for [now, before] in [luma(466, 442, 8, 6), luma(518, 444, 4, 6)] {

@@ -1,4 +1,5 @@
-//! What goes through several formats stays the same picture, and the Khronos sample models show what their cards promise.
+//! What goes through several formats stays the same picture, and the Khronos sample models show
+//! what their cards promise.
 
 mod common;
 
@@ -152,8 +153,8 @@ type Card = (&'static str, &'static [(usize, usize, Mark)]);
 
 /// The cards, and what is to be seen on them from the front at pixels of their pictures.
 ///
-/// Three cells are not here, those that lie behind a hidden back: the single-sided one, and those for backs. They are in the shadow of
-/// what the camera looks through.
+/// Three cells are not here, those that lie behind a hidden back: the single-sided one, and those
+/// for backs. They are in the shadow of what the camera looks through.
 const CARDS: &[Card] = &[
     (
         "TextureSettingsTest",

@@ -1,4 +1,5 @@
-//! `durer check` is silent about scenes that are sound: our own, and the course's but for those that are truly odd.
+//! `durer check` is silent about scenes that are sound: our own, and the course's but for those
+//! that are truly odd.
 
 mod common;
 

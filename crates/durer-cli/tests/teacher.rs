@@ -137,7 +137,8 @@ fn the_cause_stands_first() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// After a colour out of range, nobody is told of too much light as well; what is behind glass is not hidden.
+/// After a colour out of range, nobody is told of too much light as well; what is behind glass is
+/// not hidden.
 #[test]
 fn consequences_are_silent() {
     let place = Place::new();

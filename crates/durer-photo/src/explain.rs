@@ -1,4 +1,5 @@
-//! Why a camera stands where it does, and a point where it is: the perspective equations with their numbers.
+//! Why a camera stands where it does, and a point where it is: the perspective equations with their
+//! numbers.
 
 use crate::adjust::{Options, covariance};
 use crate::{Error, Reconstruction};
@@ -52,7 +53,8 @@ pub fn view_of(all: &Reconstruction, name: &str) -> Result<usize, Error> {
     })
 }
 
-/// A camera: the equations by which it sees its first points, what they leave, and how well it is determined.
+/// A camera: the equations by which it sees its first points, what they leave, and how well it is
+/// determined.
 pub fn camera(all: &Reconstruction, view: usize) -> Result<String, Error> {
     let name = &all.views[view].name;
     let pose = all.views[view].pose.ok_or_else(|| Error::new(format!("nobody knows where {name} was taken")))?;

@@ -1,13 +1,15 @@
 //! Whether a JPEG is all there: decoders fill up with grey what is missing.
 
-/// Whether the marker of the picture's end is there, and not just that of a small picture within its head.
+/// Whether the marker of the picture's end is there, and not just that of a small picture within
+/// its head.
 ///
 /// Source: ITU-T T.81, *Digital Compression and Coding of Continuous-Tone Still Images*, annex B.
 pub fn is_whole(bytes: &[u8]) -> bool {
     const START: u8 = 0xd8;
     const END: u8 = 0xd9;
     let mut at = 0;
-    // In coded data 0xff is followed by 0 or by a restart marker, 0xd0 to 0xd7; before a marker it may be repeated.
+    // In coded data 0xff is followed by 0 or by a restart marker, 0xd0 to 0xd7; before a marker it may
+    // be repeated.
     let is_marker = |pair: &[u8]| pair[0] == 0xff && !matches!(pair[1], 0 | 1 | 0xff | 0xd0..=0xd7);
     while let Some(pair) = bytes.get(at..at + 2) {
         at += match pair[1] {

@@ -2,7 +2,8 @@
 
 use nalgebra::{Matrix3, Rotation3, Vector2, Vector3};
 
-/// What a camera does to a point in its own frame, by the formula of the [crate's](crate) conventions.
+/// What a camera does to a point in its own frame, by the formula of the [crate's](crate)
+/// conventions.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Lens {
     /// Width and height of the photographs in pixels; 0 where a format does not tell.
@@ -31,7 +32,8 @@ impl Lens {
         }
     }
 
-    /// The pixel of a point in the camera's frame. The formula holds behind the camera too; see [`Pose::depth`].
+    /// The pixel of a point in the camera's frame. The formula holds behind the camera too; see
+    /// [`Pose::depth`].
     pub fn project(&self, p: &Vector3<f64>) -> Vector2<f64> {
         let (x, y) = (p.x / p.z, p.y / p.z);
         let factor = self.focal * self.factor(x * x + y * y);
@@ -43,7 +45,8 @@ impl Lens {
         1.0 + s * (self.radial[0] + s * self.radial[1])
     }
 
-    /// The point (x, y, 1) that is seen at a pixel, by Newton's method; none where the distortion has no inverse.
+    /// The point (x, y, 1) that is seen at a pixel, by Newton's method; none where the distortion
+    /// has no inverse.
     pub fn unproject(&self, pixel: &Vector2<f64>) -> Option<Vector3<f64>> {
         let x = (pixel.x - self.center[0]) / self.focal;
         let y = (pixel.y - self.center[1]) / (self.focal * self.aspect);
@@ -140,7 +143,8 @@ pub fn axis_angle_of(rotation: &Matrix3<f64>) -> Vector3<f64> {
     if length < 1e-300 { Vector3::zeros() } else { axis * (2.0 * libm::atan2(length, w) / length) }
 }
 
-/// The unit quaternion (w, x, y, z) of a rotation, with w >= 0. Shepperd's choice of the largest component.
+/// The unit quaternion (w, x, y, z) of a rotation, with w >= 0. Shepperd's choice of the largest
+/// component.
 pub fn quaternion_of(r: &Matrix3<f64>) -> [f64; 4] {
     let (a, b, c) = (r[(0, 0)], r[(1, 1)], r[(2, 2)]);
     let squares = [1.0 + a + b + c, 1.0 + a - b - c, 1.0 - a + b - c, 1.0 - a - b + c];
@@ -232,7 +236,8 @@ pub struct Fit {
 }
 
 impl Reconstruction {
-    /// The pixel at which a photograph should see a point, less where it does; none where its pose is not known.
+    /// The pixel at which a photograph should see a point, less where it does; none where its pose
+    /// is not known.
     pub fn residual(&self, position: &Vector3<f64>, seen: &Observation) -> Option<Vector2<f64>> {
         let view = &self.views[seen.view];
         let pose = view.pose.as_ref()?;
@@ -256,8 +261,9 @@ impl Reconstruction {
         fit
     }
 
-    /// The standard deviation of a residual's components, in pixels, by the median of the residuals' lengths: what is far off does
-    /// not count. Normal errors have a median length of √(2 ln 2) of them.
+    /// The standard deviation of a residual's components, in pixels, by the median of the
+    /// residuals' lengths: what is far off does not count. Normal errors have a median length
+    /// of √(2 ln 2) of them.
     pub fn noise(&self) -> f64 {
         let mut lengths: Vec<f64> = self.residuals().map(|residual| residual.norm()).collect();
         lengths.sort_by(f64::total_cmp);

@@ -75,7 +75,8 @@ impl Photo {
         [self.pixels.width(), self.pixels.height()]
     }
 
-    /// Its brightness from 0 to 1, with a longer side of at most so many pixels, and how many pixels one of these is.
+    /// Its brightness from 0 to 1, with a longer side of at most so many pixels, and how many
+    /// pixels one of these is.
     pub fn gray(&self, side: u32) -> (Gray, [f64; 2]) {
         let [width, height] = self.size();
         let scale = f64::from(side) / f64::from(width.max(height));
@@ -103,7 +104,8 @@ impl Photo {
     }
 }
 
-/// What of EXIF tells of the lens. What is broken is as if it were not there: photographs without it are usual.
+/// What of EXIF tells of the lens. What is broken is as if it were not there: photographs without
+/// it are usual.
 fn exif(bytes: &[u8], size: [u32; 2]) -> Exif {
     use exif::Tag;
     let mut found = Exif::default();

@@ -1,4 +1,5 @@
-//! The camera of one photograph: from points of the world that it shows, or from lines that are parallel in the world.
+//! The camera of one photograph: from points of the world that it shows, or from lines that are
+//! parallel in the world.
 
 use crate::adjust::{Loss, Options};
 use crate::geometry::camera::{linear, spread, take_apart};
@@ -33,7 +34,8 @@ pub struct Resection {
     pub inliers: Vec<usize>,
     /// The root of the mean square of these points' residuals, in pixels.
     pub rms: f64,
-    /// The ratio of the least to the largest singular value of the parameters' derivatives, each scaled to the same length.
+    /// The ratio of the least to the largest singular value of the parameters' derivatives, each
+    /// scaled to the same length.
     pub conditioning: f64,
 }
 
@@ -46,7 +48,8 @@ const CONDITIONED: f64 = 1e-6;
 ///
 /// # Errors
 ///
-/// Says why the points tell no camera: too few, in a line, in a plane without a known focal length, or none that they agree on.
+/// Says why the points tell no camera: too few, in a line, in a plane without a known focal length,
+/// or none that they agree on.
 pub fn camera(pairs: &[Pair], known: &Known) -> Result<Resection, Error> {
     let points: Vec<Vector3<f64>> = pairs.iter().map(|pair| pair.0).collect();
     let least = if known.focal.is_some() { 4 } else { 6 };
@@ -195,7 +198,8 @@ impl Axis {
     }
 }
 
-/// Lines of a photograph that are parallel in the world, in two directions at right angles to each other.
+/// Lines of a photograph that are parallel in the world, in two directions at right angles to each
+/// other.
 #[derive(Debug, Clone)]
 pub struct VanishingLines {
     /// Pixels across and down.
@@ -222,11 +226,12 @@ fn meeting(lines: &[[Vector2<f64>; 2]], size: f64) -> Option<Vector3<f64>> {
     (values[1] > 1e-9 * values[0]).then(|| Vector3::new(v[0] * size, v[1] * size, v[2]))
 }
 
-/// The camera whose vanishing points are v and w: f² = -(v - c)·(w - c), and the directions (v - c, f), (w - c, f) are the axes. The
-/// origin is so far away; photographs do not tell their scale.
+/// The camera whose vanishing points are v and w: f² = -(v - c)·(w - c), and the directions (v - c,
+/// f), (w - c, f) are the axes. The origin is so far away; photographs do not tell their scale.
 ///
-/// Source: Hartley, Zisserman, *Multiple View Geometry in Computer Vision*, 2nd edition, 2004, section 8.6; Guillou and others, *Using
-/// Vanishing Points for Camera Calibration and Coarse 3D Reconstruction from a Single Image*, The Visual Computer 16, 2000.
+/// Source: Hartley, Zisserman, *Multiple View Geometry in Computer Vision*, 2nd edition, 2004,
+/// section 8.6; Guillou and others, *Using Vanishing Points for Camera Calibration and Coarse 3D
+/// Reconstruction from a Single Image*, The Visual Computer 16, 2000.
 ///
 /// # Errors
 ///

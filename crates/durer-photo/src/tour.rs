@@ -20,14 +20,15 @@ pub struct Shown {
     pub center: [f64; 3],
     /// Rows: right, down, forward in the world.
     pub rotation: [[f64; 3]; 3],
-    /// The corners of the photograph on the plane it is shown on: upper left, upper right, lower right, lower left.
+    /// The corners of the photograph on the plane it is shown on: upper left, upper right, lower
+    /// right, lower left.
     pub corners: [[f64; 3]; 4],
     /// The points it sees, by number.
     pub points: Vec<usize>,
 }
 
-/// The photographs whose place is known, each on the plane that fits the points it sees; where that is seen from too far aside, on
-/// one across its view.
+/// The photographs whose place is known, each on the plane that fits the points it sees; where that
+/// is seen from too far aside, on one across its view.
 pub fn shown(all: &Reconstruction) -> Vec<Shown> {
     let mut seen = vec![Vec::new(); all.views.len()];
     for (i, point) in all.points.iter().enumerate() {
@@ -72,7 +73,8 @@ pub fn shown(all: &Reconstruction) -> Vec<Shown> {
     list
 }
 
-/// The plane nearest to points: one of its own, and its normal; none where they are not flat at all.
+/// The plane nearest to points: one of its own, and its normal; none where they are not flat at
+/// all.
 fn plane(points: &[Vector3<f64>]) -> Option<(Vector3<f64>, Vector3<f64>)> {
     let [_, second, third] = spread(points);
     if points.len() < 8 || third > 0.7 * second {

@@ -1,5 +1,5 @@
-//! Cameras and points that are made up are found again: exactly, with false correspondences, and with errors as large as their
-//! covariance says.
+//! Cameras and points that are made up are found again: exactly, with false correspondences, and
+//! with errors as large as their covariance says.
 
 use durer_photo::adjust::{Options as Adjust, adjust, covariance};
 use durer_photo::geometry::align::{Similarity, cameras as aligned};
@@ -136,7 +136,8 @@ fn what_tells_no_depth_is_named() {
     assert!(error.message.contains("enough points that agree"), "{error}");
 }
 
-/// The reconstruction in the frame in which the first camera is the true one, and so is one component of another's translation.
+/// The reconstruction in the frame in which the first camera is the true one, and so is one
+/// component of another's translation.
 fn in_frame(found: &mut Reconstruction, truth: &Reconstruction, far: usize, component: usize) {
     let pose = |all: &Reconstruction, i: usize| all.views[i].pose.unwrap();
     let rotation = pose(truth, 0).rotation.transpose() * pose(found, 0).rotation;

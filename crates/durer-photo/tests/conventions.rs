@@ -1,4 +1,5 @@
-//! What the table of conventions says, by hand: one camera that sees one point, written as each format has it.
+//! What the table of conventions says, by hand: one camera that sees one point, written as each
+//! format has it.
 
 use durer_photo::format::{CONVENTIONS, Output, read, read_control};
 use durer_photo::matching::FORMAT;
@@ -7,9 +8,9 @@ use nalgebra::{Matrix3, Vector2, Vector3};
 use std::path::Path;
 use tempfile::TempDir;
 
-// A picture of 640 x 480 pixels, f = 500, k1 = 0.1; the camera is turned by a right angle about z, t = (0.5, 1, 5). It sees
-// X = (1, 2, 3) at P = (-1.5, 2, 8): p = (-0.1875, 0.25), r = 1 + 0.1 |p|² = 1.009765625, and so 94.66552734375 pixels left of the
-// middle and 126.220703125 below it.
+// A picture of 640 x 480 pixels, f = 500, k1 = 0.1; the camera is turned by a right angle about z,
+// t = (0.5, 1, 5). It sees X = (1, 2, 3) at P = (-1.5, 2, 8): p = (-0.1875, 0.25), r = 1 + 0.1 |p|²
+// = 1.009765625, and so 94.66552734375 pixels left of the middle and 126.220703125 below it.
 const PIXEL: [f64; 2] = [320.0 - 94.66552734375, 240.0 + 126.220703125];
 const CENTER: [f64; 3] = [-1.0, 0.5, -5.0];
 const HALF: f64 = std::f64::consts::FRAC_1_SQRT_2;
@@ -31,7 +32,8 @@ fn files() -> Vec<Case> {
         "viewTransform": {"rows": [[0, -1, 0, 0.5], [-1, 0, 0, -1], [0, 0, -1, -5], [0, 0, 0, 1]]}}"#;
     let ply = "ply\nformat ascii 1.0\ncomment cameras at the end: 1\nelement vertex 2\nproperty double x\nproperty double y\nproperty double z\n\
         property uchar red\nproperty uchar green\nproperty uchar blue\nend_header\n1 2 3 10 20 30\n-1 0.5 -5 255 0 0\n";
-    // A camera within a node that is moved, turned by a half turn about x and twice as large; and 1, 2, 3 as floats, 10, 20, 30 as bytes.
+    // A camera within a node that is moved, turned by a half turn about x and twice as large; and 1, 2,
+    // 3 as floats, 10, 20, 30 as bytes.
     let data = "AACAPwAAAEAAAEBAChQe/w==";
     let gltf = format!(
         r#"{{"asset": {{"version": "2.0"}}, "nodes": [
@@ -113,7 +115,8 @@ fn view_is_as_meant(all: &Reconstruction, view: &View, name: &str) {
     let radial = if name == "fSpy" { 0.0 } else { 0.1 };
     assert!((lens.focal - 500.0).abs() < 1e-9, "{name}: {}", lens.focal);
     assert_eq!((lens.aspect, lens.center, lens.radial), (1.0, [320.0, 240.0], [radial, 0.0]), "{name}");
-    // By whatever way it is written, the camera sees the point at the pixel that was worked out by hand.
+    // By whatever way it is written, the camera sees the point at the pixel that was worked out by
+    // hand.
     let pixel = lens.project(&pose.apply(&Vector3::new(1.0, 2.0, 3.0)));
     assert!(name == "fSpy" || (pixel - Vector2::from(PIXEL)).norm() < 1e-9, "{name}: {pixel}");
 }
@@ -168,7 +171,8 @@ fn what_is_written_for_other_programs_means_what_the_table_says() {
         value.as_array().unwrap().iter().map(|number| number.as_f64().unwrap()).collect::<Vec<f64>>()
     };
     assert!((Vector3::from_iterator(numbers(&node["translation"])) - Vector3::from(CENTER)).norm() < 1e-12);
-    // From the camera's frame to the world: its -z is the world's z, its x the world's -y, and its y the world's -x.
+    // From the camera's frame to the world: its -z is the world's z, its x the world's -y, and its y
+    // the world's -x.
     let q = numbers(&node["rotation"]);
     let q = nalgebra::UnitQuaternion::from_quaternion(nalgebra::Quaternion::new(q[3], q[0], q[1], q[2]));
     for (axis, there) in [(-Vector3::z(), Vector3::z()), (Vector3::x(), -Vector3::y()), (Vector3::y(), -Vector3::x())] {
@@ -317,7 +321,8 @@ fn binary_gltf_is_read_and_cameras_of_other_programs_have_a_thousand_rows() {
     assert!((all.lenses[0].focal - 500.0).abs() < 1e-9 && all.views[0].name == "Camera");
     let centers: Vec<_> = all.views.iter().map(|view| view.pose.unwrap().center()).collect();
     assert_eq!(centers, [Vector3::new(1.0, 2.0, 3.0), Vector3::zeros()]);
-    // It looks along -z: what is there and to the right, and higher, is right of the middle and above it.
+    // It looks along -z: what is there and to the right, and higher, is right of the middle and above
+    // it.
     let pixel = all.lenses[0].project(&all.views[1].pose.unwrap().apply(&Vector3::new(1.0, 0.5, -2.0)));
     assert!((pixel - Vector2::new(1000.0, 375.0)).norm() < 1e-9, "{pixel}");
     let positions: Vec<[f64; 3]> = all.points.iter().map(|point| point.position.into()).collect();

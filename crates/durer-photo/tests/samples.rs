@@ -1,4 +1,5 @@
-//! What other programs wrote is read as they meant it: reprojection gives the figures that they, or their papers, give.
+//! What other programs wrote is read as they meant it: reprojection gives the figures that they, or
+//! their papers, give.
 
 use durer_photo::adjust::{Loss, Options, adjust, covariance};
 use durer_photo::format::{Output, read, read_project};
@@ -142,7 +143,8 @@ fn solved(folder: &Path, names: &[String]) -> Reconstruction {
     solve(&matches, &Default::default(), &|_| {}).unwrap().all
 }
 
-/// How far the centres of cameras are from others' at most, by number, as a share of the largest distance between two of these.
+/// How far the centres of cameras are from others' at most, by number, as a share of the largest
+/// distance between two of these.
 fn apart(ours: &Reconstruction, theirs: &Reconstruction) -> f64 {
     let both = ours.views.iter().zip(&theirs.views);
     let (ours, theirs): (Vec<_>, Vec<_>) = both.filter_map(|(a, b)| Some((a.pose?.center(), b.pose?.center()))).unzip();
@@ -174,8 +176,9 @@ fn photographs_become_cameras() {
     stored_places_are_off(&solved, &bundler);
 }
 
-/// The places that Bundler stored are off by more than a hundredth of their extent. It gave each photograph a focal length of its own,
-/// from 638 to 729 pixels, though EXIF tells one, and least squares took some false observations for true.
+/// The places that Bundler stored are off by more than a hundredth of their extent. It gave each
+/// photograph a focal length of its own, from 638 to 729 pixels, though EXIF tells one, and least
+/// squares took some false observations for true.
 fn stored_places_are_off(solved: &Reconstruction, bundler: &Reconstruction) {
     // What Bundler saw fits our cameras better than its own, though it chose by these what it kept.
     let (ours, theirs) = (median_residual(solved, bundler), median_residual(bundler, bundler));
@@ -187,7 +190,8 @@ fn stored_places_are_off(solved: &Reconstruction, bundler: &Reconstruction) {
     one.views.iter_mut().for_each(|view| view.lens = 0);
     adjust(&mut one, &Options { loss: Loss::Cauchy(1.0), ..Options::default() });
     assert!(apart(solved, &one) < 0.005, "{}", apart(solved, &one));
-    // So does what it saw with its lenses and least squares, but for the few observations that are more than two pixels off.
+    // So does what it saw with its lenses and least squares, but for the few observations that are more
+    // than two pixels off.
     let mut clean = bundler.clone();
     let mut dropped = 0;
     for (point, known) in clean.points.iter_mut().zip(&one.points) {
@@ -202,7 +206,8 @@ fn stored_places_are_off(solved: &Reconstruction, bundler: &Reconstruction) {
     assert!(dropped < 25 && from_ours < 0.01 && from_stored > 0.015, "{dropped} {from_ours} {from_stored}");
 }
 
-/// The median residual of what was seen, each point where the rays of some cameras come nearest to each other.
+/// The median residual of what was seen, each point where the rays of some cameras come nearest to
+/// each other.
 fn median_residual(cameras: &Reconstruction, seen: &Reconstruction) -> f64 {
     let mut all = Vec::new();
     for point in &seen.points {
@@ -219,8 +224,8 @@ fn median_residual(cameras: &Reconstruction, seen: &Reconstruction) -> f64 {
     all[all.len() / 2]
 }
 
-/// How far places are from where they were, if Bundler's observations have normal errors as large as their residuals: the median of
-/// what so many draws from the covariance of its places give.
+/// How far places are from where they were, if Bundler's observations have normal errors as large
+/// as their residuals: the median of what so many draws from the covariance of its places give.
 #[test]
 fn what_bundler_saw_does_not_tell_places_to_a_hundredth() {
     let Some(folder) = samples() else { return };
@@ -281,7 +286,8 @@ fn fspy_cameras_see_their_vanishing_points() {
     let Some(folder) = samples() else { return };
     let all = read(&folder.join("fspy/json_export.json")).unwrap();
     let (lens, pose) = (all.lenses[0], all.views[0].pose.unwrap());
-    // The file: -x leads to (1.605, 0.001), z to (-0.652, 0.003), y to (-0.375, -436), where the longer side is from -1 to 1.
+    // The file: -x leads to (1.605, 0.001), z to (-0.652, 0.003), y to (-0.375, -436), where the longer
+    // side is from -1 to 1.
     for (axis, x, y) in [
         (-nalgebra::Vector3::x(), 1.6051650133994935_f64, 0.001021010320067342_f64),
         (nalgebra::Vector3::z(), -0.652074716204382, 0.0029610261811691915),

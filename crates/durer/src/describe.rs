@@ -1,7 +1,8 @@
 //! What a thing in a scene file is made of, said once.
 //!
-//! Every shape, camera, material and light states its keyword and its fields in one `described!` block. The
-//! reader, the writer, the manual and the generator of random test scenes walk that statement.
+//! Every shape, camera, material and light states its keyword and its fields in one `described!`
+//! block. The reader, the writer, the manual and the generator of random test scenes walk that
+//! statement.
 
 use crate::diag::Span;
 use crate::dialect::{Dialect, DialectSet};
@@ -235,7 +236,8 @@ impl<T: FieldType> FieldType for Option<T> {
 
 /// Declares a struct together with its description.
 ///
-/// Each field: its doc comment, name, type, default, `required` or `optional`, its rule, and its spellings by dialect.
+/// Each field: its doc comment, name, type, default, `required` or `optional`, its rule, and its
+/// spellings by dialect.
 #[macro_export]
 macro_rules! described {
     (
@@ -290,7 +292,8 @@ macro_rules! described {
 
 /// A closed list of described things: an `enum` with one variant each, which delegates to it.
 ///
-/// After `=>` stands a macro that takes the variants' names, and makes what else the enum delegates.
+/// After `=>` stands a macro that takes the variants' names, and makes what else the enum
+/// delegates.
 #[macro_export]
 macro_rules! described_list {
     ($(#[doc = $doc:literal])+ $name:ident => $delegate:ident { $($variant:ident($type:ty),)+ }) => {

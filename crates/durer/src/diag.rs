@@ -28,7 +28,8 @@ impl PartialEq for Span {
 }
 
 impl Span {
-    /// From the start of this span to the end of another in the same file; this span, if that is in another.
+    /// From the start of this span to the end of another in the same file; this span, if that is in
+    /// another.
     pub fn to(self, end: Span) -> Span {
         if end.file != self.file {
             return self;
@@ -62,7 +63,8 @@ pub struct Edit {
 pub struct Diagnostic {
     /// How bad it is.
     pub severity: Severity,
-    /// The kind of finding, in a word that does not change from version to version; empty where it has none.
+    /// The kind of finding, in a word that does not change from version to version; empty where it
+    /// has none.
     pub code: &'static str,
     /// What is wrong, in one sentence without a full stop.
     pub message: String,
@@ -180,8 +182,8 @@ impl Diagnostics {
         }
     }
 
-    /// Adds a finding once for all places: where it is there in the same words, that one is said to be so again, and takes the
-    /// edits. Tells whether it was new.
+    /// Adds a finding once for all places: where it is there in the same words, that one is said to
+    /// be so again, and takes the edits. Tells whether it was new.
     pub fn push_once(&mut self, diagnostic: Diagnostic) -> bool {
         let is_same = |known: &&mut Diagnostic| known.code == diagnostic.code && known.message == diagnostic.message;
         let Some(known) = self.list.iter_mut().find(is_same) else {
@@ -257,7 +259,8 @@ impl Files {
         self.files.get(file as usize).map(|(_, bytes)| &**bytes)
     }
 
-    /// Line and column of the start of a span, both counted from 1; the column in characters, as editors count.
+    /// Line and column of the start of a span, both counted from 1; the column in characters, as
+    /// editors count.
     pub fn position(&self, span: Span) -> Option<(usize, usize)> {
         let before = self.bytes(span.file)?.get(..span.start as usize)?;
         let line = before.iter().filter(|&&b| b == b'\n').count() + 1;
@@ -272,7 +275,8 @@ impl Files {
 
 /// The candidate most like `word`, if one is near enough to be meant.
 pub fn did_you_mean<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
-    // The distance takes time and memory in proportion to the word's length: nobody means a word by a file's contents.
+    // The distance takes time and memory in proportion to the word's length: nobody means a word by a
+    // file's contents.
     if word.len() > 64 {
         return None;
     }

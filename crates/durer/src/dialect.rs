@@ -1,7 +1,8 @@
 //! The dialects of the scene language, as one table of differences.
 //!
-//! A [`Dialect`] names a year's language; its [`Rules`] say what its words mean; its [`Compat`]s are the
-//! known bugs of that year's official program, which hold only where the dialect was asked for.
+//! A [`Dialect`] names a year's language; its [`Rules`] say what its words mean; its [`Compat`]s
+//! are the known bugs of that year's official program, which hold only where the dialect was asked
+//! for.
 
 use serde::{Deserialize, Serialize};
 
@@ -177,7 +178,8 @@ pub struct Rules {
     pub bounces: u32,
     /// Whether lights cast shadows where nothing is said of it.
     pub shadows: bool,
-    /// Whether a surface seen from behind is shaded with its normal turned, where nothing is said of it.
+    /// Whether a surface seen from behind is shaded with its normal turned, where nothing is said
+    /// of it.
     pub shade_back: bool,
     /// Normals of meshes without normals.
     pub mesh_normals: MeshNormals,
@@ -195,7 +197,8 @@ pub struct Rules {
     pub normals_picture: NormalsPicture,
     /// Depth as grey.
     pub depth_picture: DepthPicture,
-    /// Whether pictures on surfaces and of the sky are decoded by sRGB's curve, and not taken as they are.
+    /// Whether pictures on surfaces and of the sky are decoded by sRGB's curve, and not taken as
+    /// they are.
     pub srgb_textures: bool,
     /// Where files are looked for.
     pub paths: PathBase,
@@ -323,7 +326,8 @@ impl Rules {
         self.compat & compat.bit() != 0
     }
 
-    /// Whether a picture is to be what an official program made: with its epsilon, its points are its ray's, rounding and all.
+    /// Whether a picture is to be what an official program made: with its epsilon, its points are
+    /// its ray's, rounding and all.
     pub fn is_official(&self) -> bool {
         self.epsilon.is_some()
     }

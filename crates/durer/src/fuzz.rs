@@ -1,7 +1,8 @@
-//! What must hold of any bytes: no panic, no more memory than the bytes justify, and no answer that contradicts itself.
+//! What must hold of any bytes: no panic, no more memory than the bytes justify, and no answer that
+//! contradicts itself.
 //!
-//! The targets of `fuzz/` call these functions with random bytes; a test does with the seeds, among which are the bytes that
-//! once broke something.
+//! The targets of `fuzz/` call these functions with random bytes; a test does with the seeds, among
+//! which are the bytes that once broke something.
 
 use crate::LoadOptions;
 use crate::compile::AccelKind;
@@ -125,7 +126,8 @@ pub fn model(data: &[u8], name: &str) {
     }
 }
 
-/// Bytes as a picture file: the head says what decoding finds, and how much memory it takes at most.
+/// Bytes as a picture file: the head says what decoding finds, and how much memory it takes at
+/// most.
 pub fn picture(data: &[u8], name: &str) {
     let Ok(encoded) = Encoded::open(data, name) else { return };
     let (width, height) = encoded.size();
@@ -177,7 +179,8 @@ fn folder() -> PathBuf {
     FOLDER.get_or_init(make).clone()
 }
 
-/// A scene that bytes choose: its text is read as itself, and its picture is the same by tree, grid and brute force.
+/// A scene that bytes choose: its text is read as itself, and its picture is the same by tree, grid
+/// and brute force.
 pub fn ways(data: &[u8]) {
     let scene = Random::tame(data).scene(Dialect::Durer);
     let text = write(&scene, Dialect::Durer);

@@ -1,7 +1,7 @@
 //! Dürer: a ray tracer that is exact, explainable and deterministic.
 //!
-//! A scene file is read into a [`scene::Scene`] (plain data), compiled into a [`world::World`] (immutable, numbers
-//! only), and rendered by a [`render::Job`] into pictures.
+//! A scene file is read into a [`scene::Scene`] (plain data), compiled into a [`world::World`]
+//! (immutable, numbers only), and rendered by a [`render::Job`] into pictures.
 
 pub mod bsdf;
 pub mod camera;

@@ -17,10 +17,11 @@ use std::sync::Arc;
 /// How a scene file is to be understood.
 #[derive(Clone, Debug, Default)]
 pub struct LoadOptions {
-    /// Its dialect, with the bugs of that year's program. `None`: it is guessed, and sane rules hold.
+    /// Its dialect, with the bugs of that year's program. `None`: it is guessed, and sane rules
+    /// hold.
     pub dialect: Option<Dialect>,
-    /// Whether a guessed dialect is taken with its bugs, and files are also read below the current directory:
-    /// what the course's command line does.
+    /// Whether a guessed dialect is taken with its bugs, and files are also read below the current
+    /// directory: what the course's command line does.
     pub course: bool,
     /// What else is known of the dialect.
     pub hints: Vec<Hint>,
@@ -42,7 +43,8 @@ pub struct LoadOptions {
     pub threads: Option<usize>,
     /// Bytes that the world may take; `None`: any number.
     pub memory: Option<u64>,
-    /// Meshes and pictures of the same scene as it was before: what did not change is neither read nor built again.
+    /// Meshes and pictures of the same scene as it was before: what did not change is neither read
+    /// nor built again.
     pub kept: Option<Arc<Kept>>,
 }
 
@@ -177,7 +179,8 @@ fn budget(options: &LoadOptions) -> u64 {
     Source::DEFAULT_BUDGET.min(options.memory.unwrap_or(u64::MAX))
 }
 
-/// What the year's own program would refuse in a file that is read here: the first of it, as a note, unless it was said.
+/// What the year's own program would refuse in a file that is read here: the first of it, as a
+/// note, unless it was said.
 fn portability(bytes: &[u8], file: u32, dialect: Dialect, said: &Diagnostics) -> Diagnostics {
     let (mut strict, mut notes) = (Diagnostics::default(), Diagnostics::default());
     if dialect != Dialect::Durer {
@@ -195,12 +198,14 @@ fn portability(bytes: &[u8], file: u32, dialect: Dialect, said: &Diagnostics) ->
 }
 
 impl Loaded {
-    /// Where the files are that were read for it, the scene's own not among them. All are known when it is compiled.
+    /// Where the files are that were read for it, the scene's own not among them. All are known
+    /// when it is compiled.
     pub fn files(&self) -> Vec<PathBuf> {
         self.source.paths()
     }
 
-    /// Writes the scene as a model in another format, if that format is written; what it has no words for is warned of.
+    /// Writes the scene as a model in another format, if that format is written; what it has no
+    /// words for is warned of.
     pub fn write(&self, name: &str, diagnostics: &mut Diagnostics) -> Option<Vec<u8>> {
         let write = scene_format_for(name)?.write?;
         let output = Output { name, source: &self.source, normals: self.rules.mesh_normals };

@@ -9,7 +9,8 @@ thread_local! {
     static QUIET: Cell<bool> = const { Cell::new(false) };
 }
 
-/// The result of some work; `None` if it panicked. The process's panic hook stays in place, and hears of all other panics.
+/// The result of some work; `None` if it panicked. The process's panic hook stays in place, and
+/// hears of all other panics.
 pub fn caught<T>(work: impl FnOnce() -> T) -> Option<T> {
     static HOOK: Once = Once::new();
     HOOK.call_once(|| {

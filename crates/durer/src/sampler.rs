@@ -2,12 +2,12 @@
 //!
 //! There is no generator with a state, so no order of work can change a number.
 //!
-//! Sources: the mixing function is the finaliser of SplitMix64 (Steele, Lea, Flood, *Fast Splittable
-//! Pseudorandom Number Generators*, OOPSLA 2014; constants: Stafford's variant 13). The sequence is Sobol's
-//! in two dimensions with hash-based nested uniform scrambling (Laine, Karras, *Stratified Sampling for
-//! Stochastic Transparency*, EGSR 2011), padded and shuffled as in Burley, *Practical Hash-based Owen
-//! Scrambling*, JCGT 9(4), 2020. The scrambling hash is the one of Vegdahl, *Building a Better LK Hash*,
-//! 2021, which is less biased than the published constants.
+//! Sources: the mixing function is the finaliser of SplitMix64 (Steele, Lea, Flood, *Fast
+//! Splittable Pseudorandom Number Generators*, OOPSLA 2014; constants: Stafford's variant 13). The
+//! sequence is Sobol's in two dimensions with hash-based nested uniform scrambling (Laine, Karras,
+//! *Stratified Sampling for Stochastic Transparency*, EGSR 2011), padded and shuffled as in Burley,
+//! *Practical Hash-based Owen Scrambling*, JCGT 9(4), 2020. The scrambling hash is the one of
+//! Vegdahl, *Building a Better LK Hash*, 2021, which is less biased than the published constants.
 
 use crate::math::Vec2;
 use serde::{Deserialize, Serialize};
@@ -46,8 +46,8 @@ impl Sampler {
         Self::NAMES.iter().find(|(n, _)| *n == name).map(|&(_, sampler)| sampler)
     }
 
-    /// How many samples a pixel really gets where `samples` are asked for: at least one, and for the
-    /// samplers on a grid the next square (65535^2 at most).
+    /// How many samples a pixel really gets where `samples` are asked for: at least one, and for
+    /// the samplers on a grid the next square (65535^2 at most).
     pub fn round_up(self, samples: u32) -> u32 {
         match self {
             Sampler::Sobol | Sampler::Random => samples.max(1),
@@ -55,7 +55,8 @@ impl Sampler {
         }
     }
 
-    /// Where in the camera's lens a sample lies, in [0,1)^2. Positions in the pixel tell nothing of it.
+    /// Where in the camera's lens a sample lies, in [0,1)^2. Positions in the pixel tell nothing of
+    /// it.
     pub fn lens_position(self, seed: u64, x: u32, y: u32, sample: u32) -> Vec2 {
         match self {
             Sampler::Sobol => sample_2d(seed, x, y, sample, LENS_DIMENSION),
@@ -65,7 +66,8 @@ impl Sampler {
 
     /// Position of a sample in its pixel, in [0,1)^2 from the pixel's top left corner.
     ///
-    /// `sample` counts from 0 to `round_up(samples) - 1`. On a grid it runs along rows, the top row first.
+    /// `sample` counts from 0 to `round_up(samples) - 1`. On a grid it runs along rows, the top row
+    /// first.
     pub fn pixel_position(self, seed: u64, x: u32, y: u32, sample: u32, samples: u32) -> Vec2 {
         let in_cell = match self {
             Sampler::Sobol => return sample_2d(seed, x, y, sample, PIXEL_DIMENSION),
@@ -86,7 +88,8 @@ pub const PIXEL_DIMENSION: u32 = 0;
 /// The dimension that positions in the camera's lens use; integrators take those from 2 upwards.
 pub const LENS_DIMENSION: u32 = 1;
 
-/// The sample that random numbers are for, and the first dimension that is free. A number depends on nothing else.
+/// The sample that random numbers are for, and the first dimension that is free. A number depends
+/// on nothing else.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SampleId {
     /// The job's.
@@ -153,7 +156,8 @@ impl SampleId {
 }
 
 impl Stream {
-    /// The next number. The first two fill their square evenly over the samples of a pixel; the others are independent.
+    /// The next number. The first two fill their square evenly over the samples of a pixel; the
+    /// others are independent.
     pub fn number(&mut self) -> f32 {
         let SampleId { seed, pixel: (x, y), sample, .. } = self.id;
         self.taken += 1;
@@ -179,8 +183,9 @@ fn grid_side(samples: u32) -> u32 {
 
 /// A point in [0,1)^2 that fills the square evenly as `sample` counts up from 0.
 ///
-/// Each first 2^k samples of a dimension, and each aligned block of as many, have one point in every elementary
-/// interval of area 2^-k. Points of different pixels or different dimensions are independent.
+/// Each first 2^k samples of a dimension, and each aligned block of as many, have one point in
+/// every elementary interval of area 2^-k. Points of different pixels or different dimensions are
+/// independent.
 pub fn sample_2d(seed: u64, x: u32, y: u32, sample: u32, dimension: u32) -> Vec2 {
     Sequence::new(seed, x, y, dimension).point(sample)
 }
@@ -247,9 +252,11 @@ fn nested_uniform_scramble(bits: u32, key: u32) -> u32 {
     v.reverse_bits()
 }
 
-/// The second coordinate of Sobol's sequence, in units of 2^-32; the first is the index with its bits reversed.
+/// The second coordinate of Sobol's sequence, in units of 2^-32; the first is the index with its
+/// bits reversed.
 ///
-/// The generator matrix is Pascal's triangle modulo 2: a Kronecker power, hence five steps instead of 32.
+/// The generator matrix is Pascal's triangle modulo 2: a Kronecker power, hence five steps instead
+/// of 32.
 fn sobol_second(index: u32) -> u32 {
     let mut v = index;
     v ^= v >> 16;

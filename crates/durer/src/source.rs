@@ -1,7 +1,7 @@
 //! Bytes by name: the only place that opens a file for reading.
 //!
-//! Files are read from a few allowed folders, never beyond them, and within a budget of bytes. What was read is remembered
-//! by its hash.
+//! Files are read from a few allowed folders, never beyond them, and within a budget of bytes. What
+//! was read is remembered by its hash.
 
 use crate::diag::did_you_mean;
 use serde::{Deserialize, Serialize};
@@ -136,8 +136,8 @@ impl SourceError {
     }
 }
 
-/// A file, and what tells whether it was saved since: when that was, its size, and its number in its file system, for one that takes the
-/// place of another has another.
+/// A file, and what tells whether it was saved since: when that was, its size, and its number in
+/// its file system, for one that takes the place of another has another.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Stamp {
     path: PathBuf,
@@ -273,7 +273,8 @@ impl Source {
         self.already().files.insert(name.into(), digest);
     }
 
-    /// The file that a scene means by a name, as it is now; `None` where it is in no folder or may not be read.
+    /// The file that a scene means by a name, as it is now; `None` where it is in no folder or may
+    /// not be read.
     pub fn stamp(&self, name: &str) -> Option<Stamp> {
         if self.given.contains_key(name) {
             return None;
@@ -286,7 +287,8 @@ impl Source {
         self.already().files.get(name).copied()
     }
 
-    /// Counts a file among those that were read by a name, though it was read earlier and is as it was.
+    /// Counts a file among those that were read by a name, though it was read earlier and is as it
+    /// was.
     pub fn remember_unread(&self, name: &str, stamp: &Stamp, digest: Digest) {
         let mut already = self.already();
         already.files.insert(name.into(), digest);
@@ -298,8 +300,8 @@ impl Source {
         self.given.contains_key(name) || self.find(name).is_ok()
     }
 
-    /// Reads a file by the name that a scene gives it; what is packed by gzip is unpacked, if the packed file's size in its last four
-    /// bytes is one that may still be read.
+    /// Reads a file by the name that a scene gives it; what is packed by gzip is unpacked, if the
+    /// packed file's size in its last four bytes is one that may still be read.
     pub fn read_unpacked(&self, name: &str) -> Result<Arc<[u8]>, SourceError> {
         let bytes = self.read(name)?;
         if !is_packed(&bytes) {
@@ -351,7 +353,8 @@ impl Source {
         })
     }
 
-    /// A file beside the candidates that has nearly the name of one. What may not be read is not listed either.
+    /// A file beside the candidates that has nearly the name of one. What may not be read is not
+    /// listed either.
     fn near(&self, candidates: &[PathBuf]) -> Option<String> {
         candidates.iter().find_map(|path| {
             let folder = path.parent()?.canonicalize().ok().filter(|folder| self.allows(folder))?;
@@ -398,8 +401,8 @@ pub fn is_packed(bytes: &[u8]) -> bool {
     bytes.starts_with(b"\x1f\x8b")
 }
 
-/// What is packed by gzip, if it is no more than may be read: the packed file tells its size in its last four bytes, and more
-/// than that is not unpacked.
+/// What is packed by gzip, if it is no more than may be read: the packed file tells its size in its
+/// last four bytes, and more than that is not unpacked.
 ///
 /// # Errors
 /// Why it is not unpacked.

@@ -1,4 +1,5 @@
-//! Threads for work in parallel: as many as are wanted, or as can be had; where there are none, the calling thread does it all.
+//! Threads for work in parallel: as many as are wanted, or as can be had; where there are none, the
+//! calling thread does it all.
 
 use rayon::{ThreadBuilder, ThreadPool, ThreadPoolBuilder};
 use std::io;
@@ -10,7 +11,8 @@ pub const MOST: usize = 1024;
 /// Room for the recursion of the most bounces.
 const STACK: usize = 16 << 20;
 
-/// How many threads there should be: as asked for; else as `RAYON_NUM_THREADS` says; else as many as the machine has.
+/// How many threads there should be: as asked for; else as `RAYON_NUM_THREADS` says; else as many
+/// as the machine has.
 fn wanted(asked: Option<usize>) -> usize {
     let environment = || std::env::var("RAYON_NUM_THREADS").ok()?.parse().ok().filter(|&count: &usize| count > 0);
     let machine = || std::thread::available_parallelism().map_or(1, usize::from);
@@ -27,7 +29,8 @@ fn started(asked: Option<usize>) -> Vec<mpsc::Sender<ThreadBuilder>> {
     (0..wanted(asked)).map_while(start).collect()
 }
 
-/// Gives threads that are started already to a pool: this cannot fail half-way, as starting them can.
+/// Gives threads that are started already to a pool: this cannot fail half-way, as starting them
+/// can.
 fn giving(mut started: Vec<mpsc::Sender<ThreadBuilder>>) -> impl FnMut(ThreadBuilder) -> io::Result<()> {
     move |thread| {
         let sent = started.pop().map(|sender| sender.send(thread));
@@ -53,8 +56,9 @@ pub fn install<R: Send>(asked: Option<usize>, work: impl FnOnce() -> R + Send) -
     }
 }
 
-/// Starts the threads that all work shares that has none of its own. Programs call it when they begin; where it is not called,
-/// they are started when they are needed first, and a system that gives none is an error of the program.
+/// Starts the threads that all work shares that has none of its own. Programs call it when they
+/// begin; where it is not called, they are started when they are needed first, and a system that
+/// gives none is an error of the program.
 pub fn prepare() {
     static ONCE: Once = Once::new();
     ONCE.call_once(|| {

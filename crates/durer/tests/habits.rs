@@ -1,4 +1,5 @@
-//! Habits of the course's programs, one test each: what they do, and what is done where nobody asked for them.
+//! Habits of the course's programs, one test each: what they do, and what is done where nobody
+//! asked for them.
 
 use durer::diag::{Diagnostics, Files};
 use durer::dialect::{Compat, Dialect};
@@ -69,7 +70,8 @@ fn a_transform_of_2023_drops_shear_and_nested_ones_keep_it() {
     let sheared = "Transform { scale 2 1 1 z_rotate 45 }";
     let bounds = |text: &str, official| world(text, Dialect::F23, official).bounds().max;
     let root = |x: f32| x.sqrt();
-    // The first axis of the product is (2, 1) / √2; what is left of the second is (-2, 4) √2 / 5 across it.
+    // The first axis of the product is (2, 1) / √2; what is left of the second is (-2, 4) √2 / 5 across
+    // it.
     let image = bounds(&node(sheared, ball), true);
     let [a, b] = [[2.0 / root(2.0), 1.0 / root(2.0)], [-0.4 * root(2.0), 0.8 * root(2.0)]];
     let extent = |i: usize| (a[i] * a[i] + b[i] * b[i]).sqrt();
@@ -110,7 +112,8 @@ fn normals_of_planes_count_with_their_length() {
         close(seen(&world(&moved, dialect, true), [0.0, 5.0, 0.0], DOWN), [0.25; 3]);
         close(seen(&world(&long, dialect, false), [0.0, 5.0, 0.0], DOWN), [0.25; 3]);
     }
-    // Mirrors: d - 2 (d·n) n with the normal as it is, here (0, 1, 1) of length √2, sends a ray down to (0, 1, 2) / √5.
+    // Mirrors: d - 2 (d·n) n with the normal as it is, here (0, 1, 1) of length √2, sends a ray down to
+    // (0, 1, 2) / √5.
     let mirror = "Background { color 0 0 0 ambientLight 0 0 0 }
          Lights { numLights 1 DirectionalLight { direction 0 1 2 color 1 1 1 } }
          Materials { numMaterials 2 Material { diffuseColor 0 0 0 specularColor 1 1 1 shininess 1000 } Material { } }
@@ -203,7 +206,8 @@ fn r0_is_zero_for_rays_that_leave_whatever_the_index() {
                Material {{ diffuseColor 0 0 0 specularColor 1 1 1 refractionIndex {index} }} }}
              Group {{ numObjects 1 MaterialIndex 0 Sphere {{ center 0 0 0 radius 1 }} }}"
         );
-        // Straight through the middle, with a black sky behind mirrored rays: two passages are left of what is white.
+        // Straight through the middle, with a black sky behind mirrored rays: two passages are left of what
+        // is white.
         let mut world = world(&text, Dialect::F12a5, true);
         let settings = Settings {
             bounces: 4,
@@ -264,7 +268,8 @@ fn meshes_are_read_as_each_program_read_them() {
         assert_eq!(triangles("square.obj", dialect, true), 1, "{dialect:?}");
         assert_eq!(triangles("square.obj", dialect, false), 2, "{dialect:?}");
     }
-    // Normals by the numbers of vertices point along z, those that the faces name up, and there the light comes from.
+    // Normals by the numbers of vertices point along z, those that the faces name up, and there the
+    // light comes from.
     let light = |official| {
         let world = world_in(folder.path(), &nodes("tilted.obj"), F23, official);
         seen(&world, [0.5, 5.0, -0.3], DOWN).x

@@ -1,4 +1,5 @@
-//! Every scene of the repository: read without a finding, rendered the same in every way, shown and told of.
+//! Every scene of the repository: read without a finding, rendered the same in every way, shown and
+//! told of.
 
 use durer::compile::AccelKind;
 use durer::diag::{Diagnostics, Files};

@@ -6,7 +6,8 @@ use std::process::Command;
 
 const SCENES: &str = include_str!("broken.txt");
 
-/// A scene, the options that go with it, and the codes of which one names its cause; none where it is sound.
+/// A scene, the options that go with it, and the codes of which one names its cause; none where it
+/// is sound.
 struct Case {
     name: String,
     codes: Vec<String>,

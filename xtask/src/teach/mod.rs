@@ -1,5 +1,5 @@
-//! Is the teacher right? Wrong pictures for `durer compare` and broken scenes for `durer check`, made by a judge that shares
-//! nothing with the library but the scene language.
+//! Is the teacher right? Wrong pictures for `durer compare` and broken scenes for `durer check`,
+//! made by a judge that shares nothing with the library but the scene language.
 
 mod broken;
 #[allow(clippy::disallowed_methods, reason = "the judge shares no arithmetic with the library")]

@@ -1,4 +1,5 @@
-//! The judge's own tracer. It knows nothing of the library, and makes any of the usual mistakes that it is told by name.
+//! The judge's own tracer. It knows nothing of the library, and makes any of the usual mistakes
+//! that it is told by name.
 
 use super::scene::{Lamp, Scene, Shape, Stuff, Thing, Year};
 use super::vector::{Matrix, V};

@@ -1,4 +1,5 @@
-//! Vectors and matrices of the judge's own tracer: in double precision, and nothing of the library's.
+//! Vectors and matrices of the judge's own tracer: in double precision, and nothing of the
+//! library's.
 
 use std::ops::{Add, Mul, Neg, Sub};
 

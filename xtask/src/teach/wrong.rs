@@ -363,7 +363,8 @@ const ALONE: [&[&str]; 12] = [
     &["normals-smooth", "normals-local", "no-falloff"],
 ];
 
-/// Mistakes that were in no table when the judge was written, made in these scenes: their own name may be told, or none.
+/// Mistakes that were in no table when the judge was written, made in these scenes: their own name
+/// may be told, or none.
 const UNKNOWN: [&str; 7] = [
     "x-ambient-brighter",
     "x-kd-squared",

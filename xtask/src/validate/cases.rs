@@ -49,14 +49,15 @@ const SUN: &str = "DirectionalLight { direction 0 -1 0 color 318.30989 318.30989
 /// A sky of the same brightness everywhere, also below the horizon.
 const EVEN: &str = "color 1000 1000 1000";
 
-/// The share of a floor element's view that a parallel rectangle takes with a corner over it; its sides over its distance.
+/// The share of a floor element's view that a parallel rectangle takes with a corner over it; its
+/// sides over its distance.
 fn parallel(x: f64, y: f64) -> f64 {
     let (p, q) = ((1.0 + x * x).sqrt(), (1.0 + y * y).sqrt());
     (x / p * fp::atan_f64(y / p) + y / q * fp::atan_f64(x / q)) / (2.0 * PI)
 }
 
-/// The same of a rectangle at right angles to the element: the element is over a corner of it, its normal along the sides of
-/// length `a`; `b` is the other side and `c` the distance.
+/// The same of a rectangle at right angles to the element: the element is over a corner of it, its
+/// normal along the sides of length `a`; `b` is the other side and `c` the distance.
 fn upright(a: f64, b: f64, c: f64) -> f64 {
     let far = (a * a + c * c).sqrt();
     (fp::atan_f64(b / c) - c / far * fp::atan_f64(b / far)) / (2.0 * PI)
@@ -74,13 +75,15 @@ fn fresnel(cosine: f64, eta: f64) -> f64 {
     0.5 * (parallel * parallel + across * across)
 }
 
-/// What a pane lets through at a cosine: all ways to and fro, each of which loses a share `1 - kept`.
+/// What a pane lets through at a cosine: all ways to and fro, each of which loses a share `1 -
+/// kept`.
 fn pane(cosine: f64, kept: f64) -> f64 {
     let r = fresnel(cosine, 1.5);
     (1.0 - r) * (1.0 - r) * kept / (1.0 - r * r * kept * kept)
 }
 
-/// The illuminance at the origin, on the side of `n`, of a sky seen through an opening, by the midpoint rule over 2000 x 2000 pieces.
+/// The illuminance at the origin, on the side of `n`, of a sky seen through an opening, by the
+/// midpoint rule over 2000 x 2000 pieces.
 fn through(opening: [Vec3; 3], n: Vec3, sky: impl Fn(Vec3) -> f64) -> f64 {
     const STEPS: u32 = 2_000;
     let [corner, a, b] = opening.map(|v| v.as_dvec3());
@@ -95,7 +98,8 @@ fn through(opening: [Vec3; 3], n: Vec3, sky: impl Fn(Vec3) -> f64) -> f64 {
     sum / f64::from(STEPS * STEPS)
 }
 
-/// A plate of which a rectangle is open, written as four rectangles: in the plane of two axes through a point.
+/// A plate of which a rectangle is open, written as four rectangles: in the plane of two axes
+/// through a point.
 fn around(opening: [Vec3; 3]) -> String {
     let [corner, a, b] = opening;
     const FAR: f32 = 999.0;
@@ -263,7 +267,8 @@ fn skies() -> Vec<Case> {
         let answer = through(window, Vec3::Y, |dir| f64::from(known.luminance(dir)));
         all.push(behind(name, "E = ∫ L cosθ dω, by quadrature", sky, window, answer));
     }
-    // What juts out over the window hides what is seen above the line over its edge; a screen before it what is below.
+    // What juts out over the window hides what is seen above the line over its edge; a screen before it
+    // what is below.
     let hidden = |low: f32, high: f32| {
         let part = [Vec3::new(2.0, low, -0.8), Vec3::new(0.0, high - low, 0.0), Vec3::new(0.0, 0.0, 1.6)];
         let known = CieSky::new(16, Vec3::Y, 10_000.0, 0.2);

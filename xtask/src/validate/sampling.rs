@@ -36,8 +36,9 @@ pub fn furnaces(table: &mut Table) {
     }
 }
 
-/// Lamps seen from the origin. Cylinders are not among them: at their silhouette the density has no bound, and the sums over cells are not
-/// near enough; tests hold them against what is found by chance.
+/// Lamps seen from the origin. Cylinders are not among them: at their silhouette the density has no
+/// bound, and the sums over cells are not near enough; tests hold them against what is found by
+/// chance.
 const LAMPS: [(&str, &str); 6] = [
     ("sphere", "Sphere { center 0.5 2 1 radius 0.7 }"),
     ("disc", "Disc { center 0 2 0.5 normal 0.3 -1 0 radius 1.5 }"),

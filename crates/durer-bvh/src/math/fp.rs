@@ -75,8 +75,8 @@ pub fn atan2(y: f32, x: f32) -> f32 {
 
 /// `base` to the power of `exponent`.
 ///
-/// Where both are usual numbers it is 2^(exponent log2 base) in double precision, whose error is so far below a rounding of the
-/// result that only ties may go the other way; else what libm says.
+/// Where both are usual numbers it is 2^(exponent log2 base) in double precision, whose error is so
+/// far below a rounding of the result that only ties may go the other way; else what libm says.
 #[inline]
 pub fn pow(base: f32, exponent: f32) -> f32 {
     if base.is_normal() && base > 0.0 {
@@ -91,7 +91,8 @@ pub fn pow(base: f32, exponent: f32) -> f32 {
 
 /// Base-2 logarithm of a positive normal number, to 2 roundings of double precision.
 ///
-/// log2 m = 2 artanh(s) / ln 2 with s = (m - 1) / (m + 1), by its series; m is between the roots of 1/2 and 2, so s^2 < 0.0295.
+/// log2 m = 2 artanh(s) / ln 2 with s = (m - 1) / (m + 1), by its series; m is between the roots of
+/// 1/2 and 2, so s^2 < 0.0295.
 #[inline]
 fn log2(x: f32) -> f64 {
     /// 2 / (ln 2 (2 k + 1)).
@@ -114,7 +115,8 @@ fn log2(x: f32) -> f64 {
     f64::from(exponent) + s * polynomial(s * s, &SERIES)
 }
 
-/// 2 to the power of a number between -1022 and 1022, to 2 roundings of double precision: the series of e^(f ln 2) for |f| <= 1/2.
+/// 2 to the power of a number between -1022 and 1022, to 2 roundings of double precision: the
+/// series of e^(f ln 2) for |f| <= 1/2.
 #[inline]
 fn exp2(x: f64) -> f64 {
     /// (ln 2)^k / k!.
@@ -139,7 +141,8 @@ fn exp2(x: f64) -> f64 {
     f64::from_bits(((whole as i64 + 1023) as u64) << 52) * polynomial(x - whole, &SERIES)
 }
 
-/// c0 + c1 x + c2 x^2 + ..., of neighbours first (Estrin's scheme), so that few products wait for each other.
+/// c0 + c1 x + c2 x^2 + ..., of neighbours first (Estrin's scheme), so that few products wait for
+/// each other.
 #[inline]
 fn polynomial<const N: usize>(x: f64, c: &[f64; N]) -> f64 {
     let x2 = x * x;

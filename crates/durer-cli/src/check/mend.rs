@@ -76,7 +76,8 @@ pub fn withdraw(checked: &mut Checked, text: &[u8], args: &CheckArgs) -> Result<
     Ok(())
 }
 
-/// Whether a finding is gone, and nothing worse has come: no error, and nothing that stands before it in the order of causes.
+/// Whether a finding is gone, and nothing worse has come: no error, and nothing that stands before
+/// it in the order of causes.
 fn is_better(before: &Checked, after: &Checked, finding: &Finding) -> bool {
     let code = finding.diagnostic.code;
     let errors = |checked: &Checked| checked.count(|f| f.diagnostic.severity == Severity::Error);

@@ -39,8 +39,9 @@ struct Way {
     bounces: Option<u32>,
 }
 
-/// Opens the scene of a pair, and finds the options that make the reference: those that are given, or else what a student forgets
-/// to say, one sample a pixel, that year's program, shadows, bounces.
+/// Opens the scene of a pair, and finds the options that make the reference: those that are given,
+/// or else what a student forgets to say, one sample a pixel, that year's program, shadows,
+/// bounces.
 pub fn stage(
     args: &CompareArgs,
     pair: &Pair,

@@ -14,7 +14,8 @@ use serde_json::{Value, json};
 
 /// What the ray through the middle of a pixel meets.
 pub struct There {
-    /// The object, its place in the file, its material, the distance and the normal, where anything is hit.
+    /// The object, its place in the file, its material, the distance and the normal, where anything
+    /// is hit.
     pub hit: Option<Hit>,
     /// Why the ray has its colour, by our rules: lines as `durer explain` prints them.
     pub explanation: Vec<String>,

@@ -10,7 +10,8 @@ use serde_json::{Value, json};
 
 /// The page without its data.
 const PAGE: &str = include_str!("page.html");
-/// A page that needs nothing else: the picture, the tree of one sample to begin with, and the rays in space.
+/// A page that needs nothing else: the picture, the tree of one sample to begin with, and the rays
+/// in space.
 pub fn page(
     explanation: Value,
     sample: usize,

@@ -41,7 +41,8 @@ impl Folder {
         Ok(Folder { path, new, own })
     }
 
-    /// Writes all files or none, and removes what an earlier lesson wrote and this one did not. Gives the folder.
+    /// Writes all files or none, and removes what an earlier lesson wrote and this one did not.
+    /// Gives the folder.
     pub fn write(self, files: Vec<(String, Vec<u8>)>, guard: &mut Guard) -> Result<PathBuf, Failure> {
         let foreign = |name: &String| !self.own.contains(name) && self.path.join(name).exists();
         if let Some((name, _)) = files.iter().find(|(name, _)| foreign(name)) {

@@ -75,8 +75,8 @@ pub struct RunArgs {
 /// Where cameras and points go
 #[derive(Args)]
 pub struct ResultArgs {
-    /// What to write, by its extension: .out (Bundler), .txt (BAL), .json (OpenSfM), .ply, .gltf, or a folder for COLMAP; may be given
-    /// several times
+    /// What to write, by its extension: .out (Bundler), .txt (BAL), .json (OpenSfM), .ply, .gltf,
+    /// or a folder for COLMAP; may be given several times
     #[arg(short, long, value_name = "FILE")]
     pub output: Vec<PathBuf>,
     /// Write COLMAP's binary files
@@ -84,7 +84,8 @@ pub struct ResultArgs {
     pub binary: bool,
 }
 
-/// Find where photographs were taken and where the points are; or adjust cameras and points of a file
+/// Find where photographs were taken and where the points are; or adjust cameras and points of a
+/// file
 #[derive(Args)]
 #[command(after_help = "Examples:
   durer photo solve matches.json -o solved/
@@ -112,10 +113,12 @@ pub struct SolveArgs {
     /// Hold k1 and k2
     #[arg(long)]
     pub no_distortion: bool,
-    /// How much a residual counts, when a file is adjusted: its square; Huber's and Cauchy's count far ones for less
+    /// How much a residual counts, when a file is adjusted: its square; Huber's and Cauchy's count
+    /// far ones for less
     #[arg(long, default_value = "squared", value_parser = ["squared", "huber", "cauchy"])]
     pub loss: String,
-    /// The residual beyond which an observation is false, in pixels, for photographs of up to 1600 pixels
+    /// The residual beyond which an observation is false, in pixels, for photographs of up to 1600
+    /// pixels
     #[arg(long, value_name = "PIXELS", default_value_t = 2.5, value_parser = positive)]
     pub threshold: f64,
     /// Put all where these points are

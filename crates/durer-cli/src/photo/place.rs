@@ -1,8 +1,9 @@
 //! `durer photo place`: things of a scene in a photograph, with the shadows that they cast there.
 //!
-//! The scene is rendered twice, with the things and without them. What the photograph shows gets as much darker or brighter as its
-//! stand-ins do. Source: Debevec, *Rendering Synthetic Objects into Real Scenes*, SIGGRAPH 1998, section 5.3; a ratio in the place
-//! of its difference, so that the stand-ins' colours do not matter.
+//! The scene is rendered twice, with the things and without them. What the photograph shows gets as
+//! much darker or brighter as its stand-ins do. Source: Debevec, *Rendering Synthetic Objects into
+//! Real Scenes*, SIGGRAPH 1998, section 5.3; a ratio in the place of its difference, so that the
+//! stand-ins' colours do not matter.
 
 use super::args::PlaceArgs;
 use super::{bytes, wrong};
@@ -156,9 +157,9 @@ fn coverage(
     Ok(covered)
 }
 
-/// The photograph with things in it: with them W, without them G, the photograph P, coverage a and shadow r = W / G give
-/// W + (1 - a) r (P - G). That is W where a = 1 and P W / G where a = 0; where a pixel is covered in part, r is that of its
-/// neighbours.
+/// The photograph with things in it: with them W, without them G, the photograph P, coverage a and
+/// shadow r = W / G give W + (1 - a) r (P - G). That is W where a = 1 and P W / G where a = 0;
+/// where a pixel is covered in part, r is that of its neighbours.
 fn composed(width: usize, plate: &[Vec3], with: &[Vec3], without: &[Vec3], covered: &[f32]) -> Vec<Vec3> {
     let height = plate.len() / width.max(1);
     let ratio = |w: f32, g: f32| if g > 0.0 { w / g } else { 1.0 };

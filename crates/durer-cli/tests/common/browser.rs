@@ -4,7 +4,8 @@ use super::Place;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// What a page's script may say of itself, put at its end: `see(text)` notes something, `done()` ends.
+/// What a page's script may say of itself, put at its end: `see(text)` notes something, `done()`
+/// ends.
 const HELPERS: &str = r#"
 const seen = [];
 const see = text => seen.push(text);
@@ -34,9 +35,11 @@ fn chromium() -> Option<PathBuf> {
     found
 }
 
-/// Opens a page, runs a script at its end, and wants it to see all of some texts. Nothing is done where there is no browser.
+/// Opens a page, runs a script at its end, and wants it to see all of some texts. Nothing is done
+/// where there is no browser.
 ///
-/// The page must fetch nothing: no file, no network. It must be readable in windows of all sizes, light and dark.
+/// The page must fetch nothing: no file, no network. It must be readable in windows of all sizes,
+/// light and dark.
 #[track_caller]
 pub fn sees(place: &Place, page: &str, script: &str, wanted: &[&str]) {
     let Some(chromium) = chromium() else { return };
@@ -65,8 +68,9 @@ window.onmessage = event => {
 };
 "#;
 
-/// In light and dark: whether all text has the contrast that WCAG 2.1 AA wants (1.4.3: 4.5 : 1, large text 3 : 1), what is drawn
-/// in colours that of 1.4.11 (3 : 1), and nothing makes the page wider than its window.
+/// In light and dark: whether all text has the contrast that WCAG 2.1 AA wants (1.4.3: 4.5 : 1,
+/// large text 3 : 1), what is drawn in colours that of 1.4.11 (3 : 1), and nothing makes the page
+/// wider than its window.
 const READABLE: &str = r#"
 const parts = color => { const [r, g, b, a = 1] = color.match(/[\d.]+/g).map(Number); return { rgb: [r, g, b], a }; };
 const light = rgb => rgb.map(c => c / 255).map(c => c <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4).reduce((sum, c, i) => sum + c * [0.2126, 0.7152, 0.0722][i], 0);

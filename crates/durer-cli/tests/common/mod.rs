@@ -1,4 +1,5 @@
-//! What the tests of the command share: a folder of their own with a scene in it, and the program run there.
+//! What the tests of the command share: a folder of their own with a scene in it, and the program
+//! run there.
 
 #![allow(dead_code, reason = "each test file is a program of its own and uses a part")]
 

@@ -1,11 +1,13 @@
 //! How exactly cameras are known.
 //!
-//! Near the solution the errors of all parameters have the covariance σ² (Jᵀ J)⁻¹, for errors of σ pixels in each component of
-//! each observation. That of the cameras is σ² times the inverse of the reduced matrix. Place, direction and size of the whole
-//! cannot be known from photographs: they are held by the first photograph's pose and, in the farthest photograph from it, the
+//! Near the solution the errors of all parameters have the covariance σ² (Jᵀ J)⁻¹, for errors of σ
+//! pixels in each component of each observation. That of the cameras is σ² times the inverse of the
+//! reduced matrix. Place, direction and size of the whole cannot be known from photographs: they
+//! are held by the first photograph's pose and, in the farthest photograph from it, the
 //! largest component of what its translation is from there.
 //!
-//! Source: Hartley, Zisserman, *Multiple View Geometry in Computer Vision*, 2nd edition, 2004, sections 5.2 and A6.
+//! Source: Hartley, Zisserman, *Multiple View Geometry in Computer Vision*, 2nd edition, 2004,
+//! sections 5.2 and A6.
 
 use super::{Loss, Options, System};
 use crate::{Error, Reconstruction};
@@ -13,10 +15,11 @@ use nalgebra::{Cholesky, DMatrix, Matrix6};
 
 /// The covariance of all cameras.
 pub struct Covariance {
-    /// The standard deviation of a component of an observation in pixels, from the residuals that are left.
+    /// The standard deviation of a component of an observation in pixels, from the residuals that
+    /// are left.
     pub sigma: f64,
-    /// For each pose that is known, the number of its photograph, and where its six columns begin: a rotation ω by which the
-    /// pose's rotation R becomes exp(\[ω\]×) R, then its translation.
+    /// For each pose that is known, the number of its photograph, and where its six columns begin:
+    /// a rotation ω by which the pose's rotation R becomes exp(\[ω\]×) R, then its translation.
     pub views: Vec<(usize, usize)>,
     /// All cameras together, six rows a pose, then three a lens (f, k1, k2). Zero for what is held.
     pub matrix: DMatrix<f64>,

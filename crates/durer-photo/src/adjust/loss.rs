@@ -7,7 +7,8 @@ pub enum Loss {
     Squared,
     /// Huber's: s to the given length d, beyond that 2 d √s - d², which grows with the length only.
     Huber(f64),
-    /// Cauchy's: c² ln(1 + s / c²) for the given length c; what is far off counts for hardly anything.
+    /// Cauchy's: c² ln(1 + s / c²) for the given length c; what is far off counts for hardly
+    /// anything.
     Cauchy(f64),
 }
 

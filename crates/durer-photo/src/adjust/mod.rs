@@ -1,10 +1,12 @@
-//! Bundle adjustment: cameras and points are moved together until the points are seen where the photographs show them.
+//! Bundle adjustment: cameras and points are moved together until the points are seen where the
+//! photographs show them.
 //!
-//! Levenberg's and Marquardt's method: of the normal equations with the diagonal times 1 + λ, a step is taken if the cost falls,
-//! and λ follows from how well the fall was foreseen. The whole is free to move, turn and grow: the damping holds it.
+//! Levenberg's and Marquardt's method: of the normal equations with the diagonal times 1 + λ, a
+//! step is taken if the cost falls, and λ follows from how well the fall was foreseen. The whole is
+//! free to move, turn and grow: the damping holds it.
 //!
-//! Sources: Nocedal, Wright, *Numerical Optimization*, 2nd edition, 2006, chapter 10; for λ: Madsen, Nielsen, Tingleff, *Methods
-//! for Non-Linear Least Squares Problems*, 2004, section 3.2.
+//! Sources: Nocedal, Wright, *Numerical Optimization*, 2nd edition, 2006, chapter 10; for λ:
+//! Madsen, Nielsen, Tingleff, *Methods for Non-Linear Least Squares Problems*, 2004, section 3.2.
 
 mod covariance;
 mod jacobian;

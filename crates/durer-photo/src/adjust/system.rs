@@ -7,8 +7,9 @@
 //! | Wᵀ V | |dp| = - |gp|
 //! ```
 //!
-//! V is made of blocks of 3x3, one for each point, so that (U - W V⁻¹ Wᵀ) dc = -gc + W V⁻¹ gp is small, and each point's step
-//! follows from dc. Source: Triggs, McLauchlan, Hartley, Fitzgibbon, *Bundle Adjustment: A Modern Synthesis*, 2000, section 6.
+//! V is made of blocks of 3x3, one for each point, so that (U - W V⁻¹ Wᵀ) dc = -gc + W V⁻¹ gp is
+//! small, and each point's step follows from dc. Source: Triggs, McLauchlan, Hartley, Fitzgibbon,
+//! *Bundle Adjustment: A Modern Synthesis*, 2000, section 6.
 
 use super::Options;
 use super::jacobian::{CameraJacobian, project};
@@ -37,7 +38,8 @@ pub struct System {
     seen: Vec<Seen>,
     /// Where each point's observations begin, and the end.
     starts: Vec<usize>,
-    /// Points, in runs of about as many observations. Their number depends on the problem alone, so that sums do too.
+    /// Points, in runs of about as many observations. Their number depends on the problem alone, so
+    /// that sums do too.
     runs: Vec<std::ops::Range<usize>>,
     poses: usize,
     /// How many parameters cameras have: six a pose, then three a lens.
@@ -72,7 +74,8 @@ struct PointBlock {
 }
 
 impl System {
-    /// The problem of a reconstruction; `views` are the numbers of the photographs whose poses are in it.
+    /// The problem of a reconstruction; `views` are the numbers of the photographs whose poses are
+    /// in it.
     pub fn new(all: &Reconstruction, options: Options) -> (Self, State, Vec<usize>) {
         let views: Vec<usize> = (0..all.views.len()).filter(|i| all.views[*i].pose.is_some()).collect();
         let mut number = vec![usize::MAX; all.views.len()];
@@ -208,7 +211,8 @@ impl System {
         }
     }
 
-    /// The points' steps that follow from the cameras', and how much the points' part of a quadratic model falls.
+    /// The points' steps that follow from the cameras', and how much the points' part of a
+    /// quadratic model falls.
     pub fn back(&self, state: &State, damping: f64, step: &DVector<f64>) -> (Vec<Vector3<f64>>, f64) {
         let run = |run: &std::ops::Range<usize>| {
             let mut fall = 0.0;

@@ -47,7 +47,8 @@ fn around(gray: &Gray, point: &Point, radius: f32, mut each: impl FnMut(usize, u
     }
 }
 
-/// At most two orientations: peaks of the histogram of gradients, of which the second has four fifths of the first.
+/// At most two orientations: peaks of the histogram of gradients, of which the second has four
+/// fifths of the first.
 fn orientations(gray: &Gray, point: &Point) -> Vec<f32> {
     let sigma = 1.5 * point.scale;
     let mut bins = [0.0_f32; BINS];
@@ -79,7 +80,8 @@ fn orientations(gray: &Gray, point: &Point) -> Vec<f32> {
     peaks.into_iter().map(|peak| peak.1).collect()
 }
 
-/// The histograms of gradients in the cells, each gradient shared among neighbouring cells and bins.
+/// The histograms of gradients in the cells, each gradient shared among neighbouring cells and
+/// bins.
 fn descriptor(gray: &Gray, point: &Point, angle: f32) -> [u8; LENGTH] {
     let width = CELL * point.scale;
     let (sin, cos) = (libm::sinf(angle), libm::cosf(angle));

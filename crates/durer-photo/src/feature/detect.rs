@@ -10,7 +10,8 @@ pub const LEVELS: usize = 3;
 pub const FIRST: f32 = 1.6;
 /// The blur that a photograph has by itself.
 const OWN: f32 = 0.5;
-/// The least difference of Gaussians, of brightness from 0 to 1, and the largest ratio of curvatures.
+/// The least difference of Gaussians, of brightness from 0 to 1, and the largest ratio of
+/// curvatures.
 const WEAKEST: f32 = 0.02 / LEVELS as f32;
 const EDGE: f32 = 10.0;
 /// Pixels at the border that are not searched.
@@ -89,7 +90,8 @@ fn in_row(d: &[Gray], octave: usize, level: usize, row: usize) -> Vec<Point> {
     (BORDER..width - BORDER).filter(extreme).filter_map(|column| refined(d, octave, level, row, column)).collect()
 }
 
-/// Where the parabola through the neighbours has its extreme; none if that is far away, weak, or on an edge.
+/// Where the parabola through the neighbours has its extreme; none if that is far away, weak, or on
+/// an edge.
 fn refined(d: &[Gray], octave: usize, mut level: usize, mut row: usize, mut column: usize) -> Option<Point> {
     for _ in 0..5 {
         let at = |dx: isize, dy: isize, dl: isize| {

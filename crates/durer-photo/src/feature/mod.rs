@@ -1,10 +1,12 @@
 //! Salient points and what they look like: SIFT.
 //!
-//! Points are extremes of the difference of two Gaussian blurs, over place and scale; each gets one or two orientations, and a
-//! descriptor of the gradients around it, in its own scale and orientation.
+//! Points are extremes of the difference of two Gaussian blurs, over place and scale; each gets one
+//! or two orientations, and a descriptor of the gradients around it, in its own scale and
+//! orientation.
 //!
-//! Sources: Lowe, *Distinctive Image Features from Scale-Invariant Keypoints*, IJCV 60(2), 2004; for the square roots in the
-//! descriptor: Arandjelović, Zisserman, *Three Things Everyone Should Know to Improve Object Retrieval*, CVPR 2012.
+//! Sources: Lowe, *Distinctive Image Features from Scale-Invariant Keypoints*, IJCV 60(2), 2004;
+//! for the square roots in the descriptor: Arandjelović, Zisserman, *Three Things Everyone Should
+//! Know to Improve Object Retrieval*, CVPR 2012.
 
 mod describe;
 mod detect;

@@ -1,6 +1,7 @@
 //! *Bundle Adjustment in the Large*: problems by which solvers are compared.
 //!
-//! Source: Agarwal, Snavely, Seitz, Szeliski, *Bundle Adjustment in the Large*, ECCV 2010, and the page of its data.
+//! Source: Agarwal, Snavely, Seitz, Szeliski, *Bundle Adjustment in the Large*, ECCV 2010, and the
+//! page of its data.
 
 use super::{Words, joined, opposite};
 use crate::model::{axis_angle_of, rotation_of};
@@ -8,7 +9,8 @@ use crate::{Error, Lens, Observation, Point, Pose, Reconstruction, View};
 use nalgebra::{Vector2, Vector3};
 use std::fmt::Write;
 
-/// Reads a file. Neither sizes of pictures nor colours are in it: pixels count from the middle, points are grey.
+/// Reads a file. Neither sizes of pictures nor colours are in it: pixels count from the middle,
+/// points are grey.
 pub fn read(file: &str, bytes: &[u8]) -> Result<Reconstruction, Error> {
     let mut words = Words::new(file, bytes)?;
     let cameras = words.count("the number of cameras", 18)?;

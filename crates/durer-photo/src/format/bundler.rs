@@ -1,4 +1,5 @@
-//! Bundler's `.out` files, versions 0.3 and 0.4 alike: the cameras and points of Photo Tourism's own program.
+//! Bundler's `.out` files, versions 0.3 and 0.4 alike: the cameras and points of Photo Tourism's
+//! own program.
 //!
 //! Source: Snavely, *Bundler v0.4 User's Manual*, 2010, "Output format and scene representation".
 

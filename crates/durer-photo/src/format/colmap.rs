@@ -1,5 +1,5 @@
-//! COLMAP's folders of `cameras`, `images` and `points3D`: what is in them, apart from [text](super::colmap_text) and
-//! [binary](super::colmap_binary).
+//! COLMAP's folders of `cameras`, `images` and `points3D`: what is in them, apart from
+//! [text](super::colmap_text) and [binary](super::colmap_binary).
 //!
 //! Source: Schönberger, *COLMAP* manual, "Output Format" and "Camera Models".
 
@@ -9,7 +9,8 @@ use nalgebra::{Vector2, Vector3};
 use std::collections::BTreeMap;
 use std::fmt::Display;
 
-/// A camera model that is read: its name, its number in binary files, and how many parameters it has.
+/// A camera model that is read: its name, its number in binary files, and how many parameters it
+/// has.
 pub const MODELS: [(&str, i32, usize); 5] =
     [("SIMPLE_PINHOLE", 0, 3), ("PINHOLE", 1, 4), ("SIMPLE_RADIAL", 2, 4), ("RADIAL", 3, 5), ("OPENCV", 4, 8)];
 
@@ -108,7 +109,8 @@ impl Tables {
 /// A photograph's features: place and the point's id.
 pub type Features = Vec<(Vector2<f64>, usize)>;
 
-/// The features of each photograph as they are written; and for each point's observations, the numbers of their features.
+/// The features of each photograph as they are written; and for each point's observations, the
+/// numbers of their features.
 pub fn features(all: &Reconstruction) -> (Vec<Features>, Vec<Vec<usize>>) {
     let mut features = vec![Vec::new(); all.views.len()];
     let mut numbers = Vec::new();

@@ -1,8 +1,10 @@
-//! fSpy's projects (`.fspy`) and exported cameras (`.json`): one photograph's camera from vanishing lines.
+//! fSpy's projects (`.fspy`) and exported cameras (`.json`): one photograph's camera from vanishing
+//! lines.
 //!
-//! A project is `fspy`, a version, the lengths of its state as JSON and of its photograph, and both. Its points run from 0 to 1
-//! over the photograph, y downwards. An exported camera has points of the image plane instead: the longer side runs from -1
-//! to 1, y upwards; its camera looks down -z.
+//! A project is `fspy`, a version, the lengths of its state as JSON and of its photograph, and
+//! both. Its points run from 0 to 1 over the photograph, y downwards. An exported camera has points
+//! of the image plane instead: the longer side runs from -1 to 1, y upwards; its camera looks down
+//! -z.
 //!
 //! Source: fSpy-Blender's documentation, *The fSpy project file format*.
 
@@ -50,7 +52,8 @@ pub fn read_camera(file: &str, json: &[u8]) -> Result<Reconstruction, Error> {
     Ok(Reconstruction { lenses: vec![lens], views: vec![view], points: Vec::new() })
 }
 
-/// Reads what a project says of its photograph: its vanishing lines, the point that is the origin, and the photograph itself.
+/// Reads what a project says of its photograph: its vanishing lines, the point that is the origin,
+/// and the photograph itself.
 pub fn read_project<'b>(file: &'b str, content: &'b [u8]) -> Result<(VanishingLines, &'b [u8]), Error> {
     let mut bytes = Bytes::new(file, content);
     if bytes.take(4).ok() != Some(b"fspy") {

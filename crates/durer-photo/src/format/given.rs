@@ -1,4 +1,5 @@
-//! What people write by hand: points, lines and control points, a row a line, with `#` before comments.
+//! What people write by hand: points, lines and control points, a row a line, with `#` before
+//! comments.
 
 use super::Words;
 use crate::resect::{Axis, Pair, VanishingLines};
@@ -17,8 +18,9 @@ pub fn read_points(file: &str, bytes: &[u8]) -> Result<Vec<Pair>, Error> {
     Ok(pairs)
 }
 
-/// Vanishing lines: rows `x u1 v1 u2 v2`, where `x`, `-y` and so on is the axis that leads towards the vanishing point, and one row
-/// `origin u v`. Two axes must be named, each by two lines or more.
+/// Vanishing lines: rows `x u1 v1 u2 v2`, where `x`, `-y` and so on is the axis that leads towards
+/// the vanishing point, and one row `origin u v`. Two axes must be named, each by two lines or
+/// more.
 pub fn read_lines(file: &str, bytes: &[u8], size: [u32; 2]) -> Result<VanishingLines, Error> {
     let mut words = Words::in_rows(file, bytes)?;
     let center = Vector2::from(size.map(|side| f64::from(side) / 2.0));
@@ -49,7 +51,8 @@ pub fn read_lines(file: &str, bytes: &[u8], size: [u32; 2]) -> Result<VanishingL
 /// A place of the world, and where photographs see it.
 pub type Control = (Vector3<f64>, Vec<Observation>);
 
-/// Control points: rows `X Y Z photograph u v photograph u v ...`; photographs by their names, which have no blanks.
+/// Control points: rows `X Y Z photograph u v photograph u v ...`; photographs by their names,
+/// which have no blanks.
 pub fn read_control(file: &str, bytes: &[u8], names: &[&str]) -> Result<Vec<Control>, Error> {
     let mut words = Words::in_rows(file, bytes)?;
     let mut points = Vec::new();

@@ -1,8 +1,10 @@
-//! glTF 2.0: cameras as nodes, points as a mesh of points, in one file; read as JSON (`.gltf`) or binary (`.glb`).
+//! glTF 2.0: cameras as nodes, points as a mesh of points, in one file; read as JSON (`.gltf`) or
+//! binary (`.glb`).
 //!
-//! glTF's cameras look down -z with y up, have no distortion, and their middle is the principal point. What a lens has beyond that,
-//! and the size of its photographs, is written as `extras` that other programs pass over; where these are not there, photographs
-//! are taken to have 1000 rows. The world is turned upside down by no one: y of the world stays y.
+//! glTF's cameras look down -z with y up, have no distortion, and their middle is the principal
+//! point. What a lens has beyond that, and the size of its photographs, is written as `extras` that
+//! other programs pass over; where these are not there, photographs are taken to have 1000 rows.
+//! The world is turned upside down by no one: y of the world stays y.
 //!
 //! Source: Khronos, *glTF 2.0 Specification*, sections 3.6, 3.10, 4.4 and 5.12.
 
@@ -113,7 +115,8 @@ struct Buffer {
     uri: Option<String>,
 }
 
-/// Reads cameras and points; what else is in the file is passed over. Nothing tells which photographs see a point.
+/// Reads cameras and points; what else is in the file is passed over. Nothing tells which
+/// photographs see a point.
 pub fn read(name: &str, bytes: &[u8]) -> Result<Reconstruction, Error> {
     let fail = |why: String| Error::of(name, why);
     let (json, binary) =

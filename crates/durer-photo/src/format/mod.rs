@@ -104,7 +104,8 @@ pub const CONVENTIONS: [Convention; 9] = {
     ]
 };
 
-/// A pose of a camera that looks down -z with y up as one that looks along +z with y down, and back.
+/// A pose of a camera that looks down -z with y up as one that looks along +z with y down, and
+/// back.
 fn opposite(pose: &Pose) -> Pose {
     let turn = Matrix3::from_diagonal(&Vector3::new(1.0, -1.0, -1.0));
     Pose { rotation: turn * pose.rotation, translation: turn * pose.translation }
@@ -143,15 +144,16 @@ pub fn inputs(path: &Path) -> Vec<PathBuf> {
     tracks_of(path).into_iter().chain([path.to_path_buf()]).collect()
 }
 
-/// The tracks that belong to a reconstruction of OpenSfM's: its own name with `tracks` for `reconstruction`.
+/// The tracks that belong to a reconstruction of OpenSfM's: its own name with `tracks` for
+/// `reconstruction`.
 fn tracks_of(path: &Path) -> Option<PathBuf> {
     let name = path.file_name()?.to_str()?;
     let other = path.with_file_name(name.replace("reconstruction", "tracks")).with_extension("csv");
     (path.extension()? == "json" && other.exists()).then_some(other)
 }
 
-/// Reads cameras and points: the format follows from the name's extension, before `.gz` or `.bz2` where it has that; a folder is
-/// COLMAP's.
+/// Reads cameras and points: the format follows from the name's extension, before `.gz` or `.bz2`
+/// where it has that; a folder is COLMAP's.
 pub fn read(path: &Path) -> Result<Reconstruction, Error> {
     let file = path.to_string_lossy();
     if path.is_dir() {
@@ -186,7 +188,8 @@ pub fn read(path: &Path) -> Result<Reconstruction, Error> {
     }
 }
 
-/// Whether a file is what [`Matches::to_json`](crate::matching::Matches::to_json) writes: it says so in its first line.
+/// Whether a file is what [`Matches::to_json`](crate::matching::Matches::to_json) writes: it says
+/// so in its first line.
 pub fn is_matches(content: &[u8]) -> bool {
     let head = String::from_utf8_lossy(&content[..content.len().min(80)]);
     head.contains("\"format\"") && head.contains(crate::matching::FORMAT)
@@ -268,7 +271,8 @@ impl Output {
 }
 
 impl Reconstruction {
-    /// Tells the size and the name of a photograph, where its format had none: pixels count from its corner then.
+    /// Tells the size and the name of a photograph, where its format had none: pixels count from
+    /// its corner then.
     pub fn set_picture(&mut self, view: usize, name: &str, size: [u32; 2]) {
         self.views[view].name = name.to_string();
         let lens = self.views[view].lens;

@@ -42,7 +42,8 @@ struct Part {
     points: BTreeMap<String, Place>,
 }
 
-/// Reads the reconstruction, of several parts the one with the most shots, with its tracks where there are any.
+/// Reads the reconstruction, of several parts the one with the most shots, with its tracks where
+/// there are any.
 pub fn read(file: &str, json: &[u8], tracks: Option<(&str, &[u8])>) -> Result<Reconstruction, Error> {
     let parts: Vec<Part> = serde_json::from_slice(json)
         .map_err(|error| Error::at(file, (error.line(), error.column()), format!("OpenSfM's JSON: {error}")))?;
@@ -84,7 +85,8 @@ pub fn read(file: &str, json: &[u8], tracks: Option<(&str, &[u8])>) -> Result<Re
     Ok(all)
 }
 
-/// Adds what the photographs see. Rows of other photographs and points are passed over: not all that was tracked became a point.
+/// Adds what the photographs see. Rows of other photographs and points are passed over: not all
+/// that was tracked became a point.
 fn read_tracks(
     file: &str,
     bytes: &[u8],

@@ -1,7 +1,9 @@
-//! Points with colours as PLY. What is written is binary and little-endian; text and big-endian files are read too.
+//! Points with colours as PLY. What is written is binary and little-endian; text and big-endian
+//! files are read too.
 //!
-//! The places of cameras are written as red points, for programs that show points; a comment says how many of the last points they
-//! are, so that they are not taken for points of the scene when the file is read.
+//! The places of cameras are written as red points, for programs that show points; a comment says
+//! how many of the last points they are, so that they are not taken for points of the scene when
+//! the file is read.
 //!
 //! Source: Turk, *The PLY Polygon File Format*, 1994.
 
@@ -45,7 +47,8 @@ struct Head {
     properties: Vec<(String, usize)>,
 }
 
-/// Reads points. Nothing tells which photographs see them; where there are no colours, they are grey.
+/// Reads points. Nothing tells which photographs see them; where there are no colours, they are
+/// grey.
 pub fn read(file: &str, bytes: &[u8]) -> Result<Reconstruction, Error> {
     let is_end = |line: &&[u8]| line.trim_ascii_end() == b"end_header";
     let lines = bytes.split_inclusive(|byte| *byte == b'\n').filter(|_| bytes.starts_with(b"ply"));

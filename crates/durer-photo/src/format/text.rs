@@ -29,7 +29,8 @@ impl<'t> Words<'t> {
         Ok(Words { file, text, at: 0, line: 1, start: 0, rows: false })
     }
 
-    /// The words of a file in which each line is a row: nothing that a row lacks is taken from the next one.
+    /// The words of a file in which each line is a row: nothing that a row lacks is taken from the
+    /// next one.
     pub fn in_rows(file: &'t str, bytes: &'t [u8]) -> Result<Self, Error> {
         Ok(Words { rows: true, ..Words::new(file, bytes)? })
     }
@@ -137,8 +138,8 @@ impl<'t> Words<'t> {
         Ok(numbers)
     }
 
-    /// A number of things of which each takes at least some bytes of the text: what cannot be true is refused before memory is
-    /// taken for it.
+    /// A number of things of which each takes at least some bytes of the text: what cannot be true
+    /// is refused before memory is taken for it.
     pub fn count(&mut self, what: &str, bytes: usize) -> Result<usize, Error> {
         let (word, place) = self.word(what)?;
         let fail = |why: String| Error::at(self.file, place, why);

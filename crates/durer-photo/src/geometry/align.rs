@@ -1,6 +1,7 @@
 //! How one set of points lies on another.
 //!
-//! Source: Umeyama, *Least-Squares Estimation of Transformation Parameters Between Two Point Patterns*, PAMI 13(4), 1991.
+//! Source: Umeyama, *Least-Squares Estimation of Transformation Parameters Between Two Point
+//! Patterns*, PAMI 13(4), 1991.
 
 use crate::model::nearest_rotation;
 use crate::{Pose, Reconstruction};
@@ -34,7 +35,8 @@ impl Similarity {
     }
 }
 
-/// Means, and the singular vectors of the covariance, as a rotation; none where the points are in a line.
+/// Means, and the singular vectors of the covariance, as a rotation; none where the points are in a
+/// line.
 fn turned(from: &[Vector3<f64>], to: &[Vector3<f64>]) -> Option<([Vector3<f64>; 2], Matrix3<f64>, f64)> {
     let count = from.len().min(to.len()) as f64;
     let mean = |points: &[Vector3<f64>]| points.iter().sum::<Vector3<f64>>() / count;
@@ -50,7 +52,8 @@ fn turned(from: &[Vector3<f64>], to: &[Vector3<f64>]) -> Option<([Vector3<f64>; 
     Some((means, u * Matrix3::from_diagonal(&Vector3::new(1.0, 1.0, sign)) * v, d[0] + d[1] + sign * d[2]))
 }
 
-/// The similarity that takes points nearest to others; none for fewer than three points, and for points in a line.
+/// The similarity that takes points nearest to others; none for fewer than three points, and for
+/// points in a line.
 pub fn similarity(from: &[Vector3<f64>], to: &[Vector3<f64>]) -> Option<Similarity> {
     if from.len() < 3 || from.len() != to.len() {
         return None;
@@ -61,8 +64,9 @@ pub fn similarity(from: &[Vector3<f64>], to: &[Vector3<f64>]) -> Option<Similari
     Some(Similarity { scale, rotation, shift: means[1] - scale * (rotation * means[0]) })
 }
 
-/// The similarity that brings cameras to others: the rotation nearest to all their turns, and the scale and shift by which their
-/// centres come nearest. Centres alone tell hardly anything of a rotation about a line near which all of them are.
+/// The similarity that brings cameras to others: the rotation nearest to all their turns, and the
+/// scale and shift by which their centres come nearest. Centres alone tell hardly anything of a
+/// rotation about a line near which all of them are.
 pub fn cameras(from: &[Pose], to: &[Pose]) -> Option<Similarity> {
     let count = from.len() as f64;
     if from.len() < 2 || from.len() != to.len() {
@@ -88,11 +92,13 @@ pub fn rigid(world: &[Vector3<f64>], camera: &[Vector3<f64>]) -> Option<Pose> {
     Some(Pose { rotation, translation: means[1] - rotation * means[0] })
 }
 
-/// The similarity that brings control points, as the photographs see them, to where they are; and what is left of each.
+/// The similarity that brings control points, as the photographs see them, to where they are; and
+/// what is left of each.
 ///
 /// # Errors
 ///
-/// Says so if fewer than three of them are seen by two photographs whose pose is known, or if they are in a line.
+/// Says so if fewer than three of them are seen by two photographs whose pose is known, or if they
+/// are in a line.
 pub fn to_control(
     all: &Reconstruction,
     control: &[crate::format::Control],

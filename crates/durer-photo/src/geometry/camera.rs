@@ -1,8 +1,11 @@
-//! A camera from points of the world and their pixels, when nothing of its lens is known: the direct linear transform.
+//! A camera from points of the world and their pixels, when nothing of its lens is known: the
+//! direct linear transform.
 //!
-//! x ~ P X with a matrix P of 3x4, of which each point gives two equations, linear in P. With P = K [R | t], K is upper triangular.
+//! x ~ P X with a matrix P of 3x4, of which each point gives two equations, linear in P. With P = K
+//! [R | t], K is upper triangular.
 //!
-//! Source: Hartley, Zisserman, *Multiple View Geometry in Computer Vision*, 2nd edition, 2004, sections 7.1 and 6.2.4.
+//! Source: Hartley, Zisserman, *Multiple View Geometry in Computer Vision*, 2nd edition, 2004,
+//! sections 7.1 and 6.2.4.
 
 use super::{normalization, null_vector};
 use nalgebra::{DMatrix, Matrix3, Matrix3x4, Matrix4, Vector2, Vector3};
@@ -11,8 +14,9 @@ use nalgebra::{DMatrix, Matrix3, Matrix3x4, Matrix4, Vector2, Vector3};
 pub struct Linear {
     /// P, at any scale.
     pub matrix: Matrix3x4<f64>,
-    /// The singular values of the equations in Hartley's normalised coordinates, in falling order. The last is how badly they are
-    /// fulfilled; if the one before it is nothing, other matrices do as well.
+    /// The singular values of the equations in Hartley's normalised coordinates, in falling order.
+    /// The last is how badly they are fulfilled; if the one before it is nothing, other
+    /// matrices do as well.
     pub singular: Vec<f64>,
 }
 
@@ -55,7 +59,8 @@ pub fn linear(points: &[Vector3<f64>], pixels: &[Vector2<f64>]) -> Option<Linear
     matrix.iter().all(|c| c.is_finite()).then_some(Linear { matrix, singular })
 }
 
-/// P taken apart: K with 1 in its corner, R, t. Depth is positive where the determinant of P's left part is.
+/// P taken apart: K with 1 in its corner, R, t. Depth is positive where the determinant of P's left
+/// part is.
 pub fn take_apart(p: &Matrix3x4<f64>) -> Option<(Matrix3<f64>, Matrix3<f64>, Vector3<f64>)> {
     let left = p.fixed_columns::<3>(0).into_owned();
     let p = if left.determinant() < 0.0 { -p } else { *p };

@@ -1,10 +1,13 @@
-//! The essential matrix of two photographs whose lenses are known: five correspondences give up to ten.
+//! The essential matrix of two photographs whose lenses are known: five correspondences give up to
+//! ten.
 //!
-//! q'ᵀ E q = 0 for the directions q and q' in which two cameras see a point, where E = \[t\]× R takes the second camera's pose from
-//! the first one's frame. E lies in the null space of five equations, E = x X + y Y + z Z + W, and 2 E Eᵀ E = tr(E Eᵀ) E with
-//! det E = 0 are ten cubics in x, y, z. Elimination leaves a polynomial of degree ten in z.
+//! q'ᵀ E q = 0 for the directions q and q' in which two cameras see a point, where E = \[t\]× R
+//! takes the second camera's pose from the first one's frame. E lies in the null space of five
+//! equations, E = x X + y Y + z Z + W, and 2 E Eᵀ E = tr(E Eᵀ) E with det E = 0 are ten cubics in
+//! x, y, z. Elimination leaves a polynomial of degree ten in z.
 //!
-//! Source: Nistér, *An Efficient Solution to the Five-Point Relative Pose Problem*, PAMI 26(6), 2004.
+//! Source: Nistér, *An Efficient Solution to the Five-Point Relative Pose Problem*, PAMI 26(6),
+//! 2004.
 
 use super::fundamental::{Pair, eight_point, sampson};
 use super::polynomial::real_roots;
@@ -13,8 +16,8 @@ use super::triangulate::two_views;
 use crate::Pose;
 use nalgebra::{Matrix3, SMatrix, Vector3};
 
-/// The exponents of x, y, z of a cubic's monomials, in Nistér's order: elimination leaves only the last ten, and those below of
-/// the form x zⁿ, y zⁿ and zⁿ.
+/// The exponents of x, y, z of a cubic's monomials, in Nistér's order: elimination leaves only the
+/// last ten, and those below of the form x zⁿ, y zⁿ and zⁿ.
 const MONOMIALS: [[usize; 3]; 20] = [
     [3, 0, 0],
     [0, 3, 0],
@@ -117,7 +120,8 @@ fn solutions(pairs: &[Pair; 5]) -> Option<Vec<Matrix3<f64>>> {
     (0..10).for_each(|row| all.row_mut(row).copy_from_slice(&entry(row)));
     let left = all.fixed_columns::<10>(0).into_owned();
     let right = left.lu().solve(&all.fixed_columns::<10>(10).into_owned())?;
-    // Rows by pairs: (x²z, x²), (y²z, y²), (xyz, xy). The first less z times the second has only x, y and powers of z.
+    // Rows by pairs: (x²z, x²), (y²z, y²), (xyz, xy). The first less z times the second has only x, y
+    // and powers of z.
     let polynomials = [4, 6, 8].map(|row| {
         let (a, b) = (right.row(row), right.row(row + 1));
         let part = |at: usize, degree: usize| {

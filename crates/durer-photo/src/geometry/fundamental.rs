@@ -1,8 +1,10 @@
-//! The fundamental matrix of two photographs: seven correspondences give one to three, eight or more one.
+//! The fundamental matrix of two photographs: seven correspondences give one to three, eight or
+//! more one.
 //!
 //! x'ᵀ F x = 0 for pixels x and x' of the same point in the first and the second photograph.
 //!
-//! Source: Hartley, Zisserman, *Multiple View Geometry in Computer Vision*, 2nd edition, 2004, sections 11.1 to 11.4.
+//! Source: Hartley, Zisserman, *Multiple View Geometry in Computer Vision*, 2nd edition, 2004,
+//! sections 11.1 to 11.4.
 
 use super::polynomial::real_roots;
 use super::ransac::Estimate;
@@ -16,7 +18,8 @@ fn homogeneous(p: &Vector2<f64>) -> Vector3<f64> {
     Vector3::new(p.x, p.y, 1.0)
 }
 
-/// The square of Sampson's distance: how far a pair must move to fulfil the equation, to first order.
+/// The square of Sampson's distance: how far a pair must move to fulfil the equation, to first
+/// order.
 pub fn sampson(f: &Matrix3<f64>, (a, b): &Pair) -> f64 {
     let (a, b) = (homogeneous(a), homogeneous(b));
     let (fa, fb) = (f * a, f.transpose() * b);
@@ -48,7 +51,8 @@ fn denormalized(f: Matrix3<f64>, [one, two]: [(f64, Vector2<f64>); 2]) -> Matrix
     f / f.norm()
 }
 
-/// The matrix of rank 2 that fulfils the equations of eight or more pairs best, in Hartley's normalised coordinates.
+/// The matrix of rank 2 that fulfils the equations of eight or more pairs best, in Hartley's
+/// normalised coordinates.
 pub fn eight_point(pairs: &[Pair]) -> Option<Matrix3<f64>> {
     if pairs.len() < 8 {
         return None;

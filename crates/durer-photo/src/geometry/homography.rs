@@ -1,6 +1,7 @@
 //! The homography of two photographs: what a plane, or a camera that only turns, does to pixels.
 //!
-//! Source: Hartley, Zisserman, *Multiple View Geometry in Computer Vision*, 2nd edition, 2004, section 4.1.
+//! Source: Hartley, Zisserman, *Multiple View Geometry in Computer Vision*, 2nd edition, 2004,
+//! section 4.1.
 
 use super::fundamental::Pair;
 use super::ransac::Estimate;

@@ -12,7 +12,8 @@ pub mod triangulate;
 
 use nalgebra::{DMatrix, DVector, Vector2};
 
-/// The direction v of length 1 for which |A v| is least, and the singular values of A in falling order.
+/// The direction v of length 1 for which |A v| is least, and the singular values of A in falling
+/// order.
 pub fn null_vector(matrix: &DMatrix<f64>) -> (DVector<f64>, Vec<f64>) {
     // The eigenvectors of AᵀA would lose half of the digits; a QR step makes the matrix small instead.
     let square = if matrix.nrows() > matrix.ncols() { matrix.clone().qr().r() } else { padded(matrix) };
@@ -30,8 +31,8 @@ fn padded(matrix: &DMatrix<f64>) -> DMatrix<f64> {
     matrix.clone().resize(side, matrix.ncols(), 0.0)
 }
 
-/// Hartley's normalisation: the factor and the shift that give points mean 0 and mean distance √2 from it.
-/// Source: Hartley, *In Defense of the Eight-Point Algorithm*, PAMI 19(6), 1997.
+/// Hartley's normalisation: the factor and the shift that give points mean 0 and mean distance √2
+/// from it. Source: Hartley, *In Defense of the Eight-Point Algorithm*, PAMI 19(6), 1997.
 pub fn normalization(points: impl Iterator<Item = Vector2<f64>> + Clone) -> (f64, Vector2<f64>) {
     let count = points.clone().count().max(1) as f64;
     let mean = points.clone().sum::<Vector2<f64>>() / count;

@@ -1,17 +1,20 @@
 //! The pose of a camera from three points whose directions it sees: up to four.
 //!
-//! With the angles α, β, γ between the directions and the sides a, b, c of the triangle, the distances s₁, s₂ = u s₁, s₃ = v s₁
-//! fulfil three laws of cosines. Eliminating u leaves a quartic in v.
+//! With the angles α, β, γ between the directions and the sides a, b, c of the triangle, the
+//! distances s₁, s₂ = u s₁, s₃ = v s₁ fulfil three laws of cosines. Eliminating u leaves a quartic
+//! in v.
 //!
-//! Source: Grunert's solution as in Haralick, Lee, Ottenberg, Nölle, *Review and Analysis of Solutions of the Three Point
-//! Perspective Pose Estimation Problem*, IJCV 13(3), 1994, section 3.1.
+//! Source: Grunert's solution as in Haralick, Lee, Ottenberg, Nölle, *Review and Analysis of
+//! Solutions of the Three Point Perspective Pose Estimation Problem*, IJCV 13(3), 1994, section
+//! 3.1.
 
 use super::align::rigid;
 use super::polynomial::real_roots;
 use crate::Pose;
 use nalgebra::Vector3;
 
-/// All poses for which three points of the world are in three directions, which need not have length 1.
+/// All poses for which three points of the world are in three directions, which need not have
+/// length 1.
 pub fn p3p(points: &[Vector3<f64>; 3], directions: &[Vector3<f64>; 3]) -> Vec<Pose> {
     let [j1, j2, j3] = directions.map(|direction| direction.normalize());
     let [p1, p2, p3] = points;

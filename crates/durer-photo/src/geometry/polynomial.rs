@@ -5,8 +5,9 @@ fn value(coefficients: &[f64], x: f64) -> f64 {
     coefficients.iter().rev().fold(0.0, |sum, c| sum * x + c)
 }
 
-/// The real roots, in rising order. Between two extremes, which are the roots of the derivative, there is one root at most:
-/// it is enclosed and halved. Double roots, which rounding may lift off the axis, are found if an extreme is a root to rounding.
+/// The real roots, in rising order. Between two extremes, which are the roots of the derivative,
+/// there is one root at most: it is enclosed and halved. Double roots, which rounding may lift off
+/// the axis, are found if an extreme is a root to rounding.
 pub fn real_roots(coefficients: &[f64]) -> Vec<f64> {
     let largest = coefficients.iter().fold(0.0_f64, |m, c| m.max(c.abs()));
     let degree = coefficients.iter().rposition(|c| c.abs() > 1e-14 * largest).unwrap_or(0);

@@ -1,10 +1,11 @@
 //! Models of data some of which are false: RANSAC with local optimisation.
 //!
-//! Small samples give models; the one that explains the data best is kept, and is fitted again to all data that it explains.
-//! Truncated squares are summed (MSAC). It ends when a better sample has become unlikely.
+//! Small samples give models; the one that explains the data best is kept, and is fitted again to
+//! all data that it explains. Truncated squares are summed (MSAC). It ends when a better sample has
+//! become unlikely.
 //!
-//! Sources: Fischler, Bolles, *Random Sample Consensus*, CACM 24(6), 1981; Torr, Zisserman, *MLESAC*, CVIU 78, 2000; Chum, Matas,
-//! Kittler, *Locally Optimized RANSAC*, DAGM 2003.
+//! Sources: Fischler, Bolles, *Random Sample Consensus*, CACM 24(6), 1981; Torr, Zisserman,
+//! *MLESAC*, CVIU 78, 2000; Chum, Matas, Kittler, *Locally Optimized RANSAC*, DAGM 2003.
 
 use crate::random::Random;
 
@@ -33,7 +34,8 @@ pub struct Search {
     pub seed: u64,
 }
 
-/// The best model that was found, and the data that it explains; none where no sample gave a model with more data than made it.
+/// The best model that was found, and the data that it explains; none where no sample gave a model
+/// with more data than made it.
 pub fn ransac<const N: usize, E: Estimate<N>>(problem: &E, search: &Search) -> Option<(E::Model, Vec<usize>)> {
     let count = problem.count();
     if count < N {

@@ -72,7 +72,8 @@ pub struct Link {
     pub moved: f64,
 }
 
-/// Where a point is seen: the photograph's number, the feature's number, and the place in pixels from the upper left corner.
+/// Where a point is seen: the photograph's number, the feature's number, and the place in pixels
+/// from the upper left corner.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Sighting(pub usize, pub usize, pub f64, pub f64);
 
@@ -141,7 +142,8 @@ pub fn describe(photo: &Photo, options: &Options) -> Described {
 ///
 /// # Errors
 ///
-/// Says so if there are fewer than two photographs, or if no two of them show the same things from two places.
+/// Says so if there are fewer than two photographs, or if no two of them show the same things from
+/// two places.
 pub fn match_all(
     mut photos: Vec<Described>,
     options: &Options,

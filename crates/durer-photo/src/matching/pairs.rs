@@ -21,14 +21,14 @@ impl Descriptors {
     }
 }
 
-/// In whole numbers: no processor rounds them otherwise. 128 products of bytes are far from overflow, and without its tests many are
-/// made at once.
+/// In whole numbers: no processor rounds them otherwise. 128 products of bytes are far from
+/// overflow, and without its tests many are made at once.
 fn dot(a: &[i16; LENGTH], b: &[i16; LENGTH]) -> i32 {
     a.iter().zip(b).fold(0, |sum, (a, b)| sum.wrapping_add(i32::from(*a).wrapping_mul(i32::from(*b))))
 }
 
-/// Pairs of features that are each other's nearest, clearly nearer than the second nearest is to the first: `ratio` of
-/// distances. Lowe, section 7.1.
+/// Pairs of features that are each other's nearest, clearly nearer than the second nearest is to
+/// the first: `ratio` of distances. Lowe, section 7.1.
 pub fn alike(a: &Descriptors, b: &Descriptors, ratio: f64) -> Vec<(usize, usize)> {
     let mut back = vec![(i32::MAX, usize::MAX); b.values.len()];
     let mut forth = Vec::with_capacity(a.values.len());
@@ -58,13 +58,15 @@ pub fn alike(a: &Descriptors, b: &Descriptors, ratio: f64) -> Vec<(usize, usize)
 pub struct Geometry {
     /// The matches that agree with it, by their numbers in the list.
     pub inliers: Vec<usize>,
-    /// The share of these that one homography explains: near 1 the scene is flat or the camera only turned.
+    /// The share of these that one homography explains: near 1 the scene is flat or the camera only
+    /// turned.
     pub planar: f64,
     /// The median distance in pixels between the places in both pictures.
     pub moved: f64,
 }
 
-/// Whether so few of so many matches may agree on one geometry by chance: of false matches, a few in a hundred lie near any line.
+/// Whether so few of so many matches may agree on one geometry by chance: of false matches, a few
+/// in a hundred lie near any line.
 pub fn by_chance(agree: usize, all: usize) -> bool {
     agree * 5 < all
 }

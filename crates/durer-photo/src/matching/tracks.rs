@@ -1,10 +1,11 @@
-//! Features that are matched from photograph to photograph: the same point of the scene, if all is well.
+//! Features that are matched from photograph to photograph: the same point of the scene, if all is
+//! well.
 
 /// A feature: its photograph, and its number there.
 pub type Member = (usize, usize);
 
-/// Features that matches connect, each in the order of photographs. What has two features in one photograph cannot be one point
-/// and is left out.
+/// Features that matches connect, each in the order of photographs. What has two features in one
+/// photograph cannot be one point and is left out.
 pub fn tracks(counts: &[usize], matches: impl Iterator<Item = (Member, Member)>) -> Vec<Vec<Member>> {
     let mut starts = vec![0];
     counts.iter().for_each(|count| starts.push(starts[starts.len() - 1] + count));

@@ -13,7 +13,8 @@ use rayon::prelude::*;
 const TRIED: usize = 30;
 
 impl Solver<'_> {
-    /// Chooses two photographs that see many points from clearly different places, and sets their poses and points.
+    /// Chooses two photographs that see many points from clearly different places, and sets their
+    /// poses and points.
     pub(super) fn initial(&mut self, matches: &Matches) -> Result<[usize; 2], Error> {
         let mut links: Vec<&Link> = matches.links.iter().collect();
         links.sort_by(|a, b| b.matches.cmp(&a.matches).then(a.pictures.cmp(&b.pictures)));
@@ -50,7 +51,8 @@ impl Solver<'_> {
         Ok([a, b])
     }
 
-    /// The second photograph's pose in the first one's frame, how many points fit it, and the median angle of the rays to them.
+    /// The second photograph's pose in the first one's frame, how many points fit it, and the
+    /// median angle of the rays to them.
     fn relative(&self, [a, b]: [usize; 2]) -> Option<(Pose, usize, f64)> {
         let lenses = [a, b].map(|view| self.lenses[self.views[view].lens]);
         let mut pairs = Vec::new();

@@ -1,9 +1,11 @@
 //! From tracks to cameras and points, photograph by photograph.
 //!
-//! Two photographs begin (`initial`); the photograph that sees most of the points that are known comes next (`register`); what
-//! it adds is triangulated (`structure`), and all is adjusted again. What does not fit is left out on the way.
+//! Two photographs begin (`initial`); the photograph that sees most of the points that are known
+//! comes next (`register`); what it adds is triangulated (`structure`), and all is adjusted again.
+//! What does not fit is left out on the way.
 //!
-//! Source: Snavely, Seitz, Szeliski, *Photo Tourism: Exploring Photo Collections in 3D*, SIGGRAPH 2006, section 4.2.
+//! Source: Snavely, Seitz, Szeliski, *Photo Tourism: Exploring Photo Collections in 3D*, SIGGRAPH
+//! 2006, section 4.2.
 
 mod initial;
 mod register;
@@ -17,9 +19,10 @@ use crate::matching::{GUESS, Matches};
 use crate::{Error, Lens, Observation, Point, Reconstruction, View};
 use nalgebra::{Matrix3, Vector2, Vector3};
 
-/// Cauchy's loss at so many standard deviations loses a twentieth of the exactness where errors are normal (Holland, Welsch, *Robust
-/// Regression Using Iteratively Reweighted Least-Squares*, 1977), and gains much where they are not: half of the coordinates of
-/// salient points are off by a tenth of a pixel or less, and some by two pixels.
+/// Cauchy's loss at so many standard deviations loses a twentieth of the exactness where errors are
+/// normal (Holland, Welsch, *Robust Regression Using Iteratively Reweighted Least-Squares*, 1977),
+/// and gains much where they are not: half of the coordinates of salient points are off by a tenth
+/// of a pixel or less, and some by two pixels.
 const CAUCHY: f64 = 2.385;
 /// No salient point is known better than to so many pixels.
 const FINEST: f64 = 0.02;
@@ -33,7 +36,8 @@ pub struct Options {
     pub no_distortion: bool,
     /// Each photograph has a lens of its own.
     pub own_lenses: bool,
-    /// The residual in pixels beyond which an observation is left out, for photographs of up to 1600 pixels; more for larger ones.
+    /// The residual in pixels beyond which an observation is left out, for photographs of up to
+    /// 1600 pixels; more for larger ones.
     pub threshold: f64,
     /// The least angle in degrees between the rays to a point.
     pub angle: f64,
@@ -81,8 +85,9 @@ pub struct Solved {
 
 /// Solves. `progress` hears how many photographs are registered.
 ///
-/// A focal length that is far off, as EXIF's is of photographs that were made smaller, lets few photographs fit or moves far; it is
-/// solved again then, from the focal length that came out or from a usual one, and the better of both counts.
+/// A focal length that is far off, as EXIF's is of photographs that were made smaller, lets few
+/// photographs fit or moves far; it is solved again then, from the focal length that came out or
+/// from a usual one, and the better of both counts.
 ///
 /// # Errors
 ///
@@ -206,8 +211,8 @@ impl<'o> Solver<'o> {
         self.options.threshold * (self.lenses[self.views[view].lens].longer_side() / 1600.0).max(1.0)
     }
 
-    /// The points that are known, with the observations that fit; of each, its track. With `all`, lenses that no registered
-    /// photograph has are kept too.
+    /// The points that are known, with the observations that fit; of each, its track. With `all`,
+    /// lenses that no registered photograph has are kept too.
     fn reconstruction(&self, all: bool) -> (Reconstruction, Vec<usize>) {
         let mut points = Vec::new();
         let mut tracks = Vec::new();
@@ -274,8 +279,8 @@ impl<'o> Solver<'o> {
     }
 }
 
-/// Turns, moves and scales the whole: photographs' mean upward direction is y, the points' middle the origin, and the photographs
-/// are 1 from it on average.
+/// Turns, moves and scales the whole: photographs' mean upward direction is y, the points' middle
+/// the origin, and the photographs are 1 from it on average.
 fn upright(all: &mut Reconstruction) {
     let poses: Vec<_> = all.views.iter().filter_map(|view| view.pose).collect();
     let up: Vector3<f64> = poses.iter().map(|pose| -pose.rotation.row(1).transpose()).sum();

@@ -62,7 +62,8 @@ pub fn refined_pose(
     Some((one.views[0].pose?, one.lenses[0]))
 }
 
-/// The pose of a camera whose lens is known, and which pairs agree with it; none if no more than four do.
+/// The pose of a camera whose lens is known, and which pairs agree with it; none if no more than
+/// four do.
 pub fn pose_of(
     pairs: &[(Vector3<f64>, Vector2<f64>)],
     lens: &Lens,

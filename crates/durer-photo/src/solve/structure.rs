@@ -21,7 +21,8 @@ impl Solver<'_> {
         self.residual(position, seen).is_some_and(|length| length <= self.threshold(seen.view))
     }
 
-    /// Triangulates tracks that are no points yet, and takes up observations that fit by now. Gives how many points are new.
+    /// Triangulates tracks that are no points yet, and takes up observations that fit by now. Gives
+    /// how many points are new.
     pub(super) fn extend(&mut self) -> usize {
         let mut added = 0;
         for t in 0..self.tracks.len() {
@@ -78,8 +79,8 @@ impl Solver<'_> {
         best.map(|best| best.1)
     }
 
-    /// Leaves out observations whose residual is too long, and points with fewer than two left or too small an angle. Gives how
-    /// many observations went.
+    /// Leaves out observations whose residual is too long, and points with fewer than two left or
+    /// too small an angle. Gives how many observations went.
     pub(super) fn drop_misfits(&mut self) -> usize {
         let mut dropped = 0;
         let widest = libm::cos(self.options.angle.to_radians());

@@ -1,8 +1,8 @@
 //! How much light rough surfaces give back in all directions together, as tables.
 //!
-//! One reflection off a rough surface loses what would have been reflected a second time. Dividing by these tables gives it back,
-//! so that a surface that absorbs nothing stays white. Source: Turquin, *Practical multiple scattering compensation for
-//! microfacet models*, 2019.
+//! One reflection off a rough surface loses what would have been reflected a second time. Dividing
+//! by these tables gives it back, so that a surface that absorbs nothing stays white. Source:
+//! Turquin, *Practical multiple scattering compensation for microfacet models*, 2019.
 
 use super::fresnel;
 use super::lobe::fuzz;
@@ -129,8 +129,8 @@ impl Dielectric {
     }
 }
 
-/// The mean over the facets of a rough surface that are seen, of what each does at a cosine: by few points, where there are too many
-/// kinds of surfaces for tables.
+/// The mean over the facets of a rough surface that are seen, of what each does at a cosine: by few
+/// points, where there are too many kinds of surfaces for tables.
 pub fn over_facets(cosine: f32, roughness: f32, value: impl Fn(f32) -> Spectrum) -> Spectrum {
     const FEW: usize = 16;
     let (ggx, wo) = (isotropic(roughness), direction(cosine));

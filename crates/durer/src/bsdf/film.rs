@@ -1,7 +1,9 @@
-//! Thin films: soap, oil on water, tempered steel. Light that is reflected above and below them interferes.
+//! Thin films: soap, oil on water, tempered steel. Light that is reflected above and below them
+//! interferes.
 //!
-//! Sources: Airy's sum of all reflections in a film (Born and Wolf, *Principles of Optics*, section 7.6); its orders one by one for
-//! colours: Belcour and Barla, *A Practical Extension to Microfacet Theory for the Modeling of Varying Iridescence*, SIGGRAPH 2017.
+//! Sources: Airy's sum of all reflections in a film (Born and Wolf, *Principles of Optics*, section
+//! 7.6); its orders one by one for colours: Belcour and Barla, *A Practical Extension to Microfacet
+//! Theory for the Modeling of Varying Iridescence*, SIGGRAPH 2017.
 
 use super::fresnel;
 use crate::math::{Vec2, fp};
@@ -13,7 +15,8 @@ use std::f32::consts::TAU;
 pub struct Film {
     /// The wavelengths of the lanes in nanometres; 0 where they are colours.
     nm: Spectrum,
-    /// Of a dielectric its index over that before the film; of a metal what it reflects at right angles.
+    /// Of a dielectric its index over that before the film; of a metal what it reflects at right
+    /// angles.
     below: Spectrum,
     metal: bool,
     /// In nanometres.
@@ -24,16 +27,19 @@ pub struct Film {
     weight: f32,
 }
 
-/// How near a metal's index is to the least that its reflectance allows: so near are those of gold, copper, silver and aluminium.
+/// How near a metal's index is to the least that its reflectance allows: so near are those of gold,
+/// copper, silver and aluminium.
 ///
 /// Source of the formulas: Gulbrandsen, *Artist Friendly Metallic Fresnel*, JCGT 3(4), 2014.
 const METALLIC: f32 = 0.985;
 
-/// The orders of interference that are summed for colours at most; what later ones add is below what eight bits show.
+/// The orders of interference that are summed for colours at most; what later ones add is below
+/// what eight bits show.
 const ORDERS: i32 = 12;
 
 impl Film {
-    /// On a dielectric; indices are over that of what is before the film. `micrometres` is how thick it is.
+    /// On a dielectric; indices are over that of what is before the film. `micrometres` is how
+    /// thick it is.
     pub fn on_dielectric(lanes: &Lanes, micrometres: f32, ior: f32, eta: f32, weight: f32) -> Self {
         let below = Spectrum::splat(eta);
         Film { nm: wavelengths(lanes), below, metal: false, thickness: 1_000.0 * micrometres, ior, weight }
@@ -45,8 +51,8 @@ impl Film {
         Film { nm: wavelengths(lanes), below, metal: true, thickness: 1_000.0 * micrometres, ior, weight: 1.0 }
     }
 
-    /// The share of unpolarised light that is reflected at a cosine from 0 to 1. Seen from inside (an index below 1), as much as from
-    /// outside along the same way.
+    /// The share of unpolarised light that is reflected at a cosine from 0 to 1. Seen from inside
+    /// (an index below 1), as much as from outside along the same way.
     pub fn reflected(&self, cosine: f32) -> Spectrum {
         if self.metal {
             return self.covered(cosine);
@@ -131,7 +137,8 @@ fn airy(first: f32, second: Vec2, phase: f32) -> f32 {
     above.length_squared() / below.length_squared()
 }
 
-/// The mean of [`airy`] over what a channel sees of daylight: its Fourier series in the phase, each order as daylight has it.
+/// The mean of [`airy`] over what a channel sees of daylight: its Fourier series in the phase, each
+/// order as daylight has it.
 fn by_orders(first: f32, second: Vec2, shift: f32, channel: usize) -> f32 {
     let (r1, r2) = (first * first, second.length_squared());
     let through = 1.0 - r1;

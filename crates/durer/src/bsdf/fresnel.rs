@@ -3,8 +3,9 @@
 use crate::math::fp;
 use crate::spectrum::Spectrum;
 
-/// The share of unpolarised light that a boundary of two dielectrics reflects. `cosine` is that of the light's way to the
-/// normal, from 0 to 1; `eta` is the index behind the boundary over the index before it.
+/// The share of unpolarised light that a boundary of two dielectrics reflects. `cosine` is that of
+/// the light's way to the normal, from 0 to 1; `eta` is the index behind the boundary over the
+/// index before it.
 ///
 /// Source: Fresnel's equations, as in *Physically Based Rendering*, 4th edition, section 9.3.5.
 pub fn dielectric(cosine: f32, eta: f32) -> f32 {
@@ -26,8 +27,8 @@ pub fn slab(cosine: f32, eta: f32) -> f32 {
 
 /// The mean of [`dielectric`] over all directions by their cosine.
 ///
-/// Source: a fit by d'Eon, *A Hitchhiker's Guide to Multiple Scattering*, and its converse for light from inside; good to
-/// 0.6 % for indices from 1 to 3.
+/// Source: a fit by d'Eon, *A Hitchhiker's Guide to Multiple Scattering*, and its converse for
+/// light from inside; good to 0.6 % for indices from 1 to 3.
 pub fn diffuse(eta: f32) -> f32 {
     match eta >= 1.0 {
         true => fp::ln((10_893.0 * eta - 1_438.2) / (-774.4 * eta * eta + 10_212.0 * eta + 1.0)),
@@ -45,7 +46,8 @@ pub fn ior_of_reflectance(r0: f32) -> f32 {
 
 /// What a metal reflects: its colour at right angles, and a tint at 82 degrees.
 ///
-/// Source: Kutz, Hasan and Edmondson, *Novel aspects of the Adobe Standard Material*, 2021, section 2.3; OpenPBR, Metal.
+/// Source: Kutz, Hasan and Edmondson, *Novel aspects of the Adobe Standard Material*, 2021, section
+/// 2.3; OpenPBR, Metal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct F82 {
     f0: Spectrum,

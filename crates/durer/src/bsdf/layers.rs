@@ -1,7 +1,8 @@
 //! The layers of a principled material as lobes: fuzz on a coat on metal, glass or matte.
 //!
-//! Light that a layer gives back does not reach the one below: layers are weighed by what is left of it in the direction from
-//! which they are seen. OpenPBR calls that albedo scaling. It keeps energy, but the whole is not reciprocal.
+//! Light that a layer gives back does not reach the one below: layers are weighed by what is left
+//! of it in the direction from which they are seen. OpenPBR calls that albedo scaling. It keeps
+//! energy, but the whole is not reciprocal.
 
 use super::albedo::{self, Dielectric};
 use super::film::{self, Film};
@@ -298,7 +299,8 @@ impl Stack<'_> {
         bsdf.push(rough, weight * self.tables.glass.gain(inside, wo.z, roughness), weight.max_element());
     }
 
-    /// A thin sheet: light is reflected to and fro in it, and leaves it in the direction in which it came.
+    /// A thin sheet: light is reflected to and fro in it, and leaves it in the direction in which
+    /// it came.
     fn sheet(&self, bsdf: &mut Bsdf, roughness: f32, weight: Spectrum) {
         let (m, wo) = (self.here, self.view.wo);
         let (eta, ggx) = (m.specular_ior, Ggx::new(roughness, m.specular_anisotropy));

@@ -1,8 +1,8 @@
 //! GGX: a surface of tiny mirrors.
 //!
-//! Sources: Walter and others, *Microfacet Models for Refraction through Rough Surfaces*, EGSR 2007; Heitz, *Understanding the
-//! Masking-Shadowing Function in Microfacet-Based BRDFs*, JCGT 3(2), 2014; Dupuy and Benyoub, *Sampling Visible GGX Normals
-//! with Spherical Caps*, HPG 2023.
+//! Sources: Walter and others, *Microfacet Models for Refraction through Rough Surfaces*, EGSR
+//! 2007; Heitz, *Understanding the Masking-Shadowing Function in Microfacet-Based BRDFs*, JCGT
+//! 3(2), 2014; Dupuy and Benyoub, *Sampling Visible GGX Normals with Spherical Caps*, HPG 2023.
 
 use super::warp;
 use crate::math::{Vec2, Vec3};
@@ -19,7 +19,8 @@ pub struct Ggx {
 }
 
 impl Ggx {
-    /// From a roughness from 0 to 1, whose square is alpha, and an anisotropy from 0 to 1, as OpenPBR has them.
+    /// From a roughness from 0 to 1, whose square is alpha, and an anisotropy from 0 to 1, as
+    /// OpenPBR has them.
     pub fn new(roughness: f32, anisotropy: f32) -> Self {
         let square = roughness * roughness;
         let rest = 1.0 - anisotropy;
@@ -28,7 +29,8 @@ impl Ggx {
         Ggx { alpha: Vec2::new(ax.min(1.0), rest * ax) }
     }
 
-    /// The roughness, the anisotropy and the turn, in turns, that stand for an alpha along u and along v.
+    /// The roughness, the anisotropy and the turn, in turns, that stand for an alpha along u and
+    /// along v.
     pub fn parameters(alpha: [f32; 2]) -> [f32; 3] {
         let [u, v] = alpha.map(|alpha| alpha.clamp(0.0, 1.0));
         let mean = (0.5 * (u * u + v * v)).sqrt();

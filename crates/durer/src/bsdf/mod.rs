@@ -1,6 +1,8 @@
-//! How a surface point scatters light: some lobes with weights, made for the direction in which it is seen.
+//! How a surface point scatters light: some lobes with weights, made for the direction in which it
+//! is seen.
 //!
-//! Directions are local to the point's [`Frame`] and point away from the surface. The side from which it is seen is above.
+//! Directions are local to the point's [`Frame`] and point away from the surface. The side from
+//! which it is seen is above.
 
 pub mod albedo;
 pub mod film;
@@ -84,7 +86,8 @@ impl Bsdf {
         self.lobes.iter().any(|part| !part.lobe.is_delta())
     }
 
-    /// Whether light from behind the surface is scattered too, and not only along single directions.
+    /// Whether light from behind the surface is scattered too, and not only along single
+    /// directions.
     pub fn passes_light(&self) -> bool {
         self.lobes.iter().any(|part| part.lobe.passes_light())
     }
@@ -94,7 +97,8 @@ impl Bsdf {
         self.lobes.iter().map(|part| part.weight * part.lobe.eval(wo, wi)).sum()
     }
 
-    /// The density per solid angle with which [`Bsdf::sample`] chooses a direction, without lobes of single directions.
+    /// The density per solid angle with which [`Bsdf::sample`] chooses a direction, without lobes
+    /// of single directions.
     pub fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
         let density = |part: &Weighted| part.probability * part.lobe.pdf(wo, wi);
         if self.lobes.is_empty() { 0.0 } else { self.lobes.iter().map(density).sum::<f32>() / self.total }

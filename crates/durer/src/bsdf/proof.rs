@@ -1,5 +1,6 @@
-//! Proofs by numbers: whether directions are sampled as their density says, and whether what absorbs nothing is white in even
-//! light. Tests use them with few samples, `cargo xtask validate` with many.
+//! Proofs by numbers: whether directions are sampled as their density says, and whether what
+//! absorbs nothing is white in even light. Tests use them with few samples, `cargo xtask validate`
+//! with many.
 
 use super::lobe::blinn::Blinn;
 use super::lobe::diffuse::{Diffuse, DiffuseTransmission};
@@ -56,7 +57,8 @@ impl Cells {
         mean * 4.0 * PI / (self.rows * self.columns) as f64 * f64::from(self.samples)
     }
 
-    /// Samples, by three numbers from 0 to 1, against their density. Other seeds have other samples.
+    /// Samples, by three numbers from 0 to 1, against their density. Other seeds have other
+    /// samples.
     pub fn compare(&self, seed: u64, sample: impl Fn(f32, Vec2) -> Option<Vec3>, pdf: impl Fn(Vec3) -> f32) -> Verdict {
         let all = self.rows * self.columns;
         let mut counts = vec![0.0_f64; all + 1];
@@ -144,7 +146,8 @@ pub fn lossless() -> Vec<(&'static str, PrincipledMaterial)> {
     ]
 }
 
-/// Materials with films that absorb nothing, with names. Of rough ones what they give back in all is known nearly.
+/// Materials with films that absorb nothing, with names. Of rough ones what they give back in all
+/// is known nearly.
 pub fn filmed() -> Vec<(&'static str, PrincipledMaterial)> {
     let film = || PrincipledMaterial { base_color: Vec3::ONE, thin_film_weight: 1.0, ..Default::default() };
     let bubble = PrincipledMaterial { specular_ior: 1.0, transmission_weight: 1.0, walls: Walls::Thin, ..film() };
@@ -164,8 +167,9 @@ impl<'a> Furnace<'a> {
         Furnace { material, tables: Tables::new(material, None, &mut Vec::new()) }
     }
 
-    /// What it gives back, with a roughness and seen at a cosine, and the standard error of that. What goes into glass counts by
-    /// its flux: its radiance is denser by the square of the index.
+    /// What it gives back, with a roughness and seen at a cosine, and the standard error of that.
+    /// What goes into glass counts by its flux: its radiance is denser by the square of the
+    /// index.
     pub fn gives(&self, roughness: f32, cosine: f32, samples: u32) -> (f64, f64) {
         let here = Parameters { specular_roughness: roughness, ..Parameters::of(self.material) };
         let wo = warp::polar(cosine, 0.0);

@@ -48,7 +48,8 @@ fn lobes_have_values_along_the_surface_too() {
     }
 }
 
-/// How far from white materials are at most, over roughness and angle, beyond three standard errors.
+/// How far from white materials are at most, over roughness and angle, beyond three standard
+/// errors.
 fn assert_white(materials: Vec<(&str, PrincipledMaterial)>, roughnesses: &[f32], most: f64) {
     for (name, material) in materials {
         let furnace = Furnace::new(&material);

@@ -4,7 +4,8 @@ use crate::math::{Vec2, Vec3, fp};
 
 /// A point of the unit disc, evenly spread.
 ///
-/// Source: Shirley and Chiu, *A Low Distortion Map Between Disk and Square*, Journal of Graphics Tools 2(3), 1997.
+/// Source: Shirley and Chiu, *A Low Distortion Map Between Disk and Square*, Journal of Graphics
+/// Tools 2(3), 1997.
 pub fn disc(u: Vec2) -> Vec2 {
     let p = 2.0 * u - 1.0;
     if p == Vec2::ZERO {
@@ -22,7 +23,8 @@ pub fn cosine_hemisphere(u: Vec2) -> Vec3 {
     p.extend((1.0 - p.length_squared()).max(0.0).sqrt())
 }
 
-/// A direction with polar coordinates: the cosine to z, and the angle about it as a share of a whole turn.
+/// A direction with polar coordinates: the cosine to z, and the angle about it as a share of a
+/// whole turn.
 pub fn polar(cosine: f32, turn: f32) -> Vec3 {
     let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
     let (sin, cos) = fp::sin_cos_degrees(f64::from(turn) * 360.0);

@@ -1,8 +1,9 @@
 //! The opening of a lens: a disc, or a regular polygon where its blades are straight.
 //!
-//! The unit square goes to the disc by concentric squares and circles, which keeps areas and neighbourhoods
-//! (Shirley, Chiu, *A Low Distortion Map Between Disk and Square*, Journal of Graphics Tools 2(3), 1997). A sector of the
-//! disc goes to the triangle of a blade with its share of the angle along the blade and its share of the radius.
+//! The unit square goes to the disc by concentric squares and circles, which keeps areas and
+//! neighbourhoods (Shirley, Chiu, *A Low Distortion Map Between Disk and Square*, Journal of
+//! Graphics Tools 2(3), 1997). A sector of the disc goes to the triangle of a blade with its share
+//! of the angle along the blade and its share of the radius.
 
 use crate::math::{Vec2, fp};
 use glam::DVec2;
@@ -11,8 +12,9 @@ use std::f64::consts::{FRAC_PI_4, TAU};
 /// The most blades that a lens may have.
 pub const MOST_BLADES: u32 = 64;
 
-/// A point of an opening of radius 1 around 0, evenly over its area: a disc for 0 blades, else a polygon whose first
-/// corner lies to the right, turned counter-clockwise by an angle in degrees. (0.5, 0.5) goes to its middle.
+/// A point of an opening of radius 1 around 0, evenly over its area: a disc for 0 blades, else a
+/// polygon whose first corner lies to the right, turned counter-clockwise by an angle in degrees.
+/// (0.5, 0.5) goes to its middle.
 pub fn sample(lens: Vec2, blades: u32, turn: f32) -> DVec2 {
     let square = 2.0 * lens.as_dvec2() - 1.0;
     if square == DVec2::ZERO {

@@ -1,13 +1,15 @@
 //! The CAVE: screens around a viewer, each showing what he would see through it.
 //!
-//! A wall is given by three corners a (lower left), b (lower right) and c (upper left) as it is seen from inside. The ray
-//! through the part (s, t) of its sides runs from the eye to a + s (b - a) + t (c - a): a frustum with its apex anywhere,
-//! off the wall's middle or not. So two walls that share an edge show the same things at it, whatever the eye: rays are
-//! the same at the same points of the room. The walls lie side by side in one picture, in true proportion, on one ground.
-//! The solid angle of an area at r from the eye on a wall with normal n is |n·r| / |r|³.
+//! A wall is given by three corners a (lower left), b (lower right) and c (upper left) as it is
+//! seen from inside. The ray through the part (s, t) of its sides runs from the eye to a + s (b -
+//! a) + t (c - a): a frustum with its apex anywhere, off the wall's middle or not. So two walls
+//! that share an edge show the same things at it, whatever the eye: rays are the same at the same
+//! points of the room. The walls lie side by side in one picture, in true proportion, on one
+//! ground. The solid angle of an area at r from the eye on a wall with normal n is |n·r| / |r|³.
 //!
-//! Source: Cruz-Neira, Sandin, DeFanti, *Surround-Screen Projection-Based Virtual Reality: The Design and Implementation
-//! of the CAVE*, SIGGRAPH 1993; Kooima, *Generalized Perspective Projection*, 2009.
+//! Source: Cruz-Neira, Sandin, DeFanti, *Surround-Screen Projection-Based Virtual Reality: The
+//! Design and Implementation of the CAVE*, SIGGRAPH 1993; Kooima, *Generalized Perspective
+//! Projection*, 2009.
 
 use super::pose::world_ray;
 use super::sheet::Sheet;

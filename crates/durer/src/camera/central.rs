@@ -4,7 +4,8 @@ use super::{CameraSample, Frame, Lens, Pose};
 use crate::math::{Ray, Vec2, Vec3};
 use glam::{DVec2, DVec3};
 
-/// A camera with one eye. Directions are in the camera's space: x to the right, y upwards, z forwards.
+/// A camera with one eye. Directions are in the camera's space: x to the right, y upwards, z
+/// forwards.
 pub trait Central {
     /// See [`Lens::pose`].
     fn stand(&self) -> Pose;

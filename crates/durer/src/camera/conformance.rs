@@ -1,4 +1,5 @@
-//! What every camera of the list must hold, for its default and for random ones made by walking its description.
+//! What every camera of the list must hold, for its default and for random ones made by walking its
+//! description.
 
 use super::*;
 use crate::describe::{DescribedList, Field, Kind, Rule, Value};
@@ -83,7 +84,8 @@ fn all(seed: u64, mut check: impl FnMut(&Camera, &mut Random)) {
     }
 }
 
-/// How X = ray.at(t) moves across the ray with the picture's point, by differences of fourth order: sideways and upwards.
+/// How X = ray.at(t) moves across the ray with the picture's point, by differences of fourth order:
+/// sideways and upwards.
 fn slopes(camera: &Camera, sample: &CameraSample, t: f32, step: f32) -> Option<[glam::DVec3; 2]> {
     let frame = frame(camera);
     let dir = camera.ray(&frame, sample)?.dir.as_dvec3();
@@ -100,7 +102,8 @@ fn slopes(camera: &Camera, sample: &CameraSample, t: f32, step: f32) -> Option<[
     Some([slope(Vec2::X)?, slope(Vec2::Y)?])
 }
 
-/// By how much a unit of the picture moves the world at least and at most: singular values of the 3x2 matrix of slopes.
+/// By how much a unit of the picture moves the world at least and at most: singular values of the
+/// 3x2 matrix of slopes.
 fn stretch([a, b]: [glam::DVec3; 2]) -> (f64, f64) {
     let (aa, bb, ab) = (a.dot(a), b.dot(b), a.dot(b));
     let (mean, apart) = (0.5 * (aa + bb), (0.25 * (aa - bb) * (aa - bb) + ab * ab).sqrt());
@@ -120,7 +123,8 @@ fn points_come_back_from_the_world() {
         let mut tried = 0;
         while checked < enough {
             tried += 1;
-            // A random camera may have hardly an inverse anywhere: a long way driven, and a view so narrow that nothing moves in it.
+            // A random camera may have hardly an inverse anywhere: a long way driven, and a view so narrow that
+            // nothing moves in it.
             if skipped - before.1 > POINTS || tried > 100 * POINTS {
                 (checked, skipped) = before;
                 hopeless += 1;
@@ -129,7 +133,8 @@ fn points_come_back_from_the_world() {
             let (sample, Some(ray)) = looked(camera, random) else { continue };
             assert!((ray.dir.length() - 1.0).abs() < 1e-6, "{camera:?}");
             let t = random.between(0.5, 20.0);
-            // The error of the world point, as it is seen in the picture. Where it is large, there is hardly an inverse.
+            // The error of the world point, as it is seen in the picture. Where it is large, there is hardly an
+            // inverse.
             let Some((least, _)) = slopes(camera, &sample, t, 1.0 / 1024.0).map(stretch) else {
                 skipped += 1;
                 continue;

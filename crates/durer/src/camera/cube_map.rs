@@ -1,11 +1,13 @@
 //! All directions on the six faces of a cube, as one picture.
 //!
-//! `cross` has four faces in a row, left, front, right, back, with up above and down below the front: every fold is an
-//! edge of the cube. `strip` has them in one row: right, left, up, down, back, front, in the order +x, -x, +y, -y, +z, -z
-//! for a camera that looks along -z. Each face is a square view of 90 degrees, upright as in the cross. The solid angle
-//! per area of a face from -1 to 1 is 1 / |direction|³.
+//! `cross` has four faces in a row, left, front, right, back, with up above and down below the
+//! front: every fold is an edge of the cube. `strip` has them in one row: right, left, up, down,
+//! back, front, in the order +x, -x, +y, -y, +z, -z for a camera that looks along -z. Each face is
+//! a square view of 90 degrees, upright as in the cross. The solid angle per area of a face from -1
+//! to 1 is 1 / |direction|³.
 //!
-//! Source: Greene, *Environment Mapping and Other Applications of World Projections*, CG&A 6(11), 1986.
+//! Source: Greene, *Environment Mapping and Other Applications of World Projections*, CG&A 6(11),
+//! 1986.
 
 use super::Pose;
 use super::central::Central;
@@ -35,8 +37,8 @@ described! {
     }
 }
 
-/// A face: the directions of its middle, its right and its up, in the camera's space; and its column and row, counted from
-/// the lower left corner, in the cross and in the strip.
+/// A face: the directions of its middle, its right and its up, in the camera's space; and its
+/// column and row, counted from the lower left corner, in the cross and in the strip.
 struct Face {
     axes: [DVec3; 3],
     cross: [f64; 2],

@@ -1,10 +1,11 @@
 //! The panorama: a picture on a cylinder around the eye. Upright lines stay straight and upright.
 //!
-//! direction = sin λ right + cos λ forward + h up, with the longitude λ across and the height h on a cylinder of radius 1
-//! upwards. The solid angle of dλ dh is dλ dh / (1 + h²)^(3/2). For one eye of a pair the ray starts on the circle on which
-//! the eyes turn (`eyes.rs`).
+//! direction = sin λ right + cos λ forward + h up, with the longitude λ across and the height h on
+//! a cylinder of radius 1 upwards. The solid angle of dλ dh is dλ dh / (1 + h²)^(3/2). For one eye
+//! of a pair the ray starts on the circle on which the eyes turn (`eyes.rs`).
 //!
-//! Source: Chen, *QuickTime VR: An Image-Based Approach to Virtual Environment Navigation*, SIGGRAPH 1995.
+//! Source: Chen, *QuickTime VR: An Image-Based Approach to Virtual Environment Navigation*,
+//! SIGGRAPH 1995.
 
 use super::eyes::EyeCircle;
 use super::perspective::half_width;

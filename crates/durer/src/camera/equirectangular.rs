@@ -1,10 +1,12 @@
 //! The spherical picture: longitude runs across, latitude upwards, both evenly.
 //!
-//! direction = cos φ (sin λ right + cos λ forward) + sin φ up; the whole sphere is twice as wide as high. The solid angle
-//! of dλ dφ is cos φ dλ dφ. For one eye of a pair the ray starts on the circle on which the eyes turn (`eyes.rs`) and is
-//! tangent to it, which changes nothing of the area across the ray.
+//! direction = cos φ (sin λ right + cos λ forward) + sin φ up; the whole sphere is twice as wide as
+//! high. The solid angle of dλ dφ is cos φ dλ dφ. For one eye of a pair the ray starts on the
+//! circle on which the eyes turn (`eyes.rs`) and is tangent to it, which changes nothing of the
+//! area across the ray.
 //!
-//! Source: Snyder, *Map Projections: A Working Manual*, USGS Professional Paper 1395, 1987, chapter 12.
+//! Source: Snyder, *Map Projections: A Working Manual*, USGS Professional Paper 1395, 1987, chapter
+//! 12.
 
 use super::eyes::EyeCircle;
 use super::sheet::Sheet;

@@ -1,8 +1,8 @@
 //! One eye or a pair, and how the pair's two pictures lie in one.
 //!
-//! Stereo around the viewer: each eye sees along tangents of the circle on which the eyes turn with the head.
-//! Sources: Ishiguro, Yamamoto, Tsuji, *Omni-Directional Stereo*, PAMI 14(2), 1992; Peleg, Ben-Ezra, Pritch,
-//! *Omnistereo: Panoramic Stereo Imaging*, PAMI 23(3), 2001.
+//! Stereo around the viewer: each eye sees along tangents of the circle on which the eyes turn with
+//! the head. Sources: Ishiguro, Yamamoto, Tsuji, *Omni-Directional Stereo*, PAMI 14(2), 1992;
+//! Peleg, Ben-Ezra, Pritch, *Omnistereo: Panoramic Stereo Imaging*, PAMI 23(3), 2001.
 
 use super::sheet::Sheet;
 use crate::described_words;
@@ -46,7 +46,8 @@ impl Eyes {
         std::iter::once(first).chain(second)
     }
 
-    /// The view that a pixel belongs to, and the place of a point in that view's sheet; `None` beside all of them.
+    /// The view that a pixel belongs to, and the place of a point in that view's sheet; `None`
+    /// beside all of them.
     pub fn view(self, one: DVec2, point: DVec2, pixel: DVec2) -> Option<(View, DVec2)> {
         let sheet = self.sheet(one);
         let at = sheet.place(pixel);
@@ -62,8 +63,8 @@ impl Eyes {
 
 /// The circle on which eyes turn: an eye looks along its tangents.
 ///
-/// At the heading a (0 ahead, growing to the right) the head looks along h = (sin a, 0, cos a), and an eye at the offset r
-/// to the right is at r (cos a, 0, -sin a).
+/// At the heading a (0 ahead, growing to the right) the head looks along h = (sin a, 0, cos a), and
+/// an eye at the offset r to the right is at r (cos a, 0, -sin a).
 #[derive(Clone, Copy, Debug)]
 pub struct EyeCircle {
     /// Signed: negative for the left eye.
@@ -77,8 +78,8 @@ impl EyeCircle {
         (self.radius * DVec3::new(cos, 0.0, -sin), DVec3::new(sin, 0.0, cos))
     }
 
-    /// The heading at which a point is seen, from -pi to pi, and its level distance from the eye there: none inside the
-    /// circle, nor straight above or below its middle.
+    /// The heading at which a point is seen, from -pi to pi, and its level distance from the eye
+    /// there: none inside the circle, nor straight above or below its middle.
     pub fn heading(self, point: DVec3) -> Option<(f64, f64)> {
         let square = point.x * point.x + point.z * point.z - self.radius * self.radius;
         if square <= 0.0 {

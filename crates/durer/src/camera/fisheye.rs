@@ -1,6 +1,7 @@
 //! The fisheye: a disc that sees a cone of directions around the axis, up to all of them.
 //!
-//! A direction at the angle θ from the axis lies at the radius r = f(θ) / f(angle / 2) of the disc, where
+//! A direction at the angle θ from the axis lies at the radius r = f(θ) / f(angle / 2) of the disc,
+//! where
 //!
 //! - `equidistant`: f = θ: equal angles are equal lengths along the radius;
 //! - `equisolid`: f = 2 sin(θ/2): equal solid angles are equal areas;
@@ -9,8 +10,9 @@
 //!
 //! The solid angle per area is sin θ F² / (f f'), with F = f(angle / 2).
 //!
-//! Source: Miyamoto, *Fish Eye Lens*, Journal of the Optical Society of America 54(8), 1964; Kannala, Brandt, *A Generic
-//! Camera Model and Calibration Method*, PAMI 28(8), 2006, equations 1 to 5.
+//! Source: Miyamoto, *Fish Eye Lens*, Journal of the Optical Society of America 54(8), 1964;
+//! Kannala, Brandt, *A Generic Camera Model and Calibration Method*, PAMI 28(8), 2006, equations 1
+//! to 5.
 
 use super::Pose;
 use super::central::Central;
@@ -66,7 +68,8 @@ impl Projection {
         }
     }
 
-    /// The direction that a point of the unit disc sees, where the rim sees the angle `limit` from the axis.
+    /// The direction that a point of the unit disc sees, where the rim sees the angle `limit` from
+    /// the axis.
     pub fn direction(self, point: DVec2, limit: f64) -> Option<DVec3> {
         let radius = point.length();
         if radius > 1.0 {

@@ -1,5 +1,5 @@
-//! Cameras: from a place in the picture to a ray, and from a point of the world back to the picture. One file each;
-//! the list is [`Camera`].
+//! Cameras: from a place in the picture to a ray, and from a point of the world back to the
+//! picture. One file each; the list is [`Camera`].
 
 mod aperture;
 mod central;
@@ -95,8 +95,9 @@ described_list! {
 pub struct CameraSample {
     /// The point of the picture.
     pub point: Vec2,
-    /// The centre of the pixel that the sample is for. A filter may reach beyond the pixel, and beyond the part of the
-    /// picture (a face of a cube, a wall, an eye) that the pixel belongs to: what it finds there continues that part.
+    /// The centre of the pixel that the sample is for. A filter may reach beyond the pixel, and
+    /// beyond the part of the picture (a face of a cube, a wall, an eye) that the pixel belongs
+    /// to: what it finds there continues that part.
     pub pixel: Vec2,
     /// The point of the lens, in [0,1)^2; (0.5, 0.5) is its middle.
     pub lens: Vec2,
@@ -114,8 +115,9 @@ pub trait Lens {
     /// Where it stands.
     fn pose(&self) -> Pose;
 
-    /// The natural width and height of its picture, in any unit; `None` where any shape will do, and the larger side
-    /// spans the square. A natural picture lies in the middle of the square, which its larger side spans.
+    /// The natural width and height of its picture, in any unit; `None` where any shape will do,
+    /// and the larger side spans the square. A natural picture lies in the middle of the
+    /// square, which its larger side spans.
     fn proportions(&self) -> Option<Vec2> {
         None
     }
@@ -135,19 +137,21 @@ pub trait Lens {
         None
     }
 
-    /// The ray of a sample; `None` where the camera sees nothing. The direction has length 1, so that `t` is a distance.
+    /// The ray of a sample; `None` where the camera sees nothing. The direction has length 1, so
+    /// that `t` is a distance.
     fn ray(&self, frame: &Frame, sample: &CameraSample) -> Option<Ray>;
 
-    /// Calls `found` with every point of the picture at which a point of the world is seen through a point of the lens:
-    /// one, none, or several, as for a pair of eyes. What hides it is not asked. Where the picture may have any shape,
-    /// points may lie beyond the square.
+    /// Calls `found` with every point of the picture at which a point of the world is seen through
+    /// a point of the lens: one, none, or several, as for a pair of eyes. What hides it is not
+    /// asked. Where the picture may have any shape, points may lie beyond the square.
     fn project(&self, frame: &Frame, world: Vec3, lens: Vec2, found: &mut dyn FnMut(Vec2));
 
-    /// The area across the ray at distance `t` that a unit of the picture's area covers, the point of the lens held fast.
+    /// The area across the ray at distance `t` that a unit of the picture's area covers, the point
+    /// of the lens held fast.
     ///
-    /// This is the Jacobian |(dX/dx × dX/dy) · dir| of X = origin + t dir by the picture's point. Where all rays meet in
-    /// one eye it is t² times the solid angle per area of the picture; where they are parallel it is constant. Undefined
-    /// where there is no ray.
+    /// This is the Jacobian |(dX/dx × dX/dy) · dir| of X = origin + t dir by the picture's point.
+    /// Where all rays meet in one eye it is t² times the solid angle per area of the picture;
+    /// where they are parallel it is constant. Undefined where there is no ray.
     fn footprint(&self, frame: &Frame, sample: &CameraSample, t: f32) -> f32;
 }
 

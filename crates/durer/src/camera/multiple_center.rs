@@ -1,17 +1,21 @@
-//! The multiple-centre-of-projection image: every column of the picture has an eye of its own on a path.
+//! The multiple-centre-of-projection image: every column of the picture has an eye of its own on a
+//! path.
 //!
-//! Eyes e(u) and the points c(u) that they look at run along Catmull-Rom splines through the rows of `path`, at an even
-//! pace from row to row. With w = c - e, right = norm(w x up) and v = right x norm(w), a column is the fan
-//! direction = norm(w) + h v, |h| <= tan(angle / 2). A picture around a thing shows all of its sides at once.
+//! Eyes e(u) and the points c(u) that they look at run along Catmull-Rom splines through the rows
+//! of `path`, at an even pace from row to row. With w = c - e, right = norm(w x up) and v = right x
+//! norm(w), a column is the fan direction = norm(w) + h v, |h| <= tan(angle / 2). A picture around
+//! a thing shows all of its sides at once.
 //!
-//! A point X is seen in the columns whose plane it lies in: (w(u) x up)·(X - e(u)) = 0, a polynomial of degree 6 in
-//! each piece of the spline, all of whose roots are found (`roots.rs`). It may be seen several times.
+//! A point X is seen in the columns whose plane it lies in: (w(u) x up)·(X - e(u)) = 0, a
+//! polynomial of degree 6 in each piece of the spline, all of whose roots are found (`roots.rs`).
+//! It may be seen several times.
 //!
 //! The area across a ray at distance t is t / (1 + h²) |dX/du·right| per du dh, where
-//! dX/du·right = e'·right + t (w'·right / |w| + h v'·right) / sqrt(1 + h²) and v'·right = -v·(w' x up) / |w x up|.
+//! dX/du·right = e'·right + t (w'·right / |w| + h v'·right) / sqrt(1 + h²) and v'·right = -v·(w' x
+//! up) / |w x up|.
 //!
-//! Source: Rademacher, Bishop, *Multiple-Center-of-Projection Images*, SIGGRAPH 1998. Splines: Catmull, Rom, *A Class of
-//! Local Interpolating Splines*, Computer Aided Geometric Design, 1974.
+//! Source: Rademacher, Bishop, *Multiple-Center-of-Projection Images*, SIGGRAPH 1998. Splines:
+//! Catmull, Rom, *A Class of Local Interpolating Splines*, Computer Aided Geometric Design, 1974.
 
 mod roots;
 

@@ -1,15 +1,19 @@
-//! A picture for a dome: a fisheye projector throws it on the dome, and someone looks at it who sits elsewhere.
+//! A picture for a dome: a fisheye projector throws it on the dome, and someone looks at it who
+//! sits elsewhere.
 //!
-//! The point of the picture leaves the projector P in a direction d (an equidistant fisheye along the dome's pole) and
-//! meets the dome, a part of a unit sphere, at D = P + s d. The viewer V sees it in the direction D - V: what is rendered
-//! there is what lies in that direction in the scene, so that from V nothing looks bent. The dome's pole is the scene's
-//! `up`, tilted forwards by `tilt`; in the picture the front is at the bottom, as dome masters have it.
+//! The point of the picture leaves the projector P in a direction d (an equidistant fisheye along
+//! the dome's pole) and meets the dome, a part of a unit sphere, at D = P + s d. The viewer V sees
+//! it in the direction D - V: what is rendered there is what lies in that direction in the scene,
+//! so that from V nothing looks bent. The dome's pole is the scene's `up`, tilted forwards by
+//! `tilt`; in the picture the front is at the bottom, as dome masters have it.
 //!
-//! The solid angle per area of the picture is that of the projector's fisheye, times s² / (D·d) for the dome's area in it,
-//! times (D·e) / v² for what the viewer sees of that, e his direction and v his distance.
+//! The solid angle per area of the picture is that of the projector's fisheye, times s² / (D·d) for
+//! the dome's area in it, times (D·e) / v² for what the viewer sees of that, e his direction and v
+//! his distance.
 //!
-//! Source: Max, *Computer Graphics Distortion for IMAX and OMNIMAX Projection*, Nicograph '83; Greene, Heckbert, *Creating
-//! Raster Omnimax Images from Multiple Perspective Views Using the Elliptical Weighted Average Filter*, CG&A 6(6), 1986.
+//! Source: Max, *Computer Graphics Distortion for IMAX and OMNIMAX Projection*, Nicograph '83;
+//! Greene, Heckbert, *Creating Raster Omnimax Images from Multiple Perspective Views Using the
+//! Elliptical Weighted Average Filter*, CG&A 6(6), 1986.
 
 use super::Pose;
 use super::central::Central;
@@ -49,7 +53,8 @@ fn to_sphere(point: DVec3, direction: DVec3) -> f64 {
 }
 
 impl OmnimaxCamera {
-    /// The axes of the picture in the audience's space, as columns: right, up (the dome's back) and the dome's pole.
+    /// The axes of the picture in the audience's space, as columns: right, up (the dome's back) and
+    /// the dome's pole.
     fn axes(&self) -> DMat3 {
         let (sin, cos) = fp::sin_cos_degrees(f64::from(self.tilt));
         DMat3::from_cols(DVec3::X, DVec3::new(0.0, sin, -cos), DVec3::new(0.0, cos, sin))

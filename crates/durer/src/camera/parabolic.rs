@@ -1,13 +1,15 @@
-//! A mirror in the shape of a paraboloid under a lens that sees parallel rays: a single viewpoint with a wide view.
+//! A mirror in the shape of a paraboloid under a lens that sees parallel rays: a single viewpoint
+//! with a wide view.
 //!
-//! The mirror z = (h² - r²) / 2h has its focus at 0 and its axis along z, towards the lens. Every ray that runs to the
-//! focus is reflected along the axis: its direction, at the angle θ from the axis, is seen at r = h tan(θ/2). The picture
-//! lies like a map seen from above; to someone in the focus who looks up, left and right are exchanged. The rim of the
-//! disc sees half the field of view, r = 1 at θ = angle / 2; the horizon is at r = h. The lens itself, which a real
+//! The mirror z = (h² - r²) / 2h has its focus at 0 and its axis along z, towards the lens. Every
+//! ray that runs to the focus is reflected along the axis: its direction, at the angle θ from the
+//! axis, is seen at r = h tan(θ/2). The picture lies like a map seen from above; to someone in the
+//! focus who looks up, left and right are exchanged. The rim of the disc sees half the field of
+//! view, r = 1 at θ = angle / 2; the horizon is at r = h. The lens itself, which a real
 //! picture shows in the middle, is left out.
 //!
-//! Source: Nayar, *Catadioptric Omnidirectional Camera*, CVPR 1997; Baker, Nayar, *A Theory of Single-Viewpoint
-//! Catadioptric Image Formation*, IJCV 35(2), 1999.
+//! Source: Nayar, *Catadioptric Omnidirectional Camera*, CVPR 1997; Baker, Nayar, *A Theory of
+//! Single-Viewpoint Catadioptric Image Formation*, IJCV 35(2), 1999.
 
 use super::Pose;
 use super::central::Central;

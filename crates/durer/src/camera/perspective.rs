@@ -1,7 +1,9 @@
-//! The pinhole camera of the lecture: all rays start at the eye e, with w = forward, u = right, v = up.
+//! The pinhole camera of the lecture: all rays start at the eye e, with w = forward, u = right, v =
+//! up.
 //!
-//! direction = D w + x u + y v, with D = 1 / tan(angle / 2) and x, y from -1 to 1 across the larger side: in a picture
-//! that is not square the other side runs from -a to a, where a < 1 is its part of the larger one.
+//! direction = D w + x u + y v, with D = 1 / tan(angle / 2) and x, y from -1 to 1 across the larger
+//! side: in a picture that is not square the other side runs from -a to a, where a < 1 is its part
+//! of the larger one.
 //!
 //! The solid angle of an area dx dy in the plane at distance D is D |u v w| dx dy / |direction|³.
 

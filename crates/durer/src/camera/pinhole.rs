@@ -1,9 +1,10 @@
 //! The camera obscura: a hole of some size before a film.
 //!
-//! The film lies at distance f behind the hole, upside down; a point (x, y) of the picture is the point
-//! -w (x, y) of the film, with w = f tan(angle / 2). Light reaches it along straight lines through all points h of the
-//! hole: direction = (h + w (x, y), f). A far point is spread over a disc as large as the hole, a near one over a larger
-//! disc: the picture is sharp nowhere, and with a small hole almost everywhere. Diffraction is left out.
+//! The film lies at distance f behind the hole, upside down; a point (x, y) of the picture is the
+//! point -w (x, y) of the film, with w = f tan(angle / 2). Light reaches it along straight lines
+//! through all points h of the hole: direction = (h + w (x, y), f). A far point is spread over a
+//! disc as large as the hole, a near one over a larger disc: the picture is sharp nowhere, and with
+//! a small hole almost everywhere. Diffraction is left out.
 //!
 //! Source: Renner, *Pinhole Photography*, 4th edition, 2008, chapter 5, for the geometry.
 
@@ -34,7 +35,8 @@ described! {
 }
 
 impl PinholeCamera {
-    /// The point of the hole, the film's distance, and half the film's width, in the camera's space.
+    /// The point of the hole, the film's distance, and half the film's width, in the camera's
+    /// space.
     fn parts(&self, frame: &Frame, lens: Vec2) -> (DVec2, f64, f64) {
         let film = f64::from(self.film_distance);
         (0.5 * f64::from(self.hole) * aperture::sample(lens, 0, 0.0), film, film * frame.half_width)

@@ -16,8 +16,8 @@ pub struct Pose {
     pub up: Vec3,
 }
 
-/// A camera's axes: where it looks, and the picture's right and up. Of unit length and perpendicular,
-/// but for the compatibilities that say otherwise.
+/// A camera's axes: where it looks, and the picture's right and up. Of unit length and
+/// perpendicular, but for the compatibilities that say otherwise.
 ///
 /// Together they are the camera's space: x to the right, y upwards, z forwards.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,7 +36,8 @@ pub struct Frame {
     pub half_width: f64,
 }
 
-/// A vector's direction, each component divided by the length (glam multiplies by its reciprocal, which rounds once more).
+/// A vector's direction, each component divided by the length (glam multiplies by its reciprocal,
+/// which rounds once more).
 pub(super) fn unit_or(v: Vec3, fallback: Vec3) -> Vec3 {
     let unit = v / v.length();
     if unit.is_finite() && unit != Vec3::ZERO { unit } else { v.normalize_or(fallback) }
@@ -92,7 +93,8 @@ impl Frame {
         world_ray(origin, self.axes() * dir)
     }
 
-    /// How much of the volume is left in a camera's space with skew axes: 1 where they are perpendicular.
+    /// How much of the volume is left in a camera's space with skew axes: 1 where they are
+    /// perpendicular.
     pub(super) fn volume(&self) -> f64 {
         self.axes().determinant().abs()
     }

@@ -1,20 +1,23 @@
-//! Any projective camera, as computer vision writes it: a 3x4 matrix in homogeneous coordinates, and lens distortion.
+//! Any projective camera, as computer vision writes it: a 3x4 matrix in homogeneous coordinates,
+//! and lens distortion.
 //!
-//! P = K [R | t] takes a point of the world to a pixel: (x, y, 1) ~ P (X, Y, Z, 1), x to the right and y downwards, with
-//! the centre of the upper left pixel at (0, 0). P may be given at any scale. Its left part M = K R is taken apart into an
-//! upper triangular K and a rotation R; the eye is -M⁻¹ p4. Between R and K the lens distorts the point (x, y) at depth 1,
-//! with s = x² + y², by Brown's and Conrady's model in OpenCV's form:
+//! P = K [R | t] takes a point of the world to a pixel: (x, y, 1) ~ P (X, Y, Z, 1), x to the right
+//! and y downwards, with the centre of the upper left pixel at (0, 0). P may be given at any scale.
+//! Its left part M = K R is taken apart into an upper triangular K and a rotation R; the eye is
+//! -M⁻¹ p4. Between R and K the lens distorts the point (x, y) at depth 1, with s = x² + y², by
+//! Brown's and Conrady's model in OpenCV's form:
 //!
 //! ```text
 //! x' = x (1 + k1 s + k2 s² + k3 s³) + 2 p1 x y + p2 (s + 2 x²)
 //! y' = y (1 + k1 s + k2 s² + k3 s³) + p1 (s + 2 y²) + 2 p2 x y
 //! ```
 //!
-//! Rays need the inverse, by Newton's method. Where the distortion folds back on itself, nothing is seen: there the model
-//! has no meaning.
+//! Rays need the inverse, by Newton's method. Where the distortion folds back on itself, nothing is
+//! seen: there the model has no meaning.
 //!
-//! Source: Hartley, Zisserman, *Multiple View Geometry in Computer Vision*, 2nd edition, 2004, sections 6.1, 6.2 and A4.1;
-//! Brown, *Decentering Distortion of Lenses*, Photogrammetric Engineering 32(3), 1966.
+//! Source: Hartley, Zisserman, *Multiple View Geometry in Computer Vision*, 2nd edition, 2004,
+//! sections 6.1, 6.2 and A4.1; Brown, *Decentering Distortion of Lenses*, Photogrammetric
+//! Engineering 32(3), 1966.
 
 use super::pose::world_ray;
 use super::sheet::Sheet;
@@ -98,10 +101,12 @@ impl ProjectiveCamera {
         (1.0 + s * (k1 + s * (k2 + s * k3)), k1 + s * (2.0 * k2 + s * 3.0 * k3))
     }
 
-    /// Whether the radius still grows with the distorted radius, all the way from the middle to a point.
+    /// Whether the radius still grows with the distorted radius, all the way from the middle to a
+    /// point.
     fn unfolded(&self, point: DVec2) -> bool {
         let end = point.length_squared();
-        // d/dr of r (1 + k1 r² + ...), as a function of s = r²; its extremes are at the roots of its derivative.
+        // d/dr of r (1 + k1 r² + ...), as a function of s = r²; its extremes are at the roots of its
+        // derivative.
         let growth = |s: f64| {
             let (factor, slope) = self.radial(s);
             factor + 2.0 * s * slope
@@ -128,7 +133,8 @@ impl ProjectiveCamera {
 
     /// The point that is distorted to this one, if there is one this side of the fold.
     fn undistorted(&self, wanted: DVec2) -> Option<DVec2> {
-        // Mostly the first guess will do; where it does not, the point is followed outwards from the middle.
+        // Mostly the first guess will do; where it does not, the point is followed outwards from the
+        // middle.
         let followed = || (1..=16).try_fold(DVec2::ZERO, |point, i| self.solved(point, wanted * (f64::from(i) / 16.0)));
         self.solved(wanted, wanted).or_else(followed)
     }

@@ -1,8 +1,10 @@
-//! The push-broom: a line of pixels that moves straight on while it records, as satellites and scanners do.
+//! The push-broom: a line of pixels that moves straight on while it records, as satellites and
+//! scanners do.
 //!
 //! The column at the part u of the way is a fan of rays from e(u) = start + u (end - start):
-//! direction = forward + h up, |h| <= tan(angle / 2). Along the way there is no perspective, across it there is. The area
-//! across a ray grows in proportion to its length: t |m·right| / |direction|² per du dh, m = end - start.
+//! direction = forward + h up, |h| <= tan(angle / 2). Along the way there is no perspective, across
+//! it there is. The area across a ray grows in proportion to its length: t |m·right| / |direction|²
+//! per du dh, m = end - start.
 //!
 //! Source: Gupta, Hartley, *Linear Pushbroom Cameras*, PAMI 19(9), 1997.
 

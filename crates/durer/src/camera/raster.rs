@@ -17,9 +17,11 @@ pub struct Raster {
 }
 
 impl Raster {
-    /// A picture of a size. Its larger side spans the square, unless a compatibility says otherwise.
+    /// A picture of a size. Its larger side spans the square, unless a compatibility says
+    /// otherwise.
     ///
-    /// Where the camera's picture has proportions of its own, it fills this one as far as it can, undistorted and whole.
+    /// Where the camera's picture has proportions of its own, it fills this one as far as it can,
+    /// undistorted and whole.
     pub fn new(width: u32, height: u32, proportions: Option<Vec2>, rules: &Rules) -> Self {
         Raster {
             width,
@@ -30,8 +32,9 @@ impl Raster {
         }
     }
 
-    /// The size of a picture where nobody asks for one: a plain one, or one of about as many pixels in the camera's
-    /// proportions. A unit of these becomes whole pixels where it can, so that faces and walls end between pixels.
+    /// The size of a picture where nobody asks for one: a plain one, or one of about as many pixels
+    /// in the camera's proportions. A unit of these becomes whole pixels where it can, so that
+    /// faces and walls end between pixels.
     pub fn natural_size(proportions: Option<Vec2>, plain: (u32, u32)) -> (u32, u32) {
         let Some(sides) = proportions else { return plain };
         let scale = (plain.0 as f32 * plain.1 as f32 / (sides.x * sides.y)).sqrt();

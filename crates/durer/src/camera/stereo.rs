@@ -1,12 +1,13 @@
 //! Two perspective cameras side by side: a pair of pictures for two eyes.
 //!
-//! `offAxis` shears both views so that they share one window at the distance of convergence: what lies there appears on
-//! the screen, nearer things before it, and no vertical parallax arises. `toeIn` turns both cameras to one point there,
-//! as cross-eyed cameras on a rig are; their pictures differ in height towards the corners. `parallel` turns and shears
-//! nothing: all things appear before the screen.
+//! `offAxis` shears both views so that they share one window at the distance of convergence: what
+//! lies there appears on the screen, nearer things before it, and no vertical parallax arises.
+//! `toeIn` turns both cameras to one point there, as cross-eyed cameras on a rig are; their
+//! pictures differ in height towards the corners. `parallel` turns and shears nothing: all things
+//! appear before the screen.
 //!
-//! Source: Hodges, McAllister, *Stereo and Alternating-Pair Techniques for Display of Computer-Generated Images*, IEEE
-//! CG&A 5(9), 1985; Bourke, *Calculating Stereo Pairs*, 1999.
+//! Source: Hodges, McAllister, *Stereo and Alternating-Pair Techniques for Display of
+//! Computer-Generated Images*, IEEE CG&A 5(9), 1985; Bourke, *Calculating Stereo Pairs*, 1999.
 
 use super::perspective::half_width;
 use super::sheet::Sheet;
@@ -46,7 +47,8 @@ described! {
     }
 }
 
-/// One eye in the middle's space: where it is, its axes as columns, and by how much its window is moved.
+/// One eye in the middle's space: where it is, its axes as columns, and by how much its window is
+/// moved.
 struct Eye {
     at: DVec3,
     axes: DMat3,

@@ -99,7 +99,8 @@ pub(super) fn no_bounces(scout: &Scout) -> Vec<Finding> {
     let cut = |phong: &Phong| counts(phong.reflective).max(counts(phong.transparent)) < settings.least_weight;
     let none = settings.bounces == 0;
     let bounces = |phong: &Phong| phong.reflective != Color::ZERO || phong.transparent != Color::ZERO;
-    // Where the highlight's colour is the mirror's too, only what would be black without mirroring is meant as a mirror.
+    // Where the highlight's colour is the mirror's too, only what would be black without mirroring is
+    // meant as a mirror.
     let shared = matches!(scout.world().rules.secondary, Secondary::Specular | Secondary::SpecularFresnel);
     let meant = |phong: &Phong| phong.fresnel || !shared || phong.diffuse.max_element() < 0.15;
     let all: Vec<_> =
@@ -320,7 +321,8 @@ pub(super) fn too_large(scout: &Scout) -> Vec<Finding> {
     found
 }
 
-/// The material that is seen most of those whose diffuse, mirrored and transmitted shares are more than all light.
+/// The material that is seen most of those whose diffuse, mirrored and transmitted shares are more
+/// than all light.
 pub(super) fn gives_too_much(scout: &Scout) -> Option<Diagnostic> {
     let bounces = scout.subject.job.settings.bounces > 0;
     let sum = |phong: &Phong| {
@@ -343,7 +345,8 @@ pub(super) fn gives_too_much(scout: &Scout) -> Option<Diagnostic> {
     ))
 }
 
-/// Glass whose colour keeps all light in, where that colour weighs what it mirrors and lets through.
+/// Glass whose colour keeps all light in, where that colour weighs what it mirrors and lets
+/// through.
 pub(super) fn dull_glass(scout: &Scout) -> Vec<Finding> {
     if super::physical::is_physical(scout) {
         return super::layers::dull_glass(scout);

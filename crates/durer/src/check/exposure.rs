@@ -1,4 +1,5 @@
-//! Pictures that are too bright, too dark, or of one colour; depths that are all black or all white.
+//! Pictures that are too bright, too dark, or of one colour; depths that are all black or all
+//! white.
 
 use super::finding::{Finding, number, percent, vector};
 use super::lights::{VISIBLE, color, place};
@@ -61,7 +62,8 @@ pub(super) fn is_dark(scout: &Scout) -> bool {
     super::physical::is_physical(scout) && !scout.light().is_empty() && brightest(scout) < DARK
 }
 
-/// A picture in units of its own that eight bits show as white: of a path tracer, or with a sky in cd/m^2.
+/// A picture in units of its own that eight bits show as white: of a path tracer, or with a sky in
+/// cd/m^2.
 fn white(scout: &Scout) -> Vec<Finding> {
     let shown = scout.light();
     let white = shown.iter().filter(|color| color.min_element() > 1.1).count();

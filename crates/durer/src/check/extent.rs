@@ -15,7 +15,8 @@ use crate::world::Geometry;
 
 /// What spans fewer pixels cannot be recognised.
 const FEWEST_PIXELS: f32 = 6.0;
-/// Beyond this ratio of sizes something is out of scale; and beyond this one, where it spoils the picture.
+/// Beyond this ratio of sizes something is out of scale; and beyond this one, where it spoils the
+/// picture.
 const OUT_OF_SCALE: f32 = 3e3;
 const HARMFUL: f32 = 100.0;
 /// And beyond this, where the camera is in it as well.
@@ -145,7 +146,8 @@ pub(super) fn times_larger(scout: &Scout, object: u32) -> Option<f32> {
     (times > SWALLOWING && times.is_finite()).then_some(times)
 }
 
-/// Whether a large object spoils the picture: it is not seen, though it reaches over all, or others are not seen for it.
+/// Whether a large object spoils the picture: it is not seen, though it reaches over all, or others
+/// are not seen for it.
 fn is_harm(scout: &Scout, object: u32) -> bool {
     let sights = scout.sights();
     let hides = sights.contains(&Sight::Hidden(object));

@@ -1,5 +1,5 @@
-//! Materials of layers that show nothing, or not what they are meant to: black metals, glass that swallows all light, surfaces
-//! that are not there.
+//! Materials of layers that show nothing, or not what they are meant to: black metals, glass that
+//! swallows all light, surfaces that are not there.
 
 use super::MOST_SOUGHT;
 use super::finding::{Finding, number as number_word, vector};

@@ -75,7 +75,8 @@ fn weak_together(scout: &Scout, verdicts: &[Verdict]) -> Option<f32> {
     (arrives > 0.0 && arrives < MOST_WEAK && adds < MOST_WEAK).then_some(arrives)
 }
 
-/// Whether what all lights together shine on has none of their colours, on nearly all that they reach.
+/// Whether what all lights together shine on has none of their colours, on nearly all that they
+/// reach.
 fn cancelled_together(scout: &Scout, verdicts: &[Verdict]) -> bool {
     let materials = &scout.world().materials;
     if !verdicts.contains(&Verdict::Works) || verdicts.iter().any(|v| !matches!(v, Verdict::Works | Verdict::Cancelled))
@@ -158,14 +159,16 @@ fn verdict(scout: &Scout, number: usize) -> Verdict {
     }
 }
 
-/// Whether something keeps a light off nearly all that faces it: a few pixels at the horizon may be lit.
+/// Whether something keeps a light off nearly all that faces it: a few pixels at the horizon may be
+/// lit.
 fn nearly_blocked(all: &[&Lit]) -> bool {
     let facing: Vec<&&Lit> = all.iter().filter(|lit| lit.cosine > 1e-3).collect();
     let blocked = facing.iter().filter(|lit| lit.blocker.is_some()).count();
     blocked as f32 > MOST_BLOCKED * facing.len() as f32 && facing.len() * 5 > all.len()
 }
 
-/// Whether one thing keeps a light off all others that have an end and face it, and off most of the rest.
+/// Whether one thing keeps a light off all others that have an end and face it, and off most of the
+/// rest.
 fn roofed(scout: &Scout, light: usize) -> bool {
     let objects = &scout.world().objects;
     let facing = || {
@@ -181,7 +184,8 @@ fn roofed(scout: &Scout, light: usize) -> bool {
     count > 20 && covered as f32 > MOST_BLOCKED * count as f32 && dark as f32 > ROOFED * all as f32
 }
 
-/// Of some objects the one that is in the way of a light at the most places; each may be in the way of another.
+/// Of some objects the one that is in the way of a light at the most places; each may be in the way
+/// of another.
 fn main_blocker(scout: &Scout, light: usize, blocked: &[u32]) -> Option<u32> {
     let (common, lamp) = (most_common(blocked)?, &scout.world().lights[light]);
     let places = scout.seen().filter(|(_, seen)| seen.by(light).is_some_and(|lit| lit.blocker.is_some()));
@@ -211,7 +215,8 @@ fn behind_plane(scout: &Scout, light: &Light) -> Option<u32> {
     (is_seen && world.objects[hit.object as usize].bounds().is_none()).then_some(hit.object)
 }
 
-/// Whether an object around a light lets nothing out: it blocks something, or nothing that is seen faces the light.
+/// Whether an object around a light lets nothing out: it blocks something, or nothing that is seen
+/// faces the light.
 fn keeps_light(scout: &Scout, object: u32, all: &[&Lit]) -> bool {
     let shadows = scout.subject.job.settings.shadows;
     let blocks = all.iter().any(|lit| lit.blocker == Some(object));
@@ -325,7 +330,8 @@ pub(super) fn blocked(scout: &Scout) -> Vec<Finding> {
 
 /// Where lights together reach a smaller share of what is seen, most of it is in the dark.
 const MOSTLY_DARK: f32 = 0.33;
-/// Where less than this share of the strongest light arrives of one, it is there to brighten shadows.
+/// Where less than this share of the strongest light arrives of one, it is there to brighten
+/// shadows.
 const WEAK: f32 = 0.15;
 /// Below this cosine light hardly falls on a surface, but goes along it.
 const GRAZING: f32 = 0.08;

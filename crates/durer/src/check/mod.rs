@@ -1,8 +1,9 @@
 //! What is wrong with a scene whose picture is black, white, empty or odd, and how to mend it.
 //!
-//! A [`Scout`] sends a coarse grid of camera rays into the world and keeps what each found. The checks of the table
-//! [`CHECKS`] look at that, at the meshes and at the description. Every finding has a code that does not change, a place, an
-//! effect on the picture, a proposed change and, where that is mechanical, the edit of the scene's text.
+//! A [`Scout`] sends a coarse grid of camera rays into the world and keeps what each found. The
+//! checks of the table [`CHECKS`] look at that, at the meshes and at the description. Every finding
+//! has a code that does not change, a place, an effect on the picture, a proposed change and, where
+//! that is mechanical, the edit of the scene's text.
 
 mod air;
 mod beams;
@@ -101,7 +102,8 @@ const CONSEQUENCES: &[(&str, &[&str])] = &[
     ("epsilon", &["tiny"]),
 ];
 
-/// All findings about a scene that was read and compiled, those of its reader among them; the causes first.
+/// All findings about a scene that was read and compiled, those of its reader among them; the
+/// causes first.
 pub fn check(subject: &Subject, diagnostics: &Diagnostics) -> Vec<Finding> {
     let scout = Scout::new(subject);
     let mut found: Vec<Finding> = diagnostics.iter().cloned().map(Finding::from).collect();
@@ -143,9 +145,9 @@ pub fn reported(diagnostics: &Diagnostics) -> Vec<Finding> {
     ordered(diagnostics.iter().cloned().map(Finding::from).collect())
 }
 
-/// Errors first, then what spoils the whole picture, then the rest, then notes; among those in the order of the table, in which
-/// causes stand before what comes of them, and each kind once before any is told of again. Of many that are alike, the last one
-/// told says how many more there are.
+/// Errors first, then what spoils the whole picture, then the rest, then notes; among those in the
+/// order of the table, in which causes stand before what comes of them, and each kind once before
+/// any is told of again. Of many that are alike, the last one told says how many more there are.
 fn ordered(mut found: Vec<Finding>) -> Vec<Finding> {
     let level = |finding: &Finding| match finding.diagnostic.severity {
         Severity::Error => 0,

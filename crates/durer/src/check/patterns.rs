@@ -126,7 +126,8 @@ fn without_change(scout: &Scout, look: &Look, written: &Written) -> Option<(Stri
     (cell > COARSEST * size).then_some((message, help))
 }
 
-/// Textures of which one colour alone is seen: the picture has no other, or all corners of a mesh lie at one place of it.
+/// Textures of which one colour alone is seen: the picture has no other, or all corners of a mesh
+/// lie at one place of it.
 pub(super) fn flat_texture(scout: &Scout) -> Vec<Finding> {
     let world = scout.world();
     let mut found = Vec::new();

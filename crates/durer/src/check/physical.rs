@@ -1,5 +1,5 @@
-//! Under a path tracer: scenes in which nothing shines, lamps that shine on nothing that is seen or are enclosed in glass, and
-//! words of media without effect.
+//! Under a path tracer: scenes in which nothing shines, lamps that shine on nothing that is seen or
+//! are enclosed in glass, and words of media without effect.
 
 use super::finding::Finding;
 use super::scout::Scout;

@@ -34,8 +34,9 @@ impl Oddity {
     }
 }
 
-/// What is wrong with a picture of colours, if anything, seen through an exposure: the factor by which its light is multiplied.
-/// It looks no further than it must: a sound picture takes a few pixels.
+/// What is wrong with a picture of colours, if anything, seen through an exposure: the factor by
+/// which its light is multiplied. It looks no further than it must: a sound picture takes a few
+/// pixels.
 pub fn oddity(picture: &Image, exposure: f32, statistics: &Statistics) -> Option<Oddity> {
     let shown = |color: &Color| (exposure * *color).clamp(Color::ZERO, Color::ONE);
     let first = shown(picture.pixels.first()?);

@@ -5,8 +5,8 @@ use crate::diag::Span;
 use crate::math::Vec3;
 use crate::scene::{MatrixOp, Node, Object};
 
-/// Of a scene in which nothing is in the picture: the first transform that in the reverse order, or left out, would put its
-/// object there, and words for that.
+/// Of a scene in which nothing is in the picture: the first transform that in the reverse order, or
+/// left out, would put its object there, and words for that.
 pub(super) fn moved(scout: &Scout) -> Option<(Span, String)> {
     let objects = scout.subject.scene.root.iter().flat_map(|root| &root.objects);
     objects.filter_map(|object| of(scout, object)).next()

@@ -12,8 +12,8 @@ pub struct Repaired {
     pub mended: Vec<usize>,
 }
 
-/// Puts the edits of findings into a file. A finding whose edits meet those of an earlier one, or lie in another file, is left
-/// as it is.
+/// Puts the edits of findings into a file. A finding whose edits meet those of an earlier one, or
+/// lie in another file, is left as it is.
 pub fn apply(bytes: &[u8], file: u32, findings: &[Finding]) -> Repaired {
     let mut edits: Vec<&Edit> = Vec::new();
     let mut mended = Vec::new();

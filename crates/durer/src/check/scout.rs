@@ -19,7 +19,8 @@ use crate::world::World;
 use rayon::prelude::*;
 use std::sync::OnceLock;
 
-/// Rays along the larger side of the picture; fewer where there are many lights, of each of which each ray asks.
+/// Rays along the larger side of the picture; fewer where there are many lights, of each of which
+/// each ray asks.
 const RAYS: u32 = 48;
 const FEWEST_RAYS: u32 = 6;
 const MOST_QUESTIONS: u32 = 1 << 20;
@@ -167,7 +168,8 @@ impl<'a> Scout<'a> {
         self.aims.get_or_init(|| lights.map(|light| super::beams::aim(self, light)).collect())
     }
 
-    /// The colours of the picture, exposed: of all rays, or under a path tracer of a part of them, each the mean of a few samples.
+    /// The colours of the picture, exposed: of all rays, or under a path tracer of a part of them,
+    /// each the mean of a few samples.
     pub(super) fn light(&self) -> &[Color] {
         self.light.get_or_init(|| super::exposure::light(self))
     }
@@ -202,7 +204,8 @@ impl<'a> Scout<'a> {
         self.world().objects[number as usize].span
     }
 
-    /// A word of the course's first grammar, or its counterpart in that of nodes, whichever the scene has.
+    /// A word of the course's first grammar, or its counterpart in that of nodes, whichever the
+    /// scene has.
     pub(super) fn word(&self, classic: &'static str, nodes: &'static str) -> &'static str {
         if self.subject.dialect == Dialect::F23 { nodes } else { classic }
     }

@@ -24,7 +24,8 @@ const MOST_OBJECTS: usize = 200;
 /// Corners of a mesh that are looked for.
 const MOST_CORNERS: usize = 40;
 
-/// The sight of each object. What a ray of the grid hit is seen; of the others, points are aimed at.
+/// The sight of each object. What a ray of the grid hit is seen; of the others, points are aimed
+/// at.
 pub(super) fn sights(scout: &Scout) -> Vec<Sight> {
     let objects = &scout.world().objects;
     let mut sights = vec![Sight::Unknown; objects.len()];
@@ -67,7 +68,8 @@ pub(super) fn corner(scout: &Scout) -> Vec2 {
     scout.raster.point(Vec2::new(scout.raster.width as f32, 0.0)).abs()
 }
 
-/// Points of an object in the world: corners of triangles and their middles, else a grid through its box.
+/// Points of an object in the world: corners of triangles and their middles, else a grid through
+/// its box.
 pub(super) fn points(object: &Object) -> Vec<Vec3> {
     let to_world = |p: Vec3| object.world_point(p);
     match &object.geometry {

@@ -17,7 +17,8 @@ const DIRECTIONS: [Vec3; 5] = [
     Vec3::new(0.687, 0.173, -0.706),
 ];
 
-/// The objects with an end in which a point lies: a ray to any side leaves them once more than it enters them.
+/// The objects with an end in which a point lies: a ray to any side leaves them once more than it
+/// enters them.
 pub(super) fn around(world: &World, point: Vec3) -> Vec<u32> {
     let boxed = |object: &u32| {
         let bounds = world.objects[*object as usize].bounds();

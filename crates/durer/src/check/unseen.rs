@@ -53,7 +53,8 @@ pub(super) fn unseen(scout: &Scout) -> Vec<Finding> {
                 scout.object(first)
             ),
         };
-        // What is out of the picture may stand there for its shadow, or its light; not if next to nothing is left.
+        // What is out of the picture may stand there for its shadow, or its light; not if next to nothing
+        // is left.
         let own = |(_, seen): &(_, &crate::check::scout::Seen)| {
             scout.world().objects[seen.object as usize].bounds().is_some()
         };
@@ -196,7 +197,8 @@ pub(super) fn in_the_way(scout: &Scout) -> Vec<Finding> {
         return Vec::new();
     }
     let Some(bounds) = objects[front].bounds() else { return Vec::new() };
-    // A room or a table holds the others; what is in the way is far before them, and hides nearly all of them.
+    // A room or a table holds the others; what is in the way is far before them, and hides nearly all
+    // of them.
     let eye = scout.world().camera.pose().center;
     let others: Vec<usize> = (0..objects.len()).filter(|&i| i != front && objects[i].bounds().is_some()).collect();
     let away = |i: &usize| objects[*i].bounds().map_or(f32::INFINITY, |own| (own.center() - eye).length());

@@ -12,7 +12,8 @@ use crate::scene::{Group, Node};
 use crate::shape::Primitive;
 use crate::world::{Geometry, Material, Object};
 
-/// Whether the camera's rays all start at its place and go one way: those that run both ways see what is behind as well.
+/// Whether the camera's rays all start at its place and go one way: those that run both ways see
+/// what is behind as well.
 pub(super) fn has_eye(scout: &Scout) -> bool {
     !matches!(scout.world().camera, Camera::Orthographic(_) | Camera::PushBroom(_) | Camera::MultipleCenter(_))
 }
@@ -82,7 +83,8 @@ fn leave(bounds: Aabb, from: Vec3, direction: Vec3) -> Vec3 {
     from + 1.5 * way * direction
 }
 
-/// What the camera should see: the box around all that has an end, else the nearest place of a plane.
+/// What the camera should see: the box around all that has an end, else the nearest place of a
+/// plane.
 pub(super) fn target(scout: &Scout) -> Option<Aabb> {
     let (world, eye) = (scout.world(), scout.world().camera.pose().center);
     let bounds = world.bounds();
@@ -114,7 +116,8 @@ fn all_outside(scout: &Scout) -> bool {
     }
 }
 
-/// The plane between the camera and an object, if there is one: no camera that turns sees the object.
+/// The plane between the camera and an object, if there is one: no camera that turns sees the
+/// object.
 fn plane_before(scout: &Scout, object: &Object) -> Option<u32> {
     let world = scout.world();
     let (eye, place) = (world.camera.pose().center, object.bounds().filter(|b| !b.is_empty())?.center());
@@ -157,7 +160,8 @@ pub(super) fn away(scout: &Scout) -> Vec<Finding> {
     }
     let to = center - pose.center;
     let angle = degrees(pose.direction, to);
-    // With an `up` that says nothing the picture may be turned any way; far from its middle that does not matter.
+    // With an `up` that says nothing the picture may be turned any way; far from its middle that does
+    // not matter.
     let turned = pose.up.normalize_or_zero().cross(pose.direction.normalize_or_zero()).length() < 1e-3;
     if turned && angle < 60.0 {
         return Vec::new();
@@ -245,7 +249,8 @@ fn nearest(scout: &Scout) -> String {
     }
 }
 
-/// The picture is empty although the camera looks at things: they are too small, or there is nothing of them.
+/// The picture is empty although the camera looks at things: they are too small, or there is
+/// nothing of them.
 pub(super) fn missed(scout: &Scout) -> Vec<Finding> {
     let world = scout.world();
     if scout.seen().next().is_some() || world.objects.is_empty() {
@@ -344,7 +349,8 @@ pub(super) fn hidden(scout: &Scout) -> Vec<Finding> {
     vec![Finding::from(diagnostic).whole(true)]
 }
 
-/// A plane between the camera and all things that have an end, though something else, the sky say, is seen beside it.
+/// A plane between the camera and all things that have an end, though something else, the sky say,
+/// is seen beside it.
 pub(super) fn below_plane(scout: &Scout) -> Vec<Finding> {
     let objects = &scout.world().objects;
     let mut front = None;
@@ -418,7 +424,8 @@ fn ground(scout: &Scout, object: u32) -> Option<(Vec3, f32)> {
     Some((n, on.dot(n)))
 }
 
-/// Planes that pass through the middle of most things: a floor with another axis for its normal, say.
+/// Planes that pass through the middle of most things: a floor with another axis for its normal,
+/// say.
 pub(super) fn plane_through(scout: &Scout) -> Vec<Finding> {
     let world = scout.world();
     let boxes: Vec<[Vec3; 8]> =
@@ -463,7 +470,8 @@ pub(super) fn upside_down(scout: &Scout) -> Vec<Finding> {
     let stand = !things.is_empty() && things.corners().iter().all(|p| height(p) > -0.1 * size);
     let pose = world.camera.pose();
     let seen = scout.seen().any(|(_, seen)| seen.object == number);
-    // A ceiling from which things hang is as good as a ground; that things stand on it tells which it is.
+    // A ceiling from which things hang is as good as a ground; that things stand on it tells which it
+    // is.
     let lowest = things.corners().iter().map(height).fold(f32::INFINITY, f32::min);
     if !stand || !seen || lowest > 0.3 * size || world.frame.up.dot(n) > -0.3 || pose.up.dot(n) > 0.1 {
         return Vec::new();
@@ -496,7 +504,8 @@ fn ceiling(scout: &Scout) -> Option<u32> {
     (faces_up && all && seen && !matches!(world.camera, Camera::Orthographic(_))).then_some(number)
 }
 
-/// The other sign of a plane's offset and where it is written, if the camera and the things are on one side of it then.
+/// The other sign of a plane's offset and where it is written, if the camera and the things are on
+/// one side of it then.
 fn offset_turned(scout: &Scout, object: u32) -> Option<(Span, String)> {
     let plane_object = &scout.world().objects[object as usize];
     let Geometry::Primitive(Primitive::Plane(plane)) = &plane_object.geometry else { return None };

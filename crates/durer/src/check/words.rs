@@ -1,4 +1,5 @@
-//! What the reader and the compiler report, with what comes of it in the picture, and the edits that only the whole scene tells.
+//! What the reader and the compiler report, with what comes of it in the picture, and the edits
+//! that only the whole scene tells.
 
 use super::finding::{Finding, vector};
 use super::scout::Scout;
@@ -54,7 +55,8 @@ fn foreign_in_nodes(scout: &Scout, finding: &mut Finding) {
     }
 }
 
-/// A scene may do without lights if it has no use for them: flat colours, and no other light that they would go with.
+/// A scene may do without lights if it has no use for them: flat colours, and no other light that
+/// they would go with.
 fn no_light(scout: &Scout, finding: &mut Finding) {
     let scene = scout.subject.scene;
     let plain = |material: &Material| match material {
@@ -92,7 +94,8 @@ fn up_parallel(scout: &Scout, finding: &mut Finding) {
     }
 }
 
-/// One too many means that materials were counted from 1; with one material alone, it can only be that.
+/// One too many means that materials were counted from 1; with one material alone, it can only be
+/// that.
 fn material_index(scout: &Scout, finding: &mut Finding) {
     finding.diagnostic.effect = finding.diagnostic.help.take();
     let count = scout.subject.scene.materials.len();

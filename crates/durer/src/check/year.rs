@@ -1,4 +1,5 @@
-//! What a year's program makes of a scene that others would show as it was meant: its habits, where they are on.
+//! What a year's program makes of a scene that others would show as it was meant: its habits, where
+//! they are on.
 
 use super::MOST_SOUGHT;
 use super::finding::{Finding, number, percent, vector};
@@ -68,7 +69,8 @@ fn sharpness(phong: &PhongMaterial) -> Option<(&'static str, f32)> {
     }
 }
 
-/// Highlights so blunt that they are everywhere, as of an exponent of 0 or of one over what was meant.
+/// Highlights so blunt that they are everywhere, as of an exponent of 0 or of one over what was
+/// meant.
 fn blunt(scout: &Scout) -> Vec<Finding> {
     if scout.world().rules.highlight == Highlight::None || super::physical::is_physical(scout) {
         return Vec::new();

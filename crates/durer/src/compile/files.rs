@@ -22,8 +22,8 @@ use std::collections::HashMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// What the tree and its building take for a while for each triangle, and the triangle itself with it: its corners' places in
-/// the lists of positions and texture coordinates.
+/// What the tree and its building take for a while for each triangle, and the triangle itself with
+/// it: its corners' places in the lists of positions and texture coordinates.
 const TREE_BYTES: u64 = 200;
 const TRIANGLE_BYTES: u64 = TREE_BYTES + size_of::<[[u32; 3]; 2]>() as u64;
 
@@ -40,7 +40,8 @@ pub(super) struct Loader<'r> {
     /// By path; `None` for files that could not be read, which are complained of once.
     meshes: HashMap<String, Option<Arc<MeshTree>>>,
     texture_numbers: HashMap<String, Option<u32>>,
-    /// Numbers of the textures of materials in layers, by the picture's name and the curve of its values.
+    /// Numbers of the textures of materials in layers, by the picture's name and the curve of its
+    /// values.
     pub(super) map_numbers: HashMap<PictureKey, Option<u32>>,
     /// What was decoded, by the name of the file or the bytes' place in memory.
     pub(super) decoded: HashMap<PictureKey, Option<Texture>>,
@@ -110,7 +111,8 @@ impl<'r> Loader<'r> {
         tree
     }
 
-    /// What something is made of, if what is made is to be kept: a thing in memory by its hash, else a file.
+    /// What something is made of, if what is made is to be kept: a thing in memory by its hash,
+    /// else a file.
     pub(super) fn origin(&self, path: &str, memory: impl FnOnce() -> Option<Digest>) -> Option<Origin> {
         self.resources.kept?;
         memory().map(Origin::Memory).or_else(|| self.resources.source.stamp(path).map(Origin::File))
@@ -328,7 +330,8 @@ impl<'r> Loader<'r> {
             left.push(memory);
             memory = memory.saturating_sub(Encoded::open(bytes, path).map_or(0, |face| face.needed8()));
         }
-        // Decoding takes longer than all else. The first face in order that is wrong is the one complained of.
+        // Decoding takes longer than all else. The first face in order that is wrong is the one complained
+        // of.
         let srgb = self.rules.srgb_textures;
         let one = |((path, bytes), left): (&(String, Arc<[u8]>), &u64)| {
             let mut own = Diagnostics::default();

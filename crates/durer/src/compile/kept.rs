@@ -1,4 +1,5 @@
-//! What was made of a scene's files, for the next time that it is compiled: who watches a scene waits for what was changed alone.
+//! What was made of a scene's files, for the next time that it is compiled: who watches a scene
+//! waits for what was changed alone.
 
 use super::pictures::Encoding;
 use crate::dialect::Rules;

@@ -115,11 +115,13 @@ fn phong_of(m: &PhongMaterial, noise: Option<ColorNoise>, texture: Option<u32>, 
     }
 }
 
-/// What Whitted's light makes of layers: the matte base, a highlight as wide as GGX's, metals that are mirrors, and glass.
+/// What Whitted's light makes of layers: the matte base, a highlight as wide as GGX's, metals that
+/// are mirrors, and glass.
 fn plain(m: &PrincipledMaterial) -> Phong {
     let base = m.base_weight * m.base_color;
     let matte = (1.0 - m.base_metalness) * (1.0 - m.transmission_weight);
-    // Blinn's exponent of the same width at its middle; after Walter and others, *Microfacet Models for Refraction*, 2007.
+    // Blinn's exponent of the same width at its middle; after Walter and others, *Microfacet Models for
+    // Refraction*, 2007.
     let alpha = (m.specular_roughness * m.specular_roughness).max(1e-3);
     let exponent = (2.0 / (alpha * alpha) - 2.0).max(1.0);
     let ratio = (m.specular_ior - 1.0) / (m.specular_ior + 1.0);

@@ -20,8 +20,8 @@ pub(super) fn inside(m: &PrincipledMaterial) -> Option<Medium> {
     m.has_subsurface().then(|| subsurface(m))
 }
 
-/// Source: OpenPBR, *Translucent base*: with a colour T that is left after a depth, extinction is -ln T / depth, and
-/// scattering is the scattered colour over the depth.
+/// Source: OpenPBR, *Translucent base*: with a colour T that is left after a depth, extinction is
+/// -ln T / depth, and scattering is the scattered colour over the depth.
 fn transmission(m: &PrincipledMaterial) -> Option<Medium> {
     if m.transmission_depth <= 0.0 {
         return None;
@@ -45,7 +45,8 @@ fn medium(extinction: Color, scattering: Color, phase: HenyeyGreenstein) -> Medi
 
 /// The medium whose half-space shows a colour.
 ///
-/// Source: OpenPBR, *Subsurface*; the inversion after Kulla and Conty, *Revisiting Physically Based Shading at Imageworks*, 2017.
+/// Source: OpenPBR, *Subsurface*; the inversion after Kulla and Conty, *Revisiting Physically Based
+/// Shading at Imageworks*, 2017.
 fn subsurface(m: &PrincipledMaterial) -> Medium {
     let g = m.subsurface_scatter_anisotropy;
     let albedo = |color: f32| {

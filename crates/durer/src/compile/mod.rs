@@ -45,7 +45,8 @@ pub struct Resources<'a> {
     pub source: &'a Source,
     /// Remembers what was read, for diagnostics.
     pub files: &'a mut Files,
-    /// Whether a scene whose cube map is missing is still compiled, with a warning and the background's colour.
+    /// Whether a scene whose cube map is missing is still compiled, with a warning and the
+    /// background's colour.
     pub sky_optional: bool,
     /// Bytes that meshes and pictures may take.
     pub memory: u64,
@@ -221,7 +222,8 @@ fn check_camera(scene: &Scene, pose: crate::camera::Pose, diagnostics: &mut Diag
 
 /// The sun that goes with a clear sky.
 fn sun(background: &scene::Background) -> Option<Light> {
-    // Of the standard skies it is written where the sun is, but what they give is the sky's light alone.
+    // Of the standard skies it is written where the sun is, but what they give is the sky's light
+    // alone.
     let way = background.sun.filter(|_| background.cie_sky.is_none())?;
     let sky = Sky::new(way, background.turbidity());
     let (turn, scale) = background.environment_placing();

@@ -25,7 +25,8 @@ pub(super) enum Encoding {
 }
 
 impl Loader<'_> {
-    /// The number of a texture of a material in layers: an asset's, or a file's that repeats without end.
+    /// The number of a texture of a material in layers: an asset's, or a file's that repeats
+    /// without end.
     fn map(&mut self, name: &FileName, encoding: Encoding, diagnostics: &mut Diagnostics) -> Option<u32> {
         let key = (name.path.clone(), encoding);
         if let Some(known) = self.map_numbers.get(&key) {
@@ -51,8 +52,9 @@ impl Loader<'_> {
         (PictureBytes::File(word.map_or(name.path.as_str(), |(path, _)| path).into()), mapping)
     }
 
-    /// Decodes the pictures of materials side by side, as far as memory has room for all of them together. Those that cannot be
-    /// had are left to whoever asks for them, and has a place to complain at.
+    /// Decodes the pictures of materials side by side, as far as memory has room for all of them
+    /// together. Those that cannot be had are left to whoever asks for them, and has a place to
+    /// complain at.
     pub(super) fn decode_ahead<'m>(&mut self, materials: impl Iterator<Item = &'m PrincipledMaterial>) {
         let mut left = self.resources.memory;
         let mut packed: Vec<(PictureKey, Arc<[u8]>)> = Vec::new();
@@ -88,7 +90,8 @@ impl Loader<'_> {
         self.ahead = decoded.collect();
     }
 
-    /// The textures of a material in layers; what is wrong with one is said, and the material goes without it.
+    /// The textures of a material in layers; what is wrong with one is said, and the material goes
+    /// without it.
     pub(super) fn maps(&mut self, layers: &PrincipledMaterial, diagnostics: &mut Diagnostics) -> Maps {
         let mut one = |name: Option<&FileName>, encoding| name.and_then(|name| self.map(name, encoding, diagnostics));
         let mut maps = Maps {
@@ -191,7 +194,8 @@ impl Textured {
     }
 }
 
-/// The texture of a picture, decoded within some bytes of memory: eight bits stay eight, finer ones become numbers.
+/// The texture of a picture, decoded within some bytes of memory: eight bits stay eight, finer ones
+/// become numbers.
 pub(super) fn decode(
     name: &FileName,
     path: &str,

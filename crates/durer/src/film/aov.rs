@@ -1,7 +1,8 @@
 //! What a picture can show beside colour: one table.
 //!
-//! Most of these pictures are made of one ray through each pixel's centre, some of the sums of the colour's samples. Files
-//! of floating point get the values as they are; eight-bit files get a picture of them between 0 and 1.
+//! Most of these pictures are made of one ray through each pixel's centre, some of the sums of the
+//! colour's samples. Files of floating point get the values as they are; eight-bit files get a
+//! picture of them between 0 and 1.
 
 use super::false_color::LightScale;
 use super::{Film, luminance_of};
@@ -26,7 +27,8 @@ pub struct Seen {
     pub albedo: Color,
     /// The work for the pixel, with all secondary rays.
     pub counts: TraversalStats,
-    /// The light that arrives at the surface, in lux where the scene's light is in cd/m^2; 0 unless it is asked for.
+    /// The light that arrives at the surface, in lux where the scene's light is in cd/m^2; 0 unless
+    /// it is asked for.
     pub illuminance: f32,
 }
 
@@ -139,7 +141,8 @@ impl Aov {
     }
 }
 
-/// Gives pixels without a hit the colour of the hit before them: rows from the bottom, each from the left.
+/// Gives pixels without a hit the colour of the hit before them: rows from the bottom, each from
+/// the left.
 pub fn fill_from_last_hit(pixels: &mut [Color], hits: &[bool], width: usize) {
     let rows = pixels.len() / width.max(1);
     let mut last = None;

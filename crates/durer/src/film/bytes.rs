@@ -1,7 +1,8 @@
 //! Numbers as bytes: small ones take few of them.
 //!
-//! Whole numbers are written in groups of seven bits, the lowest first, the eighth bit telling that more follow (LEB128);
-//! signed ones alternate around zero (zigzag), so that small ones of either sign are short.
+//! Whole numbers are written in groups of seven bits, the lowest first, the eighth bit telling that
+//! more follow (LEB128); signed ones alternate around zero (zigzag), so that small ones of either
+//! sign are short.
 
 /// Appends a whole number.
 pub fn put(out: &mut Vec<u8>, mut number: u128) {

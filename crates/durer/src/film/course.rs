@@ -1,8 +1,9 @@
 //! The films of the course's assignments, kept as they are.
 //!
-//! Here is Fall 2004, assignment 7: stored samples, weighted by their offset from the centre of the pixel they are for,
-//! also from neighbouring pixels. `jitter.rs` is Fall 2012, assignment 5.
-//! Each pixel is summed in one fixed order, so it is the same whatever part of the picture it is made with.
+//! Here is Fall 2004, assignment 7: stored samples, weighted by their offset from the centre of the
+//! pixel they are for, also from neighbouring pixels. `jitter.rs` is Fall 2012, assignment 5.
+//! Each pixel is summed in one fixed order, so it is the same whatever part of the picture it is
+//! made with.
 
 use crate::math::{Color, Vec2, fp};
 use glam::DVec3;
@@ -68,10 +69,11 @@ impl StoredSamples {
         &self.rows[y as usize][x as usize * n..][..n]
     }
 
-    /// The picture, row 0 at the top: for each pixel the weighted mean of the samples of all pixels within the filter's support,
-    /// inside the picture.
+    /// The picture, row 0 at the top: for each pixel the weighted mean of the samples of all pixels
+    /// within the filter's support, inside the picture.
     ///
-    /// Where all weights are zero (a filter narrower than the gaps between samples) it is the mean of its own samples.
+    /// Where all weights are zero (a filter narrower than the gaps between samples) it is the mean
+    /// of its own samples.
     pub fn reconstruct(&self, filter: CourseFilter) -> Vec<Color> {
         let Ok(pixels) = self.try_reconstruct(filter, (0, 0), self.size(), || Ok::<_, Infallible>(()));
         pixels
@@ -79,7 +81,8 @@ impl StoredSamples {
 
     /// A part of it, from a column and row on, asking every now and then whether to go on.
     ///
-    /// It is as in the whole picture where the samples reach as far around the part as the filter, or to the picture's edge.
+    /// It is as in the whole picture where the samples reach as far around the part as the filter,
+    /// or to the picture's edge.
     pub fn try_reconstruct<E>(
         &self,
         filter: CourseFilter,

@@ -1,4 +1,5 @@
-//! The diagrams of the 2004 course: where samples lie in their pixels, and how a filter weights its surroundings.
+//! The diagrams of the 2004 course: where samples lie in their pixels, and how a filter weights its
+//! surroundings.
 //!
 //! Both enlarge each pixel to `zoom` times `zoom` pixels.
 
@@ -26,9 +27,11 @@ impl Diagram {
     }
 }
 
-/// One dot in the sample's colour for each sample, on a chessboard of black and dark grey pixels, the bottom left one grey.
+/// One dot in the sample's colour for each sample, on a chessboard of black and dark grey pixels,
+/// the bottom left one grey.
 ///
-/// `-render_samples`: `width * zoom` columns. A `zoom` of 0 is taken as 1; the caller bounds the size.
+/// `-render_samples`: `width * zoom` columns. A `zoom` of 0 is taken as 1; the caller bounds the
+/// size.
 pub fn samples(samples: &StoredSamples, zoom: u32) -> Diagram {
     let zoom = zoom.max(1);
     let (width, height) = samples.size();
@@ -49,15 +52,17 @@ pub fn samples(samples: &StoredSamples, zoom: u32) -> Diagram {
     diagram
 }
 
-/// A filter's weights in grey over the pixels of its support around the middle pixel; the others are dark blue, and
-/// blue lines part the pixels.
+/// A filter's weights in grey over the pixels of its support around the middle pixel; the others
+/// are dark blue, and blue lines part the pixels.
 ///
-/// `-render_filter`: `width * zoom + 1` columns. A `zoom` of 0 is taken as 1; the caller bounds the size.
+/// `-render_filter`: `width * zoom + 1` columns. A `zoom` of 0 is taken as 1; the caller bounds the
+/// size.
 pub fn filter(width: u32, height: u32, zoom: u32, filter: CourseFilter) -> Diagram {
     weights(width, height, zoom, filter.support(), |offset| filter.weight(offset))
 }
 
-/// As `filter`, for any function of the offset (right and down, in pixels) whose greatest value is 1.
+/// As `filter`, for any function of the offset (right and down, in pixels) whose greatest value is
+/// 1.
 pub fn weights(width: u32, height: u32, zoom: u32, support: u32, weight: impl Fn(Vec2) -> f32) -> Diagram {
     let zoom = zoom.max(1);
     // The middle pixel, counted from the left and from the bottom.

@@ -15,7 +15,8 @@ pub struct LightScale {
 }
 
 impl LightScale {
-    /// From 0 to what all but the brightest fiftieth of some values stay below: a lamp in sight would leave no colours for the rest.
+    /// From 0 to what all but the brightest fiftieth of some values stay below: a lamp in sight
+    /// would leave no colours for the rest.
     pub fn over(values: impl Iterator<Item = f32>) -> Self {
         let mut all: Vec<f32> = values.filter(|value| value.is_finite() && *value > 0.0).collect();
         all.sort_by(f32::total_cmp);
@@ -56,8 +57,8 @@ impl LightScale {
         STEPS[step].lerp(STEPS[step + 1], place - step as f32)
     }
 
-    /// Draws the scale over the right border of a picture: what colours mean, with numbers and their unit. Small pictures have
-    /// no room for it.
+    /// Draws the scale over the right border of a picture: what colours mean, with numbers and
+    /// their unit. Small pictures have no room for it.
     pub fn draw(&self, pixels: &mut [Color], width: usize, unit: &str) {
         const ROWS: usize = 8;
         let height = pixels.len() / width.max(1);

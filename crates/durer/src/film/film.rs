@@ -8,12 +8,13 @@ mod tests;
 
 /// A window of a picture that adds up weighted samples, each pixel for itself.
 ///
-/// A weight is rounded once to a multiple of 2^-24, the product of colour and weight once to a multiple of 2^-48 (ties to even).
-/// From then on everything is integer addition. Colours are cut at 2^44 either way, and weights are up to 2^10: there is room in a
-/// pixel for 2^25 samples of the greatest colour and weight, and for 2^35 of the greatest colour at weight 1.
+/// A weight is rounded once to a multiple of 2^-24, the product of colour and weight once to a
+/// multiple of 2^-48 (ties to even). From then on everything is integer addition. Colours are cut
+/// at 2^44 either way, and weights are up to 2^10: there is room in a pixel for 2^25 samples of the
+/// greatest colour and weight, and for 2^35 of the greatest colour at weight 1.
 ///
-/// Beside the mean there are exact sums for its variance: luminances, rounded to multiples of 2^-28 and cut at 2^14 either way,
-/// and their squares, with room for 2^21 samples.
+/// Beside the mean there are exact sums for its variance: luminances, rounded to multiples of 2^-28
+/// and cut at 2^14 either way, and their squares, with room for 2^21 samples.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Film {
     left: u32,
@@ -49,7 +50,8 @@ impl Pixel {
             return false;
         }
         let rgb = rgb.map(|c| c.clamp(-GREATEST_COLOR, GREATEST_COLOR));
-        // At most 24 significant bits are left of the weight, so each product below is exact before its rounding.
+        // At most 24 significant bits are left of the weight, so each product below is exact before its
+        // rounding.
         let weight = weight.round_ties_even();
         let scale = weight * (COLOR_SCALE / WEIGHT_SCALE);
         let luminance = luminance(rgb).clamp(-GREATEST_LUMINANCE, GREATEST_LUMINANCE) * LUMINANCE_SCALE;
@@ -73,7 +75,8 @@ impl Pixel {
             && within(self.squares, luminance * luminance)
     }
 
-    /// The same numbers, faster, for a sample that covers the pixel, of a colour below [`SMALL_COLOR`] and a weight of at most 1.
+    /// The same numbers, faster, for a sample that covers the pixel, of a colour below
+    /// [`SMALL_COLOR`] and a weight of at most 1.
     fn add_small(&mut self, rgb: [f64; 3], weight: f64) {
         let weight = whole_number(weight * WEIGHT_SCALE);
         let scale = weight as f64 * (COLOR_SCALE / WEIGHT_SCALE);
@@ -91,7 +94,8 @@ impl Pixel {
     }
 }
 
-/// Sums of the sizes of a sample's red, green and blue below this, and weights up to 1, give products below 2^51 units.
+/// Sums of the sizes of a sample's red, green and blue below this, and weights up to 1, give
+/// products below 2^51 units.
 const SMALL_COLOR: f32 = 8.0;
 
 const COLOR_SCALE: f64 = (1_u64 << 48) as f64;
@@ -103,7 +107,8 @@ const GREATEST_LUMINANCE: f64 = (1_u64 << 14) as f64;
 /// What red, green and blue of Rec. 709 give to the luminance. Source: ITU-R BT.709.
 const LUMINANCE: [f64; 3] = [0.2126, 0.7152, 0.0722];
 
-/// A sample that was left out because it is infinite or not a number. Ordered by row, column, sample.
+/// A sample that was left out because it is infinite or not a number. Ordered by row, column,
+/// sample.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Rejected {
     /// Row from the top.
@@ -144,7 +149,8 @@ impl Film {
         self.add_covering(x, y, sample, (color, 1.0), weight);
     }
 
-    /// The same for a sample at which the camera may see nothing: it leaves the pixel transparent by its weight.
+    /// The same for a sample at which the camera may see nothing: it leaves the pixel transparent
+    /// by its weight.
     pub fn add_if_seen(&mut self, x: u32, y: u32, sample: u32, color: Option<Color>, weight: f32) {
         self.add_covering(x, y, sample, color.map_or((Color::ZERO, 0.0), |color| (color, 1.0)), weight);
     }
@@ -200,7 +206,8 @@ impl Film {
         Ok(())
     }
 
-    /// Appends the sums, and what was left out, as bytes: the same for the same sums. The window is not among them.
+    /// Appends the sums, and what was left out, as bytes: the same for the same sums. The window is
+    /// not among them.
     pub fn write(&self, out: &mut Vec<u8>) {
         for pixel in &self.pixels {
             put(out, pixel.samples.into());
@@ -218,8 +225,9 @@ impl Film {
         }
     }
 
-    /// Reads what [`Film::write`] wrote into this film, which must have the same window and got at most so many samples a pixel.
-    /// `None` if the bytes are something else, or sums that no samples have.
+    /// Reads what [`Film::write`] wrote into this film, which must have the same window and got at
+    /// most so many samples a pixel. `None` if the bytes are something else, or sums that no
+    /// samples have.
     pub fn read(mut self, bytes: &mut Bytes, most_samples: u32) -> Option<Self> {
         for pixel in &mut self.pixels {
             pixel.samples = bytes.whole()?;
@@ -246,8 +254,8 @@ impl Film {
         self.first_rejected.is_sorted().then_some(self)
     }
 
-    /// Weighted mean of a pixel's samples, those that saw nothing taken for black; black where the weights sum to nothing.
-    /// Panics outside the window.
+    /// Weighted mean of a pixel's samples, those that saw nothing taken for black; black where the
+    /// weights sum to nothing. Panics outside the window.
     pub fn resolve(&self, x: u32, y: u32) -> Color {
         let pixel = self.pixel(x, y);
         if pixel.weight == 0 {
@@ -258,22 +266,26 @@ impl Film {
         Vec3::from(pixel.color.map(|sum| (sum as f64 / COLOR_SCALE / weight) as f32))
     }
 
-    /// The share of a pixel's samples that saw something, by weight, from 0 to 1. Panics outside the window.
+    /// The share of a pixel's samples that saw something, by weight, from 0 to 1. Panics outside
+    /// the window.
     pub fn coverage(&self, x: u32, y: u32) -> f32 {
         let pixel = self.pixel(x, y);
         // Also where the weights sum to nothing: there all is seen that was looked for.
         if pixel.covered == pixel.weight {
             return 1.0;
         }
-        // Filters with negative weights may leave the range; where the weights sum to 0 the quotient is infinite.
+        // Filters with negative weights may leave the range; where the weights sum to 0 the quotient is
+        // infinite.
         (pixel.covered as f64 / pixel.weight as f64).clamp(0.0, 1.0) as f32
     }
 
-    /// Estimated variance of the pixel's mean luminance, from its samples: what is to be expected of the square of its error.
-    /// Infinite for fewer than two samples. Panics outside the window.
+    /// Estimated variance of the pixel's mean luminance, from its samples: what is to be expected
+    /// of the square of its error. Infinite for fewer than two samples. Panics outside the
+    /// window.
     ///
-    /// For n samples y of mean m it is sum (y - m)^2 / (n (n - 1)). `gain` is the size of the samples' weights where their mean
-    /// is 1 (see [`super::FilterSampler::gain`]); each error counts that much more.
+    /// For n samples y of mean m it is sum (y - m)^2 / (n (n - 1)). `gain` is the size of the
+    /// samples' weights where their mean is 1 (see [`super::FilterSampler::gain`]); each error
+    /// counts that much more.
     pub fn variance(&self, x: u32, y: u32, gain: f32) -> f64 {
         let pixel = self.pixel(x, y);
         let n = pixel.samples as f64;
@@ -327,8 +339,9 @@ pub fn luminance_of(color: Color) -> f64 {
 
 /// The nearest whole number, ties to even, of a number below 2^51 in size.
 ///
-/// A sum with 3 * 2^51 has no bits below 1 left, so it is rounded, and its bits count on from those of 3 * 2^51 by one for each
-/// whole number. There is no instruction that rounds in what all processors of a kind have.
+/// A sum with 3 * 2^51 has no bits below 1 left, so it is rounded, and its bits count on from those
+/// of 3 * 2^51 by one for each whole number. There is no instruction that rounds in what all
+/// processors of a kind have.
 fn whole_number(x: f64) -> i64 {
     const MAGIC: f64 = 3.0 * (1_u64 << 51) as f64;
     debug_assert!(x.abs() < (1_u64 << 51) as f64);

@@ -1,9 +1,11 @@
-//! Reconstruction filters: how much a sample at some offset from a pixel's centre counts for the pixel.
+//! Reconstruction filters: how much a sample at some offset from a pixel's centre counts for the
+//! pixel.
 //!
-//! All are products of one function of `dx` and the same of `dy`, zero beyond the radius. They are importance-sampled:
-//! a uniform position is warped to an offset whose density is the filter's absolute value, so every sample
-//! of a pixel counts the same (but for a sign) and none touches another pixel.
-//! Source: Pharr, Jakob, Humphreys, *Physically Based Rendering*, 4th edition, section 8.8.
+//! All are products of one function of `dx` and the same of `dy`, zero beyond the radius. They are
+//! importance-sampled: a uniform position is warped to an offset whose density is the filter's
+//! absolute value, so every sample of a pixel counts the same (but for a sign) and none touches
+//! another pixel. Source: Pharr, Jakob, Humphreys, *Physically Based Rendering*, 4th edition,
+//! section 8.8.
 
 use crate::math::{Vec2, fp};
 use serde::{Deserialize, Serialize};
@@ -91,7 +93,8 @@ impl Filter {
         }
     }
 
-    /// The weight at an offset from the pixel's centre, in pixels. Not normalised; negative in Mitchell's lobes.
+    /// The weight at an offset from the pixel's centre, in pixels. Not normalised; negative in
+    /// Mitchell's lobes.
     pub fn weight(self, dx: f32, dy: f32) -> f32 {
         self.profile(dx.abs()) * self.profile(dy.abs())
     }
@@ -131,9 +134,10 @@ impl Filter {
 
 /// Draws offsets in proportion to a filter's absolute value.
 ///
-/// Along an axis the filter's integral is inverted once, at `SHARES + 1` knots; between two knots all distances are equally
-/// likely. So each share of the filter lies where it belongs, and an offset is off by less than the width of its share: on
-/// average by less than a thousandth of the radius (a test).
+/// Along an axis the filter's integral is inverted once, at `SHARES + 1` knots; between two knots
+/// all distances are equally likely. So each share of the filter lies where it belongs, and an
+/// offset is off by less than the width of its share: on average by less than a thousandth of the
+/// radius (a test).
 #[derive(Clone, Debug)]
 pub struct FilterSampler {
     filter: Filter,
@@ -186,10 +190,12 @@ impl FilterSampler {
         }
     }
 
-    /// Warps a uniform position in [0,1)^2 to an offset from the pixel's centre, with the weight of the sample there.
+    /// Warps a uniform position in [0,1)^2 to an offset from the pixel's centre, with the weight of
+    /// the sample there.
     ///
-    /// The weight is 1 for filters without negative lobes; otherwise its size is the same everywhere, its sign the
-    /// filter's, its mean 1. Offsets grow with positions, so an even pattern stays even.
+    /// The weight is 1 for filters without negative lobes; otherwise its size is the same
+    /// everywhere, its sign the filter's, its mean 1. Offsets grow with positions, so an even
+    /// pattern stays even.
     pub fn sample(&self, position: Vec2) -> (Vec2, f32) {
         let offset = Vec2::new(self.warp(position.x), self.warp(position.y));
         let weight = match self.filter {

@@ -1,4 +1,5 @@
-//! From samples to pixels: reconstruction filters, exact sums, and the course's own films and diagrams.
+//! From samples to pixels: reconstruction filters, exact sums, and the course's own films and
+//! diagrams.
 //!
 //! Pixels are counted from the top left corner; a position in a pixel runs right and down.
 

@@ -2,7 +2,8 @@
 
 use super::film::{Film, Pixel, WEIGHT_SCALE};
 
-/// A film that nothing is added to for a while. It is the same film: what comes out is what went in.
+/// A film that nothing is added to for a while. It is the same film: what comes out is what went
+/// in.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Packed {
     /// Each pixel has one sample of weight 1, which saw something: its colour, and its luminance.

@@ -1,8 +1,8 @@
 //! Bodies of glass whose skin is written as several meshes.
 //!
-//! pbrt and Mitsuba tell by the side of a surface alone whether a ray goes in or out. Here a ray knows the
-//! objects that it is in, so what bounds one body must be one object: open meshes of the same glass
-//! are joined.
+//! pbrt and Mitsuba tell by the side of a surface alone whether a ray goes in or out. Here a ray
+//! knows the objects that it is in, so what bounds one body must be one object: open meshes of the
+//! same glass are joined.
 
 use crate::dialect::MeshNormals;
 use crate::material::principled::Walls;

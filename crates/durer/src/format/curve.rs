@@ -1,4 +1,5 @@
-//! Spectra as text: rows of a wavelength in nanometres and values, with commas, semicolons or blanks between them.
+//! Spectra as text: rows of a wavelength in nanometres and values, with commas, semicolons or
+//! blanks between them.
 //!
 //! `#` begins a comment. A row of words before the numbers names the columns.
 

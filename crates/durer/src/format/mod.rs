@@ -1,7 +1,8 @@
 //! Readers: one file a format, one row of [`MESH_FORMATS`] or [`SCENE_FORMATS`] each.
 //!
-//! The files come from anywhere. Readers allocate in proportion to the bytes that are there, never to what a file
-//! promises, refuse numbers that are not finite and indices that lead nowhere, and collect errors with their places.
+//! The files come from anywhere. Readers allocate in proportion to the bytes that are there, never
+//! to what a file promises, refuse numbers that are not finite and indices that lead nowhere, and
+//! collect errors with their places.
 
 mod bodies;
 pub mod course;
@@ -43,7 +44,8 @@ pub struct MeshFormat {
     pub extensions: &'static [&'static str],
     /// Whether a file that begins with these bytes seems to be of this format.
     pub recognise: fn(&[u8]) -> bool,
-    /// Reads a file; the number goes into the spans. Errors go into the collection, and then there is no mesh.
+    /// Reads a file; the number goes into the spans. Errors go into the collection, and then there
+    /// is no mesh.
     pub read: fn(&[u8], u32, &mut Diagnostics) -> Option<MeshData>,
     /// The same file as programs with some habits know it.
     pub known: fn(&[u8], CompatSet) -> Cow<'_, [u8]>,
@@ -67,14 +69,17 @@ pub fn mesh_format_for(name: &str) -> Option<&'static MeshFormat> {
     MESH_FORMATS.iter().find(|format| format.extensions.contains(&extension.as_str()))
 }
 
-/// Reads a mesh file in the format that its name's ending says or, where that is unknown, its content.
+/// Reads a mesh file in the format that its name's ending says or, where that is unknown, its
+/// content.
 ///
-/// `file` is the number of the file in [`Files`](crate::diag::Files), for spans; `name` its name with ending.
+/// `file` is the number of the file in [`Files`](crate::diag::Files), for spans; `name` its name
+/// with ending.
 ///
 /// # Errors
 ///
-/// All errors are added to `diagnostics`, with the place of the offending bytes, and then the result is `None`. It is
-/// `None` too where `diagnostics` was full already. Warnings and notes are added likewise and leave the mesh usable.
+/// All errors are added to `diagnostics`, with the place of the offending bytes, and then the
+/// result is `None`. It is `None` too where `diagnostics` was full already. Warnings and notes are
+/// added likewise and leave the mesh usable.
 pub fn read_mesh(bytes: &[u8], file: u32, name: &str, diagnostics: &mut Diagnostics) -> Option<MeshData> {
     read_mesh_as(bytes, file, name, 0, diagnostics)
 }

@@ -32,10 +32,12 @@ const TENS: [f64; 23] = [
     1e21, 1e22,
 ];
 
-/// The number of a word of few digits; `None` for others, and where it could be rounded in another way than the best.
+/// The number of a word of few digits; `None` for others, and where it could be rounded in another
+/// way than the best.
 ///
-/// Source: Clinger, *How to read floating point numbers accurately*, 1990: digits below 2^53 times or over an exact power of
-/// ten are rounded once. Rounding that to single precision errs only where it lies halfway between two such numbers.
+/// Source: Clinger, *How to read floating point numbers accurately*, 1990: digits below 2^53 times
+/// or over an exact power of ten are rounded once. Rounding that to single precision errs only
+/// where it lies halfway between two such numbers.
 fn quickly(word: &[u8]) -> Option<f32> {
     let (negative, mut rest) = match word {
         [b'-', rest @ ..] => (true, rest),
@@ -79,7 +81,8 @@ fn quickly(word: &[u8]) -> Option<f32> {
     (is_usual && !is_halfway).then_some(if negative { -value } else { value })
 }
 
-/// Whether a word is a not-finite number as C libraries print it: `-nan(ind)`, `1.#QNAN`, `-1.#IND00`.
+/// Whether a word is a not-finite number as C libraries print it: `-nan(ind)`, `1.#QNAN`,
+/// `-1.#IND00`.
 fn is_c_not_finite(word: &[u8]) -> bool {
     let unsigned = word.strip_prefix(b"-").or(word.strip_prefix(b"+")).unwrap_or(word);
     let is_nan = unsigned.get(..4).is_some_and(|start| start.eq_ignore_ascii_case(b"nan("));
@@ -91,7 +94,8 @@ pub(super) fn is_not_finite_tail(bytes: &[u8]) -> bool {
     [&b"#INF"[..], b"#IND", b"#QNAN", b"#SNAN"].iter().any(|tail| bytes.starts_with(tail))
 }
 
-/// Reads a word as a whole number; one beyond the range of `i64` becomes the nearest end of that range.
+/// Reads a word as a whole number; one beyond the range of `i64` becomes the nearest end of that
+/// range.
 pub(super) fn parse_integer(word: &[u8]) -> Option<i64> {
     let (negative, digits) = match word {
         [b'-', digits @ ..] => (true, digits),
@@ -169,7 +173,8 @@ mod tests {
             }
         }
         assert!(quick > 120_000, "{quick}");
-        // Halfway between two numbers of single precision, and a little above: only the first is not settled at once.
+        // Halfway between two numbers of single precision, and a little above: only the first is not
+        // settled at once.
         assert_eq!(quickly(b"16777217"), None);
         assert_eq!(quickly(b"16777217.5"), Some(16777218.0));
         assert_eq!(quickly(b"-0.0").map(f32::to_bits), Some((-0.0f32).to_bits()));

@@ -1,7 +1,9 @@
-//! Wavefront `.obj`: the polygons of it, without curves and surfaces; `scene.rs` adds the materials of `.mtl` files.
+//! Wavefront `.obj`: the polygons of it, without curves and surfaces; `scene.rs` adds the materials
+//! of `.mtl` files.
 //!
-//! The file is read twice: positions, texture coordinates and normals first, then the faces, which may refer to
-//! vertices further down. So nothing but the mesh itself is kept. Both times its parts are read side by side.
+//! The file is read twice: positions, texture coordinates and normals first, then the faces, which
+//! may refer to vertices further down. So nothing but the mesh itself is kept. Both times its parts
+//! are read side by side.
 
 mod faces;
 pub mod habits;
@@ -132,8 +134,8 @@ fn counts(mesh: &MeshData) -> Counts {
     [mesh.positions.len(), mesh.uvs.len(), mesh.normals.len()]
 }
 
-/// Reads positions, texture coordinates and normals, and looks at the first word of everything else. Gives how many there are
-/// before each part.
+/// Reads positions, texture coordinates and normals, and looks at the first word of everything
+/// else. Gives how many there are before each part.
 fn read_vertices(bytes: &[u8], parts: &[Range<usize>], mesh: &mut MeshData, report: &mut Report) -> Vec<Counts> {
     let read = |part: &Range<usize>| vertices(bytes, part.clone(), report.part());
     let read: Vec<Vertices> = parts.par_iter().map(read).collect();
@@ -213,15 +215,17 @@ fn vertices(bytes: &[u8], part: Range<usize>, mut report: Report) -> Vertices {
     Vertices { mesh, unknown, report }
 }
 
-/// A colour's value as programs write it: by sRGB's curve, from 0 to 1. What is no such number is white.
+/// A colour's value as programs write it: by sRGB's curve, from 0 to 1. What is no such number is
+/// white.
 fn decode(value: f32) -> f32 {
     if (0.0..=1.0).contains(&value) { crate::image::decode_srgb((value * 255.0 + 0.5) as u8) } else { 1.0 }
 }
 
-/// Reads the numbers of a statement and their count. The first `needed` must be there, the first `sound` finite; what is not
-/// there or wrong is 0.
+/// Reads the numbers of a statement and their count. The first `needed` must be there, the first
+/// `sound` finite; what is not there or wrong is 0.
 ///
-/// More numbers may follow, such as weights and colours. They must be numbers, or two lines have run together.
+/// More numbers may follow, such as weights and colours. They must be numbers, or two lines have
+/// run together.
 fn numbers<const N: usize>(
     bytes: &[u8],
     keyword: Range<usize>,

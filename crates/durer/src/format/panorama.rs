@@ -1,4 +1,5 @@
-//! Light from infinitely far away as one picture of longitude and latitude, which is the scene's environment.
+//! Light from infinitely far away as one picture of longitude and latitude, which is the scene's
+//! environment.
 
 use crate::describe::FileName;
 use crate::diag::Span;
@@ -13,7 +14,8 @@ use std::f32::consts::{PI, TAU};
 /// Places along each side of a texel that are looked up.
 const PLACES: u32 = 3;
 
-/// Makes the picture of what comes from each direction of the world, and puts it around the scene. Gives whether that could be done.
+/// Makes the picture of what comes from each direction of the world, and puts it around the scene.
+/// Gives whether that could be done.
 pub(super) fn surround(
     scene: &mut Scene,
     (name, span): (&str, Span),

@@ -62,8 +62,8 @@ impl Pictures<'_> {
         }
     }
 
-    /// A picture of numbers, made of another by what its texels' means become; `decode` is the other's curve. Numbers have
-    /// none.
+    /// A picture of numbers, made of another by what its texels' means become; `decode` is the
+    /// other's curve. Numbers have none.
     pub fn changed(
         &self,
         picture: &Picture,
@@ -98,8 +98,8 @@ pub(super) fn asset(scene: &mut Scene, picture: Picture, span: Span) -> FileName
     FileName { path, span }
 }
 
-/// A picture of four texels: one colour at the upper left and the lower right, another at the other two. Also what its values
-/// are to be multiplied by.
+/// A picture of four texels: one colour at the upper left and the lower right, another at the other
+/// two. Also what its values are to be multiplied by.
 pub(super) fn checkerboard(one: Color, other: Color) -> Option<(PictureBytes, f32)> {
     let most = one.max(other).max_element().max(1.0);
     let pixels = [one, other, other, one].map(|color| color / most);

@@ -1,8 +1,9 @@
 //! Cutting polygons into triangles.
 //!
-//! A polygon of n corners becomes n - 2 triangles that wind as it does and use no other points. Strictly convex
-//! ones become fans; others lose their ears one by one in the plane that shows most of them.
-//! Source: Meisters, *Polygons have ears*, 1975; O'Rourke, *Computational Geometry in C*, chapter 1.
+//! A polygon of n corners becomes n - 2 triangles that wind as it does and use no other points.
+//! Strictly convex ones become fans; others lose their ears one by one in the plane that shows most
+//! of them. Source: Meisters, *Polygons have ears*, 1975; O'Rourke, *Computational Geometry in C*,
+//! chapter 1.
 
 use crate::math::Vec3;
 use std::collections::VecDeque;
@@ -29,12 +30,14 @@ pub(super) struct Cutter {
 }
 
 impl Cutter {
-    /// For a file of this many bytes: the work stays proportional to its size, and never takes hours.
+    /// For a file of this many bytes: the work stays proportional to its size, and never takes
+    /// hours.
     pub fn new(file_bytes: usize) -> Self {
         Cutter { budget: (1 << 28) + 256 * file_bytes as u64, ..Cutter::default() }
     }
 
-    /// Calls `emit` with the three corners of each triangle, counted from 0, of the polygon with `count` corners.
+    /// Calls `emit` with the three corners of each triangle, counted from 0, of the polygon with
+    /// `count` corners.
     pub fn cut(
         &mut self,
         count: usize,
@@ -61,7 +64,8 @@ impl Cutter {
         Ok(())
     }
 
-    /// Drops the axis along which the polygon's normal is longest, such that the rest winds counter-clockwise.
+    /// Drops the axis along which the polygon's normal is longest, such that the rest winds
+    /// counter-clockwise.
     fn project(&mut self, count: usize, corner: impl Fn(usize) -> Vec3) {
         // Newell's normal: the sum of the areas over the edges, seen from the first corner.
         let origin = corner(0).as_dvec3();
@@ -207,7 +211,8 @@ impl Cutter {
     }
 }
 
-/// Whether a quadrilateral is cut from its first to its third corner: unless only the other cut stays inside.
+/// Whether a quadrilateral is cut from its first to its third corner: unless only the other cut
+/// stays inside.
 fn splits_at_first(corners: [Vec3; 4]) -> bool {
     let [a, b, c, d] = corners.map(|p| p.as_dvec3());
     let normal = (c - a).cross(d - b);

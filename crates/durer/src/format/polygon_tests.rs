@@ -1,6 +1,7 @@
 use super::*;
 
-/// The triangles of a polygon in a tilted plane, and twice the sum of their areas against the polygon's normal.
+/// The triangles of a polygon in a tilted plane, and twice the sum of their areas against the
+/// polygon's normal.
 fn cut(outline: &[[f32; 2]]) -> (Vec<[usize; 3]>, Vec<f64>) {
     let corner = |i: usize| {
         let [x, y] = outline[i];

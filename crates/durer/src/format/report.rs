@@ -26,7 +26,8 @@ impl Report {
         Report { file: self.file, found: Vec::new(), errors: 0, room: self.room.saturating_sub(self.errors) }
     }
 
-    /// Adds what was found in the next part, as far as there is room for errors: as if the parts were one.
+    /// Adds what was found in the next part, as far as there is room for errors: as if the parts
+    /// were one.
     pub fn join(&mut self, part: Report) {
         for diagnostic in part.found {
             if self.is_full() {

@@ -1,4 +1,5 @@
-//! Readers of whole scenes: one row of [`SCENE_FORMATS`] each. What is a mesh alone is a scene of one mesh.
+//! Readers of whole scenes: one row of [`SCENE_FORMATS`] each. What is a mesh alone is a scene of
+//! one mesh.
 
 use super::{MeshFormat, extension, gltf, mitsuba, obj, panorama, pbrt, ply, radiance, read_mesh, stl, threemf};
 use crate::describe::FileName;
@@ -48,7 +49,8 @@ pub struct Output<'a> {
     pub normals: MeshNormals,
 }
 
-/// The formats of models, in the order in which content is tried. What is none of them is in the course's language.
+/// The formats of models, in the order in which content is tried. What is none of them is in the
+/// course's language.
 pub const SCENE_FORMATS: &[SceneFormat] = &[
     gltf::FORMAT,
     pbrt::FORMAT,
@@ -92,8 +94,8 @@ pub fn scene_format_for(name: &str) -> Option<&'static SceneFormat> {
     SCENE_FORMATS.iter().find(|format| format.extensions.contains(&extension.as_str()))
 }
 
-/// The format of a file that is a model: by its content, or failing that by its name. `None`: it is text of the course's
-/// language, or nothing that is known.
+/// The format of a file that is a model: by its content, or failing that by its name. `None`: it is
+/// text of the course's language, or nothing that is known.
 pub fn find_scene_format(bytes: &[u8], name: &str) -> Option<&'static SceneFormat> {
     scene_format_for(name).or_else(|| SCENE_FORMATS.iter().find(|format| (format.recognise)(bytes)))
 }
@@ -141,7 +143,8 @@ fn one_mesh(input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
 }
 
 impl Scene {
-    /// Puts a picture of all directions around the scene, instead of all light that is far away. Its upper border is up.
+    /// Puts a picture of all directions around the scene, instead of all light that is far away.
+    /// Its upper border is up.
     fn surround(&mut self, name: &str, bytes: Arc<[u8]>, up: Axis) {
         self.background = Background { color: Vec3::ZERO, ..Background::default() };
         let near = |light: &Spanned<Light>| !matches!(light.value, Light::Directional(_));

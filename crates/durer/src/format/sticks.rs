@@ -20,12 +20,13 @@ pub(super) fn ball(center: Vec3, radius: f32) -> Node {
 
 /// Sides of a stick of triangles.
 const SIDES: u32 = 6;
-/// The thickness of lines without one, as a share of the size of what they belong to, and of points.
+/// The thickness of lines without one, as a share of the size of what they belong to, and of
+/// points.
 const LINE: f32 = 0.006;
 const POINT: f32 = 0.015;
 
-/// What has lines between vertices, and vertices alone, as thin sticks and small balls of triangles. Vertices keep their colours and
-/// coordinates.
+/// What has lines between vertices, and vertices alone, as thin sticks and small balls of
+/// triangles. Vertices keep their colours and coordinates.
 pub(super) fn thickened(data: &MeshData, lines: &[[u32; 2]], points: &[u32]) -> MeshData {
     let used = || lines.iter().flatten().chain(points).map(|&i| data.positions[i as usize]);
     let low = used().reduce(Vec3::min).unwrap_or_default();

@@ -1,7 +1,8 @@
 //! Stereolithography `.stl`: triangles alone, as text or binary.
 //!
-//! Source: *StereoLithography Interface Specification*, 3D Systems, 1989. Facets' normals are those of their corners'
-//! order, so the written ones are read over, as are colours that some programs put into a facet's last two bytes.
+//! Source: *StereoLithography Interface Specification*, 3D Systems, 1989. Facets' normals are those
+//! of their corners' order, so the written ones are read over, as are colours that some programs
+//! put into a facet's last two bytes.
 
 mod text;
 mod write;
@@ -102,7 +103,8 @@ fn read_binary(bytes: &[u8], mesh: &mut Builder, report: &mut Report) {
     }
 }
 
-/// Puts corners at the same place together: the format has triangles that know nothing of each other.
+/// Puts corners at the same place together: the format has triangles that know nothing of each
+/// other.
 #[derive(Default)]
 struct Builder {
     data: MeshData,

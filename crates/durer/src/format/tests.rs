@@ -31,7 +31,8 @@ pub(super) fn read_clean(bytes: &[u8], name: &str) -> MeshData {
     mesh.unwrap()
 }
 
-/// Reads all prefixes of a file, and the file with bytes changed, for nothing but the absence of panics.
+/// Reads all prefixes of a file, and the file with bytes changed, for nothing but the absence of
+/// panics.
 pub(super) fn abuse(bytes: &[u8], name: &str) {
     let try_it = |bytes: &[u8]| {
         if let Some(mesh) = read(bytes, name).0 {

@@ -1,7 +1,8 @@
 //! Volume files of Mitsuba: densities on a grid.
 //!
-//! Little-endian: `VOL`, the version (3), then as 32-bit numbers the type (1: `f32`), the counts along x, y and z, the channels
-//! (1), the six coordinates of the box, and the values, x running fastest. Source: Mitsuba 3's documentation, `gridvolume`.
+//! Little-endian: `VOL`, the version (3), then as 32-bit numbers the type (1: `f32`), the counts
+//! along x, y and z, the channels (1), the six coordinates of the box, and the values, x running
+//! fastest. Source: Mitsuba 3's documentation, `gridvolume`.
 
 use crate::diag::{Diagnostic, Diagnostics, Span};
 use crate::math::{Aabb, Vec3};

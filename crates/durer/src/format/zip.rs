@@ -1,4 +1,5 @@
-//! Archives of zip, part by part. What a part says that it unpacks to is checked before memory is taken for it.
+//! Archives of zip, part by part. What a part says that it unpacks to is checked before memory is
+//! taken for it.
 
 use flate2::read::DeflateDecoder;
 use rawzip::{CompressionMethod, ZipArchive, ZipArchiveEntryWayfinder};
@@ -7,8 +8,8 @@ use std::io::Read;
 
 /// Parts of an archive.
 const MOST_PARTS: usize = 1 << 16;
-/// Bytes that may come of one byte of the archive, and of the smallest archive. Text of models is packed to a tenth, and
-/// seldom to a fiftieth.
+/// Bytes that may come of one byte of the archive, and of the smallest archive. Text of models is
+/// packed to a tenth, and seldom to a fiftieth.
 const MOST_TIMES: u64 = 200;
 const FREE: u64 = 1 << 24;
 

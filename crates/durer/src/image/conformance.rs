@@ -110,7 +110,8 @@ fn no_prefix_is_a_picture() {
     }
 }
 
-/// Forged bytes may make another picture, but neither a panic nor one that is larger than the limit.
+/// Forged bytes may make another picture, but neither a panic nor one that is larger than the
+/// limit.
 fn survives(format: &Format, bytes: &[u8]) {
     if let Ok(image) = read(bytes, &name(format)) {
         assert!(image.check().is_ok());

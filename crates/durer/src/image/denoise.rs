@@ -1,10 +1,12 @@
 //! Noise taken out of a picture, by what is known of each pixel's surface.
 //!
-//! Light over the surface's own colour is smooth where the surface is one: it is averaged over pixels of like normals, places and
-//! colours, the more the less sure its own value is. Pictures so made are guesses, and no measurements.
+//! Light over the surface's own colour is smooth where the surface is one: it is averaged over
+//! pixels of like normals, places and colours, the more the less sure its own value is. Pictures so
+//! made are guesses, and no measurements.
 //!
-//! Source: Dammertz and others, *Edge-Avoiding À-Trous Wavelet Transform for fast Global Illumination Filtering*, HPG 2010; weights by
-//! variance: Schied and others, *Spatiotemporal Variance-Guided Filtering*, HPG 2017, of which this is the spatial half.
+//! Source: Dammertz and others, *Edge-Avoiding À-Trous Wavelet Transform for fast Global
+//! Illumination Filtering*, HPG 2010; weights by variance: Schied and others, *Spatiotemporal
+//! Variance-Guided Filtering*, HPG 2017, of which this is the spatial half.
 
 use super::Image;
 use crate::math::{Color, Vec3, fp};
@@ -117,7 +119,8 @@ mod tests {
     use super::*;
     use crate::math::random::Random;
 
-    /// Two walls that meet in the middle, one of them checkered, with light that grows to the right, and noise of a known variance.
+    /// Two walls that meet in the middle, one of them checkered, with light that grows to the
+    /// right, and noise of a known variance.
     fn noisy(deviation: f32) -> (Image, Image, [Vec<Vec3>; 3], Vec<f32>) {
         let (width, height) = (48_u32, 32_u32);
         let mut random = Random(11);

@@ -40,11 +40,14 @@ pub enum Tone {
     /// What is more than 1 is cut off.
     #[default]
     None,
-    /// By brightness: L / (1 + L). Source: Reinhard and others, *Photographic Tone Reproduction for Digital Images*, 2002.
+    /// By brightness: L / (1 + L). Source: Reinhard and others, *Photographic Tone Reproduction for
+    /// Digital Images*, 2002.
     Reinhard,
-    /// A fit of ACES' curve, for each channel. Source: Narkowicz, *ACES Filmic Tone Mapping Curve*, 2016.
+    /// A fit of ACES' curve, for each channel. Source: Narkowicz, *ACES Filmic Tone Mapping Curve*,
+    /// 2016.
     Aces,
-    /// AgX as in Blender. Source: Sobotka; its polynomial is Wrensch's, *Minimal AgX Implementation*, 2023.
+    /// AgX as in Blender. Source: Sobotka; its polynomial is Wrensch's, *Minimal AgX
+    /// Implementation*, 2023.
     Agx,
     /// Colours up to 0.8 as they are. Source: Khronos, *PBR Neutral Tone Mapper*, 2024.
     KhronosNeutral,
@@ -140,7 +143,8 @@ mod tests {
             assert!(before > 0.9, "{name}: {before}");
             assert_eq!(Tone::from_name(name), Some(tone));
         }
-        // Khronos' promise: a base colour of up to 0.8 is shown as it is, less the 0.04 that every dielectric reflects.
+        // Khronos' promise: a base colour of up to 0.8 is shown as it is, less the 0.04 that every
+        // dielectric reflects.
         assert!((Tone::KhronosNeutral.apply(Vec3::splat(0.5)) - 0.46).length() < 1e-6);
         assert_eq!(Tone::None.apply(Vec3::splat(7.0)), Vec3::splat(7.0));
     }

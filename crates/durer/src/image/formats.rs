@@ -64,7 +64,8 @@ pub(super) struct Head {
 pub enum Raster {
     /// Eight bits a channel.
     Eight(Image8),
-    /// Sixteen bits a channel, from 0 to 1: a curve says what they mean. The opacity of each pixel, if the file has it.
+    /// Sixteen bits a channel, from 0 to 1: a curve says what they mean. The opacity of each pixel,
+    /// if the file has it.
     Sixteen(Image, Vec<f32>),
     /// Numbers as they are, with opacity.
     Float(Image, Vec<f32>),
@@ -121,8 +122,9 @@ impl Format {
     /// Appends a file with these layers to `out`.
     ///
     /// # Errors
-    /// [`ImageError::NoLayer`], [`ImageError::SeveralLayers`] where only one fits, [`ImageError::LayerSizes`],
-    /// [`ImageError::Size`], and [`ImageError::Unsupported`] for a size or name that the format cannot hold.
+    /// [`ImageError::NoLayer`], [`ImageError::SeveralLayers`] where only one fits,
+    /// [`ImageError::LayerSizes`], [`ImageError::Size`], and [`ImageError::Unsupported`] for a
+    /// size or name that the format cannot hold.
     pub fn write(&self, layers: &[Layer], options: &WriteOptions, out: &mut Vec<u8>) -> Result<(), ImageError> {
         let first = layers.first().ok_or(ImageError::NoLayer)?;
         if layers.len() > 1 && !self.layers {
@@ -148,7 +150,8 @@ impl Format {
         self.caught(|| (self.decode)(bytes))
     }
 
-    /// Most decoders are other people's code. Should one of them panic, this is one more malformed file.
+    /// Most decoders are other people's code. Should one of them panic, this is one more malformed
+    /// file.
     fn caught<T>(&self, work: impl FnOnce() -> Result<T, ImageError>) -> Result<T, ImageError> {
         caught(work).unwrap_or_else(|| Err(ImageError::malformed(self.name, "its decoder failed")))
     }
@@ -199,7 +202,8 @@ fn display(layer: &Layer, options: &WriteOptions) -> Display {
     }
 }
 
-/// The bytes of an eight-bit picture with alpha: red, green, blue and alpha, the top row first; `None` where it is opaque.
+/// The bytes of an eight-bit picture with alpha: red, green, blue and alpha, the top row first;
+/// `None` where it is opaque.
 fn eight_bit_alpha(layer: &Layer, options: &WriteOptions) -> Option<Vec<u8>> {
     let mut bytes = Vec::with_capacity(4 * layer.image.pixels.len());
     Strip::of(layer, options).eight_bit(&layer.image.pixels, layer.coverage.as_ref()?, |rgba| bytes.extend(rgba));

@@ -1,7 +1,7 @@
 //! How much memory a picture may take.
 //!
-//! A declared size is never trusted: it is read from the file's head, and compared with the file's length and with the memory
-//! that the caller allows, before anything is decoded.
+//! A declared size is never trusted: it is read from the file's head, and compared with the file's
+//! length and with the memory that the caller allows, before anything is decoded.
 
 use super::ImageError;
 
@@ -11,8 +11,8 @@ pub const MAX_PIXELS: u64 = 1 << 28;
 /// Pixels allowed whatever the length of the file: a square of 2048.
 const FREE_PIXELS: u64 = 1 << 22;
 
-/// Pixels allowed for each byte of a file. Deflate packs at most 1032 bytes into one, so a picture of eight bits
-/// a channel has at most 1032 / 3 of them; twice that for one grey channel.
+/// Pixels allowed for each byte of a file. Deflate packs at most 1032 bytes into one, so a picture
+/// of eight bits a channel has at most 1032 / 3 of them; twice that for one grey channel.
 const PIXELS_PER_BYTE: u64 = 2048;
 
 /// The most pixels that are read from a file of so many bytes.
@@ -29,7 +29,8 @@ pub(super) fn declared_count(width: u64, height: u64, bytes: usize) -> Result<us
     }
 }
 
-/// So many equal things. Where the system has no memory for them, that is an error and not the end of the program.
+/// So many equal things. Where the system has no memory for them, that is an error and not the end
+/// of the program.
 pub(super) fn room_for<T: Clone>(count: usize, thing: T) -> Result<Vec<T>, ImageError> {
     let mut all = Vec::new();
     all.try_reserve_exact(count).map_err(|_| ImageError::no_room(count, size_of::<T>()))?;

@@ -1,7 +1,8 @@
 //! Pictures: reading, writing, and saving them without harm to what was there.
 //!
-//! Everything in memory is linear floating point; what becomes of it in eight bits says [`Transfer`]. The table
-//! [`FORMATS`] knows the file formats, [`read()`] reads them from memory, [`save()`] puts bytes into a file.
+//! Everything in memory is linear floating point; what becomes of it in eight bits says
+//! [`Transfer`]. The table [`FORMATS`] knows the file formats, [`read()`] reads them from memory,
+//! [`save()`] puts bytes into a file.
 
 pub mod compare;
 pub mod denoise;
@@ -70,8 +71,9 @@ pub struct Layer {
     pub image: Arc<Image>,
     /// What they mean.
     pub kind: LayerKind,
-    /// The share of each pixel, from 0 to 1, that the camera sees at all; `None`: all of each. Colours are those over
-    /// black: a pixel that is half covered has half the light (associated alpha).
+    /// The share of each pixel, from 0 to 1, that the camera sees at all; `None`: all of each.
+    /// Colours are those over black: a pixel that is half covered has half the light
+    /// (associated alpha).
     pub coverage: Option<Vec<f32>>,
 }
 
@@ -88,7 +90,8 @@ impl Image {
     /// A picture of given pixels, the top row first.
     ///
     /// # Errors
-    /// [`ImageError::Size`] if a side is 0, there are too many pixels, or not `width * height` of them.
+    /// [`ImageError::Size`] if a side is 0, there are too many pixels, or not `width * height` of
+    /// them.
     pub fn from_pixels(width: u32, height: u32, pixels: Vec<Vec3>) -> Result<Image, ImageError> {
         let image = Image { width, height, pixels };
         image.check()?;
@@ -131,7 +134,8 @@ impl Layer {
         Layer { name: name.into(), image: Arc::new(image), kind: LayerKind::Data, coverage: None }
     }
 
-    /// Offers each row with the share of its pixels that is seen (empty where all is), the lowest first if `bottom_up`.
+    /// Offers each row with the share of its pixels that is seen (empty where all is), the lowest
+    /// first if `bottom_up`.
     ///
     /// # Errors
     /// The first of `row`.

@@ -5,7 +5,8 @@ use super::limits::declared_count;
 use super::{Depth, Image, Image8, ImageError, decode_linear, decode_srgb};
 use crate::math::Vec3;
 
-/// A picture in a file of which nothing was read but the head: what is too large is refused before it takes memory.
+/// A picture in a file of which nothing was read but the head: what is too large is refused before
+/// it takes memory.
 pub struct Encoded<'a> {
     format: &'static Format,
     bytes: &'a [u8],
@@ -14,11 +15,13 @@ pub struct Encoded<'a> {
 }
 
 impl<'a> Encoded<'a> {
-    /// Finds out the format by the content, or failing that by the extension of `name_hint`, and reads the head.
+    /// Finds out the format by the content, or failing that by the extension of `name_hint`, and
+    /// reads the head.
     ///
     /// # Errors
-    /// [`ImageError::Unrecognised`], [`ImageError::Malformed`], [`ImageError::Unsupported`], [`ImageError::TooLarge`] for more
-    /// than [`pixel_limit`](super::pixel_limit) pixels, and [`ImageError::Size`] for a picture without pixels.
+    /// [`ImageError::Unrecognised`], [`ImageError::Malformed`], [`ImageError::Unsupported`],
+    /// [`ImageError::TooLarge`] for more than [`pixel_limit`](super::pixel_limit) pixels, and
+    /// [`ImageError::Size`] for a picture without pixels.
     pub fn open(bytes: &'a [u8], name_hint: &str) -> Result<Self, ImageError> {
         let format = recognise(bytes, name_hint)?;
         let head = format.head(bytes)?;
@@ -50,7 +53,8 @@ impl<'a> Encoded<'a> {
     /// Its values as they stand in an eight-bit file.
     ///
     /// # Errors
-    /// [`ImageError::NotEightBit`], [`ImageError::Memory`] where it needs more bytes than allowed, and those of [`Encoded::open`].
+    /// [`ImageError::NotEightBit`], [`ImageError::Memory`] where it needs more bytes than allowed,
+    /// and those of [`Encoded::open`].
     pub fn read8(&self, memory: u64) -> Result<Image8, ImageError> {
         if !self.head.eight {
             return Err(ImageError::NotEightBit);
@@ -64,14 +68,16 @@ impl<'a> Encoded<'a> {
     /// Its values as they stand in the file.
     ///
     /// # Errors
-    /// [`ImageError::Memory`] where it needs more bytes than allowed, and those of [`Encoded::open`].
+    /// [`ImageError::Memory`] where it needs more bytes than allowed, and those of
+    /// [`Encoded::open`].
     pub fn read_raster(&self, memory: u64) -> Result<Raster, ImageError> {
         // Numbers are copied once to where they stay.
         let copy = if self.head.eight { 0 } else { self.count * size_of::<[f32; 4]>() };
         self.decode(self.needed8().saturating_add(copy as u64), memory)
     }
 
-    /// Its pixels, with a meaning for each of the values of eight bits. Numbers of floating-point formats come as they are.
+    /// Its pixels, with a meaning for each of the values of eight bits. Numbers of floating-point
+    /// formats come as they are.
     ///
     /// # Errors
     /// Those of [`Encoded::read8`].
@@ -99,9 +105,10 @@ impl<'a> Encoded<'a> {
 
 /// Reads a picture: by its content, or failing that by the extension of `name_hint`.
 ///
-/// Eight-bit values become 255ths without a curve, as the course takes its textures; see [`read_srgb`]. Numbers of
-/// floating-point formats come as they are, NaN and infinities too. Alpha is dropped. At most
-/// [`pixel_limit`](super::pixel_limit) pixels are read; [`Encoded`] sets other limits.
+/// Eight-bit values become 255ths without a curve, as the course takes its textures; see
+/// [`read_srgb`]. Numbers of floating-point formats come as they are, NaN and infinities too. Alpha
+/// is dropped. At most [`pixel_limit`](super::pixel_limit) pixels are read; [`Encoded`] sets other
+/// limits.
 ///
 /// # Errors
 /// Those of [`Encoded::open`].

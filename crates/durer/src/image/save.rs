@@ -1,8 +1,9 @@
 //! Files that are whole or not there.
 //!
-//! Bytes go into a temporary file beside the target, are synced, and the file takes the target's name. Whatever
-//! fails, the old file is intact and nothing is left lying about. The new file has the old one's permissions, or
-//! those of an ordinary new file; links to it (hard ones) are not followed, symbolic ones are.
+//! Bytes go into a temporary file beside the target, are synced, and the file takes the target's
+//! name. Whatever fails, the old file is intact and nothing is left lying about. The new file has
+//! the old one's permissions, or those of an ordinary new file; links to it (hard ones) are not
+//! followed, symbolic ones are.
 
 use super::temporary::{Temporary, remove_stale};
 use std::fs::{self, File, OpenOptions};
@@ -55,16 +56,19 @@ pub enum SaveError {
     },
 }
 
-/// A place for a file that was found to be one that may be written, which is better known before a long work than after it.
+/// A place for a file that was found to be one that may be written, which is better known before a
+/// long work than after it.
 #[derive(Debug)]
 pub struct Destination {
     path: PathBuf,
-    /// The open device or pipe, which is written to as it is: no one can take its reader away meanwhile.
+    /// The open device or pipe, which is written to as it is: no one can take its reader away
+    /// meanwhile.
     stream: Option<File>,
 }
 
 impl Destination {
-    /// Says what is known to prevent saving. Removes what killed programs left in the folder. A pipe is opened.
+    /// Says what is known to prevent saving. Removes what killed programs left in the folder. A
+    /// pipe is opened.
     ///
     /// # Errors
     /// [`SaveError`]. Without one, saving may still fail.
@@ -114,10 +118,12 @@ pub fn save(path: impl AsRef<Path>, bytes: &[u8]) -> Result<(), SaveError> {
     save_all(&[(&Destination::new(path.as_ref())?, bytes)])
 }
 
-/// Puts contents into several files: all are written beside their targets before the first is renamed.
+/// Puts contents into several files: all are written beside their targets before the first is
+/// renamed.
 ///
 /// # Errors
-/// [`SaveError`]. Unless a rename itself fails, which takes a change of the folders meanwhile, no file is changed.
+/// [`SaveError`]. Unless a rename itself fails, which takes a change of the folders meanwhile, no
+/// file is changed.
 pub fn save_all<C: Content>(files: &[(&Destination, C)]) -> Result<(), SaveError> {
     let mut staged = Vec::with_capacity(files.len());
     for (place, content) in files.iter().filter(|file| !file.0.is_stream()) {
@@ -131,14 +137,16 @@ pub fn save_all<C: Content>(files: &[(&Destination, C)]) -> Result<(), SaveError
     }
     for (temporary, target) in staged {
         temporary.persist(&target).map_err(|error| SaveError::Io { path: target.clone(), error })?;
-        // The new name should outlive a power cut too; where folders cannot be synced, that is left to the system.
+        // The new name should outlive a power cut too; where folders cannot be synced, that is left to the
+        // system.
         #[cfg(unix)]
         let _ = File::open(folder_of(&target)).and_then(|folder| folder.sync_all());
     }
     Ok(())
 }
 
-/// The file to be replaced and, if it is there, what is known of it; `None` if it is to be written to directly.
+/// The file to be replaced and, if it is there, what is known of it; `None` if it is to be written
+/// to directly.
 fn resolve(path: &Path) -> Result<Option<(PathBuf, Option<fs::Metadata>)>, SaveError> {
     let io = |error| SaveError::Io { path: path.into(), error };
     let old = match fs::metadata(path) {
@@ -178,7 +186,8 @@ fn is_pipe_or_device(old: &fs::Metadata) -> bool {
     }
 }
 
-/// Opens a device or pipe without waiting for anybody. A redirected standard output is a file that may have bytes before ours.
+/// Opens a device or pipe without waiting for anybody. A redirected standard output is a file that
+/// may have bytes before ours.
 fn open_stream(path: &Path) -> Result<File, SaveError> {
     let mut options = OpenOptions::new();
     options.append(true);
@@ -221,7 +230,8 @@ fn folder_of(path: &Path) -> &Path {
     path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
-/// Names of open files: the shell that redirected them holds the file itself, which a rename would not reach.
+/// Names of open files: the shell that redirected them holds the file itself, which a rename would
+/// not reach.
 fn is_stream(path: &Path) -> bool {
     ["/dev/stdout", "/dev/stderr", "/dev/fd", "/proc"].iter().any(|stream| path.starts_with(stream))
 }

@@ -1,8 +1,9 @@
 //! Temporary files that leave nothing behind, even where the program is killed.
 //!
-//! On Linux the file has no name until its bytes are safe (`O_TMPFILE`), and vanishes with the program. Elsewhere it has one, and
-//! so it has for a moment before it replaces an old file; what a killed program left then, the next one removes. It knows it by
-//! the lock that a living program holds on its file.
+//! On Linux the file has no name until its bytes are safe (`O_TMPFILE`), and vanishes with the
+//! program. Elsewhere it has one, and so it has for a moment before it replaces an old file; what a
+//! killed program left then, the next one removes. It knows it by the lock that a living program
+//! holds on its file.
 
 use std::fs::{self, File};
 use std::io;
@@ -10,12 +11,14 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 use tempfile::NamedTempFile;
 
-/// How the names of temporary files begin and end; those that were whole before they had one begin with `READY`.
+/// How the names of temporary files begin and end; those that were whole before they had one begin
+/// with `READY`.
 const PREFIX: &str = ".durer-";
 const READY: &str = ".durer-ready-";
 const SUFFIX: &str = ".tmp";
 
-/// A file without a lock that may not be whole is left alone for so long: its program may be about to lock it.
+/// A file without a lock that may not be whole is left alone for so long: its program may be about
+/// to lock it.
 const PATIENCE: Duration = Duration::from_secs(60);
 
 /// A file that is not yet where it should be.
@@ -99,7 +102,8 @@ fn link(file: &File, path: &Path) -> io::Result<()> {
     Ok(rustix::fs::linkat(CWD, own, CWD, path, AtFlags::SYMLINK_FOLLOW)?)
 }
 
-/// Marks a file as one of a living program; where that cannot be, it is only taken for older than it is.
+/// Marks a file as one of a living program; where that cannot be, it is only taken for older than
+/// it is.
 fn lock(file: &File) {
     #[cfg(unix)]
     let _ = rustix::fs::flock(file, rustix::fs::FlockOperation::NonBlockingLockExclusive);

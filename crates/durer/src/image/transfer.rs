@@ -55,7 +55,8 @@ static SRGB: LazyLock<SrgbTable> = LazyLock::new(SrgbTable::new);
 struct SrgbTable {
     /// The least value of each step, and infinity behind the last.
     least: [f32; 257],
-    /// The step at the beginning of each of [`CELLS`] equal parts of 0 to 1. No part has more than one end of a step.
+    /// The step at the beginning of each of [`CELLS`] equal parts of 0 to 1. No part has more than
+    /// one end of a step.
     guide: [u8; CELLS + 1],
 }
 
@@ -93,8 +94,8 @@ fn round(value: f32) -> u8 {
 
 /// `(int)(value * 255)`, then clamped.
 ///
-/// What does not fit an `int` (infinities, NaN and very large values) became the least `int` on the machines of
-/// the course, and so 0.
+/// What does not fit an `int` (infinities, NaN and very large values) became the least `int` on the
+/// machines of the course, and so 0.
 fn truncate(value: f32) -> u8 {
     let scaled = value * 255.0;
     if scaled < i32::MAX as f32 { (scaled as i32).clamp(0, 255) as u8 } else { 0 }

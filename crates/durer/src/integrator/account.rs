@@ -1,12 +1,13 @@
 //! An account of a ray's light: the tree of everything that made it.
 //!
-//! An integrator tells a [`Witness`] each term when it begins it, and what came of it when it ends it. Plain tallies hear
-//! nothing, at no cost; an [`Account`] keeps all of it. In every node,
+//! An integrator tells a [`Witness`] each term when it begins it, and what came of it when it ends
+//! it. Plain tallies hear nothing, at no cost; an [`Account`] keeps all of it. In every node,
 //!
 //! value = scale · (sum of the children's factor · value, in order),
 //!
-//! in the arithmetic of the picture: see [`Node::sum`]. So the tree adds up to the colour, and not just nearly. Where light is
-//! made of wavelengths, terms are the light at those of the sample, and [`Tree::sum`] is the colour that the eye makes of it.
+//! in the arithmetic of the picture: see [`Node::sum`]. So the tree adds up to the colour, and not
+//! just nearly. Where light is made of wavelengths, terms are the light at those of the sample, and
+//! [`Tree::sum`] is the colour that the eye makes of it.
 
 use crate::bvh::{RayCount, TraversalCounter, TraversalStats};
 use crate::math::{Color, Ray, Ray64, Vec2, Vec3};
@@ -137,7 +138,8 @@ pub struct Node {
     pub scale: TermValue,
     /// What comes of it.
     pub value: TermValue,
-    /// The terms that it is the sum of, in the order of addition; none where `what` itself says how it is computed.
+    /// The terms that it is the sum of, in the order of addition; none where `what` itself says how
+    /// it is computed.
     pub terms: Vec<Node>,
 }
 
@@ -211,7 +213,8 @@ pub struct Struck {
     pub n_geo: Vec3,
     /// Unit normal for shading, as the surface has it.
     pub n_shade: Vec3,
-    /// The normal that light is reckoned with: `n_shade`, turned where a surface is shaded from behind.
+    /// The normal that light is reckoned with: `n_shade`, turned where a surface is shaded from
+    /// behind.
     pub n: Vec3,
     /// Whether the surface is seen from behind.
     pub from_behind: bool,
@@ -269,12 +272,14 @@ pub enum What {
         #[serde(skip_serializing_if = "Option::is_none")]
         bounce: Option<Bounce>,
     },
-    /// A surface's own light, the value; the factor is its weight beside that of being chosen as a light.
+    /// A surface's own light, the value; the factor is its weight beside that of being chosen as a
+    /// light.
     Emission {
         /// That weight, by multiple importance sampling.
         mis: f32,
     },
-    /// The light of one that was chosen at random, the value; the factor is bsdf · mis · what comes through / (choice · density).
+    /// The light of one that was chosen at random, the value; the factor is bsdf · mis · what comes
+    /// through / (choice · density).
     Direct {
         /// Which it is.
         light: LightId,
@@ -284,7 +289,8 @@ pub enum What {
         distance: f32,
         /// The probability with which it was chosen.
         choice: f32,
-        /// The density per solid angle of the direction; 0 for a light without extent, whose density counts as 1.
+        /// The density per solid angle of the direction; 0 for a light without extent, whose
+        /// density counts as 1.
         pdf: f32,
         /// The surface's value times the cosine.
         bsdf: TermValue,
@@ -300,7 +306,8 @@ pub enum What {
         /// How many there are.
         photons: usize,
     },
-    /// What glass scatters that spreads colours: the other wavelengths go elsewhere, and the first counts for all four, by the factor.
+    /// What glass scatters that spreads colours: the other wavelengths go elsewhere, and the first
+    /// counts for all four, by the factor.
     OneWavelength {
         /// That wavelength in nanometres.
         nm: f32,
@@ -312,7 +319,8 @@ pub enum What {
         /// The material's share in the point.
         share: f32,
     },
-    /// The light of one lamp: (diffuse + highlight) · what arrives, which is the scale. The factor is share · what comes through.
+    /// The light of one lamp: (diffuse + highlight) · what arrives, which is the scale. The factor
+    /// is share · what comes through.
     Light {
         /// Number of the light in the scene.
         light: usize,

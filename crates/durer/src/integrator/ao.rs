@@ -1,6 +1,7 @@
 //! Ambient occlusion: the share of the sky over a surface that nothing nearby hides.
 //!
-//! Source: Zhukov, Iones and Kronin, *An Ambient Light Illumination Model*, EGWR 1998; each direction counts by its cosine.
+//! Source: Zhukov, Iones and Kronin, *An Ambient Light Illumination Model*, EGWR 1998; each
+//! direction counts by its cosine.
 
 use super::account::{RayKind, What, Witness};
 use super::spawn::from_surface;
@@ -20,7 +21,8 @@ pub struct AmbientOcclusion<'w> {
 }
 
 impl AmbientOcclusion<'_> {
-    /// 1 where one direction, chosen by the random numbers of a sample, is free, and 0 where it is not; white where nothing is hit.
+    /// 1 where one direction, chosen by the random numbers of a sample, is free, and 0 where it is
+    /// not; white where nothing is hit.
     pub fn radiance<T: Witness>(&self, ray: &Ray, id: SampleId, tally: &mut T) -> Color {
         tally.begin(|| What::Ray { from: RayKind::Camera, ray: ray.into(), weight: 1.0, hit: None, bounce: None });
         let color = self.trace(&ray.into(), id, tally);

@@ -34,8 +34,9 @@ pub struct Body {
 }
 
 impl Body {
-    /// Whether it fills the space that it shares with another one. Of two closed things that is the smaller one, so that
-    /// ice displaces water wherever they overlap, from whatever side a ray comes. Of others it is the one met last.
+    /// Whether it fills the space that it shares with another one. Of two closed things that is the
+    /// smaller one, so that ice displaces water wherever they overlap, from whatever side a ray
+    /// comes. Of others it is the one met last.
     fn fills(&self, other: &Body, met_later: bool) -> bool {
         match (self.size, other.size) {
             (Some(a), Some(b)) if a != b => a < b,
@@ -47,8 +48,9 @@ impl Body {
 
 /// All that a ray is in, what fills the place last.
 ///
-/// Source of the idea: Charles M. Schmidt and Brian Budge, *Simple Nested Dielectrics in Ray Traced Images*, Journal of
-/// Graphics Tools 7(2), 2002; there the order is given by priorities that are written.
+/// Source of the idea: Charles M. Schmidt and Brian Budge, *Simple Nested Dielectrics in Ray Traced
+/// Images*, Journal of Graphics Tools 7(2), 2002; there the order is given by priorities that are
+/// written.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Media(SmallVec<[Body; 2]>);
 

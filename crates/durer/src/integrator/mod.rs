@@ -37,7 +37,8 @@ pub enum Method {
         count: u32,
         /// How far the first sample looks for photons, in units of the world.
         radius: Option<f32>,
-        /// Whether their bias is taken out to second order, with more noise: see [`Photons::corrected`].
+        /// Whether their bias is taken out to second order, with more noise: see
+        /// [`Photons::corrected`].
         #[serde(default, skip_serializing_if = "std::ops::Not::not")]
         corrected: bool,
     },
@@ -51,7 +52,8 @@ pub enum Method {
 /// What all that follows paths of light knows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Transport {
-    /// Light that was scattered more than once is not brighter than this. It removes bright specks, and light with them.
+    /// Light that was scattered more than once is not brighter than this. It removes bright specks,
+    /// and light with them.
     pub clamp: Option<f32>,
     /// What colours are on the way.
     pub color: ColorMode,
@@ -60,22 +62,23 @@ pub struct Transport {
     pub direct: Direct,
 }
 
-/// How paths find light that comes straight from lamps and surroundings with an extent. All but [`Direct::Middle`]
-/// have the same mean; they differ in noise.
+/// How paths find light that comes straight from lamps and surroundings with an extent. All but
+/// [`Direct::Middle`] have the same mean; they differ in noise.
 ///
 /// Source: Veach, *Robust Monte Carlo Methods for Light Transport Simulation*, 1997, chapter 9.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Direct {
-    /// Points of lights and directions of the surface are chosen; what both can find is weighed by the power heuristic.
+    /// Points of lights and directions of the surface are chosen; what both can find is weighed by
+    /// the power heuristic.
     #[default]
     Both,
     /// Points of lights alone; a direction counts only where it meets what is never chosen.
     Lights,
     /// Directions alone; points only of lights that no direction meets.
     Bsdf,
-    /// As [`Direct::Lights`], but always the same point of a surface that shines, the middle of a sphere, disc or
-    /// rectangle. Shadows are hard: wrong, and for lessons alone.
+    /// As [`Direct::Lights`], but always the same point of a surface that shines, the middle of a
+    /// sphere, disc or rectangle. Shadows are hard: wrong, and for lessons alone.
     Middle,
 }
 
@@ -154,7 +157,8 @@ pub enum Integrator<'w> {
 }
 
 impl<'w> Integrator<'w> {
-    /// Over a world. Once `cancel` is set, no more rays are traced, and what comes out means nothing.
+    /// Over a world. Once `cancel` is set, no more rays are traced, and what comes out means
+    /// nothing.
     ///
     /// Photons are random by the seed.
     pub fn new(

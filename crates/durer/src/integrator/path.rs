@@ -1,8 +1,9 @@
 //! Path tracing: light that was scattered any number of times.
 //!
-//! At each point a light is chosen and connected with, and a direction is chosen and followed; where both can find the same
-//! light, they are weighed by how well they find it (Veach, *Robust Monte Carlo Methods for Light Transport Simulation*, 1997,
-//! chapter 9: the power heuristic). Long paths end at random, in proportion to what they are worth.
+//! At each point a light is chosen and connected with, and a direction is chosen and followed;
+//! where both can find the same light, they are weighed by how well they find it (Veach, *Robust
+//! Monte Carlo Methods for Light Transport Simulation*, 1997, chapter 9: the power heuristic). Long
+//! paths end at random, in proportion to what they are worth.
 
 use super::account::{Bounce, RayKind, TermValue, What, Witness};
 use super::media::{Media, Passage};
@@ -31,7 +32,8 @@ pub struct Path<'w> {
     pub settings: Settings,
     /// How light is carried.
     pub transport: Transport,
-    /// What brings the light of lamps that mirrors and glass throw on things; without, paths find it by chance.
+    /// What brings the light of lamps that mirrors and glass throw on things; without, paths find
+    /// it by chance.
     pub photons: Option<Arc<Photons>>,
     /// Once set, no more rays are traced, and what comes out means nothing.
     pub cancel: Option<&'w AtomicBool>,
@@ -82,12 +84,13 @@ struct State {
     depth: u32,
     /// Where it was scattered last, if lights can be found there in another way.
     from: Option<Scattered>,
-    /// Whether mirrors or glass come after a point that scatters into many directions: light that is seen over them there
-    /// is what photons bring.
+    /// Whether mirrors or glass come after a point that scatters into many directions: light that
+    /// is seen over them there is what photons bring.
     behind_mirrors: bool,
     /// Whether the thing that it was last scattered by is one that photons are sent to.
     by_target: bool,
-    /// Whether a surface scattered it into many directions, and nothing but single directions came after.
+    /// Whether a surface scattered it into many directions, and nothing but single directions came
+    /// after.
     broad: bool,
     /// Whether only the first lane still counts, since others would go other ways.
     alone: bool,
@@ -151,8 +154,8 @@ impl<'w> Path<'w> {
         }
     }
 
-    /// The irradiance at a point on the side of a unit normal, by the random numbers of a sample: pi times what a white matte
-    /// surface shows there.
+    /// The irradiance at a point on the side of a unit normal, by the random numbers of a sample:
+    /// pi times what a white matte surface shows there.
     pub fn irradiance<T: Witness>(&self, point: DVec3, normal: Vec3, id: SampleId, tally: &mut T) -> Color {
         self.irradiance_on(&Surface::around(point, normal), normal, id, tally)
     }
@@ -192,7 +195,8 @@ impl<'w> Path<'w> {
         (sum, scale)
     }
 
-    /// Follows a ray to where something happens to its light, and says what the way there leaves of it.
+    /// Follows a ray to where something happens to its light, and says what the way there leaves of
+    /// it.
     fn fly<T: Witness>(&self, ray: &Ray64, state: &mut State, sample: &Sample, tally: &mut T) -> (End, Spectrum) {
         let mut ray = *ray;
         let mut rest = ray;
@@ -307,8 +311,8 @@ impl<'w> Path<'w> {
         sum + kept * light
     }
 
-    /// The wavelength that is left where colours are spread, and what is left of light: other wavelengths are bent otherwise, and the
-    /// first stands for all.
+    /// The wavelength that is left where colours are spread, and what is left of light: other
+    /// wavelengths are bent otherwise, and the first stands for all.
     fn kept(&self, met: &Met, state: &mut State, sample: &Sample) -> Option<(f32, Spectrum)> {
         let nm = sample.lanes.hero().filter(|_| !state.alone && self.world.disperses(&met.hit, &met.surface))?;
         let kept = Spectrum::X * 4.0;
@@ -316,7 +320,8 @@ impl<'w> Path<'w> {
         Some((nm, kept))
     }
 
-    /// A sum and the light that a point scatters against the ray, added in the order in which a witness hears of it.
+    /// A sum and the light that a point scatters against the ray, added in the order in which a
+    /// witness hears of it.
     fn scattered<T: Witness>(&self, sum: Spectrum, vertex: &Vertex, sample: &Sample, tally: &mut T) -> Spectrum {
         if vertex.state.depth > self.settings.bounces || self.is_cancelled() {
             return sum;

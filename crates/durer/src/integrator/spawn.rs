@@ -1,9 +1,10 @@
 //! Secondary rays that do not hit the surface they start from.
 //!
-//! Why none starts behind the wall beside: a point on a surface is known in double precision in world space, and to a few
-//! roundings in the space of its object, whose coordinates are of the object's own size ([`Shape::centered`] takes off what
-//! is more). And a shape keeps its points off its own edges by more than that error, so moving one along the normal by
-//! twice the error leaves it in front of the neighbouring face as well.
+//! Why none starts behind the wall beside: a point on a surface is known in double precision in
+//! world space, and to a few roundings in the space of its object, whose coordinates are of the
+//! object's own size ([`Shape::centered`] takes off what is more). And a shape keeps its points off
+//! its own edges by more than that error, so moving one along the normal by twice the error leaves
+//! it in front of the neighbouring face as well.
 //!
 //! [`Shape::centered`]: crate::shape::Shape::centered
 
@@ -13,8 +14,9 @@ use glam::DVec3;
 
 /// A ray from a surface.
 ///
-/// With an `epsilon`, as the course has it: the ray starts on the surface, and hits count from there on.
-/// Without: it starts beside the surface, as far away as the point may be off, and every hit counts.
+/// With an `epsilon`, as the course has it: the ray starts on the surface, and hits count from
+/// there on. Without: it starts beside the surface, as far away as the point may be off, and every
+/// hit counts.
 pub fn from_surface(surface: &Surface, dir: Vec3, t_max: f32, epsilon: Option<f32>) -> Ray64 {
     if let Some(epsilon) = epsilon {
         return Ray64::new(surface.point(), dir, epsilon, t_max);
@@ -23,21 +25,22 @@ pub fn from_surface(surface: &Surface, dir: Vec3, t_max: f32, epsilon: Option<f3
     Ray64::new(beside(surface, Vec3::ZERO, side), dir, 0.0, t_max)
 }
 
-/// A ray from a surface to a light at some distance, as [`from_surface`]; without an `epsilon` it starts on the bent
-/// surface that a triangle with normals at its corners stands for.
+/// A ray from a surface to a light at some distance, as [`from_surface`]; without an `epsilon` it
+/// starts on the bent surface that a triangle with normals at its corners stands for.
 pub fn to_light(surface: &Surface, dir: Vec3, distance: f32, epsilon: Option<f32>) -> Ray64 {
     let behind = dir.dot(surface.n_shade) < 0.0;
     let lift = surface.lifts[usize::from(behind)];
     if epsilon.is_some() || lift == Vec3::ZERO {
         return from_surface(surface, dir, distance, epsilon);
     }
-    // The bent surface faces the light; so the ray leaves on that side, whatever the triangle's own slope.
+    // The bent surface faces the light; so the ray leaves on that side, whatever the triangle's own
+    // slope.
     let side = if behind { -surface.n_geo } else { surface.n_geo };
     Ray64::new(beside(surface, lift, side), dir, 0.0, distance - lift.dot(dir))
 }
 
-/// A ray from a surface to a point of a light that has an extent. From a bent surface it is aimed anew: a parallel one would end
-/// beside that point, and behind the light where that is inclined.
+/// A ray from a surface to a point of a light that has an extent. From a bent surface it is aimed
+/// anew: a parallel one would end beside that point, and behind the light where that is inclined.
 pub fn to_point(surface: &Surface, dir: Vec3, distance: f32) -> Ray64 {
     let ray = to_light(surface, dir, distance, None);
     if surface.lifts == [Vec3::ZERO; 2] || !distance.is_finite() {
@@ -48,7 +51,8 @@ pub fn to_point(surface: &Surface, dir: Vec3, distance: f32) -> Ray64 {
     Ray64::new(ray.origin(), (way / length).as_vec3(), 0.0, length as f32 * (1.0 - gamma(4)))
 }
 
-/// The surface's point, lifted, and beside it on the side to which a unit normal points, farther off than its error.
+/// The surface's point, lifted, and beside it on the side to which a unit normal points, farther
+/// off than its error.
 ///
 /// Source: *Physically Based Rendering*, 4th edition, section 6.8.6.
 fn beside(surface: &Surface, lift: Vec3, side: Vec3) -> DVec3 {

@@ -1,7 +1,7 @@
 //! Whitted's recursive ray tracing: local light, a mirrored and a transmitted ray.
 //!
-//! Source: Turner Whitted, *An Improved Illumination Model for Shaded Display*, CACM 23(6), 1980, with the
-//! terms of the course.
+//! Source: Turner Whitted, *An Improved Illumination Model for Shaded Display*, CACM 23(6), 1980,
+//! with the terms of the course.
 
 use super::account::{RayKind, Shadow, Struck, What, Witness};
 use super::media::{Body, Media, Passage};
@@ -30,8 +30,8 @@ pub struct Settings {
     pub reflection: bool,
     /// Whether transmitted rays are traced.
     pub refraction: bool,
-    /// A ray that counts for less than this is not traced. A colour counts by its largest part; for old programs, by its
-    /// length, as in the course.
+    /// A ray that counts for less than this is not traced. A colour counts by its largest part; for
+    /// old programs, by its length, as in the course.
     pub least_weight: f32,
 }
 
@@ -47,7 +47,8 @@ pub struct Whitted<'w> {
     pub world: &'w World,
     /// What is taken into account.
     pub settings: Settings,
-    /// Once set, no more rays are traced, and what comes out means nothing: a pixel of many mirrors may take long.
+    /// Once set, no more rays are traced, and what comes out means nothing: a pixel of many mirrors
+    /// may take long.
     pub cancel: Option<&'w AtomicBool>,
 }
 
@@ -86,7 +87,8 @@ impl Whitted<'_> {
         sky
     }
 
-    /// The light that leaves a hit against the ray: of each material that makes it up, by its share.
+    /// The light that leaves a hit against the ray: of each material that makes it up, by its
+    /// share.
     fn shade<T: Witness>(
         &self,
         ray: &Ray64,
@@ -176,13 +178,15 @@ impl Whitted<'_> {
         dir.dot(if shaded { surface.n_shade } else { surface.n_geo }) > 0.0
     }
 
-    /// The diffuse colour at a hit, of each material that makes it up by its share: its albedo, without any light.
+    /// The diffuse colour at a hit, of each material that makes it up by its share: its albedo,
+    /// without any light.
     pub fn albedo(&self, hit: &Hit, surface: &Surface) -> Color {
         let parts = self.world.parts(hit, surface.position);
         parts.iter().map(|part| part.share * self.world.diffuse_color(part.phong, surface)).sum()
     }
 
-    /// The share of a light that arrives: nothing behind a thing, or what transparent things let through.
+    /// The share of a light that arrives: nothing behind a thing, or what transparent things let
+    /// through.
     fn visible<T: Witness>(&self, surface: &Surface, seen: &Illumination, tally: &mut T) -> Color {
         if !self.settings.shadows || seen.color == Color::ZERO {
             return Color::ONE;
@@ -355,8 +359,8 @@ pub(super) fn struck(
     }
 }
 
-/// What the materials of a point reflect and let through together. Weights are mixed; the index is that of the part that
-/// weighs most.
+/// What the materials of a point reflect and let through together. Weights are mixed; the index is
+/// that of the part that weighs most.
 #[derive(Clone, Copy)]
 pub(crate) struct Blend {
     pub(crate) reflective: Color,
@@ -414,9 +418,11 @@ fn direct<T: Witness>(phong: &Phong, diffuse: Color, n: Vec3, view: Vec3, seen: 
     color * seen.color
 }
 
-/// Snell's law: the direction behind a surface whose normal `n` is on the ray's side; `None` for total reflection.
+/// Snell's law: the direction behind a surface whose normal `n` is on the ray's side; `None` for
+/// total reflection.
 ///
-/// eta is the index before over the index behind; t = eta (d - n (d·n)) - n sqrt(1 - eta^2 (1 - (d·n)^2)).
+/// eta is the index before over the index behind; t = eta (d - n (d·n)) - n sqrt(1 - eta^2 (1 -
+/// (d·n)^2)).
 pub fn refract(d: Vec3, n: Vec3, eta: f32) -> Option<Vec3> {
     let cosine = d.dot(n);
     let radicand = 1.0 - eta * eta * (1.0 - cosine * cosine);

@@ -12,8 +12,8 @@ const LEAST_SHARE: f64 = 0.001;
 /// The difference of two pictures.
 #[derive(Clone, Debug)]
 pub struct Change {
-    /// Grey where nothing changes, lighter where it gets lighter and darker where it gets darker: half the difference of
-    /// the eight bits.
+    /// Grey where nothing changes, lighter where it gets lighter and darker where it gets darker:
+    /// half the difference of the eight bits.
     pub picture: Layer,
     /// All pixels, those that change, and of those the ones that get lighter.
     pub pixels: usize,

@@ -1,8 +1,9 @@
 //! A scene in the order of the lecture: each step's pictures, its equation, and what it changes.
 //!
-//! The steps are one table, [`TOPICS`]; [`Teacher`] makes the pictures of one after the other. A step that changes
-//! nothing in a scene is shown in a small scene of ours instead. Steps of light that paths follow are shown of scenes
-//! whose pictures are made by paths, as far as those can show them.
+//! The steps are one table, [`TOPICS`]; [`Teacher`] makes the pictures of one after the other. A
+//! step that changes nothing in a scene is shown in a small scene of ours instead. Steps of light
+//! that paths follow are shown of scenes whose pictures are made by paths, as far as those can show
+//! them.
 
 mod change;
 mod plan;
@@ -68,8 +69,8 @@ impl Teacher {
         Teacher { stages: [stage, ours], transfer }
     }
 
-    /// The steps of a topic: at least one, but for a topic of paths, which has none where the scene cannot show it.
-    /// Later steps of one topic that change nothing are left out.
+    /// The steps of a topic: at least one, but for a topic of paths, which has none where the scene
+    /// cannot show it. Later steps of one topic that change nothing are left out.
     ///
     /// # Errors
     /// [`RenderError`].

@@ -79,7 +79,8 @@ impl Stage {
         Stage::new(scene, files, world, Job { width, height, ..Job::default() })
     }
 
-    /// Why a step cannot show anything in this scene whatever it holds, if its year's program has nothing of it.
+    /// Why a step cannot show anything in this scene whatever it holds, if its year's program has
+    /// nothing of it.
     pub(super) fn year_lacks(&self, topic: &str) -> Option<&'static str> {
         let (highlights, secondary) = (self.rules.highlight, self.rules.secondary);
         match topic {
@@ -141,8 +142,8 @@ impl Stage {
         Ok(shown)
     }
 
-    /// Gives the world the light, the materials and the mistakes of a look. Its digest stays that of the scene: no part
-    /// of such a picture is ever saved.
+    /// Gives the world the light, the materials and the mistakes of a look. Its digest stays that
+    /// of the scene: no part of such a picture is ever saved.
     fn arrange(&mut self, look: &Look) {
         let world = &mut self.world;
         (world.lights, world.ambient) = match look.lights {
@@ -208,7 +209,8 @@ impl Stage {
         }
     }
 
-    /// The directions of the rays through the pixels' centres, as colours between 0 and 1; black where there are none.
+    /// The directions of the rays through the pixels' centres, as colours between 0 and 1; black
+    /// where there are none.
     fn directions(&self) -> Result<Shown, RenderError> {
         let (raster, (width, height)) = (self.raster(), self.size());
         let rays: Vec<Option<Vec3>> =
@@ -220,7 +222,8 @@ impl Stage {
         Ok(Shown { layer, values: Image::from_pixels(width, height, values)?, noise: None })
     }
 
-    /// What a picture shows that is compared with no other, in a sentence; `None` if it shows nothing.
+    /// What a picture shows that is compared with no other, in a sentence; `None` if it shows
+    /// nothing.
     pub(super) fn facts(&self, shot: &Shot, shown: &Shown) -> Option<String> {
         let values = &shown.values.pixels;
         match shot.value {
@@ -282,8 +285,8 @@ impl Stage {
     }
 }
 
-/// Depths whose greys tell something of a scene whose ground goes on for ever: from the least to three times as far from
-/// it as the middle one.
+/// Depths whose greys tell something of a scene whose ground goes on for ever: from the least to
+/// three times as far from it as the middle one.
 fn depth_range(depths: &Image) -> Option<(f32, f32)> {
     let mut depths: Vec<f32> = depths.pixels.iter().map(|depth| depth.x).filter(|depth| depth.is_finite()).collect();
     depths.sort_by(f32::total_cmp);
@@ -292,8 +295,9 @@ fn depth_range(depths: &Image) -> Option<(f32, f32)> {
     (end > least).then_some((least, end))
 }
 
-/// The mean of the pixels' standard errors as a share of their mean luminance, by the variances of their means.
-/// Nothing counts as brighter than white, or the edges of lamps would be all of it. `None` where nothing shines.
+/// The mean of the pixels' standard errors as a share of their mean luminance, by the variances of
+/// their means. Nothing counts as brighter than white, or the edges of lamps would be all of it.
+/// `None` where nothing shines.
 fn noise_of(colors: &Image, variances: &Image) -> Option<f64> {
     let light: f64 = colors.pixels.iter().map(|color| luminance_of(*color).min(1.0)).sum();
     let errors: f64 = variances.pixels.iter().map(|variance| f64::from(variance.x).sqrt().min(1.0)).sum();

@@ -1,5 +1,5 @@
-//! The steps of the lecture as a table: what each shows, its equation, and where that is in the source. After them
-//! come those of light that is followed by paths.
+//! The steps of the lecture as a table: what each shows, its equation, and where that is in the
+//! source. After them come those of light that is followed by paths.
 
 use crate::integrator::Direct;
 use crate::spectrum::ColorMode;
@@ -89,8 +89,8 @@ pub struct Topic {
 }
 
 impl Topic {
-    /// Whether it is about light that paths follow: such steps are shown of scenes whose pictures are made by paths,
-    /// and of no other.
+    /// Whether it is about light that paths follow: such steps are shown of scenes whose pictures
+    /// are made by paths, and of no other.
     pub fn is_of_paths(&self) -> bool {
         self.shots.iter().any(|shot| shot.look.paths.is_some())
     }

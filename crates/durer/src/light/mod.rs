@@ -87,8 +87,9 @@ pub trait Emitter {
     /// Its colour, as written.
     fn color(&self) -> Color;
 
-    /// Where it is, and what arrives at distance 1 in the direction in which it is strongest; `None` for lights without a
-    /// place, and for those that fade otherwise than with the square of the distance.
+    /// Where it is, and what arrives at distance 1 in the direction in which it is strongest;
+    /// `None` for lights without a place, and for those that fade otherwise than with the
+    /// square of the distance.
     fn place(&self) -> Option<(Vec3, Color)> {
         None
     }
@@ -103,7 +104,8 @@ pub trait Emitter {
         None
     }
 
-    /// A direction from the light as that file means it: x is its horizontal angle 0, z its lower side.
+    /// A direction from the light as that file means it: x is its horizontal angle 0, z its lower
+    /// side.
     fn in_profile(&self, dir: Vec3) -> Vec3 {
         dir
     }

@@ -91,7 +91,8 @@ impl Profile {
         self.candela.iter().copied().fold(0.0, f32::max)
     }
 
-    /// Candela in a direction: x is horizontal angle 0, z down. Linear between angles; nothing beyond the vertical ones.
+    /// Candela in a direction: x is horizontal angle 0, z down. Linear between angles; nothing
+    /// beyond the vertical ones.
     pub fn at(&self, dir: Vec3) -> f32 {
         let degrees = |y: f32, x: f32| fp::atan2(y, x).to_degrees();
         let across = |a: f32, b: f32| (a * a + b * b).sqrt();
@@ -137,7 +138,8 @@ impl Profile {
         }
     }
 
-    /// The light in all directions together, in lumen: exact for what is linear between the angles, but for the sine.
+    /// The light in all directions together, in lumen: exact for what is linear between the angles,
+    /// but for the sine.
     pub fn flux(&self) -> f64 {
         let (rows, columns) = (720_u32, 360_u32);
         let mut sum = 0.0;
@@ -152,7 +154,8 @@ impl Profile {
     }
 }
 
-/// The last angle that is not beyond a wanted one, and the way from there to the next; `None` outside of all.
+/// The last angle that is not beyond a wanted one, and the way from there to the next; `None`
+/// outside of all.
 fn place(angles: &[f32], wanted: f32) -> Option<(usize, f32)> {
     const SLACK: f32 = 1e-3;
     let (first, last) = (angles[0], angles[angles.len() - 1]);

@@ -3,7 +3,8 @@
 use super::*;
 use crate::dialect::Dialect;
 
-/// What arrives of a light of strength 1 at distance 2 in a dialect; exactly representable answers only.
+/// What arrives of a light of strength 1 at distance 2 in a dialect; exactly representable answers
+/// only.
 fn arriving(dialect: Dialect, attenuation: Option<Vec3>, falloff: Option<f32>) -> f32 {
     let light = PointLight { position: Vec3::Z * 2.0, color: Vec3::ONE, attenuation, falloff, spectrum: None };
     let seen = Light::from(light).resolved(dialect.rules()).illuminate((Vec3::ZERO).as_dvec3());

@@ -18,7 +18,8 @@ fn house(objects: &str) -> tempfile::TempDir {
     root
 }
 
-/// Loads and compiles; findings as `file:line:column severity: message (help)`, without the folder's name.
+/// Loads and compiles; findings as `file:line:column severity: message (help)`, without the
+/// folder's name.
 fn made(root: &tempfile::TempDir, options: &LoadOptions) -> (Option<World>, Vec<String>) {
     let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
     let path = root.path().join("scene/scene.txt");

@@ -1,5 +1,5 @@
-//! Materials: what a surface does with light. One file each; the list is [`Solid`] beside [`PhongMaterial`] and
-//! [`PrincipledMaterial`].
+//! Materials: what a surface does with light. One file each; the list is [`Solid`] beside
+//! [`PhongMaterial`] and [`PrincipledMaterial`].
 
 pub mod checkerboard;
 pub mod marble;

@@ -1,4 +1,5 @@
-//! The course's material: diffuse colour, a highlight, and weights for mirrored and transmitted rays.
+//! The course's material: diffuse colour, a highlight, and weights for mirrored and transmitted
+//! rays.
 
 use super::MOST_OCTAVES;
 use crate::describe::{FileName, Rule};
@@ -51,7 +52,8 @@ described! {
 }
 
 impl ColorNoise {
-    /// The colour at a point: w color1 + (1 - w) color2, w = (sin(frequency x + amplitude N) + 1) / 2.
+    /// The colour at a point: w color1 + (1 - w) color2, w = (sin(frequency x + amplitude N) + 1) /
+    /// 2.
     pub fn color(&self, p: Vec3) -> Color {
         let w = noise::veins(p, p.x, self.frequency, self.amplitude, self.octaves);
         w * self.color1 + (1.0 - w) * self.color2

@@ -1,7 +1,8 @@
 //! Real materials by name.
 //!
-//! The figures are those of OpenPBR's own examples (Academy Software Foundation, *OpenPBR*, 2024), their colours converted from ACEScg to
-//! Rec.709 and kept within 0 to 1. Lengths are in the examples' units; set `subsurfaceRadius` or `transmissionDepth` for the size of a thing.
+//! The figures are those of OpenPBR's own examples (Academy Software Foundation, *OpenPBR*, 2024),
+//! their colours converted from ACEScg to Rec.709 and kept within 0 to 1. Lengths are in the
+//! examples' units; set `subsurfaceRadius` or `transmissionDepth` for the size of a thing.
 
 use super::PrincipledMaterial;
 use crate::describe::{Describe, Value};

@@ -1,4 +1,5 @@
-//! The material of physically based pictures: layers with the names and meanings of OpenPBR Surface 1.1.
+//! The material of physically based pictures: layers with the names and meanings of OpenPBR Surface
+//! 1.1.
 //!
 //! Source: *OpenPBR Surface specification*, version 1.1, Academy Software Foundation, 2024.
 
@@ -197,7 +198,8 @@ impl PrincipledMaterial {
 
     /// The index of refraction at a wavelength in nanometres; `None` for all of them.
     ///
-    /// Source: Cauchy's formula through the indices that Abbe's number is made of, at the lines C, d and F; OpenPBR.
+    /// Source: Cauchy's formula through the indices that Abbe's number is made of, at the lines C,
+    /// d and F; OpenPBR.
     pub fn ior_at(&self, nm: Option<f32>) -> f32 {
         const LINES: [f32; 3] = [656.3, 587.6, 486.1];
         let Some(nm) = nm.filter(|_| self.disperses()) else { return self.specular_ior };

@@ -1,5 +1,5 @@
-//! Rings around the y axis: the first material weighs (sin(frequency r + amplitude N) + 1) / 2, with r the
-//! distance from the axis.
+//! Rings around the y axis: the first material weighs (sin(frequency r + amplitude N) + 1) / 2,
+//! with r the distance from the axis.
 //!
 //! The course left the profile of the rings free; the official program's is steeper, and not known.
 

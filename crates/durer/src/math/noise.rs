@@ -53,7 +53,8 @@ pub fn turbulence(p: Vec3, octaves: u32) -> f32 {
     sum
 }
 
-/// Veins bent by noise: (sin(frequency x + amplitude N(p)) + 1) / 2, with x how far `p` is along what they run across.
+/// Veins bent by noise: (sin(frequency x + amplitude N(p)) + 1) / 2, with x how far `p` is along
+/// what they run across.
 pub fn veins(p: Vec3, x: f32, frequency: f32, amplitude: f32, octaves: u32) -> f32 {
     let phase = frequency * x + amplitude * turbulence(p, octaves);
     0.5 * (fp::sin(phase) + 1.0)

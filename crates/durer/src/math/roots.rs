@@ -1,9 +1,10 @@
 //! Real roots of polynomials, in double precision.
 
-/// The roots of a t^2 + 2 b t + c where it changes its sign, in rising order: none, or two. A double root is none.
+/// The roots of a t^2 + 2 b t + c where it changes its sign, in rising order: none, or two. A
+/// double root is none.
 ///
-/// `a` must not be 0. No root loses digits to cancellation: one of them is c / q. Source: Press et al., *Numerical
-/// Recipes*, section 5.6.
+/// `a` must not be 0. No root loses digits to cancellation: one of them is c / q. Source: Press et
+/// al., *Numerical Recipes*, section 5.6.
 pub fn quadratic(a: f64, b: f64, c: f64) -> Option<(f64, f64)> {
     let discriminant = b * b - a * c;
     if discriminant.is_nan() || discriminant <= 0.0 {
@@ -14,11 +15,13 @@ pub fn quadratic(a: f64, b: f64, c: f64) -> Option<(f64, f64)> {
     Some(if x < y { (x, y) } else { (y, x) })
 }
 
-/// The places in (`low`, `high`) where a polynomial of degree 4 changes its sign, in rising order, and their number.
+/// The places in (`low`, `high`) where a polynomial of degree 4 changes its sign, in rising order,
+/// and their number.
 ///
-/// Coefficients are given from the constant on. Between the roots of its derivative a polynomial is monotonic, so that
-/// each piece with a change of sign has one root, found by bisection that Newton's method hastens. The derivatives'
-/// own roots are found in the same way. A polynomial with the same sign at both ends has an even number of roots.
+/// Coefficients are given from the constant on. Between the roots of its derivative a polynomial is
+/// monotonic, so that each piece with a change of sign has one root, found by bisection that
+/// Newton's method hastens. The derivatives' own roots are found in the same way. A polynomial with
+/// the same sign at both ends has an even number of roots.
 pub fn quartic(c: [f64; 5], low: f64, high: f64) -> ([f64; 4], usize) {
     let second = [2.0 * c[2], 6.0 * c[3], 12.0 * c[4]];
     let first = [c[1], 2.0 * c[2], 3.0 * c[3], 4.0 * c[4]];

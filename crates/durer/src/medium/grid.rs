@@ -13,7 +13,8 @@ pub struct DensityGrid {
 }
 
 impl DensityGrid {
-    /// From values, x running fastest; `None` unless there are as many as counts say, none of them negative or without bounds.
+    /// From values, x running fastest; `None` unless there are as many as counts say, none of them
+    /// negative or without bounds.
     pub fn new(counts: [u32; 3], values: Vec<f32>) -> Option<Self> {
         let wanted = counts.iter().try_fold(1_usize, |product, &count| product.checked_mul(count as usize))?;
         if wanted == 0 || wanted != values.len() || values.iter().any(|x| !x.is_finite() || *x < 0.0) {

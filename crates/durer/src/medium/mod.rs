@@ -17,7 +17,8 @@ use std::sync::Arc;
 /// What fills a body, or the air.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Medium {
-    /// How much light loses by absorption and scattering, per unit of the world and by colour, where the density is 1.
+    /// How much light loses by absorption and scattering, per unit of the world and by colour,
+    /// where the density is 1.
     pub extinction: Color,
     /// The share of that which is scattered.
     pub albedo: Color,
@@ -110,8 +111,8 @@ impl Medium {
         left
     }
 
-    /// Whether light with these weights gets through a way, or where it is scattered. What it is multiplied by has the
-    /// probability of that worked in.
+    /// Whether light with these weights gets through a way, or where it is scattered. What it is
+    /// multiplied by has the probability of that worked in.
     pub fn flight(&self, way: &Way, weights: Spectrum, lanes: &Lanes, numbers: &mut dyn FnMut() -> f32) -> Flight {
         let Some((from, to)) = self.clipped(way) else { return Flight::Passed(Spectrum::ONE) };
         let extinction = lanes.coefficient(self.extinction);
@@ -121,8 +122,9 @@ impl Medium {
         let albedo = lanes.reflectance(self.albedo);
         match self.density() {
             Some((grid, bounds)) => {
-                // Null collisions fill it up to its greatest density, and lanes are weighed as they count by then. Sources:
-                // Woodcock and others, 1965; Kutz and others, *Spectral and Decomposition Tracking*, 2017.
+                // Null collisions fill it up to its greatest density, and lanes are weighed as they count by then.
+                // Sources: Woodcock and others, 1965; Kutz and others, *Spectral and Decomposition
+                // Tracking*, 2017.
                 let most = extinction.max_element() * grid.most();
                 let (mut at, mut left) = (from, Spectrum::ONE);
                 for _ in 0..MAX_STEPS {
@@ -159,7 +161,8 @@ impl Medium {
     }
 }
 
-/// Where light next meets something on its way, were the medium as dense as at its densest everywhere.
+/// Where light next meets something on its way, were the medium as dense as at its densest
+/// everywhere.
 fn collision(at: f32, to: f32, most: f32, numbers: &mut dyn FnMut() -> f32) -> Option<f32> {
     let next = at - fp::ln(1.0 - numbers()) / most;
     (next < to).then_some(next)

@@ -8,12 +8,14 @@ use std::f32::consts::{PI, TAU};
 /// Source: Henyey and Greenstein, *Diffuse radiation in the Galaxy*, 1941.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct HenyeyGreenstein {
-    /// The mean cosine between the directions before and after: from -1 (back) over 0 (evenly) to 1 (onwards).
+    /// The mean cosine between the directions before and after: from -1 (back) over 0 (evenly) to 1
+    /// (onwards).
     pub anisotropy: f32,
 }
 
 impl HenyeyGreenstein {
-    /// The share of light that goes from one unit direction into another, per solid angle: its own density as well.
+    /// The share of light that goes from one unit direction into another, per solid angle: its own
+    /// density as well.
     pub fn value(&self, before: Vec3, after: Vec3) -> f32 {
         let g = self.anisotropy;
         let below = 1.0 + g * g - 2.0 * g * before.dot(after);

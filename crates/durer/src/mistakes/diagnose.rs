@@ -18,7 +18,8 @@ use std::collections::BTreeSet;
 const FEW: usize = 400;
 const COARSE: usize = 1600;
 const FULL: usize = 16_000;
-/// Pixels at which pairs are tried first, and how many pairs are tried at the next number of pixels each time.
+/// Pixels at which pairs are tried first, and how many pairs are tried at the next number of pixels
+/// each time.
 const FEWEST: usize = 72;
 const KEPT: [usize; 3] = [200, 30, 8];
 /// So many mistakes are tried at more pixels than a few.
@@ -27,10 +28,12 @@ const MOST_SINGLES: usize = 60;
 const WHOLE: usize = 160_000;
 /// So many of the best are looked at closely, and paired with all others.
 const BEST: usize = 12;
-/// What explains less than this at some pixels is not tried at all of them, beside so many of the best.
+/// What explains less than this at some pixels is not tried at all of them, beside so many of the
+/// best.
 const CLOSE: f64 = 0.8;
 const CLOSEST: usize = 5;
-/// Where the scene's own picture differs from the reference at a larger share of the pixels, nothing is said.
+/// Where the scene's own picture differs from the reference at a larger share of the pixels,
+/// nothing is said.
 const MOST_OFF: f64 = 0.25;
 /// Half a step of eight bits, and how many pixels must be rounded otherwise.
 const HALF: f32 = 0.5 / 255.0;
@@ -71,7 +74,8 @@ pub struct Named {
 pub struct Diagnosis {
     /// The share of the pixels in which the scene's own picture is not the reference.
     pub off: f64,
-    /// What makes the picture; more than one where several make the same of this scene. Empty where nothing does.
+    /// What makes the picture; more than one where several make the same of this scene. Empty where
+    /// nothing does.
     pub named: Vec<Named>,
     /// What came nearest, whether it is named or not.
     pub tried: Vec<Named>,
@@ -237,7 +241,8 @@ fn tried(trials: &[Trial]) -> Vec<Named> {
     all
 }
 
-/// The share of the reference's pixels that the scene with the options of the question makes otherwise: looked at in some.
+/// The share of the reference's pixels that the scene with the options of the question makes
+/// otherwise: looked at in some.
 pub fn off(question: &Question) -> f64 {
     let (reference, view, base) = prepared(question);
     let places = sampled(question.job.width, &reference, &reference, 2 * FEW);
@@ -255,7 +260,8 @@ impl<'a> Search<'a> {
         rows.flat_map(|row| row.values.numbers(lights).into_iter().map(move |value| vec![(row, value)])).collect()
     }
 
-    /// Pixels in which the scene's picture does not hang on rounding: a little aside, or with another epsilon, it is the same.
+    /// Pixels in which the scene's picture does not hang on rounding: a little aside, or with
+    /// another epsilon, it is the same.
     fn steady(&self, pixels: &Pixels) -> Vec<bool> {
         let aside = |by: f32| {
             let mut variant = self.base.clone();
@@ -298,7 +304,8 @@ impl<'a> Search<'a> {
         Trial { mistakes, made, fit }
     }
 
-    /// The mistakes of a trial with the value at which it fits best: sought at few pixels, and rounded if more allow it.
+    /// The mistakes of a trial with the value at which it fits best: sought at few pixels, and
+    /// rounded if more allow it.
     fn refined(&self, trial: &Trial, few: &Pixels, more: &Pixels) -> Vec<(&'static Mistake, f32)> {
         let [(mistake, value)] = trial.mistakes[..] else { return trial.mistakes.clone() };
         if !matches!(mistake.values, Values::Numbers(_)) || trial.fit.explained > 0.999 {
@@ -321,7 +328,8 @@ impl<'a> Search<'a> {
         vec![(mistake, if round > 0.0 && fits(round) { round } else { at })]
     }
 
-    /// Pairs of the best with all others: at a few pixels, then the best of them at more, and so on.
+    /// Pairs of the best with all others: at a few pixels, then the best of them at more, and so
+    /// on.
     fn pairs(&self, best_of: &[Trial], singles: &[Trial], rounds: [&Pixels; 4]) -> (Vec<Named>, Vec<Named>) {
         let mut first: Vec<&Trial> = best_of.iter().take(BEST).chain(best_matched(best_of)).collect();
         first.dedup_by_key(|trial| trial.mistakes[0].0.name);
@@ -407,7 +415,8 @@ fn sort(trials: &mut [Trial]) {
     trials.sort_by(|a, b| b.fit.explained.total_cmp(&a.fit.explained));
 }
 
-/// The mistakes of the best trials: three in four by the squared difference, one by the pixels that agree.
+/// The mistakes of the best trials: three in four by the squared difference, one by the pixels that
+/// agree.
 fn best(trials: &mut [Trial], count: usize) -> Vec<Vec<(&'static Mistake, f32)>> {
     sort(trials);
     let (first, others) = trials.split_at_mut(trials.len().min(count - count / 4));
@@ -429,7 +438,8 @@ struct Bars {
 }
 
 impl Bars {
-    // The right name leaves nothing but what rounding makes of edges; what leaves more is another mistake.
+    // The right name leaves nothing but what rounding makes of edges; what leaves more is another
+    // mistake.
     const SINGLE: Bars = Bars { explained: 0.985, matched: 0.9 };
     const PAIR: Bars = Bars { explained: 0.985, matched: 0.95 };
     /// With a number that was fitted.
@@ -444,8 +454,8 @@ impl Bars {
     }
 }
 
-/// The trial that makes the picture, with those that make the same one; nothing where none does, or two different ones do nearly
-/// as well.
+/// The trial that makes the picture, with those that make the same one; nothing where none does, or
+/// two different ones do nearly as well.
 fn decided(mut trials: Vec<Trial>, pixels: &Pixels, bars: &Bars) -> Vec<Named> {
     sort(&mut trials);
     trials.dedup_by(|a, b| a.mistakes.len() == b.mistakes.len() && same(&a.mistakes, &b.mistakes));

@@ -284,7 +284,8 @@ pub struct Shadows {
     pub short: bool,
     /// Highlights are there in shadow too.
     pub highlights_left: bool,
-    /// Where one light is blocked, there is no light at all; with `true`, mirrored and transmitted light neither.
+    /// Where one light is blocked, there is no light at all; with `true`, mirrored and transmitted
+    /// light neither.
     pub black: Option<bool>,
 }
 
@@ -450,7 +451,8 @@ pub enum Output {
     Times(f32),
     /// 1 - c.
     Negative,
-    /// Grey: 0 the mean of the channels, 1 and 2 as television weighs them, 3 the greatest, 4 red, 5 green, 6 blue.
+    /// Grey: 0 the mean of the channels, 1 and 2 as television weighs them, 3 the greatest, 4 red,
+    /// 5 green, 6 blue.
     Grey(u32),
     /// In so many steps.
     Steps(u32),

@@ -1,8 +1,9 @@
 //! The usual mistakes as one table, and the pictures that they make of a scene.
 //!
-//! A row of [`MISTAKES`] says what a pupil's program does wrong, in words and in both forms of the code, and changes a
-//! [`Variant`] so that a [`Pupil`]'s picture shows it. [`diagnose()`] renders the rows, alone and in pairs, and names the one
-//! that makes a given picture; the lesson shows some of them. A new mistake is a new row.
+//! A row of [`MISTAKES`] says what a pupil's program does wrong, in words and in both forms of the
+//! code, and changes a [`Variant`] so that a [`Pupil`]'s picture shows it. [`diagnose()`] renders
+//! the rows, alone and in pairs, and names the one that makes a given picture; the lesson shows
+//! some of them. A new mistake is a new row.
 
 mod diagnose;
 pub mod habits;

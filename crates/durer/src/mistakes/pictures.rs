@@ -100,7 +100,8 @@ impl View<'_> {
             return light.map(|v| ((v * 255.0 + half).floor() as i64).rem_euclid(256) as f32 / 255.0);
         }
         let eight = |transfer: Transfer, v: Vec3| Vec3::from(transfer.encode_pixel(v).map(f32::from)) / 255.0;
-        // A curve on top of what the transfer makes is reckoned from values that are not cut to eight bits yet.
+        // A curve on top of what the transfer makes is reckoned from values that are not cut to eight bits
+        // yet.
         let curved = |v: f32| if transfer == Transfer::Srgb { linear_to_srgb(v.clamp(0.0, 1.0)) } else { v.max(0.0) };
         let plain = if transfer == Transfer::Course { Transfer::Course } else { Transfer::Linear };
         match output {

@@ -1,7 +1,7 @@
 //! A pupil's tracer: Whitted's algorithm once more, with any of the usual mistakes.
 //!
-//! It is apart from [`Whitted`], so that what renders pictures asks for no mistakes. Without any it gives the same colours,
-//! to the bit: a test holds the two together.
+//! It is apart from [`Whitted`], so that what renders pictures asks for no mistakes. Without any it
+//! gives the same colours, to the bit: a test holds the two together.
 
 use super::habits::{
     Ambient, Behind, Cosine, Fading, Fresnel, Glass, Habits, Half, Mirror, Normals, Pick, PointLamp, ShadowWay, Sum,

@@ -67,7 +67,8 @@ pub(super) fn fit(reference: &[Vec3], test: &[Vec3], made: &[Vec3]) -> Fit {
     Fit { explained, matched: agree as f64 / either.max(1) as f64 }
 }
 
-/// Pixels of a picture, at most so many: half of them spread evenly, half where the pictures differ.
+/// Pixels of a picture, at most so many: half of them spread evenly, half where the pictures
+/// differ.
 pub(super) fn sampled(width: u32, reference: &[Vec3], test: &[Vec3], most: usize) -> Vec<usize> {
     let all = reference.len();
     if all <= most {

@@ -5,8 +5,8 @@ use crate::math::Vec3;
 
 /// How many of the speckles must be of the kind.
 const MOST: f64 = 0.94;
-/// Of neighbours where there are speckles, so many must be without, at least; and as many more as there are at the border of
-/// some regions of so many pixels: 2.3 / √count for one disc.
+/// Of neighbours where there are speckles, so many must be without, at least; and as many more as
+/// there are at the border of some regions of so many pixels: 2.3 / √count for one disc.
 const BROKEN: f64 = 0.06;
 const BORDERS: f64 = 4.0;
 
@@ -31,8 +31,8 @@ pub(super) fn speckled(reference: &[Vec3], test: &[Vec3], width: usize) -> Optio
     (differ.len() * 500 > reference.len() && speckled).then_some(differ)
 }
 
-/// The share of the pixels that differ which are as dark as in the full shadow of some lights, if nearly all are. `shadowed` are
-/// these pixels of the pictures in which one or more lights are off.
+/// The share of the pixels that differ which are as dark as in the full shadow of some lights, if
+/// nearly all are. `shadowed` are these pixels of the pictures in which one or more lights are off.
 pub(super) fn share(test: &[Vec3], differ: &[usize], shadowed: &[Vec<Vec3>]) -> Option<f64> {
     let alike =
         |(at, &i): (usize, &usize)| shadowed.iter().any(|dark| (dark[at] - test[i]).abs().max_element() <= SEEN);

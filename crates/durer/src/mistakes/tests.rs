@@ -52,7 +52,8 @@ fn job() -> Job {
     Job { settings: crate::integrator::Settings { bounces: 3, least_weight: 0.0, ..job.settings }, ..job }
 }
 
-/// Whatever year's rules hold, a pupil without mistakes makes the picture that is rendered, to the bit.
+/// Whatever year's rules hold, a pupil without mistakes makes the picture that is rendered, to the
+/// bit.
 #[test]
 fn without_mistakes_the_picture_is_right() {
     for dialect in Dialect::ALL {
@@ -210,7 +211,8 @@ fn each_usual_mistake_is_named() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// A picture of something else is no mistake of this scene, and a reference of something else is said to be so.
+/// A picture of something else is no mistake of this scene, and a reference of something else is
+/// said to be so.
 #[test]
 fn what_is_no_mistake_is_not_named() {
     let (scene, world) = world(Dialect::F04.rules());

@@ -110,7 +110,8 @@ impl<'s> Variant<'s> {
 
     /// Gives highlights to materials that have a specular colour, in years whose program has none.
     ///
-    /// Their form is 0 for Phong's, 1 for Phong's where the light is on the surface's side, 2 for Blinn's.
+    /// Their form is 0 for Phong's, 1 for Phong's where the light is on the surface's side, 2 for
+    /// Blinn's.
     pub fn add_highlights(&mut self, form: f32) {
         if self.world.rules.highlight != Highlight::None {
             return;

@@ -36,7 +36,8 @@ impl Bands {
     /// The picture of a job in bands that take at most so many bytes each.
     ///
     /// # Errors
-    /// [`RenderError::Bands`] for what needs all pixels at once, and [`RenderError::Memory`] where not even one row of blocks fits.
+    /// [`RenderError::Bands`] for what needs all pixels at once, and [`RenderError::Memory`] where
+    /// not even one row of blocks fits.
     pub fn new(job: &Job, memory: u64) -> Result<Self, RenderError> {
         let refuse = |why: &str| Err(RenderError::Bands(why.into()));
         if !job.color || !job.aovs.is_empty() {
@@ -78,8 +79,8 @@ impl Bands {
         Job { crop: Some(crop), ..self.job.clone() }
     }
 
-    /// Makes the picture and writes it. What was counted comes back, and the hash that [`Part::hash`] of all of it has, for formats
-    /// whose top row comes first.
+    /// Makes the picture and writes it. What was counted comes back, and the hash that
+    /// [`Part::hash`] of all of it has, for formats whose top row comes first.
     ///
     /// # Errors
     /// [`BandsError`]; what was written is not whole then.

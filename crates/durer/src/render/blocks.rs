@@ -1,7 +1,9 @@
-//! How a picture is cut: into blocks, which never change, tiles of blocks, which threads take, and shards.
+//! How a picture is cut: into blocks, which never change, tiles of blocks, which threads take, and
+//! shards.
 //!
-//! All that decides anything (which shard makes a pixel, where noise is low enough) goes by blocks of 8 x 8 pixels, whose
-//! corners lie at multiples of 8 in the whole picture. So the size of tiles changes nothing.
+//! All that decides anything (which shard makes a pixel, where noise is low enough) goes by blocks
+//! of 8 x 8 pixels, whose corners lie at multiples of 8 in the whole picture. So the size of tiles
+//! changes nothing.
 
 use super::Crop;
 use serde::{Deserialize, Serialize};
@@ -92,12 +94,14 @@ impl Shard {
     /// All of it.
     pub const WHOLE: Shard = Shard { index: 1, count: 1, by: ShardBy::Tiles };
 
-    /// Whether it has the pixels of a block. Neighbours go to different shards, which so have about as much work.
+    /// Whether it has the pixels of a block. Neighbours go to different shards, which so have about
+    /// as much work.
     pub fn has_block(self, index: usize) -> bool {
         self.by == ShardBy::Samples || self.has_rays(index)
     }
 
-    /// Whether it has the rays through the centres of a block's pixels: these are split by blocks in any case.
+    /// Whether it has the rays through the centres of a block's pixels: these are split by blocks
+    /// in any case.
     pub fn has_rays(self, index: usize) -> bool {
         index as u64 % u64::from(self.count) == u64::from(self.index - 1)
     }

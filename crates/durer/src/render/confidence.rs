@@ -1,15 +1,16 @@
 //! How far a pixel may be from the truth, noise and bias together.
 //!
-//! Of n samples the mean has a standard error. Photons have a bias besides: light is the mean of a neighbourhood. The
-//! same photons with a kernel that is right to second order (see [`crate::integrator::Photons::corrected`]) tell it.
-//! With mean M, corrected mean C and the standard error s of C, the truth lies within t s of C with some confidence,
-//! where t is Student's quantile of n - 1 degrees of freedom; so it is at most |M - C| + t s away from M.
+//! Of n samples the mean has a standard error. Photons have a bias besides: light is the mean of a
+//! neighbourhood. The same photons with a kernel that is right to second order (see
+//! [`crate::integrator::Photons::corrected`]) tell it. With mean M, corrected mean C and the
+//! standard error s of C, the truth lies within t s of C with some confidence, where t is Student's
+//! quantile of n - 1 degrees of freedom; so it is at most |M - C| + t s away from M.
 //!
-//! Source: Hachisuka, Jarosz and Jensen, *A Progressive Error Estimation Framework for Photon Density Estimation*,
-//! 2010. There the bias comes of derivatives of a smooth kernel, here of two kernels over the same photons; with
-//! radii that are the same for all pixels (Knaus and Zwicker 2011) it is an ordinary mean over samples. As there,
-//! light is taken to be smooth within the radius: at the sharp edge of a caustic about six tenths of the bias are
-//! found.
+//! Source: Hachisuka, Jarosz and Jensen, *A Progressive Error Estimation Framework for Photon
+//! Density Estimation*, 2010. There the bias comes of derivatives of a smooth kernel, here of two
+//! kernels over the same photons; with radii that are the same for all pixels (Knaus and Zwicker
+//! 2011) it is an ordinary mean over samples. As there, light is taken to be smooth within the
+//! radius: at the sharp edge of a caustic about six tenths of the bias are found.
 
 use super::part::Part;
 use super::pictures::place;
@@ -33,7 +34,8 @@ pub struct ErrorBound {
     pub bias: f64,
     /// The standard error of the luminance without the bias.
     pub standard_error: f64,
-    /// With a confidence of [`CONFIDENCE`] the luminance is not further than this from the truth; infinite for one sample.
+    /// With a confidence of [`CONFIDENCE`] the luminance is not further than this from the truth;
+    /// infinite for one sample.
     pub bound: f64,
 }
 
@@ -47,18 +49,19 @@ impl ErrorBound {
         ErrorBound { luminance, bias, standard_error, bound: bias.abs() + student(freedom) * standard_error }
     }
 
-    /// The bounds on the luminance without the bias, between which the truth lies with a confidence of [`CONFIDENCE`].
+    /// The bounds on the luminance without the bias, between which the truth lies with a confidence
+    /// of [`CONFIDENCE`].
     pub fn interval(&self) -> (f64, f64) {
         let (middle, half) = (self.luminance - self.bias, self.bound - self.bias.abs());
         (middle - half, middle + half)
     }
 }
 
-/// The quantile of Student's distribution that is passed with probability (1 - [`CONFIDENCE`]) / 2; infinite without
-/// degrees of freedom.
+/// The quantile of Student's distribution that is passed with probability (1 - [`CONFIDENCE`]) / 2;
+/// infinite without degrees of freedom.
 ///
-/// Source: Abramowitz and Stegun, *Handbook of Mathematical Functions*, 26.7.5. It is 5 % too small for one degree of
-/// freedom, and right to 0.3 % from two on.
+/// Source: Abramowitz and Stegun, *Handbook of Mathematical Functions*, 26.7.5. It is 5 % too small
+/// for one degree of freedom, and right to 0.3 % from two on.
 fn student(freedom: f64) -> f64 {
     if freedom < 1.0 {
         return f64::INFINITY;
@@ -95,13 +98,13 @@ pub(super) fn corrected(method: Method) -> Option<Method> {
 }
 
 impl Part {
-    /// How far each pixel's luminance may be from the truth, with a confidence of [`CONFIDENCE`]: the values, and a
-    /// heat map of them up to 0.1. It is made beside the work, whose sums and hash it leaves alone. Photons are
-    /// followed a second time for it.
+    /// How far each pixel's luminance may be from the truth, with a confidence of [`CONFIDENCE`]:
+    /// the values, and a heat map of them up to 0.1. It is made beside the work, whose sums and
+    /// hash it leaves alone. Photons are followed a second time for it.
     ///
     /// # Errors
-    /// [`RenderError`], as for the picture itself; [`RenderError::Diagram`] for photons whose pixels have samples as
-    /// noise or time allows.
+    /// [`RenderError`], as for the picture itself; [`RenderError::Diagram`] for photons whose
+    /// pixels have samples as noise or time allows.
     pub fn error(&self, world: &World, threads: Option<usize>) -> Result<[Layer; 2], RenderError> {
         let made = |job: Job| -> Result<Part, RenderError> {
             let part = Part::new(world, &job, Shard::WHOLE)?;
@@ -129,7 +132,8 @@ impl Part {
         Ok([Layer::data("error", values), Layer::data("error", shown)])
     }
 
-    /// The bound of each pixel, with another part that has the same samples corrected; infinite where there are none.
+    /// The bound of each pixel, with another part that has the same samples corrected; infinite
+    /// where there are none.
     fn error_bounds(&self, other: Option<&Part>) -> Vec<f32> {
         let (window, gain) = (self.job.window(), self.gain());
         let (state, other) = (self.state(), other.map(Part::state));

@@ -8,8 +8,8 @@ use std::time::Duration;
 pub struct Control {
     /// Threads; `None`: as many as the machine has.
     pub threads: Option<usize>,
-    /// Pixels across and down a tile, the work that a thread takes at once; rounded up to a multiple of 8. `None`: a suitable
-    /// number.
+    /// Pixels across and down a tile, the work that a thread takes at once; rounded up to a
+    /// multiple of 8. `None`: a suitable number.
     pub tile: Option<u32>,
     /// After this time no more samples are taken, once every pixel has one.
     pub time: Option<Duration>,

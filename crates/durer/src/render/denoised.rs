@@ -29,8 +29,8 @@ pub struct Noisy {
 }
 
 impl Part {
-    /// The colour picture of what is there, with its guides by one ray a pixel. It is made beside the work, whose
-    /// sums and hash it leaves alone.
+    /// The colour picture of what is there, with its guides by one ray a pixel. It is made beside
+    /// the work, whose sums and hash it leaves alone.
     ///
     /// # Errors
     /// [`RenderError`], as for a picture of one ray a pixel.
@@ -51,7 +51,8 @@ impl Part {
 }
 
 impl Noisy {
-    /// Without noise by our own denoiser: see [`denoise`]. It has the same bits on any number of threads.
+    /// Without noise by our own denoiser: see [`denoise`]. It has the same bits on any number of
+    /// threads.
     pub fn denoised(self) -> Layer {
         let Noisy { picture, albedo, normal, position, variance, .. } = &self;
         let clean = denoise(picture, &Guides { albedo, normal, position, variance });

@@ -55,7 +55,8 @@ pub struct Panicked {
     pub x: u32,
     /// Row.
     pub y: u32,
-    /// Number of the sample; `None` for the ray through the pixel's centre, or where a pixel has no samples of its own.
+    /// Number of the sample; `None` for the ray through the pixel's centre, or where a pixel has no
+    /// samples of its own.
     pub sample: Option<u32>,
     /// What the panic says.
     pub message: String,

@@ -48,9 +48,11 @@ pub struct Explanation {
 pub enum Mean {
     /// All are its own; it is their mean by weight, in the film's exact sums.
     Own,
-    /// 2004: samples of the pixels around count too; it is the mean by weight, summed in double precision.
+    /// 2004: samples of the pixels around count too; it is the mean by weight, summed in double
+    /// precision.
     Around,
-    /// 2012: sub-pixels are blurred along rows, then along columns, then averaged. Weights are those of all this together.
+    /// 2012: sub-pixels are blurred along rows, then along columns, then averaged. Weights are
+    /// those of all this together.
     SubPixels(SubPixels),
 }
 
@@ -72,7 +74,8 @@ pub struct SampleAccount {
 }
 
 impl Explanation {
-    /// The pixel's colour and coverage, computed anew from the trees by the picture's own arithmetic.
+    /// The pixel's colour and coverage, computed anew from the trees by the picture's own
+    /// arithmetic.
     pub fn sum(&self) -> (Color, f32) {
         let mut film = Film::window(self.x, self.y, 1, 1);
         let light =
@@ -110,7 +113,8 @@ fn told(integrator: &Integrator, ray: &Ray, id: SampleId) -> Option<Tree> {
 ///
 /// # Errors
 ///
-/// The pixel does not lie in the picture; [`RenderError`] where samples are counted until noise is low enough.
+/// The pixel does not lie in the picture; [`RenderError`] where samples are counted until noise is
+/// low enough.
 pub fn explain(world: &World, job: &Job, x: u32, y: u32) -> Result<Explanation, RenderError> {
     if x >= job.width || y >= job.height {
         return Err(RenderError::CropOutside(job.width, job.height));
@@ -148,7 +152,8 @@ pub fn explain(world: &World, job: &Job, x: u32, y: u32) -> Result<Explanation, 
     Ok(explanation)
 }
 
-/// How far a pixel may be from the truth: from its samples, and for photons from the same samples without their bias.
+/// How far a pixel may be from the truth: from its samples, and for photons from the same samples
+/// without their bias.
 fn error(world: &World, job: &Job, source: &Samples, explanation: &Explanation) -> ErrorBound {
     let Explanation { x, y, ref samples, .. } = *explanation;
     let film = |color: &dyn Fn(&SampleAccount) -> Option<Color>| {
@@ -181,7 +186,8 @@ fn count(world: &World, job: &Job, (x, y): (u32, u32)) -> Result<u32, RenderErro
     Ok(counted.layers[0].image.get(x - block.left, y - block.top).map_or(0, |count| count.x as u32))
 }
 
-/// The colour of a texture, noise or plain surface at a pixel's centre, and its material, if that has one.
+/// The colour of a texture, noise or plain surface at a pixel's centre, and its material, if that
+/// has one.
 fn texel(world: &World, raster: &Raster, pixel: (u32, u32)) -> Option<(u32, Color, Color)> {
     let ray = center_ray(world, raster, pixel)?;
     let hit = world.closest(&ray, &mut ())?;
@@ -190,10 +196,12 @@ fn texel(world: &World, raster: &Raster, pixel: (u32, u32)) -> Option<(u32, Colo
     Some((material, world.diffuse_color(phong, &world.surface(&ray, &hit)), phong.diffuse))
 }
 
-/// What [`Compat::StaleTexels`] adds: the ambient light of the pixel before with the same material, less its own.
+/// What [`Compat::StaleTexels`] adds: the ambient light of the pixel before with the same material,
+/// less its own.
 fn stale_texel(world: &World, job: &Job, raster: &Raster, (x, y): (u32, u32)) -> Option<Color> {
     let (material, own, plain) = texel(world, raster, (x, y))?;
-    // In rows from the bottom: first those of this row to the left, from right to left, then the rows below.
+    // In rows from the bottom: first those of this row to the left, from right to left, then the rows
+    // below.
     let row = |y: u32, end: u32| (0..end).rev().map(move |x| (x, y));
     let mut before = row(y, x).chain((y + 1..job.height).flat_map(|y| row(y, job.width)));
     let before = before.find_map(|pixel| texel(world, raster, pixel).filter(|found| found.0 == material));

@@ -10,7 +10,8 @@ use crate::world::{Accel, World};
 use rayon::prelude::*;
 use std::sync::atomic::Ordering::Relaxed;
 
-/// Colours of cells by the number of things in them: white for one, then brighter to hotter; the course leaves them free.
+/// Colours of cells by the number of things in them: white for one, then brighter to hotter; the
+/// course leaves them free.
 const COLORS: [Vec3; 8] = [
     Vec3::ONE,
     Vec3::new(1.0, 0.0, 1.0),
@@ -22,7 +23,8 @@ const COLORS: [Vec3; 8] = [
     Vec3::new(1.0, 0.0, 0.0),
 ];
 
-/// Draws the occupied cells of a world's grid, lit like its objects. Without a grid there is only the background.
+/// Draws the occupied cells of a world's grid, lit like its objects. Without a grid there is only
+/// the background.
 pub fn grid_picture(world: &World, job: &Job, control: &Control) -> Result<Image, RenderError> {
     let count = checked_count(job.width, job.height)?;
     let raster = raster(world, job.width, job.height);

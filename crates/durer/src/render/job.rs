@@ -91,7 +91,8 @@ pub enum Sampling {
 }
 
 impl Sampling {
-    /// Samples that a pixel gets in the end. Where samples count for other pixels too, it is one: the finished value.
+    /// Samples that a pixel gets in the end. Where samples count for other pixels too, it is one:
+    /// the finished value.
     pub fn samples(self) -> u32 {
         match self {
             Sampling::Filtered { samples, .. } => samples.max(1),
@@ -128,7 +129,8 @@ pub struct Job {
     pub seed: u64,
     /// Rays of the colour picture.
     pub sampling: Sampling,
-    /// Where the estimated error falls below this, no more samples are taken: see [`passes::error`]. `None`: nowhere.
+    /// Where the estimated error falls below this, no more samples are taken: see
+    /// [`passes::error`]. `None`: nowhere.
     pub noise: Option<f32>,
     /// What computes the light.
     #[serde(default)]
@@ -142,7 +144,8 @@ pub struct Job {
     pub aovs: Vec<&'static Aov>,
     /// Depths shown as black and white; `None`: least and greatest of the picture.
     pub depth_range: Option<(f32, f32)>,
-    /// What the false colours of light stand for; `None`: 0 and what nearly all of the picture stays below.
+    /// What the false colours of light stand for; `None`: 0 and what nearly all of the picture
+    /// stays below.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub light_scale: Option<LightScale>,
 }
@@ -215,7 +218,8 @@ impl Job {
         })
     }
 
-    /// The part for which rays go through the pixels' centres: all where a picture of a part depends on the whole.
+    /// The part for which rays go through the pixels' centres: all where a picture of a part
+    /// depends on the whole.
     pub fn ray_window(&self) -> Crop {
         if self.ray_aovs().any(|(aov, _)| aov.relative) { self.whole() } else { self.window() }
     }

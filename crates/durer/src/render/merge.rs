@@ -43,7 +43,8 @@ pub enum MergeError {
 /// How many places of what is missing are listed.
 const LISTED: usize = 8;
 
-/// Puts parts together that make up a whole picture: bit for bit what one run would have made. Their order does not matter.
+/// Puts parts together that make up a whole picture: bit for bit what one run would have made.
+/// Their order does not matter.
 ///
 /// # Errors
 /// [`MergeError`]: parts of other pictures, work that is in two parts, work that is in none.

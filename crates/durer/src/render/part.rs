@@ -12,7 +12,8 @@ use crate::source::Digest;
 use crate::world::World;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// A picture in the making, or a shard of one: rendered from time to time, saved, read again, merged with others.
+/// A picture in the making, or a shard of one: rendered from time to time, saved, read again,
+/// merged with others.
 ///
 /// It is locked within, so it can be rendered by one thread while another looks at it.
 #[derive(Debug)]
@@ -107,7 +108,8 @@ impl Part {
     /// A part of a picture of a world of which nothing is made yet.
     ///
     /// # Errors
-    /// [`RenderError::Image`], [`RenderError::CropOutside`], and [`RenderError::Shard`] for work that cannot be split so.
+    /// [`RenderError::Image`], [`RenderError::CropOutside`], and [`RenderError::Shard`] for work
+    /// that cannot be split so.
     pub fn new(world: &World, job: &Job, shard: Shard) -> Result<Self, RenderError> {
         Part::empty(job.clone(), shard, world.digest, Look::new(&world.rules))
     }
@@ -171,8 +173,8 @@ impl Part {
         }
     }
 
-    /// How much work there is in all, and how much of it is done: samples and rays through centres. With a rule that stops earlier,
-    /// it may end before all is done.
+    /// How much work there is in all, and how much of it is done: samples and rays through centres.
+    /// With a rule that stops earlier, it may end before all is done.
     pub fn work(&self) -> (u64, u64) {
         let range = self.shard.range(self.job.sampling.samples());
         let (mut all, mut done) = (0, 0);
@@ -226,8 +228,8 @@ impl Part {
         statistics
     }
 
-    /// The hash of the film: of all sums and values of its window. The same picture has the same hash, however it was made; what
-    /// it cost is not among it.
+    /// The hash of the film: of all sums and values of its window. The same picture has the same
+    /// hash, however it was made; what it cost is not among it.
     pub fn hash(&self) -> Digest {
         let mut hasher = blake3::Hasher::new();
         self.hash_into(&mut hasher);
@@ -259,7 +261,8 @@ impl Part {
         let (pixels, rays) = (job.window().pixels(), job.ray_window().pixels());
         let sums = if job.wants_samples() { Packed::pixel_bytes(job.sampling.samples()) } else { 0 };
         let values = 12 * job.ray_aovs().count() as u64 + 1;
-        // Numbers and coverage, eight bits, and the file; other pictures than the colours have both values and colours.
+        // Numbers and coverage, eight bits, and the file; other pictures than the colours have both values
+        // and colours.
         let pictures = 24 * u64::from(job.color) + 40 * job.aovs.len() as u64;
         let kept = pixels.saturating_mul(sums).saturating_add(rays.saturating_mul(values));
         (kept / share).saturating_add(pixels.saturating_mul(pictures))

@@ -6,10 +6,11 @@ use crate::film::{Film, luminance_of};
 /// Samples before which nothing is decided about a block.
 pub const LEAST: u32 = 16;
 
-/// The numbers of samples that every pixel has after each pass: 1, 2, 4, 8, 16, 24, 32, 48, 64, 96 and so on, up to all.
+/// The numbers of samples that every pixel has after each pass: 1, 2, 4, 8, 16, 24, 32, 48, 64, 96
+/// and so on, up to all.
 ///
-/// They depend on nothing but the number of samples, so decisions at the ends of passes are the same for all ways of making
-/// the picture.
+/// They depend on nothing but the number of samples, so decisions at the ends of passes are the
+/// same for all ways of making the picture.
 pub fn ends(samples: u32) -> impl Iterator<Item = u32> {
     let powers = (0..32).flat_map(|k| {
         let power = 1_u32 << k;
@@ -19,11 +20,13 @@ pub fn ends(samples: u32) -> impl Iterator<Item = u32> {
     powers.flatten().take_while(move |&end| end < samples).chain([samples])
 }
 
-/// The estimated error of a block as it is seen: the root of the mean square over its pixels of the standard error of sqrt(Y).
+/// The estimated error of a block as it is seen: the root of the mean square over its pixels of the
+/// standard error of sqrt(Y).
 ///
-/// Y is a pixel's luminance, at least 1/256, and 1 is white. The error of sqrt(Y), which is about what the eye sees, is that of Y
-/// divided by 2 sqrt(Y), as in Dammertz et al., *A Hierarchical Automatic Stopping Condition for Monte Carlo Global
-/// Illumination*, WSCG 2010. All is computed from exact sums in a fixed order.
+/// Y is a pixel's luminance, at least 1/256, and 1 is white. The error of sqrt(Y), which is about
+/// what the eye sees, is that of Y divided by 2 sqrt(Y), as in Dammertz et al., *A Hierarchical
+/// Automatic Stopping Condition for Monte Carlo Global Illumination*, WSCG 2010. All is computed
+/// from exact sums in a fixed order.
 pub fn error(film: &Film, rect: Crop, gain: f32) -> f64 {
     let square = |(x, y)| {
         let luminance = luminance_of(film.resolve(x, y)).max(1.0 / 256.0);

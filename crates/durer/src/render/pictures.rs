@@ -16,7 +16,8 @@ use std::sync::Arc;
 pub struct Rendered {
     /// Colour first, if wanted; then the others in the job's order.
     ///
-    /// Values are as files of floating point have them; [`Rendered::pictures`] has those for eight bits.
+    /// Values are as files of floating point have them; [`Rendered::pictures`] has those for eight
+    /// bits.
     pub layers: Vec<Layer>,
     /// The same as pictures between 0 and 1.
     pub pictures: Vec<Layer>,

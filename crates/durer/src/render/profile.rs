@@ -1,4 +1,5 @@
-//! What the time of a picture goes into: a few of its samples are taken again, and then their rays alone.
+//! What the time of a picture goes into: a few of its samples are taken again, and then their rays
+//! alone.
 
 use super::samples::Samples;
 use super::{Job, RenderError};
@@ -45,8 +46,8 @@ impl Witness for RayLog {
     }
 }
 
-/// Takes the first sample of up to `most` pixels of a job, evenly spread, twice: as a whole, and their rays alone. `None` where
-/// samples count for several pixels.
+/// Takes the first sample of up to `most` pixels of a job, evenly spread, twice: as a whole, and
+/// their rays alone. `None` where samples count for several pixels.
 ///
 /// # Errors
 /// [`RenderError`] for a job that is not possible.

@@ -10,7 +10,8 @@ use crate::world::World;
 use std::cell::Cell;
 use std::sync::atomic::AtomicBool;
 
-/// The colour of one sample of a job, by itself, if the camera sees anything there. `None`: what a pixel has beside samples of its own, or instead of them.
+/// The colour of one sample of a job, by itself, if the camera sees anything there. `None`: what a
+/// pixel has beside samples of its own, or instead of them.
 ///
 /// A panic comes through.
 ///

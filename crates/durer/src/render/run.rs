@@ -16,8 +16,8 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 use std::sync::{Mutex, PoisonError, mpsc};
 use std::time::{Duration, Instant};
 
-/// Pixels across and down a tile; where samples around a tile are taken for it alone, tiles are larger, as long as what is kept
-/// for one takes at most so many bytes.
+/// Pixels across and down a tile; where samples around a tile are taken for it alone, tiles are
+/// larger, as long as what is kept for one takes at most so many bytes.
 const TILE: u32 = 16;
 const TILE_WITH_BORDER: u32 = 64;
 const MOST_BYTES: u64 = 64 << 20;
@@ -71,8 +71,9 @@ pub fn render(world: &World, job: &Job, control: &Control) -> Result<Rendered, R
 impl Part {
     /// Goes on with the work until it is finished or stopped. What is made is kept, tile by tile.
     ///
-    /// `watch` is called in the calling thread at the end of each pass and when it is time to save, while the work goes on. After
-    /// it took some time, ends of passes are passed over until ten times as long has gone by.
+    /// `watch` is called in the calling thread at the end of each pass and when it is time to save,
+    /// while the work goes on. After it took some time, ends of passes are passed over until
+    /// ten times as long has gone by.
     ///
     /// # Errors
     /// [`RenderError::OtherScene`], [`RenderError::Memory`].
@@ -161,7 +162,8 @@ struct Clock<'a> {
     pause: Duration,
     control: &'a Control,
     stop: &'a AtomicBool,
-    /// Whether every pixel has a sample, or gets all of them at once: before, a picture would have holes.
+    /// Whether every pixel has a sample, or gets all of them at once: before, a picture would have
+    /// holes.
     whole: bool,
     out_of_time: bool,
 }
@@ -278,8 +280,8 @@ impl Work<'_> {
         Ok(())
     }
 
-    /// Makes the finished pixels of a tile, where samples count for several pixels: at once if it is a rectangle, else block by
-    /// block.
+    /// Makes the finished pixels of a tile, where samples count for several pixels: at once if it
+    /// is a rectangle, else block by block.
     fn finish(&self, tile: &[usize], at: &At) -> Result<(), Stopped> {
         let blocks = &self.part.blocks;
         let rects: Vec<_> = tile.iter().map(|&index| blocks.rect(index)).collect();
@@ -319,7 +321,8 @@ impl Work<'_> {
         self.control.rays.fetch_add(rays, Relaxed);
     }
 
-    /// Makes tiles in parallel or alone, until something stops it. A panic becomes an error that knows its sample.
+    /// Makes tiles in parallel or alone, until something stops it. A panic becomes an error that
+    /// knows its sample.
     fn each(&self, tiles: &[Vec<usize>], alone: Alone, make: impl Fn(&[usize], &At) -> Result<(), Stopped> + Sync) {
         let one = |tile: &Vec<usize>| {
             if self.control.most_tiles.is_some_and(|most| self.tiles.fetch_add(1, Relaxed) >= most) {

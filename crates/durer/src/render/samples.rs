@@ -47,8 +47,8 @@ pub fn sample_diagram(world: &World, job: &Job, control: &Control) -> Result<Sto
     threads::install(control.threads, work).map_err(|Stopped| RenderError::Cancelled)
 }
 
-/// Offers where the samples of a pixel go: in the picture, in the lens, and how much each counts. Of samples that count for
-/// other pixels too only the pixel's own are offered.
+/// Offers where the samples of a pixel go: in the picture, in the lens, and how much each counts.
+/// Of samples that count for other pixels too only the pixel's own are offered.
 pub fn sample_places(world: &World, job: &Job) -> impl Fn(u32, u32, &mut dyn FnMut(Vec2, Vec2, f32)) + Sync {
     let (aperture, seed, sampling) = (world.camera.has_aperture(), job.seed, job.sampling);
     let warp = match sampling {
@@ -92,8 +92,9 @@ pub(super) fn kept_bytes(job: &Job, side: u32) -> u64 {
     }
 }
 
-/// What the course's ways of sampling are made to show. They know colours only: where the camera sees nothing somewhere,
-/// it is shown a second time, white where the camera sees and black elsewhere.
+/// What the course's ways of sampling are made to show. They know colours only: where the camera
+/// sees nothing somewhere, it is shown a second time, white where the camera sees and black
+/// elsewhere.
 #[derive(Default)]
 struct Show {
     mask: bool,
@@ -101,8 +102,8 @@ struct Show {
     blind: Cell<bool>,
 }
 
-/// The share of a pixel that is seen, of what is shown white where the camera sees. Sums of a filter's weights are a little off:
-/// what is nearly all is all.
+/// The share of a pixel that is seen, of what is shown white where the camera sees. Sums of a
+/// filter's weights are a little off: what is nearly all is all.
 pub(super) fn share(white: Color) -> f32 {
     if white.x > 1.0 - 1e-6 { 1.0 } else { white.x.max(0.0) }
 }
@@ -250,8 +251,8 @@ impl<'a> Samples<'a> {
         Aim { place, lens, weight, ray: self.world.camera.ray(&self.world.frame, &at) }
     }
 
-    /// Where a sample goes that keeps its place in its pixel, which comes with it. It counts for more pixels than one, as a
-    /// filter says.
+    /// Where a sample goes that keeps its place in its pixel, which comes with it. It counts for
+    /// more pixels than one, as a filter says.
     pub(super) fn aim_kept(&self, (sampler, samples): (Sampler, u32), x: u32, y: u32, sample: u32) -> (Aim, Vec2) {
         let position = sampler.pixel_position(self.job.seed, x, y, sample, samples);
         let (place, lens) = (Vec2::new(x as f32, y as f32) + position, self.lens(sampler, x, y, sample));
@@ -274,8 +275,8 @@ impl<'a> Samples<'a> {
         }
     }
 
-    /// The finished pixels of a part with their coverage, for samplings whose samples count for other pixels too. Samples around
-    /// the part that are needed for it are taken for it alone.
+    /// The finished pixels of a part with their coverage, for samplings whose samples count for
+    /// other pixels too. Samples around the part that are needed for it are taken for it alone.
     pub(super) fn finished(&self, part: Crop, at: &At, rays: &mut RayCount) -> Result<Vec<(Color, f32)>, Stopped> {
         let show = Show::default();
         let colors = self.shown(&show, part, at, rays)?;
@@ -366,8 +367,8 @@ impl<'a> Samples<'a> {
         Ok(pixels)
     }
 
-    /// The difference, at each pixel of the whole picture, between the ambient light on its texture and that of the pixel shaded
-    /// before with the same material.
+    /// The difference, at each pixel of the whole picture, between the ambient light on its texture
+    /// and that of the pixel shaded before with the same material.
     fn stale_texels(&self) -> Vec<Color> {
         let (world, job) = (self.world, self.job);
         let mut last: Vec<Option<Color>> = vec![None; world.materials.len()];

@@ -68,7 +68,8 @@ fn text<'a>(bytes: &mut Bytes<'a>) -> Option<&'a str> {
 const CHUNK: usize = 256;
 
 impl Content for Part {
-    /// Its bytes, made a few at a time: a second copy of all of them would need as much memory again.
+    /// Its bytes, made a few at a time: a second copy of all of them would need as much memory
+    /// again.
     fn write_to(&self, out: &mut dyn Write) -> io::Result<()> {
         let (mut hasher, mut bytes) = (blake3::Hasher::new(), self.head());
         let mut flush = |bytes: &mut Vec<u8>| {

@@ -1,4 +1,5 @@
-//! The sub-pixels of Fall 2012, assignment 5: three by three to a pixel, moved at random, blurred, averaged.
+//! The sub-pixels of Fall 2012, assignment 5: three by three to a pixel, moved at random, blurred,
+//! averaged.
 
 use super::{Crop, Job, raster};
 use crate::camera::Raster;
@@ -62,7 +63,8 @@ impl SubPixels {
         corner + 0.5
     }
 
-    /// The pixels of the part, from the colours of all sub-pixels that count for it, in reading order.
+    /// The pixels of the part, from the colours of all sub-pixels that count for it, in reading
+    /// order.
     pub(super) fn develop(&self, mut colors: Vec<Color>) -> Vec<Color> {
         let (inner, around) = (self.inner, self.around);
         if self.blurred {

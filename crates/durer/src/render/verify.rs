@@ -90,7 +90,8 @@ impl Way {
         Ok(if self.shards == 1 { parts.swap_remove(0).1 } else { merge(&parts)? })
     }
 
-    /// Makes a shard, stopped a few times after some tiles, and goes on each time with what was saved.
+    /// Makes a shard, stopped a few times after some tiles, and goes on each time with what was
+    /// saved.
     fn shard(&self, world: &World, job: &Job, shard: Shard, cancel: &AtomicBool) -> Result<Part, WayError> {
         let mut part = Part::new(world, job, shard)?;
         for round in (0..=self.interruptions).rev() {

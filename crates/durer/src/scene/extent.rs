@@ -5,7 +5,8 @@ use crate::math::Vec3;
 use crate::shape::Shape;
 use glam::{DAffine3, DVec3};
 
-/// Calls `found` with points whose convex hull holds all bounded objects. Files are not looked into.
+/// Calls `found` with points whose convex hull holds all bounded objects. Files are not looked
+/// into.
 pub fn points(scene: &Scene, found: &mut dyn FnMut(DVec3)) {
     for object in scene.root.iter().flat_map(|root| &root.objects) {
         visit(scene, object, DAffine3::IDENTITY, found);

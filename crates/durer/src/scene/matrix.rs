@@ -41,7 +41,8 @@ impl MatrixOp {
         }
     }
 
-    /// The product of the matrices of one transform, with the habits [`Compat::MatrixOnLeft`] and [`Compat::DroppedShear`].
+    /// The product of the matrices of one transform, with the habits [`Compat::MatrixOnLeft`] and
+    /// [`Compat::DroppedShear`].
     pub fn product(ops: &[MatrixOp], habits: CompatSet) -> DAffine3 {
         let has = |compat: Compat| habits & compat.bit() != 0;
         let product = ops.iter().fold(DAffine3::IDENTITY, |product, op| match op {
@@ -52,9 +53,11 @@ impl MatrixOp {
     }
 }
 
-/// A map whose axes are made perpendicular, one after the other: what is left of it as translation, rotation and scale.
+/// A map whose axes are made perpendicular, one after the other: what is left of it as translation,
+/// rotation and scale.
 ///
-/// Source: Spencer W. Thomas, *Decomposing a Matrix into Simple Transformations*, Graphics Gems II (1991), VII.1.
+/// Source: Spencer W. Thomas, *Decomposing a Matrix into Simple Transformations*, Graphics Gems II
+/// (1991), VII.1.
 fn without_shear(map: DAffine3) -> DAffine3 {
     let DMat3 { x_axis: x, y_axis, z_axis } = map.matrix3;
     // An axis without length has no direction to take away.

@@ -120,7 +120,8 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// Whether it has light or materials that only a path tracer shows: layers, surfaces that shine, an environment.
+    /// Whether it has light or materials that only a path tracer shows: layers, surfaces that
+    /// shine, an environment.
     pub fn is_physical(&self) -> bool {
         let layered = |material: &Spanned<Material>| matches!(material.value, Material::Principled(_));
         let background = &self.background;
@@ -205,8 +206,8 @@ pub enum Node {
 /// How closed objects are combined; each of them counts with all that it holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Operation {
-    /// All that is in some part. Where no other operation is around it, the parts stay as they are, with the surfaces
-    /// that they have inside each other.
+    /// All that is in some part. Where no other operation is around it, the parts stay as they are,
+    /// with the surfaces that they have inside each other.
     Union,
     /// All that is in some part, as one solid: surfaces inside other parts are gone.
     Merge,

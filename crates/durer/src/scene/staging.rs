@@ -61,7 +61,8 @@ pub struct Staging {
     pub studio: Option<Studio>,
     /// The name of the camera of the file that is wanted; `None`: the first.
     pub camera: Option<String>,
-    /// The name of the look that is wanted of a glTF file with several (KHR_materials_variants); `None`: its own materials.
+    /// The name of the look that is wanted of a glTF file with several (KHR_materials_variants);
+    /// `None`: its own materials.
     pub variant: Option<String>,
     /// The moment of its animation, in seconds; `None`: as it stands without.
     pub at: Option<f32>,
@@ -71,10 +72,11 @@ pub struct Staging {
     pub environment: Option<PathBuf>,
     /// Whether its own camera is moved to where it sees all of the model.
     pub fit: bool,
-    /// Degrees by which the camera goes around the model, counter-clockwise from above, as far away as all of it is seen from
-    /// everywhere; `None`: no picture of many.
+    /// Degrees by which the camera goes around the model, counter-clockwise from above, as far away
+    /// as all of it is seen from everywhere; `None`: no picture of many.
     pub turned: Option<f32>,
-    /// Whether nothing is added, and nothing replaced: the scene is to be written in another format.
+    /// Whether nothing is added, and nothing replaced: the scene is to be written in another
+    /// format.
     pub bare: bool,
     /// The picture's width over its height, for a camera that sees just the whole; `None`: 1.
     pub aspect: Option<f32>,
@@ -110,8 +112,9 @@ const PLACES: u32 = 48;
 const FILLED: f64 = 0.86;
 
 impl Staging {
-    /// Adds what a scene lacks. `up` is the axis that is up in most models of its format; `dark` says that what has a camera and
-    /// no lights is meant so, and that what shines needs no other light.
+    /// Adds what a scene lacks. `up` is the axis that is up in most models of its format; `dark`
+    /// says that what has a camera and no lights is meant so, and that what shines needs no
+    /// other light.
     pub fn complete(&self, scene: &mut Scene, up: Axis, dark: bool) {
         let sides = Sides::new(self.up.unwrap_or(up));
         let framed = scene.camera.is_none() || self.view.is_some() || self.turned.is_some();
@@ -323,7 +326,8 @@ impl Seen {
         self.low[0] > self.high[0]
     }
 
-    /// The eye in perspective. Each side plane of the view touches a point: x = A + s z and x = B - s z meet in the eye.
+    /// The eye in perspective. Each side plane of the view touches a point: x = A + s z and x = B -
+    /// s z meet in the eye.
     fn eye(&self) -> [f64; 3] {
         if self.is_empty() {
             return [0.0, 0.0, -4.0];

@@ -46,8 +46,8 @@ impl Axis {
         (along, v - along * self.dir)
     }
 
-    /// A line as seen from the base, with its origin moved to where it is nearest to the middle of the axis, and the
-    /// `t` of that place: so, no digits are lost to distance.
+    /// A line as seen from the base, with its origin moved to where it is nearest to the middle of
+    /// the axis, and the `t` of that place: so, no digits are lost to distance.
     pub(super) fn near(&self, line: &Line) -> (f64, Line) {
         let shift = line.nearest(self.base + 0.5 * self.height * self.dir);
         (shift, Line { origin: line.at(shift) - self.base, dir: line.dir })

@@ -30,7 +30,8 @@ impl HeightField {
         (!wide).then_some("`min` of a `HeightField` must be less than its `max` in x, y and z")
     }
 
-    /// Two triangles between each four neighbouring pixels, with walls around them and a floor below.
+    /// Two triangles between each four neighbouring pixels, with walls around them and a floor
+    /// below.
     ///
     /// `heights` are rows from the top, `columns` wide; both sides must be at least 2.
     pub fn mesh(&self, columns: usize, heights: &[f32]) -> MeshData {

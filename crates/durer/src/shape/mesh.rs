@@ -33,14 +33,16 @@ pub struct MeshData {
     pub triangle_normals: Vec<[u32; 3]>,
     /// Three vertices a triangle, where [`MeshData::loosen`] took the corners apart; else empty.
     pub vertices: Vec<[u32; 3]>,
-    /// Linear red, green, blue and opacity, by the number of the position; empty where no vertex has a colour.
+    /// Linear red, green, blue and opacity, by the number of the position; empty where no vertex
+    /// has a colour.
     pub colors: Vec<[f32; 4]>,
     /// A second set of texture coordinates, by the number of the position; may be empty.
     pub second_uvs: Vec<Vec2>,
-    /// By the number of the position, the direction in which u grows, and 1 or -1 for the side, seen along the normal's
-    /// cross product with it, to which v grows; may be empty.
+    /// By the number of the position, the direction in which u grows, and 1 or -1 for the side,
+    /// seen along the normal's cross product with it, to which v grows; may be empty.
     pub tangents: Vec<[f32; 4]>,
-    /// Whether triangles without normals are flat, whatever the rule is that makes normals elsewhere.
+    /// Whether triangles without normals are flat, whatever the rule is that makes normals
+    /// elsewhere.
     pub flat: bool,
 }
 
@@ -82,7 +84,8 @@ impl MeshData {
         hasher.finish()
     }
 
-    /// Gives every corner the normal of its position's number; false where there are fewer normals than positions.
+    /// Gives every corner the normal of its position's number; false where there are fewer normals
+    /// than positions.
     pub fn give_normals_by_vertex(&mut self) -> bool {
         let enough = self.normals.len() >= self.positions.len();
         if enough {
@@ -108,8 +111,8 @@ impl MeshData {
     }
 }
 
-/// The triangle of all points whose barycentric coordinates in a triangle are at least -0.00001: the same, enlarged
-/// about its centroid by thrice that.
+/// The triangle of all points whose barycentric coordinates in a triangle are at least -0.00001:
+/// the same, enlarged about its centroid by thrice that.
 pub fn loosened([a, b, c]: [Vec3; 3]) -> [Vec3; 3] {
     const SLACK: f64 = 1e-5;
     let corners = [a.as_dvec3(), b.as_dvec3(), c.as_dvec3()];
@@ -133,8 +136,8 @@ pub struct Mesh {
 }
 
 impl Mesh {
-    /// Takes a mesh file's data; normals are made by `rule` for triangles that bring none, or for all
-    /// unless `file_normals`.
+    /// Takes a mesh file's data; normals are made by `rule` for triangles that bring none, or for
+    /// all unless `file_normals`.
     pub fn new(mut data: MeshData, rule: MeshNormals, file_normals: bool) -> Self {
         if !file_normals {
             data.normals.clear();
@@ -144,7 +147,8 @@ impl Mesh {
         Mesh { data, center: Vec3::ZERO }
     }
 
-    /// The same about the origin, along the axes where single precision holds that exactly, if it lies [far](Aabb::is_far).
+    /// The same about the origin, along the axes where single precision holds that exactly, if it
+    /// lies [far](Aabb::is_far).
     pub fn centered(mut self) -> Self {
         let bounds = Aabb::around(self.data.positions.iter().copied());
         if bounds.is_far() {
@@ -171,7 +175,8 @@ impl Mesh {
         Mesh { center: self.center, ..Mesh::new(self.data.clone(), rule, false) }
     }
 
-    /// The same with the other half of every triangle's parallelogram, whose normals go on as those of the triangle do.
+    /// The same with the other half of every triangle's parallelogram, whose normals go on as those
+    /// of the triangle do.
     pub fn parallelograms(&self) -> Mesh {
         let mut data = self.data.clone();
         fn halves(triangles: &mut Vec<[u32; 3]>, values: &mut Vec<Vec3>) {
@@ -225,8 +230,9 @@ impl Mesh {
         self.data.bytes()
     }
 
-    /// Whether every edge borders on an even number of triangles, so that a line crosses the mesh an even number of
-    /// times; else the ends of one that does not. Corners at the same place are one.
+    /// Whether every edge borders on an even number of triangles, so that a line crosses the mesh
+    /// an even number of times; else the ends of one that does not. Corners at the same place
+    /// are one.
     pub fn open_edge(&self) -> Option<[Vec3; 2]> {
         let mut edges: Vec<([[u32; 3]; 2], [Vec3; 2])> = Vec::with_capacity(3 * self.len());
         for part in 0..self.len() as u32 {
@@ -247,7 +253,8 @@ impl Mesh {
         self.data.triangles[part as usize].map(|i| self.data.positions[i as usize])
     }
 
-    /// The mean of the normals at a triangle's corners at a crossing, of the length that mixing gives it; `None` on what is flat.
+    /// The mean of the normals at a triangle's corners at a crossing, of the length that mixing
+    /// gives it; `None` on what is flat.
     pub fn mixed_normal(&self, part: u32, uv: Vec2) -> Option<Vec3> {
         let [a, b, c] = attribute(&self.data.triangle_normals, &self.data.normals, part)?.map(Vec3::normalize_or_zero);
         Some((1.0 - uv.x - uv.y) * a + uv.x * b + uv.y * c)
@@ -266,7 +273,8 @@ impl Mesh {
         Some(barycentric.x * a + barycentric.y * b + barycentric.z * c)
     }
 
-    /// The directions in which u and v grow at a point of a triangle: those of the file, or those of the triangle.
+    /// The directions in which u and v grow at a point of a triangle: those of the file, or those
+    /// of the triangle.
     pub fn tangents(&self, part: u32, barycentric: Vec3, normal: Vec3, second: bool) -> Option<[Vec3; 2]> {
         if let Some(corners) = attribute(&self.data.triangles, &self.data.tangents, part).filter(|_| !second) {
             let [a, b, c] = corners.map(|[x, y, z, _]| Vec3::new(x, y, z));
@@ -323,12 +331,13 @@ impl Mesh {
     }
 }
 
-/// For each corner, the way from a point of the triangle up to the plane through the corner across its normal; none where
-/// the point lies above that plane.
+/// For each corner, the way from a point of the triangle up to the plane through the corner across
+/// its normal; none where the point lies above that plane.
 ///
-/// Their mean by barycentric coordinates leads to the bent surface that the normals speak of. A shadow ray that starts there
-/// does not meet the flat neighbours, which would make a coarse mesh dark by whole triangles along the border of light.
-/// Source: Johannes Hanika, *Hacking the Shadow Terminator*, Ray Tracing Gems II (2021), chapter 4.
+/// Their mean by barycentric coordinates leads to the bent surface that the normals speak of. A
+/// shadow ray that starts there does not meet the flat neighbours, which would make a coarse mesh
+/// dark by whole triangles along the border of light. Source: Johannes Hanika, *Hacking the Shadow
+/// Terminator*, Ray Tracing Gems II (2021), chapter 4.
 fn lift(point: Vec3, corners: [Vec3; 3], normals: [Vec3; 3]) -> [Vec3; 3] {
     std::array::from_fn(|i| {
         let n = normals[i].normalize_or_zero();

@@ -97,8 +97,9 @@ described_list! {
 pub struct Crossing {
     /// Position along the ray.
     pub t: f32,
-    /// Coordinates on the shape, from which [`Shape::surface`] knows the place: the second and third
-    /// barycentric coordinate on triangles; on shapes of several faces the number of the face, first.
+    /// Coordinates on the shape, from which [`Shape::surface`] knows the place: the second and
+    /// third barycentric coordinate on triangles; on shapes of several faces the number of the
+    /// face, first.
     pub uv: Vec2,
 }
 
@@ -121,16 +122,18 @@ pub struct Surface {
     pub uv: Uv,
     /// Barycentric coordinates; of use on triangles.
     pub barycentric: Vec3,
-    /// From the point to the bent surface that a flat triangle stands for: where it is seen from the side of `n_shade`,
-    /// and from the other. Zero on what is as it looks. A shadow ray starts there; after Hanika, *Hacking the Shadow Terminator*.
+    /// From the point to the bent surface that a flat triangle stands for: where it is seen from
+    /// the side of `n_shade`, and from the other. Zero on what is as it looks. A shadow ray
+    /// starts there; after Hanika, *Hacking the Shadow Terminator*.
     pub lifts: [Vec3; 2],
-    /// Linear red, green, blue and opacity that the vertices of a mesh bring; all 1 where they bring none.
+    /// Linear red, green, blue and opacity that the vertices of a mesh bring; all 1 where they
+    /// bring none.
     pub color: [f32; 4],
 }
 
 impl Surface {
-    /// The surface at a point that is placed on it in double precision, so that it is known to its rounding and to
-    /// `floor`; flat unless a curvature is set.
+    /// The surface at a point that is placed on it in double precision, so that it is known to its
+    /// rounding and to `floor`; flat unless a curvature is set.
     pub(crate) fn new(point: DVec3, normal: DVec3, floor: f32, uv: impl Into<Uv>) -> Self {
         let position = point.as_vec3();
         let n = normal.normalize_or(DVec3::Y).as_vec3();
@@ -155,7 +158,8 @@ impl Surface {
         Surface::new(point, normal.as_dvec3(), floor.max(f32::MIN_POSITIVE), Vec2::ZERO)
     }
 
-    /// The point as it is known. Far from the origin of coordinates that is finer than single precision.
+    /// The point as it is known. Far from the origin of coordinates that is finer than single
+    /// precision.
     pub fn point(&self) -> DVec3 {
         self.position.as_dvec3() + self.rest.as_dvec3()
     }
@@ -170,8 +174,9 @@ impl Surface {
     }
 }
 
-/// The points of a shape keep off its edges by so many errors of theirs, so that secondary rays start in front of the
-/// neighbouring face too: of faces that meet at more than some 10 degrees, for the start moves by two errors along the normal.
+/// The points of a shape keep off its edges by so many errors of theirs, so that secondary rays
+/// start in front of the neighbouring face too: of faces that meet at more than some 10 degrees,
+/// for the start moves by two errors along the normal.
 const INSET: f32 = 16.0;
 
 /// A coordinate on a face from 0 to `end`, [`INSET`] errors off both ends.
@@ -196,10 +201,11 @@ pub trait Shape {
         true
     }
 
-    /// Offers every crossing of a line with the surface, as `t` and coordinates on the shape, in any order.
+    /// Offers every crossing of a line with the surface, as `t` and coordinates on the shape, in
+    /// any order.
     ///
-    /// A closed shape is crossed where the line goes in or out, and nowhere else: a line that touches it does not count,
-    /// so that crossings along the line alternate between the two.
+    /// A closed shape is crossed where the line goes in or out, and nowhere else: a line that
+    /// touches it does not count, so that crossings along the line alternate between the two.
     fn crossings(&self, line: &Line, offer: &mut impl FnMut(f64, Vec2));
 
     /// The crossing of least `t` inside the ray's open interval.
@@ -230,8 +236,8 @@ pub trait Shape {
         false
     }
 
-    /// The same shape near the origin of coordinates, and how far it was moved; `None` where it has no place, or
-    /// single precision does not hold the result exactly.
+    /// The same shape near the origin of coordinates, and how far it was moved; `None` where it has
+    /// no place, or single precision does not hold the result exactly.
     fn centered(&self) -> Option<(Self, Vec3)>
     where
         Self: Sized,
@@ -245,7 +251,8 @@ pub trait Shape {
     }
 }
 
-/// Where a direction points around an axis, from 0 to 1: the angle of (x, y) in turns, counted from -x.
+/// Where a direction points around an axis, from 0 to 1: the angle of (x, y) in turns, counted from
+/// -x.
 fn turn(x: f64, y: f64) -> f32 {
     (fp::atan2(y as f32, x as f32) / std::f32::consts::TAU + 0.5).clamp(0.0, 1.0)
 }

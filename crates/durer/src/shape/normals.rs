@@ -55,13 +55,16 @@ fn smooth(data: &MeshData, weigh: impl Fn(DVec3) -> DVec3) -> Normals {
     (sums.into_iter().map(|sum| sum.normalize_or_zero().as_vec3()).collect(), vertices.clone())
 }
 
-/// One normal a corner: the sum, by angle, over the faces around its vertex that are not beyond a crease.
+/// One normal a corner: the sum, by angle, over the faces around its vertex that are not beyond a
+/// crease.
 ///
-/// Source of the weights: Thürmer and Wüthrich, *Computing Vertex Normals from Polygonal Facets*, JGT 3(1), 1998.
+/// Source of the weights: Thürmer and Wüthrich, *Computing Vertex Normals from Polygonal Facets*,
+/// JGT 3(1), 1998.
 fn creased(data: &MeshData, degrees: f32) -> Normals {
     let least_cosine = fp::sin_cos_degrees(f64::from(degrees)).1 as f32;
     let faces: Vec<Vec3> = data.triangles.iter().map(|&t| cross(data, t).normalize_or_zero().as_vec3()).collect();
-    // For each vertex the corners that meet there, as one flat list: corner 3i + k is corner k of triangle i.
+    // For each vertex the corners that meet there, as one flat list: corner 3i + k is corner k of
+    // triangle i.
     let mut starts = vec![0u32; data.positions.len() + 1];
     for i in data.triangles.iter().flatten() {
         starts[*i as usize + 1] += 1;

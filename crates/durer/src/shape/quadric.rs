@@ -36,7 +36,8 @@ impl Quadric {
         2.0 * (self.matrix() * p) + self.linear.as_dvec3()
     }
 
-    /// Its polynomial a t^2 + 2 b t + c along a line, from the place nearest to the origin on, and the `t` of that.
+    /// Its polynomial a t^2 + 2 b t + c along a line, from the place nearest to the origin on, and
+    /// the `t` of that.
     fn along(&self, line: &Line) -> (f64, [f64; 3]) {
         let shift = line.nearest(DVec3::ZERO);
         let (o, d) = (line.at(shift), line.dir);
@@ -45,7 +46,8 @@ impl Quadric {
 }
 
 impl Shape for Quadric {
-    /// Only an ellipsoid has bounds: where M is positive definite, |p_i - center_i|^2 <= -q(center) (M^-1)_ii.
+    /// Only an ellipsoid has bounds: where M is positive definite, |p_i - center_i|^2 <= -q(center)
+    /// (M^-1)_ii.
     fn bounds(&self) -> Option<Aabb> {
         let m = self.matrix();
         let minor = m.x_axis.x * m.y_axis.y - m.x_axis.y * m.x_axis.y;

@@ -20,8 +20,9 @@ described! {
 impl Sphere {
     /// Solves |origin + t dir - center|^2 = radius^2 in double precision.
     ///
-    /// The discriminant is taken from the point of the ray nearest to the centre, which keeps small, far
-    /// spheres exact. Source: Haines, Günther, Akenine-Möller, *Ray Tracing Gems* (2019), chapter 7.
+    /// The discriminant is taken from the point of the ray nearest to the centre, which keeps
+    /// small, far spheres exact. Source: Haines, Günther, Akenine-Möller, *Ray Tracing Gems*
+    /// (2019), chapter 7.
     fn roots(&self, line: &Line) -> Option<[f64; 2]> {
         let o = line.origin - self.center.as_dvec3();
         let d = line.dir;
@@ -48,7 +49,8 @@ impl Shape for Sphere {
         Some(Aabb { min: self.center - self.radius - pad, max: self.center + self.radius + pad })
     }
 
-    /// Whether the sphere around the box meets this one: the course's test, which also takes some boxes that it misses.
+    /// Whether the sphere around the box meets this one: the course's test, which also takes some
+    /// boxes that it misses.
     fn overlaps(&self, cell: &Aabb) -> bool {
         let reach = self.radius + 0.5 * cell.size().length();
         (cell.center() - self.center).length() <= reach * (1.0 + gamma(8))

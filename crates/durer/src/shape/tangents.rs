@@ -1,8 +1,10 @@
-//! Tangents of vertices for pictures of normals: what MikkTSpace makes, for pictures are baked for it.
+//! Tangents of vertices for pictures of normals: what MikkTSpace makes, for pictures are baked for
+//! it.
 //!
-//! Source: Morten Mikkelsen, *Simulation of Wrinkled Surfaces Revisited*, University of Copenhagen, 2008, and his program.
-//! Corners of triangles that agree in position, normal and coordinates, that are connected by edges, and whose coordinates
-//! run the same way round, share one tangent: the mean of the triangles', by their angles.
+//! Source: Morten Mikkelsen, *Simulation of Wrinkled Surfaces Revisited*, University of Copenhagen,
+//! 2008, and his program. Corners of triangles that agree in position, normal and coordinates, that
+//! are connected by edges, and whose coordinates run the same way round, share one tangent: the
+//! mean of the triangles', by their angles.
 
 use super::MeshData;
 use super::mesh::NO_INDEX;
@@ -11,8 +13,9 @@ use rayon::prelude::*;
 use std::collections::HashMap;
 
 impl MeshData {
-    /// Gives vertices with normals and texture coordinates their tangents. A vertex whose corners differ becomes several:
-    /// returns which vertices those at the end are copies of. Does nothing where a corner lacks either.
+    /// Gives vertices with normals and texture coordinates their tangents. A vertex whose corners
+    /// differ becomes several: returns which vertices those at the end are copies of. Does
+    /// nothing where a corner lacks either.
     pub fn make_tangents(&mut self) -> Vec<u32> {
         let complete = |list: &[[u32; 3]]| {
             list.len() == self.triangles.len() && list.iter().flatten().all(|&index| index != NO_INDEX)
@@ -24,7 +27,8 @@ impl MeshData {
         self.split(&tangents)
     }
 
-    /// Gives each vertex the tangent of its corners, and copies of it to those that have another one.
+    /// Gives each vertex the tangent of its corners, and copies of it to those that have another
+    /// one.
     fn split(&mut self, tangents: &[[f32; 4]]) -> Vec<u32> {
         self.tangents = vec![[0.0; 4]; self.positions.len()];
         let mut taken = vec![false; self.positions.len()];
@@ -58,7 +62,8 @@ impl MeshData {
 struct Corners {
     positions: Vec<Vec3>,
     normals: Vec<Vec3>,
-    /// How each triangle's surface moves as u grows, of length 1 or 0, and which way round its coordinates run.
+    /// How each triangle's surface moves as u grows, of length 1 or 0, and which way round its
+    /// coordinates run.
     triangles: Vec<(Vec3, bool)>,
     /// The same number for corners that agree in all.
     vertices: Vec<u32>,
@@ -155,8 +160,8 @@ impl Corners {
     }
 }
 
-/// How the surface of a triangle moves as u grows, of length 1, and whether u and v run the same way round as its corners.
-/// Zero if that cannot be said.
+/// How the surface of a triangle moves as u grows, of length 1, and whether u and v run the same
+/// way round as its corners. Zero if that cannot be said.
 fn growth([p, q, r]: &[Vec3; 3], [a, b, c]: &[Vec2; 3]) -> (Vec3, bool) {
     let (along, across) = (*b - *a, *c - *a);
     let area = along.perp_dot(across);

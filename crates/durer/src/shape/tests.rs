@@ -1,4 +1,5 @@
-//! What holds for every shape of the list: each against an independent statement of itself in double precision.
+//! What holds for every shape of the list: each against an independent statement of itself in
+//! double precision.
 
 mod inside;
 mod leaving;
@@ -9,7 +10,8 @@ use super::*;
 use crate::describe::DescribedList;
 use crate::math::random::Random;
 
-/// One of each, of about this size, about this far away. A new shape is added here, and in the match below.
+/// One of each, of about this size, about this far away. A new shape is added here, and in the
+/// match below.
 fn samples(random: &mut Random, size: f32, distance: f32) -> Vec<Primitive> {
     let center = distance * random.direction();
     let mut corner = || center + size * random.point();
@@ -61,8 +63,8 @@ fn quadric(random: &mut Random, center: Vec3, size: f32) -> Quadric {
     }
 }
 
-/// How far a point is from each face, or from its continuation, counted along the normal; all but the greatest do not
-/// matter where that is zero.
+/// How far a point is from each face, or from its continuation, counted along the normal; all but
+/// the greatest do not matter where that is zero.
 fn faces(shape: &Primitive, p: DVec3) -> Vec<f64> {
     let flat = |n: DVec3, at: Vec3| vec![n.normalize().dot(p - at.as_dvec3())];
     // Height and distance from the line between two points, and the height of the other end.
@@ -135,7 +137,8 @@ fn near_edge(shape: &Primitive, p: DVec3, reach: f64) -> bool {
     all.iter().filter(|f| f.abs() < reach).count() > 1
 }
 
-/// All places where a line meets the shape, or may meet it for all that single precision can tell (`false`).
+/// All places where a line meets the shape, or may meet it for all that single precision can tell
+/// (`false`).
 fn crossings(shape: &Primitive, o: DVec3, d: DVec3) -> Vec<(f64, bool)> {
     match shape {
         Primitive::Sphere(s) => {
@@ -157,8 +160,8 @@ fn crossings(shape: &Primitive, o: DVec3, d: DVec3) -> Vec<(f64, bool)> {
             let n = (b - a).cross(c - a);
             let t = n.dot(a - o) / n.dot(d);
             let p = o + t * d;
-            // Heights over the three edges. The ray is sheared in single precision: 8 roundings of the distance,
-            // which count for more where the triangle is seen from its side.
+            // Heights over the three edges. The ray is sheared in single precision: 8 roundings of the
+            // distance, which count for more where the triangle is seen from its side.
             let heights = [(a, b), (b, c), (c, a)].map(|(e, f)| n.cross(f - e).normalize().dot(p - e));
             let least = heights.into_iter().fold(f64::INFINITY, f64::min);
             let reach = [a, b, c].map(|x| (x - o).length()).into_iter().fold(0.0, f64::max);
@@ -283,8 +286,8 @@ fn the_surface_is_on_the_shape_within_its_error_and_in_its_bounds() {
             let difference =
                 |v: DVec3| (distance(&shape, p + step * v) - distance(&shape, p - step * v)) / (2.0 * step);
             let gradient = DVec3::new(difference(DVec3::X), difference(DVec3::Y), difference(DVec3::Z));
-            // Bending by 1e-5 of the size gives third-order terms of its square against the least radius; the point itself
-            // is off by its rounding against that radius.
+            // Bending by 1e-5 of the size gives third-order terms of its square against the least radius; the
+            // point itself is off by its rounding against that radius.
             let bend = f64::from(surface.curvature * size);
             let slack = 1e-6 + (1e-5 * bend) * (1e-5 * bend) + 2e-7 * (1.0 + bend) * f64::from(1.0 + away / size);
             assert!((gradient - n).length() < slack, "{shape:?} {surface:?} {gradient}");

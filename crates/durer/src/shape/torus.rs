@@ -45,11 +45,12 @@ impl Shape for Torus {
         Some(padded(center - reach, center + reach))
     }
 
-    /// Solves (|p|^2 + R^2 - r^2)^2 = 4 R^2 (|p|^2 - (p·a)^2) for p seen from the centre, a the axis.
+    /// Solves (|p|^2 + R^2 - r^2)^2 = 4 R^2 (|p|^2 - (p·a)^2) for p seen from the centre, a the
+    /// axis.
     ///
-    /// Lengths are counted in R from the place nearest to the centre, along a direction of length 1, so that all
-    /// coefficients are of one size. Source of the equation: Hanrahan in Glassner, *An Introduction to Ray Tracing*
-    /// (1989), chapter 3.
+    /// Lengths are counted in R from the place nearest to the centre, along a direction of length
+    /// 1, so that all coefficients are of one size. Source of the equation: Hanrahan in
+    /// Glassner, *An Introduction to Ray Tracing* (1989), chapter 3.
     fn crossings(&self, line: &Line, offer: &mut impl FnMut(f64, Vec2)) {
         let ((major, minor), a) = (self.radii(), self.axis());
         let shift = line.nearest(self.center.as_dvec3());

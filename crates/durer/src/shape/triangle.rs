@@ -48,7 +48,8 @@ impl Shape for Triangle {
         found.into_iter().for_each(|crossing| offer(f64::from(crossing.t), crossing.uv));
     }
 
-    /// Moved by a multiple of a power of two above its size: so neighbours are mostly moved alike, and still meet in an edge.
+    /// Moved by a multiple of a power of two above its size: so neighbours are mostly moved alike,
+    /// and still meet in an edge.
     fn centered(&self) -> Option<(Self, Vec3)> {
         let corners = self.corners();
         let size = Aabb::around(corners).size().max_element().max(f32::MIN_POSITIVE);
@@ -76,8 +77,8 @@ impl Shape for Triangle {
     }
 }
 
-/// The point with barycentric coordinates (1 - u - v, u, v), a bound on its error, and all three of them. The point keeps
-/// off the edges: see [`inset`].
+/// The point with barycentric coordinates (1 - u - v, u, v), a bound on its error, and all three of
+/// them. The point keeps off the edges: see [`inset`].
 ///
 /// Source of the bound: *Physically Based Rendering*, 4th edition, section 6.8.3.
 pub(super) fn interpolate(corners: [Vec3; 3], uv: Vec2) -> (Vec3, Vec3, Vec3) {
@@ -94,9 +95,11 @@ fn weighted([a, b, c]: [Vec3; 3], weights: Vec3) -> (Vec3, Vec3) {
     (wa + ub + vc, gamma(7) * (wa.abs() + ub.abs() + vc.abs()))
 }
 
-/// Barycentric coordinates of a point that lies at least [`INSET`] errors away from all edges, where the given one does not.
+/// Barycentric coordinates of a point that lies at least [`INSET`] errors away from all edges,
+/// where the given one does not.
 fn inset([a, b, c]: [Vec3; 3], barycentric: Vec3, error: Vec3) -> Option<Vec3> {
-    // The distance from an edge is the barycentric coordinate times twice the area over the edge's length. All squared.
+    // The distance from an edge is the barycentric coordinate times twice the area over the edge's
+    // length. All squared.
     let areas = (b - a).cross(c - a).length_squared();
     let lengths = Vec3::new((c - b).length_squared(), (a - c).length_squared(), (b - a).length_squared());
     let least = lengths * (INSET * INSET * error.length_squared());

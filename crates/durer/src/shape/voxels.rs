@@ -1,4 +1,5 @@
-//! A box cut into equal cells, some of which are filled: how 2003 drew what its grid knows of a sphere.
+//! A box cut into equal cells, some of which are filled: how 2003 drew what its grid knows of a
+//! sphere.
 
 use super::{MeshData, Sphere};
 use crate::describe::Rule;
@@ -19,7 +20,8 @@ described! {
 }
 
 impl VoxelGrid {
-    /// The outer faces of the cells that the balls fill, two triangles each, counter-clockwise seen from outside.
+    /// The outer faces of the cells that the balls fill, two triangles each, counter-clockwise seen
+    /// from outside.
     pub fn mesh(&self, balls: &[Sphere]) -> MeshData {
         let cells = self.num_cells.to_array().map(|n| n as u32);
         let (min, size) = (self.min.as_dvec3(), self.max.as_dvec3() - self.min.as_dvec3());

@@ -13,7 +13,8 @@ pub struct Curve {
 }
 
 impl Curve {
-    /// Shares of light that a thing gives back, by ascending wavelength; its colour is that under daylight. `None` without rows.
+    /// Shares of light that a thing gives back, by ascending wavelength; its colour is that under
+    /// daylight. `None` without rows.
     pub fn reflectance(rows: Vec<[f32; 2]>) -> Option<Self> {
         rows.first()?;
         let color = seen(&rows, |[_, _, _, light]| f64::from(OBSERVER.daylight) * light);
@@ -28,7 +29,8 @@ impl Curve {
         (bright > 0.0 && bright.is_finite()).then_some(Curve { rows, color })
     }
 
-    /// Its colour: of a thing that under daylight, of a lamp that of its light when it is as bright as 1.
+    /// Its colour: of a thing that under daylight, of a lamp that of its light when it is as bright
+    /// as 1.
     pub fn color(&self) -> Color {
         self.color
     }
@@ -40,8 +42,8 @@ impl Curve {
 }
 
 impl Lanes {
-    /// What a measured thing gives back, or a lamp sends, whose colour came to `color`: the curve, times what made that colour
-    /// of the curve's own.
+    /// What a measured thing gives back, or a lamp sends, whose colour came to `color`: the curve,
+    /// times what made that colour of the curve's own.
     pub fn measured(&self, color: Color, curve: &Curve) -> Spectrum {
         let Lanes::Waves(waves) = self else { return color.extend(color.y) };
         let known = curve.color.cmpgt(Color::splat(1e-6));

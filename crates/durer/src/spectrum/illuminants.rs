@@ -1,6 +1,7 @@
 //! Lamps and daylight whose spectra are agreed on, by name.
 //!
-//! Sources: CIE 015:2018, *Colorimetry*: section 4.1 (A, D), table 6 (the parts of daylight), table 10 (fluorescent lamps).
+//! Sources: CIE 015:2018, *Colorimetry*: section 4.1 (A, D), table 6 (the parts of daylight), table
+//! 10 (fluorescent lamps).
 
 use super::curve::Curve;
 use crate::math::fp;
@@ -8,8 +9,8 @@ use crate::math::fp;
 /// Names of illuminants, for messages. Besides, `2700K` and the like are black bodies.
 pub const NAMES: &str = "A, D50, D55, D65, D75, E, F2, F7, F11";
 
-/// The light of an illuminant: A (bulb), D and temperature (daylight), E (the same everywhere), F (tubes), or of a black body of a temperature,
-/// 1000K to 20000K. Its brightness is 1.
+/// The light of an illuminant: A (bulb), D and temperature (daylight), E (the same everywhere), F
+/// (tubes), or of a black body of a temperature, 1000K to 20000K. Its brightness is 1.
 pub fn illuminant(name: &str) -> Option<Curve> {
     let rows = match name {
         "A" => formula(|nm| planck(nm, 2_848.0, 1.435e7)),
@@ -40,7 +41,8 @@ fn tube(values: &[f32; 81]) -> Vec<[f32; 2]> {
     values.iter().enumerate().map(|(i, value)| [380.0 + 5.0 * i as f32, *value]).collect()
 }
 
-/// Planck's law over its value at 560 nm; `c2` is the second constant of radiation in nm K, of which the CIE fixes an old value for A.
+/// Planck's law over its value at 560 nm; `c2` is the second constant of radiation in nm K, of
+/// which the CIE fixes an old value for A.
 fn planck(nm: f32, kelvin: f32, c2: f32) -> f32 {
     let at = |nm: f32| {
         let x = 560.0 / nm;
@@ -49,7 +51,8 @@ fn planck(nm: f32, kelvin: f32, c2: f32) -> f32 {
     at(nm) / at(560.0)
 }
 
-/// Daylight of a correlated colour temperature, 4000 to 25000 K: a mean and two parts by its chromaticity.
+/// Daylight of a correlated colour temperature, 4000 to 25000 K: a mean and two parts by its
+/// chromaticity.
 fn daylight(kelvin: f32) -> Vec<[f32; 2]> {
     let t = 1_000.0 / f64::from(kelvin);
     let x = match kelvin <= 7_000.0 {

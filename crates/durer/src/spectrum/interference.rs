@@ -12,11 +12,12 @@ const STEP: f32 = 5.0;
 /// Entries: beyond 16 micrometres nothing is left of the colours.
 const ENTRIES: usize = 3_200;
 
-/// For red, green and blue the mean of exp(2 pi i s / wavelength) over daylight as the observer sees it, for a shift `s` in nanometres: 1 where
-/// there is none, and near 0 where it is long.
+/// For red, green and blue the mean of exp(2 pi i s / wavelength) over daylight as the observer
+/// sees it, for a shift `s` in nanometres: 1 where there is none, and near 0 where it is long.
 ///
-/// Source of the idea to sum interference by orders like this: Belcour and Barla, *A Practical Extension to Microfacet Theory for the
-/// Modeling of Varying Iridescence*, SIGGRAPH 2017; they fit the observer by Gaussians, and here it is a table.
+/// Source of the idea to sum interference by orders like this: Belcour and Barla, *A Practical
+/// Extension to Microfacet Theory for the Modeling of Varying Iridescence*, SIGGRAPH 2017; they fit
+/// the observer by Gaussians, and here it is a table.
 pub fn interference(shift: f32) -> [Vec2; 3] {
     static TABLE: LazyLock<Vec<[Vec2; 3]>> = LazyLock::new(|| (0..ENTRIES).map(|i| mean(STEP * i as f32)).collect());
     let place = shift.max(0.0) / STEP;

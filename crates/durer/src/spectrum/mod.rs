@@ -1,9 +1,11 @@
 //! What light is while it is transported: four numbers at once.
 //!
-//! Along one path they are red, green, blue (and green again, so that the fourth lane adds nothing of its own), or the light
-//! at four wavelengths. Colours enter through [`Lanes::reflectance`] and [`Lanes::light`], and leave through [`Lanes::color`].
+//! Along one path they are red, green, blue (and green again, so that the fourth lane adds nothing
+//! of its own), or the light at four wavelengths. Colours enter through [`Lanes::reflectance`] and
+//! [`Lanes::light`], and leave through [`Lanes::color`].
 //!
-//! Source of four wavelengths on one path: Wilkie and others, *Hero Wavelength Spectral Sampling*, EGSR 2014.
+//! Source of four wavelengths on one path: Wilkie and others, *Hero Wavelength Spectral Sampling*,
+//! EGSR 2014.
 
 pub mod curve;
 pub mod illuminants;
@@ -111,7 +113,8 @@ impl Lanes {
         measured.map_or_else(|| self.light(color), |curve| self.measured(color, curve))
     }
 
-    /// What something without bounds is, such as how much a medium absorbs: smooth, and grey where the colour is.
+    /// What something without bounds is, such as how much a medium absorbs: smooth, and grey where
+    /// the colour is.
     pub fn coefficient(&self, color: Color) -> Spectrum {
         match self {
             Lanes::Rgb => color.extend(color.y),
@@ -150,7 +153,8 @@ impl Waves {
         &self.observer
     }
 
-    /// Wavelengths chosen about as often as the eye needs them, at equal steps of the number they are chosen by.
+    /// Wavelengths chosen about as often as the eye needs them, at equal steps of the number they
+    /// are chosen by.
     fn new(u: f32) -> Self {
         let nm = Spectrum::from_array([0.0, 0.25, 0.5, 0.75].map(|step| wavelength((u + step).fract())));
         let at = |column: usize| nm.map(|nm| observer_and_daylight(nm)[column]);
@@ -178,7 +182,8 @@ fn density(nm: f32) -> f32 {
     0.003_939_804 / (cosh * cosh)
 }
 
-/// What the CIE's standard observer of 1931 sees at a wavelength in nanometres, x, y and z, and the illuminant D65 there.
+/// What the CIE's standard observer of 1931 sees at a wavelength in nanometres, x, y and z, and the
+/// illuminant D65 there.
 pub fn observer_and_daylight(nm: f32) -> [f32; 4] {
     let place = ((nm - FIRST) / STEP).clamp(0.0, (OBSERVER_AND_DAYLIGHT.len() - 1) as f32);
     let i = (place as usize).min(OBSERVER_AND_DAYLIGHT.len() - 2);
@@ -203,8 +208,8 @@ const FROM_XYZ: [[f64; 3]; 3] = [
     [0.055_643_4, -0.204_025_9, 1.057_225_2],
 ];
 
-/// The integral over wavelengths of a function of nanometres and of the observer's row, by Simpson's rule between rows: exact
-/// for products of two of its numbers.
+/// The integral over wavelengths of a function of nanometres and of the observer's row, by
+/// Simpson's rule between rows: exact for products of two of its numbers.
 fn integral(value: impl Fn(f32, [f64; 4]) -> f64) -> f64 {
     let at = |nm: f32| value(nm, observer_and_daylight(nm).map(f64::from));
     let starts = (0..OBSERVER_AND_DAYLIGHT.len() - 1).map(|i| FIRST + STEP * i as f32);

@@ -104,7 +104,8 @@ fn illuminants_have_their_published_chromaticities() {
 
 #[test]
 fn measured_things_have_the_colour_of_their_product() {
-    // Something that passes light beyond 560 nm only, under a bulb: what is seen is the integral of both, which no colours give.
+    // Something that passes light beyond 560 nm only, under a bulb: what is seen is the integral of
+    // both, which no colours give.
     let steep = Curve::reflectance(vec![[400.0, 0.05], [550.0, 0.05], [570.0, 0.9], [700.0, 0.9]]).unwrap();
     let bulb = illuminants::illuminant("A").unwrap();
     let exact = Color::from(OBSERVER.to_rgb.map(|row| {

@@ -1,8 +1,8 @@
 //! Smooth spectra for colours.
 //!
-//! Source: Jakob and Hanika, *A Low-Dimensional Function Space for Efficient Spectral Upsampling*, Computer Graphics Forum
-//! 38(2), 2019: a spectrum is a sigmoid of a parabola of the wavelength. Its three numbers are found for the points of a
-//! grid of colours and interpolated between them.
+//! Source: Jakob and Hanika, *A Low-Dimensional Function Space for Efficient Spectral Upsampling*,
+//! Computer Graphics Forum 38(2), 2019: a spectrum is a sigmoid of a parabola of the wavelength.
+//! Its three numbers are found for the points of a grid of colours and interpolated between them.
 
 #[cfg(test)]
 use super::integral;
@@ -40,7 +40,8 @@ struct Table(Vec<[f32; 3]>);
 
 static TABLE: LazyLock<Table> = LazyLock::new(Table::new);
 
-/// The share of light by wavelength of a colour from 0 to 1. Darker ones than 0.5 are as a stronger one of their hue, times less.
+/// The share of light by wavelength of a colour from 0 to 1. Darker ones than 0.5 are as a stronger
+/// one of their hue, times less.
 pub(super) fn share(color: Color, nm: Spectrum) -> Spectrum {
     let scale = (2.0 * color.max_element()).clamp(1e-12, 1.0);
     scale * TABLE.find(color / scale).at(nm)
@@ -169,7 +170,8 @@ impl Fit {
         (color, change)
     }
 
-    /// The three numbers of a colour, by Levenberg and Marquardt's method from others that are near.
+    /// The three numbers of a colour, by Levenberg and Marquardt's method from others that are
+    /// near.
     fn find(&self, wanted: [f64; 3], start: [f64; 3]) -> [f64; 3] {
         let mut numbers = start;
         let (mut color, mut change) = self.color(numbers);

@@ -1,11 +1,13 @@
 //! The sixteen standard skies of the CIE, with which daylight in buildings is computed.
 //!
-//! Source: CIE S 011/E:2003 (ISO 15469:2004), *Spatial distribution of daylight: CIE standard general sky*.
+//! Source: CIE S 011/E:2003 (ISO 15469:2004), *Spatial distribution of daylight: CIE standard
+//! general sky*.
 
 use crate::math::{Color, Vec3, fp};
 use std::f32::consts::PI;
 
-/// The numbers a, b (from the horizon to the zenith), c, d, e (around the sun) of the types 1 to 15.
+/// The numbers a, b (from the horizon to the zenith), c, d, e (around the sun) of the types 1 to
+/// 15.
 const TYPES: [[f32; 5]; 15] = [
     [4.0, -0.70, 0.0, -1.0, 0.0],
     [4.0, -0.70, 2.0, -1.5, 0.15],
@@ -41,8 +43,8 @@ pub struct CieSky {
 }
 
 impl CieSky {
-    /// `number`: 1 to 16; `sun` leads to the sun, with y upwards; `zenith` is the brightness there in cd/m^2. Of the light that falls on
-    /// the ground that gives back a share.
+    /// `number`: 1 to 16; `sun` leads to the sun, with y upwards; `zenith` is the brightness there
+    /// in cd/m^2. Of the light that falls on the ground that gives back a share.
     pub fn new(number: u32, sun: Vec3, zenith: f32, ground_reflectance: f32) -> Self {
         let numbers = TYPES.get((number as usize).wrapping_sub(1)).copied();
         let sun = Vec3::new(sun.x, sun.y.max(0.0), sun.z).normalize_or(Vec3::Y);
@@ -116,7 +118,8 @@ mod tests {
         }
         // Type 12, the clear sky of old: at the horizon below the sun, by hand from the formula.
         let sky = CieSky::new(12, sun, 1.0, 0.0);
-        // exp(-3 pi / 4) - exp(-3 pi / 2) = 0.09478 - 0.00898; at the zenith the angle to the sun is the same 45 degrees.
+        // exp(-3 pi / 4) - exp(-3 pi / 2) = 0.09478 - 0.00898; at the zenith the angle to the sun is the
+        // same 45 degrees.
         let (ring, zenith) = (1.0 + 10.0 * (0.09478 - 0.00898) + 0.45 * 0.5, 1.0 - 0.72615);
         let at_horizon = ring / (ring * zenith);
         assert!((sky.luminance(Vec3::X) / at_horizon - 1.0).abs() < 1e-3, "{} {at_horizon}", sky.luminance(Vec3::X));

@@ -16,10 +16,11 @@ impl CubeMap {
     /// Names of the faces' files, without extension: -x, +x, +y, -y, +z, -z.
     pub const FACES: [&'static str; 6] = ["left", "right", "up", "down", "front", "back"];
 
-    /// The colour that a direction sees. The largest component picks the face; ties go to x, then y.
+    /// The colour that a direction sees. The largest component picks the face; ties go to x, then
+    /// y.
     ///
-    /// Seen from inside, every face is upright and not mirrored: the four around with y upwards, `up` with z upwards
-    /// and `down` with -z upwards, so that the six meet without a seam.
+    /// Seen from inside, every face is upright and not mirrored: the four around with y upwards,
+    /// `up` with z upwards and `down` with -z upwards, so that the six meet without a seam.
     pub fn at(&self, direction: Vec3) -> Color {
         let Vec3 { x, y, z } = direction;
         let d = direction.abs();

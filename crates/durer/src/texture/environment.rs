@@ -1,10 +1,12 @@
-//! A picture of all directions around the scene, from which directions are chosen by how bright they are.
+//! A picture of all directions around the scene, from which directions are chosen by how bright
+//! they are.
 
 use crate::math::{Color, Vec2, Vec3, fp};
 use std::f32::consts::{PI, TAU};
 use std::sync::Arc;
 
-/// Light from all around: the picture's middle is where -z points, its upper edge is +y, as in `EquirectangularCamera`.
+/// Light from all around: the picture's middle is where -z points, its upper edge is +y, as in
+/// `EquirectangularCamera`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Environment {
     width: usize,
@@ -19,7 +21,8 @@ pub struct Environment {
 }
 
 impl Environment {
-    /// From linear colours, the upper row first. `None` unless there are width times height of them, and some light.
+    /// From linear colours, the upper row first. `None` unless there are width times height of
+    /// them, and some light.
     pub fn new(width: u32, height: u32, texels: Vec<Color>, degrees: f32, scale: Color) -> Option<Self> {
         let (width, height) = (width as usize, height as usize);
         if width == 0 || height == 0 || texels.len() != width * height {

@@ -1,4 +1,5 @@
-//! How a picture lies on a surface, as glTF has it: wrapping, filtering, a transform of the coordinates.
+//! How a picture lies on a surface, as glTF has it: wrapping, filtering, a transform of the
+//! coordinates.
 
 use crate::math::{Vec2, fp};
 use serde::{Deserialize, Serialize};
@@ -64,9 +65,11 @@ pub struct Mapping {
     pub nearest: bool,
     /// Whether the second set of texture coordinates counts.
     pub second: bool,
-    /// From the surface's coordinates to the picture's, both with v downwards from the upper border: two rows of a matrix.
+    /// From the surface's coordinates to the picture's, both with v downwards from the upper
+    /// border: two rows of a matrix.
     pub transform: [[f32; 3]; 2],
-    /// Opacity is 1 where the picture's alpha is at least this, and else 0; `None`: as the alpha says.
+    /// Opacity is 1 where the picture's alpha is at least this, and else 0; `None`: as the alpha
+    /// says.
     pub cutoff: Option<f32>,
     /// How far the normals of a normal map lean, times; 1 as written.
     pub strength: f32,
@@ -92,7 +95,8 @@ impl Default for Mapping {
 }
 
 impl Mapping {
-    /// The place in the picture, in its widths from the left and heights from the top, of surface coordinates with v upwards.
+    /// The place in the picture, in its widths from the left and heights from the top, of surface
+    /// coordinates with v upwards.
     pub fn place(&self, uv: Vec2) -> Vec2 {
         let (u, v) = (uv.x, 1.0 - uv.y);
         let [x, y] = self.transform.map(|[a, b, c]| a * u + b * v + c);
@@ -109,7 +113,8 @@ impl Mapping {
         [r, g, b, alpha]
     }
 
-    /// The directions in which a picture's own coordinates grow, from those in which the surface's do, v upwards in both.
+    /// The directions in which a picture's own coordinates grow, from those in which the surface's
+    /// do, v upwards in both.
     pub fn directions<V>(&self, [u, v]: [V; 2]) -> [V; 2]
     where
         V: Copy + std::ops::Mul<f32, Output = V> + std::ops::Add<Output = V>,

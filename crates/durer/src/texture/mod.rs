@@ -43,7 +43,8 @@ enum Opacity {
 }
 
 impl Texture {
-    /// From texels, row 0 on top. `None` unless there are width times height of them, and at least one.
+    /// From texels, row 0 on top. `None` unless there are width times height of them, and at least
+    /// one.
     pub fn new(width: u32, height: u32, texels: Vec<[u8; 3]>) -> Option<Self> {
         let values = Box::new(std::array::from_fn(|i| i as f32 / 255.0));
         Texture::of(width, height, texels.len(), || Texels::Eight(texels.into(), values))
@@ -138,7 +139,8 @@ impl Texture {
         self.mapping.as_ref()
     }
 
-    /// Colour and opacity at (u, v), with v upwards, as its mapping says. Bilinear mixing is of linear values.
+    /// Colour and opacity at (u, v), with v upwards, as its mapping says. Bilinear mixing is of
+    /// linear values.
     pub fn texel(&self, mapping: &Mapping, uv: Vec2) -> [f32; 4] {
         self.texel_at(mapping, mapping.place(uv))
     }
@@ -183,8 +185,8 @@ impl Texture {
         mapping.cut(mixed)
     }
 
-    /// The colour at (u, v), with v upwards: bilinear, with no half-texel shift, clamped at the border; or as its mapping
-    /// says.
+    /// The colour at (u, v), with v upwards: bilinear, with no half-texel shift, clamped at the
+    /// border; or as its mapping says.
     pub fn at(&self, uv: Vec2) -> Color {
         if let Some(mapping) = &self.mapping {
             let [r, g, b, _] = self.texel(mapping, uv);

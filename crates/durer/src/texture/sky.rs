@@ -1,6 +1,7 @@
 //! Daylight: the clear sky and the sun, from where the sun stands and how hazy the air is.
 //!
-//! Source: Preetham, Shirley and Smits, *A Practical Analytic Model for Daylight*, SIGGRAPH 1999. Brightness is in cd/m^2.
+//! Source: Preetham, Shirley and Smits, *A Practical Analytic Model for Daylight*, SIGGRAPH 1999.
+//! Brightness is in cd/m^2.
 
 use crate::math::{Color, Vec2, Vec3, fp};
 use std::f32::consts::PI;
@@ -60,7 +61,8 @@ impl Sky {
         Sky { sun, turbidity: t, zenith: Vec3::new(bright.max(0.0), x, y), perez, there }
     }
 
-    /// The light from a unit direction; below the horizon that of the ground, which reflects a fifth.
+    /// The light from a unit direction; below the horizon that of the ground, which reflects a
+    /// fifth.
     pub fn at(&self, dir: Vec3) -> Color {
         if dir.y < 0.0 {
             return Vec3::splat(0.2 * self.zenith.x);
@@ -73,7 +75,8 @@ impl Sky {
 
     /// The illuminance of the sun on a surface that faces it, in lux, by colour.
     ///
-    /// Rayleigh's and the aerosol's part of the attenuation, at the wavelengths of red, green and blue.
+    /// Rayleigh's and the aerosol's part of the attenuation, at the wavelengths of red, green and
+    /// blue.
     pub fn sun(&self) -> Color {
         let degrees = angle(self.sun.y).to_degrees();
         // The mass of air on the way, after Kasten and Young, 1989.
@@ -142,8 +145,9 @@ mod tests {
 
     #[test]
     fn daylight_is_as_bright_as_the_paper_says() {
-        // The paper's formulas, summed over the sky by a program of its own, say 31.53 klx on the ground; that is twice what IES gives
-        // for a clear sky at this height of the sun (0.8 + 15.5 sqrt(sin h)). A high sun makes 60 to 110 klx.
+        // The paper's formulas, summed over the sky by a program of its own, say 31.53 klx on the ground;
+        // that is twice what IES gives for a clear sky at this height of the sun (0.8 + 15.5
+        // sqrt(sin h)). A high sun makes 60 to 110 klx.
         let sky = sky(60.0, 3.0);
         let n = 200;
         let mut horizontal = 0.0;

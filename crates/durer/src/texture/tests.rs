@@ -67,7 +67,8 @@ fn directions_see_the_face_that_they_point_to() {
     assert!(map.at(Vec3::ZERO).is_finite() && map.at(Vec3::NAN).is_finite());
 }
 
-/// A letter on each face, none of which looks like itself in a mirror or on its head, in the order of the faces' names.
+/// A letter on each face, none of which looks like itself in a mirror or on its head, in the order
+/// of the faces' names.
 const LETTERS: [[&str; 5]; 6] = [
     ["###  ", "#  # ", "###  ", "# #  ", "#  ##"],
     ["#    ", "#    ", "#    ", "#    ", "#### "],
@@ -77,8 +78,9 @@ const LETTERS: [[&str; 5]; 6] = [
     ["  ###", "   # ", "   # ", "#  # ", " ##  "],
 ];
 
-/// What somebody in the middle sees who looks at a face: the course's pictures of a church meet at their edges this way, and
-/// its programs' `back` is mirrored, which more than half of the pixels of their pictures of the rabbit in the church show.
+/// What somebody in the middle sees who looks at a face: the course's pictures of a church meet at
+/// their edges this way, and its programs' `back` is mirrored, which more than half of the pixels
+/// of their pictures of the rabbit in the church show.
 #[test]
 fn letters_are_seen_upright_and_the_course_mirrors_two() {
     let face = |rows: &[&str; 5]| {
@@ -94,7 +96,8 @@ fn letters_are_seen_upright_and_the_course_mirrors_two() {
         let side = forward.cross(up);
         let seen = |map: &CubeMap, mirror: bool, flip: bool| -> Vec<String> {
             let cell = |i: usize| (2.0 * i as f32 + 1.0) / 5.0 - 1.0;
-            // Texels are exact at their corners: each is looked up there, just inside of the direction in which it begins.
+            // Texels are exact at their corners: each is looked up there, just inside of the direction in which
+            // it begins.
             let shift = |turned: bool| if turned { 0.999 / 5.0 } else { -0.999 / 5.0 };
             let pixel = |row: usize, column: usize| {
                 let (u, v) = (cell(column) + shift(mirror), -cell(row) - shift(flip));

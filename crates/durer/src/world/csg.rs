@@ -1,17 +1,19 @@
 //! How a ray meets a solid of several parts (constructive solid geometry).
 //!
-//! All crossings of the ray's line with the surfaces of the parts are collected and sorted. Going along the line, each
-//! crossing turns one part's inside bit, and with it the counts of the operations above it; where the bit of the whole
-//! changes, the line goes in or out of the solid. Source: Roth, *Ray Casting for Modeling Solids*, Computer Graphics and
-//! Image Processing 18, 1982; with counts for the operations, so that an operation of many parts costs no more.
+//! All crossings of the ray's line with the surfaces of the parts are collected and sorted. Going
+//! along the line, each crossing turns one part's inside bit, and with it the counts of the
+//! operations above it; where the bit of the whole changes, the line goes in or out of the solid.
+//! Source: Roth, *Ray Casting for Modeling Solids*, Computer Graphics and Image Processing 18,
+//! 1982; with counts for the operations, so that an operation of many parts costs no more.
 //!
-//! Faces that coincide: crossings of different parts count as one where their distance across the surfaces is no more
-//! than single precision can tell there, some 2^-19 of the coordinates. All their bits turn together: so no skin is
-//! left, or appears, where two faces share a plane. If the bit of the whole changes, the surface is that of the part
-//! written first of those that could have made the change: alone, or as the last.
+//! Faces that coincide: crossings of different parts count as one where their distance across the
+//! surfaces is no more than single precision can tell there, some 2^-19 of the coordinates. All
+//! their bits turn together: so no skin is left, or appears, where two faces share a plane. If the
+//! bit of the whole changes, the surface is that of the part written first of those that could have
+//! made the change: alone, or as the last.
 //!
-//! The `part` of a hit is the number of a triangle or shape among those of all parts, with two bits: whether the
-//! surface is turned inside out, and whether the ray enters the solid.
+//! The `part` of a hit is the number of a triangle or shape among those of all parts, with two
+//! bits: whether the surface is turned inside out, and whether the ray enters the solid.
 
 use super::solid::{Rule, Solid};
 use super::{Geometry, Object, Placing};
@@ -105,7 +107,8 @@ struct Scratch {
 struct State {
     counts: Vec<u32>,
     inside: Vec<bool>,
-    /// For each part, where the last crossings that coincide begin that one of its own is among, counted from 1.
+    /// For each part, where the last crossings that coincide begin that one of its own is among,
+    /// counted from 1.
     groups: Vec<usize>,
 }
 
@@ -240,8 +243,9 @@ impl Csg {
 
     /// Collects the crossings of all parts that may matter up to the first hit.
     ///
-    /// Whoever comes from outside a merge is in it at the first way into a part: with `shrink`, parts beyond such a place
-    /// may be left out. Gives up to where the crossings are complete: infinity, if they are.
+    /// Whoever comes from outside a merge is in it at the first way into a part: with `shrink`,
+    /// parts beyond such a place may be left out. Gives up to where the crossings are complete:
+    /// infinity, if they are.
     fn collect<T: TraversalCounter>(&self, ray: &Ray64, shrink: bool, scratch: &mut Scratch, counter: &mut T) -> f32 {
         let Scratch { events, .. } = scratch;
         events.clear();
@@ -341,7 +345,8 @@ impl Csg {
         }
     }
 
-    /// The end of the crossings that coincide with one, each of another part: see the head of this file.
+    /// The end of the crossings that coincide with one, each of another part: see the head of this
+    /// file.
     fn coincident(&self, ray: &Ray64, events: &[Event], from: usize, groups: &mut [usize]) -> usize {
         groups[events[from].leaf as usize] = from + 1;
         let mut to = from + 1;

@@ -41,7 +41,8 @@ pub struct Map {
 impl World {
     /// The parameters of a material in layers at a hit.
     ///
-    /// `surface` is the [surface](World::surface) there. Where it has no texture coordinates, pictures are left out.
+    /// `surface` is the [surface](World::surface) there. Where it has no texture coordinates,
+    /// pictures are left out.
     pub fn parameters_at<'a>(&self, own: &'a Principled, hit: &Hit, surface: &Surface) -> Cow<'a, Parameters> {
         let [r, g, b, _] = surface.color;
         if own.maps.parameters.is_empty() && [r, g, b] == [1.0; 3] {
@@ -109,14 +110,16 @@ impl World {
         }
     }
 
-    /// The normal that a bump map and then a normal map make of that for shading; `None` where there are none.
+    /// The normal that a bump map and then a normal map make of that for shading; `None` where
+    /// there are none.
     pub(super) fn mapped_normal(&self, maps: &Maps, hit: &Hit, surface: &Surface) -> Option<Vec3> {
         let bumped = maps.bump.and_then(|map| self.bumped(map, maps.bump_height, hit, surface));
         let normal = bumped.unwrap_or(surface.n_shade);
         maps.normal.and_then(|map| self.leaning(map, hit, surface, normal)).or(bumped)
     }
 
-    /// The normal that a picture of normals says: x along the direction in which the picture's u grows, y along its v upwards.
+    /// The normal that a picture of normals says: x along the direction in which the picture's u
+    /// grows, y along its v upwards.
     fn leaning(&self, map: u32, hit: &Hit, surface: &Surface, normal: Vec3) -> Option<Vec3> {
         let texture = &self.textures[map as usize];
         let mapping = texture.mapping().copied().unwrap_or_default();
@@ -143,7 +146,8 @@ impl World {
 
     /// The normal of the surface raised by a picture of heights.
     ///
-    /// Source: James Blinn, *Simulation of Wrinkled Surfaces*, SIGGRAPH 1978, with the gradient of the height along the surface.
+    /// Source: James Blinn, *Simulation of Wrinkled Surfaces*, SIGGRAPH 1978, with the gradient of
+    /// the height along the surface.
     fn bumped(&self, map: u32, height: f32, hit: &Hit, surface: &Surface) -> Option<Vec3> {
         let texture = &self.textures[map as usize];
         let mapping = texture.mapping().copied().unwrap_or_default();
@@ -152,8 +156,8 @@ impl World {
         (surface.n_shade - slope.x * u - slope.y * v).try_normalize()
     }
 
-    /// How a point of the world moves as its texture coordinates grow by 1: those of the file on a mesh, else by what they are
-    /// beside the point.
+    /// How a point of the world moves as its texture coordinates grow by 1: those of the file on a
+    /// mesh, else by what they are beside the point.
     fn derivatives(&self, hit: &Hit, surface: &Surface, second: bool) -> Option<[Vec3; 2]> {
         let object = &self.objects[hit.object as usize];
         let to_world = object.to_world.as_ref();
@@ -188,8 +192,9 @@ impl World {
         dual([along_a.x * a + along_b.x * b, along_a.y * a + along_b.y * b])
     }
 
-    /// The direction of the world in which u grows at a hit: that of the texture coordinates of a mesh, the way around the axis of
-    /// what is round, the first edge of a rectangle; else the horizontal one.
+    /// The direction of the world in which u grows at a hit: that of the texture coordinates of a
+    /// mesh, the way around the axis of what is round, the first edge of a rectangle; else the
+    /// horizontal one.
     pub(super) fn tangent(&self, hit: &Hit, surface: &Surface) -> Vec3 {
         let object = &self.objects[hit.object as usize];
         let to_world = object.to_world.as_ref();
@@ -213,8 +218,8 @@ impl World {
     }
 }
 
-/// Two vectors in the same plane, each at right angles to one of two, whose product with the other is 1: gradients from
-/// derivatives, and the other way round.
+/// Two vectors in the same plane, each at right angles to one of two, whose product with the other
+/// is 1: gradients from derivatives, and the other way round.
 fn dual([u, v]: [Vec3; 2]) -> Option<[Vec3; 2]> {
     let normal = u.cross(v);
     let duals = [v.cross(normal), normal.cross(u)].map(|dual| dual / normal.length_squared());

@@ -46,12 +46,14 @@ pub struct Principled {
     pub illuminant: Option<Arc<Curve>>,
     /// What the body is filled with, if that absorbs or scatters light.
     pub medium: Option<Medium>,
-    /// Whether the surface itself does nothing where what is around has the same index of refraction: a body of smoke.
+    /// Whether the surface itself does nothing where what is around has the same index of
+    /// refraction: a body of smoke.
     pub interface: bool,
 }
 
 impl Principled {
-    /// Whether some of its layers mirror or refract into single directions. Roughness from pictures is not looked at.
+    /// Whether some of its layers mirror or refract into single directions. Roughness from pictures
+    /// is not looked at.
     pub fn has_single_directions(&self) -> bool {
         let m = &self.written;
         let smooth = |roughness: f32| Ggx::new(roughness, 0.0).is_smooth();
@@ -78,7 +80,8 @@ pub struct Phong {
     pub diffuse: Color,
     /// Number of a texture that replaces it.
     pub texture: Option<u32>,
-    /// Whether the texture multiplies the diffuse colour, and the vertices' colours do too, as in materials of layers.
+    /// Whether the texture multiplies the diffuse colour, and the vertices' colours do too, as in
+    /// materials of layers.
     pub tinted: bool,
     /// Noise that replaces it.
     pub noise: Option<ColorNoise>,

@@ -43,9 +43,11 @@ pub struct World {
     pub ambient: Color,
     /// Lights.
     pub lights: Vec<Light>,
-    /// How strong each light shines in each direction, where that was measured; by number, those behind the last have none.
+    /// How strong each light shines in each direction, where that was measured; by number, those
+    /// behind the last have none.
     pub profiles: Vec<Option<Arc<Profile>>>,
-    /// The measured spectrum of each light, if it has one; by number, those behind the last have none.
+    /// The measured spectrum of each light, if it has one; by number, those behind the last have
+    /// none.
     pub illuminants: Vec<Option<Arc<Curve>>>,
     /// Materials, by number.
     pub materials: Vec<Material>,
@@ -69,7 +71,8 @@ pub struct World {
     pub hides_backs: bool,
     /// Whether some body has no skin, so that light goes straight into it.
     pub has_interfaces: bool,
-    /// What stands outside the structure: objects without end, and all where they are so few that no tree pays.
+    /// What stands outside the structure: objects without end, and all where they are so few that
+    /// no tree pays.
     pub(crate) loose: Vec<u32>,
     pub(crate) accel: Accel,
 }
@@ -198,8 +201,8 @@ impl World {
         found
     }
 
-    /// The surface at a hit, in world space. The official programs take the point from the ray as it
-    /// is.
+    /// The surface at a hit, in world space. The official programs take the point from the ray as
+    /// it is.
     pub fn surface(&self, ray: impl Into<Ray64>, hit: &Hit) -> Surface {
         let ray = &ray.into();
         let object = &self.objects[hit.object as usize];
@@ -252,7 +255,8 @@ impl World {
         })
     }
 
-    /// The nearest hit of each object in the ray's interval, in the order in which they are written.
+    /// The nearest hit of each object in the ray's interval, in the order in which they are
+    /// written.
     pub fn hits_of_each(&self, ray: impl Into<Ray64>) -> impl Iterator<Item = Hit> {
         let ray = ray.into();
         (0..self.objects.len() as u32).filter_map(move |object| self.hit_of(object, &ray))

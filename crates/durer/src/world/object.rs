@@ -15,7 +15,8 @@ pub struct Object {
     pub geometry: Geometry,
     /// From object to world space; `None` where they are the same.
     pub to_world: Option<Affine>,
-    /// How far its geometry was moved to lie about the origin of object space; [`Object::to_world`] moves it back.
+    /// How far its geometry was moved to lie about the origin of object space; [`Object::to_world`]
+    /// moves it back.
     pub center: Vec3,
     /// Number of its material; the parts of a solid have their own.
     pub material: u32,
@@ -87,7 +88,8 @@ impl MeshTree {
 
     /// Offers every crossing of a line, with the number of its triangle, in any order.
     ///
-    /// The line is taken from its place nearest to the mesh, so that only the mesh's own coordinates round.
+    /// The line is taken from its place nearest to the mesh, so that only the mesh's own
+    /// coordinates round.
     pub(super) fn crossings<T: TraversalCounter>(
         &self,
         line: &Line,
@@ -254,7 +256,8 @@ impl Object {
         }
     }
 
-    /// Half the area of the box around it, infinite for what has no end; `None` for what is not closed.
+    /// Half the area of the box around it, infinite for what has no end; `None` for what is not
+    /// closed.
     pub fn extent(&self) -> Option<f32> {
         self.is_closed().then(|| self.bounds().map_or(f32::INFINITY, |bounds| bounds.half_area()))
     }

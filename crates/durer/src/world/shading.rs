@@ -31,8 +31,9 @@ pub struct Shading {
 }
 
 impl Shading {
-    /// The value times the cosine of a direction of the world. Light that comes from behind the true surface and would be
-    /// reflected, or the other way round, is none: the normals for shading are only nearly right.
+    /// The value times the cosine of a direction of the world. Light that comes from behind the
+    /// true surface and would be reflected, or the other way round, is none: the normals for
+    /// shading are only nearly right.
     pub fn eval(&self, wi: Vec3) -> Spectrum {
         let local = self.frame.to_local(wi);
         let same_side = (local.z > 0.0) == (wi.dot(self.n_geo) > 0.0);
@@ -46,7 +47,8 @@ impl Shading {
 }
 
 impl World {
-    /// Noise, else texture, else the diffuse colour; or the diffuse colour times texture and vertices' colours.
+    /// Noise, else texture, else the diffuse colour; or the diffuse colour times texture and
+    /// vertices' colours.
     pub fn diffuse_color(&self, phong: &Phong, surface: &Surface) -> Color {
         let texture = phong.texture.and_then(|i| Some(self.textures[i as usize].at(surface.uv.get()?)));
         if phong.tinted {
@@ -57,8 +59,9 @@ impl World {
         noise.or(texture).unwrap_or(phong.diffuse)
     }
 
-    /// How a hit scatters light that is seen against a ray's direction. `inside`: it is seen from the side that its normal
-    /// does not point to; `eta` is the index behind the surface over that before it.
+    /// How a hit scatters light that is seen against a ray's direction. `inside`: it is seen from
+    /// the side that its normal does not point to; `eta` is the index behind the surface over
+    /// that before it.
     pub fn shading(
         &self,
         dir: Vec3,
@@ -93,7 +96,8 @@ impl World {
         Shading { frame, n_geo, wo, bsdf }
     }
 
-    /// The frame around a normal: along u, and turned from there, where the highlight of a part is longer than wide.
+    /// The frame around a normal: along u, and turned from there, where the highlight of a part is
+    /// longer than wide.
     fn frame<'a>(
         &self,
         mut parts: impl Iterator<Item = &'a Parameters>,
@@ -115,7 +119,8 @@ impl World {
         }
     }
 
-    /// The light that a surface sends towards one side: from where its normal points, or from behind.
+    /// The light that a surface sends towards one side: from where its normal points, or from
+    /// behind.
     pub fn emission(&self, hit: &Hit, surface: &Surface, inside: bool) -> Color {
         let own = |phong: &Phong| {
             let emission = phong.emission.as_ref().filter(|emission| emission.two_sided || !inside)?;
@@ -164,7 +169,8 @@ impl World {
         }
     }
 
-    /// The index of refraction of the body that a surface bounds, if light may go into it: that of the part that weighs most.
+    /// The index of refraction of the body that a surface bounds, if light may go into it: that of
+    /// the part that weighs most.
     pub fn refracts(&self, hit: &Hit, surface: &Surface, lanes: &Lanes) -> Option<f32> {
         let of = |phong: &Phong| match &phong.principled {
             Some(own) => {
@@ -222,7 +228,8 @@ impl World {
         }
     }
 
-    /// Whether light goes straight through a medium with a lamp behind it: through the air, and bodies without a skin.
+    /// Whether light goes straight through a medium with a lamp behind it: through the air, and
+    /// bodies without a skin.
     pub fn is_open(&self, object: Option<u32>) -> bool {
         object.is_none_or(|object| self.has_no_skin(self.objects[object as usize].material))
     }
@@ -260,8 +267,9 @@ impl World {
     }
 }
 
-/// The course's material under physical light: matte with `diffuseColor` over pi, Blinn's or Phong's highlight, and single
-/// directions for mirror and glass. What would give back more than it gets is scaled down as a whole.
+/// The course's material under physical light: matte with `diffuseColor` over pi, Blinn's or
+/// Phong's highlight, and single directions for mirror and glass. What would give back more than it
+/// gets is scaled down as a whole.
 fn phong_lobes(phong: &Phong, color: Color, wo: Vec3, eta: f32, lanes: &Lanes) -> Bsdf {
     let mut bsdf = Bsdf::default();
     let (strength, exponent, model) = phong.highlight.unwrap_or((Color::ZERO, 1.0, HighlightModel::Blinn));

@@ -1,8 +1,9 @@
-//! Closed shapes combined by Boolean operations, as a tree; and how such a tree falls into pieces apart from each
-//! other, each as small as can be told from its parts' boxes.
+//! Closed shapes combined by Boolean operations, as a tree; and how such a tree falls into pieces
+//! apart from each other, each as small as can be told from its parts' boxes.
 //!
-//! Parts in boxes that do not touch cannot change each other. So a merge of many parts in space becomes many things,
-//! which the tree over the world's objects finds as fast as any others; and a cut concerns only what it touches.
+//! Parts in boxes that do not touch cannot change each other. So a merge of many parts in space
+//! becomes many things, which the tree over the world's objects finds as fast as any others; and a
+//! cut concerns only what it touches.
 
 use super::Object;
 use crate::math::Aabb;
@@ -55,7 +56,8 @@ impl Solid {
         Solid::join(Rule::Odd, parts)
     }
 
-    /// What is in all of several, and in none of others. Neither "in all" nor "in none" changes by nesting.
+    /// What is in all of several, and in none of others. Neither "in all" nor "in none" changes by
+    /// nesting.
     pub fn all(parts: Vec<Solid>, cut: Vec<Solid>) -> Solid {
         let (mut flat, mut flat_cut) = (Vec::new(), Vec::new());
         for part in parts {
@@ -112,7 +114,8 @@ impl Solid {
         }
     }
 
-    /// The same, as solids apart from each other, in the order of their first parts. None is left of what is nowhere.
+    /// The same, as solids apart from each other, in the order of their first parts. None is left
+    /// of what is nowhere.
     pub fn pieces(self) -> Vec<Solid> {
         self.boxed_pieces().into_iter().map(|piece| piece.0).collect()
     }
@@ -186,7 +189,8 @@ fn copies(pieces: &[Piece], which: &[usize]) -> Vec<Solid> {
     which.iter().map(|&i| pieces[i].0.clone()).collect()
 }
 
-/// For each piece those of others whose boxes touch its own; `None` where these are too many to be told apart.
+/// For each piece those of others whose boxes touch its own; `None` where these are too many to be
+/// told apart.
 fn touching(pieces: &[Piece], others: &[Piece]) -> Option<Vec<Vec<usize>>> {
     if pieces.len() * others.len() > MOST_PAIRS {
         return None;
@@ -209,8 +213,8 @@ fn touch(a: Option<Aabb>, b: Option<Aabb>) -> bool {
     (a.min - pad).cmple(b.max).all() && (b.min - pad).cmple(a.max).all()
 }
 
-/// For each box the number of its cluster: boxes that touch, directly or by others between them, are in one. Clusters
-/// are numbered by their first box.
+/// For each box the number of its cluster: boxes that touch, directly or by others between them,
+/// are in one. Clusters are numbered by their first box.
 fn clusters_of(boxes: &[Option<Aabb>]) -> Vec<usize> {
     // The parent of each in a forest whose trees are the clusters; a root is the first of its cluster.
     let mut parents: Vec<usize> = (0..boxes.len()).collect();
@@ -221,7 +225,8 @@ fn clusters_of(boxes: &[Option<Aabb>]) -> Vec<usize> {
         }
         i
     }
-    // Sweeps over x: only what has begun and not ended yet may touch the next. What has no end never ends.
+    // Sweeps over x: only what has begun and not ended yet may touch the next. What has no end never
+    // ends.
     let mut order: Vec<usize> = (0..boxes.len()).collect();
     let begin = |i: usize| boxes[i].map_or(f32::NEG_INFINITY, |b| b.min.x);
     order.sort_by(|&a, &b| begin(a).total_cmp(&begin(b)).then(a.cmp(&b)));

@@ -87,7 +87,8 @@ fn scene(random: &mut Random, size: f32) -> String {
     text + "Sphere { center 0 0 0 radius 1 }" + &"}\n".repeat(nested + 1)
 }
 
-/// Rays of all kinds: anywhere, at corners, along axes and in faces of boxes, orthographic, from far away.
+/// Rays of all kinds: anywhere, at corners, along axes and in faces of boxes, orthographic, from
+/// far away.
 fn ray(world: &World, random: &mut Random, size: f32) -> Ray {
     let object = &world.objects[random.below(world.objects.len())];
     let bounds = object.bounds().unwrap_or(Aabb { min: Vec3::splat(-size), max: Vec3::splat(size) });

@@ -8,7 +8,8 @@ use std::f32::consts::FRAC_1_PI;
 
 /// A highlight: color · base^exponent / pi, where the base is N·H (Blinn) or R·L (Phong).
 ///
-/// The course has no cosine beside it, and so would give back more light than arrives; here there is one.
+/// The course has no cosine beside it, and so would give back more light than arrives; here there
+/// is one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Blinn {
     /// Its strength.

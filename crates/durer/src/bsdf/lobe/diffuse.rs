@@ -1,7 +1,8 @@
 //! Matte surfaces: energy-preserving Oren-Nayar.
 //!
-//! Source: Portsmouth, Kutz and Hill, *EON: A practical energy-preserving rough diffuse BRDF*, JCGT 14(1), 2025: Fujii's
-//! version of Oren and Nayar's, and a term that gives back what is scattered more than once.
+//! Source: Portsmouth, Kutz and Hill, *EON: A practical energy-preserving rough diffuse BRDF*, JCGT
+//! 14(1), 2025: Fujii's version of Oren and Nayar's, and a term that gives back what is scattered
+//! more than once.
 
 use super::{Scatter, Scattered};
 use crate::bsdf::warp;

@@ -1,7 +1,8 @@
 //! Fuzz: fibres that stand out of a surface, as on velvet.
 //!
-//! Source: Estevez and Kulla, *Production Friendly Microfacet Sheen BRDF*, 2017 (the distribution); Neubelt and Pettineo,
-//! *Crafting a Next-Gen Material Pipeline for The Order: 1886*, 2013 (the masking).
+//! Source: Estevez and Kulla, *Production Friendly Microfacet Sheen BRDF*, 2017 (the distribution);
+//! Neubelt and Pettineo, *Crafting a Next-Gen Material Pipeline for The Order: 1886*, 2013 (the
+//! masking).
 
 use super::{Scatter, Scattered};
 use crate::bsdf::warp;

@@ -19,8 +19,8 @@ pub struct Refraction {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Through;
 
-/// The direction behind a boundary with normal `h` on the side of `w`; `None` for total reflection. `eta` is the index behind
-/// over that before.
+/// The direction behind a boundary with normal `h` on the side of `w`; `None` for total reflection.
+/// `eta` is the index behind over that before.
 pub fn refracted(w: Vec3, h: Vec3, eta: f32) -> Option<Vec3> {
     let cosine = w.dot(h);
     let sine2 = (1.0 - cosine * cosine).max(0.0) / (eta * eta);
@@ -49,6 +49,7 @@ macro_rules! single_direction {
 
 single_direction!(Mirror, |_lobe, wo| Some(Scattered { wi: Vec3::new(-wo.x, -wo.y, wo.z), value: Spectrum::ONE }));
 single_direction!(Through, |_lobe, wo| Some(Scattered { wi: -wo, value: Spectrum::ONE }));
-// Radiance is denser where the index is higher: L / n^2 stays what it is. Source: Veach's thesis, section 5.2.
+// Radiance is denser where the index is higher: L / n^2 stays what it is. Source: Veach's thesis,
+// section 5.2.
 single_direction!(Refraction, |lobe, wo| refracted(wo, Vec3::Z, lobe.eta)
     .map(|wi| Scattered { wi, value: Spectrum::splat(1.0 / (lobe.eta * lobe.eta)) }));

@@ -19,15 +19,18 @@ pub struct Scattered {
     pub value: Spectrum,
 }
 
-/// What every lobe can do. Directions are local and point away from the surface; `wo` is above it (`wo.z` > 0).
+/// What every lobe can do. Directions are local and point away from the surface; `wo` is above it
+/// (`wo.z` > 0).
 pub trait Scatter {
     /// The lobe's value times |cos| of `wi`; 0 for a lobe of single directions.
     fn eval(&self, wo: Vec3, wi: Vec3) -> Spectrum;
 
-    /// The density per solid angle with which [`Scatter::sample`] chooses `wi`; 0 for a lobe of single directions.
+    /// The density per solid angle with which [`Scatter::sample`] chooses `wi`; 0 for a lobe of
+    /// single directions.
     fn pdf(&self, wo: Vec3, wi: Vec3) -> f32;
 
-    /// A direction; `choice` and `u` are uniform from 0 to 1. `None` where none comes of these numbers.
+    /// A direction; `choice` and `u` are uniform from 0 to 1. `None` where none comes of these
+    /// numbers.
     fn sample(&self, wo: Vec3, choice: f32, u: Vec2) -> Option<Scattered>;
 
     /// Whether it scatters into single directions only.

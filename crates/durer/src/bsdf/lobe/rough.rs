@@ -42,7 +42,8 @@ pub struct Rough {
     pub ggx: Ggx,
     /// What each of them reflects.
     pub facet: Facet,
-    /// Whether light goes on behind the surface, as far from its way as a mirror's above: a thin sheet of rough glass.
+    /// Whether light goes on behind the surface, as far from its way as a mirror's above: a thin
+    /// sheet of rough glass.
     pub behind: bool,
 }
 

@@ -22,7 +22,8 @@ pub struct RoughGlass {
     pub transmitted: Spectrum,
 }
 
-/// The facet that turns one direction into the other, and the change of its solid angle; nothing where there is none.
+/// The facet that turns one direction into the other, and the change of its solid angle; nothing
+/// where there is none.
 fn facet(wo: Vec3, wi: Vec3, eta: f32) -> Option<(Vec3, f32)> {
     let passes = wi.z < 0.0;
     let eta = if passes { eta } else { 1.0 };

@@ -1,9 +1,11 @@
 //! All roots of a polynomial between 0 and 1, from its coefficients in Bernstein's form.
 //!
-//! A polynomial has at most as many roots in an interval as its coefficients there change sign, and one where they do
-//! once. Halving the interval by de Casteljau's rule separates the roots; each is then closed in on by false position.
+//! A polynomial has at most as many roots in an interval as its coefficients there change sign, and
+//! one where they do once. Halving the interval by de Casteljau's rule separates the roots; each is
+//! then closed in on by false position.
 //!
-//! Source: Lane, Riesenfeld, *Bounds on a Polynomial*, BIT 21, 1981; Farin, *Curves and Surfaces for CAGD*, chapter 4.
+//! Source: Lane, Riesenfeld, *Bounds on a Polynomial*, BIT 21, 1981; Farin, *Curves and Surfaces
+//! for CAGD*, chapter 4.
 
 use glam::DVec3;
 

@@ -100,7 +100,8 @@ impl MeshFile<'_> {
         found.filter(|_| before == self.data.triangles.len())
     }
 
-    /// A warning about some of its triangles: at the first of them, or where the scene names the file.
+    /// A warning about some of its triangles: at the first of them, or where the scene names the
+    /// file.
     fn at_triangle(&self, scout: &Scout, diagnostic: Diagnostic, triangle: u32) -> Diagnostic {
         let corners = self.data.triangles[triangle as usize].map(|i| self.data.positions[i as usize]);
         match self.face(scout, triangle) {
@@ -268,7 +269,8 @@ pub(super) fn flat_glass(scout: &Scout) -> Vec<Finding> {
     flat.iter().filter(open).take(3).map(say).collect()
 }
 
-/// Mesh files with faces of more than three corners: name, how many, of how many, and the first of them.
+/// Mesh files with faces of more than three corners: name, how many, of how many, and the first of
+/// them.
 pub(super) fn large_faces<'s>(scout: &Scout<'s>) -> Vec<(&'s str, usize, usize, Span)> {
     let one = |mesh: &MeshFile<'s>| {
         let bytes = scout.subject.files.bytes(mesh.file)?;
@@ -289,7 +291,8 @@ pub(super) fn large_faces<'s>(scout: &Scout<'s>) -> Vec<(&'s str, usize, usize, 
     scout.meshes().iter().filter_map(one).collect()
 }
 
-/// Mesh files of which the year's program loses the last line, or gives normals to other vertices than the file says.
+/// Mesh files of which the year's program loses the last line, or gives normals to other vertices
+/// than the file says.
 pub(super) fn misread(scout: &Scout) -> Vec<Finding> {
     let rules = &scout.world().rules;
     let mut found = Vec::new();

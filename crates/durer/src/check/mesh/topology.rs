@@ -22,11 +22,13 @@ pub(in crate::check) struct Topology {
     pub box_volume: f64,
     /// The length of the sum of all directed areas, as a share of the sum of their lengths.
     pub opening: f64,
-    /// Six times the volume that is enclosed, seen from its middle where it is not closed; negative where triangles go round clockwise, seen from outside.
+    /// Six times the volume that is enclosed, seen from its middle where it is not closed; negative
+    /// where triangles go round clockwise, seen from outside.
     pub volume: f64,
 }
 
-/// An edge of a triangle: its two corners, the lesser first; whether the triangle runs along it so; the triangle.
+/// An edge of a triangle: its two corners, the lesser first; whether the triangle runs along it so;
+/// the triangle.
 type Edge = (u64, bool, u32);
 
 impl Topology {
@@ -71,8 +73,8 @@ impl Topology {
         topology
     }
 
-    /// Whether it is closed but for a hole, as at the top of a vase: the directed areas of a closed surface sum to 0, its rims
-    /// are short, and the volume in it is no accident.
+    /// Whether it is closed but for a hole, as at the top of a vase: the directed areas of a closed
+    /// surface sum to 0, its rims are short, and the volume in it is no accident.
     pub fn is_nearly_closed(&self) -> bool {
         let short = self.crowded == 0 && self.open * 10 < self.edges;
         self.is_closed() || short && self.opening < 0.25 && self.volume.abs() > 0.1 * self.box_volume
@@ -90,8 +92,8 @@ fn same_places(positions: &[Vec3]) -> Vec<u32> {
     positions.iter().enumerate().map(|(i, p)| *first.entry(place_key(*p)).or_insert(i as u32)).collect()
 }
 
-/// Goes from triangle to triangle across edges of two: neighbours that run along their edge alike go round differently. Of each
-/// piece that hangs together, the fewer are turned.
+/// Goes from triangle to triangle across edges of two: neighbours that run along their edge alike
+/// go round differently. Of each piece that hangs together, the fewer are turned.
 fn turned(edges: &[Edge], count: usize) -> Vec<u32> {
     let pairs = || edges.chunk_by(|a, b| a.0 == b.0).filter(|same| same.len() == 2);
     if pairs().all(|same| same[0].1 != same[1].1) {

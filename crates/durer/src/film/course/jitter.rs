@@ -6,18 +6,20 @@ use crate::sampler::random_2d;
 #[cfg(test)]
 mod tests;
 
-/// Position of a sub-pixel's sample in the picture three times as wide and high that `-jitter` renders, in its sub-pixels:
-/// a uniform number between -1/2 and 1/2 is added to each integer coordinate.
+/// Position of a sub-pixel's sample in the picture three times as wide and high that `-jitter`
+/// renders, in its sub-pixels: a uniform number between -1/2 and 1/2 is added to each integer
+/// coordinate.
 pub fn jittered_position(seed: u64, x: u32, y: u32) -> Vec2 {
     Vec2::new(x as f32, y as f32) + (random_2d(seed, x, y, 0, 0) - 0.5)
 }
 
-/// The five weights of `-filter`, from two left to two right. As published they sum to 1.0011; official pictures have
-/// the brightness of weights that sum to 1.
+/// The five weights of `-filter`, from two left to two right. As published they sum to 1.0011;
+/// official pictures have the brightness of weights that sum to 1.
 const BLUR: [f32; 5] = [0.1201 / SUM, 0.2339 / SUM, 0.2931 / SUM, 0.2339 / SUM, 0.1201 / SUM];
 const SUM: f32 = 1.0011;
 
-/// Blurs a picture with five taps along rows, then along columns. Beyond an edge its last pixel is repeated.
+/// Blurs a picture with five taps along rows, then along columns. Beyond an edge its last pixel is
+/// repeated.
 ///
 /// Panics where there are not `width * height` pixels.
 pub fn blur(pixels: &[Color], width: u32, height: u32) -> Vec<Color> {
@@ -29,7 +31,8 @@ pub fn blur(pixels: &[Color], width: u32, height: u32) -> Vec<Color> {
     by_pixels(w, h, |x, y| (0..5).map(|k| BLUR[k] * along_rows[tap(y + k, h) * w + x]).sum())
 }
 
-/// Averages three by three pixels into one. Size of the result: a third of `width` and `height`, rounded down.
+/// Averages three by three pixels into one. Size of the result: a third of `width` and `height`,
+/// rounded down.
 pub fn average_3x3(pixels: &[Color], width: u32, height: u32) -> Vec<Color> {
     let w = width as usize;
     assert_eq!(pixels.len(), w * height as usize, "a picture has as many pixels as its size says");

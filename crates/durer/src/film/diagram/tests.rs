@@ -20,7 +20,8 @@ fn official(name: &str) -> Option<(u32, u32, Vec<[u8; 3]>)> {
     Some((picture.width(), picture.height(), picture.pixels().map(|p| p.0).collect()))
 }
 
-/// The course's rule for deterministic pictures: at most one pixel in a thousand differs by more than 2/255.
+/// The course's rule for deterministic pictures: at most one pixel in a thousand differs by more
+/// than 2/255.
 fn assert_agrees(name: &str, width: u32, height: u32, pixels: &[Color]) {
     let Some((w, h, expected)) = official(name) else { return };
     assert_eq!((width, height), (w, h), "{name}");
@@ -104,7 +105,8 @@ fn filtered_pictures_are_the_official_ones() {
     }
 }
 
-/// The course's scene of a chessboard at height 0.01, with fields of a tenth; the point is in the picture, -1 to 1.
+/// The course's scene of a chessboard at height 0.01, with fields of a tenth; the point is in the
+/// picture, -1 to 1.
 ///
 /// In double precision: towards the horizon single precision picks other fields.
 fn chessboard(p: DVec2) -> Color {

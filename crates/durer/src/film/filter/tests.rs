@@ -6,7 +6,8 @@ fn sizes() -> impl Iterator<Item = Filter> {
     Filter::NAMES.into_iter().flat_map(|(_, f)| [f, f.with_radius(0.7), f.with_radius(3.3)])
 }
 
-/// Integral of the absolute filter over cell (i, j) of a grid over its support, by the midpoint rule.
+/// Integral of the absolute filter over cell (i, j) of a grid over its support, by the midpoint
+/// rule.
 fn mass(filter: Filter, cells: usize, i: usize, j: usize) -> f64 {
     let at = |cell: usize, k: usize| {
         let u = (cell as f32 + (k as f32 + 0.5) / 16.0) / cells as f32;
@@ -96,7 +97,8 @@ fn profiles_are_right() {
             assert!(filter.weight(0.999 * r, 0.0).abs() < 2e-3, "{filter:?}");
         }
     }
-    // Mitchell's cubic: 8/9 at the centre, 1/18 at half the radius, zero at 8/7 of that, negative beyond.
+    // Mitchell's cubic: 8/9 at the centre, 1/18 at half the radius, zero at 8/7 of that, negative
+    // beyond.
     let m = |d| Filter::Mitchell { radius: 2.0 }.profile(d);
     for (d, value) in [(0.0, 8.0 / 9.0), (1.0, 1.0 / 18.0), (8.0 / 7.0, 0.0), (2.0, 0.0), (0.99999, 1.0 / 18.0)] {
         assert!((m(d) - value).abs() < 1e-4, "{d}: {}", m(d));
@@ -113,7 +115,8 @@ fn warps_are_exact_where_they_can_be() {
         let u = i as f32 / 1000.0;
         assert!((boxed.warp(u) - (u - 0.5)).abs() < 1e-7);
         let exact = if u < 0.5 { (2.0 * u).sqrt() - 1.0 } else { 1.0 - (2.0 - 2.0 * u).sqrt() };
-        // Between knots h apart a chord is off by h^2 / 8 times the second derivative, in the last share by less than a quarter of it.
+        // Between knots h apart a chord is off by h^2 / 8 times the second derivative, in the last share by
+        // less than a quarter of it.
         let rest = 1.0 - (2.0 * f64::from(u) - 1.0).abs();
         let off = (7.5e-9 / (rest * rest.sqrt())).min(0.006) + 1e-6;
         assert!(f64::from((tent.warp(u) - exact).abs()) < off, "{u}");

@@ -17,7 +17,8 @@ pub(super) enum Order {
 }
 
 impl Reader<'_, '_> {
-    /// Reads `{ field value ... }` into a thing. `extra` may take words that are no fields; it says whether it did.
+    /// Reads `{ field value ... }` into a thing. `extra` may take words that are no fields; it says
+    /// whether it did.
     pub(super) fn fields<T: DescribedList>(
         &mut self,
         thing: &mut T,
@@ -364,7 +365,8 @@ impl Reader<'_, '_> {
     }
 }
 
-/// What may be meant by a word that should have been a number, and how it is written, where that is clear.
+/// What may be meant by a word that should have been a number, and how it is written, where that is
+/// clear.
 fn number_help(text: &str) -> Option<(String, Option<String>)> {
     let is_number = |text: &str| !text.is_empty() && text.parse::<f32>().is_ok();
     let bare = text.trim_matches(['(', ')', ',', ';', '<', '>', '[', ']', 'f', 'F']);

@@ -5,7 +5,8 @@ use super::words::dialects_of;
 use crate::diag::{Diagnostic, Span};
 use crate::dialect::{Dialect, DialectSet, set};
 
-/// What something else than the file says of its dialect. It is not heard where it contradicts what is known already.
+/// What something else than the file says of its dialect. It is not heard where it contradicts what
+/// is known already.
 #[derive(Clone, Debug)]
 pub struct Hint {
     /// The dialects that it leaves.
@@ -45,7 +46,8 @@ impl Guess {
 const PREFERENCE: [Dialect; 6] =
     [Dialect::F12a4, Dialect::F04, Dialect::F12a5, Dialect::F16, Dialect::F23, Dialect::F03];
 
-/// Guesses the dialect of a scene from its words. `exists` tells whether a file that it names is there.
+/// Guesses the dialect of a scene from its words. `exists` tells whether a file that it names is
+/// there.
 pub fn guess(bytes: &[u8], file: u32, hints: &[Hint], exists: &dyn Fn(&str) -> bool) -> Guess {
     let mut left = set::ALL & !set::DURER;
     let mut reasons: Vec<(DialectSet, String, Option<Span>)> = Vec::new();
@@ -60,7 +62,8 @@ pub fn guess(bytes: &[u8], file: u32, hints: &[Hint], exists: &dyn Fn(&str) -> b
             reasons.push((keep, why, span));
         }
     };
-    // Words of nodes among words of the years before: what there is most of is meant, and the others are foreign.
+    // Words of nodes among words of the years before: what there is most of is meant, and the others
+    // are foreign.
     let (mut nodes, mut classic) = (0_usize, 0_usize);
     for (i, token) in tokens.iter().enumerate().filter(|(_, token)| token.kind == TokenKind::Word) {
         let _ = token;

@@ -27,7 +27,8 @@ const COUNTERPARTS: [(&str, &str); 20] = [
     ("ZRotate", "z_rotate"),
 ];
 
-/// What people write, what they mean, and what is to be said of it. The first of the meant words that is known in the place counts.
+/// What people write, what they mean, and what is to be said of it. The first of the meant words
+/// that is known in the place counts.
 const SLIPS: [(&str, &[&str], &str); 29] = [
     ("plain", &["Plane", "plane"], ""),
     ("ball", &["Sphere", "sphere"], ""),

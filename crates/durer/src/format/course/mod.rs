@@ -32,8 +32,8 @@ pub use write::write;
 pub struct ReadOptions {
     /// Its dialect.
     pub dialect: Dialect,
-    /// Whether only the words of that dialect are allowed: no comments, no words of other years, counts and
-    /// order as the old programs wanted them.
+    /// Whether only the words of that dialect are allowed: no comments, no words of other years,
+    /// counts and order as the old programs wanted them.
     pub strict: bool,
     /// Habits of its program.
     pub compat: CompatSet,

@@ -97,7 +97,8 @@ impl Reader<'_, '_> {
         Some((name, span))
     }
 
-    /// `define NAME object`: nothing is shown yet. What is in it and has no material gets that of the place where it is used.
+    /// `define NAME object`: nothing is shown yet. What is in it and has no material gets that of
+    /// the place where it is used.
     pub(super) fn define(&mut self, keyword: Span) {
         self.foreign("define", keyword, set::DURER);
         let Some((name, span)) = self.name_after("define") else { return };

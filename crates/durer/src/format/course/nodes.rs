@@ -192,7 +192,8 @@ impl Reader<'_, '_> {
         index
     }
 
-    /// The `type` of a component, whose `{` is left to be read by its fields: one of the known ones, or of ours.
+    /// The `type` of a component, whose `{` is left to be read by its fields: one of the known
+    /// ones, or of ours.
     fn component_type(&mut self, keyword: Span, known: &[&str], ours: &[&str]) -> Option<String> {
         // The word after `{ type` is known before any field is read: type comes first in every file.
         let name = self.text(keyword);

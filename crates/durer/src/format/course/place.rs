@@ -3,7 +3,8 @@
 use super::lexer::{Token, TokenKind, tokens};
 use crate::diag::Span;
 
-/// The tokens inside the block that a keyword begins, and not inside blocks in it, with the block's end.
+/// The tokens inside the block that a keyword begins, and not inside blocks in it, with the block's
+/// end.
 fn inside(bytes: &[u8], keyword: Span) -> Option<(Vec<Token>, u32)> {
     let rest = bytes.get(keyword.start as usize..)?;
     // Blocks are short: the rest of a long file is not read for each of them.
@@ -41,7 +42,8 @@ fn block_of(text: &[u8], keyword: Span) -> Option<(Vec<Token>, u32)> {
     None
 }
 
-/// The place of a field's value: its numbers, or the one word after it. The last where it is given several times, as it counts.
+/// The place of a field's value: its numbers, or the one word after it. The last where it is given
+/// several times, as it counts.
 pub fn value(bytes: &[u8], keyword: Span, field: &str) -> Option<Span> {
     let text = |span: Span| std::str::from_utf8(&bytes[span.start as usize..span.end as usize]).unwrap_or_default();
     let (own, _) = inside(bytes, keyword)?;

@@ -1,4 +1,5 @@
-//! Random scenes, made by walking what every thing says of its fields: for tests, and for fuzzing, whose bytes then decide.
+//! Random scenes, made by walking what every thing says of its fields: for tests, and for fuzzing,
+//! whose bytes then decide.
 
 use crate::camera::Camera;
 use crate::describe::{DescribedList, Field, FileName, Kind, Rule, Value};
@@ -10,11 +11,13 @@ use crate::medium::Fog;
 use crate::scene::{Background, Group, Material, MatrixOp, Node, Object, Operation, Scene, Spanned};
 use crate::shape::{HeightField, Primitive, Sphere, TriangleMesh, VoxelGrid};
 
-/// A source of choices: given bytes, and after them a generator of random numbers (Knuth's multiplier, the upper half of the state).
+/// A source of choices: given bytes, and after them a generator of random numbers (Knuth's
+/// multiplier, the upper half of the state).
 pub struct Random {
     state: u64,
     bytes: std::vec::IntoIter<u8>,
-    /// Whether scenes should be such as can be rendered: small numbers, and files `a.obj` and `a.ppm`.
+    /// Whether scenes should be such as can be rendered: small numbers, and files `a.obj` and
+    /// `a.ppm`.
     tame: bool,
 }
 

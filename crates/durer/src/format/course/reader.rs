@@ -25,7 +25,8 @@ pub(super) struct Reader<'a, 'd> {
     pub depth: usize,
     /// The keywords of the blocks that are open, outermost first.
     pub blocks: Vec<Span>,
-    /// The token before which a missing `}` was reported: all blocks that end there are complained of once.
+    /// The token before which a missing `}` was reported: all blocks that end there are complained
+    /// of once.
     pub unclosed_at: Option<usize>,
     /// Whether nothing more is reported, since the rest of the file was given up.
     stopped: bool,
@@ -211,7 +212,8 @@ impl<'a, 'd> Reader<'a, 'd> {
         true
     }
 
-    /// Expects the `{` of a block. Where it is missing but the block's inside follows, it is read as if it were there.
+    /// Expects the `{` of a block. Where it is missing but the block's inside follows, it is read
+    /// as if it were there.
     pub(super) fn open(&mut self, keyword: Span) -> bool {
         let opens = self.at_open();
         let name = self.text(keyword);

@@ -97,8 +97,8 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// The known word that is meant by one that is none. A word of the language is hardly a slip of another, unless of its
-    /// capitals.
+    /// The known word that is meant by one that is none. A word of the language is hardly a slip of
+    /// another, unless of its capitals.
     fn meant<'w>(&self, word: &str, known: impl IntoIterator<Item = &'w str>) -> Option<&'w str> {
         let known: Vec<&str> = known.into_iter().collect();
         let there = counterpart(word, self.options.dialect);

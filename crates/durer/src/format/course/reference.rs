@@ -1,6 +1,8 @@
-//! The reference of the language: every word that begins something, what follows it, in which dialects, with an example.
+//! The reference of the language: every word that begins something, what follows it, in which
+//! dialects, with an example.
 //!
-//! What has parameters is read off its statement; the words of the grammar itself, which have none, are a table here.
+//! What has parameters is read off its statement; the words of the grammar itself, which have none,
+//! are a table here.
 
 use super::write::write_thing;
 use crate::camera::Camera;
@@ -420,7 +422,8 @@ fn one_line(doc: &str) -> String {
     doc.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
-/// Every word of the language, fields and values among them, sorted: for editors, and to guess what was meant.
+/// Every word of the language, fields and values among them, sorted: for editors, and to guess what
+/// was meant.
 pub fn all_words() -> Vec<&'static str> {
     let mut words: Vec<&'static str> = Vec::new();
     for entry in entries() {

@@ -182,7 +182,8 @@ impl Reader<'_, '_> {
         })
     }
 
-    /// Expects `}`, and passes over what is before it. Where a word of the language comes first, `}` is missing.
+    /// Expects `}`, and passes over what is before it. Where a word of the language comes first,
+    /// `}` is missing.
     fn close(&mut self, block: &str, complain: bool) {
         if complain && self.peek().is_none_or(|t| t.kind != TokenKind::Close) {
             self.expected("`}`", block);

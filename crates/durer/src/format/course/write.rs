@@ -8,7 +8,8 @@ use crate::scene::{Group, Material, MatrixOp, Node, Object, Scene};
 use crate::shape::{Sphere, VoxelGrid};
 use std::fmt::Write;
 
-/// Writes a scene in a dialect. What the dialect has no word for is written in the words of another year.
+/// Writes a scene in a dialect. What the dialect has no word for is written in the words of another
+/// year.
 pub fn write(scene: &Scene, dialect: Dialect) -> String {
     let mut writer = Writer { out: String::new(), depth: 0, dialect, material: None };
     match dialect {

@@ -37,7 +37,8 @@ impl Component {
         }
     }
 
-    /// The number at the start of some bytes; a normalised one lies between -1 or 0 and 1 (chapter 3.11 of the specification).
+    /// The number at the start of some bytes; a normalised one lies between -1 or 0 and 1 (chapter
+    /// 3.11 of the specification).
     fn float(self, b: &[u8], normalized: bool) -> f32 {
         let (value, most) = match self {
             Component::I8 => (f32::from(b[0] as i8), 127.0),

@@ -19,7 +19,8 @@ enum Between {
 /// Key frames.
 struct Track {
     times: Vec<f32>,
-    /// Numbers of each key frame, one row after the other; for cubic splines each has two tangents about it.
+    /// Numbers of each key frame, one row after the other; for cubic splines each has two tangents
+    /// about it.
     values: Vec<f32>,
     between: Between,
 }

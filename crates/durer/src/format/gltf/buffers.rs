@@ -67,7 +67,8 @@ pub(super) enum Target<'a> {
 
 /// Reads a URI: one that holds data, or a relative one.
 ///
-/// Source: RFC 3986 and RFC 2397. What leads out of the folder is refused by [`crate::source::Source`].
+/// Source: RFC 3986 and RFC 2397. What leads out of the folder is refused by
+/// [`crate::source::Source`].
 pub(super) fn target<'a>(at: &At<'a>) -> Option<Target<'a>> {
     let uri = at.string()?;
     if uri.get(..5).is_some_and(|scheme| scheme.eq_ignore_ascii_case("data:")) {

@@ -1,7 +1,7 @@
 //! Primitives whose triangles are compressed by Draco.
 //!
-//! Source: *KHR_draco_mesh_compression*, Khronos Group. The accessors of such a primitive say what is in the compressed
-//! bytes, and have no bytes of their own; here they are given those.
+//! Source: *KHR_draco_mesh_compression*, Khronos Group. The accessors of such a primitive say what
+//! is in the compressed bytes, and have no bytes of their own; here they are given those.
 
 use super::Model;
 use super::accessor::Component;

@@ -1,4 +1,5 @@
-//! The JSON of a glTF file, with places: a value knows its JSON pointer, and what is said of it goes to line and column.
+//! The JSON of a glTF file, with places: a value knows its JSON pointer, and what is said of it
+//! goes to line and column.
 //!
 //! Codes of errors are those of the Khronos validator (its ISSUES.md).
 
@@ -162,7 +163,8 @@ impl<'a> At<'a> {
         })
     }
 
-    /// The values of an array that is a property, all read in one way; none where there is no such property.
+    /// The values of an array that is a property, all read in one way; none where there is no such
+    /// property.
     pub fn list<T>(&'a self, key: &'a str, mut read: impl FnMut(&At) -> T) -> Vec<T> {
         match self.get(key) {
             Some(array) => array.items().map(|item| read(&item)).collect(),

@@ -1,7 +1,7 @@
 //! Materials: metallic-roughness and the KHR extensions, in the words of OpenPBR.
 //!
-//! Sources: *glTF 2.0 Specification*, chapter 3.9 and appendix B; the KHR_materials extensions; how they meet OpenPBR:
-//! *OpenPBR Surface specification* 1.1, section on translation of other models.
+//! Sources: *glTF 2.0 Specification*, chapter 3.9 and appendix B; the KHR_materials extensions; how
+//! they meet OpenPBR: *OpenPBR Surface specification* 1.1, section on translation of other models.
 
 use super::Model;
 use super::json::At;
@@ -246,13 +246,15 @@ impl Model<'_> {
 }
 
 impl Model<'_> {
-    /// KHR_materials_diffuse_transmission: a share of the matte light comes out behind a sheet, in a colour of its own.
+    /// KHR_materials_diffuse_transmission: a share of the matte light comes out behind a sheet, in
+    /// a colour of its own.
     fn let_through(&self, m: &mut PrincipledMaterial, e: &At) {
         let through = share(e, "diffuseTransmissionFactor", 0.0);
         if through == 0.0 || m.walls == Walls::Solid && m.transmission_weight > 0.0 {
             return;
         }
-        // What comes out behind is all that is scattered into the sheet; what stays in front is the matte base.
+        // What comes out behind is all that is scattered into the sheet; what stays in front is the matte
+        // base.
         m.walls = Walls::Thin;
         m.subsurface_weight = through;
         m.subsurface_scatter_anisotropy = 1.0 - f32::EPSILON;

@@ -1,6 +1,8 @@
-//! Views that are compressed by meshoptimizer: attributes, triangles, indices, and the filters of attributes.
+//! Views that are compressed by meshoptimizer: attributes, triangles, indices, and the filters of
+//! attributes.
 //!
-//! Source: *EXT_meshopt_compression*, Khronos Group, appendices A (bitstream) and B (filters), whose words are kept.
+//! Source: *EXT_meshopt_compression*, Khronos Group, appendices A (bitstream) and B (filters),
+//! whose words are kept.
 
 use super::Model;
 use super::buffers::Slice;
@@ -166,7 +168,8 @@ fn attributes(packed: &[u8], count: usize, stride: usize) -> Option<Vec<u8>> {
     reader.0.is_empty().then_some(all)
 }
 
-/// Sixteen differences: none, of two or four bits with those that do not fit behind them, or of eight.
+/// Sixteen differences: none, of two or four bits with those that do not fit behind them, or of
+/// eight.
 fn deltas(reader: &mut Reader, mode: u8) -> Option<[u8; 16]> {
     let bits = match mode {
         0 => return Some([0; 16]),
@@ -205,7 +208,8 @@ impl<T: Copy> Recent<T> {
     }
 }
 
-/// Mode 1: a byte for each triangle, which shares an edge with one of the last, and more where it does not.
+/// Mode 1: a byte for each triangle, which shares an edge with one of the last, and more where it
+/// does not.
 fn triangles(packed: &[u8], count: usize) -> Option<Vec<u32>> {
     let data = packed.strip_prefix(&[0xe1])?;
     let (data, table) = data.split_at_checked(data.len().checked_sub(16)?)?;
@@ -349,7 +353,8 @@ mod tests {
 
     #[test]
     fn elements_follow_the_baseline() {
-        // Two elements of four bytes: the first is the baseline plus (1, 0, 0, 0), the second that plus (-1, 0, 0, 5).
+        // Two elements of four bytes: the first is the baseline plus (1, 0, 0, 0), the second that plus
+        // (-1, 0, 0, 5).
         let mut packed = vec![0xa0];
         packed.extend([1, 0b1001_0000, 0, 0, 0]); // byte 0: two bits, 2 = +1 and 1 = -1
         packed.extend([0, 0]);

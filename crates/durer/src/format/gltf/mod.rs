@@ -1,7 +1,8 @@
-//! glTF 2.0, as `.gltf` and `.glb`: scenes with nodes, meshes, materials, textures, cameras, lights, skins, animations.
+//! glTF 2.0, as `.gltf` and `.glb`: scenes with nodes, meshes, materials, textures, cameras,
+//! lights, skins, animations.
 //!
-//! Source: *glTF 2.0 Specification*, Khronos Group, 2021, and the extensions that are named where they are read. Errors have
-//! the codes of the Khronos validator and name the JSON pointer.
+//! Source: *glTF 2.0 Specification*, Khronos Group, 2021, and the extensions that are named where
+//! they are read. Errors have the codes of the Khronos validator and name the JSON pointer.
 
 mod accessor;
 mod animation;
@@ -250,7 +251,8 @@ fn check_version(root: &At) -> Option<()> {
     Some(())
 }
 
-/// Refuses extensions that a file requires and that are not read; tells whether attributes may be quantized.
+/// Refuses extensions that a file requires and that are not read; tells whether attributes may be
+/// quantized.
 fn required(root: &At) -> bool {
     let mut quantized = false;
     for key in ["extensionsUsed", "extensionsRequired"] {

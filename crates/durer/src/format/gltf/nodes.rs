@@ -146,8 +146,8 @@ impl Model<'_> {
         Some((0..count).map(copy).collect())
     }
 
-    /// The nodes of the scene that is shown, each after its parent, with the maps from them to the world. All maps are there,
-    /// also those of nodes that are not shown: bones may be such.
+    /// The nodes of the scene that is shown, each after its parent, with the maps from them to the
+    /// world. All maps are there, also those of nodes that are not shown: bones may be such.
     pub(super) fn placed(&self, root: &At, nodes: &[NodeData]) -> (Vec<usize>, Vec<DAffine3>) {
         let mut maps = vec![DAffine3::IDENTITY; nodes.len()];
         let mut order = Vec::with_capacity(nodes.len());
@@ -166,7 +166,8 @@ impl Model<'_> {
         (order, maps)
     }
 
-    /// The roots of the scene that is shown: the one that the file names, or the first, or all where there is none.
+    /// The roots of the scene that is shown: the one that the file names, or the first, or all
+    /// where there is none.
     fn shown(&self, root: &At, nodes: &[NodeData]) -> Vec<usize> {
         let all = || (0..nodes.len()).filter(|&i| nodes[i].parent.is_none()).collect();
         let Some(scenes) = root.get("scenes") else {

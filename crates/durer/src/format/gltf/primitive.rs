@@ -225,7 +225,8 @@ impl Model<'_> {
     }
 }
 
-/// Leaves out vertices that no triangle uses: files share one list of vertices among many primitives.
+/// Leaves out vertices that no triangle uses: files share one list of vertices among many
+/// primitives.
 fn compact(data: &mut MeshData, keep: bool) {
     const UNUSED: u32 = u32::MAX;
     if keep {
@@ -263,7 +264,8 @@ pub(super) fn copy<T: Copy>(values: &mut Vec<T>, originals: &[u32]) {
     }
 }
 
-/// Gives triangles the normals and coordinates of their vertices; where the file has no normals, triangles are flat.
+/// Gives triangles the normals and coordinates of their vertices; where the file has no normals,
+/// triangles are flat.
 pub(super) fn index(data: &mut MeshData, has_normals: bool) {
     data.flat = !has_normals;
     if has_normals {

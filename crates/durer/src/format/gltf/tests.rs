@@ -1,4 +1,5 @@
-//! glTF files against what the Khronos validator says of them, the numbers of accessors, and damage of all kinds.
+//! glTF files against what the Khronos validator says of them, the numbers of accessors, and damage
+//! of all kinds.
 
 use crate::describe::FileName;
 use crate::diag::{Diagnostics, Files, Severity};
@@ -184,7 +185,8 @@ const BOUNDS: &str = r#""min":[0,0,0],"max":[9,9,9]"#;
 
 #[test]
 fn accessors_are_strided_normalised_and_sparse() {
-    // Four positions of 16 bits in rows of 12 bytes with coordinates of 8 bits, and one row that is replaced.
+    // Four positions of 16 bits in rows of 12 bytes with coordinates of 8 bits, and one row that is
+    // replaced.
     let mut bytes: Vec<u8> = Vec::new();
     for i in 0..4u16 {
         [i, 2 * i, 3 * i].iter().for_each(|x| bytes.extend(x.to_le_bytes()));
@@ -325,7 +327,8 @@ fn bones_targets_and_key_frames_move_vertices() {
         scene.unwrap_or_else(|| panic!("{findings:?}"))
     };
     let positions = |scene: &Scene| scene.assets.meshes.values().next().unwrap().positions.clone();
-    // Targets move the tip of the triangle by (-1, 1, 0) and by (1, 1, 0); at rest and at first neither does.
+    // Targets move the tip of the triangle by (-1, 1, 0) and by (1, 1, 0); at rest and at first neither
+    // does.
     let rest = positions(&at("SimpleMorph/glTF/SimpleMorph.gltf", Some(0.0)));
     let moved = positions(&at("SimpleMorph/glTF/SimpleMorph.gltf", Some(2.0)));
     assert_eq!(rest, [Vec3::ZERO, Vec3::X, Vec3::new(0.5, 0.5, 0.0)]);
@@ -342,7 +345,8 @@ fn bones_targets_and_key_frames_move_vertices() {
     assert!(bent[0].abs_diff_eq(straight[0], 1e-6) && !bent[9].abs_diff_eq(straight[9], 0.1), "{bent:?} {straight:?}");
 }
 
-/// Triangles, the corners of the box around them and their area, of all meshes as they stand in the world.
+/// Triangles, the corners of the box around them and their area, of all meshes as they stand in the
+/// world.
 fn measures(root: &Path, name: &str) -> (usize, [Vec3; 2], f64) {
     let path = root.join(name);
     let file = path.file_name().unwrap().to_string_lossy().into_owned();

@@ -61,7 +61,8 @@ impl Model<'_> {
         Some(found)
     }
 
-    /// Reads a `textureInfo`: gives the name of the asset that it becomes, with changes to its mapping.
+    /// Reads a `textureInfo`: gives the name of the asset that it becomes, with changes to its
+    /// mapping.
     pub(super) fn texture(&self, at: &At, change: impl FnOnce(&mut Mapping)) -> Option<FileName> {
         self.texture_as(at, "", change)
     }

@@ -1,5 +1,5 @@
-//! Scenes as JSON: the same description as the scene language's, for programs. Things have the keywords of our own dialect, and
-//! fields the names that their statements give them.
+//! Scenes as JSON: the same description as the scene language's, for programs. Things have the
+//! keywords of our own dialect, and fields the names that their statements give them.
 
 mod read;
 pub mod schema;
@@ -34,7 +34,8 @@ const MATRICES: [(&str, MatrixOp); 8] = {
     ]
 };
 
-/// Whether a file is a scene as JSON, by its name or its beginning, which no text of the language has. glTF is JSON too, and is none.
+/// Whether a file is a scene as JSON, by its name or its beginning, which no text of the language
+/// has. glTF is JSON too, and is none.
 pub fn recognise(bytes: &[u8], name: &str) -> bool {
     let head = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes).trim_ascii_start();
     let is_json = super::extension(name) == EXTENSION || head.starts_with(b"{");

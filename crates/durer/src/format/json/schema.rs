@@ -1,4 +1,5 @@
-//! What a scene as JSON is made of, as a JSON Schema (2020-12): made from the statements, as the reference of the language is.
+//! What a scene as JSON is made of, as a JSON Schema (2020-12): made from the statements, as the
+//! reference of the language is.
 
 use super::{DEEPEST, MATRICES};
 use crate::camera::Camera;
@@ -163,13 +164,22 @@ fn record<T: DescribedList + Default>(more: Value) -> Value {
 }
 
 /// One with its word.
-fn named<T: DescribedList>(thing: &T, mut more: Value) -> Value {
-    more["type"] = json!({ "const": word(thing) });
-    described(thing, more, &["type"])
+fn named<T: DescribedList>(thing: &T, more: &Value) -> Value {
+    described(thing, with(more, "type", json!({ "const": word(thing) })), &["type"])
+}
+
+/// The same members with one more.
+///
+/// A copy is changed: rustc 1.95 makes wrong code, memory that is used after it was freed, of a
+/// closure that changes a `Value` which it was given and returns it.
+fn with(members: &Value, name: &str, value: Value) -> Value {
+    let mut all = members.clone();
+    all[name] = value;
+    all
 }
 
 fn things<T: DescribedList>() -> Vec<Value> {
-    T::kinds().iter().map(|thing| named(thing, json!({}))).collect()
+    T::kinds().iter().map(|thing| named(thing, &json!({}))).collect()
 }
 
 fn material_things() -> Vec<Value> {
@@ -178,8 +188,8 @@ fn material_things() -> Vec<Value> {
     let preset =
         json!({"preset": {"enum": presets, "description": "A real material, which the other members change."}});
     let transform = json!({"transform": matrices("From world to pattern space: the product of these matrices.")});
-    let mut all = vec![named(&PhongMaterial::default(), noise), named(&PrincipledMaterial::default(), preset)];
-    all.extend(Solid::kinds().iter().map(|solid| named(solid, transform.clone())));
+    let mut all = vec![named(&PhongMaterial::default(), &noise), named(&PrincipledMaterial::default(), &preset)];
+    all.extend(Solid::kinds().iter().map(|solid| named(solid, &transform)));
     all
 }
 
@@ -214,27 +224,23 @@ fn object_things() -> Vec<Value> {
         "maximum": u32::MAX,
         "description": "Number of its material; that of the object before it where this is not given.",
     });
-    let with = |mut more: Value| {
-        more["material"] = material.clone();
-        more
-    };
-    let of_material = || with(json!({}));
+    let of_material = json!({ "material": &material });
     let inside = json!({"type": "array", "items": reference("object")});
-    let made = |word: &str, about: &str, mut more: Value, required: &[&str]| {
-        (more["type"], more["material"]) = (json!({ "const": word }), material.clone());
+    let made = |word: &str, about: &str, more: &Value, required: &[&str]| {
+        let more = with(&with(more, "type", json!({ "const": word })), "material", material.clone());
         object(about, more, required)
     };
     let balls = json!({"balls": {"type": "array", "items": record::<Sphere>(json!({}))}});
-    let mut all: Vec<Value> = Primitive::kinds().iter().map(|shape| named(shape, of_material())).collect();
-    all.push(named(&TriangleMesh::default(), of_material()));
-    all.push(named(&HeightField::default(), of_material()));
-    all.push(named(&VoxelGrid::default(), with(balls)));
-    all.push(made("Group", "Several objects.", json!({"objects": inside}), &["type", "objects"]));
+    let mut all: Vec<Value> = Primitive::kinds().iter().map(|shape| named(shape, &of_material)).collect();
+    all.push(named(&TriangleMesh::default(), &of_material));
+    all.push(named(&HeightField::default(), &of_material));
+    all.push(named(&VoxelGrid::default(), &with(&balls, "material", material.clone())));
+    all.push(made("Group", "Several objects.", &json!({"objects": inside}), &["type", "objects"]));
     let moved = json!({"matrices": matrices("Their product moves the object; the first is applied last."), "object": reference("object")});
-    all.push(made("Transform", "An object that is moved.", moved, &["type", "object"]));
+    all.push(made("Transform", "An object that is moved.", &moved, &["type", "object"]));
     all.extend(
         Operation::ALL
-            .map(|(word, operation)| made(word, operation.doc(), json!({"objects": inside}), &["type", "objects"])),
+            .map(|(word, operation)| made(word, operation.doc(), &json!({"objects": inside}), &["type", "objects"])),
     );
     all
 }

@@ -1,4 +1,5 @@
-//! Scene to JSON to scene; what is no scene is refused at its place; the schema and the reader agree.
+//! Scene to JSON to scene; what is no scene is refused at its place; the schema and the reader
+//! agree.
 
 use super::{Document, schema, write};
 use crate::diag::{Diagnostics, Files, Severity};
@@ -70,7 +71,8 @@ fn what_is_written_by_hand_is_read() {
     let Material::Principled(gold) = &scene.materials[0].value else { panic!() };
     assert_eq!((gold.base_metalness, gold.specular_roughness), (1.0, 0.5));
     let objects = &scene.root.as_ref().unwrap().objects;
-    // Where no material is given, it is that of the object before, and a transform has that of its object.
+    // Where no material is given, it is that of the object before, and a transform has that of its
+    // object.
     assert_eq!(objects.iter().map(|object| object.material).collect::<Vec<_>>(), [Some(2), Some(1)]);
     let Node::Transform(_, inner) = &objects[1].node else { panic!() };
     let Node::Group(group) = &inner.node else { panic!() };

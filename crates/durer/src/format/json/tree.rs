@@ -1,9 +1,10 @@
-//! JSON (RFC 8259) as a tree whose values know their places. What the grammar does not allow is refused, and so are names that
-//! stand twice in an object.
+//! JSON (RFC 8259) as a tree whose values know their places. What the grammar does not allow is
+//! refused, and so are names that stand twice in an object.
 
 use std::ops::Range;
 
-/// Values may be nested this deep: each of the language's 200 levels of objects takes three, an object, a list and a transform.
+/// Values may be nested this deep: each of the language's 200 levels of objects takes three, an
+/// object, a list and a transform.
 const DEEPEST: usize = 640;
 
 /// A value and where it stands.

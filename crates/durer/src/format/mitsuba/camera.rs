@@ -1,7 +1,7 @@
 //! Sensor, film, sampler and integrator: what the picture is.
 //!
-//! Source of all meanings: *Mitsuba 3 documentation*, "Sensors", "Films" and "Integrators". A camera looks along its z, y is
-//! up, and x points to the left.
+//! Source of all meanings: *Mitsuba 3 documentation*, "Sensors", "Films" and "Integrators". A
+//! camera looks along its z, y is up, and x points to the left.
 
 use super::plugin::Plugin;
 use super::state::Reader;

@@ -1,7 +1,8 @@
 //! Colours: of what reflects, of light, of indices.
 //!
-//! Source: Mitsuba's variants that render in RGB. A spectrum that reflects is seen by daylight; one that shines is seen as it
-//! is, so that 1 at all wavelengths is a little red; a number or a colour that shines is itself.
+//! Source: Mitsuba's variants that render in RGB. A spectrum that reflects is seen by daylight; one
+//! that shines is seen as it is, so that 1 at all wavelengths is a little red; a number or a colour
+//! that shines is itself.
 
 use super::plugin::{Plugin, Property, Value};
 use super::state::Reader;
@@ -90,9 +91,11 @@ impl Reader<'_> {
     }
 }
 
-/// The radiance of a black body at a wavelength in nanometres, in W/(m² sr nm). Source: Planck's law.
+/// The radiance of a black body at a wavelength in nanometres, in W/(m² sr nm). Source: Planck's
+/// law.
 fn planck(nm: f32, kelvin: f32) -> f32 {
-    // 2 h c², such that a wavelength in micrometres gives watts for each nanometre; h c / k in nm K; both by CODATA 2018.
+    // 2 h c², such that a wavelength in micrometres gives watts for each nanometre; h c / k in nm K;
+    // both by CODATA 2018.
     const FIRST: f32 = 1.191_043e5;
     const SECOND: f32 = 1.438_777e7;
     let um = nm * 1e-3;

@@ -1,7 +1,7 @@
 //! From XML to plugins: variables, files in files, and values.
 //!
-//! Source: *Mitsuba 3 documentation*, section "Scene XML file format", 2022 to 2025. Names of Mitsuba 0.6 (`toWorld`) are
-//! read as those of today (`to_world`).
+//! Source: *Mitsuba 3 documentation*, section "Scene XML file format", 2022 to 2025. Names of
+//! Mitsuba 0.6 (`toWorld`) are read as those of today (`to_world`).
 
 use super::plugin::{Plugin, Property, Value};
 use super::transform;

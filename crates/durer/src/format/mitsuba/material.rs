@@ -1,6 +1,7 @@
 //! Materials, in the words of OpenPBR.
 //!
-//! Source of all meanings: *Mitsuba 3 documentation*, "BSDFs". GGX's alpha is the square of our roughness.
+//! Source of all meanings: *Mitsuba 3 documentation*, "BSDFs". GGX's alpha is the square of our
+//! roughness.
 
 use super::metals;
 use super::plugin::{Plugin, Value};
@@ -303,7 +304,8 @@ impl Reader<'_> {
         }
     }
 
-    /// The number in the scene of a material with a light and something inside; `None` for what is not there.
+    /// The number in the scene of a material with a light and something inside; `None` for what is
+    /// not there.
     pub fn number(
         &mut self,
         bsdf: Option<&Rc<Plugin>>,

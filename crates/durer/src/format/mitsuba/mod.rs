@@ -1,7 +1,8 @@
 //! Scenes of Mitsuba 3, in XML; those of Mitsuba 0.6 as far as they use the same plugins.
 //!
-//! Source of all meanings: *Mitsuba 3 documentation*, "Plugin reference", 2022 to 2025. A scene holds plugins (a shape, a
-//! material, a light), which hold properties and other plugins. A pixel of value 1 shows radiance 1.
+//! Source of all meanings: *Mitsuba 3 documentation*, "Plugin reference", 2022 to 2025. A scene
+//! holds plugins (a shape, a material, a light), which hold properties and other plugins. A pixel
+//! of value 1 shows radiance 1.
 
 mod camera;
 mod color;

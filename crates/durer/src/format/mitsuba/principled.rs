@@ -1,7 +1,7 @@
 //! Disney's material, which Mitsuba calls `principled`.
 //!
-//! Source: Burley, *Physically-Based Shading at Disney*, SIGGRAPH 2012, and *Extending the Disney BRDF to a BSDF*, 2015, as
-//! *Mitsuba 3 documentation* has their parameters.
+//! Source: Burley, *Physically-Based Shading at Disney*, SIGGRAPH 2012, and *Extending the Disney
+//! BRDF to a BSDF*, 2015, as *Mitsuba 3 documentation* has their parameters.
 
 use super::plugin::Plugin;
 use super::state::Reader;

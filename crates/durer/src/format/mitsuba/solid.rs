@@ -4,7 +4,8 @@ use crate::format::pbrt::mesh::tube;
 use crate::math::{Vec2, Vec3};
 use crate::shape::MeshData;
 
-/// Corners of the faces of a cube, each with its normal; the texture's four corners lie on them in the order of [`AROUND`].
+/// Corners of the faces of a cube, each with its normal; the texture's four corners lie on them in
+/// the order of [`AROUND`].
 const FACES: [([[f32; 3]; 4], [f32; 3]); 6] = [
     ([[1.0, -1.0, -1.0], [1.0, -1.0, 1.0], [-1.0, -1.0, 1.0], [-1.0, -1.0, -1.0]], [0.0, -1.0, 0.0]),
     ([[1.0, 1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, 1.0, 1.0], [1.0, 1.0, 1.0]], [0.0, 1.0, 0.0]),

@@ -67,7 +67,8 @@ impl Reader<'_> {
         }
     }
 
-    /// A number that may be a texture: what a change makes of the number, or 1 and what it makes of the picture.
+    /// A number that may be a texture: what a change makes of the number, or 1 and what it makes of
+    /// the picture.
     pub fn pictured(
         &mut self,
         plugin: &Plugin,
@@ -141,7 +142,8 @@ impl Reader<'_> {
         Some(Picture { bytes, mapping })
     }
 
-    /// How a texture lies: Mitsuba's coordinates of pictures go down from the upper border, as ours do.
+    /// How a texture lies: Mitsuba's coordinates of pictures go down from the upper border, as ours
+    /// do.
     fn mapping(&self, texture: &Plugin) -> Mapping {
         let said = self.said;
         let mut map = texture.map(said, "to_uv");

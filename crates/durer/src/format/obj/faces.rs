@@ -12,7 +12,8 @@ use std::ops::Range;
 /// What a corner refers to: a position, a texture coordinate and a normal.
 type Corner = [u32; 3];
 
-/// The statements that corners refer to, in the order in which a corner does: singular, plural, keyword.
+/// The statements that corners refer to, in the order in which a corner does: singular, plural,
+/// keyword.
 const KINDS: [(&str, &str, &str); 3] =
     [("vertex", "vertices", "v"), ("texture coordinate", "texture coordinates", "vt"), ("normal", "normals", "vn")];
 
@@ -25,8 +26,8 @@ struct Faces {
     report: Report,
 }
 
-/// Reads the faces and cuts them into triangles. Repeated corners are kept: they do no harm. `before` has how many vertices of
-/// each kind there are before each part.
+/// Reads the faces and cuts them into triangles. Repeated corners are kept: they do no harm.
+/// `before` has how many vertices of each kind there are before each part.
 pub(super) fn read_faces(
     bytes: &[u8],
     parts: &[Range<usize>],
@@ -42,7 +43,8 @@ pub(super) fn read_faces(
     for part in read {
         let first = mesh.triangles.len();
         mesh.triangles.extend(part.mesh.triangles);
-        // From the first triangle that has texture coordinates or normals on, all have entries; so must those before.
+        // From the first triangle that has texture coordinates or normals on, all have entries; so must
+        // those before.
         for (all, own) in
             [(&mut mesh.triangle_uvs, part.mesh.triangle_uvs), (&mut mesh.triangle_normals, part.mesh.triangle_normals)]
         {

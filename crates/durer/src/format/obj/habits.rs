@@ -4,7 +4,8 @@ use super::{Statement, statement, words::Words};
 use crate::dialect::{Compat, CompatSet};
 use std::borrow::Cow;
 
-/// The same file, with blanks in place of what programs with some habits pass over: all else stays where it is.
+/// The same file, with blanks in place of what programs with some habits pass over: all else stays
+/// where it is.
 ///
 /// The habits are [`Compat::LostLastLine`] and [`Compat::ThreeCorners`].
 pub fn known(bytes: &[u8], habits: CompatSet) -> Cow<'_, [u8]> {

@@ -1,7 +1,7 @@
 //! Wavefront `.mtl`: materials, in the words of OpenPBR.
 //!
-//! Sources: *The MTL material format*, Alias|Wavefront, 1995; the extension for physically based materials of Clara.io (Pr, Pm,
-//! Pc, Pcr, Ps, Ke, norm).
+//! Sources: *The MTL material format*, Alias|Wavefront, 1995; the extension for physically based
+//! materials of Clara.io (Pr, Pm, Pc, Pcr, Ps, Ke, norm).
 
 use super::scene::found;
 use super::words::Words;
@@ -51,7 +51,8 @@ pub(super) fn read_files(
     }
 }
 
-/// Words for pictures of parameters, and where they go. What has no number of its own beside them counts as 1.
+/// Words for pictures of parameters, and where they go. What has no number of its own beside them
+/// counts as 1.
 type Field = fn(&mut PrincipledMaterial) -> &mut Option<FileName>;
 const MAPS: [(&str, Field); 12] = [
     ("map_ks", |m| &mut m.specular_color_texture),
@@ -68,7 +69,8 @@ const MAPS: [(&str, Field); 12] = [
     ("map_bump", |m| &mut m.bump_texture),
 ];
 
-/// How high the white of a bump map lies that is `-bm 1`, in sizes of the model: its own unit is not defined.
+/// How high the white of a bump map lies that is `-bm 1`, in sizes of the model: its own unit is
+/// not defined.
 const BUMP: f32 = 0.002;
 
 /// What a material's words say, before they are brought together.
@@ -265,7 +267,8 @@ impl<'a, 'i> Reader<'a, 'i> {
         Some(FileName { path, span: self.span })
     }
 
-    /// Brings the words together. A material that is there keeps its place: the first of a name counts.
+    /// Brings the words together. A material that is there keeps its place: the first of a name
+    /// counts.
     fn finish(&mut self, w: Written) {
         let mut m = PrincipledMaterial { base_color: w.diffuse.unwrap_or(Vec3::splat(0.8)), ..w.pictures };
         m.base_color_texture = w.diffuse_map;

@@ -75,7 +75,8 @@ fn read(input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
     Some(scene)
 }
 
-/// A mesh for each name of a material, in the order of the names' first triangles, and a place where it is named.
+/// A mesh for each name of a material, in the order of the names' first triangles, and a place
+/// where it is named.
 fn parts(data: &MeshData, bytes: &[u8], switches: &[Switch]) -> Vec<(MeshData, Range<usize>)> {
     let ends = switches.iter().skip(1).map(|switch| switch.0).chain([data.triangles.len()]);
     let runs = switches.iter().zip(ends).map(|((start, at), end)| (*start..end, at.clone()));
@@ -135,7 +136,8 @@ fn renumber(list: &mut [[u32; 3]]) -> Vec<u32> {
     used
 }
 
-/// The name of a file that may be had, of those that a material may mean: as written, or its last name beside the scene.
+/// The name of a file that may be had, of those that a material may mean: as written, or its last
+/// name beside the scene.
 pub(super) fn found(input: &Input, path: &str, span: Span) -> Option<FileName> {
     let portable = path.replace('\\', "/");
     let last = portable.rsplit('/').next().unwrap_or_default();

@@ -5,8 +5,8 @@ use std::ops::Range;
 
 /// Walks over the words of one statement after the other.
 ///
-/// A statement ends with its line, unless a backslash ends the line; a `#` starts a comment that ends with the line in
-/// any case. Words are ranges of bytes, so nothing is copied.
+/// A statement ends with its line, unless a backslash ends the line; a `#` starts a comment that
+/// ends with the line in any case. Words are ranges of bytes, so nothing is copied.
 #[derive(Clone)]
 pub(super) struct Words<'a> {
     bytes: &'a [u8],
@@ -89,7 +89,8 @@ impl<'a> Words<'a> {
         }
     }
 
-    /// How many bytes the backslash and the end of line here take; 0 where they are no continuation.
+    /// How many bytes the backslash and the end of line here take; 0 where they are no
+    /// continuation.
     fn continuation(&self) -> usize {
         match self.bytes[self.at..] {
             [b'\\', b'\r', b'\n', ..] => 3,
@@ -100,7 +101,8 @@ impl<'a> Words<'a> {
     }
 }
 
-/// Cuts a file into parts of about a megabyte that end where statements do. Where they end does not depend on the machine.
+/// Cuts a file into parts of about a megabyte that end where statements do. Where they end does not
+/// depend on the machine.
 pub(super) fn parts(bytes: &[u8]) -> Vec<Range<usize>> {
     const SIZE: usize = 1 << 20;
     let mut all = Vec::new();

@@ -110,7 +110,8 @@ impl Reader<'_> {
         })
     }
 
-    /// The roughness of a picture of GGX's alpha, and what alpha it multiplies: that of the picture, or of the numbers.
+    /// The roughness of a picture of GGX's alpha, and what alpha it multiplies: that of the
+    /// picture, or of the numbers.
     fn roughness(&mut self, params: &Params, names: [&'static str; 3], remapped: bool) -> (Option<FileName>, [f32; 2]) {
         let each = names[1..].iter().any(|name| params.get(name).is_some());
         let fourth = |x: f32| x.max(0.0).sqrt().sqrt();

@@ -1,7 +1,7 @@
 //! Media: what is inside of shapes, and around the camera.
 //!
-//! Source of meanings and of the default coefficients: *Physically Based Rendering*, 4th edition, chapter 11. Coefficients
-//! are per unit of the world.
+//! Source of meanings and of the default coefficients: *Physically Based Rendering*, 4th edition,
+//! chapter 11. Coefficients are per unit of the world.
 
 use super::material::Made;
 use super::params::{Param, Params};

@@ -173,7 +173,8 @@ fn under_daylight(share: impl Fn(f32) -> f32) -> Color {
     (lit(&share) / lit(&|_| 1.0)).as_vec3()
 }
 
-/// The colour of a light by its radiance at each wavelength in nanometres; 1 everywhere has luminance 1.
+/// The colour of a light by its radiance at each wavelength in nanometres; 1 everywhere has
+/// luminance 1.
 pub(in crate::format) fn radiance(light: impl Fn(f32) -> f32) -> Color {
     let color = SRGB * named::sum(|nm| f64::from(light(nm))) / named::sum(|_| 1.0).y;
     if color.is_finite() { color.as_vec3().max(Vec3::ZERO) } else { Vec3::ZERO }

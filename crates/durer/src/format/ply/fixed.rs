@@ -1,6 +1,7 @@
 //! Binary rows of one size, many at once: what nearly all large files have.
 //!
-//! Rows that are not sound, or not all of one size, are left to the reader of single rows, which knows what to say of them.
+//! Rows that are not sound, or not all of one size, are left to the reader of single rows, which
+//! knows what to say of them.
 
 use super::body::Body;
 use super::header::{Element, Scalar};
@@ -8,7 +9,8 @@ use super::values::Values;
 use crate::math::{Vec2, Vec3};
 use rayon::prelude::*;
 
-/// Rows that one thread reads at a time: they stay in its cache while their columns are read one after the other.
+/// Rows that one thread reads at a time: they stay in its cache while their columns are read one
+/// after the other.
 const BLOCK: usize = 1 << 11;
 
 /// Columns of numbers in binary rows.
@@ -71,8 +73,8 @@ impl Rows<'_> {
         }
     }
 
-    /// Three corners of each row, whose list begins at a place; `None` where a list has another length, or a corner that is not
-    /// among so many vertices.
+    /// Three corners of each row, whose list begins at a place; `None` where a list has another
+    /// length, or a corner that is not among so many vertices.
     fn triangles(&self, count: Place, corners: Scalar, vertices: usize) -> Option<Vec<[u32; 3]>> {
         let mut all = vec![[0; 3]; self.bytes.len() / self.size];
         let first = count.1 + count.0.size();

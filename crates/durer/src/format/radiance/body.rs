@@ -1,5 +1,5 @@
-//! Surfaces of one material as one mesh: a ray knows the objects that it is in, so what bounds one body of glass must be one
-//! object, and many small objects cost more than their triangles.
+//! Surfaces of one material as one mesh: a ray knows the objects that it is in, so what bounds one
+//! body of glass must be one object, and many small objects cost more than their triangles.
 
 use crate::diag::Span;
 use crate::math::{Vec3, fp};
@@ -34,8 +34,8 @@ impl Body {
         }
     }
 
-    /// Adds what is round about the line between two points, with a radius at each: open, with normals to the outside or, if
-    /// it is inverted, to the inside.
+    /// Adds what is round about the line between two points, with a radius at each: open, with
+    /// normals to the outside or, if it is inverted, to the inside.
     pub fn round(&mut self, [base, top]: [DVec3; 2], radii: [f64; 2], map: DAffine3, inverted: bool) {
         let along = top - base;
         let axis = along.normalize_or(DVec3::Z);

@@ -1,5 +1,5 @@
-//! Commands: `!xform`, `!cat`, `!genbox` and `!genprism`, also through pipes into `xform`. Nothing is run: what they would
-//! print is made here.
+//! Commands: `!xform`, `!cat`, `!genbox` and `!genprism`, also through pipes into `xform`. Nothing
+//! is run: what they would print is made here.
 
 use super::body::Facets;
 use super::state::{Place, Reader};

@@ -63,8 +63,9 @@ impl Table {
         (self.values.iter().sum::<f64>() / self.values.len() as f64).max(0.0) as f32
     }
 
-    /// The even radiance that has the flux of a lamp whose table goes by the angle from its axis, in degrees, last. A flat lamp's
-    /// values are divided by the cosine, which makes an intensity of them.
+    /// The even radiance that has the flux of a lamp whose table goes by the angle from its axis,
+    /// in degrees, last. A flat lamp's values are divided by the cosine, which makes an
+    /// intensity of them.
     pub fn flux(&self, flat: bool) -> f32 {
         const STEPS: u32 = 720;
         let angles = &self.axes[self.axes.len() - 1];
@@ -91,7 +92,8 @@ impl Table {
             let (sin, _) = fp::sin_cos_degrees(degrees);
             sum += at(degrees) * sin * (PI / f64::from(STEPS));
         }
-        // Over all directions; an even radiance L sends pi L per area, a sphere 4 pi L per area of its outline.
+        // Over all directions; an even radiance L sends pi L per area, a sphere 4 pi L per area of its
+        // outline.
         let flux = 2.0 * PI * sum / if flat { PI } else { 4.0 * PI };
         flux.max(0.0) as f32
     }

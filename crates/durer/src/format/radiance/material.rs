@@ -1,7 +1,8 @@
 //! Materials, in the words of OpenPBR.
 //!
-//! Sources: the reference manual; Ward, *Measuring and Modeling Anisotropic Reflection*, SIGGRAPH 1992, whose roughness is the
-//! mean slope of the surface, as GGX's alpha; alpha is the square of our roughness.
+//! Sources: the reference manual; Ward, *Measuring and Modeling Anisotropic Reflection*, SIGGRAPH
+//! 1992, whose roughness is the mean slope of the surface, as GGX's alpha; alpha is the square of
+//! our roughness.
 
 use super::args::Thing;
 use super::sky::Sky;
@@ -27,7 +28,8 @@ pub(super) struct Made {
 /// What matters of a material to surfaces.
 pub(super) enum Kind {
     Plain,
-    /// The skin of a body; `outside`: the material of what is inside of a surface turned inside out.
+    /// The skin of a body; `outside`: the material of what is inside of a surface turned inside
+    /// out.
     Glass {
         outside: Option<u32>,
     },

@@ -1,7 +1,9 @@
-//! Scenes of Radiance: `.rad` (geometry and materials), `.rif` (which files, seen from where), `.vf` (views).
+//! Scenes of Radiance: `.rad` (geometry and materials), `.rif` (which files, seen from where),
+//! `.vf` (views).
 //!
-//! Sources: *The RADIANCE 5.4 Synthetic Imaging System*, reference manual; the manual pages of xform, genbox, genprism, rad and
-//! rpict. A pixel of value 1 shows radiance 1 W/(sr m²), as in Radiance's own pictures; times 179 that is luminance in cd/m².
+//! Sources: *The RADIANCE 5.4 Synthetic Imaging System*, reference manual; the manual pages of
+//! xform, genbox, genprism, rad and rpict. A pixel of value 1 shows radiance 1 W/(sr m²), as in
+//! Radiance's own pictures; times 179 that is luminance in cd/m².
 
 mod args;
 mod body;

@@ -98,7 +98,8 @@ impl Reader<'_> {
     }
 }
 
-/// The colour around letters: nine numbers say where they are, then theirs and that of the rest, then distances.
+/// The colour around letters: nine numbers say where they are, then theirs and that of the rest,
+/// then distances.
 fn background(thing: &Thing) -> Color {
     match thing.kind.text.as_str() {
         "brighttext" => Vec3::splat(thing.number(10).unwrap_or(1.0).max(0.0)),

@@ -1,7 +1,8 @@
 //! Skies that `gensky` writes.
 //!
-//! Source: *Standardization of Luminance Distribution on Clear Skies*, CIE publication 22, 1973; Nakamura, Oki and Hayashi,
-//! *Luminance distribution of intermediate sky*, 1985; the manual page of gensky for the order of the numbers.
+//! Source: *Standardization of Luminance Distribution on Clear Skies*, CIE publication 22, 1973;
+//! Nakamura, Oki and Hayashi, *Luminance distribution of intermediate sky*, 1985; the manual page
+//! of gensky for the order of the numbers.
 
 use super::args::Thing;
 use crate::format::said::Said;

@@ -65,7 +65,8 @@ impl Reader<'_> {
         self.scene.lights.get_or_insert_default().push(Spanned { value, span });
     }
 
-    /// Spots all over a disc with the area of a surface: light that goes one way only has no counterpart that is a surface.
+    /// Spots all over a disc with the area of a surface: light that goes one way only has no
+    /// counterpart that is a surface.
     pub fn spot(&mut self, made: &Made, (area, center, normal): (f64, DVec3, Option<DVec3>), span: Span) {
         let Kind::Spot { radiance, direction, degrees, at } = made.kind else { return };
         self.said.once(at, format!("a spotlight is {SPOTS} spots, and its surface is not shown"));

@@ -264,7 +264,8 @@ impl<'a> Reader<'a> {
         self.scene.root.get_or_insert_default().objects.push(object);
     }
 
-    /// Makes the mist that the camera is in what is in the air: no ray would know that it begins in a body.
+    /// Makes the mist that the camera is in what is in the air: no ray would know that it begins in
+    /// a body.
     fn step_into_mist(&mut self) {
         let Some(eye) = self.scene.camera.as_ref().map(|camera| camera.pose().center) else { return };
         for (number, fog) in std::mem::take(&mut self.mists) {

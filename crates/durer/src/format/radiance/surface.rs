@@ -154,8 +154,8 @@ impl Reader<'_> {
         self.bodies.entry(number).or_insert_with(|| Body::new(at))
     }
 
-    /// What a surface is made of, with its number in the scene; `None` where nothing is shown. `shape` is its area, middle and
-    /// direction, if it has one.
+    /// What a surface is made of, with its number in the scene; `None` where nothing is shown.
+    /// `shape` is its area, middle and direction, if it has one.
     fn shown(
         &mut self,
         modifier: Option<usize>,

@@ -1,4 +1,5 @@
-//! Radiance's files: what is read of them, conventions in closed form, and errors with their places.
+//! Radiance's files: what is read of them, conventions in closed form, and errors with their
+//! places.
 
 mod conventions;
 
@@ -50,7 +51,8 @@ fn names_comments_quotes_and_aliases() {
     let Node::Primitive(crate::shape::Primitive::Sphere(sphere)) = &object.node else { panic!("{object:?}") };
     assert_eq!((sphere.center, sphere.radius), (Vec3::new(1.0, 2.0, 3.0), 0.5));
     assert_eq!(layers(&scene, object.material.unwrap()).base_color, Vec3::new(0.1, 0.2, 0.3));
-    // What has a name again is another thing from there on; an alias takes its pattern along by `inherit`.
+    // What has a name again is another thing from there on; an alias takes its pattern along by
+    // `inherit`.
     let text = "void brightfunc half 1 .5 0 0 half plastic m 0 0 5 .8 .8 .8 0 0\n";
     for (modifier, expected) in [("inherit", 0.4), ("void", 0.8), ("half", 0.4)] {
         let scene = clean(&format!("{text}{modifier} alias n m n sphere s 0 0 4 0 0 0 1"));

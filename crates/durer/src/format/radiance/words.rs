@@ -76,7 +76,8 @@ impl<'a> Words<'a> {
         (self.at < self.end).then(|| self.bytes[self.at])
     }
 
-    /// The next word; in quotes of either kind it may have spaces. A `\` at the end of a line is none.
+    /// The next word; in quotes of either kind it may have spaces. A `\` at the end of a line is
+    /// none.
     pub fn next(&mut self) -> Option<Word> {
         loop {
             while self.peek().is_some_and(is_space) {

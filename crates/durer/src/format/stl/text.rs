@@ -1,5 +1,5 @@
-//! STL as text: `solid`, and for each triangle `facet normal x y z`, `outer loop`, three times `vertex x y z`, `endloop`,
-//! `endfacet`.
+//! STL as text: `solid`, and for each triangle `facet normal x y z`, `outer loop`, three times
+//! `vertex x y z`, `endloop`, `endfacet`.
 
 use super::Builder;
 use crate::format::number::{parse_f32, report_number};
@@ -7,7 +7,8 @@ use crate::format::report::{Report, counted, shown};
 use crate::math::Vec3;
 use std::ops::Range;
 
-/// Reads the facets. Nothing but the corners counts; words between them are looked at only to find where something is odd.
+/// Reads the facets. Nothing but the corners counts; words between them are looked at only to find
+/// where something is odd.
 pub(super) fn read(bytes: &[u8], mesh: &mut Builder, report: &mut Report) {
     let mut corners: Vec<Vec3> = Vec::with_capacity(3);
     let mut facet: Option<Range<usize>> = None;

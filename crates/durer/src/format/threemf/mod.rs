@@ -1,7 +1,8 @@
 //! 3MF: models for printing, in an archive of zip.
 //!
-//! Sources: *3D Manufacturing Format, Core Specification* 1.3; *Materials and Properties Extension* 1.2; *Production
-//! Extension* 1.1; *Beam Lattice Extension* 1.2; 3MF Consortium. Lengths become millimetres.
+//! Sources: *3D Manufacturing Format, Core Specification* 1.3; *Materials and Properties Extension*
+//! 1.2; *Production Extension* 1.1; *Beam Lattice Extension* 1.2; 3MF Consortium. Lengths become
+//! millimetres.
 
 mod colors;
 mod mesh;

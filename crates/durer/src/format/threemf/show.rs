@@ -19,7 +19,8 @@ use std::collections::BTreeMap;
 use std::rc::Rc;
 use std::sync::Arc;
 
-/// Objects in objects, objects of a scene with those of components counted each time, and parts of an archive.
+/// Objects in objects, objects of a scene with those of components counted each time, and parts of
+/// an archive.
 const DEEPEST: u32 = 32;
 const MOST_OBJECTS: usize = 1 << 20;
 const MOST_PARTS: usize = 4096;
@@ -126,7 +127,8 @@ impl Show<'_> {
         Some(group)
     }
 
-    /// The meshes of an object: one for what has no or one colour a corner, and one for each picture.
+    /// The meshes of an object: one for what has no or one colour a corner, and one for each
+    /// picture.
     fn mesh(&mut self, (part, model, id): (&str, &Model, u32), mesh: &Mesh, at: Span) -> Vec<scene::Object> {
         let unit = model.unit as f32;
         let property = |i: usize| {

@@ -1,4 +1,5 @@
-//! 3MF: archives made here, their errors at their places, and the Consortium's files where they are.
+//! 3MF: archives made here, their errors at their places, and the Consortium's files where they
+//! are.
 
 use crate::diag::{Diagnostics, Files};
 use crate::material::PrincipledMaterial;
@@ -51,7 +52,8 @@ fn read_parts(parts: &[(&str, &[u8])]) -> (Option<Scene>, Vec<String>) {
     read_file(&path)
 }
 
-/// A model of a tetrahedron, whose triangles have more attributes, with more resources, shown by items.
+/// A model of a tetrahedron, whose triangles have more attributes, with more resources, shown by
+/// items.
 fn model(resources: &str, object: &str, triangles: [&str; 4], items: &str) -> String {
     let corners =
         ["<triangle v1='0' v2='2' v3='1'", "<triangle v1='0' v2='1' v3='3'", "<triangle v1='1' v2='2' v3='3'"];
@@ -239,8 +241,8 @@ fn entries(folder: &Path) -> Vec<PathBuf> {
     found
 }
 
-/// What is wrong in files that are read all the same: relations and data that no picture shows, schemas, and lists of
-/// properties over each other that a printer could not make.
+/// What is wrong in files that are read all the same: relations and data that no picture shows,
+/// schemas, and lists of properties over each other that a printer could not make.
 const HARMLESS: [&str; 18] = [
     "3MF100_Extension_Chapter4b_MatId_IsNotBaseMaterials",
     "3MF100_Extension_Chapter5b_MultipleReferenceToBaseAndCompositeMatterials",

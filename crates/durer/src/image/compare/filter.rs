@@ -2,7 +2,8 @@
 
 use rayon::prelude::*;
 
-/// Rows that one task filters. Those beyond its ends are filtered twice, so few rows would waste work.
+/// Rows that one task filters. Those beyond its ends are filtered twice, so few rows would waste
+/// work.
 const BAND: usize = 64;
 
 /// A filter along one axis that is symmetric about its middle, or antisymmetric.
@@ -61,12 +62,15 @@ impl Kernel {
     }
 }
 
-/// A filter of two axes applied to one of several planes: the plane's number, the kernels along rows and across them.
+/// A filter of two axes applied to one of several planes: the plane's number, the kernels along
+/// rows and across them.
 pub(super) type Filter<'k> = (usize, &'k Kernel, &'k Kernel);
 
-/// Filters the planes of a picture, and hands each row of the results to `finish`, which makes a row of numbers of them.
+/// Filters the planes of a picture, and hands each row of the results to `finish`, which makes a
+/// row of numbers of them.
 ///
-/// `planes(y, rows)` writes row `y` of each plane. Beyond its edges a picture continues with its edge.
+/// `planes(y, rows)` writes row `y` of each plane. Beyond its edges a picture continues with its
+/// edge.
 pub(super) fn filter_rows(
     (width, height): (usize, usize),
     plane_count: usize,

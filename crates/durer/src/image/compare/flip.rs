@@ -1,8 +1,9 @@
 //! FLIP: how large a difference appears to someone who flips between two pictures.
 //!
-//! Source: Andersson, Nilsson, Akenine-Möller, Oskarsson, Åström and Fairchild, *FLIP: A Difference Evaluator for
-//! Alternating Images*, HPG 2020; for light of any range Andersson, Nilsson, Shirley and Akenine-Möller, *Visualizing Errors in
-//! Rendered High Dynamic Range Images*, Eurographics 2021.
+//! Source: Andersson, Nilsson, Akenine-Möller, Oskarsson, Åström and Fairchild, *FLIP: A Difference
+//! Evaluator for Alternating Images*, HPG 2020; for light of any range Andersson, Nilsson, Shirley
+//! and Akenine-Möller, *Visualizing Errors in Rendered High Dynamic Range Images*, Eurographics
+//! 2021.
 
 mod color;
 mod hdr;
@@ -25,7 +26,8 @@ const BLUE_YELLOW: [(f64, f64); 2] = [(34.1, 0.04), (13.5, 0.025)];
 /// Distance between the peaks of the filter that finds edges, in degrees. 2020, section 4.2.
 const EDGE_WIDTH: f64 = 0.082;
 
-/// Exponents of the differences of colour and of features, and the knee of the former. 2020, sections 4.1 to 4.3.
+/// Exponents of the differences of colour and of features, and the knee of the former. 2020,
+/// sections 4.1 to 4.3.
 const COLOR_EXPONENT: f32 = 0.7;
 const KNEE: (f32, f32) = (0.4, 0.95);
 
@@ -56,7 +58,8 @@ impl Filters {
         let total: f64 = BLUE_YELLOW.iter().map(|&row| part(row)).sum();
         let blue_yellow = BLUE_YELLOW.map(|row| ((part(row) / total) as f32, csf(row.1)));
 
-        // Feature filters: first and second derivative of a Gaussian, positive weights summing to 1 and negative to -1.
+        // Feature filters: first and second derivative of a Gaussian, positive weights summing to 1 and
+        // negative to -1.
         let sigma = 0.5 * EDGE_WIDTH * PIXELS_PER_DEGREE;
         let radius = (3.0 * sigma).ceil() as usize;
         let first = |x: f64| x * gauss(x, sigma);
@@ -127,7 +130,8 @@ fn flip_of(
     filter_rows((width, height), 6, &both, planes, finish)
 }
 
-/// Luminance and the two differences of colour, as YCxCz has them but for its factors: filters are linear.
+/// Luminance and the two differences of colour, as YCxCz has them but for its factors: filters are
+/// linear.
 fn opponent_row(start: usize, rows: &mut [Vec<f32>], light: impl Fn(usize) -> Vec3) {
     let [luminance, red_green, blue_yellow] = rows else { unreachable!("three planes") };
     for (x, ((l, rg), by)) in luminance.iter_mut().zip(red_green).zip(blue_yellow).enumerate() {
@@ -170,7 +174,8 @@ fn error(filters: &Filters, a: &Seen, b: &Seen) -> f32 {
     if distance == 0.0 {
         return 0.0;
     }
-    // Small differences take nearly all of the range; the rest is for those that no common pictures have.
+    // Small differences take nearly all of the range; the rest is for those that no common pictures
+    // have.
     let (difference, knee) = (fp::pow(distance, COLOR_EXPONENT), KNEE.0 * filters.largest);
     let color = if difference < knee {
         KNEE.1 / knee * difference

@@ -2,7 +2,8 @@
 
 use crate::image::Image8;
 
-/// Colours of errors at equal distances from 0 to 1: ever lighter, so that the map is read without colours too.
+/// Colours of errors at equal distances from 0 to 1: ever lighter, so that the map is read without
+/// colours too.
 const RAMP: [[f32; 3]; 6] = [
     [0.0, 0.0, 8.0],
     [64.0, 10.0, 110.0],

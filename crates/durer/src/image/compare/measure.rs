@@ -13,8 +13,8 @@ pub struct Measures {
     pub rmse: f64,
     /// Ratio of the peak 1 to `rmse`, in decibels: infinite for equal pictures.
     pub psnr: f64,
-    /// Mean structural similarity of luma as a screen shows it, at most 1; `None` for a picture that does not exceed
-    /// the window of 11 pixels.
+    /// Mean structural similarity of luma as a screen shows it, at most 1; `None` for a picture
+    /// that does not exceed the window of 11 pixels.
     pub ssim: Option<f64>,
     /// Mean FLIP error, from 0 to 1, of the pictures as a screen shows them.
     pub flip: f64,
@@ -26,7 +26,8 @@ pub struct Measures {
     pub over_tolerance: usize,
     /// Pixels with a number that is not finite, in the reference and in the other picture.
     pub not_finite: [usize; 2],
-    /// Column and row of the first pixel of the other picture that is not finite where the reference is otherwise.
+    /// Column and row of the first pixel of the other picture that is not finite where the
+    /// reference is otherwise.
     pub first_not_finite: Option<(u32, u32)>,
 }
 

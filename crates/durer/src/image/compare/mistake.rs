@@ -1,5 +1,5 @@
-//! The usual mistakes, recognised by making them: each is made in the reference, and whichever makes it most like the
-//! picture explains the difference.
+//! The usual mistakes, recognised by making them: each is made in the reference, and whichever
+//! makes it most like the picture explains the difference.
 
 mod flow;
 mod parts;
@@ -21,11 +21,13 @@ use sample::{Sample, View};
 /// A mistake that explains a difference.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Finding {
-    /// Which one, as a keyword: `mirrored`, `shifted`, `factor` and so on, one for each kind of [`Finding::words`].
+    /// Which one, as a keyword: `mirrored`, `shifted`, `factor` and so on, one for each kind of
+    /// [`Finding::words`].
     pub kind: &'static str,
     /// What it is, in words about the picture, without a full stop: "it is mirrored left to right".
     pub words: String,
-    /// The share of the squared difference, from 0 to 1, that it explains together with the findings before it.
+    /// The share of the squared difference, from 0 to 1, that it explains together with the
+    /// findings before it.
     ///
     /// Measured on all pixels of small pictures and on 100 000 of others.
     pub explained: f64,
@@ -33,7 +35,8 @@ pub struct Finding {
 
 /// Explained well enough to look no further.
 const WELL: f64 = 0.9;
-/// What more of the difference is left than this nobody is told a theory of: a wrong one costs more than none.
+/// What more of the difference is left than this nobody is told a theory of: a wrong one costs more
+/// than none.
 const MOST_LEFT: f64 = 0.05;
 /// And this, of rules with numbers that were fitted.
 const MOST_LEFT_FITTED: f64 = 0.02;
@@ -44,7 +47,8 @@ const ENOUGH: f64 = 0.5;
 /// At most so many mistakes are sought behind each other.
 const STEPS: usize = 3;
 
-/// The mistakes that explain the difference of two pictures best; none where none explains half of it.
+/// The mistakes that explain the difference of two pictures best; none where none explains half of
+/// it.
 pub(super) fn explain(pair: &Pair) -> Vec<Finding> {
     let mut reference = pair.reference.clone();
     let test = View::of(pair, &pair.test);
@@ -92,7 +96,8 @@ fn difference(samples: &[Sample]) -> f64 {
     samples.iter().map(|s| f64::from((s.test - s.reference).length_squared())).sum()
 }
 
-/// The rule that leaves the least of the difference, and what it leaves: of nearly equal ones the simplest.
+/// The rule that leaves the least of the difference, and what it leaves: of nearly equal ones the
+/// simplest.
 fn best_rule(reference: &View, test: &View, samples: &[Sample]) -> Option<(Rule, f64)> {
     let rules = candidates(reference, test, samples);
     let left =

@@ -1,7 +1,7 @@
 //! How two pictures differ, in numbers, places and words.
 //!
-//! [`compare()`] gives the usual measures (RMSE, PSNR, SSIM, FLIP), the regions that differ most, and which of the usual
-//! mistakes explains the difference ([`Finding`]).
+//! [`compare()`] gives the usual measures (RMSE, PSNR, SSIM, FLIP), the regions that differ most,
+//! and which of the usual mistakes explains the difference ([`Finding`]).
 
 mod filter;
 mod flip;
@@ -28,7 +28,8 @@ pub use regions::Region;
 /// What counts as the same.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
-    /// The largest difference of a channel that does not count: of values from 0 to 1, or of light. 0 or more.
+    /// The largest difference of a channel that does not count: of values from 0 to 1, or of light.
+    /// 0 or more.
     pub tolerance: f32,
     /// The share of pixels, from 0 to 1, that may differ by more.
     pub allowed: f64,
@@ -78,10 +79,12 @@ pub struct Comparison {
     pub measures: Measures,
     /// Whether they are the same.
     pub verdict: Verdict,
-    /// The mistakes that explain the difference, in the order in which they were made out: each is what explains most of
-    /// what those before it left. Empty where the pictures are the same, or nothing explains the difference.
+    /// The mistakes that explain the difference, in the order in which they were made out: each is
+    /// what explains most of what those before it left. Empty where the pictures are the same,
+    /// or nothing explains the difference.
     pub findings: Vec<Finding>,
-    /// Where the pictures differ by more than the tolerance, the worst first; at most [`Region::LIMIT`].
+    /// Where the pictures differ by more than the tolerance, the worst first; at most
+    /// [`Region::LIMIT`].
     pub regions: Vec<Region>,
     /// The FLIP error of each pixel, from 0 to 1; of HDR-FLIP for light.
     pub flip_map: Vec<f32>,
@@ -128,15 +131,18 @@ pub fn memory_needed(reference: &Encoded, test: &Encoded) -> Result<u64, Compare
 
 /// Compares a picture with a reference.
 ///
-/// Pictures of which one alone is for a screen are compared as a screen shows them. Pixels with numbers that are not finite
-/// count as over any tolerance unless both have the same ones, and are left out of the measures.
+/// Pictures of which one alone is for a screen are compared as a screen shows them. Pixels with
+/// numbers that are not finite count as over any tolerance unless both have the same ones, and are
+/// left out of the measures.
 ///
 /// # Errors
-/// [`CompareError::Sizes`], and [`CompareError::Image`] for a picture whose pixels do not fit its size.
+/// [`CompareError::Sizes`], and [`CompareError::Image`] for a picture whose pixels do not fit its
+/// size.
 pub fn compare(reference: &Picture, test: &Picture, options: &Options) -> Result<Comparison, CompareError> {
     let pair = Pair::new(reference, test, options.transfer)?;
     let equal = pair.reference == pair.test;
-    // Causes are sought while the measures are taken, for time: they are said only if the pictures turn out to differ.
+    // Causes are sought while the measures are taken, for time: they are said only if the pictures turn
+    // out to differ.
     let causes = || match equal {
         true => (Vec::new(), Vec::new()),
         false => (mistake::explain(&pair), regions::worst(&pair, options.tolerance)),

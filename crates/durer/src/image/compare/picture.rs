@@ -67,7 +67,8 @@ pub struct Picture {
 }
 
 impl Picture {
-    /// Reads a picture of any known format, by its content, or failing that by the extension of `name`. Alpha is dropped.
+    /// Reads a picture of any known format, by its content, or failing that by the extension of
+    /// `name`. Alpha is dropped.
     ///
     /// # Errors
     /// Those of [`read`](crate::image::read).
@@ -93,14 +94,16 @@ pub(super) struct Pair {
     pub scale: Scale,
     pub reference: Vec<Vec3>,
     pub test: Vec<Vec3>,
-    /// Pixels with a number that is not finite, in the reference and in the other; both are 0 there in both pictures.
+    /// Pixels with a number that is not finite, in the reference and in the other; both are 0 there
+    /// in both pictures.
     pub not_finite: [Vec<usize>; 2],
     /// Pixels of which one alone is not finite, or the two are so in different ways.
     pub finite_differs: Vec<usize>,
 }
 
 impl Pair {
-    /// Brings two pictures to one scale: light is encoded to eight bits by `transfer` where the other picture has those.
+    /// Brings two pictures to one scale: light is encoded to eight bits by `transfer` where the
+    /// other picture has those.
     pub fn new(reference: &Picture, test: &Picture, transfer: Transfer) -> Result<Pair, CompareError> {
         let size = |picture: &Picture| (picture.image.width, picture.image.height);
         if size(reference) != size(test) {

@@ -17,7 +17,8 @@ pub struct Region {
     pub height: u32,
     /// Pixels in it that differ.
     pub pixels: usize,
-    /// Mean of (picture - reference) over those pixels, for each channel: negative where the picture is darker.
+    /// Mean of (picture - reference) over those pixels, for each channel: negative where the
+    /// picture is darker.
     pub mean_difference: Vec3,
     /// Its share of the squared difference of the whole picture, from 0 to 1.
     pub share: f64,
@@ -30,7 +31,8 @@ impl Region {
     pub const LIMIT: usize = 10;
 }
 
-/// Cells along the longer side of a picture: pixels that differ belong together where their cells touch.
+/// Cells along the longer side of a picture: pixels that differ belong together where their cells
+/// touch.
 const CELLS: usize = 64;
 
 #[derive(Clone, Copy)]

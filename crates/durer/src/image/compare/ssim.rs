@@ -1,7 +1,8 @@
 //! Structural similarity.
 //!
-//! Source: Wang, Bovik, Sheikh and Simoncelli, *Image Quality Assessment: From Error Visibility to Structural Similarity*,
-//! IEEE Transactions on Image Processing 13(4), 2004: equation 13, with a Gaussian window of 11 pixels and deviation 1.5.
+//! Source: Wang, Bovik, Sheikh and Simoncelli, *Image Quality Assessment: From Error Visibility to
+//! Structural Similarity*, IEEE Transactions on Image Processing 13(4), 2004: equation 13, with a
+//! Gaussian window of 11 pixels and deviation 1.5.
 
 use super::filter::{Filter, Kernel, filter_rows};
 use crate::math::Vec3;
@@ -14,7 +15,8 @@ const C2: f32 = 9e-4;
 /// Luma of Rec. 601, which the authors' program takes of colour pictures.
 const LUMA: Vec3 = Vec3::new(0.299, 0.587, 0.114);
 
-/// The mean similarity of the luma of two pictures with values from 0 to 1, over all places where the window fits.
+/// The mean similarity of the luma of two pictures with values from 0 to 1, over all places where
+/// the window fits.
 ///
 /// From -1 to 1; 1 is for equal pictures. `None` for a picture that is smaller than the window.
 pub(super) fn ssim(width: usize, height: usize, a: &[Vec3], b: &[Vec3]) -> Option<f64> {

@@ -6,7 +6,8 @@ use crate::math::Vec3;
 use ::image::{ColorType, ExtendedColorType, ImageDecoder, ImageEncoder, ImageFormat, ImageReader};
 use std::io::Cursor;
 
-/// The decoder of a format that the crate knows. It reads the head alone, so it needs no limits of its own.
+/// The decoder of a format that the crate knows. It reads the head alone, so it needs no limits of
+/// its own.
 pub fn decoder<'a>(
     name: &'static str,
     format: ImageFormat,
@@ -35,7 +36,8 @@ pub fn head(decoder: &impl ImageDecoder) -> Head {
     }
 }
 
-/// Decodes the pixels: grey becomes three equal channels, alpha is kept apart, sixteen bits become 0 to 1.
+/// Decodes the pixels: grey becomes three equal channels, alpha is kept apart, sixteen bits become
+/// 0 to 1.
 pub fn raster(name: &'static str, decoder: impl ImageDecoder) -> Result<Raster, ImageError> {
     let ((width, height), color) = (decoder.dimensions(), decoder.color_type());
     let count = width as usize * height as usize;

@@ -1,8 +1,8 @@
 //! OpenEXR: 32-bit floats, packed without loss, any number of layers.
 //!
-//! Layers share one part. The first colour layer has the plain channels R, G and B, which every viewer shows;
-//! those of the others bear the layer's name: `normals.R`. Where the camera does not see everything there is A as well,
-//! with the colours multiplied by it, as the format has it.
+//! Layers share one part. The first colour layer has the plain channels R, G and B, which every
+//! viewer shows; those of the others bear the layer's name: `normals.R`. Where the camera does not
+//! see everything there is A as well, with the colours multiplied by it, as the format has it.
 
 use super::limits::{pixel_limit, room_for};
 use super::{Depth, Format, Head, Image, ImageError, Layer, LayerKind, Raster, WriteOptions};
@@ -73,8 +73,9 @@ fn encode(layers: &[Layer], options: &WriteOptions, out: &mut Vec<u8>) -> Result
 
 /// Sorts the attributes in the head of a file of one part by their names.
 ///
-/// They are written in the order of a hash map, which is another one each time; but the same picture should be the same bytes.
-/// An attribute is its name, its type (both end with a zero), the length of its value, and the value; a zero ends the head.
+/// They are written in the order of a hash map, which is another one each time; but the same
+/// picture should be the same bytes. An attribute is its name, its type (both end with a zero), the
+/// length of its value, and the value; a zero ends the head.
 fn sort_attributes(file: &mut [u8]) {
     // Behind the magic number and the version.
     const START: usize = 8;
@@ -94,8 +95,8 @@ fn sort_attributes(file: &mut [u8]) {
     file[START..at].copy_from_slice(&attributes.concat());
 }
 
-/// The part that is read, and its channels of red, green and blue: the first part with R, G and B; failing that, with Y; failing
-/// that, with a single channel, as grey.
+/// The part that is read, and its channels of red, green and blue: the first part with R, G and B;
+/// failing that, with Y; failing that, with a single channel, as grey.
 fn chosen(meta: &MetaData) -> Result<(&Header, [Text; 3]), ImageError> {
     let flat = || meta.headers.iter().filter(|header| !header.deep);
     let has = |header: &Header, name: &str| header.channels.list.iter().any(|channel| channel.name.eq(name));

@@ -54,13 +54,16 @@ static ROWS: RowFormat = RowFormat {
     png: false,
 };
 
-/// Shared-exponent form: channel = mantissa / 256 * 2^(exponent - 128), the greatest mantissa at least 128.
+/// Shared-exponent form: channel = mantissa / 256 * 2^(exponent - 128), the greatest mantissa at
+/// least 128.
 ///
-/// Negative values and NaN become 0; what is too large, infinity too, becomes the greatest value there is.
+/// Negative values and NaN become 0; what is too large, infinity too, becomes the greatest value
+/// there is.
 fn rgbe(pixel: Vec3) -> [u8; 4] {
     let channels = pixel.to_array().map(|value| f64::from(value.clamp(0.0, f32::MAX).max(0.0)));
     let greatest = channels.into_iter().fold(0.0, f64::max);
-    // greatest = fraction * 2^exponent, the fraction in 0.5..1: from the bits of an f64, in which no f32 is subnormal.
+    // greatest = fraction * 2^exponent, the fraction in 0.5..1: from the bits of an f64, in which no
+    // f32 is subnormal.
     let mut exponent = (greatest.to_bits() >> 52) as i32 - 1022;
     if greatest == 0.0 || exponent < -126 {
         return [0; 4];
@@ -77,7 +80,8 @@ fn rgbe(pixel: Vec3) -> [u8; 4] {
     [r, g, b, (exponent.min(127) + 128) as u8]
 }
 
-/// Appends bytes with runs packed: a length above 128 precedes one byte to repeat, another as many bytes to take.
+/// Appends bytes with runs packed: a length above 128 precedes one byte to repeat, another as many
+/// bytes to take.
 fn pack(bytes: &[u8], out: &mut Vec<u8>) {
     let run_at = |at: usize| bytes[at..].iter().take(RUN_LIMIT).take_while(|&&byte| byte == bytes[at]).count();
     let mut at = 0;

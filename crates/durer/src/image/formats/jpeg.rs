@@ -1,4 +1,5 @@
-//! JPEG: eight bits a channel, as photographs and textures are; read only, for it loses what a renderer knows.
+//! JPEG: eight bits a channel, as photographs and textures are; read only, for it loses what a
+//! renderer knows.
 
 use super::{Depth, Format, Head, ImageError, codec};
 use ::image::ImageFormat;

@@ -1,4 +1,5 @@
-//! Khronos texture containers (KTX 2.0), uncompressed or packed by zlib: read only, and of their levels the largest.
+//! Khronos texture containers (KTX 2.0), uncompressed or packed by zlib: read only, and of their
+//! levels the largest.
 //!
 //! Source: *KTX File Format Specification*, version 2.0, Khronos Group.
 

@@ -74,7 +74,8 @@ fn decode(bytes: &[u8]) -> Result<Raster, ImageError> {
     Ok(Raster::Float(Image { width, height, pixels }, Vec::new()))
 }
 
-/// The next word of the header; exactly one white space after it is skipped, for then the samples may begin.
+/// The next word of the header; exactly one white space after it is skipped, for then the samples
+/// may begin.
 fn next_word<'a>(rest: &mut &'a [u8]) -> Option<&'a [u8]> {
     let text = rest.trim_ascii_start();
     let end = text.iter().position(u8::is_ascii_whitespace)?;

@@ -1,4 +1,5 @@
-//! Portable Network Graphics: eight bits a channel, lossless; with alpha where the camera does not see everything.
+//! Portable Network Graphics: eight bits a channel, lossless; with alpha where the camera does not
+//! see everything.
 
 use super::{
     Depth, Format, Head, ImageError, Layer, Raster, RowFormat, WriteOptions, codec, eight_bit, eight_bit_alpha,
@@ -22,7 +23,8 @@ pub const FORMAT: Format = Format {
     rows: Some(&ROWS),
 };
 
-/// The size and kind of pixels, from the first chunk. What is wrong with the rest is found when it is decoded.
+/// The size and kind of pixels, from the first chunk. What is wrong with the rest is found when it
+/// is decoded.
 fn head(bytes: &[u8]) -> Result<Head, ImageError> {
     let first = chunks(bytes).next().filter(|chunk| chunk[4..8] == *b"IHDR").and_then(|chunk| chunk.get(8..18));
     let Some([w @ .., depth, color]) = first else { return Err(ImageError::malformed(NAME, "its head is missing")) };
@@ -46,7 +48,8 @@ fn decode(bytes: &[u8]) -> Result<Raster, ImageError> {
     codec::raster(NAME, codec::decoder(NAME, ImageFormat::Png, &essence(bytes))?)
 }
 
-/// The chunks of a file: each is the length of its content, four letters, the content, and a checksum of four bytes.
+/// The chunks of a file: each is the length of its content, four letters, the content, and a
+/// checksum of four bytes.
 fn chunks(bytes: &[u8]) -> impl Iterator<Item = &[u8]> {
     let mut rest = bytes.get(MARK.len()..).unwrap_or_default();
     std::iter::from_fn(move || {
@@ -57,8 +60,9 @@ fn chunks(bytes: &[u8]) -> impl Iterator<Item = &[u8]> {
     })
 }
 
-/// A file without all that says nothing of its pixels: profiles and texts, of which a few bytes may become gigabytes, animations,
-/// dates. What must be understood begins with an upper case letter. Source: PNG specification, third edition, 5.3 and 5.4.
+/// A file without all that says nothing of its pixels: profiles and texts, of which a few bytes may
+/// become gigabytes, animations, dates. What must be understood begins with an upper case letter.
+/// Source: PNG specification, third edition, 5.3 and 5.4.
 fn essence(bytes: &[u8]) -> Cow<'_, [u8]> {
     let needed = |chunk: &&[u8]| chunk[4].is_ascii_uppercase() || chunk[4..8] == *b"tRNS";
     match chunks(bytes).all(|chunk| needed(&chunk)) {
@@ -67,7 +71,8 @@ fn essence(bytes: &[u8]) -> Cow<'_, [u8]> {
     }
 }
 
-/// For pictures that are too large for memory. The library packs rows that come one by one less quickly.
+/// For pictures that are too large for memory. The library packs rows that come one by one less
+/// quickly.
 static ROWS: RowFormat = RowFormat {
     bottom_up: false,
     head: |_| Ok(Vec::new()),

@@ -37,8 +37,9 @@ impl Strip {
         Strip { width: layer.image.width, height: layer.image.height, alpha, display: super::display(layer, options) }
     }
 
-    /// Offers the eight-bit numbers of each pixel of a row: red, green, blue and opacity. Where there is one, colours are those of
-    /// what is seen alone, without the share of it (straight alpha).
+    /// Offers the eight-bit numbers of each pixel of a row: red, green, blue and opacity. Where
+    /// there is one, colours are those of what is seen alone, without the share of it (straight
+    /// alpha).
     pub(super) fn eight_bit(&self, pixels: &[Vec3], coverage: &[f32], mut offer: impl FnMut([u8; 4])) {
         for (i, &pixel) in pixels.iter().enumerate() {
             let (alone, opacity) = match coverage.get(i).filter(|_| self.alpha) {
@@ -61,11 +62,12 @@ pub struct RowWriter<'w> {
 }
 
 impl Format {
-    /// Writes a picture whose rows come one after the other, the lowest first where [`RowFormat::bottom_up`] says so.
+    /// Writes a picture whose rows come one after the other, the lowest first where
+    /// [`RowFormat::bottom_up`] says so.
     ///
     /// # Errors
-    /// Those of `rows` and of the file, and [`ImageError::Unsupported`] for formats that are not written so, and for sizes that
-    /// they cannot hold.
+    /// Those of `rows` and of the file, and [`ImageError::Unsupported`] for formats that are not
+    /// written so, and for sizes that they cannot hold.
     pub fn write_rows<T, E: From<ImageError> + From<io::Error>>(
         &self,
         strip: Strip,

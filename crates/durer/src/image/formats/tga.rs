@@ -1,5 +1,5 @@
-//! Truevision Targa: uncompressed true colour of 24 bits, bottom row first, as the course's programs wrote it; of 32 bits
-//! with alpha where the camera does not see everything.
+//! Truevision Targa: uncompressed true colour of 24 bits, bottom row first, as the course's
+//! programs wrote it; of 32 bits with alpha where the camera does not see everything.
 
 use super::{Depth, Format, Head, ImageError, RowFormat, codec, rows};
 use ::image::ImageFormat;

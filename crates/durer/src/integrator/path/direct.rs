@@ -1,5 +1,5 @@
-//! Light that comes straight from lamps and surroundings: it is found by choosing points of lights, and by the directions in
-//! which a surface scatters; what both can find is weighed.
+//! Light that comes straight from lamps and surroundings: it is found by choosing points of lights,
+//! and by the directions in which a surface scatters; what both can find is weighed.
 //!
 //! Source: Veach, *Robust Monte Carlo Methods for Light Transport Simulation*, 1997, chapter 9.
 
@@ -15,8 +15,8 @@ use crate::world::Hit;
 use crate::world::emitters::LightSample;
 
 impl Path<'_> {
-    /// How much a light counts that a ray met by its direction, where it could have been found in another way too.
-    /// `carried`: photons are sent from it.
+    /// How much a light counts that a ray met by its direction, where it could have been found in
+    /// another way too. `carried`: photons are sent from it.
     pub(super) fn weight(&self, state: &State, carried: bool, pdf: impl Fn(&Scattered) -> f32) -> f32 {
         match &state.from {
             Some(from) => self.transport.direct.of_direction(from.pdf, pdf(from)),
@@ -127,7 +127,8 @@ impl Path<'_> {
 }
 
 impl Direct {
-    /// The weight of a light that was chosen with density `light`, where its direction has density `direction`.
+    /// The weight of a light that was chosen with density `light`, where its direction has density
+    /// `direction`.
     fn of_light(self, light: f32, direction: f32) -> f32 {
         match self {
             Direct::Both => power(light, direction),
@@ -137,7 +138,8 @@ impl Direct {
         }
     }
 
-    /// The weight of a light that was met by a direction of density `direction`, where it is chosen with density `light`.
+    /// The weight of a light that was met by a direction of density `direction`, where it is chosen
+    /// with density `light`.
     fn of_direction(self, direction: f32, light: f32) -> f32 {
         match self {
             Direct::Both => power(direction, light),
@@ -147,7 +149,8 @@ impl Direct {
     }
 }
 
-/// The power heuristic: the weight of a way of sampling with density `a`, where another one has density `b`.
+/// The power heuristic: the weight of a way of sampling with density `a`, where another one has
+/// density `b`.
 fn power(a: f32, b: f32) -> f32 {
     if b == 0.0 {
         return 1.0;

@@ -1,12 +1,14 @@
 //! Caustics: light of lamps that mirrors and glass throw on other things, by photons.
 //!
-//! Paths from the eye find such light by chance, or not at all. So photons are sent from the lamps to all that
-//! mirrors or refracts, followed over single directions, and kept on the first thing that scatters broadly. There the
-//! light is estimated from the photons nearby. Each sample of a pixel has photons of its own, and looks less far than
-//! the one before, so that the mean over samples comes to the truth.
+//! Paths from the eye find such light by chance, or not at all. So photons are sent from the lamps
+//! to all that mirrors or refracts, followed over single directions, and kept on the first thing
+//! that scatters broadly. There the light is estimated from the photons nearby. Each sample of a
+//! pixel has photons of its own, and looks less far than the one before, so that the mean over
+//! samples comes to the truth.
 //!
-//! Sources: Hachisuka and Jensen, *Stochastic Progressive Photon Mapping*, 2009; the radius without statistics of pixels:
-//! Knaus and Zwicker, *Progressive Photon Mapping: A Probabilistic Approach*, 2011.
+//! Sources: Hachisuka and Jensen, *Stochastic Progressive Photon Mapping*, 2009; the radius without
+//! statistics of pixels: Knaus and Zwicker, *Progressive Photon Mapping: A Probabilistic Approach*,
+//! 2011.
 
 use super::{End, Path, Place, State};
 use super::{Sample, USES};
@@ -23,8 +25,8 @@ use std::collections::VecDeque;
 use std::f32::consts::PI;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// How the squares of radii shrink: the share of new photons that is kept. Source: Kaplanyan and Dachsbacher, *Adaptive
-/// Progressive Photon Mapping*, 2013: the error falls fastest at 2/3.
+/// How the squares of radii shrink: the share of new photons that is kept. Source: Kaplanyan and
+/// Dachsbacher, *Adaptive Progressive Photon Mapping*, 2013: the error falls fastest at 2/3.
 const ALPHA: f64 = 2.0 / 3.0;
 
 /// Maps that are kept for when they are wanted again.
@@ -69,8 +71,8 @@ pub struct PhotonMap {
 }
 
 impl Photons {
-    /// For a world: some photons for each sample. `radius` is how far the first sample looks, in units of the world;
-    /// without, it is a share of the smallest thing that throws light.
+    /// For a world: some photons for each sample. `radius` is how far the first sample looks, in
+    /// units of the world; without, it is a share of the smallest thing that throws light.
     pub fn new(world: &World, seed: u64, count: u32, radius: Option<f32>) -> Self {
         let beams = Beams::new(world);
         let usual = 0.05 * beams.finest();
@@ -78,8 +80,9 @@ impl Photons {
         Photons { beams, seed, count, radius, corrected: false, kept: Mutex::default() }
     }
 
-    /// The same photons, and light of them without the bias that looking at a whole neighbourhood has, to second
-    /// order in the radius; it has more noise. What is without and what is with it differ by an estimate of the bias.
+    /// The same photons, and light of them without the bias that looking at a whole neighbourhood
+    /// has, to second order in the radius; it has more noise. What is without and what is with
+    /// it differ by an estimate of the bias.
     pub fn corrected(self) -> Self {
         Photons { corrected: true, ..self }
     }
@@ -235,8 +238,8 @@ impl PhotonMap {
         &self.lanes
     }
 
-    /// The light that a surface scatters of the photons nearby, and how many those are. Photons that were mirrored
-    /// more often than `most` do not count.
+    /// The light that a surface scatters of the photons nearby, and how many those are. Photons
+    /// that were mirrored more often than `most` do not count.
     pub fn light(&self, surface: &Surface, shading: &Shading, most: u32) -> (Spectrum, usize) {
         let (mut sum, mut count) = (Spectrum::ZERO, 0);
         let square = self.radius * self.radius;
@@ -268,10 +271,12 @@ impl PhotonMap {
 }
 
 impl PhotonMap {
-    /// How much a photon counts, by the squares of its distance and of how far it lies beside the surface.
+    /// How much a photon counts, by the squares of its distance and of how far it lies beside the
+    /// surface.
     ///
-    /// The mean of light over a kernel of radius r is off by r^2 times something, to second order: half as much with
-    /// a kernel of half the square. Twice that one less the whole one is corrected (Richardson's extrapolation).
+    /// The mean of light over a kernel of radius r is off by r^2 times something, to second order:
+    /// half as much with a kernel of half the square. Twice that one less the whole one is
+    /// corrected (Richardson's extrapolation).
     fn kernel(&self, distance: f32, beside: f32) -> f32 {
         let square = self.radius * self.radius;
         let (whole, half) = (epanechnikov(square, distance), 0.5 * square);
@@ -283,7 +288,8 @@ impl PhotonMap {
     }
 }
 
-/// What lies further beside a surface than this share of the squared radius, squared, is on another surface.
+/// What lies further beside a surface than this share of the squared radius, squared, is on another
+/// surface.
 const FLATNESS: f32 = 0.1;
 
 /// Epanechnikov's kernel in the plane, by the squares of radius and distance.

@@ -237,7 +237,8 @@ fn a_coarse_smooth_ball_has_no_shadow_on_itself_where_its_normals_face_the_light
     // Without the remedy, whole triangles.
     let (lost, all) = dark(&read("", true));
     assert!(lost > all / 100, "{lost} of {all}");
-    // What stands in the way still does, if it is farther off than the bent surface is from the flat one.
+    // What stands in the way still does, if it is farther off than the bent surface is from the flat
+    // one.
     let (lost, all) = dark(&read("Plane { normal 0 1 0 offset 1.05 }", false));
     assert!(lost == all, "{lost} of {all}");
 }

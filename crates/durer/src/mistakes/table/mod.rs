@@ -1,4 +1,5 @@
-//! The table of usual mistakes. One file a family; the order within it is the order in which equals are named.
+//! The table of usual mistakes. One file a family; the order within it is the order in which equals
+//! are named.
 
 mod bounces;
 mod camera;
@@ -18,7 +19,8 @@ use crate::scene::Scene;
 pub struct Mistake {
     /// Its keyword.
     pub name: &'static str,
-    /// What the program does, without a full stop; `{}` stands for the value, and `{a|b|c}` for what that chooses, from 0.
+    /// What the program does, without a full stop; `{}` stands for the value, and `{a|b|c}` for
+    /// what that chooses, from 0.
     pub words: &'static str,
     /// How the code should be.
     pub right: &'static str,

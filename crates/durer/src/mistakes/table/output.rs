@@ -1,4 +1,5 @@
-//! Mistakes in how light becomes a file. Turned and exchanged pixels are told from the pictures alone.
+//! Mistakes in how light becomes a file. Turned and exchanged pixels are told from the pictures
+//! alone.
 
 use super::{Mistake, Values, row};
 use crate::mistakes::habits::{Output, Turn};

@@ -21,8 +21,8 @@ const fn sub_pixels(jitter: bool, blur: bool) -> (Sampling, Option<f32>) {
     (Sampling::Course2012 { jitter, blur }, None)
 }
 
-/// Every way in which samples become a pixel, with the noise at which sampling ends. One filter is so narrow that often no
-/// sample counts.
+/// Every way in which samples become a pixel, with the noise at which sampling ends. One filter is
+/// so narrow that often no sample counts.
 pub const SAMPLINGS: [(Sampling, Option<f32>); 11] = [
     (Sampling::Center, None),
     filtered(3, None),
@@ -37,7 +37,8 @@ pub const SAMPLINGS: [(Sampling, Option<f32>); 11] = [
     sub_pixels(false, false),
 ];
 
-/// Explains random pixels of a job's picture, as many in each way of sampling. Gives what differs, pixel by pixel.
+/// Explains random pixels of a job's picture, as many in each way of sampling. Gives what differs,
+/// pixel by pixel.
 ///
 /// # Errors
 /// [`RenderError`].

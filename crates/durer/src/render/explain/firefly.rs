@@ -1,4 +1,5 @@
-//! Why one sample is far brighter than its pixel's others: the way of its brightest term, and what was seldom chosen on it.
+//! Why one sample is far brighter than its pixel's others: the way of its brightest term, and what
+//! was seldom chosen on it.
 
 use super::Explanation;
 use super::text::number;
@@ -7,7 +8,8 @@ use crate::integrator::account::What;
 use crate::integrator::{Node, Tree};
 
 impl Explanation {
-    /// The sample that adds most light, and what it adds to the pixel's luminance; `None` where no light comes at all.
+    /// The sample that adds most light, and what it adds to the pixel's luminance; `None` where no
+    /// light comes at all.
     pub fn brightest(&self) -> Option<(usize, f64)> {
         let all: f64 = self.samples.iter().map(|s| f64::from(s.weight)).sum();
         let adds = |i: usize| {

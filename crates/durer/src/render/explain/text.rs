@@ -160,7 +160,8 @@ impl Names<'_> {
 }
 
 impl Explanation {
-    /// The explanation in lines: the pixel, its samples, and the tree of one of them, by its place in the list.
+    /// The explanation in lines: the pixel, its samples, and the tree of one of them, by its place
+    /// in the list.
     pub fn lines(&self, names: &Names, wanted: usize, telling: &Telling) -> Vec<Line> {
         let mut lines = Vec::new();
         let mut say = |depth, text: String| lines.push(Line::plain(depth, text));
@@ -207,7 +208,8 @@ impl Explanation {
         lines
     }
 
-    /// What a sample is called: its number, and whose it is where several pixels' samples are in the list.
+    /// What a sample is called: its number, and whose it is where several pixels' samples are in
+    /// the list.
     fn number(&self, index: usize) -> String {
         let SampleAccount { of: (x, y), sample, .. } = self.samples[index];
         match self.mean {
@@ -390,7 +392,8 @@ fn terms(count: usize) -> String {
     if count == 1 { "1 term".into() } else { format!("{count} terms") }
 }
 
-/// The factor of a secondary ray: where Fresnel's law divides the light, the material's colour and the share.
+/// The factor of a secondary ray: where Fresnel's law divides the light, the material's colour and
+/// the share.
 fn split(node: &Node, from: &str, at: &Context, names: &Names) -> String {
     let phong = at.material.and_then(|i| names.world.materials.get(i as usize));
     match (at.fresnel, phong) {

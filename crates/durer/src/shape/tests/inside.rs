@@ -1,4 +1,5 @@
-//! All crossings of closed shapes, against what is inside of them, sampled along lines in double precision.
+//! All crossings of closed shapes, against what is inside of them, sampled along lines in double
+//! precision.
 
 use super::*;
 use crate::math::random::Random;

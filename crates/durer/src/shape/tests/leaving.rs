@@ -18,8 +18,8 @@ fn hit(world: &World, shape: &Primitive, affine: &DAffine3, random: &mut Random)
     world.closest(&ray, &mut ()).map(|hit| (ray, hit))
 }
 
-/// Whether a ray ends on another side of the same closed shape: one from inside on its way out, one from outside, where
-/// the shape is not convex, on its way in.
+/// Whether a ray ends on another side of the same closed shape: one from inside on its way out, one
+/// from outside, where the shape is not convex, on its way in.
 fn is_other_side(shape: &Primitive, world: &World, start: &Surface, ray: &Ray64, hit: &Hit) -> bool {
     let bent = matches!(shape, Primitive::Torus(_) | Primitive::Quadric(_));
     let end = world.surface(ray, hit);
@@ -124,8 +124,8 @@ fn a_mirrored_and_a_sheared_normal_is_that_of_the_moved_surface() {
             let difference = |v: DVec3| (field(p + step * v) - field(p - step * v)) / (2.0 * step);
             let gradient = DVec3::new(difference(DVec3::X), difference(DVec3::Y), difference(DVec3::Z));
             assert!(field(p).abs() <= f64::from(bound) * gradient.length() * 1.01, "{shape:?} {affine:?}");
-            // The matrix is rounded to single precision and stretches by up to 25 more in one axis than another;
-            // the point of a small ball is known to 1e-6 of its radius.
+            // The matrix is rounded to single precision and stretches by up to 25 more in one axis than
+            // another; the point of a small ball is known to 1e-6 of its radius.
             let n = surface.n_geo.as_dvec3();
             assert!((gradient.normalize() - n).length() < 1e-4, "{shape:?} {affine:?} {surface:?} {gradient}");
             // t is the same in both spaces.

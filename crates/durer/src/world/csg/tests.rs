@@ -214,7 +214,8 @@ fn volumes_are_those_of_closed_forms() {
     }
 }
 
-/// Two solids that should be the same: every ray meets both at the same places, with the same normals. Gives how many.
+/// Two solids that should be the same: every ray meets both at the same places, with the same
+/// normals. Gives how many.
 fn assert_same(a: &scene::Object, b: &scene::Object, random: &mut Random) -> usize {
     let (first, second) = (world(a), world(b));
     let mut hits = 0;
@@ -350,7 +351,8 @@ fn each_surface_has_the_material_of_its_part() {
 
 #[test]
 fn a_lens_of_two_balls_focuses_where_the_lensmaker_says() {
-    // 1/f = (n - 1) (2/R - (n - 1) d / (n R^2)), counted from behind the lens by f (1 - (n - 1) d / (n R)).
+    // 1/f = (n - 1) (2/R - (n - 1) d / (n R^2)), counted from behind the lens by f (1 - (n - 1) d / (n
+    // R)).
     let (n, radius, offset) = (1.5f64, 2.2f64, 1.9f64);
     let thickness = 2.0 * (radius - offset);
     let f = 1.0 / ((n - 1.0) * (2.0 / radius - (n - 1.0) * thickness / (n * radius * radius)));
@@ -478,7 +480,8 @@ fn rays_that_leave_a_solid_do_not_meet_it_there() {
                 }
                 let away = from_surface(&surface, dir, f32::INFINITY, None);
                 let Some(next) = world.closest(&away, &mut ()) else { continue };
-                // Whoever goes out comes in next, and the other way round; edges nearer than the error are not known.
+                // Whoever goes out comes in next, and the other way round; edges nearer than the error are not
+                // known.
                 let error = surface.error.length();
                 count += 1;
                 let turns = goes_out(&world, &away, &next) != (dir.dot(surface.n_geo) > 0.0);
@@ -489,7 +492,8 @@ fn rays_that_leave_a_solid_do_not_meet_it_there() {
     assert!(count > 10_000, "{count}");
 }
 
-/// As many crossings coincide as there are parts: each is looked at a few times, not as often as there are others.
+/// As many crossings coincide as there are parts: each is looked at a few times, not as often as
+/// there are others.
 #[test]
 fn coincident_parts_do_not_cost_the_square_of_their_number() {
     let count = 30_000;

@@ -51,7 +51,8 @@ pub struct Emitted {
     pub ray: Ray64,
     /// Its power; of a light with a place, per square of the distance that it will go.
     pub power: Color,
-    /// The light with a place that it comes from, by number: its strength where the photon arrives is not known yet.
+    /// The light with a place that it comes from, by number: its strength where the photon arrives
+    /// is not known yet.
     pub light: Option<u32>,
     /// The material that it comes from, by number.
     pub material: Option<u32>,
@@ -112,7 +113,8 @@ impl Beams {
         self.targets.iter().map(|target| target.radius).fold(f32::INFINITY, f32::min)
     }
 
-    /// A photon by numbers from 0 to 1: for the lamp, the target, the place on the lamp, and the direction.
+    /// A photon by numbers from 0 to 1: for the lamp, the target, the place on the lamp, and the
+    /// direction.
     pub fn emit(&self, world: &World, choices: Vec2, place: Vec2, direction: Vec2) -> Option<Emitted> {
         let all = *self.sums.last()?;
         let wanted = choices.x * all;
@@ -180,7 +182,8 @@ impl Beams {
         (sum > 0.0).then(|| (dir, sum / self.targets.len() as f32))
     }
 
-    /// A ray along a direction through a target, from before all of them, and its density per area over all targets.
+    /// A ray along a direction through a target, from before all of them, and its density per area
+    /// over all targets.
     fn across(&self, dir: Vec3, target: usize, u: Vec2) -> (Ray64, f32) {
         let frame = Frame::around(dir);
         let disc = warp::disc(u);

@@ -1,4 +1,5 @@
-//! What shines: surfaces with a light of their own, the scene's lights, and the surroundings; and how one of them is chosen.
+//! What shines: surfaces with a light of their own, the scene's lights, and the surroundings; and
+//! how one of them is chosen.
 
 pub mod emission;
 pub mod shape;
@@ -127,12 +128,14 @@ impl Emitters {
         emitters
     }
 
-    /// How many things are chosen evenly: lights without a place, the surroundings, and all that is in the tree.
+    /// How many things are chosen evenly: lights without a place, the surroundings, and all that is
+    /// in the tree.
     fn choices(&self, world: &World) -> usize {
         self.even.len() + usize::from(world.environment.is_some()) + usize::from(!self.tree.is_empty())
     }
 
-    /// Chooses a light for a point with a normal (zero: any) by a number, and a direction to it by two more.
+    /// Chooses a light for a point with a normal (zero: any) by a number, and a direction to it by
+    /// two more.
     pub fn sample(&self, world: &World, point: DVec3, n: Vec3, choice: f32, u: Vec2) -> Option<LightSample> {
         let choices = self.choices(world);
         let scaled = choice * choices as f32;
@@ -155,8 +158,9 @@ impl Emitters {
         }
     }
 
-    /// The numbers with which [`Emitters::sample`] chooses the middle of a surface, as it is seen; of a triangle and
-    /// a cylinder they choose some point, always the same. `None` for what is no surface.
+    /// The numbers with which [`Emitters::sample`] chooses the middle of a surface, as it is seen;
+    /// of a triangle and a cylinder they choose some point, always the same. `None` for what is
+    /// no surface.
     pub fn middle(&self, light: LightId) -> Option<Vec2> {
         let source = self.first[light.object()? as usize] as usize;
         match self.sources.get(source)? {
@@ -170,8 +174,8 @@ impl Emitters {
         self.first[hit.object as usize] != u32::MAX
     }
 
-    /// The density per solid angle with which [`Emitters::sample`] comes upon a hit of a surface that shines; 0 where it
-    /// never does.
+    /// The density per solid angle with which [`Emitters::sample`] comes upon a hit of a surface
+    /// that shines; 0 where it never does.
     pub fn pdf_of_hit(&self, world: &World, hit: &Hit, point: DVec3, n: Vec3, wi: Vec3, distance: f32) -> f32 {
         let first = self.first[hit.object as usize];
         if first == u32::MAX {
@@ -190,7 +194,8 @@ impl Emitters {
     }
 }
 
-/// A light of the scene. Its colour is what a white matte surface shows that faces it: irradiance over pi.
+/// A light of the scene. Its colour is what a white matte surface shows that faces it: irradiance
+/// over pi.
 fn of_light(world: &World, light: u32, point: DVec3, choice: f32) -> LightSample {
     let seen = world.illuminate(light as usize, point);
     LightSample {
@@ -240,7 +245,8 @@ impl AreaLight {
         if place.cosine <= 0.0 && !self.two_sided {
             return None;
         }
-        // The point is known to its rounding only; what stands nearer to the emitter than that does not count.
+        // The point is known to its rounding only; what stands nearer to the emitter than that does not
+        // count.
         let reach = place.distance - 2.0 * self.form.error() / place.cosine.abs().max(1e-3);
         let radiance = world.emission_of(world.objects[self.object as usize].material)?.radiance;
         let light = LightId::Surface(self.object, self.part);

@@ -161,7 +161,8 @@ impl Form {
         (pdf.is_finite() && pdf > 0.0).then_some(Place { wi, distance, cosine, pdf })
     }
 
-    /// The density per solid angle with which [`Form::sample`] chooses a direction that meets it at a distance.
+    /// The density per solid angle with which [`Form::sample`] chooses a direction that meets it at
+    /// a distance.
     pub fn pdf(&self, normal: Vec3, from: DVec3, wi: Vec3, distance: f32) -> f32 {
         match *self {
             Form::Sphere(center, radius) => {
@@ -296,7 +297,8 @@ fn cone(to: Vec3, radius: f32, u: Vec2) -> Option<Place> {
 
 /// A rectangle seen from a point, to be sampled evenly over its solid angle.
 ///
-/// Source: Ureña, Fajardo and King, *An Area-Preserving Parametrization for Spherical Rectangles*, EGSR 2013.
+/// Source: Ureña, Fajardo and King, *An Area-Preserving Parametrization for Spherical Rectangles*,
+/// EGSR 2013.
 struct Window {
     axes: [DVec3; 3],
     near: DVec3,
@@ -307,7 +309,8 @@ struct Window {
 }
 
 impl Window {
-    /// `None` for what has no right angles, or is seen so small or so flat that its area does as well.
+    /// `None` for what has no right angles, or is seen so small or so flat that its area does as
+    /// well.
     fn new(corner: Vec3, e: Vec3, f: Vec3) -> Option<Window> {
         let (e, f, corner) = (e.as_dvec3(), f.as_dvec3(), corner.as_dvec3());
         let (le, lf) = (e.length(), f.length());

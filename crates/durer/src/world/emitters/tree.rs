@@ -1,8 +1,9 @@
 //! A tree over emitters, to choose one of many by what it may bring to a point.
 //!
-//! Source: Conty Estévez and Kulla, *Importance Sampling of Many Lights with Adaptive Tree Splitting*, HPG 2018, with the bounds
-//! of *Physically Based Rendering*, 4th edition, section 12.6.3. Nodes have eight children, which are weighed together: fewer steps,
-//! and each choice is among smaller groups.
+//! Source: Conty Estévez and Kulla, *Importance Sampling of Many Lights with Adaptive Tree
+//! Splitting*, HPG 2018, with the bounds of *Physically Based Rendering*, 4th edition, section
+//! 12.6.3. Nodes have eight children, which are weighed together: fewer steps, and each choice is
+//! among smaller groups.
 
 use crate::math::{Aabb, Vec3, fp};
 use glam::Vec4;
@@ -119,7 +120,8 @@ impl Node {
         }
     }
 
-    /// Estimates of what four children bring to a point with a normal; more than zero wherever one brings any light.
+    /// Estimates of what four children bring to a point with a normal; more than zero wherever one
+    /// brings any light.
     fn importances(&self, half: usize, p: Vec3, n: Vec3) -> Vec4 {
         let (one, zero) = (Vec4::ONE, Vec4::ZERO);
         let [x, y, z] = [0, 1, 2].map(|axis| Vec4::splat(p[axis]) - self.middle[axis][half]);
@@ -174,11 +176,13 @@ fn minus((cos_a, sin_a): (Vec4, Vec4), (cos_b, sin_b): (Vec4, Vec4)) -> (Vec4, V
 #[derive(Clone, Debug, Default)]
 pub struct LightTree {
     nodes: Vec<Node>,
-    /// The node that holds each emitter, and which of its children it is; `None` where it has no power.
+    /// The node that holds each emitter, and which of its children it is; `None` where it has no
+    /// power.
     leaves: Vec<Option<(u32, u8)>>,
 }
 
-/// A node of the tree of two children that is built first: they follow each other from `first` on, or it is the emitter `first`.
+/// A node of the tree of two children that is built first: they follow each other from `first` on,
+/// or it is the emitter `first`.
 struct Half {
     bounds: Bounds,
     first: usize,
@@ -231,7 +235,8 @@ impl LightTree {
         self.nodes.is_empty()
     }
 
-    /// Chooses an emitter for a point with a normal (zero: any) by a number from 0 to 1; with its probability.
+    /// Chooses an emitter for a point with a normal (zero: any) by a number from 0 to 1; with its
+    /// probability.
     pub fn sample(&self, p: Vec3, n: Vec3, u: f32) -> Option<(u32, f32)> {
         let (mut node, mut rest, mut probability) = (self.nodes.first()?, u, 1.0);
         loop {
@@ -298,7 +303,8 @@ fn halved(emitters: &[Bounds]) -> Vec<Half> {
     halves
 }
 
-/// Divides emitters so that both sides are small, weak and point one way; returns how many come first.
+/// Divides emitters so that both sides are small, weak and point one way; returns how many come
+/// first.
 fn split(emitters: &[Bounds], range: &mut [u32], whole: &Bounds) -> usize {
     let middle = |i: u32| emitters[i as usize].bounds.center();
     let middles = Aabb::around(range.iter().map(|&i| middle(i)));

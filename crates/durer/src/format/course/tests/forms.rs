@@ -31,7 +31,8 @@ fn sample(kind: Kind, rule: Rule) -> (String, Value) {
     (text.into(), value)
 }
 
-/// Writes every described thing of a list with all fields of a dialect, reads it as `wrap` says and compares.
+/// Writes every described thing of a list with all fields of a dialect, reads it as `wrap` says and
+/// compares.
 fn every_word<T: DescribedList + PartialEq + std::fmt::Debug>(
     wrap: impl Fn(&str, &str) -> String,
     find: impl Fn(Scene) -> T,

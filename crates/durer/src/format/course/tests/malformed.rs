@@ -1,4 +1,5 @@
-//! Broken files by the thousand: never a panic, never slow, and every error has a place in the file.
+//! Broken files by the thousand: never a panic, never slow, and every error has a place in the
+//! file.
 
 use super::*;
 use crate::compile::{AccelKind, Resources, compile};

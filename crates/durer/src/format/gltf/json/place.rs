@@ -2,7 +2,8 @@
 
 use std::ops::Range;
 
-/// The range of the value that a pointer names or, where it is not there, of the innermost value around it.
+/// The range of the value that a pointer names or, where it is not there, of the innermost value
+/// around it.
 pub(super) fn locate(text: &[u8], pointer: &str) -> Range<usize> {
     let mut walk = Walk { text, at: 0 };
     walk.blanks();

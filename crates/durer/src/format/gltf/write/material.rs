@@ -1,4 +1,5 @@
-//! Materials: the words of OpenPBR as metallic-roughness and KHR extensions, the other way round than they are read.
+//! Materials: the words of OpenPBR as metallic-roughness and KHR extensions, the other way round
+//! than they are read.
 
 use super::Writer;
 use crate::material::parameters::TEXTURED;
@@ -10,7 +11,8 @@ use serde_json::{Map, Value, json};
 use std::f32::consts::TAU;
 
 impl Writer<'_> {
-    /// The number of a material of the scene. `holes`: colours of vertices let through what is behind them.
+    /// The number of a material of the scene. `holes`: colours of vertices let through what is
+    /// behind them.
     pub(super) fn material(&mut self, number: u32, holes: bool) -> Option<usize> {
         if let Some(known) = self.materials.get(&number) {
             return *known;
@@ -176,12 +178,13 @@ const EXTENSIONS: [&str; 12] = [
     "KHR_lights_punctual",
 ];
 
-/// Layers that look like the course's material: a highlight's sharpness is a roughness, strong mirrors are metals, what lets
-/// light through is glass.
+/// Layers that look like the course's material: a highlight's sharpness is a roughness, strong
+/// mirrors are metals, what lets light through is glass.
 fn alike(phong: &PhongMaterial) -> PrincipledMaterial {
     let diffuse = phong.diffuse_color.unwrap_or(Vec3::ONE);
     let sharp = phong.exponent.or(phong.shininess).filter(|_| phong.specular_color != Vec3::ZERO);
-    // Source: Walter and others, *Microfacet Models for Refraction through Rough Surfaces*, 2007: alpha² = 2 / (n + 2).
+    // Source: Walter and others, *Microfacet Models for Refraction through Rough Surfaces*, 2007:
+    // alpha² = 2 / (n + 2).
     let roughness = sharp.map_or(1.0, |sharp| fp::pow(2.0 / (sharp + 2.0), 0.25));
     let mut m = PrincipledMaterial {
         base_color: diffuse,

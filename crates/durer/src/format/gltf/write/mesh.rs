@@ -104,7 +104,8 @@ fn has_holes(data: &MeshData) -> bool {
     data.colors.iter().any(|color| color[3] < 1.0)
 }
 
-/// The corners of all triangles as numbers of vertices, each of which has a position, coordinates and a normal.
+/// The corners of all triangles as numbers of vertices, each of which has a position, coordinates
+/// and a normal.
 fn welded(data: &MeshData) -> (Vec<u32>, Vec<[u32; 3]>) {
     let (mut known, mut vertices) = (HashMap::new(), Vec::new());
     let own = |list: &[[u32; 3]], i: usize, k: usize| list.get(i).map_or(NO_INDEX, |corners| corners[k]);

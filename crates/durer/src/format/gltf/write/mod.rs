@@ -1,7 +1,7 @@
 //! Scenes as glTF 2.0: one file of JSON with everything in it, or a binary one.
 //!
-//! Source: *glTF 2.0 Specification*, Khronos Group, 2021, and the extensions that are named where they are written. What it
-//! has no words for is told once, without a place.
+//! Source: *glTF 2.0 Specification*, Khronos Group, 2021, and the extensions that are named where
+//! they are written. What it has no words for is told once, without a place.
 
 mod material;
 mod mesh;
@@ -37,7 +37,8 @@ struct Writer<'a> {
     /// Lists of the file, by name.
     lists: BTreeMap<&'static str, Vec<Value>>,
     extensions: BTreeSet<&'static str>,
-    /// Numbers of attributes of meshes, of meshes with materials, of materials, of textures and of images.
+    /// Numbers of attributes of meshes, of meshes with materials, of materials, of textures and of
+    /// images.
     attributes: BTreeMap<String, Option<Value>>,
     meshes: BTreeMap<(String, Option<u32>), usize>,
     materials: BTreeMap<u32, Option<usize>>,
@@ -165,7 +166,8 @@ impl Writer<'_> {
     fn camera(&mut self) -> Option<usize> {
         let camera = self.scene.camera.as_ref()?;
         let pose = camera.pose();
-        // Angles and sizes here are those of the picture's larger side, and glTF's those from bottom to top.
+        // Angles and sizes here are those of the picture's larger side, and glTF's those from bottom to
+        // top.
         let aspect = self.scene.wishes.size.map_or(1.0, |(width, height)| width as f32 / height as f32);
         let narrow = aspect.max(1.0);
         let upright = |angle: f32| {

@@ -68,8 +68,8 @@ fn round([base, top]: [(Vec3, f32); 2]) -> MeshData {
     data
 }
 
-/// The surface between two circles about an axis: flat where their middles are the same, and then it faces along the axis; else it
-/// faces outwards.
+/// The surface between two circles about an axis: flat where their middles are the same, and then
+/// it faces along the axis; else it faces outwards.
 fn band(data: &mut MeshData, axis: Vec3, circles: [(Vec3, f32); 2]) {
     let axis = axis.normalize_or(Vec3::Y);
     let (x, y) = axis.any_orthonormal_pair();
@@ -104,7 +104,8 @@ fn band(data: &mut MeshData, axis: Vec3, circles: [(Vec3, f32); 2]) {
     data.triangle_normals = data.triangles.clone();
 }
 
-/// A ball with the normals of a round one, and its coordinates: u is 1/2 where it looks along -z, v grows upwards.
+/// A ball with the normals of a round one, and its coordinates: u is 1/2 where it looks along -z, v
+/// grows upwards.
 fn ball(center: Vec3, radius: f32) -> MeshData {
     let mut data = MeshData::default();
     let rows = STEPS / 2;

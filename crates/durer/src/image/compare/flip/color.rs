@@ -27,7 +27,8 @@ pub fn rgb_from_xyz(xyz: Vec3) -> Vec3 {
     Vec3::new(R.dot(xyz), G.dot(xyz), B.dot(xyz))
 }
 
-/// L*a*b* of XYZ relative to white, with the colourfulness that falls with the light (the Hunt effect).
+/// L*a*b* of XYZ relative to white, with the colourfulness that falls with the light (the Hunt
+/// effect).
 #[inline(always)]
 pub fn hunt_lab(relative: Vec3) -> Vec3 {
     let f = |t: f32| {
@@ -42,15 +43,17 @@ pub fn hunt_lab(relative: Vec3) -> Vec3 {
 
 /// The distance of two colours: of lightness, and Euclidean of the rest.
 ///
-/// Source: Abasi, Amani Tehran and Fairchild, *Distance metrics for very large color differences*, 2020.
+/// Source: Abasi, Amani Tehran and Fairchild, *Distance metrics for very large color differences*,
+/// 2020.
 #[inline(always)]
 pub fn hyab(a: Vec3, b: Vec3) -> f32 {
     let d = a - b;
     d.x.abs() + (d.y * d.y + d.z * d.z).sqrt()
 }
 
-/// The cube root of a positive number, to about two units in the last place: a third of the exponent, and Halley's
-/// iteration twice. Unlike a library's, compilers make it work on several numbers at once.
+/// The cube root of a positive number, to about two units in the last place: a third of the
+/// exponent, and Halley's iteration twice. Unlike a library's, compilers make it work on several
+/// numbers at once.
 #[inline(always)]
 fn cube_root(x: f32) -> f32 {
     let mut root = f32::from_bits(x.to_bits() / 3 + 0x2a51_37a0);

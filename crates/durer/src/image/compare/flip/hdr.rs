@@ -3,10 +3,12 @@
 use super::flip_of;
 use crate::math::{Vec3, fp};
 
-/// Coefficients of the tone curve (a x^2 + b x) / (c x^2 + d x + e), Narkowicz' fit to that of ACES with its exposure of 0.6.
+/// Coefficients of the tone curve (a x^2 + b x) / (c x^2 + d x + e), Narkowicz' fit to that of ACES
+/// with its exposure of 0.6.
 const CURVE: [f32; 5] = [0.36 * 2.51, 0.6 * 0.03, 0.36 * 2.43, 0.6 * 0.59, 0.14];
 
-/// What the curve makes of the brightest light in the first exposure, and of the median in the last. 2021, section 3.2.
+/// What the curve makes of the brightest light in the first exposure, and of the median in the
+/// last. 2021, section 3.2.
 const TARGET: f32 = 0.85;
 
 /// The error of each pixel, from 0 to 1, between two pictures of linear light.
@@ -29,7 +31,8 @@ fn tone_map(light: Vec3) -> Vec3 {
     })
 }
 
-/// Factors, about one stop apart, from one that shows the brightest light to one that shows the median. 2021, section 3.2.
+/// Factors, about one stop apart, from one that shows the brightest light to one that shows the
+/// median. 2021, section 3.2.
 pub fn exposures(reference: &[Vec3]) -> Vec<f32> {
     let luminance = Vec3::new(0.2126, 0.7152, 0.0722);
     let mut light: Vec<f32> = reference.iter().map(|pixel| pixel.max(Vec3::ZERO).dot(luminance)).collect();

@@ -1,8 +1,8 @@
 //! Shifts by parts of a pixel, seen at edges.
 //!
-//! Where a picture f is moved by s, the difference is about -s f'. Least squares over all edges give s even where edges are
-//! not smoothed: there a share s of the pixels changes sides. Source: Lucas and Kanade, *An Iterative Image Registration
-//! Technique*, 1981.
+//! Where a picture f is moved by s, the difference is about -s f'. Least squares over all edges
+//! give s even where edges are not smoothed: there a share s of the pixels changes sides. Source:
+//! Lucas and Kanade, *An Iterative Image Registration Technique*, 1981.
 
 use super::sample::{Sample, View};
 use crate::math::Vec3;
@@ -36,7 +36,8 @@ pub fn cause(reference: &View, at_edges: &[Sample]) -> Option<String> {
     (!ways.is_empty()).then(|| format!("it is shifted by about {}: {half}", ways.join(" and ")))
 }
 
-/// By how many pixels edges are moved to the right in the middle, and more so at the right border than there; the same down.
+/// By how many pixels edges are moved to the right in the middle, and more so at the right border
+/// than there; the same down.
 fn flow(reference: &View, at_edges: &[Sample]) -> Option<[f64; 4]> {
     let mut matrix = [[0.0; 5]; 4];
     let (half_width, half_height) = (reference.width as f64 / 2.0, reference.height as f64 / 2.0);

@@ -16,8 +16,8 @@ const SEEN: f32 = 1.5 / 255.0;
 const EDGE: f32 = 0.08;
 /// So much of the difference at edges must be of colours that are there.
 const MIXED: f64 = 0.95;
-/// Squared steps between neighbours of a smoothed picture are less than this share of the other's: of an edge at a place in
-/// the pixel that may be any, two thirds are expected.
+/// Squared steps between neighbours of a smoothed picture are less than this share of the other's:
+/// of an edge at a place in the pixel that may be any, two thirds are expected.
 const SMOOTHER: f64 = 0.85;
 
 /// A picture that has one colour only.
@@ -41,13 +41,15 @@ pub fn finding(reference: &View, test: &View, samples: &[Sample]) -> Option<Find
     all.iter().find_map(|part| part(reference, test, samples).filter(|finding| finding.explained >= WELL))
 }
 
-/// Samples of unit vectors shown as colours: absolute values, or from -1 to 1 mapped to 0 to 1. Gives the vector of each.
+/// Samples of unit vectors shown as colours: absolute values, or from -1 to 1 mapped to 0 to 1.
+/// Gives the vector of each.
 fn unit_vectors(samples: &[Sample]) -> Option<(Decode, Vec<&Sample>)> {
     let decodings: [Decode; 2] = [|color| color, |color| 2.0 * color - 1.0];
     decodings.into_iter().find_map(|decode| {
         let unit: Vec<&Sample> =
             samples.iter().filter(|s| (decode(s.reference).length() - 1.0).abs() < 0.015).collect();
-        // The rest is background. Full red, green or blue are unit vectors by chance: others must be there too.
+        // The rest is background. Full red, green or blue are unit vectors by chance: others must be there
+        // too.
         let things = samples.iter().filter(|s| s.reference != Vec3::ZERO).count();
         let mixed = unit.iter().filter(|s| s.reference.max_element() < 0.98).count();
         (3 * unit.len() > things && 4 * mixed > unit.len() && !unit.is_empty()).then_some((decode, unit))
@@ -135,7 +137,8 @@ fn edges(reference: &View, test: &View, samples: &[Sample]) -> Option<Finding> {
         at_edges.iter().map(steps).sum()
     };
     let (own, others) = (roughness(test), roughness(reference));
-    // Of an edge that is sampled otherwise, one side gains what the other loses; of one that is moved it need not.
+    // Of an edge that is sampled otherwise, one side gains what the other loses; of one that is moved
+    // it need not.
     let (sum, all) = at_edges.iter().fold((0.0, 0.0), |(sum, all), s| {
         let by = (s.test - s.reference).element_sum();
         (sum + by, all + by.abs())
@@ -159,8 +162,8 @@ fn edges(reference: &View, test: &View, samples: &[Sample]) -> Option<Finding> {
     })
 }
 
-/// The share of the squared difference in pixels that show nothing but what is beside them: other samples of a pixel see what its
-/// neighbours see, other shading does not.
+/// The share of the squared difference in pixels that show nothing but what is beside them: other
+/// samples of a pixel see what its neighbours see, other shading does not.
 fn mixed(reference: &View, test: &View, at_edges: &[Sample]) -> f64 {
     let between = |value: Vec3, picture: &View, s: &Sample| {
         let around = (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| picture.at(s.x + dx, s.y + dy)));
@@ -171,7 +174,8 @@ fn mixed(reference: &View, test: &View, at_edges: &[Sample]) -> f64 {
     difference(&at_edges.iter().filter(is_between).copied().collect::<Vec<_>>()) / difference(at_edges).max(1e-12)
 }
 
-/// Whether there are equal parts on both sides of the edges that differ: a thing so thin that all of it is edge tells nothing.
+/// Whether there are equal parts on both sides of the edges that differ: a thing so thin that all
+/// of it is edge tells nothing.
 fn has_equal_sides(reference: &View, test: &View, at_edges: &[Sample]) -> bool {
     let differing: Vec<&Sample> = at_edges.iter().filter(seen).collect();
     let sides = |s: &&&Sample| {

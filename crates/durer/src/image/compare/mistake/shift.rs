@@ -48,7 +48,8 @@ impl Grey {
     }
 }
 
-/// Pixels to the right and down by which the picture is most likely shifted, up to a quarter of its size; `None` for none.
+/// Pixels to the right and down by which the picture is most likely shifted, up to a quarter of its
+/// size; `None` for none.
 pub fn shift(reference: &View, test: &View) -> Option<(isize, isize)> {
     let mut levels = vec![(Grey::of(reference), Grey::of(test))];
     while let Some((a, b)) = levels.last()

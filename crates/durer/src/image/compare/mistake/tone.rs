@@ -79,7 +79,8 @@ pub fn fitted(scale: Scale, samples: &[Sample]) -> Vec<Rule> {
     rules
 }
 
-/// The colour that most often differs, as the background may, and what it most often is in the picture.
+/// The colour that most often differs, as the background may, and what it most often is in the
+/// picture.
 fn recolored(samples: &[Sample]) -> Option<Rule> {
     let differing = || samples.iter().filter(|s| !same_color(s.reference, s.test));
     let from = most_frequent(differing().map(|s| s.reference))?;

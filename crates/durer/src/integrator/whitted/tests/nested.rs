@@ -12,7 +12,8 @@ const CAMERA: &str = "PerspectiveCamera { center 0 9 0 direction 0 -1 0 up 0 0 1
       Material { transparentColor 1 1 1 indexOfRefraction 1 }
       Material { diffuseColor 1 1 1 } }\n";
 
-/// Indices of what a ray runs in from surface to surface, by the sines of its angles to y: flat layers keep index times sine.
+/// Indices of what a ray runs in from surface to surface, by the sines of its angles to y: flat
+/// layers keep index times sine.
 fn indices(objects: &str, origin: [f32; 3], sine: f32) -> Vec<f32> {
     along(&testing::read(&format!("{CAMERA}Group {{ {objects} }}")), origin, sine)
 }
