@@ -170,8 +170,9 @@ fn named<T: DescribedList>(thing: &T, more: &Value) -> Value {
 
 /// The same members with one more.
 ///
-/// A copy is changed: rustc 1.95 makes wrong code, memory that is used after it was freed, of a
-/// closure that changes a `Value` which it was given and returns it.
+/// A copy is changed. Closures here that changed a `Value` which they were given and returned it
+/// used memory after it was freed (rustc 1.95, opt-level 2, seen by valgrind; not in a small program
+/// of the same form): safe code, so probably compiled wrongly.
 fn with(members: &Value, name: &str, value: Value) -> Value {
     let mut all = members.clone();
     all[name] = value;
