@@ -26,7 +26,7 @@ pub const FORMAT: Format = Format {
         let [width, height] = sizes(bytes)?;
         let channel = |pixel: &[u8], i: usize| f32::from(u16::from_be_bytes([pixel[2 * i], pixel[2 * i + 1]])) / 65535.0;
         let pixels = bytes[16..].chunks_exact(8).map(|pixel| Vec3::new(channel(pixel, 0), channel(pixel, 1), channel(pixel, 2)));
-        Ok(Raster::Float(Image::from_pixels(width, height, pixels.collect())?))
+        Ok(Raster::Float(Image::from_pixels(width, height, pixels.collect())?, Vec::new()))
     },
     encode: |layers, _, out| {
         let image = &layers[0].image;
