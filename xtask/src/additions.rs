@@ -153,7 +153,8 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
         _ => bail!("cargo xtask additions [--only TEXT]"),
     };
     let root = root()?;
-    let copy = root.join("target/additions");
+    // Built apart, so that the program with the new things does not take the place of ours.
+    let (copy, built) = (root.join("target/additions"), root.join("target/additions-built"));
     let _ = std::fs::remove_dir_all(&copy);
     std::fs::create_dir_all(&copy)?;
     let files = Command::new("git")
@@ -171,7 +172,7 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
     }
     let build = Command::new(crate::cargo())
         .args(["build", "--quiet", "-p", "durer-cli"])
-        .env("CARGO_TARGET_DIR", root.join("target"))
+        .env("CARGO_TARGET_DIR", &built)
         .current_dir(&copy)
         .status()?;
     ensure!(build.success(), "with the new things the sources do not build");
@@ -185,7 +186,7 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
         println!("{:16} {:6} {lines:6}", addition.kind, addition.words.len());
     }
     if only.is_empty() {
-        used(&root.join("target/debug/durer"), &copy)?;
+        used(&built.join("debug/durer"), &copy)?;
     }
     Ok(ExitCode::SUCCESS)
 }

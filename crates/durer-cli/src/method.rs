@@ -48,7 +48,8 @@ pub fn color_mode() -> impl TypedValueParser<Value = ColorMode> {
 }
 
 fn direct() -> impl TypedValueParser<Value = Direct> {
-    PossibleValuesParser::new(Direct::NAMES).map(|name| Direct::from_name(&name).unwrap_or_default())
+    PossibleValuesParser::new(Direct::CHOICES.map(Direct::name))
+        .map(|name| Direct::from_name(&name).unwrap_or_default())
 }
 
 /// The method that the options ask for, or that the scene needs.

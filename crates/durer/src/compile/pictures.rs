@@ -13,7 +13,7 @@ use crate::source::Digest;
 use crate::texture::{Channel, Mapping, Texture};
 use crate::world::{Map, Maps};
 use rayon::prelude::*;
-use std::sync::Arc;
+use std::collections::HashSet;
 
 /// What the eight bits of a picture mean.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -57,22 +57,23 @@ impl Loader<'_> {
     /// complain at.
     pub(super) fn decode_ahead<'m>(&mut self, materials: impl Iterator<Item = &'m PrincipledMaterial>) {
         let mut left = self.resources.memory;
-        let mut packed: Vec<(PictureKey, Arc<[u8]>)> = Vec::new();
+        let (mut packed, mut seen) = (Vec::new(), HashSet::new());
         for (name, encoding) in materials.flat_map(pictures) {
             let (bytes, _) = self.found(name);
+            let key: PictureKey = (bytes.path().into(), encoding);
+            // Many materials may share a picture, which is looked at once.
+            if !seen.insert(key.clone()) {
+                continue;
+            }
             let origin = self.picture_origin(&bytes);
             if origin.and_then(|origin| self.resources.kept?.picture(&origin, encoding)).is_some() {
                 continue;
             }
-            let (path, bytes) = match bytes {
-                PictureBytes::Here(path, bytes) => (path, Some(bytes)),
-                PictureBytes::File(path) if packed.iter().any(|(known, _)| known.0 == path && known.1 == encoding) => {
-                    (path, None)
-                }
-                PictureBytes::File(path) => (path.clone(), self.resources.source.read(&path).ok()),
+            let bytes = match bytes {
+                PictureBytes::Here(_, bytes) => Some(bytes),
+                PictureBytes::File(path) => self.resources.source.read(&path).ok(),
             };
-            let key = (path, encoding);
-            let Some(bytes) = bytes.filter(|_| packed.iter().all(|(known, _)| *known != key)) else { continue };
+            let Some(bytes) = bytes else { continue };
             let needed = Encoded::open(&bytes, &key.0).map_or(0, |encoded| encoded.needed8());
             let Some(rest) = left.checked_sub(needed) else { break };
             left = rest;
@@ -129,9 +130,7 @@ impl Loader<'_> {
         encoding: Encoding,
         diagnostics: &mut Diagnostics,
     ) -> Option<Texture> {
-        let path = match &bytes {
-            PictureBytes::File(path) | PictureBytes::Here(path, _) => path.clone(),
-        };
+        let path = bytes.path().to_string();
         let key = (path.clone(), encoding);
         if let Some(known) = self.decoded.get(&key) {
             return known.clone();

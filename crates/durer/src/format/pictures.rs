@@ -90,10 +90,9 @@ impl Pictures<'_> {
 
 /// A name for a picture of a scene.
 pub(super) fn asset(scene: &mut Scene, picture: Picture, span: Span) -> FileName {
-    let (PictureBytes::File(path) | PictureBytes::Here(path, _)) = &picture.bytes;
     // The same picture may lie otherwise on other surfaces.
     let mapping = Digest::of(format!("{:?}", picture.mapping).as_bytes()).to_string();
-    let path = format!("{path}#{}", &mapping[..12]);
+    let path = format!("{}#{}", picture.bytes.path(), &mapping[..12]);
     scene.assets.pictures.entry(path.clone()).or_insert(picture);
     FileName { path, span }
 }

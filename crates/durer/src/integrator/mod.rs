@@ -83,12 +83,12 @@ pub enum Direct {
 }
 
 impl Direct {
-    /// Names on the command line.
-    pub const NAMES: [&'static str; 3] = ["both", "lights", "bsdf"];
+    /// Those that can be asked for.
+    pub const CHOICES: [Direct; 3] = [Direct::Both, Direct::Lights, Direct::Bsdf];
 
-    /// The one of a name.
+    /// The one of a name that can be asked for.
     pub fn from_name(name: &str) -> Option<Self> {
-        [Direct::Both, Direct::Lights, Direct::Bsdf].into_iter().find(|direct| direct.name() == name)
+        Direct::CHOICES.into_iter().find(|direct| direct.name() == name)
     }
 
     /// Its name.

@@ -14,7 +14,8 @@
 
 use super::part::Part;
 use super::pictures::place;
-use super::{Control, Job, RenderError, Shard};
+use super::run::whole;
+use super::{Control, Job, RenderError};
 use crate::film::aov::{Sums, heat};
 use crate::image::{Image, Layer};
 use crate::integrator::Method;
@@ -106,13 +107,9 @@ impl Part {
     /// [`RenderError`], as for the picture itself; [`RenderError::Diagram`] for photons whose
     /// pixels have samples as noise or time allows.
     pub fn error(&self, world: &World, threads: Option<usize>) -> Result<[Layer; 2], RenderError> {
-        let made = |job: Job| -> Result<Part, RenderError> {
-            let part = Part::new(world, &job, Shard::WHOLE)?;
-            part.render(world, &Control { threads, ..Control::default() }, &mut |_, _| ())?;
-            Ok(part)
-        };
+        let made = |job: &Job| whole(world, job, &Control { threads, ..Control::default() });
         let job = Job { color: true, aovs: Vec::new(), ..self.job.clone() };
-        let own = if self.job.wants_samples() { None } else { Some(made(job.clone())?) };
+        let own = if self.job.wants_samples() { None } else { Some(made(&job)?) };
         let own = own.as_ref().unwrap_or(self);
         let all = u64::from(job.sampling.samples()) * job.window().pixels();
         let other = match corrected(job.method) {
@@ -120,7 +117,7 @@ impl Part {
                 let message = "the error of photons is known where all samples are taken: give a number of --samples, and neither --noise nor --time";
                 return Err(RenderError::Diagram(message.into()));
             }
-            Some(method) => Some(made(Job { method, ..job })?),
+            Some(method) => Some(made(&Job { method, ..job })?),
             None => None,
         };
         let window = self.job.window();

@@ -60,9 +60,14 @@ pub enum Moment {
 /// # Errors
 /// [`RenderError`]; nothing is kept then.
 pub fn render(world: &World, job: &Job, control: &Control) -> Result<Rendered, RenderError> {
+    whole(world, job, control)?.pictures()
+}
+
+/// The same before it becomes pictures.
+pub(super) fn whole(world: &World, job: &Job, control: &Control) -> Result<Part, RenderError> {
     let part = Part::new(world, job, Shard::WHOLE)?;
     match part.render(world, control, &mut |_, _| {})? {
-        Stop::Finished | Stop::OutOfTime => part.pictures(),
+        Stop::Finished | Stop::OutOfTime => Ok(part),
         Stop::Cancelled => Err(RenderError::Cancelled),
         Stop::Panicked(panicked) => Err(panicked.into()),
     }

@@ -36,6 +36,14 @@ pub enum PictureBytes {
     Here(String, Arc<[u8]>),
 }
 
+impl PictureBytes {
+    /// The name.
+    pub fn path(&self) -> &str {
+        let (PictureBytes::File(path) | PictureBytes::Here(path, _)) = self;
+        path
+    }
+}
+
 impl Assets {
     /// Whether there are none.
     pub fn is_empty(&self) -> bool {

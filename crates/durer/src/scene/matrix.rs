@@ -27,6 +27,23 @@ pub enum MatrixOp {
 }
 
 impl MatrixOp {
+    /// One of each, by its word.
+    pub const KINDS: [(&'static str, MatrixOp); 8] = [
+        ("Translate", MatrixOp::Translate(Vec3::ZERO)),
+        ("Scale", MatrixOp::Scale(Vec3::ONE)),
+        ("UniformScale", MatrixOp::UniformScale(1.0)),
+        ("XRotate", MatrixOp::XRotate(0.0)),
+        ("YRotate", MatrixOp::YRotate(0.0)),
+        ("ZRotate", MatrixOp::ZRotate(0.0)),
+        ("Rotate", MatrixOp::Rotate(Vec3::Y, 0.0)),
+        ("Matrix", MatrixOp::Matrix([1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1.])),
+    ];
+
+    /// Their words.
+    pub fn words() -> [&'static str; 8] {
+        MatrixOp::KINDS.map(|row| row.0)
+    }
+
     /// The matrix.
     pub fn matrix(&self) -> DAffine3 {
         match *self {

@@ -9,8 +9,6 @@ use crate::dialect::{Dialect, set};
 use crate::math::Vec3;
 use crate::scene::{MatrixOp, Node};
 
-const MATRICES: [&str; 8] = ["Translate", "Scale", "UniformScale", "XRotate", "YRotate", "ZRotate", "Rotate", "Matrix"];
-
 impl Reader<'_, '_> {
     /// `Transform { matrix ... object }`.
     pub(super) fn transform(&mut self, keyword: Span) -> Option<Node> {
@@ -34,7 +32,8 @@ impl Reader<'_, '_> {
                 self.error(error.help("write it before the `Transform`"));
                 self.skip_value();
             } else if home_of(&word) != Some("Group") {
-                let known: Vec<&str> = MATRICES.into_iter().chain(IN_GROUP.into_iter().take(OBJECTS)).collect();
+                let known: Vec<&str> =
+                    MatrixOp::words().into_iter().chain(IN_GROUP.into_iter().take(OBJECTS)).collect();
                 self.unknown(&word, span, "in a transform", &known);
             } else {
                 objects += 1;
@@ -61,7 +60,7 @@ impl Reader<'_, '_> {
         while let Some((word, span)) = self.word_before_close() {
             match self.matrix(&word, span) {
                 Some(op) => ops.extend(op),
-                None => self.unknown(&word, span, "among matrices", &MATRICES),
+                None => self.unknown(&word, span, "among matrices", &MatrixOp::words()),
             }
         }
         ops
@@ -77,7 +76,7 @@ impl Reader<'_, '_> {
     /// A matrix, if the word begins one; the inner `None` after an error.
     pub(super) fn matrix(&mut self, word: &str, span: Span) -> Option<Option<MatrixOp>> {
         let braces_needed = matches!(word, "Rotate" | "Matrix" | "Matrix4f");
-        if !braces_needed && !MATRICES.contains(&word) {
+        if !braces_needed && !MatrixOp::words().contains(&word) {
             return None;
         }
         let errors = self.errors();

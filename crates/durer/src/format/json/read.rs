@@ -2,7 +2,7 @@
 
 use super::tree::{Member, Node, Value, parse};
 use super::values::{Members, Reader};
-use super::{DEEPEST, MATRICES, schema};
+use super::{DEEPEST, schema};
 use crate::camera::Camera;
 use crate::diag::{Diagnostic, Diagnostics};
 use crate::dialect::Dialect;
@@ -152,13 +152,13 @@ impl Reader<'_> {
             self.expected(node, "an object", "matrix");
             return None;
         };
-        let words = MATRICES.map(|row| row.0);
+        let words = MatrixOp::words();
         let [Member { name, at, node: value }] = members.as_slice() else {
             let help = Some(format!("one of {}", words.join(", ")));
             self.error(node.head(), "bad-value", "a matrix is an object of one member", help);
             return None;
         };
-        let Some((name, like)) = MATRICES.iter().find(|row| row.0 == name) else {
+        let Some((name, like)) = MatrixOp::KINDS.iter().find(|row| row.0 == name) else {
             let help = meant(name, words).unwrap_or_else(|| format!("one of {}", words.join(", ")));
             self.error(at.clone(), "unknown-word", format!("{} is no matrix", shown(name.as_bytes())), Some(help));
             return None;

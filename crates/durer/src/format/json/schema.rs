@@ -1,7 +1,7 @@
 //! What a scene as JSON is made of, as a JSON Schema (2020-12): made from the statements, as the
 //! reference of the language is.
 
-use super::{DEEPEST, MATRICES};
+use super::DEEPEST;
 use crate::camera::Camera;
 use crate::describe::{DescribedList, Field, Kind, Rule};
 use crate::dialect::Dialect;
@@ -78,7 +78,7 @@ pub fn schema() -> Value {
             "camera": one_of(things::<Camera>()),
             "light": one_of(things::<Light>()),
             "material": one_of(material_things()),
-            "matrix": one_of(MATRICES.map(|(name, op)| matrix(name, op)).to_vec()),
+            "matrix": one_of(MatrixOp::KINDS.map(|(name, op)| matrix(name, op)).to_vec()),
             "object": one_of(object_things()),
         },
     })

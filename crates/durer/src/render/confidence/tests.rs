@@ -5,6 +5,7 @@ use crate::compile::testing::read;
 use crate::film::Filter;
 use crate::integrator::{Settings, Transport};
 use crate::render::Sampling;
+use crate::render::Shard;
 use crate::render::explain::explain;
 
 #[test]
