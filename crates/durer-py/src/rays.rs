@@ -51,15 +51,17 @@ impl<'a> Rays<'a> {
         all.then_some(Rays { count, origins, directions, t_min, t_max }).ok_or_else(wrong)
     }
 
-    /// The i-th.
-    pub fn get(&self, i: usize) -> Ray {
-        let one = |list: &[f32]| if list.len() == 1 { list[0] } else { list[i] };
-        let (origin, dir) = (point(self.origins, i), point(self.directions, i));
-        Ray { origin, dir, t_min: one(self.t_min), t_max: one(self.t_max) }
-    }
-
     /// Those of a job, by the number of the first.
     pub fn job(&self, first: usize) -> Vec<Ray> {
-        (first..self.count.min(first + JOB)).map(|i| self.get(i)).collect()
+        let step = |list: &[f32], each: usize| if list.len() == each { 0 } else { each };
+        let (origin, direction) = (step(self.origins, 3), step(self.directions, 3));
+        let (t_min, t_max) = (step(self.t_min, 1), step(self.t_max, 1));
+        let ray = |i| Ray {
+            origin: Vec3::from_slice(&self.origins[i * origin..]),
+            dir: Vec3::from_slice(&self.directions[i * direction..]),
+            t_min: self.t_min[i * t_min],
+            t_max: self.t_max[i * t_max],
+        };
+        (first..self.count.min(first + JOB)).map(ray).collect()
     }
 }

@@ -37,10 +37,9 @@ class Hits:
     t: Floats
     #: Number of the triangle in its mesh; -1 where nothing is met.
     triangle: Ints
-    #: Number of the object in its scene, 0 in a mesh; -1 where nothing is met.
-    object: Ints
     #: Second and third barycentric coordinate: the point is (1 - u - v) a + u b + v c.
     uv: Floats
+    _objects: Optional[Ints]
     _source: _Rays
     _origins: Floats
     _directions: Floats
@@ -49,6 +48,11 @@ class Hits:
     def hit(self) -> Bools:
         """Where something is met."""
         return self.triangle >= 0
+
+    @cached_property
+    def object(self) -> Ints:
+        """Number of the object in its scene, 0 in a mesh; -1 where nothing is met."""
+        return np.minimum(self.triangle, 0) if self._objects is None else self._objects
 
     @cached_property
     def point(self) -> Floats:
@@ -175,12 +179,12 @@ class _Rays:
     ) -> Hits:
         """What each ray meets first."""
         shape, rays = asked(origins, directions, t_min, t_max)
-        t, triangle, object, uv = self._tree.closest(rays, threads_asked(threads), watch(progress))
+        t, triangle, objects, uv = self._tree.closest(rays, threads_asked(threads), watch(progress))
         return Hits(
             t.reshape(shape),
             triangle.reshape(shape),
-            object.reshape(shape),
             uv.reshape(*shape, 2),
+            None if objects is None else objects.reshape(shape),
             self,
             rays[1],
             rays[2],
