@@ -6,7 +6,7 @@ use durer::diag::{Diagnostics, Files, Severity};
 use durer::film::Filter;
 use durer::image::compare::{Options, Picture, Scale, compare};
 use durer::image::{Image, Layer, WriteOptions, format_for, read, save};
-use durer::integrator::Method;
+use durer::integrator::{Method, Transport};
 use durer::math::Vec3;
 use durer::render::{Control, Job, Part, Sampling, Shard};
 use durer::{LoadOptions, load};
@@ -25,6 +25,9 @@ const MOST_FLIP: f64 = 0.08;
 /// Scenes whose file asks for other depths than Tungsten took: how often light is scattered after
 /// the first time. Without any, walls and floor of veach-mis agree to a thousandth.
 const BOUNCES: [(&str, u32); 2] = [("cornell-box", 62), ("veach-mis", 0)];
+
+/// Scenes for which pbrt's file asks for photons, and how many each sample has.
+const PHOTONS: [(&str, u32); 1] = [("water-caustic", 200_000)];
 
 /// What is known of why a picture is not Tungsten's.
 const CAUSES: [(&str, &str); 3] = [
@@ -115,12 +118,16 @@ fn compared(folder: &Path, samples: u32, keep: Option<&Path>) -> Result<Row> {
     }
     let known = BOUNCES.iter().find(|row| row.0 == name).map(|row| row.1);
     let bounces = known.or(loaded.scene.wishes.bounces).unwrap_or(16);
+    let photons = PHOTONS.iter().find(|row| row.0 == name);
+    let method = photons.map_or(Method::PATH, |&(_, count)| {
+        Method::Photons { transport: Transport::default(), count, radius: None, corrected: false }
+    });
     let usual = Job::default();
     let job = Job {
         width: whole.width,
         height: whole.height,
         sampling: Sampling::Filtered { samples, filter: Filter::Box { radius: 0.5 } },
-        method: Method::PATH,
+        method,
         settings: durer::integrator::Settings { bounces, ..usual.settings },
         ..usual
     };
