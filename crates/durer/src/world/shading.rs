@@ -200,8 +200,7 @@ impl World {
     /// Whether a face is looked through by a camera, or a light without extent, from where it is
     /// seen in some direction: such see its back.
     pub fn is_hidden(&self, dir: Vec3, hit: &Hit, surface: &Surface) -> bool {
-        dir.dot(surface.n_geo) > 0.0
-            && self.parts(hit, surface.position).iter().all(|part| hides_backs(part.phong))
+        dir.dot(surface.n_geo) > 0.0 && self.parts(hit, surface.position).iter().all(|part| hides_backs(part.phong))
     }
 
     /// Whether there are such faces.

@@ -310,8 +310,7 @@ impl Accessor {
             }
             row
         };
-        let mut rows: Vec<T> =
-            (0..self.count).into_par_iter().with_min_len(1 << 13).map(|i| of(row(i))).collect();
+        let mut rows: Vec<T> = (0..self.count).into_par_iter().with_min_len(1 << 13).map(|i| of(row(i))).collect();
         if let Some(sparse) = &self.sparse {
             let (view, offset) = &sparse.values;
             for i in 0..sparse.count {

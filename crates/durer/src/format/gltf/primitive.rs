@@ -239,13 +239,14 @@ fn compact(data: &mut MeshData, keep: bool) {
     if keep {
         return;
     }
-    let is_used: Vec<AtomicBool> = data.positions.iter().map(|_| AtomicBool::new(false)).collect();
-    data.triangles.par_iter().flatten().for_each(|&i| is_used[i as usize].store(true, Relaxed));
-    let is_used: Vec<bool> = is_used.into_iter().map(AtomicBool::into_inner).collect();
-    if !is_used.contains(&false) {
+    let is_used: Vec<AtomicBool> = data.positions.par_iter().map(|_| AtomicBool::new(false)).collect();
+    data.triangles
+        .par_iter()
+        .for_each(|corners| corners.iter().for_each(|&i| is_used[i as usize].store(true, Relaxed)));
+    if is_used.par_iter().all(|used| used.load(Relaxed)) {
         return;
     }
-    let mut numbers: Vec<u32> = is_used.iter().map(|used| if *used { 0 } else { UNUSED }).collect();
+    let mut numbers: Vec<u32> = is_used.into_iter().map(|used| if used.into_inner() { 0 } else { UNUSED }).collect();
     let mut next = 0;
     for number in numbers.iter_mut().filter(|number| **number != UNUSED) {
         (*number, next) = (next, next + 1);

@@ -153,7 +153,10 @@ impl Writer<'_> {
         for row in TEXTURED.iter().filter(|row| row.field != "base_color_texture") {
             let Some(name) = (row.picture)(m) else { continue };
             if !self.add_picture(m, row.field, name, &mut extensions) {
-                self.left_out(format!("glTF has no place for a picture such as that of `{}`: it is left out", row.field));
+                self.left_out(format!(
+                    "glTF has no place for a picture such as that of `{}`: it is left out",
+                    row.field
+                ));
             }
         }
         if m.bump_texture.is_some() || m.opacity_texture.is_some() {
@@ -229,12 +232,7 @@ const PICTURES: [(&str, &str, &str, Option<Channel>); 11] = [
     ("fuzz_color_texture", "KHR_materials_sheen", "sheenColorTexture", None),
     ("fuzz_roughness_texture", "KHR_materials_sheen", "sheenRoughnessTexture", Some(Channel::Alpha)),
     ("thin_film_weight_texture", "KHR_materials_iridescence", "iridescenceTexture", Some(Channel::Red)),
-    (
-        "thin_film_thickness_texture",
-        "KHR_materials_iridescence",
-        "iridescenceThicknessTexture",
-        Some(Channel::Green),
-    ),
+    ("thin_film_thickness_texture", "KHR_materials_iridescence", "iridescenceThicknessTexture", Some(Channel::Green)),
 ];
 
 /// What is written of materials.
