@@ -126,6 +126,8 @@ fn frames_are_moments_cameras_and_files() {
     place.refused(2, "render walk.%02d.txt --frames 3-1", &["expected frames as 7, 1-100 or 0-90:10"]);
     place.refused(2, "render walk.%02d.txt --frames 8-9 --watch", &["many pictures are made"]);
     place.refused(2, "render a.stl --turntable 4 --turned 3", &["--turned say whence"]);
+    // What has a camera of its own language is not turned, and says so.
+    place.refused(2, "render walk.08.txt --turntable 4", &["`durer convert` makes a glTF file"]);
     place.refused(2, "render a.stl --fps 4", &["--frames"]);
     assert!(place.gives(2, "render walk.%02d.txt --frames 10-11 -q").err.contains("walk.11.txt"));
 }

@@ -3,6 +3,7 @@
 //! The library makes them, the shells print them.
 
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 /// At most this many errors of one input are collected.
@@ -222,23 +223,51 @@ impl Diagnostics {
         self.list.iter()
     }
 
+    /// Where the last of what is said of a file ends in it.
+    fn end_in(&self, file: u32) -> usize {
+        let places = |d: &Diagnostic| {
+            let others = d.related.iter().map(|other| other.0).chain(d.fix.iter().map(|edit| edit.span));
+            others.chain(d.span).filter(|span| span.file == file).map(|span| span.end).max()
+        };
+        self.list.iter().filter_map(places).max().unwrap_or(0) as usize
+    }
+
     /// How many errors were found, collected or not.
     pub fn error_count(&self) -> usize {
         self.errors
     }
 }
 
-/// The text files that were read, by number, for turning spans into lines and columns.
+/// The files that were read, by number, for turning spans into lines and columns.
 #[derive(Clone, Debug, Default)]
 pub struct Files {
     files: Vec<(String, Arc<[u8]>)>,
+    /// Those of which only the beginning is known.
+    cut: BTreeSet<u32>,
 }
 
 impl Files {
+    /// Files up to this size are kept as they are, for who looks at them again.
+    const SMALL: usize = 64 << 20;
+
     /// Adds a file and returns its number.
     pub fn add(&mut self, name: impl Into<String>, bytes: Arc<[u8]>) -> u32 {
         self.files.push((name.into(), bytes));
         (self.files.len() - 1) as u32
+    }
+
+    /// Lets go of a large file that was read: of what lies behind a place up to which spans may
+    /// yet be of it, and behind all of which something is said.
+    pub fn cut(&mut self, file: u32, end: usize, said: &Diagnostics) {
+        let Some((_, bytes)) = self.files.get_mut(file as usize).filter(|(_, bytes)| bytes.len() > Self::SMALL) else {
+            return;
+        };
+        let end = end.max(said.end_in(file));
+        if end < bytes.len() {
+            // The line in which that ends is shown with it, but there may be none in what is no text.
+            *bytes = bytes[..bytes.len().min(end + 256)].into();
+            self.cut.insert(file);
+        }
     }
 
     /// The number of a file of this name and these bytes, which is added if it is not there.
@@ -254,7 +283,12 @@ impl Files {
         self.files.get(file as usize).map(|(name, _)| name.as_str())
     }
 
-    /// The bytes of a file.
+    /// The bytes of a file, unless only its beginning is known.
+    pub fn whole(&self, file: u32) -> Option<&[u8]> {
+        self.bytes(file).filter(|_| !self.cut.contains(&file))
+    }
+
+    /// The bytes of a file, or of its beginning.
     pub fn bytes(&self, file: u32) -> Option<&[u8]> {
         self.files.get(file as usize).map(|(_, bytes)| &**bytes)
     }

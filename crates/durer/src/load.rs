@@ -128,6 +128,12 @@ pub fn load_text(
         let scene = scene?;
         return Some(Loaded { scene, rules: dialect.rules().clone(), dialect, guess: None, source });
     }
+    if options.staging.turned.is_some() {
+        let error = Diagnostic::error("nothing goes around this scene: it is seen by the camera that is written in it");
+        let help = "`durer convert` makes a glTF file of it, which is a model that `--turntable` goes around";
+        diagnostics.push(error.help(help));
+        return None;
+    }
     let mut guess = None;
     let dialect = options.dialect.unwrap_or_else(|| {
         let found = match &json {

@@ -385,15 +385,33 @@ impl Source {
         if metadata.len() > left {
             return Err(too_large(metadata.len()));
         }
-        let mut bytes = Vec::new();
         // A file that grows while it is read is still bounded.
-        fs::File::open(path).map_err(io)?.take(left.saturating_add(1)).read_to_end(&mut bytes).map_err(io)?;
+        let bytes = all_of(fs::File::open(path).map_err(io)?, metadata.len() as usize, left).map_err(io)?;
         if bytes.len() as u64 > left {
             return Err(too_large(bytes.len() as u64));
         }
         self.already().left = left - bytes.len() as u64;
-        Ok(bytes.into())
+        Ok(bytes)
     }
+}
+
+/// All bytes of a file of about some size, and of one that has grown at most one more than is
+/// allowed. Those of a file of that size are written once, where they stay.
+fn all_of(mut file: fs::File, size: usize, most: u64) -> std::io::Result<Arc<[u8]>> {
+    let mut bytes: Arc<[u8]> = std::iter::repeat_n(0, size).collect();
+    let mut room = Arc::get_mut(&mut bytes).unwrap_or_default();
+    loop {
+        match file.read(room) {
+            Ok(0) => break,
+            Ok(count) => room = &mut std::mem::take(&mut room)[count..],
+            Err(error) if error.kind() == std::io::ErrorKind::Interrupted => {}
+            Err(error) => return Err(error),
+        }
+    }
+    let read = size - room.len();
+    let mut more = Vec::new();
+    file.take(most.saturating_add(1).saturating_sub(read as u64)).read_to_end(&mut more)?;
+    Ok(if read == size && more.is_empty() { bytes } else { [&bytes[..read], &more].concat().into() })
 }
 
 /// Whether bytes are packed by gzip.

@@ -76,12 +76,9 @@ impl BinaryNode {
     }
 }
 
-/// The tree, the references of its leaves, and what sizes are multiplied by before areas are
-/// compared.
+/// The tree, and what sizes are multiplied by before areas are compared.
 pub struct Tree {
     pub nodes: Vec<BinaryNode>,
-    /// Those that are in no leaf mean nothing.
-    pub references: Vec<Reference>,
     pub scale: f32,
     /// Whether things are in several leaves.
     pub is_cut: bool,
@@ -102,8 +99,13 @@ struct SubtreeSize {
     nodes: usize,
 }
 
-/// Builds a tree over at least one reference; triangles whose corners are known may be cut.
-pub fn build(mut references: Vec<Reference>, settings: &BuildSettings, corners: &[[Vec3; 3]]) -> Tree {
+/// Builds a tree over at least one reference; triangles whose corners are known may be cut. With
+/// it come the references of its leaves; those that are in no leaf mean nothing.
+pub fn build(
+    mut references: Vec<Reference>,
+    settings: &BuildSettings,
+    corners: &[[Vec3; 3]],
+) -> (Tree, Vec<Reference>) {
     let all = Bin::of(&references);
     let scale = area_scale(all.bounds());
     let area = half_area(all.min, all.max, scale);
@@ -114,7 +116,9 @@ pub fn build(mut references: Vec<Reference>, settings: &BuildSettings, corners: 
     let room = BuildRange { references: &mut references, first: 0, searches: Searches::default() };
     let counts = builder.subtree(room, &mut nodes, &all, 0);
     nodes.truncate(counts.nodes);
-    Tree { nodes, references, scale, is_cut: counts.references > all.count }
+    // Most of the room was for leaves of one reference.
+    nodes.shrink_to_fit();
+    (Tree { nodes, scale, is_cut: counts.references > all.count }, references)
 }
 
 impl BuildRange<'_> {
@@ -205,7 +209,7 @@ mod tests {
 
     /// Checks a tree over so many triangles, with room for so many references; gives how many slots
     /// hold nothing.
-    fn check(tree: &Tree, triangles: usize, room: usize) -> usize {
+    fn check(tree: &Tree, references: &[Reference], triangles: usize, room: usize) -> usize {
         let (mut is_node, mut is_taken) = (vec![false; tree.nodes.len()], vec![false; room]);
         let (mut is_met, mut stack) = (vec![false; triangles], vec![0]);
         while let Some(i) = stack.pop() {
@@ -222,7 +226,7 @@ mod tests {
             }
             let mut bounds = Aabb::EMPTY;
             let places = node.first()..node.first() + node.count();
-            for (is_taken, r) in is_taken[places.clone()].iter_mut().zip(&tree.references[places]) {
+            for (is_taken, r) in is_taken[places.clone()].iter_mut().zip(&references[places]) {
                 assert!(!std::mem::replace(is_taken, true));
                 is_met[r.number() as usize] = true;
                 bounds = bounds.union(r.bounds());
@@ -250,8 +254,8 @@ mod tests {
             let taken = [0.0, 0.1, 2.0].map(|splits| {
                 let settings = BuildSettings { splits, ..BuildSettings::triangles(BuildQuality::Best) };
                 let references = triangle_references(count, &settings, &|i| corners[i as usize]);
-                let tree = build(references, &settings, &corners);
-                with_gaps += usize::from(check(&tree, count, count + settings.spare(count)) > 0);
+                let (tree, references) = build(references, &settings, &corners);
+                with_gaps += usize::from(check(&tree, &references, count, count + settings.spare(count)) > 0);
                 tree.nodes[0].count()
             });
             cut += usize::from(taken[2] > count);

@@ -56,11 +56,13 @@ fn build_of(references: Vec<Reference>, settings: &BuildSettings, corners: Vec<[
     if references.is_empty() {
         return Tree { nodes: Vec::new(), order: Vec::new(), bounds: Aabb::EMPTY };
     }
-    let mut tree = binary::build(references, settings, &corners);
+    let (mut tree, references) = binary::build(references, settings, &corners);
     drop(corners);
+    let numbers = listed(references.len(), 0, |i| references[i].number());
+    drop(references);
     let bounds = tree.nodes[0].bounds();
     let plans = improved(&mut tree, settings);
-    let (nodes, order) = wide::collapse(&tree, plans);
+    let (nodes, order) = wide::collapse(&tree, &numbers, plans);
     Tree { nodes, order, bounds }
 }
 

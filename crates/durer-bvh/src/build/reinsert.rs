@@ -280,7 +280,7 @@ mod tests {
             // Where few stay together room is left over between subtrees that are built side by
             // side.
             let settings = BuildSettings { whole: 3, ..BuildSettings::THINGS };
-            let tree = binary::build(references(&boxes), &settings, &[]);
+            let (tree, _) = binary::build(references(&boxes), &settings, &[]);
             assert!((count > 4096) == tree.nodes.iter().any(|node| !node.is_there()));
             let leaves = |nodes: &[BinaryNode]| {
                 let mut leaves: Vec<usize> =

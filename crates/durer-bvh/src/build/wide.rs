@@ -34,9 +34,10 @@ impl CollapsePlan {
     }
 }
 
-/// The nodes, and the things of their leaves.
-pub fn collapse(tree: &binary::Tree, plans: CollapsePlan) -> (Vec<WideNode>, Vec<u32>) {
-    let writer = NodeWriter { tree, plans: plans.plans };
+/// The nodes, and the things of their leaves; `numbers` are those of the things by their places in
+/// the leaves of the binary tree.
+pub fn collapse(tree: &binary::Tree, numbers: &[u32], plans: CollapsePlan) -> (Vec<WideNode>, Vec<u32>) {
+    let writer = NodeWriter { tree, numbers, plans: plans.plans };
     let mut cuts = CutPoints::default();
     writer.cuts(0, &mut cuts);
     let subtrees: Vec<SubtreeNodes> = parallel::map(&cuts.below, |&i| writer.subtree(i));
@@ -125,6 +126,7 @@ fn plan(nodes: &[binary::BinaryNode], plans: &mut [Plan], scale: f32, settings: 
 
 struct NodeWriter<'a> {
     tree: &'a binary::Tree,
+    numbers: &'a [u32],
     plans: Vec<Plan>,
 }
 
@@ -253,10 +255,9 @@ impl NodeWriter<'_> {
         let (mut items, mut count) = ([0; LEAF_SIZE], 0);
         let most = self.node(i).count();
         for leaf in self.tree.nodes[i..].iter().filter(|node| node.is_leaf()) {
-            for r in &self.tree.references[leaf.first()..][..leaf.count()] {
-                items[count] = r.number();
-                count += 1;
-            }
+            let own = &self.numbers[leaf.first()..][..leaf.count()];
+            items[count..][..own.len()].copy_from_slice(own);
+            count += own.len();
             if count == most {
                 break;
             }

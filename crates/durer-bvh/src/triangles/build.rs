@@ -17,8 +17,7 @@ impl TriangleBvh {
     ///
     /// The result is a function of the arguments alone. It takes about 50 bytes a triangle, up to
     /// 100 where they overlap much, and while it is built up to 140 more, with
-    /// [`BuildQuality::Balanced`] 200 and with [`BuildQuality::Best`] 340; the depth is bounded,
-    /// whatever the triangles.
+    /// [`BuildQuality::Best`] 340; the depth is bounded, whatever the triangles.
     ///
     /// # Panics
     ///

@@ -989,7 +989,7 @@ class PrincipledMaterial(Material):
 
     walls: `solid`, `thin`; solid where it is not given. `thin`: a sheet without inside, through which light goes straight; `solid`: the skin of a body.
 
-    backs: `shown`, `hidden`; shown where it is not given. `hidden`: a camera looks through faces that are turned away from it, and light does not; `shown`: both sides are seen.
+    backs: `shown`, `hidden`; shown where it is not given. `hidden`: cameras and lights without extent look through faces that are turned away from them; `shown`: both sides are seen.
     """
 
     def __init__(

@@ -83,8 +83,8 @@ impl<'r> Loader<'r> {
         }
         let said = diagnostics.iter().count();
         let mesh = match asset {
-            Some(data) => Some(MeshData::clone(data)),
-            None => self.mesh_file(name, diagnostics),
+            Some(data) => Some(Arc::clone(data)),
+            None => self.mesh_file(name, diagnostics).map(Arc::new),
         };
         let mesh = mesh.filter(|data| {
             let needed = data.bytes() as u64 + TREE_BYTES * data.triangles.len() as u64;
@@ -92,9 +92,10 @@ impl<'r> Loader<'r> {
         });
         let tree = mesh.map(|mut data| {
             if self.rules.has(Compat::LooseTriangles) {
-                data.loosen();
+                Arc::make_mut(&mut data).loosen();
             }
-            let by_vertex = self.rules.has(Compat::NormalsByVertex) && data.give_normals_by_vertex();
+            let by_vertex =
+                self.rules.has(Compat::NormalsByVertex) && Arc::make_mut(&mut data).give_normals_by_vertex();
             let mesh = Mesh::new(data, self.rules.mesh_normals, self.rules.file_normals || by_vertex);
             let mesh = self.centered(mesh);
             // What the official program takes for a determinant of zero.
@@ -145,6 +146,7 @@ impl<'r> Loader<'r> {
         let file = self.resources.files.add(name.path.clone(), bytes.clone());
         let mut own = Diagnostics::default();
         let data = read(&bytes, file, &mut own);
+        self.resources.files.cut(file, 0, &own);
         if own.has_errors() {
             let message = format!("the {what} `{}` cannot be used", name.path);
             let error = Diagnostic::error(message).code("bad-file").at(name.span);

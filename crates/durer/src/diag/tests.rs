@@ -28,6 +28,20 @@ fn columns_are_characters() {
 }
 
 #[test]
+fn large_files_keep_what_is_said_of_them() {
+    let mut files = Files::default();
+    let small = files.add("small", vec![b'\n'; 1 << 10].into());
+    let large = files.add("large", vec![b'\n'; Files::SMALL + 1].into());
+    let mut said = Diagnostics::default();
+    said.push(Diagnostic::warning("odd").at(Span { file: large, start: 5000, end: 5002 }));
+    files.cut(small, 0, &said);
+    assert_eq!(files.whole(small).map(<[u8]>::len), Some(1 << 10));
+    files.cut(large, 10, &said);
+    assert_eq!((files.whole(large), files.bytes(large).map(<[u8]>::len)), (None, Some(5002 + 256)));
+    assert_eq!(files.position(Span { file: large, start: 5000, end: 5002 }), Some((5001, 1)));
+}
+
+#[test]
 fn what_is_meant_is_near_or_of_the_same_letters() {
     let words = ["Rotate", "XRotate", "YRotate", "Scale", "Translate"];
     let meant = |word| did_you_mean(word, words);

@@ -74,7 +74,7 @@ pub(super) fn join_bodies(scene: &mut Scene, name: &str) {
     for (i, object) in root.objects.iter().enumerate() {
         let Some(material) = object.material.filter(|&number| is_glass(number)) else { continue };
         let Some(data) = mesh_of(object).and_then(|(name, _)| meshes.get(name)) else { continue };
-        let mesh = Mesh::new(MeshData::clone(data), MeshNormals::Flat, true);
+        let mesh = Mesh::new(Arc::clone(data), MeshNormals::Flat, true);
         if mesh.open_edge().is_some() {
             skins.entry(material).or_default().push(i);
         }

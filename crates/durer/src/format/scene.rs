@@ -136,6 +136,7 @@ fn named(input: &Input, path: &Path, diagnostics: &mut Diagnostics) -> Option<(S
 fn one_mesh(input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
     let span = Span { file: input.file, start: 0, end: 0 };
     let data = read_mesh(input.bytes, input.file, input.name, diagnostics)?;
+    input.files.borrow_mut().cut(input.file, 0, diagnostics);
     let mut scene = Scene::default();
     let node = scene.add_mesh(input.name, Arc::new(data), span);
     scene.root = Some(Group { objects: vec![Object { node, material: None, span }] });

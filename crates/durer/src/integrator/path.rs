@@ -244,7 +244,7 @@ impl<'w> Path<'w> {
             let Some(hit) = hit else { return (End::Sky(ray.dir()), scale) };
             walked = length;
             let surface = self.world.surface(&ray, &hit);
-            if self.world.hides_backs && state.depth == 0 && self.world.is_hidden(&ray, &hit, &surface) {
+            if self.world.hides_backs && state.depth == 0 && self.world.is_hidden(ray.dir(), &hit, &surface) {
                 rest.rounded.t_min = hit.t;
                 continue;
             }

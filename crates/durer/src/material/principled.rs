@@ -172,7 +172,7 @@ described! {
         opacity_texture: Option<FileName> = None, optional, Rule::Any, ["opacityTexture" in set::DURER];
         /// `thin`: a sheet without inside, through which light goes straight; `solid`: the skin of a body.
         walls: Walls = Walls::Solid, optional, Rule::Any, ["walls" in set::DURER];
-        /// `hidden`: a camera looks through faces that are turned away from it, and light does not; `shown`: both sides are seen.
+        /// `hidden`: cameras and lights without extent look through faces that are turned away from them; `shown`: both sides are seen.
         backs: Backs = Backs::Shown, optional, Rule::Any, ["backs" in set::DURER];
     }
 }

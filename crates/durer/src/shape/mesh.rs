@@ -7,6 +7,7 @@ use crate::described;
 use crate::dialect::{MeshNormals, set};
 use crate::math::{Aabb, Vec2, Vec3};
 use crate::source::Digest;
+use std::sync::Arc;
 
 /// An index that is not given.
 pub const NO_INDEX: u32 = u32::MAX;
@@ -131,20 +132,29 @@ described! {
 /// A mesh ready to be hit: every triangle has its corners, and normals if it is smooth.
 #[derive(Clone, Debug, Default)]
 pub struct Mesh {
-    data: MeshData,
+    /// Shared with the description that it is of, unless that had to be changed.
+    data: Arc<MeshData>,
+    /// In place of those of `data`.
+    made: Option<Normals>,
     center: Vec3,
+}
+
+/// Normals of the corners of triangles.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Normals {
+    /// Normals, not necessarily of length 1; may be empty.
+    pub values: Vec<Vec3>,
+    /// Three of them a triangle, or [`NO_INDEX`]; empty where no triangle has any.
+    pub triangles: Vec<[u32; 3]>,
 }
 
 impl Mesh {
     /// Takes a mesh file's data; normals are made by `rule` for triangles that bring none, or for
     /// all unless `file_normals`.
-    pub fn new(mut data: MeshData, rule: MeshNormals, file_normals: bool) -> Self {
-        if !file_normals {
-            data.normals.clear();
-            data.triangle_normals.clear();
-        }
-        super::normals::complete(&mut data, rule);
-        Mesh { data, center: Vec3::ZERO }
+    pub fn new(data: impl Into<Arc<MeshData>>, rule: MeshNormals, file_normals: bool) -> Self {
+        let data = data.into();
+        let made = super::normals::made(&data, rule, file_normals);
+        Mesh { data, made, center: Vec3::ZERO }
     }
 
     /// The same about the origin, along the axes where single precision holds that exactly, if it
@@ -157,7 +167,8 @@ impl Mesh {
                 let moved =
                     |p: &Vec3| f64::from(p[axis] - middle[axis]) == f64::from(p[axis]) - f64::from(middle[axis]);
                 if self.data.positions.iter().all(moved) {
-                    self.data.positions.iter_mut().for_each(|p| p[axis] -= middle[axis]);
+                    let positions = &mut Arc::make_mut(&mut self.data).positions;
+                    positions.iter_mut().for_each(|p| p[axis] -= middle[axis]);
                     self.center[axis] = middle[axis];
                 }
             }
@@ -167,7 +178,15 @@ impl Mesh {
 
     /// Whether it has one normal a triangle.
     pub fn is_flat(&self) -> bool {
-        self.data.triangle_normals.is_empty()
+        self.normals().1.is_empty()
+    }
+
+    /// Normals of its corners, and three of them for each triangle; both may be empty.
+    pub fn normals(&self) -> (&[Vec3], &[[u32; 3]]) {
+        match &self.made {
+            Some(made) => (&made.values, &made.triangles),
+            None => (&self.data.normals, &self.data.triangle_normals),
+        }
     }
 
     /// The same with normals that a rule makes, whatever normals it had.
@@ -178,7 +197,9 @@ impl Mesh {
     /// The same with the other half of every triangle's parallelogram, whose normals go on as those
     /// of the triangle do.
     pub fn parallelograms(&self) -> Mesh {
-        let mut data = self.data.clone();
+        let mut data = MeshData::clone(&self.data);
+        let (normals, triangle_normals) = self.normals();
+        (data.normals, data.triangle_normals) = (normals.to_vec(), triangle_normals.to_vec());
         fn halves(triangles: &mut Vec<[u32; 3]>, values: &mut Vec<Vec3>) {
             for i in 0..triangles.len() {
                 let [a, b, c] = triangles[i];
@@ -192,10 +213,10 @@ impl Mesh {
         halves(&mut data.triangle_normals, &mut data.normals);
         (data.triangle_uvs, data.vertices) = Default::default();
         (data.colors, data.second_uvs, data.tangents) = Default::default();
-        Mesh { data, center: self.center }
+        Mesh { data: data.into(), made: None, center: self.center }
     }
 
-    /// What it is made of.
+    /// What it is made of; its normals may be [others](Mesh::normals).
     pub fn data(&self) -> &MeshData {
         &self.data
     }
@@ -227,7 +248,8 @@ impl Mesh {
 
     /// Bytes that it takes in memory, its acceleration structure not counted.
     pub fn bytes(&self) -> usize {
-        self.data.bytes()
+        let made = self.made.as_ref();
+        self.data.bytes() + made.map_or(0, |made| size_of_val(&*made.values) + size_of_val(&*made.triangles))
     }
 
     /// Whether every edge borders on an even number of triangles, so that a line crosses the mesh
@@ -256,8 +278,13 @@ impl Mesh {
     /// The mean of the normals at a triangle's corners at a crossing, of the length that mixing
     /// gives it; `None` on what is flat.
     pub fn mixed_normal(&self, part: u32, uv: Vec2) -> Option<Vec3> {
-        let [a, b, c] = attribute(&self.data.triangle_normals, &self.data.normals, part)?.map(Vec3::normalize_or_zero);
+        let [a, b, c] = self.corner_normals(part)?.map(Vec3::normalize_or_zero);
         Some((1.0 - uv.x - uv.y) * a + uv.x * b + uv.y * c)
+    }
+
+    fn corner_normals(&self, part: u32) -> Option<[Vec3; 3]> {
+        let (normals, triangles) = self.normals();
+        attribute(triangles, normals, part)
     }
 
     /// The vertices' colours and opacity, mixed at a point of a triangle.
@@ -306,7 +333,7 @@ impl Mesh {
         let (position, error, barycentric) = interpolate(corners, crossing.uv);
         let n_geo = face_normal(corners);
         let mix = |[a, b, c]: [Vec3; 3]| barycentric.x * a + barycentric.y * b + barycentric.z * c;
-        let normals = attribute(&self.data.triangle_normals, &self.data.normals, part);
+        let normals = self.corner_normals(part);
         let n_shade = normals.map_or(n_geo, |normals| mix(normals).normalize_or(n_geo));
         let lifts = normals.map_or([Vec3::ZERO; 2], |normals| {
             [1.0, -1.0].map(|side| mix(lift(position, corners, normals.map(|n| side * n))))

@@ -1,36 +1,43 @@
 //! Normals at the corners of a mesh that brings none.
 
-use super::mesh::{MeshData, NO_INDEX};
+use super::mesh::{MeshData, NO_INDEX, Normals};
 use crate::dialect::MeshNormals;
 use crate::math::{Vec3, fp};
 use glam::DVec3;
+use rayon::prelude::*;
 
-/// Gives every triangle without normals the ones that the rule makes.
-pub(super) fn complete(data: &mut MeshData, rule: MeshNormals) {
-    let missing = |data: &MeshData, i: usize| data.triangle_normals.get(i).is_none_or(|n| n.contains(&NO_INDEX));
-    if data.flat || (0..data.triangles.len()).all(|i| !missing(data, i)) {
-        return;
+/// The normals of all triangles, with those that a rule makes for such as have none, or for all
+/// unless `file_normals`; `None` where the mesh's own are all that there is.
+pub(super) fn made(data: &MeshData, rule: MeshNormals, file_normals: bool) -> Option<Normals> {
+    let own: (&[Vec3], &[[u32; 3]]) = match file_normals {
+        true => (&data.normals, &data.triangle_normals),
+        false => (&[], &[]),
+    };
+    let missing = |i: usize| own.1.get(i).is_none_or(|n| n.contains(&NO_INDEX));
+    let has_any = !data.normals.is_empty() || !data.triangle_normals.is_empty();
+    let as_they_are = || (has_any && !file_normals).then(Normals::default);
+    if data.flat || (0..data.triangles.len()).all(|i| !missing(i)) {
+        return as_they_are();
     }
     let rule = match rule {
         MeshNormals::SmoothAbove(count) if data.positions.len() > count => MeshNormals::SmoothByArea,
         MeshNormals::SmoothAbove(_) => MeshNormals::Flat,
         other => other,
     };
-    let made = match rule {
+    let mut made = match rule {
         MeshNormals::SmoothByArea => smooth(data, |cross| cross),
         MeshNormals::SmoothByFace => smooth(data, DVec3::normalize_or_zero),
         MeshNormals::Crease(degrees) => creased(data, degrees),
-        MeshNormals::Flat | MeshNormals::SmoothAbove(_) => return,
+        MeshNormals::Flat | MeshNormals::SmoothAbove(_) => return as_they_are(),
     };
-    let base = data.normals.len() as u32;
-    data.normals.extend(made.0);
-    let complete = (0..data.triangles.len())
-        .map(|i| match missing(data, i) {
-            true => made.1[i].map(|n| n + base),
-            false => data.triangle_normals[i],
-        })
-        .collect();
-    data.triangle_normals = complete;
+    if !own.0.is_empty() {
+        let base = own.0.len() as u32;
+        made.values.splice(..0, own.0.iter().copied());
+        for (i, triangle) in made.triangles.iter_mut().enumerate() {
+            *triangle = if missing(i) { triangle.map(|n| n + base) } else { own.1[i] };
+        }
+    }
+    Some(made)
 }
 
 /// Twice the area of a triangle times its normal. Tiny areas are beyond single precision.
@@ -38,8 +45,6 @@ fn cross(data: &MeshData, triangle: [u32; 3]) -> DVec3 {
     let [a, b, c] = triangle.map(|i| data.positions[i as usize].as_dvec3());
     (b - a).cross(c - a)
 }
-
-type Normals = (Vec<Vec3>, Vec<[u32; 3]>);
 
 /// One normal a vertex: the sum over its faces, each weighted by a function of its cross product.
 fn smooth(data: &MeshData, weigh: impl Fn(DVec3) -> DVec3) -> Normals {
@@ -52,7 +57,8 @@ fn smooth(data: &MeshData, weigh: impl Fn(DVec3) -> DVec3) -> Normals {
             sums[i as usize] += normal;
         }
     }
-    (sums.into_iter().map(|sum| sum.normalize_or_zero().as_vec3()).collect(), vertices.clone())
+    let values = sums.into_iter().map(|sum| sum.normalize_or_zero().as_vec3()).collect();
+    Normals { values, triangles: vertices.clone() }
 }
 
 /// One normal a corner: the sum, by angle, over the faces around its vertex that are not beyond a
@@ -62,7 +68,8 @@ fn smooth(data: &MeshData, weigh: impl Fn(DVec3) -> DVec3) -> Normals {
 /// JGT 3(1), 1998.
 fn creased(data: &MeshData, degrees: f32) -> Normals {
     let least_cosine = fp::sin_cos_degrees(f64::from(degrees)).1 as f32;
-    let faces: Vec<Vec3> = data.triangles.iter().map(|&t| cross(data, t).normalize_or_zero().as_vec3()).collect();
+    let face = |&triangle: &[u32; 3]| cross(data, triangle).normalize_or_zero().as_vec3();
+    let faces: Vec<Vec3> = data.triangles.par_iter().map(face).collect();
     // For each vertex the corners that meet there, as one flat list: corner 3i + k is corner k of
     // triangle i.
     let mut starts = vec![0u32; data.positions.len() + 1];
@@ -87,21 +94,19 @@ fn creased(data: &MeshData, degrees: f32) -> Normals {
         let (e, f) = (edge(k + 1), edge(k + 2));
         fp::atan2(e.cross(f).length(), e.dot(f))
     };
-    let angles: Vec<f32> = (0..corners.len() as u32).map(angle).collect();
-    let mut normals = Vec::with_capacity(corners.len());
-    let mut indices = Vec::with_capacity(data.triangles.len());
-    for (i, triangle) in data.triangles.iter().enumerate() {
-        indices.push([0, 1, 2].map(|k| (normals.len() + k) as u32));
-        for vertex in triangle {
-            let around = &corners[starts[*vertex as usize] as usize..starts[*vertex as usize + 1] as usize];
-            let sum: Vec3 = if around.len() > MANY {
-                faces[i]
-            } else {
-                let near = around.iter().filter(|&&c| faces[c as usize / 3].dot(faces[i]) >= least_cosine);
-                near.map(|&c| angles[c as usize] * faces[c as usize / 3]).sum()
-            };
-            normals.push(sum.normalize_or(faces[i]));
-        }
-    }
-    (normals, indices)
+    let angles: Vec<f32> = (0..corners.len() as u32).into_par_iter().map(angle).collect();
+    let normal = |i: usize, vertex: u32| {
+        let around = &corners[starts[vertex as usize] as usize..starts[vertex as usize + 1] as usize];
+        let sum: Vec3 = if around.len() > MANY {
+            faces[i]
+        } else {
+            let near = around.iter().filter(|&&c| faces[c as usize / 3].dot(faces[i]) >= least_cosine);
+            near.map(|&c| angles[c as usize] * faces[c as usize / 3]).sum()
+        };
+        sum.normalize_or(faces[i])
+    };
+    let of_triangle = |(i, triangle): (usize, &[u32; 3])| triangle.map(|vertex| normal(i, vertex));
+    let values: Vec<[Vec3; 3]> = data.triangles.par_iter().enumerate().map(of_triangle).collect();
+    let triangles = (0..values.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+    Normals { values: values.into_flattened(), triangles }
 }

@@ -110,3 +110,16 @@ fn given_files_come_first_and_count_as_if_they_were_there() {
     source.read("none.obj").unwrap();
     assert_eq!(source.digest(b""), given.digest(b""));
 }
+
+#[test]
+fn a_file_is_read_whole_whatever_its_size_was_said_to_be() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a");
+    fs::write(&path, b"0123456789").unwrap();
+    let read = |size, most| all_of(fs::File::open(&path).unwrap(), size, most).unwrap().to_vec();
+    // It may have grown or shrunk, and of what is too much one byte is known.
+    for size in [10, 0, 4, 25] {
+        assert_eq!(read(size, 100), b"0123456789", "{size}");
+    }
+    assert_eq!(read(4, 6).len(), 7);
+}

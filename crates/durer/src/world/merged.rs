@@ -14,7 +14,7 @@ impl World {
                 left_out += 1;
                 continue;
             };
-            let data = tree.mesh.data();
+            let (data, (normals, triangle_normals)) = (tree.mesh.data(), tree.mesh.normals());
             let point = |p: &Vec3| object.world_point(*p);
             let normal = |n: &Vec3| object.to_world.as_ref().map_or(*n, |to_world| to_world.normal(*n));
             let bases = [&all.positions.len(), &all.uvs.len(), &all.normals.len()].map(|count| *count as u32);
@@ -33,11 +33,11 @@ impl World {
             }
             all.positions.extend(data.positions.iter().map(point));
             all.uvs.extend(&data.uvs);
-            all.normals.extend(data.normals.iter().map(normal));
+            all.normals.extend(normals.iter().map(normal));
             all.triangles.extend(turned(&data.triangles, bases[0]));
             for (list, own, base) in [
-                (&mut all.triangle_uvs, &data.triangle_uvs, bases[1]),
-                (&mut all.triangle_normals, &data.triangle_normals, bases[2]),
+                (&mut all.triangle_uvs, &data.triangle_uvs[..], bases[1]),
+                (&mut all.triangle_normals, triangle_normals, bases[2]),
             ] {
                 if !own.is_empty() {
                     list.resize(before, [NO_INDEX; 3]);

@@ -8,7 +8,7 @@ use crate::bsdf::lobe::glass::{Mirror, Refraction, Through};
 use crate::bsdf::{Bsdf, Frame, fresnel};
 use crate::material::Parameters;
 use crate::material::principled::{Backs, Walls};
-use crate::math::{Color, Ray64, Vec3, fp};
+use crate::math::{Color, Vec3, fp};
 use crate::medium::Medium;
 use crate::shape::Surface;
 use crate::spectrum::{Curve, Lanes, Spectrum};
@@ -197,10 +197,10 @@ impl World {
         self.parts(hit, surface.position).iter().map(|part| part.share * own(part.phong)).sum()
     }
 
-    /// Whether a camera looks through a face, for it sees its back.
-    pub fn is_hidden(&self, ray: &Ray64, hit: &Hit, surface: &Surface) -> bool {
-        ray.dir().dot(surface.n_geo) > 0.0
-            && self.parts(hit, surface.position).iter().all(|part| hides_backs(part.phong))
+    /// Whether a face is looked through by a camera, or a light without extent, from where it is
+    /// seen in some direction: such see its back.
+    pub fn is_hidden(&self, dir: Vec3, hit: &Hit, surface: &Surface) -> bool {
+        dir.dot(surface.n_geo) > 0.0 && self.parts(hit, surface.position).iter().all(|part| hides_backs(part.phong))
     }
 
     /// Whether there are such faces.

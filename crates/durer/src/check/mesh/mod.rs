@@ -68,7 +68,7 @@ fn collect_object<'s>(object: &'s Object, uses: &mut Uses<'s>) {
 fn read<'s>(scout: &Scout<'s>, name: &'s FileName, objects: Vec<&'s Object>) -> Option<MeshFile<'s>> {
     let files = scout.subject.files;
     let file = (0..).take_while(|&i| files.name(i).is_some()).find(|&i| files.name(i) == Some(&name.path))?;
-    let bytes = files.bytes(file).filter(|bytes| bytes.len() <= MOST_BYTES)?;
+    let bytes = files.whole(file).filter(|bytes| bytes.len() <= MOST_BYTES)?;
     // It was read before, and what is wrong with it was said.
     let data = read_mesh(bytes, file, &name.path, &mut Diagnostics::default())?;
     let topology = Topology::of(&data.positions, &data.triangles);

@@ -264,10 +264,18 @@ impl Accessor {
         }
         let Some(view) = &self.view else { return };
         let (bytes, stride, last) = (&view.bytes()[self.offset..], self.stride(), self.place(self.width - 1));
+        // Nearly always all are, and lie side by side: then nothing is asked of each row.
+        const EXPONENT: u32 = 0x7f80_0000;
+        let is_finite = |number: &[u8; 4]| u32::from_le_bytes(*number) & EXPONENT != EXPONENT;
+        let are_finite = |some: &[[u8; 4]]| some.iter().fold(true, |all, number| all & is_finite(number));
+        let dense = if stride == self.row() { &bytes[..self.count * stride] } else { &[] };
+        if !dense.is_empty() && dense.as_chunks::<4>().0.par_chunks(1 << 15).all(are_finite) {
+            return;
+        }
         // Between columns of matrices of single precision there is no gap.
         let is_sound = |i: &usize| {
             let (numbers, _) = bytes[i * stride..][..last + 4].as_chunks::<4>();
-            numbers.iter().all(|number| f32::from_le_bytes(*number).is_finite())
+            numbers.iter().all(is_finite)
         };
         if let Some(i) = (0..self.count).into_par_iter().with_min_len(1 << 13).find_first(|i| !is_sound(i)) {
             at.error("ACCESSOR_INVALID_FLOAT", format!("row {i} has a number that is infinite or none"));
@@ -284,27 +292,31 @@ impl Accessor {
         }
     }
 
-    /// All rows; numbers beyond the accessor's own are left 0.
-    pub fn rows<const N: usize>(&self) -> Vec<[f32; N]> {
+    /// What is made of each row; numbers beyond the accessor's own are 0.
+    pub fn rows<const N: usize, T: Send>(&self, of: impl Fn([f32; N]) -> T + Sync + Send) -> Vec<T> {
         let width = self.width.min(N);
-        let mut rows = vec![[0.0; N]; self.count];
-        match &self.view {
-            Some(view) if self.component == Component::F32 && !self.is_matrix => {
-                let (bytes, stride) = (&view.bytes()[self.offset..], self.stride());
-                rows.par_iter_mut().with_min_len(1 << 13).enumerate().for_each(|(i, row)| {
-                    let (numbers, _) = bytes[i * stride..][..4 * width].as_chunks::<4>();
-                    row.iter_mut().zip(numbers).for_each(|(x, number)| *x = f32::from_le_bytes(*number));
-                });
+        let is_plain = self.component == Component::F32 && !self.is_matrix;
+        let plain = self.view.as_ref().filter(|_| is_plain).map(|view| (&view.bytes()[self.offset..], self.stride()));
+        let row = |i: usize| {
+            let mut row = [0.0; N];
+            let Some((bytes, stride)) = plain else {
+                self.dense(i, &mut row[..width]);
+                return row;
+            };
+            let (numbers, _) = bytes[i * stride..][..4 * width].as_chunks::<4>();
+            match numbers.first_chunk::<N>() {
+                Some(all) => return all.map(f32::from_le_bytes),
+                None => row.iter_mut().zip(numbers).for_each(|(x, number)| *x = f32::from_le_bytes(*number)),
             }
-            Some(_) => rows.iter_mut().enumerate().for_each(|(i, row)| self.dense(i, &mut row[..width])),
-            None => {}
-        }
+            row
+        };
+        let mut rows: Vec<T> = (0..self.count).into_par_iter().with_min_len(1 << 13).map(|i| of(row(i))).collect();
         if let Some(sparse) = &self.sparse {
             let (view, offset) = &sparse.values;
             for i in 0..sparse.count {
-                let bytes = &view.bytes()[offset + i * self.row()..];
-                let row = &mut rows[sparse.index(i) as usize];
+                let (bytes, mut row) = (&view.bytes()[offset + i * self.row()..], [0.0; N]);
                 (0..width).for_each(|k| row[k] = self.component.float(&bytes[self.place(k)..], self.normalized));
+                rows[sparse.index(i) as usize] = of(row);
             }
         }
         rows

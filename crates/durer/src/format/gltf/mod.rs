@@ -136,8 +136,11 @@ fn read(input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
         }
     };
     let findings = Findings::new(text, start, report);
+    let end = parts.json.end;
     let scene = scene(input, parts, At::root(&value, &findings));
-    findings.finish().finish(diagnostics, scene)?
+    let scene = findings.finish().finish(diagnostics, scene)?;
+    input.files.borrow_mut().cut(input.file, end, diagnostics);
+    scene
 }
 
 fn scene(input: &Input, parts: Parts, root: At) -> Option<Scene> {
@@ -303,8 +306,18 @@ impl Model<'_> {
 
     /// All rows of an accessor.
     fn rows<const N: usize>(&self, accessor: &Accessor, at: &At) -> Option<Vec<[f32; N]>> {
+        self.rows_as(accessor, at, |row| row)
+    }
+
+    /// What is made of all rows of an accessor.
+    fn rows_as<const N: usize, T: Send>(
+        &self,
+        accessor: &Accessor,
+        at: &At,
+        of: impl Fn([f32; N]) -> T + Sync + Send,
+    ) -> Option<Vec<T>> {
         self.charge(accessor.count, 4 * N, at)?;
-        Some(accessor.rows())
+        Some(accessor.rows(of))
     }
 }
 

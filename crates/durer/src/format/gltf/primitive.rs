@@ -9,6 +9,8 @@ use crate::math::{Vec2, Vec3};
 use crate::shape::MeshData;
 use rayon::prelude::*;
 use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+use std::sync::atomic::Ordering::Relaxed;
 
 /// A mesh: what each of its primitives is.
 pub(super) type Primitives = Vec<Option<Primitive>>;
@@ -93,7 +95,7 @@ impl Model<'_> {
             positions.error("MESH_PRIMITIVE_POSITION_ACCESSOR_WITHOUT_BOUNDS", message);
         }
         let count = place.count;
-        let positions: Vec<Vec3> = self.rows(place, &positions)?.into_iter().map(Vec3::from_array).collect();
+        let positions = self.rows_as(place, &positions, Vec3::from_array)?;
         let mut data = MeshData { positions, ..MeshData::default() };
         for key in attributes.object()?.keys() {
             let Some(attribute) = attributes.get(key) else { continue };
@@ -119,7 +121,10 @@ impl Model<'_> {
             _ => return self.thickened(&data, mode, &order, material, at),
         };
         // Strips are joined by triangles without area.
-        data.triangles.retain(|[a, b, c]| a != b && b != c && c != a);
+        let has_area = |[a, b, c]: &[u32; 3]| a != b && b != c && c != a;
+        if !data.triangles.par_iter().all(has_area) {
+            data.triangles.retain(has_area);
+        }
         compact(&mut data, pose.is_some());
         index(&mut data, has_normals);
         if data.tangents.is_empty() && material.is_some_and(|material| self.leans[material as usize]) {
@@ -162,17 +167,19 @@ impl Model<'_> {
         match key {
             "POSITION" | "JOINTS_0" | "WEIGHTS_0" => {}
             "NORMAL" => {
-                let rows = self.attribute(at, key, &[3], &[]).and_then(|accessor| self.rows(accessor, at));
-                data.normals = rows.unwrap_or_default().into_iter().map(Vec3::from_array).collect();
+                let accessor = self.attribute(at, key, &[3], &[]);
+                let normals = accessor.and_then(|accessor| self.rows_as(accessor, at, Vec3::from_array));
+                data.normals = normals.unwrap_or_default();
             }
             "TANGENT" => {
                 let rows = self.attribute(at, key, &[4], &[]).and_then(|accessor| self.rows(accessor, at));
                 data.tangents = rows.unwrap_or_default();
             }
             "TEXCOORD_0" | "TEXCOORD_1" => {
-                let rows = self.attribute(at, key, &[2], UNSIGNED).and_then(|accessor| self.rows(accessor, at));
+                let accessor = self.attribute(at, key, &[2], UNSIGNED);
                 // Here v grows upwards.
-                let uvs = rows.unwrap_or_default().into_iter().map(|[u, v]| Vec2::new(u, 1.0 - v)).collect();
+                let uvs = accessor.and_then(|accessor| self.rows_as(accessor, at, |[u, v]| Vec2::new(u, 1.0 - v)));
+                let uvs = uvs.unwrap_or_default();
                 *(if key == "TEXCOORD_0" { &mut data.uvs } else { &mut data.second_uvs }) = uvs;
             }
             "COLOR_0" => {
@@ -232,14 +239,14 @@ fn compact(data: &mut MeshData, keep: bool) {
     if keep {
         return;
     }
-    let mut is_used = vec![false; data.positions.len()];
-    for &i in data.triangles.iter().flatten() {
-        is_used[i as usize] = true;
-    }
-    if !is_used.contains(&false) {
+    let is_used: Vec<AtomicBool> = data.positions.par_iter().map(|_| AtomicBool::new(false)).collect();
+    data.triangles
+        .par_iter()
+        .for_each(|corners| corners.iter().for_each(|&i| is_used[i as usize].store(true, Relaxed)));
+    if is_used.par_iter().all(|used| used.load(Relaxed)) {
         return;
     }
-    let mut numbers: Vec<u32> = is_used.iter().map(|used| if *used { 0 } else { UNUSED }).collect();
+    let mut numbers: Vec<u32> = is_used.into_iter().map(|used| if used.into_inner() { 0 } else { UNUSED }).collect();
     let mut next = 0;
     for number in numbers.iter_mut().filter(|number| **number != UNUSED) {
         (*number, next) = (next, next + 1);
@@ -268,10 +275,11 @@ pub(super) fn copy<T: Copy>(values: &mut Vec<T>, originals: &[u32]) {
 /// triangles are flat.
 pub(super) fn index(data: &mut MeshData, has_normals: bool) {
     data.flat = !has_normals;
+    let own = || data.triangles.par_iter().copied().collect();
     if has_normals {
-        data.triangle_normals = data.triangles.clone();
+        data.triangle_normals = own();
     }
     if !data.uvs.is_empty() {
-        data.triangle_uvs = data.triangles.clone();
+        data.triangle_uvs = own();
     }
 }

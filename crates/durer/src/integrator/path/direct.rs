@@ -92,11 +92,14 @@ impl Path<'_> {
             }
             None => Spectrum::ONE,
         };
+        // What directions meet too is seen from here, where the other sides are shown.
+        let hides_backs = self.world.hides_backs && light.pdf == 0.0;
         if !self.world.has_cutouts && !self.world.has_interfaces {
-            return match self.world.occluded(&ray, tally) {
-                true => Spectrum::ZERO,
-                false => pass(media, &ray, ray.rounded.t_max),
-            };
+            match self.world.occluded(&ray, tally) {
+                true if hides_backs => {}
+                true => return Spectrum::ZERO,
+                false => return pass(media, &ray, ray.rounded.t_max),
+            }
         }
         let mut media = media.clone();
         // A thing with many layers is followed only so far.
@@ -108,6 +111,7 @@ impl Path<'_> {
             let blocker = self.world.surface(&ray, &hit);
             match self.passage(&ray, &hit, &blocker, &media, &sample.lanes) {
                 Some(passage) if self.is_nothing(&hit, &passage) => media = passage.behind,
+                _ if hides_backs && self.world.is_hidden(-ray.dir(), &hit, &blocker) => {}
                 _ => share *= 1.0 - self.world.opacity(&hit, &blocker),
             }
             if share == Spectrum::ZERO {

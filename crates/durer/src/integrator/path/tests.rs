@@ -267,12 +267,12 @@ fn half_a_screen_casts_half_a_shadow() {
 }
 
 #[test]
-fn a_camera_looks_through_hidden_backs_and_light_does_not() {
+fn cameras_and_lights_without_extent_look_through_hidden_backs() {
     let lit = shown(std::f64::consts::PI / 16.0);
     let (up, down) = ("edge0 0 0 1 edge1 1 0 0", "edge0 1 0 0 edge1 0 0 1");
     // Before the floor as the camera sees it, and before it as the lamp does.
     for (corner, sides, expected) in
-        [("0.5 1 -0.5", down, lit), ("0.5 1 -0.5", up, 0.0), ("-0.5 3 -0.5", down, 0.0), ("-0.5 3 -0.5", up, 0.0)]
+        [("0.5 1 -0.5", down, lit), ("0.5 1 -0.5", up, 0.0), ("-0.5 3 -0.5", down, lit), ("-0.5 3 -0.5", up, 0.0)]
     {
         let world = scene(
             &format!("{MATTE} PrincipledMaterial {{ baseColor 0 0 0 specularWeight 0 backs hidden }}"),

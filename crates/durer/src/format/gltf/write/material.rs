@@ -2,11 +2,13 @@
 //! than they are read.
 
 use super::Writer;
+use crate::describe::FileName;
 use crate::material::parameters::TEXTURED;
 use crate::material::principled::{Backs, Walls};
 use crate::material::{Pattern, PhongMaterial, PrincipledMaterial};
 use crate::math::{Vec3, fp};
-use crate::scene::Material;
+use crate::scene::{Material, Picture};
+use crate::texture::{Channel, Mapping};
 use serde_json::{Map, Value, json};
 use std::f32::consts::TAU;
 
@@ -57,7 +59,7 @@ impl Writer<'_> {
             "baseColorFactor": [r, g, b, m.opacity], "metallicFactor": m.base_metalness, "roughnessFactor": m.specular_roughness,
         });
         let mut blended = holes || m.opacity < 1.0;
-        if let Some((info, mapping)) = self.texture(&m.base_color_texture) {
+        if let Some((info, mapping)) = self.texture(m.base_color_texture.as_ref()) {
             pbr["baseColorTexture"] = info;
             match mapping.cutoff {
                 None => blended = true,
@@ -71,11 +73,11 @@ impl Writer<'_> {
         if blended && material.get("alphaMode").is_none() {
             material["alphaMode"] = "BLEND".into();
         }
-        if let Some((info, _)) = self.texture(&m.metallic_roughness_texture) {
+        if let Some((info, _)) = self.texture(m.metallic_roughness_texture.as_ref()) {
             pbr["metallicRoughnessTexture"] = info;
         }
         material["pbrMetallicRoughness"] = pbr;
-        if let Some((mut info, mapping)) = self.texture(&m.normal_texture) {
+        if let Some((mut info, mapping)) = self.texture(m.normal_texture.as_ref()) {
             info["scale"] = mapping.strength.into();
             material["normalTexture"] = info;
         }
@@ -93,7 +95,8 @@ impl Writer<'_> {
         if m.specular_ior != 1.5 {
             extend("KHR_materials_ior", json!({ "ior": m.specular_ior.max(1.0) }));
         }
-        if m.specular_weight != 1.0 || m.specular_color != Vec3::ONE {
+        let pictured = m.specular_weight_texture.is_some() || m.specular_color_texture.is_some();
+        if m.specular_weight != 1.0 || m.specular_color != Vec3::ONE || pictured {
             // A weight above 1 goes into the colour, which has no bound.
             let weight = m.specular_weight.min(1.0);
             let color = m.specular_color * (m.specular_weight / weight.max(1e-6)).max(1.0);
@@ -139,18 +142,32 @@ impl Writer<'_> {
             });
             extend("KHR_materials_iridescence", film);
         }
-        if TEXTURED.iter().any(|row| row.field != "base_color_texture" && (row.picture)(m).is_some())
-            || m.bump_texture.is_some()
-            || m.opacity_texture.is_some()
-        {
-            self.left_out("of pictures of parameters only those of the base colour, `metallicRoughnessTexture`, normals and emission are written");
+        let sheet = !solid && m.subsurface_scatter_anisotropy > 0.999;
+        if m.subsurface_weight > 0.0 && sheet {
+            let value = json!({
+                "diffuseTransmissionFactor": m.subsurface_weight,
+                "diffuseTransmissionColorFactor": m.subsurface_color.to_array(),
+            });
+            extend("KHR_materials_diffuse_transmission", value);
         }
-        if m.subsurface_weight > 0.0 || (clear && m.transmission_scatter != Vec3::ZERO) {
+        for row in TEXTURED.iter().filter(|row| row.field != "base_color_texture") {
+            let Some(name) = (row.picture)(m) else { continue };
+            if !self.add_picture(m, row.field, name, &mut extensions) {
+                self.left_out(format!(
+                    "glTF has no place for a picture such as that of `{}`: it is left out",
+                    row.field
+                ));
+            }
+        }
+        if m.bump_texture.is_some() || m.opacity_texture.is_some() {
+            self.left_out("glTF has no pictures of bumps and of opacity alone: they are left out");
+        }
+        if (m.subsurface_weight > 0.0 && !sheet) || (clear && m.transmission_scatter != Vec3::ZERO) {
             self.left_out("glTF has no light that is scattered below the surface: it is left out");
         }
         if !unlit
             && m.emission_luminance > 0.0
-            && let Some((info, _)) = self.texture(&m.emission_texture)
+            && let Some((info, _)) = self.texture(m.emission_texture.as_ref())
         {
             material["emissiveTexture"] = info;
         }
@@ -162,10 +179,67 @@ impl Writer<'_> {
     }
 }
 
+impl Writer<'_> {
+    /// Puts a picture of a parameter into the extension that has a place for it; false where none
+    /// has one that means the same.
+    fn add_picture(
+        &mut self,
+        m: &PrincipledMaterial,
+        field: &str,
+        name: &FileName,
+        extensions: &mut Map<String, Value>,
+    ) -> bool {
+        match field {
+            // It is that of the base colour there.
+            "transmission_color_texture" => return m.base_color_texture.as_ref() == Some(name),
+            // It is in the same picture as the strength.
+            "specular_rotation_texture" if m.specular_anisotropy_texture.is_some() => return true,
+            _ => {}
+        }
+        let Some((_, extension, key, channel)) = PICTURES.into_iter().find(|row| row.0 == field) else { return false };
+        let Some(value) = extensions.get_mut(extension) else { return false };
+        let Picture { bytes, mapping } = self.picture(name);
+        let fits = match field {
+            // Directions are in the same picture as the strength.
+            "specular_anisotropy_texture" => {
+                let turned = Picture { bytes, mapping: Mapping { channel: Some(Channel::Angle), ..mapping } };
+                m.specular_rotation_texture.as_ref().is_some_and(|turns| self.picture(turns) == turned)
+            }
+            "thin_film_thickness_texture" => mapping.range[1] == 1.0,
+            _ => mapping.range == [0.0, 1.0],
+        };
+        if !fits || channel != channel.map(|_| mapping.channel.unwrap_or(Channel::Red)) {
+            return false;
+        }
+        let Some((info, _)) = self.texture(Some(name)) else { return false };
+        value[key] = info;
+        if field == "thin_film_thickness_texture" {
+            value["iridescenceThicknessMinimum"] = (1000.0 * mapping.range[0] * m.thin_film_thickness).into();
+        }
+        true
+    }
+}
+
+/// Pictures of parameters: the extension, where in it they are, and the channel that counts.
+const PICTURES: [(&str, &str, &str, Option<Channel>); 11] = [
+    ("specular_weight_texture", "KHR_materials_specular", "specularTexture", Some(Channel::Alpha)),
+    ("specular_color_texture", "KHR_materials_specular", "specularColorTexture", None),
+    ("specular_anisotropy_texture", "KHR_materials_anisotropy", "anisotropyTexture", Some(Channel::Blue)),
+    ("transmission_weight_texture", "KHR_materials_transmission", "transmissionTexture", Some(Channel::Red)),
+    ("subsurface_color_texture", "KHR_materials_diffuse_transmission", "diffuseTransmissionColorTexture", None),
+    ("coat_weight_texture", "KHR_materials_clearcoat", "clearcoatTexture", Some(Channel::Red)),
+    ("coat_roughness_texture", "KHR_materials_clearcoat", "clearcoatRoughnessTexture", Some(Channel::Green)),
+    ("fuzz_color_texture", "KHR_materials_sheen", "sheenColorTexture", None),
+    ("fuzz_roughness_texture", "KHR_materials_sheen", "sheenRoughnessTexture", Some(Channel::Alpha)),
+    ("thin_film_weight_texture", "KHR_materials_iridescence", "iridescenceTexture", Some(Channel::Red)),
+    ("thin_film_thickness_texture", "KHR_materials_iridescence", "iridescenceThicknessTexture", Some(Channel::Green)),
+];
+
 /// What is written of materials.
-const EXTENSIONS: [&str; 12] = [
+const EXTENSIONS: [&str; 13] = [
     "KHR_materials_anisotropy",
     "KHR_materials_clearcoat",
+    "KHR_materials_diffuse_transmission",
     "KHR_materials_dispersion",
     "KHR_materials_emissive_strength",
     "KHR_materials_ior",

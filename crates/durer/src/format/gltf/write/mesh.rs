@@ -42,14 +42,14 @@ impl Writer<'_> {
             return None;
         }
         let smooth = Mesh::new(data.clone(), self.output.normals, true);
-        let data = smooth.data();
-        let (order, vertices) = welded(data);
+        let (data, (normals, triangle_normals)) = (smooth.data(), smooth.normals());
+        let (order, vertices) = welded(data, triangle_normals);
         let mut attributes = json!({});
         let list = |get: &dyn Fn(&[u32; 3]) -> Vec<f32>| -> Vec<f32> { vertices.iter().flat_map(get).collect() };
         let positions = list(&|v| data.positions[v[0] as usize].to_array().into());
         attributes["POSITION"] = self.floats(&positions, 3, true).into();
-        if !data.triangle_normals.is_empty() {
-            let normal = |v: &[u32; 3]| data.normals.get(v[2] as usize).copied().unwrap_or(Vec3::Z);
+        if !triangle_normals.is_empty() {
+            let normal = |v: &[u32; 3]| normals.get(v[2] as usize).copied().unwrap_or(Vec3::Z);
             // What is as good as of length 1 stays as it is, so that it is read again as it was.
             let unit = |n: Vec3| if (n.length() - 1.0).abs() < 1e-3 { n } else { n.normalize_or(Vec3::Z) };
             let normals = list(&|v| unit(normal(v)).to_array().into());
@@ -106,13 +106,13 @@ fn has_holes(data: &MeshData) -> bool {
 
 /// The corners of all triangles as numbers of vertices, each of which has a position, coordinates
 /// and a normal.
-fn welded(data: &MeshData) -> (Vec<u32>, Vec<[u32; 3]>) {
+fn welded(data: &MeshData, triangle_normals: &[[u32; 3]]) -> (Vec<u32>, Vec<[u32; 3]>) {
     let (mut known, mut vertices) = (HashMap::new(), Vec::new());
     let own = |list: &[[u32; 3]], i: usize, k: usize| list.get(i).map_or(NO_INDEX, |corners| corners[k]);
     let mut order = Vec::with_capacity(3 * data.triangles.len());
     for (i, triangle) in data.triangles.iter().enumerate() {
         for (k, corner) in triangle.iter().enumerate() {
-            let vertex = [*corner, own(&data.triangle_uvs, i, k), own(&data.triangle_normals, i, k)];
+            let vertex = [*corner, own(&data.triangle_uvs, i, k), own(triangle_normals, i, k)];
             order.push(*known.entry(vertex).or_insert_with(|| {
                 vertices.push(vertex);
                 vertices.len() as u32 - 1

@@ -11,10 +11,9 @@ use std::sync::Arc;
 
 impl Writer<'_> {
     /// A `textureInfo` of a picture that a material names; also how it lies.
-    pub(super) fn texture(&mut self, name: &Option<FileName>) -> Option<(Value, Mapping)> {
-        let name = name.as_ref()?;
-        let file = || Picture { bytes: PictureBytes::File(name.path.clone()), mapping: Mapping::default() };
-        let picture = self.scene.assets.pictures.get(&name.path).cloned().unwrap_or_else(file);
+    pub(super) fn texture(&mut self, name: Option<&FileName>) -> Option<(Value, Mapping)> {
+        let name = name?;
+        let picture = self.picture(name);
         let made = match self.textures.get(&name.path) {
             Some(known) => known.clone(),
             None => {
@@ -24,6 +23,12 @@ impl Writer<'_> {
             }
         };
         Some((made?, picture.mapping))
+    }
+
+    /// A picture that a material names.
+    pub(super) fn picture(&self, name: &FileName) -> Picture {
+        let file = || Picture { bytes: PictureBytes::File(name.path.clone()), mapping: Mapping::default() };
+        self.scene.assets.pictures.get(&name.path).cloned().unwrap_or_else(file)
     }
 
     fn info(&mut self, picture: &Picture) -> Option<Value> {
