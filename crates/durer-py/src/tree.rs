@@ -175,7 +175,7 @@ impl Tree {
         let (mut t, mut uv) = (zeros(py, threads, count), zeros::<f32>(py, threads, 2 * count));
         let mut triangle = zeros(py, threads, count);
         // In a mesh, whose object is known, there is no array of objects.
-        let mut object = if matches!(self.0, Target::Placed(_)) { vec![0; count] } else { Vec::new() };
+        let mut object = zeros(py, threads, if matches!(self.0, Target::Placed(_)) { count } else { 0 });
         let objects = object.chunks_mut(JOB).map(Some).chain(std::iter::repeat_with(|| None));
         let found = t.chunks_mut(JOB).zip(uv.as_chunks_mut().0.chunks_mut(JOB)).zip(triangle.chunks_mut(JOB));
         let jobs = found.zip(objects).enumerate().collect();

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::diag::{Files, Severity};
+use crate::math::random::Random;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -40,11 +41,8 @@ pub(super) fn abuse(bytes: &[u8], name: &str) {
         }
     };
     (0..bytes.len()).for_each(|end| try_it(&bytes[..end]));
-    let mut state = 7u64;
-    let mut random = |below: usize| {
-        state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (state >> 33) as usize % below
-    };
+    let mut numbers = Random(7);
+    let mut random = |below| numbers.below(below);
     for _ in 0..3000 {
         let mut changed = bytes.to_vec();
         for _ in 0..1 + random(3) {

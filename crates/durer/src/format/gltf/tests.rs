@@ -4,6 +4,7 @@
 use crate::describe::FileName;
 use crate::diag::{Diagnostics, Files, Severity};
 use crate::format::scene::{Input, find_scene_format, read_model};
+use crate::math::random::Random;
 use crate::math::{Vec2, Vec3};
 use crate::scene::{Material, Scene, Staging};
 use crate::shape::MeshData;
@@ -297,11 +298,8 @@ fn damage_is_refused_and_breaks_nothing() {
     for end in 0..text.len() {
         read(&text.as_bytes()[..end], Path::new("."), "a.gltf", Some(1.0));
     }
-    let mut state = 5u64;
-    let mut random = |below: usize| {
-        state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (state >> 33) as usize % below
-    };
+    let mut numbers = Random(5);
+    let mut random = |below| numbers.below(below);
     let words = ["0", "-1", "1e300", "4294967295", "null", "[]", "{}", "\"\"", "true", "9", "0.5"];
     for _ in 0..2000 {
         let mut changed = text.clone().into_bytes();
@@ -416,11 +414,8 @@ fn damage_of_compressed_bytes_is_refused_and_breaks_nothing() {
         let text = std::fs::read_to_string(root.join(name)).unwrap();
         let sound = std::fs::read(root.join(bytes)).unwrap();
         let uri = bytes.rsplit('/').next().unwrap();
-        let mut state = 7u64;
-        let mut random = |below: usize| {
-            state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-            (state >> 33) as usize % below
-        };
+        let mut numbers = Random(7);
+        let mut random = |below| numbers.below(below);
         let mut refused = 0;
         const TRIES: usize = 400;
         for i in 0..TRIES {

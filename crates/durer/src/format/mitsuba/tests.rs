@@ -3,6 +3,7 @@
 mod conventions;
 
 use crate::format::testing::{folder, read_in};
+use crate::math::random::Random;
 use crate::scene::{Material, Node, Object, Scene};
 use crate::shape::Primitive;
 use std::path::Path;
@@ -192,11 +193,8 @@ fn parts_of_a_file_and_changed_bytes_cause_no_panic() {
     for end in (0..text.len()).step_by(7) {
         crate::fuzz::model(&text[..end], "x.xml");
     }
-    let mut state = 7u64;
-    let mut random = |below: usize| {
-        state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (state >> 33) as usize % below
-    };
+    let mut numbers = Random(7);
+    let mut random = |below| numbers.below(below);
     for _ in 0..600 {
         let mut changed = text.clone();
         for _ in 0..1 + random(4) {

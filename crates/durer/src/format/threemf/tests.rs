@@ -4,6 +4,7 @@
 use crate::diag::{Diagnostics, Files};
 use crate::material::PrincipledMaterial;
 use crate::math::Vec3;
+use crate::math::random::Random;
 use crate::scene::{Material, Node, Object, Scene};
 use crate::shape::Primitive;
 use crate::{LoadOptions, load};
@@ -203,11 +204,8 @@ fn changed_bytes_cause_no_panic() {
     for end in (0..bytes.len()).step_by(3) {
         crate::fuzz::model(&bytes[..end], "x.3mf");
     }
-    let mut state = 7u64;
-    let mut random = |below: usize| {
-        state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (state >> 33) as usize % below
-    };
+    let mut numbers = Random(7);
+    let mut random = |below| numbers.below(below);
     for round in 0..600 {
         // Bytes of the archive, or of the text inside of it.
         let inner = round % 2 == 0;

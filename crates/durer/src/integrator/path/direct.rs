@@ -92,7 +92,7 @@ impl Path<'_> {
             }
             None => Spectrum::ONE,
         };
-        // What directions meet too is seen from here, where the other sides are shown.
+        // Light that directions find as well must agree with them, and they meet both sides.
         let hides_backs = self.world.hides_backs && light.pdf == 0.0;
         if !self.world.has_cutouts && !self.world.has_interfaces {
             match self.world.occluded(&ray, tally) {

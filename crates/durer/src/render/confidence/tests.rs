@@ -4,9 +4,8 @@ use super::*;
 use crate::compile::testing::read;
 use crate::film::Filter;
 use crate::integrator::{Settings, Transport};
-use crate::render::Sampling;
-use crate::render::Shard;
 use crate::render::explain::explain;
+use crate::render::{Sampling, Shard};
 
 #[test]
 fn students_quantiles_are_those_of_the_tables() {

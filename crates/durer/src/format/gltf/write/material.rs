@@ -177,9 +177,7 @@ impl Writer<'_> {
         }
         material
     }
-}
 
-impl Writer<'_> {
     /// Puts a picture of a parameter into the extension that has a place for it; false where none
     /// has one that means the same.
     fn add_picture(
