@@ -13,6 +13,7 @@ use super::lobe::rough::{Facet, Rough};
 use super::lobe::rough_glass::RoughGlass;
 use super::microfacet::Ggx;
 use super::{Bsdf, fresnel};
+use crate::describe::FileName;
 use crate::material::principled::Walls;
 use crate::material::{Parameters, PrincipledMaterial};
 use crate::math::{Vec3, fp};
@@ -46,8 +47,40 @@ impl Tables {
             opaque: of(opaque_ior(material)),
             glass: of(material.specular_ior),
             measured,
-            coat: of(if material.coat_weight > 0.0 { material.coat_ior } else { material.specular_ior }),
+            coat: of(material.coat_ior),
         }
+    }
+
+    /// Works out by all threads what points of the material can ask for, so that no thread that
+    /// renders has to.
+    pub fn prepare(&self, m: &PrincipledMaterial) {
+        // A picture multiplies: it changes no 0, and may change all else.
+        let all = |share: f32, picture: &Option<FileName>| share == 1.0 && picture.is_none();
+        let metal = all(m.base_metalness, &m.base_metalness_texture) && m.metallic_roughness_texture.is_none();
+        let glass = all(m.transmission_weight, &m.transmission_weight_texture);
+        let rough_coat = m.coat_weight > 0.0 && m.coat_roughness > 0.0;
+        let rough = m.specular_roughness > 0.0 || rough_coat;
+        let through = rough && !metal && m.transmission_weight > 0.0;
+        if m.fuzz_weight > 0.0 {
+            albedo::fuzz(1.0, 0.0);
+        }
+        if rough && m.base_metalness > 0.0 || through && m.walls == Walls::Thin {
+            albedo::ggx(1.0, 0.0);
+        }
+        let boundaries = [
+            (rough_coat, &self.coat),
+            (rough && !metal && !glass, &self.opaque),
+            (through && m.walls == Walls::Solid, &self.glass),
+        ];
+        boundaries.into_iter().filter(|(asked, _)| *asked).for_each(|(_, boundary)| {
+            boundary.gain(false, 1.0, 0.0);
+        });
+    }
+
+    /// Which boundaries are worked out: those of an opaque base, of glass, of the coat.
+    #[cfg(test)]
+    pub(crate) fn prepared(&self) -> [bool; 3] {
+        [&self.opaque, &self.glass, &self.coat].map(|boundary| boundary.is_prepared())
     }
 }
 
