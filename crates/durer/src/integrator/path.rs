@@ -42,11 +42,12 @@ pub struct Path<'w> {
 /// Random numbers of one bounce, by what they are for: pairs of a sample's dimensions.
 #[derive(Clone, Copy)]
 enum Use {
-    /// The lobe, and whether the path goes on.
-    Lobe,
+    /// The lobe, and the light.
+    Choices,
     Direction,
-    Light,
     PlaceOnLight,
+    /// Whether the path goes on.
+    Survival,
 }
 
 /// Pairs that a bounce takes.
@@ -167,18 +168,23 @@ impl<'w> Path<'w> {
         let n_geo = if surface.n_geo.dot(normal) < 0.0 { -surface.n_geo } else { surface.n_geo };
         let shading = Shading { frame: Frame::around(normal), n_geo, wo: Vec3::Z, bsdf };
         let sample = self.sample(id);
-        let vertex = Vertex { place: Place::Surface(surface, &shading, None), state: &State::default() };
+        let state = State::default();
+        let vertex = self.vertex(Place::Surface(surface, &shading, None), &state, &sample);
         let near = self.direct(&vertex, &sample, tally) + self.caustic(&vertex, &sample, tally);
         let light = near + self.indirect(&vertex, &sample, tally);
         std::f32::consts::PI * sample.lanes.color(light)
     }
 
+    fn vertex<'a>(&self, place: Place<'a>, state: &'a State, sample: &Sample) -> Vertex<'a> {
+        Vertex { place, state, choices: sample.bounce(state.depth).pair(Use::Choices as u32) }
+    }
+
     /// The light along a ray: a sum, and what the way to it leaves of it.
     fn trace<T: Witness>(&self, ray: &Ray64, mut state: State, sample: &Sample, tally: &mut T) -> (Spectrum, Spectrum) {
         let (end, scale) = self.fly(ray, &mut state, sample, tally);
-        let sum = match end {
+        let sum = match &end {
             End::Lost => Spectrum::ZERO,
-            End::Sky(dir) => {
+            &End::Sky(dir) => {
                 let (sky, pdf) = self.world.emitters.sky(self.world, dir);
                 let sky = sample.lanes.light(sky);
                 let weight = self.weight(&state, self.world.environment.is_some(), |_| pdf);
@@ -186,11 +192,11 @@ impl<'w> Path<'w> {
                 tally.end(sample.told(Spectrum::splat(weight)), sample.told(Spectrum::ONE), sample.told(sky));
                 weight * sky
             }
-            End::Medium(point, dir, phase) => {
+            &End::Medium(point, dir, phase) => {
                 let place = Place::Medium(point, dir, phase);
-                self.scattered(Spectrum::ZERO, &Vertex { place, state: &state }, sample, tally)
+                self.scattered(Spectrum::ZERO, &self.vertex(place, &state, sample), sample, tally)
             }
-            End::Surface(met) => self.met(&met, state, sample, tally),
+            End::Surface(met) => self.met(met, &mut state, sample, tally),
         };
         (sum, scale)
     }
@@ -283,7 +289,7 @@ impl<'w> Path<'w> {
     }
 
     /// The light that leaves a hit against the ray.
-    fn met<T: Witness>(&self, met: &Met, mut state: State, sample: &Sample, tally: &mut T) -> Spectrum {
+    fn met<T: Witness>(&self, met: &Met, state: &mut State, sample: &Sample, tally: &mut T) -> Spectrum {
         let Met { ray, hit, surface, .. } = met;
         let shading = met.shading(self.world, &sample.lanes);
         tally.hit(|| struck(self.world, ray, hit, surface, shading.frame.normal, met.inside(), false));
@@ -292,7 +298,7 @@ impl<'w> Path<'w> {
         if emitted != Color::ZERO {
             let emitted = sample.lanes.light_of(emitted, self.world.own_illuminant(self.world.material(hit)));
             let carried = self.world.emitters.chooses(hit);
-            let weight = self.weight(&state, carried, |from| self.pdf_of_hit(ray, hit, from));
+            let weight = self.weight(state, carried, |from| self.pdf_of_hit(ray, hit, from));
             tally.begin(|| What::Emission { mis: weight });
             tally.end(sample.told(Spectrum::splat(weight)), sample.told(Spectrum::ONE), sample.told(emitted));
             sum += weight * emitted;
@@ -300,10 +306,10 @@ impl<'w> Path<'w> {
         if shading.bsdf.is_black() {
             return sum;
         }
-        let kept = self.kept(met, &mut state, sample);
+        let kept = self.kept(met, state, sample);
         state.by_target = self.photons.as_ref().is_some_and(|photons| photons.reaches(hit.object));
         let place = Place::Surface(surface, &shading, met.passage.as_ref());
-        let vertex = Vertex { place, state: &state };
+        let vertex = self.vertex(place, state, sample);
         let Some((nm, kept)) = kept else { return self.scattered(sum, &vertex, sample, tally) };
         tally.begin(|| What::OneWavelength { nm });
         let light = self.scattered(Spectrum::ZERO, &vertex, sample, tally);
@@ -350,17 +356,17 @@ impl<'w> Path<'w> {
 
     /// The light from a direction that is chosen.
     fn indirect<T: Witness>(&self, vertex: &Vertex, sample: &Sample, tally: &mut T) -> Spectrum {
-        let Vertex { place, state } = vertex;
+        let Vertex { place, state, .. } = vertex;
         let id = sample.bounce(state.depth);
-        let (numbers, u) = (id.pair(Use::Lobe as u32), id.pair(Use::Direction as u32));
-        let Some(chosen) = place.sample(numbers.x, u) else { return Spectrum::ZERO };
+        let u = id.pair(Use::Direction as u32);
+        let Some(chosen) = place.sample(vertex.choices.x, u) else { return Spectrum::ZERO };
         let throughput = state.throughput * chosen.weight;
         // Paths go on with a probability that keeps those that go on equally bright.
         let survival = match state.depth {
             0..3 => 1.0,
             _ => throughput.max_element().min(0.95),
         };
-        if survival <= 0.0 || numbers.y >= survival {
+        if survival < 1.0 && id.pair(Use::Survival as u32).x >= survival {
             return Spectrum::ZERO;
         }
         let weight = chosen.weight / survival;

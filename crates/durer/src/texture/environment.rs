@@ -24,9 +24,28 @@ pub struct Environment {
     /// How far it is turned about y, as a share of a whole turn from 0 to 1.
     turn: f32,
     scale: Color,
-    /// For each row the sums of its texels' weights from the left, and last the sums of the rows.
+    /// For each row the sums of its texels' weights from the left.
     rows: Arc<[f32]>,
+    /// Where to look in them, for each row by steps of what is wanted.
+    hints: Arc<[u32]>,
+    /// The sums of the rows from above, and where to look in them.
     columns: Arc<[f32]>,
+    column_hints: Arc<[u32]>,
+}
+
+/// Entries that have a hint in common.
+const STEP: usize = 4;
+
+/// For each step of a share from 0 to 1 the entry at which it is reached.
+fn hints(sums: &[f32]) -> impl Iterator<Item = u32> {
+    let steps = sums.len().div_ceil(STEP);
+    let mut i = 0;
+    (0..steps).map(move |step| {
+        let wanted = step as f32 / steps as f32 * sums[sums.len() - 1];
+        i += sums[i..].iter().take_while(|sum| **sum <= wanted).count();
+        i = i.min(sums.len() - 1);
+        i as u32
+    })
 }
 
 impl Environment {
@@ -61,7 +80,10 @@ impl Environment {
         }
         let turn = (degrees / 360.0).rem_euclid(1.0);
         let sound = all > 0.0 && (all as f32).is_finite() && turn.is_finite();
+        let column_hints = hints(&columns).collect();
         sound.then(|| Environment {
+            hints: rows.chunks(width).flat_map(hints).collect(),
+            column_hints,
             width,
             height,
             texels: texels.into(),
@@ -81,7 +103,7 @@ impl Environment {
 
     /// Bytes in memory.
     pub fn bytes(&self) -> usize {
-        self.texels.len() * size_of::<[f32; 4]>()
+        self.texels.len() * size_of::<[f32; 4]>() + size_of_val(&*self.hints)
     }
 
     fn place(&self, dir: Vec3) -> Place {
@@ -145,8 +167,10 @@ impl Environment {
 
     /// A direction chosen by two numbers from 0 to 1, its light, and its density per solid angle.
     pub fn sample(&self, u: Vec2) -> Option<(Vec3, Color, f32)> {
-        let (y, v) = choose(&self.columns, u.y);
-        let (x, h) = choose(&self.rows[y * self.width..(y + 1) * self.width], u.x);
+        let steps = self.width.div_ceil(STEP);
+        let (y, v) = choose(&self.columns, &self.column_hints, u.y);
+        let row = &self.rows[y * self.width..(y + 1) * self.width];
+        let (x, h) = choose(row, &self.hints[y * steps..(y + 1) * steps], u.x);
         let [across, down] = [x as f32 + h, y as f32 + v];
         let (sine, cosine) = fp::sin_cos_turn(0.5 * down / self.height as f32);
         let (sin_turn, cos_turn) = fp::sin_cos_turn(across / self.width as f32 + self.turn - 0.5);
@@ -157,9 +181,17 @@ impl Environment {
 }
 
 /// The entry at which a share of the whole sum is reached, and how far in it that is.
-fn choose(sums: &[f32], u: f32) -> (usize, f32) {
-    let wanted = u * sums[sums.len() - 1];
-    let i = sums.partition_point(|&sum| sum <= wanted).min(sums.len() - 1);
+fn choose(sums: &[f32], hints: &[u32], u: f32) -> (usize, f32) {
+    let last = sums.len() - 1;
+    let wanted = u * sums[last];
+    let mut i = hints[((u * hints.len() as f32) as usize).min(hints.len() - 1)] as usize;
+    // A hint may be late by a rounding.
+    while i > 0 && sums[i - 1] > wanted {
+        i -= 1;
+    }
+    while i < last && sums[i] <= wanted {
+        i += 1;
+    }
     let before = if i > 0 { sums[i - 1] } else { 0.0 };
     let inside = (wanted - before) / (sums[i] - before);
     (i, if inside.is_finite() { inside.clamp(0.0, 1.0 - f32::EPSILON * 0.5) } else { 0.5 })

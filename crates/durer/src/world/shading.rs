@@ -6,7 +6,6 @@ use crate::bsdf::lobe::blinn::Blinn;
 use crate::bsdf::lobe::diffuse::Diffuse;
 use crate::bsdf::lobe::glass::{Mirror, Refraction, Through};
 use crate::bsdf::{Bsdf, Frame, fresnel};
-use crate::material::Parameters;
 use crate::material::principled::{Backs, Walls};
 use crate::math::{Color, Vec3, fp};
 use crate::medium::Medium;
@@ -15,7 +14,6 @@ use crate::spectrum::{Curve, Lanes, Spectrum};
 use crate::world::HighlightModel;
 use crate::world::emitters::LightId;
 use crate::world::material::Emission;
-use smallvec::SmallVec;
 
 /// A surface point as it is seen from one direction.
 #[derive(Clone, Debug)]
@@ -74,19 +72,16 @@ impl World {
         let [n, n_geo] = [n_shade, surface.n_geo].map(|n| if inside { -n } else { n });
         // An interpolated normal may point away from the ray; the surface itself does not.
         let n = if dir.dot(n) < 0.0 { n.normalize_or(n_geo) } else { n_geo };
-        let here: SmallVec<[_; 2]> = parts
-            .iter()
-            .map(|part| part.phong.principled.as_ref().map(|own| (own, self.parameters_at(own, hit, surface))))
-            .collect();
-        let frame = self.frame(here.iter().flatten().map(|(_, here)| here.as_ref()), hit, surface, n);
+        let frame = self.frame(&parts, hit, surface, n);
         let wo = frame.to_local(-dir.normalize_or(-n));
         let wo = Vec3::new(wo.x, wo.y, wo.z.max(1e-6));
         let mut shading = Shading { frame, n_geo, wo, bsdf: Bsdf::default() };
         let bsdf = &mut shading.bsdf;
-        for (part, here) in parts.iter().zip(&here) {
-            match here {
-                Some((own, here)) => {
-                    layers::scattering(bsdf, part.share, here, &own.tables, View { lanes, wo, inside, eta });
+        for part in &parts {
+            match &part.phong.principled {
+                Some(own) => {
+                    let here = self.parameters_at(own, hit, surface);
+                    layers::scattering(bsdf, part.share, &here, &own.tables, View { lanes, wo, inside, eta });
                 }
                 None => phong_lobes(bsdf, part, self.diffuse_color(part.phong, surface), wo, eta, lanes),
             }
@@ -96,14 +91,12 @@ impl World {
 
     /// The frame around a normal: along u, and turned from there, where the highlight of a part is
     /// longer than wide.
-    fn frame<'a>(
-        &self,
-        mut parts: impl Iterator<Item = &'a Parameters>,
-        hit: &Hit,
-        surface: &Surface,
-        n: Vec3,
-    ) -> Frame {
-        let Some(long) = parts.find(|here| here.specular_anisotropy > 0.0) else { return Frame::around(n) };
+    fn frame(&self, parts: &[Part], hit: &Hit, surface: &Surface, n: Vec3) -> Frame {
+        // No picture makes anything of 0.
+        let own = parts.iter().filter_map(|part| part.phong.principled.as_deref());
+        let long = own.filter(|own| own.parameters.specular_anisotropy > 0.0);
+        let mut long = long.map(|own| self.parameters_at(own, hit, surface));
+        let Some(long) = long.find(|here| here.specular_anisotropy > 0.0) else { return Frame::around(n) };
         let frame = Frame::along(n, self.tangent(hit, surface));
         let (sin, cos) = fp::sin_cos_degrees(360.0 * f64::from(long.specular_rotation));
         Frame::along(n, cos as f32 * frame.tangent + sin as f32 * frame.bitangent)

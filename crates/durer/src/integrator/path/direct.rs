@@ -35,8 +35,8 @@ impl Path<'_> {
     /// The light of one light that is chosen.
     pub(super) fn direct<T: Witness>(&self, vertex: &Vertex, sample: &Sample, tally: &mut T) -> Spectrum {
         let (world, place) = (self.world, &vertex.place);
-        let id = sample.bounce(vertex.state.depth);
-        let (choice, u) = (id.pair(Use::Light as u32).x, id.pair(Use::PlaceOnLight as u32));
+        let choice = vertex.choices.y;
+        let u = sample.bounce(vertex.state.depth).pair(Use::PlaceOnLight as u32);
         let choose = |u| world.emitters.sample(world, place.point(), place.normal(), choice, u);
         let chosen = match (choose(u), self.transport.direct) {
             (Some(any), Direct::Middle) => choose(world.emitters.middle(any.light).unwrap_or(u)),
@@ -80,7 +80,7 @@ impl Path<'_> {
         if !self.settings.shadows {
             return Spectrum::ONE;
         }
-        let Vertex { place, state } = vertex;
+        let Vertex { place, state, .. } = vertex;
         let media = place.media(state, light.wi);
         let mut ray = place.shadow_ray(light);
         let mut share = Spectrum::ONE;

@@ -26,6 +26,8 @@ pub(super) struct Scattered {
 pub(super) struct Vertex<'a> {
     pub(super) place: Place<'a>,
     pub(super) state: &'a State,
+    /// Numbers for a lobe and for a light.
+    pub(super) choices: Vec2,
 }
 
 /// What scatters light there.

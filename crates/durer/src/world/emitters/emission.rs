@@ -134,7 +134,7 @@ impl Beams {
                 let power = world.emission_of(material)?.radiance * (cosine.abs() / (density * pdf * choice));
                 // Beside its own surface.
                 let side = if cosine < 0.0 { -normal } else { normal };
-                let origin = point + f64::from(4.0 * area.form.error()) * side.as_dvec3();
+                let origin = point + f64::from(4.0 * area.error) * side.as_dvec3();
                 Some(Emitted {
                     ray: Ray64::new(origin, dir, 0.0, f32::INFINITY),
                     power,

@@ -28,6 +28,8 @@ pub struct AreaLight {
     pub part: u32,
     /// Whether it shines to both sides, and not only to that of its normal.
     pub two_sided: bool,
+    /// As [`Form::error`].
+    pub error: f32,
 }
 
 /// One of the things that the tree chooses.
@@ -224,7 +226,7 @@ fn spread(world: &World, light: u32, sample: LightSample, u: Vec2) -> LightSampl
 impl AreaLight {
     fn new(number: u32, object: &Object, part: u32, two_sided: bool) -> Option<Self> {
         let (form, normal) = Form::of(object, part)?;
-        Some(AreaLight { form, normal, object: number, part, two_sided })
+        Some(AreaLight { error: form.error(), form, normal, object: number, part, two_sided })
     }
 
     fn bounds(&self, radiance: f32) -> Bounds {
@@ -249,7 +251,7 @@ impl AreaLight {
         }
         // The point is known to its rounding only; what stands nearer to the emitter than that does not
         // count.
-        let reach = place.distance - 2.0 * self.form.error() / place.cosine.abs().max(1e-3);
+        let reach = place.distance - 2.0 * self.error / place.cosine.abs().max(1e-3);
         let radiance = world.emission_of(world.objects[self.object as usize].material)?.radiance;
         let light = LightId::Surface(self.object, self.part);
         Some(LightSample { light, wi: place.wi, reach, radiance, choice, pdf: place.pdf })

@@ -5,7 +5,7 @@ use crate::math::{Aabb, Vec2, Vec3, fp, gamma};
 use crate::shape::Primitive;
 use crate::world::Object;
 use crate::world::object::Geometry;
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use std::f32::consts::PI;
 
 /// A form whose points can be chosen at random.
@@ -305,7 +305,8 @@ struct Window {
     far: DVec3,
     solid_angle: f64,
     b: [f64; 2],
-    k: f64,
+    /// Cosine and sine of the angle from which points are counted.
+    k: DVec2,
 }
 
 impl Window {
@@ -328,19 +329,23 @@ impl Window {
         // Cosines of the angles between the normals of the four planes through the edges.
         let nz = |a: f64| a / (a * a + near.z * near.z).sqrt();
         let [n0, n1, n2, n3] = [-nz(near.y), nz(far.x), nz(far.y), -nz(near.x)];
-        let angle = |cosine: f64| std::f64::consts::FRAC_PI_2 - fp::asin_f64(cosine.clamp(-1.0, 1.0));
+        // Angles as complex numbers: those of products are sums, which are whole turns off.
+        let angle = |cosine: f64| DVec2::new(cosine, ((1.0 - cosine) * (1.0 + cosine)).max(0.0).sqrt());
         let [g0, g1, g2, g3] = [angle(-n0 * n1), angle(-n1 * n2), angle(-n2 * n3), angle(-n3 * n0)];
-        let solid_angle = g0 + g1 + g2 + g3 - std::f64::consts::TAU;
-        let k = std::f64::consts::TAU - g2 - g3;
+        let right = g2.rotate(g3);
+        let all = g0.rotate(g1).rotate(right);
+        let turns = fp::atan2_turn_f64(all.y, all.x);
+        let solid_angle = std::f64::consts::TAU * if turns < 0.0 { turns + 1.0 } else { turns };
+        let k = DVec2::new(right.x, -right.y);
         (solid_angle > 1e-5).then_some(Window { axes: [x, y, z], near, far, solid_angle, b: [n0, n2], k })
     }
 
     /// A point of it.
     fn sample(&self, u: Vec2) -> Vec3 {
         let (near, far, [b0, b1]) = (self.near, self.far, self.b);
-        let around = f64::from(u.x) * self.solid_angle + self.k;
-        let (sin, cos) = fp::sin_cos_f64(around);
-        let fu = (cos * b0 - b1) / sin;
+        let (sin, cos) = fp::sin_cos_f64(f64::from(u.x) * self.solid_angle);
+        let around = self.k.rotate(DVec2::new(cos, sin));
+        let fu = (around.x * b0 - b1) / around.y;
         let cu = (1.0 / (fu * fu + b0 * b0).sqrt()).copysign(fu).clamp(-1.0, 1.0);
         let x = (-(cu * near.z) / (1.0 - cu * cu).max(1e-30).sqrt()).clamp(near.x, far.x);
         let d2 = x * x + near.z * near.z;

@@ -148,7 +148,9 @@ impl Node {
 
     /// The probabilities of its children; `None` where none brings any light.
     fn shares(&self, p: Vec3, n: Vec3) -> Option<[f32; WIDTH]> {
-        let importances = [0, 1].map(|half| self.importances(half, p, n));
+        let few = matches!(self.children[WIDTH / 2], Child::None);
+        let high = if few { Vec4::ZERO } else { self.importances(1, p, n) };
+        let importances = [self.importances(0, p, n), high];
         let sum = (importances[0] + importances[1]).element_sum();
         (sum > 0.0 && sum.is_finite()).then(|| {
             let [low, high] = importances.map(|four| (four / sum).to_array());
@@ -158,7 +160,8 @@ impl Node {
 }
 
 fn root(x: Vec4) -> Vec4 {
-    x.map(f32::sqrt)
+    let [a, b, c, d] = x.to_array();
+    Vec4::new(a.sqrt(), b.sqrt(), c.sqrt(), d.sqrt())
 }
 
 fn sine(cosine: Vec4) -> Vec4 {
