@@ -51,7 +51,7 @@ pub fn job(args: &JobArgs, view: Option<&ViewArgs>, loaded: &Loaded, timed: bool
     let wishes = loaded.scene.wishes;
     let (width, height) = args.size.or(wishes.size).unwrap_or_else(|| Raster::natural_size(proportions, rules.size));
     // A blur needs more samples than an edge.
-    let method = method::method(&args.method, &loaded.scene)?;
+    let method = args.method.method(method::usual(&loaded.scene))?;
     let plenty = if camera.is_some_and(|camera| camera.has_aperture()) || method.is_random() { 64 } else { 16 };
     let plenty = wishes.samples.unwrap_or(plenty);
     if method.is_random() && (args.jitter || args.blur) {

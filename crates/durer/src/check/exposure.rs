@@ -5,7 +5,7 @@ use super::finding::{Finding, number, percent, vector};
 use super::lights::{VISIBLE, color, place};
 use super::scout::{Probe, Scout, Seen};
 use crate::diag::{Diagnostic, Severity};
-use crate::integrator::{Integrator, Method};
+use crate::integrator::{Integrate, Path};
 use crate::math::{Color, fp};
 use crate::sampler::SampleId;
 use rayon::prelude::*;
@@ -32,13 +32,13 @@ pub(super) fn light(scout: &Scout) -> Vec<Color> {
         return scout.probes.iter().map(|probe| exposure * probe.color).collect();
     };
     let job = scout.subject.job;
-    let integrator = Integrator::new(scout.world(), Method::Path(transport), job.settings, job.seed, None);
+    let path = Path::new(scout.world(), job.settings, transport);
     let step = scout.probes.len().div_ceil(MOST_PIXELS).max(1);
     // Not one in each row: that would be the same column each time.
     let chosen: Vec<&Probe> =
         scout.probes.iter().step_by(if step.is_multiple_of(2) { step + 1 } else { step }).collect();
     let mean = |probe: &&Probe| {
-        let sample = |i: u32| integrator.radiance(&probe.ray, SampleId::new(job.seed, probe.pixel, i), &mut ());
+        let sample = |i: u32| path.radiance(&probe.ray, SampleId::new(job.seed, probe.pixel, i), &mut ());
         let all = (0..SAMPLES).map(sample).filter(|color| color.is_finite());
         exposure * all.sum::<Color>() / SAMPLES as f32
     };

@@ -118,7 +118,7 @@ impl<'a> Scout<'a> {
                 ..settings
             },
             // Its terms are what the checks ask for.
-            method: Method::Whitted,
+            method: Method::WHITTED,
             ..subject.job.clone()
         };
         let places: Vec<(u32, u32)> = (0..rows).flat_map(|y| (0..columns).map(move |x| (x, y))).collect();

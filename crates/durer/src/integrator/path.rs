@@ -8,7 +8,7 @@
 use super::account::{Bounce, RayKind, TermValue, What, Witness};
 use super::media::{Media, Passage};
 use super::whitted::struck;
-use super::{Settings, Transport};
+use super::{Integrate, Settings};
 use crate::bsdf::lobe::diffuse::Diffuse;
 use crate::bsdf::{Bsdf, Frame};
 use crate::math::{Color, Ray, Ray64, Vec3, gamma};
@@ -18,6 +18,7 @@ use crate::shape::Surface;
 use crate::spectrum::{Lanes, Spectrum};
 use crate::world::{Hit, Shading, World};
 use glam::DVec3;
+pub use parameters::{Direct, PhotonParameters, Transport};
 pub use photons::{PhotonMap, Photons};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
@@ -127,14 +128,8 @@ enum End {
 /// How often light is scattered in a body at most until it gets out.
 const MAX_WALK: u32 = 10_000;
 
-impl<'w> Path<'w> {
-    /// Without photons, and never cancelled.
-    pub fn new(world: &'w World, settings: Settings, transport: Transport) -> Self {
-        Path { world, settings, transport, photons: None, cancel: None }
-    }
-
-    /// The light that comes along a camera ray, by the random numbers of a sample.
-    pub fn radiance<T: Witness>(&self, ray: &Ray, id: SampleId, tally: &mut T) -> Color {
+impl Integrate for Path<'_> {
+    fn radiance<T: Witness>(&self, ray: &Ray, id: SampleId, tally: &mut T) -> Color {
         let sample = self.sample(id);
         tally.lanes(&sample.lanes);
         tally.begin(|| What::Ray { from: RayKind::Camera, ray: ray.into(), weight: 1.0, hit: None, bounce: None });
@@ -142,6 +137,19 @@ impl<'w> Path<'w> {
         let light = sum * scale;
         tally.end(sample.told(Spectrum::ONE), sample.told(scale), sample.told(light));
         sample.lanes.color(light)
+    }
+
+    fn prepare(&self, sample: u32) {
+        if let Some(photons) = &self.photons {
+            photons.prepare(self, sample);
+        }
+    }
+}
+
+impl<'w> Path<'w> {
+    /// Without photons, and never cancelled.
+    pub fn new(world: &'w World, settings: Settings, transport: Transport) -> Self {
+        Path { world, settings, transport, photons: None, cancel: None }
     }
 
     fn sample(&self, id: SampleId) -> Sample {
@@ -410,6 +418,7 @@ impl<'w> Path<'w> {
 }
 
 mod direct;
+mod parameters;
 mod photons;
 #[cfg(test)]
 mod tests;

@@ -6,9 +6,12 @@
 use super::account::{RayKind, Shadow, Struck, What, Witness};
 use super::media::{Body, Media, Passage};
 use super::spawn::{from_surface, to_light};
-use crate::dialect::Compat;
+use super::{Integrate, Parameters, Setup};
+use crate::described;
+use crate::dialect::{Compat, set};
 use crate::light::Illumination;
 use crate::math::{Color, Ray, Ray64, Vec3, fp, gamma, reflect};
+use crate::sampler::SampleId;
 use crate::shape::Surface;
 use crate::world::{HighlightModel, Hit, Part, Phong, World};
 use serde::{Deserialize, Serialize};
@@ -40,6 +43,23 @@ impl Settings {
     pub const MOST_BOUNCES: u32 = 256;
 }
 
+described! {
+    /// local light, mirrors, glass
+    WhittedParameters ["whitted" in set::DURER] {}
+}
+
+impl Copy for WhittedParameters {}
+
+impl Parameters for WhittedParameters {
+    type Integrator<'w> = Whitted<'w>;
+
+    const IS_RANDOM: bool = false;
+
+    fn over(self, Setup { world, settings, cancel, .. }: Setup<'_>) -> Whitted<'_> {
+        Whitted { world, settings, cancel }
+    }
+}
+
 /// The integrator over one world.
 #[derive(Clone, Copy, Debug)]
 pub struct Whitted<'w> {
@@ -60,6 +80,12 @@ struct Path {
     media: Media,
     /// How much the ray counts for in the pixel.
     weight: f32,
+}
+
+impl Integrate for Whitted<'_> {
+    fn radiance<T: Witness>(&self, ray: &Ray, _: SampleId, tally: &mut T) -> Color {
+        self.radiance(ray, tally)
+    }
 }
 
 impl Whitted<'_> {

@@ -9,7 +9,7 @@ use crate::film::aov::Aov;
 use crate::film::{Filter, luminance_of};
 use crate::format::course::{self, ReadOptions};
 use crate::image::{Image, Layer};
-use crate::integrator::{Method, Settings, Transport};
+use crate::integrator::{Method, PhotonParameters, Settings, Transport};
 use crate::light::Light;
 use crate::math::{Color, Vec3};
 use crate::mistakes::{Variant, of_name};
@@ -184,15 +184,15 @@ impl Stage {
 
     /// Whitted's light, or paths with what the picture's own have.
     fn method(&self, look: &Look) -> Method {
-        let Some(carriage) = look.paths else { return Method::Whitted };
+        let Some(carriage) = look.paths else { return Method::WHITTED };
         let own = self.job.method.transport().unwrap_or_default();
         let transport = Transport { direct: carriage.direct, color: carriage.color, ..own };
         match (carriage.photons, self.job.method) {
             (false, _) => Method::Path(transport),
-            (true, Method::Photons { count, radius, .. }) => {
-                Method::Photons { transport, count, radius, corrected: false }
+            (true, Method::Photons(photons)) => {
+                Method::Photons(PhotonParameters { transport, corrected: false, ..photons })
             }
-            (true, _) => Method::Photons { transport, count: Method::PHOTONS, radius: None, corrected: false },
+            (true, _) => Method::Photons(PhotonParameters { transport, ..PhotonParameters::default() }),
         }
     }
 

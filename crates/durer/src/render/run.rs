@@ -7,6 +7,7 @@ use super::{BLOCK, Control, Job, Rendered, Shard, rays};
 use crate::bvh::RayCount;
 use crate::film::Packed;
 use crate::film::aov::Look;
+use crate::integrator::Integrate;
 use crate::threads;
 use crate::world::World;
 use rayon::prelude::*;

@@ -8,7 +8,7 @@ use crate::camera::{CameraSample, Lens, Raster};
 use crate::dialect::Compat;
 use crate::film::course::{CourseFilter, StoredSample, StoredSamples};
 use crate::film::{Film, FilterSampler};
-use crate::integrator::{Integrator, Whitted};
+use crate::integrator::{Integrate, Integrator, Whitted};
 use crate::math::{Color, Ray, Vec2, Vec3};
 use crate::sampler::{LENS_DIMENSION, PIXEL_DIMENSION, SampleId, Sampler, Sequence};
 use crate::threads;
@@ -162,7 +162,7 @@ impl<'a> Samples<'a> {
             _ => None,
         };
         let whitted = Whitted { world, settings: job.settings, cancel: Some(stop) };
-        let integrator = Integrator::new(world, job.method, job.settings, job.seed, Some(stop));
+        let integrator = job.integrator(world, Some(stop));
         let raster = raster(world, job.width, job.height);
         let has_aperture = world.camera.has_aperture();
         Samples { world, job, raster, whitted, integrator, warp, has_aperture, stale: Vec::new(), stop }

@@ -7,7 +7,7 @@ use crate::camera::{CameraSample, Frame, Lens};
 use crate::compile::testing;
 use crate::diag::Diagnostic;
 use crate::dialect::Dialect;
-use crate::integrator::{Path as Paths, Settings, Transport};
+use crate::integrator::{Integrate, Path as Paths, Settings, Transport};
 use crate::light::Light;
 use crate::math::random::Random;
 use crate::math::{Vec2, Vec3, fp};
