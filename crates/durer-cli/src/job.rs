@@ -110,7 +110,7 @@ fn usual_bounces(method: Method, loaded: &Loaded) -> u32 {
 
 /// Warns of a picture that its camera does not fill, or whose lens stays unused.
 pub fn warn(job: &Job, world: &World) {
-    let camera = &world.camera;
+    let camera = world.camera();
     let (columns, rows) = durer::render::raster(world, job.width, job.height).empty();
     if (columns, rows) != (0, 0) {
         let (count, what) = if columns > 0 { (columns, "columns") } else { (rows, "rows") };

@@ -98,7 +98,7 @@ fn white(scout: &Scout) -> Vec<Finding> {
 
 /// Values beyond 1 in a picture of eight bits.
 pub(super) fn too_bright(scout: &Scout) -> Vec<Finding> {
-    if super::physical::is_physical(scout) || scout.world().environment.is_some() {
+    if super::physical::is_physical(scout) || scout.world().environment().is_some() {
         return white(scout);
     }
     let lit: Vec<Color> = scout.seen().map(|(probe, _)| probe.color).filter(|color| color.is_finite()).collect();
@@ -112,7 +112,7 @@ pub(super) fn too_bright(scout: &Scout) -> Vec<Finding> {
     let brightest = lit.iter().copied().max_by(|a, b| a.max_element().total_cmp(&b.max_element())).unwrap_or_default();
     // Ambient light is left as it is, unless it alone is too much.
     let world = scout.world();
-    let (most, ambient) = (brightest.max_element(), world.ambient.max_element().min(0.5));
+    let (most, ambient) = (brightest.max_element(), world.ambient().max_element().min(0.5));
     let factor = (1.0 - ambient) / (most - ambient).max(1e-6);
     let effect = format!(
         "{} of what is seen is cut at 1, and loses its shading; {} is white",
@@ -134,7 +134,7 @@ pub(super) fn too_bright(scout: &Scout) -> Vec<Finding> {
         let diagnostic = Diagnostic { severity, effect: diagnostic.effect, ..cause };
         return vec![Finding::from(diagnostic).whole(cut * 2 > lit.len())];
     }
-    for (i, light) in world.lights.iter().enumerate() {
+    for (i, light) in world.lights().iter().enumerate() {
         let Some(span) = place(scout, i) else { continue };
         // A light that nearly does not fade is not too bright of itself.
         let faded = scout.value(span, &["attenuation", "falloff"]).filter(|_| factor < 0.1 && most > 10.0);
@@ -188,7 +188,7 @@ pub(super) fn too_dark(scout: &Scout) -> Vec<Finding> {
         return dark_paths(scout);
     }
     let most = scout.seen().map(|(probe, _)| probe.color.max_element()).fold(0.0, f32::max);
-    let lights = &scout.world().lights;
+    let lights = scout.world().lights();
     if scout.seen().next().is_none() || most > 0.06 || lights.is_empty() {
         return Vec::new();
     }

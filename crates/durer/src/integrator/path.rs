@@ -188,8 +188,8 @@ impl<'w> Path<'w> {
             End::Lost => Spectrum::ZERO,
             End::Sky(dir) => {
                 let sky = sample.lanes.light(self.world.sky(dir));
-                let carried = self.world.environment.is_some();
-                let weight = self.weight(&state, carried, |_| self.world.emitters.pdf_of_sky(self.world, dir));
+                let carried = self.world.environment().is_some();
+                let weight = self.weight(&state, carried, |_| self.world.emitters().pdf_of_sky(self.world, dir));
                 tally.begin(|| What::Sky);
                 tally.end(sample.told(Spectrum::splat(weight)), sample.told(Spectrum::ONE), sample.told(sky));
                 weight * sky
@@ -252,11 +252,11 @@ impl<'w> Path<'w> {
             let Some(hit) = hit else { return (End::Sky(ray.dir()), scale) };
             walked = length;
             let surface = self.world.surface(&ray, &hit);
-            if self.world.hides_backs && state.depth == 0 && self.world.is_hidden(ray.dir(), &hit, &surface) {
+            if self.world.hides_backs() && state.depth == 0 && self.world.is_hidden(ray.dir(), &hit, &surface) {
                 rest.rounded.t_min = hit.t;
                 continue;
             }
-            if self.world.has_cutouts {
+            if self.world.has_cutouts() {
                 let opacity = self.world.opacity(&hit, &surface);
                 layers += 1;
                 // What is not there at all does not count as a bounce.
@@ -299,7 +299,7 @@ impl<'w> Path<'w> {
         let emitted = self.world.emission(hit, surface, met.inside());
         if emitted != Color::ZERO {
             let emitted = sample.lanes.light_of(emitted, self.world.own_illuminant(self.world.material(hit)));
-            let carried = self.world.emitters.chooses(hit);
+            let carried = self.world.emitters().chooses(hit);
             let weight = self.weight(&state, carried, |from| self.pdf_of_hit(ray, hit, from));
             tally.begin(|| What::Emission { mis: weight });
             tally.end(sample.told(Spectrum::splat(weight)), sample.told(Spectrum::ONE), sample.told(emitted));

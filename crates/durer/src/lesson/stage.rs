@@ -59,8 +59,8 @@ pub struct Stage {
 impl Stage {
     /// A scene that was read and compiled. Of the job, the whole picture is shown, in colour.
     pub fn new(scene: Scene, files: Files, world: World, job: Job) -> Self {
-        let (lights, ambient) = (world.lights.clone(), world.ambient);
-        let (materials, rules) = (world.materials.clone(), world.rules.clone());
+        let (lights, ambient) = (world.lights().to_vec(), world.ambient());
+        let (materials, rules) = (world.materials().to_vec(), world.rules().clone());
         let job = Job { crop: None, color: true, aovs: Vec::new(), ..job };
         Stage { scene, files, world, job, lights, ambient, materials, rules, made: Vec::new() }
     }
@@ -142,23 +142,23 @@ impl Stage {
         Ok(shown)
     }
 
-    /// Gives the world the light, the materials and the mistakes of a look. Its digest stays that
-    /// of the scene: no part of such a picture is ever saved.
+    /// Gives the world the light, the materials and the mistakes of a look.
     fn arrange(&mut self, look: &Look) {
-        let world = &mut self.world;
-        (world.lights, world.ambient) = match look.lights {
+        let (lights, ambient) = match look.lights {
             true => (self.lights.clone(), self.ambient),
             false => (Vec::new(), Color::ONE),
         };
-        world.rules = self.rules.clone();
+        let own = self.world.edit();
+        (own.lights, own.ambient, own.rules) = (lights, ambient, self.rules.clone());
         // The lesson's mistakes are those that change the rules.
         if let Some(mistake) = look.mistake.and_then(of_name) {
-            let mut variant = Variant::new(&self.scene, world.clone(), self.job.settings);
+            let mut variant = Variant::new(&self.scene, self.world.clone(), self.job.settings);
             (mistake.make)(&mut variant, 0.0);
-            world.rules = variant.world.rules;
+            self.world.edit().rules = variant.world.rules().clone();
         }
-        world.materials = self.materials.clone();
-        for material in &mut world.materials {
+        let own = self.world.edit();
+        own.materials = self.materials.clone();
+        for material in &mut own.materials {
             let Material::Phong(phong) = material else { continue };
             phong.highlight = phong.highlight.filter(|_| look.highlights);
             // Flat colour is that of textures too, whatever the dialect's ambient light knows of them.

@@ -140,7 +140,7 @@ pub fn explain(world: &World, job: &Job, x: u32, y: u32) -> Result<Explanation, 
             (Mean::Own, own.collect())
         }
     };
-    if job.sampling == Sampling::Center && world.rules.has(Compat::StaleTexels) {
+    if job.sampling == Sampling::Center && world.rules().has(Compat::StaleTexels) {
         stale_texels = stale_texel(world, job, &raster(world, job.width, job.height), (x, y));
     }
     let mut explanation =
@@ -192,7 +192,7 @@ fn texel(world: &World, raster: &Raster, pixel: (u32, u32)) -> Option<(u32, Colo
     let ray = center_ray(world, raster, pixel)?;
     let hit = world.closest(&ray, &mut ())?;
     let material = world.material(&hit);
-    let Material::Phong(phong) = &world.materials[material as usize] else { return None };
+    let Material::Phong(phong) = &world.materials()[material as usize] else { return None };
     Some((material, world.diffuse_color(phong, &world.surface(&ray, &hit)), phong.diffuse))
 }
 
@@ -205,7 +205,7 @@ fn stale_texel(world: &World, job: &Job, raster: &Raster, (x, y): (u32, u32)) ->
     let row = |y: u32, end: u32| (0..end).rev().map(move |x| (x, y));
     let mut before = row(y, x).chain((y + 1..job.height).flat_map(|y| row(y, job.width)));
     let before = before.find_map(|pixel| texel(world, raster, pixel).filter(|found| found.0 == material));
-    Some(world.ambient * (before.map_or(plain, |found| found.1) - own))
+    Some(world.ambient() * (before.map_or(plain, |found| found.1) - own))
 }
 
 #[cfg(test)]

@@ -110,7 +110,7 @@ impl Part {
     /// [`RenderError::Image`], [`RenderError::CropOutside`], and [`RenderError::Shard`] for work
     /// that cannot be split so.
     pub fn new(world: &World, job: &Job, shard: Shard) -> Result<Self, RenderError> {
-        Part::empty(job.clone(), shard, world.digest, Look::new(&world.rules))
+        Part::empty(job.clone(), shard, world.digest(), Look::new(world.rules()))
     }
 
     pub(super) fn empty(job: Job, shard: Shard, scene: Digest, look: Look) -> Result<Self, RenderError> {

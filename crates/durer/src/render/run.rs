@@ -89,7 +89,7 @@ impl Part {
         control: &Control,
         watch: &mut dyn FnMut(&Part, Moment),
     ) -> Result<Stop, RenderError> {
-        if self.scene != world.digest || self.look != Look::new(&world.rules) {
+        if self.scene != world.digest() || self.look != Look::new(world.rules()) {
             return Err(RenderError::OtherScene);
         }
         let (pool, tile) = (threads::pool(control.threads), control.tile.unwrap_or(usual_tile(&self.job)));
