@@ -92,10 +92,8 @@ pub const LENS_DIMENSION: u32 = 1;
 /// on nothing else.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SampleId {
-    /// The job's.
-    pub seed: u64,
-    /// The pixel.
-    pub pixel: (u32, u32),
+    /// Of seed and pixel, worked out once.
+    key: u64,
     /// The number of the sample in its pixel.
     pub sample: u32,
     first: u32,
@@ -110,7 +108,7 @@ const WAVELENGTH_DIMENSION: u32 = 1 << 15;
 impl SampleId {
     /// Of a sample of a pixel.
     pub fn new(seed: u64, pixel: (u32, u32), sample: u32) -> Self {
-        SampleId { seed, pixel, sample, first: LENS_DIMENSION + 1 }
+        SampleId { key: key(seed, pixel.0, pixel.1), sample, first: LENS_DIMENSION + 1 }
     }
 
     /// The same sample with other dimensions: `first` of those that integrators may take.
@@ -120,20 +118,17 @@ impl SampleId {
 
     /// Two numbers in [0,1), which with those of the pixel's other samples fill the square evenly.
     pub fn pair(&self, dimension: u32) -> Vec2 {
-        let (x, y) = self.pixel;
-        sample_2d(self.seed, x, y, self.sample, self.first + dimension)
+        Sequence::of(self.key, self.first + dimension).point(self.sample)
     }
 
     /// The number in [0,1) that wavelengths are chosen by.
     pub fn wavelength(&self) -> f32 {
-        let (x, y) = self.pixel;
-        sample_2d(self.seed, x, y, self.sample, WAVELENGTH_DIMENSION).x
+        Sequence::of(self.key, WAVELENGTH_DIMENSION).point(self.sample).x
     }
 
     /// A number in [0,1) for a layer on the way after some bounces.
     pub fn layer(&self, depth: u32, layer: u32) -> f32 {
-        let (x, y) = self.pixel;
-        random_2d(self.seed, x, y, self.sample, LAYER_DIMENSIONS + (depth << 8) + layer).x
+        independent(numbered(self.key, self.sample, LAYER_DIMENSIONS + (depth << 8) + layer)).x
     }
 }
 
@@ -159,12 +154,12 @@ impl Stream {
     /// The next number. The first two fill their square evenly over the samples of a pixel; the
     /// others are independent.
     pub fn number(&mut self) -> f32 {
-        let SampleId { seed, pixel: (x, y), sample, .. } = self.id;
+        let SampleId { key, sample, .. } = self.id;
         self.taken += 1;
         match self.taken {
-            1 => sample_2d(seed, x, y, sample, self.dimension).x,
-            2 => sample_2d(seed, x, y, sample, self.dimension).y,
-            n => unit(mix(hash(seed, x, y, sample, self.dimension) ^ u64::from(n)) as u32),
+            1 => Sequence::of(key, self.dimension).point(sample).x,
+            2 => Sequence::of(key, self.dimension).point(sample).y,
+            n => unit(mix(numbered(key, sample, self.dimension) ^ u64::from(n)) as u32),
         }
     }
 
@@ -200,8 +195,12 @@ pub struct Sequence {
 impl Sequence {
     /// The points whose numbers [`sample_2d`] gives one by one.
     pub fn new(seed: u64, x: u32, y: u32, dimension: u32) -> Self {
+        Sequence::of(key(seed, x, y), dimension)
+    }
+
+    fn of(key: u64, dimension: u32) -> Self {
         // One hash gives the shuffle its key and another the two scrambles.
-        Sequence { shuffle: hash(seed, x, y, 0, dimension) as u32, scramble: hash(seed, x, y, 1, dimension) }
+        Sequence { shuffle: numbered(key, 0, dimension) as u32, scramble: numbered(key, 1, dimension) }
     }
 
     /// The point of a sample.
@@ -216,16 +215,27 @@ impl Sequence {
 
 /// A uniform point in [0,1)^2, independent of every other.
 pub fn random_2d(seed: u64, x: u32, y: u32, sample: u32, dimension: u32) -> Vec2 {
+    independent(hash(seed, x, y, sample, dimension))
+}
+
+fn independent(hash: u64) -> Vec2 {
     // One step more than the keys of `sample_2d`, so that no number is used twice.
-    let bits = mix(hash(seed, x, y, sample, dimension));
+    let bits = mix(hash);
     Vec2::new(unit(bits as u32), unit((bits >> 32) as u32))
 }
 
 /// 64 evenly mixed bits of a seed, a pixel, a sample number and a dimension.
 pub fn hash(seed: u64, x: u32, y: u32, sample: u32, dimension: u32) -> u64 {
-    let pixel = u64::from(x) | u64::from(y) << 32;
-    let number = u64::from(sample) | u64::from(dimension) << 32;
-    mix(mix(mix(seed) ^ pixel) ^ number)
+    numbered(key(seed, x, y), sample, dimension)
+}
+
+/// What all hashes of a pixel have in common.
+fn key(seed: u64, x: u32, y: u32) -> u64 {
+    mix(mix(seed) ^ (u64::from(x) | u64::from(y) << 32))
+}
+
+fn numbered(key: u64, sample: u32, dimension: u32) -> u64 {
+    mix(key ^ (u64::from(sample) | u64::from(dimension) << 32))
 }
 
 /// One step of SplitMix64: a permutation of the 64-bit numbers.

@@ -9,12 +9,8 @@ use crate::spectrum::Spectrum;
 pub struct Retro;
 
 impl Scatter for Retro {
-    fn eval(&self, _: Vec3, _: Vec3) -> Spectrum {
-        Spectrum::ZERO
-    }
-
-    fn pdf(&self, _: Vec3, _: Vec3) -> f32 {
-        0.0
+    fn eval(&self, _: Vec3, _: Vec3) -> (Spectrum, f32) {
+        (Spectrum::ZERO, 0.0)
     }
 
     fn sample(&self, wo: Vec3, _: f32, _: Vec2) -> Option<Scattered> {

@@ -3,6 +3,9 @@
 //! One reflection off a rough surface loses what would have been reflected a second time. Dividing
 //! by these tables gives it back, so that a surface that absorbs nothing stays white. Source:
 //! Turquin, *Practical multiple scattering compensation for microfacet models*, 2019.
+//!
+//! Tables are worked out by all threads, for the materials that ask for them, as a world is
+//! compiled ([`super::Tables::prepare`]); for others at their first use.
 
 use super::fresnel;
 use super::lobe::fuzz;
@@ -10,7 +13,7 @@ use super::microfacet::Ggx;
 use crate::math::{Vec2, Vec3};
 use crate::spectrum::Spectrum;
 use rayon::prelude::*;
-use std::sync::LazyLock;
+use std::sync::OnceLock;
 
 /// Rows and columns of a table.
 const SIZE: usize = 32;
@@ -43,6 +46,17 @@ impl Table {
     }
 }
 
+/// What is worked out by several threads when it is first asked for.
+///
+/// Nothing is locked meanwhile: a thread that waits for others may take up other work, which asks
+/// for the same and would wait for itself. All that work it out find the same.
+fn once<T>(cell: &OnceLock<T>, make: impl FnOnce() -> T) -> &T {
+    cell.get().unwrap_or_else(|| {
+        let made = make();
+        cell.get_or_init(|| made)
+    })
+}
+
 /// Points that fill the unit square evenly: the sequence R2.
 ///
 /// Source: Martin Roberts, *The Unreasonable Effectiveness of Quasirandom Sequences*, 2018.
@@ -66,7 +80,8 @@ fn isotropic(roughness: f32) -> Ggx {
 
 /// What a single reflection off GGX gives back where every facet reflects all.
 pub fn ggx(cosine: f32, roughness: f32) -> f32 {
-    static TABLE: LazyLock<Table> = LazyLock::new(|| {
+    static TABLE: OnceLock<Table> = OnceLock::new();
+    let table = once(&TABLE, || {
         Table::new(|cosine, roughness| {
             let (ggx, wo) = (isotropic(roughness), direction(cosine));
             mean(|u| {
@@ -76,12 +91,13 @@ pub fn ggx(cosine: f32, roughness: f32) -> f32 {
             })
         })
     });
-    TABLE.at(cosine, roughness)
+    table.at(cosine, roughness)
 }
 
 /// What fuzz of white fibres gives back.
 pub fn fuzz(cosine: f32, roughness: f32) -> f32 {
-    static TABLE: LazyLock<Table> = LazyLock::new(|| {
+    static TABLE: OnceLock<Table> = OnceLock::new();
+    let table = once(&TABLE, || {
         Table::new(|cosine, roughness| {
             let wo = direction(cosine);
             mean(|u| {
@@ -91,41 +107,60 @@ pub fn fuzz(cosine: f32, roughness: f32) -> f32 {
             })
         })
     });
-    TABLE.at(cosine, roughness)
+    table.at(cosine, roughness)
 }
 
 /// A boundary of two dielectrics of one relative index.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct Dielectric {
     /// The index inside over that outside.
     pub ior: f32,
     /// Reflected from outside and from inside; and all that is not lost.
-    tables: [[Table; 2]; 2],
+    tables: OnceLock<[[Table; 2]; 2]>,
+}
+
+impl PartialEq for Dielectric {
+    fn eq(&self, other: &Self) -> bool {
+        self.ior == other.ior
+    }
 }
 
 impl Dielectric {
-    /// Works out the tables of an index.
+    /// Of an index.
     pub fn new(ior: f32) -> Self {
-        let tables = [ior, 1.0 / ior].map(|eta| {
-            [false, true].map(|all| {
-                Table::new(|cosine, roughness| {
-                    let (ggx, wo) = (isotropic(roughness), direction(cosine));
-                    mean(|u| single(ggx, wo, eta, u, all))
+        Dielectric { ior, tables: OnceLock::new() }
+    }
+
+    /// What it reflects, and all that is not lost; from inside or from outside.
+    fn tables(&self, inside: bool) -> &[Table; 2] {
+        let both = once(&self.tables, || {
+            [self.ior, 1.0 / self.ior].map(|eta| {
+                [false, true].map(|all| {
+                    Table::new(|cosine, roughness| {
+                        let (ggx, wo) = (isotropic(roughness), direction(cosine));
+                        mean(|u| single(ggx, wo, eta, u, all))
+                    })
                 })
             })
         });
-        Dielectric { ior, tables }
+        &both[usize::from(inside)]
+    }
+
+    /// Whether its tables are worked out.
+    #[cfg(test)]
+    pub(crate) fn is_prepared(&self) -> bool {
+        self.tables.get().is_some()
     }
 
     /// The share that one reflection gives back, of what is not lost; from inside or from outside.
     pub fn reflected(&self, inside: bool, cosine: f32, roughness: f32) -> f32 {
-        let [reflected, all] = &self.tables[usize::from(inside)];
+        let [reflected, all] = self.tables(inside);
         (reflected.at(cosine, roughness) / all.at(cosine, roughness)).min(1.0)
     }
 
     /// What multiplies one reflection or refraction, so that nothing is lost.
     pub fn gain(&self, inside: bool, cosine: f32, roughness: f32) -> f32 {
-        1.0 / self.tables[usize::from(inside)][1].at(cosine, roughness)
+        1.0 / self.tables(inside)[1].at(cosine, roughness)
     }
 }
 
@@ -158,4 +193,24 @@ fn single(ggx: Ggx, wo: Vec3, eta: f32, u: Vec2, all: bool) -> f32 {
         sum += if down.z < 0.0 { (1.0 - reflected) * visible(down) } else { 0.0 };
     }
     sum
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::mpsc;
+    use std::time::Duration;
+
+    #[test]
+    fn threads_that_take_up_other_work_while_they_wait_do_not_wait_for_themselves() {
+        let (sender, done) = mpsc::channel();
+        std::thread::spawn(move || {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+            let cell = OnceLock::new();
+            // As a thread does that waits for a part of the table: the next tile is taken up.
+            let tile = || *once(&cell, || (rayon::yield_now(), 5).1);
+            let _ = sender.send(pool.install(|| rayon::join(tile, tile)));
+        });
+        assert_eq!(done.recv_timeout(Duration::from_secs(20)), Ok((5, 5)));
+    }
 }

@@ -13,6 +13,7 @@ use super::lobe::rough::{Facet, Rough};
 use super::lobe::rough_glass::RoughGlass;
 use super::microfacet::Ggx;
 use super::{Bsdf, fresnel};
+use crate::describe::FileName;
 use crate::material::principled::Walls;
 use crate::material::{Parameters, PrincipledMaterial};
 use crate::math::{Vec3, fp};
@@ -46,8 +47,40 @@ impl Tables {
             opaque: of(opaque_ior(material)),
             glass: of(material.specular_ior),
             measured,
-            coat: of(if material.coat_weight > 0.0 { material.coat_ior } else { material.specular_ior }),
+            coat: of(material.coat_ior),
         }
+    }
+
+    /// Works out by all threads what points of the material can ask for, so that no thread that
+    /// renders has to.
+    pub fn prepare(&self, m: &PrincipledMaterial) {
+        // A picture multiplies: it changes no 0, and may change all else.
+        let all = |share: f32, picture: &Option<FileName>| share == 1.0 && picture.is_none();
+        let metal = all(m.base_metalness, &m.base_metalness_texture) && m.metallic_roughness_texture.is_none();
+        let glass = all(m.transmission_weight, &m.transmission_weight_texture);
+        let rough_coat = m.coat_weight > 0.0 && m.coat_roughness > 0.0;
+        let rough = m.specular_roughness > 0.0 || rough_coat;
+        let through = rough && !metal && m.transmission_weight > 0.0;
+        if m.fuzz_weight > 0.0 {
+            albedo::fuzz(1.0, 0.0);
+        }
+        if rough && m.base_metalness > 0.0 || through && m.walls == Walls::Thin {
+            albedo::ggx(1.0, 0.0);
+        }
+        let boundaries = [
+            (rough_coat && self.coat.ior != 1.0, &self.coat),
+            (rough && !metal && !glass && (self.opaque.ior != 1.0 || m.thin_film_weight > 0.0), &self.opaque),
+            (through && m.walls == Walls::Solid, &self.glass),
+        ];
+        boundaries.into_iter().filter(|(asked, _)| *asked).for_each(|(_, boundary)| {
+            boundary.gain(false, 1.0, 0.0);
+        });
+    }
+
+    /// Which boundaries are worked out: those of an opaque base, of glass, of the coat.
+    #[cfg(test)]
+    pub(crate) fn prepared(&self) -> [bool; 3] {
+        [&self.opaque, &self.glass, &self.coat].map(|boundary| boundary.is_prepared())
     }
 }
 
@@ -86,8 +119,8 @@ pub struct View<'a> {
     pub eta: f32,
 }
 
-/// The lobes of what is there of a material.
-pub fn scattering(here: &Parameters, tables: &Tables, view: View) -> Bsdf {
+/// Adds the lobes of what is there of a material, each by a factor.
+pub fn scattering(bsdf: &mut Bsdf, factor: f32, here: &Parameters, tables: &Tables, view: View) {
     let stack = Stack {
         here,
         tables,
@@ -98,7 +131,7 @@ pub fn scattering(here: &Parameters, tables: &Tables, view: View) -> Bsdf {
         },
         specular: view.lanes.reflectance(here.specular_color),
     };
-    stack.scattering()
+    stack.scattering(bsdf, factor);
 }
 
 /// The layers of a point.
@@ -111,55 +144,52 @@ struct Stack<'a> {
 }
 
 impl Stack<'_> {
-    fn scattering(&self) -> Bsdf {
+    fn scattering(&self, bsdf: &mut Bsdf, factor: f32) {
         let (m, view) = (self.here, self.view);
-        let mut bsdf = Bsdf::default();
         let mu = view.wo.z;
-        let mut below = Spectrum::ONE;
+        let mut below = Spectrum::splat(factor);
         if m.fuzz_weight > 0.0 && !view.inside {
             let roughness = m.fuzz_roughness;
             let given = albedo::fuzz(mu, roughness);
             // Fibres at grazing angles would give back more than they get.
             let scale = m.fuzz_weight * (1.0 / given).min(1.0);
-            bsdf.push(Fuzz { roughness }, below * scale * view.lanes.reflectance(m.fuzz_color), scale * given);
+            bsdf.push(Fuzz { roughness }, below * scale * view.lanes.reflectance(m.fuzz_color), factor * scale * given);
             below *= 1.0 - scale * given;
         }
         let mut roughness = self.here.specular_roughness;
         if m.coat_weight > 0.0 && !view.inside {
             let weight = m.coat_weight;
-            let given = self.boundary(&mut bsdf, &self.tables.coat, m.coat_roughness, weight * below, None);
+            let given = self.boundary(bsdf, &self.tables.coat, m.coat_roughness, weight * below, None);
             below *= Spectrum::ONE - weight * given;
             below *= Spectrum::ONE.lerp(self.coat(mu), weight);
             let fourth = |r: f32| r * r * r * r;
             let both = (fourth(roughness) + 2.0 * fourth(m.coat_roughness)).min(1.0);
             roughness = mix(roughness, both.sqrt().sqrt(), weight);
         }
-        self.metal(&mut bsdf, roughness, below * self.here.base_metalness);
+        self.metal(bsdf, roughness, below * self.here.base_metalness);
         let dielectric = below * (1.0 - self.here.base_metalness);
         let through = dielectric * m.transmission_weight;
         if through.max_element() > 0.0 {
             match m.walls {
-                Walls::Solid => self.glass(&mut bsdf, roughness, through),
-                Walls::Thin => self.sheet(&mut bsdf, roughness, through),
+                Walls::Solid => self.glass(bsdf, roughness, through),
+                Walls::Thin => self.sheet(bsdf, roughness, through),
             }
         }
         let opaque = dielectric * (1.0 - m.transmission_weight);
         if opaque.max_element() > 0.0 {
             if view.inside && m.has_body && m.transmission_weight == 0.0 {
                 // Light that was scattered inside leaves in all directions.
-                bsdf.push(DiffuseTransmission { color: Spectrum::ONE }, opaque, opaque.max_element());
-                return bsdf;
+                return bsdf.push(DiffuseTransmission { color: Spectrum::ONE }, opaque, opaque.max_element());
             }
             let film = self.film(self.tables.opaque.ior);
             let specular = m.reflection * self.specular;
-            let given = self.boundary(&mut bsdf, &self.tables.opaque, roughness, opaque * specular, film);
+            let given = self.boundary(bsdf, &self.tables.opaque, roughness, opaque * specular, film);
             let diffuse = Diffuse { color: self.base, roughness: m.base_diffuse_roughness };
             let weight = opaque * (Spectrum::ONE - m.reflection * given);
             let matte = weight * (1.0 - m.subsurface_weight);
             bsdf.push(diffuse, matte, (matte * self.base).max_element());
-            self.subsurface(&mut bsdf, weight * m.subsurface_weight);
+            self.subsurface(bsdf, weight * m.subsurface_weight);
         }
-        bsdf
     }
 
     /// Light that goes into the body, or of a sheet comes out on both sides.
@@ -199,6 +229,10 @@ impl Stack<'_> {
         weight: Spectrum,
         film: Option<Film>,
     ) -> Spectrum {
+        // Without a change of index nothing is reflected, however rough.
+        if tables.ior == 1.0 && film.is_none() {
+            return Spectrum::ZERO;
+        }
         let (ggx, mu) = (Ggx::new(roughness, 0.0), self.view.wo.z);
         if ggx.is_smooth() {
             let plain = || Spectrum::splat(fresnel::dielectric(mu, tables.ior));

@@ -76,12 +76,8 @@ impl Ggx {
         1.0 / (1.0 + self.lambda(wo) + self.lambda(wi))
     }
 
-    /// Density of the normals seen from `wo`, which is above the surface.
-    pub fn visible_density(&self, wo: Vec3, h: Vec3) -> f32 {
-        self.masking(wo) * self.density(h) * wo.dot(h).max(0.0) / wo.z
-    }
-
-    /// A normal seen from `wo`, with that density.
+    /// A normal seen from `wo`, which is above the surface: with density masking(wo) · density(h) ·
+    /// wo·h / wo.z.
     pub fn sample_visible(&self, wo: Vec3, u: Vec2) -> Vec3 {
         let stretched = Vec3::new(wo.x * self.alpha.x, wo.y * self.alpha.y, wo.z).normalize();
         let z = (1.0 - u.y) * (1.0 + stretched.z) - stretched.z;

@@ -37,7 +37,7 @@ pub struct Weighted {
 /// The lobes of a point, seen from one direction.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Bsdf {
-    lobes: SmallVec<[Weighted; 6]>,
+    lobes: SmallVec<[Weighted; 4]>,
     /// The sum of the shares that were given.
     total: f32,
 }
@@ -64,13 +64,6 @@ impl Bsdf {
         }
     }
 
-    /// Adds all lobes of another one, each by a factor.
-    pub fn extend(&mut self, other: &Bsdf, factor: f32) {
-        for part in &other.lobes {
-            self.push(part.lobe, factor * part.weight, factor * part.probability);
-        }
-    }
-
     /// The lobes, with the probabilities that they are chosen.
     pub fn lobes(&self) -> impl Iterator<Item = Weighted> {
         self.lobes.iter().map(|part| Weighted { probability: part.probability / self.total, ..*part })
@@ -92,16 +85,16 @@ impl Bsdf {
         self.lobes.iter().any(|part| part.lobe.passes_light())
     }
 
-    /// The value times |cos| of `wi`, without lobes of single directions.
-    pub fn eval(&self, wo: Vec3, wi: Vec3) -> Spectrum {
-        self.lobes.iter().map(|part| part.weight * part.lobe.eval(wo, wi)).sum()
-    }
-
-    /// The density per solid angle with which [`Bsdf::sample`] chooses a direction, without lobes
-    /// of single directions.
-    pub fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
-        let density = |part: &Weighted| part.probability * part.lobe.pdf(wo, wi);
-        if self.lobes.is_empty() { 0.0 } else { self.lobes.iter().map(density).sum::<f32>() / self.total }
+    /// The value times |cos| of `wi`, and the density per solid angle with which [`Bsdf::sample`]
+    /// chooses it; without lobes of single directions.
+    pub fn eval(&self, wo: Vec3, wi: Vec3) -> (Spectrum, f32) {
+        let (mut value, mut density) = (Spectrum::ZERO, 0.0);
+        for part in &self.lobes {
+            let (own, often) = part.lobe.eval(wo, wi);
+            value += part.weight * own;
+            density += part.probability * often;
+        }
+        if density > 0.0 { (value, density / self.total) } else { (value, 0.0) }
     }
 
     /// Chooses a direction by three numbers, uniform from 0 to 1; `None` where light ends.
@@ -124,8 +117,8 @@ impl Bsdf {
             let weight = part.weight * scattered.value * (self.total / part.probability);
             return Some(BsdfSample { wi: scattered.wi, weight, pdf: 0.0, lobe: chosen });
         }
-        let pdf = self.pdf(wo, scattered.wi);
-        let weight = self.eval(wo, scattered.wi) / pdf;
+        let (value, pdf) = self.eval(wo, scattered.wi);
+        let weight = value / pdf;
         let sound = pdf > 0.0 && pdf.is_finite() && weight.is_finite();
         sound.then_some(BsdfSample { wi: scattered.wi, weight, pdf, lobe: chosen })
     }

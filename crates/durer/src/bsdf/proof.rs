@@ -87,7 +87,7 @@ impl Cells {
     /// A lobe seen from one direction.
     pub fn lobe(&self, seed: u64, lobe: Lobe, wo: Vec3) -> Verdict {
         let sample = |choice, u| lobe.sample(wo, choice, u).map(|scattered| scattered.wi);
-        self.compare(seed, sample, |wi| lobe.pdf(wo, wi))
+        self.compare(seed, sample, |wi| lobe.eval(wo, wi).1)
     }
 }
 
@@ -180,7 +180,9 @@ impl<'a> Furnace<'a> {
 /// A material from outside.
 pub(super) fn seen(here: &Parameters, tables: &Tables, wo: Vec3) -> Bsdf {
     let view = layers::View { lanes: &Lanes::Rgb, wo, inside: false, eta: here.specular_ior };
-    layers::scattering(here, tables, view)
+    let mut bsdf = Bsdf::default();
+    layers::scattering(&mut bsdf, 1.0, here, tables, view);
+    bsdf
 }
 
 /// What lobes give back.

@@ -11,10 +11,10 @@ pub fn disc(u: Vec2) -> Vec2 {
     if p == Vec2::ZERO {
         return Vec2::ZERO;
     }
-    // The angle in quarters of a half turn.
+    // The angle in eighths of a turn.
     let (radius, eighths) = if p.x.abs() > p.y.abs() { (p.x, p.y / p.x) } else { (p.y, 2.0 - p.x / p.y) };
-    let (sin, cos) = fp::sin_cos_degrees(f64::from(eighths) * 45.0);
-    radius * Vec2::new(cos as f32, sin as f32)
+    let (sin, cos) = fp::sin_cos_turn(0.125 * eighths);
+    radius * Vec2::new(cos, sin)
 }
 
 /// A direction of the upper hemisphere with density cos / pi.
@@ -27,8 +27,8 @@ pub fn cosine_hemisphere(u: Vec2) -> Vec3 {
 /// whole turn.
 pub fn polar(cosine: f32, turn: f32) -> Vec3 {
     let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
-    let (sin, cos) = fp::sin_cos_degrees(f64::from(turn) * 360.0);
-    Vec3::new(sine * cos as f32, sine * sin as f32, cosine)
+    let (sin, cos) = fp::sin_cos_turn(turn);
+    Vec3::new(sine * cos, sine * sin, cosine)
 }
 
 /// A direction of the whole sphere, evenly spread: density 1 / (4 pi).

@@ -39,6 +39,8 @@ pub(super) fn compile(
             let shown = illuminant.as_ref().map_or(Color::ONE, |curve| curve.color());
             let radiance = layers.emission_luminance * layers.emission_color * shown;
             let textured = maps.emission.is_some();
+            let tables = Tables::new(layers, measured, &mut tables);
+            tables.prepare(layers);
             let emission = Emission { radiance, textured, two_sided: layers.walls == Walls::Thin };
             Material::Phong(Phong {
                 texture: maps.base_color,
@@ -48,7 +50,7 @@ pub(super) fn compile(
                     written: layers.clone(),
                     maps,
                     parameters: Parameters::of(layers),
-                    tables: Tables::new(layers, measured, &mut tables),
+                    tables,
                     illuminant,
                     medium: media::inside(layers),
                     interface: media::is_interface(layers),

@@ -184,3 +184,34 @@ fn grids_that_cannot_be_made_are_refused() {
     // Nothing bounded: no grid is needed.
     assert_eq!(errors("Group { Plane { normal 0 1 0 offset 0 } }", AccelKind::Grid(None)), [""; 0]);
 }
+
+#[test]
+fn tables_that_a_material_can_ask_for_are_worked_out_before_rays_are_traced() {
+    use crate::world::Material;
+    for (words, opaque_glass_coat) in [
+        ("", [true, false, false]),
+        ("specularRoughness 0", [false; 3]),
+        ("baseMetalness 1", [false; 3]),
+        ("baseMetalness 0.5", [true, false, false]),
+        ("transmissionWeight 1 specularIor 1.4", [false, true, false]),
+        ("transmissionWeight 1 walls thin", [false; 3]),
+        ("specularRoughness 0 coatWeight 0.5 coatRoughness 0.2", [true, false, true]),
+        ("baseMetalness 1 coatWeight 0.5 coatRoughness 0.2", [false, false, true]),
+    ] {
+        // With half of its weight an opaque base has another index than glass.
+        let text = format!("{CAMERA} Materials {{ PrincipledMaterial {{ specularWeight 0.5 {words} }} }} Group {{ }}");
+        let world = super::testing::read(&text);
+        let Material::Phong(phong) = &world.materials[0] else { panic!("{words}") };
+        let own = phong.principled.as_ref().unwrap();
+        assert_eq!(own.tables.prepared(), opaque_glass_coat, "{words}");
+        // What points of it really ask for is among them.
+        let lanes = crate::spectrum::Lanes::Rgb;
+        let wo = Vec3::new(0.6, 0.0, 0.8);
+        for inside in [false, true] {
+            let eta = if inside { 1.0 / own.written.specular_ior } else { own.written.specular_ior };
+            let view = crate::bsdf::layers::View { lanes: &lanes, wo, inside, eta };
+            crate::bsdf::layers::scattering(&mut Default::default(), 1.0, &own.parameters, &own.tables, view);
+        }
+        assert_eq!(own.tables.prepared(), opaque_glass_coat, "{words}");
+    }
+}

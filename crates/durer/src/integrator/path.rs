@@ -187,9 +187,9 @@ impl<'w> Path<'w> {
         let sum = match end {
             End::Lost => Spectrum::ZERO,
             End::Sky(dir) => {
-                let sky = sample.lanes.light(self.world.sky(dir));
-                let carried = self.world.environment().is_some();
-                let weight = self.weight(&state, carried, |_| self.world.emitters().pdf_of_sky(self.world, dir));
+                let (sky, pdf) = self.world.emitters().sky(self.world, dir);
+                let sky = sample.lanes.light(sky);
+                let weight = self.weight(&state, self.world.environment().is_some(), |_| pdf);
                 tally.begin(|| What::Sky);
                 tally.end(sample.told(Spectrum::splat(weight)), sample.told(Spectrum::ONE), sample.told(sky));
                 weight * sky

@@ -343,9 +343,7 @@ impl Mesh {
         let mix = |[a, b, c]: [Vec3; 3]| barycentric.x * a + barycentric.y * b + barycentric.z * c;
         let normals = self.corner_normals(part);
         let n_shade = normals.map_or(n_geo, |normals| mix(normals).normalize_or(n_geo));
-        let lifts = normals.map_or([Vec3::ZERO; 2], |normals| {
-            [1.0, -1.0].map(|side| mix(lift(position, corners, normals.map(|n| side * n))))
-        });
+        let lifts = normals.map_or([Vec3::ZERO; 2], |normals| lifts(position, corners, normals).map(mix));
         let uv = attribute(&self.data.triangle_uvs, &self.data.uvs, part)
             .map(|[a, b, c]| barycentric.x * a + barycentric.y * b + barycentric.z * c);
         // Normals in the file say which side is out, whatever way the corners go round.
@@ -367,17 +365,20 @@ impl Mesh {
 }
 
 /// For each corner, the way from a point of the triangle up to the plane through the corner across
-/// its normal; none where the point lies above that plane.
+/// its normal; none where the point lies above that plane. And the same from the other side.
 ///
 /// Their mean by barycentric coordinates leads to the bent surface that the normals speak of. A
 /// shadow ray that starts there does not meet the flat neighbours, which would make a coarse mesh
 /// dark by whole triangles along the border of light. Source: Johannes Hanika, *Hacking the Shadow
 /// Terminator*, Ray Tracing Gems II (2021), chapter 4.
-fn lift(point: Vec3, corners: [Vec3; 3], normals: [Vec3; 3]) -> [Vec3; 3] {
-    std::array::from_fn(|i| {
+fn lifts(point: Vec3, corners: [Vec3; 3], normals: [Vec3; 3]) -> [[Vec3; 3]; 2] {
+    let mut lifts = [[Vec3::ZERO; 3]; 2];
+    for i in 0..3 {
         let n = normals[i].normalize_or_zero();
-        (corners[i] - point).dot(n).max(0.0) * n
-    })
+        let height = (corners[i] - point).dot(n);
+        lifts[usize::from(height < 0.0)][i] = height * n;
+    }
+    lifts
 }
 
 /// An attribute's values at the corners of a triangle, if it has them all.

@@ -2,8 +2,17 @@
 //! they are.
 
 use crate::math::{Color, Vec2, Vec3, fp};
-use std::f32::consts::{PI, TAU};
+use std::f32::consts::PI;
 use std::sync::Arc;
+
+/// Where a direction lies in the picture, in texels.
+#[derive(Clone, Copy)]
+struct Place {
+    x: f32,
+    y: f32,
+    /// The sine of the direction's angle to the axis.
+    sine: f32,
+}
 
 /// Light from all around: the picture's middle is where -z points, its upper edge is +y, as in
 /// `EquirectangularCamera`.
@@ -12,7 +21,7 @@ pub struct Environment {
     width: usize,
     height: usize,
     texels: Arc<[Color]>,
-    /// How far it is turned about y, as a share of a whole turn.
+    /// How far it is turned about y, as a share of a whole turn from 0 to 1.
     turn: f32,
     scale: Color,
     /// For each row the sums of its texels' weights from the left, and last the sums of the rows.
@@ -38,19 +47,20 @@ impl Environment {
             let sine = fp::sin(PI * (y as f32 + 0.5) / height as f32);
             let mut sum = 0.0_f64;
             for x in 0..width {
-                // Colours are mixed between texels, so that neighbours shine into a texel.
-                let near = [x + width - 1, x, x + 1].map(|x| {
+                // Colours are mixed between the middles of texels: this is the mean over a texel.
+                let mean = |[before, here, after]: [f32; 3]| 0.125 * (before + after) + 0.75 * here;
+                let column = |x: usize| {
                     let x = x % width;
-                    brightness(x, y.saturating_sub(1)) + brightness(x, y) + brightness(x, (y + 1).min(height - 1))
-                });
-                sum += f64::from(near.iter().sum::<f32>() * sine);
+                    mean([y.saturating_sub(1), y, (y + 1).min(height - 1)].map(|y| brightness(x, y)))
+                };
+                sum += f64::from(mean([x + width - 1, x, x + 1].map(column)) * sine);
                 rows.push(sum as f32);
             }
             all += sum;
             columns.push(all as f32);
         }
-        let sound = all > 0.0 && (all as f32).is_finite();
-        let turn = degrees / 360.0;
+        let turn = (degrees / 360.0).rem_euclid(1.0);
+        let sound = all > 0.0 && (all as f32).is_finite() && turn.is_finite();
         sound.then(|| Environment {
             width,
             height,
@@ -64,8 +74,8 @@ impl Environment {
 
     /// The mean over all directions, nearly.
     pub fn mean(&self) -> Color {
-        // Weights are sums over nine texels, times the sine of the row.
-        let sum = self.columns[self.height - 1] / 9.0;
+        // Weights are means over texels, times the sine of the row.
+        let sum = self.columns[self.height - 1];
         self.scale * (sum * PI / 2.0 / (self.width * self.height) as f32)
     }
 
@@ -74,43 +84,38 @@ impl Environment {
         self.texels.len() * size_of::<[f32; 4]>()
     }
 
-    fn place(&self, dir: Vec3) -> Vec2 {
-        let u = 0.5 + fp::atan2(dir.x, -dir.z) / TAU - self.turn;
-        let v = fp::atan2((dir.x * dir.x + dir.z * dir.z).sqrt(), dir.y) / PI;
-        Vec2::new(u - u.floor(), v.clamp(0.0, 1.0))
+    fn place(&self, dir: Vec3) -> Place {
+        let beside = (dir.x * dir.x + dir.z * dir.z).sqrt();
+        let u = 0.5 + fp::atan2_turn(dir.x, -dir.z) - self.turn;
+        let u = if u < 0.0 { u + 1.0 } else { u };
+        let v = 2.0 * fp::atan2_turn(beside, dir.y);
+        Place { x: u * self.width as f32, y: v * self.height as f32, sine: beside / dir.length() }
     }
 
-    /// The light from a direction of any length.
-    pub fn at(&self, dir: Vec3) -> Color {
-        let p = self.place(dir) * Vec2::new(self.width as f32, self.height as f32) - 0.5;
-        let corner = p.floor();
-        let part = p - corner;
-        let texel = |dx: i64, dy: i64| {
-            let x = (corner.x as i64 + dx).rem_euclid(self.width as i64) as usize;
-            let y = (corner.y as i64 + dy).clamp(0, self.height as i64 - 1) as usize;
-            self.texels[y * self.width + x]
+    /// The light there, mixed of the four texels around.
+    fn light(&self, place: &Place) -> Color {
+        // Whole numbers from 0, by what lies one texel before.
+        let (x, y) = (place.x + 0.5, place.y + 0.5);
+        let (right, below) = (x as usize, y as usize);
+        let part = Vec2::new(x - right as f32, y - below as f32);
+        let left = if right == 0 { self.width - 1 } else { (right - 1).min(self.width - 1) };
+        let right = if right >= self.width { 0 } else { right };
+        let row = |y: usize| {
+            let row = &self.texels[y * self.width..(y + 1) * self.width];
+            row[left].lerp(row[right], part.x)
         };
-        let row = |dy: i64| texel(0, dy).lerp(texel(1, dy), part.x);
-        self.scale * row(0).lerp(row(1), part.y)
+        let last = self.height - 1;
+        self.scale * row(below.saturating_sub(1).min(last)).lerp(row(below.min(last)), part.y)
     }
 
-    /// A direction chosen by two numbers from 0 to 1, its light, and its density per solid angle.
-    pub fn sample(&self, u: Vec2) -> Option<(Vec3, Color, f32)> {
-        let (y, v) = choose(&self.columns, u.y);
-        let (x, h) = choose(&self.rows[y * self.width..(y + 1) * self.width], u.x);
-        let place = Vec2::new((x as f32 + h) / self.width as f32, (y as f32 + v) / self.height as f32);
-        let (sin, cos) = fp::sin_cos_degrees(180.0 * f64::from(place.y));
-        let (sin_turn, cos_turn) = fp::sin_cos_degrees(360.0 * f64::from(place.x + self.turn - 0.5));
-        let dir = Vec3::new((sin * sin_turn) as f32, cos as f32, (-sin * cos_turn) as f32);
-        let pdf = self.pdf(dir);
-        (pdf > 0.0).then(|| (dir, self.at(dir), pdf))
+    /// The density per solid angle with which a direction there is chosen.
+    fn density(&self, place: &Place) -> f32 {
+        let (x, y) = ((place.x as usize).min(self.width - 1), (place.y as usize).min(self.height - 1));
+        self.density_in((x, y), place.sine)
     }
 
-    /// The density per solid angle with which a direction is chosen.
-    pub fn pdf(&self, dir: Vec3) -> f32 {
-        let place = self.place(dir);
-        let x = ((place.x * self.width as f32) as usize).min(self.width - 1);
-        let y = ((place.y * self.height as f32) as usize).min(self.height - 1);
+    /// The same in a texel, at the sine of an angle to the axis.
+    fn density_in(&self, (x, y): (usize, usize), sine: f32) -> f32 {
         let row = &self.rows[y * self.width..(y + 1) * self.width];
         let weight = |sums: &[f32], i: usize| sums[i] - if i > 0 { sums[i - 1] } else { 0.0 };
         let row_sum = row[self.width - 1];
@@ -118,9 +123,36 @@ impl Environment {
             return 0.0;
         }
         let p = weight(&self.columns, y) / self.columns[self.height - 1] * (weight(row, x) / row_sum);
-        let sine = (dir.x * dir.x + dir.z * dir.z).sqrt() / dir.length();
         let density = p * (self.width * self.height) as f32 / (2.0 * PI * PI * sine);
         if density.is_finite() { density } else { 0.0 }
+    }
+
+    /// The light from a direction of any length.
+    pub fn at(&self, dir: Vec3) -> Color {
+        self.light(&self.place(dir))
+    }
+
+    /// The density per solid angle with which a direction is chosen.
+    pub fn pdf(&self, dir: Vec3) -> f32 {
+        self.density(&self.place(dir))
+    }
+
+    /// Both.
+    pub fn at_with_pdf(&self, dir: Vec3) -> (Color, f32) {
+        let place = self.place(dir);
+        (self.light(&place), self.density(&place))
+    }
+
+    /// A direction chosen by two numbers from 0 to 1, its light, and its density per solid angle.
+    pub fn sample(&self, u: Vec2) -> Option<(Vec3, Color, f32)> {
+        let (y, v) = choose(&self.columns, u.y);
+        let (x, h) = choose(&self.rows[y * self.width..(y + 1) * self.width], u.x);
+        let [across, down] = [x as f32 + h, y as f32 + v];
+        let (sine, cosine) = fp::sin_cos_turn(0.5 * down / self.height as f32);
+        let (sin_turn, cos_turn) = fp::sin_cos_turn(across / self.width as f32 + self.turn - 0.5);
+        let pdf = self.density_in((x, y), sine);
+        let dir = Vec3::new(sine * sin_turn, cosine, -sine * cos_turn);
+        (pdf > 0.0).then(|| (dir, self.light(&Place { x: across, y: down, sine }), pdf))
     }
 }
 
@@ -148,7 +180,7 @@ mod tests {
     #[test]
     fn directions_are_chosen_by_their_density_and_it_integrates_to_one() {
         let sky = picture();
-        let n = 400;
+        let n = 2000;
         let (mut all, mut flux) = (0.0, 0.0);
         for i in 0..n * n {
             let (u, v) = ((i % n) as f32 + 0.5, (i / n) as f32 + 0.5);

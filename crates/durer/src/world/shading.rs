@@ -1,6 +1,6 @@
 //! How a surface point scatters light, and what it shines, as a path tracer sees it.
 
-use super::{Geometry, Hit, Material, Object, Phong, World};
+use super::{Geometry, Hit, Material, Object, Part, Phong, World};
 use crate::bsdf::layers::{self, View};
 use crate::bsdf::lobe::blinn::Blinn;
 use crate::bsdf::lobe::diffuse::Diffuse;
@@ -31,18 +31,14 @@ pub struct Shading {
 }
 
 impl Shading {
-    /// The value times the cosine of a direction of the world. Light that comes from behind the
-    /// true surface and would be reflected, or the other way round, is none: the normals for
-    /// shading are only nearly right.
-    pub fn eval(&self, wi: Vec3) -> Spectrum {
+    /// The value times the cosine of a direction of the world, and the density with which that
+    /// would be chosen. Light that comes from behind the true surface and would be reflected, or
+    /// the other way round, is none: the normals for shading are only nearly right.
+    pub fn eval(&self, wi: Vec3) -> (Spectrum, f32) {
         let local = self.frame.to_local(wi);
+        let (value, pdf) = self.bsdf.eval(self.wo, local);
         let same_side = (local.z > 0.0) == (wi.dot(self.n_geo) > 0.0);
-        if same_side { self.bsdf.eval(self.wo, local) } else { Spectrum::ZERO }
-    }
-
-    /// The density with which that direction would be chosen.
-    pub fn pdf(&self, wi: Vec3) -> f32 {
-        self.bsdf.pdf(self.wo, self.frame.to_local(wi))
+        (if same_side { value } else { Spectrum::ZERO }, pdf)
     }
 }
 
@@ -85,15 +81,17 @@ impl World {
         let frame = self.frame(here.iter().flatten().map(|(_, here)| here.as_ref()), hit, surface, n);
         let wo = frame.to_local(-dir.normalize_or(-n));
         let wo = Vec3::new(wo.x, wo.y, wo.z.max(1e-6));
-        let mut bsdf = Bsdf::default();
+        let mut shading = Shading { frame, n_geo, wo, bsdf: Bsdf::default() };
+        let bsdf = &mut shading.bsdf;
         for (part, here) in parts.iter().zip(&here) {
-            let own = match here {
-                Some((own, here)) => layers::scattering(here, &own.tables, View { lanes, wo, inside, eta }),
-                None => phong_lobes(part.phong, self.diffuse_color(part.phong, surface), wo, eta, lanes),
-            };
-            bsdf.extend(&own, part.share);
+            match here {
+                Some((own, here)) => {
+                    layers::scattering(bsdf, part.share, here, &own.tables, View { lanes, wo, inside, eta });
+                }
+                None => phong_lobes(bsdf, part, self.diffuse_color(part.phong, surface), wo, eta, lanes),
+            }
         }
-        Shading { frame, n_geo, wo, bsdf }
+        shading
     }
 
     /// The frame around a normal: along u, and turned from there, where the highlight of a part is
@@ -270,8 +268,8 @@ impl World {
 /// The course's material under physical light: matte with `diffuseColor` over pi, Blinn's or
 /// Phong's highlight, and single directions for mirror and glass. What would give back more than it
 /// gets is scaled down as a whole.
-fn phong_lobes(phong: &Phong, color: Color, wo: Vec3, eta: f32, lanes: &Lanes) -> Bsdf {
-    let mut bsdf = Bsdf::default();
+fn phong_lobes(bsdf: &mut Bsdf, part: &Part, color: Color, wo: Vec3, eta: f32, lanes: &Lanes) {
+    let phong = part.phong;
     let (strength, exponent, model) = phong.highlight.unwrap_or((Color::ZERO, 1.0, HighlightModel::Blinn));
     let [color, strength, reflective, transparent] =
         [color, strength, phong.reflective, phong.transparent].map(|color| lanes.reflectance(color));
@@ -283,7 +281,7 @@ fn phong_lobes(phong: &Phong, color: Color, wo: Vec3, eta: f32, lanes: &Lanes) -
     let passing = if phong.fresnel { 1.0 - reflected } else { 1.0 };
     let (mirror, through) = (reflected * reflective, passing * transparent);
     let all = color + Blinn::bound(exponent) * strength + mirror + through;
-    let scale = 1.0 / all.max_element().max(1.0);
+    let scale = part.share / all.max_element().max(1.0);
     bsdf.push(Diffuse { color, roughness: 0.0 }, Spectrum::splat(scale), scale * color.max_element());
     let highlight = Blinn { color: strength, exponent, phong: matches!(model, HighlightModel::Phong { .. }) };
     bsdf.push(highlight, Spectrum::splat(scale), scale * Blinn::bound(exponent) * strength.max_element());
@@ -293,7 +291,6 @@ fn phong_lobes(phong: &Phong, color: Color, wo: Vec3, eta: f32, lanes: &Lanes) -
         true => bsdf.push(Through, through, through.max_element()),
         false => bsdf.push(Refraction { eta }, through, through.max_element()),
     }
-    bsdf
 }
 
 /// Whether cameras look through the backs of what is of a material.

@@ -1,6 +1,6 @@
 //! The course's highlights as lobes.
 
-use super::{Scatter, Scattered};
+use super::{NOTHING, Scatter, Scattered};
 use crate::bsdf::warp;
 use crate::math::{Vec2, Vec3, fp, reflect};
 use crate::spectrum::Spectrum;
@@ -25,37 +25,22 @@ impl Blinn {
     pub fn bound(exponent: f32) -> f32 {
         (8.0 / (exponent + 1.0)).min(1.0)
     }
-
-    fn base(&self, wo: Vec3, wi: Vec3) -> f32 {
-        match self.phong {
-            true => reflect(-wo, Vec3::Z).dot(wi),
-            false => (wo + wi).try_normalize().map_or(0.0, |h| h.z),
-        }
-    }
 }
 
 impl Scatter for Blinn {
-    fn eval(&self, wo: Vec3, wi: Vec3) -> Spectrum {
-        let base = self.base(wo, wi);
+    fn eval(&self, wo: Vec3, wi: Vec3) -> (Spectrum, f32) {
+        let half = (wo + wi).normalize_or_zero();
+        // What the power is of, and how much denser directions are than what is chosen.
+        let (base, spread) = match self.phong {
+            true => (reflect(-wo, Vec3::Z).dot(wi), 1.0),
+            false => (half.z, 4.0 * wo.dot(half)),
+        };
         if wi.z <= 0.0 || base <= 0.0 {
-            return Spectrum::ZERO;
+            return NOTHING;
         }
-        self.color * (FRAC_1_PI * wi.z * fp::pow(base, self.exponent))
-    }
-
-    fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
-        let base = self.base(wo, wi);
-        if wi.z <= 0.0 || base <= 0.0 {
-            return 0.0;
-        }
-        let density = (self.exponent + 1.0) * 0.5 * FRAC_1_PI * fp::pow(base, self.exponent);
-        match self.phong {
-            true => density,
-            false => {
-                let to_half = wo.dot((wo + wi).normalize_or(Vec3::Z));
-                if to_half > 0.0 { density / (4.0 * to_half) } else { 0.0 }
-            }
-        }
+        let power = FRAC_1_PI * fp::pow(base, self.exponent);
+        let density = if spread > 0.0 { 0.5 * (self.exponent + 1.0) * power / spread } else { 0.0 };
+        (self.color * (wi.z * power), density)
     }
 
     fn sample(&self, wo: Vec3, _: f32, u: Vec2) -> Option<Scattered> {

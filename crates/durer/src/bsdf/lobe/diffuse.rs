@@ -4,7 +4,7 @@
 //! 14(1), 2025: Fujii's version of Oren and Nayar's, and a term that gives back what is scattered
 //! more than once.
 
-use super::{Scatter, Scattered};
+use super::{NOTHING, Scatter, Scattered};
 use crate::bsdf::warp;
 use crate::math::{Vec2, Vec3, fp};
 use crate::spectrum::Spectrum;
@@ -49,12 +49,8 @@ impl Diffuse {
 }
 
 impl Scatter for Diffuse {
-    fn eval(&self, wo: Vec3, wi: Vec3) -> Spectrum {
-        if wi.z <= 0.0 { Spectrum::ZERO } else { wi.z * self.value(wo, wi) }
-    }
-
-    fn pdf(&self, _: Vec3, wi: Vec3) -> f32 {
-        FRAC_1_PI * wi.z.max(0.0)
+    fn eval(&self, wo: Vec3, wi: Vec3) -> (Spectrum, f32) {
+        if wi.z <= 0.0 { NOTHING } else { (wi.z * self.value(wo, wi), FRAC_1_PI * wi.z) }
     }
 
     fn sample(&self, _: Vec3, _: f32, u: Vec2) -> Option<Scattered> {
@@ -70,12 +66,9 @@ pub struct DiffuseTransmission {
 }
 
 impl Scatter for DiffuseTransmission {
-    fn eval(&self, _: Vec3, wi: Vec3) -> Spectrum {
-        self.color * (FRAC_1_PI * (-wi.z).max(0.0))
-    }
-
-    fn pdf(&self, _: Vec3, wi: Vec3) -> f32 {
-        FRAC_1_PI * (-wi.z).max(0.0)
+    fn eval(&self, _: Vec3, wi: Vec3) -> (Spectrum, f32) {
+        let share = FRAC_1_PI * (-wi.z).max(0.0);
+        (self.color * share, share)
     }
 
     fn sample(&self, _: Vec3, _: f32, u: Vec2) -> Option<Scattered> {

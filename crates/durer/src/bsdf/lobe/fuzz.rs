@@ -4,7 +4,7 @@
 //! Neubelt and Pettineo, *Crafting a Next-Gen Material Pipeline for The Order: 1886*, 2013 (the
 //! masking).
 
-use super::{Scatter, Scattered};
+use super::{NOTHING, Scatter, Scattered};
 use crate::bsdf::warp;
 use crate::math::{Vec2, Vec3, fp};
 use crate::spectrum::Spectrum;
@@ -27,12 +27,11 @@ pub fn value(roughness: f32, wo: Vec3, wi: Vec3) -> f32 {
 }
 
 impl Scatter for Fuzz {
-    fn eval(&self, wo: Vec3, wi: Vec3) -> Spectrum {
-        Spectrum::splat(wi.z.max(0.0) * value(self.roughness, wo, wi))
-    }
-
-    fn pdf(&self, _: Vec3, wi: Vec3) -> f32 {
-        if wi.z > 0.0 { 1.0 / (2.0 * PI) } else { 0.0 }
+    fn eval(&self, wo: Vec3, wi: Vec3) -> (Spectrum, f32) {
+        match wi.z > 0.0 {
+            true => (Spectrum::splat(wi.z * value(self.roughness, wo, wi)), 1.0 / (2.0 * PI)),
+            false => NOTHING,
+        }
     }
 
     fn sample(&self, _: Vec3, _: f32, u: Vec2) -> Option<Scattered> {

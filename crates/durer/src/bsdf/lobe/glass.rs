@@ -1,6 +1,6 @@
 //! Single directions: mirrors, smooth glass, and what goes straight on.
 
-use super::{Scatter, Scattered};
+use super::{NOTHING, Scatter, Scattered};
 use crate::math::{Vec2, Vec3};
 use crate::spectrum::Spectrum;
 
@@ -30,11 +30,8 @@ pub fn refracted(w: Vec3, h: Vec3, eta: f32) -> Option<Vec3> {
 macro_rules! single_direction {
     ($type:ty, |$lobe:ident, $wo:ident| $scattered:expr) => {
         impl Scatter for $type {
-            fn eval(&self, _: Vec3, _: Vec3) -> Spectrum {
-                Spectrum::ZERO
-            }
-            fn pdf(&self, _: Vec3, _: Vec3) -> f32 {
-                0.0
+            fn eval(&self, _: Vec3, _: Vec3) -> (Spectrum, f32) {
+                NOTHING
             }
             fn sample(&self, $wo: Vec3, _: f32, _: Vec2) -> Option<Scattered> {
                 let $lobe = self;

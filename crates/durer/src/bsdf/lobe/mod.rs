@@ -19,15 +19,15 @@ pub struct Scattered {
     pub value: Spectrum,
 }
 
+/// The value and the density of what a lobe never does.
+const NOTHING: (Spectrum, f32) = (Spectrum::ZERO, 0.0);
+
 /// What every lobe can do. Directions are local and point away from the surface; `wo` is above it
 /// (`wo.z` > 0).
 pub trait Scatter {
-    /// The lobe's value times |cos| of `wi`; 0 for a lobe of single directions.
-    fn eval(&self, wo: Vec3, wi: Vec3) -> Spectrum;
-
-    /// The density per solid angle with which [`Scatter::sample`] chooses `wi`; 0 for a lobe of
-    /// single directions.
-    fn pdf(&self, wo: Vec3, wi: Vec3) -> f32;
+    /// The lobe's value times |cos| of `wi`, and the density per solid angle with which
+    /// [`Scatter::sample`] chooses it; both 0 for a lobe of single directions.
+    fn eval(&self, wo: Vec3, wi: Vec3) -> (Spectrum, f32);
 
     /// A direction; `choice` and `u` are uniform from 0 to 1. `None` where none comes of these
     /// numbers.
@@ -50,11 +50,9 @@ macro_rules! lobes {
         })+
 
         impl Scatter for Lobe {
-            fn eval(&self, wo: Vec3, wi: Vec3) -> Spectrum {
+            #[inline]
+            fn eval(&self, wo: Vec3, wi: Vec3) -> (Spectrum, f32) {
                 match self { $(Lobe::$name(lobe) => lobe.eval(wo, wi),)+ }
-            }
-            fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
-                match self { $(Lobe::$name(lobe) => lobe.pdf(wo, wi),)+ }
             }
             fn sample(&self, wo: Vec3, choice: f32, u: Vec2) -> Option<Scattered> {
                 match self { $(Lobe::$name(lobe) => lobe.sample(wo, choice, u),)+ }

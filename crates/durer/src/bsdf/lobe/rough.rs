@@ -1,6 +1,6 @@
 //! Rough mirrors: GGX with the reflectance of a metal or of a dielectric.
 
-use super::{Scatter, Scattered};
+use super::{NOTHING, Scatter, Scattered};
 use crate::bsdf::film::Film;
 use crate::bsdf::fresnel::{self, F82};
 use crate::bsdf::microfacet::Ggx;
@@ -55,18 +55,14 @@ impl Rough {
 }
 
 impl Scatter for Rough {
-    fn eval(&self, wo: Vec3, wi: Vec3) -> Spectrum {
+    fn eval(&self, wo: Vec3, wi: Vec3) -> (Spectrum, f32) {
         let wi = self.above(wi);
-        let Some(h) = (wo + wi).try_normalize().filter(|_| wi.z > 0.0) else { return Spectrum::ZERO };
-        let value = self.ggx.density(h) * self.ggx.masking_shadowing(wo, wi) / (4.0 * wo.z);
-        value * self.facet.at(wo.dot(h).clamp(0.0, 1.0))
-    }
-
-    fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
-        let wi = self.above(wi);
-        let Some(h) = (wo + wi).try_normalize().filter(|_| wi.z > 0.0) else { return 0.0 };
+        let Some(h) = (wo + wi).try_normalize().filter(|_| wi.z > 0.0) else { return NOTHING };
+        let density = self.ggx.density(h) / (4.0 * wo.z);
+        let (hidden_o, hidden_i) = (self.ggx.lambda(wo), self.ggx.lambda(wi));
+        let value = density / (1.0 + hidden_o + hidden_i) * self.facet.at(wo.dot(h).clamp(0.0, 1.0));
         // The visible density without its factor wo·h, over 4 wo·h.
-        self.ggx.masking(wo) * self.ggx.density(h) / (4.0 * wo.z)
+        (value, density / (1.0 + hidden_o))
     }
 
     fn sample(&self, wo: Vec3, _: f32, u: Vec2) -> Option<Scattered> {

@@ -3,7 +3,7 @@
 //! Source: Walter and others, *Microfacet Models for Refraction through Rough Surfaces*, EGSR 2007.
 
 use super::glass::refracted;
-use super::{Scatter, Scattered};
+use super::{NOTHING, Scatter, Scattered};
 use crate::bsdf::fresnel;
 use crate::bsdf::microfacet::Ggx;
 use crate::math::{Vec2, Vec3};
@@ -53,20 +53,17 @@ impl RoughGlass {
 }
 
 impl Scatter for RoughGlass {
-    fn eval(&self, wo: Vec3, wi: Vec3) -> Spectrum {
+    fn eval(&self, wo: Vec3, wi: Vec3) -> (Spectrum, f32) {
         let passes = wi.z < 0.0;
-        let Some((h, spread)) = facet(wo, wi, self.eta) else { return Spectrum::ZERO };
-        let visible = self.ggx.density(h) * self.ggx.masking_shadowing(wo, wi) * wo.dot(h) / wo.z;
-        let value = self.share(passes, wo.dot(h)) * visible * spread;
-        match passes {
+        let Some((h, spread)) = facet(wo, wi, self.eta) else { return NOTHING };
+        let (hidden_o, hidden_i) = (self.ggx.lambda(wo), self.ggx.lambda(wi));
+        let facets = self.share(passes, wo.dot(h)) * self.ggx.density(h) * wo.dot(h) / wo.z * spread;
+        let value = facets / (1.0 + hidden_o + hidden_i);
+        let value = match passes {
             true => self.transmitted * (value / (self.eta * self.eta)),
             false => self.reflected * value,
-        }
-    }
-
-    fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
-        let Some((h, spread)) = facet(wo, wi, self.eta) else { return 0.0 };
-        self.share(wi.z < 0.0, wo.dot(h)) * self.ggx.visible_density(wo, h) * spread
+        };
+        (value, facets / (1.0 + hidden_o))
     }
 
     fn sample(&self, wo: Vec3, choice: f32, u: Vec2) -> Option<Scattered> {

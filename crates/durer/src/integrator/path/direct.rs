@@ -43,14 +43,14 @@ impl Path<'_> {
             (chosen, _) => chosen,
         };
         let Some(light) = chosen else { return Spectrum::ZERO };
-        let value = place.eval(light.wi);
+        let (value, pdf) = place.eval(light.wi);
         if value == Spectrum::ZERO || light.radiance == Color::ZERO {
             return Spectrum::ZERO;
         }
         let (weight, density) = match light.pdf > 0.0 {
             true => {
                 let density = light.choice * light.pdf;
-                (self.transport.direct.of_light(density, place.pdf(light.wi)), density)
+                (self.transport.direct.of_light(density, pdf), density)
             }
             // Directions never meet a light without extent.
             false => (1.0, light.choice),

@@ -258,7 +258,7 @@ impl PhotonMap {
                     continue;
                 }
                 let cosine = shading.frame.normal.dot(photon.wi).abs();
-                let value = shading.eval(photon.wi);
+                let (value, _) = shading.eval(photon.wi);
                 if value == Spectrum::ZERO || cosine <= 1e-4 {
                     continue;
                 }

@@ -72,18 +72,14 @@ impl Place<'_> {
         }
     }
 
-    /// The value, times the cosine of a surface.
-    pub(super) fn eval(&self, wi: Vec3) -> Spectrum {
+    /// The value, times the cosine of a surface, and the density with which a direction is chosen.
+    pub(super) fn eval(&self, wi: Vec3) -> (Spectrum, f32) {
         match self {
             Place::Surface(_, shading, _) => shading.eval(wi),
-            Place::Medium(_, dir, phase) => Spectrum::splat(phase.value(*dir, wi)),
-        }
-    }
-
-    pub(super) fn pdf(&self, wi: Vec3) -> f32 {
-        match self {
-            Place::Surface(_, shading, _) => shading.pdf(wi),
-            Place::Medium(_, dir, phase) => phase.value(*dir, wi),
+            Place::Medium(_, dir, phase) => {
+                let value = phase.value(*dir, wi);
+                (Spectrum::splat(value), value)
+            }
         }
     }
 

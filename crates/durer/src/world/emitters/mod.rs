@@ -188,9 +188,11 @@ impl Emitters {
         if pdf.is_finite() { choice * pdf } else { 0.0 }
     }
 
-    /// The same of a direction in which nothing is hit.
-    pub fn pdf_of_sky(&self, world: &World, wi: Vec3) -> f32 {
-        world.environment().as_ref().map_or(0.0, |sky| sky.pdf(wi) / self.choices(world) as f32)
+    /// The light from a direction in which nothing is hit, and the same of that.
+    pub fn sky(&self, world: &World, wi: Vec3) -> (Color, f32) {
+        let Some(environment) = world.environment() else { return (world.sky(wi), 0.0) };
+        let (light, pdf) = environment.at_with_pdf(wi);
+        (light, pdf / self.choices(world) as f32)
     }
 }
 

@@ -214,8 +214,8 @@ impl Form {
                     let on = d.x * frame.tangent + d.y * frame.bitangent;
                     if top { (way + on, axis) } else { (on, -axis) }
                 } else {
-                    let (sin, cos) = fp::sin_cos_degrees(360.0 * f64::from(u.y));
-                    let n = cos as f32 * frame.tangent + sin as f32 * frame.bitangent;
+                    let (sin, cos) = fp::sin_cos_turn(u.y);
+                    let n = cos * frame.tangent + sin * frame.bitangent;
                     ((u.x - caps) / (1.0 - caps) * way + radius * n, n)
                 };
                 (base.as_dvec3() + at.as_dvec3(), n)
@@ -286,9 +286,9 @@ fn cone(to: Vec3, radius: f32, u: Vec2) -> Option<Place> {
     let below = all * u.x;
     let cosine = 1.0 - below;
     let sine2 = (below * (2.0 - below)).max(0.0);
-    let (sin, cos) = fp::sin_cos_degrees(f64::from(u.y) * 360.0);
+    let (sin, cos) = fp::sin_cos_turn(u.y);
     let frame = Frame::around(to / d);
-    let wi = frame.to_world(Vec3::new(sine2.sqrt() * cos as f32, sine2.sqrt() * sin as f32, cosine)).normalize();
+    let wi = frame.to_world(Vec3::new(sine2.sqrt() * cos, sine2.sqrt() * sin, cosine)).normalize();
     // Where that direction first meets the sphere.
     let half = (r2 - d2 * sine2).max(0.0).sqrt();
     let distance = d * cosine - half;

@@ -353,7 +353,7 @@ fn textures_lie_as_pbrt_has_them() {
         let hit = world.closest(&ray, &mut ()).unwrap();
         let surface = world.surface(&ray, &hit);
         let shading = world.shading(Vec3::Z, &hit, &surface, (true, 1.0), &Lanes::Rgb);
-        shading.eval(Vec3::NEG_Z).truncate() * std::f32::consts::PI
+        shading.eval(Vec3::NEG_Z).0.truncate() * std::f32::consts::PI
     };
     let map = "\"imagemap\" \"string filename\" \"t.ppm\" \"string filter\" \"point\"";
     // v goes up: the upper left texel is red.
@@ -387,7 +387,7 @@ fn pictures_lie_on_spheres_as_pbrt_has_them() {
             let ray = crate::math::Ray::new(Vec3::new(1.0, 2.0, 3.0) + 5.0 * dir, -dir);
             let hit = world.closest(&ray, &mut ()).unwrap();
             let surface = world.surface(&ray, &hit);
-            let color = world.shading(-dir, &hit, &surface, (false, 1.0), &Lanes::Rgb).eval(dir).truncate()
+            let color = world.shading(-dir, &hit, &surface, (false, 1.0), &Lanes::Rgb).eval(dir).0.truncate()
                 * std::f32::consts::PI;
             let blue = crate::image::decode_srgb(0x33 * column);
             close(color, Vec3::new(if z < 0.0 { 1.0 } else { 0.0 }, 0.0, blue));
