@@ -201,7 +201,7 @@ fn tables_that_a_material_can_ask_for_are_worked_out_before_rays_are_traced() {
         // With half of its weight an opaque base has another index than glass.
         let text = format!("{CAMERA} Materials {{ PrincipledMaterial {{ specularWeight 0.5 {words} }} }} Group {{ }}");
         let world = super::testing::read(&text);
-        let Material::Phong(phong) = &world.materials[0] else { panic!("{words}") };
+        let Material::Phong(phong) = &world.materials()[0] else { panic!("{words}") };
         let own = phong.principled.as_ref().unwrap();
         assert_eq!(own.tables.prepared(), opaque_glass_coat, "{words}");
         // What points of it really ask for is among them.
