@@ -9,7 +9,7 @@ mod solids;
 #[cfg(test)]
 pub(crate) mod testing;
 
-use crate::bvh::{Bvh, Grid};
+use crate::bvh::{Bvh, Grid, PrimitivePacks};
 use crate::camera::{Frame, Lens};
 use crate::diag::{Diagnostic, Diagnostics, Files, Span};
 use crate::dialect::{Compat, Dialect, MeshNormals, Rules};
@@ -148,24 +148,31 @@ pub fn compile(
 
 /// Makes the structure over a world's objects: at first, and anew after they were moved.
 pub(crate) fn rebuild(world: &mut World, kind: AccelKind) -> Result<(), Box<Diagnostic>> {
-    let is_bounded = |object: &Object| object.bounds().is_some();
-    let few = kind == AccelKind::Bvh && world.objects().iter().filter(|object| is_bounded(object)).count() <= FEW;
-    let is_loose = |&i: &u32| few || !is_bounded(&world.objects()[i as usize]);
-    world.loose = (0..world.objects().len() as u32).filter(is_loose).collect();
-    world.accel = build_accel(world, kind)?;
+    let mut packs = PrimitivePacks::default();
+    let objects = world.objects();
+    let bounded = || objects.iter().filter(|object| object.bounds().is_some());
+    let spheres = bounded().filter(|object| object.fits_packs()).count();
+    let few = kind == AccelKind::Bvh && bounded().count() - spheres <= FEW && spheres <= FEW_SPHERES;
+    let numbered = (0_u32..).zip(objects);
+    let outside: Vec<u32> = numbered.filter(|(_, o)| few || o.bounds().is_none()).map(|(i, _)| i).collect();
+    let loose = outside.iter().copied().filter(|&i| !objects[i as usize].add_to(&mut packs, i)).collect();
+    let accel = build_accel(world, kind, &outside)?;
+    (world.packs, world.loose, world.accel) = (packs, loose, accel);
     Ok(())
 }
 
-/// So many objects are tested one after the other: a tree over them would cost more than it saves.
+/// So many objects are tested one after the other, and so many spheres eight at a time: a tree over
+/// them would cost more than it saves.
 const FEW: usize = 2;
+const FEW_SPHERES: usize = 16;
 
-fn build_accel(world: &World, kind: AccelKind) -> Result<Accel, Box<Diagnostic>> {
+fn build_accel(world: &World, kind: AccelKind, outside: &[u32]) -> Result<Accel, Box<Diagnostic>> {
     let cells = match kind {
         AccelKind::None => return Ok(Accel::None),
         AccelKind::Bvh => {
             // What has an empty box here is left out.
             let mut boxes: Vec<Aabb> = world.objects().iter().map(|o| o.bounds().unwrap_or(Aabb::EMPTY)).collect();
-            world.loose.iter().for_each(|&i| boxes[i as usize] = Aabb::EMPTY);
+            outside.iter().for_each(|&i| boxes[i as usize] = Aabb::EMPTY);
             return Ok(Accel::Bvh(Bvh::build(&boxes)));
         }
         AccelKind::Grid(cells) => cells,

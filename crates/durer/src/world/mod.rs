@@ -10,7 +10,7 @@ mod object;
 pub mod shading;
 pub mod solid;
 
-use crate::bvh::{Bvh, Grid, TraversalCounter};
+use crate::bvh::{Bvh, Grid, PrimitivePacks, TraversalCounter};
 use crate::dialect::Compat;
 use crate::light::{Emitter as _, Illumination};
 use crate::material::Pattern;
@@ -37,8 +37,10 @@ pub struct World {
     has_cutouts: bool,
     hides_backs: bool,
     has_interfaces: bool,
-    /// What stands outside the structure: objects without end, and all where they are so few that
-    /// no tree pays.
+    /// Planes and spheres that stand outside the structure, tested eight at a time.
+    pub(crate) packs: PrimitivePacks,
+    /// What else stands outside: objects without end, and all where they are so few that no tree
+    /// pays.
     pub(crate) loose: Vec<u32>,
     pub(crate) accel: Accel,
 }
@@ -92,6 +94,7 @@ impl World {
             has_cutouts: false,
             hides_backs: false,
             has_interfaces: false,
+            packs: PrimitivePacks::default(),
             loose: Vec::new(),
             accel: Accel::None,
         };
@@ -140,6 +143,9 @@ impl World {
                 }
             }
         };
+        if let Some(met) = self.packs.closest(&ray.rounded, counter) {
+            offer(&mut best, &mut ray, met.number, Some((Crossing { t: met.t, uv: Vec2::ZERO }, 0)));
+        }
         for &object in &self.loose {
             let found = self.objects()[object as usize].closest(&ray, false, counter);
             offer(&mut best, &mut ray, object, found);
@@ -183,7 +189,9 @@ impl World {
         if !crate::bvh::is_sound(outer) {
             return false;
         }
-        if self.loose.iter().any(|&i| self.objects()[i as usize].closest(ray, true, counter).is_some()) {
+        if self.packs.occluded(outer, counter)
+            || self.loose.iter().any(|&i| self.objects()[i as usize].closest(ray, true, counter).is_some())
+        {
             return true;
         }
         let mut found = false;
@@ -330,5 +338,7 @@ impl World {
     }
 }
 
+#[cfg(test)]
+mod packs_tests;
 #[cfg(test)]
 mod tests;
