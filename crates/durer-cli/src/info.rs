@@ -183,7 +183,7 @@ impl Counted {
         }
         let faces = world.cube_map().into_iter().flat_map(|map| &map.faces);
         count.picture_bytes = world.textures().iter().chain(faces).map(|texture| texture.bytes()).sum();
-        count.bytes += count.picture_bytes + size_of_val(&*world.objects());
+        count.bytes += count.picture_bytes + size_of_val(world.objects());
         count.bytes += match world.accel() {
             Accel::Bvh(bvh) => {
                 count.object_cost = Some(bvh.sah_cost()).filter(|cost| cost.is_finite());

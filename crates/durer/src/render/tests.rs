@@ -7,7 +7,7 @@ use crate::film::Filter;
 use crate::film::aov::{AOVS, Aov};
 use crate::film::course::CourseFilter;
 use crate::image::{Depth, FORMATS, WriteOptions, read};
-use crate::math::Vec3;
+use crate::math::{Aabb, Vec3};
 use crate::sampler::Sampler;
 use crate::source::Digest;
 use crate::world::World;
@@ -249,8 +249,10 @@ fn work_is_gone_on_with_only_where_it_is_the_same() {
 #[test]
 fn a_panic_is_an_error_that_knows_its_sample_and_the_rest_is_kept() {
     let mut broken = world();
-    // A material that is not there: whatever shades the sphere panics.
-    broken.edit().objects[0].material = 999;
+    // A tree that names an object which is not there: what meets the sphere's box panics.
+    let mut boxes = vec![Aabb::EMPTY; 1000];
+    boxes[999] = broken.objects()[0].bounds().unwrap();
+    broken.accel = crate::world::Accel::Bvh(crate::bvh::Bvh::build(&boxes));
     let job = Job { sampling: filtered(4), width: 64, height: 64, ..Job::default() };
     let part = Part::new(&broken, &job, Shard::WHOLE).unwrap();
     let control = Control { threads: Some(1), ..Control::default() };

@@ -210,7 +210,8 @@ fn transforms_apply_from_the_last_written_to_the_first_and_keep_t() {
 #[test]
 fn a_changed_world_has_the_identity_of_what_it_holds() {
     let world = testing::read(
-        "OrthographicCamera {} Materials { PhongMaterial {} } Group { MaterialIndex 0 Sphere { center 0 0 0 radius 1 } }",
+        "OrthographicCamera { center 0 0 5 direction 0 0 -1 up 0 1 0 size 5 } Materials { PhongMaterial {} }
+        Group { MaterialIndex 0 Sphere { center 0 0 0 radius 1 } }",
     );
     let changed = |change: fn(&mut Contents)| {
         let mut other = world.clone();

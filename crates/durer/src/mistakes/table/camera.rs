@@ -169,7 +169,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "up as it is written",
         "up = (0, 1, 0)",
         |v, _| {
-            let frame = v.world.camera_frame().clone();
+            let frame = *v.world.camera_frame();
             let right = frame.forward.cross(Vec3::Y).normalize_or(frame.right);
             let own = &mut v.world.edit().frame;
             (own.right, own.up) = (right, right.cross(frame.forward));
