@@ -155,7 +155,9 @@ pub(crate) fn rebuild(world: &mut World, kind: AccelKind) -> Result<(), Box<Diag
     let few = kind == AccelKind::Bvh && bounded().count() - spheres <= FEW && spheres <= FEW_SPHERES;
     let numbered = (0_u32..).zip(objects);
     let outside: Vec<u32> = numbered.filter(|(_, o)| few || o.bounds().is_none()).map(|(i, _)| i).collect();
-    let loose = outside.iter().copied().filter(|&i| !objects[i as usize].add_to(&mut packs, i)).collect();
+    let packed = outside.iter().filter(|&&i| objects[i as usize].fits_packs()).count() >= MIN_PACKED;
+    let is_loose = |&i: &u32| !(packed && objects[i as usize].add_to(&mut packs, i));
+    let loose = outside.iter().copied().filter(is_loose).collect();
     let accel = build_accel(world, kind, &outside)?;
     (world.packs, world.loose, world.accel) = (packs, loose, accel);
     Ok(())
@@ -165,6 +167,9 @@ pub(crate) fn rebuild(world: &mut World, kind: AccelKind) -> Result<(), Box<Diag
 /// them would cost more than it saves.
 const FEW: usize = 2;
 const FEW_SPHERES: usize = 16;
+
+/// Fewer planes and spheres than this are tested one after the other: eight at a time take longer.
+const MIN_PACKED: usize = 4;
 
 fn build_accel(world: &World, kind: AccelKind, outside: &[u32]) -> Result<Accel, Box<Diagnostic>> {
     let cells = match kind {
