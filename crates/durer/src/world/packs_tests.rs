@@ -3,7 +3,7 @@
 use crate::bvh::PrimitivePacks;
 use crate::math::random::{Random, rounds};
 use crate::math::{Ray, Vec3};
-use crate::shape::{Plane, Shape, Sphere};
+use crate::shape::{Plane, Primitive, Shape, Sphere};
 
 fn vector(random: &mut Random, size: f32) -> Vec3 {
     Vec3::new(random.between(-size, size), random.between(-size, size), random.between(-size, size))
@@ -17,7 +17,7 @@ fn packs_hit_as_shapes_do() {
     let (mut hits, mut rays) = (0, 0);
     for _ in 0..rounds(100_000) / 100 {
         let mut packs = PrimitivePacks::default();
-        let mut shapes: Vec<Box<dyn Fn(&Ray) -> Option<f32>>> = Vec::new();
+        let mut shapes: Vec<Primitive> = Vec::new();
         let size = [1.0, 1e-3, 1e6][random.below(3)];
         for _ in 0..random.below(21) {
             let number = shapes.len() as u32;
@@ -25,14 +25,14 @@ fn packs_hit_as_shapes_do() {
             let plane =
                 Plane { normal: axes[random.below(4)], offset: [0.0, random.between(-size, size)][random.below(2)] };
             packs.push_plane(number, plane.normal, plane.offset);
-            shapes.push(Box::new(move |ray| plane.intersect(ray).map(|crossing| crossing.t)));
+            shapes.push(plane.into());
         }
         for _ in 0..random.below(21) {
             let number = shapes.len() as u32;
             let center = [Vec3::ZERO, vector(&mut random, size)][random.below(2)];
             let sphere = Sphere { center, radius: [size, random.between(0.01, 1.0) * size][random.below(2)] };
             packs.push_sphere(number, sphere.center, sphere.radius);
-            shapes.push(Box::new(move |ray| sphere.intersect(ray).map(|crossing| crossing.t)));
+            shapes.push(sphere.into());
         }
         assert_eq!(packs.len(), shapes.len());
         for _ in 0..100 {
@@ -44,7 +44,8 @@ fn packs_hit_as_shapes_do() {
             if !crate::bvh::is_sound(&ray) {
                 continue;
             }
-            let each = shapes.iter().zip(0_u32..).filter_map(|(shape, number)| Some((shape(&ray)?, number)));
+            let each =
+                shapes.iter().zip(0_u32..).filter_map(|(shape, number)| Some((shape.intersect(&ray)?.t, number)));
             let expected = each.min_by(|a, b| a.partial_cmp(b).unwrap());
             let found = packs.closest(&ray, &mut ()).map(|hit| (hit.t, hit.number));
             let bits = |hit: Option<(f32, u32)>| hit.map(|(t, number)| ((t + 0.0).to_bits(), number));
