@@ -6,13 +6,15 @@
 
 use super::TraversalCounter;
 use super::lanes::{Available, Kernel, Lanes, WIDTH};
-use crate::math::{Doubles, Ray, Vec3};
+use crate::math::{Doubles, Ray, Triple, Vec3};
 
 /// Planes and spheres under the caller's numbers.
 #[derive(Clone, Debug)]
 pub struct PrimitivePacks {
-    planes: Vec<PlanePack>,
-    spheres: Vec<SpherePack>,
+    /// normal · p = size.
+    planes: Vec<Pack>,
+    /// |p - center|^2 = size.
+    spheres: Vec<Pack>,
     /// How many there are of both.
     count: usize,
     level: Available,
@@ -27,19 +29,12 @@ pub struct PackHit {
     pub number: u32,
 }
 
-/// normal · p = offset, by lane; an offset of a lane without a plane is no number.
+/// Eight things of a kind: of each a normal or a centre, and a size. The size of a lane without a
+/// thing is no number, so that nothing is met there.
 #[derive(Clone, Copy, Debug)]
-struct PlanePack {
-    normal: [[f64; WIDTH]; 3],
-    offset: [f64; WIDTH],
-    numbers: [u32; WIDTH],
-}
-
-/// |p - center|^2 = radius^2, by lane; the radius of a lane without a sphere is no number.
-#[derive(Clone, Copy, Debug)]
-struct SpherePack {
-    center: [[f64; WIDTH]; 3],
-    square: [f64; WIDTH],
+struct Pack {
+    vectors: [[f64; WIDTH]; 3],
+    sizes: [f64; WIDTH],
     numbers: [u32; WIDTH],
 }
 
@@ -52,31 +47,13 @@ impl Default for PrimitivePacks {
 impl PrimitivePacks {
     /// Adds the plane normal · p = offset.
     pub fn push_plane(&mut self, number: u32, normal: Vec3, offset: f32) {
-        let lane = self.planes.last().map_or(WIDTH, |pack| lanes_used(&pack.offset));
-        if lane == WIDTH {
-            let none = PlanePack { normal: [[0.0; WIDTH]; 3], offset: [f64::NAN; WIDTH], numbers: [u32::MAX; WIDTH] };
-            self.planes.push(none);
-        }
-        if let Some(pack) = self.planes.last_mut() {
-            let lane = lane % WIDTH;
-            (0..3).for_each(|axis| pack.normal[axis][lane] = f64::from(normal[axis]));
-            (pack.offset[lane], pack.numbers[lane]) = (f64::from(offset), number);
-        }
+        push(&mut self.planes, number, normal, f64::from(offset));
         self.count += 1;
     }
 
     /// Adds the sphere |p - center| = radius.
     pub fn push_sphere(&mut self, number: u32, center: Vec3, radius: f32) {
-        let lane = self.spheres.last().map_or(WIDTH, |pack| lanes_used(&pack.square));
-        if lane == WIDTH {
-            let none = SpherePack { center: [[0.0; WIDTH]; 3], square: [f64::NAN; WIDTH], numbers: [u32::MAX; WIDTH] };
-            self.spheres.push(none);
-        }
-        if let Some(pack) = self.spheres.last_mut() {
-            let lane = lane % WIDTH;
-            (0..3).for_each(|axis| pack.center[axis][lane] = f64::from(center[axis]));
-            (pack.square[lane], pack.numbers[lane]) = (f64::from(radius) * f64::from(radius), number);
-        }
+        push(&mut self.spheres, number, center, f64::from(radius) * f64::from(radius));
         self.count += 1;
     }
 
@@ -113,9 +90,18 @@ impl PrimitivePacks {
     }
 }
 
-/// How many lanes of a pack are taken.
-fn lanes_used(numbers: &[f64; WIDTH]) -> usize {
-    numbers.iter().filter(|x| !x.is_nan()).count()
+/// Adds a thing in the first lane that is free.
+fn push(packs: &mut Vec<Pack>, number: u32, vector: Vec3, size: f64) {
+    let free = |pack: &Pack| pack.sizes.iter().position(|size| size.is_nan());
+    let mut pack = packs.pop_if(|pack| free(pack).is_some()).unwrap_or(Pack {
+        vectors: [[0.0; WIDTH]; 3],
+        sizes: [f64::NAN; WIDTH],
+        numbers: [u32::MAX; WIDTH],
+    });
+    let lane = free(&pack).unwrap_or(0);
+    (0..3).for_each(|axis| pack.vectors[axis][lane] = f64::from(vector[axis]));
+    (pack.sizes[lane], pack.numbers[lane]) = (size, number);
+    packs.push(pack);
 }
 
 /// One ray's way through all packs; `ANY`: the first thing found will do.
@@ -131,13 +117,14 @@ impl<const ANY: bool> Kernel for Query<'_, ANY> {
     fn run<L: Lanes>(self, lanes: L) -> PackHit {
         let Query { packs, ray } = self;
         let mut best = PackHit { t: ray.t_max, number: u32::MAX };
-        let (origin, dir) = (splat3(lanes, ray.origin), splat3(lanes, ray.dir));
+        let origin = lanes.doubles3(lanes.splat3(ray.origin.to_array()));
+        let dir = lanes.doubles3(lanes.splat3(ray.dir.to_array()));
         let (t_min, t_max) = (lanes.splat(ray.t_min), lanes.splat(ray.t_max));
         for pack in &packs.planes {
-            let normal = load3(lanes, &pack.normal);
-            let slope = dot(normal, dir);
+            let normal = load3(lanes, &pack.vectors);
             // A parallel ray divides by zero, and hits nothing.
-            let t = lanes.singles(lanes.load_doubles(&pack.offset).sub(dot(normal, origin)).div(slope));
+            let t = lanes.load_doubles(&pack.sizes).sub(normal.dot(origin)).div(normal.dot(dir));
+            let t = lanes.singles(t);
             let met = lanes.lt(t_min, t) & lanes.lt(t, t_max);
             if ANY && met != 0 {
                 return PackHit { number: 0, ..best };
@@ -148,18 +135,18 @@ impl<const ANY: bool> Kernel for Query<'_, ANY> {
             // The discriminant is taken from the point of the ray nearest to the centre, which
             // keeps small, far spheres exact. Source: Haines, Günther, Akenine-Möller, *Ray Tracing
             // Gems* (2019), chapter 7.
-            let o = origin.sub(load3(lanes, &pack.center));
-            let (dd, b) = (dot(dir, dir), dot(o, dir).mul(lanes.splat_double(-1.0)));
+            let o = origin.sub(load3(lanes, &pack.vectors));
+            let (dd, b) = (dir.dot(dir), o.dot(dir).mul(lanes.splat_double(-1.0)));
             let along = b.div(dd);
-            let near = o.add([along.mul(dir[0]), along.mul(dir[1]), along.mul(dir[2])]);
-            let square = lanes.load_doubles(&pack.square);
-            let discriminant = square.sub(dot(near, near));
+            let near = o.add([along; 3].mul(dir));
+            let square = lanes.load_doubles(&pack.sizes);
+            let discriminant = square.sub(near.dot(near));
             // Where a sphere is missed, it is negative or no number, and so are the roots.
             if lanes.le(lanes.splat(0.0), lanes.singles(discriminant)) == 0 {
                 continue;
             }
             // q has the sign of b, so that neither root loses digits to cancellation.
-            let c = dot(o, o).sub(square);
+            let c = o.dot(o).sub(square);
             let q = b.add(dd.mul(discriminant).sqrt().copysign(b));
             let (t0, t1) = (c.div(q), q.div(dd));
             let (near, far) = (lanes.singles(t0.min(t1)), lanes.singles(t1.max(t0)));
@@ -176,20 +163,8 @@ impl<const ANY: bool> Kernel for Query<'_, ANY> {
 }
 
 #[inline(always)]
-fn splat3<L: Lanes>(lanes: L, v: Vec3) -> [L::Doubles; 3] {
-    let [x, y, z] = v.to_array();
-    [lanes.splat_double(x.into()), lanes.splat_double(y.into()), lanes.splat_double(z.into())]
-}
-
-#[inline(always)]
 fn load3<L: Lanes>(lanes: L, [x, y, z]: &[[f64; WIDTH]; 3]) -> [L::Doubles; 3] {
     [lanes.load_doubles(x), lanes.load_doubles(y), lanes.load_doubles(z)]
-}
-
-/// x + y, and then z.
-#[inline(always)]
-fn dot<D: Doubles>(a: [D; 3], b: [D; 3]) -> D {
-    a[0].mul(b[0]).add(a[1].mul(b[1])).add(a[2].mul(b[2]))
 }
 
 /// The better of a hit and those of the lanes that are met.

@@ -150,15 +150,17 @@ pub fn compile(
 pub(crate) fn rebuild(world: &mut World, kind: AccelKind) -> Result<(), Box<Diagnostic>> {
     let mut packs = PrimitivePacks::default();
     let objects = world.objects();
-    let bounded = || objects.iter().filter(|object| object.bounds().is_some());
-    let spheres = bounded().filter(|object| object.fits_packs()).count();
-    let few = kind == AccelKind::Bvh && bounded().count() - spheres <= FEW && spheres <= FEW_SPHERES;
-    let numbered = (0_u32..).zip(objects);
-    let outside: Vec<u32> = numbered.filter(|(_, o)| few || o.bounds().is_none()).map(|(i, _)| i).collect();
-    let packed = outside.iter().filter(|&&i| objects[i as usize].fits_packs()).count() >= MIN_PACKED;
-    let is_loose = |&i: &u32| !(packed && objects[i as usize].add_to(&mut packs, i));
-    let loose = outside.iter().copied().filter(is_loose).collect();
-    let accel = build_accel(world, kind, &outside)?;
+    let mut boxes: Vec<Option<Aabb>> = objects.iter().map(Object::bounds).collect();
+    let bounded = || objects.iter().zip(&boxes).filter(|(_, bounds)| bounds.is_some());
+    let spheres = bounded().filter(|(object, _)| object.fits_packs()).count();
+    if kind == AccelKind::Bvh && bounded().count() - spheres <= FEW && spheres <= FEW_SPHERES {
+        boxes.fill(None);
+    }
+    let mut loose: Vec<u32> = (0_u32..).zip(&boxes).filter(|(_, b)| b.is_none()).map(|(i, _)| i).collect();
+    if loose.iter().filter(|&&i| objects[i as usize].fits_packs()).count() >= MIN_PACKED {
+        loose.retain(|&i| !objects[i as usize].add_to(&mut packs, i));
+    }
+    let accel = build_accel(world, kind, boxes)?;
     (world.packs, world.loose, world.accel) = (packs, loose, accel);
     Ok(())
 }
@@ -171,13 +173,13 @@ const FEW_SPHERES: usize = 16;
 /// Fewer planes and spheres than this are tested one after the other: eight at a time take longer.
 const MIN_PACKED: usize = 4;
 
-fn build_accel(world: &World, kind: AccelKind, outside: &[u32]) -> Result<Accel, Box<Diagnostic>> {
+/// `bounds` are those of objects that do not stand outside.
+fn build_accel(world: &World, kind: AccelKind, bounds: Vec<Option<Aabb>>) -> Result<Accel, Box<Diagnostic>> {
     let cells = match kind {
         AccelKind::None => return Ok(Accel::None),
         AccelKind::Bvh => {
             // What has an empty box here is left out.
-            let mut boxes: Vec<Aabb> = world.objects().iter().map(|o| o.bounds().unwrap_or(Aabb::EMPTY)).collect();
-            outside.iter().for_each(|&i| boxes[i as usize] = Aabb::EMPTY);
+            let boxes: Vec<Aabb> = bounds.into_iter().map(|bounds| bounds.unwrap_or(Aabb::EMPTY)).collect();
             return Ok(Accel::Bvh(Bvh::build(&boxes)));
         }
         AccelKind::Grid(cells) => cells,

@@ -250,19 +250,18 @@ impl Object {
     /// Whether it can be tested together with others of its kind: a plane or a sphere, where it is
     /// written.
     pub(crate) fn fits_packs(&self) -> bool {
-        let simple = matches!(&self.geometry, Geometry::Primitive(Primitive::Plane(_) | Primitive::Sphere(_)));
-        simple && self.to_world.is_none()
+        self.to_world.is_none()
+            && matches!(&self.geometry, Geometry::Primitive(Primitive::Plane(_) | Primitive::Sphere(_)))
     }
 
     /// Adds it under a number to those that are tested together, if it can be.
     pub(crate) fn add_to(&self, packs: &mut PrimitivePacks, number: u32) -> bool {
-        match (&self.geometry, &self.to_world) {
-            (Geometry::Primitive(Primitive::Plane(plane)), None) => {
-                packs.push_plane(number, plane.normal, plane.offset);
-            }
-            (Geometry::Primitive(Primitive::Sphere(sphere)), None) => {
-                packs.push_sphere(number, sphere.center, sphere.radius);
-            }
+        if self.to_world.is_some() {
+            return false;
+        }
+        match &self.geometry {
+            Geometry::Primitive(Primitive::Plane(plane)) => packs.push_plane(number, plane.normal, plane.offset),
+            Geometry::Primitive(Primitive::Sphere(sphere)) => packs.push_sphere(number, sphere.center, sphere.radius),
             _ => return false,
         }
         true

@@ -143,8 +143,11 @@ impl Direct {
     /// Those that can be asked for.
     pub const CHOICES: [Direct; 3] = [Direct::Both, Direct::Lights, Direct::Bsdf];
 
+    /// Their names.
+    const NAMES: [&str; 3] = [Direct::CHOICES[0].name(), Direct::CHOICES[1].name(), Direct::CHOICES[2].name()];
+
     /// Its name.
-    pub fn name(self) -> &'static str {
+    pub const fn name(self) -> &'static str {
         match self {
             Direct::Both => "both",
             Direct::Lights => "lights",
@@ -168,7 +171,7 @@ impl FieldType for ColorMode {
 }
 
 impl FieldType for Direct {
-    const KIND: Kind = Kind::Word(&["both", "lights", "bsdf"]);
+    const KIND: Kind = Kind::Word(&Direct::NAMES);
 
     fn value(&self) -> Option<Value> {
         Some(Value::Word(self.name().into()))

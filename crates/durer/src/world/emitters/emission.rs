@@ -155,7 +155,7 @@ impl Beams {
                 Some(Emitted { ray, power: sample.radiance / (density * choice), light: None, material: None })
             }
             Lamp::Sky => {
-                let (wi, radiance, pdf) = world.environment().as_ref()?.sample(place)?;
+                let (wi, radiance, pdf) = world.environment()?.sample(place)?;
                 let (ray, density) = self.across(-wi, target, direction);
                 Some(Emitted { ray, power: radiance / (density * pdf * choice), light: None, material: None })
             }
