@@ -21,7 +21,6 @@ const LIGHTS: &str = "durer/src/light/mod.rs";
 const MATERIALS: &str = "durer/src/material/mod.rs";
 const LOBES: &str = "durer/src/bsdf/lobe/mod.rs";
 const INTEGRATORS: &str = "durer/src/integrator/mod.rs";
-const METHODS: &str = "durer-cli/src/method.rs";
 const PICTURES: &str = "durer/src/image/formats.rs";
 const FORMATS: &str = "durer/src/format/mod.rs";
 const SCENES: &str = "durer/src/format/scene.rs";
@@ -79,22 +78,7 @@ const ADDITIONS: &[Addition] = &[
         content: include_str!("additions/hits.rs"),
         words: &[
             (INTEGRATORS, "pub mod media;", "pub mod hits;\n"),
-            (INTEGRATORS, "    /// All light.\n    Path(Transport),", "    /// Where anything is.\n    Hits,\n"),
-            (INTEGRATORS, "\"whitted\", \"path\"", "\"hits\", "),
-            (INTEGRATORS, "            Method::Path(_) => \"path\"", "            Method::Hits => \"hits\",\n"),
-            (INTEGRATORS, "Method::Whitted | Method::Ao { .. } => None", "Method::Hits => None,\n            "),
-            (INTEGRATORS, "    /// A path tracer.\n", "    /// Where anything is.\n    Hits(hits::Hits<'w>),\n"),
-            (
-                INTEGRATORS,
-                "            Method::Path(transport) => Integrator",
-                "            Method::Hits => Integrator::Hits(hits::Hits { world }),\n",
-            ),
-            (
-                INTEGRATORS,
-                "            Integrator::Path(path) => path",
-                "            Integrator::Hits(hits) => hits.radiance(ray, tally),\n",
-            ),
-            (METHODS, "        \"path\" => Method::Path(transport),", "        \"hits\" => Method::Hits,\n"),
+            (INTEGRATORS, "Path(path::Transport),", "Hits(hits::HitsParameters),\n    "),
         ],
     },
     Addition {
@@ -213,7 +197,7 @@ fn used(durer: &Path, folder: &Path) -> Result<()> {
     std::fs::write(folder.join("a.tri"), "0 0 0 1 0 0 0 1 0\n")?;
     for words in [
         "render scene.txt -o a.ff --size 48x48 --show color,heights",
-        "render scene.txt -o b.png --size 48x48 --integrator hits",
+        "render scene.txt -o b.png --size 48x48 --hits-depth 100",
         "render a.balls -o c.png --size 48x32",
         "convert a.tri -o a.ply",
         "convert a.ply -o b.tri",

@@ -6,7 +6,7 @@ use durer::diag::{Diagnostics, Files, Severity};
 use durer::film::Filter;
 use durer::image::compare::{Options, Picture, Scale, compare};
 use durer::image::{Image, Layer, WriteOptions, format_for, read, save};
-use durer::integrator::{Method, Transport};
+use durer::integrator::{Method, PhotonParameters};
 use durer::math::Vec3;
 use durer::render::{Control, Job, Part, Sampling, Shard};
 use durer::{LoadOptions, load};
@@ -120,11 +120,8 @@ fn compared(folder: &Path, samples: u32, keep: Option<&Path>) -> Result<Row> {
     let known = BOUNCES.iter().find(|row| row.0 == name).map(|row| row.1);
     let bounces = known.or(loaded.scene.wishes.bounces).unwrap_or(16);
     let photons = PHOTONS.iter().find(|row| row.0 == name);
-    let method = photons.map_or(Method::PATH, |&(_, count, radius)| Method::Photons {
-        transport: Transport::default(),
-        count,
-        radius: Some(radius),
-        corrected: false,
+    let method = photons.map_or(Method::PATH, |&(_, count, radius)| {
+        Method::Photons(PhotonParameters { count, radius: Some(radius), ..PhotonParameters::default() })
     });
     let usual = Job::default();
     let job = Job {

@@ -50,7 +50,7 @@ pub fn run() -> Result<ExitCode> {
             let ratio = time.as_secs_f64() / least[0].as_secs_f64();
             println!(
                 "    {kind:48} {:8} {:12.0} {:12.2}   {ratio:.2} times, {hits} hits",
-                world.objects.len(),
+                world.objects().len(),
                 time.as_nanos() as f64 / f64::from(RAYS),
                 counts.tests as f64 / f64::from(RAYS)
             );

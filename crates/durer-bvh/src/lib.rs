@@ -13,6 +13,7 @@ mod instances;
 mod lanes;
 pub mod math;
 mod node;
+mod packs;
 mod parallel;
 mod traverse;
 mod triangles;
@@ -25,6 +26,7 @@ pub use glam;
 pub use grid::Grid;
 pub use instances::{Instance, InstanceBvh, InstanceHit};
 pub use lanes::{SimdLevel, UnknownSimdLevel};
+pub use packs::{PackHit, PrimitivePacks};
 pub use triangles::{Facing, NearestPoint, TriangleBvh, TriangleHit};
 
 /// Counts the work of rays. `()` counts nothing, at no cost.

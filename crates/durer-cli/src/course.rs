@@ -158,7 +158,7 @@ fn job(given: &Given, opened: &Opened) -> Result<Job, Failure> {
     let rules = &opened.loaded.rules;
     let size = given.numbers::<u32>("-size", 2)?;
     // A camera whose picture has a shape of its own makes that; the old programs knew none.
-    let natural = || Raster::natural_size(opened.world.camera.proportions(), rules.size);
+    let natural = || Raster::natural_size(opened.world.camera().proportions(), rules.size);
     let (width, height) = size.map_or_else(natural, |size| (size[0], size[1]));
     if width == 0 || height == 0 {
         return Err(bad("-size: a picture has at least one pixel"));
@@ -247,5 +247,5 @@ fn threads(given: &Given) -> Result<Option<usize>, Failure> {
 /// `-stats`.
 fn stats(opened: &Opened, control: &Control) {
     let rays = control.rays.load(Relaxed);
-    say(&format!("objects {}, rays {rays}", opened.world.objects.len()));
+    say(&format!("objects {}, rays {rays}", opened.world.objects().len()));
 }

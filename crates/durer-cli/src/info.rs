@@ -24,11 +24,11 @@ pub fn run(args: &InfoArgs) -> Result<(), Failure> {
         let scene: serde_json::Value = serde_json::from_str(&durer::format::json::write(&loaded.scene, dialect))?;
         let value = serde_json::json!({
             "dialect": dialect.name(),
-            "objects": world.objects.len(),
+            "objects": world.objects().len(),
             "triangles": count.triangles,
             "distinct_triangles": count.distinct_triangles,
-            "materials": world.materials.len(),
-            "lights": world.lights.len(),
+            "materials": world.materials().len(),
+            "lights": world.lights().len(),
             "bytes": count.bytes,
             "bytes_per_triangle": count.tree_bytes_each(),
             "tree_cost": count.tree_cost(),
@@ -41,29 +41,29 @@ pub fn run(args: &InfoArgs) -> Result<(), Failure> {
         return Ok(());
     }
     let bounds = world.bounds();
-    let pose = world.camera.pose();
+    let pose = world.camera().pose();
     say(&format!("scene      {}", args.scene.display()));
     say(&format!("dialect    {} ({})", dialect.name(), dialect.rules().title));
-    let camera = &world.camera;
+    let camera = world.camera();
     let (name, rest) = (camera.keyword(dialect), fields(camera, &["center", "direction"]));
     say(&format!("camera     {name} at {}, looking along {}: {rest}", pose.center, pose.direction));
     let natural = || Raster::natural_size(camera.proportions(), loaded.rules.size);
     let (width, height) = loaded.scene.wishes.size.unwrap_or_else(natural);
     say(&format!("picture    {width}x{height} where no size is asked for"));
-    for light in &world.lights {
+    for light in world.lights() {
         say(&format!("light      {}: {}", light.keyword(dialect), fields(light, &[])));
     }
     let shapes: Vec<String> = count.shapes.iter().map(|(name, n)| format!("{n} {name}")).collect();
     say(&format!(
         "objects    {}{}{}",
-        world.objects.len(),
+        world.objects().len(),
         if shapes.is_empty() { "" } else { ": " },
         shapes.join(", ")
     ));
     if count.triangles > 0 {
         say(&format!("triangles  {} in meshes, {} of them distinct", count.triangles, count.distinct_triangles));
     }
-    say(&format!("materials  {}", world.materials.len()));
+    say(&format!("materials  {}", world.materials().len()));
     if !bounds.is_empty() {
         say(&format!("bounds     {} to {}", bounds.min, bounds.max));
     }
@@ -162,7 +162,7 @@ impl Counted {
     fn of(world: &World) -> Self {
         let mut count = Counted::default();
         let mut seen = Vec::new();
-        for object in &world.objects {
+        for object in world.objects() {
             let name = match &object.geometry {
                 Geometry::Primitive(shape) => shape.keywords()[0].0,
                 Geometry::Mesh(tree) => {
@@ -181,9 +181,9 @@ impl Counted {
             };
             *count.shapes.entry(name).or_default() += 1;
         }
-        let faces = world.cube_map.iter().flat_map(|map| &map.faces);
-        count.picture_bytes = world.textures.iter().chain(faces).map(|texture| texture.bytes()).sum();
-        count.bytes += count.picture_bytes + size_of_val(&*world.objects);
+        let faces = world.cube_map().into_iter().flat_map(|map| &map.faces);
+        count.picture_bytes = world.textures().iter().chain(faces).map(|texture| texture.bytes()).sum();
+        count.bytes += count.picture_bytes + size_of_val(world.objects());
         count.bytes += match world.accel() {
             Accel::Bvh(bvh) => {
                 count.object_cost = Some(bvh.sah_cost()).filter(|cost| cost.is_finite());

@@ -51,7 +51,7 @@ pub fn job(args: &JobArgs, view: Option<&ViewArgs>, loaded: &Loaded, timed: bool
     let wishes = loaded.scene.wishes;
     let (width, height) = args.size.or(wishes.size).unwrap_or_else(|| Raster::natural_size(proportions, rules.size));
     // A blur needs more samples than an edge.
-    let method = method::method(&args.method, &loaded.scene)?;
+    let method = args.method.method(method::usual(&loaded.scene))?;
     let plenty = if camera.is_some_and(|camera| camera.has_aperture()) || method.is_random() { 64 } else { 16 };
     let plenty = wishes.samples.unwrap_or(plenty);
     if method.is_random() && (args.jitter || args.blur) {
@@ -110,7 +110,7 @@ fn usual_bounces(method: Method, loaded: &Loaded) -> u32 {
 
 /// Warns of a picture that its camera does not fill, or whose lens stays unused.
 pub fn warn(job: &Job, world: &World) {
-    let camera = &world.camera;
+    let camera = world.camera();
     let (columns, rows) = durer::render::raster(world, job.width, job.height).empty();
     if (columns, rows) != (0, 0) {
         let (count, what) = if columns > 0 { (columns, "columns") } else { (rows, "rows") };

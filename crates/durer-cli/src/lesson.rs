@@ -68,7 +68,7 @@ pub fn run(args: &LessonArgs) -> Result<(), Failure> {
     let opened = open(&args.scene, &options, args.quiet, &mut guard)?;
     let mut job = job(&args.job, None, &opened.loaded, false)?;
     if args.job.size.is_none() {
-        let proportions = opened.world.camera.proportions();
+        let proportions = opened.world.camera().proportions();
         (job.width, job.height) = Raster::natural_size(proportions, (SIDE, SIDE));
     }
     checked_count(job.width, job.height).map_err(|error| bad(error.to_string()))?;

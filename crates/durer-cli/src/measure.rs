@@ -2,12 +2,12 @@
 
 use crate::args::SceneArgs;
 use crate::guard::Guard;
-use crate::method::{self, MethodArgs};
+use crate::method::MethodArgs;
 use crate::open::{load_options, open};
 use crate::output::say;
 use crate::{Failure, bad, job};
 use clap::Args;
-use durer::integrator::{Integrator, Settings};
+use durer::integrator::{Integrate, Integrator, Method, Settings, Setup};
 use durer::math::{Color, Vec3};
 use durer::render::Job;
 use durer::sampler::SampleId;
@@ -135,20 +135,17 @@ pub fn run(args: &MeasureArgs) -> Result<(), Failure> {
     }
     let opened = open(&args.scene, &load_options(&args.reading), false, &mut Guard::default())?;
     let settings = Settings { bounces: args.bounces, ..Job::default().settings };
-    let mut wishes = args.method.clone();
-    let photons = wishes.photons.is_some() || wishes.photon_radius.is_some();
-    wishes.integrator.get_or_insert_with(|| if photons { "photons" } else { "path" }.into());
-    let method = method::method(&wishes, &opened.loaded.scene)?;
-    let integrator = Integrator::new(&opened.world, method, settings, args.seed, None);
-    let Integrator::Path(path) = &integrator else {
+    let method = args.method.method(Method::PATH)?;
+    let setup = Setup { world: &opened.world, settings, seed: args.seed, cancel: None };
+    let (Integrator::Path(path) | Integrator::Photons(path)) = method.over(setup) else {
         return Err(bad("illuminances are measured by paths: --integrator path, or photons"));
     };
     let mut sums = vec![Sums::default(); places.len()];
     // Photons are made for one sample after the other.
-    let step = if path.photons.is_some() { 1 } else { args.samples };
+    let step = if method.prepares() { 1 } else { args.samples };
     threads::install(args.threads.map(usize::from), || {
         for first in (0..args.samples).step_by(step as usize) {
-            integrator.prepare(first);
+            path.prepare(first);
             sums.par_iter_mut().zip(&places).enumerate().for_each(|(number, (sums, &(point, normal)))| {
                 for sample in first..first + step {
                     let id = SampleId::new(args.seed, (number as u32, 0), sample);

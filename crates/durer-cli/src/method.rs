@@ -1,122 +1,142 @@
-//! What computes the light, from options.
+//! What computes the light, from options. The integrators state their own.
 
 use crate::{Failure, bad};
-use clap::Args;
-use clap::builder::{PossibleValuesParser, TypedValueParser};
-use durer::integrator::{Direct, Method, Transport};
+use clap::builder::{PossibleValuesParser, TypedValueParser, ValueParser};
+use clap::{Arg, ArgMatches, Args, Command, FromArgMatches};
+use durer::describe::{DescribedList, Field, Kind, Value};
+use durer::dialect::Dialect;
+use durer::integrator::Method;
 use durer::scene::Scene;
-use durer::spectrum::ColorMode;
 
-/// What computes the light
-#[derive(Args, Clone)]
+/// What computes the light: the options that are given.
+#[derive(Clone, Default)]
 pub struct MethodArgs {
-    /// What computes the light: whitted (local light, mirrors, glass), path (all light), photons
-    /// (all light, with what mirrors and glass throw on things by photons: caustics) or ao (how
-    /// much of the sky is free) [default: path for scenes with principled materials or an
-    /// environment, else whitted]
-    #[arg(long, value_name = "METHOD", value_parser = PossibleValuesParser::new(Method::NAMES.iter()))]
-    pub integrator: Option<String>,
-    /// With path and photons: light that was scattered more than once is not brighter than this in
-    /// a sample; takes away bright specks, and light with them [default: no limit]
-    #[arg(long, value_name = "RADIANCE")]
-    pub clamp: Option<f32>,
-    /// With path and photons: what light is made of: rgb, or spectral (four wavelengths at a time:
-    /// coloured light on coloured things, prisms) [default: rgb]
-    #[arg(long, value_name = "MODE", value_parser = color_mode())]
-    pub color: Option<ColorMode>,
-    /// With path and photons: how light straight from lamps is found: both (by points of lamps and
-    /// by the directions in which surfaces scatter, weighed), lights or bsdf (one of these
-    /// alone: the same mean and more noise, to see what each is good for) [default: both]
-    #[arg(long, value_name = "WAY", value_parser = direct())]
-    pub direct: Option<Direct>,
-    /// With photons: how many each sample sends out [default: 100000]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000_000))]
-    pub photons: Option<u32>,
-    /// With photons: how far the first sample looks for them, in units of the world; later ones
-    /// look less far [default: a twentieth of the radius of the smallest thing that mirrors or
-    /// refracts]
-    #[arg(long, value_name = "DISTANCE")]
-    pub photon_radius: Option<f32>,
-    /// With ao: how far things count, in units of the world [default: all count]
-    #[arg(long, value_name = "DISTANCE")]
-    pub ao_radius: Option<f32>,
+    integrator: Option<String>,
+    options: Vec<(&'static str, Value)>,
 }
 
-/// Reads what light is made of.
-pub fn color_mode() -> impl TypedValueParser<Value = ColorMode> {
-    PossibleValuesParser::new(ColorMode::NAMES).map(|name| ColorMode::from_name(&name).unwrap_or_default())
+/// The method that a scene needs.
+pub fn usual(scene: &Scene) -> Method {
+    if scene.is_physical() { Method::PATH } else { Method::WHITTED }
 }
 
-fn direct() -> impl TypedValueParser<Value = Direct> {
-    PossibleValuesParser::new(Direct::CHOICES.map(Direct::name))
-        .map(|name| Direct::from_name(&name).unwrap_or_default())
+fn word(field: &Field) -> &'static str {
+    field.spelling(Dialect::Durer).unwrap_or(field.name)
 }
 
-/// The method that the options ask for, or that the scene needs.
-pub fn method(args: &MethodArgs, scene: &Scene) -> Result<Method, Failure> {
-    let usual = if args.ao_radius.is_some() {
-        "ao"
-    } else if args.photons.is_some() || args.photon_radius.is_some() {
-        "photons"
-    } else if args.clamp.is_some() || args.color.is_some() || args.direct.is_some() || scene.is_physical() {
-        "path"
-    } else {
-        "whitted"
-    };
-    let name = args.integrator.as_deref().unwrap_or(usual);
-    let paths: &[&str] = &["path", "photons"];
-    let number = |value: Option<f32>| (value.is_some(), value.is_none_or(|value| value > 0.0));
-    for (option, (given, sound), of) in [
-        ("--clamp", number(args.clamp), paths),
-        ("--color", (args.color.is_some(), true), paths),
-        ("--direct", (args.direct.is_some(), true), paths),
-        ("--photons", (args.photons.is_some(), true), &paths[1..]),
-        ("--photon-radius", number(args.photon_radius), &paths[1..]),
-        ("--ao-radius", number(args.ao_radius), &["ao"]),
-    ] {
-        if given && !of.contains(&name) {
-            return Err(bad(format!("{option} makes no sense with --integrator {name}")));
-        }
-        if !sound {
-            return Err(bad(format!("{option} must be more than 0")));
+/// Which of a method's options has a name.
+fn position(method: &Method, option: &str) -> Option<usize> {
+    method.fields().iter().position(|field| word(field) == option)
+}
+
+/// All options of all methods, each once.
+fn options() -> Vec<Field> {
+    let mut all: Vec<Field> = Vec::new();
+    for field in Method::kinds().iter().flat_map(|kind| kind.fields()) {
+        if !all.iter().any(|known| word(known) == word(field)) {
+            all.push(*field);
         }
     }
-    let transport =
-        Transport { clamp: args.clamp, color: args.color.unwrap_or_default(), direct: args.direct.unwrap_or_default() };
-    Ok(match name {
-        "path" => Method::Path(transport),
-        "photons" => {
-            let count = args.photons.unwrap_or(Method::PHOTONS);
-            Method::Photons { transport, count, radius: args.photon_radius, corrected: false }
+    all
+}
+
+/// The names of the methods that an option belongs to.
+fn of(option: &str) -> Vec<&'static str> {
+    Method::kinds().iter().filter(|kind| position(kind, option).is_some()).map(Method::name).collect()
+}
+
+impl Args for MethodArgs {
+    fn augment_args(command: Command) -> Command {
+        let kinds = Method::kinds();
+        let told: Vec<String> = kinds.iter().map(|kind| format!("{} ({})", kind.name(), plain(kind.doc()))).collect();
+        let integrator = Arg::new("integrator")
+            .long("integrator")
+            .value_name("METHOD")
+            .value_parser(PossibleValuesParser::new(kinds.iter().map(Method::name)))
+            .help(format!(
+                "What computes the light: {} [default: path for scenes with principled materials or an environment, \
+                 else whitted]",
+                told.join(", ")
+            ));
+        options().iter().fold(command.arg(integrator), |command, field| {
+            let (value, parser) = match field.kind {
+                Kind::Word(words) => ("WORD", PossibleValuesParser::new(words).map(Value::Word).into()),
+                Kind::Int => ("N", clap::value_parser!(u32).map(Value::Int).into()),
+                _ => ("NUMBER", ValueParser::new(number)),
+            };
+            let help = plain(field.doc);
+            let (first, rest) = help.split_at(1);
+            let help = format!("With {}: {}{rest}", of(word(field)).join(" and "), first.to_lowercase());
+            command.arg(Arg::new(word(field)).long(word(field)).value_name(value).value_parser(parser).help(help))
+        })
+    }
+
+    fn augment_args_for_update(command: Command) -> Command {
+        Self::augment_args(command)
+    }
+}
+
+impl FromArgMatches for MethodArgs {
+    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
+        let given = |field: Field| Some((word(&field), matches.get_one::<Value>(word(&field))?.clone()));
+        let options = options().into_iter().filter_map(given).collect();
+        Ok(MethodArgs { integrator: matches.get_one::<String>("integrator").cloned(), options })
+    }
+
+    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
+        *self = Self::from_arg_matches(matches)?;
+        Ok(())
+    }
+}
+
+/// Text of a statement in one line.
+fn plain(doc: &str) -> String {
+    doc.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+fn number(text: &str) -> Result<Value, String> {
+    let number: f32 = text.parse().map_err(|_| "no number".to_string())?;
+    if number.is_finite() { Ok(Value::Float(number)) } else { Err("must be finite".into()) }
+}
+
+impl MethodArgs {
+    /// The method that the options ask for; without any, the usual one.
+    pub fn method(&self, usual: Method) -> Result<Method, Failure> {
+        let has = |kind: &Method, (option, _): &(&str, Value)| position(kind, option).is_some();
+        let mut methods = std::iter::once(usual).chain(Method::kinds());
+        // The one that has all the options, or at least the last.
+        let fitting = methods.clone().find(|kind| self.options.iter().all(|option| has(kind, option)));
+        let mut method = match &self.integrator {
+            Some(asked) => methods.find(|kind| kind.name() == asked),
+            None => fitting.or_else(|| methods.find(|kind| self.options.last().is_none_or(|option| has(kind, option)))),
         }
-        "ao" => Method::Ao { radius: args.ao_radius.unwrap_or(f32::INFINITY) },
-        _ => Method::Whitted,
-    })
+        .unwrap_or_default();
+        for (option, value) in &self.options {
+            let Some(at) = position(&method, option) else {
+                return Err(bad(format!("--{option} makes no sense with --integrator {}", method.name())));
+            };
+            if let Some(wrong) = method.fields()[at].rule.violation(value) {
+                return Err(bad(format!("--{option} {wrong}")));
+            }
+            method.set(at, value.clone());
+        }
+        Ok(method)
+    }
 }
 
 /// The options that make a method of a scene, where it is not what the scene has by itself.
 pub fn spelled(method: Method, scene: &Scene) -> Vec<String> {
-    let usual = if scene.is_physical() { "path" } else { "whitted" };
-    let mut words = Vec::new();
-    if method.name() != usual {
-        words.push(format!("--integrator {}", method.name()));
-    }
-    if let Some(Transport { clamp, color, direct }) = method.transport() {
-        words.extend(clamp.map(|clamp| format!("--clamp {clamp}")));
-        if color != ColorMode::default() {
-            words.push(format!("--color {}", color.name()));
-        }
-        if direct != Direct::default() {
-            words.push(format!("--direct {}", direct.name()));
-        }
-    }
-    match method {
-        Method::Photons { count, radius, .. } => {
-            words.extend((count != Method::PHOTONS).then(|| format!("--photons {count}")));
-            words.extend(radius.map(|radius| format!("--photon-radius {radius}")));
-        }
-        Method::Ao { radius } if radius.is_finite() => words.push(format!("--ao-radius {radius}")),
-        _ => {}
-    }
-    words
+    let own = method.fields().iter().enumerate();
+    let plain = Method::kinds().into_iter().find(|kind| kind.name() == method.name()).unwrap_or_default();
+    let differing = own.filter(|&(at, _)| method.get(at) != plain.get(at)).filter_map(|(at, field)| {
+        let value = match method.get(at)? {
+            Value::Float(number) => number.to_string(),
+            Value::Int(number) => number.to_string(),
+            Value::Word(word) => word,
+            _ => return None,
+        };
+        Some(format!("--{} {value}", word(field)))
+    });
+    let unusual = method.name() != usual(scene).name();
+    unusual.then(|| format!("--integrator {}", method.name())).into_iter().chain(differing).collect()
 }

@@ -100,7 +100,7 @@ impl World {
 
     /// The hash of the scene and all its files.
     fn digest(&self) -> String {
-        self.world.digest.to_string()
+        self.world.digest().to_string()
     }
 
     /// Where its files are.

@@ -115,7 +115,7 @@ impl Rule {
 }
 
 /// One field of a thing.
-#[derive(Debug)]
+#[derive(Clone, Copy, Debug)]
 pub struct Field {
     /// Name in code and JSON.
     pub name: &'static str,

@@ -187,7 +187,7 @@ pub fn ways(data: &[u8]) {
     let path = folder().join("scene.txt");
     let settings = Settings { bounces: 2, ..Job::default().settings };
     // The scenes that paths are made for are made by them.
-    let method = if scene.is_physical() { Method::PATH } else { Method::Whitted };
+    let method = if scene.is_physical() { Method::PATH } else { Method::WHITTED };
     let job = Job { width: 12, height: 9, settings, method, ..Job::default() };
     let hash = |accel| {
         let options = LoadOptions {

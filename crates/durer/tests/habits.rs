@@ -35,7 +35,7 @@ fn world(text: &str, dialect: Dialect, official: bool) -> World {
 }
 
 fn seen(world: &World, origin: [f32; 3], dir: [f32; 3]) -> Color {
-    let rules = &world.rules;
+    let rules = world.rules();
     let settings = Settings {
         bounces: 4,
         shadows: false,
@@ -86,7 +86,7 @@ fn a_transform_of_2023_drops_shear_and_nested_ones_keep_it() {
     let mirrored = node("Transform { translate 1 2 3 scale -2 1 3 }", ball);
     assert_eq!(bounds(&mirrored, true), bounds(&mirrored, false));
     // Lights go with the nodes that they are in.
-    let place = |official| match &world(&node(sheared, lamp), Dialect::F23, official).lights[0] {
+    let place = |official| match &world(&node(sheared, lamp), Dialect::F23, official).lights()[0] {
         durer::light::Light::Point(light) => light.position,
         light => panic!("{light:?}"),
     };
@@ -218,7 +218,7 @@ fn r0_is_zero_for_rays_that_leave_whatever_the_index() {
             refraction: true,
             least_weight: 0.0,
         };
-        world.materials.iter_mut().for_each(|material| {
+        world.edit().materials.iter_mut().for_each(|material| {
             if let durer::world::Material::Phong(glass) = material {
                 glass.reflective = Color::ZERO;
             }
@@ -230,7 +230,7 @@ fn r0_is_zero_for_rays_that_leave_whatever_the_index() {
             Whitted { world, settings, cancel: None }.radiance(&ray, &mut ())
         };
         close(through(&world), [(1.0 - r0) * (1.0 - r0); 3]);
-        world.rules.compat |= Compat::ExitR0.bit();
+        world.edit().rules.compat |= Compat::ExitR0.bit();
         close(through(&world), [1.0 - r0; 3]);
     }
 }
@@ -259,7 +259,7 @@ fn meshes_are_read_as_each_program_read_them() {
     };
     let triangles = |name: &str, dialect: Dialect, official| {
         let text = if dialect == Dialect::F23 { nodes(name) } else { classic(name) };
-        world_in(folder.path(), &text, dialect, official).objects[0].parts()
+        world_in(folder.path(), &text, dialect, official).objects()[0].parts()
     };
     use Dialect::{F04, F12a4, F12a5, F16, F23};
     for (dialect, last) in [(F04, 2), (F12a4, 1), (F12a5, 1), (F16, 1), (F23, 2)] {

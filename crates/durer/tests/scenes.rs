@@ -46,7 +46,7 @@ fn opened(name: &str, accel: AccelKind) -> (Loaded, World) {
 
 /// What makes a scene's picture.
 fn method(loaded: &Loaded) -> Method {
-    if loaded.scene.is_physical() { Method::PATH } else { Method::Whitted }
+    if loaded.scene.is_physical() { Method::PATH } else { Method::WHITTED }
 }
 
 /// The colours of a small picture, with one ray through each pixel's centre.

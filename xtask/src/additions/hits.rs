@@ -1,19 +1,43 @@
-//! White where anything is hit, black elsewhere.
+//! White where anything near enough is hit, black elsewhere.
 
-use super::account::Witness;
+use super::{Integrate, Parameters, Setup, Witness};
+use crate::describe::Rule;
+use crate::described;
+use crate::dialect::set;
 use crate::math::{Color, Ray, Ray64};
+use crate::sampler::SampleId;
 use crate::world::World;
+
+described! {
+    /// where anything is
+    HitsParameters ["hits" in set::DURER] {
+        /// How far things are seen, in units of the world [default: all are]
+        depth: Option<f32> = None, optional, Rule::Positive, ["hits-depth" in set::DURER];
+    }
+}
+
+impl Copy for HitsParameters {}
+
+impl Parameters for HitsParameters {
+    type Integrator<'w> = Hits<'w>;
+
+    const IS_RANDOM: bool = false;
+
+    fn over(self, setup: Setup<'_>) -> Hits<'_> {
+        Hits { world: setup.world, depth: self.depth.unwrap_or(f32::INFINITY) }
+    }
+}
 
 /// The integrator over one world.
 #[derive(Clone, Copy, Debug)]
 pub struct Hits<'w> {
-    /// What is seen.
-    pub world: &'w World,
+    world: &'w World,
+    depth: f32,
 }
 
-impl Hits<'_> {
-    /// The colour of one ray.
-    pub fn radiance<T: Witness>(&self, ray: &Ray, tally: &mut T) -> Color {
-        if self.world.closest(&Ray64::from(ray), tally).is_some() { Color::ONE } else { Color::ZERO }
+impl Integrate for Hits<'_> {
+    fn radiance<T: Witness>(&self, ray: &Ray, _: SampleId, tally: &mut T) -> Color {
+        let hit = self.world.closest(&Ray64::from(ray), tally);
+        if hit.is_some_and(|hit| hit.t * ray.dir.length() < self.depth) { Color::ONE } else { Color::ZERO }
     }
 }

@@ -3,7 +3,7 @@
 use super::Table;
 use super::cases::{Case, What, cases};
 use anyhow::Result;
-use durer::integrator::{Path, Settings, Transport};
+use durer::integrator::{Integrate, Path, Settings, Transport};
 use durer::math::Ray;
 use durer::render::Job;
 use durer::sampler::{SampleId, random_2d};

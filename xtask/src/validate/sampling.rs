@@ -75,7 +75,7 @@ pub fn densities(table: &mut Table) -> Result<()> {
     }
     for (name, background) in [("clear sky", "sun 1 1 0.3"), ("overcast sky", "cieSky 16")] {
         let world = world(name, background, lamp, "", "MaterialIndex 0 Sphere { center 0 -50 0 radius 0.001 }")?;
-        if let Some(environment) = &world.environment {
+        if let Some(environment) = world.environment() {
             let sample = |_, u| environment.sample(u).map(|(wi, ..)| turned(wi));
             rows.push((name.into(), finely.compare(14, sample, |wi| environment.pdf(back(wi)))));
         }
@@ -108,7 +108,7 @@ fn back(v: Vec3) -> Vec3 {
 
 fn of_lights(world: &World, cells: Cells) -> Verdict {
     let (point, n) = (Vec3::ZERO.as_dvec3(), Vec3::ZERO);
-    let sample = |choice: f32, u: Vec2| Some(turned(world.emitters.sample(world, point, n, choice, u)?.wi));
+    let sample = |choice: f32, u: Vec2| Some(turned(world.emitters().sample(world, point, n, choice, u)?.wi));
     let pdf = |wi: Vec3| {
         let dir = back(wi);
         let mut ray = Ray64::new(point, dir, 0.0, f32::INFINITY);
@@ -117,7 +117,7 @@ fn of_lights(world: &World, cells: Cells) -> Verdict {
         for _ in 0..16 {
             let Some(hit) = world.closest(&ray, &mut ()) else { break };
             if !met.contains(&hit.object) {
-                sum += world.emitters.pdf_of_hit(world, &hit, point, n, dir, hit.t);
+                sum += world.emitters().pdf_of_hit(world, &hit, point, n, dir, hit.t);
                 met.push(hit.object);
             }
             ray.rounded.t_min = hit.t;

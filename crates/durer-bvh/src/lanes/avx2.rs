@@ -247,15 +247,29 @@ pub(super) fn transpose([a, b, c, d, e, f, g, h]: [__m256; WIDTH]) -> [__m256; W
     }
 }
 
-/// Operations on `f64`, one instruction each.
+/// Operations on `f64`, one instruction each; of the last ones, those that make `copysign`.
 macro_rules! doubles {
-    ($doubles:ident: $($name:ident = $instruction:ident;)*) => {
-        impl $crate::math::Doubles for $doubles {$(
+    ($doubles:ident: $($name:ident = $instruction:ident;)*
+     [sqrt = $sqrt:ident; copysign = $splat:ident, $and:ident, $andnot:ident, $or:ident]) => {
+        impl $crate::math::Doubles for $doubles {
+            $(
+                #[inline(always)]
+                fn $name(self, other: Self) -> Self {
+                    proven!($doubles($instruction(self.0, other.0)))
+                }
+            )*
             #[inline(always)]
-            fn $name(self, other: Self) -> Self {
-                proven!($doubles($instruction(self.0, other.0)))
+            fn sqrt(self) -> Self {
+                proven!($doubles($sqrt(self.0)))
             }
-        )*}
+            #[inline(always)]
+            fn copysign(self, sign: Self) -> Self {
+                proven! {
+                    let bit = $splat(-0.0);
+                    $doubles($or($andnot(bit, self.0), $and(bit, sign.0)))
+                }
+            }
+        }
     };
 }
 pub(super) use doubles;
@@ -271,6 +285,7 @@ doubles! { Four:
     div = _mm256_div_pd;
     min = _mm256_min_pd;
     max = _mm256_max_pd;
+    [sqrt = _mm256_sqrt_pd; copysign = _mm256_set1_pd, _mm256_and_pd, _mm256_andnot_pd, _mm256_or_pd]
 }
 
 /// A vector in double precision.

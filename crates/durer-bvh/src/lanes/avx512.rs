@@ -93,6 +93,7 @@ doubles! { Eight:
     div = _mm512_div_pd;
     min = _mm512_min_pd;
     max = _mm512_max_pd;
+    [sqrt = _mm512_sqrt_pd; copysign = _mm512_set1_pd, _mm512_and_pd, _mm512_andnot_pd, _mm512_or_pd]
 }
 
 /// One vector of sixteen lanes; the same proof.

@@ -52,6 +52,14 @@ impl Doubles for TwoDoubles {
     fn max(self, other: Self) -> Self {
         proven!(TwoDoubles(vbslq_f64(vcgtq_f64(self.0, other.0), self.0, other.0)))
     }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        proven!(TwoDoubles(vsqrtq_f64(self.0)))
+    }
+    #[inline(always)]
+    fn copysign(self, sign: Self) -> Self {
+        proven!(TwoDoubles(vbslq_f64(vdupq_n_u64(1 << 63), sign.0, self.0)))
+    }
 }
 
 #[inline(always)]

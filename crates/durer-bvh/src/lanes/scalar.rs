@@ -26,7 +26,12 @@ macro_rules! plain {
 }
 
 impl Doubles for Plain {
-    plain! { add sub mul div min max }
+    plain! { add sub mul div min max copysign }
+
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        Plain(self.0.map(f64::sqrt))
+    }
 }
 
 fn mask(test: impl Fn(usize) -> bool) -> u32 {

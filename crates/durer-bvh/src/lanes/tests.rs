@@ -66,7 +66,7 @@ struct Everything<'a>(&'a Input);
 
 /// Vectors that are looked at for each input: of arithmetic, in double precision, two halves
 /// joined, of comparison, a stack before and after, nine rows, and columns; and twice as wide ones.
-const OPERATIONS: usize = 12 + 3 * 7 + 2 + 9 + 5 + 2 + 9 + WIDTH + 2 * 11;
+const OPERATIONS: usize = 12 + 3 * 9 + 2 + 9 + 5 + 2 + 9 + WIDTH + 2 * 11;
 
 impl Kernel for Everything<'_> {
     type Output = Vec<u32>;
@@ -105,7 +105,8 @@ impl Kernel for Everything<'_> {
         found.extend(wide(lanes.wide(), floats, *mask).map(number));
         let (p, q) = (lanes.doubles(a), lanes.doubles(c).mul(lanes.splat_double(0.1)));
         let bits = |x: f64| if x.is_nan() { [0; 2] } else { [x.to_bits() as u32, (x.to_bits() >> 32) as u32] };
-        for doubles in [p, p.add(q), p.sub(q), p.mul(q), p.div(q), p.min(q), p.max(q)] {
+        let of_one = [p, p.sqrt(), p.copysign(q)];
+        for doubles in of_one.into_iter().chain([p.add(q), p.sub(q), p.mul(q), p.div(q), p.min(q), p.max(q)]) {
             let numbers = lanes.store_doubles(doubles);
             found.extend(numbers.into_iter().flat_map(bits));
             let again = lanes.load_doubles(&numbers).add(lanes.splat_double(numbers[0]));

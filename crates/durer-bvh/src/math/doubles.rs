@@ -10,6 +10,9 @@ pub(crate) trait Doubles: Copy {
     fn min(self, other: Self) -> Self;
     /// This where it is greater than the other, else that: also where either is no number.
     fn max(self, other: Self) -> Self;
+    fn sqrt(self) -> Self;
+    /// As great as this, with the other's sign.
+    fn copysign(self, sign: Self) -> Self;
 }
 
 /// Three components: of one vector, or of several side by side.
@@ -59,6 +62,14 @@ impl Doubles for f64 {
     fn max(self, other: f64) -> f64 {
         if self > other { self } else { other }
     }
+    #[inline(always)]
+    fn sqrt(self) -> f64 {
+        f64::sqrt(self)
+    }
+    #[inline(always)]
+    fn copysign(self, sign: f64) -> f64 {
+        f64::copysign(self, sign)
+    }
 }
 
 macro_rules! both {
@@ -72,7 +83,12 @@ macro_rules! both {
 
 /// Those of both, side by side.
 impl<D: Doubles> Doubles for (D, D) {
-    both! { add sub mul div min max }
+    both! { add sub mul div min max copysign }
+
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        (self.0.sqrt(), self.1.sqrt())
+    }
 }
 
 macro_rules! each {
@@ -85,7 +101,12 @@ macro_rules! each {
 }
 
 impl<D: Doubles> Doubles for [D; 3] {
-    each! { add sub mul div min max }
+    each! { add sub mul div min max copysign }
+
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        [self[0].sqrt(), self[1].sqrt(), self[2].sqrt()]
+    }
 }
 
 impl<D: Doubles> Triple for [D; 3] {

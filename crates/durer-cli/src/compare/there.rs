@@ -47,7 +47,7 @@ fn along(opened: &Opened, job: &Job, ray: &Ray, transfer: Transfer) -> Result<(O
     let names = Names { files: &opened.files, scene: &opened.loaded.scene, world };
     let hit = world.closest(ray, &mut ()).map(|hit| Hit {
         object: names.object(hit.object),
-        material: names.material(world.objects[hit.object as usize].material),
+        material: names.material(world.objects()[hit.object as usize].material),
         t: hit.t,
         normal: world.surface(ray, &hit).n_shade.to_array(),
     });

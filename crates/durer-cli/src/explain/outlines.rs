@@ -15,13 +15,13 @@ const ROUND: usize = 32;
 
 /// The outlines of all objects, each a row of points.
 pub fn outlines(world: &World) -> Vec<Vec<Vec3>> {
-    let ends = world.bounds().union(Aabb::around([world.frame.eye]));
-    world.objects.iter().take(MOST).flat_map(|object| outline(object, &ends)).collect()
+    let ends = world.bounds().union(Aabb::around([world.camera_frame().eye]));
+    world.objects().iter().take(MOST).flat_map(|object| outline(object, &ends)).collect()
 }
 
 /// The lights that have a place, and where the others come from.
 pub fn lights(world: &World) -> Vec<Value> {
-    let bounds = world.bounds().union(Aabb::around([world.frame.eye]));
+    let bounds = world.bounds().union(Aabb::around([world.camera_frame().eye]));
     let reach = 0.6 * bounds.size().length();
     let one = |(i, light): (usize, &Light)| {
         let seen = light.illuminate(bounds.center().as_dvec3());
@@ -29,7 +29,7 @@ pub fn lights(world: &World) -> Vec<Value> {
         let at = bounds.center() + if far { reach } else { seen.distance } * seen.to_light;
         json!({ "at": at, "name": format!("{} {i}", if far { "from light" } else { "light" }) })
     };
-    world.lights.iter().enumerate().take(16).map(one).collect()
+    world.lights().iter().enumerate().take(16).map(one).collect()
 }
 
 fn outline(object: &Object, ends: &Aabb) -> Vec<Vec<Vec3>> {

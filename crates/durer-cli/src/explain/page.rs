@@ -28,7 +28,7 @@ pub fn page(
         "transfer": transfer.name(),
         "outlines": outlines(world),
         "lights": lights(world),
-        "eye": world.frame.eye,
+        "eye": world.camera_frame().eye,
     });
     Ok(page::with_data(PAGE, &data))
 }

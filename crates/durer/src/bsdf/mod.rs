@@ -69,14 +69,14 @@ impl Bsdf {
         self.lobes.iter().map(|part| Weighted { probability: part.probability / self.total, ..*part })
     }
 
-    /// Whether nothing is scattered.
-    pub fn is_black(&self) -> bool {
-        self.lobes.is_empty()
-    }
-
     /// Whether lights can be connected with: some lobe scatters into all directions.
     pub fn is_broad(&self) -> bool {
         self.lobes.iter().any(|part| !part.lobe.is_delta())
+    }
+
+    /// Whether nothing is scattered.
+    pub fn is_black(&self) -> bool {
+        self.lobes.is_empty()
     }
 
     /// Whether light from behind the surface is scattered too, and not only along single

@@ -12,7 +12,7 @@ const WALL: f32 = 0.01;
 /// Fog that keeps light off.
 pub(super) fn thick_fog(scout: &Scout) -> Vec<Finding> {
     let world = scout.world();
-    let (Some(fog), Some(written)) = (&world.fog, &scout.subject.scene.fog) else { return Vec::new() };
+    let (Some(fog), Some(written)) = (world.fog(), &scout.subject.scene.fog) else { return Vec::new() };
     if !super::physical::is_physical(scout) {
         return Vec::new();
     }
@@ -49,10 +49,10 @@ pub(super) fn thick_fog(scout: &Scout) -> Vec<Finding> {
         let diagnostic = diagnostic.fix_at(value, some);
         found.push(Finding::from(scout.at_value(diagnostic, span, &["extinction"])).whole(true));
     } else if fog.place.is_none() {
-        let sky = world.environment.is_some() || world.cube_map.is_some() || world.background != Color::ZERO;
-        let suns = world.lights.iter().any(|light| matches!(light, Light::Directional(_)));
-        let near = world.lights.iter().any(|light| !matches!(light, Light::Directional(_)))
-            || world.objects.iter().any(|object| world.may_shine(object.material));
+        let sky = world.environment().is_some() || world.cube_map().is_some() || world.background() != Color::ZERO;
+        let suns = world.lights().iter().any(|light| matches!(light, Light::Directional(_)));
+        let near = world.lights().iter().any(|light| !matches!(light, Light::Directional(_)))
+            || world.objects().iter().any(|object| world.may_shine(object.material));
         if sky && !near || suns {
             let bounds = world.bounds();
             let size = bounds.size().max_element().max(1.0);

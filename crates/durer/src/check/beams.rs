@@ -30,9 +30,9 @@ pub(super) enum Aim {
 
 /// What a light makes at a point of the most that it could make at that distance.
 fn share(world: &World, light: usize, point: Vec3) -> f32 {
-    let lamp = &world.lights[light];
+    let lamp = &world.lights()[light];
     let Some((place, strongest)) = lamp.place() else { return 1.0 };
-    let most = world.profiles.get(light).and_then(Option::as_ref).map_or(1.0, |profile| profile.most());
+    let most = world.profiles().get(light).and_then(Option::as_ref).map_or(1.0, |profile| profile.most());
     let full = most * strongest.max_element() / (point - place).length_squared().max(f32::MIN_POSITIVE);
     world.illuminate(light, point.as_dvec3()).color.max_element() / full.max(f32::MIN_POSITIVE)
 }
@@ -48,7 +48,7 @@ fn within(scout: &Scout, light: usize, places: &[Vec3]) -> f32 {
 
 /// Where the beam of a light goes, if it has one and misses what is seen.
 pub(super) fn aim(scout: &Scout, light: usize) -> Option<Aim> {
-    let angle = match &scout.world().lights[light] {
+    let angle = match &scout.world().lights()[light] {
         Light::Spot(spot) => spot.angle,
         Light::Photometric(_) => 90.0,
         _ => return None,
@@ -63,7 +63,7 @@ pub(super) fn aim(scout: &Scout, light: usize) -> Option<Aim> {
 
 /// Whether the middle of a beam meets the scene.
 fn at_something(scout: &Scout, light: usize) -> bool {
-    let Light::Spot(spot) = &scout.world().lights[light] else { return false };
+    let Light::Spot(spot) = &scout.world().lights()[light] else { return false };
     let ray = crate::math::Ray::new(spot.position, spot.direction.normalize_or(Vec3::NEG_Y));
     scout.world().closest(&ray, &mut ()).is_some()
 }
@@ -73,7 +73,7 @@ pub(super) fn away(scout: &Scout) -> Vec<Finding> {
     missing(scout, Aim::Away, |diagnostic, light| {
         let place = light.value.place().map_or(Vec3::ZERO, |(place, _)| place);
         // Of a plane the horizon is seen as well: things tell where to shine.
-        let things = scout.seen().filter(|(_, seen)| scout.world().objects[seen.object as usize].bounds().is_some());
+        let things = scout.seen().filter(|(_, seen)| scout.world().objects()[seen.object as usize].bounds().is_some());
         let things: Vec<Vec3> = things.map(|(probe, seen)| probe.ray.at(seen.t)).collect();
         let all = if things.is_empty() { places(scout) } else { things };
         let middle = all.iter().sum::<Vec3>() / all.len().max(1) as f32;
@@ -116,7 +116,7 @@ pub(super) fn narrow(scout: &Scout) -> Vec<Finding> {
 }
 
 fn missing(scout: &Scout, wanted: Aim, say: impl Fn(Diagnostic, &Spanned<Light>) -> Diagnostic) -> Vec<Finding> {
-    let lights = scout.world().lights.len().min(MOST_SOUGHT);
+    let lights = scout.world().lights().len().min(MOST_SOUGHT);
     let mut found = Vec::new();
     for number in (0..lights).filter(|&light| scout.aims()[light] == Some(wanted)) {
         let (Some(light), Some((diagnostic, span))) = (written(scout, number), useless(scout, number, String::new()))
@@ -156,7 +156,7 @@ pub(super) fn inner_angle(scout: &Scout) -> Vec<Finding> {
 
 /// Lights so near to a surface that they light a spot of it, and little else: how near, and which.
 fn touching(scout: &Scout, light: usize) -> Option<(f32, u32)> {
-    let Light::Point(point) = &scout.world().lights[light] else { return None };
+    let Light::Point(point) = &scout.world().lights()[light] else { return None };
     point.attenuation.filter(|a| a.z > 0.0 || a.y > 0.0)?;
     let world = scout.world();
     let steps = (0..26).map(|i| {
@@ -175,7 +175,7 @@ fn touching(scout: &Scout, light: usize) -> Option<(f32, u32)> {
 pub(super) fn near(scout: &Scout) -> Vec<Finding> {
     let places = places(scout);
     let mut found = Vec::new();
-    for light in 0..scout.world().lights.len().min(super::MOST_ALIKE) {
+    for light in 0..scout.world().lights().len().min(super::MOST_ALIKE) {
         let Some((near, object)) = touching(scout, light) else { continue };
         let Some((lamp, Light::Point(point))) = written(scout, light).map(|lamp| (lamp, &lamp.value)) else { continue };
         let mut away: Vec<f32> = places.iter().map(|place| (*place - point.position).length()).collect();
@@ -200,7 +200,7 @@ pub(super) fn near(scout: &Scout) -> Vec<Finding> {
                 .related(scout.object_span(object), "so near")
                 .effect("one bright spot is below it, and hardly anything else is lit")
                 .help(format!("what is seen is {} from it on the mean: move it away from there", number(middle)));
-        let only = scout.world().lights.len() == 1;
+        let only = scout.world().lights().len() == 1;
         found.push(Finding::from(scout.at_value(diagnostic, lamp.span, &["position"])).whole(only));
     }
     found

@@ -21,7 +21,7 @@ const FEWEST_LOST: usize = 6;
 
 /// The Phong materials as written and as they are used, with their numbers.
 fn phongs<'s>(scout: &'s Scout) -> impl Iterator<Item = (u32, &'s Spanned<Written>, &'s Phong)> {
-    let compiled = scout.world().materials.iter();
+    let compiled = scout.world().materials().iter();
     let both = scout.subject.scene.materials.iter().zip(compiled).enumerate();
     both.filter_map(|(i, (written, compiled))| match compiled {
         Material::Phong(phong) => Some((i as u32, written, phong)),
@@ -36,7 +36,7 @@ fn rays(scout: &Scout, material: u32) -> usize {
 
 /// That number for each material.
 pub(super) fn count_rays(scout: &Scout) -> Vec<usize> {
-    let materials = &scout.world().materials;
+    let materials = scout.world().materials();
     let (mut direct, mut all) = (vec![0; materials.len()], vec![0; materials.len()]);
     scout.seen().for_each(|(_, seen)| direct[seen.material as usize] += 1);
     for (whole, count) in direct.iter().enumerate().filter(|(_, count)| **count > 0) {
@@ -93,7 +93,7 @@ pub(super) fn black(scout: &Scout) -> Vec<Finding> {
 /// Mirrors and glass in a picture without secondary rays.
 pub(super) fn no_bounces(scout: &Scout) -> Vec<Finding> {
     let settings = &scout.subject.job.settings;
-    let old = scout.world().rules.is_official();
+    let old = scout.world().rules().is_official();
     let counts = |color: Color| if old { color.length() } else { color.max_element() };
     // What counts for too little from the first bounce on is never traced.
     let cut = |phong: &Phong| counts(phong.reflective).max(counts(phong.transparent)) < settings.least_weight;
@@ -101,7 +101,7 @@ pub(super) fn no_bounces(scout: &Scout) -> Vec<Finding> {
     let bounces = |phong: &Phong| phong.reflective != Color::ZERO || phong.transparent != Color::ZERO;
     // Where the highlight's colour is the mirror's too, only what would be black without mirroring is
     // meant as a mirror.
-    let shared = matches!(scout.world().rules.secondary, Secondary::Specular | Secondary::SpecularFresnel);
+    let shared = matches!(scout.world().rules().secondary, Secondary::Specular | Secondary::SpecularFresnel);
     let meant = |phong: &Phong| phong.fresnel || !shared || phong.diffuse.max_element() < 0.15;
     let all: Vec<_> =
         phongs(scout).filter(|(i, _, phong)| bounces(phong) && meant(phong) && rays(scout, *i) > 0).collect();
@@ -132,7 +132,7 @@ pub(super) fn no_bounces(scout: &Scout) -> Vec<Finding> {
     let seen: usize = all.iter().map(|(i, ..)| rays(scout, *i)).sum();
     let black: usize =
         all.iter().filter(|(.., phong)| phong.diffuse.max_element() < 0.1).map(|(i, ..)| rays(scout, *i)).sum();
-    let usual = none && scout.world().rules.bounces == 0 && black * 10 < scout.seen().count();
+    let usual = none && scout.world().rules().bounces == 0 && black * 10 < scout.seen().count();
     let whole = !usual && seen * 2 > scout.seen().count();
     let finding = Finding::from(if usual { Diagnostic { severity: Severity::Note, ..diagnostic } } else { diagnostic });
     vec![finding.whole(whole)]
@@ -210,7 +210,7 @@ pub(super) fn odd_index(scout: &Scout) -> Vec<Finding> {
             // Coloured foil is made so.
             None if phong.ior == 1.0 && !phong.fresnel => Diagnostic::note(format!(
                 "material {i} lets light through and has no `{}`",
-                if scout.world().rules.secondary == Secondary::Colors { fields[0] } else { fields[1] }
+                if scout.world().rules().secondary == Secondary::Colors { fields[0] } else { fields[1] }
             ))
             .effect("light goes straight through, as through foil, and is not bent")
             .help("glass has 1.5, water 1.33"),
@@ -249,7 +249,8 @@ fn all_colors(scout: &Scout) -> Vec<Named> {
         colors.push(all(phong.reflective_color, ["reflectiveColor", "reflectiveColor"], 1.001));
         colors.push(all(phong.transparent_color, ["transparentColor", "transparentColor"], 1.001));
     }
-    for (number, (written, light)) in scout.subject.scene.lights.iter().flatten().zip(&scout.world().lights).enumerate()
+    for (number, (written, light)) in
+        scout.subject.scene.lights.iter().flatten().zip(scout.world().lights()).enumerate()
     {
         // A light that fades may be as strong as it must, so that not too much of it arrives.
         let fades = !matches!(light, Light::Directional(_))
@@ -351,7 +352,7 @@ pub(super) fn dull_glass(scout: &Scout) -> Vec<Finding> {
     if super::physical::is_physical(scout) {
         return super::layers::dull_glass(scout);
     }
-    if scout.world().rules.secondary != Secondary::SpecularFresnel {
+    if scout.world().rules().secondary != Secondary::SpecularFresnel {
         return dull_by_color(scout);
     }
     let dull = |(i, written, _): &(u32, &Spanned<Written>, &Phong)| match &written.value {
@@ -427,16 +428,16 @@ pub(super) fn negative(scout: &Scout) -> Vec<Finding> {
 /// Things that have the colour of what is behind them.
 pub(super) fn camouflaged(scout: &Scout) -> Vec<Finding> {
     let world = scout.world();
-    if world.cube_map.is_some() {
+    if world.cube_map().is_some() {
         return Vec::new();
     }
     let shown = |color: Color| color.clamp(Color::ZERO, Color::ONE);
-    let alike = |color: Color| (shown(color) - shown(world.background)).abs().max_element() < ALIKE;
+    let alike = |color: Color| (shown(color) - shown(world.background())).abs().max_element() < ALIKE;
     let mut seen = scout.seen().peekable();
     if seen.peek().is_none() || !seen.all(|(probe, _)| alike(probe.color)) {
         return lost_in_background(scout, &alike);
     }
-    let black = shown(world.background).max_element() < ALIKE;
+    let black = shown(world.background()).max_element() < ALIKE;
     let diagnostic = Diagnostic::warning("all that is seen has the colour of the background");
     let diagnostic = match background_span(scout) {
         Some(block) => scout.at_value(diagnostic, block, &["color"]),
@@ -454,13 +455,13 @@ pub(super) fn camouflaged(scout: &Scout) -> Vec<Finding> {
 /// Things of which all that is seen has the background's colour, exactly: others are seen.
 fn lost_in_background(scout: &Scout, alike: &dyn Fn(Color) -> bool) -> Vec<Finding> {
     let world = scout.world();
-    if world.background.max_element() < 0.02 || super::physical::is_physical(scout) {
+    if world.background().max_element() < 0.02 || super::physical::is_physical(scout) {
         return Vec::new();
     }
     let say = |(number, object): (usize, &crate::world::Object)| {
         let mut own = scout.seen().filter(|(_, seen)| seen.object as usize == number).peekable();
         // What mirrors the background is meant to show it.
-        let Material::Phong(phong) = world.materials.get(object.material as usize)? else { return None };
+        let Material::Phong(phong) = world.materials().get(object.material as usize)? else { return None };
         let own_color = phong.reflective == Color::ZERO && phong.transparent == Color::ZERO && phong.texture.is_none();
         own.peek()?;
         let count = scout.seen().filter(|(_, seen)| seen.object as usize == number).count();
@@ -476,12 +477,12 @@ fn lost_in_background(scout: &Scout, alike: &dyn Fn(Color) -> bool) -> Vec<Findi
                 .help("take another `color` for the background, or for the material");
         Some(Finding::from(diagnostic))
     };
-    world.objects.iter().enumerate().filter_map(say).take(super::MOST_ALIKE).collect()
+    world.objects().iter().enumerate().filter_map(say).take(super::MOST_ALIKE).collect()
 }
 
 /// Textures on things without texture coordinates.
 pub(super) fn no_coordinates(scout: &Scout) -> Vec<Finding> {
-    let meshes_only = scout.world().rules.has(Compat::MeshTextures);
+    let meshes_only = scout.world().rules().has(Compat::MeshTextures);
     let textured = phongs(scout).filter(|(_, _, phong)| phong.texture.is_some());
     let mut found = Vec::new();
     for (i, written, _) in textured {
@@ -492,7 +493,7 @@ pub(super) fn no_coordinates(scout: &Scout) -> Vec<Finding> {
                 Diagnostic::warning(format!("material {i} has a texture, but the {name} has no coordinates for it"))
                     .related(scout.object_span(seen.object), "this has the material")
                     .effect("the texture is not seen; `diffuseColor` is")
-                    .help(match (&scout.world().objects[seen.object as usize].geometry, meshes_only) {
+                    .help(match (&scout.world().objects()[seen.object as usize].geometry, meshes_only) {
                         (Geometry::Mesh(_), _) => "the mesh file needs `vt` lines, and faces as `f 1/1 2/2 3/3`",
                         (_, true) => {
                             "this year's program shows textures on meshes alone: take a `TriangleMesh` with `vt` lines"
@@ -508,16 +509,16 @@ pub(super) fn no_coordinates(scout: &Scout) -> Vec<Finding> {
 /// Materials that nothing is made of.
 pub(super) fn unused(scout: &Scout) -> Vec<Finding> {
     let world = scout.world();
-    let mut used = vec![false; world.materials.len()];
-    for object in &world.objects {
+    let mut used = vec![false; world.materials().len()];
+    for object in world.objects() {
         match &object.geometry {
             Geometry::Solid(solid) => solid.parts().for_each(|part| used[part.material as usize] = true),
             _ => used[object.material as usize] = true,
         }
     }
     // A mixed material uses earlier ones.
-    for i in (0..world.materials.len()).rev() {
-        if let (Material::Solid(solid, _), true) = (&world.materials[i], used[i]) {
+    for i in (0..world.materials().len()).rev() {
+        if let (Material::Solid(solid, _), true) = (&world.materials()[i], used[i]) {
             solid.materials().into_iter().for_each(|part| used[part as usize] = true);
         }
     }

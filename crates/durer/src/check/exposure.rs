@@ -5,7 +5,7 @@ use super::finding::{Finding, number, percent, vector};
 use super::lights::{VISIBLE, color, place};
 use super::scout::{Probe, Scout, Seen};
 use crate::diag::{Diagnostic, Severity};
-use crate::integrator::{Integrator, Method};
+use crate::integrator::{Integrate, Path};
 use crate::math::{Color, fp};
 use crate::sampler::SampleId;
 use rayon::prelude::*;
@@ -32,13 +32,13 @@ pub(super) fn light(scout: &Scout) -> Vec<Color> {
         return scout.probes.iter().map(|probe| exposure * probe.color).collect();
     };
     let job = scout.subject.job;
-    let integrator = Integrator::new(scout.world(), Method::Path(transport), job.settings, job.seed, None);
+    let path = Path::new(scout.world(), job.settings, transport);
     let step = scout.probes.len().div_ceil(MOST_PIXELS).max(1);
     // Not one in each row: that would be the same column each time.
     let chosen: Vec<&Probe> =
         scout.probes.iter().step_by(if step.is_multiple_of(2) { step + 1 } else { step }).collect();
     let mean = |probe: &&Probe| {
-        let sample = |i: u32| integrator.radiance(&probe.ray, SampleId::new(job.seed, probe.pixel, i), &mut ());
+        let sample = |i: u32| path.radiance(&probe.ray, SampleId::new(job.seed, probe.pixel, i), &mut ());
         let all = (0..SAMPLES).map(sample).filter(|color| color.is_finite());
         exposure * all.sum::<Color>() / SAMPLES as f32
     };
@@ -98,7 +98,7 @@ fn white(scout: &Scout) -> Vec<Finding> {
 
 /// Values beyond 1 in a picture of eight bits.
 pub(super) fn too_bright(scout: &Scout) -> Vec<Finding> {
-    if super::physical::is_physical(scout) || scout.world().environment.is_some() {
+    if super::physical::is_physical(scout) || scout.world().environment().is_some() {
         return white(scout);
     }
     let lit: Vec<Color> = scout.seen().map(|(probe, _)| probe.color).filter(|color| color.is_finite()).collect();
@@ -112,7 +112,7 @@ pub(super) fn too_bright(scout: &Scout) -> Vec<Finding> {
     let brightest = lit.iter().copied().max_by(|a, b| a.max_element().total_cmp(&b.max_element())).unwrap_or_default();
     // Ambient light is left as it is, unless it alone is too much.
     let world = scout.world();
-    let (most, ambient) = (brightest.max_element(), world.ambient.max_element().min(0.5));
+    let (most, ambient) = (brightest.max_element(), world.ambient().max_element().min(0.5));
     let factor = (1.0 - ambient) / (most - ambient).max(1e-6);
     let effect = format!(
         "{} of what is seen is cut at 1, and loses its shading; {} is white",
@@ -134,7 +134,7 @@ pub(super) fn too_bright(scout: &Scout) -> Vec<Finding> {
         let diagnostic = Diagnostic { severity, effect: diagnostic.effect, ..cause };
         return vec![Finding::from(diagnostic).whole(cut * 2 > lit.len())];
     }
-    for (i, light) in world.lights.iter().enumerate() {
+    for (i, light) in world.lights().iter().enumerate() {
         let Some(span) = place(scout, i) else { continue };
         // A light that nearly does not fade is not too bright of itself.
         let faded = scout.value(span, &["attenuation", "falloff"]).filter(|_| factor < 0.1 && most > 10.0);
@@ -188,7 +188,7 @@ pub(super) fn too_dark(scout: &Scout) -> Vec<Finding> {
         return dark_paths(scout);
     }
     let most = scout.seen().map(|(probe, _)| probe.color.max_element()).fold(0.0, f32::max);
-    let lights = &scout.world().lights;
+    let lights = scout.world().lights();
     if scout.seen().next().is_none() || most > 0.06 || lights.is_empty() {
         return Vec::new();
     }

@@ -33,7 +33,7 @@ pub(super) fn too_small(scout: &Scout) -> Vec<Finding> {
     };
     let empty = scout.seen().next().is_none();
     // Who takes so wide a field of view wants to see much, not a few small things in its middle.
-    let share = match &scout.world().camera {
+    let share = match scout.world().camera() {
         Camera::Perspective(camera) if camera.angle > 120.0 => 0.12,
         Camera::Perspective(camera) if camera.angle > 90.0 => 0.08,
         Camera::Orthographic(_) => 0.12,
@@ -52,7 +52,7 @@ pub(super) fn too_small(scout: &Scout) -> Vec<Finding> {
             } else {
                 "next to nothing is seen of them"
             });
-    let (diagnostic, field) = match &scout.world().camera {
+    let (diagnostic, field) = match scout.world().camera() {
         Camera::Perspective(camera) if camera.angle > 90.0 => {
             (diagnostic.help("take a smaller field of view, 40 degrees, say, or go nearer"), "angle")
         }
@@ -74,7 +74,7 @@ pub(super) fn too_small(scout: &Scout) -> Vec<Finding> {
 pub(super) fn too_narrow(scout: &Scout) -> Vec<Finding> {
     let (bounds, span, larger) = (scout.world().bounds(), scout.subject.scene.camera_span, scout.larger());
     // What is seen whole is not seen too near.
-    let seen = scout.world().objects.iter().zip(scout.sights()).filter(|(_, sight)| **sight == Sight::Seen);
+    let seen = scout.world().objects().iter().zip(scout.sights()).filter(|(_, sight)| **sight == Sight::Seen);
     let sizes: Vec<f32> = seen.filter_map(|(object, _)| pixels(scout, object.bounds()?)).collect();
     if bounds.is_empty() {
         return Vec::new();
@@ -83,7 +83,7 @@ pub(super) fn too_narrow(scout: &Scout) -> Vec<Finding> {
         return one_fills(scout, &sizes).into_iter().collect();
     }
     let radians = |angle: f32| angle <= std::f32::consts::PI;
-    match &scout.world().camera {
+    match scout.world().camera() {
         Camera::Perspective(camera) if camera.angle < 5.0 => {
             // A telescope is there to see far things.
             let Some(size) = pixels(scout, bounds).filter(|size| *size > 8.0 * larger) else { return Vec::new() };
@@ -121,8 +121,8 @@ pub(super) fn too_narrow(scout: &Scout) -> Vec<Finding> {
 
 /// A narrow field of view that one thing fills, and most others are beside it.
 fn one_fills(scout: &Scout, sizes: &[f32]) -> Option<Finding> {
-    let Camera::Perspective(camera) = &scout.world().camera else { return None };
-    let sights = scout.sights().iter().zip(&scout.world().objects);
+    let Camera::Perspective(camera) = scout.world().camera() else { return None };
+    let sights = scout.sights().iter().zip(scout.world().objects());
     let out = sights.filter(|(sight, object)| **sight == Sight::Outside && object.bounds().is_some()).count();
     let filled = sizes.iter().all(|size| *size > 0.9 * scout.larger());
     if camera.angle > 12.0 || sizes.is_empty() || !filled || out < 2 || out < sizes.len() {
@@ -140,8 +140,8 @@ fn one_fills(scout: &Scout, sizes: &[f32]) -> Option<Finding> {
 
 /// How many times larger an object is than the largest other one, if that is far.
 pub(super) fn times_larger(scout: &Scout, object: u32) -> Option<f32> {
-    let size = |i: usize| Some(scout.world().objects[i].bounds()?.size().max_element());
-    let others = (0..scout.world().objects.len()).filter(|&i| i != object as usize).filter_map(size);
+    let size = |i: usize| Some(scout.world().objects()[i].bounds()?.size().max_element());
+    let others = (0..scout.world().objects().len()).filter(|&i| i != object as usize).filter_map(size);
     let times = size(object as usize)? / others.fold(0.0, f32::max);
     (times > SWALLOWING && times.is_finite()).then_some(times)
 }
@@ -152,7 +152,7 @@ fn is_harm(scout: &Scout, object: u32) -> bool {
     let sights = scout.sights();
     let hides = sights.contains(&Sight::Hidden(object));
     let keeps_light = scout.verdicts().contains(&Verdict::Blocked(object));
-    let ball = matches!(&scout.world().objects[object as usize].geometry, Geometry::Primitive(Primitive::Sphere(_)));
+    let ball = matches!(&scout.world().objects()[object as usize].geometry, Geometry::Primitive(Primitive::Sphere(_)));
     // What the camera is in, and which leaves no light or no other thing to be seen, is no sky.
     if swallows(scout, object) {
         return true;
@@ -166,7 +166,7 @@ fn is_harm(scout: &Scout, object: u32) -> bool {
 
 /// Whether the camera is in an object that keeps light off or hides others.
 fn swallows(scout: &Scout, object: u32) -> bool {
-    let eye = scout.world().camera.pose().center;
+    let eye = scout.world().camera().pose().center;
     let keeps_light = [Verdict::Blocked(object), Verdict::Inside(object)].iter().any(|v| scout.verdicts().contains(v));
     let harms = keeps_light || scout.sights().contains(&Sight::Hidden(object));
     harms && super::solid::around(scout.world(), eye).contains(&object)
@@ -179,7 +179,7 @@ pub(super) fn out_of_scale(scout: &Scout) -> Vec<Finding> {
         let bounds: Aabb = object.bounds().filter(|bounds| !bounds.is_empty())?;
         Some((i as u32, bounds.size().max_element())).filter(|(_, size)| *size > 0.0)
     };
-    let mut sizes: Vec<(u32, f32)> = world.objects.iter().enumerate().filter_map(sized).collect();
+    let mut sizes: Vec<(u32, f32)> = world.objects().iter().enumerate().filter_map(sized).collect();
     sizes.sort_by(|a, b| a.1.total_cmp(&b.1));
     let absurd = sizes.iter().filter(|(_, size)| !ABSURD.contains(size));
     let lost: Vec<Finding> = absurd
@@ -196,8 +196,8 @@ pub(super) fn out_of_scale(scout: &Scout) -> Vec<Finding> {
         return lost;
     }
     // Of two, that which the camera's distance speaks for is right.
-    let eye = world.camera.pose().center;
-    let away = |object: u32| world.objects[object as usize].bounds().map_or(1.0, |b| (b.center() - eye).length());
+    let eye = world.camera().pose().center;
+    let away = |object: u32| world.objects()[object as usize].bounds().map_or(1.0, |b| (b.center() - eye).length());
     let odd = |(object, size): (u32, f32)| fp::ln(size / away(object).clamp(1e-6, 1e6)).abs();
     let middle = match sizes[..] {
         [small, large] => {

@@ -80,11 +80,11 @@ fn meet(a: &Face, b: &Face) -> bool {
 
 /// Faces of boxes and rectangles that lie in one another, on the side that the camera sees.
 pub(super) fn twice(scout: &Scout) -> Vec<Finding> {
-    let objects = &scout.world().objects;
+    let objects = scout.world().objects();
     if objects.len() > MOST_THINGS {
         return Vec::new();
     }
-    let eye = scout.world().camera.pose().center;
+    let eye = scout.world().camera().pose().center;
     let faces: Vec<Face> = objects.iter().enumerate().flat_map(|(i, object)| faces_of(i, object)).collect();
     let faces_eye = |face: &Face| face.outwards.is_none_or(|n| n.dot(eye - face.corners[0]) > 0.0);
     let mut found: Vec<(usize, usize)> = Vec::new();

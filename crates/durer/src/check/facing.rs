@@ -12,7 +12,7 @@ use crate::world::Geometry;
 /// The text change that turns a flat shape round.
 fn turned(scout: &Scout, diagnostic: Diagnostic, object: u32) -> Diagnostic {
     let span = scout.object_span(object);
-    let Geometry::Primitive(shape) = &scout.world().objects[object as usize].geometry else { return diagnostic };
+    let Geometry::Primitive(shape) = &scout.world().objects()[object as usize].geometry else { return diagnostic };
     match shape {
         Primitive::Triangle(_) => match (scout.value(span, &["vertex1"]), scout.value(span, &["vertex2"])) {
             (Some(b), Some(c)) => {
@@ -36,10 +36,10 @@ fn turned(scout: &Scout, diagnostic: Diagnostic, object: u32) -> Diagnostic {
 pub(super) fn from_behind(scout: &Scout) -> Vec<Finding> {
     let shaded = scout.subject.job.settings.shade_back;
     let is_flat = |i: usize| {
-        let shape = &scout.world().objects[i].geometry;
+        let shape = &scout.world().objects()[i].geometry;
         matches!(shape, Geometry::Primitive(Primitive::Triangle(_) | Primitive::Plane(_)))
     };
-    let count = scout.world().objects.len();
+    let count = scout.world().objects().len();
     let (mut seen, mut backs, mut black) = (vec![0; count], vec![0; count], false);
     for (_, surface) in scout.seen() {
         seen[surface.object as usize] += 1;
@@ -62,7 +62,7 @@ pub(super) fn from_behind(scout: &Scout) -> Vec<Finding> {
                 .effect("a tracer that does not shade backs, as the course's without `-shade_back`, leaves it black");
             // A plane with normal and offset turned is the same plane, and looks the same where backs are
             // shaded.
-            let plane = matches!(scout.world().objects[i].geometry, Geometry::Primitive(Primitive::Plane(_)));
+            let plane = matches!(scout.world().objects()[i].geometry, Geometry::Primitive(Primitive::Plane(_)));
             return Finding::from(if plane { note } else { turned(scout, note, i as u32) });
         }
         let diagnostic = Diagnostic::warning(message)
@@ -81,7 +81,7 @@ pub(super) fn from_behind(scout: &Scout) -> Vec<Finding> {
 /// Triangles written one by one that hang together, some of which go round the other way.
 pub(super) fn turned_triangles(scout: &Scout) -> Vec<Finding> {
     let mut soups: Vec<(Option<Affine>, Vec<u32>)> = Vec::new();
-    for (i, object) in scout.world().objects.iter().enumerate() {
+    for (i, object) in scout.world().objects().iter().enumerate() {
         if matches!(&object.geometry, Geometry::Primitive(Primitive::Triangle(_))) {
             match soups.iter_mut().rev().take(8).find(|soup| soup.0 == object.to_world) {
                 Some(soup) => soup.1.push(i as u32),
@@ -93,7 +93,7 @@ pub(super) fn turned_triangles(scout: &Scout) -> Vec<Finding> {
 }
 
 fn turned_of(scout: &Scout, soup: &[u32]) -> Vec<Finding> {
-    let corners = |&i: &u32| match &scout.world().objects[i as usize].geometry {
+    let corners = |&i: &u32| match &scout.world().objects()[i as usize].geometry {
         Geometry::Primitive(Primitive::Triangle(triangle)) => triangle.corners(),
         _ => [Vec3::ZERO; 3],
     };

@@ -40,7 +40,7 @@ pub(super) fn faint(scout: &Scout) -> Vec<Finding> {
                 (value, vector(Vec3::new(scaled.x.max(a.x.min(1.0)), scaled.y, scaled.z)), "attenuation".into())
             }
             // The dialect fades light by itself, unless something else is written.
-            _ => match (scout.value(span, &["color"])?, divisor(&scout.world().lights[light])) {
+            _ => match (scout.value(span, &["color"])?, divisor(&scout.world().lights()[light])) {
                 (color, Some(a)) if scout.subject.dialect == Dialect::F23 => {
                     let after = Span { start: color.end, ..color };
                     let text = format!(" attenuation {}", number(a.z / factor));
@@ -58,7 +58,7 @@ pub(super) fn faint(scout: &Scout) -> Vec<Finding> {
 
 /// Whether a light that is divided by other factors would arrive as bright as lights do.
 fn fits(scout: &Scout, light: usize, factors: Vec3) -> bool {
-    let Light::Point(point) = &scout.world().lights[light] else { return false };
+    let Light::Point(point) = &scout.world().lights()[light] else { return false };
     let faces = scout.seen().filter(|(_, seen)| seen.by(light).is_some_and(|lit| lit.cosine > 0.1));
     let left = faces.map(|(probe, seen)| {
         let d = (probe.ray.at(seen.t) - point.position).length();
@@ -81,7 +81,7 @@ pub(super) fn divides(scout: &Scout) -> Vec<Finding> {
     found
         .filter_map(|(light, _)| {
             let span = place(scout, light)?;
-            let divisor = divisor(&scout.world().lights[light]).unwrap_or_default();
+            let divisor = divisor(&scout.world().lights()[light]).unwrap_or_default();
             let zero = divisor == Vec3::ZERO;
             let message = match zero {
                 true => match scout.value(span, &["attenuation", "falloff"]) {

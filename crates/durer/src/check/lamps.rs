@@ -39,18 +39,18 @@ struct Given {
 fn shining(scout: &Scout) -> Vec<(u32, bool)> {
     let world = scout.world();
     let shines = |(number, object): (usize, &Object)| {
-        let Some(Material::Phong(phong)) = world.materials.get(object.material as usize) else { return None };
+        let Some(Material::Phong(phong)) = world.materials().get(object.material as usize) else { return None };
         let emission = phong.emission.as_ref().filter(|emission| emission.radiance.max_element() > 0.0)?;
         Some((number as u32, emission.two_sided))
     };
-    world.objects.iter().enumerate().filter_map(shines).take(MOST_SOUGHT).collect()
+    world.objects().iter().enumerate().filter_map(shines).take(MOST_SOUGHT).collect()
 }
 
 /// Where the strongest lamp's strength is written, and how much that is.
 pub(super) fn brightest(scout: &Scout) -> Option<(Span, f32)> {
     let materials = &scout.subject.scene.materials;
     let lamps = shining(scout).into_iter().filter_map(|(number, _)| {
-        let written = materials.get(scout.world().objects[number as usize].material as usize)?;
+        let written = materials.get(scout.world().objects()[number as usize].material as usize)?;
         let Written::Principled(layers) = &written.value else { return None };
         Some((scout.value(written.span, &["emissionLuminance"])?, layers.emission_luminance))
     });
@@ -59,7 +59,7 @@ pub(super) fn brightest(scout: &Scout) -> Option<(Span, f32)> {
 
 /// Whether light may go through an object.
 fn is_clear(scout: &Scout, object: u32) -> bool {
-    match scout.world().materials.get(scout.world().objects[object as usize].material as usize) {
+    match scout.world().materials().get(scout.world().objects()[object as usize].material as usize) {
         Some(Material::Phong(phong)) => {
             phong.transparent.max_element() > 0.0
                 || phong.principled.as_ref().is_some_and(|own| own.interface || own.written.opacity < 1.0)
@@ -83,7 +83,7 @@ fn between(scout: &Scout, lamp: u32, from: Vec3, to: Vec3) -> (Option<u32>, bool
 
 /// What a lamp of one part does; `None` for what has no points that can be chosen.
 fn given(scout: &Scout, lamp: u32) -> Option<(Given, bool)> {
-    let object = &scout.world().objects[lamp as usize];
+    let object = &scout.world().objects()[lamp as usize];
     let all: Vec<Vec3> =
         scout.seen().filter(|(_, seen)| seen.object != lamp).map(|(probe, seen)| probe.ray.at(seen.t)).collect();
     let places = all.iter().step_by(all.len().div_ceil(MOST_PLACES).max(1));
@@ -138,7 +138,7 @@ fn reach(scout: &Scout, object: &Object) -> Option<f32> {
 pub(super) fn turned(scout: &Scout) -> Vec<Finding> {
     let one_sided = shining(scout).into_iter().filter(|(_, both)| !both && is_physical(scout));
     let say = |(number, _): (u32, bool)| {
-        let object = &scout.world().objects[number as usize];
+        let object = &scout.world().objects()[number as usize];
         let (given, flat) = given(scout, number)?;
         // A lamp that lights the ceiling is one as well.
         let indirect = reach(scout, object).is_some_and(|far| far > 0.03) && !super::exposure::is_dark(scout);
@@ -159,7 +159,7 @@ pub(super) fn turned(scout: &Scout) -> Vec<Finding> {
                 "a surface shines to the side of its normal: {turn}, or give its material `walls thin`, with which both sides \
                  shine"
             ));
-        let whole = super::exposure::is_dark(scout) || scout.world().lights.is_empty();
+        let whole = super::exposure::is_dark(scout) || scout.world().lights().is_empty();
         Some(Finding::from(turned_round(scout, diagnostic, number)).whole(whole))
     };
     one_sided.filter_map(say).collect()
@@ -169,7 +169,7 @@ pub(super) fn turned(scout: &Scout) -> Vec<Finding> {
 fn turned_round(scout: &Scout, diagnostic: Diagnostic, number: u32) -> Diagnostic {
     let span = scout.object_span(number);
     let value = |field: &str| scout.value(span, &[field]);
-    match &scout.world().objects[number as usize].geometry {
+    match &scout.world().objects()[number as usize].geometry {
         Geometry::Primitive(Primitive::Rectangle(_)) => match (value("edge0"), value("edge1")) {
             (Some(a), Some(b)) => diagnostic.fix(a, scout.text(b)).fix(b, scout.text(a)),
             _ => diagnostic,
@@ -200,7 +200,7 @@ pub(super) fn blocked(scout: &Scout) -> Vec<Finding> {
         if given.front_free < 1.0 || given.front + back > HARDLY * given.front_free {
             return None;
         }
-        let whole = super::exposure::is_dark(scout) || lamps.len() == 1 && scout.world().lights.is_empty();
+        let whole = super::exposure::is_dark(scout) || lamps.len() == 1 && scout.world().lights().is_empty();
         let name = scout.object(number);
         let diagnostic = Diagnostic::warning(format!(
             "the {name} shines, but the {} keeps its light off all that is seen",
@@ -229,21 +229,22 @@ pub(super) fn in_glass(scout: &Scout) -> Vec<Finding> {
         return Vec::new();
     }
     let around = |place: Vec3, own: Option<u32>| {
-        let bodies = world.objects.iter().enumerate().map(|(number, _)| number as u32).filter(|n| Some(*n) != own);
+        let bodies = world.objects().iter().enumerate().map(|(number, _)| number as u32).filter(|n| Some(*n) != own);
         bodies.take(500).find(|&number| {
-            let Some(Material::Phong(phong)) = world.materials.get(world.objects[number as usize].material as usize)
+            let Some(Material::Phong(phong)) =
+                world.materials().get(world.objects()[number as usize].material as usize)
             else {
                 return false;
             };
             let skin = phong.principled.as_ref().is_none_or(|layers| !layers.interface);
             skin && phong.transparent.max_element() > 0.0
                 && phong.ior != 1.0
-                && world.objects[number as usize].contains(place)
+                && world.objects()[number as usize].contains(place)
         })
     };
     let mut found = super::physical::lamp_in_glass(scout);
     for (number, _) in shining(scout) {
-        let Some(middle) = world.objects[number as usize].bounds().map(|bounds| bounds.center()) else { continue };
+        let Some(middle) = world.objects()[number as usize].bounds().map(|bounds| bounds.center()) else { continue };
         let Some(glass) = around(middle, Some(number)) else { continue };
         if given(scout, number).is_some_and(|(given, _)| given.glass * 2 <= given.rays) {
             continue;

@@ -15,7 +15,7 @@ const BLACK: f32 = 0.002;
 
 /// The materials of layers that something is made of, with their numbers.
 fn layers<'s>(scout: &Scout<'s>) -> Vec<(usize, &'s Spanned<Written>, &'s PrincipledMaterial)> {
-    let used = |number: usize| scout.world().objects.iter().any(|object| object.material as usize == number);
+    let used = |number: usize| scout.world().objects().iter().any(|object| object.material as usize == number);
     let all = scout.subject.scene.materials.iter().enumerate();
     let own = all.filter_map(|(number, written)| match &written.value {
         Written::Principled(layers) if used(number) => Some((number, written, &**layers)),
@@ -26,7 +26,7 @@ fn layers<'s>(scout: &Scout<'s>) -> Vec<(usize, &'s Spanned<Written>, &'s Princi
 
 /// The least side of the largest thing that is made of a material.
 fn thickness(scout: &Scout, material: usize) -> Option<f32> {
-    let made = scout.world().objects.iter().filter(|object| object.material as usize == material);
+    let made = scout.world().objects().iter().filter(|object| object.material as usize == material);
     let sides = made.filter_map(|object| Some(object.bounds()?.size().min_element()));
     sides.max_by(f32::total_cmp).filter(|side| *side > 0.0)
 }

@@ -22,7 +22,7 @@ const FURTHEST: f32 = 0.5;
 
 /// The discs that what is seen becomes, as shares of the picture's larger side, and its depths.
 fn blurs(scout: &Scout, camera: &ThinLensCamera) -> Vec<(f32, f32)> {
-    let forward = scout.world().frame.forward;
+    let forward = scout.world().camera_frame().forward;
     let depth = |(probe, seen): (&Probe, &Seen)| seen.t * probe.ray.dir.dot(forward);
     let (sine, cosine) = fp::sin_cos_degrees(f64::from(0.5 * camera.angle));
     let width = 2.0 * (sine / cosine) as f32;
@@ -32,7 +32,7 @@ fn blurs(scout: &Scout, camera: &ThinLensCamera) -> Vec<(f32, f32)> {
 
 /// A lens that blurs all that is seen.
 pub(super) fn out_of_focus(scout: &Scout) -> Vec<Finding> {
-    let Camera::ThinLens(camera) = &scout.world().camera else { return Vec::new() };
+    let Camera::ThinLens(camera) = scout.world().camera() else { return Vec::new() };
     let all = blurs(scout, camera);
     let depths: Vec<f32> = all.iter().map(|(_, depth)| *depth).collect();
     let least = all.iter().map(|(blur, _)| *blur).fold(f32::INFINITY, f32::min);
@@ -56,7 +56,7 @@ pub(super) fn out_of_focus(scout: &Scout) -> Vec<Finding> {
 
 /// An opening that no lens has: everything but one plane is blurred away.
 pub(super) fn wide_aperture(scout: &Scout) -> Vec<Finding> {
-    let Camera::ThinLens(camera) = &scout.world().camera else { return Vec::new() };
+    let Camera::ThinLens(camera) = scout.world().camera() else { return Vec::new() };
     let all = blurs(scout, camera);
     let sharp = all.iter().filter(|(blur, _)| *blur < SHARP).count();
     // An opening that would do where most things are is sharp at the wrong place.
@@ -90,15 +90,15 @@ pub(super) fn wide_aperture(scout: &Scout) -> Vec<Finding> {
 
 /// A film that is shifted so far that all is beside the picture.
 pub(super) fn shifted(scout: &Scout, middle: Vec3) -> Option<Diagnostic> {
-    let Camera::ThinLens(camera) = &scout.world().camera else { return None };
+    let Camera::ThinLens(camera) = scout.world().camera() else { return None };
     let span = scout.subject.scene.camera_span;
     let fields = [("shiftRight", camera.shift_right), ("shiftUp", camera.shift_up)];
     let (word, shift) =
         fields.into_iter().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs())).filter(|(_, s)| s.abs() > 0.5)?;
     let to = middle - camera.center;
-    let forward = to.dot(scout.world().frame.forward);
+    let forward = to.dot(scout.world().camera_frame().forward);
     let (sine, cosine) = fp::sin_cos_degrees(f64::from(0.5 * camera.angle));
-    let across = (to - forward * scout.world().frame.forward).length() / forward.max(1e-6);
+    let across = (to - forward * scout.world().camera_frame().forward).length() / forward.max(1e-6);
     (forward > 0.0 && across < (sine / cosine) as f32).then(|| {
         let diagnostic = Diagnostic::warning(format!(
             "the film is shifted past everything: `{word} {}`",
@@ -114,7 +114,7 @@ pub(super) fn shifted(scout: &Scout, middle: Vec3) -> Option<Diagnostic> {
 /// Eyes too far from each other.
 pub(super) fn eyes_apart(scout: &Scout) -> Vec<Finding> {
     let world = scout.world();
-    let (separation, target) = match &world.camera {
+    let (separation, target) = match world.camera() {
         Camera::Stereo(camera) => (camera.separation, Some(camera.convergence)),
         Camera::Cave(camera) => (camera.separation, None),
         Camera::Cylindrical(camera) => (camera.separation, None),
@@ -125,7 +125,7 @@ pub(super) fn eyes_apart(scout: &Scout) -> Vec<Finding> {
     if scout.value(span, &["separation"]).is_none() {
         return Vec::new();
     }
-    let eye = world.camera.pose().center;
+    let eye = world.camera().pose().center;
     let mut depths: Vec<f32> = scout.seen().map(|(probe, seen)| (probe.ray.at(seen.t) - eye).length()).collect();
     depths.sort_by(f32::total_cmp);
     let bounds = world.bounds();
@@ -153,15 +153,15 @@ pub(super) fn eyes_apart(scout: &Scout) -> Vec<Finding> {
 /// Planes that are seen from their edge, which is to say not at all.
 pub(super) fn edge_on(scout: &Scout) -> Vec<Finding> {
     let world = scout.world();
-    let (eye, forward) = (world.camera.pose().center, world.frame.forward);
-    let orthographic = matches!(world.camera, Camera::Orthographic(_));
+    let (eye, forward) = (world.camera().pose().center, world.camera_frame().forward);
+    let orthographic = matches!(world.camera(), Camera::Orthographic(_));
     if !orthographic && !super::view::has_eye(scout) {
         return Vec::new();
     }
     let things = world.bounds();
     let size = if things.is_empty() { 1.0 } else { things.size().max_element() };
     let mut found = Vec::new();
-    for (number, object) in world.objects.iter().enumerate().take(super::MOST_SOUGHT) {
+    for (number, object) in world.objects().iter().enumerate().take(super::MOST_SOUGHT) {
         let Geometry::Primitive(Primitive::Plane(plane)) = &object.geometry else { continue };
         let on =
             object.world_point(plane.normal * (plane.offset / plane.normal.length_squared().max(f32::MIN_POSITIVE)));
@@ -198,8 +198,8 @@ pub(super) fn far_origin(scout: &Scout) -> Vec<Finding> {
     let sized = |b: Aabb| {
         (!b.is_empty() && b.size().is_finite()).then(|| (b.center().abs().max_element(), b.size().max_element()))
     };
-    let all: Vec<(f32, f32)> = world.objects.iter().filter_map(|object| sized(object.bounds()?)).collect();
-    let eye = world.camera.pose().center.abs().max_element();
+    let all: Vec<(f32, f32)> = world.objects().iter().filter_map(|object| sized(object.bounds()?)).collect();
+    let eye = world.camera().pose().center.abs().max_element();
     // Both the camera and most things: what stands far away alone is something else.
     let lost = |far: f32, size: f32| far * f32::EPSILON > size / 500.0;
     let many = all.iter().filter(|(far, size)| lost(*far, *size)).count();
@@ -229,10 +229,10 @@ pub(super) fn far_origin(scout: &Scout) -> Vec<Finding> {
 /// A scene smaller than the distance at which an old program lets shadow rays begin.
 pub(super) fn below_epsilon(scout: &Scout) -> Vec<Finding> {
     let world = scout.world();
-    let Some(epsilon) = world.rules.epsilon else { return Vec::new() };
+    let Some(epsilon) = world.rules().epsilon else { return Vec::new() };
     let settings = &scout.subject.job.settings;
     let mut sizes: Vec<f32> = world
-        .objects
+        .objects()
         .iter()
         .filter_map(|object| Some(object.bounds()?.size().max_element()))
         .filter(|size| *size > 0.0)

@@ -52,7 +52,7 @@ pub(super) enum Verdict {
 /// The verdict on each light of the world.
 pub(super) fn verdicts(scout: &Scout) -> Vec<Verdict> {
     let judged = |light| if light < MOST_JUDGED { verdict(scout, light) } else { Verdict::Works };
-    let mut verdicts: Vec<Verdict> = (0..scout.world().lights.len()).map(judged).collect();
+    let mut verdicts: Vec<Verdict> = (0..scout.world().lights().len()).map(judged).collect();
     if let Some(most) = weak_together(scout, &verdicts) {
         verdicts.iter_mut().for_each(|verdict| *verdict = Verdict::Faint(most));
     }
@@ -78,7 +78,7 @@ fn weak_together(scout: &Scout, verdicts: &[Verdict]) -> Option<f32> {
 /// Whether what all lights together shine on has none of their colours, on nearly all that they
 /// reach.
 fn cancelled_together(scout: &Scout, verdicts: &[Verdict]) -> bool {
-    let materials = &scout.world().materials;
+    let materials = scout.world().materials();
     if !verdicts.contains(&Verdict::Works) || verdicts.iter().any(|v| !matches!(v, Verdict::Works | Verdict::Cancelled))
     {
         return false;
@@ -98,9 +98,9 @@ fn cancelled_together(scout: &Scout, verdicts: &[Verdict]) -> bool {
 }
 
 fn verdict(scout: &Scout, number: usize) -> Verdict {
-    let light = &scout.world().lights[number];
+    let light = &scout.world().lights()[number];
     // Clear glass shows what is behind it, not the light that falls on it.
-    let clear = |seen: &Seen| match &scout.world().materials[seen.material as usize] {
+    let clear = |seen: &Seen| match &scout.world().materials()[seen.material as usize] {
         Material::Phong(phong) => phong.transparent.min_element() > 0.5 && phong.diffuse.max_element() < 0.1,
         Material::Solid(..) => false,
     };
@@ -121,7 +121,7 @@ fn verdict(scout: &Scout, number: usize) -> Verdict {
     // A few lights are each meant to be seen.
     let most = all.iter().map(|lit| lit.adds.abs().max_element()).fold(0.0, f32::max);
     let arrives = all.iter().map(|lit| lit.arrives.abs().max_element()).fold(0.0, f32::max);
-    if scout.world().lights.len() <= 3 && most > VISIBLE && most < 6.0 * VISIBLE && arrives < 12.0 * VISIBLE {
+    if scout.world().lights().len() <= 3 && most > VISIBLE && most < 6.0 * VISIBLE && arrives < 12.0 * VISIBLE {
         return Verdict::Faint(arrives);
     }
     let is_blocked = nearly_blocked(&all) || roofed(scout, number);
@@ -170,7 +170,7 @@ fn nearly_blocked(all: &[&Lit]) -> bool {
 /// Whether one thing keeps a light off all others that have an end and face it, and off most of the
 /// rest.
 fn roofed(scout: &Scout, light: usize) -> bool {
-    let objects = &scout.world().objects;
+    let objects = scout.world().objects();
     let facing = || {
         let all = scout.seen().filter_map(|(_, seen)| Some((seen.object, seen.by(light)?)));
         all.filter(|(_, lit)| lit.cosine > GRAZING)
@@ -187,7 +187,7 @@ fn roofed(scout: &Scout, light: usize) -> bool {
 /// Of some objects the one that is in the way of a light at the most places; each may be in the way
 /// of another.
 fn main_blocker(scout: &Scout, light: usize, blocked: &[u32]) -> Option<u32> {
-    let (common, lamp) = (most_common(blocked)?, &scout.world().lights[light]);
+    let (common, lamp) = (most_common(blocked)?, &scout.world().lights()[light]);
     let places = scout.seen().filter(|(_, seen)| seen.by(light).is_some_and(|lit| lit.blocker.is_some()));
     let mut all = Vec::new();
     for (probe, seen) in places.step_by((blocked.len() / 60).max(1)) {
@@ -209,10 +209,10 @@ fn main_blocker(scout: &Scout, light: usize, blocked: &[u32]) -> Option<u32> {
 fn behind_plane(scout: &Scout, light: &Light) -> Option<u32> {
     let Light::Point(point) = light else { return None };
     let world = scout.world();
-    let way = world.camera.pose().center - point.position;
+    let way = world.camera().pose().center - point.position;
     let hit = world.closest(&Ray { t_max: 1.0, ..Ray::new(point.position, way) }, &mut ())?;
     let is_seen = scout.seen().any(|(_, seen)| seen.object == hit.object);
-    (is_seen && world.objects[hit.object as usize].bounds().is_none()).then_some(hit.object)
+    (is_seen && world.objects()[hit.object as usize].bounds().is_none()).then_some(hit.object)
 }
 
 /// Whether an object around a light lets nothing out: it blocks something, or nothing that is seen
@@ -260,7 +260,7 @@ pub(super) fn all_fail(scout: &Scout) -> bool {
 /// A warning about a light that adds nothing.
 pub(super) fn useless(scout: &Scout, light: usize, message: String) -> Option<(Diagnostic, Span)> {
     let span = place(scout, light)?;
-    let effect = match (all_fail(scout), scout.world().ambient.max_element() > VISIBLE) {
+    let effect = match (all_fail(scout), scout.world().ambient().max_element() > VISIBLE) {
         (true, false) => "no light reaches what is seen: all surfaces are black",
         (true, true) => "no light reaches what is seen: surfaces show ambient light alone, flat and dark",
         (false, _) => "it adds nothing to the picture",
@@ -278,7 +278,7 @@ pub(super) fn each(scout: &Scout, find: impl Fn(usize, Verdict) -> Option<Diagno
 /// Lights that do something only because nothing casts shadows: an object is around them.
 fn enclosed(scout: &Scout) -> Vec<Finding> {
     let shadows = scout.subject.job.settings.shadows;
-    let lights = scout.world().lights.iter().enumerate().filter(|_| !shadows).take(MOST_JUDGED);
+    let lights = scout.world().lights().iter().enumerate().filter(|_| !shadows).take(MOST_JUDGED);
     let say = |(light, lamp): (usize, &Light)| {
         let Light::Point(point) = lamp else { return None };
         if scout.verdicts()[light] != Verdict::Works {
@@ -301,7 +301,7 @@ pub(super) fn inside(scout: &Scout) -> Vec<Finding> {
         let Verdict::Inside(object) = verdict else { return None };
         let name = scout.object(object);
         let (diagnostic, span) = useless(scout, light, format!("this light is inside the {name}"))?;
-        let bounds = scout.world().objects[object as usize].bounds()?;
+        let bounds = scout.world().objects()[object as usize].bounds()?;
         let above = Vec3::new(bounds.center().x, bounds.max.y + bounds.size().max_element(), bounds.center().z);
         let diagnostic =
             scout.at_value(diagnostic, span, &["position"]).related(scout.object_span(object), "around the light");
@@ -316,7 +316,7 @@ pub(super) fn blocked(scout: &Scout) -> Vec<Finding> {
         let name = scout.object(object);
         let message = format!("the {name} keeps this light off all that is seen");
         let (diagnostic, _) = useless(scout, light, message)?;
-        let help = match (scout.world().objects[object as usize].bounds(), &scout.world().lights[light]) {
+        let help = match (scout.world().objects()[object as usize].bounds(), &scout.world().lights()[light]) {
             (None, Light::Directional(_)) => {
                 "the light comes from behind the plane: turn its `direction`, which is where light goes"
             }
@@ -379,7 +379,7 @@ fn mostly_dark(scout: &Scout) -> Vec<Finding> {
     let which = if working.len() == 1 { "this light" } else { "the lights" };
     let message = format!("{} of what is seen faces away from {which}", percent(away, all));
     let mut diagnostic = Diagnostic::warning(message)
-        .effect(match scout.world().ambient.max_element() > VISIBLE {
+        .effect(match scout.world().ambient().max_element() > VISIBLE {
             true => "most of the picture shows ambient light alone, flat and dark",
             false => "most of the picture is black",
         })
@@ -392,7 +392,7 @@ fn mostly_dark(scout: &Scout) -> Vec<Finding> {
         }
     }
     // A crescent of a round thing may well be meant; of a floor no light at all is not.
-    let flat = |object: u32| scout.world().objects[object as usize].bounds().is_none();
+    let flat = |object: u32| scout.world().objects()[object as usize].bounds().is_none();
     let floor = scout.seen().any(|(_, seen)| flat(seen.object));
     let lit_floor = scout.seen().any(|(_, seen)| flat(seen.object) && seen.lit.iter().any(bright));
     if (!floor || lit_floor) && reached as f32 > 0.02 * all as f32 {
@@ -440,7 +440,7 @@ fn grazing(scout: &Scout, lights: &[usize]) -> Option<Diagnostic> {
                 Light::Point(point) => point.position,
                 _ => place?,
             };
-            let eye = scout.world().camera.pose().center;
+            let eye = scout.world().camera().pose().center;
             let raised = vector(from + 0.5 * (eye - from).length().max(1e-3) * n);
             let value = scout.value(span, &["position"]);
             let help = format!("the light lies in the plane of that surface: raise it, to `position {raised}`, say");
@@ -451,7 +451,7 @@ fn grazing(scout: &Scout, lights: &[usize]) -> Option<Diagnostic> {
 
 /// Lights that lie in a plane that is seen, or go exactly along it: it gets nothing of them.
 fn along_plane(scout: &Scout) -> Vec<Finding> {
-    let flat = |object: u32| scout.world().objects[object as usize].bounds().is_none();
+    let flat = |object: u32| scout.world().objects()[object as usize].bounds().is_none();
     let is_along = |light: &usize| {
         let all = scout.seen().filter(|(_, seen)| flat(seen.object)).filter_map(|(_, seen)| seen.by(*light));
         let (count, along) = all.fold((0, 0), |(n, along), lit| (n + 1, along + usize::from(is_grazing(lit))));
@@ -492,7 +492,7 @@ pub(super) fn behind(scout: &Scout) -> Vec<Finding> {
                 scout.at_value(fixed, span, &["direction"]).help(help)
             }
             _ => {
-                let eye = scout.world().camera.pose().center;
+                let eye = scout.world().camera().pose().center;
                 let help = format!("move it to the camera's side: the camera is at {}", vector(eye));
                 scout.at_value(diagnostic, span, &["position"]).help(help)
             }
@@ -510,7 +510,7 @@ pub(super) fn cancelled(scout: &Scout) -> Vec<Finding> {
         }
         let message = "what this light shines on gives back none of its colour".to_string();
         let (diagnostic, span) = useless(scout, light, message)?;
-        let color = vector(color(&scout.world().lights[light]));
+        let color = vector(color(&scout.world().lights()[light]));
         let help = format!("light and surface are multiplied, channel by channel: this light is {color}");
         let material = scout.seen().next().map(|(_, seen)| seen.material)?;
         let diagnostic = match scout.subject.scene.materials.get(material as usize) {
@@ -541,7 +541,7 @@ fn without(scout: &Scout, diagnostic: Diagnostic) -> Diagnostic {
     let Some(bytes) = scout.subject.files.bytes(own.file) else { return diagnostic };
     let Some(whole) = block(bytes, own) else { return diagnostic };
     let count = section(bytes, own.file, "Lights").and_then(|lights| scout.value(lights, &["numLights"]));
-    let left = scout.world().lights.len() - 1;
+    let left = scout.world().lights().len() - 1;
     match count {
         Some(count) => diagnostic.fix(whole, "").fix(count, left.to_string()),
         None => diagnostic.fix(whole, ""),

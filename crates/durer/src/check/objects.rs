@@ -29,9 +29,9 @@ pub(super) fn degenerate(scout: &Scout) -> Vec<Finding> {
             .at(object.span)
             .effect("it is not seen")
             .help("are two of its corners the same?");
-        Finding::from(diagnostic).whole(scout.world().objects.len() == 1)
+        Finding::from(diagnostic).whole(scout.world().objects().len() == 1)
     };
-    scout.world().objects.iter().filter(flat).map(say).collect()
+    scout.world().objects().iter().filter(flat).map(say).collect()
 }
 
 /// Solids that no ray meets, as far as a few hundred tell.
@@ -52,8 +52,8 @@ pub(super) fn empty_solids(scout: &Scout) -> Vec<u32> {
         };
         !(0..3).any(|axis| (0..144).any(|cell| met(axis, cell % 12, cell / 12)))
     };
-    let few = world.objects.len() <= 100;
-    world.objects.iter().enumerate().filter(|_| few).filter(empty).map(|(i, _)| i as u32).take(MOST_SOUGHT).collect()
+    let few = world.objects().len() <= 100;
+    world.objects().iter().enumerate().filter(|_| few).filter(empty).map(|(i, _)| i as u32).take(MOST_SOUGHT).collect()
 }
 
 /// Solids of which nothing is left.
@@ -71,7 +71,7 @@ pub(super) fn empty_solid(scout: &Scout) -> Vec<Finding> {
 /// Objects that a transform has made flat, or nearly so.
 pub(super) fn squashed(scout: &Scout) -> Vec<Finding> {
     let mut found = Vec::new();
-    for object in &scout.world().objects {
+    for object in scout.world().objects() {
         let (Some(to_world), Some(bounds)) = (&object.to_world, object.bounds()) else { continue };
         let stretched = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| to_world.vector(axis).length());
         let (least, most) =
@@ -141,7 +141,7 @@ pub(super) fn same(a: &Object, b: &Object) -> bool {
 
 /// Objects that are at the same place twice.
 pub(super) fn twice(scout: &Scout) -> Vec<Finding> {
-    let objects = &scout.world().objects;
+    let objects = scout.world().objects();
     let mut places: HashMap<[u32; 6], Vec<usize>> = HashMap::new();
     let mut found = Vec::new();
     found.extend(in_plane(scout));
@@ -168,7 +168,7 @@ pub(super) fn twice(scout: &Scout) -> Vec<Finding> {
 
 /// Flat things that lie in a plane, where the two cannot be told apart.
 fn in_plane(scout: &Scout) -> Vec<Finding> {
-    let objects = &scout.world().objects;
+    let objects = scout.world().objects();
     let planes: Vec<(usize, &Plane)> = objects
         .iter()
         .enumerate()
@@ -202,7 +202,7 @@ fn in_plane(scout: &Scout) -> Vec<Finding> {
 }
 
 pub(super) fn pair(scout: &Scout, first: usize, second: usize) -> Finding {
-    let objects = &scout.world().objects;
+    let objects = scout.world().objects();
     let [a, b]: [Span; 2] = [objects[first].span, objects[second].span];
     let alike = objects[first].material == objects[second].material;
     let diagnostic = Diagnostic::warning(format!(

@@ -27,7 +27,7 @@ enum Look<'w> {
 
 impl Look<'_> {
     fn of(world: &World, material: u32) -> Option<Look<'_>> {
-        match world.materials.get(material as usize)? {
+        match world.materials().get(material as usize)? {
             Material::Solid(solid, to_pattern) => Some(Look::Solid(solid, to_pattern)),
             Material::Phong(phong) => phong.noise.as_ref().map(Look::Noise),
         }
@@ -132,9 +132,9 @@ pub(super) fn flat_texture(scout: &Scout) -> Vec<Finding> {
     let world = scout.world();
     let mut found = Vec::new();
     for (number, written) in scout.subject.scene.materials.iter().enumerate().take(MOST_SOUGHT) {
-        let Some(Material::Phong(phong)) = world.materials.get(number) else { continue };
-        let Some(texture) = phong.texture.and_then(|texture| world.textures.get(texture as usize)) else { continue };
-        let own = || world.objects.iter().filter(|object| object.material as usize == number);
+        let Some(Material::Phong(phong)) = world.materials().get(number) else { continue };
+        let Some(texture) = phong.texture.and_then(|texture| world.textures().get(texture as usize)) else { continue };
+        let own = || world.objects().iter().filter(|object| object.material as usize == number);
         let still = |mesh: &Arc<MeshTree>| {
             let data = mesh.mesh.data();
             !data.uvs.is_empty() && data.uvs.iter().all(|uv| (*uv - data.uvs[0]).abs().max_element() < 1e-6)

@@ -42,22 +42,22 @@ pub(super) fn is_physical(scout: &Scout) -> bool {
 
 pub(super) fn no_emitter(scout: &Scout) -> Vec<Finding> {
     let world = scout.world();
-    let dark_sky = world.environment.is_none() && world.cube_map.is_none() && world.background == Color::ZERO;
+    let dark_sky = world.environment().is_none() && world.cube_map().is_none() && world.background() == Color::ZERO;
     let radiance = |material: &Compiled| match material {
         Compiled::Phong(phong) => phong.emission.as_ref().map(|emission| emission.radiance),
         Compiled::Solid(..) => None,
     };
-    let of = |material: u32| world.materials.get(material as usize).and_then(radiance).unwrap_or_default();
-    let shines = world.objects.iter().any(|object| of(object.material) != Color::ZERO)
+    let of = |material: u32| world.materials().get(material as usize).and_then(radiance).unwrap_or_default();
+    let shines = world.objects().iter().any(|object| of(object.material) != Color::ZERO)
         || world
-            .objects
+            .objects()
             .iter()
-            .any(|object| matches!(world.materials.get(object.material as usize), Some(Compiled::Solid(..))))
-            && world.materials.iter().any(|material| radiance(material).is_some());
+            .any(|object| matches!(world.materials().get(object.material as usize), Some(Compiled::Solid(..))))
+            && world.materials().iter().any(|material| radiance(material).is_some());
     if !is_physical(scout)
         || !dark_sky
         || shines
-        || world.lights.iter().any(|light| super::lights::color(light) != Color::ZERO)
+        || world.lights().iter().any(|light| super::lights::color(light) != Color::ZERO)
     {
         return Vec::new();
     }
@@ -79,7 +79,7 @@ pub(super) fn no_emitter(scout: &Scout) -> Vec<Finding> {
         let diagnostic = scout.at_value(diagnostic, material.span, &["emissionColor", "emissionLuminance"]);
         return vec![Finding::from(diagnostic).whole(true)];
     }
-    let ambient = match world.ambient == Color::ZERO {
+    let ambient = match world.ambient() == Color::ZERO {
         true => "",
         false => "; `ambientLight` means nothing to paths",
     };
@@ -95,7 +95,7 @@ pub(super) fn lamp_in_glass(scout: &Scout) -> Vec<Finding> {
     if !matches!(scout.subject.job.method, Method::Path(_)) {
         return Vec::new();
     }
-    let lights = world.lights.iter().enumerate().filter_map(|(number, light)| Some((number, light.place()?.0)));
+    let lights = world.lights().iter().enumerate().filter_map(|(number, light)| Some((number, light.place()?.0)));
     let enclosed = lights.filter_map(|(number, place)| {
         let glass = world.glass_around(place).find(|&(_, ior)| ior != 1.0)?.0;
         let message =

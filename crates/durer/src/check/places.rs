@@ -17,7 +17,7 @@ fn of(scout: &Scout, object: &Object) -> Option<(Span, String)> {
     // The object at the place where its keyword is.
     let world = scout.world();
     let own =
-        world.objects.iter().find(|own| own.span.file == inner.span.file && own.span.start == inner.span.start)?;
+        world.objects().iter().find(|own| own.span.file == inner.span.file && own.span.start == inner.span.start)?;
     let (to_world, bounds) = (own.to_world.as_ref()?, own.bounds()?);
     let local = to_world.inverse_point(bounds.center()) + own.center;
     let by = |ops: &[MatrixOp]| MatrixOp::product(ops, 0).transform_point3(local.as_dvec3()).as_vec3();

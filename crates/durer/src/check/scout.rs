@@ -104,7 +104,7 @@ impl<'a> Scout<'a> {
     pub fn new(subject: &Subject<'a>) -> Self {
         let Job { width, height, settings, .. } = *subject.job;
         let larger = width.max(height);
-        let lights = subject.world.lights.len().max(1) as u32;
+        let lights = subject.world.lights().len().max(1) as u32;
         let rays =
             (FEWEST_RAYS..RAYS).take_while(|rays| rays * rays * lights <= MOST_QUESTIONS).last().unwrap_or(FEWEST_RAYS)
                 + 1;
@@ -118,7 +118,7 @@ impl<'a> Scout<'a> {
                 ..settings
             },
             // Its terms are what the checks ask for.
-            method: Method::Whitted,
+            method: Method::WHITTED,
             ..subject.job.clone()
         };
         let places: Vec<(u32, u32)> = (0..rows).flat_map(|y| (0..columns).map(move |x| (x, y))).collect();
@@ -164,7 +164,7 @@ impl<'a> Scout<'a> {
 
     /// Which lights have beams that miss what is seen.
     pub(super) fn aims(&self) -> &[Option<Aim>] {
-        let lights = 0..self.world().lights.len();
+        let lights = 0..self.world().lights().len();
         self.aims.get_or_init(|| lights.map(|light| super::beams::aim(self, light)).collect())
     }
 
@@ -195,13 +195,13 @@ impl<'a> Scout<'a> {
 
     /// An object's keyword and line.
     pub(super) fn object(&self, number: u32) -> String {
-        let span = self.world().objects[number as usize].span;
+        let span = self.world().objects()[number as usize].span;
         let line = self.subject.files.position(span).map_or(0, |place| place.0);
         format!("`{}` of line {line}", self.text(span))
     }
 
     pub(super) fn object_span(&self, number: u32) -> Span {
-        self.world().objects[number as usize].span
+        self.world().objects()[number as usize].span
     }
 
     /// A word of the course's first grammar, or its counterpart in that of nodes, whichever the

@@ -27,7 +27,7 @@ const MOST_CORNERS: usize = 40;
 /// The sight of each object. What a ray of the grid hit is seen; of the others, points are aimed
 /// at.
 pub(super) fn sights(scout: &Scout) -> Vec<Sight> {
-    let objects = &scout.world().objects;
+    let objects = scout.world().objects();
     let mut sights = vec![Sight::Unknown; objects.len()];
     scout.seen().for_each(|(_, seen)| sights[seen.object as usize] = Sight::Seen);
     for (i, object) in objects.iter().enumerate().take(MOST_OBJECTS) {
@@ -57,10 +57,10 @@ fn sight(scout: &Scout, number: u32, object: &Object) -> Sight {
 /// The camera's rays to a point that lies in the picture.
 pub(super) fn rays_to(scout: &Scout, point: Vec3) -> Vec<Ray> {
     let (world, mut places) = (scout.world(), Vec::new());
-    world.camera.project(&world.frame, point, Vec2::splat(0.5), &mut |place| places.push(place));
+    world.camera().project(world.camera_frame(), point, Vec2::splat(0.5), &mut |place| places.push(place));
     let corner = corner(scout);
     let inside = places.into_iter().filter(|place| place.abs().cmple(corner).all());
-    inside.filter_map(|place| world.camera.ray(&world.frame, &CameraSample::at(place))).collect()
+    inside.filter_map(|place| world.camera().ray(world.camera_frame(), &CameraSample::at(place))).collect()
 }
 
 /// The upper right corner of the picture in the square that the camera covers.

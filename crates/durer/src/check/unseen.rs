@@ -37,11 +37,11 @@ pub(super) fn unseen(scout: &Scout) -> Vec<Finding> {
         .filter(|&(i, by)| ![i, by].iter().all(|&object| is_triangle(scout, object)))
         // Two at one place are told of as that.
         .filter(|&(i, by)| {
-            !super::objects::same(&scout.world().objects[i as usize], &scout.world().objects[by as usize])
+            !super::objects::same(&scout.world().objects()[i as usize], &scout.world().objects()[by as usize])
         })
         .collect();
     // Where most of a small scene is lost, that is no chance.
-    let bounded = scout.world().objects.iter().filter(|object| object.bounds().is_some()).count();
+    let bounded = scout.world().objects().iter().filter(|object| object.bounds().is_some()).count();
     let most = |lost: usize| lost >= 2 && lost * 2 >= bounded && sights.len() <= FEW_OBJECTS;
     let severity = |lost: usize| if most(lost) { Severity::Warning } else { Severity::Note };
     if let Some(&first) = out.first().filter(|_| found.is_empty()) {
@@ -56,7 +56,7 @@ pub(super) fn unseen(scout: &Scout) -> Vec<Finding> {
         // What is out of the picture may stand there for its shadow, or its light; not if next to nothing
         // is left.
         let own = |(_, seen): &(_, &crate::check::scout::Seen)| {
-            scout.world().objects[seen.object as usize].bounds().is_some()
+            scout.world().objects()[seen.object as usize].bounds().is_some()
         };
         let left = scout.seen().filter(own).count() * 50;
         let severity = if left < scout.probes.len() { severity(out.len()) } else { Severity::Note };
@@ -75,7 +75,7 @@ pub(super) fn unseen(scout: &Scout) -> Vec<Finding> {
             true => format!("the {a} is inside the {b}{more}"),
             false => format!("the {a} is hidden by the {b}{more}"),
         };
-        let help = match &scout.world().objects[by as usize].geometry {
+        let help = match &scout.world().objects()[by as usize].geometry {
             Geometry::Primitive(Primitive::Plane(_)) => {
                 "it is behind the plane, which stands where p · normal = offset: is the sign of `offset` right?"
             }
@@ -83,7 +83,7 @@ pub(super) fn unseen(scout: &Scout) -> Vec<Finding> {
             _ => "is it on the wrong side of the other, or the other in the way?",
         };
         // What a thing merely stands behind may be meant.
-        let plane = matches!(&scout.world().objects[by as usize].geometry, Geometry::Primitive(Primitive::Plane(_)));
+        let plane = matches!(&scout.world().objects()[by as usize].geometry, Geometry::Primitive(Primitive::Plane(_)));
         let one = hidden.iter().all(|(_, other)| *other == by);
         let severity = if plane || inside || one { severity(hidden.len()) } else { Severity::Note };
         let diagnostic = Diagnostic { severity, ..Diagnostic::note(message) }
@@ -107,7 +107,7 @@ pub(super) fn unseen(scout: &Scout) -> Vec<Finding> {
 
 /// The number of a scale below zero around a thing, and where it is written.
 fn mirrored(scout: &Scout, number: u32) -> Option<(Span, String)> {
-    let object = &scout.world().objects[number as usize];
+    let object = &scout.world().objects()[number as usize];
     object.to_world.as_ref().filter(|to_world| {
         to_world.vector(Vec3::X).cross(to_world.vector(Vec3::Y)).dot(to_world.vector(Vec3::Z)) < 0.0
     })?;
@@ -131,7 +131,7 @@ fn mirrored(scout: &Scout, number: u32) -> Option<(Span, String)> {
 fn nothing_of(scout: &Scout) -> Vec<u32> {
     let mut nothing = super::objects::empty_solids(scout);
     let flat = |[a, b, c]: [Vec3; 3]| (b - a).cross(c - a).length_squared() == 0.0;
-    let without = scout.world().objects.iter().enumerate().filter(|(i, object)| {
+    let without = scout.world().objects().iter().enumerate().filter(|(i, object)| {
         scout.sights()[*i] != Sight::Seen
             && match &object.geometry {
                 Geometry::Primitive(Primitive::Triangle(triangle)) => flat(triangle.corners()),
@@ -145,13 +145,13 @@ fn nothing_of(scout: &Scout) -> Vec<u32> {
 
 /// Whether one object is wholly inside another, as far as its middle tells.
 fn holds(scout: &Scout, outer: u32, inner: u32) -> bool {
-    let middle = scout.world().objects[inner as usize].bounds().map(|bounds| bounds.center());
+    let middle = scout.world().objects()[inner as usize].bounds().map(|bounds| bounds.center());
     middle.is_some_and(|middle| super::solid::around(scout.world(), middle).contains(&outer))
 }
 
 /// Things smaller than a pixel.
 pub(super) fn tiny(scout: &Scout) -> Vec<Finding> {
-    let objects = &scout.world().objects;
+    let objects = scout.world().objects();
     let small = |(index, object): (usize, &Object)| {
         let bounds = object.bounds().filter(|bounds| !bounds.is_empty())?;
         // Nobody makes a mesh of many triangles to be a dot.
@@ -182,7 +182,7 @@ pub(super) fn tiny(scout: &Scout) -> Vec<Finding> {
 
 /// One thing just before the camera that covers most of the picture and others with it.
 pub(super) fn in_the_way(scout: &Scout) -> Vec<Finding> {
-    let objects = &scout.world().objects;
+    let objects = scout.world().objects();
     let mut counts = vec![0; objects.len()];
     let mut nearest = vec![f32::INFINITY; objects.len()];
     for (probe, seen) in scout.seen() {
@@ -199,7 +199,7 @@ pub(super) fn in_the_way(scout: &Scout) -> Vec<Finding> {
     let Some(bounds) = objects[front].bounds() else { return Vec::new() };
     // A room or a table holds the others; what is in the way is far before them, and hides nearly all
     // of them.
-    let eye = scout.world().camera.pose().center;
+    let eye = scout.world().camera().pose().center;
     let others: Vec<usize> = (0..objects.len()).filter(|&i| i != front && objects[i].bounds().is_some()).collect();
     let away = |i: &usize| objects[*i].bounds().map_or(f32::INFINITY, |own| (own.center() - eye).length());
     let nearest_other = others.iter().map(away).fold(f32::INFINITY, f32::min);
@@ -262,7 +262,7 @@ pub(super) fn flat_field(scout: &Scout) -> Vec<Finding> {
 }
 
 fn is_triangle(scout: &Scout, object: u32) -> bool {
-    matches!(scout.world().objects[object as usize].geometry, Geometry::Primitive(Primitive::Triangle(_)))
+    matches!(scout.world().objects()[object as usize].geometry, Geometry::Primitive(Primitive::Triangle(_)))
 }
 
 /// Whether light goes through an object.
@@ -270,12 +270,12 @@ pub(super) fn is_glass(scout: &Scout, object: u32) -> bool {
     let world = scout.world();
     let phong =
         |material: &Material| matches!(material, Material::Phong(phong) if phong.transparent.max_element() > 0.0);
-    world.materials.get(world.objects[object as usize].material as usize).is_some_and(phong)
+    world.materials().get(world.objects()[object as usize].material as usize).is_some_and(phong)
 }
 
 /// Objects far from all that is seen: thrown away by a transform, say.
 fn far_away(scout: &Scout) -> Vec<Finding> {
-    let both = || scout.world().objects.iter().zip(scout.sights()).enumerate();
+    let both = || scout.world().objects().iter().zip(scout.sights()).enumerate();
     let seen = both().filter(|(_, (_, sight))| **sight == Sight::Seen).filter_map(|(_, (object, _))| object.bounds());
     let core = seen.fold(Aabb::EMPTY, Aabb::union);
     let far = |bounds: Aabb| (bounds.center() - core.center()).length() > 10.0 * core.size().length();

@@ -15,14 +15,14 @@ use crate::world::{Geometry, Material, Object};
 /// Whether the camera's rays all start at its place and go one way: those that run both ways see
 /// what is behind as well.
 pub(super) fn has_eye(scout: &Scout) -> bool {
-    !matches!(scout.world().camera, Camera::Orthographic(_) | Camera::PushBroom(_) | Camera::MultipleCenter(_))
+    !matches!(scout.world().camera(), Camera::Orthographic(_) | Camera::PushBroom(_) | Camera::MultipleCenter(_))
 }
 
 /// A scene in which nothing is.
 pub(super) fn no_objects(scout: &Scout) -> Vec<Finding> {
     // Solids of which nothing is left are told of as that.
     let solid = |object: &Node| matches!(object, Node::Solid(..));
-    let empty = |root: &&Group| scout.world().objects.is_empty() && !root.objects.iter().any(|o| solid(&o.node));
+    let empty = |root: &&Group| scout.world().objects().is_empty() && !root.objects.iter().any(|o| solid(&o.node));
     let Some(_) = scout.subject.scene.root.as_ref().filter(empty) else { return Vec::new() };
     let diagnostic = Diagnostic::warning("the scene has no objects: its group is empty")
         .effect("every ray misses; the whole picture is background")
@@ -35,7 +35,7 @@ pub(super) fn inside(scout: &Scout) -> Vec<Finding> {
     if !has_eye(scout) {
         return Vec::new();
     }
-    let pose = scout.world().camera.pose();
+    let pose = scout.world().camera().pose();
     let (rays, physical) = (scout.probes.len(), super::physical::is_physical(scout));
     let mut found = Vec::new();
     for object in around(scout.world(), pose.center) {
@@ -48,7 +48,7 @@ pub(super) fn inside(scout: &Scout) -> Vec<Finding> {
         if own * 100 < rays * 99 && !dark && !walls {
             continue;
         }
-        let Some(bounds) = scout.world().objects[object as usize].bounds() else { continue };
+        let Some(bounds) = scout.world().objects()[object as usize].bounds() else { continue };
         let name = scout.object(object);
         let outside = leave(bounds, pose.center, -pose.direction);
         let diagnostic = Diagnostic::warning(format!("the camera is inside the {name}"))
@@ -86,7 +86,7 @@ fn leave(bounds: Aabb, from: Vec3, direction: Vec3) -> Vec3 {
 /// What the camera should see: the box around all that has an end, else the nearest place of a
 /// plane.
 pub(super) fn target(scout: &Scout) -> Option<Aabb> {
-    let (world, eye) = (scout.world(), scout.world().camera.pose().center);
+    let (world, eye) = (scout.world(), scout.world().camera().pose().center);
     let bounds = world.bounds();
     if !bounds.is_empty() {
         return Some(bounds);
@@ -100,19 +100,19 @@ pub(super) fn target(scout: &Scout) -> Option<Aabb> {
         }
         _ => None,
     };
-    world.objects.iter().find_map(foot).map(|place| Aabb::around([place]))
+    world.objects().iter().find_map(foot).map(|place| Aabb::around([place]))
 }
 
 /// Whether there are things with an end and none of them is in the picture, or nothing is at all.
 fn all_outside(scout: &Scout) -> bool {
     let world = scout.world();
     let bounded = || {
-        world.objects.iter().zip(scout.sights()).filter(|(object, _)| object.bounds().is_some_and(|b| !b.is_empty()))
+        world.objects().iter().zip(scout.sights()).filter(|(object, _)| object.bounds().is_some_and(|b| !b.is_empty()))
     };
     let none = scout.seen().next().is_none();
     match bounded().next() {
         Some(_) => bounded().all(|(_, sight)| *sight == Sight::Outside),
-        None => none && !world.objects.is_empty(),
+        None => none && !world.objects().is_empty(),
     }
 }
 
@@ -120,17 +120,17 @@ fn all_outside(scout: &Scout) -> bool {
 /// object.
 fn plane_before(scout: &Scout, object: &Object) -> Option<u32> {
     let world = scout.world();
-    let (eye, place) = (world.camera.pose().center, object.bounds().filter(|b| !b.is_empty())?.center());
+    let (eye, place) = (world.camera().pose().center, object.bounds().filter(|b| !b.is_empty())?.center());
     let way = Ray { t_max: 1.0, ..Ray::new(eye, place - eye) };
-    world.hits_of_each(&way).map(|hit| hit.object).find(|&other| world.objects[other as usize].bounds().is_none())
+    world.hits_of_each(&way).map(|hit| hit.object).find(|&other| world.objects()[other as usize].bounds().is_none())
 }
 
 /// The camera looks past everything, and the middle of things is not in the picture.
 pub(super) fn away(scout: &Scout) -> Vec<Finding> {
     let Some(bounds) = target(scout).filter(|_| all_outside(scout)) else { return Vec::new() };
     let (world, span) = (scout.world(), scout.subject.scene.camera_span);
-    let (pose, center) = (world.camera.pose(), bounds.center());
-    let mut ended = world.objects.iter().filter(|object| object.bounds().is_some()).peekable();
+    let (pose, center) = (world.camera().pose(), bounds.center());
+    let mut ended = world.objects().iter().filter(|object| object.bounds().is_some()).peekable();
     let behind = has_eye(scout) && ended.peek().is_some() && ended.all(|object| plane_before(scout, object).is_some());
     if aims(scout, center) || behind {
         return Vec::new();
@@ -150,7 +150,7 @@ pub(super) fn away(scout: &Scout) -> Vec<Finding> {
     let mut diagnostic = Diagnostic::warning("the camera looks past everything").effect(effect);
     if !has_eye(scout) {
         let off = center - pose.center;
-        let forward = world.frame.forward;
+        let forward = world.camera_frame().forward;
         let across = off - off.dot(forward) * forward;
         let place = pose.center + across;
         diagnostic.message += &format!(": the middle of the scene lies {} beside its axis", number(across.length()));
@@ -186,11 +186,11 @@ pub(super) fn away(scout: &Scout) -> Vec<Finding> {
 /// Whether a camera of usual width would see a place.
 fn aims_widely(scout: &Scout, place: Vec3) -> bool {
     let world = scout.world();
-    let to = place - world.camera.pose().center;
-    match &world.camera {
-        Camera::Perspective(_) => degrees(world.camera.pose().direction, to) < 20.0,
+    let to = place - world.camera().pose().center;
+    match world.camera() {
+        Camera::Perspective(_) => degrees(world.camera().pose().direction, to) < 20.0,
         Camera::Orthographic(_) => {
-            let across = to - to.dot(world.frame.forward) * world.frame.forward;
+            let across = to - to.dot(world.camera_frame().forward) * world.camera_frame().forward;
             across.length() < 0.7 * world.bounds().size().max_element()
         }
         _ => false,
@@ -230,7 +230,7 @@ fn only_seen(scout: &Scout) -> String {
 /// By how much the ray that comes nearest misses the ball around an object.
 fn nearest(scout: &Scout) -> String {
     let world = scout.world();
-    let balls = world.objects.iter().enumerate().filter_map(|(i, object)| {
+    let balls = world.objects().iter().enumerate().filter_map(|(i, object)| {
         let bounds = object.bounds().filter(|bounds| !bounds.is_empty())?;
         Some((i as u32, bounds.center(), 0.5 * bounds.size().length()))
     });
@@ -253,7 +253,7 @@ fn nearest(scout: &Scout) -> String {
 /// nothing of them.
 pub(super) fn missed(scout: &Scout) -> Vec<Finding> {
     let world = scout.world();
-    if scout.seen().next().is_some() || world.objects.is_empty() {
+    if scout.seen().next().is_some() || world.objects().is_empty() {
         return Vec::new();
     }
     // What is too small for the grid of rays is no hole.
@@ -277,7 +277,7 @@ pub(super) fn pixels(scout: &Scout, bounds: Aabb) -> Option<f32> {
     let mut unseen = 0;
     for point in bounds.corners() {
         let mut places = Vec::new();
-        world.camera.project(&world.frame, point, Vec2::splat(0.5), &mut |place| places.push(place));
+        world.camera().project(world.camera_frame(), point, Vec2::splat(0.5), &mut |place| places.push(place));
         unseen += usize::from(places.len() != 1);
         for place in places {
             let (min, max) = around.unwrap_or((place, place));
@@ -305,12 +305,12 @@ pub(super) fn hidden(scout: &Scout) -> Vec<Finding> {
     for (number, sight) in scout.sights().iter().enumerate().filter(there) {
         match sight {
             Sight::Hidden(_) => hidden += 1,
-            Sight::Unknown if scout.world().objects[number].bounds().is_none() => {}
+            Sight::Unknown if scout.world().objects()[number].bounds().is_none() => {}
             _ => others += 1,
         }
     }
     let covered = scout.seen().count();
-    let is_plane = scout.world().objects[front as usize].bounds().is_none();
+    let is_plane = scout.world().objects()[front as usize].bounds().is_none();
     // A thing may well stand behind another; behind a plane without end, nothing is ever seen.
     let few = !is_plane && covered * 2 < scout.probes.len();
     if hidden == 0 || others > 0 || few || super::unseen::is_glass(scout, front) {
@@ -352,7 +352,7 @@ pub(super) fn hidden(scout: &Scout) -> Vec<Finding> {
 /// A plane between the camera and all things that have an end, though something else, the sky say,
 /// is seen beside it.
 pub(super) fn below_plane(scout: &Scout) -> Vec<Finding> {
-    let objects = &scout.world().objects;
+    let objects = scout.world().objects();
     let mut front = None;
     let empty = super::objects::empty_solids(scout);
     let there =
@@ -380,7 +380,7 @@ pub(super) fn below_plane(scout: &Scout) -> Vec<Finding> {
     let what =
         if lid { "everything, the camera too, is below the" } else { "all other things are on the far side of the" };
     if let Some(raised) = raised(scout, front).filter(|_| !lid) {
-        let pose = scout.world().camera.pose();
+        let pose = scout.world().camera().pose();
         let diagnostic = Diagnostic::warning(format!("the camera is below the {}", scout.object(front)))
             .related(scout.object_span(front), "the other things stand on it")
             .effect("nothing but the plane and the background is seen")
@@ -407,9 +407,9 @@ pub(super) fn below_plane(scout: &Scout) -> Vec<Finding> {
 /// Where the camera would be as far above a plane as it is below, if all things stand on it.
 fn raised(scout: &Scout, object: u32) -> Option<Vec3> {
     let (n, d) = ground(scout, object)?;
-    let eye = scout.world().camera.pose().center;
+    let eye = scout.world().camera().pose().center;
     let height = |p: Vec3| p.dot(n) - d;
-    let things: Vec<[Vec3; 8]> = scout.world().objects.iter().filter_map(|o| Some(o.bounds()?.corners())).collect();
+    let things: Vec<[Vec3; 8]> = scout.world().objects().iter().filter_map(|o| Some(o.bounds()?.corners())).collect();
     let size = scout.world().bounds().size().max_element();
     let lowest = things.iter().flatten().map(|p| height(*p)).fold(f32::INFINITY, f32::min);
     (lowest > -0.05 * size && lowest < 0.05 * size && height(eye) < 0.0).then(|| eye - 2.0 * height(eye) * n)
@@ -417,7 +417,7 @@ fn raised(scout: &Scout, object: u32) -> Option<Vec3> {
 
 /// The normal and offset of a plane in the world.
 fn ground(scout: &Scout, object: u32) -> Option<(Vec3, f32)> {
-    let object = &scout.world().objects[object as usize];
+    let object = &scout.world().objects()[object as usize];
     let Geometry::Primitive(Primitive::Plane(plane)) = &object.geometry else { return None };
     let on = object.world_point(plane.normal * (plane.offset / plane.normal.length_squared().max(f32::MIN_POSITIVE)));
     let n = object.to_world.as_ref().map_or(plane.normal, |m| m.normal(plane.normal)).normalize_or(Vec3::Y);
@@ -429,10 +429,10 @@ fn ground(scout: &Scout, object: u32) -> Option<(Vec3, f32)> {
 pub(super) fn plane_through(scout: &Scout) -> Vec<Finding> {
     let world = scout.world();
     let boxes: Vec<[Vec3; 8]> =
-        world.objects.iter().filter_map(|o| Some(o.bounds()?.corners())).take(super::MOST_SOUGHT).collect();
+        world.objects().iter().filter_map(|o| Some(o.bounds()?.corners())).take(super::MOST_SOUGHT).collect();
     let through = |&number: &u32| {
         let Some((n, d)) = ground(scout, number) else { return false };
-        let clear = match world.materials.get(world.objects[number as usize].material as usize) {
+        let clear = match world.materials().get(world.objects()[number as usize].material as usize) {
             Some(Material::Phong(phong)) => phong.transparent != Color::ZERO,
             _ => false,
         };
@@ -446,7 +446,7 @@ pub(super) fn plane_through(scout: &Scout) -> Vec<Finding> {
     };
     let say = |number: u32| {
         // Things may well be sunk into a floor.
-        let floor = ground(scout, number).is_some_and(|(n, _)| n.dot(world.frame.up).abs() > 0.8);
+        let floor = ground(scout, number).is_some_and(|(n, _)| n.dot(world.camera_frame().up).abs() > 0.8);
         let severity = if floor { Severity::Note } else { Severity::Warning };
         let message = format!("the {} passes through the middle of most things", scout.object(number));
         let diagnostic = Diagnostic { severity, ..Diagnostic::warning(message) }
@@ -455,25 +455,25 @@ pub(super) fn plane_through(scout: &Scout) -> Vec<Finding> {
             .help("a floor lies below things: which axis is up? Look at its `normal` and `offset`, and what turns it");
         Finding::from(diagnostic)
     };
-    (0..world.objects.len() as u32).filter(through).take(2).map(say).collect()
+    (0..world.objects().len() as u32).filter(through).take(2).map(say).collect()
 }
 
 /// A camera whose `up` points into the ground on which all things stand.
 pub(super) fn upside_down(scout: &Scout) -> Vec<Finding> {
     let world = scout.world();
-    let (eye, things) = (world.camera.pose().center, world.bounds());
-    let mut planes = (0..world.objects.len() as u32).filter_map(|i| Some((i, ground(scout, i)?)));
+    let (eye, things) = (world.camera().pose().center, world.bounds());
+    let mut planes = (0..world.objects().len() as u32).filter_map(|i| Some((i, ground(scout, i)?)));
     let (Some((number, (n, d))), None) = (planes.next(), planes.next()) else { return Vec::new() };
     let (n, d) = if eye.dot(n) < d { (-n, -d) } else { (n, d) };
     let height = |p: &Vec3| p.dot(n) - d;
     let size = things.size().max_element();
     let stand = !things.is_empty() && things.corners().iter().all(|p| height(p) > -0.1 * size);
-    let pose = world.camera.pose();
+    let pose = world.camera().pose();
     let seen = scout.seen().any(|(_, seen)| seen.object == number);
     // A ceiling from which things hang is as good as a ground; that things stand on it tells which it
     // is.
     let lowest = things.corners().iter().map(height).fold(f32::INFINITY, f32::min);
-    if !stand || !seen || lowest > 0.3 * size || world.frame.up.dot(n) > -0.3 || pose.up.dot(n) > 0.1 {
+    if !stand || !seen || lowest > 0.3 * size || world.camera_frame().up.dot(n) > -0.3 || pose.up.dot(n) > 0.1 {
         return Vec::new();
     }
     let turned = vector(if pose.up.dot(n) < -0.5 { -pose.up } else { n });
@@ -489,25 +489,25 @@ pub(super) fn upside_down(scout: &Scout) -> Vec<Finding> {
 /// The only plane, if it faces up and all things and the camera are below it.
 fn ceiling(scout: &Scout) -> Option<u32> {
     let world = scout.world();
-    let planes = world.objects.iter().enumerate().filter(|(_, object)| object.bounds().is_none());
+    let planes = world.objects().iter().enumerate().filter(|(_, object)| object.bounds().is_none());
     let mut planes = planes.filter_map(|(i, object)| match &object.geometry {
         Geometry::Primitive(Primitive::Plane(plane)) if object.to_world.is_none() => Some((i as u32, plane)),
         _ => None,
     });
     let (number, plane) = planes.next().filter(|_| planes.next().is_none())?;
-    let pose = world.camera.pose();
+    let pose = world.camera().pose();
     let below = |p: Vec3| p.dot(plane.normal) < plane.offset;
     let faces_up = plane.normal.normalize_or_zero().dot(pose.up.normalize_or_zero()) > 0.7;
     let things = world.bounds();
     let all = !things.is_empty() && things.corners().iter().all(|corner| below(*corner)) && below(pose.center);
     let seen = scout.seen().any(|(_, seen)| seen.object == number);
-    (faces_up && all && seen && !matches!(world.camera, Camera::Orthographic(_))).then_some(number)
+    (faces_up && all && seen && !matches!(world.camera(), Camera::Orthographic(_))).then_some(number)
 }
 
 /// The other sign of a plane's offset and where it is written, if the camera and the things are on
 /// one side of it then.
 fn offset_turned(scout: &Scout, object: u32) -> Option<(Span, String)> {
-    let plane_object = &scout.world().objects[object as usize];
+    let plane_object = &scout.world().objects()[object as usize];
     let Geometry::Primitive(Primitive::Plane(plane)) = &plane_object.geometry else { return None };
     if plane_object.to_world.is_some() || plane.offset == 0.0 {
         return None;
@@ -515,5 +515,5 @@ fn offset_turned(scout: &Scout, object: u32) -> Option<(Span, String)> {
     let place = scout.value(scout.object_span(object), &["offset"])?;
     let above = |p: Vec3| p.dot(plane.normal) > -plane.offset;
     let things = scout.world().bounds();
-    (above(things.center()) == above(scout.world().camera.pose().center)).then(|| (place, number(-plane.offset)))
+    (above(things.center()) == above(scout.world().camera().pose().center)).then(|| (place, number(-plane.offset)))
 }

@@ -85,7 +85,7 @@ fn no_light(scout: &Scout, finding: &mut Finding) {
 
 fn up_parallel(scout: &Scout, finding: &mut Finding) {
     finding.diagnostic.effect = Some("the picture is turned as chance has it".into());
-    let direction = scout.world().camera.pose().direction.normalize_or_zero();
+    let direction = scout.world().camera().pose().direction.normalize_or_zero();
     let up = if direction.y.abs() < 0.9 { Vec3::Y } else { Vec3::Z };
     if let Some(value) = scout.value(scout.subject.scene.camera_span, &["up"]) {
         finding.diagnostic.span = Some(value);

@@ -30,7 +30,7 @@ fn seen<'s>(scout: &Scout<'s>) -> impl Iterator<Item = (usize, &'s Spanned<Writt
 
 /// A highlight without sharpness: 0 to the power of 0 is 1.
 pub(super) fn pow_zero(scout: &Scout) -> Vec<Finding> {
-    let rules = &scout.world().rules;
+    let rules = scout.world().rules();
     if rules.highlight != Highlight::Phong || !rules.has(Compat::PowZero) {
         return blunt(scout);
     }
@@ -72,7 +72,7 @@ fn sharpness(phong: &PhongMaterial) -> Option<(&'static str, f32)> {
 /// Highlights so blunt that they are everywhere, as of an exponent of 0 or of one over what was
 /// meant.
 fn blunt(scout: &Scout) -> Vec<Finding> {
-    if scout.world().rules.highlight == Highlight::None || super::physical::is_physical(scout) {
+    if scout.world().rules().highlight == Highlight::None || super::physical::is_physical(scout) {
         return Vec::new();
     }
     let say = |(i, written, phong): (usize, &Spanned<Written>, &PhongMaterial)| {
@@ -96,7 +96,7 @@ const BLUNT: f32 = 0.7;
 
 /// Highlights smaller than a pixel.
 pub(super) fn tiny_highlight(scout: &Scout) -> Vec<Finding> {
-    if scout.world().rules.highlight == Highlight::None || super::physical::is_physical(scout) {
+    if scout.world().rules().highlight == Highlight::None || super::physical::is_physical(scout) {
         return Vec::new();
     }
     let say = |(i, written, phong): (usize, &Spanned<Written>, &PhongMaterial)| {
@@ -115,7 +115,7 @@ pub(super) fn tiny_highlight(scout: &Scout) -> Vec<Finding> {
 
 /// A highlight's colour without its exponent, which is 1 then.
 pub(super) fn no_exponent(scout: &Scout) -> Vec<Finding> {
-    if !matches!(scout.world().rules.highlight, Highlight::Blinn | Highlight::ByKeyword) {
+    if !matches!(scout.world().rules().highlight, Highlight::Blinn | Highlight::ByKeyword) {
         return Vec::new();
     }
     let bare = |phong: &PhongMaterial| {
@@ -136,9 +136,9 @@ pub(super) fn no_exponent(scout: &Scout) -> Vec<Finding> {
 
 /// A camera's `up` that is used as it is written, and has not the length 1.
 pub(super) fn long_up(scout: &Scout) -> Vec<Finding> {
-    let up = scout.world().camera.pose().up;
+    let up = scout.world().camera().pose().up;
     let length = up.length();
-    let rules = &scout.world().rules;
+    let rules = scout.world().rules();
     if !rules.has(Compat::RawUp) {
         return skew_up(scout).filter(|_| rules.has(Compat::SkewUp)).into_iter().collect();
     }
@@ -161,7 +161,7 @@ pub(super) fn long_up(scout: &Scout) -> Vec<Finding> {
 
 /// The same with an `up` far from being at right angles to `direction`.
 fn skew_up(scout: &Scout) -> Option<Finding> {
-    let pose = scout.world().camera.pose();
+    let pose = scout.world().camera().pose();
     let (up, forward) = (pose.up.normalize_or_zero(), pose.direction.normalize_or_zero());
     let off = up.dot(forward);
     if off.abs() < SKEW || off.abs() > 0.999 {
@@ -183,7 +183,7 @@ pub(super) fn stretched(scout: &Scout) -> Vec<Finding> {
     let job = scout.subject.job;
     let (width, height) = (job.width as f32, job.height as f32);
     let ratio = width.max(height) / width.min(height);
-    if !scout.world().rules.has(Compat::Stretch) || ratio < SQUARE {
+    if !scout.world().rules().has(Compat::Stretch) || ratio < SQUARE {
         return Vec::new();
     }
     let way = if width > height { "wide" } else { "high" };
@@ -199,7 +199,7 @@ pub(super) fn stretched(scout: &Scout) -> Vec<Finding> {
 
 /// Faces of more than three corners, of which the year's program reads three.
 pub(super) fn quads(scout: &Scout) -> Vec<Finding> {
-    if !scout.world().rules.is_official() {
+    if !scout.world().rules().is_official() {
         return Vec::new();
     }
     let say = |(name, count, all, face): (&str, usize, usize, crate::diag::Span)| {
@@ -250,8 +250,8 @@ pub(super) fn same_parts(scout: &Scout) -> Vec<Finding> {
 /// Ambient light that leaves nothing to the lamps.
 pub(super) fn full_ambient(scout: &Scout) -> Vec<Finding> {
     let world = scout.world();
-    let ambient = world.ambient;
-    let lamps: Color = world.lights.iter().map(super::lights::color).sum();
+    let ambient = world.ambient();
+    let lamps: Color = world.lights().iter().map(super::lights::color).sum();
     if ambient.min_element() < 0.8 || ambient.max_element() > 2.0 || lamps.max_element() <= 0.0 {
         return Vec::new();
     }
@@ -274,7 +274,7 @@ pub(super) fn plane_normal(scout: &Scout) -> Vec<Finding> {
     let say = |object: &Object| {
         let Geometry::Primitive(Primitive::Plane(plane)) = &object.geometry else { return None };
         let length = plane.normal.length();
-        let rules = &scout.world().rules;
+        let rules = scout.world().rules();
         let counts = rules.has(Compat::RawNormals) && !rules.has(Compat::UnitLight);
         if (0.98..=1.02).contains(&length) || plane.offset == 0.0 && !counts {
             return None;
@@ -301,5 +301,5 @@ pub(super) fn plane_normal(scout: &Scout) -> Vec<Finding> {
         };
         Some(Finding::from(diagnostic))
     };
-    scout.world().objects.iter().filter_map(say).take(MOST_SOUGHT).collect()
+    scout.world().objects().iter().filter_map(say).take(MOST_SOUGHT).collect()
 }

@@ -9,7 +9,7 @@ mod solids;
 #[cfg(test)]
 pub(crate) mod testing;
 
-use crate::bvh::{Bvh, Grid};
+use crate::bvh::{Bvh, Grid, PrimitivePacks};
 use crate::camera::{Frame, Lens};
 use crate::diag::{Diagnostic, Diagnostics, Files, Span};
 use crate::dialect::{Compat, Dialect, MeshNormals, Rules};
@@ -21,7 +21,7 @@ use crate::shape::{Mesh, Primitive, Shape, Triangle};
 use crate::source::Source;
 use crate::texture::Sky;
 use crate::texture::sky::SUN_RADIUS;
-use crate::world::{Accel, Emitters, Geometry, MeshTree, Object, Phong, World};
+use crate::world::{Accel, Assets, Contents, Geometry, MeshTree, Object, Phong, World};
 use glam::DAffine3;
 pub use kept::{Kept, Reuse};
 use std::collections::HashMap;
@@ -127,33 +127,18 @@ pub fn compile(
     if let Some(kept) = kept {
         kept.finish();
     }
-    let mut world = World {
+    let contents = Contents {
         frame: Frame::of(&camera, rules),
         camera,
         background: scene.background.color,
-        cube_map,
-        environment,
         ambient,
-        profiles,
-        illuminants,
         lights,
         materials: compiled,
-        textures,
         objects,
         rules: rules.clone(),
-        digest,
-        loose: Vec::new(),
-        accel: Accel::None,
-        emitters: Emitters::default(),
-        fog,
-        has_cutouts: false,
-        hides_backs: false,
-        has_interfaces: false,
     };
-    world.has_cutouts = world.finds_cutouts();
-    world.hides_backs = world.finds_hidden_backs();
-    world.has_interfaces = world.finds_interfaces();
-    world.emitters = Emitters::new(&world);
+    let assets = Assets { cube_map, environment, fog, profiles, illuminants, textures };
+    let mut world = World::new(contents, assets, digest);
     if let Err(error) = rebuild(&mut world, accel) {
         diagnostics.push(*error);
         return None;
@@ -163,31 +148,45 @@ pub fn compile(
 
 /// Makes the structure over a world's objects: at first, and anew after they were moved.
 pub(crate) fn rebuild(world: &mut World, kind: AccelKind) -> Result<(), Box<Diagnostic>> {
-    let is_bounded = |object: &Object| object.bounds().is_some();
-    let few = kind == AccelKind::Bvh && world.objects.iter().filter(|object| is_bounded(object)).count() <= FEW;
-    let is_loose = |&i: &u32| few || !is_bounded(&world.objects[i as usize]);
-    world.loose = (0..world.objects.len() as u32).filter(is_loose).collect();
-    world.accel = build_accel(world, kind)?;
+    let mut packs = PrimitivePacks::default();
+    let objects = world.objects();
+    let mut boxes: Vec<Option<Aabb>> = objects.iter().map(Object::bounds).collect();
+    let bounded = || objects.iter().zip(&boxes).filter(|(_, bounds)| bounds.is_some());
+    let spheres = bounded().filter(|(object, _)| object.fits_packs()).count();
+    if kind == AccelKind::Bvh && bounded().count() - spheres <= FEW && spheres <= FEW_SPHERES {
+        boxes.fill(None);
+    }
+    let mut loose: Vec<u32> = (0_u32..).zip(&boxes).filter(|(_, b)| b.is_none()).map(|(i, _)| i).collect();
+    if loose.iter().filter(|&&i| objects[i as usize].fits_packs()).count() >= MIN_PACKED {
+        loose.retain(|&i| !objects[i as usize].add_to(&mut packs, i));
+    }
+    let accel = build_accel(world, kind, boxes)?;
+    (world.packs, world.loose, world.accel) = (packs, loose, accel);
     Ok(())
 }
 
-/// So many objects are tested one after the other: a tree over them would cost more than it saves.
+/// So many objects are tested one after the other, and so many spheres eight at a time: a tree over
+/// them would cost more than it saves.
 const FEW: usize = 2;
+const FEW_SPHERES: usize = 16;
 
-fn build_accel(world: &World, kind: AccelKind) -> Result<Accel, Box<Diagnostic>> {
+/// Fewer planes and spheres than this are tested one after the other: eight at a time take longer.
+const MIN_PACKED: usize = 4;
+
+/// `bounds` are those of objects that do not stand outside.
+fn build_accel(world: &World, kind: AccelKind, bounds: Vec<Option<Aabb>>) -> Result<Accel, Box<Diagnostic>> {
     let cells = match kind {
         AccelKind::None => return Ok(Accel::None),
         AccelKind::Bvh => {
             // What has an empty box here is left out.
-            let mut boxes: Vec<Aabb> = world.objects.iter().map(|o| o.bounds().unwrap_or(Aabb::EMPTY)).collect();
-            world.loose.iter().for_each(|&i| boxes[i as usize] = Aabb::EMPTY);
+            let boxes: Vec<Aabb> = bounds.into_iter().map(|bounds| bounds.unwrap_or(Aabb::EMPTY)).collect();
             return Ok(Accel::Bvh(Bvh::build(&boxes)));
         }
         AccelKind::Grid(cells) => cells,
     };
     let mut parts: Vec<(u32, u32)> = Vec::new();
     let mut boxes = Vec::new();
-    for (i, object) in world.objects.iter().enumerate() {
+    for (i, object) in world.objects().iter().enumerate() {
         for part in 0..object.parts() {
             if let Some(bounds) = object.part_bounds(part) {
                 parts.push((i as u32, part));
@@ -200,7 +199,7 @@ fn build_accel(world: &World, kind: AccelKind) -> Result<Accel, Box<Diagnostic>>
         return Ok(Accel::None);
     }
     let counts = cells.unwrap_or_else(|| Grid::suitable(bounds, boxes.len()));
-    let overlaps = |i: usize, cell: Aabb| world.objects[parts[i].0 as usize].overlaps(&cell);
+    let overlaps = |i: usize, cell: Aabb| world.objects()[parts[i].0 as usize].overlaps(&cell);
     let grid = Grid::build(bounds, counts, &boxes, overlaps).ok_or_else(|| {
         let [x, y, z] = counts;
         let most = Grid::MAX_CELLS;

@@ -138,7 +138,7 @@ fn height_fields_are_closed_landscapes() {
     };
     let field = "HeightField { picture hills.ppm min 0 0 0 max 2 1 1 depth 0.5 }";
     let world = read(field).0.unwrap();
-    let Geometry::Mesh(tree) = &world.objects[0].geometry else { panic!() };
+    let Geometry::Mesh(tree) = &world.objects()[0].geometry else { panic!() };
     assert_eq!(tree.mesh.open_edge(), None);
     assert_eq!((tree.mesh.len(), world.bounds().min, world.bounds().max.y), (4 + 18, [0.0, -0.5, 0.0].into(), 1.0));
     // The white pixel is in the middle of the top row, which lies at the least z.
@@ -201,7 +201,7 @@ fn tables_that_a_material_can_ask_for_are_worked_out_before_rays_are_traced() {
         // With half of its weight an opaque base has another index than glass.
         let text = format!("{CAMERA} Materials {{ PrincipledMaterial {{ specularWeight 0.5 {words} }} }} Group {{ }}");
         let world = super::testing::read(&text);
-        let Material::Phong(phong) = &world.materials[0] else { panic!("{words}") };
+        let Material::Phong(phong) = &world.materials()[0] else { panic!("{words}") };
         let own = phong.principled.as_ref().unwrap();
         assert_eq!(own.tables.prepared(), opaque_glass_coat, "{words}");
         // What points of it really ask for is among them.

@@ -6,10 +6,32 @@
 use super::account::{RayKind, What, Witness};
 use super::spawn::from_surface;
 use super::whitted::struck;
+use super::{Integrate, Parameters, Setup};
 use crate::bsdf::{Frame, warp};
+use crate::describe::Rule;
+use crate::described;
+use crate::dialect::set;
 use crate::math::{Color, Ray, Ray64};
 use crate::sampler::SampleId;
 use crate::world::World;
+
+described! {
+    /// how much of the sky is free
+    AoParameters ["ao" in set::DURER] {
+        /// How far things count, in units of the world [default: all count]
+        radius: Option<f32> = None, optional, Rule::Positive, ["ao-radius" in set::DURER];
+    }
+}
+
+impl Copy for AoParameters {}
+
+impl Parameters for AoParameters {
+    type Integrator<'w> = AmbientOcclusion<'w>;
+
+    fn over(self, setup: Setup<'_>) -> AmbientOcclusion<'_> {
+        AmbientOcclusion { world: setup.world, radius: self.radius.unwrap_or(f32::INFINITY) }
+    }
+}
 
 /// The integrator over one world.
 #[derive(Clone, Copy, Debug)]
@@ -20,16 +42,18 @@ pub struct AmbientOcclusion<'w> {
     pub radius: f32,
 }
 
-impl AmbientOcclusion<'_> {
+impl Integrate for AmbientOcclusion<'_> {
     /// 1 where one direction, chosen by the random numbers of a sample, is free, and 0 where it is
     /// not; white where nothing is hit.
-    pub fn radiance<T: Witness>(&self, ray: &Ray, id: SampleId, tally: &mut T) -> Color {
+    fn radiance<T: Witness>(&self, ray: &Ray, id: SampleId, tally: &mut T) -> Color {
         tally.begin(|| What::Ray { from: RayKind::Camera, ray: ray.into(), weight: 1.0, hit: None, bounce: None });
         let color = self.trace(&ray.into(), id, tally);
         tally.end(Color::ONE, Color::ONE, color);
         color
     }
+}
 
+impl AmbientOcclusion<'_> {
     fn trace<T: Witness>(&self, ray: &Ray64, id: SampleId, tally: &mut T) -> Color {
         let mut color = Color::ONE;
         if let Some(hit) = self.world.closest(ray, tally) {

@@ -105,7 +105,7 @@ impl Media {
         (object, ior): (u32, f32),
         leaving: bool,
     ) -> Passage {
-        let medium = |object: u32, ior: f32| Body { object, ior, size: world.objects[object as usize].extent() };
+        let medium = |object: u32, ior: f32| Body { object, ior, size: world.objects()[object as usize].extent() };
         let own = medium(object, ior);
         if !leaving {
             let behind = self.entered(own);
@@ -116,7 +116,7 @@ impl Media {
             self.clone()
         } else if own.size.is_none() {
             self.entered(own)
-        } else if world.objects[object as usize].contains(ray.rounded.origin) {
+        } else if world.objects()[object as usize].contains(ray.rounded.origin) {
             // A ray that leaves what it never entered began inside.
             let others = world.glass_around(ray.rounded.origin).filter(|&(other, _)| other != object);
             let all = others.map(|(other, ior)| medium(other, ior)).chain([own]);

@@ -1,4 +1,4 @@
-//! Integrators: how much light comes along a ray. One file each; the list is [`Integrator`].
+//! Integrators: how much light comes along a ray. One file each; the list is [`Method`].
 
 pub mod account;
 pub mod ao;
@@ -7,192 +7,141 @@ pub mod path;
 pub mod spawn;
 pub mod whitted;
 
+use crate::describe::{Describe, DescribedList};
+use crate::described_list;
+use crate::dialect::Dialect;
 use crate::math::{Color, Ray};
 use crate::sampler::SampleId;
 use crate::spectrum::ColorMode;
 use crate::world::World;
 pub use account::{Account, Node, Tree, Witness};
-pub use ao::AmbientOcclusion;
-pub use path::{Path, Photons};
-use serde::{Deserialize, Serialize};
-use std::sync::Arc;
+pub use ao::{AmbientOcclusion, AoParameters};
+pub use path::{Direct, Path, PhotonParameters, Photons, Transport};
 use std::sync::atomic::AtomicBool;
-pub use whitted::{Settings, Whitted, refract};
+pub use whitted::{Settings, Whitted, WhittedParameters, refract};
 
-/// Which integrator makes a picture, with what it alone knows.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Method {
-    /// Local light, mirrors and glass.
-    #[default]
-    Whitted,
-    /// All light.
-    Path(Transport),
-    /// All light, and photons for what mirrors and glass throw on things.
-    Photons {
-        /// As for paths alone.
-        #[serde(flatten)]
-        transport: Transport,
-        /// How many photons each sample sends out.
-        count: u32,
-        /// How far the first sample looks for photons, in units of the world.
-        radius: Option<f32>,
-        /// Whether their bias is taken out to second order, with more noise: see
-        /// [`Photons::corrected`].
-        #[serde(default, skip_serializing_if = "std::ops::Not::not")]
-        corrected: bool,
-    },
-    /// How much of the sky things leave free.
-    Ao {
-        /// How far things count.
-        radius: f32,
-    },
-}
+/// What an integrator is told that it alone knows: a name and options, stated in a `described!`
+/// block, which the command line walks.
+pub trait Parameters: Describe + Copy {
+    /// What does it.
+    type Integrator<'w>: Integrate;
 
-/// What all that follows paths of light knows.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Transport {
-    /// Light that was scattered more than once is not brighter than this. It removes bright specks,
-    /// and light with them.
-    pub clamp: Option<f32>,
-    /// What colours are on the way.
-    pub color: ColorMode,
-    /// How light straight from lamps is found.
-    #[serde(default, skip_serializing_if = "Direct::is_both")]
-    pub direct: Direct,
-}
+    /// Whether a ray's light depends on random numbers, so that a pixel needs many.
+    const IS_RANDOM: bool = true;
 
-/// How paths find light that comes straight from lamps and surroundings with an extent. All but
-/// [`Direct::Middle`] have the same mean; they differ in noise.
-///
-/// Source: Veach, *Robust Monte Carlo Methods for Light Transport Simulation*, 1997, chapter 9.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Direct {
-    /// Points of lights and directions of the surface are chosen; what both can find is weighed by
-    /// the power heuristic.
-    #[default]
-    Both,
-    /// Points of lights alone; a direction counts only where it meets what is never chosen.
-    Lights,
-    /// Directions alone; points only of lights that no direction meets.
-    Bsdf,
-    /// As [`Direct::Lights`], but always the same point of a surface that shines, the middle of a
-    /// sphere, disc or rectangle. Shadows are hard: wrong, and for lessons alone.
-    Middle,
-}
+    /// Whether the samples of some number are better taken all together: see
+    /// [`Integrate::prepare`].
+    const PREPARES: bool = false;
 
-impl Direct {
-    /// Those that can be asked for.
-    pub const CHOICES: [Direct; 3] = [Direct::Both, Direct::Lights, Direct::Bsdf];
+    /// The integrator.
+    fn over(self, setup: Setup<'_>) -> Self::Integrator<'_>;
 
-    /// The one of a name that can be asked for.
-    pub fn from_name(name: &str) -> Option<Self> {
-        Direct::CHOICES.into_iter().find(|direct| direct.name() == name)
+    /// How light is carried, if it is followed over any number of surfaces.
+    fn transport(&self) -> Option<Transport> {
+        None
     }
+}
 
-    /// Its name.
-    pub fn name(self) -> &'static str {
-        match self {
-            Direct::Both => "both",
-            Direct::Lights => "lights",
-            Direct::Bsdf => "bsdf",
-            Direct::Middle => "middle",
+/// What every integrator knows.
+#[derive(Clone, Copy, Debug)]
+pub struct Setup<'w> {
+    /// What is seen.
+    pub world: &'w World,
+    /// What light does.
+    pub settings: Settings,
+    /// Decides random numbers that are no sample's.
+    pub seed: u64,
+    /// Once set, no more rays are traced, and what comes out means nothing.
+    pub cancel: Option<&'w AtomicBool>,
+}
+
+/// What every integrator does.
+pub trait Integrate {
+    /// The light that comes along a camera ray, by the random numbers of a sample.
+    fn radiance<T: Witness>(&self, ray: &Ray, id: SampleId, tally: &mut T) -> Color;
+
+    /// Makes what the samples of some number need, by all threads, before they are taken.
+    fn prepare(&self, _sample: u32) {}
+}
+
+macro_rules! delegate {
+    ($($variant:ident),+) => {
+        impl Method {
+            /// How light is carried along paths, by methods that follow it over any number of
+            /// surfaces.
+            pub fn transport(self) -> Option<Transport> {
+                match self { $(Method::$variant(it) => it.transport(),)+ }
+            }
+
+            /// Whether a ray's light depends on random numbers, so that a pixel needs many.
+            pub fn is_random(self) -> bool {
+                fn of<P: Parameters>(_: P) -> bool { P::IS_RANDOM }
+                match self { $(Method::$variant(it) => of(it),)+ }
+            }
+
+            /// Whether the samples of some number are better taken all together.
+            pub fn prepares(self) -> bool {
+                fn of<P: Parameters>(_: P) -> bool { P::PREPARES }
+                match self { $(Method::$variant(it) => of(it),)+ }
+            }
+
+            /// The integrator over a world.
+            pub fn over(self, setup: Setup<'_>) -> Integrator<'_> {
+                match self { $(Method::$variant(it) => Integrator::$variant(it.over(setup)),)+ }
+            }
         }
-    }
 
-    fn is_both(&self) -> bool {
-        *self == Direct::Both
+        impl Integrate for Integrator<'_> {
+            fn radiance<T: Witness>(&self, ray: &Ray, id: SampleId, tally: &mut T) -> Color {
+                match self { $(Integrator::$variant(it) => Integrate::radiance(it, ray, id, tally),)+ }
+            }
+            fn prepare(&self, sample: u32) {
+                match self { $(Integrator::$variant(it) => it.prepare(sample),)+ }
+            }
+        }
+    };
+}
+
+macro_rules! integrators {
+    ($($variant:ident($type:ty),)+) => {
+        described_list! {
+            /// Which integrator makes a picture, with what it alone is told.
+            Method => delegate { $($variant($type),)+ }
+        }
+
+        /// One of the integrators, over a world.
+        #[derive(Clone, Debug)]
+        pub enum Integrator<'w> {
+            $(#[doc = concat!("What `", stringify!($variant), "` asks for.")]
+            $variant(<$type as Parameters>::Integrator<'w>),)+
+        }
+    };
+}
+
+integrators! {
+    Whitted(whitted::WhittedParameters),
+    Path(path::Transport),
+    Photons(path::PhotonParameters),
+    Ao(ao::AoParameters),
+}
+
+impl Copy for Method {}
+
+impl Default for Method {
+    fn default() -> Self {
+        Method::WHITTED
     }
 }
 
 impl Method {
+    /// Local light, mirrors and glass.
+    pub const WHITTED: Method = Method::Whitted(WhittedParameters {});
+
     /// All light, as it is without wishes.
     pub const PATH: Method = Method::Path(Transport { clamp: None, color: ColorMode::Rgb, direct: Direct::Both });
 
-    /// Names on the command line.
-    pub const NAMES: &'static [&'static str] = &["whitted", "path", "photons", "ao"];
-
-    /// Photons of a sample, where nothing else is wished.
-    pub const PHOTONS: u32 = 100_000;
-
     /// Its name.
-    pub fn name(self) -> &'static str {
-        match self {
-            Method::Whitted => "whitted",
-            Method::Path(_) => "path",
-            Method::Photons { .. } => "photons",
-            Method::Ao { .. } => "ao",
-        }
-    }
-
-    /// How light is carried along paths, by methods that follow it over any number of surfaces.
-    pub fn transport(self) -> Option<Transport> {
-        match self {
-            Method::Path(transport) | Method::Photons { transport, .. } => Some(transport),
-            Method::Whitted | Method::Ao { .. } => None,
-        }
-    }
-
-    /// What colours are while light is transported.
-    pub fn color_mode(self) -> ColorMode {
-        self.transport().unwrap_or_default().color
-    }
-
-    /// Whether a ray's light depends on random numbers, so that a pixel needs many.
-    pub fn is_random(self) -> bool {
-        self != Method::Whitted
-    }
-}
-
-/// One of the integrators, over a world.
-#[derive(Clone, Debug)]
-pub enum Integrator<'w> {
-    /// Whitted's.
-    Whitted(Whitted<'w>),
-    /// A path tracer.
-    Path(Path<'w>),
-    /// Ambient occlusion.
-    Ao(AmbientOcclusion<'w>),
-}
-
-impl<'w> Integrator<'w> {
-    /// Over a world. Once `cancel` is set, no more rays are traced, and what comes out means
-    /// nothing.
-    ///
-    /// Photons are random by the seed.
-    pub fn new(
-        world: &'w World,
-        method: Method,
-        settings: Settings,
-        seed: u64,
-        cancel: Option<&'w AtomicBool>,
-    ) -> Self {
-        match method {
-            Method::Whitted => Integrator::Whitted(Whitted { world, settings, cancel }),
-            Method::Path(transport) => Integrator::Path(Path { cancel, ..Path::new(world, settings, transport) }),
-            Method::Photons { transport, count, radius, corrected } => {
-                let photons = Photons::new(world, seed, count, radius);
-                let photons = Some(Arc::new(if corrected { photons.corrected() } else { photons }));
-                Integrator::Path(Path { photons, cancel, ..Path::new(world, settings, transport) })
-            }
-            Method::Ao { radius } => Integrator::Ao(AmbientOcclusion { world, radius }),
-        }
-    }
-
-    /// Makes what the samples of some number need, by all threads, before they are taken.
-    pub fn prepare(&self, sample: u32) {
-        if let Integrator::Path(path @ Path { photons: Some(photons), .. }) = self {
-            photons.prepare(path, sample);
-        }
-    }
-
-    /// The light that comes along a camera ray, by the random numbers of a sample.
-    pub fn radiance<T: Witness>(&self, ray: &Ray, id: SampleId, tally: &mut T) -> Color {
-        match self {
-            Integrator::Whitted(whitted) => whitted.radiance(ray, tally),
-            Integrator::Path(path) => path.radiance(ray, id, tally),
-            Integrator::Ao(ao) => ao.radiance(ray, id, tally),
-        }
+    pub fn name(&self) -> &'static str {
+        self.keyword(Dialect::Durer)
     }
 }

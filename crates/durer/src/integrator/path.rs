@@ -8,7 +8,7 @@
 use super::account::{Bounce, RayKind, TermValue, What, Witness};
 use super::media::{Media, Passage};
 use super::whitted::struck;
-use super::{Settings, Transport};
+use super::{Integrate, Settings};
 use crate::bsdf::lobe::diffuse::Diffuse;
 use crate::bsdf::{Bsdf, Frame};
 use crate::math::{Color, Ray, Ray64, Vec3, gamma};
@@ -18,6 +18,7 @@ use crate::shape::Surface;
 use crate::spectrum::{Lanes, Spectrum};
 use crate::world::{Hit, Shading, World};
 use glam::DVec3;
+pub use parameters::{Direct, PhotonParameters, Transport};
 pub use photons::{PhotonMap, Photons};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
@@ -128,14 +129,8 @@ enum End {
 /// How often light is scattered in a body at most until it gets out.
 const MAX_WALK: u32 = 10_000;
 
-impl<'w> Path<'w> {
-    /// Without photons, and never cancelled.
-    pub fn new(world: &'w World, settings: Settings, transport: Transport) -> Self {
-        Path { world, settings, transport, photons: None, cancel: None }
-    }
-
-    /// The light that comes along a camera ray, by the random numbers of a sample.
-    pub fn radiance<T: Witness>(&self, ray: &Ray, id: SampleId, tally: &mut T) -> Color {
+impl Integrate for Path<'_> {
+    fn radiance<T: Witness>(&self, ray: &Ray, id: SampleId, tally: &mut T) -> Color {
         let sample = self.sample(id);
         tally.lanes(&sample.lanes);
         tally.begin(|| What::Ray { from: RayKind::Camera, ray: ray.into(), weight: 1.0, hit: None, bounce: None });
@@ -143,6 +138,19 @@ impl<'w> Path<'w> {
         let light = sum * scale;
         tally.end(sample.told(Spectrum::ONE), sample.told(scale), sample.told(light));
         sample.lanes.color(light)
+    }
+
+    fn prepare(&self, sample: u32) {
+        if let Some(photons) = &self.photons {
+            photons.prepare(self, sample);
+        }
+    }
+}
+
+impl<'w> Path<'w> {
+    /// Without photons, and never cancelled.
+    pub fn new(world: &'w World, settings: Settings, transport: Transport) -> Self {
+        Path { world, settings, transport, photons: None, cancel: None }
     }
 
     fn sample(&self, id: SampleId) -> Sample {
@@ -185,9 +193,9 @@ impl<'w> Path<'w> {
         let sum = match &end {
             End::Lost => Spectrum::ZERO,
             &End::Sky(dir) => {
-                let (sky, pdf) = self.world.emitters.sky(self.world, dir);
+                let (sky, pdf) = self.world.emitters().sky(self.world, dir);
                 let sky = sample.lanes.light(sky);
-                let weight = self.weight(&state, self.world.environment.is_some(), |_| pdf);
+                let weight = self.weight(&state, self.world.environment().is_some(), |_| pdf);
                 tally.begin(|| What::Sky);
                 tally.end(sample.told(Spectrum::splat(weight)), sample.told(Spectrum::ONE), sample.told(sky));
                 weight * sky
@@ -250,11 +258,11 @@ impl<'w> Path<'w> {
             let Some(hit) = hit else { return (End::Sky(ray.dir()), scale) };
             walked = length;
             let surface = self.world.surface(&ray, &hit);
-            if self.world.hides_backs && state.depth == 0 && self.world.is_hidden(ray.dir(), &hit, &surface) {
+            if self.world.hides_backs() && state.depth == 0 && self.world.is_hidden(ray.dir(), &hit, &surface) {
                 rest.rounded.t_min = hit.t;
                 continue;
             }
-            if self.world.has_cutouts {
+            if self.world.has_cutouts() {
                 let opacity = self.world.opacity(&hit, &surface);
                 layers += 1;
                 // What is not there at all does not count as a bounce.
@@ -297,7 +305,7 @@ impl<'w> Path<'w> {
         let emitted = self.world.emission(hit, surface, met.inside());
         if emitted != Color::ZERO {
             let emitted = sample.lanes.light_of(emitted, self.world.own_illuminant(self.world.material(hit)));
-            let carried = self.world.emitters.chooses(hit);
+            let carried = self.world.emitters().chooses(hit);
             let weight = self.weight(state, carried, |from| self.pdf_of_hit(ray, hit, from));
             tally.begin(|| What::Emission { mis: weight });
             tally.end(sample.told(Spectrum::splat(weight)), sample.told(Spectrum::ONE), sample.told(emitted));
@@ -416,6 +424,7 @@ impl<'w> Path<'w> {
 }
 
 mod direct;
+mod parameters;
 mod photons;
 #[cfg(test)]
 mod tests;

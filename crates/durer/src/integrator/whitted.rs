@@ -6,9 +6,12 @@
 use super::account::{RayKind, Shadow, Struck, What, Witness};
 use super::media::{Body, Media, Passage};
 use super::spawn::{from_surface, to_light};
-use crate::dialect::Compat;
+use super::{Integrate, Parameters, Setup};
+use crate::described;
+use crate::dialect::{Compat, set};
 use crate::light::Illumination;
 use crate::math::{Color, Ray, Ray64, Vec3, fp, gamma, reflect};
+use crate::sampler::SampleId;
 use crate::shape::Surface;
 use crate::world::{HighlightModel, Hit, Part, Phong, World};
 use serde::{Deserialize, Serialize};
@@ -40,6 +43,23 @@ impl Settings {
     pub const MOST_BOUNCES: u32 = 256;
 }
 
+described! {
+    /// local light, mirrors, glass
+    WhittedParameters ["whitted" in set::DURER] {}
+}
+
+impl Copy for WhittedParameters {}
+
+impl Parameters for WhittedParameters {
+    type Integrator<'w> = Whitted<'w>;
+
+    const IS_RANDOM: bool = false;
+
+    fn over(self, Setup { world, settings, cancel, .. }: Setup<'_>) -> Whitted<'_> {
+        Whitted { world, settings, cancel }
+    }
+}
+
 /// The integrator over one world.
 #[derive(Clone, Copy, Debug)]
 pub struct Whitted<'w> {
@@ -60,6 +80,12 @@ struct Path {
     media: Media,
     /// How much the ray counts for in the pixel.
     weight: f32,
+}
+
+impl Integrate for Whitted<'_> {
+    fn radiance<T: Witness>(&self, ray: &Ray, _: SampleId, tally: &mut T) -> Color {
+        self.radiance(ray, tally)
+    }
 }
 
 impl Whitted<'_> {
@@ -99,9 +125,9 @@ impl Whitted<'_> {
         tally: &mut T,
     ) -> Color {
         let from_behind = self.sees_back(ray.dir(), surface);
-        let black = from_behind && !self.settings.shade_back && self.world.rules.has(Compat::BlackBacks);
+        let black = from_behind && !self.settings.shade_back && self.world.rules().has(Compat::BlackBacks);
         let n = if from_behind && self.settings.shade_back { -surface.n_shade } else { surface.n_shade };
-        let n = if self.world.rules.has(Compat::UnitLight) { n.normalize_or(n) } else { n };
+        let n = if self.world.rules().has(Compat::UnitLight) { n.normalize_or(n) } else { n };
         let parts = self.world.parts(hit, surface.position);
         tally.hit(|| struck(self.world, ray, hit, surface, n, from_behind, black));
         let mut color = Color::ZERO;
@@ -111,12 +137,12 @@ impl Whitted<'_> {
             parts.iter().for_each(|part| diffuse.push(self.world.diffuse_color(part.phong, surface)));
             for (part, &diffuse) in parts.iter().zip(&diffuse) {
                 let met = part.phong.ambient.unwrap_or(diffuse);
-                let ambient = part.share * self.world.ambient;
+                let ambient = part.share * self.world.ambient();
                 tally.begin(|| What::Ambient { share: part.share });
                 tally.end(ambient, Color::ONE, met);
                 color += ambient * met;
             }
-            for number in 0..self.world.lights.len() {
+            for number in 0..self.world.lights().len() {
                 let seen = self.world.illuminate(number, surface.point());
                 let lit = parts.iter().zip(&diffuse);
                 let scattered = |tally: &mut T, (part, &diffuse): (&Part, &Color)| {
@@ -166,7 +192,7 @@ impl Whitted<'_> {
     }
 
     fn shadow_ray(&self, surface: &Surface, seen: &Illumination) -> Ray64 {
-        let rules = &self.world.rules;
+        let rules = self.world.rules();
         // What stands exactly at the light does not block it.
         let reach = if rules.is_official() { seen.distance } else { seen.distance * (1.0 - gamma(16)) };
         to_light(surface, seen.to_light, reach, rules.epsilon)
@@ -174,7 +200,7 @@ impl Whitted<'_> {
 
     /// Whether a ray meets a surface on the side that its normal does not point to.
     pub(crate) fn sees_back(&self, dir: Vec3, surface: &Surface) -> bool {
-        let shaded = self.world.rules.has(Compat::ShadedSides);
+        let shaded = self.world.rules().has(Compat::ShadedSides);
         dir.dot(if shaded { surface.n_shade } else { surface.n_geo }) > 0.0
     }
 
@@ -192,7 +218,7 @@ impl Whitted<'_> {
             return Color::ONE;
         }
         let mut ray = self.shadow_ray(surface, seen);
-        if self.world.rules.has(Compat::ShadowFronts) {
+        if self.world.rules().has(Compat::ShadowFronts) {
             let nearest = self.world.closest(&ray, tally).map(|hit| self.world.surface(&ray, &hit));
             let blocked = nearest.is_some_and(|blocker| blocker.n_shade.dot(ray.dir()) <= 0.0);
             return if blocked { Color::ZERO } else { Color::ONE };
@@ -210,7 +236,7 @@ impl Whitted<'_> {
             if share == Color::ZERO {
                 break;
             }
-            ray = from_surface(&blocker, seen.to_light, ray.rounded.t_max - hit.t, self.world.rules.epsilon);
+            ray = from_surface(&blocker, seen.to_light, ray.rounded.t_max - hit.t, self.world.rules().epsilon);
         }
         Color::ZERO
     }
@@ -237,7 +263,7 @@ impl Whitted<'_> {
         // A mirror without `shade_back` reflects about the normal as it is; the direction is the same.
         let mirrored = reflect(ray.dir(), n);
         // About a normal that is not of length 1 it is another one.
-        let (mirrored, n) = match self.world.rules.has(Compat::RawNormals) {
+        let (mirrored, n) = match self.world.rules().has(Compat::RawNormals) {
             true => (mirrored.normalize_or(n_geo), n.normalize_or(n_geo)),
             false => (mirrored, n),
         };
@@ -248,7 +274,7 @@ impl Whitted<'_> {
         let divided = fresnel && self.settings.reflection && self.settings.refraction;
         // Total reflection weighs 1.
         let r = divided.then(|| {
-            let zero = leaving && self.world.rules.has(Compat::ExitR0);
+            let zero = leaving && self.world.rules().has(Compat::ExitR0);
             transmitted.map_or(1.0, |t| fresnel_share(ray.dir(), n, t, (here, there), zero))
         });
         if let Some(r) = r {
@@ -284,7 +310,7 @@ impl Whitted<'_> {
             return None;
         }
         let leaving = self.sees_back(ray.dir(), surface);
-        Some(match self.world.rules.is_official() {
+        Some(match self.world.rules().is_official() {
             true => self.official_passage(hit.object, blend, leaving, media),
             false => media.nested_passage(self.world, ray, (hit.object, blend.ior), leaving),
         })
@@ -294,7 +320,7 @@ impl Whitted<'_> {
     fn official_passage(&self, object: u32, blend: Blend, leaving: bool, media: &Media) -> Passage {
         let (known, ior) = (media.ior(), blend.ior);
         let (here, there) = match (leaving, blend.fresnel) {
-            (true, true) if known != 1.0 || self.world.rules.has(Compat::AirAtEye) => (known, 1.0),
+            (true, true) if known != 1.0 || self.world.rules().has(Compat::AirAtEye) => (known, 1.0),
             (true, _) => (ior, 1.0),
             (false, true) => (known, ior),
             (false, false) => (1.0, ior),
@@ -316,14 +342,14 @@ impl Whitted<'_> {
             return Color::ZERO;
         }
         // The course takes the length of the colour, which for grey is more than what is left of the light.
-        let old = self.world.rules.is_official();
+        let old = self.world.rules().is_official();
         let total = path.weight * if old { weight.length() } else { weight.max_element() };
         if total < self.settings.least_weight {
             tally.begin(|| What::Cut { weight: total });
             tally.end(weight, Color::ONE, Color::ZERO);
             return Color::ZERO;
         }
-        let ray = from_surface(surface, dir, f32::INFINITY, self.world.rules.epsilon);
+        let ray = from_surface(surface, dir, f32::INFINITY, self.world.rules().epsilon);
         tally.begin(|| What::Ray { from, ray: (&ray).into(), weight: total, hit: None, bounce: None });
         let color = self.trace(&ray, Path { bounces: path.bounces - 1, weight: total, ..path }, tally);
         tally.end(weight, Color::ONE, color);
@@ -341,7 +367,7 @@ pub(super) fn struck(
     from_behind: bool,
     black: bool,
 ) -> Struck {
-    let object = &world.objects[hit.object as usize];
+    let object = &world.objects()[hit.object as usize];
     Struck {
         object: hit.object,
         part: world.triangle(hit),

@@ -15,7 +15,7 @@ const SIZE: f32 = 400.0;
 /// The drawing, as an SVG file: boxes around the objects, rays to what they hit.
 pub(super) fn plan(stage: &Stage) -> String {
     let (world, (width, height)) = (&stage.world, stage.size());
-    let frame = &world.frame;
+    let frame = world.camera_frame();
     // The camera's right is the drawing's right, and it looks up the page.
     let flat = |p: Vec3| Vec2::new((p - frame.eye).dot(frame.right), -(p - frame.eye).dot(frame.forward));
     let count = RAYS.min(width);
@@ -46,7 +46,7 @@ pub(super) fn plan(stage: &Stage) -> String {
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {SIZE} {SIZE}\" width=\"{SIZE}\" height=\"{SIZE}\">\n\
          <rect width=\"{SIZE}\" height=\"{SIZE}\" fill=\"white\"/>\n"
     );
-    for bounds in world.objects.iter().filter_map(|object| object.bounds()).take(MOST_BOXES) {
+    for bounds in world.objects().iter().filter_map(|object| object.bounds()).take(MOST_BOXES) {
         let corners: Vec<Vec2> = bounds.corners().map(|corner| place(flat(corner))).into_iter().collect();
         for (i, a) in corners.iter().enumerate() {
             for b in (0..3).map(|axis| i | 1 << axis).filter(|&j| j != i).map(|j| corners[j]) {

@@ -9,7 +9,7 @@ use crate::film::aov::Aov;
 use crate::film::{Filter, luminance_of};
 use crate::format::course::{self, ReadOptions};
 use crate::image::{Image, Layer};
-use crate::integrator::{Method, Settings, Transport};
+use crate::integrator::{Method, PhotonParameters, Settings, Transport};
 use crate::light::Light;
 use crate::math::{Color, Vec3};
 use crate::mistakes::{Variant, of_name};
@@ -59,8 +59,8 @@ pub struct Stage {
 impl Stage {
     /// A scene that was read and compiled. Of the job, the whole picture is shown, in colour.
     pub fn new(scene: Scene, files: Files, world: World, job: Job) -> Self {
-        let (lights, ambient) = (world.lights.clone(), world.ambient);
-        let (materials, rules) = (world.materials.clone(), world.rules.clone());
+        let (lights, ambient) = (world.lights().to_vec(), world.ambient());
+        let (materials, rules) = (world.materials().to_vec(), world.rules().clone());
         let job = Job { crop: None, color: true, aovs: Vec::new(), ..job };
         Stage { scene, files, world, job, lights, ambient, materials, rules, made: Vec::new() }
     }
@@ -142,23 +142,23 @@ impl Stage {
         Ok(shown)
     }
 
-    /// Gives the world the light, the materials and the mistakes of a look. Its digest stays that
-    /// of the scene: no part of such a picture is ever saved.
+    /// Gives the world the light, the materials and the mistakes of a look.
     fn arrange(&mut self, look: &Look) {
-        let world = &mut self.world;
-        (world.lights, world.ambient) = match look.lights {
+        let (lights, ambient) = match look.lights {
             true => (self.lights.clone(), self.ambient),
             false => (Vec::new(), Color::ONE),
         };
-        world.rules = self.rules.clone();
+        let own = self.world.edit();
+        (own.lights, own.ambient, own.rules) = (lights, ambient, self.rules.clone());
         // The lesson's mistakes are those that change the rules.
         if let Some(mistake) = look.mistake.and_then(of_name) {
-            let mut variant = Variant::new(&self.scene, world.clone(), self.job.settings);
+            let mut variant = Variant::new(&self.scene, self.world.clone(), self.job.settings);
             (mistake.make)(&mut variant, 0.0);
-            world.rules = variant.world.rules;
+            self.world.edit().rules = variant.world.rules().clone();
         }
-        world.materials = self.materials.clone();
-        for material in &mut world.materials {
+        let own = self.world.edit();
+        own.materials = self.materials.clone();
+        for material in &mut own.materials {
             let Material::Phong(phong) = material else { continue };
             phong.highlight = phong.highlight.filter(|_| look.highlights);
             // Flat colour is that of textures too, whatever the dialect's ambient light knows of them.
@@ -184,15 +184,15 @@ impl Stage {
 
     /// Whitted's light, or paths with what the picture's own have.
     fn method(&self, look: &Look) -> Method {
-        let Some(carriage) = look.paths else { return Method::Whitted };
+        let Some(carriage) = look.paths else { return Method::WHITTED };
         let own = self.job.method.transport().unwrap_or_default();
         let transport = Transport { direct: carriage.direct, color: carriage.color, ..own };
         match (carriage.photons, self.job.method) {
             (false, _) => Method::Path(transport),
-            (true, Method::Photons { count, radius, .. }) => {
-                Method::Photons { transport, count, radius, corrected: false }
+            (true, Method::Photons(photons)) => {
+                Method::Photons(PhotonParameters { transport, corrected: false, ..photons })
             }
-            (true, _) => Method::Photons { transport, count: Method::PHOTONS, radius: None, corrected: false },
+            (true, _) => Method::Photons(PhotonParameters { transport, ..PhotonParameters::default() }),
         }
     }
 

@@ -4,7 +4,7 @@ use super::*;
 use crate::compile::AccelKind;
 use crate::dialect::{Compat, Dialect};
 use crate::film::Filter;
-use crate::integrator::{Method, Transport};
+use crate::integrator::{Method, PhotonParameters};
 use crate::math::{Ray, Vec3};
 use crate::render::{Job, Sampling, render};
 use crate::{LoadOptions, load};
@@ -71,8 +71,8 @@ fn what_a_scene_cannot_show_is_shown_in_ours() {
 /// The steps of paths of a scene, in small pictures.
 fn of_paths(scene: &str) -> Vec<Step> {
     let mut stage = stage(scene, 40);
-    let transport = Transport::default();
-    stage.job.method = Method::Photons { transport, count: 20_000, radius: Some(0.1), corrected: false };
+    stage.job.method =
+        Method::Photons(PhotonParameters { count: 20_000, radius: Some(0.1), ..PhotonParameters::default() });
     stage.job.sampling = Sampling::Filtered { samples: 8, filter: Filter::default() };
     let mut teacher = Teacher::new(stage, Transfer::Srgb);
     let topics = TOPICS.iter().filter(|topic| topic.is_of_paths());

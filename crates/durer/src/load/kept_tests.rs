@@ -54,7 +54,7 @@ impl Place {
         let (mut files, mut found) = (Files::default(), Diagnostics::default());
         let loaded = load(&self.path(scene), &options, &mut files, &mut found).unwrap()?;
         let world = loaded.compile(&options, &mut files, &mut found)?;
-        Some((world.digest, loaded.files().into_iter().collect()))
+        Some((world.digest(), loaded.files().into_iter().collect()))
     }
 
     /// The same of a scene that is watched: it is what it is without that.

@@ -18,7 +18,7 @@ fn texture(field: &str, name: &str, bytes: &[u8], memory: Option<u64>) -> Result
     let loaded = load_text(Path::new("scene.txt"), text.as_bytes().into(), &options, &mut files, &mut found);
     let world = loaded.and_then(|loaded| loaded.compile(&options, &mut files, &mut found));
     let said = || found.iter().map(|finding| finding.message.clone()).collect();
-    world.map(|world| world.textures[0].clone()).ok_or_else(said)
+    world.map(|world| world.textures()[0].clone()).ok_or_else(said)
 }
 
 /// One pixel of floating point.

@@ -51,7 +51,7 @@ fn a_mesh_is_found_beside_its_scene() {
     for path in ["tri.obj", ".\\tri.obj", "../scene/tri.obj"] {
         let (world, findings) = made(&house(&mesh(path)), &LoadOptions::default());
         assert_eq!(findings, [""; 0]);
-        assert_eq!(world.unwrap().objects.len(), 1);
+        assert_eq!(world.unwrap().objects().len(), 1);
     }
 }
 
@@ -159,7 +159,7 @@ fn a_flattening_transform_is_told_at_its_object() {
 
 #[test]
 fn the_digest_is_that_of_all_that_the_picture_depends_on() {
-    let digest = |root: &tempfile::TempDir, options: &LoadOptions| made(root, options).0.unwrap().digest;
+    let digest = |root: &tempfile::TempDir, options: &LoadOptions| made(root, options).0.unwrap().digest();
     let (root, again) = (house(&mesh("tri.obj")), house(&mesh("tri.obj")));
     let options = LoadOptions::default();
     let first = digest(&root, &options);

@@ -157,7 +157,7 @@ fn prepared<'a>(question: &Question<'a>) -> (Vec<Vec3>, View<'a>, Variant<'a>) {
 
 /// Tries all mistakes. `told` hears how far the work is, from 0 to 1.
 pub fn diagnose(question: &Question, told: &(dyn Fn(f64) + Sync)) -> Diagnosis {
-    Diagnosis { formulas: Formulas::of(question.scene, &question.world.rules), ..all_tried(question, told) }
+    Diagnosis { formulas: Formulas::of(question.scene, question.world.rules()), ..all_tried(question, told) }
 }
 
 fn all_tried(question: &Question, told: &(dyn Fn(f64) + Sync)) -> Diagnosis {
@@ -255,7 +255,7 @@ pub fn off(question: &Question) -> f64 {
 impl<'a> Search<'a> {
     /// All mistakes alone, with all values.
     fn singles(&self) -> Vec<Vec<(&'static Mistake, f32)>> {
-        let lights = self.base.world.lights.len();
+        let lights = self.base.world.lights().len();
         let rows = MISTAKES.iter().copied().flatten();
         rows.flat_map(|row| row.values.numbers(lights).into_iter().map(move |value| vec![(row, value)])).collect()
     }
@@ -269,7 +269,8 @@ impl<'a> Search<'a> {
             variant
         };
         let mut other = self.base.clone();
-        other.world.rules.epsilon = other.world.rules.epsilon.map_or(Some(1e-4), |epsilon| Some(8.0 * epsilon));
+        other.world.edit().rules.epsilon =
+            other.world.rules().epsilon.map_or(Some(1e-4), |epsilon| Some(8.0 * epsilon));
         let mut steady = vec![true; pixels.places.len()];
         for variant in [aside(0.004), aside(-0.004), other] {
             let made = self.view.picture(&variant, &pixels.places);
@@ -383,7 +384,7 @@ impl<'a> Search<'a> {
 
     /// Whether rays hit the surface that they leave.
     fn acne(&self, all: &[(u32, u32)], reference: &[Vec3], test: &[Vec3]) -> Option<Named> {
-        let lights = self.base.world.lights.len();
+        let lights = self.base.world.lights().len();
         if all.len() > WHOLE || !(1..=4).contains(&lights) || !self.base.settings.shadows {
             return None;
         }
@@ -400,8 +401,8 @@ impl<'a> Search<'a> {
                 1 => variant.settings.bounces = 0,
                 _ => variant.habits.bounces.epsilon = Some(-1e-3),
             }
-            variant.world.lights =
-                (0..lights).filter(|i| off >> i & 1 == 0).map(|i| variant.world.lights[i].clone()).collect();
+            variant.world.edit().lights =
+                (0..lights).filter(|i| off >> i & 1 == 0).map(|i| variant.world.lights()[i].clone()).collect();
             self.view.picture(&variant, &places)
         };
         let shadowed: Vec<Vec<Vec3>> = (1..bounces << lights).map(dark).collect();

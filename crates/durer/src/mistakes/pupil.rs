@@ -57,7 +57,7 @@ impl<'w> Pupil<'w> {
             let from = if behind { f32::NEG_INFINITY } else { rest.rounded.t_min };
             let reaching = Ray64 { rounded: Ray { t_min: from, ..rest.rounded }, ..rest };
             let Some((hit, t)) = self.closest(&reaching) else { break };
-            let official = self.world.rules.is_official();
+            let official = self.world.rules().is_official();
             match if official { None } else { self.right.passage(ray, &hit, &path.media) } {
                 Some(Passage { hidden: true, behind, .. }) => (path.media, rest.rounded.t_min) = (behind, hit.t),
                 _ if self.habits.clamped_rays => {
@@ -93,7 +93,7 @@ impl<'w> Pupil<'w> {
             Pick::NearRoots => self.world.all_hits(ray).find(|hit| !self.leaves_sphere(ray, hit)),
             Pick::FarSpheres => {
                 let far = |hit: Hit| {
-                    let object = &self.world.objects[hit.object as usize].geometry;
+                    let object = &self.world.objects()[hit.object as usize].geometry;
                     let sphere = matches!(object, Geometry::Primitive(Primitive::Sphere(_)));
                     let mut rest = *ray;
                     rest.rounded.t_min = hit.t;
@@ -110,7 +110,7 @@ impl<'w> Pupil<'w> {
     fn faces<'r>(&'r self, ray: &'r Ray64) -> impl Iterator<Item = Hit> + 'r {
         let mut known = SmallVec::<[u32; 16]>::new();
         self.world.all_hits(ray).filter(move |hit| {
-            let is_mesh = matches!(self.world.objects[hit.object as usize].geometry, Geometry::Mesh(_));
+            let is_mesh = matches!(self.world.objects()[hit.object as usize].geometry, Geometry::Mesh(_));
             let is_new = !known.contains(&hit.object);
             known.push(hit.object);
             is_mesh || is_new
@@ -119,14 +119,14 @@ impl<'w> Pupil<'w> {
 
     /// Whether a ray comes from inside of a sphere that it hits.
     fn leaves_sphere(&self, ray: &Ray64, hit: &Hit) -> bool {
-        let object = &self.world.objects[hit.object as usize].geometry;
+        let object = &self.world.objects()[hit.object as usize].geometry;
         matches!(object, Geometry::Primitive(Primitive::Sphere(_)))
             && self.world.surface(ray, hit).n_geo.dot(ray.dir()) > 0.0
     }
 
     /// The length of the way to a hit in the object's own space.
     fn own_t(&self, ray: &Ray64, hit: &Hit) -> f32 {
-        let to_world = self.world.objects[hit.object as usize].to_world.as_ref();
+        let to_world = self.world.objects()[hit.object as usize].to_world.as_ref();
         hit.t * to_world.map_or(1.0, |to_world| to_world.inverse_ray(ray).dir.length())
     }
 
@@ -143,7 +143,7 @@ impl<'w> Pupil<'w> {
 
     /// The surface with the pupil's normals.
     fn surface(&self, ray: &Ray64, hit: &Hit, t: f32) -> Surface {
-        let (habits, object) = (self.habits, &self.world.objects[hit.object as usize]);
+        let (habits, object) = (self.habits, &self.world.objects()[hit.object as usize]);
         let mut surface = self.world.surface(ray, hit);
         if t != hit.t {
             (surface.position, surface.rest) = (ray.rounded.at(t), Vec3::ZERO);
@@ -188,28 +188,28 @@ impl<'w> Pupil<'w> {
         let (world, habits) = (self.world, self.habits);
         let surface = self.surface(ray, hit, t);
         let from_behind = self.right.sees_back(ray.dir(), &surface);
-        let black = from_behind && !self.settings.shade_back && world.rules.has(Compat::BlackBacks);
+        let black = from_behind && !self.settings.shade_back && world.rules().has(Compat::BlackBacks);
         let turned = from_behind && (self.settings.shade_back || habits.faced);
         let n = if turned { -surface.n_shade } else { surface.n_shade };
-        let n = if world.rules.has(Compat::UnitLight) { n.normalize_or(n) } else { n };
+        let n = if world.rules().has(Compat::UnitLight) { n.normalize_or(n) } else { n };
         let parts = world.parts(hit, surface.position);
         let (mut color, mut blocked) = (Color::ZERO, false);
         if !black || habits.faced {
             let diffuse: SmallVec<[Color; 2]> =
                 parts.iter().map(|p| self.world.diffuse_color(p.phong, &surface)).collect();
-            let rounds = if habits.ambient == Ambient::EachLight { world.lights.len() } else { 1 };
+            let rounds = if habits.ambient == Ambient::EachLight { world.lights().len() } else { 1 };
             let mut ambient_seen = Color::ZERO;
             for (part, &diffuse) in parts.iter().zip(&diffuse) {
                 let met = part.phong.ambient.unwrap_or(diffuse);
                 let met = if habits.ambient == Ambient::Bare { Color::ONE } else { met };
                 for _ in 0..rounds {
-                    let ambient = part.share * world.ambient;
+                    let ambient = part.share * world.ambient();
                     color += ambient * met;
                     ambient_seen += ambient * met;
                 }
             }
-            let mut any = world.lights.is_empty();
-            for (number, light) in world.lights.iter().enumerate() {
+            let mut any = world.lights().is_empty();
+            for (number, light) in world.lights().iter().enumerate() {
                 let seen = self.illuminated(light, surface.point());
                 let casts = habits.shadows.only_light.is_none_or(|only| only == number);
                 let visible = if casts { self.visible(&surface, &seen, path.first) } else { Color::ONE };
@@ -256,7 +256,7 @@ impl<'w> Pupil<'w> {
             color *= Color::ONE - Blend::of(&parts).reflective;
         }
         if path.bounces > 0 {
-            let rounds = if habits.bounces.each_light { world.lights.len() } else { 1 };
+            let rounds = if habits.bounces.each_light { world.lights().len() } else { 1 };
             let secondary = self.secondary((ray, hit), &surface, &parts, path);
             for _ in 0..rounds {
                 color += secondary;
@@ -377,7 +377,7 @@ impl<'w> Pupil<'w> {
         if !self.settings.shadows || unshadowed || seen.color == Color::ZERO {
             return Color::ONE;
         }
-        let rules = &self.world.rules;
+        let rules = self.world.rules();
         let reach = match (habits.endless, rules.is_official()) {
             (true, _) => f32::INFINITY,
             (false, true) => seen.distance,
@@ -452,7 +452,7 @@ impl<'w> Pupil<'w> {
             Mirror::Along => ray.dir() - ray.dir().dot(n) * n,
             Mirror::Plus => ray.dir() + 2.0 * ray.dir().dot(n) * n,
         };
-        let (mirrored, n) = match self.world.rules.has(Compat::RawNormals) {
+        let (mirrored, n) = match self.world.rules().has(Compat::RawNormals) {
             true => (mirrored.normalize_or(n_geo), n.normalize_or(n_geo)),
             false => (mirrored, n),
         };
@@ -482,7 +482,7 @@ impl<'w> Pupil<'w> {
                     r0 + (1.0 - r0) * rest * rest * rest * rest * rest
                 }
                 _ => {
-                    let zero = leaving && self.world.rules.has(Compat::ExitR0);
+                    let zero = leaving && self.world.rules().has(Compat::ExitR0);
                     let indices = if habits.glass == Glass::Exchanged { (there, here) } else { (here, there) };
                     fresnel_share(ray.dir(), n, t, indices, zero)
                 }
@@ -515,12 +515,12 @@ impl<'w> Pupil<'w> {
         if weight.max_element() <= 0.0 {
             return Color::ZERO;
         }
-        let old = self.world.rules.is_official();
+        let old = self.world.rules().is_official();
         let total = path.weight * if old { weight.length() } else { weight.max_element() };
         if total < self.settings.least_weight {
             return Color::ZERO;
         }
-        let epsilon = self.habits.bounces.epsilon.or(self.world.rules.epsilon);
+        let epsilon = self.habits.bounces.epsilon.or(self.world.rules().epsilon);
         let ray = from_surface(surface, dir, f32::INFINITY, epsilon);
         weight * self.trace(&ray, Path { bounces: path.bounces - 1, weight: total, first: false, ..path })
     }

@@ -55,7 +55,7 @@ impl<'s> Variant<'s> {
         let point =
             |place: Vec2| raster.point(place + self.aim.place - 0.5) * self.aim.factor(raster.width, raster.height);
         let pixel = point(Vec2::new(x as f32, y as f32) + 0.5);
-        self.world.camera.ray(&self.world.frame, &CameraSample { point: point(place), pixel, lens })
+        self.world.camera().ray(self.world.camera_frame(), &CameraSample { point: point(place), pixel, lens })
     }
 
     /// The pixels of a picture of some size.
@@ -70,17 +70,17 @@ impl<'s> Variant<'s> {
 
     /// Turns a habit of the rules round.
     pub fn toggle(&mut self, compat: Compat) {
-        self.world.rules.compat ^= compat.bit();
+        self.world.edit().rules.compat ^= compat.bit();
     }
 
     /// Makes the camera's axes anew, by the rules.
     pub fn reframe(&mut self) {
-        self.world.frame = Frame::of(&self.world.camera, &self.world.rules);
+        self.world.edit().frame = Frame::of(self.world.camera(), self.world.rules());
     }
 
     /// The field of view of a perspective camera, in degrees.
     pub fn angle(&self) -> Option<f32> {
-        match &self.world.camera {
+        match self.world.camera() {
             Camera::Perspective(camera) => Some(camera.angle),
             _ => None,
         }
@@ -88,7 +88,7 @@ impl<'s> Variant<'s> {
 
     /// Changes all materials that are not made of others.
     pub fn phongs(&mut self, change: impl Fn(&mut Phong)) {
-        for material in &mut self.world.materials {
+        for material in &mut self.world.edit().materials {
             if let Material::Phong(phong) = material {
                 change(phong);
             }
@@ -97,7 +97,7 @@ impl<'s> Variant<'s> {
 
     /// Changes the model of highlights: Blinn's to Phong's and back.
     pub fn other_highlights(&mut self) {
-        let behind = self.world.rules.has(Compat::HighlightBehind);
+        let behind = self.world.rules().has(Compat::HighlightBehind);
         self.phongs(|phong| {
             if let Some((_, _, model)) = &mut phong.highlight {
                 *model = match model {
@@ -113,12 +113,12 @@ impl<'s> Variant<'s> {
     /// Their form is 0 for Phong's, 1 for Phong's where the light is on the surface's side, 2 for
     /// Blinn's.
     pub fn add_highlights(&mut self, form: f32) {
-        if self.world.rules.highlight != Highlight::None {
+        if self.world.rules().highlight != Highlight::None {
             return;
         }
-        let behind = self.world.rules.has(Compat::HighlightBehind) && form == 0.0;
+        let behind = self.world.rules().has(Compat::HighlightBehind) && form == 0.0;
         let model = if form == 2.0 { HighlightModel::Blinn } else { HighlightModel::Phong { behind } };
-        for (written, material) in self.scene.materials.iter().zip(&mut self.world.materials) {
+        for (written, material) in self.scene.materials.iter().zip(&mut self.world.edit().materials) {
             if let (scene::Material::Phong(written, _), Material::Phong(phong)) = (&written.value, material) {
                 let PhongMaterial { specular_color, shininess, .. } = **written;
                 phong.highlight = Some((specular_color, shininess.unwrap_or(0.0), model));
@@ -128,13 +128,13 @@ impl<'s> Variant<'s> {
 
     /// Gives a black highlight to materials that have none.
     pub fn highlights_everywhere(&mut self) {
-        let behind = self.world.rules.has(Compat::HighlightBehind);
-        let model = match self.world.rules.highlight {
+        let behind = self.world.rules().has(Compat::HighlightBehind);
+        let model = match self.world.rules().highlight {
             Highlight::None => return,
             Highlight::Phong => HighlightModel::Phong { behind },
             Highlight::Blinn | Highlight::ByKeyword => HighlightModel::Blinn,
         };
-        for (written, material) in self.scene.materials.iter().zip(&mut self.world.materials) {
+        for (written, material) in self.scene.materials.iter().zip(&mut self.world.edit().materials) {
             if let (scene::Material::Phong(written, _), Material::Phong(phong)) = (&written.value, material) {
                 let exponent = written.exponent.or(written.shininess).unwrap_or(1.0);
                 phong.highlight.get_or_insert((Color::ZERO, exponent, model));
@@ -144,16 +144,16 @@ impl<'s> Variant<'s> {
 
     /// Places all objects anew.
     pub fn place(&mut self, product: Product) {
-        let compat = self.world.rules.compat;
+        let compat = self.world.rules().compat;
         let mut places = Vec::new();
         if let Some(root) = &self.scene.root {
             placed(root, DAffine3::IDENTITY, &|ops| product(ops, compat), &mut places);
         }
         // Solids fall into pieces; what is not one to one is left as it is.
-        if places.len() != self.world.objects.len() {
+        if places.len() != self.world.objects().len() {
             return;
         }
-        for (object, place) in self.world.objects.iter_mut().zip(places) {
+        for (object, place) in self.world.edit().objects.iter_mut().zip(places) {
             if !matches!(object.geometry, Geometry::Solid(_)) {
                 // What was moved about the origin is moved back first.
                 let place = place * DAffine3::from_translation(object.center.as_dvec3());
@@ -171,7 +171,7 @@ impl<'s> Variant<'s> {
     /// Adds to every triangle the other half of its parallelogram.
     pub fn parallelograms(&mut self) {
         let mut halves = Vec::new();
-        for object in &mut self.world.objects {
+        for object in &mut self.world.edit().objects {
             match &mut object.geometry {
                 Geometry::Primitive(Primitive::Triangle(triangle)) => {
                     let [a, b, c] = triangle.corners();
@@ -182,13 +182,13 @@ impl<'s> Variant<'s> {
                 _ => {}
             }
         }
-        self.world.objects.extend(halves);
+        self.world.edit().objects.extend(halves);
         self.rebuild();
     }
 
     /// Changes all objects.
     pub fn objects(&mut self, change: impl Fn(&mut Geometry)) {
-        self.world.objects.iter_mut().for_each(|object| change(&mut object.geometry));
+        self.world.edit().objects.iter_mut().for_each(|object| change(&mut object.geometry));
         self.rebuild();
     }
 }

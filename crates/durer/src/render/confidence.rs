@@ -18,7 +18,7 @@ use super::run::whole;
 use super::{Control, Job, RenderError};
 use crate::film::aov::{Sums, heat};
 use crate::image::{Image, Layer};
-use crate::integrator::Method;
+use crate::integrator::{Method, PhotonParameters};
 use crate::math::Vec3;
 use crate::world::World;
 use serde::Serialize;
@@ -91,9 +91,7 @@ fn student(freedom: f64) -> f64 {
 /// The method whose samples have no bias, where a method's have some.
 pub(super) fn corrected(method: Method) -> Option<Method> {
     match method {
-        Method::Photons { transport, count, radius, .. } => {
-            Some(Method::Photons { transport, count, radius, corrected: true })
-        }
+        Method::Photons(photons) => Some(Method::Photons(PhotonParameters { corrected: true, ..photons })),
         _ => None,
     }
 }

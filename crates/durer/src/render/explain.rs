@@ -13,7 +13,7 @@ use crate::camera::Raster;
 use crate::dialect::Compat;
 use crate::film::Film;
 use crate::film::aov::{Aov, Sums};
-use crate::integrator::{Account, Integrator, Tree};
+use crate::integrator::{Account, Integrate, Integrator, Tree};
 use crate::math::{Color, Ray, Vec2, Vec3};
 use crate::sampler::SampleId;
 use crate::world::{Material, World};
@@ -100,7 +100,7 @@ impl Explanation {
 
 /// The tree of the light along any ray, by the random numbers of a sample.
 pub fn explain_ray(world: &World, job: &Job, ray: &Ray, id: SampleId) -> Option<Tree> {
-    told(&Integrator::new(world, job.method, job.settings, job.seed, None), ray, id)
+    told(&job.integrator(world, None), ray, id)
 }
 
 fn told(integrator: &Integrator, ray: &Ray, id: SampleId) -> Option<Tree> {
@@ -121,7 +121,7 @@ pub fn explain(world: &World, job: &Job, x: u32, y: u32) -> Result<Explanation, 
     }
     let (stop, mut stale_texels) = (AtomicBool::new(false), None);
     let source = Samples::without_habits(world, job, &stop);
-    let integrator = Integrator::new(world, job.method, job.settings, job.seed, None);
+    let integrator = job.integrator(world, None);
     let account = |of, sample, aim: Aim| {
         let id = SampleId::new(job.seed, of, sample);
         let light = aim.ray.and_then(|ray| told(&integrator, &ray, id));
@@ -140,7 +140,7 @@ pub fn explain(world: &World, job: &Job, x: u32, y: u32) -> Result<Explanation, 
             (Mean::Own, own.collect())
         }
     };
-    if job.sampling == Sampling::Center && world.rules.has(Compat::StaleTexels) {
+    if job.sampling == Sampling::Center && world.rules().has(Compat::StaleTexels) {
         stale_texels = stale_texel(world, job, &raster(world, job.width, job.height), (x, y));
     }
     let mut explanation =
@@ -163,7 +163,7 @@ fn error(world: &World, job: &Job, source: &Samples, explanation: &Explanation) 
     };
     let own = film(&|s| s.light.as_ref().map(Tree::sum));
     let twin = corrected(job.method).map(|method| {
-        let integrator = Integrator::new(world, method, job.settings, job.seed, None);
+        let integrator = Job { method, ..job.clone() }.integrator(world, None);
         film(&|s| {
             let ray = source.aim(x, y, s.sample).ray?;
             Some(integrator.radiance(&ray, SampleId::new(job.seed, (x, y), s.sample), &mut ()))
@@ -192,7 +192,7 @@ fn texel(world: &World, raster: &Raster, pixel: (u32, u32)) -> Option<(u32, Colo
     let ray = center_ray(world, raster, pixel)?;
     let hit = world.closest(&ray, &mut ())?;
     let material = world.material(&hit);
-    let Material::Phong(phong) = &world.materials[material as usize] else { return None };
+    let Material::Phong(phong) = &world.materials()[material as usize] else { return None };
     Some((material, world.diffuse_color(phong, &world.surface(&ray, &hit)), phong.diffuse))
 }
 
@@ -205,7 +205,7 @@ fn stale_texel(world: &World, job: &Job, raster: &Raster, (x, y): (u32, u32)) ->
     let row = |y: u32, end: u32| (0..end).rev().map(move |x| (x, y));
     let mut before = row(y, x).chain((y + 1..job.height).flat_map(|y| row(y, job.width)));
     let before = before.find_map(|pixel| texel(world, raster, pixel).filter(|found| found.0 == material));
-    Some(world.ambient * (before.map_or(plain, |found| found.1) - own))
+    Some(world.ambient() * (before.map_or(plain, |found| found.1) - own))
 }
 
 #[cfg(test)]

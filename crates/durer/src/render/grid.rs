@@ -47,7 +47,7 @@ pub fn grid_picture(world: &World, job: &Job, control: &Control) -> Result<Image
 /// The grid's cells with what really overlaps them: the rays' own grid has a margin for rounding.
 fn occupied(world: &World) -> Option<Grid> {
     let Accel::Grid { grid, parts } = world.accel() else { return None };
-    let object = |part: usize| &world.objects[parts[part].0 as usize];
+    let object = |part: usize| &world.objects()[parts[part].0 as usize];
     // Only things with bounds are in the grid.
     let bounds = |i: usize| object(i).part_bounds(parts[i].1).unwrap_or(Aabb::EMPTY);
     let boxes: Vec<Aabb> = (0..parts.len()).map(bounds).collect();
@@ -74,9 +74,9 @@ fn cell_color(world: &World, grid: &Grid, ray: &Ray) -> Color {
     let axis = (0..3).fold(0, |best, i| if from_center[i].abs() > from_center[best].abs() { i } else { best });
     let normal = Vec3::AXES[axis] * from_center[axis].signum();
     let color = COLORS[(count - 1).min(COLORS.len() - 1)];
-    let lit = world.lights.iter().map(|light| {
+    let lit = world.lights().iter().map(|light| {
         let seen = light.illuminate(point.as_dvec3());
         normal.dot(seen.to_light).max(0.0) * seen.color
     });
-    color * (world.ambient + lit.sum::<Color>())
+    color * (world.ambient() + lit.sum::<Color>())
 }

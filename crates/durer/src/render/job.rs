@@ -5,9 +5,11 @@ use crate::film::Filter;
 use crate::film::aov::{Aov, Value};
 use crate::film::course::CourseFilter;
 use crate::film::false_color::LightScale;
-use crate::integrator::{Method, Settings};
+use crate::integrator::{Integrator, Method, Settings, Setup};
 use crate::sampler::Sampler;
+use crate::world::World;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use std::sync::atomic::AtomicBool;
 
 /// Part of a picture, in pixels from its upper left corner.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -203,6 +205,12 @@ impl Job {
     /// The names of its pictures, in their order.
     pub fn picture_names(&self) -> impl Iterator<Item = &'static str> {
         self.color.then_some("color").into_iter().chain(self.aovs.iter().map(|aov| aov.name))
+    }
+
+    /// What computes the light, over a world. Once `cancel` is set, no more rays are traced, and
+    /// what comes out means nothing.
+    pub fn integrator<'w>(&self, world: &'w World, cancel: Option<&'w AtomicBool>) -> Integrator<'w> {
+        self.method.over(Setup { world, settings: self.settings, seed: self.seed, cancel })
     }
 
     /// Whether the colour's samples are wanted, as colour or as something else.

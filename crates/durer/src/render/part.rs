@@ -6,7 +6,6 @@ use super::{Crop, Job, Sampling, passes};
 use crate::film::aov::Look;
 use crate::film::{Film, Packed, Rejected};
 use crate::image::checked_count;
-use crate::integrator::Method;
 use crate::math::Vec3;
 use crate::source::Digest;
 use crate::world::World;
@@ -111,7 +110,7 @@ impl Part {
     /// [`RenderError::Image`], [`RenderError::CropOutside`], and [`RenderError::Shard`] for work
     /// that cannot be split so.
     pub fn new(world: &World, job: &Job, shard: Shard) -> Result<Self, RenderError> {
-        Part::empty(job.clone(), shard, world.digest, Look::new(&world.rules))
+        Part::empty(job.clone(), shard, world.digest(), Look::new(world.rules()))
     }
 
     pub(super) fn empty(job: Job, shard: Shard, scene: Digest, look: Look) -> Result<Self, RenderError> {
@@ -311,7 +310,7 @@ pub(super) fn film_of(part: Crop) -> Film {
 pub(super) fn pass_ends(job: &Job, shard: Shard) -> impl Iterator<Item = u32> {
     let samples = job.sampling.samples();
     let (from, to) = shard.range(samples);
-    let singly = matches!(job.method, Method::Photons { .. }) && job.sampling.is_local();
+    let singly = job.method.prepares() && job.sampling.is_local();
     let ends: Box<dyn Iterator<Item = u32>> =
         if singly { Box::new(1..=samples) } else { Box::new(passes::ends(samples)) };
     ends.filter(move |&end| end > from && end < to).chain((to > from).then_some(to))

@@ -4,8 +4,8 @@
 use super::samples::Samples;
 use super::{Job, RenderError};
 use crate::bvh::{RayCount, TraversalCounter};
-use crate::integrator::Witness;
 use crate::integrator::account::{Line, RayKind, What};
+use crate::integrator::{Integrate, Witness};
 use crate::math::Ray;
 use crate::sampler::SampleId;
 use crate::world::World;

@@ -7,6 +7,7 @@ use super::{BLOCK, Control, Job, Rendered, Shard, rays};
 use crate::bvh::RayCount;
 use crate::film::Packed;
 use crate::film::aov::Look;
+use crate::integrator::Integrate;
 use crate::threads;
 use crate::world::World;
 use rayon::prelude::*;
@@ -88,7 +89,7 @@ impl Part {
         control: &Control,
         watch: &mut dyn FnMut(&Part, Moment),
     ) -> Result<Stop, RenderError> {
-        if self.scene != world.digest || self.look != Look::new(&world.rules) {
+        if self.scene != world.digest() || self.look != Look::new(world.rules()) {
             return Err(RenderError::OtherScene);
         }
         let (pool, tile) = (threads::pool(control.threads), control.tile.unwrap_or(usual_tile(&self.job)));

@@ -8,7 +8,7 @@ use crate::camera::{CameraSample, Lens, Raster};
 use crate::dialect::Compat;
 use crate::film::course::{CourseFilter, StoredSample, StoredSamples};
 use crate::film::{Film, FilterSampler};
-use crate::integrator::{Integrator, Whitted};
+use crate::integrator::{Integrate, Integrator, Whitted};
 use crate::math::{Color, Ray, Vec2, Vec3};
 use crate::sampler::{LENS_DIMENSION, PIXEL_DIMENSION, SampleId, Sampler, Sequence};
 use crate::threads;
@@ -50,7 +50,7 @@ pub fn sample_diagram(world: &World, job: &Job, control: &Control) -> Result<Sto
 /// Offers where the samples of a pixel go: in the picture, in the lens, and how much each counts.
 /// Of samples that count for other pixels too only the pixel's own are offered.
 pub fn sample_places(world: &World, job: &Job) -> impl Fn(u32, u32, &mut dyn FnMut(Vec2, Vec2, f32)) + Sync {
-    let (aperture, seed, sampling) = (world.camera.has_aperture(), job.seed, job.sampling);
+    let (aperture, seed, sampling) = (world.camera().has_aperture(), job.seed, job.sampling);
     let warp = match sampling {
         Sampling::Filtered { filter, .. } => Some(filter.sampler()),
         _ => None,
@@ -149,7 +149,7 @@ pub(super) struct Samples<'a> {
 impl<'a> Samples<'a> {
     pub(super) fn new(world: &'a World, job: &'a Job, stop: &'a AtomicBool) -> Self {
         let mut samples = Self::without_habits(world, job, stop);
-        if job.sampling == Sampling::Center && world.rules.has(Compat::StaleTexels) {
+        if job.sampling == Sampling::Center && world.rules().has(Compat::StaleTexels) {
             samples.stale = samples.stale_texels();
         }
         samples
@@ -162,9 +162,9 @@ impl<'a> Samples<'a> {
             _ => None,
         };
         let whitted = Whitted { world, settings: job.settings, cancel: Some(stop) };
-        let integrator = Integrator::new(world, job.method, job.settings, job.seed, Some(stop));
+        let integrator = job.integrator(world, Some(stop));
         let raster = raster(world, job.width, job.height);
-        let has_aperture = world.camera.has_aperture();
+        let has_aperture = world.camera().has_aperture();
         Samples { world, job, raster, whitted, integrator, warp, has_aperture, stale: Vec::new(), stop }
     }
 
@@ -248,7 +248,7 @@ impl<'a> Samples<'a> {
             _ => (pixel.center, middle, 1.0),
         };
         let at = CameraSample { point: self.raster.point(place), pixel: pixel.point, lens };
-        Aim { place, lens, weight, ray: self.world.camera.ray(&self.world.frame, &at) }
+        Aim { place, lens, weight, ray: self.world.camera().ray(self.world.camera_frame(), &at) }
     }
 
     /// Where a sample goes that keeps its place in its pixel, which comes with it. It counts for
@@ -371,7 +371,7 @@ impl<'a> Samples<'a> {
     /// and that of the pixel shaded before with the same material.
     fn stale_texels(&self) -> Vec<Color> {
         let (world, job) = (self.world, self.job);
-        let mut last: Vec<Option<Color>> = vec![None; world.materials.len()];
+        let mut last: Vec<Option<Color>> = vec![None; world.materials().len()];
         let mut differences = vec![Color::ZERO; job.whole().pixels() as usize];
         for (y, x) in (0..job.height).rev().flat_map(|y| (0..job.width).map(move |x| (y, x))) {
             if self.check().is_err() {
@@ -380,10 +380,10 @@ impl<'a> Samples<'a> {
             let Some(ray) = center_ray(world, &self.raster, (x, y)) else { continue };
             let Some(hit) = world.closest(&ray, &mut ()) else { continue };
             let material = world.material(&hit);
-            let Material::Phong(phong) = &world.materials[material as usize] else { continue };
+            let Material::Phong(phong) = &world.materials()[material as usize] else { continue };
             let texel = world.diffuse_color(phong, &world.surface(&ray, &hit));
             let before = last[material as usize].replace(texel).unwrap_or(phong.diffuse);
-            differences[y as usize * job.width as usize + x as usize] = world.ambient * (before - texel);
+            differences[y as usize * job.width as usize + x as usize] = world.ambient() * (before - texel);
         }
         differences
     }

@@ -7,7 +7,7 @@ use crate::film::Filter;
 use crate::film::aov::{AOVS, Aov};
 use crate::film::course::CourseFilter;
 use crate::image::{Depth, FORMATS, WriteOptions, read};
-use crate::math::Vec3;
+use crate::math::{Aabb, Vec3};
 use crate::sampler::Sampler;
 use crate::source::Digest;
 use crate::world::World;
@@ -249,8 +249,10 @@ fn work_is_gone_on_with_only_where_it_is_the_same() {
 #[test]
 fn a_panic_is_an_error_that_knows_its_sample_and_the_rest_is_kept() {
     let mut broken = world();
-    // A material that is not there: whatever shades the sphere panics.
-    broken.objects[0].material = 999;
+    // A tree that names an object which is not there: what meets the sphere's box panics.
+    let mut boxes = vec![Aabb::EMPTY; 1000];
+    boxes[999] = broken.objects()[0].bounds().unwrap();
+    broken.accel = crate::world::Accel::Bvh(crate::bvh::Bvh::build(&boxes));
     let job = Job { sampling: filtered(4), width: 64, height: 64, ..Job::default() };
     let part = Part::new(&broken, &job, Shard::WHOLE).unwrap();
     let control = Control { threads: Some(1), ..Control::default() };
@@ -328,7 +330,7 @@ fn memory_is_estimated_before_it_is_taken() {
 #[test]
 fn samples_that_are_not_finite_are_named() {
     let mut world = world();
-    world.ambient = Vec3::new(f32::NAN, 0.0, 0.0);
+    world.edit().ambient = Vec3::new(f32::NAN, 0.0, 0.0);
     let part = all(&world, &Job { sampling: filtered(2), ..small() });
     let statistics = part.statistics();
     assert!(statistics.rejected > 0 && statistics.first_rejected.len() == 16);
@@ -348,7 +350,7 @@ fn files_tell_the_job_and_the_scene() {
     let options = crate::image::WriteOptions { attributes: &rendered.attributes, ..Default::default() };
     let mut bytes = Vec::new();
     exr.write(&rendered.layers, &options, &mut bytes).unwrap();
-    for told in [world.digest.to_string(), serde_json::to_string(&small()).unwrap(), "\"samples\":1073".into()] {
+    for told in [world.digest().to_string(), serde_json::to_string(&small()).unwrap(), "\"samples\":1073".into()] {
         assert!(bytes.windows(told.len()).any(|window| window == told.as_bytes()), "{told}");
     }
 }

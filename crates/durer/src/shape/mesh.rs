@@ -216,6 +216,14 @@ impl Mesh {
         Mesh { data: data.into(), made: None, center: self.center }
     }
 
+    /// The hash of all that it holds.
+    pub fn digest(&self) -> Digest {
+        let (normals, triangles) = self.normals();
+        let (normals, triangles) = (normals.to_vec(), triangles.to_vec());
+        let own = MeshData { normals, triangles, ..MeshData::default() };
+        Digest::of(format!("{} {} {:?}", self.data.digest(), own.digest(), self.center).as_bytes())
+    }
+
     /// What it is made of; its normals may be [others](Mesh::normals).
     pub fn data(&self) -> &MeshData {
         &self.data

@@ -56,7 +56,7 @@ impl World {
             let known = last.filter(|(number, _)| *number == map.texture).map(|(_, texel)| texel);
             let Some(texel) = known.or_else(|| self.texel(Some(map.texture), hit, surface)) else { continue };
             last = Some((map.texture, texel));
-            let mapping = self.textures[map.texture as usize].mapping().copied().unwrap_or_default();
+            let mapping = self.textures()[map.texture as usize].mapping().copied().unwrap_or_default();
             let channel = map.channel.or(mapping.channel).unwrap_or(Channel::Red);
             let [low, high] = mapping.range;
             let ranged = |x: f32| if [low, high] == [0.0, 1.0] { x } else { low + x * (high - low) };
@@ -80,7 +80,7 @@ impl World {
     pub(super) fn opacity_at(&self, own: &Principled, hit: &Hit, surface: &Surface) -> f32 {
         let alpha = self.texel(own.maps.base_color, hit, surface).map_or(1.0, |texel| texel[3]);
         let share = own.maps.opacity.and_then(|map| {
-            let texture = &self.textures[map as usize];
+            let texture = &self.textures()[map as usize];
             let usual = if texture.has_alpha() { Channel::Alpha } else { Channel::Red };
             let channel = texture.mapping().and_then(|mapping| mapping.channel).unwrap_or(usual);
             Some(channel.of(self.texel(Some(map), hit, surface)?))
@@ -92,18 +92,18 @@ impl World {
     pub(super) fn is_cutout(&self, own: &Principled) -> bool {
         own.written.opacity < 1.0
             || own.maps.opacity.is_some()
-            || own.maps.base_color.is_some_and(|map| self.textures[map as usize].has_alpha())
+            || own.maps.base_color.is_some_and(|map| self.textures()[map as usize].has_alpha())
     }
 
     fn texel(&self, map: Option<u32>, hit: &Hit, surface: &Surface) -> Option<[f32; 4]> {
-        let texture = &self.textures[map? as usize];
+        let texture = &self.textures()[map? as usize];
         let mapping = texture.mapping().copied().unwrap_or_default();
         Some(texture.texel(&mapping, self.coordinates(texture, hit, surface)?))
     }
 
     /// The texture coordinates of a hit that count for a texture.
     fn coordinates(&self, texture: &Texture, hit: &Hit, surface: &Surface) -> Option<Vec2> {
-        match (texture.mapping().is_some_and(|mapping| mapping.second), &self.objects[hit.object as usize].geometry) {
+        match (texture.mapping().is_some_and(|mapping| mapping.second), &self.objects()[hit.object as usize].geometry) {
             (true, Geometry::Mesh(tree)) => tree.mesh.second_uv(hit.part, surface.barycentric),
             (true, _) => None,
             (false, _) => surface.uv.get(),
@@ -121,9 +121,9 @@ impl World {
     /// The normal that a picture of normals says: x along the direction in which the picture's u
     /// grows, y along its v upwards.
     fn leaning(&self, map: u32, hit: &Hit, surface: &Surface, normal: Vec3) -> Option<Vec3> {
-        let texture = &self.textures[map as usize];
+        let texture = &self.textures()[map as usize];
         let mapping = texture.mapping().copied().unwrap_or_default();
-        let object = &self.objects[hit.object as usize];
+        let object = &self.objects()[hit.object as usize];
         let [r, g, b, _] = texture.texel(&mapping, self.coordinates(texture, hit, surface)?);
         let grow = match &object.geometry {
             Geometry::Mesh(tree) => {
@@ -149,7 +149,7 @@ impl World {
     /// Source: James Blinn, *Simulation of Wrinkled Surfaces*, SIGGRAPH 1978, with the gradient of
     /// the height along the surface.
     fn bumped(&self, map: u32, height: f32, hit: &Hit, surface: &Surface) -> Option<Vec3> {
-        let texture = &self.textures[map as usize];
+        let texture = &self.textures()[map as usize];
         let mapping = texture.mapping().copied().unwrap_or_default();
         let slope = height * texture.slope(&mapping, self.coordinates(texture, hit, surface)?);
         let [u, v] = dual(self.derivatives(hit, surface, mapping.second)?)?;
@@ -159,7 +159,7 @@ impl World {
     /// How a point of the world moves as its texture coordinates grow by 1: those of the file on a
     /// mesh, else by what they are beside the point.
     fn derivatives(&self, hit: &Hit, surface: &Surface, second: bool) -> Option<[Vec3; 2]> {
-        let object = &self.objects[hit.object as usize];
+        let object = &self.objects()[hit.object as usize];
         let to_world = object.to_world.as_ref();
         let moved = |v: Vec3| to_world.map_or(v, |to_world| to_world.vector(v));
         let shape = match &object.geometry {
@@ -196,7 +196,7 @@ impl World {
     /// mesh, the way around the axis of what is round, the first edge of a rectangle; else the
     /// horizontal one.
     pub(super) fn tangent(&self, hit: &Hit, surface: &Surface) -> Vec3 {
-        let object = &self.objects[hit.object as usize];
+        let object = &self.objects()[hit.object as usize];
         let to_world = object.to_world.as_ref();
         let normal = to_world.map_or(surface.n_geo, |to_world| to_world.local_normal(surface.n_geo));
         let point = to_world.map_or(surface.position, |to_world| to_world.inverse_point(surface.position));

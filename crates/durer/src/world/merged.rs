@@ -9,7 +9,7 @@ impl World {
     /// All meshes as one, in world space, and how many objects are no meshes and left out.
     pub fn merged_mesh(&self) -> (MeshData, usize) {
         let (mut all, mut left_out) = (MeshData::default(), 0);
-        for object in &self.objects {
+        for object in self.objects() {
             let Geometry::Mesh(tree) = &object.geometry else {
                 left_out += 1;
                 continue;

@@ -1,5 +1,6 @@
 //! The compiled scene: immutable, with numbers instead of names, ready to be asked by many threads.
 
+mod contents;
 pub mod csg;
 pub mod emitters;
 mod maps;
@@ -9,70 +10,37 @@ mod object;
 pub mod shading;
 pub mod solid;
 
-use crate::bvh::{Bvh, Grid, TraversalCounter};
-use crate::camera::{Camera, Frame};
-use crate::dialect::{Compat, Rules};
-use crate::light::{Emitter as _, Illumination, Light, Profile};
+use crate::bvh::{Bvh, Grid, PrimitivePacks, TraversalCounter};
+use crate::dialect::Compat;
+use crate::light::{Emitter as _, Illumination};
 use crate::material::Pattern;
 use crate::math::{Aabb, Color, Ray64, Vec2, Vec3};
-use crate::medium::Medium;
 use crate::shape::{Crossing, Surface};
 use crate::source::Digest;
-use crate::spectrum::Curve;
-use crate::texture::{CubeMap, Environment, Texture};
+pub use contents::{Assets, Contents};
 pub use emitters::Emitters;
 use glam::DVec3;
 pub use maps::{Map, Maps};
 pub use material::{Emission, HighlightModel, Material, Part, Parts, Phong, Principled};
 pub use object::{Geometry, MeshTree, Object, Placing};
 pub use shading::Shading;
-use std::sync::Arc;
 
 /// A scene ready to be traced.
 #[derive(Clone, Debug)]
 pub struct World {
-    /// Whence it is seen.
-    pub camera: Camera,
-    /// The camera's axes.
-    pub frame: Frame,
-    /// Colour of rays that hit nothing.
-    pub background: Color,
-    /// Surroundings that replace that colour.
-    pub cube_map: Option<CubeMap>,
-    /// Light that is everywhere.
-    pub ambient: Color,
-    /// Lights.
-    pub lights: Vec<Light>,
-    /// How strong each light shines in each direction, where that was measured; by number, those
-    /// behind the last have none.
-    pub profiles: Vec<Option<Arc<Profile>>>,
-    /// The measured spectrum of each light, if it has one; by number, those behind the last have
-    /// none.
-    pub illuminants: Vec<Option<Arc<Curve>>>,
-    /// Materials, by number.
-    pub materials: Vec<Material>,
-    /// Decoded pictures, by number.
-    pub textures: Vec<Texture>,
-    /// Everything that a ray can hit, by number.
-    pub objects: Vec<Object>,
-    /// What the words of the scene's dialect mean.
-    pub rules: Rules,
-    /// The hash of all that it was made of: description, files, rules.
-    pub digest: Digest,
-    /// Light from all around, which replaces colour and cube map.
-    pub environment: Option<Environment>,
-    /// What shines.
-    pub emitters: Emitters,
-    /// What is in the air, if light loses something there.
-    pub fog: Option<Medium>,
-    /// Whether some surface is there in part only.
-    pub has_cutouts: bool,
-    /// Whether cameras look through the backs of some faces.
-    pub hides_backs: bool,
-    /// Whether some body has no skin, so that light goes straight into it.
-    pub has_interfaces: bool,
-    /// What stands outside the structure: objects without end, and all where they are so few that
-    /// no tree pays.
+    contents: Contents,
+    assets: Assets,
+    /// The hash of all that it was made of, and whether something was changed since.
+    source: Digest,
+    edited: bool,
+    emitters: Emitters,
+    has_cutouts: bool,
+    hides_backs: bool,
+    has_interfaces: bool,
+    /// Planes and spheres that stand outside the structure, tested eight at a time.
+    pub(crate) packs: PrimitivePacks,
+    /// What else stands outside: objects without end, and all where they are so few that no tree
+    /// pays.
     pub(crate) loose: Vec<u32>,
     pub(crate) accel: Accel,
 }
@@ -115,6 +83,48 @@ impl Hit {
 }
 
 impl World {
+    /// Of what it is made of, with its hash; without a structure over its objects.
+    pub(crate) fn new(contents: Contents, assets: Assets, source: Digest) -> Self {
+        let mut world = World {
+            contents,
+            assets,
+            source,
+            edited: false,
+            emitters: Emitters::default(),
+            has_cutouts: false,
+            hides_backs: false,
+            has_interfaces: false,
+            packs: PrimitivePacks::default(),
+            loose: Vec::new(),
+            accel: Accel::None,
+        };
+        world.has_cutouts = world.finds_cutouts();
+        world.hides_backs = world.finds_hidden_backs();
+        world.has_interfaces = world.finds_interfaces();
+        world.emitters = Emitters::new(&world);
+        world
+    }
+
+    /// What shines.
+    pub fn emitters(&self) -> &Emitters {
+        &self.emitters
+    }
+
+    /// Whether some surface is there in part only.
+    pub fn has_cutouts(&self) -> bool {
+        self.has_cutouts
+    }
+
+    /// Whether cameras look through the backs of some faces.
+    pub fn hides_backs(&self) -> bool {
+        self.hides_backs
+    }
+
+    /// Whether some body has no skin, so that light goes straight into it.
+    pub fn has_interfaces(&self) -> bool {
+        self.has_interfaces
+    }
+
     /// The first hit in the ray's interval.
     pub fn closest<T: TraversalCounter>(&self, ray: impl Into<Ray64>, counter: &mut T) -> Option<Hit> {
         counter.ray();
@@ -133,8 +143,11 @@ impl World {
                 }
             }
         };
+        if let Some(met) = self.packs.closest(&ray.rounded, counter) {
+            offer(&mut best, &mut ray, met.number, Some((Crossing { t: met.t, uv: Vec2::ZERO }, 0)));
+        }
         for &object in &self.loose {
-            let found = self.objects[object as usize].closest(&ray, false, counter);
+            let found = self.objects()[object as usize].closest(&ray, false, counter);
             offer(&mut best, &mut ray, object, found);
         }
         match &self.accel {
@@ -142,7 +155,7 @@ impl World {
                 let outer = ray.rounded;
                 bvh.traverse(&outer, counter, |item, _, counter| {
                     let object = bvh.primitive_indices()[item];
-                    let found = self.objects[object as usize].closest(&ray, false, counter);
+                    let found = self.objects()[object as usize].closest(&ray, false, counter);
                     offer(&mut best, &mut ray, object, found);
                     ray.rounded.t_max
                 });
@@ -151,13 +164,13 @@ impl World {
                 let outer = ray.rounded;
                 grid.traverse(&outer, counter, |item, _, counter| {
                     let (object, part) = parts[item];
-                    let found = self.objects[object as usize].part(&ray, part, counter);
+                    let found = self.objects()[object as usize].part(&ray, part, counter);
                     offer(&mut best, &mut ray, object, found);
                     ray.rounded.t_max
                 });
             }
             Accel::None => {
-                for (i, object) in self.objects.iter().enumerate().filter(|(_, o)| o.bounds().is_some()) {
+                for (i, object) in self.objects().iter().enumerate().filter(|(_, o)| o.bounds().is_some()) {
                     for part in 0..object.parts() {
                         let found = object.part(&ray, part, counter);
                         offer(&mut best, &mut ray, i as u32, found);
@@ -176,23 +189,25 @@ impl World {
         if !crate::bvh::is_sound(outer) {
             return false;
         }
-        if self.loose.iter().any(|&i| self.objects[i as usize].closest(ray, true, counter).is_some()) {
+        if self.packs.occluded(outer, counter)
+            || self.loose.iter().any(|&i| self.objects()[i as usize].closest(ray, true, counter).is_some())
+        {
             return true;
         }
         let mut found = false;
         match &self.accel {
             Accel::Bvh(bvh) => bvh.traverse(outer, counter, |item, t_max, counter| {
-                found |= self.objects[bvh.primitive_indices()[item] as usize].closest(ray, true, counter).is_some();
+                found |= self.objects()[bvh.primitive_indices()[item] as usize].closest(ray, true, counter).is_some();
                 if found { f32::NEG_INFINITY } else { t_max }
             }),
             Accel::Grid { grid, parts } => grid.traverse(outer, counter, |item, t_max, counter| {
                 let (object, part) = parts[item];
-                found |= self.objects[object as usize].part(ray, part, counter).is_some();
+                found |= self.objects()[object as usize].part(ray, part, counter).is_some();
                 if found { f32::NEG_INFINITY } else { t_max }
             }),
             Accel::None => {
                 found = self
-                    .objects
+                    .objects()
                     .iter()
                     .filter(|o| o.bounds().is_some())
                     .any(|o| (0..o.parts()).any(|part| o.part(ray, part, counter).is_some()));
@@ -205,20 +220,20 @@ impl World {
     /// it is.
     pub fn surface(&self, ray: impl Into<Ray64>, hit: &Hit) -> Surface {
         let ray = &ray.into();
-        let object = &self.objects[hit.object as usize];
+        let object = &self.objects()[hit.object as usize];
         let point = object.local_ray(ray).line().at(f64::from(hit.t));
         let crossing = Crossing { t: hit.t, uv: hit.uv };
         let placing = Placing {
-            as_is: self.rules.is_official(),
-            moved_normals: self.rules.has(Compat::MovedNormals),
-            mesh_textures: self.rules.has(Compat::MeshTextures),
+            as_is: self.rules().is_official(),
+            moved_normals: self.rules().has(Compat::MovedNormals),
+            mesh_textures: self.rules().has(Compat::MeshTextures),
         };
         object.surface(ray, point, &crossing, hit.part, placing)
     }
 
     /// The number of the material at a hit.
     pub fn material(&self, hit: &Hit) -> u32 {
-        let object = &self.objects[hit.object as usize];
+        let object = &self.objects()[hit.object as usize];
         match &object.geometry {
             Geometry::Solid(solid) => solid.part(hit.part).material,
             _ => object.material,
@@ -227,8 +242,8 @@ impl World {
 
     /// The closed things of glass that a point is inside, with their indices of refraction.
     pub fn glass_around(&self, point: Vec3) -> impl Iterator<Item = (u32, f32)> {
-        self.objects.iter().enumerate().filter_map(move |(number, object)| {
-            match &self.materials[object.material as usize] {
+        self.objects().iter().enumerate().filter_map(move |(number, object)| {
+            match &self.materials()[object.material as usize] {
                 Material::Phong(glass) if glass.transparent != Color::ZERO && object.contains(point) => {
                     Some((number as u32, glass.ior))
                 }
@@ -239,7 +254,7 @@ impl World {
 
     /// The number of the triangle at a hit in its mesh, else 0.
     pub fn triangle(&self, hit: &Hit) -> u32 {
-        match &self.objects[hit.object as usize].geometry {
+        match &self.objects()[hit.object as usize].geometry {
             Geometry::Solid(solid) => solid.triangle(hit.part),
             _ => hit.part,
         }
@@ -259,22 +274,22 @@ impl World {
     /// written.
     pub fn hits_of_each(&self, ray: impl Into<Ray64>) -> impl Iterator<Item = Hit> {
         let ray = ray.into();
-        (0..self.objects.len() as u32).filter_map(move |object| self.hit_of(object, &ray))
+        (0..self.objects().len() as u32).filter_map(move |object| self.hit_of(object, &ray))
     }
 
     /// The nearest hit of one object, whatever is before it.
     pub fn hit_of(&self, object: u32, ray: &Ray64) -> Option<Hit> {
         let sound = crate::bvh::is_sound(&ray.rounded);
-        let (crossing, part) = self.objects[object as usize].closest(ray, false, &mut ()).filter(|_| sound)?;
+        let (crossing, part) = self.objects()[object as usize].closest(ray, false, &mut ()).filter(|_| sound)?;
         Some(Hit { t: crossing.t, uv: crossing.uv, object, part })
     }
 
     /// The light of a lamp, by number, that arrives at a point if nothing is in the way.
     pub fn illuminate(&self, light: usize, point: DVec3) -> Illumination {
-        let seen = self.lights[light].illuminate(point);
-        match self.profiles.get(light) {
+        let seen = self.lights()[light].illuminate(point);
+        match self.profiles().get(light) {
             Some(Some(profile)) => {
-                let candela = profile.at(self.lights[light].in_profile(-seen.to_light));
+                let candela = profile.at(self.lights()[light].in_profile(-seen.to_light));
                 Illumination { color: candela * seen.color, ..seen }
             }
             _ => seen,
@@ -283,10 +298,10 @@ impl World {
 
     /// The colour that a ray sees that hits nothing.
     pub fn sky(&self, direction: Vec3) -> Color {
-        if let Some(environment) = &self.environment {
+        if let Some(environment) = self.environment() {
             return environment.at(direction);
         }
-        self.cube_map.as_ref().map_or(self.background, |map| map.at(direction))
+        self.cube_map().map_or(self.background(), |map| map.at(direction))
     }
 
     /// The materials that make up a surface point, each with its share.
@@ -297,7 +312,7 @@ impl World {
     }
 
     fn mix<'w>(&'w self, material: u32, point: Vec3, share: f32, parts: &mut Parts<'w>) {
-        match &self.materials[material as usize] {
+        match &self.materials()[material as usize] {
             Material::Phong(phong) => parts.push(Part { phong, share }),
             Material::Solid(solid, to_pattern) => {
                 let q = to_pattern.transform_point3(point.as_dvec3()).as_vec3();
@@ -314,7 +329,7 @@ impl World {
 
     /// The box around all bounded objects.
     pub fn bounds(&self) -> Aabb {
-        self.objects.iter().filter_map(Object::bounds).fold(Aabb::EMPTY, Aabb::union)
+        self.objects().iter().filter_map(Object::bounds).fold(Aabb::EMPTY, Aabb::union)
     }
 
     /// The structure over its objects.
@@ -323,5 +338,7 @@ impl World {
     }
 }
 
+#[cfg(test)]
+mod packs_tests;
 #[cfg(test)]
 mod tests;

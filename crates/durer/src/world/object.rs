@@ -1,7 +1,7 @@
 //! The things in a world, and how a ray meets them.
 
 use super::csg::Csg;
-use crate::bvh::{BuildQuality, TraversalCounter, TriangleBvh};
+use crate::bvh::{BuildQuality, PrimitivePacks, TraversalCounter, TriangleBvh};
 use crate::dialect::MeshNormals;
 use crate::math::{Aabb, Affine, Line, Ray, Ray64, Vec2, Vec3};
 use crate::shape::{Crossing, Mesh, Primitive, Shape, Surface, Uv};
@@ -245,6 +245,26 @@ impl Object {
             Geometry::Solid(solid) => return solid.closest(ray, counter),
         };
         crossing.map(|crossing| (crossing, part))
+    }
+
+    /// Whether it can be tested together with others of its kind: a plane or a sphere, where it is
+    /// written.
+    pub(crate) fn fits_packs(&self) -> bool {
+        self.to_world.is_none()
+            && matches!(&self.geometry, Geometry::Primitive(Primitive::Plane(_) | Primitive::Sphere(_)))
+    }
+
+    /// Adds it under a number to those that are tested together, if it can be.
+    pub(crate) fn add_to(&self, packs: &mut PrimitivePacks, number: u32) -> bool {
+        if self.to_world.is_some() {
+            return false;
+        }
+        match &self.geometry {
+            Geometry::Primitive(Primitive::Plane(plane)) => packs.push_plane(number, plane.normal, plane.offset),
+            Geometry::Primitive(Primitive::Sphere(sphere)) => packs.push_sphere(number, sphere.center, sphere.radius),
+            _ => return false,
+        }
+        true
     }
 
     /// Whether it is closed, so that a point is inside it or outside.

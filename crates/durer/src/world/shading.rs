@@ -44,7 +44,7 @@ impl World {
     /// Noise, else texture, else the diffuse colour; or the diffuse colour times texture and
     /// vertices' colours.
     pub fn diffuse_color(&self, phong: &Phong, surface: &Surface) -> Color {
-        let texture = phong.texture.and_then(|i| Some(self.textures[i as usize].at(surface.uv.get()?)));
+        let texture = phong.texture.and_then(|i| Some(self.textures()[i as usize].at(surface.uv.get()?)));
         if phong.tinted {
             let [r, g, b, _] = surface.color;
             return phong.diffuse * Color::new(r, g, b) * texture.unwrap_or(Color::ONE);
@@ -104,7 +104,7 @@ impl World {
 
     /// The light of a material's own, if points that shine can be chosen: the same everywhere.
     pub(super) fn emission_of(&self, material: u32) -> Option<&Emission> {
-        match self.materials.get(material as usize)? {
+        match self.materials().get(material as usize)? {
             Material::Phong(phong) => phong.emission.as_ref().filter(|emission| !emission.textured),
             Material::Solid(..) => None,
         }
@@ -128,15 +128,15 @@ impl World {
     /// The measured spectrum of what shines, if it has one.
     pub fn illuminant(&self, light: LightId) -> Option<&Curve> {
         match light {
-            LightId::Light(number) => self.illuminants.get(number as usize)?.as_deref(),
-            LightId::Surface(object, _) => self.own_illuminant(self.objects[object as usize].material),
+            LightId::Light(number) => self.illuminants().get(number as usize)?.as_deref(),
+            LightId::Surface(object, _) => self.own_illuminant(self.objects()[object as usize].material),
             LightId::Environment => None,
         }
     }
 
     /// The measured spectrum of a material's own light, if it has one.
     pub fn own_illuminant(&self, material: u32) -> Option<&Curve> {
-        match &self.materials[material as usize] {
+        match &self.materials()[material as usize] {
             Material::Phong(phong) => phong.principled.as_ref()?.illuminant.as_deref(),
             Material::Solid(..) => None,
         }
@@ -144,7 +144,7 @@ impl World {
 
     /// Whether a material has a light of its own.
     pub fn may_shine(&self, material: u32) -> bool {
-        matches!(&self.materials[material as usize], Material::Phong(phong) if phong.emission.is_some())
+        matches!(&self.materials()[material as usize], Material::Phong(phong) if phong.emission.is_some())
     }
 
     /// Whether a material that shines does so to both sides.
@@ -154,7 +154,7 @@ impl World {
 
     /// Whether a hit may shine: quickly known, for most materials.
     fn has_emission(&self, hit: &Hit) -> bool {
-        match &self.materials[self.material(hit) as usize] {
+        match &self.materials()[self.material(hit) as usize] {
             Material::Phong(phong) => phong.emission.is_some(),
             Material::Solid(..) => true,
         }
@@ -196,7 +196,7 @@ impl World {
 
     /// Whether there are such faces.
     pub(crate) fn finds_hidden_backs(&self) -> bool {
-        self.materials.iter().any(|material| matches!(material, Material::Phong(phong) if hides_backs(phong)))
+        self.materials().iter().any(|material| matches!(material, Material::Phong(phong) if hides_backs(phong)))
     }
 
     /// Whether some material is there in part only.
@@ -206,14 +206,14 @@ impl World {
             Geometry::Mesh(tree) => tree.mesh.data().colors.iter().any(|color| color[3] < 1.0),
             _ => false,
         };
-        self.materials.iter().any(|material| matches!(material, Material::Phong(phong) if own(phong)))
-            || self.objects.iter().any(clear)
+        self.materials().iter().any(|material| matches!(material, Material::Phong(phong) if own(phong)))
+            || self.objects().iter().any(clear)
     }
 
     /// What fills the body of an object, or the air, if light loses something there.
     pub fn medium(&self, object: Option<u32>) -> Option<&Medium> {
-        let Some(object) = object else { return self.fog.as_ref() };
-        match &self.materials[self.objects[object as usize].material as usize] {
+        let Some(object) = object else { return self.fog() };
+        match &self.materials()[self.objects()[object as usize].material as usize] {
             Material::Phong(phong) => phong.principled.as_ref()?.medium.as_ref(),
             Material::Solid(..) => None,
         }
@@ -222,27 +222,27 @@ impl World {
     /// Whether light goes straight through a medium with a lamp behind it: through the air, and
     /// bodies without a skin.
     pub fn is_open(&self, object: Option<u32>) -> bool {
-        object.is_none_or(|object| self.has_no_skin(self.objects[object as usize].material))
+        object.is_none_or(|object| self.has_no_skin(self.objects()[object as usize].material))
     }
 
     /// Whether a surface does nothing where the index of refraction is the same on both sides.
     pub fn is_interface(&self, hit: &Hit) -> bool {
-        self.has_interfaces && self.has_no_skin(self.material(hit))
+        self.has_interfaces() && self.has_no_skin(self.material(hit))
     }
 
     fn has_no_skin(&self, material: u32) -> bool {
-        matches!(&self.materials[material as usize],
+        matches!(&self.materials()[material as usize],
             Material::Phong(phong) if phong.principled.as_ref().is_some_and(|own| own.interface))
     }
 
     /// Whether some body has no skin.
     pub(crate) fn finds_interfaces(&self) -> bool {
-        (0..self.materials.len() as u32).any(|material| self.has_no_skin(material))
+        (0..self.materials().len() as u32).any(|material| self.has_no_skin(material))
     }
 
     /// Whether light may go into a thing at a hit: quickly known, for most materials.
     pub fn may_enter(&self, hit: &Hit) -> bool {
-        match &self.materials[self.material(hit) as usize] {
+        match &self.materials()[self.material(hit) as usize] {
             Material::Phong(phong) => {
                 phong.transparent != Color::ZERO
                     || phong.principled.as_ref().is_some_and(|own| own.written.has_subsurface())

@@ -90,7 +90,7 @@ fn scene(random: &mut Random, size: f32) -> String {
 /// Rays of all kinds: anywhere, at corners, along axes and in faces of boxes, orthographic, from
 /// far away.
 fn ray(world: &World, random: &mut Random, size: f32) -> Ray {
-    let object = &world.objects[random.below(world.objects.len())];
+    let object = &world.objects()[random.below(world.objects().len())];
     let bounds = object.bounds().unwrap_or(Aabb { min: Vec3::splat(-size), max: Vec3::splat(size) });
     let corner = bounds.corners()[random.below(8)];
     let vertex = match &object.geometry {
@@ -150,9 +150,9 @@ fn all_structures_name_the_same_hit() {
             ties += expected.map_or(0, |hit| {
                 let other = |i: &usize| *i != hit.object as usize;
                 let same = |i: usize| {
-                    worlds[0].objects[i].closest(&ray.into(), false, &mut ()).is_some_and(|c| c.0.t == hit.t)
+                    worlds[0].objects()[i].closest(&ray.into(), false, &mut ()).is_some_and(|c| c.0.t == hit.t)
                 };
-                usize::from((0..worlds[0].objects.len()).filter(other).any(same))
+                usize::from((0..worlds[0].objects().len()).filter(other).any(same))
             });
         }
     }
@@ -205,4 +205,30 @@ fn transforms_apply_from_the_last_written_to_the_first_and_keep_t() {
     assert_eq!(hit([0.0, 2.0, 0.0], [1.0, 0.0, 0.0]), Some(9.0));
     assert_eq!(hit([10.0, 2.0, 5.0], [0.0, 0.0, -1.0]), Some(4.0));
     assert_eq!(hit([0.0, -0.5, 0.0], [1.0, 0.0, 0.0]), None);
+}
+
+#[test]
+fn a_changed_world_has_the_identity_of_what_it_holds() {
+    let world = testing::read(
+        "OrthographicCamera { center 0 0 5 direction 0 0 -1 up 0 1 0 size 5 } Materials { PhongMaterial {} }
+        Group { MaterialIndex 0 Sphere { center 0 0 0 radius 1 } }",
+    );
+    let changed = |change: fn(&mut Contents)| {
+        let mut other = world.clone();
+        change(other.edit());
+        other.digest()
+    };
+    let nothing = changed(|_| {});
+    let changes: [fn(&mut Contents); 4] = [
+        |contents| contents.background = Color::ONE,
+        |contents| contents.rules.epsilon = Some(0.5),
+        |contents| contents.objects[0].center.x = 1.0,
+        |contents| contents.objects.clear(),
+    ];
+    let mut all: Vec<String> = changes.iter().map(|change| changed(*change).to_string()).collect();
+    assert_eq!(all[0], changed(changes[0]).to_string());
+    all.extend([world.digest(), nothing].map(|digest| digest.to_string()));
+    all.sort();
+    all.dedup();
+    assert_eq!(all.len(), 6);
 }

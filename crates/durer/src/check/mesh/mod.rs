@@ -72,7 +72,7 @@ fn read<'s>(scout: &Scout<'s>, name: &'s FileName, objects: Vec<&'s Object>) -> 
     // It was read before, and what is wrong with it was said.
     let data = read_mesh(bytes, file, &name.path, &mut Diagnostics::default())?;
     let topology = Topology::of(&data.positions, &data.triangles);
-    let given = Given::of(&data).filter(|_| scout.world().rules.file_normals);
+    let given = Given::of(&data).filter(|_| scout.world().rules().file_normals);
     Some(MeshFile { name, file, objects, data, topology, given })
 }
 
@@ -117,7 +117,7 @@ impl MeshFile<'_> {
 
     /// The first of its objects that is of glass.
     fn glass(&self, scout: &Scout) -> Option<&Object> {
-        let materials = &scout.world().materials;
+        let materials = scout.world().materials();
         let refracts = |material: u32| match materials.get(material as usize) {
             Some(Material::Phong(phong)) => phong.transparent.max_element() > 0.0 && phong.ior != 1.0,
             _ => false,
@@ -127,7 +127,7 @@ impl MeshFile<'_> {
 
     /// Its objects as they are placed in the world.
     fn placed<'w>(&self, scout: &Scout<'w>) -> impl Iterator<Item = &'w Placed> {
-        scout.world().objects.iter().filter(|object| self.is_shown_at(object.span))
+        scout.world().objects().iter().filter(|object| self.is_shown_at(object.span))
     }
 
     /// Whether what is written at a place shows it.
@@ -137,13 +137,13 @@ impl MeshFile<'_> {
 
     /// Whether the camera is in it, as in a room: its walls face inwards by right.
     fn is_room(&self, scout: &Scout) -> bool {
-        let eye = scout.world().camera.pose().center;
+        let eye = scout.world().camera().pose().center;
         self.placed(scout).filter_map(Placed::bounds).any(|bounds| bounds.holds(eye))
     }
 
     /// Whether it is the inner wall of hollow glass: that faces inwards by right.
     fn is_hollow(&self, scout: &Scout) -> bool {
-        let objects = &scout.world().objects;
+        let objects = scout.world().objects();
         let holds = |outer: &Aabb, inner: &Aabb| outer.holds(inner.min) && outer.holds(inner.max);
         self.placed(scout).filter_map(|object| Some((object, object.bounds()?))).any(|(inner, bounds)| {
             let around = |other: &Placed| {
@@ -230,7 +230,7 @@ pub(super) fn flat_glass(scout: &Scout) -> Vec<Finding> {
     let world = scout.world();
     let glass = |object: &&Placed| {
         let refracts = |material: &Material| matches!(material, Material::Phong(phong) if phong.transparent.max_element() > 0.0 && phong.ior != 1.0);
-        world.materials.get(object.material as usize).is_some_and(refracts)
+        world.materials().get(object.material as usize).is_some_and(refracts)
     };
     let what = |object: &Placed| match &object.geometry {
         Geometry::Primitive(Primitive::Plane(_)) => Some("plane"),
@@ -240,7 +240,7 @@ pub(super) fn flat_glass(scout: &Scout) -> Vec<Finding> {
         _ => None,
     };
     let flat: Vec<(&Placed, &str)> =
-        world.objects.iter().filter(glass).filter_map(|object| Some((object, what(object)?))).collect();
+        world.objects().iter().filter(glass).filter_map(|object| Some((object, what(object)?))).collect();
     // Triangles that close a body are a body.
     let corners: Vec<_> = flat
         .iter()
@@ -261,7 +261,7 @@ pub(super) fn flat_glass(scout: &Scout) -> Vec<Finding> {
             )
             .help("glass needs a body: a sphere, a closed mesh; or give it the index 1");
         // The surface of a lake is flat by right.
-        if *what != "triangle" && !world.rules.is_official() {
+        if *what != "triangle" && !world.rules().is_official() {
             diagnostic.severity = crate::diag::Severity::Note;
         }
         Finding::from(diagnostic)
@@ -294,7 +294,7 @@ pub(super) fn large_faces<'s>(scout: &Scout<'s>) -> Vec<(&'s str, usize, usize, 
 /// Mesh files of which the year's program loses the last line, or gives normals to other vertices
 /// than the file says.
 pub(super) fn misread(scout: &Scout) -> Vec<Finding> {
-    let rules = &scout.world().rules;
+    let rules = scout.world().rules();
     let mut found = Vec::new();
     for mesh in scout.meshes() {
         let Some(bytes) = scout.subject.files.bytes(mesh.file).filter(|_| mesh.name.path.ends_with(".obj")) else {

@@ -29,7 +29,7 @@ impl Path<'_> {
     pub(super) fn pdf_of_hit(&self, ray: &Ray64, hit: &Hit, from: &Scattered) -> f32 {
         let way = ray.origin() + f64::from(hit.t) * ray.dir().as_dvec3() - from.point;
         let (wi, distance) = (ray.dir().normalize(), way.length() as f32);
-        self.world.emitters.pdf_of_hit(self.world, hit, from.point, from.n, wi, distance)
+        self.world.emitters().pdf_of_hit(self.world, hit, from.point, from.n, wi, distance)
     }
 
     /// The light of one light that is chosen.
@@ -37,9 +37,9 @@ impl Path<'_> {
         let (world, place) = (self.world, &vertex.place);
         let choice = vertex.choices.y;
         let u = sample.bounce(vertex.state.depth).pair(Use::PlaceOnLight as u32);
-        let choose = |u| world.emitters.sample(world, place.point(), place.normal(), choice, u);
+        let choose = |u| world.emitters().sample(world, place.point(), place.normal(), choice, u);
         let chosen = match (choose(u), self.transport.direct) {
-            (Some(any), Direct::Middle) => choose(world.emitters.middle(any.light).unwrap_or(u)),
+            (Some(any), Direct::Middle) => choose(world.emitters().middle(any.light).unwrap_or(u)),
             (chosen, _) => chosen,
         };
         let Some(light) = chosen else { return Spectrum::ZERO };
@@ -93,8 +93,8 @@ impl Path<'_> {
             None => Spectrum::ONE,
         };
         // Light that directions find as well must agree with them, and they meet both sides.
-        let hides_backs = self.world.hides_backs && light.pdf == 0.0;
-        if !self.world.has_cutouts && !self.world.has_interfaces {
+        let hides_backs = self.world.hides_backs() && light.pdf == 0.0;
+        if !self.world.has_cutouts() && !self.world.has_interfaces() {
             match self.world.occluded(&ray, tally) {
                 true if hides_backs => {}
                 true => return Spectrum::ZERO,

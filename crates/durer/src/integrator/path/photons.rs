@@ -171,7 +171,8 @@ impl Photons {
             }
             let shading = met.shading(path.world, &lanes);
             path.kept(&met, &mut state, &sample);
-            if !first && shading.bsdf.is_broad() {
+            // What arrives on black is not seen, but measured.
+            if !first && (shading.bsdf.is_broad() || shading.bsdf.is_black()) {
                 let bounces = state.depth;
                 let wi = -ray.dir().normalize();
                 let photon = Photon { position: met.surface.position, wi, power: state.throughput, bounces };

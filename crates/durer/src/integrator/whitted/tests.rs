@@ -105,7 +105,7 @@ fn two_facing_mirrors_make_a_geometric_series() {
     assert!((seen(hall, cut, [0.0; 3], [1.0, 0.0, 0.0]).x - 1.5).abs() < 1e-5);
     // The course takes the length of the colour: sqrt(3) / 2 after one, 3/4 after two.
     let mut world = testing::read(&format!("{CAMERA}{hall}"));
-    world.rules.epsilon = Some(1e-4);
+    world.edit().rules.epsilon = Some(1e-4);
     let cut = Settings { least_weight: 0.7, ..ALL };
     let old = Whitted { world: &world, settings: cut, cancel: None }.radiance(&Ray::new(Vec3::ZERO, Vec3::X), &mut ());
     assert!((old.x - 1.75).abs() < 1e-5, "{old}");
@@ -283,8 +283,8 @@ fn an_account_adds_up_to_the_light_that_is_found_without_it() {
                 Settings { bounces: 5, transparent_shadows: random.below(2) == 0, least_weight: 0.01, ..ALL };
             let whitted = Whitted { world: &world, settings, cancel: None };
             for _ in 0..60 {
-                let forward = world.frame.forward + 0.3 * random.direction();
-                let ray = Ray::new(world.frame.eye, forward.normalize());
+                let forward = world.camera_frame().forward + 0.3 * random.direction();
+                let ray = Ray::new(world.camera_frame().eye, forward.normalize());
                 let (mut account, mut counts) = (Account::default(), crate::bvh::TraversalStats::default());
                 let color = whitted.radiance(&ray, &mut account);
                 assert_eq!(color, whitted.radiance(&ray, &mut counts));

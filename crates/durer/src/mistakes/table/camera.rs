@@ -116,9 +116,9 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "as the year has it: v = cross(u, w), or `up` as it is written",
         "the other",
         |v, _| {
-            let raw = v.world.rules.has(Compat::RawUp) || v.world.rules.has(Compat::SkewUp);
-            v.world.rules.compat &= !(Compat::RawUp.bit() | Compat::SkewUp.bit());
-            v.world.rules.compat |= if raw { 0 } else { Compat::RawUp.bit() };
+            let raw = v.world.rules().has(Compat::RawUp) || v.world.rules().has(Compat::SkewUp);
+            v.world.edit().rules.compat &= !(Compat::RawUp.bit() | Compat::SkewUp.bit());
+            v.world.edit().rules.compat |= if raw { 0 } else { Compat::RawUp.bit() };
             v.reframe();
         },
     ),
@@ -129,8 +129,8 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "v = cross(u, w)",
         "v = normalize(up)",
         |v, _| {
-            v.world.rules.compat &= !Compat::RawUp.bit();
-            v.world.rules.compat |= Compat::SkewUp.bit();
+            v.world.edit().rules.compat &= !Compat::RawUp.bit();
+            v.world.edit().rules.compat |= Compat::SkewUp.bit();
             v.reframe();
         },
     ),
@@ -141,11 +141,11 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "u = normalize(cross(w, up))",
         "u = cross(w, up)",
         |v, how| {
-            let raw = v.world.frame.forward.cross(v.world.camera.pose().up);
-            let perpendicular = (v.world.frame.up.dot(v.world.frame.forward)).abs() < 1e-5;
-            v.world.frame.right = raw;
+            let raw = v.world.camera_frame().forward.cross(v.world.camera().pose().up);
+            let perpendicular = (v.world.camera_frame().up.dot(v.world.camera_frame().forward)).abs() < 1e-5;
+            v.world.edit().frame.right = raw;
             if perpendicular && how == 0.0 {
-                v.world.frame.up = raw.cross(v.world.frame.forward);
+                v.world.edit().frame.up = raw.cross(v.world.camera_frame().forward);
             }
         },
     )
@@ -158,7 +158,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "d = D direction + x u + y v",
         |v, _| {
             if v.angle().is_some() {
-                v.world.frame.forward = v.world.camera.pose().direction;
+                v.world.edit().frame.forward = v.world.camera().pose().direction;
             }
         },
     ),
@@ -169,9 +169,10 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "up as it is written",
         "up = (0, 1, 0)",
         |v, _| {
-            let frame = v.world.frame;
+            let frame = *v.world.camera_frame();
             let right = frame.forward.cross(Vec3::Y).normalize_or(frame.right);
-            (v.world.frame.right, v.world.frame.up) = (right, right.cross(frame.forward));
+            let own = &mut v.world.edit().frame;
+            (own.right, own.up) = (right, right.cross(frame.forward));
         },
     ),
     row(

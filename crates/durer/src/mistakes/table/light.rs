@@ -12,7 +12,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "the ambient light is missing",
         "color = ambient * kd; for each light color += ...",
         "color = 0; for each light color += ...",
-        |v, _| v.world.ambient = Color::ZERO,
+        |v, _| v.world.edit().ambient = Color::ZERO,
     ),
     row(
         "ambient-each-light",
@@ -119,8 +119,8 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "for (i = 0; i < numLights; i++)",
         "a loop that leaves out light {}",
         |v, light| {
-            if (light as usize) < v.world.lights.len() {
-                v.world.lights.remove(light as usize);
+            if (light as usize) < v.world.lights().len() {
+                v.world.edit().lights.remove(light as usize);
             }
         },
     )
@@ -133,7 +133,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "only light {}",
         |v, light| {
             // Where there is one light only, it is alone anyway.
-            v.world.lights = v.world.lights.get(light as usize).cloned().into_iter().collect();
+            v.world.edit().lights = v.world.lights().get(light as usize).cloned().into_iter().collect();
         },
     )
     .with(Values::Lights),
@@ -154,7 +154,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "color += (kd * N.L + ...) * {1|(I.r + I.g + I.b) / 3}",
         |v, grey| {
             let of = |color: Color| if grey > 0.0 { Color::splat(color.element_sum() / 3.0) } else { Color::ONE };
-            recolor(v.world.lights.iter_mut(), of);
+            recolor(v.world.edit().lights.iter_mut(), of);
         },
     )
     .with(Values::Only(&[0.0, 1.0])),
@@ -205,7 +205,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "I = color / (a0 + a1 d + a2 d^2)",
         "I = color",
         |v, _| {
-            points(v.world.lights.iter_mut(), |_| None);
+            points(v.world.edit().lights.iter_mut(), |_| None);
         },
     ),
     row(
@@ -215,7 +215,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "I = color / (a0 + a1 d + a2 d^2)",
         "I = color / (a0 + a2 d)",
         |v, _| {
-            points(v.world.lights.iter_mut(), |a| a.map(|a| Vec3::new(a.x, a.z + a.y, 0.0)));
+            points(v.world.edit().lights.iter_mut(), |a| a.map(|a| Vec3::new(a.x, a.z + a.y, 0.0)));
         },
     ),
     row(
@@ -249,7 +249,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "I = color / (1 + f d^2)",
         "I = color / (f d^2)",
         |v, _| {
-            points(v.world.lights.iter_mut(), |a| a.map(|a| Vec3::new(0.0, a.y, a.z)));
+            points(v.world.edit().lights.iter_mut(), |a| a.map(|a| Vec3::new(0.0, a.y, a.z)));
         },
     ),
     row(
@@ -259,7 +259,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "I = color / (f d^2)",
         "I = color / (1 + f d^2)",
         |v, _| {
-            points(v.world.lights.iter_mut(), |a| a.map(|a| Vec3::new(a.x + 1.0, a.y, a.z)));
+            points(v.world.edit().lights.iter_mut(), |a| a.map(|a| Vec3::new(a.x + 1.0, a.y, a.z)));
         },
     ),
     row(
@@ -270,7 +270,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "color / (a2 + a1 d + a0 d^2)",
         |v, _| {
             if v.has_three_factors() {
-                points(v.world.lights.iter_mut(), |a| a.map(|a| Vec3::new(a.z, a.y, a.x)));
+                points(v.world.edit().lights.iter_mut(), |a| a.map(|a| Vec3::new(a.z, a.y, a.x)));
             }
         },
     ),
@@ -291,7 +291,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
             };
             // A single factor has rows of its own.
             if v.has_three_factors() {
-                points(v.world.lights.iter_mut(), |a| a.map(change));
+                points(v.world.edit().lights.iter_mut(), |a| a.map(change));
             }
         },
     )
@@ -303,8 +303,8 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "for each light color += ...",
         "color / number of lights",
         |v, _| {
-            let count = v.world.lights.len().max(1) as f32;
-            recolor(v.world.lights.iter_mut(), |color| color / count);
+            let count = v.world.lights().len().max(1) as f32;
+            recolor(v.world.edit().lights.iter_mut(), |color| color / count);
         },
     ),
     row(
@@ -405,7 +405,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "the ambient light counts {} times",
         "color = ambient * kd",
         "color = {} * ambient * kd",
-        |v, factor| v.world.ambient *= factor,
+        |v, factor| v.world.edit().ambient *= factor,
     )
     .with(Values::Numbers(&[0.1, 0.5, 2.0])),
     row(
@@ -423,7 +423,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "the lights count {} times",
         "color += (kd * N.L + ks * ...) * I",
         "color += {} * (kd * N.L + ks * ...) * I",
-        |v, factor| recolor(v.world.lights.iter_mut(), |color| color * factor),
+        |v, factor| recolor(v.world.edit().lights.iter_mut(), |color| color * factor),
     )
     .with(Values::Numbers(&[0.5, 0.8, 2.0])),
 ];

@@ -80,7 +80,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "for each light if (occluded) continue",
         "a shadow ray for light {} alone",
         |v, light| {
-            if v.world.lights.len() > 1 {
+            if v.world.lights().len() > 1 {
                 v.habits.shadows.only_light = Some(light as usize);
             }
         },

@@ -24,7 +24,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "normals of transformed things go by M, not by its inverse transpose",
         "N = normalize(M^-T n)",
         "N = normalize(M n)",
-        |v, _| v.world.rules.compat |= Compat::MovedNormals.bit(),
+        |v, _| v.world.edit().rules.compat |= Compat::MovedNormals.bit(),
     ),
     row(
         "normals-inverse",
@@ -124,8 +124,8 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "materials[index], index from 0",
         "materials[index + 1], or - 1",
         |v, which| {
-            let count = v.world.materials.len().max(1) as u32;
-            for object in &mut v.world.objects {
+            let count = v.world.materials().len().max(1) as u32;
+            for object in &mut v.world.edit().objects {
                 object.material = match which as u32 {
                     0 => (object.material + 1) % count,
                     1 => (object.material + count - 1) % count,
@@ -360,7 +360,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "every kind has an intersect(...)",
         "one that always returns false",
         |v, kind| {
-            v.world.objects.retain(|object| match &object.geometry {
+            v.world.edit().objects.retain(|object| match &object.geometry {
                 Geometry::Primitive(Primitive::Sphere(_)) => kind != 0.0,
                 Geometry::Primitive(Primitive::Plane(_)) => kind != 1.0,
                 Geometry::Primitive(Primitive::Triangle(_)) => kind != 2.0,
@@ -391,9 +391,9 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "materials[index]",
         "materials[0], or the one read last",
         |v, last| {
-            let count = v.world.materials.len().max(1) as u32;
+            let count = v.world.materials().len().max(1) as u32;
             let all = if last == 0.0 { 0 } else { count - 1 };
-            v.world.objects.iter_mut().for_each(|object| object.material = all);
+            v.world.edit().objects.iter_mut().for_each(|object| object.material = all);
         },
     )
     .with(Values::Only(&[0.0, 1.0])),

@@ -3,7 +3,7 @@
 use super::*;
 use crate::compile::testing::read;
 use crate::film::Filter;
-use crate::integrator::{Settings, Transport};
+use crate::integrator::{PhotonParameters, Settings};
 use crate::render::explain::explain;
 use crate::render::{Sampling, Shard};
 
@@ -34,7 +34,7 @@ fn job(method: Method, size: u32, samples: u32, seed: u64) -> Job {
 }
 
 fn photons(count: u32, radius: f32) -> Method {
-    Method::Photons { transport: Transport::default(), count, radius: Some(radius), corrected: false }
+    Method::Photons(PhotonParameters { count, radius: Some(radius), ..PhotonParameters::default() })
 }
 
 #[test]

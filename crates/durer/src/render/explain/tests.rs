@@ -31,7 +31,7 @@ fn explanations_sum_to_the_pixels_of_all_our_scenes() {
         // The scenes that paths were made for, and some others.
         let paths = text.contains("PrincipledMaterial") || i % 5 == 0;
         let color = [ColorMode::Rgb, ColorMode::Spectral][i % 2];
-        let method = if paths { Method::Path(Transport { color, ..Transport::default() }) } else { Method::Whitted };
+        let method = if paths { Method::Path(Transport { color, ..Transport::default() }) } else { Method::WHITTED };
         let job = Job { width: 20, height: 18, seed: 5, settings, method, ..Job::default() };
         let differences = check::check(&world, &job, 6, i as u64).unwrap();
         assert!(differences.is_empty(), "{}: {differences:?}", scene.display());

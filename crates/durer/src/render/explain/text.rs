@@ -105,7 +105,7 @@ impl Names<'_> {
 
     /// An object's keyword and line.
     pub fn short_object(&self, number: u32) -> String {
-        let span = self.world.objects[number as usize].span;
+        let span = self.world.objects()[number as usize].span;
         let bytes = self.files.bytes(span.file).and_then(|b| b.get(span.start as usize..span.end as usize));
         format!("{} {}", String::from_utf8_lossy(bytes.unwrap_or(b"object")), self.line(span))
     }
@@ -137,7 +137,7 @@ impl Names<'_> {
 
     /// An object's keyword and place.
     pub fn object(&self, number: u32) -> String {
-        let span = self.world.objects[number as usize].span;
+        let span = self.world.objects()[number as usize].span;
         let bytes = self.files.bytes(span.file).and_then(|b| b.get(span.start as usize..span.end as usize));
         format!("{} {}", String::from_utf8_lossy(bytes.unwrap_or(b"object")), self.place(span))
     }
@@ -395,7 +395,7 @@ fn terms(count: usize) -> String {
 /// The factor of a secondary ray: where Fresnel's law divides the light, the material's colour and
 /// the share.
 fn split(node: &Node, from: &str, at: &Context, names: &Names) -> String {
-    let phong = at.material.and_then(|i| names.world.materials.get(i as usize));
+    let phong = at.material.and_then(|i| names.world.materials().get(i as usize));
     match (at.fresnel, phong) {
         (Some(r), Some(Material::Phong(phong))) if from == "mirrored ray" => {
             format!("`specularColor` {} · {}", rgb(phong.reflective), number(r))
@@ -442,7 +442,7 @@ fn shadow_line(shadow: &Shadow, names: &Names) -> String {
     let (object, t) = (names.short_object(object), number(t));
     match shadow.share {
         share if share.is(0.0) => format!("in the shadow of {object}, {t} away"),
-        share if share.is(1.0) && names.world.rules.has(Compat::ShadowFronts) => {
+        share if share.is(1.0) && names.world.rules().has(Compat::ShadowFronts) => {
             format!(
                 "{object} stands {t} away, but does not block it: its back is turned to the ray (habit `shadow-fronts`)"
             )

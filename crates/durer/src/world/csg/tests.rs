@@ -383,12 +383,12 @@ fn a_union_keeps_inner_surfaces_and_a_merge_does_not() {
     let (a, b) = (ball([0.0; 3], 1.0), ball([1.0, 0.0, 0.0], 1.0));
     let hits = |operation| {
         let world = world(&join(operation, &[&a, &b]));
-        (world.objects.len(), world.all_hits(&Ray::new(Vec3::new(-5.0, 0.0, 0.0), Vec3::X)).count())
+        (world.objects().len(), world.all_hits(&Ray::new(Vec3::new(-5.0, 0.0, 0.0), Vec3::X)).count())
     };
     assert_eq!(hits(Operation::Union), (2, 4));
     // Also where a union is a part of another.
     let nested = join(Operation::Union, &[&join(Operation::Union, &[&a, &b]), &ball([9.0, 0.0, 0.0], 1.0)]);
-    assert_eq!(world(&nested).objects.len(), 3);
+    assert_eq!(world(&nested).objects().len(), 3);
     assert_eq!(hits(Operation::Merge), (1, 2));
     assert_eq!(hits(Operation::Xor), (1, 4));
     assert_eq!(hits(Operation::Intersection), (1, 2));
@@ -400,22 +400,22 @@ fn parts_apart_from_each_other_are_things_of_their_own() {
     let balls: Vec<scene::Object> = (0..1000).map(|i| ball([3.0 * i as f32, 0.0, 0.0], 1.0)).collect();
     let list: Vec<&scene::Object> = balls.iter().collect();
     let merged = join(Merge, &list);
-    assert_eq!(world(&merged).objects.len(), 1000);
+    assert_eq!(world(&merged).objects().len(), 1000);
     // A cut through one concerns that one alone.
     let cut = join(Difference, &[&merged, &ball([3.0, 1.0, 0.0], 0.5)]);
     let compiled = world(&cut);
-    assert_eq!(compiled.objects.len(), 1000);
-    let solids = compiled.objects.iter().filter(|object| matches!(object.geometry, Geometry::Solid(_)));
+    assert_eq!(compiled.objects().len(), 1000);
+    let solids = compiled.objects().iter().filter(|object| matches!(object.geometry, Geometry::Solid(_)));
     assert_eq!(solids.count(), 1);
     // What is in a box shows only what is there, within tighter bounds.
     let window = join(Intersection, &[&merged, &cuboid([2.5, -0.5, -2.0], [9.5, 0.5, 2.0])]);
     let bounds = world(&window).bounds();
-    assert_eq!(world(&window).objects.len(), 3);
+    assert_eq!(world(&window).objects().len(), 3);
     assert!(
         (bounds.min.x - 2.5).abs() < 1e-4 && (bounds.max.x - 9.5).abs() < 1e-4 && bounds.max.y < 0.501,
         "{bounds:?}"
     );
-    assert_eq!(world(&join(Intersection, &[&balls[0], &balls[1]])).objects.len(), 0);
+    assert_eq!(world(&join(Intersection, &[&balls[0], &balls[1]])).objects().len(), 0);
 }
 
 #[test]
@@ -427,7 +427,7 @@ fn a_chain_of_many_parts_is_seen_as_all_of_them_are() {
     let list: Vec<&scene::Object> = balls.iter().collect();
     let solid = join(Operation::Merge, &list);
     let world = world(&solid);
-    assert_eq!(world.objects.len(), 1);
+    assert_eq!(world.objects().len(), 1);
     let mut inner = 0;
     for _ in 0..4000 {
         let origin = Vec3::new(random.between(-1.0, 11.0), random.between(-1.0, 8.0), random.between(-2.0, 3.0));

@@ -62,18 +62,18 @@ impl Beams {
     /// From all that shines to all that mirrors or refracts.
     pub fn new(world: &World) -> Self {
         let targets = targets(world);
-        let all = world.objects.iter().filter_map(Object::bounds).reduce(Aabb::union);
+        let all = world.objects().iter().filter_map(Object::bounds).reduce(Aabb::union);
         let reach = all.map_or(0.0, |all| all.size().length());
         let mut beams = Beams { targets, reach, ..Beams::default() };
         if beams.targets.is_empty() {
             return beams;
         }
         let area: f32 = beams.targets.iter().map(|target| PI * target.radius * target.radius).sum();
-        let emitters = &world.emitters;
+        let emitters = world.emitters();
         for source in &emitters.sources {
             match source {
                 Source::Area(area) => {
-                    let material = world.objects[area.object as usize].material;
+                    let material = world.objects()[area.object as usize].material;
                     let sides = if area.two_sided { 2.0 } else { 1.0 };
                     let radiance = world.emission_of(material).map_or(0.0, |light| light.radiance.max_element());
                     beams.add(Lamp::Area(*area), PI * sides * area.form.area() * radiance);
@@ -82,7 +82,7 @@ impl Beams {
             }
         }
         for &number in &emitters.even {
-            let light = &world.lights[number as usize];
+            let light = &world.lights()[number as usize];
             let seen = light.illuminate(DVec3::ZERO);
             match seen.distance.is_infinite() {
                 true => beams.add(Lamp::Far(number), PI * light.color().max_element() * area),
@@ -90,7 +90,7 @@ impl Beams {
                 false => beams.add(Lamp::Near(number), 4.0 * PI * PI * light.color().max_element() * reach * reach),
             }
         }
-        if let Some(sky) = &world.environment {
+        if let Some(sky) = world.environment() {
             beams.add(Lamp::Sky, 4.0 * PI * sky.mean().max_element() * area);
         }
         beams
@@ -130,7 +130,7 @@ impl Beams {
                 if cosine == 0.0 || cosine < 0.0 && !area.two_sided {
                     return None;
                 }
-                let material = world.objects[area.object as usize].material;
+                let material = world.objects()[area.object as usize].material;
                 let power = world.emission_of(material)?.radiance * (cosine.abs() / (density * pdf * choice));
                 // Beside its own surface.
                 let side = if cosine < 0.0 { -normal } else { normal };
@@ -155,7 +155,7 @@ impl Beams {
                 Some(Emitted { ray, power: sample.radiance / (density * choice), light: None, material: None })
             }
             Lamp::Sky => {
-                let (wi, radiance, pdf) = world.environment.as_ref()?.sample(place)?;
+                let (wi, radiance, pdf) = world.environment()?.sample(place)?;
                 let (ray, density) = self.across(-wi, target, direction);
                 Some(Emitted { ray, power: radiance / (density * pdf * choice), light: None, material: None })
             }
@@ -203,13 +203,13 @@ impl Beams {
 }
 
 fn strength(world: &World, light: u32) -> f32 {
-    world.lights[light as usize].place().map_or(0.0, |(_, intensity)| intensity.max_element()).max(0.0)
+    world.lights()[light as usize].place().map_or(0.0, |(_, intensity)| intensity.max_element()).max(0.0)
 }
 
 /// Balls around all things with an end that mirror or refract as single directions, by number.
 fn targets(world: &World) -> Vec<Target> {
     let mut found = Vec::new();
-    for (number, object) in world.objects.iter().enumerate() {
+    for (number, object) in world.objects().iter().enumerate() {
         if !throws_light(world, object) {
             continue;
         }
@@ -231,7 +231,7 @@ fn throws_light(world: &World, object: &Object) -> bool {
     if matches!(object.geometry, Geometry::Solid(_)) {
         return true;
     }
-    match &world.materials[object.material as usize] {
+    match &world.materials()[object.material as usize] {
         Material::Phong(phong) => match &phong.principled {
             Some(own) => own.has_single_directions(),
             None => phong.reflective != Color::ZERO || phong.transparent != Color::ZERO,

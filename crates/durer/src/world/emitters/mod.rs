@@ -94,9 +94,9 @@ pub struct LightSample {
 impl Emitters {
     /// Of a world's objects and lights.
     pub(crate) fn new(world: &World) -> Self {
-        let mut emitters = Emitters { first: vec![u32::MAX; world.objects.len()], ..Emitters::default() };
+        let mut emitters = Emitters { first: vec![u32::MAX; world.objects().len()], ..Emitters::default() };
         let mut bounds = Vec::new();
-        for (number, object) in world.objects.iter().enumerate() {
+        for (number, object) in world.objects().iter().enumerate() {
             let Some(emission) = world.emission_of(object.material) else { continue };
             let start = emitters.sources.len();
             for part in 0..object.parts() {
@@ -108,10 +108,10 @@ impl Emitters {
                 emitters.first[number] = start as u32;
             }
         }
-        for (number, light) in world.lights.iter().enumerate() {
+        for (number, light) in world.lights().iter().enumerate() {
             match light.place() {
                 Some((position, intensity)) => {
-                    let profile = world.profiles.get(number).and_then(Option::as_ref);
+                    let profile = world.profiles().get(number).and_then(Option::as_ref);
                     let most = profile.map_or(1.0, |profile| profile.most());
                     emitters.sources.push(Source::Light(number as u32));
                     bounds.push(Bounds {
@@ -133,7 +133,7 @@ impl Emitters {
     /// How many things are chosen evenly: lights without a place, the surroundings, and all that is
     /// in the tree.
     fn choices(&self, world: &World) -> usize {
-        self.even.len() + usize::from(world.environment.is_some()) + usize::from(!self.tree.is_empty())
+        self.even.len() + usize::from(world.environment().is_some()) + usize::from(!self.tree.is_empty())
     }
 
     /// Chooses a light for a point with a normal (zero: any) by a number, and a direction to it by
@@ -146,7 +146,7 @@ impl Emitters {
         if let Some(&light) = self.even.get(chosen) {
             return Some(spread(world, light, of_light(world, light, point, even), u));
         }
-        if let (Some(environment), true) = (&world.environment, chosen == self.even.len()) {
+        if let (Some(environment), true) = (world.environment(), chosen == self.even.len()) {
             let (wi, radiance, pdf) = environment.sample(u)?;
             let reach = f32::INFINITY;
             return Some(LightSample { light: LightId::Environment, wi, reach, radiance, choice: even, pdf });
@@ -192,7 +192,7 @@ impl Emitters {
 
     /// The light from a direction in which nothing is hit, and the same of that.
     pub fn sky(&self, world: &World, wi: Vec3) -> (Color, f32) {
-        let Some(environment) = &world.environment else { return (world.sky(wi), 0.0) };
+        let Some(environment) = world.environment() else { return (world.sky(wi), 0.0) };
         let (light, pdf) = environment.at_with_pdf(wi);
         (light, pdf / self.choices(world) as f32)
     }
@@ -214,7 +214,7 @@ fn of_light(world: &World, light: u32, point: DVec3, choice: f32) -> LightSample
 
 /// A light that is seen under some angle, from one of its directions.
 fn spread(world: &World, light: u32, sample: LightSample, u: Vec2) -> LightSample {
-    let degrees = world.lights[light as usize].spread();
+    let degrees = world.lights()[light as usize].spread();
     if degrees == 0.0 {
         return sample;
     }
@@ -252,7 +252,7 @@ impl AreaLight {
         // The point is known to its rounding only; what stands nearer to the emitter than that does not
         // count.
         let reach = place.distance - 2.0 * self.error / place.cosine.abs().max(1e-3);
-        let radiance = world.emission_of(world.objects[self.object as usize].material)?.radiance;
+        let radiance = world.emission_of(world.objects()[self.object as usize].material)?.radiance;
         let light = LightId::Surface(self.object, self.part);
         Some(LightSample { light, wi: place.wi, reach, radiance, choice, pdf: place.pdf })
     }

@@ -44,7 +44,7 @@ fn compiled(materials: &[String], objects: &str, folder: &Path) -> World {
 }
 
 fn material(world: &World, number: usize) -> &Principled {
-    let Material::Phong(phong) = &world.materials[number] else { panic!() };
+    let Material::Phong(phong) = &world.materials()[number] else { panic!() };
     phong.principled.as_ref().unwrap()
 }
 

@@ -7,7 +7,7 @@ use crate::camera::{CameraSample, Frame, Lens};
 use crate::compile::testing;
 use crate::diag::Diagnostic;
 use crate::dialect::Dialect;
-use crate::integrator::{Path as Paths, Settings, Transport};
+use crate::integrator::{Integrate, Path as Paths, Settings, Transport};
 use crate::light::Light;
 use crate::math::random::Random;
 use crate::math::{Vec2, Vec3, fp};
@@ -404,7 +404,7 @@ fn roughness_and_heights_come_from_pictures() {
     let world = world(folder.path().join("a.pbrt").to_str().unwrap(), text);
     let ray = crate::math::Ray::new(Vec3::ZERO, Vec3::Z);
     let hit = world.closest(&ray, &mut ()).unwrap();
-    let crate::world::Material::Phong(phong) = &world.materials[world.material(&hit) as usize] else { panic!() };
+    let crate::world::Material::Phong(phong) = &world.materials()[world.material(&hit) as usize] else { panic!() };
     let own = phong.principled.as_ref().unwrap();
     // pbrt takes the root of what is written for alpha, whose root is our roughness.
     let expected = (0.5 * crate::image::decode_srgb(128)).sqrt().sqrt();
@@ -450,7 +450,7 @@ fn media_fill_shapes_and_surround_the_camera() {
          Translate 9 0 5 Material \"interface\" Shape \"sphere\""
     );
     let inside = world("smoke.pbrt", &text);
-    assert_eq!(inside.objects.len(), 1);
+    assert_eq!(inside.objects().len(), 1);
     let settings = Settings { bounces: 4, ..Job::default().settings };
     let through = |world: &World| {
         let paths = Paths::new(world, settings, Transport::default());
@@ -460,7 +460,7 @@ fn media_fill_shapes_and_surround_the_camera() {
     close(through(&inside), Vec3::new(-0.5, -0.25, -1.0).map(fp::exp));
     // Around the camera it is fog; of colours that it thins otherwise the strongest counts.
     let text = format!("{smoke} MediumInterface \"\" \"smoke\" Camera \"perspective\" WorldBegin Shape \"sphere\"");
-    let fog = world("fog.pbrt", &text).fog.unwrap();
+    let fog = world("fog.pbrt", &text).fog().cloned().unwrap();
     close(fog.extinction, Vec3::splat(0.5));
     assert!(fog.place.is_none() && !fog.scatters());
     // The defaults of a body below a skin, and a sheet that scatters to both sides.
@@ -473,7 +473,7 @@ fn media_fill_shapes_and_surround_the_camera() {
     close(extinction, Vec3::new(2.5511, 3.2124, 3.784));
     close(albedo * extinction, Vec3::new(2.55, 3.21, 3.77));
     assert!(medium(1).is_none());
-    let sheet = world.materials.iter().find_map(|material| match material {
+    let sheet = world.materials().iter().find_map(|material| match material {
         crate::world::Material::Phong(phong) => {
             phong.principled.as_ref().filter(|own| own.written.subsurface_weight > 0.0)
         }

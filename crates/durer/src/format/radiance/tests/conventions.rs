@@ -3,7 +3,7 @@ use crate::LoadOptions;
 use crate::camera::{CameraSample, Frame, Lens};
 use crate::diag::{Diagnostics, Files};
 use crate::dialect::Dialect;
-use crate::integrator::{Path as Paths, Settings, Transport};
+use crate::integrator::{Integrate, Path as Paths, Settings, Transport};
 use crate::load_text;
 use crate::math::{Vec2, fp};
 use crate::render::Job;

@@ -1,0 +1,182 @@
+//! Planes and spheres, of which eight are tested at once.
+//!
+//! For scenes of a few things, where a tree would cost more than it saves, and for planes, which
+//! have no box. What is computed is what a test of one thing alone computes, in double precision
+//! and in the same order, so hits have the same bits.
+
+use super::TraversalCounter;
+use super::lanes::{Available, Kernel, Lanes, WIDTH};
+use crate::math::{Doubles, Ray, Triple, Vec3};
+
+/// Planes and spheres under the caller's numbers.
+#[derive(Clone, Debug)]
+pub struct PrimitivePacks {
+    /// normal · p = size.
+    planes: Vec<Pack>,
+    /// |p - center|^2 = size.
+    spheres: Vec<Pack>,
+    /// How many there are of both.
+    count: usize,
+    level: Available,
+}
+
+/// Where a ray meets one of them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PackHit {
+    /// Position along the ray.
+    pub t: f32,
+    /// Number of the plane or sphere.
+    pub number: u32,
+}
+
+/// Eight things of a kind: of each a normal or a centre, and a size. The size of a lane without a
+/// thing is no number, so that nothing is met there.
+#[derive(Clone, Copy, Debug)]
+struct Pack {
+    vectors: [[f64; WIDTH]; 3],
+    sizes: [f64; WIDTH],
+    numbers: [u32; WIDTH],
+}
+
+impl Default for PrimitivePacks {
+    fn default() -> Self {
+        PrimitivePacks { planes: Vec::new(), spheres: Vec::new(), count: 0, level: Available::chosen() }
+    }
+}
+
+impl PrimitivePacks {
+    /// Adds the plane normal · p = offset.
+    pub fn push_plane(&mut self, number: u32, normal: Vec3, offset: f32) {
+        push(&mut self.planes, number, normal, f64::from(offset));
+        self.count += 1;
+    }
+
+    /// Adds the sphere |p - center| = radius.
+    pub fn push_sphere(&mut self, number: u32, center: Vec3, radius: f32) {
+        push(&mut self.spheres, number, center, f64::from(radius) * f64::from(radius));
+        self.count += 1;
+    }
+
+    /// How many planes and spheres there are.
+    pub fn len(&self) -> usize {
+        self.count
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.count == 0
+    }
+
+    /// The first hit in the ray's interval; of several at the same `t` that of the least number.
+    /// The ray must be finite, and have a direction.
+    #[inline]
+    pub fn closest<T: TraversalCounter>(&self, ray: &Ray, counter: &mut T) -> Option<PackHit> {
+        if self.is_empty() {
+            return None;
+        }
+        counter.work(0, self.count as u64);
+        let found = self.level.run(Query::<false> { packs: self, ray });
+        (found.number != u32::MAX).then_some(found)
+    }
+
+    /// Whether there is a hit in the ray's interval. The ray must be finite, and have a direction.
+    #[inline]
+    pub fn occluded<T: TraversalCounter>(&self, ray: &Ray, counter: &mut T) -> bool {
+        if self.is_empty() {
+            return false;
+        }
+        counter.work(0, self.count as u64);
+        self.level.run(Query::<true> { packs: self, ray }).number != u32::MAX
+    }
+}
+
+/// Adds a thing in the first lane that is free.
+fn push(packs: &mut Vec<Pack>, number: u32, vector: Vec3, size: f64) {
+    let free = |pack: &Pack| pack.sizes.iter().position(|size| size.is_nan());
+    let mut pack = packs.pop_if(|pack| free(pack).is_some()).unwrap_or(Pack {
+        vectors: [[0.0; WIDTH]; 3],
+        sizes: [f64::NAN; WIDTH],
+        numbers: [u32::MAX; WIDTH],
+    });
+    let lane = free(&pack).unwrap_or(0);
+    (0..3).for_each(|axis| pack.vectors[axis][lane] = f64::from(vector[axis]));
+    (pack.sizes[lane], pack.numbers[lane]) = (size, number);
+    packs.push(pack);
+}
+
+/// One ray's way through all packs; `ANY`: the first thing found will do.
+struct Query<'a, const ANY: bool> {
+    packs: &'a PrimitivePacks,
+    ray: &'a Ray,
+}
+
+impl<const ANY: bool> Kernel for Query<'_, ANY> {
+    type Output = PackHit;
+
+    #[inline(always)]
+    fn run<L: Lanes>(self, lanes: L) -> PackHit {
+        let Query { packs, ray } = self;
+        let mut best = PackHit { t: ray.t_max, number: u32::MAX };
+        let origin = lanes.doubles3(lanes.splat3(ray.origin.to_array()));
+        let dir = lanes.doubles3(lanes.splat3(ray.dir.to_array()));
+        let (t_min, t_max) = (lanes.splat(ray.t_min), lanes.splat(ray.t_max));
+        for pack in &packs.planes {
+            let normal = load3(lanes, &pack.vectors);
+            // A parallel ray divides by zero, and hits nothing.
+            let t = lanes.load_doubles(&pack.sizes).sub(normal.dot(origin)).div(normal.dot(dir));
+            let t = lanes.singles(t);
+            let met = lanes.lt(t_min, t) & lanes.lt(t, t_max);
+            if ANY && met != 0 {
+                return PackHit { number: 0, ..best };
+            }
+            best = nearest(lanes.store(t), met, &pack.numbers, best);
+        }
+        for pack in &packs.spheres {
+            // The discriminant is taken from the point of the ray nearest to the centre, which
+            // keeps small, far spheres exact. Source: Haines, Günther, Akenine-Möller, *Ray Tracing
+            // Gems* (2019), chapter 7.
+            let o = origin.sub(load3(lanes, &pack.vectors));
+            let (dd, b) = (dir.dot(dir), o.dot(dir).mul(lanes.splat_double(-1.0)));
+            let along = b.div(dd);
+            let near = o.add([along; 3].mul(dir));
+            let square = lanes.load_doubles(&pack.sizes);
+            let discriminant = square.sub(near.dot(near));
+            // Where a sphere is missed, it is negative or no number, and so are the roots.
+            if lanes.le(lanes.splat(0.0), lanes.singles(discriminant)) == 0 {
+                continue;
+            }
+            // q has the sign of b, so that neither root loses digits to cancellation.
+            let c = o.dot(o).sub(square);
+            let q = b.add(dd.mul(discriminant).sqrt().copysign(b));
+            let (t0, t1) = (c.div(q), q.div(dd));
+            let (near, far) = (lanes.singles(t0.min(t1)), lanes.singles(t1.max(t0)));
+            let in_near = lanes.lt(t_min, near) & lanes.lt(near, t_max);
+            let in_far = lanes.lt(t_min, far) & lanes.lt(far, t_max);
+            let met = in_near | in_far;
+            if ANY && met != 0 {
+                return PackHit { number: 0, ..best };
+            }
+            best = nearest(lanes.store(lanes.select(in_near, near, far)), met, &pack.numbers, best);
+        }
+        best
+    }
+}
+
+#[inline(always)]
+fn load3<L: Lanes>(lanes: L, [x, y, z]: &[[f64; WIDTH]; 3]) -> [L::Doubles; 3] {
+    [lanes.load_doubles(x), lanes.load_doubles(y), lanes.load_doubles(z)]
+}
+
+/// The better of a hit and those of the lanes that are met.
+#[inline(always)]
+fn nearest(t: [f32; WIDTH], mut met: u32, numbers: &[u32; WIDTH], mut best: PackHit) -> PackHit {
+    while met != 0 {
+        let lane = met.trailing_zeros() as usize % WIDTH;
+        let hit = PackHit { t: t[lane], number: numbers[lane] };
+        if (hit.t, hit.number) < (best.t, best.number) {
+            best = hit;
+        }
+        met &= met - 1;
+    }
+    best
+}

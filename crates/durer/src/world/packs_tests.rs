@@ -1,0 +1,59 @@
+//! Planes and spheres that are tested eight at a time are hit where each is hit alone.
+
+use crate::bvh::PrimitivePacks;
+use crate::math::random::{Random, rounds};
+use crate::math::{Ray, Vec3};
+use crate::shape::{Plane, Primitive, Shape, Sphere};
+
+fn vector(random: &mut Random, size: f32) -> Vec3 {
+    Vec3::new(random.between(-size, size), random.between(-size, size), random.between(-size, size))
+}
+
+/// 10^5 rays, in sets of up to 20 planes and 20 spheres, many of them twice: t and number have the
+/// same bits.
+#[test]
+fn packs_hit_as_shapes_do() {
+    let mut random = Random(8);
+    let (mut hits, mut rays) = (0, 0);
+    for _ in 0..rounds(100_000) / 100 {
+        let mut packs = PrimitivePacks::default();
+        let mut shapes: Vec<Primitive> = Vec::new();
+        let size = [1.0, 1e-3, 1e6][random.below(3)];
+        for _ in 0..random.below(21) {
+            let number = shapes.len() as u32;
+            let axes = [Vec3::X, -Vec3::Y, 2.0 * Vec3::Z, vector(&mut random, 1.0) + Vec3::splat(1e-6)];
+            let plane =
+                Plane { normal: axes[random.below(4)], offset: [0.0, random.between(-size, size)][random.below(2)] };
+            packs.push_plane(number, plane.normal, plane.offset);
+            shapes.push(plane.into());
+        }
+        for _ in 0..random.below(21) {
+            let number = shapes.len() as u32;
+            let center = [Vec3::ZERO, vector(&mut random, size)][random.below(2)];
+            let sphere = Sphere { center, radius: [size, random.between(0.01, 1.0) * size][random.below(2)] };
+            packs.push_sphere(number, sphere.center, sphere.radius);
+            shapes.push(sphere.into());
+        }
+        assert_eq!(packs.len(), shapes.len());
+        for _ in 0..100 {
+            let dirs = [Vec3::X, -Vec3::Z, vector(&mut random, 1.0) + Vec3::splat(1e-6), 1e-20 * Vec3::Y];
+            let origins = [Vec3::ZERO, size * Vec3::X, vector(&mut random, 2.0 * size)];
+            let t_min = [0.0, f32::NEG_INFINITY, size][random.below(3)];
+            let t_max = [f32::INFINITY, 1.5 * size][random.below(2)];
+            let ray = Ray { t_min, t_max, ..Ray::new(origins[random.below(3)], dirs[random.below(4)]) };
+            if !crate::bvh::is_sound(&ray) {
+                continue;
+            }
+            let each =
+                shapes.iter().zip(0_u32..).filter_map(|(shape, number)| Some((shape.intersect(&ray)?.t, number)));
+            let expected = each.min_by(|a, b| a.partial_cmp(b).unwrap());
+            let found = packs.closest(&ray, &mut ()).map(|hit| (hit.t, hit.number));
+            let bits = |hit: Option<(f32, u32)>| hit.map(|(t, number)| ((t + 0.0).to_bits(), number));
+            assert_eq!(bits(found), bits(expected), "{ray:?}");
+            assert_eq!(packs.occluded(&ray, &mut ()), expected.is_some(), "{ray:?}");
+            hits += usize::from(expected.is_some());
+            rays += 1;
+        }
+    }
+    assert!(3 * hits > rays, "{hits} of {rays} rays hit");
+}
