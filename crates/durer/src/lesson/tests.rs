@@ -103,11 +103,12 @@ fn each_step_of_paths_is_seen_in_a_scene_of_ours_and_only_where_it_is() {
 fn points_and_directions_weighed_have_less_noise_than_either() {
     let mut plates = stage("plates.txt", 48);
     (plates.job.method, plates.job.sampling) =
-        (Method::PATH, Sampling::Filtered { samples: 16, filter: Filter::default() });
+        (Method::PATH, Sampling::Filtered { samples: 64, filter: Filter::default() });
     let topic = TOPICS.iter().find(|topic| topic.name == "mis").unwrap();
     let noise: Vec<f64> =
         topic.shots.iter().map(|shot| plates.show(shot, &Control::default()).unwrap().noise.unwrap()).collect();
-    assert!(noise[2] < 0.98 * noise[0] && noise[2] < 0.5 * noise[1], "{noise:?}");
+    // Points alone are bad by rare bright samples, of which a few samples have none.
+    assert!(noise[2] < 0.95 * noise[0] && noise[2] < 0.5 * noise[1], "{noise:?}");
 }
 
 #[test]
