@@ -8,6 +8,8 @@ use std::ops::Range;
 pub(super) enum NumberError {
     /// It is no number.
     Malformed,
+    /// It is no whole number where one is meant.
+    NotWhole,
     /// It is infinite, not a number, or beyond the range of 32-bit floating point.
     NotFinite,
 }
@@ -121,6 +123,9 @@ pub(super) fn report_number(report: &mut Report, error: NumberError, at: Range<u
         NumberError::NotFinite => {
             report.error(at, format!("expected a finite number, found {}", shown(word))).help =
                 Some("numbers must lie within the range of 32-bit floating point, about ±3.4e38".into());
+        }
+        NumberError::NotWhole => {
+            report.error(at, format!("expected a whole number, found {}", shown(word)));
         }
         NumberError::Malformed => {
             let point: Vec<u8> = word.iter().map(|&byte| if byte == b',' { b'.' } else { byte }).collect();

@@ -9,6 +9,7 @@ mod faces;
 pub mod habits;
 mod materials;
 pub(super) mod scene;
+mod wires;
 mod words;
 mod write;
 
@@ -31,6 +32,9 @@ enum Statement {
     Uv,
     Normal,
     Face,
+    /// What has no surface: a mesh has none of it, a scene shows it.
+    Line,
+    Point,
     /// Names the material of what follows.
     Material,
     /// Names files of materials.
@@ -55,8 +59,8 @@ const STATEMENTS: &[(&str, Statement)] = &[
     ("mtllib", Statement::Library),
     ("usemap", Statement::Ignored),
     ("maplib", Statement::Ignored),
-    ("l", Statement::Ignored),
-    ("p", Statement::Ignored),
+    ("l", Statement::Line),
+    ("p", Statement::Point),
     ("vp", Statement::Ignored),
     ("lod", Statement::Ignored),
     ("bevel", Statement::Ignored),

@@ -1,7 +1,9 @@
 //! Readers of whole scenes: one row of [`SCENE_FORMATS`] each. What is a mesh alone is a scene of
 //! one mesh.
 
-use super::{MeshFormat, extension, gltf, mitsuba, obj, panorama, pbrt, ply, radiance, read_mesh, stl, threemf};
+use super::{
+    MeshFormat, extension, gltf, mitsuba, obj, panorama, pbrt, ply, radiance, read_mesh, sticks, stl, threemf,
+};
 use crate::describe::FileName;
 use crate::diag::{Diagnostic, Diagnostics, Files, Span};
 use crate::dialect::MeshNormals;
@@ -137,6 +139,15 @@ fn one_mesh(input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
     let span = Span { file: input.file, start: 0, end: 0 };
     let data = read_mesh(input.bytes, input.file, input.name, diagnostics)?;
     input.files.borrow_mut().cut(input.file, 0, diagnostics);
+    let data = if data.triangles.is_empty() && !data.positions.is_empty() {
+        // Vertices alone are a cloud of points.
+        let points: Vec<u32> = (0..data.positions.len() as u32).collect();
+        let note = Diagnostic::note(sticks::explained(0, points.len())).code("points-and-lines");
+        diagnostics.push(note.at(span));
+        sticks::thickened(&data, &[], &points)
+    } else {
+        data
+    };
     let mut scene = Scene::default();
     let node = scene.add_mesh(input.name, Arc::new(data), span);
     scene.root = Some(Group { objects: vec![Object { node, material: None, span }] });

@@ -1,5 +1,6 @@
 //! What has no surface as something that is seen: lines as sticks, points as balls.
 
+use super::report::counted;
 use crate::math::{Vec3, fp};
 use crate::scene::Node;
 use crate::shape::{Cone, Cylinder, MeshData, Sphere};
@@ -20,10 +21,28 @@ pub(super) fn ball(center: Vec3, radius: f32) -> Node {
 
 /// Sides of a stick of triangles.
 const SIDES: u32 = 6;
-/// The thickness of lines without one, as a share of the size of what they belong to, and of
-/// points.
+/// The radius of lines without one, as a share of the size of what they belong to, and of points.
 const LINE: f32 = 0.006;
 const POINT: f32 = 0.015;
+/// Lines and points that become triangles at most; of more, every second or third is shown.
+const MAX: usize = 1 << 21;
+
+/// Of how many lines or points one is shown.
+fn step(count: usize) -> usize {
+    count.div_ceil(MAX).max(1)
+}
+
+/// What is said of lines and points that are thickened.
+pub(super) fn explained(lines: usize, points: usize) -> String {
+    let all =
+        [(lines, "line", "lines"), (points, "point", "points")].map(|(count, one, many)| match (count, step(count)) {
+            (0, _) => String::new(),
+            (_, 1) => counted(count, one, many),
+            (_, step) => format!("{count} {many}, of which one in {step} is shown,"),
+        });
+    let all = all.into_iter().filter(|text| !text.is_empty()).collect::<Vec<_>>().join(" and ");
+    format!("{all} without a surface: thin sticks and small balls are shown")
+}
 
 /// What has lines between vertices, and vertices alone, as thin sticks and small balls of
 /// triangles. Vertices keep their colours and coordinates.
@@ -32,8 +51,11 @@ pub(super) fn thickened(data: &MeshData, lines: &[[u32; 2]], points: &[u32]) -> 
     let low = used().reduce(Vec3::min).unwrap_or_default();
     let size = (used().reduce(Vec3::max).unwrap_or_default() - low).length();
     let size = if size > 0.0 && size.is_finite() { size } else { 1.0 };
+    // Balls of a dense cloud touch their neighbours on a surface.
+    let shown_points = points.len().div_ceil(step(points.len()).max(1));
+    let ball = POINT.min(0.6 / (shown_points as f32).sqrt());
     let mut made = MeshData::default();
-    for &[a, b] in lines {
+    for &[a, b] in lines.iter().step_by(step(lines.len())) {
         let ends = [a, b].map(|i| data.positions[i as usize]);
         let Some(along) = (ends[1] - ends[0]).try_normalize() else { continue };
         let (x, y) = along.any_orthonormal_pair();
@@ -50,11 +72,11 @@ pub(super) fn thickened(data: &MeshData, lines: &[[u32; 2]], points: &[u32]) -> 
             made.triangles.extend([[this, next, next + SIDES], [this, next + SIDES, this + SIDES]]);
         }
     }
-    for &vertex in points {
+    for &vertex in points.iter().step_by(step(points.len())) {
         // An octahedron with the normals of a ball.
         let first = made.positions.len() as u32;
         for normal in [Vec3::X, Vec3::NEG_X, Vec3::Y, Vec3::NEG_Y, Vec3::Z, Vec3::NEG_Z] {
-            made.push(data, vertex, data.positions[vertex as usize] + POINT * size * normal, normal);
+            made.push(data, vertex, data.positions[vertex as usize] + ball * size * normal, normal);
         }
         for (x, y, z) in [(0, 2, 4), (2, 1, 4), (1, 3, 4), (3, 0, 4), (2, 0, 5), (1, 2, 5), (3, 1, 5), (0, 3, 5)] {
             made.triangles.push([x, y, z].map(|k| first + k));

@@ -95,7 +95,7 @@ fn faces(bytes: &[u8], part: Range<usize>, so_far: Counts, whole: &MeshData, rep
                 let name = rest_of(&mut words, keyword.end);
                 reader.found.switches.push((reader.found.mesh.triangles.len(), name));
             }
-            Some(Statement::Library | Statement::Ignored) | None => {}
+            Some(Statement::Line | Statement::Point | Statement::Library | Statement::Ignored) | None => {}
         }
         words.skip();
         if reader.found.report.is_full() {
@@ -158,7 +158,8 @@ impl FaceReader<'_> {
             let end = start + rest.iter().position(|&byte| byte == b'/').unwrap_or(rest.len());
             // All but the position may be left empty.
             if end > start || part == 0 {
-                *slot = self.index(start..end, part)?;
+                let counts = [self.total[part], self.so_far[part]];
+                *slot = index(self.bytes, start..end, part, counts, &mut self.found.report)?;
             }
             if end == word.end {
                 return Some(corner);
@@ -168,38 +169,6 @@ impl FaceReader<'_> {
         let message = format!("a corner has at most 3 indices, found {}", shown(&self.bytes[word.clone()]));
         self.found.report.error(word, message).help =
             Some("a corner is `vertex`, `vertex/texture`, `vertex//normal` or `vertex/texture/normal`".into());
-        None
-    }
-
-    /// Reads an index, counted from 1 or, negative, back from the last statement of its kind.
-    fn index(&mut self, at: Range<usize>, part: usize) -> Option<u32> {
-        let report = &mut self.found.report;
-        let (one, many, keyword) = KINDS[part];
-        let total = self.total[part];
-        let text = &self.bytes[at.clone()];
-        let Some(index) = parse_integer(text) else {
-            let found = if text.is_empty() { "nothing".into() } else { shown(text) };
-            report.error(at, format!("expected the number of a {one}, found {found}"));
-            return None;
-        };
-        let so_far = self.so_far[part] as i64;
-        if index > 0 && index <= total as i64 {
-            return Some((index - 1) as u32);
-        }
-        if index < 0 && index >= -so_far {
-            return Some((so_far + index) as u32);
-        }
-        if index == 0 {
-            let message = format!("there is no {one} 0: they are counted from 1");
-            report.error(at, message);
-        } else if index > 0 {
-            let message = format!("there is no {one} {}: the file has {}", shown(text), counted(total, one, many));
-            report.error(at, message).help =
-                (total == 0).then(|| format!("{many} are made by `{keyword}` statements, and there are none"));
-        } else {
-            let before = counted(so_far as usize, one, many);
-            report.error(at, format!("{} reaches back too far: {before} so far", shown(text)));
-        }
         None
     }
 
@@ -230,6 +199,41 @@ impl FaceReader<'_> {
                 .help = Some("cut it into triangles in a modelling program".into());
         }
     }
+}
+
+/// Reads an index of a kind, counted from 1 or, negative, back from the last statement of its kind.
+/// `total` and `so_far`: how many there are in the file and before this statement.
+pub(super) fn index(
+    bytes: &[u8],
+    at: Range<usize>,
+    kind: usize,
+    [total, so_far]: [usize; 2],
+    report: &mut Report,
+) -> Option<u32> {
+    let (one, many, keyword) = KINDS[kind];
+    let text = &bytes[at.clone()];
+    let Some(index) = parse_integer(text) else {
+        let found = if text.is_empty() { "nothing".into() } else { shown(text) };
+        report.error(at, format!("expected the number of a {one}, found {found}"));
+        return None;
+    };
+    if index > 0 && index <= total as i64 {
+        return Some((index - 1) as u32);
+    }
+    if index < 0 && index >= -(so_far as i64) {
+        return Some((so_far as i64 + index) as u32);
+    }
+    if index == 0 {
+        report.error(at, format!("there is no {one} 0: they are counted from 1"));
+    } else if index > 0 {
+        let message = format!("there is no {one} {}: the file has {}", shown(text), counted(total, one, many));
+        report.error(at, message).help =
+            (total == 0).then(|| format!("{many} are made by `{keyword}` statements, and there are none"));
+    } else {
+        let before = counted(so_far, one, many);
+        report.error(at, format!("{} reaches back too far: {before} so far", shown(text)));
+    }
+    None
 }
 
 /// Adds indices to a list that begins, filled up, where the first triangle has some.

@@ -2,13 +2,14 @@
 
 use super::faces::rest_of;
 use super::materials::{self, Library};
+use super::wires::{WireReader, Wires};
 use super::words::Words;
 use super::{Statement, Switch, read_with, statement};
 use crate::describe::FileName;
 use crate::diag::{Diagnostic, Diagnostics, Span, did_you_mean};
-use crate::format::report::shown;
+use crate::format::report::{Report, shown};
 use crate::format::scene::{Input, SceneFormat};
-use crate::format::too_large;
+use crate::format::{sticks, too_large};
 use crate::math::Aabb;
 use crate::scene::{Group, Material, Object, Scene};
 use crate::shape::MeshData;
@@ -39,14 +40,36 @@ fn read(input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
     let data = read_with(input.bytes, input.file, &mut switches, diagnostics)?;
     let span = |at: &Range<usize>| Span { file: input.file, start: at.start as u32, end: at.end as u32 };
     let mut library = Library::default();
+    let mut report = Report::new(input.file, diagnostics);
+    let mut wires = WireReader::new(input.bytes, data.positions.len());
     let mut words = Words::new(input.bytes);
     while let Some(keyword) = words.next_statement() {
-        if statement(&input.bytes[keyword.clone()]) == Some(Statement::Library) {
-            let names = rest_of(&mut words, keyword.end);
-            materials::read_files(input, &names, span(&names), &mut library, diagnostics);
+        match statement(&input.bytes[keyword.clone()]) {
+            Some(Statement::Library) => {
+                let names = rest_of(&mut words, keyword.end);
+                materials::read_files(input, &names, span(&names), &mut library, diagnostics);
+            }
+            Some(Statement::Position) => wires.vertices[1] += 1,
+            Some(Statement::Material) => wires.material = rest_of(&mut words, keyword.end),
+            Some(kind @ (Statement::Line | Statement::Point)) => wires.read(kind, &mut words, &mut report),
+            _ => {}
         }
-        words.skip_rest();
+        words.skip();
     }
+    wires.found.retain(|wires| !wires.lines.is_empty() || !wires.points.is_empty());
+    let alone = data.triangles.is_empty() && wires.found.is_empty() && !data.positions.is_empty();
+    if alone && !report.has_errors() {
+        // A file of vertices alone is a cloud of points.
+        let points = (0..data.positions.len() as u32).collect();
+        wires.found.push(Wires { points, ..Wires::default() });
+    }
+    if let [first, ..] = wires.found.as_slice() {
+        let lines = wires.found.iter().map(|wires| wires.lines.len()).sum();
+        let points = wires.found.iter().map(|wires| wires.points.len()).sum();
+        report.note(first.material.clone(), sticks::explained(lines, points)).code = "points-and-lines";
+    }
+    let wires = wires.found;
+    report.finish(diagnostics, ())?;
     let size = Aabb::around(data.positions.iter().copied()).size().length();
     for material in library.materials.values_mut().filter(|material| material.bump_texture.is_some()) {
         material.bump_height *= size;
@@ -55,7 +78,11 @@ fn read(input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
     scene.assets.pictures = std::mem::take(&mut library.pictures);
     let mut objects = Vec::new();
     let mut numbers: BTreeMap<&str, u32> = BTreeMap::new();
-    for (part, at) in parts(&data, input.bytes, &switches) {
+    let mut shown_parts = if data.triangles.is_empty() { Vec::new() } else { parts(&data, input.bytes, &switches) };
+    let vertices = MeshData { positions: data.positions, colors: data.colors, ..MeshData::default() };
+    let thick = |wires: Wires| (sticks::thickened(&vertices, &wires.lines, &wires.points), wires.material);
+    shown_parts.extend(wires.into_iter().map(thick));
+    for (part, at) in shown_parts {
         let name = String::from_utf8_lossy(&input.bytes[at.clone()]).into_owned();
         let material = library.materials.get_key_value(name.as_str()).map(|(name, material)| {
             *numbers.entry(name).or_insert_with(|| scene.add_material(Material::Principled(Box::new(material.clone()))))

@@ -1,6 +1,10 @@
+use crate::format::testing::{folder, read_in};
 use crate::format::tests::{abuse, read, read_clean};
 use crate::math::{Vec2, Vec3};
+use crate::scene::Scene;
+use crate::shape::MeshData;
 use crate::shape::mesh::NO_INDEX;
+use std::sync::Arc;
 
 const SQUARE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 
@@ -142,4 +146,38 @@ fn nothing_panics() {
         l 1 2\nf 1/1/1 2/1/1 3/1/1 4/1/1 5/1/1\nf -1 -2 -3\nf 1//1 2//1 3//1 # c\nf 1/1 2/1 3/1 4/1\\";
     abuse(text.as_bytes(), "m.obj");
     abuse(text.replace("vt 1.#INF\n", "").as_bytes(), "m.obj");
+}
+
+/// The name, triangles and vertices of each mesh of a scene.
+fn meshes(scene: &Scene) -> Vec<(String, usize, usize)> {
+    let count = |(name, data): (&String, &Arc<MeshData>)| (name.clone(), data.triangles.len(), data.positions.len());
+    scene.assets.meshes.iter().map(count).collect()
+}
+
+#[test]
+fn lines_points_and_vertices_alone_are_shown_as_sticks_and_balls() {
+    let folder = folder(&[("m.mtl", b"newmtl red\nKd 1 0 0\n")]);
+    let read = |text: &str| read_in(folder.path(), "m.obj", text);
+    let vertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+    let (scene, told) = read(&format!("mtllib m.mtl\n{vertices}f 1 2 3\nusemtl red\nl -1/1 1 2\np 3\n"));
+    let named = |name: &str, triangles, positions| (name.to_string(), triangles, positions);
+    // Two sticks of six sides, and an octahedron.
+    assert_eq!(meshes(&scene.unwrap()), [named("m.obj", 1, 3), named("m.obj#red", 32, 30)]);
+    let note = "2 lines and 1 point without a surface: thin sticks and small balls are shown";
+    assert_eq!(told, [format!("m.obj:6:8 note {note}")]);
+    let (scene, told) = read(vertices);
+    assert_eq!(meshes(&scene.unwrap()), [named("m.obj", 24, 18)]);
+    assert!(told[1].contains("3 points without a surface"), "{told:?}");
+    let (none, told) = read(&format!("{vertices}l 1 4\np 0 1\n"));
+    assert!(none.is_none());
+    let wrong = ["there is no vertex `4`: the file has 3 vertices", "there is no vertex 0: they are counted from 1"];
+    assert_eq!(told[1..], [format!("m.obj:4:5 error {}", wrong[0]), format!("m.obj:5:3 error {}", wrong[1])]);
+    let (scene, told) = read_in(
+        folder.path(),
+        "m.ply",
+        "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\n\
+        property float y\nproperty float z\nend_header\n0 0 0\n1 0 0\n",
+    );
+    assert_eq!(meshes(&scene.unwrap()), [named("m.ply", 16, 12)]);
+    assert!(told[1].contains("2 points without a surface"), "{told:?}");
 }

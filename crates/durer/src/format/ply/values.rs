@@ -73,7 +73,7 @@ impl Values for AsciiValues<'_> {
     }
 
     fn integer(&mut self, _: Scalar) -> Result<i64, ValueError> {
-        parse_integer(self.word()?).ok_or(ValueError::Number(NumberError::Malformed))
+        parse_integer(self.word()?).ok_or(ValueError::Number(NumberError::NotWhole))
     }
 
     fn skip(&mut self, _: Scalar, count: usize) -> Result<(), ValueError> {
@@ -154,7 +154,7 @@ impl<const BIG_ENDIAN: bool> Values for BinaryValues<'_, BIG_ENDIAN> {
             Scalar::U32 => u32::from_le_bytes(self.take()?) as i64,
             Scalar::F32 | Scalar::F64 => {
                 self.real(scalar)?;
-                return Err(ValueError::Number(NumberError::Malformed));
+                return Err(ValueError::Number(NumberError::NotWhole));
             }
         })
     }
