@@ -14,7 +14,6 @@ import itertools
 import os
 import pathlib
 import resource
-import shutil
 import subprocess
 import tempfile
 import time
@@ -32,16 +31,18 @@ from peers import Scene, lamp, matte, pfm, rgb
 
 
 def read_ply(path):
+    """The triangles of a mesh, as places of their corners."""
     with open(path, "rb") as file:
         head = b""
         while not head.endswith(b"end_header\n"):
             head += file.readline()
-        count = int(head.split(b"vertex ")[1].split()[0])
-        return np.frombuffer(file.read(12 * count), "<f4").reshape(-1, 3)
+        vertices, faces = (int(head.split(what)[1].split()[0]) for what in (b"vertex ", b"face "))
+        corners = np.frombuffer(file.read(12 * vertices), "<f4").reshape(-1, 3)
+        return corners[np.frombuffer(file.read(13 * faces), dtype=[("n", "u1"), ("i", "<i4", 3)])["i"]]
 
 
 def write_ply(path, corners):
-    """A mesh of triangles that share nothing."""
+    """A mesh of triangles that share nothing, so that they are flat for both."""
     faces = np.arange(3 * len(corners), dtype="<i4").reshape(-1, 3)
     rows = np.zeros(len(corners), dtype=[("n", "u1"), ("i", "<i4", 3)])
     rows["n"], rows["i"] = 3, faces
@@ -75,12 +76,12 @@ def scenes(meshes, folder):
     sky[20:30, 40:56] = (60, 50, 40)
     write_pfm(folder / "sky.pfm", sky)
     write_pfm(folder / "turned.pfm", np.roll(sky, 128, axis=1))
-    corners = read_ply(meshes / "dragon.ply")
-    (low, high) = corners.min(0), corners.max(0)
+    triangles = read_ply(meshes / "dragon.ply")
+    (low, high) = triangles.min((0, 1)), triangles.max((0, 1))
     middle, size = (low + high) / 2, np.linalg.norm(high - low)
     eye = middle + size * np.array((0.3, 0.2, 0.9))
     dragon = Scene("glossy dragon under an environment", 8, eye=eye, direction=middle - eye, fov=50)
-    shutil.copy(meshes / "dragon.ply", folder)
+    write_ply(folder / "dragon.ply", triangles)
     roughness = 0.3
     mesh(dragon, folder / "dragon.ply", (
         f"PrincipledMaterial {{ baseColor 1 1 1 baseMetalness 1 specularRoughness {roughness} }}",
@@ -91,12 +92,12 @@ def scenes(meshes, folder):
     yield dragon
 
     for name in ("kitchen", "hall"):
-        corners = read_ply(meshes / f"{name}.ply")
-        (low, high) = corners.min(0), corners.max(0)
+        triangles = read_ply(meshes / f"{name}.ply")
+        (low, high) = triangles.min((0, 1)), triangles.max((0, 1))
         size, forward = high - low, np.array((0.8, -0.1, 0.59))
         eye = (low + high) / 2 - 0.15 * size * forward
         room = Scene(f"{name} with lamps", 8, eye=eye, direction=forward, fov=70)
-        shutil.copy(meshes / f"{name}.ply", folder)
+        write_ply(folder / f"{name}.ply", triangles)
         mesh(room, folder / f"{name}.ply", matte((0.6, 0.6, 0.6)))
         for x, z in itertools.product((0.35, 0.65), (0.4, 0.6)):
             corner = low + size * np.array((x, 0.75, z))
@@ -105,11 +106,11 @@ def scenes(meshes, folder):
 
     random = np.random.default_rng(1)
     count = 100_000
-    centers = random.uniform((-8, 0.3, -8), (8, 2, 8), (count, 3))
-    # They face down.
+    centers = random.uniform((-8, 3, -8), (8, 5, 8), (count, 3))
+    # They face down, above what is seen: a picture of lamps far smaller than a pixel would have the noise of that alone.
     corner = 0.004 * np.array(((0, 0, 0), (1, 0, 0), (0, 0, 1)))
     write_ply(folder / "lamps.ply", centers[:, None, :] + corner)
-    many = Scene("100,000 small lamps", 8, eye=(0, 1.2, 9), direction=(0, -0.15, -1), fov=50)
+    many = Scene("100,000 small lamps", 8, eye=(0, 2.5, 9), direction=(0, -0.5, -1), fov=50)
     many.rectangle((-50, 0, 50), (100, 0, 0), (0, 0, -100), matte((0.5, 0.4, 0.3)))
     mesh(many, folder / "lamps.ply", None, (300, 250, 200))
     for x in range(-3, 4):

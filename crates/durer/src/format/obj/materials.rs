@@ -35,7 +35,12 @@ pub(super) fn read_files(
     let all = String::from_utf8_lossy(&input.bytes[names.clone()]).into_owned();
     let files = match found(input, &all, span) {
         Some(whole) => vec![(all.clone(), Some(whole))],
-        None => all.split_whitespace().map(|name| (name.to_string(), found(input, name, span))).collect(),
+        // Some programs write a blank within a name after a backslash.
+        None => {
+            let names = all.replace("\\ ", "\0");
+            let names = names.split_whitespace().map(|name| name.replace('\0', " "));
+            names.map(|name| (name.clone(), found(input, &name, span))).collect()
+        }
     };
     for (name, file) in files {
         let bytes = file.and_then(|file| Some((input.source.read(&file.path).ok()?, file.path)));

@@ -181,3 +181,15 @@ fn lines_points_and_vertices_alone_are_shown_as_sticks_and_balls() {
     assert_eq!(meshes(&scene.unwrap()), [named("m.ply", 16, 12)]);
     assert!(told[1].contains("2 points without a surface"), "{told:?}");
 }
+
+#[test]
+fn names_of_files_of_materials_may_have_blanks() {
+    let mtl = |name| format!("newmtl {name}\nKd 1 0 0\n");
+    let (a, b) = (mtl("a"), mtl("b"));
+    let folder = folder(&[("one two.mtl", a.as_bytes()), ("three.mtl", b.as_bytes())]);
+    let triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n";
+    for names in ["one two.mtl", "three.mtl one\\ two.mtl"] {
+        let told = read_in(folder.path(), "m.obj", &format!("mtllib {names}\n{triangle}")).1;
+        assert_eq!(told, [String::new(); 0], "{names}");
+    }
+}
