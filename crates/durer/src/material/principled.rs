@@ -3,7 +3,6 @@
 //!
 //! Source: *OpenPBR Surface specification*, version 1.1, Academy Software Foundation, 2024.
 
-use super::parameters::TEXTURED;
 use crate::describe::{FileName, Rule};
 use crate::dialect::set;
 use crate::math::Vec3;
@@ -181,14 +180,6 @@ impl PrincipledMaterial {
     /// Whether light goes into the body, is scattered there, and comes out again.
     pub fn has_subsurface(&self) -> bool {
         self.subsurface_weight > 0.0 && self.walls == Walls::Solid
-    }
-
-    /// Whether some picture lies on it.
-    pub fn has_pictures(&self) -> bool {
-        let others = [&self.emission_texture, &self.normal_texture, &self.bump_texture, &self.opacity_texture];
-        TEXTURED.iter().any(|row| (row.picture)(self).is_some())
-            || others.iter().any(|picture| picture.is_some())
-            || self.metallic_roughness_texture.is_some()
     }
 
     /// Whether colours are spread.

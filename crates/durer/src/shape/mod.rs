@@ -8,6 +8,7 @@ pub mod disc;
 pub mod ellipsoid;
 pub mod height_field;
 pub mod mesh;
+mod mesh_data;
 pub mod normals;
 pub mod plane;
 pub mod quadric;

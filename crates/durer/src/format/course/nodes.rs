@@ -2,7 +2,7 @@
 
 use super::fields::Order;
 use super::reader::Reader;
-use super::sections::camera_of;
+use super::words::camera_of;
 use crate::camera::Camera;
 use crate::describe::DescribedList;
 use crate::diag::{Diagnostic, Span, did_you_mean};

@@ -6,8 +6,8 @@
 use super::plugin::{Plugin, Property, Value};
 use super::transform;
 use crate::diag::{Diagnostic, Span};
+use crate::format::model::Input;
 use crate::format::said::{Said, meant};
-use crate::format::scene::Input;
 use crate::format::xml::{Attribute, Piece, Tag, Xml};
 use crate::image::decode_srgb;
 use crate::math::Vec3;

@@ -21,8 +21,8 @@ mod transform;
 #[cfg(test)]
 mod tests;
 
+use super::model::{Input, SceneFormat};
 use super::said::Said;
-use super::scene::{Input, SceneFormat};
 use super::{too_large, xml};
 use crate::diag::{Diagnostic, Diagnostics};
 use crate::scene::{Axis, Scene};

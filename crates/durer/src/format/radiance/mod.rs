@@ -24,8 +24,8 @@ mod xform;
 #[cfg(test)]
 mod tests;
 
+use super::model::{Input, SceneFormat};
 use super::said::Said;
-use super::scene::{Input, SceneFormat};
 use super::too_large;
 use crate::diag::{Diagnostic, Diagnostics};
 use crate::scene::{Axis, Scene};

@@ -15,7 +15,7 @@ use crate::camera::{Camera, Lens};
 use crate::describe::DescribedList;
 use crate::diag::{Diagnostic, Diagnostics};
 use crate::dialect::Dialect;
-use crate::format::scene::Output;
+use crate::format::model::Output;
 use crate::light::Light;
 use crate::math::{Vec3, fp};
 use crate::scene::{MatrixOp, Node, Object, Scene};
