@@ -14,8 +14,7 @@
 use super::pose::world_ray;
 use super::sheet::Sheet;
 use super::{CameraSample, Eyes, Frame, Lens, Pose};
-use crate::describe::Rule;
-use crate::described;
+use crate::describe::{Rule, described};
 use crate::dialect::{Dialect, set};
 use crate::math::{Ray, Vec2, Vec3};
 use glam::{DMat3, DVec2, DVec3};

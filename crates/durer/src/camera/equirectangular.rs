@@ -11,8 +11,7 @@
 use super::eyes::EyeCircle;
 use super::sheet::Sheet;
 use super::{CameraSample, Eyes, Frame, Handedness, Lens, Pose};
-use crate::describe::Rule;
-use crate::described;
+use crate::describe::{Rule, described};
 use crate::dialect::set;
 use crate::math::{Ray, Vec2, Vec3, fp};
 use glam::{DVec2, DVec3};

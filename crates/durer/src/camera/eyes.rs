@@ -5,7 +5,7 @@
 //! Peleg, Ben-Ezra, Pritch, *Omnistereo: Panoramic Stereo Imaging*, PAMI 23(3), 2001.
 
 use super::sheet::Sheet;
-use crate::described_words;
+use crate::describe::described_words;
 use crate::math::fp;
 use glam::{DVec2, DVec3};
 

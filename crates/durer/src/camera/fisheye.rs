@@ -16,10 +16,9 @@
 
 use super::Pose;
 use super::central::Central;
-use crate::describe::Rule;
+use crate::describe::{Rule, described, described_words};
 use crate::dialect::set;
 use crate::math::{Vec2, Vec3, fp};
-use crate::{described, described_words};
 use glam::{DVec2, DVec3};
 
 described_words! {

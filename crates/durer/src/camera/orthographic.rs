@@ -3,8 +3,7 @@
 //! origin = center + x size/2 right + y size/2 up.
 
 use super::{CameraSample, Frame, Handedness, Lens, Pose};
-use crate::describe::Rule;
-use crate::described;
+use crate::describe::{Rule, described};
 use crate::dialect::set;
 use crate::math::{Ray, Vec2, Vec3};
 use glam::DVec2;

@@ -22,8 +22,7 @@
 use super::pose::world_ray;
 use super::sheet::Sheet;
 use super::{CameraSample, Frame, Lens, Pose};
-use crate::describe::Rule;
-use crate::described;
+use crate::describe::{Rule, described};
 use crate::dialect::set;
 use crate::math::{Ray, Vec2, Vec3};
 use glam::{DMat2, DMat3, DVec2, DVec3};

@@ -12,10 +12,9 @@
 use super::perspective::half_width;
 use super::sheet::Sheet;
 use super::{CameraSample, Eyes, Frame, Lens, Pose};
-use crate::describe::Rule;
+use crate::describe::{Rule, described, described_words};
 use crate::dialect::set;
 use crate::math::{Ray, Vec2, Vec3};
-use crate::{described, described_words};
 use glam::{DMat3, DVec2, DVec3};
 
 described_words! {

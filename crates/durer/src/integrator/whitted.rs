@@ -7,7 +7,7 @@ use super::account::{RayKind, Shadow, Struck, What, Witness};
 use super::media::{Body, Media, Passage};
 use super::spawn::{from_surface, to_light};
 use super::{Integrate, Parameters, Setup};
-use crate::described;
+use crate::describe::described;
 use crate::dialect::{Compat, set};
 use crate::light::Illumination;
 use crate::math::{Color, Ray, Ray64, Vec3, fp, gamma, reflect};

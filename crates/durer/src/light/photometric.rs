@@ -1,8 +1,7 @@
 //! A light measured in a laboratory: how strong it shines in each direction.
 
 use super::{Emitter, Illumination};
-use crate::describe::{FileName, Rule};
-use crate::described;
+use crate::describe::{FileName, Rule, described};
 use crate::dialect::{Rules, set};
 use crate::math::{Color, Vec3, fp};
 use glam::DVec3;

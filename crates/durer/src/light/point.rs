@@ -1,8 +1,7 @@
 //! A light at a point. What arrives at distance d is color / (a0 + a1 d + a2 d^2).
 
 use super::{Emitter, Illumination};
-use crate::describe::{FileName, Rule};
-use crate::described;
+use crate::describe::{FileName, Rule, described};
 use crate::dialect::{Compat, Falloff, Rules, set};
 use crate::math::{Color, Vec3};
 use glam::DVec3;

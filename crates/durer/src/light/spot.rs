@@ -1,10 +1,9 @@
 //! A light at a point that shines into a cone.
 
 use super::{Emitter, Illumination};
-use crate::describe::{FileName, Rule};
+use crate::describe::{FileName, Rule, described, described_words};
 use crate::dialect::{Rules, set};
 use crate::math::{Color, Vec3, fp};
-use crate::{described, described_words};
 use glam::DVec3;
 
 described_words! {

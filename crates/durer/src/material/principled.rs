@@ -3,10 +3,9 @@
 //!
 //! Source: *OpenPBR Surface specification*, version 1.1, Academy Software Foundation, 2024.
 
-use crate::describe::{FileName, Rule};
+use crate::describe::{FileName, Rule, described, described_words};
 use crate::dialect::set;
 use crate::math::Vec3;
-use crate::{described, described_words};
 
 described_words! {
     /// Whether a surface is a thin sheet or bounds a body.

@@ -1,5 +1,4 @@
-use crate::describe::{FileName, Rule};
-use crate::described;
+use crate::describe::{FileName, Rule, described};
 use crate::dialect::set;
 use crate::math::Vec3;
 

@@ -8,8 +8,7 @@ pub mod matrix;
 pub mod staging;
 
 use crate::camera::Camera;
-use crate::describe::{FileName, Rule};
-use crate::described;
+use crate::describe::{FileName, Rule, described};
 use crate::diag::Span;
 use crate::dialect::set;
 use crate::light::Light;

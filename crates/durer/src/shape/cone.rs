@@ -3,8 +3,7 @@
 use super::chord::Chord;
 use super::cylinder::{Axis, BASE, SIDE, TOP};
 use super::{Crossing, Shape, Surface, exactly, inset};
-use crate::describe::Rule;
-use crate::described;
+use crate::describe::{Rule, described};
 use crate::dialect::set;
 use crate::math::{Aabb, Line, Vec2, Vec3, gamma, roots};
 use glam::DVec3;

@@ -1,8 +1,7 @@
 //! The ellipsoid whose axes are parallel to the coordinate axes.
 
 use super::{Crossing, Shape, Surface, padded, turn};
-use crate::describe::Rule;
-use crate::described;
+use crate::describe::{Rule, described};
 use crate::dialect::set;
 use crate::math::{Aabb, Line, Vec2, Vec3, fp, gamma, roots};
 use glam::DVec3;

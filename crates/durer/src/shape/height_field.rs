@@ -1,8 +1,7 @@
 //! The height field: a picture as a landscape, made into a closed mesh.
 
 use super::MeshData;
-use crate::describe::{FileName, Rule};
-use crate::described;
+use crate::describe::{FileName, Rule, described};
 use crate::dialect::set;
 use crate::math::{Vec2, Vec3};
 

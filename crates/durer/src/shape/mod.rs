@@ -22,7 +22,7 @@ pub mod triangle;
 pub mod uv;
 pub mod voxels;
 
-use crate::described_list;
+use crate::describe::described_list;
 use crate::math::{Aabb, Line, Ray, Vec2, Vec3, fp, gamma};
 pub use cone::Cone;
 pub use cuboid::Cuboid;

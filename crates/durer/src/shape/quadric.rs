@@ -1,8 +1,7 @@
 //! The general quadric: where a polynomial of degree two in x, y and z is zero.
 
 use super::{Crossing, Shape, Surface, padded, turn};
-use crate::describe::Rule;
-use crate::described;
+use crate::describe::{Rule, described};
 use crate::dialect::set;
 use crate::math::{Aabb, Line, Vec2, Vec3, fp, gamma, roots};
 use glam::{DMat3, DVec3};

@@ -1,8 +1,7 @@
 //! The rectangle, or any parallelogram.
 
 use super::{Crossing, Shape, Surface, inset, padded};
-use crate::describe::Rule;
-use crate::described;
+use crate::describe::{Rule, described};
 use crate::dialect::set;
 use crate::math::{Aabb, Line, Vec2, Vec3, gamma};
 use glam::DVec3;

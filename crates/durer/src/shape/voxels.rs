@@ -2,8 +2,7 @@
 //! sphere.
 
 use super::{MeshData, Sphere};
-use crate::describe::Rule;
-use crate::described;
+use crate::describe::{Rule, described};
 use crate::dialect::set;
 use crate::math::Vec3;
 

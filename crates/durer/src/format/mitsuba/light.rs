@@ -2,36 +2,23 @@
 //!
 //! Source of all meanings: *Mitsuba 3 documentation*, "Emitters".
 
-use super::material::Shine;
+use super::made::{Infinite, Shine};
 use super::plugin::Plugin;
 use super::state::Reader;
 use super::texture::Texture;
 use crate::describe::FileName;
-use crate::diag::{Diagnostic, Span};
+use crate::diag::Diagnostic;
 use crate::format::panorama;
 use crate::format::said::meant;
 use crate::light::{DirectionalLight, Fade, Light, PointLight, SpotLight};
 use crate::math::{Color, Vec3, fp};
 use crate::scene::Spanned;
-use glam::{DAffine3, DVec3};
+use glam::DVec3;
 use std::f32::consts::PI;
 use std::rc::Rc;
 
 /// Rows of a picture of all directions that is turned.
 const MOST_ROWS: u32 = 2048;
-
-/// What is infinitely far away: Mitsuba has one such light.
-pub(super) enum Infinite {
-    Even(Color, Span),
-    Picture { name: String, at: Span, scale: f32, to_world: DAffine3 },
-}
-
-impl Infinite {
-    fn at(&self) -> Span {
-        let (Infinite::Even(_, at) | Infinite::Picture { at, .. }) = self;
-        *at
-    }
-}
 
 impl Reader<'_> {
     /// The colour of a light.

@@ -4,7 +4,6 @@
 //! Mitsuba 0.6 (`toWorld`) are read as those of today (`to_world`).
 
 use super::plugin::{Plugin, Property, Value};
-use super::transform;
 use crate::diag::{Diagnostic, Span};
 use crate::format::model::Input;
 use crate::format::said::{Said, meant};
@@ -196,7 +195,7 @@ impl<'a> Loader<'a> {
             }
             "alias" => self.alias(tag),
             "transform" => {
-                let map = transform::read(self, xml, tag)?;
+                let map = self.transform(xml)?;
                 if let Some(name) = self.name(tag) {
                     self.give(parent, name, Value::Map(map), tag.at);
                 }

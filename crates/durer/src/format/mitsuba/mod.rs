@@ -8,6 +8,7 @@ mod camera;
 mod color;
 mod light;
 mod load;
+mod made;
 mod material;
 mod metals;
 mod plugin;

@@ -2,11 +2,11 @@
 //!
 //! Source of all meanings: *Mitsuba 3 documentation*, "Shapes".
 
-use super::plugin::Plugin;
+use super::plugin::{Key, Plugin};
 use super::solid;
-use super::state::{Key, Reader};
+use super::state::Reader;
 use crate::diag::{Diagnostic, Span};
-use crate::format::pbrt::medium::Medium;
+use crate::format::pbrt::made::Medium;
 use crate::format::pbrt::mesh::{oriented, written_in_file};
 use crate::format::pbrt::shape::placed;
 use crate::format::said::meant;

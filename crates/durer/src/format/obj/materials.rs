@@ -3,7 +3,6 @@
 //! Sources: *The MTL material format*, Alias|Wavefront, 1995; the extension for physically based
 //! materials of Clara.io (Pr, Pm, Pc, Pcr, Ps, Ke, norm).
 
-use super::scene::found;
 use super::words::Words;
 use crate::describe::FileName;
 use crate::diag::{Diagnostic, Diagnostics, Span};
@@ -321,4 +320,14 @@ fn names_normals(rest: &[String]) -> bool {
     let name = rest.last().map(|name| name.to_lowercase()).unwrap_or_default();
     let stem = name.rsplit_once('.').map_or(name.as_str(), |(stem, _)| stem);
     ["normal", "_nrm", "_ddn", "_norm"].iter().any(|word| stem.contains(word)) || stem.ends_with("_n")
+}
+
+/// The name of a file that may be had, of those that a material may mean: as written, or its last
+/// name beside the scene.
+fn found(input: &Input, path: &str, span: Span) -> Option<FileName> {
+    let portable = path.replace('\\', "/");
+    let last = portable.rsplit('/').next().unwrap_or_default();
+    let names = [portable.as_str(), last];
+    let name = names.into_iter().find(|name| !name.is_empty() && input.source.contains(name))?;
+    Some(FileName { path: name.to_string(), span })
 }

@@ -7,8 +7,10 @@
 mod camera;
 mod directives;
 mod environment;
+mod given;
 mod lexer;
 mod light;
+pub(super) mod made;
 mod material;
 pub(super) mod medium;
 pub(super) mod mesh;

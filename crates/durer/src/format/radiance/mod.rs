@@ -9,6 +9,7 @@ mod args;
 mod body;
 mod command;
 mod data;
+mod made;
 mod material;
 mod mixture;
 mod pattern;

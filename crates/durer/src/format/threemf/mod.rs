@@ -8,6 +8,7 @@ mod colors;
 mod mesh;
 mod model;
 mod package;
+mod parser;
 mod show;
 
 #[cfg(test)]

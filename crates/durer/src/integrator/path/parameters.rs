@@ -1,8 +1,7 @@
 //! What those who trace paths are told.
 
 use super::{Path, Photons};
-use crate::describe::{Describe, Field, FieldType, Kind, Rule, Value};
-use crate::described;
+use crate::describe::{Describe, Field, FieldType, Kind, Rule, Value, described};
 use crate::dialect::{DialectSet, set};
 use crate::integrator::{Parameters, Setup};
 use crate::spectrum::ColorMode;
