@@ -15,7 +15,8 @@ const FOUND: u8 = 1;
 /// The last signal's number: 2 is that of Ctrl-C.
 static SIGNAL: AtomicU8 = AtomicU8::new(2);
 
-/// A signal has interrupted the work: the exit code tells which, 130 after Ctrl-C, as shells have it.
+/// A signal has interrupted the work: the exit code tells which, 130 after Ctrl-C, as shells have
+/// it.
 pub fn interrupted_by(signal: u8) {
     SIGNAL.store(signal, Relaxed);
 }

@@ -162,8 +162,8 @@ impl Keeper {
             || self.is_ours.get()
             || read_part(place.path()).is_ok_and(|old| part.same_work(&old).is_ok())
         {
-            // Only what is of this picture, or was to be thrown away; if it cannot be removed, it is only in
-            // the way.
+            // Only what is of this picture, or was to be thrown away; if it cannot be removed, it
+            // is only in the way.
             let _ = std::fs::remove_file(place.path());
         }
     }

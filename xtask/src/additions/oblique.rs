@@ -1,4 +1,5 @@
-//! An oblique camera: parallel rays that are not perpendicular to the picture, as in a cabinet projection.
+//! An oblique camera: parallel rays that are not perpendicular to the picture, as in a cabinet
+//! projection.
 
 use super::{CameraSample, Frame, Lens, Pose};
 use crate::describe::{Rule, described};

@@ -204,7 +204,8 @@ mod tests {
         let with = [ground, ground, ground, 0.5 * ground, 0.5 * thing + 0.25 * ground, thing];
         let covered = [0.0, 0.0, 0.0, 0.0, 0.5, 1.0];
         let placed = composed(1, &[plate; 6], &with, &without, &covered);
-        // The neighbours of what is half covered let three quarters of the light through on average.
+        // The neighbours of what is half covered let three quarters of the light through on
+        // average.
         let mixed = 0.5 * thing + 0.25 * ground + 0.5 * 0.75 * (plate - ground);
         let expected = [plate, plate, plate, 0.5 * plate, mixed, thing];
         assert!(placed.iter().zip(expected).all(|(a, b)| (*a - b).length() < 1e-6), "{placed:?}");

@@ -33,7 +33,8 @@ described! {
         eyes: Eyes = Eyes::Middle, optional, Rule::Any, ["eyes" in set::DURER];
         /// Distance between the eyes.
         separation: f32 = 0.065, optional, Rule::NonNegative, ["separation" in set::DURER];
-        /// Which side of the picture is right: `left` makes a mirror image, as in coordinates of the left hand.
+        /// Which side of the picture is right: `left` makes a mirror image, as in coordinates of
+        /// the left hand.
         handedness: Handedness = Handedness::Right, optional, Rule::Any, ["handedness" in set::DURER];
     }
 }

@@ -35,7 +35,8 @@ described! {
         angle: f32 = 30.0, required, Rule::Between(0.0, 180.0), ["angle" in set::DURER];
         /// Distance between the eyes.
         separation: f32 = 0.065, required, Rule::NonNegative, ["separation" in set::DURER];
-        /// Distance at which both eyes see a thing at the same place of the picture; without meaning for `parallel`.
+        /// Distance at which both eyes see a thing at the same place of the picture; without
+        /// meaning for `parallel`.
         convergence: f32 = 1.0, optional, Rule::Positive, ["convergence" in set::DURER];
         /// How the views converge.
         method: StereoMethod = StereoMethod::OffAxis, optional, Rule::Any, ["method" in set::DURER];

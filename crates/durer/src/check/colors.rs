@@ -77,8 +77,8 @@ pub(super) fn no_bounces(scout: &Scout) -> Vec<Finding> {
     let cut = |phong: &Phong| counts(phong.reflective).max(counts(phong.transparent)) < settings.least_weight;
     let none = settings.bounces == 0;
     let bounces = |phong: &Phong| phong.reflective != Color::ZERO || phong.transparent != Color::ZERO;
-    // Where the highlight's colour is the mirror's too, only what would be black without mirroring is
-    // meant as a mirror.
+    // Where the highlight's colour is the mirror's too, only what would be black without mirroring
+    // is meant as a mirror.
     let shared = matches!(scout.world().rules().secondary, Secondary::Specular | Secondary::SpecularFresnel);
     let meant = |phong: &Phong| phong.fresnel || !shared || phong.diffuse.max_element() < 0.15;
     let all: Vec<_> =
@@ -221,7 +221,8 @@ fn all_colors(scout: &Scout) -> Vec<Named> {
         };
         colors.extend(phong.diffuse_color.map(|color| named(color, ["diffuseColor", "diffuse"], 1.001)));
         let all = |color, fields, most: f32| Named { color, block: written.span, fields, most };
-        // A highlight may be a little stronger than white; a mirror gives back no more than it gets.
+        // A highlight may be a little stronger than white; a mirror gives back no more than it
+        // gets.
         let mirrors = used.reflective != Color::ZERO && phong.reflective_color == Color::ZERO;
         colors.push(all(phong.specular_color, ["specularColor", "specular"], if mirrors { 1.05 } else { 1.6 }));
         colors.push(all(phong.reflective_color, ["reflectiveColor", "reflectiveColor"], 1.001));

@@ -59,7 +59,8 @@ fn meet(a: &Face, b: &Face) -> bool {
     if b.corners.iter().any(|p| (*p - a.corners[0]).dot(n).abs() > 1e-5 * size) {
         return false;
     }
-    // Convex shapes are apart where a side of one separates them; those that only touch are apart too.
+    // Convex shapes are apart where a side of one separates them; those that only touch are apart
+    // too.
     let separates = |one: &Face, other: &Face| {
         let count = one.corners.len();
         (0..count).any(|i| {

@@ -59,8 +59,8 @@ pub(super) fn from_behind(scout: &Scout) -> Vec<Finding> {
             let note = Diagnostic::note(message)
                 .at(scout.object_span(i as u32))
                 .effect("a tracer that does not shade backs, as the course's without `-shade_back`, leaves it black");
-            // A plane with normal and offset turned is the same plane, and looks the same where backs are
-            // shaded.
+            // A plane with normal and offset turned is the same plane, and looks the same where
+            // backs are shaded.
             let plane = matches!(scout.world().objects()[i].geometry, Geometry::Primitive(Primitive::Plane(_)));
             return Finding::from(if plane { note } else { turned(scout, note, i as u32) });
         }

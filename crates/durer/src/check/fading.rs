@@ -36,7 +36,8 @@ pub(super) fn faint(scout: &Scout) -> Vec<Finding> {
         let (value, text, field) = match (value, point.falloff, point.attenuation) {
             (Some(value), Some(falloff), _) => (value, number(falloff / factor), scout.text(before(scout, value))),
             (Some(value), None, Some(a)) => {
-                // The constant keeps a light bright near by: it only grows to what it should have been.
+                // The constant keeps a light bright near by: it only grows to what it should have
+                // been.
                 let scaled = a / factor;
                 (value, vector(Vec3::new(scaled.x.max(a.x.min(1.0)), scaled.y, scaled.z)), "attenuation".into())
             }

@@ -87,8 +87,8 @@ fn in_the_way(scout: &Scout) -> Vec<Finding> {
         return Vec::new();
     }
     let Some(bounds) = objects[front].bounds() else { return Vec::new() };
-    // A room or a table holds the others; what is in the way is far before them, and hides nearly all
-    // of them.
+    // A room or a table holds the others; what is in the way is far before them, and hides nearly
+    // all of them.
     let eye = scout.world().camera().pose().center;
     let others: Vec<usize> = (0..objects.len()).filter(|&i| i != front && objects[i].bounds().is_some()).collect();
     let away = |i: &usize| objects[*i].bounds().map_or(f32::INFINITY, |own| (own.center() - eye).length());

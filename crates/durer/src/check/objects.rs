@@ -145,7 +145,8 @@ pub(super) fn twice(scout: &Scout) -> Vec<Finding> {
     let mut places: HashMap<[u32; 6], Vec<usize>> = HashMap::new();
     let mut found = Vec::new();
     found.extend(in_plane(scout));
-    // The same surface is told of below; and of one material it does not matter which of two is seen.
+    // The same surface is told of below; and of one material it does not matter which of two is
+    // seen.
     let differ =
         |&(a, b): &(usize, usize)| objects[a].material != objects[b].material && !same(&objects[a], &objects[b]);
     let faces = overlapping(scout).into_iter().filter(differ).take(MOST_SOUGHT);

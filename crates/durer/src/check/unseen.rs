@@ -50,8 +50,8 @@ pub(super) fn unseen(scout: &Scout) -> Vec<Finding> {
                 scout.object(first)
             ),
         };
-        // What is out of the picture may stand there for its shadow, or its light; not if next to nothing
-        // is left.
+        // What is out of the picture may stand there for its shadow, or its light; not if next to
+        // nothing is left.
         let own = |(_, seen): &(_, &crate::check::look::Seen)| {
             scout.world().objects()[seen.object as usize].bounds().is_some()
         };

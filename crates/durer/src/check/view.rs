@@ -147,8 +147,8 @@ pub(super) fn away(scout: &Scout) -> Vec<Finding> {
     }
     let to = center - pose.center;
     let angle = degrees(pose.direction, to);
-    // With an `up` that says nothing the picture may be turned any way; far from its middle that does
-    // not matter.
+    // With an `up` that says nothing the picture may be turned any way; far from its middle that
+    // does not matter.
     let turned = pose.up.normalize_or_zero().cross(pose.direction.normalize_or_zero()).length() < 1e-3;
     if turned && angle < 60.0 {
         return Vec::new();
@@ -298,8 +298,8 @@ pub(super) fn upside_down(scout: &Scout) -> Vec<Finding> {
     let stand = !things.is_empty() && things.corners().iter().all(|p| height(p) > -0.1 * size);
     let pose = world.camera().pose();
     let seen = scout.seen().any(|(_, seen)| seen.object == number);
-    // A ceiling from which things hang is as good as a ground; that things stand on it tells which it
-    // is.
+    // A ceiling from which things hang is as good as a ground; that things stand on it tells which
+    // it is.
     let lowest = things.corners().iter().map(height).fold(f32::INFINITY, f32::min);
     if !stand || !seen || lowest > 0.3 * size || world.camera_frame().up.dot(n) > -0.3 || pose.up.dot(n) > 0.1 {
         return Vec::new();

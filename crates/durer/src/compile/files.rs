@@ -332,8 +332,8 @@ impl<'r> Loader<'r> {
             left.push(memory);
             memory = memory.saturating_sub(Encoded::open(bytes, path).map_or(0, |face| face.needed8()));
         }
-        // Decoding takes longer than all else. The first face in order that is wrong is the one complained
-        // of.
+        // Decoding takes longer than all else. The first face in order that is wrong is the one
+        // complained of.
         let srgb = self.rules.srgb_textures;
         let one = |((path, bytes), left): (&(String, Arc<[u8]>), &u64)| {
             let mut own = Diagnostics::default();

@@ -6,7 +6,8 @@ use crate::math::Vec3;
 
 macro_rules! parameters {
     ($($field:ident: $type:ty,)+) => {
-        /// The numbers of a [`PrincipledMaterial`] that say how light is scattered at a point, by the same names.
+        /// The numbers of a [`PrincipledMaterial`] that say how light is scattered at a point, by
+        /// the same names.
         #[derive(Clone, Copy, Debug, PartialEq)]
         pub struct Parameters {
             $(#[doc = concat!("As [`PrincipledMaterial::", stringify!($field), "`].")] pub $field: $type,)+

@@ -49,7 +49,8 @@ impl Shape for Cone {
         Some(self.axis().bounds(self.radii()))
     }
 
-    /// |q - (q·a) a|^2 = r(q·a)^2 for q seen from the base, a the axis and r the radius, linear in the height.
+    /// |q - (q·a) a|^2 = r(q·a)^2 for q seen from the base, a the axis and r the radius, linear in
+    /// the height.
     ///
     /// Steep lines run inside both nappes of the double cone: the one where r > 0 is kept.
     fn crossings(&self, line: &Line, offer: &mut impl FnMut(f64, Vec2)) {

@@ -7,7 +7,8 @@ use crate::math::{Aabb, Line, Ray, Vec2, Vec3, gamma};
 use glam::DVec3;
 
 described! {
-    /// A plane without end: all points p with normal · p = offset. As a part of a solid, all that is behind it.
+    /// A plane without end: all points p with normal · p = offset. As a part of a solid, all that
+    /// is behind it.
     Plane ["Plane" in set::CLASSIC, "plane" in set::F23] {
         /// Points to its front; of any length.
         normal: Vec3 = Vec3::Y, required, Rule::NonZero, ["normal" in set::ALL];

@@ -144,7 +144,8 @@ impl Reader<'_> {
                 let Some(picture) = self.pictures().image(&name, at) else { return };
                 let rows = picture.height.min(MOST_ROWS);
                 let y = to_world.matrix3.y_axis;
-                // The middle of Mitsuba's pictures is where its z points, and of ours where -z does.
+                // The middle of Mitsuba's pictures is where its z points, and of ours where -z
+                // does.
                 if y.x == 0.0 && y.z == 0.0 && y.y > 0.0 && to_world.matrix3.determinant() > 0.0 {
                     let z = to_world.matrix3.z_axis.as_vec3();
                     let degrees = 180.0 - fp::atan2(z.x, z.z).to_degrees();

@@ -215,7 +215,8 @@ impl Reader<'_> {
         let path = self.loader.path(&name);
         let flat = plugin.truth(said, "face_normals").unwrap_or(false);
         let is_obj = plugin.kind == "obj";
-        // Mitsuba turns the coordinates of OBJ over, which have v upwards as ours, and leaves those of PLY.
+        // Mitsuba turns the coordinates of OBJ over, which have v upwards as ours, and leaves those
+        // of PLY.
         let over = plugin.truth(said, "flip_tex_coords").unwrap_or(is_obj);
         let mirrored = map.matrix3.determinant() < 0.0;
         let input = self.input;

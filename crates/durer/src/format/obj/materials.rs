@@ -278,7 +278,8 @@ impl<'a, 'i> Reader<'a, 'i> {
         let model = w.model.unwrap_or(2.0) as i32;
         let pictured = |picture: &Option<FileName>| if picture.is_some() { 1.0 } else { 0.0 };
         let specular = w.specular.unwrap_or(Vec3::splat(pictured(&m.specular_color_texture)));
-        // A highlight as wide as Blinn's of the exponent: alpha^2 = 2 / (n + 2); roughness^2 = alpha.
+        // A highlight as wide as Blinn's of the exponent: alpha^2 = 2 / (n + 2); roughness^2 =
+        // alpha.
         let exponent = w.exponent.unwrap_or(if specular == Vec3::ZERO { 0.0 } else { 50.0 }).max(0.0);
         let rough = m.specular_roughness_texture.is_some();
         let by_exponent = if rough { 1.0 } else { (2.0 / (exponent + 2.0)).sqrt().sqrt() };

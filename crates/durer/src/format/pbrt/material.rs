@@ -306,7 +306,8 @@ impl Reader<'_> {
                 let share = match self.pattern(params, reflectance, true, Vec3::splat(0.5)) {
                     super::made::Texture::Even(color) => color,
                     super::made::Texture::Picture(picture, scale) => {
-                        // What it reflects at right angles is the picture's; grazing light has no colour of its own.
+                        // What it reflects at right angles is the picture's; grazing light has no
+                        // colour of its own.
                         m.base_color_texture = Some(self.asset(picture, param.at));
                         (m.base_metalness, m.base_color) = (1.0, scale);
                         [m.specular_roughness, m.specular_anisotropy, m.specular_rotation] = Ggx::parameters(alphas);

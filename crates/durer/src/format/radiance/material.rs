@@ -151,7 +151,8 @@ impl Reader<'_> {
             "metal2" => metal(color, value(3), [value(4), value(5)]),
             "trans2" => trans(color, [value(3), value(6), value(7)], [value(4), value(5)]),
             "ashik2" => {
-                // A power of the cosine of the half vector is a slope of the root of 2 / (power + 2).
+                // A power of the cosine of the half vector is a slope of the root of 2 / (power +
+                // 2).
                 let slope = |power: f32| (2.0 / (power + 2.0)).sqrt();
                 let specular = thing.color(3);
                 plastic(color, specular.element_sum() / 3.0, [slope(value(6)), slope(value(7))])
