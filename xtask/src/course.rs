@@ -235,7 +235,8 @@ impl Bench {
         let values: Vec<Vec<f64>> = ours.iter().map(channels).collect();
         let theirs = channels(reference);
         let mean_of = |v: &[f64]| v.iter().sum::<f64>() / v.len() as f64;
-        // Each picture's distance from the mean of the others, for ours and for the reference alike.
+        // Each picture's distance from the mean of the others, for ours and for the reference
+        // alike.
         let sums: Vec<f64> = (0..theirs.len()).map(|i| values.iter().map(|v| v[i]).sum()).collect();
         let spread = |picture: &[f64], others: &dyn Fn(usize) -> f64| {
             (picture.iter().enumerate().map(|(i, v)| square(v - others(i))).sum::<f64>() / picture.len() as f64).sqrt()
@@ -249,8 +250,8 @@ impl Bench {
         let own_spread = mean_of(&own);
         let spread_deviation = (own.iter().map(|s| square(s - own_spread)).sum::<f64>() / (n - 1.0)).sqrt();
         let spread_difference = reference_spread - own_spread;
-        // Four deviations of chance, and what truncation to whole grey levels may add: none of it on most
-        // pixels.
+        // Four deviations of chance, and what truncation to whole grey levels may add: none of it
+        // on most pixels.
         let chance = 4.0 * (1.0 + 1.0 / n).sqrt();
         let mean_equal = mean_difference.abs() <= chance * deviation + 0.1;
         let spread_equal = spread_difference.abs() <= chance * spread_deviation + 0.1;

@@ -108,8 +108,8 @@ fn is_clean(fuzz: &Path, scratch: &Path, name: &str, endings: &[&str], minutes: 
 /// What the processes that this one waited for took of processors, where Linux tells.
 fn hours_of_children() -> Option<f64> {
     let stat = std::fs::read_to_string("/proc/self/stat").ok()?;
-    // The name in parentheses may hold spaces. What follows are the fields from the third; 16 and 17
-    // are in 1/100 s.
+    // The name in parentheses may hold spaces. What follows are the fields from the third; 16 and
+    // 17 are in 1/100 s.
     let fields: Vec<&str> = stat.rsplit_once(')')?.1.split_whitespace().collect();
     let ticks = |number: usize| fields.get(number - 3)?.parse::<f64>().ok();
     Some((ticks(16)? + ticks(17)?) / 100.0 / 3600.0)

@@ -1,46 +1,28 @@
 //! `durer check`.
 
 mod after;
+mod args;
+mod change;
+mod checked;
 mod json;
 mod mend;
 
-use crate::args::CheckArgs;
-use crate::display::factor;
+use crate::failure::{Failure, bad};
 use crate::guard::Guard;
-use crate::job::{accel, aspect, job};
-use crate::open::load_options;
-use crate::output::say;
 use crate::report::counted;
-use crate::{Failure, bad, output, report};
+use crate::terminal::say;
+use crate::{output, report};
 use codespan_reporting::term::termcolor::StandardStream;
-use durer::check::{CHECKS, Finding, Subject, check, reported};
-use durer::diag::{Diagnostics, Edit, Files, Severity};
-use durer::load_text;
+use durer::check::{CHECKS, Finding};
+use durer::diag::{Edit, Severity};
 use durer::source::Source;
-use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::path::Path;
 
 pub use after::{after_course, after_render};
+pub use args::CheckArgs;
+use change::Change;
+use checked::{Checked, look};
 pub use json::finding;
-
-/// A scene and what was found.
-struct Checked {
-    path: PathBuf,
-    files: Files,
-    findings: Vec<Finding>,
-    /// Its dialect, where it could be read.
-    dialect: Option<&'static str>,
-    /// Whether a picture can be made of it.
-    readable: bool,
-    /// The files that it names.
-    named: Vec<PathBuf>,
-}
-
-impl Checked {
-    fn count(&self, wanted: impl Fn(&Finding) -> bool) -> usize {
-        self.findings.iter().filter(|finding| wanted(finding)).count()
-    }
-}
 
 pub fn run(args: &CheckArgs) -> Result<(), Failure> {
     if args.codes {
@@ -75,7 +57,7 @@ pub fn run(args: &CheckArgs) -> Result<(), Failure> {
 }
 
 /// Checks one scene, mends it where that is wanted, and says what was found.
-fn one(path: &Path, args: &CheckArgs) -> Result<(Checked, Vec<mend::Change>), Failure> {
+fn one(path: &Path, args: &CheckArgs) -> Result<(Checked, Vec<Change>), Failure> {
     let bytes = Source::folder(".").allow_outside().read_path(path, &path.display().to_string());
     let bytes = bytes.map_err(report::unreadable)?;
     let mut checked = look(path, bytes.clone(), args)?;
@@ -107,29 +89,6 @@ fn one(path: &Path, args: &CheckArgs) -> Result<(Checked, Vec<mend::Change>), Fa
         print(&checked, args.fix);
     }
     Ok((checked, changes))
-}
-
-/// Reads and checks a text that is, or is to be, in a file.
-fn look(path: &Path, bytes: Arc<[u8]>, args: &CheckArgs) -> Result<Checked, Failure> {
-    let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
-    let mut options = load_options(&args.reading);
-    options.accel = accel(&args.job)?;
-    options.staging.aspect = aspect(&args.job);
-    let loaded = load_text(path, bytes, &options, &mut files, &mut diagnostics);
-    let dialect = loaded.as_ref().map(|loaded| loaded.dialect.name());
-    let world = loaded.as_ref().and_then(|loaded| loaded.compile(&options, &mut files, &mut diagnostics));
-    let readable = world.is_some();
-    let findings = match (&loaded, &world) {
-        (Some(loaded), Some(world)) => {
-            let job = job(&args.job, Some(&args.view), loaded, false)?;
-            let exposure = factor(args.exposure)?;
-            let (scene, dialect, files) = (&loaded.scene, loaded.dialect, &files);
-            check(&Subject { scene, world, dialect, files, job: &job, exposure, rejected: None }, &diagnostics)
-        }
-        _ => reported(&diagnostics),
-    };
-    let named = loaded.map(|loaded| loaded.files()).unwrap_or_default();
-    Ok(Checked { path: path.into(), files, findings, dialect, readable, named })
 }
 
 /// What edits do to the text.

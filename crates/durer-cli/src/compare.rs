@@ -1,5 +1,7 @@
 //! `durer compare`.
 
+mod args;
+mod compared;
 mod named;
 mod page;
 mod pairs;
@@ -7,67 +9,23 @@ mod stage;
 mod text;
 mod there;
 
-use crate::args::CompareArgs;
+use crate::failure::{Failure, bad};
 use crate::guard::Guard;
-use crate::output::{encode, format, save, say};
+use crate::output::{encode, format, save};
+use crate::progress;
 use crate::report::counted;
-use crate::{Failure, bad, progress, report};
+use crate::terminal::say;
+pub use args::CompareArgs;
+use compared::{Compared, Outcome, name};
 use durer::diag::{at_least, at_most};
-use durer::image::compare::{Comparison, Options, Picture, Scale, Verdict, compare, heat_map, memory_needed};
-use durer::image::{Destination, Encoded, Image, Layer, Transfer, decode_linear};
-use durer::mistakes::Diagnosis;
+use durer::image::compare::{Comparison, Options, Picture, Verdict, compare, memory_needed};
+use durer::image::{Destination, Encoded, Transfer};
 use durer::source::Source;
+use page::heat;
 use pairs::Pair;
 use stage::{Stage, stage};
 use std::path::{Path, PathBuf};
-use there::{There, there};
-
-/// What came of a pair.
-enum Outcome {
-    Compared(Box<Comparison>),
-    /// There is a reference only.
-    Missing,
-    /// Why they cannot be compared.
-    Failed(String),
-}
-
-/// A pair and what came of it.
-struct Compared {
-    pair: Pair,
-    outcome: Outcome,
-    /// The page's pictures of it, where there is a page.
-    shown: Option<page::Shown>,
-    /// What of the scene is at each region, where a scene is given.
-    there: Vec<There>,
-    /// Which mistakes make the picture, where a scene is given.
-    diagnosis: Option<Diagnosis>,
-    /// What was found out of the reference's options.
-    note: Option<String>,
-}
-
-impl Compared {
-    fn new(pair: Pair, outcome: Outcome, shown: Option<page::Shown>) -> Self {
-        Compared { pair, outcome, shown, there: Vec::new(), diagnosis: None, note: None }
-    }
-
-    /// What explains the difference, in lines.
-    fn causes(&self) -> Vec<String> {
-        match (&self.outcome, &self.diagnosis) {
-            (_, Some(diagnosis)) => named::lines(diagnosis),
-            (Outcome::Compared(found), None) => text::causes(found),
-            _ => Vec::new(),
-        }
-    }
-
-    /// One word.
-    fn verdict(&self) -> &'static str {
-        match &self.outcome {
-            Outcome::Compared(comparison) => comparison.verdict.name(),
-            Outcome::Missing => "missing",
-            Outcome::Failed(_) => "error",
-        }
-    }
-}
+use there::there;
 
 /// What was measured of a pair, as JSON.
 pub fn numbers(found: &Comparison) -> serde_json::Value {
@@ -162,11 +120,6 @@ fn explain(args: &CompareArgs, all: &mut [Compared], memory: u64, guard: &mut Gu
     Ok(())
 }
 
-/// The name of a pair, with its owner's.
-fn name(pair: &Pair) -> String {
-    pair.who.as_ref().map_or_else(|| pair.name.clone(), |who| format!("{who}/{}", pair.name))
-}
-
 /// Compares one pair.
 fn one(pair: Pair, options: &Options, memory: u64, page: bool) -> Compared {
     let Some(path) = &pair.picture else {
@@ -175,7 +128,7 @@ fn one(pair: Pair, options: &Options, memory: u64, page: bool) -> Compared {
     let compared = read_both([&pair.reference, path], memory).and_then(|[reference, picture]| {
         let found = compare(&reference, &picture, options)
             .map_err(|error| format!("`{}` and `{}`: {error}", pair.reference.display(), path.display()))?;
-        let shown = page.then(|| page::Shown::new(&reference, &picture, &found)).transpose()?;
+        let shown = page.then(|| page::shown(&reference, &picture, &found)).transpose()?;
         Ok((found, shown))
     });
     match compared {
@@ -216,24 +169,4 @@ fn read_both(paths: [&Path; 2], memory: u64) -> Result<[Picture; 2], String> {
     };
     let (a, b) = rayon::join(|| decode(&a, paths[0]), || decode(&b, paths[1]));
     Ok([a?, b?])
-}
-
-/// The heat map as a layer.
-fn heat(found: &Comparison) -> Layer {
-    let map = heat_map(found.width, found.height, &found.flip_map);
-    let pixels = map.pixels.iter().map(|pixel| pixel.map(decode_linear).into()).collect();
-    Layer::data("heat", Image { width: found.width, height: found.height, pixels })
-}
-
-/// A picture as a screen shows it.
-fn screen(picture: &Picture) -> (Layer, Transfer) {
-    match picture.scale {
-        Scale::Display => (Layer::data("", picture.image.clone()), Transfer::Linear),
-        Scale::Linear => (Layer::color("", picture.image.clone()), Transfer::Srgb),
-    }
-}
-
-/// Warns of what is left out.
-fn note(line: &str) {
-    report::complain(&format!("note: {line}"));
 }

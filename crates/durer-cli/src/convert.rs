@@ -1,16 +1,39 @@
 //! `durer convert`.
 
-use crate::args::ConvertArgs;
+use crate::failure::{Failure, bad};
 use crate::guard::Guard;
 use crate::open::load_options;
+use crate::options::SceneArgs;
 use crate::report::counted;
-use crate::{Failure, bad, output, report};
+use crate::{output, report};
+use clap::Args;
+use clap::builder::PossibleValuesParser;
 use durer::diag::{Diagnostic, Diagnostics, Files};
 use durer::dialect::Dialect;
 use durer::format::course::write;
 use durer::format::{MESH_FORMATS, json, mesh_format_for, scene_format_for};
 use durer::load;
 use durer::scene::Studio;
+use std::path::PathBuf;
+
+/// Write a scene anew: in its own or another dialect, as JSON, as glTF, or its meshes as PLY, OBJ
+/// or STL
+#[derive(Args)]
+#[command(
+    after_help = "Examples:\n  durer convert scene.txt -o scene_durer.txt --to durer\n  durer convert scene.txt -o scene.json\n  durer convert model.glb -o model.stl\n  durer convert scene.pbrt -o scene.glb"
+)]
+pub struct ConvertArgs {
+    /// The scene file
+    pub scene: PathBuf,
+    /// The file to write
+    #[arg(short, long)]
+    pub output: PathBuf,
+    #[command(flatten)]
+    pub reading: SceneArgs,
+    /// The dialect to write [default: the scene's]
+    #[arg(long, value_parser = PossibleValuesParser::new(Dialect::ALL.map(Dialect::name)))]
+    pub to: Option<String>,
+}
 
 pub fn run(args: &ConvertArgs) -> Result<(), Failure> {
     let mut guard = Guard::default();

@@ -4,14 +4,16 @@ mod options;
 
 pub use options::{Program, program};
 
-use crate::args::weight;
 use crate::diagrams::{self, filter_layer, samples_layer};
+use crate::failure::{Failure, bad, failed};
 use crate::guard::Guard;
 use crate::memory::Memory;
 use crate::open::{Opened, open};
-use crate::output::say;
-use crate::render::{failure, rejected};
-use crate::{Failure, bad, check, output, progress};
+use crate::report::rejected;
+use crate::terminal::say;
+use crate::values::weight;
+use crate::{check, output, progress};
+use clap::Args;
 use durer::LoadOptions;
 use durer::camera::{Lens, Raster};
 use durer::compile::AccelKind;
@@ -26,6 +28,21 @@ use options::{Given, PROGRAMS, usage};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::Ordering::Relaxed;
+
+/// Take the arguments of the course's own programs, of any year
+#[derive(Args)]
+#[command(
+    disable_help_flag = true,
+    after_help = "Example:
+  durer course -input scene.txt -size 200 200 -output picture.tga -depth 9 10 depth.tga
+
+`durer course --help` lists the options."
+)]
+pub struct CourseArgs {
+    /// Arguments as the course's programs take them
+    #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+    pub arguments: Vec<String>,
+}
 
 /// The old programs know no limit of memory.
 const MEMORY: Memory = Memory::Percent(80.0);
@@ -49,7 +66,7 @@ pub fn run(arguments: Vec<String>, program_name: Option<&'static Program>) -> Re
     let world = &opened.world;
     let zooms = (given.zoom("-render_samples")?, given.zoom("-render_filter")?);
     for zoom in [zooms.0, zooms.1].into_iter().flatten() {
-        diagrams::check(&job, zoom).map_err(failure)?;
+        diagrams::check(&job, zoom).map_err(failed)?;
     }
     // The picture of the grid takes the place of the colour picture.
     let grid_wanted = job.color && given.has("-visualize_grid");
@@ -61,10 +78,10 @@ pub fn run(arguments: Vec<String>, program_name: Option<&'static Program>) -> Re
         let filter = zooms.1.map(|zoom| filter_layer(&job, zoom)).transpose()?;
         Ok((rendered, grid.map(|image| Layer::color("color", image)), [samples, filter]))
     })
-    .map_err(failure)?;
+    .map_err(failed)?;
     // It may have come when all was done already: it was asked for all the same.
     if control.cancel.load(Relaxed) {
-        return Err(failure(RenderError::Cancelled));
+        return Err(failed(RenderError::Cancelled));
     }
     rejected(&rendered.statistics, quiet);
     if given.has("-stats") {

@@ -2,7 +2,8 @@
 
 mod oidn;
 
-use crate::{Failure, bad, report};
+use crate::failure::{Failure, bad};
+use crate::report;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use durer::diag::Diagnostic;
 use durer::image::Layer;

@@ -1,6 +1,6 @@
 //! How colours become eight bits, from options.
 
-use crate::{Failure, bad};
+use crate::failure::{Failure, bad};
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 use durer::image::{Display, Tone, Transfer};

@@ -1,10 +1,12 @@
 //! The command's options for other programs: the same words make the same job, with the same bits.
 
-use crate::args::{Cli, Command, RenderArgs};
+use crate::failure::Failure;
 use crate::job::{accel, aspect};
 use crate::open::load_options;
-use crate::{Failure, check, compare, explain, job};
-use clap::{CommandFactory, Parser};
+use crate::options::RenderArgs;
+use crate::render::RenderCommand;
+use crate::{check, compare, explain, job};
+use clap::{Args, FromArgMatches};
 use durer::check::{Subject, check as find};
 use durer::diag::{Diagnostics, Files};
 use durer::image::compare::Comparison;
@@ -24,14 +26,13 @@ impl Asked {
     /// What the command would say of them.
     pub fn new(words: &[String]) -> Result<Asked, String> {
         // A shard must be told its file, which here is the caller's.
-        let words =
-            ["durer", "render", "scene", "--output", "picture.png"].into_iter().chain(words.iter().map(String::as_str));
-        match Cli::try_parse_from(words).map(|cli| cli.command) {
-            Ok(Command::Render(command)) if command.frames.is_asked() => {
+        let words = ["render", "scene", "--output", "picture.png"].into_iter().chain(words.iter().map(String::as_str));
+        let matches = render().try_get_matches_from(words);
+        match matches.and_then(|matches| RenderCommand::from_arg_matches(&matches)) {
+            Ok(command) if command.frames.is_asked() => {
                 Err("--frames and --turntable make many pictures, and here one is made".into())
             }
-            Ok(Command::Render(command)) => Ok(Asked(command.render)),
-            Ok(_) => Err("these are not the options of a render".into()),
+            Ok(command) => Ok(Asked(command.render)),
             Err(error) => Err(plain(&error.render().to_string())),
         }
     }
@@ -72,6 +73,11 @@ impl Asked {
     }
 }
 
+/// The command line of `durer render`.
+fn render() -> clap::Command {
+    RenderCommand::augment_args(clap::Command::new("render"))
+}
+
 /// What the command says of wrong words, without the ornaments of a terminal.
 fn plain(text: &str) -> String {
     let text = text.trim().trim_start_matches("error: ");
@@ -101,10 +107,7 @@ pub struct OptionStatement {
 
 /// All options of `durer render` that concern what is read, made and how.
 pub fn options() -> Vec<OptionStatement> {
-    let command = Cli::command();
-    let render = command.find_subcommand("render").map(|command| command.get_arguments().cloned().collect());
-    let all: Vec<clap::Arg> = render.unwrap_or_default();
-    all.iter().filter_map(option).collect()
+    render().get_arguments().filter_map(option).collect()
 }
 
 fn option(arg: &clap::Arg) -> Option<OptionStatement> {

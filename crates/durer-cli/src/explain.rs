@@ -3,13 +3,15 @@
 mod outlines;
 mod page;
 
-use crate::args::ExplainArgs;
+use crate::failure::{Failure, bad, failed};
 use crate::guard::Guard;
 use crate::job::{accel, aspect, job};
 use crate::open::{Opened, load_options, open};
-use crate::output::say;
-use crate::render::failure;
-use crate::{Failure, bad, output, progress};
+use crate::options::RenderArgs;
+use crate::terminal::say;
+use crate::values::{percent, pixel};
+use crate::{output, progress};
+use clap::Args;
 use durer::film::luminance_of;
 use durer::image::{Image, Transfer};
 use durer::integrator::account::What;
@@ -20,7 +22,52 @@ use durer::render::{Control, Job};
 use durer::sampler::SampleId;
 use std::collections::BTreeSet;
 use std::io::IsTerminal;
+use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
+
+/// Say why a pixel has its colour: the tree of terms that sums to it
+#[derive(Args)]
+#[command(after_help = "Examples:
+  durer explain scene.txt --pixel 200,150
+  durer explain scene.txt --pixel 200,150 --sample 3 --size 640x480 --bounces 2
+  durer explain scene.txt --brightest --html why.html
+  durer explain scene.txt --ray '0 1 5 0 0 -1' --json
+
+Give the options with which the picture was rendered: they decide the pixel. Those that only say where a picture goes
+change nothing here. With one sample the pixel's centre is explained.")]
+pub struct ExplainArgs {
+    #[command(flatten)]
+    pub render: RenderArgs,
+
+    /// The pixel, counted from 0 at the upper left corner
+    #[arg(long, value_name = "X,Y", value_parser = pixel, conflicts_with_all = ["ray", "brightest", "worst"])]
+    pub pixel: Option<(u32, u32)>,
+    /// The sample whose tree is shown, by its place in the list [default: the first of those that
+    /// count most]
+    #[arg(long, value_name = "N")]
+    pub sample: Option<u32>,
+    /// Any ray instead of a pixel's: origin and direction
+    #[arg(long, value_name = "OX OY OZ DX DY DZ", value_delimiter = ' ', num_args = 1..=6, allow_negative_numbers = true, conflicts_with_all = ["brightest", "worst", "sample"])]
+    pub ray: Option<Vec<f32>>,
+    /// The brightest pixel of the picture
+    #[arg(long, conflicts_with = "worst")]
+    pub brightest: bool,
+    /// The pixel least like those around it; of paths, the one to which a single sample adds most
+    #[arg(long)]
+    pub worst: bool,
+    /// Leave out terms that are a smaller share of the pixel, in percent
+    #[arg(long, value_name = "PERCENT", default_value_t = 0.0, value_parser = percent)]
+    pub min: f64,
+    /// Leave out terms that stand deeper in the tree
+    #[arg(long, value_name = "N")]
+    pub depth: Option<u32>,
+    /// As JSON
+    #[arg(long, conflicts_with = "html")]
+    pub json: bool,
+    /// As a page with the picture, the tree and the rays in space
+    #[arg(long, value_name = "FILE")]
+    pub html: Option<PathBuf>,
+}
 
 /// The version of the JSON.
 const VERSION: u32 = 1;
@@ -59,8 +106,9 @@ pub fn run(args: &ExplainArgs) -> Result<(), Failure> {
         },
         Subject::Ray(_) => 0,
     };
+    let transfer = args.render.display.transfer();
     if let (Some(place), Some(picture)) = (&page_file, &picture) {
-        let page = page::page(json(&subject, &names), sample, &opened.world, picture, args)?;
+        let page = page::page(json(&subject, &names), sample, &opened.world, picture, transfer)?;
         output::save(&[(place, page.into_bytes())], args.render.quiet)?;
         return Ok(());
     }
@@ -68,7 +116,6 @@ pub fn run(args: &ExplainArgs) -> Result<(), Failure> {
         say(&serde_json::to_string_pretty(&json(&subject, &names))?);
         return Ok(());
     }
-    let transfer = args.render.display.transfer();
     let deepest = args.depth.map_or(usize::MAX, |depth| depth as usize);
     let telling = Telling { least: (args.min / 100.0) as f32, deepest, transfer };
     let lines = match &subject {
@@ -90,7 +137,7 @@ fn picture(args: &ExplainArgs, opened: &Opened, job: &Job) -> Result<Image, Fail
     let job = Job { crop: None, color: true, aovs: Vec::new(), ..job.clone() };
     let control = Arc::new(Control { threads: args.render.work.threads.map(usize::from), ..Control::default() });
     let render = || durer::render::render(&opened.world, &job, &control);
-    let mut rendered = progress::watch(&control, args.render.quiet, render).map_err(failure)?;
+    let mut rendered = progress::watch(&control, args.render.quiet, render).map_err(failed)?;
     Ok(std::sync::Arc::unwrap_or_clone(rendered.layers.swap_remove(0).image))
 }
 
@@ -119,7 +166,7 @@ fn subject(args: &ExplainArgs, opened: &Opened, job: &Job, picture: Option<&Imag
         return Err(bad(format!("pixel {x},{y} lies outside the picture of {} x {} pixels", job.width, job.height)));
     }
     let world = &opened.world;
-    let explanation = deep(|| explain(world, job, pixel.0, pixel.1))?.map_err(failure)?;
+    let explanation = deep(|| explain(world, job, pixel.0, pixel.1))?.map_err(failed)?;
     if let Some(sample) = args.sample.filter(|&sample| sample as usize >= explanation.samples.len()) {
         let last = explanation.samples.len() - 1;
         return Err(bad(format!("there is no sample {sample}: the pixel's are numbered from 0 to {last}")));
@@ -137,7 +184,7 @@ fn worst(opened: &Opened, job: &Job, picture: &Image) -> Result<Explanation, Fai
     odd.truncate(CANDIDATES);
     let mut best: Option<(f64, Explanation)> = None;
     for (_, (x, y)) in odd {
-        let explanation = deep(|| explain(&opened.world, job, x, y))?.map_err(failure)?;
+        let explanation = deep(|| explain(&opened.world, job, x, y))?.map_err(failed)?;
         // A lamp's own border is bright, and no firefly.
         let standing_out = if explanation.outlier().is_some() { 1.0 } else { 1e-6 };
         let adds = explanation.brightest().map_or(0.0, |(_, adds)| standing_out * adds);
@@ -192,7 +239,7 @@ fn most(picture: &Image, value: impl Fn(u32, u32) -> f64) -> (u32, u32) {
 }
 
 /// A share for people.
-fn percent(share: f32) -> String {
+fn percentage(share: f32) -> String {
     match 100.0 * share {
         0.0 => "0 %".into(),
         share if share.abs() < 0.1 => "< 0.1 %".into(),
@@ -208,7 +255,7 @@ pub fn shown(line: &Line, colored: bool, transfer: Transfer) -> String {
         Some(adds) if line.depth > 0 => {
             let numbers: Vec<_> = adds.numbers().iter().map(|x| number(*x)).collect();
             let [r, g, b] = transfer.encode_pixel(line.color);
-            format!("+ ({})  [{}, alone {r} {g} {b}]  {}", numbers.join(", "), percent(line.share), line.text)
+            format!("+ ({})  [{}, alone {r} {g} {b}]  {}", numbers.join(", "), percentage(line.share), line.text)
         }
         _ => line.text.clone(),
     };

@@ -1,9 +1,9 @@
 //! `durer farm`: a job for an engine that is there already, over `--shard` and `durer merge`.
 
 use crate::embed::Asked;
+use crate::failure::{Failure, bad};
 use crate::frames::{self, Frames, FramesArgs, Moves};
-use crate::output::say;
-use crate::{Failure, bad};
+use crate::terminal::say;
 use clap::Args;
 use std::path::PathBuf;
 

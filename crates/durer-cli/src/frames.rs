@@ -1,8 +1,8 @@
 //! `--frames` and `--turntable`: the pictures of an animation, each into a file of its own.
 
-use crate::args::RenderCommand;
-use crate::render::{self, Watched};
-use crate::{Failure, bad};
+use crate::failure::{Failure, bad};
+use crate::options::RenderArgs;
+use crate::picture::{Watched, once, output_of};
 use clap::Args;
 use durer::compile::Kept;
 use std::path::{Path, PathBuf};
@@ -133,11 +133,7 @@ pub fn pattern(path: &str) -> String {
 }
 
 /// Renders the frames one after the other.
-pub fn run(command: &mut RenderCommand, frames: Frames, moves: Moves) -> Result<(), Failure> {
-    let args = &command.render;
-    if args.work.checkpoint.is_some() || args.work.preview.is_some() || args.watch || command.pixel.is_some() {
-        return Err(bad("many pictures are made: --checkpoint, --preview, --watch and --pixel are about one"));
-    }
+pub fn run(args: &mut RenderArgs, frames: Frames, moves: Moves) -> Result<(), Failure> {
     let staging = &args.reading.staging;
     let own = staging.camera.is_some() || staging.view_file.is_some() || staging.turned.is_some();
     if matches!(moves, Moves::Turntable(_)) && own {
@@ -147,12 +143,11 @@ pub fn run(command: &mut RenderCommand, frames: Frames, moves: Moves) -> Result<
         return Err(bad("--frames are moments of the animation: --at is one"));
     }
     let utf8 = |path: &Path| path.to_str().map(String::from).ok_or_else(|| bad(format!("{path:?} is not UTF-8")));
-    let (scene, output) = (utf8(&args.scene)?, pattern(&utf8(&render::output_of(args))?));
+    let (scene, output) = (utf8(&args.scene)?, pattern(&utf8(&output_of(args))?));
     let (camera, view_file) = (staging.camera.clone(), staging.view_file.as_deref().map(utf8).transpose()?);
     // Meshes and pictures that frames share are read once.
     let kept = Arc::new(Kept::default());
     for frame in frames.numbers() {
-        let args = &mut command.render;
         (args.scene, args.output) = (numbered(&scene, frame).into(), Some(numbered(&output, frame).into()));
         let staging = &mut args.reading.staging;
         staging.camera = camera.as_deref().map(|name| numbered(name, frame));
@@ -162,7 +157,7 @@ pub fn run(command: &mut RenderCommand, frames: Frames, moves: Moves) -> Result<
             Moves::Time(rate) => staging.at = Some((f64::from(frame) / rate) as f32),
             Moves::Names => {}
         }
-        render::once(command, &Watched::keeping(&kept))?;
+        once(args, None, &Watched::keeping(&kept))?;
     }
     Ok(())
 }

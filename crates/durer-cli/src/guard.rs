@@ -4,7 +4,7 @@
 //! ([`crate::output`] takes nothing else). It makes no difference by which name, link or detour a
 //! file is named.
 
-use crate::{Failure, bad};
+use crate::failure::{Failure, bad};
 use durer::image::Destination;
 use std::path::{Path, PathBuf};
 
@@ -74,7 +74,7 @@ impl Guard {
     pub fn writes(&mut self, what: &'static str, path: &Path) -> Result<Destination, Failure> {
         self.claim(what, path)?;
         let own = ["/dev/stdout", "/dev/fd/1", "/proc/self/fd/1"].iter().any(|own| path == Path::new(own));
-        if own && !crate::output::has_standard_output() {
+        if own && !crate::terminal::has_standard_output() {
             return Err(anyhow::anyhow!("cannot write `{}`: it is closed", path.display()).into());
         }
         Ok(Destination::new(path)?)

@@ -1,17 +1,32 @@
 //! `durer info`.
 
-use crate::Failure;
-use crate::args::InfoArgs;
+use crate::failure::Failure;
 use crate::guard::Guard;
 use crate::open::{load_options, open};
-use crate::output::say;
+use crate::options::SceneArgs;
+use crate::terminal::say;
+use clap::Args;
 use durer::bvh::TraversalStats;
 use durer::camera::{Lens, Raster};
 use durer::describe::DescribedList;
 use durer::render::{center_ray, raster};
 use durer::world::{Accel, Geometry, MeshTree, World};
 use std::collections::BTreeMap;
+use std::path::PathBuf;
 use std::sync::Arc;
+
+/// Say what is in a scene
+#[derive(Args)]
+#[command(after_help = "Examples:\n  durer info scene.txt\n  durer info scene.txt --json")]
+pub struct InfoArgs {
+    /// The scene file
+    pub scene: PathBuf,
+    #[command(flatten)]
+    pub reading: SceneArgs,
+    /// As JSON, with the scene as `durer convert` writes it
+    #[arg(long)]
+    pub json: bool,
+}
 
 pub fn run(args: &InfoArgs) -> Result<(), Failure> {
     let opened = open(&args.scene, &load_options(&args.reading), args.json, &mut Guard::default())?;

@@ -1,7 +1,8 @@
 //! From options to a job.
 
-use crate::args::{JobArgs, SceneArgs, ViewArgs};
-use crate::{Failure, bad, method, report};
+use crate::failure::{Failure, bad};
+use crate::options::{JobArgs, SceneArgs, ViewArgs};
+use crate::{method, report};
 use durer::Loaded;
 use durer::camera::{Lens, Raster};
 use durer::compile::AccelKind;

@@ -1,9 +1,11 @@
 //! What is saved of work that takes long: checkpoints, parts, previews.
 
-use crate::args::RenderArgs;
+use crate::failure::{Failure, bad};
 use crate::guard::Guard;
+use crate::options::RenderArgs;
 use crate::output::{encode, format, lengthened, wrote};
-use crate::{Failure, bad, progress, report};
+use crate::terminal::complain;
+use crate::{progress, report};
 use durer::image::{Destination, Display, Format, save_all};
 use durer::render::{Moment, Panicked, Part, PartError};
 use durer::source::Source;
@@ -98,7 +100,7 @@ impl Keeper {
             |error| bad(format!("cannot go on with `{name}`: {error}; --restart throws it away and begins anew"));
         fresh.same_work(&saved).map_err(other)?;
         if !self.quiet {
-            report::complain(&format!("note: going on with {name}: {} % done", percent(&saved)));
+            complain(&format!("note: going on with {name}: {} % done", percent(&saved)));
         }
         Ok(*saved)
     }
@@ -136,7 +138,7 @@ impl Keeper {
 
     fn complain(&self, error: &str) {
         if !self.complained.replace(true) {
-            report::complain(&format!("warning: {error}; rendering goes on"));
+            complain(&format!("warning: {error}; rendering goes on"));
         }
     }
 
@@ -160,8 +162,8 @@ impl Keeper {
             || self.is_ours.get()
             || read_part(place.path()).is_ok_and(|old| part.same_work(&old).is_ok())
         {
-            // Only what is of this picture, or was to be thrown away; if it cannot be removed, it is only in
-            // the way.
+            // Only what is of this picture, or was to be thrown away; if it cannot be removed, it
+            // is only in the way.
             let _ = std::fs::remove_file(place.path());
         }
     }

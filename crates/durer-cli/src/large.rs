@@ -1,9 +1,11 @@
 //! Pictures larger than memory: rendered while they are written.
 
-use crate::args::RenderArgs;
-use crate::output::{Target, say, wrote};
-use crate::render::{failure, rejected};
-use crate::{Failure, bad, progress};
+use crate::failure::{Failure, bad, failed};
+use crate::options::RenderArgs;
+use crate::output::{Target, wrote};
+use crate::progress;
+use crate::report::rejected;
+use crate::terminal::say;
 use durer::image::{Content, Format, MAX_PIXELS, WriteOptions, save_all};
 use durer::render::{Bands, BandsError, Control, Job, RenderError, Statistics};
 use durer::source::Digest;
@@ -19,7 +21,7 @@ pub fn is_large(job: &Job, needed: u64, memory: Option<u64>) -> bool {
 
 /// How a large picture is made, or why it cannot be.
 pub fn bands(args: &RenderArgs, job: &Job, target: &Target, memory: Option<u64>) -> Result<Bands, Failure> {
-    let refuse = |why: &str| Err(failure(RenderError::Bands(why.into())));
+    let refuse = |why: &str| Err(failed(RenderError::Bands(why.into())));
     let (work, window) = (&args.work, job.window());
     let Some((_, format)) = target.single() else { return refuse("it has other pictures than the colours") };
     if format.rows.is_none() {
@@ -40,9 +42,9 @@ pub fn bands(args: &RenderArgs, job: &Job, target: &Target, memory: Option<u64>)
     // What the scene takes is not known yet: half is left for it.
     Bands::new(job, memory.map_or(u64::MAX, |memory| memory / 2)).map_err(|error| match (error, memory) {
         (RenderError::Memory { needed, .. }, Some(allowed)) => {
-            failure(RenderError::Memory { needed: needed.saturating_mul(2), allowed })
+            failed(RenderError::Memory { needed: needed.saturating_mul(2), allowed })
         }
-        (error, _) => failure(error),
+        (error, _) => failed(error),
     })
 }
 
@@ -82,9 +84,9 @@ pub fn render(
     let Some((place, format)) = target.single() else { return Ok(()) };
     let options = WriteOptions { display: args.display.display()?, attributes: &[] };
     let large = Large { bands, world, control, format, options, made: RefCell::new(None) };
-    let saved = progress::watch(control, args.quiet, || Ok(save_all(&[(place, &large)]))).map_err(failure)?;
+    let saved = progress::watch(control, args.quiet, || Ok(save_all(&[(place, &large)]))).map_err(failed)?;
     let (statistics, hash) = match large.made.take() {
-        Some(Err(BandsError::Render(error))) => return Err(failure(error)),
+        Some(Err(BandsError::Render(error))) => return Err(failed(error)),
         Some(Err(BandsError::Image(error))) => return Err(bad(error.to_string())),
         Some(Err(BandsError::Io(error))) => {
             return Err(Failure::Other(anyhow::anyhow!("cannot write `{}`: {error}", place.path().display())));

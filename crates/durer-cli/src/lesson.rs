@@ -3,61 +3,64 @@
 mod folder;
 mod markdown;
 mod page;
+mod written;
 
-use crate::args::LessonArgs;
+use crate::failure::{Failure, bad, failed};
 use crate::guard::Guard;
 use crate::job::{accel, aspect, job, warn};
 use crate::open::{load_options, open};
-use crate::output::{lengthened, say};
-use crate::page::png;
-use crate::render::failure;
-use crate::{Failure, bad, progress};
+use crate::options::{JobArgs, SceneArgs};
+use crate::output::lengthened;
+use crate::progress;
+use crate::terminal::say;
+use clap::Args;
+use clap::builder::PossibleValuesParser;
 use durer::camera::{Lens, Raster};
-use durer::image::{Layer, Transfer, checked_count};
-use durer::lesson::{OWN_SCENE, OWN_SCENE_NAME, Picture, Stage, Step, TOPICS, Teacher, Topic};
+use durer::image::{Transfer, checked_count};
+use durer::lesson::{OWN_SCENE, OWN_SCENE_NAME, Stage, TOPICS, Teacher};
 use durer::render::Control;
 use folder::Folder;
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use written::{Lesson, PAGE, TEXT};
+
+/// Show a scene in the order of the lecture: rays, distance, normals, light by light, with
+/// equations and mistakes
+#[derive(Args)]
+#[command(after_help = "Examples:
+  durer lesson scene.txt -o lesson/
+  durer lesson scene.txt -o lesson/ --size 400x300 --samples 64
+  durer lesson scene.txt -o lesson/ --dialect f04 --shadows --bounces 4 --transfer course
+  durer lesson scenes/plates.txt -o lesson/ --samples 32
+
+FOLDER gets a page for a browser, index.html, which needs nothing else, and the same as lesson.md with its pictures as
+files. A folder that is there already keeps its other files; what an earlier lesson wrote is replaced.
+Give the options with which the picture is rendered: with Whitted's light the last step is that picture. Without --size its
+longer side has 256 pixels. A step of which nothing is seen in the scene is shown in a small scene of ours, and says so.
+With --integrator path or photons, which some scenes have by themselves, the lesson goes on with soft shadows, bounces, lamps
+found in two ways, caustics and spectra, as far as the scene has them.")]
+pub struct LessonArgs {
+    /// The scene file
+    pub scene: PathBuf,
+    /// The folder to write [default: the scene's name with -lesson, here]
+    #[arg(short, long, value_name = "FOLDER")]
+    pub output: Option<PathBuf>,
+    #[command(flatten)]
+    pub reading: SceneArgs,
+    #[command(flatten)]
+    pub job: JobArgs,
+    /// Threads that build and render [default: as many as the machine has]
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+    /// How colours become eight bits
+    #[arg(long, default_value = "srgb", value_parser = PossibleValuesParser::new(Transfer::ALL.map(Transfer::name)))]
+    pub transfer: String,
+    /// Say nothing but errors
+    #[arg(short, long)]
+    pub quiet: bool,
+}
 
 /// The longer side of a picture where no size is asked for.
 const SIDE: u32 = 256;
-/// The text of the lesson, and the page.
-const TEXT: &str = "lesson.md";
-const PAGE: &str = "index.html";
-
-/// A picture's caption and its file.
-struct Figure {
-    caption: &'static str,
-    file: String,
-}
-
-/// A step whose pictures are files.
-struct Written {
-    topic: &'static Topic,
-    title: String,
-    words: String,
-    ours: bool,
-    /// Why the scene cannot show it.
-    lacking: &'static str,
-    /// Whether it goes on with the topic of the step before.
-    goes_on: bool,
-    before: Option<Figure>,
-    after: Figure,
-    change: Option<String>,
-    /// A drawing and its file.
-    plan: Option<(String, String)>,
-}
-
-/// A lesson that is to be written.
-struct Lesson {
-    /// The scene's file, without its folder.
-    scene: String,
-    steps: Vec<Written>,
-    /// The pictures, each once, by their files' names.
-    pictures: Vec<(String, Vec<u8>)>,
-    transfer: Transfer,
-}
-
 pub fn run(args: &LessonArgs) -> Result<(), Failure> {
     let stem = Path::new(args.scene.file_stem().unwrap_or_default());
     let mut guard = Guard::default();
@@ -83,11 +86,11 @@ pub fn run(args: &LessonArgs) -> Result<(), Failure> {
     let names: Vec<String> = TOPICS.iter().map(|topic| topic.title.to_string()).collect();
     // Ctrl-C ends the program here: nothing is written yet.
     let made = progress::each(&names, TOPICS.iter().collect(), args.quiet, |topic| {
-        let steps = teacher.steps(topic, &control).map_err(failure)?;
+        let steps = teacher.steps(topic, &control).map_err(failed)?;
         steps.into_iter().try_for_each(|step| lesson.add(step))
     });
     made.into_iter().collect::<Result<(), Failure>>()?;
-    let files = lesson.files()?;
+    let files = files(lesson)?;
     let count = files.len() - 2;
     let path = folder.write(files, &mut guard)?;
     if !args.quiet {
@@ -96,60 +99,15 @@ pub fn run(args: &LessonArgs) -> Result<(), Failure> {
     Ok(())
 }
 
-impl Lesson {
-    /// Adds a step, whose pictures' files begin with its number.
-    fn add(&mut self, step: Step) -> Result<(), Failure> {
-        let name = format!("{:02}-{}", self.steps.len() + 1, step.topic.name);
-        let figure = |lesson: &mut Lesson, picture: &Picture, end: &str| -> Result<Figure, Failure> {
-            let file = lesson.picture(format!("{name}{end}.png"), &picture.layer)?;
-            Ok(Figure { caption: picture.caption, file })
-        };
-        let before = step.before.as_ref().map(|picture| figure(self, picture, "-before")).transpose()?;
-        let after = figure(self, &step.after, "")?;
-        let change = step.change.as_ref().map(|change| self.picture(format!("{name}-change.png"), &change.picture));
-        let change = change.transpose()?;
-        let plan = step.plan.map(|svg| (svg, format!("{name}-plan.svg")));
-        let Step { topic, title, words, ours, lacking, goes_on, .. } = step;
-        self.steps.push(Written { topic, title, words, ours, lacking, goes_on, before, after, change, plan });
-        Ok(())
+/// All files, by their names in the folder.
+fn files(lesson: Lesson) -> Result<Vec<(String, Vec<u8>)>, Failure> {
+    let mut files = vec![(PAGE.to_string(), page::page(&lesson).into_bytes())];
+    files.push((TEXT.to_string(), markdown::text(&lesson).into_bytes()));
+    if lesson.shows_ours() {
+        files.push((OWN_SCENE_NAME.to_string(), OWN_SCENE.into()));
     }
-
-    /// The file of a picture: what one step ends with, the next may begin with.
-    fn picture(&mut self, name: String, layer: &Layer) -> Result<String, Failure> {
-        let png = png(layer.clone(), self.transfer)?;
-        if let Some((there, _)) = self.pictures.iter().find(|picture| picture.1 == png) {
-            return Ok(there.clone());
-        }
-        self.pictures.push((name.clone(), png));
-        Ok(name)
-    }
-
-    /// All files, by their names in the folder.
-    fn files(self) -> Result<Vec<(String, Vec<u8>)>, Failure> {
-        let mut files = vec![(PAGE.to_string(), page::page(&self).into_bytes())];
-        files.push((TEXT.to_string(), markdown::text(&self).into_bytes()));
-        if self.shows_ours() {
-            files.push((OWN_SCENE_NAME.to_string(), OWN_SCENE.into()));
-        }
-        let plans = self.steps.into_iter().filter_map(|step| step.plan);
-        files.extend(plans.map(|(svg, name)| (name, svg.into_bytes())));
-        files.extend(self.pictures);
-        Ok(files)
-    }
-
-    /// Whether some step is shown in our own scene.
-    fn shows_ours(&self) -> bool {
-        self.steps.iter().any(|step| step.ours)
-    }
-}
-
-impl Written {
-    /// That the step is shown in another scene, and why.
-    fn elsewhere(&self, scene: &str) -> Option<String> {
-        let lacking = self.lacking;
-        // The steps after the first are shown in the same scene.
-        (self.ours && !self.goes_on).then(|| {
-            format!("{scene} cannot show this: {lacking}. It is shown in a small scene of ours, {OWN_SCENE_NAME}.")
-        })
-    }
+    let plans = lesson.steps.into_iter().filter_map(|step| step.plan);
+    files.extend(plans.map(|(svg, name)| (name, svg.into_bytes())));
+    files.extend(lesson.pictures);
+    Ok(files)
 }

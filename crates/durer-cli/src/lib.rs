@@ -11,6 +11,7 @@ mod diagrams;
 mod display;
 pub mod embed;
 mod explain;
+mod failure;
 mod farm;
 mod frames;
 mod guard;
@@ -25,32 +26,27 @@ mod memory;
 mod merge;
 mod method;
 mod open;
+mod options;
 mod output;
 mod page;
 mod photo;
+mod picture;
 mod progress;
 mod render;
 mod report;
 mod staging;
 mod stats;
+mod terminal;
+mod values;
 mod verify;
 mod watching;
 mod words;
 
 use args::{Cli, Command};
 use clap::Parser;
+use failure::bad;
 use std::ffi::OsString;
 use std::path::Path;
-
-/// Exit code after a scene, an option or another input that is wrong.
-const BAD_INPUT: u8 = 2;
-/// Exit code after anything else that failed.
-const OTHER_FAILURE: u8 = 1;
-/// Exit code of `durer compare` after pictures that differ: as of `cmp` and `diff`, whose 2 says
-/// that something is wrong.
-const DIFFERENT: u8 = 1;
-/// Exit code of `durer check` after findings.
-const FOUND: u8 = 1;
 
 /// Does what a command line says, whose first word is the name of the program; gives the exit code.
 /// It hears signals, and may end the process.
@@ -94,53 +90,4 @@ pub fn run(words: Vec<OsString>) -> u8 {
         Ok(()) => 0,
         Err(failure) => failure.report(),
     }
-}
-
-/// Why a command did not do its work.
-enum Failure {
-    /// The input is wrong; diagnostics were printed, or the message says why.
-    Input(Option<String>),
-    /// Something else went wrong.
-    Other(anyhow::Error),
-    /// `durer compare` found pictures that differ, and has said so.
-    Different,
-    /// `durer check` has found something, and has said so.
-    Found,
-    /// The user stopped it; says what became of the work.
-    Interrupted(String),
-}
-
-impl Failure {
-    /// Says it, and gives the exit code.
-    fn report(self) -> u8 {
-        match self {
-            Failure::Input(message) => {
-                if let Some(message) = message {
-                    report::complain(&format!("error: {message}"));
-                }
-                BAD_INPUT
-            }
-            Failure::Other(error) => {
-                report::complain(&format!("error: {error}"));
-                OTHER_FAILURE
-            }
-            Failure::Different => DIFFERENT,
-            Failure::Found => FOUND,
-            Failure::Interrupted(what) => {
-                report::complain(&format!("interrupted; {what}"));
-                progress::interrupted()
-            }
-        }
-    }
-}
-
-impl<E: Into<anyhow::Error>> From<E> for Failure {
-    fn from(error: E) -> Self {
-        Failure::Other(error.into())
-    }
-}
-
-/// A wrong input that a message explains.
-fn bad(message: impl Into<String>) -> Failure {
-    Failure::Input(Some(message.into()))
 }

@@ -1,8 +1,8 @@
 //! What the program says of itself.
 
-use crate::Failure;
 use crate::args::Cli;
-use crate::output::say;
+use crate::failure::Failure;
+use crate::terminal::say;
 use clap::CommandFactory;
 use durer::dialect::{Compat, Dialect};
 

@@ -1,11 +1,12 @@
 //! `durer measure`: how much light arrives at points.
 
-use crate::args::SceneArgs;
+use crate::failure::{Failure, bad};
 use crate::guard::Guard;
+use crate::job;
 use crate::method::MethodArgs;
 use crate::open::{load_options, open};
-use crate::output::say;
-use crate::{Failure, bad, job};
+use crate::options::SceneArgs;
+use crate::terminal::say;
 use clap::Args;
 use durer::integrator::{Integrate, Integrator, Method, Settings, Setup};
 use durer::math::{Color, Vec3};

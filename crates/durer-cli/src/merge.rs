@@ -1,13 +1,41 @@
 //! `durer merge`.
 
-use crate::args::MergeArgs;
+use crate::display::DisplayArgs;
+use crate::failure::{Failure, bad, failed};
 use crate::guard::Guard;
 use crate::keep::read_part;
-use crate::output::{Target, say};
-use crate::render::{failure, rejected};
-use crate::{Failure, bad, output};
+use crate::output;
+use crate::output::Target;
+use crate::report::rejected;
+use crate::terminal::say;
+use clap::Args;
 use durer::render::merge;
 use std::path::PathBuf;
+
+/// Put parts of a picture together
+#[derive(Args)]
+#[command(after_help = "Examples:
+  durer merge one.part two.part three.part -o picture.exr
+  durer merge shards/*.part -o picture.png --hash
+
+The result is the same, bit for bit, as that of one run. Parts of other pictures, work that is in two parts and
+work that is in none are refused.")]
+pub struct MergeArgs {
+    /// The parts, in any order
+    #[arg(required = true)]
+    pub parts: Vec<PathBuf>,
+    /// The picture to write
+    #[arg(short, long, value_name = "PICTURE")]
+    pub output: PathBuf,
+    #[command(flatten)]
+    pub display: DisplayArgs,
+    /// Print the hash of the film as the last line of standard output
+    #[arg(long)]
+    pub hash: bool,
+    /// Say nothing but errors
+    #[arg(short, long)]
+    pub quiet: bool,
+}
 
 pub fn run(args: &MergeArgs) -> Result<(), Failure> {
     let mut guard = Guard::default();
@@ -22,7 +50,7 @@ pub fn run(args: &MergeArgs) -> Result<(), Failure> {
     let whole = merge(&parts).map_err(|error| bad(error.to_string()))?;
     drop(parts);
     rejected(&whole.statistics(), args.quiet);
-    let rendered = whole.pictures().map_err(failure)?;
+    let rendered = whole.pictures().map_err(failed)?;
     output::save(&target.files(&rendered, args.display.display()?)?, args.quiet)?;
     if args.hash {
         say(&whole.hash().to_string());

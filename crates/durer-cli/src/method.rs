@@ -1,6 +1,6 @@
 //! What computes the light, from options. The integrators state their own.
 
-use crate::{Failure, bad};
+use crate::failure::{Failure, bad};
 use clap::builder::{PossibleValuesParser, TypedValueParser, ValueParser};
 use clap::{Arg, ArgMatches, Args, Command, FromArgMatches};
 use durer::describe::{DescribedList, Field, Kind, Value};

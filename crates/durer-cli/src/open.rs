@@ -1,8 +1,9 @@
 //! Reading and compiling a scene, with its findings printed.
 
-use crate::args::SceneArgs;
+use crate::failure::Failure;
 use crate::guard::Guard;
-use crate::{Failure, report};
+use crate::options::SceneArgs;
+use crate::report;
 use durer::diag::{Diagnostics, Files};
 use durer::dialect::Dialect;
 use durer::world::World;

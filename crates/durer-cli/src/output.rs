@@ -1,13 +1,13 @@
 //! Pictures into files.
 
-use crate::args::DIAGRAMS;
+use crate::failure::{Failure, bad};
 use crate::guard::Guard;
-use crate::{Failure, bad, progress};
+use crate::options::DIAGRAMS;
+use crate::progress;
+use crate::terminal::say;
 use durer::image::{Depth, Destination, Display, Format, Layer, WriteOptions, format_for, save_all};
 use durer::render::Rendered;
-use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 /// The format of a picture's name, or what is wrong with the name.
 pub fn format(path: &Path) -> Result<&'static Format, Failure> {
@@ -106,37 +106,6 @@ pub fn save(files: &[(&Destination, Vec<u8>)], quiet: bool) -> Result<(), Failur
 pub fn wrote(place: &Destination, quiet: bool) {
     if !quiet && !place.is_stream() {
         say(&format!("wrote {}", place.path().display()));
-    }
-}
-
-/// Whether the program was started without a standard output.
-static CLOSED: AtomicBool = AtomicBool::new(false);
-
-/// Finds that out. It has to be before the standard library begins, which then puts the device in
-/// its place that swallows everything.
-#[cfg(unix)]
-#[ctor::ctor(unsafe)]
-fn look_at_standard_output() {
-    CLOSED.store(rustix::io::fcntl_getfd(rustix::stdio::stdout()).is_err(), Relaxed);
-}
-
-/// Whether there is a standard output.
-pub fn has_standard_output() -> bool {
-    !CLOSED.load(Relaxed)
-}
-
-/// A line on standard output. A closed pipe is nobody's fault: who closed it has read enough.
-pub fn say(line: &str) {
-    let written = match has_standard_output() {
-        true => writeln!(std::io::stdout(), "{line}"),
-        false => Err(std::io::Error::other("it is closed")),
-    };
-    match written {
-        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
-            let failure = Failure::Other(anyhow::anyhow!("cannot write to standard output: {error}"));
-            std::process::exit(i32::from(failure.report()));
-        }
-        _ => {}
     }
 }
 

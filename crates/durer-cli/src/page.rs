@@ -1,6 +1,6 @@
 //! What pages for a browser have in common: pictures and data within the one file, no network.
 
-use crate::Failure;
+use crate::failure::Failure;
 use crate::output::{encode, format};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;

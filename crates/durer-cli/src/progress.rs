@@ -1,10 +1,10 @@
 //! A progress bar, and what Ctrl-C and other signals do.
 
-use crate::Failure;
+use crate::failure::{Failure, interrupted_by};
 use durer::render::{Control, RenderError};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::IsTerminal;
-use std::sync::atomic::{AtomicU8, Ordering::Relaxed};
+use std::sync::atomic::Ordering::Relaxed;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, mpsc};
 use std::time::{Duration, Instant};
 
@@ -29,16 +29,9 @@ const SAME: Duration = Duration::from_millis(500);
 static PHASE: Mutex<Phase> = Mutex::new(Phase::Harmless);
 /// When the last interruption came that was not the same as one before.
 static LAST: Mutex<Option<Instant>> = Mutex::new(None);
-/// The last signal's number: 2 is that of Ctrl-C.
-static SIGNAL: AtomicU8 = AtomicU8::new(2);
 
 fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
-/// The exit code after an interruption: 130 after Ctrl-C, as shells have it.
-pub fn interrupted() -> u8 {
-    128 + SIGNAL.load(Relaxed)
 }
 
 /// What an interruption does.
@@ -48,7 +41,7 @@ fn interrupt(signal: u8) {
         return;
     }
     *last = Some(Instant::now());
-    SIGNAL.store(signal, Relaxed);
+    interrupted_by(signal);
     match &mut *phase {
         Phase::Rendering(control) if !control.cancel.swap(true, Relaxed) => {}
         Phase::Saving(asked @ false) => *asked = true,

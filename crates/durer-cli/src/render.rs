@@ -1,56 +1,49 @@
-//! `durer render`.
+//! `durer render`: one picture, those of an animation, or one again and again.
 
-use crate::args::{DIAGRAMS, ERROR, RenderArgs, RenderCommand};
-use crate::guard::Guard;
-use crate::keep::Keeper;
-use crate::open::{load_options, read};
-use crate::output::{Target, lengthened, say};
-use crate::stats::Stages;
-use crate::{Failure, bad, check, diagrams, frames, job, large, output, progress, report, watching};
-use durer::compile::Kept;
-use durer::diag::Diagnostic;
-use durer::image::checked_count;
-use durer::render::{Bands, Control, Job, Panicked, Part, RenderError, Shard, ShardBy, Statistics, Stop, replay};
-use durer::world::World;
-use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
-use std::sync::{Arc, Mutex};
+use crate::failure::{Failure, bad};
+use crate::frames::FramesArgs;
+use crate::options::RenderArgs;
+use crate::picture::{Pixel, Watched, once};
+use crate::values::pixel;
+use crate::{frames, watching};
+use clap::Args;
+use std::path::Path;
 
-/// What somebody who waits for files to be saved knows of a render, and can do to it.
-#[derive(Default)]
-pub struct Watched {
-    /// Files that the scene is made of, beside its own.
-    pub files: Mutex<Vec<PathBuf>>,
-    /// Whether a file was saved since.
-    pub stale: AtomicBool,
-    /// What was made of its files before.
-    pub kept: Option<Arc<Kept>>,
-    control: Mutex<Option<Arc<Control>>>,
-}
+/// Render a scene or a model to a picture
+#[derive(Args)]
+#[command(after_help = "Examples:
+  durer render scene.txt -o picture.png
+  durer render model.glb -o picture.png --view iso --studio sun
+  durer render model.glb -o frame.png --turntable 36
+  durer render walk.%04d.txt -o walk.png --frames 1-100
+  durer render scene.txt -o picture.png --watch
+  durer render scene.txt -o picture.exr --size 1920x1080 --samples 64
+  durer render scene.txt -o picture.exr --noise 0.01 --time 10m --preview preview.png
+  durer render scene.txt -o picture.exr --samples 256 --resume
+  durer render scene.txt -o three.part --shard 3/16
+  durer render scene.txt -o picture.png --show color,depth,normals --depth-range 9 10
+  durer render room.txt -o room.png --show luminance,illuminance --light-range 10 100000 --light-log
+  durer render scene.txt -o picture.png --dialect f04 --shadows --bounces 4 --transfer course
+  durer render scene.txt -o dots.png --show samples --size 9x9 --sampler jittered --samples 9
 
-impl Watched {
-    /// Of a scene whose files are kept from one picture to the next.
-    pub fn keeping(kept: &Arc<Kept>) -> Self {
-        Watched { kept: Some(Arc::clone(kept)), ..Watched::default() }
-    }
+A scene is a file of the course's language or a model: glTF, GLB, pbrt, Mitsuba, Radiance, 3MF, PLY, OBJ, STL. A model without camera and light is seen whole, in a studio.
 
-    /// Stops the render.
-    pub fn cancel(&self) {
-        self.stale.store(true, Relaxed);
-        if let Ok(Some(control)) = self.control.lock().as_deref() {
-            control.cancel.store(true, Relaxed);
-        }
-    }
+The extension of PICTURE says the format: png, tga, bmp, ppm, pfm, exr, hdr. Several pictures go into one EXR file
+as layers, or into files of their own: picture.depth.png and so on.
 
-    /// A render begins.
-    fn begins(&self, control: &Arc<Control>) {
-        if let Ok(mut place) = self.control.lock() {
-            *place = Some(Arc::clone(control));
-        }
-        if self.stale.load(Relaxed) {
-            control.cancel.store(true, Relaxed);
-        }
-    }
+Work that takes long is saved every now and then into PICTURE.part, which --resume goes on with, and without which word or
+--restart nothing of it is thrown away; it is removed when the picture is done. Ctrl-C, SIGTERM and SIGHUP save what is there.")]
+pub struct RenderCommand {
+    #[command(flatten)]
+    pub render: RenderArgs,
+    #[command(flatten)]
+    pub frames: FramesArgs,
+    /// Print what one pixel sees, and write nothing
+    #[arg(long, value_name = "X,Y", value_parser = pixel)]
+    pub pixel: Option<(u32, u32)>,
+    /// Of that pixel, only this sample
+    #[arg(long, value_name = "NUMBER", requires = "pixel")]
+    pub sample: Option<u32>,
 }
 
 pub fn run(mut command: RenderCommand) -> Result<(), Failure> {
@@ -58,227 +51,21 @@ pub fn run(mut command: RenderCommand) -> Result<(), Failure> {
     let view = staging.view_file.as_deref().unwrap_or(Path::new("")).to_string_lossy();
     let names = [&args.scene.to_string_lossy(), staging.camera.as_deref().unwrap_or_default(), &view];
     match (command.frames.asked(&args.scene, &names)?, args.watch) {
-        (Some((frames, moves)), _) => frames::run(&mut command, frames, moves),
+        (Some((frames, moves)), _) => {
+            let work = &args.work;
+            if work.checkpoint.is_some() || work.preview.is_some() || args.watch || command.pixel.is_some() {
+                return Err(bad("many pictures are made: --checkpoint, --preview, --watch and --pixel are about one"));
+            }
+            frames::run(&mut command.render, frames, moves)
+        }
         (None, true) => {
             // Each picture begins anew.
             command.render.work.no_checkpoint = true;
-            watching::run(&command)
+            watching::run(&command.render)
         }
-        (None, false) => once(&command, &Watched::default()),
-    }
-}
-
-/// The picture that is written.
-pub fn output_of(args: &RenderArgs) -> PathBuf {
-    let default_name = || lengthened(Path::new(args.scene.file_stem().unwrap_or_default()), ".png");
-    args.output.clone().unwrap_or_else(default_name)
-}
-
-/// Renders a scene.
-pub fn once(command: &RenderCommand, watched: &Watched) -> Result<(), Failure> {
-    let args = &command.render;
-    let shard = match args.work.shard {
-        Some(shard) if args.work.shard_by == "samples" => Shard { by: ShardBy::Samples, ..shard },
-        shard => shard.unwrap_or(Shard::WHOLE),
-    };
-    let output = output_of(args);
-    // What is known to prevent writing is better known before the work.
-    let mut guard = Guard::default();
-    let (target, keeper) = match (command.pixel, args.work.shard) {
-        (Some(_), _) => (None, None),
-        (_, Some(_)) => (None, Some(Keeper::new(args, &output, &mut guard)?)),
-        _ => {
-            let target = Target::new(&output, &shows(args)?, &mut guard)?;
-            (Some(target), Some(Keeper::new(args, &output, &mut guard)?))
+        (None, false) => {
+            let sample = command.sample;
+            once(args, command.pixel.map(|place| Pixel { place, sample }), &Watched::default())
         }
-    };
-    let mut options = load_options(&args.reading);
-    let memory = options.memory;
-    let threads = args.work.threads.map(usize::from);
-    (options.accel, options.threads) = (job::accel(&args.job)?, threads);
-    options.staging.aspect = job::aspect(&args.job);
-    options.kept = watched.kept.clone();
-    let mut stages = Stages::begin();
-    let scene = read(&args.scene, &options, args.quiet, &mut guard)?;
-    stages.ends("reading");
-    let job = job::job(&args.job, Some(&args.view), &scene.loaded, args.work.time.is_some())?;
-    let window = job.window();
-    let mut needed = Part::bytes_needed(&job, shard);
-    let bands = match &target {
-        Some(target) if large::is_large(&job, needed, memory) => Some(large::bands(args, &job, target, memory)?),
-        target => {
-            // A size that no picture has is refused as such, whatever the memory.
-            checked_count(window.width, window.height).map_err(|error| bad(error.to_string()))?;
-            target.as_ref().map_or(Ok(()), |target| target.check_size(window.width, window.height))?;
-            None
-        }
-    };
-    // What the film takes is not there for the scene.
-    needed = bands.as_ref().map_or(needed, Bands::bytes_needed);
-    options.memory = memory.map(|memory| memory.saturating_sub(needed));
-    if let Some(allowed) = memory.filter(|&memory| needed > memory) {
-        return Err(failure(RenderError::Memory { needed, allowed }));
-    }
-    let opened = scene.compile(&options, &mut guard)?;
-    stages.ends("meshes, pictures and trees");
-    if let Ok(mut files) = watched.files.lock() {
-        *files = opened.loaded.files();
-    }
-    if !args.quiet {
-        job::warn(&job, &opened.world);
-    }
-    let control = Arc::new(Control {
-        threads,
-        tile: args.work.tile,
-        time: args.work.time,
-        save_every: Some(args.work.checkpoint_every),
-        memory,
-        goes_on: bands.is_some(),
-        ..Control::default()
-    });
-    watched.begins(&control);
-    if let (Some(bands), Some(target)) = (&bands, &target) {
-        return large::render(bands, &opened.world, &control, target, args);
-    }
-    let keeper = match (command.pixel, keeper) {
-        (None, Some(keeper)) => keeper,
-        (pixel, _) => {
-            return print_pixel(&opened.world, &job, &control, pixel.unwrap_or_default(), command.sample);
-        }
-    };
-    let shows_error = args.view.show.iter().any(|show| show == ERROR);
-    if shows_error && (target.is_none() || job.method.transport().is_none()) {
-        return Err(bad(
-            "--show error is of whole pictures by path and photons: leave out --shard, or see --integrator",
-        ));
-    }
-    if args.view.show.iter().any(|show| DIAGRAMS.contains(&show.as_str())) {
-        if target.is_none() {
-            return Err(bad("a diagram is not split into parts: leave it out, or --shard"));
-        }
-        diagrams::check(&job, args.view.zoom).map_err(failure)?;
-    }
-    let part = keeper.begin(Part::new(&opened.world, &job, shard).map_err(failure)?)?;
-    let stop = progress::watch(&control, args.quiet, || {
-        part.render(&opened.world, &control, &mut |part, moment| keeper.watch(part, moment))
-    })
-    .map_err(failure)?;
-    stages.ends("rendering");
-    rejected(&part.statistics(), args.quiet);
-    let finished = match &stop {
-        Stop::Finished => true,
-        Stop::OutOfTime => part.is_finished(),
-        Stop::Cancelled if watched.stale.load(Relaxed) => return Err(Failure::Interrupted(String::new())),
-        Stop::Cancelled => return Err(stopped(args, &part, &keeper, target.as_ref())),
-        Stop::Panicked(panicked) => return Err(keeper.after_panic(&part, panicked, &replaying(panicked))),
-    };
-    match target {
-        None => keeper.save(&part)?,
-        Some(target) => {
-            let mut rendered = part.pictures().map_err(failure)?;
-            diagrams::add(&args.view.show, args.view.zoom, &opened.world, &job, &control, &mut rendered)
-                .map_err(failure)?;
-            if shows_error {
-                let [values, shown] = part.error(&opened.world, threads).map_err(failure)?;
-                rendered.layers.push(values);
-                rendered.pictures.push(shown);
-            }
-            if let (Some(denoiser), true) = (args.denoise, job.color) {
-                let noisy = part.noisy(&opened.world, threads).map_err(failure)?;
-                let clean = denoiser.clean(noisy, threads, args.quiet)?;
-                for shown in rendered.pictures.iter_mut().filter(|layer| layer.name == "color") {
-                    shown.image = clean.image.clone();
-                }
-                rendered.layers.push(clean);
-            }
-            let display = args.display.display()?;
-            output::save(&target.files(&rendered, display)?, args.quiet)?;
-            keeper.done(&part, finished);
-            if finished && !args.quiet {
-                check::after_render(&opened, &job, &rendered.pictures, &rendered.statistics, display);
-            }
-        }
-    }
-    if !finished && !args.quiet {
-        report::complain(&format!("note: the time was over after {} samples", part.statistics().samples));
-    }
-    stages.ends("writing");
-    if args.stats {
-        stages.tell(&opened.world, &part)?;
-    }
-    if args.hash {
-        say(&part.hash().to_string());
-    }
-    Ok(())
-}
-
-/// What is to be shown, each once.
-fn shows(args: &RenderArgs) -> Result<Vec<&str>, Failure> {
-    let names: Vec<&str> = args.view.show.iter().map(String::as_str).collect();
-    match (1..names.len()).find(|&i| names[..i].contains(&names[i])) {
-        Some(twice) => Err(bad(format!("--show: `{}` is asked for twice", names[twice]))),
-        None => Ok(names),
-    }
-}
-
-/// After Ctrl-C: what is there is saved. A picture is only written if none of its pixels is empty:
-/// it may replace a better one.
-fn stopped(args: &RenderArgs, part: &Part, keeper: &Keeper, target: Option<&Target>) -> Failure {
-    let mut written = keeper.after_interrupt(part);
-    if let Some(target) = target.filter(|_| part.is_whole()) {
-        let display = args.display.display().unwrap_or_default();
-        let files = part.pictures().map_err(failure).and_then(|rendered| target.files(&rendered, display));
-        if let Ok(files) = files.and_then(|files| output::save_silently(&files).map(|()| files)) {
-            written.extend(files.into_iter().map(|(place, _)| place.path().display().to_string()));
-        }
-    }
-    let (all, done) = part.work();
-    Failure::Interrupted(match written.is_empty() {
-        true => "nothing was written".into(),
-        false => format!("{} % done, in {}", 100 * done / all.max(1), written.join(" and ")),
-    })
-}
-
-/// The command that makes one sample again: this one, with the sample.
-fn replaying(panicked: &Panicked) -> String {
-    let words = std::env::args().chain(["--pixel".into(), format!("{},{}", panicked.x, panicked.y)]);
-    let sample = panicked.sample.map(|sample| ["--sample".to_string(), sample.to_string()]);
-    let words: Vec<String> = words.chain(sample.into_iter().flatten()).collect();
-    shlex::try_join(words.iter().map(String::as_str)).unwrap_or_default()
-}
-
-/// `--pixel`.
-fn print_pixel(
-    world: &World,
-    job: &Job,
-    control: &Control,
-    pixel: (u32, u32),
-    sample: Option<u32>,
-) -> Result<(), Failure> {
-    let color = replay(world, job, control, pixel, sample).map_err(failure)?;
-    let sample = sample.map(|sample| format!(", sample {sample}")).unwrap_or_default();
-    let shown = color.map_or("the camera sees nothing there".into(), |c| format!("{:?} {:?} {:?}", c.x, c.y, c.z));
-    say(&format!("pixel {},{}{sample}: {shown}", pixel.0, pixel.1));
-    Ok(())
-}
-
-/// What a failed render means for the shell.
-pub fn failure(error: RenderError) -> Failure {
-    match error {
-        RenderError::Cancelled => Failure::Interrupted("nothing was written".into()),
-        RenderError::Panic(_) => error.into(),
-        RenderError::Memory { .. } => bad(format!("{error}; see --memory")),
-        _ => bad(error.to_string()),
-    }
-}
-
-/// Says which samples were left out.
-pub fn rejected(statistics: &Statistics, quiet: bool) {
-    if let (Some(first), false) = (statistics.first_rejected.first(), quiet) {
-        let count = statistics.rejected;
-        report::note(&Diagnostic::warning(format!(
-            "{count} samples were not finite numbers and were left out, the first in pixel {},{} (sample {})",
-            first.x, first.y, first.sample
-        )));
     }
 }

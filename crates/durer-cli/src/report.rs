@@ -1,13 +1,15 @@
 //! Diagnostics on the terminal.
 
-use crate::Failure;
+use crate::failure::Failure;
+use crate::terminal::complain;
 use codespan_reporting::diagnostic::{Diagnostic as Shown, Label, Severity as Level};
 use codespan_reporting::files::{self, SimpleFiles};
 use codespan_reporting::term::termcolor::{ColorChoice, StandardStream};
 use codespan_reporting::term::{Config, emit_to_write_style};
 use durer::diag::{Diagnostic, Diagnostics, ERROR_LIMIT, Files, Severity, Span};
+use durer::render::Statistics;
 use durer::source::SourceError;
-use std::io::{IsTerminal, Write};
+use std::io::IsTerminal;
 use std::ops::Range;
 
 /// Prints findings to standard error: all, or the errors alone.
@@ -54,9 +56,15 @@ pub fn note(diagnostic: &Diagnostic) {
     complain(&format!("note: {}", diagnostic.message));
 }
 
-/// A line on standard error; where that is closed, there is nobody to tell.
-pub fn complain(line: &str) {
-    let _ = writeln!(std::io::stderr(), "{line}");
+/// Says which samples were left out.
+pub fn rejected(statistics: &Statistics, quiet: bool) {
+    if let (Some(first), false) = (statistics.first_rejected.first(), quiet) {
+        let count = statistics.rejected;
+        note(&Diagnostic::warning(format!(
+            "{count} samples were not finite numbers and were left out, the first in pixel {},{} (sample {})",
+            first.x, first.y, first.sample
+        )));
+    }
 }
 
 /// A scene file that cannot be read.

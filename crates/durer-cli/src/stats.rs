@@ -1,8 +1,7 @@
 //! `--stats`: what the time of a picture went into.
 
-use crate::Failure;
-use crate::render::failure;
-use crate::report::complain;
+use crate::failure::{Failure, failed};
+use crate::terminal::complain;
 use durer::render::{Part, Profile, profile};
 use durer::world::World;
 use std::time::{Duration, Instant};
@@ -40,7 +39,7 @@ impl Stages {
         complain("rays");
         complain(&format!("  {:>12}  in all, of {} samples", statistics.rays, statistics.samples));
         complain(&format!("  {:>12.2}  million a second", statistics.rays as f64 / rendering.max(1e-9) / 1e6));
-        if let Some(Profile { samples, rays, time, kernel }) = profile(world, part.job(), SAMPLES).map_err(failure)? {
+        if let Some(Profile { samples, rays, time, kernel }) = profile(world, part.job(), SAMPLES).map_err(failed)? {
             complain(&format!("of {samples} samples taken again by one thread"));
             for (name, count) in rays.iter().filter(|(_, count)| *count > 0) {
                 complain(&format!("  {count:>12}  {name} rays"));

@@ -1,19 +1,47 @@
 //! `durer verify`.
 
-use crate::args::VerifyArgs;
+use crate::failure::{Failure, bad};
 use crate::guard::Guard;
 use crate::open::{load_options, open};
-use crate::output::say;
-use crate::{Failure, bad, job, progress};
+use crate::options::{JobArgs, SceneArgs, ViewArgs};
+use crate::terminal::say;
+use crate::{job, progress};
+use clap::Args;
 use durer::bvh::SimdLevel;
 use durer::compile::AccelKind;
 use durer::render::verify::{Way, WayError, compare};
 use durer::render::{Control, Part, RenderError};
 use durer::world::World;
 use std::ffi::OsString;
+use std::path::PathBuf;
 use std::process::{Command, Stdio};
 use std::sync::Arc;
 use std::sync::atomic::Ordering::Relaxed;
+
+/// Render a scene in many ways, and see whether the film is always the same
+#[derive(Args)]
+#[command(after_help = "Examples:
+  durer verify scene.txt
+  durer verify scene.txt --trials 500 --size 64x48 --samples 24 --noise 0.02
+
+Ways differ by threads, tile size, shards by tiles or samples, interruptions, the structure that finds what rays
+hit, and the processor's instructions. A small picture is enough; its default is 64x48 with 8 samples.")]
+pub struct VerifyArgs {
+    /// The scene file
+    pub scene: PathBuf,
+    #[command(flatten)]
+    pub reading: SceneArgs,
+    #[command(flatten)]
+    pub view: ViewArgs,
+    #[command(flatten)]
+    pub job: JobArgs,
+    /// How many ways to try
+    #[arg(long, default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    pub trials: u32,
+    /// Print the hash alone
+    #[arg(short, long)]
+    pub quiet: bool,
+}
 
 /// Structures that find what rays hit.
 const STRUCTURES: [(&str, AccelKind); 3] =
@@ -76,7 +104,7 @@ pub fn run(args: &VerifyArgs) -> Result<(), Failure> {
         }
         Ok(Ok(plain))
     });
-    let plain: Part = made.map_err(crate::render::failure)?.map_err(|text| Failure::Other(anyhow::anyhow!(text)))?;
+    let plain: Part = made.map_err(crate::failure::failed)?.map_err(|text| Failure::Other(anyhow::anyhow!(text)))?;
     let hash = plain.hash().to_string();
     let levels = simd_levels();
     let others = levels.iter().filter(|level| **level != SimdLevel::chosen().name());

@@ -1,8 +1,10 @@
 //! `--watch`: renders again whenever a file of the scene is saved.
 
-use crate::args::RenderCommand;
-use crate::render::{self, Watched};
-use crate::{Failure, progress, report};
+use crate::failure::Failure;
+use crate::options::RenderArgs;
+use crate::picture::{Watched, once};
+use crate::terminal::complain;
+use crate::{progress, report};
 use durer::compile::Kept;
 use durer::source::Stamp;
 use std::path::{Path, PathBuf};
@@ -22,16 +24,16 @@ fn stamp(files: &[PathBuf]) -> Vec<Option<Stamp>> {
 }
 
 /// Renders until Ctrl-C: what is wrong with the scene is told, and waited for to be mended.
-pub fn run(command: &RenderCommand) -> Result<(), Failure> {
-    let named = [&command.render.reading.staging.view_file, &command.render.reading.staging.environment];
+pub fn run(args: &RenderArgs) -> Result<(), Failure> {
+    let named = [&args.reading.staging.view_file, &args.reading.staging.environment];
     let always: Vec<PathBuf> =
-        [Some(command.render.scene.clone())].into_iter().chain(named.map(Clone::clone)).flatten().collect();
+        [Some(args.scene.clone())].into_iter().chain(named.map(Clone::clone)).flatten().collect();
     let mut files = always.clone();
     let kept = Arc::new(Kept::default());
     loop {
         let before = stamp(&files);
         let watched = Watched::keeping(&kept);
-        let result = while_watching(&files, &before, &watched, || render::once(command, &watched));
+        let result = while_watching(&files, &before, &watched, || once(args, None, &watched));
         let stale = watched.stale.load(Relaxed);
         match result {
             Ok(()) => {}
@@ -56,13 +58,13 @@ pub fn run(command: &RenderCommand) -> Result<(), Failure> {
                 before
             }
         };
-        if !command.render.quiet {
+        if !args.quiet {
             let count = report::counted(files.len(), "file");
             let reused = match kept.reuse().reused {
                 0 => String::new(),
                 n => format!(" ({n} of its meshes and pictures were kept)"),
             };
-            report::complain(&format!("watching {count}{reused}; Ctrl-C ends"));
+            complain(&format!("watching {count}{reused}; Ctrl-C ends"));
         }
         progress::idle();
         while stamp(&files) == before {

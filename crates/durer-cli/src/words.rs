@@ -1,7 +1,7 @@
 //! `durer words`: the language's reference in the terminal.
 
-use crate::output::say;
-use crate::{Failure, bad};
+use crate::failure::{Failure, bad};
+use crate::terminal::say;
 use durer::diag::did_you_mean;
 use durer::dialect::Dialect;
 use durer::format::course::reference::{Chapter, Entry, FieldEntry, all_words, dialect_names, entries};

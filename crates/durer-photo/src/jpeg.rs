@@ -8,8 +8,8 @@ pub fn is_whole(bytes: &[u8]) -> bool {
     const START: u8 = 0xd8;
     const END: u8 = 0xd9;
     let mut at = 0;
-    // In coded data 0xff is followed by 0 or by a restart marker, 0xd0 to 0xd7; before a marker it may
-    // be repeated.
+    // In coded data 0xff is followed by 0 or by a restart marker, 0xd0 to 0xd7; before a marker it
+    // may be repeated.
     let is_marker = |pair: &[u8]| pair[0] == 0xff && !matches!(pair[1], 0 | 1 | 0xff | 0xd0..=0xd7);
     while let Some(pair) = bytes.get(at..at + 2) {
         at += match pair[1] {

@@ -29,6 +29,7 @@ pub mod feature;
 pub mod format;
 pub mod geometry;
 mod jpeg;
+mod known;
 pub mod matching;
 pub mod model;
 pub mod photo;

@@ -8,7 +8,8 @@ use pyo3::prelude::*;
 /// So many rays are one job: their copies stay in a near cache.
 pub const JOB: usize = 2048;
 
-/// How many rays there are; their origins and directions, and where they begin and end: a row for each ray, or one for all.
+/// How many rays there are; their origins and directions, and where they begin and end: a row for
+/// each ray, or one for all.
 pub type Asked<'py> = (
     usize,
     PyReadonlyArray2<'py, f32>,

@@ -93,7 +93,8 @@ impl Target {
     }
 }
 
-/// The ray along an axis that leaves the bounds soonest; one that hits nothing where the point is no point within them.
+/// The ray along an axis that leaves the bounds soonest; one that hits nothing where the point is
+/// no point within them.
 fn outward(tree: &TriangleBvh, point: Vec3) -> Ray {
     let bounds = tree.bounds();
     let inside = point.cmpge(bounds.min).all() && point.cmple(bounds.max).all();
@@ -109,7 +110,8 @@ fn outward(tree: &TriangleBvh, point: Vec3) -> Ray {
     Ray::new(point, if inside { best.1 } else { Vec3::ZERO })
 }
 
-/// So many zeros. Where there are many, all threads write them: one alone takes a tenth of the time of tracing.
+/// So many zeros. Where there are many, all threads write them: one alone takes a tenth of the time
+/// of tracing.
 fn zeros<T: Clone + Default + Send>(py: Python, threads: Option<usize>, count: usize) -> Vec<T> {
     match count <= 2 * JOB {
         true => vec![T::default(); count],

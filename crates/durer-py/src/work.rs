@@ -1,4 +1,5 @@
-//! Work on threads with the interpreter's lock released, while the calling thread hears Ctrl-C and tells of progress.
+//! Work on threads with the interpreter's lock released, while the calling thread hears Ctrl-C and
+//! tells of progress.
 
 use durer::threads;
 use pyo3::prelude::*;

@@ -153,7 +153,8 @@ impl World {
         }
     }
 
-    /// What each ray meets first: object, triangle and material; t, the point, and the normals of the true surface and for shading.
+    /// What each ray meets first: object, triangle and material; t, the point, and the normals of
+    /// the true surface and for shading.
     fn closest<'py>(
         &self,
         py: Python<'py>,
@@ -217,7 +218,8 @@ impl World {
 #[pyclass(frozen, module = "durer._durer")]
 pub struct Part(Arc<render::Part>);
 
-/// A picture: name, width, height, values, and the share of each pixel that is seen, if not all of each.
+/// A picture: name, width, height, values, and the share of each pixel that is seen, if not all of
+/// each.
 type Picture<'py> = (String, u32, u32, Bound<'py, PyArray1<f32>>, Option<Bound<'py, PyArray1<f32>>>);
 
 #[pymethods]
@@ -271,7 +273,8 @@ impl Part {
         (statistics.samples, statistics.rays, statistics.rejected)
     }
 
-    /// The pictures: values as files of floating point have them, or, if `shown`, as a screen shows them.
+    /// The pictures: values as files of floating point have them, or, if `shown`, as a screen shows
+    /// them.
     fn pictures<'py>(&self, py: Python<'py>, shown: bool) -> PyResult<Vec<Picture<'py>>> {
         let rendered = py.detach(|| self.0.pictures()).map_err(failed)?;
         let layers = if shown { rendered.pictures } else { rendered.layers };

@@ -330,6 +330,8 @@ macro_rules! described_list {
     };
 }
 
+pub(crate) use {described, described_list, described_words};
+
 /// A list of described things, seen from the reader: what [`described_list!`] makes.
 pub trait DescribedList: Sized {
     /// One of each, with default values.

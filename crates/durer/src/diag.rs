@@ -264,7 +264,8 @@ impl Files {
         };
         let end = end.max(said.end_in(file));
         if end < bytes.len() {
-            // The line in which that ends is shown with it, but there may be none in what is no text.
+            // The line in which that ends is shown with it, but there may be none in what is no
+            // text.
             *bytes = bytes[..bytes.len().min(end + 256)].into();
             self.cut.insert(file);
         }
@@ -309,8 +310,8 @@ impl Files {
 
 /// The candidate most like `word`, if one is near enough to be meant.
 pub fn did_you_mean<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
-    // The distance takes time and memory in proportion to the word's length: nobody means a word by a
-    // file's contents.
+    // The distance takes time and memory in proportion to the word's length: nobody means a word by
+    // a file's contents.
     if word.len() > 64 {
         return None;
     }

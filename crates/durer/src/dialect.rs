@@ -217,7 +217,8 @@ pub type CompatSet = u64;
 
 macro_rules! compats {
     ($($(#[doc = $doc:literal])+ $variant:ident = $name:literal,)+) => {
-        /// A named bug or odd habit, of an official program where nothing else is said. Off unless its dialect, or it by name, is asked for.
+        /// A named bug or odd habit, of an official program where nothing else is said. Off unless
+        /// its dialect, or it by name, is asked for.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         #[repr(u8)]
         pub enum Compat { $($(#[doc = $doc])+ $variant,)+ }
@@ -249,27 +250,28 @@ compats! {
     BlackBacks = "black-backs",
     /// A ray that leaves glass reflects as if R0 were 0.
     ExitR0 = "exit-r0",
-    /// A perspective ray is aimed at a point in the world, reckoned from the lower left corner of a screen at distance 1
-    /// and rounded there: far from the origin, rays are off by that rounding.
+    /// A perspective ray is aimed at a point in the world, reckoned from the lower left corner of a
+    /// screen at distance 1 and rounded there: far from the origin, rays are off by that rounding.
     ScreenPoint = "screen-point",
     /// A triangle reaches a little beyond its edges: to barycentric coordinates of -0.00001.
     LooseTriangles = "loose-triangles",
     /// Which side of a surface is seen is judged by its interpolated normal.
     ShadedSides = "shaded-sides",
-    /// A mesh's triangle is missed where (b - a) x (c - a) · d is less than 0.000001: a small one, seen from its side.
+    /// A mesh's triangle is missed where (b - a) x (c - a) · d is less than 0.000001: a small one,
+    /// seen from its side.
     ThinTriangles = "thin-triangles",
     /// On a texture, ambient light is that of the pixel shaded before, in rows from the bottom.
     StaleTexels = "stale-texels",
-    /// A light is blocked only where the nearest thing towards it is seen from its front. Off where `exit-r0` is asked
-    /// for, the habit of an earlier version of the same program.
+    /// A light is blocked only where the nearest thing towards it is seen from its front. Off where
+    /// `exit-r0` is asked for, the habit of an earlier version of the same program.
     ShadowFronts = "shadow-fronts",
     /// A `Matrix` is multiplied on the left of everything before it.
     MatrixOnLeft = "matrix-on-left",
-    /// The matrices of one transform lose the shear of their product: it is taken apart into moving, turning and
-    /// stretching. Shear between nested transforms stays.
+    /// The matrices of one transform lose the shear of their product: it is taken apart into
+    /// moving, turning and stretching. Shear between nested transforms stays.
     DroppedShear = "dropped-shear",
-    /// A plane's normal keeps the length that is written, for light, mirrors and pictures of normals; not inside a
-    /// transform.
+    /// A plane's normal keeps the length that is written, for light, mirrors and pictures of
+    /// normals; not inside a transform.
     RawNormals = "raw-normals",
     /// Light falls on normals of length 1, also where `raw-normals` holds.
     UnitLight = "unit-light",
@@ -285,16 +287,18 @@ compats! {
     ThreeCorners = "three-corners",
     /// Normals of an `.obj` belong to the vertices, number by number, whatever its faces say.
     NormalsByVertex = "normals-by-vertex",
-    /// The sky's face `back` is mirrored, left for right, and `down` stands on its head, so that neither meets its neighbours.
+    /// The sky's face `back` is mirrored, left for right, and `down` stands on its head, so that
+    /// neither meets its neighbours.
     MirroredBack = "mirrored-back",
     /// The background is black in depth pictures even where far is white.
     BlackSky = "black-sky",
-    /// Where nothing is hit, a picture of normals shows the normal hit last, in rows from the bottom.
+    /// Where nothing is hit, a picture of normals shows the normal hit last, in rows from the
+    /// bottom.
     StaleNormals = "stale-normals",
     /// The range of a depth picture is cut to whole numbers.
     WholeDepths = "whole-depths",
-    /// Shading normals of transformed things go by the matrix itself and not by its inverse transpose: no official
-    /// program's habit, but a usual mistake.
+    /// Shading normals of transformed things go by the matrix itself and not by its inverse
+    /// transpose: no official program's habit, but a usual mistake.
     MovedNormals = "moved-normals",
 }
 

@@ -4,6 +4,7 @@
 //! (immutable, numbers only), and rendered by a [`render::Job`] into pictures.
 
 pub mod bsdf;
+pub mod bvh;
 pub mod camera;
 pub mod check;
 pub mod compile;
@@ -33,11 +34,5 @@ pub mod spectrum;
 pub mod texture;
 pub mod threads;
 pub mod world;
-
-/// Rays against triangles and boxes: the crate [`durer_bvh`], which can be used by itself.
-pub mod bvh {
-    pub(crate) use durer_bvh::internal::is_sound;
-    pub use durer_bvh::*;
-}
 
 pub use load::{LoadOptions, Loaded, load, load_text};

@@ -1,8 +1,7 @@
 //! A light at a point that does not fade.
 
 use super::{Emitter, Illumination};
-use crate::describe::{FileName, Rule};
-use crate::described;
+use crate::describe::{FileName, Rule, described};
 use crate::dialect::{Rules, set};
 use crate::math::{Color, Vec3};
 use glam::DVec3;

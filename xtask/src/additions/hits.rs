@@ -1,8 +1,7 @@
 //! White where anything near enough is hit, black elsewhere.
 
 use super::{Integrate, Parameters, Setup, Witness};
-use crate::describe::Rule;
-use crate::described;
+use crate::describe::{Rule, described};
 use crate::dialect::set;
 use crate::math::{Color, Ray, Ray64};
 use crate::sampler::SampleId;

@@ -1,8 +1,8 @@
-//! An oblique camera: parallel rays that are not perpendicular to the picture, as in a cabinet projection.
+//! An oblique camera: parallel rays that are not perpendicular to the picture, as in a cabinet
+//! projection.
 
 use super::{CameraSample, Frame, Lens, Pose};
-use crate::describe::Rule;
-use crate::described;
+use crate::describe::{Rule, described};
 use crate::dialect::set;
 use crate::math::{Ray, Vec2, Vec3};
 use glam::DVec2;

@@ -1,8 +1,7 @@
 //! The regular octahedron: |x| + |y| + |z| <= radius, seen from its centre.
 
 use super::{Crossing, Shape, Surface, padded};
-use crate::describe::Rule;
-use crate::described;
+use crate::describe::{Rule, described};
 use crate::dialect::set;
 use crate::math::{Aabb, Line, Vec2, Vec3};
 use glam::DVec3;

@@ -1,8 +1,7 @@
 //! Stripes of two materials in turn.
 
 use super::Pattern;
-use crate::describe::Rule;
-use crate::described;
+use crate::describe::{Rule, described};
 use crate::dialect::set;
 use crate::math::Vec3;
 

@@ -267,8 +267,8 @@ fn skies() -> Vec<Case> {
         let answer = through(window, Vec3::Y, |dir| f64::from(known.luminance(dir)));
         all.push(behind(name, "E = ∫ L cosθ dω, by quadrature", sky, window, answer));
     }
-    // What juts out over the window hides what is seen above the line over its edge; a screen before it
-    // what is below.
+    // What juts out over the window hides what is seen above the line over its edge; a screen
+    // before it what is below.
     let hidden = |low: f32, high: f32| {
         let part = [Vec3::new(2.0, low, -0.8), Vec3::new(0.0, high - low, 0.0), Vec3::new(0.0, 0.0, 1.6)];
         let known = CieSky::new(16, Vec3::Y, 10_000.0, 0.2);

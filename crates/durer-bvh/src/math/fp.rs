@@ -132,7 +132,8 @@ pub fn atan2(y: f32, x: f32) -> f32 {
 pub fn pow(base: f32, exponent: f32) -> f32 {
     if base.is_normal() && base > 0.0 {
         let power = f64::from(exponent) * log2(base);
-        // What single precision cannot hold is rounded to what it can; not a number is nothing here.
+        // What single precision cannot hold is rounded to what it can; not a number is nothing
+        // here.
         if power.abs() < 1000.0 {
             return exp2(power) as f32;
         }

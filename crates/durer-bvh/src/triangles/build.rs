@@ -59,7 +59,8 @@ impl TriangleBvh {
     /// let positions = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0];
     /// let bvh = TriangleBvh::from_flat(&positions, &[0, 1, 2], BuildQuality::default()).unwrap();
     /// assert_eq!(bvh.triangle_count(), 1);
-    /// let error = TriangleBvh::from_flat(&positions, &[0, 1, 3], BuildQuality::default()).unwrap_err();
+    /// let refused = TriangleBvh::from_flat(&positions, &[0, 1, 3], BuildQuality::default());
+    /// let error = refused.unwrap_err();
     /// assert_eq!(error, BuildError::MissingVertex { triangle: 0, index: 3, vertices: 3 });
     /// ```
     pub fn from_flat(positions: &[f32], indices: &[u32], quality: BuildQuality) -> Result<Self, BuildError> {

@@ -32,7 +32,8 @@ impl TriangleBvh {
     /// use durer_bvh::{BuildQuality, TriangleBvh};
     /// use durer_bvh::math::Vec3;
     ///
-    /// let tree = TriangleBvh::build(&[Vec3::ZERO, Vec3::X, Vec3::Y], &[[0, 1, 2]], BuildQuality::Best);
+    /// let corners = [Vec3::ZERO, Vec3::X, Vec3::Y];
+    /// let tree = TriangleBvh::build(&corners, &[[0, 1, 2]], BuildQuality::Best);
     /// let near = tree.nearest_point(Vec3::new(0.25, 0.5, 3.0), f64::INFINITY).unwrap();
     /// assert_eq!((near.distance, near.uv), (3.0, [0.25, 0.5]));
     /// assert_eq!(tree.nearest_point(Vec3::splat(9.0), 1.0), None);

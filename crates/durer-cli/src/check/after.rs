@@ -2,6 +2,7 @@
 
 use crate::open::Opened;
 use crate::report;
+use crate::terminal::complain;
 use codespan_reporting::term::termcolor::StandardStream;
 use durer::check::picture::{Oddity, oddity};
 use durer::check::{Subject, check};
@@ -60,7 +61,7 @@ impl After<'_> {
         let found = check(&subject, &self.opened.diagnostics);
         let told: Vec<_> =
             found.iter().filter(|f| f.is_serious()).take(MOST).map(|finding| &finding.diagnostic).collect();
-        report::complain(&match told.is_empty() {
+        complain(&match told.is_empty() {
             true => format!("warning: {what}"),
             false => format!("warning: {what}; `durer check` says:"),
         });

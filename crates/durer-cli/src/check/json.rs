@@ -1,7 +1,7 @@
 //! `--json`: its form is told in the help of `durer check`.
 
-use super::Checked;
-use super::mend::Change;
+use super::change::Change;
+use super::checked::Checked;
 use durer::check::Finding;
 use durer::diag::{Files, Severity, Span};
 use serde_json::{Value, json};

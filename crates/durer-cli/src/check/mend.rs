@@ -1,37 +1,16 @@
 //! `--fix`: one edit after the other, each kept only if it mends what it should.
 
-use super::{Checked, look};
-use crate::Failure;
-use crate::args::CheckArgs;
+use super::args::CheckArgs;
+use super::change::Change;
+use super::checked::{Checked, look};
+use super::json::place;
+use crate::failure::Failure;
 use durer::check::{Finding, apply, rank};
 use durer::diag::{Edit, Severity};
 use std::sync::Arc;
 
 /// At most so many findings of a scene are mended in one go.
 const MOST: usize = 100;
-
-/// A change that was made.
-pub struct Change {
-    pub code: &'static str,
-    /// Where, in the text as it was at that time.
-    pub place: serde_json::Value,
-    pub at: String,
-    pub old: String,
-    pub new: String,
-}
-
-impl Change {
-    /// In one line.
-    pub fn line(&self) -> String {
-        let Change { at, old, new, code, .. } = self;
-        let what = match (old.is_empty(), new.is_empty()) {
-            (true, _) => format!("put in `{}`", new.trim()),
-            (_, true) => format!("took out `{old}`"),
-            _ => format!("`{old}` is now `{new}`"),
-        };
-        format!("{at}: {what} [{code}]")
-    }
-}
 
 /// Mends what can be; `checked` is what is found in the new text.
 pub fn mend(checked: &mut Checked, mut text: Arc<[u8]>, args: &CheckArgs) -> Result<(Arc<[u8]>, Vec<Change>), Failure> {
@@ -96,7 +75,7 @@ fn change(checked: &Checked, finding: &Finding, edit: &Edit) -> Change {
     let (line, column) = checked.files.position(span).unwrap_or_default();
     Change {
         code: finding.diagnostic.code,
-        place: super::json::place(&checked.files, span),
+        place: place(&checked.files, span),
         at: format!("{}:{line}:{column}", checked.files.name(span.file).unwrap_or_default()),
         old: String::from_utf8_lossy(&bytes[span.start as usize..span.end as usize]).into_owned(),
         new: edit.text.clone(),

@@ -1,35 +1,43 @@
 //! Comparisons as a page for a browser, in one file that needs no network.
 
-use super::{Compared, Outcome, heat, name, screen, text};
-use crate::Failure;
-use crate::args::CompareArgs;
+use super::args::CompareArgs;
+use super::compared::{Compared, Outcome, Shown, name};
+use super::text;
+use crate::failure::Failure;
 use crate::page;
-use durer::image::compare::{Comparison, Picture};
-use durer::image::{Layer, Transfer};
+use durer::image::compare::{Comparison, Picture, Scale, heat_map};
+use durer::image::{Image, Layer, Transfer, decode_linear};
 use serde_json::{Value, json};
 use std::path::PathBuf;
 
 /// The page, but for its data.
 const PAGE: &str = include_str!("page.html");
 
-/// The pictures of a pair, as the page holds them: PNG in base 64.
-pub struct Shown {
-    reference: String,
-    picture: String,
-    heat: String,
+/// The pictures of a pair, for the page.
+pub fn shown(reference: &Picture, picture: &Picture, found: &Comparison) -> Result<Shown, String> {
+    let png = |(layer, transfer): (Layer, Transfer)| -> Result<String, String> {
+        let png = page::png(layer, transfer).map_err(|_| "the picture is too large for a page")?;
+        Ok(page::uri(&png))
+    };
+    Ok(Shown {
+        reference: png(screen(reference))?,
+        picture: png(screen(picture))?,
+        heat: png((heat(found), Transfer::Linear))?,
+    })
 }
 
-impl Shown {
-    pub fn new(reference: &Picture, picture: &Picture, found: &Comparison) -> Result<Shown, String> {
-        let png = |(layer, transfer): (Layer, Transfer)| -> Result<String, String> {
-            let png = page::png(layer, transfer).map_err(|_| "the picture is too large for a page")?;
-            Ok(page::uri(&png))
-        };
-        Ok(Shown {
-            reference: png(screen(reference))?,
-            picture: png(screen(picture))?,
-            heat: png((heat(found), Transfer::Linear))?,
-        })
+/// The heat map as a layer.
+pub fn heat(found: &Comparison) -> Layer {
+    let map = heat_map(found.width, found.height, &found.flip_map);
+    let pixels = map.pixels.iter().map(|pixel| pixel.map(decode_linear).into()).collect();
+    Layer::data("heat", Image { width: found.width, height: found.height, pixels })
+}
+
+/// A picture as a screen shows it.
+fn screen(picture: &Picture) -> (Layer, Transfer) {
+    match picture.scale {
+        Scale::Display => (Layer::data("", picture.image.clone()), Transfer::Linear),
+        Scale::Linear => (Layer::color("", picture.image.clone()), Transfer::Srgb),
     }
 }
 

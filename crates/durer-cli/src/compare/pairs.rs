@@ -1,6 +1,6 @@
 //! Which pictures belong together.
 
-use crate::{Failure, bad};
+use crate::failure::{Failure, bad};
 use durer::image::format_for;
 use std::path::{Path, PathBuf};
 

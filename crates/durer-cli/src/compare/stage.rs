@@ -1,10 +1,11 @@
 //! The scene of a pair of pictures, with the options that made the reference.
 
+use super::args::CompareArgs;
 use super::pairs::Pair;
-use crate::args::CompareArgs;
+use crate::failure::{Failure, bad};
 use crate::guard::Guard;
+use crate::job;
 use crate::open::{Opened, load_options, open};
-use crate::{Failure, bad, job};
 use durer::LoadOptions;
 use durer::dialect::Dialect;
 use durer::image::Transfer;

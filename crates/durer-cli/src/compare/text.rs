@@ -1,11 +1,12 @@
 //! Comparisons as text and as JSON.
 
+use super::args::CompareArgs;
+use super::compared::{Compared, Outcome, name};
+use super::named;
 use super::there::There;
-use super::{Compared, Outcome, name, named, note};
-use crate::args::CompareArgs;
-use crate::output::say;
 use crate::report::counted;
-use durer::image::compare::{Comparison, Finding, Options, Region, Verdict};
+use crate::terminal::{complain, say};
+use durer::image::compare::{Comparison, Options, Region, Verdict};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -70,30 +71,6 @@ pub fn single(compared: &Compared, options: &Options) {
             say(&format!("            {}", there.command));
         }
     }
-}
-
-/// What explains the difference, a line for each mistake.
-pub fn causes(found: &Comparison) -> Vec<String> {
-    if found.verdict != Verdict::Different {
-        return Vec::new();
-    }
-    if found.findings.is_empty() {
-        return vec![
-            "cannot be told from the pictures alone; give `--scene`, with the options that made the reference".into(),
-        ];
-    }
-    let line = |(i, finding): (usize, &Finding)| {
-        let percent = (1000.0 * finding.explained + 1e-6).floor() / 10.0;
-        match i {
-            // Where it is tells nothing of why.
-            0 if finding.kind.ends_with("-parts") => {
-                format!("{} ({percent:.1} % of the squared difference lie there)", finding.words)
-            }
-            0 => format!("{}: explains {percent:.1} % of the squared difference", finding.words),
-            _ => format!("and {}: together {percent:.1} %", finding.words),
-        }
-    };
-    found.findings.iter().enumerate().map(line).collect()
 }
 
 /// A region in words.
@@ -235,4 +212,9 @@ pub fn numbers(found: &Comparison, there: &[There]) -> Value {
             "there": there.get(i).map(There::json),
         })).collect::<Vec<_>>(),
     })
+}
+
+/// Warns of what is left out.
+fn note(line: &str) {
+    complain(&format!("note: {line}"));
 }

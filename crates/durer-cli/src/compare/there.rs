@@ -1,8 +1,8 @@
 //! What of the scene is where pictures differ.
 
 use super::stage::Stage;
-use crate::Failure;
 use crate::explain::{deep, shown};
+use crate::failure::Failure;
 use crate::open::Opened;
 use durer::image::Transfer;
 use durer::image::compare::Comparison;

@@ -1,8 +1,7 @@
 //! The options of the course's programs, as one table, and the arguments sorted by it.
 
-use crate::output::say;
-use crate::report::complain;
-use crate::{Failure, bad};
+use crate::failure::{Failure, bad};
+use crate::terminal::{complain, say};
 use durer::diag::did_you_mean;
 use durer::dialect::{Compat, Dialect, DialectSet, set};
 use durer::format::course::Hint;

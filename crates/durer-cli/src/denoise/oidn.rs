@@ -1,8 +1,8 @@
 //! Open Image Denoise 2, loaded when it is asked for: the few functions of its C interface that one
 //! picture needs.
 //!
-//! Source: the documentation at <https://www.openimagedenoise.org>. Its pictures differ from machine to machine in
-//! their last bits.
+//! Source: the documentation at <https://www.openimagedenoise.org>. Its pictures differ from
+//! machine to machine in their last bits.
 
 #![expect(unsafe_code, reason = "a library of C is called")]
 
@@ -43,9 +43,9 @@ pub fn denoise(noisy: &Noisy, threads: Option<usize>) -> Result<Image, String> {
     // The library wants colours between 0 and 1 of surfaces, and nothing that is not finite.
     let albedo: Vec<Vec3> = noisy.albedo.iter().map(|albedo| albedo.clamp(Vec3::ZERO, Vec3::ONE)).collect();
     let mut clean = vec![Vec3::ZERO; count];
-    // SAFETY: names and types are those of oidn.h of version 2. `Vec3` is three floats without a gap.
-    // All four pictures have width * height of them and live until the filter is released, and the
-    // output is read only after it was executed.
+    // SAFETY: names and types are those of oidn.h of version 2. `Vec3` is three floats without a
+    // gap. All four pictures have width * height of them and live until the filter is released, and
+    // the output is read only after it was executed.
     unsafe {
         let new_device: Symbol<unsafe extern "C" fn(c_int) -> Object> = symbol(&library, c"oidnNewDevice")?;
         let set_device: Symbol<unsafe extern "C" fn(Object, *const c_char, c_int)> =
@@ -117,7 +117,7 @@ fn load() -> Result<Library, String> {
     let folder = std::env::var_os(FOLDER).map(PathBuf::from);
     let folders = folder.iter().flat_map(|folder| [folder.join(NAME), folder.join("lib").join(NAME)]);
     let file = folders.into_iter().find(|file| file.is_file()).unwrap_or_else(|| Path::new(NAME).to_path_buf());
-    // SAFETY: what loading it starts is the library's own, which the user has put there or the system
-    // has.
+    // SAFETY: what loading it starts is the library's own, which the user has put there or the
+    // system has.
     unsafe { Library::new(&file) }.map_err(|_| "Open Image Denoise is not found".into())
 }

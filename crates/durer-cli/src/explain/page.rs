@@ -1,10 +1,9 @@
 //! The explanation as a page of its own.
 
 use super::outlines::{lights, outlines};
-use crate::Failure;
-use crate::args::ExplainArgs;
+use crate::failure::Failure;
 use crate::page;
-use durer::image::{Image, Layer};
+use durer::image::{Image, Layer, Transfer};
 use durer::world::World;
 use serde_json::{Value, json};
 
@@ -17,9 +16,8 @@ pub fn page(
     sample: usize,
     world: &World,
     picture: &Image,
-    args: &ExplainArgs,
+    transfer: Transfer,
 ) -> Result<String, Failure> {
-    let transfer = args.render.display.transfer();
     let picture = page::png(Layer::color("color", picture.clone()), transfer)?;
     let data = json!({
         "explanation": explanation,

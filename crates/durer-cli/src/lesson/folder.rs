@@ -1,9 +1,9 @@
 //! The folder of a lesson: only a lesson's own files are ever replaced.
 
-use super::TEXT;
+use super::written::TEXT;
+use crate::failure::{Failure, bad};
 use crate::guard::Guard;
 use crate::output::save_silently;
-use crate::{Failure, bad};
 use durer::image::Destination;
 use std::collections::BTreeSet;
 use std::io::ErrorKind;

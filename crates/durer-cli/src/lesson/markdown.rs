@@ -1,7 +1,7 @@
 //! The lesson as Markdown, with pictures beside it.
 
 use super::folder::MARK;
-use super::{Lesson, PAGE, Written};
+use super::written::{Lesson, PAGE, Written};
 use durer::lesson::OWN_SCENE_NAME;
 use std::fmt::Write;
 

@@ -1,6 +1,6 @@
 //! The lesson as a page for a browser.
 
-use super::{Figure, Lesson, Written};
+use super::written::{Figure, Lesson, Written};
 use crate::page::{uri, with_data};
 use durer::lesson::OWN_SCENE;
 use serde_json::{Map, Value, json};

@@ -1,6 +1,6 @@
 //! The command line of `durer photo`.
 
-use crate::args::{JobArgs, SceneArgs};
+use crate::options::{JobArgs, SceneArgs};
 use clap::{ArgGroup, Args, Subcommand};
 use std::path::PathBuf;
 

@@ -1,11 +1,12 @@
 //! `durer photo camera`.
 
 use super::args::CameraArgs;
-use super::{bytes, wrong};
+use super::inputs::{bytes, wrong};
+use crate::failure::{Failure, bad};
 use crate::guard::Guard;
-use crate::output::{save, say};
-use crate::report::complain;
-use crate::{Failure, bad};
+use crate::output::save;
+use crate::terminal::complain;
+use crate::terminal::say;
 use durer_photo::format::{projective_camera, read_lines, read_points, read_project};
 use durer_photo::photo;
 use durer_photo::resect::{Known, camera, from_vanishing_lines};

@@ -1,10 +1,10 @@
 //! `durer photo explain`.
 
 use super::args::ExplainArgs;
-use super::{read, wrong};
-use crate::Failure;
+use super::inputs::{read, wrong};
+use crate::failure::Failure;
 use crate::guard::Guard;
-use crate::output::say;
+use crate::terminal::say;
 use durer_photo::explain;
 
 pub fn run(args: &ExplainArgs) -> Result<(), Failure> {

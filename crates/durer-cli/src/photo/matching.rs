@@ -1,11 +1,13 @@
 //! `durer photo match`.
 
 use super::args::MatchArgs;
-use super::{bytes, name, photographs, threaded, wrong};
+use super::inputs::{bytes, name, photographs, threaded, wrong};
+use crate::failure::Failure;
 use crate::guard::Guard;
-use crate::output::{save, say};
-use crate::report::complain;
-use crate::{Failure, progress};
+use crate::output::save;
+use crate::progress;
+use crate::terminal::complain;
+use crate::terminal::say;
 use durer_photo::matching::{GUESS, Matches, Options, describe, match_all};
 use durer_photo::photo;
 

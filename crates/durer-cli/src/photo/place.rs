@@ -6,12 +6,13 @@
 //! stand-ins' colours do not matter.
 
 use super::args::PlaceArgs;
-use super::{bytes, wrong};
+use super::inputs::{bytes, wrong};
+use crate::failure::failed;
+use crate::failure::{Failure, bad};
 use crate::guard::Guard;
 use crate::open::{Opened, load_options, read};
 use crate::output::{encode, format, save};
-use crate::render::failure;
-use crate::{Failure, bad, job, progress};
+use crate::{job, progress};
 use durer::diag::{Diagnostics, Files};
 use durer::film::Filter;
 use durer::film::aov::Aov;
@@ -58,7 +59,7 @@ pub fn run(args: &PlaceArgs) -> Result<(), Failure> {
     }
     let control = Arc::new(Control { threads, memory: options.memory, ..Control::default() });
     let color = |world: &World| -> Result<Vec<Vec3>, Failure> {
-        let rendered = progress::watch(&control, args.quiet, || render(world, &job, &control)).map_err(failure)?;
+        let rendered = progress::watch(&control, args.quiet, || render(world, &job, &control)).map_err(failed)?;
         Ok(rendered.layers.into_iter().next().map(|layer| layer.image.pixels.clone()).unwrap_or_default())
     };
     let colors = color(&with.world)?;
@@ -144,7 +145,7 @@ fn coverage(
         let aovs = Aov::from_name("material").into_iter().collect();
         let job =
             Job { width, height, crop: Some(crop), sampling: Sampling::Center, color: false, aovs, ..job.clone() };
-        let seen = progress::watch(control, quiet, || render(world, &job, control)).map_err(failure)?;
+        let seen = progress::watch(control, quiet, || render(world, &job, control)).map_err(failed)?;
         let Some(layer) = seen.layers.first() else { continue };
         for (i, material) in layer.image.pixels.iter().enumerate() {
             let (x, y) = (i as u32 % width, top + i as u32 / width);
@@ -203,7 +204,8 @@ mod tests {
         let with = [ground, ground, ground, 0.5 * ground, 0.5 * thing + 0.25 * ground, thing];
         let covered = [0.0, 0.0, 0.0, 0.0, 0.5, 1.0];
         let placed = composed(1, &[plate; 6], &with, &without, &covered);
-        // The neighbours of what is half covered let three quarters of the light through on average.
+        // The neighbours of what is half covered let three quarters of the light through on
+        // average.
         let mixed = 0.5 * thing + 0.25 * ground + 0.5 * 0.75 * (plate - ground);
         let expected = [plate, plate, plate, 0.5 * plate, mixed, thing];
         assert!(placed.iter().zip(expected).all(|(a, b)| (*a - b).length() < 1e-6), "{placed:?}");

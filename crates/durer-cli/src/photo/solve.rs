@@ -1,11 +1,12 @@
 //! `durer photo solve`.
 
 use super::args::SolveArgs;
-use super::{Results, bytes, read, tell, threaded, wrong};
+use super::inputs::{bytes, read, threaded, wrong};
+use super::results::{Results, tell};
+use crate::failure::Failure;
 use crate::guard::Guard;
-use crate::output::say;
-use crate::report::complain;
-use crate::{Failure, progress};
+use crate::progress;
+use crate::terminal::{complain, say};
 use durer_photo::adjust::{self, Loss, adjust_watched, covariance};
 use durer_photo::format::{Control, is_matches, read_control};
 use durer_photo::geometry::align::to_control;

@@ -1,10 +1,11 @@
 //! `durer photo tour`: a page on which one walks among photographs.
 
 use super::args::TourArgs;
-use super::{bytes, read, wrong};
+use super::inputs::{bytes, read, wrong};
+use crate::failure::{Failure, bad};
 use crate::guard::Guard;
 use crate::output::save;
-use crate::{Failure, bad, page, progress};
+use crate::{page, progress};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use durer_photo::photo;

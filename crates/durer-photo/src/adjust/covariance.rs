@@ -39,7 +39,8 @@ impl Covariance {
         let (pose, covariance) = (all.views[view].pose?, self.pose(view)?);
         let turn = pose.rotation.transpose();
         let mut jacobian = nalgebra::Matrix3x6::zeros();
-        // R becomes (1 + [ω]×) R, so that C = -Rᵀ t changes by -Rᵀ [ω]×ᵀ t = Rᵀ (ω × t) = -Rᵀ [t]× ω.
+        // R becomes (1 + [ω]×) R, so that C = -Rᵀ t changes by -Rᵀ [ω]×ᵀ t = Rᵀ (ω × t) = -Rᵀ [t]×
+        // ω.
         jacobian.fixed_columns_mut::<3>(0).copy_from(&(-turn * pose.translation.cross_matrix()));
         jacobian.fixed_columns_mut::<3>(3).copy_from(&-turn);
         Some((jacobian * covariance * jacobian.transpose()).trace().max(0.0).sqrt())

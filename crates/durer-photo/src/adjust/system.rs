@@ -178,7 +178,8 @@ impl System {
                             diagonal[to + k] += squares[(from + k, from + k)];
                         }
                     }
-                    // The matrix is the sum of `half` and its transpose: of a block on the diagonal, half.
+                    // The matrix is the sum of `half` and its transpose: of a block on the
+                    // diagonal, half.
                     self.add(&mut half, &seen[i], &seen[i], &((squares - solved * w[i].transpose()) * 0.5));
                     if self.options.points {
                         for j in 0..i {

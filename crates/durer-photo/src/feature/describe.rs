@@ -15,7 +15,8 @@ const CELL: f32 = 3.0;
 /// The features of a point, one for each of its orientations, in pixels of the picture.
 pub fn describe(octaves: &[Octave], point: &Point, doubled: bool) -> Vec<(Feature, [u8; LENGTH])> {
     let gray = &octaves[point.octave].blurs[point.level];
-    // Pixels of the picture for one of the octave. Halving keeps the first pixel's centre where it is.
+    // Pixels of the picture for one of the octave. Halving keeps the first pixel's centre where it
+    // is.
     let of_base = (1 << point.octave) as f32;
     let base = if doubled { 0.5 } else { 1.0 };
     let feature = |angle: f32| Feature {

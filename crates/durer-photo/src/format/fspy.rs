@@ -10,7 +10,7 @@
 
 use super::colmap_binary::Bytes;
 use super::opposite;
-use crate::resect::{Axis, VanishingLines};
+use crate::known::{Axis, VanishingLines};
 use crate::{Error, Lens, Pose, Reconstruction, View};
 use nalgebra::{Matrix3, Vector2, Vector3};
 use serde::Deserialize;

@@ -2,7 +2,7 @@
 //! comments.
 
 use super::Words;
-use crate::resect::{Axis, Pair, VanishingLines};
+use crate::known::{Axis, Control, Pair, VanishingLines};
 use crate::{Error, Observation};
 use nalgebra::{Vector2, Vector3};
 
@@ -47,9 +47,6 @@ pub fn read_lines(file: &str, bytes: &[u8], size: [u32; 2]) -> Result<VanishingL
         .map_err(|_| Error::of(file, format!("lines of two axes are needed, and here are {count}")))?;
     Ok(VanishingLines { size, center, origin, axes: [one.0, two.0], lines: [one.1, two.1] })
 }
-
-/// A place of the world, and where photographs see it.
-pub type Control = (Vector3<f64>, Vec<Observation>);
 
 /// Control points: rows `X Y Z photograph u v photograph u v ...`; photographs by their names,
 /// which have no blanks.

@@ -20,8 +20,9 @@ use std::fmt::Display;
 use std::path::{Path, PathBuf};
 use text::Words;
 
+pub use crate::known::Control;
 pub use fspy::read_project;
-pub use given::{Control, read_control, read_lines, read_points};
+pub use given::{read_control, read_lines, read_points};
 pub use scene::projective_camera;
 
 /// How a format's numbers are meant.

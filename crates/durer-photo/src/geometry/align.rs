@@ -101,7 +101,7 @@ pub fn rigid(world: &[Vector3<f64>], camera: &[Vector3<f64>]) -> Option<Pose> {
 /// are in a line.
 pub fn to_control(
     all: &Reconstruction,
-    control: &[crate::format::Control],
+    control: &[crate::known::Control],
 ) -> Result<(Similarity, Vec<f64>), crate::Error> {
     let ray = |seen: &crate::Observation| {
         let view = &all.views[seen.view];

@@ -120,8 +120,8 @@ fn solutions(pairs: &[Pair; 5]) -> Option<Vec<Matrix3<f64>>> {
     (0..10).for_each(|row| all.row_mut(row).copy_from_slice(&entry(row)));
     let left = all.fixed_columns::<10>(0).into_owned();
     let right = left.lu().solve(&all.fixed_columns::<10>(10).into_owned())?;
-    // Rows by pairs: (x²z, x²), (y²z, y²), (xyz, xy). The first less z times the second has only x, y
-    // and powers of z.
+    // Rows by pairs: (x²z, x²), (y²z, y²), (xyz, xy). The first less z times the second has only x,
+    // y and powers of z.
     let polynomials = [4, 6, 8].map(|row| {
         let (a, b) = (right.row(row), right.row(row + 1));
         let part = |at: usize, degree: usize| {

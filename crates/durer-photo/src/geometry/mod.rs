@@ -15,7 +15,8 @@ use nalgebra::{DMatrix, DVector, Vector2};
 /// The direction v of length 1 for which |A v| is least, and the singular values of A in falling
 /// order.
 pub fn null_vector(matrix: &DMatrix<f64>) -> (DVector<f64>, Vec<f64>) {
-    // The eigenvectors of AᵀA would lose half of the digits; a QR step makes the matrix small instead.
+    // The eigenvectors of AᵀA would lose half of the digits; a QR step makes the matrix small
+    // instead.
     let square = if matrix.nrows() > matrix.ncols() { matrix.clone().qr().r() } else { padded(matrix) };
     let svd = square.svd(false, true);
     let mut order: Vec<usize> = (0..svd.singular_values.len()).collect();

@@ -14,8 +14,7 @@
 use super::pose::world_ray;
 use super::sheet::Sheet;
 use super::{CameraSample, Eyes, Frame, Lens, Pose};
-use crate::describe::Rule;
-use crate::described;
+use crate::describe::{Rule, described};
 use crate::dialect::{Dialect, set};
 use crate::math::{Ray, Vec2, Vec3};
 use glam::{DMat3, DVec2, DVec3};
@@ -29,7 +28,8 @@ described! {
         direction: Vec3 = Vec3::NEG_Z, optional, Rule::NonZero, ["direction" in set::DURER];
         /// What is up for the viewer's head; need not be perpendicular.
         up: Vec3 = Vec3::Y, optional, Rule::NonZero, ["up" in set::DURER];
-        /// Three corners for each wall, as seen from inside: lower left, lower right, upper left. From left to right.
+        /// Three corners for each wall, as seen from inside: lower left, lower right, upper left.
+        /// From left to right.
         walls: Vec<[f32; 9]> = front_wall(), required, Rule::Rows(1, 64), ["walls" in set::DURER];
         /// Which eye's picture, or how both are laid out.
         eyes: Eyes = Eyes::Middle, optional, Rule::Any, ["eyes" in set::DURER];

@@ -123,8 +123,8 @@ fn points_come_back_from_the_world() {
         let mut tried = 0;
         while checked < enough {
             tried += 1;
-            // A random camera may have hardly an inverse anywhere: a long way driven, and a view so narrow that
-            // nothing moves in it.
+            // A random camera may have hardly an inverse anywhere: a long way driven, and a view so
+            // narrow that nothing moves in it.
             if skipped - before.1 > POINTS || tried > 100 * POINTS {
                 (checked, skipped) = before;
                 hopeless += 1;
@@ -133,8 +133,8 @@ fn points_come_back_from_the_world() {
             let (sample, Some(ray)) = looked(camera, random) else { continue };
             assert!((ray.dir.length() - 1.0).abs() < 1e-6, "{camera:?}");
             let t = random.between(0.5, 20.0);
-            // The error of the world point, as it is seen in the picture. Where it is large, there is hardly an
-            // inverse.
+            // The error of the world point, as it is seen in the picture. Where it is large, there
+            // is hardly an inverse.
             let Some((least, _)) = slopes(camera, &sample, t, 1.0 / 1024.0).map(stretch) else {
                 skipped += 1;
                 continue;
@@ -203,7 +203,8 @@ fn footprints_are_areas() {
                 skipped += 1;
                 continue;
             };
-            // Where the steps differ, at a joint of a path say, differences do not tell the slope well.
+            // Where the steps differ, at a joint of a path say, differences do not tell the slope
+            // well.
             let apart = (fine - coarse).abs().max((fine - coarsest).abs());
             let stated = f64::from(camera.footprint(&frame(camera), &sample, t));
             let tolerance = 0.001 * fine + error + apart;

@@ -12,10 +12,9 @@
 use super::Pose;
 use super::central::Central;
 use super::sheet::Sheet;
-use crate::describe::Rule;
+use crate::describe::{Rule, described, described_words};
 use crate::dialect::set;
 use crate::math::{Vec2, Vec3};
-use crate::{described, described_words};
 use glam::{DVec2, DVec3};
 
 described_words! {

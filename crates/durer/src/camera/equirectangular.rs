@@ -11,8 +11,7 @@
 use super::eyes::EyeCircle;
 use super::sheet::Sheet;
 use super::{CameraSample, Eyes, Frame, Handedness, Lens, Pose};
-use crate::describe::Rule;
-use crate::described;
+use crate::describe::{Rule, described};
 use crate::dialect::set;
 use crate::math::{Ray, Vec2, Vec3, fp};
 use glam::{DVec2, DVec3};
@@ -34,7 +33,8 @@ described! {
         eyes: Eyes = Eyes::Middle, optional, Rule::Any, ["eyes" in set::DURER];
         /// Distance between the eyes.
         separation: f32 = 0.065, optional, Rule::NonNegative, ["separation" in set::DURER];
-        /// Which side of the picture is right: `left` makes a mirror image, as in coordinates of the left hand.
+        /// Which side of the picture is right: `left` makes a mirror image, as in coordinates of
+        /// the left hand.
         handedness: Handedness = Handedness::Right, optional, Rule::Any, ["handedness" in set::DURER];
     }
 }

@@ -5,7 +5,7 @@
 //! Peleg, Ben-Ezra, Pritch, *Omnistereo: Panoramic Stereo Imaging*, PAMI 23(3), 2001.
 
 use super::sheet::Sheet;
-use crate::described_words;
+use crate::describe::described_words;
 use crate::math::fp;
 use glam::{DVec2, DVec3};
 
@@ -86,7 +86,8 @@ impl EyeCircle {
             return None;
         }
         let distance = square.sqrt();
-        // From the middle of the circle the point is seen this much farther to the right than from the eye.
+        // From the middle of the circle the point is seen this much farther to the right than from
+        // the eye.
         let heading = fp::atan2_f64(point.x, point.z) - fp::atan2_f64(self.radius, distance);
         Some((wrapped(heading), distance))
     }

@@ -16,10 +16,9 @@
 
 use super::Pose;
 use super::central::Central;
-use crate::describe::Rule;
+use crate::describe::{Rule, described, described_words};
 use crate::dialect::set;
 use crate::math::{Vec2, Vec3, fp};
-use crate::{described, described_words};
 use glam::{DVec2, DVec3};
 
 described_words! {
@@ -38,7 +37,8 @@ described! {
         direction: Vec3 = Vec3::NEG_Z, required, Rule::NonZero, ["direction" in set::DURER];
         /// What is up in the picture; need not be perpendicular.
         up: Vec3 = Vec3::Y, required, Rule::NonZero, ["up" in set::DURER];
-        /// Field of view across the disc, in degrees: at most 180 for `orthographic`, less than 360 for `stereographic`.
+        /// Field of view across the disc, in degrees: at most 180 for `orthographic`, less than 360
+        /// for `stereographic`.
         angle: f32 = 180.0, optional, Rule::UpTo(360.0), ["angle" in set::DURER];
         /// How the angle from the axis becomes a radius.
         projection: Projection = Projection::Equidistant, optional, Rule::Any, ["projection" in set::DURER];

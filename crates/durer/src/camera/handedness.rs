@@ -1,6 +1,6 @@
 //! Which side of a picture is right.
 
-use crate::described_words;
+use crate::describe::described_words;
 use glam::DVec3;
 
 described_words! {

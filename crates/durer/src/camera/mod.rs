@@ -25,7 +25,7 @@ pub mod push_broom;
 pub mod stereo;
 pub mod thin_lens;
 
-use crate::described_list;
+use crate::describe::described_list;
 use crate::math::{Ray, Vec2, Vec3};
 pub use equirectangular::EquirectangularCamera;
 pub use eyes::Eyes;

@@ -23,8 +23,7 @@ use super::perspective::half_width;
 use super::pose::world_ray;
 use super::sheet::Sheet;
 use super::{CameraSample, Frame, Lens, Pose};
-use crate::describe::Rule;
-use crate::described;
+use crate::describe::{Rule, described};
 use crate::dialect::set;
 use crate::math::{Ray, Vec2, Vec3};
 use glam::{DVec2, DVec3};
@@ -32,8 +31,8 @@ use glam::{DVec2, DVec3};
 described! {
     /// A camera whose columns are seen one after the other from a path.
     MultipleCenterCamera ["MultipleCenterCamera" in set::DURER] {
-        /// Places along the path, from the picture's left to its right: the eye, and the point that it looks at. Where
-        /// the last is the first, the path is a smooth loop.
+        /// Places along the path, from the picture's left to its right: the eye, and the point that
+        /// it looks at. Where the last is the first, the path is a smooth loop.
         path: Vec<[f32; 6]> = straight(), required, Rule::Rows(2, 1024), ["path" in set::DURER];
         /// What is up in every column; need not be perpendicular.
         up: Vec3 = Vec3::Y, required, Rule::NonZero, ["up" in set::DURER];

@@ -18,14 +18,14 @@
 use super::Pose;
 use super::central::Central;
 use super::fisheye::Projection;
-use crate::describe::Rule;
-use crate::described;
+use crate::describe::{Rule, described};
 use crate::dialect::set;
 use crate::math::{Vec2, Vec3, fp};
 use glam::{DMat3, DVec2, DVec3};
 
 described! {
-    /// A picture for a tilted dome, with projector and viewer where they are; the corners see nothing.
+    /// A picture for a tilted dome, with projector and viewer where they are; the corners see
+    /// nothing.
     OmnimaxCamera ["OmnimaxCamera" in set::DURER] {
         /// Where the viewer is in the scene.
         center: Vec3 = Vec3::ZERO, required, Rule::Any, ["center" in set::DURER];
@@ -39,7 +39,8 @@ described! {
         dome: f32 = 180.0, optional, Rule::UpTo(360.0), ["dome" in set::DURER];
         /// Field of view of the projector, in degrees.
         angle: f32 = 180.0, optional, Rule::UpTo(360.0), ["angle" in set::DURER];
-        /// The projector: to the right of the dome's middle, above and before it, in parts of its radius.
+        /// The projector: to the right of the dome's middle, above and before it, in parts of its
+        /// radius.
         projector: Vec3 = Vec3::ZERO, optional, Rule::Any, ["projector" in set::DURER];
         /// The viewer, likewise.
         viewer: Vec3 = Vec3::ZERO, optional, Rule::Any, ["viewer" in set::DURER];

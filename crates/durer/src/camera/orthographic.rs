@@ -3,8 +3,7 @@
 //! origin = center + x size/2 right + y size/2 up.
 
 use super::{CameraSample, Frame, Handedness, Lens, Pose};
-use crate::describe::Rule;
-use crate::described;
+use crate::describe::{Rule, described};
 use crate::dialect::set;
 use crate::math::{Ray, Vec2, Vec3};
 use glam::DVec2;
@@ -20,7 +19,8 @@ described! {
         up: Vec3 = Vec3::Y, required, Rule::NonZero, ["up" in set::ALL];
         /// Length of the picture's larger side.
         size: f32 = 2.0, required, Rule::Positive, ["size" in set::ALL];
-        /// Which side of the picture is right: `left` makes a mirror image, as in coordinates of the left hand.
+        /// Which side of the picture is right: `left` makes a mirror image, as in coordinates of
+        /// the left hand.
         handedness: Handedness = Handedness::Right, optional, Rule::Any, ["handedness" in set::DURER];
     }
 }

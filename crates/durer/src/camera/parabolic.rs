@@ -14,8 +14,7 @@
 use super::Pose;
 use super::central::Central;
 use super::fisheye::Projection;
-use crate::describe::Rule;
-use crate::described;
+use crate::describe::{Rule, described};
 use crate::dialect::set;
 use crate::math::{Vec2, Vec3};
 use glam::{DVec2, DVec3};

@@ -9,8 +9,7 @@
 
 use super::pose::unit_or;
 use super::{CameraSample, Frame, Lens, Pose};
-use crate::describe::Rule;
-use crate::described;
+use crate::describe::{Rule, described};
 use crate::dialect::set;
 use crate::math::{Ray, Vec2, Vec3, fp};
 use glam::DVec2;

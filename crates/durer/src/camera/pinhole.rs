@@ -10,8 +10,7 @@
 
 use super::perspective::half_width;
 use super::{CameraSample, Frame, Lens, Pose, aperture};
-use crate::describe::Rule;
-use crate::described;
+use crate::describe::{Rule, described};
 use crate::dialect::set;
 use crate::math::{Ray, Vec2, Vec3};
 use glam::{DVec2, DVec3};

@@ -22,8 +22,7 @@
 use super::pose::world_ray;
 use super::sheet::Sheet;
 use super::{CameraSample, Frame, Lens, Pose};
-use crate::describe::Rule;
-use crate::described;
+use crate::describe::{Rule, described};
 use crate::dialect::set;
 use crate::math::{Ray, Vec2, Vec3};
 use glam::{DMat2, DMat3, DVec2, DVec3};
@@ -31,7 +30,8 @@ use glam::{DMat2, DMat3, DVec2, DVec3};
 described! {
     /// A camera recovered from a photograph: a projective matrix and the lens's distortion.
     ProjectiveCamera ["ProjectiveCamera" in set::DURER] {
-        /// The 3x4 matrix, row by row: from homogeneous points of the world to pixels, y downwards; at any scale.
+        /// The 3x4 matrix, row by row: from homogeneous points of the world to pixels, y downwards;
+        /// at any scale.
         matrix: Vec<[f32; 4]> = plain_matrix(), required, Rule::Rows(3, 3), ["matrix" in set::DURER];
         /// Width of the photograph in pixels.
         width: f32 = 512.0, required, Rule::Positive, ["width" in set::DURER];
@@ -105,8 +105,8 @@ impl ProjectiveCamera {
     /// point.
     fn unfolded(&self, point: DVec2) -> bool {
         let end = point.length_squared();
-        // d/dr of r (1 + k1 r² + ...), as a function of s = r²; its extremes are at the roots of its
-        // derivative.
+        // d/dr of r (1 + k1 r² + ...), as a function of s = r²; its extremes are at the roots of
+        // its derivative.
         let growth = |s: f64| {
             let (factor, slope) = self.radial(s);
             factor + 2.0 * s * slope
@@ -133,8 +133,8 @@ impl ProjectiveCamera {
 
     /// The point that is distorted to this one, if there is one this side of the fold.
     fn undistorted(&self, wanted: DVec2) -> Option<DVec2> {
-        // Mostly the first guess will do; where it does not, the point is followed outwards from the
-        // middle.
+        // Mostly the first guess will do; where it does not, the point is followed outwards from
+        // the middle.
         let followed = || (1..=16).try_fold(DVec2::ZERO, |point, i| self.solved(point, wanted * (f64::from(i) / 16.0)));
         self.solved(wanted, wanted).or_else(followed)
     }

@@ -11,8 +11,7 @@
 use super::perspective::half_width;
 use super::sheet::Sheet;
 use super::{CameraSample, Frame, Lens, Pose};
-use crate::describe::Rule;
-use crate::described;
+use crate::describe::{Rule, described};
 use crate::dialect::{Dialect, set};
 use crate::math::{Ray, Vec2, Vec3};
 use glam::{DVec2, DVec3};

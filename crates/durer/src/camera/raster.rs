@@ -58,7 +58,8 @@ impl Raster {
     ///
     /// Pixel (i, j) has its centre at (i + 0.5, j + 0.5), j counted downwards.
     pub fn point(&self, place: Vec2) -> Vec2 {
-        // Where pixel centres lie on the border, the first and last centre span the side, not the edges.
+        // Where pixel centres lie on the border, the first and last centre span the side, not the
+        // edges.
         let inset = if self.border_pixels { 1.0 } else { 0.0 };
         let size = Vec2::new(self.width as f32, self.height as f32) - inset;
         // A single pixel lies in the middle.

@@ -12,10 +12,9 @@
 use super::perspective::half_width;
 use super::sheet::Sheet;
 use super::{CameraSample, Eyes, Frame, Lens, Pose};
-use crate::describe::Rule;
+use crate::describe::{Rule, described, described_words};
 use crate::dialect::set;
 use crate::math::{Ray, Vec2, Vec3};
-use crate::{described, described_words};
 use glam::{DMat3, DVec2, DVec3};
 
 described_words! {
@@ -36,7 +35,8 @@ described! {
         angle: f32 = 30.0, required, Rule::Between(0.0, 180.0), ["angle" in set::DURER];
         /// Distance between the eyes.
         separation: f32 = 0.065, required, Rule::NonNegative, ["separation" in set::DURER];
-        /// Distance at which both eyes see a thing at the same place of the picture; without meaning for `parallel`.
+        /// Distance at which both eyes see a thing at the same place of the picture; without
+        /// meaning for `parallel`.
         convergence: f32 = 1.0, optional, Rule::Positive, ["convergence" in set::DURER];
         /// How the views converge.
         method: StereoMethod = StereoMethod::OffAxis, optional, Rule::Any, ["method" in set::DURER];

@@ -3,8 +3,8 @@
 //! All light that leaves a point of the plane of focus and passes the lens meets in one point of
 //! the picture. So the ray through a point l of the lens goes to the point where the ray through
 //! its middle meets the plane at the focus distance F:
-//! direction = (F tan(angle / 2) (x + s, y + r) - l, F). A point at distance z is blurred to the shape of the opening; in a picture of width 2
-//! its diameter is aperture |F - z| / (F z tan(angle / 2)).
+//! direction = (F tan(angle / 2) (x + s, y + r) - l, F). A point at distance z is blurred to the
+//! shape of the opening; in a picture of width 2 its diameter is aperture |F - z| / (F z tan(angle / 2)).
 //!
 //! The shift (s, r) moves the film in its plane, as view cameras do: the camera stays level and
 //! sees more above than below, and upright lines stay parallel.
@@ -15,8 +15,7 @@
 
 use super::perspective::half_width;
 use super::{CameraSample, Frame, Handedness, Lens, Pose, aperture};
-use crate::describe::Rule;
-use crate::described;
+use crate::describe::{Rule, described};
 use crate::dialect::set;
 use crate::math::{Ray, Vec2, Vec3};
 use glam::{DVec2, DVec3};
@@ -44,7 +43,8 @@ described! {
         shift_right: f32 = 0.0, optional, Rule::Any, ["shiftRight" in set::DURER];
         /// What is seen moves upwards by this part of half the larger side.
         shift_up: f32 = 0.0, optional, Rule::Any, ["shiftUp" in set::DURER];
-        /// Which side of the picture is right: `left` makes a mirror image, as in coordinates of the left hand.
+        /// Which side of the picture is right: `left` makes a mirror image, as in coordinates of
+        /// the left hand.
         handedness: Handedness = Handedness::Right, optional, Rule::Any, ["handedness" in set::DURER];
     }
 }

@@ -13,7 +13,7 @@ const WALL: f32 = 0.01;
 pub(super) fn thick_fog(scout: &Scout) -> Vec<Finding> {
     let world = scout.world();
     let (Some(fog), Some(written)) = (world.fog(), &scout.subject.scene.fog) else { return Vec::new() };
-    if !super::physical::is_physical(scout) {
+    if !scout.is_physical() {
         return Vec::new();
     }
     let span = written.span;

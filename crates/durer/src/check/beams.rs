@@ -1,72 +1,13 @@
 //! Lights with a beam: spotlights and measured lamps that shine past all that is seen.
 
-use super::MOST_SOUGHT;
-use super::finding::{Finding, number, percent, vector};
+use super::aim::{Aim, places, within};
+use super::finding::{Finding, MOST_SOUGHT, number, percent, vector};
 use super::lights::{all_fail, useless, written};
-use super::scout::{Probe, Scout, Seen};
+use super::scout::Scout;
 use crate::diag::Diagnostic;
 use crate::light::{Emitter as _, Light};
 use crate::math::{Vec3, fp};
 use crate::scene::Spanned;
-use crate::world::World;
-
-/// A beam that holds a smaller share of what is seen holds nothing of it.
-const NOTHING: f32 = 0.005;
-/// And one that may be in radians may hold a little more.
-const LITTLE: f32 = 0.03;
-/// Beyond this share of its strongest light a point is in the beam.
-const IN_BEAM: f32 = 0.02;
-/// Narrower cones than this, in degrees, are a pencil's.
-const PENCIL: f32 = 3.2;
-
-/// Where a beam goes.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Aim {
-    /// Past all that is seen.
-    Away,
-    /// At what is seen, but of that it holds next to nothing.
-    Narrow,
-}
-
-/// What a light makes at a point of the most that it could make at that distance.
-fn share(world: &World, light: usize, point: Vec3) -> f32 {
-    let lamp = &world.lights()[light];
-    let Some((place, strongest)) = lamp.place() else { return 1.0 };
-    let most = world.profiles().get(light).and_then(Option::as_ref).map_or(1.0, |profile| profile.most());
-    let full = most * strongest.max_element() / (point - place).length_squared().max(f32::MIN_POSITIVE);
-    world.illuminate(light, point.as_dvec3()).color.max_element() / full.max(f32::MIN_POSITIVE)
-}
-
-fn places(scout: &Scout) -> Vec<Vec3> {
-    scout.seen().map(|(probe, seen): (&Probe, &Seen)| probe.ray.at(seen.t)).collect()
-}
-
-fn within(scout: &Scout, light: usize, places: &[Vec3]) -> f32 {
-    let held = places.iter().filter(|place| share(scout.world(), light, **place) > IN_BEAM).count();
-    held as f32 / places.len().max(1) as f32
-}
-
-/// Where the beam of a light goes, if it has one and misses what is seen.
-pub(super) fn aim(scout: &Scout, light: usize) -> Option<Aim> {
-    let angle = match &scout.world().lights()[light] {
-        Light::Spot(spot) => spot.angle,
-        Light::Photometric(_) => 90.0,
-        _ => return None,
-    };
-    let places = places(scout);
-    let held = within(scout, light, &places);
-    if places.is_empty() || held > if angle <= PENCIL { LITTLE } else { NOTHING } {
-        return None;
-    }
-    Some(if angle <= PENCIL && at_something(scout, light) { Aim::Narrow } else { Aim::Away })
-}
-
-/// Whether the middle of a beam meets the scene.
-fn at_something(scout: &Scout, light: usize) -> bool {
-    let Light::Spot(spot) = &scout.world().lights()[light] else { return false };
-    let ray = crate::math::Ray::new(spot.position, spot.direction.normalize_or(Vec3::NEG_Y));
-    scout.world().closest(&ray, &mut ()).is_some()
-}
 
 /// Beams that miss what is seen.
 pub(super) fn away(scout: &Scout) -> Vec<Finding> {
@@ -175,7 +116,7 @@ fn touching(scout: &Scout, light: usize) -> Option<(f32, u32)> {
 pub(super) fn near(scout: &Scout) -> Vec<Finding> {
     let places = places(scout);
     let mut found = Vec::new();
-    for light in 0..scout.world().lights().len().min(super::MOST_ALIKE) {
+    for light in 0..scout.world().lights().len().min(super::finding::MOST_ALIKE) {
         let Some((near, object)) = touching(scout, light) else { continue };
         let Some((lamp, Light::Point(point))) = written(scout, light).map(|lamp| (lamp, &lamp.value)) else { continue };
         let mut away: Vec<f32> = places.iter().map(|place| (*place - point.position).length()).collect();

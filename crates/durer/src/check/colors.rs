@@ -1,11 +1,10 @@
 //! Colours: of materials that show nothing, and numbers that are none of a colour's.
 
-use super::MOST_SOUGHT;
-use super::finding::{Finding, counted, percent, vector};
+use super::finding::{Finding, MOST_SOUGHT, counted, percent, vector};
 use super::scout::Scout;
 use crate::diag::{Diagnostic, Severity, Span};
 use crate::dialect::{Compat, Dialect, Secondary};
-use crate::light::Light;
+use crate::light::{Emitter as _, Light};
 use crate::material::Pattern;
 use crate::math::Color;
 use crate::scene::{Material as Written, Spanned};
@@ -34,27 +33,6 @@ fn rays(scout: &Scout, material: u32) -> usize {
     scout.material_rays()[material as usize]
 }
 
-/// That number for each material.
-pub(super) fn count_rays(scout: &Scout) -> Vec<usize> {
-    let materials = scout.world().materials();
-    let (mut direct, mut all) = (vec![0; materials.len()], vec![0; materials.len()]);
-    scout.seen().for_each(|(_, seen)| direct[seen.material as usize] += 1);
-    for (whole, count) in direct.iter().enumerate().filter(|(_, count)| **count > 0) {
-        // A part that is in it several times counts once.
-        let (mut parts, mut known) = (vec![whole], vec![false; materials.len()]);
-        while let Some(part) = parts.pop() {
-            if std::mem::replace(&mut known[part], true) {
-                continue;
-            }
-            all[part] += count;
-            if let Material::Solid(solid, _) = &materials[part] {
-                parts.extend(solid.materials().map(|inner| inner as usize));
-            }
-        }
-    }
-    all
-}
-
 /// Whether nothing that is seen gives back any light.
 pub(super) fn all_black(scout: &Scout) -> bool {
     let shows = |(i, _, phong): (u32, &Spanned<Written>, &Phong)| !is_black(phong) && rays(scout, i) > 0;
@@ -71,7 +49,7 @@ fn is_black(phong: &Phong) -> bool {
 
 /// Materials that give back no light at all.
 pub(super) fn black(scout: &Scout) -> Vec<Finding> {
-    if super::physical::is_physical(scout) {
+    if scout.is_physical() {
         return super::layers::black(scout);
     }
     let all = scout.seen().count();
@@ -99,8 +77,8 @@ pub(super) fn no_bounces(scout: &Scout) -> Vec<Finding> {
     let cut = |phong: &Phong| counts(phong.reflective).max(counts(phong.transparent)) < settings.least_weight;
     let none = settings.bounces == 0;
     let bounces = |phong: &Phong| phong.reflective != Color::ZERO || phong.transparent != Color::ZERO;
-    // Where the highlight's colour is the mirror's too, only what would be black without mirroring is
-    // meant as a mirror.
+    // Where the highlight's colour is the mirror's too, only what would be black without mirroring
+    // is meant as a mirror.
     let shared = matches!(scout.world().rules().secondary, Secondary::Specular | Secondary::SpecularFresnel);
     let meant = |phong: &Phong| phong.fresnel || !shared || phong.diffuse.max_element() < 0.15;
     let all: Vec<_> =
@@ -243,7 +221,8 @@ fn all_colors(scout: &Scout) -> Vec<Named> {
         };
         colors.extend(phong.diffuse_color.map(|color| named(color, ["diffuseColor", "diffuse"], 1.001)));
         let all = |color, fields, most: f32| Named { color, block: written.span, fields, most };
-        // A highlight may be a little stronger than white; a mirror gives back no more than it gets.
+        // A highlight may be a little stronger than white; a mirror gives back no more than it
+        // gets.
         let mirrors = used.reflective != Color::ZERO && phong.reflective_color == Color::ZERO;
         colors.push(all(phong.specular_color, ["specularColor", "specular"], if mirrors { 1.05 } else { 1.6 }));
         colors.push(all(phong.reflective_color, ["reflectiveColor", "reflectiveColor"], 1.001));
@@ -260,14 +239,9 @@ fn all_colors(scout: &Scout) -> Vec<Named> {
         let arrives = scout.seen().filter_map(|(_, seen)| seen.by(number)).map(|lit| lit.arrives.max_element());
         let too_much = arrives.fold(0.0, f32::max) > 20.0;
         // Under paths light is in units of its own, and the exposure makes a picture of it.
-        let free = candela || fades && !too_much || super::physical::is_physical(scout);
+        let free = candela || fades && !too_much || scout.is_physical();
         let most = if free { f32::INFINITY } else { 20.0 };
-        colors.push(Named {
-            color: super::lights::color(light),
-            block: written.span,
-            fields: ["color", "color"],
-            most,
-        });
+        colors.push(Named { color: light.color(), block: written.span, fields: ["color", "color"], most });
     }
     colors
 }
@@ -314,7 +288,7 @@ pub(super) fn too_large(scout: &Scout) -> Vec<Finding> {
     for (color, fields) in
         [(background.color, ["color", "color"]), (background.ambient_light, ["ambientLight", "ambient_light"])]
     {
-        if color.max_element() > 2.0 && !super::physical::is_physical(scout) {
+        if color.max_element() > 2.0 && !scout.is_physical() {
             let block = background_span(scout);
             say(color, block.and_then(|block| scout.value(block, &fields)), block);
         }
@@ -349,7 +323,7 @@ pub(super) fn gives_too_much(scout: &Scout) -> Option<Diagnostic> {
 /// Glass whose colour keeps all light in, where that colour weighs what it mirrors and lets
 /// through.
 pub(super) fn dull_glass(scout: &Scout) -> Vec<Finding> {
-    if super::physical::is_physical(scout) {
+    if scout.is_physical() {
         return super::layers::dull_glass(scout);
     }
     if scout.world().rules().secondary != Secondary::SpecularFresnel {
@@ -455,7 +429,7 @@ pub(super) fn camouflaged(scout: &Scout) -> Vec<Finding> {
 /// Things of which all that is seen has the background's colour, exactly: others are seen.
 fn lost_in_background(scout: &Scout, alike: &dyn Fn(Color) -> bool) -> Vec<Finding> {
     let world = scout.world();
-    if world.background().max_element() < 0.02 || super::physical::is_physical(scout) {
+    if world.background().max_element() < 0.02 || scout.is_physical() {
         return Vec::new();
     }
     let say = |(number, object): (usize, &crate::world::Object)| {
@@ -477,7 +451,7 @@ fn lost_in_background(scout: &Scout, alike: &dyn Fn(Color) -> bool) -> Vec<Findi
                 .help("take another `color` for the background, or for the material");
         Some(Finding::from(diagnostic))
     };
-    world.objects().iter().enumerate().filter_map(say).take(super::MOST_ALIKE).collect()
+    world.objects().iter().enumerate().filter_map(say).take(super::finding::MOST_ALIKE).collect()
 }
 
 /// Textures on things without texture coordinates.

@@ -1,14 +1,15 @@
 //! Pictures that are too bright, too dark, or of one colour; depths that are all black or all
 //! white.
 
+use super::brightness::brightest;
 use super::finding::{Finding, number, percent, vector};
-use super::lights::{VISIBLE, color, place};
-use super::scout::{Probe, Scout, Seen};
+use super::lights::place;
+use super::look::Seen;
+use super::scout::Scout;
+use super::verdict::VISIBLE;
 use crate::diag::{Diagnostic, Severity};
-use crate::integrator::{Integrate, Path};
+use crate::light::Emitter as _;
 use crate::math::{Color, fp};
-use crate::sampler::SampleId;
-use rayon::prelude::*;
 
 /// Values beyond this are cut in eight bits; beyond the other, much of their shading is lost.
 const BEYOND: f32 = 1.0 + VISIBLE;
@@ -17,49 +18,12 @@ const FAR_BEYOND: f32 = 1.25;
 const MOST_CUT: f32 = 0.4;
 const MOST_FAR: f32 = 0.2;
 
-/// Of a path tracer's picture, so many pixels are looked at, by so many samples each.
-const MOST_PIXELS: usize = 300;
-const SAMPLES: u32 = 16;
-/// What is darker shows nothing.
-const DARK: f32 = 0.02;
 /// Where more than this share is white, nothing is seen for light.
 const MOST_WHITE: f32 = 0.5;
-
-/// What [`Scout::light`] keeps.
-pub(super) fn light(scout: &Scout) -> Vec<Color> {
-    let exposure = scout.subject.exposure;
-    let Some(transport) = scout.subject.job.method.transport() else {
-        return scout.probes.iter().map(|probe| exposure * probe.color).collect();
-    };
-    let job = scout.subject.job;
-    let path = Path::new(scout.world(), job.settings, transport);
-    let step = scout.probes.len().div_ceil(MOST_PIXELS).max(1);
-    // Not one in each row: that would be the same column each time.
-    let chosen: Vec<&Probe> =
-        scout.probes.iter().step_by(if step.is_multiple_of(2) { step + 1 } else { step }).collect();
-    let mean = |probe: &&Probe| {
-        let sample = |i: u32| path.radiance(&probe.ray, SampleId::new(job.seed, probe.pixel, i), &mut ());
-        let all = (0..SAMPLES).map(sample).filter(|color| color.is_finite());
-        exposure * all.sum::<Color>() / SAMPLES as f32
-    };
-    chosen.par_iter().map(mean).collect()
-}
 
 /// A factor of light in stops.
 fn stops_of(factor: f32) -> f32 {
     fp::ln(factor) / std::f32::consts::LN_2
-}
-
-/// The brightest that is seen, but for one bright speck.
-fn brightest(scout: &Scout) -> f32 {
-    let mut values: Vec<f32> = scout.light().iter().map(|color| color.max_element()).collect();
-    values.sort_by(f32::total_cmp);
-    values.len().checked_sub(2).map_or(0.0, |at| values[at])
-}
-
-/// Whether a path tracer's picture is black, or nearly so.
-pub(super) fn is_dark(scout: &Scout) -> bool {
-    super::physical::is_physical(scout) && !scout.light().is_empty() && brightest(scout) < DARK
 }
 
 /// A picture in units of its own that eight bits show as white: of a path tracer, or with a sky in
@@ -98,7 +62,7 @@ fn white(scout: &Scout) -> Vec<Finding> {
 
 /// Values beyond 1 in a picture of eight bits.
 pub(super) fn too_bright(scout: &Scout) -> Vec<Finding> {
-    if super::physical::is_physical(scout) || scout.world().environment().is_some() {
+    if scout.is_physical() || scout.world().environment().is_some() {
         return white(scout);
     }
     let lit: Vec<Color> = scout.seen().map(|(probe, _)| probe.color).filter(|color| color.is_finite()).collect();
@@ -138,7 +102,7 @@ pub(super) fn too_bright(scout: &Scout) -> Vec<Finding> {
         let Some(span) = place(scout, i) else { continue };
         // A light that nearly does not fade is not too bright of itself.
         let faded = scout.value(span, &["attenuation", "falloff"]).filter(|_| factor < 0.1 && most > 10.0);
-        if let (Some(value), Some(a)) = (faded, super::lights::divisor(light)) {
+        if let (Some(value), Some(a)) = (faded, super::verdict::divisor(light)) {
             let single = scout.text(value).split_whitespace().count() == 1;
             let text = if single { number(a.z / factor) } else { vector(a / factor) };
             let diagnostic =
@@ -147,7 +111,7 @@ pub(super) fn too_bright(scout: &Scout) -> Vec<Finding> {
             return vec![Finding::from(diagnostic).whole(cut * 2 > lit.len())];
         }
         let value = scout.value(span, &["color"]);
-        diagnostic = diagnostic.fix_at(value, vector(color(light) * factor));
+        diagnostic = diagnostic.fix_at(value, vector(light.color() * factor));
         diagnostic.span = diagnostic.span.or(value).or(Some(span));
     }
     if !over(far, MOST_FAR) {
@@ -184,7 +148,7 @@ pub(super) fn one_color(scout: &Scout) -> Vec<Finding> {
 
 /// A picture that is nearly black where it is not background.
 pub(super) fn too_dark(scout: &Scout) -> Vec<Finding> {
-    if super::physical::is_physical(scout) {
+    if scout.is_physical() {
         return dark_paths(scout);
     }
     let most = scout.seen().map(|(probe, _)| probe.color.max_element()).fold(0.0, f32::max);
@@ -204,10 +168,10 @@ pub(super) fn too_dark(scout: &Scout) -> Vec<Finding> {
 
 /// The same of a path tracer's picture.
 fn dark_paths(scout: &Scout) -> Vec<Finding> {
-    if !is_dark(scout) {
+    if !scout.is_dark() {
         return Vec::new();
     }
-    let most = brightest(scout);
+    let most = brightest(scout.light());
     let message = match most < 1e-6 {
         true => "the whole picture is black: no light finds its way to the camera".to_string(),
         false => format!("the brightest thing in the picture is {} only", number(most)),

@@ -1,11 +1,9 @@
 //! Sizes: things too small or too large to be seen, and fields of view to match.
 
-use super::MOST_SOUGHT;
-use super::finding::{Finding, number};
-use super::lights::Verdict;
+use super::finding::{Finding, MOST_SOUGHT, number};
 use super::scout::Scout;
-use super::sight::Sight;
-use super::view::pixels;
+use super::sight::{Sight, pixels};
+use super::verdict::Verdict;
 use crate::camera::{Camera, Lens};
 use crate::diag::{Diagnostic, Span};
 use crate::math::{Aabb, fp};
@@ -169,7 +167,7 @@ fn swallows(scout: &Scout, object: u32) -> bool {
     let eye = scout.world().camera().pose().center;
     let keeps_light = [Verdict::Blocked(object), Verdict::Inside(object)].iter().any(|v| scout.verdicts().contains(v));
     let harms = keeps_light || scout.sights().contains(&Sight::Hidden(object));
-    harms && super::solid::around(scout.world(), eye).contains(&object)
+    harms && super::within::around(scout.world(), eye).contains(&object)
 }
 
 /// Objects far larger or smaller than most.

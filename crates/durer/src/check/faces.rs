@@ -1,8 +1,5 @@
 //! Flat faces that lie in one another: of two, one is seen at random.
 
-use super::MOST_SOUGHT;
-use super::finding::Finding;
-use super::objects::pair;
 use super::scout::Scout;
 use crate::camera::Lens;
 use crate::math::Vec3;
@@ -62,7 +59,8 @@ fn meet(a: &Face, b: &Face) -> bool {
     if b.corners.iter().any(|p| (*p - a.corners[0]).dot(n).abs() > 1e-5 * size) {
         return false;
     }
-    // Convex shapes are apart where a side of one separates them; those that only touch are apart too.
+    // Convex shapes are apart where a side of one separates them; those that only touch are apart
+    // too.
     let separates = |one: &Face, other: &Face| {
         let count = one.corners.len();
         (0..count).any(|i| {
@@ -78,8 +76,9 @@ fn meet(a: &Face, b: &Face) -> bool {
     !separates(a, b) && !separates(b, a)
 }
 
-/// Faces of boxes and rectangles that lie in one another, on the side that the camera sees.
-pub(super) fn twice(scout: &Scout) -> Vec<Finding> {
+/// The objects, boxes and rectangles, whose faces lie in one another on the side that the camera
+/// sees.
+pub(super) fn overlapping(scout: &Scout) -> Vec<(usize, usize)> {
     let objects = scout.world().objects();
     if objects.len() > MOST_THINGS {
         return Vec::new();
@@ -91,10 +90,7 @@ pub(super) fn twice(scout: &Scout) -> Vec<Finding> {
     for (i, a) in faces.iter().enumerate() {
         for b in faces[i + 1..].iter().filter(|b| b.object != a.object) {
             let (first, second) = (a.object, b.object);
-            // The same surface is told of as such; and of one material it does not matter which of two is seen.
-            let same = super::objects::same(&objects[first], &objects[second])
-                || objects[first].material == objects[second].material;
-            if !same && !found.contains(&(first, second)) && faces_eye(a) && faces_eye(b) && meet(a, b) {
+            if !found.contains(&(first, second)) && faces_eye(a) && faces_eye(b) && meet(a, b) {
                 // Boxes side by side face each other.
                 let opposite = a.outwards.zip(b.outwards).is_some_and(|(n, m)| n.dot(m) < 0.0);
                 if !opposite {
@@ -103,5 +99,5 @@ pub(super) fn twice(scout: &Scout) -> Vec<Finding> {
             }
         }
     }
-    found.into_iter().take(MOST_SOUGHT).map(|(a, b)| pair(scout, a, b)).collect()
+    found
 }

@@ -1,7 +1,6 @@
 //! Sides: surfaces seen from behind, and triangles of the scene file that are turned.
 
-use super::MOST_SOUGHT;
-use super::finding::{Finding, counted};
+use super::finding::{Finding, MOST_SOUGHT, counted};
 use super::mesh::topology::Topology;
 use super::scout::Scout;
 use crate::diag::{Diagnostic, Severity};
@@ -48,7 +47,7 @@ pub(super) fn from_behind(scout: &Scout) -> Vec<Finding> {
     }
     let all: usize = seen.iter().sum();
     // Who is on the wrong side of what hides everything is told that alone.
-    if !super::view::hidden(scout).is_empty() {
+    if !super::hidden::hidden(scout).is_empty() {
         return Vec::new();
     }
     let turned_away = (0..count).filter(|&i| {
@@ -60,8 +59,8 @@ pub(super) fn from_behind(scout: &Scout) -> Vec<Finding> {
             let note = Diagnostic::note(message)
                 .at(scout.object_span(i as u32))
                 .effect("a tracer that does not shade backs, as the course's without `-shade_back`, leaves it black");
-            // A plane with normal and offset turned is the same plane, and looks the same where backs are
-            // shaded.
+            // A plane with normal and offset turned is the same plane, and looks the same where
+            // backs are shaded.
             let plane = matches!(scout.world().objects()[i].geometry, Geometry::Primitive(Primitive::Plane(_)));
             return Finding::from(if plane { note } else { turned(scout, note, i as u32) });
         }

@@ -1,11 +1,12 @@
 //! Lights that fade: what is left of them where they arrive, and what they are divided by.
 
 use super::finding::{Finding, number, vector};
-use super::lights::{Verdict, color, divisor, each, place, useless, written};
+use super::lights::{each, place, useless, written};
 use super::scout::Scout;
+use super::verdict::{Verdict, divisor};
 use crate::diag::{Diagnostic, Span};
 use crate::dialect::Dialect;
-use crate::light::Light;
+use crate::light::{Emitter as _, Light};
 use crate::math::Vec3;
 
 pub(super) fn faint(scout: &Scout) -> Vec<Finding> {
@@ -19,7 +20,7 @@ pub(super) fn faint(scout: &Scout) -> Vec<Finding> {
         let factor = 0.8 / most.max(1e-30);
         let written = &written(scout, light)?.value;
         let Light::Point(point) = written else {
-            let color = color(written) * factor;
+            let color = written.color() * factor;
             let help = format!("it is {} times too weak: `color {}`, say", number(factor), vector(color));
             return Some(scout.at_value(diagnostic, span, &["color"]).help(help));
         };
@@ -35,7 +36,8 @@ pub(super) fn faint(scout: &Scout) -> Vec<Finding> {
         let (value, text, field) = match (value, point.falloff, point.attenuation) {
             (Some(value), Some(falloff), _) => (value, number(falloff / factor), scout.text(before(scout, value))),
             (Some(value), None, Some(a)) => {
-                // The constant keeps a light bright near by: it only grows to what it should have been.
+                // The constant keeps a light bright near by: it only grows to what it should have
+                // been.
                 let scaled = a / factor;
                 (value, vector(Vec3::new(scaled.x.max(a.x.min(1.0)), scaled.y, scaled.z)), "attenuation".into())
             }

@@ -1,8 +1,6 @@
 //! Under a path tracer: surfaces that shine, and why their light is not seen.
 
-use super::MOST_SOUGHT;
-use super::finding::Finding;
-use super::physical::is_physical;
+use super::finding::{Finding, MOST_SOUGHT};
 use super::scout::Scout;
 use crate::diag::{Diagnostic, Severity, Span};
 use crate::integrator::Method;
@@ -136,12 +134,12 @@ fn reach(scout: &Scout, object: &Object) -> Option<f32> {
 
 /// Lamps that shine away from what is seen.
 pub(super) fn turned(scout: &Scout) -> Vec<Finding> {
-    let one_sided = shining(scout).into_iter().filter(|(_, both)| !both && is_physical(scout));
+    let one_sided = shining(scout).into_iter().filter(|(_, both)| !both && scout.is_physical());
     let say = |(number, _): (u32, bool)| {
         let object = &scout.world().objects()[number as usize];
         let (given, flat) = given(scout, number)?;
         // A lamp that lights the ceiling is one as well.
-        let indirect = reach(scout, object).is_some_and(|far| far > 0.03) && !super::exposure::is_dark(scout);
+        let indirect = reach(scout, object).is_some_and(|far| far > 0.03) && !scout.is_dark();
         if !flat || given.back <= 0.0 || given.front > NOTHING * given.back || indirect {
             return None;
         }
@@ -159,7 +157,7 @@ pub(super) fn turned(scout: &Scout) -> Vec<Finding> {
                 "a surface shines to the side of its normal: {turn}, or give its material `walls thin`, with which both sides \
                  shine"
             ));
-        let whole = super::exposure::is_dark(scout) || scout.world().lights().is_empty();
+        let whole = scout.is_dark() || scout.world().lights().is_empty();
         Some(Finding::from(turned_round(scout, diagnostic, number)).whole(whole))
     };
     one_sided.filter_map(say).collect()
@@ -189,7 +187,7 @@ fn turned_round(scout: &Scout, diagnostic: Diagnostic, number: u32) -> Diagnosti
 
 /// Lamps whose light something keeps in.
 pub(super) fn blocked(scout: &Scout) -> Vec<Finding> {
-    if !is_physical(scout) {
+    if !scout.is_physical() {
         return Vec::new();
     }
     let lamps = shining(scout);
@@ -200,7 +198,7 @@ pub(super) fn blocked(scout: &Scout) -> Vec<Finding> {
         if given.front_free < 1.0 || given.front + back > HARDLY * given.front_free {
             return None;
         }
-        let whole = super::exposure::is_dark(scout) || lamps.len() == 1 && scout.world().lights().is_empty();
+        let whole = scout.is_dark() || lamps.len() == 1 && scout.world().lights().is_empty();
         let name = scout.object(number);
         let diagnostic = Diagnostic::warning(format!(
             "the {name} shines, but the {} keeps its light off all that is seen",
@@ -208,14 +206,10 @@ pub(super) fn blocked(scout: &Scout) -> Vec<Finding> {
         ))
         .at(scout.object_span(number))
         .related(scout.object_span(blocker), "in the way")
-        .effect(if super::exposure::is_dark(scout) {
-            "the picture is black"
-        } else {
-            "no light of it comes straight to what is seen"
-        })
+        .effect(if scout.is_dark() { "the picture is black" } else { "no light of it comes straight to what is seen" })
         .help("is it on the wrong side, or inside? Move the lamp to the side that is seen");
         // Light may well come round corners, where it does.
-        let dark = super::exposure::is_dark(scout);
+        let dark = scout.is_dark();
         let severity = if dark { Severity::Warning } else { Severity::Note };
         (dark || lamps.len() > 1).then(|| Finding::from(Diagnostic { severity, ..diagnostic }).whole(whole))
     };

@@ -1,8 +1,7 @@
 //! Materials of layers that show nothing, or not what they are meant to: black metals, glass that
 //! swallows all light, surfaces that are not there.
 
-use super::MOST_SOUGHT;
-use super::finding::{Finding, number as number_word, vector};
+use super::finding::{Finding, MOST_SOUGHT, number as number_word, vector};
 use super::scout::Scout;
 use crate::diag::Diagnostic;
 use crate::material::PrincipledMaterial;

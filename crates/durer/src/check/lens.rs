@@ -1,7 +1,8 @@
 //! Lenses and eyes: focus, aperture, shift, separation; and what is seen from its edge.
 
 use super::finding::{Finding, number};
-use super::scout::{Probe, Scout, Seen};
+use super::look::{Probe, Seen};
+use super::scout::Scout;
 use super::sight::Sight;
 use crate::camera::{Camera, Lens, ThinLensCamera};
 use crate::diag::Diagnostic;
@@ -155,13 +156,13 @@ pub(super) fn edge_on(scout: &Scout) -> Vec<Finding> {
     let world = scout.world();
     let (eye, forward) = (world.camera().pose().center, world.camera_frame().forward);
     let orthographic = matches!(world.camera(), Camera::Orthographic(_));
-    if !orthographic && !super::view::has_eye(scout) {
+    if !orthographic && !super::sight::has_eye(scout) {
         return Vec::new();
     }
     let things = world.bounds();
     let size = if things.is_empty() { 1.0 } else { things.size().max_element() };
     let mut found = Vec::new();
-    for (number, object) in world.objects().iter().enumerate().take(super::MOST_SOUGHT) {
+    for (number, object) in world.objects().iter().enumerate().take(super::finding::MOST_SOUGHT) {
         let Geometry::Primitive(Primitive::Plane(plane)) = &object.geometry else { continue };
         let on =
             object.world_point(plane.normal * (plane.offset / plane.normal.length_squared().max(f32::MIN_POSITIVE)));

@@ -1,245 +1,16 @@
-//! What each light does to what is seen, and why it does nothing.
+//! Lights that do nothing to what is seen, or less than was meant.
 
 use super::finding::{Finding, percent, vector};
-use super::scout::{Lit, Scout, Seen};
-use super::solid::around;
+use super::look::Lit;
+use super::scout::Scout;
+use super::verdict::{GRAZING, MOST_JUDGED, VISIBLE, Verdict, most_common};
+use super::within::around;
 use crate::camera::Lens;
 use crate::diag::{Diagnostic, Severity, Span};
 use crate::format::course::place::{block, section};
-use crate::light::{Emitter, Light, PointLight};
-use crate::math::{Color, Ray, Vec3};
+use crate::light::{Emitter as _, Light};
+use crate::math::Vec3;
 use crate::scene::Spanned;
-use crate::world::Material;
-
-/// What adds less than this to a colour is not seen in eight bits.
-pub(super) const VISIBLE: f32 = 1.0 / 512.0;
-/// Of more lights, the rest is taken to work.
-const MOST_JUDGED: usize = 500;
-/// A light that adds something to a smaller share of what is seen might as well add nothing.
-const SHARE: f32 = 0.002;
-
-/// Where more of what faces a light than this is in shadow, the light is kept off.
-const MOST_BLOCKED: f32 = 0.95;
-/// A roof over all things keeps light off so large a share of what faces it.
-const ROOFED: f32 = 0.6;
-
-/// Where all that arrives of all lights is less than this, nobody sees that there are any.
-const MOST_WEAK: f32 = 0.06;
-
-/// What a light does to what is seen.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Verdict {
-    /// It adds to the picture, or there is nothing that it could add to.
-    Works,
-    /// It has no colour.
-    Black,
-    /// It divides by zero, or by less.
-    Divides,
-    /// It is inside this object.
-    Inside(u32),
-    /// This object, more than others, keeps it off what faces it.
-    Blocked(u32),
-    /// What is seen faces away from it.
-    Behind,
-    /// Its beam does not go to what is seen.
-    Missing,
-    /// At most so much of it arrives.
-    Faint(f32),
-    /// What it shines on has none of its colours.
-    Cancelled,
-}
-
-/// The verdict on each light of the world.
-pub(super) fn verdicts(scout: &Scout) -> Vec<Verdict> {
-    let judged = |light| if light < MOST_JUDGED { verdict(scout, light) } else { Verdict::Works };
-    let mut verdicts: Vec<Verdict> = (0..scout.world().lights().len()).map(judged).collect();
-    if let Some(most) = weak_together(scout, &verdicts) {
-        verdicts.iter_mut().for_each(|verdict| *verdict = Verdict::Faint(most));
-    }
-    if cancelled_together(scout, &verdicts) {
-        verdicts.iter_mut().for_each(|verdict| *verdict = Verdict::Cancelled);
-    }
-    verdicts
-}
-
-/// What arrives of a few lights that work, where all of them together hardly count.
-fn weak_together(scout: &Scout, verdicts: &[Verdict]) -> Option<f32> {
-    if verdicts.is_empty() || verdicts.len() > 3 || verdicts.iter().any(|verdict| *verdict != Verdict::Works) {
-        return None;
-    }
-    let most = |of: fn(&Lit) -> Color| {
-        let sums = scout.seen().map(|(_, seen)| seen.lit.iter().map(of).sum::<Color>().max_element());
-        sums.fold(0.0, f32::max)
-    };
-    let (arrives, adds) = (most(|lit| lit.arrives), most(|lit| lit.adds));
-    (arrives > 0.0 && arrives < MOST_WEAK && adds < MOST_WEAK).then_some(arrives)
-}
-
-/// Whether what all lights together shine on has none of their colours, on nearly all that they
-/// reach.
-fn cancelled_together(scout: &Scout, verdicts: &[Verdict]) -> bool {
-    let materials = scout.world().materials();
-    if !verdicts.contains(&Verdict::Works) || verdicts.iter().any(|v| !matches!(v, Verdict::Works | Verdict::Cancelled))
-    {
-        return false;
-    }
-    let (mut reached, mut lost) = (0, 0);
-    for (_, seen) in scout.seen() {
-        let Some(Material::Phong(phong)) = materials.get(seen.material as usize) else { return false };
-        let lit = seen.lit.iter().filter(|lit| lit.cosine > 0.05 && lit.blocker.is_none());
-        let arrives: Color = lit.map(|lit| lit.arrives).sum();
-        if arrives.max_element() < 0.1 || phong.diffuse.max_element() < 0.1 || phong.texture.is_some() {
-            continue;
-        }
-        reached += 1;
-        lost += usize::from((arrives * phong.diffuse).max_element() < VISIBLE);
-    }
-    reached > 20 && lost * 10 > reached * 8
-}
-
-fn verdict(scout: &Scout, number: usize) -> Verdict {
-    let light = &scout.world().lights()[number];
-    // Clear glass shows what is behind it, not the light that falls on it.
-    let clear = |seen: &Seen| match &scout.world().materials()[seen.material as usize] {
-        Material::Phong(phong) => phong.transparent.min_element() > 0.5 && phong.diffuse.max_element() < 0.1,
-        Material::Solid(..) => false,
-    };
-    let lit = scout.seen().filter(|(_, seen)| !clear(seen));
-    let all: Vec<&Lit> = lit.filter_map(|(_, seen)| seen.by(number)).collect();
-    if color(light) == Color::ZERO {
-        return Verdict::Black;
-    }
-    let odd =
-        |lit: &&Lit| !lit.arrives.is_finite() || lit.arrives.min_element() < 0.0 && color(light).min_element() >= 0.0;
-    if divisor(light) == Some(Vec3::ZERO) || all.iter().any(odd) {
-        return Verdict::Divides;
-    }
-    if scout.aims()[number].is_some() {
-        return Verdict::Missing;
-    }
-    let visible = all.iter().filter(|lit| lit.adds.abs().max_element() > VISIBLE).count();
-    // A few lights are each meant to be seen.
-    let most = all.iter().map(|lit| lit.adds.abs().max_element()).fold(0.0, f32::max);
-    let arrives = all.iter().map(|lit| lit.arrives.abs().max_element()).fold(0.0, f32::max);
-    if scout.world().lights().len() <= 3 && most > VISIBLE && most < 6.0 * VISIBLE && arrives < 12.0 * VISIBLE {
-        return Verdict::Faint(arrives);
-    }
-    let is_blocked = nearly_blocked(&all) || roofed(scout, number);
-    if all.is_empty() || visible as f32 > SHARE * all.len() as f32 && !is_blocked {
-        return Verdict::Works;
-    }
-    if let Light::Point(point) = light
-        && let Some(&object) =
-            around(scout.world(), point.position).iter().find(|&&object| keeps_light(scout, object, &all))
-    {
-        return Verdict::Inside(object);
-    }
-    let facing: Vec<&&Lit> = all.iter().filter(|lit| lit.cosine > 1e-3).collect();
-    let blocked: Vec<u32> = facing.iter().filter_map(|lit| lit.blocker).collect();
-    if facing.len() - blocked.len() > all.len() / 50 && !is_blocked {
-        let most = facing.iter().map(|lit| lit.arrives.abs().max_element()).fold(0.0, f32::max);
-        // What lies nearly along the light is dark whatever its colour.
-        let lit = facing.iter().filter(|lit| lit.blocker.is_none() && lit.cosine > GRAZING);
-        let (full, lost) = lit
-            .filter(|lit| lit.arrives.abs().max_element() > 4.0 * VISIBLE)
-            .fold((0, 0), |(n, lost), lit| (n + 1, lost + usize::from(lit.adds.abs().max_element() <= VISIBLE)));
-        return match most < 4.0 * VISIBLE {
-            true => Verdict::Faint(most),
-            false if full > 4 && lost * 10 > full * 9 => Verdict::Cancelled,
-            false if full > 0 => Verdict::Works,
-            false => Verdict::Behind,
-        };
-    }
-    match main_blocker(scout, number, &blocked)
-        .filter(|_| blocked.len() * 5 > all.len())
-        .or_else(|| behind_plane(scout, light))
-    {
-        Some(object) => Verdict::Blocked(object),
-        None => Verdict::Behind,
-    }
-}
-
-/// Whether something keeps a light off nearly all that faces it: a few pixels at the horizon may be
-/// lit.
-fn nearly_blocked(all: &[&Lit]) -> bool {
-    let facing: Vec<&&Lit> = all.iter().filter(|lit| lit.cosine > 1e-3).collect();
-    let blocked = facing.iter().filter(|lit| lit.blocker.is_some()).count();
-    blocked as f32 > MOST_BLOCKED * facing.len() as f32 && facing.len() * 5 > all.len()
-}
-
-/// Whether one thing keeps a light off all others that have an end and face it, and off most of the
-/// rest.
-fn roofed(scout: &Scout, light: usize) -> bool {
-    let objects = scout.world().objects();
-    let facing = || {
-        let all = scout.seen().filter_map(|(_, seen)| Some((seen.object, seen.by(light)?)));
-        all.filter(|(_, lit)| lit.cosine > GRAZING)
-    };
-    let blockers: Vec<u32> = facing().filter_map(|(_, lit)| lit.blocker).collect();
-    let Some(roof) = most_common(&blockers) else { return false };
-    let under = |(_, lit): &(u32, &Lit)| lit.blocker.is_some();
-    let things = || facing().filter(|(object, _)| *object != roof && objects[*object as usize].bounds().is_some());
-    let (count, covered) = (things().count(), things().filter(under).count());
-    let (all, dark) = (facing().count(), facing().filter(|(_, lit)| lit.blocker == Some(roof)).count());
-    count > 20 && covered as f32 > MOST_BLOCKED * count as f32 && dark as f32 > ROOFED * all as f32
-}
-
-/// Of some objects the one that is in the way of a light at the most places; each may be in the way
-/// of another.
-fn main_blocker(scout: &Scout, light: usize, blocked: &[u32]) -> Option<u32> {
-    let (common, lamp) = (most_common(blocked)?, &scout.world().lights()[light]);
-    let places = scout.seen().filter(|(_, seen)| seen.by(light).is_some_and(|lit| lit.blocker.is_some()));
-    let mut all = Vec::new();
-    for (probe, seen) in places.step_by((blocked.len() / 60).max(1)) {
-        let place = probe.ray.at(seen.t).as_dvec3();
-        let seen = lamp.illuminate(place);
-        let reach = if seen.distance.is_finite() { seen.distance } else { f32::INFINITY };
-        let ray = Ray { t_min: 1e-3, t_max: 0.999 * reach, ..Ray::new(place.as_vec3(), seen.to_light) };
-        let mut hit: Vec<u32> = scout.world().all_hits(&ray).take(16).map(|hit| hit.object).collect();
-        hit.sort_unstable();
-        hit.dedup();
-        all.extend(hit);
-    }
-    let count = |object: u32| all.iter().filter(|other| **other == object).count();
-    // What is hit first most often is told of, unless something else is in the way at more places.
-    most_common(&all).filter(|other| count(*other) * 10 > count(common) * 11).or(Some(common))
-}
-
-/// The seen plane that is between the camera and a light, if one is first of all.
-fn behind_plane(scout: &Scout, light: &Light) -> Option<u32> {
-    let Light::Point(point) = light else { return None };
-    let world = scout.world();
-    let way = world.camera().pose().center - point.position;
-    let hit = world.closest(&Ray { t_max: 1.0, ..Ray::new(point.position, way) }, &mut ())?;
-    let is_seen = scout.seen().any(|(_, seen)| seen.object == hit.object);
-    (is_seen && world.objects()[hit.object as usize].bounds().is_none()).then_some(hit.object)
-}
-
-/// Whether an object around a light lets nothing out: it blocks something, or nothing that is seen
-/// faces the light.
-fn keeps_light(scout: &Scout, object: u32, all: &[&Lit]) -> bool {
-    let shadows = scout.subject.job.settings.shadows;
-    let blocks = all.iter().any(|lit| lit.blocker == Some(object));
-    blocks || !shadows || all.iter().all(|lit| lit.cosine <= 1e-3)
-}
-
-fn most_common(objects: &[u32]) -> Option<u32> {
-    let mut sorted = objects.to_vec();
-    sorted.sort_unstable();
-    sorted.chunk_by(|a, b| a == b).max_by_key(|same| same.len()).map(|same| same[0])
-}
-
-pub(super) fn color(light: &Light) -> Color {
-    light.color()
-}
-
-/// What the light of a point is divided by: its three factors.
-pub(super) fn divisor(light: &Light) -> Option<Vec3> {
-    match light {
-        Light::Point(PointLight { attenuation, .. }) => *attenuation,
-        _ => None,
-    }
-}
 
 /// A light as it is written.
 pub(super) fn written<'s>(scout: &Scout<'s>, light: usize) -> Option<&'s Spanned<Light>> {
@@ -333,8 +104,7 @@ const MOSTLY_DARK: f32 = 0.33;
 /// Where less than this share of the strongest light arrives of one, it is there to brighten
 /// shadows.
 const WEAK: f32 = 0.15;
-/// Below this cosine light hardly falls on a surface, but goes along it.
-const GRAZING: f32 = 0.08;
+
 /// Where they reach less than this, only a rim is lit.
 const RIM: f32 = 0.2;
 /// And here nearly all.
@@ -510,7 +280,7 @@ pub(super) fn cancelled(scout: &Scout) -> Vec<Finding> {
         }
         let message = "what this light shines on gives back none of its colour".to_string();
         let (diagnostic, span) = useless(scout, light, message)?;
-        let color = vector(color(&scout.world().lights()[light]));
+        let color = vector(scout.world().lights()[light].color());
         let help = format!("light and surface are multiplied, channel by channel: this light is {color}");
         let material = scout.seen().next().map(|(_, seen)| seen.material)?;
         let diagnostic = match scout.subject.scene.materials.get(material as usize) {

@@ -5,8 +5,10 @@
 //! has a code that does not change, a place, an effect on the picture, a proposed change and, where
 //! that is mechanical, the edit of the scene's text.
 
+mod aim;
 mod air;
 mod beams;
+mod brightness;
 mod colors;
 mod exposure;
 mod extent;
@@ -14,10 +16,12 @@ mod faces;
 mod facing;
 mod fading;
 mod finding;
+mod hidden;
 mod lamps;
 mod layers;
 mod lens;
 mod lights;
+mod look;
 mod mesh;
 mod names;
 mod numbers;
@@ -34,20 +38,19 @@ mod table;
 #[cfg(test)]
 mod tests;
 mod unseen;
+mod verdict;
 mod view;
+mod within;
 mod words;
 mod year;
 
 use crate::diag::{Diagnostics, Severity};
 pub use finding::Finding;
+use finding::MOST_ALIKE;
+pub use look::Subject;
 pub use repair::{Repaired, apply};
-pub use scout::{Scout, Subject};
+pub use scout::Scout;
 pub use table::{CHECKS, Check, rank};
-
-/// At most so many findings of one kind are told one by one.
-const MOST_ALIKE: usize = 3;
-/// After so many of one kind, no more are looked for.
-const MOST_SOUGHT: usize = 50;
 
 /// Because of these nothing, or one thing alone, is seen.
 const EMPTIES: [&str; 7] =

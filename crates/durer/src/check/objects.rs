@@ -1,7 +1,7 @@
 //! Objects: flat ones, squashed ones, and those at the same place.
 
-use super::MOST_SOUGHT;
-use super::finding::{Finding, number};
+use super::faces::overlapping;
+use super::finding::{Finding, MOST_SOUGHT, number};
 use super::scout::Scout;
 use super::sight::Sight;
 use crate::diag::{Diagnostic, Span};
@@ -145,7 +145,12 @@ pub(super) fn twice(scout: &Scout) -> Vec<Finding> {
     let mut places: HashMap<[u32; 6], Vec<usize>> = HashMap::new();
     let mut found = Vec::new();
     found.extend(in_plane(scout));
-    found.extend(super::faces::twice(scout));
+    // The same surface is told of below; and of one material it does not matter which of two is
+    // seen.
+    let differ =
+        |&(a, b): &(usize, usize)| objects[a].material != objects[b].material && !same(&objects[a], &objects[b]);
+    let faces = overlapping(scout).into_iter().filter(differ).take(MOST_SOUGHT);
+    found.extend(faces.map(|(a, b)| pair(scout, a, b)));
     for (i, object) in objects.iter().enumerate() {
         // What has no end is at one place with all others that have none.
         let key = object.bounds().map_or([0; 6], |b| {
@@ -201,7 +206,7 @@ fn in_plane(scout: &Scout) -> Vec<Finding> {
     found
 }
 
-pub(super) fn pair(scout: &Scout, first: usize, second: usize) -> Finding {
+fn pair(scout: &Scout, first: usize, second: usize) -> Finding {
     let objects = scout.world().objects();
     let [a, b]: [Span; 2] = [objects[first].span, objects[second].span];
     let alike = objects[first].material == objects[second].material;

@@ -1,7 +1,6 @@
 //! Patterns of which nothing is seen: of one part, or finer than a pixel.
 
-use super::MOST_SOUGHT;
-use super::finding::{Finding, number, percent};
+use super::finding::{Finding, MOST_SOUGHT, number, percent};
 use super::scout::Scout;
 use crate::diag::Diagnostic;
 use crate::material::{ColorNoise, Pattern, Solid};

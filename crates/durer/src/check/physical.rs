@@ -31,13 +31,8 @@ const OF_DARKNESS: &[&str] = &["light-inside", "light-blocked", "light-behind", 
 
 /// Whether a finding means nothing here, since it is about local light.
 pub(super) fn is_beside_the_point(scout: &Scout, code: &str) -> bool {
-    let says_why = || OF_DARKNESS.contains(&code) && super::exposure::is_dark(scout);
-    is_physical(scout) && OF_LOCAL_LIGHT.contains(&code) && !says_why()
-}
-
-/// Whether a scene's light is a path tracer's.
-pub(super) fn is_physical(scout: &Scout) -> bool {
-    scout.subject.job.method.transport().is_some()
+    let says_why = || OF_DARKNESS.contains(&code) && scout.is_dark();
+    scout.is_physical() && OF_LOCAL_LIGHT.contains(&code) && !says_why()
 }
 
 pub(super) fn no_emitter(scout: &Scout) -> Vec<Finding> {
@@ -54,11 +49,7 @@ pub(super) fn no_emitter(scout: &Scout) -> Vec<Finding> {
             .iter()
             .any(|object| matches!(world.materials().get(object.material as usize), Some(Compiled::Solid(..))))
             && world.materials().iter().any(|material| radiance(material).is_some());
-    if !is_physical(scout)
-        || !dark_sky
-        || shines
-        || world.lights().iter().any(|light| super::lights::color(light) != Color::ZERO)
-    {
+    if !scout.is_physical() || !dark_sky || shines || world.lights().iter().any(|light| light.color() != Color::ZERO) {
         return Vec::new();
     }
     // Something was meant to shine.
@@ -113,7 +104,7 @@ pub(super) fn lamp_in_glass(scout: &Scout) -> Vec<Finding> {
 
 /// Words of scattering inside of a body that change nothing.
 pub(super) fn without_effect(scout: &Scout) -> Vec<Finding> {
-    if !is_physical(scout) {
+    if !scout.is_physical() {
         return Vec::new();
     }
     let mut found = Vec::new();

@@ -21,7 +21,7 @@ fn of(scout: &Scout, object: &Object) -> Option<(Span, String)> {
     let (to_world, bounds) = (own.to_world.as_ref()?, own.bounds()?);
     let local = to_world.inverse_point(bounds.center()) + own.center;
     let by = |ops: &[MatrixOp]| MatrixOp::product(ops, 0).transform_point3(local.as_dvec3()).as_vec3();
-    let aims = |place: Vec3| super::view::aims(scout, place);
+    let aims = |place: Vec3| super::sight::aims(scout, place);
     let place = super::finding::vector(bounds.center());
     let reversed: Vec<MatrixOp> = ops.iter().rev().copied().collect();
     let other = by(&reversed);

@@ -3,8 +3,8 @@
 use super::finding::Finding;
 use super::scout::Scout;
 use super::{
-    air, beams, colors, exposure, extent, facing, fading, lamps, layers, lens, lights, mesh, names, numbers, objects,
-    patterns, physical, solid, unseen, view, year,
+    air, beams, colors, exposure, extent, facing, fading, hidden, lamps, layers, lens, lights, mesh, names, numbers,
+    objects, patterns, physical, solid, unseen, view, year,
 };
 
 /// One kind of finding.
@@ -57,8 +57,8 @@ checks! {
     "wide-aperture": "an opening that no lens has", lens::wide_aperture;
     "out-of-focus": "a lens that is sharp where nothing is", lens::out_of_focus;
     "eyes-apart": "two eyes too far from each other", lens::eyes_apart;
-    "hidden-behind": "one object hides all others, or most of the picture", view::hidden_behind;
-    "below-plane": "a plane between the camera and all other things", view::below_plane;
+    "hidden-behind": "one object hides all others, or most of the picture", hidden::hidden_behind;
+    "below-plane": "a plane between the camera and all other things", hidden::below_plane;
     "plane-through": "a plane that passes through the middle of most things", view::plane_through;
     "upside-down": "a camera whose `up` points into the ground", view::upside_down;
     "edge-on": "a plane that is seen from its edge", lens::edge_on;

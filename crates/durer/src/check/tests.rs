@@ -1,7 +1,7 @@
 //! Parts of the checks that no scene shows alone.
 
 use super::mesh::topology::Topology;
-use super::solid::around;
+use super::within::around;
 use super::*;
 use crate::compile::{AccelKind, testing};
 use crate::diag::{Diagnostic, Span};

@@ -1,16 +1,13 @@
 //! What is not in the picture: beside it, hidden, far away, too small, or flat.
 
-use super::MOST_SOUGHT;
-use super::finding::{Finding, counted, number, vector};
+use super::finding::{Finding, MOST_SOUGHT, counted, number, vector};
 use super::scout::Scout;
-use super::sight::Sight;
-use super::view::pixels;
-use crate::camera::Lens;
+use super::sight::{Sight, pixels};
 use crate::diag::{Diagnostic, Severity, Span};
 use crate::math::{Aabb, Vec3};
 use crate::scene::Node;
 use crate::shape::Primitive;
-use crate::world::{Geometry, Material, Object};
+use crate::world::{Geometry, Object};
 
 /// Of more objects, some may be out of sight.
 const FEW_OBJECTS: usize = 8;
@@ -30,7 +27,7 @@ pub(super) fn unseen(scout: &Scout) -> Vec<Finding> {
     let hidden: Vec<(u32, u32)> = all
         .filter_map(|i| match sights[i as usize] {
             // What is behind glass, or in a mirror's sight, is seen.
-            Sight::Hidden(by) if !is_glass(scout, by) && found.is_empty() => Some((i, by)),
+            Sight::Hidden(by) if !scout.is_glass(by) && found.is_empty() => Some((i, by)),
             _ => None,
         })
         // A triangle behind another is the far side of what they are parts of.
@@ -53,9 +50,9 @@ pub(super) fn unseen(scout: &Scout) -> Vec<Finding> {
                 scout.object(first)
             ),
         };
-        // What is out of the picture may stand there for its shadow, or its light; not if next to nothing
-        // is left.
-        let own = |(_, seen): &(_, &crate::check::scout::Seen)| {
+        // What is out of the picture may stand there for its shadow, or its light; not if next to
+        // nothing is left.
+        let own = |(_, seen): &(_, &crate::check::look::Seen)| {
             scout.world().objects()[seen.object as usize].bounds().is_some()
         };
         let left = scout.seen().filter(own).count() * 50;
@@ -146,7 +143,7 @@ fn nothing_of(scout: &Scout) -> Vec<u32> {
 /// Whether one object is wholly inside another, as far as its middle tells.
 fn holds(scout: &Scout, outer: u32, inner: u32) -> bool {
     let middle = scout.world().objects()[inner as usize].bounds().map(|bounds| bounds.center());
-    middle.is_some_and(|middle| super::solid::around(scout.world(), middle).contains(&outer))
+    middle.is_some_and(|middle| super::within::around(scout.world(), middle).contains(&outer))
 }
 
 /// Things smaller than a pixel.
@@ -180,58 +177,6 @@ pub(super) fn tiny(scout: &Scout) -> Vec<Finding> {
     all.into_iter().map(say).collect()
 }
 
-/// One thing just before the camera that covers most of the picture and others with it.
-pub(super) fn in_the_way(scout: &Scout) -> Vec<Finding> {
-    let objects = scout.world().objects();
-    let mut counts = vec![0; objects.len()];
-    let mut nearest = vec![f32::INFINITY; objects.len()];
-    for (probe, seen) in scout.seen() {
-        counts[seen.object as usize] += 1;
-        nearest[seen.object as usize] = nearest[seen.object as usize].min(seen.t * probe.ray.dir.length());
-    }
-    let Some(front) = (0..objects.len()).max_by_key(|&i| counts[i]) else { return Vec::new() };
-    if counts[front] * 10 < scout.probes.len() * 5
-        || is_glass(scout, front as u32)
-        || !super::view::hidden(scout).is_empty()
-    {
-        return Vec::new();
-    }
-    let Some(bounds) = objects[front].bounds() else { return Vec::new() };
-    // A room or a table holds the others; what is in the way is far before them, and hides nearly all
-    // of them.
-    let eye = scout.world().camera().pose().center;
-    let others: Vec<usize> = (0..objects.len()).filter(|&i| i != front && objects[i].bounds().is_some()).collect();
-    let away = |i: &usize| objects[*i].bounds().map_or(f32::INFINITY, |own| (own.center() - eye).length());
-    let nearest_other = others.iter().map(away).fold(f32::INFINITY, f32::min);
-    if others.is_empty() || objects.len() > FEW_OBJECTS || nearest[front] > 0.4 * nearest_other {
-        return Vec::new();
-    }
-    let (mut looked, mut covered) = (0, 0);
-    for &other in &others {
-        let rays =
-            super::sight::points(&objects[other]).into_iter().flat_map(|point| super::sight::rays_to(scout, point));
-        for hit in rays.filter_map(|ray| scout.world().closest(&ray, &mut ())) {
-            looked += usize::from(hit.object as usize == other || hit.object as usize == front);
-            covered += usize::from(hit.object as usize == front);
-        }
-    }
-    if looked == 0 || covered * 10 < looked * 7 || bounds.holds(eye) {
-        return Vec::new();
-    }
-    let diagnostic = Diagnostic::note(format!("the {} covers most of the picture", scout.object(front as u32)))
-        .at(scout.object_span(front as u32))
-        .label(format!("{} of it", super::finding::percent(counts[front], scout.probes.len())))
-        .effect(format!(
-            "of the others, next to nothing is seen: it covers {} of them",
-            super::finding::percent(covered, looked)
-        ))
-        .help(format!(
-            "it is {} before the camera: move it away or make it smaller, or go back",
-            number(nearest[front])
-        ));
-    vec![Finding::from(diagnostic).whole(true)]
-}
-
 /// Landscapes without heights.
 pub(super) fn flat_field(scout: &Scout) -> Vec<Finding> {
     let mut found = Vec::new();
@@ -263,14 +208,6 @@ pub(super) fn flat_field(scout: &Scout) -> Vec<Finding> {
 
 fn is_triangle(scout: &Scout, object: u32) -> bool {
     matches!(scout.world().objects()[object as usize].geometry, Geometry::Primitive(Primitive::Triangle(_)))
-}
-
-/// Whether light goes through an object.
-pub(super) fn is_glass(scout: &Scout, object: u32) -> bool {
-    let world = scout.world();
-    let phong =
-        |material: &Material| matches!(material, Material::Phong(phong) if phong.transparent.max_element() > 0.0);
-    world.materials().get(world.objects()[object as usize].material as usize).is_some_and(phong)
 }
 
 /// Objects far from all that is seen: thrown away by a transform, say.

@@ -1,12 +1,12 @@
 //! What a year's program makes of a scene that others would show as it was meant: its habits, where
 //! they are on.
 
-use super::MOST_SOUGHT;
-use super::finding::{Finding, number, percent, vector};
+use super::finding::{Finding, MOST_SOUGHT, number, percent, vector};
 use super::scout::Scout;
 use crate::camera::Lens;
 use crate::diag::Diagnostic;
 use crate::dialect::{Compat, Highlight};
+use crate::light::Emitter as _;
 use crate::material::PhongMaterial;
 use crate::math::Color;
 use crate::scene::{Material as Written, Spanned};
@@ -72,7 +72,7 @@ fn sharpness(phong: &PhongMaterial) -> Option<(&'static str, f32)> {
 /// Highlights so blunt that they are everywhere, as of an exponent of 0 or of one over what was
 /// meant.
 fn blunt(scout: &Scout) -> Vec<Finding> {
-    if scout.world().rules().highlight == Highlight::None || super::physical::is_physical(scout) {
+    if scout.world().rules().highlight == Highlight::None || scout.is_physical() {
         return Vec::new();
     }
     let say = |(i, written, phong): (usize, &Spanned<Written>, &PhongMaterial)| {
@@ -96,7 +96,7 @@ const BLUNT: f32 = 0.7;
 
 /// Highlights smaller than a pixel.
 pub(super) fn tiny_highlight(scout: &Scout) -> Vec<Finding> {
-    if scout.world().rules().highlight == Highlight::None || super::physical::is_physical(scout) {
+    if scout.world().rules().highlight == Highlight::None || scout.is_physical() {
         return Vec::new();
     }
     let say = |(i, written, phong): (usize, &Spanned<Written>, &PhongMaterial)| {
@@ -251,7 +251,7 @@ pub(super) fn same_parts(scout: &Scout) -> Vec<Finding> {
 pub(super) fn full_ambient(scout: &Scout) -> Vec<Finding> {
     let world = scout.world();
     let ambient = world.ambient();
-    let lamps: Color = world.lights().iter().map(super::lights::color).sum();
+    let lamps: Color = world.lights().iter().map(|light| light.color()).sum();
     if ambient.min_element() < 0.8 || ambient.max_element() > 2.0 || lamps.max_element() <= 0.0 {
         return Vec::new();
     }

@@ -1,13 +1,13 @@
 //! The files that a scene names: each is read and decoded once.
 
 use super::Resources;
+use super::decoded::{Encoding, decode, used};
 use super::kept::Origin;
-use super::pictures::{Encoding, decode};
 use crate::describe::FileName;
 use crate::diag::{Diagnostic, Diagnostics, Severity, at_least, at_most};
 use crate::dialect::{Compat, Rules};
 use crate::format;
-use crate::image::{self, Encoded, ImageError};
+use crate::image::{self, Encoded};
 use crate::light::{Emitter as _, Light, Profile};
 use crate::math::Aabb;
 use crate::medium::DensityGrid;
@@ -332,8 +332,8 @@ impl<'r> Loader<'r> {
             left.push(memory);
             memory = memory.saturating_sub(Encoded::open(bytes, path).map_or(0, |face| face.needed8()));
         }
-        // Decoding takes longer than all else. The first face in order that is wrong is the one complained
-        // of.
+        // Decoding takes longer than all else. The first face in order that is wrong is the one
+        // complained of.
         let srgb = self.rules.srgb_textures;
         let one = |((path, bytes), left): (&(String, Arc<[u8]>), &u64)| {
             let mut own = Diagnostics::default();
@@ -401,22 +401,4 @@ fn missing_help(tried: &[PathBuf], near: Option<&str>) -> String {
         Some(near) => format!("did you mean `{near}`? Looked for {}", shown.join(", ")),
         None => format!("looked for {}", shown.join(", ")),
     }
-}
-
-/// What came of reading a picture; an error is said at the place that names it.
-pub(super) fn used<T>(
-    name: &FileName,
-    path: &str,
-    read: Result<T, ImageError>,
-    diagnostics: &mut Diagnostics,
-) -> Option<T> {
-    let refuse = |error: ImageError| {
-        let message = format!("the picture `{path}` cannot be used: {error}");
-        let diagnostic = Diagnostic::error(message).code("bad-file").at(name.span);
-        diagnostics.push(match error {
-            ImageError::Memory { .. } => diagnostic.help("see `--memory`"),
-            _ => diagnostic,
-        });
-    };
-    read.map_err(refuse).ok()
 }

@@ -1,7 +1,7 @@
 //! What was made of a scene's files, for the next time that it is compiled: who watches a scene
 //! waits for what was changed alone.
 
-use super::pictures::Encoding;
+use super::decoded::Encoding;
 use crate::dialect::Rules;
 use crate::source::{Digest, Stamp};
 use crate::texture::Texture;

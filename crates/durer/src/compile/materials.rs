@@ -122,8 +122,8 @@ fn phong_of(m: &PhongMaterial, noise: Option<ColorNoise>, texture: Option<u32>, 
 fn plain(m: &PrincipledMaterial) -> Phong {
     let base = m.base_weight * m.base_color;
     let matte = (1.0 - m.base_metalness) * (1.0 - m.transmission_weight);
-    // Blinn's exponent of the same width at its middle; after Walter and others, *Microfacet Models for
-    // Refraction*, 2007.
+    // Blinn's exponent of the same width at its middle; after Walter and others, *Microfacet Models
+    // for Refraction*, 2007.
     let alpha = (m.specular_roughness * m.specular_roughness).max(1e-3);
     let exponent = (2.0 / (alpha * alpha) - 2.0).max(1.0);
     let ratio = (m.specular_ior - 1.0) / (m.specular_ior + 1.0);
@@ -154,7 +154,8 @@ fn highlight(m: &PhongMaterial, rules: &Rules) -> Option<(Color, f32, HighlightM
         (Highlight::Blinn, exponent, shininess) => blinn(exponent.or(shininess).unwrap_or(1.0)),
         (Highlight::Phong, exponent, shininess) => {
             let shininess = shininess.or(exponent).unwrap_or(0.0);
-            // Without sharpness there is nothing to see, but for the programs that take 0 to the power of 0.
+            // Without sharpness there is nothing to see, but for the programs that take 0 to the
+            // power of 0.
             if shininess > 0.0 || rules.has(Compat::PowZero) { phong(shininess) } else { None }
         }
         (Highlight::ByKeyword, Some(exponent), _) => blinn(exponent),

@@ -1,5 +1,6 @@
 //! From the description to the world. The description ends here.
 
+mod decoded;
 mod files;
 mod kept;
 mod materials;

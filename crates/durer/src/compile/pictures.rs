@@ -1,28 +1,19 @@
 //! Pictures that materials name: each is decoded once, whatever number of textures shows it.
 
-use super::files::{Loader, PictureKey, used};
+use super::decoded::{Encoding, decode};
+use super::files::{Loader, PictureKey};
 use super::kept::Origin;
 use crate::describe::FileName;
-use crate::diag::{Diagnostic, Diagnostics};
-use crate::image::{self, Encoded, Raster};
+use crate::diag::Diagnostics;
+use crate::image::Encoded;
 use crate::material::PrincipledMaterial;
 use crate::material::parameters::{Change, TEXTURED, Textured};
-use crate::math::Vec3;
 use crate::scene::PictureBytes;
 use crate::source::Digest;
 use crate::texture::{Channel, Mapping, Texture};
 use crate::world::{Map, Maps};
 use rayon::prelude::*;
 use std::collections::HashSet;
-
-/// What the eight bits of a picture mean.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(super) enum Encoding {
-    /// Colours, by sRGB's curve.
-    Srgb,
-    /// Other numbers, from 0 to 1.
-    Linear,
-}
 
 impl Loader<'_> {
     /// The number of a texture of a material in layers: an asset's, or a file's that repeats
@@ -189,40 +180,6 @@ impl Textured {
         match self.change {
             Change::Number(_) => Encoding::Linear,
             Change::Color(_) => Encoding::Srgb,
-        }
-    }
-}
-
-/// The texture of a picture, decoded within some bytes of memory: eight bits stay eight, finer ones
-/// become numbers.
-pub(super) fn decode(
-    name: &FileName,
-    path: &str,
-    bytes: &[u8],
-    srgb: bool,
-    memory: u64,
-    diagnostics: &mut Diagnostics,
-) -> Option<Texture> {
-    let raster = Encoded::open(bytes, path).and_then(|encoded| encoded.read_raster(memory));
-    match used(name, path, raster, diagnostics)? {
-        Raster::Eight(picture) => {
-            let texture = Texture::new(picture.width, picture.height, picture.pixels)?.with_alpha(Some(picture.alpha));
-            Some(if srgb { texture.decoded(image::decode_srgb) } else { texture })
-        }
-        Raster::Sixteen(mut picture, alpha) => {
-            if srgb {
-                let linear = |pixel: Vec3| Vec3::from(pixel.to_array().map(image::linear_from_srgb));
-                picture.pixels.iter_mut().for_each(|pixel| *pixel = linear(*pixel));
-            }
-            Some(Texture::from_floats(picture.width, picture.height, picture.pixels)?.with_opacity(alpha))
-        }
-        Raster::Float(picture, alpha) => {
-            if picture.first_non_finite().is_some() || alpha.iter().any(|a| !a.is_finite()) {
-                let message = format!("the picture `{path}` has values that are no numbers");
-                diagnostics.push(Diagnostic::error(message).code("bad-file").at(name.span));
-                return None;
-            }
-            Some(Texture::from_floats(picture.width, picture.height, picture.pixels)?.with_opacity(alpha))
         }
     }
 }

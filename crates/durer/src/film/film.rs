@@ -50,8 +50,8 @@ impl Pixel {
             return false;
         }
         let rgb = rgb.map(|c| c.clamp(-GREATEST_COLOR, GREATEST_COLOR));
-        // At most 24 significant bits are left of the weight, so each product below is exact before its
-        // rounding.
+        // At most 24 significant bits are left of the weight, so each product below is exact before
+        // its rounding.
         let weight = weight.round_ties_even();
         let scale = weight * (COLOR_SCALE / WEIGHT_SCALE);
         let luminance = luminance(rgb).clamp(-GREATEST_LUMINANCE, GREATEST_LUMINANCE) * LUMINANCE_SCALE;
@@ -274,8 +274,8 @@ impl Film {
         if pixel.covered == pixel.weight {
             return 1.0;
         }
-        // Filters with negative weights may leave the range; where the weights sum to 0 the quotient is
-        // infinite.
+        // Filters with negative weights may leave the range; where the weights sum to 0 the
+        // quotient is infinite.
         (pixel.covered as f64 / pixel.weight as f64).clamp(0.0, 1.0) as f32
     }
 

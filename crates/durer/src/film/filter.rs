@@ -167,7 +167,8 @@ impl FilterSampler {
             }))
             .collect();
         let absolute = integral[BINS];
-        // A filter that is nowhere positive is no filter: it is sampled as a box would be, at no gain.
+        // A filter that is nowhere positive is no filter: it is sampled as a box would be, at no
+        // gain.
         let gain = if signed > 0.0 { (absolute / signed) * (absolute / signed) } else { 1.0 };
         let distance = |share: usize| {
             let target = share as f64 / SHARES as f64 * absolute;

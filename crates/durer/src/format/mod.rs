@@ -11,6 +11,7 @@ mod gltf;
 pub mod ies;
 pub mod json;
 mod mitsuba;
+mod model;
 mod number;
 pub mod obj;
 mod panorama;
@@ -33,7 +34,8 @@ use crate::diag::{Diagnostic, Diagnostics, did_you_mean};
 use crate::dialect::CompatSet;
 use crate::scene::Axis;
 use crate::shape::mesh::MeshData;
-pub use scene::{SCENE_FORMATS, SceneFormat, scene_format_for};
+pub use model::SceneFormat;
+pub use scene::{SCENE_FORMATS, scene_format_for};
 use std::borrow::Cow;
 
 /// A format of mesh files.

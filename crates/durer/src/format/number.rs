@@ -178,8 +178,8 @@ mod tests {
             }
         }
         assert!(quick > 120_000, "{quick}");
-        // Halfway between two numbers of single precision, and a little above: only the first is not
-        // settled at once.
+        // Halfway between two numbers of single precision, and a little above: only the first is
+        // not settled at once.
         assert_eq!(quickly(b"16777217"), None);
         assert_eq!(quickly(b"16777217.5"), Some(16777218.0));
         assert_eq!(quickly(b"-0.0").map(f32::to_bits), Some((-0.0f32).to_bits()));

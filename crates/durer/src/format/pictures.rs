@@ -1,7 +1,7 @@
 //! Pictures that materials name, for readers of whole scenes.
 
+use super::model::Input;
 use super::said::Said;
-use super::scene::Input;
 use crate::describe::FileName;
 use crate::diag::{Diagnostic, Span};
 use crate::image::{self, Depth, Encoded, Image, Layer, Transfer, WriteOptions};

@@ -87,7 +87,8 @@ impl Cutter {
         let points = &self.points;
         let count = points.len();
         let at = |i: usize| points[i % count];
-        // A pentagram turns left everywhere too, but its edges change their horizontal sense four times.
+        // A pentagram turns left everywhere too, but its edges change their horizontal sense four
+        // times.
         let rightward = |i: usize| at(i + 1)[0] > at(i)[0] || at(i + 1)[0] == at(i)[0] && at(i + 1)[1] > at(i)[1];
         let turns = (0..count).filter(|&i| rightward(i) != rightward(i + 1)).count();
         turns <= 2 && (0..count).all(|i| area(at(i), at(i + 1), at(i + 2)) > 0.0)
@@ -170,7 +171,8 @@ impl Cutter {
                 continue;
             }
             let p = self.points[blocker];
-            // Outlines with holes pass some points twice: one at a corner of the triangle does not lie in it.
+            // Outlines with holes pass some points twice: one at a corner of the triangle does not
+            // lie in it.
             let inside = area(a, b, p) >= 0.0 && area(b, c, p) >= 0.0 && area(c, a, p) >= 0.0;
             if inside && p != a && p != b && p != c {
                 return Ok(false);

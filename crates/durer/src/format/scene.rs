@@ -1,55 +1,23 @@
 //! Readers of whole scenes: one row of [`SCENE_FORMATS`] each. What is a mesh alone is a scene of
 //! one mesh.
 
+use super::model::SceneFormat;
+pub use super::model::{Input, Output, WriteScene};
 use super::{
     MeshFormat, extension, gltf, mitsuba, obj, panorama, pbrt, ply, radiance, read_mesh, sticks, stl, threemf,
 };
 use crate::describe::FileName;
-use crate::diag::{Diagnostic, Diagnostics, Files, Span};
-use crate::dialect::MeshNormals;
+use crate::diag::{Diagnostic, Diagnostics, Span};
 use crate::image::{self, Encoded};
 use crate::light::Light;
 use crate::math::Vec3;
 use crate::scene::staging::Sides;
-use crate::scene::{Axis, Background, Group, Node, Object, Picture, PictureBytes, Scene, Spanned, Staging};
-use crate::shape::{MeshData, TriangleMesh};
-use crate::source::{Source, SourceError};
+use crate::scene::{Axis, Background, Group, Object, Picture, PictureBytes, Scene, Spanned};
+use crate::source::SourceError;
 use crate::texture::Mapping;
 use glam::DVec3;
-use std::cell::RefCell;
 use std::path::Path;
 use std::sync::Arc;
-
-/// A format of files that hold scenes, or models that become scenes.
-pub struct SceneFormat {
-    /// Its name for people.
-    pub name: &'static str,
-    /// Endings of its files' names, in lower case, without the dot.
-    pub extensions: &'static [&'static str],
-    /// Whether a file that begins with these bytes is of this format, whatever its name.
-    pub recognise: fn(&[u8]) -> bool,
-    /// Reads a file. Errors go into the collection, and then there is no scene.
-    pub read: fn(&Input, &mut Diagnostics) -> Option<Scene>,
-    /// Writes a scene; what the format has no words for is warned of. `None`: it is read only.
-    pub write: Option<WriteScene>,
-    /// What is up in most models of this format.
-    pub up: Axis,
-    /// Whether what has a camera is a whole scene, to which no light is added.
-    pub whole: bool,
-}
-
-/// Writes a scene.
-pub type WriteScene = fn(&Scene, &Output, &mut Diagnostics) -> Vec<u8>;
-
-/// What a writer needs beside the scene.
-pub struct Output<'a> {
-    /// The name of the file, with ending.
-    pub name: &'a str,
-    /// Reads the files that the scene names.
-    pub source: &'a Source,
-    /// How triangles without normals are meant.
-    pub normals: MeshNormals,
-}
 
 /// The formats of models, in the order in which content is tried. What is none of them is in the
 /// course's language.
@@ -73,22 +41,6 @@ const fn alone(format: &MeshFormat) -> SceneFormat {
 /// Bytes that decoding a picture may take, and rows of one that is turned.
 const MEMORY: u64 = 1 << 31;
 const MOST_ROWS: u32 = 2048;
-
-/// A file that is to become a scene.
-pub struct Input<'a> {
-    /// Its bytes.
-    pub bytes: &'a Arc<[u8]>,
-    /// Its number in `files`, for spans.
-    pub file: u32,
-    /// The texts that were read, to which a reader adds those of further files.
-    pub files: &'a RefCell<Files>,
-    /// Its last name, with ending.
-    pub name: &'a str,
-    /// Reads the files that it names.
-    pub source: &'a Source,
-    /// How it is to be shown.
-    pub staging: &'a Staging,
-}
 
 /// The format of scenes that the ending of a name says.
 pub fn scene_format_for(name: &str) -> Option<&'static SceneFormat> {
@@ -174,11 +126,5 @@ impl Scene {
         let picture = Picture { bytes: PictureBytes::Here(name.to_string(), bytes), mapping: Mapping::default() };
         self.assets.pictures.insert(name.to_string(), picture);
         self.background.environment = Some(FileName { path: name.to_string(), span: Span::default() });
-    }
-
-    /// Adds a mesh in memory by a name that no other has, and gives what shows it.
-    pub(super) fn add_mesh(&mut self, name: &str, data: Arc<MeshData>, span: Span) -> Node {
-        self.assets.meshes.insert(name.to_string(), data);
-        Node::Mesh(TriangleMesh { obj_file: FileName { path: name.to_string(), span } })
     }
 }

@@ -72,7 +72,8 @@ impl<'a> Zip<'a> {
         let archive = ZipArchive::from_slice(self.bytes).map_err(|error| error.to_string())?;
         let entry = archive.get_entry(place).map_err(|error| error.to_string())?;
         let mut bytes = Vec::new();
-        // The verifier compares size and checksum at the end, so one byte too many is enough to see.
+        // The verifier compares size and checksum at the end, so one byte too many is enough to
+        // see.
         let read = match method {
             CompressionMethod::STORE => entry.verifying_reader(entry.data()).take(size + 1).read_to_end(&mut bytes),
             CompressionMethod::DEFLATE => {

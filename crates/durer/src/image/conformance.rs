@@ -71,7 +71,8 @@ fn alpha_is_written_where_a_format_has_it_and_black_elsewhere() {
         let mut out = Vec::new();
         format.write(std::slice::from_ref(&layer), &WriteOptions::default(), &mut out).unwrap();
         let back = read(&out, &name(format)).unwrap();
-        // Our readers drop alpha; what has it in eight bits has colours that are not multiplied by it.
+        // Our readers drop alpha; what has it in eight bits has colours that are not multiplied by
+        // it.
         let straight = ["PNG", "TGA"].contains(&format.name);
         let expected = if straight { 128.0 / 255.0 } else { 0.25 };
         assert!((back.pixels[0].x - expected).abs() < 0.002, "{}: {}", format.name, back.pixels[0]);

@@ -195,7 +195,8 @@ fn extension(path: &str) -> Option<String> {
 /// What makes eight bits of a layer's numbers.
 fn display(layer: &Layer, options: &WriteOptions) -> Display {
     match (layer.kind, options.display.transfer) {
-        // A curve would falsify data; cutting off instead of rounding is what the course did to everything.
+        // A curve would falsify data; cutting off instead of rounding is what the course did to
+        // everything.
         (LayerKind::Data, Transfer::Srgb) => Transfer::Linear.into(),
         (LayerKind::Data, transfer) => transfer.into(),
         _ => options.display,

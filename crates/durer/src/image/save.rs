@@ -137,8 +137,8 @@ pub fn save_all<C: Content>(files: &[(&Destination, C)]) -> Result<(), SaveError
     }
     for (temporary, target) in staged {
         temporary.persist(&target).map_err(|error| SaveError::Io { path: target.clone(), error })?;
-        // The new name should outlive a power cut too; where folders cannot be synced, that is left to the
-        // system.
+        // The new name should outlive a power cut too; where folders cannot be synced, that is left
+        // to the system.
         #[cfg(unix)]
         let _ = File::open(folder_of(&target)).and_then(|folder| folder.sync_all());
     }

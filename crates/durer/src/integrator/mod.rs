@@ -7,8 +7,7 @@ pub mod path;
 pub mod spawn;
 pub mod whitted;
 
-use crate::describe::{Describe, DescribedList};
-use crate::described_list;
+use crate::describe::{Describe, DescribedList, described_list};
 use crate::dialect::Dialect;
 use crate::math::{Color, Ray};
 use crate::sampler::SampleId;

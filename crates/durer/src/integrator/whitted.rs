@@ -7,7 +7,7 @@ use super::account::{RayKind, Shadow, Struck, What, Witness};
 use super::media::{Body, Media, Passage};
 use super::spawn::{from_surface, to_light};
 use super::{Integrate, Parameters, Setup};
-use crate::described;
+use crate::describe::described;
 use crate::dialect::{Compat, set};
 use crate::light::Illumination;
 use crate::math::{Color, Ray, Ray64, Vec3, fp, gamma, reflect};
@@ -260,7 +260,8 @@ impl Whitted<'_> {
         let [n, n_geo] = [surface.n_shade, surface.n_geo].map(|n| if leaving { -n } else { n });
         // An interpolated normal may point away from the ray; the surface itself does not.
         let n = if ray.dir().dot(n) < 0.0 { n } else { n_geo };
-        // A mirror without `shade_back` reflects about the normal as it is; the direction is the same.
+        // A mirror without `shade_back` reflects about the normal as it is; the direction is the
+        // same.
         let mirrored = reflect(ray.dir(), n);
         // About a normal that is not of length 1 it is another one.
         let (mirrored, n) = match self.world.rules().has(Compat::RawNormals) {
@@ -341,7 +342,8 @@ impl Whitted<'_> {
         if weight.max_element() <= 0.0 {
             return Color::ZERO;
         }
-        // The course takes the length of the colour, which for grey is more than what is left of the light.
+        // The course takes the length of the colour, which for grey is more than what is left of
+        // the light.
         let old = self.world.rules().is_official();
         let total = path.weight * if old { weight.length() } else { weight.max_element() };
         if total < self.settings.least_weight {

@@ -80,8 +80,8 @@ pub(super) fn plan(stage: &Stage) -> String {
 }
 
 fn line(svg: &mut String, a: Vec2, b: Vec2, style: &str) {
-    // Lines of no length, and what is too far away to be drawn, are left out; a string takes what is
-    // written to it.
+    // Lines of no length, and what is too far away to be drawn, are left out; a string takes what
+    // is written to it.
     if a.distance(b) > 0.05 && a.abs().max_element().max(b.abs().max_element()) < 1e6 {
         let _ =
             writeln!(svg, "<line x1=\"{:.1}\" y1=\"{:.1}\" x2=\"{:.1}\" y2=\"{:.1}\" {style}/>", a.x, a.y, b.x, b.y);

@@ -161,7 +161,8 @@ impl Stage {
         for material in &mut own.materials {
             let Material::Phong(phong) = material else { continue };
             phong.highlight = phong.highlight.filter(|_| look.highlights);
-            // Flat colour is that of textures too, whatever the dialect's ambient light knows of them.
+            // Flat colour is that of textures too, whatever the dialect's ambient light knows of
+            // them.
             phong.ambient = phong.ambient.filter(|_| look.lights);
             if phong.fresnel && look.glass != Glass::Fresnel {
                 (phong.fresnel, phong.reflective) = (false, Color::ZERO);

@@ -5,8 +5,7 @@ pub mod photometric;
 pub mod point;
 pub mod spot;
 
-use crate::describe::FileName;
-use crate::described_list;
+use crate::describe::{FileName, described_list};
 use crate::dialect::Rules;
 use crate::math::{Color, Vec3};
 pub use directional::DirectionalLight;

@@ -1,8 +1,7 @@
 //! A light measured in a laboratory: how strong it shines in each direction.
 
 use super::{Emitter, Illumination};
-use crate::describe::{FileName, Rule};
-use crate::described;
+use crate::describe::{FileName, Rule, described};
 use crate::dialect::{Rules, set};
 use crate::math::{Color, Vec3, fp};
 use glam::DVec3;
@@ -21,8 +20,9 @@ described! {
         front: Vec3 = Vec3::X, optional, Rule::NonZero, ["front" in set::DURER];
         /// What multiplies what was measured, by colour.
         color: Vec3 = Vec3::ONE, optional, Rule::Any, ["color" in set::DURER];
-        /// Its measured spectrum, which `color` multiplies: a file (`lamp.csv`, `lamps.csv:column`) or the name of an illuminant
-        /// (A, D65, F2, 2700K). Under `--color spectral` it is carried as such, else as its colour.
+        /// Its measured spectrum, which `color` multiplies: a file (`lamp.csv`, `lamps.csv:column`)
+        /// or the name of an illuminant (A, D65, F2, 2700K). Under `--color spectral` it is carried
+        /// as such, else as its colour.
         spectrum: Option<FileName> = None, optional, Rule::Any, ["spectrum" in set::DURER];
     }
 }

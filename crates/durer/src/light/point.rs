@@ -1,8 +1,7 @@
 //! A light at a point. What arrives at distance d is color / (a0 + a1 d + a2 d^2).
 
 use super::{Emitter, Illumination};
-use crate::describe::{FileName, Rule};
-use crate::described;
+use crate::describe::{FileName, Rule, described};
 use crate::dialect::{Compat, Falloff, Rules, set};
 use crate::math::{Color, Vec3};
 use glam::DVec3;
@@ -14,13 +13,16 @@ described! {
         position: Vec3 = Vec3::ZERO, required, Rule::Any, ["position" in set::CLASSIC];
         /// Its colour and strength.
         color: Vec3 = Vec3::ONE, required, Rule::Any, ["color" in set::ALL];
-        /// How it fades: the divisor's constant, its factor of distance and its factor of distance squared.
+        /// How it fades: the divisor's constant, its factor of distance and its factor of distance
+        /// squared.
         attenuation: Option<Vec3> = None, optional, Rule::Any, ["attenuation" in set::OLD | set::DURER];
-        /// How it fades: the divisor's factor of distance squared; what is added to it depends on the dialect.
+        /// How it fades: the divisor's factor of distance squared; what is added to it depends on
+        /// the dialect.
         falloff: Option<f32> = None, optional, Rule::NonNegative,
             ["falloff" in set::F12A5 | set::F16 | set::DURER, "attenuation" in set::F23];
-        /// Its measured spectrum, which `color` multiplies: a file (`lamp.csv`, `lamps.csv:column`) or the name of an illuminant
-        /// (A, D65, F2, 2700K). Under `--color spectral` it is carried as such, else as its colour.
+        /// Its measured spectrum, which `color` multiplies: a file (`lamp.csv`, `lamps.csv:column`)
+        /// or the name of an illuminant (A, D65, F2, 2700K). Under `--color spectral` it is carried
+        /// as such, else as its colour.
         spectrum: Option<FileName> = None, optional, Rule::Any, ["spectrum" in set::DURER];
     }
 }

@@ -1,15 +1,14 @@
 //! A light at a point that shines into a cone.
 
 use super::{Emitter, Illumination};
-use crate::describe::{FileName, Rule};
+use crate::describe::{FileName, Rule, described, described_words};
 use crate::dialect::{Rules, set};
 use crate::math::{Color, Vec3, fp};
-use crate::{described, described_words};
 use glam::DVec3;
 
 described_words! {
-    /// How a cone fades between `innerAngle` and `angle`, by the share s of the cosine's way: s^2, as glTF has it, or
-    /// s^2 (3 - 2 s), as pbrt has it.
+    /// How a cone fades between `innerAngle` and `angle`, by the share s of the cosine's way: s^2,
+    /// as glTF has it, or s^2 (3 - 2 s), as pbrt has it.
     Fade { Squared = "squared", Smooth = "smooth" }
 }
 
@@ -26,10 +25,12 @@ described! {
         angle: f32 = 45.0, optional, Rule::UpTo(180.0), ["angle" in set::DURER];
         /// Degrees from the middle to where it begins to fade; not more than `angle`.
         inner_angle: f32 = 0.0, optional, Rule::NonNegative, ["innerAngle" in set::DURER];
-        /// How it fades between the two, by the share s of the cosine's way: `squared` is s^2, `smooth` s^2 (3 - 2 s).
+        /// How it fades between the two, by the share s of the cosine's way: `squared` is s^2,
+        /// `smooth` s^2 (3 - 2 s).
         fade: Fade = Fade::Squared, optional, Rule::Any, ["fade" in set::DURER];
-        /// Its measured spectrum, which `color` multiplies: a file (`lamp.csv`, `lamps.csv:column`) or the name of an illuminant
-        /// (A, D65, F2, 2700K). Under `--color spectral` it is carried as such, else as its colour.
+        /// Its measured spectrum, which `color` multiplies: a file (`lamp.csv`, `lamps.csv:column`)
+        /// or the name of an illuminant (A, D65, F2, 2700K). Under `--color spectral` it is carried
+        /// as such, else as its colour.
         spectrum: Option<FileName> = None, optional, Rule::Any, ["spectrum" in set::DURER];
     }
 }

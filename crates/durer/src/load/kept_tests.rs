@@ -76,7 +76,8 @@ fn what_did_not_change_is_not_read_again() {
     assert_eq!(place.watched("scene.txt"), (4, 0));
     place.put("scene.txt", SCENE.replace("color 1 1 1 }", "color 1 0 0 }").as_bytes());
     assert_eq!(place.watched("scene.txt"), (0, 4));
-    // What another program made of a mesh is not even looked at, as long as it seems to be as it was.
+    // What another program made of a mesh is not even looked at, as long as it seems to be as it
+    // was.
     place.replace("a.obj", format!("{:1$}", "f 7 8 9", MESH.len()).as_bytes());
     assert!(place.world("scene.txt", true).is_some() && place.reuse() == (0, 4));
     assert!(place.world("scene.txt", false).is_none());

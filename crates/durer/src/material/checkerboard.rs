@@ -1,8 +1,7 @@
 //! Cubes of two materials in turn.
 
 use super::Pattern;
-use crate::describe::Rule;
-use crate::described;
+use crate::describe::{Rule, described};
 use crate::dialect::set;
 use crate::math::Vec3;
 
@@ -19,7 +18,8 @@ described! {
 impl Pattern for Checkerboard {
     fn weight(&self, q: Vec3) -> f32 {
         let floor = q.floor();
-        // Sums and remainders of whole f32 numbers are exact as long as the cells can be told apart.
+        // Sums and remainders of whole f32 numbers are exact as long as the cells can be told
+        // apart.
         let even = floor.rem_euclid(Vec3::splat(2.0)).element_sum().rem_euclid(2.0) == 0.0;
         if even { 1.0 } else { 0.0 }
     }

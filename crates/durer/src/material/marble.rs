@@ -1,8 +1,7 @@
 //! Veins: the first material weighs (sin(frequency x + amplitude N) + 1) / 2.
 
 use super::{MOST_OCTAVES, Pattern};
-use crate::describe::Rule;
-use crate::described;
+use crate::describe::{Rule, described};
 use crate::dialect::set;
 use crate::math::{Vec3, noise};
 

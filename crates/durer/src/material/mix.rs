@@ -1,8 +1,7 @@
 //! Two materials in the same proportion everywhere.
 
 use super::Pattern;
-use crate::describe::Rule;
-use crate::described;
+use crate::describe::{Rule, described};
 use crate::dialect::set;
 use crate::math::Vec3;
 

@@ -11,8 +11,7 @@ pub mod principled;
 pub mod solid_noise;
 pub mod wood;
 
-use crate::describe::Field;
-use crate::described_list;
+use crate::describe::{Field, described_list};
 use crate::math::Vec3;
 pub use parameters::Parameters;
 pub use phong::{ColorNoise, PhongMaterial};

@@ -1,13 +1,13 @@
 //! The numbers of a material in layers at one point, and which of them pictures change.
 
-use super::PrincipledMaterial;
-use super::principled::Walls;
+use super::principled::{PrincipledMaterial, Walls};
 use crate::describe::FileName;
 use crate::math::Vec3;
 
 macro_rules! parameters {
     ($($field:ident: $type:ty,)+) => {
-        /// The numbers of a [`PrincipledMaterial`] that say how light is scattered at a point, by the same names.
+        /// The numbers of a [`PrincipledMaterial`] that say how light is scattered at a point, by
+        /// the same names.
         #[derive(Clone, Copy, Debug, PartialEq)]
         pub struct Parameters {
             $(#[doc = concat!("As [`PrincipledMaterial::", stringify!($field), "`].")] pub $field: $type,)+
@@ -90,6 +90,16 @@ impl Parameters {
         ];
         colors.into_iter().for_each(|color| *color = color.max(Vec3::ZERO));
         self
+    }
+}
+
+impl PrincipledMaterial {
+    /// Whether some picture lies on it.
+    pub fn has_pictures(&self) -> bool {
+        let others = [&self.emission_texture, &self.normal_texture, &self.bump_texture, &self.opacity_texture];
+        TEXTURED.iter().any(|row| (row.picture)(self).is_some())
+            || others.iter().any(|picture| picture.is_some())
+            || self.metallic_roughness_texture.is_some()
     }
 }
 

@@ -2,8 +2,7 @@
 //! rays.
 
 use super::MOST_OCTAVES;
-use crate::describe::{FileName, Rule};
-use crate::described;
+use crate::describe::{FileName, Rule, described};
 use crate::dialect::set;
 use crate::math::{Color, Vec3, noise};
 

@@ -3,11 +3,9 @@
 //!
 //! Source: *OpenPBR Surface specification*, version 1.1, Academy Software Foundation, 2024.
 
-use super::parameters::TEXTURED;
-use crate::describe::{FileName, Rule};
+use crate::describe::{FileName, Rule, described, described_words};
 use crate::dialect::set;
 use crate::math::Vec3;
-use crate::{described, described_words};
 
 described_words! {
     /// Whether a surface is a thin sheet or bounds a body.
@@ -20,18 +18,23 @@ described_words! {
 }
 
 described! {
-    /// A material of layers: fuzz on a coat on metal, glass or matte. Names and meanings are those of OpenPBR Surface.
+    /// A material of layers: fuzz on a coat on metal, glass or matte. Names and meanings are those
+    /// of OpenPBR Surface.
     PrincipledMaterial ["PrincipledMaterial" in set::DURER] {
         /// Strength of the base, from 0 to 1: of the matte colour and of the metal's.
         base_weight: f32 = 1.0, optional, Rule::Share, ["baseWeight" in set::DURER];
-        /// A picture that multiplies `baseWeight`. Of a picture that multiplies a number, red counts, or the channel after a colon: `file.png:g`.
+        /// A picture that multiplies `baseWeight`. Of a picture that multiplies a number, red
+        /// counts, or the channel after a colon: `file.png:g`.
         base_weight_texture: Option<FileName> = None, optional, Rule::Any, ["baseWeightTexture" in set::DURER];
-        /// Share of light that the matte base scatters, and what a metal reflects at right angles; from 0 to 1.
+        /// Share of light that the matte base scatters, and what a metal reflects at right angles;
+        /// from 0 to 1.
         base_color: Vec3 = Vec3::splat(0.8), optional, Rule::Any, ["baseColor" in set::DURER];
-        /// A file with a measured reflectance, which stands in place of `baseColor`: rows of nanometres and shares from 0 to 1; with
-        /// several columns `file.csv:name` is one of them. `--color spectral` has it by wavelength, else its colour in daylight counts.
+        /// A file with a measured reflectance, which stands in place of `baseColor`: rows of
+        /// nanometres and shares from 0 to 1; with several columns `file.csv:name` is one of them.
+        /// `--color spectral` has it by wavelength, else its colour in daylight counts.
         base_spectrum: Option<FileName> = None, optional, Rule::Any, ["baseSpectrum" in set::DURER];
-        /// A picture that multiplies `baseColor`; its values are read as sRGB, and its alpha multiplies `opacity`.
+        /// A picture that multiplies `baseColor`; its values are read as sRGB, and its alpha
+        /// multiplies `opacity`.
         base_color_texture: Option<FileName> = None, optional, Rule::Any, ["baseColorTexture" in set::DURER];
         /// How rough the matte base is, from 0 (Lambert) to 1.
         base_diffuse_roughness: f32 = 0.0, optional, Rule::Share, ["baseDiffuseRoughness" in set::DURER];
@@ -42,7 +45,8 @@ described! {
         base_metalness: f32 = 0.0, optional, Rule::Share, ["baseMetalness" in set::DURER];
         /// A picture that multiplies `baseMetalness`.
         base_metalness_texture: Option<FileName> = None, optional, Rule::Any, ["baseMetalnessTexture" in set::DURER];
-        /// Strength of the reflection, from 0 to 1 or more: it scales what reflects at right angles.
+        /// Strength of the reflection, from 0 to 1 or more: it scales what reflects at right
+        /// angles.
         specular_weight: f32 = 1.0, optional, Rule::NonNegative, ["specularWeight" in set::DURER];
         /// A picture that multiplies the whole reflection, at all angles alike.
         specular_weight_texture: Option<FileName> = None, optional, Rule::Any, ["specularWeightTexture" in set::DURER];
@@ -55,7 +59,8 @@ described! {
         /// A picture that multiplies `specularRoughness`.
         specular_roughness_texture: Option<FileName> = None, optional, Rule::Any,
             ["specularRoughnessTexture" in set::DURER];
-        /// A picture whose green multiplies `specularRoughness` and whose blue multiplies `baseMetalness`.
+        /// A picture whose green multiplies `specularRoughness` and whose blue multiplies
+        /// `baseMetalness`.
         metallic_roughness_texture: Option<FileName> = None, optional, Rule::Any,
             ["metallicRoughnessTexture" in set::DURER];
         /// How much longer than wide the highlight is, from 0 (round) to 1.
@@ -63,9 +68,11 @@ described! {
         /// A picture that multiplies `specularAnisotropy`.
         specular_anisotropy_texture: Option<FileName> = None, optional, Rule::Any,
             ["specularAnisotropyTexture" in set::DURER];
-        /// Turns the highlight about the normal, in whole turns, from the direction in which u grows.
+        /// Turns the highlight about the normal, in whole turns, from the direction in which u
+        /// grows.
         specular_rotation: f32 = 0.0, optional, Rule::Any, ["specularRotation" in set::DURER];
-        /// A picture that is added to `specularRotation`, in whole turns; `file.png:angle` has it as a direction in red and green.
+        /// A picture that is added to `specularRotation`, in whole turns; `file.png:angle` has it
+        /// as a direction in red and green.
         specular_rotation_texture: Option<FileName> = None, optional, Rule::Any,
             ["specularRotationTexture" in set::DURER];
         /// Index of refraction inside.
@@ -75,32 +82,39 @@ described! {
         /// A picture that multiplies `transmissionWeight`.
         transmission_weight_texture: Option<FileName> = None, optional, Rule::Any,
             ["transmissionWeightTexture" in set::DURER];
-        /// Colour of light that went `transmissionDepth` deep; where that is 0, of all that passes the surface.
+        /// Colour of light that went `transmissionDepth` deep; where that is 0, of all that passes
+        /// the surface.
         transmission_color: Vec3 = Vec3::ONE, optional, Rule::Any, ["transmissionColor" in set::DURER];
-        /// A picture that multiplies `transmissionColor` where `transmissionDepth` is 0; its values are read as sRGB.
+        /// A picture that multiplies `transmissionColor` where `transmissionDepth` is 0; its values
+        /// are read as sRGB.
         transmission_color_texture: Option<FileName> = None, optional, Rule::Any,
             ["transmissionColorTexture" in set::DURER];
-        /// How deep light goes until it has `transmissionColor`, in units of the world; 0: the surface tints it.
+        /// How deep light goes until it has `transmissionColor`, in units of the world; 0: the
+        /// surface tints it.
         transmission_depth: f32 = 0.0, optional, Rule::NonNegative, ["transmissionDepth" in set::DURER];
-        /// Colour of the light that a body scatters inside, per `transmissionDepth`; 0 0 0: it is clear.
+        /// Colour of the light that a body scatters inside, per `transmissionDepth`; 0 0 0: it is
+        /// clear.
         transmission_scatter: Vec3 = Vec3::ZERO, optional, Rule::Any, ["transmissionScatter" in set::DURER];
         /// Where that light goes: from -1 (back) over 0 (evenly) to 1 (onwards).
         transmission_scatter_anisotropy: f32 = 0.0, optional, Rule::Between(-1.0, 1.0),
             ["transmissionScatterAnisotropy" in set::DURER];
-        /// How much glass spreads colours, over what `transmissionDispersionAbbeNumber` says; 0: not at all. Only
-        /// `--color spectral` shows it.
+        /// How much glass spreads colours, over what `transmissionDispersionAbbeNumber` says; 0:
+        /// not at all. Only `--color spectral` shows it.
         transmission_dispersion_scale: f32 = 0.0, optional, Rule::Share, ["transmissionDispersionScale" in set::DURER];
-        /// Abbe number of the glass: the lower, the more it spreads colours; 64 is crown glass, 30 flint.
+        /// Abbe number of the glass: the lower, the more it spreads colours; 64 is crown glass, 30
+        /// flint.
         transmission_dispersion_abbe_number: f32 = 20.0, optional, Rule::Positive,
             ["transmissionDispersionAbbeNumber" in set::DURER];
-        /// From 0 (matte) to 1 (light goes into the body, is scattered there and comes out elsewhere: marble, milk, skin).
+        /// From 0 (matte) to 1 (light goes into the body, is scattered there and comes out
+        /// elsewhere: marble, milk, skin).
         subsurface_weight: f32 = 0.0, optional, Rule::Share, ["subsurfaceWeight" in set::DURER];
         /// A picture that multiplies `subsurfaceWeight`.
         subsurface_weight_texture: Option<FileName> = None, optional, Rule::Any,
             ["subsurfaceWeightTexture" in set::DURER];
         /// The colour that such a body shows.
         subsurface_color: Vec3 = Vec3::splat(0.8), optional, Rule::Any, ["subsurfaceColor" in set::DURER];
-        /// A picture that multiplies `subsurfaceColor` where light enters; its values are read as sRGB.
+        /// A picture that multiplies `subsurfaceColor` where light enters; its values are read as
+        /// sRGB.
         subsurface_color_texture: Option<FileName> = None, optional, Rule::Any, ["subsurfaceColorTexture" in set::DURER];
         /// How far light goes in it until it is scattered, on the mean, in units of the world.
         subsurface_radius: f32 = 1.0, optional, Rule::Positive, ["subsurfaceRadius" in set::DURER];
@@ -124,7 +138,8 @@ described! {
         coat_roughness_texture: Option<FileName> = None, optional, Rule::Any, ["coatRoughnessTexture" in set::DURER];
         /// Index of refraction of the coat.
         coat_ior: f32 = 1.6, optional, Rule::Positive, ["coatIor" in set::DURER];
-        /// How much a coat darkens what it covers by reflecting light back down, from 0 to 1 (as physics has it).
+        /// How much a coat darkens what it covers by reflecting light back down, from 0 to 1 (as
+        /// physics has it).
         coat_darkening: f32 = 1.0, optional, Rule::Share, ["coatDarkening" in set::DURER];
         /// A picture that multiplies `coatDarkening`.
         coat_darkening_texture: Option<FileName> = None, optional, Rule::Any, ["coatDarkeningTexture" in set::DURER];
@@ -140,7 +155,8 @@ described! {
         fuzz_roughness: f32 = 0.5, optional, Rule::Share, ["fuzzRoughness" in set::DURER];
         /// A picture that multiplies `fuzzRoughness`.
         fuzz_roughness_texture: Option<FileName> = None, optional, Rule::Any, ["fuzzRoughnessTexture" in set::DURER];
-        /// How much of the surface below the coat has a thin film on it, from 0 to 1: soap, oil, tempered steel, the layers of a pearl.
+        /// How much of the surface below the coat has a thin film on it, from 0 to 1: soap, oil,
+        /// tempered steel, the layers of a pearl.
         thin_film_weight: f32 = 0.0, optional, Rule::Share, ["thinFilmWeight" in set::DURER];
         /// A picture that multiplies `thinFilmWeight`.
         thin_film_weight_texture: Option<FileName> = None, optional, Rule::Any, ["thinFilmWeightTexture" in set::DURER];
@@ -155,24 +171,31 @@ described! {
         emission_luminance: f32 = 0.0, optional, Rule::NonNegative, ["emissionLuminance" in set::DURER];
         /// Colour of its own light, which multiplies `emissionLuminance`.
         emission_color: Vec3 = Vec3::ONE, optional, Rule::Any, ["emissionColor" in set::DURER];
-        /// The spectrum of its own light, which `emissionColor` multiplies: an illuminant (A, D50, D55, D65, D75, E, F2, F7, F11), a
-        /// black body (`2700K`), or a file as for `baseSpectrum`, in any unit. `emissionLuminance` still says how bright it is.
+        /// The spectrum of its own light, which `emissionColor` multiplies: an illuminant (A, D50,
+        /// D55, D65, D75, E, F2, F7, F11), a black body (`2700K`), or a file as for `baseSpectrum`,
+        /// in any unit. `emissionLuminance` still says how bright it is.
         emission_spectrum: Option<FileName> = None, optional, Rule::Any, ["emissionSpectrum" in set::DURER];
         /// A picture that multiplies `emissionColor`; its values are read as sRGB.
         emission_texture: Option<FileName> = None, optional, Rule::Any, ["emissionTexture" in set::DURER];
-        /// A picture of normals in tangent space, as glTF has it: red and green point along u and v, blue outwards.
+        /// A picture of normals in tangent space, as glTF has it: red and green point along u and
+        /// v, blue outwards.
         normal_texture: Option<FileName> = None, optional, Rule::Any, ["normalTexture" in set::DURER];
-        /// A picture of heights, which bends the normals as if the surface rose where it is bright: a bump map.
+        /// A picture of heights, which bends the normals as if the surface rose where it is bright:
+        /// a bump map.
         bump_texture: Option<FileName> = None, optional, Rule::Any, ["bumpTexture" in set::DURER];
-        /// How far its white lies above its black, in units of the world; negative where white lies deep.
+        /// How far its white lies above its black, in units of the world; negative where white lies
+        /// deep.
         bump_height: f32 = 0.01, optional, Rule::Any, ["bumpHeight" in set::DURER];
-        /// Share of the surface that is there, from 0 to 1: the rest lets light through as if nothing were there.
+        /// Share of the surface that is there, from 0 to 1: the rest lets light through as if
+        /// nothing were there.
         opacity: f32 = 1.0, optional, Rule::Share, ["opacity" in set::DURER];
         /// A picture that multiplies `opacity`: its alpha where it has one, else red.
         opacity_texture: Option<FileName> = None, optional, Rule::Any, ["opacityTexture" in set::DURER];
-        /// `thin`: a sheet without inside, through which light goes straight; `solid`: the skin of a body.
+        /// `thin`: a sheet without inside, through which light goes straight; `solid`: the skin of
+        /// a body.
         walls: Walls = Walls::Solid, optional, Rule::Any, ["walls" in set::DURER];
-        /// `hidden`: cameras and lights without extent look through faces that are turned away from them; `shown`: both sides are seen.
+        /// `hidden`: cameras and lights without extent look through faces that are turned away from
+        /// them; `shown`: both sides are seen.
         backs: Backs = Backs::Shown, optional, Rule::Any, ["backs" in set::DURER];
     }
 }
@@ -181,14 +204,6 @@ impl PrincipledMaterial {
     /// Whether light goes into the body, is scattered there, and comes out again.
     pub fn has_subsurface(&self) -> bool {
         self.subsurface_weight > 0.0 && self.walls == Walls::Solid
-    }
-
-    /// Whether some picture lies on it.
-    pub fn has_pictures(&self) -> bool {
-        let others = [&self.emission_texture, &self.normal_texture, &self.bump_texture, &self.opacity_texture];
-        TEXTURED.iter().any(|row| (row.picture)(self).is_some())
-            || others.iter().any(|picture| picture.is_some())
-            || self.metallic_roughness_texture.is_some()
     }
 
     /// Whether colours are spread.

@@ -1,8 +1,7 @@
 //! Two materials mixed by noise: the first weighs N + 1/2, kept between 0 and 1.
 
 use super::{MOST_OCTAVES, Pattern};
-use crate::describe::Rule;
-use crate::described;
+use crate::describe::{Rule, described};
 use crate::dialect::set;
 use crate::math::{Vec3, noise};
 

@@ -4,8 +4,7 @@
 //! The course left the profile of the rings free; the official program's is steeper, and not known.
 
 use super::{MOST_OCTAVES, Pattern};
-use crate::describe::Rule;
-use crate::described;
+use crate::describe::{Rule, described};
 use crate::dialect::set;
 use crate::math::{Vec3, noise};
 

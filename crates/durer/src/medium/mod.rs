@@ -122,7 +122,8 @@ impl Medium {
         let albedo = lanes.reflectance(self.albedo);
         match self.density() {
             Some((grid, bounds)) => {
-                // Null collisions fill it up to its greatest density, and lanes are weighed as they count by then.
+                // Null collisions fill it up to its greatest density, and lanes are weighed as they
+                // count by then.
                 // Sources: Woodcock and others, 1965; Kutz and others, *Spectral and Decomposition
                 // Tracking*, 2017.
                 let most = extinction.max_element() * grid.most();
@@ -140,7 +141,8 @@ impl Medium {
                 Flight::Passed(left)
             }
             None => {
-                // One lane chooses the distance; all are weighed by how likely any of them was to choose it.
+                // One lane chooses the distance; all are weighed by how likely any of them was to
+                // choose it.
                 let weights = shares(weights);
                 let mut choice = numbers();
                 let lane = (0..3).find(|&lane| {

@@ -391,7 +391,8 @@ impl<'a> Search<'a> {
         let width = self.question.job.width as usize;
         let differ = speckles::speckled(reference, test, width)?;
         let places: Vec<(u32, u32)> = differ.iter().map(|&i| all[i]).collect();
-        // Where mirrored rays begin in their own surface, they bring nothing, or what is there once more.
+        // Where mirrored rays begin in their own surface, they bring nothing, or what is there once
+        // more.
         let bounces = if self.base.settings.bounces > 0 { 3 } else { 1 };
         let dark = |of: u32| {
             let (off, way) = (of / bounces, of % bounces);

@@ -71,7 +71,8 @@ impl View<'_> {
     }
 
     fn value(&self, output: Output, light: Color) -> Vec3 {
-        // Values beyond all measure are white, whatever an old program's whole numbers made of them.
+        // Values beyond all measure are white, whatever an old program's whole numbers made of
+        // them.
         let light = if light.is_finite() { light.min(Color::splat(1e6)) } else { light };
         let light = if output == Output::Toned { light.map(|v| v / (1.0 + v.max(0.0))) } else { light };
         let light = match output {
@@ -100,8 +101,8 @@ impl View<'_> {
             return light.map(|v| ((v * 255.0 + half).floor() as i64).rem_euclid(256) as f32 / 255.0);
         }
         let eight = |transfer: Transfer, v: Vec3| Vec3::from(transfer.encode_pixel(v).map(f32::from)) / 255.0;
-        // A curve on top of what the transfer makes is reckoned from values that are not cut to eight bits
-        // yet.
+        // A curve on top of what the transfer makes is reckoned from values that are not cut to
+        // eight bits yet.
         let curved = |v: f32| if transfer == Transfer::Srgb { linear_to_srgb(v.clamp(0.0, 1.0)) } else { v.max(0.0) };
         let plain = if transfer == Transfer::Course { Transfer::Course } else { Transfer::Linear };
         match output {

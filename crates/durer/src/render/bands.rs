@@ -94,7 +94,8 @@ impl Bands {
     ) -> Result<(Statistics, Option<Digest>), BandsError> {
         let window = self.job.window();
         let bottom_up = format.rows.is_some_and(|rows| rows.bottom_up);
-        // Whether the camera sees all is not known before the end: where it may not, there is alpha.
+        // Whether the camera sees all is not known before the end: where it may not, there is
+        // alpha.
         let (width, height, display) = (window.width, window.height, options.display);
         let strip = Strip { width, height, alpha: !sees_all(world, &self.job), display };
         let samples = u64::from(self.job.sampling.samples());

@@ -200,8 +200,8 @@ fn texel(world: &World, raster: &Raster, pixel: (u32, u32)) -> Option<(u32, Colo
 /// less its own.
 fn stale_texel(world: &World, job: &Job, raster: &Raster, (x, y): (u32, u32)) -> Option<Color> {
     let (material, own, plain) = texel(world, raster, (x, y))?;
-    // In rows from the bottom: first those of this row to the left, from right to left, then the rows
-    // below.
+    // In rows from the bottom: first those of this row to the left, from right to left, then the
+    // rows below.
     let row = |y: u32, end: u32| (0..end).rev().map(move |x| (x, y));
     let mut before = row(y, x).chain((y + 1..job.height).flat_map(|y| row(y, job.width)));
     let before = before.find_map(|pixel| texel(world, raster, pixel).filter(|found| found.0 == material));

@@ -120,7 +120,8 @@ impl Part {
         if !inside(window.left, window.width, job.width) || !inside(window.top, window.height, job.height) {
             return Err(RenderError::CropOutside(job.width, job.height));
         }
-        // Refuses what is too large before anything is computed. Of a larger picture a part may be made.
+        // Refuses what is too large before anything is computed. Of a larger picture a part may be
+        // made.
         checked_count(window.width, window.height)?;
         let (blocks, ray_blocks) = (Blocks::new(window), Blocks::new(job.ray_window()));
         check_shard(&job, shard, blocks.count())?;
@@ -260,8 +261,8 @@ impl Part {
         let (pixels, rays) = (job.window().pixels(), job.ray_window().pixels());
         let sums = if job.wants_samples() { Packed::pixel_bytes(job.sampling.samples()) } else { 0 };
         let values = 12 * job.ray_aovs().count() as u64 + 1;
-        // Numbers and coverage, eight bits, and the file; other pictures than the colours have both values
-        // and colours.
+        // Numbers and coverage, eight bits, and the file; other pictures than the colours have both
+        // values and colours.
         let pictures = 24 * u64::from(job.color) + 40 * job.aovs.len() as u64;
         let kept = pixels.saturating_mul(sums).saturating_add(rays.saturating_mul(values));
         (kept / share).saturating_add(pixels.saturating_mul(pictures))

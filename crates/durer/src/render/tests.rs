@@ -107,8 +107,8 @@ fn a_crop_is_cut_from_the_whole_picture() {
         let job = Job { light_scale: Some(scale), ..job };
         let whole = all(&world, &job).pictures().unwrap();
         let part = all(&world, &Job { crop: Some(crop), ..job.clone() }).pictures().unwrap();
-        // The greatest number of samples is known of the crop alone; here all pixels have as many. So is
-        // the greatest luminance.
+        // The greatest number of samples is known of the crop alone; here all pixels have as many.
+        // So is the greatest luminance.
         for (whole, part) in whole.pictures.iter().zip(&part.pictures) {
             for ((x, y), pixel) in crop.places().zip(&part.image.pixels) {
                 assert_eq!(whole.image.get(x, y), Some(*pixel), "{} {:?} {x},{y}", whole.name, job.sampling);
@@ -203,8 +203,8 @@ fn parts_come_back_from_bytes_and_no_bytes_harm() {
         assert!(matches!(Part::read(&changed), Err(PartError::Damaged)), "{at}");
     }
     assert!(matches!(Part::read(b"P6 1 1 255 ..."), Err(PartError::NotAPart)));
-    // With a right checksum, anything may be in it: an error, or a part as it is always written, whose
-    // pictures can be made.
+    // With a right checksum, anything may be in it: an error, or a part as it is always written,
+    // whose pictures can be made.
     for at in (8..bytes.len() - 32).filter(|at| *at < 1500 || at % 7 == 0) {
         for new in [0, 0x80, 0xff, bytes[at] ^ 4] {
             let mut changed = bytes[..bytes.len() - 32].to_vec();

@@ -54,7 +54,8 @@ fn pairs_of_one_pixel_are_independent_of_pairs_of_its_neighbour_and_of_other_dim
     let first = |i| sample_2d(3, i, 0, 2, 0);
     assert_uniform("neighbours", (0..N).map(|i| Vec2::new(first(i).x, first(i + 1).x)));
     assert_uniform("dimensions", (0..N).map(|i| Vec2::new(first(i).y, sample_2d(3, i, 0, 2, 1).y)));
-    // Within one pixel the shuffle breaks the tie between dimensions: correlation, not only evenness.
+    // Within one pixel the shuffle breaks the tie between dimensions: correlation, not only
+    // evenness.
     let n = 1024_u32;
     let mut sum = 0.0;
     for s in 0..n {

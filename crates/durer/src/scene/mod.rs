@@ -8,8 +8,7 @@ pub mod matrix;
 pub mod staging;
 
 use crate::camera::Camera;
-use crate::describe::{FileName, Rule};
-use crate::described;
+use crate::describe::{FileName, Rule, described};
 use crate::diag::Span;
 use crate::dialect::set;
 use crate::light::Light;
@@ -35,20 +34,24 @@ described! {
         /// Folder with six pictures (left, right, up, down, front, back) that replace the colour.
         cube_map: Option<FileName> = None, optional, Rule::Any,
             ["cubeMap" in set::F12A5 | set::F16 | set::DURER, "cube_map" in set::F23];
-        /// A picture of all directions that replaces the colour and lights the scene, best of high dynamic range (`.exr`,
-        /// `.hdr`); its middle is seen towards -z. Whitted's light does not come from it.
+        /// A picture of all directions that replaces the colour and lights the scene, best of high
+        /// dynamic range (`.exr`, `.hdr`); its middle is seen towards -z. Whitted's light does not
+        /// come from it.
         environment: Option<FileName> = None, optional, Rule::Any, ["environment" in set::DURER];
-        /// The way to the sun, of any length, with y upwards: a clear sky and the sun light the scene, in cd/m^2. Such
-        /// pictures need `--exposure`, -13 say.
+        /// The way to the sun, of any length, with y upwards: a clear sky and the sun light the
+        /// scene, in cd/m^2. Such pictures need `--exposure`, -13 say.
         sun: Option<Vec3> = None, optional, Rule::NonZero, ["sun" in set::DURER];
-        /// How hazy the air is: from 2 (clear) over 3 (a usual day, where nothing is written) to 10.
+        /// How hazy the air is: from 2 (clear) over 3 (a usual day, where nothing is written) to
+        /// 10.
         turbidity: Option<f32> = None, optional, Rule::Positive, ["turbidity" in set::DURER];
-        /// Number of a standard sky of the CIE, 1 to 16 (1 overcast, 5 even, 12 clear, 16 the traditional overcast sky): it lights the
-        /// scene, in cd/m^2, without the sun itself, whose place `sun` says for all but 1, 3, 5 and 16.
+        /// Number of a standard sky of the CIE, 1 to 16 (1 overcast, 5 even, 12 clear, 16 the
+        /// traditional overcast sky): it lights the scene, in cd/m^2, without the sun itself, whose
+        /// place `sun` says for all but 1, 3, 5 and 16.
         cie_sky: Option<u32> = None, optional, Rule::Numbered(OVERCAST), ["cieSky" in set::DURER];
         /// How bright that sky is at the zenith, in cd/m^2; 10000 where nothing is written.
         zenith_luminance: Option<f32> = None, optional, Rule::Positive, ["zenithLuminance" in set::DURER];
-        /// What share of that sky's light the ground below gives back; 0.2 where nothing is written.
+        /// What share of that sky's light the ground below gives back; 0.2 where nothing is
+        /// written.
         ground_reflectance: Option<f32> = None, optional, Rule::Share, ["groundReflectance" in set::DURER];
         /// How far the environment is turned about y, in degrees.
         environment_rotation: Option<f32> = None, optional, Rule::Any, ["environmentRotation" in set::DURER];

@@ -204,7 +204,8 @@ impl Staging {
                 Vec3::new(0.3, 0.5, 0.85),
                 Vec3::new(0.55, 0.5, 0.42),
             ),
-            // Such that a white thing is brighter than what is behind it, under paths as under Whitted's light.
+            // Such that a white thing is brighter than what is behind it, under paths as under
+            // Whitted's light.
             _ => (
                 vec![
                     light(from(-0.6, 1.0, 0.7), Vec3::splat(0.75)),

@@ -3,8 +3,7 @@
 use super::chord::Chord;
 use super::cylinder::{Axis, BASE, SIDE, TOP};
 use super::{Crossing, Shape, Surface, exactly, inset};
-use crate::describe::Rule;
-use crate::described;
+use crate::describe::{Rule, described};
 use crate::dialect::set;
 use crate::math::{Aabb, Line, Vec2, Vec3, gamma, roots};
 use glam::DVec3;
@@ -50,7 +49,8 @@ impl Shape for Cone {
         Some(self.axis().bounds(self.radii()))
     }
 
-    /// |q - (q·a) a|^2 = r(q·a)^2 for q seen from the base, a the axis and r the radius, linear in the height.
+    /// |q - (q·a) a|^2 = r(q·a)^2 for q seen from the base, a the axis and r the radius, linear in
+    /// the height.
     ///
     /// Steep lines run inside both nappes of the double cone: the one where r > 0 is kept.
     fn crossings(&self, line: &Line, offer: &mut impl FnMut(f64, Vec2)) {

@@ -2,8 +2,7 @@
 
 use super::chord::Chord;
 use super::{Crossing, Shape, Surface, exactly, inset, padded};
-use crate::describe::Rule;
-use crate::described;
+use crate::describe::{Rule, described};
 use crate::dialect::set;
 use crate::math::{Aabb, Line, Vec2, Vec3, gamma};
 use glam::DVec3;

@@ -2,8 +2,7 @@
 
 use super::chord::Chord;
 use super::{Crossing, INSET, Shape, Surface, Uv, disc_reach, exactly, inset, padded};
-use crate::describe::Rule;
-use crate::described;
+use crate::describe::{Rule, described};
 use crate::dialect::set;
 use crate::math::{Aabb, Line, Vec2, Vec3, gamma};
 use glam::{DVec2, DVec3};
@@ -95,7 +94,8 @@ impl Shape for Cylinder {
         Some(self.axis().bounds([f64::from(self.radius); 2]))
     }
 
-    /// |q - (q·a) a|^2 = radius^2 for q seen from the base, a the axis, between two planes across it.
+    /// |q - (q·a) a|^2 = radius^2 for q seen from the base, a the axis, between two planes across
+    /// it.
     fn crossings(&self, line: &Line, offer: &mut impl FnMut(f64, Vec2)) {
         let axis = self.axis();
         let (shift, near) = axis.near(line);

@@ -1,8 +1,7 @@
 //! The disc, whole or with a hole.
 
 use super::{Crossing, Shape, Surface, Uv, disc_reach, padded};
-use crate::describe::Rule;
-use crate::described;
+use crate::describe::{Rule, described};
 use crate::dialect::set;
 use crate::math::{Aabb, Line, Vec2, Vec3};
 use glam::{DVec2, DVec3};

@@ -1,8 +1,7 @@
 //! The ellipsoid whose axes are parallel to the coordinate axes.
 
 use super::{Crossing, Shape, Surface, padded, turn};
-use crate::describe::Rule;
-use crate::described;
+use crate::describe::{Rule, described};
 use crate::dialect::set;
 use crate::math::{Aabb, Line, Vec2, Vec3, fp, gamma, roots};
 use glam::DVec3;
@@ -23,7 +22,8 @@ impl Shape for Ellipsoid {
         Some(padded(center - radii, center + radii))
     }
 
-    /// |(p - center) / radii|^2 = 1, from the place of the line that is nearest to the centre of the unit sphere.
+    /// |(p - center) / radii|^2 = 1, from the place of the line that is nearest to the centre of the
+    /// unit sphere.
     fn crossings(&self, line: &Line, offer: &mut impl FnMut(f64, Vec2)) {
         let radii = self.radii.as_dvec3();
         let unit = Line { origin: (line.origin - self.center.as_dvec3()) / radii, dir: line.dir / radii };

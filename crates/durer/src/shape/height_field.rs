@@ -1,15 +1,16 @@
 //! The height field: a picture as a landscape, made into a closed mesh.
 
 use super::MeshData;
-use crate::describe::{FileName, Rule};
-use crate::described;
+use crate::describe::{FileName, Rule, described};
 use crate::dialect::set;
 use crate::math::{Vec2, Vec3};
 
 described! {
-    /// A block whose top is a landscape: a picture's greys are heights, its lower edge is towards z.
+    /// A block whose top is a landscape: a picture's greys are heights, its lower edge is towards
+    /// z.
     HeightField ["HeightField" in set::DURER] {
-        /// Path of the picture. Black is lowest, and white, or 1 in pictures of floating point, is highest.
+        /// Path of the picture. Black is lowest, and white, or 1 in pictures of floating point, is
+        /// highest.
         picture: FileName = FileName::default(), required, Rule::Any, ["picture" in set::DURER];
         /// Corner of the landscape's box of least coordinates: where heights are 0.
         min: Vec3 = Vec3::splat(-1.0), required, Rule::Any, ["min" in set::DURER];

@@ -8,6 +8,7 @@ pub mod disc;
 pub mod ellipsoid;
 pub mod height_field;
 pub mod mesh;
+mod mesh_data;
 pub mod normals;
 pub mod plane;
 pub mod quadric;
@@ -21,7 +22,7 @@ pub mod triangle;
 pub mod uv;
 pub mod voxels;
 
-use crate::described_list;
+use crate::describe::described_list;
 use crate::math::{Aabb, Line, Ray, Vec2, Vec3, fp, gamma};
 pub use cone::Cone;
 pub use cuboid::Cuboid;

@@ -1,10 +1,19 @@
 //! Normals at the corners of a mesh that brings none.
 
-use super::mesh::{MeshData, NO_INDEX, Normals};
+use super::mesh_data::{MeshData, NO_INDEX};
 use crate::dialect::MeshNormals;
 use crate::math::{Vec3, fp};
 use glam::DVec3;
 use rayon::prelude::*;
+
+/// Normals of the corners of triangles.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Normals {
+    /// Normals, not necessarily of length 1; may be empty.
+    pub values: Vec<Vec3>,
+    /// Three of them a triangle, or [`NO_INDEX`]; empty where no triangle has any.
+    pub triangles: Vec<[u32; 3]>,
+}
 
 /// The normals of all triangles, with those that a rule makes for such as have none, or for all
 /// unless `file_normals`; `None` where the mesh's own are all that there is.

@@ -1,14 +1,14 @@
 //! The plane normal · p = offset, without end.
 
 use super::{Crossing, Shape, Surface, Uv};
-use crate::describe::Rule;
-use crate::described;
+use crate::describe::{Rule, described};
 use crate::dialect::set;
 use crate::math::{Aabb, Line, Ray, Vec2, Vec3, gamma};
 use glam::DVec3;
 
 described! {
-    /// A plane without end: all points p with normal · p = offset. As a part of a solid, all that is behind it.
+    /// A plane without end: all points p with normal · p = offset. As a part of a solid, all that
+    /// is behind it.
     Plane ["Plane" in set::CLASSIC, "plane" in set::F23] {
         /// Points to its front; of any length.
         normal: Vec3 = Vec3::Y, required, Rule::NonZero, ["normal" in set::ALL];

@@ -1,14 +1,14 @@
 //! The general quadric: where a polynomial of degree two in x, y and z is zero.
 
 use super::{Crossing, Shape, Surface, padded, turn};
-use crate::describe::Rule;
-use crate::described;
+use crate::describe::{Rule, described};
 use crate::dialect::set;
 use crate::math::{Aabb, Line, Vec2, Vec3, fp, gamma, roots};
 use glam::{DMat3, DVec3};
 
 described! {
-    /// Where A x² + B y² + C z² + D xy + E xz + F yz + G x + H y + I z + J is zero; inside, it is less.
+    /// Where A x² + B y² + C z² + D xy + E xz + F yz + G x + H y + I z + J is zero; inside, it is
+    /// less.
     Quadric ["Quadric" in set::DURER] {
         /// A, B and C.
         squares: Vec3 = Vec3::ONE, required, Rule::Any, ["squares" in set::DURER];

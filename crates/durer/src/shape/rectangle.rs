@@ -1,15 +1,14 @@
 //! The rectangle, or any parallelogram.
 
 use super::{Crossing, Shape, Surface, inset, padded};
-use crate::describe::Rule;
-use crate::described;
+use crate::describe::{Rule, described};
 use crate::dialect::set;
 use crate::math::{Aabb, Line, Vec2, Vec3, gamma};
 use glam::DVec3;
 
 described! {
-    /// A rectangle; with edges that are not at right angles, a parallelogram. Its front is where `edge0` turns
-    /// counter-clockwise to `edge1`.
+    /// A rectangle; with edges that are not at right angles, a parallelogram. Its front is where
+    /// `edge0` turns counter-clockwise to `edge1`.
     Rectangle ["Rectangle" in set::DURER] {
         /// A corner.
         corner: Vec3 = Vec3::ZERO, required, Rule::Any, ["corner" in set::DURER];

@@ -1,8 +1,7 @@
 //! The sphere |p - center|^2 = radius^2.
 
 use super::{Crossing, Shape, Surface, Uv};
-use crate::describe::Rule;
-use crate::described;
+use crate::describe::{Rule, described};
 use crate::dialect::set;
 use crate::math::{Aabb, Line, Ray, Vec2, Vec3, gamma};
 use glam::DVec3;

@@ -160,8 +160,8 @@ fn crossings(shape: &Primitive, o: DVec3, d: DVec3) -> Vec<(f64, bool)> {
             let n = (b - a).cross(c - a);
             let t = n.dot(a - o) / n.dot(d);
             let p = o + t * d;
-            // Heights over the three edges. The ray is sheared in single precision: 8 roundings of the
-            // distance, which count for more where the triangle is seen from its side.
+            // Heights over the three edges. The ray is sheared in single precision: 8 roundings of
+            // the distance, which count for more where the triangle is seen from its side.
             let heights = [(a, b), (b, c), (c, a)].map(|(e, f)| n.cross(f - e).normalize().dot(p - e));
             let least = heights.into_iter().fold(f64::INFINITY, f64::min);
             let reach = [a, b, c].map(|x| (x - o).length()).into_iter().fold(0.0, f64::max);
@@ -286,8 +286,8 @@ fn the_surface_is_on_the_shape_within_its_error_and_in_its_bounds() {
             let difference =
                 |v: DVec3| (distance(&shape, p + step * v) - distance(&shape, p - step * v)) / (2.0 * step);
             let gradient = DVec3::new(difference(DVec3::X), difference(DVec3::Y), difference(DVec3::Z));
-            // Bending by 1e-5 of the size gives third-order terms of its square against the least radius; the
-            // point itself is off by its rounding against that radius.
+            // Bending by 1e-5 of the size gives third-order terms of its square against the least
+            // radius; the point itself is off by its rounding against that radius.
             let bend = f64::from(surface.curvature * size);
             let slack = 1e-6 + (1e-5 * bend) * (1e-5 * bend) + 2e-7 * (1.0 + bend) * f64::from(1.0 + away / size);
             assert!((gradient - n).length() < slack, "{shape:?} {surface:?} {gradient}");

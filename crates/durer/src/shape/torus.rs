@@ -1,8 +1,7 @@
 //! The torus: all points at one distance from a circle.
 
 use super::{Crossing, Shape, Surface, disc_reach, padded, turn};
-use crate::describe::Rule;
-use crate::described;
+use crate::describe::{Rule, described};
 use crate::dialect::set;
 use crate::math::{Aabb, Line, Vec2, Vec3, gamma, roots};
 use glam::DVec3;

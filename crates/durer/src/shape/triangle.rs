@@ -2,8 +2,7 @@
 
 use super::watertight::{self, WatertightRay};
 use super::{Crossing, INSET, Shape, Surface, Uv, exactly};
-use crate::describe::Rule;
-use crate::described;
+use crate::describe::{Rule, described};
 use crate::dialect::set;
 use crate::math::{Aabb, Line, Ray, Vec2, Vec3, gamma};
 use glam::DVec3;

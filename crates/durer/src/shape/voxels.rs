@@ -2,13 +2,13 @@
 //! sphere.
 
 use super::{MeshData, Sphere};
-use crate::describe::Rule;
-use crate::described;
+use crate::describe::{Rule, described};
 use crate::dialect::set;
 use crate::math::Vec3;
 
 described! {
-    /// A box cut into cells. Each `rasterizeSphere { center radius }` in it fills the cells whose middles lie in that ball.
+    /// A box cut into cells. Each `rasterizeSphere { center radius }` in it fills the cells whose
+    /// middles lie in that ball.
     VoxelGrid ["Grid" in set::F03 | set::DURER] {
         /// The corner of least coordinates.
         min: Vec3 = Vec3::splat(-1.0), required, Rule::Any, ["min" in set::F03 | set::DURER];

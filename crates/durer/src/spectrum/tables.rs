@@ -9,7 +9,8 @@ pub const LAST: f32 = 830.0;
 /// Nanometres from row to row.
 pub const STEP: f32 = 5.0;
 
-/// The colour matching functions x, y, z of the CIE 1931 standard observer (2 degrees), and the illuminant D65.
+/// The colour matching functions x, y, z of the CIE 1931 standard observer (2 degrees), and the
+/// illuminant D65.
 ///
 /// Source: CIE 015:2018, tables 1 and 6, every 5 nm.
 #[rustfmt::skip]

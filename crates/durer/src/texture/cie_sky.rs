@@ -98,7 +98,8 @@ mod tests {
 
     #[test]
     fn illuminances_are_those_of_the_formulas() {
-        // The overcast sky lights open ground by 7 pi L / 9 (Moon and Spencer, 1942), the even one by pi L.
+        // The overcast sky lights open ground by 7 pi L / 9 (Moon and Spencer, 1942), the even one
+        // by pi L.
         let overcast = CieSky::new(OVERCAST, Vec3::Y, 9_000.0, 0.0);
         assert!((overcast.illuminance() / (7_000.0 * PI) - 1.0).abs() < 1e-4, "{}", overcast.illuminance());
         let even = CieSky::new(5, Vec3::Y, 9_000.0, 0.2);
@@ -118,8 +119,8 @@ mod tests {
         }
         // Type 12, the clear sky of old: at the horizon below the sun, by hand from the formula.
         let sky = CieSky::new(12, sun, 1.0, 0.0);
-        // exp(-3 pi / 4) - exp(-3 pi / 2) = 0.09478 - 0.00898; at the zenith the angle to the sun is the
-        // same 45 degrees.
+        // exp(-3 pi / 4) - exp(-3 pi / 2) = 0.09478 - 0.00898; at the zenith the angle to the sun
+        // is the same 45 degrees.
         let (ring, zenith) = (1.0 + 10.0 * (0.09478 - 0.00898) + 0.45 * 0.5, 1.0 - 0.72615);
         let at_horizon = ring / (ring * zenith);
         assert!((sky.luminance(Vec3::X) / at_horizon - 1.0).abs() < 1e-3, "{} {at_horizon}", sky.luminance(Vec3::X));

@@ -135,8 +135,8 @@ mod tests {
 
     #[test]
     fn the_zenith_has_the_published_brightness_and_colour() {
-        // By hand from the paper's formulas at turbidity 3 with the sun 45 degrees high:
-        // chi = (4/9 - 3/120) (pi - pi/2) = 0.6589, Yz = 7.1649 tan chi - 0.6465 + 2.4192 = 7.319 kcd/m^2.
+        // By hand from the paper's formulas at turbidity 3 with the sun 45 degrees high: chi = (4/9
+        // - 3/120) (pi - pi/2) = 0.6589, Yz = 7.1649 tan chi - 0.6465 + 2.4192 = 7.319 kcd/m^2.
         let sky = sky(45.0, 3.0);
         assert!((brightness(sky.at(Vec3::Y)) / 7_319.0 - 1.0).abs() < 0.005, "{}", brightness(sky.at(Vec3::Y)));
         let zenith = sky.at(Vec3::Y);
@@ -145,9 +145,9 @@ mod tests {
 
     #[test]
     fn daylight_is_as_bright_as_the_paper_says() {
-        // The paper's formulas, summed over the sky by a program of its own, say 31.53 klx on the ground;
-        // that is twice what IES gives for a clear sky at this height of the sun (0.8 + 15.5
-        // sqrt(sin h)). A high sun makes 60 to 110 klx.
+        // The paper's formulas, summed over the sky by a program of its own, say 31.53 klx on the
+        // ground; that is twice what IES gives for a clear sky at this height of the sun (0.8 +
+        // 15.5 sqrt(sin h)). A high sun makes 60 to 110 klx.
         let sky = sky(60.0, 3.0);
         let n = 200;
         let mut horizontal = 0.0;

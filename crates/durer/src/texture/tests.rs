@@ -96,8 +96,8 @@ fn letters_are_seen_upright_and_the_course_mirrors_two() {
         let side = forward.cross(up);
         let seen = |map: &CubeMap, mirror: bool, flip: bool| -> Vec<String> {
             let cell = |i: usize| (2.0 * i as f32 + 1.0) / 5.0 - 1.0;
-            // Texels are exact at their corners: each is looked up there, just inside of the direction in which
-            // it begins.
+            // Texels are exact at their corners: each is looked up there, just inside of the
+            // direction in which it begins.
             let shift = |turned: bool| if turned { 0.999 / 5.0 } else { -0.999 / 5.0 };
             let pixel = |row: usize, column: usize| {
                 let (u, v) = (cell(column) + shift(mirror), -cell(row) - shift(flip));

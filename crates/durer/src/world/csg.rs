@@ -232,7 +232,8 @@ impl Csg {
         SCRATCH.with_borrow_mut(|scratch| {
             let complete = self.collect(ray, true, scratch, counter);
             let found = self.sweep(ray, scratch);
-            // From inside of all that was merged, the way out may be farther than the next part's way in.
+            // From inside of all that was merged, the way out may be farther than the next part's
+            // way in.
             if complete < f32::INFINITY && found.is_none_or(|(crossing, _)| crossing.t > complete) {
                 self.collect(ray, false, scratch, counter);
                 return self.sweep(ray, scratch);

@@ -323,7 +323,8 @@ impl Object {
             Geometry::Mesh(tree) => {
                 let corners = tree.mesh.corners(part);
                 let Some(to_world) = &self.to_world else { return Some(Aabb::around(corners)) };
-                // Tighter than the box of the box, and padded for rounding by a box without size at each corner.
+                // Tighter than the box of the box, and padded for rounding by a box without size at
+                // each corner.
                 let images = corners.map(|c| to_world.bounds(Aabb { min: c, max: c }));
                 Some(images.into_iter().fold(Aabb::EMPTY, Aabb::union))
             }

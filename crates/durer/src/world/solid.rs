@@ -216,7 +216,8 @@ fn touch(a: Option<Aabb>, b: Option<Aabb>) -> bool {
 /// For each box the number of its cluster: boxes that touch, directly or by others between them,
 /// are in one. Clusters are numbered by their first box.
 fn clusters_of(boxes: &[Option<Aabb>]) -> Vec<usize> {
-    // The parent of each in a forest whose trees are the clusters; a root is the first of its cluster.
+    // The parent of each in a forest whose trees are the clusters; a root is the first of its
+    // cluster.
     let mut parents: Vec<usize> = (0..boxes.len()).collect();
     fn root(parents: &mut [usize], mut i: usize) -> usize {
         while parents[i] != i {
@@ -225,8 +226,8 @@ fn clusters_of(boxes: &[Option<Aabb>]) -> Vec<usize> {
         }
         i
     }
-    // Sweeps over x: only what has begun and not ended yet may touch the next. What has no end never
-    // ends.
+    // Sweeps over x: only what has begun and not ended yet may touch the next. What has no end
+    // never ends.
     let mut order: Vec<usize> = (0..boxes.len()).collect();
     let begin = |i: usize| boxes[i].map_or(f32::NEG_INFINITY, |b| b.min.x);
     order.sort_by(|&a, &b| begin(a).total_cmp(&begin(b)).then(a.cmp(&b)));

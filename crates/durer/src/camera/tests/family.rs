@@ -53,8 +53,8 @@ fn pictures_cover_the_solid_angles_of_their_fields_of_view() {
     }
     check(ParabolicCamera::default().into(), cap(210.0));
     let viewer = Vec3::new(0.2, -0.1, 0.3);
-    // From a dome's middle a hemisphere is seen, wherever the projector is, if it throws light on all
-    // of it.
+    // From a dome's middle a hemisphere is seen, wherever the projector is, if it throws light on
+    // all of it.
     let dome = OmnimaxCamera { angle: 300.0, projector: viewer, ..OmnimaxCamera::default() };
     check(dome.into(), cap(180.0));
     check(EquirectangularCamera::default().into(), 4.0 * PI);
@@ -122,15 +122,15 @@ fn directions_in_the_pictures_lie_where_the_maps_say() {
 #[test]
 fn a_filter_that_reaches_over_a_seam_continues_the_face() {
     let cross = CubeMapCamera::default();
-    // A pixel of the up face, at its right edge in the picture: to the right of it there is nothing, or
-    // another face.
+    // A pixel of the up face, at its right edge in the picture: to the right of it there is
+    // nothing, or another face.
     let edge = Vec2::new(0.0, 0.5);
     let beyond = CameraSample { point: edge + Vec2::new(0.01, 0.0), ..CameraSample::at(edge - Vec2::new(0.01, 0.0)) };
     let on_face = ray(&cross, CameraSample { point: edge, ..beyond }).unwrap().dir;
     let further = ray(&cross, beyond).unwrap().dir;
     assert!(on_face.distance(further) < 0.04 && further.x > further.y, "{on_face} {further}");
-    // Over the left border of the sphere it goes on where the right one ends; over the pole it comes
-    // down again.
+    // Over the left border of the sphere it goes on where the right one ends; over the pole it
+    // comes down again.
     let sphere = EquirectangularCamera::default();
     let left = CameraSample { point: Vec2::new(-1.01, 0.1), ..CameraSample::at(Vec2::new(-0.99, 0.1)) };
     close(ray(&sphere, left).unwrap().dir, dir(&sphere, 0.99, 0.1));
@@ -155,8 +155,8 @@ fn walls_that_share_an_edge_show_the_same_along_it() {
         ..CaveCamera::default()
     };
     assert_eq!(camera.proportions(), Some(Vec2::new(6.0, 3.0)));
-    // 600 x 300 pixels: the border between the last column of one wall and the first of the next, seen
-    // for both.
+    // 600 x 300 pixels: the border between the last column of one wall and the first of the next,
+    // seen for both.
     let raster = Raster::new(600, 300, camera.proportions(), &rules(&[]));
     for (column, eye_row) in [(200.0, 0.0), (200.0, 150.0), (400.0, 0.0), (400.0, 150.0)] {
         for row in [0.5, 70.5, 149.5] {

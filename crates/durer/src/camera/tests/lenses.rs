@@ -15,8 +15,8 @@ fn points_fill_the_opening_evenly() {
     let mut random = Random(1);
     for blades in [0, 3, 4, 6, 9] {
         const COUNT: usize = 200_000;
-        // Mean and mean square radius of a disc of radius 1, or of a regular polygon around it: (2 + cos
-        // 2π/n) / 6.
+        // Mean and mean square radius of a disc of radius 1, or of a regular polygon around it: (2
+        // + cos 2π/n) / 6.
         let expected = match blades {
             0 => 0.5,
             n => (2.0 + libm::cos(std::f64::consts::TAU / f64::from(n))) / 6.0,
@@ -77,8 +77,8 @@ fn a_hole_blurs_far_points_to_its_own_size_and_near_ones_more() {
         camera.project(&frame, Vec3::NEG_Z * 1e6, lens, &mut |point| far = far.max(point.length()));
         camera.project(&frame, Vec3::NEG_Z * 0.5, lens, &mut |point| near = near.max(point.length()));
     }
-    // The film is 1 wide and the picture 2: a hole of radius 0.1 is 0.2 there, and twice that at the
-    // film's distance.
+    // The film is 1 wide and the picture 2: a hole of radius 0.1 is 0.2 there, and twice that at
+    // the film's distance.
     assert!((far - 0.2).abs() < 1e-3 && (near - 0.4).abs() < 2e-3, "{far} {near}");
 }
 
@@ -102,8 +102,8 @@ fn pairs_of_eyes_agree_where_their_views_converge() {
         assert!(pair(&turned, Vec3::NEG_Z * 5.0).length() < 1e-6);
         assert!(pair(&turned, point).y.abs() > 1e-4);
     }
-    // Nearer things move to the left for the right eye, farther ones to the right; without convergence
-    // all move left.
+    // Nearer things move to the left for the right eye, farther ones to the right; without
+    // convergence all move left.
     assert!(pair(&camera, Vec3::NEG_Z * 2.5).x < -0.05 && pair(&camera, Vec3::NEG_Z * 50.0).x > 0.05);
     let parallel = StereoCamera { method: StereoMethod::Parallel, ..camera };
     assert!(pair(&parallel, Vec3::NEG_Z * 50.0).x < -0.005);
@@ -152,8 +152,8 @@ fn lenses_distort_as_the_formula_says_and_see_nothing_behind_a_fold() {
     );
     let found = seen(&camera, x, y).unwrap();
     assert!(found.distance(150.0 * expected + Vec2::new(99.5, 49.5)) < 1e-3, "{found} {expected}");
-    // r - r³ grows only up to r = 1/sqrt 3, where it is 0.385: farther out there is nothing, in either
-    // direction.
+    // r - r³ grows only up to r = 1/sqrt 3, where it is 0.385: farther out there is nothing, in
+    // either direction.
     let folded = ProjectiveCamera { k1: -1.0, ..photograph() };
     assert!(seen(&folded, 0.55, 0.0).is_some() && seen(&folded, 0.6, 0.0).is_none());
     let at = |pixels: f32| ray(&folded, CameraSample::at(Vec2::new(pixels / 100.0, 0.0)));

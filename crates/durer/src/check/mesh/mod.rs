@@ -1,165 +1,19 @@
 //! Meshes: their triangles, edges and normals, file by file.
 
+pub(super) mod files;
 mod normals;
 pub(super) mod topology;
 
 use super::finding::{Finding, counted, percent, vector};
 use super::scout::Scout;
-use crate::camera::Lens;
-use crate::describe::FileName;
-use crate::diag::{Diagnostic, Diagnostics, Span};
+use crate::diag::{Diagnostic, Span};
 use crate::dialect::Compat;
-use crate::format::read_mesh;
-use crate::math::Aabb;
-use crate::scene::{Group, Node, Object};
-use crate::shape::MeshData;
 use crate::world::{Material, Object as Placed};
-use normals::Given;
+use files::MeshFile;
 use topology::Topology;
 
-/// Files of more bytes are not looked into: the check is to take no longer than the eye.
-const MOST_BYTES: usize = 64 << 20;
-/// A share of turned or odd triangles that modellers leave behind, and nobody sees.
-const NEGLIGIBLE: f32 = 0.002;
 /// A share of triangles without area that is more than the poles of a turned body have.
 const MANY_FLAT: f32 = 0.03;
-
-/// A mesh file, and the objects that show it.
-#[derive(Debug)]
-pub(super) struct MeshFile<'s> {
-    name: &'s FileName,
-    /// Its number among the files that were read.
-    file: u32,
-    objects: Vec<&'s Object>,
-    data: MeshData,
-    topology: Topology,
-    /// The normals that the file brings, where they count.
-    given: Option<Given>,
-}
-
-/// All mesh files of a scene.
-pub(super) fn files<'s>(scout: &Scout<'s>) -> Vec<MeshFile<'s>> {
-    let mut uses = Uses::new();
-    if let Some(root) = &scout.subject.scene.root {
-        collect(root, &mut uses);
-    }
-    uses.into_iter().filter_map(|(name, objects)| read(scout, name, objects)).collect()
-}
-
-type Uses<'s> = Vec<(&'s FileName, Vec<&'s Object>)>;
-
-fn collect<'s>(group: &'s Group, uses: &mut Uses<'s>) {
-    group.objects.iter().for_each(|object| collect_object(object, uses));
-}
-
-fn collect_object<'s>(object: &'s Object, uses: &mut Uses<'s>) {
-    match &object.node {
-        Node::Group(group) => collect(group, uses),
-        Node::Transform(_, inner) => collect_object(inner, uses),
-        Node::Solid(_, parts) => parts.iter().for_each(|part| collect_object(part, uses)),
-        Node::Mesh(mesh) => match uses.iter_mut().find(|(name, _)| name.path == mesh.obj_file.path) {
-            Some((_, objects)) => objects.push(object),
-            None => uses.push((&mesh.obj_file, vec![object])),
-        },
-        Node::Primitive(_) | Node::HeightField(_) | Node::Voxels(..) => {}
-    }
-}
-
-fn read<'s>(scout: &Scout<'s>, name: &'s FileName, objects: Vec<&'s Object>) -> Option<MeshFile<'s>> {
-    let files = scout.subject.files;
-    let file = (0..).take_while(|&i| files.name(i).is_some()).find(|&i| files.name(i) == Some(&name.path))?;
-    let bytes = files.whole(file).filter(|bytes| bytes.len() <= MOST_BYTES)?;
-    // It was read before, and what is wrong with it was said.
-    let data = read_mesh(bytes, file, &name.path, &mut Diagnostics::default())?;
-    let topology = Topology::of(&data.positions, &data.triangles);
-    let given = Given::of(&data).filter(|_| scout.world().rules().file_normals);
-    Some(MeshFile { name, file, objects, data, topology, given })
-}
-
-impl MeshFile<'_> {
-    fn is_beyond_notice(&self, count: usize) -> bool {
-        count == 0 || (count as f32) <= NEGLIGIBLE * self.data.triangles.len() as f32
-    }
-
-    /// The line of a triangle's face in a Wavefront file: a face of n corners is n - 2 triangles.
-    fn face(&self, scout: &Scout, triangle: u32) -> Option<Span> {
-        let bytes = scout.subject.files.bytes(self.file)?;
-        let (mut start, mut before, mut found) = (0, 0, None);
-        for line in bytes.split_inclusive(|b| *b == b'\n') {
-            if line.starts_with(b"f ") || line.starts_with(b"f\t") {
-                let corners = line.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty()).count() - 1;
-                let here = before..before + corners.saturating_sub(2);
-                if here.contains(&(triangle as usize)) {
-                    let end = start + line.trim_ascii_end().len();
-                    found = Some(Span { file: self.file, start: start as u32, end: end as u32 });
-                }
-                before = here.end;
-            }
-            start += line.len();
-        }
-        found.filter(|_| before == self.data.triangles.len())
-    }
-
-    /// A warning about some of its triangles: at the first of them, or where the scene names the
-    /// file.
-    fn at_triangle(&self, scout: &Scout, diagnostic: Diagnostic, triangle: u32) -> Diagnostic {
-        let corners = self.data.triangles[triangle as usize].map(|i| self.data.positions[i as usize]);
-        match self.face(scout, triangle) {
-            Some(span) => {
-                diagnostic.at(span).label("the first of them").related(self.name.span, "the mesh is shown here")
-            }
-            None => {
-                let corners = corners.map(vector).join(", ");
-                diagnostic.at(self.name.span).label(format!("triangle {triangle} is the first: {corners}"))
-            }
-        }
-    }
-
-    /// The first of its objects that is of glass.
-    fn glass(&self, scout: &Scout) -> Option<&Object> {
-        let materials = scout.world().materials();
-        let refracts = |material: u32| match materials.get(material as usize) {
-            Some(Material::Phong(phong)) => phong.transparent.max_element() > 0.0 && phong.ior != 1.0,
-            _ => false,
-        };
-        self.objects.iter().find(|object| object.material.is_some_and(refracts)).copied()
-    }
-
-    /// Its objects as they are placed in the world.
-    fn placed<'w>(&self, scout: &Scout<'w>) -> impl Iterator<Item = &'w Placed> {
-        scout.world().objects().iter().filter(|object| self.is_shown_at(object.span))
-    }
-
-    /// Whether what is written at a place shows it.
-    fn is_shown_at(&self, place: Span) -> bool {
-        self.objects.iter().any(|object| object.span.start == place.start)
-    }
-
-    /// Whether the camera is in it, as in a room: its walls face inwards by right.
-    fn is_room(&self, scout: &Scout) -> bool {
-        let eye = scout.world().camera().pose().center;
-        self.placed(scout).filter_map(Placed::bounds).any(|bounds| bounds.holds(eye))
-    }
-
-    /// Whether it is the inner wall of hollow glass: that faces inwards by right.
-    fn is_hollow(&self, scout: &Scout) -> bool {
-        let objects = scout.world().objects();
-        let holds = |outer: &Aabb, inner: &Aabb| outer.holds(inner.min) && outer.holds(inner.max);
-        self.placed(scout).filter_map(|object| Some((object, object.bounds()?))).any(|(inner, bounds)| {
-            let around = |other: &Placed| {
-                other.span.start != inner.span.start && other.bounds().is_some_and(|outer| holds(&outer, &bounds))
-            };
-            self.glass(scout).is_some() && objects.iter().any(|other| other.material == inner.material && around(other))
-        })
-    }
-
-    /// Whether it is closed and its normals, made or given, point inwards.
-    fn is_inside_out(&self) -> bool {
-        let Topology { turned, volume, .. } = &self.topology;
-        let against = self.given.as_ref().is_some_and(Given::is_against_all);
-        self.topology.is_nearly_closed() && turned.is_empty() && *volume != 0.0 && (*volume < 0.0) != against
-    }
-}
 
 /// Triangles without area.
 pub(super) fn degenerate(scout: &Scout) -> Vec<Finding> {

@@ -115,8 +115,8 @@ fn warps_are_exact_where_they_can_be() {
         let u = i as f32 / 1000.0;
         assert!((boxed.warp(u) - (u - 0.5)).abs() < 1e-7);
         let exact = if u < 0.5 { (2.0 * u).sqrt() - 1.0 } else { 1.0 - (2.0 - 2.0 * u).sqrt() };
-        // Between knots h apart a chord is off by h^2 / 8 times the second derivative, in the last share by
-        // less than a quarter of it.
+        // Between knots h apart a chord is off by h^2 / 8 times the second derivative, in the last
+        // share by less than a quarter of it.
         let rest = 1.0 - (2.0 * f64::from(u) - 1.0).abs();
         let off = (7.5e-9 / (rest * rest.sqrt())).min(0.006) + 1e-6;
         assert!(f64::from((tent.warp(u) - exact).abs()) < off, "{u}");

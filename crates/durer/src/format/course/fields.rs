@@ -31,7 +31,8 @@ impl Reader<'_, '_> {
         if !self.open(keyword) {
             return;
         }
-        // Of a thing that only our dialect has, the keyword is complained of, and not its fields as well.
+        // Of a thing that only our dialect has, the keyword is complained of, and not its fields as
+        // well.
         let ours = thing.is_ours();
         let fields = thing.fields();
         let mut given = vec![None; fields.len()];

@@ -62,8 +62,8 @@ pub fn guess(bytes: &[u8], file: u32, hints: &[Hint], exists: &dyn Fn(&str) -> b
             reasons.push((keep, why, span));
         }
     };
-    // Words of nodes among words of the years before: what there is most of is meant, and the others
-    // are foreign.
+    // Words of nodes among words of the years before: what there is most of is meant, and the
+    // others are foreign.
     let (mut nodes, mut classic) = (0_usize, 0_usize);
     for (i, token) in tokens.iter().enumerate().filter(|(_, token)| token.kind == TokenKind::Word) {
         let _ = token;
@@ -121,7 +121,8 @@ pub fn guess(bytes: &[u8], file: u32, hints: &[Hint], exists: &dyn Fn(&str) -> b
         narrow(keep, "it has comments, which the course's language lacks".into(), Some(comment.span));
     }
     for hint in hints {
-        // What contradicts the file and the hints before it tells nothing: options may be another year's.
+        // What contradicts the file and the hints before it tells nothing: options may be another
+        // year's.
         let keep = left & hint.set;
         if keep != 0 && keep != left {
             left = keep;

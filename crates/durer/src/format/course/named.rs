@@ -7,28 +7,9 @@ use super::words::dialects_of;
 use crate::diag::{Diagnostic, Span, did_you_mean};
 use crate::dialect::set;
 use crate::scene::{Group, Node, Object};
-use std::collections::{BTreeMap, BTreeSet};
 
 /// Objects of a scene that uses defined ones, each counted as often as it is there.
 const MOST_OBJECTS: usize = 1 << 20;
-
-/// What has a name.
-#[derive(Default)]
-pub(super) struct Named {
-    materials: BTreeMap<String, u32>,
-    objects: BTreeMap<String, (Object, usize, Span)>,
-    /// Names whose object is wrong, of which that is told.
-    broken: BTreeSet<String>,
-    /// Objects that are there by `use`.
-    used: usize,
-}
-
-impl Named {
-    /// Forgets the names of materials.
-    pub fn clear_materials(&mut self) {
-        self.materials.clear();
-    }
-}
 
 impl Reader<'_, '_> {
     /// The name of a material, between its keyword and its block.

@@ -2,7 +2,7 @@
 
 use super::fields::Order;
 use super::reader::Reader;
-use super::sections::camera_of;
+use super::words::camera_of;
 use crate::camera::Camera;
 use crate::describe::DescribedList;
 use crate::diag::{Diagnostic, Span, did_you_mean};
@@ -195,7 +195,8 @@ impl Reader<'_, '_> {
     /// The `type` of a component, whose `{` is left to be read by its fields: one of the known
     /// ones, or of ours.
     fn component_type(&mut self, keyword: Span, known: &[&str], ours: &[&str]) -> Option<String> {
-        // The word after `{ type` is known before any field is read: type comes first in every file.
+        // The word after `{ type` is known before any field is read: type comes first in every
+        // file.
         let name = self.text(keyword);
         let at = |reader: &Self, i: usize| reader.ahead(i).map(|t| (reader.text(t.span), t.span));
         let first = at(self, usize::from(self.at_open()));

@@ -3,15 +3,32 @@
 use super::ReadOptions;
 use super::include::{Opened, Splicer, Texts};
 use super::lexer::{Token, TokenKind, tokens};
-use super::named::Named;
-use super::words::{begins_block, dialects_of, home_of};
+use super::words::{begins_block, dialects_of, home_of, is_section};
 use crate::diag::{Diagnostic, Diagnostics, Span};
 use crate::dialect::{Dialect, DialectSet};
-use crate::scene::Scene;
-use std::collections::HashSet;
+use crate::scene::{Object, Scene};
+use std::collections::{BTreeMap, BTreeSet, HashSet};
 
 /// Groups, transforms and nodes may be nested this deep.
 const DEEPEST: usize = 200;
+
+/// What has a name in the file.
+#[derive(Default)]
+pub(super) struct Named {
+    pub materials: BTreeMap<String, u32>,
+    pub objects: BTreeMap<String, (Object, usize, Span)>,
+    /// Names whose object is wrong, of which that is told.
+    pub broken: BTreeSet<String>,
+    /// Objects that are there by `use`.
+    pub used: usize,
+}
+
+impl Named {
+    /// Forgets the names of materials.
+    pub fn clear_materials(&mut self) {
+        self.materials.clear();
+    }
+}
 
 /// A file being read.
 pub(super) struct Reader<'a, 'd> {
@@ -271,7 +288,7 @@ impl<'a, 'd> Reader<'a, 'd> {
         let word = self.peek_word().filter(|_| block).unwrap_or_default();
         match self.options.dialect {
             Dialect::F23 => matches!(word.as_str(), "Camera" | "Background" | "Materials" | "Scene"),
-            _ => super::sections::is_section(&word) && word != "Group",
+            _ => is_section(&word) && word != "Group",
         }
     }
 }

@@ -3,7 +3,7 @@
 use super::fields::Order;
 use super::lexer::TokenKind;
 use super::reader::Reader;
-use super::words::home_of;
+use super::words::{SECTIONS, camera_of, home_of, is_section};
 use crate::camera::Camera;
 use crate::describe::DescribedList;
 use crate::diag::{Diagnostic, Span, did_you_mean};
@@ -14,19 +14,6 @@ use crate::material::{ColorNoise, PhongMaterial, PrincipledMaterial, Solid};
 use crate::medium::Fog;
 use crate::scene::{Background, Group, Material, Node, Object, Operation, Spanned};
 use crate::shape::{HeightField, Primitive, Sphere, TriangleMesh, VoxelGrid};
-
-/// What stands at the top of a file beside the camera.
-const SECTIONS: [&str; 5] = ["Background", "Fog", "Lights", "Materials", "Group"];
-
-/// The camera that a word begins, where there are no nodes.
-pub(super) fn camera_of(word: &str) -> Option<Camera> {
-    Camera::from_keyword(word).filter(|_| word != "Camera")
-}
-
-/// Whether a word stands at the top of a file.
-pub(super) fn is_section(word: &str) -> bool {
-    SECTIONS.contains(&word) || camera_of(word).is_some()
-}
 
 /// What stands in a group: [`OBJECTS`] of them are objects.
 #[rustfmt::skip]

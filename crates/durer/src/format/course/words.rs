@@ -110,3 +110,16 @@ pub(super) fn home_of(word: &str) -> Option<&'static str> {
         _ => return None,
     })
 }
+
+/// What stands at the top of a file beside the camera.
+pub(super) const SECTIONS: [&str; 5] = ["Background", "Fog", "Lights", "Materials", "Group"];
+
+/// The camera that a word begins, where there are no nodes.
+pub(super) fn camera_of(word: &str) -> Option<Camera> {
+    Camera::from_keyword(word).filter(|_| word != "Camera")
+}
+
+/// Whether a word stands at the top of a file.
+pub(super) fn is_section(word: &str) -> bool {
+    SECTIONS.contains(&word) || camera_of(word).is_some()
+}

@@ -5,7 +5,6 @@
 use super::Model;
 use super::accessor::Component;
 use super::json::At;
-use super::primitive::{Primitive, copy, index};
 use crate::math::Vec3;
 use crate::shape::MeshData;
 use glam::{DAffine3, DMat4, DVec3};
@@ -138,9 +137,8 @@ impl Pose {
         }
     }
 
-    /// The primitive's mesh with its vertices moved.
-    pub fn apply(&self, primitive: &Primitive, weights: &[f32], bones: Option<&[DAffine3]>) -> MeshData {
-        let mut data = MeshData::clone(&primitive.data);
+    /// Moves the vertices of the primitive's mesh.
+    pub fn apply(&self, data: &mut MeshData, weights: &[f32], bones: Option<&[DAffine3]>) {
         for (target, &weight) in self.targets.iter().zip(weights) {
             let add = |values: &mut [Vec3], moves: &[Vec3]| {
                 values.iter_mut().zip(moves).for_each(|(value, by)| *value += weight * by);
@@ -163,8 +161,6 @@ impl Pose {
         }
         // Bones may be anything, also infinitely far away.
         data.positions.iter_mut().filter(|p| !p.is_finite()).for_each(|p| *p = Vec3::ZERO);
-        index(&mut data, primitive.has_normals);
-        data
     }
 
     /// The mean of the maps of a vertex's bones.
@@ -182,5 +178,12 @@ impl Pose {
             mean.iter_mut().zip(columns).for_each(|(sum, column)| *sum += weight * column);
         }
         DAffine3::from_cols(mean[0], mean[1], mean[2], mean[3])
+    }
+}
+
+/// Adds copies of some values, where there are any.
+pub(super) fn copy<T: Copy>(values: &mut Vec<T>, originals: &[u32]) {
+    if !values.is_empty() {
+        values.extend(originals.iter().map(|&i| values[i as usize]).collect::<Vec<_>>());
     }
 }

@@ -139,7 +139,8 @@ impl Model<'_> {
             true => m.base_color_texture = color,
             false => m.specular_color_texture = color,
         }
-        // Roughness is what glossiness times alpha leaves of 1: the picture multiplies a roughness of 1.
+        // Roughness is what glossiness times alpha leaves of 1: the picture multiplies a roughness
+        // of 1.
         let glossiness = 1.0 - m.specular_roughness;
         m.specular_roughness = 1.0;
         m.specular_roughness_texture = self.number(&texture, Channel::Alpha, [1.0, 1.0 - glossiness]);
@@ -253,8 +254,8 @@ impl Model<'_> {
         if through == 0.0 || m.walls == Walls::Solid && m.transmission_weight > 0.0 {
             return;
         }
-        // What comes out behind is all that is scattered into the sheet; what stays in front is the matte
-        // base.
+        // What comes out behind is all that is scattered into the sheet; what stays in front is the
+        // matte base.
         m.walls = Walls::Thin;
         m.subsurface_weight = through;
         m.subsurface_scatter_anisotropy = 1.0 - f32::EPSILON;

@@ -353,8 +353,8 @@ mod tests {
 
     #[test]
     fn elements_follow_the_baseline() {
-        // Two elements of four bytes: the first is the baseline plus (1, 0, 0, 0), the second that plus
-        // (-1, 0, 0, 5).
+        // Two elements of four bytes: the first is the baseline plus (1, 0, 0, 0), the second that
+        // plus (-1, 0, 0, 5).
         let mut packed = vec![0xa0];
         packed.extend([1, 0b1001_0000, 0, 0, 0]); // byte 0: two bits, 2 = +1 and 1 = -1
         packed.extend([0, 0]);

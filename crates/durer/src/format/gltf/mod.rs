@@ -20,8 +20,8 @@ mod texture;
 mod variants;
 mod write;
 
+use super::model::{Input, SceneFormat};
 use super::report::Report;
-use super::scene::{Input, SceneFormat};
 use crate::diag::{Diagnostic, Diagnostics};
 use crate::material::PrincipledMaterial;
 use crate::math::Vec3;

@@ -208,7 +208,7 @@ impl Model<'_> {
                     if self.charge_at(data.bytes(), 1, &pointer).is_none() {
                         return;
                     }
-                    data = pose.apply(primitive, weights, bones.as_deref()).into();
+                    data = primitive.posed(pose, weights, bones.as_deref()).into();
                     name += &format!("@/nodes/{number}");
                 }
             }

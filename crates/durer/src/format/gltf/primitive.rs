@@ -2,11 +2,12 @@
 
 use super::Model;
 use super::accessor::{Accessor, Component};
-use super::deform::Pose;
+use super::deform::{Pose, copy};
 use super::json::At;
 use crate::format::sticks::thickened;
 use crate::math::{Vec2, Vec3};
 use crate::shape::MeshData;
+use glam::DAffine3;
 use rayon::prelude::*;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -24,6 +25,16 @@ pub(super) struct Primitive {
     pub has_normals: bool,
     /// What bones and morph targets move.
     pub pose: Option<Arc<Pose>>,
+}
+
+impl Primitive {
+    /// Its mesh with the vertices moved.
+    pub fn posed(&self, pose: &Pose, weights: &[f32], bones: Option<&[DAffine3]>) -> MeshData {
+        let mut data = MeshData::clone(&self.data);
+        pose.apply(&mut data, weights, bones);
+        index(&mut data, self.has_normals);
+        data
+    }
 }
 
 /// Primitive modes of the specification, chapter 3.7.2.1.
@@ -264,16 +275,9 @@ fn compact(data: &mut MeshData, keep: bool) {
     data.triangles.iter_mut().flatten().for_each(|i| *i = numbers[*i as usize]);
 }
 
-/// Adds copies of some values, where there are any.
-pub(super) fn copy<T: Copy>(values: &mut Vec<T>, originals: &[u32]) {
-    if !values.is_empty() {
-        values.extend(originals.iter().map(|&i| values[i as usize]).collect::<Vec<_>>());
-    }
-}
-
 /// Gives triangles the normals and coordinates of their vertices; where the file has no normals,
 /// triangles are flat.
-pub(super) fn index(data: &mut MeshData, has_normals: bool) {
+fn index(data: &mut MeshData, has_normals: bool) {
     data.flat = !has_normals;
     let own = || data.triangles.par_iter().copied().collect();
     if has_normals {

@@ -327,8 +327,8 @@ fn bones_targets_and_key_frames_move_vertices() {
         scene.unwrap_or_else(|| panic!("{findings:?}"))
     };
     let positions = |scene: &Scene| scene.assets.meshes.values().next().unwrap().positions.clone();
-    // Targets move the tip of the triangle by (-1, 1, 0) and by (1, 1, 0); at rest and at first neither
-    // does.
+    // Targets move the tip of the triangle by (-1, 1, 0) and by (1, 1, 0); at rest and at first
+    // neither does.
     let rest = positions(&at("SimpleMorph/glTF/SimpleMorph.gltf", Some(0.0)));
     let moved = positions(&at("SimpleMorph/glTF/SimpleMorph.gltf", Some(2.0)));
     assert_eq!(rest, [Vec3::ZERO, Vec3::X, Vec3::new(0.5, 0.5, 0.0)]);

@@ -171,8 +171,8 @@ fn named<T: DescribedList>(thing: &T, more: &Value) -> Value {
 /// The same members with one more.
 ///
 /// A copy is changed. Closures here that changed a `Value` which they were given and returned it
-/// used memory after it was freed (rustc 1.95, opt-level 2, seen by valgrind; not in a small program
-/// of the same form): safe code, so probably compiled wrongly.
+/// used memory after it was freed (rustc 1.95, opt-level 2, seen by valgrind; not in a small
+/// program of the same form): safe code, so probably compiled wrongly.
 fn with(members: &Value, name: &str, value: Value) -> Value {
     let mut all = members.clone();
     all[name] = value;

@@ -94,8 +94,8 @@ impl Reader<'_> {
 /// The radiance of a black body at a wavelength in nanometres, in W/(m² sr nm). Source: Planck's
 /// law.
 fn planck(nm: f32, kelvin: f32) -> f32 {
-    // 2 h c², such that a wavelength in micrometres gives watts for each nanometre; h c / k in nm K;
-    // both by CODATA 2018.
+    // 2 h c², such that a wavelength in micrometres gives watts for each nanometre; h c / k in nm
+    // K; both by CODATA 2018.
     const FIRST: f32 = 1.191_043e5;
     const SECOND: f32 = 1.438_777e7;
     let um = nm * 1e-3;

@@ -2,36 +2,23 @@
 //!
 //! Source of all meanings: *Mitsuba 3 documentation*, "Emitters".
 
-use super::material::Shine;
+use super::made::{Infinite, Shine};
 use super::plugin::Plugin;
 use super::state::Reader;
 use super::texture::Texture;
 use crate::describe::FileName;
-use crate::diag::{Diagnostic, Span};
+use crate::diag::Diagnostic;
 use crate::format::panorama;
 use crate::format::said::meant;
 use crate::light::{DirectionalLight, Fade, Light, PointLight, SpotLight};
 use crate::math::{Color, Vec3, fp};
 use crate::scene::Spanned;
-use glam::{DAffine3, DVec3};
+use glam::DVec3;
 use std::f32::consts::PI;
 use std::rc::Rc;
 
 /// Rows of a picture of all directions that is turned.
 const MOST_ROWS: u32 = 2048;
-
-/// What is infinitely far away: Mitsuba has one such light.
-pub(super) enum Infinite {
-    Even(Color, Span),
-    Picture { name: String, at: Span, scale: f32, to_world: DAffine3 },
-}
-
-impl Infinite {
-    fn at(&self) -> Span {
-        let (Infinite::Even(_, at) | Infinite::Picture { at, .. }) = self;
-        *at
-    }
-}
 
 impl Reader<'_> {
     /// The colour of a light.
@@ -157,7 +144,8 @@ impl Reader<'_> {
                 let Some(picture) = self.pictures().image(&name, at) else { return };
                 let rows = picture.height.min(MOST_ROWS);
                 let y = to_world.matrix3.y_axis;
-                // The middle of Mitsuba's pictures is where its z points, and of ours where -z does.
+                // The middle of Mitsuba's pictures is where its z points, and of ours where -z
+                // does.
                 if y.x == 0.0 && y.z == 0.0 && y.y > 0.0 && to_world.matrix3.determinant() > 0.0 {
                     let z = to_world.matrix3.z_axis.as_vec3();
                     let degrees = 180.0 - fp::atan2(z.x, z.z).to_degrees();

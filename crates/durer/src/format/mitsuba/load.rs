@@ -4,10 +4,9 @@
 //! Mitsuba 0.6 (`toWorld`) are read as those of today (`to_world`).
 
 use super::plugin::{Plugin, Property, Value};
-use super::transform;
 use crate::diag::{Diagnostic, Span};
+use crate::format::model::Input;
 use crate::format::said::{Said, meant};
-use crate::format::scene::Input;
 use crate::format::xml::{Attribute, Piece, Tag, Xml};
 use crate::image::decode_srgb;
 use crate::math::Vec3;
@@ -196,7 +195,7 @@ impl<'a> Loader<'a> {
             }
             "alias" => self.alias(tag),
             "transform" => {
-                let map = transform::read(self, xml, tag)?;
+                let map = self.transform(xml)?;
                 if let Some(name) = self.name(tag) {
                     self.give(parent, name, Value::Map(map), tag.at);
                 }

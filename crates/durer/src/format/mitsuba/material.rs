@@ -3,39 +3,23 @@
 //! Source of all meanings: *Mitsuba 3 documentation*, "BSDFs". GGX's alpha is the square of our
 //! roughness.
 
+use super::made::{Made, Shine, matte};
 use super::metals;
-use super::plugin::{Plugin, Value};
-use super::state::{Key, Reader};
+use super::plugin::{Key, Plugin, Value};
+use super::state::Reader;
 use super::texture::Texture;
 use crate::bsdf::microfacet::Ggx;
 use crate::diag::{Diagnostic, Span};
-use crate::format::pbrt::medium::Medium;
+use crate::format::pbrt::made::Medium;
 use crate::format::pbrt::spectrum::{Spectrum, metal};
 use crate::format::pictures::asset;
 use crate::format::said::meant;
 use crate::material::mix::Mix;
 use crate::material::principled::Walls;
 use crate::material::{PrincipledMaterial, Solid};
-use crate::math::{Color, Vec3, fp};
-use crate::scene::{Material, Picture, Spanned};
+use crate::math::{Vec3, fp};
+use crate::scene::{Material, Spanned};
 use std::rc::Rc;
-
-/// What shines: its radiance, and a picture that multiplies it.
-pub(super) struct Shine {
-    pub color: Color,
-    pub picture: Option<Picture>,
-    pub at: Span,
-    pub key: Key,
-}
-
-/// A material as written.
-pub(super) enum Made {
-    Layers(Box<PrincipledMaterial>),
-    /// Two others, and the share of the first.
-    Mix(Rc<Made>, Rc<Made>, f32),
-    /// What is not there at all.
-    Nothing,
-}
 
 const KNOWN: [&str; 17] = [
     "diffuse",
@@ -56,31 +40,6 @@ const KNOWN: [&str; 17] = [
     "normalmap",
     "mixturebsdf",
 ];
-
-/// Matte, without a boundary.
-pub(super) fn matte(base_color: Color) -> PrincipledMaterial {
-    PrincipledMaterial { base_color, specular_weight: 0.0, specular_roughness: 1.0, ..PrincipledMaterial::default() }
-}
-
-impl Made {
-    /// What shapes have that nothing is said of.
-    pub fn usual() -> Made {
-        Made::Layers(Box::new(matte(Vec3::splat(0.5))))
-    }
-
-    /// The same with all layers changed.
-    fn changed(&self, change: &impl Fn(&mut PrincipledMaterial)) -> Made {
-        match self {
-            Made::Layers(layers) => {
-                let mut layers = layers.clone();
-                change(&mut layers);
-                Made::Layers(layers)
-            }
-            Made::Mix(a, b, share) => Made::Mix(a.changed(change).into(), b.changed(change).into(), *share),
-            Made::Nothing => Made::Nothing,
-        }
-    }
-}
 
 impl Reader<'_> {
     /// The material of a plugin.

@@ -2,8 +2,8 @@
 
 /// Indices of metals: the real part and the imaginary part, for red, green and blue.
 ///
-/// Source: the spectra of Palik, *Handbook of Optical Constants of Solids*, 1985, and of the SOPRA and Luxpop collections, as
-/// Mitsuba 3.9 has them in RGB.
+/// Source: the spectra of Palik, *Handbook of Optical Constants of Solids*, 1985, and of the SOPRA
+/// and Luxpop collections, as Mitsuba 3.9 has them in RGB.
 #[rustfmt::skip]
 const METALS: [(&str, [f32; 3], [f32; 3]); 37] = [
     ("a-C", [2.944, 2.2271, 1.9682], [0.8875, 0.7993, 0.8153]),
@@ -45,7 +45,8 @@ const METALS: [(&str, [f32; 3], [f32; 3]); 37] = [
     ("W", [4.3708, 3.3002, 2.9984], [3.5006, 2.6049, 2.2732]),
 ];
 
-/// Indices of what is clear. Source: *Mitsuba 3 documentation*, "Smooth dielectric material", the table of names.
+/// Indices of what is clear. Source: *Mitsuba 3 documentation*, "Smooth dielectric material", the
+/// table of names.
 #[rustfmt::skip]
 const CLEAR: [(&str, f32); 23] = [
     ("vacuum", 1.0), ("helium", 1.000036), ("hydrogen", 1.000132), ("air", 1.000277), ("carbon dioxide", 1.00045),

@@ -8,6 +8,7 @@ mod camera;
 mod color;
 mod light;
 mod load;
+mod made;
 mod material;
 mod metals;
 mod plugin;
@@ -21,8 +22,8 @@ mod transform;
 #[cfg(test)]
 mod tests;
 
+use super::model::{Input, SceneFormat};
 use super::said::Said;
-use super::scene::{Input, SceneFormat};
 use super::{too_large, xml};
 use crate::diag::{Diagnostic, Diagnostics};
 use crate::scene::{Axis, Scene};

@@ -7,6 +7,9 @@ use glam::{DAffine3, DVec3};
 use std::cell::{Cell, RefCell};
 use std::rc::Rc;
 
+/// Where a plugin is written.
+pub(super) type Key = (u32, u32);
+
 /// What has a tag and a `type`: `<shape type="sphere">`.
 pub(super) struct Plugin {
     /// Its tag.
@@ -69,7 +72,7 @@ impl Plugin {
     }
 
     /// What no other plugin shares with it.
-    pub fn key(&self) -> (u32, u32) {
+    pub fn key(&self) -> Key {
         (self.at.file, self.at.start)
     }
 

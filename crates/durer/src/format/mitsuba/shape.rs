@@ -2,11 +2,11 @@
 //!
 //! Source of all meanings: *Mitsuba 3 documentation*, "Shapes".
 
-use super::plugin::Plugin;
+use super::plugin::{Key, Plugin};
 use super::solid;
-use super::state::{Key, Reader};
+use super::state::Reader;
 use crate::diag::{Diagnostic, Span};
-use crate::format::pbrt::medium::Medium;
+use crate::format::pbrt::made::Medium;
 use crate::format::pbrt::mesh::{oriented, written_in_file};
 use crate::format::pbrt::shape::placed;
 use crate::format::said::meant;
@@ -215,7 +215,8 @@ impl Reader<'_> {
         let path = self.loader.path(&name);
         let flat = plugin.truth(said, "face_normals").unwrap_or(false);
         let is_obj = plugin.kind == "obj";
-        // Mitsuba turns the coordinates of OBJ over, which have v upwards as ours, and leaves those of PLY.
+        // Mitsuba turns the coordinates of OBJ over, which have v upwards as ours, and leaves those
+        // of PLY.
         let over = plugin.truth(said, "flip_tex_coords").unwrap_or(is_obj);
         let mirrored = map.matrix3.determinant() < 0.0;
         let input = self.input;

@@ -1,14 +1,13 @@
 //! From plugins to a scene.
 
-use super::light::Infinite;
 use super::load::Loader;
-use super::material::Made;
-use super::plugin::{Plugin, Property, Value};
+use super::made::{Infinite, Made};
+use super::plugin::{Key, Plugin, Property, Value};
 use crate::diag::{Diagnostic, Span};
 use crate::format::bodies::join_bodies;
+use crate::format::model::Input;
 use crate::format::pictures::Pictures;
 use crate::format::said::{Said, meant};
-use crate::format::scene::Input;
 use crate::scene::{Group, Object, Scene};
 use crate::shape::MeshData;
 use std::collections::BTreeMap;
@@ -19,9 +18,6 @@ use std::sync::Arc;
 const MOST_OBJECTS: usize = 1 << 20;
 /// Plugins in plugins, those counted to which others refer.
 pub(super) const DEEPEST: u32 = 32;
-
-/// Where a plugin is written.
-pub(super) type Key = (u32, u32);
 
 /// A file on its way to a scene.
 pub(super) struct Reader<'a> {

@@ -152,8 +152,8 @@ fn what_is_wrong_is_told_at_its_place() {
 
 #[test]
 fn hostile_files_are_refused() {
-    // A circle of materials, of shapes, of files; a bomb of entities; much nesting; many instances of
-    // instances.
+    // A circle of materials, of shapes, of files; a bomb of entities; much nesting; many instances
+    // of instances.
     let (scene, told) = read(
         "<scene><bsdf type='twosided' id='a'><ref id='b'/></bsdf><bsdf type='twosided' id='b'><ref id='a'/></bsdf>\
         <shape type='sphere'><ref id='a'/></shape></scene>",

@@ -8,19 +8,21 @@ use glam::{DAffine3, DMat3, DMat4, DVec3};
 
 const KNOWN: [&str; 6] = ["translate", "rotate", "scale", "matrix", "lookat", "lookAt"];
 
-/// The map of a `<transform>`.
-pub(super) fn read(loader: &mut Loader, xml: &mut Xml, _: &Tag) -> Result<DAffine3, Broken> {
-    let mut map = DAffine3::IDENTITY;
-    while let Some(tag) = loader.next_leaf(xml)? {
-        let Some(step) = step(loader, &tag) else { continue };
-        map = step * map;
-        let finite = |map: &DAffine3| map.to_cols_array().iter().all(|x| (*x as f32).is_finite());
-        if !finite(&map) || map.matrix3.determinant() == 0.0 || !finite(&map.inverse()) {
-            loader.bad(tag.at, "after this the transform is not invertible", None);
-            map = DAffine3::IDENTITY;
+impl Loader<'_> {
+    /// The map of a `<transform>`.
+    pub(super) fn transform(&mut self, xml: &mut Xml) -> Result<DAffine3, Broken> {
+        let mut map = DAffine3::IDENTITY;
+        while let Some(tag) = self.next_leaf(xml)? {
+            let Some(step) = step(self, &tag) else { continue };
+            map = step * map;
+            let finite = |map: &DAffine3| map.to_cols_array().iter().all(|x| (*x as f32).is_finite());
+            if !finite(&map) || map.matrix3.determinant() == 0.0 || !finite(&map.inverse()) {
+                self.bad(tag.at, "after this the transform is not invertible", None);
+                map = DAffine3::IDENTITY;
+            }
         }
+        Ok(map)
     }
-    Ok(map)
 }
 
 fn step(loader: &Loader, tag: &Tag) -> Option<DAffine3> {

@@ -43,8 +43,8 @@ pub(super) fn read_faces(
     for part in read {
         let first = mesh.triangles.len();
         mesh.triangles.extend(part.mesh.triangles);
-        // From the first triangle that has texture coordinates or normals on, all have entries; so must
-        // those before.
+        // From the first triangle that has texture coordinates or normals on, all have entries; so
+        // must those before.
         for (all, own) in
             [(&mut mesh.triangle_uvs, part.mesh.triangle_uvs), (&mut mesh.triangle_normals, part.mesh.triangle_normals)]
         {

@@ -3,13 +3,12 @@
 //! Sources: *The MTL material format*, Alias|Wavefront, 1995; the extension for physically based
 //! materials of Clara.io (Pr, Pm, Pc, Pcr, Ps, Ke, norm).
 
-use super::scene::found;
 use super::words::Words;
 use crate::describe::FileName;
 use crate::diag::{Diagnostic, Diagnostics, Span};
+use crate::format::model::Input;
 use crate::format::number::parse_f32;
 use crate::format::report::shown;
-use crate::format::scene::Input;
 use crate::material::PrincipledMaterial;
 use crate::math::Vec3;
 use crate::scene::{Picture, PictureBytes};
@@ -284,7 +283,8 @@ impl<'a, 'i> Reader<'a, 'i> {
         let model = w.model.unwrap_or(2.0) as i32;
         let pictured = |picture: &Option<FileName>| if picture.is_some() { 1.0 } else { 0.0 };
         let specular = w.specular.unwrap_or(Vec3::splat(pictured(&m.specular_color_texture)));
-        // A highlight as wide as Blinn's of the exponent: alpha^2 = 2 / (n + 2); roughness^2 = alpha.
+        // A highlight as wide as Blinn's of the exponent: alpha^2 = 2 / (n + 2); roughness^2 =
+        // alpha.
         let exponent = w.exponent.unwrap_or(if specular == Vec3::ZERO { 0.0 } else { 50.0 }).max(0.0);
         let rough = m.specular_roughness_texture.is_some();
         let by_exponent = if rough { 1.0 } else { (2.0 / (exponent + 2.0)).sqrt().sqrt() };
@@ -326,4 +326,14 @@ fn names_normals(rest: &[String]) -> bool {
     let name = rest.last().map(|name| name.to_lowercase()).unwrap_or_default();
     let stem = name.rsplit_once('.').map_or(name.as_str(), |(stem, _)| stem);
     ["normal", "_nrm", "_ddn", "_norm"].iter().any(|word| stem.contains(word)) || stem.ends_with("_n")
+}
+
+/// The name of a file that may be had, of those that a material may mean: as written, or its last
+/// name beside the scene.
+fn found(input: &Input, path: &str, span: Span) -> Option<FileName> {
+    let portable = path.replace('\\', "/");
+    let last = portable.rsplit('/').next().unwrap_or_default();
+    let names = [portable.as_str(), last];
+    let name = names.into_iter().find(|name| !name.is_empty() && input.source.contains(name))?;
+    Some(FileName { path: name.to_string(), span })
 }

@@ -5,10 +5,9 @@ use super::materials::{self, Library};
 use super::wires::{WireReader, Wires};
 use super::words::Words;
 use super::{Statement, Switch, read_with, statement};
-use crate::describe::FileName;
 use crate::diag::{Diagnostic, Diagnostics, Span, did_you_mean};
+use crate::format::model::{Input, SceneFormat};
 use crate::format::report::{Report, shown};
-use crate::format::scene::{Input, SceneFormat};
 use crate::format::{sticks, too_large};
 use crate::math::Aabb;
 use crate::scene::{Group, Material, Object, Scene};
@@ -161,14 +160,4 @@ fn renumber(list: &mut [[u32; 3]]) -> Vec<u32> {
         *i = used.partition_point(|&old| old < *i) as u32;
     }
     used
-}
-
-/// The name of a file that may be had, of those that a material may mean: as written, or its last
-/// name beside the scene.
-pub(super) fn found(input: &Input, path: &str, span: Span) -> Option<FileName> {
-    let portable = path.replace('\\', "/");
-    let last = portable.rsplit('/').next().unwrap_or_default();
-    let names = [portable.as_str(), last];
-    let name = names.into_iter().find(|name| !name.is_empty() && input.source.contains(name))?;
-    Some(FileName { path: name.to_string(), span })
 }

@@ -77,11 +77,6 @@ const BEFORE_WORLD: [&str; 8] =
 
 /// What `Attribute` may be said of, in the order of [`State::given`](super::state::State).
 const TARGETS: [&str; 5] = ["shape", "light", "material", "medium", "texture"];
-pub(super) const SHAPE: usize = 0;
-pub(super) const LIGHT: usize = 1;
-pub(super) const MATERIAL: usize = 2;
-pub(super) const MEDIUM: usize = 3;
-pub(super) const TEXTURE: usize = 4;
 
 /// Files that are included, files in files, and scopes in scopes.
 const MOST_FILES: usize = 1 << 16;

@@ -1,6 +1,7 @@
 //! Light from infinitely far away: even, or pictures of all directions, which become one picture of
 //! longitude and latitude.
 
+use super::made::Infinite;
 use super::state::Reader;
 use crate::diag::{Diagnostic, Span};
 use crate::format::panorama;
@@ -8,21 +9,6 @@ use crate::image::{self, Encoded, Image};
 use crate::math::{Color, Vec2, Vec3, fp};
 use glam::{DAffine3, DVec3};
 use std::f32::consts::{FRAC_2_PI, PI, TAU};
-
-/// A light that is infinitely far away.
-pub(super) enum Infinite {
-    /// The same from everywhere.
-    Even(Color),
-    Picture {
-        name: String,
-        at: Span,
-        scale: f32,
-        /// From the world's directions to the picture's.
-        to_light: DAffine3,
-        /// The illuminance that its upper half is to have.
-        illuminance: Option<f32>,
-    },
-}
 
 /// Bytes that decoding one picture may take, and rows of the picture that is made.
 const MEMORY: u64 = 1 << 31;

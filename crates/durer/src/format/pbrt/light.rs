@@ -4,10 +4,9 @@
 //! Source of all meanings: *Physically Based Rendering*, 4th edition, chapter 12. What is given as
 //! a spectrum has luminance 1 times `scale`; `power` is luminous flux.
 
-use super::directives::LIGHT;
-use super::environment::Infinite;
+use super::made::{AreaLight, Infinite};
 use super::params::{Param, Params};
-use super::state::Reader;
+use super::state::{LIGHT, Reader};
 use crate::diag::Span;
 use crate::format::said::meant;
 use crate::light::{DirectionalLight, Fade, Light, PointLight, SpotLight};
@@ -16,19 +15,6 @@ use crate::scene::Spanned;
 use glam::DVec3;
 use std::f32::consts::PI;
 use std::rc::Rc;
-
-/// The light of a surface.
-#[derive(Debug)]
-pub(super) struct AreaLight {
-    /// Its radiance where no power is given; else the colour of its power.
-    pub radiance: Color,
-    /// Flux of each shape or triangle.
-    pub power: Option<f32>,
-    pub two_sided: bool,
-    /// The name of a picture that multiplies it.
-    pub picture: Option<String>,
-    pub at: Span,
-}
 
 /// The colour of a light by one of its parameters, with `scale`.
 fn color(params: &Params, name: &'static str) -> Color {

@@ -4,12 +4,10 @@
 //! over a matte base is a coat that darkens it; a metal is its reflectance at 0 and at 82 degrees;
 //! GGX's alpha is the square of our roughness.
 
-use super::directives::MATERIAL;
-use super::light::AreaLight;
-use super::medium::Medium;
+use super::made::{AreaLight, Made, Medium, Opacity};
 use super::params::{Kind, Param, Params};
 use super::spectrum::{Spectrum, metal};
-use super::state::Reader;
+use super::state::{MATERIAL, Reader};
 use crate::bsdf::microfacet::Ggx;
 use crate::describe::FileName;
 use crate::diag::Span;
@@ -21,28 +19,6 @@ use crate::math::{Color, Vec3, fp};
 use crate::scene::{Material, Picture, Spanned};
 use crate::texture::Mapping;
 use std::rc::Rc;
-
-/// A material as written.
-pub(super) enum Made {
-    Layers(Box<PrincipledMaterial>, Span),
-    /// Two others, by number, and the share of the first.
-    Mix {
-        parts: [usize; 2],
-        share: f32,
-        depth: u32,
-        pictured: bool,
-        at: Span,
-    },
-    /// What is not there at all.
-    Nothing,
-}
-
-/// How much of a shape is there: everywhere, or by a picture.
-#[derive(Debug)]
-pub(super) struct Opacity {
-    pub share: f32,
-    pub picture: Option<FileName>,
-}
 
 /// Mixes in mixes.
 const DEEPEST: u32 = 32;
@@ -283,9 +259,7 @@ impl Reader<'_> {
                 m.normal_texture = Some(self.asset(Picture { bytes, mapping: Mapping::default() }, place));
             }
         }
-        if let super::texture::Texture::Picture(picture, scale) =
-            self.pattern(params, "displacement", false, Vec3::ZERO)
-        {
+        if let super::made::Texture::Picture(picture, scale) = self.pattern(params, "displacement", false, Vec3::ZERO) {
             (m.bump_texture, m.bump_height) = (Some(self.asset(picture, params.place("displacement"))), scale.x);
         }
         Made::Layers(Box::new(m), at)
@@ -330,9 +304,10 @@ impl Reader<'_> {
                     self.said.bad(param.at, format!("a metal has either `{reflectance}` or `{eta}` and `{k}`"));
                 }
                 let share = match self.pattern(params, reflectance, true, Vec3::splat(0.5)) {
-                    super::texture::Texture::Even(color) => color,
-                    super::texture::Texture::Picture(picture, scale) => {
-                        // What it reflects at right angles is the picture's; grazing light has no colour of its own.
+                    super::made::Texture::Even(color) => color,
+                    super::made::Texture::Picture(picture, scale) => {
+                        // What it reflects at right angles is the picture's; grazing light has no
+                        // colour of its own.
                         m.base_color_texture = Some(self.asset(picture, param.at));
                         (m.base_metalness, m.base_color) = (1.0, scale);
                         [m.specular_roughness, m.specular_anisotropy, m.specular_rotation] = Ggx::parameters(alphas);

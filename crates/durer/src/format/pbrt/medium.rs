@@ -3,7 +3,7 @@
 //! Source of meanings and of the default coefficients: *Physically Based Rendering*, 4th edition,
 //! chapter 11. Coefficients are per unit of the world.
 
-use super::material::Made;
+use super::made::{Made, Medium};
 use super::params::{Param, Params};
 use super::state::Reader;
 use crate::diag::Span;
@@ -14,15 +14,6 @@ use crate::math::{Color, Vec3, fp};
 use crate::medium::Fog;
 use crate::scene::Spanned;
 use std::rc::Rc;
-
-/// What absorbs and scatters light, the same everywhere.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(in crate::format) struct Medium {
-    pub absorption: Color,
-    pub scattering: Color,
-    /// The mean cosine of scattering.
-    pub anisotropy: f32,
-}
 
 impl Medium {
     /// By the parameters `sigma_a`, `sigma_s`, `g` and `scale`.
@@ -77,7 +68,7 @@ impl Medium {
 
 impl Reader<'_> {
     pub fn make_named_medium(&mut self, name: String, at: Span, list: Vec<Rc<Param>>) {
-        let params = self.params(list, Some(super::directives::MEDIUM), at);
+        let params = self.params(list, Some(super::state::MEDIUM), at);
         let kind = params.text("type").unwrap_or("homogeneous").to_string();
         let medium = match kind.as_str() {
             "homogeneous" => {

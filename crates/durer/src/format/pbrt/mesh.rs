@@ -2,9 +2,9 @@
 
 use super::params::Params;
 use crate::diag::{Diagnostic, Diagnostics, Span};
+use crate::format::model::Input;
 use crate::format::read_mesh;
 use crate::format::said::Said;
-use crate::format::scene::Input;
 use crate::math::{Vec2, Vec3, fp};
 use crate::shape::MeshData;
 use crate::shape::mesh::NO_INDEX;

@@ -7,8 +7,10 @@
 mod camera;
 mod directives;
 mod environment;
+mod given;
 mod lexer;
 mod light;
+pub(super) mod made;
 mod material;
 pub(super) mod medium;
 pub(super) mod mesh;
@@ -23,8 +25,8 @@ mod transform;
 #[cfg(test)]
 mod tests;
 
+use super::model::{Input, SceneFormat};
 use super::said::Said;
-use super::scene::{Input, SceneFormat};
 use super::too_large;
 use crate::diag::{Diagnostic, Diagnostics};
 use crate::scene::{Axis, Scene};

@@ -2,30 +2,6 @@
 
 use super::spectrum::{Spectrum, of_chromaticity};
 use crate::math::Vec3;
-use crate::spectrum::observer_and_daylight;
-use glam::DVec3;
-
-/// Wavelength of the first row, and from row to row, in nanometres.
-const FIRST: f32 = 380.0;
-const STEP: f32 = 10.0;
-
-/// How many there are.
-const ROWS: u16 = 41;
-
-/// X, Y and Z of light, at any scale.
-pub(super) fn sum(light: impl Fn(f32) -> f64) -> DVec3 {
-    let row = |i| {
-        let nm = FIRST + STEP * f32::from(i);
-        let [x, y, z, _] = observer_and_daylight(nm);
-        Vec3::new(x, y, z).as_dvec3() * light(nm)
-    };
-    (0..ROWS).map(row).sum()
-}
-
-/// Daylight, at any scale, at a wavelength of a row.
-pub(super) fn daylight(nm: f32) -> f32 {
-    observer_and_daylight(nm)[3]
-}
 
 /// Indices of metals, for red, green and blue: such that what is reflected at 0 and at 82 degrees
 /// has the colour that the spectrum's reflectance has under D65, to 0.002; red of gold, which

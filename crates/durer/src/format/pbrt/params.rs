@@ -3,9 +3,9 @@
 use super::lexer::{Found, Lexer, Token};
 use super::spectrum::{Space, Spectrum};
 use crate::diag::{Diagnostic, Span};
+use crate::format::model::Input;
 use crate::format::report::counted;
 use crate::format::said::{Said, meant};
-use crate::format::scene::Input;
 use crate::math::{Vec2, Vec3};
 use std::cell::{Cell, RefCell};
 use std::rc::Rc;

@@ -1,10 +1,9 @@
 //! Shapes.
 
-use super::directives::SHAPE;
-use super::material::Opacity;
+use super::made::Opacity;
 use super::mesh;
 use super::params::{Kind, Param, Params};
-use super::state::Reader;
+use super::state::{Reader, SHAPE};
 use crate::diag::Span;
 use crate::format::said::meant;
 use crate::math::{Color, Vec3};
@@ -201,7 +200,7 @@ impl Reader<'_> {
 
 /// The radiance of a shape that shines. A power is that of each of its lights: of each triangle of
 /// a mesh.
-fn radiance(light: &super::light::AreaLight, made: &Made) -> Color {
+fn radiance(light: &super::made::AreaLight, made: &Made) -> Color {
     let Some(power) = light.power else { return light.radiance };
     let sides = if light.two_sided { 2.0 } else { 1.0 };
     let strength = power / (sides * PI * made.area / made.lights as f32);

@@ -1,11 +1,7 @@
 //! Spectra as colours: of what reflects under daylight (D65), of lights, of metals.
 
-use super::named;
-use super::params::{Kind, Param, Params, Values};
-use crate::diag::{Diagnostic, Span};
-use crate::format::number::parse_f32;
-use crate::format::said::meant;
 use crate::math::{Color, Vec3, fp};
+use crate::spectrum::observer_and_daylight;
 use glam::{DMat3, DVec3};
 
 /// A colour or a spectrum.
@@ -73,7 +69,7 @@ impl Space {
     }
 
     /// A colour of this space, whose white stays white.
-    fn color(&self, rgb: Vec3) -> Color {
+    pub fn color(&self, rgb: Vec3) -> Color {
         if *self == Space::default() {
             return rgb;
         }
@@ -83,27 +79,6 @@ impl Space {
 }
 
 impl Spectrum {
-    /// The spectrum of a parameter.
-    pub(super) fn of(param: &Param, params: &Params) -> Option<Spectrum> {
-        let said = params.said;
-        match (param.kind, &param.values) {
-            (Kind::Rgb, _) => Some(Spectrum::Rgb(params.space.color(*param.triples().first()?).max(Vec3::ZERO))),
-            (Kind::Blackbody, _) => {
-                let kelvin = param.number();
-                if !(kelvin > 0.0 && kelvin < 1e6) {
-                    said.bad(param.values_at, "a black body needs more than 0 kelvin, and less than a million");
-                    return None;
-                }
-                Some(Spectrum::Blackbody(kelvin))
-            }
-            (_, Values::Numbers(all)) => {
-                let curve = all.chunks_exact(2).map(|pair| [pair[0] as f32, pair[1] as f32]).collect();
-                rising(curve, param.values_at, params)
-            }
-            _ => named(param.text(), param.values_at, params),
-        }
-    }
-
     /// The share of daylight that something reflects.
     pub fn albedo(&self) -> Color {
         match self {
@@ -126,7 +101,7 @@ impl Spectrum {
         match self {
             Spectrum::Rgb(color) | Spectrum::Illuminant(color) => *color,
             _ => {
-                let sum = named::sum(|nm| f64::from(self.at(nm)));
+                let sum = sum(|nm| f64::from(self.at(nm)));
                 let color = SRGB * (sum / sum.y);
                 if color.is_finite() { color.as_vec3().max(Vec3::ZERO) } else { Vec3::ZERO }
             }
@@ -166,17 +141,39 @@ impl Spectrum {
     }
 }
 
+/// Wavelength of the first row, and from row to row, in nanometres.
+const FIRST: f32 = 380.0;
+const STEP: f32 = 10.0;
+
+/// How many there are.
+const ROWS: u16 = 41;
+
+/// X, Y and Z of light, at any scale.
+pub(super) fn sum(light: impl Fn(f32) -> f64) -> DVec3 {
+    let row = |i| {
+        let nm = FIRST + STEP * f32::from(i);
+        let [x, y, z, _] = observer_and_daylight(nm);
+        Vec3::new(x, y, z).as_dvec3() * light(nm)
+    };
+    (0..ROWS).map(row).sum()
+}
+
+/// Daylight, at any scale, at a wavelength of a row.
+fn daylight(nm: f32) -> f32 {
+    observer_and_daylight(nm)[3]
+}
+
 /// The colour under daylight of what reflects a share of each wavelength; where all is reflected,
 /// it is 1 1 1.
 fn under_daylight(share: impl Fn(f32) -> f32) -> Color {
-    let lit = |share: &dyn Fn(f32) -> f32| SRGB * named::sum(|nm| f64::from(share(nm) * named::daylight(nm)));
+    let lit = |share: &dyn Fn(f32) -> f32| SRGB * sum(|nm| f64::from(share(nm) * daylight(nm)));
     (lit(&share) / lit(&|_| 1.0)).as_vec3()
 }
 
 /// The colour of a light by its radiance at each wavelength in nanometres; 1 everywhere has
 /// luminance 1.
 pub(in crate::format) fn radiance(light: impl Fn(f32) -> f32) -> Color {
-    let color = SRGB * named::sum(|nm| f64::from(light(nm))) / named::sum(|_| 1.0).y;
+    let color = SRGB * sum(|nm| f64::from(light(nm))) / sum(|_| 1.0).y;
     if color.is_finite() { color.as_vec3().max(Vec3::ZERO) } else { Vec3::ZERO }
 }
 
@@ -203,57 +200,4 @@ pub(super) fn conductor(cosine: f32, n: f32, k: f32) -> f32 {
     let (sum, twice) = (c * c * both + sine2 * sine2, 2.0 * c * a * sine2);
     let share = 0.5 * across * (1.0 + (sum - twice) / (sum + twice));
     if share.is_finite() { share as f32 } else { 1.0 }
-}
-
-fn rising(curve: Vec<[f32; 2]>, at: Span, params: &Params) -> Option<Spectrum> {
-    if let Some(pair) = curve.windows(2).find(|pair| pair[1][0] <= pair[0][0]) {
-        let message = format!("the wavelengths of a spectrum must rise: {} comes after {}", pair[1][0], pair[0][0]);
-        params.said.bad(at, message);
-        return None;
-    }
-    Some(Spectrum::Curve(curve))
-}
-
-/// A spectrum by name: one that pbrt knows, or a file of wavelengths and values.
-fn named(name: &str, at: Span, params: &Params) -> Option<Spectrum> {
-    if let Some(known) = named::spectrum(name) {
-        return Some(known);
-    }
-    let bytes = match params.input.source.read_unpacked(name) {
-        Ok(bytes) if bytes.len() < u32::MAX as usize => bytes,
-        Ok(_) => {
-            params.said.bad(at, format!("`{name}` is too large for a spectrum"));
-            return None;
-        }
-        Err(error) => {
-            let help = meant(name, named::names());
-            let message = format!("pbrt has no spectrum of that name, and {error}");
-            params.said.push(Diagnostic { help, ..Diagnostic::error(message).code("missing-file").at(at) });
-            return None;
-        }
-    };
-    let file = params.input.files.borrow_mut().add(name, bytes.clone());
-    let (mut numbers, mut start) = (Vec::new(), 0);
-    for line in bytes.split_inclusive(|&b| b == b'\n') {
-        let text = line.split(|&b| b == b'#').next().unwrap_or_default();
-        for word in text.split(|b| b.is_ascii_whitespace() || *b == b',').filter(|word| !word.is_empty()) {
-            let place = start + (word.as_ptr() as usize - line.as_ptr() as usize);
-            match parse_f32(word) {
-                Ok(value) => numbers.push(value),
-                Err(_) => {
-                    let word_at = Span { file, start: place as u32, end: (place + word.len()) as u32 };
-                    let found = crate::format::report::shown(word);
-                    let error = Diagnostic::error(format!("expected a number, found {found}"));
-                    params.said.push(error.code("bad-file").at(word_at).related(at, "asked for here"));
-                    return None;
-                }
-            }
-        }
-        start += line.len();
-    }
-    if numbers.is_empty() || numbers.len() % 2 != 0 {
-        params.said.bad(at, format!("`{name}` must hold pairs of wavelength and value"));
-        return None;
-    }
-    rising(numbers.chunks_exact(2).map(|pair| [pair[0], pair[1]]).collect(), at, params)
 }

@@ -1,17 +1,13 @@
 //! What the directives change, and what comes of them.
 
-use super::environment::Infinite;
 use super::lexer::Lexer;
-use super::light::AreaLight;
-use super::material::Made;
-use super::medium::Medium;
+use super::made::{AreaLight, Infinite, Made, Medium, Texture};
 use super::params::{Param, Params};
 use super::spectrum::Space;
-use super::texture::Texture;
 use super::transform::Transforms;
 use crate::diag::Span;
+use crate::format::model::Input;
 use crate::format::said::Said;
-use crate::format::scene::Input;
 use crate::scene::{Group, Object, Scene};
 use crate::shape::MeshData;
 use glam::DAffine3;
@@ -21,6 +17,13 @@ use std::sync::Arc;
 
 /// Objects of a scene, those of instances counted each time.
 const MOST_OBJECTS: usize = 1 << 20;
+
+/// What `Attribute` may be said of: places in [`State::given`].
+pub(super) const SHAPE: usize = 0;
+pub(super) const LIGHT: usize = 1;
+pub(super) const MATERIAL: usize = 2;
+pub(super) const MEDIUM: usize = 3;
+pub(super) const TEXTURE: usize = 4;
 
 /// What `AttributeBegin` keeps.
 #[derive(Clone, Default)]

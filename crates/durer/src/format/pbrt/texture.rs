@@ -1,8 +1,8 @@
 //! Textures: one value everywhere, or a picture.
 
-use super::directives::TEXTURE;
+use super::made::Texture;
 use super::params::{Kind, Param, Params};
-use super::state::Reader;
+use super::state::{Reader, TEXTURE};
 use crate::describe::FileName;
 use crate::diag::Span;
 use crate::format::pictures::{self, Pictures};
@@ -12,14 +12,6 @@ use crate::math::{Color, Vec3};
 use crate::scene::{Picture, PictureBytes};
 use crate::texture::{Mapping, Wrap};
 use std::rc::Rc;
-
-/// What a texture is here.
-#[derive(Clone)]
-pub(super) enum Texture {
-    Even(Color),
-    /// A picture, and what multiplies it.
-    Picture(Picture, Color),
-}
 
 impl Texture {
     fn scaled(self, by: Color) -> Texture {

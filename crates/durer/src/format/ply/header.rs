@@ -236,8 +236,8 @@ impl Lines<'_> {
         let rest = self.bytes.get(self.at..).filter(|rest| !rest.is_empty())?;
         let length = rest.iter().position(|&byte| byte == b'\n' || byte == b'\r').unwrap_or(rest.len());
         let line = self.at..self.at + length;
-        // A carriage return alone ends a line only where the first line ends so: binary rows may begin with
-        // any byte.
+        // A carriage return alone ends a line only where the first line ends so: binary rows may
+        // begin with any byte.
         let ending = match rest[length..] {
             [b'\r', b'\n', ..] if !self.ends_with_return_alone() => 2,
             [] => 0,

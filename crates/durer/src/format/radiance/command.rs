@@ -12,51 +12,54 @@ use glam::{DAffine3, DVec3};
 /// Places where the output of a command goes.
 type Places = Vec<Place>;
 
-/// Carries out a command.
-pub(super) fn run(reader: &mut Reader, mut words: Words, place: &Place) {
-    let mut stages: Vec<Vec<Word>> = vec![Vec::new()];
-    while let Some(word) = words.next() {
-        match word.text.as_str() {
-            "|" => stages.push(Vec::new()),
-            _ => stages.last_mut().into_iter().for_each(|stage| stage.push(word.clone())),
-        }
-    }
-    if let Some(empty) = stages.iter().position(Vec::is_empty) {
-        let what = if stages.len() == 1 { "there is no command after `!`" } else { "there is no command beside `|`" };
-        let at = stages.iter().skip(empty).flatten().next().map_or(words.end(), |word| word.at);
-        return reader.said.bad(at, what);
-    }
-    // What is printed goes through the last stage last: its map is the outermost.
-    let mut places = vec![place.clone()];
-    for stage in stages[1..].iter().rev() {
-        if stage[0].text != "xform" {
-            return refuse(reader, &stage[0]);
-        }
-        let Some((next, files)) = xform(reader, &stage[1..], &places) else { return };
-        if let Some(file) = files.first() {
-            return reader.said.bad(file.at, "behind a `|` `xform` reads what comes through it, and no files");
-        }
-        places = next;
-    }
-    let (name, args) = (&stages[0][0], &stages[0][1..]);
-    match name.text.as_str() {
-        "xform" => {
-            let Some((places, files)) = xform(reader, args, &places) else { return };
-            if files.is_empty() {
-                reader.said.bad(name.at, "`xform` needs a file here");
+impl Reader<'_> {
+    /// Carries out a command.
+    pub(super) fn command(&mut self, mut words: Words, place: &Place) {
+        let mut stages: Vec<Vec<Word>> = vec![Vec::new()];
+        while let Some(word) = words.next() {
+            match word.text.as_str() {
+                "|" => stages.push(Vec::new()),
+                _ => stages.last_mut().into_iter().for_each(|stage| stage.push(word.clone())),
             }
-            places.iter().for_each(|place| files.iter().for_each(|file| reader.file(file, place)));
         }
-        "cat" => places.iter().for_each(|place| args.iter().for_each(|file| reader.file(file, place))),
-        "genbox" => {
-            let facets = genbox(reader, name, args);
-            build(reader, facets, args, &places);
+        if let Some(empty) = stages.iter().position(Vec::is_empty) {
+            let what =
+                if stages.len() == 1 { "there is no command after `!`" } else { "there is no command beside `|`" };
+            let at = stages.iter().skip(empty).flatten().next().map_or(words.end(), |word| word.at);
+            return self.said.bad(at, what);
         }
-        "genprism" => {
-            let facets = genprism(reader, name, args);
-            build(reader, facets, args, &places);
+        // What is printed goes through the last stage last: its map is the outermost.
+        let mut places = vec![place.clone()];
+        for stage in stages[1..].iter().rev() {
+            if stage[0].text != "xform" {
+                return refuse(self, &stage[0]);
+            }
+            let Some((next, files)) = xform(self, &stage[1..], &places) else { return };
+            if let Some(file) = files.first() {
+                return self.said.bad(file.at, "behind a `|` `xform` reads what comes through it, and no files");
+            }
+            places = next;
         }
-        _ => refuse(reader, name),
+        let (name, args) = (&stages[0][0], &stages[0][1..]);
+        match name.text.as_str() {
+            "xform" => {
+                let Some((places, files)) = xform(self, args, &places) else { return };
+                if files.is_empty() {
+                    self.said.bad(name.at, "`xform` needs a file here");
+                }
+                places.iter().for_each(|place| files.iter().for_each(|file| self.file(file, place)));
+            }
+            "cat" => places.iter().for_each(|place| args.iter().for_each(|file| self.file(file, place))),
+            "genbox" => {
+                let facets = genbox(self, name, args);
+                build(self, facets, args, &places);
+            }
+            "genprism" => {
+                let facets = genprism(self, name, args);
+                build(self, facets, args, &places);
+            }
+            _ => refuse(self, name),
+        }
     }
 }
 

@@ -92,8 +92,8 @@ impl Table {
             let (sin, _) = fp::sin_cos_degrees(degrees);
             sum += at(degrees) * sin * (PI / f64::from(STEPS));
         }
-        // Over all directions; an even radiance L sends pi L per area, a sphere 4 pi L per area of its
-        // outline.
+        // Over all directions; an even radiance L sends pi L per area, a sphere 4 pi L per area of
+        // its outline.
         let flux = 2.0 * PI * sum / if flat { PI } else { 4.0 * PI };
         flux.max(0.0) as f32
     }

@@ -5,7 +5,7 @@
 //! our roughness.
 
 use super::args::Thing;
-use super::sky::Sky;
+use super::made::{Kind, Made};
 use super::state::{MIXTURES, PATTERNS, Reader};
 use crate::diag::Span;
 use crate::material::PrincipledMaterial;
@@ -14,45 +14,6 @@ use crate::math::{Color, Vec3, fp};
 use crate::medium::Fog;
 use crate::scene::{Material, Spanned};
 use std::rc::Rc;
-
-/// What a modifier became.
-pub(super) struct Made {
-    /// The number of the material in the scene; `None`: nothing is there.
-    pub number: Option<u32>,
-    pub kind: Kind,
-    /// What a pattern multiplies, everywhere alike.
-    pub tint: Color,
-    pub sky: Option<Sky>,
-}
-
-/// What matters of a material to surfaces.
-pub(super) enum Kind {
-    Plain,
-    /// The skin of a body; `outside`: the material of what is inside of a surface turned inside
-    /// out.
-    Glass {
-        outside: Option<u32>,
-    },
-    Shining {
-        radiance: Color,
-    },
-    Spot {
-        radiance: Color,
-        direction: Vec3,
-        degrees: f32,
-        at: Span,
-    },
-}
-
-impl Made {
-    pub fn nothing() -> Made {
-        Made { number: None, kind: Kind::Plain, tint: Vec3::ONE, sky: None }
-    }
-
-    pub fn is_glass(&self) -> bool {
-        matches!(self.kind, Kind::Glass { .. })
-    }
-}
 
 /// Matte, without a boundary.
 fn matte(base_color: Color) -> PrincipledMaterial {
@@ -190,7 +151,8 @@ impl Reader<'_> {
             "metal2" => metal(color, value(3), [value(4), value(5)]),
             "trans2" => trans(color, [value(3), value(6), value(7)], [value(4), value(5)]),
             "ashik2" => {
-                // A power of the cosine of the half vector is a slope of the root of 2 / (power + 2).
+                // A power of the cosine of the half vector is a slope of the root of 2 / (power +
+                // 2).
                 let slope = |power: f32| (2.0 / (power + 2.0)).sqrt();
                 let specular = thing.color(3);
                 plastic(color, specular.element_sum() / 3.0, [slope(value(6)), slope(value(7))])

@@ -1,7 +1,7 @@
 //! Mixtures of two materials.
 
 use super::args::Thing;
-use super::material::{Kind, Made};
+use super::made::{Kind, Made};
 use super::state::Reader;
 use crate::format::number::parse_f32;
 use crate::material::Solid;

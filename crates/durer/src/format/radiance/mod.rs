@@ -9,6 +9,7 @@ mod args;
 mod body;
 mod command;
 mod data;
+mod made;
 mod material;
 mod mixture;
 mod pattern;
@@ -24,8 +25,8 @@ mod xform;
 #[cfg(test)]
 mod tests;
 
+use super::model::{Input, SceneFormat};
 use super::said::Said;
-use super::scene::{Input, SceneFormat};
 use super::too_large;
 use crate::diag::{Diagnostic, Diagnostics};
 use crate::scene::{Axis, Scene};

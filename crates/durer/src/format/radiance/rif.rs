@@ -1,6 +1,5 @@
 //! Files for Radiance's `rad`: which files make a scene, and whence it is seen.
 
-use super::command;
 use super::state::{Place, Reader};
 use super::view::{USUAL_SIZE, View, of_file};
 use super::words::{Word, Words};
@@ -57,7 +56,7 @@ impl Reader<'_> {
                 match value.text.starts_with('!') {
                     true => {
                         let range = value.at.start as usize + 1..value.at.end as usize;
-                        command::run(self, Words::new(&bytes, file, range), &place);
+                        self.command(Words::new(&bytes, file, range), &place);
                     }
                     false => self.file(value, &place),
                 }

@@ -1,13 +1,12 @@
 //! Light from infinitely far away, and spots.
 
 use super::args::Thing;
-use super::material::{Kind, Made};
-use super::sky::Sky;
+use super::made::{Distant, Kind, Made};
 use super::state::{Place, Reader};
 use crate::diag::Span;
 use crate::format::panorama;
 use crate::light::{DirectionalLight, Fade, Light, SpotLight};
-use crate::math::{Color, Vec3, fp};
+use crate::math::{Vec3, fp};
 use crate::scene::Spanned;
 use glam::DVec3;
 use std::f32::consts::PI;
@@ -19,15 +18,6 @@ const ROWS: u32 = 256;
 
 /// Spots that stand for a surface.
 const SPOTS: u32 = 24;
-
-/// A cone of directions, and the light that comes from them.
-pub(super) struct Distant {
-    direction: DVec3,
-    cosine: f64,
-    radiance: Color,
-    sky: Option<Sky>,
-    at: Span,
-}
 
 impl Reader<'_> {
     pub fn source(&mut self, thing: &Thing, modifier: Option<usize>, place: &Place) {

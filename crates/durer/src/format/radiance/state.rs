@@ -2,15 +2,13 @@
 
 use super::args::Thing;
 use super::body::Body;
-use super::command;
-use super::material::Made;
-use super::source::Distant;
+use super::made::{Distant, Made};
 use super::words::{Start, Word, Words};
 use crate::camera::Lens;
 use crate::diag::{Diagnostic, Span};
+use crate::format::model::Input;
 use crate::format::polygon::Cutter;
 use crate::format::said::{Said, meant};
-use crate::format::scene::Input;
 use crate::medium::Fog;
 use crate::scene::{Group, Node, Object, Scene, Spanned};
 use glam::DAffine3;
@@ -139,7 +137,7 @@ impl<'a> Reader<'a> {
                 return;
             }
             match start {
-                Start::Command(range) => command::run(self, Words::new(bytes, file, range), place),
+                Start::Command(range) => self.command(Words::new(bytes, file, range), place),
                 Start::Word(modifier) => {
                     let Some(thing) = Thing::read(modifier, &mut words, self.said) else { return };
                     self.thing(thing, place);

@@ -2,7 +2,7 @@
 
 use super::args::Thing;
 use super::body::Body;
-use super::material::{Kind, Made};
+use super::made::{Kind, Made};
 use super::state::{Place, Reader};
 use super::words::Word;
 use crate::diag::Span;

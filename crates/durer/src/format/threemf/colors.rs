@@ -1,34 +1,10 @@
 //! What triangles are made of: colours, mixtures of them, and places in pictures.
 
-use super::model::{Broken, Model, Parser};
-use crate::diag::Span;
+use super::model::{Color, Group, Model, Properties};
+use super::parser::{Broken, Parser};
 use crate::format::xml::Tag;
 use crate::image::decode_srgb;
 use crate::math::Vec2;
-
-/// Colour and opacity, linear.
-pub(super) type Color = [f32; 4];
-
-/// A list that triangles point into.
-pub(super) struct Properties {
-    pub group: Group,
-    pub at: Span,
-}
-
-/// What a list holds.
-pub(super) enum Group {
-    /// Of materials, vertices, composites or several at once: what they look like.
-    Colors(Vec<Color>),
-    /// Places in the picture of a resource, with v upwards.
-    Texture { picture: u32, uvs: Vec<Vec2> },
-    /// The name of a picture's part, and how it goes on beyond its borders.
-    Picture { part: String, styles: [Option<String>; 2], at: Span },
-}
-
-impl Group {
-    pub const NAMES: [&str; 6] =
-        ["basematerials", "colorgroup", "texture2d", "texture2dgroup", "compositematerials", "multiproperties"];
-}
 
 impl Model {
     /// The number of things in a list of properties.

@@ -1,27 +1,9 @@
 //! Meshes, with what each corner of their triangles is made of, and lattices of beams.
 
-use super::model::{Broken, Parser};
-use crate::diag::Span;
+use super::model::{Mesh, Property};
+use super::parser::{Broken, Parser};
 use crate::format::xml::Tag;
 use crate::math::Vec3;
-
-/// A property: the number of its list, and its place there.
-pub(super) type Property = (u32, u32);
-
-/// Positions, triangles, beams.
-#[derive(Default)]
-pub(super) struct Mesh {
-    pub positions: Vec<Vec3>,
-    pub triangles: Vec<[u32; 3]>,
-    /// By triangle, if any has one: the list, and the places of its corners.
-    pub properties: Vec<Option<(u32, [u32; 3])>>,
-    /// What triangles are made of that do not say it.
-    pub usual: Option<Property>,
-    /// Two ends, and the radius at each.
-    pub beams: Vec<([u32; 2], [f32; 2])>,
-    /// Where the first triangle of a list is.
-    pub at: Span,
-}
 
 impl Parser<'_, '_> {
     pub fn mesh(&mut self, usual: Option<Property>) -> Result<Mesh, Broken> {

@@ -8,13 +8,14 @@ mod colors;
 mod mesh;
 mod model;
 mod package;
+mod parser;
 mod show;
 
 #[cfg(test)]
 mod tests;
 
+use super::model::{Input, SceneFormat};
 use super::said::Said;
-use super::scene::{Input, SceneFormat};
 use super::{too_large, zip};
 use crate::diag::Diagnostics;
 use crate::scene::{Axis, Scene};

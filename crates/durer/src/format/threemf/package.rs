@@ -1,8 +1,8 @@
 //! The archive: which part is the model, and parts by name.
 
 use crate::diag::{Diagnostic, Span};
+use crate::format::model::Input;
 use crate::format::said::{Said, meant};
-use crate::format::scene::Input;
 use crate::format::xml::{Piece, Xml};
 use crate::format::zip::Zip;
 use std::sync::Arc;

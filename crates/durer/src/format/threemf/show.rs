@@ -1,9 +1,8 @@
 //! From models to a scene: meshes by what they are made of, and components in their places.
 
-use super::colors::Group;
-use super::mesh::Mesh;
-use super::model::{self, Model, Object, Place};
+use super::model::{Group, Mesh, Model, Object, Place};
 use super::package::Package;
+use super::parser;
 use crate::diag::Span;
 use crate::format::pbrt::shape::placed;
 use crate::format::pictures::asset;
@@ -72,7 +71,7 @@ impl Show<'_> {
             self.said.bad(at, format!("more than {MOST_PARTS} parts are too many"));
             return None;
         }
-        let model = model::read(&mut self.package, part, at, self.said).map(Rc::new);
+        let model = parser::read(&mut self.package, part, at, self.said).map(Rc::new);
         self.models.insert(part.to_string(), model.clone());
         model
     }

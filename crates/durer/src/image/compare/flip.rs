@@ -58,8 +58,8 @@ impl Filters {
         let total: f64 = BLUE_YELLOW.iter().map(|&row| part(row)).sum();
         let blue_yellow = BLUE_YELLOW.map(|row| ((part(row) / total) as f32, csf(row.1)));
 
-        // Feature filters: first and second derivative of a Gaussian, positive weights summing to 1 and
-        // negative to -1.
+        // Feature filters: first and second derivative of a Gaussian, positive weights summing to 1
+        // and negative to -1.
         let sigma = 0.5 * EDGE_WIDTH * PIXELS_PER_DEGREE;
         let radius = (3.0 * sigma).ceil() as usize;
         let first = |x: f64| x * gauss(x, sigma);

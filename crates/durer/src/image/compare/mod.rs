@@ -118,7 +118,8 @@ fn exchanged(a: (u32, u32), b: (u32, u32)) -> &'static str {
 /// # Errors
 /// [`CompareError::Sizes`], which so is known before they are decoded.
 pub fn memory_needed(reference: &Encoded, test: &Encoded) -> Result<u64, CompareError> {
-    // Both as they are, as they are shown, and what the measures take: 91 bytes a pixel were measured.
+    // Both as they are, as they are shown, and what the measures take: 91 bytes a pixel were
+    // measured.
     const BYTES_PER_PIXEL: u64 = 100;
     let [a, b] = [reference, test].map(|picture| picture.size());
     if a != b {
@@ -141,8 +142,8 @@ pub fn memory_needed(reference: &Encoded, test: &Encoded) -> Result<u64, Compare
 pub fn compare(reference: &Picture, test: &Picture, options: &Options) -> Result<Comparison, CompareError> {
     let pair = Pair::new(reference, test, options.transfer)?;
     let equal = pair.reference == pair.test;
-    // Causes are sought while the measures are taken, for time: they are said only if the pictures turn
-    // out to differ.
+    // Causes are sought while the measures are taken, for time: they are said only if the pictures
+    // turn out to differ.
     let causes = || match equal {
         true => (Vec::new(), Vec::new()),
         false => (mistake::explain(&pair), regions::worst(&pair, options.tolerance)),

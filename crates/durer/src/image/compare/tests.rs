@@ -82,8 +82,8 @@ fn constant_pictures() {
     near(found.measures.ssim.unwrap(), (2.0 * 0.4 * 0.5 + 1e-4) / (0.16 + 0.25 + 1e-4), 1e-5);
     assert_eq!(found.measures.over_tolerance, 20 * 13);
     let found = compare(&grey(20, 13, 0.0), &grey(20, 13, 1.0), &Options::default()).unwrap();
-    // Black and white: a lightness of 100, by equations 6 and 7 of 2020, where green and blue are 203.3
-    // apart; 100^0.7 and 203.3^0.7:
+    // Black and white: a lightness of 100, by equations 6 and 7 of 2020, where green and blue are
+    // 203.3 apart; 100^0.7 and 203.3^0.7:
     let (distance, largest) = (25.119, 41.27);
     let color = 0.95 + (distance - 0.4 * largest) / (0.6 * largest) * 0.05;
     near(found.measures.flip, color, 1e-3);

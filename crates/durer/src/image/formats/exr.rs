@@ -122,7 +122,8 @@ fn head(bytes: &[u8]) -> Result<Head, ImageError> {
         return Err(ImageError::unsupported(NAME, "channels of lower resolution"));
     }
     let Vec2(width, height) = header.layer_size;
-    // A block is decoded with all its channels, wanted or not: packed, unpacked, and sorted by rows.
+    // A block is decoded with all its channels, wanted or not: packed, unpacked, and sorted by
+    // rows.
     let Vec2(across, down) = header.max_block_pixel_size();
     let block = (across.min(width) as u64).saturating_mul(down.min(height) as u64);
     if block.saturating_mul(header.channels.bytes_per_pixel as u64) > pixel_limit(bytes.len()).saturating_mul(16) {

@@ -15,7 +15,8 @@ pub const FORMAT: Format = Format {
     begins: |bytes| bytes.starts_with(b"\xff\xd8\xff"),
     head: |bytes| {
         let head = codec::head(&codec::decoder(NAME, ImageFormat::Jpeg, bytes)?);
-        // A progressive picture is kept as coefficients of 16 bits for three channels until its last scan.
+        // A progressive picture is kept as coefficients of 16 bits for three channels until its
+        // last scan.
         Ok(Head { bytes_per_pixel: head.bytes_per_pixel + 6, spare: bytes.len() as u64, ..head })
     },
     decode: |bytes| codec::raster(NAME, codec::decoder(NAME, ImageFormat::Jpeg, bytes)?),

@@ -12,7 +12,8 @@ pub const FORMAT: Format = Format {
     layers: false,
     most_side: u32::MAX,
     begins: |bytes| matches!(bytes, [b'P', b'1'..=b'7', b' ' | b'\t'..=b'\r' | b'#', ..]),
-    // Samples are scaled from the file's value of white to 255, or to 65535 if that is greater than 255.
+    // Samples are scaled from the file's value of white to 255, or to 65535 if that is greater than
+    // 255.
     head: |bytes| Ok(codec::head(&codec::decoder(NAME, ImageFormat::Pnm, bytes)?)),
     decode: |bytes| codec::raster(NAME, codec::decoder(NAME, ImageFormat::Pnm, bytes)?),
     encode: |layers, options, out| rows::encode(&ROWS, layers, options, out),

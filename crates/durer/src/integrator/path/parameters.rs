@@ -1,8 +1,7 @@
 //! What those who trace paths are told.
 
 use super::{Path, Photons};
-use crate::describe::{Describe, Field, FieldType, Kind, Rule, Value};
-use crate::described;
+use crate::describe::{Describe, Field, FieldType, Kind, Rule, Value, described};
 use crate::dialect::{DialectSet, set};
 use crate::integrator::{Parameters, Setup};
 use crate::spectrum::ColorMode;
@@ -12,15 +11,15 @@ use std::sync::Arc;
 described! {
     /// all light
     Transport ["path" in set::DURER] {
-        /// Light that was scattered more than once is not brighter than this in a sample; takes away bright specks, and
-        /// light with them [default: no limit]
+        /// Light that was scattered more than once is not brighter than this in a sample; takes
+        /// away bright specks, and light with them [default: no limit]
         clamp: Option<f32> = None, optional, Rule::Positive, ["clamp" in set::DURER];
-        /// What light is made of: rgb, or spectral (four wavelengths at a time: coloured light on coloured things,
-        /// prisms) [default: rgb]
+        /// What light is made of: rgb, or spectral (four wavelengths at a time: coloured light on
+        /// coloured things, prisms) [default: rgb]
         color: ColorMode = ColorMode::Rgb, optional, Rule::Any, ["color" in set::DURER];
-        /// How light straight from lamps is found: both (by points of lamps and by the directions in which surfaces
-        /// scatter, weighed), lights or bsdf (one of these alone: the same mean and more noise, to see what each is
-        /// good for) [default: both]
+        /// How light straight from lamps is found: both (by points of lamps and by the directions
+        /// in which surfaces scatter, weighed), lights or bsdf (one of these alone: the same mean
+        /// and more noise, to see what each is good for) [default: both]
         direct: Direct = Direct::Both, optional, Rule::Any, ["direct" in set::DURER];
     }
 }

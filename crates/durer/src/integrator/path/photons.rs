@@ -101,7 +101,8 @@ impl Photons {
     /// The photons of a sample.
     pub(super) fn map(&self, path: &Path, sample: u32) -> Arc<PhotonMap> {
         let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
-        // Whoever waits for the lock must not be given work that waits for it too: one thread makes it.
+        // Whoever waits for the lock must not be given work that waits for it too: one thread makes
+        // it.
         Self::found(&kept, sample).unwrap_or_else(|| Self::keep(&mut kept, sample, self.make(path, sample, false)))
     }
 
@@ -217,7 +218,8 @@ fn cell_of(place: glam::I64Vec3) -> u64 {
 
 impl PhotonMap {
     fn new(radius: f32, lanes: Lanes, found: Vec<Photon>) -> Self {
-        // Photons of a cell stay in the order in which they were sent, so that sums have the same bits.
+        // Photons of a cell stay in the order in which they were sent, so that sums have the same
+        // bits.
         let mut order: Vec<(u64, u32)> = found
             .iter()
             .enumerate()
@@ -244,7 +246,8 @@ impl PhotonMap {
     pub fn light(&self, surface: &Surface, shading: &Shading, most: u32) -> (Spectrum, usize) {
         let (mut sum, mut count) = (Spectrum::ZERO, 0);
         let square = self.radius * self.radius;
-        // Cells are two radii wide: those half a cell around the point hold all that is within a radius.
+        // Cells are two radii wide: those half a cell around the point hold all that is within a
+        // radius.
         let low = place(surface.position, self.radius, -0.5);
         for corner in 0..8 {
             let cell = cell_of(low + glam::I64Vec3::new(corner & 1, corner >> 1 & 1, corner >> 2));

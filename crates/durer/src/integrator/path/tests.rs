@@ -82,9 +82,9 @@ fn lights_with_extent_shine_by_their_view_factors() {
     let ring = over_floor("", "Disc { center 0 2 0 normal 0 -1 0 radius 1.5 innerRadius 0.75 }");
     let hole = 0.5625 / (0.5625 + 4.0);
     assert_light("ring", &ring, to_origin(), 0, shown(PI * 3.0 * (2.25 / (2.25 + 4.0) - hole)));
-    // A parallel rectangle with a corner over the point, Howell's C-11: with x = a/d and y = b/d, over
-    // 2 pi, F = x / sqrt(1 + x^2) atan(y / sqrt(1 + x^2)) + y / sqrt(1 + y^2) atan(x / sqrt(1 +
-    // y^2)).
+    // A parallel rectangle with a corner over the point, Howell's C-11: with x = a/d and y = b/d,
+    // over 2 pi, F = x / sqrt(1 + x^2) atan(y / sqrt(1 + x^2)) + y / sqrt(1 + y^2) atan(x / sqrt(1
+    // + y^2)).
     let factor = |x: f64, y: f64| {
         let (p, q) = ((1.0 + x * x).sqrt(), (1.0 + y * y).sqrt());
         (x / p * libm::atan(y / p) + y / q * libm::atan(x / q)) / (2.0 * PI)
@@ -105,8 +105,8 @@ fn lights_with_extent_shine_by_their_view_factors() {
 
 #[test]
 fn what_is_found_by_chance_and_what_is_connected_with_agree() {
-    // An ellipsoid has no points to choose: directions alone find it. Stretched by 1 it is the sphere
-    // that can be chosen.
+    // An ellipsoid has no points to choose: directions alone find it. Stretched by 1 it is the
+    // sphere that can be chosen.
     let one = over_floor("", "Sphere { center -0.8 1.6 0 radius 0.8 }");
     let other = over_floor("", "Ellipsoid { center -0.8 1.6 0 radii 0.8 0.8 0.8 }");
     let ((a, ea), (b, eb)) = (light(&one, to_origin(), 2, 1 << 15), light(&other, to_origin(), 2, 1 << 15));
@@ -124,9 +124,9 @@ fn what_is_found_by_chance_and_what_is_connected_with_agree() {
 
 #[test]
 fn points_of_lights_and_directions_alone_have_the_mean_of_both() {
-    // A glossy floor under a ball, a triangle and an even sky, with a light without extent and a mirror
-    // beside: whatever finds the light, its mean is the same. z-tests of means against each other,
-    // 18 in all: 3.6 standard errors are passed by chance once in 3000.
+    // A glossy floor under a ball, a triangle and an even sky, with a light without extent and a
+    // mirror beside: whatever finds the light, its mean is the same. z-tests of means against each
+    // other, 18 in all: 3.6 standard errors are passed by chance once in 3000.
     let materials = "PrincipledMaterial { baseColor 0.5 0.4 0.3 specularRoughness 0.35 }
         PrincipledMaterial { baseColor 0 0 0 specularWeight 0 emissionLuminance 3 }
         PrincipledMaterial { baseColor 1 1 1 baseMetalness 1 specularRoughness 0 }
@@ -168,8 +168,8 @@ fn points_of_lights_and_directions_alone_have_the_mean_of_both() {
 
 #[test]
 fn an_integrating_sphere_has_the_same_indirect_light_everywhere() {
-    // A point light of intensity I anywhere in a sphere of area S and albedo rho: E = I cos / d^2 + 4
-    // pi I / S rho / (1 - rho). A light of colour c makes an irradiance of pi c at distance 1.
+    // A point light of intensity I anywhere in a sphere of area S and albedo rho: E = I cos / d^2 +
+    // 4 pi I / S rho / (1 - rho). A light of colour c makes an irradiance of pi c at distance 1.
     let world = scene(
         MATTE,
         "PointLight { position 0.5 0.8 0 color 1 1 1 attenuation 0 0 1 }",
@@ -204,7 +204,8 @@ fn bodies_that_absorb_nothing_vanish_in_even_light() {
         for x in [0.0, 0.6, 0.95] {
             let ray = Ray::new(Vec3::new(x, 0.0, 5.0), Vec3::NEG_Z);
             let (mean, error) = light(&world, ray, 200, 1 << 13);
-            // What the tables of rough glass leave unexplained: less than half a percent at two boundaries.
+            // What the tables of rough glass leave unexplained: less than half a percent at two
+            // boundaries.
             assert!((mean - 0.7).abs() < 3.0 * error + 0.005, "{material} at {x}: {mean} ± {error}");
         }
     }
@@ -212,8 +213,8 @@ fn bodies_that_absorb_nothing_vanish_in_even_light() {
 
 #[test]
 fn an_absorbing_slab_dims_by_beer_and_fresnel() {
-    // Seen at right angles: T = (1 - F)^2 a / (1 - F^2 a^2) with a = exp(-sigma s); behind is light of
-    // 1.
+    // Seen at right angles: T = (1 - F)^2 a / (1 - F^2 a^2) with a = exp(-sigma s); behind is light
+    // of 1.
     let (f, a) = (0.04_f64, 0.3_f64);
     let glass = "PrincipledMaterial { transmissionWeight 1 specularRoughness 0 transmissionColor 0.3 0.3 0.3 transmissionDepth 2 }";
     let lamp = "PrincipledMaterial { baseColor 0 0 0 specularWeight 0 emissionLuminance 1 }";

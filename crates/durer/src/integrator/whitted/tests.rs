@@ -156,7 +156,8 @@ fn a_ball_of_glass_like_air_is_not_seen() {
             let beside = origin - origin.dot(dir) * dir;
             let rest = 1.0 - (1.0 - beside.length_squared()).max(0.0).sqrt();
             let lost = if glass.contains("refractionIndex") { rest * rest * rest * rest * rest } else { 0.0 };
-            // Rays that graze the ball at 1e-3 of it or less may miss it; there a cosine loses half its digits.
+            // Rays that graze the ball at 1e-3 of it or less may miss it; there a cosine loses half
+            // its digits.
             let slack = if beside.length() > 0.99 { 0.1 } else { 1e-5 };
             let expected =
                 Vec3::new(0.2, 0.4, 0.8) * if beside.length() < 1.0 { (1.0 - lost) * (1.0 - lost) } else { 1.0 };
@@ -237,8 +238,8 @@ fn a_coarse_smooth_ball_has_no_shadow_on_itself_where_its_normals_face_the_light
     // Without the remedy, whole triangles.
     let (lost, all) = dark(&read("", true));
     assert!(lost > all / 100, "{lost} of {all}");
-    // What stands in the way still does, if it is farther off than the bent surface is from the flat
-    // one.
+    // What stands in the way still does, if it is farther off than the bent surface is from the
+    // flat one.
     let (lost, all) = dark(&read("Plane { normal 0 1 0 offset 1.05 }", false));
     assert!(lost == all, "{lost} of {all}");
 }

@@ -39,9 +39,9 @@ fn photons(count: u32, radius: f32) -> Method {
 
 #[test]
 fn the_truth_lies_within_the_bounds_as_often_as_they_say() {
-    // Below a lamp at height h the floor's irradiance is E (1 + x^2 / h^2)^(-3/2), dimmed by (1 - F) /
-    // (1 + F): its second derivatives sum to -6 E / h^2. Epanechnikov's kernel has a second moment
-    // of r^2 / 6 along each axis, so the bias is -E r^2 / (2 h^2).
+    // Below a lamp at height h the floor's irradiance is E (1 + x^2 / h^2)^(-3/2), dimmed by (1 -
+    // F) / (1 + F): its second derivatives sum to -6 E / h^2. Epanechnikov's kernel has a second
+    // moment of r^2 / 6 along each axis, so the bias is -E r^2 / (2 h^2).
     let (runs, samples, radius, height) = (200, 12, 0.6_f64, 2.0_f64);
     let truth = 0.001 * 1000.0 / (height * height) * 0.96 / 1.04;
     let squares = (0..samples).scan(radius * radius, |square, i| {

@@ -37,7 +37,8 @@ fn all_crossings_are_where_a_line_goes_in_or_out() {
             let inside = |t: f64| shape.inside(line.at(t)).unwrap();
             let unit = f64::from(size) / line.dir.length();
             let middle = line.nearest(shape.bounds().map_or(DVec3::ZERO, |b| b.center().as_dvec3()));
-            // Each is a change: a little before it is not as a little behind it, if nothing else is near.
+            // Each is a change: a little before it is not as a little behind it, if nothing else is
+            // near.
             let little = 1e-8 * unit;
             for (i, &(t, uv)) in all.iter().enumerate() {
                 let near = |other: Option<&(f64, Vec2)>| other.is_some_and(|o| (o.0 - t).abs() < 1e-3 * unit);

@@ -39,7 +39,8 @@ fn no_ray_meets_the_surface_that_it_leaves() {
             let scale = [1.0, 1e-6, 1e6, 1e-3, 1e3][round % 5];
             affine = DAffine3::from_scale(DVec3::splat(scale)) * affine;
             if round % 4 == 0 {
-                // Along an axis the point's other coordinates are small, and known better than that one.
+                // Along an axis the point's other coordinates are small, and known better than that
+                // one.
                 affine.translation *= glam::DVec3::X;
             }
             for (kind, shape) in samples(&mut random, 1.0, 1.0).into_iter().enumerate() {
@@ -47,22 +48,24 @@ fn no_ray_meets_the_surface_that_it_leaves() {
                 for _ in 0..10 {
                     let Some((ray, first)) = hit(&world, &shape, &affine, &mut random) else { continue };
                     let surface = world.surface(&ray, &first);
-                    // The tip of a stretched ball may be sharper than coordinates are fine: the least radius of
-                    // curvature of an ellipsoid is its least half axis squared over the largest.
+                    // The tip of a stretched ball may be sharper than coordinates are fine: the
+                    // least radius of curvature of an ellipsoid is its least half axis squared over
+                    // the largest.
                     let off = surface.error.length() / scale as f32;
                     let tip = surface.curvature.recip() / (stretch * stretch * stretch);
                     if tip < 10.0 * off {
                         continue;
                     }
-                    // Nor is it known on which side of an edge a point is that is nearer to it than its error.
+                    // Nor is it known on which side of an edge a point is that is nearer to it than
+                    // its error.
                     let at = affine.inverse().transform_point3(surface.point());
                     if near_edge(&shape, at, f64::from(10.0 * stretch * off)) {
                         continue;
                     }
                     for _ in 0..40 {
                         let dir = random.between(0.01, 100.0) * random.direction();
-                        // A ray that lies in the surface to within the rounding of its direction, which a shear
-                        // enlarges by the ratio of its factors, is on neither side.
+                        // A ray that lies in the surface to within the rounding of its direction,
+                        // which a shear enlarges by the ratio of its factors, is on neither side.
                         let in_it = 2.0 * f32::EPSILON * stretch * stretch;
                         if dir.normalize().dot(surface.n_geo).abs() < in_it {
                             continue;
@@ -124,8 +127,8 @@ fn a_mirrored_and_a_sheared_normal_is_that_of_the_moved_surface() {
             let difference = |v: DVec3| (field(p + step * v) - field(p - step * v)) / (2.0 * step);
             let gradient = DVec3::new(difference(DVec3::X), difference(DVec3::Y), difference(DVec3::Z));
             assert!(field(p).abs() <= f64::from(bound) * gradient.length() * 1.01, "{shape:?} {affine:?}");
-            // The matrix is rounded to single precision and stretches by up to 25 more in one axis than
-            // another; the point of a small ball is known to 1e-6 of its radius.
+            // The matrix is rounded to single precision and stretches by up to 25 more in one axis
+            // than another; the point of a small ball is known to 1e-6 of its radius.
             let n = surface.n_geo.as_dvec3();
             assert!((gradient.normalize() - n).length() < 1e-4, "{shape:?} {affine:?} {surface:?} {gradient}");
             // t is the same in both spaces.

@@ -102,9 +102,9 @@ fn a_crease_keeps_a_cube_flat_and_makes_a_ball_smooth() {
         for uv in CORNERS {
             let surface = mesh.surface(part, &Crossing { t: 1.0, uv });
             let off = (surface.n_shade - surface.position).length();
-            // At the poles each triangle has a vertex of its own; elsewhere four or more faces are averaged,
-            // whose planes are tilted by up to half a ring, 5.6 degrees, and not quite evenly
-            // around.
+            // At the poles each triangle has a vertex of its own; elsewhere four or more faces are
+            // averaged, whose planes are tilted by up to half a ring, 5.6 degrees, and not quite
+            // evenly around.
             let pole = surface.position.y.abs() > 0.999;
             assert!(pole || off < 0.02, "{surface:?} {off}");
         }

@@ -118,7 +118,8 @@ fn solids_have_the_points_that_their_words_say() {
     let mut random = Random(21);
     let (mut points, mut inside, mut near) = (0, 0, 0);
     while points < wanted {
-        // Parts of a union at the top keep their inner surfaces, so there is another operation around it.
+        // Parts of a union at the top keep their inner surfaces, so there is another operation
+        // around it.
         let solid = join(Operation::Merge, &[&tree(&mut random, 3)]);
         let world = testing::object(solid.clone(), AccelKind::Bvh, folder.path());
         for _ in 0..40 {
@@ -351,8 +352,8 @@ fn each_surface_has_the_material_of_its_part() {
 
 #[test]
 fn a_lens_of_two_balls_focuses_where_the_lensmaker_says() {
-    // 1/f = (n - 1) (2/R - (n - 1) d / (n R^2)), counted from behind the lens by f (1 - (n - 1) d / (n
-    // R)).
+    // 1/f = (n - 1) (2/R - (n - 1) d / (n R^2)), counted from behind the lens by f (1 - (n - 1) d /
+    // (n R)).
     let (n, radius, offset) = (1.5f64, 2.2f64, 1.9f64);
     let thickness = 2.0 * (radius - offset);
     let f = 1.0 / ((n - 1.0) * (2.0 / radius - (n - 1.0) * thickness / (n * radius * radius)));
@@ -480,8 +481,8 @@ fn rays_that_leave_a_solid_do_not_meet_it_there() {
                 }
                 let away = from_surface(&surface, dir, f32::INFINITY, None);
                 let Some(next) = world.closest(&away, &mut ()) else { continue };
-                // Whoever goes out comes in next, and the other way round; edges nearer than the error are not
-                // known.
+                // Whoever goes out comes in next, and the other way round; edges nearer than the
+                // error are not known.
                 let error = surface.error.length();
                 count += 1;
                 let turns = goes_out(&world, &away, &next) != (dir.dot(surface.n_geo) > 0.0);

@@ -86,7 +86,8 @@ impl Beams {
             let seen = light.illuminate(DVec3::ZERO);
             match seen.distance.is_infinite() {
                 true => beams.add(Lamp::Far(number), PI * light.color().max_element() * area),
-                // It fades otherwise than with the square: as if it shone over the scene's own size.
+                // It fades otherwise than with the square: as if it shone over the scene's own
+                // size.
                 false => beams.add(Lamp::Near(number), 4.0 * PI * PI * light.color().max_element() * reach * reach),
             }
         }

@@ -249,8 +249,8 @@ impl AreaLight {
         if place.cosine <= 0.0 && !self.two_sided {
             return None;
         }
-        // The point is known to its rounding only; what stands nearer to the emitter than that does not
-        // count.
+        // The point is known to its rounding only; what stands nearer to the emitter than that does
+        // not count.
         let reach = place.distance - 2.0 * self.error / place.cosine.abs().max(1e-3);
         let radiance = world.emission_of(world.objects()[self.object as usize].material)?.radiance;
         let light = LightId::Surface(self.object, self.part);

@@ -337,7 +337,8 @@ impl Window {
         let turns = fp::atan2_turn_f64(all.y, all.x);
         let solid_angle = std::f64::consts::TAU * if turns < 0.0 { turns + 1.0 } else { turns };
         let k = DVec2::new(right.x, -right.y);
-        // Turns are known to 2e-9, which is too much of few, and a rounding below none looks like a whole one.
+        // Turns are known to 2e-9, which is too much of few, and a rounding below none looks like a
+        // whole one.
         let known = turns.abs() > 1e-4;
         known.then_some(Window { axes: [x, y, z], near, far, solid_angle, b: [n0, n2], k })
     }

@@ -190,8 +190,8 @@ fn a_ramp_of_heights_tilts_a_wall() {
 
 #[test]
 fn a_ramp_of_heights_around_a_ball() {
-    // Brighter eastwards: by 1 around the whole ball, so by h / (2 pi r cos latitude) for a way along a
-    // circle.
+    // Brighter eastwards: by 1 around the whole ball, so by h / (2 pi r cos latitude) for a way
+    // along a circle.
     let folder = folder("ball", &[("east.ppm", 256, &|x, _| [x as u8; 3])]);
     let world = world(
         "bumpTexture east.ppm bumpHeight 0.5",

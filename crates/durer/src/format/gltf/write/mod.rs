@@ -15,7 +15,7 @@ use crate::camera::{Camera, Lens};
 use crate::describe::DescribedList;
 use crate::diag::{Diagnostic, Diagnostics};
 use crate::dialect::Dialect;
-use crate::format::scene::Output;
+use crate::format::model::Output;
 use crate::light::Light;
 use crate::math::{Vec3, fp};
 use crate::scene::{MatrixOp, Node, Object, Scene};
@@ -166,8 +166,8 @@ impl Writer<'_> {
     fn camera(&mut self) -> Option<usize> {
         let camera = self.scene.camera.as_ref()?;
         let pose = camera.pose();
-        // Angles and sizes here are those of the picture's larger side, and glTF's those from bottom to
-        // top.
+        // Angles and sizes here are those of the picture's larger side, and glTF's those from
+        // bottom to top.
         let aspect = self.scene.wishes.size.map_or(1.0, |(width, height)| width as f32 / height as f32);
         let narrow = aspect.max(1.0);
         let upright = |angle: f32| {

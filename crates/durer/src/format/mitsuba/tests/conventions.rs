@@ -169,8 +169,8 @@ fn mesh(scene: &Scene) -> &crate::shape::MeshData {
 
 #[test]
 fn coordinates_of_textures_are_turned_over() {
-    // Mitsuba has v = 0 at the upper border of a picture, and the lower left corner of a rectangle at 0
-    // 0.
+    // Mitsuba has v = 0 at the upper border of a picture, and the lower left corner of a rectangle
+    // at 0 0.
     let scene = clean("<shape type='rectangle'/>");
     let lower_left = mesh(&scene).positions.iter().position(|p| p.x < 0.0 && p.y < 0.0).unwrap();
     assert_eq!(mesh(&scene).uvs[lower_left], Vec2::new(0.0, 1.0));

@@ -1,6 +1,6 @@
 use super::super::environment::{equal_area, of_equal_area};
 use super::super::named;
-use super::super::spectrum::{Space, Spectrum, conductor, metal};
+use super::super::spectrum::{Space, Spectrum, conductor, metal, sum};
 use super::*;
 use crate::bsdf::microfacet::Ggx;
 use crate::camera::{CameraSample, Frame, Lens};
@@ -229,7 +229,7 @@ fn alphas_become_roughness_and_come_back() {
 #[test]
 fn spectra_become_colours() {
     // The rows sum to the same for all three: the equal-energy white, to what steps of 10 nm allow.
-    let white = named::sum(|_| 1.0);
+    let white = sum(|_| 1.0);
     assert!((white.x - white.y).abs() < 0.002 * white.y && (white.z - white.y).abs() < 0.002 * white.y, "{white}");
     let even = Spectrum::Curve(vec![[300.0, 0.4], [900.0, 0.4]]);
     assert!((even.albedo() - Vec3::splat(0.4)).length() < 1e-5);

@@ -107,8 +107,8 @@ fn views_see_what_radiance_s_do() {
 
 #[test]
 fn round_things_are_lit_as_flat_ones_are() {
-    // What a cone's side gets of a lamp above does not hang on its being made of triangles with bent
-    // normals.
+    // What a cone's side gets of a lamp above does not hang on its being made of triangles with
+    // bent normals.
     let text = "void plastic w 0 0 5 .5 .5 .5 0 0\nvoid light l 0 0 3 9 9 9\nw cone c 0 0 8 0 0 0 0 0 .5 1 .1\n\
                 l polygon p 0 0 12 -1 -1 2 -1 1 2 1 1 2 1 -1 2";
     let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());

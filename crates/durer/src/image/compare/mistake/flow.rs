@@ -14,7 +14,8 @@ const LEAST: f64 = 0.2;
 pub fn cause(reference: &View, at_edges: &[Sample]) -> Option<String> {
     let [right, stretch_x, down, stretch_y] = flow(reference, at_edges)?;
     let moved = |amount: f64| amount.abs() > LEAST;
-    // Pixel i of n at i / (n - 1) instead of (i + 0.5) / n: half a pixel too far out at both borders.
+    // Pixel i of n at i / (n - 1) instead of (i + 0.5) / n: half a pixel too far out at both
+    // borders.
     let is_half = |stretch: f64| (0.3..0.75).contains(&stretch.abs());
     let is_stretched = moved(stretch_x.abs().max(stretch_y.abs()));
     if !moved(right) && !moved(down) && is_half(stretch_x) && is_half(stretch_y) && stretch_x * stretch_y > 0.0 {

@@ -48,8 +48,8 @@ fn unit_vectors(samples: &[Sample]) -> Option<(Decode, Vec<&Sample>)> {
     decodings.into_iter().find_map(|decode| {
         let unit: Vec<&Sample> =
             samples.iter().filter(|s| (decode(s.reference).length() - 1.0).abs() < 0.015).collect();
-        // The rest is background. Full red, green or blue are unit vectors by chance: others must be there
-        // too.
+        // The rest is background. Full red, green or blue are unit vectors by chance: others must
+        // be there too.
         let things = samples.iter().filter(|s| s.reference != Vec3::ZERO).count();
         let mixed = unit.iter().filter(|s| s.reference.max_element() < 0.98).count();
         (3 * unit.len() > things && 4 * mixed > unit.len() && !unit.is_empty()).then_some((decode, unit))
@@ -137,8 +137,8 @@ fn edges(reference: &View, test: &View, samples: &[Sample]) -> Option<Finding> {
         at_edges.iter().map(steps).sum()
     };
     let (own, others) = (roughness(test), roughness(reference));
-    // Of an edge that is sampled otherwise, one side gains what the other loses; of one that is moved
-    // it need not.
+    // Of an edge that is sampled otherwise, one side gains what the other loses; of one that is
+    // moved it need not.
     let (sum, all) = at_edges.iter().fold((0.0, 0.0), |(sum, all), s| {
         let by = (s.test - s.reference).element_sum();
         (sum + by, all + by.abs())

@@ -47,7 +47,8 @@ pub fn samples(reference: &View, test: &View) -> Vec<Sample> {
     let pixels = reference.pixels.len();
     let count = pixels.min(MOST);
     let place = |i: usize| {
-        // One pixel of each of `count` equal parts, at the place that multiples of the golden ratio give.
+        // One pixel of each of `count` equal parts, at the place that multiples of the golden ratio
+        // give.
         let part = if pixels > MOST { (i as f64 * 0.618_033_988_749_895).fract() } else { 0.0 };
         (((i as f64 + part) * pixels as f64 / count as f64) as usize).min(pixels - 1)
     };

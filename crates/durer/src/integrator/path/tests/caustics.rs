@@ -19,8 +19,8 @@ const GLASS: &str = "PrincipledMaterial { transmissionWeight 1 specularRoughness
 
 #[test]
 fn light_through_a_slab_is_what_fresnel_leaves() {
-    // All reflections inside counted, T = (1 - F) / (1 + F) with F = 0.04: light that no path finds but
-    // by way of the floor.
+    // All reflections inside counted, T = (1 - F) / (1 + F) with F = 0.04: light that no path finds
+    // but by way of the floor.
     let world = scene(
         &format!("{MATTE} {GLASS}"),
         "DirectionalLight { direction 0 -1 0 color 2 2 2 }",
@@ -55,9 +55,9 @@ fn photons_and_paths_agree_where_both_find_the_light() {
 
 #[test]
 fn fog_and_rough_glass_bring_the_same_light_with_photons_and_without() {
-    // All light comes out of a ball of glass with a lamp in it. Photons bring what single directions
-    // throw on surfaces; light that fog or rough glass scatters after that stays with paths.
-    // Nothing is counted twice, and nothing is left out.
+    // All light comes out of a ball of glass with a lamp in it. Photons bring what single
+    // directions throw on surfaces; light that fog or rough glass scatters after that stays with
+    // paths. Nothing is counted twice, and nothing is left out.
     let lamp = "PrincipledMaterial { baseColor 0 0 0 specularWeight 0 emissionLuminance 6 }";
     let rough = "PrincipledMaterial { transmissionWeight 1 specularRoughness 0.4 }";
     let things = "MaterialIndex 0 Plane { normal 0 1 0 offset 0 } MaterialIndex 1 Sphere { center 0 1 0 radius 0.6 } \
@@ -76,8 +76,8 @@ fn fog_and_rough_glass_bring_the_same_light_with_photons_and_without() {
         let (a, ea) = light(&world, ray, 12, 1 << 15);
         let (b, eb) = by_photons(&world, ray, (100, 0.2), 1 << 13);
         let error = (ea * ea + eb * eb).sqrt();
-        // One part in a hundred is allowed for the kernel's radius; the errors are small enough to see
-        // light that is lost or counted twice.
+        // One part in a hundred is allowed for the kernel's radius; the errors are small enough to
+        // see light that is lost or counted twice.
         let near = (a - b).abs() < 3.5 * error + 0.01 * a && error < 0.15 * a;
         assert!(near, "{air} {more}: {a} ± {ea}, {b} ± {eb}");
     }

@@ -1,0 +1,223 @@
+//! Options that several commands have.
+
+use crate::denoise::Denoiser;
+use crate::display::DisplayArgs;
+use crate::memory::Memory;
+use crate::method::MethodArgs;
+use crate::staging::StagingArgs;
+use crate::values::{cells, compat, crop, noise, on_off, size, weight};
+use clap::Args;
+use clap::builder::{ArgPredicate, PossibleValuesParser};
+use durer::dialect::{Compat, Dialect};
+use durer::film::Filter;
+use durer::film::aov::AOVS;
+use durer::render::Shard;
+use durer::sampler::Sampler;
+use std::path::PathBuf;
+use std::time::Duration;
+
+/// How a scene is read
+#[derive(Args)]
+pub struct SceneArgs {
+    /// The scene's dialect, with all habits of that year's program; guessed where not given
+    #[arg(long, value_parser = PossibleValuesParser::new(Dialect::ALL.map(Dialect::name)))]
+    pub dialect: Option<String>,
+    /// Turn an old program's habit on, or off with `no-` before it (see `durer dialects`)
+    #[arg(long, value_name = "NAME", value_delimiter = ',', value_parser = compat)]
+    pub compat: Vec<(Compat, bool)>,
+    /// Allow only the words of the dialect: no comments, nothing of our own
+    #[arg(long)]
+    pub strict: bool,
+    /// Let the scene name files outside its own folder
+    #[arg(long)]
+    pub allow_outside: bool,
+    /// Look for missing meshes and pictures in this folder too
+    #[arg(long, value_name = "FOLDER")]
+    pub assets: Vec<PathBuf>,
+    /// Refuse what needs more memory: bytes as in 512M or 8G, or a share of the machine's or
+    /// control group's
+    #[arg(long, default_value = "80%", value_name = "SIZE", value_parser = Memory::parse)]
+    pub memory: Memory,
+    #[command(flatten)]
+    pub staging: StagingArgs,
+}
+
+/// What is rendered, how, and whereto
+#[derive(Args)]
+pub struct RenderArgs {
+    /// The scene file
+    pub scene: PathBuf,
+    /// The picture to write; with --shard, the part [default: the scene's name with .png, here]
+    #[arg(short, long, value_name = "PICTURE")]
+    pub output: Option<PathBuf>,
+    #[command(flatten)]
+    pub reading: SceneArgs,
+    #[command(flatten)]
+    pub view: ViewArgs,
+    #[command(flatten)]
+    pub job: JobArgs,
+    #[command(flatten)]
+    pub work: WorkArgs,
+    #[command(flatten)]
+    pub display: DisplayArgs,
+    /// Take the noise out of the colour picture, by what is known of each pixel's surface and of
+    /// its noise; EXR keeps the picture as it was rendered, beside a layer `denoised`, and
+    /// --hash knows nothing of it. By Open Image Denoise (oidn) where that is found, else by
+    /// our own (own)
+    #[arg(long, value_name = "BY", num_args = 0..=1, require_equals = true, default_missing_value = "auto", value_parser = Denoiser::parser())]
+    pub denoise: Option<Denoiser>,
+    /// Render again whenever the scene, a mesh or a picture of it is saved; the picture grows as it
+    /// is made, and Ctrl-C ends
+    #[arg(long, conflicts_with_all = ["pixel", "shard", "checkpoint", "resume", "restart", "preview"])]
+    pub watch: bool,
+    /// Print the hash of the film as the last line of standard output
+    #[arg(long)]
+    pub hash: bool,
+    /// Tell on standard error what the time went into, which rays there were, and how much of the
+    /// time they took
+    #[arg(long)]
+    pub stats: bool,
+    /// Say nothing but errors
+    #[arg(short, long)]
+    pub quiet: bool,
+}
+
+/// Which pictures are made
+#[derive(Args)]
+pub struct ViewArgs {
+    /// Make only a part of the picture
+    #[arg(long, value_name = "LEFT,TOP,WIDTHxHEIGHT", value_parser = crop)]
+    pub crop: Option<(u32, u32, u32, u32)>,
+    /// What to show; several are joined by commas. With paths and photons, `error` is how far the
+    /// luminance may be from the truth, noise and the bias of photons together, with 90 %
+    /// confidence
+    #[arg(long, value_delimiter = ',', default_value = "color", value_parser = PossibleValuesParser::new(shows()))]
+    pub show: Vec<String>,
+    /// Pixels for a pixel in the pictures `samples` and `filter`
+    #[arg(long, default_value_t = 20, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub zoom: u32,
+}
+
+/// What the picture is
+#[derive(Args)]
+pub struct JobArgs {
+    /// Size in pixels [default: 512x512; with --dialect, that year's]
+    #[arg(long, value_name = "WIDTHxHEIGHT", value_parser = size)]
+    pub size: Option<(u32, u32)>,
+    /// Depths shown as the two ends of grey [default: those in the picture]
+    #[arg(long, num_args = 2, value_names = ["MIN", "MAX"], allow_negative_numbers = true)]
+    pub depth_range: Option<Vec<f32>>,
+    /// Luminance or illuminance shown as the first and the last false colour [default: 0 and what
+    /// 98 % of the picture stay below]
+    #[arg(long, num_args = 2, value_names = ["LOW", "HIGH"], allow_negative_numbers = true)]
+    pub light_range: Option<Vec<f32>>,
+    /// False colours of light by equal ratios; --light-range begins above 0
+    #[arg(long, requires = "light_range")]
+    pub light_log: bool,
+    #[command(flatten)]
+    pub method: MethodArgs,
+    /// Levels of mirrored and transmitted rays; of paths, how often light is scattered after the
+    /// first time [default: 8, of paths 16; with --dialect, that year's]
+    #[arg(long, value_parser = clap::value_parser!(u32).range(0..=256))]
+    pub bounces: Option<u32>,
+    /// Whether things cast shadows [default: on; with --dialect, off]
+    #[arg(long, value_name = "on|off", num_args = 0..=1, require_equals = true, default_missing_value = "on", value_parser = on_off)]
+    pub shadows: Option<bool>,
+    /// Whether surfaces are shaded from behind too [default: on; with --dialect, off]
+    #[arg(long, value_name = "on|off", num_args = 0..=1, require_equals = true, default_missing_value = "on", value_parser = on_off)]
+    pub shade_back: Option<bool>,
+    /// Let transparent things cast coloured shadows
+    #[arg(long)]
+    pub transparent_shadows: bool,
+    /// Leave mirrored rays out
+    #[arg(long)]
+    pub no_reflection: bool,
+    /// Leave transmitted rays out
+    #[arg(long)]
+    pub no_refraction: bool,
+    /// Leave out rays that count for less than this [default: 1/256; with --dialect, 0]
+    #[arg(long, allow_negative_numbers = true, value_parser = weight)]
+    pub weight: Option<f32>,
+
+    /// Samples a pixel; 1 is the pixel's centre [default: 16, or 64 through a lens or a hole; with
+    /// --dialect, 1; with --time, no end; with --noise, 4096]
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=1 << 20))]
+    pub samples: Option<u32>,
+    /// Where samples lie; all but sobol are the course's, with its filters
+    #[arg(long, default_value = "sobol", value_parser = PossibleValuesParser::new(Sampler::NAMES.map(|n| n.0)))]
+    pub sampler: String,
+    /// Reconstruction filter [default: blackman-harris; none for the course's samplers]
+    #[arg(long, value_parser = PossibleValuesParser::new(Filter::NAMES.map(|n| n.0)))]
+    pub filter: Option<String>,
+    /// Radius of the filter in pixels; for the course's Gaussian, its standard deviation
+    #[arg(long, value_name = "PIXELS", requires = "filter")]
+    pub filter_radius: Option<f32>,
+    /// Three by three jittered sub-pixels, as in 2012
+    #[arg(long, conflicts_with_all = ["samples", "sampler", "filter"])]
+    pub jitter: bool,
+    /// Blur by five taps, as in 2012
+    #[arg(long, conflicts_with_all = ["samples", "sampler", "filter"])]
+    pub blur: bool,
+    /// Stop where the estimated error of what is seen is below this; 0.01 is a hundredth of the way
+    /// from black to white
+    #[arg(long, value_name = "ERROR", value_parser = noise)]
+    pub noise: Option<f32>,
+    /// Seed of the random numbers
+    #[arg(long, default_value_t = 0)]
+    pub seed: u64,
+
+    /// What finds the objects that a ray may hit
+    #[arg(long, default_value = "bvh", default_value_if("grid", ArgPredicate::IsPresent, "grid"), value_parser = ["bvh", "grid", "none"])]
+    pub accel: String,
+    /// Cells of the grid, which is used then [default: suitable ones]
+    #[arg(long, value_name = "XxYxZ", value_parser = cells)]
+    pub grid: Option<[u32; 3]>,
+}
+
+/// When and with how much it is made
+#[derive(Args)]
+pub struct WorkArgs {
+    /// Threads that build and render [default: as many as the machine has]
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+    /// Pixels across and down the tiles that threads take, in steps of 8 [default: suitable ones]
+    #[arg(long, value_name = "PIXELS", value_parser = clap::value_parser!(u32).range(8..=4096))]
+    pub tile: Option<u32>,
+    /// Stop after this time, as in 30s, 10m, 1h30m, once every pixel has a sample
+    #[arg(long, value_name = "TIME", value_parser = humantime::parse_duration)]
+    pub time: Option<Duration>,
+    /// Go on with the work that was saved; from the start where none was
+    #[arg(long)]
+    pub resume: bool,
+    /// Throw away unfinished work that was saved, and begin anew
+    #[arg(long, conflicts_with_all = ["resume", "no_checkpoint"])]
+    pub restart: bool,
+    /// Where work is saved [default: PICTURE.part, from the first second on]
+    #[arg(long, value_name = "FILE", conflicts_with = "shard")]
+    pub checkpoint: Option<PathBuf>,
+    /// How often work is saved, beside the ends of passes
+    #[arg(long, default_value = "30s", value_name = "TIME", value_parser = humantime::parse_duration)]
+    pub checkpoint_every: Duration,
+    /// Do not save work before it is done
+    #[arg(long, conflicts_with_all = ["checkpoint", "resume", "shard"])]
+    pub no_checkpoint: bool,
+    /// Write what is there into this picture too, after each pass over all pixels
+    #[arg(long, value_name = "PICTURE", conflicts_with = "shard")]
+    pub preview: Option<PathBuf>,
+    /// Make only one of several parts, for `durer merge`
+    #[arg(long, value_name = "INDEX/COUNT", requires = "output")]
+    pub shard: Option<Shard>,
+    /// Whether parts have different pixels or different samples
+    #[arg(long, value_name = "WHAT", default_value = "tiles", value_parser = ["tiles", "samples"], requires = "shard")]
+    pub shard_by: String,
+}
+
+/// Pictures that show not the scene but how it is sampled.
+pub const DIAGRAMS: [&str; 2] = ["samples", "filter"];
+
+/// The picture of how far pixels may be from the truth, which is made beside the work.
+pub const ERROR: &str = "error";
+
+fn shows() -> Vec<&'static str> {
+    std::iter::once("color").chain(AOVS.iter().map(|aov| aov.name)).chain([ERROR]).chain(DIAGRAMS).collect()
+}

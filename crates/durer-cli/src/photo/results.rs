@@ -1,0 +1,84 @@
+//! What came of it: told, and written.
+
+use super::args::ResultArgs;
+use super::inputs::wrong;
+use crate::failure::{Failure, bad};
+use crate::guard::Guard;
+use crate::output::save;
+use crate::terminal::say;
+use durer::image::Destination;
+use durer_photo::Reconstruction;
+use durer_photo::format::Output;
+use std::path::{Path, PathBuf};
+
+/// Says how many there are of everything, and how well it fits.
+pub fn tell(all: &Reconstruction) {
+    let (fit, count) = (all.fit(), all.registered());
+    say(&format!("{count} of {} photographs have a place; {} points", all.views.len(), all.points.len()));
+    if fit.observations > 0 {
+        let (track, n) = (all.track_length(), fit.observations);
+        let (rms, max, cost) = (fit.rms, fit.max, fit.cost);
+        say(&format!("{n} observations, {track:.2} a point; rms {rms:.4} pixels, at most {max:.2}; cost {cost:.6e}"));
+    }
+}
+
+/// Where cameras and points go, each in its format.
+pub struct Results {
+    outputs: Vec<(Output, PathBuf, Vec<Destination>)>,
+    folders: Vec<PathBuf>,
+    files: Vec<Vec<u8>>,
+}
+
+impl Results {
+    /// Says now what is known to prevent writing. Folders are made when there is something to put
+    /// into them.
+    pub fn new(args: &ResultArgs, guard: &mut Guard) -> Result<Self, Failure> {
+        let mut results = Results { outputs: Vec::new(), folders: Vec::new(), files: Vec::new() };
+        for path in &args.output {
+            let output = Output::of(path, args.binary).map_err(wrong)?;
+            if output.is_folder() && !path.exists() {
+                let parent = path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
+                if !parent.is_dir() {
+                    return Err(bad(format!("there is no folder `{}`", parent.display())));
+                }
+                results.folders.push(path.clone());
+                results.outputs.push((output, path.clone(), Vec::new()));
+                continue;
+            }
+            let places =
+                output.files(path).iter().map(|file| guard.writes("--output", file)).collect::<Result<_, _>>()?;
+            results.outputs.push((output, path.clone(), places));
+        }
+        Ok(results)
+    }
+
+    /// Makes the files' contents.
+    pub fn add(&mut self, all: &Reconstruction) -> Result<(), Failure> {
+        for (output, ..) in &self.outputs {
+            self.files.extend(output.write(all).map_err(wrong)?);
+        }
+        Ok(())
+    }
+
+    /// Writes all files or none.
+    pub fn save(mut self, quiet: bool) -> Result<(), Failure> {
+        for folder in &self.folders {
+            std::fs::create_dir(folder)
+                .map_err(|error| anyhow::anyhow!("cannot make the folder `{}`: {error}", folder.display()))?;
+        }
+        let saved = (|| {
+            for (output, path, places) in &mut self.outputs {
+                if places.is_empty() {
+                    *places = output.files(path).into_iter().map(Destination::new).collect::<Result<_, _>>()?;
+                }
+            }
+            let places = self.outputs.iter().flat_map(|(_, _, places)| places);
+            save(&places.zip(std::mem::take(&mut self.files)).collect::<Vec<_>>(), quiet)
+        })();
+        if saved.is_err() {
+            // Folders that were made for nothing go; where that fails they stay, empty.
+            self.folders.iter().for_each(|folder| drop(std::fs::remove_dir(folder)));
+        }
+        saved
+    }
+}

@@ -1,0 +1,64 @@
+//! What plugins become: materials, what shines, what is infinitely far away.
+
+use super::plugin::Key;
+use crate::diag::Span;
+use crate::material::PrincipledMaterial;
+use crate::math::{Color, Vec3};
+use crate::scene::Picture;
+use glam::DAffine3;
+use std::rc::Rc;
+
+/// A material as written.
+pub(super) enum Made {
+    Layers(Box<PrincipledMaterial>),
+    /// Two others, and the share of the first.
+    Mix(Rc<Made>, Rc<Made>, f32),
+    /// What is not there at all.
+    Nothing,
+}
+
+impl Made {
+    /// What shapes have that nothing is said of.
+    pub fn usual() -> Made {
+        Made::Layers(Box::new(matte(Vec3::splat(0.5))))
+    }
+
+    /// The same with all layers changed.
+    pub fn changed(&self, change: &impl Fn(&mut PrincipledMaterial)) -> Made {
+        match self {
+            Made::Layers(layers) => {
+                let mut layers = layers.clone();
+                change(&mut layers);
+                Made::Layers(layers)
+            }
+            Made::Mix(a, b, share) => Made::Mix(a.changed(change).into(), b.changed(change).into(), *share),
+            Made::Nothing => Made::Nothing,
+        }
+    }
+}
+
+/// Matte, without a boundary.
+pub(super) fn matte(base_color: Color) -> PrincipledMaterial {
+    PrincipledMaterial { base_color, specular_weight: 0.0, specular_roughness: 1.0, ..PrincipledMaterial::default() }
+}
+
+/// What shines: its radiance, and a picture that multiplies it.
+pub(super) struct Shine {
+    pub color: Color,
+    pub picture: Option<Picture>,
+    pub at: Span,
+    pub key: Key,
+}
+
+/// What is infinitely far away: Mitsuba has one such light.
+pub(super) enum Infinite {
+    Even(Color, Span),
+    Picture { name: String, at: Span, scale: f32, to_world: DAffine3 },
+}
+
+impl Infinite {
+    pub fn at(&self) -> Span {
+        let (Infinite::Even(_, at) | Infinite::Picture { at, .. }) = self;
+        *at
+    }
+}

@@ -1,0 +1,65 @@
+//! What a format of scenes is: how its files are known, read and written.
+
+use crate::describe::FileName;
+use crate::diag::{Diagnostics, Files, Span};
+use crate::dialect::MeshNormals;
+use crate::scene::{Axis, Node, Scene, Staging};
+use crate::shape::{MeshData, TriangleMesh};
+use crate::source::Source;
+use std::cell::RefCell;
+use std::sync::Arc;
+
+/// A format of files that hold scenes, or models that become scenes.
+pub struct SceneFormat {
+    /// Its name for people.
+    pub name: &'static str,
+    /// Endings of its files' names, in lower case, without the dot.
+    pub extensions: &'static [&'static str],
+    /// Whether a file that begins with these bytes is of this format, whatever its name.
+    pub recognise: fn(&[u8]) -> bool,
+    /// Reads a file. Errors go into the collection, and then there is no scene.
+    pub read: fn(&Input, &mut Diagnostics) -> Option<Scene>,
+    /// Writes a scene; what the format has no words for is warned of. `None`: it is read only.
+    pub write: Option<WriteScene>,
+    /// What is up in most models of this format.
+    pub up: Axis,
+    /// Whether what has a camera is a whole scene, to which no light is added.
+    pub whole: bool,
+}
+
+/// Writes a scene.
+pub type WriteScene = fn(&Scene, &Output, &mut Diagnostics) -> Vec<u8>;
+
+/// What a writer needs beside the scene.
+pub struct Output<'a> {
+    /// The name of the file, with ending.
+    pub name: &'a str,
+    /// Reads the files that the scene names.
+    pub source: &'a Source,
+    /// How triangles without normals are meant.
+    pub normals: MeshNormals,
+}
+
+/// A file that is to become a scene.
+pub struct Input<'a> {
+    /// Its bytes.
+    pub bytes: &'a Arc<[u8]>,
+    /// Its number in `files`, for spans.
+    pub file: u32,
+    /// The texts that were read, to which a reader adds those of further files.
+    pub files: &'a RefCell<Files>,
+    /// Its last name, with ending.
+    pub name: &'a str,
+    /// Reads the files that it names.
+    pub source: &'a Source,
+    /// How it is to be shown.
+    pub staging: &'a Staging,
+}
+
+impl Scene {
+    /// Adds a mesh in memory by a name that no other has, and gives what shows it.
+    pub(super) fn add_mesh(&mut self, name: &str, data: Arc<MeshData>, span: Span) -> Node {
+        self.assets.meshes.insert(name.to_string(), data);
+        Node::Mesh(TriangleMesh { obj_file: FileName { path: name.to_string(), span } })
+    }
+}

@@ -1,0 +1,75 @@
+//! What directives become: materials, textures, media, what shines.
+
+use crate::describe::FileName;
+use crate::diag::Span;
+use crate::material::PrincipledMaterial;
+use crate::math::Color;
+use crate::scene::Picture;
+use glam::DAffine3;
+
+/// A material as written.
+pub(super) enum Made {
+    Layers(Box<PrincipledMaterial>, Span),
+    /// Two others, by number, and the share of the first.
+    Mix {
+        parts: [usize; 2],
+        share: f32,
+        depth: u32,
+        pictured: bool,
+        at: Span,
+    },
+    /// What is not there at all.
+    Nothing,
+}
+
+/// How much of a shape is there: everywhere, or by a picture.
+#[derive(Debug)]
+pub(super) struct Opacity {
+    pub share: f32,
+    pub picture: Option<FileName>,
+}
+
+/// What a texture is here.
+#[derive(Clone)]
+pub(super) enum Texture {
+    Even(Color),
+    /// A picture, and what multiplies it.
+    Picture(Picture, Color),
+}
+
+/// What absorbs and scatters light, the same everywhere.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in crate::format) struct Medium {
+    pub absorption: Color,
+    pub scattering: Color,
+    /// The mean cosine of scattering.
+    pub anisotropy: f32,
+}
+
+/// The light of a surface.
+#[derive(Debug)]
+pub(super) struct AreaLight {
+    /// Its radiance where no power is given; else the colour of its power.
+    pub radiance: Color,
+    /// Flux of each shape or triangle.
+    pub power: Option<f32>,
+    pub two_sided: bool,
+    /// The name of a picture that multiplies it.
+    pub picture: Option<String>,
+    pub at: Span,
+}
+
+/// A light that is infinitely far away.
+pub(super) enum Infinite {
+    /// The same from everywhere.
+    Even(Color),
+    Picture {
+        name: String,
+        at: Span,
+        scale: f32,
+        /// From the world's directions to the picture's.
+        to_light: DAffine3,
+        /// The illuminance that its upper half is to have.
+        illuminance: Option<f32>,
+    },
+}

@@ -1,0 +1,116 @@
+//! What a mesh file holds.
+
+use crate::math::{Vec2, Vec3};
+use crate::source::Digest;
+
+/// An index that is not given.
+pub const NO_INDEX: u32 = u32::MAX;
+
+/// What corners at the same place have in common: zeroes of either sign are alike.
+pub fn place_key(p: Vec3) -> [u32; 3] {
+    (p + 0.0).to_array().map(f32::to_bits)
+}
+
+/// What a mesh file holds: plain data, as written, n-gons cut into triangles.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct MeshData {
+    /// Corners' positions.
+    pub positions: Vec<Vec3>,
+    /// Texture coordinates; may be empty.
+    pub uvs: Vec<Vec2>,
+    /// Normals, not necessarily of length 1; may be empty.
+    pub normals: Vec<Vec3>,
+    /// Three positions a triangle, counter-clockwise seen from outside.
+    pub triangles: Vec<[u32; 3]>,
+    /// Three texture coordinates a triangle, or [`NO_INDEX`]; empty where no triangle has any.
+    pub triangle_uvs: Vec<[u32; 3]>,
+    /// Three normals a triangle, or [`NO_INDEX`]; empty where no triangle has any.
+    pub triangle_normals: Vec<[u32; 3]>,
+    /// Three vertices a triangle, where [`MeshData::loosen`] took the corners apart; else empty.
+    pub vertices: Vec<[u32; 3]>,
+    /// Linear red, green, blue and opacity, by the number of the position; empty where no vertex
+    /// has a colour.
+    pub colors: Vec<[f32; 4]>,
+    /// A second set of texture coordinates, by the number of the position; may be empty.
+    pub second_uvs: Vec<Vec2>,
+    /// By the number of the position, the direction in which u grows, and 1 or -1 for the side,
+    /// seen along the normal's cross product with it, to which v grows; may be empty.
+    pub tangents: Vec<[f32; 4]>,
+    /// Whether triangles without normals are flat, whatever the rule is that makes normals
+    /// elsewhere.
+    pub flat: bool,
+}
+
+impl MeshData {
+    /// Bytes that it takes in memory.
+    pub fn bytes(&self) -> usize {
+        size_of_val(&*self.positions)
+            + size_of_val(&*self.uvs)
+            + size_of_val(&*self.normals)
+            + size_of_val(&*self.triangles)
+            + size_of_val(&*self.triangle_uvs)
+            + size_of_val(&*self.triangle_normals)
+            + size_of_val(&*self.vertices)
+            + size_of_val(&*self.colors)
+            + size_of_val(&*self.second_uvs)
+            + size_of_val(&*self.tangents)
+    }
+
+    /// The hash of all that it holds.
+    pub fn digest(&self) -> Digest {
+        let mut hasher = Digest::hasher();
+        let floats: [(usize, &mut dyn Iterator<Item = f32>); 6] = [
+            (self.positions.len(), &mut self.positions.iter().flat_map(Vec3::to_array)),
+            (self.uvs.len(), &mut self.uvs.iter().flat_map(Vec2::to_array)),
+            (self.normals.len(), &mut self.normals.iter().flat_map(Vec3::to_array)),
+            (self.second_uvs.len(), &mut self.second_uvs.iter().flat_map(Vec2::to_array)),
+            (self.colors.len(), &mut self.colors.iter().flatten().copied()),
+            (self.tangents.len(), &mut self.tangents.iter().flatten().copied()),
+        ];
+        for (count, values) in floats {
+            hasher.count(count as u64);
+            values.for_each(|value| hasher.word(value.to_bits()));
+        }
+        for list in [&self.triangles, &self.triangle_uvs, &self.triangle_normals, &self.vertices] {
+            hasher.count(list.len() as u64);
+            list.iter().flatten().for_each(|&index| hasher.word(index));
+        }
+        hasher.count(self.flat.into());
+        hasher.finish()
+    }
+
+    /// Gives every corner the normal of its position's number; false where there are fewer normals
+    /// than positions.
+    pub fn give_normals_by_vertex(&mut self) -> bool {
+        let enough = self.normals.len() >= self.positions.len();
+        if enough {
+            self.triangle_normals = self.triangles.clone();
+        }
+        enough
+    }
+
+    /// Gives every triangle corners of its own, moved out a little; see [`loosened`].
+    pub fn loosen(&mut self) {
+        let corners = |t: &[u32; 3]| loosened(t.map(|i| self.positions[i as usize]));
+        self.positions = self.triangles.iter().flat_map(corners).collect();
+        fn apart<T: Copy>(values: &mut Vec<T>, triangles: &[[u32; 3]]) {
+            if !values.is_empty() {
+                *values = triangles.iter().flatten().map(|&i| values[i as usize]).collect();
+            }
+        }
+        apart(&mut self.colors, &self.triangles);
+        apart(&mut self.second_uvs, &self.triangles);
+        apart(&mut self.tangents, &self.triangles);
+        let apart = (0..self.triangles.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+        self.vertices = std::mem::replace(&mut self.triangles, apart);
+    }
+}
+
+/// The triangle of all points whose barycentric coordinates in a triangle are at least -0.00001:
+/// the same, enlarged about its centroid by thrice that.
+pub fn loosened([a, b, c]: [Vec3; 3]) -> [Vec3; 3] {
+    const SLACK: f64 = 1e-5;
+    let corners = [a.as_dvec3(), b.as_dvec3(), c.as_dvec3()];
+    let centroid = (corners[0] + corners[1] + corners[2]) / 3.0;
+    corners.map(|p| (p + 3.0 * SLACK * (p - centroid)).as_vec3())
+}
