@@ -39,7 +39,8 @@ pub struct Map {
 }
 
 impl World {
-    /// The parameters of a material in layers at a hit. Where the surface has no texture coordinates, pictures are left out.
+    /// The parameters of a material in layers at a hit. Where the surface has no texture
+    /// coordinates, pictures are left out.
     pub fn parameters_at<'a>(&self, own: &'a Principled, at: &Interaction) -> Cow<'a, Parameters> {
         let [r, g, b, _] = at.surface.color;
         if own.maps.parameters.is_empty() && [r, g, b] == [1.0; 3] {
@@ -100,13 +101,11 @@ impl World {
 
     /// The texture coordinates of a hit that count for a texture.
     fn coordinates(&self, texture: &Texture, at: &Interaction) -> Option<Vec2> {
-        match (
-            texture.mapping().is_some_and(|mapping| mapping.second),
-            &self.objects()[at.hit.object as usize].geometry,
-        ) {
-            (true, Geometry::Mesh(tree)) => tree.mesh.second_uv(at.hit.part, at.surface.barycentric),
+        let Interaction { hit, surface, .. } = at;
+        match (texture.mapping().is_some_and(|mapping| mapping.second), &self.objects()[hit.object as usize].geometry) {
+            (true, Geometry::Mesh(tree)) => tree.mesh.second_uv(hit.part, surface.barycentric),
             (true, _) => None,
-            (false, _) => at.surface.uv.get(),
+            (false, _) => surface.uv.get(),
         }
     }
 
@@ -159,19 +158,20 @@ impl World {
     /// How a point of the world moves as its texture coordinates grow by 1: those of the file on a
     /// mesh, else by what they are beside the point.
     fn derivatives(&self, at: &Interaction, second: bool) -> Option<[Vec3; 2]> {
-        let object = &self.objects()[at.hit.object as usize];
+        let Interaction { hit, surface, .. } = at;
+        let object = &self.objects()[hit.object as usize];
         let to_world = object.to_world.as_ref();
         let moved = |v: Vec3| to_world.map_or(v, |to_world| to_world.vector(v));
         let shape = match &object.geometry {
-            Geometry::Mesh(tree) => return Some(tree.mesh.derivatives(at.hit.part, second)?.map(moved)),
+            Geometry::Mesh(tree) => return Some(tree.mesh.derivatives(hit.part, second)?.map(moved)),
             Geometry::Primitive(shape) => shape,
             Geometry::Solid(_) => return None,
         };
-        let point = to_world.map_or(at.surface.position, |to_world| to_world.inverse_point(at.surface.position));
-        let normal = to_world.map_or(at.surface.n_geo, |to_world| to_world.local_normal(at.surface.n_geo));
+        let point = to_world.map_or(surface.position, |to_world| to_world.inverse_point(surface.position));
+        let normal = to_world.map_or(surface.n_geo, |to_world| to_world.local_normal(surface.n_geo));
         let size = shape.bounds().map_or(1.0_f32.max(point.length()), |bounds| bounds.size().max_element());
         let step = 1e-3 * size;
-        let here = at.surface.uv.get()?;
+        let here = surface.uv.get()?;
         // What the shape says where a ray against the normal meets it beside the point.
         let beside = |way: Vec3| {
             let mut ray = Ray::new(point + step * (way + normal), -normal);
@@ -196,15 +196,14 @@ impl World {
     /// mesh, the way around the axis of what is round, the first edge of a rectangle; else the
     /// horizontal one.
     pub(super) fn tangent(&self, at: &Interaction) -> Vec3 {
-        let object = &self.objects()[at.hit.object as usize];
+        let Interaction { hit, surface, .. } = at;
+        let object = &self.objects()[hit.object as usize];
         let to_world = object.to_world.as_ref();
-        let normal = to_world.map_or(at.surface.n_geo, |to_world| to_world.local_normal(at.surface.n_geo));
-        let point = to_world.map_or(at.surface.position, |to_world| to_world.inverse_point(at.surface.position));
+        let normal = to_world.map_or(surface.n_geo, |to_world| to_world.local_normal(surface.n_geo));
+        let point = to_world.map_or(surface.position, |to_world| to_world.inverse_point(surface.position));
         let around = |axis: Vec3, center: Vec3| Some(axis.cross(point - center));
         let own = match &object.geometry {
-            Geometry::Mesh(tree) => {
-                tree.mesh.tangents(at.hit.part, at.surface.barycentric, normal, false).map(|[u, _]| u)
-            }
+            Geometry::Mesh(tree) => tree.mesh.tangents(hit.part, surface.barycentric, normal, false).map(|[u, _]| u),
             Geometry::Primitive(Primitive::Sphere(s)) => around(Vec3::Y, s.center),
             Geometry::Primitive(Primitive::Ellipsoid(s)) => around(Vec3::Y, s.center),
             Geometry::Primitive(Primitive::Cylinder(s)) => around(s.top - s.base, s.base),
