@@ -6,6 +6,7 @@ use durer::diag::{Diagnostics, Files, Severity};
 use durer::film::aov::Aov;
 use durer::image::Layer;
 use durer::render::{self, Control, Stop};
+use durer::world::Interaction;
 use durer::{Loaded, load, load_text};
 use durer_cli::embed::{self, Asked};
 use numpy::{IntoPyArray, PyArray1};
@@ -170,9 +171,10 @@ impl World {
             let rows = ids.as_chunks_mut::<NUMBERS>().0.iter_mut().zip(values.as_chunks_mut::<VALUES>().0);
             for (ray, (ids, values)) in rays.job(JOB * job).iter().zip(rows) {
                 values[0] = f32::INFINITY;
-                let Some(hit) = self.world.closest(ray, &mut ()) else { continue };
-                let surface = self.world.surface(ray, &hit);
-                *ids = [hit.object, self.world.triangle(&hit), self.world.material(&hit)].map(|id| id as i32);
+                let Some(Interaction { hit, surface, material, .. }) = self.world.intersect(ray, &mut ()) else {
+                    continue;
+                };
+                *ids = [hit.object, self.world.triangle(&hit), material].map(|id| id as i32);
                 values[0] = hit.t;
                 values[1..4].copy_from_slice(&surface.position.to_array());
                 values[4..7].copy_from_slice(&surface.n_geo.to_array());

@@ -6,7 +6,7 @@ use crate::math::Vec3;
 pub(super) const AOV: Aov = Aov {
     name: "heights",
     doc: "the height of the point, y",
-    value: Value::Ray(|seen| seen.hit.as_ref().map_or(Vec3::ZERO, |(_, surface)| Vec3::splat(surface.position.y))),
+    value: Value::Ray(|seen| seen.hit.as_ref().map_or(Vec3::ZERO, |at| Vec3::splat(at.surface.position.y))),
     picture: |value, _, _| value,
     relative: false,
     unit: None,

@@ -45,11 +45,11 @@ pub fn there(stage: &Stage, found: &Comparison) -> Result<Vec<There>, Failure> {
 fn along(opened: &Opened, job: &Job, ray: &Ray, transfer: Transfer) -> Result<(Option<Hit>, Vec<String>), Failure> {
     let world = &opened.world;
     let names = Names { files: &opened.files, scene: &opened.loaded.scene, world };
-    let hit = world.closest(ray, &mut ()).map(|hit| Hit {
-        object: names.object(hit.object),
-        material: names.material(world.objects()[hit.object as usize].material),
-        t: hit.t,
-        normal: world.surface(ray, &hit).n_shade.to_array(),
+    let hit = world.intersect(ray, &mut ()).map(|at| Hit {
+        object: names.object(at.hit.object),
+        material: names.material(at.material),
+        t: at.hit.t,
+        normal: at.surface.n_shade.to_array(),
     });
     let light = deep(|| explain_ray(world, job, ray, SampleId::default()))?;
     let lines = light.iter().flat_map(|light| ray_text(light, &names, &Telling { transfer, ..Telling::default() }));

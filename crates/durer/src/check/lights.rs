@@ -194,9 +194,8 @@ fn grazing(scout: &Scout, lights: &[usize]) -> Option<Diagnostic> {
     let surface = most_common(&objects)?;
     let diagnostic = diagnostic.related(scout.object_span(surface), "it goes along this");
     let (probe, _) = scout.seen().find(|(_, seen)| seen.object == surface && seen.by(light).is_some_and(is_grazing))?;
-    let hit = scout.world().closest(&probe.ray, &mut ())?;
-    let n = scout.world().surface(&probe.ray, &hit).n_geo;
-    let n = if probe.ray.dir.dot(n) > 0.0 { -n } else { n };
+    let at = scout.world().intersect(&probe.ray, &mut ())?;
+    let n = if at.inside() { -at.surface.n_geo } else { at.surface.n_geo };
     match &written(scout, light)?.value {
         Light::Directional(lamp) => {
             let tilted = vector(lamp.direction - 0.7 * lamp.direction.length() * n);

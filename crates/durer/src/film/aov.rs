@@ -11,7 +11,7 @@ use crate::dialect::{Compat, CompatSet, DepthPicture, NormalsPicture, Rules};
 use crate::math::{Aabb, Color, Vec3};
 use crate::sampler::hash;
 use crate::shape::Surface;
-use crate::world::Hit;
+use crate::world::Interaction;
 use serde::{Deserialize, Serialize};
 
 /// What the ray through a pixel's centre found.
@@ -19,10 +19,8 @@ use serde::{Deserialize, Serialize};
 pub struct Seen {
     /// Whether the camera sees anything through this pixel.
     pub covered: bool,
-    /// The hit and its surface, if there was one.
-    pub hit: Option<(Hit, Surface)>,
-    /// Number of the material hit.
-    pub material: u32,
+    /// What it met, if anything.
+    pub hit: Option<Interaction>,
     /// The diffuse colour hit.
     pub albedo: Color,
     /// The work for the pixel, with all secondary rays.
@@ -37,7 +35,6 @@ impl Seen {
     pub const NOTHING: Seen = Seen {
         covered: false,
         hit: None,
-        material: 0,
         albedo: Vec3::ZERO,
         counts: TraversalStats { rays: 0, nodes: 0, tests: 0 },
         illuminance: 0.0,
@@ -162,7 +159,7 @@ pub static AOVS: &[Aov] = &[
     Aov {
         name: "depth",
         doc: "t of the first hit: the distance, for cameras; infinite where nothing is hit",
-        value: Value::Ray(|seen| Vec3::splat(seen.hit.map_or(f32::INFINITY, |(hit, _)| hit.t))),
+        value: Value::Ray(|seen| Vec3::splat(seen.hit.map_or(f32::INFINITY, |at| at.hit.t))),
         picture: depth_picture,
         relative: true,
         unit: None,
@@ -223,7 +220,7 @@ pub static AOVS: &[Aov] = &[
     Aov {
         name: "object",
         doc: "number of the object, -1 where there is none; as a picture, a colour of its own",
-        value: Value::Ray(|seen| Vec3::splat(seen.hit.map_or(-1.0, |(hit, _)| hit.object as f32))),
+        value: Value::Ray(|seen| Vec3::splat(seen.hit.map_or(-1.0, |at| at.hit.object as f32))),
         picture: |id, hit, _| if hit { id_color(id.x) } else { Vec3::ZERO },
         relative: false,
         unit: None,
@@ -231,7 +228,7 @@ pub static AOVS: &[Aov] = &[
     Aov {
         name: "material",
         doc: "number of the material, -1 where there is none; as a picture, a colour of its own",
-        value: Value::Ray(|seen| Vec3::splat(if seen.hit.is_some() { seen.material as f32 } else { -1.0 })),
+        value: Value::Ray(|seen| Vec3::splat(seen.hit.map_or(-1.0, |at| at.material as f32))),
         picture: |id, hit, _| if hit { id_color(id.x) } else { Vec3::ZERO },
         relative: false,
         unit: None,
@@ -294,7 +291,7 @@ fn heat_picture(value: Vec3, _: bool, display: &Display) -> Color {
 }
 
 fn of_surface(seen: &Seen, value: impl Fn(&Surface) -> Vec3) -> Vec3 {
-    seen.hit.map_or(Vec3::ZERO, |(_, surface)| value(&surface))
+    seen.hit.map_or(Vec3::ZERO, |at| value(&at.surface))
 }
 
 fn depth_picture(depth: Vec3, hit: bool, display: &Display) -> Color {

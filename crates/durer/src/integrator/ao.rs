@@ -55,13 +55,12 @@ impl Integrate for AmbientOcclusion<'_> {
 impl AmbientOcclusion<'_> {
     fn trace<T: Witness>(&self, ray: &Ray64, id: SampleId, tally: &mut T) -> Color {
         let mut color = Color::ONE;
-        if let Some(hit) = self.world.closest(ray, tally) {
-            let surface = self.world.surface(ray, &hit);
-            let inside = ray.dir().dot(surface.n_geo) > 0.0;
+        if let Some(at) = self.world.intersect(ray, tally) {
+            let (surface, inside) = (&at.surface, at.inside());
             let n = if inside { -surface.n_geo } else { surface.n_geo };
-            tally.hit(|| struck(self.world, ray, &hit, &surface, n, inside, false));
+            tally.hit(|| struck(self.world, &at, n, inside, false));
             let dir = Frame::around(n).to_world(warp::cosine_hemisphere(id.pair(0)));
-            if self.world.occluded(from_surface(&surface, dir, self.radius, None), tally) {
+            if self.world.occluded(from_surface(surface, dir, self.radius, None), tally) {
                 color = Color::ZERO;
             }
         }

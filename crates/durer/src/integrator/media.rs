@@ -1,7 +1,6 @@
 //! What a ray runs in: air, or one thing of glass in another.
 
-use crate::math::Ray64;
-use crate::world::World;
+use crate::world::{Interaction, World};
 use smallvec::SmallVec;
 
 /// How light goes through a surface.
@@ -14,6 +13,13 @@ pub(crate) struct Passage {
     pub(crate) behind: Media,
     /// Whether something else fills the place on both sides, so that there is no surface.
     pub(crate) hidden: bool,
+}
+
+impl Passage {
+    /// The index of refraction behind the surface over that before it.
+    pub(crate) fn eta(&self) -> f32 {
+        self.there / self.here
+    }
 }
 
 impl Default for Passage {
@@ -98,13 +104,8 @@ impl Media {
     }
 
     /// Ours: things of glass may be inside each other and overlap.
-    pub(crate) fn nested_passage(
-        &self,
-        world: &World,
-        ray: &Ray64,
-        (object, ior): (u32, f32),
-        leaving: bool,
-    ) -> Passage {
+    pub(crate) fn nested_passage(&self, world: &World, at: &Interaction, ior: f32, leaving: bool) -> Passage {
+        let (object, start) = (at.hit.object, at.ray.rounded.origin);
         let medium = |object: u32, ior: f32| Body { object, ior, size: world.objects()[object as usize].extent() };
         let own = medium(object, ior);
         if !leaving {
@@ -116,9 +117,9 @@ impl Media {
             self.clone()
         } else if own.size.is_none() {
             self.entered(own)
-        } else if world.objects()[object as usize].contains(ray.rounded.origin) {
+        } else if world.objects()[object as usize].contains(start) {
             // A ray that leaves what it never entered began inside.
-            let others = world.glass_around(ray.rounded.origin).filter(|&(other, _)| other != object);
+            let others = world.glass_around(start).filter(|&(other, _)| other != object);
             let all = others.map(|(other, ior)| medium(other, ior)).chain([own]);
             all.fold(Media::default(), |media, medium| media.entered(medium))
         } else {

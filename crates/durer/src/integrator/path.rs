@@ -16,13 +16,13 @@ use crate::medium::{Flight, HenyeyGreenstein, Way};
 use crate::sampler::SampleId;
 use crate::shape::Surface;
 use crate::spectrum::{Lanes, Spectrum};
-use crate::world::{Hit, Shading, World};
+use crate::world::{Interaction, Shading, World};
 use glam::DVec3;
 pub use parameters::{Direct, PhotonParameters, Transport};
 pub use photons::{PhotonMap, Photons};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
-use vertex::{Met, Place, Scattered, Vertex};
+use vertex::{Place, Scattered, Vertex};
 
 /// The integrator over one world.
 #[derive(Clone, Debug)]
@@ -122,8 +122,8 @@ enum End {
     Sky(Vec3),
     /// In a medium in which lamps can be seen, along a unit direction.
     Medium(DVec3, Vec3, HenyeyGreenstein),
-    /// On a surface.
-    Surface(Met),
+    /// On a surface, and how light goes through it if it does.
+    Surface(Interaction, Option<Passage>),
 }
 
 /// How often light is scattered in a body at most until it gets out.
@@ -204,7 +204,7 @@ impl<'w> Path<'w> {
                 let place = Place::Medium(point, dir, phase);
                 self.scattered(Spectrum::ZERO, &self.vertex(place, &state, sample), sample, tally)
             }
-            End::Surface(met) => self.met(met, &mut state, sample, tally),
+            End::Surface(at, passage) => self.met(at, passage.as_ref(), &mut state, sample, tally),
         };
         (sum, scale)
     }
@@ -257,13 +257,13 @@ impl<'w> Path<'w> {
             }
             let Some(hit) = hit else { return (End::Sky(ray.dir()), scale) };
             walked = length;
-            let surface = self.world.surface(&ray, &hit);
-            if self.world.hides_backs() && state.depth == 0 && self.world.is_hidden(ray.dir(), &hit, &surface) {
+            let at = self.world.interaction(ray, hit);
+            if self.world.hides_backs() && state.depth == 0 && self.world.is_hidden(ray.dir(), &at) {
                 rest.rounded.t_min = hit.t;
                 continue;
             }
             if self.world.has_cutouts() {
-                let opacity = self.world.opacity(&hit, &surface);
+                let opacity = self.world.opacity(&at);
                 layers += 1;
                 // What is not there at all does not count as a bounce.
                 if opacity < 1.0 && sample.id.layer(state.depth, layers) >= opacity {
@@ -271,11 +271,11 @@ impl<'w> Path<'w> {
                     continue;
                 }
             }
-            match self.passage(&ray, &hit, &surface, &state.media, &sample.lanes) {
-                Some(passage) if self.is_nothing(&hit, &passage) => {
+            match self.passage(&at, &state.media, &sample.lanes) {
+                Some(passage) if self.is_nothing(&at, &passage) => {
                     (state.media, rest.rounded.t_min) = (passage.behind, hit.t);
                 }
-                passage => return (End::Surface(Met { ray, hit, surface, passage }), scale),
+                passage => return (End::Surface(at, passage), scale),
             }
         }
     }
@@ -285,28 +285,33 @@ impl<'w> Path<'w> {
     }
 
     /// How light goes through a hit of a body that lets it in.
-    fn passage(&self, ray: &Ray64, hit: &Hit, surface: &Surface, media: &Media, lanes: &Lanes) -> Option<Passage> {
-        let ior = self.world.refracts(hit, surface, lanes)?;
-        let leaving = ray.dir().dot(surface.n_geo) > 0.0;
-        Some(media.nested_passage(self.world, ray, (hit.object, ior), leaving))
+    fn passage(&self, at: &Interaction, media: &Media, lanes: &Lanes) -> Option<Passage> {
+        let ior = self.world.refracts(at, lanes)?;
+        Some(media.nested_passage(self.world, at, ior, at.inside()))
     }
 
     /// Whether a surface does nothing to light but to let it into another medium.
-    fn is_nothing(&self, hit: &Hit, passage: &Passage) -> bool {
-        passage.hidden || passage.here == passage.there && self.world.is_interface(hit)
+    fn is_nothing(&self, at: &Interaction, passage: &Passage) -> bool {
+        passage.hidden || passage.here == passage.there && self.world.is_interface(at)
     }
 
     /// The light that leaves a hit against the ray.
-    fn met<T: Witness>(&self, met: &Met, state: &mut State, sample: &Sample, tally: &mut T) -> Spectrum {
-        let Met { ray, hit, surface, .. } = met;
-        let shading = met.shading(self.world, &sample.lanes);
-        tally.hit(|| struck(self.world, ray, hit, surface, shading.frame.normal, met.inside(), false));
+    fn met<T: Witness>(
+        &self,
+        at: &Interaction,
+        passage: Option<&Passage>,
+        state: &mut State,
+        sample: &Sample,
+        tally: &mut T,
+    ) -> Spectrum {
+        let shading = self.world.shading(at, passage.map_or(1.0, Passage::eta), &sample.lanes);
+        tally.hit(|| struck(self.world, at, shading.frame.normal, at.inside(), false));
         let mut sum = Spectrum::ZERO;
-        let emitted = self.world.emission(hit, surface, met.inside());
+        let emitted = self.world.emission(at);
         if emitted != Color::ZERO {
-            let emitted = sample.lanes.light_of(emitted, self.world.own_illuminant(self.world.material(hit)));
-            let carried = self.world.emitters().chooses(hit);
-            let weight = self.weight(state, carried, |from| self.pdf_of_hit(ray, hit, from));
+            let emitted = sample.lanes.light_of(emitted, self.world.own_illuminant(at.material));
+            let carried = self.world.emitters().chooses(&at.hit);
+            let weight = self.weight(state, carried, |from| self.pdf_of_hit(at, from));
             tally.begin(|| What::Emission { mis: weight });
             tally.end(sample.told(Spectrum::splat(weight)), sample.told(Spectrum::ONE), sample.told(emitted));
             sum += weight * emitted;
@@ -314,9 +319,9 @@ impl<'w> Path<'w> {
         if shading.bsdf.is_black() {
             return sum;
         }
-        let kept = self.kept(met, state, sample);
-        state.by_target = self.photons.as_ref().is_some_and(|photons| photons.reaches(hit.object));
-        let place = Place::Surface(surface, &shading, met.passage.as_ref());
+        let kept = self.kept(at, state, sample);
+        state.by_target = self.photons.as_ref().is_some_and(|photons| photons.reaches(at.hit.object));
+        let place = Place::Surface(&at.surface, &shading, passage);
         let vertex = self.vertex(place, state, sample);
         let Some((nm, kept)) = kept else { return self.scattered(sum, &vertex, sample, tally) };
         tally.begin(|| What::OneWavelength { nm });
@@ -327,8 +332,8 @@ impl<'w> Path<'w> {
 
     /// The wavelength that is left where colours are spread, and what is left of light: other
     /// wavelengths are bent otherwise, and the first stands for all.
-    fn kept(&self, met: &Met, state: &mut State, sample: &Sample) -> Option<(f32, Spectrum)> {
-        let nm = sample.lanes.hero().filter(|_| !state.alone && self.world.disperses(&met.hit, &met.surface))?;
+    fn kept(&self, at: &Interaction, state: &mut State, sample: &Sample) -> Option<(f32, Spectrum)> {
+        let nm = sample.lanes.hero().filter(|_| !state.alone && self.world.disperses(at))?;
         let kept = Spectrum::X * 4.0;
         (state.throughput, state.alone) = (state.throughput * kept, true);
         Some((nm, kept))

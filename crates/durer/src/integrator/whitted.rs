@@ -13,7 +13,7 @@ use crate::light::Illumination;
 use crate::math::{Color, Ray, Ray64, Vec3, fp, gamma, reflect};
 use crate::sampler::SampleId;
 use crate::shape::Surface;
-use crate::world::{HighlightModel, Hit, Part, Phong, World};
+use crate::world::{HighlightModel, Interaction, Part, Phong, World};
 use serde::{Deserialize, Serialize};
 use smallvec::SmallVec;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
@@ -101,10 +101,10 @@ impl Whitted<'_> {
     fn trace<T: Witness>(&self, ray: &Ray64, mut path: Path, tally: &mut T) -> Color {
         let mut rest = *ray;
         while let Some(hit) = self.world.closest(&rest, tally) {
-            let surface = self.world.surface(ray, &hit);
-            match self.passage_at(ray, &hit, &surface, &path.media) {
+            let at = self.world.interaction(ray, hit);
+            match self.passage(&at, &path.media) {
                 Some(Passage { hidden: true, behind, .. }) => (path.media, rest.rounded.t_min) = (behind, hit.t),
-                passage => return self.shade(ray, &hit, &surface, passage, path, tally),
+                passage => return self.shade(&at, passage, path, tally),
             }
         }
         let sky = self.world.sky(ray.dir());
@@ -115,21 +115,14 @@ impl Whitted<'_> {
 
     /// The light that leaves a hit against the ray: of each material that makes it up, by its
     /// share.
-    fn shade<T: Witness>(
-        &self,
-        ray: &Ray64,
-        hit: &Hit,
-        surface: &Surface,
-        passage: Option<Passage>,
-        path: Path,
-        tally: &mut T,
-    ) -> Color {
-        let from_behind = self.sees_back(ray.dir(), surface);
+    fn shade<T: Witness>(&self, at: &Interaction, passage: Option<Passage>, path: Path, tally: &mut T) -> Color {
+        let Interaction { ray, surface, .. } = at;
+        let from_behind = self.sees_back(at);
         let black = from_behind && !self.settings.shade_back && self.world.rules().has(Compat::BlackBacks);
         let n = if from_behind && self.settings.shade_back { -surface.n_shade } else { surface.n_shade };
         let n = if self.world.rules().has(Compat::UnitLight) { n.normalize_or(n) } else { n };
-        let parts = self.world.parts(hit, surface.position);
-        tally.hit(|| struck(self.world, ray, hit, surface, n, from_behind, black));
+        let parts = self.world.parts(at);
+        tally.hit(|| struck(self.world, at, n, from_behind, black));
         let mut color = Color::ZERO;
         if !black {
             // A texture or noise is looked up once for all lights.
@@ -176,7 +169,7 @@ impl Whitted<'_> {
         }
         let cancelled = self.cancel.is_some_and(|cancel| cancel.load(Relaxed));
         if path.bounces > 0 && !cancelled {
-            color += self.secondary(ray, surface, &parts, passage.unwrap_or_default(), path, tally);
+            color += self.secondary(at, &parts, passage.unwrap_or_default(), path, tally);
         } else if parts.iter().any(|part| part.phong.reflective + part.phong.transparent != Color::ZERO) {
             tally.begin(|| What::Spent);
             tally.end(Color::ONE, Color::ONE, Color::ZERO);
@@ -199,16 +192,16 @@ impl Whitted<'_> {
     }
 
     /// Whether a ray meets a surface on the side that its normal does not point to.
-    pub(crate) fn sees_back(&self, dir: Vec3, surface: &Surface) -> bool {
+    pub(crate) fn sees_back(&self, at: &Interaction) -> bool {
         let shaded = self.world.rules().has(Compat::ShadedSides);
-        dir.dot(if shaded { surface.n_shade } else { surface.n_geo }) > 0.0
+        at.ray.dir().dot(if shaded { at.surface.n_shade } else { at.surface.n_geo }) > 0.0
     }
 
     /// The diffuse colour at a hit, of each material that makes it up by its share: its albedo,
     /// without any light.
-    pub fn albedo(&self, hit: &Hit, surface: &Surface) -> Color {
-        let parts = self.world.parts(hit, surface.position);
-        parts.iter().map(|part| part.share * self.world.diffuse_color(part.phong, surface)).sum()
+    pub fn albedo(&self, at: &Interaction) -> Color {
+        let parts = self.world.parts(at);
+        parts.iter().map(|part| part.share * self.world.diffuse_color(part.phong, &at.surface)).sum()
     }
 
     /// The share of a light that arrives: nothing behind a thing, or what transparent things let
@@ -219,8 +212,8 @@ impl Whitted<'_> {
         }
         let mut ray = self.shadow_ray(surface, seen);
         if self.world.rules().has(Compat::ShadowFronts) {
-            let nearest = self.world.closest(&ray, tally).map(|hit| self.world.surface(&ray, &hit));
-            let blocked = nearest.is_some_and(|blocker| blocker.n_shade.dot(ray.dir()) <= 0.0);
+            let nearest = self.world.intersect(&ray, tally);
+            let blocked = nearest.is_some_and(|blocker| blocker.surface.n_shade.dot(ray.dir()) <= 0.0);
             return if blocked { Color::ZERO } else { Color::ONE };
         }
         if !self.settings.transparent_shadows {
@@ -229,14 +222,14 @@ impl Whitted<'_> {
         let mut share = Color::ONE;
         // A thing with many layers is followed only so far.
         for _ in 0..64 {
-            let Some(hit) = self.world.closest(&ray, tally) else { return share };
-            let blocker = self.world.surface(&ray, &hit);
-            let parts = self.world.parts(&hit, blocker.position);
+            let Some(blocker) = self.world.intersect(&ray, tally) else { return share };
+            let parts = self.world.parts(&blocker);
             share *= parts.iter().map(|part| part.share * part.phong.transparent).sum::<Color>();
             if share == Color::ZERO {
                 break;
             }
-            ray = from_surface(&blocker, seen.to_light, ray.rounded.t_max - hit.t, self.world.rules().epsilon);
+            let rest = ray.rounded.t_max - blocker.hit.t;
+            ray = from_surface(&blocker.surface, seen.to_light, rest, self.world.rules().epsilon);
         }
         Color::ZERO
     }
@@ -244,8 +237,7 @@ impl Whitted<'_> {
     /// Mirrored and transmitted light.
     fn secondary<T: Witness>(
         &self,
-        ray: &Ray64,
-        surface: &Surface,
+        at: &Interaction,
         parts: &[Part],
         passage: Passage,
         path: Path,
@@ -256,7 +248,8 @@ impl Whitted<'_> {
             return Color::ZERO;
         }
         // The normal on the ray's side.
-        let leaving = self.sees_back(ray.dir(), surface);
+        let Interaction { ray, surface, .. } = at;
+        let leaving = self.sees_back(at);
         let [n, n_geo] = [surface.n_shade, surface.n_geo].map(|n| if leaving { -n } else { n });
         // An interpolated normal may point away from the ray; the surface itself does not.
         let n = if ray.dir().dot(n) < 0.0 { n } else { n_geo };
@@ -296,24 +289,18 @@ impl Whitted<'_> {
     }
 
     /// How light that may go through at a hit does; `None` where none may.
-    pub(crate) fn passage(&self, ray: &Ray64, hit: &Hit, media: &Media) -> Option<Passage> {
-        let surface = self.world.may_enter(hit).then(|| self.world.surface(ray, hit))?;
-        self.passage_at(ray, hit, &surface, media)
-    }
-
-    /// The same where the surface at the hit is known.
-    fn passage_at(&self, ray: &Ray64, hit: &Hit, surface: &Surface, media: &Media) -> Option<Passage> {
-        if !self.world.may_enter(hit) {
+    pub(crate) fn passage(&self, at: &Interaction, media: &Media) -> Option<Passage> {
+        if !self.world.may_enter(at) {
             return None;
         }
-        let blend = Blend::of(&self.world.parts(hit, surface.position));
+        let blend = Blend::of(&self.world.parts(at));
         if blend.transparent == Color::ZERO {
             return None;
         }
-        let leaving = self.sees_back(ray.dir(), surface);
+        let leaving = self.sees_back(at);
         Some(match self.world.rules().is_official() {
-            true => self.official_passage(hit.object, blend, leaving, media),
-            false => media.nested_passage(self.world, ray, (hit.object, blend.ior), leaving),
+            true => self.official_passage(at.hit.object, blend, leaving, media),
+            false => media.nested_passage(self.world, at, blend.ior, leaving),
         })
     }
 
@@ -360,15 +347,8 @@ impl Whitted<'_> {
 }
 
 /// What a witness is told of a hit.
-pub(super) fn struck(
-    world: &World,
-    ray: &Ray64,
-    hit: &Hit,
-    surface: &Surface,
-    n: Vec3,
-    from_behind: bool,
-    black: bool,
-) -> Struck {
+pub(super) fn struck(world: &World, at: &Interaction, n: Vec3, from_behind: bool, black: bool) -> Struck {
+    let Interaction { ray, hit, surface, material } = at;
     let object = &world.objects()[hit.object as usize];
     Struck {
         object: hit.object,
@@ -383,7 +363,7 @@ pub(super) fn struck(
         uv: surface.uv.get(),
         barycentric: surface.barycentric,
         local: object.own_ray(ray).as_ref().map(Into::into),
-        material: world.material(hit),
+        material: *material,
     }
 }
 

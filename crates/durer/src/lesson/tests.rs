@@ -134,7 +134,7 @@ fn moved_normals_are_those_of_the_matrix_itself() {
         // The sphere's point (0.6, 0.4, z) in its own space is (1.2, 0.2, z) in the world's.
         let ray = Ray::new(Vec3::new(1.2, 0.2, 9.0), Vec3::NEG_Z);
         let world = world.unwrap();
-        let surface = world.surface(&ray, &world.closest(&ray, &mut ()).unwrap());
+        let surface = world.intersect(&ray, &mut ()).unwrap().surface;
         let z = (1.0f32 - 0.36 - 0.16).sqrt();
         let expected = Vec3::new(expected.x, expected.y, z).normalize();
         assert!((surface.n_shade - expected).length() < 1e-6, "{habit}: {}", surface.n_shade);

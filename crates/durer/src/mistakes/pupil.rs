@@ -15,7 +15,7 @@ use crate::integrator::{Settings, Whitted, refract};
 use crate::light::{Emitter, Illumination, Light};
 use crate::math::{Color, Ray, Ray64, Vec2, Vec3, fp, gamma, reflect};
 use crate::shape::{Primitive, Surface};
-use crate::world::{Geometry, HighlightModel, Hit, Part, Phong, World};
+use crate::world::{Geometry, HighlightModel, Hit, Interaction, Part, Phong, World};
 use glam::DVec3;
 use smallvec::SmallVec;
 
@@ -57,13 +57,14 @@ impl<'w> Pupil<'w> {
             let from = if behind { f32::NEG_INFINITY } else { rest.rounded.t_min };
             let reaching = Ray64 { rounded: Ray { t_min: from, ..rest.rounded }, ..rest };
             let Some((hit, t)) = self.closest(&reaching) else { break };
-            let official = self.world.rules().is_official();
-            match if official { None } else { self.right.passage(ray, &hit, &path.media) } {
+            let at = self.world.interaction(ray, hit);
+            match self.right.passage(&at, &path.media) {
                 Some(Passage { hidden: true, behind, .. }) => (path.media, rest.rounded.t_min) = (behind, hit.t),
-                _ if self.habits.clamped_rays => {
-                    return self.shade(ray, &hit, t, path).clamp(Color::ZERO, Color::ONE);
+                passage => {
+                    let color = self.shade(&self.met(at, t), passage, path);
+                    let clamped = self.habits.clamped_rays;
+                    return if clamped { color.clamp(Color::ZERO, Color::ONE) } else { color };
                 }
-                _ => return self.shade(ray, &hit, t, path),
             }
         }
         match self.habits.sky.filter(|(_, all)| path.first || *all) {
@@ -120,8 +121,7 @@ impl<'w> Pupil<'w> {
     /// Whether a ray comes from inside of a sphere that it hits.
     fn leaves_sphere(&self, ray: &Ray64, hit: &Hit) -> bool {
         let object = &self.world.objects()[hit.object as usize].geometry;
-        matches!(object, Geometry::Primitive(Primitive::Sphere(_)))
-            && self.world.surface(ray, hit).n_geo.dot(ray.dir()) > 0.0
+        matches!(object, Geometry::Primitive(Primitive::Sphere(_))) && self.world.interaction(ray, *hit).inside()
     }
 
     /// The length of the way to a hit in the object's own space.
@@ -141,10 +141,10 @@ impl<'w> Pupil<'w> {
         self.world.occluded(&ray, &mut ())
     }
 
-    /// The surface with the pupil's normals.
-    fn surface(&self, ray: &Ray64, hit: &Hit, t: f32) -> Surface {
-        let (habits, object) = (self.habits, &self.world.objects()[hit.object as usize]);
-        let mut surface = self.world.surface(ray, hit);
+    /// What a ray met, with the pupil's place and normals.
+    fn met(&self, mut at: Interaction, t: f32) -> Interaction {
+        let (habits, object) = (self.habits, &self.world.objects()[at.hit.object as usize]);
+        let Interaction { ray, hit, surface, .. } = &mut at;
         if t != hit.t {
             (surface.position, surface.rest) = (ray.rounded.at(t), Vec3::ZERO);
         }
@@ -181,22 +181,22 @@ impl<'w> Pupil<'w> {
         if habits.triangles_turned && triangle || habits.spheres_turned && sphere || habits.planes_turned && plane {
             (surface.n_shade, surface.n_geo) = (-surface.n_shade, -surface.n_geo);
         }
-        surface
+        at
     }
 
-    fn shade(&self, ray: &Ray64, hit: &Hit, t: f32, path: Path) -> Color {
+    fn shade(&self, at: &Interaction, passage: Option<Passage>, path: Path) -> Color {
         let (world, habits) = (self.world, self.habits);
-        let surface = self.surface(ray, hit, t);
-        let from_behind = self.right.sees_back(ray.dir(), &surface);
+        let Interaction { ray, surface, .. } = at;
+        let from_behind = self.right.sees_back(at);
         let black = from_behind && !self.settings.shade_back && world.rules().has(Compat::BlackBacks);
         let turned = from_behind && (self.settings.shade_back || habits.faced);
         let n = if turned { -surface.n_shade } else { surface.n_shade };
         let n = if world.rules().has(Compat::UnitLight) { n.normalize_or(n) } else { n };
-        let parts = world.parts(hit, surface.position);
+        let parts = world.parts(at);
         let (mut color, mut blocked) = (Color::ZERO, false);
         if !black || habits.faced {
             let diffuse: SmallVec<[Color; 2]> =
-                parts.iter().map(|p| self.world.diffuse_color(p.phong, &surface)).collect();
+                parts.iter().map(|p| self.world.diffuse_color(p.phong, surface)).collect();
             let rounds = if habits.ambient == Ambient::EachLight { world.lights().len() } else { 1 };
             let mut ambient_seen = Color::ZERO;
             for (part, &diffuse) in parts.iter().zip(&diffuse) {
@@ -212,7 +212,7 @@ impl<'w> Pupil<'w> {
             for (number, light) in world.lights().iter().enumerate() {
                 let seen = self.illuminated(light, surface.point());
                 let casts = habits.shadows.only_light.is_none_or(|only| only == number);
-                let visible = if casts { self.visible(&surface, &seen, path.first) } else { Color::ONE };
+                let visible = if casts { self.visible(surface, &seen, path.first) } else { Color::ONE };
                 let visible = if habits.shadows.later_too && blocked { Color::ZERO } else { visible };
                 blocked |= visible == Color::ZERO;
                 let visible = visible.max(Color::splat(habits.shadows.left));
@@ -257,7 +257,7 @@ impl<'w> Pupil<'w> {
         }
         if path.bounces > 0 {
             let rounds = if habits.bounces.each_light { world.lights().len() } else { 1 };
-            let secondary = self.secondary((ray, hit), &surface, &parts, path);
+            let secondary = self.secondary(at, &parts, passage.unwrap_or_default(), path);
             for _ in 0..rounds {
                 color += secondary;
             }
@@ -395,8 +395,8 @@ impl<'w> Pupil<'w> {
             return self.visible_through_glass(ray, epsilon);
         }
         if rules.has(Compat::ShadowFronts) {
-            let nearest = self.closest(&ray).map(|(hit, _)| self.world.surface(&ray, &hit));
-            let blocked = nearest.is_some_and(|blocker| blocker.n_shade.dot(ray.dir()) <= 0.0);
+            let nearest = self.closest(&ray).map(|(hit, _)| self.world.interaction(ray, hit));
+            let blocked = nearest.is_some_and(|blocker| blocker.surface.n_shade.dot(ray.dir()) <= 0.0);
             return if blocked { Color::ZERO } else { Color::ONE };
         }
         if !self.settings.transparent_shadows {
@@ -405,13 +405,13 @@ impl<'w> Pupil<'w> {
         let mut share = Color::ONE;
         for _ in 0..64 {
             let Some((hit, _)) = self.closest(&ray) else { return share };
-            let blocker = self.world.surface(&ray, &hit);
-            let parts = self.world.parts(&hit, blocker.position);
+            let blocker = self.world.interaction(ray, hit);
+            let parts = self.world.parts(&blocker);
             share *= parts.iter().map(|part| part.share * part.phong.transparent).sum::<Color>();
             if share == Color::ZERO {
                 break;
             }
-            ray = from_surface(&blocker, seen.to_light, ray.rounded.t_max - hit.t, epsilon);
+            ray = from_surface(&blocker.surface, seen.to_light, ray.rounded.t_max - hit.t, epsilon);
         }
         Color::ZERO
     }
@@ -420,27 +420,28 @@ impl<'w> Pupil<'w> {
     fn visible_through_glass(&self, mut ray: Ray64, epsilon: Option<f32>) -> Color {
         for _ in 0..64 {
             let Some((hit, _)) = self.closest(&ray) else { return Color::ONE };
-            let blocker = self.world.surface(&ray, &hit);
-            let parts = self.world.parts(&hit, blocker.position);
+            let blocker = self.world.interaction(ray, hit);
+            let parts = self.world.parts(&blocker);
             if parts.iter().all(|part| part.phong.transparent == Color::ZERO) {
                 return Color::ZERO;
             }
-            ray = from_surface(&blocker, ray.dir(), ray.rounded.t_max - hit.t, epsilon);
+            ray = from_surface(&blocker.surface, ray.dir(), ray.rounded.t_max - hit.t, epsilon);
         }
         Color::ZERO
     }
 
     /// Mirrored and transmitted light.
-    fn secondary(&self, (ray, hit): (&Ray64, &Hit), surface: &Surface, parts: &[Part], path: Path) -> Color {
+    fn secondary(&self, at: &Interaction, parts: &[Part], passage: Passage, path: Path) -> Color {
         let habits = self.habits.bounces;
         let Blend { mut reflective, mut transparent, ior, fresnel } = Blend::of(parts);
         if reflective == Color::ZERO && transparent == Color::ZERO {
             return Color::ZERO;
         }
-        let leaving = self.right.sees_back(ray.dir(), surface);
+        let Interaction { ray, surface, .. } = at;
+        let leaving = self.right.sees_back(at);
         let [n, n_geo] = [surface.n_shade, surface.n_geo].map(|n| if leaving { -n } else { n });
         let n = if ray.dir().dot(n) < 0.0 { n } else { n_geo };
-        let Passage { here, there, behind, .. } = self.right.passage(ray, hit, &path.media).unwrap_or_default();
+        let Passage { here, there, behind, .. } = passage;
         let eta = match habits.glass {
             Glass::Right | Glass::Straight | Glass::Outward | Glass::RootAdded => here / there,
             Glass::Inverted | Glass::Exchanged => there / here,

@@ -190,10 +190,9 @@ fn count(world: &World, job: &Job, (x, y): (u32, u32)) -> Result<u32, RenderErro
 /// has one.
 fn texel(world: &World, raster: &Raster, pixel: (u32, u32)) -> Option<(u32, Color, Color)> {
     let ray = center_ray(world, raster, pixel)?;
-    let hit = world.closest(&ray, &mut ())?;
-    let material = world.material(&hit);
-    let Material::Phong(phong) = &world.materials()[material as usize] else { return None };
-    Some((material, world.diffuse_color(phong, &world.surface(&ray, &hit)), phong.diffuse))
+    let at = world.intersect(&ray, &mut ())?;
+    let Material::Phong(phong) = &world.materials()[at.material as usize] else { return None };
+    Some((at.material, world.diffuse_color(phong, &at.surface), phong.diffuse))
 }
 
 /// What [`Compat::StaleTexels`] adds: the ambient light of the pixel before with the same material,

@@ -26,28 +26,27 @@ pub(super) fn trace(world: &World, job: &Job, samples: &Samples, rect: Crop, at:
             seen.push(Seen::NOTHING);
             continue;
         };
-        let hit = world.closest(&ray, &mut rays).map(|hit| (hit, world.surface(&ray, &hit)));
+        let hit = world.intersect(&ray, &mut rays);
         let mut counts = TraversalStats::default();
         if cost_wanted {
             samples.whitted.radiance(&ray, &mut counts);
         }
-        let material = hit.map_or(0, |(hit, _)| world.material(&hit));
-        let albedo = hit.map_or(Vec3::ZERO, |(hit, surface)| samples.whitted.albedo(&hit, &surface));
+        let albedo = hit.map_or(Vec3::ZERO, |at| samples.whitted.albedo(&at));
         let illuminance = match &hit {
-            Some((_, surface)) if illuminance_wanted => {
+            Some(at) if illuminance_wanted => {
                 // On the side that is seen.
-                let side = if ray.dir.dot(surface.n_geo) > 0.0 { -surface.n_shade } else { surface.n_shade };
+                let side = if at.inside() { -at.surface.n_shade } else { at.surface.n_shade };
                 let (mut sum, count) = (Vec3::ZERO, job.sampling.samples().max(1));
                 for sample in 0..count {
                     samples.check()?;
-                    sum += path.irradiance_on(surface, side, SampleId::new(job.seed, (x, y), sample), &mut rays);
+                    sum += path.irradiance_on(&at.surface, side, SampleId::new(job.seed, (x, y), sample), &mut rays);
                 }
                 (luminance_of(sum) / f64::from(count)) as f32
             }
             _ => 0.0,
         };
         rays.0 += counts.rays;
-        seen.push(Seen { covered: true, hit, material, albedo, counts, illuminance });
+        seen.push(Seen { covered: true, hit, albedo, counts, illuminance });
     }
     samples.check()?;
     // What is no number is shown as nothing.

@@ -378,11 +378,10 @@ impl<'a> Samples<'a> {
                 break;
             }
             let Some(ray) = center_ray(world, &self.raster, (x, y)) else { continue };
-            let Some(hit) = world.closest(&ray, &mut ()) else { continue };
-            let material = world.material(&hit);
-            let Material::Phong(phong) = &world.materials()[material as usize] else { continue };
-            let texel = world.diffuse_color(phong, &world.surface(&ray, &hit));
-            let before = last[material as usize].replace(texel).unwrap_or(phong.diffuse);
+            let Some(at) = world.intersect(&ray, &mut ()) else { continue };
+            let Material::Phong(phong) = &world.materials()[at.material as usize] else { continue };
+            let texel = world.diffuse_color(phong, &at.surface);
+            let before = last[at.material as usize].replace(texel).unwrap_or(phong.diffuse);
             differences[y as usize * job.width as usize + x as usize] = world.ambient() * (before - texel);
         }
         differences

@@ -1,10 +1,10 @@
 //! What the pictures on a surface and the colours of its vertices make of a material in layers.
 
-use super::{Geometry, Hit, Principled, World};
+use super::{Geometry, Interaction, Principled, World};
 use crate::material::Parameters;
 use crate::material::parameters::{Change, TEXTURED};
 use crate::math::{Color, Ray, Vec2, Vec3};
-use crate::shape::{Primitive, Shape, Surface};
+use crate::shape::{Primitive, Shape};
 use crate::texture::{Channel, Texture};
 use std::borrow::Cow;
 
@@ -39,12 +39,10 @@ pub struct Map {
 }
 
 impl World {
-    /// The parameters of a material in layers at a hit.
-    ///
-    /// `surface` is the [surface](World::surface) there. Where it has no texture coordinates,
-    /// pictures are left out.
-    pub fn parameters_at<'a>(&self, own: &'a Principled, hit: &Hit, surface: &Surface) -> Cow<'a, Parameters> {
-        let [r, g, b, _] = surface.color;
+    /// The parameters of a material in layers at a hit. Where the surface has no texture
+    /// coordinates, pictures are left out.
+    pub fn parameters_at<'a>(&self, own: &'a Principled, at: &Interaction) -> Cow<'a, Parameters> {
+        let [r, g, b, _] = at.surface.color;
         if own.maps.parameters.is_empty() && [r, g, b] == [1.0; 3] {
             return Cow::Borrowed(&own.parameters);
         }
@@ -54,7 +52,7 @@ impl World {
         let mut last: Option<(u32, [f32; 4])> = None;
         for map in &own.maps.parameters {
             let known = last.filter(|(number, _)| *number == map.texture).map(|(_, texel)| texel);
-            let Some(texel) = known.or_else(|| self.texel(Some(map.texture), hit, surface)) else { continue };
+            let Some(texel) = known.or_else(|| self.texel(Some(map.texture), at)) else { continue };
             last = Some((map.texture, texel));
             let mapping = self.textures()[map.texture as usize].mapping().copied().unwrap_or_default();
             let channel = map.channel.or(mapping.channel).unwrap_or(Channel::Red);
@@ -72,20 +70,20 @@ impl World {
     }
 
     /// What a picture makes of a surface's own light.
-    pub(super) fn emission_at(&self, own: &Principled, hit: &Hit, surface: &Surface) -> Color {
-        self.texel(own.maps.emission, hit, surface).map_or(Color::ONE, |[r, g, b, _]| Color::new(r, g, b))
+    pub(super) fn emission_at(&self, own: &Principled, at: &Interaction) -> Color {
+        self.texel(own.maps.emission, at).map_or(Color::ONE, |[r, g, b, _]| Color::new(r, g, b))
     }
 
     /// The share of a surface that is there, by number, vertices and picture.
-    pub(super) fn opacity_at(&self, own: &Principled, hit: &Hit, surface: &Surface) -> f32 {
-        let alpha = self.texel(own.maps.base_color, hit, surface).map_or(1.0, |texel| texel[3]);
+    pub(super) fn opacity_at(&self, own: &Principled, at: &Interaction) -> f32 {
+        let alpha = self.texel(own.maps.base_color, at).map_or(1.0, |texel| texel[3]);
         let share = own.maps.opacity.and_then(|map| {
             let texture = &self.textures()[map as usize];
             let usual = if texture.has_alpha() { Channel::Alpha } else { Channel::Red };
             let channel = texture.mapping().and_then(|mapping| mapping.channel).unwrap_or(usual);
-            Some(channel.of(self.texel(Some(map), hit, surface)?))
+            Some(channel.of(self.texel(Some(map), at)?))
         });
-        own.written.opacity * surface.color[3] * alpha * share.unwrap_or(1.0)
+        own.written.opacity * at.surface.color[3] * alpha * share.unwrap_or(1.0)
     }
 
     /// Whether a material in layers may be there in part only. Vertices may say so of any.
@@ -95,14 +93,15 @@ impl World {
             || own.maps.base_color.is_some_and(|map| self.textures()[map as usize].has_alpha())
     }
 
-    fn texel(&self, map: Option<u32>, hit: &Hit, surface: &Surface) -> Option<[f32; 4]> {
+    fn texel(&self, map: Option<u32>, at: &Interaction) -> Option<[f32; 4]> {
         let texture = &self.textures()[map? as usize];
         let mapping = texture.mapping().copied().unwrap_or_default();
-        Some(texture.texel(&mapping, self.coordinates(texture, hit, surface)?))
+        Some(texture.texel(&mapping, self.coordinates(texture, at)?))
     }
 
     /// The texture coordinates of a hit that count for a texture.
-    fn coordinates(&self, texture: &Texture, hit: &Hit, surface: &Surface) -> Option<Vec2> {
+    fn coordinates(&self, texture: &Texture, at: &Interaction) -> Option<Vec2> {
+        let Interaction { hit, surface, .. } = at;
         match (texture.mapping().is_some_and(|mapping| mapping.second), &self.objects()[hit.object as usize].geometry) {
             (true, Geometry::Mesh(tree)) => tree.mesh.second_uv(hit.part, surface.barycentric),
             (true, _) => None,
@@ -112,27 +111,27 @@ impl World {
 
     /// The normal that a bump map and then a normal map make of that for shading; `None` where
     /// there are none.
-    pub(super) fn mapped_normal(&self, maps: &Maps, hit: &Hit, surface: &Surface) -> Option<Vec3> {
-        let bumped = maps.bump.and_then(|map| self.bumped(map, maps.bump_height, hit, surface));
-        let normal = bumped.unwrap_or(surface.n_shade);
-        maps.normal.and_then(|map| self.leaning(map, hit, surface, normal)).or(bumped)
+    pub(super) fn mapped_normal(&self, maps: &Maps, at: &Interaction) -> Option<Vec3> {
+        let bumped = maps.bump.and_then(|map| self.bumped(map, maps.bump_height, at));
+        let normal = bumped.unwrap_or(at.surface.n_shade);
+        maps.normal.and_then(|map| self.leaning(map, at, normal)).or(bumped)
     }
 
     /// The normal that a picture of normals says: x along the direction in which the picture's u
     /// grows, y along its v upwards.
-    fn leaning(&self, map: u32, hit: &Hit, surface: &Surface, normal: Vec3) -> Option<Vec3> {
+    fn leaning(&self, map: u32, at: &Interaction, normal: Vec3) -> Option<Vec3> {
         let texture = &self.textures()[map as usize];
         let mapping = texture.mapping().copied().unwrap_or_default();
-        let object = &self.objects()[hit.object as usize];
-        let [r, g, b, _] = texture.texel(&mapping, self.coordinates(texture, hit, surface)?);
+        let object = &self.objects()[at.hit.object as usize];
+        let [r, g, b, _] = texture.texel(&mapping, self.coordinates(texture, at)?);
         let grow = match &object.geometry {
             Geometry::Mesh(tree) => {
                 // The tangents of the file are given about the object's own normal.
                 let own = object.to_world.as_ref().map_or(normal, |to_world| to_world.local_normal(normal));
-                let grow = tree.mesh.tangents(hit.part, surface.barycentric, own, mapping.second)?;
+                let grow = tree.mesh.tangents(at.hit.part, at.surface.barycentric, own, mapping.second)?;
                 grow.map(|v| object.to_world.as_ref().map_or(v, |to_world| to_world.vector(v)))
             }
-            _ => self.derivatives(hit, surface, mapping.second)?,
+            _ => self.derivatives(at, mapping.second)?,
         };
         let [u, v] = mapping.directions(grow);
         let tangent = u.reject_from_normalized(normal).try_normalize()?;
@@ -148,17 +147,18 @@ impl World {
     ///
     /// Source: James Blinn, *Simulation of Wrinkled Surfaces*, SIGGRAPH 1978, with the gradient of
     /// the height along the surface.
-    fn bumped(&self, map: u32, height: f32, hit: &Hit, surface: &Surface) -> Option<Vec3> {
+    fn bumped(&self, map: u32, height: f32, at: &Interaction) -> Option<Vec3> {
         let texture = &self.textures()[map as usize];
         let mapping = texture.mapping().copied().unwrap_or_default();
-        let slope = height * texture.slope(&mapping, self.coordinates(texture, hit, surface)?);
-        let [u, v] = dual(self.derivatives(hit, surface, mapping.second)?)?;
-        (surface.n_shade - slope.x * u - slope.y * v).try_normalize()
+        let slope = height * texture.slope(&mapping, self.coordinates(texture, at)?);
+        let [u, v] = dual(self.derivatives(at, mapping.second)?)?;
+        (at.surface.n_shade - slope.x * u - slope.y * v).try_normalize()
     }
 
     /// How a point of the world moves as its texture coordinates grow by 1: those of the file on a
     /// mesh, else by what they are beside the point.
-    fn derivatives(&self, hit: &Hit, surface: &Surface, second: bool) -> Option<[Vec3; 2]> {
+    fn derivatives(&self, at: &Interaction, second: bool) -> Option<[Vec3; 2]> {
+        let Interaction { hit, surface, .. } = at;
         let object = &self.objects()[hit.object as usize];
         let to_world = object.to_world.as_ref();
         let moved = |v: Vec3| to_world.map_or(v, |to_world| to_world.vector(v));
@@ -195,7 +195,8 @@ impl World {
     /// The direction of the world in which u grows at a hit: that of the texture coordinates of a
     /// mesh, the way around the axis of what is round, the first edge of a rectangle; else the
     /// horizontal one.
-    pub(super) fn tangent(&self, hit: &Hit, surface: &Surface) -> Vec3 {
+    pub(super) fn tangent(&self, at: &Interaction) -> Vec3 {
+        let Interaction { hit, surface, .. } = at;
         let object = &self.objects()[hit.object as usize];
         let to_world = object.to_world.as_ref();
         let normal = to_world.map_or(surface.n_geo, |to_world| to_world.local_normal(surface.n_geo));

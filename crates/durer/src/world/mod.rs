@@ -3,6 +3,7 @@
 mod contents;
 pub mod csg;
 pub mod emitters;
+mod interaction;
 mod maps;
 mod material;
 mod merged;
@@ -11,15 +12,15 @@ pub mod shading;
 pub mod solid;
 
 use crate::bvh::{Bvh, Grid, PrimitivePacks, TraversalCounter};
-use crate::dialect::Compat;
 use crate::light::{Emitter as _, Illumination};
 use crate::material::Pattern;
 use crate::math::{Aabb, Color, Ray64, Vec2, Vec3};
-use crate::shape::{Crossing, Surface};
+use crate::shape::Crossing;
 use crate::source::Digest;
 pub use contents::{Assets, Contents};
 pub use emitters::Emitters;
 use glam::DVec3;
+pub use interaction::Interaction;
 pub use maps::{Map, Maps};
 pub use material::{Emission, HighlightModel, Material, Part, Parts, Phong, Principled};
 pub use object::{Geometry, MeshTree, Object, Placing};
@@ -216,30 +217,6 @@ impl World {
         found
     }
 
-    /// The surface at a hit, in world space. The official programs take the point from the ray as
-    /// it is.
-    pub fn surface(&self, ray: impl Into<Ray64>, hit: &Hit) -> Surface {
-        let ray = &ray.into();
-        let object = &self.objects()[hit.object as usize];
-        let point = object.local_ray(ray).line().at(f64::from(hit.t));
-        let crossing = Crossing { t: hit.t, uv: hit.uv };
-        let placing = Placing {
-            as_is: self.rules().is_official(),
-            moved_normals: self.rules().has(Compat::MovedNormals),
-            mesh_textures: self.rules().has(Compat::MeshTextures),
-        };
-        object.surface(ray, point, &crossing, hit.part, placing)
-    }
-
-    /// The number of the material at a hit.
-    pub fn material(&self, hit: &Hit) -> u32 {
-        let object = &self.objects()[hit.object as usize];
-        match &object.geometry {
-            Geometry::Solid(solid) => solid.part(hit.part).material,
-            _ => object.material,
-        }
-    }
-
     /// The closed things of glass that a point is inside, with their indices of refraction.
     pub fn glass_around(&self, point: Vec3) -> impl Iterator<Item = (u32, f32)> {
         self.objects().iter().enumerate().filter_map(move |(number, object)| {
@@ -305,9 +282,9 @@ impl World {
     }
 
     /// The materials that make up a surface point, each with its share.
-    pub fn parts(&self, hit: &Hit, point: Vec3) -> Parts<'_> {
+    pub fn parts(&self, at: &Interaction) -> Parts<'_> {
         let mut parts = Parts::new();
-        self.mix(self.material(hit), point, 1.0, &mut parts);
+        self.mix(at.material, at.surface.position, 1.0, &mut parts);
         parts
     }
 

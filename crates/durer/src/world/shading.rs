@@ -1,6 +1,6 @@
 //! How a surface point scatters light, and what it shines, as a path tracer sees it.
 
-use super::{Geometry, Hit, Material, Object, Part, Phong, World};
+use super::{Geometry, Interaction, Material, Object, Part, Phong, World};
 use crate::bsdf::layers::{self, View};
 use crate::bsdf::lobe::blinn::Blinn;
 use crate::bsdf::lobe::diffuse::Diffuse;
@@ -56,23 +56,17 @@ impl World {
     /// How a hit scatters light that is seen against a ray's direction. `inside`: it is seen from
     /// the side that its normal does not point to; `eta` is the index behind the surface over
     /// that before it.
-    pub fn shading(
-        &self,
-        dir: Vec3,
-        hit: &Hit,
-        surface: &Surface,
-        (inside, eta): (bool, f32),
-        lanes: &Lanes,
-    ) -> Shading {
-        let parts = self.parts(hit, surface.position);
+    pub fn shading(&self, at: &Interaction, eta: f32, lanes: &Lanes) -> Shading {
+        let (dir, surface, inside) = (at.ray.dir(), &at.surface, at.inside());
+        let parts = self.parts(at);
         // The first of a mixture that bends normals counts for all of it.
         let mut maps = parts.iter().filter_map(|part| Some(&part.phong.principled.as_ref()?.maps));
         let maps = maps.find(|maps| maps.normal.is_some() || maps.bump.is_some());
-        let n_shade = maps.and_then(|maps| self.mapped_normal(maps, hit, surface)).unwrap_or(surface.n_shade);
+        let n_shade = maps.and_then(|maps| self.mapped_normal(maps, at)).unwrap_or(surface.n_shade);
         let [n, n_geo] = [n_shade, surface.n_geo].map(|n| if inside { -n } else { n });
         // An interpolated normal may point away from the ray; the surface itself does not.
         let n = if dir.dot(n) < 0.0 { n.normalize_or(n_geo) } else { n_geo };
-        let frame = self.frame(&parts, hit, surface, n);
+        let frame = self.frame(&parts, at, n);
         let wo = frame.to_local(-dir.normalize_or(-n));
         let wo = Vec3::new(wo.x, wo.y, wo.z.max(1e-6));
         let mut shading = Shading { frame, n_geo, wo, bsdf: Bsdf::default() };
@@ -80,7 +74,7 @@ impl World {
         for part in &parts {
             match &part.phong.principled {
                 Some(own) => {
-                    let here = self.parameters_at(own, hit, surface);
+                    let here = self.parameters_at(own, at);
                     layers::scattering(bsdf, part.share, &here, &own.tables, View { lanes, wo, inside, eta });
                 }
                 None => phong_lobes(bsdf, part, self.diffuse_color(part.phong, surface), wo, eta, lanes),
@@ -91,13 +85,13 @@ impl World {
 
     /// The frame around a normal: along u, and turned from there, where the highlight of a part is
     /// longer than wide.
-    fn frame(&self, parts: &[Part], hit: &Hit, surface: &Surface, n: Vec3) -> Frame {
+    fn frame(&self, parts: &[Part], at: &Interaction, n: Vec3) -> Frame {
         // No picture makes anything of 0.
         let own = parts.iter().filter_map(|part| part.phong.principled.as_deref());
         let long = own.filter(|own| own.parameters.specular_anisotropy > 0.0);
-        let mut long = long.map(|own| self.parameters_at(own, hit, surface));
+        let mut long = long.map(|own| self.parameters_at(own, at));
         let Some(long) = long.find(|here| here.specular_anisotropy > 0.0) else { return Frame::around(n) };
-        let frame = Frame::along(n, self.tangent(hit, surface));
+        let frame = Frame::along(n, self.tangent(at));
         let (sin, cos) = fp::sin_cos_degrees(360.0 * f64::from(long.specular_rotation));
         Frame::along(n, cos as f32 * frame.tangent + sin as f32 * frame.bitangent)
     }
@@ -112,16 +106,17 @@ impl World {
 
     /// The light that a surface sends towards one side: from where its normal points, or from
     /// behind.
-    pub fn emission(&self, hit: &Hit, surface: &Surface, inside: bool) -> Color {
+    pub fn emission(&self, at: &Interaction) -> Color {
+        let inside = at.inside();
         let own = |phong: &Phong| {
             let emission = phong.emission.as_ref().filter(|emission| emission.two_sided || !inside)?;
             let own = phong.principled.as_ref().filter(|_| emission.textured);
-            Some(emission.radiance * own.map_or(Color::ONE, |own| self.emission_at(own, hit, surface)))
+            Some(emission.radiance * own.map_or(Color::ONE, |own| self.emission_at(own, at)))
         };
-        if !self.has_emission(hit) {
+        if !self.has_emission(at) {
             return Color::ZERO;
         }
-        let parts = self.parts(hit, surface.position);
+        let parts = self.parts(at);
         parts.iter().filter_map(|part| own(part.phong).map(|light| part.share * light)).sum()
     }
 
@@ -153,8 +148,8 @@ impl World {
     }
 
     /// Whether a hit may shine: quickly known, for most materials.
-    fn has_emission(&self, hit: &Hit) -> bool {
-        match &self.materials()[self.material(hit) as usize] {
+    fn has_emission(&self, at: &Interaction) -> bool {
+        match &self.materials()[at.material as usize] {
             Material::Phong(phong) => phong.emission.is_some(),
             Material::Solid(..) => true,
         }
@@ -162,7 +157,7 @@ impl World {
 
     /// The index of refraction of the body that a surface bounds, if light may go into it: that of
     /// the part that weighs most.
-    pub fn refracts(&self, hit: &Hit, surface: &Surface, lanes: &Lanes) -> Option<f32> {
+    pub fn refracts(&self, at: &Interaction, lanes: &Lanes) -> Option<f32> {
         let of = |phong: &Phong| match &phong.principled {
             Some(own) => {
                 let m = &own.written;
@@ -171,11 +166,11 @@ impl World {
             }
             None => (phong.transparent != Color::ZERO).then_some(phong.ior),
         };
-        if !self.may_enter(hit) {
+        if !self.may_enter(at) {
             return None;
         }
         let mut most = (0.0, None);
-        for part in self.parts(hit, surface.position) {
+        for part in self.parts(at) {
             let ior = of(part.phong);
             most = if ior.is_some() && part.share > most.0 { (part.share, ior) } else { most };
         }
@@ -183,15 +178,15 @@ impl World {
     }
 
     /// The share of a surface that is there.
-    pub fn opacity(&self, hit: &Hit, surface: &Surface) -> f32 {
-        let own = |phong: &Phong| phong.principled.as_ref().map_or(1.0, |own| self.opacity_at(own, hit, surface));
-        self.parts(hit, surface.position).iter().map(|part| part.share * own(part.phong)).sum()
+    pub fn opacity(&self, at: &Interaction) -> f32 {
+        let own = |phong: &Phong| phong.principled.as_ref().map_or(1.0, |own| self.opacity_at(own, at));
+        self.parts(at).iter().map(|part| part.share * own(part.phong)).sum()
     }
 
     /// Whether a face is looked through by a camera, or a light without extent, from where it is
     /// seen in some direction: such see its back.
-    pub fn is_hidden(&self, dir: Vec3, hit: &Hit, surface: &Surface) -> bool {
-        dir.dot(surface.n_geo) > 0.0 && self.parts(hit, surface.position).iter().all(|part| hides_backs(part.phong))
+    pub fn is_hidden(&self, dir: Vec3, at: &Interaction) -> bool {
+        dir.dot(at.surface.n_geo) > 0.0 && self.parts(at).iter().all(|part| hides_backs(part.phong))
     }
 
     /// Whether there are such faces.
@@ -226,8 +221,8 @@ impl World {
     }
 
     /// Whether a surface does nothing where the index of refraction is the same on both sides.
-    pub fn is_interface(&self, hit: &Hit) -> bool {
-        self.has_interfaces() && self.has_no_skin(self.material(hit))
+    pub fn is_interface(&self, at: &Interaction) -> bool {
+        self.has_interfaces() && self.has_no_skin(at.material)
     }
 
     fn has_no_skin(&self, material: u32) -> bool {
@@ -241,8 +236,8 @@ impl World {
     }
 
     /// Whether light may go into a thing at a hit: quickly known, for most materials.
-    pub fn may_enter(&self, hit: &Hit) -> bool {
-        match &self.materials()[self.material(hit) as usize] {
+    pub fn may_enter(&self, at: &Interaction) -> bool {
+        match &self.materials()[at.material as usize] {
             Material::Phong(phong) => {
                 phong.transparent != Color::ZERO
                     || phong.principled.as_ref().is_some_and(|own| own.written.has_subsurface())
@@ -252,9 +247,9 @@ impl World {
     }
 
     /// Whether colours are spread at a hit.
-    pub fn disperses(&self, hit: &Hit, surface: &Surface) -> bool {
+    pub fn disperses(&self, at: &Interaction) -> bool {
         let of = |phong: &Phong| phong.principled.as_ref().is_some_and(|own| own.written.disperses());
-        self.may_enter(hit) && self.parts(hit, surface.position).iter().any(|part| of(part.phong))
+        self.may_enter(at) && self.parts(at).iter().any(|part| of(part.phong))
     }
 }
 

@@ -11,7 +11,7 @@ use crate::integrator::spawn::from_surface;
 use crate::math::{Color, Ray64};
 use crate::medium::Way;
 use crate::spectrum::Spectrum;
-use crate::world::Hit;
+use crate::world::Interaction;
 use crate::world::emitters::LightSample;
 
 impl Path<'_> {
@@ -26,7 +26,8 @@ impl Path<'_> {
     }
 
     /// The density with which a light that a ray met would have been chosen.
-    pub(super) fn pdf_of_hit(&self, ray: &Ray64, hit: &Hit, from: &Scattered) -> f32 {
+    pub(super) fn pdf_of_hit(&self, at: &Interaction, from: &Scattered) -> f32 {
+        let Interaction { ray, hit, .. } = at;
         let way = ray.origin() + f64::from(hit.t) * ray.dir().as_dvec3() - from.point;
         let (wi, distance) = (ray.dir().normalize(), way.length() as f32);
         self.world.emitters().pdf_of_hit(self.world, hit, from.point, from.n, wi, distance)
@@ -108,16 +109,16 @@ impl Path<'_> {
                 return share * pass(&media, &ray, ray.rounded.t_max);
             };
             share *= pass(&media, &ray, hit.t);
-            let blocker = self.world.surface(&ray, &hit);
-            match self.passage(&ray, &hit, &blocker, &media, &sample.lanes) {
-                Some(passage) if self.is_nothing(&hit, &passage) => media = passage.behind,
-                _ if hides_backs && self.world.is_hidden(-ray.dir(), &hit, &blocker) => {}
-                _ => share *= 1.0 - self.world.opacity(&hit, &blocker),
+            let blocker = self.world.interaction(ray, hit);
+            match self.passage(&blocker, &media, &sample.lanes) {
+                Some(passage) if self.is_nothing(&blocker, &passage) => media = passage.behind,
+                _ if hides_backs && self.world.is_hidden(-ray.dir(), &blocker) => {}
+                _ => share *= 1.0 - self.world.opacity(&blocker),
             }
             if share == Spectrum::ZERO {
                 break;
             }
-            ray = from_surface(&blocker, ray.dir(), ray.rounded.t_max - hit.t, None);
+            ray = from_surface(&blocker.surface, ray.dir(), ray.rounded.t_max - hit.t, None);
         }
         Spectrum::ZERO
     }

@@ -12,6 +12,7 @@
 
 use super::{End, Path, Place, State};
 use super::{Sample, USES};
+use crate::integrator::media::Passage;
 use crate::math::{Color, Vec3};
 use crate::sampler::SampleId;
 use crate::shape::Surface;
@@ -152,7 +153,7 @@ impl Photons {
         let mut first = true;
         loop {
             let (end, _) = path.fly(&ray, &mut state, &sample, &mut ());
-            let End::Surface(met) = end else { return None };
+            let End::Surface(met, passage) = end else { return None };
             if first {
                 // What photons meet on their way to something else, paths look for.
                 if !self.beams.reaches(met.hit.object) {
@@ -170,7 +171,8 @@ impl Photons {
                 let of_material = || emitted.material.and_then(|material| path.world.own_illuminant(material));
                 state.throughput *= lanes.light_of(power * color, of_light.or_else(of_material));
             }
-            let shading = met.shading(path.world, &lanes);
+            let eta = passage.as_ref().map_or(1.0, Passage::eta);
+            let shading = path.world.shading(&met, eta, &lanes);
             path.kept(&met, &mut state, &sample);
             // What arrives on black is not seen, but measured.
             if !first && (shading.bsdf.is_broad() || shading.bsdf.is_black()) {
@@ -180,14 +182,13 @@ impl Photons {
                 return state.throughput.is_finite().then_some(photon);
             }
             let surface = &met.surface;
-            let at = Place::Surface(surface, &shading, met.passage.as_ref());
+            let at = Place::Surface(surface, &shading, passage.as_ref());
             let numbers = id.at(3 + state.depth * USES);
             let chosen = at.sample(numbers.pair(0).x, numbers.pair(1))?;
             if chosen.pdf != 0.0 || state.depth > path.settings.bounces {
                 return None;
             }
             // Power is not denser where the index is higher, as radiance is.
-            let eta = met.eta();
             let weight = chosen.weight * if at.bends(chosen.lobe) { eta * eta } else { 1.0 };
             let survival = (state.throughput * weight).max_element() / state.throughput.max_element();
             let survival = survival.clamp(0.0, 1.0);

@@ -7,9 +7,9 @@ use crate::integrator::spawn::{from_surface, to_point};
 use crate::math::{Ray64, Vec2, Vec3, gamma};
 use crate::medium::HenyeyGreenstein;
 use crate::shape::Surface;
-use crate::spectrum::{Lanes, Spectrum};
+use crate::spectrum::Spectrum;
+use crate::world::Shading;
 use crate::world::emitters::LightSample;
-use crate::world::{Hit, Shading, World};
 use glam::DVec3;
 
 /// A point from which lights were connected with.
@@ -148,30 +148,5 @@ impl Place<'_> {
             Place::Surface(_, shading, Some(passage)) if wi.dot(shading.n_geo) < 0.0 => &passage.behind,
             _ => &state.media,
         }
-    }
-}
-
-/// A surface that a ray met.
-pub(super) struct Met {
-    pub(super) ray: Ray64,
-    pub(super) hit: Hit,
-    pub(super) surface: Surface,
-    pub(super) passage: Option<Passage>,
-}
-
-impl Met {
-    /// Whether it is seen from the side that its normal does not point to.
-    pub(super) fn inside(&self) -> bool {
-        self.ray.dir().dot(self.surface.n_geo) > 0.0
-    }
-
-    /// The index of refraction behind it over that before it.
-    pub(super) fn eta(&self) -> f32 {
-        self.passage.as_ref().map_or(1.0, |passage| passage.there / passage.here)
-    }
-
-    /// How it scatters.
-    pub(super) fn shading(&self, world: &World, lanes: &Lanes) -> Shading {
-        world.shading(self.ray.dir(), &self.hit, &self.surface, (self.inside(), self.eta()), lanes)
     }
 }

@@ -222,8 +222,8 @@ fn a_coarse_smooth_ball_has_no_shadow_on_itself_where_its_normals_face_the_light
         for _ in 0..20_000 {
             let origin = Vec3::new(3.0, 0.0, 0.0) + 9.0 * random.direction();
             let ray = Ray::new(origin, (Vec3::new(3.0, 0.0, 0.0) + random.point() - origin).normalize());
-            let Some(hit) = world.closest(&ray, &mut ()) else { continue };
-            let surface = world.surface(&ray, &hit);
+            let Some(at) = world.intersect(&ray, &mut ()) else { continue };
+            let surface = at.surface;
             let seen = world.illuminate(0, surface.point());
             // The wall, where there is one, is no part of the ball.
             if surface.position.y < 1.0 && surface.n_shade.dot(seen.to_light) > 1e-3 {

@@ -22,8 +22,7 @@ fn hit(world: &World, shape: &Primitive, affine: &DAffine3, random: &mut Random)
 /// from outside, where the shape is not convex, on its way in.
 fn is_other_side(shape: &Primitive, world: &World, start: &Surface, ray: &Ray64, hit: &Hit) -> bool {
     let bent = matches!(shape, Primitive::Torus(_) | Primitive::Quadric(_));
-    let end = world.surface(ray, hit);
-    let (from_inside, goes_out) = (ray.dir().dot(start.n_geo) < 0.0, ray.dir().dot(end.n_geo) > 0.0);
+    let (from_inside, goes_out) = (ray.dir().dot(start.n_geo) < 0.0, world.interaction(ray, *hit).inside());
     shape.inside(DVec3::ZERO).is_some() && (from_inside || bent) && from_inside == goes_out
 }
 
@@ -47,7 +46,7 @@ fn no_ray_meets_the_surface_that_it_leaves() {
                 let world = testing::shapes(&[(shape.clone(), affine)], AccelKind::None);
                 for _ in 0..10 {
                     let Some((ray, first)) = hit(&world, &shape, &affine, &mut random) else { continue };
-                    let surface = world.surface(&ray, &first);
+                    let surface = world.interaction(ray, first).surface;
                     // The tip of a stretched ball may be sharper than coordinates are fine: the
                     // least radius of curvature of an ellipsoid is its least half axis squared over
                     // the largest.
@@ -93,7 +92,7 @@ fn rays_start_so_near_that_a_plane_a_thousandth_away_is_met() {
         let shape = samples(&mut random, 1.0, 1.0).swap_remove(round % 11);
         let world = testing::shapes(&[(shape.clone(), affine)], AccelKind::None);
         let Some((ray, first)) = hit(&world, &shape, &affine, &mut random) else { continue };
-        let surface = world.surface(&ray, &first);
+        let surface = world.interaction(ray, first).surface;
         for side in [1.0, -1.0] {
             let normal = side * surface.n_geo;
             let away = from_surface(&surface, normal, f32::INFINITY, None);
@@ -113,7 +112,7 @@ fn a_mirrored_and_a_sheared_normal_is_that_of_the_moved_surface() {
         for shape in samples(&mut random, 1.0, 1.0) {
             let world = testing::shapes(&[(shape.clone(), affine)], AccelKind::Bvh);
             let Some((ray, first)) = hit(&world, &shape, &affine, &mut random) else { continue };
-            let surface = world.surface(&ray, &first);
+            let surface = world.interaction(ray, first).surface;
             // The same surface in world space: where the distance of the point moved back is zero.
             let inverse = affine.inverse();
             let field = |p: DVec3| distance(&shape, inverse.transform_point3(p));

@@ -6,7 +6,7 @@ use crate::integrator::spawn::from_surface;
 use crate::math::random::Random;
 use crate::scene::{self, Group, MatrixOp, Node, Operation};
 use crate::shape::*;
-use crate::world::{Hit, World};
+use crate::world::{Hit, Interaction, World};
 use glam::{DAffine3, DVec3};
 use std::path::Path;
 
@@ -104,8 +104,7 @@ fn near_surface(object: &scene::Object, p: DVec3, distance: f64) -> bool {
 }
 
 fn goes_out(world: &World, ray: impl Into<Ray64>, hit: &Hit) -> bool {
-    let ray = ray.into();
-    world.surface(&ray, hit).n_geo.dot(ray.dir()) > 0.0
+    world.interaction(ray, *hit).inside()
 }
 
 #[test]
@@ -224,7 +223,7 @@ fn assert_same(a: &scene::Object, b: &scene::Object, random: &mut Random) -> usi
         let origin = 3.0 * random.point();
         let ray = Ray::new(origin, 1.2 * random.point() - origin);
         let seen = |world: &World| -> Vec<(u32, Vec3)> {
-            world.all_hits(&ray).map(|hit| (hit.t.to_bits(), world.surface(&ray, &hit).n_geo)).collect()
+            world.all_hits(&ray).map(|hit| (hit.t.to_bits(), world.interaction(&ray, hit).surface.n_geo)).collect()
         };
         let expected = seen(&first);
         assert_eq!(seen(&second), expected, "{a:?}\n{b:?}\n{ray:?}");
@@ -318,7 +317,7 @@ fn faces_that_coincide_leave_no_skin() {
                 assert_eq!(a.len(), b.len(), "{solid:?} {placed:?} {ray:?} {a:?} {b:?}");
                 for (x, y) in a.iter().zip(&b) {
                     assert!((x.t - y.t).abs() * ray.dir.length() < 1e-4, "{solid:?} {ray:?} {a:?} {b:?}");
-                    let [m, n] = [found.surface(&ray, x), wanted.surface(&ray, y)].map(|s| s.n_geo);
+                    let [m, n] = [found.interaction(&ray, *x), wanted.interaction(&ray, *y)].map(|at| at.surface.n_geo);
                     assert!(m.dot(n) > 0.999 || width < 1e-2, "{solid:?} {ray:?} {a:?} {b:?}");
                 }
             }
@@ -336,8 +335,8 @@ fn each_surface_has_the_material_of_its_part() {
     let world = testing::read(text);
     let seen = |origin: [f32; 3], dir: [f32; 3]| {
         let ray = Ray::new(origin.into(), dir.into());
-        let list = |hit: Hit| (world.material(&hit), hit.t, world.surface(&ray, &hit).n_geo.to_array());
-        world.all_hits(&ray).map(list).collect::<Vec<_>>()
+        let list = |at: Interaction| (at.material, at.hit.t, at.surface.n_geo.to_array());
+        world.all_hits(&ray).map(|hit| list(world.interaction(&ray, hit))).collect::<Vec<_>>()
     };
     // Into the dent, whose surface is turned inside out, and out at the back.
     let through = seen([0.0, 0.0, 5.0], [0.0, 0.0, -1.0]);
@@ -366,9 +365,9 @@ fn a_lens_of_two_balls_focuses_where_the_lensmaker_says() {
         let (y, z) = (random.between(-0.05, 0.05), random.between(-0.05, 0.05));
         let mut ray = Ray64::from(Ray::new(Vec3::new(-5.0, y, z), Vec3::X));
         for (eta, outwards) in [(1.0 / 1.5, false), (1.5, true)] {
-            let hit = world.closest(&ray, &mut ()).unwrap();
-            assert_eq!(goes_out(&world, &ray, &hit), outwards);
-            let surface = world.surface(&ray, &hit);
+            let at = world.intersect(ray, &mut ()).unwrap();
+            assert_eq!(at.inside(), outwards);
+            let surface = at.surface;
             let n = if outwards { -surface.n_geo } else { surface.n_geo };
             let dir = crate::integrator::whitted::refract(ray.dir(), n, eta).unwrap();
             ray = from_surface(&surface, dir, f32::INFINITY, None);
@@ -469,8 +468,7 @@ fn rays_that_leave_a_solid_do_not_meet_it_there() {
             let [from, to] =
                 [3.0, 1.0].map(|reach| map.transform_point3((reach * random.point()).as_dvec3()).as_vec3());
             let ray = Ray::new(from, to - from);
-            let Some(hit) = world.closest(&ray, &mut ()) else { continue };
-            let surface = world.surface(&ray, &hit);
+            let Some(Interaction { surface, .. }) = world.intersect(&ray, &mut ()) else { continue };
             if surface.position.length() > 1e4 {
                 continue;
             }

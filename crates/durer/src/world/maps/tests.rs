@@ -6,8 +6,8 @@ use crate::describe::{Describe, Value};
 use crate::dialect::Dialect;
 use crate::image;
 use crate::material::{Parameters, PrincipledMaterial};
-use crate::math::{Ray, Ray64, Vec3};
-use crate::world::{Hit, Material, Principled, World};
+use crate::math::{Ray, Vec3};
+use crate::world::{Interaction, Material, Principled, World};
 use std::path::Path;
 
 const FOLDER: &str = "maps";
@@ -48,16 +48,13 @@ fn material(world: &World, number: usize) -> &Principled {
     phong.principled.as_ref().unwrap()
 }
 
-fn hit(world: &World, origin: Vec3, dir: Vec3) -> (Ray64, Hit) {
-    let ray = Ray64::from(Ray::new(origin, dir));
-    let hit = world.closest(&ray, &mut ()).expect("a hit");
-    (ray, hit)
+fn hit(world: &World, origin: Vec3, dir: Vec3) -> Interaction {
+    world.intersect(Ray::new(origin, dir), &mut ()).expect("a hit")
 }
 
 /// The parameters where a ray down the z axis meets a scene.
 fn parameters(world: &World) -> Parameters {
-    let (ray, hit) = hit(world, Vec3::new(0.2, 0.1, 5.0), Vec3::NEG_Z);
-    *world.parameters_at(material(world, 0), &hit, &world.surface(ray, &hit))
+    *world.parameters_at(material(world, 0), &hit(world, Vec3::new(0.2, 0.1, 5.0), Vec3::NEG_Z))
 }
 
 const BALL: &str = "Sphere { center 0 0 0 radius 1 }";
@@ -130,8 +127,8 @@ fn every_picture_changes_its_parameter() {
     let ball = |i: usize| format!("MaterialIndex {i} Sphere {{ center {} 0 0 radius 1 }}\n", 3 * i);
     let world = compiled(&materials, &(0..materials.len()).map(ball).collect::<String>(), folder.path());
     for (i, (word, expected)) in expectations.iter().enumerate() {
-        let (ray, hit) = hit(&world, Vec3::new(3.0 * i as f32 + 0.2, 0.1, 5.0), Vec3::NEG_Z);
-        let found = world.parameters_at(material(&world, i), &hit, &world.surface(ray, &hit));
+        let at = hit(&world, Vec3::new(3.0 * i as f32 + 0.2, 0.1, 5.0), Vec3::NEG_Z);
+        let found = world.parameters_at(material(&world, i), &at);
         // A product's order may change its last bit.
         assert_eq!(format!("{found:.5?}"), format!("{expected:.5?}"), "{word}");
     }
@@ -156,17 +153,15 @@ fn opacity_comes_from_a_picture() {
     let folder = folder("opacity", &[("half.ppm", 1, &half)]);
     for (name, expected) in [("half.ppm", 0.5 * 0.2), ("half.ppm:g", 0.5 * 0.4)] {
         let world = world(&format!("opacity 0.5 opacityTexture {name}"), BALL, folder.path());
-        let (ray, hit) = hit(&world, Vec3::new(0.2, 0.1, 5.0), Vec3::NEG_Z);
-        let share = world.opacity(&hit, &world.surface(ray, &hit));
+        let share = world.opacity(&hit(&world, Vec3::new(0.2, 0.1, 5.0), Vec3::NEG_Z));
         assert!((share - expected).abs() < 1e-6, "{name}: {share}");
     }
 }
 
 /// The normal for shading where a ray meets a scene.
 fn normal(world: &World, origin: Vec3, dir: Vec3) -> [Vec3; 2] {
-    let (ray, hit) = hit(world, origin, dir);
-    let surface = world.surface(ray, &hit);
-    [world.mapped_normal(&material(world, 0).maps, &hit, &surface).expect("a bent normal"), surface.n_shade]
+    let at = hit(world, origin, dir);
+    [world.mapped_normal(&material(world, 0).maps, &at).expect("a bent normal"), at.surface.n_shade]
 }
 
 #[test]

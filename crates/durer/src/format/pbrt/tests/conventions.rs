@@ -350,10 +350,8 @@ fn textures_lie_as_pbrt_has_them() {
         );
         let world = world(folder.path().join("a.pbrt").to_str().unwrap(), &text);
         let ray = crate::math::Ray::new(Vec3::new(uv.x, uv.y, 0.0), Vec3::Z);
-        let hit = world.closest(&ray, &mut ()).unwrap();
-        let surface = world.surface(&ray, &hit);
-        let shading = world.shading(Vec3::Z, &hit, &surface, (true, 1.0), &Lanes::Rgb);
-        shading.eval(Vec3::NEG_Z).0.truncate() * std::f32::consts::PI
+        let at = world.intersect(&ray, &mut ()).unwrap();
+        world.shading(&at, 1.0, &Lanes::Rgb).eval(Vec3::NEG_Z).0.truncate() * std::f32::consts::PI
     };
     let map = "\"imagemap\" \"string filename\" \"t.ppm\" \"string filter\" \"point\"";
     // v goes up: the upper left texel is red.
@@ -385,10 +383,8 @@ fn pictures_lie_on_spheres_as_pbrt_has_them() {
         for z in [-0.5, 0.5] {
             let dir = Vec3::new(x, y, z).normalize();
             let ray = crate::math::Ray::new(Vec3::new(1.0, 2.0, 3.0) + 5.0 * dir, -dir);
-            let hit = world.closest(&ray, &mut ()).unwrap();
-            let surface = world.surface(&ray, &hit);
-            let color = world.shading(-dir, &hit, &surface, (false, 1.0), &Lanes::Rgb).eval(dir).0.truncate()
-                * std::f32::consts::PI;
+            let at = world.intersect(&ray, &mut ()).unwrap();
+            let color = world.shading(&at, 1.0, &Lanes::Rgb).eval(dir).0.truncate() * std::f32::consts::PI;
             let blue = crate::image::decode_srgb(0x33 * column);
             close(color, Vec3::new(if z < 0.0 { 1.0 } else { 0.0 }, 0.0, blue));
         }
@@ -403,12 +399,12 @@ fn roughness_and_heights_come_from_pictures() {
                 Translate 0 0 5 Shape \"sphere\"";
     let world = world(folder.path().join("a.pbrt").to_str().unwrap(), text);
     let ray = crate::math::Ray::new(Vec3::ZERO, Vec3::Z);
-    let hit = world.closest(&ray, &mut ()).unwrap();
-    let crate::world::Material::Phong(phong) = &world.materials()[world.material(&hit) as usize] else { panic!() };
+    let at = world.intersect(&ray, &mut ()).unwrap();
+    let crate::world::Material::Phong(phong) = &world.materials()[at.material as usize] else { panic!() };
     let own = phong.principled.as_ref().unwrap();
     // pbrt takes the root of what is written for alpha, whose root is our roughness.
     let expected = (0.5 * crate::image::decode_srgb(128)).sqrt().sqrt();
-    let found = world.parameters_at(own, &hit, &world.surface(&ray, &hit)).specular_roughness;
+    let found = world.parameters_at(own, &at).specular_roughness;
     assert!((found - expected).abs() < 2.0 / 255.0, "{found} {expected}");
     assert_eq!((own.maps.bump.is_some(), own.maps.bump_height), (true, 0.5));
 }
@@ -433,8 +429,7 @@ fn a_body_of_several_meshes_is_one_piece_of_glass() {
     for _ in 0..200 {
         let dir = random.direction();
         let ray = crate::math::Ray::new(5.0 * dir, -dir);
-        let hit = world.closest(&ray, &mut ()).unwrap();
-        let surface = world.surface(&ray, &hit);
+        let surface = world.intersect(&ray, &mut ()).unwrap().surface;
         assert!(surface.n_geo.dot(dir) > 0.0, "{dir} {}", surface.n_geo);
     }
 }

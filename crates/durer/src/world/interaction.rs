@@ -1,0 +1,54 @@
+//! What a ray met, and the surface there.
+
+use super::{Geometry, Hit, Placing, World};
+use crate::bvh::TraversalCounter;
+use crate::dialect::Compat;
+use crate::math::Ray64;
+use crate::shape::{Crossing, Surface};
+
+/// What a ray met: made once, by [`World::interaction`], and asked by all that shades it.
+#[derive(Clone, Copy, Debug)]
+pub struct Interaction {
+    /// The ray.
+    pub ray: Ray64,
+    /// Where it met what.
+    pub hit: Hit,
+    /// What the thing is like there, in world space.
+    pub surface: Surface,
+    /// The number of the material there.
+    pub material: u32,
+}
+
+impl Interaction {
+    /// Whether the ray comes from the side that the true normal does not point to.
+    pub fn inside(&self) -> bool {
+        self.ray.dir().dot(self.surface.n_geo) > 0.0
+    }
+}
+
+impl World {
+    /// What a ray meets first in its interval.
+    pub fn intersect<T: TraversalCounter>(&self, ray: impl Into<Ray64>, counter: &mut T) -> Option<Interaction> {
+        let ray = ray.into();
+        self.closest(ray, counter).map(|hit| self.interaction(ray, hit))
+    }
+
+    /// What a ray met at a hit of its. The official programs take the point from the ray as it is.
+    pub fn interaction(&self, ray: impl Into<Ray64>, hit: Hit) -> Interaction {
+        let ray = ray.into();
+        let object = &self.objects()[hit.object as usize];
+        let point = object.local_ray(&ray).line().at(f64::from(hit.t));
+        let crossing = Crossing { t: hit.t, uv: hit.uv };
+        let placing = Placing {
+            as_is: self.rules().is_official(),
+            moved_normals: self.rules().has(Compat::MovedNormals),
+            mesh_textures: self.rules().has(Compat::MeshTextures),
+        };
+        let surface = object.surface(&ray, point, &crossing, hit.part, placing);
+        let material = match &object.geometry {
+            Geometry::Solid(solid) => solid.part(hit.part).material,
+            _ => object.material,
+        };
+        Interaction { ray, hit, surface, material }
+    }
+}
