@@ -6,21 +6,22 @@ use crate::open::load_options;
 use crate::options::SceneArgs;
 use crate::report::counted;
 use crate::{output, report};
+use anyhow::Context;
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 use durer::diag::{Diagnostic, Diagnostics, Files};
 use durer::dialect::Dialect;
 use durer::format::course::write;
-use durer::format::{MESH_FORMATS, json, mesh_format_for, scene_format_for};
+use durer::format::{json, mesh_format_for, scene_format_for};
 use durer::load;
-use durer::scene::Studio;
-use std::path::PathBuf;
+use durer::scene::{Scene, Studio};
+use std::path::{Path, PathBuf};
 
 /// Write a scene anew: in its own or another dialect, as JSON, as glTF, or its meshes as PLY, OBJ
 /// or STL
 #[derive(Args)]
 #[command(
-    after_help = "Examples:\n  durer convert scene.txt -o scene_durer.txt --to durer\n  durer convert scene.txt -o scene.json\n  durer convert model.glb -o model.stl\n  durer convert scene.pbrt -o scene.glb"
+    after_help = "Examples:\n  durer convert scene.txt -o scene_durer.txt --to durer\n  durer convert scene.txt -o scene.json\n  durer convert model.glb -o model.stl\n  durer convert scene.pbrt -o scene.glb\n  durer convert model.glb -o scene.txt"
 )]
 pub struct ConvertArgs {
     /// The scene file
@@ -75,14 +76,32 @@ pub fn run(args: &ConvertArgs) -> Result<(), Failure> {
         }
         return output::save(&[(&place, (format.write)(&mesh))], false);
     }
-    if !loaded.scene.assets.is_empty() {
-        let endings: Vec<String> = MESH_FORMATS.iter().map(|format| format!(".{}", format.extensions[0])).collect();
-        let endings = [".glb".into(), ".gltf".into()].into_iter().chain(endings).collect::<Vec<String>>();
-        let message =
-            "the scene language, also as JSON, has no words for the meshes of a model: choose a name that ends in";
-        return Err(bad(format!("{message} {}", endings.join(", "))));
-    }
     let dialect = args.to.as_deref().and_then(Dialect::from_name).unwrap_or(loaded.dialect);
-    let text = if as_json { json::write(&loaded.scene, dialect) } else { write(&loaded.scene, dialect) };
-    output::save(&[(&place, text.into_bytes())], false)
+    let text = |scene: &Scene| match as_json {
+        true => json::write(scene, dialect).into_bytes(),
+        false => write(scene, dialect).into_bytes(),
+    };
+    if !loaded.scene.assets.has_loose() {
+        return output::save(&[(&place, text(&loaded.scene))], false);
+    }
+    // A text names files: those of a model go into a folder of the same name.
+    let stem = args.output.file_stem().unwrap_or_default().to_string_lossy();
+    let folder: String = stem.chars().map(|c| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '_' }).collect();
+    if folder == name {
+        return Err(bad("the name needs an ending, as in `scene.txt`: the model's files go into a folder without"));
+    }
+    let (scene, files) = loaded.put_beside(&folder);
+    let base = args.output.parent().unwrap_or(Path::new(""));
+    std::fs::create_dir_all(base.join(&folder)).with_context(|| format!("cannot make the folder `{folder}`"))?;
+    let mut all = Vec::new();
+    for (path, bytes) in &files {
+        all.push((guard.writes("a file of the model", &base.join(path))?, bytes.to_vec()));
+    }
+    all.push((place, text(&scene)));
+    if let Some((width, height)) = loaded.scene.wishes.size {
+        let message = format!("the model's own picture has {width}x{height} pixels: the scene's text does not say so");
+        report::note(&Diagnostic::note(message).help(format!("render it with `--size {width}x{height}`")));
+    }
+    let all: Vec<_> = all.iter().map(|(place, bytes)| (place, bytes.clone())).collect();
+    output::save(&all, false)
 }

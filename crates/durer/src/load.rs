@@ -3,6 +3,7 @@
 use crate::compile::{AccelKind, Kept, Resources, compile};
 use crate::diag::{Diagnostic, Diagnostics, Files, Severity};
 use crate::dialect::{Compat, Dialect, PathBase, Rules};
+use crate::format::beside::{Beside, put_beside};
 use crate::format::course::{self, Guess, Hint, ReadOptions};
 use crate::format::json;
 use crate::format::scene::{Input, Output, find_scene_format, read_model, scene_format_for};
@@ -216,6 +217,11 @@ impl Loaded {
         let write = scene_format_for(name)?.write?;
         let output = Output { name, source: &self.source, normals: self.rules.mesh_normals };
         Some(write(&self.scene, &output, diagnostics))
+    }
+
+    /// The same scene with all that is in no file of its own in files of a folder beside it.
+    pub fn put_beside(&self, folder: &str) -> (Scene, Vec<Beside>) {
+        put_beside(&self.scene, folder, &self.source)
     }
 
     /// Compiles the scene. `None` after errors, which are in `diagnostics`.

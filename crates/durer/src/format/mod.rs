@@ -4,6 +4,7 @@
 //! to what a file promises, refuse numbers that are not finite and indices that lead nowhere, and
 //! collect errors with their places.
 
+pub mod beside;
 mod bodies;
 pub mod course;
 pub mod curve;

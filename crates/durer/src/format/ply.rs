@@ -16,6 +16,7 @@ use body::Body;
 use header::{Encoding, read_header};
 use values::{AsciiValues, BinaryValues};
 use write::write;
+pub(super) use write::write_whole;
 
 /// The format of meshes.
 pub(super) const FORMAT: MeshFormat =
@@ -39,11 +40,12 @@ fn read(bytes: &[u8], file: u32, diagnostics: &mut Diagnostics) -> Option<MeshDa
 fn read_reporting(bytes: &[u8], report: &mut Report) -> Option<MeshData> {
     let header = read_header(bytes, report)?;
     let (start, elements) = (header.body, header.elements);
-    match header.encoding {
+    let mesh = match header.encoding {
         Encoding::Ascii => Body::new(bytes, AsciiValues::new(bytes, start), report).read(&elements),
         Encoding::LittleEndian => Body::new(bytes, BinaryValues::<false>::new(bytes, start), report).read(&elements),
         Encoding::BigEndian => Body::new(bytes, BinaryValues::<true>::new(bytes, start), report).read(&elements),
-    }
+    };
+    Some(MeshData { flat: header.flat, ..mesh? })
 }
 
 #[cfg(test)]

@@ -1,8 +1,11 @@
 //! What a scene brings along instead of naming files: meshes and pictures in memory.
 
+use crate::describe::{FileName, Rule};
+use crate::dialect::set;
 use crate::shape::MeshData;
 use crate::source::Digest;
-use crate::texture::Mapping;
+use crate::texture::{Channel, Mapping, Wrap};
+use crate::{described, described_words};
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 use std::collections::BTreeMap;
@@ -27,6 +30,79 @@ pub struct Picture {
     pub mapping: Mapping,
 }
 
+described_words! {
+    /// What is between texels.
+    Texels { Linear = "linear", Nearest = "nearest" }
+}
+
+described! {
+    /// A picture with a name, and how it lies on surfaces. What takes a picture in a `PrincipledMaterial` takes that name.
+    NamedTexture ["Texture" in set::DURER] {
+        /// Its name.
+        name: FileName = FileName::default(), required, Rule::Any, ["name" in set::DURER];
+        /// The picture's file.
+        picture: FileName = FileName::default(), required, Rule::Any, ["picture" in set::DURER];
+        /// What is beyond its left and right border: `repeat`, `mirror` or `clamp`.
+        wrap_u: Wrap = Wrap::Repeat, optional, Rule::Any, ["wrapU" in set::DURER];
+        /// What is beyond its upper and lower border.
+        wrap_v: Wrap = Wrap::Repeat, optional, Rule::Any, ["wrapV" in set::DURER];
+        /// Whether the four texels around a point are mixed (`linear`), or the `nearest` counts alone.
+        texels: Texels = Texels::Linear, optional, Rule::Any, ["texels" in set::DURER];
+        /// The set of a mesh's texture coordinates: 0, or 1 for the second.
+        uv_set: u32 = 0, optional, Rule::AtMost(1), ["uvSet" in set::DURER];
+        /// From the surface's coordinates to the picture's, both with v downwards from the upper border: two rows of a matrix.
+        uv_transform: Vec<[f32; 3]> = Mapping::default().transform.to_vec(), optional, Rule::Rows(2, 2), ["uvTransform" in set::DURER];
+        /// Opacity is 1 where the picture's alpha is at least this, and else 0; where nothing is written, as the alpha says.
+        alpha_cutoff: Option<f32> = None, optional, Rule::Any, ["alphaCutoff" in set::DURER];
+        /// How far the normals of a normal map lean, times.
+        normal_scale: f32 = 1.0, optional, Rule::Any, ["normalScale" in set::DURER];
+        /// What counts where a number is wanted: `r`, `g`, `b`, `a`, or the `angle` of the direction in red and green; where nothing is written,
+        /// red, or of opacity what there is.
+        channel: Option<Channel> = None, optional, Rule::Any, ["channel" in set::DURER];
+        /// What a texel's 0 and 1 stand for, where the picture changes a number.
+        texel_range: Vec<[f32; 2]> = vec![[0.0, 1.0]], optional, Rule::Rows(1, 1), ["texelRange" in set::DURER];
+    }
+}
+
+impl NamedTexture {
+    /// What it is by a name; `None` where its bytes are in no file.
+    pub fn of(name: &str, picture: &Picture) -> Option<Self> {
+        let PictureBytes::File(file) = &picture.bytes else { return None };
+        let named = |path: &str| FileName { path: path.to_string(), ..FileName::default() };
+        let Mapping { wrap: [wrap_u, wrap_v], nearest, second, transform, cutoff, strength, channel, range } =
+            picture.mapping;
+        Some(NamedTexture {
+            name: named(name),
+            picture: named(file),
+            wrap_u,
+            wrap_v,
+            texels: if nearest { Texels::Nearest } else { Texels::Linear },
+            uv_set: second.into(),
+            uv_transform: transform.to_vec(),
+            alpha_cutoff: cutoff,
+            normal_scale: strength,
+            channel,
+            texel_range: vec![range],
+        })
+    }
+
+    /// The picture.
+    pub fn picture(&self) -> Picture {
+        let usual = Mapping::default();
+        let mapping = Mapping {
+            wrap: [self.wrap_u, self.wrap_v],
+            nearest: self.texels == Texels::Nearest,
+            second: self.uv_set > 0,
+            transform: self.uv_transform.as_slice().try_into().unwrap_or(usual.transform),
+            cutoff: self.alpha_cutoff,
+            strength: self.normal_scale,
+            channel: self.channel,
+            range: self.texel_range.first().copied().unwrap_or(usual.range),
+        };
+        Picture { bytes: PictureBytes::File(self.picture.path.clone()), mapping }
+    }
+}
+
 /// Where the bytes of a picture are.
 #[derive(Clone, Debug, PartialEq)]
 pub enum PictureBytes {
@@ -48,6 +124,17 @@ impl Assets {
     /// Whether there are none.
     pub fn is_empty(&self) -> bool {
         self.meshes.is_empty() && self.pictures.is_empty()
+    }
+
+    /// Whether some are in no files, so that a text cannot name them.
+    pub fn has_loose(&self) -> bool {
+        let loose = |picture: &Picture| matches!(picture.bytes, PictureBytes::Here(..));
+        !self.meshes.is_empty() || self.pictures.values().any(loose)
+    }
+
+    /// The pictures that are in files, which a scene's text can name.
+    pub fn textures(&self) -> impl Iterator<Item = NamedTexture> {
+        self.pictures.iter().filter_map(|(name, picture)| NamedTexture::of(name, picture))
     }
 }
 

@@ -18,7 +18,7 @@ use crate::medium::Fog;
 use crate::shape::{HeightField, Primitive, Sphere, TriangleMesh, VoxelGrid};
 use crate::texture::CieSky;
 use crate::texture::cie_sky::OVERCAST;
-pub use assets::{Assets, Picture, PictureBytes};
+pub use assets::{Assets, NamedTexture, Picture, PictureBytes};
 pub use matrix::MatrixOp;
 use serde::{Deserialize, Serialize};
 pub use staging::{Axis, Staging, Studio, View};

@@ -110,7 +110,7 @@ fn inset([a, b, c]: [Vec3; 3], barycentric: Vec3, error: Vec3) -> Option<Vec3> {
 }
 
 /// The unit normal (b - a) x (c - a); that of a triangle without area points up.
-pub(super) fn face_normal([a, b, c]: [Vec3; 3]) -> Vec3 {
+pub(crate) fn face_normal([a, b, c]: [Vec3; 3]) -> Vec3 {
     let (a, b, c) = (a.as_dvec3(), b.as_dvec3(), c.as_dvec3());
     (b - a).cross(c - a).normalize_or(DVec3::Y).as_vec3()
 }

@@ -1,47 +1,25 @@
 //! How a picture lies on a surface, as glTF has it: wrapping, filtering, a transform of the
 //! coordinates.
 
+use crate::describe::{FieldType, Value};
+use crate::described_words;
 use crate::math::{Vec2, fp};
 use serde::{Deserialize, Serialize};
 
-/// What is beyond a picture's border.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Wrap {
-    /// The picture again.
-    #[default]
-    Repeat,
-    /// The picture and its mirror image in turn.
-    Mirror,
-    /// The border's texels without end.
-    Clamp,
+described_words! {
+    /// What is beyond a picture's border: the picture again, it and its mirror image in turn, or the border's texels without end.
+    Wrap { Repeat = "repeat", Mirror = "mirror", Clamp = "clamp" }
 }
 
-/// What of a picture's texel is a number.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Channel {
-    /// Red.
-    Red,
-    /// Green.
-    Green,
-    /// Blue.
-    Blue,
-    /// Opacity.
-    Alpha,
-    /// The angle, in turns, of the direction whose parts are red and green, 1/2 being 0.
-    Angle,
+described_words! {
+    /// What of a picture's texel is a number; the angle, in turns, is that of the direction whose parts are red and green, 1/2 being 0.
+    Channel { Red = "r", Green = "g", Blue = "b", Alpha = "a", Angle = "angle" }
 }
 
 impl Channel {
     /// By the letter or word that stands for it after the colon of `file.png:g`.
     pub fn from_word(word: &str) -> Option<Self> {
-        Some(match word {
-            "r" => Channel::Red,
-            "g" => Channel::Green,
-            "b" => Channel::Blue,
-            "a" => Channel::Alpha,
-            "angle" => Channel::Angle,
-            _ => return None,
-        })
+        Self::from_value(Value::Word(word.into()))
     }
 
     /// The number.

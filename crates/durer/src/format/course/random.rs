@@ -8,7 +8,9 @@ use crate::light::Light;
 use crate::material::{ColorNoise, PhongMaterial, PrincipledMaterial, Solid, is_material_index};
 use crate::math::Vec3;
 use crate::medium::Fog;
-use crate::scene::{Background, Group, Material, MatrixOp, Node, Object, Operation, Scene, Spanned};
+use crate::scene::{
+    Assets, Background, Group, Material, MatrixOp, NamedTexture, Node, Object, Operation, Scene, Spanned,
+};
 use crate::shape::{HeightField, Primitive, Sphere, TriangleMesh, VoxelGrid};
 
 /// A source of choices: given bytes, and after them a generator of random numbers (Knuth's
@@ -174,6 +176,15 @@ impl Random {
         Object { node, material, span: Default::default() }
     }
 
+    /// Textures of different names.
+    fn textures(&mut self) -> Assets {
+        let mut assets = Assets::default();
+        for i in 0..self.below(3) {
+            assets.pictures.insert(format!("t{i}"), self.thing::<NamedTexture>(0).picture());
+        }
+        assets
+    }
+
     /// A scene that the dialect's text can hold, as reading it would make it.
     pub fn scene(&mut self, dialect: Dialect) -> Scene {
         let nodes = dialect == Dialect::F23;
@@ -216,7 +227,7 @@ impl Random {
             lights,
             materials,
             root: (nodes || self.below(8) > 0).then_some(Group { objects }),
-            assets: Default::default(),
+            assets: if dialect == Dialect::Durer { self.textures() } else { Default::default() },
             camera_span: Default::default(),
         }
     }

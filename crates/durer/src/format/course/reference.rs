@@ -12,7 +12,7 @@ use crate::light::Light;
 use crate::material::{ColorNoise, PhongMaterial, PrincipledMaterial, Solid};
 use crate::math::Vec3;
 use crate::medium::Fog;
-use crate::scene::{Background, Operation};
+use crate::scene::{Background, NamedTexture, Operation};
 use crate::shape::{HeightField, Primitive, TriangleMesh, VoxelGrid};
 
 /// A chapter of the reference.
@@ -177,8 +177,9 @@ Group {
 ";
 
 /// Examples that say more than the defaults of a statement do.
-const EXAMPLES: [(&str, &str); 27] = [
+const EXAMPLES: [(&str, &str); 28] = [
     ("Fog", "Fog { extinction 0.25 color 0.9 0.95 1 }"),
+    ("Texture", "Texture { name bark picture bark.png wrapU mirror uvTransform { 4 0 0  0 4 0 } }"),
     ("Background", "Background { color 0.7 0.8 0.9 ambientLight 0.2 0.2 0.2 }"),
     ("DirectionalLight", "DirectionalLight { direction -1 -2 -0.7 color 0.9 0.85 0.7 }"),
     ("PointLight", "PointLight { position 1.6 1.8 1.4 color 3 2.8 2.4 falloff 0.4 }"),
@@ -231,6 +232,9 @@ const PRESET: &str = "First in a `PrincipledMaterial`: a real material by name, 
 const GRAMMAR: &[(&[Spelling], Chapter, &str, &str, &str)] = &[
     (&[("Lights", set::CLASSIC)], Chapter::Structure, "{ lights }",
         "The lights. Without any, ambient light counts as 1 1 1.", "Lights { PointLight { position 0 4 0 color 1 1 1 } }"),
+    (&[("Textures", set::DURER)], Chapter::Structure, "{ textures }",
+        "Pictures with names, which materials name in place of a file; each says how its picture lies on surfaces.",
+        "Textures { Texture { name bark picture bark.png wrapU mirror } }"),
     (&[("Materials", set::ALL)], Chapter::Structure, "{ materials }",
         "The materials, numbered from 0 as they are written. In our own dialect one may have a name before its block.",
         "Materials { PhongMaterial red { diffuseColor 0.8 0.2 0.2 } }"),
@@ -294,6 +298,7 @@ pub fn entries() -> Vec<Entry> {
     let mut all: Vec<Entry> = Vec::new();
     all.extend(of::<Background>(Chapter::Structure));
     all.extend(of::<Fog>(Chapter::Structure));
+    all.extend(of::<NamedTexture>(Chapter::Structure));
     all.extend(of::<Camera>(Chapter::Cameras));
     all.extend(of::<Light>(Chapter::Lights));
     all.extend(of::<PhongMaterial>(Chapter::Materials));

@@ -3,16 +3,16 @@
 use super::fields::Order;
 use super::lexer::TokenKind;
 use super::reader::Reader;
-use super::words::{SECTIONS, camera_of, home_of, is_section};
+use super::words::{OURS, SECTIONS, camera_of, home_of, is_section};
 use crate::camera::Camera;
-use crate::describe::DescribedList;
+use crate::describe::{DescribedList, FileName};
 use crate::diag::{Diagnostic, Span, did_you_mean};
 use crate::dialect::{Dialect, DialectSet, set};
 use crate::light::Light;
 use crate::material::presets;
 use crate::material::{ColorNoise, PhongMaterial, PrincipledMaterial, Solid};
 use crate::medium::Fog;
-use crate::scene::{Background, Group, Material, Node, Object, Operation, Spanned};
+use crate::scene::{Background, Group, Material, NamedTexture, Node, Object, Operation, Spanned};
 use crate::shape::{HeightField, Primitive, Sphere, TriangleMesh, VoxelGrid};
 
 /// What stands in a group: [`OBJECTS`] of them are objects.
@@ -34,13 +34,14 @@ impl Reader<'_, '_> {
         let dialect = self.options.dialect;
         let kinds = Camera::kinds();
         let cameras = kinds.iter().filter(|c| dialect == Dialect::Durer || c.keywords()[0].1 != set::DURER);
-        let sections = SECTIONS.into_iter().filter(|word| dialect == Dialect::Durer || *word != "Fog");
+        let sections = SECTIONS.into_iter().filter(|word| dialect == Dialect::Durer || !OURS.contains(word));
         let known: Vec<&str> = cameras.map(|camera| camera.keywords()[0].0).chain(sections).collect();
         self.top(&known, |reader, word, span| {
             match word {
                 "Background" => reader.background(span),
                 "Fog" => reader.fog(span),
                 "Lights" => reader.lights(span),
+                "Textures" => reader.textures(span),
                 "Materials" => reader.materials(span),
                 "Group" => reader.scene.root = Some(reader.group(span)),
                 "define" => reader.define(span),
@@ -184,6 +185,24 @@ impl Reader<'_, '_> {
             true
         });
         self.scene.lights = Some(lights);
+    }
+
+    fn textures(&mut self, keyword: Span) {
+        self.foreign("Textures", keyword, set::DURER);
+        self.counted(keyword, "numTextures", |reader, word, span| {
+            let Some(mut texture) = NamedTexture::from_keyword(word) else {
+                reader.unknown(word, span, "among textures", &["Texture"]);
+                return false;
+            };
+            let errors = reader.errors();
+            reader.fields(&mut texture, span, Order::Any, |_, _, _| false);
+            let FileName { path: name, span: at } = texture.name.clone();
+            let twice = reader.scene.assets.pictures.insert(name.clone(), texture.picture()).is_some();
+            if twice && reader.errors() == errors {
+                reader.error(Diagnostic::error(format!("there is a texture `{name}` already")).code("repeated").at(at));
+            }
+            true
+        });
     }
 
     fn materials(&mut self, keyword: Span) {

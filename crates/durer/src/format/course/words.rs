@@ -6,18 +6,19 @@ use crate::dialect::{DialectSet, set};
 use crate::light::Light;
 use crate::material::{ColorNoise, PhongMaterial, PrincipledMaterial, Solid};
 use crate::medium::Fog;
-use crate::scene::{Background, Operation};
+use crate::scene::{Background, NamedTexture, Operation};
 use crate::shape::{HeightField, Primitive, TriangleMesh, VoxelGrid};
 use std::collections::HashMap;
 use std::sync::LazyLock;
 
 /// Words of the grammar itself, which belong to no described thing.
-const GRAMMAR: [(&str, DialectSet); 36] = [
+const GRAMMAR: [(&str, DialectSet); 37] = [
     ("include", set::DURER),
     ("define", set::DURER),
     ("use", set::DURER),
     ("preset", set::DURER),
     ("Lights", set::CLASSIC),
+    ("Textures", set::DURER),
     ("Materials", set::ALL),
     ("Group", set::CLASSIC),
     ("Transform", set::ALL),
@@ -65,6 +66,7 @@ static WORDS: LazyLock<HashMap<&'static str, DialectSet>> = LazyLock::new(|| {
     list::<VoxelGrid>(&mut words);
     list::<Background>(&mut words);
     list::<Fog>(&mut words);
+    list::<NamedTexture>(&mut words);
     let operations = Operation::ALL.map(|(word, _)| (word, set::DURER));
     for (word, set) in GRAMMAR.into_iter().chain(operations) {
         *words.entry(word).or_insert(0) |= set;
@@ -103,6 +105,7 @@ pub(super) fn home_of(word: &str) -> Option<&'static str> {
         "TriangleMesh" | "HeightField" | "Grid" | "Transform" | "MaterialIndex" | "Group" | "use" | "define" => "Group",
         "PhongMaterial" | "PrincipledMaterial" | "Material" | "Checkerboard" | "Marble" | "Wood" | "Mix" => "Materials",
         "PointLight" | "DirectionalLight" => "Lights",
+        "Texture" => "Textures",
         "Translate" | "Scale" | "UniformScale" | "XRotate" | "YRotate" | "ZRotate" | "Rotate" | "Matrix"
         | "Matrix4f" | "translate" | "scale" | "x_rotate" | "y_rotate" | "z_rotate" => "Transform",
         _ if begins_block(word) && Primitive::from_keyword(word).is_some() => "Group",
@@ -112,7 +115,10 @@ pub(super) fn home_of(word: &str) -> Option<&'static str> {
 }
 
 /// What stands at the top of a file beside the camera.
-pub(super) const SECTIONS: [&str; 5] = ["Background", "Fog", "Lights", "Materials", "Group"];
+pub(super) const SECTIONS: [&str; 6] = ["Background", "Fog", "Lights", "Textures", "Materials", "Group"];
+
+/// Those that only our dialect has.
+pub(super) const OURS: [&str; 2] = ["Fog", "Textures"];
 
 /// The camera that a word begins, where there are no nodes.
 pub(super) fn camera_of(word: &str) -> Option<Camera> {

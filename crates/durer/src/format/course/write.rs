@@ -84,6 +84,10 @@ impl Writer {
                 lights.iter().for_each(|light| w.thing(&light.value));
             });
         }
+        let mut textures = scene.assets.textures().peekable();
+        if textures.peek().is_some() {
+            self.block("Textures", |w| textures.for_each(|texture| w.thing(&texture)));
+        }
         if !scene.materials.is_empty() {
             self.block("Materials", |w| {
                 w.line(format!("numMaterials {}", scene.materials.len()));

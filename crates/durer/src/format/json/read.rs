@@ -12,7 +12,7 @@ use crate::format::said::meant;
 use crate::light::Light;
 use crate::material::{ColorNoise, Pattern, PhongMaterial, PrincipledMaterial, Solid, presets};
 use crate::math::Vec3;
-use crate::scene::{Group, Material, MatrixOp, Node as What, Object, Operation, Scene};
+use crate::scene::{Group, Material, MatrixOp, NamedTexture, Node as What, Object, Operation, Scene};
 use crate::shape::{HeightField, Primitive, Sphere, TriangleMesh, VoxelGrid};
 
 /// A file that is JSON, before it is known to be a scene.
@@ -82,6 +82,16 @@ impl Reader<'_> {
             let lights = self.items(node, "lights").iter();
             let light = |node| self.spanned(node, |reader| reader.choice::<Light>(node, "light"));
             scene.lights = Some(lights.filter_map(light).collect());
+        }
+        if let Some(node) = members.take("textures") {
+            for node in self.items(node, "textures") {
+                let texture = self.thing(NamedTexture::default(), node, "texture");
+                let name = texture.name.path.clone();
+                if scene.assets.pictures.insert(name.clone(), texture.picture()).is_some() {
+                    let message = format!("there is a texture {} already", shown(name.as_bytes()));
+                    self.error(node.head(), "repeated", message, None);
+                }
+            }
         }
         if let Some(node) = members.take("materials") {
             for (i, node) in self.items(node, "materials").iter().enumerate() {

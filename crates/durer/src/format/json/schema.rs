@@ -8,7 +8,7 @@ use crate::dialect::Dialect;
 use crate::light::Light;
 use crate::material::{ColorNoise, PhongMaterial, PrincipledMaterial, Solid, presets};
 use crate::medium::Fog;
-use crate::scene::{Background, MatrixOp, Operation};
+use crate::scene::{Background, MatrixOp, NamedTexture, Operation};
 use crate::shape::{HeightField, Primitive, Sphere, TriangleMesh, VoxelGrid};
 use serde_json::{Map, Value, json};
 
@@ -53,6 +53,11 @@ pub fn schema() -> Value {
         "background": record::<Background>(json!({})),
         "fog": record::<Fog>(json!({})),
         "lights": list("light", "The lights. Where this is not given, ambient light counts as 1 1 1."),
+        "textures": {
+            "type": "array",
+            "items": record::<NamedTexture>(json!({})),
+            "description": "Pictures with names, which materials name in place of a file.",
+        },
         "materials": list("material", "The materials, numbered from 0."),
         "objects": list("object", "What is seen."),
     });

@@ -30,6 +30,10 @@ pub fn write(scene: &Scene, dialect: Dialect) -> String {
         Json::List(lights.iter().map(|light: &crate::scene::Spanned<_>| thing(&light.value)).collect())
     };
     members.extend(scene.lights.as_ref().map(|list| ("lights", lights(list))));
+    let textures: Vec<Json> = scene.assets.textures().map(|texture| Json::Object(fields(&texture))).collect();
+    if !textures.is_empty() {
+        members.push(("textures", Json::List(textures)));
+    }
     if !scene.materials.is_empty() {
         members.push(("materials", Json::List(scene.materials.iter().map(|m| material(&m.value)).collect())));
     }

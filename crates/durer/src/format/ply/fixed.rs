@@ -5,6 +5,7 @@
 
 use super::body::Body;
 use super::header::{Element, Scalar};
+use super::rows::COLUMNS;
 use super::values::Values;
 use crate::math::{Vec2, Vec3};
 use rayon::prelude::*;
@@ -48,6 +49,15 @@ impl Rows<'_> {
             (0..N).all(|k| rows.each(places[k], |i, value| block[i][k] = value))
         });
         sound.all(|sound| sound).then_some(all)
+    }
+
+    /// The same where the rows may lack them: then there are none.
+    fn all<const N: usize>(&self, places: &[Option<Place>]) -> Option<Vec<[f32; N]>> {
+        let places: Option<Vec<Place>> = places.iter().copied().collect();
+        match places.and_then(|places| places.try_into().ok()) {
+            Some(places) => self.gather::<N>(places),
+            None => Some(Vec::new()),
+        }
     }
 
     /// Hands on one number of each row; whether all are finite.
@@ -122,7 +132,7 @@ impl<V: Values> Body<'_, '_, V> {
 
     /// Reads all vertices, whose columns are known; `None` where they must be read one by one.
     pub(super) fn fixed_vertices(&mut self, element: &Element, columns: &[Option<usize>]) -> Option<()> {
-        let mut places = [None; 12];
+        let mut places = [None; COLUMNS.len()];
         let mut size = 0;
         for (property, column) in element.properties.iter().zip(columns) {
             if property.count.is_some() {
@@ -134,23 +144,21 @@ impl<V: Values> Body<'_, '_, V> {
             size += property.scalar.size();
         }
         // Colours are few, and more than numbers.
-        if places[8..].iter().any(Option::is_some) {
+        if places[8..12].iter().any(Option::is_some) {
             return None;
         }
         let rows = self.rows(element, size)?;
         let positions = rows.gather([places[0]?, places[1]?, places[2]?])?;
-        let normals = match (places[3], places[4], places[5]) {
-            (Some(x), Some(y), Some(z)) => rows.gather([x, y, z])?,
-            _ => Vec::new(),
-        };
-        let uvs = match (places[6], places[7]) {
-            (Some(u), Some(v)) => rows.gather([u, v])?,
-            _ => Vec::new(),
-        };
+        let normals = rows.all(&places[3..6])?;
+        let uvs = rows.all(&places[6..8])?;
+        let (colors, second_uvs, tangents) =
+            (rows.all(&places[12..16])?, rows.all(&places[16..18])?, rows.all(&places[18..22])?);
         let length = rows.bytes.len();
         self.mesh.positions = positions.into_iter().map(Vec3::from_array).collect();
         self.mesh.normals = normals.into_iter().map(Vec3::from_array).collect();
         self.mesh.uvs = uvs.into_iter().map(Vec2::from_array).collect();
+        self.mesh.second_uvs = second_uvs.into_iter().map(Vec2::from_array).collect();
+        (self.mesh.colors, self.mesh.tangents) = (colors, tangents);
         self.values.skip(Scalar::U8, length).ok()
     }
 

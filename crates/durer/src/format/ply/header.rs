@@ -96,11 +96,16 @@ pub(super) struct Element {
 pub(super) struct Header {
     pub encoding: Encoding,
     pub elements: Vec<Element>,
+    /// Whether triangles without normals are flat, whatever is usual: a word of ours.
+    pub flat: bool,
     /// Where the rows begin.
     pub body: usize,
 }
 
 const KEYWORDS: [&str; 6] = ["format", "element", "property", "comment", "obj_info", "end_header"];
+
+/// What `obj_info` may say.
+pub(super) const FLAT: &[u8] = b"flat";
 
 /// Reads a header. Errors are reported, and then there is none.
 pub(super) fn read_header(bytes: &[u8], report: &mut Report) -> Option<Header> {
@@ -111,11 +116,12 @@ pub(super) fn read_header(bytes: &[u8], report: &mut Report) -> Option<Header> {
         report.error(first, message);
         return None;
     }
-    let mut reader = HeaderReader { bytes, report, encoding: None, elements: Vec::new() };
+    let mut reader = HeaderReader { bytes, report, encoding: None, elements: Vec::new(), flat: false };
     while let Some(line) = lines.next_line() {
         let words: Vec<Range<usize>> = split_words(bytes, line).take(6).collect();
         let Some(keyword) = words.first().cloned() else { continue };
         match &bytes[keyword.clone()] {
+            b"obj_info" if words.get(1).is_some_and(|word| &bytes[word.clone()] == FLAT) => reader.flat = true,
             b"comment" | b"obj_info" => {}
             b"format" => reader.format(&words),
             b"element" => reader.element(&words),
@@ -136,6 +142,7 @@ struct HeaderReader<'a, 'r> {
     report: &'r mut Report,
     encoding: Option<Encoding>,
     elements: Vec<Element>,
+    flat: bool,
 }
 
 impl<'a> HeaderReader<'a, '_> {
@@ -221,7 +228,7 @@ impl<'a> HeaderReader<'a, '_> {
                 Some("the second line is `format ascii 1.0` or the like".into());
         }
         let encoding = self.encoding.filter(|_| !self.report.has_errors())?;
-        Some(Header { encoding, elements: self.elements, body })
+        Some(Header { encoding, elements: self.elements, flat: self.flat, body })
     }
 }
 

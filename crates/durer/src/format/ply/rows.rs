@@ -11,7 +11,9 @@ use crate::math::{Vec2, Vec3};
 use crate::shape::mesh::NO_INDEX;
 
 /// The properties of a vertex that are read, by all of their names, in the order of a [`Row`].
-const COLUMNS: [&[&str]; 12] = [
+///
+/// The last ten are words of ours, for what else a mesh may have.
+pub(super) const COLUMNS: [&[&str]; 22] = [
     &["x"],
     &["y"],
     &["z"],
@@ -24,9 +26,19 @@ const COLUMNS: [&[&str]; 12] = [
     &["green", "g", "diffuse_green"],
     &["blue", "b", "diffuse_blue"],
     &["alpha", "a", "diffuse_alpha"],
+    &["linear_red"],
+    &["linear_green"],
+    &["linear_blue"],
+    &["linear_alpha"],
+    &["second_u"],
+    &["second_v"],
+    &["tangent_x"],
+    &["tangent_y"],
+    &["tangent_z"],
+    &["tangent_w"],
 ];
 
-/// Position, normal, texture coordinates, colour and opacity.
+/// Position, normal, texture coordinates, colour and opacity; linear colour and opacity, second texture coordinates, tangent.
 type Row = [f32; COLUMNS.len()];
 
 const CORNER_LISTS: [&str; 2] = ["vertex_indices", "vertex_index"];
@@ -73,6 +85,7 @@ impl<V: Values> Body<'_, '_, V> {
         }
         let has = |range: std::ops::Range<usize>| range.clone().all(|column| columns.contains(&Some(column)));
         let (has_normals, has_uvs, has_colors) = (has(3..6), has(6..8), has(8..11));
+        let (has_linear, has_second, has_tangents) = (has(12..16), has(16..18), has(18..22));
         // Whole numbers are shares of the greatest of their type.
         let most = |column: usize| {
             let at = columns.iter().position(|found| *found == Some(column));
@@ -83,7 +96,7 @@ impl<V: Values> Body<'_, '_, V> {
         self.mesh.positions.reserve_exact(rows);
         self.mesh.normals.reserve_exact(if has_normals { rows } else { 0 });
         self.mesh.uvs.reserve_exact(if has_uvs { rows } else { 0 });
-        self.mesh.colors.reserve_exact(if has_colors { rows } else { 0 });
+        self.mesh.colors.reserve_exact(if has_colors || has_linear { rows } else { 0 });
         for row in 0..element.rows {
             let mut values: Row = [0.0; COLUMNS.len()];
             for (property, &column) in element.properties.iter().zip(&columns) {
@@ -93,11 +106,14 @@ impl<V: Values> Body<'_, '_, V> {
                 };
                 match self.values.float(property.scalar) {
                     Ok(value) => values[column] = value,
-                    Err(ValueError::Number(NumberError::NotFinite)) if column >= 8 => values[column] = 1.0,
+                    Err(ValueError::Number(NumberError::NotFinite)) if (8..12).contains(&column) => {
+                        values[column] = 1.0
+                    }
                     Err(error) => self.tolerate(error, element, row)?,
                 }
             }
             let [x, y, z, nx, ny, nz, u, v, color @ ..] = values;
+            let [_, _, _, _, red, green, blue, alpha, second_u, second_v, tangent @ ..] = color;
             self.mesh.positions.push(Vec3::new(x, y, z));
             if has_normals {
                 self.mesh.normals.push(Vec3::new(nx, ny, nz));
@@ -105,7 +121,15 @@ impl<V: Values> Body<'_, '_, V> {
             if has_uvs {
                 self.mesh.uvs.push(Vec2::new(u, v));
             }
-            if has_colors {
+            if has_second {
+                self.mesh.second_uvs.push(Vec2::new(second_u, second_v));
+            }
+            if has_tangents {
+                self.mesh.tangents.push(tangent);
+            }
+            if has_linear {
+                self.mesh.colors.push([red, green, blue, alpha]);
+            } else if has_colors {
                 let share = |i: usize| (color[i] / most[i]).clamp(0.0, 1.0);
                 let light = |i: usize| decode_srgb((share(i) * 255.0 + 0.5) as u8);
                 let opacity = if columns.contains(&Some(11)) { share(3) } else { 1.0 };
