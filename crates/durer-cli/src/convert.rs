@@ -14,7 +14,7 @@ use durer::dialect::Dialect;
 use durer::format::course::write;
 use durer::format::{json, mesh_format_for, scene_format_for};
 use durer::load;
-use durer::scene::{Scene, Studio};
+use durer::scene::{Scene, Studio, Wishes};
 use std::path::{Path, PathBuf};
 
 /// Write a scene anew: in its own or another dialect, as JSON, as glTF, or its meshes as PLY, OBJ
@@ -98,10 +98,19 @@ pub fn run(args: &ConvertArgs) -> Result<(), Failure> {
         all.push((guard.writes("a file of the model", &base.join(path))?, bytes.to_vec()));
     }
     all.push((place, text(&scene)));
-    if let Some((width, height)) = loaded.scene.wishes.size {
-        let message = format!("the model's own picture has {width}x{height} pixels: the scene's text does not say so");
-        report::note(&Diagnostic::note(message).help(format!("render it with `--size {width}x{height}`")));
+    if let Some(options) = asked_for(&loaded.scene.wishes) {
+        let message = "the file also says how large and how good its picture is; the scene's text does not";
+        report::note(&Diagnostic::note(message).help(format!("render it with `{options}`")));
     }
     let all: Vec<_> = all.iter().map(|(place, bytes)| (place, bytes.clone())).collect();
     output::save(&all, false)
+}
+
+/// The options of rendering that a file asks for, if any.
+fn asked_for(wishes: &Wishes) -> Option<String> {
+    let size = wishes.size.map(|(width, height)| format!("--size {width}x{height}"));
+    let samples = wishes.samples.map(|samples| format!("--samples {samples}"));
+    let bounces = wishes.bounces.map(|bounces| format!("--bounces {bounces}"));
+    let all: Vec<String> = [size, samples, bounces].into_iter().flatten().collect();
+    (!all.is_empty()).then(|| all.join(" "))
 }

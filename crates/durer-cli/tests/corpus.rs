@@ -1,9 +1,19 @@
-//! The command lines of all official pictures: each is accepted, and its year is guessed.
+//! Files of others: the command lines of all official pictures, and scenes and models written anew.
 
 mod common;
 
 use common::{Place, corpus};
 use std::collections::BTreeSet;
+
+const MODELS: [&str; 7] = [
+    "TextureTransformTest/glTF/TextureTransformTest.gltf",
+    "MultiUVTest/glTF-Binary/MultiUVTest.glb",
+    "BoxVertexColors/glTF-Binary/BoxVertexColors.glb",
+    "NormalTangentMirrorTest/glTF-Binary/NormalTangentMirrorTest.glb",
+    "RiggedSimple/glTF-Binary/RiggedSimple.glb",
+    "AlphaBlendModeTest/glTF-Binary/AlphaBlendModeTest.glb",
+    "SimpleInstancing/glTF/SimpleInstancing.gltf",
+];
 
 #[test]
 fn the_year_of_every_official_command_is_guessed() {
@@ -38,6 +48,26 @@ fn the_year_of_every_official_command_is_guessed() {
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn models_written_in_words_make_the_same_picture() {
+    let Some(course) = corpus() else { return };
+    let models = course.join("../samples/gltf/khronos");
+    let place = Place::new();
+    // Pictures that are turned and repeat, vertex colours, tangents, bones, films, glass, instances.
+    for name in MODELS {
+        let model = models.join(name);
+        let picture = |path: &str| {
+            place.gives(0, &format!("render {path} -o a.ppm --integrator path --size 32x24 --samples 4 -q --restart"));
+            std::fs::read(place.path("a.ppm")).unwrap()
+        };
+        let first = picture(&model.display().to_string());
+        for written in ["m.txt", "m.json"] {
+            place.gives(0, &format!("convert {} -o {written}", model.display()));
+            assert!(picture(written) == first, "{name} as {written}");
+        }
+    }
 }
 
 #[test]

@@ -26,14 +26,27 @@ fn a_model_is_rendered_from_all_sides_in_any_light() {
 }
 
 #[test]
-fn a_model_is_converted_and_is_no_scene_in_words() {
+fn a_model_is_converted_also_to_words() {
     let place = Place::new();
     place.put("a.stl", STL);
     for name in ["b.ply", "b.obj", "b.stl", "b.glb", "b.gltf"] {
         place.gives(0, &format!("convert a.stl -o {name}"));
         assert!(place.gives(0, &format!("info {name}")).out.contains("2 in meshes"), "{name}");
     }
-    place.refused(2, "convert a.stl -o a.txt", &[".ply, .obj, .stl"]);
+    let hash = |name: &str| place.gives(0, &format!("render {name} -o a.png {SMALL} --hash -q")).out;
+    let picture = |name: &str| {
+        place.gives(0, &format!("render {name} -o a.ppm {SMALL} -q"));
+        std::fs::read(place.path("a.ppm")).unwrap()
+    };
+    for name in ["words.txt", "json.json"] {
+        let said = place.gives(0, &format!("convert a.stl -o {name}")).err;
+        assert!(said.contains(name) && said.contains("a.ply"), "{said}");
+        assert_eq!(picture(name), picture("a.stl"), "{name}");
+        // What is written is a scene like any other.
+        place.gives(0, &format!("convert {name} -o again-{name}"));
+        assert_eq!(hash(&format!("again-{name}")), hash(name), "{name}");
+    }
+    place.refused(2, "convert a.stl -o b --to durer", &["the name needs an ending"]);
 }
 
 #[test]

@@ -210,6 +210,40 @@ fn promised_counts_reserve_nothing() {
 }
 
 #[test]
+fn all_that_a_mesh_has_is_written_and_read() {
+    let mesh = MeshData {
+        positions: vec![Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::ONE],
+        uvs: vec![Vec2::new(0.25, 0.5), Vec2::ONE],
+        normals: vec![Vec3::Z, Vec3::new(0.0, 3.0, 4.0)],
+        triangles: vec![[0, 1, 2], [1, 3, 2]],
+        triangle_uvs: vec![[0, 1, 1], [1, 0, 1]],
+        triangle_normals: vec![[0, 0, 0], [1, 1, NO_INDEX]],
+        colors: vec![[0.1, 0.2, 0.3, 0.4], [1.0; 4], [2.5, 0.0, 0.0, 1.0], [0.0; 4]],
+        second_uvs: vec![Vec2::ZERO, Vec2::X, Vec2::Y, Vec2::ONE],
+        tangents: vec![[1.0, 0.0, 0.0, -1.0]; 4],
+        ..MeshData::default()
+    };
+    let again = read_clean(&super::write_whole(&mesh), "m.ply");
+    assert_eq!((again.triangles.len(), &again.triangle_uvs), (2, &again.triangles));
+    for (i, corners) in again.triangles.iter().enumerate() {
+        for (k, &corner) in corners.iter().enumerate() {
+            let (corner, place) = (corner as usize, mesh.triangles[i][k] as usize);
+            assert_eq!(again.positions[corner], mesh.positions[place]);
+            assert_eq!(again.colors[corner], mesh.colors[place]);
+            assert_eq!(again.second_uvs[corner], mesh.second_uvs[place]);
+            assert_eq!(again.tangents[corner], mesh.tangents[place]);
+            assert_eq!(again.uvs[corner], mesh.uvs[mesh.triangle_uvs[i][k] as usize]);
+            // A corner without a normal has the triangle's.
+            let flat = crate::shape::triangle::face_normal(mesh.triangles[i].map(|i| mesh.positions[i as usize]));
+            let normal = mesh.normals.get(mesh.triangle_normals[i][k] as usize).copied().unwrap_or(flat);
+            assert_eq!(again.normals[corner], normal);
+        }
+    }
+    let plain = MeshData { positions: mesh.positions, triangles: mesh.triangles, flat: true, ..MeshData::default() };
+    assert_eq!(read_clean(&super::write_whole(&plain), "m.ply"), plain);
+}
+
+#[test]
 fn nothing_panics() {
     for bytes in [ascii(), binary(false), binary(true), TRIANGLE.as_bytes().to_vec()] {
         abuse(&bytes, "m.ply");
